@@ -11,6 +11,7 @@
 use std::hint::black_box;
 use std::time::Instant;
 
+use trueflight::OfCase;
 use trueflight::estimators::{DrawBuffer, Kernel};
 use trueflight::harness::sweep::What;
 use trueflight::rng::{Address, Stream};

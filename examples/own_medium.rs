@@ -1,5 +1,6 @@
 //! A medium of one's own, by closures: along a line, and in space.
 
+use trueflight::OfCase;
 use trueflight::catalogue::{Addition, Page, Settings};
 use trueflight::geometry::{Aabb, Bounds, Point};
 use trueflight::harness::{Case, Source};

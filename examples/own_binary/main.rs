@@ -6,6 +6,7 @@
 use std::process::ExitCode;
 
 use trueflight::catalogue::{Addition, Page, Settings};
+use trueflight::estimators::own::estimator;
 use trueflight::harness::catalogue::NameTaken;
 use trueflight::media::own::Formula;
 use trueflight::problems::Transmittance;
@@ -21,7 +22,7 @@ mod two_rays;
 pub fn catalogue() -> Result<Catalogue, NameTaken> {
     let haze = Page { module: "haze", source: "Haze that thins out: σ_t = 1/(1 + t²)." };
     let read = |_: &Settings| Some(Formula::new(|t: f64| 1.0 / (1.0 + t * t)));
-    let two_rays = Addition::estimator::<Transmittance, two_rays::TwoRays>(page!(two_rays));
+    let two_rays = estimator::<Transmittance, two_rays::TwoRays>(page!(two_rays));
     Catalogue::builtin().with(Addition::line(haze, read))?.with(two_rays)
 }
 

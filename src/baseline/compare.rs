@@ -26,7 +26,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use super::scope::{Measured, is_comparable, left_out};
 use super::stored::{Baseline, Entry, Evidence};
 use crate::harness::comparison::{Change, Comparison, Drift, Quantity, Rules, Sequel};
-use crate::stats::normal;
+use gate::stats::normal;
 
 /// Two numbers of lookups without spread are the same if they are this near.
 const ROUNDING: f64 = 1e-9;

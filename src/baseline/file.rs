@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
-use crate::files;
+use media::files;
 
 /// Why a baseline could not be read or written.
 #[derive(Debug, thiserror::Error)]

@@ -12,9 +12,9 @@ use fearless_simd::Level;
 use serde::{Deserialize, Serialize};
 
 use super::curve::Sample;
-use crate::estimators::{DrawBuffer, Kernel};
 use crate::harness::plan::{BLOCK, Planned};
-use crate::numeric::pack;
+use estimators::{DrawBuffer, Kernel};
+use numeric::pack;
 
 /// What time is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]

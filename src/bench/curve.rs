@@ -7,9 +7,9 @@
 //! Rounds are independent, so that the error over several is smoother than |mean − T| of one. Where
 //! theory has a variance, it should follow √(V/n).
 
-use crate::estimators::{DrawBuffer, Order};
 use crate::harness::plan::Planned;
-use crate::stats::Tally;
+use estimators::{DrawBuffer, Order};
+use gate::stats::Tally;
 
 /// The first point of a curve.
 const FIRST: u64 = 64;

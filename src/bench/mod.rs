@@ -37,7 +37,7 @@ use self::rows::Laps;
 use self::spread::Spread;
 use crate::harness::plan::{Plan, PlannedCase};
 #[cfg(doc)]
-use crate::numeric::pack;
+use numeric::pack;
 
 /// How much is timed, and with what.
 #[derive(Debug, Clone, Copy)]

@@ -7,11 +7,11 @@ use super::curve::{ChannelSample, Sample};
 use super::figures::{ERRORS, efficiency, time_to};
 use super::record::{BenchRow, CurvePoint, Times};
 use super::spread::Spread;
-use crate::estimators::Refusal;
 use crate::harness::plan::Planned;
 use crate::harness::ready::Ready;
-use crate::theory::Channel;
-use crate::theory::prediction::CERTAIN;
+use estimators::Refusal;
+use theory::Channel;
+use theory::prediction::CERTAIN;
 
 /// What is said where a round took no time that the clock could tell.
 const TOO_SHORT: &str = "a round is shorter than the clock can tell; give more --draws";

@@ -17,8 +17,8 @@ use crate::bench::stored::Stored;
 use crate::bench::{Amounts, measure};
 use crate::harness::Catalogue;
 use crate::harness::{Amount, Plan};
-use crate::numeric::pack;
 use crate::report::bench as page;
+use numeric::pack;
 
 /// Arguments of `bench`.
 #[derive(Debug, Args)]

@@ -16,10 +16,10 @@ use super::output::{Errors, Format};
 use super::selection::{Looks, Selection};
 use super::verdict::{self, Inconclusive};
 use super::{Console, drawing, numbers, output};
-use crate::files;
 use crate::harness::Catalogue;
 use crate::harness::{Case, Options, Record};
 use crate::report::{Report, annotations, html, junit, markdown, record_json, summary_csv};
+use media::files;
 
 /// So many draws per experiment where neither an argument nor the case says.
 const DRAWS: u64 = 400_000;

@@ -9,13 +9,13 @@ use anyhow::Context;
 
 use super::{Console, output};
 use crate::baseline::fingerprint;
-use crate::files;
 use crate::harness::cache::Cache;
 use crate::harness::progress::Step;
 use crate::harness::record::Record;
 use crate::harness::share::{self, Share};
 use crate::harness::store::Store;
 use crate::harness::{Plan, run, verdict};
+use media::files;
 
 /// The file beside the results that keeps what was drawn.
 pub const CACHE: &str = "draws.bin";

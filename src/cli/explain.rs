@@ -7,10 +7,10 @@ use clap::{Args, ValueEnum};
 use super::Console;
 use super::list::{self, What, pages};
 use super::output;
-use crate::catalogue::suggestion;
 use crate::harness::{Catalogue, example, suite};
 use crate::render::gallery;
 use crate::report::console::page;
+use ::media::catalogue::suggestion;
 
 /// Arguments of `explain`.
 #[derive(Debug, Args)]

@@ -11,11 +11,11 @@ use signal_hook::flag;
 
 use super::drawing::CACHE;
 use super::output;
-use crate::files;
 use crate::harness::blocks::{Blocks, Lock};
 use crate::harness::share::Header;
 use crate::harness::store::Store;
 use crate::harness::workers::Workers;
+use media::files;
 
 /// What a process that a signal ends answers to its shell: 128 + SIGINT.
 const INTERRUPTED: i32 = 130;

@@ -12,7 +12,6 @@ use clap::{Args, ValueEnum};
 use self::claimed::Claimed;
 use super::verdict::Inconclusive;
 use super::{Console, USAGE, numbers, output};
-use crate::files;
 use crate::harness::Catalogue;
 use crate::harness::record::Verdict;
 use crate::judge::claim::ROUNDING;
@@ -21,6 +20,7 @@ use crate::judge::trial::Wanted;
 use crate::judge::{self, Column, Draws, Format};
 use crate::report::judge as report;
 use crate::report::judge::junit::Told;
+use media::files;
 
 /// How many draws are read of a pipe, which need not end.
 const OF_A_PIPE: u64 = 1 << 26;

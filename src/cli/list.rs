@@ -10,13 +10,13 @@ use clap::{Args, ValueEnum};
 
 use super::Console;
 use super::output::{self, Format};
-use crate::catalogue::{Page, PageList};
 use crate::harness::catalogue::{Catalogue, built_in};
 use crate::harness::{self, checks, suite};
-use crate::problems;
-use crate::recipes::{controls, sampling};
 use crate::render::{self, Picture, gallery};
 use crate::{phase, report};
+use estimators::recipes::{controls, sampling};
+use media::catalogue::{Page, PageList};
+use theory::problems;
 
 /// Arguments of `list`.
 #[derive(Debug, Args)]

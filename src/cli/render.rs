@@ -8,11 +8,11 @@ use anyhow::bail;
 use clap::Args;
 
 use super::{Console, numbers, output, selection};
-use crate::catalogue::Additions;
 use crate::harness::Catalogue;
 use crate::harness::source::CaseError;
 use crate::render::{Picture, PictureRecord, gallery as built_in};
 use crate::report::{self, Artifact};
+use media::catalogue::Additions;
 
 /// Arguments of `render`.
 #[derive(Debug, Args)]

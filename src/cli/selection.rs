@@ -4,9 +4,9 @@ use anyhow::Context;
 use clap::Args;
 
 use super::{Console, numbers, output};
-use crate::estimators::Order;
 use crate::harness::case::Case;
 use crate::harness::{Amount, Catalogue, Filter, Options, Plan, suite};
+use estimators::Order;
 
 /// Which experiments, and where their random numbers begin.
 #[derive(Debug, Clone, Args)]

@@ -7,13 +7,13 @@ use fearless_simd::Level;
 use super::sampled::Sampled;
 use super::scene::{Field, Scene};
 use super::{Target, Wishes, single};
-use crate::catalogue::{Settings, Value};
-use crate::geometry::{Aabb, Bounds, Point};
-use crate::media::axes::Axes;
-use crate::media::{Medium, Volume, grid_file};
-use crate::phase::Phase;
-use crate::phase::henyey_greenstein::HenyeyGreenstein;
-use crate::problems::spectral_furnace;
+use media::axes::Axes;
+use media::catalogue::{Settings, Value};
+use media::phase::Phase;
+use media::phase::henyey_greenstein::HenyeyGreenstein;
+use media::{Medium, Volume, grid_file};
+use numeric::geometry::{Aabb, Bounds, Point};
+use theory::problems::spectral_furnace;
 
 /// Cells along the longest side of a field in space, and along a line.
 const CELLS: [usize; 2] = [32, 256];

@@ -12,8 +12,8 @@ use std::fmt::Write;
 
 use super::sampled::FILE as GRID;
 use super::scene::{Light, Scene, View};
-use crate::geometry::{Aabb, Bounds, Point};
-use crate::phase::Phase;
+use media::phase::Phase;
+use numeric::geometry::{Aabb, Bounds, Point};
 
 /// A number of single precision with all of its digits.
 #[allow(clippy::cast_possible_truncation)] // it is of single precision

@@ -28,8 +28,8 @@ pub use error::ExportError;
 use scene::Scene;
 use truth::Truth;
 
-use crate::files;
 use crate::harness::{Catalogue, Source};
+use media::files;
 
 /// A renderer that scenes are written for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

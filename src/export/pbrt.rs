@@ -12,8 +12,8 @@ use std::fmt::Write;
 
 use super::mitsuba::number;
 use super::scene::{Channel, Field, Light, Scene, View};
-use crate::geometry::{Aabb, Bounds, Point};
-use crate::phase::Phase;
+use media::phase::Phase;
+use numeric::geometry::{Aabb, Bounds, Point};
 
 /// Scatterings of a path that is not meant to end.
 const DEEP: u32 = 1_000_000;

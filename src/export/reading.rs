@@ -17,17 +17,17 @@ use super::error::ExportError;
 use super::fields::{Fields, Reader, Unsuitable, lobe, one_phase, unread};
 use super::scene::{Channel, Light, Scene, View};
 use super::{Target, Wishes, single};
-use crate::catalogue::Settings;
-use crate::geometry::{Bounds, Point, Ray};
 use crate::harness::sweep::What;
 use crate::harness::{Catalogue, Source};
-use crate::media::{self, Medium, Volume};
-use crate::phase::Phase;
-use crate::phase::isotropic::Isotropic;
-use crate::problems::single_scattering::Lamp;
-use crate::problems::slab::{Incidence, Light as Side};
-use crate::problems::sphere::{Light as BallLight, Sought};
-use crate::problems::{
+use media::catalogue::Settings;
+use media::phase::Phase;
+use media::phase::isotropic::Isotropic;
+use media::{self, Medium, Volume};
+use numeric::geometry::{Bounds, Point, Ray};
+use theory::problems::single_scattering::Lamp;
+use theory::problems::slab::{Incidence, Light as Side};
+use theory::problems::sphere::{Light as BallLight, Sought};
+use theory::problems::{
     ChromaticSlab, Furnace, Problem, SingleScattering, Slab, SpectralFurnace, SpectralSlab, Sphere,
     Transmittance, spectral_furnace,
 };

@@ -7,8 +7,8 @@
 //! Written as a `.vol` file, see `trueflight explain grid`, whose truth is that of the page `grid`.
 
 use super::single;
-use crate::geometry::{Aabb, Point};
-use crate::media::{Medium, Volume};
+use media::{Medium, Volume};
+use numeric::geometry::{Aabb, Point};
 
 /// The name of the file.
 pub const FILE: &str = "density.vol";

@@ -2,8 +2,8 @@
 
 use super::Target;
 use super::sampled::Sampled;
-use crate::geometry::{Aabb, Bounds, Point};
-use crate::phase::Phase;
+use media::phase::Phase;
+use numeric::geometry::{Aabb, Bounds, Point};
 
 /// A medium, lights and one ray, all of whose numbers are of single precision.
 #[derive(Debug, Clone)]

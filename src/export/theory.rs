@@ -9,10 +9,10 @@ use std::path::Path;
 use super::error::ExportError;
 use super::sampled::{FILE as GRID, file_of};
 use super::scene::{Field, Light, Scene};
-use crate::geometry::{Aabb, Bounds, Point};
 use crate::harness::{Case, Source};
-use crate::phase::Phase;
-use crate::theory::Prediction;
+use ::theory::Prediction;
+use media::phase::Phase;
+use numeric::geometry::{Aabb, Bounds, Point};
 
 /// The name of the file.
 pub const FILE: &str = "case.toml";

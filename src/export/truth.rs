@@ -29,7 +29,7 @@ use serde::{Deserialize, Serialize};
 use super::Target;
 use super::error::ExportError;
 use super::scene::{Light, Scene, View};
-use crate::theory::{self, Prediction};
+use theory::{self, Prediction};
 
 /// The name of the file.
 pub const FILE: &str = "truth.json";

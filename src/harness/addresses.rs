@@ -2,9 +2,9 @@
 
 use super::names::Names;
 use super::sweep::Variation;
-use crate::rng::{Address, name_hash};
+use numeric::rng::{Address, name_hash};
 
-pub use crate::stats::verdict::BLOCK;
+pub use gate::stats::verdict::BLOCK;
 
 /// Where order-free experiments of a case find their collisions, if these are as likely anywhere on
 /// the same stretches: whatever the estimator, the control and σ̂.

@@ -21,7 +21,7 @@ use super::draw::Block;
 use super::drawn::Standing;
 use super::frames::Frames;
 use super::share::Header;
-use crate::files;
+use media::files;
 
 /// An experiment, counted through the plan, and a block of it.
 pub type Key = (u32, u64);

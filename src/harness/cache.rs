@@ -14,8 +14,8 @@ use serde::{Deserialize, Serialize};
 use super::drawn::{Drawn, Draws};
 use super::plan::{Plan, Planned, PlannedCase};
 
-use crate::numeric::pack;
-use crate::rng::{hash, name_hash};
+use numeric::pack;
+use numeric::rng::{hash, name_hash};
 
 /// What is kept: experiments by what they are made of. Without a program nothing is.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]

@@ -42,11 +42,12 @@ use super::problem;
 use super::scenario::Scenario;
 use super::source::{CaseError, Source};
 use super::sweep::{SweepAxis, What};
-use crate::catalogue::additions::{self, Additions};
-use crate::catalogue::{Domain, Entry, Fault, Node, Page, Settings, Value, number};
-use crate::media::Body;
-use crate::problems;
-use crate::rng::{Address, name_hash};
+use media::Body;
+use media::catalogue::additions::{self, Additions};
+use media::catalogue::{Domain, Entry, Fault, Node, Page, Settings, Value};
+use numeric::digits::number;
+use numeric::rng::{Address, name_hash};
+use theory::problems;
 
 /// A case file, read.
 pub struct Case {

@@ -9,10 +9,10 @@ use std::path::{Path, PathBuf};
 use super::case::Case;
 use super::source::{CaseError, Source};
 use super::suite;
-use crate::catalogue::{Addition, Additions, PageList, suggestion};
-use crate::estimators::{self, Estimated};
-use crate::media;
-use crate::problems::{self, MultipleScattering};
+use estimators::{self, Estimated};
+use media;
+use media::catalogue::{Addition, Additions, PageList, suggestion};
+use theory::problems::{self, MultipleScattering};
 
 /// The built-in pages with those of a program's own.
 ///
@@ -68,7 +68,7 @@ impl Catalogue {
     pub fn with(mut self, addition: Addition) -> Result<Self, NameTaken> {
         let (name, part) = (addition.page.name(), addition.part.clone());
         let built_in = built_in().into_iter().filter(|(other, _)| *other == part);
-        let mut taken = built_in.flat_map(|(_, list)| list.pages).map(crate::catalogue::Page::name);
+        let mut taken = built_in.flat_map(|(_, list)| list.pages).map(media::catalogue::Page::name);
         let own = self.additions.all().iter().filter(|other| other.part == part);
         if taken.any(|other| other == name) || own.map(|o| o.page.name()).any(|o| o == name) {
             return Err(NameTaken { name, part });

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::files::null;
+use numeric::null;
 
 /// What the comparison is to say at which level.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]

@@ -1,7 +1,7 @@
 //! Fields along a ray at a hundred places: what a refused experiment would have worked on.
 
 use super::plot_data::Course;
-use crate::media::{Control, Medium, Piecewise};
+use media::{Control, Medium, Piecewise};
 
 /// Even places on the ray; the one where an inequality fails comes to them.
 const PLACES: usize = 99;

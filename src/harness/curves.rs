@@ -6,9 +6,9 @@ use super::plan::{Planned, PlannedCase};
 use super::record::{Best, Curve, CurvePoint, Sweep};
 use super::sweep::{SweepAxis, Variation, What};
 use super::theory_rows::finite;
-use crate::numeric::parallel;
-use crate::theory::Channel;
-use crate::theory::optimum::{Optimum, best_constants};
+use theory::Channel;
+use theory::optimum::{Optimum, best_constants};
+use theory::parallel;
 
 /// Points of a line.
 const POINTS: usize = 48;

@@ -14,13 +14,13 @@ use super::checks::Kind;
 use super::checks::batch::Batch;
 use super::plan::{BLOCK, Planned};
 use super::ready::Ready;
-use crate::estimators::DrawBuffer;
-use crate::kernels::order_free::{OrderFree, Request};
-use crate::numeric::pack::in_fused_code;
-use crate::numeric::sum::{sum_in_lanes, sum_of_pairs};
-use crate::rng::Streams;
-use crate::stats::Tally;
-use crate::stats::gate::{GateSums, SUMS};
+use estimators::DrawBuffer;
+use estimators::kernels::order_free::{OrderFree, Request};
+use gate::stats::Tally;
+use gate::stats::gate::{GateSums, SUMS};
+use numeric::pack::in_fused_code;
+use numeric::rng::Streams;
+use numeric::sum::{sum_in_lanes, sum_of_pairs};
 
 /// What a block found.
 #[derive(Debug, Clone, Serialize, Deserialize)]

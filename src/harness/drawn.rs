@@ -5,9 +5,9 @@ use serde::{Deserialize, Serialize};
 use super::checks::Kind;
 use super::draw::{Answer, Block, larger};
 use super::plan::Planned;
-use crate::numeric::sum::Sum;
-use crate::stats::Tally;
-use crate::stats::gate::{Decision, Evidence, SUMS};
+use gate::stats::Tally;
+use gate::stats::gate::{Decision, Evidence, SUMS};
+use numeric::sum::Sum;
 
 /// What one experiment drew.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]

@@ -1,13 +1,13 @@
 //! One estimator as a case file has it.
 
 use super::sweep::What;
-use crate::catalogue::{Page, Settings, Value};
-use crate::estimators::own::EstimatorReader;
-use crate::estimators::trial::Entry;
-use crate::estimators::{Estimated, Inputs, Order};
-use crate::media::Body;
-use crate::recipes::sampling::spectral::Spectral;
-use crate::recipes::{controls, sampling};
+use estimators::own::EstimatorReader;
+use estimators::recipes::sampling::spectral::Spectral;
+use estimators::recipes::{controls, sampling};
+use estimators::trial::Entry;
+use estimators::{Estimated, Inputs, Order};
+use media::Body;
+use media::catalogue::{Page, Settings, Value};
 
 /// The estimators of one problem, whose type is no longer visible, while they are being read.
 pub trait EntryReader {

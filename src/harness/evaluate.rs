@@ -17,12 +17,12 @@ use super::plan::{BLOCK, Plan, Planned, PlannedCase};
 use super::plot_data::thinned;
 use super::qualify::{qualify_means, show_anywhere};
 use super::record::{Finding, GateFinding, Verdict};
-use crate::catalogue::deviation::{Deviation, signed_percent};
-use crate::catalogue::digits::{self, short};
-use crate::numeric::parallel;
-use crate::numeric::sum::Sum;
-use crate::stats::gate::Decision;
-use crate::stats::multiplicity;
+use gate::deviation::{Deviation, signed_percent};
+use gate::stats::gate::Decision;
+use gate::stats::multiplicity;
+use numeric::digits::{self, short};
+use numeric::sum::Sum;
+use theory::parallel;
 
 /// What is found of a run: per case, per experiment, per question.
 pub fn run(plan: &Plan, draws: &Draws) -> Vec<Vec<Vec<Finding>>> {

@@ -7,7 +7,7 @@ use std::cell::RefCell;
 
 use super::source::Source;
 use super::suite;
-use crate::catalogue::{Entry, Node, Value};
+use media::catalogue::{Entry, Node, Value};
 
 /// Letters by which a sweep makes a case less suited.
 const SWEEP: usize = 400;

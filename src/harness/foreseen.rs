@@ -2,8 +2,8 @@
 
 use super::checks::{Kind, Question, Scalar};
 use super::plan::{Plan, Planned, PlannedCase};
-use crate::catalogue::digits::enough;
-use crate::stats::verdict::Verdict;
+use gate::stats::verdict::Verdict;
+use numeric::digits::enough;
 
 /// The best verdict that the planned draws allow, and the draws that allow a better one.
 #[derive(Debug, Clone, Default, PartialEq)]

@@ -12,7 +12,7 @@ use std::fs::File;
 use std::io::{self, BufReader, BufWriter, Read, Seek, SeekFrom, Write};
 use std::time::{Duration, Instant};
 
-use crate::rng::hash;
+use numeric::rng::hash;
 
 /// The first line of every such file; its number grows with the form.
 const FIRST: &[u8] = b"trueflight blocks 2\n";

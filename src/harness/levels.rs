@@ -1,8 +1,8 @@
 //! How the questions of a run share its error rate: 4/5 of α go to the gate, by e-Bonferroni, 1/5 to
 //! the p-values, by Holm.
 
-use crate::stats::normal;
-use crate::stats::verdict::MISS;
+use gate::stats::normal;
+use gate::stats::verdict::MISS;
 
 /// The share of the error rate that goes to tests of whole laws.
 const LAW_SHARE: f64 = 0.2;

@@ -4,9 +4,9 @@ use super::drawn::Drawn;
 use super::normality::{Tails, needed};
 use super::record::Row;
 use super::theory_rows::finite;
-use crate::stats::Tally;
-use crate::theory::prediction::CERTAIN;
-use crate::theory::{Channel, Prediction};
+use gate::stats::Tally;
+use theory::prediction::CERTAIN;
+use theory::{Channel, Prediction};
 
 /// Mean and variance of the fixed draws, and their z-scores.
 pub fn measure(row: &mut Row, channel: &Channel, tally: &Tally) {

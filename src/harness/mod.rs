@@ -61,11 +61,11 @@ mod theory_rows;
 pub mod verdict;
 pub mod workers;
 
-use crate::catalogue::PageList;
+use media::catalogue::PageList;
 
 /// The manual of case files.
 pub const CATALOGUE: PageList =
-    PageList { name: "case files", pages: &[crate::page!(case), crate::page!(sweep)] };
+    PageList { name: "case files", pages: &[media::page!(case), media::page!(sweep)] };
 
 pub use case::Case;
 pub use catalogue::Catalogue;

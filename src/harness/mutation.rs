@@ -3,8 +3,8 @@
 use super::case::Case;
 use super::plan::{Plan, Planned};
 pub use super::problem::Walk;
-use crate::estimators::{Experiment, Refusal};
-use crate::mutants::{About, Target};
+use estimators::{Experiment, Refusal};
+use lab::mutants::{About, Target};
 
 /// Finds a mutant's experiment in a plan that has its case.
 pub fn find<'p>(target: &Target, plan: &'p Plan) -> Option<(&'p Case, &'p Planned)> {

@@ -1,7 +1,7 @@
 //! What a run is asked to do, whatever the cases are.
 
 use super::filter::Filter;
-use crate::estimators::Order;
+use estimators::Order;
 
 /// Draws per experiment where neither the options nor the case say.
 pub const DRAWS: u64 = 4_000_000;

@@ -10,7 +10,7 @@
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-pub use crate::stats::verdict::MISS;
+pub use ::gate::stats::verdict::MISS;
 
 use super::addresses;
 use super::case::Case;
@@ -20,11 +20,11 @@ use super::names::Names;
 use super::options::Options;
 use super::ready::Ready;
 use super::sweep::Variation;
-use crate::estimators::{DrawBuffer, Order, Refusal};
-use crate::numeric::pack::WIDTH;
-use crate::numeric::parallel;
-use crate::rng::{Address, PILOT, Streams};
-use crate::stats::gate;
+use ::gate::stats::gate;
+use estimators::{DrawBuffer, Order, Refusal};
+use numeric::pack::WIDTH;
+use numeric::rng::{Address, PILOT, Streams};
+use theory::parallel;
 
 pub use super::addresses::BLOCK;
 

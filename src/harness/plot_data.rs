@@ -3,8 +3,8 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::files::null;
-use crate::theory::optimum::Kind;
+use numeric::null;
+use theory::optimum::Kind;
 
 /// The axis of a sweep and the theory's curves along it.
 #[derive(Debug, Clone, Serialize, Deserialize)]

@@ -5,16 +5,17 @@ use std::sync::Arc;
 
 use super::estimator::ReadEstimators;
 use super::ready::{FAINTEST, Ready};
-use crate::catalogue::{Settings, rounded};
-use crate::estimators::trial::Entry;
-use crate::estimators::{Experiment, Order, RayView, Refusal, Setup};
-use crate::media::body::RayNeed;
-use crate::media::{Body, Control, Medium, Piecewise};
-use crate::mutants::Mutable;
-use crate::problems::{self, each_problem};
-use crate::recipes::sampling;
-use crate::rng::Address;
-use crate::theory::{Mesh, Prediction};
+use estimators::recipes::sampling;
+use estimators::trial::Entry;
+use estimators::{Experiment, Order, RayView, Refusal, Setup};
+use lab::mutants::Mutable;
+use media::body::RayNeed;
+use media::catalogue::Settings;
+use media::{Body, Control, Medium, Piecewise};
+use numeric::digits::rounded;
+use numeric::rng::Address;
+use theory::problems::{self, each_problem};
+use theory::{Mesh, Prediction};
 
 /// A problem of the catalogue, before a case is read.
 pub struct ProblemKind {

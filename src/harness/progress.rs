@@ -3,7 +3,7 @@
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use super::plan::{BLOCK, Plan, Planned};
-use crate::stats::gate::{PLANNED, TYPICAL};
+use gate::stats::gate::{PLANNED, TYPICAL};
 
 /// Event of a drawing.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

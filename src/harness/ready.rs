@@ -1,8 +1,8 @@
 //! An experiment that can be drawn, or why it cannot: what no computer with doubles can test in a
 //! lifetime is refused.
 
-use crate::estimators::{Experiment, Refusal};
-use crate::theory::Prediction;
+use estimators::{Experiment, Refusal};
+use theory::Prediction;
 
 /// An experiment that can be drawn.
 pub struct Ready {

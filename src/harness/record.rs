@@ -4,12 +4,12 @@
 //! machine; `timing` and the `comparison` with a stored run are not, and are kept apart. Unknown is `None`, never zero. JSON writes infinite
 //! numbers as `null`: those of [`GateFinding`] may be.
 
-pub use crate::stats::verdict::{GateFinding, Verdict};
+pub use gate::stats::verdict::{GateFinding, Verdict};
 use serde::de::Error;
 use serde::{Deserialize, Deserializer, Serialize};
 
 use super::comparison::Comparison;
-use crate::files::null;
+use numeric::null;
 
 pub use super::plot_data::{Anatomy, Best, Course, Curve, CurvePoint, MeasuredPoint, Sweep};
 

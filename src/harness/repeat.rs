@@ -6,7 +6,7 @@ use super::options::Options;
 use super::plan::{Plan, Planned, PlannedCase};
 use super::record::{Finding, Verdict};
 use super::suite;
-use crate::catalogue::digits::enough;
+use numeric::digits::enough;
 
 /// The largest number of draws that `--draws` takes.
 const MAX_DRAWS: f64 = 1e12;

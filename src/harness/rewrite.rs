@@ -3,7 +3,8 @@
 //! Every field is proportional to its [`EXTINCTIONS`], all together: what is multiplied or blended here is multiplied or
 //! blended exactly, and theory knows of it all that it knows of what is written. Numbers are rounded to 15 digits.
 
-use crate::catalogue::{Entry, Fault, Node, Value, number};
+use media::catalogue::{Entry, Fault, Node, Value};
+use numeric::digits::number;
 
 /// Changes the table `[problem.NAME]` for a value of a sweep; a mistake that has no place of its own is the sweep's.
 pub type Rewrite = fn(&mut [Entry], f64) -> Result<(), Fault>;

@@ -24,7 +24,7 @@ use super::progress::{self, Listener, Progress, Step};
 use super::share::{self, Piece, Share};
 use super::store::Store;
 use super::workers::Drawing;
-use crate::stats::gate::Decision;
+use gate::stats::gate::Decision;
 
 /// Blocks drawn between two merges, for each thread, and at most: some 600 MB. Results do not depend on it.
 const BATCH: usize = 256;

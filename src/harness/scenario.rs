@@ -10,13 +10,13 @@ use super::plot_data::Course;
 use super::problem::{AnyProblem, Parts, ProblemKind, Walk};
 use super::ready::{Ready, refuse_what_cannot_be_computed};
 use super::sweep::{Variation, What};
-use crate::catalogue::{Fault, Settings};
-use crate::estimators::{Experiment, Order, RayView, Refusal, Site};
-use crate::media::body::RayNeed;
-use crate::media::{Body, Medium, Piecewise};
-use crate::recipes::{controls, sampling};
-use crate::rng::Address;
-use crate::theory::{Mesh, Prediction};
+use estimators::recipes::{controls, sampling};
+use estimators::{Experiment, Order, RayView, Refusal, Site};
+use media::body::RayNeed;
+use media::catalogue::{Fault, Settings};
+use media::{Body, Medium, Piecewise};
+use numeric::rng::Address;
+use theory::{Mesh, Prediction};
 
 /// Theory needs no random numbers, but recipes that learn from pilot rays do.
 const NOWHERE: Address = Address { seed: 0, experiment: 0, block: 0, lane: 0 };

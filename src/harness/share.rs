@@ -14,9 +14,10 @@ use fearless_simd::Level;
 use serde::{Deserialize, Serialize};
 
 use super::plan::{Plan, Planned, PlannedCase};
-use crate::estimators::DrawBuffer;
-use crate::numeric::{pack, parallel};
-use crate::rng::{hash, name_hash};
+use estimators::DrawBuffer;
+use numeric::pack;
+use numeric::rng::{hash, name_hash};
+use theory::parallel;
 
 /// How many draws tell one data file from another.
 const FIRST: usize = 256;

@@ -9,14 +9,15 @@
 //! | `sweep.WHAT = [1, 2, 3]` | `sweep.WHAT.values = [1, 2, 3]`, for all that is swept |
 //! | `estimators = "ratio"` | `estimators = ["ratio"]` |
 //!
-//! A name alone, as in `control = "mean"`, is read by [`Settings`](crate::catalogue::Settings), wherever a name is.
+//! A name alone, as in `control = "mean"`, is read by [`Settings`](media::catalogue::Settings), wherever a name is.
 //! The tree is the same for both spellings: sweeps of the medium, theory and draws do not see the short form.
 
 use std::cell::RefCell;
 use std::mem;
 use std::ops::Range;
 
-use crate::catalogue::{Entry, Fault, Node, Value, number};
+use media::catalogue::{Entry, Fault, Node, Value};
+use numeric::digits::number;
 
 /// Keys that choose a page, and the only required setting of the page `constant` among their pages.
 const CONSTANTS: [(&str, &str); 4] = [

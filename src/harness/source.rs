@@ -7,7 +7,7 @@ use annotate_snippets::{AnnotationKind, Level, Renderer, Snippet};
 use toml::de::{DeTable, DeValue};
 
 use super::shorthand::spell_out;
-use crate::catalogue::{Additions, Entry, Fault, Node, Settings, Value};
+use media::catalogue::{Additions, Entry, Fault, Node, Settings, Value};
 
 /// So many mistakes are shown in place; of a file that has more, these are enough to begin with.
 const TOLD: usize = 50;

@@ -3,8 +3,8 @@
 
 use super::qualify::ASSUMED;
 use super::record::{CaseRecord, Finding, Gate, Results, Row, Suspect, Verdict};
-use crate::stats::gate::TYPICAL;
-use crate::stats::multiplicity;
+use gate::stats::gate::TYPICAL;
+use gate::stats::multiplicity;
 
 /// Fills in what only the whole run can say.
 pub fn complete(results: &mut Results) {

@@ -24,7 +24,7 @@
 //! not depend on it are drawn once.
 
 use super::rewrite::{self, Rewrite};
-use crate::catalogue::{Domain, Settings};
+use media::catalogue::{Domain, Settings};
 
 /// The quantity that a sweep varies.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -2,7 +2,7 @@
 
 use super::plan::{Planned, PlannedCase};
 use super::record::{Course, Row, Verdict};
-use crate::estimators::Refusal;
+use estimators::Refusal;
 
 /// A longer list of probabilities is left out of the record.
 const LONGEST_LAW: usize = 100;
@@ -77,7 +77,7 @@ pub fn theory_rows(case: &PlannedCase, planned: &Planned) -> Vec<Row> {
 fn courses(case: &PlannedCase, planned: &Planned, refusal: &Refusal) -> Vec<Course> {
     let at = match refusal {
         Refusal::Inequality { at, .. } => Some(*at),
-        Refusal::Mismatch { .. } => None,
+        _ => None,
     };
     let scenario = &case.case.scenario;
     scenario.courses(planned.estimator, planned.variation, planned.address, at)

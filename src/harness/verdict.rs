@@ -12,9 +12,9 @@ use super::record::{
 use super::repeat::{command, deciding, deciding_all};
 use super::theory_rows::{finite, theory_rows};
 use super::{curves, evaluate, summary};
-use crate::numeric::pack;
-use crate::numeric::parallel;
 use fearless_simd::Level;
+use numeric::pack;
+use theory::parallel;
 
 /// What a plan would do: one row per experiment and channel, nothing drawn.
 pub fn planned(plan: &Plan) -> Record {

@@ -5,7 +5,7 @@ use std::fmt::Debug;
 use super::draw::{self, Block};
 use super::plan::{Plan, Planned};
 use super::share::{Header, Piece};
-use crate::numeric::parallel;
+use theory::parallel;
 
 /// Takes what was drawn of the piece of a number: a block for each of its experiments, none where the drawing was over.
 pub type Take<'a> = dyn Fn(usize, Vec<Option<Block>>) + Sync + 'a;

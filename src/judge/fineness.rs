@@ -1,9 +1,9 @@
 //! Ties among the first flights of another program: too many mean that distances are rounded more than single precision.
 
 use crate::harness::checks::resolution::{self, Resolution};
-use crate::stats::ties;
-use crate::stats::verdict::BLOCK;
-use crate::theory::Prediction;
+use gate::stats::ties;
+use gate::stats::verdict::BLOCK;
+use theory::Prediction;
 
 /// Spacing of numbers of single precision, relative.
 const SINGLE: f64 = 2.4e-7;

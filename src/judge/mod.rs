@@ -2,7 +2,7 @@
 //!
 //! A [`claim::Claim`] says what is known of a draw: its mean and, if known, its variance, kurtosis and range. A
 //! [`trial::Trial`] judges draws in memory, or in `files` of several formats. Without the feature
-//! `library` this room and [`crate::stats`] are all of the crate: enough for a test of somebody's estimator.
+//! `library` this room and [`gate::stats`] are all of the crate: enough for a test of somebody's estimator.
 //!
 //! ```
 //! use trueflight::judge::claim::{Claim, Given};
@@ -23,35 +23,13 @@
 //! # Ok::<(), trueflight::judge::claim::ClaimError>(())
 //! ```
 
-mod asks;
-pub mod claim;
-mod contents;
-mod dependence;
-#[cfg(feature = "library")]
 pub mod files;
-mod finding;
-#[cfg(feature = "library")]
 mod fineness;
-mod flights;
-mod grounds;
-#[cfg(feature = "library")]
 pub mod images;
-pub mod judgement;
-mod likely;
-mod obvious;
-#[cfg(feature = "library")]
 mod of_case;
-pub mod reading;
-mod scalar;
-pub mod theory;
-pub mod trial;
-mod values;
-mod verdict;
-#[cfg(feature = "library")]
 mod whole;
-mod words;
 
-#[cfg(feature = "library")]
-pub use files::{Column, Draws, ForeignError, Format, Layout, count};
-#[cfg(feature = "library")]
-pub use of_case::Choice;
+pub use files::{Column, Draws, ForeignError, Format, Layout, count, judge_by};
+pub use of_case::{Choice, OfCase, claim as claim_of, theory as theory_of};
+
+pub use gate::judge::*;

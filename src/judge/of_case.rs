@@ -7,12 +7,15 @@ use super::claim::{Claim, ClaimError, Lookups};
 use super::flights::Flights;
 use super::theory::Theory;
 use super::whole::Known;
-use crate::catalogue::number;
 use crate::harness::case::Case;
+use crate::harness::catalogue::Catalogue;
 use crate::harness::checks;
 use crate::harness::ready::Ready;
+use crate::harness::source::CaseError;
 use crate::harness::sweep::{SweepAxis, Variation, What};
-use crate::theory::{Law, Prediction};
+use ::theory::{Law, Prediction};
+use gate::Check;
+use numeric::digits::number;
 
 /// The problem with distances as draws.
 const FLIGHTS: &str = "free-flight";
@@ -37,66 +40,111 @@ pub struct Choice<'a> {
     pub seed: u64,
 }
 
-impl Claim {
-    /// What theory says of one experiment of a case.
-    ///
-    /// # Errors
-    ///
-    /// The choice fits none or several, or the experiment is refused.
-    pub fn of_case(case: &Case, choice: &Choice, rounding: f64) -> Result<Self, ClaimError> {
-        let mut claims = Self::of_channels(case, choice, rounding)?;
-        let chosen = match choice.channel {
-            None if claims.len() == 1 => Some(0),
-            None => None,
-            Some(name) => claims.iter().position(|(channel, _)| channel == name),
-        };
-        chosen.map(|index| claims.swap_remove(index).1).ok_or_else(|| {
-            let channels = claims.into_iter().map(|(channel, _)| channel).collect();
-            ClaimError::Channel { case: case.name.clone(), channels }
-        })
-    }
-
-    /// What theory says of each channel of one experiment of a case, with the channels' names.
-    ///
-    /// # Errors
-    ///
-    /// The choice fits none or several, or the experiment is refused.
-    pub fn of_channels(
-        case: &Case,
-        choice: &Choice,
-        rounding: f64,
-    ) -> Result<Vec<(String, Self)>, ClaimError> {
-        Ok(Theory::of(case, choice, rounding)?.channels)
-    }
+/// Returns the claim of theory on one experiment of a case.
+///
+/// # Errors
+///
+/// The choice fits none or several, or the experiment is refused.
+pub fn claim(case: &Case, choice: &Choice, rounding: f64) -> Result<Claim, ClaimError> {
+    let mut claims = theory(case, choice, rounding)?.channels;
+    let chosen = match choice.channel {
+        None if claims.len() == 1 => Some(0),
+        None => None,
+        Some(name) => claims.iter().position(|(channel, _)| channel == name),
+    };
+    chosen.map(|index| claims.swap_remove(index).1).ok_or_else(|| {
+        let channels = claims.into_iter().map(|(channel, _)| channel).collect();
+        ClaimError::Channel { case: case.name.clone(), channels }
+    })
 }
 
-impl Theory {
-    /// Theory of one experiment of a case; the choice of a channel does not matter.
-    ///
-    /// # Errors
-    ///
-    /// The choice fits none or several, or the experiment is refused.
-    pub fn of(case: &Case, choice: &Choice, rounding: f64) -> Result<Self, ClaimError> {
-        let (index, label) = find(case, choice.estimator)?;
-        let axis = case.sweep.as_ref();
-        let axis = axis.filter(|axis| case.scenario.depends_on(index, axis.what));
-        let at = Point { case, index, label: &label, axis, seed: choice.seed };
-        let variation = at.variation(choice)?;
-        let prediction = at.prediction(variation)?;
-        if let Some(deep) = prediction.channels.iter().find(|channel| channel.log_unit != 0.0) {
-            let (case, depth) = (case.name.clone(), deep.log_unit);
-            return Err(ClaimError::Deep { case, estimator: label, depth });
+/// Returns theory of one experiment of a case, with a claim for each channel; the choice of a channel does not matter.
+///
+/// # Errors
+///
+/// The choice fits none or several, or the experiment is refused.
+pub fn theory(case: &Case, choice: &Choice, rounding: f64) -> Result<Theory, ClaimError> {
+    let (index, label) = find(case, choice.estimator)?;
+    let axis = case.sweep.as_ref();
+    let axis = axis.filter(|axis| case.scenario.depends_on(index, axis.what));
+    let at = Point { case, index, label: &label, axis, seed: choice.seed };
+    let variation = at.variation(choice)?;
+    let prediction = at.prediction(variation)?;
+    if let Some(deep) = prediction.channels.iter().find(|channel| channel.log_unit != 0.0) {
+        let (case, depth) = (case.name.clone(), deep.log_unit);
+        return Err(ClaimError::Deep { case, estimator: label, depth });
+    }
+    let mut about = format!("`{label}` of {}", case.name);
+    if let Some((what, value)) = variation {
+        let _ = write!(about, ", {} = {}", what.key(), number(value));
+        if let Some(asked) = choice.swept.filter(|_| choice.nearest) {
+            let _ = write!(about, ", the value of the sweep nearest to {}", number(asked));
         }
-        let mut about = format!("`{label}` of {}", case.name);
-        if let Some((what, value)) = variation {
-            let _ = write!(about, ", {} = {}", what.key(), number(value));
-            if let Some(asked) = choice.swept.filter(|_| choice.nearest) {
-                let _ = write!(about, ", the value of the sweep nearest to {}", number(asked));
+    }
+    let channels = claims(case, &prediction, rounding);
+    let distribution = Arc::new(Known(Arc::new(prediction)));
+    Ok(Theory { channels, about, distribution })
+}
+
+/// Takes what is known of a draw from a case.
+pub trait OfCase: Sized {
+    /// Takes mean, variance, kurtosis and lookups from theory and, where theory knows it, the whole distribution.
+    ///
+    /// The estimator has its name in tables or in the catalogue. It is taken at any value of what the case sweeps, or at a
+    /// constant σ̂ where the case sweeps nothing; `None` takes the case's own σ̂. The case is a built-in one or a file. Every
+    /// channel of the case is a value of the draw; a luminance may be left out.
+    ///
+    /// A free flight that leaves the ray is written as the ray's length, as any larger number, as infinity or as −1.
+    ///
+    /// ```
+    /// # use trueflight::rng::Stream;
+    /// # fn sigma_t(t: f64) -> f64 {
+    /// #     (0.75 * t).cos().powi(10) * ((t / 2.0).sin() + 2.0) / 3.0
+    /// # }
+    /// # fn my_estimator(rng: &mut Stream) -> f64 {
+    /// #     let (mut weight, mut t) = (1.0, -rng.positive_uniform().ln());
+    /// #     while t < 20.0 {
+    /// #         weight *= 1.0 - sigma_t(t);
+    /// #         t -= rng.positive_uniform().ln();
+    /// #     }
+    /// #     weight
+    /// # }
+    /// use trueflight::OfCase;
+    ///
+    /// trueflight::check("ratio tracking", |rng| my_estimator(rng))
+    ///     .of("transmittance/eq21-overview", "ratio", 1.0)
+    ///     .assert_pass();
+    /// ```
+    #[must_use]
+    fn of(self, case: &str, estimator: &str, swept: impl Into<Option<f64>>) -> Self;
+
+    /// Takes the same from a case that was read before.
+    #[must_use]
+    fn of_case(self, case: &Case, choice: &Choice) -> Self;
+}
+
+impl<S> OfCase for Check<S> {
+    fn of(self, case: &str, estimator: &str, swept: impl Into<Option<f64>>) -> Self {
+        let choice = Choice { estimator, swept: swept.into(), ..Choice::default() };
+        match Catalogue::builtin().named(case) {
+            Ok(read) => match &read[..] {
+                [case] => self.of_case(case, &choice),
+                cases => {
+                    let names: Vec<&str> = cases.iter().map(|case| case.name.as_str()).collect();
+                    let names = names.join(", ");
+                    self.theory(Err(format!("{case} is several cases; choose one of: {names}")))
+                }
+            },
+            Err(errors) => {
+                let messages: Vec<String> = errors.iter().map(CaseError::in_full).collect();
+                self.theory(Err(messages.join("\n\n")))
             }
         }
-        let channels = claims(case, &prediction, rounding);
-        let distribution = Arc::new(Known(Arc::new(prediction)));
-        Ok(Self { channels, about, distribution })
+    }
+
+    fn of_case(self, case: &Case, choice: &Choice) -> Self {
+        let theory = theory(case, choice, 0.0);
+        self.theory(theory.map_err(|error| error.to_string()))
     }
 }
 

@@ -20,13 +20,13 @@ use std::sync::Arc;
 use super::fineness::{self, Fineness};
 use super::judgement::DistributionFinding;
 use super::theory::{Asked, Distribution, Tested, Tests};
-use crate::catalogue::digits::short;
-use crate::estimators::DrawBuffer;
 use crate::harness::checks::batch::Batch;
 use crate::harness::checks::{self, Law};
-use crate::stats::verdict::Verdict;
-use crate::stats::{multiplicity, ties};
-use crate::theory::{self, Prediction};
+use estimators::DrawBuffer;
+use gate::stats::verdict::Verdict;
+use gate::stats::{multiplicity, ties};
+use numeric::digits::short;
+use theory::{self, Prediction};
 
 /// The first look, where the number of draws is not known.
 const FIRST: u64 = 1 << 11;

@@ -1,6 +1,6 @@
 //! How many draws each pixel makes, and what the draws of all pixels come to.
 
-use crate::catalogue::{number, rounded};
+use numeric::digits::{number, rounded};
 
 /// The most channels of a pixel: red, green and blue.
 pub const MOST_CHANNELS: usize = 3;

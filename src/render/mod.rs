@@ -18,5 +18,5 @@ pub use picture::Picture;
 pub use record::PictureRecord;
 
 /// The manual of picture files.
-pub const CATALOGUE: crate::catalogue::PageList =
-    crate::catalogue::PageList { name: "picture files", pages: &[crate::page!(picture)] };
+pub const CATALOGUE: media::catalogue::PageList =
+    media::catalogue::PageList { name: "picture files", pages: &[media::page!(picture)] };

@@ -44,8 +44,8 @@ use super::gallery;
 use super::record::PictureRecord;
 use super::scene::{Request, Scene};
 use super::subject::SUBJECTS;
-use crate::catalogue::{Additions, Settings};
 use crate::harness::source::{CaseError, Source};
+use media::catalogue::{Additions, Settings};
 
 /// A picture file, read.
 pub struct Picture {

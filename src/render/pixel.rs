@@ -5,13 +5,13 @@ use std::sync::Arc;
 use super::budget::{Colour, Forecast, PixelDraws};
 use super::subject::{AnyRay, RayOf, SubjectKind};
 use super::view::View;
-use crate::estimators::{DrawBuffer, Experiment, Kernel, Refusal, Site};
 use crate::harness::estimator::{Estimators, ParsedEstimator};
 use crate::harness::problem::Parts;
-use crate::media::{Body, Control, Majorants, Medium};
-use crate::numeric::Known;
-use crate::rng::Address;
-use crate::theory::Mesh;
+use estimators::{DrawBuffer, Experiment, Kernel, Refusal, Site};
+use media::{Body, Control, Majorants, Medium};
+use numeric::Known;
+use numeric::rng::Address;
+use theory::Mesh;
 
 /// Panels of 16 nodes on each ray, for what theory expects of its draws.
 const PANELS: usize = 16;

@@ -3,10 +3,10 @@
 use super::budget::PixelValues;
 use super::pixel::Label;
 use super::subject::SubjectKind;
-use crate::catalogue::Settings;
 use crate::harness::estimator::{Defaults, EntryReader, ParsedEstimator};
-use crate::media::Body;
-use crate::numeric::Known;
+use media::Body;
+use media::catalogue::Settings;
+use numeric::Known;
 
 /// How the reference is found.
 pub enum Reference {

@@ -7,12 +7,12 @@ use super::pixel::{Label, Listed, Pixel};
 use super::reference::Reference;
 use super::subject::{RayOf, SubjectKind};
 use super::view::View;
-use crate::catalogue::Settings;
 use crate::harness::estimator::{Defaults, Estimators, ParsedEstimator};
-use crate::media::Body;
-use crate::numeric::parallel;
-use crate::recipes::sampling;
-use crate::rng::{Address, name_hash};
+use estimators::recipes::sampling;
+use media::Body;
+use media::catalogue::Settings;
+use numeric::rng::{Address, name_hash};
+use theory::parallel;
 
 /// What a rendering needs to know.
 pub struct Request<'a> {

@@ -4,23 +4,23 @@ use std::sync::Arc;
 
 use super::budget::MOST_CHANNELS;
 use super::view::View;
-use crate::catalogue::{Domain, Settings};
-use crate::estimators::trial::Entry;
-use crate::estimators::{Estimated, Experiment, Order, Refusal, Setup};
-use crate::geometry::Ray;
 use crate::harness::estimator::EntryReader;
 use crate::harness::problem::Parts;
-use crate::media::{Majorants, Medium, Volume};
-use crate::numeric::{Known, Lane};
-use crate::phase::Phase;
-use crate::problems::scene::read_albedo;
-use crate::problems::single_scattering::{Lamp, OnTheLine};
-use crate::problems::{
+use estimators::trial::Entry;
+use estimators::{Estimated, Experiment, Order, Refusal, Setup};
+use media::catalogue::{Domain, Settings};
+use media::phase::Phase;
+use media::{Majorants, Medium, Volume};
+use numeric::geometry::Ray;
+use numeric::{Known, Lane};
+use theory::problems::scene::read_albedo;
+use theory::problems::single_scattering::{Lamp, OnTheLine};
+use theory::problems::{
     Albedo, MultipleScattering, Problem, Scene, SingleScattering, Sky, SpectralTransmittance,
     Transmittance,
 };
-use crate::theory::single::quick;
-use crate::theory::{Mesh, Prediction};
+use theory::single::quick;
+use theory::{Mesh, Prediction};
 
 /// A problem that pictures are made of.
 pub trait Subject: Estimated {

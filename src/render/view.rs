@@ -4,12 +4,12 @@ use std::f64::consts::PI;
 use std::sync::Arc;
 
 use super::budget::MOST_CHANNELS;
-use crate::catalogue::{Domain, Settings};
-use crate::geometry::{Aabb, Point, Ray};
-use crate::media::reader::{read_volume, read_volumes};
-use crate::media::{Body, Volume};
-use crate::numeric::Lane;
-use crate::problems::Sky;
+use media::catalogue::{Domain, Settings};
+use media::reader::{read_volume, read_volumes};
+use media::{Body, Volume};
+use numeric::Lane;
+use numeric::geometry::{Aabb, Point, Ray};
+use theory::problems::Sky;
 
 /// Pictures of more pixels along a side are a mistake.
 const LARGEST: u64 = 4096;

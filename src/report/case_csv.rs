@@ -3,11 +3,11 @@
 //! Results only, without timing, so that the files are the same to the byte for any number of
 //! threads on any machine.
 
-use crate::catalogue::digits::exact;
 use crate::harness::record::{Anatomy, CaseRecord, Record, Row, Sweep};
 use crate::report::columns::table;
 use crate::report::rows::{JoinedRow, TIMED, columns, joined};
 use crate::report::{Artifact, ReportError, case_path};
+use numeric::digits::exact;
 
 /// The rows, the theory's curves and the profiles of each case.
 ///

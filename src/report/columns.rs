@@ -2,8 +2,8 @@
 
 use serde::ser::{Serialize, Serializer};
 
-use crate::catalogue::digits::exact;
 use crate::report::{Artifact, ReportError};
+use numeric::digits::exact;
 
 /// What stands in one field.
 #[derive(Debug, Clone, PartialEq)]

@@ -12,11 +12,11 @@ pub mod views;
 
 use std::fmt::Write;
 
-use crate::catalogue::digits::{count, short};
 use crate::harness::record::{CaseRecord, Record, Row, Verdict};
 use crate::report::labels::Labels;
 use crate::report::totals;
 use layout::{Field, Grid, Paint, end_elided};
+use numeric::digits::{count, short};
 
 /// What the table is about.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

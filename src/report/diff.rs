@@ -2,7 +2,7 @@
 
 use crate::baseline::LeftOut;
 use crate::baseline::{Change, Comparison, Drift, Quantity, Sequel};
-use crate::catalogue::digits::{fixed, short};
+use numeric::digits::{fixed, short};
 
 /// Something that changed.
 #[derive(Debug, Clone, PartialEq, Eq)]

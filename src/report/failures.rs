@@ -2,11 +2,11 @@
 
 use std::borrow::Cow;
 
-use crate::catalogue::deviation::signed_percent;
-use crate::catalogue::digits::{percent, short, signed};
 use crate::harness::record::{CaseRecord, Finding, Record, Row, Verdict};
 use crate::report::labels::Labels;
 use crate::report::likely;
+use gate::deviation::signed_percent;
+use numeric::digits::{percent, short, signed};
 
 /// A finding that is not as it should be, with what it belongs to.
 #[derive(Debug, Clone, Copy)]

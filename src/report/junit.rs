@@ -11,11 +11,11 @@ use std::time::Duration;
 use quick_junit::{NonSuccessKind, TestCase, TestCaseStatus, TestSuite};
 
 use crate::baseline::Comparison;
-use crate::catalogue::digits::exact;
 use crate::harness::record::{CaseRecord, Record, Row, Verdict};
 use crate::report::ReportError;
 use crate::report::diff;
 use crate::report::failures::{self, Failure};
+use numeric::digits::exact;
 
 /// What an inconclusive experiment is for JUnit.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]

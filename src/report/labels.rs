@@ -1,7 +1,7 @@
 //! σ̂ and swept values as they stand beside their experiments: short, and no two of a case alike.
 
-use crate::catalogue::digits::short;
 use crate::harness::record::CaseRecord;
+use numeric::digits::short;
 
 /// Digits that are enough for most.
 const FEWEST: usize = 4;

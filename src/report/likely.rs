@@ -1,7 +1,7 @@
 //! Likely causes of an experiment's failures: the words that the console and the reports share.
 
-use crate::catalogue::causes::{Pattern, Place};
 use crate::harness::record::{CaseRecord, Row, Verdict};
+use gate::causes::{Pattern, Place};
 
 /// The fewest swept values that have an end.
 const FEWEST: usize = 3;

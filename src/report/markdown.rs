@@ -4,12 +4,12 @@
 use std::fmt::Write;
 
 use crate::baseline::Comparison;
-use crate::catalogue::digits::range;
 use crate::harness::record::{CaseRecord, Record, Verdict};
 use crate::report::diff;
 use crate::report::failures::{Failure, failing};
 use crate::report::likely;
 use crate::report::totals;
+use numeric::digits::range;
 
 /// A job's summary may have a mebibyte: beyond so many rows the file only counts.
 const MOST: usize = 50;

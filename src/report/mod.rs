@@ -32,9 +32,9 @@ use std::fs;
 use std::io;
 use std::path::{Component, Path, PathBuf};
 
-use crate::catalogue::PageList;
-use crate::files;
 use crate::harness::record::Record;
+use media::catalogue::PageList;
+use media::files;
 
 /// A file that a report would have.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -142,7 +142,7 @@ macro_rules! reports {
     ($($module:ident,)*; $($asked:ident,)*) => {
         /// Every page, in the order of registration.
         pub const CATALOGUE: PageList =
-            PageList { name: "reports", pages: &[$($crate::page!($module),)* $($crate::page!($asked)),*] };
+            PageList { name: "reports", pages: &[$(media::page!($module),)* $(media::page!($asked)),*] };
 
         /// Every report that a run writes, in the same order.
         pub const REPORTS: &[Report] = &[$($module::render),*];

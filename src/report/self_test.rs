@@ -2,13 +2,13 @@
 
 use std::fmt::Write;
 
-use crate::catalogue::digits::{count, short};
 use crate::report::columns::{self, Column, columns};
 use crate::report::console::layout::{Field, Grid, Paint, Pen};
 use crate::report::{Artifact, ReportError};
 use crate::self_test::calibration::Rate;
 use crate::self_test::streams::ALPHA;
 use crate::self_test::{Calibration, Caught, SelfTest, StreamVerdicts};
+use numeric::digits::{count, short};
 
 /// What is said of a promise.
 const KEPT: [&str; 2] = ["kept", "BROKEN"];

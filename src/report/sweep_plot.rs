@@ -5,13 +5,13 @@
 mod graph;
 mod optima;
 
-use crate::catalogue::digits::{count, short};
 use crate::harness::record::{CaseRecord, Record, Sweep};
 use crate::report::plots::figure::{Figure, Foot, LEFT};
 use crate::report::plots::series::{self, Series, collect};
 use crate::report::plots::{self, Axis, Panel, Sheet, z_panel};
 use crate::report::{Artifact, ReportError};
 use graph::{Graph, Quantity};
+use numeric::digits::{count, short};
 
 const WIDTH: f64 = 1200.0;
 const TOP: f64 = 104.0;

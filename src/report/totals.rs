@@ -1,7 +1,7 @@
 //! What a run comes to, in words that the console and the summaries share.
 
-use crate::catalogue::digits::{count, percent, short};
 use crate::harness::record::{CaseRecord, Record, Suspect, Verdict};
+use numeric::digits::{count, percent, short};
 
 const VERDICTS: [Verdict; 5] =
     [Verdict::Pass, Verdict::Fail, Verdict::Inconclusive, Verdict::Underpowered, Verdict::Refused];

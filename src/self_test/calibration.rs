@@ -18,8 +18,8 @@ use crate::harness::options::Options;
 use crate::harness::plan::{MISS, Plan};
 use crate::harness::record::{Finding, Verdict};
 use crate::harness::{Case, CaseError, evaluate, run, suite};
-use crate::numeric::parallel;
-use crate::stats::{anderson_darling, binomial};
+use gate::stats::{anderson_darling, binomial};
+use theory::parallel;
 
 /// The run-level α of the calibration.
 pub const ALPHA: f64 = 1e-2;

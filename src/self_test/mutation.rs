@@ -6,16 +6,16 @@
 
 use std::collections::HashMap;
 
-use crate::catalogue::causes::Pattern;
-use crate::estimators::{DrawBuffer, Experiment};
 use crate::harness::levels::Levels;
 use crate::harness::mutation::{self, Walk};
 use crate::harness::options::{Amount, Options};
 use crate::harness::plan::{BLOCK, Plan, Planned};
 use crate::harness::record::{Finding, Verdict};
 use crate::harness::{Case, CaseError, evaluate, run, suite};
-use crate::mutants::{self, About, StreamMutant, Target, streams};
-use crate::numeric::parallel;
+use estimators::{DrawBuffer, Experiment};
+use gate::causes::Pattern;
+use lab::mutants::{self, About, StreamMutant, Target, streams};
+use theory::parallel;
 
 /// What became of one mutant.
 #[derive(Debug, Clone)]

@@ -14,11 +14,11 @@
 use crate::harness::record::Verdict;
 use crate::judge::claim::{Claim, Given, ROUNDING};
 use crate::judge::trial::{Trial, Wanted};
-use crate::numeric::parallel;
-use crate::rng::{Address, Stream, exponential, unit};
-use crate::stats::binomial;
+use gate::stats::binomial;
+use numeric::rng::{Address, Stream, exponential, unit};
 use rand::RngExt;
 use rand_distr::{Distribution, Poisson, StandardNormal};
+use theory::parallel;
 
 /// How many draws a stream has.
 const DRAWS: usize = 400_000;
@@ -227,7 +227,7 @@ impl Law {
 
     /// The draws of one stream.
     pub fn draws(self, stream: u64) -> Vec<f64> {
-        let experiment = crate::rng::name_hash(&self.to_string());
+        let experiment = numeric::rng::name_hash(&self.to_string());
         let mut rng = Address { seed: 1, experiment, block: stream, lane: 0 }.stream();
         (0..DRAWS).map(|_| self.draw(&mut rng)).collect()
     }

@@ -10,10 +10,10 @@
 
 use super::trial::{Trial, central};
 use super::{Dice, Effort, Measure, Row, in_parts};
-use crate::numeric::Wide;
-use crate::numeric::parallel;
-use crate::numeric::sum::Sum;
-use crate::stats::{Powers, Tally};
+use gate::stats::{Powers, Tally};
+use numeric::Wide;
+use numeric::sum::Sum;
+use theory::parallel;
 
 /// Draws of a buffer, as of a run.
 const BUFFER: usize = 4096;

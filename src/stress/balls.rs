@@ -14,12 +14,12 @@
 use super::ordinates::{directions, roots, solved_pivoted};
 use super::trial::{Dice, Trial, share};
 use super::{Effort, Row, in_parts};
-use crate::estimators::sphere::BLURRED;
-use crate::numeric::quadrature::GaussLegendre;
-use crate::numeric::{Span, Wide};
-use crate::theory::sphere::ball::Ball;
-use crate::theory::sphere::shells::{Centre, Resolution};
-use crate::theory::sphere::{Lights, Observable, answers, point};
+use estimators::sphere::BLURRED;
+use numeric::quadrature::GaussLegendre;
+use numeric::{Span, Wide};
+use theory::sphere::ball::Ball;
+use theory::sphere::shells::{Centre, Resolution};
+use theory::sphere::{Lights, Observable, answers, point};
 
 /// Directions of the ordinates.
 const ORDINATES: usize = 64;
@@ -284,7 +284,7 @@ mod tests {
         };
         let (found, exact) = (of(Resolution::COARSE), Wide::from(of(FINER).value));
         assert!(of_stated(found, exact) <= 1.0, "{found:?}");
-        let two = crate::numeric::Known::new(found.value, 0.01 * found.error);
+        let two = numeric::Known::new(found.value, 0.01 * found.error);
         assert!(of_stated(two, exact) > 1.0, "{found:?}");
     }
 }

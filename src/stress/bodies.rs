@@ -1,8 +1,8 @@
 //! Balls and boxes, and integrals over them in 32 digits.
 
 use super::trial::Dice;
-use crate::geometry::Point;
-use crate::numeric::Wide;
+use numeric::Wide;
+use numeric::geometry::Point;
 
 /// A ball or a box.
 pub(super) enum Body {

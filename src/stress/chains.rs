@@ -11,7 +11,7 @@
 use std::f64::consts::FRAC_PI_2;
 
 use super::series::{coefficient, value};
-use crate::numeric::Wide;
+use numeric::Wide;
 
 /// Terms of a series: at a fifth of its radius, 5⁻²⁸ = 3e-20 of the largest.
 const TERMS: usize = 28;

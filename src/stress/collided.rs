@@ -12,11 +12,11 @@ use super::series::{binomial, coefficient, value};
 use super::text::{self, one_line};
 use super::trial::{Trial, central};
 use super::{Effort, Row, in_parts};
-use crate::estimators::transmittance::next_flight::NextFlight;
-use crate::estimators::transmittance::unidirectional_mis::UnidirectionalMis;
-use crate::numeric::Wide;
-use crate::theory::Mesh;
-use crate::theory::volterra::{self, Source};
+use estimators::transmittance::next_flight::NextFlight;
+use estimators::transmittance::unidirectional_mis::UnidirectionalMis;
+use numeric::Wide;
+use theory::Mesh;
+use theory::volterra::{self, Source};
 
 /// Terms of a series: at a quarter of its radius, 4⁻⁴⁸ = 1e-29 of the largest.
 const TERMS: usize = 48;

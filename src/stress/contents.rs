@@ -16,11 +16,11 @@ use super::tails::normal_between;
 use super::text;
 use super::trial::{Dice, Trial, beyond_rounding};
 use super::{Effort, Row, in_parts};
-use crate::geometry::Point;
-use crate::media::Volume;
-use crate::numeric::quadrature::GaussLegendre;
-use crate::numeric::{Span, Wide};
-use crate::theory::space::content;
+use media::Volume;
+use numeric::geometry::Point;
+use numeric::quadrature::GaussLegendre;
+use numeric::{Span, Wide};
+use theory::space::content;
 
 /// Where fields jump across chords: so that a thousand of them take seconds, not minutes.
 const FEW_CHORDS: f64 = 4e3;

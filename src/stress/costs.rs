@@ -12,11 +12,11 @@ use super::text::{self, homogeneous, one_line};
 use super::trial::Trial;
 use super::{Effort, Row, in_parts};
 use crate::harness::checks::lookups::ERROR;
-use crate::media::{Control, Piecewise};
-use crate::numeric::{Known, Span, Wide};
-use crate::theory::product::Product;
-use crate::theory::rules::{Single, Weight};
-use crate::theory::{CountLaw, Mesh, curve, flight, rod};
+use media::{Control, Piecewise};
+use numeric::{Known, Span, Wide};
+use theory::product::Product;
+use theory::rules::{Single, Weight};
+use theory::{CountLaw, Mesh, curve, flight, rod};
 
 /// All rows.
 pub fn rows(effort: Effort, seed: u64) -> Vec<Row> {

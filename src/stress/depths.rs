@@ -5,10 +5,10 @@ use super::tails::normal_between;
 use super::text::{self, one_line};
 use super::trial::{Dice, Trial, beyond_rounding, of_allowed};
 use super::{Effort, Row, in_parts};
-use crate::media::Medium;
-use crate::numeric::quadrature::GaussLegendre;
-use crate::numeric::sum::Sum;
-use crate::numeric::{Span, Wide};
+use media::Medium;
+use numeric::quadrature::GaussLegendre;
+use numeric::sum::Sum;
+use numeric::{Span, Wide};
 
 /// All rows.
 pub fn rows(effort: Effort, seed: u64) -> Vec<Row> {

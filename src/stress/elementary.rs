@@ -2,7 +2,7 @@
 
 use super::trial::off;
 use super::{Effort, Measure, Row, in_parts};
-use crate::numeric::{Lane, Wide};
+use numeric::{Lane, Wide};
 
 /// All rows.
 pub fn rows(effort: Effort, seed: u64) -> Vec<Row> {

@@ -11,7 +11,7 @@ use super::{Effort, Row, joined};
 use crate::harness::plan::Planned;
 use crate::harness::record::Verdict;
 use crate::harness::{Amount, Options, Plan, run, verdict};
-use crate::numeric::parallel;
+use theory::parallel;
 
 /// Draws of an experiment: enough that a wrong answer shows.
 const DRAWS: u64 = 1 << 13;

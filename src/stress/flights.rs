@@ -3,8 +3,8 @@
 use super::text::{self, one_line};
 use super::trial::{Trial, off};
 use super::{Effort, Row, in_parts};
-use crate::media::Piecewise;
-use crate::numeric::{Span, Wide};
+use media::Piecewise;
+use numeric::{Span, Wide};
 
 /// All rows.
 pub fn rows(effort: Effort, seed: u64) -> Vec<Row> {

@@ -14,15 +14,13 @@ use super::series::binomial;
 use super::shared_walk::{ORDERS, degree, of_mean};
 use super::trial::{Trial, central};
 use super::{Effort, Row, in_parts};
-use crate::media::{Control, Medium, Piecewise};
-use crate::numeric::quadrature::GaussLegendre;
-use crate::numeric::{Span, Wide};
-use crate::problems::{Problem, SingleScattering};
-use crate::theory::Mesh;
-use crate::theory::single::predict::DENSITY;
-use crate::theory::single::{
-    Camera, CameraTracking, Node, Points, Scene, Technique, Tracking, walks,
-};
+use media::{Control, Medium, Piecewise};
+use numeric::quadrature::GaussLegendre;
+use numeric::{Span, Wide};
+use theory::Mesh;
+use theory::problems::{Problem, SingleScattering};
+use theory::single::predict::DENSITY;
+use theory::single::{Camera, CameraTracking, Node, Points, Scene, Technique, Tracking, walks};
 
 /// Panels of s, at least.
 const STEPS: u32 = 40;

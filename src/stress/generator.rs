@@ -3,11 +3,11 @@
 use std::f64::consts::FRAC_1_SQRT_2;
 
 use super::{Effort, Measure, Row};
-use crate::media::Piecewise;
-use crate::numeric::parallel;
-use crate::numeric::{Span, Wide};
-use crate::rng::{Address, LANES, Stream, Streams, exponential, name_hash, unit};
-use crate::stats::{anderson_darling, chi_square, correlation, ties};
+use gate::stats::{anderson_darling, chi_square, correlation, ties};
+use media::Piecewise;
+use numeric::rng::{Address, LANES, Stream, Streams, exponential, name_hash, unit};
+use numeric::{Span, Wide};
+use theory::parallel;
 
 /// Uniform numbers are multiples of this.
 const GRAIN: f64 = f64::EPSILON / 2.0;

@@ -3,9 +3,9 @@
 use super::text::{self, one_line};
 use super::trial::{Dice, Trial, beyond, of_allowed, off};
 use super::{Effort, Row, in_parts};
-use crate::geometry::{Aabb, Bounds, Point, Ray};
-use crate::numeric::double_double::{two_prod, two_sum};
-use crate::numeric::{Known, Span, Wide};
+use numeric::double_double::{two_prod, two_sum};
+use numeric::geometry::{Aabb, Bounds, Point, Ray};
+use numeric::{Known, Span, Wide};
 
 /// All rows.
 pub fn rows(effort: Effort, seed: u64) -> Vec<Row> {

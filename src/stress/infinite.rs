@@ -12,9 +12,9 @@
 
 use super::trial::{Trial, share};
 use super::{Effort, Row, in_parts};
-use crate::numeric::{Known, Wide};
-use crate::theory::h_function::{self, h_function};
-use crate::theory::space::infinite;
+use numeric::{Known, Wide};
+use theory::h_function::{self, h_function};
+use theory::space::infinite;
 
 /// Steps of t per unit.
 const STEPS: i32 = 6;

@@ -16,11 +16,11 @@ use super::rods::{moments_of, rod_with, rule};
 use super::series::{binomial, power};
 use super::trial::{Dice, Trial, central, share};
 use super::{Effort, Row, in_parts};
-use crate::media::Piecewise;
-use crate::numeric::Wide;
-use crate::problems::rod::{self, HIGHEST_ORDER, MOST_PARTS, Quantity};
-use crate::theory::particle::ParticleRule;
-use crate::theory::rod as rods;
+use media::Piecewise;
+use numeric::Wide;
+use theory::particle::ParticleRule;
+use theory::problems::rod::{self, HIGHEST_ORDER, MOST_PARTS, Quantity};
+use theory::rod as rods;
 
 /// Terms of a series: at half a collision, 2⁻²²/22! = 2e-28.
 const TERMS: usize = 22;

@@ -1,7 +1,7 @@
 //! Numbers under stress: where doubles run out of digits, and by how much.
 //!
 //! Every quantity that a verdict rests on is computed where it is hardest, thousands of times, and
-//! compared with arithmetic of 32 digits ([`Wide`](crate::numeric::Wide)), with exact integers, or with
+//! compared with arithmetic of 32 digits ([`Wide`](numeric::Wide)), with exact integers, or with
 //! another method at a higher resolution. A page of this folder stresses one kind of quantity and
 //! answers rows; a row is the worst that was found, where, and the bound that it has to keep ([`row`]).
 //! Most pages are tables: rows, how many trials fill them, and a trial, which draws parameters and compares
@@ -84,7 +84,7 @@ pub mod walks;
 pub use self::row::{Measure, Row};
 pub use self::trial::Dice;
 use self::trial::{in_parts, joined};
-use crate::numeric::parallel;
+use theory::parallel;
 
 /// How long is looked.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

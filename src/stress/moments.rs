@@ -8,12 +8,12 @@
 use super::text::homogeneous;
 use super::trial::{Dice, Trial, off};
 use super::{Effort, Row, in_parts};
-use crate::media::{Control, Piecewise};
-use crate::numeric::{Span, Wide};
-use crate::theory::prediction::transmittance;
-use crate::theory::product::Product;
-use crate::theory::rules::{Single, Weight};
-use crate::theory::{Mesh, Rule};
+use media::{Control, Piecewise};
+use numeric::{Span, Wide};
+use theory::prediction::transmittance;
+use theory::product::Product;
+use theory::rules::{Single, Weight};
+use theory::{Mesh, Rule};
 
 /// All rows.
 pub fn rows(effort: Effort, seed: u64) -> Vec<Row> {

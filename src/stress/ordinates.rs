@@ -17,9 +17,9 @@
 //! Source: S. Chandrasekhar, *Radiative Transfer* (Oxford University Press, 1950), chapters 2, 3 and 7.
 
 use super::series::solved;
-use crate::numeric::Wide;
-use crate::numeric::quadrature::GaussLegendre;
-use crate::problems::slab::Light;
+use numeric::Wide;
+use numeric::quadrature::GaussLegendre;
+use theory::problems::slab::Light;
 
 /// A root that doubles find is so near, relative.
 const NEAR: f64 = 1e-12;

@@ -10,9 +10,9 @@
 //! ```
 
 use super::series::solved;
-use crate::numeric::quadrature::GaussLegendre;
-use crate::numeric::{Span, exponential_integrals as exponentials};
-use crate::problems::slab::Light;
+use numeric::quadrature::GaussLegendre;
+use numeric::{Span, exponential_integrals as exponentials};
+use theory::problems::slab::Light;
 
 /// Nodes of a panel.
 const NODES: usize = 7;
@@ -190,8 +190,8 @@ impl<'a> Peierls<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::numeric::Wide;
     use crate::stress::ordinates::Ordinates;
+    use numeric::Wide;
 
     #[test]
     fn constant_rates_are_those_of_the_ordinates() {

@@ -10,12 +10,12 @@
 use super::text::homogeneous;
 use super::trial::{Dice, Trial, central, share};
 use super::{Effort, Row, in_parts};
-use crate::media::Piecewise;
-use crate::numeric::{Known, Wide};
-use crate::problems::Rod;
-use crate::problems::rod::{self, Quantity};
-use crate::theory::particle::ParticleRule;
-use crate::theory::{Mesh, rod as rods};
+use media::Piecewise;
+use numeric::{Known, Wide};
+use theory::particle::ParticleRule;
+use theory::problems::Rod;
+use theory::problems::rod::{self, Quantity};
+use theory::{Mesh, rod as rods};
 
 /// All rows.
 pub fn rows(effort: Effort, seed: u64) -> Vec<Row> {

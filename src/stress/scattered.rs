@@ -15,12 +15,12 @@ use super::scattering::lit;
 use super::techniques::{Case, Wanted};
 use super::trial::{Dice, Trial, central};
 use super::{Effort, Row, in_parts};
-use crate::media::{Control, Piecewise};
-use crate::numeric::Wide;
-use crate::problems::Problem;
-use crate::theory::Mesh;
-use crate::theory::single::predict::DENSITY;
-use crate::theory::single::{Camera, CameraTracking, Node, Scene, Tracking};
+use media::{Control, Piecewise};
+use numeric::Wide;
+use theory::Mesh;
+use theory::problems::Problem;
+use theory::single::predict::DENSITY;
+use theory::single::{Camera, CameraTracking, Node, Scene, Tracking};
 
 /// Techniques that take turns where rays are deep.
 const TECHNIQUES: u64 = 6;

@@ -13,18 +13,18 @@ use super::chains::arsinh;
 use super::text;
 use super::trial::{Dice, Trial, beyond_rounding};
 use super::{Effort, Row, in_parts};
-use crate::geometry::{Point, Ray};
-use crate::media::{Control, Piecewise};
-use crate::numeric::quadrature::GaussLegendre;
-use crate::numeric::sum::Sum;
-use crate::numeric::{Known, Span, Wide};
-use crate::phase::Phase;
-use crate::phase::henyey_greenstein::HenyeyGreenstein;
-use crate::phase::isotropic::Isotropic;
-use crate::problems::single_scattering::Lamp;
-use crate::problems::{Problem, SingleScattering};
-use crate::theory::Mesh;
-use crate::theory::single::{Camera, CameraTracking, Scene, Tracking};
+use ::theory::Mesh;
+use ::theory::problems::single_scattering::Lamp;
+use ::theory::problems::{Problem, SingleScattering};
+use ::theory::single::{Camera, CameraTracking, Scene, Tracking};
+use media::phase::Phase;
+use media::phase::henyey_greenstein::HenyeyGreenstein;
+use media::phase::isotropic::Isotropic;
+use media::{Control, Piecewise};
+use numeric::geometry::{Point, Ray};
+use numeric::quadrature::GaussLegendre;
+use numeric::sum::Sum;
+use numeric::{Known, Span, Wide};
 
 /// All rows.
 pub fn rows(effort: Effort, seed: u64) -> Vec<Row> {

@@ -3,7 +3,7 @@
 use std::iter::Sum;
 use std::ops::{Div, Mul, Sub};
 
-use crate::numeric::Wide;
+use numeric::Wide;
 
 /// `xᵏ`.
 pub(super) fn power(x: Wide, k: usize) -> Wide {

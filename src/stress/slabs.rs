@@ -4,13 +4,13 @@
 use super::ordinates::Ordinates;
 use super::trial::{Dice, Trial, share};
 use super::{Effort, Row, in_parts};
-use crate::numeric::{Known, Wide};
-use crate::phase::{
+use media::phase::{
     Phase, henyey_greenstein::HenyeyGreenstein, isotropic::Isotropic, rayleigh::Rayleigh,
 };
-use crate::problems::slab::Light;
-use crate::theory::slab;
-use crate::theory::slab::{Resolution, layer::Slice};
+use numeric::{Known, Wide};
+use theory::problems::slab::Light;
+use theory::slab;
+use theory::slab::{Resolution, layer::Slice};
 
 /// Directions of the ordinates.
 const ORDINATES: usize = 72;

@@ -4,11 +4,11 @@ use std::f64::consts::PI;
 
 use super::trial::{Trial, off};
 use super::{Effort, Row, in_parts};
-use crate::numeric::Wide;
-use crate::numeric::quadrature::GaussLegendre;
-use crate::stats::catoni::{Argument, PsiSums};
-use crate::stats::{anderson_darling, binomial, chi_square, normal};
-use crate::theory::CountLaw;
+use gate::stats::catoni::{Argument, PsiSums};
+use gate::stats::{anderson_darling, binomial, chi_square, normal};
+use numeric::Wide;
+use numeric::quadrature::GaussLegendre;
+use theory::CountLaw;
 
 /// All rows.
 pub fn rows(effort: Effort, seed: u64) -> Vec<Row> {

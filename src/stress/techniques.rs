@@ -3,12 +3,10 @@
 use super::chains::{Chain, Term};
 use super::series::{binomial, power};
 use super::shared_walk::{ORDERS, degree, of_mean};
-use crate::media::Piecewise;
-use crate::numeric::Wide;
-use crate::problems::{Problem, SingleScattering};
-use crate::theory::single::{
-    CameraTracking, Collisions, Node, Points, Scene, Technique, Tracking, walks,
-};
+use media::Piecewise;
+use numeric::Wide;
+use theory::problems::{Problem, SingleScattering};
+use theory::single::{CameraTracking, Collisions, Node, Points, Scene, Technique, Tracking, walks};
 
 fn wide<const N: usize>(numbers: [f64; N]) -> [Wide; N] {
     numbers.map(Wide::from)

@@ -3,10 +3,10 @@
 use std::cell::RefCell;
 use std::path::{Path, PathBuf};
 
-use crate::catalogue::Settings;
 use crate::harness::{Case, Source};
-use crate::media::reader::read_volume;
-use crate::media::{Body, Medium, Volume};
+use media::catalogue::Settings;
+use media::reader::read_volume;
+use media::{Body, Medium, Volume};
 
 fn source(text: &str) -> Source {
     Source { name: "stress".into(), path: PathBuf::from("stress.toml"), text: text.to_owned() }

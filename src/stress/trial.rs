@@ -1,10 +1,10 @@
 //! What all pages share: random parameters, a loop over them, and how far a number is from a reference.
 
 use super::Row;
-use crate::numeric::parallel;
-use crate::numeric::{Known, Wide};
-use crate::rng::{Address, Stream, name_hash};
-use crate::theory::Moments;
+use numeric::rng::{Address, Stream, name_hash};
+use numeric::{Known, Wide};
+use theory::Moments;
+use theory::parallel;
 
 /// Random parameters.
 pub struct Dice(Stream);

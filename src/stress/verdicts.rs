@@ -12,7 +12,7 @@ use super::{Effort, Row, text};
 use crate::harness::checks::Kind;
 use crate::harness::record::{Row as Found, Verdict};
 use crate::harness::{Amount, Case, Options, Plan, evaluate, run, verdict};
-use crate::numeric::parallel;
+use theory::parallel;
 
 /// The run-level α of each.
 const ALPHA: f64 = 1e-7;
@@ -180,7 +180,7 @@ fn shifted(effort: Effort, seed: u64) -> Row {
     }
     // P(N ≥ passed) of a binomial number with chance 1 %, by its Poisson bound.
     let mean = 0.01 * asked as f64;
-    let p = crate::stats::ties::p_value(usize::try_from(passed).unwrap_or(usize::MAX), mean);
+    let p = gate::stats::ties::p_value(usize::try_from(passed).unwrap_or(usize::MAX), mean);
     row.see(-p.log10(), || format!("{passed} of {asked} passed"));
     row.trials = asked;
     row

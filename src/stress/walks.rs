@@ -18,14 +18,14 @@ use super::slabs::{LIGHTS, lights, phase};
 use super::text;
 use super::trial::{Dice, Trial, central};
 use super::{Effort, Row, in_parts};
-use crate::media::Piecewise;
-use crate::numeric::{Known, Wide};
-use crate::phase::{Phase, henyey_greenstein::HenyeyGreenstein, isotropic::Isotropic};
-use crate::problems::slab::{Incidence, Light};
-use crate::theory::particle::ParticleRule;
-use crate::theory::slab::layer::Slice;
-use crate::theory::slab::{self, Answer, Energy, Existence, Piece, Pieces, Resolution, Walk};
-use crate::theory::{Mesh, Moments};
+use media::Piecewise;
+use media::phase::{Phase, henyey_greenstein::HenyeyGreenstein, isotropic::Isotropic};
+use numeric::{Known, Wide};
+use theory::particle::ParticleRule;
+use theory::problems::slab::{Incidence, Light};
+use theory::slab::layer::Slice;
+use theory::slab::{self, Answer, Energy, Existence, Piece, Pieces, Resolution, Walk};
+use theory::{Mesh, Moments};
 
 /// Directions of the ordinates.
 const ORDINATES: usize = 48;

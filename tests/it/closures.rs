@@ -1,5 +1,6 @@
 //! Estimators as closures: what passes, what fails, and what is said.
 
+use trueflight::OfCase;
 use trueflight::check::CheckError;
 use trueflight::harness::{Case, Source};
 use trueflight::judge::Choice;

@@ -1,6 +1,5 @@
 //! The integration tests: one binary, a module a topic.
 
-mod architecture;
 mod baseline;
 mod bench;
 mod bidirectional_rod;
@@ -23,6 +22,7 @@ mod grids;
 mod html;
 mod judge;
 mod junit;
+mod lengths;
 mod lit_rod;
 mod lit_slab;
 mod long_runs;

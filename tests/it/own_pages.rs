@@ -5,6 +5,7 @@ use std::path::Path;
 
 use trueflight::catalogue::{Addition, Page, Settings};
 use trueflight::estimators::multiple_scattering::particle::Walker;
+use trueflight::estimators::own::estimator;
 use trueflight::geometry::{Aabb, Bounds, Point};
 use trueflight::harness::record::Verdict;
 use trueflight::media::own::{Formula, SpaceFormula};
@@ -168,7 +169,7 @@ fn names_are_taken_once() {
     let once = Catalogue::builtin().with(add(page("mine"))).expect("a free name");
     assert!(once.with(add(page("mine"))).is_err());
     // Those of pictures are names, too.
-    let particle = Addition::estimator::<MultipleScattering, Walker>(page("particle"));
+    let particle = estimator::<MultipleScattering, Walker>(page("particle"));
     assert!(Catalogue::builtin().with(particle).is_err());
 }
 

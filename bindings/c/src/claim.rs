@@ -116,10 +116,10 @@ const MAX_WHOLE: f64 = 9_007_199_254_740_992.0;
 
 /// Adds one property to a claim.
 fn with(
-    check: trueflight::Check<()>,
+    check: gate::Check<()>,
     key: Key,
     property: &Property,
-) -> Result<trueflight::Check<()>, String> {
+) -> Result<gate::Check<()>, String> {
     let list = || property.numbers.to_vec();
     let number = || property.exactly().map(|[number]| number);
     Ok(match key {
@@ -218,7 +218,7 @@ pub unsafe extern "C" fn tf_check_of(
 #[cfg(feature = "theory")]
 fn of(check: &mut Session, case: &str, estimator: &str, swept: f64) -> Result<(), Error> {
     let swept = (!swept.is_nan()).then_some(swept);
-    check.set(|claim| Ok(claim.of(case, estimator, swept)))
+    check.set(|claim| Ok(trueflight::OfCase::of(claim, case, estimator, swept)))
 }
 
 #[cfg(not(feature = "theory"))]

@@ -1,6 +1,6 @@
 //! Random stream of a callback.
 
-use trueflight::rng::Stream;
+use numeric::rng::Stream;
 
 /// Random stream: xoshiro256+, the generator of the Rust library. Draw numbers from it by `tf_rng_uniform`,
 /// `tf_rng_positive_uniform` and `tf_rng_word`.

@@ -4,9 +4,9 @@ use std::ffi::CString;
 use std::mem;
 use std::rc::Rc;
 
-use trueflight::check::{MOST, Outcome, Pushed};
-use trueflight::judge::trial::BUFFER;
-use trueflight::rng::{Address, name_hash};
+use gate::check::{MOST, Outcome, Pushed};
+use gate::judge::trial::BUFFER;
+use numeric::rng::{Address, name_hash};
 
 use crate::handle::Common;
 use crate::random::Rng;
@@ -15,7 +15,7 @@ use crate::status::{Error, Status, c_text};
 /// Stage of a check.
 enum Stage {
     /// The claim is being set.
-    Claim(Box<trueflight::Check<()>>),
+    Claim(Box<gate::Check<()>>),
     /// The check takes draws.
     Open(Box<Pushed>),
     /// The draws are judged.
@@ -44,7 +44,7 @@ pub(crate) struct Session {
 impl Session {
     pub(crate) fn new(common: Rc<Common>) -> Self {
         Self {
-            stage: Stage::Claim(Box::new(trueflight::claim(common.name.as_str()))),
+            stage: Stage::Claim(Box::new(gate::claim(common.name.as_str()))),
             common,
             draws: None,
             seed: 1,
@@ -89,7 +89,7 @@ impl Session {
     /// Sets one property of the claim. The check validates the claim before its first draw.
     pub(crate) fn set(
         &mut self,
-        set: impl FnOnce(trueflight::Check<()>) -> Result<trueflight::Check<()>, String>,
+        set: impl FnOnce(gate::Check<()>) -> Result<gate::Check<()>, String>,
     ) -> Result<(), Error> {
         match mem::replace(&mut self.stage, Stage::Ended) {
             Stage::Claim(check) => {

@@ -4,7 +4,7 @@
 use std::cell::Cell;
 use std::ffi::{CStr, CString, c_char};
 
-use trueflight::check::{CheckError, MAX_VALUES};
+use gate::check::{CheckError, MAX_VALUES};
 
 /// Result of a call; `tf_last_error` returns the message of an error.
 #[repr(C)]

@@ -4,7 +4,7 @@
 
 use std::ffi::c_char;
 
-use trueflight::judge::judgement::Judgement;
+use gate::judge::judgement::Judgement;
 
 use crate::ffi::{free, query, write};
 use crate::handle::Check;
@@ -23,9 +23,9 @@ pub enum Verdict {
     Inconclusive = 2,
 }
 
-impl From<trueflight::stats::verdict::Verdict> for Verdict {
-    fn from(verdict: trueflight::stats::verdict::Verdict) -> Self {
-        use trueflight::stats::verdict::Verdict as V;
+impl From<gate::stats::verdict::Verdict> for Verdict {
+    fn from(verdict: gate::stats::verdict::Verdict) -> Self {
+        use gate::stats::verdict::Verdict as V;
         match verdict {
             V::Pass => Self::Pass,
             V::Fail => Self::Fail,

@@ -3,6 +3,7 @@
 use pyo3::buffer::PyBuffer;
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
+use trueflight::OfCase;
 use trueflight::check::{Check, CheckError, Outcome, Pushed};
 use trueflight::judge::Choice;
 use trueflight::judge::claim::ROUNDING;

@@ -1,8 +1,8 @@
 //! Arrays of `NumPy`: draws, images, stacks of images or grids, by their axes.
 
 use super::item::{Item, Spread};
-use crate::files::number::Number;
-use crate::files::{Fault, npy, wrong};
+use media::files::number::Number;
+use media::files::{Fault, npy, wrong};
 
 /// The array of a file.
 pub fn items(mut bytes: &[u8]) -> Result<Vec<Item>, Fault> {

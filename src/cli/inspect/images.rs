@@ -1,8 +1,8 @@
 //! Pictures.
 
 use super::item::{Item, Spread};
-use crate::files::exr::{self, Part};
-use crate::files::{Fault, Pixels, pfm, wrong};
+use media::files::exr::{self, Part};
+use media::files::{Fault, Pixels, pfm, wrong};
 
 const PIXELS: &str = "pixels (columns, rows)";
 

@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use crate::catalogue::digits::{count, short};
+use numeric::digits::{count, short};
 
 /// A part of a file. What is unknown or makes no sense for it is `None`, or empty.
 #[derive(Debug, Clone, Default, PartialEq, serde::Serialize)]

@@ -15,9 +15,9 @@ use clap::Args;
 use self::item::Item;
 use super::output::{self, Errors, Format};
 use super::{Console, USAGE};
-use crate::files::Fault;
 use crate::judge::files as draws_files;
-use crate::media::grid_file;
+use media::files::Fault;
+use media::grid_file;
 
 /// Arguments of `inspect`.
 #[derive(Debug, Args)]

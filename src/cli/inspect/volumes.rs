@@ -1,11 +1,11 @@
 //! Voxel grids.
 
 use super::item::{Item, Spread};
-use crate::catalogue::number;
-use crate::files::vdb::{Grid, Transform};
-use crate::files::{Fault, nvdb, pbrt, vdb, vol::Vol};
-use crate::media::grid_file::Format;
-use crate::media::grid_vdb;
+use media::files::vdb::{Grid, Transform};
+use media::files::{Fault, nvdb, pbrt, vdb, vol::Vol};
+use media::grid_file::Format;
+use media::grid_vdb;
+use numeric::digits::number;
 
 const VOXELS: &str = "voxels (x, y, z)";
 
@@ -42,7 +42,7 @@ fn place(item: &mut Item, [low, high]: [[f64; 3]; 2]) {
 fn of_vol(bytes: &[u8]) -> Result<Vec<Item>, Fault> {
     let vol = Vol::read(bytes)?;
     if vol.size.contains(&0) {
-        return crate::files::wrong("the file holds no sample", "write one with samples");
+        return media::files::wrong("the file holds no sample", "write one with samples");
     }
     let channels = usize::try_from(vol.channels).unwrap_or(usize::MAX);
     let items = (0..channels.min(64)).map(|channel| {
@@ -66,7 +66,7 @@ fn of_vol(bytes: &[u8]) -> Result<Vec<Item>, Fault> {
 
 fn of_pbrt(bytes: &[u8]) -> Result<Vec<Item>, Fault> {
     let Ok(text) = std::str::from_utf8(bytes) else {
-        return crate::files::wrong(
+        return media::files::wrong(
             "the file is no text",
             "give a scene file of pbrt that is not packed",
         );

@@ -9,7 +9,7 @@ use crate::judge::files;
 use crate::judge::reading::Reading;
 use crate::judge::theory::{Background, Theory, Whole};
 use crate::judge::trial::{Trial, Wanted};
-use crate::judge::{Choice, Draws, Layout};
+use crate::judge::{Choice, Draws, Layout, theory_of};
 
 /// What is claimed of the draws.
 pub(super) struct Claimed {
@@ -116,7 +116,7 @@ impl Arguments {
         };
         let (swept, nearest) = (self.swept, self.nearest);
         let choice = Choice { estimator, swept, nearest, channel: None, seed: self.seed };
-        let theory = Theory::of(case, &choice, self.rounding)?;
+        let theory = theory_of(case, &choice, self.rounding)?;
         let channel = self.channel_of(case, &theory)?;
         let takes_all = !self.mean_only && self.batch == 1;
         if takes_all && (self.variance.is_some() || self.kurtosis.is_some()) {

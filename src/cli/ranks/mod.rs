@@ -25,7 +25,7 @@ use crate::harness::draw::Block;
 use crate::harness::share::{Header, Piece};
 use crate::harness::workers::Drawing;
 use crate::harness::{Catalogue, Plan};
-use crate::numeric::parallel;
+use theory::parallel;
 
 /// What rank 0 says to another.
 #[derive(Debug, Serialize, Deserialize)]

@@ -10,7 +10,7 @@ use super::link::{Link, Naps};
 use super::{Answer, Order, encoded};
 use crate::harness::share::{Header, Piece};
 use crate::harness::workers::{Drawing, Take, Workers};
-use crate::numeric::parallel;
+use theory::parallel;
 
 /// In how many portions a thread gets its pieces: the last ones are what others may have to wait for.
 const PORTIONS: usize = 16;

@@ -6,8 +6,8 @@
 
 use super::batch::{Batch, each_value};
 use super::question::{Law, Question, Subject};
-use crate::stats::chi_square;
-use crate::theory::{self, Prediction};
+use gate::stats::chi_square;
+use theory::{self, Prediction};
 
 /// A draw this near to a value, relative to the value's size, is that value.
 pub const SAME: f64 = 1e-9;

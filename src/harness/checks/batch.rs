@@ -7,8 +7,8 @@
 use std::cell::OnceCell;
 
 use super::observe::{Observe, Observer};
-use crate::estimators::DrawBuffer;
-use crate::stats::{Census, Tally};
+use estimators::DrawBuffer;
+use gate::stats::{Census, Tally};
 
 /// Draws that are observed at once.
 const PART: usize = 1024;
@@ -113,7 +113,7 @@ fn in_parts<T>(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::estimators::Draw;
+    use estimators::Draw;
 
     fn buffer(value: impl Fn(u32) -> f64) -> DrawBuffer {
         let mut buffer = DrawBuffer::new(1);

@@ -9,8 +9,8 @@
 
 use super::batch::{Batch, each_value};
 use super::question::{Law, Question, Subject};
-use crate::stats::chi_square;
-use crate::theory::Prediction;
+use gate::stats::chi_square;
+use theory::Prediction;
 
 struct Classes {
     probability: Vec<f64>,

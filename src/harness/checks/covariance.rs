@@ -13,11 +13,11 @@ use super::batch::Batch;
 use super::mean::is_faint;
 use super::observe::Observe;
 use super::question::{Kind, Known, Law, Question, Scalar, Subject, Wanted};
-use crate::estimators::DrawBuffer;
 use crate::harness::options::Tolerance;
-use crate::stats::gate::GateSums;
-use crate::theory::Prediction;
-use crate::theory::prediction::Covariance as Predicted;
+use estimators::DrawBuffer;
+use gate::stats::gate::GateSums;
+use theory::Prediction;
+use theory::prediction::Covariance as Predicted;
 
 /// The largest error of a covariance, relative to the product of the standard deviations, that is
 /// still worth a promise.

@@ -15,10 +15,10 @@
 use super::batch::Batch;
 use super::observe::Observe;
 use super::question::{Kind, Known, Law, Question, Scalar, Subject, Wanted, rounding_of};
-use crate::estimators::DrawBuffer;
-use crate::numeric::sum::{sum_in_lanes, sum_of_pairs};
-use crate::stats::{chi_square, reflection};
-use crate::theory::{Increment, Prediction};
+use estimators::DrawBuffer;
+use gate::stats::{chi_square, reflection};
+use numeric::sum::{sum_in_lanes, sum_of_pairs};
+use theory::{Increment, Prediction};
 
 /// The largest bias of an increment, relative to T, that is still worth a promise.
 const CAP: f64 = 0.05;

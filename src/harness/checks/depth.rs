@@ -14,8 +14,8 @@
 use super::batch::Batch;
 use super::distances::Classes;
 use super::question::{Law, Question, Subject};
-use crate::stats::anderson_darling;
-use crate::theory::Prediction;
+use gate::stats::anderson_darling;
+use theory::Prediction;
 
 struct Empirical(Classes);
 

@@ -12,8 +12,8 @@ use super::batch::Batch;
 use super::question::{Law, Question, Subject, last_channel};
 use crate::harness::addresses::BLOCK;
 use crate::harness::normality;
-use crate::numeric::sum::sum_in_lanes;
-use crate::stats::chi_square;
+use gate::stats::chi_square;
+use numeric::sum::sum_in_lanes;
 
 /// The fewest blocks that make a test.
 const FEWEST: u64 = 4;

@@ -9,11 +9,11 @@
 
 use super::batch::Batch;
 use super::question::{Law, Question, Subject};
-use crate::catalogue::digits::short;
-use crate::estimators::DrawBuffer;
-use crate::numeric::pack::in_fused_code;
-use crate::stats::chi_square;
-use crate::theory::{self, Prediction};
+use ::theory::{self, Prediction};
+use estimators::DrawBuffer;
+use gate::stats::chi_square;
+use numeric::digits::short;
+use numeric::pack::in_fused_code;
 
 /// The number of bins.
 const BINS: usize = 20;

@@ -12,8 +12,8 @@
 //! are compared with each other as blocks are.
 
 use super::question::{Inspected, Kind, Question, Subject};
-use crate::estimators::Order;
-use crate::stats::{correlation, ties};
+use estimators::Order;
+use gate::stats::{correlation, ties};
 
 /// The streams of how many blocks are compared.
 const BLOCKS: u64 = 16;

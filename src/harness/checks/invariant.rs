@@ -9,7 +9,7 @@
 //! transmitted light are all the light there was. It applies to walks that measure their own defect.
 
 use super::question::{Always, Kind, Question, Subject, rounding};
-use crate::estimators::DrawBuffer;
+use estimators::DrawBuffer;
 
 const LANES: usize = 8;
 

@@ -9,7 +9,7 @@
 
 use super::observe::Observe;
 use super::question::{Always, Kind, Known, Question, Scalar, Subject, Wanted};
-use crate::estimators::DrawBuffer;
+use estimators::DrawBuffer;
 
 /// The largest relative error of the lookups that is still worth a promise.
 const CAP: f64 = 0.02;

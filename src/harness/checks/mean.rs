@@ -14,9 +14,9 @@
 
 use super::observe::Observe;
 use super::question::{Always, Kind, Known, Question, Scalar, Subject, Wanted, rounding_of};
-use crate::estimators::DrawBuffer;
-use crate::stats::verdict::FURTHEST;
-use crate::theory::Channel;
+use estimators::DrawBuffer;
+use gate::stats::verdict::FURTHEST;
+use theory::Channel;
 
 /// The largest relative error of the mean that is still worth a promise.
 const CAP: f64 = 0.05;

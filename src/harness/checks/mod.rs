@@ -27,7 +27,7 @@ pub mod resolution;
 pub mod streams;
 pub mod variance;
 
-use crate::catalogue::PageList;
+use media::catalogue::PageList;
 
 pub use observe::Observe;
 pub use question::{Always, Inspected, Kind, Law, Pilot, Question, Scalar, Subject, rounding};
@@ -86,7 +86,7 @@ macro_rules! checks {
     ($($module:ident $($how:ident)*,)*) => {
         /// Every check, in the order of registration.
         pub const CATALOGUE: PageList =
-            PageList { name: "checks", pages: &[$($crate::page!($module)),*] };
+            PageList { name: "checks", pages: &[$(media::page!($module)),*] };
 
         /// The checks, in the order of the catalogue.
         const ALL: &[Check] = &[$(Check::new($module::questions)$(.$how())*),*];

@@ -4,8 +4,8 @@
 //! such draws exists.
 
 use super::question::{Always, Kind, Question, Subject};
-use crate::estimators::DrawBuffer;
-use crate::numeric::sum::sum_in_lanes;
+use estimators::DrawBuffer;
+use numeric::sum::sum_in_lanes;
 
 fn largest(draws: &DrawBuffer) -> f64 {
     // x · 0 is 0 for every finite x and not a number otherwise.

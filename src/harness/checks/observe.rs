@@ -1,7 +1,7 @@
 //! How a number y, whose mean is 0 when all is well, comes from a draw.
 
-use crate::estimators::DrawBuffer;
-use crate::numeric::pack::in_fused_code;
+use estimators::DrawBuffer;
+use numeric::pack::in_fused_code;
 
 /// Adds a y for each of the draws to the second argument.
 pub type Observer<T> = Box<dyn Fn(&T, &mut Vec<f64>) + Send + Sync>;

@@ -4,11 +4,11 @@ use std::panic::{RefUnwindSafe, UnwindSafe};
 
 use super::batch::Batch;
 use super::observe::Observe;
-use crate::estimators::{DrawBuffer, Experiment};
 use crate::harness::options::Tolerance;
-use crate::rng::Streams;
-use crate::stats::gate::{self, Design};
-use crate::theory::{Channel, Moments, Prediction};
+use ::gate::stats::gate::{self, Design};
+use estimators::{DrawBuffer, Experiment};
+use numeric::rng::Streams;
+use theory::{Channel, Moments, Prediction};
 
 /// What a check knows before the first draw.
 #[derive(Clone, Copy)]
@@ -25,7 +25,7 @@ pub struct Subject<'a> {
     pub tolerance: Tolerance,
     /// Whether the case declares the experiment biased.
     pub expect_biased: bool,
-    /// Whether an invariant holds for each draw, see [`crate::estimators::Draw::defect`].
+    /// Whether an invariant holds for each draw, see [`estimators::Draw::defect`].
     pub has_invariant: bool,
     /// Whether draws come one like the other; order-free ones come sorted by their lookups.
     pub is_in_turn: bool,

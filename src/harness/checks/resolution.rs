@@ -13,8 +13,8 @@
 
 use super::question::{Inspected, Kind, Question, Subject};
 use crate::harness::addresses::BLOCK;
-use crate::stats::ties;
-use crate::theory::{Law, Prediction};
+use gate::stats::ties;
+use theory::{Law, Prediction};
 
 /// Fewer collisions than this say nothing about their resolution.
 pub const FEWEST: usize = 100;

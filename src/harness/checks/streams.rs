@@ -13,7 +13,7 @@
 use super::batch::Batch;
 use super::question::{Law, Question, Subject, last_channel};
 use crate::harness::addresses::BLOCK;
-use crate::stats::correlation;
+use gate::stats::correlation;
 
 /// L.
 const FIRST: usize = 1024;

@@ -12,7 +12,7 @@
 use super::mean::is_faint;
 use super::observe::Observe;
 use super::question::{Kind, Known, Question, Scalar, Subject, Wanted, rounding_of};
-use crate::theory::Channel;
+use theory::Channel;
 
 /// The largest relative error of the variance that is still worth a promise.
 const CAP: f64 = 0.2;

@@ -3,8 +3,8 @@
 use super::Scenario;
 use crate::harness::names::Names;
 use crate::harness::sweep::{Variation, What};
-use crate::media::misses;
-use crate::recipes::sampling;
+use estimators::recipes::sampling;
+use media::misses;
 
 impl Scenario {
     /// Contents of the files of the medium, a sentence each.

@@ -236,17 +236,15 @@ impl Draws {
     }
 }
 
-impl Trial {
-    /// Reads and judges.
-    ///
-    /// # Errors
-    ///
-    /// The draws cannot be read to their end, or to where they are decided.
-    pub fn judge(&self, draws: &mut Draws) -> Result<Judgement, ForeignError> {
-        let readings = vec![Reading::new(*self)];
-        let mut judged = judge(readings, draws, &self.wanted, self.length)?;
-        Ok(judged.swap_remove(0))
-    }
+/// Reads draws of one value and judges them by a trial.
+///
+/// # Errors
+///
+/// The draws cannot be read to their end, or to where they are decided.
+pub fn judge_by(trial: &Trial, draws: &mut Draws) -> Result<Judgement, ForeignError> {
+    let readings = vec![Reading::new(*trial)];
+    let mut judged = judge(readings, draws, &trial.wanted, trial.length)?;
+    Ok(judged.swap_remove(0))
 }
 
 /// Reads and judges draws, a reading for each of their values.

@@ -3,7 +3,7 @@
 use super::raw::Words;
 use super::rows::Rows;
 use super::{Bytes, ForeignError, Layout};
-use crate::files::npy::{self, Word};
+use media::files::npy::{self, Word};
 
 /// Opens an array; `length` counts the bytes of the file.
 pub(super) fn open(
@@ -64,7 +64,13 @@ mod tests {
 
     use super::super::{Column, Draws, Format, all};
     use super::*;
-    use crate::files::npy::tests::header as whole_header;
+
+    /// A header as `numpy.save` writes it.
+    fn whole_header(kind: &str, order: &str, shape: &str) -> Vec<u8> {
+        let text = format!("{{'descr': {kind}, 'fortran_order': {order}, 'shape': {shape}, }}\n");
+        let length = u16::try_from(text.len()).expect("short");
+        [b"\x93NUMPY\x01\x00", &length.to_le_bytes()[..], text.as_bytes()].concat()
+    }
 
     fn array<const N: usize>(
         kind: &str,

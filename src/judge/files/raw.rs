@@ -2,7 +2,7 @@
 
 use super::rows::Rows;
 use super::{Bytes, ForeignError, Layout};
-use crate::files::npy::Word;
+use media::files::npy::Word;
 
 /// How many bytes are asked for at a time: they stay in the second-level cache until converted.
 const CHUNK: usize = 1 << 17;

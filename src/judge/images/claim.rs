@@ -4,7 +4,7 @@ use super::error::ImageError;
 use super::estimate::Estimated;
 use super::picture::{Picture, Size, Stack};
 use crate::judge::claim::ROUNDING;
-use crate::stats::verdict::FURTHEST;
+use gate::stats::verdict::FURTHEST;
 
 /// A number for all pixels, or one for each.
 #[derive(Debug, Clone, PartialEq)]

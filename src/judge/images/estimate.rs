@@ -17,8 +17,8 @@ use super::error::ImageError;
 use super::judgement;
 use super::picture::{Picture, Size, Stack};
 use super::tiles::Part;
-use crate::numeric::parallel;
-use crate::stats::estimated_variance::Estimate;
+use gate::stats::estimated_variance::Estimate;
+use theory::parallel;
 
 /// What is kept of an estimated variance.
 pub(super) struct Estimated {

@@ -1,7 +1,7 @@
 //! What is said of a stack of pictures.
 
 use super::picture::Size;
-use crate::stats::verdict::Verdict;
+use gate::stats::verdict::Verdict;
 
 /// The verdict on a stack, with its numbers.
 #[derive(Debug, Clone, serde::Serialize)]

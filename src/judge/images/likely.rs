@@ -1,8 +1,8 @@
 //! Likely causes of a failure of a stack of images.
 
 use super::judgement::Judgement;
-use crate::catalogue::causes::Pattern;
-use crate::stats::verdict::Verdict;
+use gate::causes::Pattern;
+use gate::stats::verdict::Verdict;
 
 impl Judgement {
     /// Which checks fail, and on which side; passes that depend on each other have no other side.

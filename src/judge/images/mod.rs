@@ -61,10 +61,10 @@ use self::claim::Pixels;
 use self::judgement::{Dependence, Refuted, Tile, Variance, counts, worst};
 use self::tiles::{Part, Terms};
 use crate::judge::scalar::Levels;
-use crate::numeric::parallel;
-use crate::stats::gate::VARIANCE_MARGIN;
-use crate::stats::multiplicity::{e_benjamini_hochberg, holm};
-use crate::stats::verdict::{MISS, Verdict};
+use gate::stats::gate::VARIANCE_MARGIN;
+use gate::stats::multiplicity::{e_benjamini_hochberg, holm};
+use gate::stats::verdict::{MISS, Verdict};
+use theory::parallel;
 
 /// The shares of α: tiles, the whole, the variance.
 const SHARES: [f64; 3] = [0.6, 0.2, 0.2];

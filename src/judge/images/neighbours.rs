@@ -10,8 +10,8 @@
 //! the picture like blue noise make it negative. The channels of a pixel, which share paths, are added up.
 
 use super::picture::Stack;
-use crate::stats::capital::ln_mean_exp;
-use crate::stats::independence::Signs;
+use gate::stats::capital::ln_mean_exp;
+use gate::stats::independence::Signs;
 
 /// What was found.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -53,7 +53,7 @@ pub(super) fn neighbours(stack: &Stack) -> Neighbours {
 mod tests {
     use super::super::picture::Size;
     use super::*;
-    use crate::rng::{Address, unit};
+    use numeric::rng::{Address, unit};
 
     /// Two passes of 64 × 64 pixels that are blended with the pixels to the left and above.
     fn stack(seed: u64, blend: f64) -> Stack {

@@ -18,10 +18,10 @@ use super::picture::Stack;
 use super::tiles::{self, AT_THE_END, Part, Terms};
 use crate::judge::scalar::{Ask, Scalar};
 use crate::judge::trial::MEAN_CAP;
-use crate::stats::capital::ln_mean_exp;
-use crate::stats::estimated_variance::{Estimate, Gathered};
-use crate::stats::normal::{upper_quantile, upper_tail};
-use crate::stats::verdict::MISS;
+use gate::stats::capital::ln_mean_exp;
+use gate::stats::estimated_variance::{Estimate, Gathered};
+use gate::stats::normal::{upper_quantile, upper_tail};
+use gate::stats::verdict::MISS;
 
 /// Evidence of the passes on a part; q as of `estimate`, 0 for an exact variance.
 pub(super) fn tile(stack: &Stack, pixels: &Pixels, part: Part, terms: Terms, q: f64) -> Tile {
@@ -150,7 +150,7 @@ fn by_range(
         floor,
         must_pass: true,
     };
-    let planned = y.len() as f64 * crate::stats::gate::PLANNED / tiles::planned_units(terms.count);
+    let planned = y.len() as f64 * gate::stats::gate::PLANNED / tiles::planned_units(terms.count);
     let mut scalar = Scalar::new(ask, Some(planned), AT_THE_END);
     for (first, last) in tiles::doubling(y.len()) {
         scalar.absorb(&y[first..last]);

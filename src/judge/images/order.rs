@@ -15,8 +15,8 @@
 //! after 20 orders with a T as large.
 
 use super::picture::Stack;
-use crate::numeric::parallel;
-use crate::rng::{Address, unit};
+use numeric::rng::{Address, unit};
+use theory::parallel;
 
 /// The largest lag.
 const LAGS: usize = 4;

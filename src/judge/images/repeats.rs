@@ -17,7 +17,7 @@ use std::f64::consts::LN_2;
 use std::hash::{DefaultHasher, Hash, Hasher};
 
 use super::picture::Stack;
-use crate::stats::independence::Signs;
+use gate::stats::independence::Signs;
 
 /// About how many pixels are looked at.
 const PIXELS: usize = 1 << 16;
@@ -145,7 +145,7 @@ fn ln_choose(n: f64, k: f64) -> f64 {
 mod tests {
     use super::super::picture::Size;
     use super::*;
-    use crate::rng::{Address, unit};
+    use numeric::rng::{Address, unit};
 
     const SIZE: Size = Size { rows: 30, columns: 40, channels: 1 };
 

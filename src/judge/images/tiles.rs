@@ -18,9 +18,9 @@ use super::picture::{Size, Stack};
 use crate::judge::grounds::Spread;
 use crate::judge::scalar::{Ask, Levels, Scalar};
 use crate::judge::trial::MEAN_CAP;
-use crate::stats::gate::PLANNED;
-use crate::stats::normal::{upper_quantile, upper_tail};
-use crate::stats::verdict::{MISS, Verdict};
+use gate::stats::gate::PLANNED;
+use gate::stats::normal::{upper_quantile, upper_tail};
+use gate::stats::verdict::{MISS, Verdict};
 
 /// A rectangle of pixels, in one channel.
 #[derive(Debug, Clone, Copy)]

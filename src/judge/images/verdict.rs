@@ -2,9 +2,9 @@
 
 use super::claim::{Claim, Pixels};
 use super::judgement::{Judgement, Refuted, Tile};
-use crate::catalogue::deviation::{Deviation, signed_percent};
-use crate::catalogue::digits::{percent, short};
-use crate::stats::verdict::Verdict;
+use gate::deviation::{Deviation, signed_percent};
+use gate::stats::verdict::Verdict;
+use numeric::digits::{percent, short};
 
 /// The verdict of the whole, and what it promises.
 pub(super) fn decide(judgement: &mut Judgement, pixels: &Pixels, claim: &Claim) {

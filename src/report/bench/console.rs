@@ -5,10 +5,10 @@ use std::fmt::Write;
 use super::diff;
 use crate::bench::record::{Bench, BenchCase, BenchRow, Times};
 use crate::bench::spread::Spread;
-use crate::catalogue::digits::{count, fixed, short, time};
 use crate::report::console::layout::{Column, Grid, Paint, Pen, Spec, end_elided, wrapped};
 use crate::report::console::views::swept_apart;
 use crate::report::labels::Labels;
+use numeric::digits::{count, fixed, short, time};
 
 /// The heading of σ̂; constant ones have as many digits as tell them apart.
 const SAMPLING: &str = "σ\u{302}";

@@ -2,8 +2,8 @@
 
 use crate::bench::comparison::{Change, Comparison};
 use crate::bench::spread::Spread;
-use crate::catalogue::digits::{fixed, short};
 use crate::report::diff::{counts, ending, listed, not_empty};
+use numeric::digits::{fixed, short};
 
 /// What was compared, and how.
 pub fn remarks(comparison: &Comparison) -> Vec<String> {

@@ -6,7 +6,6 @@
 use plotters::style::{Color, RGBAColor};
 
 use crate::bench::record::{Bench, BenchCase, BenchRow, CurvePoint, Times};
-use crate::catalogue::digits::count;
 use crate::report::labels::Labels;
 use crate::report::plots::figure::{Figure, Foot, LEFT};
 use crate::report::plots::legend::Entry;
@@ -14,6 +13,7 @@ use crate::report::plots::names::{marks, numbered};
 use crate::report::plots::style::Style;
 use crate::report::plots::{self, Axis, Panel, Sheet};
 use crate::report::{Artifact, ReportError};
+use numeric::digits::count;
 
 const WIDTH: f64 = 1200.0;
 const TOP: f64 = 104.0;

@@ -6,12 +6,12 @@ use std::fmt::Write;
 use super::layout::{Grid, Paint, Pen, wrapped};
 use super::{View, views};
 use crate::baseline::Comparison;
-use crate::catalogue::digits::{fixed, range, short};
 use crate::harness::record::{CaseRecord, Record, Verdict};
 use crate::report::diff;
 use crate::report::failures::failing;
 use crate::report::likely;
 use crate::report::totals;
+use numeric::digits::{fixed, range, short};
 
 /// Beyond so many, suspects are only counted.
 const SUSPECTS: usize = 5;

@@ -1,9 +1,9 @@
 //! Notes below a table: what the best σ̂ is, and the setup lookups and needs that have no column.
 
-use crate::catalogue::digits::short;
 use crate::harness::record::{CaseRecord, Row};
 use crate::report::console::layout::{Paint, Pen};
 use crate::report::console::views::{NEEDS, SETUP};
+use numeric::digits::short;
 
 /// Adds the notes, each once; `is_shown` says which columns the table has.
 pub fn notes(text: &mut String, pen: Pen, case: &CaseRecord, is_shown: &dyn Fn(&str) -> bool) {

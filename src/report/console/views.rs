@@ -1,10 +1,10 @@
 //! Which columns each view of the table has, and what stands in them.
 
-use crate::catalogue::digits::{count, enough, fixed, percent, short, signed};
 use crate::harness::record::{CaseRecord, Row, Verdict};
 use crate::report::console::View;
 use crate::report::console::layout::{self, Column, Field, Grid, Paint};
 use crate::report::labels::Labels;
+use numeric::digits::{count, enough, fixed, percent, short, signed};
 
 /// A column of rows: heading, whether it stands at the right, rank, and its words.
 pub type Spec = layout::Spec<Row>;

@@ -7,9 +7,9 @@ use super::plots::{Plot, definitions, plot};
 use super::{filters, page};
 use crate::bench::comparison::Comparison;
 use crate::bench::record::{Bench, BenchCase, BenchRow, Times};
-use crate::catalogue::digits::{count, fixed, time};
 use crate::report::ReportError;
 use crate::report::bench as files;
+use numeric::digits::{count, fixed, time};
 
 /// A row with its case.
 type Joined<'a> = (&'a BenchCase, &'a BenchRow);

@@ -4,9 +4,9 @@ use maud::{Markup, html};
 
 use super::plots::Plot;
 use super::words;
-use crate::catalogue::digits::range;
 use crate::harness::record::{CaseRecord, Record};
 use crate::report::totals;
+use numeric::digits::range;
 
 /// A line for each case; those with plots open.
 pub fn section(record: &Record, plots: &[Vec<Plot>]) -> Markup {

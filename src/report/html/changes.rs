@@ -4,8 +4,8 @@ use maud::{Markup, html};
 
 use super::{page, words};
 use crate::baseline::{Change, Comparison, Drift, Quantity};
-use crate::catalogue::digits::{fixed, short};
 use crate::report::diff;
+use numeric::digits::{fixed, short};
 
 /// The comparison: what became worse first, each with its ratio and where that may be.
 pub fn section(comparison: &Comparison) -> Markup {

@@ -4,11 +4,11 @@ use maud::{Markup, html};
 
 use super::{page, words};
 use crate::baseline::Comparison;
-use crate::catalogue::digits::{percent, range, short, time};
 use crate::harness::record::{Record, Verdict};
 use crate::report::failures::{Failure, experiment, failing};
 use crate::report::likely;
 use crate::report::totals;
+use numeric::digits::{percent, range, short, time};
 
 /// So many findings of a kind stand on the first screen; the table has all.
 const MOST: usize = 20;

@@ -4,8 +4,8 @@
 use maud::{Markup, html};
 
 use super::drawing;
-use crate::catalogue::digits::{count, short};
 use crate::harness::record::{Course, Finding};
+use numeric::digits::{count, short};
 
 /// The plot's size in its own units.
 const SIZE: [f64; 2] = [400.0, 120.0];

@@ -6,9 +6,9 @@ use super::filters;
 use super::listing::{Cell, Column, table};
 use super::page;
 use super::plots::plot;
-use crate::catalogue::digits::time;
 use crate::report::{ReportError, stress};
 use crate::stress::{Row, Stress};
+use numeric::digits::time;
 
 fn columns<'a>() -> [Column<&'a Row>; 8] {
     [

@@ -1,7 +1,7 @@
 //! Numbers and verdicts as they stand on the page.
 
-use crate::catalogue::digits::{short, signed};
 use crate::harness::record::{CaseRecord, Row, Verdict};
+use numeric::digits::{short, signed};
 
 /// What is unknown, or without bound.
 pub const UNKNOWN: &str = "–";
@@ -20,7 +20,7 @@ pub fn number(value: Option<f64>, digits: usize) -> String {
 
 /// A count.
 pub fn count(value: Option<u64>) -> String {
-    value.map_or_else(|| UNKNOWN.to_owned(), crate::catalogue::digits::count)
+    value.map_or_else(|| UNKNOWN.to_owned(), numeric::digits::count)
 }
 
 /// A z-score, in parentheses where it is not to be read as normal.

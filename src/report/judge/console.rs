@@ -2,10 +2,10 @@
 
 use std::fmt::Write;
 
-use crate::catalogue::digits::short;
 use crate::harness::record::Verdict;
 use crate::judge::judgement::Judgement;
 use crate::report::console::layout::wrapped;
+use numeric::digits::short;
 
 /// The widest word at the left.
 const INDENT: usize = 10;

@@ -6,12 +6,12 @@
 
 use quick_junit::{NonSuccessKind, Report, TestCase, TestCaseStatus, TestSuite};
 
-use crate::catalogue::digits::exact;
 use crate::harness::record::Verdict;
 use crate::judge::images;
 use crate::judge::judgement::Judgement;
 use crate::report::ReportError;
 use crate::report::junit::Inconclusive;
+use numeric::digits::exact;
 
 /// A verdict on a file or a stack of images.
 #[derive(Debug, Clone)]

@@ -1,6 +1,6 @@
 //! An axis: its range, its ticks, and where a value stands on it.
 
-use crate::catalogue::digits::short;
+use numeric::digits::short;
 
 /// An axis of a panel.
 #[derive(Debug, Clone)]

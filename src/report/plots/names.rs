@@ -2,9 +2,9 @@
 
 use std::ops::RangeInclusive;
 
-use crate::catalogue::digits::count;
 use crate::report::labels::Labels;
 use crate::report::plots::series::Group;
+use numeric::digits::count;
 
 /// Labels of the series, no two alike: the estimator, its control, its σ̂ where others of its name have another, and
 /// the channel.

@@ -2,13 +2,13 @@
 
 use plotters::style::RGBAColor;
 
-use crate::catalogue::digits::short;
 use crate::harness::record::{Row, Sweep};
 use crate::report::plots::font::Typeface;
 use crate::report::plots::legend::{self, Key};
 use crate::report::plots::series::Series;
 use crate::report::plots::style::{GREY, Marker, PAPER, ink};
 use crate::report::plots::{Axis, Panel, Sheet};
+use numeric::digits::short;
 
 /// Between these, 95 % of the scores of a correct estimator lie.
 const USUAL: f64 = 1.96;

@@ -8,10 +8,10 @@ pub mod table;
 
 use std::path::PathBuf;
 
-use crate::files::{exr, pfm};
 use crate::render::PictureRecord;
 use crate::render::record::{Exposure, ExposureRecord};
 use crate::report::{Artifact, ReportError};
+use media::files::{exr, pfm};
 
 /// What the names of an EXR's channels of standard errors begin with.
 const ERROR: &str = "standard_error.";

@@ -6,13 +6,13 @@ use std::fmt::Write;
 
 use serde::Serialize;
 
-use crate::catalogue::digits::{count, exact, short};
 use crate::report::columns::table as csv;
 use crate::report::console::layout::{Column, Field, Grid, Paint, Pen, wrapped};
 use crate::report::plots;
 use crate::report::{Artifact, ReportError, html};
 use crate::stress::narrow::{Along, Curve, DRAWS};
 use crate::stress::{Row, Stress};
+use numeric::digits::{count, exact, short};
 
 /// The folder below the results.
 const FOLDER: &str = "stress";

@@ -3,13 +3,13 @@
 
 use plotters::style::Color;
 
-use crate::catalogue::digits::short;
 use crate::harness::record::Best;
 use crate::report::plots::font::Typeface;
 use crate::report::plots::legend::{self, Key};
 use crate::report::plots::series::Series;
 use crate::report::plots::style::{Marker, PAPER, ink};
 use crate::report::plots::{Panel, Sheet};
+use numeric::digits::short;
 
 const RIM: plotters::style::RGBAColor = ink(0x22, 0x22, 0x22);
 

@@ -4,9 +4,9 @@ use super::precision::Precision;
 use super::scene::Scene;
 use super::trail::Trail;
 use super::{DRAWS, Point, Trial};
-use crate::numeric::Narrow as F32;
-use crate::numeric::pack::in_fused_code;
 use crate::stress::Dice;
+use numeric::Narrow as F32;
+use numeric::pack::in_fused_code;
 
 /// Walks at most.
 const MOST: f64 = 1e5;

@@ -9,12 +9,12 @@ use super::precision::Precision;
 use super::scene::{FREQUENCY, Scene};
 use super::trail::Trail;
 use super::{EVERY, Entry, stated};
-use crate::estimators::slab::walk::turned;
-use crate::media::Extinction;
-use crate::phase::PhaseFunction;
-use crate::phase::henyey_greenstein::HenyeyGreenstein;
-use crate::theory::ParticleRule;
-use crate::theory::particle::Event;
+use estimators::slab::walk::turned;
+use media::Extinction;
+use media::phase::PhaseFunction;
+use media::phase::henyey_greenstein::HenyeyGreenstein;
+use theory::ParticleRule;
+use theory::particle::Event;
 
 /// The albedo.
 const ALBEDO: f64 = 0.8;

@@ -1,7 +1,7 @@
 //! Single precision against double: where does a renderer's rounding outgrow its noise?
 //!
 //! The same walk is made twice from the same random words, in doubles of 53 and in
-//! [`Narrow`](crate::numeric::Narrow) numbers of 24 bits, through a medium of three waves. The difference of
+//! [`Narrow`](numeric::Narrow) numbers of 24 bits, through a medium of three waves. The difference of
 //! the two means is the bias that single precision adds; with common random numbers a few thousand walks
 //! find it. Decisions are averaged in each precision, exactly as it decides: those that end a walk along a
 //! ray in `compare`; of walks that scatter, those at boundaries. Which way the latter go at a collision is
@@ -34,8 +34,8 @@ use std::sync::Arc;
 use self::compare::{Compare, Spread, Theory};
 use self::scene::Scene;
 use super::{Effort, Measure, Row, text};
-use crate::numeric::parallel;
-use crate::rng::Address;
+use numeric::rng::Address;
+use theory::parallel;
 
 /// The draws whose statistical error the bias is compared with.
 pub const DRAWS: f64 = 1e8;

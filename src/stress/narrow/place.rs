@@ -45,7 +45,7 @@ impl<P: Precision> Place<P> {
     }
 
     /// The direction at an angle of the given cosine from this one, at an azimuth in turns: as
-    /// [`turned`](crate::geometry::frame::turned).
+    /// [`turned`](numeric::geometry::frame::turned).
     #[inline(always)]
     pub fn turned(self, cosine: P, turns: P) -> Self {
         let (zero, one) = (P::of(0.0), P::of(1.0));
@@ -66,8 +66,8 @@ impl<P: Precision> Place<P> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::geometry::{Point, frame};
-    use crate::numeric::Narrow as F32;
+    use numeric::Narrow as F32;
+    use numeric::geometry::{Point, frame};
 
     #[test]
     fn both_precisions_turn_as_walks_do() {

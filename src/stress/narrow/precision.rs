@@ -1,6 +1,6 @@
 //! Double and single precision, as walks use them.
 
-use crate::numeric::{Lane, Narrow as F32};
+use numeric::{Lane, Narrow as F32};
 
 /// Numbers of 2⁻²⁴.
 pub const LATTICE: f64 = 16_777_216.0;

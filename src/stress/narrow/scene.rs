@@ -1,11 +1,11 @@
 //! The medium of three waves, and what theory says of estimators in it.
 
-use crate::media::Extinction;
-use crate::numeric::Lane;
-use crate::numeric::quadrature::GaussLegendre;
 use crate::stress::text;
-use crate::theory::volterra::{self, Source};
-use crate::theory::{Mesh, Rule};
+use media::Extinction;
+use numeric::Lane;
+use numeric::quadrature::GaussLegendre;
+use theory::volterra::{self, Source};
+use theory::{Mesh, Rule};
 
 /// A ray of length 1 through the waves.
 #[derive(Debug, Clone, Copy)]

@@ -13,9 +13,9 @@ use super::precision::Precision;
 use super::scene::{FREQUENCY, Scene};
 use super::trail::Trail;
 use super::{EVERY, Entry, NO_STEPS, stated};
-use crate::media::Extinction;
-use crate::phase::PhaseFunction;
-use crate::phase::henyey_greenstein::HenyeyGreenstein;
+use media::Extinction;
+use media::phase::PhaseFunction;
+use media::phase::henyey_greenstein::HenyeyGreenstein;
 
 /// D.
 const DISTANCE: f64 = 0.3;

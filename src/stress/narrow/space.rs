@@ -14,10 +14,10 @@ use super::precision::Precision;
 use super::scene::Scene;
 use super::trail::{Flown, Trail};
 use super::{EVERY, Entry, NO_DEPTH, stated};
-use crate::phase::PhaseFunction;
-use crate::phase::henyey_greenstein::HenyeyGreenstein;
-use crate::theory::ParticleRule;
-use crate::theory::particle::Event;
+use media::phase::PhaseFunction;
+use media::phase::henyey_greenstein::HenyeyGreenstein;
+use theory::ParticleRule;
+use theory::particle::Event;
 
 /// R.
 const RADIUS: f64 = 0.5;

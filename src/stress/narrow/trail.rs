@@ -20,7 +20,7 @@
 
 use super::precision::Precision;
 use crate::stress::Dice;
-use crate::theory::particle::{Event, Odds};
+use theory::particle::{Event, Odds};
 
 /// The decisions of a walk, made by doubles or repeated.
 pub struct Trail {

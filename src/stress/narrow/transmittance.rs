@@ -9,10 +9,10 @@ use super::precision::Precision;
 use super::scene::{CELLS, Scene};
 use super::trail::Trail;
 use super::{EVERY, NO_STEPS};
-use crate::estimators::transmittance::next_flight::NextFlight;
-use crate::estimators::transmittance::unidirectional_mis::UnidirectionalMis;
-use crate::media::Extinction;
-use crate::theory::rules::{Collision, Null, Single, Weight};
+use estimators::transmittance::next_flight::NextFlight;
+use estimators::transmittance::unidirectional_mis::UnidirectionalMis;
+use media::Extinction;
+use theory::rules::{Collision, Null, Single, Weight};
 
 /// All tentative collisions on the ray.
 #[inline(always)]
@@ -294,8 +294,8 @@ pub const OTHERS: &[Entry] = &[
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::numeric::Narrow as F32;
     use crate::stress::narrow::precision::LATTICE;
+    use numeric::Narrow as F32;
 
     #[test]
     fn a_flight_through_the_control_passes_with_its_chance() {

@@ -3,9 +3,9 @@
 use std::f64::consts::PI;
 
 use crate::common::{case, differs, none, options};
-use trueflight::catalogue::digits;
 use trueflight::harness::record::{Record, Row};
 use trueflight::harness::{Plan, verdict};
+use trueflight::numeric::digits;
 use trueflight::report::console::layout::{self, Pen};
 use trueflight::report::console::{self, View};
 use trueflight::report::sweep_plot;

@@ -1,5 +1,6 @@
 //! Draws that have several values: all channels of a case from one file, or one column of it.
 
+use trueflight::OfCase;
 use trueflight::rng::Address;
 use trueflight::stats::verdict::Verdict;
 

@@ -4,6 +4,7 @@
 
 use std::path::Path;
 
+use trueflight::OfCase;
 use trueflight::rng::{Address, Stream};
 use trueflight::stats::verdict::Verdict;
 

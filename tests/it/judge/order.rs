@@ -131,7 +131,7 @@ fn a_pipe_without_end_ends() {
     let trial = Trial::new(claim.expect("a claim"), wanted, None).expect("a trial");
     let format = Format::Csv { column: None, lookups: None };
     let mut draws = Draws::from_reader(Endless, "stdin", format).expect("draws");
-    let judgement = trial.judge(&mut draws).expect("a verdict");
+    let judgement = trueflight::judge::judge_by(&trial, &mut draws).expect("a verdict");
     assert_eq!((judgement.draws, judgement.stopped), (1_000_000, Some(Stop::Limit)));
     let place = Place::new(&[("x.f64", &raw(&uniform(20_000)))]);
     let limit = ["10000 of 20000", "stopped at the limit: what comes after 10000 draws"];

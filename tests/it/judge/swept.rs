@@ -1,6 +1,7 @@
 //! A value of what a case sweeps: any, where theory can answer it.
 
 use super::{Place, raw, uniform};
+use trueflight::OfCase;
 
 /// σ̂ from 0.5 to 4 in seven steps of a factor, and estimators with σ̂ of their own.
 const SWEPT: &str = "title = \"a sweep\"

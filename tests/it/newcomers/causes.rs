@@ -7,7 +7,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
 use crate::common;
-use trueflight::catalogue::causes::{CAUSES, Pattern, Place, Side, TABLE, line};
+use trueflight::gate::causes::{CAUSES, Pattern, Place, Side, TABLE, line};
 use trueflight::harness::mutation::{self, Walk};
 use trueflight::harness::record::{CaseRecord, Verdict};
 use trueflight::harness::{Plan, run, verdict};

@@ -2,9 +2,9 @@
 
 use super::{Place, commands};
 use crate::common::{self, none};
-use trueflight::catalogue::digits::enough;
 use trueflight::harness::record::Verdict;
 use trueflight::harness::{Amount, Case, Options, Plan, suite, verdict};
+use trueflight::numeric::digits::enough;
 
 /// Mean and variance need different numbers of draws at each σ̂; the names have spaces and parentheses.
 const SWEPT: &str = "title = \"too few draws\"

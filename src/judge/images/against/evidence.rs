@@ -16,11 +16,11 @@ use super::super::picture::Stack;
 use super::super::tiles::{self, Part};
 use super::super::{ImageError, Wanted, estimate};
 use crate::judge::trial::MEAN_CAP;
-use crate::numeric::parallel;
-use crate::stats::estimated_variance::Estimate;
-use crate::stats::normal::{upper_quantile, upper_tail};
-use crate::stats::symmetric;
-use crate::stats::verdict::MISS;
+use gate::stats::estimated_variance::Estimate;
+use gate::stats::normal::{upper_quantile, upper_tail};
+use gate::stats::symmetric;
+use gate::stats::verdict::MISS;
+use theory::parallel;
 
 /// Sums over the passes of both stacks, for every value.
 pub(super) struct Evidence<'a> {

@@ -20,6 +20,7 @@
 //! t-test*, Journal of Computer Graphics Techniques 9 (2020).
 
 mod evidence;
+pub mod permutation;
 mod verdict;
 
 use self::evidence::Evidence;
@@ -27,9 +28,9 @@ use super::judgement::{Comparison, Dependence, Judgement, Tile, counts, worst};
 use super::{ImageError, LISTED, NOISY_VALUES, Stack, Wanted, claim, estimate, same, tiles};
 use super::{neighbours_of, not_finite, order_of};
 use crate::judge::claim::ROUNDING;
-use crate::stats::multiplicity::{e_benjamini_hochberg, holm};
-use crate::stats::permutation::{Groups, distinct};
-use crate::stats::verdict::{MISS, Verdict};
+use crate::judge::images::against::permutation::{Groups, distinct};
+use gate::stats::multiplicity::{e_benjamini_hochberg, holm};
+use gate::stats::verdict::{MISS, Verdict};
 
 /// What is claimed of two stacks.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -3,8 +3,8 @@
 use super::super::judgement::{Comparison, Judgement, Tile};
 use super::super::verdict::{bias, excluded, off, place};
 use super::SHARES;
-use crate::catalogue::digits::short;
-use crate::stats::verdict::Verdict;
+use gate::stats::verdict::Verdict;
+use numeric::digits::short;
 
 /// The verdict of the whole; `differing` is how many tiles differ by the test of equal distributions alone.
 pub(super) fn decide(judgement: &mut Judgement, differing: usize) {

@@ -10,8 +10,8 @@ use std::io::Read;
 use std::path::Path;
 
 use super::{ImageError, ending};
-use crate::files::Pixels;
-use crate::files::exr::{self, Window};
+use media::files::Pixels;
+use media::files::exr::{self, Window};
 
 /// Headers are shorter than this, but for rare ones.
 const HEAD: u64 = 1 << 16;

@@ -17,7 +17,7 @@ use std::path::Path;
 
 use super::error::ImageError;
 use super::picture::{Picture, Size, Stack};
-use crate::files::{Pixels, exr, pfm};
+use media::files::{Pixels, exr, pfm};
 
 pub use frame::Frame;
 

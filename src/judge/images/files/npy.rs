@@ -5,9 +5,9 @@ use std::io::Read;
 use std::path::Path;
 
 use super::SINGLE;
-use crate::files::npy::{self, Header, Word};
 use crate::judge::images::error::ImageError;
 use crate::judge::images::picture::{Picture, Size, Stack};
+use media::files::npy::{self, Header, Word};
 
 const STACK: &str = "(passes, height, width) or (passes, height, width, channels), each 1 or more";
 const PICTURE: &str = "(height, width) or (height, width, channels), each 1 or more";

@@ -2,10 +2,10 @@
 
 use std::fmt::Write;
 
-use crate::catalogue::digits::{fixed, percent, short, signed};
 use crate::judge::images::Judgement;
 use crate::judge::images::judgement::{Comparison, Dependence, Tile};
 use crate::report::console::layout::wrapped;
+use numeric::digits::{fixed, percent, short, signed};
 
 /// The widest word at the left.
 const INDENT: usize = 10;

@@ -5,12 +5,12 @@
 //! stacks are compared, which are exact for equal laws; else those of z by the normal law.
 
 use super::maps::{Dots, GAP, HEAD, Maps, border, png as encoded, smallest};
-use crate::catalogue::digits::short;
 use crate::judge::images::Judgement;
 use crate::judge::images::judgement::Tile;
 use crate::report::plots::font::{Typeface, fit};
 use crate::report::plots::sheet::{Align, Sheet};
 use crate::report::plots::style::{COLOURS, DARK, GREY, ink};
+use numeric::digits::short;
 
 /// The fewest and the most bins of the histogram; between them a bin for every ten tiles.
 const BINS: [usize; 2] = [4, 20];

@@ -1,11 +1,11 @@
 //! `tiles.csv`: every tile in each channel, with what is said of it.
 
-use crate::catalogue::digits::exact;
 use crate::harness::record::Verdict;
 use crate::judge::images::Judgement;
 use crate::judge::images::judgement::Tile;
 use crate::report::ReportError;
 use crate::report::columns::table;
+use numeric::digits::exact;
 
 const HEADER: [&str; 18] = [
     "size",

@@ -1,0 +1,39 @@
+//! All techniques of bidirectional path tracing, weighted by densities of directions only.
+//!
+//! Unbiased for: σ̂ ≥ σ_t, with tracked connections where `σ_t/σ̂` is one number; refused elsewhere, and for τ > 12.
+//!
+//! ```text
+//! X = Σ_s w_s c_s,   w_s ∝ 1 for s = 0 and s = r + 2, else ([ρ_{s−1}]_{s≥2} [ρ_s]_{s≤r})^{−β}
+//! ```
+//!
+//! | setting | meaning | default |
+//! |---|---|---|
+//! | `heuristic` | `"balance"`: β = 1, `"power"`: β = 2 | `"balance"` |
+//! | `connection` | `"exact"`: `T̂ = exp(−∫σ_t)`, no lookups; `"ratio"`: tracked through σ̂ | `"exact"` |
+//! | `subpaths` | `"independent"`: each technique has two of its own; `"shared"`: one walk from the light and one from the sensor serve all techniques and orders | `"independent"` |
+//!
+//! Weights as of renderers that do not know the densities of distances: those of real scatterings and null
+//! vertices are left out. The densities that paths are divided by are the full ones, so that it is unbiased
+//! for `σ̂ ≥ σ_t` like `technique`.
+//!
+//! Shared subpaths are what renderers draw. Contributions of techniques have the same moments; they vary together,
+//! and the variance of their sum is bounded: its root is at most the sum of theirs.
+//!
+//! Source: Miller, Georgiev, Jarosz 2019, section 5.5 and table 1, “BPT: Directional MIS”.
+
+use super::{Page, pages};
+use media::catalogue::Settings;
+use theory::Heuristic;
+use theory::bidirectional_rod::Combination;
+
+/// Directional weights; σ̂ is its input.
+#[derive(Debug, Clone, Copy)]
+pub struct DirectionalMis(Page);
+
+impl DirectionalMis {
+    fn combination(settings: &Settings) -> Option<Combination> {
+        Heuristic::read(settings).map(Combination::Directional)
+    }
+}
+
+pages!(DirectionalMis);

@@ -1,0 +1,259 @@
+//! Techniques of bidirectional path tracing in a rod, alone and together.
+
+pub mod directional_mis;
+pub mod full_mis;
+pub mod subpath;
+pub mod technique;
+pub mod walk;
+
+use self::walk::Steps;
+use crate::kernels::packet::bidirectional::Techniques;
+use crate::{Draw, Refusal, Setup, estimators};
+use ::theory::Heuristic;
+use ::theory::Prediction;
+use ::theory::bidirectional_rod::{self, Combination, Connection, Rules, Scene};
+use ::theory::problems::BidirectionalRod;
+use ::theory::problems::bidirectional_rod::{Sensor, Values};
+use media::Lookups;
+use media::catalogue::Settings;
+use numeric::digits::rounded;
+use numeric::pack::in_fused_code;
+use numeric::rng::Stream;
+
+/// What the settings of a page say.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Page {
+    /// Which techniques.
+    pub combination: Combination,
+    /// Whether connections are tracked.
+    pub is_tracked: bool,
+    /// Whether all techniques share their subpaths.
+    pub is_shared: bool,
+}
+
+impl Steps for Page {
+    #[inline(always)]
+    fn combination(&self) -> Combination {
+        self.combination
+    }
+
+    #[inline(always)]
+    fn is_tracked(&self) -> bool {
+        self.is_tracked
+    }
+
+    #[inline(always)]
+    fn is_shared(&self) -> bool {
+        self.is_shared
+    }
+}
+
+/// Longer rods need finer grids than theory has.
+const LONGEST: f64 = 12.0;
+/// More tentative collisions on a tracked connection have probabilities that are no doubles.
+const MOST_TRACKED: f64 = 500.0;
+/// Ratios that differ by less are one number.
+const SAME: f64 = 1e-12;
+
+impl Page {
+    fn read(
+        settings: &Settings,
+        combination: impl Fn(&Settings) -> Option<Combination>,
+    ) -> Option<Self> {
+        let combination = combination(settings);
+        let connection = settings.word_or("connection", &["exact", "ratio"], "exact");
+        let is_alone = matches!(combination, Some(Combination::Technique(_)));
+        let subpaths = if is_alone {
+            Some("independent")
+        } else {
+            settings.word_or("subpaths", &["independent", "shared"], "independent")
+        };
+        Some(Self {
+            combination: combination?,
+            is_tracked: connection? == "ratio",
+            is_shared: subpaths? == "shared",
+        })
+    }
+
+    /// What packets draw: paths with subpaths of their own.
+    fn techniques(self) -> Option<Techniques> {
+        let Self { combination, is_tracked, is_shared } = self;
+        (!is_shared).then_some(Techniques { combination, is_tracked })
+    }
+
+    /// In words, as in `power, ratio connection`.
+    fn label(self) -> String {
+        let first = match self.combination {
+            Combination::Technique(s) => format!("s={s}, "),
+            Combination::Directional(Heuristic::Power) | Combination::Full(Heuristic::Power) => {
+                "power, ".into()
+            }
+            _ => String::new(),
+        };
+        let connection = if self.is_tracked { "ratio" } else { "exact" };
+        let subpaths = if self.is_shared { ", shared subpaths" } else { "" };
+        format!("{first}{connection} connection{subpaths}")
+    }
+
+    fn needs(self) -> Option<&'static str> {
+        (!self.is_tracked).then_some("τ")
+    }
+
+    fn domain(self, setup: &Setup<BidirectionalRod>) -> Result<(), Refusal> {
+        setup.require_ratio_at_most(1.0, "σ̂ ≥ σ_t everywhere")?;
+        setup.require_few_collisions("∫σ̂ ≤ 1e6")?;
+        let depth = setup.mesh.optical_depth().value;
+        if depth > LONGEST {
+            let found = format!("τ = {}", rounded(depth));
+            return Err(Refusal::mismatch("τ ≤ 12, as far as theory goes", found));
+        }
+        if self.is_tracked {
+            let needs = "one number σ_t/σ̂ where connections are tracked, and ∫σ̂ ≤ 500";
+            match one_ratio(setup) {
+                None => return Err(Refusal::mismatch(needs, "σ_t/σ̂ varies along the rod")),
+                Some(ratio) if depth > MOST_TRACKED * ratio => {
+                    let found = format!("∫σ̂ = {}", rounded(depth / ratio));
+                    return Err(Refusal::mismatch(needs, found));
+                }
+                Some(_) => {}
+            }
+        }
+        let orders = &setup.problem.orders;
+        if let Some(order) = orders.clone().find(|&order| is_dark(&setup.problem, order)) {
+            let BidirectionalRod { albedo, forward, .. } = &*setup.problem;
+            let found = format!("a = {albedo}, p_f = {forward} leave none to r = {order}");
+            return Err(Refusal::mismatch("light in every order of scattering", found));
+        }
+        match self.combination {
+            Combination::Technique(s) if s > orders.start() + 2 => {
+                let needs = "at most r + 2 light vertices, r the lowest order";
+                let found = format!("s = {s} and r = {}", orders.start());
+                Err(Refusal::mismatch(needs, found))
+            }
+            _ => Ok(()),
+        }
+    }
+
+    fn predict(self, setup: &Setup<BidirectionalRod>) -> Prediction {
+        let problem = &setup.problem;
+        let scene = Scene {
+            depth: setup.mesh.optical_depth(),
+            albedo: problem.albedo,
+            forward: problem.forward,
+            is_transmitted: problem.sensor == Sensor::Transmitted,
+            orders: problem.orders.clone(),
+        };
+        let ratio = one_ratio(setup);
+        // Elsewhere it is refused, and forced draws have no prediction.
+        let tracked = ratio.filter(|_| self.is_tracked).map(Connection::Ratio);
+        let connection = tracked.unwrap_or(Connection::Exact);
+        let Self { combination, is_shared, .. } = self;
+        let rules = Rules { combination, connection, is_shared, has_shares: problem.has_shares };
+        bidirectional_rod::predict(&scene, &rules, ratio, setup.laws)
+    }
+}
+
+/// Makes one draw: compiled once for all pages.
+#[inline(never)]
+pub fn draw(
+    page: &Page,
+    setup: &Setup<BidirectionalRod>,
+    medium: &Lookups,
+    rng: &mut Stream,
+) -> Draw<Values> {
+    in_fused_code(
+        #[inline(always)]
+        || walk::draw(page, setup, medium, rng),
+    )
+}
+
+/// Whether no path of so many scatterings arrives: of what it is worth nothing is left to share.
+fn is_dark(problem: &BidirectionalRod, order: usize) -> bool {
+    let is_transmitted = problem.sensor == Sensor::Transmitted;
+    let never_turns = problem.forward == 1.0 && !is_transmitted;
+    let always_turns = problem.forward == 0.0 && order.is_multiple_of(2) != is_transmitted;
+    order > 0 && (problem.albedo == 0.0 || never_turns || always_turns)
+}
+
+/// `σ_t/σ̂`, if it is the same wherever there is a medium.
+fn one_ratio(setup: &Setup<BidirectionalRod>) -> Option<f64> {
+    let cut = setup.mesh.refined(setup.sampling.knots(), &|_, _| Vec::new());
+    let places = cut.panels().flat_map(|panel| panel.t.iter().zip(panel.extinction));
+    let ratios = places.filter_map(|(&t, sigma)| {
+        let sampling = setup.sampling.value(t);
+        (sampling > 0.0).then_some(sigma / sampling)
+    });
+    let [least, most] = ratios.fold([f64::INFINITY, 0.0], |[least, most], ratio: f64| {
+        [least.min(ratio), most.max(ratio)]
+    });
+    (least > 0.0 && most - least <= SAME * most).then_some(most.min(1.0))
+}
+
+/// The plumbing of a page: all that differs is how it reads which techniques, as in `pages!(FullMis)`.
+macro_rules! pages {
+    ($Page:ident) => {
+        impl $crate::Estimator<theory::problems::BidirectionalRod> for $Page {
+            const INPUTS: $crate::Inputs = $crate::Inputs::SAMPLING;
+            const IN_PACKETS: bool = true;
+
+            fn read(settings: &media::catalogue::Settings) -> Option<Self> {
+                Page::read(settings, Self::combination).map(Self)
+            }
+
+            fn label(&self, _: bool) -> String {
+                self.0.label()
+            }
+
+            fn needs(&self) -> Option<&'static str> {
+                self.0.needs()
+            }
+
+            fn domain(
+                &self,
+                setup: &$crate::Setup<theory::problems::BidirectionalRod>,
+            ) -> Result<(), $crate::Refusal> {
+                self.0.domain(setup)
+            }
+
+            fn predict(
+                &self,
+                setup: &$crate::Setup<theory::problems::BidirectionalRod>,
+            ) -> theory::Prediction {
+                self.0.predict(setup)
+            }
+
+            #[inline(always)]
+            fn draw(
+                &self,
+                setup: &$crate::Setup<theory::problems::BidirectionalRod>,
+                medium: &media::Lookups,
+                rng: &mut numeric::rng::Stream,
+            ) -> $crate::Draw<theory::problems::bidirectional_rod::Values> {
+                $crate::bidirectional_rod::draw(&self.0, setup, medium, rng)
+            }
+
+            fn draw_packets<'a>(
+                &self,
+                level: fearless_simd::Level,
+                setup: &$crate::Setup<theory::problems::BidirectionalRod>,
+                medium: &media::Lookups,
+                request: $crate::kernels::packet::Request<'a>,
+            ) -> Option<$crate::kernels::packet::Request<'a>> {
+                match self.0.techniques() {
+                    None => Some(request),
+                    Some(techniques) => $crate::kernels::packet::bidirectional::paths(
+                        level, techniques, setup, medium, request,
+                    ),
+                }
+            }
+        }
+    };
+}
+use pages;
+
+estimators! {
+    BidirectionalRod:
+    technique::Technique,
+    directional_mis::DirectionalMis,
+    full_mis::FullMis,
+}

@@ -1,0 +1,77 @@
+//! All channels by one draw: the page of a hero, of spectral tracking and of the balance heuristic, in all bodies.
+
+use fearless_simd::Level;
+
+use super::{Chromatic, draw_all};
+use crate::kernels::packet::Request;
+use crate::setup::heroes::Heroes;
+use crate::setup::walker::{MIS, Walker};
+use crate::{Draw, Estimator, Inputs, Refusal, Setup};
+use media::Lookups;
+use media::catalogue::Settings;
+use numeric::rng::Stream;
+use theory::Prediction;
+use theory::spectral::Chances;
+
+/// A walk that scores all channels, of a kind of walker.
+#[derive(Debug, Clone)]
+pub struct AllChannels<const KIND: u8> {
+    /// Whose walk it is.
+    pub walker: Walker,
+}
+
+impl<P: Chromatic, const KIND: u8> Estimator<P> for AllChannels<KIND> {
+    const INPUTS: Inputs = Inputs::SAMPLING;
+    const HAS_INVARIANT: bool = KIND == MIS;
+    const IN_PACKETS: bool = true;
+
+    fn read(settings: &Settings) -> Option<Self> {
+        Some(Self { walker: Walker::read(KIND, settings)? })
+    }
+
+    fn label(&self, _: bool) -> String {
+        self.walker.label()
+    }
+
+    fn domain(&self, setup: &Setup<P>) -> Result<(), Refusal> {
+        P::require(setup, &self.walker)?;
+        match &self.walker {
+            Walker::Hero(_) | Walker::SpectralTracking(Chances::Fixed(_)) => {
+                P::second_moment_bounds(setup, &self.walker).map(|_| ())
+            }
+            Walker::Mis(_) | Walker::SpectralTracking(Chances::History) => Ok(()),
+        }
+    }
+
+    fn predict(&self, setup: &Setup<P>) -> Prediction {
+        let count = setup.channels.len();
+        match &self.walker {
+            Walker::Mis(heroes) => P::predict_balanced(setup, &heroes.of(count)),
+            // It scores what equal heroes score by the balance heuristic, and flies as they do.
+            Walker::SpectralTracking(Chances::History) => {
+                P::predict_balanced(setup, &Heroes::Uniform.of(count))
+            }
+            Walker::Hero(_) | Walker::SpectralTracking(Chances::Fixed(_)) => {
+                let second_moment_bounds = P::second_moment_bounds(setup, &self.walker);
+                let second_moment_bounds =
+                    second_moment_bounds.unwrap_or_else(|_| vec![f64::INFINITY; count]);
+                P::predict_relative(setup, &self.walker, &second_moment_bounds)
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn draw(&self, setup: &Setup<P>, medium: &Lookups, rng: &mut Stream) -> Draw<P::Value> {
+        draw_all(&self.walker, setup, medium, rng)
+    }
+
+    fn draw_packets<'a>(
+        &self,
+        level: Level,
+        setup: &Setup<P>,
+        medium: &Lookups,
+        request: Request<'a>,
+    ) -> Option<Request<'a>> {
+        P::packets::<true>(level, &self.walker, setup, medium, request)
+    }
+}

@@ -1,0 +1,27 @@
+//! The walk of one hero scores all channels, divided by the hero's density alone.
+//!
+//! Unbiased for: a constant σ̂ ≥ σ_t in each channel, > σ_t where another channel has null collisions, as long as
+//! theory bounds the variance; refused elsewhere.
+//!
+//! ```text
+//! X_λ = f_λ/f_h where it leaves,  h of probability w_h,  f as in the walk
+//! ```
+//!
+//! | setting | meaning | default |
+//! |---|---|---|
+//! | `hero` | the law of the hero: `"uniform"`, `"luminance"`, or a list of probabilities that sum to 1 | `"uniform"` |
+//! | `sampling` | a constant σ̂ > σ_t in each channel | required here or in the case |
+//!
+//! Unbiased where nothing happens in a channel that never happens to a hero. What the variance is theory does not know: it
+//! has a bound where `E[X²]` is multiplied by less than 1 from one scattering to the next, and what has none is refused: its variance may
+//! be infinite. What multiple importance sampling is for: see `spectral-mis`.
+//!
+//! Source: B. Miller, I. Georgiev, W. Jarosz, *A Null-Scattering Path Integral Formulation of Light
+//! Transport*, ACM Transactions on Graphics 38 (2019), section 5.1; the bound is derived: see the theory of walks that are
+//! relative to the density of one walker.
+
+use crate::chromatic::all_channels::AllChannels;
+use crate::setup::walker::HERO;
+
+/// One hero, without multiple importance sampling.
+pub type Hero = AllChannels<HERO>;

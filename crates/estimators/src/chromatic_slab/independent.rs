@@ -1,0 +1,19 @@
+//! Independent tracking: one channel a draw, by an analog walk through its own medium.
+//!
+//! Unbiased for: a constant σ̂ ≥ σ_t in each channel; refused elsewhere.
+//!
+//! ```text
+//! X_h = 1/w_h where the walk leaves, the others 0,  h of probability w_h;   E[X_λ^k] = w_λ^{1−k} R_λ, or T_λ
+//! ```
+//!
+//! | setting | meaning | default |
+//! |---|---|---|
+//! | `hero` | the law of the channel: `"uniform"`, `"luminance"`, or a list of probabilities that sum to 1 | `"uniform"` |
+//! | `sampling` | a constant σ̂ ≥ σ_t in each channel, the same in all or not | required here or in the case |
+//!
+//! All moments are known.
+//!
+//! Source: B. Miller, I. Georgiev, W. Jarosz, *A null-scattering path integral formulation of light transport*,
+//! ACM Transactions on Graphics 38 (2019), section 6.
+
+pub use crate::chromatic::independent::Independent;

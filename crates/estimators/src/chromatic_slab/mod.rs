@@ -1,0 +1,112 @@
+//! Walks through a slab in which every channel has a medium of its own, all of them by one draw.
+
+pub mod hero;
+pub mod independent;
+pub mod packet;
+pub mod spectral_mis;
+pub mod spectral_tracking;
+pub mod walk;
+
+use fearless_simd::Level;
+
+use super::chromatic::{Chromatic, Left, Steps};
+use crate::kernels::packet::Request;
+use crate::setup::channels;
+use crate::setup::walker::Walker;
+use crate::{Refusal, Setup, estimators};
+use media::Lookups;
+use media::body::MOST_CHANNELS;
+use numeric::digits::rounded;
+use numeric::rng::Stream;
+use theory::Prediction;
+use theory::chromatic_slab::Spectrum;
+use theory::problems::ChromaticSlab;
+use theory::problems::spectral_rod::{End, Values};
+
+/// For theory.
+fn spectrum(setup: &Setup<ChromaticSlab>) -> Spectrum<'_> {
+    let media = setup.channels.iter().map(|channel| (&*channel.mesh, &channel.sampling));
+    Spectrum::new(&setup.problem, media.collect(), setup.laws)
+}
+
+/// Answers that theory resolves.
+fn realisable(setup: &Setup<ChromaticSlab>) -> Result<(), Refusal> {
+    let Some(channel) = spectrum(setup).blurred() else { return Ok(()) };
+    let needs = "reflectances and transmittances that adding and doubling resolve (|g| ≤ 0.93, a moderate τ)";
+    let depth = rounded(setup.channels[channel].mesh.optical_depth().value);
+    let phase = setup.problem.incidences[channel].phase.label();
+    let found = format!("τ = {depth}, phase {phase} in channel {}", channel + 1);
+    Err(Refusal::mismatch(needs, found))
+}
+
+impl Chromatic for ChromaticSlab {
+    type End = End;
+
+    #[inline(always)]
+    fn walk(
+        steps: &impl Steps,
+        setup: &Setup<Self>,
+        walker: (&Walker, usize),
+        medium: &Lookups,
+        rng: &mut Stream,
+    ) -> Left<End> {
+        walk::walk(steps, setup, walker, medium, rng)
+    }
+
+    #[inline(always)]
+    fn values(&self, end: Option<End>, scores: &[f64; MOST_CHANNELS]) -> Values {
+        self.colours.values(end, scores)
+    }
+
+    fn require(setup: &Setup<Self>, walker: &Walker) -> Result<(), Refusal> {
+        walker.require(&setup.channels)?;
+        channels::require_majorants(&setup.channels)?;
+        walker.require_phases(&setup.problem.phases())?;
+        realisable(setup)
+    }
+
+    fn second_moment_bounds(setup: &Setup<Self>, walker: &Walker) -> Result<Vec<f64>, Refusal> {
+        if let Walker::Hero(_) = walker {
+            channels::require_room(&setup.channels, true)?;
+        }
+        let spectrum = spectrum(setup);
+        walker.second_moment_bounds(&setup.problem.phases(), |walk, channel, phi| {
+            spectrum.second_moment_bound(walk, channel, phi)
+        })
+    }
+
+    fn predict_independent(setup: &Setup<Self>, heroes: &[f64]) -> Prediction {
+        spectrum(setup).independent(heroes)
+    }
+
+    fn predict_balanced(setup: &Setup<Self>, heroes: &[f64]) -> Prediction {
+        spectrum(setup).balanced(heroes)
+    }
+
+    fn predict_relative(
+        setup: &Setup<Self>,
+        walker: &Walker,
+        second_moment_bounds: &[f64],
+    ) -> Prediction {
+        let heroes = walker.heroes().map(|heroes| heroes.of(setup.channels.len()));
+        spectrum(setup).relative(heroes.as_deref(), second_moment_bounds)
+    }
+
+    fn packets<'a, const ALL: bool>(
+        level: Level,
+        walker: &Walker,
+        setup: &Setup<Self>,
+        medium: &Lookups,
+        request: Request<'a>,
+    ) -> Option<Request<'a>> {
+        packet::walks::<ALL>(level, walker, setup, medium, request)
+    }
+}
+
+estimators! {
+    ChromaticSlab:
+    independent::Independent,
+    hero::Hero,
+    spectral_tracking::SpectralTracking,
+    spectral_mis::SpectralMis,
+}

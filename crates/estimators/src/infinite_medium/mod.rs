@@ -1,0 +1,221 @@
+//! Walks from a point source in a medium without end.
+
+pub mod particle;
+
+use fearless_simd::{Level, Simd, mask64x8};
+
+use crate::kernels::packet::Request;
+use crate::kernels::packet::bank::Numbers;
+use crate::space::exit::{Points, splat};
+use crate::space::packet::walks;
+use crate::space::tally::{Collision, add_where};
+use crate::space::{self, By, Particle, Start, Sums, Tally, Walked};
+use crate::{Draw, Refusal, Setup, estimators};
+use numeric::geometry::{Point, frame};
+use numeric::rng::Stream;
+use numeric::{Known, Lane};
+use theory::problems::InfiniteMedium;
+use theory::problems::infinite_medium::{MOST_RADII, Values};
+use theory::space::infinite;
+use theory::{Channel, CountLaw, Moments, ParticleRule, Prediction, Tails};
+
+/// More collisions than this in a walk are a mistake in the case.
+const MOST_COLLISIONS: f64 = 1e5;
+
+/// The chance that a tentative collision ends the walk, where that is the same for all of them.
+fn end(setup: &Setup<InfiniteMedium>, particle: &Particle) -> Option<f64> {
+    let plain = *particle == Particle::of(particle.rule);
+    let odds = particle.rule.odds(ratio(setup)?, setup.problem.albedo());
+    plain.then_some(1.0 - odds.transmit - odds.scatter)
+}
+
+/// `r`, one number.
+fn ratio(setup: &Setup<InfiniteMedium>) -> Option<f64> {
+    Some(setup.problem.extinction / setup.space.as_deref()?.single_value()?)
+}
+
+/// Moments of a multiple of the number of collisions up to one that ends the walk, with chance p each:
+/// mean 1/p, variance (1 − p)/p², skewness (2 − p)/√(1 − p), kurtosis 9 + p²/(1 − p).
+fn geometric(mean: f64, end: f64) -> Moments {
+    let rest = 1.0 - end;
+    let relative = [rest, (2.0 - end) * rest, (9.0 * rest + end * end) * rest];
+    Moments { scale: mean, relative, error: 1e-14 }
+}
+
+impl Walked for InfiniteMedium {
+    /// Walks must end, and no weight may grow.
+    fn domain(setup: &Setup<Self>, particle: &Particle) -> Result<(), Refusal> {
+        use ParticleRule::{Analog, Terminating};
+        let albedo = setup.problem.albedo();
+        if albedo >= 1.0 {
+            return Err(Refusal::mismatch("an albedo below 1", "nothing is ever absorbed"));
+        }
+        let Some(ratio) = ratio(setup) else {
+            return Err(Refusal::mismatch("a constant σ̂", "none is given"));
+        };
+        if 1.0 / ((1.0 - albedo) * ratio) > MOST_COLLISIONS {
+            let needs = "at most 1e5 tentative collisions a walk";
+            return Err(Refusal::mismatch(needs, format!("a = {albedo} and r = {ratio}")));
+        }
+        let limit = particle.rule.limits(albedo)[1];
+        if ratio > limit * (1.0 + 1e-12) {
+            let found = format!("σ_t is {ratio:.6} times σ̂");
+            return Err(Refusal::mismatch(particle.rule.needs(), found));
+        }
+        let ends = matches!(particle.rule, Terminating | Analog);
+        if !ends && particle.roulette.is_none() {
+            let needs = "walks that end: `terminating`, `analog`, or `roulette`";
+            return Err(Refusal::mismatch(needs, format!("`{}` never does", particle.rule.name())));
+        }
+        if ends && end(setup, particle).is_some_and(|end| end * MOST_COLLISIONS < 1.0) {
+            return Err(Refusal::mismatch("r < 2/(a + 1)", "the walk hardly ever ends"));
+        }
+        let grows = ratio > 1.0 && particle.rule != Terminating;
+        if grows {
+            let needs = "σ̂ ≥ σ_t, where weights do not grow";
+            return Err(Refusal::mismatch(needs, format!("σ_t is {ratio:.6} times σ̂")));
+        }
+        Ok(())
+    }
+
+    fn predict(setup: &Setup<Self>, particle: &Particle) -> Prediction {
+        let problem = &setup.problem;
+        let (sigma, albedo) = (problem.extinction, problem.albedo());
+        let unknown = |name: String, truth: Known| {
+            let certain = Channel::unbiased(truth, Moments::certain(truth.value), Tails::LIGHT);
+            Channel { name, moments: None, by_pilots: true, ..certain }
+        };
+        let rounded = |value: f64| Known::new(value, infinite::ROUNDING * value.abs());
+        let mut channels: Vec<Channel> = problem
+            .radii
+            .iter()
+            .map(|&radius| {
+                let truth = infinite::collisions_within(albedo, sigma * radius);
+                unknown(format!("collisions within {radius}"), truth)
+            })
+            .collect();
+        let cosine = problem.scene.phase.moment(1);
+        let square = infinite::square_at_absorption(albedo, cosine) / (sigma * sigma);
+        channels.push(unknown("squared distance".to_owned(), rounded(square)));
+        let collisions = unknown("collisions".to_owned(), rounded(1.0 / (1.0 - albedo)));
+        // Where every collision is real and nothing is scattered, there is one of them.
+        let is_certain = albedo == 0.0 && ratio(setup) == Some(1.0);
+        let end =
+            if is_certain { Some(1.0) } else { end(setup, particle).filter(|&end| end > 0.0) };
+        let is_majorant = ratio(setup).is_some_and(|ratio| ratio <= 1.0);
+        // A real collision counts r: then all walks of equal length count the same.
+        channels.push(match end.filter(|_| is_majorant) {
+            Some(end) => {
+                let truth = collisions.truth;
+                Channel {
+                    moments: Some(geometric(truth.value, end)),
+                    by_pilots: false,
+                    ..collisions
+                }
+            }
+            None => collisions,
+        });
+        let lookups = end.map(|end| {
+            let moments = geometric(1.0 / end, end);
+            let (variance, kurtosis) = (moments.variance(), moments.kurtosis().unwrap_or(1.0));
+            let pmf = Vec::new();
+            CountLaw { mean: 1.0 / end, variance, error: 1e-14, kurtosis, poisson: false, pmf }
+        });
+        let lookups =
+            lookups.map(|law| if law.variance > 0.0 { law } else { CountLaw::always(1.0) });
+        Prediction { channels, lookups, ..Prediction::default() }
+    }
+
+    fn draw(by: By, _: &Particle, setup: &Setup<Self>, rng: &mut Stream) -> Draw<Values> {
+        let mut sums = Sums::new(&*setup.problem);
+        let cosine = 2.0 * rng.uniform() - 1.0;
+        let direction = frame::turned(Point([0.0, 0.0, 1.0]), cosine, rng.uniform());
+        let start = Start { place: Point([0.0; 3]), direction, weight: 1.0 };
+        let Some(majorants) = setup.space.as_deref() else { return Draw::free(sums.values(), 0) };
+        let scene = &setup.problem.scene;
+        let lookups = space::walk(by, scene, majorants, start, &mut sums, rng);
+        Draw::free(sums.values(), lookups)
+    }
+
+    fn draw_packets<'a>(
+        level: Level,
+        particle: &Particle,
+        setup: &Setup<Self>,
+        request: Request<'a>,
+    ) -> Option<Request<'a>> {
+        let problem = &*setup.problem;
+        walks(level, problem, particle, (&problem.scene, setup.space.as_ref()), request)
+    }
+}
+
+/// The sums of a draw at most.
+const SUMS: usize = MOST_RADII + 2;
+
+/// Which sums are the channels of a draw with so many radii: those of the radii, the squared distance and the collisions.
+const CHANNELS: [[usize; SUMS]; SUMS - 1] = {
+    let mut lists = [[0; SUMS]; SUMS - 1];
+    let mut count = 0;
+    while count <= MOST_RADII {
+        let mut channel = 0;
+        while channel < count + 2 {
+            lists[count][channel] =
+                if channel < count { channel } else { MOST_RADII + channel - count };
+            channel += 1;
+        }
+        count += 1;
+    }
+    lists
+};
+
+/// Collisions within each radius, then the squared distance and the collisions.
+impl Tally<SUMS> for InfiniteMedium {
+    #[inline(always)]
+    fn begin<S: Simd>(&self, simd: S, _: &mut Numbers<S>, _: mask64x8<S>) -> [Points<S>; 2] {
+        [splat(simd, Point([0.0; 3])), splat(simd, Point([0.0, 0.0, 1.0]))]
+    }
+
+    fn begins_turned(&self) -> bool {
+        true
+    }
+
+    #[inline(always)]
+    fn collided<L: Lane>(&self, sums: &mut [L; SUMS], at: &Collision<L>) {
+        let real = at.weight * at.ratio;
+        let [x, y, z] = at.place;
+        let square = x * x + y * y + z * z;
+        // So many that the compiler knows their places: what an index finds lies in memory.
+        for (number, sum) in sums.iter_mut().enumerate().take(MOST_RADII) {
+            if let Some(radius) = self.radii.get(number) {
+                let within = square.below(square.each(radius * radius));
+                add_where(sum, at.inside & within, real);
+            }
+        }
+        let rest = at.albedo.each(1.0) - at.albedo;
+        add_where(&mut sums[MOST_RADII], at.inside, real * rest * square);
+        add_where(&mut sums[MOST_RADII + 1], at.inside, real);
+    }
+
+    fn channels(&self) -> &[usize] {
+        &CHANNELS[self.radii.len()][..self.radii.len() + 2]
+    }
+}
+
+estimators! {
+    InfiniteMedium:
+    particle::Walker,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_geometric_number_has_its_moments() {
+        // p = 1/2: variance 2, kurtosis 9.5, third central moment 6.
+        let moments = geometric(2.0, 0.5);
+        assert_eq!(moments.variance(), 2.0);
+        assert_eq!(moments.kurtosis(), Some(9.5));
+        assert_eq!(moments.relative[1] * 8.0, 6.0);
+        assert_eq!(geometric(1.0, 1.0).variance(), 0.0);
+    }
+}

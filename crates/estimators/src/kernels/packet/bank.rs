@@ -1,0 +1,230 @@
+//! A particle bank: two packs of eight walks that take as many random numbers as they need.
+//!
+//! Specification: draw j is, bit for bit, the draw that the walk's page makes from stream j mod 16.
+//!
+//! A step takes all particles through *fly*, *look up* and *collide* together (event-based tracking). A walk
+//! that ends begins anew at once, so that no lane waits, and every lane makes a number of draws that was fixed
+//! beforehand. A lane that has made them walks on until the others have; its stream stays where its last draw
+//! left it.
+//!
+//! Source: F. B. Brown, W. R. Martin, *Monte Carlo methods for radiation transport analysis on vector
+//! computers*, Progress in Nuclear Energy 14 (1984).
+
+use fearless_simd::{Simd, f64x8, u64x8};
+
+use super::Request;
+use crate::kernels::DrawBuffer;
+use media::Lookups;
+use media::body::MOST_CHANNELS;
+use numeric::Twin;
+use numeric::pack::WIDTH;
+use numeric::rng::{LANES, Streams, Xoshiro};
+
+/// The streams of a pack.
+pub type Numbers<S> = Xoshiro<u64x8<S>>;
+
+/// The state of eight particles.
+pub trait Particles<S: Simd> {
+    /// What is looked up for eight of them.
+    type Found: Copy;
+
+    /// Each flies on; answers where σ_t is asked for: inside the support.
+    fn fly(&mut self, numbers: &mut Numbers<S>) -> f64x8<S>;
+
+    /// What happens to each there, given what was looked up; answers whose walks end, as bits.
+    fn collide(&mut self, found: &Self::Found, numbers: &mut Numbers<S>) -> u64;
+
+    /// Makes draws of the walks that ended, as bits; answers whose last ones these are.
+    fn collect(&self, ended: u64, slots: &mut Slots, buffer: &mut DrawBuffer) -> u64;
+
+    /// Begins the walks anew that ended in this step.
+    fn restart(&mut self, numbers: &mut Numbers<S>);
+}
+
+/// Walks until every lane has made its draws; `look_up` answers for both packs in the place of what they found before.
+#[inline(always)]
+pub fn run<S: Simd, P: Particles<S>>(
+    simd: S,
+    begin: impl Fn(&mut Numbers<S>) -> P,
+    mut found: [P::Found; 2],
+    look_up: impl Fn(Twin<f64x8<S>>, &mut [P::Found; 2]),
+    request: Request,
+) {
+    let Request { streams, count, buffer } = request;
+    buffer.make_room(count);
+    let turn = streams.turn;
+    let [mut first, mut second] = streams.packs().map(
+        #[inline(always)]
+        |lanes| lanes.awake(simd),
+    );
+    let (mut particles, mut others) = (begin(&mut first), begin(&mut second));
+    let (mut slots, mut other_slots) = (Slots::new(count, turn, 0), Slots::new(count, turn, 1));
+    while slots.are_open() || other_slots.are_open() {
+        let places = Twin(particles.fly(&mut first), others.fly(&mut second));
+        look_up(places, &mut found);
+        let ended = particles.collide(&found[0], &mut first);
+        let other_ended = others.collide(&found[1], &mut second);
+        if ended != 0 {
+            let over = particles.collect(ended, &mut slots, buffer);
+            leave(streams, 0, over, first);
+            particles.restart(&mut first);
+        }
+        if other_ended != 0 {
+            let over = others.collect(other_ended, &mut other_slots, buffer);
+            leave(streams, 1, over, second);
+            others.restart(&mut second);
+        }
+        slots.step();
+        other_slots.step();
+    }
+    streams.turn = (turn + count) % LANES;
+}
+
+/// σ_t for both packs.
+#[inline(always)]
+pub fn extinctions<S: Simd>(
+    simd: S,
+    medium: &Lookups,
+    t: Twin<f64x8<S>>,
+    found: &mut [f64x8<S>; 2],
+) {
+    let Twin(here, there) = medium.pair(simd, t);
+    *found = [here, there];
+}
+
+/// σ_t of so many channels for both packs.
+#[inline(always)]
+pub fn of_channels<S: Simd>(
+    simd: S,
+    medium: &Lookups,
+    count: usize,
+    t: Twin<f64x8<S>>,
+    found: &mut [[f64x8<S>; MOST_CHANNELS]; 2],
+) {
+    let [first, second] = found;
+    for (channel, first) in first[..count].iter_mut().enumerate() {
+        let Twin(here, there) = medium.channel(channel).pair(simd, t);
+        (*first, second[channel]) = (here, there);
+    }
+}
+
+/// What each lane has to do and has done.
+pub struct Slots {
+    /// The number of each lane's next draw.
+    next: [usize; WIDTH],
+    /// The number of the step in which its walk began.
+    began: [u32; WIDTH],
+    /// The number of this step.
+    now: u32,
+    /// How many lanes have draws left.
+    open: usize,
+    count: usize,
+}
+
+/// A draw of a lane.
+#[derive(Clone, Copy)]
+pub struct Slot {
+    /// The lane.
+    pub lane: usize,
+    /// The draw's number in the buffer.
+    pub draw: usize,
+    /// How many steps the walk made before this one.
+    pub steps: u32,
+}
+
+impl Slots {
+    /// Those of a pack among so many draws, of which the first comes from the lane whose turn it is.
+    pub fn new(count: usize, turn: usize, pack: usize) -> Self {
+        let mut next = [0; WIDTH];
+        for (lane, draw) in (pack * WIDTH..).zip(&mut next) {
+            *draw = (lane + LANES - turn) % LANES;
+        }
+        let open = next.iter().filter(|&&draw| draw < count).count();
+        Self { next, began: [0; WIDTH], now: 0, open, count }
+    }
+
+    /// Whether some lane has draws left.
+    #[inline(always)]
+    pub fn are_open(&self) -> bool {
+        self.open > 0
+    }
+
+    /// The step is over.
+    #[inline(always)]
+    pub fn step(&mut self) {
+        self.now = self.now.wrapping_add(1);
+    }
+
+    /// Hands out the slots of the walks that end in this step, as bits; answers whose last ones these
+    /// are.
+    #[inline(always)]
+    pub fn fill(&mut self, mut ended: u64, mut write: impl FnMut(Slot)) -> u64 {
+        let mut over = 0;
+        while ended != 0 {
+            let lane = (ended.trailing_zeros() & 7) as usize;
+            ended &= ended - 1;
+            let draw = self.next[lane];
+            if draw >= self.count {
+                continue; // This lane has made its draws.
+            }
+            write(Slot { lane, draw, steps: self.now.wrapping_sub(self.began[lane]) });
+            self.began[lane] = self.now.wrapping_add(1);
+            self.next[lane] = draw + LANES;
+            if self.next[lane] >= self.count {
+                self.open -= 1;
+                over |= 1 << lane;
+            }
+        }
+        over
+    }
+}
+
+/// Leaves the streams of some lanes of a pack, as bits, where they stand now.
+#[inline(always)]
+pub fn leave<S: Simd>(streams: &mut Streams, pack: usize, which: u64, now: Xoshiro<u64x8<S>>) {
+    if which != 0 {
+        let now = now.at_rest().apart();
+        let lanes = &mut streams.lanes[pack * WIDTH..];
+        for (lane, (stream, now)) in lanes.iter_mut().zip(now).enumerate() {
+            if which >> lane & 1 == 1 {
+                *stream = now;
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use numeric::rng::PACKS;
+
+    #[test]
+    fn every_draw_has_one_slot_and_lanes_take_turns() {
+        for (count, turn) in [(1, 0), (5, 14), (16, 3), (45, 7)] {
+            let mut lanes = vec![None; count];
+            for pack in 0..PACKS {
+                let (mut slots, mut over) = (Slots::new(count, turn, pack), 0);
+                // Lanes end in every second step.
+                for ended in [0b0101_0101, 0b1010_1010].into_iter().cycle() {
+                    if !slots.are_open() {
+                        break;
+                    }
+                    over |= slots.fill(ended, |slot| {
+                        assert_eq!(
+                            slot.steps,
+                            u32::from(slot.draw >= LANES || ended == 0b1010_1010)
+                        );
+                        let lane = pack * WIDTH + slot.lane;
+                        assert_eq!(lanes[slot.draw].replace(lane), None);
+                    });
+                    slots.step();
+                }
+                let mine = |lane: usize| lane / WIDTH == pack;
+                let open = (0..count.min(LANES)).filter(|draw| mine((turn + draw) % LANES));
+                assert_eq!(over.count_ones() as usize, open.count());
+            }
+            let expected = (0..count).map(|draw| Some((turn + draw) % LANES));
+            assert!(lanes.into_iter().eq(expected), "{count} from {turn}");
+        }
+    }
+}

@@ -1,0 +1,224 @@
+//! Walks through a body under light from all sides.
+
+pub mod particle;
+pub mod splitting;
+
+use fearless_simd::{ExtractToken, Level, Simd, f64x8, mask64x8};
+
+use crate::kernels::packet::Request;
+use crate::kernels::packet::bank::Numbers;
+use crate::space::exit::Points;
+use crate::space::packet::walks;
+use crate::space::tally::{Collision, Departure, add_where};
+use crate::space::{self, By, Particle, Start, Sums, Tally, Walked};
+use crate::{Draw, Refusal, Setup, estimators};
+use numeric::geometry::frame;
+use numeric::rng::Stream;
+use numeric::{Known, Lane, pack};
+use theory::problems::Lambertian;
+use theory::problems::lambertian::Values;
+use theory::problems::rod::MOST;
+use theory::space::content;
+use theory::{Channel, Moments, ParticleRule, Prediction, Tails};
+
+/// The largest relative error of `∫σ_t dV` that is worth drawing against.
+const BLURRED: f64 = 1e-3;
+
+/// Which channels an experiment has, in their order.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+struct Channels {
+    energy: bool,
+    white: bool,
+    tentative: bool,
+}
+
+impl Channels {
+    fn of(setup: &Setup<Lambertian>, particle: &Particle) -> Self {
+        let Some(majorants) = setup.space.as_deref() else {
+            return Self { energy: false, white: false, tentative: false };
+        };
+        let scene = &setup.problem.scene;
+        let walks = space::walks(scene, majorants, particle);
+        // Where a = 0 and r = 1 nothing is left of a particle: that is an end even for this rule.
+        let goes_on = *particle == Particle::of(ParticleRule::NonTerminating)
+            && scene.albedo.range()[0] > 0.0;
+        Self {
+            energy: walks.is_tame(),
+            white: scene.albedo.even() == Some(1.0) && walks.never_grows(),
+            tentative: goes_on && majorants.content().is_some(),
+        }
+    }
+
+    fn any(self) -> bool {
+        self.energy || self.white || self.tentative
+    }
+}
+
+/// `∫σ_t dV`, sharp enough to be drawn against.
+fn held(setup: &Setup<Lambertian>) -> Option<Known> {
+    let held = setup.problem.content(|| content::content(&*setup.problem.scene.volume));
+    held.filter(|known| known.error <= BLURRED * known.value && known.value > 0.0)
+}
+
+/// A channel whose spread theory does not know, with light tails.
+fn piloted(name: &str, truth: Known) -> Channel {
+    let certain = Channel::unbiased(truth, Moments::certain(truth.value), Tails::LIGHT);
+    Channel { name: name.to_owned(), moments: None, by_pilots: true, ..certain }
+}
+
+/// Without σ̂ there is nothing to draw; such an experiment is refused.
+const NOTHING: Draw<Values> =
+    Draw { value: Values { at: [0.0; MOST], count: 1 }, lookups: 0, defect: 0.0 };
+
+impl Walked for Lambertian {
+    fn domain(setup: &Setup<Self>, particle: &Particle) -> Result<(), Refusal> {
+        let scene = &setup.problem.scene;
+        space::realisable(setup, scene, particle)?;
+        let has = Channels::of(setup, particle);
+        if has.white && held(setup).is_none() {
+            let needs = "a volume whose ∫σ_t dV is known to 1e-3";
+            return Err(Refusal::mismatch(
+                needs,
+                "cubature over its chords does not settle, or it is empty",
+            ));
+        }
+        if has.any() {
+            return Ok(());
+        }
+        space::energy(&space::walks(scene, space::majorants(setup)?, particle)).map(|_| ())
+    }
+
+    fn predict(setup: &Setup<Self>, particle: &Particle) -> Prediction {
+        let (problem, has) = (&setup.problem, Channels::of(setup, particle));
+        let mut channels = Vec::new();
+        if let Some(majorants) = setup.space.as_deref() {
+            let walks = space::walks(&problem.scene, majorants, particle);
+            let bound = walks.energy_variance().filter(|_| has.energy);
+            let named = |bound| Channel {
+                name: "energy".to_owned(),
+                ..space::energy_channel(bound, walks.depth)
+            };
+            channels.extend(bound.map(named));
+            let over = problem.four_over_surface();
+            let times = |known: Known| {
+                Known::new(
+                    over * known.value,
+                    over * known.error + 4.0 * f64::EPSILON * over * known.value,
+                )
+            };
+            if has.white {
+                let unknown = Known::new(f64::NAN, f64::NAN);
+                channels
+                    .push(piloted("path length", times(Known::exact(problem.bounds().content()))));
+                channels.push(piloted("collisions", times(held(setup).unwrap_or(unknown))));
+            }
+            if let Some(content) = majorants.content().filter(|_| has.tentative) {
+                channels.push(piloted("tentative collisions", times(Known::exact(content))));
+            }
+        }
+        if channels.is_empty() {
+            // Refused, or forced without an answer to be wrong about.
+            channels.push(space::energy_channel(f64::INFINITY, 0.0));
+        }
+        Prediction { channels, ..Prediction::default() }
+    }
+
+    fn draw(by: By, particle: &Particle, setup: &Setup<Self>, rng: &mut Stream) -> Draw<Values> {
+        let Some(majorants) = setup.space.as_deref() else { return NOTHING };
+        let (u, v) = (rng.uniform(), rng.uniform());
+        let (place, inward) = setup.problem.on_boundary(u, v);
+        let cosine = by.steps().first_cosine(rng.uniform());
+        let direction = frame::turned(inward, cosine, rng.uniform());
+        let entering = Entering::new(&setup.problem, Channels::of(setup, particle));
+        let (mut sums, start) = (Sums::new(&entering), Start { place, direction, weight: 1.0 });
+        let lookups = space::walk(by, &setup.problem.scene, majorants, start, &mut sums, rng);
+        Draw::free(sums.values(), lookups)
+    }
+
+    fn draw_packets<'a>(
+        level: Level,
+        particle: &Particle,
+        setup: &Setup<Self>,
+        request: Request<'a>,
+    ) -> Option<Request<'a>> {
+        let problem = &*setup.problem;
+        let entering = Entering::new(problem, Channels::of(setup, particle));
+        walks(level, &entering, particle, (&problem.scene, setup.space.as_ref()), request)
+    }
+}
+
+/// [`Lambertian::boundary_lanes`], in a function of its own on AVX2.
+#[inline(always)]
+fn on_boundary<S: Simd>(problem: &Lambertian, numbers: [f64x8<S>; 2]) -> [Points<S>; 2] {
+    pack::outlined_if_narrow(
+        numbers[0].token(),
+        #[inline(always)]
+        move || problem.boundary_lanes(numbers),
+    )
+}
+
+/// Where particles enter, and the sums over their collisions.
+struct Entering<'a> {
+    problem: &'a Lambertian,
+    channels: [usize; 4],
+    count: usize,
+}
+
+impl<'a> Entering<'a> {
+    fn new(problem: &'a Lambertian, has: Channels) -> Self {
+        let mut entering = Self { problem, channels: [0; 4], count: 0 };
+        let has = [has.energy, has.white, has.white, has.tentative];
+        for (sum, _) in has.into_iter().enumerate().filter(|(_, has)| *has) {
+            entering.channels[entering.count] = sum;
+            entering.count += 1;
+        }
+        entering
+    }
+}
+
+/// Energy, path length, collisions, tentative collisions.
+impl Tally<4> for Entering<'_> {
+    #[inline(always)]
+    fn begin<S: Simd>(&self, _: S, numbers: &mut Numbers<S>, which: mask64x8<S>) -> [Points<S>; 2] {
+        let [u, v] = [numbers.uniform_where(which), numbers.uniform_where(which)];
+        on_boundary(self.problem, [u, v])
+    }
+
+    fn begins_turned(&self) -> bool {
+        true
+    }
+
+    #[inline(always)]
+    fn first_cosine<L: Lane>(&self, number: L) -> L {
+        (number.each(1.0) - number).root()
+    }
+
+    #[inline(always)]
+    fn flown<L: Lane>(&self, sums: &mut [L; 4], length: L, weight: L) {
+        sums[1] = sums[1] + weight * length;
+    }
+
+    #[inline(always)]
+    fn collided<L: Lane>(&self, sums: &mut [L; 4], at: &Collision<L>) {
+        let [energy, _, collisions, tentative] = sums;
+        let (one, real) = (at.albedo.each(1.0), at.weight * at.ratio);
+        add_where(tentative, at.inside, one);
+        add_where(collisions, at.inside, real);
+        add_where(energy, at.inside, real * (one - at.albedo));
+    }
+
+    #[inline(always)]
+    fn escaped<L: Lane>(&self, [energy, ..]: &mut [L; 4], at: &Departure<L>) {
+        add_where(energy, at.left, at.weight);
+    }
+
+    fn channels(&self) -> &[usize] {
+        &self.channels[..self.count]
+    }
+}
+
+estimators! {
+    Lambertian:
+    particle::Walker,
+    splitting::Splitter,
+}

@@ -1,0 +1,24 @@
+//! A particle that enters a body from all sides and walks by one of the rules of the single particle
+//! model.
+//!
+//! Unbiased for: whatever it is unbiased for in a furnace; refused where no channel has a known mean and spread.
+//!
+//! ```text
+//! place even over the boundary, cosine with the inward normal √u, azimuth even
+//! energy Σ w r (1 − a) + w,  path length Σ w ℓ,  collisions Σ w r,  tentative collisions Σ 1
+//! ```
+//!
+//! | setting | meaning | default |
+//! |---|---|---|
+//! | `rule` | `terminating`, `non-terminating`, `adaptive`, `analog` or `weighted` | required |
+//! | `roulette` | w₀ in (0, 1]: a walk with a smaller weight goes on with chance abs(w)/w₀ and weight w₀ | none |
+//!
+//! Unbiased as in a furnace; it is refused where none of its channels has both a known answer and a known
+//! or a light spread. What the non-terminating rule does with a weight leaves its path alone: its number of
+//! tentative collisions, which is that of its lookups, is known for σ̂ however far below σ_t.
+//!
+//! Source: L. Szirmay-Kalos et al. 2017, section 4.1, `SimulateParticle`; A. Mazzolo, C. de Mulatier, A.
+//! Zoia, *Cauchy's formulas for random walks in bounded domains*, Journal of Mathematical Physics 55
+//! (2014).
+
+pub use crate::space::Walker;

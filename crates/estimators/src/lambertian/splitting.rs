@@ -1,0 +1,20 @@
+//! A particle that enters a body from all sides and splits: what goes straight on and what is scattered are
+//! both followed, up to a bound; then one of them, by a rule.
+//!
+//! Unbiased for: whatever it is unbiased for in a furnace; refused where no channel has a known mean and spread.
+//!
+//! ```text
+//! at a collision that splits: w → (1 − r) w straight on, and a r w into a new direction
+//! ```
+//!
+//! | setting | meaning | default |
+//! |---|---|---|
+//! | `depth` | so many splits on any way from the start: 2ⁿ particles at most, n ≤ 10 | one of the two |
+//! | `budget` | so many splits in a walk: n + 1 particles at most | is required |
+//! | `rule` | what happens then, as in `particle` | required |
+//!
+//! Its channels are those of `particle` without the tentative collisions.
+//!
+//! Source: L. Szirmay-Kalos et al. 2017, section 3 (the double particle model).
+
+pub use crate::space::Splitter;

@@ -1,0 +1,298 @@
+//! Estimators, one page each: how a draw is made, and what theory says of it. Floor 4.
+//!
+//! An estimator is data. What it works on (medium, σ̂, control) is prepared once in a [`Setup`];
+//! its loop is compiled once per field type and entered once per buffer of draws. Estimators of
+//! one problem form one folder and one list; the recipes for σ̂ and for the control have theirs.
+
+pub mod bidirectional_rod;
+pub mod chromatic;
+pub mod chromatic_slab;
+pub mod free_flight;
+pub mod furnace;
+pub mod infinite_medium;
+pub mod kernels;
+pub mod lambertian;
+pub mod lit_rod;
+pub mod lit_slab;
+pub mod multiple_scattering;
+pub mod own;
+pub mod recipes;
+pub mod rod;
+pub mod setup;
+pub mod single_scattering;
+pub mod slab;
+pub mod space;
+pub mod spectral_furnace;
+pub mod spectral_lit_rod;
+pub mod spectral_rod;
+pub mod spectral_single_scattering;
+pub mod spectral_slab;
+pub mod spectral_transmittance;
+pub mod sphere;
+pub mod transmittance;
+pub mod transmittance_curve;
+pub mod trial;
+
+use fearless_simd::Level;
+
+use crate::kernels::{order_free, packet};
+use crate::recipes::controls;
+use media::Lookups;
+use media::catalogue::{PageList, Settings};
+use numeric::rng::{Address, Stream};
+use theory::Prediction;
+use theory::problems::{Named, Problem, each_problem};
+
+pub use crate::recipes::{Refusal, Site};
+pub use crate::setup::Setup;
+
+pub use crate::kernels::{Draw, DrawBuffer};
+pub use transmittance_curve::RayView;
+pub use trial::{Experiment, Kernel, Order};
+
+/// What an estimator takes beside the medium.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Inputs {
+    /// A sampling extinction σ̂.
+    pub sampling: bool,
+    /// A control σ_c, if one is given.
+    pub control: bool,
+}
+
+impl Inputs {
+    /// Nothing.
+    pub const NONE: Self = Self { sampling: false, control: false };
+    /// σ̂ only.
+    pub const SAMPLING: Self = Self { sampling: true, control: false };
+    /// σ̂ and a control.
+    pub const BOTH: Self = Self { sampling: true, control: true };
+}
+
+/// A page of the catalogue of estimators of problem `P`.
+pub trait Estimator<P: Problem>: Clone + Send + Sync + 'static {
+    /// What it takes, unless its settings say otherwise.
+    const INPUTS: Inputs;
+    /// Whether its draws know their [`Draw::defect`].
+    const HAS_INVARIANT: bool = false;
+    /// Whether σ̂ may be 0 wherever the residual is: collisions there change nothing but the cost.
+    const SKIPS: bool = false;
+    /// Whether it draws eight at a time, by [`Estimator::draw_packets`].
+    const IN_PACKETS: bool = false;
+    /// Whether its draws may be made in any order of their collisions, by [`Estimator::order_free`].
+    const ORDER_FREE: bool = false;
+
+    /// The estimator itself, where it has no settings.
+    const PLAIN: Option<Self> = None;
+
+    /// Reads its own settings from `NAME = { … }`; `sampling`, `control` and `expect` are read for
+    /// it.
+    fn read(settings: &Settings) -> Option<Self> {
+        let _ = settings;
+        Self::PLAIN
+    }
+
+    /// Its own settings in words, as in `non-terminating, a=0.7`; empty if it has none. Without
+    /// `albedo` the albedo is left out: it is swept.
+    fn label(&self, albedo: bool) -> String {
+        let _ = albedo;
+        String::new()
+    }
+
+    /// What it takes with its own settings.
+    fn inputs(&self) -> Inputs {
+        Self::INPUTS
+    }
+
+    /// The same estimator with another albedo; `None` if it has no albedo.
+    fn with_albedo(&self, albedo: f64) -> Option<Self> {
+        let _ = albedo;
+        None
+    }
+
+    /// The estimator that it is by definition where it has no control; `None` if it is its own.
+    fn without_control() -> Option<&'static str> {
+        None
+    }
+
+    /// The control it uses where the case gives none.
+    fn default_control() -> Option<Box<dyn controls::Recipe>> {
+        None
+    }
+
+    /// Knowledge of the medium that the estimator needs beside lookups, σ̂ and control, as in `τ`; `None` for none.
+    fn needs(&self) -> Option<&'static str> {
+        None
+    }
+
+    /// Whether it exists and is unbiased here.
+    ///
+    /// # Errors
+    ///
+    /// The violated inequality and where on the ray.
+    fn domain(&self, setup: &Setup<P>) -> Result<(), Refusal>;
+
+    /// What theory says of a draw.
+    fn predict(&self, setup: &Setup<P>) -> Prediction;
+
+    /// The ray seen from the side, for estimators of a curve.
+    fn ray_view(&self, setup: &Setup<P>, address: Address) -> Option<RayView> {
+        let _ = (setup, address);
+        None
+    }
+
+    /// Makes one draw.
+    fn draw(&self, setup: &Setup<P>, medium: &Lookups, rng: &mut Stream) -> Draw<P::Value>;
+
+    /// So many draws to be made in any order of their collisions; `None` where that cannot be.
+    fn order_free<'a>(
+        &'a self,
+        setup: &'a Setup<P>,
+        request: order_free::Request<'a>,
+    ) -> Option<Box<dyn order_free::OrderFree + 'a>> {
+        let _ = (setup, request);
+        None
+    }
+
+    /// Makes the draws of a request as [`Estimator::draw`] makes them from the request's streams in
+    /// turn, bit for bit, on the hardware of a level. What the hardware has no kernel for is handed
+    /// back.
+    fn draw_packets<'a>(
+        &self,
+        level: Level,
+        setup: &Setup<P>,
+        medium: &Lookups,
+        request: packet::Request<'a>,
+    ) -> Option<packet::Request<'a>> {
+        let _ = (level, setup, medium);
+        Some(request)
+    }
+}
+
+/// A problem with a catalogue of estimators.
+pub trait Estimated: Problem + Named {
+    /// The estimators of this problem.
+    const CATALOGUE: PageList;
+
+    /// Reads the settings of the estimator at a position of the catalogue.
+    fn read_estimator(index: usize, settings: &Settings) -> Option<Box<dyn trial::Entry<Self>>>;
+}
+
+macro_rules! estimators_of {
+    ($($module:ident :: $Problem:ident,)*) => {
+        vec![$(<theory::problems::$Problem as Estimated>::CATALOGUE),*]
+    };
+}
+
+/// The estimators of every problem, in the order of the problems.
+pub fn catalogues() -> Vec<PageList> {
+    each_problem!(estimators_of)
+}
+
+/// Lists the estimators of one problem: from one line each come the module, the name in case files
+/// and the row in `trueflight list`.
+macro_rules! estimators {
+    ($Problem:ty: $($module:ident :: $Page:ident,)*) => {
+        impl $crate::Estimated for $Problem {
+            const CATALOGUE: media::catalogue::PageList = media::catalogue::PageList {
+                name: "estimators",
+                pages: &[$(media::page!($module)),*],
+            };
+
+            fn read_estimator(
+                index: usize,
+                settings: &media::catalogue::Settings,
+            ) -> Option<Box<dyn $crate::trial::Entry<Self>>> {
+                let readers = [$(|s: &media::catalogue::Settings| {
+                    <$module::$Page as $crate::Estimator<$Problem>>::read(s)
+                        .map(|page| Box::new(page) as Box<dyn $crate::trial::Entry<_>>)
+                }),*];
+                readers[index](settings)
+            }
+        }
+    };
+}
+use estimators;
+
+/// The draws of a product estimator of transmittance, by all kernels: all that differs is the rule at
+/// a collision, as in `product_draws!(self => self.rule)`.
+macro_rules! product_draws {
+    ($this:ident => $rule:expr) => {
+        const HAS_INVARIANT: bool = true;
+        const SKIPS: bool = true;
+        const IN_PACKETS: bool = true;
+        const ORDER_FREE: bool = true;
+
+        #[inline(always)]
+        fn draw(
+            &$this,
+            setup: &$crate::Setup<Transmittance>,
+            medium: &media::Lookups,
+            rng: &mut numeric::rng::Stream,
+        ) -> $crate::Draw {
+            $crate::kernels::walk::product(setup, &$rule, medium, rng)
+        }
+
+        fn order_free<'a>(
+            &'a $this,
+            setup: &'a $crate::Setup<Transmittance>,
+            request: $crate::kernels::order_free::Request<'a>,
+        ) -> Option<Box<dyn $crate::kernels::order_free::OrderFree + 'a>> {
+            $crate::kernels::order_free::product(setup, $rule, request)
+        }
+
+        fn draw_packets<'a>(
+            &$this,
+            level: fearless_simd::Level,
+            setup: &$crate::Setup<Transmittance>,
+            medium: &media::Lookups,
+            request: $crate::kernels::packet::Request<'a>,
+        ) -> Option<$crate::kernels::packet::Request<'a>> {
+            $crate::kernels::packet::product(level, setup, &$rule, medium, request)
+        }
+    };
+}
+use product_draws;
+
+/// The page of a next-flight estimator: all that differs is the [`scoring::Share`] that it scores, and what
+/// that makes of the moments, as in `scored!(NextFlight)`.
+macro_rules! scored {
+    ($Page:ident) => {
+        impl $crate::Estimator<Transmittance> for $Page {
+            const INPUTS: $crate::Inputs = $crate::Inputs::SAMPLING;
+            const PLAIN: Option<Self> = Some(Self);
+            const IN_PACKETS: bool = true;
+
+            fn domain(&self, setup: &Setup<Transmittance>) -> Result<(), $crate::Refusal> {
+                setup.require_plain_unit("τ ≤ 300 (its draws are sums of terms of every size)")?;
+                setup.require_constant_sampling()?;
+                setup.require_finite_weights(&theory::rules::Weight)
+            }
+
+            fn predict(&self, setup: &Setup<Transmittance>) -> theory::Prediction {
+                let sampling = setup.sampling.single_value().unwrap_or(0.0);
+                theory::volterra::predict(&setup.mesh, sampling, self)
+            }
+
+            #[inline(always)]
+            fn draw(
+                &self,
+                setup: &Setup<Transmittance>,
+                medium: &media::Lookups,
+                rng: &mut numeric::rng::Stream,
+            ) -> $crate::Draw {
+                $crate::kernels::scoring::walk(setup, self, medium, rng)
+            }
+
+            fn draw_packets<'a>(
+                &self,
+                level: fearless_simd::Level,
+                setup: &Setup<Transmittance>,
+                medium: &media::Lookups,
+                request: $crate::kernels::packet::Request<'a>,
+            ) -> Option<$crate::kernels::packet::Request<'a>> {
+                $crate::kernels::packet::score(level, setup, self, medium, request)
+            }
+        }
+    };
+}
+use scored;

@@ -1,0 +1,58 @@
+//! Hits and shadow rays, weighted by the pdfs of directions: what most renderers do.
+//!
+//! Unbiased for: σ̂ ≥ σ_t; refused elsewhere.
+//!
+//! ```text
+//! ρ = p_uni/p_nee = p(ω)/1,   null collisions are left out of both densities
+//! X = [reached unscattered] + Σ p t̂(y, L) w_nee(ρ) + [hit after y] w_uni(ρ)
+//! balance: w_uni = ρ/(1 + ρ);  power: w_uni = ρ²/(1 + ρ²);  w_nee = 1 − w_uni
+//! ```
+//!
+//! | setting | meaning | default |
+//! |---|---|---|
+//! | `shadow` | t̂: `"exact"` transmittance, `"delta"` or `"ratio"` tracking through σ̂ | `"delta"` |
+//! | `heuristic` | `"balance"` or `"power"` | `"balance"` |
+//!
+//! Unbiased, as the weights of both techniques sum to 1 for every direction. With delta-tracked shadow rays null
+//! collisions have the same chances in both techniques, and cancel; with ratio tracking they do not, and a hit
+//! through many of them has too large a weight.
+//!
+//! It takes σ̂, which must be a majorant.
+//!
+//! Source: P. Kutz, R. Habel, Y. K. Li, J. Novák, *Spectral and Decomposition Tracking for Rendering Heterogeneous
+//! Volumes*, ACM Transactions on Graphics 36 (2017); B. Miller, I. Georgiev, W. Jarosz, *A null-scattering path
+//! integral formulation of light transport*, ACM Transactions on Graphics 38 (2019), section 6; the power
+//! heuristic: E. Veach, *Robust Monte Carlo Methods for Light Transport Simulation*, doctoral thesis, Stanford (1997).
+
+use super::{Lit, label, read_shadow, walks};
+use crate::Estimator;
+use media::catalogue::Settings;
+use theory::lit_rod::{Combination, Densities, Heuristic, Shadow, Techniques};
+
+/// Multiple importance sampling over directions; σ̂ is its input.
+#[derive(Debug, Clone)]
+pub struct DirectionalMis {
+    shadow: Shadow,
+    heuristic: Heuristic,
+}
+
+impl DirectionalMis {
+    fn techniques(&self) -> Techniques {
+        let combination = Combination::Mis(Densities::Directional, self.heuristic);
+        Techniques { shadow: Some(self.shadow), combination }
+    }
+}
+
+impl<P: Lit> Estimator<P> for DirectionalMis {
+    fn read(settings: &Settings) -> Option<Self> {
+        let shadow = read_shadow(settings, &["exact", "delta", "ratio"], "delta");
+        let heuristic = Heuristic::read(settings);
+        Some(Self { shadow: shadow?, heuristic: heuristic? })
+    }
+
+    fn label(&self, _: bool) -> String {
+        label(self.shadow, self.heuristic)
+    }
+
+    walks!(self => self.techniques());
+}

@@ -1,0 +1,171 @@
+//! Estimators of the light of an emitter at the end of a rod.
+
+pub mod directional_mis;
+pub mod full_mis;
+pub mod next_event;
+pub mod packet;
+pub mod unidirectional;
+pub mod walk;
+
+use fearless_simd::Level;
+
+use crate::kernels::packet::Request;
+use crate::{Draw, Refusal, Setup, estimators};
+use media::Lookups;
+use media::catalogue::Settings;
+use numeric::pack::in_fused_code;
+use numeric::rng::Stream;
+use theory::lit_rod::{self, Heuristic, Shadow, Techniques};
+use theory::problems::{LitRod, Problem};
+use theory::{ParticleRule, Prediction};
+
+/// A problem whose light is found by hits and by shadow rays: the pages of its estimators are the same.
+pub trait Lit: Problem<Value = [f64; 1]> {
+    /// Whether a walk with techniques exists and theory reaches it.
+    ///
+    /// # Errors
+    ///
+    /// Why not.
+    fn realisable(setup: &Setup<Self>, techniques: Techniques) -> Result<(), Refusal>;
+
+    /// What theory says of its draws.
+    fn predict(setup: &Setup<Self>, techniques: Techniques) -> Prediction;
+
+    /// One of them: compiled once for all pages.
+    fn draw(
+        techniques: Techniques,
+        setup: &Setup<Self>,
+        medium: &Lookups,
+        rng: &mut Stream,
+    ) -> Draw<[f64; 1]>;
+
+    /// The same in packets, see [`crate::Estimator::draw_packets`].
+    fn packets<'a>(
+        level: Level,
+        techniques: Techniques,
+        setup: &Setup<Self>,
+        medium: &Lookups,
+        request: Request<'a>,
+    ) -> Option<Request<'a>>;
+}
+
+impl Lit for LitRod {
+    fn realisable(setup: &Setup<Self>, _: Techniques) -> Result<(), Refusal> {
+        let (rule, albedo) = (ParticleRule::Analog, &setup.problem.rod.albedo);
+        setup.require_few_collisions("∫σ̂ ≤ 1e6")?;
+        let limit = |t: f64| rule.limits(albedo.value(t))[1];
+        setup.require_ratio_within(albedo.knots(), limit, rule.needs())?;
+        if lit_rod::is_within_reach(&setup.mesh, &setup.problem, &setup.sampling) {
+            return Ok(());
+        }
+        let needs = "a rod that theory can cut into 1e4 steps";
+        Err(Refusal::mismatch(needs, "σ̂ or σ_t is too large on it"))
+    }
+
+    fn predict(setup: &Setup<Self>, techniques: Techniques) -> Prediction {
+        let (mesh, problem, sampling) = (&setup.mesh, &setup.problem, &setup.sampling);
+        lit_rod::predict(mesh, problem, sampling, techniques, setup.laws)
+    }
+
+    #[inline(never)]
+    fn draw(
+        techniques: Techniques,
+        setup: &Setup<Self>,
+        medium: &Lookups,
+        rng: &mut Stream,
+    ) -> Draw<[f64; 1]> {
+        in_fused_code(
+            #[inline(always)]
+            || walk::draw(&techniques, setup, medium, rng),
+        )
+    }
+
+    fn packets<'a>(
+        level: Level,
+        techniques: Techniques,
+        setup: &Setup<Self>,
+        medium: &Lookups,
+        request: Request<'a>,
+    ) -> Option<Request<'a>> {
+        packet::walks(level, setup, techniques, medium, request)
+    }
+}
+
+/// Reads `shadow`, one of some words.
+fn read_shadow(
+    settings: &Settings,
+    words: &[&'static str],
+    default: &'static str,
+) -> Option<Shadow> {
+    settings.word_or("shadow", words, default).map(|word| match word {
+        "exact" => Shadow::Exact,
+        "delta" => Shadow::Delta,
+        _ => Shadow::Ratio,
+    })
+}
+
+/// Settings in words, as in `ratio shadow, power heuristic`.
+fn label(shadow: Shadow, heuristic: Heuristic) -> String {
+    let shadow = match shadow {
+        Shadow::Exact => "exact shadow",
+        Shadow::Delta => "delta shadow",
+        Shadow::Ratio => "ratio shadow",
+    };
+    match heuristic {
+        Heuristic::Balance => shadow.to_owned(),
+        Heuristic::Power => format!("{shadow}, power heuristic"),
+    }
+}
+
+/// The plumbing of a page: all that differs are its techniques, as in `walks!(self => self.techniques())`.
+macro_rules! walks {
+    ($this:ident => $techniques:expr) => {
+        const INPUTS: $crate::Inputs = $crate::Inputs::SAMPLING;
+        const IN_PACKETS: bool = true;
+
+        fn needs(&$this) -> Option<&'static str> {
+            let is_exact = $techniques.shadow == Some(theory::lit_rod::Shadow::Exact);
+            is_exact.then_some("τ")
+        }
+
+        fn domain(
+            &$this,
+            setup: &$crate::Setup<P>,
+        ) -> Result<(), $crate::Refusal> {
+            P::realisable(setup, $techniques)
+        }
+
+        fn predict(&$this, setup: &$crate::Setup<P>) -> theory::Prediction {
+            P::predict(setup, $techniques)
+        }
+
+        #[inline(always)]
+        fn draw(
+            &$this,
+            setup: &$crate::Setup<P>,
+            medium: &media::Lookups,
+            rng: &mut numeric::rng::Stream,
+        ) -> $crate::Draw<[f64; 1]> {
+            P::draw($techniques, setup, medium, rng)
+        }
+
+        fn draw_packets<'a>(
+            &$this,
+            level: fearless_simd::Level,
+            setup: &$crate::Setup<P>,
+            medium: &media::Lookups,
+            request: $crate::kernels::packet::Request<'a>,
+        ) -> Option<$crate::kernels::packet::Request<'a>> {
+            P::packets(level, $techniques, setup, medium, request)
+        }
+    };
+}
+use walks;
+
+estimators! {
+    LitRod:
+    unidirectional::Unidirectional,
+    next_event::NextEvent,
+    directional_mis::DirectionalMis,
+    full_mis::FullMis,
+}

@@ -1,0 +1,77 @@
+//! Estimators of the light behind a slab, by one scattering.
+
+pub mod directional_mis;
+pub mod full_mis;
+pub mod next_event;
+pub mod packet;
+pub mod unidirectional;
+pub mod walk;
+
+use fearless_simd::Level;
+
+use super::lit_rod::{self, Lit};
+use crate::kernels::packet::Request;
+use crate::{Draw, Refusal, Setup, estimators};
+use media::Lookups;
+use numeric::pack::in_fused_code;
+use numeric::rng::Stream;
+use theory::lit_rod::{Combination, Techniques};
+use theory::problems::LitSlab;
+use theory::{ParticleRule, Prediction, lit_slab};
+
+impl Lit for LitSlab {
+    fn realisable(setup: &Setup<Self>, techniques: Techniques) -> Result<(), Refusal> {
+        let (problem, rule) = (&setup.problem, ParticleRule::Analog);
+        if problem.albedo <= 0.0 {
+            return Err(Refusal::mismatch("an albedo above 0", "a = 0: nothing is scattered"));
+        }
+        if !problem.light.can_be_hit() && techniques.combination == Combination::Unidirectional {
+            let found =
+                "no direction that is drawn meets this one: unidirectional tracking finds nothing";
+            return Err(Refusal::mismatch("a light with a size", found));
+        }
+        setup.require_few_collisions("∫σ̂ ≤ 1e6")?;
+        setup.require_ratio_at_most(rule.limits(problem.albedo)[1], rule.needs())?;
+        lit_slab::slant_depth(&setup.mesh, problem).map_or(Ok(()), |depth| {
+            Err(Refusal::mismatch("τ/μ ≤ 64 in the lowest direction", format!("τ/μ = {depth:e}")))
+        })
+    }
+
+    fn predict(setup: &Setup<Self>, techniques: Techniques) -> Prediction {
+        let (mesh, problem, sampling) = (&setup.mesh, &setup.problem, &setup.sampling);
+        lit_slab::predict(mesh, problem, sampling, techniques, setup.laws)
+    }
+
+    #[inline(never)]
+    fn draw(
+        techniques: Techniques,
+        setup: &Setup<Self>,
+        medium: &Lookups,
+        rng: &mut Stream,
+    ) -> Draw<[f64; 1]> {
+        let techniques = lit_slab::possible(techniques, setup.problem.light);
+        in_fused_code(
+            #[inline(always)]
+            || walk::draw((&techniques, &walk::Right), setup, medium, rng),
+        )
+    }
+
+    fn packets<'a>(
+        level: Level,
+        techniques: Techniques,
+        setup: &Setup<Self>,
+        medium: &Lookups,
+        request: Request<'a>,
+    ) -> Option<Request<'a>> {
+        let techniques = lit_slab::possible(techniques, setup.problem.light);
+        lit_rod::packet::walks(level, setup, techniques, medium, request)
+    }
+}
+
+estimators! {
+    LitSlab:
+    unidirectional::Unidirectional,
+    next_event::NextEvent,
+    directional_mis::DirectionalMis,
+    full_mis::FullMis,
+}

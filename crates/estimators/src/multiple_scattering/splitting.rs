@@ -1,0 +1,20 @@
+//! A particle that splits on its way from the camera: what goes straight on and what is scattered are both
+//! followed, up to a bound; then one of them, by a rule.
+//!
+//! Unbiased for: r ≤ 1 by the rule `analog`, r ≤ 2/(a + 1) by `terminating`, every r by the others.
+//!
+//! ```text
+//! at a collision that splits: w → (1 − r) w straight on, and a r w into a new direction
+//! X = Σ w L_sky(d') over all that leaves
+//! ```
+//!
+//! | setting | meaning | default |
+//! |---|---|---|
+//! | `depth` | so many splits on any way from the start: 2ⁿ particles at most, n ≤ 10 | one of the two |
+//! | `budget` | so many splits in a walk: n + 1 particles at most | is required |
+//! | `rule` | what happens then, as in `particle` | required |
+//! | `roulette` | as in `particle` | none |
+//!
+//! Source: L. Szirmay-Kalos et al. 2017, section 3 (the double particle model).
+
+pub use crate::space::Splitter;

@@ -1,0 +1,28 @@
+//! Estimators of a program's own: types that implement [`Estimator`], registered before cases are read.
+
+use super::trial::Entry;
+use super::{Estimated, Estimator};
+use media::catalogue::{Addition, Page, Settings};
+
+/// Reads an estimator of problem `P` from `{ NAME = { … } }`.
+pub type EstimatorReader<P> = fn(&Settings) -> Option<Box<dyn Entry<P>>>;
+
+/// Registers an estimator of problem `P`: it is named in case files, drawn, judged, plotted and timed as the built-in
+/// ones are.
+///
+/// ```
+/// use trueflight_estimators::own::estimator;
+/// use trueflight_estimators::transmittance::ratio::Ratio;
+/// use trueflight_media::catalogue::Page;
+/// use trueflight_theory::problems::Transmittance;
+///
+/// // Ratio tracking by another name; any type that implements `Estimator<Transmittance>` will do.
+/// let page = Page { module: "my_ratio", source: "Mine." };
+/// let mine = estimator::<Transmittance, Ratio>(page); // estimators = [{ my-ratio = {} }]
+/// assert_eq!(mine.part, "estimators of transmittance");
+/// ```
+pub fn estimator<P: Estimated, E: Estimator<P>>(page: Page) -> Addition {
+    let read: EstimatorReader<P> =
+        |settings| E::read(settings).map(|page| Box::new(page) as Box<dyn Entry<P>>);
+    Addition::new(format!("estimators of {}", P::MODULE.replace('_', "-")), page, read)
+}

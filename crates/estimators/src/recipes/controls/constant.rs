@@ -1,0 +1,36 @@
+//! One σ_c for the whole ray.
+//!
+//! | setting | meaning | unit |
+//! |---|---|---|
+//! | `value` | σ_c, any finite number | 1/length |
+//!
+//! Above σ_t the residual is negative: negative extinction, a first-class case.
+
+use super::Recipe;
+use crate::recipes::{Refusal, Site};
+use media::catalogue::{Domain, Settings};
+use media::{Body, Control, Piecewise};
+
+/// A constant control.
+#[derive(Debug, Clone, Copy)]
+pub struct Constant {
+    /// σ_c, 1/length.
+    pub value: f64,
+}
+
+impl Constant {
+    /// Reads `{ value }`.
+    pub fn read(settings: &Settings, _: Option<&Body>) -> Option<Self> {
+        settings.number("value", Domain::Finite).map(|value| Self { value })
+    }
+}
+
+impl Recipe for Constant {
+    fn label(&self) -> String {
+        format!("constant {}", self.value)
+    }
+
+    fn prepare(&self, site: &Site) -> Result<Control, Refusal> {
+        Ok(Control::Pieces(Piecewise::constant(self.value, site.mesh.support())))
+    }
+}

@@ -1,0 +1,38 @@
+//! Another field of the catalogue on the same line or ray.
+//!
+//! ```text
+//! control.field.volume.gaussian = { … }    beside a `volume`
+//! control.field.medium.exponential = { … } beside a `medium`
+//! ```
+//!
+//! Its optical depth is as exact as when it is the medium. It may exceed σ_t anywhere.
+
+use super::Recipe;
+use crate::recipes::{Refusal, Site};
+use media::catalogue::Settings;
+use media::{Body, Control};
+
+/// A catalogued field as a control.
+pub struct Field(Body);
+
+impl Field {
+    /// Reads `{ medium.NAME = { … } }` or `{ volume.NAME = { … } }`, like the problem itself.
+    pub fn read(settings: &Settings, body: Option<&Body>) -> Option<Self> {
+        let Some(body) = body else {
+            settings.has("medium");
+            settings.has("volume");
+            return None;
+        };
+        body.read_beside(settings).map(Self)
+    }
+}
+
+impl Recipe for Field {
+    fn label(&self) -> String {
+        format!("field {}", self.0.name())
+    }
+
+    fn prepare(&self, site: &Site) -> Result<Control, Refusal> {
+        Ok(Control::Field(self.0.seen_like(site.body).medium()))
+    }
+}

@@ -1,0 +1,56 @@
+//! Recipes for the control σ_c: what is integrated exactly. It may exceed σ_t.
+
+pub mod constant;
+pub mod explorers;
+pub mod field;
+pub mod mean;
+pub mod minimum;
+pub mod none;
+
+use super::{Refusal, Site, recipes};
+use media::Control;
+
+/// How a control is made for a medium.
+pub trait Recipe: Send + Sync {
+    /// In words, as in `constant 0.3`; empty for none.
+    fn label(&self) -> String;
+
+    /// Makes σ_c on the support of the medium.
+    ///
+    /// # Errors
+    ///
+    /// What the recipe needs and does not find.
+    fn prepare(&self, site: &Site) -> Result<Control, Refusal>;
+
+    /// The same recipe with another number of points; `None` if it has no points.
+    fn with_points(&self, points: usize) -> Option<Box<dyn Recipe>> {
+        let _ = points;
+        None
+    }
+
+    /// How many lookups of σ_t a renderer spends on it for each ray.
+    fn lookups(&self) -> usize {
+        0
+    }
+
+    /// Knowledge of the medium that the control needs beside lookups, as in `τ`; `None` for none.
+    fn needs(&self) -> Option<&'static str> {
+        None
+    }
+
+    /// Where the control was fitted: `(t, σ_c)`.
+    fn points(&self, site: &Site) -> Vec<[f64; 2]> {
+        let _ = site;
+        Vec::new()
+    }
+}
+
+recipes! {
+    "controls", Recipe:
+    none::None,
+    constant::Constant,
+    mean::Mean,
+    minimum::Minimum,
+    explorers::Explorers,
+    field::Field,
+}

@@ -1,0 +1,29 @@
+//! No control: σ_c = 0.
+//!
+//! It takes no settings. Useful to switch off a control that the case gives to all estimators.
+
+use super::Recipe;
+use crate::recipes::{Refusal, Site};
+use media::catalogue::Settings;
+use media::{Body, Control};
+
+/// No control.
+#[derive(Debug, Clone, Copy)]
+pub struct None;
+
+impl None {
+    /// Reads `{}`.
+    pub fn read(_: &Settings, _: Option<&Body>) -> Option<Self> {
+        Some(Self)
+    }
+}
+
+impl Recipe for None {
+    fn label(&self) -> String {
+        String::new()
+    }
+
+    fn prepare(&self, _: &Site) -> Result<Control, Refusal> {
+        Ok(Control::None)
+    }
+}

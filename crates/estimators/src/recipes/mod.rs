@@ -1,0 +1,82 @@
+//! Recipes for the sampling extinction σ̂ and for the control σ_c: how a case's words become fields. Floor 4.
+
+pub mod controls;
+pub mod sampling;
+
+use media::Body;
+use numeric::digits::rounded;
+use numeric::rng::Address;
+use theory::Mesh;
+
+/// What a recipe sees when it prepares a sampling extinction or a control.
+#[derive(Clone, Copy)]
+pub struct Site<'a> {
+    /// The field as the case gives it.
+    pub body: &'a Body,
+    /// The medium, cut into panels.
+    pub mesh: &'a Mesh,
+    /// Where pilot rays find their random numbers.
+    pub address: Address,
+}
+
+/// Why an estimator is not run.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum Refusal {
+    /// An inequality that the estimator needs does not hold.
+    #[error("needs {needs}, but {found} at t = {}", rounded(*at))]
+    Inequality {
+        /// What must hold everywhere.
+        needs: &'static str,
+        /// What was found instead.
+        found: String,
+        /// Where on the ray.
+        at: f64,
+    },
+    /// The estimator does not fit what it was given.
+    #[error("needs {needs}, but {found}")]
+    Mismatch {
+        /// What it takes.
+        needs: &'static str,
+        /// What it was given.
+        found: String,
+    },
+}
+
+impl Refusal {
+    /// A mismatch in words.
+    pub fn mismatch(needs: &'static str, found: impl Into<String>) -> Self {
+        Self::Mismatch { needs, found: found.into() }
+    }
+}
+
+/// Lists recipes that prepare a sampling extinction or a control from its settings.
+macro_rules! recipes {
+    ($name:literal, $Trait:ident: $($module:ident :: $Page:ident,)*) => {
+        /// Every recipe, in the order of registration.
+        pub const CATALOGUE: media::catalogue::PageList = media::catalogue::PageList {
+            name: $name,
+            pages: &[$(media::page!($module)),*],
+        };
+
+        /// Reads `NAME = { … }`. Without a body, because that was wrong, what depends on it is not
+        /// asked.
+        pub fn read(
+            settings: &media::catalogue::Settings,
+            body: Option<&media::Body>,
+        ) -> Option<Box<dyn $Trait>> {
+            let names: Vec<String> =
+                CATALOGUE.pages.iter().map(media::catalogue::Page::name).collect();
+            let (index, recipe) = settings.choice(&names)?;
+            let readers = [$(
+                |s: &media::catalogue::Settings, b: Option<&media::Body>| {
+                    $module::$Page::read(s, b).map(|page| Box::new(page) as Box<dyn $Trait>)
+                }
+            ),*];
+            let read = readers[index](&recipe, body);
+            recipe.close();
+            read
+        }
+    };
+}
+use recipes;

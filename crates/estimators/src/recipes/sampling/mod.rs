@@ -1,0 +1,68 @@
+//! Recipes for the sampling extinction σ̂: any non-negative field that inverts exactly.
+
+pub mod constant;
+pub mod local_majorants;
+pub mod piecewise_constant;
+pub mod piecewise_linear;
+pub mod pilot;
+pub mod spectral;
+
+use super::{Refusal, Site, recipes};
+use media::{Control, Majorants, Piecewise, Volume};
+
+/// How a sampling extinction is made for a medium and a control.
+pub trait Recipe: Send + Sync {
+    /// In words, as in `constant 0.4`.
+    fn label(&self) -> String;
+
+    /// The value, if it is one constant whatever the medium.
+    fn constant(&self) -> Option<f64> {
+        None
+    }
+
+    /// Whether it looks σ_t up to learn from it, at places that random numbers choose.
+    fn learns(&self) -> bool {
+        false
+    }
+
+    /// The recipes of the channels of a spectral medium, where each has its own.
+    fn channels(&self) -> &[Box<dyn Recipe>] {
+        &[]
+    }
+
+    /// Makes σ̂ on the support of the medium.
+    ///
+    /// # Errors
+    ///
+    /// What the recipe needs and does not find.
+    fn prepare(&self, site: &Site, control: &Control) -> Result<Piecewise, Refusal>;
+
+    /// Makes σ̂, and counts the lookups of σ_t that it took.
+    ///
+    /// # Errors
+    ///
+    /// What the recipe needs and does not find.
+    fn prepare_counted(&self, site: &Site, control: &Control) -> Result<(Piecewise, u64), Refusal> {
+        self.prepare(site, control).map(|sampling| (sampling, 0))
+    }
+
+    /// Knowledge of the medium that σ̂ needs beside lookups, as in `max |σ_t − σ_c|`; `None` for none.
+    fn needs(&self) -> Option<&'static str> {
+        None
+    }
+
+    /// Makes σ̂ on a volume, for particles that leave the ray; `None` for a recipe that only knows rays.
+    fn in_space(&self, volume: &Volume) -> Option<Majorants> {
+        let _ = volume;
+        None
+    }
+}
+
+recipes! {
+    "sampling", Recipe:
+    constant::Constant,
+    piecewise_constant::PiecewiseConstant,
+    piecewise_linear::PiecewiseLinear,
+    local_majorants::LocalMajorants,
+    pilot::Pilot,
+}

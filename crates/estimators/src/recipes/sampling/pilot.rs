@@ -1,0 +1,85 @@
+//! A constant σ̂ learned from pilot rays: the largest |residual| seen so far, times a safety factor.
+//!
+//! | setting | meaning | unit | default |
+//! |---|---|---|---|
+//! | `rays` | number of pilot rays | | 8 |
+//! | `safety` | factor on the largest `abs(σ_t − σ_c)` seen | | 1.2 |
+//! | `start` | σ̂ of the first pilot ray | 1/length | 10 / length of the support |
+//!
+//! Each pilot ray walks with the σ̂ learned from those before it and looks σ_t up where it collides.
+//! The result is never assumed to be a majorant: estimators that need one are refused where it is
+//! none. Pilot rays have their own random numbers, and what they learned is part of the plan. Their lookups are counted as
+//! setup lookups of the ray.
+//!
+//! Source: Szirmay-Kalos et al. 2017, section 4.3 ("we set it to the maximum obtained during casting
+//! the last few neighboring rays").
+
+use super::Recipe;
+use crate::recipes::{Refusal, Site};
+use media::catalogue::{Domain, Settings};
+use media::{Body, Control, Piecewise};
+use numeric::rng::{Address, exponential};
+
+/// A pilot ray with more collisions than this is a mistake in the case.
+const MOST_COLLISIONS: f64 = 1e6;
+
+/// What pilot rays teach.
+#[derive(Debug, Clone, Copy)]
+pub struct Pilot {
+    rays: u64,
+    safety: f64,
+    start: Option<f64>,
+}
+
+impl Pilot {
+    /// Reads `{ rays, safety, start }`.
+    pub fn read(settings: &Settings, _: Option<&Body>) -> Option<Self> {
+        let rays = settings.count_or("rays", 1..=10_000, 8);
+        let safety = settings.number_or("safety", Domain::Positive, 1.2);
+        let start = settings.optional("start", |key| settings.number(key, Domain::Positive));
+        Some(Self { rays: rays?, safety: safety?, start: start? })
+    }
+}
+
+impl Recipe for Pilot {
+    fn label(&self) -> String {
+        format!("pilot, {} rays", self.rays)
+    }
+
+    fn learns(&self) -> bool {
+        true
+    }
+
+    fn prepare(&self, site: &Site, control: &Control) -> Result<Piecewise, Refusal> {
+        self.prepare_counted(site, control).map(|(sampling, _)| sampling)
+    }
+
+    fn prepare_counted(&self, site: &Site, control: &Control) -> Result<(Piecewise, u64), Refusal> {
+        let support = site.mesh.support();
+        if support.is_empty() {
+            return Ok((Piecewise::constant(0.0, support), 0));
+        }
+        let medium = site.mesh.medium();
+        let mut sampling = self.start.unwrap_or(10.0 / support.length());
+        let (mut largest, mut lookups) = (0.0f64, 0);
+        for ray in 0..self.rays {
+            let mut rng = Address { block: ray, ..site.address }.pilot();
+            let collisions = sampling * support.length();
+            if collisions.is_nan() || collisions > MOST_COLLISIONS {
+                let needs = "at most a million collisions of a pilot ray";
+                return Err(Refusal::mismatch(needs, format!("{collisions:.1e} are expected")));
+            }
+            let flown = Piecewise::constant(sampling, support);
+            let mut cursor = flown.begin();
+            while flown.fly(&mut cursor, exponential(&mut rng)).is_some() {
+                let residual = medium.extinction(cursor.t) - control.extinction(cursor.t);
+                largest = largest.max(residual.abs());
+                lookups += 1;
+            }
+            if largest > 0.0 {
+                sampling = self.safety * largest;
+            }
+        }
+        Ok((Piecewise::constant(sampling, support), lookups))
+    }
+}

@@ -1,0 +1,165 @@
+//! Walks of a particle through a rod.
+
+pub mod adaptive;
+pub mod analog;
+pub mod non_terminating;
+pub mod packet;
+pub mod roulette;
+pub mod terminating;
+pub mod walk;
+pub mod weighted;
+
+use fearless_simd::Level;
+
+use crate::kernels::packet::Request;
+use crate::{Draw, Refusal, Setup, estimators};
+use media::Lookups;
+use numeric::rng::Stream;
+use theory::problems::rod::Values;
+use theory::problems::{Problem, Rod};
+use theory::rod::{self, NoVariance};
+use theory::{ParticleRule, Prediction};
+
+/// A problem whose walks collide by a rule: the pages of its estimators are the same.
+pub trait ByRule: Problem {
+    /// Whether a rule exists, reaches all of the medium, and has a variance there.
+    ///
+    /// # Errors
+    ///
+    /// Why not.
+    fn realisable(setup: &Setup<Self>, rule: ParticleRule) -> Result<(), Refusal>;
+
+    /// What theory says of its draws.
+    fn predict(setup: &Setup<Self>, rule: ParticleRule) -> Prediction;
+
+    /// One of them.
+    fn draw(
+        rule: ParticleRule,
+        setup: &Setup<Self>,
+        medium: &Lookups,
+        rng: &mut Stream,
+    ) -> Draw<Self::Value>;
+
+    /// The same in packets, see [`crate::Estimator::draw_packets`].
+    fn packets<'a>(
+        level: Level,
+        rule: ParticleRule,
+        setup: &Setup<Self>,
+        medium: &Lookups,
+        request: Request<'a>,
+    ) -> Option<Request<'a>>;
+}
+
+impl ByRule for Rod {
+    fn realisable(setup: &Setup<Self>, rule: ParticleRule) -> Result<(), Refusal> {
+        setup.require_coverage()?;
+        setup.require_few_collisions("∫σ̂ ≤ 1e6")?;
+        if !rule.needs().is_empty() {
+            let albedo = &setup.problem.albedo;
+            let limit = |t: f64| rule.limits(albedo.value(t))[1];
+            setup.require_ratio_within(albedo.knots(), limit, rule.needs())?;
+        }
+        if setup.problem.parts > 0 && setup.sampling.corner_values().any(|value| value <= 0.0) {
+            let needs = "σ̂ > 0 on the whole rod to see its flux";
+            return Err(Refusal::mismatch(needs, "σ̂ = 0 somewhere"));
+        }
+        let mesh = &setup.mesh;
+        let needs = "a finite variance";
+        match rod::has_variance(mesh, &setup.problem, &setup.sampling, rule) {
+            Ok(()) => Ok(()),
+            Err(NoVariance::Diverges(at)) => Err(Refusal::Inequality {
+                needs,
+                found: "σ̂ is so far below σ_t that E[X²] diverges: the critical length ends"
+                    .to_owned(),
+                at,
+            }),
+            Err(NoVariance::Blurred(error)) if error < 1.0 => Err(Refusal::mismatch(
+                needs,
+                format!("E[X²] is known to {error:.0e} only: σ̂ is next to where it diverges"),
+            )),
+            Err(NoVariance::Blurred(_)) => Err(Refusal::mismatch(
+                needs,
+                "σ̂ is so near to where E[X²] diverges that theory does not tell on which side",
+            )),
+            Err(NoVariance::TooLong) => Err(Refusal::mismatch(
+                "a rod that theory can cut into 1e4 steps",
+                "σ̂ or σ_t is too large on it",
+            )),
+        }
+    }
+
+    fn predict(setup: &Setup<Self>, rule: ParticleRule) -> Prediction {
+        rod::predict(&setup.mesh, &setup.problem, &setup.sampling, rule, setup.laws)
+    }
+
+    #[inline(always)]
+    fn draw(
+        rule: ParticleRule,
+        setup: &Setup<Self>,
+        medium: &Lookups,
+        rng: &mut Stream,
+    ) -> Draw<Values> {
+        walk::draw(&rule, setup, medium, rng)
+    }
+
+    fn packets<'a>(
+        level: Level,
+        rule: ParticleRule,
+        setup: &Setup<Self>,
+        medium: &Lookups,
+        request: Request<'a>,
+    ) -> Option<Request<'a>> {
+        packet::walks(level, setup, (rule, None), medium, request)
+    }
+}
+
+/// The page of a rule, as in `walks!(Adaptive)`.
+macro_rules! walks {
+    ($Page:ident) => {
+        impl<P: $crate::rod::ByRule> $crate::Estimator<P> for $Page {
+            const INPUTS: $crate::Inputs = $crate::Inputs::SAMPLING;
+            const PLAIN: Option<Self> = Some(Self);
+            const IN_PACKETS: bool = true;
+
+            fn domain(&self, setup: &$crate::Setup<P>) -> Result<(), $crate::Refusal> {
+                P::realisable(setup, theory::ParticleRule::$Page)
+            }
+
+            fn predict(&self, setup: &$crate::Setup<P>) -> theory::Prediction {
+                P::predict(setup, theory::ParticleRule::$Page)
+            }
+
+            #[inline(always)]
+            fn draw(
+                &self,
+                setup: &$crate::Setup<P>,
+                medium: &media::Lookups,
+                rng: &mut numeric::rng::Stream,
+            ) -> $crate::Draw<P::Value> {
+                P::draw(theory::ParticleRule::$Page, setup, medium, rng)
+            }
+
+            fn draw_packets<'a>(
+                &self,
+                level: fearless_simd::Level,
+                setup: &$crate::Setup<P>,
+                medium: &media::Lookups,
+                request: $crate::kernels::packet::Request<'a>,
+            ) -> Option<$crate::kernels::packet::Request<'a>> {
+                let rule = theory::ParticleRule::$Page;
+                P::packets(level, rule, setup, medium, request)
+            }
+        }
+    };
+}
+use walks;
+
+estimators! {
+    Rod:
+    terminating::Terminating,
+    non_terminating::NonTerminating,
+    adaptive::Adaptive,
+    analog::Analog,
+    weighted::Weighted,
+    roulette::Roulette,
+}

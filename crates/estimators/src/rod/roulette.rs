@@ -1,0 +1,134 @@
+//! The non-terminating walk with Russian roulette on small weights.
+//!
+//! Unbiased for: σ̂ ≥ σ_t, for which theory bounds the variance; refused elsewhere.
+//!
+//! ```text
+//! after a collision with |w| < w₀: the walk goes on with chance |w|/w₀ and weight sgn(w) w₀, else it ends
+//! ```
+//!
+//! | setting | meaning | default |
+//! |---|---|---|
+//! | `below` | w₀ in (0, 1] | 0.1 |
+//!
+//! What roulette takes it gives back, so that every mean stays what it was. Which particles play depends
+//! on the weight that they have gathered: the moment equations, which hold for weight 1 and scale, do
+//! not close. Theory therefore knows the means and a bound on the variances, and no number of lookups.
+//! For `σ̂ ≥ σ_t`, where weights never exceed 1,
+//!
+//! ```text
+//! 0 ≤ X ≤ 1,  so that Var[X] ≤ E[X](1 − E[X])
+//! ```
+//!
+//! and means are tested with that bound. Elsewhere it is refused, as it is where the absorbed energy or the
+//! flux, which have no such bound, is a channel.
+//!
+//! Source: H. Kahn, *Use of Different Monte Carlo Sampling Techniques*, RAND P-766 (1955); the walk: that
+//! of `non-terminating`.
+
+use fearless_simd::Level;
+
+use super::walk::{self, Steps};
+use super::{ByRule, packet};
+use crate::kernels::packet::Request;
+use crate::{Draw, Estimator, Inputs, Refusal, Setup};
+use media::Lookups;
+use media::catalogue::{Domain, Settings};
+use numeric::rng::Stream;
+use theory::problems::Rod;
+use theory::problems::rod::{Quantity, Values};
+use theory::{Odds, ParticleRule, Prediction, rod};
+
+/// The non-terminating rule with roulette; σ̂ is its input.
+#[derive(Debug, Clone, Copy)]
+pub struct Roulette {
+    /// w₀.
+    pub below: f64,
+}
+
+impl Steps for Roulette {
+    #[inline(always)]
+    fn odds_at(&self, ratio: f64, albedo: f64) -> Odds {
+        ParticleRule::NonTerminating.odds(ratio, albedo)
+    }
+
+    #[inline(always)]
+    fn keep(&self, rng: &mut Stream, weight: f64) -> Option<f64> {
+        if weight.abs() >= self.below {
+            return Some(weight);
+        }
+        (rng.uniform() * self.below < weight.abs()).then(|| self.below.copysign(weight))
+    }
+}
+
+impl Estimator<Rod> for Roulette {
+    const INPUTS: Inputs = Inputs::SAMPLING;
+    const IN_PACKETS: bool = true;
+
+    fn read(settings: &Settings) -> Option<Self> {
+        let below = settings.number_or("below", Domain::Positive, 0.1)?;
+        if below > 1.0 {
+            let help = "a particle begins with weight 1";
+            settings.fault("below", format!("`below` is {below}"), help);
+            return None;
+        }
+        Some(Self { below })
+    }
+
+    fn label(&self, _: bool) -> String {
+        format!("below {}", self.below)
+    }
+
+    fn domain(&self, setup: &Setup<Rod>) -> Result<(), Refusal> {
+        let is_score = |seen: &Quantity| matches!(seen, Quantity::Absorbed | Quantity::Flux(_));
+        if setup.problem.channels.iter().any(is_score) {
+            return Err(Refusal::mismatch(
+                "channels whose draws are at most 1",
+                "what is scored on the way has no bound",
+            ));
+        }
+        setup.require_few_collisions("∫σ̂ ≤ 1e6")?;
+        setup.require_ratio_at_most(1.0, "σ̂ ≥ σ_t everywhere")?;
+        Rod::realisable(setup, ParticleRule::NonTerminating)
+    }
+
+    fn predict(&self, setup: &Setup<Rod>) -> Prediction {
+        rod::bounded(&setup.mesh, &setup.problem)
+    }
+
+    #[inline(always)]
+    fn draw(&self, setup: &Setup<Rod>, medium: &Lookups, rng: &mut Stream) -> Draw<Values> {
+        walk::draw(self, setup, medium, rng)
+    }
+
+    fn draw_packets<'a>(
+        &self,
+        level: Level,
+        setup: &Setup<Rod>,
+        medium: &Lookups,
+        request: Request<'a>,
+    ) -> Option<Request<'a>> {
+        let rule = (ParticleRule::NonTerminating, Some(self.below));
+        packet::walks(level, setup, rule, medium, request)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use numeric::rng::Address;
+
+    #[test]
+    fn what_roulette_takes_it_gives_back() {
+        let roulette = Roulette { below: 0.4 };
+        let mut rng = Address { seed: 1, experiment: 2, block: 3, lane: 4 }.stream();
+        assert_eq!(roulette.keep(&mut rng, 0.4), Some(0.4));
+        assert_eq!(roulette.keep(&mut rng, 0.0), None);
+        for weight in [0.1, -0.3] {
+            let draws = 100_000;
+            let kept = (0..draws).filter_map(|_| roulette.keep(&mut rng, weight));
+            let mean = kept.sum::<f64>() / f64::from(draws);
+            // A standard deviation of 0.0006 at most.
+            assert!((mean - weight).abs() < 0.004, "{mean} for {weight}");
+        }
+    }
+}

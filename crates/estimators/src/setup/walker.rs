@@ -1,0 +1,244 @@
+//! Whose walk scores all channels, and what its densities are divided by.
+
+use super::Refusal;
+use super::channels::{require_common, require_room};
+use super::heroes::Heroes;
+use super::{SpectralChannel, channels};
+use media::catalogue::Settings;
+use media::phase::Phase;
+use numeric::digits::rounded;
+use theory::ParticleRule;
+use theory::particle::Event;
+use theory::spectral::bound::phi;
+use theory::spectral::chance::{Chance, Chances, shares};
+use theory::spectral::rates::Proposal;
+
+/// Whose walk scores all channels.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Walker {
+    /// That of a hero, divided by its density alone.
+    Hero(Heroes),
+    /// That of a hero, divided by the mean density of all heroes: multiple importance sampling.
+    Mis(Heroes),
+    /// One of all channels, divided by the chances of what happened to it: spectral tracking.
+    SpectralTracking(Chances),
+}
+
+/// The chances of what a tentative collision is.
+#[derive(Debug, Clone, Copy)]
+pub struct EventChances {
+    scattered: f64,
+    null: f64,
+    absorbed: f64,
+}
+
+impl EventChances {
+    /// What a uniform number decides.
+    #[inline(always)]
+    pub fn decide(self, number: f64) -> Event {
+        if number < self.scattered {
+            Event::Scattered
+        } else if number < self.scattered + self.null {
+            Event::Transmitted
+        } else {
+            Event::Absorbed
+        }
+    }
+
+    /// The chance of an event.
+    #[inline(always)]
+    pub fn of(self, event: Event) -> f64 {
+        match event {
+            Event::Scattered => self.scattered,
+            Event::Transmitted => self.null,
+            Event::Absorbed => self.absorbed,
+        }
+    }
+}
+
+/// [`Walker::Hero`], as the kind of a page.
+pub const HERO: u8 = 0;
+/// [`Walker::Mis`].
+pub const MIS: u8 = 1;
+/// [`Walker::SpectralTracking`].
+pub const SPECTRAL_TRACKING: u8 = 2;
+
+/// Reads `probabilities`: how spectral tracking chooses what a collision is.
+pub fn read_chances(settings: &Settings) -> Option<Chances> {
+    let words = ["average", "maximum", "history"];
+    Some(match settings.word_or("probabilities", &words, "average")? {
+        "average" => Chances::Fixed(Chance::Average),
+        "maximum" => Chances::Fixed(Chance::Maximum),
+        _ => Chances::History,
+    })
+}
+
+impl Walker {
+    /// Reads what a page of a kind takes: `hero`, or `probabilities`.
+    pub fn read(kind: u8, settings: &Settings) -> Option<Self> {
+        if kind != SPECTRAL_TRACKING {
+            let heroes = Heroes::read(settings)?;
+            return Some(if kind == HERO { Self::Hero(heroes) } else { Self::Mis(heroes) });
+        }
+        Some(Self::SpectralTracking(read_chances(settings)?))
+    }
+
+    /// Its settings in words.
+    pub fn label(&self) -> String {
+        match self {
+            Self::Hero(heroes) | Self::Mis(heroes) => heroes.label(),
+            Self::SpectralTracking(chances) => chances.label().into(),
+        }
+    }
+
+    /// The law of the hero; `None` where one walk is that of all channels, with the number 0.
+    #[inline(always)]
+    pub fn heroes(&self) -> Option<&Heroes> {
+        match self {
+            Self::Hero(heroes) | Self::Mis(heroes) => Some(heroes),
+            Self::SpectralTracking(_) => None,
+        }
+    }
+
+    /// The probabilities of heroes; of walks of all channels together that of the first is 1.
+    pub fn probabilities(&self, count: usize) -> Vec<f64> {
+        match self.heroes() {
+            Some(heroes) => heroes.of(count),
+            None => (0..count).map(|channel| if channel == 0 { 1.0 } else { 0.0 }).collect(),
+        }
+    }
+
+    /// Who walks: a hero that a uniform number chooses, or number 0 without one.
+    #[inline(always)]
+    pub fn choose(&self, count: usize, number: impl FnOnce() -> f64) -> usize {
+        self.heroes().map_or(0, |heroes| heroes.choose(count, number()))
+    }
+
+    /// The chances of what a collision is, given `σ_t/σ̂`, the albedo and the weight of each channel.
+    #[inline(always)]
+    pub fn chances(
+        &self,
+        hero: usize,
+        ratios: &[f64],
+        albedos: &[f64],
+        weights: &[f64],
+    ) -> EventChances {
+        let [null, scattered, absorbed] = if let Self::SpectralTracking(chances) = self {
+            chances.of_events(
+                ratios.len(),
+                #[inline(always)]
+                |channel| shares(ratios[channel], albedos[channel]),
+                weights,
+            )
+        } else {
+            let odds = ParticleRule::Analog.odds(ratios[hero], albedos[hero]);
+            [odds.transmit, odds.scatter, 1.0 - odds.scatter - odds.transmit]
+        };
+        EventChances { scattered, null, absorbed }
+    }
+
+    /// How walks of all channels together choose what a collision is.
+    #[inline(always)]
+    pub fn together(&self) -> Option<Chances> {
+        match self {
+            Self::SpectralTracking(chances) => Some(*chances),
+            _ => None,
+        }
+    }
+
+    /// A constant σ̂ in each channel, and what the walker needs of them: a probability for each, or one σ̂ for all.
+    ///
+    /// # Errors
+    ///
+    /// What is violated, and where.
+    pub fn require(&self, of: &[SpectralChannel]) -> Result<(), Refusal> {
+        channels::require_constants(of)?;
+        match self {
+            Self::Hero(heroes) | Self::Mis(heroes) => heroes.require(of.len()),
+            Self::SpectralTracking(_) => require_common(of),
+        }
+    }
+
+    /// The same, `σ̂ ≥ σ_t` on the ray, and heroes by themselves with room for what happens in other channels.
+    ///
+    /// # Errors
+    ///
+    /// What is violated, and where.
+    pub fn require_on_ray(&self, of: &[SpectralChannel]) -> Result<(), Refusal> {
+        self.require(of)?;
+        channels::require_majorants(of)?;
+        match self {
+            Self::Hero(_) => require_room(of, true),
+            _ => Ok(()),
+        }
+    }
+
+    /// One phase function for all channels where they walk together: a walk has one direction.
+    ///
+    /// # Errors
+    ///
+    /// Two that differ.
+    pub fn require_phases(&self, phases: &[Phase]) -> Result<(), Refusal> {
+        let other = phases.iter().find(|phase| **phase != phases[0]);
+        match (self, other) {
+            (Self::SpectralTracking(_), Some(other)) => {
+                let found = format!("{} and {}", phases[0].label(), other.label());
+                Err(Refusal::mismatch("one phase function for all channels", found))
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// Bounds on `E[X²]` of all channels, given one for a walk, a channel and its Φ, or what the second moment is
+    /// multiplied by between two scatterings where that is too much.
+    ///
+    /// # Errors
+    ///
+    /// The walk and the channel of which there is none.
+    pub fn second_moment_bounds(
+        &self,
+        phases: &[Phase],
+        of: impl Fn(Proposal, usize, f64) -> Result<f64, f64>,
+    ) -> Result<Vec<f64>, Refusal> {
+        let walks: Vec<(f64, Proposal)> = match self {
+            Self::Hero(heroes) | Self::Mis(heroes) => {
+                let heroes = heroes.of(phases.len());
+                heroes.into_iter().enumerate().map(|(hero, w)| (w, Proposal::Hero(hero))).collect()
+            }
+            Self::SpectralTracking(Chances::Fixed(chance)) => {
+                vec![(1.0, Proposal::Together(*chance))]
+            }
+            // Nobody asks: it is bounded as multiple importance sampling is.
+            Self::SpectralTracking(Chances::History) => {
+                return Ok(vec![f64::INFINITY; phases.len()]);
+            }
+        };
+        let of_channel = |channel: usize| {
+            let mut sum = 0.0;
+            for &(weight, walk) in &walks {
+                let (phi, who) = match walk {
+                    Proposal::Hero(hero) => (
+                        phi(&phases[channel], &phases[hero]),
+                        format!("walks of hero {}", hero + 1),
+                    ),
+                    Proposal::Together(_) => (1.0, "walks".into()),
+                };
+                let found = of(walk, channel, phi).map_err(|factor| {
+                    let times = if factor.is_finite() {
+                        let factor = rounded(factor);
+                        format!("multiply E[X²] by {factor}, not by less than 1, from one scattering to the next")
+                    } else if phi.is_finite() {
+                        "lack what happens in another channel, which biases them, or gain without limit".into()
+                    } else {
+                        "turn by a phase function too peaked for a bound".into()
+                    };
+                    let found = format!("{who} {times} in channel {}", channel + 1);
+                    Refusal::mismatch("a second moment that theory bounds", found)
+                })?;
+                sum += weight * found;
+            }
+            Ok(sum)
+        };
+        (0..phases.len()).map(of_channel).collect()
+    }
+}

@@ -1,0 +1,124 @@
+//! Scattering points through the main part of the extinction: a control of straight pieces.
+//!
+//! ```text
+//! p(s) = σ_m(s) e^{−∫₀ˢ σ_m} / (1 − e^{−τ_m}),   ∫₀ˢ σ_m = −ln(1 − u(1 − e^{−τ_m}))
+//! ```
+//!
+//! The inverse is closed because the pieces are straight. It needs `σ_m > 0` wherever `σ_t > 0`, or
+//! some of the light is never found.
+
+use crate::{Refusal, Setup};
+use media::{Control, Piecewise};
+use numeric::digits::rounded;
+use numeric::{Known, Lane, Span};
+use theory::problems::{Problem, SingleScattering};
+use theory::single::predict::DENSITY;
+
+/// The main part.
+#[derive(Clone, Copy)]
+pub struct MainPart<'a> {
+    pieces: &'a Piecewise,
+    support: Span,
+    /// `1 − e^{−τ_m}`.
+    absorbed: f64,
+}
+
+impl<'a> MainPart<'a> {
+    /// The control of a setup; `None` if that has no straight pieces.
+    #[inline(always)]
+    pub fn of(setup: &'a Setup<SingleScattering>) -> Option<Self> {
+        let Control::Pieces(pieces) = &setup.control else { return None };
+        let support = setup.problem.medium().support();
+        Some(Self { pieces, support, absorbed: 1.0 - setup.control_transmittance })
+    }
+
+    /// The point that a uniform number finds.
+    #[inline(always)]
+    pub fn point<L: Lane>(&self, u: L) -> L {
+        let depth = -Lane::ln(u.each(1.0) - u * self.absorbed);
+        // Rounding may carry the last point past the end.
+        self.pieces.flown(depth).or_less(u.each(self.support.to))
+    }
+
+    /// Its density, 1/length.
+    #[inline(always)]
+    pub fn density<L: Lane>(&self, s: L) -> L {
+        let depth = self.pieces.depths(self.support.from, s);
+        self.pieces.value(s) * Lane::exp(-depth) / s.each(self.absorbed)
+    }
+
+    #[inline(always)]
+    fn depth(&self, s: f64) -> Known {
+        let before = Span::new(self.support.from, s);
+        media::OpticalDepth::optical_depth(self.pieces, before)
+    }
+
+    /// A relative error bound of the density.
+    pub fn blur(&self, s: f64) -> f64 {
+        DENSITY + self.depth(s).error
+    }
+}
+
+/// The kinks of the density.
+pub fn cuts(setup: &Setup<SingleScattering>) -> Vec<f64> {
+    setup.control.breaks()
+}
+
+/// Straight pieces that are nowhere negative, and not zero throughout.
+///
+/// # Errors
+///
+/// What the control is instead.
+pub fn require_straight(setup: &Setup<SingleScattering>) -> Result<(), Refusal> {
+    let needs = "a control of straight pieces, as `explorers`, `mean` or `constant`";
+    let Control::Pieces(pieces) = &setup.control else {
+        let found = if setup.control.is_none() { "there is none" } else { "it is another field" };
+        return Err(Refusal::mismatch(needs, found));
+    };
+    let (lowest, highest) = pieces
+        .corner_values()
+        .fold((f64::INFINITY, 0.0f64), |(low, high), value| (low.min(value), high.max(value)));
+    // The end of a line that falls to 0 is rounded.
+    if lowest < -ROUNDING * highest {
+        return Err(Refusal::mismatch(
+            "a control σ_m ≥ 0",
+            format!("it falls to {}", rounded(lowest)),
+        ));
+    }
+    let absorbed = 1.0 - setup.control_transmittance;
+    if setup.control.optical_depth(setup.mesh.support()).value == 0.0 {
+        return Err(Refusal::mismatch("a control σ_m > 0 somewhere", "it is zero throughout"));
+    }
+    if absorbed < THINNEST {
+        // What is left of 1 − e^{−τ_m} has too few digits to place points by.
+        let needs = "a control with ∫σ_m ≥ 1e-6";
+        return Err(Refusal::mismatch(needs, format!("1 − exp(−∫σ_m) = {absorbed:e}")));
+    }
+    Ok(())
+}
+
+/// How far below 0 the corner of a line may fall, relative to the highest.
+const ROUNDING: f64 = 1e-12;
+
+/// The least `1 − e^{−τ_m}` whose digits place points well.
+const THINNEST: f64 = 1e-6;
+
+/// Straight pieces that are positive wherever there is anything to scatter.
+///
+/// # Errors
+///
+/// What the control is instead, or where it is zero.
+pub fn require(setup: &Setup<SingleScattering>) -> Result<(), Refusal> {
+    require_straight(setup)?;
+    let Control::Pieces(pieces) = &setup.control else { return Ok(()) };
+    let as_sampling =
+        Setup::new(setup.problem.clone(), setup.mesh.clone(), Some(pieces.clone()), Control::None);
+    as_sampling.require_coverage().map_err(|refusal| match refusal {
+        Refusal::Inequality { at, .. } => Refusal::Inequality {
+            needs: "a control σ_m > 0 wherever σ_t > 0",
+            found: "σ_m = 0 while σ_t is not".into(),
+            at,
+        },
+        other => other,
+    })
+}

@@ -1,0 +1,117 @@
+//! Walks of the single particle model through a slab.
+
+pub mod adaptive;
+pub mod analog;
+pub mod non_terminating;
+pub mod packet;
+pub mod terminating;
+pub mod walk;
+pub mod weighted;
+
+use fearless_simd::Level;
+
+use super::rod::ByRule;
+use crate::kernels::packet::Request;
+use crate::{Draw, Refusal, Setup, estimators};
+use media::Lookups;
+use numeric::digits::rounded;
+use numeric::rng::Stream;
+use theory::problems::{Problem, Slab};
+use theory::slab::{self, Answer, Existence, Pieces, Walk};
+use theory::{ParticleRule, Prediction};
+
+/// The largest error of an exact answer, relative to it, that is worth drawing against.
+const BLURRED: f64 = 1e-4;
+
+/// The walk of a rule, for theory.
+fn walk_of(setup: &Setup<Slab>, rule: ParticleRule) -> Walk {
+    let cut = setup.mesh.refined(setup.sampling.knots(), &|_, _| Vec::new());
+    let ratio =
+        |t: f64, sigma: f64| if sigma == 0.0 { 0.0 } else { sigma / setup.sampling.value(t) };
+    let incidence = setup.problem.incidence;
+    let kinks = rule.kinks(setup.problem.albedo);
+    Walk {
+        incidence,
+        albedo: setup.problem.albedo,
+        rule,
+        pieces: Pieces::new(&setup.mesh, &setup.sampling, &kinks, &[incidence.light]),
+        largest_ratio: cut.largest(ratio).map_or(0.0, |(_, ratio)| ratio),
+        depth: setup.mesh.optical_depth().value,
+        laws: setup.laws,
+    }
+}
+
+/// The exact answer; `None` where theory does not resolve it.
+fn truth(setup: &Setup<Slab>) -> Option<Answer> {
+    let slab = &setup.problem;
+    if !slab::resolves(&slab.incidence.phase) {
+        return None;
+    }
+    let answer = slab::cached(&slab.incidence, setup.mesh.optical_depth(), slab.albedo)?;
+    let is_sharp = |known: &numeric::Known| known.error <= BLURRED * known.value;
+    [answer.reflected, answer.transmitted].iter().all(is_sharp).then_some(answer)
+}
+
+impl ByRule for Slab {
+    fn realisable(setup: &Setup<Self>, rule: ParticleRule) -> Result<(), Refusal> {
+        setup.require_coverage()?;
+        setup.require_few_collisions("∫σ̂ ≤ 1e6")?;
+        if !rule.needs().is_empty() {
+            let limit = rule.limits(setup.problem.albedo)[1];
+            setup.require_ratio_at_most(limit, rule.needs())?;
+        }
+        if truth(setup).is_none() {
+            let needs = "a reflectance and a transmittance above 0 that adding and doubling resolve \
+                         (a > 0, |g| ≤ 0.93, a moderate τ)";
+            let slab = &setup.problem;
+            let depth = slab.medium().optical_depth(setup.mesh.support()).value;
+            let (albedo, phase) = (slab.albedo, slab.incidence.phase.label());
+            let found = format!("a = {albedo}, τ = {}, phase {phase}", rounded(depth));
+            return Err(Refusal::mismatch(needs, found));
+        }
+        let found = match walk_of(setup, rule).second_moment() {
+            Existence::Finite => return Ok(()),
+            Existence::Diverges => {
+                "σ̂ is so far below σ_t that E[X²] diverges: along the layers, or between them"
+            }
+            Existence::Unknown => {
+                "σ̂ is so near to where E[X²] diverges that theory does not tell on which side"
+            }
+        };
+        Err(Refusal::mismatch("a finite variance", found))
+    }
+
+    /// Without an answer its values are no numbers, and are refused as such.
+    fn predict(setup: &Setup<Self>, rule: ParticleRule) -> Prediction {
+        walk_of(setup, rule).predict(&truth(setup).unwrap_or(Answer::UNKNOWN))
+    }
+
+    #[inline(always)]
+    fn draw(
+        rule: ParticleRule,
+        setup: &Setup<Self>,
+        medium: &Lookups,
+        rng: &mut Stream,
+    ) -> Draw<[f64; 2]> {
+        walk::draw(&rule, setup, medium, rng)
+    }
+
+    fn packets<'a>(
+        level: Level,
+        rule: ParticleRule,
+        setup: &Setup<Self>,
+        medium: &Lookups,
+        request: Request<'a>,
+    ) -> Option<Request<'a>> {
+        packet::walks(level, setup, rule, medium, request)
+    }
+}
+
+estimators! {
+    Slab:
+    terminating::Terminating,
+    non_terminating::NonTerminating,
+    adaptive::Adaptive,
+    analog::Analog,
+    weighted::Weighted,
+}

@@ -1,0 +1,18 @@
+//! The single particle model that keeps its weight, in a slab: what it cannot keep ends the walk.
+//!
+//! Unbiased for: r ≤ 2/(a + 1); refused elsewhere.
+//!
+//! ```text
+//! scattered with chance a r and weight w, straight on with chance |1 − r| and weight sgn(1 − r) w,
+//! absorbed otherwise;  r = σ_t/σ̂
+//! ```
+//!
+//! It takes σ̂ and no settings. It exists for `0 ≤ r ≤ 2/(a + 1)`, where the chances add up to at most
+//! 1, and is refused elsewhere. Draws lie in {−1, 0, 1}, the negative ones only where σ̂ < σ_t. Where
+//! σ̂ ≥ σ_t it is `analog`. `X²` is 0 or 1, so that its moments are all finite.
+//!
+//! Source: L. Szirmay-Kalos, I. Georgiev, M. Magdics, B. Molnár, D. Légrády, *Unbiased Light
+//! Transport Estimators for Inhomogeneous Participating Media*, Computer Graphics Forum 36 (2017),
+//! sections 3.1 and 3.2, Eq. 9, and `SimulateParticle`.
+
+pub use crate::rod::terminating::Terminating;

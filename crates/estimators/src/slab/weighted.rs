@@ -1,0 +1,20 @@
+//! Delta tracking through a slab with the albedo as a weight, for any σ̂.
+//!
+//! Unbiased for: every σ̂ > 0 where σ_t ≠ 0; refused where the variance is infinite.
+//!
+//! ```text
+//! D = |r| + |1 − r|,  r = σ_t/σ̂
+//! scattered with chance |r|/D and weight a sgn(r) D w, straight on with |1 − r|/D and sgn(1 − r) D w
+//! ```
+//!
+//! It takes σ̂ and no settings. Where `σ̂ ≥ σ_t` a collision is real with chance r, and then the weight is
+//! multiplied by a: `E[X^k]` is the energy of the same slab with the albedo `a^k`, whatever σ_t and σ̂.
+//! Below, chances and weights are those of weighted delta tracking, and the variance may be infinite:
+//! then it is refused.
+//!
+//! Source: B. Miller, I. Georgiev, W. Jarosz, *A null-scattering path integral formulation of light
+//! transport*, ACM Transactions on Graphics 38 (2019), section 5.2; the chances below σ_t: M. Galtier
+//! et al., *Integral formulation of null-collision Monte Carlo algorithms*, Journal of Quantitative
+//! Spectroscopy and Radiative Transfer 125 (2013).
+
+pub use crate::rod::weighted::Weighted;

@@ -1,0 +1,109 @@
+//! Walks of particles through volumes: what all problems in space share.
+
+pub mod exit;
+pub mod flights;
+mod grazing;
+mod pack;
+pub mod packet;
+pub mod particle;
+pub mod segment;
+pub mod shadow;
+pub mod tally;
+pub mod walk;
+mod walker;
+
+use std::sync::Arc;
+
+use super::{Refusal, Setup};
+use media::Majorants;
+use numeric::Known;
+use numeric::geometry::Bounds;
+use theory::problems::{Problem, Scene};
+use theory::space::Walks;
+use theory::{Channel, Moments, Tails};
+
+pub use particle::{Particle, Splitting};
+pub use tally::{Sums, Tally};
+pub use walk::{By, Scattering, Sink, Start, Steps, walk};
+pub use walker::{Splitter, Walked, Walker};
+
+/// Rounding of a sum over the collisions of a walk.
+const ROUNDING: f64 = 1e-12;
+/// More collisions than this on a straight way through a volume are a mistake in the case.
+const MOST_COLLISIONS: f64 = 1e4;
+
+/// σ̂ in space, which every estimator that walks takes.
+///
+/// # Errors
+///
+/// That there is none.
+pub fn majorants<P: Problem>(setup: &Setup<P>) -> Result<&Arc<Majorants>, Refusal> {
+    setup.space.as_ref().ok_or_else(|| Refusal::mismatch("σ̂ in space", "none is given"))
+}
+
+/// What bounds on the walks of a particle depend on.
+pub fn walks(scene: &Scene, majorants: &Majorants, particle: &Particle) -> Walks {
+    let across = match majorants.bounds() {
+        Bounds::Everywhere => f64::INFINITY,
+        Bounds::Sphere { radius, .. } => 2.0 * radius,
+        Bounds::Box(within) => (within.high - within.low).norm(),
+    };
+    Walks {
+        rule: particle.rule,
+        roulette: particle.roulette,
+        splits: particle.splitting != Splitting::None,
+        largest_ratio: majorants.largest_ratio(),
+        albedo: scene.albedo.range(),
+        depth: majorants.largest() * across,
+    }
+}
+
+/// Whether a rule exists for a σ̂, and its walks end within reason.
+///
+/// # Errors
+///
+/// The violated inequality.
+pub fn realisable<P: Problem>(
+    setup: &Setup<P>,
+    scene: &Scene,
+    particle: &Particle,
+) -> Result<(), Refusal> {
+    let walks = walks(scene, majorants(setup)?, particle);
+    if walks.depth > MOST_COLLISIONS {
+        let needs = "∫σ̂ ≤ 1e4 straight through the volume";
+        return Err(Refusal::mismatch(needs, format!("it may be {:e}", walks.depth)));
+    }
+    let limit = particle.rule.limits(walks.albedo[1])[1];
+    if walks.ratio() > limit {
+        let needs = particle.rule.needs();
+        let found = format!("σ_t may reach {:.6} times σ̂ in the volume", walks.ratio());
+        return Err(Refusal::mismatch(needs, found));
+    }
+    Ok(())
+}
+
+/// The energy that a particle brings, 1 on average, where its spread is known or bounded.
+///
+/// # Errors
+///
+/// Why no bound is known, and what would help.
+pub fn energy(walks: &Walks) -> Result<Channel, Refusal> {
+    let Some(bound) = walks.energy_variance() else {
+        let needs = "a variance that theory bounds: r < 2/(a + 1), or r ≤ 1 with roulette";
+        let found =
+            format!("σ_t may reach {:.6} times σ̂; raise σ̂, or take local majorants", walks.ratio());
+        return Err(Refusal::mismatch(needs, found));
+    };
+    Ok(energy_channel(bound, walks.depth))
+}
+
+/// The same given the bound, and `∫σ̂` straight through.
+pub fn energy_channel(bound: f64, depth: f64) -> Channel {
+    // A walk that nothing ends wanders for about depth² collisions, and each rounds.
+    let rounding = ROUNDING + 4.0 * f64::EPSILON * depth * depth;
+    let certain = Channel::unbiased(Known::new(1.0, rounding), Moments::certain(1.0), Tails::LIGHT);
+    if bound == 0.0 {
+        return certain;
+    }
+    Channel { moments: None, most_variance: Some(bound), ..certain }
+}

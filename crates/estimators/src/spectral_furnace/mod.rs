@@ -1,0 +1,144 @@
+//! Walks into a furnace in several channels, all of them by one draw.
+
+pub mod hero;
+pub mod independent;
+pub mod packet;
+pub mod spectral_mis;
+pub mod spectral_tracking;
+pub mod walk;
+
+use fearless_simd::Level;
+
+use super::chromatic::{Chromatic, Left, Steps};
+use crate::kernels::packet::Request;
+use crate::setup::walker::Walker;
+use crate::{Refusal, Setup, estimators};
+use ::theory::problems::SpectralFurnace;
+use ::theory::problems::spectral_furnace::Values;
+use ::theory::spectral::bound::{self, Flight};
+use ::theory::spectral::rates::Rates;
+use ::theory::{Prediction, spectral_furnace as theory};
+use media::Lookups;
+use media::body::MOST_CHANNELS;
+use numeric::digits::rounded;
+use numeric::geometry::Bounds;
+use numeric::rng::Stream;
+
+/// More collisions than this straight through the volume are a mistake in the case.
+const MOST_COLLISIONS: f64 = 1e4;
+/// Bounds on σ_t are raised by a share like this, because lookups are rounded.
+const SLACK: f64 = 1e-9;
+
+/// The length of the longest straight line in the volume.
+fn across(bounds: &Bounds) -> f64 {
+    match bounds {
+        Bounds::Everywhere => f64::INFINITY,
+        Bounds::Sphere { radius, .. } => 2.0 * radius,
+        Bounds::Box(within) => (within.high - within.low).norm(),
+    }
+}
+
+/// A constant σ̂ ≥ σ_t for each channel, everywhere in the volume.
+fn realisable(setup: &Setup<SpectralFurnace>) -> Result<(), Refusal> {
+    let across = across(&setup.problem.bounds);
+    let within = setup.problem.bounds.enclosing_box();
+    let channels = setup.channels.iter().zip(&setup.problem.channels);
+    for (number, (channel, medium)) in (1..).zip(channels) {
+        let most = within.map_or(f64::INFINITY, |within| medium.volume.majorant(&within));
+        if most > channel.majorant * (1.0 + SLACK) {
+            let [majorant, most] = [channel.majorant, most].map(rounded);
+            let found = format!("σ̂ = {majorant} and σ_t is bounded by {most} in channel {number}");
+            return Err(Refusal::mismatch("σ̂ ≥ σ_t everywhere in the volume", found));
+        }
+        let collisions = channel.majorant * across;
+        if collisions.is_nan() || collisions > MOST_COLLISIONS {
+            let found = format!("it may be {collisions:e} in channel {number}");
+            return Err(Refusal::mismatch("∫σ̂ ≤ 1e4 straight through the volume", found));
+        }
+    }
+    Ok(())
+}
+
+impl Chromatic for SpectralFurnace {
+    type End = ();
+
+    #[inline(always)]
+    fn walk(
+        steps: &impl Steps,
+        setup: &Setup<Self>,
+        walker: (&Walker, usize),
+        _: &Lookups,
+        rng: &mut Stream,
+    ) -> Left<()> {
+        walk::walk(steps, setup, walker, rng)
+    }
+
+    #[inline(always)]
+    fn values(&self, _: Option<()>, scores: &[f64; MOST_CHANNELS]) -> Values {
+        self.scored(*scores)
+    }
+
+    fn require(setup: &Setup<Self>, walker: &Walker) -> Result<(), Refusal> {
+        walker.require(&setup.channels)?;
+        let phases: Vec<_> = setup.problem.channels.iter().map(|channel| channel.phase).collect();
+        walker.require_phases(&phases)?;
+        realisable(setup)
+    }
+
+    fn second_moment_bounds(setup: &Setup<Self>, walker: &Walker) -> Result<Vec<f64>, Refusal> {
+        let problem = &setup.problem;
+        let values = problem.channels.iter().map(|channel| channel.volume.single_value());
+        let Some(extinctions) = values.collect::<Option<Vec<f64>>>() else {
+            let needs = "one σ_t in each channel: of fields, theory does not bound the variance";
+            return Err(Refusal::mismatch(needs, "σ_t varies"));
+        };
+        let majorants = setup.channels.iter().map(|channel| channel.majorant).collect();
+        let rates = Rates { majorants, albedos: problem.albedos.clone() };
+        let phases: Vec<_> = problem.channels.iter().map(|channel| channel.phase).collect();
+        let across = across(&problem.bounds);
+        walker.second_moment_bounds(&phases, |walk, channel, phi| {
+            let square = bound::square(&rates, walk, channel, &extinctions, phi);
+            let shorter = bound::are_isotropic(&phases) && square.lost > 0.0;
+            // Lines from a place in a ball are at most as long as a radius on average, and e^{−x} is convex.
+            let then = match problem.bounds {
+                Bounds::Sphere { radius, .. } if shorter => radius,
+                _ => across,
+            };
+            let [first, then] = [across, then].map(|length| Flight::of(square.lost, length));
+            let found = bound::largest(first, then, [square.scattered, square.absorbed]);
+            // A hero may never be absorbed where another channel is.
+            let is_finite = square.absorbed.is_finite();
+            found.ok_or(if is_finite { square.scattered * then.collides } else { f64::INFINITY })
+        })
+    }
+
+    fn predict_independent(_: &Setup<Self>, heroes: &[f64]) -> Prediction {
+        theory::independent(heroes)
+    }
+
+    fn predict_balanced(_: &Setup<Self>, heroes: &[f64]) -> Prediction {
+        theory::balanced(heroes)
+    }
+
+    fn predict_relative(_: &Setup<Self>, _: &Walker, second_moment_bounds: &[f64]) -> Prediction {
+        theory::relative(second_moment_bounds)
+    }
+
+    fn packets<'a, const ALL: bool>(
+        level: Level,
+        walker: &Walker,
+        setup: &Setup<Self>,
+        _: &Lookups,
+        request: Request<'a>,
+    ) -> Option<Request<'a>> {
+        packet::walks::<ALL>(level, walker, setup, request)
+    }
+}
+
+estimators! {
+    SpectralFurnace:
+    independent::Independent,
+    hero::Hero,
+    spectral_tracking::SpectralTracking,
+    spectral_mis::SpectralMis,
+}

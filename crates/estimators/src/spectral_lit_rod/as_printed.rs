@@ -1,0 +1,117 @@
+//! Spectral and next-event multiple importance sampling with errors of its source as printed: biased, here to be caught.
+//!
+//! Unbiased for: never: it is here to be caught.
+//!
+//! | `error` | as printed | what is right |
+//! |---|---|---|
+//! | `"last-piece"` | Algorithm 2, line 9 returns before f and both densities have the transmittance of the last piece | it multiplies all three |
+//! | `"average"` | Algorithm 2, line 9 averages over 2N techniques, and both samples are added | the sum over N |
+//! | `"hits-alone"` | Algorithm 1 divides hits by `p_uni` alone, beside shadow rays | by `p_uni + p_nee` |
+//! | `"one-phase"` | Algorithm 1, line 14 and Algorithm 2, lines 3 and 5 have one phase function for all channels | that of each channel |
+//! | `"all"` | all of them | |
+//!
+//! | setting | meaning | default |
+//! |---|---|---|
+//! | `error` | which | `"all"` |
+//! | `sampling` | a constant σ̂ ≥ σ_t in each channel | required here or in the case |
+//!
+//! Otherwise it is `next-event-mis`, with the exit that Algorithm 1 lacks. A case that lists it declares
+//! `expect = "biased"`, and the record tells how large the bias of each channel is.
+//!
+//! Source: B. Miller, I. Georgiev, W. Jarosz, *A null-scattering path integral formulation of light
+//! transport*, ACM Transactions on Graphics 38 (2019), Algorithms 1 and 2.
+
+use super::pages;
+use super::walk::Found;
+use crate::Estimator;
+use crate::kernels::hero::{LastPiece, Weighing};
+use crate::setup::heroes::Heroes;
+use crate::spectral_lit_rod::walk::Steps;
+use media::catalogue::Settings;
+use theory::problems::SpectralLitRod;
+use theory::spectral_lit_rod::Tracker;
+
+/// What is wrong.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Error {
+    /// All that follows.
+    All,
+    /// f and densities lack the transmittance of a shadow ray's last piece.
+    LastPiece,
+    /// Shadow rays are divided by the mean over both techniques.
+    Average,
+    /// Hits are divided by the densities of hits alone.
+    HitsAlone,
+    /// The phase function is that of the hero in all channels.
+    OnePhase,
+}
+
+/// The errors by their words.
+const WORDS: [(&str, Error); 5] = [
+    ("all", Error::All),
+    ("last-piece", Error::LastPiece),
+    ("average", Error::Average),
+    ("hits-alone", Error::HitsAlone),
+    ("one-phase", Error::OnePhase),
+];
+
+/// The algorithm with an error.
+#[derive(Debug, Clone)]
+pub struct AsPrinted {
+    /// Which.
+    pub error: Error,
+}
+
+impl AsPrinted {
+    #[inline(always)]
+    fn has(&self, error: Error) -> bool {
+        self.error == error || self.error == Error::All
+    }
+}
+
+impl Steps for AsPrinted {
+    #[inline(always)]
+    fn heroes(&self) -> &Heroes {
+        &Heroes::Uniform
+    }
+
+    #[inline(always)]
+    fn casts(&self) -> bool {
+        true
+    }
+
+    #[inline(always)]
+    fn weighing(&self, found: Found) -> Weighing {
+        let right = Weighing::RIGHT;
+        if found == Found::Connected {
+            let is_early = self.has(Error::LastPiece);
+            let last_piece = if is_early { LastPiece::Nowhere } else { LastPiece::Everywhere };
+            let share = if self.has(Error::Average) { 0.5 } else { 1.0 };
+            Weighing { last_piece, share, ..right }
+        } else {
+            let has_next_event = found == Found::Hit && !self.has(Error::HitsAlone);
+            Weighing { has_next_event, ..right }
+        }
+    }
+
+    #[inline(always)]
+    fn phase_of(&self, channel: usize, hero: usize) -> usize {
+        if self.has(Error::OnePhase) { hero } else { channel }
+    }
+}
+
+impl Estimator<SpectralLitRod> for AsPrinted {
+    fn read(settings: &Settings) -> Option<Self> {
+        let words = WORDS.map(|(word, _)| word);
+        let word = settings.word_or("error", &words, words[0])?;
+        let error = WORDS.iter().find(|(known, _)| *known == word).map(|(_, error)| *error);
+        error.map(|error| Self { error })
+    }
+
+    fn label(&self, _: bool) -> String {
+        let word = WORDS.iter().find(|(_, error)| *error == self.error);
+        word.map_or_else(String::new, |(word, _)| (*word).to_owned())
+    }
+
+    pages!(self => Heroes::Uniform, Tracker::Mis { casts: true });
+}

@@ -1,0 +1,62 @@
+//! Spectral and next-event multiple importance sampling: hits and shadow rays of one hero, weighted over all heroes.
+//!
+//! Unbiased for: a constant σ̂ ≥ σ_t in each channel; refused elsewhere.
+//!
+//! ```text
+//! X_λ = [unscattered] p_uni,λ/Σ_h w_h p_uni,h + Σ over shadow rays and the hit  f_λ/Σ_h w_h (p_uni,h + p_nee,h)
+//! ```
+//!
+//! | setting | meaning | default |
+//! |---|---|---|
+//! | `hero` | the law of the hero: `"uniform"`, `"luminance"`, or a list of probabilities that sum to 1 | `"uniform"` |
+//! | `sampling` | a constant σ̂ ≥ σ_t in each channel, the same in all or not | required here or in the case |
+//!
+//! Algorithm 2 of the source put right: the transmittance of the last piece is in f and in both densities; the samples of
+//! both techniques are added, so that the sum of their densities is not averaged over both; hits are divided by the same
+//! sum, with `p_nee` from the last real scattering on and none before the first; the phase function is that of each
+//! channel. The hero is one for the whole path, shadow rays too.
+//!
+//! With one channel it is `full-mis` of `lit-rod`. The variance is known where all channels have the same σ_t and σ̂;
+//! elsewhere it is bounded, see [`theory::spectral_lit_rod::bound`].
+//!
+//! Source: B. Miller, I. Georgiev, W. Jarosz, *A null-scattering path integral formulation of light
+//! transport*, ACM Transactions on Graphics 38 (2019), sections 5.3 and 5.4, Algorithms 1 and 2.
+
+use super::pages;
+use crate::Estimator;
+use crate::setup::heroes::Heroes;
+use crate::spectral_lit_rod::walk::Steps;
+use media::catalogue::Settings;
+use theory::problems::SpectralLitRod;
+use theory::spectral_lit_rod::Tracker;
+
+/// The balance heuristic over heroes and both techniques.
+#[derive(Debug, Clone)]
+pub struct NextEventMis {
+    /// The law of the hero.
+    pub heroes: Heroes,
+}
+
+impl Steps for NextEventMis {
+    #[inline(always)]
+    fn heroes(&self) -> &Heroes {
+        &self.heroes
+    }
+
+    #[inline(always)]
+    fn casts(&self) -> bool {
+        true
+    }
+}
+
+impl Estimator<SpectralLitRod> for NextEventMis {
+    fn read(settings: &Settings) -> Option<Self> {
+        Some(Self { heroes: Heroes::read(settings)? })
+    }
+
+    fn label(&self, _: bool) -> String {
+        self.heroes.label()
+    }
+
+    pages!(self => self.heroes, Tracker::Mis { casts: true });
+}

@@ -1,0 +1,61 @@
+//! Spectral multiple importance sampling: a hero's walk until it hits the emitter, weighted over all heroes.
+//!
+//! Unbiased for: a constant σ̂ ≥ σ_t in each channel; refused elsewhere.
+//!
+//! ```text
+//! X_λ = p_λ/Σ_h w_h p_h,   p_λ the density of the whole path by the walk of λ: distances, events, directions
+//! ```
+//!
+//! | setting | meaning | default |
+//! |---|---|---|
+//! | `hero` | the law of the hero: `"uniform"`, `"luminance"`, or a list of probabilities that sum to 1 | `"uniform"` |
+//! | `sampling` | a constant σ̂ ≥ σ_t in each channel, the same in all or not | required here or in the case |
+//!
+//! Algorithm 1 of the source with its exit: a flight beyond the end multiplies f and p by the transmittance through σ̂, and
+//! scores. f and p have the phase function of each channel at every scattering, which the source leaves out. What f is
+//! for a path that is absorbed or leaves at the beginning does not matter: nothing shines there.
+//!
+//! No draw exceeds `1/w_λ`, and with equal probabilities the mean of all channels is 1 or 0. The variance is known where
+//! all channels have the same σ_t and σ̂; elsewhere it is bounded, as draws never exceed `1/w`.
+//!
+//! Source: B. Miller, I. Georgiev, W. Jarosz, *A null-scattering path integral formulation of light
+//! transport*, ACM Transactions on Graphics 38 (2019), sections 5.3 and 5.4, Algorithm 1.
+
+use super::pages;
+use crate::Estimator;
+use crate::setup::heroes::Heroes;
+use crate::spectral_lit_rod::walk::Steps;
+use media::catalogue::Settings;
+use theory::problems::SpectralLitRod;
+use theory::spectral_lit_rod::Tracker;
+
+/// The balance heuristic over heroes.
+#[derive(Debug, Clone)]
+pub struct SpectralMis {
+    /// The law of the hero.
+    pub heroes: Heroes,
+}
+
+impl Steps for SpectralMis {
+    #[inline(always)]
+    fn heroes(&self) -> &Heroes {
+        &self.heroes
+    }
+
+    #[inline(always)]
+    fn casts(&self) -> bool {
+        false
+    }
+}
+
+impl Estimator<SpectralLitRod> for SpectralMis {
+    fn read(settings: &Settings) -> Option<Self> {
+        Some(Self { heroes: Heroes::read(settings)? })
+    }
+
+    fn label(&self, _: bool) -> String {
+        self.heroes.label()
+    }
+
+    pages!(self => self.heroes, Tracker::Mis { casts: false });
+}

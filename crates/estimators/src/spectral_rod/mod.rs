@@ -1,0 +1,102 @@
+//! Walks through a rod of coloured scatterers, all channels by one draw.
+
+pub mod hero;
+pub mod independent;
+pub mod packet;
+pub mod spectral_mis;
+pub mod spectral_tracking;
+pub mod walk;
+
+use crate::{Refusal, Setup, estimators};
+use media::Lookups;
+use numeric::rng::Stream;
+use theory::problems::spectral_rod::{Colours, Values};
+use theory::problems::{Problem, SpectralRod};
+use theory::spectral_rod::{Body, Rods, Spectrum, Tracker};
+
+/// A body of coloured scatterers: the pages of its estimators are the same.
+pub trait Coloured: Problem<Value = Values> {
+    /// Its albedos.
+    fn colours(&self) -> &Colours;
+
+    /// Whether theory knows the body.
+    ///
+    /// # Errors
+    ///
+    /// Why not.
+    fn require_answer(setup: &Setup<Self>) -> Result<(), Refusal>;
+
+    /// What theory knows of it.
+    fn body(setup: &Setup<Self>) -> Box<dyn Body + '_>;
+
+    /// Where walks take place, for packets.
+    fn place(&self) -> packet::Place<'_>;
+
+    /// Walks with a chance to be scattered at a real collision.
+    fn walk(setup: &Setup<Self>, medium: &Lookups, rng: &mut Stream, scatter: f64) -> walk::Left;
+}
+
+impl Coloured for SpectralRod {
+    fn colours(&self) -> &Colours {
+        &self.colours
+    }
+
+    fn require_answer(_: &Setup<Self>) -> Result<(), Refusal> {
+        Ok(())
+    }
+
+    fn body(setup: &Setup<Self>) -> Box<dyn Body + '_> {
+        Box::new(Rods::new(&setup.problem, &setup.mesh, &setup.sampling))
+    }
+
+    fn place(&self) -> packet::Place<'_> {
+        packet::Place::Rod(self.forward)
+    }
+
+    #[inline(always)]
+    fn walk(setup: &Setup<Self>, medium: &Lookups, rng: &mut Stream, scatter: f64) -> walk::Left {
+        walk::walk(setup, medium, rng, scatter)
+    }
+}
+
+/// What theory says of a tracker.
+fn spectrum<P: Coloured>(setup: &Setup<P>, heroes: Vec<f64>, tracker: Tracker) -> Spectrum<'_> {
+    Spectrum::new(P::body(setup), setup.problem.colours(), heroes, tracker)
+}
+
+/// The draws of a page: all that differs are its [`walk::Scores`].
+macro_rules! scored {
+    () => {
+        const INPUTS: $crate::Inputs = $crate::Inputs::SAMPLING;
+        const IN_PACKETS: bool = true;
+
+        #[inline(always)]
+        fn draw(
+            &self,
+            setup: &$crate::Setup<P>,
+            medium: &media::Lookups,
+            rng: &mut numeric::rng::Stream,
+        ) -> $crate::Draw<theory::problems::spectral_rod::Values> {
+            $crate::spectral_rod::walk::draw(self, setup, medium, rng)
+        }
+
+        fn draw_packets<'a>(
+            &self,
+            level: fearless_simd::Level,
+            setup: &$crate::Setup<P>,
+            medium: &media::Lookups,
+            request: $crate::kernels::packet::Request<'a>,
+        ) -> Option<$crate::kernels::packet::Request<'a>> {
+            $crate::spectral_rod::packet::walks(level, setup, self, medium, request)
+        }
+    };
+}
+use scored;
+
+estimators! {
+    SpectralRod:
+    independent::Independent,
+    hero::Hero,
+    spectral_tracking::SpectralTracking,
+    spectral_mis::SpectralMis,
+}

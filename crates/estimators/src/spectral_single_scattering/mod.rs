@@ -1,0 +1,110 @@
+//! Estimators of single scattering of a point light in several channels, all of them by one draw.
+
+pub mod hero;
+pub mod independent;
+pub mod packet;
+pub mod page;
+pub mod spectral_mis;
+pub mod spectral_tracking;
+pub mod walk;
+
+use crate::setup::heroes::Heroes;
+use crate::setup::walker::Walker;
+use crate::single_scattering::delta_tracking::{Absorption, DeltaTracking};
+use crate::{Refusal, Setup, estimators};
+use ::theory::Prediction;
+use ::theory::problems::SpectralSingleScattering;
+use ::theory::single::{Points, Tracking};
+use ::theory::spectral::Chances;
+use ::theory::spectral::rates::Proposal;
+use ::theory::spectral_single_scattering::{self as theory, relative::Relative};
+use media::Control;
+use media::catalogue::Settings;
+use numeric::digits::rounded;
+
+/// How shadow rays are tracked.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Shadow {
+    /// Their transmittance is known.
+    Exact,
+    /// By ratio tracking through the σ̂ of the hero.
+    Ratio,
+}
+
+impl Shadow {
+    fn read(settings: &Settings) -> Option<Self> {
+        let word = settings.word_or("shadow", &["exact", "ratio"], "exact")?;
+        Some(if word == "ratio" { Self::Ratio } else { Self::Exact })
+    }
+
+    fn needs(self) -> Option<&'static str> {
+        (self == Self::Exact).then_some("τ")
+    }
+
+    fn label(self, further: &str) -> String {
+        let words = if self == Self::Ratio { "ratio shadow" } else { "exact shadow" };
+        if further.is_empty() { words.into() } else { format!("{words}, {further}") }
+    }
+}
+
+/// σ̂ ≥ σ_t on every shadow ray that is tracked.
+fn realisable(setup: &Setup<SpectralSingleScattering>, shadow: Shadow) -> Result<(), Refusal> {
+    if shadow == Shadow::Exact {
+        return Ok(());
+    }
+    for (number, (channel, lit)) in (1..).zip(setup.channels.iter().zip(&setup.problem.channels)) {
+        let bound = lit.shadow_majorant();
+        if channel.majorant < bound * (1.0 - 1e-12) {
+            let [majorant, bound] = [channel.majorant, bound].map(rounded);
+            let found = format!("σ̂ = {majorant} and σ_t is bounded by {bound} in channel {number}");
+            return Err(Refusal::mismatch("σ̂ ≥ σ_t on every shadow ray", found));
+        }
+    }
+    Ok(())
+}
+
+/// The moments of analog tracking of each channel by itself.
+fn alone(setup: &Setup<SpectralSingleScattering>, shadow: Shadow) -> Vec<Points> {
+    let each = setup.channels.iter().zip(&setup.problem.channels);
+    let points = each.map(|(channel, problem)| {
+        let shadow = match shadow {
+            Shadow::Exact => Tracking::Exact,
+            Shadow::Ratio => Tracking::Ratio { sampling: channel.majorant, control: 0.0 },
+        };
+        let (mesh, sampling) = (channel.mesh.clone(), Some(channel.sampling.clone()));
+        let own = Setup::new(problem.clone(), mesh, sampling, Control::None);
+        DeltaTracking { absorption: Absorption::Analog, shadow }.points(&own)
+    });
+    points.collect()
+}
+
+/// What theory says of draws that score all channels.
+fn predict(setup: &Setup<SpectralSingleScattering>, walker: &Walker, shadow: Shadow) -> Prediction {
+    let (alone, count) = (alone(setup, shadow), setup.channels.len());
+    let walks = match walker {
+        Walker::Mis(heroes) => return theory::balanced(&alone, &heroes.of(count)),
+        // It scores what equal heroes score by the balance heuristic, and flies as they do.
+        Walker::SpectralTracking(Chances::History) => {
+            return theory::balanced(&alone, &Heroes::Uniform.of(count));
+        }
+        Walker::SpectralTracking(Chances::Fixed(chance)) => {
+            vec![(1.0, Proposal::Together(*chance))]
+        }
+        Walker::Hero(heroes) => {
+            heroes.of(count).into_iter().enumerate().map(|(h, w)| (w, Proposal::Hero(h))).collect()
+        }
+    };
+    let of_heroes = walker.heroes().and_then(|heroes| theory::lookups(&alone, &heroes.of(count)));
+    let media = setup.channels.iter().map(|channel| (&*channel.mesh, channel.majorant)).collect();
+    let tracks = shadow == Shadow::Ratio;
+    Relative::new(&setup.problem.channels, media, &setup.sampling, walks, tracks)
+        .predict(&alone, of_heroes)
+}
+
+estimators! {
+    SpectralSingleScattering:
+    independent::Independent,
+    hero::Hero,
+    spectral_tracking::SpectralTracking,
+    spectral_mis::SpectralMis,
+}

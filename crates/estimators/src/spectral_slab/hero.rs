@@ -1,0 +1,22 @@
+//! The analog walk of one hero scores all channels, divided by the hero's density alone.
+//!
+//! Unbiased for: σ̂ ≥ σ_t, as long as the variance is finite; refused elsewhere.
+//!
+//! ```text
+//! X_λ = (a_λ/a_h)^r where it leaves after r scatterings,  h of probability w_h
+//! ```
+//!
+//! | setting | meaning | default |
+//! |---|---|---|
+//! | `hero` | the law of the hero: `"uniform"`, `"luminance"`, or a list of probabilities that sum to 1 | `"uniform"` |
+//! | `sampling` | σ̂ ≥ σ_t | required here or in the case |
+//!
+//! Unbiased where every hero scatters, or nobody, but the variance of a channel is infinite where `a_λ²/a_h` is at least
+//! the albedo at which a slab so thick is critical: refused there, and within a thousandth of that depth. A finite
+//! variance may still be out of reach of any number of draws: the fourth moment needs `a_λ⁴/a_h³`.
+//!
+//! Source: B. Miller, I. Georgiev, W. Jarosz, *A Null-Scattering Path Integral Formulation of Light
+//! Transport*, ACM Transactions on Graphics 38 (2019), section 5.1; critical slabs: K. M. Case, P. F. Zweifel, *Linear
+//! Transport Theory* (1967).
+
+pub use crate::spectral_rod::hero::Hero;

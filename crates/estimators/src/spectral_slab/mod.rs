@@ -1,0 +1,70 @@
+//! Walks through a slab of coloured scatterers, all channels by one draw.
+
+pub mod hero;
+pub mod independent;
+pub mod spectral_mis;
+pub mod spectral_tracking;
+
+use super::spectral_rod::Coloured;
+use super::spectral_rod::packet::Place;
+use super::spectral_rod::walk::Left;
+use crate::{Refusal, Setup, estimators, slab};
+use ::theory::problems::SpectralSlab;
+use ::theory::problems::spectral_rod::{Colours, End};
+use ::theory::spectral_rod::Body;
+use ::theory::spectral_slab::Slabs;
+use ::theory::{ParticleRule, slab as theory};
+use media::Lookups;
+use numeric::digits::rounded;
+use numeric::rng::Stream;
+
+/// The largest error of an exact answer, relative to it, that is worth drawing against.
+const BLURRED: f64 = 1e-4;
+
+impl Coloured for SpectralSlab {
+    fn colours(&self) -> &Colours {
+        &self.colours
+    }
+
+    fn require_answer(setup: &Setup<Self>) -> Result<(), Refusal> {
+        let (phase, colours) = (&setup.problem.incidence.phase, &setup.problem.colours);
+        let body = Self::body(setup);
+        let is_sharp = |&(end, channel): &(End, usize)| {
+            let found = body.leaving(colours.albedos[channel]);
+            let known = found.map(|found| found[usize::from(end == End::Transmitted)]);
+            known.is_some_and(|known| known.error <= BLURRED * known.value)
+        };
+        if theory::resolves(phase) && colours.seen.iter().all(is_sharp) {
+            return Ok(());
+        }
+        let needs = "reflectances and transmittances that adding and doubling resolve (|g| ≤ 0.93, a moderate τ)";
+        let depth = rounded(setup.mesh.optical_depth().value);
+        Err(Refusal::mismatch(needs, format!("τ = {depth}, phase {}", phase.label())))
+    }
+
+    fn body(setup: &Setup<Self>) -> Box<dyn Body + '_> {
+        let fields = (&*setup.mesh, &setup.sampling);
+        Box::new(Slabs::new(&setup.problem, fields, setup.laws))
+    }
+
+    fn place(&self) -> Place<'_> {
+        Place::Slab(&self.incidence)
+    }
+
+    #[inline(always)]
+    fn walk(setup: &Setup<Self>, medium: &Lookups, rng: &mut Stream, scatter: f64) -> Left {
+        let asked = (&setup.problem.incidence, scatter);
+        let slab::walk::Left { below, order, lookups, .. } =
+            slab::walk::walk(&ParticleRule::Analog, asked, setup, medium, rng);
+        let end = below.map(|below| if below { End::Transmitted } else { End::Reflected });
+        Left { end, order, lookups }
+    }
+}
+
+estimators! {
+    SpectralSlab:
+    independent::Independent,
+    hero::Hero,
+    spectral_tracking::SpectralTracking,
+    spectral_mis::SpectralMis,
+}

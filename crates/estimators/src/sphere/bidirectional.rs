@@ -1,0 +1,62 @@
+//! Bidirectional path tracing: hits, shadow rays, and connections with a vertex of the light.
+//!
+//! Unbiased for: σ̂ ≥ σ_t; refused elsewhere.
+//!
+//! ```text
+//! a path … x – y – light, y its last scattering seen from the eye, x the one before, is made
+//!   by a hit          with the density 1                    the walk comes to y and on to the light
+//!   by a shadow ray   1/(q Π ν_y)                           the walk comes to y, which chooses the light
+//!   by a connection   4 d²/(a ρ² Π ν_x)                     a particle from the light comes to y, which is joined to x
+//! X = [light met before the first scattering] + Σ f/p w,   f/p the inverse densities,  w = p^β/Σ p^β
+//! ```
+//!
+//! | setting | meaning | default |
+//! |---|---|---|
+//! | `heuristic` | `"balance"`: β = 1, `"power"`: β = 2 | `"balance"` |
+//! | `subpaths` | `"independent"`: every scattering of the walk is joined to a vertex of the light of its own; `"shared"`: all of them to the same | `"independent"` |
+//!
+//! `ν = 1 − σ_t/σ̂` over the null collisions between y and the light, and between x and y; d is the distance of x and y, ρ
+//! the radius of the surface from or through which light comes, `q = Ω/4π`. All segments go through the same σ̂: walks by
+//! delta tracking (they are scattered with chance a), shadow rays and connections by ratio tracking, so that majorant
+//! transmittances cancel. Paths of one scattering have no x, but where a mean intensity is sought: the place is one. A
+//! distant light is never met: the density of a hit is 0.
+//!
+//! A connection by itself is not offered: it is worth `a ρ²/(4 d²)`, whose square `∫ d² dd/d⁴` has no mean wherever
+//! both of its ends may be anywhere. Densities of directions alone would not help. Beside the density 1 of a walk, to which
+//! near vertices are no less likely than far ones, it is worth less than ½. It therefore exists only in a combination over
+//! whole paths.
+//!
+//! Theory bounds the variance of independent subpaths; connections that share a vertex vary
+//! together, and so do they where the light is distant and not even: there pilot draws stand in for the variance. The
+//! number of lookups is not known.
+//!
+//! Source: E. Veach, L. Guibas, *Bidirectional Estimators for Light Transport*, Eurographics Workshop on Rendering
+//! (1994); B. Miller, I. Georgiev, W. Jarosz, *A null-scattering path integral formulation of light transport*, ACM
+//! Transactions on Graphics 38 (2019), section 5.5, Eqs. 43 and 44. Densities are derived in
+//! `estimators/sphere/combined.rs`, the bound in `theory/sphere/spread.rs`.
+
+use super::combined::{Sharing, Subpaths};
+use super::{Page, pages};
+use crate::space::Particle;
+use media::catalogue::Settings;
+use theory::lit_rod::Densities;
+use theory::{Heuristic, ParticleRule};
+
+/// Three techniques.
+#[derive(Debug, Clone)]
+pub struct Bidirectional(Page);
+
+impl Bidirectional {
+    fn page(settings: &Settings) -> Option<Page> {
+        let heuristic = Heuristic::read(settings);
+        let words = ["independent", "shared"];
+        let subpaths = settings
+            .word_or("subpaths", &words, words[0])
+            .map(|word| if word == words[0] { Subpaths::Independent } else { Subpaths::Shared });
+        let (densities, shadow) = (Densities::Full, None);
+        let sharing = Sharing { densities, heuristic: heuristic?, shadow, subpaths };
+        subpaths.map(|_| Page { particle: Particle::of(ParticleRule::Analog), sharing })
+    }
+}
+
+pages!(Bidirectional);

@@ -1,0 +1,53 @@
+//! Hits and shadow rays, weighted by the densities of directions: what most renderers do.
+//!
+//! Unbiased for: σ̂ ≥ σ_t; refused elsewhere.
+//!
+//! ```text
+//! ρ = p_uni/p_nee = q,   q = Ω/4π the light's share of all directions; null collisions are left out of both
+//! X = [light met before the first scattering] + Σ w q T̂ w_nee(ρ) + [hit] w w_uni(ρ)
+//! balance: w_uni = ρ/(1 + ρ);  power: w_uni = ρ²/(1 + ρ²);  w_nee = 1 − w_uni
+//! ```
+//!
+//! | setting | meaning | default |
+//! |---|---|---|
+//! | `rule`, `roulette` | how the particle walks, see the page `particle` | `rule` required |
+//! | `shadow` | `"exact"`, `ratio = { sampling, control }` or `delta = { sampling }`, each one number | `"exact"` |
+//! | `heuristic` | `"balance"` or `"power"` | `"balance"` |
+//!
+//! An environment fills all directions, q = 1: both samples count half. A distant light is never met and `w_nee = 1`: it
+//! is next-event estimation.
+//!
+//! Unbiased wherever `next-event` is. Theory bounds the variance, sharply for the rule `analog` with delta-tracked shadow
+//! rays. The number of lookups is not known.
+//!
+//! Source: P. Kutz, R. Habel, Y. K. Li, J. Novák, *Spectral and Decomposition Tracking for Rendering Heterogeneous
+//! Volumes*, ACM Transactions on Graphics 36 (2017); B. Miller, I. Georgiev, W. Jarosz, *A null-scattering path integral
+//! formulation of light transport*, ACM Transactions on Graphics 38 (2019), section 6; the heuristics: E. Veach, *Robust
+//! Monte Carlo Methods for Light Transport Simulation*, doctoral thesis, Stanford (1997). The bound is derived in
+//! `theory/sphere/spread.rs`.
+
+use super::combined::Sharing;
+use super::{Page, pages};
+use crate::single_scattering::connection;
+use crate::space::Particle;
+use media::catalogue::Settings;
+use theory::Heuristic;
+use theory::lit_rod::Densities;
+
+/// Multiple importance sampling over directions.
+#[derive(Debug, Clone)]
+pub struct DirectionalMis(Page);
+
+impl DirectionalMis {
+    fn page(settings: &Settings) -> Option<Page> {
+        let particle = Particle::read(settings);
+        let shadow = connection::read_shadow(settings);
+        let heuristic = Heuristic::read(settings);
+        let densities = Densities::Directional;
+        let sharing =
+            Sharing { densities, heuristic: heuristic?, shadow: Some(shadow?), subpaths: None };
+        Some(Page { particle: particle?, sharing })
+    }
+}
+
+pages!(DirectionalMis);

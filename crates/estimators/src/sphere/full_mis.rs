@@ -1,0 +1,53 @@
+//! Hits and shadow rays, weighted by the densities of the whole null-scattering path.
+//!
+//! Unbiased for: σ̂ ≥ σ_t; refused elsewhere.
+//!
+//! ```text
+//! ρ = p_uni/p_nee = q ν,   q = Ω/4π the light's share of all directions, ν the chance that the tentative collisions of
+//!     the last segment are null: Π (1 − σ_t/σ̂) by the rules analog, terminating and weighted
+//! X = [light met before the first scattering] + Σ w q T̂ w_nee(ρ) + [hit] w w_uni(ρ),   T̂ = Π (1 − σ_t/σ̂)
+//! balance: w_uni = ρ/(1 + ρ);  power: w_uni = ρ²/(1 + ρ²);  w_nee = 1 − w_uni
+//! ```
+//!
+//! | setting | meaning | default |
+//! |---|---|---|
+//! | `rule`, `roulette` | how the particle walks, see the page `particle` | `rule` required |
+//! | `shadow` | `"ratio"` tracking through the σ̂ of the walk; `"exact"`: transmittances instead of null collisions in both densities, `ρ = q T` | `"ratio"` |
+//! | `heuristic` | `"balance"` or `"power"` | `"balance"` |
+//!
+//! Majorant transmittances cancel in ρ, as walk and shadow ray have the same σ̂, a constant or local majorants. ρ begins
+//! anew at every real scattering. Roulette is left out of both densities. A distant light is never met, `p_uni = 0`: it is
+//! next-event estimation.
+//!
+//! For `σ̂ ≥ σ_t` theory bounds the variance: a shadow ray and a hit are each worth `q/(1 + q)` at
+//! most. The number of lookups is not known.
+//!
+//! Source: B. Miller, I. Georgiev, W. Jarosz, *A null-scattering path integral formulation of light transport*, ACM
+//! Transactions on Graphics 38 (2019), section 5.3, Algorithms 1 and 2, Eq. 42. The bound is derived in
+//! `theory/sphere/spread.rs`.
+
+use super::combined::Sharing;
+use super::{Page, pages};
+use crate::space::Particle;
+use media::catalogue::Settings;
+use theory::Heuristic;
+use theory::lit_rod::Densities;
+use theory::single::Tracking;
+
+/// Multiple importance sampling over null-scattering paths.
+#[derive(Debug, Clone)]
+pub struct FullMis(Page);
+
+impl FullMis {
+    fn page(settings: &Settings) -> Option<Page> {
+        let particle = Particle::read(settings);
+        let shadow = settings.word_or("shadow", &["ratio", "exact"], "ratio");
+        let heuristic = Heuristic::read(settings);
+        let shadow = (shadow? == "exact").then_some(Tracking::Exact);
+        let densities = Densities::Full;
+        let sharing = Sharing { densities, heuristic: heuristic?, shadow, subpaths: None };
+        Some(Page { particle: particle?, sharing })
+    }
+}
+
+pages!(FullMis);

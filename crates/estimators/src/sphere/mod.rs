@@ -1,0 +1,342 @@
+//! Walks from an eye in or before a ball to its light.
+
+pub mod bidirectional;
+pub mod combined;
+pub mod connect;
+pub mod directional_mis;
+pub mod emission;
+pub mod full_mis;
+pub mod next_event;
+mod packet;
+pub mod page;
+pub mod particle;
+
+use fearless_simd::Level;
+
+use crate::kernels::packet::Request;
+use crate::space::{self, By, Particle, Start, Steps, Walked};
+use crate::{Draw, Refusal, Setup, estimators};
+use media::Majorants;
+use media::majorants::Flight;
+use numeric::Known;
+use numeric::digits::rounded;
+use numeric::geometry::{Point, frame};
+use numeric::rng::Stream;
+use theory::problems::Sphere;
+use theory::problems::sphere::{Light, Sought};
+use theory::single::Tracking;
+use theory::sphere::{Answer, Lights, Observable, Scene, Spread, Spreads, Techniques, cached};
+use theory::{Channel, Law, Moments, Odds, ParticleRule, Prediction, Tails};
+
+pub use connect::{Connect, Finder, Honest, Seeker};
+pub use page::Page;
+use page::pages;
+
+/// The largest error of an exact answer, relative to it, that is worth drawing against.
+pub const BLURRED: f64 = 1e-4;
+/// The optical depth from the surface to the centre up to which the equation is solved.
+const DEEPEST: f64 = 30.0;
+/// A tracked transmittance may have this second moment, relative to that of an untracked one.
+const WILDEST: f64 = 1e3;
+/// Bounds on σ_t are raised by a share like this, because lookups are rounded.
+const SLACK: f64 = 1e-9;
+/// More tentative collisions than this on a shadow ray are a mistake in the case.
+const MOST_COLLISIONS: f64 = 1e4;
+
+/// The exact answer; `None` where the equation is not solved, or its answer is not known well enough.
+fn truth(sphere: &Sphere) -> Option<Answer> {
+    answer(sphere).filter(|answer| blur(answer) <= BLURRED)
+}
+
+/// The relative error of an answer.
+fn blur(answer: &Answer) -> f64 {
+    answer.value.error / answer.value.value.abs()
+}
+
+/// The answer with its error; `None` where the equation is not solved.
+fn answer(sphere: &Sphere) -> Option<Answer> {
+    if sphere.majorant() * sphere.radius > DEEPEST {
+        return None;
+    }
+    let (core, lights) = match sphere.light {
+        Light::BlackSphere(radius) => (Some(radius), Lights { environment: 0.0, core: 1.0 }),
+        Light::Environment | Light::Distant(_) => (None, Lights { environment: 1.0, core: 0.0 }),
+    };
+    let observable = match sphere.sought {
+        Sought::Radiance => Observable::Radiance { offset: sphere.offset(), from: sphere.begins() },
+        Sought::MeanIntensity => Observable::Mean(sphere.distance()),
+    };
+    let scene = Scene {
+        radius: sphere.radius,
+        core,
+        albedo: sphere.scene.albedo.even()?,
+        lights,
+        is_distant: matches!(sphere.light, Light::Distant(_)),
+        observable,
+    };
+    cached(&scene, &|r2| sphere.extinction(r2))
+}
+
+/// Why there is no truth to judge by.
+fn unknown(sphere: &Sphere) -> Refusal {
+    let depth = sphere.majorant() * sphere.radius;
+    if depth > DEEPEST {
+        let found = format!("it may reach {}", rounded(depth));
+        return Refusal::mismatch("σ_t R ≤ 30, up to which Peierls' equation is solved", found);
+    }
+    let needs = "an answer of Peierls' equation known to 1e-4";
+    let Some(answer) = answer(sphere) else {
+        return Refusal::mismatch(needs, "the equation is not solved for this medium");
+    };
+    let error = blur(&answer);
+    if error.is_nan() || error > 1.0 {
+        return Refusal::mismatch(needs, "it is lost in its own error");
+    }
+    Refusal::mismatch(needs, format!("it is known to {error:.0e} only"))
+}
+
+/// Whether a rule exists here, its spread has a bound, and there is a truth to judge it by.
+fn realisable(setup: &Setup<Sphere>, particle: &Particle) -> Result<(), Refusal> {
+    let sphere = &setup.problem;
+    space::realisable(setup, &sphere.scene, particle)?;
+    let walks = space::walks(&sphere.scene, space::majorants(setup)?, particle);
+    if !walks.never_grows() {
+        let needs = "σ̂ ≥ σ_t, so that theory bounds the variance";
+        let found = format!("σ_t may reach {:.6} times σ̂", walks.ratio());
+        return Err(Refusal::mismatch(needs, found));
+    }
+    if truth(sphere).is_none() {
+        return Err(unknown(sphere));
+    }
+    Ok(())
+}
+
+/// G, a bound on `E[T̂²]/T` of tracked shadow rays through σ_t up to a majorant and a length:
+/// `E[T̂²] = T exp ∫((σ_t − σ_c)²/σ̂ − σ_t)`.
+fn gain(majorant: f64, length: f64, shadow: Tracking) -> f64 {
+    let Tracking::Ratio { sampling, control } = shadow else { return 1.0 };
+    // It is convex in σ_t: largest at an end.
+    let at = |sigma: f64| (sigma - control) * (sigma - control) / sampling - sigma;
+    let worst = at(0.0).max(at(majorant)).max(0.0);
+    (length * worst).exp()
+}
+
+/// The same on any shadow ray through a ball.
+fn gain_in(sphere: &Sphere, shadow: Tracking) -> f64 {
+    gain(sphere.majorant(), 2.0 * sphere.radius, shadow)
+}
+
+/// Whether shadow rays are unbiased and end, beside what the walk needs.
+///
+/// # Errors
+///
+/// The violated inequality.
+fn connected(setup: &Setup<Sphere>, particle: &Particle, shadow: Tracking) -> Result<(), Refusal> {
+    realisable(setup, particle)?;
+    let sphere = &setup.problem;
+    if let Tracking::Ratio { sampling, .. } | Tracking::Delta { sampling } = shadow {
+        let collisions = 2.0 * sampling * sphere.radius;
+        if collisions.is_nan() || collisions > MOST_COLLISIONS {
+            let needs = "a shadow's σ̂ of at most 1e4 collisions across the ball";
+            return Err(Refusal::mismatch(needs, format!("there would be {collisions:e}")));
+        }
+    }
+    if let Tracking::Delta { sampling } = shadow
+        && sampling < sphere.majorant() * (1.0 - SLACK)
+    {
+        let found = format!("σ̄ = {sampling} and σ_t is bounded by {:.6} only", sphere.majorant());
+        return Err(Refusal::mismatch("σ̄ ≥ σ_t on every shadow ray", found));
+    }
+    let gain = gain_in(sphere, shadow);
+    if gain > WILDEST {
+        let needs = "a shadow's σ̂ and σ_c that keep E[T̂²] below 1e3 T";
+        return Err(Refusal::mismatch(needs, format!("it is bounded by {gain:.3e} T only")));
+    }
+    Ok(())
+}
+
+/// No answer: what is refused is not predicted.
+const UNKNOWN: Answer = Answer {
+    value: Known { value: f64::NAN, error: f64::INFINITY },
+    spreads: Spreads(
+        [Spread { unscattered: f64::NAN, lit: f64::NAN, rest: f64::NAN }; Techniques::ALL.len()],
+    ),
+};
+
+fn prediction(value: Known, square: f64) -> Prediction {
+    Prediction::uncounted(Channel::bounded(value, square))
+}
+
+/// A draw is 1 with the chance that is sought, else 0.
+fn all_or_nothing(value: Known) -> Prediction {
+    let chance = value.value;
+    // E[Xᵏ] is the same for every k: the moments of a product whose losses are all −ln E[X].
+    let error = 4.0 * value.error / (chance * (1.0 - chance));
+    let moments = Moments::of_product(chance, [-chance.ln(); 4], error);
+    let tails = Tails { rare_event_size: 1.0 / chance, eighth_moment_ratio: 1.0 / chance };
+    let channel = Channel::unbiased(value, moments, tails);
+    let law = Some(Law::Atoms(vec![(0.0, 1.0 - chance), (1.0, chance)]));
+    Prediction { law, ..Prediction::uncounted(channel) }
+}
+
+/// Techniques together, with shadow rays that are tracked somehow.
+fn predict_together(setup: &Setup<Sphere>, techniques: Techniques, shadow: Tracking) -> Prediction {
+    let answer = truth(&setup.problem).unwrap_or(UNKNOWN);
+    let spread = answer.spreads.of(techniques);
+    prediction(answer.value, spread.square(gain_in(&setup.problem, shadow)))
+}
+
+/// The same where nobody knows the variance: that of pilot draws stands in for it.
+fn predict_by_pilots(setup: &Setup<Sphere>) -> Prediction {
+    let value = truth(&setup.problem).unwrap_or(UNKNOWN).value;
+    let channel = Channel::unbiased(value, None, Tails::LIGHT);
+    Prediction::uncounted(Channel { by_pilots: true, ..channel })
+}
+
+/// A particle that a black sphere stops.
+struct Stopped<'a> {
+    particle: &'a Particle,
+    core: Option<(Point, f64)>,
+}
+
+impl Steps for Stopped<'_> {
+    #[inline(always)]
+    fn odds_at(&self, ratio: f64, albedo: f64) -> Odds {
+        self.particle.odds_at(ratio, albedo)
+    }
+
+    #[inline(always)]
+    fn fly(&self, majorants: &Majorants, flight: &mut Flight, depth: f64) -> Option<f64> {
+        let flown = majorants.fly(flight, depth);
+        let Some((centre, radius)) = self.core else { return flown };
+        match connect::meets(flight.origin, flight.direction, centre, radius) {
+            Some(at) if at < flight.t => {
+                flight.t = at;
+                None
+            }
+            _ => flown,
+        }
+    }
+
+    #[inline(always)]
+    fn keep(&self, rng: &mut Stream, weight: f64) -> Option<f64> {
+        self.particle.keep(rng, weight)
+    }
+}
+
+/// The black sphere that stops a particle, if there is one.
+fn core(sphere: &Sphere) -> Option<(Point, f64)> {
+    match sphere.light {
+        Light::BlackSphere(radius) => Some((sphere.centre, radius)),
+        Light::Environment | Light::Distant(_) => None,
+    }
+}
+
+/// Makes a draw: with shadow rays, or without.
+pub fn draw_by(
+    particle: &Particle,
+    connect: Option<(&dyn Connect, Tracking)>,
+    setup: &Setup<Sphere>,
+    rng: &mut Stream,
+) -> Draw {
+    let Some(majorants) = setup.space.as_deref() else { return Draw::free([f64::NAN], 0) };
+    let mut seeker = Seeker::new(&setup.problem, connect);
+    find(particle, &mut seeker, (&setup.problem, majorants), rng)
+}
+
+/// Makes a draw of what finds light along a walk through σ̂.
+fn find(
+    particle: &Particle,
+    finder: &mut impl Finder,
+    (sphere, majorants): (&Sphere, &Majorants),
+    rng: &mut Stream,
+) -> Draw {
+    let place = sphere.entry();
+    let is_point = sphere.sought == Sought::MeanIntensity;
+    let mut lookups = finder.begin(is_point.then_some(place), rng);
+    let direction = if is_point {
+        frame::turned(Point([0.0, 0.0, 1.0]), 2.0 * rng.uniform() - 1.0, rng.uniform())
+    } else {
+        sphere.direction()
+    };
+    let steps = Stopped { particle, core: core(sphere) };
+    let start = Start { place, direction, weight: 1.0 };
+    lookups += space::walk(By::Steps(&steps), &sphere.scene, majorants, start, finder, rng);
+    Draw::free([finder.found()], lookups)
+}
+
+impl Walked for Sphere {
+    /// A walk must be able to find the light by itself.
+    fn domain(setup: &Setup<Self>, particle: &Particle) -> Result<(), Refusal> {
+        if matches!(setup.problem.light, Light::Distant(_)) {
+            let needs = "a light that a walk can meet";
+            return Err(Refusal::mismatch(needs, "a distant light is met with chance 0"));
+        }
+        realisable(setup, particle)
+    }
+
+    /// A walk that finds the light by itself: draws from 0 to 1, `E[X²] ≤ E[X]`; nothing but 0 and 1 where
+    /// no weight is left to it. Where nothing is absorbed and light is everywhere, every draw is 1.
+    fn predict(setup: &Setup<Self>, particle: &Particle) -> Prediction {
+        let sphere = &setup.problem;
+        if sphere.light == Light::Environment && sphere.scene.albedo.even() == Some(1.0) {
+            return Prediction::uncounted(space::energy_channel(0.0, 0.0));
+        }
+        let value = truth(sphere).unwrap_or(UNKNOWN).value;
+        let is_chance = matches!(particle.rule, ParticleRule::Analog | ParticleRule::Terminating);
+        if is_chance && particle.roulette.is_none() {
+            all_or_nothing(value)
+        } else {
+            prediction(value, value.value)
+        }
+    }
+
+    /// By the particle, whose walks a black sphere may stop.
+    fn draw(_: By, particle: &Particle, setup: &Setup<Self>, rng: &mut Stream) -> Draw {
+        draw_by(particle, None, setup, rng)
+    }
+
+    fn draw_packets<'a>(
+        level: Level,
+        particle: &Particle,
+        setup: &Setup<Self>,
+        request: Request<'a>,
+    ) -> Option<Request<'a>> {
+        packet::draw_by_packets(level, particle, None, setup, request)
+    }
+}
+
+estimators! {
+    Sphere:
+    particle::Walker,
+    next_event::NextEvent,
+    directional_mis::DirectionalMis,
+    full_mis::FullMis,
+    bidirectional::Bidirectional,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_gain_of_a_shadow_is_a_hand_value() {
+        let ratio = |sampling: f64, control: f64| Tracking::Ratio { sampling, control };
+        assert_eq!(gain(1.0, 2.0, Tracking::Exact), 1.0);
+        assert_eq!(gain(1.0, 2.0, Tracking::Delta { sampling: 1.0 }), 1.0);
+        // A majorant keeps T̂ in [0, 1]; half of σ_t makes E[T̂²] = e^(1/0.5 − 1) T per length.
+        assert_eq!(gain(1.0, 2.0, ratio(1.0, 0.0)), 1.0);
+        assert!((gain(1.0, 2.0, ratio(0.5, 0.0)) - 2f64.exp()).abs() < 1e-14);
+        // A control of 1 where there is nothing: E[T̂²] = e^(1/2) per length.
+        assert!((gain(1.0, 3.0, ratio(2.0, 1.0)) - 1.5f64.exp()).abs() < 1e-14);
+    }
+
+    #[test]
+    fn a_draw_of_chance_has_the_variance_of_a_coin() {
+        let found = all_or_nothing(Known::new(0.2, 1e-9));
+        let moments = found.channels[0].moments.expect("known");
+        assert!((moments.variance() - 0.16).abs() < 1e-15);
+        // (1 − 3p(1 − p))/(p(1 − p)).
+        assert!((moments.kurtosis().expect("known") - 0.52 / 0.16).abs() < 1e-12);
+    }
+}

@@ -1,0 +1,61 @@
+//! Closed-form tracking: the optical depth is known, so the answer is too.
+//!
+//! Unbiased for: every medium, exactly.
+//!
+//! ```text
+//! X = exp(−τ),  Var X = 0,  no lookups
+//! ```
+//!
+//! Exact wherever the medium's optical depth is; every field of the catalogue has one. It is the
+//! end of the scale on which the others stand: zero variance at no cost.
+//!
+//! Source: J. Novák, I. Georgiev, J. Hanika, W. Jarosz, *Monte Carlo Methods for Volumetric Light
+//! Transport Simulation*, Computer Graphics Forum 37 (2018), section 4.1.
+
+use crate::{Draw, Estimator, Inputs, Refusal, Setup};
+use media::Lookups;
+use numeric::rng::Stream;
+use theory::prediction::transmittance;
+use theory::problems::Transmittance;
+use theory::{Channel, CountLaw, Law, Moments, Prediction, Tails};
+
+/// Closed-form tracking; it has no settings.
+#[derive(Debug, Clone)]
+pub struct ClosedForm;
+
+/// The prediction of an estimator that always gives the exact answer.
+pub fn exact(setup: &Setup<Transmittance>, lookups: usize) -> Prediction {
+    let depth = setup.mesh.optical_depth();
+    let value = transmittance(depth, setup.log_unit).value;
+    let moments = Moments::certain(value);
+    let channel = Channel::transmittance(depth, setup.log_unit, moments, Tails::LIGHT);
+    let law = Some(Law::Atoms(vec![(value, 1.0)]));
+    let random_numbers = Some(0.0);
+    Prediction {
+        random_numbers,
+        law,
+        ..Prediction::single(channel, CountLaw::always(lookups as f64))
+    }
+}
+
+impl Estimator<Transmittance> for ClosedForm {
+    const INPUTS: Inputs = Inputs::NONE;
+    const PLAIN: Option<Self> = Some(Self);
+
+    fn needs(&self) -> Option<&'static str> {
+        Some("τ")
+    }
+
+    fn domain(&self, _: &Setup<Transmittance>) -> Result<(), Refusal> {
+        Ok(())
+    }
+
+    fn predict(&self, setup: &Setup<Transmittance>) -> Prediction {
+        exact(setup, 0)
+    }
+
+    #[inline(always)]
+    fn draw(&self, setup: &Setup<Transmittance>, _: &Lookups, _: &mut Stream) -> Draw {
+        Draw::free([setup.transmittance], 0)
+    }
+}

@@ -1,0 +1,43 @@
+//! Ratio tracking: keep, at each tentative collision, the share that is null.
+//!
+//! Unbiased for: every σ̂ > 0 where σ_t ≠ 0.
+//!
+//! ```text
+//! X = ∏ᵢ (1 − σ_t(tᵢ)/σ̂(tᵢ)),  tᵢ a Poisson process of rate σ̂ on [0, ℓ]
+//! ```
+//!
+//! Where `σ̂ < σ_t` the factor is negative
+//! and the variance grows; where `σ̂ ≥ σ_t` throughout, X lies in [0, 1]. It is `double` without a
+//! control, and shares its code: the same random numbers make the same draws.
+//!
+//! ```text
+//! J_k = ∫ σ̂ r^k,  r = σ_t/σ̂,  lookups Poisson(∫σ̂)
+//! ```
+//!
+//! Source: J. Novák, A. Selle, W. Jarosz, *Residual Ratio Tracking for Estimating Attenuation in
+//! Participating Media*, ACM Transactions on Graphics 33 (2014), section 3.
+
+use super::double::{predict_weighted, unbiased_where_covered};
+use crate::{Estimator, Inputs, Refusal, Setup, product_draws};
+use theory::Prediction;
+use theory::problems::Transmittance;
+use theory::rules::Weight;
+
+/// Ratio tracking; σ̂ is its only input.
+#[derive(Debug, Clone)]
+pub struct Ratio;
+
+impl Estimator<Transmittance> for Ratio {
+    const INPUTS: Inputs = Inputs::SAMPLING;
+    const PLAIN: Option<Self> = Some(Self);
+
+    fn domain(&self, setup: &Setup<Transmittance>) -> Result<(), Refusal> {
+        unbiased_where_covered(setup)
+    }
+
+    fn predict(&self, setup: &Setup<Transmittance>) -> Prediction {
+        predict_weighted(setup)
+    }
+
+    product_draws!(self => Weight);
+}

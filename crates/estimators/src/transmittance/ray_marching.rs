@@ -1,0 +1,176 @@
+//! Ray marching: a Riemann sum in the exponent. Biased, and here to be caught.
+//!
+//! Unbiased for: never: it is here to be caught.
+//!
+//! ```text
+//! X = exp(−h Σⱼ σ_t((j + u) h)),  h = ℓ/steps,  u = ½, or uniform in [0, 1) with jitter
+//! ```
+//!
+//! | setting | meaning | default |
+//! |---|---|---|
+//! | `steps` | number of steps along the support | required |
+//! | `jitter` | one random offset for the whole ray | false |
+//!
+//! With jitter the sum is unbiased but the exponential of it is not (Jensen's inequality): the mean
+//! of X exceeds T. The bias is predicted exactly, as a quadrature over u:
+//!
+//! ```text
+//! E[X^k] = ∫₀¹ exp(−k h Σⱼ σ_t((j + u) h)) du
+//! ```
+//!
+//! Source: M. Raab, D. Seibert, A. Keller, *Unbiased Global Illumination with Participating Media*,
+//! Monte Carlo and Quasi-Monte Carlo Methods 2006, Springer (2008).
+
+use fearless_simd::{Level, Simd, SimdBase, f64x8};
+
+use crate::kernels::packet::Request;
+use crate::kernels::packet::bank;
+use crate::{Draw, Estimator, Inputs, Refusal, Setup};
+use media::catalogue::Settings;
+use media::{Extinction, Lookups};
+use numeric::pack::{self, Task, WIDTH};
+use numeric::quadrature::GaussLegendre;
+use numeric::rng::{LANES, Stream};
+use numeric::{Known, Lane};
+use theory::problems::Transmittance;
+use theory::{Channel, CountLaw, Moments, Prediction, Tails};
+
+/// Panels of the quadrature over the offset: σ_t may have kinks, so the rule is a dense one.
+const PANELS: usize = 256;
+
+/// Ray marching.
+#[derive(Debug, Clone)]
+pub struct RayMarching {
+    steps: u32,
+    jitter: bool,
+}
+
+impl RayMarching {
+    /// `h Σⱼ σ_t((j + u) h)`.
+    #[inline(always)]
+    fn depth<M: Extinction, L: Lane>(&self, setup: &Setup<Transmittance>, medium: &M, u: L) -> L {
+        let support = setup.mesh.support();
+        let step = support.length() / f64::from(self.steps);
+        let mut sum = u.each(0.0);
+        for j in 0..self.steps {
+            sum = sum + medium.extinction((u + f64::from(j)) * step + support.from);
+        }
+        sum * step
+    }
+
+    /// The values of draws with the given offsets.
+    #[inline(always)]
+    fn value<M: Extinction, L: Lane>(&self, setup: &Setup<Transmittance>, medium: &M, u: L) -> L {
+        (u.each(setup.log_unit) - self.depth(setup, medium, u)).exp()
+    }
+}
+
+impl Estimator<Transmittance> for RayMarching {
+    const INPUTS: Inputs = Inputs::NONE;
+    const IN_PACKETS: bool = true;
+
+    fn read(settings: &Settings) -> Option<Self> {
+        let steps = settings.count("steps", 1..=1_000_000);
+        let jitter = settings.flag_or("jitter", false);
+        Some(Self { steps: u32::try_from(steps?).ok()?, jitter: jitter? })
+    }
+
+    fn label(&self, _: bool) -> String {
+        let jitter = if self.jitter { ", jittered" } else { "" };
+        format!("{} steps{jitter}", self.steps)
+    }
+
+    fn domain(&self, _: &Setup<Transmittance>) -> Result<(), Refusal> {
+        Ok(())
+    }
+
+    fn predict(&self, setup: &Setup<Transmittance>) -> Prediction {
+        let medium = setup.mesh.medium();
+        let value = |u: f64| (setup.log_unit - self.depth(setup, medium, u)).exp();
+        let (mean, moments) = if self.jitter {
+            let rule = GaussLegendre::new(4);
+            let width = 1.0 / PANELS as f64;
+            let over_offset = |f: &dyn Fn(f64) -> f64| -> f64 {
+                let panel = |i: usize| {
+                    let from = width * i as f64;
+                    rule.integrate(from, from + width, |u| f(value(u)))
+                };
+                (0..PANELS).map(panel).sum()
+            };
+            let mean = over_offset(&|x| x);
+            let relative = [2, 3, 4].map(|k| over_offset(&|x| ((x - mean) / mean).powi(k)));
+            (mean, Moments { scale: mean, relative, error: 1e-6 })
+        } else {
+            let mean = value(0.5);
+            (mean, Moments::certain(mean))
+        };
+        let channel = Channel {
+            mean: Known::new(mean, 1e-9 * mean),
+            ..Channel::transmittance(
+                setup.mesh.optical_depth(),
+                setup.log_unit,
+                moments,
+                Tails::LIGHT,
+            )
+        };
+        let random_numbers = Some(f64::from(u8::from(self.jitter)));
+        let lookups = CountLaw::always(f64::from(self.steps));
+        Prediction { random_numbers, ..Prediction::single(channel, lookups) }
+    }
+
+    #[inline(always)]
+    fn draw(&self, setup: &Setup<Transmittance>, medium: &Lookups, rng: &mut Stream) -> Draw {
+        let u = if self.jitter { rng.uniform() } else { 0.5 };
+        Draw::free([self.value(setup, medium, u)], self.steps)
+    }
+
+    fn draw_packets<'a>(
+        &self,
+        level: Level,
+        setup: &Setup<Transmittance>,
+        medium: &Lookups,
+        request: Request<'a>,
+    ) -> Option<Request<'a>> {
+        let task = Marches { estimator: self, setup, medium, request };
+        pack::on_wide(level, task).err().map(|task| task.request)
+    }
+}
+
+/// Eight marches side by side: each lane makes the draws of its stream.
+struct Marches<'a, 'r> {
+    estimator: &'a RayMarching,
+    setup: &'a Setup<Transmittance>,
+    medium: &'a Lookups<'a>,
+    request: Request<'r>,
+}
+
+impl Task for Marches<'_, '_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<S: Simd>(self, simd: S) {
+        let Self { estimator, setup, medium, request } = self;
+        let Request { streams, count, buffer } = request;
+        let Some((values, lookups, defects)) = buffer.one_channel(count) else { return };
+        lookups.fill(estimator.steps);
+        defects.fill(0.0);
+        let [first, second] = streams.packs();
+        let mut packs = [first.awake(simd), second.awake(simd)];
+        let (rows, rest) = values.as_chunks_mut::<LANES>();
+        for row in rows {
+            for (numbers, row) in packs.iter_mut().zip(row.as_chunks_mut::<WIDTH>().0) {
+                let half = f64x8::splat(simd, 0.5);
+                let u = if estimator.jitter { numbers.uniform() } else { half };
+                estimator.value(setup, medium, u).store_slice(row);
+            }
+            // The first draw is that of the lane whose turn it is.
+            row.rotate_left(streams.turn);
+        }
+        for (pack, numbers) in packs.into_iter().enumerate() {
+            bank::leave(streams, pack, u64::MAX, numbers);
+        }
+        for value in rest {
+            [*value] = estimator.draw(setup, medium, streams.of_next_draw()).value;
+        }
+    }
+}

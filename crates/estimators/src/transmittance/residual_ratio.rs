@@ -1,0 +1,63 @@
+//! Residual ratio tracking: ratio tracking of what a constant control leaves over.
+//!
+//! Unbiased for: every σ̂ > 0 where the residual is not 0.
+//!
+//! ```text
+//! X = T_c ∏ᵢ (1 − (σ_t(tᵢ) − σ_c)/σ̂(tᵢ)),  T_c = e^{−σ_c ℓ}
+//! ```
+//!
+//! The residual may have either sign. The
+//! control must be constant (default: the mean of σ_t, the best constant by section 3.4 of
+//! Szirmay-Kalos et al. 2017); with any other control the algorithm is `double`, and
+//! both have the same code.
+//!
+//! ```text
+//! J_k = ∫ σ̂ r^k,  r = (σ_t − σ_c)/σ̂,  lookups Poisson(∫σ̂)
+//! ```
+//!
+//! Source: J. Novák, A. Selle, W. Jarosz, *Residual Ratio Tracking for Estimating Attenuation in
+//! Participating Media*, ACM Transactions on Graphics 33 (2014), section 4.
+
+use super::double::{predict_weighted, unbiased_where_covered};
+use crate::recipes::controls;
+use crate::{Estimator, Inputs, Refusal, Setup, product_draws};
+use media::Control;
+use theory::Prediction;
+use theory::problems::Transmittance;
+use theory::rules::Weight;
+
+/// Residual ratio tracking; σ̂ and a constant control are its inputs.
+#[derive(Debug, Clone)]
+pub struct ResidualRatio;
+
+impl Estimator<Transmittance> for ResidualRatio {
+    const INPUTS: Inputs = Inputs::BOTH;
+    const PLAIN: Option<Self> = Some(Self);
+
+    fn without_control() -> Option<&'static str> {
+        Some("ratio")
+    }
+
+    fn default_control() -> Option<Box<dyn controls::Recipe>> {
+        Some(Box::new(controls::mean::Mean))
+    }
+
+    fn domain(&self, setup: &Setup<Transmittance>) -> Result<(), Refusal> {
+        let constant = match &setup.control {
+            Control::None => true,
+            Control::Pieces(pieces) => pieces.single_value().is_some(),
+            Control::Field(_) => false,
+        };
+        if !constant {
+            let found = "the control varies (write `double` for that)";
+            return Err(Refusal::mismatch("a constant control", found));
+        }
+        unbiased_where_covered(setup)
+    }
+
+    fn predict(&self, setup: &Setup<Transmittance>) -> Prediction {
+        predict_weighted(setup)
+    }
+
+    product_draws!(self => Weight);
+}

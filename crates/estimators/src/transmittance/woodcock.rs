@@ -1,0 +1,54 @@
+//! Woodcock (delta) tracking: fly through a majorant and stop at the first real collision.
+//!
+//! Unbiased for: σ̂ ≥ σ_t; refused elsewhere.
+//!
+//! ```text
+//! X = 1 if every tentative collision is null, each with probability 1 − σ_t(tᵢ)/σ̄(tᵢ); else 0
+//! ```
+//!
+//! Draws are 0 or 1. It is the terminating single particle model for
+//! `0 ≤ r ≤ 1`. Refused where σ̂ is no majorant: there the chance of a null collision is negative.
+//!
+//! ```text
+//! J_k = τ for every k,  Var X = T(1 − T),  E[lookups] = ∫ σ̄ T dt
+//! ```
+//!
+//! Source: E. R. Woodcock, T. Murphy, P. Hemmings, T. Longworth, *Techniques used in the GEM code
+//! for Monte Carlo neutronics calculations in reactors and other systems of complex geometry*,
+//! ANL-7050 (1965); W. A. Coleman, *Mathematical verification of a certain Monte Carlo sampling
+//! technique*, Nuclear Science and Engineering 32 (1968).
+
+use crate::{Estimator, Inputs, Refusal, Setup, product_draws};
+use theory::problems::Transmittance;
+use theory::rules::Null;
+use theory::{Law, Prediction};
+
+/// Woodcock tracking; σ̂ is its only input.
+#[derive(Debug, Clone)]
+pub struct Woodcock;
+
+/// What estimators whose draws are 0 or 1 need.
+pub const ZERO_OR_ONE: &str = "τ ≤ 300 (draws are 0 or 1, and a 1 is never seen)";
+
+/// Adds the law of a draw that is 1 with probability T, else 0.
+pub fn zero_or_one(prediction: Prediction) -> Prediction {
+    let alive = prediction.channels[0].truth.value;
+    let law = Some(Law::Atoms(vec![(0.0, 1.0 - alive), (1.0, alive)]));
+    Prediction { law, ..prediction }
+}
+
+impl Estimator<Transmittance> for Woodcock {
+    const INPUTS: Inputs = Inputs::SAMPLING;
+    const PLAIN: Option<Self> = Some(Self);
+
+    fn domain(&self, setup: &Setup<Transmittance>) -> Result<(), Refusal> {
+        setup.require_plain_unit(ZERO_OR_ONE)?;
+        setup.require_ratio_at_most(1.0, "σ̂ ≥ σ_t everywhere")
+    }
+
+    fn predict(&self, setup: &Setup<Transmittance>) -> Prediction {
+        zero_or_one(setup.product(&Null).predict())
+    }
+
+    product_draws!(self => Null);
+}

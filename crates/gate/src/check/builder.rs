@@ -1,0 +1,245 @@
+//! What is asked of an estimator: where its draws come from, and what they should be.
+
+use super::error::CheckError;
+use super::made::{Closure, Factory};
+use super::said::Said;
+use super::sample::Sample;
+use crate::judge::claim::{ClaimError, Lookups};
+use crate::judge::reading::Reading;
+use crate::judge::theory::Theory;
+use crate::judge::trial::{Trial, Wanted};
+use numeric::rng::Stream;
+
+/// More values of a draw than this are not judged together: each has lost its share of α.
+pub const MAX_VALUES: usize = 1 << 16;
+
+/// How many draws are made at most where [`Check::draws`] does not say.
+pub const MOST: u64 = 1 << 24;
+
+/// One number for each value of a draw, or one for all: from `f64`, `[f64; K]` or `Vec<f64>`.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Values(pub(super) Vec<f64>);
+
+impl From<f64> for Values {
+    fn from(value: f64) -> Self {
+        Self(vec![value])
+    }
+}
+
+impl<const K: usize> From<[f64; K]> for Values {
+    fn from(values: [f64; K]) -> Self {
+        Self(values.to_vec())
+    }
+}
+
+impl From<Vec<f64>> for Values {
+    fn from(values: Vec<f64>) -> Self {
+        Self(values)
+    }
+}
+
+/// A check that is being set up: a name, a source of draws, and what is known of them.
+///
+/// What makes no sense is told by the verdict, as a [`CheckError`].
+#[derive(Debug, Clone)]
+#[must_use = "a check draws nothing before .verdict() or .assert_pass()"]
+pub struct Check<S> {
+    pub(super) name: String,
+    pub(super) source: S,
+    pub(super) said: Said,
+}
+
+/// A check of draws that a closure makes, one a call: `f64`, `f32`, `[f64; K]`, or one of them with a number of
+/// lookups, `(value, u64)`.
+///
+/// ```
+/// // Two channels of one ray, with the number of lookups: ratio tracking at σ̂ = 2 in σ_t = 0.5 and 1 on [0, 1].
+/// trueflight::check("two channels", |rng| {
+///     let (mut weights, mut lookups, mut t) = ([1.0, 1.0], 0, 0.0);
+///     loop {
+///         t -= rng.positive_uniform().ln() / 2.0;
+///         if t > 1.0 {
+///             return (weights, lookups);
+///         }
+///         weights = [weights[0] * 0.75, weights[1] * 0.5];
+///         lookups += 1;
+///     }
+/// })
+/// .truth([(-0.5f64).exp(), (-1.0f64).exp()])
+/// .range(0.0, 1.0)
+/// .lookups(2.0, 2.0)
+/// .assert_pass();
+/// ```
+pub fn check<T: Sample, F: FnMut(&mut Stream) -> T>(
+    name: impl Into<String>,
+    draw: F,
+) -> Check<Closure<F>> {
+    Check { name: name.into(), source: Closure { draw }, said: Said::default() }
+}
+
+/// A check of draws that several threads make, each by a closure of its own that the factory makes: by all
+/// processors, or as many as [`Check::threads`] says.
+///
+/// ```
+/// let factory = || {
+///     let mut scratch = Vec::new(); // what is costly to make, or cannot be shared
+///     move |rng: &mut trueflight::rng::Stream| {
+///         scratch.clear();
+///         scratch.push(rng.uniform());
+///         scratch[0]
+///     }
+/// };
+/// trueflight::check_with("uniform", factory).truth(0.5).variance(1.0 / 12.0).threads(2).assert_pass();
+/// ```
+pub fn check_with<T: Sample, F: FnMut(&mut Stream) -> T, M: Fn() -> F + Sync>(
+    name: impl Into<String>,
+    make: M,
+) -> Check<Factory<M>> {
+    Check { name: name.into(), source: Factory { make, threads: None }, said: Said::default() }
+}
+
+/// A check of draws that come later: [`Check::judge`] takes all of them, [`Check::open`] some at a time.
+pub fn claim(name: impl Into<String>) -> Check<()> {
+    Check { name: name.into(), source: (), said: Said::default() }
+}
+
+impl<S> Check<S> {
+    /// What theory says of a draw, or the reason why nothing is known, which is then the error of the verdict.
+    pub fn theory(mut self, theory: Result<Theory, String>) -> Self {
+        self.said.theory = Some(theory);
+        self
+    }
+
+    /// The mean of a correct draw.
+    pub fn truth(mut self, truth: impl Into<Values>) -> Self {
+        self.said.truth = Some(truth.into());
+        self
+    }
+
+    /// The variance of a correct draw; it is tested, too.
+    pub fn variance(mut self, variance: impl Into<Values>) -> Self {
+        self.said.variance = Some(variance.into());
+        self
+    }
+
+    /// The kurtosis of a correct draw, 3 for the normal law; without a variance an upper bound of it.
+    pub fn kurtosis(mut self, kurtosis: impl Into<Values>) -> Self {
+        self.said.kurtosis = Some(kurtosis.into());
+        self
+    }
+
+    /// Where correct draws lie; either end may be infinite. A draw outside fails.
+    pub fn range(mut self, low: f64, high: f64) -> Self {
+        self.said.range = Some([low, high]);
+        self
+    }
+
+    /// Mean and variance of the number of lookups that a correct draw tells.
+    pub fn lookups(mut self, mean: f64, variance: f64) -> Self {
+        self.said.lookups = Some(Lookups { mean, variance: Some(variance), error: 0.0 });
+        self
+    }
+
+    /// What rounding may add to a draw, relative to the truth; absolute for a truth of 0. Without it 3.6e-13; for
+    /// draws in single precision some 1e-6.
+    pub fn rounding(mut self, rounding: f64) -> Self {
+        self.said.rounding = rounding;
+        self
+    }
+
+    /// Of what theory says, only the mean: for an estimator of one's own that the case does not have.
+    pub fn mean_only(mut self) -> Self {
+        self.said.mean_only = true;
+        self
+    }
+
+    /// The number of values of a draw that is pushed, where not every channel of the case is one: the luminance of a
+    /// chromatic medium, which follows from the other channels, may be left out.
+    pub fn values(mut self, values: usize) -> Self {
+        self.said.values = Some(values);
+        self
+    }
+
+    /// ε: the bias that a pass excludes, relative to the truth (absolute for a truth of 0). Without it 1 %, or
+    /// with [`Check::draws`] what so many draws can see, at most 5 %.
+    pub fn tolerance(mut self, tolerance: f64) -> Self {
+        self.said.tolerance = Some(tolerance);
+        self
+    }
+
+    /// The same for the variance, relative to it.
+    pub fn variance_tolerance(mut self, tolerance: f64) -> Self {
+        self.said.variance_tolerance = Some(tolerance);
+        self
+    }
+
+    /// Judges averages of so many consecutive draws, which is for draws that depend on their neighbours; variance
+    /// and kurtosis are then those of an average, and of theory only the mean is taken.
+    pub fn batch(mut self, batch: u64) -> Self {
+        self.said.batch = batch;
+        self
+    }
+
+    /// α: the chance that a correct estimator fails, 1e-3 without it.
+    pub fn alpha(mut self, alpha: f64) -> Self {
+        self.said.alpha = alpha;
+        self
+    }
+
+    /// So many draws, all of them, in place of as many as the decision takes.
+    pub fn draws(mut self, draws: u64) -> Self {
+        self.said.draws = Some(draws);
+        self
+    }
+
+    /// Where the random streams begin; 1 without it.
+    pub fn seed(mut self, seed: u64) -> Self {
+        self.said.seed = seed;
+        self
+    }
+
+    /// A gate for each value of a draw, before the first draw; `length` is the number of draws, if known.
+    pub(super) fn readings(
+        &self,
+        values: usize,
+        has_lookups: bool,
+        length: Option<u64>,
+    ) -> Result<Vec<Reading>, CheckError> {
+        if values == 0 {
+            return Err(CheckError::NoValues { name: self.name.clone() });
+        }
+        if values > MAX_VALUES {
+            return Err(CheckError::TooManyValues {
+                name: self.name.clone(),
+                values,
+                most: MAX_VALUES,
+            });
+        }
+        let claims = self.said.claims(&self.name, values, has_lookups)?;
+        let alpha = self.said.alpha;
+        if !(alpha > 0.0 && alpha < 1.0) {
+            let (what, wanted) = ("alpha", "a probability above 0 and below 1");
+            let source = ClaimError::Number { what, value: alpha, wanted };
+            return Err(CheckError::Claim { name: self.name.clone(), source: source.into() });
+        }
+        let wanted = Wanted {
+            tolerance: self.said.tolerance,
+            variance_tolerance: self.said.variance_tolerance,
+            alpha: alpha / values as f64,
+            batch: self.said.batch,
+            stop_early: false,
+            most: self.said.draws,
+        };
+        let mut background = self.said.background(&claims, &wanted, has_lookups, length);
+        let reading = |claim| {
+            let trial = Trial::new(claim, wanted, length)?;
+            // What belongs to the draw as a whole, the first reading tells.
+            Ok(Reading::with(trial, std::mem::take(&mut background)))
+        };
+        let readings: Result<Vec<Reading>, _> = claims.into_iter().map(reading).collect();
+        readings.map_err(|source: ClaimError| CheckError::Claim {
+            name: self.name.clone(),
+            source: source.into(),
+        })
+    }
+}

@@ -1,0 +1,116 @@
+//! What else must hold for the gate: draws that are independent, and of one mean from beginning to end.
+
+use super::contents::Contents;
+use super::judgement::{DriftFinding, IndependenceFinding};
+use super::reading::{DRIFT, Reading};
+use crate::stats::replays::Replay;
+use crate::stats::verdict::Verdict;
+
+/// Whether the mean changes on the way: only where later draws plainly differ from earlier ones, and from the truth.
+pub fn drift(reading: &Reading) -> Option<DriftFinding> {
+    // Without a ground to fail the mean there is none to say when it changes.
+    let mean = reading.mean.as_ref().filter(|mean| mean.has_ground())?;
+    let (ln_e, batch) = (mean.ln_change, reading.trial.wanted.batch);
+    let ln_e_limit = -(DRIFT * reading.trial.wanted.alpha).ln();
+    let is_refuted = (ln_e >= ln_e_limit || mean.has_failed()) && mean.is_founded();
+    let change = mean.obvious_change().filter(|_| is_refuted);
+    let Some(change) = change else {
+        let (verdict, reason) = (Verdict::Pass, String::new());
+        return Some(DriftFinding { verdict, reason, ln_e, ln_e_limit, from: None, off: 0.0 });
+    };
+    let (from, off) = (change.from * batch, change.off);
+    let where_ = match change.to {
+        None => format!("from draw {from} on"),
+        Some(to) => format!("from draw {from} to draw {}", to * batch),
+    };
+    let inside = change.to.unwrap_or(mean.past.draws()) - change.from;
+    let told = mean.deviation(off, inside);
+    let reason = format!(
+        "the mean changes: {where_} it is off by {told}, {:+.1} standard errors from all other draws",
+        change.z
+    );
+    let (verdict, from) = (Verdict::Fail, Some(from));
+    Some(DriftFinding { verdict, reason, ln_e, ln_e_limit, from, off })
+}
+
+/// Why the mean fails where evidence from some draw on refutes it, and no change does.
+pub fn off_without_change(reading: &Reading, drift: &DriftFinding) -> Option<String> {
+    let mean = reading.mean.as_ref()?;
+    let (ln_e, limit) = (drift.ln_e, drift.ln_e_limit);
+    let is_off = drift.verdict == Verdict::Pass && ln_e >= limit && mean.is_founded();
+    is_off.then(|| {
+        let told = mean.deviation(mean.past.mean(), mean.past.draws());
+        format!("the mean is off by {told} (ln E = {ln_e:.1} ≥ {limit:.1})")
+    })
+}
+
+/// Whether draws depend on each other: half of the level for neighbours, half for replays.
+pub fn independence(reading: &Reading) -> IndependenceFinding {
+    let ln_e_limit = (2.0 / reading.trial.wanted.alpha).ln();
+    let mut found = IndependenceFinding {
+        ln_e: reading.independence.ln_e(),
+        ln_e_limit,
+        ..IndependenceFinding::default()
+    };
+    // Draws that have no spread are all alike.
+    if reading.mean.is_none() {
+        return found;
+    }
+    let because = |what: String| format!("the draws are not independent: {what}");
+    if found.ln_e >= ln_e_limit
+        && let Some(strongest) = reading.independence.strongest(ln_e_limit)
+    {
+        let (scale, lag, r) = (strongest.scale, strongest.lag, strongest.correlation);
+        (found.scale, found.lag, found.correlation) = (Some(scale), Some(lag), Some(r));
+        found.batch = reading.independence.free_batch(ln_e_limit);
+        found.reason = because(match scale {
+            1 => format!("correlation at lag {lag} is {r:.2}"),
+            _ => format!("correlation between sums of {scale} consecutive draws is {r:.2}"),
+        });
+    }
+    if let Some(Again { distance, times, ln_p, what }) = again(reading, ln_e_limit) {
+        (found.replay, found.repeats, found.replay_ln_p) = (Some(distance), Some(times), ln_p);
+        found.reason = because(what);
+    }
+    found
+}
+
+/// Draws that come again.
+struct Again {
+    distance: u64,
+    times: u64,
+    /// ln of a bound on the probability of that for independent draws.
+    ln_p: Option<f64>,
+    what: String,
+}
+
+/// Whether draws come again: three searches share their half of the level, and two behind averages.
+fn again(reading: &Reading, ln_e_limit: f64) -> Option<Again> {
+    let batch = reading.trial.wanted.batch;
+    let searches: f64 = if batch == 1 { 3.0 } else { 5.0 };
+    let limit = ln_e_limit + searches.ln();
+    let unit = if batch == 1 { "draws" } else { "averages" };
+    if let Some(times) = reading.contents.as_ref().and_then(Contents::alike) {
+        let what = format!("all {times} averages hold the same draws");
+        return Some(Again { distance: batch, times, ln_p: None, what });
+    }
+    let written = reading.runs.found().filter(|&(_, ln_p)| ln_p <= -limit);
+    if let Some((times, ln_p)) = written {
+        let what = format!("{unit} are written more than once: each {times} times");
+        return Some(Again { distance: batch, times, ln_p: Some(ln_p), what });
+    }
+    let said = |replay: Replay, batch: u64, unit: &str| {
+        let (distance, times, ln_p) = (replay.distance * batch, replay.times, Some(replay.ln_p));
+        let what = match replay.distance {
+            1 => format!("{unit} are written more than once"),
+            _ => format!("the same {unit} come again {distance} draws later, {times} times in all"),
+        };
+        Again { distance, times, ln_p, what }
+    };
+    let replays = [reading.replays.found(), reading.sequences.found()].into_iter().flatten();
+    let replays = replays.filter(|replay| replay.ln_p <= -limit);
+    let replay = replays.min_by(|a, b| a.ln_p.total_cmp(&b.ln_p));
+    let behind = reading.contents.as_ref().and_then(Contents::replay);
+    let behind = behind.filter(|replay| replay.ln_p <= -limit);
+    replay.map(|found| said(found, batch, unit)).or(behind.map(|found| said(found, 1, "draws")))
+}

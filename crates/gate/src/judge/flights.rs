@@ -1,0 +1,180 @@
+//! Free flights of another program: how one that leaves is written.
+//!
+//! ```text
+//! S, anything beyond it, +∞, −1   the flight leaves the ray: it counts as the ray's length S
+//! NaN, any other negative number  no distance: the draw fails, and the message says how to write it
+//! ```
+//!
+//! A number that rounding may have moved below S counts as S. Where no flight leaves although many should, and one
+//! other number comes in their place, as 0 or the last collision, that number is named.
+
+use crate::stats::ties;
+use numeric::digits::short;
+
+/// A flight that leaves, as a program may write it without another way to mark it.
+const LEFT: f64 = -1.0;
+/// Error of a distance in single precision, relative to the positions that it is the difference of: four roundings.
+const SINGLE: f64 = 2.4e-7;
+/// Fewer flights than this are no evidence of a wrong convention.
+const FEWEST: f64 = 20.0;
+
+/// What is known of flights along a ray.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Flights {
+    /// S, the length of the ray.
+    pub length: f64,
+    /// The position of its beginning, which positions have the resolution of.
+    pub from: f64,
+    /// The probability that a flight leaves.
+    pub escape: f64,
+}
+
+/// Flights of which those that leave are marked.
+pub struct Marked {
+    /// Marked by the length of the ray.
+    pub at_end: Vec<f64>,
+    /// Marked by infinity.
+    pub beyond: Vec<f64>,
+}
+
+/// Flights on their way, with what the first block of them shows.
+pub struct Ends {
+    flights: Flights,
+    rounding: f64,
+    /// From here on a flight has left; found by the first block.
+    near: Option<f64>,
+    left: u64,
+    seen: u64,
+    /// Whether all of them are numbers of single precision.
+    pub is_single: bool,
+    /// The number that comes most often among the first flights that do not leave, and its share, where it comes ten
+    /// times as often as any other.
+    most_frequent: (f64, f64),
+}
+
+impl Ends {
+    pub(crate) fn new(flights: Flights, rounding: f64) -> Self {
+        let (near, left, seen, most_frequent) = (None, 0, 0, (f64::NAN, 0.0));
+        Self { flights, rounding, near, left, seen, is_single: true, most_frequent }
+    }
+
+    /// The flights with the ray's length in place of all that leave, and with infinity in their place.
+    pub fn marked(&mut self, block: &[f64]) -> Marked {
+        let Flights { length, from, .. } = self.flights;
+        self.is_single &= ties::all_single_precision(block);
+        let single = if self.is_single { SINGLE } else { 0.0 };
+        let slack = self.rounding.max(single) * (from.abs() + length);
+        let is_first = self.near.is_none();
+        let near = *self.near.get_or_insert(length - slack);
+        let leaves = |x: f64| x >= near || is_left(x);
+        let put = |left: f64| -> Vec<f64> {
+            block.iter().map(|&x| if leaves(x) { left } else { x }).collect()
+        };
+        let marked = Marked { at_end: put(length), beyond: put(f64::INFINITY) };
+        let stay: Vec<f64> = block.iter().copied().filter(|&x| !leaves(x)).collect();
+        self.seen += block.len() as u64;
+        self.left += (block.len() - stay.len()) as u64;
+        if is_first && !block.is_empty() {
+            let (x, times) = most_frequent(stay);
+            self.most_frequent = (x, times as f64 / block.len() as f64);
+        }
+        marked
+    }
+
+    /// That flights which leave are written in a way that cannot be told from a distance.
+    pub fn wrong(&self) -> Option<String> {
+        let (x, share) = self.most_frequent;
+        let Flights { escape, .. } = self.flights;
+        let is_shown = escape * self.seen as f64 >= FEWEST && share * self.seen as f64 >= FEWEST;
+        let is_that_of_leaving = 0.5 * escape <= share && share <= 2.0 * escape;
+        if self.left > 0 || !is_shown || !is_that_of_leaving {
+            return None;
+        }
+        let percent = |share: f64| short(100.0 * share, 3);
+        Some(format!(
+            "flights that leave: there are none, although {} % should leave, and {} % of the first draws are {x}; {}",
+            percent(escape),
+            percent(share),
+            self.cure()
+        ))
+    }
+
+    /// The ways to write a flight that leaves.
+    pub fn cure(&self) -> String {
+        format!(
+            "write a flight that leaves as {}, the length of the ray, as a larger number, inf or -1",
+            self.flights.length
+        )
+    }
+}
+
+#[allow(clippy::float_cmp)] // a mark, not a result
+fn is_left(x: f64) -> bool {
+    x == LEFT
+}
+
+/// The number that comes ten times as often as any other, and its count; a count of 0 without such a number.
+fn most_frequent(mut values: Vec<f64>) -> (f64, usize) {
+    values.sort_unstable_by(f64::total_cmp);
+    let mut groups: Vec<&[f64]> = values.chunk_by(|a, b| a == b).collect();
+    groups.sort_by_key(|group| std::cmp::Reverse(group.len()));
+    let second = groups.get(1).map_or(0, |group| group.len());
+    match groups.first() {
+        Some(group) if group.len() >= 10 * second => (group[0], group.len()),
+        _ => (f64::NAN, 0),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const FLIGHTS: Flights = Flights { length: 0.7, from: 0.0, escape: 0.25 };
+    const INFINITY: f64 = f64::INFINITY;
+
+    fn beyond(ends: &mut Ends, block: &[f64]) -> Vec<f64> {
+        ends.marked(block).beyond
+    }
+
+    #[test]
+    fn every_way_to_write_a_flight_that_leaves_is_read() {
+        let mut ends = Ends::new(FLIGHTS, 1e-12);
+        let marked = ends.marked(&[0.1, 0.7, 0.70001, f64::MAX, INFINITY, -1.0]);
+        assert_eq!(marked.at_end, [0.1, 0.7, 0.7, 0.7, 0.7, 0.7]);
+        assert_eq!(marked.beyond, [0.1, INFINITY, INFINITY, INFINITY, INFINITY, INFINITY]);
+        // What is no distance stays.
+        assert_eq!(beyond(&mut ends, &[-0.5, -INFINITY, 0.0]), [-0.5, -INFINITY, 0.0]);
+        assert!(beyond(&mut ends, &[f64::NAN])[0].is_nan());
+    }
+
+    #[test]
+    fn rounding_to_single_precision_moves_no_flight_from_the_end() {
+        let short = f64::from(0.7f32);
+        assert!(short < 0.7);
+        let mut ends = Ends::new(FLIGHTS, 1e-12);
+        assert_eq!(beyond(&mut ends, &[0.25, short]), [0.25, INFINITY]);
+        // Beside doubles it is a collision next to the end.
+        let mut ends = Ends::new(FLIGHTS, 1e-12);
+        assert_eq!(beyond(&mut ends, &[0.1, short]), [0.1, short]);
+    }
+
+    #[test]
+    fn a_number_in_place_of_the_flights_that_leave_is_named() {
+        let flights = |left: f64| -> Vec<f64> {
+            (0..400).map(|i| if i % 4 == 0 { left } else { 1e-3 * f64::from(i) }).collect()
+        };
+        for wrong in [0.0, 0.5] {
+            let mut ends = Ends::new(FLIGHTS, 1e-12);
+            ends.marked(&flights(wrong));
+            let said = ends.wrong().expect("a wrong convention");
+            assert!(said.contains(&format!("25 % of the first draws are {wrong};")), "{said}");
+        }
+        let mut ends = Ends::new(FLIGHTS, 1e-12);
+        ends.marked(&flights(0.7));
+        assert_eq!(ends.wrong(), None);
+        // Many numbers that come often are something else.
+        let mut ends = Ends::new(FLIGHTS, 1e-12);
+        ends.marked(&[0.1, 0.2, 0.3].repeat(200));
+        assert_eq!(ends.wrong(), None);
+    }
+}

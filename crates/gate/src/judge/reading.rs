@@ -1,0 +1,387 @@
+//! Draws on their way through all questions, block by block.
+
+use super::asks::{asks, planned};
+use super::contents::Contents;
+use super::flights::Ends;
+use super::judgement::{Judgement, Stop};
+use super::scalar::{Levels, Scalar};
+use super::theory::{Background, DISTRIBUTION, Tested, Tests};
+use super::trial::{BUFFER, Trial};
+use super::{dependence, verdict};
+use crate::stats::independence::Independence;
+use crate::stats::replays::Replays;
+use crate::stats::runs::Runs;
+use crate::stats::sequences::Sequences;
+use crate::stats::verdict::MISS;
+use crate::stats::verdict::Verdict;
+use crate::stats::{Powers, ties};
+use numeric::sum::Sum;
+
+/// The share of α that the drift has, a question of its own.
+pub const DRIFT: f64 = 0.2;
+/// The fewest draws that are judged at a time.
+const FEW: usize = 64;
+/// So many different values among the first draws are no small set.
+const VARIED: usize = 100;
+
+/// What a draw is that refutes the claim by itself.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Fault {
+    /// Not a finite number, or so far from the truth that its square is none.
+    Number,
+    /// Out of the promised range.
+    Range,
+    /// Not the truth, where draws have no spread.
+    Spread,
+    /// Another number of lookups than the one that all draws take.
+    Lookups,
+    /// A negative number in place of a distance.
+    Distance,
+}
+
+/// The first draw that refutes the claim by itself.
+#[derive(Debug, Clone, Copy)]
+pub struct Refuted {
+    pub(crate) fault: Fault,
+    pub(crate) index: u64,
+    pub(crate) value: f64,
+}
+
+/// Averages of so many consecutive numbers.
+struct Averages {
+    batch: u64,
+    sum: Sum,
+    count: u64,
+    ready: Vec<f64>,
+}
+
+impl Averages {
+    fn new(batch: u64) -> Self {
+        Self { batch, sum: Sum::default(), count: 0, ready: Vec::new() }
+    }
+
+    fn add(&mut self, x: f64) {
+        self.sum.add(x);
+        self.count += 1;
+        if self.count == self.batch {
+            self.ready.push(self.sum.value() / self.batch as f64);
+            (self.sum, self.count) = (Sum::default(), 0);
+        }
+    }
+}
+
+/// Draws on their way: what makes them may hand them over block by block.
+pub struct Reading {
+    pub(crate) trial: Trial,
+    powers: Powers,
+    pub(crate) mean: Option<Scalar>,
+    pub(crate) variance: Option<Scalar>,
+    pub(crate) lookups: Option<Scalar>,
+    pub(crate) refuted: Option<Refuted>,
+    refuting: u64,
+    /// Where draws may lie, rounding included.
+    range: Option<[f64; 2]>,
+    read: u64,
+    /// How many draws or averages were judged.
+    judged: u64,
+    averages: [Averages; 2],
+    /// How many draws or averages are judged at a time.
+    block: usize,
+    pub(crate) independence: Independence,
+    pub(crate) replays: Replays,
+    pub(crate) sequences: Sequences,
+    pub(crate) runs: Runs,
+    /// The draws behind averages.
+    pub contents: Option<Contents>,
+    lookup_sum: Sum,
+    is_single: bool,
+    is_varied: bool,
+    resolution: Option<f64>,
+    pub(crate) background: Background,
+    pub(crate) ends: Option<Ends>,
+    y: Vec<f64>,
+    other: Vec<f64>,
+}
+
+impl Reading {
+    /// Before the first draw.
+    pub fn new(trial: Trial) -> Self {
+        Self::with(trial, Background::default())
+    }
+
+    /// Before the first draw of an experiment of a case.
+    pub fn with(trial: Trial, background: Background) -> Self {
+        let asks = asks(&trial);
+        let count = asks.len().max(1) as f64;
+        let share = if trial.is_certain() { 1.0 } else { 1.0 - DRIFT };
+        let share = if background.tests.is_some() { share - DISTRIBUTION } else { share };
+        let ln_fail = (count / (share * trial.wanted.alpha)).ln();
+        let levels = Levels { ln_fail, ln_pass: -MISS.ln() };
+        let most = trial.wanted.most.unwrap_or(u64::MAX);
+        let length = trial.length.map(|length| length.min(most) / trial.wanted.batch);
+        // Few draws make small blocks, so that later ones can be judged by earlier ones.
+        let block = length.map_or(BUFFER, |n| usize::try_from(n / 16).unwrap_or(BUFFER));
+        let block = block.next_power_of_two().clamp(FEW, BUFFER);
+        // A known variance is judged in the blocks of a run.
+        let is_known = trial.claim.variance.is_some() && trial.wanted.batch == 1;
+        let block = if is_known { BUFFER } else { block };
+        let planned = planned(&asks, length);
+        let scalar = |check: &str| {
+            let ask = asks.iter().find(|ask| ask.check == check);
+            ask.map(|&ask| Scalar::new(ask, planned, levels).of(&trial))
+        };
+        Self {
+            trial,
+            powers: Powers::default(),
+            mean: scalar("mean"),
+            variance: scalar("variance"),
+            lookups: scalar("lookups"),
+            refuted: None,
+            refuting: 0,
+            range: trial.claim.widened(),
+            read: 0,
+            judged: 0,
+            averages: [Averages::new(trial.wanted.batch), Averages::new(trial.wanted.batch)],
+            block,
+            independence: Independence::default(),
+            replays: Replays::default(),
+            sequences: Sequences::default(),
+            runs: Runs::default(),
+            contents: (trial.wanted.batch > 1).then(|| Contents::new(trial.wanted.batch)),
+            lookup_sum: Sum::default(),
+            is_single: true,
+            is_varied: false,
+            resolution: None,
+            background,
+            ends: trial.claim.flights.map(|flights| Ends::new(flights, trial.claim.rounding)),
+            y: Vec::with_capacity(BUFFER),
+            other: Vec::with_capacity(BUFFER),
+        }
+    }
+
+    /// How many draws there were.
+    pub fn draws(&self) -> u64 {
+        self.read
+    }
+
+    fn scalars(&mut self) -> impl Iterator<Item = &mut Scalar> {
+        self.mean.iter_mut().chain(&mut self.variance).chain(&mut self.lookups)
+    }
+
+    /// What is wrong with a draw by itself.
+    fn fault(&self, x: f64) -> Option<Fault> {
+        let claim = &self.trial.claim;
+        let y = (x - claim.truth) / claim.unit;
+        if zero_or_nan(y) != 0.0 {
+            return Some(Fault::Number);
+        }
+        if claim.flights.is_some() && x < 0.0 {
+            return Some(Fault::Distance);
+        }
+        let [low, high] = self.range?;
+        (!(low <= x && x <= high)).then_some(Fault::Range)
+    }
+
+    /// Adds draws with their lookups, if there are any. What is said depends on where one call ends and the next
+    /// begins; blocks of [`BUFFER`] draws suit the gate best.
+    pub fn absorb(&mut self, block: &[f64], lookups: &[f64]) {
+        Self::absorb_values(std::slice::from_mut(self), &[block], lookups);
+    }
+
+    pub(crate) fn absorb_one(&mut self, block: &[f64], lookups: &[f64]) {
+        self.look_at_each(block, lookups);
+        self.read += block.len() as u64;
+        self.lookup_sum.add(lookups.iter().sum());
+        if self.trial.wanted.batch == 1 {
+            for (at, part) in block.chunks(self.block).enumerate() {
+                let first = (at * self.block).min(lookups.len());
+                let last = (first + part.len()).min(lookups.len());
+                self.judge(part, &lookups[first..last]);
+            }
+            return;
+        }
+        if let Some(contents) = &mut self.contents {
+            contents.absorb(block);
+        }
+        let [values, counts] = &mut self.averages;
+        for &x in block {
+            values.add(x);
+        }
+        for &m in lookups {
+            counts.add(m);
+        }
+        while self.averages[0].ready.len() >= self.block {
+            self.judge_averages(self.block);
+        }
+    }
+
+    fn judge_averages(&mut self, count: usize) {
+        let [values, counts] = &mut self.averages;
+        let values: Vec<f64> = values.ready.drain(..count).collect();
+        let counts: Vec<f64> = counts.ready.drain(..count.min(counts.ready.len())).collect();
+        self.judge(&values, &counts);
+    }
+
+    /// Looks for draws that refute the claim by themselves.
+    fn look_at_each(&mut self, block: &[f64], lookups: &[f64]) {
+        if self.read == 0 {
+            let mut values = block.to_vec();
+            let ties = ties::ties(&mut values);
+            self.is_varied = block.len() - ties > VARIED;
+            self.resolution = ties::resolution(&mut values);
+        }
+        self.is_single &= ties::all_single_precision(block);
+        let first = self.read;
+        self.note(first, block, Self::fault);
+        if let Some(claimed) = self.trial.claim.lookups {
+            // A law's own number may be rounded; a draw that differs by one is far beyond that.
+            let is_other = |m: f64| claimed.is_fixed() && (m - claimed.mean).abs() > 0.5;
+            let fault = |m: f64| (!m.is_finite() || is_other(m)).then_some(Fault::Lookups);
+            self.note(first, lookups, |_, m| fault(m));
+        }
+    }
+
+    /// Notes what is wrong with numbers of which the first is draw number `first`.
+    fn note(&mut self, first: u64, values: &[f64], fault: impl Fn(&Self, f64) -> Option<Fault>) {
+        for (index, &value) in (first..).zip(values) {
+            let Some(fault) = fault(self, value) else { continue };
+            self.refuting += 1;
+            if self.refuted.is_none_or(|earlier| index < earlier.index) {
+                self.refuted = Some(Refuted { fault, index, value });
+            }
+        }
+    }
+
+    /// Puts all questions to a block of draws or averages.
+    fn judge(&mut self, block: &[f64], lookups: &[f64]) {
+        let claim = &self.trial.claim;
+        let batch = self.trial.wanted.batch;
+        let (truth, unit) = (claim.truth, claim.unit);
+        self.y.clear();
+        self.y.extend(block.iter().map(|x| (x - truth) / unit));
+        let bound = if self.mean.is_none() { self.trial.bound() } else { f64::INFINITY };
+        let fault = |y: f64| {
+            let number = (zero_or_nan(y) != 0.0).then_some(Fault::Number);
+            number.or((y.abs() > bound).then_some(Fault::Spread))
+        };
+        let mut is_finite = true;
+        for (at, (&y, &value)) in (self.judged..).zip(self.y.iter().zip(block)) {
+            let Some(fault) = fault(y) else { continue };
+            is_finite &= fault != Fault::Number;
+            // Of draws that are no numbers the first look tells.
+            if fault == Fault::Spread || batch > 1 {
+                self.refuting += 1;
+                let index = at * batch;
+                self.refuted = self.refuted.or(Some(Refuted { fault, index, value }));
+            }
+        }
+        self.judged += block.len() as u64;
+        if !is_finite {
+            return;
+        }
+        self.independence.absorb(&self.y);
+        self.replays.absorb(block);
+        self.sequences.absorb(block);
+        self.runs.absorb(block);
+        self.powers.absorb(&self.y);
+        if let Some(mean) = &mut self.mean {
+            mean.absorb(&self.y);
+        }
+        if let (Some(scalar), Some(variance)) = (&mut self.variance, claim.variance) {
+            let scale = unit / variance.sqrt();
+            self.other.clear();
+            self.other.extend(self.y.iter().map(|y| (y * scale) * (y * scale) - 1.0));
+            scalar.absorb(&self.other);
+        }
+        if let (Some(scalar), Some(claimed)) = (&mut self.lookups, claim.lookups) {
+            self.other.clear();
+            self.other.extend(lookups.iter().map(|m| m / claimed.mean - 1.0));
+            if self.other.iter().all(|y| y.is_finite()) {
+                scalar.absorb(&self.other);
+            }
+        }
+    }
+
+    /// Whether more draws may change what is said, were all decisions final.
+    pub fn is_open(&self) -> bool {
+        if self.refuted.is_some() {
+            return false;
+        }
+        if self.mean.is_none() {
+            return true;
+        }
+        let scalars = [&self.mean, &self.variance, &self.lookups].into_iter().flatten();
+        let mut scalars = scalars.map(|scalar| (scalar.has_failed(), scalar.is_open()));
+        // One that has failed decides; else any that is open keeps the draws coming.
+        let [failed, open] =
+            scalars.by_ref().fold([false; 2], |[failed, open], (f, o)| [failed | f, open | o]);
+        !failed && open
+    }
+
+    /// What is said in the end; `stopped` tells why, where draws are left.
+    pub fn close(mut self, stopped: Option<Stop>) -> Judgement {
+        let rest = self.averages[0].ready.len();
+        if rest > 0 {
+            self.judge_averages(rest);
+        }
+        self.scalars().for_each(Scalar::decide);
+        let tested = self.background.tests.take().map_or(Tested::default(), Tests::close);
+        let mut notes = std::mem::take(&mut self.background.notes);
+        notes.extend(tested.untested);
+        let is_single = self.ends.as_ref().map_or(self.is_single, |ends| ends.is_single);
+        let Trial { claim, wanted, length } = &self.trial;
+        let unit = claim.unit;
+        let n = self.powers.draws() as f64;
+        let finite = |x: f64| Some(x).filter(|x| x.is_finite());
+        let variance = finite(self.powers.variance() * unit * unit).filter(|_| n > 1.0);
+        let spread = claim.variance.or(variance).filter(|&variance| variance > 0.0);
+        let error = spread.map(|variance| (variance / n).sqrt());
+        let off = finite(self.powers.mean() * unit);
+        let kurtosis = finite(self.powers.kurtosis());
+        let known = claim.variance.filter(|&variance| variance > 0.0);
+        let tails = claim.kurtosis.or(kurtosis).filter(|_| known.is_some());
+        let findings = [&self.mean, &self.variance, &self.lookups].into_iter().flatten();
+        let mut judgement = Judgement {
+            verdict: Verdict::Pass,
+            reason: String::new(),
+            guarantees: Vec::new(),
+            alpha: wanted.alpha,
+            beta: MISS,
+            draws: self.read,
+            length: *length,
+            stopped,
+            batch: wanted.batch,
+            unfilled: self.averages[0].count,
+            truth: claim.truth,
+            unit,
+            mean: off.map(|off| claim.truth + off),
+            standard_error: error,
+            z: off.zip(error).map(|(off, error)| off / error),
+            variance,
+            predicted_variance: claim.variance,
+            variance_ratio: variance.zip(known).map(|(found, claimed)| found / claimed),
+            variance_band: tails.map(|kurtosis| ((kurtosis - 1.0).max(0.0) / n).sqrt()),
+            kurtosis,
+            lookups: claim.lookups.and_then(|_| finite(self.lookup_sum.value() / self.read as f64)),
+            predicted_lookups: claim.lookups.map(|claimed| claimed.mean),
+            refuted_by: self.refuted.as_ref().map(|refuted| refuted.index),
+            refuting: self.refuting,
+            single_precision: is_single && self.is_varied,
+            resolution: self.resolution,
+            findings: findings.map(Scalar::finding).collect(),
+            drift: dependence::drift(&self),
+            independence: dependence::independence(&self),
+            theory: self.background.theory.take(),
+            distribution: tested.findings,
+        };
+        verdict::decide(&self, &mut judgement);
+        judgement.guarantees.extend(notes);
+        judgement
+    }
+}
+
+/// 0 for numbers whose square is finite, and not a number otherwise.
+#[inline(always)]
+pub fn zero_or_nan(y: f64) -> f64 {
+    y * y * 0.0
+}

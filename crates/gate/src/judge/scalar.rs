@@ -1,0 +1,292 @@
+//! One scalar of foreign draws on its way through the gate.
+//!
+//! ```text
+//! E      the mean of the e-values of all grounds that hold (`grounds`);   fail at ln E ≥ ln(K/0.8α)
+//! P±     likewise, of all grounds;                                        pass at both ln P ≥ ln(1/β)
+//! E_c    the same for a change of the mean from any later block on        (`stats::capital`)
+//! ```
+//!
+//! Looks come at block ends, growing by 1.15, and where the draws end. A pass is not the end: a
+//! scalar that has passed may still fail on what comes later.
+
+use super::grounds::{FAIRLY_RELIABLE, OfRange, OfVariance, RELIABLE, Spread};
+use crate::stats::Powers;
+use crate::stats::betting::Aim;
+use crate::stats::capital::ln_mean_exp;
+use crate::stats::gate::{self, Decision, Design, Evidence};
+
+/// How many draws a question without a promise takes where no number of draws is planned.
+const UNPLANNED: f64 = 67_108_864.0;
+/// Twice as many draws as show their variance where no number of draws is planned.
+const UNPLANNED_PILOT: f64 = 131_072.0;
+
+/// What is asked of a scalar.
+#[derive(Debug, Clone, Copy)]
+pub struct Ask {
+    /// `mean`, `variance` or `lookups`.
+    pub check: &'static str,
+    /// What it is called in a sentence.
+    pub what: &'static str,
+    /// What is known of V; `None` where only the range is to be relied on.
+    pub spread: Option<Spread>,
+    /// Whether it may fail by its spread, or only pass.
+    pub is_hard: bool,
+    /// Where y lies, if it is known.
+    pub range: Option<[f64; 2]>,
+    /// ε as the caller has it.
+    pub tolerance: Option<f64>,
+    /// ε where neither the caller nor a number of draws says.
+    pub usual: f64,
+    /// The widest ε that is chosen without being asked for.
+    pub cap: f64,
+    /// δ.
+    pub floor: f64,
+    /// Whether it was promised a pass even where the draws are too few.
+    pub must_pass: bool,
+}
+
+/// The levels of the gate.
+#[derive(Debug, Clone, Copy)]
+pub struct Levels {
+    /// ln(K/0.8α).
+    pub ln_fail: f64,
+    /// ln(1/β).
+    pub ln_pass: f64,
+}
+
+/// A scalar on its way.
+pub struct Scalar {
+    pub(crate) ask: Ask,
+    /// The quantity that y stands for, as it is claimed.
+    pub expected: f64,
+    /// Size of y = 1 in units of the quantity.
+    pub scale: f64,
+    /// What is counted, in the plural.
+    pub unit: &'static str,
+    pub(crate) levels: Levels,
+    /// n: how many draws are planned, if anybody knows.
+    pub planned: Option<f64>,
+    pub(crate) past: Powers,
+    pub(crate) of_variance: Option<OfVariance>,
+    pub(crate) of_range: Option<OfRange>,
+    /// What is asked, as soon as V is known or bounded; its ε never becomes wider.
+    pub design: Option<Design>,
+    /// Whether n draws suffice for a pass.
+    pub is_promised: bool,
+    /// The sum of y in each block, and how many draws there are at its end.
+    pub sums: Vec<(f64, u64)>,
+    pub(crate) look: u64,
+    /// The decision, and the evidence it was made on.
+    pub decision: Decision,
+    /// Evidence at the last look.
+    pub evidence: Evidence,
+    /// Whether what may not fail would have.
+    pub is_doubted: bool,
+    /// ln `E_c`.
+    pub ln_change: f64,
+    /// Mean of y and number of draws at the last look before the decision.
+    pub seen: (f64, u64),
+}
+
+impl Scalar {
+    /// Creates the state of a quantity before its first draw.
+    pub fn new(ask: Ask, planned: Option<f64>, levels: Levels) -> Self {
+        let mut scalar = Self {
+            levels,
+            planned,
+            past: Powers::default(),
+            of_variance: ask.spread.map(|spread| OfVariance::new(spread, ask.is_hard)),
+            of_range: ask.range.map(OfRange::new),
+            design: None,
+            is_promised: ask.must_pass,
+            sums: Vec::new(),
+            look: 1,
+            decision: Decision::Open,
+            evidence: Evidence::NONE,
+            is_doubted: false,
+            ln_change: 0.0,
+            seen: (0.0, 0),
+            expected: 0.0,
+            scale: 1.0,
+            unit: "draws",
+            ask,
+        };
+        if let Some(Spread::Known(variance)) = ask.spread {
+            scalar.start(variance);
+        }
+        scalar
+    }
+
+    /// Fixes ε.
+    fn start(&mut self, variance: f64) {
+        let skipped = self.past.draws() as f64;
+        let left = self.planned.map(|all| (all - skipped).max(1.0));
+        let by_range = self.of_range.as_ref().filter(|_| self.ask.spread.is_none());
+        let finest = by_range.map_or(0.0, OfRange::finest);
+        let chosen = |n: f64| gate::tolerance_of(variance, n).max(finest / n);
+        let chosen = left.map_or(self.ask.usual, chosen).min(self.ask.cap);
+        // The bets of a range need no narrow ε.
+        let design = match self.ask.tolerance {
+            Some(asked) => Design::asked(variance, asked, self.ask.floor),
+            None if by_range.is_some() => Design::asked(variance, chosen, self.ask.floor),
+            None => Design::new(variance, chosen, self.ask.floor),
+        };
+        let suffices = |n| design.draws() <= n * (1.0 + 1e-6);
+        let can_promise = self.ask.is_hard && left.is_none_or(suffices);
+        self.is_promised |= self.ask.tolerance.is_some() || can_promise;
+        self.design = Some(design);
+    }
+
+    /// Fixes ε where only a range is known: by the variance of the first draws, at most that of the range. Half of
+    /// all draws may pass until the draws show their variance; an ε that was asked for need not wait.
+    fn start_by_range(&mut self) {
+        let Some(ground) = self.of_range.as_ref().filter(|_| self.design.is_none()) else { return };
+        let (draws, carry) = (self.past.draws() as f64, self.past.effective_draws());
+        let is_asked = self.ask.tolerance.is_some();
+        let is_due = draws >= 0.5 * self.planned.unwrap_or(UNPLANNED_PILOT);
+        let is_reliable = carry >= RELIABLE || is_due && carry >= FAIRLY_RELIABLE;
+        if !is_asked && !is_reliable && !is_due {
+            return;
+        }
+        let shown = if is_reliable { self.past.upper_square() } else { f64::INFINITY };
+        let variance = shown.min(ground.widest());
+        // A range that leaves next to nothing narrows no tolerance.
+        let asked = self.ask.tolerance.unwrap_or(self.ask.cap);
+        let variance = if variance > 0.0 { variance } else { 16.0 * asked * asked };
+        if (draws > 0.0 || is_asked) && variance.is_finite() {
+            self.start(variance);
+        }
+    }
+
+    /// Adds a block of y.
+    pub fn absorb(&mut self, y: &[f64]) {
+        let block = self.sums.len() as u64;
+        if self.decision != Decision::Failed {
+            let bound =
+                self.of_variance.as_mut().and_then(|g| g.variance(&self.past, self.levels.ln_fail));
+            if let Some(variance) = bound
+                && self.design.is_none()
+            {
+                self.start(variance);
+            }
+            self.start_by_range();
+            if let (Some(ground), Some(variance), Some(first)) =
+                (&mut self.of_variance, bound, self.design)
+            {
+                ground.absorb(y, first.with_variance(variance));
+            }
+            if let Some(ground) = &mut self.of_range {
+                let variance = bound.or(ground.variance(&self.past));
+                // Until ε is chosen, the widest one guides the bets against a correct mean.
+                let is_provisional = self.design.is_none();
+                let widest = self.ask.tolerance.unwrap_or(self.ask.cap);
+                let tolerance = self.design.map_or(widest, |design| design.tolerance);
+                let aim = variance.filter(|_| !is_provisional || self.past.draws() > 0);
+                let aim = aim.map(|variance| Aim { tolerance, variance, is_provisional });
+                ground.absorb(y, aim, self.ask.floor);
+            }
+        }
+        self.past.absorb(y);
+        self.sums.push((y.iter().sum(), self.past.draws()));
+        if block + 1 == self.look {
+            self.decide();
+            self.look = (self.look + 1).max(self.look * 115 / 100);
+        }
+    }
+
+    /// A look; the last one comes when the draws end.
+    pub fn decide(&mut self) {
+        if self.decision == Decision::Failed || self.past.draws() == 0 {
+            return;
+        }
+        let (mut ln_e, mut ln_change) = (Vec::new(), Vec::new());
+        let mut ln_pass: [Vec<f64>; 2] = Default::default();
+        let mut soft = f64::NEG_INFINITY;
+        // A bound on V takes its share of all evidence that it joins.
+        let mut ln_share: f64 = 0.0;
+        let tolerance = self.design.map_or(0.0, |design| design.tolerance);
+        let of_variance = self.of_variance.as_ref();
+        let of_variance = of_variance.map(|g| (&g.capital, g.capital.ln_pass(), g.is_hard));
+        let of_range = self.of_range.as_ref();
+        let of_range = of_range.map(|g| (&g.capital, g.ln_pass(tolerance), true));
+        for (capital, sides, is_hard) in of_variance.into_iter().chain(of_range) {
+            for (all, side) in ln_pass.iter_mut().zip(sides) {
+                all.push(side);
+            }
+            if !is_hard {
+                soft = capital.ln_e();
+                continue;
+            }
+            ln_e.push(capital.ln_e());
+            ln_change.push(capital.ln_change());
+        }
+        if let Some(ground) = self.of_variance.as_ref() {
+            ln_share = ground.ln_share();
+        }
+        soft += ln_share;
+        let ln_share = if self.ask.is_hard { ln_share } else { 0.0 };
+        let mean = |values: &[f64]| if values.is_empty() { 0.0 } else { ln_mean_exp(values) };
+        let evidence = Evidence {
+            ln_e: mean(&ln_e) + ln_share,
+            ln_pass: ln_pass.map(|side| ln_mean_exp(&side)),
+        };
+        let Levels { ln_fail, ln_pass } = self.levels;
+        self.is_doubted |= soft >= ln_fail;
+        self.ln_change = self.ln_change.max(mean(&ln_change) + ln_share);
+        let decision = evidence.decision(ln_fail, ln_pass);
+        if self.decision == Decision::Open || decision == Decision::Failed {
+            (self.decision, self.evidence) = (decision, evidence);
+            self.seen = (self.past.mean(), self.past.draws());
+        }
+    }
+
+    /// Whether more draws may change what is said, were it decided once and for all.
+    pub fn is_open(&self) -> bool {
+        let most = self.planned.unwrap_or(UNPLANNED);
+        let limit = match &self.design {
+            Some(design) if self.is_promised => design.draws() * gate::HORIZON / gate::PLANNED,
+            _ => most,
+        };
+        self.decision == Decision::Open && (self.past.draws() as f64) < limit
+    }
+
+    pub(crate) fn has_failed(&self) -> bool {
+        self.decision == Decision::Failed
+    }
+
+    /// V, where the claim has it.
+    pub fn known_variance(&self) -> Option<f64> {
+        match self.ask.spread {
+            Some(Spread::Known(variance)) => Some(variance),
+            _ => None,
+        }
+    }
+
+    /// Whether it can fail at all.
+    pub fn has_ground(&self) -> bool {
+        self.of_range.is_some() || self.ask.is_hard
+    }
+
+    /// Whether the draws do not contradict what was assumed of them.
+    pub fn is_founded(&self) -> bool {
+        let ground = self.of_variance.as_ref();
+        !ground.is_some_and(|ground| ground.is_contradicted(&self.past)) || self.of_range.is_some()
+    }
+
+    /// Whether the mean differs by itself: were the spread what the draws show, it would fail, too.
+    pub fn is_off_by_itself(&self) -> bool {
+        let (off, n) = self.seen;
+        let by_range = self.of_range.as_ref().map_or(0.0, |ground| ground.capital.ln_e());
+        let squares = self.past.mean_square() - off * off;
+        0.5 * off * off * n as f64 >= self.levels.ln_fail * squares
+            || by_range >= self.levels.ln_fail
+    }
+
+    /// The kurtosis that a judgement assumes without a promise of the caller's.
+    pub fn assumed(&self) -> Option<f64> {
+        if self.ask.spread != Some(Spread::Shown) {
+            return None;
+        }
+        self.of_variance.as_ref().and_then(|ground| ground.kurtosis)
+    }
+}

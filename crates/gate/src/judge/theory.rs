@@ -1,0 +1,158 @@
+//! Theory of an experiment, and the tests of a draw's whole distribution.
+//!
+//! ```text
+//! α    3/5 to the scalars, 1/5 to the drift, 1/5 to the distribution where it is tested; else 4/5 and 1/5
+//! n    all draws, where their number is known before the first; else 2¹¹, 2¹², 2¹³, … of the first draws, of which look
+//!      j = 0, 1, … has a share 1/((j + 1)(j + 2)) of the level: no n depends on what the draws are
+//! p    the p-values of one look together, by Holm
+//! ```
+//!
+//! The tests themselves are those of a run; they need the library, which is why they are behind a trait here.
+
+use std::fmt;
+use std::panic::{RefUnwindSafe, UnwindSafe};
+use std::sync::Arc;
+
+use super::claim::Claim;
+use super::judgement::DistributionFinding;
+use super::trial::Wanted;
+
+/// The share of α that the tests of the distribution have.
+pub const DISTRIBUTION: f64 = 0.2;
+/// The channel that is a sum of those before it, by fixed weights: draws need not have it.
+const DERIVED: &str = "luminance";
+
+/// What is asked of the tests of a distribution.
+#[derive(Debug, Clone, Copy)]
+pub struct Asked {
+    /// The level that they share.
+    pub alpha: f64,
+    /// Number of draws, where it is known and no decision ends them earlier.
+    pub length: Option<u64>,
+    /// Whether draws come with their number of lookups.
+    pub has_lookups: bool,
+    /// The rounding of a draw, relative to its size.
+    pub rounding: f64,
+    /// Number of values of a draw.
+    pub values: usize,
+}
+
+/// The distribution of a draw, as far as theory knows it.
+pub trait Distribution: fmt::Debug + Send + Sync + UnwindSafe + RefUnwindSafe {
+    /// Its tests, before the first draw.
+    ///
+    /// # Errors
+    ///
+    /// The reason why nothing is tested, as a sentence.
+    fn tests(&self, asked: Asked) -> Result<Box<dyn Tests>, String>;
+}
+
+/// Tests of a distribution that draws are pushed to.
+pub trait Tests: Send + Sync + UnwindSafe + RefUnwindSafe {
+    /// Adds draws, a list for each value, and their lookups, where they have any.
+    fn absorb(&mut self, columns: &[&[f64]], lookups: &[f64]);
+
+    /// The findings, and why some tests were not made.
+    fn close(self: Box<Self>) -> Tested;
+}
+
+/// The result of the tests of a distribution.
+#[derive(Debug, Clone, Default)]
+pub struct Tested {
+    /// A finding for each test.
+    pub findings: Vec<DistributionFinding>,
+    /// Tests that were not made, with the reasons.
+    pub untested: Vec<String>,
+}
+
+/// Input of a reading of draws beside its claim.
+#[derive(Default)]
+pub struct Background {
+    /// The experiment that the claim comes from, in words.
+    pub theory: Option<String>,
+    /// The tests of the distribution.
+    pub tests: Option<Box<dyn Tests>>,
+    /// What is not tested, in sentences.
+    pub notes: Vec<String>,
+}
+
+/// Theory of one experiment of a case: a claim for each channel, and the distribution of the draw.
+#[derive(Debug, Clone)]
+pub struct Theory {
+    /// The claims with the names of their channels; the name is empty where there is one channel only.
+    pub channels: Vec<(String, Claim)>,
+    /// The experiment in words, with the swept value that was used.
+    pub about: String,
+    /// The tests of the whole distribution.
+    pub distribution: Arc<dyn Distribution>,
+}
+
+impl Theory {
+    /// Channels of draws of `values` values: all of them, or all but a luminance; `None` for other numbers.
+    pub fn channels_of(&self, values: usize) -> Option<&[(String, Claim)]> {
+        let all = &self.channels[..];
+        match all.split_last() {
+            _ if all.len() == values => Some(all),
+            Some(((name, _), rest)) if name == DERIVED && rest.len() == values && values > 0 => {
+                Some(rest)
+            }
+            _ => None,
+        }
+    }
+
+    /// The numbers of values that draws may have, in words.
+    pub fn widths(&self) -> String {
+        let all = self.channels.len();
+        match self.channels.last() {
+            Some((name, _)) if name == DERIVED && all > 1 => {
+                format!("{all} values, or {} without the {DERIVED}", all - 1)
+            }
+            _ => format!("{all} value{}", if all == 1 { "" } else { "s" }),
+        }
+    }
+
+    /// The names of all channels.
+    pub fn names(&self) -> Vec<String> {
+        self.channels.iter().map(|(name, _)| name.clone()).collect()
+    }
+
+    /// Background of the first of the readings of a draw's values: it tests the draw as a whole.
+    pub fn background(&self, wanted: &Wanted, asked: Whole) -> Background {
+        let mut background =
+            Background { theory: Some(self.about.clone()), ..Background::default() };
+        if asked.values < self.channels.len() && asked.values > 1 {
+            let what = "is a sum of the channels, and not among the values of a draw";
+            background.notes.push(format!("the {DERIVED} is not judged by itself: it {what}"));
+        }
+        let untested = |why: &str| format!("the distribution is not tested: {why}");
+        if asked.is_mean_only {
+            background.notes.push(untested("of theory the mean alone is taken"));
+        } else if wanted.batch > 1 {
+            background.notes.push(untested("averages of draws have another one"));
+        } else {
+            let Whole { length, has_lookups, rounding, values, .. } = asked;
+            let alpha = DISTRIBUTION * wanted.alpha;
+            let asked = Asked { alpha, length, has_lookups, rounding, values };
+            match self.distribution.tests(asked) {
+                Ok(tests) => background.tests = Some(tests),
+                Err(why) => background.notes.push(why),
+            }
+        }
+        background
+    }
+}
+
+/// The draws as a whole, for the tests of their distribution.
+#[derive(Debug, Clone, Copy)]
+pub struct Whole {
+    /// Number of draws, where it is known and no decision ends them earlier.
+    pub length: Option<u64>,
+    /// Whether theory is to judge their lookups.
+    pub has_lookups: bool,
+    /// The rounding of a draw, relative to its size.
+    pub rounding: f64,
+    /// Number of values of a draw.
+    pub values: usize,
+    /// Whether only the mean is taken from theory.
+    pub is_mean_only: bool,
+}

@@ -1,0 +1,280 @@
+//! What is said of foreign draws, and in which order.
+//!
+//! ```text
+//! a draw that refutes the claim by itself   fail, before all else
+//! the draws depend on each other            inconclusive: what the gate says holds for independent draws
+//! variance, mean, lookups, drift            fail; inconclusive; else pass
+//! ```
+//!
+//! A variance that is refuted only because the mean is off does not fail. One that is refuted as too small is named before
+//! the mean. A mean that is off only in units of that variance does not fail: its evidence rests on what is refuted.
+
+use super::dependence::off_without_change;
+use super::flights::Ends;
+use super::judgement::{IndependenceFinding, Judgement, ScalarFinding, Stop};
+use super::reading::{Fault, Reading, Refuted};
+use super::scalar::Scalar;
+use crate::stats::verdict::Verdict;
+use numeric::digits::short;
+
+/// The verdict of the whole, and what it promises.
+pub fn decide(reading: &Reading, judgement: &mut Judgement) {
+    let off = judgement.drift.as_ref().and_then(|drift| off_without_change(reading, drift));
+    let mean = judgement.findings.iter_mut().find(|found| found.check == "mean");
+    if let (Some(reason), Some(mean)) = (off, mean.filter(|mean| mean.verdict != Verdict::Fail)) {
+        (mean.verdict, mean.reason) = (Verdict::Fail, reason);
+    }
+    put_variance_first(reading, judgement);
+    let is_dependent = judgement.independence.is_refuted();
+    if is_dependent {
+        withhold(judgement);
+    }
+    // A pass has words where the mean is off within the tolerance.
+    let order = [Verdict::Fail, Verdict::Inconclusive, Verdict::Pass];
+    let said = order.into_iter().find_map(|verdict| {
+        let drift = judgement.drift.as_ref().map(|found| (found.verdict, &found.reason));
+        let scalars = judgement.findings.iter().map(|found| (found.verdict, &found.reason));
+        let tests = judgement.distribution.iter().map(|found| (found.verdict, &found.reason));
+        let has_words = |reason: &str| verdict != Verdict::Pass || !reason.is_empty();
+        let alike = scalars.chain(drift).chain(tests);
+        let alike = alike.filter(|(found, reason)| *found == verdict && has_words(reason));
+        let reasons: Vec<&str> = alike.map(|(_, reason)| reason.as_str()).collect();
+        (!reasons.is_empty()).then(|| (verdict, reasons.join("; ")))
+    });
+    (judgement.verdict, judgement.reason) = said.unwrap_or((Verdict::Pass, String::new()));
+    if is_dependent {
+        judgement.verdict = Verdict::Inconclusive;
+        judgement.reason = dependent(&judgement.independence);
+    }
+    if let Some(wrong) = reading.ends.as_ref().and_then(Ends::wrong) {
+        (judgement.verdict, judgement.reason) = (Verdict::Fail, wrong);
+    }
+    if let Some(refuted) = &reading.refuted {
+        judgement.verdict = Verdict::Fail;
+        judgement.reason = fault(reading, refuted, judgement.refuting);
+    }
+    judgement.guarantees = guarantees(reading, judgement);
+}
+
+/// Names a refuted variance before the mean, and acquits a mean that is off only in units of it.
+fn put_variance_first(reading: &Reading, judgement: &mut Judgement) {
+    let place = |check: &str| judgement.findings.iter().position(|found| found.check == check);
+    let (Some(at), Some(variance)) = (place("mean"), place("variance")) else { return };
+    let found = &judgement.findings[variance];
+    let is_larger = found.gate.is_some_and(|gate| gate.mean > 0.0);
+    let is_off = reading.mean.as_ref().is_some_and(Scalar::is_off_by_itself);
+    if found.verdict != Verdict::Fail {
+        return;
+    }
+    // Squares are taken about the truth: where that is not the mean, they are larger by the square of the bias.
+    let about_mean = judgement.variance_ratio.map_or(f64::INFINITY, |ratio| ratio - 1.0);
+    let is_by_mean = found.gate.is_some_and(|gate| about_mean <= gate.tolerance);
+    if is_larger && is_off && is_by_mean && judgement.findings[at].verdict == Verdict::Fail {
+        let off = found.gate.map_or(0.0, |gate| gate.mean);
+        let found = &mut judgement.findings[variance];
+        found.verdict = Verdict::Inconclusive;
+        found.reason = format!(
+            "squares about the truth are too large by {off:+.2e}, for the mean is off; about the mean of the draws \
+             by {about_mean:+.2e}"
+        );
+        return;
+    }
+    if !is_larger || is_off {
+        judgement.findings.swap(at, variance);
+        return;
+    }
+    let accused = &mut judgement.findings[at];
+    if accused.verdict == Verdict::Fail {
+        accused.verdict = Verdict::Inconclusive;
+        accused.reason = "the mean rests on a variance that is refuted".into();
+    }
+    if let Some(drift) = judgement.drift.as_mut().filter(|drift| drift.verdict == Verdict::Fail) {
+        drift.verdict = Verdict::Inconclusive;
+        drift.reason = "whether the mean changes rests on a variance that is refuted".into();
+    }
+    judgement.findings.swap(at, variance);
+}
+
+/// Takes back what the gate says: it holds for independent draws only.
+fn withhold(judgement: &mut Judgement) {
+    let not_judged =
+        |what: &str| format!("the {what} is not judged: the draws are not independent");
+    for found in &mut judgement.findings {
+        found.verdict = Verdict::Inconclusive;
+        let what =
+            if found.check == "lookups" { "number of lookups" } else { found.check.as_str() };
+        found.reason = not_judged(what);
+    }
+    if let Some(drift) = &mut judgement.drift {
+        drift.verdict = Verdict::Inconclusive;
+        drift.reason = not_judged("drift");
+    }
+    for found in &mut judgement.distribution {
+        found.verdict = Verdict::Inconclusive;
+        found.reason = not_judged("distribution");
+    }
+}
+
+fn dependent(found: &IndependenceFinding) -> String {
+    let cure = match (found.replay, found.batch) {
+        (Some(_), _) => {
+            "give each draw once, and give each pass and thread a seed of its own".into()
+        }
+        (None, Some(batch)) => format!(
+            "judge averages of {batch} draws (batch), from where on no dependence shows, and give the \
+             variance of averages or a range"
+        ),
+        (None, None) => "give one average a pass, or judge averages (batch)".to_owned(),
+    };
+    format!("{}; the mean is not judged: {cure}", found.reason)
+}
+
+/// What is wrong with a draw.
+fn fault(reading: &Reading, refuted: &Refuted, count: u64) -> String {
+    let claim = &reading.trial.claim;
+    let &Refuted { fault, index, value } = refuted;
+    let truth = claim.truth;
+    let said = match fault {
+        Fault::Number if value.is_finite() => {
+            format!("numeric: draw {index} is {value:e}, beyond measure for a truth of {truth:e}")
+        }
+        Fault::Number => format!("numeric: draw {index} is {value}, counted from 0"),
+        Fault::Range => {
+            let [low, high] = claim.range.unwrap_or([f64::NEG_INFINITY, f64::INFINITY]);
+            format!("range: draw {index} is {value:e}, outside of {low} to {high}")
+        }
+        Fault::Spread => {
+            let bound = reading.trial.bound() * claim.unit;
+            let unused =
+                unused_tolerance(reading).map_or(String::new(), |said| format!("; {said}"));
+            format!("draw {index} is {value:e}, not {truth:e}; {bound:.1e} is rounding{unused}")
+        }
+        Fault::Lookups => {
+            let wanted = claim.lookups.map_or(0.0, |lookups| lookups.mean);
+            format!("lookups: draw {index} takes {value} lookups, not {wanted}")
+        }
+        Fault::Distance => format!("distance: draw {index} is {value}, which is no distance"),
+    };
+    let is_distance = matches!(fault, Fault::Number | Fault::Distance);
+    let cure = reading.ends.as_ref().filter(|_| is_distance).map(Ends::cure);
+    let said = cure.map_or(said.clone(), |cure| format!("{said}; {cure}"));
+    if count > 1 { format!("{said}; {count} draws are like that") } else { said }
+}
+
+/// Why a tolerance of the mean is not used.
+fn unused_tolerance(reading: &Reading) -> Option<String> {
+    let asked = reading.trial.wanted.tolerance.filter(|_| reading.mean.is_none())?;
+    Some(format!(
+        "the tolerance of {asked:.1e} is not used: the variance given allows rounding alone; leave the variance \
+         out, or give a larger one"
+    ))
+}
+
+/// What the verdict promises, and what it does not.
+fn guarantees(reading: &Reading, judgement: &Judgement) -> Vec<String> {
+    let mut said = Vec::new();
+    match judgement.finding("mean") {
+        None => {
+            let what =
+                "no spread: every draw read is the truth to rounding, or the verdict is fail";
+            said.push(what.into());
+            said.extend(unused_tolerance(reading));
+        }
+        Some(mean) => {
+            said.push(failing(reading, judgement, mean));
+            said.extend(missing(judgement, mean));
+        }
+    }
+    let variance = judgement.finding("variance");
+    if reading.trial.is_faint() && !reading.trial.is_certain() {
+        said.push("the variance is not tested: rounding hides it".into());
+    }
+    if variance.is_some_and(|found| found.is_estimated) {
+        said.push(
+            "kurtosis estimated: the variance fails only where it is too large, which needs no \
+             kurtosis; it passes by the squares that were drawn, and rare ones that were not may \
+             carry it"
+                .into(),
+        );
+    }
+    if judgement.single_precision {
+        let what = "single precision: draws have 24 bits; a bias below 6e-8 of a draw cannot show";
+        said.push(what.into());
+    }
+    if judgement.unfilled > 0 {
+        said.push(format!(
+            "the last {} draws fill no average and were not judged",
+            judgement.unfilled
+        ));
+    }
+    if let Some(bits) = judgement.resolution {
+        said.push(format!("resolution: the first draws repeat as if they took 2^{bits:.1} values"));
+    }
+    let draws = judgement.draws;
+    match judgement.stopped {
+        Some(Stop::Decided) => {
+            said.push(format!("stopped early: what comes after {draws} draws was not seen"));
+        }
+        Some(Stop::Limit) => {
+            said.push(format!("stopped at the limit: what comes after {draws} draws was not seen"));
+        }
+        None => {}
+    }
+    said
+}
+
+/// Who fails with which chance.
+fn failing(reading: &Reading, judgement: &Judgement, mean: &ScalarFinding) -> String {
+    let claim = &reading.trial.claim;
+    let alpha = judgement.alpha;
+    let draws = if judgement.batch > 1 { "averages" } else { "draws" };
+    let correct = if judgement.finding("variance").is_some() || claim.range.is_some() {
+        format!("correct {draws}")
+    } else if claim.variance.is_some() {
+        format!("{draws} of the right mean and variance")
+    } else {
+        format!("{draws} of the right mean")
+    };
+    let who = match (claim.variance, claim.kurtosis, mean.is_estimated) {
+        (None, Some(most), _) => format!("{correct} with a kurtosis of {most} at most"),
+        (None, None, true) => {
+            let shown = judgement.kurtosis.map_or("no spread".to_owned(), |k| format!("{k:.3}"));
+            let cure = "give the variance, the range or the largest kurtosis for a promise";
+            let seems = if claim.range.is_some() { "too small" } else { "off" };
+            let nothing = format!(
+                "variance estimated: {draws} whose mean seems {seems} do not fail, since rare events \
+                 that were not drawn may carry it; {cure}"
+            );
+            return match mean.assumed_kurtosis {
+                Some(most) if mean.verdict == Verdict::Pass => format!(
+                    "{nothing}; a mean off by the tolerance passes with chance {} at most if the \
+                     kurtosis is {most:.0} at most (they show {shown}); the variance is not tested",
+                    judgement.beta
+                ),
+                _ => nothing,
+            };
+        }
+        _ => correct,
+    };
+    format!("independent {who} fail with chance {} at most", short(alpha, 3))
+}
+
+/// What a pass of the mean promises.
+fn missing(judgement: &Judgement, mean: &ScalarFinding) -> Option<String> {
+    let beta = judgement.beta;
+    let miss = format!("a mean off by the tolerance passes with chance {beta} at most");
+    match judgement.finding("variance") {
+        None if mean.is_estimated => None,
+        None if judgement.predicted_variance.is_some() => {
+            Some(format!("variance assumed: {miss}, if the variance is right"))
+        }
+        None => Some(miss),
+        Some(found) if found.verdict == Verdict::Pass => {
+            Some(format!("{miss}; the variance it relies on passes"))
+        }
+        Some(_) if mean.verdict == Verdict::Pass => {
+            Some(format!("variance assumed: {miss}, if the variance is right"))
+        }
+        Some(_) => None,
+    }
+}

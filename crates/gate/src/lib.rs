@@ -1,0 +1,9 @@
+//! Is my estimator unbiased? Statistics and verdicts on anybody's draws.
+
+pub mod causes;
+pub mod check;
+pub mod deviation;
+pub mod judge;
+pub mod stats;
+
+pub use check::{Check, Gate, check, check_with, claim};

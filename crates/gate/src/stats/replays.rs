@@ -1,0 +1,180 @@
+//! Whether a sequence of draws repeats an earlier one: the same seed for two passes or two threads.
+//!
+//! ```text
+//! keep     draws whose bits have a certain hash, ever fewer of them, so that the memory is bounded
+//! pairs    t values that occur from 2 to m times; d the distance of their first two places
+//! replay   c of the d are the same:  p ≤ C(t, c) ∏_{i<c−1} m/(n − i m),  m = 2, 4, 8, …, each at its share 1/(k(k + 1))
+//! ```
+//!
+//! Of independent draws of one law all orders are equally probable, so that the first two of at most m
+//! places of a value among n are d apart with probability m/n at most, whatever the law; the places of other values
+//! leave n − i m. Values that occur very often, the atoms of discrete laws, say little: see [`super::sequences`]. What
+//! is kept depends on a value alone, so that of two equal sequences the same draws are kept, however far apart they are.
+
+use std::hash::Hasher;
+
+/// The most draws that are kept.
+const MOST: usize = 1 << 16;
+/// Draws that are kept for comparison.
+#[derive(Debug, Clone, Default)]
+pub struct Replays {
+    kept: Vec<(u64, u64)>,
+    /// How many leading bits of a hash must be 0.
+    bits: u32,
+    draws: u64,
+}
+
+/// A repetition.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Replay {
+    /// How many draws later the same draws come again.
+    pub distance: u64,
+    /// How many of the kept draws do.
+    pub count: u64,
+    /// Number of times that each of them comes.
+    pub times: u64,
+    /// ln of a bound on the chance of that.
+    pub ln_p: f64,
+}
+
+#[inline(always)]
+pub(crate) fn hash(bits: u64) -> u64 {
+    // The upper bits of a product depend on all bits below them.
+    (bits ^ (bits >> 32)).wrapping_mul(0xd6e8_feb8_6659_fd93)
+}
+
+/// Odd factor of [`Spread`].
+const ODD: u64 = 0x9e37_79b9_7f4a_7c15;
+
+/// Hasher of keys that are nearly hashes: tables go by low bits, which the coarsest tokens leave at 0.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Spread(u64);
+
+impl Hasher for Spread {
+    fn finish(&self) -> u64 {
+        self.0
+    }
+
+    fn write(&mut self, bytes: &[u8]) {
+        for &byte in bytes {
+            self.0 = self.0.rotate_left(8) ^ u64::from(byte);
+        }
+    }
+
+    fn write_u64(&mut self, key: u64) {
+        let product = key.wrapping_mul(ODD);
+        self.0 = product ^ (product >> 32);
+    }
+}
+
+impl Replays {
+    /// Adds draws that follow the last ones.
+    pub fn absorb(&mut self, x: &[f64]) {
+        for x in x {
+            let bits = x.to_bits();
+            // Zero is the commonest atom, and its hash would be kept for ever.
+            if *x != 0.0 && hash(bits).leading_zeros() >= self.bits {
+                self.kept.push((bits, self.draws));
+                if self.kept.len() >= MOST {
+                    self.bits += 1;
+                    let least = self.bits;
+                    self.kept.retain(|(bits, _)| hash(*bits).leading_zeros() >= least);
+                }
+            }
+            self.draws += 1;
+        }
+    }
+
+    /// The most surprising of the most frequent distances; `None` where no value occurs twice.
+    pub fn found(&self) -> Option<Replay> {
+        let mut kept = self.kept.clone();
+        kept.sort_unstable();
+        let mut groups: Vec<(usize, u64)> = kept
+            .chunk_by(|a, b| a.0 == b.0)
+            .filter(|group| group.len() > 1)
+            .map(|group| (group.len(), group[1].1 - group[0].1))
+            .collect();
+        groups.sort_unstable();
+        let most = groups.last()?.0.next_power_of_two().ilog2();
+        let of = (1..=most).filter_map(|k| self.most_frequent(&groups, k));
+        of.min_by(|a, b| a.ln_p.total_cmp(&b.ln_p))
+    }
+
+    /// The most frequent distance of values that occur up to 2ᵏ times, given how often each value occurs and its
+    /// first distance, in that order.
+    fn most_frequent(&self, groups: &[(usize, u64)], k: u32) -> Option<Replay> {
+        let known = &groups[..groups.partition_point(|group| group.0 <= 1 << k)];
+        let mut distances: Vec<(u64, usize)> = known.iter().map(|&(m, d)| (d, m)).collect();
+        distances.sort_unstable();
+        let longest = distances.chunk_by(|a, b| a.0 == b.0).max_by_key(|run| run.len())?;
+        let (t, c) = (distances.len() as f64, longest.len() as f64);
+        let places = f64::from(1 << k);
+        // m/(n − i m) is 1/(n/m − i), and no probability is above 1.
+        let room = self.draws as f64 / places;
+        let counted = (c - 1.0).min((room - 1.0).floor().max(0.0));
+        let ln_chance = libm::lgamma(room - counted + 1.0) - libm::lgamma(room + 1.0);
+        let ways = libm::lgamma(t + 1.0) - libm::lgamma(c + 1.0) - libm::lgamma(t - c + 1.0);
+        let share = f64::from(k) * f64::from(k + 1);
+        let ln_p = (ways + ln_chance + share.ln()).min(0.0);
+        let times = longest[longest.len() / 2].1 as u64;
+        Some(Replay { distance: longest[0].0, count: longest.len() as u64, times, ln_p })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use numeric::rng::{Address, unit};
+
+    fn found(draws: impl Iterator<Item = f64>) -> Option<Replay> {
+        let mut replays = Replays::default();
+        let draws: Vec<f64> = draws.collect();
+        draws.chunks(10_000).for_each(|block| replays.absorb(block));
+        replays.found()
+    }
+
+    fn uniforms(n: usize) -> Vec<f64> {
+        let mut rng = Address { seed: 5, experiment: 0, block: 0, lane: 0 }.stream();
+        (0..n).map(|_| unit(&mut rng)).collect()
+    }
+
+    #[test]
+    fn a_pass_of_the_same_seed_is_found_at_its_distance() {
+        let once = uniforms(300_000);
+        for passes in [2, 5] {
+            let replay = found(once.iter().copied().cycle().take(passes * 300_000)).expect("one");
+            assert_eq!(replay.distance, 300_000);
+            assert!(replay.ln_p < -1000.0, "{replay:?}");
+        }
+        for (draws, times) in [(500, 24), (1000, 17), (100, 1000), (20, 12), (5000, 200)] {
+            let replay = found(once[..draws].iter().copied().cycle().take(times * draws - 7));
+            let replay = replay.expect("one");
+            assert_eq!((replay.distance, replay.times), (draws as u64, times as u64));
+            assert!(replay.ln_p < -15.0, "{replay:?}");
+        }
+        // A short overlap between long streams.
+        let overlap = once.iter().chain(&once[299_000..]).copied();
+        let replay = found(overlap).expect("one");
+        assert_eq!(replay.distance, 1000);
+        assert!(replay.ln_p < -100.0, "{replay:?}");
+    }
+
+    #[test]
+    fn draws_of_which_half_are_zero_are_compared_by_the_others() {
+        let once: Vec<f64> = uniforms(100_000).iter().map(|u| (2.0 * u - 1.0).max(0.0)).collect();
+        let replay = found(once.iter().copied().cycle().take(400_000)).expect("one");
+        assert_eq!(replay.distance, 100_000);
+        assert!(replay.ln_p < -1000.0, "{replay:?}");
+        let fresh: Vec<f64> = uniforms(400_000).iter().map(|u| (2.0 * u - 1.0).max(0.0)).collect();
+        assert_eq!(found(fresh.into_iter()), None);
+    }
+
+    #[test]
+    fn coarse_and_discrete_draws_are_no_replays() {
+        assert_eq!(found(uniforms(300_000).into_iter()), None);
+        for steps in [2.0, 100.0, 1e4, 1e5, 1e6] {
+            let replay = found(uniforms(300_000).iter().map(|u| (u * steps).floor()));
+            assert!(replay.is_none_or(|replay| replay.ln_p > -7.0), "{steps}: {replay:?}");
+        }
+    }
+}

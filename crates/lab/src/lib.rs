@@ -1,0 +1,3 @@
+//! Tests of the tester: known bugs that the gate must catch.
+
+pub mod mutants;

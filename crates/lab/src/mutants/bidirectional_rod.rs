@@ -1,0 +1,137 @@
+//! Wrong bidirectional path tracing in a rod.
+//!
+//! ```text
+//! X = Σ_s w_s c_s,   c_s = f/p_s = T̂_{s−1} [a ρ_{s−1}]_{s≥2} [a ρ_s]_{s≤r},   w_s = c_s⁻¹/Σⱼ cⱼ⁻¹
+//! ```
+
+use super::target::{
+    BIDIRECTIONAL_DIRECTIONAL, BIDIRECTIONAL_FULL, BIDIRECTIONAL_TECHNIQUE, BIDIRECTIONAL_TRACKED,
+};
+use super::{About, Mutant, with};
+use estimators::bidirectional_rod::walk::{self, Path, Steps};
+use estimators::bidirectional_rod::{Page, draw};
+use numeric::rng::Stream;
+use theory::Heuristic;
+use theory::bidirectional_rod::{Combination, quotient};
+use theory::problems::BidirectionalRod;
+
+/// The family.
+#[rustfmt::skip] // one mutant, one entry
+pub fn mutants() -> Vec<Mutant<BidirectionalRod>> {
+    let of = |name, bug, target, check, page: Page, wrong| {
+        Mutant::new(About { name, bug, target, check }, with(Wrong { page, bug: wrong }, walk::draw), with(page, draw))
+    };
+    let full = Page { combination: Combination::Full(Heuristic::Balance), is_tracked: false, is_shared: false };
+    let tracked = Page { is_tracked: true, ..full };
+    let directional = Page { combination: Combination::Directional(Heuristic::Balance), ..full };
+    let technique = Page { combination: Combination::Technique(2), ..full };
+    vec![
+        of("bidirectional-vertex-count", "the density of a technique counts one camera vertex too many: a ρ_s is left out", BIDIRECTIONAL_TECHNIQUE, "mean", technique, Bug::VertexCount),
+        of("bidirectional-connection-reversed", "the phase function at the camera's end takes the connection the wrong way round (Eq. 43)", BIDIRECTIONAL_TECHNIQUE, "mean", technique, Bug::Reversed),
+        of("bidirectional-wrong-segment", "the connection is tracked from the light's last vertex but one (middle factor of Eq. 44)", BIDIRECTIONAL_TECHNIQUE, "mean", technique, Bug::WrongSegment),
+        of("bidirectional-hits-without-density", "weights take the densities of the hits, s = 0 and s = r + 2, for zero, and hits score all the same", BIDIRECTIONAL_FULL, "mean", full, Bug::HitsWithoutDensity),
+        of("bidirectional-technique-twice", "one technique is counted twice in the sum", BIDIRECTIONAL_FULL, "mean", full, Bug::Twice),
+        of("bidirectional-averaged", "techniques are averaged instead of added", BIDIRECTIONAL_FULL, "mean", full, Bug::Averaged),
+        of("bidirectional-same-numbers", "all techniques of a draw begin with the same random numbers", BIDIRECTIONAL_FULL, "covariance", full, Bug::SameNumbers),
+        of("bidirectional-nulls-in-one-density", "null vertices are in the density of a path's own technique only", BIDIRECTIONAL_TRACKED, "mean", tracked, Bug::NullsInOne),
+        of("bidirectional-tracked-twice", "the tracked transmittance of a connection multiplies its worth twice", BIDIRECTIONAL_TRACKED, "mean", tracked, Bug::TrackedTwice),
+        of("bidirectional-directional-density", "paths are divided by their directional densities, too: the transmittance of a connection cancels", BIDIRECTIONAL_DIRECTIONAL, "mean", directional, Bug::DirectionalDensity),
+    ]
+}
+
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Bug {
+    VertexCount,
+    Reversed,
+    WrongSegment,
+    HitsWithoutDensity,
+    Twice,
+    Averaged,
+    SameNumbers,
+    NullsInOne,
+    TrackedTwice,
+    DirectionalDensity,
+}
+
+/// An estimator with one bug.
+#[derive(Clone, Copy)]
+struct Wrong {
+    page: Page,
+    bug: Bug,
+}
+
+impl Wrong {
+    /// `a ρ` at the camera's end of the connection.
+    fn camera(path: &Path) -> f64 {
+        let s = path.light;
+        if (1..=path.order).contains(&s) { path.albedo * path.phase[s - 1] } else { 1.0 }
+    }
+
+    /// `T̂` of the connection.
+    fn connection(path: &Path) -> f64 {
+        let s = path.light;
+        if (1..=path.order + 1).contains(&s) { path.transmittance[s - 1] } else { 1.0 }
+    }
+
+    /// The inverse of `cⱼ` with null vertices in the path's own technique only.
+    fn density(path: &Path, j: usize) -> f64 {
+        let of = |i: usize| if i + 1 == path.light { path.transmittance[i] } else { 1.0 };
+        1.0 / quotient(j, path.order, of, |i| path.albedo * path.phase[i - 1])
+    }
+}
+
+impl Steps for Wrong {
+    fn combination(&self) -> Combination {
+        self.page.combination
+    }
+
+    fn is_tracked(&self) -> bool {
+        self.page.is_tracked
+    }
+
+    fn is_shared(&self) -> bool {
+        self.page.is_shared
+    }
+
+    fn begin(&self, rng: &mut Stream, beginning: &Stream) {
+        if self.bug == Bug::SameNumbers {
+            *rng = *beginning;
+        }
+    }
+
+    fn joined(&self, path: &Path) -> usize {
+        let is_wrong = self.bug == Bug::WrongSegment && path.light >= 2;
+        path.light - if is_wrong { 2 } else { 1 }
+    }
+
+    fn worth(&self, path: &Path) -> f64 {
+        let (worth, s) = (self.page.worth(path), path.light);
+        let is_hit = |j: usize| j == 0 || j == path.order + 2;
+        match self.bug {
+            Bug::VertexCount => worth / Self::camera(path),
+            Bug::Reversed if (1..=path.order).contains(&s) => {
+                worth * (1.0 - path.phase[s - 1]) / path.phase[s - 1]
+            }
+            Bug::HitsWithoutDensity => {
+                let others = (0..path.order + 3).filter(|&j| !is_hit(j));
+                1.0 / others.map(|j| 1.0 / path.quotient(j)).sum::<f64>()
+            }
+            Bug::NullsInOne => {
+                let all = (0..path.order + 3).map(|j| Self::density(path, j)).sum::<f64>();
+                Self::density(path, s) / all * path.quotient(s)
+            }
+            Bug::TrackedTwice => worth * Self::connection(path),
+            Bug::DirectionalDensity => worth / Self::connection(path),
+            _ => worth,
+        }
+    }
+
+    fn together(&self, each: &[f64]) -> f64 {
+        let sum = self.page.together(each);
+        match self.bug {
+            Bug::Twice => sum + each[1],
+            Bug::Averaged => sum / each.len() as f64,
+            _ => sum,
+        }
+    }
+}

@@ -1,0 +1,109 @@
+//! Settings that are lists of numbers.
+
+use std::ops::RangeInclusive;
+
+use super::words::whole;
+use super::{Domain, Entry, Settings, Value};
+use numeric::digits::number;
+
+/// So many mistakes of one list are told one by one.
+const TOLD: usize = 5;
+
+impl Settings<'_> {
+    /// A list of numbers, at least `least` of them, that must be there.
+    pub fn numbers(&self, key: &'static str, domain: Domain, least: usize) -> Option<Vec<f64>> {
+        let wanted = format!("a list of at least {least}, each {}", domain.words());
+        let entry = self.required(key, &wanted)?;
+        self.list_of(entry, domain, &wanted).filter(|list| {
+            let enough = list.len() >= least;
+            if !enough {
+                self.wrong(entry, &wanted);
+            }
+            enough
+        })
+    }
+
+    /// A point or vector `[x, y, z]` that must be there.
+    pub fn triple(&self, key: &'static str) -> Option<[f64; 3]> {
+        let wanted = "a list of three finite numbers [x, y, z]";
+        let entry = self.required(key, wanted)?;
+        self.triple_of(entry, Domain::Finite, wanted)
+    }
+
+    /// A point or vector, or `default` where the key is absent.
+    pub fn triple_or(&self, key: &'static str, default: [f64; 3]) -> Option<[f64; 3]> {
+        let wanted = "a list of three finite numbers [x, y, z]";
+        match self.entry(key) {
+            Some(entry) => self.triple_of(entry, Domain::Finite, wanted),
+            None => Some(default),
+        }
+    }
+
+    /// Three whole numbers in a range that must be there.
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // checked just before
+    pub fn counts(&self, key: &'static str, range: RangeInclusive<u64>) -> Option<[usize; 3]> {
+        let wanted = format!("a list of three, each {}", whole(&range));
+        let entry = self.required(key, &wanted)?;
+        let triple = self.triple_of(entry, Domain::NonNegative, &wanted)?;
+        if triple.iter().all(|x| x.fract() == 0.0 && range.contains(&(*x as u64))) {
+            return Some(triple.map(|x| x as usize));
+        }
+        self.wrong(entry, &wanted);
+        None
+    }
+
+    /// A list of points or vectors `[[x, y, z], …]` that must be there.
+    pub fn triples(&self, key: &'static str) -> Option<Vec<[f64; 3]>> {
+        let wanted = "a list of triples of finite numbers [[x, y, z], …]";
+        let entry = self.required(key, wanted)?;
+        let Value::Array(items) = &entry.node.value else {
+            self.wrong(entry, wanted);
+            return None;
+        };
+        let (key, key_span) = (&entry.key, &entry.key_span);
+        let triples = items.iter().map(|node| {
+            let item = Entry { key: key.clone(), key_span: key_span.clone(), node: node.clone() };
+            self.triple_of(&item, Domain::Finite, "three finite numbers [x, y, z] each")
+        });
+        triples.collect::<Vec<_>>().into_iter().collect()
+    }
+
+    fn triple_of(&self, entry: &Entry, domain: Domain, wanted: &str) -> Option<[f64; 3]> {
+        let list = self.list_of(entry, domain, wanted)?;
+        let triple = <[f64; 3]>::try_from(list);
+        if triple.is_err() {
+            self.wrong(entry, wanted);
+        }
+        triple.ok()
+    }
+
+    fn list_of(&self, entry: &Entry, domain: Domain, wanted: &str) -> Option<Vec<f64>> {
+        let Value::Array(items) = &entry.node.value else {
+            self.wrong(entry, wanted);
+            return None;
+        };
+        let mut list = Vec::with_capacity(items.len());
+        let mut wrong = items.iter().filter(|item| match item.value {
+            Value::Number(x) if domain.contains(x) => {
+                list.push(x);
+                false
+            }
+            _ => true,
+        });
+        for item in wrong.by_ref().take(TOLD) {
+            let what = match item.value {
+                Value::Number(x) => format!("{} stands in `{}`", number(x), entry.key),
+                ref other => format!("{} stands in `{}`", other.kind(), entry.key),
+            };
+            let help = format!("each entry is {}", domain.words());
+            self.fault_at(item.span.clone(), &entry.key, what, help);
+        }
+        if let Some(next) = wrong.next() {
+            let more = 1 + wrong.count();
+            let what = format!("{more} more entries of `{}` are wrong", entry.key);
+            let help = format!("each entry is {}", domain.words());
+            self.fault_at(next.span.clone(), &entry.key, what, help);
+        }
+        (list.len() == items.len()).then_some(list)
+    }
+}

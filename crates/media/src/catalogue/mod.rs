@@ -1,0 +1,20 @@
+//! What a page of a catalogue is, and how it reads its own settings. Floor 0.
+//!
+//! A catalogue is a list of pages: media, sampling extinctions, controls, estimators, checks. A
+//! page is one source file. Its name in case files is the file's name with hyphens, and its text
+//! in `list` and `explain` is the file's own documentation, so that neither can go stale.
+
+pub mod additions;
+mod choices;
+pub mod fixture;
+mod lists;
+pub mod page;
+pub mod settings;
+pub mod tree;
+mod words;
+
+pub use additions::{Addition, Additions};
+pub use page::{Page, PageList};
+pub use settings::Settings;
+pub use tree::{Domain, Entry, Fault, Node, Value};
+pub use words::suggestion;

@@ -1,0 +1,293 @@
+//! Settings as written in a case file: a tree that knows where each value stands.
+//!
+//! A page reads its own settings from a [`Settings`] table. Every mistake is recorded with its
+//! place and reading goes on, so that one run of the tool lists them all. A page therefore reads
+//! every key first and gives up (`?`) afterwards; [`Settings::close`] then reports what was never
+//! asked for.
+
+use std::cell::RefCell;
+use std::ops::{Range, RangeInclusive};
+use std::path::Path;
+
+use super::additions::{self, Additions};
+use super::choices::Form;
+use super::words::{meant, quoted, whole};
+use super::{Domain, Entry, Fault, Value};
+use numeric::digits::number;
+
+/// A table that is being read.
+#[derive(Debug)]
+pub struct Settings<'a> {
+    pub(super) table: &'a [Entry],
+    /// Where the table, or the key that names it, stands.
+    pub span: Range<usize>,
+    /// The path of the table, as in `problem.transmittance.ray`.
+    pub path: String,
+    /// The folder that relative file names start from.
+    pub folder: &'a Path,
+    pub(super) faults: &'a RefCell<Vec<Fault>>,
+    additions: &'a Additions,
+    asked: RefCell<Vec<&'static str>>,
+    pub(super) form: Form<'a>,
+}
+
+impl<'a> Settings<'a> {
+    /// Reads the top-level table of a file in `folder`; mistakes go to `faults`.
+    pub fn new(root: &'a [Entry], folder: &'a Path, faults: &'a RefCell<Vec<Fault>>) -> Self {
+        let (asked, form) = (RefCell::default(), Form::Table);
+        let additions = &additions::NONE;
+        let path = String::new();
+        Self { table: root, span: 0..0, path, folder, faults, additions, asked, form }
+    }
+
+    /// The same with pages of the program's own.
+    #[must_use]
+    pub fn with(self, additions: &'a Additions) -> Self {
+        Self { additions, ..self }
+    }
+
+    /// The pages of the program's own.
+    pub fn additions(&self) -> &'a Additions {
+        self.additions
+    }
+
+    /// The entry of a key, if the file has it.
+    pub fn entry(&self, key: &'static str) -> Option<&'a Entry> {
+        let mut asked = self.asked.borrow_mut();
+        if !asked.contains(&key) {
+            asked.push(key);
+        }
+        self.table.iter().find(|entry| entry.key == key)
+    }
+
+    /// What the table says.
+    pub fn entries(&self) -> &'a [Entry] {
+        self.table
+    }
+
+    /// Whether the file has the key.
+    pub fn has(&self, key: &'static str) -> bool {
+        self.entry(key).is_some()
+    }
+
+    /// What is read where the file has the key, and `None` inside where it has not.
+    #[allow(clippy::option_option)] // the outer `None` is a recorded mistake
+    pub fn optional<T>(
+        &self,
+        key: &'static str,
+        read: impl FnOnce(&'static str) -> Option<T>,
+    ) -> Option<Option<T>> {
+        if self.has(key) { read(key).map(Some) } else { Some(None) }
+    }
+
+    /// Whether the table has no keys at all.
+    pub fn is_empty(&self) -> bool {
+        self.table.is_empty()
+    }
+
+    /// Records a mistake at a place of the file.
+    pub fn fault_at(
+        &self,
+        span: Range<usize>,
+        key: &str,
+        message: impl Into<String>,
+        help: impl Into<String>,
+    ) {
+        let path = self.path_of(key);
+        let fault = Fault { span, path, message: message.into(), help: help.into() };
+        self.faults.borrow_mut().push(fault);
+    }
+
+    /// Records a mistake in the value of a key, or in the table where the key is absent.
+    pub fn fault(&self, key: &'static str, message: impl Into<String>, help: impl Into<String>) {
+        let span = self.entry(key).map_or(self.span.clone(), |entry| entry.node.span.clone());
+        self.fault_at(span, key, message, help);
+    }
+
+    pub(super) fn path_of(&self, key: &str) -> String {
+        match (self.path.as_str(), key) {
+            ("", key) => key.to_owned(),
+            (path, "") => path.to_owned(),
+            (path, key) => format!("{path}.{key}"),
+        }
+    }
+
+    pub(super) fn wrong(&self, entry: &Entry, wanted: &str) {
+        let message = match &entry.node.value {
+            Value::Number(x) => format!("`{}` is {}", entry.key, number(*x)),
+            other => format!("`{}` is {}", entry.key, other.kind()),
+        };
+        let help = format!("it takes {wanted}");
+        self.fault_at(entry.node.span.clone(), &entry.key, message, help);
+    }
+
+    pub(super) fn required(&self, key: &'static str, wanted: &str) -> Option<&'a Entry> {
+        let entry = self.entry(key);
+        if entry.is_none() {
+            self.missing(key, wanted);
+        }
+        entry
+    }
+
+    /// A number that must be there.
+    pub fn number(&self, key: &'static str, domain: Domain) -> Option<f64> {
+        let entry = self.required(key, domain.words())?;
+        self.number_of(entry, domain)
+    }
+
+    /// A number, or `default` where the key is absent.
+    pub fn number_or(&self, key: &'static str, domain: Domain, default: f64) -> Option<f64> {
+        self.entry(key).map_or(Some(default), |entry| self.number_of(entry, domain))
+    }
+
+    fn number_of(&self, entry: &Entry, domain: Domain) -> Option<f64> {
+        match entry.node.value {
+            Value::Number(x) if domain.contains(x) => Some(x),
+            _ => {
+                self.wrong(entry, domain.words());
+                None
+            }
+        }
+    }
+
+    /// A whole number in a range that must be there; `1e6` counts as whole.
+    pub fn count(&self, key: &'static str, range: RangeInclusive<u64>) -> Option<u64> {
+        let entry = self.required(key, &whole(&range))?;
+        self.count_of(entry, &range)
+    }
+
+    /// A whole number in a range, or `default` where the key is absent.
+    pub fn count_or(
+        &self,
+        key: &'static str,
+        range: RangeInclusive<u64>,
+        default: u64,
+    ) -> Option<u64> {
+        self.entry(key).map_or(Some(default), |entry| self.count_of(entry, &range))
+    }
+
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // checked just before
+    fn count_of(&self, entry: &Entry, range: &RangeInclusive<u64>) -> Option<u64> {
+        if let Value::Number(x) = entry.node.value
+            && x.fract() == 0.0
+            && (0.0..=9e15).contains(&x)
+            && range.contains(&(x as u64))
+        {
+            return Some(x as u64);
+        }
+        self.wrong(entry, &whole(range));
+        None
+    }
+
+    /// A text that must be there.
+    pub fn text(&self, key: &'static str) -> Option<String> {
+        let entry = self.required(key, "a text in quotes")?;
+        let Value::Text(text) = &entry.node.value else {
+            self.wrong(entry, "a text in quotes");
+            return None;
+        };
+        Some(text.clone())
+    }
+
+    /// `true` or `false`, or `default` where the key is absent.
+    pub fn flag_or(&self, key: &'static str, default: bool) -> Option<bool> {
+        let Some(entry) = self.entry(key) else { return Some(default) };
+        let Value::Boolean(flag) = entry.node.value else {
+            self.wrong(entry, "true or false");
+            return None;
+        };
+        Some(flag)
+    }
+
+    /// A table that must be there.
+    pub fn table(&self, key: &'static str) -> Option<Settings<'a>> {
+        let entry = self.required(key, "a table")?;
+        self.open(entry)
+    }
+
+    /// A table, if the file has it.
+    pub fn table_if(&self, key: &'static str) -> Option<Settings<'a>> {
+        self.entry(key).and_then(|entry| self.open(entry))
+    }
+
+    pub(super) fn open(&self, entry: &'a Entry) -> Option<Settings<'a>> {
+        let Value::Table(table) = &entry.node.value else {
+            self.wrong(entry, "a table, as in { … }");
+            return None;
+        };
+        Some(self.child(table, entry.key_span.clone(), self.path_of(&entry.key)))
+    }
+
+    pub(super) fn child(
+        &self,
+        table: &'a [Entry],
+        span: Range<usize>,
+        path: String,
+    ) -> Settings<'a> {
+        let (asked, form) = (RefCell::default(), Form::Table);
+        Settings { table, span, path, asked, form, ..*self }
+    }
+
+    /// Reports every key that was never asked for.
+    pub fn close(&self) {
+        let asked = self.asked.borrow();
+        for entry in self.table.iter().filter(|entry| !asked.contains(&entry.key.as_str())) {
+            let message = format!("`{}` is not known here", entry.key);
+            let help = if asked.is_empty() {
+                "this table takes no keys: write {}".to_owned()
+            } else {
+                meant(&entry.key, &asked, &format!("the keys are {}", quoted(&asked)))
+            };
+            self.fault_at(entry.key_span.clone(), "", message, help);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::Node;
+    use super::*;
+
+    fn number(key: &str, x: f64) -> Entry {
+        let node = Node { value: Value::Number(x), span: 5..6 };
+        Entry { key: key.into(), key_span: 0..3, node }
+    }
+
+    #[test]
+    fn every_mistake_is_recorded() {
+        let table = [number("extinction", -1.0), number("lenght", 2.0)];
+        let faults = RefCell::default();
+        let settings = Settings::new(&table, Path::new("."), &faults);
+        assert_eq!(settings.number("extinction", Domain::NonNegative), None);
+        assert_eq!(settings.number("length", Domain::Positive), None);
+        settings.close();
+        let faults = faults.into_inner();
+        assert_eq!(faults.len(), 3);
+        assert_eq!(faults[0].message, "`extinction` is -1");
+        assert_eq!(faults[1].message, "`length` is missing");
+        assert!(faults[2].help.starts_with("did you mean `length`?"));
+    }
+
+    #[test]
+    fn a_list_of_triples_refuses_a_pair() {
+        let list = |items: Vec<Value>| {
+            let nodes = items.into_iter().map(|value| Node { value, span: 7..8 }).collect();
+            Value::Array(nodes)
+        };
+        let numbers = |n: usize| list(vec![Value::Number(1.0); n]);
+        let node = Node { value: list(vec![numbers(3), numbers(2)]), span: 5..9 };
+        let table = [Entry { key: "vectors".into(), key_span: 0..3, node }];
+        let faults = RefCell::default();
+        let settings = Settings::new(&table, Path::new("."), &faults);
+        assert_eq!(settings.triples("vectors"), None);
+        assert_eq!(faults.into_inner().len(), 1);
+    }
+
+    #[test]
+    fn a_count_may_be_written_as_a_float() {
+        let table = [number("draws", 1e6)];
+        let faults = RefCell::default();
+        let settings = Settings::new(&table, Path::new("."), &faults);
+        assert_eq!(settings.count("draws", 1..=u64::MAX), Some(1_000_000));
+    }
+}

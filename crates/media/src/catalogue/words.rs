@@ -1,0 +1,107 @@
+//! How messages put things: ranges, lists of names, and the name that was probably meant.
+
+use std::ops::RangeInclusive;
+
+/// A range of counts in words.
+pub fn whole(range: &RangeInclusive<u64>) -> String {
+    format!("a whole number from {} to {}", range.start(), range.end())
+}
+
+/// Words in back ticks, with commas between them.
+pub fn quoted<S: AsRef<str>>(words: &[S]) -> String {
+    let words: Vec<String> = words.iter().map(|word| format!("`{}`", word.as_ref())).collect();
+    words.join(", ")
+}
+
+/// "did you mean" where a known word is near, the whole list where none is.
+pub fn suggestion(written: &str, words: &[&str], otherwise: &str) -> String {
+    let near = words.iter().map(|word| (distance(written, word), word)).min();
+    match near {
+        Some((edits, word)) if edits <= 1 + written.len() / 4 => {
+            format!("did you mean `{word}`? ({otherwise})")
+        }
+        _ => otherwise.to_owned(),
+    }
+}
+
+/// Words that other programs and papers use, and the keys of case files for the same thing, the likeliest first.
+const SYNONYMS: [(&[&str], &[&str]); 13] = [
+    (
+        &["sigma", "sigma-hat", "majorant", "mu-bar", "sigma-max", "sigma-bar", "rate"],
+        &["sampling"],
+    ),
+    (
+        &["sigma", "sigma-t", "mu-t", "mu", "density", "sigma-maj", "attenuation"],
+        &["extinction", "medium", "volume"],
+    ),
+    (&["sigma-c", "mu-c", "control-variate"], &["control"]),
+    (&["value", "sigma-t", "values"], &["extinction", "medium", "volume"]),
+    (&["field", "media", "grid", "profile"], &["medium", "volume"]),
+    (&["omega", "a", "single-scattering-albedo", "sigma-s"], &["albedo", "albedos"]),
+    (&["g", "phase-function", "anisotropy"], &["g", "phase"]),
+    (&["estimator", "trackers", "methods", "algorithms"], &["estimators"]),
+    (&["samples", "spp", "paths", "n"], &["draws"]),
+    (&["length", "range", "interval", "extent"], &["span", "ray"]),
+    (&["eps", "epsilon", "tolerances"], &["tolerance"]),
+    (&["name", "description"], &["title"]),
+    (&["bound", "aabb", "bbox", "bounding-box"], &["bounds"]),
+];
+
+/// The key of a table that was probably meant: a near one, or the one that says what the word says elsewhere.
+pub fn meant(written: &str, keys: &[&str], otherwise: &str) -> String {
+    let plain = written.to_lowercase().replace('_', "-");
+    let named = SYNONYMS.iter().filter(|(words, _)| words.contains(&plain.as_str()));
+    let mut known = named.flat_map(|(_, meant)| meant.iter()).filter(|key| keys.contains(key));
+    match known.next() {
+        Some(key) => format!("did you mean `{key}`? ({otherwise})"),
+        None => suggestion(written, keys, otherwise),
+    }
+}
+
+/// The number of letters to insert, delete or replace, or of neighbours to exchange (F. J. Damerau, *A technique for
+/// computer detection and correction of spelling errors*, 1964).
+fn distance(a: &str, b: &str) -> usize {
+    let [a, b]: [Vec<char>; 2] = [a, b].map(|text| text.chars().collect());
+    let first: Vec<usize> = (0..=b.len()).collect();
+    let mut rows = vec![first];
+    for i in 1..=a.len() {
+        let mut row = vec![i];
+        for j in 1..=b.len() {
+            let replace = rows[i - 1][j - 1] + usize::from(a[i - 1] != b[j - 1]);
+            let mut least = replace.min(row[j - 1] + 1).min(rows[i - 1][j] + 1);
+            if i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1] {
+                least = least.min(rows[i - 2][j - 2] + 1);
+            }
+            row.push(least);
+        }
+        rows.push(row);
+    }
+    rows[a.len()][b.len()]
+}
+
+/// The beginning of a text that is too long for a message.
+pub fn brief(text: &str) -> String {
+    const MOST: usize = 60;
+    let mut letters = text.chars();
+    let beginning: String = letters.by_ref().take(MOST).collect();
+    if letters.next().is_some() { beginning + "…" } else { beginning }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn letters_that_changed_places_are_one_mistake() {
+        for (a, b, edits) in [
+            ("medai", "media", 1),
+            ("ratio", "rato", 1),
+            ("", "ab", 2),
+            ("eq12", "eq21", 1),
+            ("abc", "ca", 3),
+        ] {
+            assert_eq!((distance(a, b), distance(b, a)), (edits, edits), "{a} {b}");
+        }
+        assert_eq!(suggestion("medai", &["mean", "media"], "x"), "did you mean `media`? (x)");
+    }
+}

@@ -1,0 +1,188 @@
+//! Walks through straight pieces, on and back, by closed forms.
+
+use super::Piecewise;
+use numeric::Lane;
+
+/// Where a walk through a [`Piecewise`] field stands.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Cursor {
+    /// The distance reached.
+    pub t: f64,
+    /// The same without gaps, in a field that is [`Piecewise::even`].
+    way: f64,
+    piece: usize,
+}
+
+impl Piecewise {
+    /// A walk from the first knot, or from where a field begins that is [`Piecewise::even`].
+    #[inline]
+    pub fn begin(&self) -> Cursor {
+        let t = self.even.as_ref().map_or(self.knots[0], |even| even.from);
+        Cursor { t, way: t, piece: 0 }
+    }
+
+    /// A walk back from the last knot, or from where a field ends that is [`Piecewise::even`].
+    #[inline]
+    pub fn end(&self) -> Cursor {
+        let piece = self.left.len() - 1;
+        let t = self.knots[piece + 1];
+        let even = self.even.as_ref();
+        let way = even.map_or(t, |even| even.to);
+        Cursor { t: even.map_or(t, |even| even.spread(way)), way, piece }
+    }
+
+    /// A walk over the pieces from any distance between the first and the last knot.
+    pub(super) fn begin_at(&self, t: f64) -> Cursor {
+        Cursor { t, way: t, piece: self.piece_at(t).1 }
+    }
+
+    /// Flies on through an optical depth and answers the field at the new distance; `None` beyond
+    /// the last knot. Non-negative fields only.
+    ///
+    /// ```text
+    /// y₀ s + k s²/2 = u   ⇒   s = 2u / (y₀ + √(y₀² + 2ku))
+    /// ```
+    #[inline(always)]
+    pub fn fly(&self, cursor: &mut Cursor, depth: f64) -> Option<f64> {
+        if let Some(even) = &self.even {
+            cursor.way = Lane::times_plus(depth, 1.0 / even.value, cursor.way);
+            cursor.t = even.spread(cursor.way);
+            return (cursor.way < even.to).then_some(even.value);
+        }
+        self.fly_over(cursor, depth)
+    }
+
+    /// Where flights from the beginning through optical depths end.
+    #[inline(always)]
+    pub fn flown<L: Lane>(&self, depth: L) -> L {
+        if let Some(even) = &self.even {
+            return even
+                .spread(depth.times_plus(depth.each(1.0 / even.value), depth.each(even.from)));
+        }
+        depth.map(|depth| {
+            let mut cursor = self.begin();
+            self.fly_over(&mut cursor, depth);
+            cursor.t
+        })
+    }
+
+    /// The same over several pieces.
+    #[inline]
+    pub(super) fn fly_over(&self, cursor: &mut Cursor, mut depth: f64) -> Option<f64> {
+        while cursor.piece < self.left.len() {
+            let (end, slope) = (self.knots[cursor.piece + 1], self.slope[cursor.piece]);
+            let here = self.line(cursor.piece, cursor.t);
+            let left = (end - cursor.t) * 0.5 * (here + self.line(cursor.piece, end));
+            if depth < left {
+                let root = Lane::or_more(here * here + 2.0 * slope * depth, 0.0).sqrt();
+                cursor.t += 2.0 * depth / (here + root);
+                return Some(self.line(cursor.piece, cursor.t));
+            }
+            depth -= left;
+            cursor.t = end;
+            cursor.piece += 1;
+        }
+        None
+    }
+
+    /// Flies back through an optical depth, from where a flight ended inside, and answers the field
+    /// there; `None` before the first knot. Non-negative fields only.
+    #[inline(always)]
+    pub fn fly_back(&self, cursor: &mut Cursor, depth: f64) -> Option<f64> {
+        if let Some(even) = &self.even {
+            cursor.way = Lane::times_plus(-depth, 1.0 / even.value, cursor.way);
+            cursor.t = even.spread(cursor.way);
+            return (cursor.way > even.from).then_some(even.value);
+        }
+        self.fly_back_over(cursor, depth)
+    }
+
+    /// The same over several pieces.
+    #[inline]
+    fn fly_back_over(&self, cursor: &mut Cursor, mut depth: f64) -> Option<f64> {
+        loop {
+            let (begin, slope) = (self.knots[cursor.piece], self.slope[cursor.piece]);
+            let here = self.line(cursor.piece, cursor.t);
+            let left = (cursor.t - begin) * 0.5 * (here + self.left[cursor.piece]);
+            if depth < left {
+                let root = Lane::or_more(here * here - 2.0 * slope * depth, 0.0).sqrt();
+                cursor.t -= 2.0 * depth / (here + root);
+                return Some(self.line(cursor.piece, cursor.t));
+            }
+            if cursor.piece == 0 {
+                return None;
+            }
+            depth -= left;
+            cursor.t = begin;
+            cursor.piece -= 1;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::OpticalDepth;
+    use super::super::even::Even;
+    use super::*;
+    use numeric::Span;
+
+    fn lines() -> Piecewise {
+        Piecewise::lines(&[0.0, 1.0, 2.5, 4.0], &[0.2, 1.5, 0.4, 0.9])
+    }
+
+    #[test]
+    fn a_flight_begins_where_an_even_field_does() {
+        let field = Piecewise::constant(2.0, Span::new(0.0, 5.0));
+        let field = field.zero_on(&[Span::new(0.0, 1.0), Span::new(4.0, 5.0)]);
+        let even = Even { value: 2.0, from: 1.0, to: 4.0, gaps: Vec::new() };
+        assert_eq!(field.even(), Some(&even));
+        assert_eq!((field.value(0.5), field.value(1.0), field.value(4.5)), (0.0, 2.0, 0.0));
+        let mut cursor = field.begin();
+        assert_eq!((field.fly(&mut cursor, 1.0), cursor.t), (Some(2.0), 1.5));
+        assert_eq!(field.fly(&mut cursor, 5.1), None);
+        let nothing = field.zero_on(&[Span::new(0.0, 5.0)]);
+        assert_eq!(nothing.fly(&mut nothing.begin(), 1e-9), None);
+    }
+
+    #[test]
+    fn gaps_take_none_of_the_way() {
+        let values = [0.0, 3.0, 3.0, 0.0, 0.0, 3.0, 0.0, 3.0, 0.0];
+        let field = Piecewise::steps(&[0.0, 1.0, 1.5, 2.0, 3.0, 4.0, 6.0, 7.0, 8.0, 9.0], &values);
+        let gaps = vec![[2.0, 2.0], [4.0, 1.0]];
+        assert_eq!(field.even(), Some(&Even { value: 3.0, from: 1.0, to: 5.0, gaps }));
+        for step in 1..120 {
+            let depth = 0.1 * f64::from(step) + 0.01;
+            let mut cursor = field.begin();
+            let flown = field.fly(&mut cursor, depth).map(|_| cursor.t);
+            let over = field.fly_over(&mut field.begin(), depth).is_some();
+            assert_eq!(flown.is_some(), over);
+            if let Some(t) = flown {
+                let back = field.optical_depth(Span::new(0.0, t)).value;
+                assert!((back - depth).abs() < 1e-14, "{t}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_flight_back_undoes_a_flight() {
+        let fields = [
+            lines(),
+            Piecewise::steps(&[0.0, 1.0, 2.0, 3.0], &[1.0, 0.0, 1.0]),
+            Piecewise::constant(0.7, Span::new(-1.0, 4.0)),
+            Piecewise::steps(&[0.0, 1.0, 2.0, 3.0], &[1.0, 0.0, 1.3]),
+        ];
+        for field in fields {
+            for step in 1..17 {
+                let (there, back) = (0.1 * f64::from(step), 0.07 * f64::from(step));
+                let mut cursor = field.begin();
+                field.fly(&mut cursor, there).expect("inside");
+                let value = field.fly_back(&mut cursor, back).expect("still inside");
+                let mut direct = field.begin();
+                let expected = field.fly(&mut direct, there - back).expect("inside");
+                assert!((cursor.t - direct.t).abs() < 1e-14, "{field:?} at {step}");
+                assert!((value - expected).abs() < 1e-14);
+                assert_eq!(field.fly_back(&mut cursor, there), None);
+            }
+        }
+    }
+}

@@ -1,0 +1,62 @@
+//! Fields of one value with gaps: what a constant σ̂ becomes where a ray crosses empty space.
+
+use numeric::Lane;
+
+/// A walk tests each gap at each step: with more of them pieces are looked up instead.
+const MOST_GAPS: usize = 8;
+
+/// A field that has one value wherever it is not zero. A walk through it counts only the way on which
+/// it is not zero.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Even {
+    /// The value; zero only where the whole field is.
+    pub value: f64,
+    /// Where the field begins.
+    pub from: f64,
+    /// Where it would end without its gaps.
+    pub to: f64,
+    /// The gaps in between: after which way, counted like `to`, and how long.
+    pub gaps: Vec<[f64; 2]>,
+}
+
+impl Even {
+    /// The pieces of a [`super::Piecewise`] as such a field; `None` where they have several values, or
+    /// too many gaps.
+    pub fn of(knots: &[f64], left: &[f64], slope: &[f64]) -> Option<Self> {
+        let is_zero = |i: usize| left[i] == 0.0 && slope[i] == 0.0;
+        let Some(first) = (0..left.len()).find(|&i| !is_zero(i)) else {
+            let (from, to) = (knots[0], knots[left.len()]);
+            return Some(Even { value: 0.0, from, to, gaps: Vec::new() });
+        };
+        let mut even =
+            Even { value: left[first], from: knots[first], to: knots[first], gaps: Vec::new() };
+        let mut skipped = 0.0;
+        for i in first..left.len() {
+            if is_zero(i) {
+                continue;
+            }
+            if left[i] != even.value || slope[i] != 0.0 {
+                return None;
+            }
+            let gap = (knots[i] - skipped) - even.to;
+            // What lies before this piece and is no way.
+            if i > first && is_zero(i - 1) {
+                even.gaps.push([even.to, gap]);
+                skipped += gap;
+            }
+            even.to = knots[i + 1] - skipped;
+        }
+        (even.gaps.len() <= MOST_GAPS).then_some(even)
+    }
+
+    /// The distance that is reached on a way without gaps.
+    #[inline(always)]
+    pub fn spread<L: Lane>(&self, way: L) -> L {
+        let mut t = way;
+        for &[after, length] in &self.gaps {
+            let is_beyond = way.each(after).at_most(way);
+            t = L::select(is_beyond, t + length, t);
+        }
+        t
+    }
+}

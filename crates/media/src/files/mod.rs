@@ -1,0 +1,150 @@
+//! Files that are whole or not there. Floor 0.
+//!
+//! A file is written under a temporary name beside its place and then renamed, so that a killed run
+//! leaves no torn file and loses nothing that was written before.
+
+pub mod exr;
+pub mod npy;
+pub mod number;
+pub mod nvdb;
+pub mod pbrt;
+pub mod pfm;
+pub mod vdb;
+pub mod vol;
+
+use std::fs::{self, OpenOptions};
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+
+/// Cause and cure of a file that cannot be read.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Fault {
+    /// Cause.
+    pub message: String,
+    /// Cure.
+    pub help: String,
+}
+
+/// A fault.
+pub fn wrong<T>(message: impl Into<String>, help: impl Into<String>) -> Result<T, Fault> {
+    Err(Fault { message: message.into(), help: help.into() })
+}
+
+/// A fault of a damaged file.
+fn damaged<T>(message: impl Into<String>) -> Result<T, Fault> {
+    wrong(message, "the file is damaged: write it anew")
+}
+
+/// A text of a file as a message can show it.
+fn shown(text: &str) -> String {
+    let short: String = text.chars().take(48).collect();
+    let rest = if short.len() < text.len() { "…" } else { "" };
+    format!("\"{}{rest}\"", short.escape_debug())
+}
+
+/// A picture as files hold it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Pixels {
+    /// Columns and rows.
+    pub size: [usize; 2],
+    /// Values of a pixel.
+    pub channels: usize,
+    /// Row after row from the top, each pixel with its channels.
+    pub values: Vec<f64>,
+    /// Whether some of them were stored as halves, with 11 bits.
+    pub has_halves: bool,
+}
+
+/// Writes a whole file. A link stays a link, and what is no plain file (a device, a pipe) is written
+/// into as it stands.
+///
+/// # Errors
+///
+/// Where the system refuses, or the path is a folder.
+pub fn replace(path: &Path, bytes: &[u8]) -> io::Result<()> {
+    let Some(place) = place(path)? else {
+        return OpenOptions::new().write(true).open(path)?.write_all(bytes);
+    };
+    let mut file = temporary(&place)?;
+    file.write_all(bytes)?;
+    file.persist(&place).map(drop).map_err(|error| error.error)
+}
+
+/// Whether [`replace`] can be expected to work, known before there is anything to write.
+///
+/// # Errors
+///
+/// Where it cannot.
+pub fn writable(path: &Path) -> io::Result<()> {
+    match place(path)? {
+        Some(place) => temporary(&place).map(drop),
+        None => OpenOptions::new().write(true).open(path).map(drop),
+    }
+}
+
+/// Where the file is, behind links; `None` for what is no plain file.
+fn place(path: &Path) -> io::Result<Option<PathBuf>> {
+    match fs::metadata(path) {
+        Ok(found) if found.is_dir() => Err(io::Error::from(io::ErrorKind::IsADirectory)),
+        Ok(found) if found.is_file() => fs::canonicalize(path).map(Some),
+        Ok(_) => Ok(None),
+        Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(Some(path.to_owned())),
+        Err(error) => Err(error),
+    }
+}
+
+/// Waits until a file is on the disk, and its name. Where the system cannot say, it is not waited for.
+pub fn synchronise(path: &Path) {
+    let _ = fs::File::open(path).and_then(|file| file.sync_all());
+    synchronise_folder(path);
+}
+
+/// The same of its name alone.
+pub fn synchronise_folder(path: &Path) {
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
+    let _ = fs::File::open(folder.unwrap_or(Path::new("."))).and_then(|folder| folder.sync_all());
+}
+
+/// A temporary file in the same folder.
+fn temporary(path: &Path) -> io::Result<tempfile::NamedTempFile> {
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
+    let mut builder = tempfile::Builder::new();
+    // A temporary file is private to its owner unless told otherwise; results are for everyone.
+    #[cfg(unix)]
+    let builder = {
+        use std::os::unix::fs::PermissionsExt;
+        builder.permissions(fs::Permissions::from_mode(0o644))
+    };
+    builder.prefix(".trueflight-").tempfile_in(folder.unwrap_or(Path::new(".")))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_file_is_replaced_and_a_folder_is_not() {
+        let folder = tempfile::TempDir::new().expect("a folder");
+        let path = folder.path().join("file");
+        replace(&path, b"one").expect("written");
+        replace(&path, b"two").expect("replaced");
+        assert_eq!(fs::read(&path).expect("a file"), b"two");
+        assert!(writable(&path).is_ok() && writable(folder.path()).is_err());
+        assert!(replace(&folder.path().join("no/file"), b"").is_err());
+        assert_eq!(fs::read_dir(folder.path()).expect("a folder").count(), 1, "nothing is left");
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn a_link_stays_a_link_and_a_device_a_device() {
+        let folder = tempfile::TempDir::new().expect("a folder");
+        let (file, link) = (folder.path().join("file"), folder.path().join("link"));
+        replace(&file, b"one").expect("written");
+        std::os::unix::fs::symlink(&file, &link).expect("a link");
+        replace(&link, b"two").expect("written");
+        assert_eq!(fs::read(&file).expect("a file"), b"two");
+        assert!(fs::symlink_metadata(&link).expect("a link").is_symlink());
+        replace(Path::new("/dev/null"), b"gone").expect("written into");
+        assert!(!fs::metadata("/dev/null").expect("a device").is_file());
+    }
+}

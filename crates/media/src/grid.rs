@@ -1,0 +1,311 @@
+//! A voxel grid, from a file or at random.
+//!
+//! ```text
+//! trilinear: σ_t(p) = Σ over the 8 samples about p of Πⱼ (1 − |uⱼ − cⱼ|) · extinction · value(c)
+//! nearest:   σ_t(p) = extinction · value of the nearest sample
+//! ```
+//!
+//! 3-D only. The field is zero outside its box.
+//!
+//! | setting | meaning | unit | default |
+//! |---|---|---|---|
+//! | `file` | `"x.npy"` (NumPy), `"x.vol"` (Mitsuba), `"x.vdb"` (`OpenVDB`), `"x.nvdb"` (`NanoVDB`) or `"x.pbrt"` (pbrt), relative to the case file | | this or `random` |
+//! | `axes` | of a `.npy` file: the order of the array's axes, first to last: `"zyx"`, `"xyz"` or another order of the three letters | | `"zyx"` |
+//! | `channel` | of a `.vol` file: a channel, counted from 0 | | its only channel |
+//! | `grid` | of a `.vdb`, `.nvdb` or `.pbrt` file: the name of a grid or a medium | | its only grid of floats |
+//! | `random` | `{ size = [nx, ny, nz], seed }`: sample (i, j, k) is hash3(i, j, k, seed)/2³² | | this or `file` |
+//! | `bounds` | `box = { low, high }` | length | the box in a `.vol` or `.pbrt` file, else required |
+//! | `extinction` | factor on every sample, ≥ 0 | 1/length | 1 |
+//! | `interpolation` | `"trilinear"` or `"nearest"` | | `"trilinear"` |
+//! | `samples` | `"vertices"`: from corner to corner of the box, u = p(n−1); `"centres"`: in the middle of n cells, u = pn − ½ | | `"centres"` |
+//! | `border` | with `"centres"`, samples beyond the box: `"clamp"` (Mitsuba) or `"zero"` (pbrt) | | `"zero"` for `.pbrt`, else `"clamp"` |
+//!
+//! # Which axis is x
+//!
+//! A `.npy` file is `array[z, y, x]`, of shape (nz, ny, nx), as in Mitsuba's and pbrt's grids: the last axis is x. With
+//! `axes = "xyz"` it is `array[x, y, z]`, of shape (nx, ny, nz), and so on; whether the array lies in C or in Fortran order
+//! changes nothing. All other formats say themselves which axis is x, and take no `axes`. `trueflight plan` shows the voxels
+//! along x, y and z of each grid from a file, and `trueflight inspect FILE` what else is in it. Numbers may be
+//! float16, float32, float64, integers (as they stand) or booleans, of either byte order.
+//!
+//! # Formats
+//!
+//! `.vol`: float32, float16 or uint8, of which 255 is 1; of several channels `channel` is read. `.pbrt`: the density of a
+//! `uniformgrid` medium and its box; pbrt's σ_t is that times `scale` and `sigma_a + sigma_s`, which is given as
+//! `extinction`. `.nvdb`: grids of the types Float, Fp4, Fp8, Fp16 and `FpN`, of `NanoVDB` 32, plain, zipped or Blosc.
+//!
+//! A `.vdb` or `.nvdb` file says itself where its voxels stand, and takes neither `bounds` nor `samples` nor `border`: the voxel
+//! (i, j, k) is a sample at matrix·(i, j, k) + shift of its transform. Beside the voxels that are not background stand
+//! samples of the background: the field falls to that at the next index (`OpenVDB`'s `BoxSampler`; its `PointSampler` with
+//! `"nearest"`), and is 0 beyond. `OpenVDB`'s background goes on for ever; that of a medium ends at this box, which
+//! `plan` says where it is not 0. A voxel has the value that is stored, whether it is active or not. The transform may turn and
+//! shear the lattice; the bounds are then the box along the axes about it.
+//!
+//! Here p runs from 0 to 1 across the box. Between two planes of the lattice a ray sees a cubic,
+//! whose coefficients are prepared once a ray; lookups, optical depth (Simpson's rule, exact for
+//! cubics) and free flight (prefix sums and a bracketed root in one cell) use those. A cubic is the
+//! interpolation of the samples to rounding: 32 units in the last place of the largest sample, and
+//! the rounding of the place; see the test.
+
+use std::sync::Arc;
+
+use super::cells::Cells;
+use super::cubics::Cubics;
+use super::grid_file::Format;
+use super::grid_settings::{
+    facts, format, no_placement, own_bounds, read_bounds, read_placement, read_samples,
+};
+use super::voxels::{Interpolation, Placement, Voxels};
+use super::{Extinction, Field, FreeFlight, OpticalDepth, Smoothness};
+use crate::catalogue::{Domain, Settings};
+use numeric::geometry::{Aabb, Bounds, Ray};
+use numeric::{Known, Lane, Span};
+
+/// A voxel grid as a volume.
+pub struct Grid {
+    voxels: Arc<Voxels>,
+    /// Contents of the file; empty for a random grid.
+    facts: Vec<String>,
+}
+
+/// A voxel grid along a ray.
+pub struct GridRay {
+    voxels: Arc<Voxels>,
+    /// Sizes of the numbers that make the beginning and the slope on the lattice.
+    terms: [[f64; 3]; 2],
+    cells: Cells,
+    cubics: Vec<[f64; 4]>,
+    lookups: Cubics,
+}
+
+/// `∫` over part of a cell with the given cubic.
+fn simpson(cubic: [f64; 4], cell: Span, part: Span) -> f64 {
+    if cell.is_empty() {
+        return 0.0;
+    }
+    let value = |t: f64| {
+        let x = (t - cell.from) / cell.length();
+        ((cubic[3] * x + cubic[2]) * x + cubic[1]) * x + cubic[0]
+    };
+    part.length() / 6.0 * (value(part.from) + 4.0 * value(part.middle()) + value(part.to))
+}
+
+impl GridRay {
+    fn new(voxels: Arc<Voxels>, ray: &Ray, inside: Span) -> Self {
+        let track = voxels.track(ray);
+        let cells = Cells::cross(track, inside);
+        let cubics: Vec<[f64; 4]> = (0..cells.count())
+            .map(|index| cells.cell(index))
+            .map(|cell| {
+                let step = track.slope.map(|b| b * cell.length());
+                voxels.cubic(track.at(cell.middle()), track.at(cell.from), step)
+            })
+            .collect();
+        let cells = cells.summed(|index, cell, part| simpson(cubics[index], cell, part));
+        let lookups = Cubics::new(track, inside, |middle, from| {
+            voxels.cubic(track.at(middle), track.at(from), track.slope)
+        });
+        let terms = voxels.terms(ray);
+        Self { voxels, terms, cells, cubics, lookups }
+    }
+
+    fn part(&self, index: usize, cell: Span, part: Span) -> f64 {
+        simpson(self.cubics[index], cell, part)
+    }
+}
+
+impl Extinction for GridRay {
+    #[inline(always)]
+    fn extinction<L: Lane>(&self, t: L) -> L {
+        self.lookups.value(t)
+    }
+}
+
+impl OpticalDepth for GridRay {
+    fn optical_depth(&self, span: Span) -> Known {
+        let depth = self.cells.integrate(span, |index, cell, part| self.part(index, cell, part));
+        // Places are off by their rounding, and the field changes by less than its highest sample
+        // in a cell; where it jumps, each plane moves by the rounding of its distance.
+        let [start, slope] = self.terms;
+        let reach = |t: f64| (0..3).map(move |j| start[j] + slope[j] * t.abs());
+        let places = span.length() * reach(span.to.abs().max(span.from.abs())).sum::<f64>();
+        let jumps =
+            if self.voxels.jumps() { self.cells.count() as f64 * span.to.abs() } else { 0.0 };
+        let rounding = 4.0 * depth.value + self.voxels.peak() * (2.0 * places + jumps);
+        Known::new(depth.value, depth.error + f64::EPSILON * rounding)
+    }
+
+    fn breaks(&self, span: Span) -> Vec<f64> {
+        self.cells.crossings(span)
+    }
+
+    fn panel_nodes(&self) -> Option<usize> {
+        // The square of a cubic has degree 6.
+        Some(4)
+    }
+}
+
+impl FreeFlight for GridRay {
+    fn is_direct(&self) -> bool {
+        true
+    }
+
+    fn free_flight(&self, span: Span, depth: f64) -> Option<f64> {
+        self.cells.invert(span, depth, |index, cell, part| self.part(index, cell, part))
+    }
+}
+
+impl Field for Grid {
+    type Profile = GridRay;
+
+    const IN_LINE: bool = false;
+
+    fn volume(settings: &Settings) -> Option<Self> {
+        let samples = read_samples(settings);
+        let interpolation =
+            settings.word_or("interpolation", &["trilinear", "nearest"], "trilinear");
+        let format = format(settings);
+        let has_transform = format.is_some_and(Format::has_transform);
+        let placement = match format {
+            Some(format) if has_transform => no_placement(settings, format),
+            _ => read_placement(settings, format),
+        };
+        let factor = settings.number_or("extinction", Domain::NonNegative, 1.0);
+        let bounds = (!has_transform && settings.has("bounds")).then(|| read_bounds(settings));
+        let (samples, placement, factor) = (samples?, placement?, factor?);
+        let interpolation = match interpolation? {
+            "nearest" => Interpolation::Nearest,
+            _ => Interpolation::Trilinear,
+        };
+        let bounds = match bounds {
+            Some(given) => given?,
+            None => own_bounds(settings, &samples)?,
+        };
+        if placement == Placement::Vertices && samples.size.iter().any(|&n| n < 2) {
+            let [x, y, z] = samples.size;
+            let message = format!("{x} × {y} × {z} samples do not reach from corner to corner");
+            settings.fault("samples", message, "give two or more along each axis, or \"centres\"");
+            return None;
+        }
+        let facts = facts(settings, &samples, bounds);
+        let voxels = Voxels::new(&samples, factor, bounds, interpolation, placement);
+        Some(Self { voxels: Arc::new(voxels), facts })
+    }
+
+    fn facts(&self) -> Vec<String> {
+        self.facts.clone()
+    }
+
+    fn smoothness(&self) -> Smoothness {
+        // Cells whose faces are not along the axes are no better than layers.
+        if self.voxels.is_turned() { Smoothness::Layers } else { Smoothness::Cells }
+    }
+
+    fn bounds(&self) -> Bounds {
+        Bounds::Box(self.voxels.bounds())
+    }
+
+    #[inline(always)]
+    fn extinction_at<L: Lane>(&self, p: [L; 3]) -> L {
+        self.voxels.value(self.voxels.lattice(p))
+    }
+
+    fn majorant(&self, within: &Aabb) -> f64 {
+        // A cubic may exceed the samples about it by its rounding.
+        self.voxels.highest(within) * (1.0 + 64.0 * f64::EPSILON)
+    }
+
+    fn farthest(&self, ray: &Ray, inside: Span) -> f64 {
+        self.voxels.track(ray).farthest(inside)
+    }
+
+    fn along(&self, ray: &Ray, inside: Span) -> GridRay {
+        GridRay::new(self.voxels.clone(), ray, inside)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::grid_file::Samples;
+    use super::super::lattice::{self, Track};
+    use super::*;
+    use numeric::geometry::Point;
+
+    fn grid(seed: u32) -> Grid {
+        let hash =
+            |n: u32| f64::from(lattice::hash3(n % 5, n / 5 % 5, n / 25, seed)) / 4_294_967_296.0;
+        let samples = Samples {
+            size: [5; 3],
+            values: (0..125).map(hash).collect(),
+            bounds: None,
+            turned: None,
+            remark: String::new(),
+        };
+        let cube = Aabb { low: Point([0.0; 3]), high: Point([4.0; 3]) };
+        let (linear, vertices) = (Interpolation::Trilinear, Placement::Vertices);
+        let voxels = Voxels::new(&samples, 1.0, cube, linear, vertices);
+        Grid { voxels: Arc::new(voxels), facts: Vec::new() }
+    }
+
+    fn depth(field: &Grid, origin: [f64; 3], direction: [f64; 3]) -> Known {
+        let ray = Ray::new(Point(origin), Point(direction), 100.0).expect("a direction");
+        let inside = field.bounds().clip(&ray);
+        field.along(&ray, inside).optical_depth(inside)
+    }
+
+    #[test]
+    fn depths_agree_with_thirty_digit_arithmetic() {
+        let rays = [
+            ([-1.0, 0.4, 0.9], [4.2, 2.2, 1.9], 1.875_699_680_225_863_9),
+            ([0.25, 1.5, -3.0], [0.0, 0.0, 1.0], 2.094_530_095_055_233_7),
+        ];
+        for (origin, direction, exact) in rays {
+            let depth = depth(&grid(7), origin, direction);
+            let off = (depth.value - exact).abs();
+            assert!(off <= depth.error && off < 4e-15, "{origin:?}: off by {off:e}");
+        }
+    }
+
+    #[test]
+    fn cubics_are_the_interpolation_to_rounding() {
+        let samples = |seed: u32| {
+            let hash = |n: u32| f64::from(lattice::hash3(n, 0, 0, seed)) / 4_294_967_296.0;
+            let values = (0..504).map(hash).collect();
+            Samples { size: [9, 8, 7], values, bounds: None, turned: None, remark: String::new() }
+        };
+        let cube = Aabb { low: Point([-1.0, 0.0, 2.0]), high: Point([4.0, 3.0, 4.0]) };
+        let places = [Placement::Vertices, Placement::CentresClamped, Placement::CentresZero];
+        for (seed, placement) in (0..).zip(places) {
+            let linear = Interpolation::Trilinear;
+            let field = Arc::new(Voxels::new(&samples(seed), 1.0, cube, linear, placement));
+            let directions =
+                [[1.0, 0.6, 0.4], [-1.0, 0.3, 0.0], [0.0, 0.0, -1.0], [1e-9, -1.0, 1e-3]];
+            for direction in directions {
+                let direction = Point(direction);
+                let ray = Ray::new(Point([1.1, 1.3, 2.9]) - direction * 4.0, direction, 20.0);
+                let ray = ray.expect("a direction");
+                let inside = Bounds::Box(cube).clip(&ray);
+                let seen = GridRay::new(field.clone(), &ray, inside);
+                for n in 0..=20_000 {
+                    let t = inside.from + inside.length() * (f64::from(n) / 20_000.0);
+                    let Track { start, slope } = field.track(&ray);
+                    let at: [f64; 3] = std::array::from_fn(|j| start[j] + slope[j] * t);
+                    // The field changes by less than its largest sample in a cell.
+                    let place: f64 =
+                        (0..3).map(|j| start[j].abs() + 2.0 * (slope[j] * t).abs()).sum();
+                    let bound = f64::EPSILON * field.peak() * (32.0 + place);
+                    let off = (seen.extinction(t) - field.value(at)).abs();
+                    assert!(off <= bound, "{direction:?} at {t}: {off:e} above {bound:e}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn an_edge_is_the_trapezoid_of_its_samples() {
+        let value = |z| f64::from(lattice::hash3(0, 0, z, 7)) / 4_294_967_296.0;
+        let hand = 0.5 * (value(0) + value(4)) + value(1) + value(2) + value(3);
+        let seen = depth(&grid(7), [0.0, 0.0, -1.0], [0.0, 0.0, 1.0]).value;
+        assert!((seen - hand).abs() < 1e-15);
+    }
+}

@@ -1,0 +1,93 @@
+//! The inverse of an optical depth, prepared for many depths.
+//!
+//! ```text
+//! τⱼ ≤ u < τⱼ₊₁:  s ← the cubic through (τⱼ, sⱼ) and (τⱼ₊₁, sⱼ₊₁) with the slopes 1/σ_t at u
+//!                 s ← s − (τ(s) − u)/σ_t(s),  kept between sⱼ and sⱼ₊₁
+//! ```
+//!
+//! A table of 2048 equal stretches says where to begin; τ(s) is the field's own closed form, from the
+//! beginning of the ray. After a step e the next would change the depth by ½|σ'|e²: where σ_t changes by
+//! no more than twice itself over a stretch of length h, that is below σ_t e²/h, and steps end where this
+//! is below 1e-15 u. One is enough for smooth fields. What a table does not resolve takes more, as many as
+//! without one at most. Fields whose inverse is a closed form need none.
+
+use super::search::Search;
+use super::{Medium, Profile};
+use numeric::{Lane, Row, Span, roots};
+
+/// Stretches of a table.
+const STRETCHES: u32 = 2048;
+/// What the steps leave of a depth, relative to it.
+const GRAIN: f64 = 1e-15;
+
+/// Where given optical depths of a medium are reached.
+pub struct Inverse {
+    medium: Medium,
+    table: Option<Table>,
+}
+
+impl Inverse {
+    pub(super) fn new(medium: Medium, table: Option<Table>) -> Self {
+        Self { medium, table }
+    }
+
+    /// See [`Medium::free_flight`].
+    pub fn free_flight(&self, depth: f64) -> Option<f64> {
+        let Some(table) = &self.table else { return self.medium.free_flight(depth) };
+        table.invert(self.medium.profile(), depth)
+    }
+}
+
+/// Optical depths at equal distances.
+pub(super) struct Table {
+    span: Span,
+    /// At the end.
+    whole: f64,
+    /// Finds the stretch of a depth.
+    search: Search,
+    /// Of each stretch: the depth where it begins and one over what it adds; where it begins, its
+    /// length, and how much steeper than its chord the inverse is at both of its ends.
+    stretches: Vec<Row>,
+}
+
+impl Table {
+    /// The table of a field on a span that is not empty.
+    pub(super) fn of(field: &Profile, span: Span) -> Self {
+        let share = |j: u32| f64::from(j) / f64::from(STRETCHES);
+        let at: Vec<f64> = (0..=STRETCHES).map(|j| span.from + span.length() * share(j)).collect();
+        let mut highest = 0.0;
+        let rising = |&s: &f64| {
+            // Rounding lets depths fall where the field is nearly zero.
+            highest = Lane::or_more(field.optical_depth(Span::new(span.from, s)).value, highest);
+            highest
+        };
+        let depths: Vec<f64> = at.iter().map(rising).collect();
+        let stretch = |(at, depths): (&[f64], &[f64])| {
+            let (length, depth) = (at[1] - at[0], depths[1] - depths[0]);
+            let steeper = |s: f64| depth / (length * field.at(s)) - 1.0;
+            let (first, last) = (steeper(at[0]), steeper(at[1]));
+            Row([depths[0], 1.0 / depth, at[0], length, first, last, 0.0, 0.0])
+        };
+        let stretches = at.windows(2).zip(depths.windows(2)).map(stretch).collect();
+        Self { span, whole: highest, search: Search::new(&depths), stretches }
+    }
+
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // the number of a stretch
+    fn invert(&self, field: &Profile, depth: f64) -> Option<f64> {
+        if self.whole <= depth {
+            return None;
+        }
+        let stretch = (self.search.piece(depth) as usize).min(self.stretches.len() - 1);
+        let [before, per_depth, from, length, first, last, ..] = self.stretches[stretch].0;
+        let x = (depth - before) * per_depth;
+        let bend = x * (1.0 - x) * (first * (1.0 - x) - last * x);
+        let share = x + bend;
+        let share = if (0.0..=1.0).contains(&share) { share } else { 0.5 };
+        let ends = [from, Lane::or_less(from + length, self.span.to)];
+        let is_last = |step: f64, sigma: f64| sigma * step * step <= GRAIN * depth * length;
+        Some(roots::rising_from(from + length * share, ends, is_last, |s| {
+            let reached = field.optical_depth(Span::new(self.span.from, s)).value;
+            (reached - depth, field.at(s))
+        }))
+    }
+}

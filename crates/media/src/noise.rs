@@ -1,0 +1,339 @@
+//! Octaves of gradient (Perlin) noise, raised so that they are never negative.
+//!
+//! ```text
+//! σ_t(p) = extinction · (½ + fbm(p)/2B),   fbm(p) = Σₖ gainᵏ · noise(2ᵏ frequency p; seed + k)
+//! B = bound · Σₖ gainᵏ ≥ |fbm|
+//! ```
+//!
+//! 3-D only. Nothing is clamped: `bound` is the largest |noise| that any gradients allow,
+//! 1.0363538112118027 with the quintic and 1.044905189609877 with the cubic fade. (The first does
+//! not hold for the cubic fade.)
+//!
+//! | setting | meaning | unit | default |
+//! |---|---|---|---|
+//! | `extinction` | the largest σ_t that is possible, > 0; the mean is half of it | 1/length | required |
+//! | `frequency` | lattice cells of the first octave per unit length, > 0 | 1/length | 1 |
+//! | `octaves` | 1 to 16; each doubles the frequency of the one before | | 12 |
+//! | `gain` | amplitude of an octave over that of the one before, 0 to 1 | | 0.5 |
+//! | `seed` | of the first octave; octave k has `seed + k` | | 0 |
+//! | `fade` | `"quintic"` or `"cubic"` | | `"quintic"` |
+//! | `bounds` | `sphere = { centre, radius }` or `box = { low, high }` | length | all of space |
+//!
+//! Within one cell of its lattice an octave is a polynomial of degree 16 (quintic) or 10 (cubic)
+//! along a ray, and 9 Gauss nodes a cell integrate it exactly: the cell is found by its midpoint
+//! and its polynomial evaluated up to its faces. Each octave is integrated on its own lattice, so
+//! that the error is rounding alone. A ray that crosses n planes of the finest lattice prepares
+//! 2n cells of 16 bytes each; 12 octaves on a length of 20 take some 70 000 planes and 50 ms.
+//! The free flight is a bracketed root.
+//!
+//! Quadrature takes a panel for each cell of the finest lattice, with 17 nodes, or, where `gain` is
+//! at most ½, with 16 less two for every three octaves, but 8 at least: measured on rays of length
+//! 20, σ_t and its square then agree with 20 nodes to 1e-13 (12 octaves, 8 nodes: 1e-14).
+//!
+//! Sources: K. Perlin, *Improving Noise*, SIGGRAPH 2002; the integral by cells is this crate's.
+
+use std::sync::OnceLock;
+
+use super::cells::Cells;
+use super::lattice::{self, Cell, Fade, Track};
+use super::{Extinction, Field, FreeFlight, OpticalDepth, Smoothness, body};
+use crate::catalogue::{Domain, Settings};
+use numeric::geometry::{Aabb, Bounds, Ray};
+use numeric::{Known, Lane, Span, quadrature::GaussLegendre};
+
+/// A volume of noise.
+pub struct Noise {
+    spectrum: Spectrum,
+    unit: f64,
+    bounds: Bounds,
+}
+
+/// The octaves of a noise.
+#[derive(Debug, Clone, Copy)]
+struct Spectrum {
+    extinction: f64,
+    frequency: f64,
+    octaves: u32,
+    gain: f64,
+    seed: u32,
+    fade: Fade,
+}
+
+impl Spectrum {
+    /// Amplitude and seed of each octave.
+    #[inline(always)]
+    fn amplitudes(self) -> impl Iterator<Item = (f64, u32)> {
+        let mut amplitude = 1.0;
+        (0..self.octaves).map(move |k| {
+            let this = amplitude;
+            amplitude *= self.gain;
+            (this, self.seed.wrapping_add(k))
+        })
+    }
+
+    #[inline(always)]
+    fn fbm<L: Lane>(self, mut p: [L; 3], fade: Fade) -> L {
+        let mut sum = p[0].each(0.0);
+        for (amplitude, seed) in self.amplitudes() {
+            sum = sum + lattice::noise(p, seed, fade) * amplitude;
+            p = [p[0] * 2.0, p[1] * 2.0, p[2] * 2.0];
+        }
+        sum
+    }
+
+    /// `extinction/2B`.
+    fn unit(self) -> f64 {
+        let total: f64 = self.amplitudes().map(|(amplitude, _)| amplitude).sum();
+        0.5 * self.extinction / (self.fade.bound() * total)
+    }
+
+    /// `σ_t` at a point in lattice coordinates of the first octave.
+    #[inline(always)]
+    fn value<L: Lane>(self, p: [L; 3], unit: f64) -> L {
+        // One branch outside the octaves instead of three within each.
+        let fbm = match self.fade {
+            Fade::Quintic => self.fbm(p, Fade::Quintic),
+            Fade::Cubic => self.fbm(p, Fade::Cubic),
+        };
+        fbm * unit + 0.5 * self.extinction
+    }
+}
+
+/// Noise along a ray.
+pub struct NoiseRay {
+    spectrum: Spectrum,
+    unit: f64,
+    track: Track,
+    octaves: Vec<Octave>,
+    rule: GaussLegendre,
+    inside: Span,
+}
+
+/// One octave along a ray. Its cells are found when an integral is first asked for: who only looks σ_t
+/// up pays nothing for them.
+struct Octave {
+    amplitude: f64,
+    track: Track,
+    seed: u32,
+    fade: Fade,
+    cells: OnceLock<Cells>,
+}
+
+impl Octave {
+    fn cells(&self, rule: &GaussLegendre, inside: Span) -> &Cells {
+        self.cells.get_or_init(|| {
+            Cells::cross(self.track, inside).summed(|_, cell, part| self.part(rule, cell, part))
+        })
+    }
+
+    /// The integral over part of a cell.
+    fn part(&self, rule: &GaussLegendre, cell: Span, part: Span) -> f64 {
+        let polynomial = Cell::around(self.track.at(cell.middle()), self.seed);
+        rule.integrate(part.from, part.to, |t| polynomial.value(self.track.at(t), self.fade))
+    }
+}
+
+impl Extinction for NoiseRay {
+    fn is_costly(&self) -> bool {
+        true
+    }
+
+    #[inline(always)]
+    fn extinction<L: Lane>(&self, t: L) -> L {
+        self.spectrum.value(self.track.at(t), self.unit)
+    }
+}
+
+impl OpticalDepth for NoiseRay {
+    fn optical_depth(&self, span: Span) -> Known {
+        let length = span.length();
+        let (mut fbm, mut error) = (0.0, 0.0);
+        for octave in &self.octaves {
+            let part = |_, cell, part| octave.part(&self.rule, cell, part);
+            let integral = octave.cells(&self.rule, self.inside).integrate(span, part);
+            fbm += octave.amplitude * integral.value;
+            // |∂ noise/∂pⱼ| < 3, and a coordinate is off by its rounding at most.
+            let ends = [octave.track.start, octave.track.at(span.to)];
+            let size: f64 = ends.as_flattened().iter().map(|x| x.abs()).sum();
+            error += octave.amplitude * (integral.error + 3.0 * f64::EPSILON * size * length);
+        }
+        let mean = 0.5 * self.spectrum.extinction * length;
+        let rounding = 4.0 * f64::EPSILON * (mean + (self.unit * fbm).abs());
+        Known::new(mean + self.unit * fbm, rounding + self.unit * error)
+    }
+
+    fn breaks(&self, span: Span) -> Vec<f64> {
+        // Every plane of a coarser lattice is one of the finest, to the last bit.
+        let cells = |finest: &Octave| finest.cells(&self.rule, self.inside).crossings(span);
+        self.octaves.last().map(cells).unwrap_or_default()
+    }
+
+    fn panel_nodes(&self) -> Option<usize> {
+        // Seventeen are exact for the square, of degree 32. Where the octaves fade, the finest,
+        // whose whole cells these panels are, counts little: see the test of the panels.
+        let octaves = self.spectrum.octaves as usize;
+        Some(if self.spectrum.gain > 0.5 { 17 } else { (16 - 2 * octaves / 3).max(8) })
+    }
+}
+
+impl FreeFlight for NoiseRay {}
+
+/// A ray on the lattice of a frequency.
+fn track(ray: &Ray, frequency: f64) -> Track {
+    Track { start: (ray.origin * frequency).0, slope: (ray.direction * frequency).0 }
+}
+
+impl Noise {
+    fn new(spectrum: Spectrum, bounds: Bounds) -> Self {
+        Self { unit: spectrum.unit(), spectrum, bounds }
+    }
+}
+
+impl Field for Noise {
+    type Profile = NoiseRay;
+
+    const IN_LINE: bool = false;
+
+    #[allow(clippy::cast_possible_truncation)] // both counts are read within their ranges
+    fn volume(settings: &Settings) -> Option<Self> {
+        let extinction = settings.number("extinction", Domain::Positive);
+        let frequency = settings.number_or("frequency", Domain::Positive, 1.0);
+        let octaves = settings.count_or("octaves", 1..=16, 12);
+        let gain = settings.number_or("gain", Domain::Unit, 0.5);
+        let seed = settings.count_or("seed", 0..=u64::from(u32::MAX), 0);
+        let fade = settings.word_or("fade", &["quintic", "cubic"], "quintic");
+        let bounds = body::read_bounds(settings);
+        let spectrum = Spectrum {
+            extinction: extinction?,
+            frequency: frequency?,
+            octaves: octaves? as u32,
+            gain: gain?,
+            seed: seed? as u32,
+            fade: if fade? == "quintic" { Fade::Quintic } else { Fade::Cubic },
+        };
+        Some(Self::new(spectrum, bounds?))
+    }
+
+    fn smoothness(&self) -> Smoothness {
+        Smoothness::SmoothCells
+    }
+
+    fn bounds(&self) -> Bounds {
+        self.bounds
+    }
+
+    fn pieces(&self, length: f64) -> f64 {
+        let Spectrum { frequency, octaves, .. } = self.spectrum;
+        // Planes in three directions, √3 of them per cell's length; the finest octave has half of all.
+        3f64.sqrt() * length * frequency * f64::from(1u32 << octaves)
+    }
+
+    fn farthest(&self, ray: &Ray, inside: Span) -> f64 {
+        let finest = self.spectrum.frequency * f64::from(1u32 << (self.spectrum.octaves - 1));
+        track(ray, finest).farthest(inside)
+    }
+
+    #[inline(always)]
+    fn extinction_at<L: Lane>(&self, p: [L; 3]) -> L {
+        let [x, y, z] = p;
+        let frequency = self.spectrum.frequency;
+        self.spectrum.value([x * frequency, y * frequency, z * frequency], self.unit)
+    }
+
+    fn majorant(&self, _: &Aabb) -> f64 {
+        self.spectrum.extinction
+    }
+
+    fn along(&self, ray: &Ray, inside: Span) -> NoiseRay {
+        let spectrum = self.spectrum;
+        let rule = GaussLegendre::new(9);
+        let track = track(ray, spectrum.frequency);
+        let tracks = std::iter::successors(Some(track), |track| Some(track.doubled()));
+        let octaves = spectrum.amplitudes().zip(tracks).map(|((amplitude, seed), track)| Octave {
+            amplitude,
+            track,
+            seed,
+            fade: spectrum.fade,
+            cells: OnceLock::new(),
+        });
+        NoiseRay { spectrum, unit: self.unit, track, octaves: octaves.collect(), rule, inside }
+    }
+
+    /// The first octaves as they are in the whole: `B` stays that of all.
+    fn coarsened(&self, octaves: usize) -> Option<Self> {
+        let octaves = self.spectrum.octaves.min(u32::try_from(octaves).ok()?);
+        let spectrum = Spectrum { octaves, ..self.spectrum };
+        Some(Self { spectrum, unit: self.unit, bounds: self.bounds })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use numeric::geometry::Point;
+
+    fn spectrum(octaves: u32, fade: Fade) -> Spectrum {
+        Spectrum { extinction: 1.0, frequency: 1.0, octaves, gain: 0.5, seed: 0, fade }
+    }
+
+    fn seen(octaves: u32, fade: Fade, length: f64) -> NoiseRay {
+        let field = Noise::new(spectrum(octaves, fade), Bounds::Everywhere);
+        let (origin, direction) = (Point([0.3, 0.7, -0.45]), Point([0.6, 0.5, 0.37]));
+        let ray = Ray::new(origin, direction, length).expect("a direction");
+        field.along(&ray, ray.span())
+    }
+
+    #[test]
+    fn octaves_add_up() {
+        let fbm = spectrum(12, Fade::Quintic).fbm([0.3, 0.7, -0.45], Fade::Quintic);
+        // 30-digit arithmetic.
+        assert!((fbm - 0.245_350_926_812_424_3).abs() < 1e-14);
+    }
+
+    #[test]
+    fn integrals_agree_with_thirty_digit_arithmetic() {
+        let integrals = [
+            (1, Fade::Quintic, -0.868_117_759_134_579_7),
+            (1, Fade::Cubic, -0.805_609_622_533_994_9),
+            (4, Fade::Quintic, -0.584_779_973_056_391),
+        ];
+        for (octaves, fade, exact) in integrals {
+            let field = seen(octaves, fade, 12.5);
+            let depth = field.optical_depth(Span::new(0.0, 12.5));
+            let fbm = (depth.value - 0.5 * 12.5) / field.unit;
+            assert!((fbm - exact).abs() < 2e-14, "{octaves} octaves: {fbm}");
+            assert!((fbm - exact).abs() * field.unit <= depth.error);
+        }
+    }
+
+    #[test]
+    fn a_lattice_point_has_the_mean() {
+        let field = Noise::new(spectrum(12, Fade::Cubic), Bounds::Everywhere);
+        assert_eq!(field.extinction_at([3.0, -4.0, 0.0]), 0.5);
+    }
+
+    #[test]
+    fn panels_integrate_field_and_square() {
+        for (octaves, length, fade) in
+            [(1, 20.0, Fade::Quintic), (5, 20.0, Fade::Cubic), (9, 5.0, Fade::Quintic)]
+        {
+            let (field, span) = (seen(octaves, fade, length), Span::new(0.0, length));
+            let mut ends = vec![span.from];
+            ends.extend(field.breaks(span));
+            ends.push(span.to);
+            let integral = |nodes: usize, power: i32| -> f64 {
+                let rule = GaussLegendre::new(nodes);
+                let panel =
+                    |e: &[f64]| rule.integrate(e[0], e[1], |t| field.extinction(t).powi(power));
+                ends.windows(2).map(panel).sum()
+            };
+            let nodes = field.panel_nodes().unwrap_or_default();
+            for power in [1, 2] {
+                let (value, exact) = (integral(nodes, power), integral(17, power));
+                assert!((value - exact).abs() < 1e-13 * exact, "{octaves}: {value} {exact}");
+            }
+            let depth = field.optical_depth(span).value;
+            assert!((depth - integral(17, 1)).abs() < 1e-13 * depth);
+        }
+    }
+}

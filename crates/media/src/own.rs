@@ -1,0 +1,284 @@
+//! Media of a program's own: from closures, or from types that implement [`Field`].
+//!
+//! ```text
+//! τ(a, b) = ∫ₐᵇ σ_t(t) dt   by Gauss–Legendre quadrature with 16 nodes a panel; panels are halved until
+//!                           two halves agree with the whole to 1e-12 of the sum, and the polynomial through the
+//!                           nodes meets σ_t at the panel's ends; 40 times at most
+//! ```
+//!
+//! The error is what the last halving of each panel changed, an estimate and no proof. Where σ_t jumps or has a kink,
+//! [`Formula::with_breaks`] and [`Medium::from_fn_with_breaks`] say so: panels then end there. What is narrower than a
+//! 64th of the way between two breaks may be stepped over. Where σ_t is negative or not
+//! finite, τ is not a number, and a case with that field is an error. Free flights are bracketed roots of τ.
+
+use std::collections::VecDeque;
+use std::sync::{Arc, LazyLock};
+
+use super::{Extinction, Field, FreeFlight, Medium, OpticalDepth, Profile, Reader, Volume};
+use crate::catalogue::{Addition, Page, Settings};
+use numeric::geometry::{Aabb, Bounds, Ray};
+use numeric::quadrature::GaussLegendre;
+use numeric::{Known, Lane, Span, sum::Sum};
+
+/// A field along a ray that a closure gives: `σ_t(t)`, 1/length, finite and ≥ 0.
+pub struct Formula<F> {
+    at: F,
+    breaks: Vec<f64>,
+}
+
+impl<F: Fn(f64) -> f64 + Send + Sync + 'static> Formula<F> {
+    /// The field of a closure.
+    pub fn new(at: F) -> Self {
+        Self { at, breaks: Vec::new() }
+    }
+
+    /// The same with the distances where it jumps or has a kink.
+    #[must_use]
+    pub fn with_breaks(self, breaks: Vec<f64>) -> Self {
+        Self { breaks, ..self }
+    }
+}
+
+impl<F: Fn(f64) -> f64 + Send + Sync + 'static> Extinction for Formula<F> {
+    #[inline(always)]
+    fn extinction<L: Lane>(&self, t: L) -> L {
+        t.map(&self.at)
+    }
+}
+
+impl<F: Fn(f64) -> f64 + Send + Sync + 'static> OpticalDepth for Formula<F> {
+    fn optical_depth(&self, span: Span) -> Known {
+        let mut total = [Sum::default(), Sum::default()];
+        let ends = span.cut(self.breaks(span));
+        for part in Span::between(&ends) {
+            let depth = integral(&self.at, part);
+            total[0].add(depth.value);
+            total[1].add(depth.error);
+        }
+        Known::new(total[0].value(), total[1].value())
+    }
+
+    fn breaks(&self, span: Span) -> Vec<f64> {
+        self.breaks.iter().copied().filter(|&t| span.contains_inside(t)).collect()
+    }
+}
+
+impl<F: Fn(f64) -> f64 + Send + Sync + 'static> FreeFlight for Formula<F> {}
+
+/// So many panels are looked at before any of them is halved.
+const PANELS: f64 = 64.0;
+/// So often a panel is halved at most.
+const HALVINGS: usize = 40;
+/// To this part of the sum two halves agree with the whole.
+const AGREEMENT: f64 = 1e-12;
+/// So many panels are looked at, at most: what a closure's own rounding keeps apart ends there.
+const LOOKED_AT: usize = 1 << 15;
+/// How near to its ends a panel is looked at.
+const NEAR: f64 = 1e-9;
+
+static RULE: LazyLock<GaussLegendre> = LazyLock::new(|| GaussLegendre::new(16));
+
+/// The weights that make the value of the polynomial through the nodes near each end of a panel.
+static ENDS: LazyLock<[Vec<f64>; 2]> =
+    LazyLock::new(|| [NEAR, 1.0 - NEAR].map(|x| RULE.weights_at(x)));
+
+/// ∫ f over a panel by the rule, and what a jump between its ends and its outermost nodes would hide; not a number
+/// where f is no extinction.
+fn panel(f: &impl Fn(f64) -> f64, part: Span) -> [f64; 2] {
+    let values: Vec<f64> = RULE.on(part).map(|(t, _)| f(t)).collect();
+    if !values.iter().all(|value| *value >= 0.0) {
+        return [f64::NAN; 2];
+    }
+    let sum: f64 = values.iter().zip(&RULE.weights).map(|(value, weight)| value * weight).sum();
+    let gap = RULE.nodes[0] * part.length();
+    let hidden = [NEAR, 1.0 - NEAR].into_iter().zip(ENDS.iter()).map(|(x, weights)| {
+        let expected: f64 = values.iter().zip(weights).map(|(value, weight)| value * weight).sum();
+        (f(part.from + x * part.length()) - expected).abs() * gap
+    });
+    [sum * part.length(), hidden.sum()]
+}
+
+/// ∫ f with an estimate of its error; not a number where f is negative or not finite.
+fn integral(f: impl Fn(f64) -> f64, span: Span) -> Known {
+    let on = |part: Span| (part, panel(&f, part));
+    let cuts = span.cut(span.even_cuts(PANELS));
+    let mut open: VecDeque<_> = Span::between(&cuts).map(|part| (on(part), 0)).collect();
+    let size = open.iter().map(|((_, [sum, _]), _)| sum.abs()).sum::<f64>();
+    if !size.is_finite() {
+        return Known::new(f64::NAN, f64::INFINITY);
+    }
+    let (mut value, mut error, mut looked) = (Sum::default(), Sum::default(), open.len());
+    // The widest first, so that where panels run out all are as narrow.
+    while let Some(((part, [whole, hidden]), depth)) = open.pop_front() {
+        let halves = part.halves().map(on);
+        let [[first, _], [second, _]] = halves.map(|(_, found)| found);
+        let change = (first + second - whole).abs() + hidden;
+        if !change.is_finite() {
+            return Known::new(f64::NAN, f64::INFINITY);
+        }
+        looked += 2;
+        let share = size.max(value.value()) * AGREEMENT * (part.length() / span.length());
+        let is_done = change <= share.max(16.0 * f64::EPSILON * whole.abs());
+        if is_done || depth == HALVINGS || looked >= LOOKED_AT {
+            value.add(first + second);
+            error.add(change);
+        } else {
+            open.extend(halves.map(|half| (half, depth + 1)));
+        }
+    }
+    let value = value.value();
+    Known::new(value, error.value() + 64.0 * f64::EPSILON * value.abs())
+}
+
+/// A field in space that a closure gives: `σ_t(x, y, z)`, 1/length, finite and ≥ 0, within bounds.
+///
+/// ```
+/// use trueflight::catalogue::{Addition, Page, Settings};
+/// use trueflight::geometry::{Aabb, Bounds, Point};
+/// use trueflight::{Catalogue, media::own::SpaceFormula};
+///
+/// let page = Page { module: "corner", source: "A cube that is densest in one corner." };
+/// let cube = Bounds::Box(Aabb { low: Point([0.0; 3]), high: Point([1.0; 3]) });
+/// let read = move |_: &Settings| Some(SpaceFormula::new(cube, 3.0, |[x, y, z]| x + y + z));
+/// let catalogue = Catalogue::builtin().with(Addition::volume(page, read))?; // volume.corner = {}
+/// # Ok::<(), trueflight::harness::catalogue::NameTaken>(())
+/// ```
+pub struct SpaceFormula<F> {
+    at: Arc<F>,
+    bounds: Bounds,
+    majorant: f64,
+}
+
+impl<F: Fn([f64; 3]) -> f64 + Send + Sync + 'static> SpaceFormula<F> {
+    /// The field of a closure, and a number that it exceeds nowhere within the bounds.
+    pub fn new(bounds: Bounds, majorant: f64, at: F) -> Self {
+        Self { at: Arc::new(at), bounds, majorant }
+    }
+}
+
+/// What one ray sees of such a field.
+pub struct Chord<F> {
+    at: Arc<F>,
+    ray: Ray,
+}
+
+impl<F: Fn([f64; 3]) -> f64 + Send + Sync + 'static> Chord<F> {
+    fn value(&self, t: f64) -> f64 {
+        (self.at)(self.ray.at(t).0)
+    }
+}
+
+impl<F: Fn([f64; 3]) -> f64 + Send + Sync + 'static> Extinction for Chord<F> {
+    #[inline(always)]
+    fn extinction<L: Lane>(&self, t: L) -> L {
+        t.map(|t| self.value(t))
+    }
+}
+
+impl<F: Fn([f64; 3]) -> f64 + Send + Sync + 'static> OpticalDepth for Chord<F> {
+    fn optical_depth(&self, span: Span) -> Known {
+        integral(|t| self.value(t), span)
+    }
+}
+
+impl<F: Fn([f64; 3]) -> f64 + Send + Sync + 'static> FreeFlight for Chord<F> {}
+
+impl<F: Fn([f64; 3]) -> f64 + Send + Sync + 'static> Field for SpaceFormula<F> {
+    type Profile = Chord<F>;
+
+    const IN_LINE: bool = false;
+
+    fn volume(_: &Settings) -> Option<Self> {
+        None
+    }
+
+    fn bounds(&self) -> Bounds {
+        self.bounds
+    }
+
+    #[inline(always)]
+    fn extinction_at<L: Lane>(&self, p: [L; 3]) -> L {
+        let [x, y, z] = p;
+        // Elements of all three lanes are seen side by side; y and z stay what they are.
+        x.replaced(|x| {
+            let _ = y.replaced(|y| {
+                let _ = z.replaced(|z| {
+                    for ((x, y), z) in x.iter_mut().zip(y.iter()).zip(z.iter()) {
+                        *x = (self.at)([*x, *y, *z]);
+                    }
+                });
+            });
+        })
+    }
+
+    fn majorant(&self, _: &Aabb) -> f64 {
+        self.majorant
+    }
+
+    fn along(&self, ray: &Ray, _: Span) -> Chord<F> {
+        Chord { at: self.at.clone(), ray: *ray }
+    }
+}
+
+impl Medium {
+    /// The field of a closure on a ray, smooth but for what [`Medium::from_fn_with_breaks`] is told: for the truth of
+    /// an estimator of one's own.
+    ///
+    /// ```
+    /// use trueflight::{media::Medium, numeric::Span};
+    ///
+    /// let sigma_t = |t: f64| 1.0 / (1.0 + t * t);
+    /// let medium = Medium::from_fn(Span::new(0.0, 4.0), sigma_t);
+    /// let truth = medium.optical_depth(medium.span()).exp_neg().value; // e^{−arctan 4}
+    /// trueflight::check("ratio tracking at σ̂ = 1", |rng| {
+    ///     let (mut weight, mut t) = (1.0, -rng.positive_uniform().ln());
+    ///     while t < 4.0 {
+    ///         weight *= 1.0 - sigma_t(t);
+    ///         t -= rng.positive_uniform().ln();
+    ///     }
+    ///     weight
+    /// })
+    /// .truth(truth)
+    /// .range(0.0, 1.0)
+    /// .assert_pass();
+    /// ```
+    pub fn from_fn(span: Span, at: impl Fn(f64) -> f64 + Send + Sync + 'static) -> Self {
+        Self::from_fn_with_breaks(span, Vec::new(), at)
+    }
+
+    /// The same with the distances where σ_t jumps or has a kink.
+    pub fn from_fn_with_breaks(
+        span: Span,
+        breaks: Vec<f64>,
+        at: impl Fn(f64) -> f64 + Send + Sync + 'static,
+    ) -> Self {
+        Self::new(Arc::new(Formula::new(at).with_breaks(breaks)), span, span)
+    }
+}
+
+const PART: &str = "media";
+
+impl Addition {
+    /// A type that implements [`Field`], in 1-D and in 3-D as far as it has these forms.
+    pub fn field<F: Field>(page: Page) -> Self {
+        Self::new(PART, page, Reader::of::<F>())
+    }
+
+    /// A field along a line, read from its settings: `medium.NAME = { … }`.
+    pub fn line<F: FreeFlight + 'static>(
+        page: Page,
+        read: impl Fn(&Settings) -> Option<F> + Send + Sync + 'static,
+    ) -> Self {
+        let read = move |settings: &Settings| read(settings).map(|f| Arc::new(f) as Arc<Profile>);
+        Self::new(PART, page, Reader { line: Some(Box::new(read)), volume: None })
+    }
+
+    /// A field in space, read from its settings: `volume.NAME = { … }`.
+    pub fn volume<F: Field>(
+        page: Page,
+        read: impl Fn(&Settings) -> Option<F> + Send + Sync + 'static,
+    ) -> Self {
+        let read = move |settings: &Settings| read(settings).map(|f| Arc::new(f) as Arc<Volume>);
+        Self::new(PART, page, Reader { line: None, volume: Some(Box::new(read)) })
+    }
+}

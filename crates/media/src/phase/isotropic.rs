@@ -1,0 +1,48 @@
+//! Isotropic scattering: all directions alike.
+//!
+//! ```text
+//! p(cos θ) = 1/(4π),   χ_l = 0 for l ≥ 1
+//! ```
+//!
+//! `cos θ = 2u − 1` for a uniform number u. It has no settings.
+
+use std::f64::consts::PI;
+
+use super::PhaseFunction;
+use crate::catalogue::Settings;
+use numeric::Lane;
+
+/// The isotropic phase function.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Isotropic;
+
+impl PhaseFunction for Isotropic {
+    fn read(_: &Settings) -> Option<Self> {
+        Some(Self)
+    }
+
+    #[inline(always)]
+    fn value<L: Lane>(&self, cosine: L) -> L {
+        cosine.each(0.25 / PI)
+    }
+
+    fn moment(&self, order: usize) -> f64 {
+        if order == 0 { 1.0 } else { 0.0 }
+    }
+
+    #[inline(always)]
+    fn cosine<L: Lane>(&self, u: L) -> L {
+        u * 2.0 - 1.0
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_quarter_of_all_light_lies_below_a_cosine_of_minus_one_half() {
+        assert_eq!(Isotropic.cosine(0.25), -0.5);
+        assert_eq!(Isotropic.value(0.3) * 4.0 * PI, 1.0);
+    }
+}

@@ -1,0 +1,268 @@
+//! A ball whose extinction depends on the distance from its centre.
+//!
+//! ```text
+//! σ_t(p) = Σₖ coefficients[k] xᵏ,   x = |p − centre|²/radius²,   within the ball x ≤ 1
+//! ```
+//!
+//! | setting | meaning | unit | default |
+//! |---|---|---|---|
+//! | `centre` | of the ball, `[x, y, z]` | length | required |
+//! | `radius` | of the ball, > 0 | length | required |
+//! | `coefficients` | one to four numbers; their sum is σ_t at the surface, nowhere is σ_t negative | 1/length | required |
+//!
+//! It exists in 3-D only. `coefficients = [2, -2]` is `2(1 − r²/R²)`, densest at the centre and nothing
+//! at the surface; `[0.5, 1]` is `0.5 + r²/R²`.
+//!
+//! Along a ray that passes the centre at the distance D, with its foot at `s_c`, x is
+//! `(D² + (s − s_c)²)/radius²`: σ_t is a polynomial of degree six at most, which four Gauss nodes
+//! integrate exactly. D comes from the residual vector, never from a difference of squares. Rounding
+//! carries x past 1 at the surface; a σ_t below 0 by that is 0. The free flight is a bracketed root.
+
+use super::{Extinction, Field, FreeFlight, OpticalDepth};
+use crate::catalogue::{Domain, Settings};
+use numeric::geometry::{Aabb, Bounds, Point, Ray};
+use numeric::{Known, Lane, Span};
+
+/// The most coefficients: those of a cubic, whose extremes are roots of a quadratic.
+const MOST: usize = 4;
+
+/// A ball.
+pub struct Radial {
+    centre: Point,
+    radius: f64,
+    coefficients: [f64; MOST],
+}
+
+/// A ball along a ray.
+pub struct Chord {
+    foot: f64,
+    /// 1/radius.
+    scale: f64,
+    /// D²/radius².
+    offset: f64,
+    coefficients: [f64; MOST],
+}
+
+#[inline(always)]
+fn polynomial<L: Lane>([a, b, c, d]: [f64; MOST], x: L) -> L {
+    let inner = x.times_plus(x.each(d), x.each(c));
+    x.times_plus(x.times_plus(inner, x.each(b)), x.each(a)).or_more(x.each(0.0))
+}
+
+/// Gauss–Legendre nodes and weights on `[−1, 1]` for degree seven: `√(3/7 ∓ (2/7)√(6/5))`,
+/// `(18 ± √30)/36`.
+const GAUSS: [(f64, f64); 4] = [
+    (-0.861_136_311_594_052_6, 0.347_854_845_137_453_85),
+    (-0.339_981_043_584_856_26, 0.652_145_154_862_546_1),
+    (0.339_981_043_584_856_26, 0.652_145_154_862_546_1),
+    (0.861_136_311_594_052_6, 0.347_854_845_137_453_85),
+];
+
+impl Extinction for Chord {
+    #[inline(always)]
+    fn extinction<L: Lane>(&self, t: L) -> L {
+        let v = (t - self.foot) * self.scale;
+        polynomial(self.coefficients, v.times_plus(v, v.each(self.offset)))
+    }
+}
+
+impl OpticalDepth for Chord {
+    fn optical_depth(&self, span: Span) -> Known {
+        let (middle, half) = (span.middle(), 0.5 * span.length());
+        let sum: f64 = GAUSS.iter().map(|&(x, w)| w * self.extinction(middle + half * x)).sum();
+        // An argument that is off moves σ_t by its slope, |dσ/dx| |dx| with x ≤ 1.
+        let [a, b, c, d] = self.coefficients.map(f64::abs);
+        let moved = (span.from.abs() + span.to.abs() + 2.0 * self.foot.abs()) * self.scale;
+        let off = 8.0 * (a + b + c + d) + (4.0 + 2.0 * moved) * (b + 2.0 * c + 3.0 * d);
+        Known::new(half * sum, f64::EPSILON * span.length() * off)
+    }
+
+    fn panel_nodes(&self) -> Option<usize> {
+        // The square has the degree twelve.
+        Some(7)
+    }
+}
+
+impl FreeFlight for Chord {}
+
+impl Radial {
+    /// Where σ_t has its extremes in x, the ends of a range and what is between them.
+    fn extremes(&self, from: f64, to: f64) -> impl Iterator<Item = f64> + use<> {
+        let [_, b, c, d] = self.coefficients;
+        // b + 2cx + 3dx² = 0, in the form that does not cancel, also for d = 0.
+        let q = -(c + (c * c - 3.0 * b * d).max(0.0).sqrt().copysign(c));
+        let inside = [q / (3.0 * d), b / q].into_iter().filter(move |&x| from < x && x < to);
+        [from, to].into_iter().chain(inside)
+    }
+}
+
+impl Field for Radial {
+    type Profile = Chord;
+
+    const IN_LINE: bool = false;
+
+    fn volume(settings: &Settings) -> Option<Self> {
+        let centre = settings.triple("centre").map(Point);
+        let radius = settings.number("radius", Domain::Positive);
+        let listed = settings.numbers("coefficients", Domain::Finite, 1)?;
+        if listed.len() > MOST {
+            let found = format!("{} coefficients", listed.len());
+            settings.fault("coefficients", found, "there are four at most");
+            return None;
+        }
+        let mut coefficients = [0.0; MOST];
+        coefficients[..listed.len()].copy_from_slice(&listed);
+        let field = Self { centre: centre?, radius: radius?, coefficients };
+        let [a, b, c, d] = coefficients;
+        let value = |x: f64| a + x * (b + x * (c + x * d));
+        let lowest = field.extremes(0.0, 1.0).min_by(|&x, &y| value(x).total_cmp(&value(y)))?;
+        let size: f64 = coefficients.iter().map(|x| x.abs()).sum();
+        // What a double root is off by rounding is no negative extinction.
+        if value(lowest) < -1e-14 * size {
+            let found =
+                format!("σ_t is {:.4} at r = {:.4}", value(lowest), field.radius * lowest.sqrt());
+            settings.fault("coefficients", found, "an extinction is nowhere negative");
+            return None;
+        }
+        Some(field)
+    }
+
+    fn bounds(&self) -> Bounds {
+        Bounds::Sphere { centre: self.centre, radius: self.radius }
+    }
+
+    #[inline(always)]
+    fn extinction_at<L: Lane>(&self, p: [L; 3]) -> L {
+        polynomial(self.coefficients, self.centre.square_to(p, 1.0 / self.radius))
+    }
+
+    fn majorant(&self, within: &Aabb) -> f64 {
+        let x = |p: Point| {
+            let u = (p - self.centre) * (1.0 / self.radius);
+            u.dot(u).min(1.0)
+        };
+        let away = |i: usize| {
+            let (low, high) = (within.low.0[i], within.high.0[i]);
+            if self.centre.0[i] - low > high - self.centre.0[i] { low } else { high }
+        };
+        let (near, far) = (x(within.nearest(self.centre)), x(Point(std::array::from_fn(away))));
+        let highest =
+            self.extremes(near, far).map(|x| polynomial(self.coefficients, x)).fold(0.0, f64::max);
+        // The argument of a lookup is rounded, too.
+        highest + 1e-13 * self.coefficients.iter().map(|x| x.abs()).sum::<f64>()
+    }
+
+    fn along(&self, ray: &Ray, _: Span) -> Chord {
+        let (foot, offset) = ray.nearest_to(self.centre);
+        let scale = 1.0 / self.radius;
+        let offset = offset * scale;
+        Chord { foot, scale, offset: offset.dot(offset), coefficients: self.coefficients }
+    }
+
+    #[inline(always)]
+    fn depths_along<L: Lane>(
+        &self,
+        [[a, b, c], [x, y, z]]: [[L; 3]; 2],
+        [from, to]: [L; 2],
+    ) -> Option<L> {
+        let Point([u, v, w]) = self.centre;
+        let (a, b, c) = (a.each(u) - a, b.each(v) - b, c.each(w) - c);
+        let foot = a * x + b * y + c * z;
+        let scale = 1.0 / self.radius;
+        let (a, b, c) = ((a - x * foot) * scale, (b - y * foot) * scale, (c - z * foot) * scale);
+        let offset = a * a + b * b + c * c;
+        let length = (to - from).or_more(to.each(0.0));
+        let (middle, half) = ((from + to) * 0.5, length * 0.5);
+        let mut sum = foot.each(0.0);
+        for (node, weight) in GAUSS {
+            let v = (middle + half * node - foot) * scale;
+            let value = polynomial(self.coefficients, v.times_plus(v, offset));
+            sum = sum + value * weight;
+        }
+        Some(half * sum)
+    }
+
+    fn is_radial(&self) -> bool {
+        true
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::catalogue::Value;
+    use crate::catalogue::fixture::{list, read};
+
+    fn ball(coefficients: [f64; MOST]) -> Radial {
+        Radial { centre: Point([1.0, 0.0, 2.0]), radius: 1.5, coefficients }
+    }
+
+    fn depth(field: &Radial, origin: [f64; 3]) -> Known {
+        let ray = Ray::new(Point(origin), Point([0.0, 0.0, 1.0]), 9.0).expect("a direction");
+        let inside = field.bounds().clip(&ray);
+        field.along(&ray, inside).optical_depth(inside)
+    }
+
+    #[test]
+    fn a_diameter_and_a_chord_are_hand_values() {
+        // ∫ 2(1 − s²/R²) ds over the diameter is 8R/3; at D = R/2, h = R√3/2, it is 8h³/(3R²).
+        let field = ball([2.0, -2.0, 0.0, 0.0]);
+        assert!((depth(&field, [1.0, 0.0, 0.0]).value - 4.0).abs() < 1e-14);
+        let half = 1.5 * 0.75f64.sqrt();
+        let chord = depth(&field, [1.0, 0.75, 0.0]);
+        assert!((chord.value - 8.0 * half.powi(3) / 6.75).abs() < 1e-14);
+        assert!(chord.error < 1e-13);
+        assert!((field.extinction_at([1.0, 0.0, 2.75]) - 1.5).abs() < 1e-15);
+    }
+
+    #[test]
+    fn lanes_have_the_depths_of_profiles() {
+        let field = ball([0.3, 2.0, -1.5, -0.6]);
+        for n in 0..100 {
+            let turn = f64::from(n) * 0.618;
+            let origin = Point([1.0 + 0.9 * turn.cos(), 0.5 * turn.sin(), 2.2]);
+            let towards = Point([turn.sin(), 0.4, (3.0 * turn).cos()]);
+            let ray = Ray::new(origin, towards, 9.0).expect("a direction");
+            let inside = field.bounds().clip(&ray);
+            let expected = field.along(&ray, inside).optical_depth(inside).value;
+            let found = field.depths_along([origin.0, ray.direction.0], [inside.from, inside.to]);
+            assert_eq!(found, Some(expected));
+        }
+    }
+
+    #[test]
+    fn the_majorant_of_a_box_sees_an_extreme_inside() {
+        // x(1 − x) is highest at x = 1/2, r = 1.0607; the box reaches from r = 0.5 to beyond 1.4.
+        let field = ball([0.0, 1.0, -1.0, 0.0]);
+        let within = Aabb { low: Point([1.0, 0.5, 2.0]), high: Point([1.5, 1.4, 2.5]) };
+        assert!((field.majorant(&within) - 0.25).abs() < 1e-12);
+        let core = Aabb { low: Point([0.9, -0.1, 1.9]), high: Point([1.1, 0.1, 2.1]) };
+        let x = 3.0 * 0.01 / 2.25;
+        assert!((field.majorant(&core) - x * (1.0 - x)).abs() < 1e-12);
+    }
+
+    #[test]
+    fn wrong_settings_are_refused() {
+        let read = |radius: f64, coefficients: &[f64]| {
+            let settings = [
+                ("centre", list(&[0.0; 3])),
+                ("radius", Value::Number(radius)),
+                ("coefficients", list(coefficients)),
+            ];
+            read(settings, |settings| Radial::volume(settings).is_some())
+        };
+        let fine = read(1.5, &[2.0, -2.0]);
+        assert_eq!(fine, (true, vec![]));
+        // (1 − 2x)² touches zero inside.
+        assert!(read(1.0, &[1.0, -4.0, 4.0]).0);
+        for (radius, coefficients, words) in [
+            (0.0, &[1.0][..], "`radius` is 0"),
+            (1.0, &[1.0, -2.0], "σ_t is -1.0000 at r = 1.0000"),
+            (2.0, &[1.0, -5.0, 5.0], "σ_t is -0.2500 at r = 1.4142"),
+            (1.0, &[1.0; 5], "5 coefficients"),
+        ] {
+            let (read, faults) = read(radius, coefficients);
+            assert!(!read && faults.iter().any(|fault| fault.contains(words)), "{faults:?}");
+        }
+    }
+}

@@ -1,0 +1,30 @@
+//! Numbers: lanes and their elementary functions, exact sums, quadrature, roots.
+//!
+//! Floor 0. Nothing here has heard of light, media or statistics.
+
+pub mod digits;
+pub mod double_double;
+pub mod elementary;
+pub mod exponential_integral;
+pub mod geometry;
+pub mod known;
+pub mod lane;
+pub mod matrix;
+#[cfg(feature = "serde")]
+pub mod null;
+pub mod pack;
+pub mod quadrature;
+pub mod rng;
+pub mod roots;
+pub mod single;
+pub mod sum;
+pub mod twin;
+pub mod words;
+
+pub use double_double::Wide;
+pub use exponential_integral::exponential_integrals;
+pub use known::{Known, Span};
+pub use lane::{Lane, Row};
+pub use single::Narrow;
+pub use twin::Twin;
+pub use words::Words32;

@@ -1,0 +1,134 @@
+//! Functions of the optical depth along a rod, and integrals over one flight.
+
+use numeric::Span;
+use numeric::quadrature::GaussLegendre;
+
+/// Values at the Gauss–Legendre nodes of `[0, τ]`: polynomials between them.
+pub struct Grid {
+    /// The nodes u, optical depths from the beginning of the rod, ascending.
+    pub points: Vec<f64>,
+    weights: Vec<f64>,
+    /// For each node u the nodes v of `[0, u]`: `u − v` and the weight of v.
+    before: Vec<Vec<[f64; 2]>>,
+    /// The interpolation polynomials of the grid there: `[u][v][point]`, one after the other.
+    basis: Vec<f64>,
+}
+
+/// `∫ K(|u − v|) φ(v) dv` from the nodes before each u, as a matrix by rows.
+pub struct Operator {
+    rows: Vec<f64>,
+    size: usize,
+}
+
+impl Grid {
+    /// With so many nodes on `[0, depth]`.
+    pub fn new(depth: f64, size: usize) -> Self {
+        let rule = GaussLegendre::new(size);
+        let (points, weights): (Vec<f64>, Vec<f64>) = rule.on(Span::new(0.0, depth)).unzip();
+        let nodes = |u: f64| rule.on(Span::new(0.0, u)).collect::<Vec<_>>();
+        let barycentric = barycentric(&rule.nodes);
+        let mut basis = Vec::with_capacity(size.pow(3));
+        for &u in &points {
+            for (v, _) in nodes(u) {
+                let terms = points.iter().zip(&barycentric).map(|(x, w)| w / (v - x));
+                let terms: Vec<f64> = terms.collect();
+                let sum: f64 = terms.iter().sum();
+                // A node that meets a point, as the middle ones of all odd rules do.
+                let same = terms.iter().position(|term| term.is_infinite());
+                basis.extend(terms.iter().enumerate().map(|(j, term)| match same {
+                    Some(at) => f64::from(u8::from(at == j)),
+                    None => term / sum,
+                }));
+            }
+        }
+        let before = points
+            .iter()
+            .map(|&u| nodes(u).into_iter().map(|(v, weight)| [u - v, weight]).collect());
+        Self { before: before.collect(), points, weights, basis }
+    }
+
+    /// A function at the nodes.
+    pub fn values(&self, f: impl Fn(f64) -> f64) -> Vec<f64> {
+        self.points.iter().map(|&u| f(u)).collect()
+    }
+
+    /// `∫ f` over the rod.
+    pub fn integral(&self, f: &[f64]) -> f64 {
+        self.weights.iter().zip(f).map(|(weight, f)| weight * f).sum()
+    }
+
+    /// `∫ f g` over the rod.
+    pub fn product(&self, f: &[f64], g: &[f64]) -> f64 {
+        self.weights.iter().zip(f).zip(g).map(|((weight, f), g)| weight * f * g).sum()
+    }
+
+    /// The flights of a kernel of the optical depth flown.
+    pub fn operator(&self, kernel: impl Fn(f64) -> f64) -> Operator {
+        let [operator] = self.several(|depth| [kernel(depth)]);
+        operator
+    }
+
+    /// The flights of several kernels.
+    pub fn several<const N: usize>(&self, kernels: impl Fn(f64) -> [f64; N]) -> [Operator; N] {
+        let size = self.points.len();
+        let mut operators = [(); N].map(|()| Operator { rows: vec![0.0; size * size], size });
+        for (i, nodes) in self.before.iter().enumerate() {
+            let basis = self.basis[i * size * size..].chunks(size);
+            for (&[flown, weight], basis) in nodes.iter().zip(basis) {
+                for (operator, kernel) in operators.iter_mut().zip(kernels(flown)) {
+                    let row = &mut operator.rows[i * size..(i + 1) * size];
+                    let factor = weight * kernel;
+                    row.iter_mut().zip(basis).for_each(|(sum, basis)| *sum += factor * basis);
+                }
+            }
+        }
+        operators
+    }
+}
+
+impl Operator {
+    /// At each node the integral over what lies before it, or behind it: nodes mirror each other.
+    pub fn over(&self, is_before: bool, f: &[f64]) -> Vec<f64> {
+        let rows = self.rows.chunks(self.size);
+        let dot = |row: &[f64], f: &mut dyn Iterator<Item = &f64>| -> f64 {
+            row.iter().zip(f).map(|(a, b)| a * b).sum()
+        };
+        if is_before {
+            return rows.map(|row| dot(row, &mut f.iter())).collect();
+        }
+        rows.rev().map(|row| dot(row, &mut f.iter().rev())).collect()
+    }
+}
+
+/// The weights of barycentric interpolation, `1/∏ (xⱼ − xᵢ)` in units of the largest.
+fn barycentric(nodes: &[f64]) -> Vec<f64> {
+    let others = |j: usize| nodes.iter().enumerate().filter(move |&(i, _)| i != j);
+    // Logarithms: the product of a hundred small differences is no double.
+    let size = |j: usize| others(j).map(|(_, x)| (nodes[j] - x).abs().ln()).sum::<f64>();
+    let sizes: Vec<f64> = (0..nodes.len()).map(size).collect();
+    let least = sizes.iter().copied().fold(f64::INFINITY, f64::min);
+    let sign = |j: usize| if (nodes.len() - 1 - j).is_multiple_of(2) { 1.0 } else { -1.0 };
+    sizes.iter().enumerate().map(|(j, size)| sign(j) * (least - size).exp()).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn flights_are_integrals_on_both_sides() {
+        // ∫₀^u e^{−(u − v)} cos v dv = (sin u + cos u − e^{−u})/2, and mirrored.
+        for size in [20, 21] {
+            let grid = Grid::new(2.0, size);
+            let flights = grid.operator(|d| (-d).exp());
+            let exact = |u: f64| 0.5 * (u.sin() + u.cos() - (-u).exp());
+            let found = flights.over(true, &grid.values(f64::cos));
+            let mirrored = flights.over(false, &grid.values(|v| (2.0 - v).cos()));
+            for (i, &u) in grid.points.iter().enumerate() {
+                assert!((found[i] - exact(u)).abs() < 1e-14, "{u}");
+                assert!((mirrored[i] - exact(2.0 - u)).abs() < 1e-14, "{u}");
+            }
+            assert!((grid.integral(&grid.values(f64::cos)) - 2f64.sin()).abs() < 1e-14);
+        }
+    }
+}

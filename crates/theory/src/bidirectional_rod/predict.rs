@@ -1,0 +1,181 @@
+//! All that theory says of a draw: of each technique, and of their sum.
+
+use super::grid::Grid;
+use super::lookups::{Walks, of_technique};
+use super::{Combination, Connection, HIGHEST, Powers, Rules, Scene, powers};
+use crate::prediction::Covariance;
+use crate::raw::{Raw, added};
+use crate::single::predict::count;
+use crate::{Channel, CountLaw, Moments, Prediction, Tails};
+use numeric::Known;
+
+/// What sums over grids lose, relative to the whole.
+const ROUNDING: f64 = 2e-14;
+
+/// Nodes, and the step of the integral over ln z, of two resolutions.
+fn resolutions(depth: f64) -> [[f64; 2]; 2] {
+    let nodes = (20.0 + 3.0 * depth).ceil();
+    [[nodes, 0.3], [nodes + 8.0, 0.25]]
+}
+
+/// What theory says of a draw. The number of lookups is known where `σ_t/σ̂` is one number, `ratio`; without
+/// `laws`, as for lines in plots, only values are good, and no error is worked out.
+pub fn predict(scene: &Scene, rules: &Rules, ratio: Option<f64>, laws: bool) -> Prediction {
+    let [coarse, fine] = resolutions(scene.depth.value);
+    let found = powers(scene, rules, fine);
+    let rough = if laws { powers(scene, rules, coarse) } else { found.clone() };
+    let names = names(scene, rules);
+    let is_certain = |&(order, s, _): &(usize, usize, _)| {
+        order == 0 && s == 1 && rules.connection == Connection::Exact
+    };
+    let certain: Vec<bool> = names.iter().map(is_certain).collect();
+    let each = found.iter().zip(&rough).zip(names).zip(&certain);
+    let mut channels: Vec<Channel> = each
+        .map(|(((found, rough), (order, _, name)), &is_certain)| {
+            let channel = channel(scene.depth, order, [found, rough], is_certain);
+            Channel { name, ..channel }
+        })
+        .collect();
+    let mut covariances = Vec::new();
+    if channels.len() > 1 {
+        let variances: Vec<f64> = channels.iter().map(variance).collect();
+        // Independent paths: neighbours do not vary together.
+        let neighbours = if rules.is_shared { 0 } else { channels.len() };
+        covariances.extend((1..neighbours).map(|i| Covariance {
+            pair: [i - 1, i],
+            value: 0.0,
+            variance: variances[i - 1] * variances[i],
+        }));
+        let whole = [&found, &rough].map(|powers| summed(powers));
+        let order = *scene.orders.end();
+        let is_certain = certain.iter().all(|&is_certain| is_certain);
+        let sum = channel(scene.depth, order, [&whole[0], &whole[1]], is_certain);
+        let last = channels.len() - 1;
+        // (X − C)(Σ − T) = Y(Y + Z) with independent Y and Z of mean 0.
+        if let Some(moments) = channels[last].moments.filter(|_| !rules.is_shared) {
+            let square = variances[last] * variances[last];
+            let fourth = moments.relative[2] * moments.scale.powi(4);
+            let others = variance(&sum) - variances[last];
+            let variance = fourth - square + variances[last] * others;
+            let value = variances[last];
+            covariances.push(Covariance { pair: [last, last + 1], value, variance });
+        }
+        let moments = sum.moments.filter(|_| !rules.is_shared);
+        let most_variance = rules.is_shared.then(|| most_of_sum([&found, &rough]));
+        channels.push(Channel { name: "sum".into(), moments, most_variance, ..sum });
+    }
+    if !rules.has_shares && channels.len() > 1 {
+        channels.drain(..channels.len() - 1);
+        channels[0].name.clear();
+        covariances.clear();
+    }
+    // Those of shared subpaths and of the connections between them vary together.
+    let is_known = !rules.is_shared || rules.connection == Connection::Exact;
+    let lookups = ratio.filter(|_| is_known).map(|ratio| lookups(scene, rules, ratio));
+    Prediction { channels, lookups, covariances, ..Prediction::default() }
+}
+
+/// Order, light vertices and name of each technique that is drawn.
+fn names(scene: &Scene, rules: &Rules) -> Vec<(usize, usize, String)> {
+    let orders = scene.orders.clone();
+    let is_single = orders.start() == orders.end();
+    let is_combined = !matches!(rules.combination, Combination::Technique(_));
+    let name = |order: usize, s: usize| match (is_single, is_combined) {
+        (true, true) => format!("s = {s}"),
+        (false, true) => format!("r = {order}, s = {s}"),
+        (false, false) => format!("r = {order}"),
+        (true, false) => String::new(),
+    };
+    let of = |order| {
+        let techniques = rules.combination.techniques(order);
+        techniques.map(move |s| (order, s, name(order, s)))
+    };
+    orders.flat_map(of).collect()
+}
+
+/// A bound on the variance of a sum of draws, however they vary together: its deviation is at most the sum of theirs.
+fn most_of_sum(resolutions: [&Vec<Powers>; 2]) -> f64 {
+    let deviation = |powers: &Powers| (powers[2] - powers[1] * powers[1]).max(0.0).sqrt();
+    let [fine, rough] = resolutions.map(|powers| powers.iter().map(deviation).sum::<f64>());
+    (fine + (fine - rough).abs()).powi(2)
+}
+
+fn variance(channel: &Channel) -> f64 {
+    channel.moments.map_or(f64::NAN, |moments| moments.variance())
+}
+
+/// The raw moments of a sum of independent draws.
+fn summed(all: &[Powers]) -> Powers {
+    let mut sum = [0.0; HIGHEST + 1];
+    sum[0] = 1.0;
+    for powers in all {
+        sum = std::array::from_fn(|k| {
+            let mut binomial = 1.0;
+            let mut total = 0.0;
+            for j in 0..=k {
+                let power = if j == 0 { 1.0 } else { powers[j] };
+                total += binomial * power * sum[k - j];
+                binomial *= (k - j) as f64 / (j + 1) as f64;
+            }
+            total
+        });
+    }
+    sum
+}
+
+/// `μ₂/m²`, `μ₃/m³`, `μ₄/m⁴`.
+fn central(powers: &Powers) -> [f64; 3] {
+    let m = powers[1];
+    let [r2, r3, r4] = [powers[2] / m.powi(2), powers[3] / m.powi(3), powers[4] / m.powi(4)];
+    let m2 = r2 - 1.0;
+    [m2, r3 - 3.0 * r2 + 2.0, (r4 - 4.0 * r3 + 6.0 * r2 - 3.0).max(m2 * m2)]
+}
+
+/// One channel by its raw moments at two resolutions.
+fn channel(depth: Known, order: usize, [fine, rough]: [&Powers; 2], is_certain: bool) -> Channel {
+    let mean = fine[1];
+    // d ln C/dτ is between −(r + 3) and r/τ.
+    let by_depth =
+        depth.error * (order as f64 + 3.0) * (1.0 + 1.0 / depth.value.max(f64::MIN_POSITIVE));
+    let by_depth = if depth.error > 0.0 { by_depth } else { 0.0 };
+    let error = (mean - rough[1]).abs() + mean * (ROUNDING + by_depth);
+    let truth = Known::new(mean, error);
+    let [found, other] = [central(fine), central(rough)];
+    if is_certain || found[0] == 0.0 {
+        return Channel::unbiased(truth, Moments::certain(mean), Tails::LIGHT);
+    }
+    let [two, four] = [fine[2] / mean.powi(2), fine[4] / mean.powi(4)];
+    let rounding = ROUNDING + 4.0 * by_depth;
+    let error = ((found[0] - other[0]).abs() + rounding * two) / found[0];
+    let of_fourth = ((found[2] - other[2]).abs() + rounding * 10.0 * four) / found[2];
+    let moments = Moments { scale: mean, relative: found, error: error.max(of_fourth) };
+    let tails = Tails {
+        rare_event_size: fine[4] / (fine[2] * fine[2]),
+        eighth_moment_ratio: fine[8] / (fine[4] * fine[4]),
+    };
+    Channel::unbiased(truth, moments, tails)
+}
+
+/// The law of the lookups of all techniques together.
+fn lookups(scene: &Scene, rules: &Rules, ratio: f64) -> CountLaw {
+    let of = |[nodes, _]: [f64; 2]| -> Raw {
+        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // a small whole number
+        let grid = Grid::new(scene.depth.value, nodes as usize);
+        let walks = Walks::new(scene, rules.connection, ratio, &grid);
+        let paths = scene
+            .orders
+            .clone()
+            .flat_map(|order| rules.combination.techniques(order).map(move |s| (order, s)));
+        if rules.is_shared {
+            let order = *scene.orders.end();
+            let walk = of_technique(&walks, order, 0);
+            return added(walk, walk);
+        }
+        paths.fold([1.0, 0.0, 0.0, 0.0, 0.0], |sum, (order, s)| {
+            added(sum, of_technique(&walks, order, s))
+        })
+    };
+    let [coarse, fine] = resolutions(scene.depth.value).map(of);
+    let error = if fine[1] > 0.0 { ((fine[1] - coarse[1]) / fine[1]).abs() } else { 0.0 };
+    CountLaw { error, ..count(0.0, fine) }
+}

@@ -1,0 +1,142 @@
+//! The rod with an emitter at its end: what a camera at its beginning sees, and all that theory says of walks that
+//! look for the emitter by hits and by shadow rays.
+//!
+//! The truth is the rod's transmittance, see [`super::rod`]. Four moments of every combination of techniques, at any
+//! σ̂(x) that is a majorant, solve two-stream equations ([`moments`]); real, null and shadow lookups too.
+//!
+//! Source: derived from the densities of B. Miller, I. Georgiev, W. Jarosz, *A null-scattering path integral
+//! formulation of light transport*, ACM Transactions on Graphics 38 (2019), sections 4 and 5.
+
+pub mod connections;
+pub mod moments;
+pub mod techniques;
+
+use self::connections::HIGHEST;
+pub use self::techniques::{Combination, Densities, Shadow, Techniques};
+pub use super::Heuristic;
+use super::rod::grid::Walk;
+use super::rod::moments::{Precision, romberg};
+use super::rod::{central, tails, truth};
+use super::{Channel, CountLaw, Mesh, ParticleRule, Prediction, Tails};
+use crate::problems::LitRod;
+use media::Piecewise;
+use numeric::Known;
+
+/// What rounding may take from sums of Poisson moments, relative to the number.
+pub(super) const ROUNDING: f64 = 1e-14;
+/// The same of weights that are polynomials, see [`connections`], k = 1, 2, 3, 4 and 8: the error of `q^k` on [0, 1],
+/// times 2^k, as `1/(1 + z)^k ≥ 2⁻ᵏ` there.
+pub(super) const OF_POLYNOMIALS: [f64; 5] = [2e-14, 4e-13, 1e-10, 3e-10, 5e-3];
+
+/// The delta-tracking walk on a rod; `None` where it has more steps than theory can do.
+pub(super) fn walk<'a>(
+    mesh: &Mesh,
+    problem: &'a LitRod,
+    sampling: &'a Piecewise,
+) -> Option<Walk<'a>> {
+    let walk = Walk::new(mesh, &problem.rod, Some(sampling), ParticleRule::Analog)?;
+    walk.resolving_transmittance()
+}
+
+/// Whether theory can cut a rod into steps.
+pub fn is_within_reach(mesh: &Mesh, problem: &LitRod, sampling: &Piecewise) -> bool {
+    walk(mesh, problem, sampling).is_some()
+}
+
+/// What walks with techniques through σ̂ are predicted to do.
+///
+/// Without `laws`, as for lines in plots, only variances and mean lookups are good.
+pub fn predict(
+    mesh: &Mesh,
+    problem: &LitRod,
+    sampling: &Piecewise,
+    techniques: Techniques,
+    laws: bool,
+) -> Prediction {
+    let answer = answer(mesh, problem);
+    let found = Found::of(mesh, problem, sampling, techniques, laws);
+    let central = found.as_ref().map(|found| central(answer, &found.raw));
+    let tails = found.as_ref().map_or(Tails::LIGHT, |found| tails(&found.raw));
+    Prediction {
+        channels: vec![Channel::unbiased(answer, central, tails)],
+        lookups: found.map(|found| count(found.lookups)),
+        ..Prediction::default()
+    }
+}
+
+/// What the camera sees, not a number where it is unknown.
+pub fn answer(mesh: &Mesh, problem: &LitRod) -> Known {
+    let found = truth(mesh, &problem.rod).and_then(|found| found.first().copied());
+    found.unwrap_or(Known::new(f64::NAN, f64::NAN))
+}
+
+/// The mean numbers of real collisions, of null collisions and of shadow lookups of a draw.
+pub fn lookups(
+    mesh: &Mesh,
+    problem: &LitRod,
+    sampling: &Piecewise,
+    techniques: Techniques,
+) -> Option<[Known; 3]> {
+    let numbers = romberg(&walk(mesh, problem, sampling)?, Precision::FULL, &|grid| {
+        Some(moments::lookups_apart(grid, techniques)?.to_vec())
+    })?;
+    Some(std::array::from_fn(|i| Known::new(numbers[i][0], numbers[i][1])))
+}
+
+/// Raw moments of a draw and of its lookups, with absolute errors.
+pub struct Found {
+    /// `E[M(M − 1)…(M − k + 1)]` of the lookups, k = 1 … 4.
+    pub lookups: [[f64; 2]; 4],
+    /// `E[X^k]` for k = 1, 2, 3, 4 and 8, infinite where it was not asked for.
+    pub raw: [[f64; 2]; 5],
+}
+
+impl Found {
+    /// Those of walks with techniques through σ̂; `None` where theory has no answer. Without `laws` the
+    /// first two only.
+    pub fn of(
+        mesh: &Mesh,
+        problem: &LitRod,
+        sampling: &Piecewise,
+        techniques: Techniques,
+        laws: bool,
+    ) -> Option<Self> {
+        let walk = walk(mesh, problem, sampling)?;
+        let highest = if laws { HIGHEST } else { 2 };
+        let precision = if laws { Precision::FULL } else { Precision::PLOTS };
+        let numbers = romberg(&walk, precision, &|grid| {
+            let mut numbers = moments::lookups(grid, techniques)?.to_vec();
+            numbers.extend(moments::scattered(grid, techniques, highest)?);
+            Some(numbers)
+        })?;
+        let (lookups, scattered) = numbers.split_at(4);
+        let unscattered = mesh.optical_depth().exp_neg();
+        let raw = std::array::from_fn(|i| {
+            let k = super::rod::moments::POWERS[i].unsigned_abs() as usize;
+            let moment = scattered.get(k - 1).map(|&[value, error]| Known::new(value, error));
+            let known = moment.map(|moment| with_hit(moment, unscattered, i, techniques));
+            known.map_or([f64::INFINITY; 2], |known| [known.value, known.error])
+        });
+        Some(Self { lookups: std::array::from_fn(|k| lookups[k]), raw })
+    }
+}
+
+/// A moment of the power at a position of `POWERS`, with the unscattered hit that scores 1.
+pub fn with_hit(
+    scattered: Known,
+    unscattered: Known,
+    power: usize,
+    techniques: Techniques,
+) -> Known {
+    let value = unscattered.value + scattered.value;
+    let of_weights = if techniques.has_nulls() { OF_POLYNOMIALS[power] } else { 0.0 };
+    let error = scattered.error + unscattered.error + (ROUNDING + of_weights) * value;
+    Known::new(value, error)
+}
+
+/// The law of lookups, from their factorial moments.
+pub fn count(factorial: [[f64; 2]; 4]) -> CountLaw {
+    let [mean, error] = factorial[0];
+    let law = CountLaw::of_factorial_moments(factorial.map(|[moment, _]| moment));
+    CountLaw { error: if mean > 0.0 { error / mean } else { 0.0 }, ..law }
+}

@@ -1,0 +1,152 @@
+//! Moments of a walk towards an emitter, and of its lookups, from two-stream equations.
+//!
+//! Let `U_k(x, ±)` be the mean of (what all future scatterings bring)^k of a particle that flies forward or
+//! backward, and F the same for one that has just been scattered, with its next hit. N, the shadow ray, and F are
+//! independent:
+//!
+//! ```text
+//! E[F^k]         = p (h_k + U_k⁺) + (1 − p) U_k⁻,          p the probability to go on forward
+//! E[(N + F)^k]   = Σ (k over j) n_j E[F^{k−j}]
+//! U_k⁺' =  σ U_k⁺ − σ a E[(N + F)^k forward],   U_k⁺(L) = 0
+//! U_k⁻' = −σ U_k⁻ + σ a E[(N + F)^k backward],  U_k⁻(0) = 0
+//! E[X^k] = e^{−τ} + U_k⁺(0)
+//! ```
+//!
+//! The unscattered hit scores 1. `n_k` and `h_k` are those of [`super::connections`]. Nothing diverges: weights are
+//! bounded, and scattering never multiplies particles.
+//!
+//! Lookups: a tentative collision is one, and where it scatters, so are those of the shadow ray, K of them.
+//!
+//! ```text
+//! exact: K = 0;   ratio: K is Poisson, E[K(K − 1)…] = Λ^k, Λ = ∫σ̂ from y to the emitter
+//! delta: h_k' = σ h_k − k σ̂ ((1 − r) h_{k−1} + r δ_{k1}),  h_0 = 1: its collisions, the real one too
+//! ```
+
+use super::connections::{Connections, HIGHEST, Vertex, scattering};
+use super::techniques::{Shadow, Techniques};
+use crate::raw::BINOMIAL;
+use crate::rod::grid::{Grid, Importance, Step};
+
+/// `U_k⁺(0)`, k = 1 … highest.
+pub fn scattered(grid: &Grid, techniques: Techniques, highest: usize) -> Option<Vec<f64>> {
+    let connections = Connections::new(grid, techniques, highest);
+    let mut futures: Vec<Importance> = Vec::new();
+    let mut found = Vec::new();
+    for k in 1..=highest {
+        let ways = binomials(k);
+        let source = |i: usize, step: &Step| {
+            let of = |vertex: &Vertex| {
+                let mut sum = vertex.towards * vertex.hit[k];
+                for (j, way) in ways.iter().enumerate().take(k + 1).skip(1) {
+                    sum += way * vertex.connected[j] * future(vertex, &futures, k - j, i);
+                }
+                scattering(step) * sum
+            };
+            connections.at(i).each_ref().map(of)
+        };
+        let future = grid.solve(|step| step.rates(1), source, [0.0; 2])?;
+        found.push(future.entering());
+        futures.push(future);
+    }
+    Some(found)
+}
+
+/// `E[F^m]` after a scattering in the middle of a step.
+fn future(vertex: &Vertex, futures: &[Importance], m: usize, step: usize) -> f64 {
+    if m == 0 {
+        return 1.0;
+    }
+    let [plus, minus] = futures[m - 1].middle(step);
+    vertex.towards * (vertex.hit[m] + plus) + (1.0 - vertex.towards) * minus
+}
+
+/// `k over j` for j = 0 … k.
+pub fn binomials(k: usize) -> [f64; HIGHEST + 1] {
+    let mut row = [0.0; HIGHEST + 1];
+    row[0] = 1.0;
+    for n in 1..=k {
+        for j in (1..=n).rev() {
+            row[j] += row[j - 1];
+        }
+    }
+    row
+}
+
+/// Factorial moments of what a shadow ray looks up, k = 0 … 4, in the middle of each step.
+fn shadow_lookups(grid: &Grid, shadow: Option<Shadow>) -> Option<Vec<[f64; 5]>> {
+    let steps = grid.steps();
+    let mut found = vec![[1.0, 0.0, 0.0, 0.0, 0.0]; steps.len()];
+    match shadow {
+        None | Some(Shadow::Exact) => {}
+        Some(Shadow::Ratio) => {
+            let mut depth = 0.0;
+            for (step, moments) in steps.iter().zip(&mut found).rev() {
+                let half = 0.5 * step.width * step.sampling;
+                depth += half;
+                *moments = [0, 1, 2, 3, 4].map(|k| f64::powi(depth, k));
+                depth += half;
+            }
+        }
+        Some(Shadow::Delta) => {
+            let mut before: Option<Importance> = None;
+            for k in 1..=4_u8 {
+                let source = |i: usize, step: &Step| {
+                    let rate = f64::from(k) * step.sampling;
+                    // The first collision counts whatever it is.
+                    let after = |last: &Importance| step.means[0] * last.middle(i)[0];
+                    [rate * before.as_ref().map_or(1.0, after), 0.0]
+                };
+                let real = |step: &Step| [step.sampling * (1.0 - step.means[0]), 0.0];
+                let counted = grid.solve(real, source, [0.0; 2])?;
+                for (i, moments) in found.iter_mut().enumerate() {
+                    moments[usize::from(k)] = counted.middle(i)[0];
+                }
+                before = Some(counted);
+            }
+        }
+    }
+    Some(found)
+}
+
+/// `E[M(M − 1)…(M − k + 1)]`, k = 1 … 4, of all lookups.
+pub fn lookups(grid: &Grid, techniques: Techniques) -> Option<[f64; 4]> {
+    let of_shadow = shadow_lookups(grid, techniques.shadow)?;
+    let mut futures: Vec<Importance> = Vec::new();
+    for n in 1..=4_usize {
+        let source = |i: usize, step: &Step| {
+            let worth = |m: usize| if m == 0 { [1.0; 2] } else { futures[m - 1].middle(i) };
+            // With K lookups of a shadow ray and m' of what follows, from one shadow lookup on.
+            let scattered = |m: usize, from: usize| {
+                let mut sum = [0.0; 2];
+                for j in from..=m {
+                    let share = BINOMIAL[m][j] * of_shadow[i][j];
+                    let spread = step.spread(worth(m - j));
+                    sum = [sum[0] + share * spread[0], sum[1] + share * spread[1]];
+                }
+                sum
+            };
+            let [straight, turned] = step.means;
+            let (shadowed, after, on) = (scattered(n, 1), scattered(n - 1, 0), worth(n - 1));
+            [0, 1].map(|d| {
+                let later = if n == 1 { 1.0 } else { straight * on[d] + turned * after[d] };
+                step.sampling * (turned * shadowed[d] + n as f64 * later)
+            })
+        };
+        futures.push(grid.solve(|step| step.rates(0), source, [0.0; 2])?);
+    }
+    Some(std::array::from_fn(|n| futures[n].entering()))
+}
+
+/// The mean numbers of real, of null and of shadow lookups.
+pub fn lookups_apart(grid: &Grid, techniques: Techniques) -> Option<[f64; 3]> {
+    let of_shadow = shadow_lookups(grid, techniques.shadow)?;
+    let count = |rate: &dyn Fn(usize, &Step) -> f64| {
+        let source = |i: usize, step: &Step| [rate(i, step); 2];
+        Some(grid.solve(|step| step.rates(0), source, [0.0; 2])?.entering())
+    };
+    Some([
+        count(&|_, step| step.sampling * (1.0 - step.means[0]))?,
+        count(&|_, step| step.sampling * step.means[0])?,
+        count(&|i, step| scattering(step) * of_shadow[i][1])?,
+    ])
+}

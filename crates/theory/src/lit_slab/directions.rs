@@ -1,0 +1,92 @@
+//! Directions to a light from a depth of the slab, for integrals over them.
+//!
+//! With the number u that a shadow ray chooses its direction by,
+//!
+//! ```text
+//! E[f(chosen)] = ∫₀¹ f du,   E[f(drawn); it meets the light] = ∫₀¹ f q du,   q = p/p_nee
+//! ```
+//!
+//! Panels narrow towards where integrands have their singularities: beyond straight on, for a phase function that peaks
+//! there, `(1 − g)²/(2g)` away; at grazing directions of a cap; at the disc itself.
+
+use crate::problems::LitSlab;
+use crate::problems::lit_slab::Light;
+use media::phase::Phase;
+use numeric::Span;
+use numeric::quadrature::GaussLegendre;
+
+/// A direction to the light.
+#[derive(Debug, Clone, Copy)]
+pub struct Direction {
+    /// Its cosine with the normal.
+    pub cosine: f64,
+    /// q.
+    pub ratio: f64,
+    /// du.
+    pub weight: f64,
+}
+
+/// How closely directions and depths are looked at.
+pub struct Resolution {
+    rule: GaussLegendre,
+    /// By how much panels grow away from a singularity.
+    pub growth: f64,
+    /// Optical depth of a panel at most, in the lowest direction.
+    pub depth: f64,
+}
+
+impl Resolution {
+    /// For answers.
+    pub fn fine() -> Self {
+        Self { rule: GaussLegendre::new(16), growth: 2.0, depth: 1.0 }
+    }
+
+    /// For what answers may be off.
+    pub fn coarse() -> Self {
+        Self { rule: GaussLegendre::new(12), growth: 2.5, depth: 2.0 }
+    }
+
+    /// `scale (growth^k − 1)`, k = 1, 2 …, below a bound.
+    pub fn away(&self, scale: f64, bound: f64) -> Vec<f64> {
+        let grown = |size: &f64| Some(size * self.growth);
+        let sizes = std::iter::successors(Some(scale * self.growth), grown);
+        let places = sizes.map(|size| size - scale).take_while(|&place| place < bound);
+        if scale > 0.0 { places.collect() } else { Vec::new() }
+    }
+
+    /// Those from a point so far before the end of the slab.
+    pub fn directions(&self, problem: &LitSlab, before: f64) -> Vec<Direction> {
+        let LitSlab { phase, light, .. } = *problem;
+        let at = |number: f64, weight: f64| {
+            let [cosine, spread] = light.chosen(number, before);
+            Direction { cosine, ratio: phase.value(cosine) * spread, weight }
+        };
+        if !light.can_be_hit() {
+            return vec![at(0.5, 1.0)];
+        }
+        let peak = peak(&phase).map_or_else(Vec::new, |scale| self.away(scale, 1.0));
+        let cuts = match light {
+            Light::Cap(lowest) => {
+                let grazing = self.away(lowest, 1.0 - lowest).into_iter();
+                let beside = peak.into_iter().map(|off| 1.0 - off - lowest);
+                grazing.chain(beside).map(|above| above / (1.0 - lowest)).collect()
+            }
+            Light::Disc { distance, radius } => {
+                let scale = ((before + distance) / radius).powi(2);
+                let beside = peak.into_iter().map(|off| scale * ((1.0 - off).powi(-2) - 1.0));
+                self.away(scale, 1.0).into_iter().chain(beside).collect()
+            }
+            Light::Distant(_) | Light::Point(_) => Vec::new(),
+        };
+        let ends = Span::new(0.0, 1.0).cut(cuts);
+        let nodes = Span::between(&ends).flat_map(|panel| self.rule.on(panel));
+        nodes.map(|(number, weight)| at(number, weight)).collect()
+    }
+}
+
+/// How far beyond straight on a phase function is singular.
+fn peak(phase: &Phase) -> Option<f64> {
+    let Phase::HenyeyGreenstein(page) = phase else { return None };
+    let g = page.g();
+    (g > 0.0).then(|| (1.0 - g) * (1.0 - g) / (2.0 * g))
+}

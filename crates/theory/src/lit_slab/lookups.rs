@@ -1,0 +1,90 @@
+//! How many lookups a draw makes.
+//!
+//! Given the first real collision at z, null collisions before it are Poisson, ν(z) of them; what it casts and where it
+//! flies on is independent of them and of each other. A flight to the end along μ that stops at a real collision makes
+//!
+//! ```text
+//! E[K(K − 1)…(K − n + 1)] = n ∫ (σ̂/μ) e^{−τ(y, s)/μ} (ν(y, s)/μ)^{n−1} ds,   n = 1, 2, …
+//! ```
+//!
+//! from y, and a ratio-tracked shadow ray a Poisson number of mean ∫σ̂/μ. Directions that miss the light make none.
+
+use super::column::Column;
+use super::directions::{Direction, Resolution};
+use crate::lit_rod::{Shadow, Techniques};
+use crate::problems::LitSlab;
+use crate::raw::{Raw, added, of_factorial, poisson};
+
+/// Rays beyond this optical depth are not walked on: one in 1e26.
+const FAR: f64 = 60.0;
+
+/// `E[M^k]`, k = 0 … 4.
+pub fn raw(
+    column: &Column,
+    problem: &LitSlab,
+    techniques: Techniques,
+    resolution: &Resolution,
+) -> Raw {
+    let [depth, nulls] = column.whole;
+    let mut found = poisson(nulls).map(|moment| (-depth).exp() * moment);
+    for (i, node) in column.nodes.iter().enumerate() {
+        let reached = node.weight * node.extinction * (-node.depth).exp();
+        let collided = added([1.0; 5], poisson(node.nulls));
+        let (mut cast, mut flown) = ([0.0; 5], [0.0; 5]);
+        let (mut weight, mut hits) = (0.0, 0.0);
+        for direction in resolution.directions(problem, node.before) {
+            let stopping = || stopping(column, i, &direction);
+            let of_shadow = match techniques.shadow {
+                None | Some(Shadow::Exact) => [1.0, 0.0, 0.0, 0.0, 0.0],
+                Some(Shadow::Ratio) => {
+                    let left = depth - node.depth + nulls - node.nulls;
+                    poisson(left / direction.cosine)
+                }
+                Some(Shadow::Delta) => stopping(),
+            };
+            add(&mut cast, direction.weight, of_shadow);
+            weight += direction.weight;
+            if techniques.has_hits() {
+                let share = direction.weight * direction.ratio;
+                add(&mut flown, share, stopping());
+                hits += share;
+            }
+        }
+        cast[0] += 1.0 - weight;
+        flown[0] += 1.0 - hits;
+        let scattered = added(collided, added(cast, flown));
+        let a = problem.albedo;
+        for (k, sum) in found.iter_mut().enumerate() {
+            *sum += reached * (a * scattered[k] + (1.0 - a) * collided[k]);
+        }
+    }
+    found
+}
+
+fn add(sum: &mut Raw, weight: f64, moments: Raw) {
+    for (sum, moment) in sum.iter_mut().zip(moments) {
+        *sum += weight * moment;
+    }
+}
+
+/// `E[K^k]` of a flight from a node to the end that stops at a real collision.
+fn stopping(column: &Column, from: usize, direction: &Direction) -> Raw {
+    let (here, cosine) = (column.nodes[from], direction.cosine);
+    let first = from - from % column.per_panel;
+    let own = column.rest_of_panel(from);
+    let mut factorial = [0.0; 4];
+    for (i, node) in column.nodes[first..].iter().enumerate() {
+        let depth = (node.depth - here.depth) / cosine;
+        if depth > FAR {
+            break;
+        }
+        let weight = own.get(i).copied().unwrap_or(node.weight);
+        let nulls = (node.nulls - here.nulls) / cosine;
+        let mut term = weight * node.sampling / cosine * (-depth).exp();
+        for (n, sum) in factorial.iter_mut().enumerate() {
+            *sum += (n + 1) as f64 * term;
+            term *= nulls;
+        }
+    }
+    of_factorial(factorial)
+}

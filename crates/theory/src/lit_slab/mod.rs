@@ -1,0 +1,216 @@
+//! The slab with a light behind it: what a camera sees by one scattering, and all that theory says of draws that look
+//! for the light by hits and by shadow rays.
+//!
+//! A draw is scattered at z with density `a σ_t e^{−τ(z)}`. Its shadow ray N and its hit F have directions of their own
+//! and are independent:
+//!
+//! ```text
+//! E[N^k] = ∫₀¹ n_k du,   E[F^k] = ∫₀¹ q h_k du,   over the directions to the light, see [`directions`]
+//! E[X^k] = ∫ a σ_t e^{−τ(z)} Σ_j (k over j) E[N^j] E[F^{k−j}] dz
+//! ```
+//!
+//! `n_k` and `h_k` are those of a rod along the direction, with q in place of p(ω) and collisions 1/μ times as dense, see
+//! [`crate::lit_rod::connections`]; where q > 1 and weights depend on null collisions, see [`contour`]. Every
+//! number is found twice, on finer and on coarser panels, and their difference bounds its error. Nothing diverges: lights
+//! are a distance away, or fill a cap.
+//!
+//! Source: derived from the densities of B. Miller, I. Georgiev, W. Jarosz, *A null-scattering path integral
+//! formulation of light transport*, ACM Transactions on Graphics 38 (2019), sections 4 and 5.
+
+pub mod column;
+pub mod contour;
+pub mod directions;
+mod lookups;
+
+use self::column::{Column, Node};
+use self::contour::Contour;
+use self::directions::{Direction, Resolution};
+use super::lit_rod::connections::{HIGHEST, Powers, Vertex, Weights};
+use super::lit_rod::moments::binomials;
+use super::lit_rod::{Combination, OF_POLYNOMIALS, ROUNDING, Shadow, Techniques};
+use super::raw::Raw;
+use super::rod::moments::POWERS;
+use super::rod::{central, tails};
+use super::{Channel, CountLaw, Mesh, Prediction, Tails};
+use crate::problems::LitSlab;
+use crate::problems::lit_slab::Light;
+use media::Piecewise;
+use numeric::Known;
+
+/// τ/μ at most in the lowest direction.
+const DEEPEST: f64 = 64.0;
+/// What rounding leaves of the integrals of a contour, relative to √q.
+const OF_CONTOUR: f64 = 1e-14;
+
+/// Techniques that may find a light: one without a size is found by shadow rays alone, of weight 1.
+pub fn possible(techniques: Techniques, light: Light) -> Techniques {
+    let combination =
+        if light.can_be_hit() { techniques.combination } else { Combination::NextEvent };
+    Techniques { combination, ..techniques }
+}
+
+/// The optical depth of the slab in the lowest direction, where it is beyond what theory resolves.
+pub fn slant_depth(mesh: &Mesh, problem: &LitSlab) -> Option<f64> {
+    let depth = mesh.optical_depth().value / problem.light.lowest();
+    (depth > DEEPEST).then_some(depth)
+}
+
+/// What draws of techniques through σ̂ are predicted to do.
+///
+/// Without `laws`, as for lines in plots, only variances and mean lookups are good.
+pub fn predict(
+    mesh: &Mesh,
+    problem: &LitSlab,
+    sampling: &Piecewise,
+    techniques: Techniques,
+    laws: bool,
+) -> Prediction {
+    if slant_depth(mesh, problem).is_some() {
+        let unknown = Known::new(f64::NAN, f64::NAN);
+        let channels = vec![Channel::unbiased(unknown, None, Tails::LIGHT)];
+        return Prediction { channels, ..Prediction::default() };
+    }
+    let truth = truth(mesh, problem, sampling);
+    let techniques = possible(techniques, problem.light);
+    let highest = if laws { HIGHEST } else { 2 };
+    let [fine, coarse] = [Resolution::fine(), Resolution::coarse()]
+        .map(|resolution| Scores::new(mesh, problem, sampling, (techniques, highest), &resolution));
+    let raw: [[f64; 2]; 5] = std::array::from_fn(|i| {
+        let k = POWERS[i].unsigned_abs() as usize;
+        if k > highest {
+            return [f64::INFINITY; 2];
+        }
+        let Known { value, error } = fine.known(&coarse, techniques, (k, i));
+        [value, error]
+    });
+    let moments = central(truth, &raw);
+    let channel = Channel::unbiased(truth, moments, tails(&raw));
+    Prediction::single(channel, fine.count(&coarse))
+}
+
+/// What the camera sees.
+pub fn truth(mesh: &Mesh, problem: &LitSlab, sampling: &Piecewise) -> Known {
+    let combination = Combination::NextEvent;
+    mean(mesh, problem, sampling, Techniques { shadow: Some(Shadow::Exact), combination })
+}
+
+/// `E[X]` of techniques, the same for all that are unbiased.
+pub fn mean(mesh: &Mesh, problem: &LitSlab, sampling: &Piecewise, techniques: Techniques) -> Known {
+    let [fine, coarse] = [Resolution::fine(), Resolution::coarse()]
+        .map(|resolution| Scores::new(mesh, problem, sampling, (techniques, 1), &resolution));
+    fine.known(&coarse, techniques, (1, 0))
+}
+
+/// Numbers at one resolution.
+struct Scores {
+    /// `E[X^k]`.
+    powers: Powers,
+    /// `E[M^k]`.
+    lookups: Raw,
+    /// The largest q.
+    largest: f64,
+    /// What the mesh adds to all errors, relative.
+    error: f64,
+}
+
+impl Scores {
+    fn new(
+        mesh: &Mesh,
+        problem: &LitSlab,
+        sampling: &Piecewise,
+        (techniques, highest): (Techniques, usize),
+        resolution: &Resolution,
+    ) -> Self {
+        let weights = Weights::new(techniques, highest);
+        let contour = match techniques.combination {
+            Combination::Mis(_, heuristic) if techniques.has_nulls() => {
+                Some(Contour::new(heuristic, highest))
+            }
+            _ => None,
+        };
+        let powers = (weights.products, contour.as_ref());
+        let column = Column::new(mesh, problem, sampling, powers, resolution);
+        let mut found = Self {
+            powers: [0.0; HIGHEST + 1],
+            lookups: lookups::raw(&column, problem, techniques, resolution),
+            largest: 1.0,
+            error: column.error(problem.light.lowest()),
+        };
+        for node in 0..column.nodes.len() {
+            let directions = resolution.directions(problem, column.nodes[node].before);
+            let scattered = |direction: &Direction| match &contour {
+                Some(contour) if direction.ratio > 1.0 => {
+                    by_contour(&column, node, direction, &weights, contour)
+                }
+                _ => {
+                    let products = column.products(node, direction.cosine, weights.products);
+                    weights.vertex(direction.ratio, &products)
+                }
+            };
+            found.add(&column.nodes[node], &directions, problem.albedo, (highest, &scattered));
+        }
+        found
+    }
+
+    /// Adds what scattering at a depth brings.
+    fn add(
+        &mut self,
+        node: &Node,
+        directions: &[Direction],
+        albedo: f64,
+        (highest, scattered): (usize, &dyn Fn(&Direction) -> Vertex),
+    ) {
+        let (mut cast, mut hit) = ([0.0; HIGHEST + 1], [0.0; HIGHEST + 1]);
+        for direction in directions {
+            self.largest = self.largest.max(direction.ratio);
+            let vertex = scattered(direction);
+            for k in 1..=highest {
+                cast[k] += direction.weight * vertex.connected[k];
+                hit[k] += direction.weight * direction.ratio * vertex.hit[k];
+            }
+        }
+        (cast[0], hit[0]) = (1.0, 1.0);
+        let reached = node.weight * albedo * node.extinction * (-node.depth).exp();
+        for k in 1..=highest {
+            let ways = binomials(k);
+            let both: f64 = (0..=k).map(|j| ways[j] * cast[j] * hit[k - j]).sum();
+            self.powers[k] += reached * both;
+        }
+    }
+
+    /// `E[X^k]`, from the same at a coarser resolution; its number among [`POWERS`] is given, too.
+    fn known(&self, coarse: &Self, techniques: Techniques, (k, place): (usize, usize)) -> Known {
+        let (value, other) = (self.powers[k], coarse.powers[k]);
+        let of_weights = if techniques.has_nulls() {
+            OF_POLYNOMIALS[place] + OF_CONTOUR * self.largest.sqrt()
+        } else {
+            0.0
+        };
+        let off = ROUNDING + self.error + of_weights;
+        Known::new(value, (value - other).abs() + off * value)
+    }
+
+    fn count(&self, coarse: &Self) -> CountLaw {
+        let [_, m1, m2, m3, m4] = self.lookups;
+        let (pairs, triples) = (m2 - m1, m3 - 3.0 * m2 + 2.0 * m1);
+        let fourfold = m4 - 6.0 * m3 + 11.0 * m2 - 6.0 * m1;
+        let law = CountLaw::of_factorial_moments([m1, pairs, triples, fourfold]);
+        let error = (coarse.lookups[1] - m1).abs() / m1 + ROUNDING + self.error;
+        CountLaw { error, ..law }
+    }
+}
+
+/// A scattering where q > 1 and weights depend on null collisions.
+fn by_contour(
+    column: &Column,
+    node: usize,
+    direction: &Direction,
+    weights: &Weights,
+    contour: &Contour,
+) -> Vertex {
+    let Direction { cosine, ratio, .. } = *direction;
+    let products = column.products(node, cosine, 1);
+    let exponents = column.exponents(node);
+    let [connected, hit] = contour.means(ratio, products[1], &exponents, cosine);
+    weights.vertex_by(ratio, &products, |_, k| [connected[k], hit[k]])
+}

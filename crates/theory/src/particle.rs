@@ -1,0 +1,341 @@
+//! What happens to a particle at a tentative collision: the single particle model with scattering.
+//!
+//! With `r = σ_t/σ̂` and the albedo a, the incoming weight w must leave as `a r w` into the scattered
+//! direction and as `(1 − r) w` straight on, on average. One particle at most is kept:
+//!
+//! ```text
+//! straight on with chance q_t and weight (1 − r) w/q_t
+//! scattered   with chance q_s and weight  a r w/q_s
+//! absorbed    otherwise
+//!
+//! rule             q_t                 q_s                            exists for
+//! terminating      |1 − r|             a r                            0 ≤ r ≤ 2/(a + 1)
+//! non-terminating  |1 − r|/D           a|r|/D,  D = a|r| + |1 − r|    every r
+//! adaptive         terminating where r ≥ 1 and a r + |1 − r| ≤ 1, elsewhere non-terminating
+//! analog           1 − r               a r                            0 ≤ r ≤ 1
+//! weighted         |1 − r|/D           |r|/D,   D =  |r| + |1 − r|    every r
+//! ```
+//!
+//! Theory needs the k-th moments of what leaves, `Q_k = q_t((1 − r)/q_t)^k` straight on and
+//! `S_k = q_s(a r/q_s)^k` scattered: `Q_1 = 1 − r` and `S_1 = a r` for every rule. As one chance is what
+//! the other leaves of 1, the smaller one has few digits: moments are made of these means instead.
+//!
+//! Where `0 ≤ r ≤ 1`, terminating is analog; the two differ in what they refuse. `weighted` is
+//! non-terminating with the chances of a = 1: the albedo is left to the weight.
+//!
+//! Source: L. Szirmay-Kalos, I. Georgiev, M. Magdics, B. Molnár, D. Légrády, *Unbiased Light
+//! Transport Estimators for Inhomogeneous Participating Media*, Computer Graphics Forum 36 (2017),
+//! sections 3.1–3.3 and 4.1, Eqs. 9 and 12 and `SimulateParticle`; `analog` and `weighted`: B. Miller,
+//! I. Georgiev, W. Jarosz, *A null-scattering path integral formulation of light transport*, ACM
+//! Transactions on Graphics 38 (2019), section 5.2.
+
+use numeric::Lane;
+
+/// The chances at a tentative collision, and what becomes of the weight.
+///
+/// Unbiased where `transmit · transmit_weight = 1 − r` and `scatter · scatter_weight = a r`. What is
+/// left of the chances is absorption.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Odds<L = f64> {
+    /// `q_t`, the chance to go straight on: the collision is null.
+    pub transmit: L,
+    /// `q_s`, the chance to be scattered.
+    pub scatter: L,
+    /// `(1 − r)/q_t`, the factor of a particle that goes straight on.
+    pub transmit_weight: L,
+    /// `a r/q_s`, the factor of a particle that is scattered.
+    pub scatter_weight: L,
+}
+
+/// What a number drawn at a collision decides.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Event {
+    /// Straight on.
+    Transmitted,
+    /// Into a new direction.
+    Scattered,
+    /// The end of the walk.
+    Absorbed,
+}
+
+impl Odds {
+    /// `Q_k = q_t((1 − r)/q_t)^k` and `S_k = q_s(a r/q_s)^k`, the k-th moments of what goes straight on and
+    /// of what is scattered, given their means `1 − r` and `a r`.
+    #[inline]
+    pub fn moments(&self, [straight, scattered]: [f64; 2], k: i32) -> [f64; 2] {
+        if k == 0 {
+            return [self.transmit, self.scatter];
+        }
+        let more = k - 1;
+        [straight * self.transmit_weight.powi(more), scattered * self.scatter_weight.powi(more)]
+    }
+
+    /// The same chances and weights without their signs.
+    #[must_use]
+    pub fn absolute(self) -> Self {
+        Self {
+            transmit: self.transmit.abs(),
+            scatter: self.scatter.abs(),
+            transmit_weight: self.transmit_weight.abs(),
+            scatter_weight: self.scatter_weight.abs(),
+        }
+    }
+
+    /// What a uniform number decides: scattering first, as in `SimulateParticle`.
+    #[inline(always)]
+    pub fn decide(&self, number: f64) -> Event {
+        if number < self.scatter {
+            Event::Scattered
+        } else if number < self.scatter + self.transmit {
+            Event::Transmitted
+        } else {
+            Event::Absorbed
+        }
+    }
+}
+
+/// How the chances are chosen.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum ParticleRule {
+    /// The weight keeps its size, for `0 ≤ r ≤ 2/(a + 1)` (Eq. 9).
+    Terminating,
+    /// The walk ends nowhere inside the medium, for every r (Eq. 12).
+    NonTerminating,
+    /// The one or the other, as `SimulateParticle` chooses.
+    Adaptive,
+    /// Delta tracking: real with chance r, then absorbed with chance `1 − a`; for `0 ≤ r ≤ 1`.
+    Analog,
+    /// Delta tracking with the albedo as a weight, continued beyond `0 ≤ r ≤ 1` by weights.
+    Weighted,
+}
+
+impl ParticleRule {
+    /// All of them.
+    pub const ALL: [Self; 5] =
+        [Self::Terminating, Self::NonTerminating, Self::Adaptive, Self::Analog, Self::Weighted];
+
+    /// The name in case files.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Terminating => "terminating",
+            Self::NonTerminating => "non-terminating",
+            Self::Adaptive => "adaptive",
+            Self::Analog => "analog",
+            Self::Weighted => "weighted",
+        }
+    }
+
+    /// The odds at a collision of ratio `r = σ_t/σ̂` where the albedo is in `[0, 1]`.
+    ///
+    /// Outside the range of [`ParticleRule::limits`] they are what the formula says and no
+    /// chances: a forced walk compares a number with them as any renderer would, and is biased.
+    #[inline(always)]
+    pub fn odds<L: Lane>(self, ratio: L, albedo: L) -> Odds<L> {
+        let one = ratio.each(1.0);
+        match self {
+            Self::Terminating | Self::Analog => terminating(ratio, albedo),
+            Self::NonTerminating => shared(ratio, albedo, one),
+            Self::Adaptive => {
+                let sum = albedo * ratio + (one - ratio).size();
+                let terminates = one.at_most(ratio) & sum.at_most(one);
+                let (ending, lasting) = (terminating(ratio, albedo), shared(ratio, albedo, one));
+                Odds::select(terminates, ending, lasting)
+            }
+            Self::Weighted => shared(ratio, one, albedo),
+        }
+    }
+
+    /// The smallest and the largest r for which the odds are chances.
+    pub fn limits(self, albedo: f64) -> [f64; 2] {
+        match self {
+            Self::Terminating => [0.0, 2.0 / (albedo + 1.0)],
+            Self::Analog => [0.0, 1.0],
+            Self::NonTerminating | Self::Adaptive | Self::Weighted => {
+                [f64::NEG_INFINITY, f64::INFINITY]
+            }
+        }
+    }
+
+    /// The same as an inequality; empty for a rule that exists for every r.
+    pub fn needs(self) -> &'static str {
+        match self {
+            Self::Terminating => "0 ≤ r ≤ 2/(a + 1)",
+            Self::Analog => "0 ≤ σ_t ≤ σ̂",
+            Self::NonTerminating | Self::Adaptive | Self::Weighted => "",
+        }
+    }
+
+    /// The ratios at which the odds or one of their derivatives jump: panels end there.
+    pub fn kinks(self, albedo: f64) -> Vec<f64> {
+        match self {
+            Self::Adaptive => vec![0.0, 1.0, 2.0 / (1.0 + albedo)],
+            Self::Terminating | Self::NonTerminating | Self::Analog | Self::Weighted => {
+                vec![0.0, 1.0]
+            }
+        }
+    }
+}
+
+impl<L: Lane> Odds<L> {
+    #[inline(always)]
+    fn select(mask: L::Mask, yes: Self, no: Self) -> Self {
+        Self {
+            transmit: L::select(mask, yes.transmit, no.transmit),
+            scatter: L::select(mask, yes.scatter, no.scatter),
+            transmit_weight: L::select(mask, yes.transmit_weight, no.transmit_weight),
+            scatter_weight: L::select(mask, yes.scatter_weight, no.scatter_weight),
+        }
+    }
+}
+
+/// A size with the sign of another number.
+#[inline(always)]
+fn signed<L: Lane>(size: L, like: L) -> L {
+    L::select(like.below(like.each(0.0)), -size, size)
+}
+
+#[inline(always)]
+fn terminating<L: Lane>(ratio: L, albedo: L) -> Odds<L> {
+    let one = ratio.each(1.0);
+    let rest = one - ratio;
+    Odds {
+        transmit: rest.size(),
+        scatter: albedo * ratio,
+        transmit_weight: signed(one, rest),
+        scatter_weight: one,
+    }
+}
+
+/// The chances of an albedo, shared out so that the walk goes on; what they leave is weight.
+#[inline(always)]
+fn shared<L: Lane>(ratio: L, albedo: L, left: L) -> Odds<L> {
+    let (zero, one) = (ratio.each(0.0), ratio.each(1.0));
+    let rest = one - ratio;
+    let (transmitted, scattered) = (rest.size(), albedo * ratio.size());
+    let sum = scattered + transmitted;
+    let transmit = transmitted / sum;
+    // r = 1 and a = 0: nothing is left of the particle, whatever the chances. A weight of 0 is no
+    // weight either: the walk ends.
+    let is_nothing = sum.at_most(zero);
+    let is_scattered = zero.below(left) & !is_nothing;
+    Odds {
+        transmit: L::select(is_nothing, zero, transmit),
+        scatter: L::select(is_scattered, one - transmit, zero),
+        transmit_weight: signed(sum, rest),
+        scatter_weight: left * signed(sum, ratio),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const ALBEDOS: [f64; 5] = [0.0, 0.3, 0.7, 0.9, 1.0];
+
+    fn ratios() -> impl Iterator<Item = f64> {
+        (-40..=80).map(|step| 0.05 * f64::from(step))
+    }
+
+    fn holds(rule: ParticleRule, ratio: f64, albedo: f64) -> bool {
+        let [least, most] = rule.limits(albedo);
+        (least..=most).contains(&ratio)
+    }
+
+    #[test]
+    fn every_rule_keeps_both_means_where_it_exists() {
+        for rule in ParticleRule::ALL {
+            for albedo in ALBEDOS {
+                for r in ratios().filter(|&r| holds(rule, r, albedo)) {
+                    let odds = rule.odds(r, albedo);
+                    let context = format!("{rule:?} at r = {r}, a = {albedo}");
+                    let means = [1.0 - r, albedo * r];
+                    let found =
+                        [odds.transmit * odds.transmit_weight, odds.scatter * odds.scatter_weight];
+                    for (found, mean) in found.into_iter().zip(means) {
+                        assert!((found - mean).abs() < 1e-14, "{context}");
+                    }
+                    assert!(odds.transmit >= 0.0 && odds.scatter >= 0.0, "{context}");
+                    assert!(odds.transmit + odds.scatter <= 1.0 + 1e-15, "{context}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn beyond_its_limits_a_rule_has_no_chances() {
+        for (rule, r) in [(ParticleRule::Terminating, 1.2), (ParticleRule::Terminating, -0.1)] {
+            let odds = rule.odds(r, 0.9);
+            let sum = odds.transmit + odds.scatter;
+            assert!(odds.scatter < 0.0 || sum > 1.0, "{odds:?}");
+            assert!(!holds(rule, r, 0.9));
+        }
+        assert!(holds(ParticleRule::Terminating, 2.0 / 1.9, 0.9));
+        assert!(!holds(ParticleRule::Analog, 1.01, 0.9) && holds(ParticleRule::Analog, 1.0, 0.9));
+    }
+
+    #[test]
+    fn at_one_collision_the_odds_are_those_worked_by_hand() {
+        // r = 1.5, a = 0.2: terminating 0.5 and 0.3 with weights −1 and 1.
+        let odds = ParticleRule::Terminating.odds(1.5, 0.2);
+        assert!((odds.transmit - 0.5).abs() < 1e-15 && (odds.scatter - 0.3).abs() < 1e-15);
+        assert_eq!((odds.transmit_weight, odds.scatter_weight), (-1.0, 1.0));
+        assert_eq!(ParticleRule::Adaptive.odds(1.5, 0.2), odds);
+        // a r + |1 − r| = 0.9·1.5 + 0.5 = 1.85: not terminating, D = 1.85.
+        let odds = ParticleRule::Adaptive.odds(1.5, 0.9);
+        assert!((odds.transmit - 0.5 / 1.85).abs() < 1e-15);
+        assert!((odds.transmit_weight + 1.85).abs() < 1e-15);
+        assert!((odds.scatter_weight - 1.85).abs() < 1e-15);
+        // r = −0.5, a = 0.6: D = 0.3 + 1.5, and what is scattered changes sign.
+        let odds = ParticleRule::NonTerminating.odds(-0.5, 0.6);
+        assert!((odds.scatter - 0.3 / 1.8).abs() < 1e-15);
+        assert!((odds.scatter_weight + 1.8).abs() < 1e-15);
+        // Delta tracking with the albedo as a weight.
+        let odds = ParticleRule::Weighted.odds(0.25, 0.6);
+        assert!((odds.scatter - 0.25).abs() < 1e-15 && odds.scatter_weight == 0.6);
+    }
+
+    #[test]
+    fn adaptive_second_moments_are_never_below_those_of_non_terminating() {
+        // S_2 and Q_2 of the terminating rule are those of the non-terminating one over D ≤ 1.
+        for albedo in ALBEDOS {
+            for r in ratios() {
+                let means = [1.0 - r, albedo * r];
+                let squares = |rule: ParticleRule| rule.odds(r, albedo).moments(means, 2);
+                let adaptive = squares(ParticleRule::Adaptive);
+                let other = squares(ParticleRule::NonTerminating);
+                assert!(adaptive[0] >= other[0] - 1e-15 && adaptive[1] >= other[1] - 1e-15);
+            }
+        }
+    }
+
+    #[test]
+    fn nothing_is_left_at_ratio_one_without_albedo() {
+        let odds = ParticleRule::NonTerminating.odds(1.0, 0.0);
+        assert_eq!((odds.transmit, odds.scatter), (0.0, 0.0));
+        assert_eq!(odds.decide(0.0), Event::Absorbed);
+    }
+
+    #[test]
+    fn moments_of_rare_scattering_keep_their_digits() {
+        // a|r| is 1e-12: as a chance it is what |1 − r|/D leaves of 1.
+        let (albedo, r) = (1e-12, 1.25);
+        let odds = ParticleRule::NonTerminating.odds(r, albedo);
+        let sum = albedo * r + (r - 1.0);
+        for k in 1..5 {
+            let [_, found] = odds.moments([1.0 - r, albedo * r], k);
+            let exact = albedo * r * sum.powi(k - 1);
+            assert!((found / exact - 1.0).abs() < 1e-14, "{k}: {found:e} for {exact:e}");
+        }
+    }
+
+    #[test]
+    fn a_number_decides() {
+        let odds = ParticleRule::Terminating.odds(0.5, 0.4);
+        assert_eq!(odds.decide(0.199), Event::Scattered);
+        assert_eq!(odds.decide(0.201), Event::Transmitted);
+        assert_eq!(odds.decide(0.701), Event::Absorbed);
+        // A particle that does not terminate is never absorbed.
+        let odds = ParticleRule::NonTerminating.odds(0.37, 0.83);
+        assert_eq!(odds.decide(1.0 - f64::EPSILON / 2.0), Event::Transmitted);
+    }
+}

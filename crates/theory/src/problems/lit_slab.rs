@@ -1,0 +1,266 @@
+//! What a camera sees of a light behind a slab by one scattering: directions are found by chance, or chosen.
+//!
+//! ```text
+//! the camera looks along the normal of a slab; its ray enters at the beginning and collides (rate σ_t) at a depth z,
+//! is scattered with probability a by the phase function p, and flies to the far side without another real collision
+//! L = ∫ a σ_t e^{−τ(z)} ∫ p(μ) e^{−(τ(end) − τ(z))/μ} L_e dω dz,   L_e = 1 from the light, 0 from elsewhere
+//! ```
+//!
+//! | setting | meaning | default |
+//! |---|---|---|
+//! | `medium` with `span = [from, to]` | σ_t as a function of the depth z, and the slab | one of the two |
+//! | `volume` with `ray = { origin, direction, length }` | `σ_t(z)` as a ray through a 3-D field sees it | is required |
+//! | `albedo` | a in (0, 1], the same everywhere | required unless swept |
+//! | `phase.NAME = { … }` | a phase function: `trueflight list phases` | required |
+//! | `light.cap = { cosine = c₀ }` | all directions within arccos c₀ of the normal, 0 < c₀ < 1; Ω = 2π(1 − c₀) | one of |
+//! | `light.disc = { distance, radius }` | a disc that faces the slab, so far behind it, about the ray | these |
+//! | `light.distant = { cosine = μ₀ }` | a beam of irradiance 1, 0 < μ₀ ≤ 1: no direction is ever met by chance | is |
+//! | `light.point = { distance }` | a point of intensity 1 on the ray, so far behind the slab | required |
+//! | `sampling` | σ̂ of every estimator without its own, as a function of the depth; a majorant | required unless swept |
+//! | `sweep` | one of `sampling`, `sampling-scale`, `albedo`, `density`, `albedo-scale` | none |
+//! | `estimators` | what is tested | required |
+//!
+//! Unscattered light is left out, and light that is scattered twice. Shadow rays choose the directions of a cap evenly,
+//! and the points of a disc of area A; seen from a point D before the disc,
+//!
+//! ```text
+//! p_nee = 1/Ω (cap),   p_nee = D²/(A μ³) (disc),   q = p/p_nee
+//! ```
+//!
+//! so that q, the pdf of a direction by chance over that of the choice, may exceed 1. A light in no direction's
+//! neighbourhood, `distant` or `point`, has q = p, or p/D²; only shadow rays find it.
+//!
+//! Source: the integral is that of S. Chandrasekhar, *Radiative Transfer* (Oxford University Press, 1950), chapter 1;
+//! what is sampled, that of B. Miller, I. Georgiev, W. Jarosz, *A null-scattering path integral formulation of light
+//! transport*, ACM Transactions on Graphics 38 (2019), section 5.
+
+use std::f64::consts::{PI, TAU};
+
+use super::{Problem, default_albedo};
+use media::catalogue::{Domain, Settings};
+use media::phase::Phase;
+use media::{Body, Medium};
+use numeric::Lane;
+use numeric::digits::number;
+
+/// What shines behind the slab.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Light {
+    /// All directions whose cosine with the normal is at least this.
+    Cap(f64),
+    /// A disc about the ray.
+    Disc {
+        /// How far behind the slab.
+        distance: f64,
+        /// Its radius.
+        radius: f64,
+    },
+    /// A beam of irradiance 1, by its cosine with the normal.
+    Distant(f64),
+    /// A point of intensity 1 on the ray, so far behind the slab.
+    Point(f64),
+}
+
+impl Light {
+    /// Whether a direction that is chosen by the phase function may meet it.
+    pub fn can_be_hit(self) -> bool {
+        matches!(self, Self::Cap(_) | Self::Disc { .. })
+    }
+
+    /// The lowest cosine at which its light arrives.
+    pub fn lowest(self) -> f64 {
+        match self {
+            Self::Cap(cosine) | Self::Distant(cosine) => cosine,
+            Self::Disc { distance, radius } => distance / distance.hypot(radius),
+            Self::Point(_) => 1.0,
+        }
+    }
+
+    /// A direction to it, chosen with a number in `[0, 1)`, from a point so far before the end of the slab: its cosine,
+    /// and `1/p_nee`, sr; for a light that cannot be hit, what its radiance is in units of.
+    #[inline(always)]
+    pub fn chosen<L: Lane>(self, number: L, before: L) -> [L; 2] {
+        let one = number.each(1.0);
+        match self {
+            Self::Cap(lowest) => [number * (1.0 - lowest) + lowest, self.spread(one, before)],
+            Self::Disc { distance, radius } => {
+                let away = before + distance;
+                let square = away * away + number * (radius * radius);
+                // μ = D/√(D² + uR²), A μ³/D².
+                let cubic = away / (square * square.root());
+                [cubic * square, cubic * (PI * radius * radius)]
+            }
+            Self::Distant(cosine) => [one.each(cosine), one],
+            Self::Point(distance) => {
+                let away = before + distance;
+                [one, one / (away * away)]
+            }
+        }
+    }
+
+    /// `1/p_nee` of a direction that meets it; nothing is drawn that meets a light without a size.
+    #[inline(always)]
+    pub fn spread<L: Lane>(self, cosine: L, before: L) -> L {
+        match self {
+            Self::Cap(lowest) => cosine.each(TAU * (1.0 - lowest)),
+            Self::Disc { distance, radius } => {
+                let away = before + distance;
+                cosine * cosine * cosine * (PI * radius * radius) / (away * away)
+            }
+            Self::Distant(_) | Self::Point(_) => cosine.each(0.0),
+        }
+    }
+
+    /// Whether a direction meets it.
+    #[inline(always)]
+    pub fn is_met<L: Lane>(self, cosine: L, before: L) -> L::Mask {
+        let zero = cosine.each(0.0);
+        match self {
+            Self::Cap(lowest) => cosine.each(lowest).at_most(cosine),
+            Self::Disc { distance, radius } => {
+                let away = before + distance;
+                let square = cosine * cosine;
+                let across = (zero + 1.0 - square) * (away * away);
+                zero.below(cosine) & across.at_most(square * (radius * radius))
+            }
+            Self::Distant(_) | Self::Point(_) => zero.below(zero),
+        }
+    }
+}
+
+/// A slab with a light behind it.
+pub struct LitSlab {
+    medium: Medium,
+    /// a.
+    pub albedo: f64,
+    /// p.
+    pub phase: Phase,
+    /// What shines behind the slab.
+    pub light: Light,
+}
+
+impl LitSlab {
+    /// A slab whose depth is the distance along a medium, with an albedo in `(0, 1]`.
+    pub fn new(medium: Medium, albedo: f64, phase: Phase, light: Light) -> Self {
+        Self { medium, albedo, phase, light }
+    }
+
+    /// The end of the slab, which lights are behind.
+    #[inline(always)]
+    pub fn end(&self) -> f64 {
+        self.medium.span().to
+    }
+}
+
+impl Problem for LitSlab {
+    type Value = [f64; 1];
+
+    fn read(body: Option<&Body>, settings: &Settings) -> Option<Self> {
+        let albedo = super::number(settings, "albedo", default_albedo(settings));
+        let phase = Phase::read(settings);
+        let light = read_light(settings);
+        let (key, medium) = match body? {
+            body @ Body::Volume { .. } => ("ray", body.medium()),
+            body => ("medium", body.medium()),
+        };
+        if medium.optical_depth(medium.support()).value <= 0.0 {
+            let found = "nothing scatters: σ_t = 0 along the ray";
+            settings.fault(key, found, "give the slab some extinction");
+            return None;
+        }
+        if albedo == Some(0.0) {
+            let found = "nothing scatters: `albedo` is 0";
+            settings.fault("albedo", found, "it takes a number above 0 and up to 1");
+            return None;
+        }
+        Some(Self::new(medium, albedo?, phase?, light?))
+    }
+
+    fn medium(&self) -> &Medium {
+        &self.medium
+    }
+
+    fn with_albedo(&self, albedo: f64) -> Option<Self> {
+        Some(Self::new(self.medium.clone(), albedo, self.phase, self.light))
+    }
+}
+
+fn read_light(settings: &Settings) -> Option<Light> {
+    let names = ["cap", "disc", "distant", "point"].map(str::to_owned);
+    let (index, light) = settings.chosen("light", &names)?;
+    let read = match index {
+        0 => {
+            let help = "the light is behind the slab, and has a size: 0 < cosine < 1";
+            within(&light, "cosine", &|c| 0.0 < c && c < 1.0, help).map(Light::Cap)
+        }
+        1 => {
+            let distance = behind(&light);
+            let radius = light.number("radius", Domain::Positive);
+            distance.zip(radius).map(|(distance, radius)| Light::Disc { distance, radius })
+        }
+        2 => {
+            let help = "the light is behind the slab: 0 < cosine ≤ 1";
+            within(&light, "cosine", &|c| 0.0 < c && c <= 1.0, help).map(Light::Distant)
+        }
+        _ => behind(&light).map(Light::Point),
+    };
+    light.close();
+    read
+}
+
+/// How far a light is behind the slab.
+fn behind(light: &Settings) -> Option<f64> {
+    let help = "the light is behind the slab, this far from its end: distance > 0";
+    within(light, "distance", &|distance| distance > 0.0, help)
+}
+
+/// A number that is where a light may be.
+fn within(
+    light: &Settings,
+    key: &'static str,
+    is_right: &dyn Fn(f64) -> bool,
+    help: &'static str,
+) -> Option<f64> {
+    let found = light.number(key, Domain::Finite)?;
+    if is_right(found) {
+        return Some(found);
+    }
+    light.fault(key, format!("`{key}` is {}", number(found)), help);
+    None
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use numeric::quadrature::GaussLegendre;
+
+    #[test]
+    fn chosen_directions_meet_the_light_and_have_its_density() {
+        // ∫ dω = ∫ 2π dμ over the light is ∫ du/p_nee: Ω of a cap, 2π(1 − D/√(D² + R²)) of a disc.
+        let rule = GaussLegendre::new(40);
+        let disc = Light::Disc { distance: 0.5, radius: 0.7 };
+        for (light, before) in [(Light::Cap(0.3), 0.2), (disc, 0.4)] {
+            let lowest = if light == disc { 0.9 / 0.9f64.hypot(0.7) } else { 0.3 };
+            let found = rule.integrate(0.0, 1.0, |u| {
+                let [cosine, spread] = light.chosen(u, before);
+                assert!(light.is_met(cosine, before));
+                assert!(!light.is_met(lowest - 1e-9, before) && !light.is_met(-cosine, before));
+                assert!((light.spread(cosine, before) / spread - 1.0).abs() < 1e-14);
+                spread
+            });
+            assert!((found - TAU * (1.0 - lowest)).abs() < 1e-13, "{light:?}: {found}");
+        }
+        assert_eq!(disc.lowest(), 0.5 / 0.5f64.hypot(0.7));
+    }
+
+    #[test]
+    fn lights_without_size_are_met_by_shadow_rays_only() {
+        for light in [Light::Distant(0.8), Light::Point(2.0)] {
+            let [cosine, _] = light.chosen(0.4, 1.0);
+            assert!(!light.can_be_hit() && !light.is_met(cosine, 1.0));
+            assert_eq!(light.spread(cosine, 1.0), 0.0);
+        }
+        assert_eq!(Light::Distant(0.8).chosen(0.4, 3.0), [0.8, 1.0]);
+        assert_eq!(Light::Point(2.0).chosen(0.4, 3.0), [1.0, 0.04]);
+    }
+}

@@ -1,0 +1,234 @@
+//! What a rod sends back and lets through: light that scatters forward and backward along a line.
+//!
+//! ```text
+//! a particle enters at the beginning, going forward; where it collides (rate σ_t) it is scattered
+//! with probability a, and then goes on forward with probability p_f, else it turns round
+//! reflectance R: it leaves at the beginning;  transmittance T: it leaves at the end
+//! ```
+//!
+//! | setting | meaning | default |
+//! |---|---|---|
+//! | `medium` with `span = [from, to]` | a field in 1-D and where it is asked about | one of the two |
+//! | `volume` with `ray = { origin, direction, length }` | a field in 3-D and a ray through it: the rod | is required |
+//! | `albedo` | a in [0, 1]: a number, or a field, see below | required unless swept |
+//! | `forward` | `p_f` in [0, 1], the probability that scattering keeps the direction; likewise | 0.5 |
+//! | `absorbed` | whether the absorbed energy is a channel, scored at every collision: Σ w r (1 − a) | false |
+//! | `flux` | up to 4: the mean flux, forward and backward together, in so many equal parts of the rod are channels too, scored at every tentative collision: Σ w/(σ̂ width) | none |
+//! | `orders` | K, up to 6: reflectance and transmittance by order of scattering, 0 to K, are channels too | none |
+//! | `sampling` | σ̂ of every estimator without its own | required unless swept |
+//! | `sweep` | one of `sampling`, `sampling-scale`, `albedo`, `density`, `albedo-scale` | none |
+//! | `estimators` | what is tested | required |
+//!
+//! A field of numbers along the rod is `{ piecewise-linear = { knots, values } }` or
+//! `{ piecewise-constant = { breaks, values } }`, with distances along the ray; outside its knots the
+//! first and the last value go on. In empty space the particle flies on, so that only the part of a
+//! ray inside the field's bounds is the rod.
+//!
+//! The answer is exact. Where a and `p_f` are constant it is a closed form that depends on the optical
+//! depth only; elsewhere, and by order, two coupled equations are solved to a stated error. An
+//! experiment with a channel whose answer is 0 is refused: `absorbed` where `a = 1`, `reflectance` where
+//! `a = 0` or `p_f = 1`.
+//!
+//! Source: the two-stream equations of a rod, as in R. Bellman, R. Kalaba, G. M. Wing, *Invariant
+//! Imbedding and Mathematical Physics*, Journal of Mathematical Physics 1 (1960).
+
+use super::{Problem, default_albedo, number};
+use media::catalogue::{Domain, Node, Settings, Value};
+use media::piecewise_linear::read_pieces;
+use media::{Body, Medium, Piecewise};
+use numeric::Span;
+
+/// The most channels that a draw can have.
+pub const MOST: usize = 20;
+/// The most parts of a rod in which its flux is a channel.
+pub const MOST_PARTS: usize = 4;
+/// The highest order of scattering that has a channel of its own.
+pub const HIGHEST_ORDER: u64 = 6;
+
+/// What a channel is about.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Quantity {
+    /// The weight that leaves at the beginning after so many scatterings.
+    ReflectedBy(usize),
+    /// The weight that leaves at the end after so many scatterings.
+    TransmittedBy(usize),
+    /// The mean flux in a part of the rod, from 0.
+    Flux(usize),
+    /// The energy absorbed on the way.
+    Absorbed,
+    /// The weight that leaves at the beginning.
+    Reflected,
+    /// The weight that leaves at the end.
+    Transmitted,
+}
+
+impl Quantity {
+    /// The channel's name.
+    pub fn name(self) -> String {
+        match self {
+            Self::ReflectedBy(order) => format!("reflectance, order {order}"),
+            Self::TransmittedBy(order) => format!("transmittance, order {order}"),
+            Self::Flux(part) => format!("flux, part {}", part + 1),
+            Self::Absorbed => "absorbed".to_owned(),
+            Self::Reflected => "reflectance".to_owned(),
+            Self::Transmitted => "transmittance".to_owned(),
+        }
+    }
+}
+
+/// A rod.
+pub struct Rod {
+    medium: Medium,
+    /// a, as a function of the distance.
+    pub albedo: Piecewise,
+    /// `p_f`, as a function of the distance.
+    pub forward: Piecewise,
+    /// What the channels of a draw are about, the last two always reflectance and transmittance.
+    pub channels: Vec<Quantity>,
+    /// How many parts of the rod have their flux as a channel: 0 or all of them.
+    pub parts: usize,
+}
+
+/// The values of one draw, one per channel.
+pub type Values = super::Values<MOST>;
+
+impl Rod {
+    /// A rod with an albedo and a probability to scatter forward, both in `[0, 1]`.
+    pub fn new(
+        medium: Medium,
+        albedo: &Piecewise,
+        forward: &Piecewise,
+        channels: Vec<Quantity>,
+    ) -> Self {
+        let span = medium.span();
+        let parts =
+            channels.iter().filter(|quantity| matches!(quantity, Quantity::Flux(_))).count();
+        Self { medium, albedo: albedo.on(span), forward: forward.on(span), channels, parts }
+    }
+
+    /// The length of such a part.
+    pub fn width(&self) -> f64 {
+        self.medium.support().length() / self.parts.max(1) as f64
+    }
+
+    /// Where the rod begins.
+    pub fn begin(&self) -> f64 {
+        self.medium.support().from
+    }
+
+    /// The part that holds a distance inside the rod.
+    #[inline(always)]
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // at most the number of parts
+    pub fn part(&self, t: f64) -> usize {
+        let part = (t - self.begin()) / self.width();
+        (part as usize).min(self.parts.saturating_sub(1))
+    }
+}
+
+/// The channels that a case asks for.
+pub fn channels(parts: usize, absorbed: bool, orders: Option<usize>) -> Vec<Quantity> {
+    let mut channels: Vec<Quantity> = (0..parts).map(Quantity::Flux).collect();
+    if let Some(highest) = orders {
+        channels.push(Quantity::TransmittedBy(0));
+        for order in 1..=highest {
+            channels.extend([Quantity::ReflectedBy(order), Quantity::TransmittedBy(order)]);
+        }
+    }
+    if absorbed {
+        channels.push(Quantity::Absorbed);
+    }
+    channels.extend([Quantity::Reflected, Quantity::Transmitted]);
+    channels
+}
+
+impl Problem for Rod {
+    type Value = Values;
+
+    #[allow(clippy::cast_possible_truncation)] // at most six and four
+    fn read(body: Option<&Body>, settings: &Settings) -> Option<Self> {
+        let albedo = share(settings, "albedo", default_albedo(settings));
+        let forward = share(settings, "forward", Some(0.5));
+        let absorbed = settings.flag_or("absorbed", false);
+        let parts = settings.count_or("flux", 0..=MOST_PARTS as u64, 0);
+        let orders = settings.optional("orders", |key| settings.count(key, 0..=HIGHEST_ORDER));
+        let medium = body?.medium();
+        let (albedo, forward) = (albedo?, forward?);
+        let channels =
+            channels(parts? as usize, absorbed?, orders?.map(|highest| highest as usize));
+        Some(Self::new(medium, &albedo, &forward, channels))
+    }
+
+    fn medium(&self) -> &Medium {
+        &self.medium
+    }
+
+    fn with_albedo(&self, albedo: f64) -> Option<Self> {
+        let albedo = Piecewise::constant(albedo, self.medium.span());
+        let (medium, channels) = (self.medium.clone(), self.channels.clone());
+        Some(Self::new(medium, &albedo, &self.forward, channels))
+    }
+}
+
+/// Reads a share, a number or a field; `default` where the key is absent.
+pub(super) fn share(
+    settings: &Settings,
+    key: &'static str,
+    default: Option<f64>,
+) -> Option<Piecewise> {
+    let value = settings.entry(key).map(|entry| &entry.node.value);
+    if !matches!(value, Some(Value::Table(_))) {
+        // It goes on to both sides.
+        let everywhere = |value| Piecewise::constant(value, Span::empty(0.0));
+        return number(settings, key, default).map(everywhere);
+    }
+    let (index, field) = settings.chosen(key, &field_names())?;
+    read_share(&field, index == 0, key)
+}
+
+/// Reads a list of shares, numbers or fields, one for each channel.
+pub(super) fn shares(settings: &Settings, key: &'static str) -> Option<Vec<Piecewise>> {
+    let value = settings.entry(key).map(|entry| &entry.node.value);
+    let is_fields = |first: &Node| matches!(first.value, Value::Table(_));
+    if !matches!(value, Some(Value::Array(list)) if list.first().is_some_and(is_fields)) {
+        let numbers = settings.numbers(key, Domain::Unit, 1)?;
+        let everywhere = |&value: &f64| Piecewise::constant(value, Span::empty(0.0));
+        return Some(numbers.iter().map(everywhere).collect());
+    }
+    let read = |table: &Settings| {
+        let (index, field) = table.choice(&field_names())?;
+        read_share(&field, index == 0, key)
+    };
+    let read: Vec<Option<Piecewise>> = settings.tables(key)?.iter().map(read).collect();
+    read.into_iter().collect()
+}
+
+fn field_names() -> [String; 2] {
+    ["piecewise-constant".to_owned(), "piecewise-linear".to_owned()]
+}
+
+fn read_share(field: &Settings, is_steps: bool, key: &str) -> Option<Piecewise> {
+    let pieces = read_pieces(field, is_steps);
+    field.close();
+    let pieces = pieces?;
+    if pieces.corner_values().any(|value| value > 1.0) {
+        let message = format!("`{key}` is a share, and exceeds 1");
+        field.fault("values", message, "each value is between 0 and 1");
+        return None;
+    }
+    Some(pieces)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_last_channels_are_what_leaves() {
+        assert_eq!(channels(0, false, None), [Quantity::Reflected, Quantity::Transmitted]);
+        let all = channels(4, true, Some(6));
+        assert_eq!(all.len(), MOST);
+        assert_eq!(all[MOST - 2..], [Quantity::Reflected, Quantity::Transmitted]);
+        assert_eq!(all[0].name(), "flux, part 1");
+        assert_eq!(all[6].name(), "transmittance, order 1");
+    }
+}

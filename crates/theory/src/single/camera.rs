@@ -1,0 +1,186 @@
+//! The transmittance from the ray's origin to any point of the ray, as it is estimated.
+
+use super::CameraTracking;
+use super::segment::{POWERS, Segment, counts, loss, losses, rounding, size};
+use crate::Mesh;
+use media::{Control, Piecewise};
+use numeric::quadrature::GaussLegendre;
+use numeric::{Known, Span};
+
+/// How many integrals are kept.
+const COUNT: usize = 10;
+/// Where `∫σ̂` is among them.
+const FLOWN: usize = 8;
+
+/// What a walk from the ray's origin loses up to a point: `A_k = ∫ kσ_c + σ̂(1 − w^k)`, `w = 1 − r`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Losses {
+    /// `A_k` for k = 0 … 4.
+    pub signed: [f64; 5],
+    /// The same with `|w|^k`.
+    pub sizes: [f64; 5],
+    /// The same with `w|w|`, k = 2.
+    pub mixed: f64,
+}
+
+/// The integrals along the ray, ready to be read at any point.
+pub struct Camera<'a> {
+    mesh: &'a Mesh,
+    sampling: &'a Piecewise,
+    control: &'a Control,
+    along: CameraTracking,
+    rule: GaussLegendre,
+    cuts: Vec<f64>,
+    ends: Vec<f64>,
+    sums: Vec<[f64; COUNT]>,
+}
+
+impl<'a> Camera<'a> {
+    /// Integrates along the ray.
+    pub fn new(
+        mesh: &'a Mesh,
+        sampling: &'a Piecewise,
+        control: &'a Control,
+        along: CameraTracking,
+    ) -> Self {
+        let rule = GaussLegendre::new(16);
+        let support = mesh.support();
+        let mut camera = Self {
+            mesh,
+            sampling,
+            control,
+            along,
+            rule,
+            cuts: Vec::new(),
+            ends: vec![support.from],
+            sums: vec![[0.0; COUNT]],
+        };
+        if along == CameraTracking::Exact || support.is_empty() {
+            return camera;
+        }
+        let mut cuts = sampling.knots().to_vec();
+        cuts.extend(control.breaks());
+        if along == CameraTracking::Ratio {
+            // Where w changes its sign, its size has a kink.
+            cuts.extend(mesh.roots(|t, x| sampling.value(t) - (x - control.extinction(t))));
+        }
+        cuts.retain(|&t| support.contains_inside(t));
+        camera.cuts.clone_from(&cuts);
+        let fine = mesh.refined(&cuts, &|_, panel| {
+            let nodes = panel.t.iter().zip(panel.extinction);
+            let rows: Vec<[f64; COUNT]> = nodes.map(|(&t, &x)| camera.integrand(t, x)).collect();
+            (0..COUNT).map(|i| rows.iter().map(|row| row[i]).collect()).collect()
+        });
+        for panel in fine.panels() {
+            let whole = camera.over(panel.span);
+            let mut sum = camera.sums[camera.sums.len() - 1];
+            sum.iter_mut().zip(whole).for_each(|(sum, x)| *sum += x);
+            camera.ends.push(panel.span.to);
+            camera.sums.push(sum);
+        }
+        camera
+    }
+
+    fn integrand(&self, t: f64, extinction: f64) -> [f64; COUNT] {
+        let sampling = self.sampling.value(t);
+        let control = self.control.extinction(t);
+        if self.along == CameraTracking::Delta {
+            let from = self.mesh.support().from;
+            let depth = self.depth(t).value;
+            let nulls = self.flown(Span::new(from, t)) - depth;
+            let [a, b, c, d] = counts(sampling, depth, nulls);
+            return [a, b, c, d, 0.0, 0.0, 0.0, 0.0, sampling, depth];
+        }
+        if sampling <= 0.0 {
+            let [a, b, c, d, e] = POWERS.map(|k| f64::from(k) * control);
+            return [a, b, c, d, e, a, c, b, 0.0, d.abs()];
+        }
+        let residual = extinction - control;
+        let weight = 1.0 - residual / sampling;
+        let [a, b, c, d, e] = losses(control, residual, weight);
+        let [one, three, two] = if weight < 0.0 {
+            // σ̂(1 − |w|) = 2σ̂ − (σ_t − σ_c), and 1 − w|w| = 1 + w².
+            let size = -weight;
+            let left = 2.0 * sampling - residual;
+            let mixed = 2.0 * control + sampling * (1.0 + weight * weight);
+            [loss(1, control, left, size), loss(3, control, left, size), mixed]
+        } else {
+            [a, c, b]
+        };
+        [a, b, c, d, e, one, three, two, sampling, size(control, residual, weight)]
+    }
+
+    /// τ up to a point.
+    fn depth(&self, s: f64) -> Known {
+        let from = self.mesh.support().from;
+        self.mesh.medium().optical_depth(Span::new(from, s))
+    }
+
+    /// `∫σ̂` over a span.
+    fn flown(&self, span: Span) -> f64 {
+        media::OpticalDepth::optical_depth(self.sampling, span).value
+    }
+
+    fn over(&self, span: Span) -> [f64; COUNT] {
+        let sigma = self.mesh.medium().extinctions(&self.rule.nodes_on(span));
+        let mut sum = [0.0; COUNT];
+        for ((t, weight), sigma) in self.rule.on(span).zip(sigma) {
+            let values = self.integrand(t, sigma);
+            sum.iter_mut().zip(values).for_each(|(sum, x)| *sum += weight * x);
+        }
+        sum
+    }
+
+    fn at(&self, s: f64) -> [f64; COUNT] {
+        let last = self.ends.len() - 1;
+        let panel = self.ends.partition_point(|&end| end <= s).saturating_sub(1).min(last);
+        let mut sum = self.sums[panel];
+        let rest = Span::new(self.ends[panel], s);
+        if !rest.is_empty() {
+            let more = self.over(rest);
+            sum.iter_mut().zip(more).for_each(|(sum, x)| *sum += x);
+        }
+        sum
+    }
+
+    /// The moments of the estimate up to `s`.
+    pub fn segment(&self, s: f64) -> Segment {
+        let depth = self.depth(s);
+        match self.along {
+            CameraTracking::Exact => Segment::exact(depth),
+            CameraTracking::Ratio => {
+                let [_, b, c, d, e, .., flown, size] = self.at(s);
+                let error = rounding(size) + 4.0 * depth.error;
+                Segment::product([depth.value, b, c, d, e], flown, [error, size])
+            }
+            CameraTracking::Delta => {
+                let [a, b, c, d, ..] = self.at(s);
+                let from = self.mesh.support().from;
+                Segment::decided(depth, self.flown(Span::new(from, s)), [a, b, c, d])
+            }
+        }
+    }
+
+    /// What a walk of weights loses up to `s`.
+    pub fn losses(&self, s: f64) -> Losses {
+        let [_, b, c, d, _, size, cube, mixed, ..] = self.at(s);
+        let signed = [0.0, self.depth(s).value, b, c, d];
+        Losses { signed, sizes: [0.0, size, b, cube, d], mixed }
+    }
+
+    /// σ̂ and `w = 1 − r` at a point.
+    pub fn collision(&self, s: f64, extinction: f64) -> [f64; 2] {
+        let sampling = self.sampling.value(s);
+        [sampling, 1.0 - (extinction - self.control.extinction(s)) / sampling]
+    }
+
+    /// `∫σ̂` over the whole support.
+    pub fn collisions(&self) -> f64 {
+        self.sums[self.sums.len() - 1][FLOWN]
+    }
+
+    /// The distances where σ̂, the control or the size of a weight have kinks.
+    pub fn cuts(&self) -> &[f64] {
+        &self.cuts
+    }
+}

@@ -1,0 +1,108 @@
+//! Moments of sums along one walk: a chain of linear equations, solved by running integrals.
+//!
+//! Functionals of the rest of a walk that stands at s with weight 1 obey, from the ray's end
+//! backwards, `−U' = f − A' U` with `U(end) = 0`, where f holds functionals that are already known:
+//!
+//! ```text
+//! U(s) = ∫_s^end f(t) exp(−(A(t) − A(s))) dt
+//! ```
+
+use super::camera::Losses;
+use super::scene::{Node, Scene};
+use numeric::Span;
+
+/// The nodes of all panels.
+pub struct Chain<'a> {
+    scene: &'a Scene<'a>,
+    panels: Vec<Panel>,
+}
+
+struct Panel {
+    x: Span,
+    nodes: Vec<At>,
+    from: Losses,
+    to: Losses,
+}
+
+/// A node of the chain.
+pub struct At {
+    /// What theory knows there.
+    pub node: Node,
+    /// `A` there.
+    pub losses: Losses,
+    /// σ̂ and `w = 1 − r` there; not meant where σ̂ is zero.
+    pub collision: [f64; 2],
+    stretch: f64,
+}
+
+/// A functional at every node, panel by panel, and at the beginning of the ray.
+pub struct Solved {
+    /// At the nodes.
+    pub at: Vec<Vec<f64>>,
+    /// At the beginning.
+    pub begin: f64,
+}
+
+impl<'a> Chain<'a> {
+    /// On the given panels of the stretched variable.
+    pub fn new(scene: &'a Scene<'a>, panels: &[Span]) -> Self {
+        let losses = |x: f64| scene.camera.losses(scene.stretched(x).s);
+        let panel = |&x: &Span| {
+            let node = |&at: &f64| {
+                let place = scene.stretched(x.from + at * x.length());
+                let node = scene.node(place);
+                let collision = scene.camera.collision(place.s, node.extinction);
+                let losses = scene.camera.losses(place.s);
+                At { node, losses, collision, stretch: place.stretch }
+            };
+            let nodes = scene.rule().nodes.iter().map(node).collect();
+            Panel { x, nodes, from: losses(x.from), to: losses(x.to) }
+        };
+        Self { scene, panels: panels.iter().map(panel).collect() }
+    }
+
+    /// Whether a weight changes its sign somewhere.
+    pub fn is_signed(&self) -> bool {
+        let mut nodes = self.panels.iter().flat_map(|panel| &panel.nodes);
+        nodes.any(|at| at.collision[0] > 0.0 && at.collision[1] < 0.0)
+    }
+
+    /// Solves for one functional: `loss` picks its A, and `f` is asked at each node, of which it is
+    /// told the panel and the place.
+    pub fn solve(
+        &self,
+        loss: &dyn Fn(&Losses) -> f64,
+        f: &dyn Fn(&At, usize, usize) -> f64,
+    ) -> Solved {
+        let rule = self.scene.rule();
+        let mut at = vec![Vec::new(); self.panels.len()];
+        let mut beyond = 0.0;
+        for (p, panel) in self.panels.iter().enumerate().rev() {
+            let from = loss(&panel.from);
+            let decayed: Vec<f64> = panel
+                .nodes
+                .iter()
+                .enumerate()
+                .map(|(i, node)| {
+                    let decay = (-(loss(&node.losses) - from)).exp();
+                    f(node, p, i) * decay * node.stretch * panel.x.length()
+                })
+                .collect();
+            let dot = |row: &[f64]| row.iter().zip(&decayed).map(|(a, b)| a * b).sum::<f64>();
+            let whole = dot(&rule.weights) + beyond * (-(loss(&panel.to) - from)).exp();
+            at[p] = panel
+                .nodes
+                .iter()
+                .zip(&rule.running)
+                .map(|(node, row)| (loss(&node.losses) - from).exp() * (whole - dot(row)))
+                .collect();
+            beyond = whole;
+        }
+        Solved { at, begin: beyond }
+    }
+}
+
+/// The panels, each cut in two.
+pub fn halved(panels: &[Span]) -> Vec<Span> {
+    panels.iter().flat_map(|x| x.halves()).collect()
+}

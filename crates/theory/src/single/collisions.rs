@@ -1,0 +1,61 @@
+//! Delta tracking to a scattering.
+//!
+//! ```text
+//! p(s) = c σ_t T,   X = S T̂_shadow/c
+//! ```
+//!
+//! c, the chance that a real collision scatters, is the albedo, or 1 where the albedo is a weight.
+
+use super::scene::Node;
+use crate::raw::{Raw, added, poisson};
+use media::{Medium, OpticalDepth, Piecewise};
+use numeric::{Lane, Span};
+
+/// Walks through a majorant.
+#[derive(Clone, Copy)]
+pub struct Collisions<'a> {
+    /// What they walk through.
+    pub medium: &'a Medium,
+    /// σ̂ ≥ σ_t.
+    pub sampling: &'a Piecewise,
+    /// c, the chance that a real collision scatters.
+    pub scatters: f64,
+}
+
+impl Collisions<'_> {
+    fn before(&self, s: f64) -> Span {
+        Span::new(self.medium.support().from, s)
+    }
+
+    /// The mean number of null collisions up to a point: `∫σ̂ − τ`.
+    fn nulls(&self, s: f64) -> f64 {
+        let before = self.before(s);
+        self.sampling.optical_depth(before).value - self.medium.optical_depth(before).value
+    }
+
+    /// The density of scatterings.
+    pub fn density(&self, node: &Node) -> f64 {
+        node.extinction * self.scatters * node.transmittance
+    }
+
+    /// What a scattering is worth, but for its shadow ray.
+    pub fn worth(&self, node: &Node) -> f64 {
+        node.source / self.scatters
+    }
+
+    /// `E[N^k]` of a walk that scatters at a node, with its shadow ray, and, for each that scatters, of those that
+    /// are absorbed there.
+    pub fn lookups_at(&self, node: &Node) -> Raw {
+        let walked = added([1.0; 5], poisson(self.nulls(node.s)));
+        let scattered = added(walked, node.shadow.lookups);
+        let absorbed = (1.0 - self.scatters) / self.scatters;
+        std::array::from_fn(|k| scattered[k] + absorbed * walked[k])
+    }
+
+    /// `E[N^k; no collision]`.
+    pub fn lookups_of_escape(&self) -> Raw {
+        let end = self.medium.support().to;
+        let transmittance = Lane::exp(-self.medium.optical_depth(self.before(end)).value);
+        poisson(self.nulls(end)).map(|moment| transmittance * moment)
+    }
+}

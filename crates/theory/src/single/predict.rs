@@ -1,0 +1,269 @@
+//! Draws that scatter at one point, or at one point of each of two techniques.
+
+use super::Collisions;
+use super::null_path::Weighted;
+use super::scene::{Node, Scene};
+use super::segment::POWERS;
+use crate::raw::added;
+use crate::{Channel, CountLaw, Moments, Prediction, Tails};
+use numeric::Known;
+
+/// The agreement that is asked of two resolutions, relative to the whole: of moments.
+pub const MOMENT: f64 = 1e-11;
+/// Moments with a larger relative error are not told.
+const BLURRED: f64 = 1e-3;
+/// Of lookups.
+pub const LOOKUPS: f64 = 1e-12;
+
+/// How a scattering point is found and what it is worth.
+pub struct Technique<'a> {
+    /// The density of the point, 1/length; it may leave a chance that there is none.
+    pub density: &'a dyn Fn(&Node) -> f64,
+    /// The draw without both estimated transmittances.
+    pub gain: &'a dyn Fn(&Node) -> f64,
+    /// A relative error bound of the density, and of whatever stands for it in the gain.
+    pub blur: &'a dyn Fn(&Node) -> f64,
+    /// The delta tracking that found the point, if it did: then the transmittance from the origin is no factor
+    /// of the draw, and the lookups are its own.
+    pub found: Option<&'a Collisions<'a>>,
+    /// What stands in the place of the transmittance from the origin, where weights depend on the walk.
+    pub weighted: Option<&'a dyn Fn(&Node) -> Weighted>,
+}
+
+impl Technique<'_> {
+    /// The moments of what the walk from the origin brings, k = 1 … 4 and 8, and bounds on their errors.
+    fn camera(&self, node: &Node) -> [[f64; 5]; 2] {
+        if let Some(weighted) = self.weighted {
+            let Weighted { powers: [_, a, b, c, d], errors: [_, e, f, g, h] } = weighted(node);
+            return [[a, b, c, d, f64::NAN], [e, f, g, h, f64::NAN]];
+        }
+        if self.found.is_some() {
+            return [[1.0; 5], [0.0; 5]];
+        }
+        let [_, a, b, c, d] = node.camera.powers;
+        let powers = [a, b, c, d, node.camera.eighth];
+        [powers, powers.map(|power| power * node.camera.error)]
+    }
+}
+
+/// The raw moments of the draws of a technique.
+#[derive(Debug, Clone, Copy)]
+pub struct Points {
+    /// The radiance by quadrature.
+    pub truth: Known,
+    /// `E[X^k]`, k = 0 … 4.
+    pub powers: [f64; 5],
+    /// Relative error bounds of the powers.
+    pub error: f64,
+    /// `E[X⁸]`, where it is known.
+    pub eighth: Option<f64>,
+    /// `E[(N − least)^k]`, k = 0 … 4; `None` where it is not worked out.
+    pub lookups: Option<[f64; 5]>,
+    /// Lookups that every draw makes: beside them rare ones would lose their digits.
+    pub least: f64,
+    /// A relative error bound of the mean lookups.
+    pub counted: f64,
+}
+
+/// What sums over panels lose, relative to the whole.
+const SUMS: f64 = 1e-14;
+/// What evaluates a density from σ_t, distances and exponentials loses, relative to itself.
+pub const DENSITY: f64 = 4.0 * f64::EPSILON;
+/// Where a moment is smaller, some of what adds up to it is no double of full length.
+const LEAST: f64 = 1e-280;
+
+impl Points {
+    /// Of one technique.
+    pub fn of(scene: &Scene, technique: &Technique) -> Self {
+        let mut parts = [MOMENT; 13];
+        parts[5..9].fill(LOOKUPS);
+        parts[9..].fill(f64::INFINITY);
+        let found = scene.integrate(parts, &|node| {
+            let density = (technique.density)(node);
+            if density <= 0.0 {
+                return [0.0; 13];
+            }
+            let gain = (technique.gain)(node);
+            let [camera, errors] = technique.camera(node);
+            let [_, a, b, c, d] = node.shadow.powers;
+            let shadow = [a, b, c, d, node.shadow.eighth];
+            let factor = node.error[0] + (technique.blur)(node) + DENSITY;
+            let lookups = match technique.found {
+                Some(collisions) => collisions.lookups_at(node),
+                None => node.lookups(),
+            };
+            let mut row = [0.0; 13];
+            for (i, k) in POWERS.into_iter().enumerate() {
+                let gathered = density * gain.powi(k);
+                row[i] = gathered * camera[i] * shadow[i];
+                if i < 4 {
+                    row[5 + i] = density * lookups[i + 1];
+                    let blur = f64::from(k) * factor + node.shadow.error;
+                    row[9 + i] = row[i].abs() * blur + (gathered * errors[i] * shadow[i]).abs();
+                }
+            }
+            row
+        });
+        let [p1, p2, p3, p4, eighth, n1, n2, n3, n4, roundings @ ..] = found.value;
+        let none = technique.found.map_or([0.0; 5], Collisions::lookups_of_escape);
+        let off = found.error[..4].iter().zip(roundings).map(|(apart, rounding)| apart + rounding);
+        let relative = off.zip([p1, p2, p3, p4]).map(|(off, power)| off / power.abs());
+        let lookups = [1.0, n1 + none[1], n2 + none[2], n3 + none[3], n4 + none[4]];
+        // A walk that ends at its point may end before.
+        let least = if technique.found.is_some() { 0.0 } else { 1.0 };
+        Self {
+            truth: scene.radiance(),
+            powers: [1.0, p1, p2, p3, p4],
+            error: relative.fold(SUMS, f64::max),
+            eighth: (!eighth.is_nan()).then_some(eighth),
+            lookups: Some(lookups),
+            least,
+            counted: SUMS + found.error[5] / (least + lookups[1]),
+        }
+    }
+
+    /// The sum of independent draws of two techniques.
+    #[must_use]
+    pub fn plus(&self, other: &Self) -> Self {
+        Self {
+            truth: self.truth,
+            powers: added(self.powers, other.powers),
+            error: self.error + other.error,
+            eighth: None,
+            least: self.least + other.least,
+            counted: self.counted.max(other.counted),
+            lookups: self.lookups.zip(other.lookups).map(|(a, b)| added(a, b)),
+        }
+    }
+
+    /// A draw of either technique, with chances of ½, of which what it brings counts twice.
+    #[must_use]
+    pub fn either(&self, other: &Self) -> Self {
+        let lookups = |one: &Self| {
+            let least = one.least;
+            let always = [1.0, least, least.powi(2), least.powi(3), least.powi(4)];
+            one.lookups.map(|more| added(always, more))
+        };
+        let half = |a: f64, b: f64| 0.5 * (a + b);
+        let mut powers = self.powers;
+        for (k, (power, other)) in (0..).zip(powers.iter_mut().zip(other.powers)) {
+            *power = 2f64.powi(k) * half(*power, other);
+        }
+        Self {
+            truth: self.truth,
+            powers,
+            error: self.error.max(other.error),
+            eighth: None,
+            least: 0.0,
+            counted: self.counted.max(other.counted),
+            lookups: lookups(self)
+                .zip(lookups(other))
+                .map(|(a, b)| std::array::from_fn(|k| half(a[k], b[k]))),
+        }
+    }
+
+    /// What theory says of the draws.
+    pub fn prediction(&self) -> Prediction {
+        let [_, mean, second, third, fourth] = self.powers;
+        let [r2, r3, r4] = [second / mean.powi(2), third / mean.powi(3), fourth / mean.powi(4)];
+        let m2 = r2 - 1.0;
+        let m4 = r4 - 4.0 * r3 + 6.0 * r2 - 3.0;
+        // Errors of the raw moments, and of the powers of the mean, where they nearly cancel: m₄ ≥ m₂².
+        let [off2, off4] =
+            [3.0 * r2, 5.0 * r4 + 24.0 * r3.abs() + 24.0 * r2].map(|size| self.error * size);
+        let [least2, least4] = [m2 - off2, (m4 - off4).max((m2 - off2).powi(2))];
+        let error =
+            if r4 == f64::INFINITY { off2 / least2 } else { (off2 / least2).max(off4 / least4) };
+        let moments = Moments {
+            scale: mean,
+            relative: [m2, r3 - 3.0 * r2 + 2.0, m4.max(m2 * m2)],
+            error: if least2 > 0.0 { error } else { f64::INFINITY },
+        };
+        // A spread that rounding hides is not known to be none, nor one beyond the range of doubles.
+        let is_known = moments.error < BLURRED && !m4.is_nan() && mean.abs() < f64::INFINITY;
+        let is_full = self.powers.iter().all(|power| power.abs() >= LEAST);
+        let moments = (is_known && is_full).then_some(moments);
+        let eighth = self.eighth.map_or(f64::NAN, |eighth| eighth / (fourth * fourth));
+        // How rare the draws are that make the variance is not worked out.
+        let tails = Tails { rare_event_size: f64::NAN, eighth_moment_ratio: eighth };
+        let channels = vec![Channel::unbiased(self.truth, moments, tails)];
+        let law = |raw| CountLaw { error: self.counted, ..count(self.least, raw) };
+        Prediction { channels, lookups: self.lookups.map(law), ..Prediction::default() }
+    }
+}
+
+/// Of a variance less than this of the second moment nothing is known.
+const HIDDEN: f64 = 1e-12;
+
+/// The law of a count, with the raw moments of what it is more than its least, without probabilities.
+pub fn count(least: f64, [_, mean, second, third, fourth]: [f64; 5]) -> CountLaw {
+    let square = mean * mean;
+    let variance = second - square;
+    if variance <= HIDDEN * second {
+        return CountLaw::always(least + mean);
+    }
+    let central = fourth - 4.0 * third * mean + 6.0 * second * square - 3.0 * square * square;
+    let kurtosis = central / (variance * variance);
+    let mean = least + mean;
+    CountLaw { mean, variance, kurtosis, error: 0.0, poisson: false, pmf: Vec::new() }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn points(powers: [f64; 5]) -> Points {
+        Points {
+            truth: Known::exact(powers[1]),
+            powers,
+            error: 1e-14,
+            eighth: None,
+            lookups: Some([1.0, 0.5, 0.5, 0.5, 0.5]),
+            least: 0.0,
+            counted: 1e-14,
+        }
+    }
+
+    #[test]
+    fn two_coins_make_a_binomial_number() {
+        // X = 0 or 1 with chance ½: variance ¼; two of them: mean 1, variance ½, kurtosis 2.
+        let coin = points([1.0, 0.5, 0.5, 0.5, 0.5]);
+        let both = coin.plus(&coin);
+        assert_eq!(both.powers, [1.0, 1.0, 1.5, 2.5, 4.5]);
+        let prediction = both.prediction();
+        let moments = prediction.channels[0].moments.expect("moments");
+        assert!((moments.variance() - 0.5).abs() < 1e-15);
+        assert!((moments.kurtosis().expect("spread") - 2.0).abs() < 1e-14);
+        let lookups = prediction.lookups.expect("lookups");
+        assert_eq!([lookups.mean, lookups.variance], [1.0, 0.5]);
+    }
+
+    #[test]
+    fn either_of_two_coins_is_one_of_twice_the_worth() {
+        // 0, or 2 with chance ½: mean 1, variance 1; lookups: 1 more than a coin, or a coin.
+        let coin = points([1.0, 0.5, 0.5, 0.5, 0.5]);
+        let other = Points { least: 1.0, ..coin };
+        let prediction = coin.either(&other).prediction();
+        let moments = prediction.channels[0].moments.expect("moments");
+        assert!((moments.scale - 1.0).abs() < 1e-15 && (moments.variance() - 1.0).abs() < 1e-15);
+        let lookups = prediction.lookups.expect("lookups");
+        assert_eq!([lookups.mean, lookups.variance], [1.0, 0.5]);
+    }
+
+    #[test]
+    fn a_spread_that_rounding_hides_is_unknown() {
+        let faint = points([1.0, 1.0, 1.0 + 1e-16, 1.0, 1.0]);
+        assert!(faint.prediction().channels[0].moments.is_none());
+        // 1 ± 1e-5: the variance, 1e-10, is known to three digits, m₄ = 1e-20 to none.
+        let narrow = points([1.0, 1.0, 1.0 + 1e-10, 1.0 + 3e-10, 1.0 + 6e-10]);
+        assert!(narrow.prediction().channels[0].moments.is_none());
+    }
+
+    #[test]
+    fn rare_lookups_keep_their_digits() {
+        // 3 and, once in a thousand millions, one more.
+        let law = count(3.0, [1.0, 1e-9, 1e-9, 1e-9, 1e-9]);
+        assert_eq!(law.mean, 3.000_000_001);
+        assert!((law.variance / 1e-9 - 1.0).abs() < 2e-9 && law.kurtosis > 0.9e9);
+    }
+}

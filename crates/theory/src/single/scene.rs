@@ -1,0 +1,247 @@
+//! A point of the ray with all that theory knows there, and adaptive integrals over the ray.
+
+use super::camera::Camera;
+use super::segment::{Segment, Tracking};
+use crate::problems::{Problem, SingleScattering};
+use crate::raw::added;
+use numeric::quadrature::GaussLegendre;
+use numeric::sum::Sum;
+use numeric::{Known, Span};
+
+/// The agreement that is asked of two resolutions of L, relative to the whole.
+const RADIANCE: f64 = 2e-14;
+/// What sums and exponentials lose, relative to the whole.
+const ROUNDING: f64 = 2e-13;
+/// Steps into which the support is cut at least.
+const STEPS: usize = 24;
+/// Panels are no wider than this in the stretched variable.
+const WIDEST: f64 = 0.5;
+/// Halvings of one panel at most.
+const HALVINGS: u32 = 40;
+/// Panels of one integral at most.
+const MOST: usize = 20_000;
+
+/// A point of the ray.
+#[derive(Debug, Clone, Copy)]
+pub struct Node {
+    /// Its distance from the ray's origin.
+    pub s: f64,
+    /// Its distance from the light's foot, with digits that `s` has lost next to the light.
+    pub along: f64,
+    /// σ_t there.
+    pub extinction: f64,
+    /// S there, see [`SingleScattering::source`].
+    pub source: f64,
+    /// The exact transmittance from the ray's origin.
+    pub transmittance: f64,
+    /// A relative error bound of `extinction · source`, and of `transmittance`.
+    pub error: [f64; 2],
+    /// The transmittance from there as it is estimated.
+    pub camera: Segment,
+    /// That of the shadow ray.
+    pub shadow: Segment,
+}
+
+impl Node {
+    /// `E[(N − 1)^k]` of a draw that scatters here: beside one lookup those, unless there is nothing, of the
+    /// walk from the origin and, if that came through, of the shadow ray.
+    pub fn lookups(&self) -> [f64; 5] {
+        if self.extinction <= 0.0 {
+            return [1.0, 0.0, 0.0, 0.0, 0.0];
+        }
+        let Segment { lookups, through, .. } = self.camera;
+        let with_shadow = added(through, self.shadow.lookups);
+        let ended: [f64; 5] = std::array::from_fn(|k| lookups[k] - through[k]);
+        std::array::from_fn(|k| with_shadow[k] + ended[k])
+    }
+}
+
+/// A point of the ray, as the stretched variable finds it.
+#[derive(Debug, Clone, Copy)]
+pub struct Place {
+    /// Its distance from the ray's origin.
+    pub s: f64,
+    /// Its distance from the light's foot.
+    pub along: f64,
+    /// `ds/dx`.
+    pub stretch: f64,
+}
+
+/// The ray, the light and how transmittances are found.
+pub struct Scene<'a> {
+    /// What is sought.
+    pub problem: &'a SingleScattering,
+    /// The transmittance from the ray's origin.
+    pub camera: Camera<'a>,
+    /// How those of shadow rays are found.
+    pub shadow: Tracking,
+    /// More kinks of the integrands.
+    pub cuts: Vec<f64>,
+    rule: GaussLegendre,
+}
+
+/// An integral of several functions, each with a bound on its error, and the panels that it took.
+pub struct Integral<const N: usize> {
+    /// The integrals.
+    pub value: [f64; N],
+    /// Bounds on their errors: what two resolutions differ by, over all panels.
+    pub error: [f64; N],
+    /// The ends of the panels in the stretched variable, ascending.
+    pub panels: Vec<Span>,
+}
+
+impl<'a> Scene<'a> {
+    /// Joins the parts.
+    pub fn new(
+        problem: &'a SingleScattering,
+        camera: Camera<'a>,
+        shadow: Tracking,
+        cuts: Vec<f64>,
+    ) -> Self {
+        Self { problem, camera, shadow, cuts, rule: GaussLegendre::new(16) }
+    }
+
+    /// The Gauss rule of a panel.
+    pub fn rule(&self) -> &GaussLegendre {
+        &self.rule
+    }
+
+    /// All that is known at a distance.
+    pub fn node(&self, Place { s, along, .. }: Place) -> Node {
+        let medium = self.problem.medium();
+        let depth = medium.optical_depth(Span::new(medium.support().from, s));
+        let cast = self.problem.shadow_medium(s);
+        let mut shadow = Segment::of_shadow(self.shadow, cast.as_ref(), &self.rule);
+        // The shadow ray begins at s, which is rounded.
+        let place = f64::EPSILON * (s.abs() + self.problem.foot().abs());
+        shadow.error += shadow.size * place / along.hypot(self.problem.distance());
+        let [source, rounding] = self.problem.source_beyond(along);
+        Node {
+            s,
+            along,
+            extinction: medium.extinction(s),
+            source,
+            transmittance: (-depth.value).exp(),
+            error: [rounding, depth.error + f64::EPSILON],
+            camera: self.camera.segment(s),
+            shadow,
+        }
+    }
+
+    /// The place at the stretched variable: `s = foot + D sinh x`, in which `1/r²` is smooth however
+    /// near the light is.
+    pub fn stretched(&self, x: f64) -> Place {
+        let distance = self.problem.distance();
+        let along = distance * x.sinh();
+        Place { s: self.problem.foot() + along, along, stretch: distance * x.cosh() }
+    }
+
+    /// L by quadrature of exact optical depths, once for all experiments on it.
+    pub fn radiance(&self) -> Known {
+        let problem = self.problem;
+        let medium = problem.medium();
+        let from = medium.support().from;
+        problem.radiance(|| {
+            let found = self.over([RADIANCE], Vec::new(), &|Place { s, along, .. }| {
+                let before = medium.optical_depth(Span::new(from, s)).value;
+                let beyond = problem.shadow_medium(s);
+                let beyond = beyond.map_or(0.0, |m| m.optical_depth(m.support()).value);
+                let source = problem.source_beyond(along)[0];
+                [medium.extinction(s) * source * (-(before + beyond)).exp()]
+            });
+            let [value] = found.value;
+            // The optical depths add their own rounding, and so do places next to the light.
+            let depths = 2.0 * medium.optical_depth(medium.support()).error;
+            let places = 0.25 * f64::EPSILON * problem.foot().abs() / problem.distance();
+            Known::new(value, found.error[0] + (ROUNDING + depths + places) * value.abs())
+        })
+    }
+
+    /// The ends of the panels to begin with, in the stretched variable.
+    fn ends(&self, cuts: Vec<f64>) -> Vec<f64> {
+        let medium = self.problem.medium();
+        let support = medium.support();
+        let mut s: Vec<f64> = medium.breaks();
+        s.extend(cuts);
+        s.extend((1..STEPS).map(|i| support.from + support.length() * i as f64 / STEPS as f64));
+        s.retain(|&s| support.contains_inside(s));
+        s.extend([support.from, support.to]);
+        let unstretch = |s: f64| ((s - self.problem.foot()) / self.problem.distance()).asinh();
+        let mut x: Vec<f64> = s.into_iter().map(unstretch).collect();
+        x.sort_by(f64::total_cmp);
+        let mut ends = vec![x[0]];
+        for pair in x.windows(2).filter(|pair| pair[1] > pair[0]) {
+            let parts = ((pair[1] - pair[0]) / WIDEST).ceil().max(1.0);
+            let mut part = 1.0;
+            while part < parts {
+                ends.push(pair[0] + (pair[1] - pair[0]) * part / parts);
+                part += 1.0;
+            }
+            ends.push(pair[1]);
+        }
+        ends
+    }
+
+    fn panel<const N: usize>(&self, x: Span, f: &dyn Fn(Place) -> [f64; N]) -> [f64; N] {
+        let mut sum = [0.0; N];
+        for (&node, &weight) in self.rule.nodes.iter().zip(&self.rule.weights) {
+            let place = self.stretched(x.from + node * x.length());
+            let values = f(place);
+            let weight = weight * place.stretch * x.length();
+            sum.iter_mut().zip(values).for_each(|(sum, value)| *sum += weight * value);
+        }
+        sum
+    }
+
+    /// `∫ f ds` over the support: panels are halved until the two resolutions agree to the given
+    /// parts of the whole.
+    pub fn integrate<const N: usize>(
+        &self,
+        parts: [f64; N],
+        f: &dyn Fn(&Node) -> [f64; N],
+    ) -> Integral<N> {
+        let mut cuts = self.cuts.clone();
+        cuts.extend(self.camera.cuts());
+        self.over(parts, cuts, &|place| f(&self.node(place)))
+    }
+
+    /// The same of a function of places, with panels that end at cuts, too.
+    pub fn over<const N: usize>(
+        &self,
+        parts: [f64; N],
+        cuts: Vec<f64>,
+        f: &dyn Fn(Place) -> [f64; N],
+    ) -> Integral<N> {
+        if self.problem.medium().support().is_empty() {
+            return Integral { value: [0.0; N], error: [0.0; N], panels: Vec::new() };
+        }
+        let ends = self.ends(cuts);
+        let mut open: Vec<(Span, [f64; N], u32)> =
+            Span::between(&ends).map(|x| (x, self.panel(x, f), HALVINGS)).collect();
+        let scale: [f64; N] =
+            std::array::from_fn(|i| open.iter().map(|(_, value, _)| value[i].abs()).sum());
+        open.reverse();
+        let (mut sums, mut error) = ([Sum::default(); N], [0.0; N]);
+        let mut panels = Vec::new();
+        while let Some((x, coarse, halvings)) = open.pop() {
+            let halves = x.halves();
+            let [left, right] = halves.map(|x| self.panel(x, f));
+            let apart: [f64; N] = std::array::from_fn(|i| (left[i] + right[i] - coarse[i]).abs());
+            let rough = (0..N).any(|i| apart[i] > parts[i] * scale[i]);
+            let room =
+                halvings > 0 && panels.len() + open.len() < MOST && x.contains_inside(x.middle());
+            if rough && room {
+                open.push((halves[1], right, halvings - 1));
+                open.push((halves[0], left, halvings - 1));
+                continue;
+            }
+            for i in 0..N {
+                sums[i].add(left[i]);
+                sums[i].add(right[i]);
+                error[i] += apart[i];
+            }
+            panels.extend(halves);
+        }
+        Integral { value: sums.map(|sum| sum.value()), error, panels }
+    }
+}

@@ -1,0 +1,260 @@
+//! An estimated transmittance of one segment: moments of its value and of its lookups.
+
+use crate::raw::{self, poisson};
+use media::Medium;
+use numeric::quadrature::GaussLegendre;
+use numeric::{Known, Span};
+
+/// How the transmittance of a shadow ray is found.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Tracking {
+    /// In closed form.
+    Exact,
+    /// By ratio tracking through a constant σ̂, with a constant control.
+    Ratio {
+        /// σ̂ > 0, 1/length.
+        sampling: f64,
+        /// σ_c, 1/length.
+        control: f64,
+    },
+    /// By delta tracking through a constant majorant.
+    Delta {
+        /// σ̄, 1/length.
+        sampling: f64,
+    },
+}
+
+/// The powers of a value that are asked for.
+pub const POWERS: [i32; 5] = [1, 2, 3, 4, 8];
+
+/// The moments of an estimated transmittance X and of its lookups N.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Segment {
+    /// `E[X^k]` for k = 0 … 4.
+    pub powers: [f64; 5],
+    /// `E[X⁸]`.
+    pub eighth: f64,
+    /// `E[N^k]` for k = 0 … 4.
+    pub lookups: [f64; 5],
+    /// `E[N^k; the walk came through]` for k = 0 … 4.
+    pub through: [f64; 5],
+    /// A bound on the errors of the exponents A, `E[X^k] = e^{−A}`, k to 4: the relative error of `powers`.
+    pub error: f64,
+    /// A number that these exponents and what they are sums of do not exceed.
+    pub size: f64,
+}
+
+/// Roundings of a loss, and of its sum over nodes, in units of ε times [`size`].
+const ROUNDINGS: f64 = 8.0;
+
+/// What is lost per length of the power k: `kσ_c + σ̂(1 − w^k)`, σ_c and the residual `σ_t − σ_c` given.
+///
+/// ```text
+/// σ̂(1 − w^k) = (σ_t − σ_c)(1 + w + … + w^{k−1}),   w = 1 − (σ_t − σ_c)/σ̂
+/// ```
+///
+/// The difference would leave ε σ̂ of rounding, however small the residual.
+#[inline]
+pub fn loss(k: i32, control: f64, residual: f64, weight: f64) -> f64 {
+    let sum = (0..k).fold(0.0, |sum, _| sum * weight + 1.0);
+    f64::from(k) * control + residual * sum
+}
+
+/// The same of all [`POWERS`], which share their sums.
+#[inline]
+pub fn losses(control: f64, residual: f64, weight: f64) -> [f64; POWERS.len()] {
+    let (mut k, mut sum, mut found) = (0, 0.0, [0.0; POWERS.len()]);
+    for (i, power) in POWERS.into_iter().enumerate() {
+        while k < power {
+            (k, sum) = (k + 1, sum * weight + 1.0);
+        }
+        found[i] = f64::from(power) * control + residual * sum;
+    }
+    found
+}
+
+/// What [`loss`] sums up for k = 4, all with the same sign: at least as much as for a smaller k.
+#[inline]
+pub fn size(control: f64, residual: f64, weight: f64) -> f64 {
+    loss(4, control.abs(), residual.abs(), weight.abs())
+}
+
+/// The error of exponents that are integrals of losses.
+pub fn rounding(size: f64) -> f64 {
+    f64::EPSILON * (1.0 + ROUNDINGS * size)
+}
+
+/// `k σ̄ e^{−τ} (∫σ̄ − τ)^{k−1}`, k = 1 … 4, what the factorial moments of a number of lookups are integrals of.
+pub fn counts(sampling: f64, depth: f64, nulls: f64) -> [f64; 4] {
+    let alive = sampling * (-depth).exp();
+    [1, 2, 3, 4].map(|k| f64::from(k) * alive * nulls.powi(k - 1))
+}
+
+impl Segment {
+    /// A transmittance that is known.
+    pub fn exact(depth: Known) -> Self {
+        let power = |k: f64| (-k * depth.value).exp();
+        let powers = [1.0, power(1.0), power(2.0), power(3.0), power(4.0)];
+        let none = [1.0, 0.0, 0.0, 0.0, 0.0];
+        let error = 4.0 * depth.error + f64::EPSILON;
+        let size = 4.0 * depth.value;
+        Self { powers, eighth: power(8.0), lookups: none, through: none, error, size }
+    }
+
+    /// A transmittance of nothing.
+    pub fn free() -> Self {
+        Self::exact(Known::new(0.0, 0.0))
+    }
+
+    /// A product of Poisson factors with the given exponents, in the order of [`POWERS`], and the
+    /// given mean number of collisions. It always comes through. The exponents are off by an error, and sums
+    /// of losses of a size.
+    pub fn product(exponents: [f64; 5], collisions: f64, [error, size]: [f64; 2]) -> Self {
+        let [a, b, c, d, eighth] = exponents.map(|x| (-x).exp());
+        let lookups = poisson(collisions);
+        let powers = [1.0, a, b, c, d];
+        Self { powers, eighth, lookups, through: lookups, error, size }
+    }
+
+    /// 1 with chance `e^{−τ}`, else 0, by delta tracking through `∫σ̄ = flown`; `factorial[k − 1]` is
+    /// `E[N (N − 1) … (N − k + 1)]`.
+    ///
+    /// ```text
+    /// E[N (N − 1) … (N − k + 1)] = k ∫ σ̄ e^{−τ(t)} (∫₀ᵗ σ̄ − τ(t))^{k−1} dt
+    /// ```
+    pub fn decided(depth: Known, flown: f64, factorial: [f64; 4]) -> Self {
+        let chance = (-depth.value).exp();
+        let lookups = raw::of_factorial(factorial);
+        // What does not end a walk is a Poisson number of null collisions.
+        let through = poisson(flown - depth.value).map(|moment| chance * moment);
+        let powers = [1.0, chance, chance, chance, chance];
+        let (error, size) = (depth.error + f64::EPSILON, depth.value);
+        Self { powers, eighth: chance, lookups, through, error, size }
+    }
+
+    /// Of a shadow ray.
+    pub fn of_shadow(tracking: Tracking, medium: Option<&Medium>, rule: &GaussLegendre) -> Self {
+        let Some(medium) = medium else { return Self::free() };
+        let support = medium.support();
+        let depth = medium.optical_depth(support);
+        match tracking {
+            Tracking::Exact => Self::exact(depth),
+            Tracking::Ratio { sampling, control } => {
+                let lost = |_: f64, sigma: f64| {
+                    let residual = sigma - control;
+                    let weight = 1.0 - residual / sampling;
+                    let [a, b, c, d, e] = losses(control, residual, weight);
+                    [a, b, c, d, e, size(control, residual, weight)]
+                };
+                let (value, apart) = along(medium, rule, lost);
+                let [_, b, c, d, e, size] = value;
+                let apart = apart[1..4].iter().fold(0.0, |most: f64, &apart| most.max(apart));
+                let error = [rounding(size) + apart.max(4.0 * depth.error), size];
+                let exponents = [depth.value, b, c, d, e];
+                Self::product(exponents, sampling * support.length(), error)
+            }
+            Tracking::Delta { sampling } => {
+                let (factorial, _) = along(medium, rule, |t, _| {
+                    let depth = medium.optical_depth(Span::new(support.from, t)).value;
+                    let nulls = sampling * (t - support.from) - depth;
+                    counts(sampling, depth, nulls)
+                });
+                Self::decided(depth, sampling * support.length(), factorial)
+            }
+        }
+    }
+}
+
+/// Halvings of the panels at most.
+const HALVINGS: u32 = 6;
+/// Two resolutions that agree to this are enough: halving a panel of 16 nodes divides the error by
+/// 2³², so that the finer one is then good to rounding.
+const AGREED: f64 = 1e-11;
+
+/// `∫ f(t, σ_t)` over the support of a medium, and what two resolutions differ by: Gauss panels between its
+/// breaks, halved together until these agree.
+fn along<const N: usize>(
+    medium: &Medium,
+    rule: &GaussLegendre,
+    f: impl Fn(f64, f64) -> [f64; N],
+) -> ([f64; N], [f64; N]) {
+    along_all(std::slice::from_ref(medium), rule, |t, sigma| f(t, sigma[0]))
+}
+
+/// The same of several media with one support.
+pub fn along_all<const N: usize>(
+    media: &[Medium],
+    rule: &GaussLegendre,
+    f: impl Fn(f64, &[f64]) -> [f64; N],
+) -> ([f64; N], [f64; N]) {
+    let support = media[0].support();
+    let ends = support.cut(media.iter().flat_map(Medium::breaks).collect());
+    let at = |parts: u32| {
+        let mut sum = [0.0; N];
+        let mut nodes = Vec::with_capacity(rule.nodes.len());
+        let mut here = vec![0.0; media.len()];
+        for Span { from, to } in Span::between(&ends) {
+            let step = (to - from) / f64::from(parts);
+            for part in 0..parts {
+                let from = from + f64::from(part) * step;
+                nodes.clear();
+                nodes.extend(rule.nodes.iter().map(|x| from + x * step));
+                let sigma: Vec<_> = media.iter().map(|medium| medium.extinctions(&nodes)).collect();
+                for (i, (&t, &weight)) in nodes.iter().zip(&rule.weights).enumerate() {
+                    here.iter_mut().zip(&sigma).for_each(|(here, sigma)| *here = sigma[i]);
+                    for (sum, x) in sum.iter_mut().zip(&f(t, &here)) {
+                        *sum += weight * step * x;
+                    }
+                }
+            }
+        }
+        sum
+    };
+    let mut coarse = at(1);
+    let mut apart = [0.0; N];
+    for halving in 1..=HALVINGS {
+        let fine = at(1 << halving);
+        apart = std::array::from_fn(|i| (coarse[i] - fine[i]).abs());
+        coarse = fine;
+        if apart.iter().zip(&fine).all(|(apart, value)| *apart <= AGREED * value.abs().max(1.0)) {
+            break;
+        }
+    }
+    (coarse, apart)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn losses_of_small_residuals_keep_their_digits() {
+        // σ̂(1 − w⁴) = 4r − 6r²/σ̂ + …, r = 1e-3: the difference would be off by ε σ̂ = 1e-7.
+        let (sampling, residual) = (1e9, 1e-3);
+        let weight = 1.0 - residual / sampling;
+        assert!((loss(4, 0.0, residual, weight) / 4e-3 - 1.0).abs() < 1e-11);
+        // Elsewhere both are one, beyond weights of −1, too, where losses are gains.
+        for (residual, control) in [(0.3, 0.0), (1.7, 0.2), (2.9, 0.1), (-0.4, 0.5)] {
+            let weight: f64 = 1.0 - residual;
+            let together = losses(control, residual, weight);
+            for (k, of_all) in POWERS.into_iter().zip(together) {
+                let apart = f64::from(k) * control + (1.0 - weight.powi(k));
+                let found = loss(k, control, residual, weight);
+                assert!(found.to_bits() == of_all.to_bits(), "{k}");
+                assert!((found - apart).abs() < 1e-14 * (1.0 + weight.powi(k).abs()), "{k}");
+                assert!(k > 4 || found.abs() <= size(control, residual, weight));
+            }
+        }
+    }
+
+    #[test]
+    fn delta_tracking_of_a_homogeneous_segment() {
+        // σ = σ̄ = 1: the first collision ends every walk, so N is 1 with chance 1 − e^{−τ}.
+        let length: f64 = 1.5;
+        let first = 1.0 - (-length).exp();
+        let segment = Segment::decided(Known::exact(length), length, [first, 0.0, 0.0, 0.0]);
+        assert_eq!(segment.lookups, [1.0, first, first, first, first]);
+        assert_eq!(segment.through[1..], [0.0; 4]);
+        assert_eq!(segment.through[0], segment.powers[1]);
+    }
+}

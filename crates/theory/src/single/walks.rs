@@ -1,0 +1,263 @@
+//! Draws that scatter at many points of one walk.
+//!
+//! ```text
+//! at every collision   X = Σᵢ wᵢ hᵢ T̂_shadow,  h = σ_t S/σ̂,  wᵢ = T_c(tᵢ) ∏_{j<i} (1 − rⱼ)
+//! resampled            X = (Σᵢ |wᵢ| hᵢ) sgn(w_J) T̂_shadow(t_J),  J chosen with chance ∝ |w_J| h_J
+//! at n points of a density p    X = (1/n) Σⱼ T̂(sⱼ) σ_t S/p T̂_shadow,  one T̂ for all
+//! ```
+
+use super::camera::Losses;
+use super::chain::{At, Chain, Solved, halved};
+use super::predict::{DENSITY, LOOKUPS, MOMENT, Points};
+use super::scene::{Node, Scene};
+use super::segment::Segment;
+use crate::raw::{self, BINOMIAL, added, poisson};
+use numeric::Span;
+
+/// The orders `n₁ … n₄` of the moments of a shared walk, from the fewest points to the most.
+pub const ORDERS: [[usize; 4]; 11] = [
+    [1, 0, 0, 0],
+    [0, 1, 0, 0],
+    [2, 0, 0, 0],
+    [0, 0, 1, 0],
+    [1, 1, 0, 0],
+    [3, 0, 0, 0],
+    [0, 0, 0, 1],
+    [1, 0, 1, 0],
+    [0, 2, 0, 0],
+    [2, 1, 0, 0],
+    [4, 0, 0, 0],
+];
+
+/// Moments on the panels and on their halves, and a relative error bound: the difference, and the rounding of
+/// what is summed, relative to sums of the same sizes, which come second.
+fn both(
+    panels: &[Span],
+    rounding: f64,
+    powers: impl Fn(&[Span]) -> [[f64; 5]; 2],
+) -> ([f64; 5], f64) {
+    let ([coarse, _], [fine, sizes]) = (powers(panels), powers(&halved(panels)));
+    let off = |k: usize| {
+        let rounded = (SUMS + rounding) * sizes[k].abs().max(fine[k].abs());
+        ((fine[k] - coarse[k]).abs() + rounded) / fine[k].abs()
+    };
+    (fine, (1..5).map(off).fold(0.0, f64::max))
+}
+
+/// What running sums over panels lose, relative to the whole.
+const SUMS: f64 = 1e-13;
+
+/// What rounding does to the fourth power of what is scattered at a node, relative to itself.
+fn blur(node: &Node) -> f64 {
+    4.0 * (node.error[0] + DENSITY) + node.camera.error + node.shadow.error
+}
+
+/// `h` and what follows at a collision; nothing where σ̂ is zero, since the residual is zero there.
+fn gain(at: &At) -> [f64; 3] {
+    let [sampling, weight] = at.collision;
+    if sampling <= 0.0 {
+        return [0.0, 0.0, 1.0];
+    }
+    [sampling, at.node.extinction * at.node.source / sampling, weight]
+}
+
+/// The panels that resolve `p E[(h T̂_shadow)^k] E[T̂^k]`, k = 1 … 4, p the density of what is scattered.
+struct Scattered {
+    panels: Vec<Span>,
+    /// `∫ p E[N^k]`, k = 1 … 4, of the lookups, and the error of the first.
+    lookups: [f64; 4],
+    off: f64,
+    /// The rounding of powers, relative, of the power for which that is largest.
+    rounding: f64,
+}
+
+/// `at` answers the powers, the lookups and the relative rounding of a power at a node.
+fn scattered(scene: &Scene, at: impl Fn(&Node) -> ([f64; 4], [f64; 4], f64)) -> Scattered {
+    let mut parts = [MOMENT; 12];
+    parts[4..8].fill(LOOKUPS);
+    parts[8..].fill(f64::INFINITY);
+    let found = scene.integrate(parts, &|node| {
+        let (powers, lookups, blur) = at(node);
+        let rows = [powers, lookups, powers.map(|power| power.abs() * blur)];
+        std::array::from_fn(|i| rows[i / 4][i % 4])
+    });
+    let rows = |row: usize| -> [f64; 4] { std::array::from_fn(|i| found.value[4 * row + i]) };
+    let shares = rows(2).into_iter().zip(rows(0)).map(|(rounded, power)| rounded / power.abs());
+    let rounding = shares.fold(0.0, f64::max);
+    Scattered { lookups: rows(1), off: found.error[4], rounding, panels: found.panels }
+}
+
+/// The lookups of a shadow ray, if one is cast.
+fn of_shadow(node: &Node) -> [f64; 5] {
+    if node.extinction > 0.0 { node.shadow.lookups } else { Segment::free().lookups }
+}
+
+/// Scattered at collisions: `p = σ̂`, and the lookups are the cumulants of a compound Poisson number, moments
+/// of what each collision costs.
+fn scattered_at_collisions(scene: &Scene) -> Scattered {
+    scattered(scene, |node: &Node| {
+        let [sampling, _] = scene.camera.collision(node.s, node.extinction);
+        if sampling <= 0.0 {
+            return ([0.0; 4], [0.0; 4], 0.0);
+        }
+        let h = node.extinction * node.source / sampling;
+        let each = added([1.0; 5], of_shadow(node));
+        let of = |k: usize| sampling * power(h, k) * node.camera.powers[k] * node.shadow.powers[k];
+        let from_first = [1, 2, 3, 4];
+        (from_first.map(of), from_first.map(|k| sampling * each[k]), blur(node))
+    })
+}
+
+/// The powers 1 … most of `Σ wᵢ sᵢ` over the collisions of a walk, or of `Σ |wᵢ| sᵢ`; `scored` is `E[sᵢ^j]` given h.
+fn powers_of_sum(
+    chain: &Chain,
+    most: usize,
+    signed: bool,
+    scored: &dyn Fn(&At, f64, usize) -> f64,
+) -> Vec<Solved> {
+    let mut known: Vec<Solved> = Vec::new();
+    for (k, binomial) in BINOMIAL.iter().enumerate().take(most + 1).skip(1) {
+        let loss = |losses: &Losses| if signed { losses.signed[k] } else { losses.sizes[k] };
+        let solved = chain.solve(&loss, &|at, p, i| {
+            let [sampling, h, weight] = gain(at);
+            let weight = if signed { weight } else { weight.abs() };
+            let lower = |n: usize| if n == 0 { 1.0 } else { known[n - 1].at[p][i] };
+            let term =
+                |j: usize| binomial[j] * scored(at, h, j) * power(weight, k - j) * lower(k - j);
+            sampling * (1..=k).map(term).sum::<f64>()
+        });
+        known.push(solved);
+    }
+    known
+}
+
+/// At every collision.
+pub fn at_collisions(scene: &Scene) -> Points {
+    let Scattered { panels, lookups: cumulants, off, rounding } = scattered_at_collisions(scene);
+    let of = |chain: &Chain, signed: bool| {
+        let scored = |at: &At, h: f64, j: usize| power(h, j) * at.node.shadow.powers[j];
+        let known = powers_of_sum(chain, 4, signed, &scored);
+        std::array::from_fn(|k| if k == 0 { 1.0 } else { known[k - 1].begin })
+    };
+    let powers = |panels: &[Span]| {
+        let chain = Chain::new(scene, panels);
+        let sizes = if chain.is_signed() { of(&chain, false) } else { [0.0; 5] };
+        [of(&chain, true), sizes]
+    };
+    let (powers, error) = both(&panels, rounding, powers);
+    let (truth, lookups) = (scene.radiance(), Some(raw::of_cumulants(cumulants)));
+    let counted = SUMS + off / cumulants[0];
+    Points { truth, powers, error, eighth: None, lookups, least: 0.0, counted }
+}
+
+fn power(x: f64, k: usize) -> f64 {
+    x.powi(i32::try_from(k).unwrap_or(i32::MAX))
+}
+
+/// Resampled: one of the collisions casts a shadow ray for all.
+///
+/// ```text
+/// E[X^k] = E[F^{k−1} G_k],  F = Σ |wᵢ| hᵢ,  G_k = Σ hᵢ |wᵢ| sgn(wᵢ)^k E[T̂_shadow(tᵢ)^k]
+/// ```
+pub fn resampled(scene: &Scene, shadow_is_free: bool) -> Points {
+    let Scattered { panels, rounding, .. } = scattered_at_collisions(scene);
+    let powers = |panels: &[Span]| {
+        let chain = Chain::new(scene, panels);
+        let f = powers_of_sum(&chain, 3, false, &|_, h, j| power(h, j));
+        let last = |k: usize, odd: bool| {
+            let mut g: Vec<Solved> = Vec::new();
+            for j in 0..k {
+                let loss = |losses: &Losses| match (odd, j) {
+                    (true, 1) => losses.mixed,
+                    (true, _) => losses.signed[j + 1],
+                    (false, _) => losses.sizes[j + 1],
+                };
+                let solved = chain.solve(&loss, &|at, p, i| {
+                    let [sampling, h, weight] = gain(at);
+                    let size = weight.abs();
+                    let last = if odd { weight } else { size };
+                    let lower = |n: usize| if n == 0 { 1.0 } else { f[n - 1].at[p][i] };
+                    let shadow = at.node.shadow.powers[k];
+                    let term = |n: usize| {
+                        let scored = h * shadow * lower(j - n);
+                        let later = if n == 0 { 0.0 } else { last * g[j - n].at[p][i] };
+                        BINOMIAL[j][n] * power(h, n) * power(size, j - n) * (scored + later)
+                    };
+                    sampling * (0..=j).map(term).sum::<f64>()
+                });
+                g.push(solved);
+            }
+            g[k - 1].begin
+        };
+        let [mut powers, mut sizes] = [[1.0, 0.0, 0.0, 0.0, 0.0]; 2];
+        for k in 1..5 {
+            let odd = k % 2 == 1;
+            powers[k] = last(k, odd);
+            if odd && chain.is_signed() {
+                sizes[k] = last(k, false);
+            }
+        }
+        [powers, sizes]
+    };
+    let (powers, error) = both(&panels, rounding, powers);
+    // Which collision casts the ray depends on all of them; without lookups of its own it does not
+    // matter.
+    let lookups = shadow_is_free.then(|| poisson(scene.camera.collisions()));
+    let truth = scene.radiance();
+    Points { truth, powers, error, eighth: None, lookups, least: 0.0, counted: SUMS }
+}
+
+/// At `count` points of a density, all with the transmittance of one walk over the whole ray.
+pub fn at_points(scene: &Scene, count: usize, density: &dyn Fn(&Node) -> f64) -> Points {
+    let scored = |node: &Node, k: usize| {
+        let p = density(node);
+        p * power(node.extinction * node.source / p, k) * node.shadow.powers[k]
+    };
+    let found = scattered(scene, |node: &Node| {
+        let shadow = of_shadow(node);
+        let from_first = [1, 2, 3, 4];
+        let powers = from_first.map(|k| scored(node, k) * node.camera.powers[k]);
+        let lookups = from_first.map(|k| density(node) * shadow[k]);
+        (powers, lookups, blur(node) + 4.0 * DENSITY)
+    });
+    let powers = |panels: &[Span]| {
+        let chain = Chain::new(scene, panels);
+        // E[A₁^{n₁} A₂^{n₂} …] with A_m = ∫ p (T̂ σ_t S/p)^m E[T̂_shadow^m] ds, by total degree.
+        let mut known: Vec<([usize; 4], Solved)> = Vec::new();
+        for order in ORDERS {
+            let degree: usize = order.iter().enumerate().map(|(i, n)| (i + 1) * n).sum();
+            let solved = chain.solve(&|losses| losses.signed[degree], &|at, p, i| {
+                let term = |m: usize| {
+                    if order[m] == 0 {
+                        return 0.0;
+                    }
+                    let mut lower = order;
+                    lower[m] -= 1;
+                    let rest = known.iter().find(|(order, _)| *order == lower);
+                    let rest = rest.map_or(1.0, |(_, solved)| solved.at[p][i]);
+                    order[m] as f64 * scored(&at.node, m + 1) * rest
+                };
+                (0..4).map(term).sum()
+            });
+            known.push((order, solved));
+        }
+        let of: Vec<f64> = known.iter().map(|(_, solved)| solved.begin).collect();
+        let n = count as f64;
+        let (two, three, four) =
+            (n * (n - 1.0), n * (n - 1.0) * (n - 2.0), n * (n - 1.0) * (n - 2.0) * (n - 3.0));
+        let third = n * of[3] + 3.0 * two * of[4] + three * of[5];
+        let fourth =
+            n * of[6] + two * (4.0 * of[7] + 3.0 * of[8]) + 6.0 * three * of[9] + four * of[10];
+        let second = n * of[1] + two * of[2];
+        // All that is summed is positive.
+        [[1.0, of[0], second / n.powi(2), third / n.powi(3), fourth / n.powi(4)], [0.0; 5]]
+    };
+    let (powers, error) = both(&found.panels, found.rounding, powers);
+    let [first, ..] = found.lookups;
+    let each = std::array::from_fn(|k| if k == 0 { 1.0 } else { found.lookups[k - 1] });
+    let walk = poisson(scene.camera.collisions());
+    let lookups = (0..count).fold(walk, |sum, _| added(sum, each));
+    let counted = SUMS + found.off / (1.0 + first);
+    let (truth, least) = (scene.radiance(), count as f64);
+    Points { truth, powers, error, eighth: None, lookups: Some(lookups), least, counted }
+}

@@ -1,0 +1,139 @@
+//! Directions in a slab: a quadrature for cosines, and how light is scattered between them.
+
+use media::phase::Phase;
+use numeric::matrix::Matrix;
+use numeric::quadrature::GaussLegendre;
+
+/// Legendre moments below this, with their factor `2l + 1`, are left out.
+const FAINT: f64 = 1e-17;
+/// The most Legendre moments that are summed.
+const MOST_MOMENTS: usize = 4000;
+/// The most: more take seconds.
+const MOST: usize = 144;
+
+/// The cosines `μ = x²` of Gauss–Legendre nodes x, dense where light grazes the slab, and further
+/// cosines of incidence, from which light may come but into which none is scattered.
+///
+/// ```text
+/// P±ᵢⱼ = ½ p(±μᵢ, μⱼ) wⱼ,   p(μ, μ') = Σ_l (2l + 1) χ_l P_l(μ) P_l(μ'),   Σⱼ (P⁺ᵢⱼ + P⁻ᵢⱼ) = 1
+/// ```
+pub struct Directions {
+    /// The cosines: first those of the quadrature, then the further ones.
+    pub cosines: Vec<f64>,
+    /// The weights of the quadrature.
+    pub weights: Vec<f64>,
+    /// P⁺: scattered on through the slab.
+    pub onward: Matrix,
+    /// P⁻: scattered back.
+    pub back: Matrix,
+}
+
+impl Directions {
+    /// A quadrature of `count` cosines, and further cosines of incidence.
+    pub fn new(phase: &Phase, count: usize, further: &[f64]) -> Self {
+        let rule = GaussLegendre::new(count);
+        let mut cosines: Vec<f64> = rule.nodes.iter().map(|x| x * x).collect();
+        let weights: Vec<f64> =
+            rule.nodes.iter().zip(&rule.weights).map(|(x, weight)| 2.0 * x * weight).collect();
+        cosines.extend(further);
+        let moments = moments(phase);
+        let legendre: Vec<Vec<f64>> =
+            cosines.iter().map(|&cosine| legendre(cosine, moments.len())).collect();
+        // Even and odd orders apart: the sum of both is p(μ, μ'), the difference p(−μ, μ').
+        let parts = |i: usize, j: usize| {
+            let (mut even, mut odd) = (0.0, 0.0);
+            for (l, moment) in moments.iter().enumerate().rev() {
+                let term = moment * legendre[i][l] * legendre[j][l];
+                if l % 2 == 0 { even += term } else { odd += term }
+            }
+            [0.5 * weights[j] * (even + odd), 0.5 * weights[j] * (even - odd)]
+        };
+        let rows = cosines.len();
+        // The quadrature errs by what it cannot resolve; that no light is lost is exact.
+        let whole: Vec<f64> = (0..rows)
+            .map(|i| (0..count).map(|j| parts(i, j)).map(|[onward, back]| onward + back).sum())
+            .collect();
+        let onward = Matrix::new(rows, count, |i, j| parts(i, j)[0] / whole[i]);
+        let back = Matrix::new(rows, count, |i, j| parts(i, j)[1] / whole[i]);
+        Self { cosines, weights, onward, back }
+    }
+
+    /// How many cosines the quadrature has.
+    pub fn count(&self) -> usize {
+        self.weights.len()
+    }
+}
+
+/// `(2l + 1) χ_l` up to the last that counts.
+fn moments(phase: &Phase) -> Vec<f64> {
+    let all: Vec<f64> = (0..MOST_MOMENTS).map(|l| (2 * l + 1) as f64 * phase.moment(l)).collect();
+    let last = all.iter().rposition(|moment| moment.abs() >= FAINT).unwrap_or(0);
+    all[..=last].to_vec()
+}
+
+/// `P_0(x), P_1(x), …`, so many of them.
+fn legendre(x: f64, count: usize) -> Vec<f64> {
+    let mut values = vec![1.0, x];
+    for l in 2..count {
+        let order = l as f64;
+        values.push(
+            ((2.0 * order - 1.0) * x * values[l - 1] - (order - 1.0) * values[l - 2]) / order,
+        );
+    }
+    values.truncate(count);
+    values
+}
+
+/// How many cosines resolve a phase function down to moments of the given size: measured errors of
+/// reflectances fall like `g^{2n}`.
+pub fn needed(phase: &Phase, faintest: f64) -> usize {
+    let last = (0..2 * MOST).rposition(|l| phase.moment(l).abs() >= faintest).unwrap_or(0);
+    (last / 2 + 1).min(MOST)
+}
+
+/// Whether so many directions can be had.
+pub fn are_enough(phase: &Phase, faintest: f64) -> bool {
+    phase.moment(2 * MOST).abs() < faintest
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use media::phase::{PhaseFunction, henyey_greenstein::HenyeyGreenstein, isotropic::Isotropic};
+
+    #[test]
+    fn isotropic_light_is_spread_by_the_weights_alone() {
+        let directions = Directions::new(&Phase::Isotropic(Isotropic), 12, &[0.3]);
+        for i in 0..13 {
+            for j in 0..12 {
+                let half = 0.5 * directions.weights[j];
+                assert!((directions.onward.at(i, j) - half).abs() < 1e-15);
+                assert!((directions.back.at(i, j) - half).abs() < 1e-15);
+            }
+        }
+    }
+
+    #[test]
+    fn the_mean_cosine_survives_the_quadrature() {
+        // Light along the axis keeps g of its cosine: Σ (P⁺ − P⁻)μ = g.
+        let phase = HenyeyGreenstein::new(0.6).expect("in range");
+        assert_eq!(phase.moment(1), 0.6);
+        let directions = Directions::new(&Phase::HenyeyGreenstein(phase), 40, &[1.0]);
+        let kept: f64 = (0..40)
+            .map(|j| {
+                let net = directions.onward.at(40, j) - directions.back.at(40, j);
+                net * directions.cosines[j]
+            })
+            .sum();
+        assert!((kept - 0.6).abs() < 1e-12, "{kept}");
+    }
+
+    #[test]
+    fn sharper_phase_functions_need_more_directions() {
+        let of = |g: f64| Phase::HenyeyGreenstein(HenyeyGreenstein::new(g).expect("in range"));
+        assert_eq!(needed(&Phase::Isotropic(Isotropic), 1e-12), 1);
+        assert!(needed(&of(0.75), 1e-12) < needed(&of(0.9), 1e-12));
+        assert_eq!(needed(&of(0.999), 1e-12), MOST);
+        assert!(are_enough(&of(0.9), 1e-12) && !are_enough(&of(-0.95), 1e-12));
+    }
+}

@@ -1,0 +1,175 @@
+//! Layers of a slab: thin ones, doubled ones, and one laid upon another.
+//!
+//! With rows for the direction of incidence and columns for that of escape, energy goes from one layer
+//! to the next by matrix products. A is what is let through, the direct beam `D = e^{−τ/μ}` on its
+//! diagonal, the scattered T elsewhere; above lies 1, below lies 2:
+//!
+//! ```text
+//! M = (1 − R₂R₁)⁻¹ = 1 + R₂R₁ + (R₂R₁)² + …          light between the layers
+//! R = R₁ + A₁ M R₂ A₁,   T = A₁ M A₂ − D₁D₂,   N = N₁ + A₁ M (N₂ + R₂ N₁)
+//! ```
+//!
+//! All terms are positive, D is kept apart, and nothing cancels. N is the expected score of the
+//! collisions of one particle, by its direction of incidence.
+//!
+//! Source: H. C. van de Hulst, *Multiple Light Scattering* (Academic Press, 1980), chapter 4; J. E.
+//! Hansen, L. D. Travis, *Light scattering in planetary atmospheres*, Space Science Reviews 16,
+//! 527–610 (1974), section 3. The scores are added here: they follow a particle through the same
+//! series.
+
+use super::directions::Directions;
+use numeric::matrix::Matrix;
+
+/// One homogeneous layer of a walk, by what a tentative collision does to it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Slice {
+    /// `∫σ̂` across the layer.
+    pub flown: f64,
+    /// `Q`, what goes straight on.
+    pub straight: f64,
+    /// `S`, what is scattered.
+    pub scattered: f64,
+    /// The score of a collision.
+    pub score: f64,
+}
+
+impl Slice {
+    /// What a collision takes out of the beam, `1 − Q`.
+    pub fn lost(&self) -> f64 {
+        1.0 - self.straight
+    }
+}
+
+/// What a layer does to light that comes from above.
+#[derive(Clone)]
+pub struct Layer {
+    /// R: scattered back, by direction of incidence and of escape.
+    pub reflected: Matrix,
+    /// T: scattered through.
+    pub scattered: Matrix,
+    /// D: let through without scattering, by direction of incidence.
+    pub direct: Vec<f64>,
+    /// N.
+    pub score: Vec<f64>,
+}
+
+/// `(1 − e^{−y})/y`.
+fn mean_decay(y: f64) -> f64 {
+    if y.abs() < 1e-9 { 1.0 - 0.5 * y } else { -(-y).exp_m1() / y }
+}
+
+impl Layer {
+    /// A homogeneous layer by `doublings` doublings of one so thin that light scatters in it once at
+    /// most; `None` where the expected energy is infinite.
+    pub fn homogeneous(directions: &Directions, slice: &Slice, doublings: i32) -> Option<Self> {
+        // Without loss, light along the layer meets collision after collision without end.
+        if slice.lost() < 0.0 || (slice.lost() == 0.0 && slice.scattered > 0.0) {
+            return None;
+        }
+        let mut part = 0.5f64.powi(doublings);
+        let mut layer = Self::thin(directions, slice, part);
+        for _ in 0..doublings {
+            layer = layer.doubled()?;
+            part *= 2.0;
+            // Afresh, so that rounding does not double with the layer.
+            layer.direct = direct(directions, slice, part);
+        }
+        Some(layer)
+    }
+
+    /// A share of the layer in which light scatters at most once.
+    ///
+    /// ```text
+    /// Rᵢⱼ = S P⁻ᵢⱼ (h/μᵢ) φ(u(1/μᵢ + 1/μⱼ)),   φ(y) = (1 − e^{−y})/y,   u = (1 − Q) h
+    /// Tᵢⱼ = S P⁺ᵢⱼ (h/μᵢ) e^{−u/μⱼ} φ(u(1/μᵢ − 1/μⱼ)),   Nᵢ = (h/μᵢ) φ(u/μᵢ)
+    /// ```
+    fn thin(directions: &Directions, slice: &Slice, part: f64) -> Self {
+        let flown = slice.flown * part;
+        let lost = slice.lost() * flown;
+        let inverse: Vec<f64> = directions.cosines.iter().map(|cosine| 1.0 / cosine).collect();
+        let (rows, columns) = (inverse.len(), directions.count());
+        let reflected = Matrix::new(rows, columns, |i, j| {
+            let path = lost * (inverse[i] + inverse[j]);
+            slice.scattered * directions.back.at(i, j) * flown * inverse[i] * mean_decay(path)
+        });
+        let scattered = Matrix::new(rows, columns, |i, j| {
+            // The exponent that is taken out is the smaller one: nothing overflows.
+            let least = inverse[i].min(inverse[j]);
+            let path = lost * (inverse[i] - inverse[j]).abs();
+            let through = (-lost * least).exp() * mean_decay(path);
+            slice.scattered * directions.onward.at(i, j) * flown * inverse[i] * through
+        });
+        let score =
+            inverse.iter().map(|i| slice.score * flown * i * mean_decay(lost * i)).collect();
+        Self { reflected, scattered, direct: direct(directions, slice, part), score }
+    }
+
+    /// The layer on another of its kind, for which `M R A = R M A`.
+    fn doubled(&self) -> Option<Self> {
+        let square = self.reflected.square();
+        let twice = square.times(&square);
+        self.joined(self, &twice, Matrix::clone)
+    }
+
+    /// The layer on top of another one.
+    pub fn over(&self, below: &Self) -> Option<Self> {
+        let there_and_back = below.reflected.times(&self.reflected).square();
+        // X = R₂(A₁ + R₁X), by the same series.
+        let once = below.reflected.times(&self.through());
+        let within = there_and_back.series_times(&once)?;
+        let upward = once.plus(&below.reflected.times(&self.reflected.times(&within)));
+        self.joined(below, &there_and_back, |_| upward)
+    }
+
+    /// A without its rows for further directions.
+    fn through(&self) -> Matrix {
+        let mut through = self.scattered.square();
+        for i in 0..through.columns() {
+            through.add(i, i, self.direct[i]);
+        }
+        through
+    }
+
+    /// Joins two layers, given `R₂R₁` and how `X = M R₂ A₁` is made from `R₁Y`, `Y = M A₂`.
+    fn joined(
+        &self,
+        below: &Self,
+        there_and_back: &Matrix,
+        upward: impl FnOnce(&Matrix) -> Matrix,
+    ) -> Option<Self> {
+        let columns = there_and_back.columns();
+        // One more column for the scores: M (N₂ + R₂N₁).
+        let met = |score: &[f64]| -> Vec<f64> {
+            let back = below.reflected.applied(score);
+            below.score.iter().zip(back).map(|(own, back)| own + back).collect()
+        };
+        let (through, scores) = (below.through(), met(&self.score));
+        let wanted = Matrix::new(columns, columns + 1, |i, j| {
+            if j < columns { through.at(i, j) } else { scores[i] }
+        });
+        let solved = there_and_back.series_times(&wanted)?;
+        let downward = Matrix::new(columns, columns, |i, j| solved.at(i, j));
+        let inner: Vec<f64> = (0..columns).map(|i| solved.at(i, columns)).collect();
+        let turned = self.reflected.times(&downward);
+        let upward = upward(&turned);
+        // Y − D₂ and M (N₂ + R₂N₁) for all rows, the further directions among them.
+        let past = below.scattered.clone().plus(&below.reflected.times(&turned));
+        let again = self.reflected.applied(&inner);
+        let seen: Vec<f64> = self.score.iter().zip(again).map(|(own, back)| own + back).collect();
+        let (all, passed) = (met(&seen), self.scattered.applied(&inner));
+        let reflected = self.reflected.clone().plus(&self.scattered.times(&upward));
+        let scattered = self.scattered.times(&downward);
+        let score = (0..all.len()).map(|i| self.score[i] + passed[i] + self.direct[i] * all[i]);
+        Some(Self {
+            reflected: reflected.plus_rows(&self.direct, &upward),
+            scattered: scattered.plus_rows(&self.direct, &past),
+            direct: self.direct.iter().zip(&below.direct).map(|(a, b)| a * b).collect(),
+            score: score.collect(),
+        })
+    }
+}
+
+fn direct(directions: &Directions, slice: &Slice, part: f64) -> Vec<f64> {
+    let lost = slice.lost() * slice.flown * part;
+    directions.cosines.iter().map(|cosine| (-lost / cosine).exp()).collect()
+}

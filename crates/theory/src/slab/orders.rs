@@ -1,0 +1,192 @@
+//! By how many scatterings light leaves a slab of isotropic scattering that absorbs nothing.
+//!
+//! ```text
+//! C_1(u) = e^{−u/μ₀}/μ₀, or 2E₂(u) of light from all sides;   C_{r+1}(u) = ½ ∫₀^τ E₁(|u − u'|) C_r(u') du'
+//! R_r = ½ ∫ E₂(u) C_r du,   T_r = ½ ∫ E₂(τ − u) C_r du,   T_0 = e^{−τ/μ₀}, or 2E₃(τ)
+//! ```
+//!
+//! `C_r` is the density of r-th collisions. Panels shrink towards both ends, where C is like `u ln u`; between the nodes of
+//! a panel it is a polynomial, and next to the logarithm of E₁ the quadrature is finer by the fourth power. Errors
+//! are 1e-12 and a few 1e-15 for each order, which the sum over all of them tells: everything leaves.
+//!
+//! Source: R. E. Peierls, *Critical conditions in neutron multiplication*, Mathematical Proceedings of the Cambridge
+//! Philosophical Society 35 (1939); K. M. Case, P. F. Zweifel, *Linear Transport Theory* (1967).
+
+use super::Light;
+use numeric::exponential_integrals;
+use numeric::quadrature::GaussLegendre;
+
+/// Nodes of a panel.
+const NODES: usize = 16;
+/// Panels are no thicker.
+const THICKEST: f64 = 0.5;
+/// Panels shrink so many times to a quarter towards both ends.
+const SHRINKS: i32 = 12;
+/// Thicker slabs have too many orders.
+const DEEPEST: f64 = 8.0;
+/// Orders of scattering that are rarer than this do not count.
+const RARE: f64 = 1e-17;
+/// The most orders of scattering.
+const MOST: usize = 4096;
+
+/// A slab cut into panels.
+struct Panels {
+    depth: f64,
+    /// Beginnings and widths.
+    cut: Vec<[f64; 2]>,
+    rule: GaussLegendre,
+    finer: GaussLegendre,
+    /// One over the products of a node's distances from the others.
+    barycentric: Vec<f64>,
+}
+
+impl Panels {
+    fn new(depth: f64) -> Self {
+        let (rule, finer) = (GaussLegendre::new(NODES), GaussLegendre::new(40));
+        let scale = THICKEST.min(0.5 * depth);
+        let mut ends = vec![0.0, depth];
+        for shrink in 0..=SHRINKS {
+            let near = scale * 0.25f64.powi(shrink);
+            ends.extend([near, depth - near]);
+        }
+        let between = depth - 2.0 * scale;
+        let parts = (between / THICKEST).ceil();
+        let cuts = std::iter::successors(Some(1.0), |part| Some(part + 1.0));
+        ends.extend(
+            cuts.take_while(|&part| part < parts).map(|part| scale + between * part / parts),
+        );
+        ends.sort_by(f64::total_cmp);
+        ends.dedup_by(|a, b| *a - *b < 1e-14 * depth);
+        let cut = ends.windows(2).map(|pair| [pair[0], pair[1] - pair[0]]).collect();
+        let nodes = &rule.nodes;
+        let apart = |j: usize| -> f64 {
+            (0..NODES).filter(|&i| i != j).map(|i| nodes[j] - nodes[i]).product()
+        };
+        let barycentric = (0..NODES).map(|j| 1.0 / apart(j)).collect();
+        Self { depth, cut, rule, finer, barycentric }
+    }
+
+    /// Depths and weights of all nodes.
+    fn nodes(&self) -> Vec<[f64; 2]> {
+        let points = || self.rule.nodes.iter().zip(&self.rule.weights);
+        let of =
+            |&[from, width]: &[f64; 2]| points().map(move |(x, w)| [from + width * x, width * w]);
+        self.cut.iter().flat_map(of).collect()
+    }
+
+    /// The polynomials that are 1 at one node of a panel and 0 at the others, at a place in it.
+    fn basis(&self, at: f64) -> [f64; NODES] {
+        let away: [f64; NODES] = std::array::from_fn(|j| at - self.rule.nodes[j]);
+        if let Some(hit) = away.iter().position(|&away| away == 0.0) {
+            return std::array::from_fn(|j| f64::from(u8::from(j == hit)));
+        }
+        let whole: f64 = away.iter().product();
+        std::array::from_fn(|j| whole * self.barycentric[j] / away[j])
+    }
+
+    /// `½ ∫ E₁(|u − u'|) ℓ du'` over a panel, of all its polynomials.
+    fn coupled(&self, depth: f64, [from, width]: [f64; 2]) -> [f64; NODES] {
+        let mut sums = [0.0; NODES];
+        let away = (from - depth).max(depth - from - width);
+        if away > width {
+            for (sum, (node, weight)) in
+                sums.iter_mut().zip(self.rule.nodes.iter().zip(&self.rule.weights))
+            {
+                let [first, _] = exponential_integrals((from + width * node - depth).abs());
+                *sum = 0.5 * weight * width * first;
+            }
+            return sums;
+        }
+        let nearest = depth.clamp(from, from + width);
+        for end in [from, from + width] {
+            let length = end - nearest;
+            for (v, weight) in self.finer.nodes.iter().zip(&self.finer.weights) {
+                let off = length * v.powi(4);
+                let [first, _] = exponential_integrals((nearest - depth + off).abs());
+                let share = 2.0 * weight * length.abs() * v.powi(3) * first;
+                for (sum, basis) in sums.iter_mut().zip(self.basis((nearest + off - from) / width))
+                {
+                    *sum += share * basis;
+                }
+            }
+        }
+        sums
+    }
+}
+
+/// The probabilities to leave a slab of an optical depth without absorption after r scatterings, reflected and
+/// transmitted; `None` where there are too many.
+pub fn orders(light: Light, depth: f64) -> Option<Vec<[f64; 2]>> {
+    if depth <= 0.0 || depth > DEEPEST {
+        return None;
+    }
+    let slab = Panels::new(depth);
+    let nodes = slab.nodes();
+    let kernel: Vec<f64> = nodes
+        .iter()
+        .flat_map(|&[u, _]| slab.cut.iter().flat_map(move |&panel| [(u, panel)]))
+        .flat_map(|(u, panel)| slab.coupled(u, panel))
+        .collect();
+    let escape: Vec<[f64; 2]> = nodes
+        .iter()
+        .map(|&[u, weight]| [u, slab.depth - u].map(|u| 0.5 * weight * exponential_integrals(u)[1]))
+        .collect();
+    let (unscattered, first): (f64, &dyn Fn(f64) -> f64) = match light {
+        Light::Collimated(cosine) => {
+            ((-depth / cosine).exp(), &move |u: f64| (-u / cosine).exp() / cosine)
+        }
+        // 2E₃ = e^{−τ} − τ E₂.
+        Light::Diffuse => {
+            let passed = (-depth).exp() - depth * exponential_integrals(depth)[1];
+            (passed, &|u: f64| 2.0 * exponential_integrals(u)[1])
+        }
+    };
+    let mut collisions: Vec<f64> = nodes.iter().map(|&[u, _]| first(u)).collect();
+    let mut found = vec![[0.0, unscattered]];
+    while found.len() < MOST {
+        let leaves = |end: usize| -> f64 {
+            collisions.iter().zip(&escape).map(|(c, escape)| c * escape[end]).sum()
+        };
+        let order = [leaves(0), leaves(1)];
+        found.push(order);
+        if order[0] + order[1] < RARE {
+            return Some(found);
+        }
+        let again = kernel.chunks(nodes.len());
+        collisions =
+            again.map(|row| row.iter().zip(&collisions).map(|(k, c)| k * c).sum()).collect();
+    }
+    None
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::slab::answers;
+    use media::phase::Phase;
+    use media::phase::isotropic::Isotropic;
+    use numeric::Known;
+
+    #[test]
+    fn orders_sum_to_what_adding_and_doubling_says() {
+        let phase = Phase::Isotropic(Isotropic);
+        for light in [Light::Collimated(0.5), Light::Collimated(1.0), Light::Diffuse] {
+            for depth in [0.05, 1.45, 6.0] {
+                let orders = orders(light, depth).expect("few");
+                let all: f64 = orders.iter().flatten().sum();
+                assert!((all - 1.0).abs() < 1e-11, "{light:?}, {depth}: {:e}", all - 1.0);
+                for albedo in [0.3, 0.9] {
+                    let sum = |end: usize| {
+                        orders.iter().rev().fold(0.0, |sum, order| sum * albedo + order[end])
+                    };
+                    let known = Known::exact(depth);
+                    let answer = answers(&phase, &[light], known, albedo).expect("finite")[0];
+                    for (end, exact) in [answer.reflected, answer.transmitted].iter().enumerate() {
+                        let off = (sum(end) - exact.value).abs();
+                        assert!(off < 1e-11 + exact.error, "{light:?}, {depth}, {albedo}: {off:e}");
+                    }
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,177 @@
+//! A slab cut into layers on which the ratio `r = σ_t/σ̂` is one number, or nearly so.
+//!
+//! Where r varies, layers end where the moments of collisions have kinks, as at r = 1, and the first is halved
+//! again and again towards the top: grazing light gets no deeper than μ₀ free paths, and sees r there rather
+//! than the mean of a layer.
+
+use super::layer::Slice;
+use crate::Mesh;
+use crate::particle::Odds;
+use crate::problems::slab::Light;
+use media::Piecewise;
+use numeric::Span;
+use numeric::quadrature::GaussLegendre;
+
+/// A ratio that varies by less is one number.
+const SAME: f64 = 1e-12;
+/// More layers than this are averaged.
+const MOST_EXACT: usize = 16;
+/// Layers of the coarser cut where r varies, before the first is halved: so many, or two for each smooth panel of σ_t, but not more
+/// than the most.
+const COARSE: [usize; 2] = [12, 48];
+/// More breaks than this are averaged over.
+const MOST_BREAKS: usize = 24;
+/// Nodes on a smooth part of a layer.
+const NODES: usize = 6;
+/// The first layer is not thicker than light of this cosine gets, even if none grazes.
+const STEEP: f64 = 0.1;
+/// The most halvings of the first layer.
+const HALVINGS: u32 = 30;
+
+/// A layer: what is flown in it, and the ratios in it with their shares, which add up to 1.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Piece {
+    /// `∫σ̂` over the layer.
+    pub flown: f64,
+    /// Shares of `∫σ̂` and the ratios there.
+    pub ratios: Vec<[f64; 2]>,
+}
+
+impl Piece {
+    /// A layer of one ratio.
+    pub fn of(flown: f64, ratio: f64) -> Self {
+        Self { flown, ratios: vec![[1.0, ratio]] }
+    }
+
+    /// The layer with the mean of what collisions in it do.
+    pub(super) fn slice(&self, at: impl Fn(f64) -> [f64; 3]) -> Slice {
+        let mut sums = [0.0; 3];
+        for &[share, ratio] in &self.ratios {
+            for (sum, x) in sums.iter_mut().zip(at(ratio)) {
+                *sum += share * x;
+            }
+        }
+        let [straight, scattered, score] = sums;
+        Slice { flown: self.flown, straight, scattered, score }
+    }
+
+    /// Whether every collision in it is null: then nothing happens to a particle.
+    pub(super) fn is_idle(&self, odds: impl Fn(f64) -> Odds) -> bool {
+        self.ratios.iter().all(|&[_, ratio]| odds(ratio).transmit >= 1.0)
+    }
+}
+
+/// The layers of a slab, the first on top.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Pieces {
+    /// r is one number in each.
+    Exact(Vec<Piece>),
+    /// r varies in them: a coarser cut, and one of twice as many layers.
+    Graded([Vec<Piece>; 2]),
+}
+
+impl Pieces {
+    /// The layers of a medium under a sampling extinction, for a walk whose moments have kinks at some ratios
+    /// and any of the given lights.
+    pub fn new(mesh: &Mesh, sampling: &Piecewise, kinks: &[f64], lights: &[Light]) -> Self {
+        let cut = mesh.refined(sampling.knots(), &|_, _| Vec::new());
+        let mut exact: Vec<Piece> = Vec::new();
+        let mut is_exact = true;
+        for panel in cut.panels() {
+            let there: Vec<f64> = panel.t.iter().map(|&t| sampling.value(t)).collect();
+            let flown = cut.integral(panel, &there);
+            // What neither collides nor scatters is not there.
+            if flown <= 0.0 {
+                continue;
+            }
+            let mut ratios = panel.extinction.iter().zip(&there).map(|(sigma, here)| sigma / here);
+            let first = ratios.next().unwrap_or(0.0);
+            let same = |ratio: f64| (ratio - first).abs() <= SAME * first.abs();
+            is_exact &= ratios.all(same);
+            match exact.last_mut() {
+                Some(last) if same(last.ratios[0][1]) => last.flown += flown,
+                _ => exact.push(Piece::of(flown, first)),
+            }
+            if !is_exact || exact.len() > MOST_EXACT {
+                return Self::Graded(graded(&cut, sampling, kinks, lights));
+            }
+        }
+        Self::Exact(exact)
+    }
+}
+
+/// Layers of about equal thickness, which end at the breaks of σ_t and σ̂, if these are few, and at kinks, if
+/// they are still few with them; and the same layers cut in two.
+fn graded(cut: &Mesh, sampling: &Piecewise, kinks: &[f64], lights: &[Light]) -> [Vec<Piece>; 2] {
+    let support = cut.support();
+    let mut knots = cut.medium().breaks();
+    knots.extend(sampling.knots());
+    let passed = |&ratio: &f64| {
+        cut.roots(|t, sigma| {
+            let (kink, off) = (ratio * sampling.value(t), sigma - ratio * sampling.value(t));
+            // Where both are one field rounding passes nothing.
+            if off.abs() <= SAME * kink { 0.0 } else { off }
+        })
+    };
+    let both = knots.iter().copied().chain(kinks.iter().flat_map(passed)).collect();
+    let (knots, breaks) = (support.cut(knots), support.cut(both));
+    let few = [&breaks, &knots].into_iter().find(|breaks| breaks.len() <= MOST_BREAKS);
+    let stretches = few.cloned().unwrap_or_else(|| vec![support.from, support.to]);
+    let layers = (2 * cut.panels().len()).clamp(COARSE[0], COARSE[1]);
+    let mut ends = vec![support.from];
+    for stretch in stretches.windows(2) {
+        let length = stretch[1] - stretch[0];
+        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // a few dozen
+        let parts = ((layers as f64 * length / support.length()).ceil() as usize).max(1);
+        ends.extend((1..parts).map(|i| stretch[0] + length / parts as f64 * i as f64));
+        ends.push(stretch[1]);
+    }
+    let rule = GaussLegendre::new(NODES);
+    let piece = |from: f64, to: f64| piece(cut, sampling, Span::new(from, to), &breaks, &rule);
+    let least = lights.iter().filter_map(|light| light.cosine()).fold(STEEP, f64::min);
+    let flown = |ends: &[f64]| piece(ends[0], ends[1]).map_or(0.0, |piece| piece.flown);
+    for _ in 0..HALVINGS {
+        // Light passes what has no collisions.
+        let Some(first) = ends.windows(2).position(|ends| flown(ends) > 0.0) else { break };
+        if flown(&ends[first..]) <= least {
+            break;
+        }
+        ends.insert(first + 1, 0.5 * (ends[first] + ends[first + 1]));
+    }
+    [1, 2].map(|times| {
+        let split = |ends: &[f64]| -> Vec<Piece> {
+            let step = (ends[1] - ends[0]) / f64::from(times);
+            let from = |i: i32| if i == times { ends[1] } else { ends[0] + step * f64::from(i) };
+            (0..times).filter_map(|i| piece(from(i), from(i + 1))).collect()
+        };
+        ends.windows(2).flat_map(split).collect()
+    })
+}
+
+/// One layer by quadrature between the breaks inside it; `None` where nothing is flown.
+fn piece(
+    mesh: &Mesh,
+    sampling: &Piecewise,
+    within: Span,
+    breaks: &[f64],
+    rule: &GaussLegendre,
+) -> Option<Piece> {
+    let mut ends = vec![within.from];
+    ends.extend(breaks.iter().copied().filter(|&t| within.contains_inside(t)));
+    ends.push(within.to);
+    let mut ratios: Vec<[f64; 2]> = Vec::new();
+    for span in Span::between(&ends) {
+        let extinction = mesh.medium().extinctions(&rule.nodes_on(span));
+        for ((t, weight), sigma) in rule.on(span).zip(extinction) {
+            let here = sampling.value(t);
+            if here > 0.0 {
+                ratios.push([weight * here, sigma / here]);
+            }
+        }
+    }
+    let flown: f64 = ratios.iter().map(|[share, _]| share).sum();
+    for [share, _] in &mut ratios {
+        *share /= flown;
+    }
+    (flown > 0.0).then_some(Piece { flown, ratios })
+}

@@ -1,0 +1,397 @@
+//! A walk in a slab: mean, variance and cost of what it says of reflectance and transmittance.
+//!
+//! With `Q_k`, `S_k` the k-th moments of what a tentative collision leaves, `E[X^k]` is reflectance or
+//! transmittance of the slab that is `∫σ̂(1 − Q_k)` thick and has the albedo `S_k/(1 − Q_k)`, layer by
+//! layer where `r = σ_t/σ̂` changes from layer to layer. Of rules that leave no weight at a null
+//! collision, `r ≤ 1`, these are τ and `S_k` at r = 1, whatever σ_t and σ̂. Elsewhere, where r varies
+//! continuously, layers have the mean `Q_k` and `S_k`; the error is of second order in their
+//! thickness, and is extrapolated from two cuts and bounded by their difference and by what directions are
+//! missing.
+//!
+//! A walk leaves on one side only: `X_R X_T = 0`, which makes the covariance.
+//!
+//! ```text
+//! Cov[X_R, X_T] = −RT,   E[(X_R − R)²(X_T − T)²] = E[X_R²]T² + E[X_T²]R² − 3R²T²
+//! ```
+//!
+//! The number M of collisions has the generating function `G(z) = E[z^M]`, which is what a slab with
+//! `zQ_0`, `zS_0` and the score `z(1 − Q_0 − S_0)` makes of one particle. Its cumulants are derivatives
+//! of `ln G(e^θ)`, taken from θ = 0, ±h, ±2h:
+//!
+//! ```text
+//! Var[M] = (16(f(h) + f(−h)) − f(2h) − f(−2h) − 30 f(0))/(12h²),   f(θ) = ln G(e^θ)
+//! ```
+//!
+//! Source: Szirmay-Kalos et al. 2017, sections 3.1–3.3; that moments are slabs again, the covariance and
+//! the cost are derived here.
+
+use super::layer::Slice;
+use super::pieces::{Piece, Pieces};
+use super::{Answer, Energy, Light, Resolution, energies, solve};
+use crate::moments::not_negative;
+use crate::particle::{Odds, ParticleRule};
+use crate::prediction::{Covariance, UNRESOLVED};
+use crate::problems::slab::Incidence;
+use crate::{Channel, CountLaw, Moments, Prediction, Tails};
+use numeric::Known;
+
+/// The channels of a draw, in their order.
+pub const CHANNELS: [&str; 2] = ["reflectance", "transmittance"];
+
+/// The powers whose means are found: those of the moments, and the eighth for their tails.
+const POWERS: [i32; 4] = [2, 3, 4, 8];
+
+/// So near, relative, to a critical depth theory does not tell on which side of it a slab is.
+const NEAR: f64 = 1e-3;
+
+/// Whether moments exist.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Existence {
+    /// They do.
+    Finite,
+    /// They do not.
+    Diverges,
+    /// The slab is next to where they diverge.
+    Unknown,
+}
+
+/// Whether what goes along a layer grows without end, by `Q_k` and `S_k`.
+fn is_endless([straight, scattered, _]: [f64; 3]) -> bool {
+    straight >= 1.0 && scattered > 0.0
+}
+
+/// A walk in a slab.
+#[derive(Debug, Clone)]
+pub struct Walk {
+    /// Light and phase function.
+    pub incidence: Incidence,
+    /// a.
+    pub albedo: f64,
+    /// What happens at a collision.
+    pub rule: ParticleRule,
+    /// The layers.
+    pub pieces: Pieces,
+    /// The largest r.
+    pub largest_ratio: f64,
+    /// τ of the slab.
+    pub depth: f64,
+    /// Whether tails and the law of the cost are asked for, too.
+    pub laws: bool,
+}
+
+impl Walk {
+    /// What theory says, given the exact answer.
+    pub fn predict(&self, truth: &Answer) -> Prediction {
+        let lights = [self.incidence.light];
+        self.predict_all(&lights, std::slice::from_ref(truth)).swap_remove(0)
+    }
+
+    /// The same for several lights, which share the work.
+    pub fn predict_all(&self, lights: &[Light], truths: &[Answer]) -> Vec<Prediction> {
+        let raw = POWERS.map(|k| self.moments(k, lights, truths));
+        let laws = self.lookups(lights).into_iter().chain(std::iter::repeat(None));
+        let of = |((i, truth), law): ((usize, &Answer), Option<CountLaw>)| {
+            predicted(truth, raw.each_ref().map(|all| all.as_ref().map(|all| all[i])), law)
+        };
+        truths.iter().enumerate().zip(laws).map(of).collect()
+    }
+
+    fn odds(&self, ratio: f64) -> Odds {
+        self.rule.odds(ratio, self.albedo)
+    }
+
+    /// Whether null collisions leave the weight alone.
+    fn is_tracking(&self) -> bool {
+        use ParticleRule::{Analog, Terminating, Weighted};
+        matches!(self.rule, Analog | Terminating | Weighted) && self.largest_ratio <= 1.0
+    }
+
+    /// Whether the second moments exist: where they do not, no number of draws would settle.
+    pub fn second_moment(&self) -> Existence {
+        // A weight that never grows stays at 1 at most.
+        let grows = |ratio: f64| {
+            let odds = self.odds(ratio);
+            odds.transmit_weight.abs() > 1.0 || odds.scatter_weight.abs() > 1.0
+        };
+        let pieces = match &self.pieces {
+            Pieces::Exact(pieces) | Pieces::Graded([pieces, _]) => pieces,
+        };
+        let may_grow = pieces.iter().flat_map(|piece| &piece.ratios).any(|&[_, r]| grows(r));
+        if !may_grow || self.powers(2, &[self.incidence.light]).is_some() {
+            return Existence::Finite;
+        }
+        let moments = self.of_collisions(2);
+        let is_endless = |[_, ratio]: &[f64; 2]| is_endless(moments(*ratio));
+        let (pieces, resolution) = match &self.pieces {
+            Pieces::Exact(pieces) => (pieces, Resolution::COARSE),
+            Pieces::Graded([_, pieces]) => (pieces, Resolution::LAYERED),
+        };
+        if pieces.iter().flat_map(|piece| &piece.ratios).any(is_endless) {
+            return Existence::Diverges;
+        }
+        let thinner = |piece: &Piece| {
+            let slice = piece.slice(&moments);
+            Slice { flown: slice.flown * (1.0 - NEAR), ..slice }
+        };
+        let thinner: Vec<Slice> = pieces.iter().map(thinner).collect();
+        let lights = [self.incidence.light];
+        match energies(&self.incidence.phase, &lights, &thinner, resolution) {
+            Some(_) => Existence::Unknown,
+            None => Existence::Diverges,
+        }
+    }
+
+    /// `Q_k`, `S_k` and no score, by r.
+    fn of_collisions(&self, k: i32) -> impl Fn(f64) -> [f64; 3] + '_ {
+        move |ratio| {
+            let means = [1.0 - ratio, self.albedo * ratio];
+            let [straight, scattered] = self.odds(ratio).moments(means, k);
+            [straight, scattered, 0.0]
+        }
+    }
+
+    /// `E[X_R^k]` and `E[X_T^k]` in each light; `None` where they are infinite.
+    fn powers(&self, k: i32, lights: &[Light]) -> Option<Vec<[Known; 2]>> {
+        let phase = &self.incidence.phase;
+        let moments = self.of_collisions(k);
+        let layers = |pieces: &[Piece]| -> Vec<Slice> {
+            pieces.iter().map(|piece| piece.slice(&moments)).collect()
+        };
+        let exact = |slices: &[Slice]| {
+            let answers = solve(phase, lights, slices, Resolution::COARSE)?;
+            Some(answers.iter().map(|answer| [answer.reflected, answer.transmitted]).collect())
+        };
+        if self.is_tracking() {
+            return exact(&[Piece::of(self.depth, 1.0).slice(&moments)]);
+        }
+        match &self.pieces {
+            Pieces::Exact(pieces) => exact(&layers(pieces)),
+            Pieces::Graded(cuts) => {
+                // A mean over a layer would hide where light along it grows without end.
+                let grows = |[_, ratio]: &[f64; 2]| is_endless(moments(*ratio));
+                if cuts[1].iter().flat_map(|piece| &piece.ratios).any(grows) {
+                    return None;
+                }
+                let [coarse, fine] = cuts.each_ref().map(|cut| layers(cut));
+                let coarse = solve(phase, lights, &coarse, Resolution::LAYERED)?;
+                let fine = energies(phase, lights, &fine, Resolution::LAYERED)?;
+                let pairs = coarse.into_iter().zip(fine);
+                let both = |(coarse, fine): (Answer, Energy)| {
+                    [
+                        extrapolated(coarse.reflected, fine.reflected),
+                        extrapolated(coarse.transmitted, fine.transmitted),
+                    ]
+                };
+                Some(pairs.map(both).collect())
+            }
+        }
+    }
+
+    /// The same, infinite where they are; `None` where they are not asked for.
+    fn moments(&self, k: i32, lights: &[Light], truths: &[Answer]) -> Option<Vec<[Known; 2]>> {
+        let is_graded = matches!(self.pieces, Pieces::Graded(_)) && !self.is_tracking();
+        if k > 4 && (is_graded || !self.laws) {
+            return None;
+        }
+        if self.is_tracking() && self.odds(1.0).scatter_weight == 1.0 {
+            // Draws are 0 or 1.
+            return Some(truths.iter().map(|truth| [truth.reflected, truth.transmitted]).collect());
+        }
+        let infinite = Known::new(f64::INFINITY, f64::INFINITY);
+        let found = self.powers(k, lights).unwrap_or_else(|| vec![[infinite; 2]; lights.len()]);
+        if !self.is_share() {
+            return Some(found);
+        }
+        let both = |(found, truth): ([Known; 2], &Answer)| {
+            let [reflected, transmitted] = found;
+            [of_share(reflected, truth.reflected, k), of_share(transmitted, truth.transmitted, k)]
+        };
+        Some(found.into_iter().zip(truths).map(both).collect())
+    }
+
+    /// Whether draws lie in [0, 1]: all weights do.
+    fn is_share(&self) -> bool {
+        let is_share = |&[_, ratio]: &[f64; 2]| {
+            let odds = self.odds(ratio);
+            [odds.transmit_weight, odds.scatter_weight].iter().all(|w| (0.0..=1.0).contains(w))
+        };
+        let pieces = match &self.pieces {
+            Pieces::Exact(pieces) | Pieces::Graded([_, pieces]) => pieces,
+        };
+        pieces.iter().flat_map(|piece| &piece.ratios).all(is_share)
+    }
+
+    /// The law of the number of collisions in each light, without its probabilities; `None` where it is not
+    /// known, or has an infinite variance.
+    fn lookups(&self, lights: &[Light]) -> Vec<Option<CountLaw>> {
+        let Some(scored) = self.scored() else { return Vec::new() };
+        let law = |(light, answer): (&Light, Answer)| {
+            self.count(answer.score, |theta| self.ln_generating(light, theta))
+        };
+        let answers = solve(&self.incidence.phase, lights, &scored, Resolution::COARSE);
+        lights.iter().zip(answers.into_iter().flatten()).map(law).collect()
+    }
+
+    /// Layers that score every collision; `None` where the law of their number is not known.
+    fn scored(&self) -> Option<Vec<Slice>> {
+        let Pieces::Exact(pieces) = &self.pieces else { return None };
+        // Along a layer of null collisions only there is no end to them.
+        let odds = |ratio: f64| self.odds(ratio);
+        let is_idle = pieces.is_empty() || pieces.iter().any(|piece| piece.is_idle(odds));
+        (!is_idle).then(|| self.slices(pieces, 1.0, |_| 1.0))
+    }
+
+    fn slices(&self, pieces: &[Piece], z: f64, score: fn(&Odds) -> f64) -> Vec<Slice> {
+        let at = |ratio: f64| {
+            let odds = self.odds(ratio);
+            [odds.transmit, odds.scatter, score(&odds)].map(|x| z * x)
+        };
+        pieces.iter().map(|piece| piece.slice(at)).collect()
+    }
+
+    /// `ln G(e^θ)`.
+    fn ln_generating(&self, light: &Light, theta: f64) -> Option<f64> {
+        let Pieces::Exact(pieces) = &self.pieces else { return None };
+        let ends = |odds: &Odds| 1.0 - odds.transmit - odds.scatter;
+        let slices = self.slices(pieces, theta.exp(), ends);
+        let lights = std::slice::from_ref(light);
+        let found = energies(&self.incidence.phase, lights, &slices, Resolution::LAYERED)?.pop()?;
+        Some((found.reflected + found.transmitted + found.score).ln())
+    }
+
+    /// The law of a mean and of `ln G(e^θ)`.
+    fn count(
+        &self,
+        Known { value: mean, error }: Known,
+        f: impl Fn(f64) -> Option<f64>,
+    ) -> Option<CountLaw> {
+        let [variance, fourth] = if self.laws { cumulants(mean, f)? } else { [mean, 0.0] };
+        let kurtosis = 3.0 + fourth / (variance * variance);
+        let error = error / mean;
+        Some(CountLaw { mean, variance, error, kurtosis, poisson: false, pmf: Vec::new() })
+    }
+}
+
+/// The law of the number of collisions of one of several walks, by their probabilities, in their first light; `None` where
+/// it is not known.
+pub fn mixed_lookups(walks: &[(f64, Walk)]) -> Option<CountLaw> {
+    let mut mean = Known::new(0.0, 0.0);
+    for (weight, walk) in walks {
+        let (phase, lights) = (&walk.incidence.phase, [walk.incidence.light]);
+        let score = solve(phase, &lights, &walk.scored()?, Resolution::COARSE)?[0].score;
+        mean = mean + Known::new(weight * score.value, weight * score.error);
+    }
+    let (_, first) = walks.first()?;
+    first.count(mean, |theta| {
+        let mut sum = 0.0;
+        for (weight, walk) in walks {
+            sum += weight * walk.ln_generating(&walk.incidence.light, theta)?.exp();
+        }
+        Some(sum.ln())
+    })
+}
+
+/// What raw moments say.
+fn predicted(
+    truth: &Answer,
+    raw: [Option<[Known; 2]>; POWERS.len()],
+    lookups: Option<CountLaw>,
+) -> Prediction {
+    let truths = [truth.reflected, truth.transmitted];
+    let channels: Vec<Channel> = (0..2)
+        .map(|i| channel(CHANNELS[i], truths[i], raw.map(|both| both.map(|both| both[i]))))
+        .collect();
+    let [r, t] = truths.map(|known| known.value);
+    let covariances = raw[0].map(|[second_r, second_t]| {
+        let both = second_r.value * t * t + second_t.value * r * r - 3.0 * r * r * t * t;
+        Covariance { pair: [0, 1], value: -r * t, variance: both - (r * t).powi(2) }
+    });
+    let covariances = covariances.into_iter().filter(|c| c.variance.is_finite()).collect();
+    Prediction { channels, lookups, covariances, ..Prediction::default() }
+}
+
+/// `E[X^k]` of a draw in [0, 1] and mean T, where it is known to be between T^k and T: `Tᵏ ≤ E[X^k] ≤ T`, by Jensen's
+/// inequality and by `x^k ≤ x`. What theory finds beyond is its own error.
+fn of_share(found: Known, truth: Known, k: i32) -> Known {
+    let (least, most) = ((truth.value - truth.error).max(0.0).powi(k), truth.value + truth.error);
+    if (least..=most).contains(&found.value) && found.error <= most {
+        return found;
+    }
+    let value = found.value.max(least).min(most);
+    Known::new(value, found.error.min((value - least).max(most - value)))
+}
+
+/// What two cuts say together: the error of the finer one is a quarter of the other's, and what directions
+/// are missing is the same in both.
+fn extrapolated(coarse: Known, fine: f64) -> Known {
+    let step = fine - coarse.value;
+    Known::new(fine + step / 3.0, step.abs() + coarse.error + 1e-4 * fine.abs())
+}
+
+/// The step of θ in units of the number of collisions over which the law decays.
+const STEP: f64 = 0.02;
+
+/// The second and the fourth cumulant from the cumulant-generating function; `None` where that is
+/// infinite too near to 0.
+fn cumulants(mean: f64, f: impl Fn(f64) -> Option<f64>) -> Option<[f64; 2]> {
+    let at = |h: f64| -> Option<[f64; 2]> {
+        let [far, near, here, before, back] = [2.0 * h, h, 0.0, -h, -2.0 * h].map(&f);
+        let (outer, inner, here) = (far? + back?, near? + before?, here?);
+        let second = (16.0 * inner - outer - 30.0 * here) / (12.0 * h * h);
+        Some([second, (outer - 4.0 * inner + 6.0 * here) / (h * h * h * h)])
+    };
+    let mut scale = 1.0 + mean;
+    let mut found = at(STEP / scale);
+    for _ in 0..4 {
+        // The decay of a long tail is variance over mean.
+        let wanted = found.map_or(8.0 * scale, |[variance, _]| 1.0 + variance / mean);
+        if found.is_some() && wanted <= 2.0 * scale {
+            break;
+        }
+        scale = wanted;
+        found = at(STEP / scale);
+    }
+    found.filter(|[variance, fourth]| *variance > 0.0 && fourth.is_finite())
+}
+
+/// A channel with its central moments from `E[X²]`, `E[X³]`, `E[X⁴]` and `E[X⁸]`.
+fn channel(name: &str, truth: Known, raw: [Option<Known>; 4]) -> Channel {
+    let t = truth.value;
+    let unit = |k: i32, known: Known| Known::new(known.value / t.powi(k), known.error / t.powi(k));
+    let [second, third, fourth, eighth] = raw;
+    let moments = second.zip(third).zip(fourth).map(|((second, third), fourth)| {
+        let (second, third, fourth) = (unit(2, second), unit(3, third), unit(4, fourth));
+        let blur = truth.error / t;
+        let [a, b, c] = [second, third, fourth].map(|known| known.value);
+        let off = second.error + 2.0 * blur * a;
+        if c.is_infinite() || b.is_infinite() {
+            let [variance, error] = not_negative(a - 1.0, off);
+            let higher = f64::INFINITY;
+            return Moments { scale: t, relative: [variance, higher, higher], error };
+        }
+        let skew = b - 3.0 * a + 2.0;
+        // Each difference rounds by its own terms: in units of a small truth the fourth moment is far above the second.
+        let rounding = 8.0 * f64::EPSILON * (a + 1.0);
+        let [variance, of_variance] = not_negative(a - 1.0, off + rounding);
+        let rounding = 8.0 * f64::EPSILON * (c + 4.0 * b.abs() + 6.0 * a + 3.0);
+        let off = fourth.error + 4.0 * third.error + 6.0 * second.error + 4.0 * blur * c + rounding;
+        let peak = (c - 4.0 * b + 6.0 * a - 3.0).max(variance * variance);
+        let [peak, of_peak] = not_negative(peak, off);
+        if of_peak >= UNRESOLVED {
+            let relative = [variance, f64::INFINITY, f64::INFINITY];
+            return Moments { scale: t, relative, error: of_variance };
+        }
+        Moments { scale: t, relative: [variance, skew, peak], error: of_variance.max(of_peak) }
+    });
+    let tails = match (moments, fourth, eighth) {
+        (Some(moments), Some(fourth), Some(eighth)) => {
+            let ratio = eighth.value / (fourth.value * fourth.value);
+            Tails {
+                rare_event_size: moments.kurtosis().unwrap_or(1.0),
+                eighth_moment_ratio: if ratio.is_nan() { f64::INFINITY } else { ratio },
+            }
+        }
+        _ => Tails { rare_event_size: f64::INFINITY, eighth_moment_ratio: f64::INFINITY },
+    };
+    Channel { name: name.to_owned(), ..Channel::unbiased(truth, moments, tails) }
+}

@@ -1,0 +1,96 @@
+//! The chances of spectral tracking: what a collision is, decided once for all channels.
+//!
+//! ```text
+//! P_e = mean_λ μ_e,λ/μ̄,   P_e ∝ max_λ μ_e,λ,   P_e ∝ Σ_λ w_λ μ_e,λ,   events e null, scattered, absorbed
+//! ```
+//!
+//! Source: P. Kutz, R. Habel, Y. K. Li, J. Novák, *Spectral and Decomposition Tracking for Rendering
+//! Heterogeneous Volumes*, ACM Transactions on Graphics 36 (2017), sections 5.1.1 and 5.1.2.
+
+use numeric::Lane;
+
+/// How the next event of spectral tracking is chosen, whatever happened before.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Chance {
+    /// In transmittance: `P_n` = mean over the channels of `n/μ̄`.
+    Average,
+    /// In transmittance: `P_n = max n/(max n + max σ)`.
+    Maximum,
+}
+
+impl Chance {
+    /// `P_n`, given `n/μ̄` of each channel.
+    #[inline(always)]
+    pub fn of_null(self, shares: &[f64]) -> f64 {
+        match self {
+            Self::Average => shares.iter().sum::<f64>() / shares.len() as f64,
+            Self::Maximum => {
+                let largest = shares.iter().fold(0.0f64, |most, &share| most.max(share));
+                let least = shares.iter().fold(1.0f64, |least, &share| least.min(share));
+                largest / (largest + (1.0 - least))
+            }
+        }
+    }
+}
+
+/// How spectral tracking chooses what a collision is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Chances {
+    /// Whatever happened before.
+    Fixed(Chance),
+    /// By the mean over the channels, weighted by what the path has brought each so far.
+    History,
+}
+
+impl Chances {
+    /// As case files and tables have it.
+    pub fn label(self) -> &'static str {
+        match self {
+            Self::Fixed(Chance::Average) => "average",
+            Self::Fixed(Chance::Maximum) => "maximum",
+            Self::History => "history",
+        }
+    }
+
+    /// The chances of events, given `μ_e/μ̄` and the weight of each of so many channels: to go straight on, to be scattered
+    /// and to be absorbed.
+    #[inline(always)]
+    #[expect(
+        clippy::needless_range_loop,
+        reason = "loops of kernels count: iterators may not be inlined there"
+    )]
+    pub fn of_events<L: Lane>(
+        self,
+        count: usize,
+        shares: impl Fn(usize) -> [L; 3],
+        weights: &[L],
+    ) -> [L; 3] {
+        let [mut null, mut scattered, mut absorbed] = [weights[0].each(0.0); 3];
+        for channel in 0..count {
+            let [n, s, a] = shares(channel);
+            match self {
+                Self::Fixed(Chance::Average) => {
+                    (null, scattered, absorbed) = (null + n, scattered + s, absorbed + a);
+                }
+                Self::Fixed(Chance::Maximum) => {
+                    (null, scattered) = (null.or_more(n), scattered.or_more(s));
+                    absorbed = absorbed.or_more(a);
+                }
+                Self::History => {
+                    let weight = weights[channel];
+                    (null, scattered) = (null + weight * n, scattered + weight * s);
+                    absorbed = absorbed + weight * a;
+                }
+            }
+        }
+        let sum = null + scattered + absorbed;
+        [null / sum, scattered / sum, absorbed / sum]
+    }
+}
+
+/// `μ_e/μ̄` of a channel, given `σ_t/σ̂` and the albedo: null, scattered, absorbed.
+#[inline(always)]
+pub fn shares<L: Lane>(ratio: L, albedo: f64) -> [L; 3] {
+    let (one, albedo) = (ratio.each(1.0), ratio.each(albedo));
+    [one - ratio, ratio * albedo, ratio * (one - albedo)]
+}

@@ -1,0 +1,90 @@
+//! The lookups of a draw, mixed over heroes.
+
+use super::{Spectrum, Tracker};
+use crate::{CountLaw, Mesh, raw};
+use numeric::sum::Sum;
+
+impl Spectrum {
+    /// The lookups of a draw, mixed over heroes.
+    pub(super) fn lookups(&self) -> CountLaw {
+        let flown = |channel: usize| self.majorants[channel] * self.length();
+        let own = |channel: usize, delta: bool| {
+            if delta {
+                let majorant = self.majorants[channel];
+                self.survived(majorant, |n| n[channel] / majorant)
+            } else {
+                [1, 2, 3, 4].map(|k| flown(channel).powi(k))
+            }
+        };
+        let factorial: [f64; 4] = match self.tracker {
+            Tracker::Independent { delta } | Tracker::Hero { delta } | Tracker::Mis { delta } => {
+                let is_same = (1..self.channels()).all(|c| self.majorants[c] == self.majorants[0]);
+                if !delta && is_same {
+                    return CountLaw::poisson(flown(0));
+                }
+                let mut mixed = [0.0; 4];
+                for (channel, weight) in self.hero.iter().enumerate() {
+                    for (sum, moment) in mixed.iter_mut().zip(own(channel, delta)) {
+                        *sum += weight * moment;
+                    }
+                }
+                mixed
+            }
+            Tracker::InTurn { delta: false } => {
+                return CountLaw::poisson((0..self.channels()).map(flown).sum());
+            }
+            Tracker::InTurn { delta: true } => {
+                (0..self.channels()).fold([0.0; 4], |sum, channel| added(sum, own(channel, true)))
+            }
+            Tracker::Tracking(chance) => {
+                let majorant = self.majorants[0];
+                self.survived(majorant, |n| {
+                    let shares: Vec<f64> = n.iter().map(|n| n / majorant).collect();
+                    chance.of_null(&shares)
+                })
+            }
+        };
+        let law = CountLaw::of_factorial_moments(factorial);
+        CountLaw { error: self.mesh.relative_error(), ..law }
+    }
+
+    fn survived(&self, rate: f64, survival: impl Fn(&[f64]) -> f64) -> [f64; 4] {
+        survived(&self.mesh, rate, |node| {
+            let n: Vec<f64> = self.nulls.iter().map(|nulls| nulls[node]).collect();
+            survival(&n)
+        })
+    }
+}
+
+/// Factorial moments of the collisions of a walk that flies at a constant rate and survives each with
+/// a probability, given at every node: `k ∫ μ̄ e^{−K} A^{k−1}`, `K = ∫ μ̄(1 − q)`, `A = ∫ μ̄ q`.
+pub fn survived(mesh: &Mesh, rate: f64, survival: impl Fn(usize) -> f64) -> [f64; 4] {
+    let (mut sums, mut node) = ([Sum::default(); 4], 0);
+    let (mut deaths, mut survivals) = (Sum::default(), Sum::default());
+    for panel in mesh.panels() {
+        let nodes = node..node + panel.t.len();
+        node = nodes.end;
+        let q: Vec<f64> = nodes.map(|i| rate * survival(i)).collect();
+        let killed: Vec<f64> = q.iter().map(|q| rate - q).collect();
+        let before = (deaths.value(), survivals.value());
+        let lost = mesh.running(panel, &killed);
+        let passed = mesh.running(panel, &q);
+        for (k, sum) in (1i32..).zip(&mut sums) {
+            let terms = lost.iter().zip(&passed).map(|(lost, passed)| {
+                let alive = rate * (-(before.0 + lost)).exp();
+                f64::from(k) * alive * (before.1 + passed).powi(k - 1)
+            });
+            sum.add(mesh.integral(panel, &terms.collect::<Vec<f64>>()));
+        }
+        deaths.add(mesh.integral(panel, &killed));
+        survivals.add(mesh.integral(panel, &q));
+    }
+    sums.map(|sum| sum.value())
+}
+
+/// Factorial moments of the sum of two independent numbers.
+fn added(a: [f64; 4], b: [f64; 4]) -> [f64; 4] {
+    let [a, b] = [a, b].map(|f| [1.0, f[0], f[1], f[2], f[3]]);
+    let sum = raw::added(a, b);
+    std::array::from_fn(|k| sum[k + 1])
+}

@@ -1,0 +1,163 @@
+//! From mixed moments to what is tested: each channel, the luminance, and covariances of neighbours.
+
+use std::cell::RefCell;
+use std::collections::HashMap;
+
+use super::Spectrum;
+use crate::prediction::Covariance;
+use crate::{Channel, Moments, Prediction, Tails};
+use numeric::Known;
+use numeric::sum::Sum;
+
+/// What rounding leaves of a moment, relative to it.
+const ROUNDING: f64 = 1e-13;
+/// Moments that are known, by their powers.
+type Cache = RefCell<HashMap<Vec<u8>, Option<f64>>>;
+
+impl Spectrum {
+    /// What theory says of draws that score every channel and, by these weights, the luminance.
+    pub fn predict(&self, luminance: &[f64]) -> Prediction {
+        let one = |channel: usize| {
+            let mut form = vec![0.0; self.channels()];
+            form[channel] = 1.0;
+            form
+        };
+        let mut forms: Vec<Vec<f64>> = (0..self.channels()).map(one).collect();
+        if !luminance.is_empty() {
+            forms.push(luminance.to_vec());
+        }
+        let cache = RefCell::default();
+        let expected = |factors: &[&Vec<f64>]| self.expected(factors, &cache);
+        let channels: Vec<Channel> =
+            forms.iter().enumerate().map(|(i, form)| self.channel(i, form, &expected)).collect();
+        let covariance = |i: usize| {
+            let (x, y) = (&forms[i], &forms[i + 1]);
+            let [s, t] = [i, i + 1].map(|i| channels[i].truth.value);
+            let xy = expected(&[x, y])?;
+            let (xxy, xyy) = (expected(&[x, x, y])?, expected(&[x, y, y])?);
+            let (xx, yy) = (expected(&[x, x])?, expected(&[y, y])?);
+            let square = expected(&[x, x, y, y])? - 2.0 * t * xxy - 2.0 * s * xyy
+                + t * t * xx
+                + s * s * yy
+                + 4.0 * s * t * xy
+                - 3.0 * s * s * t * t;
+            let value = xy - s * t;
+            let variance = (square - value * value).max(0.0);
+            Some(Covariance { pair: [i, i + 1], value, variance })
+        };
+        let covariances = (0..forms.len() - 1).filter_map(covariance).collect();
+        let lookups = Some(self.lookups());
+        Prediction { channels, lookups, covariances, ..Prediction::default() }
+    }
+
+    fn channel(
+        &self,
+        index: usize,
+        form: &Vec<f64>,
+        expected: &dyn Fn(&[&Vec<f64>]) -> Option<f64>,
+    ) -> Channel {
+        let truths: Vec<Known> = self.depths.iter().map(|depth| depth.exp_neg()).collect();
+        let value = form.iter().zip(&truths).map(|(a, truth)| a * truth.value).sum();
+        let error = form.iter().zip(&truths).map(|(a, truth)| a * truth.error).sum();
+        let raw = |order: i32| {
+            Some(expected(&vec![form; order.unsigned_abs() as usize])? / f64::powi(value, order))
+        };
+        let moments = (|| {
+            let [second, third, fourth] = [raw(2)?, raw(3)?, raw(4)?];
+            let m2 = (second - 1.0).max(0.0);
+            let m3 = third - 3.0 * second + 2.0;
+            let m4 = (fourth - 4.0 * third + 6.0 * second - 3.0).max(m2 * m2);
+            let relative = ROUNDING + self.mesh.relative_error() * self.most_collisions().max(1.0);
+            let of = |size: f64, moment: f64| if moment > 0.0 { size / moment } else { 0.0 };
+            let error = of(second, m2).max(of(fourth + 4.0 * third + 6.0 * second, m4)) * relative;
+            Some(Moments { scale: value, relative: [m2, m3, m4], error })
+        })();
+        let is_one = index < self.channels();
+        let tails = match moments {
+            Some(_) if is_one => self.tails(index),
+            Some(_) => (0..self.channels()).map(|channel| self.tails(channel)).fold(
+                Tails::LIGHT,
+                |a, b| Tails {
+                    rare_event_size: a.rare_event_size.max(b.rare_event_size),
+                    eighth_moment_ratio: a.eighth_moment_ratio.max(b.eighth_moment_ratio),
+                },
+            ),
+            None => Tails::LIGHT,
+        };
+        let truth = Known::new(value, error);
+        let name = if !is_one {
+            "luminance".to_owned()
+        } else if self.channels() == 1 {
+            String::new()
+        } else {
+            format!("channel {}", index + 1)
+        };
+        if moments.is_none() {
+            return Channel {
+                name,
+                ..Channel::bounded(truth, self.most_score(form) * (value + error))
+            };
+        }
+        Channel { name, ..Channel::unbiased(truth, moments, tails) }
+    }
+
+    /// The most that a draw of MIS makes of a linear form, `max a_λ/w_λ`: a survivor scores
+    /// `Σ_λ a_λ p_λ/Σ_h w_h p_h`, others nothing, so that `E[Y²] ≤ E[Y] max a_λ/w_λ`.
+    fn most_score(&self, form: &[f64]) -> f64 {
+        form.iter().zip(&self.hero).map(|(a, w)| a / w).fold(0.0, f64::max)
+    }
+
+    fn most_collisions(&self) -> f64 {
+        self.majorants.iter().fold(0.0f64, |most, &x| most.max(x)) * self.length()
+    }
+
+    /// `E[Π (a·X)]` over linear forms of the channels.
+    fn expected(&self, factors: &[&Vec<f64>], cache: &Cache) -> Option<f64> {
+        let mut sum = Sum::default();
+        let mut powers = vec![0u8; self.channels()];
+        self.expand(factors, 1.0, &mut powers, cache, &mut sum)?;
+        Some(sum.value())
+    }
+
+    fn expand(
+        &self,
+        factors: &[&Vec<f64>],
+        weight: f64,
+        powers: &mut Vec<u8>,
+        cache: &Cache,
+        sum: &mut Sum,
+    ) -> Option<()> {
+        let Some((first, rest)) = factors.split_first() else {
+            let known = cache.borrow().get(powers).copied();
+            let moment = known.unwrap_or_else(|| {
+                let k: Vec<f64> = powers.iter().map(|&k| f64::from(k)).collect();
+                let moment = self.moment(&k);
+                cache.borrow_mut().insert(powers.clone(), moment);
+                moment
+            });
+            sum.add(weight * moment?);
+            return Some(());
+        };
+        for (channel, &a) in first.iter().enumerate().filter(|(_, a)| **a != 0.0) {
+            powers[channel] += 1;
+            self.expand(rest, weight * a, powers, cache, sum)?;
+            powers[channel] -= 1;
+        }
+        Some(())
+    }
+
+    /// With `φ(s) = ln E[|X|^s]`: `D = 2φ′(2) − φ(2)` is the relative entropy of the draws that carry `E[X²]`.
+    fn tails(&self, channel: usize) -> Tails {
+        let of = |s: f64| {
+            let mut k = vec![0.0; self.channels()];
+            k[channel] = s;
+            self.moment(&k).map_or(f64::NAN, f64::ln)
+        };
+        let step = 1e-3;
+        let slope = (of(2.0 + step) - of(2.0 - step)) / (2.0 * step);
+        Tails {
+            rare_event_size: (2.0 * slope - of(2.0)).max(0.0).exp(),
+            eighth_moment_ratio: (of(8.0) - 2.0 * of(4.0)).exp(),
+        }
+    }
+}

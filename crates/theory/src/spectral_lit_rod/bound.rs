@@ -1,0 +1,101 @@
+//! A bound on `E[X²]` of hits and shadow rays together over heroes, in rods whose channels differ in everything.
+//!
+//! Let `p_h` and `q_h` be the densities of a path by the hits and by the shadow rays of the hero h, and `c_v` and `h_v`
+//! what the shadow ray of the vertex v, and the hit after it, bring the channel λ. Both are `f_λ/D`, by the balance
+//! heuristic, on the same paths:
+//!
+//! ```text
+//! D = Σ_h w_h (p_h + q_h) ≥ w_λ (p_λ + q_λ)
+//! E[c_v²] + E[h_v²] = ∫ f_λ²/D ≤ V_v/w_λ,   V_v the same sum where the channel λ walks alone
+//! ```
+//!
+//! The hit without scattering is at most 1/w, and nothing else happens then. Of all other hits no more than one does.
+//! With the triangle inequality for the rest, and `u_v = √V_v`,
+//!
+//! ```text
+//! w_λ E[X²] ≤ T_λ + (max Σ_v √(u_v² − b_v²) + √Σ_v b_v²)² ≤ T_λ + (Σ_v u_v + ½ max_v u_v)²
+//! ```
+//!
+//! `V_v` is that of one scattering, carried through v scatterings before it. If `V_{v+2} ≤ s V_v` everywhere in the rod
+//! then so it is from there on, as all is positive: the rest is two geometric series. (Where light mostly turns, every
+//! other `V_v` is small.)
+//!
+//! Source: derived.
+
+use super::super::lit_rod::connections::{Connections, Vertex, scattering};
+use super::super::lit_rod::{Techniques, walk};
+use super::super::rod::grid::{Grid, Importance, Step};
+use super::super::rod::moments::{Precision, romberg};
+use crate::Mesh;
+use crate::problems::LitRod;
+use media::Piecewise;
+use numeric::Known;
+
+/// Grids agree to this.
+const PRECISION: Precision = Precision { agreement: 1e-5, levels: 4 };
+/// A rest that is less, relative to the sum before it, need not be any smaller.
+const ENOUGH: f64 = 1e-6;
+/// The most vertices.
+const MOST: usize = 4000;
+
+/// A bound on `w_λ E[X_λ²]` of one channel with its σ̂; `None` where theory has no grid for it.
+pub fn weighted_square(
+    mesh: &Mesh,
+    rod: &LitRod,
+    sampling: &Piecewise,
+    techniques: Techniques,
+) -> Option<f64> {
+    let scattered = romberg(&walk(mesh, rod, sampling)?, PRECISION, &|grid| {
+        Some(vec![spread(grid, techniques)?])
+    })?;
+    let [spread, error] = scattered[0];
+    let Known { value, error: of_depth } = mesh.optical_depth().exp_neg();
+    Some(value + of_depth + (spread + error).powi(2))
+}
+
+/// `Σ_v u_v + ½ max_v u_v`.
+fn spread(grid: &Grid, techniques: Techniques) -> Option<f64> {
+    let connections = Connections::new(grid, techniques, 2);
+    let real = |step: &Step| [step.sampling * (1.0 - step.means[0]), 0.0];
+    let last = |i: usize, step: &Step| {
+        let worth = |vertex: &Vertex| vertex.connected[2] + vertex.towards * vertex.hit[2];
+        connections.at(i).each_ref().map(|vertex| scattering(step) * worth(vertex))
+    };
+    let earlier = |here: &Importance| {
+        let carried = |i: usize, step: &Step| {
+            step.spread(here.middle(i)).map(|worth| scattering(step) * worth)
+        };
+        grid.solve(real, carried, [0.0; 2])
+    };
+    let root = |importance: &Importance| importance.entering().max(0.0).sqrt();
+    let mut before = grid.solve(real, last, [0.0; 2])?;
+    let mut here = earlier(&before)?;
+    let (mut sum, mut most) = (0.0, 0.0f64);
+    for _ in 0..MOST {
+        let own = root(&before);
+        sum += own;
+        most = most.max(own);
+        let next = earlier(&here)?;
+        let share = largest_share(grid, &next, &before).sqrt();
+        let two = root(&here) + root(&next);
+        let rest = if share > 0.0 { two / (1.0 - share) } else { two };
+        if share < 1.0 && rest <= ENOUGH * sum {
+            return Some(sum + rest + 0.5 * most);
+        }
+        (before, here) = (here, next);
+    }
+    None
+}
+
+/// The largest share that one vertex's worth is of another's, in any step.
+fn largest_share(grid: &Grid, worth: &Importance, other: &Importance) -> f64 {
+    let mut largest = 0.0f64;
+    for i in 0..grid.steps().len() {
+        for (worth, other) in worth.middle(i).into_iter().zip(other.middle(i)) {
+            if worth > 0.0 {
+                largest = largest.max(worth / other);
+            }
+        }
+    }
+    largest
+}

@@ -1,0 +1,202 @@
+//! Rods with an emitter at the end in several channels: what theory says of draws that score all of them.
+//!
+//! ```text
+//! independent       E[X_λ^k] = w_λ^{1−k} E[x_λ^k],  x_λ a draw of `lit_rod` in the channel λ; E[X_λ X_μ] = 0
+//! one σ_t and σ̂     a chain of equations by the numbers of scatterings, see [`orders`]
+//! forward only      hits are products along the ray, see [`forward`]
+//! elsewhere         the means, and bounds on variances: hits never score more than 1/w_λ; with shadow rays see [`bound`]
+//! ```
+//!
+//! The lookups of a draw are those of its hero's walk, mixed over heroes: they are known in every medium.
+//!
+//! Source: derived from the densities of B. Miller, I. Georgiev, W. Jarosz, *A null-scattering path integral
+//! formulation of light transport*, ACM Transactions on Graphics 38 (2019), sections 5.3 and 5.4.
+
+pub mod bound;
+pub mod forward;
+pub mod orders;
+
+use self::forward::Forward;
+use self::orders::Orders;
+use super::lit_rod::{self, Combination, Densities, Found, Heuristic, Shadow, Techniques};
+use super::prediction::Covariance;
+use super::rod::{central, tails};
+use super::spectral::Chances;
+use super::{Channel, CountLaw, Mesh, Prediction, Tails};
+use crate::problems::SpectralLitRod;
+use media::Piecewise;
+use numeric::Known;
+
+/// Hits alone.
+pub const HITS: Techniques = Techniques { shadow: None, combination: Combination::Unidirectional };
+/// Hits and ratio-tracked shadow rays, by null-scattering paths and the balance heuristic.
+pub const FULL: Techniques = Techniques {
+    shadow: Some(Shadow::Ratio),
+    combination: Combination::Mis(Densities::Full, Heuristic::Balance),
+};
+
+/// How the channels are scored by one draw.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Tracker {
+    /// One channel by its own walk, the others 0.
+    Independent {
+        /// Whether it casts shadow rays.
+        casts: bool,
+    },
+    /// All channels by the walk of a hero, by the balance heuristic over all heroes.
+    Mis {
+        /// Whether it casts shadow rays.
+        casts: bool,
+    },
+    /// One σ̂ for all channels, and chances that depend on all of them.
+    Tracking(Chances),
+}
+
+impl Tracker {
+    fn techniques(self) -> Techniques {
+        match self {
+            Self::Independent { casts: true } | Self::Mis { casts: true } => FULL,
+            _ => HITS,
+        }
+    }
+}
+
+/// A chromatic rod with everything that its moments depend on.
+pub struct Spectrum<'a> {
+    problem: &'a SpectralLitRod,
+    media: Vec<(&'a Mesh, &'a Piecewise)>,
+    heroes: Vec<f64>,
+    tracker: Tracker,
+}
+
+/// What is known of the draws of all channels beside their means.
+pub struct Moments {
+    /// `E[X^k]` of each channel for k = 1, 2, 3, 4 and 8, with absolute errors.
+    raw: Vec<[[f64; 2]; 5]>,
+    /// [`PAIRS`] of each channel and the next.
+    mixed: Vec<[f64; 4]>,
+}
+
+/// The powers of `E[X_λ X_μ]`, `E[X_λ² X_μ]`, `E[X_λ X_μ²]` and `E[X_λ² X_μ²]`.
+const PAIRS: [[usize; 2]; 4] = [[1, 1], [2, 1], [1, 2], [2, 2]];
+
+impl<'a> Spectrum<'a> {
+    /// Joins the parts; mesh and σ̂, and `heroes`, have one entry for each channel.
+    pub fn new(
+        problem: &'a SpectralLitRod,
+        media: Vec<(&'a Mesh, &'a Piecewise)>,
+        heroes: Vec<f64>,
+        tracker: Tracker,
+    ) -> Self {
+        Self { problem, media, heroes, tracker }
+    }
+
+    fn channels(&self) -> usize {
+        self.heroes.len()
+    }
+
+    /// What theory says of a draw. Without `laws`, as for lines in plots, only variances and mean lookups are good.
+    pub fn predict(&self, laws: bool) -> Prediction {
+        let techniques = self.tracker.techniques();
+        let found: Option<Vec<Found>> = self
+            .media
+            .iter()
+            .zip(&self.problem.rods)
+            .map(|((mesh, sampling), rod)| Found::of(mesh, rod, sampling, techniques, laws))
+            .collect();
+        let forward = Forward::new(self.problem, &self.media, &self.heroes);
+        let lookups = match (self.tracker, &forward) {
+            (Tracker::Tracking(chances), Some(forward)) => forward.lookups(chances),
+            _ => None,
+        };
+        let lookups = lookups.or_else(|| found.as_ref().map(|found| self.lookups(found)));
+        let moments = match (self.tracker, &forward) {
+            (Tracker::Tracking(chances), forward) => {
+                forward.as_ref().and_then(|forward| forward.tracking(chances))
+            }
+            (Tracker::Mis { .. }, _) if self.channels() > 1 => self.by_orders(laws).or_else(|| {
+                let is_hits = self.tracker.techniques() == HITS;
+                forward.filter(|_| is_hits)?.balanced()
+            }),
+            _ => found.map(|found| self.independent(&found)),
+        };
+        let answers = self.media.iter().zip(&self.problem.rods);
+        let answers: Vec<Known> =
+            answers.map(|((mesh, _), rod)| lit_rod::answer(mesh, rod)).collect();
+        let channel = |(index, &answer): (usize, &Known)| {
+            let raw = moments.as_ref().map(|moments| &moments.raw[index]);
+            let one = self.channels() == 1;
+            let name = if one { String::new() } else { format!("channel {}", index + 1) };
+            let tails = raw.map_or(Tails::LIGHT, tails);
+            let central = raw.map(|raw| central(answer, raw));
+            let is_unknown = raw.is_none() && laws;
+            match is_unknown.then(|| self.most_square(index, answer)).flatten() {
+                Some(square) => Channel { name, ..Channel::bounded(answer, square) },
+                None => Channel { name, ..Channel::unbiased(answer, central, tails) },
+            }
+        };
+        let channels = answers.iter().enumerate().map(channel).collect();
+        let mut covariances = Vec::new();
+        if let Some(moments) = moments.filter(|_| laws) {
+            for (index, mixed) in moments.mixed.iter().enumerate() {
+                let means = [answers[index].value, answers[index + 1].value];
+                let squares = [index, index + 1].map(|channel| moments.raw[channel][1][0]);
+                covariances.push(Covariance::of_raw([index, index + 1], means, squares, *mixed));
+            }
+        }
+        Prediction { channels, lookups, covariances, ..Prediction::default() }
+    }
+
+    /// A bound on `E[X²]` of a channel by MIS over heroes.
+    fn most_square(&self, channel: usize, answer: Known) -> Option<f64> {
+        let weighted = match self.tracker {
+            Tracker::Mis { casts: true } => {
+                let (mesh, sampling) = self.media[channel];
+                bound::weighted_square(mesh, &self.problem.rods[channel], sampling, FULL)?
+            }
+            // A hit is f_λ/Σ w_h p_h ≤ 1/w_λ; that of history-aware tracking likewise.
+            Tracker::Mis { casts: false } | Tracker::Tracking(Chances::History) => {
+                answer.value + answer.error
+            }
+            Tracker::Independent { .. } | Tracker::Tracking(_) => return None,
+        };
+        Some(weighted / self.heroes[channel])
+    }
+
+    /// Those of one channel a draw; of a single channel, whatever the tracker is.
+    fn independent(&self, found: &[Found]) -> Moments {
+        let raw = self.heroes.iter().zip(found).map(|(weight, found)| {
+            let scale = super::rod::moments::POWERS.map(|k| weight.powi(1 - k));
+            std::array::from_fn(|i| found.raw[i].map(|number| scale[i] * number))
+        });
+        Moments { raw: raw.collect(), mixed: vec![[0.0; 4]; self.channels() - 1] }
+    }
+
+    /// Where all channels have the same σ_t and σ̂.
+    fn by_orders(&self, laws: bool) -> Option<Moments> {
+        let &[(mesh, sampling), ref others @ ..] = &self.media[..] else { return None };
+        let nodes: Vec<f64> = mesh.panels().flat_map(|panel| panel.t.iter().copied()).collect();
+        let here = mesh.medium().extinctions(&nodes);
+        let is_same = |(other, majorant): &(&Mesh, &Piecewise)| {
+            majorant.single_value() == sampling.single_value()
+                && other.medium().extinctions(&nodes) == here
+                && other.optical_depth().value == mesh.optical_depth().value
+        };
+        if !others.iter().all(is_same) {
+            return None;
+        }
+        let orders = Orders::new(self.problem, mesh, &self.heroes, self.tracker.techniques())?;
+        orders.moments(sampling, laws)
+    }
+
+    /// The lookups of the heroes' walks.
+    fn lookups(&self, found: &[Found]) -> CountLaw {
+        let mut mixed = [[0.0; 2]; 4];
+        for (weight, found) in self.heroes.iter().zip(found) {
+            for (sum, [value, error]) in mixed.iter_mut().zip(found.lookups) {
+                *sum = [sum[0] + weight * value, sum[1] + weight * error];
+            }
+        }
+        lit_rod::count(mixed)
+    }
+}

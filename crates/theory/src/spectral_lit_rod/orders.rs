@@ -1,0 +1,307 @@
+//! Channels with the same σ_t and σ̂: moments from a chain of equations by the numbers of scatterings.
+//!
+//! After i scatterings that kept the direction and j that turned it, wherever they were, the density of a path by the
+//! walk of the channel λ is a common factor times
+//!
+//! ```text
+//! q_λ = (a_λ p_f,λ)^i (a_λ (1 − p_f,λ))^j
+//! ```
+//!
+//! so that all heroes together walk like one, with chances that depend on i and j; it flies forward where j is even.
+//! With `p_λ` the probability of λ to go towards the emitter, at a scattering
+//!
+//! ```text
+//! ā = Σ w_h q_h a_h/Σ w_h q_h,   p̄ = Σ w_h q_h a_h p_h/Σ w_h q_h a_h,   c_λ = q_λ a_λ p_λ/Σ w_h q_h a_h p_h
+//! a shadow ray scores c_λ G, a hit c_λ H, with the laws of G and H of one channel with p̄, see `lit_rod`
+//! U_k'(x) = ±(σ U_k − σ ā E[Π (c_λ G + F_λ)^{k_λ}]),   U_k the mean of Π (what all future scatterings bring)^{k_λ}
+//! E[Π F_λ^{k_λ}] = p̄ (Π c_λ^{k_λ} E[H^K] + U_k of the next state forward) + (1 − p̄) U_k of the next backward
+//! ```
+//!
+//! with `k = (k_λ)`, `K = Σ k_λ`. An order has the equations of the next as its source: nothing couples.
+//!
+//! Source: derived.
+
+use super::super::lit_rod::connections::{HIGHEST, Vertex, Weights};
+use super::super::lit_rod::{Techniques, with_hit};
+use super::super::rod::grid::{Grid, Walk};
+use super::super::rod::moments::{POWERS, Precision, romberg};
+use super::super::spectral_rod::rods;
+use super::{Moments, PAIRS};
+use crate::problems::SpectralLitRod;
+use crate::{Mesh, ParticleRule};
+use media::Piecewise;
+use numeric::Known;
+
+/// Orders of scattering that are rarer than this do not count.
+const RARE: f64 = 1e-11;
+/// The most orders of scattering.
+const MOST: usize = 160;
+/// Grids agree to this.
+const PRECISION: Precision = Precision { agreement: 1e-7, levels: 5 };
+/// Powers of a channel whose moments are found: to the eighth, or to the second alone.
+const POWERS_OF_ONE: [usize; 2] = [2, HIGHEST];
+
+/// A rod whose channels have the same σ_t and σ̂.
+pub struct Orders<'a> {
+    problem: &'a SpectralLitRod,
+    albedos: Vec<f64>,
+    mesh: &'a Mesh,
+    heroes: &'a [f64],
+    techniques: Techniques,
+    count: usize,
+}
+
+/// A product of powers of one or two channels.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Monomial {
+    channels: [usize; 2],
+    powers: [usize; 2],
+}
+
+/// What of the shadow ray's powers goes with which moment of the rest.
+struct Term {
+    binomials: f64,
+    powers: [usize; 2],
+    /// `None` where nothing is left.
+    rest: Option<usize>,
+}
+
+/// A number of scatterings that kept the direction, and one that turned it.
+struct State {
+    /// ā, p̄.
+    albedo: f64,
+    towards: f64,
+    /// Powers of `c_λ`.
+    coefficients: Vec<[f64; HIGHEST + 1]>,
+}
+
+/// U of every monomial in the middle of every step.
+type Futures = Vec<Vec<f64>>;
+
+impl<'a> Orders<'a> {
+    /// Joins the parts; `None` where albedos are no numbers, or light is scattered too often.
+    pub fn new(
+        problem: &'a SpectralLitRod,
+        mesh: &'a Mesh,
+        heroes: &'a [f64],
+        techniques: Techniques,
+    ) -> Option<Self> {
+        let depth = mesh.optical_depth().value;
+        let albedos = problem.albedos()?;
+        let channels = albedos.iter().zip(&problem.forward);
+        let needed =
+            channels.map(|(&albedo, &forward)| rods::orders_above(depth, albedo, forward, RARE));
+        let count = needed.fold(0, usize::max);
+        (count <= MOST).then_some(Self { problem, albedos, mesh, heroes, techniques, count })
+    }
+
+    /// `E[X^k]` of each channel with absolute errors for k = 1, 2, 3, 4 and 8, and mixed moments of each channel and
+    /// the next. Without `laws` the first two only.
+    pub fn moments(&self, sampling: &Piecewise, laws: bool) -> Option<Moments> {
+        let rod = &self.problem.rods[0].rod;
+        let walk = Walk::new(self.mesh, rod, Some(sampling), ParticleRule::Analog)?;
+        let walk = walk.resolving_transmittance()?;
+        let highest = POWERS_OF_ONE[usize::from(laws)];
+        let (monomials, terms) = monomials(self.heroes.len(), highest);
+        let numbers = romberg(&walk, PRECISION, &|grid| {
+            Some(self.entering(grid, highest, &monomials, &terms))
+        })?;
+        let unscattered = self.mesh.optical_depth().exp_neg();
+        let of = |monomial: Monomial, power: usize| {
+            let at = monomials.iter().position(|known| *known == monomial)?;
+            let [value, error] = numbers[at];
+            let scattered = Known::new(value, error + RARE * value);
+            Some(with_hit(scattered, unscattered, power, self.techniques))
+        };
+        let channels = 0..self.heroes.len();
+        let raw = channels.clone().map(|channel| {
+            std::array::from_fn(|i| {
+                let k = POWERS[i].unsigned_abs() as usize;
+                let found = of(Monomial::of_one(channel, k), i);
+                found.map_or([f64::INFINITY; 2], |known| [known.value, known.error])
+            })
+        });
+        let mixed = channels.skip(1).map(|channel| {
+            PAIRS.map(|powers| {
+                let found = of(Monomial { channels: [channel - 1, channel], powers }, 3);
+                found.map_or(f64::INFINITY, |known| known.value)
+            })
+        });
+        Some(Moments { raw: raw.collect(), mixed: mixed.collect() })
+    }
+
+    /// `q_λ`, ā, p̄ and `c_λ` of a state.
+    fn state(&self, kept: usize, turned: usize) -> State {
+        let power = |x: f64, k: usize| x.powi(i32::try_from(k).unwrap_or(i32::MAX));
+        let (mut all, mut scattered, mut towards) = (0.0, 0.0, 0.0);
+        let mut shares = Vec::with_capacity(self.heroes.len());
+        for (channel, weight) in self.heroes.iter().enumerate() {
+            let (albedo, forward) = (self.albedos[channel], self.problem.forward[channel]);
+            let density = power(albedo * forward, kept) * power(albedo * (1.0 - forward), turned);
+            let phase = if turned.is_multiple_of(2) { forward } else { 1.0 - forward };
+            all += weight * density;
+            scattered += weight * density * albedo;
+            towards += weight * density * albedo * phase;
+            shares.push(density * albedo * phase);
+        }
+        let over = |x: f64, y: f64| if y > 0.0 { x / y } else { 0.0 };
+        let coefficients = shares.iter().map(|share| {
+            let one = over(*share, towards);
+            let mut powers = [1.0; HIGHEST + 1];
+            for k in 1..=HIGHEST {
+                powers[k] = powers[k - 1] * one;
+            }
+            powers
+        });
+        State {
+            albedo: over(scattered, all),
+            towards: over(towards, scattered),
+            coefficients: coefficients.collect(),
+        }
+    }
+
+    /// U of every monomial for who enters, on a grid.
+    fn entering(
+        &self,
+        grid: &Grid,
+        highest: usize,
+        monomials: &[Monomial],
+        terms: &[Vec<Term>],
+    ) -> Vec<f64> {
+        let weights = Weights::new(self.techniques, highest);
+        let nulls = weights.nulls(grid);
+        let steps = grid.steps().len();
+        let nothing = || vec![vec![0.0; steps]; monomials.len()];
+        let mut next: Vec<Futures> = (0..=self.count).map(|_| nothing()).collect();
+        let mut entering = vec![0.0; monomials.len()];
+        for order in (0..self.count).rev() {
+            let mut here = Vec::with_capacity(order + 1);
+            for turned in 0..=order {
+                let is_forward = turned.is_multiple_of(2);
+                let state = self.state(order - turned, turned);
+                // Forward goes on without a turn where it flies forward.
+                let [plus, minus] =
+                    if is_forward { [turned, turned + 1] } else { [turned + 1, turned] };
+                let (plus, minus) = (&next[plus], &next[minus]);
+                let mut sources = nothing();
+                for (i, nulls) in nulls.iter().enumerate().filter(|_| state.albedo > 0.0) {
+                    let vertex = weights.vertex(state.towards, nulls);
+                    let futures: Vec<f64> = monomials
+                        .iter()
+                        .enumerate()
+                        .map(|(m, monomial)| {
+                            let hit = state.product(monomial.channels, monomial.powers)
+                                * vertex.hit[monomial.total()];
+                            let onward = state.towards * (hit + plus[m][i]);
+                            onward + (1.0 - state.towards) * minus[m][i]
+                        })
+                        .collect();
+                    for (m, monomial) in monomials.iter().enumerate() {
+                        sources[m][i] = state.scattered(&vertex, *monomial, &terms[m], &futures);
+                    }
+                }
+                let solved = sources
+                    .iter()
+                    .map(|source| solve(grid, is_forward, |i| state.albedo * source[i]));
+                let (worth, begins): (Futures, Vec<f64>) = solved.unzip();
+                if order == 0 {
+                    entering = begins;
+                }
+                here.push(worth);
+            }
+            next = here;
+        }
+        entering
+    }
+}
+
+impl Monomial {
+    fn of_one(channel: usize, power: usize) -> Self {
+        Self { channels: [channel, channel], powers: [power, 0] }
+    }
+
+    fn total(self) -> usize {
+        self.powers[0] + self.powers[1]
+    }
+}
+
+impl State {
+    /// `Π c_λ^{k_λ}`.
+    #[inline]
+    fn product(&self, channels: [usize; 2], powers: [usize; 2]) -> f64 {
+        self.coefficients[channels[0]][powers[0]] * self.coefficients[channels[1]][powers[1]]
+    }
+
+    /// `E[Π (c_λ G + F_λ)^{k_λ}]`.
+    fn scattered(
+        &self,
+        vertex: &Vertex,
+        monomial: Monomial,
+        terms: &[Term],
+        futures: &[f64],
+    ) -> f64 {
+        let of = |term: &Term| {
+            let shadow = vertex.connected[term.powers[0] + term.powers[1]];
+            let own = term.binomials * self.product(monomial.channels, term.powers) * shadow;
+            own * term.rest.map_or(1.0, |rest| futures[rest])
+        };
+        terms.iter().map(of).sum()
+    }
+}
+
+/// Powers of each channel, and mixed ones of each and the next, with the terms of their binomials.
+fn monomials(channels: usize, highest: usize) -> (Vec<Monomial>, Vec<Vec<Term>>) {
+    let mut found: Vec<Monomial> = (0..channels)
+        .flat_map(|channel| (1..=highest).map(move |k| Monomial::of_one(channel, k)))
+        .collect();
+    for channel in 1..channels {
+        found.extend(PAIRS.map(|powers| Monomial { channels: [channel - 1, channel], powers }));
+    }
+    let place = |channels: [usize; 2], powers: [usize; 2]| {
+        let monomial = match powers {
+            [0, 0] => return None,
+            [0, k] => Monomial::of_one(channels[1], k),
+            [k, 0] => Monomial::of_one(channels[0], k),
+            _ => Monomial { channels, powers },
+        };
+        found.iter().position(|known| *known == monomial)
+    };
+    let terms_of = |monomial: &Monomial| {
+        let [p, q] = monomial.powers;
+        let mut terms = Vec::new();
+        for i in 0..=p {
+            for j in 0..=q {
+                let binomials = binomial(p, i) * binomial(q, j);
+                let rest = place(monomial.channels, [p - i, q - j]);
+                terms.push(Term { binomials, powers: [i, j], rest });
+            }
+        }
+        terms
+    };
+    let terms = found.iter().map(terms_of).collect();
+    (found, terms)
+}
+
+/// `n over k`.
+fn binomial(n: usize, k: usize) -> f64 {
+    (0..k).fold(1.0, |product, i| product * (n - i) as f64 / (i + 1) as f64)
+}
+
+/// What a particle that flies one way is worth in the middles of all steps and where it enters, if a real collision is
+/// worth what is given: by the implicit midpoint rule, whose error is even in the steps' widths.
+fn solve(grid: &Grid, is_forward: bool, collided: impl Fn(usize) -> f64) -> (Vec<f64>, f64) {
+    let steps = grid.steps();
+    let (mut worth, mut middles) = (0.0, vec![0.0; steps.len()]);
+    let mut pass = |i: usize| {
+        let depth = steps[i].width * steps[i].sampling * (1.0 - steps[i].means[0]);
+        let before = ((1.0 - 0.5 * depth) * worth + depth * collided(i)) / (1.0 + 0.5 * depth);
+        middles[i] = 0.5 * (before + worth);
+        worth = before;
+    };
+    if is_forward {
+        (0..steps.len()).rev().for_each(&mut pass);
+    } else {
+        (0..steps.len()).for_each(&mut pass);
+    }
+    (middles, worth)
+}

@@ -1,0 +1,267 @@
+//! Bodies of coloured scatterers: moments of walks whose weights depend on the number of scatterings alone.
+//!
+//! With `R(a)` and `T(a)` of a rod or slab of one albedo a, continued to a > 1, and `K = Σ k_λ`:
+//!
+//! ```text
+//! E[Π X_λ^{k_λ}; transmitted]
+//! independent        w_h^{1−K} T(a_h), all of k on the channel h, else 0
+//! hero               Σ_h w_h T(Π a_λ^{k_λ} / a_h^{K−1})
+//! spectral tracking  T(Π a_λ^{k_λ} / P_s^{K−1}),  P_s the chance to be scattered
+//! spectral MIS       Σ_r T_r D_r Π (a_λ^r/D_r)^{k_λ},  D_r = Σ_h w_h a_h^r
+//! ```
+//!
+//! and likewise for R. Where `T(a)` is infinite, so is the moment. `T_r` is the probability to leave after r scatterings
+//! that never absorb.
+//!
+//! Source: derived: each scattering multiplies the k-th moment of a weight by one number.
+
+pub mod rods;
+
+pub use self::rods::{Rods, critical, leaving};
+
+use super::prediction::Covariance;
+use super::{Channel, CountLaw, Moments, Prediction, Tails};
+use crate::problems::spectral_rod::{Colours, End};
+use numeric::Known;
+
+/// What rounding leaves of a moment, relative to it.
+const ROUNDING: f64 = 1e-13;
+
+/// Probabilities to leave after r scatterings that never absorb.
+pub struct Orders {
+    /// Reflected and transmitted.
+    pub found: Vec<[f64; 2]>,
+    /// A bound on their relative error.
+    pub error: f64,
+    /// What is not known of their sum, absolute.
+    pub blur: f64,
+}
+
+/// What theory knows of a body of one albedo.
+pub trait Body: Send + Sync {
+    /// Reflectance and transmittance, of albedos above 1, too; `None` where they are infinite.
+    fn leaving(&self, albedo: f64) -> Option<[Known; 2]>;
+
+    /// The same for higher moments, which need not be known as sharply.
+    fn power(&self, albedo: f64) -> Option<[Known; 2]> {
+        self.leaving(albedo)
+    }
+
+    /// From where on they are infinite, in words; `None` where they are not.
+    fn beyond(&self, albedo: f64) -> Option<String>;
+
+    /// By orders of scattering; `None` where they are not known.
+    fn orders(&self) -> Option<Orders>;
+
+    /// The lookups of analog walks, mixed over weights and albedos; `None` where they are not known.
+    fn lookups(&self, heroes: &[(f64, f64)]) -> Option<CountLaw>;
+}
+
+/// How all channels are scored by one walk.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Tracker {
+    /// One channel by its own walk, the others 0.
+    Independent,
+    /// The walk of a hero, divided by its density.
+    Hero,
+    /// One chance to be scattered for all channels.
+    Tracking {
+        /// `P_s`.
+        scatter: f64,
+    },
+    /// The walk of a hero, divided by the mean density of all heroes.
+    Mis,
+}
+
+/// A body with everything that its moments depend on.
+pub struct Spectrum<'a> {
+    body: Box<dyn Body + 'a>,
+    colours: &'a Colours,
+    hero: Vec<f64>,
+    tracker: Tracker,
+    orders: Option<Orders>,
+}
+
+impl<'a> Spectrum<'a> {
+    /// Joins the parts; `hero` has one probability for each channel.
+    pub fn new(
+        body: Box<dyn Body + 'a>,
+        colours: &'a Colours,
+        hero: Vec<f64>,
+        tracker: Tracker,
+    ) -> Self {
+        let orders = if tracker == Tracker::Mis { body.orders() } else { None };
+        Self { body, colours, hero, tracker, orders }
+    }
+
+    /// What a scattering, of this chance, multiplies the k-th power of a channel's weight by on average.
+    fn albedo_of_power(&self, k: &[i32], scatter: f64) -> f64 {
+        let total: i32 = k.iter().sum();
+        let product: f64 = self.colours.albedos.iter().zip(k).map(|(a, &k)| a.powi(k)).product();
+        if product == 0.0 { 0.0 } else { product / scatter.powi(total - 1) }
+    }
+
+    /// The channel whose second moment is infinite, and from where on it is.
+    pub fn diverges(&self) -> Option<(usize, String)> {
+        let walkers = self.walkers();
+        (0..self.colours.albedos.len()).find_map(|channel| {
+            let square = self.only(channel, 2);
+            let mut albedos =
+                walkers.iter().map(|&(_, scatter)| self.albedo_of_power(&square, scatter));
+            albedos.find_map(|albedo| self.body.beyond(albedo)).map(|why| (channel, why))
+        })
+    }
+
+    /// Whose walks score all channels without multiple importance sampling: probabilities, and chances to be scattered.
+    fn walkers(&self) -> Vec<(f64, f64)> {
+        match self.tracker {
+            Tracker::Hero => {
+                let heroes = self.hero.iter().copied().zip(self.colours.albedos.iter().copied());
+                heroes.filter(|&(weight, _)| weight > 0.0).collect()
+            }
+            Tracker::Tracking { scatter } => vec![(1.0, scatter)],
+            _ => Vec::new(),
+        }
+    }
+
+    fn only(&self, channel: usize, power: i32) -> Vec<i32> {
+        let mut k = vec![0; self.colours.albedos.len()];
+        k[channel] = power;
+        k
+    }
+
+    /// `E[Π X_λ^{k_λ}]` of what leaves at an end; infinite where it diverges, `None` where it is not known.
+    fn moment(&self, end: End, k: &[i32]) -> Option<Known> {
+        let side = usize::from(end == End::Transmitted);
+        let total: i32 = k.iter().sum();
+        match self.tracker {
+            Tracker::Independent => {
+                let channel = k.iter().position(|&k| k == total);
+                Some(channel.map_or(Known::new(0.0, 0.0), |channel| {
+                    let weight = self.hero[channel].powi(1 - total);
+                    let found = self.body.leaving(self.colours.albedos[channel]);
+                    found.map_or(Known::new(0.0, 0.0), |found| {
+                        Known::new(weight * found[side].value, weight * found[side].error)
+                    })
+                }))
+            }
+            Tracker::Hero | Tracker::Tracking { .. } => {
+                let infinite = Known::new(f64::INFINITY, f64::INFINITY);
+                let each = self.walkers().into_iter().map(|(weight, scatter)| {
+                    let albedo = self.albedo_of_power(k, scatter);
+                    let found = self.body.power(albedo).map_or(infinite, |found| found[side]);
+                    [weight * found.value, weight * found.error]
+                });
+                let [value, error] = each.fold([0.0; 2], |[a, b], [c, d]| [a + c, b + d]);
+                Some(Known::new(value, error))
+            }
+            Tracker::Mis => {
+                let orders = self.orders.as_ref()?;
+                let mut powers = vec![1.0; k.len()];
+                let mut sum = 0.0;
+                for order in &orders.found {
+                    let density: f64 = self.hero.iter().zip(&powers).map(|(w, a)| w * a).sum();
+                    if density > 0.0 {
+                        let weights = powers.iter().zip(k).map(|(a, &k)| (a / density).powi(k));
+                        sum += order[side] * density * weights.product::<f64>();
+                    }
+                    powers.iter_mut().zip(&self.colours.albedos).for_each(|(power, a)| *power *= a);
+                }
+                Some(Known::new(sum, orders.error * sum + orders.blur))
+            }
+        }
+    }
+
+    /// What theory says of walks.
+    pub fn predict(&self) -> Prediction {
+        let channels: Vec<Channel> =
+            self.colours.seen.iter().map(|&(end, channel)| self.channel(end, channel)).collect();
+        let pairs = self.colours.seen.windows(2).enumerate();
+        let covariances = pairs.filter_map(|(i, pair)| self.covariance(i, pair, &channels));
+        let covariances = covariances.collect();
+        let heroes: Vec<(f64, f64)> = match self.tracker {
+            Tracker::Tracking { scatter } => vec![(1.0, scatter)],
+            _ => self.hero.iter().copied().zip(self.colours.albedos.iter().copied()).collect(),
+        };
+        let lookups = self.body.lookups(&heroes);
+        Prediction { channels, lookups, covariances, ..Prediction::default() }
+    }
+
+    fn channel(&self, end: End, channel: usize) -> Channel {
+        let unknown = [Known::new(f64::NAN, f64::NAN); 2];
+        let values = self.body.leaving(self.colours.albedos[channel]).unwrap_or(unknown);
+        let truth = values[usize::from(end == End::Transmitted)];
+        let blur = truth.error / truth.value;
+        let raw = |k: i32| {
+            let Known { value, error } = self.moment(end, &self.only(channel, k))?;
+            let unit = truth.value.powi(k);
+            Some(Known::new(value / unit, error / unit))
+        };
+        let moments = (|| {
+            let [second, third, fourth] = [raw(2)?, raw(3)?, raw(4)?];
+            let [a, b, c] = [second, third, fourth].map(|known| known.value);
+            let m2 = (a - 1.0).max(0.0);
+            let (m3, m4) = if c.is_finite() {
+                let m4 = c - 4.0 * b + 6.0 * a - 3.0;
+                (b - 3.0 * a + 2.0, m4.max(m2 * m2))
+            } else {
+                (f64::INFINITY, f64::INFINITY)
+            };
+            let of = |off: f64, moment: f64| if moment > 0.0 { off / moment } else { 0.0 };
+            let off = second.error + 2.0 * blur * a;
+            let of_fourth = if c.is_finite() {
+                let off = fourth.error + 4.0 * third.error + 6.0 * second.error + 4.0 * blur * c;
+                of(off, m4)
+            } else {
+                0.0
+            };
+            let error = of(off, m2).max(of_fourth);
+            Some(Moments { scale: truth.value, relative: [m2, m3, m4], error })
+        })();
+        let raw = |k: i32| raw(k).map(|known| known.value);
+        let tails = match (raw(2), raw(4), raw(8)) {
+            (Some(second), Some(fourth), Some(eighth)) => Tails {
+                rare_event_size: fourth / (second * second),
+                eighth_moment_ratio: if eighth.is_finite() {
+                    eighth / (fourth * fourth)
+                } else {
+                    f64::INFINITY
+                },
+            },
+            _ => Tails::LIGHT,
+        };
+        let side = if end == End::Reflected { "reflectance" } else { "transmittance" };
+        let name = format!("{side}, channel {}", channel + 1);
+        if moments.is_none() {
+            // A draw of MIS is a^r/Σ w_h a_h^r ≤ 1/w or 0, hence E[X²] ≤ E[X]/w.
+            let square = (truth.value + truth.error) / self.hero[channel];
+            return Channel { name, ..Channel::bounded(truth, square) };
+        }
+        Channel { name, ..Channel::unbiased(truth, moments, tails) }
+    }
+
+    fn covariance(
+        &self,
+        index: usize,
+        pair: &[(End, usize)],
+        channels: &[Channel],
+    ) -> Option<Covariance> {
+        let &[(end, first), (other, second)] = pair else { return None };
+        let joint = |i: i32, j: i32| {
+            if i > 0 && j > 0 && end != other {
+                return Some(0.0);
+            }
+            let mut k = vec![0; self.colours.albedos.len()];
+            k[first] += i;
+            k[second] += j;
+            self.moment(if j == 0 { end } else { other }, &k).map(|known| known.value)
+        };
+        let [a, b] = [index, index + 1].map(|i| channels[i].truth.value);
+        let [ab, aab, abb] = [joint(1, 1)?, joint(2, 1)?, joint(1, 2)?];
+        let squares = [joint(2, 0)?, joint(0, 2)?];
+        let mixed = [ab, aab, abb, joint(2, 2)?];
+        let found = Covariance::of_raw([index, index + 1], [a, b], squares, mixed);
+        let variance = if found.variance.is_nan() { f64::INFINITY } else { found.variance };
+        Some(Covariance { variance, ..found })
+    }
+}

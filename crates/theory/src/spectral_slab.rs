@@ -1,0 +1,142 @@
+//! Slabs of coloured scatterers: what adding and doubling says of albedos above 1, and orders of scattering.
+//!
+//! Moments are those of [`super::spectral_rod`]. An albedo above 1 may be too large for the depth of the slab: it is
+//! critical, and the moment infinite. Of phase functions that are not isotropic, albedos above 1 are solved to 1e-4.
+//! Orders of scattering are known for isotropic scattering; of other phase functions multiple importance sampling has a
+//! mean, and a bound on the variance, as its draws never exceed 1/w.
+
+use super::slab::layer::Slice;
+use super::slab::{self, Pieces, Resolution, Walk};
+use super::spectral_rod::{Body, Orders};
+use super::{CountLaw, Mesh, ParticleRule};
+use crate::memo::Memo;
+use crate::problems::SpectralSlab;
+use crate::problems::slab::{Incidence, Light};
+use media::Piecewise;
+use media::phase::Phase;
+use media::phase::isotropic::Isotropic;
+use numeric::Known;
+use numeric::digits::rounded;
+
+/// What orders of scattering are off by, relative, beyond what their sum tells.
+const OF_ORDERS: f64 = 2e-12;
+/// So near, relative, to a critical depth theory does not tell on which side of it a slab is.
+const NEAR: f64 = 1e-3;
+/// Critical albedos are found to this.
+const SHARP: f64 = 1e-7;
+
+/// A slab with what its walks fly through.
+pub struct Slabs<'a> {
+    slab: &'a SpectralSlab,
+    mesh: &'a Mesh,
+    sampling: &'a Piecewise,
+    laws: bool,
+}
+
+impl<'a> Slabs<'a> {
+    /// Joins the parts; without `laws` lookups have a mean only.
+    pub fn new(
+        slab: &'a SpectralSlab,
+        (mesh, sampling): (&'a Mesh, &'a Piecewise),
+        laws: bool,
+    ) -> Self {
+        Self { slab, mesh, sampling, laws }
+    }
+
+    fn depth(&self) -> Known {
+        self.mesh.optical_depth()
+    }
+}
+
+/// An answer of moderate precision, `None` where it is infinite: with sharp phase functions an exact one takes seconds.
+fn coarse(incidence: &Incidence, depth: f64, albedo: f64) -> Option<[Known; 2]> {
+    let slice = Slice { flown: depth, straight: 0.0, scattered: albedo, score: 0.0 };
+    let found = slab::solve(&incidence.phase, &[incidence.light], &[slice], Resolution::COARSE)?;
+    Some([found[0].reflected, found[0].transmitted])
+}
+
+fn is_isotropic(incidence: &Incidence) -> bool {
+    incidence.phase == Phase::Isotropic(Isotropic)
+}
+
+/// Whether a slab of so many optical depths has a finite answer.
+fn is_finite(incidence: &Incidence, depth: f64, albedo: f64) -> bool {
+    let light = Incidence { light: Light::Diffuse, ..*incidence };
+    if is_isotropic(incidence) {
+        slab::cached(&light, Known::exact(depth), albedo).is_some()
+    } else {
+        coarse(&light, depth, albedo).is_some()
+    }
+}
+
+/// The albedo from which on a slab has no finite answer.
+fn critical(incidence: &Incidence, depth: f64) -> f64 {
+    let (mut low, mut high) = (1.0, 2.0);
+    while is_finite(incidence, depth, high) && high < 1e6 {
+        (low, high) = (high, 2.0 * high);
+    }
+    while high - low > SHARP * low {
+        let middle = 0.5 * (low + high);
+        if is_finite(incidence, depth, middle) { low = middle } else { high = middle }
+    }
+    high
+}
+
+static CRITICAL: Memo<(String, u64), f64> = Memo::new(256);
+
+impl Body for Slabs<'_> {
+    fn leaving(&self, albedo: f64) -> Option<[Known; 2]> {
+        let answer = slab::cached(&self.slab.incidence, self.depth(), albedo)?;
+        Some([answer.reflected, answer.transmitted])
+    }
+
+    fn power(&self, albedo: f64) -> Option<[Known; 2]> {
+        if is_isotropic(&self.slab.incidence) || albedo <= 1.0 {
+            return self.leaving(albedo);
+        }
+        coarse(&self.slab.incidence, self.depth().value, albedo)
+    }
+
+    fn beyond(&self, albedo: f64) -> Option<String> {
+        let (incidence, depth) = (&self.slab.incidence, self.depth().value);
+        if albedo <= 1.0 {
+            return None;
+        }
+        let near = depth * (1.0 + NEAR);
+        if is_finite(incidence, near, albedo) && self.power(albedo).is_some() {
+            return None;
+        }
+        let key = (incidence.phase.label(), depth.to_bits());
+        let critical = CRITICAL.get(key, || critical(incidence, depth));
+        Some(format!(
+            "from the albedo {} on, and it asks for {}",
+            rounded(critical),
+            rounded(albedo)
+        ))
+    }
+
+    fn orders(&self) -> Option<Orders> {
+        if !is_isotropic(&self.slab.incidence) {
+            return None;
+        }
+        let depth = self.depth();
+        let found = slab::orders::orders(self.slab.incidence.light, depth.value)?;
+        let steepest = self.slab.incidence.light.cosine().map_or(6.0, |cosine| 4.0 + 1.0 / cosine);
+        let all: f64 = found.iter().flatten().sum();
+        let error = OF_ORDERS + (all - 1.0).abs();
+        Some(Orders { found, error, blur: steepest * depth.error })
+    }
+
+    fn lookups(&self, heroes: &[(f64, f64)]) -> Option<CountLaw> {
+        let rule = ParticleRule::Analog;
+        let incidence = self.slab.incidence;
+        let pieces = Pieces::new(self.mesh, self.sampling, &rule.kinks(1.0), &[incidence.light]);
+        let walk = |&(weight, albedo): &(f64, f64)| {
+            let (depth, laws) = (self.depth().value, self.laws);
+            let pieces = pieces.clone();
+            (weight, Walk { incidence, albedo, rule, pieces, largest_ratio: 1.0, depth, laws })
+        };
+        let walks: Vec<(f64, Walk)> = heroes.iter().map(walk).collect();
+        slab::walk::mixed_lookups(&walks)
+    }
+}

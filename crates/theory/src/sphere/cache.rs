@@ -1,0 +1,112 @@
+//! Answers that were worked out before: experiments of one ball share theirs.
+
+use super::ball::Ball;
+use super::shells::Resolution;
+use super::{Lights, Observable, Solved, Spreads, centre_of, solved};
+use crate::memo::Memo;
+use numeric::Known;
+
+/// All that an answer depends on, but for σ_t.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Scene {
+    /// R.
+    pub radius: f64,
+    /// The radius of a black sphere at the centre.
+    pub core: Option<f64>,
+    /// a.
+    pub albedo: f64,
+    /// Who shines.
+    pub lights: Lights,
+    /// Whether the environment stands for a distant light, looked at from the centre.
+    pub is_distant: bool,
+    /// What is sought.
+    pub observable: Observable,
+}
+
+/// What there is to know.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Answer {
+    /// The value.
+    pub value: Known,
+    /// How far draws stray from it at most, the errors of the solution included.
+    pub spreads: Spreads,
+}
+
+static ANSWERS: Memo<Vec<u64>, Option<Answer>> = Memo::new(1024);
+
+impl Scene {
+    /// The bits of all numbers, and of σ_t at so many places that no other field shares them.
+    fn key(&self, extinction: &dyn Fn(f64) -> f64) -> Vec<u64> {
+        let (kind, observable) = match self.observable {
+            Observable::Mean(r) => (0.0, [r, 0.0]),
+            Observable::Radiance { offset, from } => (1.0, [offset, from]),
+        };
+        let lights = [self.lights.environment, self.lights.core];
+        let core = self.core.unwrap_or(-1.0);
+        let distant = f64::from(u8::from(self.is_distant));
+        let mut numbers = vec![self.radius, core, self.albedo, kind, distant];
+        numbers.extend(lights);
+        numbers.extend(observable);
+        let outer = self.radius * self.radius;
+        numbers.extend((0..=32).map(|i| extinction(outer * f64::from(i) / 32.0)));
+        numbers.into_iter().map(f64::to_bits).collect()
+    }
+
+    fn answer(&self, extinction: &dyn Fn(f64) -> f64) -> Option<Answer> {
+        let centre = centre_of(self.core);
+        let ball = Ball { radius: self.radius, centre, extinction };
+        let resolution = Resolution::COARSE.about(centre, self.radius);
+        let solved = solved(&ball, self.albedo, self.lights, resolution)?;
+        let value = resolution.known(solved.each_ref().map(|s| s.answer(self.observable)));
+        let of = |solved: &Solved| solved.spreads(self.observable, self.is_distant);
+        let [fine, coarse, coarsest] = solved.each_ref().map(of);
+        let above = |numbers| {
+            let Known { value, error } = resolution.known(numbers);
+            value + error
+        };
+        Some(Answer { value, spreads: Spreads::joined(&[fine?, coarse?, coarsest?], above) })
+    }
+}
+
+/// The answer, which is worked out once and only once, whoever asks.
+pub fn cached(scene: &Scene, extinction: &dyn Fn(f64) -> f64) -> Option<Answer> {
+    ANSWERS.get(scene.key(extinction), || scene.answer(extinction))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_differs_is_kept_apart() {
+        let sky = Lights { environment: 1.0, core: 0.0 };
+        let scene = Scene {
+            radius: 1.0,
+            core: None,
+            albedo: 0.5,
+            lights: sky,
+            is_distant: false,
+            observable: Observable::Mean(0.5),
+        };
+        let of = |scene: &Scene, sigma: f64| {
+            let found = cached(scene, &|_| sigma).expect("a medium");
+            assert_eq!(Some(found), cached(scene, &|_| sigma));
+            assert_eq!(Some(found), scene.answer(&|_| sigma));
+            found.value.value
+        };
+        let values = [
+            of(&scene, 1.0),
+            of(&scene, 1.1),
+            of(&Scene { albedo: 0.6, ..scene }, 1.0),
+            of(&Scene { core: Some(0.2), ..scene }, 1.0),
+            of(&Scene { observable: Observable::Mean(0.6), ..scene }, 1.0),
+            of(
+                &Scene { observable: Observable::Radiance { offset: 0.5, from: 0.0 }, ..scene },
+                1.0,
+            ),
+        ];
+        for (i, x) in values.iter().enumerate() {
+            assert!(values[..i].iter().all(|y| x != y));
+        }
+    }
+}
