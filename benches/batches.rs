@@ -14,8 +14,8 @@ use std::path::Path;
 
 use cpu_time::ThreadTime;
 use fearless_simd::{Level, Simd, SimdBase, f64x8};
+use trueflight::case::Source;
 use trueflight::catalogue::Settings;
-use trueflight::harness::Source;
 use trueflight::media::{Body, Lookups, Medium};
 use trueflight::numeric::pack::{self, Task};
 use trueflight::numeric::{Lane, Twin};

@@ -12,8 +12,8 @@ use std::hint::black_box;
 use std::time::Instant;
 
 use trueflight::OfCase;
+use trueflight::case::sweep::What;
 use trueflight::estimators::{DrawBuffer, Kernel};
-use trueflight::harness::sweep::What;
 use trueflight::rng::{Address, Stream};
 use trueflight::{Catalogue, check};
 

@@ -21,10 +21,16 @@
 use std::hint::black_box;
 
 use cpu_time::{ProcessTime, ThreadTime};
+use trueflight::case::Case;
+use trueflight::case::suite;
+use trueflight::checks::Kind;
+use trueflight::draw::block;
+use trueflight::draw::run;
 use trueflight::estimators::DrawBuffer;
-use trueflight::harness::checks::Kind;
-use trueflight::harness::plan::{BLOCK, Planned};
-use trueflight::harness::{Amount, Case, Options, Plan, draw, run, suite};
+use trueflight::plan::Amount;
+use trueflight::plan::Options;
+use trueflight::plan::Plan;
+use trueflight::plan::{BLOCK, Planned};
 
 /// Draws per experiment.
 const DRAWS: u64 = 2 * BLOCK;

@@ -18,10 +18,15 @@ use cpu_time::ThreadTime;
 use fearless_simd::Level;
 use rand::Rng;
 use rand_pcg::Pcg64;
+use trueflight::case::Case;
+use trueflight::case::Source;
+use trueflight::draw::block;
 use trueflight::estimators::{DrawBuffer, Kernel, Order};
-use trueflight::harness::plan::{BLOCK, Planned};
-use trueflight::harness::{Amount, Case, Options, Plan, Source, draw};
 use trueflight::media::lattice::hash3;
+use trueflight::plan::Amount;
+use trueflight::plan::Options;
+use trueflight::plan::Plan;
+use trueflight::plan::{BLOCK, Planned};
 
 const ROUNDS: usize = 7;
 /// Draws of the textbook's loop in a round.

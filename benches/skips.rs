@@ -10,8 +10,13 @@
 //! `tests/packets.rs` and `tests/verdicts.rs`.
 
 use cpu_time::ProcessTime;
-use trueflight::harness::cache::Cache;
-use trueflight::harness::{Amount, Case, Options, Plan, Source, run};
+use trueflight::case::Case;
+use trueflight::case::Source;
+use trueflight::draw::cache::Cache;
+use trueflight::draw::run;
+use trueflight::plan::Amount;
+use trueflight::plan::Options;
+use trueflight::plan::Plan;
 
 /// Draws per experiment.
 const DRAWS: u64 = 1 << 17;

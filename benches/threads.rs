@@ -14,9 +14,12 @@ use std::hint::black_box;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Instant;
 
+use trueflight::case::Case;
+use trueflight::case::suite;
 use trueflight::estimators::DrawBuffer;
-use trueflight::harness::plan::{BLOCK, Planned};
-use trueflight::harness::{Case, Options, Plan, suite};
+use trueflight::plan::Options;
+use trueflight::plan::Plan;
+use trueflight::plan::{BLOCK, Planned};
 
 /// Threads.
 const THREADS: usize = 2;

@@ -9,8 +9,14 @@
 //! figure is the draws of all its scalars in units of that, as `trueflight run` shows it for one
 //! seed. With one seed a case of few scalars tells little: they pass early or late together.
 
-use trueflight::harness::options::DRAWS;
-use trueflight::harness::{Amount, Case, Options, Plan, run, suite, verdict};
+use trueflight::case::Case;
+use trueflight::case::suite;
+use trueflight::draw::run;
+use trueflight::plan::Amount;
+use trueflight::plan::Options;
+use trueflight::plan::Plan;
+use trueflight::plan::options::DRAWS;
+use trueflight::record::verdict;
 
 fn main() {
     let wished = std::env::args().skip(1).find_map(|word| word.parse().ok());

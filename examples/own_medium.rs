@@ -1,9 +1,10 @@
 //! A medium of one's own, by closures: along a line, and in space.
 
 use trueflight::OfCase;
+use trueflight::case::Case;
+use trueflight::case::Source;
 use trueflight::catalogue::{Addition, Page, Settings};
 use trueflight::geometry::{Aabb, Bounds, Point};
-use trueflight::harness::{Case, Source};
 use trueflight::judge::Choice;
 use trueflight::media::own::{Formula, SpaceFormula};
 use trueflight::{Catalogue, check};

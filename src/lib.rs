@@ -44,22 +44,25 @@
 //! - Nothing is clamped, skipped or defaulted silently. Unknown is `None`, never `0`.
 //! - A check that cannot fail is a defect.
 
-pub mod baseline;
 pub mod bench;
+pub mod case;
+pub mod checks;
 pub mod cli;
+pub mod draw;
 pub mod export;
-pub mod harness;
 pub mod judge;
+pub mod plan;
+pub mod record;
 pub mod render;
 pub mod report;
 pub mod self_test;
 pub mod stress;
 
 pub use ::{estimators, gate, lab, media, numeric, theory};
+pub use case::Catalogue;
 pub use estimators::{kernels, recipes, setup};
 pub use gate::stats;
 pub use gate::{Check, Gate, check, check_with, claim};
-pub use harness::Catalogue;
 pub use judge::OfCase;
 pub use lab::mutants;
 pub use media::{catalogue, files, page, phase};

@@ -5,9 +5,9 @@
 
 use std::process::ExitCode;
 
+use trueflight::case::catalogue::NameTaken;
 use trueflight::catalogue::{Addition, Page, Settings};
 use trueflight::estimators::own::estimator;
-use trueflight::harness::catalogue::NameTaken;
 use trueflight::media::own::Formula;
 use trueflight::problems::Transmittance;
 use trueflight::{Catalogue, page};

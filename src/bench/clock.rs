@@ -12,7 +12,7 @@ use fearless_simd::Level;
 use serde::{Deserialize, Serialize};
 
 use super::curve::Sample;
-use crate::harness::plan::{BLOCK, Planned};
+use crate::plan::{BLOCK, Planned};
 use estimators::{DrawBuffer, Kernel};
 use numeric::pack;
 

@@ -7,7 +7,7 @@
 //! Rounds are independent, so that the error over several is smoother than |mean − T| of one. Where
 //! theory has a variance, it should follow √(V/n).
 
-use crate::harness::plan::Planned;
+use crate::plan::Planned;
 use estimators::{DrawBuffer, Order};
 use gate::stats::Tally;
 

@@ -35,7 +35,7 @@ use self::curve::Sample;
 use self::record::{Bench, BenchCase, Conditions};
 use self::rows::Laps;
 use self::spread::Spread;
-use crate::harness::plan::{Plan, PlannedCase};
+use crate::plan::{Plan, PlannedCase};
 #[cfg(doc)]
 use numeric::pack;
 

@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 use super::clock::Clock;
 use super::record::{Bench, BenchCase, BenchRow};
 use super::spread::Spread;
-use crate::baseline::{Baseline, BaselineError, file};
+use crate::record::baseline::{Baseline, BaselineError, file};
 
 /// The version of the file's form.
 pub const SCHEMA: u32 = 1;

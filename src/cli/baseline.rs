@@ -6,9 +6,10 @@ use anyhow::anyhow;
 use clap::Args;
 
 use super::numbers;
-use crate::baseline::{Baseline, BaselineError, Comparison, Rules, compare, fingerprint};
-use crate::harness::record::Verdict;
-use crate::harness::{Case, Record};
+use crate::case::Case;
+use crate::record::Record;
+use crate::record::Verdict;
+use crate::record::baseline::{Baseline, BaselineError, Comparison, Rules, compare, fingerprint};
 use crate::report::diff;
 
 /// Options that all commands which draw share.

@@ -15,8 +15,9 @@ use crate::bench::comparison::Comparison;
 use crate::bench::record::Bench;
 use crate::bench::stored::Stored;
 use crate::bench::{Amounts, measure};
-use crate::harness::Catalogue;
-use crate::harness::{Amount, Plan};
+use crate::case::Catalogue;
+use crate::plan::Amount;
+use crate::plan::Plan;
 use crate::report::bench as page;
 use numeric::pack;
 

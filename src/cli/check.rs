@@ -16,8 +16,10 @@ use super::output::{Errors, Format};
 use super::selection::{Looks, Selection};
 use super::verdict::{self, Inconclusive};
 use super::{Console, drawing, numbers, output};
-use crate::harness::Catalogue;
-use crate::harness::{Case, Options, Record};
+use crate::case::Case;
+use crate::case::Catalogue;
+use crate::plan::Options;
+use crate::record::Record;
 use crate::report::{Report, annotations, html, junit, markdown, record_json, summary_csv};
 use media::files;
 

@@ -8,13 +8,15 @@ use std::time::Instant;
 use anyhow::Context;
 
 use super::{Console, output};
-use crate::baseline::fingerprint;
-use crate::harness::cache::Cache;
-use crate::harness::progress::Step;
-use crate::harness::record::Record;
-use crate::harness::share::{self, Share};
-use crate::harness::store::Store;
-use crate::harness::{Plan, run, verdict};
+use crate::draw::cache::Cache;
+use crate::draw::progress::Step;
+use crate::draw::run;
+use crate::draw::share::{self, Share};
+use crate::draw::store::Store;
+use crate::plan::Plan;
+use crate::record::Record;
+use crate::record::baseline::fingerprint;
+use crate::record::verdict;
 use media::files;
 
 /// The file beside the results that keeps what was drawn.

@@ -6,9 +6,10 @@ use std::path::PathBuf;
 use clap::{Args, ValueEnum};
 
 use super::{Console, numbers, output};
+use crate::case::CaseError;
+use crate::case::Catalogue;
+use crate::case::catalogue::source;
 use crate::export::{self, ExportError, Target, Wishes};
-use crate::harness::catalogue::source;
-use crate::harness::{CaseError, Catalogue};
 
 /// Arguments of `export`.
 #[derive(Debug, Args)]

@@ -11,10 +11,10 @@ use signal_hook::flag;
 
 use super::drawing::CACHE;
 use super::output;
-use crate::harness::blocks::{Blocks, Lock};
-use crate::harness::share::Header;
-use crate::harness::store::Store;
-use crate::harness::workers::Workers;
+use crate::draw::blocks::{Blocks, Lock};
+use crate::draw::share::Header;
+use crate::draw::store::Store;
+use crate::draw::workers::Workers;
 use media::files;
 
 /// What a process that a signal ends answers to its shell: 128 + SIGINT.

@@ -10,8 +10,9 @@ use clap::{Args, ValueEnum};
 
 use super::Console;
 use super::output::{self, Format};
-use crate::harness::catalogue::{Catalogue, built_in};
-use crate::harness::{self, checks, suite};
+use crate::case::catalogue::{Catalogue, built_in};
+use crate::case::suite;
+use crate::checks;
 use crate::render::{self, Picture, gallery};
 use crate::{phase, report};
 use estimators::recipes::{controls, sampling};
@@ -110,7 +111,7 @@ pub fn pages(catalogue: &Catalogue) -> Vec<(String, Page)> {
         ("problems".to_owned(), problems::CATALOGUE),
         ("checks".to_owned(), checks::CATALOGUE),
         ("reports".to_owned(), report::CATALOGUE),
-        ("files".to_owned(), harness::CATALOGUE),
+        ("files".to_owned(), crate::case::CATALOGUE),
         ("files".to_owned(), render::CATALOGUE),
     ]);
     let additions = catalogue.additions().all();

@@ -9,11 +9,12 @@ use clap::Args;
 use super::output::Format;
 use super::verdict::Inconclusive;
 use super::{Console, journal, run};
-use crate::baseline::fingerprint;
-use crate::harness::blocks::Blocks;
-use crate::harness::share::{Header, Share, pieces};
-use crate::harness::store::Store;
-use crate::harness::{Catalogue, Plan};
+use crate::case::Catalogue;
+use crate::draw::blocks::Blocks;
+use crate::draw::share::{Header, Share, pieces};
+use crate::draw::store::Store;
+use crate::plan::Plan;
+use crate::record::baseline::fingerprint;
 
 /// Arguments of `merge`.
 #[derive(Debug, Args)]

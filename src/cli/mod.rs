@@ -43,7 +43,7 @@ use std::process::ExitCode;
 use clap::{Args, Parser, Subcommand};
 
 use self::ranks::Join;
-use crate::harness::Catalogue;
+use crate::case::Catalogue;
 
 /// Everything that went wrong before or beside the verdicts.
 pub const USAGE: u8 = 2;

@@ -10,7 +10,8 @@ use clap::ValueEnum;
 use indicatif::{HumanDuration, ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle};
 
 use super::{Console, USAGE};
-use crate::harness::{CaseError, Record};
+use crate::case::CaseError;
+use crate::record::Record;
 use crate::report::console::{self, View, layout::Pen};
 use crate::report::{self, Artifact, ReportError, rows};
 

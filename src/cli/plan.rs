@@ -7,8 +7,9 @@ use clap::Args;
 use super::output::{self, Format};
 use super::selection::Selection;
 use super::{Console, drawing};
-use crate::harness::Catalogue;
-use crate::harness::{options::DRAWS, verdict};
+use crate::case::Catalogue;
+use crate::plan::options::DRAWS;
+use crate::record::verdict;
 use crate::report::console::View;
 
 /// Arguments of `plan`.

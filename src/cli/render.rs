@@ -8,8 +8,8 @@ use anyhow::bail;
 use clap::Args;
 
 use super::{Console, numbers, output, selection};
-use crate::harness::Catalogue;
-use crate::harness::source::CaseError;
+use crate::case::Catalogue;
+use crate::case::source::CaseError;
 use crate::render::{Picture, PictureRecord, gallery as built_in};
 use crate::report::{self, Artifact};
 use media::catalogue::Additions;

@@ -11,13 +11,16 @@ use super::output::{self, Errors, Format};
 use super::selection::{Looks, Selection};
 use super::verdict::{self, Inconclusive};
 use super::{Console, drawing, journal, numbers};
-use crate::baseline::fingerprint;
-use crate::harness::blocks::Blocks;
-use crate::harness::options::DRAWS;
-use crate::harness::share::{Header, Share};
-use crate::harness::store::Store;
-use crate::harness::workers::{Threads, Workers};
-use crate::harness::{Case, Catalogue, Options, Plan};
+use crate::case::Case;
+use crate::case::Catalogue;
+use crate::draw::blocks::Blocks;
+use crate::draw::share::{Header, Share};
+use crate::draw::store::Store;
+use crate::draw::workers::{Threads, Workers};
+use crate::plan::Options;
+use crate::plan::Plan;
+use crate::plan::options::DRAWS;
+use crate::record::baseline::fingerprint;
 use crate::report;
 
 /// Arguments of `run`.

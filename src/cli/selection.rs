@@ -4,8 +4,13 @@ use anyhow::Context;
 use clap::Args;
 
 use super::{Console, numbers, output};
-use crate::harness::case::Case;
-use crate::harness::{Amount, Catalogue, Filter, Options, Plan, suite};
+use crate::case::Case;
+use crate::case::Catalogue;
+use crate::case::suite;
+use crate::plan::Amount;
+use crate::plan::Filter;
+use crate::plan::Options;
+use crate::plan::Plan;
 use estimators::Order;
 
 /// Which experiments, and where their random numbers begin.

@@ -4,8 +4,8 @@ use clap::ValueEnum;
 
 use super::USAGE;
 use super::output::{self, Errors};
-use crate::baseline::Comparison;
-use crate::harness::record::{Record, Verdict};
+use crate::record::baseline::Comparison;
+use crate::record::{Record, Verdict};
 use crate::report::junit;
 
 /// Nothing fails, but something is not decided.

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use crate::harness::CaseError;
+use crate::case::CaseError;
 
 /// Why a case was not exported.
 #[derive(Debug, thiserror::Error)]

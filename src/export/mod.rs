@@ -28,7 +28,8 @@ pub use error::ExportError;
 use scene::Scene;
 use truth::Truth;
 
-use crate::harness::{Catalogue, Source};
+use crate::case::Catalogue;
+use crate::case::Source;
 use media::files;
 
 /// A renderer that scenes are written for.

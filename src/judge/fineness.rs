@@ -1,6 +1,6 @@
 //! Ties among the first flights of another program: too many mean that distances are rounded more than single precision.
 
-use crate::harness::checks::resolution::{self, Resolution};
+use crate::checks::resolution::{self, Resolution};
 use gate::stats::ties;
 use gate::stats::verdict::BLOCK;
 use theory::Prediction;

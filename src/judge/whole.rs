@@ -1,13 +1,13 @@
 //! Tests of the whole distribution of foreign draws: those that a run makes of its own.
 //!
 //! ```text
-//! distances   twenty classes of free flights and the share that leaves    harness::checks::distances
-//! depth       Anderson–Darling on the flights that collide                harness::checks::depth
-//! resolution  ties among the first 2¹⁴ flights                            harness::checks::resolution
-//! atoms       the shares of the values of draws that take few             harness::checks::atoms
-//! counts      the number of lookups                                       harness::checks::counts
-//! curve       the steps of one walk, where a draw has all its channels    harness::checks::curve
-//! covariance  neighbouring channels of a draw                             harness::checks::covariance
+//! distances   twenty classes of free flights and the share that leaves    checks::distances
+//! depth       Anderson–Darling on the flights that collide                checks::depth
+//! resolution  ties among the first 2¹⁴ flights                            checks::resolution
+//! atoms       the shares of the values of draws that take few             checks::atoms
+//! counts      the number of lookups                                       checks::counts
+//! curve       the steps of one walk, where a draw has all its channels    checks::curve
+//! covariance  neighbouring channels of a draw                             checks::covariance
 //! ```
 //!
 //! Foreign draws may be rounded. Values are matched within their rounding. Distances are not tested where rounding moves as
@@ -20,8 +20,8 @@ use std::sync::Arc;
 use super::fineness::{self, Fineness};
 use super::judgement::DistributionFinding;
 use super::theory::{Asked, Distribution, Tested, Tests};
-use crate::harness::checks::batch::Batch;
-use crate::harness::checks::{self, Law};
+use crate::checks::batch::Batch;
+use crate::checks::{self, Law};
 use estimators::DrawBuffer;
 use gate::stats::verdict::Verdict;
 use gate::stats::{multiplicity, ties};

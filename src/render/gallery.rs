@@ -1,7 +1,7 @@
 //! The pictures that are built into the binary, one line each.
 
-use crate::harness::Source;
-use crate::harness::source::BuiltIn;
+use crate::case::Source;
+use crate::case::source::BuiltIn;
 
 macro_rules! pictures {
     ($($name:literal,)*) => {

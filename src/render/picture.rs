@@ -44,7 +44,7 @@ use super::gallery;
 use super::record::PictureRecord;
 use super::scene::{Request, Scene};
 use super::subject::SUBJECTS;
-use crate::harness::source::{CaseError, Source};
+use crate::case::source::{CaseError, Source};
 use media::catalogue::{Additions, Settings};
 
 /// A picture file, read.

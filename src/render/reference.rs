@@ -3,7 +3,7 @@
 use super::budget::PixelValues;
 use super::pixel::Label;
 use super::subject::SubjectKind;
-use crate::harness::estimator::{Defaults, EntryReader, ParsedEstimator};
+use crate::case::estimator::{Defaults, EntryReader, ParsedEstimator};
 use media::Body;
 use media::catalogue::Settings;
 use numeric::Known;

@@ -7,7 +7,7 @@ use super::pixel::{Label, Listed, Pixel};
 use super::reference::Reference;
 use super::subject::{RayOf, SubjectKind};
 use super::view::View;
-use crate::harness::estimator::{Defaults, Estimators, ParsedEstimator};
+use crate::case::estimator::{Defaults, Estimators, ParsedEstimator};
 use estimators::recipes::sampling;
 use media::Body;
 use media::catalogue::Settings;

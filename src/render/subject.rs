@@ -4,8 +4,8 @@ use std::sync::Arc;
 
 use super::budget::MOST_CHANNELS;
 use super::view::View;
-use crate::harness::estimator::EntryReader;
-use crate::harness::problem::Parts;
+use crate::case::estimator::EntryReader;
+use crate::case::problem::Parts;
 use estimators::trial::Entry;
 use estimators::{Estimated, Experiment, Order, Refusal, Setup};
 use media::catalogue::{Domain, Settings};

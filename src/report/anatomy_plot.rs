@@ -7,7 +7,7 @@
 
 use plotters::style::{Color, RGBAColor};
 
-use crate::harness::record::{Anatomy, CaseRecord, Record};
+use crate::record::{Anatomy, CaseRecord, Record};
 use crate::report::plots::figure::{Figure, LEFT};
 use crate::report::plots::legend::{self, Entry};
 use crate::report::plots::style::{COLOURS, DARK, GREY, Marker};

@@ -3,7 +3,7 @@
 //! Results only, without timing, so that the files are the same to the byte for any number of
 //! threads on any machine.
 
-use crate::harness::record::{Anatomy, CaseRecord, Record, Row, Sweep};
+use crate::record::{Anatomy, CaseRecord, Record, Row, Sweep};
 use crate::report::columns::table;
 use crate::report::rows::{JoinedRow, TIMED, columns, joined};
 use crate::report::{Artifact, ReportError, case_path};

@@ -14,7 +14,7 @@
 //!
 //! What concerns an experiment as a whole stands once, with its first channel.
 
-use crate::harness::record::{Finding, GateFinding, Record};
+use crate::record::{Finding, GateFinding, Record};
 use crate::report::columns::{self, Column, columns};
 use crate::report::rows::{JoinedRow, joined};
 use crate::report::{Artifact, ReportError};

@@ -12,7 +12,7 @@ pub mod views;
 
 use std::fmt::Write;
 
-use crate::harness::record::{CaseRecord, Record, Row, Verdict};
+use crate::record::{CaseRecord, Record, Row, Verdict};
 use crate::report::labels::Labels;
 use crate::report::totals;
 use layout::{Field, Grid, Paint, end_elided};

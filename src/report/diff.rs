@@ -1,7 +1,7 @@
 //! What changed since a stored run, in words that the console and the summaries share.
 
-use crate::baseline::LeftOut;
-use crate::baseline::{Change, Comparison, Drift, Quantity, Sequel};
+use crate::record::baseline::LeftOut;
+use crate::record::baseline::{Change, Comparison, Drift, Quantity, Sequel};
 use numeric::digits::{fixed, short};
 
 /// Something that changed.

@@ -2,7 +2,7 @@
 
 use std::borrow::Cow;
 
-use crate::harness::record::{CaseRecord, Finding, Record, Row, Verdict};
+use crate::record::{CaseRecord, Finding, Record, Row, Verdict};
 use crate::report::labels::Labels;
 use crate::report::likely;
 use gate::deviation::signed_percent;

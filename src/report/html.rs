@@ -22,7 +22,7 @@ mod words;
 
 use maud::html;
 
-use crate::harness::record::Record;
+use crate::record::Record;
 use crate::report::{Artifact, ReportError, record_json};
 
 /// The record as a page.

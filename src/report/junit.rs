@@ -10,8 +10,8 @@ use std::time::Duration;
 
 use quick_junit::{NonSuccessKind, TestCase, TestCaseStatus, TestSuite};
 
-use crate::baseline::Comparison;
-use crate::harness::record::{CaseRecord, Record, Row, Verdict};
+use crate::record::baseline::Comparison;
+use crate::record::{CaseRecord, Record, Row, Verdict};
 use crate::report::ReportError;
 use crate::report::diff;
 use crate::report::failures::{self, Failure};

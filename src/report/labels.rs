@@ -1,6 +1,6 @@
 //! σ̂ and swept values as they stand beside their experiments: short, and no two of a case alike.
 
-use crate::harness::record::CaseRecord;
+use crate::record::CaseRecord;
 use numeric::digits::short;
 
 /// Digits that are enough for most.

@@ -1,6 +1,6 @@
 //! Likely causes of an experiment's failures: the words that the console and the reports share.
 
-use crate::harness::record::{CaseRecord, Row, Verdict};
+use crate::record::{CaseRecord, Row, Verdict};
 use gate::causes::{Pattern, Place};
 
 /// The fewest swept values that have an end.

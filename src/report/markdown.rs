@@ -3,8 +3,8 @@
 
 use std::fmt::Write;
 
-use crate::baseline::Comparison;
-use crate::harness::record::{CaseRecord, Record, Verdict};
+use crate::record::baseline::Comparison;
+use crate::record::{CaseRecord, Record, Verdict};
 use crate::report::diff;
 use crate::report::failures::{Failure, failing};
 use crate::report::likely;

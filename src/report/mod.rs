@@ -32,7 +32,7 @@ use std::fs;
 use std::io;
 use std::path::{Component, Path, PathBuf};
 
-use crate::harness::record::Record;
+use crate::record::Record;
 use media::catalogue::PageList;
 use media::files;
 

@@ -6,8 +6,8 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::baseline::Comparison;
-use crate::harness::record::{Record, Results, SCHEMA, Timing};
+use crate::record::baseline::Comparison;
+use crate::record::{Record, Results, SCHEMA, Timing};
 use crate::report::{Artifact, ReportError};
 
 /// The record as one JSON object.

@@ -3,7 +3,7 @@
 //! `summary.csv`, the files of the cases and `--format csv|json` share these columns, so that a
 //! number has one name everywhere.
 
-use crate::harness::record::{CaseRecord, Record, Row, Verdict};
+use crate::record::{CaseRecord, Record, Row, Verdict};
 use crate::report::ReportError;
 use crate::report::columns::{self, Column, columns};
 

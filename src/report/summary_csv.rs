@@ -1,6 +1,6 @@
 //! `summary.csv`: every experiment and channel of the run on one line, results and timing joined.
 
-use crate::harness::record::Record;
+use crate::record::Record;
 use crate::report::{Artifact, ReportError, rows};
 
 /// One row per experiment and channel.

@@ -5,7 +5,7 @@
 mod graph;
 mod optima;
 
-use crate::harness::record::{CaseRecord, Record, Sweep};
+use crate::record::{CaseRecord, Record, Sweep};
 use crate::report::plots::figure::{Figure, Foot, LEFT};
 use crate::report::plots::series::{self, Series, collect};
 use crate::report::plots::{self, Axis, Panel, Sheet, z_panel};

@@ -1,6 +1,6 @@
 //! What a run comes to, in words that the console and the summaries share.
 
-use crate::harness::record::{CaseRecord, Record, Suspect, Verdict};
+use crate::record::{CaseRecord, Record, Suspect, Verdict};
 use numeric::digits::{count, percent, short};
 
 const VERDICTS: [Verdict; 5] =

@@ -13,11 +13,15 @@
 
 use std::collections::BTreeMap;
 
-use crate::harness::checks::{self, Kind};
-use crate::harness::options::Options;
-use crate::harness::plan::{MISS, Plan};
-use crate::harness::record::{Finding, Verdict};
-use crate::harness::{Case, CaseError, evaluate, run, suite};
+use crate::case::Case;
+use crate::case::CaseError;
+use crate::case::suite;
+use crate::checks::{self, Kind};
+use crate::draw::run;
+use crate::plan::options::Options;
+use crate::plan::{MISS, Plan};
+use crate::record::evaluate;
+use crate::record::{Finding, Verdict};
 use gate::stats::{anderson_darling, binomial};
 use theory::parallel;
 

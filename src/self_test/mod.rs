@@ -6,6 +6,7 @@
 //! catch it does.
 
 pub mod calibration;
+pub mod known_bugs;
 pub mod mutation;
 pub mod streams;
 

@@ -6,12 +6,16 @@
 
 use std::collections::HashMap;
 
-use crate::harness::levels::Levels;
-use crate::harness::mutation::{self, Walk};
-use crate::harness::options::{Amount, Options};
-use crate::harness::plan::{BLOCK, Plan, Planned};
-use crate::harness::record::{Finding, Verdict};
-use crate::harness::{Case, CaseError, evaluate, run, suite};
+use crate::case::Case;
+use crate::case::CaseError;
+use crate::case::suite;
+use crate::draw::run;
+use crate::plan::levels::Levels;
+use crate::plan::options::{Amount, Options};
+use crate::plan::{BLOCK, Plan, Planned};
+use crate::record::evaluate;
+use crate::record::{Finding, Verdict};
+use crate::self_test::known_bugs::{self, Walk};
 use estimators::{DrawBuffer, Experiment};
 use gate::causes::Pattern;
 use lab::mutants::{self, About, StreamMutant, Target, streams};
@@ -163,7 +167,7 @@ impl<'a> Bench<'a> {
         let plan = self.plan(&about.target, until_failed)?;
         let case = plan.cases.first()?;
         let (case, planned) = (case.case, case.experiments.first()?);
-        let drawn = mutation::experiment(about, walk, case, planned, self.options.seed)?;
+        let drawn = known_bugs::experiment(about, walk, case, planned, self.options.seed)?;
         Some((plan, drawn.ok()?))
     }
 

@@ -11,9 +11,9 @@
 //! is left out. Every stream has 4e5 draws and an address of its own, and is judged at α = 1e-3 for
 //! each of the claims.
 
-use crate::harness::record::Verdict;
 use crate::judge::claim::{Claim, Given, ROUNDING};
 use crate::judge::trial::{Trial, Wanted};
+use crate::record::Verdict;
 use gate::stats::binomial;
 use numeric::rng::{Address, Stream, exponential, unit};
 use rand::RngExt;

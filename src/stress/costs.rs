@@ -11,7 +11,7 @@ use super::rods::{Walked, leaving};
 use super::text::{self, homogeneous, one_line};
 use super::trial::Trial;
 use super::{Effort, Row, in_parts};
-use crate::harness::checks::lookups::ERROR;
+use crate::checks::lookups::ERROR;
 use media::{Control, Piecewise};
 use numeric::{Known, Span, Wide};
 use theory::product::Product;

@@ -8,9 +8,13 @@
 
 use super::text::{self, one_line};
 use super::{Effort, Row, joined};
-use crate::harness::plan::Planned;
-use crate::harness::record::Verdict;
-use crate::harness::{Amount, Options, Plan, run, verdict};
+use crate::draw::run;
+use crate::plan::Amount;
+use crate::plan::Options;
+use crate::plan::Plan;
+use crate::plan::Planned;
+use crate::record::Verdict;
+use crate::record::verdict;
 use theory::parallel;
 
 /// Draws of an experiment: enough that a wrong answer shows.

@@ -3,7 +3,8 @@
 use std::cell::RefCell;
 use std::path::{Path, PathBuf};
 
-use crate::harness::{Case, Source};
+use crate::case::Case;
+use crate::case::Source;
 use media::catalogue::Settings;
 use media::reader::read_volume;
 use media::{Body, Medium, Volume};

@@ -9,9 +9,15 @@
 //! ```
 
 use super::{Effort, Row, text};
-use crate::harness::checks::Kind;
-use crate::harness::record::{Row as Found, Verdict};
-use crate::harness::{Amount, Case, Options, Plan, evaluate, run, verdict};
+use crate::case::Case;
+use crate::checks::Kind;
+use crate::draw::run;
+use crate::plan::Amount;
+use crate::plan::Options;
+use crate::plan::Plan;
+use crate::record::evaluate;
+use crate::record::verdict;
+use crate::record::{Row as Found, Verdict};
 use theory::parallel;
 
 /// The run-level α of each.

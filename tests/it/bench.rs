@@ -10,8 +10,9 @@ use tempfile::TempDir;
 use trueflight::bench::figures::ERRORS;
 use trueflight::bench::record::{Bench, BenchRow};
 use trueflight::bench::{Amounts, measure};
-use trueflight::harness::{Case, Plan};
+use trueflight::case::Case;
 use trueflight::numeric::pack;
+use trueflight::plan::Plan;
 
 const CASE: &str = "title = \"a case\"
 [problem.transmittance]

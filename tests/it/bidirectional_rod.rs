@@ -3,9 +3,9 @@
 
 use crate::common::{case, mistakes, none, options, row, rows};
 use serde::Deserialize;
-use trueflight::harness::Plan;
-use trueflight::harness::record::Verdict;
 use trueflight::numeric::Known;
+use trueflight::plan::Plan;
+use trueflight::record::Verdict;
 use trueflight::theory::Heuristic;
 use trueflight::theory::Prediction;
 use trueflight::theory::bidirectional_rod::{Combination, Connection, Rules, Scene, predict};

@@ -6,7 +6,7 @@
 
 use crate::common::{ALPHA, none, shipped_record};
 use statrs::distribution::{ChiSquared, ContinuousCDF};
-use trueflight::harness::record::{Finding, Record, Row, Verdict};
+use trueflight::record::{Finding, Record, Row, Verdict};
 use trueflight::stats::normal;
 
 /// The band holds all but a thousandth: half of it on either side.

@@ -3,8 +3,10 @@
 use std::collections::BTreeSet;
 
 use crate::common::{judged, none, options, shipped, shipped_plan, shipped_record};
-use trueflight::harness::record::Verdict;
-use trueflight::harness::{Case, Record, suite};
+use trueflight::case::Case;
+use trueflight::case::suite;
+use trueflight::record::Record;
+use trueflight::record::Verdict;
 
 #[test]
 fn every_case_draws_and_none_is_refuted() {

@@ -1,9 +1,11 @@
 //! What a prediction says of each channel, against numbers derived by hand.
 
 use crate::common::{case, differs, mistakes, none, options, predicted, row, rows, verdict};
-use trueflight::harness::record::{Row, Verdict};
-use trueflight::harness::{Plan, curves, verdict};
 use trueflight::media::{Control, Piecewise};
+use trueflight::plan::Plan;
+use trueflight::record::curves;
+use trueflight::record::verdict;
+use trueflight::record::{Row, Verdict};
 use trueflight::report::console::layout::{self, Pen};
 use trueflight::report::console::{self, View};
 use trueflight::report::failures::experiment;

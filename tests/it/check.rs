@@ -63,7 +63,7 @@ impl Place {
             ["junit.xml", "record.json", "summary.md"].map(|name| self.read(name));
         assert!(junit.trim_end().ends_with("</testsuites>"), "{junit}");
         let record: serde_json::Value = serde_json::from_str(&json).expect("JSON");
-        assert_eq!(record["schema"], trueflight::harness::record::SCHEMA);
+        assert_eq!(record["schema"], trueflight::record::SCHEMA);
         assert!(json.starts_with("{\"schema\":"));
         assert!(markdown.starts_with("## Trueflight"), "{markdown}");
         for text in [&junit, &json, &markdown] {

@@ -1,7 +1,7 @@
 //! Slabs in which every channel has a medium of its own: against slabs of one channel and of coloured scatterers, drawn,
 //! and what is refused.
 
-use trueflight::harness::record::{Row, Verdict};
+use trueflight::record::{Row, Verdict};
 
 use crate::common::{case, mistakes, none, predicted, rows};
 use crate::packets::{compare, fusing_levels};

@@ -1,8 +1,9 @@
 //! Estimators as closures: what passes, what fails, and what is said.
 
 use trueflight::OfCase;
+use trueflight::case::Case;
+use trueflight::case::Source;
 use trueflight::check::CheckError;
-use trueflight::harness::{Case, Source};
 use trueflight::judge::Choice;
 use trueflight::rng::Stream;
 use trueflight::stats::verdict::Verdict;

@@ -8,9 +8,9 @@ use serde::Deserialize;
 
 use crate::common::{failing, medium, mistakes, none, predicted, rows, source};
 use trueflight::catalogue::Settings;
-use trueflight::harness::record::{Row, Verdict};
 use trueflight::media::{Body, Control, Piecewise};
 use trueflight::problems::{Problem, SingleScattering};
+use trueflight::record::{Row, Verdict};
 use trueflight::theory::single::null_path::Made;
 use trueflight::theory::single::{
     Camera, CameraTracking, Collisions, Mis, NullPaths, Scene, Tracking,

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 
 use quick_xml::Reader;
 use quick_xml::events::{BytesStart, Event};
-use trueflight::harness::record::{CaseRecord, Finding, Record, Results, Row, Timing, Verdict};
+use trueflight::record::{CaseRecord, Finding, Record, Results, Row, Timing, Verdict};
 use trueflight::report::junit::{self, Inconclusive};
 
 /// An element with its attributes, its children and its text.
@@ -177,7 +177,7 @@ fn record() -> Record {
             seed: 7,
             alpha: 1e-3,
             streams: String::new(),
-            gate: trueflight::harness::record::Gate::default(),
+            gate: trueflight::record::Gate::default(),
             cut_by_time: false,
             cut_by_budget: false,
             cases: vec![case, empty],

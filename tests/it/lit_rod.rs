@@ -5,9 +5,9 @@ use serde::Deserialize;
 
 use crate::common::lit::{self, ESTIMATORS, techniques};
 use crate::common::{failing, medium, mistakes, none, predicted, row, rows};
-use trueflight::harness::record::Verdict;
 use trueflight::media::Piecewise;
 use trueflight::problems::LitRod;
+use trueflight::record::Verdict;
 use trueflight::theory::lit_rod::{self, Combination, Densities, Heuristic, Shadow, Techniques};
 use trueflight::theory::{Mesh, Prediction};
 

@@ -5,13 +5,13 @@ use serde::Deserialize;
 
 use crate::common::lit::{self, ESTIMATORS, techniques};
 use crate::common::{failing, medium, mistakes, none, predicted, rows};
-use trueflight::harness::record::Verdict;
 use trueflight::media::Piecewise;
 use trueflight::numeric::quadrature::GaussLegendre;
 use trueflight::phase::Phase;
 use trueflight::phase::henyey_greenstein::HenyeyGreenstein;
 use trueflight::problems::LitSlab;
 use trueflight::problems::lit_slab::Light;
+use trueflight::record::Verdict;
 use trueflight::theory::lit_rod::{Combination, Densities, Heuristic, Shadow, Techniques};
 use trueflight::theory::lit_slab::{self, contour::Contour};
 use trueflight::theory::{Mesh, Prediction};

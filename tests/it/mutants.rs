@@ -5,8 +5,9 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use crate::common::none;
-use trueflight::harness::checks;
-use trueflight::harness::{Case, suite};
+use trueflight::case::Case;
+use trueflight::case::suite;
+use trueflight::checks;
 use trueflight::mutants::{self, About, streams};
 use trueflight::self_test::mutation;
 

@@ -7,11 +7,11 @@ use trueflight::catalogue::{Addition, Page, Settings};
 use trueflight::estimators::multiple_scattering::particle::Walker;
 use trueflight::estimators::own::estimator;
 use trueflight::geometry::{Aabb, Bounds, Point};
-use trueflight::harness::record::Verdict;
 use trueflight::media::own::{Formula, SpaceFormula};
 use trueflight::media::{Medium, OpticalDepth};
 use trueflight::numeric::Span;
 use trueflight::problems::MultipleScattering;
+use trueflight::record::Verdict;
 use trueflight::{Catalogue, cli};
 
 use super::common::{judged, options, source};

@@ -8,10 +8,11 @@ use crate::common::mutated::{mutated, reads_or_names_the_place};
 use crate::common::{case, medium, options};
 use proptest::prelude::*;
 use proptest::test_runner::{Config, RngAlgorithm, TestRng, TestRunner};
-use trueflight::harness::plan::Planned;
-use trueflight::harness::record::Verdict;
-use trueflight::harness::{Plan, verdict};
 use trueflight::numeric::Span;
+use trueflight::plan::Plan;
+use trueflight::plan::Planned;
+use trueflight::record::Verdict;
+use trueflight::record::verdict;
 
 /// Runs a law on so many random inputs, the same in every run.
 fn always<S: Strategy>(

@@ -3,8 +3,8 @@
 
 use std::path::PathBuf;
 
+use trueflight::case::Source;
 use trueflight::catalogue::additions::NONE;
-use trueflight::harness::Source;
 use trueflight::render::record::{Exposure, PictureRecord};
 use trueflight::render::{Picture, gallery as built_in};
 use trueflight::report::render as report;
@@ -306,7 +306,7 @@ fn a_picture_is_no_case_and_a_case_no_picture() {
     let case = "title = \"a case\"\n[problem.transmittance]\nmedium.constant.extinction = 1\n";
     let said = mistakes(case);
     assert!(said.contains("this is a case") && said.contains("trueflight run"), "{said}");
-    let error = trueflight::harness::Case::read(&source(SINGLE)).err().expect("no case");
+    let error = trueflight::case::Case::read(&source(SINGLE)).err().expect("no case");
     let said = error.render(false);
     assert!(said.contains("this is a picture") && said.contains("trueflight render"), "{said}");
     assert_eq!(error.mistakes(), 1, "nothing else is said");

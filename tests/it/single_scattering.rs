@@ -3,8 +3,8 @@
 use crate::common::{case, mistakes, options, row, rows};
 use serde::Deserialize;
 use serde_json::Value;
-use trueflight::harness::Plan;
-use trueflight::harness::record::Verdict;
+use trueflight::plan::Plan;
+use trueflight::record::Verdict;
 
 #[derive(Deserialize)]
 struct Reference {
@@ -29,7 +29,7 @@ fn values() -> Vec<Reference> {
     serde_json::from_str(include_str!("../data/single-scattering.json")).expect("values")
 }
 
-fn case_of(value: &Reference, estimators: &str) -> trueflight::harness::Case {
+fn case_of(value: &Reference, estimators: &str) -> trueflight::case::Case {
     let p = &value.params;
     let volume = match p.medium.as_str() {
         "homogeneous sigma .8" => "volume.constant.extinction = 0.8",

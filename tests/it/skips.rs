@@ -1,10 +1,14 @@
 //! What a scene does not need is skipped, and no number changes by it.
 
 use crate::common::{case, options};
+use trueflight::case::Case;
+use trueflight::draw::cache::Cache;
+use trueflight::draw::drawn;
+use trueflight::draw::run;
 use trueflight::estimators::DrawBuffer;
-use trueflight::harness::cache::Cache;
-use trueflight::harness::record::Verdict;
-use trueflight::harness::{Case, Plan, drawn, run, verdict};
+use trueflight::plan::Plan;
+use trueflight::record::Verdict;
+use trueflight::record::verdict;
 
 /// The first draws of the first experiment of a case, from the same streams whatever its name.
 fn first_draws(text: &str) -> (DrawBuffer, f64) {
@@ -143,9 +147,9 @@ fn what_has_changed_is_drawn_anew() {
     assert_eq!(Cache::read(&spoilt, "program").count(&plan), [0, 2]);
     assert_eq!(kept.count(&Plan::new(&other, &options)), [0, 2]);
     for changed in [
-        trueflight::harness::Options { seed: 4, ..options.clone() },
-        trueflight::harness::Options { alpha: 1e-5, ..options.clone() },
-        trueflight::harness::Options { fixed: true, ..options.clone() },
+        trueflight::plan::Options { seed: 4, ..options.clone() },
+        trueflight::plan::Options { alpha: 1e-5, ..options.clone() },
+        trueflight::plan::Options { fixed: true, ..options.clone() },
         crate::common::options(3, 300_000),
     ] {
         assert_eq!(kept.count(&Plan::new(&same, &changed))[0], 0);

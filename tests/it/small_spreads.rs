@@ -1,8 +1,9 @@
 //! Correct estimators at the edge of what doubles resolve: none of them may fail.
 
 use crate::common::{case, judged, options, rows, verdict};
-use trueflight::harness::record::{Row, Verdict};
-use trueflight::harness::{Amount, Options};
+use trueflight::plan::Amount;
+use trueflight::plan::Options;
+use trueflight::record::{Row, Verdict};
 
 fn no_fail(what: &str, rows: &[Row]) {
     for row in rows {

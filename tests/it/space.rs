@@ -3,10 +3,12 @@
 
 use crate::common::{case, none, options};
 use serde::Deserialize;
+use trueflight::draw::run;
 use trueflight::estimators::DrawBuffer;
-use trueflight::harness::record::Verdict;
-use trueflight::harness::{Plan, run, verdict};
 use trueflight::media::eq21::Eq21;
+use trueflight::plan::Plan;
+use trueflight::record::Verdict;
+use trueflight::record::verdict;
 use trueflight::rng::{Address, Streams};
 use trueflight::theory::space::content::content;
 use trueflight::theory::space::infinite::{collisions_within, fluence};
@@ -305,7 +307,7 @@ fn rays_that_are_not_walked_need_not_be_given() {
         for (a, b) in whole.iter().zip(&part) {
             assert_ne!(b.verdict, Some(Verdict::Refused), "{problem}: {}", b.reason);
             // The same to the bit: the ray is no part of a draw.
-            let of = |row: &trueflight::harness::record::Row| {
+            let of = |row: &trueflight::record::Row| {
                 (row.truth, row.mean, row.variance, row.lookups_per_draw)
             };
             assert_eq!(of(a), of(b), "{problem} {}", a.channel);

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use serde::Deserialize;
-use trueflight::harness::record::{Row, Verdict};
+use trueflight::record::{Row, Verdict};
 use trueflight::theory::spectral_rod::critical;
 
 use crate::common::{failing, mistakes, none, predicted, rows};

@@ -1,6 +1,6 @@
 //! Furnaces in several channels: the radiance is 1 in each, whatever the media are, and what is refused.
 
-use trueflight::harness::record::Verdict;
+use trueflight::record::Verdict;
 
 use crate::common::{case, mistakes, predicted, rows};
 use crate::packets::{compare, fusing_levels};

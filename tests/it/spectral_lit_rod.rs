@@ -5,8 +5,8 @@ use std::fmt::Write;
 
 use serde::Deserialize;
 use trueflight::estimators::DrawBuffer;
-use trueflight::harness::Plan;
-use trueflight::harness::record::{Row, Verdict};
+use trueflight::plan::Plan;
+use trueflight::record::{Row, Verdict};
 
 use crate::common::{case, finding, mistakes, none, options, predicted, rows};
 

@@ -1,6 +1,6 @@
 //! Single scattering in several channels: the answers of the channels by themselves, and what is refused.
 
-use trueflight::harness::record::{Row, Verdict};
+use trueflight::record::{Row, Verdict};
 
 use crate::common::{case, mistakes, predicted, rows};
 use crate::packets::{compare, fusing_levels};

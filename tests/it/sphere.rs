@@ -4,8 +4,8 @@
 use serde::Deserialize;
 
 use crate::common::{case, judged, mistakes, none, options, predicted, rows};
-use trueflight::harness::Plan;
-use trueflight::harness::record::Verdict;
+use trueflight::plan::Plan;
+use trueflight::record::Verdict;
 use trueflight::theory::sphere::ball::Ball;
 use trueflight::theory::sphere::shells::{Centre, Resolution};
 use trueflight::theory::sphere::{Lights, Observable, answers, point};

@@ -5,7 +5,11 @@ use std::fs;
 use std::path::Path;
 
 use assert_cmd::Command;
-use trueflight::harness::{Amount, Case, Options, Plan, Source};
+use trueflight::case::Case;
+use trueflight::case::Source;
+use trueflight::plan::Amount;
+use trueflight::plan::Options;
+use trueflight::plan::Plan;
 use trueflight::report::console::layout::Pen;
 use trueflight::report::stress as page;
 use trueflight::stress::{Effort, Measure, PAGES, Row, Stress, all, narrow};

@@ -1,11 +1,13 @@
 //! Sweeps of the medium: at every value a case is what one is that has its numbers written out.
 
+use trueflight::case::rewrite::EXTINCTIONS;
 use trueflight::catalogue::Page;
-use trueflight::harness::record::{Row, Verdict};
-use trueflight::harness::rewrite::EXTINCTIONS;
-use trueflight::harness::{Plan, curves, verdict};
 use trueflight::media;
+use trueflight::plan::Plan;
 use trueflight::recipes::{controls, sampling};
+use trueflight::record::curves;
+use trueflight::record::verdict;
+use trueflight::record::{Row, Verdict};
 
 use crate::common::{case, failing, mistakes, none, options, predicted, rows};
 
@@ -162,7 +164,7 @@ fn the_lines_of_theory_go_through_the_experiments_and_between_them() {
     assert_eq!(curves.len(), 9, "three estimators, two channels and the luminance");
     for row in &case.rows {
         let is_own = |curve: &&_| {
-            let curve: &trueflight::harness::record::Curve = curve;
+            let curve: &trueflight::record::Curve = curve;
             curve.estimator == row.estimator && curve.channel == row.channel
         };
         let curve = curves.iter().find(is_own).expect("a line");

@@ -1,7 +1,7 @@
 //! Results are the same to the byte on any number of threads.
 
 use crate::common::{case, judged, options};
-use trueflight::harness::Case;
+use trueflight::case::Case;
 
 const DRAWS: u64 = 50_000;
 
@@ -106,7 +106,7 @@ fn an_experiment_keeps_its_draws_when_others_leave() {
     let together = judged(&all, &options(1, 20_000));
     for (index, case) in cases().into_iter().enumerate() {
         let alone = judged(&[case], &options(1, 20_000));
-        let means = |record: &trueflight::harness::Record, at: usize| {
+        let means = |record: &trueflight::record::Record, at: usize| {
             let rows = record.results.cases[at].rows.iter();
             rows.map(|row| row.mean.map(f64::to_bits)).collect::<Vec<_>>()
         };

@@ -8,9 +8,10 @@ use std::fmt::Write;
 use std::path::Path;
 
 use crate::common::{case, options};
+use trueflight::case::Case;
 use trueflight::catalogue::PageList;
 use trueflight::estimators::{DrawBuffer, Estimated};
-use trueflight::harness::{Case, Plan};
+use trueflight::plan::Plan;
 use trueflight::problems::{
     BidirectionalRod, FreeFlight, Furnace, InfiniteMedium, Lambertian, LitRod, LitSlab, Rod, Slab,
     SpectralLitRod, SpectralRod, SpectralSlab, SpectralTransmittance, Sphere, Transmittance,

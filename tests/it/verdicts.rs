@@ -1,8 +1,8 @@
 //! The gate: what passes, what is caught, what is too short, and what is never drawn.
 
 use crate::common::{case, finding, judged, options, row, rows, verdict};
-use trueflight::harness::Record;
-use trueflight::harness::record::{Results, Verdict};
+use trueflight::record::Record;
+use trueflight::record::{Results, Verdict};
 use trueflight::report::console::{self, View, layout::Pen};
 use trueflight::report::rows as joined;
 

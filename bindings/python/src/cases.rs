@@ -3,8 +3,11 @@
 use std::path::Path;
 
 use pyo3::prelude::*;
-use trueflight::harness::sweep::What;
-use trueflight::harness::{Case, Catalogue, Source, suite};
+use trueflight::case::Case;
+use trueflight::case::Catalogue;
+use trueflight::case::Source;
+use trueflight::case::suite;
+use trueflight::case::sweep::What;
 
 use crate::trouble::Trouble;
 

@@ -3,8 +3,15 @@
 use std::time::Instant;
 
 use pyo3::prelude::*;
-use trueflight::harness::options::DRAWS;
-use trueflight::harness::{Amount, Case, Filter, Options, Plan, Record, run as drawing, verdict};
+use trueflight::case::Case;
+use trueflight::draw::run as drawing;
+use trueflight::plan::Amount;
+use trueflight::plan::Filter;
+use trueflight::plan::Options;
+use trueflight::plan::Plan;
+use trueflight::plan::options::DRAWS;
+use trueflight::record::Record;
+use trueflight::record::verdict;
 use trueflight::report::rows;
 
 use crate::background::{Progress, work};

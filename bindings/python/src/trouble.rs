@@ -2,8 +2,8 @@
 
 use pyo3::import_exception;
 use pyo3::prelude::*;
+use trueflight::case::CaseError;
 use trueflight::check::CheckError;
-use trueflight::harness::CaseError;
 
 import_exception!(trueflight._errors, Error);
 import_exception!(trueflight._errors, CaseNotFound);

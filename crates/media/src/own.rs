@@ -141,7 +141,7 @@ fn integral(f: impl Fn(f64) -> f64, span: Span) -> Known {
 /// let cube = Bounds::Box(Aabb { low: Point([0.0; 3]), high: Point([1.0; 3]) });
 /// let read = move |_: &Settings| Some(SpaceFormula::new(cube, 3.0, |[x, y, z]| x + y + z));
 /// let catalogue = Catalogue::builtin().with(Addition::volume(page, read))?; // volume.corner = {}
-/// # Ok::<(), trueflight::harness::catalogue::NameTaken>(())
+/// # Ok::<(), trueflight::case::catalogue::NameTaken>(())
 /// ```
 pub struct SpaceFormula<F> {
     at: Arc<F>,

@@ -1,9 +1,9 @@
 //! What is claimed of draws by the arguments of `trueflight judge`, and the judging by it.
 
 use super::{Arguments, Judged};
-use crate::harness::Catalogue;
-use crate::harness::case::Case;
-use crate::harness::source::CaseError;
+use crate::case::Case;
+use crate::case::Catalogue;
+use crate::case::source::CaseError;
 use crate::judge::claim::{Claim, ClaimError, Given, Lookups};
 use crate::judge::files;
 use crate::judge::reading::Reading;

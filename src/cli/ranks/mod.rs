@@ -20,11 +20,12 @@ use serde::{Deserialize, Serialize};
 pub use self::link::{Heard, Join, Link};
 use self::team::Team;
 use super::{Console, journal, output, run};
-use crate::baseline::fingerprint;
-use crate::harness::draw::Block;
-use crate::harness::share::{Header, Piece};
-use crate::harness::workers::Drawing;
-use crate::harness::{Catalogue, Plan};
+use crate::case::Catalogue;
+use crate::draw::block::Block;
+use crate::draw::share::{Header, Piece};
+use crate::draw::workers::Drawing;
+use crate::plan::Plan;
+use crate::record::baseline::fingerprint;
 use theory::parallel;
 
 /// What rank 0 says to another.
@@ -152,8 +153,8 @@ mod tests {
     use std::thread;
 
     use super::{Heard, Link};
+    use crate::case::Catalogue;
     use crate::cli::{Console, output, run};
-    use crate::harness::Catalogue;
 
     /// A rank that is a thread.
     #[derive(Debug)]

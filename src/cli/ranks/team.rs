@@ -8,8 +8,8 @@ use std::thread;
 
 use super::link::{Link, Naps};
 use super::{Answer, Order, encoded};
-use crate::harness::share::{Header, Piece};
-use crate::harness::workers::{Drawing, Take, Workers};
+use crate::draw::share::{Header, Piece};
+use crate::draw::workers::{Drawing, Take, Workers};
 use theory::parallel;
 
 /// In how many portions a thread gets its pieces: the last ones are what others may have to wait for.

@@ -5,8 +5,8 @@ use std::fmt::Write;
 
 use super::layout::{Grid, Paint, Pen, wrapped};
 use super::{View, views};
-use crate::baseline::Comparison;
-use crate::harness::record::{CaseRecord, Record, Verdict};
+use crate::record::baseline::Comparison;
+use crate::record::{CaseRecord, Record, Verdict};
 use crate::report::diff;
 use crate::report::failures::failing;
 use crate::report::likely;

@@ -1,6 +1,6 @@
 //! Notes below a table: what the best σ̂ is, and the setup lookups and needs that have no column.
 
-use crate::harness::record::{CaseRecord, Row};
+use crate::record::{CaseRecord, Row};
 use crate::report::console::layout::{Paint, Pen};
 use crate::report::console::views::{NEEDS, SETUP};
 use numeric::digits::short;

@@ -1,6 +1,6 @@
 //! Which columns each view of the table has, and what stands in them.
 
-use crate::harness::record::{CaseRecord, Row, Verdict};
+use crate::record::{CaseRecord, Row, Verdict};
 use crate::report::console::View;
 use crate::report::console::layout::{self, Column, Field, Grid, Paint};
 use crate::report::labels::Labels;

@@ -4,7 +4,7 @@ use maud::{Markup, html};
 
 use super::plots::Plot;
 use super::words;
-use crate::harness::record::{CaseRecord, Record};
+use crate::record::{CaseRecord, Record};
 use crate::report::totals;
 use numeric::digits::range;
 

@@ -3,7 +3,7 @@
 use maud::{Markup, html};
 
 use super::{page, words};
-use crate::baseline::{Change, Comparison, Drift, Quantity};
+use crate::record::baseline::{Change, Comparison, Drift, Quantity};
 use crate::report::diff;
 use numeric::digits::{fixed, short};
 

@@ -4,7 +4,7 @@ use maud::{Markup, html};
 
 use super::plots::Plot;
 use super::{page, sparks, words};
-use crate::harness::record::{Finding, Row, Verdict};
+use crate::record::{Finding, Row, Verdict};
 use crate::report::likely;
 use crate::report::rows::JoinedRow;
 

@@ -5,7 +5,7 @@ use maud::{Markup, html};
 use super::filters::{self, Choice};
 use super::plots::Plot;
 use super::{details, sparks, words};
-use crate::harness::record::{Record, Row};
+use crate::record::{Record, Row};
 use crate::report::failures::experiment;
 use crate::report::rows::{JoinedRow, joined};
 use crate::report::totals;

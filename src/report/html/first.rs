@@ -3,8 +3,8 @@
 use maud::{Markup, html};
 
 use super::{page, words};
-use crate::baseline::Comparison;
-use crate::harness::record::{Record, Verdict};
+use crate::record::baseline::Comparison;
+use crate::record::{Record, Verdict};
 use crate::report::failures::{Failure, experiment, failing};
 use crate::report::likely;
 use crate::report::totals;

@@ -3,7 +3,7 @@
 use maud::{Markup, html};
 
 use super::drawing;
-use crate::harness::record::{CaseRecord, Record};
+use crate::record::{CaseRecord, Record};
 use crate::report::plots::Sheet;
 use crate::report::{ReportError, anatomy_plot, sweep_plot};
 

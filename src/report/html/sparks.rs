@@ -4,7 +4,7 @@
 use maud::{Markup, html};
 
 use super::drawing;
-use crate::harness::record::{Course, Finding};
+use crate::record::{Course, Finding};
 use numeric::digits::{count, short};
 
 /// The plot's size in its own units.

@@ -1,6 +1,6 @@
 //! Numbers and verdicts as they stand on the page.
 
-use crate::harness::record::{CaseRecord, Row, Verdict};
+use crate::record::{CaseRecord, Row, Verdict};
 use numeric::digits::{short, signed};
 
 /// What is unknown, or without bound.

@@ -2,8 +2,8 @@
 
 use std::fmt::Write;
 
-use crate::harness::record::Verdict;
 use crate::judge::judgement::Judgement;
+use crate::record::Verdict;
 use crate::report::console::layout::wrapped;
 use numeric::digits::short;
 

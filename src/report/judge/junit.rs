@@ -6,9 +6,9 @@
 
 use quick_junit::{NonSuccessKind, Report, TestCase, TestCaseStatus, TestSuite};
 
-use crate::harness::record::Verdict;
 use crate::judge::images;
 use crate::judge::judgement::Judgement;
+use crate::record::Verdict;
 use crate::report::ReportError;
 use crate::report::junit::Inconclusive;
 use numeric::digits::exact;

@@ -2,7 +2,7 @@
 
 use std::ops::RangeInclusive;
 
-use crate::harness::record::{CaseRecord, Curve, CurvePoint, Row, Sweep, Verdict};
+use crate::record::{CaseRecord, Curve, CurvePoint, Row, Sweep, Verdict};
 use crate::report::labels::Labels;
 use crate::report::plots::legend::Entry;
 use crate::report::plots::names::{labels, marks};

@@ -2,7 +2,7 @@
 
 use plotters::style::RGBAColor;
 
-use crate::harness::record::{Row, Sweep};
+use crate::record::{Row, Sweep};
 use crate::report::plots::font::Typeface;
 use crate::report::plots::legend::{self, Key};
 use crate::report::plots::series::Series;

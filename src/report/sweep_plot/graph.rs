@@ -1,6 +1,6 @@
 //! A panel of variance, cost or efficiency along a sweep: theory as lines, measurements as points with error bars.
 
-use crate::harness::record::{CurvePoint, Row};
+use crate::record::{CurvePoint, Row};
 use crate::report::plots::overlap::{self, Class, Line, classes, side_by_side};
 use crate::report::plots::series::Series;
 use crate::report::plots::{Panel, Sheet};

@@ -3,7 +3,7 @@
 
 use plotters::style::Color;
 
-use crate::harness::record::Best;
+use crate::record::Best;
 use crate::report::plots::font::Typeface;
 use crate::report::plots::legend::{self, Key};
 use crate::report::plots::series::Series;

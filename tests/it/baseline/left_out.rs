@@ -6,9 +6,9 @@ use std::process::Output;
 use assert_cmd::Command;
 use serde_json::Value;
 use tempfile::TempDir;
-use trueflight::baseline::LeftOut;
-use trueflight::baseline::{Baseline, Entry};
-use trueflight::baseline::{Rules, compare};
+use trueflight::record::baseline::LeftOut;
+use trueflight::record::baseline::{Baseline, Entry};
+use trueflight::record::baseline::{Rules, compare};
 use trueflight::report::diff;
 
 use super::{CASE, RULES, baseline, command, said};

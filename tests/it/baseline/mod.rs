@@ -8,11 +8,18 @@ use std::process::Output;
 use assert_cmd::Command;
 use serde_json::Value;
 use tempfile::TempDir;
-use trueflight::baseline::{Baseline, BaselineError, Entry};
-use trueflight::baseline::{Comparison, Quantity, Rules, Sequel, compare};
+use trueflight::case::Case;
+use trueflight::case::Source;
+use trueflight::draw::run;
 use trueflight::estimators::Kernel;
 use trueflight::estimators::{DrawBuffer, Experiment};
-use trueflight::harness::{Amount, Case, Options, Plan, Record, Source, run, verdict};
+use trueflight::plan::Amount;
+use trueflight::plan::Options;
+use trueflight::plan::Plan;
+use trueflight::record::Record;
+use trueflight::record::baseline::{Baseline, BaselineError, Entry};
+use trueflight::record::baseline::{Comparison, Quantity, Rules, Sequel, compare};
+use trueflight::record::verdict;
 use trueflight::rng::Streams;
 
 const CASE: &str = "title = \"a case\"

@@ -9,11 +9,19 @@ use std::path::{Path, PathBuf};
 use std::sync::LazyLock;
 
 use fearless_simd::Level;
+use trueflight::case::Case;
+use trueflight::case::CaseError;
+use trueflight::case::Source;
 use trueflight::catalogue::Settings;
+use trueflight::draw::run;
 use trueflight::estimators::{DrawBuffer, Experiment, Kernel};
-use trueflight::harness::record::{Finding, Row, Verdict};
-use trueflight::harness::{Amount, Case, CaseError, Options, Plan, Record, Source, run, verdict};
 use trueflight::media::{Body, Medium};
+use trueflight::plan::Amount;
+use trueflight::plan::Options;
+use trueflight::plan::Plan;
+use trueflight::record::Record;
+use trueflight::record::verdict;
+use trueflight::record::{Finding, Row, Verdict};
 use trueflight::rng::Streams;
 
 /// The level of every run in the tests: a false alarm does not happen.

@@ -5,7 +5,9 @@
 
 use std::path::PathBuf;
 
-use trueflight::harness::{Case, CaseError, Source};
+use trueflight::case::Case;
+use trueflight::case::CaseError;
+use trueflight::case::Source;
 
 /// Values that stand in a number's place.
 const ODD: [&str; 24] = [

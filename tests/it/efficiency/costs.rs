@@ -1,8 +1,10 @@
 //! Lookups before the first draw of a ray, their share in figures of merit, and what no lookup pays for.
 
 use crate::common::{differs, mistakes, none, options, predicted, row, rows, source};
-use trueflight::harness::record::Row;
-use trueflight::harness::{Case, Plan, verdict};
+use trueflight::case::Case;
+use trueflight::plan::Plan;
+use trueflight::record::Row;
+use trueflight::record::verdict;
 use trueflight::report::console::layout::Pen;
 use trueflight::report::console::{self, View};
 use trueflight::report::rows as tables;

@@ -3,8 +3,10 @@
 use std::collections::BTreeSet;
 
 use crate::common::{case, none, options, shipped_plan};
-use trueflight::harness::record::{CaseRecord, Record, Row};
-use trueflight::harness::{Case, Plan, verdict};
+use trueflight::case::Case;
+use trueflight::plan::Plan;
+use trueflight::record::verdict;
+use trueflight::record::{CaseRecord, Record, Row};
 use trueflight::report::plots::Sheet;
 use trueflight::report::plots::paint;
 use trueflight::report::plots::series::{Series, collect};
@@ -124,7 +126,7 @@ fn with_curves(cases: &[Case]) -> Record {
 #[test]
 fn lines_of_theory_merge_nothing() {
     let read = |name: &str| {
-        let source = trueflight::harness::suite::find(name).expect("a built-in case");
+        let source = trueflight::case::suite::find(name).expect("a built-in case");
         Case::read(&source).expect("it can be read")
     };
     let record =
@@ -171,7 +173,7 @@ fn twins_and_crowds_are_told_apart() {
 #[test]
 fn a_dashed_line_of_a_plot_is_one_element() {
     let record = with_curves(&[Case::read(
-        &trueflight::harness::suite::find("transmittance/eq21-overview").expect("built in"),
+        &trueflight::case::suite::find("transmittance/eq21-overview").expect("built in"),
     )
     .expect("it can be read")]);
     let case = &record.results.cases[0];

@@ -3,9 +3,10 @@
 use std::f64::consts::PI;
 
 use crate::common::{case, differs, none, options};
-use trueflight::harness::record::{Record, Row};
-use trueflight::harness::{Plan, verdict};
 use trueflight::numeric::digits;
+use trueflight::plan::Plan;
+use trueflight::record::verdict;
+use trueflight::record::{Record, Row};
 use trueflight::report::console::layout::{self, Pen};
 use trueflight::report::console::{self, View};
 use trueflight::report::sweep_plot;

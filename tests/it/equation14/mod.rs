@@ -27,7 +27,7 @@ use field::{
 };
 use ode::{Solution, solve};
 use rule::Rule;
-use trueflight::harness::Case;
+use trueflight::case::Case;
 use trueflight::theory::Prediction;
 use volterra::volterra;
 

@@ -3,9 +3,9 @@
 use serde_json::Value;
 use tempfile::TempDir;
 use trueflight::Catalogue;
+use trueflight::case::Source;
 use trueflight::export::truth::Truth;
 use trueflight::export::{ExportError, Target, Wishes, export_with};
-use trueflight::harness::Source;
 
 use super::source;
 
@@ -131,7 +131,7 @@ fn slabs_furnaces_and_lamps_have_a_truth_per_channel() {
              phase = \"isotropic\"\nincidence.collimated.cosine = 0.5\nsampling = 1.6\nestimators = [\"weighted\"]\n",
             f64::from(1.45_f32)
         );
-        let case = trueflight::harness::Case::read(&written(&grey)).expect("a case");
+        let case = trueflight::case::Case::read(&written(&grey)).expect("a case");
         let ready = case.scenario.prepare(0, None, case.pilots(1, 0)).expect("an answer");
         let of_channel = truth.questions.iter().filter(|q| q.channel == Some(number));
         let stated: Vec<f64> = of_channel.map(|question| question.mean).collect();

@@ -9,8 +9,8 @@ mod scenes;
 use std::path::{Path, PathBuf};
 
 use tempfile::TempDir;
+use trueflight::case::Source;
 use trueflight::export::{self, ExportError, Exported, Target};
-use trueflight::harness::Source;
 
 /// A case of the repository.
 fn source(name: &str) -> Source {

@@ -2,9 +2,10 @@
 
 use quick_xml::events::Event;
 use serde_json::Value;
+use trueflight::case::Case;
+use trueflight::case::Source;
 use trueflight::export::Target;
 use trueflight::export::truth::Truth;
-use trueflight::harness::{Case, Source};
 
 use super::{CASES, scene};
 

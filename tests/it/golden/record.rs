@@ -1,8 +1,8 @@
 //! A made-up run: one of each verdict, and names, reasons and numbers that reports trip over.
 
-use trueflight::baseline::LeftOut;
-use trueflight::baseline::{Change, Comparison, Drift, Quantity, Rules, Sequel};
-use trueflight::harness::record::{
+use trueflight::record::baseline::LeftOut;
+use trueflight::record::baseline::{Change, Comparison, Drift, Quantity, Rules, Sequel};
+use trueflight::record::{
     Anatomy, Best, CaseRecord, Course, Curve, CurvePoint, Finding, Gate, GateFinding,
     MeasuredPoint, Record, Results, Row, SCHEMA, Suspect, Sweep, Timing, Verdict,
 };

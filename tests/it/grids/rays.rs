@@ -1,7 +1,7 @@
 //! Rays that meet nothing of their volume: every command says so.
 
-use trueflight::harness::Plan;
-use trueflight::harness::verdict;
+use trueflight::plan::Plan;
+use trueflight::record::verdict;
 
 use super::{data, run, text};
 use crate::common::{case, mistakes, options};

@@ -5,8 +5,11 @@ mod page;
 
 use std::collections::BTreeSet;
 
-use trueflight::harness::record::{Record, Row, Verdict};
-use trueflight::harness::{Case, Plan, suite, verdict};
+use trueflight::case::Case;
+use trueflight::case::suite;
+use trueflight::plan::Plan;
+use trueflight::record::verdict;
+use trueflight::record::{Record, Row, Verdict};
 use trueflight::report::{html, record_json};
 
 use crate::common::{options, shipped_record};

@@ -1,11 +1,14 @@
 //! Verdicts need grounds: nothing fails because of what its draws cannot show.
 
+use trueflight::case::Case;
+use trueflight::case::Source;
 use trueflight::estimators::DrawBuffer;
-use trueflight::harness::plan::BLOCK;
-use trueflight::harness::record::Verdict;
-use trueflight::harness::{Case, Options, Plan, Source};
 use trueflight::judge::claim::{Claim, Given, ROUNDING};
 use trueflight::judge::trial::{Trial, Wanted};
+use trueflight::plan::BLOCK;
+use trueflight::plan::Options;
+use trueflight::plan::Plan;
+use trueflight::record::Verdict;
 use trueflight::self_test::streams::{self, CLAIMS, LAWS, Law};
 
 use super::{Place, raw, uniform};

@@ -15,9 +15,15 @@ use std::process::Output;
 
 use assert_cmd::Command;
 use tempfile::TempDir;
+use trueflight::case::Case;
+use trueflight::case::Source;
+use trueflight::draw::run;
 use trueflight::estimators::DrawBuffer;
-use trueflight::harness::plan::BLOCK;
-use trueflight::harness::{Amount, Case, Options, Plan, Source, run, verdict};
+use trueflight::plan::Amount;
+use trueflight::plan::BLOCK;
+use trueflight::plan::Options;
+use trueflight::plan::Plan;
+use trueflight::record::verdict;
 use trueflight::stats::gate::{Decision, Design, GateSums, tolerance_of};
 
 const CASE: &str = "title = \"a case\"

@@ -2,8 +2,8 @@
 
 use std::fs;
 
-use trueflight::harness::blocks::{Blocks, Lock};
-use trueflight::harness::share::Header;
+use trueflight::draw::blocks::{Blocks, Lock};
+use trueflight::draw::share::Header;
 
 use super::place::{Place, said};
 

@@ -13,14 +13,16 @@ use std::time::Instant;
 
 use self::faults::{cuts, flips, kills, strangers, wrong_parts};
 use self::place::{Place, said};
-use trueflight::harness::blocks::{Blocks, Lock};
-use trueflight::harness::cache::Cache;
-use trueflight::harness::draw;
-use trueflight::harness::drawn::Drawn;
-use trueflight::harness::share::{Header, Share, pieces};
-use trueflight::harness::store::Store;
-use trueflight::harness::workers::Threads;
-use trueflight::harness::{Options, Plan, run};
+use trueflight::draw::block;
+use trueflight::block::blocks::{Blocks, Lock};
+use trueflight::draw::cache::Cache;
+use trueflight::draw::drawn::Drawn;
+use trueflight::draw::run;
+use trueflight::draw::share::{Header, Share, pieces};
+use trueflight::draw::store::Store;
+use trueflight::draw::workers::Threads;
+use trueflight::plan::Options;
+use trueflight::plan::Plan;
 
 use crate::common::{case, options};
 
@@ -158,14 +160,14 @@ fn what_a_block_costs_those_who_draw_and_those_who_merge() {
             let mut drawn = Drawn::new(planned);
             for block in 0..(512 / blocks_per_look).min(64) {
                 let begin = Instant::now();
-                let one = draw::merged(&[planned], block, blocks_per_look, &|| false).remove(0);
+                let one = block::merged(&[planned], block, blocks_per_look, &|| false).remove(0);
                 let one = one.expect("a block");
                 draw += begin.elapsed().as_secs_f64();
                 let begin = Instant::now();
                 let message = postcard::to_stdvec(&one).expect("encoded");
                 encode += begin.elapsed().as_secs_f64();
                 let begin = Instant::now();
-                let one: draw::Block = postcard::from_bytes(&message).expect("decoded");
+                let one: block::Block = postcard::from_bytes(&message).expect("decoded");
                 file.keep((u32::try_from(number).expect("few"), block), &one).expect("written");
                 drawn.merge(&one, block);
                 take += begin.elapsed().as_secs_f64();
@@ -271,7 +273,7 @@ fn shares_are_all_blocks_once() {
     let cases = [case("all", text)];
     let plan = Plan::new(&cases, &options(1, 300_000));
     let blocks = |share| -> Vec<(u32, u64)> {
-        let of = |piece: trueflight::harness::share::Piece| {
+        let of = |piece: trueflight::draw::share::Piece| {
             let block = piece.block;
             piece.experiments.into_iter().map(move |one| (one, block))
         };

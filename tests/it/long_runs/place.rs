@@ -7,7 +7,7 @@ use std::process::{Child, Command, Output, Stdio};
 use std::time::{Duration, Instant};
 
 use tempfile::TempDir;
-use trueflight::harness::blocks::Blocks;
+use trueflight::draw::blocks::Blocks;
 use trueflight::rng::hash;
 
 /// Sums of the gate, laws, bounds, channels, lookups that are shared, an experiment that is another's twin.

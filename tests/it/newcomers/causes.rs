@@ -7,13 +7,15 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
 use crate::common;
+use trueflight::draw::run;
 use trueflight::gate::causes::{CAUSES, Pattern, Place, Side, TABLE, line};
-use trueflight::harness::mutation::{self, Walk};
-use trueflight::harness::record::{CaseRecord, Verdict};
-use trueflight::harness::{Plan, run, verdict};
 use trueflight::mutants::{self, streams};
+use trueflight::plan::Plan;
+use trueflight::record::verdict;
+use trueflight::record::{CaseRecord, Verdict};
 use trueflight::report::likely;
 use trueflight::self_test;
+use trueflight::self_test::known_bugs::{self, Walk};
 
 /// Share of the known bugs of a kind that their line names, at least.
 const SHARE: f64 = 0.9;
@@ -144,7 +146,7 @@ fn the_patterns_on_record_are_those_that_bugs_leave() {
     let recorded: BTreeMap<String, String> =
         known_bugs().into_iter().map(|[name, word, _]| (name, word)).collect();
     let drawn =
-        self_test::mutation::patterns(1, DRAWS, &|name| QUICK.contains(&name)).expect("cases");
+        self_test::known_bugs::patterns(1, DRAWS, &|name| QUICK.contains(&name)).expect("cases");
     assert_eq!(drawn.len(), QUICK.len());
     for (name, pattern) in drawn {
         assert_eq!(word(&pattern), recorded[name], "{name}");
@@ -164,7 +166,7 @@ fn swept_with(bug: &str) -> CaseRecord {
     let mut plan = Plan::new(&cases, &options);
     let about = mutants::all().into_iter().find(|about| about.name == bug).expect("a known bug");
     for planned in &mut plan.cases[0].experiments {
-        let faulty = mutation::experiment(&about, Walk::Faulty, &cases[0], planned, 1);
+        let faulty = known_bugs::experiment(&about, Walk::Faulty, &cases[0], planned, 1);
         let faulty = faulty.expect("a mutant of ratio tracking").expect("it can be drawn");
         planned.outcome.as_mut().expect("it can be drawn").experiment = faulty;
     }
@@ -200,7 +202,7 @@ const DRAWS: u64 = 1_000_000;
 #[test]
 #[ignore = "long: prints the patterns of all known bugs, some minutes of two cores"]
 fn write_patterns() {
-    for (name, pattern) in self_test::mutation::patterns(1, DRAWS, &|_| true).expect("cases") {
+    for (name, pattern) in self_test::known_bugs::patterns(1, DRAWS, &|_| true).expect("cases") {
         println!("PATTERN,{name},{}", word(&pattern));
     }
 }

@@ -5,10 +5,13 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use super::Place;
 use crate::common;
-use trueflight::harness::cache::Cache;
-use trueflight::harness::progress::Step;
-use trueflight::harness::store::Store;
-use trueflight::harness::{Case, Plan, run, suite};
+use trueflight::case::Case;
+use trueflight::case::suite;
+use trueflight::draw::cache::Cache;
+use trueflight::draw::progress::Step;
+use trueflight::draw::run;
+use trueflight::draw::store::Store;
+use trueflight::plan::Plan;
 
 const GOOD: &str = "title = \"a good case\"
 [problem.transmittance]

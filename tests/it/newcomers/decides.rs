@@ -2,9 +2,14 @@
 
 use super::{Place, commands};
 use crate::common::{self, none};
-use trueflight::harness::record::Verdict;
-use trueflight::harness::{Amount, Case, Options, Plan, suite, verdict};
+use trueflight::case::Case;
+use trueflight::case::suite;
 use trueflight::numeric::digits::enough;
+use trueflight::plan::Amount;
+use trueflight::plan::Options;
+use trueflight::plan::Plan;
+use trueflight::record::Verdict;
+use trueflight::record::verdict;
 
 /// Mean and variance need different numbers of draws at each σ̂; the names have spaces and parentheses.
 const SWEPT: &str = "title = \"too few draws\"

@@ -1,7 +1,7 @@
 //! Every estimator in every field along a ray, as cases.
 
 use crate::common::{case, shipped};
-use trueflight::harness::Case;
+use trueflight::case::Case;
 
 /// The media that the shipped cases do not combine with every estimator, σ̂ and control.
 pub const MEDIA: [(&str, &str); 14] = [

@@ -12,10 +12,11 @@ mod space;
 
 use crate::common::{none, options};
 use fearless_simd::Level;
+use trueflight::case::Case;
 use trueflight::estimators::{DrawBuffer, Kernel, Order};
-use trueflight::harness::plan::Planned;
-use trueflight::harness::{Case, Plan};
 use trueflight::numeric::pack::fuses;
+use trueflight::plan::Plan;
+use trueflight::plan::Planned;
 
 /// Draws of several requests in a row, which no number of lanes divides.
 const REQUESTS: [usize; 6] = [1, 3, 8, 100, 257, 5];

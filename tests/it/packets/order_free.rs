@@ -4,9 +4,12 @@ use super::fields::{ESTIMATORS, MEDIA, Matrix, cases};
 use super::{drawn, fusing_levels};
 use crate::common::{case, none, options};
 use fearless_simd::Level;
+use trueflight::case::Case;
 use trueflight::estimators::{Kernel, Order};
-use trueflight::harness::record::{Row, Verdict};
-use trueflight::harness::{Case, Filter, Options, Plan};
+use trueflight::plan::Filter;
+use trueflight::plan::Options;
+use trueflight::plan::Plan;
+use trueflight::record::{Row, Verdict};
 
 /// The least machine's rounding, forced on this one, passes the gate. Such machines make ordered draws
 /// one by one; only the order-free kernel has code for them.
@@ -29,8 +32,8 @@ fn kernels_without_fused_instructions_are_judged_like_any_other() {
             planned.shared = None;
         }
     }
-    let draws = trueflight::harness::run::draw(&plan, &|_| {});
-    let record = trueflight::harness::verdict::judged(&plan, &draws, 0.0);
+    let draws = trueflight::draw::run::draw(&plan, &|_| {});
+    let record = trueflight::record::verdict::judged(&plan, &draws, 0.0);
     let failed = record.results.cases.iter().flat_map(|case| &case.rows);
     let failed: Vec<String> = failed
         .filter(|row| row.verdict == Some(Verdict::Fail))

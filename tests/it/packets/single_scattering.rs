@@ -5,7 +5,7 @@
 
 use super::{compare, fusing_levels};
 use crate::common::case;
-use trueflight::harness::Case;
+use trueflight::case::Case;
 
 const VOLUMES: [&str; 8] = [
     "constant = { extinction = 0.8 }",

@@ -6,7 +6,7 @@
 
 use super::{compare, fusing_levels};
 use crate::common::case;
-use trueflight::harness::Case;
+use trueflight::case::Case;
 
 const BALL: &str = "bounds.sphere = { centre = [0.5, 0, 0], radius = 1.5 }";
 const CUBE: &str = "bounds.box = { low = [-1, -1, -1], high = [1, 1.5, 2] }";

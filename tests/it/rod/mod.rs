@@ -6,8 +6,9 @@ mod settings;
 
 use crate::common::{case, differs, none, options};
 use serde_json::Value;
-use trueflight::harness::record::{Row, Verdict};
-use trueflight::harness::{Plan, verdict};
+use trueflight::plan::Plan;
+use trueflight::record::verdict;
+use trueflight::record::{Row, Verdict};
 
 const EQ21: &str = "volume.eq21 = {}
     ray = { origin = [0, 0, 0], direction = [0, 0, 1], length = 20 }";

@@ -1,6 +1,8 @@
 //! `trueflight explain`: cases to copy that are valid, pages for a terminal, and names that were probably meant.
 
-use trueflight::harness::{Case, Plan, example};
+use trueflight::case::Case;
+use trueflight::case::example;
+use trueflight::plan::Plan;
 
 use super::{listed, stdout, trueflight};
 use crate::common::{case, none, options, source};

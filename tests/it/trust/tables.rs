@@ -145,7 +145,7 @@ fn what_is_refused_below_the_density_is_what_the_manual_says() {
                 "title = \"t\"\n[problem.{problem}]\nmedium.constant.extinction = 1\nspan = [0, 0.2]\n{body}sampling.constant.value = 0.4\nestimators = [{settings}]\n"
             );
             let cases = [crate::common::case("test", &text)];
-            let plan = trueflight::harness::Plan::new(&cases, &crate::common::options(1, 1000));
+            let plan = trueflight::plan::Plan::new(&cases, &crate::common::options(1, 1000));
             let is_refused = plan.experiments().any(|(_, planned)| planned.outcome.is_err());
             let is_exact =
                 domain.contains("exactly") || domain.contains("the variance is infinite");

@@ -11,7 +11,8 @@ use trueflight::media::grid_file::{self, Choice, Samples, Unreadable};
 use trueflight::media::{Body, Volume};
 
 use crate::common::{body, differs, failing, judged, mistakes, none, options, source};
-use trueflight::harness::{Case, Source};
+use trueflight::case::Case;
+use trueflight::case::Source;
 
 fn path(file: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/vdb").join(file)

@@ -2,9 +2,9 @@
 
 use plotters::style::RGBAColor;
 
-use crate::harness::record::Verdict;
 use crate::judge::images::Judgement;
 use crate::judge::images::judgement::Tile;
+use crate::record::Verdict;
 use crate::report::plots::font::{Typeface, fit};
 use crate::report::plots::paint;
 use crate::report::plots::sheet::{Align, Image, Sheet, Spot};

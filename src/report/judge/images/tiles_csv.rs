@@ -1,8 +1,8 @@
 //! `tiles.csv`: every tile in each channel, with what is said of it.
 
-use crate::harness::record::Verdict;
 use crate::judge::images::Judgement;
 use crate::judge::images::judgement::Tile;
+use crate::record::Verdict;
 use crate::report::ReportError;
 use crate::report::columns::table;
 use numeric::digits::exact;

@@ -1,0 +1,191 @@
+//! Where names are looked up: the built-in pages, and those of a program's own.
+//!
+//! A program adds its media and estimators before it reads a case; from then on case files name them, and plots,
+//! verdicts, `bench` and `explain` know them as they know the built-in ones.
+
+use std::collections::BTreeSet;
+use std::path::{Path, PathBuf};
+
+use crate::case::Case;
+use crate::case::source::{CaseError, Source};
+use crate::case::suite;
+use estimators::{self, Estimated};
+use media;
+use media::catalogue::{Addition, Additions, PageList, suggestion};
+use theory::problems::{self, MultipleScattering};
+
+/// The built-in pages with those of a program's own.
+///
+/// ```
+/// use trueflight::catalogue::{Addition, Page};
+/// use trueflight::case::Source;
+/// use trueflight::{Catalogue, media::own::Formula};
+///
+/// let page = Page { module: "haze", source: "Haze that thins out with the height." };
+/// let haze = Addition::line(page, |_| Some(Formula::new(|t: f64| 1.0 / (1.0 + t * t))));
+/// let catalogue = Catalogue::builtin().with(haze)?;
+/// let case = catalogue.read(&Source {
+///     name: "mine".into(),
+///     path: "mine.toml".into(),
+///     text: r#"
+///         title = "Haze"
+///         [problem.transmittance]
+///         medium.haze = {}
+///         span = [0, 1]
+///         estimators = [{ ratio = { sampling.constant.value = 1.0 } }]
+///     "#
+///     .into(),
+/// });
+/// assert_eq!(case.expect("a case without mistakes").scenario.medium(), "haze");
+/// # Ok::<(), trueflight::case::catalogue::NameTaken>(())
+/// ```
+#[derive(Debug, Clone, Default)]
+pub struct Catalogue {
+    additions: Additions,
+}
+
+/// A page whose name another one has.
+#[derive(Debug, thiserror::Error)]
+#[error("`{name}` is the name of another page ({part}); choose another name")]
+pub struct NameTaken {
+    /// The name.
+    pub name: String,
+    /// Where it is taken.
+    pub part: String,
+}
+
+impl Catalogue {
+    /// The built-in pages alone.
+    pub fn builtin() -> Self {
+        Self::default()
+    }
+
+    /// One page more.
+    ///
+    /// # Errors
+    ///
+    /// A page of the same part has its name.
+    pub fn with(mut self, addition: Addition) -> Result<Self, NameTaken> {
+        let (name, part) = (addition.page.name(), addition.part.clone());
+        let built_in = built_in().into_iter().filter(|(other, _)| *other == part);
+        let mut taken = built_in.flat_map(|(_, list)| list.pages).map(media::catalogue::Page::name);
+        let own = self.additions.all().iter().filter(|other| other.part == part);
+        if taken.any(|other| other == name) || own.map(|o| o.page.name()).any(|o| o == name) {
+            return Err(NameTaken { name, part });
+        }
+        self.additions.add(addition);
+        Ok(self)
+    }
+
+    /// The pages of the program's own.
+    pub fn additions(&self) -> &Additions {
+        &self.additions
+    }
+
+    /// Reads a case.
+    ///
+    /// # Errors
+    ///
+    /// Every mistake in the file.
+    pub fn read(&self, source: &Source) -> Result<Case, CaseError> {
+        Case::read_with(source, &self.additions)
+    }
+
+    /// Reads what a user names: a case file, a folder of them, or a built-in case.
+    ///
+    /// # Errors
+    ///
+    /// All files that cannot be read or are wrong.
+    pub fn named(&self, name: &str) -> Result<Vec<Case>, Vec<CaseError>> {
+        if Path::new(name).is_dir() {
+            return self.read_all(&[name]);
+        }
+        let read = source(name).and_then(|source| self.read(&source));
+        read.map(|case| vec![case]).map_err(|error| vec![error])
+    }
+
+    /// Reads every case of a file, or of a folder and those below it, in the order of the names.
+    ///
+    /// # Errors
+    ///
+    /// All files that cannot be read or are wrong.
+    pub fn read_all(&self, paths: &[impl AsRef<Path>]) -> Result<Vec<Case>, Vec<CaseError>> {
+        let mut cases = Vec::new();
+        let mut errors = Vec::new();
+        for path in paths {
+            match files(path.as_ref()) {
+                Ok(files) => {
+                    for file in files {
+                        match Source::read(&file).and_then(|source| self.read(&source)) {
+                            Ok(case) => cases.push(case),
+                            Err(error) => errors.push(error),
+                        }
+                    }
+                }
+                Err(error) => errors.push(error),
+            }
+        }
+        if errors.is_empty() { Ok(cases) } else { Err(errors) }
+    }
+}
+
+/// The text that a user names: a case file, or a built-in case.
+///
+/// # Errors
+///
+/// There is none, or it cannot be read.
+pub fn source(name: &str) -> Result<Source, CaseError> {
+    let path = Path::new(name);
+    match suite::find(name) {
+        _ if path.exists() => Source::read(path),
+        Some(source) => Ok(source),
+        None => {
+            let names: Vec<String> = suite::suite().into_iter().map(|source| source.name).collect();
+            let names: Vec<&str> = names.iter().map(String::as_str).collect();
+            let otherwise = "`trueflight list cases` shows those that are built in";
+            let hint = suggestion(name, &names, otherwise);
+            Err(CaseError::Unknown { name: name.to_owned(), hint })
+        }
+    }
+}
+
+/// The built-in lists that a program may add to, each with the part that it is.
+pub fn built_in() -> Vec<(String, PageList)> {
+    let of_problems = problems::CATALOGUE.pages.iter().zip(estimators::catalogues());
+    let estimators =
+        of_problems.map(|(problem, list)| (format!("estimators of {}", problem.name()), list));
+    let of_pictures = <MultipleScattering as Estimated>::CATALOGUE;
+    let of_pictures = ("estimators of pictures of multiple-scattering".to_owned(), of_pictures);
+    let media = ("media".to_owned(), media::CATALOGUE);
+    std::iter::once(media).chain(estimators).chain([of_pictures]).collect()
+}
+
+/// The case files of a path, in the order of their names.
+fn files(path: &Path) -> Result<Vec<PathBuf>, CaseError> {
+    let unreadable = |cause| CaseError::Unreadable { path: path.display().to_string(), cause };
+    if !path.is_dir() {
+        return Ok(vec![path.to_owned()]);
+    }
+    let mut found = Vec::new();
+    let mut folders = vec![path.to_owned()];
+    let mut seen = BTreeSet::new();
+    while let Some(folder) = folders.pop() {
+        // A link may lead back to a folder above it.
+        if !seen.insert(folder.canonicalize().map_err(unreadable)?) {
+            continue;
+        }
+        for entry in std::fs::read_dir(&folder).map_err(unreadable)? {
+            let entry = entry.map_err(unreadable)?.path();
+            if entry.is_dir() {
+                folders.push(entry);
+            } else if entry.extension().is_some_and(|extension| extension == "toml") {
+                found.push(entry);
+            }
+        }
+    }
+    found.sort();
+    if found.is_empty() {
+        return Err(CaseError::Empty { path: path.display().to_string() });
+    }
+    Ok(found)
+}

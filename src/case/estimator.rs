@@ -1,0 +1,317 @@
+//! One estimator as a case file has it.
+
+use crate::case::sweep::What;
+use estimators::own::EstimatorReader;
+use estimators::recipes::sampling::spectral::Spectral;
+use estimators::recipes::{controls, sampling};
+use estimators::trial::Entry;
+use estimators::{Estimated, Inputs, Order};
+use media::Body;
+use media::catalogue::{Page, Settings, Value};
+
+/// The estimators of one problem, whose type is no longer visible, while they are being read.
+pub trait EntryReader {
+    /// The names of the estimators, those of the program's own last.
+    fn names(&self, settings: &Settings) -> Vec<String>;
+
+    /// Reads the settings of the estimator of the name at this position and keeps it; `None` after a mistake.
+    fn read(&mut self, index: usize, settings: &Settings) -> Option<Features>;
+}
+
+impl<P: Estimated> EntryReader for Vec<Box<dyn Entry<P>>> {
+    fn names(&self, settings: &Settings) -> Vec<String> {
+        let own = settings.additions().of::<EstimatorReader<P>>().map(|(page, _)| page);
+        P::CATALOGUE.pages.iter().chain(own).map(Page::name).collect()
+    }
+
+    fn read(&mut self, index: usize, settings: &Settings) -> Option<Features> {
+        let built_in = P::CATALOGUE.pages.len();
+        let entry = match index.checked_sub(built_in) {
+            None => P::read_estimator(index, settings)?,
+            Some(own) => settings.additions().of::<EstimatorReader<P>>().nth(own)?.1(settings)?,
+        };
+        let features = Features {
+            inputs: entry.inputs(),
+            may_take: entry.may_take(),
+            is_order_free: entry.is_order_free(),
+            alias: entry.without_control(),
+            default_control: entry.default_control(),
+            needs: entry.needs(),
+            label: [false, true].map(|albedo| entry.label(albedo)),
+        };
+        self.push(entry);
+        Some(features)
+    }
+}
+
+/// Reads the estimators of one problem.
+pub type ReadEstimators<'a> = &'a mut dyn FnMut(&mut dyn EntryReader);
+
+/// What an estimator is, whatever it works on.
+pub struct Features {
+    /// What it takes.
+    pub inputs: Inputs,
+    /// What it takes with other settings.
+    pub may_take: Inputs,
+    /// Whether the order of its collisions may be free.
+    pub is_order_free: bool,
+    /// The estimator that it is by definition without a control.
+    pub alias: Option<&'static str>,
+    /// The control that it uses where the case gives none.
+    pub default_control: Option<Box<dyn controls::Recipe>>,
+    /// Knowledge of the medium that the estimator needs beside lookups, σ̂ and control.
+    pub needs: Option<&'static str>,
+    /// Its own settings in words, without the albedo and with it.
+    pub label: [String; 2],
+}
+
+/// An estimator as parsed, apart from its own settings, which the problem keeps.
+pub struct ParsedEstimator {
+    /// The name in the catalogue.
+    pub name: String,
+    /// What it takes and can.
+    pub features: Features,
+    /// Its own σ̂.
+    pub sampling: Option<Box<dyn sampling::Recipe>>,
+    /// Its own control.
+    pub control: Option<Box<dyn controls::Recipe>>,
+    /// Whether the case declares it biased.
+    pub expect_biased: bool,
+    /// The kernel that is wished.
+    pub order: Order,
+}
+
+/// What a case says of all its estimators, unless they say otherwise.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Defaults {
+    /// Whether they are declared biased.
+    pub expect_biased: bool,
+    /// The kernel of those that have it.
+    pub order: Order,
+    /// Whether there is a σ̂ for all.
+    pub sampling: bool,
+}
+
+/// Reads `expect = "biased"`; `None` after a mistake.
+pub fn read_expect(settings: &Settings) -> Option<bool> {
+    settings.word_or("expect", &["unbiased", "biased"], "unbiased").map(|word| word == "biased")
+}
+
+/// Reads `kernel = "order-free"`; `None` after a mistake.
+pub fn read_kernel(settings: &Settings) -> Option<Order> {
+    let words = Order::ALL.map(Order::word);
+    settings.word_or("kernel", &words, Order::default().word()).and_then(Order::of)
+}
+
+/// The forms of `sampling` and `control`, for messages.
+const RECIPE: &str = "a number, a name in quotes, or a table, as in { constant = { value = … } }";
+
+/// Reads a recipe, if the file has it; `None` after a mistake.
+#[allow(clippy::option_option)] // the outer `None` is a recorded mistake
+fn read_if<T: ?Sized>(
+    settings: &Settings,
+    key: &'static str,
+    body: Option<&Body>,
+    read: fn(&Settings, Option<&Body>) -> Option<Box<T>>,
+) -> Option<Option<Box<T>>> {
+    match settings.naming_if(key, RECIPE) {
+        Some(table) => read(&table, body).map(Some),
+        None if settings.has(key) => None,
+        None => Some(None),
+    }
+}
+
+/// Reads `sampling`, a table, or a list with one for each channel of a spectral medium; `None` after a
+/// mistake.
+#[allow(clippy::option_option)] // the outer `None` is a recorded mistake
+fn read_sampling(
+    settings: &Settings,
+    body: Option<&Body>,
+) -> Option<Option<Box<dyn sampling::Recipe>>> {
+    let entry = settings.entry("sampling");
+    if !entry.is_some_and(|entry| matches!(entry.node.value, Value::Array(_))) {
+        return read_if(settings, "sampling", body, sampling::read);
+    }
+    let tables = settings.tables("sampling")?;
+    if let Some(body) = body.filter(|body| body.channels().len() != tables.len()) {
+        let message = format!(
+            "`sampling` lists {} channels, and the medium has {}",
+            tables.len(),
+            body.channels().len()
+        );
+        settings.fault("sampling", message, "give one σ̂ for each channel, or one table for all");
+        return None;
+    }
+    let recipes: Vec<_> = tables.iter().map(|table| sampling::read(table, body)).collect();
+    let recipes = recipes.into_iter().collect::<Option<Vec<_>>>()?;
+    Some((!recipes.is_empty()).then(|| Box::new(Spectral::new(recipes)) as Box<_>))
+}
+
+impl ParsedEstimator {
+    /// In which order the collisions of its draws come.
+    pub fn order(&self) -> Order {
+        if self.features.is_order_free { self.order } else { Order::Along }
+    }
+
+    /// A name with its own settings, as in `single (terminating, order-free)`.
+    fn label_of(&self, name: &str, albedo: bool) -> String {
+        let mut settings = self.features.label[usize::from(albedo)].clone();
+        if self.order() == Order::Free {
+            let comma = if settings.is_empty() { "" } else { ", " };
+            settings = format!("{settings}{comma}{}", Order::Free.word());
+        }
+        if settings.is_empty() { name.to_owned() } else { format!("{name} ({settings})") }
+    }
+
+    /// The estimator with its settings; without `albedo` the albedo is left out.
+    pub fn label(&self, albedo: bool) -> String {
+        self.label_of(&self.name, albedo)
+    }
+
+    /// The same under the name of the estimator that it is by definition without a control.
+    pub fn alias(&self) -> Option<String> {
+        self.features.alias.map(|name| self.label_of(name, true))
+    }
+
+    /// Reads `{ NAME = { …, sampling, control, expect, kernel } }`.
+    pub fn read(
+        table: &Settings,
+        body: Option<&Body>,
+        defaults: Defaults,
+        reader: &mut dyn EntryReader,
+    ) -> Option<Self> {
+        let names = reader.names(table);
+        let (index, settings) = table.choice(&names)?;
+        let features = reader.read(index, &settings);
+        let own_expect = if settings.has("expect") {
+            read_expect(&settings)
+        } else {
+            Some(defaults.expect_biased)
+        };
+        let own_kernel = settings.has("kernel");
+        let order = if own_kernel { read_kernel(&settings) } else { Some(defaults.order) };
+        let Some(features) = features else {
+            // The page's own mistakes are listed; what it would have taken is not known.
+            settings.entry("sampling");
+            settings.entry("control");
+            settings.close();
+            return None;
+        };
+        // What the page takes with other settings is read, and not used.
+        let Features { inputs, may_take, is_order_free, .. } = features;
+        let sampling = if may_take.sampling {
+            let read = read_sampling(&settings, body);
+            read.map(|sampling| sampling.filter(|_| inputs.sampling))
+        } else {
+            Some(None)
+        };
+        let control = if may_take.control {
+            let read = read_if(&settings, "control", body, controls::read);
+            read.map(|control| control.filter(|_| inputs.control))
+        } else {
+            Some(None)
+        };
+        if inputs.sampling && !settings.has("sampling") && !defaults.sampling {
+            let message = format!("`{}` has no sampling extinction", names[index]);
+            let help = "add `sampling = …` to it or to the problem, or sweep it";
+            settings.fault_at(settings.span.clone(), "", message, help);
+        }
+        if own_kernel && order == Some(Order::Free) && !is_order_free {
+            let message = format!("`{}` has no order-free kernel", names[index]);
+            settings.fault("kernel", message, "product estimators have one; leave `kernel` out");
+        }
+        settings.close();
+        Some(Self {
+            name: names[index].clone(),
+            features,
+            sampling: sampling?,
+            control: control?,
+            expect_biased: own_expect?,
+            order: order?,
+        })
+    }
+}
+
+/// Records mistakes about a table's own σ̂, and answers `None` then.
+pub type Accept<'a> = &'a dyn Fn(&Settings, Option<&dyn sampling::Recipe>) -> Option<()>;
+
+/// The estimators of a case or a picture, in its order, with σ̂ and control for all.
+pub struct Estimators {
+    /// The estimators.
+    pub list: Vec<ParsedEstimator>,
+    sampling: Option<Box<dyn sampling::Recipe>>,
+    control: Option<Box<dyn controls::Recipe>>,
+}
+
+impl Estimators {
+    /// Reads `sampling`, `control` and `estimators`.
+    pub fn read(
+        settings: &Settings,
+        body: Option<&Body>,
+        reader: &mut dyn EntryReader,
+        (defaults, swept): (Defaults, Option<What>),
+        accept: Accept,
+    ) -> Option<Self> {
+        let sampling = read_sampling(settings, body);
+        let control = read_if(settings, "control", body, controls::read);
+        let list = settings.tables("estimators").map(|tables| {
+            let read = |table: &Settings| {
+                let parsed = ParsedEstimator::read(table, body, defaults, reader);
+                accept(table, parsed.as_ref().and_then(|parsed| parsed.sampling.as_deref()))?;
+                parsed
+            };
+            tables.iter().map(read).collect::<Vec<_>>()
+        });
+        if let Some(Some(sampling)) = &sampling {
+            accept(settings, Some(sampling.as_ref()))?;
+        }
+        let list = list?;
+        if list.is_empty() {
+            let help = "list one, as in { ratio = {} }";
+            settings.fault("estimators", "no estimator is listed", help);
+        }
+        let list: Option<Vec<ParsedEstimator>> = list.into_iter().collect();
+        refuse_idle_controls(settings, list.as_deref().unwrap_or_default(), swept);
+        Some(Self { list: list?, sampling: sampling?, control: control? })
+    }
+
+    /// σ̂ of an estimator; `None` where it takes none.
+    pub fn sampling_of<'a>(
+        &'a self,
+        parsed: &'a ParsedEstimator,
+    ) -> Option<&'a dyn sampling::Recipe> {
+        let wanted = parsed.features.inputs.sampling;
+        wanted.then(|| parsed.sampling.as_deref().or(self.sampling.as_deref())).flatten()
+    }
+
+    /// The control that is given for an estimator.
+    pub fn given_control<'a>(
+        &'a self,
+        parsed: &'a ParsedEstimator,
+    ) -> Option<&'a dyn controls::Recipe> {
+        let wanted = parsed.features.inputs.control;
+        wanted.then(|| parsed.control.as_deref().or(self.control.as_deref())).flatten()
+    }
+
+    /// The control of an estimator.
+    pub fn control_of<'a>(&'a self, parsed: &'a ParsedEstimator) -> &'a dyn controls::Recipe {
+        let default = parsed.features.default_control.as_deref();
+        let default = default.filter(|_| parsed.features.inputs.control);
+        self.given_control(parsed).or(default).unwrap_or(&controls::none::None)
+    }
+}
+
+/// A control, or a sweep of one, that no estimator takes is a mistake.
+fn refuse_idle_controls(settings: &Settings, estimators: &[ParsedEstimator], swept: Option<What>) {
+    if estimators.is_empty() || estimators.iter().any(|e| e.features.inputs.control) {
+        return;
+    }
+    let message = "no estimator of this case takes a control";
+    let help = "leave it out, or list one that does: see `trueflight list estimators`";
+    if settings.has("control") {
+        settings.fault("control", message, help);
+    }
+    if matches!(swept, Some(What::Control | What::Points)) {
+        settings.fault("sweep", message, help);
+    }
+}

@@ -1,0 +1,269 @@
+//! A problem and its estimators without their types: the only code here that is compiled once per
+//! problem.
+
+use std::sync::Arc;
+
+use crate::case::estimator::ReadEstimators;
+use crate::case::ready::{FAINTEST, Ready};
+use estimators::recipes::sampling;
+use estimators::trial::Entry;
+use estimators::{Experiment, Order, RayView, Refusal, Setup};
+use lab::mutants::Mutable;
+use media::body::RayNeed;
+use media::catalogue::Settings;
+use media::{Body, Control, Medium, Piecewise};
+use numeric::digits::rounded;
+use numeric::rng::Address;
+use theory::problems::{self, each_problem};
+use theory::{Mesh, Prediction};
+
+/// A problem of the catalogue, before a case is read.
+pub struct ProblemKind {
+    /// What it asks of the ray through a volume.
+    pub ray: RayNeed,
+    /// Whether its medium may have several channels.
+    pub spectral: bool,
+    /// Its reader.
+    pub read: Read,
+}
+
+/// Reads a problem and, by the last argument, its estimators; `None` after a mistake.
+pub type Read = fn(Option<&Body>, &Settings, ReadEstimators) -> Option<Box<dyn AnyProblem>>;
+
+macro_rules! kinds {
+    ($($module:ident :: $Problem:ident,)*) => {
+        [$(ProblemKind::of::<problems::$Problem>),*]
+    };
+}
+
+/// The problem at a position of the catalogue.
+pub fn kind(index: usize) -> ProblemKind {
+    each_problem!(kinds)[index]()
+}
+
+impl ProblemKind {
+    fn of<P: Mutable>() -> Self {
+        Self {
+            ray: P::RAY,
+            spectral: P::SPECTRAL,
+            read: |body, settings, read_estimators| {
+                let problem = P::read(body, settings).map(Arc::new);
+                let mut entries: Vec<Box<dyn Entry<P>>> = Vec::new();
+                read_estimators(&mut entries);
+                Some(Box::new(Typed { problem: problem?, entries }))
+            },
+        }
+    }
+}
+
+/// What an estimator works on, apart from its problem.
+pub struct Parts<'a> {
+    /// The medium, cut into panels.
+    pub mesh: &'a Arc<Mesh>,
+    /// σ̂ along the ray.
+    pub sampling: Option<Piecewise>,
+    /// Medium and σ̂ of each channel after the first.
+    pub further: Vec<(Arc<Mesh>, Option<Piecewise>)>,
+    /// σ_c.
+    pub control: Control,
+    /// A constant σ̂, 1/length, in place of the recipe's.
+    pub constant: Option<f64>,
+    /// What makes σ̂ in space.
+    pub recipe: Option<&'a dyn sampling::Recipe>,
+    /// The factor on that σ̂.
+    pub factor: f64,
+    /// The swept albedo, in place of the one in the case.
+    pub albedo: Option<f64>,
+}
+
+/// Which of a mutant's two walks.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Walk {
+    /// The one with the bug.
+    Faulty,
+    /// The same code without it.
+    Twin,
+}
+
+/// A problem with the estimators of a case; estimators are numbered in the order of the case.
+pub trait AnyProblem: Send + Sync {
+    /// The field of each channel along the ray.
+    fn media(&self) -> &[Medium];
+
+    /// The distance that each channel of a draw is about.
+    fn distances(&self) -> Vec<f64>;
+
+    /// Whether an estimator, or the problem itself, depends on an albedo.
+    fn has_albedo(&self, estimator: usize) -> bool;
+
+    /// The control, where the parts fit together.
+    ///
+    /// # Errors
+    ///
+    /// σ̂ that is not given in space, or weights that are no doubles.
+    fn fitting_control(&self, estimator: usize, parts: Parts) -> Result<Control, Refusal>;
+
+    /// An experiment with its prediction; a `forced` one is drawn outside its domain, too.
+    ///
+    /// # Errors
+    ///
+    /// The violated inequality and where on the ray.
+    fn prepare(
+        &self,
+        estimator: usize,
+        parts: Parts,
+        order: Order,
+        forced: bool,
+    ) -> Result<Ready, Refusal>;
+
+    /// What theory says without whole laws; `None` if the experiment is refused.
+    fn predict(&self, estimator: usize, parts: Parts, order: Order) -> Option<Prediction>;
+
+    /// The ray seen from the side, for estimators of a curve.
+    fn ray_view(&self, estimator: usize, parts: Parts, address: Address) -> Option<RayView>;
+
+    /// A mutant in an estimator's place; `None` if the problem has none of that name.
+    fn mutant(
+        &self,
+        estimator: usize,
+        parts: Result<Parts, Refusal>,
+        name: &str,
+        walk: Walk,
+    ) -> Option<Result<Box<dyn Experiment>, Refusal>>;
+}
+
+/// A problem of known type with its estimators.
+struct Typed<P> {
+    problem: Arc<P>,
+    entries: Vec<Box<dyn Entry<P>>>,
+}
+
+impl<P: Mutable> Typed<P> {
+    fn setup(&self, estimator: usize, parts: Parts) -> Result<Setup<P>, Refusal> {
+        let Parts { mesh, sampling, further, control, constant, recipe, factor, albedo } = parts;
+        let varied = albedo.and_then(|albedo| self.problem.with_albedo(albedo));
+        let problem = varied.map_or_else(|| self.problem.clone(), Arc::new);
+        let entry = &self.entries[estimator];
+        let setup = Setup::new(problem, mesh.clone(), sampling, control);
+        let setup = if entry.skips() { setup.skipping() } else { setup };
+        let setup = if P::SPECTRAL { setup.spectral(further) } else { setup };
+        let setup = setup.in_space(constant, recipe, factor)?;
+        // Without collisions a draw does not begin with the weight T_c.
+        if entry.inputs().sampling {
+            let Setup { control, log_unit, control_transmittance, .. } = &setup;
+            require_weights(control, mesh, *log_unit, *control_transmittance)?;
+        }
+        Ok(setup)
+    }
+
+    /// Calls `f` with an estimator, at the swept albedo where it has one.
+    fn with_entry<T>(
+        &self,
+        estimator: usize,
+        albedo: Option<f64>,
+        f: impl FnOnce(&dyn Entry<P>) -> T,
+    ) -> T {
+        let own = &self.entries[estimator];
+        let varied = albedo.and_then(|albedo| own.with_albedo(albedo));
+        f(varied.as_deref().unwrap_or(&**own))
+    }
+}
+
+/// What theory says of the draws of a kernel.
+fn predict<P: Mutable>(entry: &dyn Entry<P>, setup: &Setup<P>, order: Order) -> Prediction {
+    let prediction = entry.predict(setup);
+    if order == Order::Free { prediction.order_free() } else { prediction }
+}
+
+impl<P: Mutable> AnyProblem for Typed<P> {
+    fn media(&self) -> &[Medium] {
+        self.problem.media()
+    }
+
+    fn distances(&self) -> Vec<f64> {
+        self.problem.distances()
+    }
+
+    fn has_albedo(&self, estimator: usize) -> bool {
+        let entry = &self.entries[estimator];
+        entry.with_albedo(0.5).is_some() || self.problem.with_albedo(0.5).is_some()
+    }
+
+    fn fitting_control(&self, estimator: usize, parts: Parts) -> Result<Control, Refusal> {
+        self.setup(estimator, parts).map(|setup| setup.control)
+    }
+
+    fn prepare(
+        &self,
+        estimator: usize,
+        parts: Parts,
+        order: Order,
+        forced: bool,
+    ) -> Result<Ready, Refusal> {
+        let albedo = parts.albedo;
+        let setup = self.setup(estimator, parts)?;
+        if order == Order::Free {
+            let needs = "∫σ̂ ≤ 1e6 for order-free draws (the ordered kernel has no such limit)";
+            setup.require_few_collisions(needs)?;
+        }
+        self.with_entry(estimator, albedo, |entry| {
+            let prediction = match entry.domain(&setup) {
+                Ok(()) => predict(entry, &setup, order),
+                // Forced: the formulas do not hold here, only the truth does.
+                Err(_) if forced => entry.predict(&setup).only_the_truth(),
+                Err(refusal) => return Err(refusal),
+            };
+            Ok(Ready { experiment: entry.experiment(setup, order), prediction })
+        })
+    }
+
+    fn predict(&self, estimator: usize, parts: Parts, order: Order) -> Option<Prediction> {
+        let albedo = parts.albedo;
+        let setup = Setup { laws: false, ..self.setup(estimator, parts).ok()? };
+        self.with_entry(estimator, albedo, |entry| {
+            entry.domain(&setup).ok()?;
+            Some(predict(entry, &setup, order))
+        })
+    }
+
+    fn ray_view(&self, estimator: usize, parts: Parts, address: Address) -> Option<RayView> {
+        let setup = self.setup(estimator, parts).ok()?;
+        self.entries[estimator].ray_view(&setup, address)
+    }
+
+    fn mutant(
+        &self,
+        estimator: usize,
+        parts: Result<Parts, Refusal>,
+        name: &str,
+        walk: Walk,
+    ) -> Option<Result<Box<dyn Experiment>, Refusal>> {
+        let mutant = P::mutants().into_iter().find(|mutant| mutant.about.name == name)?;
+        let setup = parts.and_then(|parts| self.setup(estimator, parts));
+        Some(setup.map(|setup| match walk {
+            Walk::Faulty => mutant.experiment(setup),
+            Walk::Twin => mutant.twin(setup),
+        }))
+    }
+}
+
+/// Refuses a control whose weights `T_c`, in units of `exp(−log_unit)`, are no doubles.
+fn require_weights(
+    control: &Control,
+    mesh: &Mesh,
+    log_unit: f64,
+    controlled: f64,
+) -> Result<(), Refusal> {
+    if (FAINTEST..=1.0 / FAINTEST).contains(&controlled) {
+        return Ok(());
+    }
+    if log_unit == 0.0 {
+        let needs = "a control with T_c between 1e-300 and 1e300";
+        return Err(Refusal::mismatch(needs, format!("T_c = {controlled:e}")));
+    }
+    let needs = "draws between 1e-300 and 1e300 times T";
+    let control = control.optical_depth(mesh.support()).value;
+    let [whole, control] = [log_unit, control].map(rounded);
+    let found = format!("τ = {whole}, of which the control takes {control}");
+    Err(Refusal::mismatch(needs, found))
+}

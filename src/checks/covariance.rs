@@ -1,0 +1,114 @@
+//! The covariance of neighbouring distances of one walk against theory, by the gate.
+//!
+//! ```text
+//! y = ((X₁ − T₁)(X₂ − T₂) − C)/(sd₁ sd₂),  C = T₁T₂ expm1(J₂(s₁)),  Var[y] in theory
+//! ```
+//!
+//! It applies to problems with several channels, and is reported with the farther one. Neighbours
+//! are enough: increments over disjoint stretches are uncorrelated, so theirs determine the others.
+
+use std::panic::AssertUnwindSafe;
+
+use super::batch::Batch;
+use super::mean::is_faint;
+use super::observe::Observe;
+use super::question::{Kind, Known, Law, Question, Scalar, Subject, Wanted};
+use crate::plan::options::Tolerance;
+use estimators::DrawBuffer;
+use gate::stats::gate::GateSums;
+use theory::Prediction;
+use theory::prediction::Covariance as Predicted;
+
+/// The largest error of a covariance, relative to the product of the standard deviations, that is
+/// still worth a promise.
+const CAP: f64 = 0.2;
+/// The same of a prediction.
+const ERROR: f64 = 1e-10;
+
+/// A covariance as a test with a p-value: `min(1, 1/E)`, E the gate's e-value after a number of draws that is fixed
+/// beforehand. `P(E ≥ 1/p) ≤ p` by Markov's inequality.
+struct ByGate(AssertUnwindSafe<Scalar>);
+
+impl Law for ByGate {
+    fn size(&self) -> usize {
+        GateSums::default().totals().len()
+    }
+
+    fn add(&self, draws: &Batch, _: usize, sums: &mut [f64]) {
+        let arguments = self.0.design.arguments();
+        let mut found = GateSums::default();
+        draws.observe(&self.0.observe, &mut Vec::new(), |y, _| found.absorb(y, &arguments));
+        sums.iter_mut().zip(found.totals()).for_each(|(sum, x)| *sum += x);
+    }
+
+    fn p_value(&self, sums: &[f64], draws: f64) -> Option<f64> {
+        let sums = sums.try_into().ok()?;
+        Some((-self.0.design.evidence(sums, draws).ln_e).exp().min(1.0))
+    }
+}
+
+/// Tests of the covariances of neighbours among the first `values` channels, each with its name in words.
+pub fn of(prediction: &Prediction, draws: u64, values: usize) -> Vec<(String, impl Law + use<>)> {
+    let subject = Subject {
+        prediction,
+        draws,
+        most: draws,
+        fixed: draws,
+        tolerance: Tolerance::default(),
+        expect_biased: false,
+        has_invariant: false,
+        is_in_turn: true,
+        pilots: None,
+    };
+    let asked = questions(&subject).into_iter();
+    let among = asked.filter(|question| question.channel.is_some_and(|channel| channel < values));
+    let tests = among.filter_map(|question| match question.kind {
+        Kind::Scalar(scalar) => {
+            let name = &prediction.channels[question.channel?].name;
+            Some((format!("{} of {name}", question.what), ByGate(AssertUnwindSafe(scalar))))
+        }
+        _ => None,
+    });
+    tests.collect()
+}
+
+/// What is asked.
+pub fn questions(subject: &Subject) -> Vec<Question> {
+    let covariances = subject.prediction.covariances.iter();
+    covariances
+        .filter(|covariance| covariance.pair[0] + 1 == covariance.pair[1])
+        .filter_map(|covariance| ask(subject, covariance))
+        .collect()
+}
+
+fn ask(subject: &Subject, covariance: &Predicted) -> Option<Question> {
+    let [first, second] = covariance.pair.map(|i| &subject.prediction.channels[i]);
+    if is_faint(subject, first) || is_faint(subject, second) {
+        return None;
+    }
+    let scale = [first, second].map(|channel| {
+        let variance = channel.moments.map_or(0.0, |moments| moments.variance());
+        1.0 / variance.sqrt()
+    });
+    let what = format!("the covariance with {}", first.name);
+    let unit = scale[0] * scale[1];
+    let variance = covariance.variance * unit * unit;
+    let kind = if variance.is_finite() && variance > 0.0 {
+        let known = Known { variance, error: ERROR, floor: ERROR };
+        let wanted = Wanted { tolerance: None, cap: CAP };
+        let ([i, j], truth) = (covariance.pair, [first.mean.value, second.mean.value]);
+        let expected = covariance.value * unit;
+        let observe =
+            move |draws: &DrawBuffer, y: &mut Vec<f64>| {
+                let both = draws.values[i].iter().zip(&draws.values[j]);
+                y.extend(both.map(|(a, b)| {
+                    (a - truth[0]) * scale[0] * ((b - truth[1]) * scale[1]) - expected
+                }));
+            };
+        let observe = Observe::Draw(Box::new(observe));
+        Kind::Scalar(Scalar::new(subject, known, wanted, observe).of(covariance.value, 1.0 / unit))
+    } else {
+        Kind::Untestable("its variance overflows".into())
+    };
+    Some(Question::channel(covariance.pair[1], &what, kind))
+}

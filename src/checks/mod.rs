@@ -1,0 +1,114 @@
+//! What is asked of the draws, one check per page.
+//!
+//! A check turns what theory says of an experiment into questions, all of them before the first
+//! draw: the levels are then shared among all questions of the run. Questions are of four kinds.
+//! Scalars go through the sequential gate and may stop the drawing; laws are tested by a p-value on
+//! a number of draws fixed beforehand; what must hold for every draw is watched on every draw; and
+//! the streams of random numbers are looked at themselves.
+//!
+//! From bottom to top: [`observe`], [`batch`], [`question`], the pages.
+
+pub mod atoms;
+pub mod batch;
+pub mod counts;
+pub mod covariance;
+pub mod curve;
+pub mod depth;
+pub mod dispersion;
+pub mod distances;
+pub mod generator;
+pub mod invariant;
+pub mod lookups;
+pub mod mean;
+pub mod normality;
+pub mod numeric;
+pub mod observe;
+pub mod question;
+pub mod resolution;
+pub mod streams;
+pub mod variance;
+
+use media::catalogue::PageList;
+
+pub use observe::Observe;
+pub use question::{Always, Inspected, Kind, Law, Pilot, Question, Scalar, Subject, rounding};
+
+/// A page of the catalogue of checks.
+struct Check {
+    /// What it asks of an experiment; nothing where it does not apply.
+    questions: fn(&Subject) -> Vec<Question>,
+    /// Whether it asks of experiments that a case declares biased, too.
+    of_biased: bool,
+    /// Whether its p-values are uniform when all is well, or only never too often small.
+    is_uniform: bool,
+}
+
+impl Check {
+    const fn new(questions: fn(&Subject) -> Vec<Question>) -> Self {
+        Self { questions, of_biased: false, is_uniform: true }
+    }
+
+    /// It asks of experiments that a case declares biased, too.
+    const fn of_biased(self) -> Self {
+        Self { of_biased: true, ..self }
+    }
+
+    /// Its p-values are never too often small, but not uniform.
+    const fn not_uniform(self) -> Self {
+        Self { is_uniform: false, ..self }
+    }
+}
+
+/// All questions of all checks, in the order of the catalogue.
+pub fn questions(subject: &Subject) -> Vec<Question> {
+    let pages = CATALOGUE.pages.iter().zip(ALL);
+    let asking = pages.filter(|(_, check)| check.of_biased || !subject.expect_biased);
+    let asked = asking.flat_map(|(page, check)| {
+        let check_name = page.name();
+        let expects_bias = subject.expect_biased && check_name == "mean";
+        let questions = (check.questions)(subject).into_iter();
+        questions.map(move |question| Question {
+            check: check_name.clone(),
+            expects_bias,
+            ..question
+        })
+    });
+    asked.collect()
+}
+
+/// Whether the p-values of the check of that name are uniform when all is well.
+pub fn is_uniform(name: &str) -> bool {
+    let named = CATALOGUE.pages.iter().zip(ALL).find(|(page, _)| page.name() == name);
+    named.is_some_and(|(_, check)| check.is_uniform)
+}
+
+/// Lists the checks: from one line each come the name, the row in `list`, and of what it is asked.
+macro_rules! checks {
+    ($($module:ident $($how:ident)*,)*) => {
+        /// Every check, in the order of registration.
+        pub const CATALOGUE: PageList =
+            PageList { name: "checks", pages: &[$(media::page!($module)),*] };
+
+        /// The checks, in the order of the catalogue.
+        const ALL: &[Check] = &[$(Check::new($module::questions)$(.$how())*),*];
+    };
+}
+
+checks! {
+    mean of_biased,
+    variance,
+    lookups of_biased,
+    covariance,
+    counts of_biased,
+    // Two values have their exact binomial law, whose p-values are discrete.
+    atoms not_uniform,
+    distances,
+    depth,
+    curve not_uniform,
+    dispersion,
+    streams,
+    generator not_uniform,
+    resolution not_uniform,
+    invariant,
+    numeric of_biased,
+}

@@ -1,0 +1,74 @@
+//! Draws at the same place of different blocks: their sums across the blocks.
+//!
+//! ```text
+//! S_i = Σ_b z_{b,i},  z = (X − E[X])/√V;   Σ_i S_i²/B has mean L and variance L(2 + (κ − 3)/B)
+//! ```
+//!
+//! The law of the sum is that of many draws: `(κ − 3)/B ≤ 1/2`, and `E[z⁸] ≤ 0.06 L B³`, so that no
+//! single draw of a heavy tail decides.
+//!
+//! B blocks that share a seed have sums B times as wide; two that share one, twice. It looks at the
+//! first L = 1024 draws of each block.
+
+use super::batch::Batch;
+use super::question::{Law, Question, Subject, last_channel};
+use crate::plan::addresses::BLOCK;
+use gate::stats::correlation;
+
+/// L.
+const FIRST: usize = 1024;
+/// The fewest blocks that make a test.
+const FEWEST: u64 = 4;
+/// The largest `(κ − 3)/B` for which the sums are near normal.
+const MOST_EXCESS: f64 = 0.5;
+/// The largest `E[z⁸]/(6 L B³)`: beyond, a single draw may decide.
+const MOST_BY_ONE: f64 = 0.01;
+
+struct IndexSums {
+    mean: f64,
+    scale: f64,
+    kurtosis: f64,
+}
+
+impl Law for IndexSums {
+    fn size(&self) -> usize {
+        FIRST + 1
+    }
+
+    fn add(&self, draws: &Batch, first: usize, sums: &mut [f64]) {
+        let Some(values) = draws.draws.values.last() else { return };
+        let places = sums[..FIRST].iter_mut().skip(first);
+        for (sum, x) in places.zip(values) {
+            *sum += (x - self.mean) * self.scale;
+        }
+    }
+
+    fn close(&self, draws: usize, sums: &mut [f64]) {
+        // A last block that does not reach all places says nothing.
+        if draws < FIRST {
+            sums.fill(0.0);
+        } else {
+            sums[FIRST] = 1.0;
+        }
+    }
+
+    fn p_value(&self, sums: &[f64], _: f64) -> Option<f64> {
+        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // a count of blocks
+        let blocks = sums[FIRST] as usize;
+        correlation::index_sums(&sums[..FIRST], blocks, self.kurtosis - 3.0)
+    }
+}
+
+/// What is asked.
+pub fn questions(subject: &Subject) -> Vec<Question> {
+    let Some((channel, moments)) = last_channel(subject) else { return Vec::new() };
+    let kurtosis = moments.kurtosis().unwrap_or(f64::INFINITY);
+    let blocks = subject.fixed / BLOCK;
+    let enough = blocks >= FEWEST && (kurtosis - 3.0) <= MOST_EXCESS * blocks as f64;
+    let eighth = channel.tails.eighth_moment_ratio * kurtosis * kurtosis;
+    let by_one = eighth / (6.0 * FIRST as f64 * (blocks as f64).powi(3));
+    let enough = enough && by_one <= MOST_BY_ONE && subject.is_in_turn;
+    let (mean, scale) = (channel.mean.value, 1.0 / moments.variance().sqrt());
+    let law = IndexSums { mean, scale, kurtosis };
+    Question::law("the sums across streams", enough.then_some(law))
+}

@@ -1,0 +1,318 @@
+//! One block of one experiment, drawn and absorbed by its questions.
+//!
+//! A block is 2¹⁴ draws, found by its address. Its draws are made buffer by buffer; every question
+//! absorbs each buffer while it is in the second-level cache. P-values and z-scores see only the
+//! draws below the plan's fixed number.
+
+use std::cell::RefCell;
+
+use cpu_time::ThreadTime;
+use fearless_simd::Level;
+use serde::{Deserialize, Serialize};
+
+use crate::case::ready::Ready;
+use crate::checks::Kind;
+use crate::checks::batch::Batch;
+use crate::plan::{BLOCK, Planned};
+use estimators::DrawBuffer;
+use estimators::kernels::order_free::{OrderFree, Request};
+use gate::stats::Tally;
+use gate::stats::gate::{GateSums, SUMS};
+use numeric::pack::in_fused_code;
+use numeric::rng::Streams;
+use numeric::sum::{sum_in_lanes, sum_of_pairs};
+
+/// What a block found.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub struct Block {
+    /// How many draws.
+    pub draws: u64,
+    /// One tally per channel over the fixed draws, in units of the truth about the predicted mean.
+    pub tallies: Vec<Tally>,
+    /// The lookups of the fixed draws about their predicted mean.
+    pub lookups: Tally,
+    /// One answer per question.
+    pub answers: Vec<Answer>,
+    /// Processor seconds.
+    pub seconds: f64,
+}
+
+/// What a block says to one question.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub enum Answer {
+    /// The sums of ψ, and that of y itself.
+    Gate([f64; SUMS], f64),
+    /// The sums of a law over the fixed draws.
+    Law(Vec<f64>),
+    /// The largest value.
+    Largest(f64),
+    /// Nothing.
+    Silent,
+    /// What becomes [`Answer::Gate`] at the block's end.
+    #[serde(skip)]
+    Open(Box<GateSums>, f64),
+}
+
+/// Draws a block of an experiment, or the same block of several that share their lookups. Each makes
+/// the draws that it would make alone; the processor time is shared out evenly.
+pub fn blocks(group: &[&Planned], block: u64) -> Vec<Option<Block>> {
+    // Processor time, not wall time: other processes do not count.
+    let begin = ThreadTime::now();
+    let mut drawings: Vec<Option<Drawing>> =
+        group.iter().map(|planned| Drawing::begin(planned, block)).collect();
+    loop {
+        let open = drawings.iter_mut().flatten().filter(|drawing| drawing.count() > 0);
+        let mut open: Vec<&mut Drawing> = open.collect();
+        match &mut open[..] {
+            [] => break,
+            [drawing] => drawing.fill(),
+            several => fill_together(several),
+        }
+        open.into_iter().for_each(Drawing::absorb);
+    }
+    let seconds = begin.elapsed().as_secs_f64() / group.len() as f64;
+    drawings.into_iter().map(|drawing| drawing.map(|drawing| drawing.close(seconds))).collect()
+}
+
+/// Draws `every` blocks one after the other, and merges them into one: number `number` of such. Nothing, if `is_over`
+/// comes true before the last.
+pub fn merged(
+    group: &[&Planned],
+    number: u64,
+    every: u64,
+    is_over: &dyn Fn() -> bool,
+) -> Vec<Option<Block>> {
+    let mut found: Vec<Option<Block>> = vec![None; group.len()];
+    for block in number * every..(number + 1) * every {
+        let is_there = |&i: &usize| block * BLOCK < group[i].horizon;
+        let there: Vec<usize> = (0..group.len()).filter(is_there).collect();
+        if there.is_empty() {
+            break;
+        }
+        if is_over() {
+            return vec![None; group.len()];
+        }
+        let members: Vec<&Planned> = there.iter().map(|&i| group[i]).collect();
+        for (i, drawn) in there.into_iter().zip(blocks(&members, block)) {
+            match (&mut found[i], drawn) {
+                (Some(all), Some(next)) => all.merge(&next),
+                (none, next) => *none = next,
+            }
+        }
+    }
+    found
+}
+
+impl Block {
+    /// Adds the one that follows.
+    fn merge(&mut self, next: &Self) {
+        self.draws += next.draws;
+        self.seconds += next.seconds;
+        self.lookups.merge(&next.lookups);
+        self.tallies.iter_mut().zip(&next.tallies).for_each(|(tally, next)| tally.merge(next));
+        for (answer, next) in self.answers.iter_mut().zip(&next.answers) {
+            match (answer, next) {
+                (Answer::Gate(sums, y), Answer::Gate(others, other)) => {
+                    sums.iter_mut().zip(others).for_each(|(sum, x)| *sum += x);
+                    *y += other;
+                }
+                // Beyond the fixed draws a law is not asked.
+                (Answer::Law(sums), Answer::Law(others)) => {
+                    sums.iter_mut().zip(others).for_each(|(sum, x)| *sum += x);
+                }
+                (Answer::Largest(most), Answer::Largest(other)) => *most = larger(*most, *other),
+                _ => {}
+            }
+        }
+    }
+}
+
+/// Fills a buffer of each by lookups that they share.
+fn fill_together(drawings: &mut [&mut Drawing]) {
+    let Some(leader) = drawings.first().map(|drawing| drawing.ready) else { return };
+    let mut places = None;
+    let walks = drawings.iter_mut().filter_map(|drawing| {
+        // The same for all: they find them at the same address.
+        places = Some(drawing.streams.places());
+        let (count, counts) = (drawing.count(), &mut drawing.streams.counts);
+        let request = Request { counts, count, buffer: &mut drawing.scratch.buffer };
+        drawing.ready.experiment.order_free(request)
+    });
+    let mut walks: Vec<Box<dyn OrderFree + '_>> = walks.collect();
+    let mut requests: Vec<&mut dyn OrderFree> = walks.iter_mut().map(|w| &mut **w as _).collect();
+    if let Some(places) = places {
+        leader.experiment.draw_order_free(Level::new(), &places, &mut requests);
+    }
+}
+
+/// Scratch for draws and for what a question makes of them.
+#[derive(Default)]
+struct Scratch {
+    buffer: DrawBuffer,
+    y: Vec<f64>,
+}
+
+thread_local! {
+    /// What the blocks before have left to the thread: so much memory, asked for anew, would cost a block as
+    /// much time as some of its questions.
+    static SCRATCH: RefCell<Vec<Scratch>> = const { RefCell::new(Vec::new()) };
+}
+
+impl Scratch {
+    fn take(channels: usize) -> Self {
+        let mut scratch: Self = SCRATCH.with_borrow_mut(Vec::pop).unwrap_or_default();
+        scratch.buffer.set_channels(channels);
+        scratch
+    }
+
+    fn leave(self) {
+        SCRATCH.with_borrow_mut(|scratchs| scratchs.push(self));
+    }
+}
+
+/// A block on its way.
+struct Drawing<'p> {
+    planned: &'p Planned,
+    ready: &'p Ready,
+    streams: Streams,
+    /// How many draws the buffer takes.
+    length: u64,
+    scratch: Scratch,
+    answers: Vec<Answer>,
+    tallies: Vec<Tally>,
+    lookups: Tally,
+    /// The numbers of its first draw, of the next, and of the first beyond it.
+    start: u64,
+    at: u64,
+    end: u64,
+}
+
+impl<'p> Drawing<'p> {
+    /// At the first draw; `None` for what is refused.
+    fn begin(planned: &'p Planned, block: u64) -> Option<Self> {
+        let ready = planned.outcome.as_ref().ok()?;
+        let channels = ready.prediction.channels.len();
+        let start = block * BLOCK;
+        Some(Self {
+            planned,
+            ready,
+            streams: planned.streams(block),
+            length: DrawBuffer::length(channels) as u64,
+            scratch: Scratch::take(channels),
+            answers: planned.questions.iter().map(|q| Answer::new(&q.kind)).collect(),
+            tallies: vec![Tally::default(); channels],
+            lookups: Tally::default(),
+            start,
+            at: start,
+            end: (start + BLOCK).min(planned.horizon),
+        })
+    }
+
+    /// Whether the next draws are among those whose number the plan has fixed.
+    fn is_fixed(&self) -> bool {
+        self.at < self.planned.fixed
+    }
+
+    /// How many draws the next buffer takes; 0 at the end.
+    #[allow(clippy::cast_possible_truncation)] // at most a buffer's length
+    fn count(&self) -> usize {
+        let until = if self.is_fixed() { self.end.min(self.planned.fixed) } else { self.end };
+        until.saturating_sub(self.at).min(self.length) as usize
+    }
+
+    fn fill(&mut self) {
+        let count = self.count();
+        self.ready.experiment.fill(&mut self.streams, count, &mut self.scratch.buffer);
+    }
+
+    /// Every question absorbs the buffer.
+    fn absorb(&mut self) {
+        let (count, is_fixed) = (self.count(), self.is_fixed());
+        let Scratch { buffer, y } = &mut self.scratch;
+        let draws = Batch::new(buffer);
+        #[allow(clippy::cast_possible_truncation)] // below a block's length
+        let first = (self.at - self.start) as usize;
+        for (question, answer) in self.planned.questions.iter().zip(&mut self.answers) {
+            answer.absorb(&question.kind, &draws, (first, is_fixed), y);
+        }
+        if is_fixed {
+            let prediction = &self.ready.prediction;
+            let channels = self.tallies.iter_mut().zip(&prediction.channels);
+            for (index, (tally, channel)) in channels.enumerate() {
+                tally.merge(&draws.tally(index, channel.mean.value, channel.truth.value));
+            }
+            let expected = prediction.lookups.as_ref().map_or(0.0, |law| law.mean);
+            self.lookups.merge(&draws.tally_of_lookups(expected));
+        }
+        self.at += count as u64;
+    }
+
+    fn close(self, seconds: f64) -> Block {
+        #[allow(clippy::cast_possible_truncation)] // below a block's length
+        let fixed = self.end.min(self.planned.fixed).saturating_sub(self.start) as usize;
+        let Self { mut answers, tallies, lookups, .. } = self;
+        for (question, answer) in self.planned.questions.iter().zip(&mut answers) {
+            match (&question.kind, &mut *answer, fixed) {
+                (Kind::Law(law), Answer::Law(sums), 1..) => law.close(fixed, sums),
+                // Nothing was asked: it need not be kept, either.
+                (_, Answer::Law(sums), _) => sums.clear(),
+                (_, Answer::Open(sums, y), _) => *answer = Answer::Gate(sums.totals(), *y),
+                _ => {}
+            }
+        }
+        self.scratch.leave();
+        Block { draws: self.end - self.start, tallies, lookups, answers, seconds }
+    }
+}
+
+impl Answer {
+    fn new(kind: &Kind) -> Self {
+        match kind {
+            Kind::Scalar(_) => Self::Open(Box::default(), 0.0),
+            Kind::Law(law) => Self::Law(vec![0.0; law.size()]),
+            Kind::Always(_) => Self::Largest(0.0),
+            Kind::Inspection(_) | Kind::Untestable(_) => Self::Silent,
+        }
+    }
+
+    fn absorb(
+        &mut self,
+        kind: &Kind,
+        draws: &Batch,
+        (first, is_fixed): (usize, bool),
+        y: &mut Vec<f64>,
+    ) {
+        match (self, kind) {
+            (Self::Open(sums, total), Kind::Scalar(scalar)) => {
+                let arguments = scalar.design.arguments();
+                draws.observe(&scalar.observe, y, |y, times| {
+                    if scalar.bias != 0.0 {
+                        for y in y.iter_mut() {
+                            *y += scalar.bias;
+                        }
+                    }
+                    if let Some(times) = times {
+                        sums.absorb_counted(y, times, &arguments);
+                        *total += sum_of_pairs(y, times, |y, times| y * times);
+                    } else {
+                        sums.absorb(y, &arguments);
+                        *total += in_fused_code(
+                            #[inline(always)]
+                            || sum_in_lanes(y, |y| y),
+                        );
+                    }
+                });
+            }
+            (Self::Law(sums), Kind::Law(law)) if is_fixed => law.add(draws, first, sums),
+            (Self::Largest(most), Kind::Always(always)) => {
+                *most = larger(*most, (always.largest)(draws.draws));
+            }
+            _ => {}
+        }
+    }
+}
+
+/// The larger of two, or not a number where one is none.
+pub fn larger(a: f64, b: f64) -> f64 {
+    if a.is_nan() || b.is_nan() { f64::NAN } else { a.max(b) }
+}

@@ -1,0 +1,376 @@
+//! A plan: every experiment of a run, prepared, with its questions and their share of the error
+//! rate, all before the first draw.
+//!
+//! ```text
+//! n        what `--draws` or the case says, or what the case's tolerances need
+//! fixed    ⌈n/2⌉ in whole blocks: the draws of p-values and z-scores, never a number that data chose
+//! horizon  60/27 n: the gate may go on that far
+//! α        4/5 to the gate, by e-Bonferroni; 1/5 to the p-values, by Holm
+//! ```
+
+pub mod addresses;
+pub mod filter;
+pub mod foreseen;
+pub mod levels;
+pub mod options;
+
+pub use filter::Filter;
+pub use options::{Amount, Options};
+
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+pub use ::gate::stats::verdict::MISS;
+
+use crate::case::Case;
+use crate::case::names::Names;
+use crate::case::ready::Ready;
+use crate::case::sweep::Variation;
+use crate::checks::{self, Kind, Pilot, Question, Scalar, Subject};
+use crate::plan::levels::Levels;
+use ::gate::stats::gate;
+use estimators::{DrawBuffer, Order, Refusal};
+use numeric::pack::WIDTH;
+use numeric::rng::{Address, PILOT, Streams};
+use theory::parallel;
+
+pub use crate::plan::addresses::BLOCK;
+
+/// Draws that estimate a variance where theory has none.
+const PILOT_DRAWS: usize = 1 << 16;
+
+/// A run, ready to draw.
+pub struct Plan<'a> {
+    /// What was asked.
+    pub options: Options,
+    /// The cases.
+    pub cases: Vec<PlannedCase<'a>>,
+    /// The levels that the questions share.
+    pub levels: Levels,
+}
+
+/// A case with its experiments.
+pub struct PlannedCase<'a> {
+    /// The case.
+    pub case: &'a Case,
+    /// Its experiments: estimators in the order of the case, each over the sweep.
+    pub experiments: Vec<Planned>,
+}
+
+impl PlannedCase<'_> {
+    /// The experiment before this one that it is by definition: their draws are the same, and made
+    /// once.
+    pub fn twin(&self, index: usize) -> Option<usize> {
+        let this = &self.experiments[index];
+        let asked = |planned: &Planned| -> Vec<String> {
+            planned.questions.iter().map(|question| question.check.clone()).collect()
+        };
+        let is_same = |other: &Planned| {
+            (other.address, other.draws, other.fixed, other.horizon)
+                == (this.address, this.draws, this.fixed, this.horizon)
+                && other.expect_biased == this.expect_biased
+                && asked(other) == asked(this)
+        };
+        let ready = this.outcome.is_ok();
+        (0..index).find(|&i| {
+            ready && self.experiments[i].outcome.is_ok() && is_same(&self.experiments[i])
+        })
+    }
+}
+
+/// One experiment.
+pub struct Planned {
+    /// Which estimator of the case.
+    pub estimator: usize,
+    /// Where in the sweep.
+    pub variation: Variation,
+    /// What it is called.
+    pub names: Names,
+    /// Knowledge of the medium that the experiment needs beside lookups; empty for none.
+    pub needs: String,
+    /// Number of draws that share the setup lookups of a ray.
+    pub draws_per_ray: u64,
+    /// Where its random numbers are.
+    pub address: Address,
+    /// Where its collisions are, where it may share their lookups with others.
+    pub shared: Option<Address>,
+    /// n: how many draws are planned.
+    pub draws: u64,
+    /// How many of the first draws the p-values and z-scores get.
+    pub fixed: u64,
+    /// How many draws the gate may take.
+    pub horizon: u64,
+    /// Whether the case declares it biased.
+    pub expect_biased: bool,
+    /// What draws and what theory says, or why it is refused.
+    pub outcome: Result<Ready, Refusal>,
+    /// What is asked of the draws.
+    pub questions: Vec<Question>,
+    /// Where a block's address finds its streams.
+    pub find_streams: fn(Address) -> Streams,
+}
+
+impl Planned {
+    /// The questions that go through the gate.
+    pub fn scalars(&self) -> impl Iterator<Item = (&Question, &Scalar)> {
+        self.questions.iter().filter_map(|question| match &question.kind {
+            Kind::Scalar(scalar) => Some((question, scalar)),
+            _ => None,
+        })
+    }
+
+    /// How many rows it has in a record: one per channel, or one that says why it is refused.
+    pub fn channels(&self) -> usize {
+        self.outcome.as_ref().map_or(1, |ready| ready.prediction.channels.len())
+    }
+
+    /// The streams of a block.
+    pub fn streams(&self, block: u64) -> Streams {
+        let own = (self.find_streams)(Address { block, ..self.address });
+        match self.shared {
+            Some(shared) => {
+                let shared = (self.find_streams)(Address { block, ..shared });
+                Streams { counts: own.counts, ..shared }
+            }
+            None => own,
+        }
+    }
+}
+
+impl<'a> Plan<'a> {
+    /// How many draws are merged before the gate may look.
+    pub fn step(&self) -> u64 {
+        self.options.blocks_per_look * BLOCK
+    }
+
+    /// Prepares every experiment of the cases.
+    pub fn new(cases: &'a [Case], options: &Options) -> Self {
+        Self::heard(cases, options, &|_, _| {})
+    }
+
+    /// Prepares every experiment of the cases; `listen` is called with the number of those that are ready, and of all.
+    pub fn heard(
+        cases: &'a [Case],
+        options: &Options,
+        listen: &(dyn Fn(usize, usize) + Sync),
+    ) -> Self {
+        let points: Vec<Vec<(usize, Variation)>> =
+            cases.iter().map(|case| points(case, options)).collect();
+        let (prepared, all) = (AtomicUsize::new(0), points.iter().map(Vec::len).sum());
+        listen(0, all);
+        let both: Vec<_> = cases.iter().zip(&points).collect();
+        let mut cases = parallel::map(&both, |&(case, points)| {
+            let experiments = parallel::map(points, |&point| {
+                let planned = plan_experiment(case, options, point);
+                listen(prepared.fetch_add(1, Ordering::Relaxed) + 1, all);
+                planned
+            });
+            PlannedCase { case, experiments }
+        });
+        cases.retain(|case| !case.experiments.is_empty());
+        let ready =
+            |case: &PlannedCase| case.experiments.iter().filter(|e| e.outcome.is_ok()).count();
+        let ready: usize = cases.iter().map(ready).sum();
+        // A budget is shared out evenly; what is saved goes to those that are still open.
+        let share = options.budget.map(|budget| {
+            let share = (budget / ready.max(1) as u64).max(2);
+            // In whole blocks, since looks come at their ends.
+            if share < BLOCK { share } else { share / BLOCK * BLOCK }
+        });
+        parallel::change(&mut cases, |planned_case| {
+            let case = planned_case.case;
+            for planned in &mut planned_case.experiments {
+                planned.draws = share.map_or(planned.draws, |share| planned.draws.min(share));
+                planned.ask(case, options);
+            }
+        });
+        let mut counts = [0; 3];
+        for experiment in cases.iter().flat_map(|case| &case.experiments) {
+            for question in &experiment.questions {
+                match question.kind {
+                    Kind::Scalar(_) if question.expects_bias => counts[2] += 1,
+                    Kind::Scalar(_) => counts[0] += 1,
+                    Kind::Law(_) | Kind::Inspection(_) => counts[1] += 1,
+                    Kind::Always(_) | Kind::Untestable(_) => {}
+                }
+            }
+        }
+        let levels = Levels::new(options.alpha, counts);
+        Self { options: options.clone(), cases, levels }
+    }
+
+    /// The plan of one experiment at the levels of another plan; `None` if the case has no such
+    /// experiment.
+    pub fn of_one(
+        case: &'a Case,
+        options: &Options,
+        estimator: usize,
+        swept: Option<f64>,
+        levels: Levels,
+    ) -> Option<Self> {
+        let variation = match (&case.sweep, swept) {
+            (Some(axis), Some(value)) => Some((axis.what, value)),
+            (_, None) => None,
+            (None, Some(_)) => return None,
+        };
+        if estimator >= case.scenario.estimators() {
+            return None;
+        }
+        let mut planned = plan_experiment(case, options, (estimator, variation));
+        planned.ask(case, options);
+        let cases = vec![PlannedCase { case, experiments: vec![planned] }];
+        Some(Self { options: options.clone(), cases, levels })
+    }
+
+    /// The same plan with the random numbers of another seed; pilots stay as they are.
+    pub fn reseed(&mut self, seed: u64) {
+        self.options.seed = seed;
+        for planned in self.cases.iter_mut().flat_map(|case| &mut case.experiments) {
+            planned.address.seed = seed;
+            planned.shared = planned.shared.map(|shared| Address { seed, ..shared });
+        }
+    }
+
+    /// All experiments with their case.
+    pub fn experiments(&self) -> impl Iterator<Item = (&PlannedCase<'a>, &Planned)> {
+        self.cases.iter().flat_map(|case| case.experiments.iter().map(move |e| (case, e)))
+    }
+}
+
+/// The experiments of a case that are not left out: each estimator at each value of the sweep.
+fn points(case: &Case, options: &Options) -> Vec<(usize, Variation)> {
+    let mut points: Vec<(usize, Variation)> = Vec::new();
+    for estimator in 0..case.scenario.estimators() {
+        match &case.sweep {
+            Some(axis) if case.scenario.depends_on(estimator, axis.what) => {
+                let values = axis.values.iter();
+                points.extend(values.map(|&value| (estimator, Some((axis.what, value)))));
+            }
+            _ => points.push((estimator, None)),
+        }
+    }
+    if let Some(filter) = &options.filter {
+        points.retain(|&(estimator, variation)| {
+            filter.keeps(&case.name, &case.scenario.names(estimator, variation).estimator)
+        });
+    }
+    points
+}
+
+fn plan_experiment(
+    case: &Case,
+    options: &Options,
+    (estimator, variation): (usize, Variation),
+) -> Planned {
+    let most = options.draws.of(case.draws);
+    let mut names = case.scenario.names(estimator, variation);
+    // Two estimators may be called the same, as where each has a field of its own as control.
+    let twins = (0..estimator).filter(|&e| case.scenario.names(e, variation) == names).count();
+    let address = addresses::own(options.seed, &case.name, &names, variation, twins);
+    if twins > 0 {
+        names.estimator = format!("{} #{}", names.estimator, twins + 1);
+    }
+    let pilots = case.pilots(options.seed, estimator);
+    let outcome = case.scenario.prepare(estimator, variation, pilots);
+    let stretches = outcome.as_ref().ok().and_then(|ready| ready.experiment.even_places());
+    let shared = stretches.map(|on| addresses::shared(options.seed, &case.name, &on));
+    Planned {
+        estimator,
+        variation,
+        names,
+        needs: case.scenario.needs(estimator, variation),
+        draws_per_ray: case.draws_per_ray,
+        address,
+        shared,
+        draws: most,
+        fixed: most,
+        horizon: most,
+        expect_biased: case.scenario.expects_bias(estimator),
+        outcome,
+        questions: Vec::new(),
+        find_streams: Address::streams,
+    }
+}
+
+impl Planned {
+    /// Asks all checks, first for the draws that the case's tolerances need, then for good.
+    fn ask(&mut self, case: &Case, options: &Options) {
+        let Ok(ready) = &self.outcome else { return };
+        let most = self.draws;
+        let channels = || ready.prediction.channels.iter();
+        let forced = self.expect_biased && channels().any(|channel| channel.moments.is_none());
+        let pilots =
+            (forced || channels().any(|channel| channel.by_pilots)).then(|| self.pilots(ready));
+        let mut subject = Subject {
+            prediction: &ready.prediction,
+            draws: most,
+            most,
+            fixed: fixed(most),
+            tolerance: case.tolerance,
+            expect_biased: self.expect_biased,
+            has_invariant: ready.experiment.has_invariant(),
+            is_in_turn: ready.experiment.order() == Order::Along,
+            pilots: pilots.as_deref(),
+        };
+        if case.tolerance.says_something() {
+            let needed = needed(&checks::questions(&subject), most);
+            subject.draws = needed;
+            subject.fixed = fixed(needed);
+        }
+        if options.fixed {
+            subject.fixed = subject.draws;
+        }
+        let mut questions = checks::questions(&subject);
+        let decides = |question: &Question| {
+            matches!(question.kind, Kind::Scalar(_) | Kind::Law(_) | Kind::Inspection(_))
+        };
+        let is_certain = !questions.iter().any(decides);
+        if is_certain {
+            // Draws without chance say in one pack what they would say in many.
+            subject.draws = subject.draws.min(WIDTH as u64);
+            subject.fixed = subject.draws;
+            questions = checks::questions(&subject);
+        }
+        (self.draws, self.fixed) = (subject.draws, subject.fixed);
+        // A budget of less than a block leaves nothing to go on with.
+        let is_tight = options.budget.is_some() && self.draws < BLOCK;
+        let is_fixed = options.fixed || is_tight || is_certain;
+        self.horizon = if is_fixed { self.draws } else { horizon(self.draws) };
+        self.questions = questions;
+    }
+
+    /// What a few draws from streams of their own say of spreads, channel by channel.
+    fn pilots(&self, ready: &Ready) -> Vec<Pilot> {
+        let mut streams = Address { block: PILOT, ..self.address }.streams();
+        let channels = ready.prediction.channels.len();
+        let mut buffer = DrawBuffer::new(channels);
+        let mut values = vec![Vec::with_capacity(PILOT_DRAWS); channels];
+        while values.iter().any(|values| values.len() < PILOT_DRAWS) {
+            ready.experiment.fill(&mut streams, DrawBuffer::length(channels), &mut buffer);
+            values.iter_mut().zip(&buffer.values).for_each(|(all, new)| all.extend(new));
+        }
+        values.iter().map(|values| Pilot::of(values)).collect()
+    }
+}
+
+/// Half of the planned draws in whole blocks; all of them where they are few.
+fn fixed(draws: u64) -> u64 {
+    let half = draws.div_ceil(2).div_ceil(BLOCK) * BLOCK;
+    if draws < 4 * BLOCK { draws } else { half }
+}
+
+#[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // a count of draws
+fn horizon(draws: u64) -> u64 {
+    (draws as f64 * gate::HORIZON / gate::PLANNED).ceil() as u64
+}
+
+/// The draws that keep every promise that `most` draws can keep, at the case's own tolerances and,
+/// where it has none, at the widest that are worth a promise.
+#[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // at most `most`
+fn needed(questions: &[Question], most: u64) -> u64 {
+    let promised = questions.iter().filter_map(|question| match &question.kind {
+        Kind::Scalar(scalar) if scalar.underpowered.is_none() => Some(scalar.least),
+        _ => None,
+    });
+    let needed = promised.fold(0.0, f64::max);
+    if needed > 0.0 { needed.ceil().min(most as f64) as u64 } else { most }
+}

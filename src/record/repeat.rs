@@ -1,0 +1,142 @@
+//! The commands that draw an experiment again: the same draws, or as many as decide it.
+
+use crate::case::suite;
+use crate::plan::filter::Filter;
+use crate::plan::foreseen::Foreseen;
+use crate::plan::options::Options;
+use crate::plan::{Plan, Planned, PlannedCase};
+use crate::record::{Finding, Verdict};
+use numeric::digits::enough;
+
+/// The largest number of draws that `--draws` takes.
+const MAX_DRAWS: f64 = 1e12;
+/// Four times the draws halve ε: a bias that half of it hides is then decided.
+const HALVING: f64 = 4.0;
+
+/// A word as a shell reads it, whatever is in it.
+fn quoted(word: &str) -> String {
+    let plain = |c: char| c.is_ascii_alphanumeric() || "_./:@%+=-".contains(c);
+    if !word.is_empty() && word.chars().all(plain) {
+        return word.to_owned();
+    }
+    format!("'{}'", word.replace('\'', "'\\''"))
+}
+
+/// A case as the command takes it: a built-in case has no file, and a file has no name that the command would know.
+fn place(case: &PlannedCase) -> String {
+    let case = case.case;
+    let is_built_in = suite::find(&case.name).is_some_and(|source| source.path == case.path);
+    quoted(&if is_built_in { case.name.clone() } else { case.path.display().to_string() })
+}
+
+/// The pattern of an experiment's estimator. Namesakes are numbered by the plan; a filter sees them all under one name.
+fn pattern(planned: &Planned) -> String {
+    format!("*:{}", planned.names.estimator.split(" #").next().unwrap_or_default())
+}
+
+/// The options that are not as usual, each with a space before it.
+fn flags(options: &Options) -> String {
+    let Options { alpha, fixed, strict, kernel, blocks_per_look, .. } = options;
+    let usual = Options::default();
+    let mut flags = String::new();
+    let mut add = |flag: String| flags = format!("{flags} {flag}");
+    if *alpha != usual.alpha {
+        add(format!("--alpha {alpha}"));
+    }
+    if let Some(kernel) = kernel {
+        add(format!("--kernel {}", kernel.word()));
+    }
+    if *blocks_per_look != usual.blocks_per_look {
+        add(format!("--blocks-per-look {blocks_per_look}"));
+    }
+    for (flag, _) in [("--fixed-draws", fixed), ("--strict", strict)].iter().filter(|f| *f.1) {
+        add((*flag).to_owned());
+    }
+    flags
+}
+
+fn check(plan: &Plan, case: &PlannedCase, planned: &Planned, draws: &str) -> String {
+    let (place, filter) = (place(case), quoted(&pattern(planned)));
+    let (seed, flags) = (plan.options.seed, flags(&plan.options));
+    format!(
+        "trueflight check {place} --filter {filter} --seed {seed} --draws {draws} --verbose{flags}"
+    )
+}
+
+/// The command that draws an experiment again, and writes nothing.
+pub fn command(plan: &Plan, case: &PlannedCase, planned: &Planned) -> String {
+    check(plan, case, planned, &planned.draws.to_string())
+}
+
+/// The command that decides an inconclusive experiment, and all others that its filter keeps; empty where no number
+/// of draws does. `findings` are those of the experiment, none before it was drawn.
+pub fn deciding(
+    plan: &Plan,
+    case: &PlannedCase,
+    planned: &Planned,
+    findings: &[Finding],
+) -> String {
+    let Some(own) = decisive_draws(plan, case, planned, findings) else { return String::new() };
+    let filter = Filter::new(&pattern(planned)).ok();
+    let together = case.experiments.iter().filter(|other| {
+        filter.as_ref().is_some_and(|f| f.keeps(&case.case.name, &other.names.estimator))
+    });
+    let draws =
+        together.filter_map(|other| decisive_draws(plan, case, other, &[])).fold(own, f64::max);
+    if draws > MAX_DRAWS { String::new() } else { check(plan, case, planned, &enough(draws)) }
+}
+
+/// The command that decides all experiments of a case that the planned draws leave inconclusive; empty where no number
+/// of draws does.
+pub fn deciding_all(plan: &Plan, case: &PlannedCase) -> String {
+    let ready = case.experiments.iter().filter(|planned| planned.outcome.is_ok());
+    let open = ready.filter(|planned| {
+        (0..planned.channels()).any(|channel| {
+            Foreseen::of(plan, case, planned, channel).verdict == Some(Verdict::Inconclusive)
+        })
+    });
+    let draws = open.filter_map(|planned| decisive_draws(plan, case, planned, &[]));
+    let Some(draws) = draws.reduce(f64::max).filter(|&draws| draws <= MAX_DRAWS) else {
+        return String::new();
+    };
+    let mut command = format!("trueflight run {} --draws {}", place(case), enough(draws));
+    if let Some(filter) = &plan.options.filter {
+        command = format!("{command} --filter {}", quoted(filter.pattern()));
+    }
+    if plan.options.seed != Options::default().seed {
+        command = format!("{command} --seed {}", plan.options.seed);
+    }
+    command + &flags(&plan.options)
+}
+
+/// The draws that decide an experiment; `None` where no number of draws does.
+fn decisive_draws(
+    plan: &Plan,
+    case: &PlannedCase,
+    planned: &Planned,
+    findings: &[Finding],
+) -> Option<f64> {
+    planned.outcome.as_ref().ok()?;
+    let mut draws = planned.draws as f64;
+    for channel in 0..planned.channels() {
+        let foreseen = Foreseen::of(plan, case, planned, channel);
+        if foreseen.verdict == Some(Verdict::Inconclusive) {
+            draws = draws.max(foreseen.needed?);
+        }
+    }
+    // What was promised a decision and did not get it is off by about half of ε.
+    let is_open = |finding: &&Finding| {
+        finding.verdict == Verdict::Inconclusive
+            && finding.gate.is_some_and(|gate| {
+                gate.needed.is_none() && !gate.is_decided && gate.draws >= planned.draws
+            })
+    };
+    if findings.iter().any(|finding| is_open(&finding)) {
+        // A tolerance of the case is not narrowed by more draws.
+        if case.case.tolerance.says_something() {
+            return None;
+        }
+        draws = draws.max(HALVING * planned.draws as f64);
+    }
+    Some(draws)
+}

@@ -1,0 +1,32 @@
+//! Known bugs in the place of honest estimators, on the experiments of a case.
+
+use crate::case::Case;
+pub use crate::case::problem::Walk;
+use crate::plan::{Plan, Planned};
+use estimators::{Experiment, Refusal};
+use lab::mutants::{About, Target};
+
+/// Finds a mutant's experiment in a plan that has its case.
+pub fn find<'p>(target: &Target, plan: &'p Plan) -> Option<(&'p Case, &'p Planned)> {
+    let fits = |planned: &Planned| {
+        let swept = planned.variation.map(|(_, value)| value);
+        planned.estimator == target.index && swept == target.swept
+    };
+    let mut experiments = plan.experiments();
+    experiments
+        .find(|(case, planned)| case.case.name == target.case && fits(planned))
+        .map(|(case, planned)| (case.case, planned))
+}
+
+/// A mutant's experiment, prepared as the plan prepared the honest one; `None` if the case's problem
+/// has no mutant of that name.
+pub fn experiment(
+    about: &About,
+    walk: Walk,
+    case: &Case,
+    planned: &Planned,
+    seed: u64,
+) -> Option<Result<Box<dyn Experiment>, Refusal>> {
+    let pilots = case.pilots(seed, planned.estimator);
+    case.scenario.mutated(planned.estimator, planned.variation, pilots, about.name, walk)
+}
