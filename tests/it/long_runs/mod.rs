@@ -14,7 +14,7 @@ use std::time::Instant;
 use self::faults::{cuts, flips, kills, strangers, wrong_parts};
 use self::place::{Place, said};
 use trueflight::draw::block;
-use trueflight::block::blocks::{Blocks, Lock};
+use trueflight::draw::blocks::{Blocks, Lock};
 use trueflight::draw::cache::Cache;
 use trueflight::draw::drawn::Drawn;
 use trueflight::draw::run;

@@ -146,7 +146,7 @@ fn the_patterns_on_record_are_those_that_bugs_leave() {
     let recorded: BTreeMap<String, String> =
         known_bugs().into_iter().map(|[name, word, _]| (name, word)).collect();
     let drawn =
-        self_test::known_bugs::patterns(1, DRAWS, &|name| QUICK.contains(&name)).expect("cases");
+        self_test::mutation::patterns(1, DRAWS, &|name| QUICK.contains(&name)).expect("cases");
     assert_eq!(drawn.len(), QUICK.len());
     for (name, pattern) in drawn {
         assert_eq!(word(&pattern), recorded[name], "{name}");
@@ -202,7 +202,7 @@ const DRAWS: u64 = 1_000_000;
 #[test]
 #[ignore = "long: prints the patterns of all known bugs, some minutes of two cores"]
 fn write_patterns() {
-    for (name, pattern) in self_test::known_bugs::patterns(1, DRAWS, &|_| true).expect("cases") {
+    for (name, pattern) in self_test::mutation::patterns(1, DRAWS, &|_| true).expect("cases") {
         println!("PATTERN,{name},{}", word(&pattern));
     }
 }
