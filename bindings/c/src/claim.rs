@@ -115,11 +115,7 @@ impl Property<'_> {
 const MAX_WHOLE: f64 = 9_007_199_254_740_992.0;
 
 /// Adds one property to a claim.
-fn with(
-    check: gate::Check<()>,
-    key: Key,
-    property: &Property,
-) -> Result<gate::Check<()>, String> {
+fn with(check: gate::Check<()>, key: Key, property: &Property) -> Result<gate::Check<()>, String> {
     let list = || property.numbers.to_vec();
     let number = || property.exactly().map(|[number]| number);
     Ok(match key {
