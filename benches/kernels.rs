@@ -351,10 +351,10 @@ fn sharing(name: &str, field: &str) {
     for _ in 0..ROUNDS {
         let alone = time(&|| {
             for planned in &all {
-                black_box(draw::blocks(&[planned], 0));
+                black_box(block::blocks(&[planned], 0));
             }
         });
-        ratios.push(alone / time(&|| drop(black_box(draw::blocks(&all, 0)))));
+        ratios.push(alone / time(&|| drop(black_box(block::blocks(&all, 0)))));
     }
     println!("\n{name}, eight σ̂ on shared lookups {:.2}×", median(&mut ratios));
 }
