@@ -6,4 +6,6 @@ pub mod deviation;
 pub mod judge;
 pub mod stats;
 
+pub use numeric::rng;
+
 pub use check::{Check, Gate, check, check_with, claim};

@@ -54,7 +54,7 @@ pub struct Check<S> {
 ///
 /// ```
 /// // Two channels of one ray, with the number of lookups: ratio tracking at σ̂ = 2 in σ_t = 0.5 and 1 on [0, 1].
-/// trueflight::check("two channels", |rng| {
+/// trueflight_gate::check("two channels", |rng| {
 ///     let (mut weights, mut lookups, mut t) = ([1.0, 1.0], 0, 0.0);
 ///     loop {
 ///         t -= rng.positive_uniform().ln() / 2.0;
@@ -83,13 +83,13 @@ pub fn check<T: Sample, F: FnMut(&mut Stream) -> T>(
 /// ```
 /// let factory = || {
 ///     let mut scratch = Vec::new(); // what is costly to make, or cannot be shared
-///     move |rng: &mut trueflight::rng::Stream| {
+///     move |rng: &mut trueflight_gate::rng::Stream| {
 ///         scratch.clear();
 ///         scratch.push(rng.uniform());
 ///         scratch[0]
 ///     }
 /// };
-/// trueflight::check_with("uniform", factory).truth(0.5).variance(1.0 / 12.0).threads(2).assert_pass();
+/// trueflight_gate::check_with("uniform", factory).truth(0.5).variance(1.0 / 12.0).threads(2).assert_pass();
 /// ```
 pub fn check_with<T: Sample, F: FnMut(&mut Stream) -> T, M: Fn() -> F + Sync>(
     name: impl Into<String>,

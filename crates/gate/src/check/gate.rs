@@ -33,7 +33,7 @@ impl<T: Sample, F: FnMut(&mut Stream) -> T, M: Fn() -> F + Sync> Planned for Che
 /// equal share.
 ///
 /// ```
-/// use trueflight::{Gate, check};
+/// use trueflight_gate::{Gate, check};
 ///
 /// Gate::new()
 ///     .check(check("u", |rng| rng.uniform()).truth(0.5).range(0.0, 1.0))

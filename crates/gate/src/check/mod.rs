@@ -8,7 +8,7 @@
 //!
 //! ```
 //! // The transmittance of a homogeneous medium of depth 1: does a photon fly farther than 1?
-//! trueflight::check("analogue", |rng| f64::from(-rng.positive_uniform().ln() > 1.0))
+//! trueflight_gate::check("analogue", |rng| f64::from(-rng.positive_uniform().ln() > 1.0))
 //!     .truth((-1.0f64).exp())
 //!     .range(0.0, 1.0)
 //!     .assert_pass();

@@ -11,10 +11,10 @@ const TOLD: usize = 8;
 /// The verdict of a check, with everything that `trueflight judge` tells.
 ///
 /// ```
-/// let outcome = trueflight::check("u", |rng| rng.uniform()).truth(0.6).range(0.0, 1.0).verdict()?;
+/// let outcome = trueflight_gate::check("u", |rng| rng.uniform()).truth(0.6).range(0.0, 1.0).verdict()?;
 /// assert!(!outcome.passed());
 /// assert!(outcome.reason().contains("the mean is off by -"));
-/// # Ok::<(), trueflight::check::CheckError>(())
+/// # Ok::<(), trueflight_gate::check::CheckError>(())
 /// ```
 #[derive(Debug, Clone)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]

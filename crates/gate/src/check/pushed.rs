@@ -16,9 +16,9 @@ impl Check<()> {
     ///
     /// ```
     /// let halves = [0.25, 0.75].repeat(50_000); // no chance in them: each draw tells the next
-    /// let outcome = trueflight::claim("alternating").truth(0.5).range(0.0, 1.0).judge(&halves)?;
+    /// let outcome = trueflight_gate::claim("alternating").truth(0.5).range(0.0, 1.0).judge(&halves)?;
     /// assert!(outcome.reason().contains("not independent"));
-    /// # Ok::<(), trueflight::check::CheckError>(())
+    /// # Ok::<(), trueflight_gate::check::CheckError>(())
     /// ```
     pub fn judge(self, draws: &[f64]) -> Result<Outcome, CheckError> {
         let mut pushed = self.opened(Some(draws.len()))?;
@@ -33,14 +33,14 @@ impl Check<()> {
     /// What was said of the draws makes no sense.
     ///
     /// ```
-    /// let mut pushed = trueflight::claim("coin").truth(0.5).range(0.0, 1.0).open()?;
+    /// let mut pushed = trueflight_gate::claim("coin").truth(0.5).range(0.0, 1.0).open()?;
     /// let mut word = 1u64;
     /// while pushed.is_open() {
     ///     word = word.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
     ///     pushed.absorb(&[f64::from(u8::from(word >> 63 == 1))])?;
     /// }
     /// pushed.verdict()?.assert_pass();
-    /// # Ok::<(), trueflight::check::CheckError>(())
+    /// # Ok::<(), trueflight_gate::check::CheckError>(())
     /// ```
     pub fn open(self) -> Result<Pushed, CheckError> {
         self.opened(None)

@@ -5,9 +5,9 @@
 //! `library` this room and [`crate::stats`] are all of the crate: enough for a test of somebody's estimator.
 //!
 //! ```
-//! use trueflight::judge::claim::{Claim, Given};
-//! use trueflight::judge::trial::{Trial, Wanted};
-//! use trueflight::stats::verdict::Verdict;
+//! use trueflight_gate::judge::claim::{Claim, Given};
+//! use trueflight_gate::judge::trial::{Trial, Wanted};
+//! use trueflight_gate::stats::verdict::Verdict;
 //!
 //! // Draws of a fair coin, claimed to be 0.5 on average and to lie in [0, 1].
 //! let mut state = 1u64;
@@ -20,7 +20,7 @@
 //! let claim = Claim::new(&Given { truth: 0.5, range: Some([0.0, 1.0]), ..Given::default() })?;
 //! let trial = Trial::new(claim, Wanted::default(), Some(draws.len() as u64))?;
 //! assert_eq!(trial.judge_all(&draws).verdict, Verdict::Pass);
-//! # Ok::<(), trueflight::judge::claim::ClaimError>(())
+//! # Ok::<(), trueflight_gate::judge::claim::ClaimError>(())
 //! ```
 
 pub mod asks;
