@@ -1,14 +1,14 @@
 //! A problem and its estimators without their types: the only code here that is compiled once per
 //! problem.
 
+use std::any::Any;
 use std::sync::Arc;
 
 use crate::case::estimator::ReadEstimators;
 use crate::case::ready::{FAINTEST, Ready};
 use estimators::recipes::sampling;
 use estimators::trial::Entry;
-use estimators::{Experiment, Order, RayView, Refusal, Setup};
-use lab::mutants::Mutable;
+use estimators::{Estimated, Order, RayView, Refusal, Setup};
 use media::body::RayNeed;
 use media::catalogue::Settings;
 use media::{Body, Control, Medium, Piecewise};
@@ -42,7 +42,7 @@ pub fn kind(index: usize) -> ProblemKind {
 }
 
 impl ProblemKind {
-    fn of<P: Mutable>() -> Self {
+    fn of<P: Estimated>() -> Self {
         Self {
             ray: P::RAY,
             spectral: P::SPECTRAL,
@@ -74,15 +74,6 @@ pub struct Parts<'a> {
     pub factor: f64,
     /// The swept albedo, in place of the one in the case.
     pub albedo: Option<f64>,
-}
-
-/// Which of a mutant's two walks.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Walk {
-    /// The one with the bug.
-    Faulty,
-    /// The same code without it.
-    Twin,
 }
 
 /// A problem with the estimators of a case; estimators are numbered in the order of the case.
@@ -122,14 +113,12 @@ pub trait AnyProblem: Send + Sync {
     /// The ray seen from the side, for estimators of a curve.
     fn ray_view(&self, estimator: usize, parts: Parts, address: Address) -> Option<RayView>;
 
-    /// A mutant in an estimator's place; `None` if the problem has none of that name.
-    fn mutant(
-        &self,
-        estimator: usize,
-        parts: Result<Parts, Refusal>,
-        name: &str,
-        walk: Walk,
-    ) -> Option<Result<Box<dyn Experiment>, Refusal>>;
+    /// Prepares the `Setup<P>` of an experiment, for draws that are made outside the catalogue.
+    ///
+    /// # Errors
+    ///
+    /// Parts that do not fit together.
+    fn setup(&self, estimator: usize, parts: Parts) -> Result<Box<dyn Any>, Refusal>;
 }
 
 /// A problem of known type with its estimators.
@@ -138,8 +127,8 @@ struct Typed<P> {
     entries: Vec<Box<dyn Entry<P>>>,
 }
 
-impl<P: Mutable> Typed<P> {
-    fn setup(&self, estimator: usize, parts: Parts) -> Result<Setup<P>, Refusal> {
+impl<P: Estimated> Typed<P> {
+    fn joined(&self, estimator: usize, parts: Parts) -> Result<Setup<P>, Refusal> {
         let Parts { mesh, sampling, further, control, constant, recipe, factor, albedo } = parts;
         let varied = albedo.and_then(|albedo| self.problem.with_albedo(albedo));
         let problem = varied.map_or_else(|| self.problem.clone(), Arc::new);
@@ -170,12 +159,12 @@ impl<P: Mutable> Typed<P> {
 }
 
 /// What theory says of the draws of a kernel.
-fn predict<P: Mutable>(entry: &dyn Entry<P>, setup: &Setup<P>, order: Order) -> Prediction {
+fn predict<P: Estimated>(entry: &dyn Entry<P>, setup: &Setup<P>, order: Order) -> Prediction {
     let prediction = entry.predict(setup);
     if order == Order::Free { prediction.order_free() } else { prediction }
 }
 
-impl<P: Mutable> AnyProblem for Typed<P> {
+impl<P: Estimated> AnyProblem for Typed<P> {
     fn media(&self) -> &[Medium] {
         self.problem.media()
     }
@@ -190,7 +179,7 @@ impl<P: Mutable> AnyProblem for Typed<P> {
     }
 
     fn fitting_control(&self, estimator: usize, parts: Parts) -> Result<Control, Refusal> {
-        self.setup(estimator, parts).map(|setup| setup.control)
+        self.joined(estimator, parts).map(|setup| setup.control)
     }
 
     fn prepare(
@@ -201,7 +190,7 @@ impl<P: Mutable> AnyProblem for Typed<P> {
         forced: bool,
     ) -> Result<Ready, Refusal> {
         let albedo = parts.albedo;
-        let setup = self.setup(estimator, parts)?;
+        let setup = self.joined(estimator, parts)?;
         if order == Order::Free {
             let needs = "∫σ̂ ≤ 1e6 for order-free draws (the ordered kernel has no such limit)";
             setup.require_few_collisions(needs)?;
@@ -219,7 +208,7 @@ impl<P: Mutable> AnyProblem for Typed<P> {
 
     fn predict(&self, estimator: usize, parts: Parts, order: Order) -> Option<Prediction> {
         let albedo = parts.albedo;
-        let setup = Setup { laws: false, ..self.setup(estimator, parts).ok()? };
+        let setup = Setup { laws: false, ..self.joined(estimator, parts).ok()? };
         self.with_entry(estimator, albedo, |entry| {
             entry.domain(&setup).ok()?;
             Some(predict(entry, &setup, order))
@@ -227,23 +216,12 @@ impl<P: Mutable> AnyProblem for Typed<P> {
     }
 
     fn ray_view(&self, estimator: usize, parts: Parts, address: Address) -> Option<RayView> {
-        let setup = self.setup(estimator, parts).ok()?;
+        let setup = self.joined(estimator, parts).ok()?;
         self.entries[estimator].ray_view(&setup, address)
     }
 
-    fn mutant(
-        &self,
-        estimator: usize,
-        parts: Result<Parts, Refusal>,
-        name: &str,
-        walk: Walk,
-    ) -> Option<Result<Box<dyn Experiment>, Refusal>> {
-        let mutant = P::mutants().into_iter().find(|mutant| mutant.about.name == name)?;
-        let setup = parts.and_then(|parts| self.setup(estimator, parts));
-        Some(setup.map(|setup| match walk {
-            Walk::Faulty => mutant.experiment(setup),
-            Walk::Twin => mutant.twin(setup),
-        }))
+    fn setup(&self, estimator: usize, parts: Parts) -> Result<Box<dyn Any>, Refusal> {
+        Ok(Box::new(self.joined(estimator, parts)?))
     }
 }
 

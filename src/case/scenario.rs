@@ -2,16 +2,17 @@
 
 mod labels;
 
+use std::any::Any;
 use std::sync::{Arc, OnceLock};
 
 use crate::case::course::Fields;
 use crate::case::estimator::{Defaults, Estimators};
-use crate::case::problem::{AnyProblem, Parts, ProblemKind, Walk};
+use crate::case::problem::{AnyProblem, Parts, ProblemKind};
 use crate::case::ready::{Ready, refuse_what_cannot_be_computed};
 use crate::case::sweep::{Variation, What};
 use crate::record::plot_data::Course;
 use estimators::recipes::{controls, sampling};
-use estimators::{Experiment, Order, RayView, Refusal, Site};
+use estimators::{Order, RayView, Refusal, Site};
 use media::body::RayNeed;
 use media::catalogue::{Fault, Settings};
 use media::{Body, Medium, Piecewise};
@@ -239,21 +240,21 @@ impl Scenario {
         largest.map_or(0.0, |(_, size)| size)
     }
 
-    /// A mutant in an estimator's place; `None` if the problem has none of that name.
-    pub fn mutated(
+    /// Prepares the `Setup<P>` of an experiment, for draws that are made outside the catalogue.
+    ///
+    /// # Errors
+    ///
+    /// Why it cannot be drawn.
+    pub fn setup(
         &self,
         estimator: usize,
         variation: Variation,
         address: Address,
-        name: &str,
-        walk: Walk,
-    ) -> Option<Result<Box<dyn Experiment>, Refusal>> {
-        let ask = |other: &Self| other.mutated(estimator, None, address, name, walk);
-        if let Some(mutated) = self.varied(variation, ask) {
-            return mutated.unwrap_or_else(|refusal| Some(Err(refusal)));
+    ) -> Result<Box<dyn Any>, Refusal> {
+        if let Some(setup) = self.varied(variation, |other| other.setup(estimator, None, address)) {
+            return setup?;
         }
-        let parts = self.parts(estimator, variation, None, address);
-        self.problem.mutant(estimator, parts, name, walk)
+        self.problem.setup(estimator, self.parts(estimator, variation, None, address)?)
     }
 
     fn mesh(&self) -> &Arc<Mesh> {

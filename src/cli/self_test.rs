@@ -7,7 +7,8 @@ use clap::Args;
 
 use super::{Console, numbers, output};
 use crate::report::{self, self_test as page};
-use crate::self_test::{SelfTest, calibration, mutation, streams};
+use crate::self_test::{SelfTest, calibration, mutation};
+use lab::streams;
 
 /// Independent runs of the long calibration.
 const LONG: u64 = 10_000;

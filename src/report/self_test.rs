@@ -5,9 +5,10 @@ use std::fmt::Write;
 use crate::report::columns::{self, Column, columns};
 use crate::report::console::layout::{Field, Grid, Paint, Pen};
 use crate::report::{Artifact, ReportError};
-use crate::self_test::calibration::Rate;
-use crate::self_test::streams::ALPHA;
-use crate::self_test::{Calibration, Caught, SelfTest, StreamVerdicts};
+use crate::self_test::SelfTest;
+use lab::calibration::{Calibration, Rate};
+use lab::mutants::Caught;
+use lab::streams::{ALPHA, StreamVerdicts};
 use numeric::digits::{count, short};
 
 /// What is said of a promise.

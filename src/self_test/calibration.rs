@@ -1,117 +1,20 @@
-//! Correct experiments, run many times: how often does a run fail, and how often does a bias of ε
-//! pass?
-//!
-//! ```text
-//! false alarms   runs with any failure, promised ≤ α, and scalars failed, promised ≤ 0.8 α/K each
-//! false passes   scalars with a bias of ±ε that pass, promised ≤ β each
-//! p-values       uniform: the share below 1e-1, 1e-2 and 1e-3, and Anderson–Darling over all
-//! ```
-//!
-//! Rates come with their Clopper–Pearson limits at 99 %. A promise is broken when the lower limit
-//! is above it; at 99 % each, one of a hundred kept promises looks broken, so the verdict asks for
-//! 1 − 1e-6.
-
-use std::collections::BTreeMap;
+//! The calibration cases, run from many seeds as they are and with a bias of ε: the counts that
+//! [`lab::calibration`] compares with the promises.
 
 use crate::case::Case;
 use crate::case::CaseError;
 use crate::case::suite;
 use crate::checks::{self, Kind};
 use crate::draw::run;
+use crate::plan::Plan;
 use crate::plan::options::Options;
-use crate::plan::{MISS, Plan};
+use crate::record::Verdict;
 use crate::record::evaluate;
-use crate::record::{Finding, Verdict};
-use gate::stats::{anderson_darling, binomial};
+use lab::calibration::{ALPHA, Calibration, Checked, Counts};
 use theory::parallel;
 
-/// The run-level α of the calibration.
-pub const ALPHA: f64 = 1e-2;
 /// Runs that share one plan.
 const CHUNK: u64 = 50;
-/// The level of the limits shown.
-const SHOWN: f64 = 0.99;
-/// The level at which a promise counts as broken.
-const CERTAIN: f64 = 1.0 - 1e-6;
-
-/// A rate against a promise.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Rate {
-    /// What is counted.
-    pub what: String,
-    /// How often it happened.
-    pub count: u64,
-    /// Out of how many.
-    pub trials: u64,
-    /// How often it may happen.
-    pub promise: f64,
-    /// The limits of the rate at 99 %.
-    pub limits: [f64; 2],
-    /// Whether the promise is not refuted.
-    pub is_kept: bool,
-}
-
-impl Rate {
-    fn new(what: impl Into<String>, count: u64, trials: u64, promise: f64) -> Self {
-        let (low, high) = binomial::interval(count, trials, SHOWN);
-        let is_kept = binomial::interval(count, trials, CERTAIN).0 <= promise;
-        Self { what: what.into(), count, trials, promise, limits: [low, high], is_kept }
-    }
-}
-
-/// The p-values of one check over all runs.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Uniformity {
-    /// The check.
-    pub check: String,
-    /// The rates below 0.1, 0.01 and 0.001.
-    pub below: Vec<Rate>,
-    /// The p-value of the hypothesis that they are uniform, by Anderson–Darling; `None` for checks
-    /// that only promise not to be small too often.
-    pub p: Option<f64>,
-}
-
-/// What the calibration found.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Calibration {
-    /// How many independent runs.
-    pub runs: u64,
-    /// Scalars in each run.
-    pub scalars: usize,
-    /// P-values in each run.
-    pub laws: usize,
-    /// Draws of all runs.
-    pub draws: u64,
-    /// False alarms and false passes.
-    pub rates: Vec<Rate>,
-    /// The checks with p-values.
-    pub uniformity: Vec<Uniformity>,
-}
-
-impl Calibration {
-    /// Whether no promise is refuted.
-    pub fn holds(&self) -> bool {
-        let shares = self.uniformity.iter().flat_map(|check| &check.below);
-        let are_uniform =
-            self.uniformity.iter().filter_map(|check| check.p).all(|p| p > NOT_UNIFORM);
-        self.rates.iter().chain(shares).all(|rate| rate.is_kept) && are_uniform
-    }
-}
-
-/// P-values that are uniform look otherwise once in a million times.
-const NOT_UNIFORM: f64 = 1e-6;
-
-/// What is counted over runs.
-#[derive(Debug, Clone, Default)]
-struct Counts {
-    runs: u64,
-    failed_runs: u64,
-    draws: u64,
-    /// Per check: scalars, those that failed, those that passed with a bias.
-    scalars: BTreeMap<String, [u64; 2]>,
-    biased: BTreeMap<String, [u64; 2]>,
-    p: BTreeMap<String, Vec<f64>>,
-}
 
 /// Runs the calibration cases from `runs` seeds.
 ///
@@ -130,8 +33,10 @@ pub fn calibrate(runs: u64, progress: &(dyn Fn(u64) + Sync)) -> Result<Calibrati
         // Half of the chunks are biased upwards, half downwards.
         shift(&mut biased, if chunk % 2 == 0 { 1.0 } else { -1.0 });
         for seed in seeds {
-            counts.add_fair(&mut fair, seed);
-            counts.add_biased(&mut biased, seed);
+            let (draws, checked) = draw(&mut fair, seed);
+            counts.add_fair(draws, checked);
+            let (draws, checked) = draw(&mut biased, seed);
+            counts.add_biased(draws, checked);
             progress(1);
         }
         counts
@@ -140,15 +45,21 @@ pub fn calibrate(runs: u64, progress: &(dyn Fn(u64) + Sync)) -> Result<Calibrati
     for counts in counted {
         total.merge(counts);
     }
-    Ok(total.close(levels.scalars, levels.laws))
+    Ok(total.close(levels.scalars, levels.laws, checks::is_uniform))
 }
 
 /// Draws a plan from another seed.
-fn draw(plan: &mut Plan, seed: u64) -> (u64, Vec<Finding>) {
+fn draw(plan: &mut Plan, seed: u64) -> (u64, Vec<Checked>) {
     plan.reseed(seed);
     let draws = run::draw(plan, &|_| {});
     let drawn = draws.cases.iter().flatten().map(|drawn| drawn.draws).sum();
-    (drawn, evaluate::run(plan, &draws).into_iter().flatten().flatten().collect())
+    let checked = evaluate::run(plan, &draws).into_iter().flatten().flatten().map(|finding| {
+        let (passed, failed) = (finding.verdict == Verdict::Pass, finding.verdict == Verdict::Fail);
+        let is_powered = finding.gate.is_some_and(|gate| gate.needed.is_none());
+        let (is_scalar, p, check) = (finding.gate.is_some(), finding.p, finding.check);
+        Checked { check, passed, failed, is_scalar, is_powered, p }
+    });
+    (drawn, checked.collect())
 }
 
 /// Adds `sign · ε` to every scalar: a bias of exactly the tolerance.
@@ -158,86 +69,5 @@ fn shift(plan: &mut Plan, sign: f64) {
         if let Kind::Scalar(scalar) = &mut question.kind {
             scalar.bias += sign * scalar.design.tolerance;
         }
-    }
-}
-
-impl Counts {
-    fn add_fair(&mut self, plan: &mut Plan, seed: u64) {
-        let (draws, findings) = draw(plan, seed);
-        self.runs += 1;
-        self.draws += draws;
-        let fails = findings.iter().any(|finding| finding.verdict == Verdict::Fail);
-        self.failed_runs += u64::from(fails);
-        for finding in findings {
-            if finding.gate.is_some() {
-                let [all, failed] = self.scalars.entry(finding.check.clone()).or_default();
-                *all += 1;
-                *failed += u64::from(finding.verdict == Verdict::Fail);
-            }
-            if let Some(p) = finding.p {
-                self.p.entry(finding.check).or_default().push(p);
-            }
-        }
-    }
-
-    fn add_biased(&mut self, plan: &mut Plan, seed: u64) {
-        let (draws, findings) = draw(plan, seed);
-        self.draws += draws;
-        for finding in findings {
-            if finding.gate.is_some_and(|gate| gate.needed.is_none()) {
-                let [all, passed] = self.biased.entry(finding.check).or_default();
-                *all += 1;
-                *passed += u64::from(finding.verdict == Verdict::Pass);
-            }
-        }
-    }
-
-    fn merge(&mut self, later: Self) {
-        self.runs += later.runs;
-        self.failed_runs += later.failed_runs;
-        self.draws += later.draws;
-        for (ours, theirs) in [(&mut self.scalars, later.scalars), (&mut self.biased, later.biased)]
-        {
-            for (check, [all, some]) in theirs {
-                let [total, part] = ours.entry(check).or_default();
-                (*total, *part) = (*total + all, *part + some);
-            }
-        }
-        for (check, p) in later.p {
-            self.p.entry(check).or_default().extend(p);
-        }
-    }
-
-    fn close(self, scalars: usize, laws: usize) -> Calibration {
-        let mut rates = vec![Rate::new("a correct run fails", self.failed_runs, self.runs, ALPHA)];
-        let share = 0.8 * ALPHA / scalars.max(1) as f64;
-        rates.extend(self.scalars.iter().map(|(check, &[all, failed])| {
-            Rate::new(format!("a correct {check} fails"), failed, all, share)
-        }));
-        rates.extend(self.biased.iter().map(|(check, &[all, passed])| {
-            Rate::new(format!("a {check} off by its tolerance passes"), passed, all, MISS)
-        }));
-        let uniformity = self.p.into_iter().map(|(check, p)| Uniformity::new(check, p));
-        Calibration {
-            runs: self.runs,
-            scalars,
-            laws,
-            draws: self.draws,
-            rates,
-            uniformity: uniformity.collect(),
-        }
-    }
-}
-
-impl Uniformity {
-    fn new(check: String, mut p: Vec<f64>) -> Self {
-        p.sort_by(f64::total_cmp);
-        let all = p.len() as u64;
-        let below = [1e-1, 1e-2, 1e-3].map(|level| {
-            let count = p.partition_point(|&p| p < level) as u64;
-            Rate::new(format!("p of {check} below {level}"), count, all, level)
-        });
-        let p = checks::is_uniform(&check).then(|| anderson_darling::p_value_of_uniforms(&p));
-        Self { check, below: below.to_vec(), p }
     }
 }

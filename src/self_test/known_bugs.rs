@@ -1,10 +1,11 @@
 //! Known bugs in the place of honest estimators, on the experiments of a case.
 
 use crate::case::Case;
-pub use crate::case::problem::Walk;
 use crate::plan::{Plan, Planned};
 use estimators::{Experiment, Refusal};
-use lab::mutants::{About, Target};
+use lab::mutants::{self, About, Target};
+
+pub use lab::mutants::Walk;
 
 /// Finds a mutant's experiment in a plan that has its case.
 pub fn find<'p>(target: &Target, plan: &'p Plan) -> Option<(&'p Case, &'p Planned)> {
@@ -28,5 +29,8 @@ pub fn experiment(
     seed: u64,
 ) -> Option<Result<Box<dyn Experiment>, Refusal>> {
     let pilots = case.pilots(seed, planned.estimator);
-    case.scenario.mutated(planned.estimator, planned.variation, pilots, about.name, walk)
+    match case.scenario.setup(planned.estimator, planned.variation, pilots) {
+        Ok(setup) => mutants::experiment(about.name, walk, setup).map(Ok),
+        Err(refusal) => Some(Err(refusal)),
+    }
 }

@@ -1,18 +1,17 @@
-//! The gate tested: does it keep its promises on correct estimators, and does it catch known bugs?
+//! The gate tested on the experiments of cases: does it keep its promises on correct estimators, and does it catch known
+//! bugs?
 //!
-//! [`calibration`] runs correct experiments many times and compares the rates of false alarms and
-//! false passes with the promise; [`streams`] judges correct foreign draws of hard laws; [`mutation`]
-//! draws every known bug in the place of its honest estimator and asks whether the check that must
-//! catch it does.
+//! [`calibration`] runs correct experiments many times; [`mutation`] draws every known bug in the place of its honest
+//! estimator and asks whether the check that must catch it does. What is counted, the bugs, and correct foreign draws of
+//! hard laws are in [`lab`], which needs no cases.
 
 pub mod calibration;
 pub mod known_bugs;
 pub mod mutation;
-pub mod streams;
 
-pub use calibration::Calibration;
-pub use mutation::Caught;
-pub use streams::StreamVerdicts;
+use lab::calibration::Calibration;
+use lab::mutants::Caught;
+use lab::streams::StreamVerdicts;
 
 /// What a self-test found.
 #[derive(Debug, Clone)]

@@ -18,46 +18,8 @@ use crate::record::{Finding, Verdict};
 use crate::self_test::known_bugs::{self, Walk};
 use estimators::{DrawBuffer, Experiment};
 use gate::causes::Pattern;
-use lab::mutants::{self, About, StreamMutant, Target, streams};
+use lab::mutants::{self, About, Caught, StreamMutant, Target, streams};
 use theory::parallel;
-
-/// What became of one mutant.
-#[derive(Debug, Clone)]
-pub struct Caught {
-    /// Its name.
-    pub name: &'static str,
-    /// The bug in one sentence.
-    pub bug: &'static str,
-    /// The case.
-    pub case: &'static str,
-    /// The estimator in whose place it is drawn.
-    pub estimator: &'static str,
-    /// The check that must catch it.
-    pub check: &'static str,
-    /// The draws that the check took; `None` if it did not catch the bug.
-    pub draws: Option<u64>,
-    /// Which checks failed, the one that must among them.
-    pub failed: Vec<String>,
-    /// Whether the honest twin passed.
-    pub twin_passes: bool,
-}
-
-impl Caught {
-    /// Whether the bug was caught and the twin was not.
-    pub fn is_right(&self) -> bool {
-        self.draws.is_some() && self.twin_passes
-    }
-}
-
-/// The names of the checks that some mutant names.
-pub fn named_checks() -> Vec<&'static str> {
-    let estimators = mutants::all().into_iter().map(|about| about.check);
-    let mut names: Vec<_> =
-        estimators.chain(streams::MUTANTS.iter().map(|mutant| mutant.check)).collect();
-    names.sort_unstable();
-    names.dedup();
-    names
-}
 
 /// Draws and judges all mutants and their twins.
 ///

@@ -45,7 +45,7 @@ fn a_mutant_of_every_check_is_caught_and_its_twin_passes() {
 
 #[test]
 fn every_check_has_a_mutant_that_it_catches() {
-    let named: BTreeSet<String> = mutation::named_checks().into_iter().map(str::to_owned).collect();
+    let named: BTreeSet<String> = mutants::named_checks().into_iter().map(str::to_owned).collect();
     let checks: BTreeSet<String> =
         checks::CATALOGUE.pages.iter().map(trueflight::catalogue::Page::name).collect();
     assert_eq!(named, checks);

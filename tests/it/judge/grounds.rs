@@ -5,11 +5,11 @@ use trueflight::case::Source;
 use trueflight::estimators::DrawBuffer;
 use trueflight::judge::claim::{Claim, Given, ROUNDING};
 use trueflight::judge::trial::{Trial, Wanted};
+use trueflight::lab::streams::{self, CLAIMS, LAWS, Law};
 use trueflight::plan::BLOCK;
 use trueflight::plan::Options;
 use trueflight::plan::Plan;
 use trueflight::record::Verdict;
-use trueflight::self_test::streams::{self, CLAIMS, LAWS, Law};
 
 use super::{Place, raw, uniform};
 

@@ -14,6 +14,7 @@
 //! crate invites.
 
 pub mod bidirectional_rod;
+mod caught;
 pub mod chromatic_slab;
 pub mod control;
 pub mod curve;
@@ -47,6 +48,7 @@ pub mod trial;
 pub mod walk;
 pub mod weights;
 
+use std::any::Any;
 use std::sync::Arc;
 
 use estimators::{Draw, Estimated, Experiment, Setup};
@@ -60,6 +62,7 @@ use theory::problems::{
     TransmittanceCurve, each_problem,
 };
 
+pub use caught::Caught;
 pub use fault::{Fault, RIGHT};
 pub use streams::StreamMutant;
 pub use target::Target;
@@ -177,6 +180,41 @@ mutable! {
     BidirectionalRod: bidirectional_rod::mutants();
 }
 
+/// Which of a mutant's two walks.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Walk {
+    /// The one with the bug.
+    Faulty,
+    /// The same code without it.
+    Twin,
+}
+
+/// Makes the experiment of a mutant on a prepared `Setup<P>`; `None` if problem `P` has no mutant of that name.
+pub fn experiment(name: &str, walk: Walk, setup: Box<dyn Any>) -> Option<Box<dyn Experiment>> {
+    type Made = Result<Option<Box<dyn Experiment>>, Box<dyn Any>>;
+    fn on<P: Mutable>(name: &str, walk: Walk, setup: Box<dyn Any>) -> Made {
+        let setup = *setup.downcast::<Setup<P>>()?;
+        let mutant = P::mutants().into_iter().find(|mutant| mutant.about.name == name);
+        Ok(mutant.map(|mutant| match walk {
+            Walk::Faulty => mutant.experiment(setup),
+            Walk::Twin => mutant.twin(setup),
+        }))
+    }
+    macro_rules! on_each {
+        ($($module:ident :: $Problem:ident,)*) => {
+            [$(on::<theory::problems::$Problem>),*]
+        };
+    }
+    let mut setup = setup;
+    for on in each_problem!(on_each) {
+        match on(name, walk, setup) {
+            Ok(made) => return made,
+            Err(other) => setup = other,
+        }
+    }
+    None
+}
+
 /// Every mutant of every problem, without the wrong streams.
 pub fn all() -> Vec<About> {
     fn about<P: Mutable>() -> Vec<About> {
@@ -188,4 +226,14 @@ pub fn all() -> Vec<About> {
         };
     }
     each_problem!(of_all).into_iter().flat_map(|about| about()).collect()
+}
+
+/// Returns the names of the checks that some mutant must be caught by.
+pub fn named_checks() -> Vec<&'static str> {
+    let estimators = all().into_iter().map(|about| about.check);
+    let mut names: Vec<_> =
+        estimators.chain(streams::MUTANTS.iter().map(|mutant| mutant.check)).collect();
+    names.sort_unstable();
+    names.dedup();
+    names
 }

@@ -11,10 +11,10 @@
 //! is left out. Every stream has 4e5 draws and an address of its own, and is judged at α = 1e-3 for
 //! each of the claims.
 
-use crate::judge::claim::{Claim, Given, ROUNDING};
-use crate::judge::trial::{Trial, Wanted};
-use crate::record::Verdict;
+use gate::judge::claim::{Claim, Given, ROUNDING};
+use gate::judge::trial::{Trial, Wanted};
 use gate::stats::binomial;
+use gate::stats::verdict::Verdict;
 use numeric::rng::{Address, Stream, exponential, unit};
 use rand::RngExt;
 use rand_distr::{Distribution, Poisson, StandardNormal};

@@ -1,0 +1,205 @@
+//! Correct experiments, run many times: how often does a run fail, and how often does a bias of ε
+//! pass?
+//!
+//! ```text
+//! false alarms   runs with any failure, promised ≤ α, and scalars failed, promised ≤ 0.8 α/K each
+//! false passes   scalars with a bias of ±ε that pass, promised ≤ β each
+//! p-values       uniform: the share below 1e-1, 1e-2 and 1e-3, and Anderson–Darling over all
+//! ```
+//!
+//! Rates come with their Clopper–Pearson limits at 99 %. A promise is broken when the lower limit
+//! is above it; at 99 % each, one of a hundred kept promises looks broken, so the verdict asks for
+//! 1 − 1e-6.
+
+use std::collections::BTreeMap;
+
+use gate::stats::verdict::MISS;
+use gate::stats::{anderson_darling, binomial};
+
+/// The run-level α of the calibration.
+pub const ALPHA: f64 = 1e-2;
+/// The level of the limits shown.
+const SHOWN: f64 = 0.99;
+/// The level at which a promise counts as broken.
+const CERTAIN: f64 = 1.0 - 1e-6;
+/// P-values that are uniform look otherwise once in a million times.
+const NOT_UNIFORM: f64 = 1e-6;
+
+/// A rate against a promise.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Rate {
+    /// What is counted.
+    pub what: String,
+    /// How often it happened.
+    pub count: u64,
+    /// Out of how many.
+    pub trials: u64,
+    /// How often it may happen.
+    pub promise: f64,
+    /// The limits of the rate at 99 %.
+    pub limits: [f64; 2],
+    /// Whether the promise is not refuted.
+    pub is_kept: bool,
+}
+
+impl Rate {
+    fn new(what: impl Into<String>, count: u64, trials: u64, promise: f64) -> Self {
+        let (low, high) = binomial::interval(count, trials, SHOWN);
+        let is_kept = binomial::interval(count, trials, CERTAIN).0 <= promise;
+        Self { what: what.into(), count, trials, promise, limits: [low, high], is_kept }
+    }
+}
+
+/// The p-values of one check over all runs.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Uniformity {
+    /// The check.
+    pub check: String,
+    /// The rates below 0.1, 0.01 and 0.001.
+    pub below: Vec<Rate>,
+    /// The p-value of the hypothesis that they are uniform, by Anderson–Darling; `None` for checks
+    /// that only promise not to be small too often.
+    pub p: Option<f64>,
+}
+
+/// What the calibration found.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Calibration {
+    /// How many independent runs.
+    pub runs: u64,
+    /// Scalars in each run.
+    pub scalars: usize,
+    /// P-values in each run.
+    pub laws: usize,
+    /// Draws of all runs.
+    pub draws: u64,
+    /// False alarms and false passes.
+    pub rates: Vec<Rate>,
+    /// The checks with p-values.
+    pub uniformity: Vec<Uniformity>,
+}
+
+impl Calibration {
+    /// Whether no promise is refuted.
+    pub fn holds(&self) -> bool {
+        let shares = self.uniformity.iter().flat_map(|check| &check.below);
+        let are_uniform =
+            self.uniformity.iter().filter_map(|check| check.p).all(|p| p > NOT_UNIFORM);
+        self.rates.iter().chain(shares).all(|rate| rate.is_kept) && are_uniform
+    }
+}
+
+/// What is counted over runs.
+#[derive(Debug, Clone, Default)]
+pub struct Counts {
+    runs: u64,
+    failed_runs: u64,
+    draws: u64,
+    /// Per check: scalars, those that failed, those that passed with a bias.
+    scalars: BTreeMap<String, [u64; 2]>,
+    biased: BTreeMap<String, [u64; 2]>,
+    p: BTreeMap<String, Vec<f64>>,
+}
+
+/// Result of one check in one run.
+#[derive(Debug, Clone, Default)]
+pub struct Checked {
+    /// The check.
+    pub check: String,
+    /// Whether it passed.
+    pub passed: bool,
+    /// Whether it failed.
+    pub failed: bool,
+    /// Whether it is a scalar, judged by the gate.
+    pub is_scalar: bool,
+    /// Whether the draws sufficed for a pass.
+    pub is_powered: bool,
+    /// Its p-value, of checks that have one.
+    pub p: Option<f64>,
+}
+
+impl Counts {
+    /// Counts a run of correct experiments.
+    pub fn add_fair(&mut self, draws: u64, checked: Vec<Checked>) {
+        self.runs += 1;
+        self.draws += draws;
+        self.failed_runs += u64::from(checked.iter().any(|one| one.failed));
+        for Checked { check, failed, is_scalar, p, .. } in checked {
+            if is_scalar {
+                let [all, some] = self.scalars.entry(check.clone()).or_default();
+                *all += 1;
+                *some += u64::from(failed);
+            }
+            if let Some(p) = p {
+                self.p.entry(check).or_default().push(p);
+            }
+        }
+    }
+
+    /// Counts a run of experiments that are off by their tolerance.
+    pub fn add_biased(&mut self, draws: u64, checked: Vec<Checked>) {
+        self.draws += draws;
+        for Checked { check, passed, .. } in checked.into_iter().filter(|one| one.is_powered) {
+            let [all, some] = self.biased.entry(check).or_default();
+            *all += 1;
+            *some += u64::from(passed);
+        }
+    }
+
+    /// Adds the counts of later runs.
+    pub fn merge(&mut self, later: Self) {
+        self.runs += later.runs;
+        self.failed_runs += later.failed_runs;
+        self.draws += later.draws;
+        for (ours, theirs) in [(&mut self.scalars, later.scalars), (&mut self.biased, later.biased)]
+        {
+            for (check, [all, some]) in theirs {
+                let [total, part] = ours.entry(check).or_default();
+                (*total, *part) = (*total + all, *part + some);
+            }
+        }
+        for (check, p) in later.p {
+            self.p.entry(check).or_default().extend(p);
+        }
+    }
+
+    /// Compares the counts with the promises, for runs of so many scalars and p-values.
+    pub fn close(
+        self,
+        scalars: usize,
+        laws: usize,
+        is_uniform: impl Fn(&str) -> bool,
+    ) -> Calibration {
+        let mut rates = vec![Rate::new("a correct run fails", self.failed_runs, self.runs, ALPHA)];
+        let share = 0.8 * ALPHA / scalars.max(1) as f64;
+        rates.extend(self.scalars.iter().map(|(check, &[all, failed])| {
+            Rate::new(format!("a correct {check} fails"), failed, all, share)
+        }));
+        rates.extend(self.biased.iter().map(|(check, &[all, passed])| {
+            Rate::new(format!("a {check} off by its tolerance passes"), passed, all, MISS)
+        }));
+        let uniformity =
+            self.p.into_iter().map(|(check, p)| Uniformity::new(is_uniform(&check), check, p));
+        Calibration {
+            runs: self.runs,
+            scalars,
+            laws,
+            draws: self.draws,
+            rates,
+            uniformity: uniformity.collect(),
+        }
+    }
+}
+
+impl Uniformity {
+    fn new(is_uniform: bool, check: String, mut p: Vec<f64>) -> Self {
+        p.sort_by(f64::total_cmp);
+        let all = p.len() as u64;
+        let below = [1e-1, 1e-2, 1e-3].map(|level| {
+            let count = p.partition_point(|&p| p < level) as u64;
+            Rate::new(format!("p of {check} below {level}"), count, all, level)
+        });
+        let p = is_uniform.then(|| anderson_darling::p_value_of_uniforms(&p));
+        Self { check, below: below.to_vec(), p }
+    }
+}
