@@ -178,12 +178,7 @@ fn cheap(cases: &[Case], is_wanted: &dyn Fn(&str) -> bool) {
         if alone < FAST && rounds.len() == 3 * ROUNDS {
             let whole = median(rounds.iter().map(|round| round[1]));
             let ratio = median(rounds.iter().map(|round| round[1] / round[0]));
-            rows.push((
-                ratio,
-                alone,
-                whole,
-                format!("{} {}", case.case.name, planned.names.estimator),
-            ));
+            rows.push((ratio, alone, whole, format!("{} {}", case.case.name, planned.id.label())));
         }
     }
     rows.sort_by(|a, b| b.0.total_cmp(&a.0));

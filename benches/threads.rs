@@ -71,8 +71,8 @@ fn main() {
         for (case, planned) in plan.experiments() {
             let medium = case.case.scenario.medium();
             let has_chance = planned.outcome.is_ok() && planned.draws > BLOCK;
-            if has_chance && seen.insert((medium, planned.names.estimator.clone())) {
-                let name = format!("{} {}", case.case.name, planned.names.estimator);
+            if has_chance && seen.insert((medium, planned.id.label())) {
+                let name = format!("{} {}", case.case.name, planned.id.label());
                 let work = move |thread: usize, draws| bare(planned, thread, draws);
                 all.push(Timed::new(medium, name, Box::new(work)));
             }

@@ -40,12 +40,12 @@ pub fn refused(planned: &Planned, refusal: &Refusal) -> BenchRow {
 }
 
 fn named(planned: &Planned) -> BenchRow {
-    let names = planned.names.clone();
+    let id = &planned.id;
     BenchRow {
-        estimator: names.estimator,
-        sampling: names.sampling,
-        sampling_kind: names.sampling_kind,
-        control: names.control,
+        estimator: id.label(),
+        sampling: id.sampling.constant.map(|value| value.0),
+        sampling_kind: id.sampling.kind.clone(),
+        control: id.control.clone(),
         swept: planned.variation.map(|(_, value)| value),
         needs: planned.needs.clone(),
         ..BenchRow::default()

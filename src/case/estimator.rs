@@ -1,5 +1,6 @@
 //! One estimator as a case file has it.
 
+use crate::case::names::EstimatorName;
 use crate::case::sweep::What;
 use estimators::own::EstimatorReader;
 use estimators::recipes::sampling::spectral::Spectral;
@@ -154,22 +155,22 @@ impl ParsedEstimator {
     }
 
     /// A name with its own settings, as in `single (terminating, order-free)`.
-    fn label_of(&self, name: &str, albedo: bool) -> String {
+    fn label_of(&self, name: &str, albedo: bool) -> EstimatorName {
         let mut settings = self.features.label[usize::from(albedo)].clone();
         if self.order() == Order::Free {
             let comma = if settings.is_empty() { "" } else { ", " };
             settings = format!("{settings}{comma}{}", Order::Free.word());
         }
-        if settings.is_empty() { name.to_owned() } else { format!("{name} ({settings})") }
+        EstimatorName { name: name.to_owned(), settings }
     }
 
     /// The estimator with its settings; without `albedo` the albedo is left out.
-    pub fn label(&self, albedo: bool) -> String {
+    pub fn label(&self, albedo: bool) -> EstimatorName {
         self.label_of(&self.name, albedo)
     }
 
     /// The same under the name of the estimator that it is by definition without a control.
-    pub fn alias(&self) -> Option<String> {
+    pub fn alias(&self) -> Option<EstimatorName> {
         self.features.alias.map(|name| self.label_of(name, true))
     }
 

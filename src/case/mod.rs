@@ -61,8 +61,8 @@ use std::path::PathBuf;
 use crate::case::estimator::{Defaults, read_expect, read_kernel};
 use crate::case::scenario::Scenario;
 use crate::case::sweep::{SweepAxis, What};
-use crate::plan::addresses;
 use crate::plan::options::Tolerance;
+use crate::plan::{ExperimentId, addresses};
 use media::Body;
 use media::catalogue::additions::{self, Additions};
 use media::catalogue::{Domain, Entry, Fault, Node, Page, PageList, Settings, Value};
@@ -158,7 +158,8 @@ impl Case {
     /// the theory's line and the experiments on it learn the same σ̂.
     pub fn pilots(&self, seed: u64, estimator: usize) -> Address {
         let names = self.scenario.names(estimator, None);
-        addresses::own(seed, &self.name, &names, None, estimator)
+        let id = ExperimentId::new([&self.name, &self.problem], &names, None, estimator);
+        addresses::own(seed, &id, names.alias.as_ref())
     }
 }
 

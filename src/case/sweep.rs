@@ -25,9 +25,11 @@
 
 use crate::case::rewrite::{self, Rewrite};
 use media::catalogue::{Domain, Settings};
+use serde::{Deserialize, Serialize};
 
 /// The quantity that a sweep varies.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum What {
     /// A constant σ̂, for every estimator without its own.
     Sampling,

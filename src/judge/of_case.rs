@@ -9,6 +9,7 @@ use super::theory::Theory;
 use super::whole::Known;
 use crate::case::Case;
 use crate::case::catalogue::Catalogue;
+use crate::case::names::EstimatorName;
 use crate::case::ready::Ready;
 use crate::case::source::CaseError;
 use crate::case::sweep::{SweepAxis, Variation, What};
@@ -193,17 +194,17 @@ fn claims(case: &Case, prediction: &Prediction, rounding: f64) -> Vec<(String, C
 /// The estimator of a name, with its label.
 fn find(case: &Case, name: &str) -> Result<(usize, String), ClaimError> {
     let scenario = &case.scenario;
-    let plain: Vec<String> =
+    let plain: Vec<EstimatorName> =
         (0..scenario.estimators()).map(|e| scenario.names(e, None).estimator).collect();
     // Namesakes are numbered, as in tables.
     let label = |e: usize| {
         let twins = plain[..e].iter().filter(|&other| *other == plain[e]).count();
-        if twins > 0 { format!("{} #{}", plain[e], twins + 1) } else { plain[e].clone() }
+        if twins > 0 { format!("{} #{}", plain[e], twins + 1) } else { plain[e].to_string() }
     };
     let labels: Vec<String> = (0..plain.len()).map(label).collect();
-    let catalogue = |e: &usize| plain[*e].split([' ', '(']).next() == Some(name);
-    let called = |e: &usize| plain[*e] == name;
-    let numbered = |e: &usize| labels[*e] == name && plain[*e] != name;
+    let catalogue = |e: &usize| plain[*e].name == name;
+    let called = |e: &usize| plain[*e].to_string() == name;
+    let numbered = |e: &usize| labels[*e] == name && !called(e);
     let matching = |is_it: &dyn Fn(&usize) -> bool| -> Vec<usize> {
         (0..plain.len()).filter(|e| is_it(e)).collect()
     };

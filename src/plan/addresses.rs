@@ -1,7 +1,7 @@
 //! Where experiments find their random numbers: addresses made of names.
 
-use crate::case::names::Names;
-use crate::case::sweep::Variation;
+use crate::case::names::EstimatorName;
+use crate::plan::id::ExperimentId;
 use numeric::rng::{Address, name_hash};
 
 pub use gate::stats::verdict::BLOCK;
@@ -14,16 +14,17 @@ pub fn shared(seed: u64, case: &str, stretches: &str) -> Address {
 }
 
 /// The address of an experiment's streams: made of names, so that it keeps its random numbers when
-/// other experiments join or leave the run. `twins` come before it in the case under the same name.
-pub fn own(seed: u64, case: &str, names: &Names, variation: Variation, twins: usize) -> Address {
-    let Names { sampling, sampling_kind, control, .. } = names;
-    // What is the same by definition makes the same draws.
-    let estimator = names.alias.as_ref().unwrap_or(&names.estimator);
-    let sampling = sampling.map_or(String::new(), |value| value.to_string());
-    let swept = variation.map_or(String::new(), |(what, x)| format!("{}={x}", what.key()));
-    let mut name = format!("{case}|{estimator}|{sampling}|{sampling_kind}|{control}|{swept}");
-    if twins > 0 {
-        name = format!("{name}|{twins}");
+/// other experiments join or leave the run. An experiment that is another estimator by definition, its alias, makes
+/// the draws of that one.
+pub fn own(seed: u64, id: &ExperimentId, alias: Option<&EstimatorName>) -> Address {
+    let ExperimentId { case, sampling, control, .. } = id;
+    let estimator = alias.unwrap_or(&id.estimator);
+    let kind = &sampling.kind;
+    let constant = sampling.constant.map_or(String::new(), |value| value.to_string());
+    let swept = id.swept.map_or(String::new(), |at| format!("{}={}", at.what.key(), at.value));
+    let mut name = format!("{case}|{estimator}|{constant}|{kind}|{control}|{swept}");
+    if id.namesake > 1 {
+        name = format!("{name}|{}", id.namesake - 1);
     }
     Address { seed, experiment: name_hash(&name), block: 0, lane: 0 }
 }

@@ -1,5 +1,6 @@
 //! Which experiments of the cases are meant.
 
+use crate::case::names::EstimatorName;
 use glob::{Pattern, PatternError};
 
 /// A pattern that selects experiments by name.
@@ -24,15 +25,15 @@ impl Filter {
         self.0.as_str()
     }
 
-    /// Whether an experiment is meant; `estimator` is its label, settings included.
-    pub fn keeps(&self, case: &str, estimator: &str) -> bool {
-        let name = estimator.split(' ').next().unwrap_or_default();
+    /// Whether an estimator of a case matches.
+    pub fn keeps(&self, case: &str, estimator: &EstimatorName) -> bool {
+        let (name, label) = (&estimator.name, estimator.to_string());
         let matches = |text: &str| self.0.matches(text);
         matches(case)
             || matches(name)
-            || matches(estimator)
+            || matches(&label)
             || matches(&format!("{case}:{name}"))
-            || matches(&format!("{case}:{estimator}"))
+            || matches(&format!("{case}:{label}"))
     }
 }
 
@@ -44,7 +45,8 @@ mod tests {
     fn patterns_meet_cases_estimators_and_both() {
         let keeps = |pattern: &str| {
             let filter = Filter::new(pattern).expect("a pattern");
-            filter.keeps("transmittance/eq21-sweep", "single (terminating)")
+            let estimator = EstimatorName { name: "single".into(), settings: "terminating".into() };
+            filter.keeps("transmittance/eq21-sweep", &estimator)
         };
         assert!(keeps("*eq21*") && keeps("single") && keeps("*sweep:single"));
         assert!(!keeps("double") && !keeps("*noise*"));

@@ -11,10 +11,12 @@
 pub mod addresses;
 pub mod filter;
 pub mod foreseen;
+pub mod id;
 pub mod levels;
 pub mod options;
 
 pub use filter::Filter;
+pub use id::ExperimentId;
 pub use options::{Amount, Options};
 
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -22,7 +24,6 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 pub use ::gate::stats::verdict::MISS;
 
 use crate::case::Case;
-use crate::case::names::Names;
 use crate::case::ready::Ready;
 use crate::case::sweep::Variation;
 use crate::checks::{self, Kind, Pilot, Question, Scalar, Subject};
@@ -83,8 +84,8 @@ pub struct Planned {
     pub estimator: usize,
     /// Where in the sweep.
     pub variation: Variation,
-    /// What it is called.
-    pub names: Names,
+    /// Identity of the experiment.
+    pub id: ExperimentId,
     /// Knowledge of the medium that the experiment needs beside lookups; empty for none.
     pub needs: String,
     /// Number of draws that share the setup lookups of a ray.
@@ -262,13 +263,11 @@ fn plan_experiment(
     (estimator, variation): (usize, Variation),
 ) -> Planned {
     let most = options.draws.of(case.draws);
-    let mut names = case.scenario.names(estimator, variation);
-    // Two estimators may be called the same, as where each has a field of its own as control.
-    let twins = (0..estimator).filter(|&e| case.scenario.names(e, variation) == names).count();
-    let address = addresses::own(options.seed, &case.name, &names, variation, twins);
-    if twins > 0 {
-        names.estimator = format!("{} #{}", names.estimator, twins + 1);
-    }
+    let names = case.scenario.names(estimator, variation);
+    // Two estimators may have the same names, as where each has a field of its own as control.
+    let namesakes = (0..estimator).filter(|&e| case.scenario.names(e, variation) == names).count();
+    let id = ExperimentId::new([&case.name, &case.problem], &names, variation, namesakes);
+    let address = addresses::own(options.seed, &id, names.alias.as_ref());
     let pilots = case.pilots(options.seed, estimator);
     let outcome = case.scenario.prepare(estimator, variation, pilots);
     let stretches = outcome.as_ref().ok().and_then(|ready| ready.experiment.even_places());
@@ -276,7 +275,7 @@ fn plan_experiment(
     Planned {
         estimator,
         variation,
-        names,
+        id,
         needs: case.scenario.needs(estimator, variation),
         draws_per_ray: case.draws_per_ray,
         address,

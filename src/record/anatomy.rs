@@ -24,9 +24,9 @@ pub fn anatomy(case: &PlannedCase, planned: &Planned, drawn: &Drawn) -> Option<A
         })
     });
     let residual = ray_view.extinction.iter().zip(&ray_view.control).map(|(s, c)| s - c).collect();
-    let controlled = !planned.names.control.is_empty();
+    let controlled = !planned.id.control.is_empty();
     Some(Anatomy {
-        estimator: planned.names.estimator.clone(),
+        estimator: planned.id.label(),
         measured: measured.collect(),
         residual,
         control: if controlled { ray_view.control } else { Vec::new() },

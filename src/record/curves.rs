@@ -37,7 +37,7 @@ pub fn curves(case: &Case, seed: u64) -> Vec<Curve> {
         let named = predicted.iter().max_by_key(|channels| channels.len());
         let named = named.map_or(&[][..], Vec::as_slice);
         let curve = |(index, (channel, _)): (usize, &(String, Option<CurvePoint>))| Curve {
-            estimator: names.estimator.clone(),
+            estimator: names.estimator.to_string(),
             control: names.control.clone(),
             channel: channel.clone(),
             points: predicted.iter().filter_map(|p| p.get(index)?.1).collect(),
@@ -94,7 +94,7 @@ fn best(case: &Case, seed: u64, estimator: usize, variation: Variation) -> Vec<O
 
 /// The line of an estimator that is refused everywhere: it has no points.
 fn refused(names: Names, listed: usize) -> Curve {
-    let Names { estimator, control, .. } = names;
+    let (estimator, control) = (names.estimator.to_string(), names.control);
     let (channel, points, listed) = (String::new(), Vec::new(), Some(listed));
     Curve { estimator, listed, control, channel, points, optimum: None, best: None }
 }

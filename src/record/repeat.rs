@@ -31,7 +31,7 @@ fn place(case: &PlannedCase) -> String {
 
 /// The pattern of an experiment's estimator. Namesakes are numbered by the plan; a filter sees them all under one name.
 fn pattern(planned: &Planned) -> String {
-    format!("*:{}", planned.names.estimator.split(" #").next().unwrap_or_default())
+    format!("*:{}", planned.id.estimator)
 }
 
 /// The options that are not as usual, each with a space before it.
@@ -79,7 +79,7 @@ pub fn deciding(
     let Some(own) = decisive_draws(plan, case, planned, findings) else { return String::new() };
     let filter = Filter::new(&pattern(planned)).ok();
     let together = case.experiments.iter().filter(|other| {
-        filter.as_ref().is_some_and(|f| f.keeps(&case.case.name, &other.names.estimator))
+        filter.as_ref().is_some_and(|f| f.keeps(&case.case.name, &other.id.estimator))
     });
     let draws =
         together.filter_map(|other| decisive_draws(plan, case, other, &[])).fold(own, f64::max);

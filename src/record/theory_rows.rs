@@ -10,12 +10,12 @@ const LONGEST_LAW: usize = 100;
 /// The rows of an experiment with what theory says of each channel.
 pub fn theory_rows(case: &PlannedCase, planned: &Planned) -> Vec<Row> {
     let blank = Row {
-        estimator: planned.names.estimator.clone(),
+        estimator: planned.id.label(),
         listed: Some(planned.estimator),
         needs: planned.needs.clone(),
-        sampling: planned.names.sampling,
-        sampling_kind: planned.names.sampling_kind.clone(),
-        control: planned.names.control.clone(),
+        sampling: planned.id.sampling.constant.map(|value| value.0),
+        sampling_kind: planned.id.sampling.kind.clone(),
+        control: planned.id.control.clone(),
         swept: planned.variation.map(|(_, value)| value),
         ..Row::default()
     };
@@ -86,7 +86,7 @@ fn courses(case: &PlannedCase, planned: &Planned, refusal: &Refusal) -> Vec<Cour
 /// The estimator that an experiment is by definition, where the case has it too.
 fn twin(case: &PlannedCase, planned: &Planned) -> Option<String> {
     let index = case.experiments.iter().position(|other| std::ptr::eq(other, planned))?;
-    case.twin(index).map(|twin| case.experiments[twin].names.estimator.clone())
+    case.twin(index).map(|twin| case.experiments[twin].id.label())
 }
 
 /// How many experiments of the case share an experiment's lookups.

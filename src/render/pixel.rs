@@ -6,6 +6,7 @@ use super::budget::{Colour, Forecast, PixelDraws};
 use super::subject::{AnyRay, RayOf, SubjectKind};
 use super::view::View;
 use crate::case::estimator::{Estimators, ParsedEstimator};
+use crate::case::names::EstimatorName;
 use crate::case::problem::Parts;
 use estimators::{DrawBuffer, Experiment, Kernel, Refusal, Site};
 use media::{Body, Control, Majorants, Medium};
@@ -28,8 +29,8 @@ const NOWHERE: Address = Address { seed: 0, experiment: 0, block: 0, lane: 0 };
 /// How an estimator is called.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Label {
-    /// With its settings.
-    pub estimator: String,
+    /// The estimator with its settings.
+    pub estimator: EstimatorName,
     /// σ̂ in words.
     pub sampling: String,
     /// The control in words.

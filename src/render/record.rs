@@ -97,7 +97,7 @@ impl PictureRecord {
         let exposures: Vec<ExposureRecord> = images
             .into_iter()
             .map(|(names, outcome)| ExposureRecord {
-                estimator: names.estimator,
+                estimator: names.estimator.to_string(),
                 sampling: names.sampling,
                 control: names.control,
                 outcome: outcome

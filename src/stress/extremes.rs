@@ -40,7 +40,7 @@ const ESTIMATORS: &str = "{ woodcock = {} }, { ratio = {} }, { residual-ratio = 
 
 /// What is wrong with what theory says of an experiment; `None` where all is numbers, or refused in words.
 fn trouble(planned: &Planned) -> Option<String> {
-    let name = &planned.names.estimator;
+    let name = planned.id.label();
     let prediction = match &planned.outcome {
         Err(refusal) => {
             let is_silent = refusal.to_string().len() < 10;

@@ -230,7 +230,7 @@ fn estimators() -> impl Strategy<Value = String> {
 
 /// Refused in words, or a truth in range with predictions that are numbers.
 fn finite_or_refused(planned: &Planned, most: f64) -> Result<(), TestCaseError> {
-    let name = &planned.names.estimator;
+    let name = planned.id.label();
     let prediction = match &planned.outcome {
         Ok(ready) => &ready.prediction,
         Err(refusal) => {

@@ -82,7 +82,7 @@ fn radiances_meet_their_values_to_twelve_digits() {
             let channel = &ready.prediction.channels[0];
             let truth = channel.truth;
             let apart = (truth.value / value.value - 1.0).abs();
-            let name = &planned.names.estimator;
+            let name = planned.id.label();
             assert!(apart < 1e-12, "{}, {name}: {apart:e}", value.id);
             assert!(truth.error < 2e-12 * truth.value, "{}, {name}: {:e}", value.id, truth.error);
             assert!(
@@ -107,7 +107,7 @@ fn predicted_means_are_the_radiance() {
             let channel = &ready.prediction.channels[0];
             let moments = channel.moments.expect("moments");
             let apart = (moments.scale / channel.truth.value - 1.0).abs();
-            let name = &planned.names.estimator;
+            let name = planned.id.label();
             assert!(apart < 1e-10, "{}, {name}: {apart:e}", value.id);
         }
     }

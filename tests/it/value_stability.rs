@@ -305,14 +305,13 @@ fn drawn() -> String {
         let ready = planned.outcome.as_ref().expect("it is not refused");
         let mut buffer = DrawBuffer::new(ready.prediction.channels.len());
         ready.experiment.fill(&mut planned.streams(0), DRAWS, &mut buffer);
-        let names = &planned.names;
+        let id = &planned.id;
         for draw in 0..DRAWS {
             let values: Vec<f64> = buffer.values.iter().map(|channel| channel[draw]).collect();
             let bits: Vec<String> =
                 values.iter().map(|value| format!("{:016x}", value.to_bits())).collect();
             let decimals: Vec<String> = values.iter().map(|value| format!("{value:?}")).collect();
-            let (estimator, sampling, control) =
-                (&names.estimator, &names.sampling_kind, &names.control);
+            let (estimator, sampling, control) = (id.label(), &id.sampling.kind, &id.control);
             writeln!(
                 text,
                 "{},\"{estimator}\",\"{sampling}\",\"{control}\",{draw},{},{},{}",

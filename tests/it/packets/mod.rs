@@ -54,7 +54,7 @@ pub fn fusing_levels() -> Vec<Level> {
 pub fn compare(cases: &[Case]) -> usize {
     let plan = Plan::new(cases, &options(1, 1_000));
     let (mut wrong, mut compared) = (Vec::new(), 0);
-    for (case, planned) in plan.experiments() {
+    for (_, planned) in plan.experiments() {
         let Ok(ready) = &planned.outcome else { continue };
         if ready.experiment.order() == Order::Free {
             continue; // Those are other draws.
@@ -65,8 +65,7 @@ pub fn compare(cases: &[Case]) -> usize {
             let packets = drawn(planned, Kernel::Packets(level));
             let differing = single.iter().zip(&packets).position(|(a, b)| a != b);
             if differing.is_some() || single.len() != packets.len() {
-                let (name, sampling) = (&planned.names.estimator, &planned.names.sampling_kind);
-                let place = format!("{}, {name}, {sampling}, {level:?}", case.case.name);
+                let place = format!("{}, {level:?}", planned.id);
                 wrong.push(format!("{place}: {differing:?}"));
             }
         }
