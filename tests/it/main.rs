@@ -25,6 +25,7 @@ mod junit;
 mod lengths;
 mod lit_rod;
 mod lit_slab;
+mod lock;
 mod long_runs;
 mod lookup_law;
 mod manual;

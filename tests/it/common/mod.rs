@@ -113,20 +113,60 @@ pub fn medium(text: &str) -> Medium {
     body(text).medium()
 }
 
-/// Every case file of the repository.
+/// Folders of the repository's case files: those for readers, and those for tests alone.
+pub const CASES: [&str; 2] = ["cases", "tests/cases"];
+
+/// Finds the file of a case of the repository.
+pub fn case_file(name: &str) -> PathBuf {
+    let paths = CASES.map(|folder| {
+        Path::new(env!("CARGO_MANIFEST_DIR")).join(folder).join(format!("{name}.toml"))
+    });
+    let found = paths.into_iter().find(|path| path.exists());
+    found.unwrap_or_else(|| panic!("no case {name} in {CASES:?}"))
+}
+
+/// Reads every case file of the repository as text, in the order of the paths.
+pub fn shipped_texts() -> Vec<String> {
+    let mut folders: Vec<PathBuf> = CASES.iter().map(PathBuf::from).collect();
+    let mut files = Vec::new();
+    while let Some(folder) = folders.pop() {
+        for entry in std::fs::read_dir(folder).expect("a folder") {
+            let path = entry.expect("an entry").path();
+            if path.is_dir() {
+                folders.push(path);
+            } else if path.extension().is_some_and(|ending| ending == "toml") {
+                files.push(path);
+            }
+        }
+    }
+    files.sort();
+    files.iter().map(|path| std::fs::read_to_string(path).expect("a text")).collect()
+}
+
+/// Reads every case file of the repository.
 pub fn shipped() -> Vec<Case> {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("cases");
-    trueflight::Catalogue::builtin().read_all(&[folder]).unwrap_or_else(|errors| {
+    shipped_in(&[""])
+}
+
+/// Reads the repository's case files below folders of [`CASES`].
+pub fn shipped_in(folders: &[&str]) -> Vec<Case> {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let paths = CASES.iter().flat_map(|cases| folders.iter().map(|f| root.join(cases).join(f)));
+    let paths: Vec<PathBuf> = paths.filter(|path| path.is_dir()).collect();
+    trueflight::Catalogue::builtin().read_all(&paths).unwrap_or_else(|errors| {
         let shown: Vec<String> = errors.iter().map(|error| error.render(false)).collect();
         panic!("{}", shown.join("\n\n"))
     })
 }
 
+/// Draws per experiment of the frozen values in `tests/lock`.
+pub const LOCKED_DRAWS: u64 = 65_536;
+
 /// Draws per experiment of [`shipped_record`]; `TRUEFLIGHT_DRAWS` asks for another number, for long
 /// campaigns.
-fn shipped_draws() -> u64 {
+pub fn shipped_draws() -> u64 {
     let wished = std::env::var("TRUEFLIGHT_DRAWS").ok();
-    wished.map_or(50_000, |text| text.parse().expect("TRUEFLIGHT_DRAWS is a whole number"))
+    wished.map_or(LOCKED_DRAWS, |text| text.parse().expect("TRUEFLIGHT_DRAWS is a whole number"))
 }
 
 /// The plan of all shipped cases from seed 1, made once for all tests.
