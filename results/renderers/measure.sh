@@ -16,6 +16,7 @@ trap 'rm -r "$scenes"' EXIT
 # Exports a case file and measures it with the given ways of finding lights.
 measure() {
     case=$1
+    [ -f "$case" ] || case=$root/tests/cases/${case#"$cases"/}
     shift
     out=$scenes/$(basename "$(dirname "$case")")-$(basename "$case" .toml)${FORM-}
     "$TRUEFLIGHT" export "$case" --to mitsuba --out "$out" --quiet ${FORM-} || exit 2

@@ -74,7 +74,7 @@ use theory::problems;
 pub struct Case {
     /// The case's name.
     pub name: String,
-    /// Its file; for a built-in case, its place below `cases/`.
+    /// Its file; for a built-in case, its name with `.toml`.
     pub path: PathBuf,
     /// One line for tables and plots.
     pub title: String,

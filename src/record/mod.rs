@@ -113,7 +113,7 @@ pub struct Suspect {
 pub struct CaseRecord {
     /// The case's name: its path below the cases folder, without `.toml`.
     pub name: String,
-    /// Its file, as it was given; for a built-in case, its place below `cases/`.
+    /// Its file, as it was given; for a built-in case, its name with `.toml`.
     pub path: String,
     /// Its title.
     pub title: String,

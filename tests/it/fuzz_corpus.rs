@@ -5,11 +5,11 @@
 //! FUZZ_SECONDS=600 cargo test --release --test it fuzz_corpus
 //! ```
 
-use std::path::Path;
 use std::time::{Duration, Instant};
 
 use crate::common::grids::{good, reads_or_refuses};
 use crate::common::mutated::{Choices, mutated, reads_or_names_the_place};
+use crate::common::shipped_texts;
 
 /// Runs a target on the seeds 0, 1, … until the time is over; answers how many and how many were read.
 fn for_some_time(share: f64, mut target: impl FnMut(u64) -> bool) -> [u64; 2] {
@@ -27,23 +27,10 @@ fn for_some_time(share: f64, mut target: impl FnMut(u64) -> bool) -> [u64; 2] {
 
 #[test]
 fn spoilt_case_files_are_read_or_refused() {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("cases");
-    let mut texts = Vec::new();
-    let mut folders = vec![folder];
-    while let Some(folder) = folders.pop() {
-        for entry in std::fs::read_dir(folder).expect("a folder") {
-            let path = entry.expect("an entry").path();
-            if path.is_dir() {
-                folders.push(path);
-            } else if path.extension().is_some_and(|ending| ending == "toml") {
-                texts.push((path.clone(), std::fs::read_to_string(path).expect("a text")));
-            }
-        }
-    }
-    texts.sort();
+    let texts = shipped_texts();
     let [tried, read] = for_some_time(0.5, |seed| {
         let mut choices = Choices(seed);
-        let text = &texts[choices.below(texts.len())].1;
+        let text = &texts[choices.below(texts.len())];
         // From one to a dozen mistakes, on top of each other.
         let mut text = mutated(text, seed);
         for more in 0..choices.below(3) {

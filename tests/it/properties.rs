@@ -2,10 +2,9 @@
 //!
 //! The random numbers are proptest's with a fixed seed: every run tests the same cases.
 
-use std::path::Path;
 
 use crate::common::mutated::{mutated, reads_or_names_the_place};
-use crate::common::{case, medium, options};
+use crate::common::{case, medium, options, shipped_texts};
 use proptest::prelude::*;
 use proptest::test_runner::{Config, RngAlgorithm, TestRng, TestRunner};
 use trueflight::numeric::Span;
@@ -310,31 +309,9 @@ fn rods_and_slabs_are_predicted_or_refused() {
     });
 }
 
-/// Every case file of the repository as text.
-fn shipped() -> Vec<String> {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("cases");
-    let mut folders = vec![folder];
-    let mut texts = Vec::new();
-    while let Some(folder) = folders.pop() {
-        let mut entries: Vec<_> = std::fs::read_dir(folder)
-            .expect("a folder")
-            .map(|e| e.expect("an entry").path())
-            .collect();
-        entries.sort();
-        for path in entries {
-            if path.is_dir() {
-                folders.push(path);
-            } else if path.extension().is_some_and(|ending| ending == "toml") {
-                texts.push(std::fs::read_to_string(path).expect("a text"));
-            }
-        }
-    }
-    texts
-}
-
 #[test]
 fn ten_thousand_case_files_are_read_or_refused_with_the_place() {
-    let texts = shipped();
+    let texts = shipped_texts();
     let read = std::cell::Cell::new(0);
     always(10_000, &(0..texts.len(), any::<u64>()), |(index, seed)| {
         let case = reads_or_names_the_place(&mutated(&texts[index], seed));

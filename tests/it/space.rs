@@ -1,7 +1,7 @@
 //! Walks in space: exact answers against reference values that were computed by other means, what is
 //! skipped, and the draws of every shipped case.
 
-use crate::common::{case, none, options};
+use crate::common::{case, none, options, shipped_in};
 use serde::Deserialize;
 use trueflight::draw::run;
 use trueflight::estimators::DrawBuffer;
@@ -224,10 +224,7 @@ fn what_no_page_takes_is_a_mistake_with_its_place() {
 
 #[test]
 fn every_rule_passes_in_every_shipped_case() {
-    let folders = ["cases/furnace", "cases/lambertian", "cases/infinite-medium"];
-    let cases = trueflight::Catalogue::builtin().read_all(&folders).unwrap_or_else(|errors| {
-        panic!("{}", errors.iter().map(|error| error.render(false)).collect::<String>())
-    });
+    let cases = shipped_in(&["furnace", "lambertian", "infinite-medium"]);
     let draws = std::env::var("TRUEFLIGHT_DRAWS").ok().and_then(|n| n.parse().ok());
     let plan = Plan::new(&cases, &options(1, draws.unwrap_or(30_000)));
     let record = verdict::judged(&plan, &run::draw(&plan, &|_| {}), 0.0);

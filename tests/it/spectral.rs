@@ -16,7 +16,7 @@ struct Reference {
 }
 
 const LAYERS: &str = include_str!("../../cases/spectral-transmittance/layers.toml");
-const SMOOTH: &str = include_str!("../../cases/spectral-transmittance/smooth.toml");
+const SMOOTH: &str = include_str!("../cases/spectral-transmittance/smooth.toml");
 const HERO_DELTA: &str = include_str!("../../cases/spectral-transmittance/hero-delta.toml");
 
 /// The trackers by the names of the reference values.

@@ -5,9 +5,9 @@ use trueflight::record::Verdict;
 use crate::common::{case, mistakes, predicted, rows};
 use crate::packets::{compare, fusing_levels};
 
-const BALL: &str = include_str!("../../cases/spectral-furnace/known-bugs.toml");
+const BALL: &str = include_str!("../cases/spectral-furnace/known-bugs.toml");
 const LIKE: &str = include_str!("../../cases/spectral-furnace/like-colours.toml");
-const NOISE: &str = include_str!("../../cases/spectral-furnace/noise.toml");
+const NOISE: &str = include_str!("../cases/spectral-furnace/noise.toml");
 
 #[test]
 fn every_channel_is_as_bright_as_the_walls() {

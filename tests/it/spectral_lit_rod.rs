@@ -11,7 +11,7 @@ use trueflight::record::{Row, Verdict};
 use crate::common::{case, finding, mistakes, none, options, predicted, rows};
 
 const THREE_COLOURS: &str = include_str!("../../cases/spectral-lit-rod/three-colours.toml");
-const ONE_MEDIUM: &str = include_str!("../../cases/spectral-lit-rod/one-medium.toml");
+const ONE_MEDIUM: &str = include_str!("../cases/spectral-lit-rod/one-medium.toml");
 const FORWARD: &str = include_str!("../../cases/spectral-lit-rod/forward.toml");
 const AS_PRINTED: &str = include_str!("../../cases/spectral-lit-rod/as-printed.toml");
 
@@ -282,8 +282,8 @@ fn draws_agree(draws: u64) {
     let texts = [
         THREE_COLOURS.to_owned(),
         ONE_MEDIUM.to_owned(),
-        include_str!("../../cases/spectral-lit-rod/phases.toml").to_owned(),
-        include_str!("../../cases/spectral-lit-rod/extinctions.toml").to_owned(),
+        include_str!("../cases/spectral-lit-rod/phases.toml").to_owned(),
+        include_str!("../cases/spectral-lit-rod/extinctions.toml").to_owned(),
         one_medium(
             "exponential = { extinction = 2, rate = 1 }",
             2.0,

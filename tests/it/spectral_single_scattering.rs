@@ -5,7 +5,7 @@ use trueflight::record::{Row, Verdict};
 use crate::common::{case, mistakes, predicted, rows};
 use crate::packets::{compare, fusing_levels};
 
-const BALL: &str = include_str!("../../cases/spectral-single-scattering/known-bugs.toml");
+const BALL: &str = include_str!("../cases/spectral-single-scattering/known-bugs.toml");
 
 const WITHOUT: &str = include_str!("../../cases/spectral-single-scattering/without-mis.toml");
 

@@ -247,12 +247,12 @@ fn balls() -> Vec<Case> {
 fn spectral() -> Vec<Case> {
     vec![
         case("layers", include_str!("../../cases/spectral-transmittance/layers.toml")),
-        case("colours", include_str!("../../cases/spectral-rod/near-albedos.toml")),
-        case("coloured-slab", include_str!("../../cases/spectral-slab/known-bugs.toml")),
+        case("colours", include_str!("../cases/spectral-rod/near-albedos.toml")),
+        case("coloured-slab", include_str!("../cases/spectral-slab/known-bugs.toml")),
         case("chromatic-slab", include_str!("../../cases/chromatic-slab/three-colours.toml")),
         case(
             "one-scattering",
-            include_str!("../../cases/spectral-single-scattering/known-bugs.toml"),
+            include_str!("../cases/spectral-single-scattering/known-bugs.toml"),
         ),
         case("like-slab", include_str!("../../cases/chromatic-slab/like-colours.toml")),
         case("like-furnace", include_str!("../../cases/spectral-furnace/like-colours.toml")),
@@ -260,7 +260,7 @@ fn spectral() -> Vec<Case> {
             "without-mis",
             include_str!("../../cases/spectral-single-scattering/without-mis.toml"),
         ),
-        case("coloured-furnace", include_str!("../../cases/spectral-furnace/known-bugs.toml")),
+        case("coloured-furnace", include_str!("../cases/spectral-furnace/known-bugs.toml")),
     ]
 }
 

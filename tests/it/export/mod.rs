@@ -6,16 +6,16 @@ mod pbrt;
 mod refusals;
 mod scenes;
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
+use crate::common::case_file;
 use tempfile::TempDir;
 use trueflight::case::Source;
 use trueflight::export::{self, ExportError, Exported, Target};
 
 /// A case of the repository.
 fn source(name: &str) -> Source {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("cases").join(format!("{name}.toml"));
-    Source::read(&path).expect("a case")
+    Source::read(&case_file(name)).expect("a case")
 }
 
 /// An exported case and its folder.

@@ -116,18 +116,18 @@ fn slabs_of_media() -> [Case; 2] {
 pub fn cases(matrix: Matrix) -> Vec<Case> {
     let mut cases = if matrix == Matrix::Full { shipped() } else { Vec::new() };
     cases.push(case("layers", include_str!("../../../cases/spectral-transmittance/layers.toml")));
-    cases.push(case("smooth", include_str!("../../../cases/spectral-transmittance/smooth.toml")));
+    cases.push(case("smooth", include_str!("../../cases/spectral-transmittance/smooth.toml")));
     cases.push(case("hero", include_str!("../../../cases/spectral-transmittance/hero-delta.toml")));
     for (name, text) in [
         ("three-colours", include_str!("../../../cases/spectral-lit-rod/three-colours.toml")),
-        ("extinctions", include_str!("../../../cases/spectral-lit-rod/extinctions.toml")),
-        ("phases", include_str!("../../../cases/spectral-lit-rod/phases.toml")),
+        ("extinctions", include_str!("../../cases/spectral-lit-rod/extinctions.toml")),
+        ("phases", include_str!("../../cases/spectral-lit-rod/phases.toml")),
         ("forward", include_str!("../../../cases/spectral-lit-rod/forward.toml")),
         ("as-printed", include_str!("../../../cases/spectral-lit-rod/as-printed.toml")),
-        ("one-medium", include_str!("../../../cases/spectral-lit-rod/one-medium.toml")),
-        ("connected", include_str!("../../../cases/bidirectional-rod/known-bugs.toml")),
-        ("unscattered", include_str!("../../../cases/bidirectional-rod/unscattered.toml")),
-        ("reflected", include_str!("../../../cases/bidirectional-rod/reflected.toml")),
+        ("one-medium", include_str!("../../cases/spectral-lit-rod/one-medium.toml")),
+        ("connected", include_str!("../../cases/bidirectional-rod/known-bugs.toml")),
+        ("unscattered", include_str!("../../cases/bidirectional-rod/unscattered.toml")),
+        ("reflected", include_str!("../../cases/bidirectional-rod/reflected.toml")),
     ] {
         cases.push(case(name, text));
     }

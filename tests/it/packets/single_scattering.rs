@@ -4,7 +4,7 @@
 //! the long form in bodies of all kinds and in every shipped case, in the short one in a quarter of the bodies.
 
 use super::{compare, fusing_levels};
-use crate::common::case;
+use crate::common::{case, shipped_in};
 use trueflight::case::Case;
 
 const VOLUMES: [&str; 8] = [
@@ -103,11 +103,7 @@ fn packets_are_the_scalar_draws_at_every_level_that_fuses() {
 #[test]
 #[ignore = "long: every technique in bodies of all kinds, 45 s of two cores"]
 fn packets_are_the_scalar_draws_in_bodies_of_all_kinds() {
-    let shipped = trueflight::Catalogue::builtin()
-        .read_all(&["cases/single-scattering"])
-        .unwrap_or_else(|errors| {
-            panic!("{}", errors.iter().map(|error| error.render(false)).collect::<String>())
-        });
+    let shipped = shipped_in(&["single-scattering"]);
     let compared = compare(&cases(1)) + compare(&shipped);
     assert!(fusing_levels().is_empty() || compared > 500, "only {compared} compared");
 }

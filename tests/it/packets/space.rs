@@ -5,7 +5,7 @@
 //! function, and for one σ̂ as well as for cells.
 
 use super::{compare, fusing_levels};
-use crate::common::case;
+use crate::common::{case, shipped_in};
 use trueflight::case::Case;
 
 const BALL: &str = "bounds.sphere = { centre = [0.5, 0, 0], radius = 1.5 }";
@@ -72,10 +72,7 @@ const ESTIMATORS: &str = "{ particle.rule = \"terminating\" }, { particle.rule =
     { splitting = { rule = \"analog\", depth = 2 } }";
 
 fn cases() -> Vec<Case> {
-    let folders = ["cases/furnace", "cases/lambertian", "cases/infinite-medium", "cases/sphere"];
-    let mut cases = trueflight::Catalogue::builtin().read_all(&folders).unwrap_or_else(|errors| {
-        panic!("{}", errors.iter().map(|error| error.render(false)).collect::<String>())
-    });
+    let mut cases = shipped_in(&["furnace", "lambertian", "infinite-medium", "sphere"]);
     let phases = ["isotropic = {}", "rayleigh = {}", "henyey-greenstein = { g = 0.6 }"];
     let albedos = [
         "albedo = 0.8",

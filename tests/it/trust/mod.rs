@@ -45,6 +45,7 @@ fn manual() -> Vec<(String, String)> {
         "README.md".into(),
         "CONTRIBUTING.md".into(),
         "ARCHITECTURE.md".into(),
+        "cases/README.md".into(),
     ]);
     let pages = pages.filter(|path| path.extension().is_some_and(|end| end == "md"));
     let names = pages.map(|path| path.to_string_lossy().into_owned());

@@ -164,18 +164,32 @@ fn what_is_refused_below_the_density_is_what_the_manual_says() {
 
 #[test]
 fn counts_in_documents_are_those_of_the_repository() {
-    let cases = files("cases")
-        .iter()
-        .filter(|path| path.extension().is_some_and(|end| end == "toml"))
-        .count();
-    assert!(
-        read("README.md").contains(&format!("; {cases} of them are in [cases/](cases)")),
-        "{cases} cases"
-    );
-    assert!(
-        read("docs/cases.md").contains(&format!("[cases/](../cases): {cases} files")),
-        "{cases} cases"
-    );
+    let count = |folder: &str| {
+        let files = files(folder);
+        files.iter().filter(|path| path.extension().is_some_and(|end| end == "toml")).count()
+    };
+    let (shown, more) = (count("cases"), count("tests/cases"));
+    let counts = [
+        ("README.md", format!("{shown} of them are in [cases/](cases) to read, {more} more")),
+        ("docs/cases.md", format!("[cases/](../cases/README.md): a table of {shown} files")),
+    ];
+    for (page, words) in counts {
+        assert!(read(page).contains(&words), "{page}: {words}");
+    }
+}
+
+#[test]
+fn the_table_of_cases_has_every_file() {
+    let table = read("cases/README.md");
+    let rows = table.lines().filter(|line| line.starts_with("| `")).map(cells);
+    let shown: BTreeSet<String> = rows.flat_map(|row| code(&row[0])).collect();
+    let files = files("cases").into_iter();
+    let files = files.filter(|path| path.extension().is_some_and(|end| end == "toml"));
+    let names = files.map(|path| {
+        let name = path.strip_prefix("cases").expect("below the folder").with_extension("");
+        name.to_string_lossy().into_owned()
+    });
+    assert_eq!(shown, names.collect());
 }
 
 /// The table of known bugs is made of `results/self-test/mutants.csv`.
