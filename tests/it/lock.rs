@@ -7,8 +7,9 @@ use std::path::{Path, PathBuf};
 use std::{env, fs};
 
 use crate::common::{LOCKED_DRAWS, none, shipped_draws, shipped_record};
+use trueflight::lab::streams;
 use trueflight::report::{checks_csv, rows, self_test};
-use trueflight::self_test::{SelfTest, calibration, mutation, streams};
+use trueflight::self_test::{SelfTest, calibration, mutation};
 
 /// Columns that identify a row of a case.
 const LABELS: [&str; 5] = ["estimator", "sampling", "control", "swept", "channel"];
@@ -112,8 +113,7 @@ impl Lock {
         let names: Vec<&str> = ["case"].into_iter().chain(LABELS).chain(DIGITS).collect();
         let not_hashed: Vec<&str> = names.iter().copied().chain(FREE).collect();
         let checks_not_hashed: Vec<&str> = ["case"].into_iter().chain(FREE).collect();
-        let tables =
-            [("summary", summary, not_hashed), ("checks", checks, checks_not_hashed)];
+        let tables = [("summary", summary, not_hashed), ("checks", checks, checks_not_hashed)];
         let mut hashes = Table { columns: vec!["case".to_owned()], rows: Vec::new() };
         let mut by_case: BTreeMap<&str, Vec<String>> =
             summary.by_case().into_keys().map(|case| (case, vec![case.to_owned()])).collect();
@@ -137,8 +137,7 @@ impl Lock {
     fn differences(&self, now: &Self) -> Vec<String> {
         let keys = |table: &Table| -> BTreeMap<String, Vec<String>> {
             let keyed = table.rows.iter().map(|row| {
-                let labels: Vec<&str> =
-                    row[..=LABELS.len()].iter().map(String::as_str).collect();
+                let labels: Vec<&str> = row[..=LABELS.len()].iter().map(String::as_str).collect();
                 (labels.join(" | "), row.clone())
             });
             keyed.collect()
@@ -148,8 +147,7 @@ impl Lock {
         let by_case = |table: Table| -> BTreeMap<String, Vec<String>> {
             table.rows.into_iter().map(|row| (row[0].clone(), row)).collect()
         };
-        let (frozen, hashes) =
-            (by_case(self.hashes.clone()), by_case(now.hashes.choose(&names)));
+        let (frozen, hashes) = (by_case(self.hashes.clone()), by_case(now.hashes.choose(&names)));
         wrong.extend(compared(&frozen, &hashes, &self.hashes.columns));
         wrong
     }
@@ -161,8 +159,11 @@ fn compared(
     now: &BTreeMap<String, Vec<String>>,
     columns: &[String],
 ) -> Vec<String> {
-    let mut wrong: Vec<String> =
-        now.keys().filter(|key| !frozen.contains_key(*key)).map(|key| format!("{key}: new")).collect();
+    let mut wrong: Vec<String> = now
+        .keys()
+        .filter(|key| !frozen.contains_key(*key))
+        .map(|key| format!("{key}: new"))
+        .collect();
     for (key, old) in frozen {
         let Some(new) = now.get(key) else {
             wrong.push(format!("{key}: missing"));
@@ -233,7 +234,8 @@ fn a_changed_digit_is_found_in_its_row_and_column() {
                    a,ratio,1,,,,pass,0.5,0.1,2,0.51,0.11,1.5,3\n\
                    a,ratio,2,,,,pass,0.5,0.2,3,0.52,0.22,1.6,4\n";
     let checks = "case,estimator,ln_e\na,ratio,-1\n";
-    let lock = |summary: &str, checks: &str| Lock::new(&Table::parse(summary), &Table::parse(checks));
+    let lock =
+        |summary: &str, checks: &str| Lock::new(&Table::parse(summary), &Table::parse(checks));
     let before = lock(summary, checks);
     assert_eq!(before.differences(&lock(summary, checks)), [""; 0]);
     let folded = Table::parse(&before.digits.clone().fold().text()).unfold();

@@ -2,7 +2,6 @@
 //!
 //! The random numbers are proptest's with a fixed seed: every run tests the same cases.
 
-
 use crate::common::mutated::{mutated, reads_or_names_the_place};
 use crate::common::{case, medium, options, shipped_texts};
 use proptest::prelude::*;

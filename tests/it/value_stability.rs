@@ -250,10 +250,7 @@ fn spectral() -> Vec<Case> {
         case("colours", include_str!("../cases/spectral-rod/near-albedos.toml")),
         case("coloured-slab", include_str!("../cases/spectral-slab/known-bugs.toml")),
         case("chromatic-slab", include_str!("../../cases/chromatic-slab/three-colours.toml")),
-        case(
-            "one-scattering",
-            include_str!("../cases/spectral-single-scattering/known-bugs.toml"),
-        ),
+        case("one-scattering", include_str!("../cases/spectral-single-scattering/known-bugs.toml")),
         case("like-slab", include_str!("../../cases/chromatic-slab/like-colours.toml")),
         case("like-furnace", include_str!("../../cases/spectral-furnace/like-colours.toml")),
         case(

@@ -151,8 +151,9 @@ pub fn shipped() -> Vec<Case> {
 /// Reads the repository's case files below folders of [`CASES`].
 pub fn shipped_in(folders: &[&str]) -> Vec<Case> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
-    let paths = CASES.iter().flat_map(|cases| folders.iter().map(|f| root.join(cases).join(f)));
-    let paths: Vec<PathBuf> = paths.filter(|path| path.is_dir()).collect();
+    let below = |cases: &str| folders.iter().map(|folder| root.join(cases).join(folder)).collect();
+    let paths: Vec<Vec<PathBuf>> = CASES.iter().map(|cases| below(cases)).collect();
+    let paths: Vec<PathBuf> = paths.concat().into_iter().filter(|path| path.is_dir()).collect();
     trueflight::Catalogue::builtin().read_all(&paths).unwrap_or_else(|errors| {
         let shown: Vec<String> = errors.iter().map(|error| error.render(false)).collect();
         panic!("{}", shown.join("\n\n"))
