@@ -25,7 +25,11 @@ pub struct Fault {
     pub help: String,
 }
 
-/// A fault.
+/// Returns a fault.
+///
+/// # Errors
+///
+/// Always: the fault itself.
 pub fn wrong<T>(message: impl Into<String>, help: impl Into<String>) -> Result<T, Fault> {
     Err(Fault { message: message.into(), help: help.into() })
 }
