@@ -5,6 +5,8 @@
 use std::ffi::c_char;
 use std::ptr;
 
+use gate::check::Property;
+
 use crate::ffi::{array, change, give, text};
 use crate::handle::Check;
 use crate::session::Session;
@@ -58,88 +60,25 @@ pub enum Key {
 /// Key as C passes it: any integer.
 pub type KeyCode = i32;
 
-/// All keys, with their names in C.
-const KEYS: [(Key, &str); 13] = [
-    (Key::TfTruth, "TF_TRUTH"),
-    (Key::TfVariance, "TF_VARIANCE"),
-    (Key::TfKurtosis, "TF_KURTOSIS"),
-    (Key::TfRange, "TF_RANGE"),
-    (Key::TfLookups, "TF_LOOKUPS"),
-    (Key::TfRounding, "TF_ROUNDING"),
-    (Key::TfTolerance, "TF_TOLERANCE"),
-    (Key::TfVarianceTolerance, "TF_VARIANCE_TOLERANCE"),
-    (Key::TfAlpha, "TF_ALPHA"),
-    (Key::TfDraws, "TF_DRAWS"),
-    (Key::TfBatch, "TF_BATCH"),
-    (Key::TfValues, "TF_VALUES"),
-    (Key::TfMeanOnly, "TF_MEAN_ONLY"),
-];
-
-/// Numbers of a property under its name in C.
-struct Property<'a> {
-    name: &'static str,
-    numbers: &'a [f64],
-}
-
-impl Property<'_> {
-    /// Returns exactly `N` numbers.
-    fn exactly<const N: usize>(&self) -> Result<[f64; N], String> {
-        self.numbers.try_into().map_err(|_| {
-            let (name, count) = (self.name, self.numbers.len());
-            let plural = if N == 1 { "" } else { "s" };
-            format!("{name} takes {N} number{plural}, but the count is {count}")
-        })
-    }
-
-    /// Returns one whole number.
-    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // whole, and from 0 to 2^53
-    fn whole(&self) -> Result<u64, String> {
-        let [number] = self.exactly()?;
-        if (0.0..=MAX_WHOLE).contains(&number) && number.fract() == 0.0 {
-            return Ok(number as u64);
-        }
-        Err(format!("{} = {number} is not a whole number from 0 to {MAX_WHOLE}", self.name))
-    }
-
-    /// Returns whether one number, which is 0 or 1, is 1.
-    fn flag(&self) -> Result<bool, String> {
-        match self.whole()? {
-            0 => Ok(false),
-            1 => Ok(true),
-            number => Err(format!("{} = {number} is neither 0 nor 1", self.name)),
-        }
-    }
-}
-
-/// 2^53: all whole numbers up to it are doubles.
-const MAX_WHOLE: f64 = 9_007_199_254_740_992.0;
-
-/// Adds one property to a claim.
-fn with(check: gate::Check<()>, key: Key, property: &Property) -> Result<gate::Check<()>, String> {
-    let list = || property.numbers.to_vec();
-    let number = || property.exactly().map(|[number]| number);
-    Ok(match key {
-        Key::TfTruth => check.truth(list()),
-        Key::TfVariance => check.variance(list()),
-        Key::TfKurtosis => check.kurtosis(list()),
-        Key::TfRange => {
-            let [low, high] = property.exactly()?;
-            check.range(low, high)
-        }
-        Key::TfLookups => {
-            let [mean, variance] = property.exactly()?;
-            check.lookups(mean, variance)
-        }
-        Key::TfRounding => check.rounding(number()?),
-        Key::TfTolerance => check.tolerance(number()?),
-        Key::TfVarianceTolerance => check.variance_tolerance(number()?),
-        Key::TfAlpha => check.alpha(number()?),
-        Key::TfDraws => check.draws(property.whole()?),
-        Key::TfBatch => check.batch(property.whole()?),
-        Key::TfValues => check.values(usize::try_from(property.whole()?).unwrap_or(usize::MAX)),
-        Key::TfMeanOnly if property.flag()? => check.mean_only(),
-        Key::TfMeanOnly => check,
-    })
+/// Returns the property of a key.
+fn property(key: KeyCode) -> Option<Property> {
+    [
+        (Key::TfTruth, Property::Truth),
+        (Key::TfVariance, Property::Variance),
+        (Key::TfKurtosis, Property::Kurtosis),
+        (Key::TfRange, Property::Range),
+        (Key::TfLookups, Property::Lookups),
+        (Key::TfRounding, Property::Rounding),
+        (Key::TfTolerance, Property::Tolerance),
+        (Key::TfVarianceTolerance, Property::VarianceTolerance),
+        (Key::TfAlpha, Property::Alpha),
+        (Key::TfDraws, Property::Draws),
+        (Key::TfBatch, Property::Batch),
+        (Key::TfValues, Property::Values),
+        (Key::TfMeanOnly, Property::MeanOnly),
+    ]
+    .into_iter()
+    .find_map(|(known, property)| (known as KeyCode == key).then_some(property))
 }
 
 /// Makes a check with an empty claim; null if the name is null or not UTF-8. Free it by `tf_check_free`.
@@ -162,14 +101,10 @@ pub unsafe extern "C" fn tf_check_set(
     // SAFETY: rules for checks and arrays.
     unsafe {
         change(check, |check| {
-            let known = KEYS.into_iter().find(|&(known, _)| known as KeyCode == key);
-            let (key, name) = known.ok_or_else(|| check.error_of(Status::Key, &unknown(key)))?;
             let property =
-                Property { name, numbers: array("the array of numbers", numbers, count)? };
-            if let (Key::TfDraws, Ok(draws)) = (key, property.whole()) {
-                check.draws = Some(draws);
-            }
-            check.set(|claim| with(claim, key, &property))
+                property(key).ok_or_else(|| check.error_of(Status::Key, &unknown(key)))?;
+            let numbers = array("the array of numbers", numbers, count)?;
+            check.set(|claim| claim.set(property, numbers))
         })
     }
 }
@@ -183,12 +118,7 @@ fn unknown(key: KeyCode) -> String {
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn tf_check_seed(check: *mut Check, seed: u64) -> Status {
     // SAFETY: rules for checks.
-    unsafe {
-        change(check, |check| {
-            check.seed = seed;
-            check.set(|claim| Ok(claim.seed(seed)))
-        })
-    }
+    unsafe { change(check, |check| check.set(|claim| Ok(claim.seed(seed)))) }
 }
 
 /// Takes mean, variance, kurtosis and lookups from theory, and the whole distribution where theory knows it.

@@ -24,7 +24,12 @@ impl Common {
     fn drawing(&self) -> Error {
         let what =
             "the check is drawing; a callback must not use it, call when tf_check_run has returned";
-        Error::new(Status::Order, format!("check `{}`: {what}", self.name))
+        self.error(Status::Order, what)
+    }
+
+    /// Makes an error of the check.
+    pub(crate) fn error(&self, status: Status, what: &str) -> Error {
+        Error::new(status, format!("check `{}`: {what}", self.name))
     }
 
     /// Returns the error of a callback that changed or freed its own check.

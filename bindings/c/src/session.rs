@@ -4,9 +4,7 @@ use std::ffi::CString;
 use std::mem;
 use std::rc::Rc;
 
-use gate::check::{MOST, Outcome, Pushed};
-use gate::judge::trial::BUFFER;
-use numeric::rng::{Address, name_hash};
+use gate::check::{CheckError, Outcome, Pushed};
 
 use crate::handle::Common;
 use crate::random::Rng;
@@ -28,11 +26,6 @@ enum Stage {
 pub(crate) struct Session {
     common: Rc<Common>,
     stage: Stage,
-    /// Number of draws that callbacks make, if it is set.
-    pub(crate) draws: Option<u64>,
-    pub(crate) seed: u64,
-    /// Number of the next block that a callback makes.
-    block: u64,
     error: Option<Error>,
     /// Texts that C reads: the verdict's lines, and its reason.
     text: CString,
@@ -46,9 +39,6 @@ impl Session {
         Self {
             stage: Stage::Claim(Box::new(gate::claim(common.name.as_str()))),
             common,
-            draws: None,
-            seed: 1,
-            block: 0,
             error: None,
             text: CString::default(),
             reason: CString::default(),
@@ -57,7 +47,7 @@ impl Session {
     }
 
     pub(crate) fn error_of(&self, status: Status, what: &str) -> Error {
-        Error::new(status, format!("check `{}`: {what}", self.common.name))
+        self.common.error(status, what)
     }
 
     /// Adds the check's name to an error of [`crate::ffi`]; all others have it.
@@ -89,12 +79,11 @@ impl Session {
     /// Sets one property of the claim. The check validates the claim before its first draw.
     pub(crate) fn set(
         &mut self,
-        set: impl FnOnce(gate::Check<()>) -> Result<gate::Check<()>, String>,
+        set: impl FnOnce(gate::Check<()>) -> Result<gate::Check<()>, CheckError>,
     ) -> Result<(), Error> {
         match mem::replace(&mut self.stage, Stage::Ended) {
             Stage::Claim(check) => {
-                let check = set(*check).map_err(|what| self.error_of(Status::Claim, &what))?;
-                self.stage = Stage::Claim(Box::new(check));
+                self.stage = Stage::Claim(Box::new(set(*check)?));
                 Ok(())
             }
             _ => Err(self.error_of(Status::Order, "set the claim before the first draw")),
@@ -108,21 +97,21 @@ impl Session {
             other => other,
         };
         let Stage::Open(pushed) = &mut self.stage else {
-            let name = &self.common.name;
-            let what = format!("check `{name}`: the verdict was given; make a new check");
-            return Err(Error::new(Status::Order, what));
+            return Err(self
+                .common
+                .error(Status::Order, "the verdict was given; make a new check"));
         };
         Ok(pushed)
     }
 
     /// Returns the check that takes draws of `values` values.
-    fn open_for(&mut self, values: usize) -> Result<(), Error> {
+    fn open_for(&mut self, values: usize) -> Result<&mut Pushed, Error> {
         if matches!(self.stage, Stage::Claim(_)) {
             self.set(|check| Ok(check.values(values)))?;
         }
         let before = self.open()?.values();
         if before == values {
-            return Ok(());
+            return self.open();
         }
         let what =
             format!("the number of values was {before} in the draws before, but is {values} now");
@@ -147,31 +136,20 @@ impl Session {
         values: usize,
         mut fill: impl FnMut(&mut [f64], usize, &mut Rng) -> usize,
     ) -> Result<(), Error> {
-        let (seed, experiment) = (self.seed, name_hash(&self.common.name));
-        let (wanted, most) = (self.draws, self.draws.unwrap_or(MOST));
-        self.open_for(values)?;
-        let mut block = vec![0.0; values * room(most)];
-        loop {
-            let number = self.block;
-            self.block += 1;
-            let pushed = self.open()?;
-            let left = most.saturating_sub(pushed.draws());
-            if left == 0 || (wanted.is_none() && !pushed.is_open()) {
-                return Ok(());
-            }
-            let room = room(left);
-            let address = Address { seed, experiment, block: number, lane: 0 };
-            let made = fill(&mut block[..room * values], room, &mut Rng::from(&address.stream()));
-            self.common.misuse()?;
+        let common = Rc::clone(&self.common);
+        let mut block = Vec::new();
+        self.open_for(values)?.drive(|pushed, request| {
+            let room = request.draws;
+            block.resize(room * values, 0.0);
+            let made = fill(&mut block, room, &mut Rng::from(&request.stream()));
+            common.misuse()?;
             if made > room {
                 let what = format!("the callback returned {made} draws, but was asked for {room}");
-                return Err(self.error_of(Status::Callback, &what));
+                return Err(common.error(Status::Callback, &what));
             }
-            self.open()?.absorb(&block[..made * values])?;
-            if made < room {
-                return Ok(());
-            }
-        }
+            pushed.absorb(&block[..made * values])?;
+            Ok(made == room)
+        })
     }
 
     /// Returns the verdict; the first call judges all draws.
@@ -208,9 +186,4 @@ impl Session {
     pub(crate) fn reason(&self) -> &CString {
         &self.reason
     }
-}
-
-/// Number of draws of the next block, `left` draws before the end.
-fn room(left: u64) -> usize {
-    usize::try_from(left).map_or(BUFFER, |left| left.min(BUFFER))
 }

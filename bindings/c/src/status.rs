@@ -55,6 +55,8 @@ impl From<CheckError> for Error {
             CheckError::NoTruth { .. }
             | CheckError::Claim { .. }
             | CheckError::Values { .. }
+            | CheckError::Count { .. }
+            | CheckError::Whole { .. }
             | CheckError::Channels { .. }
             | CheckError::Twice { .. } => Status::Claim,
             CheckError::NoLookups { .. }

@@ -16,7 +16,7 @@ fn flights_and_channels_are_judged_by_a_case() {
         ("zero", "1 flights that leave: there are none, although 8.21 % should leave"),
         ("two lengths", "1 the distribution of the distances differs from theory"),
         ("channels", "0, 3 values, 4 draws"),
-        ("no values", "5 check `no values`: a draw has no values; give 1 to 65536"),
+        ("no values", "3 check `no values`: values = 0 is not a whole number from 1 to 65536"),
         (
             "two",
             "check `two`: a draw has 2 values, but the case has 4 channels (channel 1, channel 2",

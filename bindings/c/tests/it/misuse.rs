@@ -24,8 +24,6 @@ fn the_first_draws_validate_the_claim() {
     let wanted = [
         ("alpha", "alpha = -1 is not a probability above 0 and below 1"),
         ("alpha 1", "alpha = 1 is not a probability above 0 and below 1"),
-        ("draws", "number of draws = 0 is not a finite number above 0"),
-        ("batch", "batch = 0 is not a finite number above 0"),
         ("tolerance", "tolerance = 0 is not a finite number above 0"),
         ("its own", "variance tolerance = inf is not a finite number above 0"),
         ("truth", "truth = NaN is not a finite number"),
@@ -42,21 +40,23 @@ fn the_first_draws_validate_the_claim() {
         ("range of others", "a range of 0.6 to 1 does not have the truth 0.5 inside"),
         ("lookups", "expected lookups = 0 is not a finite number above 0"),
         ("rounding", "rounding = -1 is not a finite number, 0 or more"),
-        ("half a draw", "TF_DRAWS = 0.5 is not a whole number from 0 to 9007199254740992"),
-        ("negative draws", "TF_DRAWS = -1 is not a whole number from 0"),
-        ("more draws", "TF_DRAWS = 10000000000000000000 is not a whole number from 0"),
-        ("two batches", "TF_BATCH takes 1 number, but the count is 2"),
-        ("one end", "TF_RANGE takes 2 numbers, but the count is 1"),
-        ("three lookups", "TF_LOOKUPS takes 2 numbers, but the count is 3"),
-        ("more than the mean", "TF_MEAN_ONLY = 2 is neither 0 nor 1"),
+        ("no draws", "draws = 0 is not a whole number from 1 to 9007199254740992; give another"),
+        ("half a draw", "draws = 0.5 is not a whole number from 1"),
+        ("negative draws", "draws = -1 is not a whole number from 1"),
+        ("more draws", "draws = 1e19 is not a whole number from 1"),
+        ("no batch", "batch = 0 is not a whole number from 1 to 9007199254740992"),
+        ("two batches", "batch takes 1 number, but was given 2 numbers"),
+        ("no values", "values = 0 is not a whole number from 1 to 65536"),
+        ("more values", "values = 65537 is not a whole number from 1 to 65536"),
+        ("one end", "range takes 2 numbers, the lower and the upper end, but was given 1 number"),
+        ("three lookups", "lookups takes 2 numbers, mean and variance, but was given 3 numbers"),
+        ("more than the mean", "mean_only = 2 is not a whole number from 0 to 1"),
     ];
     for (name, said) in wanted {
         let wanted = format!("{name}: 3 check `{name}`: {said}");
         assert!(lines.iter().any(|line| line.starts_with(&wanted)), "{text}\n  lacks\n{wanted}");
     }
     for (name, status, said) in [
-        ("values", 5, "a draw has no values; give 1 to 65536"),
-        ("more values", 5, "a draw has 65537 values; 65536 are judged together at most"),
         ("no array", 1, "the array of numbers is null"),
         ("no key", 10, "library 0.1.0 has no key 99"),
         ("case", 4, ""),

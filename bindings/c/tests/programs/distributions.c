@@ -64,8 +64,7 @@ int main(int count, char **arguments)
     tf_check_free(check);
     check = tf_check_new("no values");
     tf_check_of(check, path, "spectral-mis", NAN);
-    TF_SET(check, TF_VALUES, 0);
-    printf("no values: %d ", (int)tf_check_absorb(check, draws, 12));
+    printf("no values: %d ", (int)TF_SET(check, TF_VALUES, 0));
     printf("%s\n", tf_last_error());
     tf_check_free(check);
     check = tf_check_new("two");

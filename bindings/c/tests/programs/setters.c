@@ -47,10 +47,6 @@ int main(void)
     const double draw = 0.5;
     INVALID("alpha", TF_ALPHA, -1);
     INVALID("alpha 1", TF_ALPHA, 1);
-    INVALID("draws", TF_DRAWS, 0);
-    INVALID("batch", TF_BATCH, 0);
-    INVALID("values", TF_VALUES, 0);
-    INVALID("more values", TF_VALUES, 65537);
     INVALID("tolerance", TF_TOLERANCE, 0);
     INVALID("its own", TF_VARIANCE_TOLERANCE, INFINITY);
     INVALID("truth", TF_TRUTH, NAN);
@@ -63,10 +59,14 @@ int main(void)
     INVALID("range of others", TF_RANGE, 0.6, 1);
     INVALID("lookups", TF_LOOKUPS, 0, 1);
     INVALID("rounding", TF_ROUNDING, -1);
+    UNFIT("no draws", TF_DRAWS, 0);
     UNFIT("half a draw", TF_DRAWS, 0.5);
     UNFIT("negative draws", TF_DRAWS, -1);
     UNFIT("more draws", TF_DRAWS, 1e19);
+    UNFIT("no batch", TF_BATCH, 0);
     UNFIT("two batches", TF_BATCH, 1, 2);
+    UNFIT("no values", TF_VALUES, 0);
+    UNFIT("more values", TF_VALUES, 65537);
     UNFIT("one end", TF_RANGE, 1);
     UNFIT("three lookups", TF_LOOKUPS, 1, 2, 3);
     UNFIT("more than the mean", TF_MEAN_ONLY, 2);

@@ -1,6 +1,7 @@
 //! Why a check has no verdict.
 
 use crate::judge::claim::ClaimError;
+use numeric::digits::number;
 
 /// A number of things in words.
 fn counted(count: usize, thing: &str) -> String {
@@ -84,6 +85,32 @@ pub enum CheckError {
         channels: Vec<String>,
         /// Numbers of values that are possible, in words.
         wanted: String,
+    },
+    /// Another number of numbers than a property takes.
+    #[error("check `{name}`: {what} takes {wanted}, but was given {}", counted(*found, "number"))]
+    Count {
+        /// The check.
+        name: String,
+        /// The property.
+        what: &'static str,
+        /// How many numbers were given.
+        found: usize,
+        /// Numbers that the property takes, in words.
+        wanted: &'static str,
+    },
+    /// A number that is not whole, or out of bounds.
+    #[error("check `{name}`: {what} = {} is not a whole number from {min} to {max}; give another", number(*value))]
+    Whole {
+        /// The check.
+        name: String,
+        /// The property.
+        what: &'static str,
+        /// The number.
+        value: f64,
+        /// Smallest number that the property takes.
+        min: u64,
+        /// Largest number that the property takes.
+        max: u64,
     },
     /// What theory says was given beside numbers.
     #[error(

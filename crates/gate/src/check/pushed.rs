@@ -1,11 +1,13 @@
 //! Draws that somebody else makes and pushes.
 
-use super::builder::Check;
+use super::builder::{Check, MOST};
 use super::error::CheckError;
 use super::made::assert_pass;
 use super::outcome::Outcome;
+use crate::judge::judgement::Stop;
 use crate::judge::reading::Reading;
 use crate::judge::trial::BUFFER;
+use numeric::rng::{Address, Stream, name_hash};
 
 impl Check<()> {
     /// Judges draws that are in memory; those of several values lie one draw after the other.
@@ -50,9 +52,26 @@ impl Check<()> {
         let values = self.said.values();
         let length = numbers.map(|numbers| (numbers / values.max(1)) as u64).or(self.said.draws);
         let has_lookups = self.said.has_lookups();
+        self.begun(values, has_lookups, length)
+    }
+
+    /// Begins to judge draws of `values` values; `length` is the number of draws, if known.
+    pub(super) fn begun(
+        self,
+        values: usize,
+        has_lookups: bool,
+        length: Option<u64>,
+    ) -> Result<Pushed, CheckError> {
         let readings = self.readings(values, has_lookups, length)?;
-        let columns = vec![Vec::with_capacity(BUFFER); values];
-        Ok(Pushed { check: self, length, has_lookups, readings, columns, lookups: Vec::new() })
+        let (columns, lookups) = (vec![Vec::new(); values], Vec::new());
+        let (next, stopped) = (0, None);
+        Ok(Pushed { check: self, length, has_lookups, readings, columns, lookups, next, stopped })
+    }
+
+    /// Numbers that address the blocks of draws.
+    fn plan(&self) -> Plan {
+        let (seed, experiment) = (self.said.seed, name_hash(&self.name));
+        Plan { seed, experiment, most: self.said.draws.unwrap_or(MOST) }
     }
 }
 
@@ -67,9 +86,111 @@ pub struct Pushed {
     /// What does not fill a block yet.
     columns: Vec<Vec<f64>>,
     lookups: Vec<f64>,
+    /// Number of the next block that a source is asked for.
+    next: u64,
+    /// Reason why a source was asked for no more draws.
+    stopped: Option<Stop>,
+}
+
+/// Request for a block of draws.
+#[derive(Debug, Clone, Copy)]
+pub struct Request {
+    /// Number of draws.
+    pub draws: usize,
+    /// Number of the block, counted from 0.
+    pub block: u64,
+    pub(super) plan: Plan,
+}
+
+impl Request {
+    /// Returns the random stream of the block, which depends on seed, name and number of the block.
+    pub fn stream(&self) -> Stream {
+        let Plan { seed, experiment, .. } = self.plan;
+        Address { seed, experiment, block: self.block, lane: 0 }.stream()
+    }
+
+    /// Returns the number of the first draw, counted from 0, where all blocks before are whole.
+    pub(super) fn first(&self) -> u64 {
+        self.block * BUFFER as u64
+    }
+}
+
+/// Addresses of the blocks of draws, and their number.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Plan {
+    pub(super) seed: u64,
+    pub(super) experiment: u64,
+    pub(super) most: u64,
+}
+
+impl Plan {
+    /// Returns the request for a block that begins `left` draws before the end.
+    fn request(self, block: u64, left: u64) -> Request {
+        let draws = usize::try_from(left).map_or(BUFFER, |left| left.min(BUFFER));
+        Request { draws, block, plan: self }
+    }
+
+    /// Returns the requests for all blocks.
+    pub(super) fn requests(self) -> impl Iterator<Item = Request> {
+        let size = BUFFER as u64;
+        (0..self.most.div_ceil(size))
+            .map(move |block| self.request(block, self.most - block * size))
+    }
 }
 
 impl Pushed {
+    /// Asks a source for blocks of draws until the verdict is decided, or for as many as [`Check::draws`] says.
+    ///
+    /// The source adds its draws, and returns whether there may be more. It may add more or fewer than it is asked for.
+    /// A later call goes on with the next block.
+    ///
+    /// # Errors
+    ///
+    /// The source's own.
+    ///
+    /// ```
+    /// use trueflight::check::{CheckError, Request};
+    ///
+    /// let mut pushed = trueflight::claim("uniform").truth(0.5).range(0.0, 1.0).open()?;
+    /// pushed.drive(|pushed, request: Request| {
+    ///     let mut stream = request.stream();
+    ///     let draws: Vec<f64> = (0..request.draws).map(|_| stream.uniform()).collect();
+    ///     pushed.absorb(&draws)?;
+    ///     Ok::<_, CheckError>(true)
+    /// })?;
+    /// pushed.assert_pass();
+    /// # Ok::<(), CheckError>(())
+    /// ```
+    pub fn drive<E>(
+        &mut self,
+        mut source: impl FnMut(&mut Self, Request) -> Result<bool, E>,
+    ) -> Result<(), E> {
+        let plan = self.check.plan();
+        let is_fixed = self.check.said.draws.is_some();
+        loop {
+            if !is_fixed && !self.is_open() {
+                self.stopped = Some(Stop::Decided);
+                return Ok(());
+            }
+            let left = plan.most.saturating_sub(self.draws());
+            if left == 0 {
+                self.stopped = (!is_fixed).then_some(Stop::Limit);
+                return Ok(());
+            }
+            let request = plan.request(self.next, left);
+            self.next += 1;
+            if !source(self, request)? {
+                return Ok(());
+            }
+        }
+    }
+
+    /// Adds a block of draws by one column for each value.
+    pub(super) fn absorb_columns(&mut self, columns: &[&[f64]], lookups: &[f64]) {
+        debug_assert!(self.columns.iter().all(Vec::is_empty));
+        Reading::absorb_values(&mut self.readings, columns, lookups);
+    }
+
     /// Adds draws; those of several values lie one draw after the other. How many come in one call makes no
     /// difference.
     ///
@@ -136,7 +257,10 @@ impl Pushed {
             return Err(CheckError::NoDraws { name: self.check.name });
         }
         self.judge_block();
-        Ok(self.check.outcome(self.readings, None))
+        let Self { check, readings, stopped, .. } = self;
+        let channels = check.said.names(readings.len());
+        let values = readings.into_iter().map(|reading| reading.close(stopped)).collect();
+        Ok(Outcome { name: check.name, alpha: check.said.alpha, channels, values })
     }
 
     /// Panics unless the draws pass.
