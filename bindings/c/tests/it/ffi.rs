@@ -88,7 +88,7 @@ fn eight_threads_agree() {
 
 #[test]
 fn draws_are_those_of_rust() {
-    let check = trueflight::check("the same draws", |rng| rng.uniform() * rng.positive_uniform());
+    let check = gate::check("the same draws", |rng| rng.uniform() * rng.positive_uniform());
     let check = check.truth(0.25).variance(1.0 / 9.0 - 1.0 / 16.0).seed(7).draws(100_001);
     let outcome = check.verdict().expect("a verdict");
     assert_eq!(run("same.c"), (Some(0), format!("{outcome}\n")));
