@@ -89,11 +89,11 @@ impl<S> Check<S> {
     /// rest.
     ///
     /// ```
-    /// use trueflight::check::Property;
+    /// use trueflight_gate::check::Property;
     ///
-    /// let check = trueflight::claim("uniform").set(Property::Truth, &[0.5])?.set(Property::Range, &[0.0, 1.0])?;
+    /// let check = trueflight_gate::claim("uniform").set(Property::Truth, &[0.5])?.set(Property::Range, &[0.0, 1.0])?;
     /// assert!(check.set(Property::Draws, &[0.5]).is_err());
-    /// # Ok::<(), trueflight::check::CheckError>(())
+    /// # Ok::<(), trueflight_gate::check::CheckError>(())
     /// ```
     pub fn set(mut self, property: Property, numbers: &[f64]) -> Result<Self, CheckError> {
         let given = Given { check: self.name.clone(), what: property.name(), numbers };

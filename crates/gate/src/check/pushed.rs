@@ -149,9 +149,9 @@ impl Pushed {
     /// The source's own.
     ///
     /// ```
-    /// use trueflight::check::{CheckError, Request};
+    /// use trueflight_gate::check::{CheckError, Request};
     ///
-    /// let mut pushed = trueflight::claim("uniform").truth(0.5).range(0.0, 1.0).open()?;
+    /// let mut pushed = trueflight_gate::claim("uniform").truth(0.5).range(0.0, 1.0).open()?;
     /// pushed.drive(|pushed, request: Request| {
     ///     let mut stream = request.stream();
     ///     let draws: Vec<f64> = (0..request.draws).map(|_| stream.uniform()).collect();
