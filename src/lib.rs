@@ -56,7 +56,6 @@ pub mod record;
 pub mod render;
 pub mod report;
 pub mod self_test;
-pub mod stress;
 
 pub use ::{estimators, gate, lab, media, numeric, theory};
 pub use case::Catalogue;
@@ -64,7 +63,7 @@ pub use estimators::{kernels, recipes, setup};
 pub use gate::stats;
 pub use gate::{Check, Gate, check, check_with, claim};
 pub use judge::OfCase;
-pub use lab::mutants;
+pub use lab::{mutants, stress};
 pub use media::{catalogue, files, page, phase};
 pub use numeric::{geometry, rng};
 pub use theory::problems;

@@ -10,11 +10,10 @@
 use super::observe::Observe;
 use super::question::{Always, Kind, Known, Question, Scalar, Subject, Wanted};
 use estimators::DrawBuffer;
+use theory::CountLaw;
 
 /// The largest relative error of the lookups that is still worth a promise.
 const CAP: f64 = 0.02;
-/// The relative error of a predicted number of lookups, where theory does not say.
-pub const ERROR: f64 = 1e-10;
 
 /// What is asked.
 pub fn questions(subject: &Subject) -> Vec<Question> {
@@ -22,7 +21,7 @@ pub fn questions(subject: &Subject) -> Vec<Question> {
     let mean = law.mean;
     let kind = if law.variance > 0.0 {
         let variance = law.variance / (mean * mean);
-        let error = ERROR.max(law.error);
+        let error = CountLaw::ERROR.max(law.error);
         let known = Known { variance, error, floor: error };
         let wanted = Wanted { tolerance: subject.tolerance.lookups, cap: CAP };
         let observe = move |counts: &[u32], y: &mut Vec<f64>| {

@@ -34,7 +34,7 @@ mod report;
 mod run;
 mod selection;
 mod self_test;
-mod stress;
+pub mod stress;
 mod verdict;
 
 use std::ffi::OsString;

@@ -1,12 +1,16 @@
 //! `trueflight stress`: where doubles run out of digits, and by how much.
 
 use std::path::PathBuf;
+use std::sync::Arc;
 
 use clap::Args;
+use numeric::rng::Address;
 
 use super::{Console, numbers, output};
+use crate::case::Case;
+use crate::case::source::Source;
 use crate::report::{self, stress as page};
-use crate::stress::{self, Effort, PAGES};
+use crate::stress::{self, Effort, PAGES, Run};
 
 /// Arguments of `stress`.
 #[derive(Debug, Args)]
@@ -33,7 +37,7 @@ pub fn main(arguments: &Arguments, console: &Console) -> anyhow::Result<u8> {
     let effort = if arguments.quick { Effort::Quick } else { Effort::Full };
     // Single precision comes after the pages.
     let bar = output::progress("stressing", "parts", PAGES.len() as u64 + 1, console);
-    let found = pool.install(|| stress::all(effort, arguments.seed, &|_| bar.inc(1)));
+    let found = pool.install(|| stress::all(Run { effort, seed: arguments.seed }, stated, &|_| bar.inc(1)));
     bar.finish_and_clear();
     let written = report::write(&page::artifacts(&found)?, &arguments.out);
     if !console.quiet {
@@ -46,4 +50,17 @@ pub fn main(arguments: &Arguments, console: &Console) -> anyhow::Result<u8> {
         output::print(&output::report_in(&arguments.out.join("stress")))?;
     }
     Ok(u8::from(!found.holds()))
+}
+
+/// Returns truth and relative variance that theory states of a channel of a case with one estimator.
+pub fn stated(text: &str, channel: &str) -> Option<(f64, Option<f64>)> {
+    /// Address of pilot draws, where theory has no variance.
+    const NOWHERE: Address = Address { seed: 0, experiment: 0, block: 0, lane: 0 };
+    let source = Source { name: "stress".into(), path: "stress.toml".into(), text: text.into() };
+    let case = Arc::new(Case::read(&source).ok()?);
+    let ready = case.scenario.prepare(0, None, NOWHERE).ok()?;
+    let found = ready.prediction.channels.iter().find(|found| found.name == channel)?;
+    let truth = found.truth.value;
+    let variance = found.moments.map(|moments| moments.variance() / (truth * truth));
+    Some((truth, variance.filter(|variance| variance.is_finite())))
 }

@@ -14,7 +14,7 @@ use crate::case::ready::Ready;
 use crate::case::source::CaseError;
 use crate::case::sweep::{SweepAxis, Variation, What};
 use crate::checks;
-use ::theory::{Law, Prediction};
+use ::theory::{CountLaw, Law, Prediction};
 use gate::Check;
 use numeric::digits::number;
 
@@ -181,7 +181,7 @@ fn claims(case: &Case, prediction: &Prediction, rounding: f64) -> Vec<(String, C
             lookups: lookups.filter(|law| law.mean > 0.0).map(|law| Lookups {
                 mean: law.mean,
                 variance: Some(law.variance),
-                error: checks::lookups::ERROR.max(law.error),
+                error: CountLaw::ERROR.max(law.error),
             }),
             rounding: checks::rounding(lookups.map_or(0.0, |law| law.mean)).max(rounding),
             flights,

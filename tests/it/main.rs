@@ -61,3 +61,4 @@ mod trust;
 mod value_stability;
 mod vdb;
 mod verdicts;
+mod wild;

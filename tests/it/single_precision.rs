@@ -1,8 +1,9 @@
 //! Single precision beside double: doubles find the truth, and what fails in single precision is what should.
 
 use trueflight::numeric::Narrow as F32;
-use trueflight::stress::Dice;
+use trueflight::cli::stress::stated;
 use trueflight::stress::narrow::compare::{Compare, Estimator};
+use trueflight::stress::narrow::dice::Dice;
 use trueflight::stress::narrow::layers::rod;
 use trueflight::stress::narrow::scene::Scene;
 use trueflight::stress::narrow::trail::Trail;
@@ -12,7 +13,7 @@ use trueflight::theory::ParticleRule;
 #[test]
 fn doubles_find_the_mean_of_every_unbiased_estimator() {
     for depth in [0.3, 4.0] {
-        let scene = Scene::new(depth, 9.0 * depth, 2.0);
+        let scene = Scene { stated, ..Scene::new(depth, 9.0 * depth, 2.0) };
         // Enough walks for the spread that roulette makes, 15 times the squared mean.
         let trial = Trial { scene, seed: 7, budget: 16_000.0 * scene.collisions };
         for (name, estimator, _) in FAMILIES.iter().flat_map(|family| family.entries) {
@@ -30,7 +31,7 @@ fn doubles_find_the_mean_of_every_unbiased_estimator() {
 #[test]
 fn what_is_far_from_the_origin_fails_in_single_precision_and_what_is_near_does_not() {
     let at = |from: f64, estimator: &dyn Compare| {
-        let scene = Scene::new(2.0, 20.0, from);
+        let scene = Scene { stated, ..Scene::new(2.0, 20.0, from) };
         estimator.compare(Trial { scene, seed: 3, budget: 2e5 })
     };
     let failing = ["ratio", "next-flight", "source-driven", "attenuation-driven"];
@@ -61,7 +62,7 @@ fn long_walks_fail_in_single_precision_and_short_ones_do_not() {
 #[test]
 fn decisions_that_are_repeated_have_the_mean_of_walks_that_make_their_own() {
     // So far away that single precision is off by some per cent.
-    let scene = Scene::new(2.0, 12.0, 3e6);
+    let scene = Scene { stated, ..Scene::new(2.0, 12.0, 3e6) };
     let walk = rod(ParticleRule::Weighted);
     let (mut own, mut repeated) = ([0.0; 2], [0.0; 2]);
     let walks = 20_000;

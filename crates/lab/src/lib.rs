@@ -1,6 +1,7 @@
-//! Tests of the tester: known bugs that the gate must catch, correct draws that it must not fail, and the promises that
-//! its verdicts are counted against.
+//! Tests of the tester: known bugs that the gate must catch, correct draws that it must not fail, the promises that
+//! its verdicts are counted against, and numbers under stress.
 
 pub mod calibration;
 pub mod mutants;
 pub mod streams;
+pub mod stress;

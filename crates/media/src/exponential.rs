@@ -42,6 +42,13 @@ pub struct Exponential {
     bounds: Bounds,
 }
 
+impl Exponential {
+    /// `extinction · exp(−rate · axis·p)`, with an axis of length 1.
+    pub fn new(extinction: f64, rate: f64, axis: Point, bounds: Bounds) -> Self {
+        Self { base: 0.0, extinction, rate, axis, bounds }
+    }
+}
+
 /// An exponential stretch of ray.
 ///
 /// ```text
@@ -57,6 +64,11 @@ pub struct Decay {
 }
 
 impl Decay {
+    /// `extinction · exp(−rate · t)`, with an extinction of at least 0, 1/length, and a rate, 1/length.
+    pub fn new(extinction: f64, rate: f64) -> Self {
+        Self { base: 0.0, scale: extinction, offset: 0.0, slope: -rate }
+    }
+
     fn exponent(&self, t: f64) -> f64 {
         self.offset + self.slope * t
     }

@@ -39,11 +39,25 @@ pub struct Gaussian {
     bounds: Bounds,
 }
 
+impl Gaussian {
+    /// Peak of at least 0, 1/length, and standard deviation above 0.
+    pub fn new(peak: f64, centre: Point, width: f64, bounds: Bounds) -> Self {
+        Self { peak, centre, width, bounds }
+    }
+}
+
 /// A Gaussian along a ray.
 pub struct Bump {
     peak: f64,
     foot: f64,
     width: f64,
+}
+
+impl Bump {
+    /// Peak of at least 0, 1/length, its distance, and standard deviation above 0.
+    pub fn new(peak: f64, centre: f64, width: f64) -> Self {
+        Self { peak, foot: centre, width }
+    }
 }
 
 impl Extinction for Bump {

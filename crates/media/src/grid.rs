@@ -53,7 +53,7 @@ use super::cells::Cells;
 use super::cubics::Cubics;
 use super::grid_file::Format;
 use super::grid_settings::{
-    facts, format, no_placement, own_bounds, read_bounds, read_placement, read_samples,
+    facts, format, no_placement, own_bounds, random, read_bounds, read_placement, read_samples,
 };
 use super::voxels::{Interpolation, Placement, Voxels};
 use super::{Extinction, Field, FreeFlight, OpticalDepth, Smoothness};
@@ -66,6 +66,21 @@ pub struct Grid {
     voxels: Arc<Voxels>,
     /// Contents of the file; empty for a random grid.
     facts: Vec<String>,
+}
+
+impl Grid {
+    /// Random samples in [0, 1), as of the setting `random`.
+    pub fn random(
+        size: [usize; 3],
+        seed: u32,
+        bounds: Aabb,
+        interpolation: Interpolation,
+        placement: Placement,
+    ) -> Self {
+        let samples = random(size, seed);
+        let voxels = Voxels::new(&samples, 1.0, bounds, interpolation, placement);
+        Self { voxels: Arc::new(voxels), facts: Vec::new() }
+    }
 }
 
 /// A voxel grid along a ray.

@@ -88,7 +88,7 @@ pub(super) fn facts(settings: &Settings, samples: &Samples, bounds: Aabb) -> Vec
     facts
 }
 
-#[allow(clippy::cast_possible_truncation)] // sizes and seed are read within 32 bits
+#[allow(clippy::cast_possible_truncation)] // read within 32 bits
 fn read_random(settings: &Settings) -> Option<Samples> {
     let size = settings.counts("size", 1..=4096);
     let seed = settings.count_or("seed", 0..=u64::from(u32::MAX), 0);
@@ -99,11 +99,17 @@ fn read_random(settings: &Settings) -> Option<Samples> {
         settings.fault("size", "the grid is too large", help);
         return None;
     }
+    Some(random(size, seed))
+}
+
+/// Hashed samples in [0, 1).
+#[allow(clippy::cast_possible_truncation)] // at most 4096 along each axis
+pub(super) fn random(size: [usize; 3], seed: u32) -> Samples {
     let [nx, ny, nz] = size.map(|n| n as u32);
     let hash = |x, y, z| f64::from(lattice::hash3(x, y, z, seed)) / 4_294_967_296.0;
     let rows = (0..nz).flat_map(|z| (0..ny).map(move |y| (y, z)));
     let values = rows.flat_map(|(y, z)| (0..nx).map(move |x| hash(x, y, z))).collect();
-    Some(Samples { size, values, bounds: None, turned: None, remark: String::new() })
+    Samples { size, values, bounds: None, turned: None, remark: String::new() }
 }
 
 /// The placement of a file that says it itself.

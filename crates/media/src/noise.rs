@@ -184,6 +184,17 @@ fn track(ray: &Ray, frequency: f64) -> Track {
 }
 
 impl Noise {
+    /// Octaves that halve their amplitude, with quintic fades; the largest extinction is above 0, 1/length.
+    pub fn of_octaves(
+        extinction: f64,
+        (frequency, octaves): (f64, u32),
+        seed: u32,
+        bounds: Bounds,
+    ) -> Self {
+        let fade = Fade::Quintic;
+        Self::new(Spectrum { extinction, frequency, octaves, gain: 0.5, seed, fade }, bounds)
+    }
+
     fn new(spectrum: Spectrum, bounds: Bounds) -> Self {
         Self { unit: spectrum.unit(), spectrum, bounds }
     }

@@ -56,6 +56,13 @@ pub struct Layers<const STEPS: bool> {
     bounds: Bounds,
 }
 
+impl<const STEPS: bool> Layers<STEPS> {
+    /// Pieces of the height along an axis of length 1.
+    pub fn new(pieces: Piecewise, axis: Point, bounds: Bounds) -> Self {
+        Self { pieces, axis, bounds }
+    }
+}
+
 impl<const STEPS: bool> Field for Layers<STEPS> {
     type Profile = Piecewise;
 

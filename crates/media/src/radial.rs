@@ -86,6 +86,11 @@ impl OpticalDepth for Chord {
 impl FreeFlight for Chord {}
 
 impl Radial {
+    /// `Σ cₖ (r/radius)^{2k}`, which is nowhere negative in the ball.
+    pub fn new(centre: Point, radius: f64, coefficients: [f64; MOST]) -> Self {
+        Self { centre, radius, coefficients }
+    }
+
     /// Where σ_t has its extremes in x, the ends of a range and what is between them.
     fn extremes(&self, from: f64, to: f64) -> impl Iterator<Item = f64> + use<> {
         let [_, b, c, d] = self.coefficients;

@@ -38,6 +38,13 @@ pub struct Sines {
     bounds: Bounds,
 }
 
+impl Sines {
+    /// Waves `amplitude · sin(vector·p + phase)` about a base of at least the sum of their absolute amplitudes.
+    pub fn new(base: f64, waves: Vec<(f64, Point, f64)>, bounds: Bounds) -> Self {
+        Self { base, waves, bounds }
+    }
+}
+
 /// Waves along a ray.
 pub struct Waves {
     base: f64,
@@ -46,10 +53,14 @@ pub struct Waves {
     parts: Vec<Wave>,
 }
 
-struct Wave {
-    amplitude: f64,
-    frequency: f64,
-    phase: f64,
+/// `amplitude · sin(frequency · t + phase)`.
+pub struct Wave {
+    /// Amplitude, 1/length.
+    pub amplitude: f64,
+    /// Frequency, radians/length.
+    pub frequency: f64,
+    /// Phase, radians.
+    pub phase: f64,
 }
 
 impl Wave {
@@ -63,7 +74,8 @@ impl Wave {
 }
 
 impl Waves {
-    fn new(base: f64, parts: Vec<Wave>) -> Self {
+    /// Waves about a base of at least the sum of their absolute amplitudes, 1/length.
+    pub fn new(base: f64, parts: Vec<Wave>) -> Self {
         let trough = base - parts.iter().map(|wave| wave.amplitude.abs()).sum::<f64>();
         Self { base, trough, parts }
     }

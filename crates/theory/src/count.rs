@@ -29,6 +29,9 @@ pub struct CountLaw {
 }
 
 impl CountLaw {
+    /// Relative error of a predicted mean number, where its own `error` is smaller.
+    pub const ERROR: f64 = 1e-10;
+
     /// The same number every time.
     pub fn always(number: f64) -> Self {
         let mut pmf = Vec::new();

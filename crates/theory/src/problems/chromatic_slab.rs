@@ -41,6 +41,11 @@ pub struct ChromaticSlab {
 }
 
 impl ChromaticSlab {
+    /// A slab with a medium, an albedo in `[0, 1]` and an incidence for each channel.
+    pub fn new(media: Vec<Medium>, albedos: Vec<f64>, incidences: Vec<Incidence>) -> Self {
+        Self { media, colours: Colours::new(albedos, true), incidences }
+    }
+
     /// The phase functions of all channels.
     pub fn phases(&self) -> Vec<Phase> {
         self.incidences.iter().map(|incidence| incidence.phase).collect()
@@ -58,7 +63,7 @@ impl Problem for ChromaticSlab {
         let (light, (albedos, phases), bodies) = (light?, scatterers?, body?.channels());
         let incidences = phases.into_iter().map(|phase| Incidence { light, phase }).collect();
         let media = bodies.iter().map(Body::medium).collect();
-        Some(Self { media, colours: Colours::new(albedos, true), incidences })
+        Some(Self::new(media, albedos, incidences))
     }
 
     fn medium(&self) -> &Medium {

@@ -1,0 +1,178 @@
+//! Fields of trials: along a line with their exact optical depth, and in space.
+
+use std::sync::Arc;
+
+use super::tails::normal_between;
+use media::body::Body;
+use media::constant::{Constant, Homogeneous};
+use media::eq21::Eq21;
+use media::exponential::{Decay, Exponential};
+use media::gaussian::{Bump, Gaussian};
+use media::grid::Grid;
+use media::noise::Noise;
+use media::radial::Radial;
+use media::sines::{Wave, Waves};
+use media::voxels::{Interpolation, Placement};
+use media::{Medium, Piecewise, Profile, Volume};
+use numeric::geometry::{Aabb, Bounds, Point, Ray};
+use numeric::{Span, Wide};
+
+/// A field on a stretch of a line.
+#[derive(Debug, Clone)]
+pub(super) struct Line {
+    pub field: Field,
+    pub from: f64,
+    pub to: f64,
+}
+
+/// A field along a line.
+#[derive(Debug, Clone)]
+pub(super) enum Field {
+    Constant {
+        extinction: f64,
+    },
+    Steps {
+        breaks: Vec<f64>,
+        values: Vec<f64>,
+    },
+    Lines {
+        knots: Vec<f64>,
+        values: Vec<f64>,
+    },
+    Exponential {
+        extinction: f64,
+        rate: f64,
+    },
+    Gaussian {
+        peak: f64,
+        centre: f64,
+        width: f64,
+    },
+    /// Amplitudes, frequencies and phases.
+    Sines {
+        base: f64,
+        waves: Vec<[f64; 3]>,
+    },
+}
+
+impl Line {
+    pub fn medium(&self) -> Medium {
+        let profile: Arc<Profile> = match &self.field {
+            &Field::Constant { extinction } => Arc::new(Homogeneous { extinction }),
+            Field::Steps { breaks, values } => Arc::new(Piecewise::steps(breaks, values)),
+            Field::Lines { knots, values } => Arc::new(Piecewise::lines(knots, values)),
+            &Field::Exponential { extinction, rate } => Arc::new(Decay::new(extinction, rate)),
+            &Field::Gaussian { peak, centre, width } => Arc::new(Bump::new(peak, centre, width)),
+            Field::Sines { base, waves } => {
+                let wave = |&[amplitude, frequency, phase]: &[f64; 3]| Wave {
+                    amplitude,
+                    frequency,
+                    phase,
+                };
+                Arc::new(Waves::new(*base, waves.iter().map(wave).collect()))
+            }
+        };
+        let span = Span::new(self.from, self.to);
+        Medium::new(profile, span, span)
+    }
+
+    /// Optical depth in 32 digits.
+    pub fn depth(&self) -> Wide {
+        let [from, to] = [self.from, self.to].map(Wide::from);
+        let length = to - from;
+        let widths = |knots: &[f64]| -> Vec<Wide> {
+            knots.windows(2).map(|pair| Wide::from(pair[1]) - pair[0]).collect()
+        };
+        match &self.field {
+            &Field::Constant { extinction } => length * extinction,
+            Field::Steps { breaks, values } => {
+                widths(breaks).into_iter().zip(values).map(|(width, &value)| width * value).sum()
+            }
+            Field::Lines { knots, values } => {
+                let mean = |pair: &[f64]| (Wide::from(pair[0]) + pair[1]).scaled(-1);
+                widths(knots).into_iter().zip(values.windows(2)).map(|(w, p)| w * mean(p)).sum()
+            }
+            &Field::Exponential { extinction, rate } => {
+                let slope = Wide::from(rate);
+                -(-(slope * length)).exp_m1() / slope * ((-(slope * from)).exp() * extinction)
+            }
+            &Field::Gaussian { peak, centre, width } => {
+                let [a, b] = [from, to].map(|s| (s - centre) / width);
+                normal_between(a, b) * Wide::PI.scaled(1).sqrt() * width * peak
+            }
+            Field::Sines { base, waves } => {
+                let wave = |&[amplitude, frequency, phase]: &[f64; 3]| {
+                    let [a, b] = [self.from, self.to].map(|s| {
+                        let [_, cosine] = (Wide::product(frequency, s) + phase).sin_cos();
+                        cosine
+                    });
+                    (a - b) * amplitude / frequency
+                };
+                length * *base + waves.iter().map(wave).sum::<Wide>()
+            }
+        }
+    }
+}
+
+/// A homogeneous medium from 0 on.
+pub(super) fn homogeneous(extinction: f64, length: f64) -> Medium {
+    Line { field: Field::Constant { extinction }, from: 0.0, to: length }.medium()
+}
+
+/// Layers, or straight lines between knots if there is a value more.
+pub(super) fn pieces(knots: &[f64], values: &[f64]) -> Medium {
+    let [from, to] = [knots[0], knots[knots.len() - 1]];
+    let (knots, values) = (knots.to_vec(), values.to_vec());
+    let is_steps = values.len() < knots.len();
+    let steps = |breaks| Field::Steps { breaks, values: values.clone() };
+    let field = if is_steps { steps(knots) } else { Field::Lines { knots, values } };
+    Line { field, from, to }.medium()
+}
+
+/// A field in space that rays cross.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum Space {
+    Constant(f64),
+    Eq21,
+    /// Largest extinction, frequency, octaves and radius of its ball.
+    Noise(f64, f64, u32, Option<f64>),
+    /// Samples along the axes, and how they are interpolated.
+    Grid([usize; 3], Interpolation),
+    /// Peak, width and radius of its ball.
+    Gaussian(f64, f64, f64),
+    /// Rate and radius of its ball.
+    Exponential(f64, f64),
+    Radial,
+}
+
+impl Space {
+    pub fn volume(self) -> Arc<Volume> {
+        let middle = Point([0.0, 0.0, 10.0]);
+        let ball = |radius| Bounds::Sphere { centre: middle, radius };
+        match self {
+            Self::Constant(extinction) => Arc::new(Constant::new(extinction, Bounds::Everywhere)),
+            Self::Eq21 => Arc::new(Eq21),
+            Self::Noise(extinction, frequency, octaves, radius) => {
+                let bounds = radius.map_or(Bounds::Everywhere, ball);
+                Arc::new(Noise::of_octaves(extinction, (frequency, octaves), 0, bounds))
+            }
+            Self::Grid(size, interpolation) => {
+                let bounds = Aabb { low: Point([-8.0, -8.0, 0.0]), high: Point([8.0, 8.0, 20.0]) };
+                let placement = Placement::CentresClamped;
+                Arc::new(Grid::random(size, 0, bounds, interpolation, placement))
+            }
+            Self::Gaussian(peak, width, radius) => {
+                Arc::new(Gaussian::new(peak, Point([1.0, 0.0, 9.0]), width, ball(radius)))
+            }
+            Self::Exponential(rate, radius) => {
+                Arc::new(Exponential::new(1.0, rate, Point([0.0, 0.0, 1.0]), ball(radius)))
+            }
+            Self::Radial => Arc::new(Radial::new(middle, 8.0, [0.6, -0.6, 0.0, 0.0])),
+        }
+    }
+}
+
+/// The field of a volume along a ray.
+pub(super) fn crossed(volume: Arc<Volume>, ray: Ray) -> Medium {
+    Body::Volume { name: String::new(), volume, ray }.medium()
+}

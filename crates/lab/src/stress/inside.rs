@@ -1,0 +1,241 @@
+//! Inside rods: orders of scattering, the flux, and the energy absorbed, from power series in 32 digits.
+//!
+//! The worth of a particle obeys the equations of `line`:
+//!
+//! ```text
+//! order n to the power k:   A = σ̂(1 − Q_k), B = 0,  s from order n − 1
+//! Y^k, Y = Σ c w:           A = σ̂(1 − Q_k − S_k p_f), B = σ̂ S_k p_b,  s from Y, …, Y^{k−1}
+//! ```
+
+use proptest::collection::vec;
+use proptest::strategy::Strategy;
+
+use super::line::{Both, Line, NOTHING, after};
+use super::parameters::{Number, share, sized};
+use super::rods::{moments_of, rod_with, rule};
+use super::row::Row;
+use super::series::{add, binomial, constant, power};
+use super::table::{Run, Seen, central};
+use media::Piecewise;
+use numeric::Wide;
+use theory::particle::ParticleRule;
+use theory::problems::rod::{self, HIGHEST_ORDER, MOST_PARTS, Quantity};
+use theory::rod as rods;
+
+/// All rows.
+pub fn rows(run: Run) -> Vec<Row> {
+    let range = "to order 6, 1 … 4 parts, two albedos, τ = 1e-6 … 30";
+    #[allow(clippy::cast_possible_truncation)] // six
+    let highest = HIGHEST_ORDER as usize;
+    let case = || Case::any(sized(-6.0, 1.48), highest..=highest);
+    let mut rows = run.fill([16, 256], SEEN.map(|seen| Row::stated(seen, range)), case, truths);
+    let range = "to order 3, 1 … 4 parts, 3 rules, r = 0.1 … 3, τ = 1e-3 … 10";
+    let of_walks = std::array::from_fn::<_, 6, _>(|i| {
+        let what = ["variance", "fourth moment"][i / 3];
+        Row::stated(format!("{what}, {}", SEEN[i % 3]), range)
+    });
+    let walks = || (Case::any(sized(-3.0, 1.0), 1..=3), sized(-1.0, 0.5), 0..3_usize);
+    rows.extend(run.fill([8, 96], of_walks, walks, moments));
+    rows
+}
+
+const SEEN: [&str; 3] =
+    ["orders of scattering in a rod", "flux inside a rod", "absorption in a rod"];
+
+/// The row of a channel.
+fn row_of(seen: Quantity) -> Option<usize> {
+    match seen {
+        Quantity::ReflectedBy(_) | Quantity::TransmittedBy(_) => Some(0),
+        Quantity::Flux(_) => Some(1),
+        Quantity::Absorbed => Some(2),
+        Quantity::Reflected | Quantity::Transmitted => None,
+    }
+}
+
+/// A rod of one or two halves, and what is seen of it.
+#[derive(Debug, Clone)]
+struct Case {
+    depth: f64,
+    forward: f64,
+    albedo: Vec<f64>,
+    parts: usize,
+    highest_order: usize,
+}
+
+impl Case {
+    fn any(depth: Number, order: std::ops::RangeInclusive<usize>) -> impl Strategy<Value = Self> {
+        (depth, share(), vec(share(), 1..=2), 1..=MOST_PARTS, order).prop_map(
+            |(depth, forward, albedo, parts, highest_order)| Self {
+                depth,
+                forward,
+                albedo,
+                parts,
+                highest_order,
+            },
+        )
+    }
+
+    fn channels(&self) -> Vec<Quantity> {
+        rod::channels(self.parts, true, Some(self.highest_order))
+    }
+}
+
+fn truths(case: &Case, seen: &mut Seen) -> Option<()> {
+    let (mesh, rod) = rod_with(case.depth, &case.albedo, case.forward, case.channels());
+    let found = rods::truth(&mesh, &rod);
+    let exact = Exact::new(case, ParticleRule::Terminating, case.depth, 1);
+    for (i, channel) in case.channels().into_iter().enumerate() {
+        let Some(row) = row_of(channel) else { continue };
+        seen.at(channel.name());
+        let [exact, ..] = exact.powers(channel);
+        match found.as_ref().filter(|_| exact.high >= 1e-290) {
+            Some(found) => seen.stated(row, found[i], exact),
+            None => seen.skip(row),
+        }
+    }
+    Some(())
+}
+
+fn moments((case, ratio, kind): &(Case, f64, usize), seen: &mut Seen) -> Option<()> {
+    let (sampling, rule) = (case.depth / ratio, rule(*ratio, *kind));
+    let (mesh, rod) = rod_with(case.depth, &case.albedo, case.forward, case.channels());
+    let flown = Piecewise::constant(sampling, mesh.support());
+    let found = rods::predict(&mesh, &rod, &flown, rule, true);
+    let exact = Exact::new(case, rule, sampling, 4);
+    for (i, channel) in case.channels().into_iter().enumerate() {
+        let Some(row) = row_of(channel) else { continue };
+        seen.at(channel.name());
+        // A moment that diverges says so, as `rods` checks.
+        let known = found.channels[i].moments.filter(|moments| moments.relative[0].is_finite());
+        let known = known.map(|known| (known, exact.powers(channel)));
+        let Some((known, raw)) = known.filter(|(_, raw)| raw[0].high >= 1e-70) else {
+            seen.skip(row);
+            seen.skip(row + 3);
+            continue;
+        };
+        // In units of the mean as it is told, which may have few digits.
+        let [second, fourth] = central(raw, Wide::from(known.scale));
+        seen.central(row, known.relative[0], known.error, second);
+        seen.central(row + 3, known.relative[2], known.error, fourth);
+    }
+    Some(())
+}
+
+/// Twelfths hold halves, thirds and quarters.
+const STRETCHES: usize = 12;
+
+/// What leaves by order at the end and at the beginning, and scores, to the powers 1 … 4.
+struct Exact<'a> {
+    case: &'a Case,
+    sampling: Wide,
+    /// `σ_t/σ̂`.
+    ratio: Wide,
+    line: Line,
+    /// Q and S of the stretches to the powers 0 … 4.
+    odds: Vec<[[Wide; 2]; 5]>,
+    /// Highest power.
+    powers: usize,
+    orders: [Vec<Vec<Wide>>; 2],
+}
+
+impl<'a> Exact<'a> {
+    fn new(case: &'a Case, rule: ParticleRule, sampling: f64, powers: usize) -> Self {
+        let ratio = Wide::from(case.depth) / sampling;
+        let of = |albedo: f64| [0, 1, 2, 3, 4].map(|k| moments_of(rule, ratio, albedo, k));
+        let albedo = |stretch: usize| case.albedo[stretch * case.albedo.len() / STRETCHES];
+        let odds: Vec<_> = (0..STRETCHES).map(|stretch| of(albedo(stretch))).collect();
+        let fastest = |odds: &[[Wide; 2]; 5]| {
+            odds.iter().fold(0.0, |most: f64, &[q, s]| {
+                let straight = 1.0 - q - s * case.forward;
+                let straight = (1.0 - q).high.abs().max(straight.high.abs());
+                most.max(sampling * (straight + s.high.abs()))
+            })
+        };
+        let line = Line::new(&odds.iter().map(fastest).collect::<Vec<_>>());
+        let (sampling, orders) = (Wide::from(sampling), Default::default());
+        let mut found = Self { case, sampling, ratio, line, odds, powers, orders };
+        found.orders = [0, 1].map(|end| (1..=powers).map(|k| found.by_order(k, end)).collect());
+        found
+    }
+
+    /// `E[X], …, E[X^k]` of a channel, the others 0.
+    fn powers(&self, seen: Quantity) -> [Wide; 4] {
+        match seen {
+            Quantity::ReflectedBy(order) => self.of_order(order, 1),
+            Quantity::TransmittedBy(order) => self.of_order(order, 0),
+            Quantity::Flux(part) => {
+                // σ̂c = 1/width.
+                let score = self.case.parts as f64 / self.sampling;
+                self.scores(&|stretch| {
+                    let is_inside = stretch * self.case.parts / STRETCHES == part;
+                    if is_inside { score } else { Wide::default() }
+                })
+            }
+            _ => self.scores(&|stretch| {
+                let albedo = self.case.albedo[stretch * self.case.albedo.len() / STRETCHES];
+                self.ratio * (1.0 - Wide::from(albedo))
+            }),
+        }
+    }
+
+    fn of_order(&self, order: usize, end: usize) -> [Wide; 4] {
+        std::array::from_fn(|k| self.orders[end].get(k).map_or(Wide::default(), |all| all[order]))
+    }
+
+    /// Onward and turned, per σ̂, after a collision to a power.
+    fn odds(&self, stretch: usize, k: usize) -> [Wide; 2] {
+        let ([q, s], forward) = (self.odds[stretch][k], Wide::from(self.case.forward));
+        [q + s * forward, s * (1.0 - forward)]
+    }
+
+    /// What leaves at the end or at the beginning, of all orders to the power k.
+    fn by_order(&self, k: usize, end: usize) -> Vec<Wide> {
+        let rates =
+            |stretch: usize| [self.sampling * (1.0 - self.odds[stretch][k][0]), Wide::default()];
+        let mut ends = [Wide::default(); 2];
+        ends[1 - end] = Wide::ONE;
+        let mut worth = self.line.solve(&rates, &|_| NOTHING, ends);
+        let mut orders = vec![worth[0][0][0]];
+        let forward = Wide::from(self.case.forward);
+        for _ in 0..self.case.highest_order {
+            let before = worth;
+            let source = |i: usize| {
+                let scattered = self.sampling * self.odds[self.line.0[i].stretch][k][1];
+                after([scattered * forward, scattered * (1.0 - forward)], &before[i])
+            };
+            worth = self.line.solve(&rates, &source, [Wide::default(); 2]);
+            orders.push(worth[0][0][0]);
+        }
+        orders
+    }
+
+    /// `E[Y^j]` of a score c.
+    fn scores(&self, score: &dyn Fn(usize) -> Wide) -> [Wide; 4] {
+        let mut found: Vec<Vec<Both>> = Vec::new();
+        let mut powers = [Wide::default(); 4];
+        for j in 1..=self.powers {
+            let rates = |stretch: usize| {
+                let [onward, turned] = self.odds(stretch, j);
+                [self.sampling * (1.0 - onward), self.sampling * turned]
+            };
+            let source = |at: usize| {
+                let stretch = self.line.0[at].stretch;
+                let c = score(stretch);
+                if c.high == 0.0 {
+                    return NOTHING;
+                }
+                let mut sum: Both = [constant(self.sampling * power(c, j)); 2];
+                for i in 1..j {
+                    let factor = self.sampling * (binomial(j, i) * power(c, j - i));
+                    let later = after(self.odds(stretch, i), &found[i - 1][at]);
+                    sum.iter_mut().zip(&later).for_each(|(sum, later)| add(sum, factor, later));
+                }
+                sum
+            };
+            let worth = self.line.solve(&rates, &source, [Wide::default(); 2]);
+            powers[j - 1] = worth[0][0][0];
+            found.push(worth);
+        }
+        powers
+    }
+}

@@ -1,0 +1,235 @@
+//! Rods with an emitter at the end, and bidirectional paths: moments from power series in 32 digits.
+//!
+//! Real collisions alone change a walk; the moments of a shadow ray's score s are exponentials of the way that is
+//! left, or a quotient of them. A hit that follows a scattering directly is part of its score, with the probability
+//! T and the weight h. With the equations of `line`, D the direction before and ρ its phase function towards the emitter:
+//!
+//! ```text
+//! A = σ(1 − a p_f), B = σ a p_b,
+//! s_D = aσ [ρ (E[s^k](1 − T) + T E[(s + h)^k]) + (1 − ρ) E[s^k] + Σ_{0<i<k} (k over i) E[s^{k−i}] (ρ m⁺ᵢ + (1 − ρ) m⁻ᵢ)]
+//! bidirectional, s light vertices:   E[X^k] = ∫ f c^{k−1}:  segment s − 1 is lost at E[T̂^k], scatterings s − 1 and s
+//!     count aρ to the power k, every other once
+//! ```
+
+use super::fields::homogeneous;
+use super::line::{Both, Line, NOTHING, Series, after};
+use super::parameters::{any_of, between, parameters, share, sized};
+use super::row::Row;
+use super::series::{add, binomial, constant, exponential, inverse, power, product};
+use super::table::{Run, Seen, central};
+use media::Piecewise;
+use numeric::{Known, Wide};
+use theory::Mesh;
+use theory::bidirectional_rod::{self, Connection, Rules, Scene};
+use theory::lit_rod::{self, Combination, Densities, Heuristic, Shadow, Techniques};
+use theory::problems::LitRod;
+
+/// All rows.
+pub fn rows(run: Run) -> Vec<Row> {
+    let range =
+        "3 shadows, 2 heuristics, r = 0.1 … 1, τ = 1e-3 … 10, a and p_f next to 0 and 1, too";
+    let row = Row::moments("walks in a rod with an emitter", range);
+    let mut rows = run.fill([16, 960], row, Lit::any, lit);
+    let range = "order 0 … 4, each technique, r = 0.1 … 1, τ = 1e-3 … 5";
+    let mut of_paths = vec![Row::stated("light of bidirectional paths", range)];
+    of_paths.extend(Row::moments("bidirectional paths in a rod", range));
+    rows.extend(run.fill([16, 640], of_paths, Bidirectional::any, bidirectional));
+    rows
+}
+
+parameters! {
+    /// A rod with an emitter at its end.
+    Lit {
+        depth: f64 = sized(-3.0, 1.0),
+        albedo: f64 = share(),
+        forward: f64 = share(),
+        ratio: f64 = sized(-1.0, 0.0),
+        shadow: Shadow = any_of(&[Shadow::Exact, Shadow::Delta, Shadow::Ratio]),
+        combination: Combination = any_of(&[
+            Combination::NextEvent,
+            Combination::Mis(Densities::Directional, Heuristic::Balance),
+            Combination::Mis(Densities::Directional, Heuristic::Power),
+            Combination::Mis(Densities::Full, Heuristic::Balance),
+            Combination::Mis(Densities::Full, Heuristic::Power),
+        ]),
+    }
+    /// A rod between a light and a sensor.
+    Bidirectional {
+        depth: f64 = sized(-3.0, 0.7),
+        albedo: f64 = between(0.05, 1.0),
+        forward: f64 = between(0.05, 0.95),
+        is_transmitted: bool = proptest::bool::ANY,
+        order: usize = 1..=4_usize,
+        light_vertices: usize = 0..=6_usize,
+        ratio: Option<f64> = proptest::option::of(sized(-1.0, -0.01)),
+    }
+}
+
+fn lit(case: &Lit, seen: &mut Seen) -> Option<()> {
+    let &Lit { depth, albedo, forward, ratio, shadow, combination } = case;
+    let is_full = matches!(combination, Combination::Mis(Densities::Full, _));
+    // The weights of full densities and ratio tracking depend on null collisions: see the tests of the theory.
+    let shadow = if is_full { Shadow::Exact } else { shadow };
+    let medium = homogeneous(depth, 1.0);
+    let everywhere = |value| Piecewise::constant(value, medium.span());
+    let rod = LitRod::new(medium.clone(), &everywhere(albedo), &everywhere(forward));
+    let (mesh, flown) = (Mesh::new(medium.clone()), everywhere(depth / ratio));
+    let techniques = Techniques { shadow: Some(shadow), combination };
+    let found = lit_rod::predict(&mesh, &rod, &flown, techniques, true).channels[0].moments?;
+    let raw = moments(case, shadow);
+    if raw[0].high < 1e-70 {
+        return None;
+    }
+    let [second, fourth] = central(raw, Wide::from(found.scale));
+    seen.central(0, found.relative[0], found.error, second);
+    seen.central(1, found.relative[2], found.error, fourth);
+    Some(())
+}
+
+/// `E[X], …, E[X⁴]`.
+fn moments(case: &Lit, shadow: Shadow) -> [Wide; 4] {
+    let [depth, albedo, forward] = [case.depth, case.albedo, case.forward].map(Wide::from);
+    let null = 1.0 - Wide::from(case.ratio);
+    // Losses of a shadow ray to the power k, per length.
+    let losses = [0, 1, 2, 3, 4].map(|k: usize| match shadow {
+        Shadow::Exact => depth * k as f64,
+        Shadow::Delta => depth * f64::from(u8::from(k > 0)),
+        Shadow::Ratio => depth / case.ratio * (1.0 - power(null, k)),
+    });
+    let line = Line::new(&[2.0 * losses[4].high.max(depth.high)]);
+    let scattered = albedo * depth;
+    let rates = [depth - scattered * forward, scattered * (1.0 - forward)];
+    let zero = [Wide::default(); 2];
+    let mut found: Vec<Vec<Both>> = Vec::new();
+    for k in 1..=4 {
+        let source = |at: usize| -> Both {
+            let step = line.0[at];
+            // e^{−loss} of the way that is left.
+            let left = |loss: Wide| -> Series {
+                exponential((-(loss * (1.0 - step.from))).exp(), loss * step.width)
+            };
+            let alive = left(depth);
+            let own = [forward, 1.0 - forward].map(|phase| {
+                let scores = Scores::new(case.combination, phase, &losses.map(left));
+                let mut sum = constant(Wide::default());
+                let lone = scores.with_hit(k, 0);
+                add(&mut sum, scattered, &lone);
+                for i in 1..=k {
+                    let hit = product(&scores.with_hit(k, i), &alive);
+                    add(&mut sum, scattered * phase * binomial(k, i), &hit);
+                }
+                for i in 1..k {
+                    let later: Both = after([phase, 1.0 - phase], &found[i - 1][at]);
+                    let later = product(&scores.of_ray[k - i], &later[0]);
+                    add(&mut sum, scattered * binomial(k, i), &later);
+                }
+                sum
+            });
+            own
+        };
+        found.push(line.solve(&|_| rates, &source, zero));
+    }
+    let unscattered = (-depth).exp();
+    std::array::from_fn(|k| unscattered + found[k][0][0][0])
+}
+
+/// Scores of a scattering in a step.
+struct Scores {
+    /// `E[s^k]`, k = 0 … 4.
+    of_ray: [Series; 5],
+    /// h, of a hit.
+    hit: Series,
+}
+
+impl Scores {
+    /// Given the phase function towards the emitter, and `E[T̂^k]`.
+    fn new(combination: Combination, phase: Wide, transmittance: &[Series; 5]) -> Self {
+        let one = constant(Wide::ONE);
+        let scaled = |series: &Series, factor: Wide| series.map(|x| x * factor);
+        let Combination::Mis(densities, heuristic) = combination else {
+            let of_ray = std::array::from_fn(|k| scaled(&transmittance[k], power(phase, k)));
+            return Self { of_ray, hit: constant(Wide::default()) };
+        };
+        let found = scaled(&transmittance[1], phase);
+        let ratio = if densities == Densities::Full { found } else { constant(phase) };
+        let raised = match heuristic {
+            Heuristic::Balance => ratio,
+            Heuristic::Power => product(&ratio, &ratio),
+        };
+        let mut sum = one;
+        add(&mut sum, Wide::ONE, &raised);
+        let weight = inverse(&sum);
+        let hit = product(&raised, &weight);
+        let mut powers = vec![one];
+        for k in 0..4 {
+            powers.push(product(&powers[k], &weight));
+        }
+        let of_ray = std::array::from_fn(|k| {
+            scaled(&product(&transmittance[k], &powers[k]), power(phase, k))
+        });
+        Self { of_ray, hit }
+    }
+
+    /// `E[s^{k−i}] h^i`.
+    fn with_hit(&self, k: usize, i: usize) -> Series {
+        (0..i).fold(self.of_ray[k - i], |series, _| product(&series, &self.hit))
+    }
+}
+
+fn bidirectional(case: &Bidirectional, seen: &mut Seen) -> Option<()> {
+    let &Bidirectional { depth, albedo, forward, is_transmitted, order, ratio, .. } = case;
+    let order = if is_transmitted { order - 1 } else { order };
+    let s = case.light_vertices % (order + 3);
+    let depth = Known::exact(depth);
+    let scene = Scene { depth, albedo, forward, is_transmitted, orders: order..=order };
+    let rules = Rules {
+        combination: bidirectional_rod::Combination::Technique(s),
+        connection: ratio.map_or(Connection::Exact, Connection::Ratio),
+        is_shared: false,
+        has_shares: true,
+    };
+    let found = bidirectional_rod::predict(&scene, &rules, ratio, true);
+    let raw = [1, 2, 3, 4].map(|k| of_paths(case, (order, s), k));
+    let channel = found.channels.first()?;
+    seen.at(format_args!("order {order}, s = {s}"));
+    seen.stated(0, channel.truth, raw[0]);
+    let moments = channel.moments?;
+    let [second, fourth] = central(raw, Wide::from(moments.scale));
+    if second.high.abs() < 1e-20 {
+        seen.skip(1);
+        seen.skip(2);
+        return Some(());
+    }
+    seen.central(1, moments.relative[0], moments.error, second);
+    seen.central(2, moments.relative[2], moments.error, fourth);
+    Some(())
+}
+
+/// `E[X^k]` of one technique.
+fn of_paths(case: &Bidirectional, (order, s): (usize, usize), k: usize) -> Wide {
+    let [depth, albedo, forward] = [case.depth, case.albedo, case.forward].map(Wide::from);
+    let is_one = s == 0 || s == order + 2;
+    // Per length, of the segment j.
+    let loss = |j: usize| match case.ratio {
+        _ if is_one || j + 1 != s || k == 1 => depth,
+        None => depth * k as f64,
+        Some(ratio) => {
+            let null = 1.0 - Wide::from(ratio);
+            depth + depth * null / ratio * (1.0 - power(null, k - 1))
+        }
+    };
+    let line = Line::new(&[(0..=order).map(|j| loss(j).high).fold(0.0, f64::max)]);
+    let mut ends = [Wide::default(); 2];
+    ends[usize::from(case.is_transmitted)] = Wide::ONE;
+    let rates = |j: usize| [loss(j), Wide::default()];
+    let mut worth = line.solve(&|_| rates(order), &|_| NOTHING, ends);
+    for j in (0..order).rev() {
+        // The scattering between the segments j and j + 1.
+        let counts = if !is_one && (j + 2 == s || j + 1 == s) { k } else { 1 };
+        let [onward, turned] = [forward, 1.0 - forward].map(|p| depth * power(albedo * p, counts));
+        let before = worth;
+        let source = |at: usize| after([onward, turned], &before[at]);
+        worth = line.solve(&|_| rates(j), &source, [Wide::default(); 2]);
+    }
+    worth[0][0][0]
+}

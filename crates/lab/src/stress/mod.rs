@@ -1,0 +1,157 @@
+//! Numbers under stress: where doubles run out of digits, and by how much.
+//!
+//! Every quantity that a verdict rests on is computed where it is hardest, up to many thousand times, and compared
+//! with arithmetic of 32 digits ([`Wide`](numeric::Wide)), with exact integers, or with another method at a
+//! higher resolution. A page of this folder holds one kind of quantity: lines of the table ([`table`]), each with its
+//! rows ([`row`]), a strategy for the parameters (`parameters`), a trial and an oracle. Oracles share power series and
+//! linear equations (`series`, `line`, `chains`) with each other, and nothing with what they check.
+//!
+//! ```text
+//! relative          |found − exact|/|exact|
+//! of stated error   |found − exact| in units of the error bound that the value carries
+//! deviations        an error in units of the standard deviation
+//! count             number of wrong answers: none is allowed
+//! ```
+//!
+//! | quantity with a stated error | page | oracle |
+//! |---|---|---|
+//! | optical depths of fields in 1-D, of stretches | [`depths`] | closed forms, 32 digits |
+//! | optical depths in 3-D | [`depths`] | quadrature of lookups |
+//! | ends of chords, their optical depth | [`geometry`] | 32 digits |
+//! | transmittance, moments of products | [`moments`] | 32 digits |
+//! | moments of next-flight and MIS | [`collided`] | power series, 32 digits |
+//! | mean free flight, lookups, curves | [`costs`] | closed forms, 32 digits |
+//! | rods: truths, moments, lookups | [`rods`] | closed forms, 32 digits |
+//! | rods: orders, flux, absorption; moments | [`inside`] | power series, 32 digits |
+//! | rods with an emitter, bidirectional paths: moments | [`lit_rods`] | power series, 32 digits |
+//! | slabs: R, T, collisions | [`slabs`] | twice the resolution; ordinates, 32 digits |
+//! | walks in slabs: moments, lookups | [`walks`] | ordinates, 32 digits; more directions; Peierls' equation |
+//! | slabs with a light behind them | [`lit_slabs`] | closed forms, 32 digits; other techniques |
+//! | several channels: transmittance, rods, slabs | [`spectral`] | closed forms, ordinates, 32 digits |
+//! | light in balls | [`balls`] | ordinates, 32 digits; white light; a finer solution |
+//! | Case's formula, squared distances, H-function | [`mod@infinite`] | trapezoidal rule, 32 digits |
+//! | `∫σ_t dV` | [`contents`] | quadrature of lookups |
+//! | single scattering: radiance | [`scattering`] | 32 digits; panels of distance |
+//! | single scattering: moments, lookups | [`scattered`], [`gathered`] | power series, 32 digits; panels of distance |
+//!
+//! Not among them: optical depths where chords are cut by the eye, as in pictures. In a furnace the answer is 1.
+//!
+//! Random parameters depend on the seed and the line only: a run finds the same numbers on every machine that rounds
+//! alike, whatever its threads.
+
+pub mod accumulators;
+pub mod balls;
+mod chains;
+pub mod collided;
+pub mod contents;
+pub mod costs;
+pub mod depths;
+pub mod elementary;
+mod fields;
+pub mod flights;
+pub mod gathered;
+pub mod generator;
+pub mod geometry;
+pub mod infinite;
+pub mod inside;
+mod line;
+pub mod lit_rods;
+pub mod lit_slabs;
+pub mod moments;
+pub mod narrow;
+mod ordinates;
+mod parameters;
+mod peierls;
+pub mod rods;
+pub mod row;
+pub mod scattered;
+pub mod scattering;
+mod series;
+mod shared_walk;
+pub mod slabs;
+pub mod spectral;
+pub mod table;
+pub mod tails;
+mod tally;
+mod techniques;
+pub mod walks;
+
+pub use self::row::{Measure, Row};
+pub use self::table::{Effort, Run};
+use theory::parallel;
+
+/// Result of the stress test.
+#[derive(Debug, Clone)]
+pub struct Stress {
+    /// One row per quantity.
+    pub rows: Vec<Row>,
+    /// Comparison of single precision with doubles.
+    pub narrow: narrow::Narrow,
+    /// Wall-clock seconds.
+    pub seconds: f64,
+}
+
+impl Stress {
+    /// Every bound holds.
+    pub fn holds(&self) -> bool {
+        self.rows.iter().all(Row::holds)
+    }
+}
+
+/// Lists the pages: from one line each come the module and its turn.
+macro_rules! pages {
+    ($($module:ident,)*) => {
+        /// Every page with the function that fills its rows.
+        pub const PAGES: &[(&str, fn(Run) -> Vec<Row>)] =
+            &[$((stringify!($module), $module::rows)),*];
+    };
+}
+
+pages! {
+    accumulators,
+    elementary,
+    tails,
+    generator,
+    depths,
+    geometry,
+    flights,
+    moments,
+    collided,
+    rods,
+    inside,
+    slabs,
+    walks,
+    balls,
+    infinite,
+    contents,
+    scattering,
+    scattered,
+    gathered,
+    costs,
+    lit_rods,
+    lit_slabs,
+    spectral,
+}
+
+/// Runs the stress test, given the theory of cases; `done` receives the name of each page that is finished.
+pub fn all(run: Run, stated: narrow::Stated, done: &(dyn Fn(&str) + Sync)) -> Stress {
+    let begin = std::time::Instant::now();
+    // At once: the last trials of a page alone would leave threads idle.
+    let (rows, narrow) = rayon::join(
+        || {
+            parallel::map(PAGES, |(name, rows)| {
+                let found = rows(run);
+                done(name);
+                found
+            })
+        },
+        || {
+            let narrow = narrow::measure(run, stated);
+            done("narrow");
+            narrow
+        },
+    );
+    let mut rows: Vec<Row> = rows.into_iter().flatten().collect();
+    rows.extend(narrow.rows());
+    Stress { rows, narrow, seconds: begin.elapsed().as_secs_f64() }
+}

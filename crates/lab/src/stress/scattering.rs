@@ -1,0 +1,191 @@
+//! Single scattering of a point light: the radiance against other quadratures.
+//!
+//! ```text
+//! homogeneous, s = foot + D sinh x:  L = a σ_t Φ/(16π² D) ∫ exp(−σ_t (foot + D eˣ)) dx/cosh x
+//! ```
+//!
+//! Both distances are one exponential, and nothing cancels. Elsewhere panels of s double away from the light,
+//! where theory halves panels of x.
+
+use std::f64::consts::TAU;
+
+use proptest::strategy::Strategy;
+
+use super::chains::arsinh;
+use super::fields::Space;
+use super::parameters::{any_of, between, parameters, sized};
+use super::row::Row;
+use super::table::{Run, Seen};
+use crate::stress::slabs::henyey_greenstein;
+use media::phase::Phase;
+use media::phase::isotropic::Isotropic;
+use media::{Control, Piecewise};
+use numeric::geometry::{Point, Ray};
+use numeric::quadrature::GaussLegendre;
+use numeric::sum::Sum;
+use numeric::{Known, Span, Wide};
+use theory::Mesh;
+use theory::problems::single_scattering::Lamp;
+use theory::problems::{Problem, SingleScattering};
+use theory::single::{Camera, CameraTracking, Scene, Tracking};
+
+/// All rows.
+pub fn rows(run: Run) -> Vec<Row> {
+    let range = "homogeneous, light 1e-6 … 10 away, σ_t ℓ = 1e-4 … 300; 32 digits";
+    let row = Row::stated("single scattering, radiance", range);
+    let mut rows = run.fill([16, 1280], [row], Even::any, homogeneous);
+    let range = "four fields, light 1e-3 … 10 away, g to 0.8; panels of s";
+    let row = Row::stated("single scattering, fields", range);
+    rows.extend(run.fill([4, 1008], [row], lit_field, |field, seen| {
+        let problem = field.problem()?;
+        let found = radiance(&problem);
+        seen.see(0, (found.value - graded(&problem)).abs() / found.error);
+        Some(())
+    }));
+    rows
+}
+
+parameters! {
+    /// A homogeneous medium and a light beside a ray; the foot is in lengths.
+    Even {
+        albedo: f64 = between(0.1, 1.0),
+        length: f64 = sized(-1.0, 1.5),
+        depth: f64 = sized(-4.0, 2.4),
+        distance: f64 = sized(-6.0, 1.0),
+        foot: f64 = between(-0.3, 1.3),
+    }
+}
+
+/// The radiance as theory finds it.
+fn radiance(problem: &SingleScattering) -> Known {
+    let mesh = Mesh::even(problem.medium().clone(), 1);
+    let (nothing, none) = (Piecewise::constant(0.0, mesh.support()), Control::None);
+    let camera = Camera::new(&mesh, &nothing, &none, CameraTracking::Exact);
+    Scene::new(problem, camera, Tracking::Exact, Vec::new()).radiance()
+}
+
+/// A light of power 1 beside a ray through a homogeneous medium that scatters evenly.
+pub(super) fn lit(
+    sigma: f64,
+    distance: f64,
+    foot: f64,
+    length: f64,
+    albedo: f64,
+) -> Option<SingleScattering> {
+    let field = Space::Constant(sigma).volume();
+    let ray = Ray::new(Point([0.0; 3]), Point([0.0, 0.0, 1.0]), length)?;
+    let lamp = Lamp { position: Point([distance, 0.0, foot]), power: 1.0 };
+    let phase = Phase::Isotropic(Isotropic);
+    SingleScattering::new(field, ray, lamp, albedo, phase).ok()
+}
+
+fn homogeneous(
+    &Even { albedo, length, depth, distance, foot }: &Even,
+    seen: &mut Seen,
+) -> Option<()> {
+    let (sigma, foot) = (depth / length, foot * length);
+    let found = radiance(&lit(sigma, distance, foot, length, albedo)?);
+    let [sigma, distance, foot] = [sigma, distance, foot].map(Wide::from);
+    let ends = [0.0, length].map(|s| arsinh((s - foot) / distance));
+    let width = ends[1] - ends[0];
+    let grown = sigma * distance * (ends[1].exp() - ends[0].exp());
+    let panels = (3.0 * width.high + grown.high / 6.0).ceil().max(1.0);
+    let (rule, step) = (GaussLegendre::new(20), width / panels);
+    let (mut integral, mut panel) = (Wide::default(), 0.0);
+    while panel < panels {
+        for (&node, &weight) in rule.nodes.iter().zip(&rule.weights) {
+            let grown = (ends[0] + step * (Wide::from(panel) + node)).exp();
+            let twice = grown + 1.0 / grown;
+            let left = (-(sigma * (foot + distance * grown))).exp();
+            integral += left.scaled(1) / twice * step * weight;
+        }
+        panel += 1.0;
+    }
+    let exact = integral * (albedo * sigma / (Wide::PI * Wide::PI * distance).scaled(4));
+    if exact.high < 1e-290 {
+        return None;
+    }
+    seen.beyond_rounding(0, found, exact);
+    Some(())
+}
+
+/// A ray through a field that varies, and a light beside it.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Lit {
+    field: Space,
+    from: [f64; 2],
+    to: [f64; 2],
+    away: f64,
+    along: f64,
+    turn: f64,
+    phase: Phase,
+}
+
+pub(super) fn lit_field() -> impl Strategy<Value = Lit> {
+    let field = any_of(&[
+        Space::Eq21,
+        Space::Radial,
+        Space::Gaussian(1.0, 2.0, 9.0),
+        Space::Exponential(0.3, 9.0),
+    ]);
+    let light = (sized(-3.0, 1.0), between(0.1, 0.9), between(0.0, TAU));
+    let ends = [[between(-3.0, 3.0); 2]; 2];
+    (field, ends, light, between(-0.8, 0.8)).prop_map(|(field, [from, to], light, asymmetry)| {
+        let (away, along, turn) = light;
+        Lit { field, from, to, away, along, turn, phase: henyey_greenstein(asymmetry) }
+    })
+}
+
+impl Lit {
+    pub fn problem(&self) -> Option<SingleScattering> {
+        let &Self { field, from: [x, y], to: [u, v], away, along, turn, phase } = self;
+        let origin = Point([x, y, -5.0]);
+        let ray = Ray::new(origin, Point([u, v, 15.0]) - origin, 26.0)?;
+        let side = ray.direction.cross(Point([0.0, 1.0, 0.0])).normalised()?;
+        let up = ray.direction.cross(side);
+        let aside = side * turn.cos() + up * turn.sin();
+        let lamp = Lamp { position: ray.at(26.0 * along) + aside * away, power: 1.0 };
+        SingleScattering::new(field.volume(), ray, lamp, 0.7, phase).ok()
+    }
+}
+
+/// The ends of so many panels of s and more, which grow away from the light's foot and from both ends.
+pub(super) fn panels(problem: &SingleScattering, steps: u32) -> Vec<f64> {
+    let (support, foot) = (problem.medium().support(), problem.foot());
+    let mut ends = problem.medium().breaks();
+    let step = support.length() / f64::from(steps);
+    ends.extend((0..=steps).map(|i| support.from + step * f64::from(i)));
+    let mut away = 0.25 * problem.distance();
+    while away < support.length() {
+        ends.extend([foot - away, foot + away]);
+        away *= 1.5;
+    }
+    // A light just outside sees the ends of the support at a glance: roots of the distance from them.
+    let mut near = step;
+    while near > 1e-13 * support.length() {
+        near *= 0.5;
+        ends.extend([support.from + near, support.to - near]);
+    }
+    ends.push(foot);
+    ends.retain(|&s| support.contains_inside(s));
+    ends.extend([support.from, support.to]);
+    ends.sort_by(f64::total_cmp);
+    ends.dedup();
+    ends
+}
+
+fn graded(problem: &SingleScattering) -> f64 {
+    let (medium, rule) = (problem.medium(), GaussLegendre::new(16));
+    let support = medium.support();
+    let gathered = |s: f64| {
+        let before = medium.optical_depth(Span::new(support.from, s)).value;
+        let beyond = problem.shadow_medium(s);
+        let beyond = beyond.map_or(0.0, |m| m.optical_depth(m.support()).value);
+        medium.extinction(s) * problem.source(s) * (-(before + beyond)).exp()
+    };
+    let mut sum = Sum::default();
+    for pair in panels(problem, 320).windows(2) {
+        sum.add(rule.integrate(pair[0], pair[1], gathered));
+    }
+    sum.value()
+}

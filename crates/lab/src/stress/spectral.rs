@@ -1,0 +1,312 @@
+//! Draws that score several channels: moments against closed forms in 32 digits.
+//!
+//! ```text
+//! transmittance, `theory::spectral`, homogeneous:  every moment is an exponential, of MIS a sum of them
+//! coloured scatterers, `theory::spectral_rod`:     E[X^k] = Σ_h w_h L(a_λ^k/a_h^{k−1}), L(a) what leaves the body of an
+//!     albedo a, above 1, too; tracking at P_s:  L(a_λ^k/P_s^{k−1});  independent:  w^{1−k} L(a_λ)
+//! ```
+
+use proptest::collection::vec;
+use proptest::prop_oneof;
+use proptest::strategy::Strategy;
+
+use super::fields::homogeneous;
+use super::ordinates::Ordinates;
+use super::parameters::{any_of, between, parameters, sized};
+use super::rods::{critical, leaving, light};
+use super::row::Row;
+use super::series::power;
+use super::table::{Run, Seen, central};
+use media::Piecewise;
+use media::phase::{Phase, isotropic::Isotropic};
+use numeric::Wide;
+use theory::problems::slab::{Incidence, Light};
+use theory::problems::spectral_rod::{Colours, End};
+use theory::problems::{ChromaticSlab, SpectralRod, SpectralSlab};
+use theory::spectral::{self, Chance};
+use theory::spectral_rod::{Body, Rods, Spectrum, Tracker};
+use theory::spectral_slab::Slabs;
+use theory::{Channel, Mesh, Moments, chromatic_slab};
+
+/// Directions of the ordinates.
+const ORDINATES: usize = 40;
+
+/// All rows.
+pub fn rows(run: Run) -> Vec<Row> {
+    let range = "2 … 4 channels, 8 trackers, τ = 1e-4 … 30, σ̂/σ_t = 1 … 100";
+    let row = Row::moments("spectral transmittance", range);
+    let mut rows = run.fill([64, 6400], row, Transmittance::any, transmittance);
+    let range = "2 … 4 albedos, 3 trackers, τ = 1e-3 … 10";
+    let row = Row::moments("spectral rods", range);
+    rows.extend(run.fill([64, 6400], row, Coloured::any, rod));
+    let range =
+        "isotropic, 2 … 4 albedos, 3 trackers, τ = 1e-2 … 5, μ₀ = 0.05 … 1; discrete ordinates";
+    let row = Row::moments("spectral slabs", range);
+    rows.extend(run.fill([1, 32], row, Coloured::any, slab));
+    let range =
+        "isotropic, 2 … 4 media, independent, τ = 1e-2 … 10, μ₀ = 0.05 … 1; discrete ordinates";
+    let row = Row::moments("chromatic slabs", range);
+    rows.extend(run.fill([2, 48], row, Media::any, chromatic));
+    rows
+}
+
+/// How a transmittance is tracked.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Kind {
+    Independent,
+    InTurn,
+    Hero,
+    Mis,
+    Average,
+    Maximum,
+}
+
+parameters! {
+    /// Channels with a medium each: optical depth, `σ̂/σ_t` less 1, and a share of the heroes.
+    Transmittance {
+        channels: Vec<(f64, f64, f64)> =
+            vec((sized(-4.0, 1.48), sized(-2.0, 2.0), between(0.1, 1.0)), 2..=4),
+        kind: Kind = any_of(&[
+            Kind::Independent,
+            Kind::InTurn,
+            Kind::Hero,
+            Kind::Mis,
+            Kind::Average,
+            Kind::Maximum,
+        ]),
+        is_delta: bool = proptest::bool::ANY,
+    }
+    /// Channels with an albedo each, and shares of the heroes.
+    Coloured {
+        depth: f64 = sized(-3.0, 1.0),
+        forward: f64 = between(0.0, 1.0),
+        cosine: f64 = between(0.05, 1.0),
+        channels: Vec<(f64, f64)> = vec((between(0.02, 1.0), between(0.1, 1.0)), 2..=4),
+        tracker: Tracker = prop_oneof![
+            any_of(&[Tracker::Independent, Tracker::Hero]),
+            between(0.3, 1.0).prop_map(|scatter| Tracker::Tracking { scatter }),
+        ],
+    }
+    /// Channels with a medium each: depth, albedo and a share of the heroes.
+    Media {
+        cosine: f64 = between(0.05, 1.0),
+        channels: Vec<(f64, f64, f64)> =
+            vec((sized(-2.0, 1.0), between(0.02, 1.0), between(0.1, 1.0)), 2..=4),
+    }
+}
+
+/// Probabilities in proportion to shares.
+fn heroes(shares: impl Iterator<Item = f64> + Clone) -> Vec<f64> {
+    let whole: f64 = shares.clone().sum();
+    shares.map(|share| share / whole).collect()
+}
+
+/// Variance and fourth moment of a channel, from raw moments; none of them where one is infinite.
+fn see(seen: &mut Seen, channel: &Channel, raw: [Option<Wide>; 4]) {
+    let Some(Moments { scale, relative, error }) = channel.moments else {
+        seen.skip(0);
+        return seen.skip(1);
+    };
+    let is_known = raw.map(|moment| moment.is_some_and(|m| m.high.is_finite()));
+    let [second, fourth] =
+        central(raw.map(|m| m.unwrap_or(Wide::from(f64::NAN))), Wide::from(scale));
+    for (row, needed, found, exact) in [(0, 2, relative[0], second), (1, 4, relative[2], fourth)] {
+        match (is_known[..needed].iter().all(|&known| known), found.is_finite()) {
+            // Of draws that hardly vary there are no digits.
+            (true, true) if exact.high > 1e-9 => seen.central(row, found, error, exact),
+            (false, false) => seen.see(row, 0.0),
+            _ => seen.skip(row),
+        }
+    }
+}
+
+fn transmittance(case: &Transmittance, seen: &mut Seen) -> Option<()> {
+    let &Transmittance { ref channels, kind, is_delta } = case;
+    let depths: Vec<f64> = channels.iter().map(|channel| channel.0).collect();
+    let mut majorants: Vec<f64> =
+        channels.iter().map(|(depth, above, _)| depth * (1.0 + above)).collect();
+    let tracker = match kind {
+        Kind::Independent => spectral::Tracker::Independent { delta: is_delta },
+        Kind::InTurn => spectral::Tracker::InTurn { delta: is_delta },
+        Kind::Hero => spectral::Tracker::Hero { delta: is_delta },
+        Kind::Mis => spectral::Tracker::Mis { delta: is_delta },
+        Kind::Average => spectral::Tracker::Tracking(Chance::Average),
+        Kind::Maximum => spectral::Tracker::Tracking(Chance::Maximum),
+    };
+    if matches!(kind, Kind::Average | Kind::Maximum) {
+        let largest = majorants.iter().copied().fold(0.0, f64::max);
+        majorants.fill(largest);
+    }
+    let hero = heroes(channels.iter().map(|channel| channel.2));
+    let meshes: Vec<Mesh> =
+        depths.iter().map(|&depth| Mesh::new(homogeneous(depth, 1.0))).collect();
+    let meshes: Vec<&Mesh> = meshes.iter().collect();
+    let spectrum = spectral::Spectrum::new(&meshes, majorants.clone(), hero.clone(), tracker);
+    for (index, channel) in spectrum.predict(&[]).channels.iter().enumerate() {
+        seen.at(format_args!("channel {}", index + 1));
+        let exact = Walked { depths: &depths, majorants: &majorants, hero: &hero, kind, is_delta };
+        see(seen, channel, [1, 2, 3, 4].map(|k| exact.moment(index, k)));
+    }
+    Some(())
+}
+
+/// Channels of length 1, and how they are walked.
+struct Walked<'a> {
+    depths: &'a [f64],
+    majorants: &'a [f64],
+    hero: &'a [f64],
+    kind: Kind,
+    is_delta: bool,
+}
+
+impl Walked<'_> {
+    /// `E[X_λ^k]`; `None` where it is infinite.
+    fn moment(&self, own: usize, k: usize) -> Option<Wide> {
+        let wide = |x: f64| Wide::from(x);
+        let (majorant, depth, w) = (self.majorants[own], self.depths[own], self.hero[own]);
+        let null = |channel: usize| wide(self.majorants[channel]) - self.depths[channel];
+        let nulls = power(null(own), k);
+        // A walk of its own.
+        let alone = match self.is_delta {
+            true => (-wide(depth)).exp(),
+            false => (nulls / power(wide(majorant), k - 1) - majorant).exp(),
+        };
+        let by_hero = |hero: usize| {
+            let left = if self.is_delta { null(hero) } else { wide(self.majorants[hero]) };
+            let flights = (k - 1) as f64 * wide(self.majorants[hero]) - k as f64 * wide(majorant);
+            (flights + nulls / power(left, k - 1)).exp() * self.hero[hero]
+        };
+        let channels = 0..self.hero.len();
+        match self.kind {
+            Kind::Independent => Some(alone / power(wide(w), k - 1)),
+            Kind::InTurn => Some(alone),
+            Kind::Hero => Some(channels.map(by_hero).sum()),
+            Kind::Mis => {
+                // By the number of null collisions; of delta tracking with the density of nulls.
+                let mut terms: Vec<[Wide; 2]> = channels
+                    .map(|hero| {
+                        let rate =
+                            if self.is_delta { null(hero) } else { wide(self.majorants[hero]) };
+                        [(-wide(self.majorants[hero])).exp() * self.hero[hero], rate]
+                    })
+                    .collect();
+                let mut term = (-(k as f64 * wide(majorant))).exp();
+                let mut sum = Wide::default();
+                for n in 1..4000_i32 {
+                    let density: Wide = terms.iter().map(|[density, _]| *density).sum();
+                    let more = term / power(density, k - 1);
+                    sum += more;
+                    if f64::from(n) > 2.0 * majorant && more.high < 1e-25 * sum.high {
+                        break;
+                    }
+                    // Everything is scaled by n!, and both sides by one rate, so that nothing overflows.
+                    term = term * nulls / f64::from(n) / power(wide(majorant), k - 1);
+                    for [density, rate] in &mut terms {
+                        *density = *density * *rate / majorant;
+                    }
+                }
+                Some(sum)
+            }
+            Kind::Average | Kind::Maximum => {
+                let shares = |channel| null(channel) / majorant;
+                let all: Vec<Wide> = channels.map(shares).collect();
+                let size = |x: &Wide| x.value();
+                let chance = if self.kind == Kind::Average {
+                    all.iter().copied().sum::<Wide>() / all.len() as f64
+                } else {
+                    let largest = all.iter().copied().max_by(|a, b| size(a).total_cmp(&size(b)))?;
+                    let least = all.iter().copied().min_by(|a, b| size(a).total_cmp(&size(b)))?;
+                    largest / (largest + 1.0 - least)
+                };
+                let kept = power(all[own], k) / power(chance, k - 1);
+                Some((majorant * (kept - 1.0)).exp())
+            }
+        }
+    }
+}
+
+/// Compares a body of coloured scatterers with what leaves bodies of one albedo.
+fn coloured(
+    case: &Coloured,
+    (body, colours): (Box<dyn Body + '_>, &Colours),
+    leaving: &dyn Fn(Wide) -> Option<[Wide; 2]>,
+    seen: &mut Seen,
+) {
+    let hero = heroes(case.channels.iter().map(|channel| channel.1));
+    let spectrum = Spectrum::new(body, colours, hero.clone(), case.tracker);
+    let prediction = spectrum.predict();
+    for (channel, &(end, own)) in prediction.channels.iter().zip(&colours.seen) {
+        seen.at(&channel.name);
+        let of = |albedo: Wide| Some(leaving(albedo)?[usize::from(end == End::Transmitted)]);
+        let albedo = |channel: usize| Wide::from(colours.albedos[channel]);
+        let moment = |k: usize| match case.tracker {
+            Tracker::Tracking { scatter } => {
+                of(power(albedo(own), k) / power(Wide::from(scatter), k - 1))
+            }
+            Tracker::Hero => (0..hero.len())
+                .map(|h| Some(of(power(albedo(own), k) / power(albedo(h), k - 1))? * hero[h]))
+                .sum(),
+            _ => Some(of(albedo(own))? / power(Wide::from(hero[own]), k - 1)),
+        };
+        see(seen, channel, [1, 2, 3, 4].map(moment));
+    }
+}
+
+fn rod(case: &Coloured, seen: &mut Seen) -> Option<()> {
+    let albedos: Vec<f64> = case.channels.iter().map(|channel| channel.0).collect();
+    let medium = homogeneous(case.depth, 1.0);
+    let rod = SpectralRod::new(medium.clone(), albedos, case.forward);
+    let (mesh, flown) = (Mesh::new(medium.clone()), Piecewise::constant(case.depth, medium.span()));
+    let exact = |albedo: Wide| {
+        let rates = light(Wide::from(case.depth), albedo, case.forward);
+        // Next to the critical length either answer is right.
+        (critical(rates) > 1.002).then(|| self::leaving(rates))
+    };
+    coloured(case, (Box::new(Rods::new(&rod, &mesh, &flown)), &rod.colours), &exact, seen);
+    Some(())
+}
+
+fn slab(case: &Coloured, seen: &mut Seen) -> Option<()> {
+    // Diffuse now and then.
+    let light = if case.cosine < 0.2 { Light::Diffuse } else { Light::Collimated(case.cosine) };
+    let albedos: Vec<f64> = case.channels.iter().map(|channel| channel.0).collect();
+    let depth = case.depth.clamp(1e-2, 5.0);
+    let medium = homogeneous(depth, 1.0);
+    let incidence = Incidence { light, phase: Phase::Isotropic(Isotropic) };
+    let slab = SpectralSlab::new(medium.clone(), albedos, incidence);
+    let (mesh, flown) = (Mesh::new(medium.clone()), Piecewise::constant(depth, medium.span()));
+    let exact = |albedo: Wide| {
+        let [here, beyond] = [1.0, 1.002].map(|longer| {
+            Ordinates::new(Wide::from(depth) * longer, albedo, ORDINATES)
+                .filter(|slab| !slab.swings() || slab.is_positive())
+        });
+        beyond.and(here).map(|slab| slab.energy(light))
+    };
+    let body = Slabs::new(&slab, (&mesh, &flown), false);
+    coloured(case, (Box::new(body), &slab.colours), &exact, seen);
+    Some(())
+}
+
+/// One channel a draw: `E[X^k] = w^{1−k} R`, or T.
+fn chromatic(case: &Media, seen: &mut Seen) -> Option<()> {
+    let light = if case.cosine < 0.2 { Light::Diffuse } else { Light::Collimated(case.cosine) };
+    let albedos: Vec<f64> = case.channels.iter().map(|channel| channel.1).collect();
+    let hero = heroes(case.channels.iter().map(|channel| channel.2));
+    let media: Vec<_> = case.channels.iter().map(|channel| homogeneous(channel.0, 1.0)).collect();
+    let incidence = Incidence { light, phase: Phase::Isotropic(Isotropic) };
+    let problem = ChromaticSlab::new(media.clone(), albedos, vec![incidence; media.len()]);
+    let flown = |channel: &(f64, f64, f64)| Piecewise::constant(channel.0, media[0].span());
+    let flown: Vec<Piecewise> = case.channels.iter().map(flown).collect();
+    let meshes: Vec<Mesh> = media.into_iter().map(Mesh::new).collect();
+    let joined = meshes.iter().zip(&flown).collect();
+    let found = chromatic_slab::Spectrum::new(&problem, joined, false).independent(&hero);
+    for (channel, &(end, own)) in found.channels.iter().zip(&problem.colours.seen) {
+        seen.at(&channel.name);
+        let (depth, albedo, _) = case.channels[own];
+        let slab = Ordinates::new(Wide::from(depth), Wide::from(albedo), ORDINATES)?;
+        let mean = slab.energy(light)[usize::from(end == End::Transmitted)];
+        let raw = |k: usize| Some(mean / power(Wide::from(hero[own]), k - 1));
+        see(seen, channel, [1, 2, 3, 4].map(raw));
+    }
+    Some(())
+}

@@ -1,0 +1,287 @@
+//! The table of the stress test: each line fills rows from trials with random parameters.
+//!
+//! A line names its rows, a strategy for the parameters, and a trial. The trial compares a value of the
+//! library with an oracle and reports errors, each in the measure of its row. The place of an error is the `Debug`
+//! form of the parameters. Where a bound is broken, the parameters are shrunk to shorter numbers that break it, too.
+//!
+//! Parameters depend on the seed, the first row of the line and the number of the trial only.
+
+use std::fmt::{Debug, Display};
+
+use proptest::strategy::{Strategy, ValueTree};
+use proptest::test_runner::{Config, RngAlgorithm, TestRng, TestRunner};
+
+use super::row::Row;
+use super::tally::Tally;
+use numeric::rng::name_hash;
+use numeric::{Known, Wide};
+use theory::Moments;
+use theory::parallel;
+
+/// Duration of a run.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Effort {
+    /// Seconds, for tests.
+    Quick,
+    /// Minutes.
+    Full,
+}
+
+impl Effort {
+    /// Returns the value for this effort.
+    pub fn of<T>(self, quick: T, full: T) -> T {
+        match self {
+            Self::Quick => quick,
+            Self::Full => full,
+        }
+    }
+}
+
+/// Effort and seed of a run.
+#[derive(Debug, Clone, Copy)]
+pub struct Run {
+    /// Duration.
+    pub effort: Effort,
+    /// Seed of the random parameters.
+    pub seed: u64,
+}
+
+/// Tasks that the trials of a line are divided into.
+const TASKS: usize = 64;
+/// Trials that shrinking takes at most.
+const MAX_SHRINKS: u32 = 400;
+
+impl Run {
+    /// Fills rows with a number of trials, quick and full. A trial that returns `None` is skipped in all rows.
+    pub fn fill<S: Strategy>(
+        self,
+        trials: [u32; 2],
+        rows: impl Into<Vec<Row>>,
+        parameters: impl Fn() -> S + Sync,
+        trial: impl Fn(&S::Value, &mut Seen) -> Option<()> + Sync,
+    ) -> Vec<Row> {
+        let rows: Vec<Row> = rows.into();
+        let name = name_hash(&format!("stress|{}|{}", rows[0].quantity, rows[0].range));
+        let tree = |number: u32| {
+            let words = [self.seed, name, number.into(), 0].map(u64::to_le_bytes);
+            let rng = TestRng::from_seed(RngAlgorithm::ChaCha, &words.concat());
+            parameters().new_tree(&mut TestRunner::new_with_rng(Config::default(), rng)).ok()
+        };
+        let seen =
+            || Seen { place: Place::default(), tallies: rows.iter().map(Row::tally).collect() };
+        let try_out = |number: u32, parameters: &S::Value, seen: &mut Seen| {
+            seen.place = Place { trial: number, label: String::new() };
+            if trial(parameters, seen).is_none() {
+                (0..rows.len()).for_each(|row| seen.skip(row));
+            }
+        };
+        let count = self.effort.of(trials[0], trials[1]);
+        let task = |first: usize| {
+            let mut seen = seen();
+            for number in (0..count).skip(first).step_by(TASKS) {
+                if let Some(tree) = tree(number) {
+                    try_out(number, &tree.current(), &mut seen);
+                }
+            }
+            seen.tallies
+        };
+        let mut found = seen().tallies;
+        for later in parallel::range(TASKS, task) {
+            found.iter_mut().zip(later).for_each(|(tally, later)| tally.merge(later));
+        }
+        let shown = |Place { trial, label }: &Place| {
+            let parameters = tree(*trial).map(|tree| tree.current());
+            let parameters = parameters.map_or_else(String::new, |shown| format!("{shown:?}"));
+            if label.is_empty() { parameters } else { format!("{label}, {parameters}") }
+        };
+        let row = |(index, (row, tally)): (usize, (&Row, &Tally<Place>))| {
+            let row = row.with(tally, shown);
+            let first = tally.place.as_ref().filter(|_| !row.is_within());
+            let Some((number, tree)) = first.and_then(|at| Some((at.trial, tree(at.trial)?)))
+            else {
+                return row;
+            };
+            let is_broken = |parameters: &S::Value| {
+                let mut seen = seen();
+                try_out(number, parameters, &mut seen);
+                !row.with(&seen.tallies[index], |_| String::new()).is_within()
+            };
+            let shortest = shrunk(tree, is_broken);
+            Row { place: format!("{}; shortened: {shortest:?}", row.place), ..row }
+        };
+        rows.iter().zip(&found).enumerate().map(row).collect()
+    }
+}
+
+/// A trial, and which of its values.
+#[derive(Debug, Clone, Default)]
+struct Place {
+    trial: u32,
+    /// Name of the value, if a trial has several.
+    label: String,
+}
+
+/// Returns the shortest parameters found that break a bound, too.
+fn shrunk<T: ValueTree>(mut tree: T, is_broken: impl Fn(&T::Value) -> bool) -> T::Value {
+    let mut shortest = tree.current();
+    let mut is_open = tree.simplify();
+    for _ in 0..MAX_SHRINKS {
+        if !is_open {
+            break;
+        }
+        let parameters = tree.current();
+        is_open = if is_broken(&parameters) {
+            shortest = parameters;
+            tree.simplify()
+        } else {
+            tree.complicate()
+        };
+    }
+    shortest
+}
+
+/// Errors that the trials of a line have shown.
+pub struct Seen {
+    place: Place,
+    tallies: Vec<Tally<Place>>,
+}
+
+impl Seen {
+    /// Says which of several values of a trial comes next.
+    pub fn at(&mut self, label: impl Display) {
+        self.place.label = label.to_string();
+    }
+
+    /// Adds an error, in the measure of the row.
+    pub fn see(&mut self, row: usize, error: f64) {
+        self.tallies[row].see(error, || self.place.clone());
+    }
+
+    /// Adds an answer that is right or wrong.
+    pub fn wrong(&mut self, row: usize, is_wrong: bool) {
+        self.see(row, f64::from(u8::from(is_wrong)));
+    }
+
+    /// Returns an answer of the library; a missing one breaks the bound of a row.
+    pub fn found<T>(&mut self, row: usize, answer: Option<T>) -> Option<T> {
+        if answer.is_none() {
+            self.see(row, f64::NAN);
+        }
+        answer
+    }
+
+    /// Adds a trial without anything to compare.
+    pub fn skip(&mut self, row: usize) {
+        self.tallies[row].skip(|| self.place.clone());
+    }
+
+    /// Adds a value with its stated error; a value that rounds to the truth has none.
+    pub fn stated(&mut self, row: usize, found: Known, exact: Wide) {
+        self.see(row, of_stated(found, exact));
+    }
+
+    /// Adds a value with its stated error, beyond half a unit in the last place of the truth.
+    pub fn beyond_rounding(&mut self, row: usize, found: Known, exact: Wide) {
+        let slack = 0.5 * f64::EPSILON * exact.high.abs();
+        self.see(row, over((off(found.value, exact) - slack).max(0.0), found.error));
+    }
+
+    /// Adds a value beside an exact one, relative.
+    pub fn relative(&mut self, row: usize, found: f64, exact: Wide) {
+        self.see(row, exact.relative_error(found));
+    }
+
+    /// Adds a variance and a fourth moment in two neighbouring rows; skipped where theory has none.
+    pub fn moments(
+        &mut self,
+        row: usize,
+        found: Option<Moments>,
+        central: impl FnOnce(f64) -> [Wide; 2],
+    ) {
+        let Some(Moments { scale, relative, error }) = found else {
+            self.skip(row);
+            return self.skip(row + 1);
+        };
+        for (row, (found, exact)) in
+            (row..).zip([relative[0], relative[2]].into_iter().zip(central(scale)))
+        {
+            // Beyond the range of doubles for both.
+            let is_beyond = found == f64::INFINITY && !exact.high.is_finite();
+            self.see(row, if is_beyond { 0.0 } else { exact.relative_error(found) / error });
+        }
+    }
+
+    /// Adds a central moment with a relative error; skipped where theory does not resolve it.
+    pub fn central(&mut self, row: usize, found: f64, error: f64, exact: Wide) {
+        if found.is_finite() {
+            self.stated(row, Known::new(found, found.abs() * error), exact);
+        } else {
+            self.skip(row);
+        }
+    }
+}
+
+/// Returns the absolute error of a value.
+pub fn off(found: f64, exact: Wide) -> f64 {
+    (found - exact).abs().value()
+}
+
+/// Returns an error in units of what is allowed; an exact value is allowed none.
+pub fn over(off: f64, allowed: f64) -> f64 {
+    if off == 0.0 { 0.0 } else { off / allowed }
+}
+
+/// Returns the error of a value in units of its stated error; a value that rounds to the truth has none.
+pub fn of_stated(found: Known, exact: Wide) -> f64 {
+    let off = off(found.value, exact);
+    if off <= 0.5 * f64::EPSILON * exact.high.abs() { 0.0 } else { off / found.error }
+}
+
+/// Returns variance and fourth central moment of raw moments, in a unit.
+pub fn central([m1, m2, m3, m4]: [Wide; 4], unit: Wide) -> [Wide; 2] {
+    let [one, two, three, four] =
+        [m1, m2 / unit, m3 / (unit * unit), m4 / (unit * unit * unit)].map(|moment| moment / unit);
+    let square = one * one;
+    let fourth = four - 4.0 * three * one + 6.0 * two * square - 3.0 * square * square;
+    [two - square, fourth]
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::collection::vec;
+
+    use super::super::parameters::between;
+    use super::*;
+
+    fn run(seed: u64) -> Vec<Row> {
+        let run = Run { effort: Effort::Full, seed };
+        let rows = [Row::relative("q", "r", 0.5), Row::wrong("w", "r")];
+        run.fill(
+            [10, 1000],
+            rows,
+            || vec(between(0.0, 1.0), 1..4),
+            |numbers, seen| {
+                let largest = numbers.iter().copied().fold(0.0, f64::max);
+                seen.at("largest");
+                seen.see(0, if largest > 0.8 { 1.0 } else { 0.1 });
+                seen.wrong(1, false);
+                (largest > 0.05).then_some(())
+            },
+        )
+    }
+
+    #[test]
+    fn a_broken_bound_has_a_short_place() {
+        let rows = run(1);
+        assert!(!rows[0].holds() && rows[0].worst == 1.0 && rows[0].trials == 1000, "{rows:?}");
+        // One number of one or two digits is enough.
+        let place = rows[0].place.split_once("; shortened: ").expect("shortened");
+        assert!(place.0.starts_with("largest, [") && place.1.len() < 8, "{place:?}");
+        assert!(rows[1].holds() && rows[1].place.is_empty() && rows[1].skipped > 0, "{rows:?}");
+    }
+
+    #[test]
+    fn parameters_depend_on_the_seed() {
+        assert!(run(1) == run(1) && run(1) != run(2));
+    }
+}

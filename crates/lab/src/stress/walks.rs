@@ -1,0 +1,364 @@
+//! Walks in slabs: moments and lookups against discrete ordinates, thinner layers and Peierls' equation.
+//!
+//! The k-th moments of a walk are what leaves another slab, whose albedo may exceed 1. Where r is one number
+//! and light is scattered evenly, discrete ordinates in 32 digits know it, and whether it is finite, see
+//! `ordinates`; where r varies, Peierls' equation, see `peierls`. Other phase functions, in layers of other r
+//! and where r varies, are solved again with half as many directions again and a thinner first layer.
+//!
+//! ```text
+//! E[X^k]:  ∫σ̂(1 − Q_k) thick, of the albedo S_k/(1 − Q_k)
+//! E[M] = (1 − R₀ − T₀)/(1 − Q₀ − S₀),  R₀ and T₀ those of k = 0
+//! ```
+
+use proptest::collection::vec;
+use proptest::prop_oneof;
+use proptest::strategy::Strategy;
+
+use super::fields;
+use super::ordinates::Ordinates;
+use super::parameters::{between, parameters, sized};
+use super::peierls::Peierls;
+use super::rods::{lookups, moments_of};
+use super::row::Row;
+use super::slabs::{LIGHTS, henyey_greenstein, lights, phase};
+use super::table::{Run, Seen, central};
+use media::Piecewise;
+use media::phase::{Phase, isotropic::Isotropic};
+use numeric::{Known, Wide};
+use theory::particle::ParticleRule;
+use theory::problems::slab::{Incidence, Light};
+use theory::slab::layer::Slice;
+use theory::slab::{self, Answer, Energy, Existence, Piece, Pieces, Resolution, Walk};
+use theory::{Mesh, Moments};
+
+/// Directions of the ordinates.
+const ORDINATES: usize = 48;
+/// An albedo so near to 1 is taken so far below it: at 1 two solutions are one.
+const WHITE: f64 = 1e-14;
+/// Half as many directions again as moments take, and a first layer of a hundredth.
+const FINER: Resolution =
+    Resolution { faintest: 1e-9, directions: 24, first_layer: 1e-12, ..Resolution::FINE };
+/// The same where r varies, of which many layers are solved.
+const LAYERED: Resolution = Resolution { faintest: 1e-6, first_layer: 1e-9, ..FINER };
+/// What the rows are about.
+const WALKS: &str = "walks in a slab";
+/// Fainter light is not resolved to 1e-4, and refused.
+const FAINT: f64 = 1e-9;
+
+/// All rows.
+pub fn rows(run: Run) -> Vec<Row> {
+    let moments = |range| Row::moments(WALKS, range).to_vec();
+    let with_lookups = |range| {
+        let mut rows = moments(range);
+        rows.push(Row::stated("lookups of walks in a slab", range));
+        rows
+    };
+    let range = "isotropic, 3 rules, r = 0.1 … 3, τ = 1e-3 … 30, μ₀ = 1e-4 … 1; discrete ordinates";
+    let mut of_even = with_lookups(range);
+    of_even.push(Row::wrong("diverging variances in slabs, wrong", range));
+    let mut rows = run.fill([4, 64], of_even, Even::any, even);
+    let range = "1 … 3 layers, |g| to 0.935, 3 rules, r = 0.1 … 2, τ = 1e-3 … 30; half as many directions again";
+    rows.extend(run.fill([2, 64], with_lookups(range), Layers::any, finer));
+    let range =
+        "r varies, isotropic, 2 rules, r = 0 … 1.4, τ = 1e-2 … 5, μ₀ = 1e-4 … 1; Peierls' equation";
+    rows.extend(run.fill([2, 48], moments(range), Graded::any, graded));
+    let range = "r varies, |g| to 0.6, 2 rules, r = 0 … 1.4, ∫σ̂ = 1e-3 … 5; same layers, half as many directions again";
+    rows.extend(run.fill([2, 16], moments(range), Ramp::any, ramps));
+    rows
+}
+
+parameters! {
+    /// One ratio, isotropic scattering.
+    Even {
+        depth: f64 = sized(-3.0, 1.48),
+        albedo: f64 = albedo(),
+        ratio: f64 = sized(-1.0, 0.5),
+        kind: usize = 0..3_usize,
+        lights: Vec<Light> = lights(),
+    }
+    /// Layers of other ratios, any phase function.
+    Layers {
+        depth: f64 = sized(-3.0, 1.48),
+        albedo: f64 = albedo(),
+        ratios: Vec<f64> = vec(sized(-1.0, 0.3), 1..=3),
+        kind: usize = 0..3_usize,
+        phase: Phase = phase(),
+        lights: Vec<Light> = lights(),
+    }
+    /// Straight pieces of r, isotropic scattering.
+    Graded {
+        albedo: f64 = albedo(),
+        most: f64 = between(0.2, 1.4),
+        is_weighted: bool = proptest::bool::ANY,
+        collisions: f64 = sized(-2.0, 0.7),
+        values: Vec<f64> = vec(between(0.0, 1.0), 2..=4),
+        largest: usize = 0..4_usize,
+        lights: Vec<Light> = alike(),
+    }
+    /// r that rises or falls, any phase function.
+    Ramp {
+        flown: f64 = sized(-3.0, 0.7),
+        albedo: f64 = albedo(),
+        ends: [f64; 2] = [between(0.0, 1.4); 2],
+        kind: usize = 0..2_usize,
+        phase: Phase = prop_oneof![
+            1 => proptest::strategy::Just(Phase::Isotropic(Isotropic)),
+            3 => between(-0.6, 0.6).prop_map(henyey_greenstein),
+        ],
+        lights: Vec<Light> = lights(),
+    }
+}
+
+/// One channel; `raw` has no more moments than are finite. Those that both find infinite agree; next to
+/// where they become so either may be right.
+fn see(seen: &mut Seen, found: Option<Moments>, raw: &[Wide]) {
+    let Some(Moments { scale, relative, error }) = found else {
+        seen.skip(0);
+        return seen.skip(1);
+    };
+    let four = std::array::from_fn(|k| raw.get(k).copied().unwrap_or(Wide::from(f64::NAN)));
+    let exact = central(four, Wide::from(scale));
+    for (row, needed, found) in [(0, 2, relative[0]), (1, 4, relative[2])] {
+        match (raw.len() >= needed, found.is_finite()) {
+            (true, true) => seen.central(row, found, error, exact[row]),
+            (false, false) => seen.see(row, 0.0),
+            _ => seen.skip(row),
+        }
+    }
+}
+
+fn albedo() -> impl Strategy<Value = f64> {
+    let white = sized(-12.0, -1.0).prop_map(|less| 1.0 - less);
+    prop_oneof![1 => white, 1 => sized(-2.0, -0.5), 4 => between(0.05, 1.0)]
+}
+
+/// An albedo that is not 1.
+fn below_one(albedo: Wide) -> Wide {
+    let is_white = (1.0 - albedo).high.abs() < WHITE;
+    if is_white { 1.0 - Wide::from(WHITE) } else { albedo }
+}
+
+/// A rule that exists for ratios up to one.
+fn rule(kind: usize, most: f64) -> ParticleRule {
+    use ParticleRule::{NonTerminating, Terminating, Weighted};
+    let rules = [NonTerminating, Weighted, Terminating];
+    rules[kind % if most <= 1.0 { 3 } else { 2 }]
+}
+
+/// What leaves in all lights.
+type Leaving = Vec<[Wide; 2]>;
+
+/// What leaves the slabs of a walk's moments, of which the first infinite one and those beyond are not there,
+/// and how often it collides.
+struct Exact {
+    leaving: Vec<Leaving>,
+    collisions: Option<Vec<Wide>>,
+}
+
+/// Compares a walk in all lights.
+fn compare(seen: &mut Seen, walk: &Walk, lights: &[Light], exact: &Exact) {
+    let known = |x: Wide| Known::new(x.value(), f64::EPSILON * x.value());
+    let answer = |both: &[Wide; 2]| {
+        let [reflected, transmitted] = both.map(known);
+        Answer { reflected, transmitted, score: Known::exact(0.0) }
+    };
+    let first = exact.leaving.first();
+    let truths: Vec<Answer> = first.map_or_else(Vec::new, |all| all.iter().map(answer).collect());
+    let all = walk.predict_all(lights, &truths);
+    for (i, (light, found)) in lights.iter().zip(all).enumerate() {
+        seen.at(format_args!("{light:?}"));
+        let is_faint = truths[i].reflected.value.min(truths[i].transmitted.value) < FAINT;
+        if is_faint {
+            seen.skip(0);
+            seen.skip(1);
+        }
+        if let Some(collisions) = &exact.collisions {
+            match found.lookups.zip(collisions.get(i)).filter(|_| !is_faint) {
+                Some((law, &exact)) => seen.stated(2, lookups(&law), exact),
+                None => seen.skip(2),
+            }
+        }
+        for (channel, side) in found.channels.iter().zip(0..).filter(|_| !is_faint) {
+            let raw: Vec<Wide> = exact.leaving.iter().map(|all| all[i][side]).collect();
+            seen.at(format_args!("{}, {light:?}", channel.name));
+            see(seen, channel.moments, &raw);
+        }
+    }
+}
+
+/// A walk in isotropic light or another.
+fn walk(
+    phase: Phase,
+    (albedo, rule): (f64, ParticleRule),
+    pieces: Pieces,
+    most: f64,
+    depth: f64,
+) -> Walk {
+    let incidence = Incidence { light: Light::Diffuse, phase };
+    Walk { incidence, albedo, rule, pieces, largest_ratio: most, depth, laws: false }
+}
+
+/// The layers of a walk's k-th moments.
+fn slices(cut: &[Piece], walk: &Walk, k: u32, score: f64) -> Vec<Slice> {
+    let slice = |piece: &Piece| {
+        let [mut straight, mut scattered] = [0.0; 2];
+        for &[share, ratio] in &piece.ratios {
+            let odds = moments_of(walk.rule, Wide::from(ratio), walk.albedo, k);
+            let [q, s] = odds.map(Wide::value);
+            straight += share * q;
+            scattered += share * s;
+        }
+        Slice { flown: piece.flown, straight, scattered, score }
+    };
+    cut.iter().map(slice).collect()
+}
+
+/// One ratio, isotropic scattering: discrete ordinates.
+fn even(parameters: &Even, seen: &mut Seen) -> Option<()> {
+    let &Even { depth, albedo, ratio, kind, ref lights } = parameters;
+    let rule = rule(kind, ratio);
+    let (phase, flown) = (Phase::Isotropic(Isotropic), depth / ratio);
+    let pieces = Pieces::Exact(vec![Piece::of(flown, ratio)]);
+    let walk = walk(phase, (albedo, rule), pieces, ratio, depth);
+    let of_power = |k: u32, longer: f64| {
+        let [q, s] = moments_of(rule, Wide::from(ratio), albedo, k);
+        let lost = 1.0 - q;
+        if lost.high <= 0.0 {
+            return None;
+        }
+        let depth = Wide::from(flown * longer) * lost;
+        Ordinates::new(depth, below_one(s / lost), ORDINATES).filter(Ordinates::is_positive)
+    };
+    let exact: Vec<Ordinates> = (1..=4).map_while(|k| of_power(k, 1.0)).collect();
+    // Within two thousandths of the critical depth either answer is right.
+    let [before, beyond] = match exact.get(1) {
+        Some(slab) if !slab.swings() => [true; 2],
+        _ => [0.998, 1.002].map(|longer| of_power(2, longer).is_some()),
+    };
+    if before == beyond {
+        seen.wrong(3, (walk.second_moment() == Existence::Diverges) == before);
+    }
+    let energy = |slab: &Ordinates| lights.iter().map(|&light| slab.energy(light)).collect();
+    let leaving = exact.iter().map(energy).collect();
+    let [q, s] = moments_of(rule, Wide::from(ratio), albedo, 0);
+    let ends = 1.0 - q - s;
+    let ends = if ends.high.abs() < 1e-13 { (1.0 - q) * WHITE } else { ends };
+    let collisions = of_power(0, 1.0).map_or_else(Vec::new, |slab| {
+        let left = |&light: &Light| slab.energy(light).into_iter().sum::<Wide>();
+        lights.iter().map(|light| (1.0 - left(light)) / ends).collect()
+    });
+    compare(seen, &walk, lights, &Exact { leaving, collisions: Some(collisions) });
+    Some(())
+}
+
+/// Layers of other ratios and other phase functions: the same slabs with more directions.
+fn finer(parameters: &Layers, seen: &mut Seen) -> Option<()> {
+    let &Layers { depth, albedo, ref ratios, kind, phase, ref lights } = parameters;
+    let most = ratios.iter().copied().fold(0.0, f64::max);
+    let rule = rule(kind, most);
+    let thin = depth / ratios.len() as f64;
+    let cut: Vec<Piece> = ratios.iter().map(|&r| Piece::of(thin / r, r)).collect();
+    let walk = walk(phase, (albedo, rule), Pieces::Exact(cut.clone()), most, depth);
+    let of_power = |k: u32| slab::energies(&phase, lights, &slices(&cut, &walk, k, 1.0), FINER);
+    let leaving = |energy: &Energy| [energy.reflected, energy.transmitted].map(Wide::from);
+    let score = |energy: &Energy| Wide::from(energy.score);
+    let exact = Exact {
+        leaving: (1..=4).map_while(of_power).map(|all| all.iter().map(leaving).collect()).collect(),
+        collisions: Some(of_power(0).map_or_else(Vec::new, |all| all.iter().map(score).collect())),
+    };
+    compare(seen, &walk, lights, &exact);
+    Some(())
+}
+
+/// r that varies, and other phase functions: the same layers with more directions.
+fn ramps(parameters: &Ramp, seen: &mut Seen) -> Option<()> {
+    let &Ramp { flown, albedo, ends, kind, phase, ref lights } = parameters;
+    let rule = rule(kind, f64::INFINITY);
+    let cut = |count: u32| -> Vec<Piece> {
+        let ratio = |place: f64| ends[0] + (ends[1] - ends[0]) * place / f64::from(count);
+        let layer = |i: u32| {
+            let middle = f64::from(i) + 0.5;
+            let nodes = [middle - 0.75f64.sqrt() / 3.0, middle + 0.75f64.sqrt() / 3.0];
+            let ratios = nodes.map(|place| [0.5, ratio(place)]).to_vec();
+            Piece { flown: flown / f64::from(count), ratios }
+        };
+        (0..count).map(layer).collect()
+    };
+    let cuts = [cut(12), cut(24)];
+    // Weighted walks would know σ_t alone, and one layer, where r is nowhere above 1.
+    let depth = 0.5 * flown * (ends[0] + ends[1]);
+    let walk = walk(phase, (albedo, rule), Pieces::Graded(cuts.clone()), 1.4, depth);
+    let of_power = |k: u32| -> Option<Leaving> {
+        let [coarse, fine] = cuts
+            .each_ref()
+            .map(|cut| slab::energies(&phase, lights, &slices(cut, &walk, k, 0.0), LAYERED));
+        let both = |(coarse, fine): (Energy, Energy)| {
+            let sides =
+                [[coarse.reflected, fine.reflected], [coarse.transmitted, fine.transmitted]];
+            sides.map(|[coarse, fine]| Wide::from(fine + (fine - coarse) / 3.0))
+        };
+        Some(coarse?.into_iter().zip(fine?).map(both).collect())
+    };
+    let leaving = (1..=4).map_while(of_power).collect();
+    compare(seen, &walk, lights, &Exact { leaving, collisions: None });
+    Some(())
+}
+
+/// Lights that graze, or none of them: layers are thinner for all where one does.
+fn alike() -> impl Strategy<Value = Vec<Light>> {
+    let all = |cosine| vec(cosine, LIGHTS);
+    (proptest::bool::ANY, all(sized(-4.0, -1.0)), all(between(0.1, 1.0))).prop_map(
+        |(all_graze, grazing, steep)| {
+            let diffuse = (!all_graze).then_some(Light::Diffuse);
+            let cosines = if all_graze { grazing } else { steep };
+            diffuse
+                .into_iter()
+                .chain(cosines.into_iter().map(Light::Collimated))
+                .take(LIGHTS)
+                .collect()
+        },
+    )
+}
+
+/// r that varies: Peierls' equation.
+fn graded(parameters: &Graded, seen: &mut Seen) -> Option<()> {
+    let &Graded { albedo, most, is_weighted, collisions, ref values, largest, ref lights } =
+        parameters;
+    // Other walks know σ_t alone where r is nowhere above 1, as on one layer.
+    let rule = rule(usize::from(is_weighted && most > 1.0), f64::INFINITY);
+    let cuts = values.len() - 1;
+    let knots: Vec<f64> = (0..=cuts).map(|i| i as f64 / cuts as f64).collect();
+    let sampling = collisions / most;
+    let mut values: Vec<f64> = values.iter().map(|value| collisions * value).collect();
+    values[largest % (cuts + 1)] = collisions;
+    let mesh = Mesh::new(fields::pieces(&knots, &values));
+    let (flown, extinction) =
+        (Piecewise::constant(sampling, mesh.support()), Piecewise::lines(&knots, &values));
+    // Where r passes 1 its moments have kinks.
+    let mut breaks = knots.clone();
+    for (knots, values) in knots.windows(2).zip(values.windows(2)) {
+        let share = (sampling - values[0]) / (values[1] - values[0]);
+        if share > 0.0 && share < 1.0 {
+            breaks.push(knots[0] + share * (knots[1] - knots[0]));
+        }
+    }
+    let of_power = |k: u32| {
+        let rates = |x: f64| {
+            let ratio = extinction.value(x) / sampling;
+            let [q, s] = moments_of(rule, Wide::from(ratio), albedo, k).map(Wide::value);
+            [sampling * (1.0 - q), sampling * s]
+        };
+        let grows = (0..=200).any(|i| rates(f64::from(i) / 200.0)[0] <= 0.0);
+        if grows { None } else { Peierls::new(&rates, &breaks).leaving(lights) }
+    };
+    let wide = |both: &[f64; 2]| both.map(Wide::from);
+    let depth = mesh.optical_depth().value;
+    let truth = Ordinates::new(Wide::from(depth), below_one(Wide::from(albedo)), ORDINATES);
+    let truth = truth.map(|slab| lights.iter().map(|&light| slab.energy(light)).collect());
+    let higher = (2..=4).map_while(of_power).map(|all| all.iter().map(wide).collect());
+    let leaving = truth.into_iter().chain(higher).collect();
+    let pieces = Pieces::new(&mesh, &flown, &rule.kinks(albedo), lights);
+    let walk = walk(Phase::Isotropic(Isotropic), (albedo, rule), pieces, most, depth);
+    compare(seen, &walk, lights, &Exact { leaving, collisions: None });
+    Some(())
+}
