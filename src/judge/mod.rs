@@ -1,35 +1,17 @@
 //! Draws that another program made: whether they are what they are claimed to be.
 //!
-//! A [`claim::Claim`] says what is known of a draw: its mean and, if known, its variance, kurtosis and range. A
-//! [`trial::Trial`] judges draws in memory, or in `files` of several formats. Without the feature
-//! `library` this room and [`gate::stats`] are all of the crate: enough for a test of somebody's estimator.
-//!
-//! ```
-//! use trueflight::judge::claim::{Claim, Given};
-//! use trueflight::judge::trial::{Trial, Wanted};
-//! use trueflight::stats::verdict::Verdict;
-//!
-//! // Draws of a fair coin, claimed to be 0.5 on average and to lie in [0, 1].
-//! let mut state = 1u64;
-//! let draws: Vec<f64> = (0..400_000)
-//!     .map(|_| {
-//!         state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
-//!         f64::from(u8::from(state >> 63 == 1))
-//!     })
-//!     .collect();
-//! let claim = Claim::new(&Given { truth: 0.5, range: Some([0.0, 1.0]), ..Given::default() })?;
-//! let trial = Trial::new(claim, Wanted::default(), Some(draws.len() as u64))?;
-//! assert_eq!(trial.judge_all(&draws).verdict, Verdict::Pass);
-//! # Ok::<(), trueflight::judge::claim::ClaimError>(())
-//! ```
+//! The session of [`gate::session`] judges draws in memory, in `files` of several formats, and stacks of `images`.
+//! [`OfCase`] takes what is claimed of a draw from a case.
 
+mod choice;
 pub mod files;
 mod fineness;
 pub mod images;
 mod of_case;
 mod whole;
 
-pub use files::{Column, Draws, ForeignError, Format, Layout, count, judge_by};
-pub use of_case::{Choice, OfCase, claim as claim_of, theory as theory_of};
+pub use choice::{Choice, ChoiceError};
+pub use files::{Column, Draws, ForeignError, Format, Layout, count};
+pub use of_case::{OfCase, theory as theory_of};
 
-pub use gate::judge::*;
+pub use gate::session::*;

@@ -3,10 +3,9 @@
 use std::fmt::Write;
 use std::sync::Arc;
 
-use super::claim::{Claim, ClaimError, Lookups};
-use super::flights::Flights;
-use super::theory::Theory;
+use super::choice::{Choice, ChoiceError};
 use super::whole::Known;
+use super::{Claim, Flights, Lookups, Theory};
 use crate::case::Case;
 use crate::case::catalogue::Catalogue;
 use crate::case::names::EstimatorName;
@@ -25,46 +24,12 @@ const SURE: f64 = 1e-6;
 /// Largest number of values of a sweep that are tried where a value beside them is refused.
 const TRIED: usize = 8;
 
-/// Which experiment of a case.
-#[derive(Debug, Clone, Copy, Default)]
-pub struct Choice<'a> {
-    /// The estimator's label in tables, or its name in the catalogue.
-    pub estimator: &'a str,
-    /// The swept value, where it is swept.
-    pub swept: Option<f64>,
-    /// Whether the nearest value of the case's sweep is taken in place of the swept value. Otherwise the value is taken
-    /// as it is, be it in the sweep or not; without a sweep it is a constant σ̂.
-    pub nearest: bool,
-    /// The channel, where a draw has several.
-    pub channel: Option<&'a str>,
-    /// The seed of pilot rays, where σ̂ is learned from them.
-    pub seed: u64,
-}
-
-/// Returns the claim of theory on one experiment of a case.
-///
-/// # Errors
-///
-/// The choice fits none or several, or the experiment is refused.
-pub fn claim(case: &Case, choice: &Choice, rounding: f64) -> Result<Claim, ClaimError> {
-    let mut claims = theory(case, choice, rounding)?.channels;
-    let chosen = match choice.channel {
-        None if claims.len() == 1 => Some(0),
-        None => None,
-        Some(name) => claims.iter().position(|(channel, _)| channel == name),
-    };
-    chosen.map(|index| claims.swap_remove(index).1).ok_or_else(|| {
-        let channels = claims.into_iter().map(|(channel, _)| channel).collect();
-        ClaimError::Channel { case: case.name.clone(), channels }
-    })
-}
-
 /// Returns theory of one experiment of a case, with a claim for each channel; the choice of a channel does not matter.
 ///
 /// # Errors
 ///
 /// The choice fits none or several, or the experiment is refused.
-pub fn theory(case: &Case, choice: &Choice, rounding: f64) -> Result<Theory, ClaimError> {
+pub fn theory(case: &Case, choice: &Choice, rounding: f64) -> Result<Theory, ChoiceError> {
     let (index, label) = find(case, choice.estimator)?;
     let axis = case.sweep.as_ref();
     let axis = axis.filter(|axis| case.scenario.depends_on(index, axis.what));
@@ -73,7 +38,7 @@ pub fn theory(case: &Case, choice: &Choice, rounding: f64) -> Result<Theory, Cla
     let prediction = at.prediction(variation)?;
     if let Some(deep) = prediction.channels.iter().find(|channel| channel.log_unit != 0.0) {
         let (case, depth) = (case.name.clone(), deep.log_unit);
-        return Err(ClaimError::Deep { case, estimator: label, depth });
+        return Err(ChoiceError::Deep { case, estimator: label, depth });
     }
     let mut about = format!("`{label}` of {}", case.name);
     if let Some((what, value)) = variation {
@@ -192,7 +157,7 @@ fn claims(case: &Case, prediction: &Prediction, rounding: f64) -> Vec<(String, C
 }
 
 /// The estimator of a name, with its label.
-fn find(case: &Case, name: &str) -> Result<(usize, String), ClaimError> {
+fn find(case: &Case, name: &str) -> Result<(usize, String), ChoiceError> {
     let scenario = &case.scenario;
     let plain: Vec<EstimatorName> =
         (0..scenario.estimators()).map(|e| scenario.names(e, None).estimator).collect();
@@ -213,7 +178,7 @@ fn find(case: &Case, name: &str) -> Result<(usize, String), ClaimError> {
     let (case, name) = (case.name.clone(), name.to_owned());
     match found[..] {
         [one] => Ok((one, labels[one].clone())),
-        [] => Err(ClaimError::NoEstimator { case, name, candidates: labels }),
+        [] => Err(ChoiceError::NoEstimator { case, name, candidates: labels }),
         _ => {
             let candidates = found.iter().map(|&e| {
                 let names = scenario.names(e, None);
@@ -226,7 +191,7 @@ fn find(case: &Case, name: &str) -> Result<(usize, String), ClaimError> {
                     format!("`{}` with {}", labels[e], about.join(", "))
                 }
             });
-            Err(ClaimError::Ambiguous { case, name, candidates: candidates.collect() })
+            Err(ChoiceError::Ambiguous { case, name, candidates: candidates.collect() })
         }
     }
 }
@@ -242,7 +207,7 @@ struct Point<'a> {
 
 impl Point<'_> {
     /// The swept value that is taken.
-    fn variation(&self, choice: &Choice) -> Result<Variation, ClaimError> {
+    fn variation(&self, choice: &Choice) -> Result<Variation, ChoiceError> {
         let scenario = &self.case.scenario;
         let (case, estimator) = (self.case.name.clone(), self.label.to_owned());
         match (self.axis, choice.swept) {
@@ -252,7 +217,7 @@ impl Point<'_> {
                     && !choice.nearest
                     && scenario.depends_on(self.index, What::SamplingScale);
                 if !takes_any {
-                    return Err(ClaimError::NotSwept { case, estimator });
+                    return Err(ChoiceError::NotSwept { case, estimator });
                 }
                 self.allowed(What::Sampling, value)?;
                 Ok(Some((What::Sampling, value)))
@@ -260,7 +225,7 @@ impl Point<'_> {
             (Some(axis), None) => {
                 let (what, values) = (axis.what.key(), axis.values.clone());
                 let wanted = axis.what.domain();
-                Err(ClaimError::Swept { case, estimator, what, values, wanted })
+                Err(ChoiceError::Swept { case, estimator, what, values, wanted })
             }
             (Some(axis), Some(value)) if choice.nearest => {
                 let nearest = self.by_distance(value).first().copied();
@@ -274,14 +239,14 @@ impl Point<'_> {
     }
 
     /// Whether what is swept can have that value.
-    fn allowed(&self, what: What, value: f64) -> Result<(), ClaimError> {
+    fn allowed(&self, what: What, value: f64) -> Result<(), ChoiceError> {
         if what.allows(value) {
             return Ok(());
         }
         let (case, estimator) = (self.case.name.clone(), self.label.to_owned());
         let nearest = self.by_distance(value).first().copied();
         let (what, wanted) = (what.key(), what.domain());
-        Err(ClaimError::NoSuchValue { case, estimator, what, value, wanted, nearest })
+        Err(ChoiceError::NoSuchValue { case, estimator, what, value, wanted, nearest })
     }
 
     /// The values of the sweep, the nearest first.
@@ -297,7 +262,7 @@ impl Point<'_> {
         prepared.map(|Ready { prediction, .. }| prediction).map_err(|refusal| refusal.to_string())
     }
 
-    fn prediction(&self, variation: Variation) -> Result<Prediction, ClaimError> {
+    fn prediction(&self, variation: Variation) -> Result<Prediction, ChoiceError> {
         self.prepared(variation).map_err(|why| {
             let (case, estimator) = (self.case.name.clone(), self.label.to_owned());
             // A value beside the sweep may be refused where those of the sweep are not.
@@ -307,7 +272,7 @@ impl Point<'_> {
                 let mut values = self.by_distance(value).into_iter().take(TRIED);
                 values.find(|&value| self.prepared(Some((what, value))).is_ok())
             });
-            ClaimError::Refused { case, estimator, why, nearest }
+            ChoiceError::Refused { case, estimator, why, nearest }
         })
     }
 }

@@ -18,8 +18,7 @@ use std::borrow::Cow;
 use std::sync::Arc;
 
 use super::fineness::{self, Fineness};
-use super::judgement::DistributionFinding;
-use super::theory::{Asked, Distribution, Tested, Tests};
+use super::{Asked, Distribution, DistributionFinding, Reason, Tested, Tests};
 use crate::checks::batch::Batch;
 use crate::checks::{self, Law};
 use estimators::DrawBuffer;
@@ -158,9 +157,9 @@ impl Tests for Whole {
                 continue;
             };
             let verdict = if is_refuted { Verdict::Fail } else { Verdict::Pass };
-            let details = if details.is_empty() { details } else { format!(" ({details})") };
-            let reason = format!("{what} differs from theory: p = {}{details}", short(p, 2));
-            let reason = if is_refuted { reason } else { String::new() };
+            let differs =
+                || Reason::Differs { what: what.clone(), p: short(p, 2), details: details.clone() };
+            let reason = is_refuted.then(differs);
             let (check, what) = (check.to_owned(), what.into_owned());
             findings.push(DistributionFinding { check, what, verdict, reason, p, draws });
         }

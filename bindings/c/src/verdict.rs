@@ -4,7 +4,7 @@
 
 use std::ffi::c_char;
 
-use gate::judge::judgement::Judgement;
+use gate::session::Judgement;
 
 use crate::ffi::{free, query, write};
 use crate::handle::Check;

@@ -5,9 +5,7 @@ use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use trueflight::OfCase;
 use trueflight::check::{Check, CheckError, Outcome, Pushed};
-use trueflight::judge::Choice;
-use trueflight::judge::claim::ROUNDING;
-use trueflight::judge::trial::BUFFER;
+use trueflight::judge::{BUFFER, Choice, ROUNDING};
 
 use crate::background::work;
 use crate::cases;

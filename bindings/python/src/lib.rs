@@ -29,7 +29,7 @@ mod _trueflight {
 
     /// How many draws are judged at a time.
     #[pymodule_export]
-    const BLOCK: usize = trueflight::judge::trial::BUFFER;
+    const BLOCK: usize = trueflight::judge::BUFFER;
 
     /// How many draws are made at most where nobody says.
     #[pymodule_export]

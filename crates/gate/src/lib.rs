@@ -3,7 +3,7 @@
 pub mod causes;
 pub mod check;
 pub mod deviation;
-pub mod judge;
+pub mod session;
 pub mod stats;
 
 pub use numeric::rng;

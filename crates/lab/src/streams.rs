@@ -11,8 +11,7 @@
 //! is left out. Every stream has 4e5 draws and an address of its own, and is judged at α = 1e-3 for
 //! each of the claims.
 
-use gate::judge::claim::{Claim, Given, ROUNDING};
-use gate::judge::trial::{Trial, Wanted};
+use gate::session::{Claim, ROUNDING, Trial, Wanted};
 use gate::stats::binomial;
 use gate::stats::verdict::Verdict;
 use numeric::rng::{Address, Stream, exponential, unit};
@@ -183,16 +182,16 @@ impl Law {
     /// What is claimed; `None` where the law has nothing of it.
     pub fn claim(self, claims: Claims) -> Option<Claim> {
         let (truth, variance, kurtosis, range) = self.moments();
-        let given = Given { truth, rounding: ROUNDING, ..Given::default() };
+        let given = Claim { rounding: ROUNDING, ..Claim::of_truth(truth) };
         let given = match claims {
             Claims::Truth => given,
-            Claims::Variance => Given { variance: Some(variance), ..given },
+            Claims::Variance => Claim { variance: Some(variance), ..given },
             Claims::Kurtosis => {
-                Given { variance: Some(variance), kurtosis: Some(kurtosis?), ..given }
+                Claim { variance: Some(variance), kurtosis: Some(kurtosis?), ..given }
             }
-            Claims::Range => Given { range: Some(range?), ..given },
+            Claims::Range => Claim { range: Some(range?), ..given },
         };
-        Claim::new(&given).ok()
+        given.validated().ok()
     }
 
     /// A draw.

@@ -4,12 +4,10 @@ use super::{Arguments, Judged};
 use crate::case::Case;
 use crate::case::Catalogue;
 use crate::case::source::CaseError;
-use crate::judge::claim::{Claim, ClaimError, Given, Lookups};
-use crate::judge::files;
-use crate::judge::reading::Reading;
-use crate::judge::theory::{Background, Theory, Whole};
-use crate::judge::trial::{Trial, Wanted};
-use crate::judge::{Choice, Draws, Layout, theory_of};
+use crate::judge::{
+    Choice, ChoiceError, Claim, ClaimError, Draws, Layout, Lookups, Session, Taken, Theory, Trial,
+    Wanted, theory_of,
+};
 
 /// What is claimed of the draws.
 pub(super) struct Claimed {
@@ -57,45 +55,22 @@ impl Claimed {
     ) -> anyhow::Result<Vec<Judged>> {
         let values = draws.values();
         let of_channel = self.channel.map(|channel| &self.claims[channel..=channel]);
-        let claims = of_channel.unwrap_or(&self.claims[..values]);
-        let wanted = Wanted { alpha: wanted.alpha / values as f64, ..wanted };
-        let mut background = self.background(claims, &wanted, length);
-        let reading = |(index, &(_, claim)): (usize, &(String, Claim))| {
-            // Lookups belong to the draw, not to each of its channels.
-            let claim = if index == 0 { claim } else { Claim { lookups: None, ..claim } };
-            let trial = Trial::new(claim, wanted, length)?;
-            Ok(Reading::with(trial, std::mem::take(&mut background)))
-        };
-        let readings: Result<Vec<Reading>, ClaimError> =
-            claims.iter().enumerate().map(reading).collect();
-        let judgements = files::judge(readings?, draws, &wanted, length)?;
-        let named = judgements.into_iter().zip(claims).map(|(judgement, (channel, _))| Judged {
+        let named = of_channel.unwrap_or(&self.claims[..values]);
+        let claims: Vec<Claim> = named.iter().map(|(_, claim)| *claim).collect();
+        let has_lookups = claims.first().is_some_and(|first| first.lookups.is_some());
+        let taken = self.theory.as_ref().map(|theory| Taken {
+            theory,
+            has_lookups,
+            is_mean_only: self.is_mean_only,
+        });
+        let session = Session::new(&claims, wanted, length, taken)?;
+        let judgements = session.judge(draws, wanted.until())?;
+        let named = judgements.into_iter().zip(named).map(|(judgement, (channel, _))| Judged {
             file: file.to_owned(),
             channel: if values > 1 { channel.clone() } else { String::new() },
             judgement,
         });
         Ok(named.collect())
-    }
-
-    fn background(
-        &self,
-        claims: &[(String, Claim)],
-        wanted: &Wanted,
-        length: Option<u64>,
-    ) -> Background {
-        let (Some(theory), [(_, first), ..]) = (&self.theory, claims) else {
-            return Background::default();
-        };
-        let most = wanted.most.unwrap_or(u64::MAX);
-        let whole = Whole {
-            // A decision may end the reading before.
-            length: length.map(|length| length.min(most)).filter(|_| !wanted.stop_early),
-            has_lookups: first.lookups.is_some(),
-            rounding: first.rounding,
-            values: claims.len(),
-            is_mean_only: self.is_mean_only,
-        };
-        theory.background(wanted, whole)
     }
 }
 
@@ -146,7 +121,7 @@ impl Arguments {
     fn channel_of(&self, case: &Case, theory: &Theory) -> anyhow::Result<Option<usize>> {
         let names = theory.names();
         let place = |name: &String| names.iter().position(|other| other == name);
-        let wrong = || ClaimError::Channel { case: case.name.clone(), channels: names.clone() };
+        let wrong = || ChoiceError::Channel { case: case.name.clone(), channels: names.clone() };
         match &self.channel {
             Some(name) => Ok(Some(place(name).ok_or_else(wrong)?)),
             // A column is one channel; which, only the caller can say.
@@ -165,9 +140,8 @@ impl Arguments {
         let claim = if takes_all {
             Claim { lookups, ..theory }
         } else {
-            // Checked as numbers of the caller's are.
-            Claim::new(&Given { truth: theory.truth, variance, kurtosis, ..Given::default() })?;
-            Claim { variance, kurtosis, variance_error: 0.0, ..theory.of_mean_alone() }
+            let numbers = Claim { variance, kurtosis, ..Claim::of_truth(theory.truth) };
+            numbers.validated()?.about(theory)
         };
         claim.within(self.range)
     }
@@ -180,13 +154,14 @@ impl Arguments {
             (_, mean) => mean,
         };
         let variance = self.lookups_variance;
-        Ok(Claim::new(&Given {
-            truth: self.truth.unwrap_or(f64::NAN),
+        let claim = Claim {
             variance: self.variance,
             kurtosis: self.kurtosis,
             range: self.range,
             lookups: lookups.map(|mean| Lookups { mean, variance, error: 0.0 }),
             rounding: self.rounding,
-        })?)
+            ..Claim::of_truth(self.truth.unwrap_or(f64::NAN))
+        };
+        Ok(claim.validated()?)
     }
 }

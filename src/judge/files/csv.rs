@@ -244,6 +244,7 @@ mod tests {
 
     use super::super::{Draws, Format, all};
     use super::*;
+    use crate::judge::{Block, Source};
 
     fn table(column: Option<&str>) -> Format {
         Format::Csv { column: column.and_then(|column| column.parse().ok()), lookups: None }
@@ -384,8 +385,8 @@ mod tests {
         let column = |name: &str| name.parse().ok();
         let format = Format::Csv { column: column("X"), lookups: column("n") };
         let mut draws = Draws::from_reader(reader, "x.csv", format).expect("a table");
-        let mut buffer = Vec::new();
-        assert_eq!(draws.read(&mut buffer, 10).expect("draws"), 2);
-        assert_eq!((&buffer[..], draws.lookups()), (&[0.5, 0.25][..], &[3.0, 4.0][..]));
+        let mut block = Block::new(1);
+        assert_eq!(draws.fill(&mut block, 10).ok(), Some(()));
+        assert_eq!((&block.columns[0], &block.lookups), (&vec![0.5, 0.25], &vec![3.0, 4.0]));
     }
 }

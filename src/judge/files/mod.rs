@@ -26,9 +26,7 @@ use std::str::FromStr;
 pub use error::ForeignError;
 pub use layout::Layout;
 
-use super::judgement::{Judgement, Stop};
-use super::reading::Reading;
-use super::trial::{BUFFER, Trial, Wanted};
+use super::{BUFFER, Block, Source};
 
 /// How numbers are written.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -92,12 +90,10 @@ type Bytes = Box<dyn Read + Send>;
 
 /// An open source of draws.
 pub struct Draws {
-    source: Source,
-    /// The lookups of the draws that were read last.
-    lookups: Vec<f64>,
+    source: Reader,
 }
 
-enum Source {
+enum Reader {
     Csv(Box<csv::Table>),
     Rows(Box<rows::Rows>),
 }
@@ -172,27 +168,27 @@ impl Draws {
                 let column = column.or_else(|| layout.column.clone());
                 let layout = Layout { column, ..layout.clone() };
                 let table = csv::Table::open(bytes, name, &layout, lookups.as_ref())?;
-                Source::Csv(Box::new(table))
+                Reader::Csv(Box::new(table))
             }
-            Format::Npy => Source::Rows(npy::open(bytes, name, length, layout)?.into()),
-            Format::Raw => Source::Rows(raw::open(bytes, name, length, layout)?.into()),
+            Format::Npy => Reader::Rows(npy::open(bytes, name, length, layout)?.into()),
+            Format::Raw => Reader::Rows(raw::open(bytes, name, length, layout)?.into()),
         };
-        Ok(Self { source, lookups: Vec::new() })
+        Ok(Self { source })
     }
 
     /// How many draws there are in all, where the file says so.
     pub fn known_length(&self) -> Option<u64> {
         match &self.source {
-            Source::Csv(_) => None,
-            Source::Rows(rows) => rows.known_length(),
+            Reader::Csv(_) => None,
+            Reader::Rows(rows) => rows.known_length(),
         }
     }
 
     /// Number of values of a draw.
     pub fn values(&self) -> usize {
         match &self.source {
-            Source::Csv(table) => table.values(),
-            Source::Rows(rows) => rows.values(),
+            Reader::Csv(table) => table.values(),
+            Reader::Rows(rows) => rows.values(),
         }
     }
 
@@ -204,83 +200,22 @@ impl Draws {
     /// The source cannot be read on, or what follows is not a draw. The buffer then holds the draws
     /// before.
     pub fn read(&mut self, buffer: &mut Vec<f64>, at_most: usize) -> Result<usize, ForeignError> {
-        let mut columns = vec![Vec::new(); self.values()];
-        columns[0] = std::mem::take(buffer);
-        let read = self.read_values(&mut columns, at_most);
-        *buffer = columns.swap_remove(0);
-        read
+        let mut block = Block::new(self.values());
+        let read = self.fill(&mut block, at_most);
+        *buffer = block.columns.swap_remove(0);
+        read.map(|()| buffer.len())
     }
+}
 
-    /// Reads all values of the next draws: a column for each value.
-    ///
-    /// # Errors
-    ///
-    /// Those of [`Draws::read`].
-    pub fn read_values(
-        &mut self,
-        columns: &mut [Vec<f64>],
-        at_most: usize,
-    ) -> Result<usize, ForeignError> {
-        columns.iter_mut().for_each(Vec::clear);
-        self.lookups.clear();
+impl Source for Draws {
+    type Error = ForeignError;
+
+    fn fill(&mut self, block: &mut Block, most: usize) -> Result<(), ForeignError> {
         match &mut self.source {
-            Source::Csv(table) => table.read(columns, &mut self.lookups, at_most)?,
-            Source::Rows(rows) => rows.read(columns, at_most)?,
-        }
-        Ok(columns.first().map_or(0, Vec::len))
-    }
-
-    /// The lookups of the draws that were read last; none where no column has them.
-    pub fn lookups(&self) -> &[f64] {
-        &self.lookups
-    }
-}
-
-/// Reads draws of one value and judges them by a trial.
-///
-/// # Errors
-///
-/// The draws cannot be read to their end, or to where they are decided.
-pub fn judge_by(trial: &Trial, draws: &mut Draws) -> Result<Judgement, ForeignError> {
-    let readings = vec![Reading::new(*trial)];
-    let mut judged = judge(readings, draws, &trial.wanted, trial.length)?;
-    Ok(judged.swap_remove(0))
-}
-
-/// Reads and judges draws, a reading for each of their values.
-///
-/// # Errors
-///
-/// The draws cannot be read to their end, or to where they are decided.
-pub(crate) fn judge(
-    mut readings: Vec<Reading>,
-    draws: &mut Draws,
-    wanted: &Wanted,
-    length: Option<u64>,
-) -> Result<Vec<Judgement>, ForeignError> {
-    let mut columns = vec![Vec::with_capacity(BUFFER); draws.values()];
-    let (mut read, mut stopped) = (0, None);
-    loop {
-        let left = wanted.most.map_or(u64::MAX, |most| most - read);
-        let count = BUFFER.min(usize::try_from(left).unwrap_or(BUFFER));
-        // One draw more tells whether there is any.
-        let found = draws.read_values(&mut columns, count.max(1))?;
-        if found == 0 {
-            break;
-        }
-        if count == 0 {
-            stopped = Some(Stop::Limit);
-            break;
-        }
-        let block: Vec<&[f64]> = columns.iter().map(Vec::as_slice).collect();
-        Reading::absorb_values(&mut readings, &block, draws.lookups());
-        read += found as u64;
-        if wanted.stop_early && !readings.iter().any(Reading::is_open) {
-            stopped = Some(Stop::Decided).filter(|_| length != Some(read));
-            break;
+            Reader::Csv(table) => table.read(&mut block.columns, &mut block.lookups, most),
+            Reader::Rows(rows) => rows.read(&mut block.columns, most),
         }
     }
-    Ok(readings.into_iter().map(|reading| reading.close(stopped)).collect())
 }
 
 /// How many draws a file holds: by its length or its header, else by reading it through.
@@ -293,9 +228,11 @@ pub fn count(path: &Path, format: Format, layout: &Layout) -> Result<u64, Foreig
     if let Some(length) = draws.known_length() {
         return Ok(length);
     }
-    let (mut columns, mut count) = (vec![Vec::new(); draws.values()], 0);
+    let (mut block, mut count) = (Block::new(draws.values()), 0);
     loop {
-        match draws.read_values(&mut columns, 1 << 14)? {
+        block.clear();
+        draws.fill(&mut block, BUFFER)?;
+        match block.draws() {
             0 => return Ok(count),
             read => count += read as u64,
         }

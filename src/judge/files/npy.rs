@@ -64,6 +64,7 @@ mod tests {
 
     use super::super::{Column, Draws, Format, all};
     use super::*;
+    use crate::judge::{Block, Source};
 
     /// A header as `numpy.save` writes it.
     fn whole_header(kind: &str, order: &str, shape: &str) -> Vec<u8> {
@@ -159,10 +160,16 @@ mod tests {
             let three = Layout { channels, derived: 1, ..Layout::default() };
             let mut draws = open(&three).expect("three channels");
             assert_eq!(draws.values(), 3);
-            let mut read = vec![Vec::new(); 3];
+            let mut block = Block::new(3);
             let (mut at, mut seen) = (0, 0);
-            while draws.read_values(&mut read, 997).expect("draws") > 0 {
-                for (k, column) in (0..).zip(&read) {
+            loop {
+                block.clear();
+                draws.fill(&mut block, 997).expect("draws");
+                let read = &block.columns;
+                if read[0].is_empty() {
+                    break;
+                }
+                for (k, column) in (0..).zip(read) {
                     let expected: Vec<f64> =
                         (at..).take(column.len()).map(|i| value(i, k)).collect();
                     assert_eq!(column, &expected);

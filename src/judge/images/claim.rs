@@ -3,7 +3,7 @@
 use super::error::ImageError;
 use super::estimate::Estimated;
 use super::picture::{Picture, Size, Stack};
-use crate::judge::claim::ROUNDING;
+use crate::judge::ROUNDING;
 use gate::stats::verdict::FURTHEST;
 
 /// A number for all pixels, or one for each.

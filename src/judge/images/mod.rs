@@ -60,7 +60,7 @@ pub use picture::{Picture, Size, Stack};
 use self::claim::Pixels;
 use self::judgement::{Dependence, Refuted, Tile, Variance, counts, worst};
 use self::tiles::{Part, Terms};
-use crate::judge::scalar::Levels;
+use crate::judge::Levels;
 use gate::stats::gate::VARIANCE_MARGIN;
 use gate::stats::multiplicity::{e_benjamini_hochberg, holm};
 use gate::stats::verdict::{MISS, Verdict};
@@ -168,7 +168,7 @@ pub fn judge(stack: &Stack, claim: &Claim, wanted: &Wanted) -> Result<Judgement,
     let whole_terms = Terms {
         is_capped: true,
         count: 1,
-        levels: levels(SHARES[1] * alpha, whole.len()),
+        levels: Levels::new(SHARES[1] * alpha, whole.len()),
         ..terms
     };
     let all = |parts: &[Part], terms: Terms, q: &[f64]| {
@@ -218,11 +218,6 @@ pub fn judge(stack: &Stack, claim: &Claim, wanted: &Wanted) -> Result<Judgement,
     Ok(judgement)
 }
 
-/// The levels of one of `count` parts that share `alpha`.
-fn levels(alpha: f64, count: usize) -> Levels {
-    Levels { ln_fail: (count as f64 / alpha).ln(), ln_pass: -MISS.ln() }
-}
-
 /// The terms of tiles.
 fn terms([is_free, has_variance]: [bool; 2], wanted: &Wanted, count: usize) -> Terms {
     Terms {
@@ -231,7 +226,7 @@ fn terms([is_free, has_variance]: [bool; 2], wanted: &Wanted, count: usize) -> T
         tolerance: wanted.tolerance,
         is_capped: false,
         count,
-        levels: levels(SHARES[0] * wanted.alpha, count),
+        levels: Levels::new(SHARES[0] * wanted.alpha, count),
     }
 }
 

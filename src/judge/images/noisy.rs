@@ -15,9 +15,9 @@ use super::claim::Pixels;
 use super::estimate;
 use super::judgement::Tile;
 use super::picture::Stack;
-use super::tiles::{self, AT_THE_END, Part, Terms};
-use crate::judge::scalar::{Ask, Scalar};
-use crate::judge::trial::MEAN_CAP;
+use super::tiles::{self, AT_THE_END, Part, Terms, judged};
+use crate::judge::{Quantity, Scalar};
+use gate::session::quantity::MEAN_CAP;
 use gate::stats::capital::ln_mean_exp;
 use gate::stats::estimated_variance::{Estimate, Gathered};
 use gate::stats::normal::{upper_quantile, upper_tail};
@@ -138,23 +138,8 @@ fn by_range(
     if !range.iter().any(|end| end.is_finite()) {
         return None;
     }
-    let ask = Ask {
-        check: "mean",
-        what: "mean",
-        spread: None,
-        is_hard: true,
-        range: Some(range.map(|end| end / unit)),
-        tolerance: terms.tolerance,
-        usual: MEAN_CAP,
-        cap: if terms.is_capped { MEAN_CAP } else { 1e3 },
-        floor,
-        must_pass: true,
-    };
-    let planned = y.len() as f64 * gate::stats::gate::PLANNED / tiles::planned_units(terms.count);
-    let mut scalar = Scalar::new(ask, Some(planned), AT_THE_END);
-    for (first, last) in tiles::doubling(y.len()) {
-        scalar.absorb(&y[first..last]);
-    }
-    scalar.decide();
-    Some(scalar)
+    let range = Some(range.map(|end| end / unit));
+    let mean = Quantity { range, ..terms.mean(None, floor) };
+    let of_block = |first: usize, last: usize, to: &mut Vec<f64>| to.extend(&y[first..last]);
+    Some(judged(mean, terms.planned(y.len() as f64), AT_THE_END, y.len(), of_block))
 }

@@ -11,9 +11,9 @@
 use super::claim::Pixels;
 use super::estimate;
 use super::picture::Stack;
-use super::tiles::{AT_THE_END, doubling};
-use crate::judge::asks::VARIANCE_CAP;
-use crate::judge::scalar::{Ask, Scalar};
+use super::tiles::{AT_THE_END, judged as judge};
+use crate::judge::Quantity;
+use gate::session::quantity::{VARIANCE_CAP, variance_floor};
 
 /// What was found of the variance.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -26,19 +26,9 @@ pub(super) struct Squares {
     pub about_mean: f64,
 }
 
-fn ask(floor: f64) -> Ask {
-    Ask {
-        check: "variance",
-        what: "variance",
-        spread: None,
-        is_hard: true,
-        range: Some([-1.0, f64::INFINITY]),
-        tolerance: None,
-        usual: VARIANCE_CAP,
-        cap: VARIANCE_CAP,
-        floor,
-        must_pass: false,
-    }
+/// The variance, of which a square is never below 0.
+fn variance(floor: f64) -> Quantity {
+    Quantity { range: Some([-1.0, f64::INFINITY]), ..Quantity::variance(None, floor) }
 }
 
 /// Compares squares with the variance; `None` where none is claimed, or all are certain.
@@ -55,39 +45,32 @@ pub(super) fn squares(stack: &Stack, pixels: &Pixels, is_free: bool) -> Option<S
         let first = pixel * channels;
         (first..first + channels).map(|i| of(i) / variance[i]).sum::<f64>() / channels as f64
     };
-    // What rounding adds to y, as `Claim::variance_floor` has it for draws; too much hides the variance.
-    let noise = |i: usize| {
-        let noise = pixels.floor(i) / variance[i].sqrt();
-        noise * (2.0 + noise)
-    };
+    // Too much rounding hides the variance.
+    let noise = |i: usize| variance_floor(variance[i], 0.0, pixels.floor(i));
     let floors = judged.iter().flat_map(|pixel| (0..channels).map(move |c| pixel * channels + c));
     let floor = floors.map(noise).sum::<f64>() / (judged.len() * channels) as f64;
     if floor > 0.25 * VARIANCE_CAP {
         return None;
     }
     let n = stack.passes as f64;
-    let mut scalar = Scalar::new(ask(floor), None, AT_THE_END);
-    let (mut y, mut sum) = (Vec::new(), 0.0);
-    for (first, last) in doubling(stack.passes) {
-        y.clear();
-        for pass in first..last {
-            let values = stack.pass(pass);
-            let before = y.len();
-            y.extend(
-                judged.iter().map(|&pixel| {
+    let mut sum = 0.0;
+    let of_block =
+        |first: usize, last: usize, y: &mut Vec<f64>| {
+            for pass in first..last {
+                let values = stack.pass(pass);
+                let before = y.len();
+                y.extend(judged.iter().map(|&pixel| {
                     of_pixel(pixel, &|i| (values[i] - pixels.truth[i]).powi(2)) - 1.0
-                }),
-            );
-            let all: f64 = y[before..].iter().sum();
-            sum += all;
-            if !is_free {
-                y.truncate(before);
-                y.push(all / judged.len() as f64);
+                }));
+                let all: f64 = y[before..].iter().sum();
+                sum += all;
+                if !is_free {
+                    y.truncate(before);
+                    y.push(all / judged.len() as f64);
+                }
             }
-        }
-        scalar.absorb(&y);
-    }
-    scalar.decide();
+        };
+    let scalar = judge(self::variance(floor), None, AT_THE_END, stack.passes, of_block);
     let shown = |i: usize| {
         let values = || (0..stack.passes).map(|pass| stack.pass(pass)[i]);
         let mean = values().sum::<f64>() / n;
@@ -137,11 +120,9 @@ pub(super) fn pairs(
     if floor > 0.25 * VARIANCE_CAP {
         return None;
     }
-    let mut scalar = Scalar::new(ask(floor), None, AT_THE_END);
-    let (mut y, mut sum) = (Vec::new(), 0.0);
+    let mut sum = 0.0;
     let count_pairs = stack.passes / 2;
-    for (first, last) in doubling(count_pairs) {
-        y.clear();
+    let of_block = |first: usize, last: usize, y: &mut Vec<f64>| {
         for pair in first..last {
             let (one, other) = (stack.pass(2 * pair), stack.pass(2 * pair + 1));
             let square = |i: &usize| 0.5 * (one[*i] - other[*i]).powi(2) / of(*i);
@@ -158,9 +139,8 @@ pub(super) fn pairs(
                 y.push(all / draws);
             }
         }
-        scalar.absorb(&y);
-    }
-    scalar.decide();
+    };
+    let scalar = judge(self::variance(floor), None, AT_THE_END, count_pairs, of_block);
     let ratio = (1.0 + sum / (count_pairs as f64 * draws)) * excess;
     let ln_share = if pixels.estimate.is_some() { std::f64::consts::LN_2 } else { 0.0 };
     let ln_e = scalar.evidence.ln_e - ln_share;

@@ -4,7 +4,7 @@
 //! y     = (x − T)/u     for every pixel of every pass;  u the picture's mean |T| in that channel
 //! V     the mean of the pixels' V/u²:  Σ ln(1 + λ²V_i/2) ≤ n ln(1 + λ²V/2)
 //! range from low less the largest T of the tile to high less its smallest
-//! E, P± as of any scalar of foreign draws (`judge::scalar`), at the end of all passes
+//! E, P± as of any quantity of a session, at the end of all passes
 //! ε     as asked; else √(s²V/n), s² such that a correct picture passes in all of its K tiles with chance 0.95:
 //!       0.402 s² − 0.6 z s = ln(1/β),   z the normal quantile of 1 − 0.025/K;   27 for K = 1
 //! ```
@@ -15,9 +15,8 @@
 use super::claim::Pixels;
 use super::judgement::Tile;
 use super::picture::{Size, Stack};
-use crate::judge::grounds::Spread;
-use crate::judge::scalar::{Ask, Levels, Scalar};
-use crate::judge::trial::MEAN_CAP;
+use crate::judge::{Ground, Levels, Quantity, Scalar};
+use gate::session::quantity::MEAN_CAP;
 use gate::stats::gate::PLANNED;
 use gate::stats::normal::{upper_quantile, upper_tail};
 use gate::stats::verdict::{MISS, Verdict};
@@ -57,6 +56,19 @@ pub(super) fn planned_units(count: usize) -> f64 {
     let (gain, noise, needed) = (0.402, 0.6 * z, -MISS.ln());
     let s = (noise + (noise * noise + 4.0 * gain * needed).sqrt()) / (2.0 * gain);
     (s * s).max(PLANNED)
+}
+
+impl Terms {
+    /// The mean of a part, with what is known of its spread and δ.
+    pub(super) fn mean(self, ground: Option<Ground>, floor: f64) -> Quantity {
+        let cap = if self.is_capped { MEAN_CAP } else { 1e3 };
+        Quantity { cap, ..Quantity::mean(ground, floor).within(self.tolerance) }
+    }
+
+    /// Number of draws that a part with `draws` draws is planned for.
+    pub(super) fn planned(self, draws: f64) -> Option<f64> {
+        Some(draws * PLANNED / planned_units(self.count))
+    }
 }
 
 impl Part {
@@ -130,28 +142,15 @@ pub(super) fn tile(stack: &Stack, pixels: &Pixels, part: Part, terms: Terms) -> 
     } else {
         [truth; 2]
     };
-    let known = variance.map(|variance| Spread::Known(variance / unit / unit));
+    let known = variance.map(|variance| Ground::Variance(variance / unit / unit));
     let bounded = pixels.kurtosis.filter(|_| pixels.variance.is_none() && is_free);
-    let bounded = bounded.map(Spread::Kurtosis);
+    let bounded = bounded.map(Ground::Kurtosis);
     let levels = if known.is_none() && bounded.is_some() { terms.levels } else { AT_THE_END };
-    let ask = Ask {
-        check: "mean",
-        what: "mean",
-        spread: known.or(bounded),
-        is_hard: true,
+    let mean_quantity = Quantity {
         range: pixels.widened().map(|[low, high]| [(low - most) / unit, (high - least) / unit]),
-        tolerance: terms.tolerance,
-        usual: MEAN_CAP,
-        cap: if terms.is_capped { MEAN_CAP } else { 1e3 },
-        floor: mean_of(&|i| pixels.floor(i)) / unit,
-        must_pass: true,
+        ..terms.mean(known.or(bounded), mean_of(&|i| pixels.floor(i)) / unit)
     };
-    let planned = Some(draws * PLANNED / planned_units(terms.count));
-    let mut scalar = Scalar::new(ask, planned, levels);
-    let mut y = Vec::new();
-    // Stakes on a range learn from the passes before; a block has as many passes as all before it.
-    for (first, last) in doubling(stack.passes) {
-        y.clear();
+    let of_block = |first: usize, last: usize, y: &mut Vec<f64>| {
         if is_free {
             for pass in first..last {
                 let values = stack.pass(pass);
@@ -160,9 +159,8 @@ pub(super) fn tile(stack: &Stack, pixels: &Pixels, part: Part, terms: Terms) -> 
         } else {
             y.extend(averages[first..last].iter().map(|x| (x - truth) / unit));
         }
-        scalar.absorb(&y);
-    }
-    scalar.decide();
+    };
+    let scalar = judged(mean_quantity, terms.planned(draws), levels, stack.passes, of_block);
     (found.ln_e, found.ln_p) = (scalar.evidence.ln_e, scalar.evidence.ln_pass);
     found.tolerance = scalar.design.map(|design| design.tolerance);
     if let (Some(tolerance), true, false) = (found.tolerance, variance.is_some(), is_single) {
@@ -227,8 +225,28 @@ pub(super) fn wholes(size: Size) -> Vec<Part> {
 /// Levels that nothing reaches before the end.
 pub(super) const AT_THE_END: Levels = Levels { ln_fail: f64::INFINITY, ln_pass: f64::INFINITY };
 
+/// Judges a quantity of `blocks` passes, or of other blocks; `y` adds those of the blocks from one number up to another.
+///
+/// Stakes on a range learn from the passes before: the gate gets as many passes at once as all before them.
+pub(super) fn judged(
+    quantity: Quantity,
+    planned: Option<f64>,
+    levels: Levels,
+    blocks: usize,
+    mut y: impl FnMut(usize, usize, &mut Vec<f64>),
+) -> Scalar {
+    let (mut scalar, mut values) = (Scalar::new(quantity, planned, levels), Vec::new());
+    for (first, last) in doubling(blocks) {
+        values.clear();
+        y(first, last, &mut values);
+        scalar.absorb(&values);
+    }
+    scalar.decide();
+    scalar
+}
+
 /// The passes in blocks: 1, 1, 2, 4, 8, …
-pub(super) fn doubling(passes: usize) -> impl Iterator<Item = (usize, usize)> {
+fn doubling(passes: usize) -> impl Iterator<Item = (usize, usize)> {
     let begins = std::iter::successors(Some(0_usize), |&at| Some((2 * at).max(1)));
     begins.take_while(move |&at| at < passes).map(move |at| (at, (2 * at).max(1).min(passes)))
 }

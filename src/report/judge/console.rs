@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use crate::judge::judgement::Judgement;
+use crate::judge::Judgement;
 use crate::record::Verdict;
 use crate::report::console::layout::wrapped;
 use numeric::digits::short;

@@ -6,8 +6,7 @@
 
 use quick_junit::{NonSuccessKind, Report, TestCase, TestCaseStatus, TestSuite};
 
-use crate::judge::images;
-use crate::judge::judgement::Judgement;
+use crate::judge::{Judgement, images};
 use crate::record::Verdict;
 use crate::report::ReportError;
 use crate::report::junit::Inconclusive;

@@ -3,8 +3,7 @@
 use trueflight::case::Case;
 use trueflight::case::Source;
 use trueflight::estimators::DrawBuffer;
-use trueflight::judge::claim::{Claim, Given, ROUNDING};
-use trueflight::judge::trial::{Trial, Wanted};
+use trueflight::judge::{Claim, ROUNDING, Trial, Wanted};
 use trueflight::lab::streams::{self, CLAIMS, LAWS, Law};
 use trueflight::plan::BLOCK;
 use trueflight::plan::Options;
@@ -100,8 +99,8 @@ fn two_per_cent_of_bias_fail_by_truth_and_range_alone() {
     let truth = (-DEPTH).exp();
     let verdict = |draws: &[f64], truth: f64| {
         let range = Some([0.0, 1.0]);
-        let given = Given { truth, range, rounding: ROUNDING, ..Given::default() };
-        let claim = Claim::new(&given).expect("a claim");
+        let claim = Claim { range, rounding: ROUNDING, ..Claim::of_truth(truth) };
+        let claim = claim.validated().expect("a claim");
         let trial = Trial::new(claim, Wanted::default(), Some(400_000)).expect("a trial");
         trial.judge_all(draws).verdict
     };

@@ -2,10 +2,7 @@
 
 use std::io::Read;
 
-use trueflight::judge::claim::{Claim, Given};
-use trueflight::judge::judgement::Stop;
-use trueflight::judge::trial::{Trial, Wanted};
-use trueflight::judge::{Draws, Format};
+use trueflight::judge::{Claim, Draws, Format, Stop, Trial, Wanted};
 
 use super::{CASE, Place, UNIFORM, raw, uniform};
 
@@ -126,12 +123,12 @@ impl Read for Endless {
 
 #[test]
 fn a_pipe_without_end_ends() {
-    let claim = Claim::new(&Given { truth: 0.5, variance: Some(0.0), ..Given::default() });
+    let claim = Claim { variance: Some(0.0), ..Claim::of_truth(0.5) }.validated();
     let wanted = Wanted { most: Some(1_000_000), ..Wanted::default() };
     let trial = Trial::new(claim.expect("a claim"), wanted, None).expect("a trial");
     let format = Format::Csv { column: None, lookups: None };
     let mut draws = Draws::from_reader(Endless, "stdin", format).expect("draws");
-    let judgement = trueflight::judge::judge_by(&trial, &mut draws).expect("a verdict");
+    let judgement = trial.judge(&mut draws).expect("a verdict");
     assert_eq!((judgement.draws, judgement.stopped), (1_000_000, Some(Stop::Limit)));
     let place = Place::new(&[("x.f64", &raw(&uniform(20_000)))]);
     let limit = ["10000 of 20000", "stopped at the limit: what comes after 10000 draws"];

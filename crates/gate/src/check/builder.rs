@@ -4,10 +4,7 @@ use super::error::CheckError;
 use super::made::{Closure, Factory};
 use super::said::Said;
 use super::sample::Sample;
-use crate::judge::claim::{ClaimError, Lookups};
-use crate::judge::reading::Reading;
-use crate::judge::theory::Theory;
-use crate::judge::trial::{Trial, Wanted};
+use crate::session::{ClaimError, Lookups, Session, Theory, Wanted};
 use numeric::rng::Stream;
 
 /// More values of a draw than this are not judged together: each has lost its share of α.
@@ -198,48 +195,31 @@ impl<S> Check<S> {
         self
     }
 
-    /// A gate for each value of a draw, before the first draw; `length` is the number of draws, if known.
-    pub(super) fn readings(
+    /// The session before the first draw; `length` is the number of draws, if known.
+    pub(super) fn session(
         &self,
         values: usize,
         has_lookups: bool,
         length: Option<u64>,
-    ) -> Result<Vec<Reading>, CheckError> {
+    ) -> Result<Session, CheckError> {
+        let (name, said) = (|| self.name.clone(), &self.said);
         if values == 0 {
-            return Err(CheckError::NoValues { name: self.name.clone() });
+            return Err(CheckError::NoValues { name: name() });
         }
         if values > MAX_VALUES {
-            return Err(CheckError::TooManyValues {
-                name: self.name.clone(),
-                values,
-                most: MAX_VALUES,
-            });
+            return Err(CheckError::TooManyValues { name: name(), values, most: MAX_VALUES });
         }
-        let claims = self.said.claims(&self.name, values, has_lookups)?;
-        let alpha = self.said.alpha;
-        if !(alpha > 0.0 && alpha < 1.0) {
-            let (what, wanted) = ("alpha", "a probability above 0 and below 1");
-            let source = ClaimError::Number { what, value: alpha, wanted };
-            return Err(CheckError::Claim { name: self.name.clone(), source: source.into() });
-        }
+        let claims = said.claims(&self.name, values, has_lookups)?;
         let wanted = Wanted {
-            tolerance: self.said.tolerance,
-            variance_tolerance: self.said.variance_tolerance,
-            alpha: alpha / values as f64,
-            batch: self.said.batch,
+            tolerance: said.tolerance,
+            variance_tolerance: said.variance_tolerance,
+            alpha: said.alpha,
+            batch: said.batch,
             stop_early: false,
-            most: self.said.draws,
+            most: said.draws,
         };
-        let mut background = self.said.background(&claims, &wanted, has_lookups, length);
-        let reading = |claim| {
-            let trial = Trial::new(claim, wanted, length)?;
-            // What belongs to the draw as a whole, the first reading tells.
-            Ok(Reading::with(trial, std::mem::take(&mut background)))
-        };
-        let readings: Result<Vec<Reading>, _> = claims.into_iter().map(reading).collect();
-        readings.map_err(|source: ClaimError| CheckError::Claim {
-            name: self.name.clone(),
-            source: source.into(),
-        })
+        let session = Session::new(&claims, wanted, length, said.taken(has_lookups));
+        session
+            .map_err(|source: ClaimError| CheckError::Claim { name: name(), source: source.into() })
     }
 }

@@ -1,6 +1,6 @@
 //! Why a check has no verdict.
 
-use crate::judge::claim::ClaimError;
+use crate::session::ClaimError;
 use numeric::digits::number;
 
 /// A number of things in words.

@@ -1,7 +1,6 @@
 //! Draws that closures make, block by block, on one thread or several.
 
 use std::any::Any;
-use std::iter;
 use std::num::NonZero;
 use std::ops::Range;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -13,6 +12,7 @@ use super::error::CheckError;
 use super::outcome::Outcome;
 use super::pushed::{Plan, Request};
 use super::sample::Sample;
+use crate::session::Block;
 use numeric::rng::Stream;
 
 /// A closure that makes one draw a call.
@@ -28,12 +28,6 @@ pub struct Factory<M> {
     pub(super) threads: Option<usize>,
 }
 
-/// The draws of a block.
-struct Block {
-    columns: Vec<Vec<f64>>,
-    lookups: Vec<f64>,
-}
-
 /// What a closure said when it panicked, and in which draw of its block.
 struct Panic {
     draw: u64,
@@ -46,9 +40,8 @@ fn block<T: Sample>(
     draw: &mut impl FnMut(&mut Stream) -> T,
 ) -> Result<Block, Panic> {
     let count = request.draws;
-    let column = || Vec::with_capacity(count);
-    let columns = iter::repeat_with(column).take(T::VALUES).collect();
-    let mut block = Block { columns, lookups: Vec::new() };
+    let mut block = Block::new(T::VALUES);
+    block.columns.iter_mut().for_each(|column| column.reserve(count));
     let mut stream = request.stream();
     let drawn = catch_unwind(AssertUnwindSafe(|| {
         for _ in 0..count {
@@ -85,8 +78,7 @@ impl Check<()> {
             let block = source(request).map_err(|Panic { draw, message }| {
                 CheckError::Panicked { name: name.clone(), draw, seed, message }
             })?;
-            let columns: Vec<&[f64]> = block.columns.iter().map(Vec::as_slice).collect();
-            pushed.absorb_columns(&columns, &block.lookups);
+            pushed.absorb_block(&block);
             Ok(true)
         })?;
         pushed.verdict()

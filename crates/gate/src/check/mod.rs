@@ -36,3 +36,5 @@ pub use outcome::Outcome;
 pub use property::Property;
 pub use pushed::{Pushed, Request};
 pub use sample::Sample;
+
+pub use crate::session::{Block, Source, Stop, Until};

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use crate::judge::judgement::Judgement;
+use crate::session::Judgement;
 use crate::stats::verdict::Verdict;
 
 /// So many values are told of.

@@ -4,9 +4,7 @@ use super::builder::{Check, MOST};
 use super::error::CheckError;
 use super::made::assert_pass;
 use super::outcome::Outcome;
-use crate::judge::judgement::Stop;
-use crate::judge::reading::Reading;
-use crate::judge::trial::BUFFER;
+use crate::session::{BUFFER, Block, Session, Sink, Stop, Until, drive, room};
 use numeric::rng::{Address, Stream, name_hash};
 
 impl Check<()> {
@@ -62,10 +60,9 @@ impl Check<()> {
         has_lookups: bool,
         length: Option<u64>,
     ) -> Result<Pushed, CheckError> {
-        let readings = self.readings(values, has_lookups, length)?;
-        let (columns, lookups) = (vec![Vec::new(); values], Vec::new());
-        let (next, stopped) = (0, None);
-        Ok(Pushed { check: self, length, has_lookups, readings, columns, lookups, next, stopped })
+        let session = self.session(values, has_lookups, length)?;
+        let (block, next, stopped) = (Block::new(values), 0, None);
+        Ok(Pushed { check: self, length, has_lookups, session, block, next, stopped })
     }
 
     /// Numbers that address the blocks of draws.
@@ -82,10 +79,9 @@ pub struct Pushed {
     length: Option<u64>,
     /// Whether each draw comes with its lookups.
     has_lookups: bool,
-    readings: Vec<Reading>,
-    /// What does not fill a block yet.
-    columns: Vec<Vec<f64>>,
-    lookups: Vec<f64>,
+    session: Session,
+    /// Room for draws of several values.
+    block: Block,
     /// Number of the next block that a source is asked for.
     next: u64,
     /// Reason why a source was asked for no more draws.
@@ -124,17 +120,11 @@ pub(super) struct Plan {
 }
 
 impl Plan {
-    /// Returns the request for a block that begins `left` draws before the end.
-    fn request(self, block: u64, left: u64) -> Request {
-        let draws = usize::try_from(left).map_or(BUFFER, |left| left.min(BUFFER));
-        Request { draws, block, plan: self }
-    }
-
     /// Returns the requests for all blocks.
     pub(super) fn requests(self) -> impl Iterator<Item = Request> {
         let size = BUFFER as u64;
         (0..self.most.div_ceil(size))
-            .map(move |block| self.request(block, self.most - block * size))
+            .map(move |block| Request { draws: room(self.most - block * size), block, plan: self })
     }
 }
 
@@ -167,28 +157,20 @@ impl Pushed {
     ) -> Result<(), E> {
         let plan = self.check.plan();
         let is_fixed = self.check.said.draws.is_some();
-        loop {
-            if !is_fixed && !self.is_open() {
-                self.stopped = Some(Stop::Decided);
-                return Ok(());
-            }
-            let left = plan.most.saturating_sub(self.draws());
-            if left == 0 {
-                self.stopped = (!is_fixed).then_some(Stop::Limit);
-                return Ok(());
-            }
-            let request = plan.request(self.next, left);
-            self.next += 1;
-            if !source(self, request)? {
-                return Ok(());
-            }
-        }
+        let until = Until { most: Some(plan.most), is_decided: !is_fixed };
+        let stopped = drive(self, until, |pushed, draws| {
+            let request = Request { draws, block: pushed.next, plan };
+            pushed.next += 1;
+            source(pushed, request)
+        })?;
+        // All the draws that were asked for leave nothing out.
+        self.stopped = stopped.filter(|_| !is_fixed);
+        Ok(())
     }
 
     /// Adds a block of draws by one column for each value.
-    pub(super) fn absorb_columns(&mut self, columns: &[&[f64]], lookups: &[f64]) {
-        debug_assert!(self.columns.iter().all(Vec::is_empty));
-        Reading::absorb_values(&mut self.readings, columns, lookups);
+    pub(super) fn absorb_block(&mut self, block: &Block) {
+        self.session.absorb(&block.columns(), &block.lookups);
     }
 
     /// Adds draws; those of several values lie one draw after the other. How many come in one call makes no
@@ -221,10 +203,10 @@ impl Pushed {
                 return Err(CheckError::NoLookupsWanted { name });
             }
             // Theory knows them: the first draw tells whether they come.
-            self.readings = self.check.readings(self.columns.len(), true, self.length)?;
+            self.session = self.check.session(self.values(), true, self.length)?;
             self.has_lookups = true;
         }
-        let (found, wanted) = (lookups.len(), draws.len() / self.columns.len());
+        let (found, wanted) = (lookups.len(), draws.len() / self.values());
         if found != wanted {
             return Err(CheckError::Lookups { name, found, wanted });
         }
@@ -234,17 +216,17 @@ impl Pushed {
     /// Whether more draws may change what is said; after that many as were announced, or once all is decided, they
     /// may not.
     pub fn is_open(&self) -> bool {
-        self.readings.iter().any(Reading::is_open)
+        self.session.is_open()
     }
 
     /// How many values a draw has.
     pub fn values(&self) -> usize {
-        self.columns.len()
+        self.session.values()
     }
 
     /// How many draws there were.
     pub fn draws(&self) -> u64 {
-        self.readings[0].draws() + self.columns[0].len() as u64
+        self.session.draws()
     }
 
     /// What is said of all draws.
@@ -252,14 +234,13 @@ impl Pushed {
     /// # Errors
     ///
     /// There were none.
-    pub fn verdict(mut self) -> Result<Outcome, CheckError> {
+    pub fn verdict(self) -> Result<Outcome, CheckError> {
         if self.draws() == 0 {
             return Err(CheckError::NoDraws { name: self.check.name });
         }
-        self.judge_block();
-        let Self { check, readings, stopped, .. } = self;
-        let channels = check.said.names(readings.len());
-        let values = readings.into_iter().map(|reading| reading.close(stopped)).collect();
+        let Self { check, session, stopped, .. } = self;
+        let channels = check.said.names(session.values());
+        let values = session.outcome(stopped);
         Ok(Outcome { name: check.name, alpha: check.said.alpha, channels, values })
     }
 
@@ -273,48 +254,33 @@ impl Pushed {
         assert_pass(&self.verdict());
     }
 
+    /// Adds draws that lie one after the other.
     fn push(&mut self, draws: &[f64], lookups: &[f64]) -> Result<(), CheckError> {
-        let wanted = self.columns.len();
+        let wanted = self.values();
         if !draws.len().is_multiple_of(wanted) {
             let (name, found) = (self.check.name.clone(), draws.len());
             return Err(CheckError::Ragged { name, found, wanted });
         }
-        let (mut draws, mut lookups) = (draws, lookups);
-        while !draws.is_empty() {
-            let room = BUFFER - self.columns[0].len();
-            let count = room.min(draws.len() / wanted);
-            let (now, later) = draws.split_at(count * wanted);
-            let (counts, further) = lookups.split_at(count.min(lookups.len()));
-            match &mut self.columns[..] {
-                // A whole block needs no copy.
-                [column] if count == BUFFER => {
-                    debug_assert!(column.is_empty());
-                    Reading::absorb_values(&mut self.readings, &[now], counts);
-                }
-                [column] => column.extend_from_slice(now),
-                columns => {
-                    for draw in now.chunks_exact(wanted) {
-                        columns.iter_mut().zip(draw).for_each(|(column, x)| column.push(*x));
-                    }
-                }
-            }
-            if !(wanted == 1 && count == BUFFER) {
-                self.lookups.extend_from_slice(counts);
-            }
-            if self.columns[0].len() == BUFFER {
-                self.judge_block();
-            }
-            (draws, lookups) = (later, further);
+        if wanted == 1 {
+            self.session.absorb(&[draws], lookups);
+            return Ok(());
+        }
+        let mut lookups = lookups.chunks(BUFFER);
+        for rows in draws.chunks(BUFFER * wanted) {
+            self.block.clear();
+            self.block.push_rows(rows);
+            self.session.absorb(&self.block.columns(), lookups.next().unwrap_or_default());
         }
         Ok(())
     }
+}
 
-    fn judge_block(&mut self) {
-        let columns: Vec<&[f64]> = self.columns.iter().map(Vec::as_slice).collect();
-        if columns.iter().any(|column| !column.is_empty()) {
-            Reading::absorb_values(&mut self.readings, &columns, &self.lookups);
-        }
-        self.columns.iter_mut().for_each(Vec::clear);
-        self.lookups.clear();
+impl Sink for Pushed {
+    fn draws(&self) -> u64 {
+        self.session.draws()
+    }
+
+    fn is_open(&self) -> bool {
+        self.session.is_open()
     }
 }

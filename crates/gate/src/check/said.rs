@@ -2,9 +2,7 @@
 
 use super::builder::Values;
 use super::error::CheckError;
-use crate::judge::claim::{Claim, Given, Lookups, ROUNDING};
-use crate::judge::theory::{Background, Theory, Whole};
-use crate::judge::trial::Wanted;
+use crate::session::{Claim, Lookups, ROUNDING, Taken, Theory};
 
 /// What is known of a draw, and what is wanted of the verdict.
 #[derive(Debug, Clone)]
@@ -81,26 +79,12 @@ impl Said {
         if values > 1 { names.collect() } else { Vec::new() }
     }
 
-    /// Theory of the draw as a whole: the tests of its distribution.
-    pub(super) fn background(
-        &self,
-        claims: &[Claim],
-        wanted: &Wanted,
-        has_lookups: bool,
-        length: Option<u64>,
-    ) -> Background {
-        let (Some(theory), [first, ..]) = (self.known(), claims) else {
-            return Background::default();
-        };
-        let whole = Whole {
-            length,
-            // Numbers of the caller's are not those that theory has the distribution of.
-            has_lookups: has_lookups && self.lookups.is_none() && self.knows_lookups(),
-            rounding: first.rounding,
-            values: claims.len(),
-            is_mean_only: self.mean_only,
-        };
-        theory.background(wanted, whole)
+    /// What a session takes from theory.
+    pub(super) fn taken(&self, has_lookups: bool) -> Option<Taken<'_>> {
+        // Numbers of the caller's are not those that theory has the distribution of.
+        let has_lookups = has_lookups && self.lookups.is_none() && self.knows_lookups();
+        let theory = self.known()?;
+        Some(Taken { theory, has_lookups, is_mean_only: self.mean_only })
     }
 
     /// Whether a pushed draw tells its lookups.
@@ -155,42 +139,29 @@ impl Said {
             return Err(CheckError::Twice { name: name(), what });
         }
         let claim = |index: usize| {
-            let truth = match theory {
-                Some(channels) => channels[index].1.truth,
-                None => number("truth", &self.truth, index)?.unwrap_or(f64::NAN),
+            let numbers = Claim {
+                variance: number("variance", &self.variance, index)?,
+                kurtosis: number("kurtosis", &self.kurtosis, index)?,
+                lookups: self.lookups,
+                rounding: self.rounding,
+                ..Claim::of_truth(match theory {
+                    Some(channels) => channels[index].1.truth,
+                    None => number("truth", &self.truth, index)?.unwrap_or(f64::NAN),
+                })
             };
-            let (variance, kurtosis) = (
-                number("variance", &self.variance, index)?,
-                number("kurtosis", &self.kurtosis, index)?,
-            );
-            // Lookups belong to the draw, not to each of its values.
-            let own_lookups = self.lookups.filter(|_| index == 0);
-            let rounding = self.rounding;
-            let given =
-                Given { truth, variance, kurtosis, range: None, lookups: own_lookups, rounding };
-            let by_numbers = Claim::new(&given)
-                .map_err(|source| CheckError::Claim { name: name(), source: source.into() })?;
             let known = theory.map(|channels| {
                 let claim = channels[index].1;
-                Claim { rounding: claim.rounding.max(rounding), ..claim }
+                Claim { rounding: claim.rounding.max(self.rounding), ..claim }
             });
-            let claim = match known {
-                None => by_numbers,
-                Some(known) if mean_only => Claim {
-                    variance,
-                    kurtosis,
-                    variance_error: 0.0,
-                    lookups: own_lookups,
-                    ..known.of_mean_alone()
-                },
+            let claim = |numbers: Claim| match known {
+                None => numbers,
+                Some(known) if mean_only => numbers.about(known),
                 Some(known) => {
-                    let told = known.lookups.filter(|_| lookups && index == 0);
-                    Claim { lookups: own_lookups.or(told), ..known }
+                    Claim { lookups: self.lookups.or(known.lookups.filter(|_| lookups)), ..known }
                 }
             };
-            claim
-                .within(self.range)
-                .map_err(|source| CheckError::Claim { name: name(), source: source.into() })
+            let claim = numbers.validated().and_then(|numbers| claim(numbers).within(self.range));
+            claim.map_err(|source| CheckError::Claim { name: name(), source: source.into() })
         };
         (0..values).map(claim).collect()
     }

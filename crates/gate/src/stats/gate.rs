@@ -89,6 +89,22 @@ pub fn draws_of(variance: f64, tolerance: f64) -> f64 {
     PLANNED * variance / (tolerance * tolerance)
 }
 
+/// Number of blocks at the look after the one at `blocks`: looks grow by 1.15.
+pub fn next_look(blocks: u64) -> u64 {
+    (blocks + 1).max(blocks * 115 / 100)
+}
+
+/// ln E at which one of `count` scalars fails that share `alpha`.
+pub fn ln_fail(alpha: f64, count: usize) -> f64 {
+    -(alpha / count.max(1) as f64).ln()
+}
+
+/// Whether a scalar fails by its own spread too, were that `spread` and not V: evidence that rests on a variance that is
+/// refuted as too small is none.
+pub fn is_off_by_itself(mean: f64, spread: f64, draws: f64, ln_fail: f64) -> bool {
+    0.5 * mean * mean * draws >= ln_fail * spread
+}
+
 impl Design {
     /// A question about a scalar of variance at most V: ε is narrowed to √V/4 where it is wider,
     /// and widened to 4δ where it is narrower.

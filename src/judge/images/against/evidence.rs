@@ -15,7 +15,7 @@ use super::super::judgement::Tile;
 use super::super::picture::Stack;
 use super::super::tiles::{self, Part};
 use super::super::{ImageError, Wanted, estimate};
-use crate::judge::trial::MEAN_CAP;
+use gate::session::quantity::MEAN_CAP;
 use gate::stats::estimated_variance::Estimate;
 use gate::stats::normal::{upper_quantile, upper_tail};
 use gate::stats::symmetric;

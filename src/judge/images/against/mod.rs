@@ -27,7 +27,7 @@ use self::evidence::Evidence;
 use super::judgement::{Comparison, Dependence, Judgement, Tile, counts, worst};
 use super::{ImageError, LISTED, NOISY_VALUES, Stack, Wanted, claim, estimate, same, tiles};
 use super::{neighbours_of, not_finite, order_of};
-use crate::judge::claim::ROUNDING;
+use crate::judge::ROUNDING;
 use crate::judge::images::against::permutation::{Groups, distinct};
 use gate::stats::multiplicity::{e_benjamini_hochberg, holm};
 use gate::stats::verdict::{MISS, Verdict};

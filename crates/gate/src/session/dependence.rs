@@ -3,11 +3,12 @@
 use super::contents::Contents;
 use super::judgement::{DriftFinding, IndependenceFinding};
 use super::reading::{DRIFT, Reading};
+use super::reason::Reason;
 use crate::stats::replays::Replay;
 use crate::stats::verdict::Verdict;
 
 /// Whether the mean changes on the way: only where later draws plainly differ from earlier ones, and from the truth.
-pub fn drift(reading: &Reading) -> Option<DriftFinding> {
+pub(super) fn drift(reading: &Reading) -> Option<DriftFinding> {
     // Without a ground to fail the mean there is none to say when it changes.
     let mean = reading.mean.as_ref().filter(|mean| mean.has_ground())?;
     let (ln_e, batch) = (mean.ln_change, reading.trial.wanted.batch);
@@ -15,37 +16,38 @@ pub fn drift(reading: &Reading) -> Option<DriftFinding> {
     let is_refuted = (ln_e >= ln_e_limit || mean.has_failed()) && mean.is_founded();
     let change = mean.obvious_change().filter(|_| is_refuted);
     let Some(change) = change else {
-        let (verdict, reason) = (Verdict::Pass, String::new());
+        let (verdict, reason) = (Verdict::Pass, None);
         return Some(DriftFinding { verdict, reason, ln_e, ln_e_limit, from: None, off: 0.0 });
     };
     let (from, off) = (change.from * batch, change.off);
-    let where_ = match change.to {
-        None => format!("from draw {from} on"),
-        Some(to) => format!("from draw {from} to draw {}", to * batch),
-    };
     let inside = change.to.unwrap_or(mean.past.draws()) - change.from;
-    let told = mean.deviation(off, inside);
-    let reason = format!(
-        "the mean changes: {where_} it is off by {told}, {:+.1} standard errors from all other draws",
-        change.z
-    );
-    let (verdict, from) = (Verdict::Fail, Some(from));
+    let reason = Reason::Changes {
+        from,
+        to: change.to.map(|to| to * batch),
+        off: mean.deviation(off, inside),
+        z: change.z,
+    };
+    let (verdict, reason, from) = (Verdict::Fail, Some(reason), Some(from));
     Some(DriftFinding { verdict, reason, ln_e, ln_e_limit, from, off })
 }
 
 /// Why the mean fails where evidence from some draw on refutes it, and no change does.
-pub fn off_without_change(reading: &Reading, drift: &DriftFinding) -> Option<String> {
+pub(super) fn off_without_change(reading: &Reading, drift: &DriftFinding) -> Option<Reason> {
     let mean = reading.mean.as_ref()?;
     let (ln_e, limit) = (drift.ln_e, drift.ln_e_limit);
     let is_off = drift.verdict == Verdict::Pass && ln_e >= limit && mean.is_founded();
-    is_off.then(|| {
-        let told = mean.deviation(mean.past.mean(), mean.past.draws());
-        format!("the mean is off by {told} (ln E = {ln_e:.1} ≥ {limit:.1})")
+    is_off.then(|| Reason::Off {
+        what: mean.quantity.what.clone(),
+        off: mean.deviation(mean.past.mean(), mean.past.draws()),
+        remark: String::new(),
+        ln_e,
+        limit,
+        tolerance: None,
     })
 }
 
 /// Whether draws depend on each other: half of the level for neighbours, half for replays.
-pub fn independence(reading: &Reading) -> IndependenceFinding {
+pub(super) fn independence(reading: &Reading) -> IndependenceFinding {
     let ln_e_limit = (2.0 / reading.trial.wanted.alpha).ln();
     let mut found = IndependenceFinding {
         ln_e: reading.independence.ln_e(),
@@ -56,21 +58,20 @@ pub fn independence(reading: &Reading) -> IndependenceFinding {
     if reading.mean.is_none() {
         return found;
     }
-    let because = |what: String| format!("the draws are not independent: {what}");
     if found.ln_e >= ln_e_limit
         && let Some(strongest) = reading.independence.strongest(ln_e_limit)
     {
         let (scale, lag, r) = (strongest.scale, strongest.lag, strongest.correlation);
         (found.scale, found.lag, found.correlation) = (Some(scale), Some(lag), Some(r));
         found.batch = reading.independence.free_batch(ln_e_limit);
-        found.reason = because(match scale {
+        found.reason = Some(Reason::Dependent(match scale {
             1 => format!("correlation at lag {lag} is {r:.2}"),
             _ => format!("correlation between sums of {scale} consecutive draws is {r:.2}"),
-        });
+        }));
     }
     if let Some(Again { distance, times, ln_p, what }) = again(reading, ln_e_limit) {
         (found.replay, found.repeats, found.replay_ln_p) = (Some(distance), Some(times), ln_p);
-        found.reason = because(what);
+        found.reason = Some(Reason::Dependent(what));
     }
     found
 }

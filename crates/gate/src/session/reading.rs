@@ -1,9 +1,8 @@
 //! Draws on their way through all questions, block by block.
 
-use super::asks::{asks, planned};
 use super::contents::Contents;
 use super::flights::Ends;
-use super::judgement::{Judgement, Stop};
+use super::judgement::{Fault, Judgement, Stop};
 use super::scalar::{Levels, Scalar};
 use super::theory::{Background, DISTRIBUTION, Tested, Tests};
 use super::trial::{BUFFER, Trial};
@@ -18,33 +17,18 @@ use crate::stats::{Powers, ties};
 use numeric::sum::Sum;
 
 /// The share of α that the drift has, a question of its own.
-pub const DRIFT: f64 = 0.2;
+pub(super) const DRIFT: f64 = 0.2;
 /// The fewest draws that are judged at a time.
 const FEW: usize = 64;
 /// So many different values among the first draws are no small set.
 const VARIED: usize = 100;
 
-/// What a draw is that refutes the claim by itself.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Fault {
-    /// Not a finite number, or so far from the truth that its square is none.
-    Number,
-    /// Out of the promised range.
-    Range,
-    /// Not the truth, where draws have no spread.
-    Spread,
-    /// Another number of lookups than the one that all draws take.
-    Lookups,
-    /// A negative number in place of a distance.
-    Distance,
-}
-
 /// The first draw that refutes the claim by itself.
 #[derive(Debug, Clone, Copy)]
-pub struct Refuted {
-    pub(crate) fault: Fault,
-    pub(crate) index: u64,
-    pub(crate) value: f64,
+pub(super) struct Refuted {
+    pub(super) fault: Fault,
+    pub(super) index: u64,
+    pub(super) value: f64,
 }
 
 /// Averages of so many consecutive numbers.
@@ -71,13 +55,13 @@ impl Averages {
 }
 
 /// Draws on their way: what makes them may hand them over block by block.
-pub struct Reading {
-    pub(crate) trial: Trial,
+pub(super) struct Reading {
+    pub(super) trial: Trial,
     powers: Powers,
-    pub(crate) mean: Option<Scalar>,
-    pub(crate) variance: Option<Scalar>,
-    pub(crate) lookups: Option<Scalar>,
-    pub(crate) refuted: Option<Refuted>,
+    pub(super) mean: Option<Scalar>,
+    pub(super) variance: Option<Scalar>,
+    pub(super) lookups: Option<Scalar>,
+    pub(super) refuted: Option<Refuted>,
     refuting: u64,
     /// Where draws may lie, rounding included.
     range: Option<[f64; 2]>,
@@ -87,36 +71,29 @@ pub struct Reading {
     averages: [Averages; 2],
     /// How many draws or averages are judged at a time.
     block: usize,
-    pub(crate) independence: Independence,
-    pub(crate) replays: Replays,
-    pub(crate) sequences: Sequences,
-    pub(crate) runs: Runs,
+    pub(super) independence: Independence,
+    pub(super) replays: Replays,
+    pub(super) sequences: Sequences,
+    pub(super) runs: Runs,
     /// The draws behind averages.
-    pub contents: Option<Contents>,
+    pub(super) contents: Option<Contents>,
     lookup_sum: Sum,
     is_single: bool,
     is_varied: bool,
     resolution: Option<f64>,
-    pub(crate) background: Background,
-    pub(crate) ends: Option<Ends>,
+    pub(super) background: Background,
+    pub(super) ends: Option<Ends>,
     y: Vec<f64>,
     other: Vec<f64>,
 }
 
 impl Reading {
-    /// Before the first draw.
-    pub fn new(trial: Trial) -> Self {
-        Self::with(trial, Background::default())
-    }
-
-    /// Before the first draw of an experiment of a case.
-    pub fn with(trial: Trial, background: Background) -> Self {
-        let asks = asks(&trial);
-        let count = asks.len().max(1) as f64;
+    /// The state before the first draw.
+    pub(super) fn new(trial: Trial, background: Background) -> Self {
+        let quantities = trial.quantities();
         let share = if trial.is_certain() { 1.0 } else { 1.0 - DRIFT };
         let share = if background.tests.is_some() { share - DISTRIBUTION } else { share };
-        let ln_fail = (count / (share * trial.wanted.alpha)).ln();
-        let levels = Levels { ln_fail, ln_pass: -MISS.ln() };
+        let levels = Levels::new(share * trial.wanted.alpha, quantities.len());
         let most = trial.wanted.most.unwrap_or(u64::MAX);
         let length = trial.length.map(|length| length.min(most) / trial.wanted.batch);
         // Few draws make small blocks, so that later ones can be judged by earlier ones.
@@ -125,10 +102,10 @@ impl Reading {
         // A known variance is judged in the blocks of a run.
         let is_known = trial.claim.variance.is_some() && trial.wanted.batch == 1;
         let block = if is_known { BUFFER } else { block };
-        let planned = planned(&asks, length);
+        let planned = trial.planned(&quantities, length);
         let scalar = |check: &str| {
-            let ask = asks.iter().find(|ask| ask.check == check);
-            ask.map(|&ask| Scalar::new(ask, planned, levels).of(&trial))
+            let quantity = quantities.iter().find(|quantity| quantity.check == check)?;
+            Some(Scalar::new(quantity.clone(), planned, levels))
         };
         Self {
             trial,
@@ -160,7 +137,7 @@ impl Reading {
     }
 
     /// How many draws there were.
-    pub fn draws(&self) -> u64 {
+    pub(super) fn draws(&self) -> u64 {
         self.read
     }
 
@@ -182,13 +159,8 @@ impl Reading {
         (!(low <= x && x <= high)).then_some(Fault::Range)
     }
 
-    /// Adds draws with their lookups, if there are any. What is said depends on where one call ends and the next
-    /// begins; blocks of [`BUFFER`] draws suit the gate best.
-    pub fn absorb(&mut self, block: &[f64], lookups: &[f64]) {
-        Self::absorb_values(std::slice::from_mut(self), &[block], lookups);
-    }
-
-    pub(crate) fn absorb_one(&mut self, block: &[f64], lookups: &[f64]) {
+    /// Adds draws with their lookups, if there are any.
+    pub(super) fn absorb(&mut self, block: &[f64], lookups: &[f64]) {
         self.look_at_each(block, lookups);
         self.read += block.len() as u64;
         self.lookup_sum.add(lookups.iter().sum());
@@ -303,7 +275,7 @@ impl Reading {
     }
 
     /// Whether more draws may change what is said, were all decisions final.
-    pub fn is_open(&self) -> bool {
+    pub(super) fn is_open(&self) -> bool {
         if self.refuted.is_some() {
             return false;
         }
@@ -319,7 +291,7 @@ impl Reading {
     }
 
     /// What is said in the end; `stopped` tells why, where draws are left.
-    pub fn close(mut self, stopped: Option<Stop>) -> Judgement {
+    pub(super) fn close(mut self, stopped: Option<Stop>) -> Judgement {
         let rest = self.averages[0].ready.len();
         if rest > 0 {
             self.judge_averages(rest);
@@ -344,6 +316,7 @@ impl Reading {
         let mut judgement = Judgement {
             verdict: Verdict::Pass,
             reason: String::new(),
+            fault: self.refuted.as_ref().map(|refuted| refuted.fault),
             guarantees: Vec::new(),
             alpha: wanted.alpha,
             beta: MISS,
@@ -382,6 +355,6 @@ impl Reading {
 
 /// 0 for numbers whose square is finite, and not a number otherwise.
 #[inline(always)]
-pub fn zero_or_nan(y: f64) -> f64 {
+pub(super) fn zero_or_nan(y: f64) -> f64 {
     y * y * 0.0
 }

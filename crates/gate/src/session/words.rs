@@ -71,10 +71,9 @@ fn order(found: &IndependenceFinding) -> String {
         Some(ln_p) => format!("probability e^{ln_p:.1} or less"),
         None => format!("ln E = {:.1} of {:.1}", found.ln_e, found.ln_e_limit),
     };
-    if found.is_refuted() {
-        format!("{evidence}: {}", found.reason)
-    } else {
-        format!("{evidence} against independent draws: nothing found")
+    match &found.reason {
+        Some(reason) => format!("{evidence}: {reason}"),
+        None => format!("{evidence} against independent draws: nothing found"),
     }
 }
 

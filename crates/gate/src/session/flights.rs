@@ -53,7 +53,7 @@ pub struct Ends {
 }
 
 impl Ends {
-    pub(crate) fn new(flights: Flights, rounding: f64) -> Self {
+    pub(super) fn new(flights: Flights, rounding: f64) -> Self {
         let (near, left, seen, most_frequent) = (None, 0, 0, (f64::NAN, 0.0));
         Self { flights, rounding, near, left, seen, is_single: true, most_frequent }
     }

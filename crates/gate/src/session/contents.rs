@@ -28,7 +28,7 @@ pub struct Contents {
 }
 
 impl Contents {
-    pub(crate) fn new(batch: u64) -> Self {
+    pub(super) fn new(batch: u64) -> Self {
         Self {
             batch,
             replays: Replays::default(),
@@ -43,7 +43,7 @@ impl Contents {
         }
     }
 
-    pub(crate) fn absorb(&mut self, draws: &[f64]) {
+    pub(super) fn absorb(&mut self, draws: &[f64]) {
         self.replays.absorb(draws);
         self.sequences.absorb(draws);
         if !self.are_alike {

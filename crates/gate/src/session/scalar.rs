@@ -9,41 +9,18 @@
 //! Looks come at block ends, growing by 1.15, and where the draws end. A pass is not the end: a
 //! scalar that has passed may still fail on what comes later.
 
-use super::grounds::{FAIRLY_RELIABLE, OfRange, OfVariance, RELIABLE, Spread};
+use super::ground::{FAIRLY_RELIABLE, OfRange, OfVariance, RELIABLE};
+use super::quantity::{Ground, Quantity};
 use crate::stats::Powers;
 use crate::stats::betting::Aim;
 use crate::stats::capital::ln_mean_exp;
 use crate::stats::gate::{self, Decision, Design, Evidence};
+use crate::stats::verdict::MISS;
 
 /// How many draws a question without a promise takes where no number of draws is planned.
 const UNPLANNED: f64 = 67_108_864.0;
 /// Twice as many draws as show their variance where no number of draws is planned.
 const UNPLANNED_PILOT: f64 = 131_072.0;
-
-/// What is asked of a scalar.
-#[derive(Debug, Clone, Copy)]
-pub struct Ask {
-    /// `mean`, `variance` or `lookups`.
-    pub check: &'static str,
-    /// What it is called in a sentence.
-    pub what: &'static str,
-    /// What is known of V; `None` where only the range is to be relied on.
-    pub spread: Option<Spread>,
-    /// Whether it may fail by its spread, or only pass.
-    pub is_hard: bool,
-    /// Where y lies, if it is known.
-    pub range: Option<[f64; 2]>,
-    /// ε as the caller has it.
-    pub tolerance: Option<f64>,
-    /// ε where neither the caller nor a number of draws says.
-    pub usual: f64,
-    /// The widest ε that is chosen without being asked for.
-    pub cap: f64,
-    /// δ.
-    pub floor: f64,
-    /// Whether it was promised a pass even where the draws are too few.
-    pub must_pass: bool,
-}
 
 /// The levels of the gate.
 #[derive(Debug, Clone, Copy)]
@@ -54,28 +31,29 @@ pub struct Levels {
     pub ln_pass: f64,
 }
 
+impl Levels {
+    /// Levels of one of `count` quantities that share `alpha`.
+    pub fn new(alpha: f64, count: usize) -> Self {
+        Self { ln_fail: gate::ln_fail(alpha, count), ln_pass: -MISS.ln() }
+    }
+}
+
 /// A scalar on its way.
 pub struct Scalar {
-    pub(crate) ask: Ask,
-    /// The quantity that y stands for, as it is claimed.
-    pub expected: f64,
-    /// Size of y = 1 in units of the quantity.
-    pub scale: f64,
-    /// What is counted, in the plural.
-    pub unit: &'static str,
-    pub(crate) levels: Levels,
+    pub(super) quantity: Quantity,
+    pub(super) levels: Levels,
     /// n: how many draws are planned, if anybody knows.
     pub planned: Option<f64>,
-    pub(crate) past: Powers,
-    pub(crate) of_variance: Option<OfVariance>,
-    pub(crate) of_range: Option<OfRange>,
+    pub(super) past: Powers,
+    pub(super) of_variance: Option<OfVariance>,
+    pub(super) of_range: Option<OfRange>,
     /// What is asked, as soon as V is known or bounded; its ε never becomes wider.
     pub design: Option<Design>,
     /// Whether n draws suffice for a pass.
     pub is_promised: bool,
     /// The sum of y in each block, and how many draws there are at its end.
     pub sums: Vec<(f64, u64)>,
-    pub(crate) look: u64,
+    pub(super) look: u64,
     /// The decision, and the evidence it was made on.
     pub decision: Decision,
     /// Evidence at the last look.
@@ -90,15 +68,15 @@ pub struct Scalar {
 
 impl Scalar {
     /// Creates the state of a quantity before its first draw.
-    pub fn new(ask: Ask, planned: Option<f64>, levels: Levels) -> Self {
+    pub fn new(quantity: Quantity, planned: Option<f64>, levels: Levels) -> Self {
         let mut scalar = Self {
             levels,
             planned,
             past: Powers::default(),
-            of_variance: ask.spread.map(|spread| OfVariance::new(spread, ask.is_hard)),
-            of_range: ask.range.map(OfRange::new),
+            of_variance: quantity.ground.map(OfVariance::new),
+            of_range: quantity.range.map(OfRange::new),
             design: None,
-            is_promised: ask.must_pass,
+            is_promised: quantity.must_pass,
             sums: Vec::new(),
             look: 1,
             decision: Decision::Open,
@@ -106,12 +84,9 @@ impl Scalar {
             is_doubted: false,
             ln_change: 0.0,
             seen: (0.0, 0),
-            expected: 0.0,
-            scale: 1.0,
-            unit: "draws",
-            ask,
+            quantity,
         };
-        if let Some(Spread::Known(variance)) = ask.spread {
+        if let Some(variance) = scalar.quantity.known_variance() {
             scalar.start(variance);
         }
         scalar
@@ -121,19 +96,19 @@ impl Scalar {
     fn start(&mut self, variance: f64) {
         let skipped = self.past.draws() as f64;
         let left = self.planned.map(|all| (all - skipped).max(1.0));
-        let by_range = self.of_range.as_ref().filter(|_| self.ask.spread.is_none());
+        let by_range = self.of_range.as_ref().filter(|_| self.quantity.ground.is_none());
         let finest = by_range.map_or(0.0, OfRange::finest);
         let chosen = |n: f64| gate::tolerance_of(variance, n).max(finest / n);
-        let chosen = left.map_or(self.ask.usual, chosen).min(self.ask.cap);
+        let chosen = left.map_or(self.quantity.usual, chosen).min(self.quantity.cap);
         // The bets of a range need no narrow ε.
-        let design = match self.ask.tolerance {
-            Some(asked) => Design::asked(variance, asked, self.ask.floor),
-            None if by_range.is_some() => Design::asked(variance, chosen, self.ask.floor),
-            None => Design::new(variance, chosen, self.ask.floor),
+        let design = match self.quantity.tolerance {
+            Some(asked) => Design::asked(variance, asked, self.quantity.floor),
+            None if by_range.is_some() => Design::asked(variance, chosen, self.quantity.floor),
+            None => Design::new(variance, chosen, self.quantity.floor),
         };
         let suffices = |n| design.draws() <= n * (1.0 + 1e-6);
-        let can_promise = self.ask.is_hard && left.is_none_or(suffices);
-        self.is_promised |= self.ask.tolerance.is_some() || can_promise;
+        let can_promise = self.quantity.is_hard() && left.is_none_or(suffices);
+        self.is_promised |= self.quantity.tolerance.is_some() || can_promise;
         self.design = Some(design);
     }
 
@@ -142,7 +117,7 @@ impl Scalar {
     fn start_by_range(&mut self) {
         let Some(ground) = self.of_range.as_ref().filter(|_| self.design.is_none()) else { return };
         let (draws, carry) = (self.past.draws() as f64, self.past.effective_draws());
-        let is_asked = self.ask.tolerance.is_some();
+        let is_asked = self.quantity.tolerance.is_some();
         let is_due = draws >= 0.5 * self.planned.unwrap_or(UNPLANNED_PILOT);
         let is_reliable = carry >= RELIABLE || is_due && carry >= FAIRLY_RELIABLE;
         if !is_asked && !is_reliable && !is_due {
@@ -151,7 +126,7 @@ impl Scalar {
         let shown = if is_reliable { self.past.upper_square() } else { f64::INFINITY };
         let variance = shown.min(ground.widest());
         // A range that leaves next to nothing narrows no tolerance.
-        let asked = self.ask.tolerance.unwrap_or(self.ask.cap);
+        let asked = self.quantity.tolerance.unwrap_or(self.quantity.cap);
         let variance = if variance > 0.0 { variance } else { 16.0 * asked * asked };
         if (draws > 0.0 || is_asked) && variance.is_finite() {
             self.start(variance);
@@ -179,18 +154,18 @@ impl Scalar {
                 let variance = bound.or(ground.variance(&self.past));
                 // Until ε is chosen, the widest one guides the bets against a correct mean.
                 let is_provisional = self.design.is_none();
-                let widest = self.ask.tolerance.unwrap_or(self.ask.cap);
+                let widest = self.quantity.tolerance.unwrap_or(self.quantity.cap);
                 let tolerance = self.design.map_or(widest, |design| design.tolerance);
                 let aim = variance.filter(|_| !is_provisional || self.past.draws() > 0);
                 let aim = aim.map(|variance| Aim { tolerance, variance, is_provisional });
-                ground.absorb(y, aim, self.ask.floor);
+                ground.absorb(y, aim, self.quantity.floor);
             }
         }
         self.past.absorb(y);
         self.sums.push((y.iter().sum(), self.past.draws()));
         if block + 1 == self.look {
             self.decide();
-            self.look = (self.look + 1).max(self.look * 115 / 100);
+            self.look = gate::next_look(self.look);
         }
     }
 
@@ -206,7 +181,8 @@ impl Scalar {
         let mut ln_share: f64 = 0.0;
         let tolerance = self.design.map_or(0.0, |design| design.tolerance);
         let of_variance = self.of_variance.as_ref();
-        let of_variance = of_variance.map(|g| (&g.capital, g.capital.ln_pass(), g.is_hard));
+        let of_variance =
+            of_variance.map(|g| (&g.capital, g.capital.ln_pass(), self.quantity.is_hard()));
         let of_range = self.of_range.as_ref();
         let of_range = of_range.map(|g| (&g.capital, g.ln_pass(tolerance), true));
         for (capital, sides, is_hard) in of_variance.into_iter().chain(of_range) {
@@ -224,7 +200,7 @@ impl Scalar {
             ln_share = ground.ln_share();
         }
         soft += ln_share;
-        let ln_share = if self.ask.is_hard { ln_share } else { 0.0 };
+        let ln_share = if self.quantity.is_hard() { ln_share } else { 0.0 };
         let mean = |values: &[f64]| if values.is_empty() { 0.0 } else { ln_mean_exp(values) };
         let evidence = Evidence {
             ln_e: mean(&ln_e) + ln_share,
@@ -250,21 +226,13 @@ impl Scalar {
         self.decision == Decision::Open && (self.past.draws() as f64) < limit
     }
 
-    pub(crate) fn has_failed(&self) -> bool {
+    pub(super) fn has_failed(&self) -> bool {
         self.decision == Decision::Failed
-    }
-
-    /// V, where the claim has it.
-    pub fn known_variance(&self) -> Option<f64> {
-        match self.ask.spread {
-            Some(Spread::Known(variance)) => Some(variance),
-            _ => None,
-        }
     }
 
     /// Whether it can fail at all.
     pub fn has_ground(&self) -> bool {
-        self.of_range.is_some() || self.ask.is_hard
+        self.of_range.is_some() || self.quantity.is_hard()
     }
 
     /// Whether the draws do not contradict what was assumed of them.
@@ -277,14 +245,13 @@ impl Scalar {
     pub fn is_off_by_itself(&self) -> bool {
         let (off, n) = self.seen;
         let by_range = self.of_range.as_ref().map_or(0.0, |ground| ground.capital.ln_e());
-        let squares = self.past.mean_square() - off * off;
-        0.5 * off * off * n as f64 >= self.levels.ln_fail * squares
-            || by_range >= self.levels.ln_fail
+        let (spread, ln_fail) = (self.past.mean_square() - off * off, self.levels.ln_fail);
+        gate::is_off_by_itself(off, spread, n as f64, ln_fail) || by_range >= ln_fail
     }
 
     /// The kurtosis that a judgement assumes without a promise of the caller's.
     pub fn assumed(&self) -> Option<f64> {
-        if self.ask.spread != Some(Spread::Shown) {
+        if self.quantity.ground != Some(Ground::Shown) {
             return None;
         }
         self.of_variance.as_ref().and_then(|ground| ground.kurtosis)

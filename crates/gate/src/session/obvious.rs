@@ -50,15 +50,15 @@ impl Scalar {
     /// range or the variance leaves no room for what was not drawn.
     pub fn obvious_z(&self) -> Option<f64> {
         let (n, off) = (self.past.draws() as f64, self.past.mean());
-        let excess = off.abs() - self.ask.floor;
+        let excess = off.abs() - self.quantity.floor;
         if n < 2.0 || excess <= 0.0 {
             return None;
         }
         let carry = self.past.effective_draws();
         let of = |variance: f64| excess / (variance / n).sqrt();
-        let known = self.known_variance().map_or(0.0, of);
+        let known = self.quantity.known_variance().map_or(0.0, of);
         if carry <= 0.0 {
-            let [low, high] = self.ask.range.unwrap_or([f64::NEG_INFINITY, f64::INFINITY]);
+            let [low, high] = self.quantity.range.unwrap_or([f64::NEG_INFINITY, f64::INFINITY]);
             let rare = excess / (excess + if off < 0.0 { high } else { -low });
             let is_plain = n * rare > MISSED || known > limit(1.0);
             return is_plain.then(|| f64::INFINITY.copysign(off));

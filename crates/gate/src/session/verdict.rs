@@ -11,18 +11,20 @@
 
 use super::dependence::off_without_change;
 use super::flights::Ends;
+use super::judgement::Fault;
 use super::judgement::{IndependenceFinding, Judgement, ScalarFinding, Stop};
-use super::reading::{Fault, Reading, Refuted};
+use super::reading::{Reading, Refuted};
+use super::reason::Reason;
 use super::scalar::Scalar;
 use crate::stats::verdict::Verdict;
 use numeric::digits::short;
 
 /// The verdict of the whole, and what it promises.
-pub fn decide(reading: &Reading, judgement: &mut Judgement) {
+pub(super) fn decide(reading: &Reading, judgement: &mut Judgement) {
     let off = judgement.drift.as_ref().and_then(|drift| off_without_change(reading, drift));
     let mean = judgement.findings.iter_mut().find(|found| found.check == "mean");
     if let (Some(reason), Some(mean)) = (off, mean.filter(|mean| mean.verdict != Verdict::Fail)) {
-        (mean.verdict, mean.reason) = (Verdict::Fail, reason);
+        (mean.verdict, mean.reason) = (Verdict::Fail, Some(reason));
     }
     put_variance_first(reading, judgement);
     let is_dependent = judgement.independence.is_refuted();
@@ -35,10 +37,9 @@ pub fn decide(reading: &Reading, judgement: &mut Judgement) {
         let drift = judgement.drift.as_ref().map(|found| (found.verdict, &found.reason));
         let scalars = judgement.findings.iter().map(|found| (found.verdict, &found.reason));
         let tests = judgement.distribution.iter().map(|found| (found.verdict, &found.reason));
-        let has_words = |reason: &str| verdict != Verdict::Pass || !reason.is_empty();
-        let alike = scalars.chain(drift).chain(tests);
-        let alike = alike.filter(|(found, reason)| *found == verdict && has_words(reason));
-        let reasons: Vec<&str> = alike.map(|(_, reason)| reason.as_str()).collect();
+        let alike = scalars.chain(drift).chain(tests).filter(|(found, _)| *found == verdict);
+        let reasons: Vec<String> =
+            alike.filter_map(|(_, reason)| reason.as_ref().map(Reason::to_string)).collect();
         (!reasons.is_empty()).then(|| (verdict, reasons.join("; ")))
     });
     (judgement.verdict, judgement.reason) = said.unwrap_or((Verdict::Pass, String::new()));
@@ -73,10 +74,7 @@ fn put_variance_first(reading: &Reading, judgement: &mut Judgement) {
         let off = found.gate.map_or(0.0, |gate| gate.mean);
         let found = &mut judgement.findings[variance];
         found.verdict = Verdict::Inconclusive;
-        found.reason = format!(
-            "squares about the truth are too large by {off:+.2e}, for the mean is off; about the mean of the draws \
-             by {about_mean:+.2e}"
-        );
+        found.reason = Some(Reason::SquaresByMean { about_truth: off, about_mean });
         return;
     }
     if !is_larger || is_off {
@@ -86,32 +84,32 @@ fn put_variance_first(reading: &Reading, judgement: &mut Judgement) {
     let accused = &mut judgement.findings[at];
     if accused.verdict == Verdict::Fail {
         accused.verdict = Verdict::Inconclusive;
-        accused.reason = "the mean rests on a variance that is refuted".into();
+        accused.reason = Some(Reason::RestsOnVariance("the mean".into()));
     }
     if let Some(drift) = judgement.drift.as_mut().filter(|drift| drift.verdict == Verdict::Fail) {
         drift.verdict = Verdict::Inconclusive;
-        drift.reason = "whether the mean changes rests on a variance that is refuted".into();
+        let what = "whether the mean changes".into();
+        drift.reason = Some(Reason::RestsOnVariance(what));
     }
     judgement.findings.swap(at, variance);
 }
 
 /// Takes back what the gate says: it holds for independent draws only.
 fn withhold(judgement: &mut Judgement) {
-    let not_judged =
-        |what: &str| format!("the {what} is not judged: the draws are not independent");
+    let not_judged = |what: &'static str| Some(Reason::NotJudged(what.into()));
     for found in &mut judgement.findings {
         found.verdict = Verdict::Inconclusive;
-        let what =
-            if found.check == "lookups" { "number of lookups" } else { found.check.as_str() };
-        found.reason = not_judged(what);
+        found.reason = not_judged(match found.check.as_str() {
+            "mean" => "the mean",
+            "variance" => "the variance",
+            _ => "the number of lookups",
+        });
     }
     if let Some(drift) = &mut judgement.drift {
-        drift.verdict = Verdict::Inconclusive;
-        drift.reason = not_judged("drift");
+        (drift.verdict, drift.reason) = (Verdict::Inconclusive, not_judged("the drift"));
     }
     for found in &mut judgement.distribution {
-        found.verdict = Verdict::Inconclusive;
-        found.reason = not_judged("distribution");
+        (found.verdict, found.reason) = (Verdict::Inconclusive, not_judged("the distribution"));
     }
 }
 
@@ -126,7 +124,8 @@ fn dependent(found: &IndependenceFinding) -> String {
         ),
         (None, None) => "give one average a pass, or judge averages (batch)".to_owned(),
     };
-    format!("{}; the mean is not judged: {cure}", found.reason)
+    let reason = found.reason.as_ref().map_or(String::new(), Reason::to_string);
+    format!("{reason}; the mean is not judged: {cure}")
 }
 
 /// What is wrong with a draw.

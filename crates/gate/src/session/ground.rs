@@ -1,4 +1,4 @@
-//! The grounds on which a scalar of foreign draws is judged.
+//! The grounds on which a quantity is judged.
 //!
 //! ```text
 //! variance   y has mean 0 and variance V, or at most V      `stats::gate`, Catoni's function
@@ -15,6 +15,7 @@
 //! No draws can show that unseen rare events do not carry the variance (Bahadur and Savage 1956), so
 //! `shown` is an assumption: draws may pass by it, and the verdict says which, but never fail.
 
+use super::quantity::Ground;
 use crate::stats::Powers;
 use crate::stats::betting::{Aim, Bets};
 use crate::stats::capital::Capital;
@@ -24,58 +25,45 @@ use crate::stats::verdict::BLOCK;
 /// The share of a scalar's level that pays for a bound on its variance.
 const PILOT: f64 = 0.1;
 /// How many draws must carry the variance before it counts as known.
-pub const EFFECTIVE: f64 = 1000.0;
+pub(super) const EFFECTIVE: f64 = 1000.0;
 /// n/κ for the kurtosis that is then assumed.
 const ASSUMED: f64 = 200.0;
 /// How many draws must carry a variance that stakes and ε are chosen by.
-pub const RELIABLE: f64 = 100.0;
+pub(super) const RELIABLE: f64 = 100.0;
 /// Minimum where half of all draws have passed.
-pub const FAIRLY_RELIABLE: f64 = 20.0;
+pub(super) const FAIRLY_RELIABLE: f64 = 20.0;
 /// n ε over the distance from the truth to the further end of a range, for a pass by bets of three quarters of that.
 const FINEST: f64 = 12.0;
 /// The widest t.
 const WIDEST: f64 = 0.5;
 
-/// What is known of the spread of a scalar.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Spread {
-    /// V.
-    Known(f64),
-    /// An upper bound of the kurtosis.
-    Kurtosis(f64),
-    /// What the draws show.
-    Shown,
-}
-
 /// A bound on the variance and what was bet on it.
-pub struct OfVariance {
-    spread: Spread,
-    /// Whether a scalar may fail on this ground.
-    pub is_hard: bool,
-    /// The kurtosis that the bound relies on, once there is one.
-    pub kurtosis: Option<f64>,
+pub(super) struct OfVariance {
+    ground: Ground,
+    /// Kurtosis that the bound relies on, once there is one.
+    pub(super) kurtosis: Option<f64>,
     design: Option<Design>,
     /// Draws at the last bound, and how many bounds there were.
     bounded: (u64, i32),
-    pub(crate) capital: Capital,
+    pub(super) capital: Capital,
 }
 
 impl OfVariance {
-    pub(crate) fn new(spread: Spread, is_hard: bool) -> Self {
-        let kurtosis = match spread {
-            Spread::Kurtosis(kurtosis) => Some(kurtosis),
-            Spread::Known(_) | Spread::Shown => None,
+    pub(super) fn new(ground: Ground) -> Self {
+        let kurtosis = match ground {
+            Ground::Kurtosis(kurtosis) => Some(kurtosis),
+            Ground::Variance(_) | Ground::Shown => None,
         };
         let capital = Capital::default();
-        Self { spread, is_hard, kurtosis, design: None, bounded: (0, 0), capital }
+        Self { ground, kurtosis, design: None, bounded: (0, 0), capital }
     }
 
     /// V for the next block, from the draws before it; `None` while there is none. `ln_fail` is the
     /// scalar's ln(1/level).
-    pub fn variance(&mut self, past: &Powers, ln_fail: f64) -> Option<f64> {
+    pub(super) fn variance(&mut self, past: &Powers, ln_fail: f64) -> Option<f64> {
         let Some(bound) = self.needed(past, ln_fail) else {
-            return match self.spread {
-                Spread::Known(variance) => Some(variance),
+            return match self.ground {
+                Ground::Variance(variance) => Some(variance),
                 _ => self.design.map(|design| design.variance),
             };
         };
@@ -86,8 +74,8 @@ impl OfVariance {
     /// A new bound, where one is due and can be given.
     fn needed(&mut self, past: &Powers, ln_fail: f64) -> Option<f64> {
         let (before, bounds) = self.bounded;
-        let least = if self.spread == Spread::Shown { BLOCK } else { 1 };
-        if matches!(self.spread, Spread::Known(_)) || past.draws() < least.max(2 * before) {
+        let least = if self.ground == Ground::Shown { BLOCK } else { 1 };
+        if matches!(self.ground, Ground::Variance(_)) || past.draws() < least.max(2 * before) {
             return None;
         }
         let n = past.draws() as f64;
@@ -107,7 +95,7 @@ impl OfVariance {
     }
 
     /// Bets on a block.
-    pub fn absorb(&mut self, y: &[f64], design: Design) {
+    pub(super) fn absorb(&mut self, y: &[f64], design: Design) {
         self.design = Some(design);
         let mut sums = GateSums::default();
         sums.absorb(y, &design.arguments());
@@ -115,61 +103,61 @@ impl OfVariance {
     }
 
     /// What is lost of the evidence to the bound's own chance of being wrong.
-    pub fn ln_share(&self) -> f64 {
-        if matches!(self.spread, Spread::Known(_)) { 0.0 } else { (1.0 - PILOT).ln() }
+    pub(super) fn ln_share(&self) -> f64 {
+        if matches!(self.ground, Ground::Variance(_)) { 0.0 } else { (1.0 - PILOT).ln() }
     }
 
     /// Whether all draws together contradict what was assumed of them.
-    pub fn is_contradicted(&self, all: &Powers) -> bool {
+    pub(super) fn is_contradicted(&self, all: &Powers) -> bool {
         let assumed = self.kurtosis.unwrap_or(f64::INFINITY);
-        self.spread == Spread::Shown
+        self.ground == Ground::Shown
             && !(all.effective_draws() >= EFFECTIVE && all.kurtosis() <= assumed)
     }
 }
 
 /// How many draws a bound on the variance needs: those of t = ½ at the first bound.
-pub fn draws_of_bound(kurtosis: f64, ln_fail: f64) -> f64 {
+pub(super) fn draws_of_bound(kurtosis: f64, ln_fail: f64) -> f64 {
     2.0 * kurtosis * (std::f64::consts::LN_2 - PILOT.ln() + ln_fail) / (WIDEST * WIDEST)
 }
 
 /// A range and what was bet on it.
-pub struct OfRange {
-    pub(crate) range: [f64; 2],
-    pub(crate) capital: Capital,
+pub(super) struct OfRange {
+    pub(super) range: [f64; 2],
+    pub(super) capital: Capital,
 }
 
 impl OfRange {
-    pub(crate) fn new(range: [f64; 2]) -> Self {
+    pub(super) fn new(range: [f64; 2]) -> Self {
         Self { range, capital: Capital::shared(Bets::shares(range)) }
     }
 
     /// The largest variance of a law of mean 0 in the range: −ab (Bhatia and Davis 2000).
-    pub fn widest(&self) -> f64 {
+    pub(super) fn widest(&self) -> f64 {
         -self.range[0] * self.range[1]
     }
 
     /// n ε of the smallest ε that bets can exclude: no draw may be worth more than the range allows.
-    pub fn finest(&self) -> f64 {
+    pub(super) fn finest(&self) -> f64 {
         let reach = self.range[1].max(-self.range[0]);
         if reach.is_finite() { FINEST * reach } else { 0.0 }
     }
 
     /// The evidence for a pass; a mean that the range makes impossible needs none.
-    pub fn ln_pass(&self, tolerance: f64) -> [f64; 2] {
+    pub(super) fn ln_pass(&self, tolerance: f64) -> [f64; 2] {
         let [above, below] = self.capital.ln_pass();
         let proved = |end: f64, side: f64| if end < tolerance { f64::INFINITY } else { side };
         [proved(self.range[1], above), proved(-self.range[0], below)]
     }
 
     /// V as well as the draws show it, for the choice of stakes.
-    pub fn variance(&self, past: &Powers) -> Option<f64> {
+    pub(super) fn variance(&self, past: &Powers) -> Option<f64> {
         let is_known = past.effective_draws() >= RELIABLE;
         let shown = if is_known { past.mean_square() } else { f64::INFINITY };
         // A range that leaves next to nothing makes the boldest stakes.
         Some(shown.min(self.widest()).max(f64::MIN_POSITIVE)).filter(|v| v.is_finite())
     }
 
-    pub(crate) fn absorb(&mut self, y: &[f64], aim: Option<Aim>, floor: f64) {
+    pub(super) fn absorb(&mut self, y: &[f64], aim: Option<Aim>, floor: f64) {
         self.capital.add(&Bets::new(self.range, aim, floor).gains(y));
     }
 }

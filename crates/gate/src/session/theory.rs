@@ -115,44 +115,50 @@ impl Theory {
     pub fn names(&self) -> Vec<String> {
         self.channels.iter().map(|(name, _)| name.clone()).collect()
     }
+}
 
-    /// Background of the first of the readings of a draw's values: it tests the draw as a whole.
-    pub fn background(&self, wanted: &Wanted, asked: Whole) -> Background {
+/// Theory from which a session takes what it does not get by numbers.
+#[derive(Debug, Clone, Copy)]
+pub struct Taken<'a> {
+    /// The theory.
+    pub theory: &'a Theory,
+    /// Whether theory is to judge the lookups of the draws.
+    pub has_lookups: bool,
+    /// Whether only the mean is taken from theory.
+    pub is_mean_only: bool,
+}
+
+impl Taken<'_> {
+    /// Background of the first of the readings of a draw's values: it tests the draw as a whole. `alpha` is the level of
+    /// a value, `length` the number of draws, where it is known and no decision ends them earlier.
+    pub(super) fn background(
+        self,
+        wanted: &Wanted,
+        claims: &[Claim],
+        length: Option<u64>,
+    ) -> Background {
+        let Self { theory, has_lookups, is_mean_only } = self;
         let mut background =
-            Background { theory: Some(self.about.clone()), ..Background::default() };
-        if asked.values < self.channels.len() && asked.values > 1 {
+            Background { theory: Some(theory.about.clone()), ..Background::default() };
+        let values = claims.len();
+        if values < theory.channels.len() && values > 1 {
             let what = "is a sum of the channels, and not among the values of a draw";
             background.notes.push(format!("the {DERIVED} is not judged by itself: it {what}"));
         }
         let untested = |why: &str| format!("the distribution is not tested: {why}");
-        if asked.is_mean_only {
+        if is_mean_only {
             background.notes.push(untested("of theory the mean alone is taken"));
         } else if wanted.batch > 1 {
             background.notes.push(untested("averages of draws have another one"));
         } else {
-            let Whole { length, has_lookups, rounding, values, .. } = asked;
             let alpha = DISTRIBUTION * wanted.alpha;
+            let rounding = claims.first().map_or(0.0, |claim| claim.rounding);
             let asked = Asked { alpha, length, has_lookups, rounding, values };
-            match self.distribution.tests(asked) {
+            match theory.distribution.tests(asked) {
                 Ok(tests) => background.tests = Some(tests),
                 Err(why) => background.notes.push(why),
             }
         }
         background
     }
-}
-
-/// The draws as a whole, for the tests of their distribution.
-#[derive(Debug, Clone, Copy)]
-pub struct Whole {
-    /// Number of draws, where it is known and no decision ends them earlier.
-    pub length: Option<u64>,
-    /// Whether theory is to judge their lookups.
-    pub has_lookups: bool,
-    /// The rounding of a draw, relative to its size.
-    pub rounding: f64,
-    /// Number of values of a draw.
-    pub values: usize,
-    /// Whether only the mean is taken from theory.
-    pub is_mean_only: bool,
 }

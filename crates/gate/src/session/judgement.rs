@@ -1,5 +1,7 @@
 //! What is said of another program's draws.
 
+use super::reason::Reason;
+use crate::causes::{Pattern, Side};
 use crate::stats::verdict::{GateFinding, Verdict};
 
 /// The verdict on a list of draws, with its numbers.
@@ -10,6 +12,9 @@ pub struct Judgement {
     pub verdict: Verdict,
     /// Why, in words; empty for a plain pass. A pass with words has a mean that is off within the tolerance.
     pub reason: String,
+    /// Kind of the draw that refutes the claim by itself, where there is one.
+    #[cfg_attr(feature = "serde", serde(skip))]
+    pub fault: Option<Fault>,
     /// What the verdict promises, and what it does not.
     pub guarantees: Vec<String>,
     /// α: the chance that correct draws fail.
@@ -82,7 +87,8 @@ pub struct DistributionFinding {
     /// What is said of it.
     pub verdict: Verdict,
     /// Why.
-    pub reason: String,
+    #[cfg_attr(feature = "serde", serde(serialize_with = "super::reason::words"))]
+    pub reason: Option<Reason>,
     /// The p-value of the last look, or of the one that refuted it.
     pub p: f64,
     /// Number of draws at that look.
@@ -109,7 +115,8 @@ pub struct ScalarFinding {
     /// What is said of it.
     pub verdict: Verdict,
     /// Why.
-    pub reason: String,
+    #[cfg_attr(feature = "serde", serde(serialize_with = "super::reason::words"))]
+    pub reason: Option<Reason>,
     /// Whether its variance was estimated from earlier draws without a promise of the caller's.
     pub is_estimated: bool,
     /// The largest kurtosis for which the finding holds, where one had to be assumed.
@@ -127,7 +134,8 @@ pub struct DriftFinding {
     /// What is said of it.
     pub verdict: Verdict,
     /// Why.
-    pub reason: String,
+    #[cfg_attr(feature = "serde", serde(serialize_with = "super::reason::words"))]
+    pub reason: Option<Reason>,
     /// ln E against draws that have the claimed mean throughout, from any later block on.
     pub ln_e: f64,
     /// The ln E at which it fails.
@@ -142,8 +150,9 @@ pub struct DriftFinding {
 #[derive(Debug, Clone, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct IndependenceFinding {
-    /// Why they do; empty where nothing was found.
-    pub reason: String,
+    /// Why they do; `None` where nothing was found.
+    #[cfg_attr(feature = "serde", serde(serialize_with = "super::reason::words"))]
+    pub reason: Option<Reason>,
     /// ln E against independent draws of one law.
     pub ln_e: f64,
     /// The ln E at which draws count as dependent.
@@ -167,7 +176,7 @@ pub struct IndependenceFinding {
 impl IndependenceFinding {
     /// Whether a dependence was found.
     pub fn is_refuted(&self) -> bool {
-        !self.reason.is_empty()
+        self.reason.is_some()
     }
 }
 
@@ -176,4 +185,38 @@ impl Judgement {
     pub fn finding(&self, check: &str) -> Option<&ScalarFinding> {
         self.findings.iter().find(|finding| finding.check == check)
     }
+
+    /// Which checks fail, and on which side; draws that depend on each other have no other side.
+    pub fn pattern(&self) -> Pattern {
+        let mut pattern = Pattern::default();
+        if self.independence.is_refuted() {
+            pattern.dependence = true;
+            return pattern;
+        }
+        for finding in self.findings.iter().filter(|found| found.verdict == Verdict::Fail) {
+            pattern.note(&finding.check, finding.gate.map(|gate| gate.mean));
+        }
+        match self.fault {
+            Some(Fault::Number | Fault::Range) => pattern.number = true,
+            Some(Fault::Lookups) => pattern.lookups = Side::Both,
+            Some(Fault::Spread | Fault::Distance) => pattern.mean = Side::Both,
+            None => {}
+        }
+        pattern
+    }
+}
+
+/// What is wrong with a draw that refutes the claim by itself.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Fault {
+    /// It is not finite, or so far from the truth that the square of the distance overflows.
+    Number,
+    /// It is out of the promised range.
+    Range,
+    /// It is not the truth, and draws have no spread.
+    Spread,
+    /// It takes another number of lookups than all draws take.
+    Lookups,
+    /// It is a negative number in place of a distance.
+    Distance,
 }

@@ -1,34 +1,11 @@
-//! The gate over another program's draws.
-//!
-//! ```text
-//! mean      y = (X − T)/u,     variance V/u²   u = |T|; for T = 0 it is 1, and ε is absolute
-//! variance  y = (X − T)²/V − 1, variance κ − 1
-//! lookups   y = M/E[M] − 1,    variance Var[M]/E[M]²
-//! drift     the mean from any later block on, against T and against all other draws
-//! ε         as asked; else √(27 V/n) for n draws, at most 5 % for the mean, 20 % for the variance and
-//!           2 % for the lookups, by a range alone not below 12 R/n, R its further part; else 1 % for the mean, and
-//!           for the others what as many draws see
-//! levels    fail at ln E ≥ ln(K/0.8α), K the first three as far as they are asked; drift at ln(1/0.2α);
-//!           with the theory of a case ln(K/0.6α), and the p-values of the distribution (`theory`) share 0.2α;
-//!           pass at both ln P ≥ ln(1/β), β = 0.01;  dependence has an α of its own
-//! ```
-//!
-//! Draws are read block by block (2¹⁴ draws) in constant memory, to the end unless the caller wants
-//! less. A scalar fails only on grounds that hold (`grounds`): a known variance, a range, a bound on
-//! the kurtosis; without any of them it can pass, on an assumption that the verdict names, but not fail. All of it is for draws
-//! that are independent of each other: where `stats::independence`, `stats::replays`, `stats::sequences` or `stats::runs` finds that they
-//! are not, the verdict says so, and nothing is said of the mean. No pass stands beside an obvious difference (`obvious`). Draws without spread must all be the
-//! truth to rounding. A draw that is not a finite number fails, and so does one whose distance from the
-//! truth overflows, or one out of the promised range.
+//! Claims with what is wanted of the verdict, and the quantities that follow from them.
 
-use super::asks::VARIANCE_CAP;
 use super::claim::{Claim, ClaimError};
-use super::judgement::{Judgement, Stop};
-use super::reading::Reading;
+use super::drive::Until;
+use super::quantity::{Ground, MEAN_CAP, Quantity, USUAL, VARIANCE_CAP, variance_of_squares};
+use crate::stats::gate::Design;
 use crate::stats::verdict::{BLOCK, FURTHEST};
 
-/// The widest ε of a mean that is chosen without being asked for.
-pub const MEAN_CAP: f64 = 0.05;
 /// How many draws are read at a time: a block.
 #[allow(clippy::cast_possible_truncation)] // 2¹⁴
 pub const BUFFER: usize = BLOCK as usize;
@@ -63,6 +40,20 @@ impl Default for Wanted {
     }
 }
 
+impl Wanted {
+    /// End of the draws that are taken from a source.
+    pub fn until(&self) -> Until {
+        Until { most: self.most, is_decided: self.stop_early }
+    }
+}
+
+/// Whether α is a probability between 0 and 1.
+pub(super) fn check_alpha(value: f64) -> Result<(), ClaimError> {
+    let (what, wanted) = ("alpha", "a probability above 0 and below 1");
+    let is_fine = value > 0.0 && value < 1.0;
+    if is_fine { Ok(()) } else { Err(ClaimError::Number { what, value, wanted }) }
+}
+
 /// A claim with what is wanted, ready for draws.
 #[derive(Debug, Clone, Copy)]
 pub struct Trial {
@@ -91,11 +82,7 @@ impl Trial {
         positive("variance tolerance", wanted.variance_tolerance)?;
         positive("batch", Some(wanted.batch as f64))?;
         positive("number of draws", wanted.most.map(|most| most as f64))?;
-        if !(wanted.alpha > 0.0 && wanted.alpha < 1.0) {
-            let (what, value) = ("alpha", wanted.alpha);
-            let wanted = "a probability above 0 and below 1";
-            return Err(ClaimError::Number { what, value, wanted });
-        }
+        check_alpha(wanted.alpha)?;
         let trial = Self { claim, wanted, length };
         if wanted.variance_tolerance.is_some() {
             let why = match claim.variance {
@@ -146,20 +133,66 @@ impl Trial {
         self.claim.floor() + FURTHEST * self.deviation().unwrap_or(0.0)
     }
 
-    /// Judges draws that are in memory; there are no lookups with them.
-    pub fn judge_all(&self, draws: &[f64]) -> Judgement {
-        let length = draws.len() as u64;
-        let most = usize::try_from(self.wanted.most.unwrap_or(length)).unwrap_or(usize::MAX);
-        let seen = &draws[..draws.len().min(most)];
-        let mut stopped = (seen.len() < draws.len()).then_some(Stop::Limit);
-        let mut reading = Reading::new(*self);
-        for block in seen.chunks(BUFFER) {
-            reading.absorb(block, &[]);
-            if self.wanted.stop_early && !reading.is_open() {
-                stopped = (reading.draws() < length).then_some(Stop::Decided);
-                break;
-            }
+    /// Quantities that the claim allows to judge.
+    pub(super) fn quantities(&self) -> Vec<Quantity> {
+        let Self { claim, wanted, .. } = self;
+        let unit = if wanted.batch > 1 { "averages" } else { "draws" };
+        let is_bounded = claim.range.is_some_and(|[low, high]| (high - low).is_finite());
+        let mut quantities = Vec::new();
+        if !self.is_certain() {
+            let known = claim.variance.map(|v| v / claim.unit / claim.unit);
+            let known = known.map(|v| Ground::Variance(v * (1.0 + claim.variance_error)));
+            let promised = claim.kurtosis.map(Ground::Kurtosis);
+            // The spread that draws show is no ground to fail.
+            let ground = known.or(promised).or((!is_bounded).then_some(Ground::Shown));
+            let in_units = |end: f64| (end - claim.truth) / claim.unit;
+            let mean = Quantity::mean(ground, claim.floor()).within(wanted.tolerance);
+            let range = claim.widened().map(|range| range.map(in_units));
+            quantities.push(Quantity { range, unit, ..mean.of(claim.truth, claim.unit) });
         }
-        reading.close(stopped)
+        let is_tested = |&v: &f64| v > 0.0 && !self.is_faint() && !self.is_certain();
+        if let Some(variance) = claim.variance.filter(is_tested) {
+            let known = claim.kurtosis.map(|kurtosis| {
+                Ground::Variance(variance_of_squares(kurtosis, claim.variance_error))
+            });
+            let furthest = claim.widened().map_or(f64::INFINITY, |range| {
+                range
+                    .map(|end| (end - claim.truth) / variance.sqrt())
+                    .into_iter()
+                    .fold(0.0, |most: f64, end| most.max(end * end))
+            });
+            let ground = known.or((!is_bounded).then_some(Ground::Shown));
+            let quantity = Quantity::variance(ground, claim.variance_floor(variance));
+            quantities.push(Quantity {
+                // A square is never negative: it may be refuted as too large without any promise.
+                range: (is_bounded || known.is_none()).then_some([-1.0, furthest - 1.0]),
+                unit,
+                ..quantity.within(wanted.variance_tolerance).of(variance, variance)
+            });
+        }
+        if let Some(claimed) = claim.lookups.filter(|claimed| !claimed.is_fixed()) {
+            let relative = |v: f64| v / (claimed.mean * claimed.mean) * (1.0 + claimed.error);
+            let ground = claimed.variance.map_or(Ground::Shown, |v| Ground::Variance(relative(v)));
+            quantities.push(Quantity {
+                range: (ground == Ground::Shown).then_some([-1.0, f64::INFINITY]),
+                unit,
+                ..Quantity::lookups(Some(ground), claimed.error).of(claimed.mean, claimed.mean)
+            });
+        }
+        quantities
+    }
+
+    /// n: the draws that the tolerances asked for need, at most those that there are.
+    pub(super) fn planned(&self, quantities: &[Quantity], length: Option<u64>) -> Option<f64> {
+        let needs = |quantity: &Quantity, design: fn(f64, f64, f64) -> Design, tolerance: f64| {
+            let variance = quantity.known_variance().filter(|&variance| variance > 0.0)?;
+            Some(design(variance, tolerance, 0.0).draws())
+        };
+        let length = length.map(|length| length as f64);
+        let asked = quantities.iter().filter_map(|q| needs(q, Design::asked, q.tolerance?));
+        match asked.reduce(f64::max) {
+            Some(needed) => Some(length.map_or(needed, |length| needed.min(length))),
+            None => length.or_else(|| needs(quantities.first()?, Design::new, USUAL)),
+        }
     }
 }

@@ -1,0 +1,198 @@
+//! Sessions: draws of one estimator on their way through the gate, whoever makes them.
+//!
+//! A [`Claim`] says what is known of a draw: its mean and, if known, its variance, kurtosis and range. A [`Session`]
+//! takes draws block by block, from a [`Source`] by [`Session::judge`], from a closure by [`drive`], or from anybody who calls
+//! [`Session::absorb`]. It returns a [`Judgement`] for each value of a draw.
+//!
+//! ```text
+//! quantities  mean, variance and lookups, as far as the claim says (`quantity`); drift: the mean from any later block
+//!             on, against the truth and against all other draws
+//! ε           as asked; else √(27 V/n) for n draws, at most 5 % for the mean, 20 % for the variance and 2 % for the
+//!             lookups, by a range alone not below 12 R/n, R its further part; else 1 % for the mean, and for the
+//!             others what as many draws see
+//! levels      fail at ln E ≥ ln(K/0.8α), K the number of quantities; drift at ln(1/0.2α); with the theory of a case
+//!             ln(K/0.6α), and the p-values of the distribution (`theory`) share 0.2α; pass at both ln P ≥ ln(1/β),
+//!             β = 0.01; dependence has an α of its own
+//! ```
+//!
+//! Draws are judged in blocks of 2¹⁴, in constant memory. A quantity fails only on grounds that hold (`ground`): a known
+//! variance, a range, a bound on the kurtosis. Without any of them it can pass, on an assumption that the verdict names,
+//! but not fail. All of that is for independent draws. If `stats::independence`, `stats::replays`, `stats::sequences` or
+//! `stats::runs` finds a dependence, the verdict says so, and nothing is said of the mean. No pass stands beside an
+//! obvious difference (`obvious`). Draws without spread must all be the truth to rounding. A draw that is not a finite
+//! number fails, and so does one out of the promised range, or so far from the truth that the square of the distance
+//! overflows.
+//!
+//! ```
+//! use trueflight_gate::session::{Claim, Trial, Wanted};
+//! use trueflight_gate::stats::verdict::Verdict;
+//!
+//! // Draws of a fair coin, claimed to be 0.5 on average and to lie in [0, 1].
+//! let mut state = 1u64;
+//! let draws: Vec<f64> = (0..400_000)
+//!     .map(|_| {
+//!         state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
+//!         f64::from(u8::from(state >> 63 == 1))
+//!     })
+//!     .collect();
+//! let claim = Claim { range: Some([0.0, 1.0]), ..Claim::of_truth(0.5) }.validated()?;
+//! let trial = Trial::new(claim, Wanted::default(), Some(draws.len() as u64))?;
+//! assert_eq!(trial.judge_all(&draws).verdict, Verdict::Pass);
+//! # Ok::<(), trueflight_gate::session::ClaimError>(())
+//! ```
+
+mod claim;
+mod contents;
+mod dependence;
+mod drive;
+mod finding;
+mod flights;
+mod ground;
+mod judgement;
+mod obvious;
+pub mod quantity;
+mod reading;
+mod reason;
+mod scalar;
+mod theory;
+mod trial;
+mod verdict;
+mod words;
+
+pub use claim::{Claim, ClaimError, Lookups, ROUNDING};
+pub(crate) use drive::room;
+pub use drive::{Block, Sink, Source, Until, drive};
+pub use flights::Flights;
+pub use judgement::{
+    DistributionFinding, DriftFinding, Fault, IndependenceFinding, Judgement, ScalarFinding, Stop,
+};
+pub use quantity::{Ground, Quantity};
+pub use reason::{Reason, What};
+pub use scalar::{Levels, Scalar};
+pub use theory::{Asked, Distribution, Taken, Tested, Tests, Theory};
+pub use trial::{BUFFER, Trial, Wanted};
+
+use reading::Reading;
+use theory::Background;
+
+/// Draws on their way through the gate, with a reading for each value of a draw.
+pub struct Session {
+    readings: Vec<Reading>,
+    /// Draws that do not fill a block yet.
+    pending: Block,
+}
+
+impl Session {
+    /// A session with a claim for each value of a draw; `length` is the number of draws, if known. The values share α
+    /// equally. Lookups belong to the draw, and are judged with its first value.
+    ///
+    /// # Errors
+    ///
+    /// What is wanted makes no sense for a claim.
+    pub fn new(
+        claims: &[Claim],
+        wanted: Wanted,
+        length: Option<u64>,
+        taken: Option<Taken>,
+    ) -> Result<Self, ClaimError> {
+        trial::check_alpha(wanted.alpha)?;
+        let wanted = Wanted { alpha: wanted.alpha / claims.len() as f64, ..wanted };
+        let most = wanted.most.unwrap_or(u64::MAX);
+        // A decision may end the draws earlier.
+        let certain = length.map(|length| length.min(most)).filter(|_| !wanted.stop_early);
+        let mut background = taken
+            .map_or_else(Background::default, |taken| taken.background(&wanted, claims, certain));
+        let reading = |(index, claim): (usize, &Claim)| {
+            let lookups = claim.lookups.filter(|_| index == 0);
+            let trial = Trial::new(Claim { lookups, ..*claim }, wanted, length)?;
+            // The first reading tests the draw as a whole.
+            Ok(Reading::new(trial, std::mem::take(&mut background)))
+        };
+        let readings: Result<_, ClaimError> = claims.iter().enumerate().map(reading).collect();
+        Ok(Self { readings: readings?, pending: Block::new(claims.len()) })
+    }
+
+    /// Number of values of a draw.
+    pub fn values(&self) -> usize {
+        self.readings.len()
+    }
+
+    /// Number of all draws, if it was given.
+    fn length(&self) -> Option<u64> {
+        self.readings.first().and_then(|reading| reading.trial.length)
+    }
+
+    /// Adds draws, a column of numbers for each value, with the number of lookups of each draw or with none. The size of a
+    /// call makes no difference.
+    pub fn absorb(&mut self, columns: &[&[f64]], lookups: &[f64]) {
+        let all = columns.first().map_or(0, |column| column.len());
+        let mut at = 0;
+        while at < all {
+            let count = (BUFFER - self.pending.draws()).min(all - at);
+            let part = at..at + count;
+            let now: Vec<&[f64]> = columns.iter().map(|column| &column[part.clone()]).collect();
+            let lookups = lookups.get(part).unwrap_or_default();
+            at += count;
+            if count == BUFFER {
+                // A whole block needs no copy.
+                judge(&mut self.readings, &now, lookups);
+                continue;
+            }
+            self.pending.push(&now, lookups);
+            if self.pending.draws() == BUFFER {
+                self.judge_pending();
+            }
+        }
+    }
+
+    /// The judgement of each value; `stopped` says why, where draws are left.
+    pub fn outcome(mut self, stopped: Option<Stop>) -> Vec<Judgement> {
+        self.judge_pending();
+        self.readings.into_iter().map(|reading| reading.close(stopped)).collect()
+    }
+
+    fn judge_pending(&mut self) {
+        if self.pending.draws() > 0 {
+            judge(&mut self.readings, &self.pending.columns(), &self.pending.lookups);
+            self.pending.clear();
+        }
+    }
+}
+
+impl Sink for Session {
+    fn draws(&self) -> u64 {
+        self.readings.first().map_or(0, Reading::draws) + self.pending.draws() as u64
+    }
+
+    /// Whether more draws may change the verdict, were all decisions final.
+    fn is_open(&self) -> bool {
+        self.readings.iter().any(Reading::is_open)
+    }
+}
+
+impl From<Trial> for Session {
+    fn from(trial: Trial) -> Self {
+        let readings = vec![Reading::new(trial, Background::default())];
+        Self { readings, pending: Block::new(1) }
+    }
+}
+
+/// Puts a block to the readings of its values. Lookups go to the first.
+fn judge(readings: &mut [Reading], columns: &[&[f64]], lookups: &[f64]) {
+    if let (Some(first), [block, ..]) = (readings.first_mut(), columns) {
+        if let Some(ends) = &mut first.ends {
+            // For the tests a flight that leaves is beyond all classes; for all else it has the ray's length.
+            let marked = ends.marked(block);
+            if let Some(tests) = &mut first.background.tests {
+                tests.absorb(&[&marked.beyond], lookups);
+            }
+            return first.absorb(&marked.at_end, lookups);
+        }
+        if let Some(tests) = &mut first.background.tests {
+            tests.absorb(columns, lookups);
+        }
+    }
+    for (index, (reading, column)) in readings.iter_mut().zip(columns).enumerate() {
+        reading.absorb(column, if index == 0 { lookups } else { &[] });
+    }
+}

@@ -1,0 +1,182 @@
+//! Quantities that the gate judges: the formula of each, what is known of it, and how its tolerance is chosen.
+//!
+//! ```text
+//! mean      y = (X − T)/u,       V = Var[X]/u²       δ = (error of T + rounding)/u              ε ≤ 5 %
+//! variance  y = (X − T)²/V − 1,  V = κ − 1           δ = error of V + n(2 + n), n rounding/√V   ε ≤ 20 %
+//! lookups   y = M/E[M] − 1,      V = Var[M]/E[M]²    δ = error of E[M]                          ε ≤ 2 %
+//! ```
+//!
+//! y has mean 0 when all is well. Other quantities of the same kind (a covariance, a step of a curve) differ by their
+//! name and their largest tolerance.
+
+use std::borrow::Cow;
+
+use crate::stats::gate::{self, Design};
+
+/// Largest tolerance of a mean that is chosen without being asked for.
+pub const MEAN_CAP: f64 = 0.05;
+/// Largest tolerance of a variance that is chosen without being asked for.
+pub const VARIANCE_CAP: f64 = 0.2;
+/// Largest tolerance of a number of lookups that is chosen without being asked for.
+pub const LOOKUPS_CAP: f64 = 0.02;
+/// Tolerance of a mean where neither the caller nor a number of draws says.
+pub const USUAL: f64 = 0.01;
+
+/// What is known of the spread of a quantity.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Ground {
+    /// Its variance, or an upper bound.
+    Variance(f64),
+    /// An upper bound of its kurtosis.
+    Kurtosis(f64),
+    /// What the draws show. They are no ground to fail.
+    Shown,
+}
+
+/// A quantity y of each draw with mean 0 when all is well.
+#[derive(Debug, Clone)]
+pub struct Quantity {
+    /// Name of the check: `mean`, `variance`, `lookups`, …
+    pub check: &'static str,
+    /// Name in a sentence: `the mean`.
+    pub what: Cow<'static, str>,
+    /// What is known of its spread; `None` where only the range is to be relied on.
+    pub ground: Option<Ground>,
+    /// Range of y, if it is known.
+    pub range: Option<[f64; 2]>,
+    /// ε, where the caller gives one.
+    pub tolerance: Option<f64>,
+    /// ε where neither the caller nor a number of draws says.
+    pub usual: f64,
+    /// Largest ε that is chosen without being asked for.
+    pub cap: f64,
+    /// δ: what rounding and the claim's own error may add to the mean of y.
+    pub floor: f64,
+    /// Whether too few draws make it inconclusive, not underpowered.
+    pub must_pass: bool,
+    /// Value that y = 0 stands for, in units of the quantity.
+    pub expected: f64,
+    /// Size of y = 1 in units of the quantity.
+    pub scale: f64,
+    /// What is counted, in the plural.
+    pub unit: &'static str,
+}
+
+impl Quantity {
+    /// A quantity with a name in sentences, what is known of its spread, δ and the largest ε.
+    pub fn new(
+        what: impl Into<Cow<'static, str>>,
+        ground: Option<Ground>,
+        floor: f64,
+        cap: f64,
+    ) -> Self {
+        Self {
+            check: "",
+            what: what.into(),
+            ground,
+            range: None,
+            tolerance: None,
+            usual: cap,
+            cap,
+            floor,
+            must_pass: false,
+            expected: 0.0,
+            scale: 1.0,
+            unit: "draws",
+        }
+    }
+
+    /// The mean of a draw about its expected value.
+    pub fn mean(ground: Option<Ground>, floor: f64) -> Self {
+        let quantity = Self::new("the mean", ground, floor, MEAN_CAP);
+        Self { check: "mean", usual: USUAL, must_pass: true, ..quantity }
+    }
+
+    /// The variance of a draw about its expected mean.
+    pub fn variance(ground: Option<Ground>, floor: f64) -> Self {
+        Self { check: "variance", ..Self::new("the variance", ground, floor, VARIANCE_CAP) }
+    }
+
+    /// The number of lookups of a draw.
+    pub fn lookups(ground: Option<Ground>, floor: f64) -> Self {
+        Self { check: "lookups", ..Self::new("the number of lookups", ground, floor, LOOKUPS_CAP) }
+    }
+
+    /// The quantity with a tolerance of the caller's.
+    #[must_use]
+    pub fn within(self, tolerance: Option<f64>) -> Self {
+        Self { tolerance, ..self }
+    }
+
+    /// The quantity in its own units: `expected + scale y` where y is measured.
+    #[must_use]
+    pub fn of(self, expected: f64, scale: f64) -> Self {
+        Self { expected, scale, ..self }
+    }
+
+    /// Whether it may fail by what is known of its spread, and not only pass.
+    pub fn is_hard(&self) -> bool {
+        self.ground != Some(Ground::Shown)
+    }
+
+    /// V, if it is known.
+    pub fn known_variance(&self) -> Option<f64> {
+        match self.ground {
+            Some(Ground::Variance(variance)) => Some(variance),
+            _ => None,
+        }
+    }
+
+    /// Plans it for `draws` draws, before the first of them. Where the plan is too short for a tolerance that is worth a
+    /// promise, the quantity may fail and never passes.
+    pub fn planned(&self, draws: f64) -> Planned {
+        let variance = self.known_variance().unwrap_or(f64::INFINITY);
+        let budget = gate::tolerance_of(variance, draws);
+        let design = Design::new(variance, self.tolerance.unwrap_or(budget), self.floor);
+        let widest = self.tolerance.unwrap_or(self.cap);
+        let needs = |tolerance| gate::draws_of(variance, tolerance);
+        // A tolerance below the prediction's own error is never reached.
+        let blurred = design.tolerance > widest * (1.0 + 1e-9) && 4.0 * self.floor > widest;
+        let underpowered = if blurred {
+            Some(f64::INFINITY)
+        } else {
+            let needed = needs(design.tolerance.min(widest));
+            (needed > draws * (1.0 + 1e-6)).then_some(needed)
+        };
+        let least = needs(Design::new(variance, widest, self.floor).tolerance);
+        Planned { design, draws: needs(design.tolerance), least, underpowered }
+    }
+}
+
+/// A quantity with a tolerance that is fixed before the first draw.
+#[derive(Debug, Clone, Copy)]
+pub struct Planned {
+    /// Variance, tolerance and δ.
+    pub design: Design,
+    /// Number of draws that the tolerance is planned for.
+    pub draws: f64,
+    /// Number of draws that the largest tolerance worth a promise needs.
+    pub least: f64,
+    /// Number of draws that a pass needs, where more than are planned.
+    pub underpowered: Option<f64>,
+}
+
+/// δ of a mean, relative to `unit`: the truth's own error and the rounding of a draw.
+pub fn mean_floor(error: f64, rounding: f64, unit: f64) -> f64 {
+    (error + rounding) / unit
+}
+
+/// δ of a variance, relative to it: its own error and the rounding of a draw.
+pub fn variance_floor(variance: f64, error: f64, rounding: f64) -> f64 {
+    let noise = rounding / variance.sqrt();
+    error + noise * (2.0 + noise)
+}
+
+/// Upper bound of the variance of `(X − T)²/V − 1` for draws of kurtosis κ whose moments are known to a relative error.
+///
+/// `κ = m₄/m₂²` is known three times worse than the moments, and κ − 1 worse still. A kurtosis of 1 is known to rounding
+/// only.
+pub fn variance_of_squares(kurtosis: f64, error: f64) -> f64 {
+    let excess = (kurtosis - 1.0).max(4.0 * f64::EPSILON);
+    excess * (1.0 + error * (1.0 + 3.0 * kurtosis / excess))
+}
