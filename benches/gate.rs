@@ -23,7 +23,6 @@ use std::hint::black_box;
 use cpu_time::{ProcessTime, ThreadTime};
 use trueflight::case::Case;
 use trueflight::case::suite;
-use trueflight::checks::Kind;
 use trueflight::draw::block;
 use trueflight::draw::run;
 use trueflight::estimators::DrawBuffer;
@@ -123,7 +122,7 @@ fn plan<'a>(
         for planned in &mut case.experiments {
             planned.questions.retain(|question| match way {
                 Way::Kernels | Way::Statistics => false,
-                Way::Gate => matches!(question.kind, Kind::Scalar(_)),
+                Way::Gate => question.answer.scalar().is_some(),
                 Way::All => true,
             });
         }

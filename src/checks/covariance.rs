@@ -10,11 +10,15 @@
 use std::panic::AssertUnwindSafe;
 
 use super::batch::Batch;
+use super::check::{Check, Untestable};
+use super::law::Law;
 use super::mean::is_faint;
 use super::observe::Observe;
-use super::question::{Kind, Known, Law, Question, Scalar, Subject, Wanted};
+use super::question::{Question, Subject};
+use super::scalar::{Scalar, variance};
 use crate::plan::options::Tolerance;
 use estimators::DrawBuffer;
+use gate::session::Quantity;
 use gate::stats::gate::GateSums;
 use theory::Prediction;
 use theory::prediction::Covariance as Predicted;
@@ -35,7 +39,7 @@ impl Law for ByGate {
     }
 
     fn add(&self, draws: &Batch, _: usize, sums: &mut [f64]) {
-        let arguments = self.0.design.arguments();
+        let arguments = self.0.planned.design.arguments();
         let mut found = GateSums::default();
         draws.observe(&self.0.observe, &mut Vec::new(), |y, _| found.absorb(y, &arguments));
         sums.iter_mut().zip(found.totals()).for_each(|(sum, x)| *sum += x);
@@ -43,7 +47,7 @@ impl Law for ByGate {
 
     fn p_value(&self, sums: &[f64], draws: f64) -> Option<f64> {
         let sums = sums.try_into().ok()?;
-        Some((-self.0.design.evidence(sums, draws).ln_e).exp().min(1.0))
+        Some((-self.0.planned.design.evidence(sums, draws).ln_e).exp().min(1.0))
     }
 }
 
@@ -60,28 +64,41 @@ pub fn of(prediction: &Prediction, draws: u64, values: usize) -> Vec<(String, im
         is_in_turn: true,
         pilots: None,
     };
-    let asked = questions(&subject).into_iter();
-    let among = asked.filter(|question| question.channel.is_some_and(|channel| channel < values));
-    let tests = among.filter_map(|question| match question.kind {
-        Kind::Scalar(scalar) => {
-            let name = &prediction.channels[question.channel?].name;
-            Some((format!("{} of {name}", question.what), ByGate(AssertUnwindSafe(scalar))))
-        }
-        _ => None,
+    let asked = scalars(&subject).filter(|asked| asked.channel < values);
+    let tests = asked.filter_map(|Asked { channel, what, scalar }| {
+        let name = &prediction.channels[channel].name;
+        Some((format!("{what} of {name}"), ByGate(AssertUnwindSafe(scalar?))))
     });
     tests.collect()
 }
 
 /// What is asked.
 pub fn questions(subject: &Subject) -> Vec<Question> {
+    let questions = scalars(subject).map(|Asked { channel, what, scalar }| {
+        let answer: Box<dyn Check> = match scalar {
+            Some(scalar) => Box::new(scalar),
+            None => Box::new(Untestable("its variance overflows".into())),
+        };
+        Question::channel(channel, &what, answer)
+    });
+    questions.collect()
+}
+
+/// The covariance of a channel with the one before it; no scalar where its variance overflows.
+struct Asked {
+    channel: usize,
+    what: String,
+    scalar: Option<Scalar>,
+}
+
+fn scalars<'a>(subject: &'a Subject) -> impl Iterator<Item = Asked> + 'a {
     let covariances = subject.prediction.covariances.iter();
     covariances
         .filter(|covariance| covariance.pair[0] + 1 == covariance.pair[1])
         .filter_map(|covariance| ask(subject, covariance))
-        .collect()
 }
 
-fn ask(subject: &Subject, covariance: &Predicted) -> Option<Question> {
+fn ask(subject: &Subject, covariance: &Predicted) -> Option<Asked> {
     let [first, second] = covariance.pair.map(|i| &subject.prediction.channels[i]);
     if is_faint(subject, first) || is_faint(subject, second) {
         return None;
@@ -92,10 +109,9 @@ fn ask(subject: &Subject, covariance: &Predicted) -> Option<Question> {
     });
     let what = format!("the covariance with {}", first.name);
     let unit = scale[0] * scale[1];
-    let variance = covariance.variance * unit * unit;
-    let kind = if variance.is_finite() && variance > 0.0 {
-        let known = Known { variance, error: ERROR, floor: ERROR };
-        let wanted = Wanted { tolerance: None, cap: CAP };
+    let known = covariance.variance * unit * unit;
+    let scalar = (known.is_finite() && known > 0.0).then(|| {
+        let quantity = Quantity::new(what.clone(), variance(known, ERROR), ERROR, CAP);
         let ([i, j], truth) = (covariance.pair, [first.mean.value, second.mean.value]);
         let expected = covariance.value * unit;
         let observe =
@@ -106,9 +122,7 @@ fn ask(subject: &Subject, covariance: &Predicted) -> Option<Question> {
                 }));
             };
         let observe = Observe::Draw(Box::new(observe));
-        Kind::Scalar(Scalar::new(subject, known, wanted, observe).of(covariance.value, 1.0 / unit))
-    } else {
-        Kind::Untestable("its variance overflows".into())
-    };
-    Some(Question::channel(covariance.pair[1], &what, kind))
+        Scalar::new(subject, quantity.of(covariance.value, 1.0 / unit), observe)
+    });
+    Some(Asked { channel: covariance.pair[1], what, scalar })
 }

@@ -13,15 +13,17 @@
 //! stretches are independent; the supremum is the reflection principle of Brownian motion.
 
 use super::batch::Batch;
+use super::law::Law;
 use super::observe::Observe;
-use super::question::{Kind, Known, Law, Question, Scalar, Subject, Wanted, rounding_of};
+use super::question::{Question, Subject, rounding_of};
+use super::scalar::{Scalar, variance};
 use estimators::DrawBuffer;
+use gate::session::Quantity;
+use gate::session::quantity::MEAN_CAP;
 use gate::stats::{chi_square, reflection};
 use numeric::sum::{sum_in_lanes, sum_of_pairs};
 use theory::{Increment, Prediction};
 
-/// The largest bias of an increment, relative to T, that is still worth a promise.
-const CAP: f64 = 0.05;
 /// A step whose variance is known worse than this is not part of a limit law.
 const SHARP: f64 = 1e-3;
 
@@ -129,12 +131,16 @@ pub fn questions(subject: &Subject) -> Vec<Question> {
     let steps = increments.iter().enumerate().filter(|(_, increment)| has_spread(increment));
     steps
         .map(|(j, increment)| {
-            Question::channel(j, "the step to it", step(subject, j, &scale, increment))
+            let step = step(subject, j, &scale, increment);
+            Question::channel(j, STEP, Box::new(step))
         })
         .collect()
 }
 
-fn step(subject: &Subject, j: usize, scale: &[f64], increment: &Increment) -> Kind {
+/// Name of an increment in sentences.
+const STEP: &str = "the step to it";
+
+fn step(subject: &Subject, j: usize, scale: &[f64], increment: &Increment) -> Scalar {
     let (here, before) = (scale[j], j.checked_sub(1).map(|i| (i, scale[i])));
     let observe = move |draws: &DrawBuffer, y: &mut Vec<f64>| {
         y.extend((0..draws.lookups.len()).map(|draw| {
@@ -142,8 +148,9 @@ fn step(subject: &Subject, j: usize, scale: &[f64], increment: &Increment) -> Ki
             draws.values[j][draw] * here - last
         }));
     };
-    let Increment { variance, error, .. } = *increment;
-    let known = Known { variance, error, floor: rounding_of(subject) };
-    let wanted = Wanted { tolerance: subject.tolerance.mean, cap: CAP };
-    Kind::Scalar(Scalar::new(subject, known, wanted, Observe::Draw(Box::new(observe))))
+    // A bias of an increment counts as much as one of the mean.
+    let ground = variance(increment.variance, increment.error);
+    let step = Quantity::new(STEP, ground, rounding_of(subject), MEAN_CAP);
+    let step = step.within(subject.tolerance.mean);
+    Scalar::new(subject, step, Observe::Draw(Box::new(observe)))
 }

@@ -13,7 +13,8 @@
 
 use super::batch::Batch;
 use super::distances::Classes;
-use super::question::{Law, Question, Subject};
+use super::law::Law;
+use super::question::{Question, Subject};
 use gate::stats::anderson_darling;
 use theory::Prediction;
 

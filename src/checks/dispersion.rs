@@ -9,7 +9,8 @@
 //! the run. The χ² law needs blocks of at least 100 κ draws and ten times the rare-event size.
 
 use super::batch::Batch;
-use super::question::{Law, Question, Subject, last_channel};
+use super::law::Law;
+use super::question::{Question, Subject, last_channel};
 use crate::checks::normality;
 use crate::plan::addresses::BLOCK;
 use gate::stats::chi_square;

@@ -11,7 +11,8 @@
 //! the third gives the p-value. The words of a block are those of its lanes in turn, so that lanes
 //! are compared with each other as blocks are.
 
-use super::question::{Inspected, Kind, Question, Subject};
+use super::inspection::{Inspected, Inspection};
+use super::question::{Question, Subject};
 use estimators::Order;
 use gate::stats::{correlation, ties};
 
@@ -37,7 +38,7 @@ pub fn questions(subject: &Subject) -> Vec<Question> {
     if !random {
         return Vec::new();
     }
-    vec![Question::whole("the streams of random numbers", Kind::Inspection(Box::new(p_value)))]
+    vec![Question::whole("the streams of random numbers", Inspection(p_value))]
 }
 
 /// The words of a block as the draws use them.

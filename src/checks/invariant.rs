@@ -8,7 +8,8 @@
 //! For the double particle (q = 1) without a control it reads Σ rᵢ X(tᵢ⁻) + X(S) = 1: absorbed and
 //! transmitted light are all the light there was. It applies to walks that measure their own defect.
 
-use super::question::{Always, Kind, Question, Subject, rounding};
+use super::always::Always;
+use super::question::{Question, Subject, rounding};
 use estimators::DrawBuffer;
 
 const LANES: usize = 8;
@@ -40,6 +41,5 @@ pub fn questions(subject: &Subject) -> Vec<Question> {
     if !subject.has_invariant {
         return Vec::new();
     }
-    let bound = Always { largest: Box::new(largest), bound: rounding(0.0) };
-    vec![Question::whole("the balance of each walk", Kind::Always(bound))]
+    vec![Question::whole("the balance of each walk", Always::new(largest, rounding(0.0)))]
 }

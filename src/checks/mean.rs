@@ -12,14 +12,16 @@
 //! twice that of pilot draws. A case that declares an experiment biased passes only if the bias is shown; where theory
 //! has no variance for it, that of pilot draws is used, doubled.
 
+use super::always::Always;
+use super::check::{Check, Untestable};
 use super::observe::Observe;
-use super::question::{Always, Kind, Known, Question, Scalar, Subject, Wanted, rounding_of};
+use super::question::{Question, Subject, rounding_of};
+use super::scalar::{Scalar, variance};
 use estimators::DrawBuffer;
+use gate::session::Quantity;
+use gate::session::quantity::{MEAN_CAP, mean_floor};
 use gate::stats::verdict::FURTHEST;
 use theory::Channel;
-
-/// The largest relative error of the mean that is still worth a promise.
-const CAP: f64 = 0.05;
 
 /// Whether rounding spoils what the draws' spread says, if they have any.
 pub fn is_faint(subject: &Subject, channel: &Channel) -> bool {
@@ -35,27 +37,30 @@ fn deviation(channel: &Channel) -> Option<f64> {
 /// δ: what the truth's own error and rounding may add, in units of the channel.
 fn floor(subject: &Subject, channel: &Channel) -> f64 {
     let truth = channel.truth;
-    (truth.error + truth.value.abs() * rounding_of(subject)) / channel.unit
+    mean_floor(truth.error, truth.value.abs() * rounding_of(subject), channel.unit)
 }
 
 /// What is asked.
 pub fn questions(subject: &Subject) -> Vec<Question> {
     let channels = subject.prediction.channels.iter().enumerate();
     channels
-        .map(|(index, channel)| Question::channel(index, "the mean", kind(subject, index, channel)))
+        .map(|(index, channel)| {
+            Question::channel(index, "the mean", answer(subject, index, channel))
+        })
         .collect()
 }
 
 /// Fewer draws than this that make the variance of all pilot draws leave it unknown.
 const SETTLED: f64 = 40.0;
 
-fn kind(subject: &Subject, index: usize, channel: &Channel) -> Kind {
+fn answer(subject: &Subject, index: usize, channel: &Channel) -> Box<dyn Check> {
+    let untestable = |why: String| Box::new(Untestable(why));
     let (truth, scale) = (channel.truth.value, 1.0 / channel.unit);
     let floor = floor(subject, channel);
     let blur = channel.truth.error / channel.unit;
-    if blur.is_nan() || blur > subject.tolerance.mean.unwrap_or(CAP) {
+    if blur.is_nan() || blur > subject.tolerance.mean.unwrap_or(MEAN_CAP) {
         // Whatever the draws say, it would be within the truth's own error.
-        return Kind::Untestable(format!("the exact answer is known to {blur:.1e} only"));
+        return untestable(format!("the exact answer is known to {blur:.1e} only"));
     }
     if let Some(furthest) = deviation(channel).map(|d| FURTHEST * d).filter(|&far| far <= floor) {
         let largest = move |draws: &DrawBuffer| {
@@ -64,12 +69,12 @@ fn kind(subject: &Subject, index: usize, channel: &Channel) -> Kind {
                 if y.is_nan() { y } else { most.max(y) }
             })
         };
-        return Kind::Always(Always { largest: Box::new(largest), bound: floor + furthest });
+        return Box::new(Always::new(largest, floor + furthest));
     }
     let may_be_piloted = subject.expect_biased || channel.by_pilots;
     let pilot = subject.pilots.map(|pilots| pilots[index]).filter(|_| may_be_piloted);
     if channel.by_pilots && pilot.is_some_and(|pilot| pilot.size < SETTLED) {
-        return Kind::Untestable("a few of the pilot draws make all of their variance".into());
+        return untestable("a few of the pilot draws make all of their variance".into());
     }
     let doubled = pilot.map(|pilot| 2.0 * pilot.variance);
     // A bound is that of the right estimator: what is declared biased has a spread of its own.
@@ -78,25 +83,25 @@ fn kind(subject: &Subject, index: usize, channel: &Channel) -> Kind {
     } else {
         channel.most_variance.or(doubled)
     };
-    let known = match (channel.moments, assumed) {
+    let (known, error) = match (channel.moments, assumed) {
         (Some(moments), _) => {
             let unit = moments.scale * scale;
-            Known { variance: moments.relative[0] * unit * unit, error: moments.error, floor }
+            (moments.relative[0] * unit * unit, moments.error)
         }
-        (None, Some(most)) => Known { variance: most * scale * scale, error: 0.0, floor },
-        (None, None) => return Kind::Untestable("theory has no variance for it".into()),
+        (None, Some(most)) => (most * scale * scale, 0.0),
+        (None, None) => return untestable("theory has no variance for it".into()),
     };
-    if !known.variance.is_finite() {
-        return Kind::Untestable("the variance overflows".into());
+    if !known.is_finite() {
+        return untestable("the variance overflows".into());
     }
-    if known.variance <= 0.0 {
-        return Kind::Untestable("draws without a spread tell nothing here".into());
+    if known <= 0.0 {
+        return untestable("draws without a spread tell nothing here".into());
     }
     let observe = Observe::each_value(
         index,
         #[inline(always)]
         move |x| (x - truth) * scale,
     );
-    let wanted = Wanted { tolerance: subject.tolerance.mean, cap: CAP };
-    Kind::Scalar(Scalar::new(subject, known, wanted, observe).of(truth, channel.unit))
+    let mean = Quantity::mean(variance(known, error), floor).within(subject.tolerance.mean);
+    Box::new(Scalar::new(subject, mean.of(truth, channel.unit), observe))
 }

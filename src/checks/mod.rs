@@ -1,15 +1,17 @@
 //! What is asked of the draws, one check per page.
 //!
 //! A check turns what theory says of an experiment into questions, all of them before the first
-//! draw: the levels are then shared among all questions of the run. Questions are of four kinds.
-//! Scalars go through the sequential gate and may stop the drawing; laws are tested by a p-value on
-//! a number of draws fixed beforehand; what must hold for every draw is watched on every draw; and
-//! the streams of random numbers are looked at themselves.
+//! draw: the levels are then shared among all questions of the run. Each question has an answer, a
+//! [`check::Check`]. Quantities for the gate ([`scalar`]) may stop the drawing; distributions ([`law`])
+//! have a p-value on a number of draws fixed beforehand; a bound ([`always`]) must hold for every draw;
+//! and an [`inspection`] looks at the streams of random numbers themselves.
 //!
-//! From bottom to top: [`observe`], [`batch`], [`question`], the pages.
+//! From bottom to top: [`observe`], [`batch`], [`check`], [`question`], the pages.
 
+pub mod always;
 pub mod atoms;
 pub mod batch;
+pub mod check;
 pub mod counts;
 pub mod covariance;
 pub mod curve;
@@ -17,7 +19,9 @@ pub mod depth;
 pub mod dispersion;
 pub mod distances;
 pub mod generator;
+pub mod inspection;
 pub mod invariant;
+pub mod law;
 pub mod lookups;
 pub mod mean;
 pub mod normality;
@@ -25,16 +29,21 @@ pub mod numeric;
 pub mod observe;
 pub mod question;
 pub mod resolution;
+pub mod scalar;
 pub mod streams;
 pub mod variance;
 
 use media::catalogue::PageList;
 
+pub use check::Check;
+pub use inspection::Inspected;
+pub use law::Law;
 pub use observe::Observe;
-pub use question::{Always, Inspected, Kind, Law, Pilot, Question, Scalar, Subject, rounding};
+pub use question::{Pilot, Question, Subject, rounding};
+pub use scalar::Scalar;
 
 /// A page of the catalogue of checks.
-struct Check {
+struct Page {
     /// What it asks of an experiment; nothing where it does not apply.
     questions: fn(&Subject) -> Vec<Question>,
     /// Whether it asks of experiments that a case declares biased, too.
@@ -43,7 +52,7 @@ struct Check {
     is_uniform: bool,
 }
 
-impl Check {
+impl Page {
     const fn new(questions: fn(&Subject) -> Vec<Question>) -> Self {
         Self { questions, of_biased: false, is_uniform: true }
     }
@@ -90,7 +99,7 @@ macro_rules! checks {
             PageList { name: "checks", pages: &[$(media::page!($module)),*] };
 
         /// The checks, in the order of the catalogue.
-        const ALL: &[Check] = &[$(Check::new($module::questions)$(.$how())*),*];
+        const ALL: &[Page] = &[$(Page::new($module::questions)$(.$how())*),*];
     };
 }
 

@@ -3,7 +3,8 @@
 //! A draw that is not a number, or infinite, is a failure whatever else the draws say: no mean of
 //! such draws exists.
 
-use super::question::{Always, Kind, Question, Subject};
+use super::always::Always;
+use super::question::{Question, Subject};
 use estimators::DrawBuffer;
 use numeric::sum::sum_in_lanes;
 
@@ -14,6 +15,5 @@ fn largest(draws: &DrawBuffer) -> f64 {
 
 /// What is asked.
 pub fn questions(_: &Subject) -> Vec<Question> {
-    let bound = Always { largest: Box::new(largest), bound: 0.0 };
-    vec![Question::whole("every draw", Kind::Always(bound))]
+    vec![Question::whole("every draw", Always::new(largest, 0.0))]
 }

@@ -11,7 +11,8 @@
 //! Coarse random numbers and positions in single precision escape every mean and variance. The
 //! check looks at the collisions of one block, drawn once more.
 
-use super::question::{Inspected, Kind, Question, Subject};
+use super::inspection::{Inspected, Inspection};
+use super::question::{Question, Subject};
 use crate::plan::addresses::BLOCK;
 use gate::stats::ties;
 use theory::{Law, Prediction};
@@ -22,8 +23,8 @@ pub const FEWEST: usize = 100;
 /// What is asked.
 pub fn questions(subject: &Subject) -> Vec<Question> {
     let Some(resolution) = Resolution::of(subject.prediction) else { return Vec::new() };
-    let kind = Kind::Inspection(Box::new(move |inspected| p_value(inspected, &resolution)));
-    vec![Question::whole("the resolution of the distances", kind)]
+    let look = Inspection(move |inspected: &Inspected| p_value(inspected, &resolution));
+    vec![Question::whole("the resolution of the distances", look)]
 }
 
 /// Ties among distances, in theory.

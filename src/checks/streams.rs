@@ -11,7 +11,8 @@
 //! first L = 1024 draws of each block.
 
 use super::batch::Batch;
-use super::question::{Law, Question, Subject, last_channel};
+use super::law::Law;
+use super::question::{Question, Subject, last_channel};
 use crate::plan::addresses::BLOCK;
 use gate::stats::correlation;
 

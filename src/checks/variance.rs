@@ -9,13 +9,15 @@
 //! most of the time. Nothing is asked of draws without spread, of draws with two equally distant
 //! values, and of experiments that a case declares biased.
 
+use super::check::{Check, Untestable};
 use super::mean::is_faint;
 use super::observe::Observe;
-use super::question::{Kind, Known, Question, Scalar, Subject, Wanted, rounding_of};
+use super::question::{Question, Subject, rounding_of};
+use super::scalar::Scalar;
+use gate::session::quantity::{variance_floor, variance_of_squares};
+use gate::session::{Ground, Quantity};
 use theory::Channel;
 
-/// The largest relative error of the variance that is still worth a promise.
-const CAP: f64 = 0.2;
 /// A kurtosis this near to 1 makes `(X − E[X])²` constant: nothing is left to test.
 const TWO_POINT: f64 = 1.0 + 1e-6;
 
@@ -24,12 +26,12 @@ pub fn questions(subject: &Subject) -> Vec<Question> {
     let channels = subject.prediction.channels.iter().enumerate();
     channels
         .filter_map(|(index, channel)| {
-            Some(Question::channel(index, "the variance", kind(subject, index, channel)?))
+            Some(Question::channel(index, "the variance", answer(subject, index, channel)?))
         })
         .collect()
 }
 
-fn kind(subject: &Subject, index: usize, channel: &Channel) -> Option<Kind> {
+fn answer(subject: &Subject, index: usize, channel: &Channel) -> Option<Box<dyn Check>> {
     let moments = channel.moments?;
     let kurtosis = moments.kurtosis().unwrap_or(f64::INFINITY);
     if is_faint(subject, channel) || kurtosis <= TWO_POINT {
@@ -37,17 +39,16 @@ fn kind(subject: &Subject, index: usize, channel: &Channel) -> Option<Kind> {
     }
     let variance = moments.variance();
     if !(kurtosis.is_finite() && variance.is_finite()) {
-        return Some(Kind::Untestable(if variance.is_finite() {
-            "the fourth moment of a draw is infinite, overflows or is not resolved".into()
+        let why = if variance.is_finite() {
+            "the fourth moment of a draw is infinite, overflows or is not resolved"
         } else {
-            "the variance of a draw is infinite or overflows".into()
-        }));
+            "the variance of a draw is infinite or overflows"
+        };
+        return Some(Box::new(Untestable(why.to_owned())));
     }
-    let noise = rounding_of(subject) * channel.truth.value.abs() / variance.sqrt();
-    let floor = moments.error + noise * (2.0 + noise);
-    // κ = m₄/m₂² is known three times worse than m₂ and m₄, and κ − 1 worse still.
-    let error = moments.error * (1.0 + 3.0 * kurtosis / (kurtosis - 1.0));
-    let known = Known { variance: kurtosis - 1.0, error, floor };
+    let rounding = rounding_of(subject) * channel.truth.value.abs();
+    let floor = variance_floor(variance, moments.error, rounding);
+    let of_squares = Ground::Variance(variance_of_squares(kurtosis, moments.error));
     let (mean, scale) = (channel.mean.value, 1.0 / variance.sqrt());
     let observe = Observe::each_value(
         index,
@@ -57,7 +58,6 @@ fn kind(subject: &Subject, index: usize, channel: &Channel) -> Option<Kind> {
             deviation * deviation - 1.0
         },
     );
-    let wanted = Wanted { tolerance: subject.tolerance.variance, cap: CAP };
-    let scalar = Scalar::new(subject, known, wanted, observe);
-    Some(Kind::Scalar(scalar.of(variance, variance)))
+    let quantity = Quantity::variance(Some(of_squares), floor).within(subject.tolerance.variance);
+    Some(Box::new(Scalar::new(subject, quantity.of(variance, variance), observe)))
 }

@@ -11,16 +11,13 @@ use fearless_simd::Level;
 use serde::{Deserialize, Serialize};
 
 use crate::case::ready::Ready;
-use crate::checks::Kind;
 use crate::checks::batch::Batch;
+use crate::checks::check::{Observer, Place};
 use crate::plan::{BLOCK, Planned};
 use estimators::DrawBuffer;
 use estimators::kernels::order_free::{OrderFree, Request};
 use gate::stats::Tally;
-use gate::stats::gate::{GateSums, SUMS};
-use numeric::pack::in_fused_code;
 use numeric::rng::Streams;
-use numeric::sum::{sum_in_lanes, sum_of_pairs};
 
 /// What a block found.
 #[derive(Debug, Clone, Serialize, Deserialize)]
@@ -31,26 +28,10 @@ pub struct Block {
     pub tallies: Vec<Tally>,
     /// The lookups of the fixed draws about their predicted mean.
     pub lookups: Tally,
-    /// One answer per question.
-    pub answers: Vec<Answer>,
+    /// For each question the numbers of its check.
+    pub answers: Vec<Vec<f64>>,
     /// Processor seconds.
     pub seconds: f64,
-}
-
-/// What a block says to one question.
-#[derive(Debug, Clone, Serialize, Deserialize)]
-pub enum Answer {
-    /// The sums of ψ, and that of y itself.
-    Gate([f64; SUMS], f64),
-    /// The sums of a law over the fixed draws.
-    Law(Vec<f64>),
-    /// The largest value.
-    Largest(f64),
-    /// Nothing.
-    Silent,
-    /// What becomes [`Answer::Gate`] at the block's end.
-    #[serde(skip)]
-    Open(Box<GateSums>, f64),
 }
 
 /// Draws a block of an experiment, or the same block of several that share their lookups. Each makes
@@ -95,7 +76,7 @@ pub fn merged(
         let members: Vec<&Planned> = there.iter().map(|&i| group[i]).collect();
         for (i, drawn) in there.into_iter().zip(blocks(&members, block)) {
             match (&mut found[i], drawn) {
-                (Some(all), Some(next)) => all.merge(&next),
+                (Some(all), Some(next)) => all.merge(group[i], &next),
                 (none, next) => *none = next,
             }
         }
@@ -105,24 +86,14 @@ pub fn merged(
 
 impl Block {
     /// Adds the one that follows.
-    fn merge(&mut self, next: &Self) {
+    fn merge(&mut self, planned: &Planned, next: &Self) {
         self.draws += next.draws;
         self.seconds += next.seconds;
         self.lookups.merge(&next.lookups);
         self.tallies.iter_mut().zip(&next.tallies).for_each(|(tally, next)| tally.merge(next));
-        for (answer, next) in self.answers.iter_mut().zip(&next.answers) {
-            match (answer, next) {
-                (Answer::Gate(sums, y), Answer::Gate(others, other)) => {
-                    sums.iter_mut().zip(others).for_each(|(sum, x)| *sum += x);
-                    *y += other;
-                }
-                // Beyond the fixed draws a law is not asked.
-                (Answer::Law(sums), Answer::Law(others)) => {
-                    sums.iter_mut().zip(others).for_each(|(sum, x)| *sum += x);
-                }
-                (Answer::Largest(most), Answer::Largest(other)) => *most = larger(*most, *other),
-                _ => {}
-            }
+        let questions = planned.questions.iter().zip(&mut self.answers);
+        for ((question, numbers), next) in questions.zip(&next.answers) {
+            question.answer.join(numbers, next);
         }
     }
 }
@@ -178,7 +149,7 @@ struct Drawing<'p> {
     /// How many draws the buffer takes.
     length: u64,
     scratch: Scratch,
-    answers: Vec<Answer>,
+    observers: Vec<Box<dyn Observer + 'p>>,
     tallies: Vec<Tally>,
     lookups: Tally,
     /// The numbers of its first draw, of the next, and of the first beyond it.
@@ -199,7 +170,7 @@ impl<'p> Drawing<'p> {
             streams: planned.streams(block),
             length: DrawBuffer::length(channels) as u64,
             scratch: Scratch::take(channels),
-            answers: planned.questions.iter().map(|q| Answer::new(&q.kind)).collect(),
+            observers: planned.questions.iter().map(|q| q.answer.observe()).collect(),
             tallies: vec![Tally::default(); channels],
             lookups: Tally::default(),
             start,
@@ -232,8 +203,8 @@ impl<'p> Drawing<'p> {
         let draws = Batch::new(buffer);
         #[allow(clippy::cast_possible_truncation)] // below a block's length
         let first = (self.at - self.start) as usize;
-        for (question, answer) in self.planned.questions.iter().zip(&mut self.answers) {
-            answer.absorb(&question.kind, &draws, (first, is_fixed), y);
+        for observer in &mut self.observers {
+            observer.absorb(&draws, Place { first, is_fixed }, y);
         }
         if is_fixed {
             let prediction = &self.ready.prediction;
@@ -250,69 +221,9 @@ impl<'p> Drawing<'p> {
     fn close(self, seconds: f64) -> Block {
         #[allow(clippy::cast_possible_truncation)] // below a block's length
         let fixed = self.end.min(self.planned.fixed).saturating_sub(self.start) as usize;
-        let Self { mut answers, tallies, lookups, .. } = self;
-        for (question, answer) in self.planned.questions.iter().zip(&mut answers) {
-            match (&question.kind, &mut *answer, fixed) {
-                (Kind::Law(law), Answer::Law(sums), 1..) => law.close(fixed, sums),
-                // Nothing was asked: it need not be kept, either.
-                (_, Answer::Law(sums), _) => sums.clear(),
-                (_, Answer::Open(sums, y), _) => *answer = Answer::Gate(sums.totals(), *y),
-                _ => {}
-            }
-        }
+        let Self { observers, tallies, lookups, .. } = self;
+        let answers = observers.into_iter().map(|observer| observer.close(fixed)).collect();
         self.scratch.leave();
         Block { draws: self.end - self.start, tallies, lookups, answers, seconds }
     }
-}
-
-impl Answer {
-    fn new(kind: &Kind) -> Self {
-        match kind {
-            Kind::Scalar(_) => Self::Open(Box::default(), 0.0),
-            Kind::Law(law) => Self::Law(vec![0.0; law.size()]),
-            Kind::Always(_) => Self::Largest(0.0),
-            Kind::Inspection(_) | Kind::Untestable(_) => Self::Silent,
-        }
-    }
-
-    fn absorb(
-        &mut self,
-        kind: &Kind,
-        draws: &Batch,
-        (first, is_fixed): (usize, bool),
-        y: &mut Vec<f64>,
-    ) {
-        match (self, kind) {
-            (Self::Open(sums, total), Kind::Scalar(scalar)) => {
-                let arguments = scalar.design.arguments();
-                draws.observe(&scalar.observe, y, |y, times| {
-                    if scalar.bias != 0.0 {
-                        for y in y.iter_mut() {
-                            *y += scalar.bias;
-                        }
-                    }
-                    if let Some(times) = times {
-                        sums.absorb_counted(y, times, &arguments);
-                        *total += sum_of_pairs(y, times, |y, times| y * times);
-                    } else {
-                        sums.absorb(y, &arguments);
-                        *total += in_fused_code(
-                            #[inline(always)]
-                            || sum_in_lanes(y, |y| y),
-                        );
-                    }
-                });
-            }
-            (Self::Law(sums), Kind::Law(law)) if is_fixed => law.add(draws, first, sums),
-            (Self::Largest(most), Kind::Always(always)) => {
-                *most = larger(*most, (always.largest)(draws.draws));
-            }
-            _ => {}
-        }
-    }
-}
-
-/// The larger of two, or not a number where one is none.
-pub fn larger(a: f64, b: f64) -> f64 {
-    if a.is_nan() || b.is_nan() { f64::NAN } else { a.max(b) }
 }

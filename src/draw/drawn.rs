@@ -2,12 +2,10 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::checks::Kind;
-use crate::draw::block::{Answer, Block, larger};
+use crate::checks::check::Total;
+use crate::draw::block::Block;
 use crate::plan::Planned;
 use gate::stats::Tally;
-use gate::stats::gate::{Decision, Evidence, SUMS};
-use numeric::sum::Sum;
 
 /// What one experiment drew.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
@@ -25,38 +23,6 @@ pub struct Drawn {
     /// Whether an earlier run drew it.
     #[serde(skip)]
     pub is_reused: bool,
-}
-
-/// What all blocks say to one question.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub enum Total {
-    /// Where the gate stands.
-    Gate(GateState),
-    /// The sums of a law over the fixed draws.
-    Law(Vec<Sum>),
-    /// The largest value, and the block where it was found first.
-    Largest(f64, u64),
-    /// Nothing.
-    Silent,
-}
-
-/// Where a question of the gate stands.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct GateState {
-    /// The sums of ψ.
-    pub psi: [Sum; SUMS],
-    /// The sum of y.
-    pub y: Sum,
-    /// The mean of y up to the look of the decision, or to the last.
-    pub mean: f64,
-    /// The evidence at the look of the decision, or at the last.
-    pub evidence: Evidence,
-    /// The decision.
-    pub decision: Decision,
-    /// The draws up to that look.
-    pub draws: u64,
-    /// The draws and ln E at every look up to that one.
-    pub path: Vec<(u64, f64)>,
 }
 
 /// Where an experiment stands: everything that what is still to be drawn and decided depends on.
@@ -93,49 +59,22 @@ pub struct Draws {
 impl Drawn {
     /// Nothing yet.
     pub fn new(planned: &Planned) -> Self {
-        let totals = planned.questions.iter().map(|question| match &question.kind {
-            Kind::Scalar(_) => Total::Gate(GateState {
-                psi: [Sum::default(); SUMS],
-                y: Sum::default(),
-                mean: 0.0,
-                evidence: Evidence::NONE,
-                decision: Decision::Open,
-                draws: 0,
-                path: Vec::new(),
-            }),
-            Kind::Law(law) => Total::Law(vec![Sum::default(); law.size()]),
-            Kind::Always(_) => Total::Largest(0.0, 0),
-            Kind::Inspection(_) | Kind::Untestable(_) => Total::Silent,
-        });
+        let totals = planned.questions.iter().map(|question| question.answer.total());
         let channels = planned.outcome.as_ref().map_or(0, |ready| ready.prediction.channels.len());
         let tallies = vec![Tally::default(); channels];
         Self { totals: totals.collect(), tallies, ..Self::default() }
     }
 
     /// Adds the block that follows.
-    pub fn merge(&mut self, block: &Block, number: u64) {
+    pub fn merge(&mut self, planned: &Planned, block: &Block, number: u64) {
         self.draws += block.draws;
         for (tally, other) in self.tallies.iter_mut().zip(&block.tallies) {
             tally.merge(other);
         }
         self.lookups.merge(&block.lookups);
-        for (total, answer) in self.totals.iter_mut().zip(&block.answers) {
-            match (total, answer) {
-                (Total::Gate(state), Answer::Gate(sums, y)) => {
-                    state.psi.iter_mut().zip(sums).for_each(|(sum, &x)| sum.add(x));
-                    state.y.add(*y);
-                }
-                (Total::Law(sums), Answer::Law(others)) => {
-                    sums.iter_mut().zip(others).for_each(|(sum, &x)| sum.add(x));
-                }
-                (Total::Largest(most, at), Answer::Largest(other)) => {
-                    let largest = larger(*most, *other);
-                    if largest.to_bits() != most.to_bits() {
-                        (*most, *at) = (largest, number);
-                    }
-                }
-                _ => {}
-            }
+        let questions = planned.questions.iter().zip(&mut self.totals);
+        for ((question, total), numbers) in questions.zip(&block.answers) {
+            question.answer.merge(total, numbers, number);
         }
         self.seconds += block.seconds;
     }

@@ -62,12 +62,13 @@ pub fn expected(planned: &Planned) -> u64 {
     if planned.horizon <= planned.draws {
         return planned.horizon;
     }
-    let promised = planned.scalars().filter(|(_, scalar)| scalar.underpowered.is_none()).count();
+    let promised =
+        planned.scalars().filter(|(_, scalar)| scalar.planned.underpowered.is_none()).count();
     let typical = TYPICAL / PLANNED * (1.0 + LAST * (promised.max(1) as f64).ln());
     let longest = planned.scalars().fold(planned.fixed, |longest, (_, scalar)| {
-        let draws = match scalar.underpowered {
+        let draws = match scalar.planned.underpowered {
             Some(_) => planned.draws,
-            None => (scalar.draws * typical).ceil() as u64,
+            None => (scalar.planned.draws * typical).ceil() as u64,
         };
         longest.max(draws)
     });

@@ -14,17 +14,17 @@
 use std::collections::{BTreeMap, VecDeque};
 use std::time::Instant;
 
-use crate::checks::Kind;
+use crate::checks::check::Look;
 use crate::draw::block::Block;
 use crate::draw::blocks::Key;
 use crate::draw::cache::Cache;
-use crate::draw::drawn::{Drawn, Draws, Standing, Total};
+use crate::draw::drawn::{Drawn, Draws, Standing};
 use crate::draw::progress::{self, Listener, Progress, Step};
 use crate::draw::share::{self, Piece, Share};
 use crate::draw::store::Store;
 use crate::draw::workers::Drawing;
 use crate::plan::{BLOCK, Plan, Planned};
-use gate::stats::gate::Decision;
+use gate::stats::gate;
 
 /// Blocks drawn between two merges, for each thread, and at most: some 600 MB. Results do not depend on it.
 const BATCH: usize = 256;
@@ -281,7 +281,8 @@ impl Round {
                 return round;
             }
             let both = running.iter().zip(&until);
-            let longer: Vec<u64> = both.map(|(one, &until)| next_look(until, one.last())).collect();
+            let longer: Vec<u64> =
+                both.map(|(one, &until)| gate::next_look(until).min(one.last())).collect();
             if longer == until {
                 return round;
             }
@@ -308,11 +309,6 @@ impl Iterator for Round {
         }
         None
     }
-}
-
-/// The look after one at `blocks`.
-fn next_look(blocks: u64, last: u64) -> u64 {
-    (blocks + 1).max(blocks * 115 / 100).min(last)
 }
 
 impl Running<'_> {
@@ -347,7 +343,8 @@ impl Running<'_> {
     fn merge(&mut self) {
         while self.at.blocks < self.at.look {
             let Some(block) = self.ahead.pop_front() else { return };
-            self.at.drawn.merge(&block, self.at.blocks * (self.step / BLOCK));
+            let number = self.at.blocks * (self.step / BLOCK);
+            self.at.drawn.merge(self.planned, &block, number);
             self.at.blocks += 1;
         }
     }
@@ -358,42 +355,19 @@ impl Running<'_> {
         let draws = self.at.drawn.draws;
         let mut is_open = draws < planned.fixed;
         for (question, total) in planned.questions.iter().zip(&mut self.at.drawn.totals) {
-            let (Kind::Scalar(scalar), Total::Gate(state)) = (&question.kind, total) else {
-                continue;
-            };
-            if state.decision == Decision::Open {
-                let sums = state.psi.map(|sum| sum.value());
-                state.mean = state.y.value() / draws as f64;
-                state.evidence = scalar.design.evidence(sums, draws as f64);
-                state.draws = draws;
-                state.path.push((draws, state.evidence.ln_e));
-                let levels = &plan.levels;
-                let level = if question.expects_bias { levels.ln_biased } else { levels.ln_fail };
-                state.decision = state.evidence.decision(level, levels.ln_pass);
-                if state.decision == Decision::Passed && scalar.underpowered.is_some() {
-                    state.decision = Decision::Open;
-                }
-            }
-            let was_promised = scalar.underpowered.is_none() || draws < planned.draws;
-            is_open |= state.decision == Decision::Open && was_promised;
+            let levels = plan.levels.of(question.expects_bias);
+            is_open |= question.answer.look(total, Look { draws, planned: planned.draws, levels });
         }
         let is_over = draws >= planned.horizon || self.has_failed(plan);
         self.at.is_done = is_over || (!is_open && !plan.options.fixed);
-        self.at.look = next_look(self.at.look, self.last());
+        self.at.look = gate::next_look(self.at.look).min(self.last());
     }
 
     /// Whether the one check that matters has failed.
     fn has_failed(&self, plan: &Plan) -> bool {
         let Some(name) = &plan.options.until_failed else { return false };
         let both = self.planned.questions.iter().zip(&self.at.drawn.totals);
-        both.filter(|(question, _)| question.check == *name).any(|(question, total)| {
-            match (&question.kind, total) {
-                (_, Total::Gate(state)) => state.decision == Decision::Failed,
-                (Kind::Always(always), Total::Largest(largest, _)) => {
-                    largest.is_nan() || *largest > always.bound
-                }
-                _ => false,
-            }
-        })
+        both.filter(|(question, _)| question.check == *name)
+            .any(|(question, total)| question.answer.has_failed(total))
     }
 }

@@ -1,9 +1,8 @@
 //! Verdicts that are known before the first draw: checks with too few draws to pass.
 
-use crate::checks::{Kind, Question, Scalar};
+use crate::checks::Question;
 use crate::plan::{Plan, Planned, PlannedCase};
 use gate::stats::verdict::Verdict;
-use numeric::digits::enough;
 
 /// The best verdict that the planned draws allow, and the draws that allow a better one.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -54,18 +53,10 @@ struct Weak {
 
 impl Weak {
     fn of(plan: &Plan, case: &PlannedCase, question: &Question) -> Option<Self> {
-        let verdict = too_weak(plan, case, question);
-        match &question.kind {
-            Kind::Scalar(scalar) if !question.expects_bias => {
-                let needed = scalar.underpowered?;
-                Some(Self { verdict, needed, reason: lack(&question.what, scalar, needed) })
-            }
-            Kind::Untestable(why) => {
-                let reason = untestable(&question.what, why);
-                Some(Self { verdict, needed: f64::INFINITY, reason })
-            }
-            _ => None,
-        }
+        // A bias that must be shown needs no promise of a pass.
+        let is_promise = !question.expects_bias || question.answer.scalar().is_none();
+        let (reason, needed) = question.answer.too_weak(&question.what).filter(|_| is_promise)?;
+        Some(Self { verdict: too_weak(plan, case, question), needed, reason: reason.to_string() })
     }
 }
 
@@ -73,18 +64,4 @@ impl Weak {
 pub fn too_weak(plan: &Plan, case: &PlannedCase, question: &Question) -> Verdict {
     let counts = question.check == "mean" && !case.case.allow_underpowered;
     if counts || plan.options.strict { Verdict::Inconclusive } else { Verdict::Underpowered }
-}
-
-/// Message with the draws that a scalar needs, or with the reason why no number of draws is enough.
-pub fn lack(what: &str, scalar: &Scalar, needed: f64) -> String {
-    if needed.is_finite() {
-        format!("{what} needs {} draws", enough(needed))
-    } else {
-        format!("the prediction of {what} is known to {:.0e} only", scalar.design.floor)
-    }
-}
-
-/// Why a question cannot be tested, whatever the draws say.
-pub fn untestable(what: &str, why: &str) -> String {
-    format!("{what} cannot be tested: {why}")
 }

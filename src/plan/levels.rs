@@ -1,6 +1,8 @@
 //! How the questions of a run share its error rate: 4/5 of α go to the gate, by e-Bonferroni, 1/5 to
 //! the p-values, by Holm.
 
+use gate::session;
+use gate::stats::gate::ln_fail;
 use gate::stats::normal;
 use gate::stats::verdict::MISS;
 
@@ -36,11 +38,17 @@ impl Levels {
             scalars,
             laws,
             biased,
-            ln_fail: -share.ln(),
-            ln_biased: (biased.max(1) as f64 / alpha).ln(),
+            ln_fail: ln_fail(alpha * (1.0 - LAW_SHARE), scalars),
+            ln_biased: ln_fail(alpha, biased),
             ln_pass: -MISS.ln(),
             law_alpha: alpha * LAW_SHARE,
             z: normal::two_sided(share),
         }
+    }
+
+    /// The levels of a quantity, or of one with a bias that must be shown.
+    pub fn of(&self, expects_bias: bool) -> session::Levels {
+        let ln_fail = if expects_bias { self.ln_biased } else { self.ln_fail };
+        session::Levels { ln_fail, ln_pass: self.ln_pass }
     }
 }

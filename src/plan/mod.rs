@@ -26,7 +26,8 @@ pub use ::gate::stats::verdict::MISS;
 use crate::case::Case;
 use crate::case::ready::Ready;
 use crate::case::sweep::Variation;
-use crate::checks::{self, Kind, Pilot, Question, Scalar, Subject};
+use crate::checks::check::Share;
+use crate::checks::{self, Pilot, Question, Scalar, Subject};
 use crate::plan::levels::Levels;
 use ::gate::stats::gate;
 use estimators::{DrawBuffer, Order, Refusal};
@@ -113,10 +114,7 @@ pub struct Planned {
 impl Planned {
     /// The questions that go through the gate.
     pub fn scalars(&self) -> impl Iterator<Item = (&Question, &Scalar)> {
-        self.questions.iter().filter_map(|question| match &question.kind {
-            Kind::Scalar(scalar) => Some((question, scalar)),
-            _ => None,
-        })
+        self.questions.iter().filter_map(|question| Some((question, question.answer.scalar()?)))
     }
 
     /// How many rows it has in a record: one per channel, or one that says why it is refused.
@@ -187,11 +185,11 @@ impl<'a> Plan<'a> {
         let mut counts = [0; 3];
         for experiment in cases.iter().flat_map(|case| &case.experiments) {
             for question in &experiment.questions {
-                match question.kind {
-                    Kind::Scalar(_) if question.expects_bias => counts[2] += 1,
-                    Kind::Scalar(_) => counts[0] += 1,
-                    Kind::Law(_) | Kind::Inspection(_) => counts[1] += 1,
-                    Kind::Always(_) | Kind::Untestable(_) => {}
+                match question.answer.share() {
+                    Share::Gate if question.expects_bias => counts[2] += 1,
+                    Share::Gate => counts[0] += 1,
+                    Share::PValues => counts[1] += 1,
+                    Share::Nothing => {}
                 }
             }
         }
@@ -319,9 +317,7 @@ impl Planned {
             subject.fixed = subject.draws;
         }
         let mut questions = checks::questions(&subject);
-        let decides = |question: &Question| {
-            matches!(question.kind, Kind::Scalar(_) | Kind::Law(_) | Kind::Inspection(_))
-        };
+        let decides = |question: &Question| question.answer.share() != Share::Nothing;
         let is_certain = !questions.iter().any(decides);
         if is_certain {
             // Draws without chance say in one pack what they would say in many.
@@ -366,9 +362,9 @@ fn horizon(draws: u64) -> u64 {
 /// where it has none, at the widest that are worth a promise.
 #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // at most `most`
 fn needed(questions: &[Question], most: u64) -> u64 {
-    let promised = questions.iter().filter_map(|question| match &question.kind {
-        Kind::Scalar(scalar) if scalar.underpowered.is_none() => Some(scalar.least),
-        _ => None,
+    let promised = questions.iter().filter_map(|question| {
+        let planned = &question.answer.scalar()?.planned;
+        planned.underpowered.is_none().then_some(planned.least)
     });
     let needed = promised.fold(0.0, f64::max);
     if needed > 0.0 { needed.ceil().min(most as f64) as u64 } else { most }

@@ -10,18 +10,18 @@
 //! `variance assumed`, where it fails or is undecided the mean is inconclusive. A mean that is underpowered makes its experiment inconclusive unless the
 //! case allows it.
 
-use crate::checks::{Always, Inspected, Kind, Question, Scalar};
-use crate::draw::drawn::{Drawn, Draws, GateState, Total};
-use crate::plan::foreseen::{lack, too_weak, untestable};
+use crate::case::ready::Ready;
+use crate::checks::check::{Context, Look, Total};
+use crate::checks::{Inspected, Question};
+use crate::draw::drawn::{Drawn, Draws};
+use crate::plan::foreseen::too_weak;
 use crate::plan::{BLOCK, Plan, Planned, PlannedCase};
 use crate::record::plot_data::thinned;
 use crate::record::qualify::{qualify_means, show_anywhere};
-use crate::record::{Finding, GateFinding, Verdict};
-use gate::deviation::{Deviation, signed_percent};
-use gate::stats::gate::Decision;
+use crate::record::{Finding, Verdict};
+use gate::deviation::Deviation;
+use gate::session::Reason;
 use gate::stats::multiplicity;
-use numeric::digits::{self, short};
-use numeric::sum::Sum;
 use theory::parallel;
 
 /// What is found of a run: per case, per experiment, per question.
@@ -37,7 +37,7 @@ pub fn run(plan: &Plan, draws: &Draws) -> Vec<Vec<Vec<Finding>>> {
     findings
 }
 
-/// A finding without an answer.
+/// A finding that says nothing yet.
 fn blank(check: &str, what: &str, channel: String) -> Finding {
     Finding {
         check: check.to_owned(),
@@ -69,9 +69,10 @@ impl Experiment<'_> {
             let reason = "the limit of time or draws came before the first draw".to_owned();
             return vec![Finding { reason, ..blank("mean", "the mean", String::new()) }];
         }
+        let Ok(ready) = &self.planned.outcome else { return Vec::new() };
         let both = self.planned.questions.iter().zip(&self.drawn.totals);
         let mut findings: Vec<Finding> =
-            both.filter_map(|(question, total)| self.finding(question, total)).collect();
+            both.map(|(question, total)| self.finding(ready, question, total)).collect();
         qualify_means(self.plan, self.planned, &mut findings);
         if self.planned.expect_biased {
             show_anywhere(&mut findings);
@@ -79,198 +80,53 @@ impl Experiment<'_> {
         findings
     }
 
-    fn finding(&self, question: &Question, total: &Total) -> Option<Finding> {
-        let Self { planned, drawn, .. } = *self;
-        let channels = planned.outcome.as_ref().map_or(&[][..], |ready| &ready.prediction.channels);
-        let channel = question.channel.map_or(String::new(), |index| channels[index].name.clone());
-        let expects_bias = question.expects_bias;
-        let finding = Finding { expects_bias, ..blank(&question.check, &question.what, channel) };
-        Some(match (&question.kind, total) {
-            (Kind::Scalar(scalar), Total::Gate(state)) => {
-                let (verdict, reason) = if question.expects_bias {
-                    self.biased(state)
-                } else {
-                    self.decided(question, scalar, state)
-                };
-                let gate = Some(self.gate_finding(question, scalar, state));
-                let (path, block) = (thinned(&state.path), state.draws.saturating_sub(1) / BLOCK);
-                Finding { gate, path, block: Some(block), verdict, reason, ..finding }
-            }
-            (Kind::Law(_), Total::Law(_)) if drawn.draws < planned.fixed => {
-                let (what, fixed, drawn) = (&question.what, planned.fixed, drawn.draws);
-                let reason = format!("{what}: cut after {drawn} of {fixed} draws");
-                Finding { reason, ..finding }
-            }
-            (Kind::Law(law), Total::Law(sums)) => {
-                let sums: Vec<f64> = sums.iter().map(Sum::value).collect();
-                let p = law.p_value(&sums, planned.fixed as f64);
-                let (verdict, reason) = if p.is_some() {
-                    (Verdict::Pass, String::new())
-                } else {
-                    let reason = format!("{} has too few draws for a test", question.what);
-                    (Verdict::Underpowered, reason)
-                };
-                Finding { p, verdict, reason, ..finding }
-            }
-            (Kind::Inspection(look), _) => {
-                let ready = planned.outcome.as_ref().ok()?;
-                let inspected = Inspected {
-                    experiment: ready.experiment.as_ref(),
-                    channels: channels.len(),
-                    streams: &|block| planned.streams(block),
-                    blocks: planned.fixed.div_ceil(BLOCK),
-                };
-                Finding { p: Some(look(&inspected)), verdict: Verdict::Pass, ..finding }
-            }
-            (Kind::Always(always), &Total::Largest(largest, block)) => {
-                let (verdict, reason) = self.kept(question, always, largest);
-                let block = (verdict == Verdict::Fail).then_some(block);
-                Finding { block, verdict, reason, ..finding }
-            }
-            (Kind::Untestable(why), _) => {
-                let reason = untestable(&question.what, why);
-                let verdict = too_weak(self.plan, self.case, question);
-                Finding { verdict, reason, ..finding }
-            }
-            _ => return None,
-        })
-    }
-
-    fn gate_finding(&self, question: &Question, scalar: &Scalar, state: &GateState) -> GateFinding {
-        let levels = &self.plan.levels;
-        GateFinding {
-            tolerance: scalar.design.tolerance,
-            variance: scalar.design.variance,
-            mean: state.mean,
-            planned: scalar.draws,
-            draws: state.draws,
-            ln_e: state.evidence.ln_e,
-            ln_e_limit: if question.expects_bias { levels.ln_biased } else { levels.ln_fail },
-            ln_p: state.evidence.ln_pass,
-            ln_p_limit: levels.ln_pass,
-            needed: scalar.underpowered,
-            is_decided: state.decision != Decision::Open,
+    fn finding(&self, ready: &Ready, question: &Question, total: &Total) -> Finding {
+        let Self { plan, case, planned, drawn } = *self;
+        let channel = question.channel.map(|index| &ready.prediction.channels[index]);
+        let look = Look {
+            draws: drawn.draws,
+            planned: planned.draws,
+            levels: plan.levels.of(question.expects_bias),
+        };
+        let inspected = Inspected {
+            experiment: ready.experiment.as_ref(),
+            channels: ready.prediction.channels.len(),
+            streams: &|block| planned.streams(block),
+            blocks: planned.fixed.div_ceil(BLOCK),
+        };
+        let found = question.answer.finish(
+            total,
+            &Context {
+                what: &question.what,
+                expects_bias: question.expects_bias,
+                look,
+                fixed: planned.fixed,
+                too_weak: too_weak(plan, case, question),
+                mean: question.channel.and_then(|index| self.mean(ready, index)),
+                log_unit: channel.map_or(0.0, |channel| channel.log_unit),
+                inspected: &inspected,
+            },
+        );
+        let channel = channel.map_or(String::new(), |channel| channel.name.clone());
+        Finding {
+            expects_bias: question.expects_bias,
+            p: found.p,
+            gate: found.gate,
+            path: thinned(&found.path),
+            block: found.block,
+            verdict: found.verdict,
+            reason: found.reason.map_or(String::new(), |reason| reason.to_string()),
+            ..blank(&question.check, &question.what, channel)
         }
     }
 
-    fn decided(
-        &self,
-        question: &Question,
-        scalar: &Scalar,
-        state: &GateState,
-    ) -> (Verdict, String) {
-        let what = &question.what;
-        let evidence = &state.evidence;
-        match state.decision {
-            Decision::Passed => (Verdict::Pass, String::new()),
-            Decision::Failed => {
-                let reason = format!(
-                    "{what} is off by {} (ln E = {:.1} ≥ {:.1})",
-                    self.deviation(question, scalar, state),
-                    evidence.ln_e,
-                    self.plan.levels.ln_fail
-                );
-                (Verdict::Fail, reason)
-            }
-            Decision::Open => {
-                if let Some(needed) = scalar.underpowered {
-                    let verdict = too_weak(self.plan, self.case, question);
-                    return (verdict, lack(what, scalar, needed));
-                }
-                let [above, below] = evidence.ln_pass;
-                let reason = format!(
-                    "{what} is undecided after {} draws (ln P = {above:.1} and {below:.1} of {:.1})",
-                    state.draws, self.plan.levels.ln_pass
-                );
-                (Verdict::Inconclusive, reason)
-            }
-        }
-    }
-
-    /// Deviation of a scalar from theory, in words.
-    fn deviation(&self, question: &Question, scalar: &Scalar, state: &GateState) -> String {
-        let &Scalar { expected, scale, design, .. } = scalar;
-        let error = (design.variance / state.draws as f64).sqrt();
-        let measured = expected + scale * state.mean;
-        let told = Deviation::new(measured, expected, state.draws).with_z(state.mean / error);
-        let mut text = told.to_string();
-        // A thin medium is judged by its opacity.
-        if question.check == "mean" && (scale - expected.abs()).abs() > 1e-9 * scale {
-            text = format!("{text}, {} of the opacity", signed_percent(state.mean));
-        }
-        let channel = question.channel.zip(self.planned.outcome.as_ref().ok());
-        let unit = channel.map_or(0.0, |(c, ready)| ready.prediction.channels[c].log_unit);
-        if question.check == "mean" && unit != 0.0 {
-            text = format!("{text}, in units of exp(−{})", short(unit, 6));
-        }
-        text
-    }
-
-    /// The verdict on a bias that the case declares.
-    fn biased(&self, state: &GateState) -> (Verdict, String) {
-        let bias = percent(state.mean);
-        let was_cut = self.drawn.draws < self.planned.draws;
-        match state.decision {
-            Decision::Failed => (Verdict::Pass, format!("biased-as-expected: {bias}")),
-            Decision::Open if was_cut => {
-                let reason = format!("the bias is not shown after {} draws", state.draws);
-                (Verdict::Inconclusive, reason)
-            }
-            _ => {
-                let (found, limit) = (state.evidence.ln_e, self.plan.levels.ln_biased);
-                let reason =
-                    format!("expected a bias, found {bias} (ln E = {found:.1} of {limit:.1})");
-                (Verdict::Fail, reason)
-            }
-        }
-    }
-
-    /// The verdict on a bound that every draw must keep.
-    fn kept(&self, question: &Question, always: &Always, largest: f64) -> (Verdict, String) {
-        let what = &question.what;
-        let is_kept = largest <= always.bound;
-        if question.expects_bias {
-            return if is_kept {
-                (Verdict::Fail, "expected a bias, found none".into())
-            } else {
-                (Verdict::Pass, format!("biased-as-expected: {}", percent(largest)))
-            };
-        }
-        if is_kept {
-            (Verdict::Pass, String::new())
-        } else if largest.is_nan() {
-            (Verdict::Fail, "draws are not finite numbers".into())
-        } else {
-            let (most, bound) = (digits::percent(largest), digits::percent(always.bound));
-            let reason = match (question.check.as_str(), self.mean(question)) {
-                ("lookups", _) => {
-                    format!(
-                        "{what} is off by {largest:.0} in a draw; theory has one number for all"
-                    )
-                }
-                ("mean", Some(mean)) => format!(
-                    "{what} is off by {mean}; a draw by up to {most}, of which rounding explains {bound}"
-                ),
-                _ => format!("{what} is off by {most} in a draw; rounding explains {bound}"),
-            };
-            (Verdict::Fail, reason)
-        }
-    }
-
-    /// Deviation of a channel's mean from the truth; `None` for an experiment as a whole.
-    fn mean(&self, question: &Question) -> Option<Deviation> {
-        let index = question.channel?;
-        let channel = &self.planned.outcome.as_ref().ok()?.prediction.channels[index];
+    /// Deviation of a channel's mean from the truth.
+    fn mean(&self, ready: &Ready, index: usize) -> Option<Deviation> {
+        let channel = &ready.prediction.channels[index];
         let (tally, truth) = (self.drawn.tallies.get(index)?, channel.truth.value);
         let mean = channel.mean.value + tally.moments()?.mean * truth;
         Some(Deviation::new(mean, truth, tally.draws))
     }
-}
-
-/// A relative difference in percent.
-fn percent(difference: f64) -> String {
-    let percent = 100.0 * difference;
-    if percent.abs() >= 0.01 { format!("{percent:+.2} %") } else { format!("{percent:+.1e} %") }
 }
 
 /// Judges the p-values of a run together.
@@ -282,8 +138,9 @@ fn judge_laws(plan: &Plan, findings: &mut [&mut Finding]) {
         // A p-value that is not a number comes from draws that are none.
         if rejected || finding.p.is_some_and(f64::is_nan) {
             finding.verdict = Verdict::Fail;
-            let p = finding.p.unwrap_or(0.0);
-            finding.reason = format!("{} differs from theory: p = {p:.1e}", finding.what);
+            let (what, p) = (finding.what.clone().into(), finding.p.unwrap_or(0.0));
+            let differs = Reason::Differs { what, p: format!("{p:.1e}"), details: String::new() };
+            finding.reason = differs.to_string();
         }
     }
 }

@@ -2,9 +2,7 @@
 
 use crate::plan::{Plan, Planned};
 use crate::record::{Finding, Verdict};
-
-/// The reason of a mean that passed although its variance could not be tested, or is that of pilot draws.
-pub const ASSUMED: &str = "variance assumed";
+use gate::session::{self, Reason};
 
 /// What the verdict on a mean is worth, by that on the variance of its channel.
 ///
@@ -20,19 +18,19 @@ pub fn qualify_means(plan: &Plan, planned: &Planned, findings: &mut [Finding]) {
         let variance = variances.iter().find(|variance| variance.channel == mean.channel);
         let (verdict, reason) = match (mean.verdict, variance.filter(|_| !mean.expects_bias)) {
             (Verdict::Pass, Some(variance)) if variance.verdict != Verdict::Underpowered => {
-                (Verdict::Inconclusive, "the mean relies on a variance that does not pass")
+                (Verdict::Inconclusive, Reason::VarianceOpen)
             }
-            (Verdict::Pass, Some(_)) => (Verdict::Pass, ASSUMED),
+            (Verdict::Pass, Some(_)) => (Verdict::Pass, Reason::VarianceAssumed),
             (Verdict::Pass, None) if !mean.expects_bias && is_piloted(&mean.channel) => {
-                (Verdict::Pass, ASSUMED)
+                (Verdict::Pass, Reason::VarianceAssumed)
             }
             (Verdict::Fail, Some(variance)) if rests_on(plan, mean, variance) => {
-                (Verdict::Inconclusive, "the mean rests on a variance that is refuted")
+                (Verdict::Inconclusive, Reason::RestsOnVariance("the mean".into()))
             }
             _ => continue,
         };
         mean.verdict = verdict;
-        reason.clone_into(&mut mean.reason);
+        mean.reason = reason.to_string();
     }
 }
 
@@ -57,13 +55,8 @@ pub fn explain_blocks(findings: &mut [Finding]) {
 
 /// Whether a mean fails only by a variance that is refuted as too small.
 fn rests_on(plan: &Plan, mean: &Finding, variance: &Finding) -> bool {
-    let (Some(gate), Some(excess)) = (mean.gate, variance.gate.map(|gate| gate.mean)) else {
-        return false;
-    };
-    let observed = gate.variance * (1.0 + excess) - gate.mean * gate.mean;
-    let evidence = 0.5 * gate.mean * gate.mean * gate.draws as f64;
-    let is_refuted = variance.verdict == Verdict::Fail && excess > 0.0;
-    is_refuted && evidence < plan.levels.ln_fail * observed
+    let gates = mean.gate.zip(variance.gate).filter(|_| variance.verdict == Verdict::Fail);
+    gates.is_some_and(|(mean, variance)| session::rests_on(&mean, &variance, plan.levels.ln_fail))
 }
 
 /// A bias somewhere on a curve is a bias; it need not be everywhere.
@@ -73,7 +66,7 @@ pub fn show_anywhere(findings: &mut [Finding]) {
         for finding in findings.iter_mut().filter(|finding| finding.check == "mean") {
             if finding.verdict != Verdict::Pass {
                 finding.verdict = Verdict::Pass;
-                finding.reason = "biased elsewhere".into();
+                finding.reason = Reason::BiasedElsewhere.to_string();
             }
         }
     }

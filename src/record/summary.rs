@@ -1,8 +1,8 @@
 //! What a run comes to: the mean e-value, the e-BH list, the margins, and, for each case, the biases
 //! that it could have seen and how soon it was decided.
 
-use crate::record::qualify::ASSUMED;
 use crate::record::{CaseRecord, Finding, Gate, Results, Row, Suspect, Verdict};
+use gate::session::Reason;
 use gate::stats::gate::TYPICAL;
 use gate::stats::multiplicity;
 
@@ -34,7 +34,8 @@ fn close(gate: &mut Gate, cases: &[CaseRecord]) {
     let passed = |finding: &&Finding| {
         finding.check == "mean" && finding.verdict == Verdict::Pass && !finding.expects_bias
     };
-    gate.variance_assumed = means().filter(passed).filter(|f| f.reason == ASSUMED).count();
+    let assumed = Reason::VarianceAssumed.to_string();
+    gate.variance_assumed = means().filter(passed).filter(|f| f.reason == assumed).count();
     let biases = means().filter(passed).filter_map(|finding| Some(finding.gate?.tolerance));
     gate.worst_bias = biases.reduce(f64::max);
 }

@@ -4,7 +4,7 @@
 use crate::case::Case;
 use crate::case::CaseError;
 use crate::case::suite;
-use crate::checks::{self, Kind};
+use crate::checks;
 use crate::draw::run;
 use crate::plan::Plan;
 use crate::plan::options::Options;
@@ -66,8 +66,6 @@ fn draw(plan: &mut Plan, seed: u64) -> (u64, Vec<Checked>) {
 fn shift(plan: &mut Plan, sign: f64) {
     let experiments = plan.cases.iter_mut().flat_map(|case| &mut case.experiments);
     for question in experiments.flat_map(|planned| &mut planned.questions) {
-        if let Kind::Scalar(scalar) = &mut question.kind {
-            scalar.bias += sign * scalar.design.tolerance;
-        }
+        question.answer.shift(sign);
     }
 }

@@ -180,7 +180,7 @@ fn a_small_bias_adds_up_over_runs() {
         // Three quarters of what a pass excludes.
         let planned = &mut plan.cases[0].experiments[1];
         let (_, scalar) = planned.scalars().next().expect("the mean");
-        let bias = 0.75 * scalar.design.tolerance * (-1f64).exp();
+        let bias = 0.75 * scalar.planned.design.tolerance * (-1f64).exp();
         if let Ok(ready) = planned.outcome.as_mut() {
             let honest = std::mem::replace(&mut ready.experiment, Box::new(Nothing));
             ready.experiment = Box::new(Biased(honest, bias));

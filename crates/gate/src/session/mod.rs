@@ -50,6 +50,7 @@ mod flights;
 mod ground;
 mod judgement;
 mod obvious;
+mod planned;
 pub mod quantity;
 mod reading;
 mod reason;
@@ -66,6 +67,7 @@ pub use flights::Flights;
 pub use judgement::{
     DistributionFinding, DriftFinding, Fault, IndependenceFinding, Judgement, ScalarFinding, Stop,
 };
+pub use planned::{BlockSums, Planned, Trail, rests_on};
 pub use quantity::{Ground, Quantity};
 pub use reason::{Reason, What};
 pub use scalar::{Levels, Scalar};

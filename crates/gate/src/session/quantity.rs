@@ -11,8 +11,6 @@
 
 use std::borrow::Cow;
 
-use crate::stats::gate::{self, Design};
-
 /// Largest tolerance of a mean that is chosen without being asked for.
 pub const MEAN_CAP: f64 = 0.05;
 /// Largest tolerance of a variance that is chosen without being asked for.
@@ -126,39 +124,6 @@ impl Quantity {
             _ => None,
         }
     }
-
-    /// Plans it for `draws` draws, before the first of them. Where the plan is too short for a tolerance that is worth a
-    /// promise, the quantity may fail and never passes.
-    pub fn planned(&self, draws: f64) -> Planned {
-        let variance = self.known_variance().unwrap_or(f64::INFINITY);
-        let budget = gate::tolerance_of(variance, draws);
-        let design = Design::new(variance, self.tolerance.unwrap_or(budget), self.floor);
-        let widest = self.tolerance.unwrap_or(self.cap);
-        let needs = |tolerance| gate::draws_of(variance, tolerance);
-        // A tolerance below the prediction's own error is never reached.
-        let blurred = design.tolerance > widest * (1.0 + 1e-9) && 4.0 * self.floor > widest;
-        let underpowered = if blurred {
-            Some(f64::INFINITY)
-        } else {
-            let needed = needs(design.tolerance.min(widest));
-            (needed > draws * (1.0 + 1e-6)).then_some(needed)
-        };
-        let least = needs(Design::new(variance, widest, self.floor).tolerance);
-        Planned { design, draws: needs(design.tolerance), least, underpowered }
-    }
-}
-
-/// A quantity with a tolerance that is fixed before the first draw.
-#[derive(Debug, Clone, Copy)]
-pub struct Planned {
-    /// Variance, tolerance and δ.
-    pub design: Design,
-    /// Number of draws that the tolerance is planned for.
-    pub draws: f64,
-    /// Number of draws that the largest tolerance worth a promise needs.
-    pub least: f64,
-    /// Number of draws that a pass needs, where more than are planned.
-    pub underpowered: Option<f64>,
 }
 
 /// δ of a mean, relative to `unit`: the truth's own error and the rounding of a draw.

@@ -1,0 +1,203 @@
+//! Checks at work: they observe draws, merge blocks, look at what is merged, and finish with a finding.
+//!
+//! ```text
+//! observe  the draws of a block, buffer by buffer  → numbers of the block
+//! merge    the numbers of blocks, in the order of their addresses  → a total
+//! look     at the total at fixed numbers of blocks: may more draws change the result?
+//! finish   the total  → a finding
+//! ```
+//!
+//! Numbers and totals are plain data, so that files and other machines can hold them. Each kind of check owns their
+//! meaning: a quantity for the gate ([`super::scalar`]), a p-value ([`super::law`]), a bound on every draw
+//! ([`super::always`]), an inspection of the streams ([`super::inspection`]).
+
+use serde::{Deserialize, Serialize};
+
+use super::batch::Batch;
+use super::inspection::Inspected;
+use super::scalar::Scalar;
+use ::gate::deviation::Deviation;
+use ::gate::session::{Levels, Reason, Trail};
+use ::gate::stats::verdict::{GateFinding, Verdict};
+use numeric::sum::Sum;
+
+/// Numbers of one check over all blocks.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+pub struct Total {
+    /// Sums over the blocks.
+    pub sums: Vec<Sum>,
+    /// Largest value of a draw, and the block where it was found first.
+    pub largest: (f64, u64),
+    /// Sums and looks of the gate.
+    pub trail: Option<Trail>,
+}
+
+/// A number of draws at which a check looks.
+#[derive(Debug, Clone, Copy)]
+pub struct Look {
+    /// Number of draws so far.
+    pub draws: u64,
+    /// Number of draws that are planned.
+    pub planned: u64,
+    /// Levels of the gate.
+    pub levels: Levels,
+}
+
+/// Place of a buffer of draws.
+#[derive(Debug, Clone, Copy)]
+pub struct Place {
+    /// Number of its first draw in the block.
+    pub first: usize,
+    /// Whether p-values see its draws.
+    pub is_fixed: bool,
+}
+
+/// Circumstances of the last look.
+pub struct Context<'a> {
+    /// What the check asks about.
+    pub what: &'a str,
+    /// Whether the case declares a bias that the check must show.
+    pub expects_bias: bool,
+    /// The number of draws, and the levels.
+    pub look: Look,
+    /// Number of draws that p-values see.
+    pub fixed: u64,
+    /// The verdict on a check that was never promised to pass.
+    pub too_weak: Verdict,
+    /// Deviation of the mean of the channel.
+    pub mean: Option<Deviation>,
+    /// ln of the unit of the channel's mean, with a minus; 0 for plain units.
+    pub log_unit: f64,
+    /// The experiment and its streams.
+    pub inspected: &'a Inspected<'a>,
+}
+
+/// What a check found.
+#[derive(Debug, Clone)]
+pub struct Found {
+    /// The verdict.
+    pub verdict: Verdict,
+    /// The reason; `None` for a plain pass.
+    pub reason: Option<Reason>,
+    /// The p-value, which the p-values of the run are judged with.
+    pub p: Option<f64>,
+    /// Numbers of the gate.
+    pub gate: Option<GateFinding>,
+    /// Number of draws and ln E at the looks of the gate.
+    pub path: Vec<(u64, f64)>,
+    /// The block at whose end it was decided, or where it was found.
+    pub block: Option<u64>,
+}
+
+impl Found {
+    /// A verdict alone.
+    pub fn new(verdict: Verdict, reason: Option<Reason>) -> Self {
+        Self { verdict, reason, p: None, gate: None, path: Vec::new(), block: None }
+    }
+}
+
+/// The share of the error rate that a check takes from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Share {
+    /// Four fifths, by e-Bonferroni.
+    Gate,
+    /// One fifth, by Holm.
+    PValues,
+    /// None: it fails by no chance.
+    Nothing,
+}
+
+/// A way to check draws.
+pub trait Check: Send + Sync {
+    /// The share of the error rate that it takes from.
+    fn share(&self) -> Share {
+        Share::Nothing
+    }
+
+    /// The total before the first block.
+    fn total(&self) -> Total {
+        Total::default()
+    }
+
+    /// An observer of the draws of a block.
+    fn observe(&self) -> Box<dyn Observer + '_> {
+        Box::new(Blind)
+    }
+
+    /// Adds the numbers of the next block to those of a block.
+    fn join(&self, block: &mut [f64], next: &[f64]) {
+        block.iter_mut().zip(next).for_each(|(sum, x)| *sum += x);
+    }
+
+    /// Adds the numbers of the next block to the total.
+    fn merge(&self, total: &mut Total, block: &[f64], number: u64) {
+        let _ = number;
+        total.sums.iter_mut().zip(block).for_each(|(sum, &x)| sum.add(x));
+    }
+
+    /// Looks at the total. Returns whether more draws may change the result.
+    fn look(&self, total: &mut Total, look: Look) -> bool {
+        let _ = (total, look);
+        false
+    }
+
+    /// Whether the total fails, whatever draws come later.
+    fn has_failed(&self, total: &Total) -> bool {
+        let _ = total;
+        false
+    }
+
+    /// The finding.
+    fn finish(&self, total: &Total, context: &Context) -> Found;
+
+    /// Reason why the plan allows no pass, and the number of draws that do; `None` where it allows one.
+    fn too_weak(&self, what: &str) -> Option<(Reason, f64)> {
+        let _ = what;
+        None
+    }
+
+    /// The quantity for the gate, if that is what the check asks for.
+    fn scalar(&self) -> Option<&Scalar> {
+        None
+    }
+
+    /// Adds a bias of so many tolerances to the quantity for the gate, to see whether it is found.
+    fn shift(&mut self, tolerances: f64) {
+        let _ = tolerances;
+    }
+}
+
+/// Numbers of a block on their way.
+pub trait Observer {
+    /// Adds a buffer of draws; `y` is room for what is made of them.
+    fn absorb(&mut self, draws: &Batch, place: Place, y: &mut Vec<f64>);
+
+    /// The numbers of the block, of which p-values see the first `fixed` draws.
+    fn close(self: Box<Self>, fixed: usize) -> Vec<f64>;
+}
+
+/// An observer of nothing.
+struct Blind;
+
+impl Observer for Blind {
+    fn absorb(&mut self, _: &Batch, _: Place, _: &mut Vec<f64>) {}
+
+    fn close(self: Box<Self>, _: usize) -> Vec<f64> {
+        Vec::new()
+    }
+}
+
+/// A check that tests nothing, and why.
+pub struct Untestable(pub String);
+
+impl Check for Untestable {
+    fn finish(&self, _: &Total, context: &Context) -> Found {
+        let reason = self.too_weak(context.what).map(|(reason, _)| reason);
+        Found::new(context.too_weak, reason)
+    }
+
+    fn too_weak(&self, what: &str) -> Option<(Reason, f64)> {
+        let (what, why) = (what.to_owned().into(), self.0.clone());
+        Some((Reason::Untestable { what, why }, f64::INFINITY))
+    }
+}

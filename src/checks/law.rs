@@ -1,0 +1,84 @@
+//! Tests of a whole distribution by a p-value over the first draws.
+
+use std::panic::{RefUnwindSafe, UnwindSafe};
+
+use super::batch::Batch;
+use super::check::{Check, Context, Found, Observer, Place, Share, Total};
+use ::gate::session::Reason;
+use ::gate::stats::verdict::Verdict;
+use numeric::sum::Sum;
+
+/// A test of a whole law by sums over the first draws.
+pub trait Law: Send + Sync + UnwindSafe + RefUnwindSafe {
+    /// How many sums.
+    fn size(&self) -> usize;
+
+    /// Adds the draws of a buffer, of which the first is the block's draw number `first`, to the
+    /// sums of the block.
+    fn add(&self, draws: &Batch, first: usize, sums: &mut [f64]);
+
+    /// Turns the sums of a block of `draws` draws into what is summed over blocks.
+    fn close(&self, draws: usize, sums: &mut [f64]) {
+        let _ = (draws, sums);
+    }
+
+    /// The p-value of the sums over `draws` draws; `None` where they test nothing.
+    fn p_value(&self, sums: &[f64], draws: f64) -> Option<f64>;
+
+    /// Details beside the p-value, in words; empty where there is nothing to add.
+    fn details(&self, sums: &[f64], draws: f64) -> String {
+        let _ = (sums, draws);
+        String::new()
+    }
+}
+
+impl<L: Law> Check for L {
+    fn share(&self) -> Share {
+        Share::PValues
+    }
+
+    fn total(&self) -> Total {
+        Total { sums: vec![Sum::default(); self.size()], ..Total::default() }
+    }
+
+    fn observe(&self) -> Box<dyn Observer + '_> {
+        Box::new(Sums { law: self, sums: vec![0.0; self.size()] })
+    }
+
+    fn finish(&self, total: &Total, context: &Context) -> Found {
+        let (draws, fixed, what) = (context.look.draws, context.fixed, context.what.to_owned());
+        if draws < fixed {
+            let reason = Reason::Cut { what: what.into(), draws, fixed };
+            return Found::new(Verdict::Inconclusive, Some(reason));
+        }
+        let sums: Vec<f64> = total.sums.iter().map(Sum::value).collect();
+        match self.p_value(&sums, fixed as f64) {
+            // All p-values of a run are judged together.
+            Some(p) => Found { p: Some(p), ..Found::new(Verdict::Pass, None) },
+            None => Found::new(Verdict::Underpowered, Some(Reason::TooFew(what.into()))),
+        }
+    }
+}
+
+/// The sums of a block.
+struct Sums<'a, L: Law> {
+    law: &'a L,
+    sums: Vec<f64>,
+}
+
+impl<L: Law> Observer for Sums<'_, L> {
+    fn absorb(&mut self, draws: &Batch, place: Place, _: &mut Vec<f64>) {
+        if place.is_fixed {
+            self.law.add(draws, place.first, &mut self.sums);
+        }
+    }
+
+    fn close(mut self: Box<Self>, fixed: usize) -> Vec<f64> {
+        if fixed == 0 {
+            // No draw is asked: nothing need be kept.
+            return Vec::new();
+        }
+        self.law.close(fixed, &mut self.sums);
+        self.sums
+    }
+}
