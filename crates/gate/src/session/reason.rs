@@ -234,13 +234,10 @@ impl fmt::Display for Reason {
                     None => Ok(()),
                 }
             }
-            Self::Undecided { what, draws, ln_pass: [above, below, limit], tolerance, needed } => {
-                write!(
-                    f,
-                    "{what} is undecided after {draws} draws (ln P = {above:.1} and {below:.1} of {limit:.1}); a \
-                     tolerance of {tolerance:.2e} needs {needed:.1e}"
-                )
-            }
+            Self::Undecided { what, draws, tolerance, needed, .. } => write!(
+                f,
+                "{what} is undecided after {draws} draws; a tolerance of {tolerance:.2e} needs {needed:.1e}"
+            ),
             Self::UnknownSpread { .. } => self.unknown_spread(f),
             Self::TooFewPlanned { what, needed, .. } if needed.is_finite() => {
                 write!(f, "{what} needs {} draws", enough(*needed))
