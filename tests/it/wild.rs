@@ -4,7 +4,6 @@
 
 use crate::common::{case, none};
 use trueflight::case::Case;
-use trueflight::checks::Kind;
 use trueflight::draw::run;
 use trueflight::plan::{Amount, Options, Plan, Planned};
 use trueflight::record::{Row, Verdict, evaluate, verdict};
@@ -76,7 +75,10 @@ const BIASED: [(&str, &str, &str); 2] = [
 ];
 
 fn read(problem: &str, lines: &str, estimators: &str) -> Case {
-    case("wild", &format!("title = \"t\"\n[problem.{problem}]\n{lines}\nestimators = [{estimators}]"))
+    case(
+        "wild",
+        &format!("title = \"t\"\n[problem.{problem}]\n{lines}\nestimators = [{estimators}]"),
+    )
 }
 
 fn options(seed: u64, draws: u64) -> Options {
@@ -137,9 +139,7 @@ fn answers_that_are_off_by_the_tolerance_pass_once_in_a_hundred() {
         let sign = if number % 2 == 0 { 1.0 } else { -1.0 };
         for planned in plan.cases.iter_mut().flat_map(|case| &mut case.experiments) {
             for question in &mut planned.questions {
-                if let Kind::Scalar(scalar) = &mut question.kind {
-                    scalar.bias = sign * scalar.design.tolerance;
-                }
+                question.answer.shift(sign);
             }
         }
         let drawn = run::draw(&plan, &|_| {});
@@ -190,7 +190,8 @@ fn trouble(planned: &Planned) -> Option<String> {
 /// What is wrong with a case: predictions and, if it is drawn, verdicts.
 fn at_the_edge(case: &Case, what: &str, is_drawn: bool) -> Vec<String> {
     let plan = Plan::new(std::slice::from_ref(case), &options(1, 1 << 13));
-    let mut wrong: Vec<String> = plan.experiments().filter_map(|(_, planned)| trouble(planned)).collect();
+    let mut wrong: Vec<String> =
+        plan.experiments().filter_map(|(_, planned)| trouble(planned)).collect();
     if is_drawn {
         let failing = judged(case, 1, 1 << 13).into_iter().filter(fails);
         wrong.extend(failing.map(|row| format!("{}: {}", row.estimator, row.reason)));
@@ -207,8 +208,9 @@ fn swept(depths: &[f64], ratios: &[f64], lengths: &[f64]) -> Vec<String> {
         let sigma = depth / length;
         let constant = format!("medium.constant.extinction = {sigma:e}");
         let [peak, centre, width] = [1.6 * sigma, 0.4 * length, 0.25 * length];
-        let blob =
-            format!("medium.gaussian = {{ peak = {peak:e}, centre = {centre:e}, width = {width:e} }}");
+        let blob = format!(
+            "medium.gaussian = {{ peak = {peak:e}, centre = {centre:e}, width = {width:e} }}"
+        );
         for medium in [constant, blob] {
             let lines = format!(
                 "{medium}\nspan = [0, {length:e}]\nsampling.constant.value = {:e}",

@@ -169,7 +169,7 @@ fn what_a_block_costs_those_who_draw_and_those_who_merge() {
                 let begin = Instant::now();
                 let one: block::Block = postcard::from_bytes(&message).expect("decoded");
                 file.keep((u32::try_from(number).expect("few"), block), &one).expect("written");
-                drawn.merge(&one, block);
+                drawn.merge(planned, &one, block);
                 take += begin.elapsed().as_secs_f64();
                 (bytes, count) = (bytes + message.len() as f64, count + 1.0);
             }

@@ -123,8 +123,11 @@ impl Plan {
     /// Returns the requests for all blocks.
     pub(super) fn requests(self) -> impl Iterator<Item = Request> {
         let size = BUFFER as u64;
-        (0..self.most.div_ceil(size))
-            .map(move |block| Request { draws: room(self.most - block * size), block, plan: self })
+        (0..self.most.div_ceil(size)).map(move |block| Request {
+            draws: room(self.most - block * size),
+            block,
+            plan: self,
+        })
     }
 }
 
