@@ -50,9 +50,9 @@ fn main() {
     let case = cases.remove(0);
     let address = Address { seed: 1, experiment: 1, block: 0, lane: 0 };
     let estimator = (0..case.scenario.estimators())
-        .find(|&estimator| case.scenario.names(estimator, None).estimator.name == "ratio")
+        .find(|&estimator| case.names(estimator, None).estimator.name == "ratio")
         .expect("ratio tracking");
-    let ready = case.scenario.prepare(estimator, Some((What::Sampling, 1.0)), address);
+    let ready = case.at(Some((What::Sampling, 1.0))).and_then(|at| at.prepare(estimator, address));
     let experiment = ready.unwrap_or_else(|refusal| panic!("{refusal}")).experiment;
     let mut times = [const { Vec::new() }; 4];
     let mut theory = f64::INFINITY;

@@ -364,7 +364,7 @@ fn main() {
     let word = std::env::args().skip(1).find(|word| !word.starts_with('-')).unwrap_or_default();
     for contest in CONTESTS.into_iter().filter(|contest| contest.name.contains(&word)) {
         let mut cases = [case(contest.case), case(contest.case)];
-        cases[1].scenario.draw_by(Order::Free);
+        cases[1].draw_by(Order::Free);
         let options = Options { draws: Amount::Exactly(BLOCK), ..Options::default() };
         let plan = Plan::new(&cases, &options);
         let of = |order| &plan.cases[usize::from(order == Order::Free)].experiments[0];

@@ -7,7 +7,7 @@ use super::curve::{ChannelSample, Sample};
 use super::figures::{ERRORS, efficiency, time_to};
 use super::record::{BenchRow, CurvePoint, Times};
 use super::spread::Spread;
-use crate::case::ready::Ready;
+use crate::case::build::Ready;
 use crate::plan::Planned;
 use estimators::Refusal;
 use theory::Channel;

@@ -22,7 +22,7 @@ use theory::problems::{self, MultipleScattering};
 /// use trueflight::{Catalogue, media::own::Formula};
 ///
 /// let page = Page { module: "haze", source: "Haze that thins out with the height." };
-/// let haze = Addition::line(page, |_| Some(Formula::new(|t: f64| 1.0 / (1.0 + t * t))));
+/// let haze = Addition::line(page, &[], |_| Some(Formula::new(|t: f64| 1.0 / (1.0 + t * t))));
 /// let catalogue = Catalogue::builtin().with(haze)?;
 /// let case = catalogue.read(&Source {
 ///     name: "mine".into(),

@@ -1,4 +1,4 @@
-//! One estimator as a case file has it.
+//! The estimators of a case or a picture: their own settings, σ̂ and control.
 
 use crate::case::names::EstimatorName;
 use crate::case::sweep::What;
@@ -9,44 +9,6 @@ use estimators::trial::Entry;
 use estimators::{Estimated, Inputs, Order};
 use media::Body;
 use media::catalogue::{Page, Settings, Value};
-
-/// The estimators of one problem, whose type is no longer visible, while they are being read.
-pub trait EntryReader {
-    /// The names of the estimators, those of the program's own last.
-    fn names(&self, settings: &Settings) -> Vec<String>;
-
-    /// Reads the settings of the estimator of the name at this position and keeps it; `None` after a mistake.
-    fn read(&mut self, index: usize, settings: &Settings) -> Option<Features>;
-}
-
-impl<P: Estimated> EntryReader for Vec<Box<dyn Entry<P>>> {
-    fn names(&self, settings: &Settings) -> Vec<String> {
-        let own = settings.additions().of::<EstimatorReader<P>>().map(|(page, _)| page);
-        P::CATALOGUE.pages.iter().chain(own).map(Page::name).collect()
-    }
-
-    fn read(&mut self, index: usize, settings: &Settings) -> Option<Features> {
-        let built_in = P::CATALOGUE.pages.len();
-        let entry = match index.checked_sub(built_in) {
-            None => P::read_estimator(index, settings)?,
-            Some(own) => settings.additions().of::<EstimatorReader<P>>().nth(own)?.1(settings)?,
-        };
-        let features = Features {
-            inputs: entry.inputs(),
-            may_take: entry.may_take(),
-            is_order_free: entry.is_order_free(),
-            alias: entry.without_control(),
-            default_control: entry.default_control(),
-            needs: entry.needs(),
-            label: [false, true].map(|albedo| entry.label(albedo)),
-        };
-        self.push(entry);
-        Some(features)
-    }
-}
-
-/// Reads the estimators of one problem.
-pub type ReadEstimators<'a> = &'a mut dyn FnMut(&mut dyn EntryReader);
 
 /// What an estimator is, whatever it works on.
 pub struct Features {
@@ -64,6 +26,20 @@ pub struct Features {
     pub needs: Option<&'static str>,
     /// Its own settings in words, without the albedo and with it.
     pub label: [String; 2],
+}
+
+impl Features {
+    fn of<P: Estimated>(entry: &dyn Entry<P>) -> Self {
+        Self {
+            inputs: entry.inputs(),
+            may_take: entry.may_take(),
+            is_order_free: entry.is_order_free(),
+            alias: entry.without_control(),
+            default_control: entry.default_control(),
+            needs: entry.needs(),
+            label: [false, true].map(|albedo| entry.label(albedo)),
+        }
+    }
 }
 
 /// An estimator as parsed, apart from its own settings, which the problem keeps.
@@ -91,6 +67,10 @@ pub struct Defaults {
     pub order: Order,
     /// Whether there is a σ̂ for all.
     pub sampling: bool,
+    /// What is swept.
+    pub swept: Option<What>,
+    /// Whether all lookups are counted, so that no σ̂ may learn from some that are not.
+    pub counts_lookups: bool,
 }
 
 /// Reads `expect = "biased"`; `None` after a mistake.
@@ -174,23 +154,21 @@ impl ParsedEstimator {
         self.features.alias.map(|name| self.label_of(name, true))
     }
 
-    /// Reads `{ NAME = { …, sampling, control, expect, kernel } }`.
-    pub fn read(
-        table: &Settings,
+    /// Reads what `{ NAME = { …, sampling, control, expect, kernel } }` says beside the estimator's own settings.
+    fn read(
+        name: &str,
+        features: Option<Features>,
+        settings: &Settings,
         body: Option<&Body>,
         defaults: Defaults,
-        reader: &mut dyn EntryReader,
     ) -> Option<Self> {
-        let names = reader.names(table);
-        let (index, settings) = table.choice(&names)?;
-        let features = reader.read(index, &settings);
         let own_expect = if settings.has("expect") {
-            read_expect(&settings)
+            read_expect(settings)
         } else {
             Some(defaults.expect_biased)
         };
         let own_kernel = settings.has("kernel");
-        let order = if own_kernel { read_kernel(&settings) } else { Some(defaults.order) };
+        let order = if own_kernel { read_kernel(settings) } else { Some(defaults.order) };
         let Some(features) = features else {
             // The page's own mistakes are listed; what it would have taken is not known.
             settings.entry("sampling");
@@ -201,29 +179,29 @@ impl ParsedEstimator {
         // What the page takes with other settings is read, and not used.
         let Features { inputs, may_take, is_order_free, .. } = features;
         let sampling = if may_take.sampling {
-            let read = read_sampling(&settings, body);
+            let read = read_sampling(settings, body);
             read.map(|sampling| sampling.filter(|_| inputs.sampling))
         } else {
             Some(None)
         };
         let control = if may_take.control {
-            let read = read_if(&settings, "control", body, controls::read);
+            let read = read_if(settings, "control", body, controls::read);
             read.map(|control| control.filter(|_| inputs.control))
         } else {
             Some(None)
         };
         if inputs.sampling && !settings.has("sampling") && !defaults.sampling {
-            let message = format!("`{}` has no sampling extinction", names[index]);
+            let message = format!("`{name}` has no sampling extinction");
             let help = "add `sampling = …` to it or to the problem, or sweep it";
             settings.fault_at(settings.span.clone(), "", message, help);
         }
         if own_kernel && order == Some(Order::Free) && !is_order_free {
-            let message = format!("`{}` has no order-free kernel", names[index]);
+            let message = format!("`{name}` has no order-free kernel");
             settings.fault("kernel", message, "product estimators have one; leave `kernel` out");
         }
         settings.close();
         Some(Self {
-            name: names[index].clone(),
+            name: name.to_owned(),
             features,
             sampling: sampling?,
             control: control?,
@@ -233,8 +211,38 @@ impl ParsedEstimator {
     }
 }
 
-/// Records mistakes about a table's own σ̂, and answers `None` then.
-pub type Accept<'a> = &'a dyn Fn(&Settings, Option<&dyn sampling::Recipe>) -> Option<()>;
+/// Reads `{ NAME = { … } }`: an estimator of problem `P`, and what the case says beside its own settings.
+pub fn read<P: Estimated>(
+    table: &Settings,
+    body: Option<&Body>,
+    defaults: Defaults,
+) -> Option<(ParsedEstimator, Box<dyn Entry<P>>)> {
+    let own = || table.additions().of::<EstimatorReader<P>>();
+    let pages = P::CATALOGUE.pages.iter().chain(own().map(|(page, _)| page));
+    let names: Vec<String> = pages.map(Page::name).collect();
+    let (index, settings) = table.choice(&names)?;
+    let entry = match index.checked_sub(P::CATALOGUE.pages.len()) {
+        None => P::read_estimator(index, &settings),
+        Some(place) => own().nth(place).and_then(|(_, read)| read(&settings)),
+    };
+    let features = entry.as_deref().map(Features::of);
+    let parsed = ParsedEstimator::read(&names[index], features, &settings, body, defaults)?;
+    Some((parsed, entry?))
+}
+
+/// Refuses a σ̂ that learns from lookups where all of them are counted; `None` after a mistake.
+fn countable(
+    settings: &Settings,
+    defaults: Defaults,
+    sampling: Option<&dyn sampling::Recipe>,
+) -> Option<()> {
+    if defaults.counts_lookups && sampling.is_some_and(sampling::Recipe::learns) {
+        let help = "give `sampling.constant.value = …`: in a picture every lookup counts";
+        settings.fault("sampling", "this σ̂ is learned by lookups that nobody counts", help);
+        return None;
+    }
+    Some(())
+}
 
 /// The estimators of a case or a picture, in its order, with σ̂ and control for all.
 pub struct Estimators {
@@ -245,35 +253,34 @@ pub struct Estimators {
 }
 
 impl Estimators {
-    /// Reads `sampling`, `control` and `estimators`.
-    pub fn read(
+    /// Reads `sampling`, `control` and `estimators` of problem `P`, with what makes the draws of each.
+    pub fn read<P: Estimated>(
         settings: &Settings,
         body: Option<&Body>,
-        reader: &mut dyn EntryReader,
-        (defaults, swept): (Defaults, Option<What>),
-        accept: Accept,
-    ) -> Option<Self> {
+        defaults: Defaults,
+    ) -> Option<(Self, Vec<Box<dyn Entry<P>>>)> {
         let sampling = read_sampling(settings, body);
         let control = read_if(settings, "control", body, controls::read);
         let list = settings.tables("estimators").map(|tables| {
             let read = |table: &Settings| {
-                let parsed = ParsedEstimator::read(table, body, defaults, reader);
-                accept(table, parsed.as_ref().and_then(|parsed| parsed.sampling.as_deref()))?;
-                parsed
+                let (parsed, entry) = read::<P>(table, body, defaults)?;
+                countable(table, defaults, parsed.sampling.as_deref())?;
+                Some((parsed, entry))
             };
             tables.iter().map(read).collect::<Vec<_>>()
         });
         if let Some(Some(sampling)) = &sampling {
-            accept(settings, Some(sampling.as_ref()))?;
+            countable(settings, defaults, Some(sampling.as_ref()))?;
         }
         let list = list?;
         if list.is_empty() {
             let help = "list one, as in { ratio = {} }";
             settings.fault("estimators", "no estimator is listed", help);
         }
-        let list: Option<Vec<ParsedEstimator>> = list.into_iter().collect();
-        refuse_idle_controls(settings, list.as_deref().unwrap_or_default(), swept);
-        Some(Self { list: list?, sampling: sampling?, control: control? })
+        let list: Option<Vec<_>> = list.into_iter().collect();
+        let (list, entries): (Vec<_>, Vec<_>) = list?.into_iter().unzip();
+        refuse_idle_controls(settings, &list, defaults.swept);
+        Some((Self { list, sampling: sampling?, control: control? }, entries))
     }
 
     /// σ̂ of an estimator; `None` where it takes none.

@@ -3,11 +3,10 @@
 //! A problem has its shortest case. An estimator, a medium, a phase function, a recipe for σ̂ or a control has the
 //! shortest case in which it stands, with one estimator. Cases without a sweep, and of transmittance, go first.
 
-use std::cell::RefCell;
-
 use crate::case::source::Source;
+use crate::case::spec::{Spec, entry};
 use crate::case::suite;
-use media::catalogue::{Entry, Node, Value};
+use media::catalogue::{Entry, Node, Value, additions};
 
 /// Letters by which a sweep makes a case less suited.
 const SWEEP: usize = 400;
@@ -35,19 +34,19 @@ struct Wanted<'a> {
 impl Wanted<'_> {
     /// Every way to reduce a case to an example, with what makes it less suited.
     fn candidates(&self, source: &Source) -> Vec<(usize, String)> {
-        let faults = RefCell::default();
-        let root = source.parse(&faults);
-        let Some((problem, body)) = problem(&root) else { return Vec::new() };
+        let Ok(spec) = Spec::parse(source, &additions::NONE) else { return Vec::new() };
+        let Some((problem, body)) = spec.problem() else { return Vec::new() };
+        let root = spec.entries();
         let Some(list) = entry(body, "estimators") else { return Vec::new() };
         let Value::Array(items) = &list.node.value else { return Vec::new() };
         let others: Vec<&Entry> = body.iter().filter(|own| own.key != "estimators").collect();
         if self.part == "problems" {
-            let all = (problem == self.name).then(|| self.reduced(source, &root, None));
+            let all = (problem == self.name).then(|| self.reduced(source, root, None));
             return all.map(|text| (text.len(), text)).into_iter().collect();
         }
         let fitting = items.iter().filter(|item| self.is_in(problem, &others, item));
         let candidate = |item: &Node| {
-            let text = self.reduced(source, &root, Some((&list.node, item)));
+            let text = self.reduced(source, root, Some((&list.node, item)));
             let is_general = !self.part.starts_with("estimators");
             let cost = [
                 (entry(body, "sweep").is_some(), SWEEP),
@@ -120,18 +119,6 @@ impl Wanted<'_> {
         let kept = reduced.lines().skip_while(|line| line.is_empty() || line.starts_with('#'));
         kept.flat_map(|line| [line, "\n"]).collect()
     }
-}
-
-/// The name of a case's problem, and its settings.
-fn problem(root: &[Entry]) -> Option<(&str, &[Entry])> {
-    let Value::Table(problems) = &entry(root, "problem")?.node.value else { return None };
-    let own = problems.first()?;
-    let Value::Table(body) = &own.node.value else { return None };
-    Some((&own.key, body))
-}
-
-fn entry<'a>(table: &'a [Entry], key: &str) -> Option<&'a Entry> {
-    table.iter().find(|entry| entry.key == key)
 }
 
 /// Whether a table has such a key, at any depth.

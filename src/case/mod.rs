@@ -31,22 +31,24 @@
 //! that needs no settings stands alone or with an empty table, wherever a name is chosen: `control = "mean"`,
 //! `phase = "isotropic"`, `estimators = ["ratio", "woodcock"]`.
 
+pub mod at;
+pub mod build;
 pub mod catalogue;
-mod course;
 pub mod estimator;
 pub mod example;
 pub mod names;
-pub mod problem;
-pub mod ready;
-pub mod rewrite;
+mod scaling;
 pub mod scenario;
 mod shorthand;
 pub mod source;
+pub mod spec;
 pub mod suite;
 pub mod sweep;
 
+pub use at::At;
 pub use catalogue::Catalogue;
 pub use source::{CaseError, Source};
+pub use spec::Spec;
 
 /// The manual of case files.
 pub const CATALOGUE: PageList = PageList {
@@ -54,18 +56,18 @@ pub const CATALOGUE: PageList = PageList {
     pages: &[Page { module: "case", source: include_str!("mod.rs") }, media::page!(sweep)],
 };
 
-use std::cell::RefCell;
-use std::ops::Range;
 use std::path::PathBuf;
 
 use crate::case::estimator::{Defaults, read_expect, read_kernel};
+use crate::case::names::Names;
 use crate::case::scenario::Scenario;
-use crate::case::sweep::{SweepAxis, What};
+use crate::case::sweep::{SweepAxis, Variation, What};
 use crate::plan::options::Tolerance;
 use crate::plan::{ExperimentId, addresses};
+use estimators::{Order, Refusal};
 use media::Body;
 use media::catalogue::additions::{self, Additions};
-use media::catalogue::{Domain, Entry, Fault, Node, Page, PageList, Settings, Value};
+use media::catalogue::{Domain, Fault, Page, PageList, Settings, Value};
 use numeric::digits::number;
 use numeric::rng::{Address, name_hash};
 use theory::problems;
@@ -80,8 +82,12 @@ pub struct Case {
     pub title: String,
     /// The problem's name in the catalogue.
     pub problem: String,
-    /// The problem with its medium and estimators.
+    /// What is written.
+    pub spec: Spec,
+    /// The problem with its medium and estimators, as written.
     pub scenario: Scenario,
+    /// The same at the values of a sweep of the medium.
+    varied: Vec<(f64, Scenario)>,
     /// What is swept.
     pub sweep: Option<SweepAxis>,
     /// How many draws each experiment makes, if the case says.
@@ -112,11 +118,19 @@ impl Case {
     ///
     /// Every mistake in the file.
     pub fn read_with(source: &Source, additions: &Additions) -> Result<Self, CaseError> {
-        let case = source.read_as(additions, |root| Self::from_root(source, root))?;
-        Ok(Self { digest: name_hash(&source.text), ..case })
+        Self::of(Spec::parse(source, additions)?)
     }
 
-    fn from_root(source: &Source, root: &Settings) -> Option<Self> {
+    /// Reads a case that is parsed.
+    ///
+    /// # Errors
+    ///
+    /// Every mistake in the file.
+    pub fn of(spec: Spec) -> Result<Self, CaseError> {
+        spec.read(|root| Self::from_root(&spec, root))
+    }
+
+    fn from_root(spec: &Spec, root: &Settings) -> Option<Self> {
         if let (Some(picture), false) = (root.entry("picture"), root.has("problem")) {
             let help = "render it with `trueflight render`; a case has `[problem.NAME]`";
             root.fault_at(
@@ -128,7 +142,8 @@ impl Case {
             return None;
         }
         let title = root.text("title");
-        let problem = read_problem(root).and_then(|read| read.swept(root));
+        let problem = read_problem(root);
+        let varied = problem.as_ref().and_then(|problem| problem.varied(spec, root));
         let tolerance = read_tolerance(root);
         let draws = if root.has("draws") {
             root.count("draws", 2..=1_000_000_000_000).map(Some)
@@ -138,26 +153,71 @@ impl Case {
         let draws_per_ray = root.count_or("draws_per_ray", 1..=1_000_000_000_000, 1);
         let underpowered = root.word_or("underpowered", &["refuse", "allow"], "refuse");
         root.close();
+        let source = spec.source();
         let Problem { name: problem, scenario, sweep, .. } = problem?;
         Some(Self {
             name: source.name.clone(),
             path: source.path.clone(),
             title: title?,
             problem,
+            spec: spec.clone(),
             scenario,
+            varied: varied?,
             sweep,
             draws: draws?,
             draws_per_ray: draws_per_ray?,
             tolerance: tolerance?,
             allow_underpowered: underpowered? == "allow",
-            digest: 0,
+            digest: name_hash(&source.text),
         })
+    }
+
+    /// The case at a value of its sweep, or as written.
+    ///
+    /// # Errors
+    ///
+    /// A value beside the sweep at which the case cannot be read.
+    pub fn at(&self, variation: Variation) -> Result<At<'_>, Refusal> {
+        let is_swept = |what| self.sweep.as_ref().is_some_and(|axis| axis.what == what);
+        let Some((what, value)) =
+            variation.filter(|&(what, _)| what.varies_medium() && is_swept(what))
+        else {
+            return Ok(At::listed(&self.scenario, variation));
+        };
+        if let Some((_, known)) = self.varied.iter().find(|(known, _)| *known == value) {
+            return Ok(At::listed(known, None));
+        }
+        match read_varied(&self.spec, &self.scenario, what, value) {
+            Ok(mut scenario) => {
+                scenario.draw_by(|estimator| self.scenario.wished_order(estimator));
+                Ok(At::beside(scenario))
+            }
+            Err(faults) => {
+                let needs = "a case that can be read at this value of the sweep";
+                let found = faults.first().map_or_else(String::new, |fault| fault.message.clone());
+                Err(Refusal::mismatch(needs, found))
+            }
+        }
+    }
+
+    /// Names of an experiment in tables.
+    pub fn names(&self, estimator: usize, variation: Variation) -> Names {
+        let at = self.at(variation).unwrap_or_else(|_| At::listed(&self.scenario, None));
+        at.names(estimator)
+    }
+
+    /// Draws by a kernel, whatever the case says, where an estimator has it.
+    pub fn draw_by(&mut self, order: Order) {
+        let varied = self.varied.iter_mut().map(|(_, scenario)| scenario);
+        for scenario in std::iter::once(&mut self.scenario).chain(varied) {
+            scenario.draw_by(|_| order);
+        }
     }
 
     /// Where an estimator's pilot rays find their random numbers: the same all along a sweep, so that
     /// the theory's line and the experiments on it learn the same σ̂.
     pub fn pilots(&self, seed: u64, estimator: usize) -> Address {
-        let names = self.scenario.names(estimator, None);
+        let names = self.names(estimator, None);
         let id = ExperimentId::new([&self.name, &self.problem], &names, None, estimator);
         addresses::own(seed, &id, names.alias.as_ref())
     }
@@ -168,8 +228,6 @@ struct Problem {
     name: String,
     scenario: Scenario,
     sweep: Option<SweepAxis>,
-    /// Where the sweep is written.
-    place: Range<usize>,
 }
 
 /// Reads `expect`, `kernel` and `problem`, and not what is beside them.
@@ -177,17 +235,18 @@ fn read_problem(root: &Settings) -> Option<Problem> {
     let (expect_biased, order) = (read_expect(root), read_kernel(root));
     let names: Vec<String> = problems::CATALOGUE.pages.iter().map(Page::name).collect();
     let (index, settings) = root.chosen("problem", &names)?;
-    let kind = problem::kind(index);
+    let kind = build::kind(index);
     let body = Body::read_for(&settings, kind.ray);
     let body = body.filter(|body| kind.spectral || has_one_channel(&settings, body));
     let sweep = read_sweep(&settings);
+    let swept = sweep.as_ref().and_then(|sweep| sweep.as_ref()).map(|axis| axis.what);
     let defaults = Defaults {
         expect_biased: expect_biased.unwrap_or_default(),
         order: order.unwrap_or_default(),
-        sampling: false,
+        swept,
+        ..Defaults::default()
     };
-    let swept = sweep.as_ref().and_then(|sweep| sweep.as_ref()).map(|axis| axis.what);
-    let scenario = Scenario::read(&kind, &settings, body.as_ref(), defaults, swept);
+    let scenario = Scenario::read(&kind, &settings, body.as_ref(), defaults);
     settings.close();
     let (scenario, sweep) = (scenario?, sweep?);
     expect_biased.and(order)?;
@@ -197,55 +256,57 @@ fn read_problem(root: &Settings) -> Option<Problem> {
         settings.fault("sweep", "no estimator of this case has an albedo", help);
         return None;
     }
-    let place = settings.entry("sweep").map_or(0..0, |entry| entry.node.span.clone());
-    Some(Problem { name: names[index].clone(), scenario, sweep, place })
+    Some(Problem { name: names[index].clone(), scenario, sweep })
 }
 
 impl Problem {
-    /// The same with the scenarios of a sweep of the medium; `None` after a mistake in one of them.
-    fn swept(self, root: &Settings) -> Option<Self> {
-        let axis = self.sweep.as_ref().and_then(|axis| Some((axis, axis.what.rewrite()?)));
-        let Some((axis, rewrite)) = axis else { return Some(self) };
-        let (written, folder) = (root.entries().to_vec(), root.folder.to_owned());
-        let additions = root.additions().clone();
-        let read = move |value: f64| {
-            let mut written = written.clone();
-            rewrite(problem_table(&mut written), value).map_err(|fault| vec![fault])?;
-            let faults = RefCell::default();
-            let read = read_problem(&Settings::new(&written, &folder, &faults).with(&additions));
-            read.map(|read| read.scenario).ok_or_else(|| faults.into_inner())
-        };
-        let mut known = Vec::with_capacity(axis.values.len());
-        for &value in &axis.values {
-            match read(value) {
-                Ok(scenario) => known.push((value, scenario)),
+    /// The scenarios at the values of a sweep of the medium; `None` after a mistake in one of them.
+    fn varied(&self, spec: &Spec, root: &Settings) -> Option<Vec<(f64, Scenario)>> {
+        let axis = self.sweep.as_ref().filter(|axis| axis.what.varies_medium());
+        let Some(SweepAxis { what, values, .. }) = axis else { return Some(Vec::new()) };
+        let mut varied = Vec::with_capacity(values.len());
+        for &value in values {
+            match read_varied(spec, &self.scenario, *what, value) {
+                Ok(scenario) => varied.push((value, scenario)),
                 Err(faults) => {
                     for Fault { span, path, message, help } in faults {
-                        let span = if span.is_empty() { self.place.clone() } else { span };
-                        let own = || format!("problem.{}.sweep.{}", self.name, axis.what.key());
+                        let own = || spec.problem().and_then(|(_, own)| spec::entry(own, "sweep"));
+                        let place = || own().map_or(0..0, |entry| entry.node.span.clone());
+                        let span = if span.is_empty() { place() } else { span };
+                        let key = what.key();
+                        let own = || format!("problem.{}.sweep.{key}", self.name);
                         let path = if path.is_empty() { own() } else { path };
-                        let at = format!("at {} = {}: {message}", axis.what.key(), number(value));
+                        let at = format!("at {key} = {}: {message}", number(value));
                         root.fault_at(span, &path, at, help);
                     }
                     return None;
                 }
             }
         }
-        Some(Self { scenario: self.scenario.with_variants(Box::new(read), known), ..self })
+        Some(varied)
     }
 }
 
-/// The table `[problem.NAME]` of a case.
-fn problem_table(root: &mut [Entry]) -> &mut [Entry] {
-    let mut table = root;
-    for key in [Some("problem"), None] {
-        let entry = table.iter_mut().find(|entry| key.is_none_or(|key| entry.key == key));
-        let Some(Entry { node: Node { value: Value::Table(inner), .. }, .. }) = entry else {
-            return &mut [];
-        };
-        table = inner;
+/// Reads the scenario of a spec at a value of a sweep of the medium; the error lists the mistakes.
+fn read_varied(
+    spec: &Spec,
+    written: &Scenario,
+    what: What,
+    value: f64,
+) -> Result<Scenario, Vec<Fault>> {
+    let spec = spec.at(what, value).map_err(|fault| vec![fault])?;
+    let (read, faults) = spec.attempt(read_problem);
+    let scenario = read.map(|read| read.scenario).ok_or(faults)?;
+    let media = [written.media(), scenario.media()];
+    if !scaling::is_proportional(written.medium(), media, what, value) {
+        let message = format!(
+            "σ_t of `{}` is not proportional to the settings that its page names",
+            written.medium()
+        );
+        let help = "leave the sweep out, or name other settings where the page is added".to_owned();
+        return Err(vec![Fault { span: 0..0, path: String::new(), message, help }]);
     }
-    table
+    Ok(scenario)
 }
 
 /// Refuses a spectral medium where a problem is about one wavelength.

@@ -1,100 +1,58 @@
-//! A problem with its medium and the estimators of a case: from a sweep's value to an experiment.
+//! A problem with its medium and the estimators of a case, and what they are given to work on.
 
-mod labels;
-
-use std::any::Any;
 use std::sync::{Arc, OnceLock};
 
-use crate::case::course::Fields;
+use crate::case::build::{AnyProblem, Parts, ProblemKind};
 use crate::case::estimator::{Defaults, Estimators};
-use crate::case::problem::{AnyProblem, Parts, ProblemKind};
-use crate::case::ready::{Ready, refuse_what_cannot_be_computed};
 use crate::case::sweep::{Variation, What};
-use crate::record::plot_data::Course;
-use estimators::recipes::{controls, sampling};
-use estimators::{Order, RayView, Refusal, Site};
+use estimators::recipes::controls;
+use estimators::{Order, Refusal, Site};
 use media::body::RayNeed;
-use media::catalogue::{Fault, Settings};
-use media::{Body, Medium, Piecewise};
+use media::catalogue::Settings;
+use media::{Body, Medium, Piecewise, misses};
 use numeric::rng::Address;
-use theory::{Mesh, Prediction};
-
-/// Theory needs no random numbers, but recipes that learn from pilot rays do.
-const NOWHERE: Address = Address { seed: 0, experiment: 0, block: 0, lane: 0 };
+use theory::Mesh;
 
 /// A problem with its medium and estimators, which are numbered in the order of the case.
 pub struct Scenario {
     body: Body,
-    problem: Box<dyn AnyProblem>,
+    pub(super) problem: Box<dyn AnyProblem>,
     /// That of each channel.
     meshes: OnceLock<Vec<Arc<Mesh>>>,
-    estimators: Estimators,
-    variants: Option<Variants>,
+    pub(super) estimators: Estimators,
     /// Requirement of the problem on the ray.
     ray: RayNeed,
 }
 
-/// Reads the scenario at a value of the sweep; the error lists the mistakes.
-pub type ReadVariant = Box<dyn Fn(f64) -> Result<Scenario, Vec<Fault>> + Send + Sync>;
-
-/// What a scenario is along a sweep of the medium.
-struct Variants {
-    read: ReadVariant,
-    /// At the values of the case.
-    known: Vec<(f64, Scenario)>,
-}
-
 impl Scenario {
     /// Reads what follows the field: σ̂ and control for all, and the estimators.
-    pub fn read(
+    pub(super) fn read(
         kind: &ProblemKind,
         settings: &Settings,
         body: Option<&Body>,
         defaults: Defaults,
-        swept: Option<What>,
     ) -> Option<Self> {
         // A sweep that could not be read may have been one of σ̂.
-        let unread = settings.has("sweep") && swept.is_none();
-        let shared = settings.has("sampling") || swept == Some(What::Sampling) || unread;
-        let defaults = (Defaults { sampling: shared, ..defaults }, swept);
-        let mut estimators = None;
-        let problem = (kind.read)(body, settings, &mut |reader| {
-            let accept = |_: &Settings, _: Option<&dyn sampling::Recipe>| Some(());
-            estimators = Estimators::read(settings, body, reader, defaults, &accept);
-        });
-        let (problem, estimators, body) = (problem?, estimators?, body?.clone());
-        let (meshes, ray) = (OnceLock::new(), kind.ray);
-        Some(Self { body, problem, meshes, estimators, variants: None, ray })
+        let unread = settings.has("sweep") && defaults.swept.is_none();
+        let sampling = settings.has("sampling") || defaults.swept == Some(What::Sampling) || unread;
+        let built = (kind.build)(body, settings, Defaults { sampling, ..defaults });
+        let ((problem, estimators), body) = (built?, body?.clone());
+        Some(Self { body, problem, meshes: OnceLock::new(), estimators, ray: kind.ray })
     }
 
-    /// The same along a sweep of the medium, with what is known at the values of the case.
-    #[must_use]
-    pub fn with_variants(self, read: ReadVariant, known: Vec<(f64, Self)>) -> Self {
-        Self { variants: Some(Variants { read, known }), ..self }
+    /// The field as the case gives it.
+    pub fn body(&self) -> &Body {
+        &self.body
     }
 
-    /// What `ask` says of the scenario at a value of a sweep of the medium; `None` where something else varies.
-    fn varied<T>(
-        &self,
-        variation: Variation,
-        ask: impl FnOnce(&Self) -> T,
-    ) -> Option<Result<T, Refusal>> {
-        let (_, value) = variation.filter(|(what, _)| what.rewrite().is_some())?;
-        let variants = self.variants.as_ref()?;
-        if let Some((_, known)) = variants.known.iter().find(|(known, _)| *known == value) {
-            return Some(Ok(ask(known)));
-        }
-        let read = (variants.read)(value).map(|mut other| {
-            for (other, own) in other.estimators.list.iter_mut().zip(&self.estimators.list) {
-                other.order = own.order;
-            }
-            ask(&other)
-        });
-        let needs = "a case that can be read at this value of the sweep";
-        Some(read.map_err(|faults| {
-            let found = faults.first().map_or_else(String::new, |fault| fault.message.clone());
-            Refusal::mismatch(needs, found)
-        }))
+    /// The problem, if it is a `P`.
+    pub fn problem<P: 'static>(&self) -> Option<&P> {
+        self.problem.problem().downcast_ref()
+    }
+
+    /// The field of each channel along the ray.
+    pub fn media(&self) -> &[Medium] {
+        self.problem.media()
     }
 
     /// The distance that each channel of a draw is about.
@@ -107,14 +65,31 @@ impl Scenario {
         self.estimators.list.len()
     }
 
-    /// Draws by a kernel, whatever the case says, where an estimator has it.
-    pub fn draw_by(&mut self, order: Order) {
-        for estimator in &mut self.estimators.list {
-            estimator.order = order;
+    /// Contents of the files of the medium, a sentence each.
+    pub fn facts(&self) -> Vec<String> {
+        self.body.facts()
+    }
+
+    /// Doubts about the medium and its ray, a sentence each.
+    pub fn notes(&self) -> Vec<String> {
+        misses::notes(&self.body, self.ray)
+    }
+
+    /// The field's name in the catalogue.
+    pub fn medium(&self) -> &str {
+        self.body.name()
+    }
+
+    /// Draws by a kernel where an estimator has it, estimator by estimator.
+    pub(super) fn draw_by(&mut self, order: impl Fn(usize) -> Order) {
+        for (number, estimator) in self.estimators.list.iter_mut().enumerate() {
+            estimator.order = order(number);
         }
-        for (_, known) in self.variants.iter_mut().flat_map(|variants| &mut variants.known) {
-            known.draw_by(order);
-        }
+    }
+
+    /// The kernel that is wished for an estimator.
+    pub(super) fn wished_order(&self, estimator: usize) -> Order {
+        self.estimators.list[estimator].order
     }
 
     /// Whether an estimator depends on a swept quantity.
@@ -139,125 +114,7 @@ impl Scenario {
         self.estimators.list[estimator].expect_biased
     }
 
-    /// Prepares an experiment; pilot rays find their random numbers at `address`.
-    ///
-    /// # Errors
-    ///
-    /// Why it cannot be drawn.
-    pub fn prepare(
-        &self,
-        estimator: usize,
-        variation: Variation,
-        address: Address,
-    ) -> Result<Ready, Refusal> {
-        let prepared = self.varied(variation, |other| other.prepare(estimator, None, address));
-        if let Some(prepared) = prepared {
-            return prepared?;
-        }
-        let (parts, setup_lookups) = self.counted_parts(estimator, variation, None, address)?;
-        let parsed = &self.estimators.list[estimator];
-        let mut ready =
-            self.problem.prepare(estimator, parts, parsed.order(), parsed.expect_biased)?;
-        ready.prediction.setup_lookups = setup_lookups;
-        refuse_what_cannot_be_computed(ready)
-    }
-
-    /// What theory says of an experiment, with `what_if` of that constant σ̂ in place of its own;
-    /// `None` if it is refused.
-    pub fn predict(
-        &self,
-        estimator: usize,
-        variation: Variation,
-        what_if: Option<f64>,
-        pilots: Address,
-    ) -> Option<Prediction> {
-        let ask = |other: &Self| other.predict(estimator, None, what_if, pilots);
-        if let Some(predicted) = self.varied(variation, ask) {
-            return predicted.ok()?;
-        }
-        let (parts, setup_lookups) =
-            self.counted_parts(estimator, variation, what_if, pilots).ok()?;
-        let order = self.estimators.list[estimator].order();
-        let prediction = self.problem.predict(estimator, parts, order)?;
-        Some(Prediction { setup_lookups, ..prediction })
-    }
-
-    /// The ray seen from the side and the places where the control was fitted, for estimators of a
-    /// curve.
-    pub fn ray_view(
-        &self,
-        estimator: usize,
-        variation: Variation,
-        address: Address,
-    ) -> Option<(RayView, Vec<[f64; 2]>)> {
-        if let Some(view) = self.varied(variation, |other| other.ray_view(estimator, None, address))
-        {
-            return view.ok()?;
-        }
-        let parts = self.parts(estimator, variation, None, address).ok()?;
-        let ray_view = self.problem.ray_view(estimator, parts, address)?;
-        let site = self.site(address);
-        let points = self.with_control(estimator, variation, |recipe| recipe.points(&site));
-        Some((ray_view, points))
-    }
-
-    /// σ_t, control and σ̂ of each channel along the ray, and at the place of interest.
-    pub fn courses(
-        &self,
-        estimator: usize,
-        variation: Variation,
-        address: Address,
-        at: Option<f64>,
-    ) -> Vec<Course> {
-        let ask = |other: &Self| other.courses(estimator, None, address, at);
-        if let Some(courses) = self.varied(variation, ask) {
-            return courses.unwrap_or_default();
-        }
-        let parts = self.parts(estimator, variation, None, address).ok();
-        let sampling = parts.as_ref().map(|parts| {
-            let further = parts.further.iter().map(|(_, sampling)| sampling.as_ref());
-            std::iter::once(parts.sampling.as_ref()).chain(further).collect::<Vec<_>>()
-        });
-        let control = parts.as_ref().map(|parts| &parts.control);
-        let media = self.problem.media().iter().enumerate();
-        let fields = media.map(|(channel, medium)| Fields {
-            medium,
-            control,
-            sampling: sampling.as_ref().and_then(|all| *all.get(channel)?),
-        });
-        fields.filter_map(|fields| fields.course(at)).collect()
-    }
-
-    /// The largest `|σ_t − σ_c|` on the ray, 1/length: the natural scale of σ̂ for an estimator.
-    pub fn natural_scale(&self, estimator: usize, variation: Variation) -> f64 {
-        if let Some(scale) = self.varied(variation, |other| other.natural_scale(estimator, None)) {
-            return scale.unwrap_or_default();
-        }
-        let parts = self.parts(estimator, variation, None, NOWHERE);
-        let control = parts.and_then(|parts| self.problem.fitting_control(estimator, parts));
-        let Ok(control) = control else { return 0.0 };
-        let largest = self.mesh().largest(|t, sigma| (sigma - control.extinction(t)).abs());
-        largest.map_or(0.0, |(_, size)| size)
-    }
-
-    /// Prepares the `Setup<P>` of an experiment, for draws that are made outside the catalogue.
-    ///
-    /// # Errors
-    ///
-    /// Why it cannot be drawn.
-    pub fn setup(
-        &self,
-        estimator: usize,
-        variation: Variation,
-        address: Address,
-    ) -> Result<Box<dyn Any>, Refusal> {
-        if let Some(setup) = self.varied(variation, |other| other.setup(estimator, None, address)) {
-            return setup?;
-        }
-        self.problem.setup(estimator, self.parts(estimator, variation, None, address)?)
-    }
-
-    fn mesh(&self) -> &Arc<Mesh> {
+    pub(super) fn mesh(&self) -> &Arc<Mesh> {
         &self.meshes()[0]
     }
 
@@ -266,12 +123,12 @@ impl Scenario {
         self.meshes.get_or_init(|| self.problem.media().iter().map(cut).collect())
     }
 
-    fn site(&self, address: Address) -> Site<'_> {
+    pub(super) fn site(&self, address: Address) -> Site<'_> {
         Site { body: &self.body.channels()[0], mesh: self.mesh(), address }
     }
 
     /// Calls `f` with the control that an experiment uses.
-    fn with_control<T>(
+    pub(super) fn with_control<T>(
         &self,
         estimator: usize,
         variation: Variation,
@@ -292,7 +149,7 @@ impl Scenario {
     }
 
     /// What an experiment works on, at a constant σ̂ where one is given.
-    fn parts(
+    pub(super) fn parts(
         &self,
         estimator: usize,
         variation: Variation,
@@ -303,7 +160,7 @@ impl Scenario {
     }
 
     /// Parts of an experiment, and the number of lookups of σ_t that control and σ̂ took.
-    fn counted_parts(
+    pub(super) fn counted_parts(
         &self,
         estimator: usize,
         variation: Variation,

@@ -1,19 +1,15 @@
-//! A case file as text: parsed into a tree with places, and its mistakes shown in place.
+//! A case file as text, and its mistakes shown in place.
 
-use std::cell::RefCell;
 use std::path::{Path, PathBuf};
 
 use annotate_snippets::{AnnotationKind, Level, Renderer, Snippet};
-use toml::de::{DeTable, DeValue};
-
-use crate::case::shorthand::spell_out;
-use media::catalogue::{Additions, Entry, Fault, Node, Settings, Value};
+use media::catalogue::Fault;
 
 /// So many mistakes are shown in place; of a file that has more, these are enough to begin with.
 const TOLD: usize = 50;
 
-/// What is said of a syntax error.
-const NOT_TOML: &str = "this is not TOML";
+/// Help text of a syntax error.
+pub(super) const NOT_TOML: &str = "this is not TOML";
 
 /// Files that are built into the binary.
 #[derive(Debug, Clone, Copy)]
@@ -83,6 +79,14 @@ pub enum CaseError {
     Empty {
         /// The folder.
         path: String,
+    },
+    /// A case that was changed cannot be written as text.
+    #[error("{name}: the case cannot be written as TOML: {cause}; write the file yourself")]
+    Unwritable {
+        /// The case's name.
+        name: String,
+        /// What the writer said.
+        cause: Box<toml::ser::Error>,
     },
     /// The file's contents are wrong.
     #[error("{} mistake(s) in {}", faults.len(), source_text.path.display())]
@@ -165,79 +169,9 @@ impl Source {
         Ok(Self { name, path: path.to_owned(), text })
     }
 
-    /// Reads what the text says, with pages of the program's own; `read` records mistakes and answers `None` after
-    /// one.
-    ///
-    /// # Errors
-    ///
-    /// Every mistake in the file.
-    pub fn read_as<T>(
-        &self,
-        additions: &Additions,
-        read: impl FnOnce(&Settings) -> Option<T>,
-    ) -> Result<T, CaseError> {
-        let faults = RefCell::default();
-        let mut root = self.parse(&faults);
-        let broken = !faults.borrow().is_empty();
-        spell_out(&mut root, &faults);
-        let folder = self.path.parent().map(Path::to_owned).unwrap_or_default();
-        let found = read(&Settings::new(&root, &folder, &faults).with(additions));
-        let mut faults = faults.into_inner();
-        if broken {
-            // Half a file is missing keys that the other half may hold.
-            faults.retain(|fault| fault.path.is_empty() && fault.help == NOT_TOML);
-        }
+    /// The error that lists these mistakes, in the order of the file.
+    pub(super) fn faulty(&self, mut faults: Vec<Fault>) -> CaseError {
         faults.sort_by_key(|fault| fault.span.start);
-        match found {
-            Some(found) if faults.is_empty() => Ok(found),
-            _ => Err(CaseError::Faulty { source_text: self.clone(), faults }),
-        }
-    }
-
-    /// Parses the text; syntax errors are recorded, and what could be read is answered.
-    pub fn parse(&self, faults: &RefCell<Vec<Fault>>) -> Vec<Entry> {
-        let (table, errors) = DeTable::parse_recoverable(&self.text);
-        for error in errors {
-            faults.borrow_mut().push(Fault {
-                span: error.span().unwrap_or_default(),
-                path: String::new(),
-                message: error.message().replace('\n', ", "),
-                help: NOT_TOML.into(),
-            });
-        }
-        entries(table.get_ref())
-    }
-}
-
-fn entries(table: &DeTable<'_>) -> Vec<Entry> {
-    let entry = |(key, value): (&toml::Spanned<_>, &toml::Spanned<DeValue<'_>>)| {
-        let key: &toml::Spanned<std::borrow::Cow<'_, str>> = key;
-        let node = Node { value: read(value.get_ref()), span: value.span() };
-        Entry { key: key.get_ref().to_string(), key_span: key.span(), node }
-    };
-    let mut entries: Vec<Entry> = table.iter().map(entry).collect();
-    entries.sort_by_key(|entry| entry.key_span.start);
-    entries
-}
-
-fn read(value: &DeValue<'_>) -> Value {
-    match value {
-        DeValue::String(text) => Value::Text(text.to_string()),
-        DeValue::Integer(number) => {
-            let digits = i128::from_str_radix(number.as_str(), number.radix());
-            digits.map_or(Value::Other("a number too large"), |n| Value::Number(n as f64))
-        }
-        DeValue::Float(number) => {
-            number.as_str().parse().map_or(Value::Other("an unreadable number"), Value::Number)
-        }
-        DeValue::Boolean(flag) => Value::Boolean(*flag),
-        DeValue::Datetime(_) => Value::Other("a date"),
-        DeValue::Array(items) => Value::Array(
-            items
-                .iter()
-                .map(|item| Node { value: read(item.get_ref()), span: item.span() })
-                .collect(),
-        ),
-        DeValue::Table(table) => Value::Table(entries(table)),
+        CaseError::Faulty { source_text: self.clone(), faults }
     }
 }

@@ -23,7 +23,6 @@
 //! `{ from, to, points, scale }` with `scale = "linear"` or `"log"`: `points` values from end to end. Estimators that do
 //! not depend on it are drawn once.
 
-use crate::case::rewrite::{self, Rewrite};
 use media::catalogue::{Domain, Settings};
 use serde::{Deserialize, Serialize};
 
@@ -52,25 +51,18 @@ pub enum What {
 /// One value of a sweep.
 pub type Variation = Option<(What, f64)>;
 
-/// Every quantity with its key in case files, the axis title, the numbers it takes, and how it changes the case where
-/// it is the medium that varies.
-const KINDS: [(What, &str, &str, Domain, Option<Rewrite>); 8] = {
+/// Every quantity with its key in case files, the axis title, and the numbers it takes.
+const KINDS: [(What, &str, &str, Domain); 8] = {
     use Domain::{Finite, NonNegative, Positive, Unit};
     [
-        (What::Sampling, "sampling", "sampling extinction σ̂ [1/length]", Positive, None),
-        (What::SamplingScale, "sampling-scale", "factor on σ̂", Positive, None),
-        (What::Albedo, "albedo", "albedo a", Unit, None),
-        (What::Control, "control", "control σ_c [1/length]", Finite, None),
-        (What::Points, "points", "explorer points", Positive, None),
-        (What::Density, "density", "density: factor on σₜ and σ̂", Positive, Some(rewrite::density)),
-        (
-            What::AlbedoScale,
-            "albedo-scale",
-            "factor on the albedos",
-            NonNegative,
-            Some(rewrite::albedo_scale),
-        ),
-        (What::Contrast, "contrast", "colour contrast c", NonNegative, Some(rewrite::contrast)),
+        (What::Sampling, "sampling", "sampling extinction σ̂ [1/length]", Positive),
+        (What::SamplingScale, "sampling-scale", "factor on σ̂", Positive),
+        (What::Albedo, "albedo", "albedo a", Unit),
+        (What::Control, "control", "control σ_c [1/length]", Finite),
+        (What::Points, "points", "explorer points", Positive),
+        (What::Density, "density", "density: factor on σₜ and σ̂", Positive),
+        (What::AlbedoScale, "albedo-scale", "factor on the albedos", NonNegative),
+        (What::Contrast, "contrast", "colour contrast c", NonNegative),
     ]
 };
 
@@ -96,9 +88,14 @@ impl What {
         self.kind().2
     }
 
-    /// How a case is changed whose medium varies.
-    pub fn rewrite(self) -> Option<Rewrite> {
-        self.kind().4
+    /// All quantities, in the order of the manual.
+    pub fn all() -> impl Iterator<Item = Self> {
+        KINDS.iter().map(|kind| kind.0)
+    }
+
+    /// Whether the medium itself varies, and with it the answer.
+    pub fn varies_medium(self) -> bool {
+        matches!(self, Self::Density | Self::AlbedoScale | Self::Contrast)
     }
 
     /// Whether it can have that value.
@@ -112,7 +109,7 @@ impl What {
         if self == Self::Points { "a whole number from 2" } else { self.kind().3.words() }
     }
 
-    fn kind(self) -> &'static (What, &'static str, &'static str, Domain, Option<Rewrite>) {
+    fn kind(self) -> &'static (What, &'static str, &'static str, Domain) {
         KINDS.iter().find(|kind| kind.0 == self).unwrap_or(&KINDS[0])
     }
 }
@@ -122,7 +119,7 @@ impl SweepAxis {
     pub fn read(settings: &Settings) -> Option<Self> {
         let names: Vec<String> = KINDS.iter().map(|kind| kind.1.to_owned()).collect();
         let (index, sweep) = settings.choice(&names)?;
-        let (what, _, _, domain, _) = KINDS[index];
+        let (what, _, _, domain) = KINDS[index];
         let read = if sweep.has("values") {
             let values = sweep.numbers("values", domain, 1);
             sweep.close();

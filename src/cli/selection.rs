@@ -96,7 +96,7 @@ impl Experiments {
         }
         if let Some(order) = self.kernel {
             for case in &mut cases {
-                case.scenario.draw_by(order);
+                case.draw_by(order);
             }
         }
         if errors.is_empty() {

@@ -1,7 +1,6 @@
 //! `trueflight stress`: where doubles run out of digits, and by how much.
 
 use std::path::PathBuf;
-use std::sync::Arc;
 
 use clap::Args;
 use numeric::rng::Address;
@@ -58,8 +57,8 @@ pub fn stated(text: &str, channel: &str) -> Option<(f64, Option<f64>)> {
     /// Address of pilot draws, where theory has no variance.
     const NOWHERE: Address = Address { seed: 0, experiment: 0, block: 0, lane: 0 };
     let source = Source { name: "stress".into(), path: "stress.toml".into(), text: text.into() };
-    let case = Arc::new(Case::read(&source).ok()?);
-    let ready = case.scenario.prepare(0, None, NOWHERE).ok()?;
+    let case = Case::read(&source).ok()?;
+    let ready = case.at(None).and_then(|at| at.prepare(0, NOWHERE)).ok()?;
     let found = ready.prediction.channels.iter().find(|found| found.name == channel)?;
     let truth = found.truth.value;
     let variance = found.moments.map(|moments| moments.variance() / (truth * truth));

@@ -10,7 +10,7 @@ use cpu_time::ThreadTime;
 use fearless_simd::Level;
 use serde::{Deserialize, Serialize};
 
-use crate::case::ready::Ready;
+use crate::case::build::Ready;
 use crate::checks::batch::Batch;
 use crate::checks::check::{Observer, Place};
 use crate::plan::{BLOCK, Planned};

@@ -7,13 +7,10 @@ use fearless_simd::Level;
 use super::sampled::Sampled;
 use super::scene::{Field, Scene};
 use super::{Target, Wishes, single};
-use media::axes::Axes;
-use media::catalogue::{Settings, Value};
 use media::phase::Phase;
 use media::phase::henyey_greenstein::HenyeyGreenstein;
-use media::{Medium, Volume, grid_file};
+use media::{Body, Medium, Volume};
 use numeric::geometry::{Aabb, Bounds, Point};
-use theory::problems::spectral_furnace;
 
 /// Cells along the longest side of a field in space, and along a line.
 const CELLS: [usize; 2] = [32, 256];
@@ -26,9 +23,6 @@ pub(super) type Unsuitable = (String, &'static str);
 
 /// The size of a case's own grids, and whether lookups take the nearest sample.
 pub(super) type OwnGrid = ([usize; 3], bool);
-
-/// The volumes and albedos of channels, and their common phase function.
-pub(super) type Scatterers = (Vec<Arc<Volume>>, Vec<f64>, Phase);
 
 /// The options of one export.
 pub(super) struct Reader<'a> {
@@ -102,18 +96,6 @@ impl Reader<'_> {
         remarks
     }
 
-    /// The volumes, albedos and common phase function of the channels that are exported.
-    pub fn scatterers(
-        &self,
-        channels: Vec<spectral_furnace::Channel>,
-    ) -> Result<Scatterers, Unsuitable> {
-        let channels = self.chosen(channels)?;
-        let phases: Vec<Phase> = channels.iter().map(|channel| channel.phase).collect();
-        let volumes = channels.iter().map(|channel| channel.volume.clone()).collect();
-        let albedos = channels.iter().map(|channel| channel.albedo).collect();
-        Ok((volumes, albedos, one_phase(&phases)?))
-    }
-
     /// Volumes in a box, or a homogeneous box or ball; with the size of their own grid, if they have one.
     pub fn in_space(
         &self,
@@ -163,20 +145,12 @@ impl Reader<'_> {
 
     /// The size of the grids of samples in the middle of cells that the exported channels of a case have, and whether
     /// the nearest is taken; `None` where one has another, or none.
-    pub fn own_grids(
-        &self,
-        settings: &Settings,
-        channels: usize,
-    ) -> Result<Option<OwnGrid>, Unsuitable> {
-        let volume = settings.entry("volume");
-        let is_list = volume.is_some_and(|entry| matches!(entry.node.value, Value::Array(_)));
-        let grids: Vec<Option<OwnGrid>> = if is_list {
-            settings.tables("volume").unwrap_or_default().iter().map(own_grid).collect()
-        } else {
-            let volume = settings.naming_if("volume", "a field in space");
-            vec![volume.and_then(|volume| own_grid(&volume)); channels]
+    pub fn own_grids(&self, body: &Body) -> Result<Option<OwnGrid>, Unsuitable> {
+        let grid = |body: &Body| match body {
+            Body::Volume { volume, .. } => volume.cells(),
+            Body::Line { .. } | Body::Spectral { .. } => None,
         };
-        let grids = self.chosen(grids)?;
+        let grids = self.chosen(body.channels().iter().map(grid).collect())?;
         let first = grids.first().copied().flatten();
         Ok(first.filter(|_| grids.iter().all(|grid| *grid == first)))
     }
@@ -220,30 +194,4 @@ fn cells(bounds: Aabb, most: usize) -> [usize; 3] {
     let edges: [f64; 3] = std::array::from_fn(|axis| bounds.high.0[axis] - bounds.low.0[axis]);
     let longest = edges.iter().copied().fold(0.0, f64::max);
     edges.map(|edge| ((edge / longest * most as f64).round() as usize).max(1))
-}
-
-/// The size of the grid of a volume, if it has samples in the middle of cells, and whether the nearest is taken.
-fn own_grid(volume: &Settings) -> Option<OwnGrid> {
-    let grid = volume.table_if("grid")?;
-    if grid.word_or("samples", &["centres", "vertices"], "centres")? == "vertices" {
-        return None;
-    }
-    let nearest = grid.word_or("interpolation", &["trilinear", "nearest"], "trilinear")?;
-    let size = if let Some(random) = grid.table_if("random") {
-        random.counts("size", 1..=4096)?
-    } else {
-        let path = grid.folder.join(grid.text("file")?);
-        if grid_file::Format::of(&path)?.has_transform() {
-            return None;
-        }
-        let named = |key| grid.optional(key, |key| grid.text(key)).flatten();
-        let channel = grid.optional("channel", |key| grid.count(key, 0..=65_535)).flatten();
-        let choice = grid_file::Choice {
-            grid: named("grid"),
-            channel: channel.and_then(|channel| usize::try_from(channel).ok()),
-            axes: named("axes").and_then(|name| Axes::named(&name)).unwrap_or_default(),
-        };
-        grid_file::read(&path, &choice).ok()?.size
-    };
-    Some((size, nearest == "nearest"))
 }

@@ -20,17 +20,15 @@ use super::{Target, Wishes, single};
 use crate::case::Catalogue;
 use crate::case::Source;
 use crate::case::sweep::What;
-use media::catalogue::Settings;
 use media::phase::Phase;
 use media::phase::isotropic::Isotropic;
-use media::{self, Medium, Volume};
+use media::{Body, Medium, Volume};
 use numeric::geometry::{Bounds, Point, Ray};
-use theory::problems::single_scattering::Lamp;
 use theory::problems::slab::{Incidence, Light as Side};
 use theory::problems::sphere::{Light as BallLight, Sought};
 use theory::problems::{
-    ChromaticSlab, Furnace, Problem, SingleScattering, Slab, SpectralFurnace, SpectralSlab, Sphere,
-    Transmittance, spectral_furnace,
+    ChromaticSlab, Furnace, Problem, SingleScattering, Slab, SpectralFurnace,
+    SpectralSingleScattering, SpectralSlab, SpectralTransmittance, Sphere, Transmittance,
 };
 
 /// Reads a case as a scene.
@@ -46,28 +44,33 @@ pub fn read(
 ) -> Result<Scene, ExportError> {
     let case = catalogue.read(source)?;
     let reader = Reader { name: source.name.clone(), target, wishes };
-    let scene = source.read_as(catalogue.additions(), |root| {
-        let problem = root.table("problem")?;
-        let settings = |key: &'static str| problem.table(key);
-        Some(match case.problem.as_str() {
-            "transmittance" => reader.transmittance(&settings("transmittance")?),
-            "spectral-transmittance" => reader.transmittance(&settings("spectral-transmittance")?),
-            "furnace" => reader.furnace(&settings("furnace")?),
-            "spectral-furnace" => reader.spectral_furnace(&settings("spectral-furnace")?),
-            "slab" => reader.slab(&settings("slab")?),
-            "spectral-slab" => reader.spectral_slab(&settings("spectral-slab")?),
-            "chromatic-slab" => reader.chromatic_slab(&settings("chromatic-slab")?),
-            "single-scattering" => reader.single_scattering(&settings("single-scattering")?),
-            "spectral-single-scattering" => {
-                reader.spectral_single_scattering(&settings("spectral-single-scattering")?)
-            }
-            "sphere" => reader.sphere(&settings("sphere")?),
-            _ => Err((
-                format!("renderers do not answer what `{}` asks", case.problem),
-                "take a case of transmittance, furnace, slab, single-scattering (of one channel or several) or sphere",
-            )),
-        })
-    })?;
+    let (scenario, body) = (&case.scenario, case.scenario.body());
+    let scene = if scenario.problem::<Transmittance>().is_some()
+        || scenario.problem::<SpectralTransmittance>().is_some()
+    {
+        reader.transmittance(body)
+    } else if let Some(furnace) = scenario.problem::<Furnace>() {
+        reader.furnace(body, furnace)
+    } else if let Some(furnace) = scenario.problem::<SpectralFurnace>() {
+        reader.spectral_furnace(body, furnace)
+    } else if let Some(slab) = scenario.problem::<Slab>() {
+        reader.slab(slab)
+    } else if let Some(slab) = scenario.problem::<SpectralSlab>() {
+        reader.spectral_slab(slab)
+    } else if let Some(slab) = scenario.problem::<ChromaticSlab>() {
+        reader.chromatic_slab(slab)
+    } else if let Some(scattering) = scenario.problem::<SingleScattering>() {
+        reader.single_scattering(body, slice::from_ref(scattering).iter())
+    } else if let Some(scattering) = scenario.problem::<SpectralSingleScattering>() {
+        reader.single_scattering(body, scattering.channels.iter().map(|channel| &**channel))
+    } else if let Some(sphere) = scenario.problem::<Sphere>() {
+        reader.sphere(body, sphere)
+    } else {
+        Err((
+            format!("renderers do not answer what `{}` asks", case.problem),
+            "take a case of transmittance, furnace, slab, single-scattering (of one channel or several) or sphere",
+        ))
+    };
     let swept = case.sweep.as_ref().map(|axis| axis.what);
     let varies = match swept {
         Some(What::Albedo) => !["transmittance", "furnace"].contains(&case.problem.as_str()),
@@ -138,15 +141,13 @@ impl Reader<'_> {
         scene
     }
 
-    fn transmittance(&self, settings: &Settings) -> Result<Scene, Unsuitable> {
-        // Only one medium needs no length of its ray, and has a page to ask for it.
-        let body = media::Body::read_for(settings, Transmittance::RAY).ok_or_else(unread)?;
+    fn transmittance(&self, body: &Body) -> Result<Scene, Unsuitable> {
         let bodies = self.chosen(body.channels().iter().collect())?;
         let media: Vec<Medium> = bodies.iter().map(|body| body.medium()).collect();
         if media[0].support().is_empty() {
             return Err(("the ray misses the medium".into(), "take a ray that meets it"));
         }
-        let own = self.own_grids(settings, body.channels().len())?;
+        let own = self.own_grids(body)?;
         let ends_outside = |volume: &Volume, ray: &Ray| {
             let [low, high] = [ray.origin, ray.at(ray.length)];
             [low, high].iter().all(|&end| !volume.bounds().contains(end))
@@ -154,7 +155,7 @@ impl Reader<'_> {
         let mut volumes: Vec<Arc<Volume>> = Vec::new();
         let mut crossing = None;
         for body in &bodies {
-            if let media::Body::Volume { volume, ray, .. } = body
+            if let Body::Volume { volume, ray, .. } = body
                 && own.is_some()
                 && ends_outside(&**volume, ray)
             {
@@ -172,20 +173,21 @@ impl Reader<'_> {
         Ok(self.scene("transmittance", fields, [eye, Point([0.0, 0.0, 1.0])], light))
     }
 
-    fn furnace(&self, settings: &Settings) -> Result<Scene, Unsuitable> {
-        let body = media::Body::read_for(settings, Furnace::RAY).ok_or_else(unread)?;
-        let furnace = Furnace::read(Some(&body), settings).ok_or_else(unread)?;
-        let fields = self.in_space(&[furnace.scene.volume], self.own_grids(settings, 1)?)?;
+    fn furnace(&self, body: &Body, furnace: &Furnace) -> Result<Scene, Unsuitable> {
+        let volumes = slice::from_ref(&furnace.scene.volume);
+        let fields = self.in_space(volumes, self.own_grids(body)?)?;
         let is_white = furnace.scene.albedo.even() == Some(1.0);
         let ray = [furnace.entry, furnace.direction];
         Ok(self.white(fields, ray, lobe(furnace.scene.phase), is_white))
     }
 
-    fn spectral_furnace(&self, settings: &Settings) -> Result<Scene, Unsuitable> {
-        let body = media::Body::read_for(settings, SpectralFurnace::RAY).ok_or_else(unread)?;
-        let furnace = SpectralFurnace::read(Some(&body), settings).ok_or_else(unread)?;
-        let own = self.own_grids(settings, furnace.channels.len())?;
-        let channels = self.chosen(furnace.channels)?;
+    fn spectral_furnace(
+        &self,
+        body: &Body,
+        furnace: &SpectralFurnace,
+    ) -> Result<Scene, Unsuitable> {
+        let own = self.own_grids(body)?;
+        let channels = self.chosen(furnace.channels.iter().collect())?;
         let volumes: Vec<Arc<Volume>> = channels.iter().map(|one| one.volume.clone()).collect();
         let fields = self.in_space(&volumes, own)?;
         let is_white = channels.iter().all(|channel| channel.albedo == 1.0);
@@ -220,23 +222,17 @@ impl Reader<'_> {
         scene
     }
 
-    fn slab(&self, settings: &Settings) -> Result<Scene, Unsuitable> {
-        let body = media::Body::read_for(settings, Slab::RAY).ok_or_else(unread)?;
-        let slab = Slab::read(Some(&body), settings).ok_or_else(unread)?;
+    fn slab(&self, slab: &Slab) -> Result<Scene, Unsuitable> {
         self.layers(vec![(slab.medium().clone(), slab.albedo, slab.incidence)])
     }
 
-    fn spectral_slab(&self, settings: &Settings) -> Result<Scene, Unsuitable> {
-        let body = media::Body::read_for(settings, SpectralSlab::RAY).ok_or_else(unread)?;
-        let slab = SpectralSlab::read(Some(&body), settings).ok_or_else(unread)?;
+    fn spectral_slab(&self, slab: &SpectralSlab) -> Result<Scene, Unsuitable> {
         let albedos = slab.colours.albedos.iter();
         let channel = |&albedo: &f64| (slab.medium().clone(), albedo, slab.incidence);
         self.layers(albedos.map(channel).collect())
     }
 
-    fn chromatic_slab(&self, settings: &Settings) -> Result<Scene, Unsuitable> {
-        let body = media::Body::read_for(settings, ChromaticSlab::RAY).ok_or_else(unread)?;
-        let slab = ChromaticSlab::read(Some(&body), settings).ok_or_else(unread)?;
+    fn chromatic_slab(&self, slab: &ChromaticSlab) -> Result<Scene, Unsuitable> {
         let albedos = slab.colours.albedos.iter().copied();
         let channels = slab.media().iter().cloned().zip(albedos).zip(&slab.incidences);
         self.layers(channels.map(|((medium, albedo), &light)| (medium, albedo, light)).collect())
@@ -264,34 +260,24 @@ impl Reader<'_> {
         Ok(Scene { phase, has_mirrors: true, views, ..scene })
     }
 
-    fn single_scattering(&self, settings: &Settings) -> Result<Scene, Unsuitable> {
-        let body = media::Body::read_for(settings, SingleScattering::RAY).ok_or_else(unread)?;
-        let problem = SingleScattering::read(Some(&body), settings).ok_or_else(unread)?;
-        let media::Body::Volume { volume, ray, .. } = &body else { return Err(unread()) };
-        let phase = lobe(Phase::read(settings).ok_or_else(unread)?);
-        let fields = self.in_space(slice::from_ref(volume), self.own_grids(settings, 1)?)?;
-        self.lit(settings, fields, ray, (vec![problem.albedo()], phase))
-    }
-
-    fn spectral_single_scattering(&self, settings: &Settings) -> Result<Scene, Unsuitable> {
-        let body = media::Body::read(settings).ok_or_else(unread)?;
-        let channels = spectral_furnace::read_channels(Some(&body), settings).ok_or_else(unread)?;
-        let media::Body::Volume { ray, .. } = &body.channels()[0] else { return Err(unread()) };
-        let own = self.own_grids(settings, channels.len())?;
-        let (volumes, albedos, phase) = self.scatterers(channels)?;
-        let fields = self.in_space(&volumes, own)?;
-        self.lit(settings, fields, ray, (albedos, phase))
-    }
-
-    /// A medium beside a point light, which is scattered once at most.
-    fn lit(
+    /// A medium beside a point light, which is scattered once at most, channel by channel.
+    fn single_scattering<'a>(
         &self,
-        settings: &Settings,
-        fields: Fields,
-        ray: &Ray,
-        (albedos, phase): (Vec<f64>, Phase),
+        body: &Body,
+        channels: impl Iterator<Item = &'a SingleScattering> + Clone,
     ) -> Result<Scene, Unsuitable> {
-        let lamp = Lamp::read(settings).ok_or_else(unread)?;
+        let lamp = channels.clone().next().map(SingleScattering::lamp).ok_or_else(unread)?;
+        let own = self.own_grids(body)?;
+        let mut scatterers = Vec::new();
+        for (body, channel) in body.channels().iter().zip(channels) {
+            let Body::Volume { volume, ray, .. } = body else { return Err(unread()) };
+            scatterers.push((volume.clone(), ray, channel.albedo(), channel.phase()));
+        }
+        let chosen = self.chosen(scatterers)?;
+        let phases: Vec<Phase> = chosen.iter().map(|&(.., phase)| phase).collect();
+        let volumes: Vec<Arc<Volume>> = chosen.iter().map(|(volume, ..)| volume.clone()).collect();
+        let (phase, ray) = (one_phase(&phases)?, chosen[0].1);
+        let fields = self.in_space(&volumes, own)?;
         let light = Light::Point {
             position: Point(lamp.position.0.map(single)),
             power: single(lamp.power),
@@ -300,16 +286,14 @@ impl Reader<'_> {
         if Bounds::Box(scene.bounds()).contains(ray.at(ray.length)) {
             scene.notes.push("the ray goes on to where it leaves the box".into());
         }
-        for (channel, albedo) in scene.channels.iter_mut().zip(albedos) {
+        for (channel, (_, _, albedo, _)) in scene.channels.iter_mut().zip(chosen) {
             channel.albedo = single(albedo);
         }
         Ok(Scene { phase, scatterings: Some(1), ..scene })
     }
 
-    fn sphere(&self, settings: &Settings) -> Result<Scene, Unsuitable> {
-        let body = media::Body::read_for(settings, Sphere::RAY).ok_or_else(unread)?;
-        let sphere = Sphere::read(Some(&body), settings).ok_or_else(unread)?;
-        let media::Body::Volume { ray, .. } = &body else { return Err(unread()) };
+    fn sphere(&self, body: &Body, sphere: &Sphere) -> Result<Scene, Unsuitable> {
+        let Body::Volume { ray, .. } = body else { return Err(unread()) };
         let cure = "take a homogeneous one that asks for the radiance, such as sphere/black-light";
         if sphere.sought == Sought::MeanIntensity {
             return Err((
@@ -317,8 +301,7 @@ impl Reader<'_> {
                 cure,
             ));
         }
-        let fields =
-            self.in_space(slice::from_ref(&sphere.scene.volume), self.own_grids(settings, 1)?)?;
+        let fields = self.in_space(slice::from_ref(&sphere.scene.volume), self.own_grids(body)?)?;
         if !matches!(fields.shape, Bounds::Sphere { .. }) {
             let why = "a ball whose σ_t varies is none once it is sampled to a grid";
             return Err((why.into(), cure));

@@ -135,7 +135,7 @@ pub fn remark(scene: &Scene, folder: &Path) -> Option<String> {
     let text = case(scene).replace("{ independent =", "{ hero =");
     let source = Source { name: scene.case.clone(), path: folder.join(FILE), text };
     let case = Case::read(&source).ok()?;
-    let refusal = case.scenario.prepare(0, None, case.pilots(1, 0)).err()?;
+    let refusal = case.at(None).and_then(|at| at.prepare(0, case.pilots(1, 0))).err()?;
     Some(format!(
         "tracking for one channel, without multiple importance sampling of the others, {refusal}"
     ))
@@ -148,7 +148,7 @@ pub fn remark(scene: &Scene, folder: &Path) -> Option<String> {
 /// Why theory has no answer.
 pub fn ask(scene: &Scene, folder: &Path) -> Result<Prediction, ExportError> {
     let case = Case::read(&Source::read(&folder.join(FILE))?)?;
-    let ready = case.scenario.prepare(0, None, case.pilots(1, 0));
+    let ready = case.at(None).and_then(|at| at.prepare(0, case.pilots(1, 0)));
     let unknown = |why: String| ExportError::Unknown { case: scene.case.clone(), why };
     Ok(ready.map_err(|refusal| unknown(refusal.to_string()))?.prediction)
 }

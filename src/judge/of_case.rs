@@ -7,9 +7,9 @@ use super::choice::{Choice, ChoiceError};
 use super::whole::Known;
 use super::{Claim, Flights, Lookups, Theory};
 use crate::case::Case;
+use crate::case::build::Ready;
 use crate::case::catalogue::Catalogue;
 use crate::case::names::EstimatorName;
-use crate::case::ready::Ready;
 use crate::case::source::CaseError;
 use crate::case::sweep::{SweepAxis, Variation, What};
 use crate::checks;
@@ -158,9 +158,8 @@ fn claims(case: &Case, prediction: &Prediction, rounding: f64) -> Vec<(String, C
 
 /// The estimator of a name, with its label.
 fn find(case: &Case, name: &str) -> Result<(usize, String), ChoiceError> {
-    let scenario = &case.scenario;
     let plain: Vec<EstimatorName> =
-        (0..scenario.estimators()).map(|e| scenario.names(e, None).estimator).collect();
+        (0..case.scenario.estimators()).map(|e| case.names(e, None).estimator).collect();
     // Namesakes are numbered, as in tables.
     let label = |e: usize| {
         let twins = plain[..e].iter().filter(|&other| *other == plain[e]).count();
@@ -175,13 +174,14 @@ fn find(case: &Case, name: &str) -> Result<(usize, String), ChoiceError> {
     };
     let found = [matching(&numbered), matching(&called), matching(&catalogue)];
     let found = found.into_iter().find(|found| !found.is_empty()).unwrap_or_default();
+    let one = case;
     let (case, name) = (case.name.clone(), name.to_owned());
     match found[..] {
         [one] => Ok((one, labels[one].clone())),
         [] => Err(ChoiceError::NoEstimator { case, name, candidates: labels }),
         _ => {
             let candidates = found.iter().map(|&e| {
-                let names = scenario.names(e, None);
+                let names = one.names(e, None);
                 let about = [names.sampling.map(|s| format!("σ̂ {s}")), Some(names.control)];
                 let about: Vec<String> =
                     about.into_iter().flatten().filter(|word| !word.is_empty()).collect();
@@ -258,7 +258,7 @@ impl Point<'_> {
 
     fn prepared(&self, variation: Variation) -> Result<Prediction, String> {
         let pilots = self.case.pilots(self.seed, self.index);
-        let prepared = self.case.scenario.prepare(self.index, variation, pilots);
+        let prepared = self.case.at(variation).and_then(|at| at.prepare(self.index, pilots));
         prepared.map(|Ready { prediction, .. }| prediction).map_err(|refusal| refusal.to_string())
     }
 

@@ -24,7 +24,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 pub use ::gate::stats::verdict::MISS;
 
 use crate::case::Case;
-use crate::case::ready::Ready;
+use crate::case::build::Ready;
 use crate::case::sweep::Variation;
 use crate::checks::check::Share;
 use crate::checks::{self, Pilot, Question, Scalar, Subject};
@@ -249,7 +249,7 @@ fn points(case: &Case, options: &Options) -> Vec<(usize, Variation)> {
     }
     if let Some(filter) = &options.filter {
         points.retain(|&(estimator, variation)| {
-            filter.keeps(&case.name, &case.scenario.names(estimator, variation).estimator)
+            filter.keeps(&case.name, &case.names(estimator, variation).estimator)
         });
     }
     points
@@ -261,20 +261,22 @@ fn plan_experiment(
     (estimator, variation): (usize, Variation),
 ) -> Planned {
     let most = options.draws.of(case.draws);
-    let names = case.scenario.names(estimator, variation);
+    let names = case.names(estimator, variation);
     // Two estimators may have the same names, as where each has a field of its own as control.
-    let namesakes = (0..estimator).filter(|&e| case.scenario.names(e, variation) == names).count();
+    let namesakes = (0..estimator).filter(|&e| case.names(e, variation) == names).count();
     let id = ExperimentId::new([&case.name, &case.problem], &names, variation, namesakes);
     let address = addresses::own(options.seed, &id, names.alias.as_ref());
     let pilots = case.pilots(options.seed, estimator);
-    let outcome = case.scenario.prepare(estimator, variation, pilots);
+    let at = case.at(variation);
+    let needs = at.as_ref().map_or_else(|_| String::new(), |at| at.needs(estimator));
+    let outcome = at.and_then(|at| at.prepare(estimator, pilots));
     let stretches = outcome.as_ref().ok().and_then(|ready| ready.experiment.even_places());
     let shared = stretches.map(|on| addresses::shared(options.seed, &case.name, &on));
     Planned {
         estimator,
         variation,
         id,
-        needs: case.scenario.needs(estimator, variation),
+        needs,
         draws_per_ray: case.draws_per_ray,
         address,
         shared,

@@ -7,10 +7,9 @@ use crate::record::{Anatomy, MeasuredPoint};
 /// The anatomy of an experiment on a curve; `None` of any other.
 pub fn anatomy(case: &PlannedCase, planned: &Planned, drawn: &Drawn) -> Option<Anatomy> {
     let ready = planned.outcome.as_ref().ok()?;
-    let scenario = &case.case.scenario;
-    let (ray_view, explorers) =
-        scenario.ray_view(planned.estimator, planned.variation, planned.address)?;
-    let distances = scenario.distances();
+    let at = case.case.at(planned.variation).ok()?;
+    let (ray_view, explorers) = at.ray_view(planned.estimator, planned.address)?;
+    let distances = at.scenario().distances();
     let channels = ready.prediction.channels.iter().zip(&drawn.tallies).zip(&distances);
     let measured = channels.filter_map(|((channel, tally), &t)| {
         let moments = tally.moments()?;

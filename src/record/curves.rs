@@ -23,7 +23,7 @@ pub fn curves(case: &Case, seed: u64) -> Vec<Curve> {
     let curves: Vec<Vec<Curve>> = parallel::map(&swept, |&estimator| {
         let predicted: Vec<Vec<(String, Option<CurvePoint>)>> =
             parallel::map(&x, |&x| points(case, seed, estimator, Some((axis.what, x)), x));
-        let names = case.scenario.names(estimator, axis.values.first().map(|&x| (axis.what, x)));
+        let names = case.names(estimator, axis.values.first().map(|&x| (axis.what, x)));
         let is_sought = axis.what == What::Sampling;
         let best = is_sought.then(|| best(case, seed, estimator, None));
         let found = |channel: usize| best.as_ref()?.get(channel).copied().flatten();
@@ -81,14 +81,14 @@ pub fn best_of_each(case: &PlannedCase, seed: u64) -> Vec<Vec<Option<Optimum>>> 
 
 /// The best constant σ̂ of one experiment, channel by channel.
 fn best(case: &Case, seed: u64, estimator: usize, variation: Variation) -> Vec<Option<Optimum>> {
-    let scenario = &case.scenario;
-    if !scenario.depends_on(estimator, What::SamplingScale) {
+    if !case.scenario.depends_on(estimator, What::SamplingScale) {
         return Vec::new();
     }
     let pilots = case.pilots(seed, estimator);
-    let scale = scenario.natural_scale(estimator, variation);
+    let at = case.at(variation);
+    let scale = at.as_ref().map_or(0.0, |at| at.natural_scale(estimator));
     best_constants(scale, case.draws_per_ray, |sampling| {
-        scenario.predict(estimator, variation, Some(sampling), pilots)
+        at.as_ref().ok()?.predict(estimator, Some(sampling), pilots)
     })
 }
 
@@ -114,7 +114,8 @@ fn points(
     x: f64,
 ) -> Vec<(String, Option<CurvePoint>)> {
     let pilots = case.pilots(seed, estimator);
-    let Some(prediction) = case.scenario.predict(estimator, variation, None, pilots) else {
+    let at = case.at(variation).ok();
+    let Some(prediction) = at.and_then(|at| at.predict(estimator, None, pilots)) else {
         return Vec::new();
     };
     let lookups = prediction.lookups.as_ref().map(|law| law.mean);

@@ -10,7 +10,7 @@
 //! `variance assumed`, where it fails or is undecided the mean is inconclusive. A mean that is underpowered makes its experiment inconclusive unless the
 //! case allows it.
 
-use crate::case::ready::Ready;
+use crate::case::build::Ready;
 use crate::checks::check::{Context, Look, Total};
 use crate::checks::{Inspected, Question};
 use crate::draw::drawn::{Drawn, Draws};

@@ -79,8 +79,8 @@ fn courses(case: &PlannedCase, planned: &Planned, refusal: &Refusal) -> Vec<Cour
         Refusal::Inequality { at, .. } => Some(*at),
         _ => None,
     };
-    let scenario = &case.case.scenario;
-    scenario.courses(planned.estimator, planned.variation, planned.address, at)
+    let case = case.case.at(planned.variation);
+    case.map(|case| case.courses(planned.estimator, planned.address, at)).unwrap_or_default()
 }
 
 /// The estimator that an experiment is by definition, where the case has it too.

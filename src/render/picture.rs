@@ -44,7 +44,7 @@ use super::gallery;
 use super::record::PictureRecord;
 use super::scene::{Request, Scene};
 use super::subject::SUBJECTS;
-use crate::case::source::{CaseError, Source};
+use crate::case::{CaseError, Source, Spec};
 use media::catalogue::{Additions, Settings};
 
 /// A picture file, read.
@@ -65,7 +65,7 @@ impl Picture {
     ///
     /// Every mistake in the file.
     pub fn read(source: &Source, additions: &Additions) -> Result<Self, CaseError> {
-        source.read_as(additions, |root| Self::from_root(source, root))
+        Spec::parse(source, additions)?.read(|root| Self::from_root(source, root))
     }
 
     fn from_root(source: &Source, root: &Settings) -> Option<Self> {

@@ -2,8 +2,9 @@
 
 use super::budget::PixelValues;
 use super::pixel::Label;
-use super::subject::SubjectKind;
-use crate::case::estimator::{Defaults, EntryReader, ParsedEstimator};
+use super::subject::Subject;
+use crate::case::estimator::{self, Defaults, ParsedEstimator};
+use estimators::trial::Entry;
 use media::Body;
 use media::catalogue::Settings;
 use numeric::Known;
@@ -27,24 +28,24 @@ pub enum Reference {
 }
 
 impl Reference {
-    /// Reads `reference`; estimators find a σ̂ that they need in the picture if it has one.
-    pub fn read(
+    /// Reads `reference`, with what makes its draws if it is drawn; its estimator finds a σ̂ that it needs in the picture
+    /// if it has one.
+    pub fn read<P: Subject>(
         settings: &Settings,
-        (kind, has_exact): (&SubjectKind, bool),
+        has_exact: bool,
         body: Option<&Body>,
-        reader: &mut dyn EntryReader,
         defaults: Defaults,
-    ) -> Option<Self> {
+    ) -> Option<(Self, Option<Box<dyn Entry<P>>>)> {
         let names = ["closed-form", "quadrature", "draws"].map(str::to_owned);
         let (index, reference) = settings.chosen("reference", &names)?;
         let read = match index {
-            0 if has_exact => Some(Self::Exact),
+            0 if has_exact => Some((Self::Exact, None)),
             0 => {
                 let help = "use `quadrature = {}` or `draws = { lookups, estimator }`";
                 reference.fault_at(reference.span.clone(), "", "there is no closed form", help);
                 None
             }
-            1 if !kind.along_ray => {
+            1 if !P::ALONG_RAY => {
                 let help = "use `draws = { lookups, estimator }`";
                 reference.fault_at(reference.span.clone(), "", "there is no quadrature", help);
                 reference.has("panels");
@@ -52,15 +53,16 @@ impl Reference {
             }
             1 => {
                 let panels = reference.count_or("panels", 1..=100_000, 16);
-                panels.and_then(|n| usize::try_from(n).ok()).map(|n| Self::Quadrature { panels: n })
+                let panels = panels.and_then(|n| usize::try_from(n).ok());
+                panels.map(|panels| (Self::Quadrature { panels }, None))
             }
             _ => {
                 let lookups = reference.count("lookups", 1..=1_000_000_000);
-                let parsed = reference
+                let read = reference
                     .naming("estimator", "the name of an estimator, or a table that it names")
-                    .and_then(|table| ParsedEstimator::read(&table, body, defaults, reader));
-                let (lookups, parsed) = (lookups?, Box::new(parsed?));
-                Some(Self::Draws { lookups, parsed })
+                    .and_then(|table| estimator::read::<P>(&table, body, defaults));
+                let (lookups, (parsed, entry)) = (lookups?, read?);
+                Some((Self::Draws { lookups, parsed: Box::new(parsed) }, Some(entry)))
             }
         };
         reference.close();

@@ -8,7 +8,6 @@ use super::reference::Reference;
 use super::subject::{RayOf, SubjectKind};
 use super::view::View;
 use crate::case::estimator::{Defaults, Estimators, ParsedEstimator};
-use estimators::recipes::sampling;
 use media::Body;
 use media::catalogue::Settings;
 use numeric::rng::{Address, name_hash};
@@ -62,21 +61,11 @@ impl Scene {
         });
         let body = body.as_ref();
         let lookups = settings.count("lookups", 1..=1_000_000_000);
-        let defaults = Defaults { sampling: settings.has("sampling"), ..Defaults::default() };
-        let (mut estimators, mut reference) = (None, None);
-        let ray_of = (kind.read)(settings, view.as_ref(), &mut |reader, has_exact| {
-            let (all, accept) = ((defaults, None), &countable);
-            estimators = Estimators::read(settings, body, reader, all, accept);
-            reference = Reference::read(settings, (kind, has_exact), body, reader, defaults);
-        });
-        Some(Self {
-            view: view?,
-            kind,
-            ray_of: ray_of?,
-            estimators: estimators?,
-            lookups: lookups?,
-            reference: reference?,
-        })
+        // The lookups of pilot rays are charged to nobody: pictures compare at equal lookups.
+        let sampling = settings.has("sampling");
+        let defaults = Defaults { sampling, counts_lookups: true, ..Defaults::default() };
+        let (ray_of, estimators, reference) = (kind.read)(settings, view.as_ref(), body, defaults)?;
+        Some(Self { view: view?, kind, ray_of, estimators, lookups: lookups?, reference })
     }
 
     fn label(&self, parsed: &ParsedEstimator) -> Label {
@@ -183,14 +172,4 @@ impl Scene {
         let reference = self.reference.of(&mut images, &answers);
         Rendered { budget: self.lookups, channels: self.kind.channels, covered, reference, images }
     }
-}
-
-/// The lookups of pilot rays are nobody's: pictures compare at equal lookups.
-fn countable(settings: &Settings, sampling: Option<&dyn sampling::Recipe>) -> Option<()> {
-    if sampling.is_some_and(sampling::Recipe::learns) {
-        let help = "give `sampling.constant.value = …`: in a picture every lookup counts";
-        settings.fault("sampling", "this σ̂ is learned by lookups that nobody counts", help);
-        return None;
-    }
-    Some(())
 }

@@ -3,14 +3,15 @@
 use std::sync::Arc;
 
 use super::budget::MOST_CHANNELS;
+use super::reference::Reference;
 use super::view::View;
-use crate::case::estimator::EntryReader;
-use crate::case::problem::Parts;
+use crate::case::build::Parts;
+use crate::case::estimator::{Defaults, Estimators};
 use estimators::trial::Entry;
 use estimators::{Estimated, Experiment, Order, Refusal, Setup};
 use media::catalogue::{Domain, Settings};
 use media::phase::Phase;
-use media::{Majorants, Medium, Volume};
+use media::{Body, Majorants, Medium, Volume};
 use numeric::geometry::Ray;
 use numeric::{Known, Lane};
 use theory::problems::scene::read_albedo;
@@ -90,11 +91,9 @@ pub struct SubjectKind {
     pub read: Read,
 }
 
-/// Reads the estimators of a picture; is told whether there is a closed form.
-pub type ReadEstimators<'a> = &'a mut dyn FnMut(&mut dyn EntryReader, bool);
-
-/// Reads what all rays share and, by the last argument, the estimators; `None` after a mistake.
-pub type Read = fn(&Settings, Option<&View>, ReadEstimators) -> Option<RayOf>;
+/// Reads what all rays share, the estimators and the reference; `None` after a mistake.
+pub type Read =
+    fn(&Settings, Option<&View>, Option<&Body>, Defaults) -> Option<(RayOf, Estimators, Reference)>;
 
 /// The problem of one ray with the estimators of the picture; `None` where the ray is not allowed.
 pub type RayOf = Box<dyn Fn(&[Arc<Volume>], &Ray) -> Option<Box<dyn AnyRay>> + Send + Sync>;
@@ -124,8 +123,9 @@ impl SubjectKind {
 fn read<P: Subject>(
     settings: &Settings,
     view: Option<&View>,
-    read_estimators: ReadEstimators,
-) -> Option<RayOf> {
+    body: Option<&Body>,
+    defaults: Defaults,
+) -> Option<(RayOf, Estimators, Reference)> {
     let shared = P::read_shared(settings, view);
     if let (Some(view), Some(shared)) = (view, &shared) {
         let rays = (0..view.pixels()).filter_map(|pixel| view.covered(pixel));
@@ -134,14 +134,19 @@ fn read<P: Subject>(
             settings.fault("light", found, help);
         }
     }
-    let mut entries: Vec<Box<dyn Entry<P>>> = Vec::new();
-    // What cannot be read has been told.
-    read_estimators(&mut entries, shared.as_ref().is_none_or(P::has_exact));
-    let (shared, entries) = (shared?, Arc::new(entries));
-    Some(Box::new(move |volumes, ray| {
+    let estimators = Estimators::read::<P>(settings, body, defaults);
+    // What cannot be read has been reported.
+    let has_exact = shared.as_ref().is_none_or(P::has_exact);
+    let reference = Reference::read::<P>(settings, has_exact, body, defaults);
+    let (shared, (estimators, mut entries)) = (shared?, estimators?);
+    let (reference, entry) = reference?;
+    entries.extend(entry);
+    let entries = Arc::new(entries);
+    let ray_of: RayOf = Box::new(move |volumes, ray| {
         let problem = Arc::new(P::at(&shared, volumes, ray)?);
         Some(Box::new(OneRay { problem, entries: entries.clone() }))
-    }))
+    });
+    Some((ray_of, estimators, reference))
 }
 
 /// The problem of one ray, whose type is no longer visible.

@@ -29,7 +29,7 @@ pub fn experiment(
     seed: u64,
 ) -> Option<Result<Box<dyn Experiment>, Refusal>> {
     let pilots = case.pilots(seed, planned.estimator);
-    match case.scenario.setup(planned.estimator, planned.variation, pilots) {
+    match case.at(planned.variation).and_then(|at| at.setup(planned.estimator, pilots)) {
         Ok(setup) => mutants::experiment(about.name, walk, setup).map(Ok),
         Err(refusal) => Some(Err(refusal)),
     }

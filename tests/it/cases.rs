@@ -4,6 +4,7 @@ use std::collections::BTreeSet;
 
 use crate::common::{judged, none, options, shipped, shipped_plan, shipped_record};
 use trueflight::case::Case;
+use trueflight::case::Source;
 use trueflight::case::suite;
 use trueflight::record::Record;
 use trueflight::record::Verdict;
@@ -75,4 +76,16 @@ fn cases_call_the_sampling_extinction_what_axes_call_it() {
         text.contains("sigma_samp").then(|| case.name.clone())
     };
     none(&shipped().iter().filter_map(spelled).collect::<Vec<_>>());
+}
+
+#[test]
+fn a_spec_is_written_as_the_case_that_it_was_read_from() {
+    for case in shipped() {
+        let text = toml::to_string(&case.spec).expect("TOML");
+        let again = Source { text, ..case.spec.source().clone() };
+        let again = Case::read(&again).unwrap_or_else(|error| panic!("{}", error.in_full()));
+        let tree = |case: &Case| serde_json::to_string(&case.spec).expect("JSON");
+        assert_eq!(tree(&again), tree(&case), "{}", case.name);
+        assert_eq!(again.scenario.estimators(), case.scenario.estimators(), "{}", case.name);
+    }
 }

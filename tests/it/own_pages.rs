@@ -3,7 +3,9 @@
 use std::f64::consts::PI;
 use std::path::Path;
 
-use trueflight::catalogue::{Addition, Page, Settings};
+use trueflight::case::Case;
+use trueflight::case::sweep::{Variation, What};
+use trueflight::catalogue::{Addition, Domain, Page, Settings};
 use trueflight::estimators::multiple_scattering::particle::Walker;
 use trueflight::estimators::own::estimator;
 use trueflight::geometry::{Aabb, Bounds, Point};
@@ -74,8 +76,8 @@ fn what_an_own_medium_hides_is_found() {
     let bounds = Bounds::Box(Aabb { low: Point([0.0; 3]), high: Point([1.0; 3]) });
     let space = move |_: &Settings| Some(SpaceFormula::new(bounds, 3.0, |[x, y, z]| x + y * z));
     let catalogue = Catalogue::builtin()
-        .with(Addition::line(haze, line))
-        .and_then(|catalogue| catalogue.with(Addition::volume(corner, space)))
+        .with(Addition::line(haze, &[], line))
+        .and_then(|catalogue| catalogue.with(Addition::volume(corner, &[], space)))
         .expect("names that are free");
     let text = |problem: &str| format!("title = \"own\"\n{problem}");
     let line = text(
@@ -160,7 +162,7 @@ fn depths_of_closures_keep_what_they_say() {
 #[test]
 fn names_are_taken_once() {
     let page = |module| Page { module, source: "Mine." };
-    let add = |page| Addition::line(page, |_| Some(Formula::new(|_| 1.0)));
+    let add = |page| Addition::line(page, &[], |_| Some(Formula::new(|_| 1.0)));
     let taken = Catalogue::builtin().with(add(page("constant"))).expect_err("a name taken");
     assert_eq!(
         taken.to_string(),
@@ -177,7 +179,7 @@ fn names_are_taken_once() {
 fn closures_that_are_no_extinction_are_errors_with_their_place() {
     let read = |at: fn(f64) -> f64| {
         let page = Page { module: "bad", source: "Bad." };
-        let bad = Addition::line(page, move |_| Some(Formula::new(at)));
+        let bad = Addition::line(page, &[], move |_| Some(Formula::new(at)));
         let catalogue = Catalogue::builtin().with(bad).expect("a free name");
         let text = r#"
             title = "bad"
@@ -212,4 +214,79 @@ fn wrong_cases_of_own_pages_are_shown_in_place() {
         "volume.haze = {}\nray = { origin = [0, 0, 0], direction = [0, 0, 1], length = 4 }";
     let found = wrong("medium.haze = {}\nspan = [0, 4]", volume);
     assert!(found.contains("no 3-D form"), "{found}");
+}
+
+/// A case with the field `veil` of a page that names these settings, or what is wrong with it.
+fn veiled(
+    extinctions: &'static [&'static str],
+    at: fn(strength: f64, t: f64) -> f64,
+    text: &str,
+) -> Result<Case, String> {
+    let page = Page { module: "veil", source: "A veil." };
+    let read = move |settings: &Settings| {
+        let strength = settings.number("strength", Domain::Positive)?;
+        Some(Formula::new(move |t| at(strength, t)))
+    };
+    let catalogue = Catalogue::builtin().with(Addition::line(page, extinctions, read));
+    let catalogue = catalogue.expect("a free name");
+    catalogue.read(&source("veil", text)).map_err(|error| error.in_full())
+}
+
+fn swept(sweep: &str) -> String {
+    format!(
+        "title = \"veil\"\n[problem.transmittance]\nmedium.veil.strength = 0.75\nspan = [0, 2]\n{sweep}\n\
+         sampling = 2\ncontrol.field.medium.veil.strength = 0.5\nestimators = [\"residual-ratio\"]\n"
+    )
+}
+
+/// What theory says of the only estimator.
+fn theory(case: &Case, variation: Variation) -> String {
+    let at = case.at(variation).expect("a value of the sweep");
+    let prediction = at.predict(0, None, case.pilots(1, 0)).expect("a prediction");
+    format!("{prediction:?}")
+}
+
+#[test]
+fn an_own_medium_is_swept_by_the_settings_that_its_page_names() {
+    let fade = |strength: f64, t: f64| strength / (1.0 + t);
+    let case = veiled(&["strength"], fade, &swept("sweep.density = [0.5, 2]")).expect("a case");
+    let text = swept("");
+    for (value, [medium, sampling, control]) in
+        [(0.5, ["0.375", "1", "0.25"]), (2.0, ["1.5", "4", "1"]), (3.0, ["2.25", "6", "1.5"])]
+    {
+        let written = text
+            .replace("strength = 0.75", &format!("strength = {medium}"))
+            .replace("sampling = 2", &format!("sampling = {sampling}"))
+            .replace("strength = 0.5", &format!("strength = {control}"));
+        let written = veiled(&[], fade, &written).expect("a case");
+        let swept = theory(&case, Some((What::Density, value)));
+        assert_eq!(swept, theory(&written, None), "{value}");
+    }
+}
+
+#[test]
+fn an_own_medium_that_is_not_proportional_is_not_swept() {
+    let fade = |strength: f64, t: f64| strength / (1.0 + t);
+    let power = |strength: f64, t: f64| t.powf(strength);
+    let density = swept("sweep.density = [0.5, 2]");
+    for (names, at, words) in [
+        // A page that names no settings, whatever they are called.
+        (&[][..], fade as fn(f64, f64) -> f64, "this field has no extinction to scale"),
+        // A page that names a wrong one.
+        (
+            &["strength"],
+            power,
+            "σ_t of `veil` is not proportional to the settings that its page names",
+        ),
+    ] {
+        let found = veiled(names, at, &density).err().expect("a mistake");
+        assert!(found.contains("at density = 0.5: ") && found.contains(words), "{found}");
+    }
+    // At c = 1 channels are as written, and at 1/2 not halfway between t and t³.
+    let colours = "title = \"veil\"\n[problem.spectral-transmittance]\nspan = [0, 2]\nsampling = 9\n\
+         medium = [{ veil.strength = 1 }, { veil.strength = 3 }]\nestimators = [\"spectral-mis\"]\n";
+    let found = veiled(&["strength"], power, &format!("{colours}sweep.contrast = [1, 0.5]\n"));
+    let found = found.err().expect("a mistake");
+    assert!(found.contains("at contrast = 0.5: σ_t of `veil` is not proportional"), "{found}");
+    assert!(veiled(&["strength"], fade, &format!("{colours}sweep.contrast = [1, 0.5]\n")).is_ok());
 }

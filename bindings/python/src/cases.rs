@@ -6,8 +6,10 @@ use pyo3::prelude::*;
 use trueflight::case::Case;
 use trueflight::case::Catalogue;
 use trueflight::case::Source;
+use trueflight::case::Spec;
 use trueflight::case::suite;
 use trueflight::case::sweep::What;
+use trueflight::catalogue::additions;
 
 use crate::trouble::Trouble;
 
@@ -21,18 +23,6 @@ pub struct Asked {
     sweep: Option<(String, Vec<f64>)>,
 }
 
-/// Everything that can be swept.
-const KEYS: [&str; 8] = [
-    "sampling",
-    "sampling-scale",
-    "albedo",
-    "control",
-    "points",
-    "density",
-    "albedo-scale",
-    "contrast",
-];
-
 /// The names of the built-in cases.
 #[pyfunction]
 pub fn built_in() -> Vec<String> {
@@ -45,16 +35,11 @@ impl Asked {
         if self.kind == "named" && self.sweep.is_none() {
             return Ok(Catalogue::builtin().named(&self.text)?);
         }
-        let source = self.source()?;
-        let source = match &self.sweep {
-            None => source,
-            Some((what, values)) => swept(source, what, values)?,
-        };
-        let case = Case::read(&source)?;
-        if let (Some((key, _)), Some(axis)) = (&self.sweep, &case.sweep)
-            && !depends(&case, axis.what)
-        {
-            return Err(idle(&source, key));
+        let spec = Spec::parse(&self.source()?, &additions::NONE)?;
+        let Some((key, values)) = &self.sweep else { return Ok(vec![Case::of(spec)?]) };
+        let case = Case::of(spec.with_sweep(key, values)?)?;
+        if case.sweep.as_ref().is_some_and(|axis| !depends(&case, axis.what)) {
+            return Err(idle(&spec, key));
         }
         Ok(vec![case])
     }
@@ -97,34 +82,19 @@ fn from_json(text: &str) -> Result<String, Trouble> {
     toml::to_string(&table).map_err(|error| wrong(&error))
 }
 
-/// The case with another sweep. What is wrong with the case as it is, its reader says.
-fn swept(source: Source, what: &str, values: &[f64]) -> Result<Source, Trouble> {
-    let Ok(mut table) = source.text.parse::<toml::Table>() else { return Ok(source) };
-    let problem = table.get_mut("problem").and_then(toml::Value::as_table_mut);
-    let problem = problem.and_then(|problems| problems.iter_mut().next()?.1.as_table_mut());
-    let Some(problem) = problem else { return Ok(source) };
-    let values = values.iter().copied().map(toml::Value::Float).collect();
-    let range = toml::Table::from_iter([("values".to_owned(), toml::Value::Array(values))]);
-    let sweep = toml::Table::from_iter([(what.to_owned(), toml::Value::Table(range))]);
-    problem.insert("sweep".into(), toml::Value::Table(sweep));
-    let text = toml::to_string(&table).map_err(|error| Trouble::Wrong(error.to_string()))?;
-    Ok(Source { text, ..source })
-}
-
 /// Whether any estimator of a case depends on what is swept.
 fn depends(case: &Case, what: What) -> bool {
     (0..case.scenario.estimators()).any(|estimator| case.scenario.depends_on(estimator, what))
 }
 
-/// That no estimator depends on what is swept, and what could be swept instead.
-fn idle(source: &Source, key: &str) -> Trouble {
-    let could = KEYS.iter().filter(|other| {
-        let read = swept(source.clone(), other, &[1.0]).ok().and_then(|it| Case::read(&it).ok());
-        let axis = read.as_ref().and_then(|case| Some((case, case.sweep.as_ref()?.what)));
-        axis.is_some_and(|(case, what)| depends(case, what))
+/// The error that no estimator depends on what is swept, with what could be swept instead.
+fn idle(spec: &Spec, key: &str) -> Trouble {
+    let could = What::all().filter(|&what| {
+        let swept = spec.with_sweep(what.key(), &[1.0]).and_then(Case::of);
+        swept.is_ok_and(|case| depends(&case, what))
     });
     let python = |key: &str| key.replace('-', "_");
-    let could = could.map(|key| python(key)).collect::<Vec<_>>().join(", ");
+    let could = could.map(|what| python(what.key())).collect::<Vec<_>>().join(", ");
     let key = python(key);
     Trouble::Wrong(format!(
         "{key} sweeps nothing here: no estimator of the case takes it, or each has its own; give the values of one of: {could}"

@@ -66,6 +66,8 @@ impl FreeFlight for Homogeneous {
 impl Field for Constant {
     type Profile = Homogeneous;
 
+    const EXTINCTIONS: &'static [&'static str] = &["extinction"];
+
     fn line(settings: &Settings) -> Option<Homogeneous> {
         let extinction = settings.number("extinction", Domain::NonNegative)?;
         Some(Homogeneous { extinction })

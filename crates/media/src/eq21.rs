@@ -146,6 +146,8 @@ impl FreeFlight for Eq21Ray {}
 impl Field for Eq21 {
     type Profile = Eq21Ray;
 
+    const EXTINCTIONS: &'static [&'static str] = &[];
+
     const IN_LINE: bool = false;
 
     fn volume(_: &Settings) -> Option<Self> {

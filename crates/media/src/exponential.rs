@@ -140,6 +140,8 @@ impl FreeFlight for Decay {
 impl Field for Exponential {
     type Profile = Decay;
 
+    const EXTINCTIONS: &'static [&'static str] = &["extinction", "base"];
+
     fn line(settings: &Settings) -> Option<Decay> {
         let extinction = settings.number("extinction", Domain::NonNegative);
         let rate = settings.number("rate", Domain::Finite);

@@ -103,6 +103,8 @@ impl FreeFlight for Bump {}
 impl Field for Gaussian {
     type Profile = Bump;
 
+    const EXTINCTIONS: &'static [&'static str] = &["peak"];
+
     fn line(settings: &Settings) -> Option<Bump> {
         let peak = settings.number("peak", Domain::NonNegative);
         let foot = settings.number("centre", Domain::Finite);

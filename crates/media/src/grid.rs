@@ -64,6 +64,8 @@ use numeric::{Known, Lane, Span};
 /// A voxel grid as a volume.
 pub struct Grid {
     voxels: Arc<Voxels>,
+    /// Number of samples along each axis, where they stand in the middle of cells.
+    cells: Option<[usize; 3]>,
     /// Contents of the file; empty for a random grid.
     facts: Vec<String>,
 }
@@ -79,7 +81,12 @@ impl Grid {
     ) -> Self {
         let samples = random(size, seed);
         let voxels = Voxels::new(&samples, 1.0, bounds, interpolation, placement);
-        Self { voxels: Arc::new(voxels), facts: Vec::new() }
+        Self::placed(voxels, size, placement, Vec::new())
+    }
+
+    fn placed(voxels: Voxels, size: [usize; 3], placement: Placement, facts: Vec<String>) -> Self {
+        let cells = (placement != Placement::Vertices).then_some(size);
+        Self { voxels: Arc::new(voxels), cells, facts }
     }
 }
 
@@ -173,6 +180,8 @@ impl FreeFlight for GridRay {
 impl Field for Grid {
     type Profile = GridRay;
 
+    const EXTINCTIONS: &'static [&'static str] = &["extinction"];
+
     const IN_LINE: bool = false;
 
     fn volume(settings: &Settings) -> Option<Self> {
@@ -204,7 +213,11 @@ impl Field for Grid {
         }
         let facts = facts(settings, &samples, bounds);
         let voxels = Voxels::new(&samples, factor, bounds, interpolation, placement);
-        Some(Self { voxels: Arc::new(voxels), facts })
+        Some(Self::placed(voxels, samples.size, placement, facts))
+    }
+
+    fn cells(&self) -> Option<([usize; 3], bool)> {
+        self.cells.map(|size| (size, self.voxels.is_nearest()))
     }
 
     fn facts(&self) -> Vec<String> {
@@ -259,7 +272,7 @@ mod tests {
         let cube = Aabb { low: Point([0.0; 3]), high: Point([4.0; 3]) };
         let (linear, vertices) = (Interpolation::Trilinear, Placement::Vertices);
         let voxels = Voxels::new(&samples, 1.0, cube, linear, vertices);
-        Grid { voxels: Arc::new(voxels), facts: Vec::new() }
+        Grid { voxels: Arc::new(voxels), cells: None, facts: Vec::new() }
     }
 
     fn depth(field: &Grid, origin: [f64; 3], direction: [f64; 3]) -> Known {

@@ -174,6 +174,9 @@ pub trait Field: Sized + Send + Sync + 'static {
     /// What one ray sees.
     type Profile: FreeFlight + 'static;
 
+    /// Settings that σ_t is proportional to, all together: sweeps of the density and of the contrast change these.
+    const EXTINCTIONS: &'static [&'static str];
+
     /// Whether it has a 1-D form.
     const IN_LINE: bool = true;
 
@@ -223,6 +226,12 @@ pub trait Field: Sized + Send + Sync + 'static {
     /// Whether the volume is a ball in which σ_t depends on the distance from its centre only.
     fn is_radial(&self) -> bool {
         false
+    }
+
+    /// Numbers of cells along x, y and z with a sample in the middle of each, and whether a lookup takes the nearest one;
+    /// `None` for other fields.
+    fn cells(&self) -> Option<([usize; 3], bool)> {
+        None
     }
 
     /// Contents of the file of the field, a sentence each; nothing for other fields.
@@ -277,6 +286,8 @@ pub trait InSpace: Send + Sync {
     fn farthest(&self, ray: &Ray, inside: Span) -> f64;
     /// See [`Field::is_radial`].
     fn is_radial(&self) -> bool;
+    /// See [`Field::cells`].
+    fn cells(&self) -> Option<([usize; 3], bool)>;
     /// See [`Field::facts`].
     fn facts(&self) -> Vec<String>;
     /// What the ray sees on the stretch `inside`.
@@ -324,6 +335,10 @@ impl<F: Field> InSpace for F {
 
     fn is_radial(&self) -> bool {
         Field::is_radial(self)
+    }
+
+    fn cells(&self) -> Option<([usize; 3], bool)> {
+        Field::cells(self)
     }
 
     fn facts(&self) -> Vec<String> {

@@ -203,6 +203,8 @@ impl Noise {
 impl Field for Noise {
     type Profile = NoiseRay;
 
+    const EXTINCTIONS: &'static [&'static str] = &["extinction"];
+
     const IN_LINE: bool = false;
 
     #[allow(clippy::cast_possible_truncation)] // both counts are read within their ranges

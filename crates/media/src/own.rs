@@ -140,7 +140,7 @@ fn integral(f: impl Fn(f64) -> f64, span: Span) -> Known {
 /// let page = Page { module: "corner", source: "A cube that is densest in one corner." };
 /// let cube = Bounds::Box(Aabb { low: Point([0.0; 3]), high: Point([1.0; 3]) });
 /// let read = move |_: &Settings| Some(SpaceFormula::new(cube, 3.0, |[x, y, z]| x + y + z));
-/// let corner = Addition::volume(page, read); // volume.corner = {}
+/// let corner = Addition::volume(page, &[], read); // volume.corner = {}
 /// assert_eq!(corner.part, "media");
 /// ```
 pub struct SpaceFormula<F> {
@@ -185,6 +185,8 @@ impl<F: Fn([f64; 3]) -> f64 + Send + Sync + 'static> FreeFlight for Chord<F> {}
 
 impl<F: Fn([f64; 3]) -> f64 + Send + Sync + 'static> Field for SpaceFormula<F> {
     type Profile = Chord<F>;
+
+    const EXTINCTIONS: &'static [&'static str] = &[];
 
     const IN_LINE: bool = false;
 
@@ -255,20 +257,25 @@ impl Addition {
     }
 
     /// A field along a line, read from its settings: `medium.NAME = { … }`.
+    ///
+    /// `extinctions` are the settings that σ_t is proportional to, all together. Sweeps of the density and of the contrast
+    /// change these, and refuse a field that has none.
     pub fn line<F: FreeFlight + 'static>(
         page: Page,
+        extinctions: &'static [&'static str],
         read: impl Fn(&Settings) -> Option<F> + Send + Sync + 'static,
     ) -> Self {
         let read = move |settings: &Settings| read(settings).map(|f| Arc::new(f) as Arc<Profile>);
-        Self::new(PART, page, Reader { line: Some(Box::new(read)), volume: None })
+        Self::new(PART, page, Reader { extinctions, line: Some(Box::new(read)), volume: None })
     }
 
-    /// A field in space, read from its settings: `volume.NAME = { … }`.
+    /// A field in space, read from its settings: `volume.NAME = { … }`; see [`Addition::line`] for `extinctions`.
     pub fn volume<F: Field>(
         page: Page,
+        extinctions: &'static [&'static str],
         read: impl Fn(&Settings) -> Option<F> + Send + Sync + 'static,
     ) -> Self {
         let read = move |settings: &Settings| read(settings).map(|f| Arc::new(f) as Arc<Volume>);
-        Self::new(PART, page, Reader { line: None, volume: Some(Box::new(read)) })
+        Self::new(PART, page, Reader { extinctions, line: None, volume: Some(Box::new(read)) })
     }
 }

@@ -66,6 +66,8 @@ impl<const STEPS: bool> Layers<STEPS> {
 impl<const STEPS: bool> Field for Layers<STEPS> {
     type Profile = Piecewise;
 
+    const EXTINCTIONS: &'static [&'static str] = &["values"];
+
     fn line(settings: &Settings) -> Option<Piecewise> {
         read_pieces(settings, STEPS)
     }

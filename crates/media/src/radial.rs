@@ -104,6 +104,8 @@ impl Radial {
 impl Field for Radial {
     type Profile = Chord;
 
+    const EXTINCTIONS: &'static [&'static str] = &["coefficients"];
+
     const IN_LINE: bool = false;
 
     fn volume(settings: &Settings) -> Option<Self> {

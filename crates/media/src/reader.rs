@@ -3,13 +3,15 @@
 use std::sync::Arc;
 
 use super::{CATALOGUE, Field, Profile, READERS, Volume};
-use crate::catalogue::Settings;
+use crate::catalogue::{Additions, Settings};
 
 /// Reads the fields of a page from a case file.
 pub type Read<T> = Box<dyn Fn(&Settings) -> Option<Arc<T>> + Send + Sync>;
 
 /// How the fields of a page are read: as one ray sees them, in space, or both.
 pub struct Reader {
+    /// Settings that σ_t is proportional to, all together.
+    pub extinctions: &'static [&'static str],
     /// As one ray sees them.
     pub line: Option<Read<Profile>>,
     /// In space.
@@ -22,7 +24,7 @@ impl Reader {
         let line = |settings: &Settings| F::line(settings).map(|f| Arc::new(f) as Arc<Profile>);
         let volume = |settings: &Settings| F::volume(settings).map(|f| Arc::new(f) as Arc<Volume>);
         let line = F::IN_LINE.then(|| Box::new(line) as Read<Profile>);
-        Self { line, volume: Some(Box::new(volume)) }
+        Self { extinctions: F::EXTINCTIONS, line, volume: Some(Box::new(volume)) }
     }
 }
 
@@ -30,6 +32,13 @@ impl Reader {
 fn readers<'a>(settings: &Settings<'a>) -> (Vec<String>, Vec<&'a Reader>) {
     let built_in = CATALOGUE.pages.iter().zip(READERS.iter());
     built_in.chain(settings.additions().of()).map(|(page, reader)| (page.name(), reader)).unzip()
+}
+
+/// Settings of the field of a name that σ_t is proportional to; none of an unknown field.
+pub fn extinctions(name: &str, additions: &Additions) -> &'static [&'static str] {
+    let built_in = CATALOGUE.pages.iter().zip(READERS.iter());
+    let mut all = built_in.chain(additions.of());
+    all.find(|(page, _)| page.name() == name).map_or(&[], |(_, reader)| reader.extinctions)
 }
 
 /// Reads a field along a line, `medium.NAME = { … }`: its name in the catalogue and the field.

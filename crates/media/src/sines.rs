@@ -158,6 +158,8 @@ fn read(settings: &Settings, waves: Option<usize>) -> Option<(f64, Vec<f64>, Vec
 impl Field for Sines {
     type Profile = Waves;
 
+    const EXTINCTIONS: &'static [&'static str] = &["base", "amplitudes"];
+
     fn line(settings: &Settings) -> Option<Waves> {
         let frequencies = settings.numbers("frequencies", Domain::Finite, 1);
         let (base, amplitudes, phases) = read(settings, frequencies.as_ref().map(Vec::len))?;

@@ -96,9 +96,14 @@ impl Voxels {
         self.peak
     }
 
+    /// Whether a lookup takes the nearest sample.
+    pub fn is_nearest(&self) -> bool {
+        self.interpolation == Interpolation::Nearest
+    }
+
     /// Whether the field jumps between cells.
     pub fn jumps(&self) -> bool {
-        self.interpolation == Interpolation::Nearest || self.turn.is_some()
+        self.is_nearest() || self.turn.is_some()
     }
 
     /// Whether the axes of the lattice are not those of the world.

@@ -225,7 +225,7 @@ fn check(scene: &Scene) -> (Vec<String>, usize) {
             Law::Product { controlled: false, .. } | Law::NextFlight | Law::UnidirectionalMis
         );
         let exists = (estimator.exists)(scene, scene.ranges(controlled));
-        let found = case.scenario.predict(index, None, None, case.pilots(1, index));
+        let found = case.at(None).expect("as written").predict(index, None, case.pilots(1, index));
         assert_eq!(found.is_some(), exists, "whether it exists: {what}");
         let Some(found) = found else { continue };
         let expected = match (law, sampling.shape) {
@@ -364,8 +364,11 @@ fn eq_21_by_equation_14() {
     ];
     let mut differences = Vec::new();
     for (index, expected) in expected.iter().enumerate() {
-        let found =
-            case.scenario.predict(index, None, None, case.pilots(1, index)).expect("it exists");
+        let found = case
+            .at(None)
+            .expect("as written")
+            .predict(index, None, case.pilots(1, index))
+            .expect("it exists");
         differences.extend(compare(&format!("estimator {index} of Eq. 21"), &found, expected));
     }
     crate::common::none(&differences);

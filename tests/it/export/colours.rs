@@ -132,7 +132,8 @@ fn slabs_furnaces_and_lamps_have_a_truth_per_channel() {
             f64::from(1.45_f32)
         );
         let case = trueflight::case::Case::read(&written(&grey)).expect("a case");
-        let ready = case.scenario.prepare(0, None, case.pilots(1, 0)).expect("an answer");
+        let ready =
+            case.at(None).and_then(|at| at.prepare(0, case.pilots(1, 0))).expect("an answer");
         let of_channel = truth.questions.iter().filter(|q| q.channel == Some(number));
         let stated: Vec<f64> = of_channel.map(|question| question.mean).collect();
         let right: Vec<f64> = ready.prediction.channels.iter().map(|c| c.truth.value).collect();

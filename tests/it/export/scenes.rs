@@ -69,7 +69,8 @@ fn the_case_beside_a_scene_is_a_case_with_its_truth() {
         let scene = scene(case, Target::Mitsuba, None).expect("exported");
         let read = Case::read(&Source::read(&scene.path("case.toml")).expect("a text"));
         let read = read.unwrap_or_else(|error| panic!("{case}: {}", error.render(false)));
-        let ready = read.scenario.prepare(0, None, read.pilots(1, 0)).expect("an answer");
+        let ready =
+            read.at(None).and_then(|at| at.prepare(0, read.pilots(1, 0))).expect("an answer");
         let truths: Vec<f64> = ready.prediction.channels.iter().map(|c| c.truth.value).collect();
         let stated: Vec<f64> = scene.exported.truth.questions.iter().map(|q| q.mean).collect();
         assert_eq!(truths, stated, "{case}");

@@ -21,7 +21,7 @@ fn kernels_without_fused_instructions_are_judged_like_any_other() {
         estimators = [{ESTIMATORS}]"
     );
     let mut cases = [case("eq21", &text)];
-    cases[0].scenario.draw_by(Order::Free);
+    cases[0].draw_by(Order::Free);
     let mut plan = Plan::new(&cases, &options(1, 50_000));
     for planned in plan.cases.iter_mut().flat_map(|case| &mut case.experiments) {
         if let Ok(ready) = &mut planned.outcome {
@@ -47,7 +47,7 @@ fn order_free(matrix: Matrix) -> Vec<Case> {
     let mut cases = cases(matrix);
     cases.retain(|case| case.problem == "transmittance");
     for case in &mut cases {
-        case.scenario.draw_by(Order::Free);
+        case.draw_by(Order::Free);
     }
     cases
 }

@@ -2,6 +2,8 @@
 
 use std::ops::Range;
 
+use serde::ser::{Serialize, SerializeMap, Serializer};
+
 /// A value and the bytes of the file that it stands in.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Node {
@@ -37,6 +39,26 @@ impl Value {
             Self::Text(_) => "a text",
             Self::Boolean(_) => "true or false",
             Self::Other(kind) => kind,
+        }
+    }
+}
+
+/// Writes what stands in the file, without places.
+impl Serialize for Value {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        match self {
+            Self::Table(entries) => {
+                let mut map = serializer.serialize_map(Some(entries.len()))?;
+                for entry in entries {
+                    map.serialize_entry(&entry.key, &entry.node.value)?;
+                }
+                map.end()
+            }
+            Self::Array(items) => serializer.collect_seq(items.iter().map(|item| &item.value)),
+            Self::Number(x) => serializer.serialize_f64(*x),
+            Self::Text(text) => serializer.serialize_str(text),
+            Self::Boolean(flag) => serializer.serialize_bool(*flag),
+            Self::Other(what) => serializer.serialize_str(what),
         }
     }
 }

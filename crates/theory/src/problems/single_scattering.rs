@@ -125,6 +125,16 @@ impl SingleScattering {
         self.albedo
     }
 
+    /// How light is scattered.
+    pub fn phase(&self) -> Phase {
+        self.phase
+    }
+
+    /// The light.
+    pub fn lamp(&self) -> Lamp {
+        Lamp { position: self.light.position, power: self.light.power }
+    }
+
     /// Where the ray is nearest to the light, from its origin.
     pub fn foot(&self) -> f64 {
         self.light.foot

@@ -19,6 +19,9 @@ pub struct Constant {
 }
 
 impl Constant {
+    /// Settings that σ_c is proportional to, all together.
+    pub const EXTINCTIONS: &'static [&'static str] = &["value"];
+
     /// Reads `{ value }`.
     pub fn read(settings: &Settings, _: Option<&Body>) -> Option<Self> {
         settings.number("value", Domain::Finite).map(|value| Self { value })

@@ -24,6 +24,9 @@ pub struct Explorers {
 }
 
 impl Explorers {
+    /// Settings that σ_c is proportional to, all together.
+    pub const EXTINCTIONS: &'static [&'static str] = &[];
+
     /// Reads `{ points, octaves }`.
     #[allow(clippy::cast_possible_truncation)] // at most 100000
     pub fn read(settings: &Settings, body: Option<&Body>) -> Option<Self> {

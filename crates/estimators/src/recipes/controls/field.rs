@@ -16,6 +16,9 @@ use media::{Body, Control};
 pub struct Field(Body);
 
 impl Field {
+    /// Settings that σ_c is proportional to, all together.
+    pub const EXTINCTIONS: &'static [&'static str] = &[];
+
     /// Reads `{ medium.NAME = { … } }` or `{ volume.NAME = { … } }`, like the problem itself.
     pub fn read(settings: &Settings, body: Option<&Body>) -> Option<Self> {
         let Some(body) = body else {

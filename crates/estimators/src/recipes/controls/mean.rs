@@ -18,6 +18,9 @@ use media::{Body, Control, Piecewise};
 pub struct Mean;
 
 impl Mean {
+    /// Settings that σ_c is proportional to, all together.
+    pub const EXTINCTIONS: &'static [&'static str] = &[];
+
     /// Reads `{}`.
     pub fn read(_: &Settings, _: Option<&Body>) -> Option<Self> {
         Some(Self)

@@ -19,6 +19,9 @@ use media::{Body, Control, Piecewise};
 pub struct Minimum;
 
 impl Minimum {
+    /// Settings that σ_c is proportional to, all together.
+    pub const EXTINCTIONS: &'static [&'static str] = &[];
+
     /// Reads `{}`.
     pub fn read(_: &Settings, _: Option<&Body>) -> Option<Self> {
         Some(Self)

@@ -12,6 +12,9 @@ use media::{Body, Control};
 pub struct None;
 
 impl None {
+    /// Settings that σ_c is proportional to, all together.
+    pub const EXTINCTIONS: &'static [&'static str] = &[];
+
     /// Reads `{}`.
     pub fn read(_: &Settings, _: Option<&Body>) -> Option<Self> {
         Some(Self)

@@ -36,6 +36,9 @@ pub enum LocalMajorants {
 }
 
 impl LocalMajorants {
+    /// Settings that σ̂ is proportional to, all together.
+    pub const EXTINCTIONS: &'static [&'static str] = &[];
+
     /// Reads `{ segments }` or `{ grid }`.
     #[allow(clippy::cast_possible_truncation)] // at most 65536
     pub fn read(settings: &Settings, body: Option<&Body>) -> Option<Self> {

@@ -22,6 +22,9 @@ pub type PiecewiseLinear = Given<false>;
 pub struct Given<const STEPS: bool>(Piecewise);
 
 impl<const STEPS: bool> Given<STEPS> {
+    /// Settings that σ̂ is proportional to, all together.
+    pub const EXTINCTIONS: &'static [&'static str] = &["values"];
+
     /// Reads `{ breaks, values }` or `{ knots, values }`.
     pub fn read(settings: &Settings, _: Option<&Body>) -> Option<Self> {
         read_pieces(settings, STEPS).map(Self)

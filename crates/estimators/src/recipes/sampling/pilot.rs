@@ -32,6 +32,9 @@ pub struct Pilot {
 }
 
 impl Pilot {
+    /// Settings that σ̂ is proportional to, all together.
+    pub const EXTINCTIONS: &'static [&'static str] = &["start"];
+
     /// Reads `{ rays, safety, start }`.
     pub fn read(settings: &Settings, _: Option<&Body>) -> Option<Self> {
         let rays = settings.count_or("rays", 1..=10_000, 8);

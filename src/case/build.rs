@@ -1,14 +1,13 @@
-//! A problem and its estimators without their types: the only code here that is compiled once per
-//! problem.
+//! From a spec's settings to what can be drawn: a problem and its estimators without their types, and experiments on
+//! them. What no computer with doubles can test in a lifetime is refused.
 
 use std::any::Any;
 use std::sync::Arc;
 
-use crate::case::estimator::ReadEstimators;
-use crate::case::ready::{FAINTEST, Ready};
+use crate::case::estimator::{Defaults, Estimators};
 use estimators::recipes::sampling;
 use estimators::trial::Entry;
-use estimators::{Estimated, Order, RayView, Refusal, Setup};
+use estimators::{Estimated, Experiment, Order, RayView, Refusal, Setup};
 use media::body::RayNeed;
 use media::catalogue::Settings;
 use media::{Body, Control, Medium, Piecewise};
@@ -17,6 +16,19 @@ use numeric::rng::Address;
 use theory::problems::{self, each_problem};
 use theory::{Mesh, Prediction};
 
+/// Smallest transmittance of which the ratio of a draw to the truth is still a double.
+const FAINTEST: f64 = 1e-300;
+/// Largest expected number of lookups of a draw; more are a mistake in the case.
+const MAX_LOOKUPS: f64 = 1e6;
+
+/// An experiment that can be drawn.
+pub struct Ready {
+    /// What draws.
+    pub experiment: Box<dyn Experiment>,
+    /// What theory says. For a forced experiment the moments are void and removed.
+    pub prediction: Prediction,
+}
+
 /// A problem of the catalogue, before a case is read.
 pub struct ProblemKind {
     /// What it asks of the ray through a volume.
@@ -24,11 +36,12 @@ pub struct ProblemKind {
     /// Whether its medium may have several channels.
     pub spectral: bool,
     /// Its reader.
-    pub read: Read,
+    pub build: Build,
 }
 
-/// Reads a problem and, by the last argument, its estimators; `None` after a mistake.
-pub type Read = fn(Option<&Body>, &Settings, ReadEstimators) -> Option<Box<dyn AnyProblem>>;
+/// Reads a problem and its estimators; `None` after a mistake.
+pub type Build =
+    fn(Option<&Body>, &Settings, Defaults) -> Option<(Box<dyn AnyProblem>, Estimators)>;
 
 macro_rules! kinds {
     ($($module:ident :: $Problem:ident,)*) => {
@@ -43,17 +56,18 @@ pub fn kind(index: usize) -> ProblemKind {
 
 impl ProblemKind {
     fn of<P: Estimated>() -> Self {
-        Self {
-            ray: P::RAY,
-            spectral: P::SPECTRAL,
-            read: |body, settings, read_estimators| {
-                let problem = P::read(body, settings).map(Arc::new);
-                let mut entries: Vec<Box<dyn Entry<P>>> = Vec::new();
-                read_estimators(&mut entries);
-                Some(Box::new(Typed { problem: problem?, entries }))
-            },
-        }
+        Self { ray: P::RAY, spectral: P::SPECTRAL, build: build::<P> }
     }
+}
+
+fn build<P: Estimated>(
+    body: Option<&Body>,
+    settings: &Settings,
+    defaults: Defaults,
+) -> Option<(Box<dyn AnyProblem>, Estimators)> {
+    let problem = P::read(body, settings).map(Arc::new);
+    let (estimators, entries) = Estimators::read::<P>(settings, body, defaults)?;
+    Some((Box::new(Typed { problem: problem?, entries }), estimators))
 }
 
 /// What an estimator works on, apart from its problem.
@@ -78,6 +92,9 @@ pub struct Parts<'a> {
 
 /// A problem with the estimators of a case; estimators are numbered in the order of the case.
 pub trait AnyProblem: Send + Sync {
+    /// The problem, of its own type.
+    fn problem(&self) -> &dyn Any;
+
     /// The field of each channel along the ray.
     fn media(&self) -> &[Medium];
 
@@ -165,6 +182,10 @@ fn predict<P: Estimated>(entry: &dyn Entry<P>, setup: &Setup<P>, order: Order) -
 }
 
 impl<P: Estimated> AnyProblem for Typed<P> {
+    fn problem(&self) -> &dyn Any {
+        &*self.problem
+    }
+
     fn media(&self) -> &[Medium] {
         self.problem.media()
     }
@@ -244,4 +265,39 @@ fn require_weights(
     let [whole, control] = [log_unit, control].map(rounded);
     let found = format!("τ = {whole}, of which the control takes {control}");
     Err(Refusal::mismatch(needs, found))
+}
+
+/// Refuses an experiment whose answer is no double, or whose draws would never end.
+///
+/// # Errors
+///
+/// The answer, or the expected lookups.
+pub fn refuse_what_cannot_be_computed(ready: Ready) -> Result<Ready, Refusal> {
+    for channel in &ready.prediction.channels {
+        let truth = channel.truth.value;
+        let is_known = channel.truth.error.is_finite();
+        if !(truth.is_finite() && truth >= FAINTEST && is_known) {
+            let needs = "an answer between 1e-300 and infinity";
+            let channel = &channel.name;
+            let found = if truth.is_nan() || !is_known {
+                format!("theory does not know {channel}")
+            } else {
+                format!("{channel} is {truth:e}")
+            };
+            return Err(Refusal::mismatch(needs, found));
+        }
+        // What is biased may have another mean than the truth, in units of which all is counted.
+        let mean = channel.mean.value;
+        if !mean.is_finite() {
+            let needs = "draws whose mean is below 1e300 truths";
+            return Err(Refusal::mismatch(needs, format!("theory expects {mean:e}")));
+        }
+    }
+    match &ready.prediction.lookups {
+        Some(lookups) if lookups.mean.is_nan() || lookups.mean > MAX_LOOKUPS => {
+            let needs = "at most a million lookups a draw";
+            Err(Refusal::mismatch(needs, format!("theory expects {:e}", lookups.mean)))
+        }
+        _ => Ok(ready),
+    }
 }
