@@ -70,15 +70,6 @@ fn the_built_in_suite_is_a_choice_of_the_case_files() {
 }
 
 #[test]
-fn cases_call_the_sampling_extinction_what_axes_call_it() {
-    let spelled = |case: &Case| {
-        let text = std::fs::read_to_string(&case.path).expect("the file");
-        text.contains("sigma_samp").then(|| case.name.clone())
-    };
-    none(&shipped().iter().filter_map(spelled).collect::<Vec<_>>());
-}
-
-#[test]
 fn a_spec_is_written_as_the_case_that_it_was_read_from() {
     for case in shipped() {
         let text = toml::to_string(&case.spec).expect("TOML");

@@ -298,27 +298,6 @@ fn predict_and_plan_write_no_files() {
 }
 
 #[test]
-fn the_same_seed_makes_the_same_files_on_any_number_of_threads() {
-    let place = Place::new(&[("case.toml", GOOD)]);
-    let without_timing = |threads: u32| {
-        let output = place
-            .run(&format!("run case.toml --draws 50000 --fresh --format csv --threads {threads}"));
-        let text = stdout(&output);
-        let mut reader = csv::Reader::from_reader(text.as_bytes());
-        let headers = reader.headers().expect("columns").clone();
-        let rows = reader.records().map(|row| {
-            let row = row.expect("a row");
-            let fields = headers.iter().zip(row.iter());
-            let kept = fields.filter(|(name, _)| !["seconds", "ns_per_lookup"].contains(name));
-            kept.map(|(_, field)| field.to_owned()).collect::<Vec<_>>()
-        });
-        rows.collect::<Vec<_>>()
-    };
-    assert_eq!(without_timing(1), without_timing(2));
-    assert_eq!(without_timing(1), without_timing(7));
-}
-
-#[test]
 fn filters_keep_what_they_name() {
     let place = Place::new(&[("case.toml", GOOD)]);
     let output = place.run("plan case.toml --format csv --filter case:ratio");

@@ -2,12 +2,15 @@
 //!
 //! `tests/lock/README.md` says which program the values come from, and how to freeze them again.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 use std::{env, fs};
 
 use crate::common::{LOCKED_DRAWS, none, shipped_draws, shipped_record};
+use trueflight::catalogue::Page;
+use trueflight::estimators;
 use trueflight::lab::streams;
+use trueflight::problems;
 use trueflight::report::{checks_csv, rows, self_test};
 use trueflight::self_test::{SelfTest, calibration, mutation};
 
@@ -206,6 +209,10 @@ fn of_results(folder: &Path) -> Lock {
 }
 
 #[test]
+#[cfg_attr(
+    not(all(target_arch = "x86_64", target_os = "linux")),
+    ignore = "frozen on Linux, x86-64"
+)]
 fn all_cases_predict_and_draw_what_they_did() {
     // Results of another program are frozen or compared instead: see the README beside the frozen values.
     if let Some(results) = env::var_os("LOCK_FREEZE") {
@@ -225,6 +232,24 @@ fn all_cases_predict_and_draw_what_they_did() {
         }
     };
     none(&frozen().differences(&now));
+}
+
+#[test]
+fn every_estimator_of_the_catalogue_is_drawn() {
+    let rows = frozen().digits.rows;
+    let problems = problems::CATALOGUE.pages.iter().map(Page::name);
+    let mut missing = Vec::new();
+    for (problem, list) in problems.zip(estimators::catalogues()) {
+        let of_problem = |row: &&Vec<String>| row[0].split('/').next() == Some(problem.as_str());
+        let drawn = rows.iter().filter(of_problem).filter(|row| row[6] != "refused");
+        let names: BTreeSet<&str> = drawn.filter_map(|row| row[1].split(' ').next()).collect();
+        let all = list.pages.iter().map(Page::name);
+        missing.extend(
+            all.filter(|name| !names.contains(name.as_str()))
+                .map(|name| format!("{problem}: {name}")),
+        );
+    }
+    none(&missing);
 }
 
 #[test]

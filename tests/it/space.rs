@@ -1,14 +1,12 @@
 //! Walks in space: exact answers against reference values that were computed by other means, what is
 //! skipped, and the draws of every shipped case.
 
-use crate::common::{case, none, options, shipped_in};
+use crate::common::{case, options, shipped_record};
 use serde::Deserialize;
-use trueflight::draw::run;
 use trueflight::estimators::DrawBuffer;
 use trueflight::media::eq21::Eq21;
 use trueflight::plan::Plan;
 use trueflight::record::Verdict;
-use trueflight::record::verdict;
 use trueflight::rng::{Address, Streams};
 use trueflight::theory::space::content::content;
 use trueflight::theory::space::infinite::{collisions_within, fluence};
@@ -223,20 +221,14 @@ fn what_no_page_takes_is_a_mistake_with_its_place() {
 }
 
 #[test]
-fn every_rule_passes_in_every_shipped_case() {
-    let cases = shipped_in(&["furnace", "lambertian", "infinite-medium"]);
-    let draws = std::env::var("TRUEFLIGHT_DRAWS").ok().and_then(|n| n.parse().ok());
-    let plan = Plan::new(&cases, &options(1, draws.unwrap_or(30_000)));
-    let record = verdict::judged(&plan, &run::draw(&plan, &|_| {}), 0.0);
-    let (mut wrong, mut squares) = (Vec::new(), Vec::new());
-    for case in &record.results.cases {
+fn means_of_all_shipped_cases_are_off_by_their_standard_errors() {
+    let is_space = |name: &str| {
+        ["furnace/", "lambertian/", "infinite-medium/"].iter().any(|start| name.starts_with(start))
+    };
+    let cases = shipped_record().results.cases.iter();
+    let mut squares = Vec::new();
+    for case in cases.filter(|case| is_space(&case.name)) {
         for row in &case.rows {
-            if row.verdict == Some(Verdict::Fail) {
-                wrong.push(format!(
-                    "{} {} {}: {}",
-                    case.name, row.estimator, row.channel, row.reason
-                ));
-            }
             // By their own standard error: most of these variances theory does not know.
             let (Some(mean), Some(error), Some(truth)) = (row.mean, row.standard_error, row.truth)
             else {
@@ -247,7 +239,6 @@ fn every_rule_passes_in_every_shipped_case() {
             }
         }
     }
-    none(&wrong);
     let n = squares.len() as f64;
     let mean = squares.iter().sum::<f64>() / n;
     println!("{n} channels, mean z² {mean:.3}");

@@ -97,14 +97,3 @@ fn the_examples_folder_passes() {
     let case = root().join("examples/openvdb.toml");
     place.says(0, &format!("run '{}'", case.display()));
 }
-
-/// A newcomer would learn it before the draws.
-#[test]
-fn no_case_that_is_shown_is_planned_with_too_few_draws() {
-    let place = place();
-    for (name, text) in shown("[problem.") {
-        fs::write(place.path().join(format!("{name}.toml")), text).expect("a case");
-        let said = place.says(0, &format!("plan {name}.toml"));
-        assert!(!said.contains("inconclusive"), "{name}:\n{said}");
-    }
-}

@@ -1,7 +1,5 @@
-//! The rod against numbers from another arithmetic, see `tests/data/README.md`, and against a second
-//! way to find them.
+//! The rod against numbers from another arithmetic, see `tests/data/README.md`.
 
-mod riccati;
 mod settings;
 
 use crate::common::{case, differs, none, options};
@@ -179,36 +177,6 @@ fn moments_of_every_rule_are_met() {
     none(&wrong);
 }
 
-#[test]
-fn a_riccati_equation_finds_the_same_moments() {
-    let rod = riccati::Rod {
-        extinction: |x| 0.5 + x,
-        albedo: |x| 0.95 - 0.2 * x,
-        forward: 0.7,
-        sampling: 3.0,
-        length: 3.0,
-        jump: 2.5,
-    };
-    let rules: [(&str, riccati::Odds); 3] = [
-        ("terminating", riccati::terminating),
-        ("non-terminating", riccati::non_terminating),
-        ("adaptive", riccati::adaptive),
-    ];
-    let mut wrong = Vec::new();
-    for (name, rule) in rules {
-        let found = found(&planned(&format!("{}\nsampling.constant.value = 3", ramp(false)), name));
-        let [second, fourth] = [2, 4].map(|k| riccati::moments(&rod, rule, k));
-        let lookups = riccati::moments(&rod, rule, 0)[2];
-        let expected = [second[0], second[1], fourth[0], fourth[1], lookups];
-        for ((what, found), expected) in NAMES.iter().zip(found).zip(expected) {
-            wrong.extend(differs(&format!("{what}, {name}"), found, expected, 1e-10));
-        }
-    }
-    none(&wrong);
-}
-
-/// S 3.3 and 4.1 hold that the adaptive rule is never worse. For the variance it is never better
-/// than the non-terminating rule; what it saves are lookups, where σ̂ is below σ_t.
 #[test]
 fn the_adaptive_rule_never_has_the_smaller_variance() {
     let mut worse = 0;

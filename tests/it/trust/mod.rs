@@ -1,8 +1,10 @@
-//! Promises of documents: addresses that exist, results that are shown, tables that agree with the catalogue, and
-//! cases to copy that are valid.
+//! Promises of documents: links and addresses that exist, results that are shown, commands and cases that are valid,
+//! tables that agree with the catalogue, and error messages that end in a cure.
 
 mod addresses;
+mod cures;
 mod explain;
+mod pages;
 mod results;
 mod tables;
 

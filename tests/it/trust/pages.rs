@@ -1,28 +1,9 @@
 //! README and manual: every link leads somewhere, every page is in the table of contents, every case file shown
 //! can be read, and every command shown is one.
 
-use std::fs;
-use std::path::{Path, PathBuf};
-use std::process::Command;
-
+use super::{manual, read, root, trueflight};
 use crate::common::{none, source};
 use trueflight::case::Case;
-
-fn root() -> &'static Path {
-    Path::new(env!("CARGO_MANIFEST_DIR"))
-}
-
-/// README, CONTRIBUTING, ARCHITECTURE and the pages of the manual, with their texts.
-fn pages() -> Vec<(PathBuf, String)> {
-    let mut paths: Vec<PathBuf> =
-        ["README.md", "CONTRIBUTING.md", "ARCHITECTURE.md"].map(|name| root().join(name)).into();
-    let manual = fs::read_dir(root().join("docs")).expect("the manual");
-    paths.extend(manual.map(|entry| entry.expect("an entry").path()));
-    paths.retain(|path| path.extension().is_some_and(|ending| ending == "md"));
-    paths.sort();
-    let read = |path: PathBuf| (path.clone(), fs::read_to_string(path).expect("a page"));
-    paths.into_iter().map(read).collect()
-}
 
 /// The contents of the blocks in a language.
 fn blocks<'a>(text: &'a str, language: &str) -> Vec<&'a str> {
@@ -34,12 +15,14 @@ fn blocks<'a>(text: &'a str, language: &str) -> Vec<&'a str> {
 #[test]
 fn every_link_leads_somewhere() {
     let mut wrong = Vec::new();
-    for (path, text) in pages() {
+    for (page, text) in manual() {
+        let folder = root().join(&page);
+        let folder = folder.parent().expect("a folder");
         for target in text.split("](").skip(1).filter_map(|rest| rest.split(')').next()) {
             let file = target.split('#').next().unwrap_or_default();
             let is_here = !file.is_empty() && !file.contains("://") && !file.contains(' ');
-            if is_here && !path.parent().expect("a folder").join(file).exists() {
-                wrong.push(format!("{}: {target}", path.display()));
+            if is_here && !folder.join(file).exists() {
+                wrong.push(format!("{page}: {target}"));
             }
         }
     }
@@ -48,31 +31,30 @@ fn every_link_leads_somewhere() {
 
 #[test]
 fn every_page_is_in_the_table_of_contents() {
-    let contents = fs::read_to_string(root().join("docs/SUMMARY.md")).expect("a summary");
-    let mut wrong = Vec::new();
-    for (path, _) in pages().iter().filter(|(path, _)| path.parent() != Some(root())) {
-        let name = path.file_name().expect("a name").to_string_lossy().into_owned();
-        if name != "SUMMARY.md" && !contents.contains(&format!("({name})")) {
-            wrong.push(name);
-        }
-    }
-    none(&wrong);
+    let contents = read("docs/SUMMARY.md");
+    let pages =
+        manual().into_iter().filter_map(|(page, _)| page.strip_prefix("docs/").map(str::to_owned));
+    let missing =
+        pages.filter(|name| name != "SUMMARY.md" && !contents.contains(&format!("({name})")));
+    none(&missing.collect::<Vec<_>>());
 }
 
 #[test]
-fn the_first_page_is_short() {
-    let lines = |name: &str| fs::read_to_string(root().join(name)).expect("read").lines().count();
-    assert!(lines("README.md") <= 250 && lines("ARCHITECTURE.md") <= 150);
+fn the_first_pages_are_short() {
+    for (page, most) in [("README.md", 250), ("ARCHITECTURE.md", 120)] {
+        let lines = read(page).lines().count();
+        assert!(lines <= most, "{page} has {lines} lines, of at most {most}");
+    }
 }
 
 #[test]
 fn every_case_file_shown_can_be_read() {
     let (mut wrong, mut read) = (Vec::new(), 0);
-    for (path, text) in pages() {
+    for (page, text) in manual() {
         for block in blocks(&text, "toml").into_iter().filter(|block| block.contains("[problem.")) {
             read += 1;
             if let Err(error) = Case::read(&source("shown", block)) {
-                wrong.push(format!("{}: {}", path.display(), error.render(false)));
+                wrong.push(format!("{page}: {}", error.render(false)));
             }
         }
     }
@@ -84,20 +66,19 @@ fn every_case_file_shown_can_be_read() {
 #[test]
 fn every_command_shown_is_one() {
     let (mut wrong, mut parsed) = (Vec::new(), 0);
-    for (path, text) in pages() {
+    for (page, text) in manual() {
         for line in blocks(&text, "console").into_iter().flat_map(str::lines) {
             let Some((_, command)) = line.split_once("trueflight ") else { continue };
             let command = command.split(['#', '|', ';']).next().unwrap_or_default();
             if !line.starts_with('$') || line.contains("cargo install") {
                 continue;
             }
-            let arguments = command.split_whitespace().map(|word| word.trim_matches(['"', '\'']));
-            let mut trueflight = Command::new(env!("CARGO_BIN_EXE_trueflight"));
-            let output = trueflight.args(arguments).arg("--help").output().expect("it runs");
+            let words = command.split_whitespace().map(|word| word.trim_matches(['"', '\'']));
+            let output = trueflight(&words.chain(["--help"]).collect::<Vec<_>>());
             parsed += 1;
             if !output.status.success() {
                 let error = String::from_utf8_lossy(&output.stderr).into_owned();
-                wrong.push(format!("{}: {line}: {error}", path.display()));
+                wrong.push(format!("{page}: {line}: {error}"));
             }
         }
     }

@@ -1,0 +1,63 @@
+//! Every error message ends in what to do. Messages about case files are tested with random mistakes (`properties`).
+
+use super::{files, read};
+use crate::common::none;
+
+/// Beginnings of messages without a cure: an encoder or the system gave up, or the message ends in that of another error.
+const NONE: [&str; 17] = [
+    "cannot encode {name} as csv",
+    "cannot encode as json: {0}",
+    "cannot encode as JUnit XML: {0}",
+    "cannot encode truth.json: {0}",
+    "cannot draw {figure}: {message}",
+    "cannot {} {}",
+    "{} is no file of blocks",
+    "{} has changed at byte {}",
+    "another run is writing into {}",
+    "a record of form {found}",
+    "not a record, or a broken one",
+    "{case} cannot be exported: theory has no answer",
+    "{path}: no case file (*.toml)",
+    "{} mistake(s) in {}",
+    "{case}: `{estimator}`",
+    "check `{name}`: ",
+    "needs {needs}, but {found}",
+];
+
+/// The messages of the error types in a source text: the format strings of `#[error("…")]`.
+fn messages(text: &str) -> Vec<String> {
+    let attributes = text.split("#[error(").skip(1);
+    let quoted = attributes.filter_map(|rest| rest.trim_start().strip_prefix('"'));
+    let strings = quoted.filter_map(|rest| {
+        let ends = rest.match_indices('"').find(|&(at, _)| !rest[..at].ends_with('\\'));
+        ends.map(|(at, _)| rest[..at].to_owned())
+    });
+    strings.collect()
+}
+
+#[test]
+fn every_error_message_ends_in_a_cure() {
+    let (mut wrong, mut found, mut used) = (Vec::new(), 0, [false; NONE.len()]);
+    for path in ["src", "crates"].into_iter().flat_map(files) {
+        let name = path.to_string_lossy().into_owned();
+        if !name.ends_with(".rs") {
+            continue;
+        }
+        for message in messages(&read(&name)) {
+            found += 1;
+            let cure = message.rsplit_once("; ").map_or("", |(_, cure)| cure);
+            if !cure.is_empty() {
+                continue;
+            }
+            match NONE.iter().position(|start| message.starts_with(start)) {
+                Some(known) => used[known] = true,
+                None => wrong.push(format!("{name}: {message}")),
+            }
+        }
+    }
+    none(&wrong);
+    assert!(found > 50, "only {found} messages were found");
+    let unused: Vec<&str> =
+        NONE.iter().zip(used).filter(|(_, used)| !used).map(|(start, _)| *start).collect();
+    assert!(unused.is_empty(), "these have a cure, or are gone; leave them out: {unused:?}");
+}
