@@ -1,12 +1,8 @@
 //! `trueflight bench`: figures that agree with each other, results that do not depend on time or
 //! threads, exit codes, and stored benches.
 
-use std::path::Path;
-use std::process::Output;
-
+use crate::common::place::{Place, code, stdout};
 use crate::common::{case, options};
-use assert_cmd::Command;
-use tempfile::TempDir;
 use trueflight::bench::figures::ERRORS;
 use trueflight::bench::record::{Bench, BenchRow};
 use trueflight::bench::{Amounts, measure};
@@ -116,38 +112,9 @@ fn all_but_the_times_is_the_same_on_any_number_of_threads() {
     assert_eq!(one, results(three));
 }
 
-/// A folder with a case, in which the command runs.
-struct Place(TempDir);
-
-impl Place {
-    fn new() -> Self {
-        let folder = TempDir::new().expect("a folder");
-        std::fs::write(folder.path().join("case.toml"), CASE).expect("a case file");
-        Self(folder)
-    }
-
-    fn path(&self) -> &Path {
-        self.0.path()
-    }
-
-    fn run(&self, arguments: &str) -> Output {
-        let mut command = Command::cargo_bin("trueflight").expect("the binary");
-        command.current_dir(self.path()).env("COLUMNS", "200");
-        command.args(arguments.split_whitespace()).output().expect("it runs")
-    }
-
-    fn code(&self, arguments: &str) -> i32 {
-        self.run(arguments).status.code().expect("an exit code")
-    }
-}
-
-fn stdout(output: &Output) -> String {
-    String::from_utf8(output.stdout.clone()).expect("text")
-}
-
 #[test]
 fn a_bench_writes_its_files_and_prints_its_table() {
-    let place = Place::new();
+    let place = Place::new(&[("case.toml", CASE)]);
     let output = place.run("bench case.toml --draws 2000 --rounds 2 --out here");
     let text = stdout(&output);
     assert_eq!(output.status.code(), Some(0), "{text}");
@@ -166,7 +133,7 @@ fn a_bench_writes_its_files_and_prints_its_table() {
 
 #[test]
 fn the_same_columns_go_everywhere() {
-    let place = Place::new();
+    let place = Place::new(&[("case.toml", CASE)]);
     let csv = stdout(&place.run("bench case.toml --draws 1000 --rounds 1 --out here --format csv"));
     let file = std::fs::read_to_string(place.path().join("here/bench.csv")).expect("a file");
     assert_eq!(csv, file);
@@ -183,7 +150,7 @@ fn the_same_columns_go_everywhere() {
 /// With less vector hardware the draws are others only where nothing fuses, and the table names it.
 #[test]
 fn the_level_of_vector_hardware_can_be_chosen() {
-    let place = Place::new();
+    let place = Place::new(&[("case.toml", CASE)]);
     for level in pack::levels().into_iter().map(pack::word) {
         let bench = format!("bench case.toml --draws 1000 --rounds 1 --out here --level {level}");
         let output = place.run(&bench);
@@ -197,7 +164,7 @@ fn the_level_of_vector_hardware_can_be_chosen() {
 
 #[test]
 fn usage_is_2_and_nothing_is_written() {
-    let place = Place::new();
+    let place = Place::new(&[("case.toml", CASE)]);
     for arguments in [
         "bench nowhere.toml",
         "bench case.toml --draws 0",
@@ -229,12 +196,12 @@ fn usage_is_2_and_nothing_is_written() {
 
 #[test]
 fn a_stored_bench_is_compared_with() {
-    let place = Place::new();
+    let place = Place::new(&[("case.toml", CASE)]);
     let bench = "bench case.toml --draws 1000 --rounds 2 --out here --quiet";
-    assert_eq!(place.code(&format!("{bench} --save-baseline main")), 0);
+    assert_eq!(code(&place.run(&format!("{bench} --save-baseline main"))), 0);
     let path = place.path().join("baselines/main.bench.json");
     let text = std::fs::read_to_string(&path).expect("a baseline");
-    assert_eq!(place.code(&format!("{bench} --baseline main --time-tolerance inf")), 0);
+    assert_eq!(code(&place.run(&format!("{bench} --baseline main --time-tolerance inf"))), 0);
     // As if everything had been a million times as fast.
     let mut tree: serde_json::Value = serde_json::from_str(&text).expect("JSON");
     for timed in tree["timed"].as_array_mut().expect("experiments") {
@@ -244,7 +211,7 @@ fn a_stored_bench_is_compared_with() {
         }
     }
     std::fs::write(&path, tree.to_string()).expect("a baseline");
-    assert_eq!(place.code(&format!("{bench} --baseline main")), 1);
+    assert_eq!(code(&place.run(&format!("{bench} --baseline main"))), 1);
     let output = place.run(&format!("{bench} --baseline main --threads 2"));
     assert_eq!(output.status.code(), Some(2));
     assert!(String::from_utf8_lossy(&output.stderr).contains("--threads 1"));
@@ -256,5 +223,5 @@ fn a_stored_bench_is_compared_with() {
     let said = String::from_utf8_lossy(&output.stderr).into_owned();
     assert!(said.contains("main.bench.json: nothing was compared"), "{said}");
     std::fs::write(&path, "{\"schema\": 9}").expect("a baseline");
-    assert_eq!(place.code(&format!("{bench} --baseline main")), 2);
+    assert_eq!(code(&place.run(&format!("{bench} --baseline main"))), 2);
 }

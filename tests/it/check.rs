@@ -3,8 +3,7 @@
 use std::path::Path;
 use std::process::Output;
 
-use assert_cmd::Command;
-use tempfile::TempDir;
+use crate::common::place::{Place, assert_says, code, said};
 
 /// A case that passes within the usual draws.
 const GOOD: &str = "title = \"a good case\"
@@ -22,85 +21,51 @@ fn biased() -> String {
 
 const FILES: &str = "--junit junit.xml --json record.json --markdown summary.md";
 
-struct Place(TempDir);
-
-impl Place {
-    fn new(text: &str) -> Self {
-        let folder = TempDir::new().expect("a folder");
-        std::fs::create_dir(folder.path().join("cases")).expect("a folder");
-        std::fs::write(folder.path().join("cases/case.toml"), text).expect("a case file");
-        Self(folder)
-    }
-
-    fn path(&self) -> &Path {
-        self.0.path()
-    }
-
-    fn command(&self, arguments: &str) -> Command {
-        let mut command = Command::cargo_bin("trueflight").expect("the binary");
-        command.current_dir(self.path()).env("COLUMNS", "120");
-        for name in ["NO_COLOR", "GITHUB_ACTIONS", "GITHUB_STEP_SUMMARY"] {
-            command.env_remove(name);
-        }
-        command.args(arguments.split_whitespace());
-        command
-    }
-
-    /// Expects an exit code.
-    fn check(&self, expected: i32, arguments: &str) -> Output {
-        let output = self.command(&format!("check {arguments}")).output().expect("it runs");
-        assert_eq!(output.status.code(), Some(expected), "{arguments}: {}", said(&output));
-        output
-    }
-
-    fn read(&self, name: &str) -> String {
-        std::fs::read_to_string(self.path().join(name)).unwrap_or_else(|e| panic!("{name}: {e}"))
-    }
-
-    /// All reports exist, are whole, and hold no colours.
-    fn reports(&self) -> [String; 3] {
-        let [junit, json, markdown] =
-            ["junit.xml", "record.json", "summary.md"].map(|name| self.read(name));
-        assert!(junit.trim_end().ends_with("</testsuites>"), "{junit}");
-        let record: serde_json::Value = serde_json::from_str(&json).expect("JSON");
-        assert_eq!(record["schema"], trueflight::record::SCHEMA);
-        assert!(json.starts_with("{\"schema\":"));
-        assert!(markdown.starts_with("## Trueflight"), "{markdown}");
-        for text in [&junit, &json, &markdown] {
-            assert!(!text.contains('\u{1b}'), "colours in a file");
-        }
-        [junit, json, markdown]
-    }
+/// A folder with one case.
+fn place_of(text: &str) -> Place {
+    Place::new(&[("cases/case.toml", text)])
 }
 
-fn said(output: &Output) -> String {
-    [&output.stdout, &output.stderr].map(|bytes| String::from_utf8_lossy(bytes)).concat()
+/// Expects an exit code.
+fn check(place: &Place, expected: i32, arguments: &str) -> Output {
+    let output = place.run(&format!("check {arguments}"));
+    assert_eq!(code(&output), expected, "{arguments}: {}", said(&output));
+    output
 }
 
-fn assert_says(text: &str, words: &[&str]) {
-    for word in words {
-        assert!(text.contains(word), "no \"{word}\" in:\n{text}");
+/// All reports exist, are whole, and hold no colours.
+fn reports(place: &Place) -> [String; 3] {
+    let [junit, json, markdown] =
+        ["junit.xml", "record.json", "summary.md"].map(|name| place.read(name));
+    assert!(junit.trim_end().ends_with("</testsuites>"), "{junit}");
+    let record: serde_json::Value = serde_json::from_str(&json).expect("JSON");
+    assert_eq!(record["schema"], trueflight::record::SCHEMA);
+    assert!(json.starts_with("{\"schema\":"));
+    assert!(markdown.starts_with("## Trueflight"), "{markdown}");
+    for text in [&junit, &json, &markdown] {
+        assert!(!text.contains('\u{1b}'), "colours in a file");
     }
+    [junit, json, markdown]
 }
 
 #[test]
 fn all_pass_is_0_and_quiet_about_it() {
-    let place = Place::new(GOOD);
-    let output = place.check(0, &format!("cases {FILES} --color always"));
+    let place = place_of(GOOD);
+    let output = check(&place, 0, &format!("cases {FILES} --color always"));
     let text = said(&output);
     assert_says(&text, &["case  2 pass, ", " draws", "visible bias", "share α = 0.001", "seed 1"]);
     assert!(!text.contains("woodcock"), "a row that passes is shown:\n{text}");
-    place.reports();
+    reports(&place);
     assert!(!place.path().join("results").exists());
-    assert_says(&said(&place.check(0, "cases --verbose")), &["woodcock", "ratio"]);
-    assert_eq!(said(&place.check(0, "cases --quiet")), "");
+    assert_says(&said(&check(&place, 0, "cases --verbose")), &["woodcock", "ratio"]);
+    assert_eq!(said(&check(&place, 0, "cases --quiet")), "");
 }
 
 #[test]
 fn a_failure_is_1_and_its_reports_are_written() {
-    let place = Place::new(&biased());
-    let output = place.check(1, &format!("cases {FILES} --out out --seed 3 --color always"));
-    let [junit, _, markdown] = place.reports();
+    let place = place_of(&biased());
+    let output = check(&place, 1, &format!("cases {FILES} --out out --seed 3 --color always"));
+    let [junit, _, markdown] = reports(&place);
     let words = ["ray-marching", "off by", "--seed 3 --draws 8", "trueflight check cases/case"];
     for text in [said(&output), junit, markdown] {
         assert_says(&text, &words);
@@ -114,8 +79,8 @@ fn a_failure_is_1_and_its_reports_are_written() {
 
 #[test]
 fn what_repeats_a_failure_repeats_it() {
-    let place = Place::new(&biased());
-    let text = said(&place.check(1, "cases"));
+    let place = place_of(&biased());
+    let text = said(&check(&place, 1, "cases"));
     let line = text.lines().find_map(|line| line.trim().strip_prefix("repeat: trueflight "));
     let words = line.expect("a command").split('\'');
     let mut command = place.command("");
@@ -134,14 +99,14 @@ fn what_repeats_a_failure_repeats_it() {
 
 #[test]
 fn inconclusive_is_3_unless_one_says_otherwise() {
-    let place = Place::new(GOOD);
+    let place = place_of(GOOD);
     for (code, flag, in_junit) in [
         (3, "", "<error "),
         (1, "--inconclusive fail", "<failure "),
         (0, "--inconclusive pass", "<skipped "),
     ] {
-        let output = place.check(code, &format!("cases --draws 1000 {FILES} {flag}"));
-        let [junit, _, markdown] = place.reports();
+        let output = check(&place, code, &format!("cases --draws 1000 {FILES} {flag}"));
+        let [junit, _, markdown] = reports(&place);
         assert_says(&junit, &[in_junit, "type=\"inconclusive\"", "draws"]);
         assert_says(&markdown, &["### Inconclusive", "To decide"]);
         assert_says(&said(&output), &["2 inconclusive"]);
@@ -150,24 +115,24 @@ fn inconclusive_is_3_unless_one_says_otherwise() {
     }
     assert!(place.read("results/record.json").starts_with("{\"schema\":"));
     // No wish turns a failure into anything else.
-    Place::new(&biased()).check(1, "cases --inconclusive pass");
+    check(&place_of(&biased()), 1, "cases --inconclusive pass");
 }
 
 #[test]
 fn a_budget_of_draws_is_kept() {
-    let place = Place::new(GOOD);
-    let output = place.check(0, &format!("cases --budget 100000 {FILES}"));
+    let place = place_of(GOOD);
+    let output = check(&place, 0, &format!("cases --budget 100000 {FILES}"));
     assert_says(&said(&output), &["2 pass"]);
     let record: serde_json::Value = serde_json::from_str(&place.read("record.json")).expect("JSON");
     let rows = record["results"]["cases"][0]["rows"].as_array().expect("rows").clone();
     let drawn: u64 = rows.iter().filter_map(|row| row["drawn"].as_u64()).sum();
     assert!(drawn > 60_000 && drawn <= 100_000, "{drawn} draws");
-    place.check(0, "cases --budget 5m");
+    check(&place, 0, "cases --budget 5m");
 }
 
 #[test]
 fn usage_is_2_before_anything_is_drawn() {
-    let place = Place::new(GOOD);
+    let place = place_of(GOOD);
     std::fs::write(place.path().join("file"), "").expect("a file");
     std::fs::create_dir(place.path().join("empty")).expect("a folder");
     for (arguments, words) in [
@@ -185,7 +150,7 @@ fn usage_is_2_before_anything_is_drawn() {
         ("cases --out file", ["--out", "file"]),
     ] {
         let begin = std::time::Instant::now();
-        let output = place.check(2, &format!("{arguments} --draws 1000000000"));
+        let output = check(&place, 2, &format!("{arguments} --draws 1000000000"));
         assert!(output.stdout.is_empty(), "{arguments}: {}", said(&output));
         assert_says(&said(&output), &words);
         assert!(begin.elapsed().as_secs() < 20, "it drew first");
@@ -194,7 +159,7 @@ fn usage_is_2_before_anything_is_drawn() {
 
 #[test]
 fn github_gets_annotations_and_a_summary() {
-    let place = Place::new(&biased());
+    let place = place_of(&biased());
     let summary = place.path().join("summary.md");
     std::fs::write(&summary, "before\n").expect("a file");
     let on_github = |summary: &Path| {
@@ -214,7 +179,7 @@ fn github_gets_annotations_and_a_summary() {
     assert_eq!(output.status.code(), Some(1));
     assert_says(&said(&output), &["warning: ", "no/summary.md", "::error "]);
     // Elsewhere there is neither.
-    assert!(!said(&place.check(1, "cases")).contains("::error"));
+    assert!(!said(&check(&place, 1, "cases")).contains("::error"));
 }
 
 #[test]

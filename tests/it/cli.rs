@@ -1,10 +1,8 @@
 //! The command: exit codes, messages for broken case files, what goes where.
 
-use std::path::Path;
 use std::process::Output;
 
-use assert_cmd::Command;
-use tempfile::TempDir;
+use crate::common::place::{Place, assert_says, code, stderr, stdout};
 
 /// A case that passes within `--draws 400000`.
 const GOOD: &str = "title = \"a good case\"
@@ -20,41 +18,6 @@ const COLUMNS: &str = "case,problem,medium,estimator,sampling,control,channel,se
                        standard_error,truth,truth_error,z_mean,variance,predicted_variance,\
                        z_variance,lookups_per_draw,predicted_lookups,z_lookups,\
                        predicted_kurtosis,detectable_bias,fom,seconds,ns_per_lookup,verdict,reason";
-
-/// A folder with case files, in which the command runs.
-struct Place(TempDir);
-
-impl Place {
-    fn new(files: &[(&str, &str)]) -> Self {
-        let folder = TempDir::new().expect("a folder");
-        for (name, text) in files {
-            std::fs::write(folder.path().join(name), text).expect("a case file");
-        }
-        Self(folder)
-    }
-
-    fn path(&self) -> &Path {
-        self.0.path()
-    }
-
-    fn run(&self, arguments: &str) -> Output {
-        let mut command = Command::cargo_bin("trueflight").expect("the binary");
-        command.current_dir(self.path()).env_remove("NO_COLOR").env("COLUMNS", "200");
-        command.args(arguments.split_whitespace()).output().expect("it runs")
-    }
-}
-
-fn code(output: &Output) -> i32 {
-    output.status.code().expect("an exit code")
-}
-
-fn stdout(output: &Output) -> String {
-    String::from_utf8(output.stdout.clone()).expect("text")
-}
-
-fn stderr(output: &Output) -> String {
-    String::from_utf8(output.stderr.clone()).expect("text")
-}
 
 /// Runs a case file of the given text with `--draws`, expecting an exit code.
 fn exits(expected: i32, text: &str, draws: &str) -> Output {
@@ -74,12 +37,6 @@ fn message(text: &str) -> String {
     }
     assert!(!place.path().join("results").exists(), "something was written");
     stderr(&place.run("run case.toml"))
-}
-
-fn assert_says(message: &str, words: &[&str]) {
-    for word in words {
-        assert!(message.contains(word), "no \"{word}\" in:\n{message}");
-    }
 }
 
 #[test]
@@ -134,6 +91,22 @@ fn usage_is_2() {
         assert_eq!(code(&output), 2, "trueflight {arguments}");
         assert_eq!(stdout(&output), "", "trueflight {arguments}");
         assert!(!stderr(&output).is_empty(), "trueflight {arguments} says nothing");
+    }
+}
+
+#[test]
+fn numbers_that_no_option_takes_are_told_what_it_takes() {
+    let place = Place::new(&[]);
+    for (arguments, takes) in [
+        ("run --threads -1", "'--threads <N>': it takes a whole number from 1 to 1024"),
+        ("run --seed 1.5", "'--seed <N>': it takes a whole number from 0 to 18446744073709551615"),
+        ("run --blocks-per-look 0", "'--blocks-per-look <K>': it takes a whole number from 1 to"),
+        ("bench --rounds many", "'--rounds <N>': it takes a whole number from 1 to 10000"),
+        ("judge --truth half", "'--truth <T>': it takes a number, such as"),
+    ] {
+        let output = place.run(arguments);
+        assert_eq!(code(&output), 2, "trueflight {arguments}");
+        assert_says(&stderr(&output), &[takes]);
     }
 }
 

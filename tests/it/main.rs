@@ -32,7 +32,6 @@ mod media_laws;
 mod moments;
 mod mutants;
 mod newcomers;
-mod numbers;
 mod optical_depth;
 mod own_pages;
 mod packets;

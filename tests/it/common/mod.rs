@@ -3,6 +3,7 @@
 pub mod grids;
 pub mod lit;
 pub mod mutated;
+pub mod place;
 
 use std::cell::RefCell;
 use std::path::{Path, PathBuf};

@@ -3,8 +3,8 @@
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use super::Place;
 use crate::common;
+use crate::common::place::Place;
 use trueflight::case::Case;
 use trueflight::case::suite;
 use trueflight::draw::cache::Cache;

@@ -1,9 +1,8 @@
 //! The plan says which rows have too few draws; the command that an inconclusive row names decides it.
 
-use super::{Place, commands};
+use super::commands;
+use crate::common::place::Place;
 use crate::common::{self, none};
-use trueflight::case::Case;
-use trueflight::case::suite;
 use trueflight::numeric::digits::enough;
 use trueflight::plan::Amount;
 use trueflight::plan::Options;
@@ -127,17 +126,11 @@ fn what_a_budget_cuts_is_decided_without_it() {
     }
 }
 
-/// For every built-in case, what is foreseen is what a run of few draws finds, row by row: no row is inconclusive or
+/// In every case of the repository, what is foreseen is what a run finds, row by row: no row is inconclusive or
 /// underpowered that the plan called sufficient, but for whole distributions, of which draws alone tell.
 #[test]
 fn the_plan_foresees_what_a_run_finds() {
-    let sources = suite::suite();
-    let cases: Vec<Case> =
-        sources.iter().map(|source| Case::read(source).expect("a built-in case")).collect();
-    let options = Options { draws: Amount::Exactly(20_000), ..common::options(1, 20_000) };
-    let plan = Plan::new(&cases, &options);
-    let planned = verdict::planned(&plan);
-    let drawn = common::judged(&cases, &options);
+    let (planned, drawn) = (verdict::planned(common::shipped_plan()), common::shipped_record());
     let (mut wrong, mut open) = (Vec::new(), 0);
     let pairs = planned.results.cases.iter().zip(&drawn.results.cases);
     for (before, after) in pairs.flat_map(|(a, b)| a.rows.iter().zip(&b.rows)) {
