@@ -94,9 +94,8 @@ fn rows_on_stdout_are_those_of_the_files() {
     let parsed: Vec<serde_json::Map<String, serde_json::Value>> =
         serde_json::from_str(&json).expect("is JSON");
     assert_eq!(parsed.len(), 11);
-    let mut header: Vec<&str> = csv.lines().next().expect("a line").split(',').collect();
-    header.sort_unstable();
-    assert_eq!(parsed[0].keys().collect::<Vec<_>>(), header);
+    let mut header = csv.lines().next().expect("a line").split(',');
+    assert!(header.all(|name| parsed[0].contains_key(name)), "{:?}", parsed[0].keys());
 }
 
 /// One console is compared byte for byte; no line of any is wider than the terminal.
