@@ -36,7 +36,8 @@ pub fn main(arguments: &Arguments, console: &Console) -> anyhow::Result<u8> {
     let effort = if arguments.quick { Effort::Quick } else { Effort::Full };
     // Single precision comes after the pages.
     let bar = output::progress("stressing", "parts", PAGES.len() as u64 + 1, console);
-    let found = pool.install(|| stress::all(Run { effort, seed: arguments.seed }, stated, &|_| bar.inc(1)));
+    let found =
+        pool.install(|| stress::all(Run { effort, seed: arguments.seed }, stated, &|_| bar.inc(1)));
     bar.finish_and_clear();
     let written = report::write(&page::artifacts(&found)?, &arguments.out);
     if !console.quiet {
