@@ -4,13 +4,13 @@ pub(super) mod plot;
 
 use std::fmt::Write;
 
-use serde::Serialize;
+use serde_json::json;
 
 use crate::report::columns::table as csv;
 use crate::report::console::layout::{Column, Field, Grid, Paint, Pen, wrapped};
 use crate::report::plots;
 use crate::report::{Artifact, ReportError, html};
-use crate::stress::narrow::{Along, Curve, DRAWS};
+use crate::stress::narrow::{Along, Curve, DRAWS, Point};
 use crate::stress::{Row, Stress};
 use numeric::digits::{count, exact, short};
 
@@ -110,87 +110,46 @@ fn single_precision(text: &mut String, pen: Pen, curves: &[Curve]) {
     let _ = writeln!(text, "{}", grid.render(pen));
 }
 
-#[derive(Serialize)]
-struct JsonRow<'a> {
-    quantity: &'a str,
-    range: &'a str,
-    trials: u64,
-    skipped: u64,
-    measure: &'static str,
-    worst: Option<f64>,
-    bound: f64,
-    place: &'a str,
-    holds: bool,
-}
-
-#[derive(Serialize)]
-struct JsonPoint {
-    x: f64,
-    walks: f64,
-    bias: f64,
-    error: f64,
-    noise: Option<f64>,
-    exceeds: bool,
-}
-
-#[derive(Serialize)]
-struct JsonCurve {
-    family: &'static str,
-    estimator: &'static str,
-    along: &'static str,
-    fails_from: Option<f64>,
-    points: Vec<JsonPoint>,
-}
-
-#[derive(Serialize)]
-struct Document<'a> {
-    schema: u32,
-    holds: bool,
-    rows: Vec<JsonRow<'a>>,
-    single_precision: Vec<JsonCurve>,
-}
-
-/// A number that JSON knows.
-fn finite(x: f64) -> Option<f64> {
-    x.is_finite().then_some(x)
-}
-
+/// The tables as JSON; what is no number is null.
 fn json(found: &Stress) -> Result<String, ReportError> {
-    let rows = found.rows.iter().map(|row| JsonRow {
-        quantity: &row.quantity,
-        range: &row.range,
-        trials: row.trials,
-        skipped: row.skipped,
-        measure: row.measure.words(),
-        worst: finite(row.worst),
-        bound: row.bound,
-        place: &row.place,
-        holds: row.holds(),
-    });
-    let curves = found.narrow.curves.iter().map(|curve| JsonCurve {
-        family: curve.family,
-        estimator: curve.estimator,
-        along: curve.along.word(),
-        fails_from: curve.fails_from(),
-        points: curve
-            .points
-            .iter()
-            .map(|point| JsonPoint {
-                x: point.x,
-                walks: point.walks,
-                bias: point.bias,
-                error: point.error,
-                noise: finite(point.noise),
-                exceeds: point.exceeds(),
-            })
-            .collect(),
-    });
-    let document = Document {
-        schema: 1,
-        holds: found.holds(),
-        rows: rows.collect(),
-        single_precision: curves.collect(),
+    let row = |row: &Row| {
+        json!({
+            "quantity": row.quantity,
+            "range": row.range,
+            "trials": row.trials,
+            "skipped": row.skipped,
+            "measure": row.measure.words(),
+            "worst": row.worst,
+            "bound": row.bound,
+            "place": row.place,
+            "holds": row.holds(),
+        })
     };
+    let point = |point: &Point| {
+        json!({
+            "x": point.x,
+            "walks": point.walks,
+            "bias": point.bias,
+            "error": point.error,
+            "noise": point.noise,
+            "exceeds": point.exceeds(),
+        })
+    };
+    let curve = |curve: &Curve| {
+        json!({
+            "family": curve.family,
+            "estimator": curve.estimator,
+            "along": curve.along.word(),
+            "fails_from": curve.fails_from(),
+            "points": curve.points.iter().map(point).collect::<Vec<_>>(),
+        })
+    };
+    let document = json!({
+        "schema": 1,
+        "holds": found.holds(),
+        "rows": found.rows.iter().map(row).collect::<Vec<_>>(),
+        "single_precision": found.narrow.curves.iter().map(curve).collect::<Vec<_>>(),
+    });
     Ok(serde_json::to_string_pretty(&document)? + "\n")
 }
 

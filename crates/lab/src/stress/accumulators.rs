@@ -23,7 +23,7 @@ use numeric::sum::Sum;
 const BUFFER: usize = 4096;
 /// Buffers of a trial.
 const BUFFERS: usize = 256;
-/// How often all draws are added to themselves: 2³⁰ draws.
+/// Number of times that all draws are added to themselves: 2³⁰ draws.
 const DOUBLINGS: i32 = 10;
 /// 512 additions and four roundings of a power.
 const BOUND: f64 = 516.0 * f64::EPSILON / 2.0;
@@ -189,7 +189,7 @@ fn one_huge_draw(&Huge { power, seed }: &Huge, seen: &mut Seen) -> Option<()> {
     Some(())
 }
 
-fn cancelling(Terms { sizes, order }: &Terms, seen: &mut Seen) -> Option<()> {
+fn cancelling(Terms { sizes, order }: &Terms, seen: &mut Seen) {
     let mut terms = vec![1.0];
     terms.extend(sizes.iter().flat_map(|&x| [x, -x]));
     let mut stream = stream(*order);
@@ -197,5 +197,4 @@ fn cancelling(Terms { sizes, order }: &Terms, seen: &mut Seen) -> Option<()> {
         terms.swap(i, below(&mut stream, i + 1));
     }
     seen.see(0, (terms.iter().copied().collect::<Sum>().value() - 1.0).abs());
-    Some(())
 }

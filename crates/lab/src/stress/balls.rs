@@ -218,7 +218,7 @@ fn even(asked: &Asked, seen: &mut Seen) -> Option<()> {
     Some(())
 }
 
-/// Where everything is as bright, J = 1.
+/// White balls in white light: J = 1.
 fn white(scene: &Scene, seen: &mut Seen) -> Option<()> {
     let (asked, extinction) = (scene.asked(), |r2| scene.field.extinction(r2));
     let ball = Ball { radius: 1.0, centre: scene.centre(), extinction: &extinction };
@@ -260,7 +260,7 @@ mod tests {
     use super::*;
     use crate::stress::table::of_stated;
 
-    /// Two answers that agreed by chance stated an error a hundred times too small.
+    /// Two answers that happened to agree stated an error a hundred times too small.
     #[test]
     fn a_difference_of_two_would_break_the_row() {
         let width = 5.009_185_299_915_946e-1;

@@ -1,7 +1,7 @@
 //! Moments of what a ray's walk scatters along it, as linear equations with series in 32 digits.
 //!
-//! In `x` with `s = foot + D sinh x`, `r = D cosh x`, functionals of the rest of a walk obey equations whose
-//! coefficients are `rⁿ e^{−br}`. Each is continued from the ray's end to its beginning, from power series to
+//! In `x` with `s = foot + D sinh x`, `r = D cosh x`, functionals of the rest of a walk obey equations with
+//! coefficients `rⁿ e^{−br}`. Each is continued from the ray's end to its beginning, from power series to
 //! power series, a fifth of their radius at a time.
 //!
 //! ```text
@@ -29,7 +29,7 @@ pub struct Term {
     pub factor: Wide,
     /// K, see [`Chain::kernel`].
     pub kernel: usize,
-    /// V, see [`Chain::add`]; 1 if there is none.
+    /// V, see [`Chain::add`]; 1 if absent.
     pub of: Option<usize>,
 }
 

@@ -41,7 +41,7 @@ parameters! {
     }
 }
 
-fn trial(Layers { collisions, layers }: &Layers, seen: &mut Seen) -> Option<()> {
+fn trial(Layers { collisions, layers }: &Layers, seen: &mut Seen) {
     let (widths, ratios): (Vec<f64>, Vec<f64>) = layers.iter().copied().unzip();
     let breaks = knots(0.0, &widths);
     let sampling = collisions / breaks[widths.len()];
@@ -57,7 +57,6 @@ fn trial(Layers { collisions, layers }: &Layers, seen: &mut Seen) -> Option<()> 
             central(raw, raw[0])
         });
     }
-    Some(())
 }
 
 /// A power series in t, cut off.

@@ -32,7 +32,7 @@ use numeric::sum::Sum;
 use numeric::{Span, Wide};
 use theory::space::content;
 
-/// Where fields jump across chords: so that a thousand of them take seconds, not minutes.
+/// Chords of fields that jump across them: a thousand fields take seconds, not minutes.
 const FEW_CHORDS: f64 = 4e3;
 /// Nodes along an edge or a radius: waves of 35 radians and blobs of a tenth are known to rounding.
 const NODES: usize = 64;

@@ -55,7 +55,7 @@ parameters! {
     }
 }
 
-fn flights(Layers { layers }: &Layers, seen: &mut Seen) -> Option<()> {
+fn flights(Layers { layers }: &Layers, seen: &mut Seen) {
     let widths: Vec<f64> = layers.iter().map(|layer| layer.0).collect();
     let value = |&(width, depth, kind): &_| if kind == 0 { 0.0 } else { depth / width };
     let (breaks, values): (_, Vec<f64>) = (knots(0.0, &widths), layers.iter().map(value).collect());
@@ -68,7 +68,6 @@ fn flights(Layers { layers }: &Layers, seen: &mut Seen) -> Option<()> {
     }
     let found = flight::predict(&Mesh::new(pieces(&breaks, &values)), CountLaw::always(0.0));
     seen.stated(0, found.channels[0].truth, exact);
-    Some(())
 }
 
 fn collisions(walk: &Terminating, seen: &mut Seen) -> Option<()> {
@@ -88,7 +87,7 @@ fn collisions(walk: &Terminating, seen: &mut Seen) -> Option<()> {
 }
 
 /// The truth at distances of one walk, its variance, and that of its steps.
-fn curves(curve: &Curve, seen: &mut Seen) -> Option<()> {
+fn curves(curve: &Curve, seen: &mut Seen) {
     let Curve { length, depth, ratio, mut places } = curve.clone();
     let sigma = depth / length;
     let sampling = sigma / ratio;
@@ -116,5 +115,4 @@ fn curves(curve: &Curve, seen: &mut Seen) -> Option<()> {
         }
         before = passed;
     }
-    Some(())
 }

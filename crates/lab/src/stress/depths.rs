@@ -104,7 +104,7 @@ fn line(kind: usize) -> proptest::strategy::SBoxedStrategy<Line> {
     }
 }
 
-/// Where a stretch begins, in lengths.
+/// Beginning of a stretch, in lengths.
 fn begin() -> impl Strategy<Value = f64> {
     (sign(), sized(-3.0, 1.0)).prop_map(|(sign, size)| sign * size)
 }
@@ -160,7 +160,7 @@ parameters! {
 
 /// Stretches that follow each other add up, wherever the cuts are.
 #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // below the number of breaks
-fn splits(Cut { line, places, breaks: chosen }: &Cut, seen: &mut Seen) -> Option<()> {
+fn splits(Cut { line, places, breaks: chosen }: &Cut, seen: &mut Seen) {
     let medium = line.medium();
     let (span, breaks) = (medium.span(), medium.breaks());
     let whole = medium.optical_depth(span);
@@ -176,7 +176,6 @@ fn splits(Cut { line, places, breaks: chosen }: &Cut, seen: &mut Seen) -> Option
         allowed += part.error;
     }
     seen.see(0, over((sum.value() - whole.value).abs(), allowed));
-    Some(())
 }
 
 /// Rays from near and far through fields in space.

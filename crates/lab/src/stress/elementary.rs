@@ -42,6 +42,5 @@ pub fn rows(run: Run) -> Vec<Row> {
             let [s, c] = [Lane::sin(sign * x), Lane::cos(sign * x)];
             seen.see(row, off(s, sine).max(off(c, cosine)) / allowed);
         }
-        Some(())
     })
 }

@@ -60,7 +60,7 @@ struct At {
     /// τ, and A of the walk for k = 0 … 4, of which the first is τ.
     depth: f64,
     losses: [f64; 5],
-    /// What a collision leaves of a weight, `1 − (σ_t − σ_c)/σ̂`.
+    /// Factor of a weight at a collision, `1 − (σ_t − σ_c)/σ̂`.
     left: f64,
     /// `e^{−B}`.
     shadow: [f64; 5],
@@ -239,7 +239,7 @@ fn at_collisions(nodes: &[Vec<At>], sampling: f64) -> [f64; 4] {
     powers
 }
 
-/// At so many points that share a walk: from `E[A₁^{n₁} A₂^{n₂} …]`, `A_m = ∫ p (T̂ σ_t S/p)^m E[T̂_shadow^m] ds`,
+/// Moments at points that share a walk: from `E[A₁^{n₁} A₂^{n₂} …]`, `A_m = ∫ p (T̂ σ_t S/p)^m E[T̂_shadow^m] ds`,
 /// by how many ways points coincide.
 fn shared(nodes: &[Vec<At>], count: usize) -> [f64; 4] {
     let mut known: Vec<([usize; 4], Vec<Vec<f64>>, f64)> = Vec::new();

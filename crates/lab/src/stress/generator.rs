@@ -38,13 +38,13 @@ parameters! {
     }
 }
 
-/// A stream whose next word is known.
+/// A stream with a known next word.
 fn before(word: u64) -> Stream {
     // out = s₀ + s₃ with s₀ = 0.
     Stream::at([0, 1, 2, word])
 }
 
-fn edges(&word: &u64, seen: &mut Seen) -> Option<()> {
+fn edges(&word: &u64, seen: &mut Seen) {
     let numbers = [before(word).uniform(), unit(&mut before(word))];
     let positive = before(word).positive_uniform();
     let flights = [-before(word).ln_uniform(), exponential(&mut before(word))];
@@ -54,12 +54,11 @@ fn edges(&word: &u64, seen: &mut Seen) -> Option<()> {
         && positive <= 1.0
         && flights.iter().all(|depth| (0.0..36.8).contains(depth));
     seen.wrong(0, !is_right);
-    Some(())
 }
 
 /// Number of the 2⁵³ numbers that make a flight end within an optical depth, found by bisection, against
 /// `1 − e^{−τ}`.
-fn collisions(&depth: &f64, seen: &mut Seen) -> Option<()> {
+fn collisions(&depth: &f64, seen: &mut Seen) {
     let is_within = |k: u64| -before(k << 11).ln_uniform() < depth;
     let (mut low, mut high) = (0, 1_u64 << 53);
     while low < high {
@@ -67,7 +66,6 @@ fn collisions(&depth: &f64, seen: &mut Seen) -> Option<()> {
         if is_within(middle) { low = middle + 1 } else { high = middle }
     }
     seen.see(0, off(low as f64 * GRAIN, -(-Wide::from(depth)).exp_m1()));
-    Some(())
 }
 
 /// Flights through σ̂ of any size: each is `−ln(u)/σ̂`.

@@ -125,7 +125,7 @@ fn hyperbolic(y: Wide) -> (Wide, Wide) {
     ((grown + grown * inverse).scaled(-1), (grown + 1.0 + inverse).scaled(-1))
 }
 
-fn case(distances: &Distances, nodes: &[Node], seen: &mut Seen) -> Option<()> {
+fn case(distances: &Distances, nodes: &[Node], seen: &mut Seen) {
     let albedo = distances.albedo.min(1.0 - 1e-15);
     let c = n(albedo);
     let of_node = |node: &Node| {
@@ -144,7 +144,6 @@ fn case(distances: &Distances, nodes: &[Node], seen: &mut Seen) -> Option<()> {
         seen.at(format_args!("σ_t r = {near:e}"));
         seen.stated(1, infinite::fluence(albedo, near), around(n(near), nodes, &g, pole, c));
     }
-    Some(())
 }
 
 fn collisions(r: Wide, nodes: &[Node], g: &[Wide], pole: Option<[Wide; 2]>, c: Wide) -> Wide {
@@ -167,12 +166,11 @@ fn around(r: Wide, nodes: &[Node], g: &[Wide], pole: Option<[Wide; 2]>, c: Wide)
 }
 
 /// The square of the distance where collisions end.
-fn totals(&(albedo, cosine): &(f64, f64), seen: &mut Seen) -> Option<()> {
+fn totals(&(albedo, cosine): &(f64, f64), seen: &mut Seen) {
     let albedo = albedo.min(1.0 - 1e-15);
     let exact = 2.0 / ((1.0 - n(albedo)) * (1.0 - Wide::product(albedo, cosine)));
     let found = infinite::square_at_absorption(albedo, cosine);
     seen.stated(0, Known::new(found, infinite::ROUNDING * found), exact);
-    Some(())
 }
 
 /// x, its arc tangent over x, and `dx`.
@@ -202,7 +200,7 @@ fn bent(&[x, ratio, _]: &[Wide; 3]) -> Wide {
     terms.fold(Wide::default(), |sum, term| sum * (x * x) + term) * (x * x)
 }
 
-fn half_space(parameters: &Cosines, angles: &[[Wide; 3]], seen: &mut Seen) -> Option<()> {
+fn half_space(parameters: &Cosines, angles: &[[Wide; 3]], seen: &mut Seen) {
     let Cosines { albedo, cosines } = parameters;
     let log = |angle| ((1.0 - n(*albedo)) + *albedo * bent(angle)).ln();
     let logs: Vec<Wide> = angles.iter().map(log).collect();
@@ -214,5 +212,4 @@ fn half_space(parameters: &Cosines, angles: &[[Wide; 3]], seen: &mut Seen) -> Op
         seen.at(format_args!("μ = {cosine:e}"));
         seen.relative(0, h_function(*albedo, cosine), (-(mu * integral / Wide::PI)).exp());
     }
-    Some(())
 }

@@ -80,7 +80,7 @@ impl Case {
     }
 }
 
-fn truths(case: &Case, seen: &mut Seen) -> Option<()> {
+fn truths(case: &Case, seen: &mut Seen) {
     let (mesh, rod) = rod_with(case.depth, &case.albedo, case.forward, case.channels());
     let found = rods::truth(&mesh, &rod);
     let exact = Exact::new(case, ParticleRule::Terminating, case.depth, 1);
@@ -93,10 +93,9 @@ fn truths(case: &Case, seen: &mut Seen) -> Option<()> {
             None => seen.skip(row),
         }
     }
-    Some(())
 }
 
-fn moments((case, ratio, kind): &(Case, f64, usize), seen: &mut Seen) -> Option<()> {
+fn moments((case, ratio, kind): &(Case, f64, usize), seen: &mut Seen) {
     let (sampling, rule) = (case.depth / ratio, rule(*ratio, *kind));
     let (mesh, rod) = rod_with(case.depth, &case.albedo, case.forward, case.channels());
     let flown = Piecewise::constant(sampling, mesh.support());
@@ -118,13 +117,12 @@ fn moments((case, ratio, kind): &(Case, f64, usize), seen: &mut Seen) -> Option<
         seen.central(row, known.relative[0], known.error, second);
         seen.central(row + 3, known.relative[2], known.error, fourth);
     }
-    Some(())
 }
 
 /// Twelfths hold halves, thirds and quarters.
 const STRETCHES: usize = 12;
 
-/// What leaves by order at the end and at the beginning, and scores, to the powers 1 … 4.
+/// Light that leaves by order at the end and at the beginning, and scores, to the powers 1 … 4.
 struct Exact<'a> {
     case: &'a Case,
     sampling: Wide,
@@ -188,7 +186,7 @@ impl<'a> Exact<'a> {
         [q + s * forward, s * (1.0 - forward)]
     }
 
-    /// What leaves at the end or at the beginning, of all orders to the power k.
+    /// Light that leaves at the end or at the beginning, of all orders to the power k.
     fn by_order(&self, k: usize, end: usize) -> Vec<Wide> {
         let rates =
             |stretch: usize| [self.sampling * (1.0 - self.odds[stretch][k][0]), Wide::default()];

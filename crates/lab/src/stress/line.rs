@@ -27,7 +27,7 @@ pub(super) const NOTHING: Both = [[Wide { high: 0.0, low: 0.0 }; TERMS]; 2];
 pub(super) struct Step {
     /// Number of its stretch.
     pub stretch: usize,
-    /// Where it begins.
+    /// Its beginning.
     pub from: Wide,
     /// Its width.
     pub width: Wide,

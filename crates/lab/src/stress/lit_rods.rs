@@ -109,7 +109,7 @@ fn moments(case: &Lit, shadow: Shadow) -> [Wide; 4] {
                 exponential((-(loss * (1.0 - step.from))).exp(), loss * step.width)
             };
             let alive = left(depth);
-            let own = [forward, 1.0 - forward].map(|phase| {
+            [forward, 1.0 - forward].map(|phase| {
                 let scores = Scores::new(case.combination, phase, &losses.map(left));
                 let mut sum = constant(Wide::default());
                 let lone = scores.with_hit(k, 0);
@@ -124,8 +124,7 @@ fn moments(case: &Lit, shadow: Shadow) -> [Wide; 4] {
                     add(&mut sum, scattered * binomial(k, i), &later);
                 }
                 sum
-            });
-            own
+            })
         };
         found.push(line.solve(&|_| rates, &source, zero));
     }

@@ -39,6 +39,9 @@
 //! Random parameters depend on the seed and the line only: a run finds the same numbers on every machine that rounds
 //! alike, whatever its threads.
 
+// Trials take their parameters, numbers too, by reference.
+#![allow(clippy::trivially_copy_pass_by_ref)]
+
 pub mod accumulators;
 pub mod balls;
 mod chains;

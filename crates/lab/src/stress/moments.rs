@@ -97,7 +97,7 @@ fn central([j2, j3, j4]: [Wide; 3]) -> [Wide; 2] {
     [u, fourth]
 }
 
-fn products(case: &Case, seen: &mut Seen) -> Option<()> {
+fn products(case: &Case, seen: &mut Seen) {
     let &Case { extinction, control, sampling, length, albedo } = case;
     let mesh = Mesh::new(homogeneous(extinction, length));
     let span = Span::new(0.0, length);
@@ -135,11 +135,10 @@ fn products(case: &Case, seen: &mut Seen) -> Option<()> {
             of_rule(&format!("{rule:?}"), &rule, losses);
         }
     }
-    Some(())
 }
 
 /// T itself, and T in units of `e^{−τ}` where it underflows.
-fn transmittances(&Depth { length, depth }: &Depth, seen: &mut Seen) -> Option<()> {
+fn transmittances(&Depth { length, depth }: &Depth, seen: &mut Seen) {
     let extinction = depth / length;
     let medium = homogeneous(extinction, length);
     let depth = medium.optical_depth(medium.span());
@@ -147,5 +146,4 @@ fn transmittances(&Depth { length, depth }: &Depth, seen: &mut Seen) -> Option<(
     let found = transmittance(depth, unit);
     let exact = (unit - Wide::product(extinction, length)).exp();
     seen.see(0, off(found.value, exact) / found.error);
-    Some(())
 }

@@ -202,7 +202,7 @@ pub(super) fn roots(albedo: Wide, cosines: &[Wide], weights: &[Wide]) -> Vec<Wid
     between.collect()
 }
 
-/// The solution of equations whose rows end with their right sides.
+/// Solves equations; rows end with their right sides.
 pub(super) fn solved_pivoted(rows: Vec<Vec<Wide>>) -> Option<Vec<Wide>> {
     let found = solved(rows, |x| x.high.abs(), true)?;
     Some(found.into_iter().map(|[x]| x).collect())

@@ -75,7 +75,7 @@ pub struct Digits {
     exact: f64,
     number: Number,
     /// Significant digits shown; all of them at [`Digits::ALL`].
-    digits: usize,
+    shown: usize,
     is_shrunk: bool,
 }
 
@@ -105,7 +105,7 @@ impl Strategy for Number {
                 }
             }
         };
-        Ok(Digits { exact, number: *self, digits: Digits::ALL, is_shrunk: false })
+        Ok(Digits { exact, number: *self, shown: Digits::ALL, is_shrunk: false })
     }
 }
 
@@ -113,10 +113,10 @@ impl ValueTree for Digits {
     type Value = f64;
 
     fn current(&self) -> f64 {
-        if self.digits == Self::ALL {
+        if self.shown == Self::ALL {
             return self.exact;
         }
-        let short = format!("{:.*e}", self.digits - 1, self.exact).parse();
+        let short = format!("{:.*e}", self.shown - 1, self.exact).parse();
         short.unwrap_or(self.exact).clamp(self.number.low, self.number.high)
     }
 
@@ -124,15 +124,15 @@ impl ValueTree for Digits {
         if std::mem::replace(&mut self.is_shrunk, true) {
             return false;
         }
-        self.digits = 1;
+        self.shown = 1;
         true
     }
 
     fn complicate(&mut self) -> bool {
-        if self.digits >= Self::ALL {
+        if self.shown >= Self::ALL {
             return false;
         }
-        self.digits = (self.digits + 2).min(Self::ALL);
+        self.shown = (self.shown + 2).min(Self::ALL);
         true
     }
 }

@@ -1,4 +1,4 @@
-//! Slabs of isotropic scattering whose rates vary, by Peierls' equation on panels of depth.
+//! Slabs of isotropic scattering with rates that vary, by Peierls' equation on panels of depth.
 //!
 //! What light scattered at x is worth that leaves on top is ½E₂ of the optical depth above it, or scatters
 //! again; below likewise. Between the nodes of a panel it is a polynomial; next to the logarithm of E₁ the
@@ -18,7 +18,7 @@ use theory::problems::slab::Light;
 const NODES: usize = 7;
 /// Panels are optically no thicker.
 const THICKEST: f64 = 1.0;
-/// Panels shrink so many times to a quarter towards both ends, where W is like `u ln u`.
+/// Number of times that panels shrink to a quarter towards both ends, where W is like `u ln u`.
 const SHRINKS: i32 = 7;
 
 /// l and s of a slab from 0 to 1.
@@ -28,7 +28,7 @@ struct Panel {
     x: Span,
     /// u at its beginning.
     depth: f64,
-    /// What u grows by.
+    /// Growth of u.
     width: f64,
 }
 

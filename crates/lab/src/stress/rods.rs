@@ -216,7 +216,7 @@ pub(super) fn lookups(law: &CountLaw) -> Known {
 }
 
 /// Variance and fourth central moment of the walks of three rules, where they diverge, and their lookups.
-fn walks(walked: &Walked, seen: &mut Seen) -> Option<()> {
+fn walks(walked: &Walked, seen: &mut Seen) {
     let (mesh, rod) = rod_of(walked.depth, &[walked.albedo], walked.forward);
     let flown = Piecewise::constant(walked.sampling(), mesh.support());
     let found = rods::predict(&mesh, &rod, &flown, rule(walked.ratio, walked.kind), true);
@@ -232,7 +232,7 @@ fn walks(walked: &Walked, seen: &mut Seen) -> Option<()> {
     }
     if !is_known || length <= 1.0 {
         seen.skip(0);
-        return Some(());
+        return;
     }
     let raw = rates.map(leaving);
     for (i, channel) in found.channels.iter().take(2).enumerate() {
@@ -250,7 +250,6 @@ fn walks(walked: &Walked, seen: &mut Seen) -> Option<()> {
         let found = if critical(rates[3]) > 1.002 { moments.relative[2] } else { f64::INFINITY };
         seen.central(1, found, moments.error, fourth);
     }
-    Some(())
 }
 
 /// The variance next to the length where it becomes infinite.

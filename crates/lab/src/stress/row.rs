@@ -97,7 +97,7 @@ impl Row {
         let [place, first_skipped] = [&tally.place, &tally.first_skipped]
             .map(|place| place.as_ref().map_or_else(String::new, &shown));
         let &Tally { trials, skipped, worst, .. } = tally;
-        Self { trials, skipped, worst, place, first_skipped, ..self.clone() }
+        Self { trials, skipped, first_skipped, worst, place, ..self.clone() }
     }
 
     /// The worst error is within the bound; NaN is not.

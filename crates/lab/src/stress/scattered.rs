@@ -92,7 +92,7 @@ fn deep() -> impl Strategy<Value = Setting> {
 }
 
 parameters! {
-    /// How a scene is estimated; controls and σ̂ of shadow rays are in units of σ_t.
+    /// An estimator of a scene; controls and σ̂ of shadow rays are in units of σ_t.
     Choices {
         albedo: f64 = between(0.1, 1.0),
         control: f64 = residual(),

@@ -15,7 +15,7 @@ use super::chains::arsinh;
 use super::fields::Space;
 use super::parameters::{any_of, between, parameters, sized};
 use super::row::Row;
-use super::table::{Run, Seen};
+use super::table::{Run, Seen, over};
 use crate::stress::slabs::henyey_greenstein;
 use media::phase::Phase;
 use media::phase::isotropic::Isotropic;
@@ -24,10 +24,11 @@ use numeric::geometry::{Point, Ray};
 use numeric::quadrature::GaussLegendre;
 use numeric::sum::Sum;
 use numeric::{Known, Span, Wide};
+use theory::Heuristic;
 use theory::Mesh;
 use theory::problems::single_scattering::Lamp;
 use theory::problems::{Problem, SingleScattering};
-use theory::single::{Camera, CameraTracking, Scene, Tracking};
+use theory::single::{Camera, CameraTracking, Collisions, Mis, NullPaths, Scene, Tracking};
 
 /// All rows.
 pub fn rows(run: Run) -> Vec<Row> {
@@ -42,6 +43,10 @@ pub fn rows(run: Run) -> Vec<Row> {
         seen.see(0, (found.value - graded(&problem)).abs() / found.error);
         Some(())
     }));
+    let range =
+        "four fields, points by angle and delta tracking, σ̂ = 1 … 5 of the largest; radiance";
+    let row = Row::stated("equiangular and delta tracking share the light", range);
+    rows.extend(run.fill([4, 256], [row], Shared::any, shares));
     rows
 }
 
@@ -54,6 +59,36 @@ parameters! {
         distance: f64 = sized(-6.0, 1.0),
         foot: f64 = between(-0.3, 1.3),
     }
+}
+
+parameters! {
+    /// Points by angle and delta tracking in a field; σ̂ is in units of the largest σ_t.
+    Shared {
+        lit: Lit = lit_field(),
+        scale: f64 = sized(0.01, 0.7),
+        heuristic: Heuristic = any_of(&[Heuristic::Balance, Heuristic::Power]),
+        has_nulls: bool = proptest::bool::ANY,
+    }
+}
+
+/// The weighted means of both techniques add up to the radiance.
+fn shares(case: &Shared, seen: &mut Seen) -> Option<()> {
+    let &Shared { lit, scale, heuristic, has_nulls } = case;
+    let problem = lit.problem().filter(|problem| !problem.medium().support().is_empty())?;
+    let (medium, mesh) = (problem.medium(), Mesh::new(problem.medium().clone()));
+    let largest = mesh.largest(|_, sigma| sigma).map_or(1.0, |(_, largest)| largest);
+    let sampling = &Piecewise::constant(scale * largest, mesh.support());
+    let along = if has_nulls { CameraTracking::Ratio } else { CameraTracking::Exact };
+    let camera = Camera::new(&mesh, sampling, &Control::None, along);
+    let scene = &Scene::new(&problem, camera, Tracking::Exact, Vec::new());
+    let collisions = Collisions { medium, sampling, scatters: problem.albedo() };
+    let nulls = has_nulls.then(|| NullPaths::new(&mesh, sampling, heuristic));
+    let [light, walk] = Mis { scene, collisions, heuristic, nulls }.points();
+    let truth = radiance(&problem);
+    let off = (light.powers[1] + walk.powers[1] - truth.value).abs();
+    let error = light.error * light.powers[1] + walk.error * walk.powers[1];
+    seen.see(0, over(off, error + truth.error));
+    Some(())
 }
 
 /// The radiance as theory finds it.
@@ -149,7 +184,7 @@ impl Lit {
     }
 }
 
-/// The ends of so many panels of s and more, which grow away from the light's foot and from both ends.
+/// Ends of a number of panels of s and more, which grow away from the light's foot and from both ends.
 pub(super) fn panels(problem: &SingleScattering, steps: u32) -> Vec<f64> {
     let (support, foot) = (problem.medium().support(), problem.foot());
     let mut ends = problem.medium().breaks();

@@ -64,7 +64,7 @@ pub(super) fn binomial(n: usize, k: usize) -> f64 {
     (0..k).fold(1.0, |ways, i| ways * (n - i) as f64 / (i + 1) as f64)
 }
 
-/// Solves equations whose rows end with some right sides, by elimination: with the largest pivot
+/// Solves equations by elimination; rows end with some right sides: with the largest pivot
 /// of a column, by a size, or with the diagonal.
 pub(super) fn solved<T, const SIDES: usize>(
     mut rows: Vec<Vec<T>>,

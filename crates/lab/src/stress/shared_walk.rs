@@ -23,7 +23,7 @@ pub(super) fn degree(order: &[usize; 4]) -> usize {
     (1..5).map(|m| m * order[m - 1]).sum()
 }
 
-/// In how many ways the factors of so many points are such a product: as many points are all different, and
+/// Number of ways in which the factors of points are such a product: as many points are all different, and
 /// set partitions of the factors have blocks of these sizes.
 fn ways(count: usize, order: &[usize; 4]) -> f64 {
     let points: usize = order.iter().sum();

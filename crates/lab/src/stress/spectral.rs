@@ -50,7 +50,7 @@ pub fn rows(run: Run) -> Vec<Row> {
     rows
 }
 
-/// How a transmittance is tracked.
+/// Tracker of a transmittance.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Kind {
     Independent,
@@ -120,7 +120,7 @@ fn see(seen: &mut Seen, channel: &Channel, raw: [Option<Wide>; 4]) {
     }
 }
 
-fn transmittance(case: &Transmittance, seen: &mut Seen) -> Option<()> {
+fn transmittance(case: &Transmittance, seen: &mut Seen) {
     let &Transmittance { ref channels, kind, is_delta } = case;
     let depths: Vec<f64> = channels.iter().map(|channel| channel.0).collect();
     let mut majorants: Vec<f64> =
@@ -147,7 +147,6 @@ fn transmittance(case: &Transmittance, seen: &mut Seen) -> Option<()> {
         let exact = Walked { depths: &depths, majorants: &majorants, hero: &hero, kind, is_delta };
         see(seen, channel, [1, 2, 3, 4].map(|k| exact.moment(index, k)));
     }
-    Some(())
 }
 
 /// Channels of length 1, and how they are walked.
@@ -167,10 +166,12 @@ impl Walked<'_> {
         let null = |channel: usize| wide(self.majorants[channel]) - self.depths[channel];
         let nulls = power(null(own), k);
         // A walk of its own.
-        let alone = match self.is_delta {
-            true => (-wide(depth)).exp(),
-            false => (nulls / power(wide(majorant), k - 1) - majorant).exp(),
+        let alone = if self.is_delta {
+            -wide(depth)
+        } else {
+            nulls / power(wide(majorant), k - 1) - majorant
         };
+        let alone = alone.exp();
         let by_hero = |hero: usize| {
             let left = if self.is_delta { null(hero) } else { wide(self.majorants[hero]) };
             let flights = (k - 1) as f64 * wide(self.majorants[hero]) - k as f64 * wide(majorant);
@@ -252,7 +253,7 @@ fn coloured(
     }
 }
 
-fn rod(case: &Coloured, seen: &mut Seen) -> Option<()> {
+fn rod(case: &Coloured, seen: &mut Seen) {
     let albedos: Vec<f64> = case.channels.iter().map(|channel| channel.0).collect();
     let medium = homogeneous(case.depth, 1.0);
     let rod = SpectralRod::new(medium.clone(), albedos, case.forward);
@@ -263,10 +264,9 @@ fn rod(case: &Coloured, seen: &mut Seen) -> Option<()> {
         (critical(rates) > 1.002).then(|| self::leaving(rates))
     };
     coloured(case, (Box::new(Rods::new(&rod, &mesh, &flown)), &rod.colours), &exact, seen);
-    Some(())
 }
 
-fn slab(case: &Coloured, seen: &mut Seen) -> Option<()> {
+fn slab(case: &Coloured, seen: &mut Seen) {
     // Diffuse now and then.
     let light = if case.cosine < 0.2 { Light::Diffuse } else { Light::Collimated(case.cosine) };
     let albedos: Vec<f64> = case.channels.iter().map(|channel| channel.0).collect();
@@ -284,7 +284,6 @@ fn slab(case: &Coloured, seen: &mut Seen) -> Option<()> {
     };
     let body = Slabs::new(&slab, (&mesh, &flown), false);
     coloured(case, (Box::new(body), &slab.colours), &exact, seen);
-    Some(())
 }
 
 /// One channel a draw: `E[X^k] = w^{1−k} R`, or T.

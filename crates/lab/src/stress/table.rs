@@ -53,12 +53,12 @@ const MAX_SHRINKS: u32 = 400;
 
 impl Run {
     /// Fills rows with a number of trials, quick and full. A trial that returns `None` is skipped in all rows.
-    pub fn fill<S: Strategy>(
+    pub fn fill<S: Strategy, O: Outcome>(
         self,
         trials: [u32; 2],
         rows: impl Into<Vec<Row>>,
         parameters: impl Fn() -> S + Sync,
-        trial: impl Fn(&S::Value, &mut Seen) -> Option<()> + Sync,
+        trial: impl Fn(&S::Value, &mut Seen) -> O + Sync,
     ) -> Vec<Row> {
         let rows: Vec<Row> = rows.into();
         let name = name_hash(&format!("stress|{}|{}", rows[0].quantity, rows[0].range));
@@ -71,7 +71,7 @@ impl Run {
             || Seen { place: Place::default(), tallies: rows.iter().map(Row::tally).collect() };
         let try_out = |number: u32, parameters: &S::Value, seen: &mut Seen| {
             seen.place = Place { trial: number, label: String::new() };
-            if trial(parameters, seen).is_none() {
+            if trial(parameters, seen).skips() {
                 (0..rows.len()).for_each(|row| seen.skip(row));
             }
         };
@@ -110,6 +110,24 @@ impl Run {
             Row { place: format!("{}; shortened: {shortest:?}", row.place), ..row }
         };
         rows.iter().zip(&found).enumerate().map(row).collect()
+    }
+}
+
+/// Answer of a trial: nothing, or `None` where there was nothing to compare.
+pub trait Outcome {
+    /// Returns whether the trial is skipped in all rows.
+    fn skips(self) -> bool;
+}
+
+impl Outcome for () {
+    fn skips(self) -> bool {
+        false
+    }
+}
+
+impl Outcome for Option<()> {
+    fn skips(self) -> bool {
+        self.is_none()
     }
 }
 

@@ -83,21 +83,19 @@ pub(super) fn normal_between(a: Wide, b: Wide) -> Wide {
     }
 }
 
-fn quantile(&level: &f64, seen: &mut Seen) -> Option<()> {
+fn quantile(&level: &f64, seen: &mut Seen) {
     let z = normal::upper_quantile(level);
     let density = (-Wide::product(z, z).scaled(-1)).exp() / Wide::PI.scaled(1).sqrt();
     let off = (normal_tail(Wide::from(z)) - level) / density;
     seen.see(0, (off.value() / z).abs());
-    Some(())
 }
 
-fn error_function(&x: &f64, seen: &mut Seen) -> Option<()> {
+fn error_function(&x: &f64, seen: &mut Seen) {
     let tail = normal_tail(x / Wide::from(0.5).sqrt()).scaled(1);
     seen.relative(0, libm::erfc(x), tail);
     if (0.1..5.0).contains(&x) {
         seen.relative(0, libm::erf(x), 1.0 - tail);
     }
-    Some(())
 }
 
 /// `P(χ² > x) = e^{−x/2} Σ_{j<m} (x/2)^j/j!` for 2m degrees.
@@ -144,7 +142,7 @@ fn remainder(n: f64) -> f64 {
     (1.0 / 12.0 - z * (1.0 / 360.0 - z * (1.0 / 1260.0 - z / 1680.0))) / n
 }
 
-/// Both tails against a quadrature of the density, whose exponent has 32 digits.
+/// Both tails against a quadrature of the density, with 32 digits of its exponent.
 fn many_degrees(&(degrees, sign, deviations): &(f64, f64, f64), seen: &mut Seen) -> Option<()> {
     let (a, z) = (0.5 * degrees, sign * deviations);
     let x = a + z * a.sqrt();
@@ -162,7 +160,7 @@ fn many_degrees(&(degrees, sign, deviations): &(f64, f64, f64), seen: &mut Seen)
 }
 
 /// The tail at each end of the interval, as an integral of the density of the end.
-fn binomial_ends(&Successes { trials, share, missing }: &Successes, seen: &mut Seen) -> Option<()> {
+fn binomial_ends(&Successes { trials, share, missing }: &Successes, seen: &mut Seen) {
     let n = trials.round();
     let k = (n * share).round();
     let level = 1.0 - missing;
@@ -188,11 +186,10 @@ fn binomial_ends(&Successes { trials, share, missing }: &Successes, seen: &mut S
         // How far the end is from where the tail would be right.
         seen.see(0, ((exact - tail) / slope / end).abs());
     }
-    Some(())
 }
 
 /// Probabilities by recurrence from the mode against `e^{−m} mⁿ/n!`.
-fn poisson(&mean: &f64, seen: &mut Seen) -> Option<()> {
+fn poisson(&mean: &f64, seen: &mut Seen) {
     let (mut ln_mass, ln_mean) = (-Wide::from(mean), Wide::from(mean).ln());
     for (n, &found) in CountLaw::poisson(mean).pmf.iter().enumerate() {
         if n > 0 {
@@ -204,11 +201,10 @@ fn poisson(&mean: &f64, seen: &mut Seen) -> Option<()> {
             seen.relative(0, found, exact);
         }
     }
-    Some(())
 }
 
 /// Products of factors against sums of logarithms.
-fn catoni(y: &Vec<f64>, seen: &mut Seen) -> Option<()> {
+fn catoni(y: &Vec<f64>, seen: &mut Seen) {
     let (mut exact, mut size) = (Wide::default(), 0.0);
     for &y in y {
         let size_of_y = Wide::from(y.abs());
@@ -219,7 +215,6 @@ fn catoni(y: &Vec<f64>, seen: &mut Seen) -> Option<()> {
     let mut sums = PsiSums::<1>::default();
     y.chunks(1000).for_each(|y| sums.absorb(y, &[Argument { slope: 1.0, shift: 0.0 }]));
     seen.see(0, off(sums.totals()[0], exact) / size);
-    Some(())
 }
 
 /// Draws of both signs.
@@ -231,10 +226,9 @@ fn catoni_draws() -> impl Strategy<Value = Vec<f64>> {
 
 /// Smirnov's sum for the upper tail against Anderson and Darling's series for the lower one, which shares
 /// no term with it, and beyond x = 40 against the first term's expansion.
-fn anderson_darling(&x: &f64, seen: &mut Seen) -> Option<()> {
+fn anderson_darling(&x: &f64, seen: &mut Seen) {
     let exact = if x < 40.0 { 1.0 - below(x) } else { Wide::from(far_tail(x)) };
     seen.relative(0, anderson_darling::upper_tail(x), exact);
-    Some(())
 }
 
 /// `P(A² ≤ x)` as Anderson and Darling give it (Journal of the American Statistical Association 49,

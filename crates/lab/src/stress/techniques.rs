@@ -47,13 +47,13 @@ pub struct Case {
     /// The mean lookups of a shadow ray: factors, powers of r and exponents of `e^{−br}`.
     cast: Vec<(Wide, i32, Wide)>,
     length: Wide,
-    /// What all techniques become.
+    /// Equations of all techniques.
     pub chain: Chain,
 }
 
-/// What raw moments are, from the solved chain.
+/// Raw moments, from the solved chain.
 pub type Moments = dyn Fn(&[Wide]) -> [Wide; 4];
-/// What mean lookups are.
+/// Mean lookups, from the solved chain.
 pub type Lookups = dyn Fn(&[Wide]) -> Wide;
 
 /// What is to be compared: exact raw moments and lookups, from the solved chain.
@@ -92,7 +92,7 @@ fn cast(sigma: f64, tracking: Tracking) -> Vec<(Wide, i32, Wide)> {
 }
 
 impl Case {
-    /// Of a length, σ̂ and a control along the ray, and shadow rays.
+    /// A scene of a length, with σ̂ and a control along the ray, and shadow rays.
     pub fn new(
         problem: &SingleScattering,
         (sigma, length): (f64, f64),

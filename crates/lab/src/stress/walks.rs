@@ -38,9 +38,9 @@ const WHITE: f64 = 1e-14;
 /// Half as many directions again as moments take, and a first layer of a hundredth.
 const FINER: Resolution =
     Resolution { faintest: 1e-9, directions: 24, first_layer: 1e-12, ..Resolution::FINE };
-/// The same where r varies, of which many layers are solved.
+/// Resolution where r varies and many layers are solved.
 const LAYERED: Resolution = Resolution { faintest: 1e-6, first_layer: 1e-9, ..FINER };
-/// What the rows are about.
+/// Quantity of the rows.
 const WALKS: &str = "walks in a slab";
 /// Fainter light is not resolved to 1e-4, and refused.
 const FAINT: f64 = 1e-9;
@@ -145,10 +145,10 @@ fn rule(kind: usize, most: f64) -> ParticleRule {
     rules[kind % if most <= 1.0 { 3 } else { 2 }]
 }
 
-/// What leaves in all lights.
+/// R and T in all lights.
 type Leaving = Vec<[Wide; 2]>;
 
-/// What leaves the slabs of a walk's moments, of which the first infinite one and those beyond are not there,
+/// R and T of the slabs of a walk's moments, up to the first infinite one,
 /// and how often it collides.
 struct Exact {
     leaving: Vec<Leaving>,
@@ -214,7 +214,7 @@ fn slices(cut: &[Piece], walk: &Walk, k: u32, score: f64) -> Vec<Slice> {
 }
 
 /// One ratio, isotropic scattering: discrete ordinates.
-fn even(parameters: &Even, seen: &mut Seen) -> Option<()> {
+fn even(parameters: &Even, seen: &mut Seen) {
     let &Even { depth, albedo, ratio, kind, ref lights } = parameters;
     let rule = rule(kind, ratio);
     let (phase, flown) = (Phase::Isotropic(Isotropic), depth / ratio);
@@ -248,11 +248,10 @@ fn even(parameters: &Even, seen: &mut Seen) -> Option<()> {
         lights.iter().map(|light| (1.0 - left(light)) / ends).collect()
     });
     compare(seen, &walk, lights, &Exact { leaving, collisions: Some(collisions) });
-    Some(())
 }
 
 /// Layers of other ratios and other phase functions: the same slabs with more directions.
-fn finer(parameters: &Layers, seen: &mut Seen) -> Option<()> {
+fn finer(parameters: &Layers, seen: &mut Seen) {
     let &Layers { depth, albedo, ref ratios, kind, phase, ref lights } = parameters;
     let most = ratios.iter().copied().fold(0.0, f64::max);
     let rule = rule(kind, most);
@@ -267,11 +266,10 @@ fn finer(parameters: &Layers, seen: &mut Seen) -> Option<()> {
         collisions: Some(of_power(0).map_or_else(Vec::new, |all| all.iter().map(score).collect())),
     };
     compare(seen, &walk, lights, &exact);
-    Some(())
 }
 
 /// r that varies, and other phase functions: the same layers with more directions.
-fn ramps(parameters: &Ramp, seen: &mut Seen) -> Option<()> {
+fn ramps(parameters: &Ramp, seen: &mut Seen) {
     let &Ramp { flown, albedo, ends, kind, phase, ref lights } = parameters;
     let rule = rule(kind, f64::INFINITY);
     let cut = |count: u32| -> Vec<Piece> {
@@ -301,7 +299,6 @@ fn ramps(parameters: &Ramp, seen: &mut Seen) -> Option<()> {
     };
     let leaving = (1..=4).map_while(of_power).collect();
     compare(seen, &walk, lights, &Exact { leaving, collisions: None });
-    Some(())
 }
 
 /// Lights that graze, or none of them: layers are thinner for all where one does.
@@ -321,7 +318,7 @@ fn alike() -> impl Strategy<Value = Vec<Light>> {
 }
 
 /// r that varies: Peierls' equation.
-fn graded(parameters: &Graded, seen: &mut Seen) -> Option<()> {
+fn graded(parameters: &Graded, seen: &mut Seen) {
     let &Graded { albedo, most, is_weighted, collisions, ref values, largest, ref lights } =
         parameters;
     // Other walks know σ_t alone where r is nowhere above 1, as on one layer.
@@ -360,5 +357,4 @@ fn graded(parameters: &Graded, seen: &mut Seen) -> Option<()> {
     let pieces = Pieces::new(&mesh, &flown, &rule.kinks(albedo), lights);
     let walk = walk(Phase::Isotropic(Isotropic), (albedo, rule), pieces, most, depth);
     compare(seen, &walk, lights, &Exact { leaving, collisions: None });
-    Some(())
 }
