@@ -28,7 +28,11 @@ pub struct Arguments {
     out: PathBuf,
 }
 
-/// Stresses all quantities, prints and writes the table, and answers 1 if any bound is broken.
+/// Runs the stress test, prints and writes the table, and returns 1 if any bound is broken.
+///
+/// # Errors
+///
+/// A folder that cannot be written, a pool of threads that cannot be started, or an encoder that fails.
 pub fn main(arguments: &Arguments, console: &Console) -> anyhow::Result<u8> {
     output::writable(&arguments.out.join("stress"))?;
     let threads = arguments.threads.map_or(0, usize::from);
