@@ -12,8 +12,8 @@
 use cpu_time::ProcessTime;
 use trueflight::case::Case;
 use trueflight::case::Source;
-use trueflight::draw::cache::Cache;
 use trueflight::draw::run;
+use trueflight::draw::store::{Header, Store};
 use trueflight::plan::Amount;
 use trueflight::plan::Options;
 use trueflight::plan::Plan;
@@ -115,14 +115,17 @@ fn main() {
         println!("{:<46} {:>9} {:>9} {:>8}", "", "ns, with", "without", "ratio");
         for pair in &pairs {
             let plans = [&pair.skipping, &pair.whole].map(|cases| plan(cases));
-            report(pair.name, || plans.each_ref().map(|plan| time(plan, &Cache::default())));
+            report(pair.name, || plans.each_ref().map(|plan| time(plan, &Store::default())));
         }
         let cases = [eq21("kept", both)];
         let plan = plan(&cases);
-        let mut kept = Cache::new("this program");
-        kept.keep(&plan, &run::draw(&plan, &|_| {}));
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("draws.bin");
+        let mut kept = Store::new(Header::new(&plan, "this program", &[], None));
+        kept.finish(&path, &plan, &run::draw(&plan, &|_| {})).expect("written");
+        kept.reuse(&path, false).expect("it can be read");
         report("an experiment drawn by an earlier run", || {
-            [time(&plan, &kept), time(&plan, &Cache::default())]
+            [time(&plan, &kept), time(&plan, &Store::default())]
         });
     });
 }
@@ -132,9 +135,9 @@ fn plan(cases: &[Case]) -> Plan<'_> {
 }
 
 /// Processor seconds of the drawing.
-fn time(plan: &Plan, kept: &Cache) -> f64 {
+fn time(plan: &Plan, kept: &Store) -> f64 {
     let begin = ProcessTime::now();
-    std::hint::black_box(run::draw_uncached(plan, kept, &|_| {}));
+    std::hint::black_box(run::draw_with(plan, kept, &|_| {}));
     begin.elapsed().as_secs_f64()
 }
 

@@ -18,6 +18,7 @@ use super::verdict::{self, Inconclusive};
 use super::{Console, drawing, numbers, output};
 use crate::case::Case;
 use crate::case::Catalogue;
+use crate::draw::store::Store;
 use crate::plan::Options;
 use crate::record::Record;
 use crate::report::{Report, annotations, html, junit, markdown, record_json, summary_csv};
@@ -72,8 +73,11 @@ pub fn main(arguments: &Arguments, catalogue: &Catalogue, console: &Console) -> 
     let options = arguments.looks.of(options);
     arguments.writable(&cases)?;
     let baselines = arguments.baseline.open()?;
-    let record =
-        selection.with_plan(&cases, &options, console, |plan| Ok(drawing::draw(plan, console)))?;
+    let record = selection
+        .with_plan(&cases, &options, console, |plan| {
+            drawing::judged(plan, &Store::default(), console)
+        })?
+        .0;
     let (record, run) = baselines.compare(record, &cases);
     let mut errors = Errors::default();
     arguments.write(&record, &mut errors);

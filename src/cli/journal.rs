@@ -1,4 +1,4 @@
-//! The file of blocks beside the results: begun, gone on with, and the signals that end its drawing.
+//! The logs of the store beside the results: begun, resumed, ended, and the signals that end a drawing.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -9,32 +9,88 @@ use anyhow::{Context, bail};
 use signal_hook::consts::{SIGINT, SIGTERM};
 use signal_hook::flag;
 
-use super::drawing::CACHE;
 use super::output;
-use crate::draw::blocks::{Blocks, Lock};
-use crate::draw::share::Header;
-use crate::draw::store::Store;
+use crate::draw::store::{Header, Key, Log, Store, entry, lock};
 use crate::draw::workers::Workers;
 use media::files;
 
-/// What a process that a signal ends answers to its shell: 128 + SIGINT.
+/// Exit code of a process that a signal ends: 128 + SIGINT.
 const INTERRUPTED: i32 = 130;
 
-/// Where a run writes its record.
-const RECORD: &str = "record.json";
-
-/// Where a folder has its file of blocks.
-pub fn path(folder: &Path) -> PathBuf {
+/// Returns where a folder has the blocks of a share or of an interrupted run.
+pub fn blocks(folder: &Path) -> PathBuf {
     folder.join("blocks.bin")
 }
 
-/// The command that goes on with it.
+/// Returns where a folder has the experiments that its runs have finished.
+pub fn finished(folder: &Path) -> PathBuf {
+    folder.join("draws.bin")
+}
+
+/// Returns the command that resumes the run of a folder.
 pub fn resume(folder: &Path) -> String {
     format!("`{} run --resume {}`", output::program(), folder.display())
 }
 
-/// What the first Ctrl-C, or the first wish to terminate, sets; the second ends the process at once.
-pub fn stop() -> anyhow::Result<Arc<AtomicBool>> {
+/// Opens a log, and reads its header.
+pub fn open(folder: &Path) -> anyhow::Result<(Log, Header)> {
+    let log = Log::open(&blocks(folder))?;
+    let header = log.get(Key::Header)?.context("it has no header")?;
+    Ok((log, header))
+}
+
+/// Reads the header of an interrupted run.
+pub fn header(folder: &Path) -> anyhow::Result<Header> {
+    let path = blocks(folder);
+    if !path.exists() {
+        bail!(
+            "there is no {}: nothing was interrupted there, or it has been finished since",
+            path.display()
+        );
+    }
+    Ok(open(folder)?.1)
+}
+
+/// Begins a log, or resumes one of the same draws. A log that is in the way is an error, unless the run is fresh.
+pub fn store(
+    folder: &Path,
+    header: Header,
+    is_resumed: bool,
+    is_fresh: bool,
+    workers: Box<dyn Workers>,
+) -> anyhow::Result<Store> {
+    let (path, lock) = (blocks(folder), lock(folder)?);
+    if is_resumed {
+        // Before frames of another program are cut off.
+        if let Some(why) = open(folder)?.1.mismatch(&header) {
+            bail!("cannot go on with {}: {why}; begin anew with --fresh", path.display());
+        }
+    } else {
+        if path.exists() && !is_fresh {
+            let (log, _) = open(folder)
+                .context("something is in the way; --fresh puts another in its place")?;
+            let (path, cure) = (path.display(), resume(folder));
+            if log.has(Key::End) {
+                bail!("{path} holds a finished share; --fresh draws it anew");
+            }
+            bail!(
+                "{path} holds the blocks of a run that was interrupted; go on with {cure}, or begin anew with --fresh"
+            );
+        }
+        Log::write(&path, [entry(Key::Header, &header)])?;
+    }
+    let log = Log::resume(&path, lock)?;
+    if let Some(at) = log.damaged_at {
+        let path = path.display();
+        output::warn(&format!(
+            "{path} is torn or damaged at byte {at}: what followed is drawn again"
+        ));
+    }
+    Ok(Store::journal(header, log, workers, stop()?))
+}
+
+/// Returns a flag that the first Ctrl-C, or the first SIGTERM, sets; the second ends the process at once.
+fn stop() -> anyhow::Result<Arc<AtomicBool>> {
     let stop = Arc::new(AtomicBool::new(false));
     for signal in [SIGINT, SIGTERM] {
         // In this order: the first finds the flag not set yet.
@@ -45,67 +101,11 @@ pub fn stop() -> anyhow::Result<Arc<AtomicBool>> {
     Ok(stop)
 }
 
-/// Begins a file where none is in the way, unless all is to be begun anew.
-pub fn begin(
-    folder: &Path,
-    header: &Header,
-    is_fresh: bool,
-    workers: Box<dyn Workers>,
-) -> anyhow::Result<Store> {
-    let (path, lock) = (path(folder), Lock::take(folder)?);
-    if path.exists() && !is_fresh {
-        match Blocks::open(&path) {
-            Ok(found) if found.is_finished => {
-                bail!("{} holds a finished share; --fresh draws it anew", path.display())
-            }
-            Ok(_) => bail!(
-                "{} holds the blocks of a run that was interrupted; go on with {}, or begin anew with --fresh",
-                path.display(),
-                resume(folder)
-            ),
-            Err(fault) => {
-                return Err(fault)
-                    .context("something is in the way; --fresh puts another in its place");
-            }
-        }
-    }
-    Ok(Store::journal(Blocks::create(&path, header, lock)?, workers, stop()?))
-}
-
-/// Goes on with the file of an interrupted run, if it is one of the same draws.
-pub fn go_on(folder: &Path, header: &Header, workers: Box<dyn Workers>) -> anyhow::Result<Store> {
-    let (path, lock) = (path(folder), Lock::take(folder)?);
-    // Before anything that another program wrote is cut off.
-    if let Some(why) = Blocks::open(&path)?.header.mismatch(header) {
-        bail!("cannot go on with {}: {why}; begin anew with --fresh", path.display());
-    }
-    let file = Blocks::go_on(&path, lock)?;
-    if let Some(at) = file.damaged_at {
-        let path = path.display();
-        output::warn(&format!(
-            "{path} is torn or damaged at byte {at}: what followed is drawn again"
-        ));
-    }
-    Ok(Store::journal(file, workers, stop()?))
-}
-
-/// Removes the file of a run whose results are written, when these are on the disk.
+/// Removes the blocks of a run when the disk has its results.
 pub fn end(folder: &Path) -> anyhow::Result<()> {
-    let path = path(folder);
-    for name in [RECORD, CACHE] {
-        files::synchronise(&folder.join(name));
+    for path in [folder.join("record.json"), finished(folder)] {
+        files::synchronise(&path);
     }
+    let path = blocks(folder);
     fs::remove_file(&path).with_context(|| format!("cannot remove {}", path.display()))
-}
-
-/// What is known of the file of an interrupted run.
-pub fn header(folder: &Path) -> anyhow::Result<Header> {
-    let path = path(folder);
-    if !path.exists() {
-        bail!(
-            "there is no {}: nothing was interrupted there, or it has been finished since",
-            path.display()
-        );
-    }
-    Ok(Blocks::open(&path)?.header)
 }

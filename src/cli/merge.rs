@@ -1,6 +1,6 @@
 //! `trueflight merge`: a run that many machines drew, judged.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, bail};
@@ -10,9 +10,8 @@ use super::output::Format;
 use super::verdict::Inconclusive;
 use super::{Console, journal, run};
 use crate::case::Catalogue;
-use crate::draw::blocks::Blocks;
-use crate::draw::share::{Header, Share, pieces};
-use crate::draw::store::Store;
+use crate::draw::share::pieces;
+use crate::draw::store::{Header, Key, Log, Store};
 use crate::plan::Plan;
 use crate::record::baseline::fingerprint;
 
@@ -38,89 +37,99 @@ pub struct Arguments {
 
 /// Reads the parts, and does with them what `run` does with its draws.
 pub fn main(arguments: &Arguments, catalogue: &Catalogue, console: &Console) -> anyhow::Result<u8> {
-    let mut files = Vec::new();
+    let mut parts = Vec::new();
     for folder in &arguments.parts {
-        let file = Blocks::open(&journal::path(folder)).with_context(|| {
+        let no_part = || {
             format!(
                 "{} is no part; give the folders that `run --shard K/N --out` wrote",
                 folder.display()
             )
-        });
-        files.push(file?);
+        };
+        let (log, header) = journal::open(folder).with_context(no_part)?;
+        parts.push(Part { folder, log, header });
     }
-    let Some(header) = files.first().map(|file| file.header.clone()) else {
-        bail!("there are no parts");
-    };
-    let faults = faults(&arguments.parts, &files, &header);
+    let faults = faults(&parts);
     if !faults.is_empty() {
         bail!("the parts are not one run:\n  {}", faults.join("\n  "));
     }
+    let header = parts[0].header.clone();
     let mut asked = run::Arguments::of(&header.words)?;
     asked.out.clone_from(&arguments.out);
     (asked.inconclusive, asked.format) = (arguments.inconclusive, arguments.format);
     asked.verbose = arguments.verbose;
-    // What an earlier run has drawn is not asked.
+    // Draws of an earlier run are no part.
     asked.fresh = true;
     run::judge(&asked, catalogue, console, |plan| {
         let own = Header::new(plan, &fingerprint()?, &header.words, None);
         if let Some(why) = header.mismatch(&own) {
             bail!("{} cannot be judged here: {why}", arguments.parts[0].display());
         }
-        for (folder, file) in arguments.parts.iter().zip(&files) {
-            if let Some(share) = file.header.share.filter(|&share| !has_all(plan, file, share)) {
-                bail!("{} has other blocks than those of share {share}", folder.display());
-            }
+        if let Some(part) = parts.iter().find(|part| !part.has_all(plan, &own.keys())) {
+            bail!("{} has other blocks than those of its share", part.folder.display());
         }
-        Ok(Store::parts(files))
+        Ok(Store::shares(own, parts.into_iter().map(|part| part.log).collect()))
     })
 }
 
-/// Everything that keeps parts from being one run.
-fn faults(folders: &[PathBuf], files: &[Blocks], first: &Header) -> Vec<String> {
-    let of = first.share.map_or(0, |share| share.of);
+/// Part of a run: its folder, and what is in it.
+struct Part<'a> {
+    folder: &'a Path,
+    log: Log,
+    header: Header,
+}
+
+impl Part<'_> {
+    /// Returns whether it has all blocks of its share, and no others.
+    fn has_all(&self, plan: &Plan, keys: &[u64]) -> bool {
+        let pieces = self.header.share.into_iter().flat_map(|share| pieces(plan, share));
+        let mut all = pieces.flat_map(|piece| {
+            let experiments = piece.experiments.into_iter();
+            experiments.map(move |one| (one, piece.block))
+        });
+        let mut blocks = 0;
+        let has = |(one, block)| {
+            blocks += 1;
+            self.log.has(Key::Block(keys[one as usize], block))
+        };
+        all.all(has) && blocks == self.log.blocks(None)
+    }
+}
+
+/// Returns everything that keeps parts from being one run.
+fn faults(parts: &[Part]) -> Vec<String> {
+    let Some(first) = parts.first() else { return vec!["there are no parts".to_owned()] };
+    let of = first.header.share.map_or(0, |share| share.of);
     let mut faults = Vec::new();
     let mut seen = BTreeMap::<u32, &Path>::new();
-    for (folder, file) in folders.iter().zip(files) {
-        let name = folder.display();
-        let Some(share) = file.header.share else {
+    for Part { folder, log, header } in parts {
+        let (name, cure) = (folder.display(), journal::resume(folder));
+        let Some(share) = header.share else {
             faults.push(format!("{name} is an interrupted run, not a part of one"));
             continue;
         };
-        if let Some(at) = file.damaged_at {
-            let cure = journal::resume(folder);
+        if let Some(at) = log.damaged_at {
             faults.push(format!(
                 "{name} is torn or damaged at byte {at}; {cure} draws again what followed"
             ));
-        } else if !file.is_finished {
-            let (blocks, cure) = (file.len(), journal::resume(folder));
+        } else if !log.has(Key::End) {
+            let blocks = log.blocks(None);
             faults.push(format!("{name} is not finished, it has {blocks} blocks; {cure} goes on"));
         }
-        if let Some(why) = file.header.mismatch(first) {
-            faults.push(format!("{name} is of another run than {}: {why}", folders[0].display()));
+        if let Some(why) = header.mismatch(&first.header) {
+            let first = first.folder.display();
+            faults.push(format!("{name} is of another run than {first}: {why}"));
         }
         if share.of != of {
-            faults.push(format!("{name} is part {share}, {} one of {of}", folders[0].display()));
+            let first = first.folder.display();
+            faults.push(format!("{name} is part {share}, {first} one of {of}"));
         } else if let Some(other) = seen.insert(share.part, folder) {
             faults.push(format!("{name} and {} are both part {share}", other.display()));
         }
     }
-    let given: BTreeSet<u32> = seen.keys().copied().collect();
-    let missing = (1..=of).filter(|part| !given.contains(part));
+    let missing = (1..=of).filter(|part| !seen.contains_key(part));
     let missing: Vec<String> = missing.map(|part| format!("{part}/{of}")).collect();
     if !missing.is_empty() {
         faults.push(format!("missing: {}", missing.join(", ")));
     }
     faults
-}
-
-/// Whether a file has all blocks of its share, and no others.
-fn has_all(plan: &Plan, file: &Blocks, share: Share) -> bool {
-    let (mut blocks, mut missing) = (0_u64, 0);
-    for piece in pieces(plan, share) {
-        for &experiment in &piece.experiments {
-            blocks += 1;
-            missing += usize::from(!file.has((experiment, piece.block)));
-        }
-    }
-    (blocks, missing) == (file.len(), 0)
 }

@@ -26,7 +26,6 @@ mod merge;
 mod mpirun;
 mod numbers;
 mod output;
-mod plan;
 mod predict;
 pub mod ranks;
 mod render;
@@ -79,11 +78,11 @@ enum Command {
     /// The gate for a CI: as run, tuned to decide, with JUnit, Markdown and GitHub annotations
     Check(check::Arguments),
     /// Theory only, no draws: moments, costs, the best σ̂, what is refused
-    Predict(predict::Arguments),
+    Predict(predict::Predict),
     /// Run time against error: ns per draw, time to an error, and how much faster than a plain loop
     Bench(bench::Arguments),
     /// What would run, what is refused, and why
-    Plan(plan::Arguments),
+    Plan(predict::Plan),
     /// Pictures: estimators side by side at an equal number of lookups, with their errors
     Render(render::Arguments),
     /// The page report.html of a stored run, for a browser
@@ -153,9 +152,9 @@ fn carry_out(catalogue: &Catalogue, join: Option<Join>, cli: &Cli) -> anyhow::Re
         },
         Command::Merge(arguments) => merge::main(arguments, catalogue, console),
         Command::Check(arguments) => check::main(arguments, catalogue, console),
-        Command::Predict(arguments) => predict::main(arguments, catalogue, console),
+        Command::Predict(arguments) => predict::predict(arguments, catalogue, console),
         Command::Bench(arguments) => bench::main(arguments, catalogue, console),
-        Command::Plan(arguments) => plan::main(arguments, catalogue, console),
+        Command::Plan(arguments) => predict::plan(arguments, catalogue, console),
         Command::Render(arguments) => render::main(arguments, catalogue, console),
         Command::Report(arguments) => report::main(arguments, console),
         Command::SelfTest(arguments) => self_test::main(arguments, console),

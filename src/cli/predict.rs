@@ -1,18 +1,23 @@
-//! `trueflight predict`: theory only, no draws.
+//! `trueflight predict` and `trueflight plan`: theory and the plan of a run, no draws.
 
+use std::path::PathBuf;
+
+use anyhow::Context;
 use clap::Args;
 
-use super::Console;
 use super::output::{self, Format};
 use super::selection::Selection;
+use super::{Console, journal};
 use crate::case::Catalogue;
+use crate::draw::store::{Header, Store};
 use crate::plan::options::DRAWS;
+use crate::record::baseline::fingerprint;
 use crate::record::verdict;
 use crate::report::console::View;
 
 /// Arguments of `predict`.
 #[derive(Debug, Args)]
-pub struct Arguments {
+pub struct Predict {
     #[command(flatten)]
     selection: Selection,
     /// Show J₁ to J₄, the relative central moments with their error, the cost and the rare-event size
@@ -23,13 +28,17 @@ pub struct Arguments {
     /// optimum: the σ̂ that reaches 90 % of the limit is named so, with the limit
     #[arg(long)]
     optimum: bool,
-    /// How the rows are printed
+    /// Form of the rows on stdout
     #[arg(long, value_enum, default_value_t)]
     format: Format,
 }
 
-/// Prints what theory says of each experiment.
-pub fn main(arguments: &Arguments, catalogue: &Catalogue, console: &Console) -> anyhow::Result<u8> {
+/// Prints the prediction of each experiment.
+pub fn predict(
+    arguments: &Predict,
+    catalogue: &Catalogue,
+    console: &Console,
+) -> anyhow::Result<u8> {
     let selection = &arguments.selection;
     let cases = selection.read(catalogue, console)?;
     let predict =
@@ -38,5 +47,41 @@ pub fn main(arguments: &Arguments, catalogue: &Catalogue, console: &Console) -> 
     let record = selection.with_plan(&cases, &options, console, |plan| Ok(predict(plan)))?;
     let view = if arguments.moments { View::Moments } else { View::Predict };
     output::print_record(&record, view, arguments.format, console)?;
+    Ok(0)
+}
+
+/// Arguments of `plan`.
+#[derive(Debug, Args)]
+pub struct Plan {
+    #[command(flatten)]
+    selection: Selection,
+    /// Folder of the results of an earlier run: experiments that have not changed since are not drawn
+    #[arg(long, default_value = "results", value_name = "DIR")]
+    out: PathBuf,
+    /// Form of the rows on stdout
+    #[arg(long, value_enum, default_value_t)]
+    format: Format,
+}
+
+/// Prints the experiments with their draws, or why they are refused.
+pub fn plan(arguments: &Plan, catalogue: &Catalogue, console: &Console) -> anyhow::Result<u8> {
+    let selection = &arguments.selection;
+    let cases = selection.read(catalogue, console)?;
+    let (record, [kept, ready]) =
+        selection.with_plan(&cases, &selection.options(DRAWS)?, console, |plan| {
+            let mut store = Store::new(Header::new(plan, &fingerprint()?, &[], None));
+            let finished = journal::finished(&arguments.out);
+            let wrong = || format!("cannot read {}; move it away", finished.display());
+            store.reuse(&finished, false).with_context(wrong)?;
+            Ok((verdict::planned(plan), store.reusable(plan)))
+        })?;
+    output::print_record(&record, View::Plan, arguments.format, console)?;
+    if kept > 0 && arguments.format == Format::Table && !console.quiet {
+        let folder = arguments.out.display();
+        output::print(&format!(
+            "{kept} of {ready} experiments have not changed since the last run in {folder}: `run` \
+             would reuse their draws (--fresh makes them anew)\n"
+        ))?;
+    }
     Ok(0)
 }

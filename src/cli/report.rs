@@ -30,7 +30,7 @@ pub fn main(arguments: &Arguments, console: &Console) -> anyhow::Result<u8> {
     let record = record_json::read(&text).with_context(|| {
         format!("{}: make it anew with `trueflight run --out DIR`", path.display())
     })?;
-    if journal::path(folder).exists() {
+    if journal::blocks(folder).exists() {
         let cure = journal::resume(folder);
         output::warn(&format!(
             "the run in {} is not finished: the page is of what was judged; {cure} goes on",

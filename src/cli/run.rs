@@ -9,18 +9,18 @@ use clap::{Args, Command, FromArgMatches};
 use super::baseline::BaselineArguments;
 use super::output::{self, Errors, Format};
 use super::selection::{Looks, Selection};
-use super::verdict::{self, Inconclusive};
+use super::verdict::{Inconclusive, UNDECIDED, close};
 use super::{Console, drawing, journal, numbers};
 use crate::case::Case;
 use crate::case::Catalogue;
-use crate::draw::blocks::Blocks;
-use crate::draw::share::{Header, Share};
-use crate::draw::store::Store;
+use crate::draw::share::Share;
+use crate::draw::store::{Header, Key, Log, Store};
 use crate::draw::workers::{Threads, Workers};
 use crate::plan::Options;
 use crate::plan::Plan;
 use crate::plan::options::DRAWS;
 use crate::record::baseline::fingerprint;
+use crate::record::verdict;
 use crate::report;
 
 /// Arguments of `run`.
@@ -117,10 +117,7 @@ pub fn draw(
     let store = |plan: &Plan| -> anyhow::Result<Store> {
         let header = Header::new(plan, &fingerprint()?, &asked.words(), asked.shard);
         workers.agree(&header).map_err(anyhow::Error::msg)?;
-        match &asked.resume {
-            Some(folder) => journal::go_on(folder, &header, workers),
-            None => journal::begin(&asked.out, &header, asked.fresh, workers),
-        }
+        journal::store(&asked.out, header, asked.resume.is_some(), asked.fresh, workers)
     };
     match asked.shard {
         Some(share) => draw_share(asked, share, catalogue, console, store),
@@ -143,10 +140,11 @@ fn draw_share(
     let (is_whole, was_finished) =
         selection.with_plan(&cases, &arguments.options()?, console, |plan| {
             let store = store(plan)?;
-            let was_finished = store.files.iter().any(|file| file.is_finished);
+            let was_finished = store.logs.iter().any(|log| log.has(Key::End));
             let is_whole = was_finished || drawing::draw_share(plan, share, &store, console)?;
             if is_whole && !was_finished {
-                store.files.iter().try_for_each(Blocks::finish)?;
+                store.logs.iter().try_for_each(|log| log.put(Key::End, &()))?;
+                store.logs.iter().try_for_each(Log::synchronise)?;
             }
             Ok((is_whole, was_finished))
         })?;
@@ -176,20 +174,21 @@ pub fn judge(
     // Better to learn now than after the drawing that nothing can be written.
     output::writable(&arguments.out)?;
     let baselines = arguments.baseline.open()?;
-    let mut cache = drawing::cached(&arguments.out)?;
-    // A comparison wants times and evidence of its own.
-    cache.is_fresh = arguments.fresh || arguments.baseline.is_used();
-    let (record, [reused, ready], store) =
+    // A comparison needs times and evidence of its own.
+    let is_fresh = arguments.fresh || arguments.baseline.is_used();
+    let (finished, cure) = (journal::finished(&arguments.out), journal::resume(&arguments.out));
+    let (record, [reused, ready], kept, store) =
         selection.with_plan(&cases, &arguments.options()?, console, |plan| {
-            let (counts, store) = (cache.count(plan), store(plan)?);
-            let record = drawing::draw_with(plan, &mut cache, &store, console);
-            let kept = || {
-                format!(
-                    "not finished; {} goes on with what is kept",
-                    journal::resume(&arguments.out)
-                )
-            };
-            Ok((record.with_context(kept)?, counts, store))
+            let mut store = store(plan)?;
+            let wrong = || format!("cannot read {}; move it away", finished.display());
+            store.reuse(&finished, is_fresh).with_context(wrong)?;
+            let counts = store.reusable(plan);
+            let drawn = drawing::judged(plan, &store, console);
+            let (mut record, draws) =
+                drawn.with_context(|| format!("not finished; {cure} goes on with what is kept"))?;
+            let kept = store.finish(&finished, plan, &draws);
+            verdict::add_curves(plan, &mut record);
+            Ok((record, counts, kept, store))
         })?;
     // The time is up, or somebody wants it to end; a run that was begun with a limit of time is over then.
     let is_asked = store.stop.load(Ordering::Relaxed) || arguments.resume.is_some();
@@ -197,7 +196,7 @@ pub fn judge(
     let (record, run) = baselines.compare(record, &cases);
     let mut errors = Errors::default();
     let files = errors.write(report::render(&record), &arguments.out);
-    errors.keep(drawing::keep(&cache, &arguments.out));
+    errors.keep(kept);
     if store.keeps && errors.is_empty() && !was_stopped {
         errors.keep(journal::end(&arguments.out));
     }
@@ -220,13 +219,12 @@ pub fn judge(
         let (out, page) = (arguments.out.display(), output::report_in(&arguments.out));
         errors.keep(output::print(&format!("{files} files in {out}\n{reuse}{stored}{page}")));
     }
-    let code = verdict::close(&record, arguments.inconclusive, &errors);
+    let code = close(&record, arguments.inconclusive, &errors);
     if was_stopped {
-        let cure = journal::resume(&arguments.out);
         output::warn(&format!(
             "interrupted, or out of time: this is judged on what was drawn; {cure} goes on"
         ));
     }
     // What was cut short is no pass, whatever counts as one.
-    Ok(if was_stopped && code == 0 { verdict::UNDECIDED } else { code })
+    Ok(if was_stopped && code == 0 { UNDECIDED } else { code })
 }

@@ -16,8 +16,6 @@ use std::time::Instant;
 
 use crate::checks::check::Look;
 use crate::draw::block::Block;
-use crate::draw::blocks::Key;
-use crate::draw::cache::Cache;
 use crate::draw::drawn::{Drawn, Draws, Standing};
 use crate::draw::progress::{self, Listener, Progress, Step};
 use crate::draw::share::{self, Piece, Share};
@@ -45,37 +43,27 @@ struct Running<'p> {
     ahead: VecDeque<Block>,
 }
 
-/// Draws a plan; `progress` is told after each block how many draws it made.
+/// Draws a plan; `progress` hears after each block how many draws it made.
 pub fn draw(plan: &Plan, progress: &(dyn Fn(u64) + Sync)) -> Draws {
-    draw_uncached(plan, &Cache::default(), progress)
+    draw_with(plan, &Store::default(), progress)
 }
 
-/// Draws what an earlier run has not drawn already.
-pub fn draw_uncached(plan: &Plan, cache: &Cache, progress: &(dyn Fn(u64) + Sync)) -> Draws {
-    draw_with(plan, cache, &Store::default(), progress)
-}
-
-/// Draws what neither an earlier run nor a store has; the store keeps the blocks, and can end the drawing.
-pub fn draw_with(
-    plan: &Plan,
-    cache: &Cache,
-    store: &Store,
-    progress: &(dyn Fn(u64) + Sync),
-) -> Draws {
-    draw_heard(plan, cache, store, &|step| match step {
+/// Draws what a store does not have; the store keeps the blocks, and can end the drawing.
+pub fn draw_with(plan: &Plan, store: &Store, progress: &(dyn Fn(u64) + Sync)) -> Draws {
+    draw_heard(plan, store, &|step| match step {
         Step::Drawn(draws) | Step::Kept(draws) if draws > 0 => progress(draws),
         _ => {}
     })
 }
 
-/// Draws what neither an earlier run nor a store has; `listen` hears of every step.
-pub fn draw_heard(plan: &Plan, cache: &Cache, store: &Store, listen: &Listener) -> Draws {
+/// Draws what a store does not have; `listen` hears of every step.
+pub fn draw_heard(plan: &Plan, store: &Store, listen: &Listener) -> Draws {
     let begin = Instant::now();
     let is_late =
         || plan.options.seconds.is_some_and(|limit| begin.elapsed().as_secs_f64() >= limit);
     let is_over = || is_late() || store.is_stopped();
     let drawing = Drawing::new(plan, &is_over);
-    let (mut cases, mut running) = begin_all(plan, cache, store);
+    let (mut cases, mut running) = begin_all(plan, store);
     let progress = Progress::new(plan, listen);
     let listen = |step| progress.hear(step);
     // What a run before had merged.
@@ -103,7 +91,7 @@ pub fn draw_heard(plan: &Plan, cache: &Cache, store: &Store, listen: &Listener) 
             let pieces: Vec<Piece> = units.iter().map(|unit| unit.piece(&running)).collect();
             let drawn = store.blocks(&pieces, &drawing, &listen);
             let members = units.iter().flat_map(|unit| &unit.running);
-            for (&one, block) in members.zip(drawn.into_iter().flatten()) {
+            for (&one, block) in members.zip(drawn) {
                 // What comes after a missing block is left out: the first blocks are kept.
                 match block {
                     Some(block) if !cut_by_time => running[one].ahead.push_back(block),
@@ -111,8 +99,8 @@ pub fn draw_heard(plan: &Plan, cache: &Cache, store: &Store, listen: &Listener) 
                 }
                 running[one].merge();
             }
-            if !cut_by_time && store.is_long() {
-                shorten(store, &running);
+            if !cut_by_time {
+                store.shorten(running.iter().map(|one| (one.number, &one.at)));
             }
         }
         for one in running.iter_mut().filter(|one| !one.at.is_done) {
@@ -167,17 +155,6 @@ fn batch<T>(
     some
 }
 
-/// Lets the store count what is merged.
-fn shorten(store: &Store, running: &[Running]) {
-    let standings: Vec<(u32, &Standing)> =
-        running.iter().map(|one| (one.number, &one.at)).collect();
-    let ahead = running.iter().filter(|one| !one.at.is_done).flat_map(|one| {
-        (one.at.blocks..).zip(&one.ahead).map(|(block, drawn)| ((one.number, block), drawn))
-    });
-    let ahead: Vec<(Key, &Block)> = ahead.collect();
-    store.shorten(&standings, &ahead);
-}
-
 /// Takes draws from the budget, if there is one and it has them beside those that are reserved.
 fn take(budget: &mut Option<u64>, draws: u64, reserved: u64) -> bool {
     let enough = |left: &u64| *left >= reserved;
@@ -193,11 +170,7 @@ fn take(budget: &mut Option<u64>, draws: u64, reserved: u64) -> bool {
 }
 
 /// What is drawn already, and those that are still to be drawn.
-fn begin_all<'p>(
-    plan: &'p Plan,
-    cache: &Cache,
-    store: &Store,
-) -> (Vec<Vec<Drawn>>, Vec<Running<'p>>) {
+fn begin_all<'p>(plan: &'p Plan, store: &Store) -> (Vec<Vec<Drawn>>, Vec<Running<'p>>) {
     let mut cases: Vec<Vec<Drawn>> =
         plan.cases.iter().map(|case| vec![Drawn::default(); case.experiments.len()]).collect();
     let mut running = Vec::new();
@@ -209,13 +182,11 @@ fn begin_all<'p>(
             if planned.outcome.is_err() || planned_case.twin(index).is_some() {
                 continue;
             }
-            // What an interrupted run has begun it goes on with, whatever another one has left.
-            let cached = cache.drawn(plan, planned_case, planned);
-            if let Some(drawn) = cached.filter(|_| !store.knows(number)) {
-                cases[case][index] = drawn;
+            let at = store.standing(number, planned).unwrap_or_else(|| Standing::new(planned));
+            if at.drawn.is_reused {
+                cases[case][index] = at.drawn;
                 continue;
             }
-            let at = store.standing(number).unwrap_or_else(|| Standing::new(planned));
             let (step, ahead) = (plan.step(), VecDeque::new());
             running.push(Running { case, index, number, planned, step, at, ahead });
         }

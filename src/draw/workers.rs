@@ -3,7 +3,8 @@
 use std::fmt::Debug;
 
 use crate::draw::block::{self, Block};
-use crate::draw::share::{Header, Piece};
+use crate::draw::share::Piece;
+use crate::draw::store::Header;
 use crate::plan::{Plan, Planned};
 use theory::parallel;
 

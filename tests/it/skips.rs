@@ -1,10 +1,12 @@
 //! What a scene does not need is skipped, and no number changes by it.
 
+use std::path::{Path, PathBuf};
+
 use crate::common::{case, options};
 use trueflight::case::Case;
-use trueflight::draw::cache::Cache;
 use trueflight::draw::drawn;
 use trueflight::draw::run;
+use trueflight::draw::store::{Header, Store};
 use trueflight::estimators::DrawBuffer;
 use trueflight::plan::Plan;
 use trueflight::record::Verdict;
@@ -111,18 +113,30 @@ fn cases(title: &str) -> [Case; 1] {
     [case("kept", &format!("title = \"{title}\"\n{text}"))]
 }
 
+/// A store of the draws of a plan by a program, with what a file has finished.
+fn store(plan: &Plan, program: &str, path: &Path) -> Store {
+    let mut store = Store::new(Header::new(plan, program, &[], None));
+    store.reuse(path, false).expect("it can be read");
+    store
+}
+
+fn path() -> (tempfile::TempDir, PathBuf) {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("draws.bin");
+    (folder, path)
+}
+
 #[test]
 fn what_has_not_changed_is_reused_and_no_number_changes() {
-    let (cases, options) = (cases("t"), options(3, 200_000));
+    let (cases, options, (_folder, path)) = (cases("t"), options(3, 200_000), path());
     let plan = Plan::new(&cases, &options);
-    let mut kept = Cache::new("program");
-    let first = run::draw_uncached(&plan, &kept, &|_| {});
-    assert_eq!(kept.count(&plan), [0, 2]);
-    kept.keep(&plan, &first);
-    let read = Cache::read(&kept.bytes().expect("encodes"), "program");
-    assert_eq!(read, kept);
-    assert_eq!(read.count(&plan), [2, 2]);
-    let second = run::draw_uncached(&plan, &read, &|_| panic!("nothing is drawn"));
+    let empty = store(&plan, "program", &path);
+    assert_eq!(empty.reusable(&plan), [0, 2]);
+    let first = run::draw_with(&plan, &empty, &|_| {});
+    empty.finish(&path, &plan, &first).expect("written");
+    let read = store(&plan, "program", &path);
+    assert_eq!(read.reusable(&plan), [2, 2]);
+    let second = run::draw_with(&plan, &read, &|_| panic!("nothing is drawn"));
     assert!(second.cases[0].iter().all(|drawn| drawn.is_reused));
     let json = |draws| {
         let record = verdict::judged(&plan, draws, 0.0);
@@ -133,35 +147,39 @@ fn what_has_not_changed_is_reused_and_no_number_changes() {
 
 #[test]
 fn what_has_changed_is_drawn_anew() {
-    let (same, other) = (cases("t"), cases("another"));
+    let (same, other, (_folder, path)) = (cases("t"), cases("another"), path());
     let options = options(3, 200_000);
     let plan = Plan::new(&same, &options);
-    let mut kept = Cache::new("program");
-    kept.keep(&plan, &run::draw(&plan, &|_| {}));
-    let bytes = kept.bytes().expect("encodes");
-    assert_eq!(Cache::read(&bytes, "another program").count(&plan), [0, 2]);
-    assert_eq!(Cache::read(&bytes[..bytes.len() - 1], "program").count(&plan), [0, 2]);
-    assert_eq!(Cache::read(&[], "program").count(&plan), [0, 2]);
-    let mut spoilt = bytes.clone();
-    spoilt[100] ^= 1;
-    assert_eq!(Cache::read(&spoilt, "program").count(&plan), [0, 2]);
-    assert_eq!(kept.count(&Plan::new(&other, &options)), [0, 2]);
+    let kept = store(&plan, "program", &path);
+    kept.finish(&path, &plan, &run::draw(&plan, &|_| {})).expect("written");
+    let bytes = std::fs::read(&path).expect("a file");
+    assert_eq!(store(&plan, "program", &path).reusable(&plan), [2, 2]);
+    assert_eq!(store(&plan, "another program", &path).reusable(&plan), [0, 2]);
+    let others = Plan::new(&other, &options);
+    assert_eq!(store(&others, "program", &path).reusable(&others), [0, 2]);
     for changed in [
         trueflight::plan::Options { seed: 4, ..options.clone() },
         trueflight::plan::Options { alpha: 1e-5, ..options.clone() },
         trueflight::plan::Options { fixed: true, ..options.clone() },
         crate::common::options(3, 300_000),
     ] {
-        assert_eq!(kept.count(&Plan::new(&same, &changed))[0], 0);
+        let changed = Plan::new(&same, &changed);
+        assert_eq!(store(&changed, "program", &path).reusable(&changed)[0], 0);
+    }
+    let mut spoilt = bytes.clone();
+    spoilt[100] ^= 1;
+    for damaged in [&bytes[..bytes.len() - 1], &[], &spoilt] {
+        std::fs::write(&path, damaged).expect("a file");
+        assert_eq!(store(&plan, "program", &path).reusable(&plan), [0, 2]);
     }
 }
 
 #[test]
 fn draws_that_a_limit_cut_short_are_not_kept() {
-    let (cases, options) = (cases("t"), options(3, 200_000));
+    let (cases, options, (_folder, path)) = (cases("t"), options(3, 200_000), path());
     let plan = Plan::new(&cases, &options);
-    let mut kept = Cache::new("program");
+    let kept = store(&plan, "program", &path);
     let cut = drawn::Draws { cut_by_time: true, ..run::draw(&plan, &|_| {}) };
-    kept.keep(&plan, &cut);
-    assert_eq!(kept.count(&plan), [0, 2]);
+    kept.finish(&path, &plan, &cut).expect("written");
+    assert_eq!(store(&plan, "program", &path).reusable(&plan), [0, 2]);
 }

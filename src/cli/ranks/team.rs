@@ -8,7 +8,8 @@ use std::thread;
 
 use super::link::{Link, Naps};
 use super::{Answer, Order, encoded};
-use crate::draw::share::{Header, Piece};
+use crate::draw::share::Piece;
+use crate::draw::store::Header;
 use crate::draw::workers::{Drawing, Take, Workers};
 use theory::parallel;
 

@@ -2,8 +2,7 @@
 
 use std::fs;
 
-use trueflight::draw::blocks::{Blocks, Lock};
-use trueflight::draw::share::Header;
+use trueflight::draw::store::{Header, Key, Log, entry};
 
 use super::place::{Place, said};
 
@@ -130,7 +129,7 @@ pub fn flips(place: &mut Place, tries: usize) -> Counts {
 /// Journals of other draws, and files that are none.
 pub fn strangers(place: &mut Place) -> Counts {
     let (mut counts, journal) = (Counts::default(), place.journal());
-    for bytes in [&b""[..], b"trueflight", b"trueflight blocks 2\n", &[0; 4096]] {
+    for bytes in [&b""[..], b"trueflight", b"trueflight blocks 3\n", &[0; 4096]] {
         resume_with(place, &mut counts, bytes, FOREIGN);
     }
     // Blocks behind the header of another file: the chain of hashes does not go through.
@@ -162,17 +161,16 @@ pub fn wrong_parts(place: &mut Place, tries: usize) -> Counts {
     draw(place, "doubled", "--shard 1/3 --threads 1");
     counts.count(place, "merge part-1 part-2 part-3 --out merged", "merged", &[]);
     counts.count(place, "merge part-3 doubled part-2 --out swapped", "swapped", &[]);
-    let file = Blocks::open(&place.path("part-2/blocks.bin")).expect("a part");
-    fs::create_dir(place.path("old")).expect("a folder");
-    let header = Header { version: "0.0.1".into(), ..file.header.clone() };
-    let old =
-        Blocks::create(&place.path("old/blocks.bin"), &header, Lock::default()).expect("a file");
-    old.finish().expect("written");
-    // Sound in itself, but without its blocks.
-    fs::create_dir(place.path("empty")).expect("a folder");
-    let empty = Blocks::create(&place.path("empty/blocks.bin"), &file.header, Lock::default())
-        .expect("a file");
-    empty.finish().expect("written");
+    let part = Log::open(&place.path("part-2/blocks.bin")).expect("a part");
+    let header: Header = part.get(Key::Header).expect("readable").expect("a header");
+    // Sound logs without blocks, one of another version.
+    let version = "0.0.1".to_owned();
+    for (name, header) in [("old", &Header { version, ..header.clone() }), ("empty", &header)] {
+        fs::create_dir(place.path(name)).expect("a folder");
+        let entries = [entry(Key::Header, header), entry(Key::End, &())];
+        let path = place.path(name).join("blocks.bin");
+        Log::write(&path, entries).expect("written");
+    }
     let whole = fs::read(place.path("part-2/blocks.bin")).expect("a part");
     fs::create_dir_all(place.path("spoilt")).expect("a folder");
     let wrong = [
@@ -206,7 +204,8 @@ pub fn wrong_parts(place: &mut Place, tries: usize) -> Counts {
     try_spoilt(place, &mut counts, &whole[..whole.len() / 2], &["is torn or damaged at byte"]);
     let output = place.say("run --resume spoilt");
     assert!(output.status.success(), "{}", said(&output));
-    assert_eq!(Blocks::open(&place.path("spoilt/blocks.bin")).expect("a part").len(), file.len());
+    let spoilt = Log::open(&place.path("spoilt/blocks.bin")).expect("a part");
+    assert_eq!(spoilt.blocks(None), part.blocks(None));
     counts.count(place, "merge part-1 spoilt part-3 --out mended", "mended", &[]);
     counts
 }

@@ -8,18 +8,17 @@ mod place;
 mod ranks;
 
 use std::fs;
+use std::path::Path;
 use std::sync::Arc;
 use std::time::Instant;
 
 use self::faults::{cuts, flips, kills, strangers, wrong_parts};
 use self::place::{Place, said};
 use trueflight::draw::block;
-use trueflight::draw::blocks::{Blocks, Lock};
-use trueflight::draw::cache::Cache;
 use trueflight::draw::drawn::Drawn;
 use trueflight::draw::run;
-use trueflight::draw::share::{Header, Share, pieces};
-use trueflight::draw::store::Store;
+use trueflight::draw::share::{Share, pieces};
+use trueflight::draw::store::{Header, Key, Log, Store, entry};
 use trueflight::draw::workers::Threads;
 use trueflight::plan::Options;
 use trueflight::plan::Plan;
@@ -140,6 +139,12 @@ fn the_table_of_faults() {
     }
 }
 
+/// A log without blocks.
+fn log(path: &Path, header: &Header) -> Log {
+    Log::write(path, [entry(Key::Header, header)]).expect("a file");
+    Log::resume(path, None).expect("a log")
+}
+
 #[test]
 #[ignore = "a measurement"]
 fn what_a_block_costs_those_who_draw_and_those_who_merge() {
@@ -152,8 +157,7 @@ fn what_a_block_costs_those_who_draw_and_those_who_merge() {
         let plan =
             Plan::new(&cases, &Options { fixed: true, blocks_per_look, ..options(1, 10_000_000) });
         let header = Header::new(&plan, "program", &[], None);
-        let file = Blocks::create(&folder.path().join("blocks.bin"), &header, Lock::default())
-            .expect("a file");
+        let log = log(&folder.path().join("blocks.bin"), &header);
         let [mut bytes, mut count, mut draw, mut encode, mut take] = [0.0; 5];
         let long = plan.experiments().filter(|(_, planned)| planned.horizon == 10_000_000);
         for (number, (_, planned)) in long.enumerate() {
@@ -168,7 +172,7 @@ fn what_a_block_costs_those_who_draw_and_those_who_merge() {
                 encode += begin.elapsed().as_secs_f64();
                 let begin = Instant::now();
                 let one: block::Block = postcard::from_bytes(&message).expect("decoded");
-                file.keep((u32::try_from(number).expect("few"), block), &one).expect("written");
+                log.put(Key::Block(number as u64, block), &one).expect("written");
                 drawn.merge(planned, &one, block);
                 take += begin.elapsed().as_secs_f64();
                 (bytes, count) = (bytes + message.len() as f64, count + 1.0);
@@ -200,13 +204,9 @@ fn what_keeping_blocks_costs() {
         let without = begin.elapsed().as_secs_f64();
         let begin = Instant::now();
         let header = Header::new(&plan, "program", &[], None);
-        let file = Blocks::create(&path, &header, Lock::default()).expect("a file");
-        run::draw_with(
-            &plan,
-            &Cache::default(),
-            &Store::journal(file, Box::new(Threads), Arc::default()),
-            &|_| {},
-        );
+        let log = log(&path, &header);
+        let store = Store::journal(header, log, Box::new(Threads), Arc::default());
+        run::draw_with(&plan, &store, &|_| {});
         let with = begin.elapsed().as_secs_f64();
         println!("{without:.2} {with:.2}");
         assert!(path.exists());

@@ -7,7 +7,7 @@ use std::process::{Child, Command, Output, Stdio};
 use std::time::{Duration, Instant};
 
 use tempfile::TempDir;
-use trueflight::draw::blocks::Blocks;
+use trueflight::draw::store::Log;
 use trueflight::rng::hash;
 
 /// Sums of the gate, laws, bounds, channels, lookups that are shared, an experiment that is another's twin.
@@ -143,7 +143,7 @@ impl Place {
             let Some(mut run) = self.drawing(&Self::asked("--out torn"), "torn") else { continue };
             run.kill().expect("it can be killed");
             run.wait().expect("it has ended");
-            if Blocks::open(&path).is_ok_and(|file| file.len() > 20) {
+            if Log::open(&path).is_ok_and(|log| log.blocks(None) > 20) {
                 return fs::read(path).expect("a journal");
             }
         }

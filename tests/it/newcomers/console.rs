@@ -7,10 +7,9 @@ use crate::common;
 use crate::common::place::Place;
 use trueflight::case::Case;
 use trueflight::case::suite;
-use trueflight::draw::cache::Cache;
 use trueflight::draw::progress::Step;
 use trueflight::draw::run;
-use trueflight::draw::store::Store;
+use trueflight::draw::store::{Header, Store};
 use trueflight::plan::Plan;
 
 const GOOD: &str = "title = \"a good case\"
@@ -108,9 +107,9 @@ fn built_in(names: &[&str]) -> Vec<Case> {
 }
 
 /// The steps of a drawing, those of draws made and kept summed up: expected first and last, made, kept.
-fn steps(plan: &Plan, cache: &Cache) -> [u64; 4] {
+fn steps(plan: &Plan, store: &Store) -> [u64; 4] {
     let steps = Mutex::new(Vec::new());
-    let draws = run::draw_heard(plan, cache, &Store::default(), &|step| {
+    let draws = run::draw_heard(plan, store, &|step| {
         steps.lock().expect("it").push(step);
     });
     let steps = steps.into_inner().expect("it");
@@ -132,7 +131,7 @@ fn the_total_counts_what_will_be_drawn() {
     assert_eq!(cases.len(), 3);
     let options = common::options(1, 400_000);
     let plan = Plan::new(&cases, &options);
-    let [first, last, made, kept] = steps(&plan, &Cache::default());
+    let [first, last, made, kept] = steps(&plan, &Store::default());
     assert_eq!((last, kept), (made, 0), "at its end the total is what was drawn");
     let share = first as f64 / made as f64;
     assert!((0.7..1.3).contains(&share), "{first} were expected, {made} were drawn");
@@ -147,11 +146,13 @@ fn what_an_earlier_run_drew_is_no_part_of_the_total() {
     let cases = built_in(&["transmittance/eq21-overview"]);
     let options = common::options(1, 100_000);
     let plan = Plan::new(&cases, &options);
-    let mut cache = Cache::new("this program");
-    let draws = run::draw_uncached(&plan, &cache, &|_| {});
-    cache.keep(&plan, &draws);
-    let [first, last, made, _] = steps(&plan, &cache);
-    let fresh = steps(&plan, &Cache::default());
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("draws.bin");
+    let mut store = Store::new(Header::new(&plan, "this program", &[], None));
+    store.finish(&path, &plan, &run::draw(&plan, &|_| {})).expect("written");
+    store.reuse(&path, false).expect("it can be read");
+    let [first, last, made, _] = steps(&plan, &store);
+    let fresh = steps(&plan, &Store::default());
     assert_eq!(last, made);
     // Experiments without moments are always drawn.
     assert!(first <= fresh[0] / 4, "{first} of {}", fresh[0]);

@@ -1,0 +1,277 @@
+//! Store of draws: one format and one key for resumed runs, shares, and experiments that earlier runs have finished.
+//!
+//! An experiment is found by a hash of everything that its draws and decisions depend on ([`Header`]), a block by
+//! that key and its number. What no log has is drawn by [`Workers`], and written into the log of the run.
+
+mod header;
+mod log;
+
+use std::collections::BTreeMap;
+use std::io::{self, ErrorKind};
+use std::path::Path;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+
+pub use self::header::Header;
+pub use self::log::{Key, Log, entry, lock};
+use crate::draw::block::Block;
+use crate::draw::drawn::{Draws, Standing};
+use crate::draw::progress::{Listener, Step};
+use crate::draw::share::Piece;
+use crate::draw::workers::{Drawing, Threads, Workers};
+use crate::plan::{Plan, Planned};
+
+/// Largest number of finished experiments that are kept for later runs: some 20 MB.
+const MAX_FINISHED: usize = 2000;
+
+/// Bytes of blocks before a log is rewritten, at least and as a multiple of the sums that take their place.
+const MIN_REWRITE: u64 = 2 << 20;
+const REWRITE_RATIO: u64 = 4;
+
+/// Logs that are read and written, and those who draw what is missing.
+#[derive(Debug)]
+pub struct Store {
+    /// Description of the draws.
+    pub header: Header,
+    /// Log of this run, or logs of all shares.
+    pub logs: Vec<Log>,
+    /// Whether new blocks are written into the first log.
+    pub keeps: bool,
+    /// Set to end the drawing.
+    pub stop: Arc<AtomicBool>,
+    /// Threads or ranks that draw.
+    pub workers: Box<dyn Workers>,
+    keys: Vec<u64>,
+    /// Experiments that earlier runs have finished.
+    finished: Option<Log>,
+    is_fresh: bool,
+    error: Mutex<Option<io::Error>>,
+}
+
+impl Default for Store {
+    fn default() -> Self {
+        Self::new(Header::default())
+    }
+}
+
+impl Store {
+    /// Draws everything by the threads of this process, and keeps nothing.
+    pub fn new(header: Header) -> Self {
+        Self {
+            keys: header.keys(),
+            header,
+            logs: Vec::new(),
+            keeps: false,
+            stop: Arc::default(),
+            workers: Box::new(Threads),
+            finished: None,
+            is_fresh: false,
+            error: Mutex::default(),
+        }
+    }
+
+    /// Writes new blocks into a log.
+    pub fn journal(
+        header: Header,
+        log: Log,
+        workers: Box<dyn Workers>,
+        stop: Arc<AtomicBool>,
+    ) -> Self {
+        Self { logs: vec![log], keeps: true, stop, workers, ..Self::new(header) }
+    }
+
+    /// Reads the logs of all shares.
+    pub fn shares(header: Header, logs: Vec<Log>) -> Self {
+        Self { logs, ..Self::new(header) }
+    }
+
+    /// Opens the experiments that earlier runs have finished; a fresh run adds to them, and does not use them.
+    /// Those of another program, and a damaged file, count as none.
+    ///
+    /// # Errors
+    ///
+    /// The system refuses to read the file.
+    pub fn reuse(&mut self, path: &Path, is_fresh: bool) -> io::Result<()> {
+        self.is_fresh = is_fresh;
+        self.finished = match Log::open(path) {
+            Ok(log) => Some(log).filter(|log| {
+                let header = log.get::<Header>(Key::Header).ok().flatten();
+                let is_own = header.is_some_and(|header| header.program == self.header.program);
+                is_own && log.damaged_at.is_none()
+            }),
+            Err(error) if matches!(error.kind(), ErrorKind::NotFound | ErrorKind::Other) => None,
+            Err(error) => return Err(error),
+        };
+        Ok(())
+    }
+
+    /// Writes what earlier runs and this one have finished, unless a limit cut this one short. Too many are
+    /// replaced by those of this run.
+    ///
+    /// # Errors
+    ///
+    /// The system refuses.
+    pub fn finish(&self, path: &Path, plan: &Plan, draws: &Draws) -> io::Result<()> {
+        let mut finished = BTreeMap::new();
+        if !draws.cut_by_time && !draws.cut_by_budget {
+            let all = self.keys.iter().zip(plan.experiments()).zip(draws.cases.iter().flatten());
+            for ((&key, (_, planned)), drawn) in all {
+                if is_reusable(planned) {
+                    let drawn = drawn.clone();
+                    finished.insert(key, Standing { drawn, is_done: true, ..Standing::default() });
+                }
+            }
+        }
+        let old = self.finished.as_ref().map_or(Vec::new(), Log::keys);
+        if let Some(log) = &self.finished
+            && old.len() + finished.len() <= MAX_FINISHED
+        {
+            for key in old {
+                if let Key::Standing(experiment) = key
+                    && !finished.contains_key(&experiment)
+                {
+                    finished.extend(log.get(key)?.map(|standing| (experiment, standing)));
+                }
+            }
+        }
+        let sums = finished.iter().map(|(&one, standing)| entry(Key::Standing(one), standing));
+        let entries = std::iter::once(entry(Key::Header, &self.header)).chain(sums);
+        Log::write(path, entries).map(drop)
+    }
+
+    /// Returns whether the drawing shall end.
+    pub fn is_stopped(&self) -> bool {
+        self.stop.load(Ordering::Relaxed) || locked(&self.error).is_some()
+    }
+
+    /// Returns the error of a log that ended the drawing.
+    pub fn error(&self) -> Option<io::Error> {
+        locked(&self.error).take()
+    }
+
+    /// Returns the sums of an experiment, interrupted or finished. What an interrupted run has begun goes on, whatever
+    /// another run has finished.
+    pub fn standing(&self, number: u32, planned: &Planned) -> Option<Standing> {
+        let &key = self.keys.get(number as usize)?;
+        let get = |log: &Log| self.noted(log.get(Key::Standing(key))).flatten();
+        let own = self.logs.iter().find_map(get);
+        if own.is_some() || self.logs.iter().any(|log| log.blocks(Some(key)) > 0) {
+            return own;
+        }
+        let log = self.finished.as_ref().filter(|_| !self.is_fresh && is_reusable(planned))?;
+        let mut standing: Standing = log.get(Key::Standing(key)).ok().flatten()?;
+        standing.drawn.is_reused = true;
+        Some(standing)
+    }
+
+    /// Returns how many experiments of a plan need not be drawn, and how many can be.
+    pub fn reusable(&self, plan: &Plan) -> [usize; 2] {
+        let ready = plan.experiments().zip(0..).filter(|((_, planned), _)| planned.outcome.is_ok());
+        let ready: Vec<_> = ready.map(|((_, planned), number)| (planned, number)).collect();
+        let is_reused = |&&(planned, number): &&(&Planned, u32)| {
+            self.standing(number, planned).is_some_and(|standing| standing.drawn.is_reused)
+        };
+        [ready.iter().filter(is_reused).count(), ready.len()]
+    }
+
+    /// Returns the blocks of pieces, in their order: read where a log has them, else drawn and kept. `listen` hears
+    /// of all draws.
+    pub fn blocks(
+        &self,
+        pieces: &[Piece],
+        drawing: &Drawing,
+        listen: &Listener,
+    ) -> Vec<Option<Block>> {
+        let mut blocks = BTreeMap::new();
+        let mut missing = Vec::new();
+        for piece in pieces {
+            let mut experiments = Vec::new();
+            for &one in &piece.experiments {
+                match self.find(one, piece.block) {
+                    Some(block) => drop(blocks.insert((one, piece.block), block)),
+                    None => experiments.push(one),
+                }
+            }
+            if !experiments.is_empty() {
+                missing.push(Piece { experiments, block: piece.block });
+            }
+        }
+        listen(Step::Kept(blocks.values().map(|block| block.draws).sum()));
+        let blocks = Mutex::new(blocks);
+        if !(drawing.is_over)() {
+            self.workers.draw(&missing, drawing, &|number, drawn| {
+                let piece = &missing[number];
+                listen(Step::Drawn(drawn.iter().flatten().map(|block| block.draws).sum()));
+                for (&one, block) in piece.experiments.iter().zip(drawn) {
+                    if let Some(block) = block {
+                        self.keep(one, piece.block, &block);
+                        locked(&blocks).insert((one, piece.block), block);
+                    }
+                }
+            });
+        }
+        let mut blocks = blocks.into_inner().unwrap_or_else(PoisonError::into_inner);
+        let all = pieces
+            .iter()
+            .flat_map(|piece| piece.experiments.iter().zip(std::iter::repeat(piece.block)));
+        all.map(|(&one, block)| blocks.remove(&(one, block))).collect()
+    }
+
+    /// Rewrites a long log of a run: sums take the place of the blocks that they count.
+    pub fn shorten<'a>(&self, standings: impl Iterator<Item = (u32, &'a Standing)>) {
+        let Some(log) = self.journal_log().filter(|log| log.is_long(MIN_REWRITE, REWRITE_RATIO))
+        else {
+            return;
+        };
+        let standings: BTreeMap<u64, &Standing> =
+            standings.map(|(number, standing)| (self.keys[number as usize], standing)).collect();
+        let waits = |key| match key {
+            Key::Block(one, block) => {
+                standings.get(&one).is_none_or(|one| !one.is_done && block >= one.blocks)
+            }
+            _ => false,
+        };
+        let sums = standings.iter().map(|(&one, standing)| entry(Key::Standing(one), standing));
+        self.noted(log.rewrite(sums, waits));
+    }
+
+    /// Waits until the disk has all that is kept.
+    pub fn synchronise(&self) {
+        self.journal_log().and_then(|log| self.noted(log.synchronise()));
+    }
+
+    fn journal_log(&self) -> Option<&Log> {
+        self.logs.first().filter(|_| self.keeps)
+    }
+
+    fn find(&self, number: u32, block: u64) -> Option<Block> {
+        let key = Key::Block(*self.keys.get(number as usize)?, block);
+        self.logs.iter().find_map(|log| self.noted(log.get(key)).flatten())
+    }
+
+    fn keep(&self, number: u32, block: u64, drawn: &Block) {
+        if let Some(log) = self.journal_log() {
+            self.noted(log.put(Key::Block(self.keys[number as usize], block), drawn));
+        }
+    }
+
+    /// Remembers the first error.
+    fn noted<T>(&self, result: io::Result<T>) -> Option<T> {
+        let note = |error| {
+            locked(&self.error).get_or_insert(error);
+        };
+        result.map_err(note).ok()
+    }
+}
+
+/// Returns whether a later run may use the draws of an experiment. Without moments it may not: 256 draws alone would
+/// tell one data file from another.
+fn is_reusable(planned: &Planned) -> bool {
+    planned.outcome.as_ref().is_ok_and(|ready| {
+        ready.prediction.channels.iter().all(|channel| channel.moments.is_some())
+    })
+}
+
+fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
+}
