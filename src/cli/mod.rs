@@ -23,7 +23,6 @@ mod journal;
 mod judge;
 mod list;
 mod merge;
-mod mpirun;
 mod numbers;
 mod output;
 mod predict;
@@ -139,15 +138,12 @@ fn run_with(catalogue: &Catalogue, join: Option<Join>, cli: &Cli) -> ExitCode {
 }
 
 fn carry_out(catalogue: &Catalogue, join: Option<Join>, cli: &Cli) -> anyhow::Result<u8> {
-    mpirun::allow(matches!(cli.command, Command::Run(_)), join)?;
+    // Every command is refused among others, but for `run`.
+    let link = ranks::join(matches!(cli.command, Command::Run(_)), join)?;
     let console = &cli.console;
     match &cli.command {
-        Command::Run(arguments) => match join.filter(|_| mpirun::ranks() > 1) {
-            Some(join) => {
-                // Who has joined must leave last, and in this thread.
-                let link = mpirun::join(join)?;
-                ranks::main(&link, arguments, catalogue, console)
-            }
+        Command::Run(arguments) => match link {
+            Some(link) => ranks::main(link, arguments, catalogue, console),
             None => run::main(arguments, catalogue, console),
         },
         Command::Merge(arguments) => merge::main(arguments, catalogue, console),

@@ -1,97 +1,103 @@
-//! What this rank hears and says.
+//! Connection of a rank with the others.
 
-use std::collections::VecDeque;
-use std::fmt::Debug;
-use std::sync::Arc;
-use std::thread;
+use std::sync::mpsc::{Receiver, Sender};
+use std::sync::{Mutex, PoisonError};
+use std::thread::{self, JoinHandle};
 use std::time::Duration;
 
 use anyhow::anyhow;
-use serde::de::DeserializeOwned;
 
+use super::Message;
 use crate::cli::{USAGE, output};
 
-/// How long who waits for others sleeps, at first and at most: without that a processor would be busy, which is
-/// needed to draw.
-const NAPS: [Duration; 2] = [Duration::from_micros(50), Duration::from_millis(1)];
+/// Message of another rank, after its number.
+pub type Received = (usize, Vec<u8>);
 
-/// A message, and the rank that sent it.
-pub type Heard = (usize, Vec<u8>);
-
-/// Joins the other ranks, or says why it cannot; MPI's is `trueflight_mpi::join`, in `bindings/mpi`.
-pub type Join = fn() -> Result<Arc<dyn Link>, String>;
-
-/// This rank's place among the others. What one rank says to another arrives in the order in which it is said.
-///
-/// Many threads talk at once. The last owner lets go in the thread that joined, when all is said: ranks may wait for each
-/// other there. A link that is dropped while its thread panics must end all ranks, for the others wait for what this one
-/// owes them.
-pub trait Link: Debug + Send + Sync {
-    /// Its number, from 0.
-    fn rank(&self) -> usize;
-
-    /// How many there are.
-    fn size(&self) -> usize;
-
-    /// Sends a message; may wait until the other takes it.
-    fn send(&self, to: usize, bytes: &[u8]);
-
-    /// Sends one of at most so many messages that are on their way, and does not wait; not if it is too long for that,
-    /// which the answer `false` tells.
-    fn post(&self, to: usize, bytes: &[u8], most: usize) -> bool;
-
-    /// As [`Self::send`]; what others send meanwhile is heard, for they may wait for that.
-    fn send_and_hear(&self, to: usize, bytes: &[u8], heard: &mut VecDeque<Heard>);
-
-    /// The next message, if there is one.
-    fn hear(&self) -> Option<Heard>;
-
-    /// Ends all ranks, with this exit code.
-    fn abort(&self, code: u8) -> !;
-
-    /// Tells all others that the drawing shall end.
-    fn stop_others(&self);
-
-    /// Whether another has said that the drawing shall end.
-    fn is_stopped(&self) -> bool;
+/// Task for the thread that carries messages.
+#[derive(Debug)]
+pub enum Outgoing {
+    /// Carry a message to a rank.
+    Message(usize, Vec<u8>),
+    /// End all ranks with this exit code.
+    Abort(u8),
+    /// Leave the other ranks: nothing more is sent or received.
+    Leave,
 }
 
-impl dyn Link + '_ {
-    /// Waits for the next message: it comes, or all ranks are ended.
-    pub(super) fn wait(&self) -> Heard {
-        let mut naps = Naps::default();
-        loop {
-            if let Some(heard) = self.hear() {
-                return heard;
-            }
-            naps.next();
-        }
+/// Joins the other ranks, or says why it cannot; `trueflight_mpi::join` in `bindings/mpi` does it by MPI.
+pub type Join = fn() -> Result<Link, String>;
+
+/// Two queues between this rank and a thread that carries its messages, which arrive in the order in which they are sent.
+/// A link that is dropped while its thread panics ends all ranks: the others wait for its messages.
+#[derive(Debug)]
+pub struct Link {
+    /// Number of this rank, from 0.
+    pub rank: usize,
+    /// Number of ranks.
+    pub size: usize,
+    outgoing: Sender<Outgoing>,
+    incoming: Mutex<Receiver<Received>>,
+    carrier: Option<JoinHandle<()>>,
+}
+
+impl Link {
+    /// Connects rank `rank` of `size` by a thread that does the tasks of one queue and fills the other.
+    pub fn new(
+        rank: usize,
+        size: usize,
+        outgoing: Sender<Outgoing>,
+        incoming: Receiver<Received>,
+        carrier: JoinHandle<()>,
+    ) -> Self {
+        Self { rank, size, outgoing, incoming: Mutex::new(incoming), carrier: Some(carrier) }
     }
 
-    /// Ends all ranks, and says why, so that none waits for ever.
-    pub(super) fn fail(&self, why: &str) -> ! {
-        output::complain(&anyhow!("rank {}: {why}", self.rank()));
-        self.abort(USAGE)
+    /// Sends a message, and does not wait for it.
+    pub(super) fn send(&self, to: usize, message: &Message) {
+        // Every message can be encoded; a carrier that has ended is found by the next receiver.
+        let bytes = postcard::to_stdvec(message).unwrap_or_default();
+        let _ = self.outgoing.send(Outgoing::Message(to, bytes));
     }
 
-    /// What a message says. One that cannot be read ends all ranks: it comes from another program.
-    pub(super) fn read<T: DeserializeOwned>(&self, (from, bytes): &Heard) -> T {
-        postcard::from_bytes(bytes).unwrap_or_else(|_| {
+    /// Waits for the next message, and returns it after the number of its rank.
+    pub(super) fn receive(&self) -> (usize, Message) {
+        let received = self.incoming.lock().unwrap_or_else(PoisonError::into_inner).recv();
+        let received = received.unwrap_or_else(|_| self.fail("cannot receive from other ranks"));
+        self.decoded(received)
+    }
+
+    /// Returns the next message if it comes within this time.
+    pub(super) fn receive_within(&self, time: Duration) -> Option<(usize, Message)> {
+        let incoming = self.incoming.lock().unwrap_or_else(PoisonError::into_inner);
+        Some(self.decoded(incoming.recv_timeout(time).ok()?))
+    }
+
+    fn decoded(&self, (from, bytes): Received) -> (usize, Message) {
+        let message = postcard::from_bytes(&bytes).unwrap_or_else(|_| {
             self.fail(&format!(
-                "cannot read what rank {from} says: it is another version of this program"
+                "cannot read a message of rank {from}: it is another version of this program"
             ))
-        })
+        });
+        (from, message)
+    }
+
+    /// Ends all ranks with an error message, so that none waits for ever.
+    pub(super) fn fail(&self, why: &str) -> ! {
+        output::complain(&anyhow!("rank {}: {why}", self.rank));
+        let _ = self.outgoing.send(Outgoing::Abort(USAGE));
+        // The carrier ends the process first.
+        thread::sleep(Duration::from_secs(10));
+        std::process::exit(USAGE.into())
     }
 }
 
-/// Naps that become longer.
-#[derive(Debug, Default)]
-pub struct Naps(Duration);
-
-impl Naps {
-    /// Lets others have the processor for a while.
-    pub fn next(&mut self) {
-        self.0 = (2 * self.0).clamp(NAPS[0], NAPS[1]);
-        thread::sleep(self.0);
+impl Drop for Link {
+    fn drop(&mut self) {
+        /// Exit code of a process that panics.
+        const PANICKED: u8 = 101;
+        let last = if thread::panicking() { Outgoing::Abort(PANICKED) } else { Outgoing::Leave };
+        let _ = self.outgoing.send(last);
+        // A carrier that has panicked has nothing more to carry.
+        let _ = self.carrier.take().map(JoinHandle::join);
     }
 }
