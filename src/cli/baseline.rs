@@ -14,6 +14,7 @@ use crate::report::diff;
 
 /// Options that all commands which draw share.
 #[derive(Debug, Clone, Args)]
+#[command(next_help_heading = "Baselines")]
 pub struct BaselineArguments {
     /// Store the run as a baseline, to compare later runs with
     #[arg(long, value_name = "NAME")]

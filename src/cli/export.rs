@@ -5,6 +5,7 @@ use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
 
+use super::help::Names;
 use super::{Console, numbers, output};
 use crate::case::CaseError;
 use crate::case::Catalogue;
@@ -15,7 +16,7 @@ use crate::export::{self, ExportError, Target, Wishes};
 #[derive(Debug, Args)]
 pub struct Arguments {
     /// A case file, or the name of a built-in case
-    #[arg(value_name = "CASE")]
+    #[arg(value_name = "CASE", value_parser = Names::Cases, hide_possible_values = true)]
     case: String,
     /// Who renders it
     #[arg(long, value_enum, value_name = "RENDERER")]

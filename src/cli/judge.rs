@@ -10,6 +10,7 @@ use anyhow::Context;
 use clap::{Args, ValueEnum};
 
 use self::claimed::Claimed;
+use super::help::Names;
 use super::verdict::Inconclusive;
 use super::{Console, USAGE, numbers, output};
 use crate::case::Catalogue;
@@ -44,10 +45,10 @@ pub struct Arguments {
     #[arg(long, value_name = "LOW,HIGH", allow_hyphen_values = true, value_parser = range)]
     range: Option<[f64; 2]>,
     /// Take truth, variance, kurtosis, lookups and the distribution from theory: a case file or a built-in case
-    #[arg(long, value_name = "CASE", requires = "estimator")]
+    #[arg(long, value_name = "CASE", requires = "estimator", value_parser = Names::Cases, hide_possible_values = true)]
     case: Option<String>,
     /// The estimator of the case: its label in tables, or its name in the catalogue
-    #[arg(long, value_name = "NAME", requires = "case")]
+    #[arg(long, value_name = "NAME", requires = "case", value_parser = Names::Estimators, hide_possible_values = true)]
     estimator: Option<String>,
     /// The swept value, where the estimator is swept: any that it can have
     #[arg(long, value_name = "VALUE", requires = "case", allow_hyphen_values = true, value_parser = numbers::number)]

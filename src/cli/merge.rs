@@ -1,4 +1,4 @@
-//! `trueflight merge`: a run that many machines drew, judged.
+//! `trueflight merge` and `trueflight report`: verdicts on a run that many machines drew, and the page of a stored one.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -6,37 +6,29 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context, bail};
 use clap::Args;
 
-use super::output::Format;
-use super::verdict::Inconclusive;
-use super::{Console, journal, run};
+use super::output::{self, Errors};
+use super::reports::Reports;
+use super::run::{self, Kept, RUN};
+use super::{Console, journal};
 use crate::case::Catalogue;
 use crate::draw::share::pieces;
 use crate::draw::store::{Header, Key, Log, Store};
 use crate::plan::Plan;
 use crate::record::baseline::fingerprint;
+use crate::report::{html, record_json};
 
 /// Arguments of `merge`.
 #[derive(Debug, Args)]
-pub struct Arguments {
+pub struct Merge {
     /// The folders of all parts that `run --shard` has drawn
     #[arg(required = true, value_name = "PARTS")]
     parts: Vec<PathBuf>,
-    /// Folder for what `run` writes
-    #[arg(long, default_value = "results", value_name = "DIR")]
-    out: PathBuf,
-    /// What an inconclusive experiment counts as [default: exit code 3]
-    #[arg(long, value_enum, value_name = "AS")]
-    inconclusive: Option<Inconclusive>,
-    /// Print every row, not only those that do not pass
-    #[arg(long, short)]
-    verbose: bool,
-    /// Form of the rows on stdout; csv and json have all of them
-    #[arg(long, value_enum, default_value_t)]
-    format: Format,
+    #[command(flatten)]
+    reports: Reports,
 }
 
 /// Reads the parts, and does with them what `run` does with its draws.
-pub fn main(arguments: &Arguments, catalogue: &Catalogue, console: &Console) -> anyhow::Result<u8> {
+pub fn merge(arguments: &Merge, catalogue: &Catalogue, console: &Console) -> anyhow::Result<u8> {
     let mut parts = Vec::new();
     for folder in &arguments.parts {
         let no_part = || {
@@ -53,13 +45,10 @@ pub fn main(arguments: &Arguments, catalogue: &Catalogue, console: &Console) -> 
         bail!("the parts are not one run:\n  {}", faults.join("\n  "));
     }
     let header = parts[0].header.clone();
-    let mut asked = run::Arguments::of(&header.words)?;
-    asked.out.clone_from(&arguments.out);
-    (asked.inconclusive, asked.format) = (arguments.inconclusive, arguments.format);
-    asked.verbose = arguments.verbose;
+    let mut asked = run::Arguments::of(&header.words)?.asked;
+    asked.reports = arguments.reports.clone();
     // Draws of an earlier run are no part.
-    asked.fresh = true;
-    run::judge(&asked, catalogue, console, |plan| {
+    run::judge(&asked, RUN, &Kept::FRESH, catalogue, console, |plan| {
         let own = Header::new(plan, &fingerprint()?, &header.words, None);
         if let Some(why) = header.mismatch(&own) {
             bail!("{} cannot be judged here: {why}", arguments.parts[0].display());
@@ -132,4 +121,40 @@ fn faults(parts: &[Part]) -> Vec<String> {
         faults.push(format!("missing: {}", missing.join(", ")));
     }
     faults
+}
+
+/// Arguments of `report`.
+#[derive(Debug, Args)]
+pub struct Report {
+    /// Folder with the record.json of a run; the page is written beside it
+    #[arg(value_name = "DIR")]
+    folder: PathBuf,
+}
+
+/// Reads a record, and writes its page.
+pub fn report(arguments: &Report, console: &Console) -> anyhow::Result<u8> {
+    let folder = &arguments.folder;
+    let path = folder.join("record.json");
+    let text = std::fs::read(&path).with_context(|| {
+        format!(
+            "cannot read {}; give the folder that `trueflight run --out DIR` wrote",
+            path.display()
+        )
+    })?;
+    let record = record_json::read(&text).with_context(|| {
+        format!("{}: make it anew with `trueflight run --out DIR`", path.display())
+    })?;
+    if journal::blocks(folder).exists() {
+        let cure = journal::resume(folder);
+        output::warn(&format!(
+            "the run in {} is not finished: the page is of what was judged; {cure} goes on",
+            folder.display()
+        ));
+    }
+    let mut errors = Errors::default();
+    let written = errors.write(html::render(&record), folder);
+    if written.is_some_and(|files| files > 0) && !console.quiet {
+        errors.keep(output::print(&format!("{}\n", folder.join("report.html").display())));
+    }
+    Ok(errors.close(0))
 }

@@ -13,22 +13,19 @@
 
 mod baseline;
 mod bench;
-mod check;
-mod completions;
-mod drawing;
-mod explain;
+mod catalogue;
 mod export;
+mod help;
 mod inspect;
 mod journal;
 mod judge;
-mod list;
 mod merge;
 mod numbers;
 mod output;
 mod predict;
 pub mod ranks;
 mod render;
-mod report;
+mod reports;
 mod run;
 mod selection;
 mod self_test;
@@ -38,7 +35,7 @@ mod verdict;
 use std::ffi::OsString;
 use std::process::ExitCode;
 
-use clap::{Args, Parser, Subcommand};
+use clap::{Args, FromArgMatches, Parser, Subcommand};
 
 use self::ranks::Join;
 use crate::case::Catalogue;
@@ -57,8 +54,9 @@ struct Cli {
     console: Console,
 }
 
-/// What concerns the console, whatever the command.
+/// Options on the console, whatever the command.
 #[derive(Debug, Clone, Args)]
+#[command(next_help_heading = "Console")]
 pub struct Console {
     /// When to use colours; `NO_COLOR` is honoured by `auto`
     #[arg(long, global = true, value_enum, default_value_t, value_name = "WHEN")]
@@ -73,9 +71,9 @@ enum Command {
     /// Draw, judge, and write tables and plots: the main job
     Run(run::Arguments),
     /// Judge a run that many machines drew: the parts of `run --shard`
-    Merge(merge::Arguments),
+    Merge(merge::Merge),
     /// The gate for a CI: as run, tuned to decide, with JUnit, Markdown and GitHub annotations
-    Check(check::Arguments),
+    Check(run::Asked),
     /// Theory only, no draws: moments, costs, the best σ̂, what is refused
     Predict(predict::Predict),
     /// Run time against error: ns per draw, time to an error, and how much faster than a plain loop
@@ -85,15 +83,15 @@ enum Command {
     /// Pictures: estimators side by side at an equal number of lookups, with their errors
     Render(render::Arguments),
     /// The page report.html of a stored run, for a browser
-    Report(report::Arguments),
+    Report(merge::Report),
     /// Does the gate keep its promises, and does it catch known bugs?
     SelfTest(self_test::Arguments),
     /// Numerical stability: every quantity where it is hardest, against 32 digits
     Stress(stress::Arguments),
     /// The catalogue: media, estimators, problems, checks, cases and more
-    List(list::Arguments),
+    List(catalogue::List),
     /// The manual page of a medium, an estimator, a check, …
-    Explain(explain::Arguments),
+    Explain(catalogue::Explain),
     /// List the grids, images and draws in files, with their sizes, boxes and ranges
     Inspect(inspect::Arguments),
     /// Judge the draws of another renderer, from a file or a pipe
@@ -101,12 +99,12 @@ enum Command {
     /// A case as a scene of Mitsuba 3 or pbrt-v4, with what its pixels must be
     Export(export::Arguments),
     /// Shell completions
-    Completions(completions::Arguments),
+    Completions(help::Arguments),
 }
 
 /// Runs the command that the program's arguments ask for, with this catalogue, and answers its exit code.
 pub fn main(catalogue: &Catalogue) -> ExitCode {
-    run_with(catalogue, None, &Cli::parse())
+    run_with(catalogue, None, &parsed())
 }
 
 /// The same with these arguments, the first of which is the program's name.
@@ -118,13 +116,21 @@ pub fn run_as<T: Into<OsString> + Clone>(
     catalogue: &Catalogue,
     arguments: impl IntoIterator<Item = T>,
 ) -> Result<ExitCode, String> {
-    let cli = Cli::try_parse_from(arguments).map_err(|error| error.to_string())?;
+    let matches = help::command().try_get_matches_from(arguments);
+    let cli = matches.and_then(|matches| Cli::from_arg_matches(&matches));
+    let cli = cli.map_err(|error| error.to_string())?;
     Ok(run_with(catalogue, None, &cli))
 }
 
 /// [`main`] for a program that `mpirun` may have begun among others, and that knows how to join them.
 pub fn main_among(catalogue: &Catalogue, join: Join) -> ExitCode {
-    run_with(catalogue, Some(join), &Cli::parse())
+    run_with(catalogue, Some(join), &parsed())
+}
+
+/// Parses the program's arguments; a mistake ends the process.
+fn parsed() -> Cli {
+    let cli = Cli::from_arg_matches(&help::command().get_matches());
+    cli.unwrap_or_else(|error| error.exit())
 }
 
 fn run_with(catalogue: &Catalogue, join: Option<Join>, cli: &Cli) -> ExitCode {
@@ -146,20 +152,20 @@ fn carry_out(catalogue: &Catalogue, join: Option<Join>, cli: &Cli) -> anyhow::Re
             Some(link) => ranks::main(link, arguments, catalogue, console),
             None => run::main(arguments, catalogue, console),
         },
-        Command::Merge(arguments) => merge::main(arguments, catalogue, console),
-        Command::Check(arguments) => check::main(arguments, catalogue, console),
+        Command::Merge(arguments) => merge::merge(arguments, catalogue, console),
+        Command::Check(arguments) => run::check(arguments, catalogue, console),
         Command::Predict(arguments) => predict::predict(arguments, catalogue, console),
         Command::Bench(arguments) => bench::main(arguments, catalogue, console),
         Command::Plan(arguments) => predict::plan(arguments, catalogue, console),
         Command::Render(arguments) => render::main(arguments, catalogue, console),
-        Command::Report(arguments) => report::main(arguments, console),
+        Command::Report(arguments) => merge::report(arguments, console),
         Command::SelfTest(arguments) => self_test::main(arguments, console),
         Command::Stress(arguments) => stress::main(arguments, console),
-        Command::List(arguments) => list::main(arguments, catalogue, console),
-        Command::Explain(arguments) => explain::main(arguments, catalogue, console),
+        Command::List(arguments) => catalogue::list(arguments, catalogue, console),
+        Command::Explain(arguments) => catalogue::explain(arguments, catalogue, console),
         Command::Inspect(arguments) => inspect::main(arguments, console),
         Command::Judge(arguments) => judge::main(arguments, catalogue, console),
         Command::Export(arguments) => export::main(arguments, catalogue, console),
-        Command::Completions(arguments) => completions::main(arguments),
+        Command::Completions(arguments) => help::main(arguments),
     }
 }

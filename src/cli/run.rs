@@ -1,69 +1,94 @@
-//! `trueflight run`: the main job, whole, a share of it, or what an interrupted one has left.
+//! `trueflight run` and `trueflight check`: one implementation, which draws, judges and writes; they differ by defaults.
 
 use std::path::PathBuf;
 use std::sync::atomic::Ordering;
+use std::time::Instant;
 
-use anyhow::Context;
+use anyhow::{Context, bail};
 use clap::{Args, Command, FromArgMatches};
 
 use super::baseline::BaselineArguments;
-use super::output::{self, Errors, Format};
+use super::output::{self, Errors};
+use super::reports::Reports;
 use super::selection::{Looks, Selection};
-use super::verdict::{Inconclusive, UNDECIDED, close};
-use super::{Console, drawing, journal, numbers};
-use crate::case::Case;
+use super::verdict::{UNDECIDED, close};
+use super::{Console, journal};
 use crate::case::Catalogue;
-use crate::draw::share::Share;
+use crate::draw::drawn::Draws;
+use crate::draw::progress::Step;
+use crate::draw::run;
+use crate::draw::share::{self, Share};
 use crate::draw::store::{Header, Key, Log, Store};
 use crate::draw::workers::{Threads, Workers};
-use crate::plan::Options;
-use crate::plan::Plan;
-use crate::plan::options::DRAWS;
+use crate::plan::{Options, Plan, options::DRAWS};
 use crate::record::baseline::fingerprint;
-use crate::record::verdict;
-use crate::report;
+use crate::record::{Record, verdict};
+
+/// Defaults by which commands differ.
+#[derive(Debug, Clone, Copy)]
+pub struct Profile {
+    /// Draws per experiment where neither an argument nor the case says.
+    draws: u64,
+    /// Folder of the results.
+    out: Option<&'static str>,
+    /// Whether unchanged experiments of an earlier run are reused, and all reports are written.
+    is_whole: bool,
+}
+
+/// Profile of `run` and `merge`.
+pub const RUN: Profile = Profile { draws: DRAWS, out: Some("results"), is_whole: true };
+
+/// Profile of `check`, for a CI: fewer draws, nothing is kept, and reports are written where an option asks for them.
+const CHECK: Profile = Profile { draws: 400_000, out: None, is_whole: false };
 
 /// Arguments of `run`.
 #[derive(Debug, Clone, Args)]
 pub struct Arguments {
     #[command(flatten)]
+    pub asked: Asked,
+    #[command(flatten)]
+    kept: Kept,
+}
+
+/// Arguments that `run` and `check` share.
+#[derive(Debug, Clone, Args)]
+pub struct Asked {
+    #[command(flatten)]
     pub selection: Selection,
-    /// Folder for report.html, summary.csv, checks.csv, record.json, the cases' CSV files and the plots
-    #[arg(long, default_value = "results", value_name = "DIR")]
-    pub out: PathBuf,
-    /// Go on with the interrupted run in this folder; what is drawn is what its command said
+    #[command(flatten)]
+    looks: Looks,
+    #[command(flatten)]
+    pub reports: Reports,
+    #[command(flatten)]
+    baseline: BaselineArguments,
+}
+
+/// Options on interrupted and shared runs.
+#[derive(Debug, Clone, Args)]
+#[command(next_help_heading = "Interrupted and shared runs")]
+pub struct Kept {
+    /// Draw every experiment, also those that have not changed since the last run in the same folder, or
+    /// that an interrupted one there has begun
+    #[arg(long)]
+    fresh: bool,
+    /// Resume the interrupted run in this folder; its own command says what is drawn
     #[arg(long, value_name = "DIR", conflicts_with_all = [
         "cases", "filter", "kernel", "seed", "draws", "alpha", "out", "fixed_draws", "fresh", "strict", "blocks_per_look", "shard",
     ])]
     resume: Option<PathBuf>,
     /// Draw a share of all blocks, such as part 3 of 16, and judge nothing: that does `trueflight merge`
-    #[arg(long, value_name = "K/N", conflicts_with_all = ["time", "save_baseline", "baseline"])]
-    pub shard: Option<Share>,
-    /// Stop drawing after this time, such as 30s, 5m or 90 (seconds); results then depend on the machine
-    #[arg(long, value_name = "T", value_parser = numbers::seconds, allow_negative_numbers = true)]
-    time: Option<f64>,
-    #[command(flatten)]
-    looks: Looks,
-    /// Draw every experiment, also those that have not changed since the last run in the same folder, or
-    /// that an interrupted one there has begun
-    #[arg(long)]
-    pub fresh: bool,
-    /// What an inconclusive experiment counts as [default: exit code 3]
-    #[arg(long, value_enum, value_name = "AS")]
-    pub inconclusive: Option<Inconclusive>,
-    #[command(flatten)]
-    baseline: BaselineArguments,
-    /// Print every row, not only those that do not pass
-    #[arg(long, short)]
-    pub verbose: bool,
-    /// Form of the rows on stdout; csv and json have all of them
-    #[arg(long, value_enum, default_value_t)]
-    pub format: Format,
+    #[arg(long, value_name = "K/N", conflicts_with_all = ["budget", "save_baseline", "baseline"])]
+    shard: Option<Share>,
 }
 
-impl Arguments {
-    /// The words that ask for the same draws, wherever they are made.
-    pub fn words(&self) -> Vec<String> {
+impl Kept {
+    /// Draws everything.
+    pub const FRESH: Self = Self { fresh: true, resume: None, shard: None };
+}
+
+impl Asked {
+    /// Returns the words that ask for the same draws, wherever they are made.
+    fn words(&self) -> Vec<String> {
         let mut words = self.selection.words();
         words.extend(self.looks.words());
         words.push("--".to_owned());
@@ -71,29 +96,56 @@ impl Arguments {
         words
     }
 
-    /// What such words ask for.
+    fn options(&self, profile: Profile) -> anyhow::Result<Options> {
+        Ok(self.looks.of(self.selection.options(profile.draws)?))
+    }
+
+    fn out(&self, profile: Profile) -> Option<PathBuf> {
+        self.reports.out.clone().or(profile.out.map(PathBuf::from))
+    }
+}
+
+impl Arguments {
+    /// Reads words that ask for draws.
     pub fn of(words: &[String]) -> anyhow::Result<Self> {
         let command = Self::augment_args(Command::new("run").no_binary_name(true));
         Ok(Self::from_arg_matches(&command.try_get_matches_from(words)?)?)
     }
 
-    pub fn options(&self) -> anyhow::Result<Options> {
-        let options = Options { seconds: self.time, ..self.selection.options(DRAWS)? };
-        Ok(self.looks.of(options))
+    /// Returns the words that ask for the same draws.
+    pub fn words(&self) -> Vec<String> {
+        self.asked.words()
     }
 
-    /// The same, or what an interrupted run was asked that is to be gone on with.
+    /// Returns the options of the plan.
+    pub fn options(&self) -> anyhow::Result<Options> {
+        self.asked.options(RUN)
+    }
+
+    /// Returns the folder of the results.
+    pub fn out(&self) -> PathBuf {
+        self.asked.out(RUN).unwrap_or_default()
+    }
+
+    /// Returns whether the run is shared out.
+    pub fn is_share(&self) -> bool {
+        self.kept.shard.is_some()
+    }
+
+    /// Returns the arguments of the interrupted run that is resumed, or the same.
     pub fn resumed(&self) -> anyhow::Result<Self> {
-        let Some(folder) = &self.resume else { return Ok(self.clone()) };
+        let Some(folder) = &self.kept.resume else { return Ok(self.clone()) };
+        if self.asked.looks.shares_draws() {
+            bail!("a resumed run makes the draws that its command asked for: give --budget a time");
+        }
         let header = journal::header(folder)?;
-        let known = Self::of(&header.words)?;
-        Ok(Self {
-            selection: known.selection.on_threads_of(&self.selection),
-            looks: known.looks,
-            out: folder.clone(),
-            shard: header.share,
-            ..self.clone()
-        })
+        let Self { mut asked, mut kept } = self.clone();
+        let known = Self::of(&header.words)?.asked;
+        asked.selection = known.selection.on_threads_of(&asked.selection);
+        asked.looks = known.looks.with_budget_of(&asked.looks);
+        asked.reports.out = Some(folder.clone());
+        kept.shard = header.share;
+        Ok(Self { asked, kept })
     }
 }
 
@@ -102,26 +154,38 @@ pub fn main(arguments: &Arguments, catalogue: &Catalogue, console: &Console) -> 
     draw(&arguments.resumed()?, Box::new(Threads), catalogue, console)
 }
 
+/// Draws and judges what is asked for by the defaults of `check`.
+pub fn check(asked: &Asked, catalogue: &Catalogue, console: &Console) -> anyhow::Result<u8> {
+    judge(asked, CHECK, &Kept::FRESH, catalogue, console, |_| Ok(Store::default()))
+}
+
 /// Lets workers draw what is asked for, as it was resumed.
 pub fn draw(
-    asked: &Arguments,
+    arguments: &Arguments,
     workers: Box<dyn Workers>,
     catalogue: &Catalogue,
     console: &Console,
 ) -> anyhow::Result<u8> {
-    if asked.shard.is_some() && (asked.time.is_some() || asked.baseline.is_used()) {
-        anyhow::bail!(
-            "a share is drawn whole and compared with nothing: leave out --time and baselines"
-        );
+    let Arguments { asked, kept } = arguments;
+    let out = arguments.out();
+    let is_timed = asked.looks.budget.is_some();
+    if kept.shard.is_some() && (is_timed || asked.baseline.is_used()) {
+        bail!("a share is drawn whole and compared with nothing: leave out --budget and baselines");
     }
     let store = |plan: &Plan| -> anyhow::Result<Store> {
-        let header = Header::new(plan, &fingerprint()?, &asked.words(), asked.shard);
+        let header = Header::new(plan, &fingerprint()?, &asked.words(), kept.shard);
         workers.agree(&header).map_err(anyhow::Error::msg)?;
-        journal::store(&asked.out, header, asked.resume.is_some(), asked.fresh, workers)
+        if asked.looks.shares_draws() {
+            // What is left for an experiment depends on what others have drawn.
+            let mut store = Store::new(header);
+            store.workers = workers;
+            return Ok(store);
+        }
+        journal::store(&out, header, kept.resume.is_some(), kept.fresh, workers)
     };
-    match asked.shard {
-        Some(share) => draw_share(asked, share, catalogue, console, store),
-        None => judge(asked, catalogue, console, store),
+    match kept.shard {
+        Some(share) => draw_share(arguments, share, catalogue, console, store),
+        None => judge(asked, RUN, kept, catalogue, console, store),
     }
 }
 
@@ -133,93 +197,129 @@ fn draw_share(
     console: &Console,
     store: impl FnOnce(&Plan) -> anyhow::Result<Store> + Send,
 ) -> anyhow::Result<u8> {
-    let selection = &arguments.selection;
+    let (selection, out) = (&arguments.asked.selection, arguments.out());
     let cases = selection.read(catalogue, console)?;
-    output::writable(&arguments.out)?;
-    let out = arguments.out.display();
-    let (is_whole, was_finished) =
-        selection.with_plan(&cases, &arguments.options()?, console, |plan| {
-            let store = store(plan)?;
-            let was_finished = store.logs.iter().any(|log| log.has(Key::End));
-            let is_whole = was_finished || drawing::draw_share(plan, share, &store, console)?;
-            if is_whole && !was_finished {
-                store.logs.iter().try_for_each(|log| log.put(Key::End, &()))?;
-                store.logs.iter().try_for_each(Log::synchronise)?;
-            }
-            Ok((is_whole, was_finished))
-        })?;
+    output::writable(&out)?;
+    let options = arguments.options()?;
+    let (is_whole, was_finished) = selection.with_plan(&cases, &options, console, |plan| {
+        let store = store(plan)?;
+        let was_finished = store.logs.iter().any(|log| log.has(Key::End));
+        if was_finished {
+            return Ok((true, true));
+        }
+        // A share is drawn up to the horizon: nobody looks at it before all shares are there.
+        let steps = share::pieces(plan, share).map(|piece| piece.experiments.len() as u64);
+        let bar = output::progress("drawing", "draws", steps.sum::<u64>() * plan.step(), console);
+        let is_whole = run::draw_share(plan, share, &store, &|step| match step {
+            Step::Drawn(draws) => bar.inc(draws),
+            Step::Kept(draws) => bar.dec_length(draws),
+            Step::Expected(draws) => bar.set_length(draws),
+        });
+        bar.finish_and_clear();
+        store.error().map_or(Ok(()), Err)?;
+        if is_whole {
+            store.logs.iter().try_for_each(|log| log.put(Key::End, &()))?;
+            store.logs.iter().try_for_each(Log::synchronise)?;
+        }
+        Ok((is_whole, false))
+    })?;
     if !is_whole {
-        let cure = journal::resume(&arguments.out);
-        anyhow::bail!("interrupted: share {share} is not finished; {cure} goes on with it");
+        let cure = journal::resume(&out);
+        bail!("interrupted: share {share} is not finished; {cure} goes on with it");
     }
     if !console.quiet {
         let done = if was_finished { "was drawn before" } else { "is drawn" };
+        let (out, program) = (out.display(), output::program());
         output::print(&format!(
-            "share {share} {done}: {out}; `{} merge` judges all parts\n",
-            output::program()
+            "share {share} {done}: {out}; `{program} merge` judges all parts\n"
         ))?;
     }
     Ok(0)
 }
 
+/// Draws what the store does not have, and judges all; returns the draws, too.
+fn judged(plan: &Plan, store: &Store, console: &Console) -> anyhow::Result<(Record, Draws)> {
+    let begin = Instant::now();
+    let bar = output::progress_until("drawing", "draws", 0, plan.options.seconds, console);
+    // Draws of an earlier run tell nothing about the speed of this one.
+    let draws = run::draw_heard(plan, store, &|step| match step {
+        Step::Drawn(draws) => bar.inc(draws),
+        Step::Expected(draws) => bar.set_length(draws),
+        Step::Kept(_) => {}
+    });
+    bar.finish_and_clear();
+    let record = verdict::judged(plan, &draws, begin.elapsed().as_secs_f64());
+    store.error().map_or(Ok((record, draws)), |error| Err(error.into()))
+}
+
 /// Draws what the store does not have, judges, writes, prints.
 pub fn judge(
-    arguments: &Arguments,
+    asked: &Asked,
+    profile: Profile,
+    kept: &Kept,
     catalogue: &Catalogue,
     console: &Console,
     store: impl FnOnce(&Plan) -> anyhow::Result<Store> + Send,
 ) -> anyhow::Result<u8> {
-    let selection = &arguments.selection;
-    let cases: Vec<Case> = selection.read(catalogue, console)?;
+    let (selection, reports) = (&asked.selection, &asked.reports);
+    let cases = selection.read(catalogue, console)?;
+    let out = asked.out(profile);
     // Better to learn now than after the drawing that nothing can be written.
-    output::writable(&arguments.out)?;
-    let baselines = arguments.baseline.open()?;
+    reports.writable(out.as_deref(), &cases)?;
+    let baselines = asked.baseline.open()?;
     // A comparison needs times and evidence of its own.
-    let is_fresh = arguments.fresh || arguments.baseline.is_used();
-    let (finished, cure) = (journal::finished(&arguments.out), journal::resume(&arguments.out));
-    let (record, [reused, ready], kept, store) =
-        selection.with_plan(&cases, &arguments.options()?, console, |plan| {
+    let is_fresh = kept.fresh || asked.baseline.is_used();
+    let finished = out.as_deref().filter(|_| profile.is_whole && !asked.looks.shares_draws());
+    let finished = finished.map(journal::finished);
+    let cure = out.as_deref().map_or(String::new(), journal::resume);
+    let options = asked.options(profile)?;
+    let (record, [reused, ready], finishing, store) =
+        selection.with_plan(&cases, &options, console, |plan| {
             let mut store = store(plan)?;
-            let wrong = || format!("cannot read {}; move it away", finished.display());
-            store.reuse(&finished, is_fresh).with_context(wrong)?;
+            if let Some(path) = &finished {
+                let wrong = || format!("cannot read {}; move it away", path.display());
+                store.reuse(path, is_fresh).with_context(wrong)?;
+            }
             let counts = store.reusable(plan);
-            let drawn = drawing::judged(plan, &store, console);
-            let (mut record, draws) =
-                drawn.with_context(|| format!("not finished; {cure} goes on with what is kept"))?;
-            let kept = store.finish(&finished, plan, &draws);
-            verdict::add_curves(plan, &mut record);
-            Ok((record, counts, kept, store))
+            let (mut record, draws) = judged(plan, &store, console)
+                .with_context(|| format!("not finished; {cure} goes on with what is kept"))?;
+            let finishing =
+                finished.as_ref().map_or(Ok(()), |path| store.finish(path, plan, &draws));
+            if profile.is_whole {
+                verdict::add_curves(plan, &mut record);
+            }
+            Ok((record, counts, finishing, store))
         })?;
-    // The time is up, or somebody wants it to end; a run that was begun with a limit of time is over then.
-    let is_asked = store.stop.load(Ordering::Relaxed) || arguments.resume.is_some();
+    // A run that was begun with a limit of time is over when the time is; one that was interrupted or resumed is not.
+    let is_asked = store.stop.load(Ordering::Relaxed) || kept.resume.is_some();
     let was_stopped = record.results.cut_by_time && is_asked && store.keeps;
     let (record, run) = baselines.compare(record, &cases);
     let mut errors = Errors::default();
-    let files = errors.write(report::render(&record), &arguments.out);
-    errors.keep(kept);
-    if store.keeps && errors.is_empty() && !was_stopped {
-        errors.keep(journal::end(&arguments.out));
+    let files = reports.write(&record, out.as_deref(), profile.is_whole, &mut errors);
+    errors.keep(finishing);
+    if let Some(out) = out.as_deref().filter(|_| store.keeps && errors.is_empty() && !was_stopped) {
+        errors.keep(journal::end(out));
     }
     drop(store);
-    errors.keep(output::print_run(&record, arguments.format, arguments.verbose, console));
+    errors.keep(output::print_run(&record, reports.format, reports.verbose, console));
     errors.extend(baselines.complaint(&record));
-    // What is to be gone on with is no baseline yet.
+    // A run that is to be resumed is no baseline yet.
     let store = || baselines.store(&record, run.as_ref());
-    let stored = if was_stopped { String::new() } else { errors.keep(store()) };
-    let is_told = arguments.format == Format::Table && !console.quiet;
-    if let Some(files) = files.filter(|_| is_told) {
-        let reuse = if reused > 0 {
-            format!(
+    let mut told = if was_stopped { String::new() } else { errors.keep(store()) };
+    if let (Some(out), Some(files)) = (&out, files) {
+        if reused > 0 {
+            told = format!(
                 "{reused} of {ready} experiments have not changed since the last run there: their \
-                 draws were reused (--fresh makes them anew)\n"
-            )
-        } else {
-            String::new()
-        };
-        let (out, page) = (arguments.out.display(), output::report_in(&arguments.out));
-        errors.keep(output::print(&format!("{files} files in {out}\n{reuse}{stored}{page}")));
+                 draws were reused (--fresh makes them anew)\n{told}"
+            );
+        }
+        told = format!("{files} files in {}\n{told}{}", out.display(), output::report_in(out));
     }
-    let code = close(&record, arguments.inconclusive, &errors);
+    if reports.is_table() && !console.quiet {
+        errors.keep(output::print(&told));
+    }
+    reports.annotate(&record, &mut errors);
+    let code = close(&record, reports.inconclusive, &errors);
     if was_stopped {
         output::warn(&format!(
             "interrupted, or out of time: this is judged on what was drawn; {cure} goes on"

@@ -3,7 +3,9 @@
 use anyhow::Context;
 use clap::Args;
 
-use super::{Console, numbers, output};
+use super::help::Names;
+use super::numbers::{self, Budget};
+use super::{Console, output};
 use crate::case::Case;
 use crate::case::Catalogue;
 use crate::case::suite;
@@ -13,14 +15,15 @@ use crate::plan::Options;
 use crate::plan::Plan;
 use estimators::Order;
 
-/// Which experiments, and where their random numbers begin.
+/// Experiments, and where their random numbers begin.
 #[derive(Debug, Clone, Args)]
+#[command(next_help_heading = "Experiments")]
 pub struct Experiments {
     /// Case files, folders of them, or names of built-in cases; without any, the built-in suite
-    #[arg(value_name = "CASES")]
+    #[arg(value_name = "CASES", value_parser = Names::Cases, hide_possible_values = true)]
     cases: Vec<String>,
-    /// Only what matches: a case, an estimator, or `case:estimator`, with `*` and `?`
-    #[arg(long, value_name = "GLOB")]
+    /// Only experiments that match: a case, an estimator, or `case:estimator`, with `*` and `?`
+    #[arg(long, value_name = "GLOB", value_parser = Names::Experiments, hide_possible_values = true)]
     filter: Option<String>,
     /// How product estimators draw, whatever the cases say: `ordered` along the ray, or `order-free`,
     /// faster, other draws of the same law [default: the case's, or ordered]
@@ -33,6 +36,7 @@ pub struct Experiments {
 
 /// Options that the commands on cases share.
 #[derive(Debug, Clone, Args)]
+#[command(next_help_heading = "Drawing")]
 pub struct Selection {
     #[command(flatten)]
     experiments: Experiments,
@@ -42,27 +46,32 @@ pub struct Selection {
     /// Chance that a correct run shows any failure
     #[arg(long, default_value_t = 1e-3, value_name = "A", value_parser = numbers::alpha, allow_hyphen_values = true)]
     alpha: f64,
-    /// Threads [default: one per processor]; results do not depend on it
+    /// Threads [default: one per processor]; results do not depend on them
     #[arg(long, value_name = "N", value_parser = numbers::threads, allow_negative_numbers = true)]
     pub threads: Option<u16>,
 }
 
 /// When the gate looks, and what stops the drawing.
 #[derive(Debug, Clone, Args)]
+#[command(next_help_heading = "Drawing")]
 pub struct Looks {
+    /// Look only after every K blocks of 16384 draws, which are kept, sent and merged as one: for very long runs
+    #[arg(long, default_value_t = 1, value_name = "K", value_parser = numbers::whole::<u64>(1..=1_000_000), allow_negative_numbers = true)]
+    blocks_per_look: u64,
+    /// Stop after a time (30s, 5m; results then depend on the machine) or a number of draws of all experiments
+    /// together (1e8, at least one block of 16384)
+    #[arg(long, value_name = "B", value_parser = numbers::budget, allow_negative_numbers = true)]
+    pub budget: Option<Budget>,
     /// Draw exactly what is planned: no check stops the drawing, none prolongs it
     #[arg(long)]
     fixed_draws: bool,
     /// Let every underpowered check make its experiment inconclusive
     #[arg(long)]
     strict: bool,
-    /// Look only after every K blocks of 16384 draws, which are kept, sent and merged as one: for very long runs
-    #[arg(long, default_value_t = 1, value_name = "K", value_parser = numbers::whole::<u64>(1..=1_000_000), allow_negative_numbers = true)]
-    blocks_per_look: u64,
 }
 
 impl Looks {
-    /// The words that ask for the same.
+    /// Returns the words that ask for the same draws.
     pub fn words(&self) -> Vec<String> {
         let flags = [("--fixed-draws", self.fixed_draws), ("--strict", self.strict)];
         let mut words: Vec<String> =
@@ -70,13 +79,31 @@ impl Looks {
         if self.blocks_per_look != 1 {
             words.push(format!("--blocks-per-look={}", self.blocks_per_look));
         }
+        if let Some(Budget::Draws(draws)) = self.budget {
+            words.push(format!("--budget={draws}"));
+        }
         words
     }
 
-    /// Options that say so.
+    /// Returns whether all experiments share a number of draws: what is left for one then depends on the others.
+    pub fn shares_draws(&self) -> bool {
+        matches!(self.budget, Some(Budget::Draws(_)))
+    }
+
+    /// Returns the same with the budget of another.
+    pub fn with_budget_of(self, other: &Self) -> Self {
+        Self { budget: other.budget, ..self }
+    }
+
+    /// Returns options that say so.
     pub fn of(&self, options: Options) -> Options {
-        let Self { fixed_draws: fixed, strict, blocks_per_look } = *self;
-        Options { blocks_per_look, fixed, strict, ..options }
+        let Self { fixed_draws: fixed, strict, blocks_per_look, budget } = *self;
+        let (seconds, budget) = match budget {
+            Some(Budget::Seconds(seconds)) => (Some(seconds), None),
+            Some(Budget::Draws(draws)) => (None, Some(draws)),
+            None => (None, None),
+        };
+        Options { seconds, budget, blocks_per_look, fixed, strict, ..options }
     }
 }
 

@@ -24,7 +24,7 @@ pub struct Arguments {
     #[arg(long, value_name = "N", value_parser = numbers::threads, allow_negative_numbers = true)]
     threads: Option<u16>,
     /// Folder of results; report.html, tables and plot go to `stress` below it
-    #[arg(long, short, default_value = "results", value_name = "DIR")]
+    #[arg(long, default_value = "results", value_name = "DIR")]
     out: PathBuf,
 }
 

@@ -19,7 +19,7 @@ fn biased() -> String {
     GOOD.replace("{ woodcock = {} }", "{ ray-marching = { steps = 2 } }")
 }
 
-const FILES: &str = "--junit junit.xml --json record.json --markdown summary.md";
+const FILES: &str = "--junit junit.xml --record record.json --markdown summary.md";
 
 /// A folder with one case.
 fn place_of(text: &str) -> Place {
@@ -143,10 +143,10 @@ fn usage_is_2_before_anything_is_drawn() {
         ("cases --inconclusive maybe", ["--inconclusive", "fail"]),
         ("cases --no-such-flag", ["--no-such-flag", "Usage"]),
         ("cases --junit nowhere/a.xml", ["--junit", "nowhere"]),
-        ("cases --json file/a.json", ["--json", "file"]),
+        ("cases --record file/a.json", ["--record", "file"]),
         ("cases --markdown cases", ["--markdown", "directory"]),
-        ("cases --junit same --json same", ["--json", "another report"]),
-        ("cases --json cases/case.toml", ["--json", "a case"]),
+        ("cases --junit same --record same", ["--record", "another report"]),
+        ("cases --record cases/case.toml", ["--record", "a case"]),
         ("cases --out file", ["--out", "file"]),
     ] {
         let begin = std::time::Instant::now();

@@ -79,7 +79,7 @@ fn usage_is_2() {
         "run case.toml --alpha nan",
         "run case.toml --seed -1",
         "run case.toml --threads 0",
-        "run case.toml --time soon",
+        "run case.toml --budget soon",
         "run case.toml --format yaml",
         "run case.toml --filter [",
         "run case.toml --filter nothing-of-the-kind",
@@ -313,8 +313,67 @@ fn help_version_and_completions() {
     for shell in ["bash", "zsh", "fish"] {
         let output = place.run(&format!("completions {shell}"));
         assert_eq!(code(&output), 0);
-        assert_says(&stdout(&output), &["trueflight", "predict"]);
+        assert_says(&stdout(&output), &["trueflight", "predict", "transmittance/eq21-overview"]);
+        assert_says(&stdout(&output), &["next-flight"]);
     }
+    assert_says(&stdout(&place.run("completions zsh")), &["{compadd -- ", "; _files}"]);
+}
+
+/// Commands that the help of all commands lists.
+fn commands(place: &Place) -> Vec<String> {
+    let help = stdout(&place.run("--help"));
+    let list = help.split("Commands:\n").nth(1).expect("a list").split("\n\n").next();
+    let names = list.expect("a list").lines().filter_map(|line| line.split_whitespace().next());
+    names.filter(|&name| name != "help").map(str::to_owned).collect()
+}
+
+#[test]
+fn help_pages_have_examples_exit_codes_and_pages_of_the_manual() {
+    let place = Place::new(&[]);
+    let commands = commands(&place);
+    assert!(commands.len() > 10, "{commands:?}");
+    let (mut wrong, mut parsed) = (Vec::new(), 0);
+    for command in &commands {
+        let help = stdout(&place.run(&format!("{command} --help")));
+        let (_, end) = help.split_once("\nExamples:\n").expect("examples");
+        let (examples, end) = end.split_once("\n\nExit codes:\n").expect("exit codes");
+        let (codes, manual) = end.split_once("\n\nManual: ").expect("a page of the manual");
+        assert!(codes.starts_with("  0  ") && codes.contains("\n  2  "), "{codes}");
+        for page in manual.trim().split(", ") {
+            let page = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join(page);
+            assert!(page.exists(), "{}", page.display());
+        }
+        for example in examples.lines() {
+            let words = example.trim().strip_prefix("trueflight ").expect("a command");
+            let words = words.split(['>', '|']).next().unwrap_or_default();
+            assert!(words.starts_with(command.as_str()), "{example}");
+            let output = place.run(&format!("{words} --help"));
+            parsed += 1;
+            if code(&output) != 0 {
+                wrong.push(format!("{example}: {}", stderr(&output)));
+            }
+        }
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+    assert!(parsed > 20, "{parsed} examples");
+}
+
+#[test]
+fn options_of_run_and_check_are_those_of_one_command() {
+    let place = Place::new(&[]);
+    let options = |command: &str| -> Vec<String> {
+        let help = stdout(&place.run(&format!("{command} --help")));
+        let words = help.lines().filter_map(|line| {
+            let line = line.trim_start();
+            let line = line.strip_prefix("-v, ").or(line.strip_prefix("-q, ")).unwrap_or(line);
+            line.starts_with("--").then(|| line.split(' ').next()).flatten()
+        });
+        words.map(str::to_owned).collect()
+    };
+    let (run, check) = (options("run"), options("check"));
+    let more: Vec<&String> = run.iter().filter(|option| !check.contains(option)).collect();
+    assert_eq!(more, ["--fresh", "--resume", "--shard"]);
+    assert!(check.len() > 15 && check.iter().all(|option| run.contains(option)), "{check:?}");
 }
 
 #[test]

@@ -90,19 +90,19 @@ pub(super) fn main(
 ) -> anyhow::Result<u8> {
     // One thread a processor, the default of a single process, would be that many for each rank.
     let mut arguments = arguments.clone();
-    arguments.selection.threads.get_or_insert(1);
+    arguments.asked.selection.threads.get_or_insert(1);
     if link.rank > 0 {
         serve(&link, &arguments, catalogue, console);
         return Ok(0);
     }
     let team = Team::new(link);
     let asked = arguments.resumed()?;
-    if asked.shard.is_some() {
+    if asked.is_share() {
         bail!("a share is drawn by one process: leave out mpirun, or --shard");
     }
     if !console.quiet {
         // MPI ends rank 0 with any other, and leaves it no time to say so then.
-        let (ranks, again) = (team.size(), journal::resume(&asked.out));
+        let (ranks, again) = (team.size(), journal::resume(&asked.out()));
         output::note(&format!(
             "{ranks} ranks draw; should one of them die, {again} under mpirun goes on"
         ));
@@ -115,7 +115,7 @@ pub(super) fn main(
 fn serve(link: &Link, arguments: &run::Arguments, catalogue: &Catalogue, console: &Console) {
     let Message::Plan(words) = link.receive().1 else { return };
     let drawn = run::Arguments::of(&words).and_then(|asked| {
-        let selection = asked.selection.clone().on_threads_of(&arguments.selection);
+        let selection = asked.asked.selection.clone().on_threads_of(&arguments.asked.selection);
         let cases = selection.read(catalogue, console)?;
         selection.with_plan(&cases, &asked.options()?, console, |plan| {
             draw(link, plan, Header::new(plan, &fingerprint()?, &words, None));

@@ -39,7 +39,7 @@ fn a_comparison_of_nothing_is_an_error() {
     }
     assert!(!text.contains("no change"), "{text}");
     assert_eq!(std::fs::read(place.join("baselines/main.json")).expect("a file"), stored);
-    let reports = "--junit junit.xml --markdown summary.md --json record.json";
+    let reports = "--junit junit.xml --markdown summary.md --record record.json";
     let check = "check case.toml --filter *:ratio --draws 400000 --alpha 1e-6 --baseline main";
     said(&plain(place, &format!("{check} {reports}")), 2);
     for file in ["junit.xml", "summary.md"] {

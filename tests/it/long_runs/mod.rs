@@ -244,7 +244,7 @@ fn the_first_interruption_ends_with_a_verdict_and_the_second_at_once() {
     let output = place.say(&Place::asked("--out stopped"));
     assert!(output.status.code() == Some(2) && said(&output).contains("--resume stopped"));
     // A limit of time ends what is gone on with, and loses nothing.
-    let output = place.say("run --resume stopped --time 0.02 --inconclusive pass");
+    let output = place.say("run --resume stopped --budget 0.02s --inconclusive pass");
     assert!(said(&output).contains("--resume stopped"), "{}", said(&output));
     assert!(output.status.code() == Some(3) && place.path("stopped/blocks.bin").exists());
     let output = place.say("report stopped");

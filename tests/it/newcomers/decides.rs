@@ -101,7 +101,7 @@ fn the_draws_that_are_needed_follow_from_the_variance() {
 #[test]
 fn every_report_gives_the_command_that_decides() {
     let place = Place::new(&[("swept.toml", SWEPT)]);
-    let reports = "--junit j.xml --markdown s.md --json r.json --out out";
+    let reports = "--junit j.xml --markdown s.md --record r.json --out out";
     let said = place.says(3, &format!("check swept.toml --draws 2e4 {reports}"));
     let decisive = commands(&said, ": ");
     let [one, ..] = &decisive[..] else { panic!("no command in\n{said}") };

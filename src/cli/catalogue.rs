@@ -1,4 +1,4 @@
-//! `trueflight list`: the catalogue, from the code's own documentation.
+//! `trueflight list` and `trueflight explain`: the catalogue, from the code's own documentation.
 
 use std::ffi::OsStr;
 use std::fmt::Write;
@@ -9,23 +9,25 @@ use clap::error::ErrorKind;
 use clap::{Args, ValueEnum};
 
 use super::Console;
+use super::help::Names;
 use super::output::{self, Format};
 use crate::case::catalogue::{Catalogue, built_in};
-use crate::case::suite;
+use crate::case::{example, suite};
 use crate::checks;
 use crate::render::{self, Picture, gallery};
+use crate::report::console::page;
 use crate::{phase, report};
 use estimators::recipes::{controls, sampling};
-use media::catalogue::{Page, PageList};
+use media::catalogue::{Page, PageList, suggestion};
 use theory::problems;
 
 /// Arguments of `list`.
 #[derive(Debug, Args)]
-pub struct Arguments {
+pub struct List {
     /// One part of the catalogue; without it, all of it
     #[arg(value_parser = Kind)]
     what: Option<What>,
-    /// How the rows are printed
+    /// Form of the rows on stdout
     #[arg(long, value_enum, default_value_t)]
     format: Format,
 }
@@ -124,7 +126,7 @@ pub fn pages(catalogue: &Catalogue) -> Vec<(String, Page)> {
 }
 
 /// Prints the names with one sentence each.
-pub fn main(arguments: &Arguments, catalogue: &Catalogue, console: &Console) -> anyhow::Result<u8> {
+pub fn list(arguments: &List, catalogue: &Catalogue, console: &Console) -> anyhow::Result<u8> {
     let rows = rows(arguments.what, catalogue);
     output::print(&match arguments.format {
         Format::Table => table(&rows, console),
@@ -132,11 +134,6 @@ pub fn main(arguments: &Arguments, catalogue: &Catalogue, console: &Console) -> 
         Format::Json => serde_json::to_string_pretty(&rows)? + "\n",
     })?;
     Ok(0)
-}
-
-/// Prints one part of the catalogue as a table.
-pub fn print(what: What, catalogue: &Catalogue, console: &Console) -> anyhow::Result<()> {
-    output::print(&table(&rows(Some(what), catalogue), console))
 }
 
 /// Rows of one part of the catalogue, or of all of it.
@@ -190,4 +187,84 @@ fn csv(rows: &[Row]) -> anyhow::Result<String> {
         writer.serialize(row)?;
     }
     Ok(String::from_utf8(writer.into_inner()?)?)
+}
+
+/// Arguments of `explain`.
+#[derive(Debug, Args)]
+pub struct Explain {
+    /// A name that `trueflight list` shows, such as ratio, eq21 or pilot, or a part of the list, such as media
+    #[arg(required = true, value_parser = Names::Pages, hide_possible_values = true)]
+    name: Vec<String>,
+}
+
+/// Prints every page of a name, or the list of a part: for a terminal without the signs of Markdown and as wide as
+/// it is, else as it is written.
+pub fn explain(
+    arguments: &Explain,
+    catalogue: &Catalogue,
+    console: &Console,
+) -> anyhow::Result<u8> {
+    // `free flight`, `free_flight` and `Free-Flight` are `free-flight`.
+    let written = arguments.name.join("-");
+    let name = &written.to_lowercase().replace('_', "-");
+    let found = explained(name, catalogue);
+    if found.is_empty() {
+        let Ok(what) = What::from_str(name, true) else {
+            return Err(unknown(&written, name, catalogue));
+        };
+        output::print(&table(&rows(Some(what), catalogue), console))?;
+        return Ok(0);
+    }
+    let pen = output::pen(console);
+    let is_shown = std::io::stdout().is_terminal() || pen.colour;
+    let text = |(part, text): (String, String)| {
+        if is_shown {
+            page::rendered(&format!("# {name} ({part})\n\n{text}\n"), pen)
+        } else {
+            format!("{name} ({part})\n\n{text}\n")
+        }
+    };
+    let texts: Vec<String> = found.into_iter().map(text).collect();
+    output::print(&texts.join("\n"))?;
+    Ok(0)
+}
+
+/// The pages of a name: for each the part of the catalogue, and the text in Markdown with a case to copy.
+fn explained(name: &str, catalogue: &Catalogue) -> Vec<(String, String)> {
+    let mut found = Vec::new();
+    for (part, page) in pages(catalogue).into_iter().filter(|(_, page)| page.name() == name) {
+        let mut text = page.text().trim_end().to_owned();
+        if let Some(case) = example::of(&part, name) {
+            text += "\n\nA case to copy; `trueflight run case.toml` draws it:\n\n";
+            text += &fenced(&case);
+        }
+        found.push((part, text));
+    }
+    let files = [("cases", suite::find(name)), ("pictures", gallery::find(name))];
+    for (part, source) in files {
+        found.extend(source.map(|source| (part.to_owned(), fenced(&source.text))));
+    }
+    found
+}
+
+fn fenced(toml: &str) -> String {
+    format!("```toml\n{}\n```", toml.trim_end())
+}
+
+/// The error about a name that nothing has, with what was probably meant.
+fn unknown(written: &str, name: &str, catalogue: &Catalogue) -> anyhow::Error {
+    let sources = suite::suite().into_iter().chain(gallery::gallery()).map(|source| source.name);
+    let kinds = What::value_variants().iter().map(|what| what.name());
+    let pages = pages(catalogue).into_iter().map(|(_, page)| page.name());
+    let mut names: Vec<String> = pages.chain(kinds).chain(sources).collect();
+    names.sort();
+    names.dedup();
+    let names: Vec<&str> = names.iter().map(String::as_str).collect();
+    let all = "`trueflight list` shows the names";
+    let mut hint = suggestion(name, &names, all);
+    let near: Vec<&str> = names.into_iter().filter(|known| known.contains(name)).collect();
+    if hint == all && !near.is_empty() {
+        hint = format!("{all}: {}", near.join(", "));
+    }
+    anyhow::anyhow!("nothing is called \"{written}\"; {hint}")
 }

@@ -1,0 +1,129 @@
+//! Options on reports, for all commands that judge experiments: where they are written, and what is printed.
+//!
+//! All reports are written before the process ends, whatever the verdict; that they can be is known
+//! before the first draw.
+
+use std::fs::OpenOptions;
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+use anyhow::Context;
+use clap::Args;
+
+use super::output::{self, Errors, Format};
+use super::verdict::Inconclusive;
+use crate::case::Case;
+use crate::record::Record;
+use crate::report::{self, Report, annotations, html, junit, markdown, record_json, summary_csv};
+use media::files;
+
+/// Reports of a run.
+#[derive(Debug, Clone, Default, Args)]
+#[command(next_help_heading = "Reports")]
+pub struct Reports {
+    /// Form of the rows on stdout; csv and json have all of them
+    #[arg(long, value_enum, default_value_t)]
+    pub format: Format,
+    /// Verdict that an inconclusive experiment counts as [default: exit code 3]
+    #[arg(long, value_enum, value_name = "AS")]
+    pub inconclusive: Option<Inconclusive>,
+    /// Write a JUnit report
+    #[arg(long, value_name = "FILE")]
+    junit: Option<PathBuf>,
+    /// Write a summary in Markdown
+    #[arg(long, value_name = "FILE")]
+    markdown: Option<PathBuf>,
+    /// Folder for report.html, summary.csv and record.json; `run` and `merge` also write checks.csv, the cases' CSV files
+    /// and the plots [default: results; check: none]
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    /// Write the whole record as JSON
+    #[arg(long, value_name = "FILE")]
+    record: Option<PathBuf>,
+    /// Print every row, not only those that do not pass
+    #[arg(long, short)]
+    pub verbose: bool,
+}
+
+impl Reports {
+    /// Returns whether the rows are printed for people.
+    pub fn is_table(&self) -> bool {
+        self.format == Format::Table
+    }
+
+    /// Returns the files that are asked for, each with its option.
+    fn files(&self) -> impl Iterator<Item = (&'static str, &Path)> {
+        let files =
+            [("--junit", &self.junit), ("--record", &self.record), ("--markdown", &self.markdown)];
+        files.into_iter().filter_map(|(flag, path)| Some((flag, path.as_deref()?)))
+    }
+
+    /// Fails if something cannot be written, or would be written over the cases or over another report.
+    pub fn writable(&self, out: Option<&Path>, cases: &[Case]) -> anyhow::Result<()> {
+        let mut taken: Vec<PathBuf> =
+            cases.iter().filter_map(|case| case.path.canonicalize().ok()).collect();
+        for (flag, path) in self.files() {
+            let wrong =
+                || format!("cannot write {}; give another file with {flag}", path.display());
+            files::writable(path).with_context(wrong)?;
+            let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
+            let folder = folder.unwrap_or(Path::new(".")).canonicalize().with_context(wrong)?;
+            let place = path.canonicalize().ok();
+            let place = place.unwrap_or_else(|| folder.join(path.file_name().unwrap_or_default()));
+            let is_plain = !place.exists() || place.is_file();
+            if is_plain && taken.contains(&place) {
+                let why = anyhow::anyhow!("it is a case or another report");
+                return Err(why.context(wrong()));
+            }
+            taken.push(place);
+        }
+        out.map_or(Ok(()), output::writable)
+    }
+
+    /// Writes all that can be written; returns the number of files in the folder.
+    pub fn write(
+        &self,
+        record: &Record,
+        out: Option<&Path>,
+        is_whole: bool,
+        errors: &mut Errors,
+    ) -> Option<usize> {
+        for (flag, path) in self.files() {
+            let text = match flag {
+                "--junit" => junit::text(record, Inconclusive::in_junit(self.inconclusive)),
+                "--record" => record_json::text(record),
+                _ => Ok(markdown::text(record)),
+            };
+            let written = text
+                .map_err(anyhow::Error::from)
+                .and_then(|text| Ok(files::replace(path, text.as_bytes())?))
+                .with_context(|| format!("cannot write {} ({flag})", path.display()));
+            errors.keep(written);
+        }
+        let brief: [Report; 3] = [summary_csv::render, record_json::render, html::render];
+        let files = || -> Result<Vec<_>, _> {
+            if is_whole {
+                return report::render(record);
+            }
+            let files: Result<Vec<_>, _> = brief.iter().map(|render| render(record)).collect();
+            files.map(|files| files.concat())
+        };
+        out.and_then(|out| errors.write(files(), out))
+    }
+
+    /// Annotates the job of GitHub Actions, and adds the summary to its page.
+    pub fn annotate(&self, record: &Record, errors: &mut Errors) {
+        if !self.is_table() || std::env::var_os("GITHUB_ACTIONS").is_none_or(|it| it != "true") {
+            return;
+        }
+        errors.keep(output::print(&annotations::text(record)));
+        let path = std::env::var_os("GITHUB_STEP_SUMMARY").filter(|path| !path.is_empty());
+        let Some(path) = path.map(PathBuf::from) else { return };
+        let file = OpenOptions::new().append(true).create(true).open(&path);
+        let text = markdown::text(record) + "\n";
+        // Without the summary the verdict is still the verdict.
+        if let Err(error) = file.and_then(|mut file| file.write_all(text.as_bytes())) {
+            output::warn(&format!("cannot add the summary to {}: {error}", path.display()));
+        }
+    }
+}
