@@ -2,12 +2,12 @@
 //!
 //! ```text
 //! file   a line of its own, then frames
-//! frame  length of the content (u32), content (key and value), hash of the frame before it and of the content (u64)
+//! frame  length of the content (u32), content (key and value), hash of the content (u64)
 //! ```
 //!
-//! The hashes are a chain. A frame that is torn, cut, flipped, doubled or from another file is found at its first
-//! byte, and nothing from there on is used. An entry is written at once, so that a killed process loses none; the
-//! disk is synchronised at most once a second.
+//! Nothing is used from the first frame on that is torn, cut, flipped or doubled. Frames of other draws have other
+//! keys. An entry is written at once, so that a killed process loses none; the disk is synchronised at most once a
+//! second.
 
 use std::collections::BTreeMap;
 use std::fs::{self, File, OpenOptions, TryLockError};
@@ -62,8 +62,6 @@ pub struct Log {
 #[derive(Debug)]
 struct Inside {
     file: File,
-    /// Hash of the last frame.
-    last: u64,
     /// Length of the file, and its length when it was last rewritten.
     end: u64,
     base: u64,
@@ -113,11 +111,8 @@ impl Log {
                 OpenOptions::new().read(true).write(true).create(true).truncate(true).open(&new)?;
             let mut writer = BufWriter::new(&file);
             writer.write_all(FIRST)?;
-            let mut last = hash(FIRST);
             for content in entries {
-                let (bytes, hash) = frame(last, &content?);
-                writer.write_all(&bytes)?;
-                last = hash;
+                writer.write_all(&frame(&content?))?;
             }
             writer.flush()?;
             drop(writer);
@@ -166,9 +161,9 @@ impl Log {
             let mut reader = BufReader::new(&file);
             let mut first = Vec::new();
             reader.by_ref().take(FIRST.len() as u64).read_to_end(&mut first)?;
-            let (mut end, mut last) = (FIRST.len() as u64, hash(FIRST));
+            let mut end = FIRST.len() as u64;
             while first == FIRST
-                && let Some((content, hash)) = read_frame(&mut reader, length - end, last)?
+                && let Some(content) = read_frame(&mut reader, length - end)?
             {
                 // The header comes first, nothing follows an end, and nothing is there twice.
                 let key = postcard::take_from_bytes(&content).map(|(key, _)| key);
@@ -180,16 +175,16 @@ impl Log {
                 if !is_sound {
                     break;
                 }
-                (end, last) = (end + OVERHEAD + content.len() as u64, hash);
+                end += OVERHEAD + content.len() as u64;
             }
-            Ok((end, last, (end < length).then_some(end)))
+            Ok((end, (end < length).then_some(end)))
         };
-        let (end, last, damaged_at) = scan().map_err(told("read", path))?;
+        let (end, damaged_at) = scan().map_err(told("read", path))?;
         if places.is_empty() {
             let wrong = "is no file of blocks of this version, or its header is damaged";
             return Err(io::Error::other(format!("{} {wrong}", path.display())));
         }
-        let inside = Inside { file, last, end, base: 0, places, synced: Instant::now() };
+        let inside = Inside { file, end, base: 0, places, synced: Instant::now() };
         Ok(Self { path: path.to_owned(), damaged_at, inside: Mutex::new(inside), lock: None })
     }
 
@@ -278,27 +273,22 @@ impl Inside {
     fn read(&mut self, path: &Path, key: Key) -> io::Result<Option<Vec<u8>>> {
         let Some(&at) = self.places.get(&key) else { return Ok(None) };
         let mut read = || {
-            // The hash of the frame before it ends there; before the first frame stands the first line.
-            self.file.seek(SeekFrom::Start(at - HASH as u64))?;
-            let mut before = [0; HASH];
-            self.file.read_exact(&mut before)?;
-            let is_first = at == FIRST.len() as u64;
-            let before = if is_first { hash(FIRST) } else { u64::from_le_bytes(before) };
+            self.file.seek(SeekFrom::Start(at))?;
             let left = self.file.metadata()?.len().saturating_sub(at);
-            read_frame(&mut self.file, left, before)
+            read_frame(&mut self.file, left)
         };
-        let content = read().map_err(told("read", path))?.map(|(content, _)| content);
+        let content = read().map_err(told("read", path))?;
         let changed = || format!("{} has changed at byte {at} since it was opened", path.display());
         content.map(Some).ok_or_else(|| io::Error::other(changed()))
     }
 
     /// Writes an entry at the end.
     fn write(&mut self, key: Key, content: &[u8]) -> io::Result<()> {
-        let (bytes, hash) = frame(self.last, content);
+        let bytes = frame(content);
         self.file.seek(SeekFrom::Start(self.end))?;
         self.file.write_all(&bytes)?;
         self.places.insert(key, self.end);
-        (self.last, self.end) = (hash, self.end + bytes.len() as u64);
+        self.end += bytes.len() as u64;
         if self.synced.elapsed() > MAX_UNSYNCED { self.synchronise() } else { Ok(()) }
     }
 
@@ -320,17 +310,15 @@ fn beside(path: &Path) -> PathBuf {
     path.with_extension("new")
 }
 
-/// Returns a frame after one of hash `last`, and its own hash.
-fn frame(last: u64, content: &[u8]) -> (Vec<u8>, u64) {
-    let hash = chained(last, content);
+fn frame(content: &[u8]) -> Vec<u8> {
     #[allow(clippy::cast_possible_truncation)] // a block has some thousand sums
     let length = content.len() as u32;
-    ([&length.to_le_bytes()[..], content, &hash.to_le_bytes()].concat(), hash)
+    [&length.to_le_bytes()[..], content, &hash(content).to_le_bytes()].concat()
 }
 
-/// Reads the content and the hash of the next frame, with `left` bytes to the end; `None` if it is not whole.
-fn read_frame(reader: &mut impl Read, left: u64, last: u64) -> io::Result<Option<(Vec<u8>, u64)>> {
-    let mut length = [0; LENGTH];
+/// Reads the content of the next frame, with `left` bytes to the end; `None` if it is not whole.
+fn read_frame(reader: &mut impl Read, left: u64) -> io::Result<Option<Vec<u8>>> {
+    let (mut length, mut found) = ([0; LENGTH], [0; HASH]);
     if left < OVERHEAD {
         return Ok(None);
     }
@@ -339,13 +327,8 @@ fn read_frame(reader: &mut impl Read, left: u64, last: u64) -> io::Result<Option
     if u64::from(length) > left - OVERHEAD {
         return Ok(None);
     }
-    let (mut content, mut found) = (vec![0; length as usize], [0; HASH]);
+    let mut content = vec![0; length as usize];
     reader.read_exact(&mut content)?;
     reader.read_exact(&mut found)?;
-    let hash = chained(last, &content);
-    Ok((found == hash.to_le_bytes()).then_some((content, hash)))
-}
-
-fn chained(last: u64, content: &[u8]) -> u64 {
-    last.rotate_left(1) ^ hash(content)
+    Ok((found == hash(&content).to_le_bytes()).then_some(content))
 }

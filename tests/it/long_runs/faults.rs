@@ -132,7 +132,7 @@ pub fn strangers(place: &mut Place) -> Counts {
     for bytes in [&b""[..], b"trueflight", b"trueflight blocks 3\n", &[0; 4096]] {
         resume_with(place, &mut counts, bytes, FOREIGN);
     }
-    // Blocks behind the header of another file: the chain of hashes does not go through.
+    // Blocks behind the header of other draws: they have other keys.
     let draws = "run ray.toml --draws 2e5 --out other --shard 1/1 --fresh";
     assert!(place.say(draws).status.success());
     let other = fs::read(place.path("other/blocks.bin")).expect("a share");
