@@ -20,7 +20,8 @@ use estimators::Order;
 #[command(next_help_heading = "Experiments")]
 pub struct Experiments {
     /// Case files, folders of them, or names of built-in cases; without any, the built-in suite
-    #[arg(value_name = "CASES", value_parser = Names::Cases, hide_possible_values = true)]
+    #[arg(value_name = "CASES", help_heading = None::<&str>)]
+    #[arg(value_parser = Names::Cases, hide_possible_values = true)]
     cases: Vec<String>,
     /// Only experiments that match: a case, an estimator, or `case:estimator`, with `*` and `?`
     #[arg(long, value_name = "GLOB", value_parser = Names::Experiments, hide_possible_values = true)]
@@ -36,18 +37,17 @@ pub struct Experiments {
 
 /// Options that the commands on cases share.
 #[derive(Debug, Clone, Args)]
-#[command(next_help_heading = "Drawing")]
 pub struct Selection {
     #[command(flatten)]
     experiments: Experiments,
     /// Draws per experiment, such as 1e6, whatever the cases say [default: the case's, or 4e6; check: 4e5]
-    #[arg(long, value_name = "N", value_parser = numbers::draws, allow_hyphen_values = true)]
+    #[arg(long, help_heading = "Drawing", value_name = "N", value_parser = numbers::draws, allow_hyphen_values = true)]
     draws: Option<u64>,
     /// Chance that a correct run shows any failure
-    #[arg(long, default_value_t = 1e-3, value_name = "A", value_parser = numbers::alpha, allow_hyphen_values = true)]
+    #[arg(long, help_heading = "Drawing", default_value_t = 1e-3, value_name = "A", value_parser = numbers::alpha, allow_hyphen_values = true)]
     alpha: f64,
     /// Threads [default: one per processor]; results do not depend on them
-    #[arg(long, value_name = "N", value_parser = numbers::threads, allow_negative_numbers = true)]
+    #[arg(long, help_heading = "Drawing", value_name = "N", value_parser = numbers::threads, allow_negative_numbers = true)]
     pub threads: Option<u16>,
 }
 

@@ -323,8 +323,10 @@ fn help_version_and_completions() {
 fn commands(place: &Place) -> Vec<String> {
     let help = stdout(&place.run("--help"));
     let list = help.split("Commands:\n").nth(1).expect("a list").split("\n\n").next();
-    let names = list.expect("a list").lines().filter_map(|line| line.split_whitespace().next());
-    names.filter(|&name| name != "help").map(str::to_owned).collect()
+    // Lines that are indented further go on with a description.
+    let lines = list.expect("a list").lines().filter_map(|line| line.strip_prefix("  "));
+    let names = lines.filter_map(|line| line.split(' ').next());
+    names.filter(|name| !["", "help"].contains(name)).map(str::to_owned).collect()
 }
 
 #[test]
