@@ -204,18 +204,3 @@ estimators! {
     InfiniteMedium:
     particle::Walker,
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_geometric_number_has_its_moments() {
-        // p = 1/2: variance 2, kurtosis 9.5, third central moment 6.
-        let moments = geometric(2.0, 0.5);
-        assert_eq!(moments.variance(), 2.0);
-        assert_eq!(moments.kurtosis(), Some(9.5));
-        assert_eq!(moments.relative[1] * 8.0, 6.0);
-        assert_eq!(geometric(1.0, 1.0).variance(), 0.0);
-    }
-}

@@ -72,26 +72,3 @@ pub fn walk<P, S: Share>(setup: &Setup<P>, share: &S, medium: &Lookups, rng: &mu
     }
     Draw::free([score.total::<S>() * setup.control_transmittance], lookups)
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::transmittance::{next_flight::NextFlight, unidirectional_mis::UnidirectionalMis};
-
-    #[test]
-    fn places_score_their_shares_by_weight() {
-        // σ_t = 3σ̄/4, then 2σ̄: weights 1, 1/4, −1/4.
-        let score = Score::open(0.5).collided(0.75, 0.6).collided(2.0, 0.8);
-        assert!((score.total::<NextFlight>() - (0.5 + 0.15 - 0.2)).abs() < 1e-15);
-        assert!((score.total::<UnidirectionalMis>() - (0.5 + 0.15 - 0.4)).abs() < 1e-15);
-    }
-
-    #[test]
-    fn shares_are_those_of_flight_and_next_flight() {
-        let left = 2f64.ln();
-        assert!((NextFlight.of(left) - 0.5).abs() < 1e-15);
-        // The balance heuristic of v = 1/2 against 1.
-        assert!((UnidirectionalMis.of(left) - 1.0 / 3.0).abs() < 1e-15);
-        assert_eq!([NextFlight.of(1e9), UnidirectionalMis.of(1e9)], [0.0; 2]);
-    }
-}

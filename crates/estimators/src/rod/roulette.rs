@@ -111,24 +111,3 @@ impl Estimator<Rod> for Roulette {
         packet::walks(level, setup, rule, medium, request)
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use numeric::rng::Address;
-
-    #[test]
-    fn what_roulette_takes_it_gives_back() {
-        let roulette = Roulette { below: 0.4 };
-        let mut rng = Address { seed: 1, experiment: 2, block: 3, lane: 4 }.stream();
-        assert_eq!(roulette.keep(&mut rng, 0.4), Some(0.4));
-        assert_eq!(roulette.keep(&mut rng, 0.0), None);
-        for weight in [0.1, -0.3] {
-            let draws = 100_000;
-            let kept = (0..draws).filter_map(|_| roulette.keep(&mut rng, weight));
-            let mean = kept.sum::<f64>() / f64::from(draws);
-            // A standard deviation of 0.0006 at most.
-            assert!((mean - weight).abs() < 0.004, "{mean} for {weight}");
-        }
-    }
-}

@@ -143,28 +143,3 @@ pub fn draw(
     }
     Draw::free(fate.values(&rod.channels), lookups)
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use theory::problems::rod::channels;
-
-    #[test]
-    fn a_particle_is_seen_at_its_end_and_by_its_order() {
-        let channels = channels(1, true, Some(2));
-        let fate = Fate {
-            left: Some(Quantity::Reflected),
-            weight: 0.5,
-            order: 1,
-            absorbed: 0.2,
-            flux: [0.3, 0.0, 0.0, 0.0],
-        };
-        let values = fate.values(&channels);
-        // Flux, T0, R1, T1, R2, T2, absorbed, R, T.
-        assert_eq!(values.as_ref(), [0.3, 0.0, 0.5, 0.0, 0.0, 0.0, 0.2, 0.5, 0.0]);
-        let lost = Fate { left: None, ..fate };
-        assert_eq!(lost.values(&channels).as_ref()[6..], [0.2, 0.0, 0.0]);
-        let often = Fate { order: 7, ..fate };
-        assert_eq!(often.values(&channels).as_ref()[1..6], [0.0; 5]);
-    }
-}

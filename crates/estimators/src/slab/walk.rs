@@ -139,23 +139,3 @@ pub fn draw(
     };
     Draw::free(value, left.lookups)
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn directions_turn_as_on_a_sphere() {
-        // Straight on and straight back, whatever the azimuth.
-        for azimuth in [-1.0, 0.3, 1.0] {
-            assert_eq!(turned(0.6, 1.0, azimuth), 0.6);
-            assert_eq!(turned(0.6, -1.0, azimuth), -0.6);
-            // From the normal the new cosine is that of the deflection.
-            assert_eq!(turned(1.0, 0.25, azimuth), 0.25);
-        }
-        // cos 60° by 30° towards the normal and away from it: cos 30°, cos 90°.
-        let (half, long) = (0.5, 0.75f64.sqrt());
-        assert!((turned(half, long, 1.0) - long).abs() < 1e-15);
-        assert!(turned(half, long, -1.0).abs() < 1e-15);
-    }
-}

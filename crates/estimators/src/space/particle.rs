@@ -105,35 +105,3 @@ impl Steps for Particle {
         (rng.uniform() * below < weight.abs()).then(|| below.copysign(weight))
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use numeric::rng::Address;
-
-    #[test]
-    fn what_roulette_takes_it_gives_back() {
-        let particle =
-            Particle { roulette: Some(0.4), ..Particle::of(ParticleRule::NonTerminating) };
-        let mut rng = Address { seed: 1, experiment: 2, block: 3, lane: 4 }.stream();
-        assert_eq!(particle.keep(&mut rng, 0.4), Some(0.4));
-        assert_eq!(particle.keep(&mut rng, 0.0), None);
-        for weight in [0.1, -0.3] {
-            let draws = 100_000;
-            let kept = (0..draws).filter_map(|_| particle.keep(&mut rng, weight));
-            let mean = kept.sum::<f64>() / f64::from(draws);
-            // A standard deviation of 0.0006 at most.
-            assert!((mean - weight).abs() < 0.004, "{mean} for {weight}");
-        }
-    }
-
-    #[test]
-    fn splitting_has_a_bound() {
-        let rule = Particle::of(ParticleRule::Analog);
-        let depth = Particle { splitting: Splitting::Depth(2), ..rule };
-        assert!(!rule.splits(0, 0) && depth.splits(1, 99) && !depth.splits(2, 2));
-        let budget = Particle { splitting: Splitting::Budget(3), ..rule };
-        assert!(budget.splits(9, 2) && !budget.splits(0, 3));
-        assert_eq!(budget.label(), "analog, budget 3");
-    }
-}

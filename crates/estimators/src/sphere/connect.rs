@@ -228,28 +228,3 @@ impl Sink for Seeker<'_> {
         }
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_ray_meets_a_sphere_before_it_and_none_behind() {
-        let centre = Point([0.0, 0.0, 2.0]);
-        let up = Point([0.0, 0.0, 1.0]);
-        assert_eq!(meets(Point([0.0; 3]), up, centre, 0.5), Some(1.5));
-        assert_eq!(meets(Point([0.0; 3]), up * -1.0, centre, 0.5), None);
-        assert_eq!(meets(Point([0.6, 0.0, 0.0]), up, centre, 0.5), None);
-        // 3-4-5.
-        let aside = meets(Point([0.3, 0.0, 0.0]), up, centre, 0.5).expect("it meets");
-        assert!((aside - 1.6).abs() < 1e-15);
-    }
-
-    #[test]
-    fn the_cone_of_a_sphere_is_half_space_at_its_surface_and_shrinks_like_the_square() {
-        assert_eq!(cone(0.3, 0.3), 1.0);
-        assert!((cone(0.6, 1.0) - 0.2).abs() < 1e-15);
-        assert!((cone(1e-6, 1.0) - 0.5e-12).abs() < 1e-24);
-        assert!((Honest.share(0.6, 1.0) - 0.1).abs() < 1e-15);
-    }
-}

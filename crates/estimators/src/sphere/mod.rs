@@ -314,29 +314,3 @@ estimators! {
     full_mis::FullMis,
     bidirectional::Bidirectional,
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_gain_of_a_shadow_is_a_hand_value() {
-        let ratio = |sampling: f64, control: f64| Tracking::Ratio { sampling, control };
-        assert_eq!(gain(1.0, 2.0, Tracking::Exact), 1.0);
-        assert_eq!(gain(1.0, 2.0, Tracking::Delta { sampling: 1.0 }), 1.0);
-        // A majorant keeps T̂ in [0, 1]; half of σ_t makes E[T̂²] = e^(1/0.5 − 1) T per length.
-        assert_eq!(gain(1.0, 2.0, ratio(1.0, 0.0)), 1.0);
-        assert!((gain(1.0, 2.0, ratio(0.5, 0.0)) - 2f64.exp()).abs() < 1e-14);
-        // A control of 1 where there is nothing: E[T̂²] = e^(1/2) per length.
-        assert!((gain(1.0, 3.0, ratio(2.0, 1.0)) - 1.5f64.exp()).abs() < 1e-14);
-    }
-
-    #[test]
-    fn a_draw_of_chance_has_the_variance_of_a_coin() {
-        let found = all_or_nothing(Known::new(0.2, 1e-9));
-        let moments = found.channels[0].moments.expect("known");
-        assert!((moments.variance() - 0.16).abs() < 1e-15);
-        // (1 − 3p(1 − p))/(p(1 − p)).
-        assert!((moments.kurtosis().expect("known") - 0.52 / 0.16).abs() < 1e-12);
-    }
-}

@@ -290,24 +290,3 @@ fn binomial(count: usize, chance: f64, numbers: &mut Stream) -> usize {
     // A chance is in [0, 1], so there is such a law.
     Binomial::new(count as u64, chance).map_or(count, |law| law.sample(numbers) as usize)
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use theory::count::poisson;
-
-    #[test]
-    fn hazards_are_those_of_the_poisson_law() {
-        for (depth, layers) in [(0.0, 1), (1e-3, 1), (0.7, 4), (8.0, 17), (60.0, 84)] {
-            let hazards = Hazards::new(depth);
-            let mut rest = 1.0;
-            for i in 0..layers {
-                let there = poisson(i, depth);
-                assert!((hazards.at(i) - there / rest).abs() < 1e-11, "{depth}: {i}");
-                rest -= there;
-            }
-        }
-        assert_eq!(Hazards::new(0.0).at(0), 1.0, "without collisions all escape at once");
-        assert_eq!(Hazards::new(1e4).at(0), 0.0, "below the least double");
-    }
-}

@@ -192,39 +192,3 @@ pub fn leave<S: Simd>(streams: &mut Streams, pack: usize, which: u64, now: Xoshi
         }
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use numeric::rng::PACKS;
-
-    #[test]
-    fn every_draw_has_one_slot_and_lanes_take_turns() {
-        for (count, turn) in [(1, 0), (5, 14), (16, 3), (45, 7)] {
-            let mut lanes = vec![None; count];
-            for pack in 0..PACKS {
-                let (mut slots, mut over) = (Slots::new(count, turn, pack), 0);
-                // Lanes end in every second step.
-                for ended in [0b0101_0101, 0b1010_1010].into_iter().cycle() {
-                    if !slots.are_open() {
-                        break;
-                    }
-                    over |= slots.fill(ended, |slot| {
-                        assert_eq!(
-                            slot.steps,
-                            u32::from(slot.draw >= LANES || ended == 0b1010_1010)
-                        );
-                        let lane = pack * WIDTH + slot.lane;
-                        assert_eq!(lanes[slot.draw].replace(lane), None);
-                    });
-                    slots.step();
-                }
-                let mine = |lane: usize| lane / WIDTH == pack;
-                let open = (0..count.min(LANES)).filter(|draw| mine((turn + draw) % LANES));
-                assert_eq!(over.count_ones() as usize, open.count());
-            }
-            let expected = (0..count).map(|draw| Some((turn + draw) % LANES));
-            assert!(lanes.into_iter().eq(expected), "{count} from {turn}");
-        }
-    }
-}

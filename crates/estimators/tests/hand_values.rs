@@ -1,0 +1,177 @@
+//! Parts of walks against values by hand. They stand here and not beside the code, so that kernels are compiled once.
+
+use fearless_simd::{Level, Simd, f64x8};
+use numeric::Twin;
+use numeric::geometry::Point;
+use numeric::pack::{Task, WIDTH, on};
+use numeric::rng::{LANES, PACKS};
+use numeric::twin::PAIR;
+use theory::problems::rod::{Quantity, channels};
+use theory::rules::{Collision, Met, Null, Single, Weight};
+use trueflight_estimators::kernels::order_free::collisions::{Collisions, Weights};
+use trueflight_estimators::kernels::packet::bank::Slots;
+use trueflight_estimators::kernels::scoring::{Score, Share};
+use trueflight_estimators::rod::walk::Fate;
+use trueflight_estimators::slab::walk::turned;
+use trueflight_estimators::sphere::connect::{Connect, Honest, cone, meets};
+use trueflight_estimators::transmittance::{
+    next_flight::NextFlight, unidirectional_mis::UnidirectionalMis,
+};
+
+#[test]
+fn every_draw_has_one_slot_and_lanes_take_turns() {
+    for (count, turn) in [(1, 0), (5, 14), (16, 3), (45, 7)] {
+        let mut lanes = vec![None; count];
+        for pack in 0..PACKS {
+            let (mut slots, mut over) = (Slots::new(count, turn, pack), 0);
+            // Lanes end in every second step.
+            for ended in [0b0101_0101, 0b1010_1010].into_iter().cycle() {
+                if !slots.are_open() {
+                    break;
+                }
+                over |= slots.fill(ended, |slot| {
+                    assert_eq!(slot.steps, u32::from(slot.draw >= LANES || ended == 0b1010_1010));
+                    let lane = pack * WIDTH + slot.lane;
+                    assert_eq!(lanes[slot.draw].replace(lane), None);
+                });
+                slots.step();
+            }
+            let mine = |lane: usize| lane / WIDTH == pack;
+            let open = (0..count.min(LANES)).filter(|draw| mine((turn + draw) % LANES));
+            assert_eq!(over.count_ones() as usize, open.count());
+        }
+        let expected = (0..count).map(|draw| Some((turn + draw) % LANES));
+        assert!(lanes.into_iter().eq(expected), "{count} from {turn}");
+    }
+}
+
+#[test]
+fn places_score_their_shares_by_weight() {
+    // σ_t = 3σ̄/4, then 2σ̄: weights 1, 1/4, −1/4.
+    let score = Score::open(0.5).collided(0.75, 0.6).collided(2.0, 0.8);
+    assert!((score.total::<NextFlight>() - (0.5 + 0.15 - 0.2)).abs() < 1e-15);
+    assert!((score.total::<UnidirectionalMis>() - (0.5 + 0.15 - 0.4)).abs() < 1e-15);
+}
+
+#[test]
+fn shares_are_those_of_flight_and_next_flight() {
+    let left = 2f64.ln();
+    assert!((NextFlight.of(left) - 0.5).abs() < 1e-15);
+    // The balance heuristic of v = 1/2 against 1.
+    assert!((UnidirectionalMis.of(left) - 1.0 / 3.0).abs() < 1e-15);
+    assert_eq!([NextFlight.of(1e9), UnidirectionalMis.of(1e9)], [0.0; 2]);
+}
+
+const COUNT: usize = 2 * PAIR + 5;
+
+/// Walks of weight 1 at collisions with ratio ¼, but for one; the number ½ decides.
+struct Meeting<R>(R, usize, f64);
+
+impl<R: Collision> Task for Meeting<R> {
+    type Output = (Vec<f64>, bool);
+
+    #[inline(always)]
+    fn run<S: Simd>(self, simd: S) -> Self::Output {
+        let Self(rule, odd, value) = self;
+        let mut weights = [1.0; COUNT];
+        let mut weights = Weights { values: &mut weights, survivors: 0 };
+        let is_unknown = weights.collide(
+            simd,
+            &rule,
+            0,
+            COUNT,
+            #[inline(always)]
+            |from| {
+                let at = |lane| if from + lane == odd { value } else { 0.5 };
+                let residual = Twin::<f64x8<S>>::from_slice(simd, &std::array::from_fn(at));
+                let half = Twin::<f64x8<S>>::splat(simd, 0.5);
+                let sampling = Twin::<f64x8<S>>::splat(simd, 2.0);
+                Collisions { met: Met { residual, sampling, mean_free_path: half }, decision: half }
+            },
+        );
+        (weights.values[..weights.survivors].to_vec(), is_unknown)
+    }
+}
+
+#[test]
+fn walks_are_weighed_and_killed_by_their_ratio() {
+    for level in [Level::new(), Level::baseline()] {
+        for odd in [3, COUNT - 2] {
+            let mut weighed = [0.75; COUNT];
+            weighed[odd] = -1.0;
+            assert_eq!(on(level, Meeting(Weight, odd, 4.0)), (weighed.to_vec(), false));
+            assert_eq!(on(level, Meeting(Null, odd, 4.0)), (vec![1.0; COUNT - 1], false));
+            let (single, _) = on(level, Meeting(Single::Clamped, odd, 4.0));
+            assert_eq!((single.len(), single.iter().sum::<f64>()), (COUNT, COUNT as f64 - 2.0));
+        }
+    }
+}
+
+#[test]
+fn a_ratio_that_is_no_number_shows() {
+    let shows = |(weights, is_unknown): (Vec<f64>, bool)| {
+        is_unknown && weights.iter().any(|weight| weight.is_nan())
+    };
+    for level in [Level::new(), Level::baseline()] {
+        for odd in [0, 13, COUNT - 1] {
+            // Weights that stay say nothing of it.
+            assert!(on(level, Meeting(Null, odd, f64::NAN)).1);
+            assert!(shows(on(level, Meeting(Weight, odd, f64::NAN))));
+            assert!(shows(on(level, Meeting(Single::Clamped, odd, f64::NAN))));
+        }
+    }
+}
+
+#[test]
+fn directions_turn_as_on_a_sphere() {
+    // Straight on and straight back, whatever the azimuth.
+    for azimuth in [-1.0, 0.3, 1.0] {
+        assert_eq!(turned(0.6, 1.0, azimuth), 0.6);
+        assert_eq!(turned(0.6, -1.0, azimuth), -0.6);
+        // From the normal the new cosine is that of the deflection.
+        assert_eq!(turned(1.0, 0.25, azimuth), 0.25);
+    }
+    // cos 60° by 30° towards the normal and away from it: cos 30°, cos 90°.
+    let (half, long) = (0.5, 0.75f64.sqrt());
+    assert!((turned(half, long, 1.0) - long).abs() < 1e-15);
+    assert!(turned(half, long, -1.0).abs() < 1e-15);
+}
+
+#[test]
+fn a_ray_meets_a_sphere_before_it_and_none_behind() {
+    let centre = Point([0.0, 0.0, 2.0]);
+    let up = Point([0.0, 0.0, 1.0]);
+    assert_eq!(meets(Point([0.0; 3]), up, centre, 0.5), Some(1.5));
+    assert_eq!(meets(Point([0.0; 3]), up * -1.0, centre, 0.5), None);
+    assert_eq!(meets(Point([0.6, 0.0, 0.0]), up, centre, 0.5), None);
+    // 3-4-5.
+    let aside = meets(Point([0.3, 0.0, 0.0]), up, centre, 0.5).expect("it meets");
+    assert!((aside - 1.6).abs() < 1e-15);
+}
+
+#[test]
+fn the_cone_of_a_sphere_is_half_space_at_its_surface_and_shrinks_like_the_square() {
+    assert_eq!(cone(0.3, 0.3), 1.0);
+    assert!((cone(0.6, 1.0) - 0.2).abs() < 1e-15);
+    assert!((cone(1e-6, 1.0) - 0.5e-12).abs() < 1e-24);
+    assert!((Honest.share(0.6, 1.0) - 0.1).abs() < 1e-15);
+}
+
+#[test]
+fn a_particle_is_seen_at_its_end_and_by_its_order() {
+    let channels = channels(1, true, Some(2));
+    let fate = Fate {
+        left: Some(Quantity::Reflected),
+        weight: 0.5,
+        order: 1,
+        absorbed: 0.2,
+        flux: [0.3, 0.0, 0.0, 0.0],
+    };
+    let values = fate.values(&channels);
+    // Flux, T0, R1, T1, R2, T2, absorbed, R, T.
+    assert_eq!(values.as_ref(), [0.3, 0.0, 0.5, 0.0, 0.0, 0.0, 0.2, 0.5, 0.0]);
+    let lost = Fate { left: None, ..fate };
+    assert_eq!(lost.values(&channels).as_ref()[6..], [0.2, 0.0, 0.0]);
+    let often = Fate { order: 7, ..fate };
+    assert_eq!(often.values(&channels).as_ref()[1..6], [0.0; 5]);
+}
