@@ -26,7 +26,7 @@ const LINES: [(&str, &str); 9] = [
 ];
 
 /// 3-D forms; those without bounds of their own fill a box, a ball or all of space.
-pub const VOLUMES: [&str; 22] = [
+const VOLUMES: [&str; 22] = [
     "constant = { extinction = 0.5, bounds.sphere = { centre = [2, 2, 2], radius = 2 } }",
     "piecewise-constant = { breaks = [0, 1, 3], values = [1, 0.2], axis = [1, 0, 1] }",
     "piecewise-linear = { knots = [0, 1, 3], values = [1, 0, 0.2], axis = [0, 1, 2] }",
@@ -158,6 +158,23 @@ fn every_page_is_under_the_laws() {
 }
 
 #[test]
+fn optical_depth_is_additive() {
+    for (text, body) in bodies() {
+        let medium = body.medium();
+        let span = medium.span();
+        let whole = medium.optical_depth(span);
+        for fraction in fractions(9) {
+            let middle = within(span, fraction);
+            let parts = medium.optical_depth(Span::new(span.from, middle))
+                + medium.optical_depth(Span::new(middle, span.to));
+            let allowed = 1e-13 * whole.value + whole.error + parts.error;
+            let off = (parts.value - whole.value).abs();
+            assert!(off <= allowed, "{text}: {off:e} at {middle}");
+        }
+    }
+}
+
+#[test]
 fn optical_depth_is_the_integral_of_lookups() {
     for (text, body) in bodies() {
         let medium = body.medium();
@@ -173,6 +190,26 @@ fn error_bounds_are_small() {
         let medium = body.medium();
         let depth = medium.optical_depth(medium.span());
         assert!(depth.value >= 0.0 && depth.error <= 1e-11 * depth.value.max(0.1), "{text}");
+    }
+}
+
+#[test]
+fn free_flight_inverts_optical_depth() {
+    for (text, body) in bodies() {
+        let medium = body.medium();
+        let whole = medium.optical_depth(medium.span());
+        assert_eq!(medium.free_flight(1.001 * whole.value + 1e-9), None, "{text}");
+        let (support, inverse) = (medium.support(), medium.inverse());
+        for fraction in fractions(30).filter(|_| whole.value > 0.0) {
+            let depth = fraction * whole.value;
+            for s in [medium.free_flight(depth), inverse.free_flight(depth)] {
+                let s = s.unwrap_or_else(|| panic!("{text}: {fraction}"));
+                let back = medium.optical_depth(Span::new(support.from, s));
+                let allowed = 1e-12 * whole.value + back.error;
+                let off = (back.value - depth).abs();
+                assert!(off <= allowed, "{text}: {depth} became {back:?}");
+            }
+        }
     }
 }
 
