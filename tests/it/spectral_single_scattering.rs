@@ -1,5 +1,7 @@
 //! Single scattering in several channels: the answers of the channels by themselves, and what is refused.
 
+use std::sync::LazyLock;
+
 use trueflight::record::{Row, Verdict};
 
 use crate::common::{case, mistakes, predicted, rows};
@@ -8,6 +10,9 @@ use crate::packets::{compare, fusing_levels};
 const BALL: &str = include_str!("../cases/spectral-single-scattering/known-bugs.toml");
 
 const WITHOUT: &str = include_str!("../../cases/spectral-single-scattering/without-mis.toml");
+
+/// Rows of [`BALL`], drawn once for all tests.
+static DRAWN: LazyLock<Vec<Row>> = LazyLock::new(|| rows(BALL, 800_000));
 
 /// The second channel of [`BALL`] by itself.
 const SECOND: &str = "title = \"green\"
@@ -29,8 +34,7 @@ fn second(rows: &[Row], estimator: &str) -> Row {
 
 #[test]
 fn every_estimator_finds_the_answer_of_each_channel() {
-    let rows = rows(BALL, 800_000);
-    for row in &rows {
+    for row in DRAWN.iter() {
         assert_eq!(row.verdict, Some(Verdict::Pass), "{}: {}", row.estimator, row.reason);
     }
 }
@@ -52,10 +56,9 @@ fn one_channel_a_draw_has_the_moments_of_that_channel_by_itself() {
 /// Multiple importance sampling is better than one channel a draw, and costs the same lookups.
 #[test]
 fn colour_noise_is_gone_for_the_same_lookups() {
-    let rows = rows(BALL, 400_000);
     for shadow in ["exact", "ratio"] {
-        let independent = second(&rows, &format!("independent ({shadow} shadow)"));
-        let balanced = second(&rows, &format!("spectral-mis ({shadow} shadow)"));
+        let independent = second(&DRAWN, &format!("independent ({shadow} shadow)"));
+        let balanced = second(&DRAWN, &format!("spectral-mis ({shadow} shadow)"));
         assert_eq!(independent.predicted_lookups, balanced.predicted_lookups);
         let (one, all) = (independent.variance.expect("drawn"), balanced.variance.expect("drawn"));
         assert!(all < 0.5 * one, "{shadow}: {all} and {one}");
