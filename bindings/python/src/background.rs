@@ -1,4 +1,4 @@
-//! Work on a thread of its own, while Python looks for Ctrl-C and tells how far it is.
+//! Work on a separate thread, while Python handles Ctrl-C and reports progress.
 
 use std::any::Any;
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
@@ -11,12 +11,12 @@ use std::time::Duration;
 use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
 
-use crate::trouble::Trouble;
+use crate::error::Failure;
 
-/// How often Python looks for Ctrl-C.
+/// Interval at which Python checks for Ctrl-C.
 const TICK: Duration = Duration::from_millis(50);
 
-/// How far the work is, and whether anybody still wants it.
+/// Progress of the work, and whether it is cancelled.
 #[derive(Debug, Default)]
 pub struct Progress {
     is_stopped: AtomicBool,
@@ -24,16 +24,16 @@ pub struct Progress {
     total: AtomicU64,
 }
 
-/// What ends work that nobody wants any more.
+/// Payload that unwinds cancelled work.
 struct Stopped;
 
 impl Progress {
-    /// Tells how many draws there are to make.
+    /// Sets the number of draws to make.
     pub fn expect(&self, draws: u64) {
         self.total.store(draws, Ordering::Relaxed);
     }
 
-    /// Tells of more draws. If nobody wants them it unwinds, which is no panic: no hook hears of it.
+    /// Adds draws. Cancelled work unwinds here without a panic: no hook is called.
     pub fn add(&self, draws: u64) {
         if self.is_stopped.load(Ordering::Relaxed) {
             resume_unwind(Box::new(Stopped));
@@ -42,28 +42,28 @@ impl Progress {
     }
 }
 
-/// Does work on so many threads, 0 for one per processor, without the GIL. `tell` is called with the draws made and
-/// those expected. After Ctrl-C, or an exception of `tell`, it returns at once, and the work ends when it next tells
-/// of draws.
+/// Does work on `threads` threads, 0 for one per processor, without the GIL. `tell` is called with the draws made and
+/// those expected. After Ctrl-C, or an exception of `tell`, it returns at once, and the work ends when it next adds
+/// draws.
 ///
 /// # Errors
 ///
-/// That of the work or of `tell`, or `KeyboardInterrupt`.
+/// The work's error, an exception of `tell`, or `KeyboardInterrupt`.
 pub fn work<T: Send + 'static>(
     py: Python<'_>,
     threads: usize,
     tell: Option<&Bound<'_, PyAny>>,
-    work: impl FnOnce(&Progress) -> Result<T, Trouble> + Send + 'static,
+    work: impl FnOnce(&Progress) -> Result<T, Failure> + Send + 'static,
 ) -> PyResult<T> {
     let progress = Arc::new(Progress::default());
     let theirs = Arc::clone(&progress);
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
     let pool = pool.map_err(|error| PyRuntimeError::new_err(error.to_string()))?;
     let (sender, mut answers) = sync_channel(1);
-    // A pool of its own: the threads end with it, so that a fork of the process later on finds none.
+    // The threads end with their pool, so that a later fork of the process has none.
     thread::spawn(move || {
         let answer = catch_unwind(AssertUnwindSafe(|| pool.install(|| work(&theirs))));
-        // Nobody may be waiting any more.
+        // The receiver may be gone.
         let _ = sender.send(answer);
     });
     loop {
@@ -101,7 +101,7 @@ fn report(progress: &Progress, tell: Option<&Bound<'_, PyAny>>) -> PyResult<()> 
     }
 }
 
-/// What a panic said.
+/// Message of a panic.
 fn message(panic: &(dyn Any + Send)) -> String {
     let text = panic.downcast_ref::<&str>().map(|text| (*text).to_owned());
     let text = text.or_else(|| panic.downcast_ref::<String>().cloned());

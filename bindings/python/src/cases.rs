@@ -11,7 +11,7 @@ use trueflight::case::suite;
 use trueflight::case::sweep::What;
 use trueflight::catalogue::additions;
 
-use crate::trouble::Trouble;
+use crate::error::Failure;
 
 /// Which cases: how they are told (`named`, `toml` or `json`), the name or the text, and what is swept in place of
 /// the case's own sweep, with its values.
@@ -31,7 +31,7 @@ pub fn built_in() -> Vec<String> {
 
 impl Asked {
     /// Reads the cases.
-    pub fn read(&self) -> Result<Vec<Case>, Trouble> {
+    pub fn read(&self) -> Result<Vec<Case>, Failure> {
         if self.kind == "named" && self.sweep.is_none() {
             return Ok(Catalogue::builtin().named(&self.text)?);
         }
@@ -45,19 +45,19 @@ impl Asked {
     }
 
     /// Reads a single case.
-    pub fn read_one(&self) -> Result<Case, Trouble> {
+    pub fn read_one(&self) -> Result<Case, Failure> {
         let mut cases = self.read()?;
         match (cases.pop(), cases.is_empty()) {
             (Some(case), true) => Ok(case),
             (last, _) => {
                 let names = cases.iter().chain(&last).map(|case| case.name.as_str());
                 let (text, names) = (&self.text, names.collect::<Vec<_>>().join(", "));
-                Err(Trouble::Wrong(format!("{text} is several cases; choose one of: {names}")))
+                Err(Failure::Wrong(format!("{text} is several cases; choose one of: {names}")))
             }
         }
     }
 
-    fn source(&self) -> Result<Source, Trouble> {
+    fn source(&self) -> Result<Source, Failure> {
         let text = match self.kind.as_str() {
             "named" => {
                 let built_in = suite::find(&self.text).filter(|_| !Path::new(&self.text).exists());
@@ -72,9 +72,9 @@ impl Asked {
 }
 
 /// A dict as TOML, so that mistakes are shown in place.
-fn from_json(text: &str) -> Result<String, Trouble> {
+fn from_json(text: &str) -> Result<String, Failure> {
     let wrong = |error: &dyn std::fmt::Display| {
-        Trouble::Wrong(format!(
+        Failure::Wrong(format!(
             "the dict is no case: {error}; give texts, numbers, lists and dicts"
         ))
     };
@@ -88,7 +88,7 @@ fn depends(case: &Case, what: What) -> bool {
 }
 
 /// The error that no estimator depends on what is swept, with what could be swept instead.
-fn idle(spec: &Spec, key: &str) -> Trouble {
+fn idle(spec: &Spec, key: &str) -> Failure {
     let could = What::all().filter(|&what| {
         let swept = spec.with_sweep(what.key(), &[1.0]).and_then(Case::of);
         swept.is_ok_and(|case| depends(&case, what))
@@ -96,7 +96,7 @@ fn idle(spec: &Spec, key: &str) -> Trouble {
     let python = |key: &str| key.replace('-', "_");
     let could = could.map(|what| python(what.key())).collect::<Vec<_>>().join(", ");
     let key = python(key);
-    Trouble::Wrong(format!(
+    Failure::Wrong(format!(
         "{key} sweeps nothing here: no estimator of the case takes it, or each has its own; give the values of one of: {could}"
     ))
 }

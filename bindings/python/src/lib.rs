@@ -1,21 +1,21 @@
-//! The module `trueflight._trueflight`: what Python cannot do by itself. The rest is in `trueflight/*.py`, which
-//! reads arguments, asks callables for draws, and shows what is found.
+//! Python module `trueflight._trueflight`, the compiled part of `trueflight`. The Python part, `trueflight/*.py`, converts
+//! arguments, calls callables for draws, and shows results.
 //!
 //! ```text
-//! judging     draws that are pushed, array by array, and the verdict
+//! judge       draws from Python, array by array, and the verdict
 //! cases       case files as a name, a text or a dict
 //! rows        predictions and runs, as rows in JSON
-//! background  work on a thread of its own, while Python looks for Ctrl-C
-//! trouble     why there is no answer, as an exception
+//! background  work on a separate thread, while Python handles Ctrl-C
+//! error       errors as exceptions
 //! ```
 
 mod background;
 mod cases;
-mod judging;
+mod error;
+mod judge;
 mod rows;
-mod trouble;
 
-/// What Python cannot do by itself.
+/// Compiled part of `trueflight`.
 #[pyo3::pymodule]
 mod _trueflight {
     use pyo3::prelude::*;
@@ -23,15 +23,15 @@ mod _trueflight {
     #[pymodule_export]
     use crate::cases::built_in;
     #[pymodule_export]
-    use crate::judging::Judging;
+    use crate::judge::judge;
     #[pymodule_export]
     use crate::rows::{predict, run};
 
-    /// How many draws are judged at a time.
+    /// Number of draws that are judged at a time.
     #[pymodule_export]
     const BLOCK: usize = trueflight::judge::BUFFER;
 
-    /// How many draws are made at most where nobody says.
+    /// Largest number of draws that are made by default.
     #[pymodule_export]
     const MOST: u64 = trueflight::check::MOST;
 

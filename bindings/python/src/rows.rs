@@ -16,9 +16,9 @@ use trueflight::report::rows;
 
 use crate::background::{Progress, work};
 use crate::cases::Asked;
-use crate::trouble::Trouble;
+use crate::error::Failure;
 
-/// How a plan is made and drawn.
+/// Options of a plan and of its drawing.
 #[derive(Debug, Clone, FromPyObject)]
 #[pyo3(from_item_all)]
 struct Wanted {
@@ -30,34 +30,34 @@ struct Wanted {
 }
 
 impl Wanted {
-    fn options(&self) -> Result<Options, Trouble> {
+    fn options(&self) -> Result<Options, Failure> {
         let wrong = |error| {
             let cure = "a filter is a pattern such as \"*eq21*:single\"";
-            Trouble::Wrong(format!("{error}; {cure}"))
+            Failure::Wrong(format!("{error}; {cure}"))
         };
         let filter = self.filter.as_deref().map(Filter::new).transpose().map_err(wrong)?;
         let draws = self.draws.map_or(Amount::CaseOr(DRAWS), Amount::Exactly);
         Ok(Options { draws, seed: self.seed, alpha: self.alpha, filter, ..Options::default() })
     }
 
-    fn plan<'a>(&self, cases: &'a [Case]) -> Result<Plan<'a>, Trouble> {
+    fn plan<'a>(&self, cases: &'a [Case]) -> Result<Plan<'a>, Failure> {
         let plan = Plan::new(cases, &self.options()?);
         if plan.cases.is_empty() {
             let filter = self.filter.as_deref().unwrap_or_default();
             let text = format!(
                 "filter=\"{filter}\" keeps none of the experiments; predict(case) lists what there is"
             );
-            return Err(Trouble::Wrong(text));
+            return Err(Failure::Wrong(text));
         }
         Ok(plan)
     }
 }
 
-/// What theory says of every experiment; with the best constant σ̂ if asked.
+/// Predicts every experiment; `optimum` adds the best constant σ̂.
 ///
 /// # Errors
 ///
-/// A case that is none, or a filter that keeps nothing.
+/// An invalid case, or a filter that keeps nothing.
 #[pyfunction]
 pub fn predict(
     py: Python<'_>,
@@ -77,7 +77,7 @@ pub fn predict(
 ///
 /// # Errors
 ///
-/// A case that is none, a filter that keeps nothing, `KeyboardInterrupt`, or an exception of `tell`.
+/// An invalid case, a filter that keeps nothing, `KeyboardInterrupt`, or an exception of `tell`.
 #[pyfunction]
 pub fn run(
     py: Python<'_>,
@@ -101,6 +101,6 @@ fn drawn(plan: &Plan, progress: &Progress) -> Record {
     verdict::judged(plan, &draws, begin.elapsed().as_secs_f64())
 }
 
-fn json(record: &Record) -> Result<String, Trouble> {
-    rows::json(record).map_err(|error| Trouble::Wrong(error.to_string()))
+fn json(record: &Record) -> Result<String, Failure> {
+    rows::json(record).map_err(|error| Failure::Wrong(error.to_string()))
 }

@@ -1,5 +1,6 @@
 """Is my estimator unbiased?"""
 
+import itertools
 import os
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from typing import Any
@@ -10,16 +11,19 @@ import numpy.typing as npt
 from . import _draws
 from ._arrays import Array, host, is_array
 from ._arrays import rounding as rounding_of
-from ._cases import as_case, probability, whole
+from ._cases import as_case, whole
 from ._draws import Chunk
 from ._errors import DrawsError, Error, shown
-from ._trueflight import Judging
+from ._trueflight import judge
 from ._verdict import Verdict
 
 Values = float | Sequence[float] | npt.NDArray[Any]
 
 # So many numbers are converted at a time, where they are not float64 or float32 side by side.
 PIECE = 1 << 20
+
+# These have one number, or one for each value of a draw.
+_LISTS = ("truth", "variance", "kurtosis")
 
 # So many values of a draw are judged together: more have lost their alpha, and their lines nobody reads.
 WIDEST = 64
@@ -103,43 +107,40 @@ def check(
     pass
     """
     called = _name(source, name)
-    count = None if draws is None else whole("draws", draws, 1, 2**63 - 1)
-    asked: dict[str, Any] = {
+    count = None if draws is None else whole("draws", draws, 1, 2**53)
+    begin = whole("seed", seed, 0, 2**64 - 1)
+    properties = {
+        "truth": truth,
+        "variance": variance,
+        "kurtosis": kurtosis,
+        "range": range,
+        "lookups": lookups,
+        "rounding": rounding,
+        "tolerance": tolerance,
+        "variance_tolerance": variance_tolerance,
+    }
+    numbers = {what: _numbers(what, given) for what, given in properties.items() if given is not None}
+    numbers |= {"batch": _numbers("batch", batch), "alpha": _numbers("alpha", alpha), "mean_only": [float(bool(mean_only))]}
+    asked = {
         "name": called,
-        "truth": _numbers("truth", truth),
-        "variance": _numbers("variance", variance),
-        "kurtosis": _numbers("kurtosis", kurtosis),
-        "range": _pair("range", range, "(low, high)"),
-        "lookups": _pair("lookups", lookups, "(mean, variance)"),
-        "rounding": _number("rounding", rounding),
+        "properties": numbers,
+        "seed": begin,
         "case": None if case is None else as_case(case),
         "estimator": _estimator(case, estimator, sampling, nearest),
-        "sampling": _number("sampling", sampling),
+        "sampling": None if sampling is None else _real("sampling", sampling, sampling, "give a number"),
         "nearest": bool(nearest),
-        "mean_only": bool(mean_only),
-        "tolerance": _number("tolerance", tolerance),
-        "variance_tolerance": _number("variance_tolerance", variance_tolerance),
-        "batch": whole("batch", batch, 1, 2**63 - 1),
-        "alpha": probability("alpha", alpha),
-        "seed": whole("seed", seed, 0, 2**64 - 1),
     }
-    chunks, length = _chunks(called, source, count, asked["seed"])
+    chunks, length = _chunks(called, source, count, begin)
     # An array is read to its end, and so is what was announced; else the drawing stops when all is decided.
-    is_whole = length is not None
-    judging, form = None, None
-    for values, counts, precision in chunks:
-        if judging is None:
-            form = _form(values, counts)
-            _not_too_wide(called, values)
-            judging = _open(asked, form, length, precision)
-        elif _form(values, counts) != form:
-            raise Error(f"check `{called}`: draws of {_words(_form(values, counts))} after {_words(form)}; give all alike")
-        _absorb(judging, values, counts)
-        if not is_whole and not judging.is_open():
-            break
-    if judging is None:
-        raise Error(f"check `{called}`: there are no draws; make one at least")
-    return Verdict(judging.verdict(), asked["seed"])
+    if length is not None:
+        numbers["draws"] = [float(length)]
+    first = next(chunks, None)
+    if first is not None:
+        _not_too_wide(called, first.draws)
+        numbers["values"] = [float(_form(first)[0])]
+        numbers.setdefault("rounding", [rounding_of(first.precision)])
+        chunks = itertools.chain([first], chunks)
+    return Verdict(judge(asked, _arrays(called, chunks)), begin)
 
 
 def _chunks(name: str, source: Any, draws: int | None, seed: int) -> tuple[Iterator[Chunk], int | None]:
@@ -182,39 +183,36 @@ def _not_transposed(name: str, shape: tuple[int, ...]) -> None:
         raise Error(f"check `{name}`: {found}; a row is a draw: did you mean draws.T?")
 
 
-def _open(asked: dict[str, Any], form: tuple[int, bool], length: int | None, precision: str) -> Judging:
-    rounding = rounding_of(precision) if asked["rounding"] is None else asked["rounding"]
+def _arrays(name: str, chunks: Iterable[Chunk]) -> Iterator[tuple[Array, Array | None]]:
+    """Arrays as the library reads them: in place where they are floats side by side, else converted some at a time."""
+    form = None
+    for chunk in chunks:
+        form = form or _form(chunk)
+        if _form(chunk) != form:
+            raise Error(f"check `{name}`: draws of {_words(_form(chunk))} after {_words(form)}; give all alike")
+        values, counts, _ = chunk
+        is_dense = values.dtype in (np.float64, np.float32) and values.flags.c_contiguous and counts is None
+        step = max(len(values), 1) if is_dense else PIECE
+        for first in np.arange(0, len(values), step):
+            part = values[first : first + step]
+            if part.dtype != np.float32:
+                part = part.astype(np.float64, order="C", copy=False)
+            told = None if counts is None else np.ascontiguousarray(counts[first : first + step], dtype=np.float64)
+            yield np.ascontiguousarray(part), told
+
+
+def _form(chunk: Chunk) -> tuple[int, bool]:
+    """Number of values of a draw, and whether it tells its lookups."""
+    return (chunk.draws.shape[1] if chunk.draws.ndim == 2 else 1), chunk.lookups is not None
+
+
+def _words(form: tuple[int, bool]) -> str:
     values, counts = form
-    return Judging(asked | {"values": values, "counts": counts, "draws": length, "rounding": rounding})
-
-
-def _absorb(judging: Judging, values: Array, counts: Array | None) -> None:
-    """Hands draws over: in place where they are floats side by side, else converted some at a time."""
-    step = PIECE
-    if values.dtype in (np.float64, np.float32) and values.flags.c_contiguous and counts is None:
-        step = max(len(values), 1)
-    for first in np.arange(0, len(values), step):
-        part = values[first : first + step]
-        if part.dtype != np.float32:
-            part = part.astype(np.float64, order="C", copy=False)
-        told = None if counts is None else np.ascontiguousarray(counts[first : first + step], dtype=np.float64)
-        judging.absorb(np.ascontiguousarray(part), told)
-
-
-def _form(values: Array, counts: Array | None) -> tuple[int, bool]:
-    """How many values a draw has, and whether it tells its lookups."""
-    return (values.shape[1] if values.ndim == 2 else 1), counts is not None
-
-
-def _words(form: tuple[int, bool] | None) -> str:
-    values, counts = form or (1, False)
     return f"{values} value{'s' if values > 1 else ''} {'with' if counts else 'without'} lookups"
 
 
-def _numbers(what: str, given: Values | None) -> list[float] | None:
-    if given is None:
-        return None
-    cure = "give a number, or one for each value of a draw"
+def _numbers(what: str, given: Values) -> list[float]:
+    cure = "give a number, or one for each value of a draw" if what in _LISTS else "give a number"
     if isinstance(given, np.ma.MaskedArray):
         raise Error(f"{what} is a masked array; fill or drop what is masked")
     try:
@@ -224,10 +222,6 @@ def _numbers(what: str, given: Values | None) -> list[float] | None:
     if array.ndim != 1 or not len(array):
         raise Error(f"{what} has shape {np.shape(array)}; {cure}")
     return [_real(what, number, given, cure) for number in array.tolist()]
-
-
-def _number(what: str, given: float | None) -> float | None:
-    return None if given is None else _real(what, given, given, "give a number")
 
 
 def _real(what: str, number: Any, given: Any, cure: str) -> float:
@@ -240,15 +234,6 @@ def _real(what: str, number: Any, given: Any, cure: str) -> float:
         raise Error(f"{what} = {shown(given)} is too large for a float64; {cure}") from error
     except (TypeError, ValueError) as error:
         raise Error(f"{what} = {shown(given)} is no number; {cure}") from error
-
-
-def _pair(what: str, given: tuple[float, float] | None, form: str) -> tuple[float, float] | None:
-    pair = _numbers(what, given)
-    if pair is None:
-        return None
-    if len(pair) != 2:
-        raise Error(f"{what} = {shown(given)} is no pair; give {what}={form}")
-    return pair[0], pair[1]
 
 
 def _estimator(case: Any, estimator: str | None, sampling: float | None, nearest: bool) -> str:

@@ -1,4 +1,4 @@
-//! Why there is no answer.
+//! Errors as exceptions of Python.
 
 use pyo3::import_exception;
 use pyo3::prelude::*;
@@ -8,25 +8,25 @@ use trueflight::check::CheckError;
 import_exception!(trueflight._errors, Error);
 import_exception!(trueflight._errors, CaseNotFound);
 
-/// Why there is no answer, on its way to Python.
+/// Error that becomes an exception of Python.
 #[derive(Debug)]
-pub enum Trouble {
-    /// No such case.
+pub enum Failure {
+    /// A case does not exist.
     NotFound(String),
-    /// What was asked makes no sense.
+    /// An argument is invalid.
     Wrong(String),
 }
 
-impl From<Trouble> for PyErr {
-    fn from(trouble: Trouble) -> Self {
-        match trouble {
-            Trouble::NotFound(text) => CaseNotFound::new_err(text),
-            Trouble::Wrong(text) => Error::new_err(text),
+impl From<Failure> for PyErr {
+    fn from(failure: Failure) -> Self {
+        match failure {
+            Failure::NotFound(text) => CaseNotFound::new_err(text),
+            Failure::Wrong(text) => Error::new_err(text),
         }
     }
 }
 
-impl From<Vec<CaseError>> for Trouble {
+impl From<Vec<CaseError>> for Failure {
     fn from(errors: Vec<CaseError>) -> Self {
         let text = errors.iter().map(CaseError::in_full).collect::<Vec<_>>().join("\n\n");
         let is_missing = |error: &CaseError| match error {
@@ -38,14 +38,14 @@ impl From<Vec<CaseError>> for Trouble {
     }
 }
 
-impl From<CaseError> for Trouble {
+impl From<CaseError> for Failure {
     fn from(error: CaseError) -> Self {
         vec![error].into()
     }
 }
 
-/// The library's words, with the cures as Python spells them.
-impl From<CheckError> for Trouble {
+/// Messages of the library, with its methods as arguments of Python.
+impl From<CheckError> for Failure {
     fn from(error: CheckError) -> Self {
         Self::Wrong(match &error {
             CheckError::NoTruth { name } => format!(
