@@ -173,7 +173,7 @@ def test_other_threads_of_python_run_while_cases_are_drawn():
             counted[0] += 1
             time.sleep(0.001)
 
-    thread = threading.Thread(target=count)
+    thread = threading.Thread(target=count, daemon=True)
     thread.start()
     begin = time.monotonic()
     tf.run(CASE, draws=2e7)

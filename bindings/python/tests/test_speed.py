@@ -49,7 +49,7 @@ def test_other_threads_run_while_an_array_is_judged():
             time.sleep(0.001)
 
     array = np.random.default_rng(1).random(speed.COUNT)
-    thread = threading.Thread(target=count)
+    thread = threading.Thread(target=count, daemon=True)
     thread.start()
     begin = time.monotonic()
     tf.check(array, truth=0.5, range=(0, 1))

@@ -138,7 +138,8 @@ def check(
     if first is not None:
         _not_too_wide(called, first.draws)
         numbers["values"] = [float(_form(first)[0])]
-        numbers.setdefault("rounding", [rounding_of(first.precision)])
+        if rounding is None and (own := rounding_of(first.precision)) is not None:
+            numbers["rounding"] = [own]
         chunks = itertools.chain([first], chunks)
     return Verdict(judge(asked, _arrays(called, chunks)), begin)
 
