@@ -1,4 +1,4 @@
-//! A case at one value of its sweep: the names of its experiments, what theory says of them, and how they are drawn.
+//! A case at one value of its sweep: names, predictions and preparation of its experiments.
 
 use std::any::Any;
 
@@ -13,13 +13,13 @@ use media::{Control, Medium, Piecewise};
 use numeric::rng::Address;
 use theory::Prediction;
 
-/// Theory needs no random numbers, but recipes that learn from pilot rays do.
+/// Address of pilot rays where only theory is asked: it needs no random numbers, but recipes that learn do.
 const NOWHERE: Address = Address { seed: 0, experiment: 0, block: 0, lane: 0 };
 
 /// A case at one value of its sweep.
 pub struct At<'a> {
     scenario: Held<'a>,
-    /// What varies beside the medium.
+    /// Swept quantity other than the medium, with its value.
     variation: Variation,
 }
 
@@ -103,8 +103,7 @@ impl<'a> At<'a> {
         refuse_what_cannot_be_computed(ready)
     }
 
-    /// What theory says of an experiment, with `what_if` of that constant σ̂ in place of its own;
-    /// `None` if it is refused.
+    /// Prediction of an experiment, at a constant σ̂ of `what_if` if one is given; `None` if it is refused.
     pub fn predict(
         &self,
         estimator: usize,
@@ -169,7 +168,7 @@ impl<'a> At<'a> {
     }
 }
 
-/// Even places on the ray; the one where an inequality fails comes to them.
+/// Number of evenly spaced places on the ray; the place where an inequality fails is added.
 const PLACES: usize = 99;
 
 /// The fields of a channel, as far as they could be made.
@@ -183,7 +182,7 @@ struct Fields<'a> {
 }
 
 impl Fields<'_> {
-    /// Their values along the ray and at a place of interest; `None` on a ray without end.
+    /// Values along the ray and at a place of interest; `None` on a ray of infinite length.
     fn course(&self, at: Option<f64>) -> Option<Course> {
         let (span, support) = (self.medium.span(), self.medium.support());
         let length = span.length();

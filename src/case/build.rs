@@ -23,19 +23,19 @@ const MAX_LOOKUPS: f64 = 1e6;
 
 /// An experiment that can be drawn.
 pub struct Ready {
-    /// What draws.
+    /// Draws of the estimator.
     pub experiment: Box<dyn Experiment>,
-    /// What theory says. For a forced experiment the moments are void and removed.
+    /// Prediction. For a forced experiment the moments do not hold and are removed.
     pub prediction: Prediction,
 }
 
 /// A problem of the catalogue, before a case is read.
 pub struct ProblemKind {
-    /// What it asks of the ray through a volume.
+    /// Requirement on the ray through a volume.
     pub ray: RayNeed,
     /// Whether its medium may have several channels.
     pub spectral: bool,
-    /// Its reader.
+    /// Reader of the problem and its estimators.
     pub build: Build,
 }
 
@@ -70,7 +70,7 @@ fn build<P: Estimated>(
     Some((Box::new(Typed { problem: problem?, entries }), estimators))
 }
 
-/// What an estimator works on, apart from its problem.
+/// Input of an estimator beside its problem.
 pub struct Parts<'a> {
     /// The medium, cut into panels.
     pub mesh: &'a Arc<Mesh>,
@@ -82,7 +82,7 @@ pub struct Parts<'a> {
     pub control: Control,
     /// A constant σ̂, 1/length, in place of the recipe's.
     pub constant: Option<f64>,
-    /// What makes σ̂ in space.
+    /// Recipe of σ̂ in space.
     pub recipe: Option<&'a dyn sampling::Recipe>,
     /// The factor on that σ̂.
     pub factor: f64,
@@ -124,7 +124,7 @@ pub trait AnyProblem: Send + Sync {
         forced: bool,
     ) -> Result<Ready, Refusal>;
 
-    /// What theory says without whole laws; `None` if the experiment is refused.
+    /// Prediction without distributions; `None` if the experiment is refused.
     fn predict(&self, estimator: usize, parts: Parts, order: Order) -> Option<Prediction>;
 
     /// The ray seen from the side, for estimators of a curve.
@@ -175,7 +175,7 @@ impl<P: Estimated> Typed<P> {
     }
 }
 
-/// What theory says of the draws of a kernel.
+/// Prediction of the draws of a kernel.
 fn predict<P: Estimated>(entry: &dyn Entry<P>, setup: &Setup<P>, order: Order) -> Prediction {
     let prediction = entry.predict(setup);
     if order == Order::Free { prediction.order_free() } else { prediction }
@@ -246,7 +246,7 @@ impl<P: Estimated> AnyProblem for Typed<P> {
     }
 }
 
-/// Refuses a control whose weights `T_c`, in units of `exp(−log_unit)`, are no doubles.
+/// Refuses a control if its weights `T_c`, in units of `exp(−log_unit)`, leave the range of doubles.
 fn require_weights(
     control: &Control,
     mesh: &Mesh,
@@ -267,7 +267,7 @@ fn require_weights(
     Err(Refusal::mismatch(needs, found))
 }
 
-/// Refuses an experiment whose answer is no double, or whose draws would never end.
+/// Refuses an experiment if its answer leaves the range of doubles, or if its draws would take too many lookups.
 ///
 /// # Errors
 ///

@@ -1,4 +1,4 @@
-//! Where names are looked up: the built-in pages, and those of a program's own.
+//! Catalogue of names: the built-in pages, and those of a program's own.
 //!
 //! A program adds its media and estimators before it reads a case; from then on case files name them, and plots,
 //! verdicts, `bench` and `explain` know them as they know the built-in ones.
@@ -44,13 +44,13 @@ pub struct Catalogue {
     additions: Additions,
 }
 
-/// A page whose name another one has.
+/// Error of a page with the name of another one.
 #[derive(Debug, thiserror::Error)]
 #[error("`{name}` is the name of another page ({part}); choose another name")]
 pub struct NameTaken {
     /// The name.
     pub name: String,
-    /// Where it is taken.
+    /// Part of the catalogue in which it is taken.
     pub part: String,
 }
 
@@ -133,7 +133,7 @@ impl Catalogue {
 ///
 /// # Errors
 ///
-/// There is none, or it cannot be read.
+/// No such file or case, or a file that cannot be read.
 pub fn source(name: &str) -> Result<Source, CaseError> {
     let path = Path::new(name);
     match suite::find(name) {

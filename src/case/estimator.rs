@@ -10,11 +10,11 @@ use estimators::{Estimated, Inputs, Order};
 use media::Body;
 use media::catalogue::{Page, Settings, Value};
 
-/// What an estimator is, whatever it works on.
+/// Properties of an estimator that do not depend on its problem.
 pub struct Features {
-    /// What it takes.
+    /// Inputs that it takes.
     pub inputs: Inputs,
-    /// What it takes with other settings.
+    /// Inputs that it takes with some settings.
     pub may_take: Inputs,
     /// Whether the order of its collisions may be free.
     pub is_order_free: bool,
@@ -46,7 +46,7 @@ impl Features {
 pub struct ParsedEstimator {
     /// The name in the catalogue.
     pub name: String,
-    /// What it takes and can.
+    /// Properties of the estimator.
     pub features: Features,
     /// Its own σ̂.
     pub sampling: Option<Box<dyn sampling::Recipe>>,
@@ -54,11 +54,11 @@ pub struct ParsedEstimator {
     pub control: Option<Box<dyn controls::Recipe>>,
     /// Whether the case declares it biased.
     pub expect_biased: bool,
-    /// The kernel that is wished.
+    /// Kernel that the case asks for.
     pub order: Order,
 }
 
-/// What a case says of all its estimators, unless they say otherwise.
+/// Settings for all estimators of a case that have none of their own.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Defaults {
     /// Whether they are declared biased.
@@ -67,7 +67,7 @@ pub struct Defaults {
     pub order: Order,
     /// Whether there is a σ̂ for all.
     pub sampling: bool,
-    /// What is swept.
+    /// Swept quantity.
     pub swept: Option<What>,
     /// Whether all lookups are counted, so that no σ̂ may learn from some that are not.
     pub counts_lookups: bool,
@@ -149,7 +149,7 @@ impl ParsedEstimator {
         self.label_of(&self.name, albedo)
     }
 
-    /// The same under the name of the estimator that it is by definition without a control.
+    /// Label under the name of the estimator that it is by definition without a control.
     pub fn alias(&self) -> Option<EstimatorName> {
         self.features.alias.map(|name| self.label_of(name, true))
     }

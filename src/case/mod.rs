@@ -82,15 +82,15 @@ pub struct Case {
     pub title: String,
     /// The problem's name in the catalogue.
     pub problem: String,
-    /// What is written.
+    /// Case file as a tree of settings with places.
     pub spec: Spec,
     /// The problem with its medium and estimators, as written.
     pub scenario: Scenario,
-    /// The same at the values of a sweep of the medium.
+    /// Scenarios at the values of a sweep of the medium.
     varied: Vec<(f64, Scenario)>,
-    /// What is swept.
+    /// Swept quantity with its values.
     pub sweep: Option<SweepAxis>,
-    /// How many draws each experiment makes, if the case says.
+    /// Number of draws of each experiment, if the case gives it.
     pub draws: Option<u64>,
     /// Number of draws that share the setup lookups of a ray.
     pub draws_per_ray: u64,
@@ -214,8 +214,8 @@ impl Case {
         }
     }
 
-    /// Where an estimator's pilot rays find their random numbers: the same all along a sweep, so that
-    /// the theory's line and the experiments on it learn the same σ̂.
+    /// Address of the random numbers of an estimator's pilot rays. It is the same all along a sweep, so that the theory's
+    /// line and the experiments on it learn the same σ̂.
     pub fn pilots(&self, seed: u64, estimator: usize) -> Address {
         let names = self.names(estimator, None);
         let id = ExperimentId::new([&self.name, &self.problem], &names, None, estimator);

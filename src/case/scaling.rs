@@ -14,7 +14,7 @@ use media::catalogue::{Additions, Entry, Fault, Node, Value};
 use media::{CATALOGUE, Medium, reader};
 use numeric::digits::number;
 
-/// Where fields are written.
+/// Keys of fields.
 const FIELDS: [&str; 2] = ["medium", "volume"];
 
 /// Places along the ray at which a field of a program's own is compared.
@@ -72,17 +72,17 @@ pub fn is_proportional(name: &str, [written, varied]: [&[Medium]; 2], what: What
 /// Numbers below a node that a sweep may change.
 #[derive(Clone, Copy)]
 enum Scope<'a> {
-    /// None of them.
+    /// No numbers.
     Nothing,
-    /// All of them.
+    /// All numbers.
     Numbers,
-    /// Those of the field that a table chooses.
+    /// Extinctions of the field that a table chooses.
     Field,
-    /// Those of the recipe for σ̂ that a table chooses.
+    /// Extinctions of the recipe for σ̂ that a table chooses.
     Sampling,
-    /// Those of the recipe for σ_c that a table chooses.
+    /// Extinctions of the recipe for σ_c that a table chooses.
     Control,
-    /// Those of some settings.
+    /// Numbers of the settings of these names.
     Settings(&'a [&'a str]),
 }
 
@@ -262,7 +262,7 @@ impl Scaling<'_> {
 /// The mean of channels that differ in the numbers of a scope alone.
 struct Mean {
     numbers: Vec<f64>,
-    /// All else that they say.
+    /// Everything else in words.
     frame: String,
 }
 
@@ -304,12 +304,12 @@ fn entries(node: &mut Node) -> std::slice::IterMut<'_, Entry> {
     }
 }
 
-/// A sweep of what the case has not.
+/// Mistake of a sweep that changes nothing in the case.
 fn idle(message: &str, help: &str) -> Fault {
     Fault { span: 0..0, path: String::new(), message: message.to_owned(), help: help.to_owned() }
 }
 
-/// Without the noise of the last digit: 1.5600000000000001 reads better as 1.56.
+/// Rounds to 15 digits, without the noise of the last one: 1.5600000000000001 becomes 1.56.
 fn rounded(x: f64) -> f64 {
     format!("{x:.14e}").parse().unwrap_or(x)
 }

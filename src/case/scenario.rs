@@ -1,4 +1,4 @@
-//! A problem with its medium and the estimators of a case, and what they are given to work on.
+//! A problem with its medium and the estimators of a case, and the parts of their experiments.
 
 use std::sync::{Arc, OnceLock};
 
@@ -17,7 +17,7 @@ use theory::Mesh;
 pub struct Scenario {
     body: Body,
     pub(super) problem: Box<dyn AnyProblem>,
-    /// That of each channel.
+    /// Mesh of each channel.
     meshes: OnceLock<Vec<Arc<Mesh>>>,
     pub(super) estimators: Estimators,
     /// Requirement of the problem on the ray.
@@ -60,7 +60,7 @@ impl Scenario {
         self.problem.distances()
     }
 
-    /// How many estimators are listed.
+    /// Number of estimators.
     pub fn estimators(&self) -> usize {
         self.estimators.list.len()
     }
@@ -87,7 +87,7 @@ impl Scenario {
         }
     }
 
-    /// The kernel that is wished for an estimator.
+    /// Kernel that the case asks for.
     pub(super) fn wished_order(&self, estimator: usize) -> Order {
         self.estimators.list[estimator].order
     }
@@ -148,7 +148,7 @@ impl Scenario {
         f(varied.as_deref().unwrap_or(self.estimators.control_of(parsed)))
     }
 
-    /// What an experiment works on, at a constant σ̂ where one is given.
+    /// Parts of an experiment, at a constant σ̂ if one is given.
     pub(super) fn parts(
         &self,
         estimator: usize,

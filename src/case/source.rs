@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use annotate_snippets::{AnnotationKind, Level, Renderer, Snippet};
 use media::catalogue::Fault;
 
-/// So many mistakes are shown in place; of a file that has more, these are enough to begin with.
+/// Largest number of mistakes that are shown in place; more are counted.
 const TOLD: usize = 50;
 
 /// Help text of a syntax error.
@@ -14,7 +14,7 @@ pub(super) const NOT_TOML: &str = "this is not TOML";
 /// Files that are built into the binary.
 #[derive(Debug, Clone, Copy)]
 pub struct BuiltIn {
-    /// What stands before their names in their paths.
+    /// Prefix of their names in their paths.
     pub folder: &'static str,
     /// Their names with their text.
     pub files: &'static [(&'static str, &'static str)],
@@ -48,7 +48,7 @@ pub struct Source {
     pub text: String,
 }
 
-/// What is wrong with a case file, or why there is none.
+/// Error of a case file.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum CaseError {
@@ -57,7 +57,7 @@ pub enum CaseError {
     Unreadable {
         /// The path as given.
         path: String,
-        /// What the system said.
+        /// Error of the system.
         cause: std::io::Error,
     },
     /// No file and no built-in case has the name.
@@ -65,7 +65,7 @@ pub enum CaseError {
     Unknown {
         /// The name.
         name: String,
-        /// What may have been meant.
+        /// Name that may have been meant.
         hint: String,
     },
     /// A name that no report could show.
@@ -85,7 +85,7 @@ pub enum CaseError {
     Unwritable {
         /// The case's name.
         name: String,
-        /// What the writer said.
+        /// Error of the writer.
         cause: Box<toml::ser::Error>,
     },
     /// The file's contents are wrong.
@@ -99,7 +99,7 @@ pub enum CaseError {
 }
 
 impl CaseError {
-    /// How many mistakes it lists.
+    /// Number of mistakes.
     pub fn mistakes(&self) -> usize {
         if let Self::Faulty { faults, .. } = self { faults.len() } else { 1 }
     }

@@ -36,7 +36,7 @@ impl Serialize for Spec {
 }
 
 impl Spec {
-    /// Parses a text whose names are those of the catalogue and of a program's own pages.
+    /// Parses a text for a catalogue with a program's own pages.
     ///
     /// # Errors
     ///
@@ -90,7 +90,7 @@ impl Spec {
         (found, faults.into_inner())
     }
 
-    /// All that it says.
+    /// Entries of the file's top level.
     pub fn entries(&self) -> &[Entry] {
         &self.root
     }
@@ -111,7 +111,7 @@ impl Spec {
         Some(settings)
     }
 
-    /// The same case with a sweep in place of its own, written anew.
+    /// Writes the case again with a sweep in place of its own.
     ///
     /// # Errors
     ///

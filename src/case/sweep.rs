@@ -44,7 +44,7 @@ pub enum What {
     Density,
     /// A factor on the medium's albedos.
     AlbedoScale,
-    /// How far the channels are from their mean.
+    /// Factor on the distance of the channels from their mean.
     Contrast,
 }
 
@@ -69,7 +69,7 @@ const KINDS: [(What, &str, &str, Domain); 8] = {
 /// A sweep: what, and its values.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SweepAxis {
-    /// What is varied.
+    /// Swept quantity.
     pub what: What,
     /// The values, in the order of the case.
     pub values: Vec<f64>,

@@ -1,4 +1,4 @@
-//! Known bugs in the place of honest estimators, on the experiments of a case.
+//! Known bugs in the place of correct estimators, on the experiments of a case.
 
 use crate::case::Case;
 use crate::plan::{Plan, Planned};
@@ -19,7 +19,7 @@ pub fn find<'p>(target: &Target, plan: &'p Plan) -> Option<(&'p Case, &'p Planne
         .map(|(case, planned)| (case.case, planned))
 }
 
-/// A mutant's experiment, prepared as the plan prepared the honest one; `None` if the case's problem
+/// A mutant's experiment, prepared as the plan prepared the correct one; `None` if the case's problem
 /// has no mutant of that name.
 pub fn experiment(
     about: &About,

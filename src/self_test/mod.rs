@@ -1,7 +1,7 @@
 //! The gate tested on the experiments of cases: does it keep its promises on correct estimators, and does it catch known
 //! bugs?
 //!
-//! [`calibration`] runs correct experiments many times; [`mutation`] draws every known bug in the place of its honest
+//! [`calibration`] runs correct experiments many times; [`mutation`] draws every known bug in the place of its correct
 //! estimator and asks whether the check that must catch it does. What is counted, the bugs, and correct foreign draws of
 //! hard laws are in [`lab`], which needs no cases.
 
@@ -13,7 +13,7 @@ use lab::calibration::Calibration;
 use lab::mutants::Caught;
 use lab::streams::StreamVerdicts;
 
-/// What a self-test found.
+/// Results of a self-test.
 #[derive(Debug, Clone)]
 pub struct SelfTest {
     /// The promises.

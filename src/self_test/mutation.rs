@@ -1,4 +1,4 @@
-//! Every known bug against the built-in suite: caught by its check, and the honest twin is not.
+//! Every known bug against the built-in suite: caught by its check, and its correct control is not.
 //!
 //! The levels are those of the whole suite, and the draws those of its default budget. A twin that
 //! makes the very draws of the estimator, bit for bit, shares the estimator's verdict; it is judged
@@ -166,7 +166,7 @@ impl<'a> Bench<'a> {
     }
 }
 
-/// What was found of one experiment, and how many draws its laws had.
+/// Findings on one experiment, and the number of draws for its distributions.
 struct Judged {
     fixed: u64,
     findings: Vec<Finding>,
