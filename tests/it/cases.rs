@@ -75,7 +75,7 @@ fn a_spec_is_written_as_the_case_that_it_was_read_from() {
         let text = toml::to_string(&case.spec).expect("TOML");
         let again = Source { text, ..case.spec.source().clone() };
         let again = Case::read(&again).unwrap_or_else(|error| panic!("{}", error.in_full()));
-        let tree = |case: &Case| serde_json::to_string(&case.spec).expect("JSON");
+        let tree = |case: &Case| serde_json::to_value(&case.spec).expect("JSON");
         assert_eq!(tree(&again), tree(&case), "{}", case.name);
         assert_eq!(again.scenario.estimators(), case.scenario.estimators(), "{}", case.name);
     }
