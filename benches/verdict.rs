@@ -16,7 +16,7 @@ use trueflight::plan::Amount;
 use trueflight::plan::Options;
 use trueflight::plan::Plan;
 use trueflight::plan::options::DRAWS;
-use trueflight::record::verdict;
+use trueflight::record::build;
 
 fn main() {
     let wished = std::env::args().skip(1).find_map(|word| word.parse().ok());
@@ -31,7 +31,7 @@ fn main() {
     for seed in 1..=seeds {
         plan.reseed(seed);
         let draws = run::draw(&plan, &|_| {});
-        let record = verdict::judged(&plan, &draws, 0.0);
+        let record = build::judged(&plan, &draws, 0.0);
         for case in &record.results.cases {
             let Some(pace) = case.pace else { continue };
             match paces.iter_mut().find(|(name, _)| *name == case.name) {

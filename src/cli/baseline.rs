@@ -121,6 +121,7 @@ impl Baselines {
         let mut run = Baseline::of(&record, cases, &self.executable);
         if let Some((name, _, stored)) = stored {
             let time_tolerance = self.time_tolerance.unwrap_or(TIME_TOLERANCE);
+            let time_tolerance = Some(time_tolerance).filter(|tolerance| tolerance.is_finite());
             let rules = Rules { alpha: record.results.alpha, time_tolerance };
             let (comparison, next) = compare(name, stored, &run, &rules);
             record.comparison = Some(comparison);
@@ -137,7 +138,7 @@ impl Baselines {
         if let Some(nothing) = diff::nothing(comparison) {
             return self.files.complaint(&nothing, "run the cases of the baseline");
         }
-        let wanted = self.time_tolerance.filter(|_| comparison.rules.asks_for_times())?;
+        let wanted = self.time_tolerance.filter(|_| comparison.rules.time_tolerance.is_some())?;
         let no_times = diff::no_times(comparison)?;
         Some(anyhow!(
             "--time-tolerance {wanted}: {no_times}; draw more with --draws --fixed-draws, or leave the \
@@ -150,7 +151,7 @@ impl Baselines {
     pub fn store(&self, record: &Record, run: Option<&Baseline>) -> anyhow::Result<String> {
         let Some(run) = run else { return Ok(String::new()) };
         let comparison = record.comparison.as_ref();
-        let mut rows = record.results.cases.iter().flat_map(|case| &case.rows);
+        let mut rows = record.results.rows();
         let reasons = [
             (comparison.is_some_and(Comparison::fails), "something became worse"),
             (comparison.is_some_and(Comparison::is_empty), "nothing was compared"),

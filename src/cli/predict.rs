@@ -12,7 +12,7 @@ use crate::case::Catalogue;
 use crate::draw::store::{Header, Store};
 use crate::plan::options::DRAWS;
 use crate::record::baseline::fingerprint;
-use crate::record::verdict;
+use crate::record::build;
 use crate::report::console::View;
 
 /// Arguments of `predict`.
@@ -41,8 +41,7 @@ pub fn predict(
 ) -> anyhow::Result<u8> {
     let selection = &arguments.selection;
     let cases = selection.read(catalogue, console)?;
-    let predict =
-        if arguments.optimum { verdict::predicted_with_optima } else { verdict::predicted };
+    let predict = if arguments.optimum { build::predicted_with_optima } else { build::predicted };
     let options = selection.options(DRAWS)?;
     let record = selection.with_plan(&cases, &options, console, |plan| Ok(predict(plan)))?;
     let view = if arguments.moments { View::Moments } else { View::Predict };
@@ -73,7 +72,7 @@ pub fn plan(arguments: &Plan, catalogue: &Catalogue, console: &Console) -> anyho
             let finished = journal::finished(&arguments.out);
             let wrong = || format!("cannot read {}; move it away", finished.display());
             store.reuse(&finished, false).with_context(wrong)?;
-            Ok((verdict::planned(plan), store.reusable(plan)))
+            Ok((build::planned(plan), store.reusable(plan)))
         })?;
     output::print_record(&record, View::Plan, arguments.format, console)?;
     if kept > 0 && arguments.format == Format::Table && !console.quiet {

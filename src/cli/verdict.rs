@@ -40,8 +40,7 @@ pub fn close(record: &Record, inconclusive: Option<Inconclusive>, errors: &Error
 
 /// Fail, or worse than a stored run, before refused cases before inconclusive before pass.
 fn exit_code(record: &Record, inconclusive: Option<Inconclusive>) -> u8 {
-    let verdicts = || record.results.cases.iter().flat_map(|case| &case.rows);
-    let any = |verdict| verdicts().any(|row| row.verdict == Some(verdict));
+    let any = |verdict| record.results.rows().any(|row| row.verdict == Some(verdict));
     let is_worse = record.comparison.as_ref().is_some_and(Comparison::fails);
     if is_worse || any(Verdict::Fail) {
         return 1;
@@ -50,7 +49,7 @@ fn exit_code(record: &Record, inconclusive: Option<Inconclusive>) -> u8 {
         .results
         .cases
         .iter()
-        .find(|case| case.rows.iter().all(|row| row.verdict == Some(Verdict::Refused)));
+        .find(|case| case.rows().all(|row| row.verdict == Some(Verdict::Refused)));
     if let Some(case) = refused {
         output::complain(&anyhow::anyhow!(
             "every experiment of {} is refused, so nothing was tested; \

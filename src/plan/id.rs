@@ -13,7 +13,7 @@ use crate::case::sweep::{Variation, What};
 ///
 /// Two experiments of a run never have the same identity. It depends neither on the place in the list of
 /// estimators nor on the options of the run.
-#[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[derive(Debug, Clone, Default, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 pub struct ExperimentId {
     /// Name of the case.
     pub case: String,

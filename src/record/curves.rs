@@ -1,14 +1,15 @@
-//! The theory's lines along a sweep, and the best constant σ̂ of each estimator.
+//! The theory's lines along a sweep, the best constant σ̂ of each estimator, and rays seen from the side.
 
 use crate::case::Case;
 use crate::case::names::Names;
 use crate::case::sweep::{SweepAxis, Variation, What};
+use crate::draw::drawn::Drawn;
 use crate::plan::{Planned, PlannedCase};
-use crate::record::theory_rows::finite;
-use crate::record::{Best, Curve, CurvePoint, Sweep};
-use theory::Channel;
-use theory::optimum::{Optimum, best_constants};
-use theory::parallel;
+use crate::record::theory::finite;
+use crate::record::{Anatomy, Best, Curve, CurvePoint, MeasuredPoint, Sweep};
+use ::theory::Channel;
+use ::theory::optimum::{Optimum, best_constants};
+use ::theory::parallel;
 
 /// Points of a line.
 const POINTS: usize = 48;
@@ -41,7 +42,7 @@ pub fn curves(case: &Case, seed: u64) -> Vec<Curve> {
             control: names.control.clone(),
             channel: channel.clone(),
             points: predicted.iter().filter_map(|p| p.get(index)?.1).collect(),
-            listed: Some(estimator),
+            listed: estimator,
             optimum: optimum(index),
             best: found(index).map(named_best),
         };
@@ -95,11 +96,12 @@ fn best(case: &Case, seed: u64, estimator: usize, variation: Variation) -> Vec<O
 /// The line of an estimator that is refused everywhere: it has no points.
 fn refused(names: Names, listed: usize) -> Curve {
     let (estimator, control) = (names.estimator.to_string(), names.control);
-    let (channel, points, listed) = (String::new(), Vec::new(), Some(listed));
+    let (channel, points) = (String::new(), Vec::new());
     Curve { estimator, listed, control, channel, points, optimum: None, best: None }
 }
 
-fn named_best(optimum: Optimum) -> Best {
+/// The best σ̂ as a record has it.
+pub fn named_best(optimum: Optimum) -> Best {
     let Optimum { sampling, figure_of_merit, kind } = optimum;
     let (fom, limit) = (finite(Some(figure_of_merit)), kind.limit());
     Best { sampling, fom, kind: kind.words().to_owned(), limit }
@@ -148,4 +150,41 @@ fn abscissae(axis: &SweepAxis) -> Vec<f64> {
 /// The least and the largest of some numbers.
 fn ends(x: &[f64]) -> (f64, f64) {
     x.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), &x| (low.min(x), high.max(x)))
+}
+
+/// The anatomy of an experiment on a curve; `None` of any other.
+pub fn anatomy(case: &PlannedCase, planned: &Planned, drawn: &Drawn) -> Option<Anatomy> {
+    let ready = planned.outcome.as_ref().ok()?;
+    let at = case.case.at(planned.variation).ok()?;
+    let (ray_view, explorers) = at.ray_view(planned.estimator, planned.address)?;
+    let distances = at.scenario().distances();
+    let channels = ready.prediction.channels.iter().zip(&drawn.tallies).zip(&distances);
+    let measured = channels.filter_map(|((channel, tally), &t)| {
+        let moments = tally.moments()?;
+        let unit = channel.truth.value;
+        let deviation = moments.variance?.sqrt() * unit;
+        let point = MeasuredPoint {
+            t,
+            mean: channel.mean.value + moments.mean * unit,
+            standard_error: deviation / (tally.draws as f64).sqrt(),
+            deviation,
+        };
+        (point.mean.is_finite() && deviation.is_finite()).then_some(point)
+    });
+    let residual = ray_view.extinction.iter().zip(&ray_view.control).map(|(s, c)| s - c).collect();
+    let controlled = !planned.id.control.is_empty();
+    Some(Anatomy {
+        experiment: planned.id.clone(),
+        measured: measured.collect(),
+        residual,
+        control: if controlled { ray_view.control } else { Vec::new() },
+        explorers,
+        t: ray_view.t,
+        extinction: ray_view.extinction,
+        sampling: ray_view.sampling,
+        transmittance: ray_view.transmittance,
+        deviation: ray_view.deviation,
+        collisions: ray_view.collisions,
+        walks: ray_view.walks,
+    })
 }

@@ -3,7 +3,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use numeric::null;
+use crate::plan::ExperimentId;
 use theory::optimum::Kind;
 
 /// The axis of a sweep and the theory's curves along it.
@@ -24,13 +24,13 @@ pub struct Sweep {
 /// What theory says of one estimator along the sweep, one channel of its value.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct Curve {
-    /// The estimator's label: the same as in its rows.
+    /// The estimator's label at the first value of the sweep.
     pub estimator: String,
-    /// The number of the estimator in the case's list: the same as in its rows.
-    pub listed: Option<usize>,
-    /// Its control in words: the same as in its rows.
+    /// The number of the estimator in the case's list: its experiments have the same.
+    pub listed: usize,
+    /// Its control in words at the first value of the sweep.
     pub control: String,
-    /// The channel: the same as in its rows.
+    /// The channel.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub channel: String,
     /// Points in ascending order; refused stretches are left out.
@@ -65,16 +65,12 @@ impl Best {
 #[derive(Debug, Clone, Copy, Serialize, Deserialize)]
 pub struct CurvePoint {
     /// The swept value.
-    #[serde(deserialize_with = "null::read")]
     pub x: f64,
     /// The variance of one draw.
-    #[serde(deserialize_with = "null::read")]
     pub variance: f64,
     /// The expected lookups.
-    #[serde(deserialize_with = "null::read")]
     pub lookups: f64,
     /// 1/(variance · (lookups + setup lookups/draws per ray)).
-    #[serde(deserialize_with = "null::read")]
     pub fom: f64,
     /// Lookups for a ray before its first draw.
     #[serde(default)]
@@ -84,39 +80,30 @@ pub struct CurvePoint {
 /// A ray seen from the side, as in Figures 5 and 8 of Szirmay-Kalos et al. 2017.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct Anatomy {
-    /// The estimator that the curves belong to.
-    pub estimator: String,
+    /// The experiment that the curves belong to.
+    pub experiment: ExperimentId,
     /// Distances along the ray, ascending.
-    #[serde(deserialize_with = "null::read")]
     pub t: Vec<f64>,
     /// σ_t there, 1/length.
-    #[serde(deserialize_with = "null::read")]
     pub extinction: Vec<f64>,
     /// The control there, 1/length; empty for none.
-    #[serde(deserialize_with = "null::read")]
     pub control: Vec<f64>,
     /// σ_t less the control there, 1/length.
-    #[serde(deserialize_with = "null::read")]
     pub residual: Vec<f64>,
     /// σ̂ there, 1/length.
-    #[serde(deserialize_with = "null::read")]
     pub sampling: Vec<f64>,
     /// The exact transmittance T(t) there.
-    #[serde(deserialize_with = "null::read")]
     pub transmittance: Vec<f64>,
-    /// The standard deviation of one draw of it there.
-    #[serde(deserialize_with = "null::read")]
+    /// The standard deviation of one draw of it there; it may be infinite.
+    #[serde(with = "gate::extended")]
     pub deviation: Vec<f64>,
     /// Where the control was fitted: (t, value).
-    #[serde(deserialize_with = "null::read")]
     pub explorers: Vec<[f64; 2]>,
     /// The tentative collisions of the first walk: (t, σ_t).
-    #[serde(deserialize_with = "null::read")]
     pub collisions: Vec<[f64; 2]>,
     /// T̂ of the first few walks at the distances `t`.
-    #[serde(deserialize_with = "null::read")]
     pub walks: Vec<Vec<f64>>,
-    /// What was measured: one entry per channel.
+    /// Measured points: one for each channel with finite statistics.
     pub measured: Vec<MeasuredPoint>,
 }
 
@@ -124,16 +111,12 @@ pub struct Anatomy {
 #[derive(Debug, Clone, Copy, Serialize, Deserialize)]
 pub struct MeasuredPoint {
     /// The distance.
-    #[serde(deserialize_with = "null::read")]
     pub t: f64,
     /// The mean of the draws.
-    #[serde(deserialize_with = "null::read")]
     pub mean: f64,
     /// The standard error of the mean.
-    #[serde(deserialize_with = "null::read")]
     pub standard_error: f64,
     /// The standard deviation of one draw.
-    #[serde(deserialize_with = "null::read")]
     pub deviation: f64,
 }
 
@@ -143,27 +126,44 @@ pub struct Course {
     /// Distances along the ray, ascending; not more than 100.
     pub t: Vec<f64>,
     /// σ_t there, 1/length.
-    #[serde(deserialize_with = "null::read")]
     pub extinction: Vec<f64>,
     /// The control there, 1/length; empty for none, or where it cannot be made.
-    #[serde(deserialize_with = "null::read")]
     pub control: Vec<f64>,
     /// σ̂ there, 1/length; empty for none, or where it cannot be made.
-    #[serde(deserialize_with = "null::read")]
     pub sampling: Vec<f64>,
     /// Where the inequality does not hold; `None` where something else is refused.
     pub at: Option<f64>,
 }
 
+impl Course {
+    /// Leaves out the places where a field has no finite value.
+    #[must_use]
+    pub fn finite(self) -> Self {
+        let fields = [&self.t, &self.extinction, &self.control, &self.sampling];
+        let is_finite =
+            |i: &usize| fields.iter().all(|field| field.get(*i).is_none_or(|v| v.is_finite()));
+        let kept: Vec<usize> = (0..self.t.len()).filter(is_finite).collect();
+        let [t, extinction, control, sampling] =
+            fields.map(|field| kept.iter().filter_map(|&i| field.get(i).copied()).collect());
+        Self { t, extinction, control, sampling, at: self.at }
+    }
+}
+
 /// More looks of the gate than this are thinned.
 const LOOKS: usize = 64;
 
-/// Draws and ln E at the looks, as a record has them: the first, the last, and those between them evenly.
+/// Draws and ln E at the looks, as a record has them: the first, the last, and those between them evenly. An infinite ln E
+/// becomes the largest number.
 pub fn thinned(path: &[(u64, f64)]) -> Vec<[f64; 2]> {
     let last = path.len().saturating_sub(1);
     let few = path.len().min(LOOKS);
     let kept = (0..few).map(|i| path[i * last / (few - 1).max(1)]);
-    kept.map(|(draws, ln_e)| [draws as f64, (ln_e * 1e3).round() / 1e3]).collect()
+    kept.map(|(draws, ln_e)| [draws as f64, rounded(ln_e)]).collect()
+}
+
+/// A number in steps of 0.001; an infinite one becomes the largest number.
+fn rounded(ln_e: f64) -> f64 {
+    ((ln_e * 1e3).round() / 1e3).clamp(f64::MIN, f64::MAX)
 }
 
 #[cfg(test)]

@@ -16,7 +16,7 @@ pub fn complete(results: &mut Results) {
     let gate = &mut results.gate;
     let suspects: Vec<Suspect> = cases
         .iter()
-        .flat_map(|case| scalars(case).map(|(row, finding)| suspect(case, row, finding)))
+        .flat_map(|case| scalars(case).map(|(row, finding)| suspect(case, &row, finding)))
         .collect();
     let ln_e: Vec<f64> = suspects.iter().map(|suspect| suspect.ln_e).collect();
     if !ln_e.is_empty() {
@@ -30,7 +30,7 @@ pub fn complete(results: &mut Results) {
 }
 
 fn close(gate: &mut Gate, cases: &[CaseRecord]) {
-    let means = || cases.iter().flat_map(|case| &case.rows).flat_map(|row| &row.findings);
+    let means = || cases.iter().flat_map(CaseRecord::rows).flat_map(|row| row.findings());
     let passed = |finding: &&Finding| {
         finding.check == "mean" && finding.verdict == Verdict::Pass && !finding.expects_bias
     };
@@ -40,24 +40,20 @@ fn close(gate: &mut Gate, cases: &[CaseRecord]) {
     gate.worst_bias = biases.reduce(f64::max);
 }
 
-/// The scalars of a case with the row that they stand in; those of the whole experiment are said
-/// once, in the first of its rows.
-fn scalars(case: &CaseRecord) -> impl Iterator<Item = (&Row, &Finding)> {
-    // What was drawn once is told once.
-    let own = case.rows.iter().enumerate().filter(|(_, row)| row.same_as.is_empty());
-    own.flat_map(move |(i, row)| {
-        let is_first = case.begins_experiment(i);
-        let own = move |finding: &&Finding| {
-            let is_whole = finding.channel.is_empty();
-            finding.gate.is_some() && !finding.expects_bias && (is_first || !is_whole)
-        };
-        row.findings.iter().filter(own).map(move |finding| (row, finding))
+/// The scalars of a case with the row that they stand in; those of the whole experiment stand in the first of its rows.
+fn scalars(case: &CaseRecord) -> impl Iterator<Item = (Row<'_>, &Finding)> {
+    // Draws that two experiments share count once.
+    let own = case.rows().filter(|row| row.experiment.same_as.is_none());
+    own.flat_map(|row| {
+        let scalars =
+            row.own_findings().filter(|found| found.gate.is_some() && !found.expects_bias);
+        scalars.map(move |finding| (row, finding))
     })
 }
 
 fn suspect(case: &CaseRecord, row: &Row, finding: &Finding) -> Suspect {
-    let mut experiment = row.estimator.clone();
-    if let Some(swept) = row.swept {
+    let mut experiment = row.experiment.label.clone();
+    if let Some(swept) = row.experiment.swept() {
         experiment = format!("{experiment} at {swept}");
     }
     if !finding.channel.is_empty() {
@@ -69,11 +65,12 @@ fn suspect(case: &CaseRecord, row: &Row, finding: &Finding) -> Suspect {
 
 /// The range of ε over the means that were promised a pass.
 fn visible_bias(case: &CaseRecord) -> Option<[f64; 2]> {
-    let means = case.rows.iter().flat_map(|row| &row.findings).filter(|f| f.check == "mean");
+    let means = case.rows().flat_map(|row| row.findings()).filter(|f| f.check == "mean");
     let promised = means.filter_map(|finding| finding.gate.filter(|gate| gate.needed.is_none()));
     let tolerances: Vec<f64> = promised.map(|gate| gate.tolerance).collect();
     let least = tolerances.iter().copied().reduce(f64::min)?;
-    Some([least, tolerances.iter().copied().fold(least, f64::max)])
+    let range = [least, tolerances.iter().copied().fold(least, f64::max)];
+    Some(range).filter(|range| range.iter().all(|end| end.is_finite()))
 }
 
 /// See [`CaseRecord::pace`].

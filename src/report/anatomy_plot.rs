@@ -39,7 +39,8 @@ pub fn render(record: &Record) -> Result<Vec<Artifact>, ReportError> {
 ///
 /// Where there is no typeface.
 pub fn figure(case: &CaseRecord, anatomy: &Anatomy) -> Result<Sheet, ReportError> {
-    let words = [&case.name, &case.medium, &anatomy.estimator].map(String::as_str).join("  ·  ");
+    let label = anatomy.experiment.label();
+    let words = [&case.name, &case.medium, &label].map(String::as_str).join("  ·  ");
     let size = [1200.0, 900.0];
     let Figure { face, mut sheet, .. } =
         Figure::new(&case.name, size, 1090.0, [&case.title, &words])?;

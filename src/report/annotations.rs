@@ -70,7 +70,8 @@ fn of_note(case: &CaseRecord, note: &str) -> String {
 }
 
 fn of_failure(verdict: Verdict, failure: &Failure) -> String {
-    let (case, row) = (failure.case, failure.row);
+    let Failure { row, .. } = *failure;
+    let case = row.case;
     let title = format!("{} {}: {}", verdict.word(), case.name, failure.experiment());
     let mut properties = format!("title={}", property(&title));
     if !case.path.is_empty() {
@@ -84,7 +85,7 @@ fn of_failure(verdict: Verdict, failure: &Failure) -> String {
     if let Some((word, command)) = row.next_command() {
         said = format!("{said}\n{word}: {command}");
     }
-    for line in likely::lines(case, row) {
+    for line in likely::lines(&row) {
         said = format!("{said}\n{line}");
     }
     format!("{properties}::{}", message(&said))

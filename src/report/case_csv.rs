@@ -5,7 +5,7 @@
 
 use crate::record::{Anatomy, CaseRecord, Record, Row, Sweep};
 use crate::report::columns::table;
-use crate::report::rows::{JoinedRow, TIMED, columns, joined};
+use crate::report::rows::{Line, TIMED, columns};
 use crate::report::{Artifact, ReportError, case_path};
 use numeric::digits::exact;
 
@@ -15,11 +15,10 @@ use numeric::digits::exact;
 ///
 /// Where an encoder or a painter gives up.
 pub fn render(record: &Record) -> Result<Vec<Artifact>, ReportError> {
-    let rows = joined(record);
     let mut artifacts = Vec::new();
     for case in &record.results.cases {
-        let own = rows.iter().filter(|row| std::ptr::eq(row.case, case));
-        artifacts.push(Artifact::text(case_path(&case.name, "csv"), case_rows(case, own)?));
+        let rows = case_rows(case, record.results.seed)?;
+        artifacts.push(Artifact::text(case_path(&case.name, "csv"), rows));
         if let Some(sweep) = &case.sweep {
             artifacts
                 .push(Artifact::text(case_path(&case.name, "theory.csv"), theory(case, sweep)?));
@@ -37,20 +36,18 @@ pub fn render(record: &Record) -> Result<Vec<Artifact>, ReportError> {
 /// A column of deviations, for error bars.
 type Bar = (&'static str, fn(&Row) -> Option<f64>);
 
-fn case_rows<'a>(
-    case: &CaseRecord,
-    rows: impl Iterator<Item = &'a JoinedRow<'a>>,
-) -> Result<String, ReportError> {
+fn case_rows(case: &CaseRecord, seed: u64) -> Result<String, ReportError> {
     let mut untimed = columns();
     untimed.retain(|column| !TIMED.contains(&column.name));
     let bars: [Bar; 2] = [
         ("variance_deviation", |row| row.variance_deviation),
-        ("lookups_deviation", |row| row.lookups_deviation),
+        ("lookups_deviation", |row| row.experiment.lookups_deviation),
     ];
     let header = untimed.iter().map(|column| column.name).chain(bars.map(|(name, _)| name));
-    let lines = rows.map(|joined| {
-        let fields = untimed.iter().map(|column| (column.cell)(joined).csv());
-        fields.chain(bars.map(|(_, value)| value(joined.row).map(exact).unwrap_or_default()))
+    let lines = case.rows().map(|row| {
+        let line = Line { row, seed };
+        let fields = untimed.iter().map(move |column| (column.cell)(&line).csv());
+        fields.chain(bars.map(|(_, value)| value(&row).map(exact).unwrap_or_default()))
     });
     table(&case.name, header, lines)
 }

@@ -14,14 +14,13 @@
 //!
 //! What concerns an experiment as a whole stands once, with its first channel.
 
-use crate::record::{Finding, GateFinding, Record};
+use crate::record::{Finding, GateFinding, Record, Row};
 use crate::report::columns::{self, Column, columns};
-use crate::report::rows::{JoinedRow, joined};
 use crate::report::{Artifact, ReportError};
 
 /// An answer with the row that it belongs to.
 struct Answer<'a> {
-    of: JoinedRow<'a>,
+    of: Row<'a>,
     found: &'a Finding,
 }
 
@@ -35,11 +34,11 @@ impl Answer<'_> {
 fn columns<'a>() -> Vec<Column<Answer<'a>>> {
     columns! {
         "case" = |answer| &answer.of.case.name;
-        "estimator" = |answer| &answer.of.row.estimator;
-        "sampling" = |answer| answer.of.row.sampling;
-        "sampling_kind" = |answer| &answer.of.row.sampling_kind;
-        "control" = |answer| &answer.of.row.control;
-        "swept" = |answer| answer.of.row.swept;
+        "estimator" = |answer| &answer.of.experiment.label;
+        "sampling" = |answer| answer.of.experiment.sampling();
+        "sampling_kind" = |answer| &answer.of.experiment.id.sampling.kind;
+        "control" = |answer| &answer.of.experiment.id.control;
+        "swept" = |answer| answer.of.experiment.swept();
         "check" = |answer| &answer.found.check;
         "what" = |answer| &answer.found.what;
         "channel" = |answer| &answer.found.channel;
@@ -68,9 +67,9 @@ fn columns<'a>() -> Vec<Column<Answer<'a>>> {
 ///
 /// Where an encoder or a painter gives up.
 pub fn render(record: &Record) -> Result<Vec<Artifact>, ReportError> {
-    let answers = joined(record).into_iter().flat_map(|of| {
-        let own = move |found: &&Finding| of.is_first || !found.channel.is_empty();
-        of.row.findings.iter().filter(own).map(move |found| Answer { of, found })
-    });
+    let answers = record
+        .results
+        .rows()
+        .flat_map(|of| of.own_findings().map(move |found| Answer { of, found }));
     Ok(vec![columns::artifact("checks.csv", &columns(), answers)?])
 }

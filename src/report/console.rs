@@ -12,8 +12,7 @@ pub mod views;
 
 use std::fmt::Write;
 
-use crate::record::{CaseRecord, Record, Row, Verdict};
-use crate::report::labels::Labels;
+use crate::record::{CaseRecord, Digits, Record, Row, Verdict};
 use crate::report::totals;
 use layout::{Field, Grid, Paint, end_elided};
 use numeric::digits::{count, short};
@@ -60,8 +59,8 @@ pub fn table(record: &Record, view: View, pen: layout::Pen) -> String {
 pub fn brief(record: &Record, pen: layout::Pen) -> String {
     let (mut text, mut marks) = (String::new(), false);
     for case in &record.results.cases {
-        let quiet = |row: &&Row| !matches!(row.verdict, Some(Verdict::Pass) | None);
-        let rows: Vec<Row> = case.rows.iter().filter(quiet).cloned().collect();
+        let quiet = |row: &Row| !matches!(row.verdict, Some(Verdict::Pass) | None);
+        let rows: Vec<Row> = case.rows().filter(quiet).collect();
         let line = format!("{}  {}, {} draws", case.name, totals::words(case), totals::draws(case));
         if rows.is_empty() {
             let _ = writeln!(text, "{}", end_elided(&line, pen.width));
@@ -70,14 +69,19 @@ pub fn brief(record: &Record, pen: layout::Pen) -> String {
         }
         let _ = writeln!(text, "{}", pen.paint(Paint::Bold, &end_elided(&line, pen.width)));
         notes(&mut text, pen, case);
-        let labels = Labels::of(case);
-        let shown = CaseRecord { rows, ..case.clone() };
-        marks |= grid(&mut text, pen, &shown, labels, View::Run);
+        marks |= grid(&mut text, pen, &Block { case, rows, labels: Digits::of(case) }, View::Run);
     }
     text.push('\n');
     legend(&mut text, pen, marks);
     closing::write(&mut text, pen, record, View::Run);
     text
+}
+
+/// Rows of a case that are shown.
+struct Block<'a> {
+    case: &'a CaseRecord,
+    rows: Vec<Row<'a>>,
+    labels: Digits,
 }
 
 /// What parentheses mean, where there are any.
@@ -90,45 +94,41 @@ fn legend(text: &mut String, pen: layout::Pen, marks: bool) {
 /// Writes a case; answers whether a z is marked.
 fn block(text: &mut String, pen: layout::Pen, case: &CaseRecord, view: View) -> bool {
     pen.heading(text, &case.name, &case.title);
-    pen.say(text, Paint::Dim, &facts(case, view).join(" · "));
+    let shown = Block { case, rows: case.rows().collect(), labels: Digits::of(case) };
+    pen.say(text, Paint::Dim, &facts(&shown, view).join(" · "));
     if view == View::Plan {
         case.facts.iter().for_each(|fact| pen.note(text, fact, ("", Paint::Plain)));
     }
     notes(text, pen, case);
-    grid(text, pen, case, Labels::of(case), view)
+    grid(text, pen, &shown, view)
 }
 
 /// The rows with their reasons; answers whether a z is marked.
-fn grid(
-    text: &mut String,
-    pen: layout::Pen,
-    case: &CaseRecord,
-    labels: Labels,
-    view: View,
-) -> bool {
-    let (names, rest) = (views::names(case, labels), views::columns(case, view));
+fn grid(text: &mut String, pen: layout::Pen, block: &Block, view: View) -> bool {
+    let Block { case, rows, labels } = block;
+    let (names, rest) = (views::names(case, rows, *labels), views::columns(rows, view));
     if view == View::Moments {
         // All of them were asked for: what does not fit beside stands below.
         for grid in layout::blocks(names, rest, pen.width) {
             text.push_str(&grid.render(pen));
         }
-        costs::notes(text, pen, case, &|_| true);
-        footnotes(text, pen, case, labels, view, 0);
+        costs::notes(text, pen, rows, &|_| true);
+        footnotes(text, pen, block, view, 0);
         return false;
     }
     let mut grid = Grid { columns: names.into_iter().chain(rest).collect() };
     grid.fit(pen.width);
     let rest = pen.width.saturating_sub(grid.width() + 2);
-    let longest = case.rows.iter().map(|row| layout::width(&row.reason)).max().unwrap_or(0);
+    let longest = rows.iter().map(|row| layout::width(&row.reason)).max().unwrap_or(0);
     let beside = pen.width >= WIDE && rest >= NARROWEST && longest > 0;
     if beside {
-        let cells = case.rows.iter().map(|row| Field::plain(end_elided(&row.reason, rest)));
+        let cells = rows.iter().map(|row| Field::plain(end_elided(&row.reason, rest)));
         grid.push("reason", cells.collect());
     }
     text.push_str(&grid.render(pen));
     let room = if beside { rest } else { 0 };
-    costs::notes(text, pen, case, &|head| grid.columns.iter().any(|column| column.head == head));
-    footnotes(text, pen, case, labels, view, room);
+    costs::notes(text, pen, rows, &|head| grid.columns.iter().any(|column| column.head == head));
+    footnotes(text, pen, block, view, room);
     let scores = grid.columns.iter().filter(|column| views::SCORES.contains(&column.head));
     scores.flat_map(|column| &column.fields).any(|field| field.text.starts_with('('))
 }
@@ -141,22 +141,27 @@ fn notes(text: &mut String, pen: layout::Pen, case: &CaseRecord) {
 }
 
 /// What all rows share, and what the case is about.
-fn facts(case: &CaseRecord, view: View) -> Vec<String> {
+fn facts(block: &Block, view: View) -> Vec<String> {
+    let Block { case, rows, .. } = block;
     let mut facts = vec![case.problem.clone(), case.medium.clone()];
-    if let Some(truth) = views::shared(case, |row| row.truth) {
+    if let Some(truth) = views::shared(rows, |row| row.truth) {
         facts.push(format!("truth {}", short(truth, 6)));
     }
-    if let Some(unit) = views::shared(case, |row| row.log_unit) {
+    if let Some(unit) = views::shared(rows, |row| row.log_unit) {
         facts.push(format!("in units of exp(−{})", short(unit, 6)));
     }
-    if let Some(draws) = views::shared(case, |row| row.draws).filter(|_| !view.is_theory()) {
+    if let Some(draws) =
+        views::shared(rows, |row| row.experiment.draws).filter(|_| !view.is_theory())
+    {
         let what = if view == View::Run { "statistics of " } else { "" };
         facts.push(format!("{what}{} each", self::draws(draws)));
     }
-    if let Some(drawn) = views::shared(case, |row| row.drawn).filter(|_| view == View::Run) {
+    if let Some(drawn) =
+        views::shared(rows, |row| row.experiment.drawn).filter(|_| view == View::Run)
+    {
         facts.push(format!("{} drawn each", count(drawn)));
     }
-    if case.rows.iter().any(|row| row.setup_lookups.is_some_and(|lookups| lookups > 0)) {
+    if rows.iter().any(|row| row.experiment.setup_lookups.is_some_and(|lookups| lookups > 0)) {
         facts.push(format!("FoM: setup over {} per ray", draws(case.draws_per_ray.unwrap_or(1))));
     }
     facts.retain(|fact| !fact.is_empty());
@@ -168,41 +173,35 @@ fn draws(number: u64) -> String {
 }
 
 /// The reasons that have no place in the table, each once, with the rows it is about.
-fn footnotes(
-    text: &mut String,
-    pen: layout::Pen,
-    case: &CaseRecord,
-    labels: Labels,
-    view: View,
-    room: usize,
-) {
+fn footnotes(text: &mut String, pen: layout::Pen, block: &Block, view: View, room: usize) {
+    let Block { case, rows, labels } = block;
     let mut notes: Vec<Vec<&Row>> = Vec::new();
-    for row in case.rows.iter().filter(|row| layout::width(&row.reason) > room) {
+    for row in rows.iter().filter(|row| layout::width(&row.reason) > room) {
         let same = |rows: &&mut Vec<&Row>| {
-            rows[0].reason == row.reason && rows[0].estimator == row.estimator
+            rows[0].reason == row.reason && rows[0].experiment.label == row.experiment.label
         };
         match notes.iter_mut().find(same) {
             Some(rows) => rows.push(row),
             None => notes.push(vec![row]),
         }
     }
-    for row in case.rows.iter().filter(|row| !row.same_as.is_empty()) {
-        let positions = views::positions(case, &[row], labels);
+    for row in rows.iter().filter(|row| row.experiment.same_as.is_some()) {
+        let positions = views::positions(case, &[row], *labels);
         let at = if positions.is_empty() { positions } else { format!(" ({positions})") };
-        let (this, other) = (&row.estimator, &row.same_as);
+        let (this, other) = (&row.experiment.label, row.experiment.same_as());
         let _ = writeln!(text, "  note {this}{at} is {other} by definition: drawn once for both");
     }
     let mut commands: Vec<(&str, &str)> = Vec::new();
-    for row in case.rows.iter().filter(|row| row.verdict == Some(Verdict::Inconclusive)) {
-        let next = row.next_command().map(|(_, command)| (row.estimator.as_str(), command));
+    for row in rows.iter().filter(|row| row.verdict == Some(Verdict::Inconclusive)) {
+        let next = row.next_command().map(|(_, command)| (row.experiment.label.as_str(), command));
         commands.extend(next.filter(|next| !commands.contains(next)));
     }
     for rows in notes {
         let (row, status) = (rows[0], views::status(rows[0], view).text);
-        let positions = views::positions(case, &rows, labels);
+        let positions = views::positions(case, &rows, *labels);
         let at = if positions.is_empty() { positions } else { format!(" ({positions})") };
         let word = if status.is_empty() { "note" } else { &status };
-        let note = format!("{word} {}{at}: {}", row.estimator, row.reason);
+        let note = format!("{word} {}{at}: {}", row.experiment.label, row.reason);
         pen.note(text, &note, (word, views::status(row, view).paint));
     }
     // Whole, so that it can be copied.

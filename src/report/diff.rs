@@ -1,7 +1,10 @@
 //! What changed since a stored run, in words that the console and the summaries share.
 
-use crate::record::baseline::LeftOut;
-use crate::record::baseline::{Change, Comparison, Drift, Quantity, Sequel};
+use std::fmt::Display;
+
+use crate::record::baseline::{
+    Change, ChannelId, Comparison, Drift, LeftOut, Measured, Quantity, Sequel,
+};
 use numeric::digits::{fixed, short};
 
 /// Something that changed.
@@ -10,7 +13,7 @@ pub struct Difference<'a> {
     /// Whether it became worse.
     pub is_worse: bool,
     /// The experiment.
-    pub experiment: &'a str,
+    pub experiment: String,
     /// What changed, with the numbers.
     pub what: String,
     /// The command that repeats the experiment.
@@ -28,7 +31,7 @@ impl Difference<'_> {
 const MOST: usize = 8;
 
 /// What was left out, each with its reason and the experiments.
-fn left_out(comparison: &Comparison) -> Vec<(&'static str, &[String])> {
+fn left_out(comparison: &Comparison) -> Vec<(&'static str, &[ChannelId])> {
     let LeftOut { relearned, blunt, unpredicted, uncounted, brief, shared } = &comparison.left_out;
     let all = [
         ("variance not compared, too few draws or too heavy a tail", blunt),
@@ -45,15 +48,15 @@ fn left_out(comparison: &Comparison) -> Vec<(&'static str, &[String])> {
 }
 
 /// The lists of experiments that are not empty, each with its reason.
-pub(super) fn not_empty<'a>(
-    lists: impl IntoIterator<Item = (&'static str, &'a Vec<String>)>,
-) -> Vec<(&'static str, &'a [String])> {
+pub(super) fn not_empty<'a, T>(
+    lists: impl IntoIterator<Item = (&'static str, &'a Vec<T>)>,
+) -> Vec<(&'static str, &'a [T])> {
     let lists = lists.into_iter().filter(|(_, ids)| !ids.is_empty());
     lists.map(|(why, ids)| (why, &ids[..])).collect()
 }
 
 /// How long lists of experiments are, each with its reason.
-pub(super) fn counts(lists: &[(&'static str, &[String])]) -> String {
+pub(super) fn counts<T>(lists: &[(&'static str, &[T])]) -> String {
     let counts: Vec<_> = lists.iter().map(|(why, ids)| format!("{why} ({})", ids.len())).collect();
     counts.join("; ")
 }
@@ -65,8 +68,9 @@ pub(super) fn ending(nothing: Option<String>, has_changes: bool) -> Option<Strin
 }
 
 /// A list of experiments, cut where it is long.
-pub(super) fn listed(why: &str, ids: &[String]) -> String {
-    let shown = ids[..ids.len().min(MOST)].join(", ");
+pub(super) fn listed(why: &str, ids: &[impl Display]) -> String {
+    let shown: Vec<String> = ids.iter().take(MOST).map(ToString::to_string).collect();
+    let shown = shown.join(", ");
     let more = match ids.len().saturating_sub(MOST) {
         0 => String::new(),
         more => format!(" and {more} more"),
@@ -96,11 +100,10 @@ pub fn no_times(comparison: &Comparison) -> Option<String> {
 /// What was compared, how, and what was left out.
 pub fn remarks(comparison: &Comparison) -> Vec<String> {
     let Comparison { name, rules, compared, times, .. } = comparison;
-    let (alpha, tolerance) = (short(rules.alpha, 3), short(rules.time_tolerance, 3));
-    let times = if rules.asks_for_times() {
-        format!("{times} times at a tolerance of {tolerance}")
-    } else {
-        "no times, as any is tolerated".to_owned()
+    let alpha = short(rules.alpha, 3);
+    let times = match rules.time_tolerance {
+        Some(tolerance) => format!("{times} times at a tolerance of {}", short(tolerance, 3)),
+        None => "no times, as any is tolerated".to_owned(),
     };
     let mut remarks = vec![format!(
         "baseline {name}: {compared} variances and lookups compared at α = {alpha}, {times}"
@@ -134,28 +137,31 @@ pub fn all(comparison: &Comparison) -> Vec<Difference<'_>> {
 fn drift(drift: &Drift) -> Difference<'_> {
     let Drift { id, check, ln_e, limit, command } = drift;
     let what = format!("{check}: ln E = {ln_e:.1} ≥ {limit:.1} of all runs together");
-    Difference { is_worse: true, experiment: id, what, command }
+    Difference { is_worse: true, experiment: id.to_string(), what, command }
 }
 
-fn change(change: &Change, tolerance: f64) -> Difference<'_> {
+fn change(change: &Change, tolerance: Option<f64>) -> Difference<'_> {
     let (what, unit) = match change.quantity {
         Quantity::Variance => ("variance", ""),
         Quantity::Lookups => ("lookups per draw", ""),
         Quantity::Time => ("processor time per draw", " ns"),
     };
-    let value = |[value, error]: [f64; 2]| {
-        let error = if error.is_nan() { String::new() } else { format!(" ± {}", short(error, 2)) };
+    let value = |Measured { value, error }: Measured| {
+        let error = error.map_or(String::new(), |error| format!(" ± {}", short(error, 2)));
         format!("{}{error}{unit}", fixed(value, 5))
     };
     let interval = match change.interval {
         Some([low, high]) => format!("in [{}, {}]", fixed(low, 4), fixed(high, 4)),
-        None => format!("beyond the tolerance of {}, its error unknown", short(tolerance, 3)),
+        None => {
+            let tolerance = tolerance.map_or("∞".to_owned(), |tolerance| short(tolerance, 3));
+            format!("beyond the tolerance of {tolerance}, its error unknown")
+        }
     };
     let (before, now) = (value(change.before), value(change.now));
     let ratio = fixed(change.ratio, 4);
     Difference {
         is_worse: change.is_regression,
-        experiment: &change.id,
+        experiment: change.id.to_string(),
         what: format!("{what} {before} → {now}, ratio {ratio} {interval}"),
         command: &change.command,
     }

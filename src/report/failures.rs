@@ -2,8 +2,7 @@
 
 use std::borrow::Cow;
 
-use crate::record::{CaseRecord, Finding, Record, Row, Verdict};
-use crate::report::labels::Labels;
+use crate::record::{Finding, Record, Row, Score, Verdict};
 use crate::report::likely;
 use gate::deviation::signed_percent;
 use numeric::digits::{percent, short, signed};
@@ -11,79 +10,43 @@ use numeric::digits::{percent, short, signed};
 /// A finding that is not as it should be, with what it belongs to.
 #[derive(Debug, Clone, Copy)]
 pub struct Failure<'a> {
-    /// The case.
-    pub case: &'a CaseRecord,
     /// The experiment and channel.
-    pub row: &'a Row,
+    pub row: Row<'a>,
     /// The finding; `None` where the row has a verdict and no findings.
     pub finding: Option<&'a Finding>,
     /// The run's seed.
     pub seed: u64,
 }
 
-/// The failures of all rows with this verdict. What concerns an experiment as a whole stands in all
-/// of its rows and is said once.
+/// The failures of all rows with this verdict. A finding about an experiment as a whole stands in all
+/// of its rows, and is listed once.
 pub fn failing(record: &Record, verdict: Verdict) -> Vec<Failure<'_>> {
     let seed = record.results.seed;
-    let mut failures = Vec::new();
-    for case in &record.results.cases {
-        for (i, row) in case.rows.iter().enumerate() {
-            if row.verdict != Some(verdict) {
-                continue;
-            }
-            let is_first = case.begins_experiment(i);
-            let findings = of_row(case, row, seed);
-            failures.extend(findings.into_iter().filter(|failure| {
-                is_first || failure.finding.is_none_or(|finding| !finding.channel.is_empty())
-            }));
-        }
-    }
-    failures
+    let rows = record.results.rows().filter(|row| row.verdict == Some(verdict));
+    let failures = rows.flat_map(|row| of_row(row, seed));
+    let is_own = |failure: &Failure| {
+        let is_of_channel = |finding: &Finding| !finding.channel.is_empty();
+        failure.row.is_first() || failure.finding.is_none_or(is_of_channel)
+    };
+    failures.filter(is_own).collect()
 }
 
 /// The findings that gave a row its verdict.
-pub fn of_row<'a>(case: &'a CaseRecord, row: &'a Row, seed: u64) -> Vec<Failure<'a>> {
-    let guilty = row.findings.iter().filter(|finding| Some(finding.verdict) == row.verdict);
+pub fn of_row(row: Row<'_>, seed: u64) -> Vec<Failure<'_>> {
+    let guilty = row.findings().filter(|finding| Some(finding.verdict) == row.verdict);
     let mut failures: Vec<Failure> =
-        guilty.map(|finding| Failure { case, row, finding: Some(finding), seed }).collect();
+        guilty.map(|finding| Failure { row, finding: Some(finding), seed }).collect();
     if failures.is_empty() {
-        failures.push(Failure { case, row, finding: None, seed });
+        failures.push(Failure { row, finding: None, seed });
     }
     failures
-}
-
-/// What an experiment is called within its case: `ratio, σ̂ 0.5, control mean, T(5)`.
-pub fn experiment(case: &CaseRecord, row: &Row) -> String {
-    named(case, row, &row.channel)
-}
-
-fn named(case: &CaseRecord, row: &Row, channel: &str) -> String {
-    let mut parts = vec![row.estimator.clone()];
-    let labels = Labels::of(case);
-    match row.sampling {
-        Some(sampling) => parts.push(format!("σ\u{302} {}", labels.text(sampling))),
-        None if row.sampling_kind.is_empty() => {}
-        None => parts.push(format!("σ\u{302} {}", row.sampling_kind)),
-    }
-    if !row.control.is_empty() {
-        parts.push(format!("control {}", row.control));
-    }
-    let what = case.sweep.as_ref().map_or("", |sweep| sweep.what.as_str());
-    if let Some(swept) = row.swept.filter(|_| what != "sampling") {
-        let what = if what.is_empty() { "at" } else { what };
-        parts.push(format!("{what} {}", labels.text(swept)));
-    }
-    if !channel.is_empty() {
-        parts.push(channel.to_owned());
-    }
-    parts.join(", ")
 }
 
 impl<'a> Failure<'a> {
     /// What it is about; without a channel where that is the experiment as a whole.
     pub fn experiment(&self) -> String {
-        let channel = self.finding.map_or(&self.row.channel, |finding| &finding.channel);
-        named(self.case, self.row, channel)
+        let channel = self.finding.map_or(&self.row.values.channel, |finding| &finding.channel);
+        self.row.name_with(channel)
     }
 
     /// The check's name; empty where the row has no findings.
@@ -94,7 +57,7 @@ impl<'a> Failure<'a> {
     /// Why, with the most important numbers.
     pub fn reason(&self) -> &'a str {
         let reason = self.finding.map_or("", |finding| finding.reason.as_str());
-        if reason.is_empty() { self.row.reason.as_str() } else { reason }
+        if reason.is_empty() { self.row.values.reason.as_str() } else { reason }
     }
 
     /// Where the random numbers are: `seed 1, block 3`.
@@ -109,7 +72,7 @@ impl<'a> Failure<'a> {
     /// Everything on one line, but for the command.
     pub fn line(&self) -> String {
         let experiment = self.experiment();
-        let parts = [self.case.name.as_str(), &experiment, self.check(), self.reason()];
+        let parts = [self.row.case.name.as_str(), &experiment, self.check(), self.reason()];
         let parts: Vec<&str> = parts.into_iter().filter(|part| !part.is_empty()).collect();
         format!("{} ({})", parts.join(": "), self.place())
     }
@@ -117,20 +80,20 @@ impl<'a> Failure<'a> {
     /// Everything that is known, one name and value to a line, and what usually causes it.
     pub fn details(&self) -> String {
         let lines = self.facts().into_iter().map(|(name, value)| format!("{name}: {value}"));
-        let all: Vec<String> = lines.chain(likely::lines(self.case, self.row)).collect();
+        let all: Vec<String> = lines.chain(likely::lines(&self.row)).collect();
         all.join("\n") + "\n"
     }
 
     fn facts(&self) -> Vec<(&'static str, Cow<'a, str>)> {
         let row = self.row;
         let number = |x: f64| Cow::from(short(x, 6));
-        let told = |name: &str, z: f64| -> Cow<'a, str> {
-            let is_normal = !row.not_normal.contains(&name);
+        let told = |score: Score, z: f64| -> Cow<'a, str> {
+            let is_normal = !row.not_normal.contains(&score);
             let note = if is_normal { "" } else { " (its law is not near normal)" };
             format!("{}{note}", signed(z)).into()
         };
         let mut facts: Vec<(&str, Cow<str>)> = vec![
-            ("case", self.case.name.as_str().into()),
+            ("case", self.row.case.name.as_str().into()),
             ("experiment", self.experiment().into()),
             ("check", self.check().into()),
             ("reason", self.reason().into()),
@@ -139,20 +102,20 @@ impl<'a> Failure<'a> {
         let mut add = |name, value: Option<Cow<'a, str>>| {
             facts.extend(value.map(|value| (name, value)));
         };
-        add("stream", row.stream.map(|stream| stream.to_string().into()));
+        add("stream", row.experiment.stream.map(|stream| stream.to_string().into()));
         let finding = self.finding;
         add("block", finding.and_then(|f| f.block).map(|block| block.to_string().into()));
-        add("draws of the statistics", row.draws.map(|draws| draws.to_string().into()));
+        add("draws of the statistics", row.experiment.draws.map(|draws| draws.to_string().into()));
         add("mean", row.mean.map(number));
         add("standard error", row.standard_error.map(number));
         add("truth", row.truth.map(number));
-        add("z of the mean", row.z_mean.map(|z| told("z_mean", z)));
+        add("z of the mean", row.z_mean.map(|z| told(Score::Mean, z)));
         add("variance", row.variance.map(number));
         add("predicted variance", row.predicted_variance.map(number));
-        add("z of the variance", row.z_variance.map(|z| told("z_variance", z)));
-        add("lookups", row.lookups_per_draw.map(number));
-        add("predicted lookups", row.predicted_lookups.map(number));
-        add("z of the lookups", row.z_lookups.map(|z| told("z_lookups", z)));
+        add("z of the variance", row.z_variance.map(|z| told(Score::Variance, z)));
+        add("lookups", row.experiment.lookups_per_draw.map(number));
+        add("predicted lookups", row.experiment.predicted_lookups.map(number));
+        add("z of the lookups", row.experiment.z_lookups.map(|z| told(Score::Lookups, z)));
         add("p", finding.and_then(|f| f.p).map(number));
         if let Some(gate) = finding.and_then(|finding| finding.gate) {
             let [above, below] = gate.ln_p.map(|p| short(p, 4));

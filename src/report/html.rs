@@ -23,7 +23,7 @@ mod words;
 use maud::html;
 
 use crate::record::Record;
-use crate::report::{Artifact, ReportError, record_json};
+use crate::report::{Artifact, ReportError};
 
 /// The record as a page.
 ///
@@ -34,17 +34,12 @@ pub fn render(record: &Record) -> Result<Vec<Artifact>, ReportError> {
     Ok(vec![Artifact::text("report.html", text(record)?)])
 }
 
-/// The record as a page of HTML: of what `record.json` holds of it, so that the run and whoever reads the file
-/// make the same page. An infinite z, of which the file has `null`, is unknown here, too.
+/// The record as a page of HTML.
 ///
 /// # Errors
 ///
 /// Where a plot cannot be drawn.
 pub fn text(record: &Record) -> Result<String, ReportError> {
-    page(&serde_json::from_str(&record_json::text(record)?)?)
-}
-
-fn page(record: &Record) -> Result<String, ReportError> {
     let plots = plots::all(record)?;
     let title = format!("Trueflight: {}", first::verdict(record).words());
     let body = html! {

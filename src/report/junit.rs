@@ -37,9 +37,8 @@ pub enum Inconclusive {
 pub fn text(record: &Record, inconclusive: Inconclusive) -> Result<String, ReportError> {
     let mut report = quick_junit::Report::new("trueflight");
     report.set_time(duration(record.timing.seconds));
-    for (i, case) in record.results.cases.iter().enumerate() {
-        let seconds = record.timing.rows.get(i).map_or(&[][..], Vec::as_slice);
-        report.add_test_suite(suite(record, case, seconds, inconclusive));
+    for case in &record.results.cases {
+        report.add_test_suite(suite(record, case, inconclusive));
     }
     if let Some(comparison) = &record.comparison {
         report.add_test_suite(changed(comparison));
@@ -49,12 +48,7 @@ pub fn text(record: &Record, inconclusive: Inconclusive) -> Result<String, Repor
     Ok(report.to_string()?.replacen(&skipped, "", 1))
 }
 
-fn suite(
-    record: &Record,
-    case: &CaseRecord,
-    seconds: &[Option<f64>],
-    inconclusive: Inconclusive,
-) -> TestSuite {
+fn suite(record: &Record, case: &CaseRecord, inconclusive: Inconclusive) -> TestSuite {
     let results = &record.results;
     let mut suite = TestSuite::new(&*case.name);
     for (name, value) in [
@@ -67,13 +61,12 @@ fn suite(
         suite.add_property((name, &*value));
     }
     let mut whole = Duration::ZERO;
-    for (i, row) in case.rows.iter().enumerate() {
-        let is_first = case.begins_experiment(i);
-        let time = seconds.get(i).copied().flatten().filter(|_| is_first);
+    for row in case.rows() {
+        let time = row.experiment.spent.seconds.filter(|_| row.is_first());
         let time = time.map_or(Duration::ZERO, duration);
         whole = whole.saturating_add(time);
-        let status = status(case, row, results.seed, inconclusive);
-        let mut test = TestCase::new(failures::experiment(case, row), status);
+        let status = status(row, results.seed, inconclusive);
+        let mut test = TestCase::new(row.name(), status);
         test.set_classname(&*case.name).set_time(time);
         suite.add_test_case(test);
     }
@@ -101,12 +94,12 @@ fn changed(comparison: &Comparison) -> TestSuite {
         let mut status = TestCaseStatus::non_success(NonSuccessKind::Failure);
         status.set_type("regression").set_message(&*change.what);
         status.set_description(format!("{}\nrepeat: {}\n", change.line(), change.command));
-        suite.add_test_case(TestCase::new(change.experiment, status));
+        suite.add_test_case(TestCase::new(change.experiment.as_str(), status));
     }
     suite
 }
 
-fn status(case: &CaseRecord, row: &Row, seed: u64, inconclusive: Inconclusive) -> TestCaseStatus {
+fn status(row: Row, seed: u64, inconclusive: Inconclusive) -> TestCaseStatus {
     let Some(verdict) = row.verdict.filter(|&verdict| verdict != Verdict::Pass) else {
         return TestCaseStatus::success();
     };
@@ -123,7 +116,7 @@ fn status(case: &CaseRecord, row: &Row, seed: u64, inconclusive: Inconclusive) -
     status.set_message(&*row.reason);
     if matches!(verdict, Verdict::Fail | Verdict::Inconclusive) {
         let details: Vec<String> =
-            failures::of_row(case, row, seed).iter().map(Failure::details).collect();
+            failures::of_row(row, seed).iter().map(Failure::details).collect();
         status.set_description(details.join("\n"));
     }
     status

@@ -54,7 +54,7 @@ fn section(text: &mut String, title: &str, failures: &[Failure]) {
     text.push_str("|---|---|---|---|---|\n");
     for failure in failures.iter().take(MOST) {
         let cells = [
-            failure.case.name.clone(),
+            failure.row.case.name.clone(),
             failure.experiment(),
             failure.check().to_owned(),
             failure.place(),
@@ -65,11 +65,12 @@ fn section(text: &mut String, title: &str, failures: &[Failure]) {
     more(text, failures.len());
     let mut told: Vec<Vec<String>> = Vec::new();
     for failure in failures.iter().take(MOST) {
-        let lines = likely::lines(failure.case, failure.row);
+        let lines = likely::lines(&failure.row);
         if lines.is_empty() || told.contains(&lines) {
             continue;
         }
-        let first = format!("{}: {}: {}", failure.case.name, failure.row.estimator, lines[0]);
+        let first =
+            format!("{}: {}: {}", failure.row.case.name, failure.row.experiment.label, lines[0]);
         let _ = writeln!(text, "\n{}\n", escaped(&first));
         for line in &lines[1..] {
             let item = line.strip_prefix("- ").unwrap_or(line);

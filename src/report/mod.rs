@@ -15,7 +15,6 @@ pub mod failures;
 pub mod html;
 pub mod judge;
 pub mod junit;
-pub mod labels;
 pub mod likely;
 pub mod markdown;
 pub mod plots;

@@ -1,13 +1,18 @@
 //! `record.json`: the whole record, for machines.
 //!
 //! One object: `schema` (the version of the form), `results` (the same for any number of threads on
-//! any machine), `timing`, and the `comparison` with a stored run or `null`. JSON has no infinite numbers: where one stands in the record, as in a
-//! variance without bound or in evidence beyond measure, the file has `null`, as for what is unknown.
+//! any machine), `timing`, and the `comparison` with a stored run or `null`. `results` is a tree: `cases`, each with its
+//! `experiments`, each with its `channels`. An experiment has its identity `id`, of `case`, `problem`, `estimator`,
+//! `sampling`, `control`, `swept` and `namesake`; `timing.experiments` has the times of each `id`. Unknown numbers are
+//! `null`; numbers that may be infinite are then the words `inf`, `-inf` or `nan`. Records of schema 1 are read, too.
+
+use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
+use crate::plan::ExperimentId;
 use crate::record::baseline::Comparison;
-use crate::record::{Record, Results, SCHEMA, Timing};
+use crate::record::{Record, Results, SCHEMA, Spent, Timing, version1};
 use crate::report::{Artifact, ReportError};
 
 /// The record as one JSON object.
@@ -19,12 +24,28 @@ pub fn render(record: &Record) -> Result<Vec<Artifact>, ReportError> {
     Ok(vec![Artifact::text("record.json", text(record)?)])
 }
 
-#[derive(Serialize)]
-struct Document<'a> {
+/// The document, with the results as a reference or as a value.
+#[derive(Serialize, Deserialize)]
+struct Document<R> {
     schema: u32,
-    results: &'a Results,
-    timing: &'a Timing,
-    comparison: Option<&'a Comparison>,
+    results: R,
+    timing: Times,
+    comparison: Option<Comparison>,
+}
+
+#[derive(Serialize, Deserialize)]
+struct Times {
+    #[serde(flatten)]
+    run: Timing,
+    experiments: Vec<Time>,
+}
+
+/// The time of an experiment.
+#[derive(Serialize, Deserialize)]
+struct Time {
+    id: ExperimentId,
+    seconds: Option<f64>,
+    reused: bool,
 }
 
 /// The record as JSON.
@@ -34,7 +55,13 @@ struct Document<'a> {
 /// Where the encoder gives up.
 pub fn text(record: &Record) -> Result<String, ReportError> {
     let Record { results, timing, comparison } = record;
-    let comparison = comparison.as_ref();
+    let experiments = results.cases.iter().flat_map(|case| &case.experiments);
+    let times = experiments.map(|experiment| {
+        let Spent { seconds, is_reused: reused } = experiment.spent;
+        Time { id: experiment.id.clone(), seconds, reused }
+    });
+    let timing = Times { run: timing.clone(), experiments: times.collect() };
+    let comparison = comparison.clone();
     let document = Document { schema: results.schema, results, timing, comparison };
     Ok(serde_json::to_string(&document)? + "\n")
 }
@@ -44,7 +71,7 @@ pub fn text(record: &Record) -> Result<String, ReportError> {
 #[non_exhaustive]
 pub enum UnreadableRecord {
     /// It is of another version of the form.
-    #[error("a record of form {found}, this program reads {SCHEMA}")]
+    #[error("a record of form {found}, this program reads 1 and {SCHEMA}")]
     Schema {
         /// Its form.
         found: u64,
@@ -54,12 +81,11 @@ pub enum UnreadableRecord {
     Broken(#[from] serde_json::Error),
 }
 
-/// The record that a text is of. What is `null` there for not being finite is NaN, evidence ∞, and unknown
-/// where a number may be.
+/// Reads a record of this version, or of version 1.
 ///
 /// # Errors
 ///
-/// It is another version's, or no record.
+/// It is of a later version, or no record.
 pub fn read(text: &[u8]) -> Result<Record, UnreadableRecord> {
     #[derive(Deserialize)]
     struct Form {
@@ -67,9 +93,24 @@ pub fn read(text: &[u8]) -> Result<Record, UnreadableRecord> {
     }
     // The form is asked first: what else is there depends on it.
     let Form { schema: found } = serde_json::from_slice(text)?;
-    if found == u64::from(SCHEMA) {
-        Ok(serde_json::from_slice(text)?)
-    } else {
-        Err(UnreadableRecord::Schema { found })
+    let document: Document<Results> = match found {
+        1 => serde_json::from_value(version1::upgraded(serde_json::from_slice(text)?))?,
+        _ if found == u64::from(SCHEMA) => serde_json::from_slice(text)?,
+        _ => return Err(UnreadableRecord::Schema { found }),
+    };
+    let Document { mut results, timing, comparison, .. } = document;
+    let times: BTreeMap<ExperimentId, Spent> = timing
+        .experiments
+        .into_iter()
+        .map(|Time { id, seconds, reused }| (id, Spent { seconds, is_reused: reused }))
+        .collect();
+    for case in &mut results.cases {
+        for experiment in &mut case.experiments {
+            experiment.spent = times.get(&experiment.id).copied().unwrap_or_default();
+        }
+        if found == 1 {
+            case.name_experiments();
+        }
     }
+    Ok(Record { results, timing: timing.run, comparison })
 }

@@ -46,9 +46,9 @@ const VARIANCE_AND_COST: [Quantity; 2] = [
     Quantity {
         head: "(b) Cost",
         title: "lookups per draw N",
-        measured: |row| row.lookups_per_draw,
-        deviation: |row| row.lookups_deviation,
-        predicted: |row| row.predicted_lookups,
+        measured: |row| row.experiment.lookups_per_draw,
+        deviation: |row| row.experiment.lookups_deviation,
+        predicted: |row| row.experiment.predicted_lookups,
         theory: |point| point.lookups,
     },
 ];
@@ -131,11 +131,11 @@ fn setup_note(case: &CaseRecord) -> String {
 /// The channels that a crowded plot leaves out, in words.
 fn left_out(case: &CaseRecord, series: &[Series]) -> Option<String> {
     let shown: Vec<&str> =
-        series.iter().flat_map(|one| &one.rows).map(|row| row.channel.as_str()).collect();
+        series.iter().flat_map(|one| &one.rows).map(|row| row.values.channel.as_str()).collect();
     let mut missing: Vec<&str> = Vec::new();
-    for row in case.rows.iter().filter(|row| !row.channel.is_empty()) {
+    for row in case.rows().filter(|row| !row.channel.is_empty()) {
         if !shown.contains(&&*row.channel) && !missing.contains(&&*row.channel) {
-            missing.push(&row.channel);
+            missing.push(&row.values.channel);
         }
     }
     let missing = missing.join("; ");
@@ -144,13 +144,13 @@ fn left_out(case: &CaseRecord, series: &[Series]) -> Option<String> {
 
 fn subtitle(case: &CaseRecord, seed: u64) -> String {
     let mut parts = vec![case.name.clone(), case.problem.clone(), case.medium.clone()];
-    let truths: Vec<f64> = case.rows.iter().filter_map(|row| row.truth).collect();
+    let truths: Vec<f64> = case.rows().filter_map(|row| row.truth).collect();
     if let [first, rest @ ..] = &truths[..]
         && rest.iter().all(|truth| truth == first)
     {
         parts.push(format!("truth {}", short(*first, 6)));
     }
-    let draws: Vec<u64> = case.rows.iter().filter_map(|row| row.draws).collect();
+    let draws: Vec<u64> = case.experiments.iter().filter_map(|one| one.draws).collect();
     if let (Some(&least), Some(&most)) = (draws.iter().min(), draws.iter().max()) {
         let to = if least < most { format!(" to {}", count(most)) } else { String::new() };
         parts.push(format!("{}{to} draws", count(least)));
@@ -167,7 +167,8 @@ fn place(index: usize, x: &Axis, y: Axis) -> Panel {
 }
 
 fn x_axis(sweep: &Sweep, series: &[Series]) -> Axis {
-    let swept = series.iter().flat_map(|one| one.rows.iter().filter_map(|row| row.swept));
+    let swept =
+        series.iter().flat_map(|one| one.rows.iter().filter_map(|row| row.experiment.swept()));
     let curves = sweep.curves.iter().flat_map(|curve| curve.points.iter().map(|point| point.x));
     // Estimators that are not swept stand at the right edge and need places of their own.
     let fixed = series.iter().filter(|one| one.is_fixed()).count() as f64;

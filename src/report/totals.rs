@@ -12,7 +12,7 @@ pub const NOT_NORMAL: &str = "(z): the draws are too few, or their tails too hea
 
 /// How many rows have each verdict, without those that none has.
 pub fn counts(cases: &[CaseRecord]) -> Vec<(Verdict, usize)> {
-    let rows = || cases.iter().flat_map(|case| &case.rows);
+    let rows = || cases.iter().flat_map(CaseRecord::rows);
     let number = |verdict| rows().filter(|row| row.verdict == Some(verdict)).count();
     let all = VERDICTS.map(|verdict| (verdict, number(verdict)));
     all.into_iter().filter(|&(_, number)| number > 0).collect()
@@ -26,10 +26,9 @@ pub fn words(case: &CaseRecord) -> String {
     if words.is_empty() { "no experiments".to_owned() } else { words.join(", ") }
 }
 
-/// How many draws a case took; the rows of one experiment share theirs.
+/// Number of draws that a case took.
 pub fn draws(case: &CaseRecord) -> String {
-    let own = case.rows.iter().enumerate().filter(|(i, _)| case.begins_experiment(*i));
-    count(own.filter_map(|(_, row)| row.drawn).sum())
+    count(case.experiments.iter().filter_map(|experiment| experiment.drawn).sum())
 }
 
 /// An entry of the e-BH list: `case: experiment: mean (ln E = 9.1)`.

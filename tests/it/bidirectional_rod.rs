@@ -219,12 +219,12 @@ fn draws_meet_means_variances_covariances_and_lookups() {
         for row in &found {
             let is_sound = !matches!(row.verdict, Some(Verdict::Fail | Verdict::Refused) | None);
             if !is_sound {
-                wrong.push(format!("{} {}: {}", row.estimator, row.channel, row.reason));
+                wrong.push(format!("{} {}: {}", row.experiment.label, row.channel, row.reason));
             }
-            let asked = |check: &str| row.findings.iter().any(|finding| finding.check == check);
-            assert!(asked("mean") && asked("variance"), "{} {}", row.estimator, row.channel);
+            let asked = |check: &str| row.findings().any(|finding| finding.check == check);
+            assert!(asked("mean") && asked("variance"), "{} {}", row.experiment.label, row.channel);
         }
-        let asked = |check: &str| found.iter().flat_map(|r| &r.findings).any(|f| f.check == check);
+        let asked = |check: &str| found.iter().flat_map(|r| r.findings()).any(|f| f.check == check);
         assert!(asked("lookups") && asked("covariance"));
         none(&wrong);
     }
@@ -236,7 +236,9 @@ fn shared_subpaths_have_the_same_shares_and_an_unknown_variance_of_their_sum() {
         { directional-mis = { subpaths = \"shared\", connection = \"ratio\" } }";
     for sensor in ["transmitted", "reflected"] {
         let found = rows(&rod(sensor, 3, 1, estimators), 300_000);
-        let of = |name: &str| found.iter().filter(|row| row.estimator == name).collect::<Vec<_>>();
+        let of = |name: &str| {
+            found.iter().filter(|row| row.experiment.label == name).collect::<Vec<_>>()
+        };
         let alone = of("full-mis (exact connection)");
         let shared = of("full-mis (exact connection, shared subpaths)");
         assert_eq!(alone.len(), shared.len());
@@ -244,17 +246,17 @@ fn shared_subpaths_have_the_same_shares_and_an_unknown_variance_of_their_sum() {
             let is_sum = shared.channel == "sum";
             assert_eq!(alone.truth, shared.truth);
             assert_eq!(shared.predicted_variance.is_none(), is_sum);
-            let asked = |check: &str| shared.findings.iter().any(|f| f.check == check);
+            let asked = |check: &str| shared.findings().any(|f| f.check == check);
             assert!(asked("mean") && !asked("covariance") && asked("variance") != is_sum);
         }
         // Two walks, not two for each of the techniques.
-        assert!(shared[0].lookups_per_draw < alone[0].lookups_per_draw);
+        assert!(shared[0].experiment.lookups_per_draw < alone[0].experiment.lookups_per_draw);
         let wrong = found
             .iter()
             .filter(|row| matches!(row.verdict, Some(Verdict::Fail | Verdict::Refused) | None));
         none(
             &wrong
-                .map(|row| format!("{} {}: {}", row.estimator, row.channel, row.reason))
+                .map(|row| format!("{} {}: {}", row.experiment.label, row.channel, row.reason))
                 .collect::<Vec<_>>(),
         );
     }

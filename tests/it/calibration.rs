@@ -14,21 +14,16 @@ const OUTSIDE: f64 = 1e-3;
 
 /// The last row of each experiment that was drawn and is not declared biased: the channels of one
 /// walk are not independent.
-fn experiments(record: &Record) -> Vec<(&str, &Row)> {
+fn experiments(record: &Record) -> Vec<(&str, Row<'_>)> {
     let mut found = Vec::new();
     for case in &record.results.cases {
-        for (i, row) in case.rows.iter().enumerate() {
-            let same = |next: &&Row| {
-                next.channel != row.channel
-                    && !row.channel.is_empty()
-                    && (&next.estimator, &next.control, next.swept)
-                        == (&row.estimator, &row.control, row.swept)
-            };
-            let last = case.rows.get(i + 1).as_ref().is_none_or(|next| !same(next));
+        for experiment in &case.experiments {
+            let rows = case.rows().filter(|row| row.experiment.id == experiment.id);
+            let Some(row) = rows.last() else { continue };
             // What a case declares biased is neither fair nor compared with theory.
             let biased = |finding: &Finding| finding.expects_bias;
             let drawn = row.verdict != Some(Verdict::Refused);
-            if last && drawn && !row.findings.iter().any(biased) {
+            if drawn && !row.findings().any(biased) {
                 found.push((case.name.as_str(), row));
             }
         }
@@ -38,7 +33,7 @@ fn experiments(record: &Record) -> Vec<(&str, &Row)> {
 
 /// Draws enough for the kurtosis of a draw, so that z-scores are near their limit law.
 fn adequate(row: &Row) -> bool {
-    let draws = row.draws.unwrap_or(0) as f64;
+    let draws = row.experiment.draws.unwrap_or(0) as f64;
     row.predicted_kurtosis.is_some_and(|kurtosis| draws >= 100.0 * kurtosis)
         && row.verdict != Some(Verdict::Underpowered)
 }
@@ -71,14 +66,19 @@ fn z_scores_of_all_cases_have_mean_square_one() {
     let scores = |z: fn(&Row) -> Option<f64>, wanted: fn(&Row) -> bool| {
         let rows = experiments.iter().filter(|(_, row)| wanted(row));
         let scores = rows.filter_map(|(case, row)| {
-            let name = format!("{case}, {} {} {:?}", row.estimator, row.control, row.swept);
+            let name = format!(
+                "{case}, {} {} {:?}",
+                row.experiment.label,
+                row.experiment.id.control,
+                row.experiment.swept()
+            );
             z(row).map(|z| (name, z))
         });
         scores.collect::<Vec<_>>()
     };
     let mut wrong = judge("means", &scores(|row| row.z_mean, adequate));
     wrong.extend(judge("variances", &scores(|row| row.z_variance, adequate)));
-    wrong.extend(judge("lookups", &scores(|row| row.z_lookups, |_| true)));
+    wrong.extend(judge("lookups", &scores(|row| row.experiment.z_lookups, |_| true)));
     none(&wrong);
 }
 

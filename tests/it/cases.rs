@@ -28,18 +28,18 @@ fn every_case_draws_and_none_is_refuted() {
 fn refuted(record: &Record, is_wanted: impl Fn(&str) -> bool) -> Vec<String> {
     let mut wrong = Vec::new();
     for case in record.results.cases.iter().filter(|case| is_wanted(&case.name)) {
-        for row in &case.rows {
+        for row in case.rows() {
             let drawn = row.mean.is_some_and(f64::is_finite);
             match row.verdict {
                 Some(Verdict::Fail) => {
-                    wrong.push(format!("{}, {}: {}", case.name, row.estimator, row.reason));
+                    wrong.push(format!("{}, {}: {}", case.name, row.experiment.label, row.reason));
                 }
                 Some(Verdict::Refused) if !row.reason.is_empty() => {}
                 Some(_) if drawn => {}
-                other => wrong.push(format!("{}, {}: {other:?}", case.name, row.estimator)),
+                other => wrong.push(format!("{}, {}: {other:?}", case.name, row.experiment.label)),
             }
         }
-        let refused = case.rows.iter().all(|row| row.verdict == Some(Verdict::Refused));
+        let refused = case.rows().all(|row| row.verdict == Some(Verdict::Refused));
         if refused {
             wrong.push(format!("{}: every experiment is refused", case.name));
         }

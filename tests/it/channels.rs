@@ -1,14 +1,15 @@
 //! What a prediction says of each channel, against numbers derived by hand.
 
-use crate::common::{case, differs, mistakes, none, options, predicted, row, rows, verdict};
+use crate::common::{
+    case, differs, mistakes, none, options, predicted, row, rows, rows_of, verdict,
+};
 use trueflight::media::{Control, Piecewise};
 use trueflight::plan::Plan;
+use trueflight::record::build;
 use trueflight::record::curves;
-use trueflight::record::verdict;
 use trueflight::record::{Row, Verdict};
 use trueflight::report::console::layout::{self, Pen};
 use trueflight::report::console::{self, View};
-use trueflight::report::failures::experiment;
 use trueflight::theory::product::Product;
 use trueflight::theory::rules::Weight;
 use trueflight::theory::{Mesh, Prediction, curve};
@@ -127,7 +128,7 @@ fn thick_media_are_drawn_in_units_of_their_own() {
         // The residual .1 is a difference of 100 and 99.9: 1e-14 of it is rounding of those.
         let found = number(row.predicted_variance);
         differences.extend(differs(&format!("V {name}"), found, variance, 1e-12));
-        let found = number(row.predicted_lookups);
+        let found = number(row.experiment.predicted_lookups);
         differences.extend(differs(&format!("N {name}"), found, lookups, 1e-12));
         assert_eq!(verdict(row), Verdict::Pass, "{name}: {}", row.reason);
         assert!((number(row.mean) - 1.0).abs() < 0.01, "{name}: {:?}", row.mean);
@@ -177,10 +178,10 @@ fn rod(more: &str) -> String {
     )
 }
 
-fn with_optima(text: &str) -> Vec<Row> {
+fn with_optima(text: &str) -> Vec<Row<'static>> {
     let cases = [case("test", text)];
-    let record = verdict::predicted_with_optima(&Plan::new(&cases, &options(1, 1000)));
-    record.results.cases.into_iter().flat_map(|case| case.rows).collect()
+    let record = build::predicted_with_optima(&Plan::new(&cases, &options(1, 1000)));
+    rows_of(record)
 }
 
 #[test]
@@ -194,10 +195,11 @@ fn every_channel_has_an_optimum_of_its_own() {
         let of: Vec<&Row> = rows.iter().filter(|row| row.channel == channel).collect();
         let merit = |row: &Row| row.predicted_fom.expect("a figure of merit");
         let best = of.iter().max_by(|a, b| merit(a).total_cmp(&merit(b))).expect("rows");
-        let at = best.sampling.expect("σ̂");
+        let at = best.experiment.sampling().expect("σ̂");
         assert!((at - sampling).abs() < 0.01, "{channel}: best of the sweep at {at}");
         for row in &of {
-            let [found, found_fom] = [row.best_sampling, row.best_fom].map(|x| x.expect("known"));
+            let [found, found_fom] =
+                [row.best_sampling(), row.best_fom()].map(|x| x.expect("known"));
             assert!((found - sampling).abs() < 6e-4, "{channel}: {found}");
             assert!((found_fom - fom).abs() < 6e-4, "{channel}: {found_fom}");
             assert!((found - at).abs() < 0.01 && found_fom >= merit(best), "{channel}: {found}");
@@ -205,7 +207,7 @@ fn every_channel_has_an_optimum_of_its_own() {
     }
     // It takes a hundred predictions, and is searched only where it is asked for.
     let bare = predicted(&rod("albedo = 0.7\nsampling.constant.value = 1"));
-    assert!(bare.iter().all(|row| row.best_sampling.is_none() && row.best_fom.is_none()));
+    assert!(bare.iter().all(|row| row.best_sampling().is_none() && row.best_fom().is_none()));
 }
 
 #[test]
@@ -215,7 +217,7 @@ fn an_optimum_at_the_edge_of_a_domain_is_inside() {
         "title = \"edge\"\n[problem.transmittance]\nmedium.constant.extinction = 0.5\n\
          span = [0, 4]\nsampling.constant.value = 1\nestimators = [{ woodcock = {} }]",
     );
-    let [best, fom] = [rows[0].best_sampling, rows[0].best_fom].map(|x| x.expect("known"));
+    let [best, fom] = [rows[0].best_sampling(), rows[0].best_fom()].map(|x| x.expect("known"));
     let t = (-2f64).exp();
     assert!((0.5..0.5 * (1.0 + 1e-5)).contains(&best), "{best}");
     assert!((fom * t * (1.0 - t).powi(2) - 1.0).abs() < 1e-5, "{fom}");
@@ -242,10 +244,10 @@ fn an_optimum_belongs_to_the_albedo_of_its_row() {
     for (albedo, of_albedo) in [0.2, 0.9].into_iter().zip(swept.chunks(2)) {
         let alone = with_optima(&rod(&format!("sampling.constant.value = 1\nalbedo = {albedo}")));
         for (row, alone) in of_albedo.iter().zip(&alone) {
-            assert_eq!(row.swept, Some(albedo));
-            assert!(row.best_sampling.is_some());
-            assert_eq!(row.best_sampling, alone.best_sampling, "{albedo} {}", row.channel);
-            assert_eq!(row.best_fom, alone.best_fom, "{albedo} {}", row.channel);
+            assert_eq!(row.experiment.swept(), Some(albedo));
+            assert!(row.best_sampling().is_some());
+            assert_eq!(row.best_sampling(), alone.best_sampling(), "{albedo} {}", row.channel);
+            assert_eq!(row.best_fom(), alone.best_fom(), "{albedo} {}", row.channel);
         }
     }
 }
@@ -253,7 +255,7 @@ fn an_optimum_belongs_to_the_albedo_of_its_row() {
 /// A table of theory, so many columns wide.
 fn table(text: &str, view: View, width: usize) -> String {
     let cases = [case("test", text)];
-    let record = verdict::predicted(&Plan::new(&cases, &options(1, 1000)));
+    let record = build::predicted(&Plan::new(&cases, &options(1, 1000)));
     let table = console::table(&record, view, Pen { width, colour: false });
     let widest = table.lines().map(layout::width).max().expect("lines");
     assert!(widest <= width, "{widest} > {width}:\n{table}");
@@ -296,9 +298,9 @@ fn values_of_one_sweep_are_printed_apart() {
     let shown = table(text, View::Predict, 100);
     assert!(shown.contains("(σ\u{302} 0.48639)") && shown.contains("(σ\u{302} 0.4864)"), "{shown}");
     let cases = [case("test", text)];
-    let record = verdict::planned(&Plan::new(&cases, &options(1, 1000)));
+    let record = build::planned(&Plan::new(&cases, &options(1, 1000)));
     let case = &record.results.cases[0];
-    let names: Vec<String> = case.rows.iter().map(|row| experiment(case, row)).collect();
+    let names: Vec<String> = case.rows().map(|row| row.name()).collect();
     for (name, label) in names.iter().zip(["0.48639", "0.4864"]) {
         assert_eq!(*name, format!("ratio, σ\u{302} {label}"));
     }

@@ -124,8 +124,8 @@ fn a_budget_of_draws_is_kept() {
     let output = check(&place, 0, &format!("cases --budget 100000 {FILES}"));
     assert_says(&said(&output), &["2 pass"]);
     let record: serde_json::Value = serde_json::from_str(&place.read("record.json")).expect("JSON");
-    let rows = record["results"]["cases"][0]["rows"].as_array().expect("rows").clone();
-    let drawn: u64 = rows.iter().filter_map(|row| row["drawn"].as_u64()).sum();
+    let all = record["results"]["cases"][0]["experiments"].as_array().expect("a list").clone();
+    let drawn: u64 = all.iter().filter_map(|one| one["drawn"].as_u64()).sum();
     assert!(drawn > 60_000 && drawn <= 100_000, "{drawn} draws");
     check(&place, 0, "cases --budget 5m");
 }

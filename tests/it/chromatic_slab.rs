@@ -10,8 +10,8 @@ const THREE_COLOURS: &str = include_str!("../../cases/chromatic-slab/three-colou
 
 const LIKE: &str = include_str!("../../cases/chromatic-slab/like-colours.toml");
 
-fn of<'a>(rows: &'a [Row], estimator: &str) -> Vec<&'a Row> {
-    rows.iter().filter(|row| row.estimator == estimator).collect()
+fn of<'a>(rows: &'a [Row<'static>], estimator: &str) -> Vec<&'a Row<'static>> {
+    rows.iter().filter(|row| row.experiment.label == estimator).collect()
 }
 
 fn near(found: Option<f64>, expected: Option<f64>, relative: f64) {
@@ -61,7 +61,7 @@ fn channels_that_differ_in_albedo_alone_are_a_slab_of_coloured_scatterers() {
     for (drawn, known) in drawn.iter().zip(&coloured) {
         assert_eq!((drawn.verdict, &drawn.channel), (Some(Verdict::Pass), &known.channel));
         near(drawn.truth, known.truth, 1e-12);
-        near(drawn.predicted_lookups, known.predicted_lookups, 1e-6);
+        near(drawn.experiment.predicted_lookups, known.experiment.predicted_lookups, 1e-6);
         near(drawn.variance, known.predicted_variance, 0.03);
     }
 }
@@ -84,10 +84,16 @@ fn bounds_of_walks_relative_to_one_walker_are_above_their_variances() {
     let drawn = rows(&chromatic, 800_000);
     assert_eq!(drawn.len(), 3 * 6);
     for (drawn, known) in drawn.iter().zip(&coloured) {
-        assert_eq!(drawn.verdict, Some(Verdict::Pass), "{}: {}", drawn.estimator, drawn.reason);
+        assert_eq!(
+            drawn.verdict,
+            Some(Verdict::Pass),
+            "{}: {}",
+            drawn.experiment.label,
+            drawn.reason
+        );
         near(drawn.truth, known.truth, 1e-12);
         // Null collisions are told apart from real ones here: the maximum then is another law.
-        if !drawn.estimator.contains("maximum") {
+        if !drawn.experiment.label.contains("maximum") {
             near(drawn.variance, known.predicted_variance, 0.03);
         }
     }
@@ -106,7 +112,7 @@ fn thin_ends_of_steep_atmospheres_have_a_bound() {
         sampling.constant.value = 1.6
         estimators = [{ hero = {} }, { spectral-tracking = {} }]";
     for row in predicted(text) {
-        assert_ne!(row.verdict, Some(Verdict::Refused), "{}: {}", row.estimator, row.reason);
+        assert_ne!(row.verdict, Some(Verdict::Refused), "{}: {}", row.experiment.label, row.reason);
     }
 }
 
@@ -164,7 +170,11 @@ fn draws_agree(draws: u64) {
         let rows = rows(text, draws);
         assert_eq!(rows.len(), 4 * 6);
         let wrong = rows.iter().filter(|row| row.verdict != Some(Verdict::Pass));
-        none(&wrong.map(|row| format!("{} {}", row.estimator, row.reason)).collect::<Vec<_>>());
+        none(
+            &wrong
+                .map(|row| format!("{} {}", row.experiment.label, row.reason))
+                .collect::<Vec<_>>(),
+        );
         let (alone, together) = (of(&rows, "independent"), of(&rows, "spectral-mis"));
         for (alone, together) in alone.iter().zip(together) {
             // Colour noise is what multiple importance sampling takes away.

@@ -89,7 +89,7 @@ fn estimator(what: &str) -> Option<&'static str> {
     })
 }
 
-fn predict(case: &str, estimator: &str) -> Row {
+fn predict(case: &str, estimator: &str) -> Row<'static> {
     predicted(&text(case, estimator)).remove(0)
 }
 
@@ -122,14 +122,14 @@ fn lookups_are_those_of_the_references() {
     for reference in references().iter().filter(|reference| reference.what == "cost") {
         for (what, value) in ["dt+nee-ratio", "ea-ratio"].into_iter().zip(&reference.value) {
             let row = predict(&reference.case, estimator(what).expect("an estimator"));
-            let found = row.predicted_lookups.expect("lookups");
+            let found = row.experiment.predicted_lookups.expect("lookups");
             assert!((found - value).abs() < reference.error, "{}, {what}: {found}", reference.case);
         }
         // Both in one draw, or one of them.
         let cost: f64 = reference.value.iter().sum();
         for (what, parts) in [("mis-two-sample", 1.0), ("mis-one-sample", 0.5)] {
             let row = predict(&reference.case, estimator(what).expect("an estimator"));
-            let found = row.predicted_lookups.expect("lookups");
+            let found = row.experiment.predicted_lookups.expect("lookups");
             let off = (found - parts * cost).abs();
             assert!(off < 2.0 * reference.error, "{}, {what}: {found}", reference.case);
         }

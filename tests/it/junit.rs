@@ -5,7 +5,9 @@ use std::collections::BTreeMap;
 
 use quick_xml::Reader;
 use quick_xml::events::{BytesStart, Event};
-use trueflight::record::{CaseRecord, Finding, Record, Results, Row, Timing, Verdict};
+use trueflight::record::{
+    CaseRecord, ChannelRecord, ExperimentRecord, Finding, Record, Results, Spent, Timing, Verdict,
+};
 use trueflight::report::junit::{self, Inconclusive};
 
 /// An element with its attributes, its children and its text.
@@ -128,7 +130,7 @@ fn assert_valid(xml: &str) -> Element {
     root
 }
 
-fn row(verdict: Verdict) -> Row {
+fn experiment((verdict, seconds): (Verdict, f64)) -> ExperimentRecord {
     let finding = Finding {
         check: "mean".into(),
         what: "the mean".into(),
@@ -142,37 +144,42 @@ fn row(verdict: Verdict) -> Row {
         verdict,
         reason: "off: \"<&>\" ]]> \u{1} \u{1b}[31m".into(),
     };
-    Row {
-        estimator: "ratio <&> \"σ\"".into(),
+    let channel = ChannelRecord {
         reason: finding.reason.clone(),
         verdict: Some(verdict),
-        stream: Some(verdict as u64),
         mean: Some(f64::NAN),
+        ..ChannelRecord::default()
+    };
+    ExperimentRecord {
+        label: "ratio <&> \"σ\"".into(),
+        stream: Some(verdict as u64),
         command: "trueflight run case --filter \"*:ratio\" --seed 7".into(),
         findings: vec![finding],
-        ..Row::default()
+        spent: Spent { seconds: Some(seconds), is_reused: false },
+        channels: vec![channel],
+        ..ExperimentRecord::default()
     }
 }
 
 fn record() -> Record {
     let all = [
-        Verdict::Pass,
-        Verdict::Fail,
-        Verdict::Inconclusive,
-        Verdict::Underpowered,
-        Verdict::Refused,
+        (Verdict::Pass, 1.5),
+        (Verdict::Fail, f64::NAN),
+        (Verdict::Inconclusive, f64::INFINITY),
+        (Verdict::Underpowered, -1.0),
+        (Verdict::Refused, 1e300),
     ];
-    let case = CaseRecord {
+    let mut case = CaseRecord {
         name: "a/b".into(),
         title: "<\"odd\" & 'odd'>".into(),
-        rows: all.map(row).to_vec(),
+        experiments: all.map(experiment).to_vec(),
         ..CaseRecord::default()
     };
+    case.name_experiments();
     let empty = CaseRecord { name: "empty".into(), ..CaseRecord::default() };
-    let times = [1.5, f64::NAN, f64::INFINITY, -1.0, 1e300].map(Some).to_vec();
     Record {
         results: Results {
-            schema: 1,
+            schema: 2,
             version: "0.1.0".into(),
             seed: 7,
             alpha: 1e-3,
@@ -182,13 +189,7 @@ fn record() -> Record {
             cut_by_budget: false,
             cases: vec![case, empty],
         },
-        timing: Timing {
-            threads: 2,
-            level: "avx2".into(),
-            seconds: 1234.5,
-            reused: vec![vec![false; times.len()]],
-            rows: vec![times],
-        },
+        timing: Timing { threads: 2, level: "avx2".into(), seconds: 1234.5 },
         comparison: None,
     }
 }

@@ -208,7 +208,7 @@ fn extremes(is_wanted: fn(usize) -> bool) -> usize {
                 for row in predicted(&text) {
                     let place = format!(
                         "{}: τ = {depth}, a = {albedo}, p_f = {forward}, {factor}",
-                        row.estimator
+                        row.experiment.label
                     );
                     if row.verdict == Some(Verdict::Refused) {
                         wrong.extend((row.reason.len() < 10).then_some(place));
@@ -217,9 +217,11 @@ fn extremes(is_wanted: fn(usize) -> bool) -> usize {
                     predictions += 1;
                     let truth = row.truth.unwrap_or(f64::NAN);
                     let variance = row.predicted_variance.unwrap_or(0.0);
-                    let lookups = row.predicted_lookups.unwrap_or(f64::NAN);
+                    let lookups = row.experiment.predicted_lookups.unwrap_or(f64::NAN);
                     let is_fine = truth > 0.0 && truth <= 1.0 && variance >= 0.0 && lookups >= 0.0;
-                    if !is_fine || (row.estimator == "unidirectional" && variance > 0.25 + 1e-12) {
+                    if !is_fine
+                        || (row.experiment.label == "unidirectional" && variance > 0.25 + 1e-12)
+                    {
                         wrong.push(format!("{place}: {truth:e}, {variance:e}, {lookups:e}"));
                     }
                 }

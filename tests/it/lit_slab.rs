@@ -351,8 +351,10 @@ fn extremes(is_wanted: fn(usize) -> bool) -> usize {
                         depth * factor
                     );
                     for row in predicted(&text) {
-                        let place =
-                            format!("{}: τ = {depth}, g = {g}, {light}, {factor}", row.estimator);
+                        let place = format!(
+                            "{}: τ = {depth}, g = {g}, {light}, {factor}",
+                            row.experiment.label
+                        );
                         if row.verdict == Some(Verdict::Refused) {
                             wrong.extend((row.reason.len() < 10).then_some(place));
                             continue;
@@ -360,11 +362,11 @@ fn extremes(is_wanted: fn(usize) -> bool) -> usize {
                         predictions += 1;
                         let truth = row.truth.unwrap_or(f64::NAN);
                         let variance = row.predicted_variance.unwrap_or(0.0);
-                        let lookups = row.predicted_lookups.unwrap_or(f64::NAN);
+                        let lookups = row.experiment.predicted_lookups.unwrap_or(f64::NAN);
                         let is_fine =
                             truth > 0.0 && truth <= 1.0 && variance >= 0.0 && lookups > 0.0;
                         let is_bit = (variance - truth * (1.0 - truth)).abs() < 1e-12;
-                        if !is_fine || (row.estimator == "unidirectional" && !is_bit) {
+                        if !is_fine || (row.experiment.label == "unidirectional" && !is_bit) {
                             wrong.push(format!("{place}: {truth:e}, {variance:e}, {lookups:e}"));
                         }
                     }

@@ -36,6 +36,7 @@ mod optical_depth;
 mod own_pages;
 mod packets;
 mod properties;
+mod records;
 mod render;
 mod render_files;
 mod rod;

@@ -167,7 +167,7 @@ fn the_central_ray_of_eq_21_has_the_variances_of_the_table() {
              {{ single = {{ rule = \"non-terminating\", albedo = 0.7 }} }}]"
         ));
         for (row, expected) in rows.iter().zip(variances) {
-            let what = format!("{} at {sampling}", row.estimator);
+            let what = format!("{} at {sampling}", row.experiment.label);
             match (row.predicted_variance, expected) {
                 // Half a unit of the last printed digit, relative to the smallest mantissa.
                 (Some(found), Some(expected)) => {
@@ -179,7 +179,7 @@ fn the_central_ray_of_eq_21_has_the_variances_of_the_table() {
         let double = row(&rows, "double");
         let found = double.predicted_kurtosis.expect("a kurtosis");
         assert!((found - kurtosis).abs() <= 0.05, "kurtosis at {sampling}: {found}");
-        let lookups = double.predicted_lookups.expect("lookups");
+        let lookups = double.experiment.predicted_lookups.expect("lookups");
         differences.extend(differs("lookups", lookups, 20.0 * sampling, 1e-14));
     }
     none(&differences);
@@ -219,10 +219,10 @@ fn next_flight_and_unidirectional_mis_have_their_check_values() {
     let pairs = rows.iter().zip(expected);
     let differences = pairs.filter_map(|(row, expected)| {
         let found = row.predicted_variance.expect("a variance");
-        differs(&row.estimator, found, expected, 2e-10)
+        differs(&row.experiment.label, found, expected, 2e-10)
     });
     none(&differences.collect::<Vec<_>>());
-    let lookups = rows.iter().map(|row| row.predicted_lookups.expect("lookups"));
+    let lookups = rows.iter().map(|row| row.experiment.predicted_lookups.expect("lookups"));
     assert!(lookups.into_iter().all(|lookups| (lookups - 3.0).abs() < 1e-14));
 }
 
@@ -269,7 +269,12 @@ fn a_walk_that_ends_at_collisions_has_closed_form_lookups_in_a_homogeneous_mediu
     let expected = [ended(1.0), ended(1.0), ended(2.5 * (1.0 - 0.6 / 0.84)), 5.0];
     let pairs = rows.iter().zip(expected);
     let differences = pairs.filter_map(|(row, expected)| {
-        differs(&row.estimator, row.predicted_lookups.expect("lookups"), expected, 1e-13)
+        differs(
+            &row.experiment.label,
+            row.experiment.predicted_lookups.expect("lookups"),
+            expected,
+            1e-13,
+        )
     });
     none(&differences.collect::<Vec<_>>());
 }

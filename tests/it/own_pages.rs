@@ -108,12 +108,12 @@ fn what_an_own_medium_hides_is_found() {
         let case = catalogue.read(&source(name, &text));
         let case = case.unwrap_or_else(|error| panic!("{}", error.in_full()));
         let record = judged(&[case], &options(3, 1_000_000));
-        for row in &record.results.cases[0].rows {
+        for row in record.results.cases[0].rows().collect::<Vec<_>>() {
             assert_eq!(
                 row.verdict,
                 Some(Verdict::Pass),
                 "{name} {}: {}",
-                row.estimator,
+                row.experiment.label,
                 row.reason
             );
         }

@@ -10,7 +10,7 @@ use trueflight::numeric::Span;
 use trueflight::plan::Plan;
 use trueflight::plan::Planned;
 use trueflight::record::Verdict;
-use trueflight::record::verdict;
+use trueflight::record::build;
 
 /// Runs a law on so many random inputs, the same in every run.
 fn always<S: Strategy>(
@@ -293,16 +293,16 @@ fn rods_and_slabs_are_predicted_or_refused() {
         );
         let Some(case) = reads_or_names_the_place(&text) else { return Ok(()) };
         let cases = [case];
-        let record = verdict::predicted(&Plan::new(&cases, &options(1, 1000)));
-        for row in &record.results.cases[0].rows {
+        let record = build::predicted(&Plan::new(&cases, &options(1, 1000)));
+        for row in record.results.cases[0].rows().collect::<Vec<_>>() {
             if row.verdict == Some(Verdict::Refused) {
-                check(row.reason.len() > 10, || format!("{}: no reason", row.estimator))?;
+                check(row.reason.len() > 10, || format!("{}: no reason", row.experiment.label))?;
                 continue;
             }
             let truth = row.truth.unwrap_or(f64::NAN);
-            check((0.0..=1.0).contains(&truth), || format!("{}: {truth:e}", row.estimator))?;
+            check((0.0..=1.0).contains(&truth), || format!("{}: {truth:e}", row.experiment.label))?;
             let variance = row.predicted_variance.unwrap_or(0.0);
-            check(!variance.is_nan(), || format!("{}: variance {variance}", row.estimator))?;
+            check(!variance.is_nan(), || format!("{}: variance {variance}", row.experiment.label))?;
         }
         Ok(())
     });

@@ -5,9 +5,9 @@ use super::common::{case, judged, mistakes, options, predicted};
 /// What is drawn and judged of a case, without its name: bit for bit.
 fn results(text: &str) -> String {
     let record = judged(&[case("test", text)], &options(1, 4000));
-    let rows: Vec<_> = record.results.cases.into_iter().flat_map(|case| case.rows).collect();
-    assert!(!rows.is_empty(), "{text}");
-    format!("{rows:?}")
+    let experiments = &record.results.cases[0].experiments;
+    assert!(!experiments.is_empty(), "{text}");
+    format!("{experiments:?}")
 }
 
 /// A transmittance case with some more lines.
@@ -134,12 +134,12 @@ fn a_sweep_takes_the_list_alone_and_scales_short_forms() {
     let text =
         transmittance(&format!("medium = 0.5\nsampling = 2\nsweep.density = [1, 2]\n{rest}"));
     let rows = predicted(&text);
-    let told: Vec<_> = rows.iter().map(|row| (row.truth, row.sampling)).collect();
+    let told: Vec<_> = rows.iter().map(|row| (row.truth, row.experiment.sampling())).collect();
     assert_eq!(told.len(), 4);
     for (row, factor) in rows.iter().zip([1.0, 2.0, 1.0, 2.0]) {
         let truth = row.truth.expect("a truth");
         assert!((truth / (-factor * 0.5 * 2.0_f64).exp() - 1.0).abs() < 1e-12, "{told:?}");
-        assert_eq!(row.sampling, Some(2.0 * factor), "{told:?}");
+        assert_eq!(row.experiment.sampling(), Some(2.0 * factor), "{told:?}");
     }
 }
 
@@ -161,8 +161,9 @@ fn channels_may_be_listed_by_numbers() {
     assert_eq!(results(&frame("[0.5, 1]", "[0.75, 1.25]")), results(&long));
     // At c = 0 both channels are grey: their mean.
     let rows = predicted(&(frame("[0.5, 1]", "[0.75, 1.25]") + "sweep.contrast = [0, 1]\n"));
-    let grey =
-        rows.iter().filter(|row| row.swept == Some(0.0) && row.channel.starts_with("channel"));
+    let grey = rows
+        .iter()
+        .filter(|row| row.experiment.swept() == Some(0.0) && row.channel.starts_with("channel"));
     let truths: Vec<f64> = grey.filter_map(|row| row.truth).collect();
     assert!(!truths.is_empty());
     assert!(truths.iter().all(|truth| (truth / (-0.75 * 2.0_f64).exp() - 1.0).abs() < 1e-12));

@@ -269,12 +269,16 @@ fn a_sampling_extinction_is_not_used_where_the_camera_is_exact() {
         let own =
             of(&format!("{{ {name} = {{ camera = \"exact\", sampling.constant.value = 1.5 }} }}"));
         assert_eq!((bare.len(), own.len()), (1, 1), "{name}: drawn once");
-        assert_eq!((own[0].sampling, own[0].sampling_kind.as_str()), (None, ""), "{name}");
+        assert_eq!(
+            (own[0].experiment.sampling(), own[0].experiment.id.sampling.kind.as_str()),
+            (None, ""),
+            "{name}"
+        );
         assert_eq!(own[0].predicted_variance, bare[0].predicted_variance, "{name}");
         // With another camera it is its own σ̂, which the sweep leaves alone.
         let ratio =
             of(&format!("{{ {name} = {{ camera = \"ratio\", sampling.constant.value = 1.5 }} }}"));
-        assert_eq!((ratio.len(), ratio[0].sampling), (1, Some(1.5)), "{name}");
+        assert_eq!((ratio.len(), ratio[0].experiment.sampling()), (1, Some(1.5)), "{name}");
     }
     // What is written there is read all the same.
     let wrong = mistakes(
@@ -309,6 +313,6 @@ fn lookups_of_tight_ratio_tracking_are_predicted() {
             { source-delta-mis = { camera = \"ratio\", shadow.ratio.sampling = 1.2 } },
         ]";
     for row in rows(text, 200_000) {
-        assert_eq!(row.verdict, Some(Verdict::Pass), "{}: {}", row.estimator, row.reason);
+        assert_eq!(row.verdict, Some(Verdict::Pass), "{}: {}", row.experiment.label, row.reason);
     }
 }

@@ -10,7 +10,7 @@ use trueflight::draw::store::{Header, Store};
 use trueflight::estimators::DrawBuffer;
 use trueflight::plan::Plan;
 use trueflight::record::Verdict;
-use trueflight::record::verdict;
+use trueflight::record::build;
 
 /// The first draws of the first experiment of a case, from the same streams whatever its name.
 fn first_draws(text: &str) -> (DrawBuffer, f64) {
@@ -96,10 +96,13 @@ fn a_residual_of_zero_is_answered_without_collisions() {
     );
     let cases = [case("zero", &text)];
     let plan = Plan::new(&cases, &options(1, 1_000_000));
-    let record = verdict::judged(&plan, &run::draw(&plan, &|_| {}), 0.0);
-    let row = &record.results.cases[0].rows[0];
-    assert_eq!((row.skipped, row.draws, row.drawn), (Some(1.0), Some(8), Some(8)));
-    assert_eq!((row.lookups_per_draw, row.variance), (Some(0.0), Some(0.0)));
+    let record = build::judged(&plan, &run::draw(&plan, &|_| {}), 0.0);
+    let row = record.results.cases[0].rows().collect::<Vec<_>>()[0];
+    assert_eq!(
+        (row.experiment.skipped, row.experiment.draws, row.experiment.drawn),
+        (Some(1.0), Some(8), Some(8))
+    );
+    assert_eq!((row.experiment.lookups_per_draw, row.variance), (Some(0.0), Some(0.0)));
     assert!((row.mean.expect("drawn") / row.truth.expect("known") - 1.0).abs() < 1e-14);
     assert_eq!(row.verdict.map(Verdict::word), Some("pass"));
 }
@@ -139,7 +142,7 @@ fn what_has_not_changed_is_reused_and_no_number_changes() {
     let second = run::draw_with(&plan, &read, &|_| panic!("nothing is drawn"));
     assert!(second.cases[0].iter().all(|drawn| drawn.is_reused));
     let json = |draws| {
-        let record = verdict::judged(&plan, draws, 0.0);
+        let record = build::judged(&plan, draws, 0.0);
         serde_json::to_string(&record.results).expect("encodes")
     };
     assert_eq!(json(&first), json(&second));

@@ -228,7 +228,7 @@ fn means_of_all_shipped_cases_are_off_by_their_standard_errors() {
     let cases = shipped_record().results.cases.iter();
     let mut squares = Vec::new();
     for case in cases.filter(|case| is_space(&case.name)) {
-        for row in &case.rows {
+        for row in case.rows() {
             // By their own standard error: most of these variances theory does not know.
             let (Some(mean), Some(error), Some(truth)) = (row.mean, row.standard_error, row.truth)
             else {
@@ -296,7 +296,7 @@ fn rays_that_are_not_walked_need_not_be_given() {
             assert_ne!(b.verdict, Some(Verdict::Refused), "{problem}: {}", b.reason);
             // The same to the bit: the ray is no part of a draw.
             let of = |row: &trueflight::record::Row| {
-                (row.truth, row.mean, row.variance, row.lookups_per_draw)
+                (row.truth, row.mean, row.variance, row.experiment.lookups_per_draw)
             };
             assert_eq!(of(a), of(b), "{problem} {}", a.channel);
         }

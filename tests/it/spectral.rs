@@ -34,9 +34,10 @@ const TRACKERS: [(&str, &str, &str); 10] = [
 ];
 
 /// The channels of an estimator, the luminance last.
-fn of<'a>(rows: &'a [Row], estimator: &str, sampling: &str) -> Vec<&'a Row> {
+fn of<'a>(rows: &'a [Row<'static>], estimator: &str, sampling: &str) -> Vec<&'a Row<'static>> {
     let is_asked = |row: &&Row| {
-        row.estimator == estimator && (sampling.is_empty() || row.sampling_kind == sampling)
+        row.experiment.label == estimator
+            && (sampling.is_empty() || row.experiment.id.sampling.kind == sampling)
     };
     rows.iter().filter(is_asked).collect()
 }
@@ -72,7 +73,7 @@ fn moments_and_lookups_are_those_of_the_references() {
             rows[..value.len()].iter().map(|row| row.predicted_variance.expect("known")).collect()
         } else {
             let last = rows.last().expect("the luminance");
-            let (variance, lookups) = (last.predicted_variance, last.predicted_lookups);
+            let (variance, lookups) = (last.predicted_variance, last.experiment.predicted_lookups);
             let (variance, lookups) = (variance.expect("known"), lookups.expect("known"));
             vec![variance, lookups, variance * lookups]
         };
@@ -185,7 +186,7 @@ struct RodParams {
 }
 
 /// A rod of that optical length, the same whatever its fields.
-fn rod(length: &str, albedos: &[f64], forward: &str) -> Vec<Row> {
+fn rod(length: &str, albedos: &[f64], forward: &str) -> Vec<Row<'static>> {
     predicted(&format!(
         "title = \"rod\"\n[problem.spectral-rod]\nmedium.constant = {{ extinction = 0.5 }}\nspan = [0, {}]\n\
          albedos = {albedos:?}\nforward = {forward}\nsampling.constant = {{ value = 0.8 }}\nestimators = [\n\
@@ -229,7 +230,7 @@ fn rods_of_coloured_scatterers_have_the_variances_of_the_references() {
         }
         let rows = rod(&parts[2][1..], albedos, &forward.to_string());
         let of = |estimator: &str, channel: &str| {
-            let is_asked = |row: &&Row| row.estimator == estimator && row.channel == channel;
+            let is_asked = |row: &&Row| row.experiment.label == estimator && row.channel == channel;
             rows.iter().find(is_asked)
         };
         for (channel, expected) in value.iter().enumerate() {
@@ -262,7 +263,7 @@ fn beyond_the_critical_length_spectral_tracking_is_refused_and_multiple_importan
         reasons[0].contains("E[X²] of channel 1 is infinite from optical length 1.570796 on"),
         "{reasons:?}"
     );
-    let fine = rows.iter().filter(|row| row.estimator == "spectral-mis");
+    let fine = rows.iter().filter(|row| row.experiment.label == "spectral-mis");
     assert!(
         fine.clone().count() == 3 && fine.clone().all(|row| row.reason.is_empty()),
         "{reasons:?}"
@@ -336,7 +337,7 @@ fn slabs_of_coloured_scatterers_have_the_variances_of_the_references() {
             _ => "spectral-mis",
         };
         if value.contains(&-1.0) {
-            let row = rows.iter().find(|row| row.estimator == estimator).expect("a row");
+            let row = rows.iter().find(|row| row.experiment.label == estimator).expect("a row");
             let needed = "E[X²] of channel 1 is infinite from the albedo 1.4074";
             assert!(row.reason.contains(needed), "{}", row.reason);
             count += 1;
@@ -344,7 +345,7 @@ fn slabs_of_coloured_scatterers_have_the_variances_of_the_references() {
         }
         for (channel, expected) in value.iter().enumerate() {
             let name = format!("transmittance, channel {}", channel + 1);
-            let is_asked = |row: &&Row| row.estimator == estimator && row.channel == name;
+            let is_asked = |row: &&Row| row.experiment.label == estimator && row.channel == name;
             let row = rows.iter().find(is_asked).expect("a row");
             let found = if parts[3] == "mean" { row.truth } else { row.predicted_variance };
             let off = (found.expect("known") - expected).abs();
@@ -368,7 +369,7 @@ fn slabs_of_coloured_scatterers_are_drawn_as_predicted() {
     // Of other phase functions the variance of multiple importance sampling is that of pilots.
     let sharp = more.replace("isotropic = {}", "henyey-greenstein = { g = 0.6 }");
     for row in rows(&slab(0.6, 0.5, &[0.6, 0.5, 0.4], &sharp), 800_000) {
-        assert_eq!(row.verdict, Some(Verdict::Pass), "{}: {}", row.estimator, row.reason);
+        assert_eq!(row.verdict, Some(Verdict::Pass), "{}: {}", row.experiment.label, row.reason);
     }
 }
 

@@ -15,14 +15,20 @@ fn every_channel_is_as_bright_as_the_walls() {
         let rows = rows(text, 400_000);
         for row in &rows {
             assert_eq!(row.truth, Some(1.0));
-            assert_eq!(row.verdict, Some(Verdict::Pass), "{}: {}", row.estimator, row.reason);
+            assert_eq!(
+                row.verdict,
+                Some(Verdict::Pass),
+                "{}: {}",
+                row.experiment.label,
+                row.reason
+            );
         }
-        let of_balance = rows.iter().filter(|row| row.estimator.starts_with("spectral-mis"));
+        let of_balance = rows.iter().filter(|row| row.experiment.label.starts_with("spectral-mis"));
         let heroes = (text.matches("{ spectral-mis").count(), channels);
         assert_eq!(of_balance.clone().count(), heroes.0 * usize::from(heroes.1));
         // The bound of theory, 1/w − 1, is never reached: all channels score something in most walks.
         for row in of_balance {
-            let weights: &[f64] = match row.estimator.as_str() {
+            let weights: &[f64] = match row.experiment.label.as_str() {
                 "spectral-mis" => &[1.0 / f64::from(channels); 3],
                 "spectral-mis (hero by luminance)" => &[0.2126, 0.7152, 0.0722],
                 "spectral-mis (hero 0.8 0.2)" => &[0.8, 0.2],
@@ -30,7 +36,7 @@ fn every_channel_is_as_bright_as_the_walls() {
             };
             let channel: usize = row.channel["channel ".len()..].parse().expect("its number");
             let (spread, bound) = (row.variance.expect("drawn"), 1.0 / weights[channel - 1] - 1.0);
-            assert!(spread < 0.85 * bound, "{}: {spread} of {bound}", row.estimator);
+            assert!(spread < 0.85 * bound, "{}: {spread} of {bound}", row.experiment.label);
         }
     }
 }
@@ -42,7 +48,11 @@ fn one_channel_a_draw_costs_what_its_chance_says() {
     let rows = predicted(&text);
     for (row, weight) in rows.iter().zip([0.2126, 0.7152, 0.0722]) {
         let variance = row.predicted_variance.expect("known");
-        assert!((variance - (1.0 / weight - 1.0)).abs() < 1e-12 / weight, "{}", row.estimator);
+        assert!(
+            (variance - (1.0 / weight - 1.0)).abs() < 1e-12 / weight,
+            "{}",
+            row.experiment.label
+        );
     }
 }
 
@@ -52,10 +62,10 @@ fn walks_relative_to_one_walker_find_the_walls() {
     let rows = rows(LIKE, 400_000);
     assert_eq!(rows.len(), 7 * 3);
     for row in &rows {
-        assert_eq!(row.verdict, Some(Verdict::Pass), "{}: {}", row.estimator, row.reason);
+        assert_eq!(row.verdict, Some(Verdict::Pass), "{}: {}", row.experiment.label, row.reason);
     }
     let spread = |estimator: &str| {
-        let of = rows.iter().filter(|row| row.estimator == estimator);
+        let of = rows.iter().filter(|row| row.experiment.label == estimator);
         of.map(|row| row.variance.expect("drawn")).fold(0.0, f64::max)
     };
     // Alike as the colours are, weights spread; the balance heuristic bounds them.
@@ -152,7 +162,7 @@ fn one_channel_alone_is_certain() {
         sampling.constant.value = 1.5
         estimators = [{ independent = {} }, { spectral-mis = {} }, { hero = {} }, { spectral-tracking = {} }]";
     for row in rows(text, 20_000) {
-        assert_eq!(row.verdict, Some(Verdict::Pass), "{}: {}", row.estimator, row.reason);
+        assert_eq!(row.verdict, Some(Verdict::Pass), "{}: {}", row.experiment.label, row.reason);
     }
 }
 
@@ -193,7 +203,7 @@ fn mistakes_and_what_is_out_of_reach_are_told() {
         assert!(said.contains(words), "{words}:\n{said}");
     }
     let low = predicted(&BALL.replacen("constant.value = 0.8", "constant.value = 0.7", 1));
-    let row = low.iter().find(|row| row.estimator == "spectral-mis").expect("a row");
+    let row = low.iter().find(|row| row.experiment.label == "spectral-mis").expect("a row");
     let words = "σ̂ = 0.700000 and σ_t is bounded by 0.800000 in channel 2";
     assert!(row.reason.contains(words), "{}", row.reason);
 }

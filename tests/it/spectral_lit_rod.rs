@@ -27,8 +27,8 @@ fn one_medium(field: &str, length: f64, albedos: &[f64], forward: &[f64], majora
 }
 
 /// The channels of an estimator.
-fn of<'a>(rows: &'a [Row], estimator: &str) -> Vec<&'a Row> {
-    rows.iter().filter(|row| row.estimator.starts_with(estimator)).collect()
+fn of<'a>(rows: &'a [Row<'static>], estimator: &str) -> Vec<&'a Row<'static>> {
+    rows.iter().filter(|row| row.experiment.label.starts_with(estimator)).collect()
 }
 
 fn variances(rows: &[&Row]) -> Vec<f64> {
@@ -75,7 +75,8 @@ fn one_channel_is_the_lit_rod_of_the_references() {
             let off = if what == "mean" {
                 row.truth.expect("a truth") - value[0]
             } else {
-                let lookups = row.predicted_lookups.expect("lookups") - value[1] - value[2];
+                let lookups =
+                    row.experiment.predicted_lookups.expect("lookups") - value[1] - value[2];
                 assert!(lookups.abs() < 2.0 * error, "{what}: {lookups:e}");
                 row.predicted_variance.expect("a variance") - value[0]
             };
@@ -189,7 +190,7 @@ fn forward_rods_have_the_variances_of_the_references() {
         };
         let asked = of(&rows, name);
         assert_eq!(asked.len(), 3);
-        let lookups = asked[0].predicted_lookups.expect("known");
+        let lookups = asked[0].experiment.predicted_lookups.expect("known");
         for (found, expected) in variances(&asked).into_iter().chain([lookups]).zip(&value) {
             assert!((found - expected).abs() <= error, "{id}: {found} for {expected}");
             count += 1;
@@ -256,9 +257,9 @@ fn variances_are_below_their_bounds() {
 fn failing(rows: &[Row]) -> Vec<String> {
     let mut wrong = Vec::new();
     for row in rows {
-        let asked = |check: &str| row.findings.iter().any(|finding| finding.check == check);
+        let asked = |check: &str| row.findings().any(|finding| finding.check == check);
         if row.verdict != Some(Verdict::Pass) || !asked("mean") || !asked("lookups") {
-            wrong.push(format!("{} {}: {}", row.estimator, row.channel, row.reason));
+            wrong.push(format!("{} {}: {}", row.experiment.label, row.channel, row.reason));
         }
     }
     wrong
@@ -274,7 +275,7 @@ fn mean_squares(rows: &[Row]) -> [(f64, usize); 3] {
     [
         mean(rows.iter().filter_map(|row| row.z_mean.or_else(|| own(row))).collect()),
         mean(rows.iter().filter_map(|row| row.z_variance).collect()),
-        mean(rows.iter().filter(first).filter_map(|row| row.z_lookups).collect()),
+        mean(rows.iter().filter(first).filter_map(|row| row.experiment.z_lookups).collect()),
     ]
 }
 

@@ -12,7 +12,7 @@ const BALL: &str = include_str!("../cases/spectral-single-scattering/known-bugs.
 const WITHOUT: &str = include_str!("../../cases/spectral-single-scattering/without-mis.toml");
 
 /// Rows of [`BALL`], drawn once for all tests.
-static DRAWN: LazyLock<Vec<Row>> = LazyLock::new(|| rows(BALL, 800_000));
+static DRAWN: LazyLock<Vec<Row<'static>>> = LazyLock::new(|| rows(BALL, 800_000));
 
 /// The second channel of [`BALL`] by itself.
 const SECOND: &str = "title = \"green\"
@@ -27,15 +27,15 @@ const SECOND: &str = "title = \"green\"
       { delta-tracking = { absorption = \"analog\", shadow.ratio.sampling = 1, sampling.constant.value = 1 } },
     ]";
 
-fn second(rows: &[Row], estimator: &str) -> Row {
-    let is_it = |row: &&Row| row.estimator == estimator && row.channel == "channel 2";
+fn second(rows: &[Row<'static>], estimator: &str) -> Row<'static> {
+    let is_it = |row: &&Row| row.experiment.label == estimator && row.channel == "channel 2";
     rows.iter().find(is_it).expect("a row").clone()
 }
 
 #[test]
 fn every_estimator_finds_the_answer_of_each_channel() {
     for row in DRAWN.iter() {
-        assert_eq!(row.verdict, Some(Verdict::Pass), "{}: {}", row.estimator, row.reason);
+        assert_eq!(row.verdict, Some(Verdict::Pass), "{}: {}", row.experiment.label, row.reason);
     }
 }
 
@@ -59,7 +59,7 @@ fn colour_noise_is_gone_for_the_same_lookups() {
     for shadow in ["exact", "ratio"] {
         let independent = second(&DRAWN, &format!("independent ({shadow} shadow)"));
         let balanced = second(&DRAWN, &format!("spectral-mis ({shadow} shadow)"));
-        assert_eq!(independent.predicted_lookups, balanced.predicted_lookups);
+        assert_eq!(independent.experiment.predicted_lookups, balanced.experiment.predicted_lookups);
         let (one, all) = (independent.variance.expect("drawn"), balanced.variance.expect("drawn"));
         assert!(all < 0.5 * one, "{shadow}: {all} and {one}");
     }
@@ -72,11 +72,13 @@ fn walks_relative_to_one_walker_agree_with_theory() {
     let rows = rows(WITHOUT, 800_000);
     assert_eq!(rows.len(), 7 * 3);
     for row in &rows {
-        assert_eq!(row.verdict, Some(Verdict::Pass), "{}: {}", row.estimator, row.reason);
-        let is_bounded = row.estimator.contains("mis") || row.estimator.contains("history");
-        assert_eq!(row.predicted_variance.is_none(), is_bounded, "{}", row.estimator);
+        assert_eq!(row.verdict, Some(Verdict::Pass), "{}: {}", row.experiment.label, row.reason);
+        let is_bounded =
+            row.experiment.label.contains("mis") || row.experiment.label.contains("history");
+        assert_eq!(row.predicted_variance.is_none(), is_bounded, "{}", row.experiment.label);
     }
-    let lookups = |estimator: &str| second(&rows, estimator).predicted_lookups.expect("known");
+    let lookups =
+        |estimator: &str| second(&rows, estimator).experiment.predicted_lookups.expect("known");
     assert!(lookups("spectral-tracking (exact shadow, maximum)") < lookups("hero (exact shadow)"));
 }
 
@@ -97,10 +99,11 @@ fn one_channel_is_delta_tracking() {
     for (row, number) in predicted(text).iter().zip([0, 1, 0, 1]) {
         let own = &alone[number];
         assert_eq!(row.truth, own.truth);
-        let lookups = [row.predicted_lookups, own.predicted_lookups].map(|x| x.expect("known"));
+        let lookups = [row.experiment.predicted_lookups, own.experiment.predicted_lookups]
+            .map(|x| x.expect("known"));
         let variance = [row.predicted_variance, own.predicted_variance].map(|x| x.expect("known"));
         for [found, expected] in [lookups, variance] {
-            assert!((found / expected - 1.0).abs() < 1e-10, "{}: {found}", row.estimator);
+            assert!((found / expected - 1.0).abs() < 1e-10, "{}: {found}", row.experiment.label);
         }
     }
 }
@@ -175,7 +178,10 @@ fn mistakes_and_what_is_out_of_reach_are_told() {
         assert!(reasons.iter().any(|reason| reason.contains(words)), "{words}: {reasons:?}");
     }
     let low = predicted(&BALL.replacen("constant.value = 1 }", "constant.value = 0.7 }", 1));
-    let row = low.iter().find(|row| row.estimator == "spectral-mis (exact shadow)").expect("a row");
+    let row = low
+        .iter()
+        .find(|row| row.experiment.label == "spectral-mis (exact shadow)")
+        .expect("a row");
     let words = "σ̂ = 0.700000 and σ_t = 0.800000 in channel 2";
     assert!(row.reason.contains(words), "{}", row.reason);
 }

@@ -180,7 +180,7 @@ fn draws_meet_the_reference_values() {
         for reference in references(light) {
             for &at in &reference.at {
                 for row in rows(&text_of(&reference, at, ALL), 60_000) {
-                    let estimator = &row.estimator;
+                    let estimator = &row.experiment.label;
                     match row.verdict {
                         Some(Verdict::Fail | Verdict::Refused) | None => {
                             wrong.push(format!("{light} {at}, {estimator}: {}", row.reason));
@@ -222,11 +222,11 @@ fn bounds_on_variances_hold_and_are_sharp_for_walks_of_weight_one() {
                 })
                 .collect();
             let record = judged(&case, &options(1, 400_000));
-            for (row, bound) in record.results.cases[0].rows.iter().zip(&bounds) {
+            for (row, bound) in record.results.cases[0].rows().zip(&bounds) {
                 let ratio = row.variance.expect("drawn") / bound;
-                let name = format!("{light} {}, {}: {ratio}", reference.ball, row.estimator);
+                let name = format!("{light} {}, {}: {ratio}", reference.ball, row.experiment.label);
                 assert!(ratio < 1.03, "{name}");
-                if row.estimator.contains("delta") {
+                if row.experiment.label.contains("delta") {
                     assert!(ratio > 0.97, "{name}");
                 }
             }

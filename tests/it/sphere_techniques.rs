@@ -4,7 +4,7 @@ use std::cell::RefCell;
 use std::path::Path;
 use std::sync::LazyLock;
 
-use crate::common::{case, mistakes, none, options, predicted, rows, source};
+use crate::common::{case, mistakes, none, options, predicted, rows, rows_of, source};
 use trueflight::catalogue::Settings;
 use trueflight::draw::run;
 use trueflight::estimators::DrawBuffer;
@@ -15,7 +15,7 @@ use trueflight::media::{Body, Majorants};
 use trueflight::plan::Plan;
 use trueflight::plan::Planned;
 use trueflight::problems::{Problem, Sphere};
-use trueflight::record::verdict;
+use trueflight::record::build;
 use trueflight::record::{Row, Verdict};
 use trueflight::rng::Address;
 use trueflight::theory::lit_rod::Densities;
@@ -79,13 +79,13 @@ fn drawn(scenes: &[[&str; 3]], draws: u64) -> (Vec<String>, Vec<f64>) {
 }
 
 /// What is wrong with some rows, and z² of the means.
-fn judge<'a>(rows: impl Iterator<Item = ([&'a str; 3], Row)>) -> (Vec<String>, Vec<f64>) {
+fn judge<'a>(rows: impl Iterator<Item = ([&'a str; 3], Row<'a>)>) -> (Vec<String>, Vec<f64>) {
     let (mut wrong, mut squares) = (Vec::new(), Vec::new());
     for (scene, row) in rows {
         let z = z(&row);
         let is_wrong = matches!(row.verdict, Some(Verdict::Fail | Verdict::Refused) | None);
         if is_wrong || z.abs() > 4.5 {
-            wrong.push(format!("{scene:?} {}: z = {z:.2}, {}", row.estimator, row.reason));
+            wrong.push(format!("{scene:?} {}: z = {z:.2}, {}", row.experiment.label, row.reason));
         }
         squares.push(z * z);
     }
@@ -93,15 +93,15 @@ fn judge<'a>(rows: impl Iterator<Item = ([&'a str; 3], Row)>) -> (Vec<String>, V
 }
 
 /// A row of a scene, and what theory says of it.
-type Known = ([&'static str; 3], Row, Channel);
+type Known = ([&'static str; 3], Row<'static>, Channel);
 
 /// 200,000 draws of all pages in all scenes, made once.
 static DRAWN: LazyLock<Vec<Known>> = LazyLock::new(|| {
     let of = |scene: [&'static str; 3]| {
         let case = [case("bounds", &text(scene, ALL))];
         let plan = Plan::new(&case, &options(1, 200_000));
-        let mut record = verdict::judged(&plan, &run::draw(&plan, &|_| {}), 0.0);
-        let rows = std::mem::take(&mut record.results.cases[0].rows);
+        let record = build::judged(&plan, &run::draw(&plan, &|_| {}), 0.0);
+        let rows = rows_of(record);
         let channel = |planned: &Planned| {
             let ready = planned.outcome.as_ref().unwrap_or_else(|r| panic!("{r}"));
             ready.prediction.channels[0].clone()
@@ -137,14 +137,14 @@ fn bounds_on_variances_hold() {
     let mut bounded = 0;
     for (scene, row, channel) in DRAWN.iter() {
         let Some(most) = channel.most_variance else {
-            assert!(channel.by_pilots && row.estimator.contains("shared"));
+            assert!(channel.by_pilots && row.experiment.label.contains("shared"));
             continue;
         };
         bounded += 1;
         let ratio = row.variance.expect("drawn") / most;
-        let name = format!("{scene:?} {}: {ratio:.3}", row.estimator);
+        let name = format!("{scene:?} {}: {ratio:.3}", row.experiment.label);
         assert!(ratio < 1.03, "{name}");
-        if row.estimator.contains("delta") {
+        if row.experiment.label.contains("delta") {
             assert!(ratio > 0.97, "{name}");
         }
         assert!(ratio > 0.1, "{name}");

@@ -5,8 +5,8 @@ use trueflight::catalogue::additions;
 use trueflight::media;
 use trueflight::plan::Plan;
 use trueflight::recipes::{controls, sampling};
+use trueflight::record::build;
 use trueflight::record::curves;
-use trueflight::record::verdict;
 use trueflight::record::{Row, Verdict};
 
 use crate::common::{case, failing, mistakes, none, options, predicted, rows};
@@ -111,9 +111,9 @@ fn titled(text: &str) -> String {
 
 /// What theory says of a row.
 fn theory(row: &Row) -> (String, String, [Option<f64>; 4]) {
-    let Row { truth, predicted_variance, predicted_lookups, predicted_kurtosis, .. } = row;
-    let numbers = [*truth, *predicted_variance, *predicted_lookups, *predicted_kurtosis];
-    (row.estimator.clone(), row.channel.clone(), numbers)
+    let lookups = row.experiment.predicted_lookups;
+    let numbers = [row.truth, row.predicted_variance, lookups, row.predicted_kurtosis];
+    (row.experiment.label.clone(), row.channel.clone(), numbers)
 }
 
 #[test]
@@ -122,8 +122,11 @@ fn a_swept_medium_is_the_one_that_is_written_out() {
     for (head, sweep, written) in WRITTEN {
         let swept = predicted(&titled(&format!("{head}sweep.{sweep}")));
         for (value, text) in written {
-            let at: Vec<_> =
-                swept.iter().filter(|row| row.swept == Some(*value)).map(theory).collect();
+            let at: Vec<_> = swept
+                .iter()
+                .filter(|row| row.experiment.swept() == Some(*value))
+                .map(theory)
+                .collect();
             let own: Vec<_> = predicted(&titled(text)).iter().map(theory).collect();
             assert!(own.iter().all(|(_, _, numbers)| numbers[0].is_some() && numbers[1].is_some()));
             assert_eq!(at, own, "{head} at {value}");
@@ -157,22 +160,26 @@ fn the_lines_of_theory_go_through_the_experiments_and_between_them() {
     let (head, sweep, _) = WRITTEN[2];
     let cases = [case("test", &titled(&format!("{head}sweep.{sweep}")))];
     let options = options(1, 1000);
-    let record = verdict::predicted(&Plan::new(&cases, &options));
+    let record = build::predicted(&Plan::new(&cases, &options));
     let case = &record.results.cases[0];
     assert_eq!(case.sweep.as_ref().map(|sweep| &*sweep.what), Some("contrast"));
     let curves = curves::curves(&cases[0], options.seed);
     assert_eq!(curves.len(), 9, "three estimators, two channels and the luminance");
-    for row in &case.rows {
+    for row in case.rows() {
         let is_own = |curve: &&_| {
             let curve: &trueflight::record::Curve = curve;
-            curve.estimator == row.estimator && curve.channel == row.channel
+            curve.estimator == row.experiment.label && curve.channel == row.channel
         };
         let curve = curves.iter().find(is_own).expect("a line");
         assert!(curve.points.len() > 40, "{}: {}", curve.estimator, curve.points.len());
-        let at = curve.points.iter().find(|point| Some(point.x) == row.swept).expect("a point");
+        let at = curve
+            .points
+            .iter()
+            .find(|point| Some(point.x) == row.experiment.swept())
+            .expect("a point");
         assert_eq!(
             (Some(at.variance), Some(at.lookups)),
-            (row.predicted_variance, row.predicted_lookups)
+            (row.predicted_variance, row.experiment.predicted_lookups)
         );
     }
 }
@@ -294,7 +301,7 @@ fn an_infinite_variance_along_a_sweep_is_refused_where_it_begins() {
     let refused: Vec<f64> = predicted(&longer)
         .iter()
         .filter(|row| row.verdict == Some(Verdict::Refused))
-        .filter_map(|row| row.swept)
+        .filter_map(|row| row.experiment.swept())
         .collect();
     assert_eq!(refused, [0.9, 1.0]);
 }

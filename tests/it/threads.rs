@@ -107,7 +107,7 @@ fn an_experiment_keeps_its_draws_when_others_leave() {
     for (index, case) in cases().into_iter().enumerate() {
         let alone = judged(&[case], &options(1, 20_000));
         let means = |record: &trueflight::record::Record, at: usize| {
-            let rows = record.results.cases[at].rows.iter();
+            let rows = record.results.cases[at].rows();
             rows.map(|row| row.mean.map(f64::to_bits)).collect::<Vec<_>>()
         };
         assert_eq!(means(&together, index), means(&alone, 0), "{}", all[index].name);

@@ -2,7 +2,7 @@
 
 use crate::common::{case, finding, judged, options, row, rows, verdict};
 use trueflight::record::Record;
-use trueflight::record::{Results, Verdict};
+use trueflight::record::{Results, Score, Verdict};
 use trueflight::report::console::{self, View, layout::Pen};
 use trueflight::report::rows as joined;
 
@@ -28,7 +28,7 @@ fn correct_estimators_pass() {
          { local-majorant.sampling.local-majorants.segments = 8 }",
     );
     for row in rows(&text, 1_000_000) {
-        assert_eq!(verdict(&row), Verdict::Pass, "{}: {}", row.estimator, row.reason);
+        assert_eq!(verdict(&row), Verdict::Pass, "{}: {}", row.experiment.label, row.reason);
     }
 }
 
@@ -42,7 +42,7 @@ fn a_biased_estimator_that_claims_to_be_fair_is_caught() {
         100_000,
     );
     for row in &rows {
-        assert_eq!(verdict(row), Verdict::Fail, "{}", row.estimator);
+        assert_eq!(verdict(row), Verdict::Fail, "{}", row.experiment.label);
         assert_eq!(finding(row, "mean").verdict, Verdict::Fail);
         assert!(row.reason.contains("off by"), "{}", row.reason);
     }
@@ -58,14 +58,14 @@ fn a_declared_bias_passes_once_it_is_seen() {
         200_000,
     );
     for row in &rows {
-        assert_eq!(verdict(row), Verdict::Pass, "{}: {}", row.estimator, row.reason);
+        assert_eq!(verdict(row), Verdict::Pass, "{}: {}", row.experiment.label, row.reason);
         assert!(row.reason.contains("biased-as-expected"), "{}", row.reason);
     }
     // Woodcock below the majorant sees min(σ_t, σ̂): T = exp(−.2 − .9·1.5 − .4·1.5).
     let forced = row(&rows, "woodcock");
     let (mean, error) = (forced.mean.expect("a mean"), forced.standard_error.expect("an error"));
     assert!((mean - (-2.15f64).exp()).abs() < 5.0 * error, "{mean} ± {error}");
-    assert_eq!((forced.predicted_variance, forced.predicted_lookups), (None, None));
+    assert_eq!((forced.predicted_variance, forced.experiment.predicted_lookups), (None, None));
 }
 
 #[test]
@@ -111,7 +111,7 @@ fn a_tighter_tolerance_needs_more_draws() {
 fn refusal(text: &str) -> String {
     let rows = rows(text, 1_000);
     assert_eq!(verdict(&rows[0]), Verdict::Refused, "{}", rows[0].reason);
-    assert_eq!((rows[0].draws, rows[0].mean), (None, None), "it was drawn");
+    assert_eq!((rows[0].experiment.draws, rows[0].mean), (None, None), "it was drawn");
     rows[0].reason.clone()
 }
 
@@ -233,7 +233,7 @@ fn steep_decays_are_resolved() {
                 span = [0, 1]\nestimators = [{ woodcock.sampling.constant.value = 1200 }]";
     let row = &rows(text, 200_000)[0];
     assert!((row.truth.expect("known") * 600.0 - 1.0).abs() < 1e-12);
-    assert!((row.predicted_lookups.expect("known") - 2.0).abs() < 1e-10);
+    assert!((row.experiment.predicted_lookups.expect("known") - 2.0).abs() < 1e-10);
     assert_eq!(verdict(row), Verdict::Pass, "{}", row.reason);
 }
 
@@ -267,12 +267,19 @@ fn what_is_the_same_by_definition_is_drawn_once() {
         100_000,
     );
     let alone = crate::common::rows(&text(double), 100_000);
-    assert_eq!([&rows[0].same_as, &rows[1].same_as, &rows[2].same_as], ["", "ratio", ""]);
-    assert_eq!(alone[0].same_as, "", "there is no other");
+    assert_eq!(
+        [
+            &rows[0].experiment.same_as(),
+            &rows[1].experiment.same_as(),
+            &rows[2].experiment.same_as()
+        ],
+        ["", "ratio", ""]
+    );
+    assert_eq!(alone[0].experiment.same_as(), "", "there is no other");
     for row in [&rows[1], &alone[0]] {
         assert_eq!(
-            (row.mean, row.variance, row.drawn),
-            (rows[0].mean, rows[0].variance, rows[0].drawn)
+            (row.mean, row.variance, row.experiment.drawn),
+            (rows[0].mean, rows[0].variance, rows[0].experiment.drawn)
         );
         assert_eq!(row.verdict, rows[0].verdict);
     }
@@ -287,11 +294,11 @@ fn a_z_whose_law_is_not_near_normal_is_marked() {
                 sweep.sampling.values = [0.4, 4]\nestimators = [{ ratio = {} }]";
     let marks = |draws: u64| {
         let record = judged(&[case("test", text)], &options(1, draws));
-        let found = record.results.cases[0].rows.iter().map(|row| row.not_normal.clone()).collect();
+        let found = record.results.cases[0].rows().map(|row| row.not_normal.clone()).collect();
         (record, found)
     };
     let (record, found): (_, Vec<_>) = marks(400_000);
-    assert_eq!(found, [vec!["z_variance"], vec![]]);
+    assert_eq!(found, [vec![Score::Variance], vec![]]);
     let shown = console::table(&record, View::Run, Pen { width: 200, colour: false });
     let lines: Vec<&str> = shown.lines().filter(|line| line.starts_with("ratio")).collect();
     assert!(lines[0].matches('(').count() == 1 && !lines[1].contains('('), "{shown}");
@@ -302,8 +309,8 @@ fn a_z_whose_law_is_not_near_normal_is_marked() {
     assert_eq!((columns[1][last], columns[2][last]), ("z_variance", ""));
     // 100 κ = 350 draws make a mean normal.
     let (_, found): (_, Vec<_>) = marks(300);
-    assert_eq!(found[0], ["z_mean", "z_variance", "z_lookups"]);
-    let (record, _): (_, Vec<Vec<&str>>) = marks(400_000);
+    assert_eq!(found[0], [Score::Mean, Score::Variance, Score::Lookups]);
+    let (record, _): (_, Vec<Vec<Score>>) = marks(400_000);
     let record = Record { results: Results { cases: vec![], ..record.results }, ..record };
     let shown = console::table(&record, View::Run, Pen { width: 200, colour: false });
     assert!(!shown.contains("(z)"), "{shown}");

@@ -11,7 +11,7 @@ use trueflight::plan::Options;
 use trueflight::plan::Plan;
 use trueflight::plan::options::DRAWS;
 use trueflight::record::Record;
-use trueflight::record::verdict;
+use trueflight::record::build;
 use trueflight::report::rows;
 
 use crate::background::{Progress, work};
@@ -66,7 +66,7 @@ pub fn predict(
     optimum: bool,
 ) -> PyResult<String> {
     let wanted: Wanted = wanted.extract()?;
-    let predicted = if optimum { verdict::predicted_with_optima } else { verdict::predicted };
+    let predicted = if optimum { build::predicted_with_optima } else { build::predicted };
     work(py, wanted.threads, None, move |_| {
         let cases = cases.read()?;
         json(&predicted(&wanted.plan(&cases)?))
@@ -98,7 +98,7 @@ fn drawn(plan: &Plan, progress: &Progress) -> Record {
     progress.expect(ready.map(|(_, planned)| planned.draws).sum());
     let begin = Instant::now();
     let draws = drawing::draw(plan, &|draws| progress.add(draws));
-    verdict::judged(plan, &draws, begin.elapsed().as_secs_f64())
+    build::judged(plan, &draws, begin.elapsed().as_secs_f64())
 }
 
 fn json(record: &Record) -> Result<String, Failure> {

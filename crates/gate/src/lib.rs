@@ -3,6 +3,8 @@
 pub mod causes;
 pub mod check;
 pub mod deviation;
+#[cfg(feature = "serde")]
+pub mod extended;
 pub mod session;
 pub mod stats;
 

@@ -11,7 +11,7 @@
 //! κ and Var N are those of theory, on both sides: each side's own uncertainty counts. A variance is
 //! not compared where, on either side, its relative standard error is above 10 %, its law is not near
 //! normal (`E[X⁸]/E[X⁴]²` > n/100, or fewer draws than ten times the rare-event size), or hardly anything
-//! of it is left to chance (κ − 1 < 100/n). What is left out is listed ([`scope`](super::scope)), and a
+//! of it is left to chance (κ − 1 < 100/n). What is left out is listed ([`LeftOut`]), and a
 //! comparison of nothing is none. A regression is an
 //! interval that lies above 1; an improvement, one below, is told and does not fail. The error of a
 //! time is not known from one figure: it fails beyond a factor that the caller chooses.
@@ -23,9 +23,9 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::scope::{Measured, is_comparable, left_out};
-use super::stored::{Baseline, Entry, Evidence};
-use crate::record::comparison::{Change, Comparison, Drift, Quantity, Rules, Sequel};
+use super::comparison::{Change, Comparison, Drift, LeftOut, Measured, Quantity, Rules, Sequel};
+use super::{Baseline, ChannelId, Entry, Evidence};
+use crate::checks::normality::{Tails, variance_error};
 use gate::stats::normal;
 
 /// Two numbers of lookups without spread are the same if they are this near.
@@ -39,15 +39,15 @@ pub fn compare(
     run: &Baseline,
     rules: &Rules,
 ) -> (Comparison, Baseline) {
-    let before: BTreeMap<&str, &Entry> =
-        stored.entries.iter().map(|entry| (entry.id.as_str(), entry)).collect();
-    let ids: BTreeSet<&str> = run.entries.iter().map(|entry| entry.id.as_str()).collect();
+    let before: BTreeMap<&ChannelId, &Entry> =
+        stored.entries.iter().map(|entry| (&entry.id, entry)).collect();
+    let ids: BTreeSet<&ChannelId> = run.entries.iter().map(|entry| &entry.id).collect();
     let mut comparison = Comparison::new(name, rules, sequel(stored, run));
-    let missing = stored.entries.iter().filter(|entry| !ids.contains(entry.id.as_str()));
+    let missing = stored.entries.iter().filter(|entry| !ids.contains(&entry.id));
     comparison.missing = missing.map(|entry| entry.id.clone()).collect();
     let mut pairs = Vec::new();
     for now in &run.entries {
-        match before.get(now.id.as_str()) {
+        match before.get(&now.id) {
             None => comparison.added.push(now.id.clone()),
             Some(before) if before.case != now.case => comparison.rewritten.push(now.id.clone()),
             Some(before) => pairs.push((*before, now)),
@@ -59,11 +59,13 @@ pub fn compare(
     comparison.blunt = comparison.left_out.blunt.len();
     let z = normal::two_sided(rules.alpha / questions.len().max(1) as f64);
     comparison.changes = questions.iter().filter_map(|question| answer(question, z)).collect();
-    for (before, now) in pairs.iter().filter(|_| rules.asks_for_times()) {
-        let Some((earlier, later)) = before.nanoseconds().zip(now.nanoseconds()) else { continue };
-        comparison.times += 1;
-        let tolerance = rules.time_tolerance;
-        comparison.changes.extend(time_change(now, [earlier, later], tolerance));
+    if let Some(tolerance) = rules.time_tolerance {
+        let timed =
+            |(before, now): &(&Entry, &Entry)| Some((before.nanoseconds()?, now.nanoseconds()?));
+        for (pair, (earlier, later)) in pairs.iter().filter_map(|pair| Some((pair, timed(pair)?))) {
+            comparison.times += 1;
+            comparison.changes.extend(time_change(pair.1, [earlier, later], tolerance));
+        }
     }
     let mut next = run.clone();
     if comparison.sequel != Sequel::OtherProgram {
@@ -75,7 +77,7 @@ pub fn compare(
         next.seeds = [&stored.seeds[..], &run.seeds[..]].concat();
     } else if comparison.sequel == Sequel::SameSeed {
         for entry in next.entries.iter_mut().take(run.entries.len()) {
-            let stored = before.get(entry.id.as_str());
+            let stored = before.get(&entry.id);
             if let Some(stored) = stored.filter(|stored| stored.case == entry.case) {
                 entry.checks.clone_from(&stored.checks);
             }
@@ -98,13 +100,13 @@ fn sequel(stored: &Baseline, run: &Baseline) -> Sequel {
 /// Adds the stored ln E to those of the run; answers those that reach the limit, and how many there were.
 fn multiply(
     next: &mut Baseline,
-    before: &BTreeMap<&str, &Entry>,
+    before: &BTreeMap<&ChannelId, &Entry>,
     run: &Baseline,
 ) -> (Vec<Drift>, usize) {
     let (mut drifts, mut multiplied) = (Vec::new(), 0);
     let limit = next.ln_e_limit;
     for entry in next.entries.iter_mut().take(run.entries.len()) {
-        let stored = before.get(entry.id.as_str()).filter(|stored| stored.case == entry.case);
+        let stored = before.get(&entry.id).filter(|stored| stored.case == entry.case);
         let Some(stored) = stored else { continue };
         for Evidence { check, ln_e } in &mut entry.checks {
             let Some(earlier) = stored.checks.iter().find(|earlier| earlier.check == *check) else {
@@ -123,13 +125,12 @@ fn multiply(
 
 /// The stored entries that the run has not drawn, of cases that it has not with another text.
 fn not_drawn(stored: &Baseline, run: &Baseline) -> Vec<Entry> {
-    let case = |entry: &Entry| entry.id.split('|').next().unwrap_or_default().to_owned();
-    let texts: BTreeMap<String, &str> =
-        run.entries.iter().map(|entry| (case(entry), entry.case.as_str())).collect();
-    let drawn: BTreeSet<&str> = run.entries.iter().map(|entry| entry.id.as_str()).collect();
+    let texts: BTreeMap<&str, &str> =
+        run.entries.iter().map(|entry| (entry.id.experiment.case.as_str(), &*entry.case)).collect();
+    let drawn: BTreeSet<&ChannelId> = run.entries.iter().map(|entry| &entry.id).collect();
     let kept = stored.entries.iter().filter(|entry| {
-        let is_drawn = drawn.contains(entry.id.as_str());
-        !is_drawn && texts.get(&case(entry)).is_none_or(|text| *text == entry.case)
+        let text = texts.get(entry.id.experiment.case.as_str());
+        !drawn.contains(&entry.id) && text.is_none_or(|text| *text == entry.case)
     });
     kept.cloned().collect()
 }
@@ -147,19 +148,21 @@ fn questions<'e>(before: &Entry, now: &'e Entry) -> Vec<Question<'e>> {
 }
 
 /// An entry, the quantity that is compared, its values then and now.
-type Question<'e> = (&'e Entry, Quantity, (Measured, Measured));
+type Question<'e> = (&'e Entry, Quantity, (Relative, Relative));
 
 /// What changed by more than its error, if anything.
 fn answer(&(entry, quantity, (before, now)): &Question, z: f64) -> Option<Change> {
     let ratio = now.0 / before.0;
     let error = z * before.1.hypot(now.1) + ROUNDING;
+    let measured = |(value, error): Relative| Measured { value, error: Some(value * error) };
+    let interval = [ratio * (-error).exp(), ratio * error.exp()];
     (ratio.ln().abs() > error).then(|| Change {
         id: entry.id.clone(),
         quantity,
-        before: [before.0, before.0 * before.1],
-        now: [now.0, now.0 * now.1],
+        before: measured(before),
+        now: measured(now),
         ratio,
-        interval: Some([ratio * (-error).exp(), ratio * error.exp()]),
+        interval: Some(interval).filter(|ends| ends[1].is_finite()),
         is_regression: ratio > 1.0,
         command: entry.command.clone(),
     })
@@ -172,11 +175,90 @@ fn time_change(entry: &Entry, [before, now]: [f64; 2], tolerance: f64) -> Option
     (is_regression || ratio * (1.0 + tolerance) < 1.0).then(|| Change {
         id: entry.id.clone(),
         quantity: Quantity::Time,
-        before: [before, f64::NAN],
-        now: [now, f64::NAN],
+        before: Measured { value: before, error: None },
+        now: Measured { value: now, error: None },
         ratio,
         interval: None,
         is_regression,
         command: entry.command.clone(),
     })
+}
+
+/// Times below this are noise.
+const SHORTEST: f64 = 0.1;
+/// A value with its standard error, relative to it.
+type Relative = (f64, f64);
+
+impl Entry {
+    fn variance(&self) -> Option<Relative> {
+        let (n, kurtosis) = (self.draws as f64, self.kurtosis?);
+        let variance = self.variance.filter(|&variance| variance > 0.0)?;
+        Some((variance, variance_error(kurtosis, n)))
+    }
+
+    /// Whether the sample variance has a law that can be compared.
+    fn is_sharp(&self) -> bool {
+        self.variance().is_some()
+            && Tails {
+                kurtosis: self.kurtosis,
+                eighth_moment_ratio: self.eighth_moment_ratio,
+                rare_event_size: self.rare_event_size,
+            }
+            .has_normal_variance(self.draws as f64)
+    }
+
+    fn lookups(&self) -> Option<Relative> {
+        let lookups = self.lookups.filter(|&lookups| lookups > 0.0)?;
+        Some((lookups, (self.lookups_variance? / self.draws as f64).sqrt() / lookups))
+    }
+
+    fn nanoseconds(&self) -> Option<f64> {
+        let seconds = self.seconds.filter(|&seconds| seconds >= SHORTEST)?;
+        Some(1e9 * seconds / self.drawn as f64)
+    }
+}
+
+/// Whether both are of the same σ̂: not where it was learned from other pilot rays.
+fn is_comparable(before: &Entry, now: &Entry) -> bool {
+    !now.learns || before.seed == now.seed
+}
+
+/// What is left out of the experiments that both runs have, each stored and now.
+fn left_out(pairs: &[(&Entry, &Entry)], rules: &Rules) -> LeftOut {
+    let list = |is_out: &dyn Fn(&Entry, &Entry) -> bool| -> Vec<ChannelId> {
+        let out = pairs.iter().filter(|(before, now)| is_out(before, now));
+        out.map(|(_, now)| now.id.clone()).collect()
+    };
+    let of_one = |is_out: &dyn Fn(&Entry, &Entry) -> bool| {
+        list(&|before, now| is_comparable(before, now) && is_out(before, now))
+    };
+    let timed = |is_out: &dyn Fn(&Entry, &Entry) -> bool| {
+        list(&|before, now| rules.time_tolerance.is_some() && is_out(before, now))
+    };
+    LeftOut {
+        relearned: list(&|before, now| !is_comparable(before, now)),
+        blunt: of_one(&|before, now| {
+            let has_both = before.variance().is_some() && now.variance().is_some();
+            has_both && !(before.is_sharp() && now.is_sharp())
+        }),
+        unpredicted: of_one(&|before, now| {
+            let varies = |entry: &Entry| entry.variance != Some(0.0);
+            let has_both = before.variance().is_some() && now.variance().is_some();
+            !has_both && (varies(before) || varies(now))
+        }),
+        uncounted: of_one(&|before, now| {
+            let looks = |entry: &Entry| entry.lookups.is_some_and(|lookups| lookups > 0.0);
+            let has_both = before.lookups().is_some() && now.lookups().is_some();
+            !has_both && (looks(before) || looks(now))
+        }),
+        brief: timed(&|before, now| {
+            let has_both = before.seconds.is_some() && now.seconds.is_some();
+            has_both && (before.nanoseconds().is_none() || now.nanoseconds().is_none())
+        }),
+        // Times and lookups stand in the first entry of an experiment only.
+        shared: timed(&|before, now| {
+            let is_first = before.lookups.is_some() || now.lookups.is_some();
+            is_first && (before.seconds.is_none() || now.seconds.is_none())
+        }),
+    }
 }

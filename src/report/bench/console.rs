@@ -5,9 +5,9 @@ use std::fmt::Write;
 use super::diff;
 use crate::bench::record::{Bench, BenchCase, BenchRow, Times};
 use crate::bench::spread::Spread;
+use crate::record::Digits;
 use crate::report::console::layout::{Column, Grid, Paint, Pen, Spec, end_elided, wrapped};
 use crate::report::console::views::swept_apart;
-use crate::report::labels::Labels;
 use numeric::digits::{count, fixed, short, time};
 
 /// The heading of σ̂; constant ones have as many digits as tell them apart.
@@ -83,8 +83,8 @@ fn block(text: &mut String, pen: Pen, case: &BenchCase) {
 }
 
 /// σ̂ and swept values of a case.
-pub(super) fn labels(case: &BenchCase) -> Labels {
-    Labels::new(case.rows.iter().flat_map(|row| [row.sampling, row.swept]))
+pub(super) fn labels(case: &BenchCase) -> Digits {
+    Digits::new(case.rows.iter().flat_map(|row| [row.sampling, row.swept]))
 }
 
 /// Why numbers are missing: each reason once, with the rows it is about.

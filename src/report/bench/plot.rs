@@ -6,7 +6,7 @@
 use plotters::style::{Color, RGBAColor};
 
 use crate::bench::record::{Bench, BenchCase, BenchRow, CurvePoint, Times};
-use crate::report::labels::Labels;
+use crate::record::Digits;
 use crate::report::plots::figure::{Figure, Foot, LEFT};
 use crate::report::plots::legend::Entry;
 use crate::report::plots::names::{marks, numbered};
@@ -69,7 +69,7 @@ fn subtitle(bench: &Bench, case: &BenchCase) -> String {
 }
 
 /// The words for a row: its estimator, σ̂, control and channel, and what it needs.
-fn label(row: &BenchRow, labels: Labels) -> String {
+fn label(row: &BenchRow, labels: Digits) -> String {
     let sampling = row.sampling.map(|sampling| format!("σ\u{302} = {}", labels.text(sampling)));
     let sampling = sampling.unwrap_or_else(|| row.sampling_kind.clone());
     let parts = [row.estimator.clone(), sampling, row.control.clone(), row.channel.clone()];

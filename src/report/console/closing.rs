@@ -110,9 +110,11 @@ fn failures(text: &mut String, pen: Pen, record: &Record) {
             let _ = writeln!(text, "    {word}: {command}");
         }
         // Once for all findings of a row, and once for all rows alike of an estimator.
-        let likely = likely::lines(failure.case, failure.row);
+        let likely = likely::lines(&failure.row);
         let next = failures.get(i + 1);
-        let is_last = next.is_none_or(|next| !std::ptr::eq(next.row, failure.row));
+        let is_last = next.is_none_or(|next| {
+            next.row.name() != failure.row.name() || next.row.case.name != failure.row.case.name
+        });
         if is_last && !likely.is_empty() && !told.contains(&likely) {
             for part in likely.iter().flat_map(|line| indented(line, pen)) {
                 let _ = writeln!(text, "{part}");
@@ -128,19 +130,19 @@ fn failures(text: &mut String, pen: Pen, record: &Record) {
 /// Rows that the planned draws leave inconclusive, case by case, with the command that decides them.
 fn foreseen(text: &mut String, pen: Pen, cases: &[CaseRecord]) {
     let rows = |case: &CaseRecord, verdict| {
-        case.rows.iter().filter(|row| row.foreseen == Some(verdict)).count()
+        case.rows().filter(|row| row.foreseen == Some(verdict)).count()
     };
     let open = cases.iter().filter(|case| rows(case, Verdict::Inconclusive) > 0);
     for case in open {
         let word = Verdict::Inconclusive.word();
-        let (open, all) = (rows(case, Verdict::Inconclusive), case.rows.len());
+        let (open, all) = (rows(case, Verdict::Inconclusive), case.rows().count());
         let draws = "the planned draws are too few for a pass";
         pen.note(
             text,
             &format!("{word} {}: {open} of {all} rows: {draws}", case.name),
             (word, Paint::Yellow),
         );
-        if let Some(row) = case.rows.iter().find(|row| !row.decide.is_empty()) {
+        if let Some(row) = case.rows().find(|row| !row.decide.is_empty()) {
             let _ = writeln!(text, "    decide: {}", row.decide);
         }
     }
@@ -158,7 +160,7 @@ fn foreseen(text: &mut String, pen: Pen, cases: &[CaseRecord]) {
 
 fn counts(text: &mut String, pen: Pen, record: &Record, view: View) {
     let cases = &record.results.cases;
-    let rows = || cases.iter().flat_map(|case| &case.rows);
+    let rows = || cases.iter().flat_map(CaseRecord::rows);
     let mut counts: Vec<String> = totals::counts(cases)
         .into_iter()
         .map(|(verdict, number)| {

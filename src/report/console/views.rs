@@ -1,25 +1,24 @@
 //! Which columns each view of the table has, and what stands in them.
 
-use crate::record::{CaseRecord, Row, Verdict};
+use crate::record::{Best, CaseRecord, Digits, Row, Score, Verdict};
 use crate::report::console::View;
-use crate::report::console::layout::{self, Column, Field, Grid, Paint};
-use crate::report::labels::Labels;
+use crate::report::console::layout::{Column, Field, Paint};
 use numeric::digits::{count, enough, fixed, percent, short, signed};
 
 /// A column of rows: heading, whether it stands at the right, rank, and its words.
-pub type Spec = layout::Spec<Row>;
+pub type Spec = (&'static str, bool, u8, fn(&Row) -> String);
 
-const DRAWS: Spec = ("draws", true, 10, |row| row.draws.map(count).unwrap_or_default());
+const DRAWS: Spec = ("draws", true, 10, |row| row.experiment.draws.map(count).unwrap_or_default());
 /// What the gate took; the columns beside it are of the fixed draws.
-const DRAWN: Spec = ("drawn", true, 3, |row| row.drawn.map(count).unwrap_or_default());
+const DRAWN: Spec = ("drawn", true, 3, |row| row.experiment.drawn.map(count).unwrap_or_default());
 const TRUTH: Spec = ("truth", true, 11, |row| digits(row.truth, 6));
 
 /// Lookups before the first draw of a ray; empty where none of a case has any.
 pub const SETUP: Spec = ("setup", true, 3, |row| {
-    row.setup_lookups.filter(|&lookups| lookups > 0).map(count).unwrap_or_default()
+    row.experiment.setup_lookups.filter(|&lookups| lookups > 0).map(count).unwrap_or_default()
 });
 /// Knowledge that estimators need beside lookups, as in `τ`.
-pub const NEEDS: Spec = ("needs", false, 5, |row| row.needs.clone());
+pub const NEEDS: Spec = ("needs", false, 5, |row| row.experiment.needs.clone());
 
 /// The headings of z.
 pub const SCORES: [&str; 3] = ["z", "z_V", "z_N"];
@@ -29,11 +28,11 @@ const LTUV: &str = "lg LTUV";
 
 const RUN: &[Spec] = &[
     ("mean", true, 6, |row| digits(row.mean, 6)),
-    ("z", true, 1, |row| score(row, "z_mean", row.z_mean)),
+    ("z", true, 1, |row| score(row, Score::Mean, row.z_mean)),
     ("s²/V", true, 5, ratio),
-    ("z_V", true, 2, |row| score(row, "z_variance", row.z_variance)),
-    ("lookups", true, 7, |row| digits(row.lookups_per_draw, 4)),
-    ("z_N", true, 4, |row| score(row, "z_lookups", row.z_lookups)),
+    ("z_V", true, 2, |row| score(row, Score::Variance, row.z_variance)),
+    ("lookups", true, 7, |row| digits(row.experiment.lookups_per_draw, 4)),
+    ("z_N", true, 4, |row| score(row, Score::Lookups, row.experiment.z_lookups)),
     ("κ", true, 9, |row| digits(row.predicted_kurtosis, 3)),
     ("FoM", true, 8, |row| digits(row.fom, 4)),
     (LTUV, true, 10, |row| of_channel(row, row.log10_ltuv())),
@@ -45,11 +44,11 @@ const PREDICT: &[Spec] = &[
     ("variance", true, 1, |row| digits(row.predicted_variance, 4)),
     ("skewness", true, 9, |row| digits(row.predicted_skewness, 3)),
     ("κ", true, 5, |row| digits(row.predicted_kurtosis, 3)),
-    ("lookups", true, 2, |row| digits(row.predicted_lookups, 4)),
+    ("lookups", true, 2, |row| digits(row.experiment.predicted_lookups, 4)),
     SETUP,
     ("FoM", true, 2, |row| digits(row.predicted_fom, 4)),
     (LTUV, true, 10, |row| of_channel(row, row.predicted_log10_ltuv())),
-    ("stable", true, 6, |row| row.stable_share.map(percent).unwrap_or_default()),
+    ("stable", true, 6, |row| row.experiment.stable_share.map(percent).unwrap_or_default()),
     ("n(2)", true, 8, |row| digits(row.rare_event_size, 3)),
     ("best σ\u{302}", true, 3, best_sampling),
     ("best FoM", true, 4, best_fom),
@@ -65,56 +64,56 @@ const MOMENTS: &[Spec] = &[
     ("m₃", true, 0, |row| digits(row.relative_moments[1], 4)),
     ("m₄", true, 0, |row| digits(row.relative_moments[2], 4)),
     ("m error", true, 0, |row| digits(row.moments_error, 2)),
-    ("lookups", true, 0, |row| digits(row.predicted_lookups, 4)),
-    ("± σ", true, 0, |row| digits(row.lookups_variance.map(f64::sqrt), 4)),
+    ("lookups", true, 0, |row| digits(row.experiment.predicted_lookups, 4)),
+    ("± σ", true, 0, |row| digits(row.experiment.lookups_variance.map(f64::sqrt), 4)),
     ("n(2)", true, 0, |row| digits(row.rare_event_size, 3)),
     ("setup", true, 0, SETUP.3),
     ("best σ\u{302}", true, 0, best_sampling),
     ("best FoM", true, 0, best_fom),
-    ("best is", false, 0, |row| row.best_kind.clone()),
-    ("limit", true, 0, |row| digits(row.best_limit, 4)),
+    ("best is", false, 0, |row| row.best_kind().to_owned()),
+    ("limit", true, 0, |row| digits(row.best_limit(), 4)),
     ("needs", false, 0, NEEDS.3),
 ];
 
 const PLAN: &[Spec] = &[
     ("needed", true, 1, |row| row.needed_draws.map(enough).unwrap_or_default()),
-    ("lookups", true, 2, |row| digits(row.predicted_lookups, 4)),
+    ("lookups", true, 2, |row| digits(row.experiment.predicted_lookups, 4)),
     SETUP,
     NEEDS,
-    ("skipped", true, 3, |row| row.skipped.map(percent).unwrap_or_default()),
+    ("skipped", true, 3, |row| row.experiment.skipped.map(percent).unwrap_or_default()),
 ];
 
 /// The columns that name the rows of a case, empty ones and all.
-pub fn names(case: &CaseRecord, labels: Labels) -> Vec<Column> {
-    let column = |what, text: &dyn Fn(&Row) -> String| Column::of(&case.rows, what, text);
-    let sampling = |row: &Row| match row.sampling {
+pub fn names(case: &CaseRecord, rows: &[Row], labels: Digits) -> Vec<Column> {
+    let column = |what, text: &dyn Fn(&Row) -> String| Column::of(rows, what, text);
+    let sampling = |row: &Row| match row.experiment.sampling() {
         Some(sampling) => labels.text(sampling),
-        None => row.sampling_kind.clone(),
+        None => row.experiment.id.sampling.kind.clone(),
     };
     let mut columns = vec![
-        column(("estimator", false, 0), &|row| row.estimator.clone()),
+        column(("estimator", false, 0), &|row| row.experiment.label.clone()),
         column(("σ\u{302}", true, 1), &sampling),
     ];
     if let Some(head) = swept_apart(case.sweep.as_ref().map(|sweep| &*sweep.what)) {
-        let swept = |row: &Row| row.swept.map(|x| labels.text(x)).unwrap_or_default();
+        let swept = |row: &Row| row.experiment.swept().map(|x| labels.text(x)).unwrap_or_default();
         columns.push(column((head, true, 1), &swept));
     }
-    columns.push(column(("control", false, 3), &|row| row.control.clone()));
+    columns.push(column(("control", false, 3), &|row| row.experiment.id.control.clone()));
     columns.push(column(("channel", false, 1), &|row| row.channel.clone()));
     columns
 }
 
 /// The columns that say something of the rows, empty ones and all.
-pub fn columns(case: &CaseRecord, view: View) -> Vec<Column> {
-    let mut specs = Vec::new();
+pub fn columns(rows: &[Row], view: View) -> Vec<Column> {
+    let mut specs: Vec<Spec> = Vec::new();
     // What all rows share stands over the table.
-    if !view.is_theory() && shared(case, |row| row.draws).is_none() {
+    if !view.is_theory() && shared(rows, |row| row.experiment.draws).is_none() {
         specs.push(if view == View::Plan { (DRAWS.0, DRAWS.1, 2, DRAWS.3) } else { DRAWS });
     }
-    if view == View::Run && shared(case, |row| row.drawn).is_none() {
+    if view == View::Run && shared(rows, |row| row.experiment.drawn).is_none() {
         specs.push(DRAWN);
     }
-    if view != View::Plan && shared(case, |row| row.truth).is_none() {
+    if view != View::Plan && shared(rows, |row| row.truth).is_none() {
         specs.push(TRUTH);
     }
     specs.extend(match view {
@@ -123,9 +122,10 @@ pub fn columns(case: &CaseRecord, view: View) -> Vec<Column> {
         View::Moments => MOMENTS,
         View::Plan => PLAN,
     });
-    let mut columns = Grid::of(&case.rows, &specs).columns;
+    let column = |(head, right, rank, text): Spec| Column::of(rows, (head, right, rank), text);
+    let mut columns: Vec<Column> = specs.into_iter().map(column).collect();
     let head = if view == View::Run { "verdict" } else { "status" };
-    let fields = case.rows.iter().map(|row| status(row, view)).collect();
+    let fields = rows.iter().map(|row| status(row, view)).collect();
     columns.push(Column { head, right: false, rank: 0, fields });
     columns
 }
@@ -145,8 +145,8 @@ pub(in crate::report) fn swept_apart(swept: Option<&str>) -> Option<&'static str
 }
 
 /// A value that at least two rows have and none has differently.
-pub fn shared<T: PartialEq>(case: &CaseRecord, value: fn(&Row) -> Option<T>) -> Option<T> {
-    let mut known = case.rows.iter().filter_map(value);
+pub fn shared<T: PartialEq>(rows: &[Row], value: fn(&Row) -> Option<T>) -> Option<T> {
+    let mut known = rows.iter().filter_map(value);
     let first = known.next()?;
     let mut others = known.peekable();
     others.peek()?;
@@ -154,8 +154,9 @@ pub fn shared<T: PartialEq>(case: &CaseRecord, value: fn(&Row) -> Option<T>) -> 
 }
 
 /// Where in their case these rows stand, in words: `σ̂ 0.4, 0.5; T(5)`.
-pub fn positions(case: &CaseRecord, rows: &[&Row], labels: Labels) -> String {
-    let mut swept: Vec<_> = rows.iter().filter_map(|row| Some(labels.text(row.swept?))).collect();
+pub fn positions(case: &CaseRecord, rows: &[&Row], labels: Digits) -> String {
+    let mut swept: Vec<_> =
+        rows.iter().filter_map(|row| Some(labels.text(row.experiment.swept()?))).collect();
     let mut channels: Vec<_> = rows.iter().map(|row| row.channel.clone()).collect();
     channels.retain(|channel| !channel.is_empty());
     for list in [&mut swept, &mut channels] {
@@ -175,7 +176,10 @@ pub fn positions(case: &CaseRecord, rows: &[&Row], labels: Labels) -> String {
 
 /// Whether a row is planned but neither drawn nor refused, for a reason.
 pub fn is_skipped(row: &Row, view: View) -> bool {
-    view == View::Plan && row.verdict.is_none() && row.draws.is_none() && !row.reason.is_empty()
+    view == View::Plan
+        && row.verdict.is_none()
+        && row.experiment.draws.is_none()
+        && !row.reason.is_empty()
 }
 
 /// The word for what became of a row.
@@ -211,18 +215,22 @@ fn digits(value: Option<f64>, digits: usize) -> String {
     value.map(|value| fixed(value, digits)).unwrap_or_default()
 }
 
+/// Text about the best σ̂; empty if it was not searched.
+fn best(row: &Row, text: fn(&Best) -> String) -> String {
+    row.best.as_ref().map(text).unwrap_or_default()
+}
+
 /// The best σ̂, marked where it is a share of a limit.
 fn best_sampling(row: &Row) -> String {
-    let mark = if row.best_limit.is_some() { " (90 %)" } else { "" };
-    row.best_sampling.map(|s| format!("{}{mark}", short(s, 4))).unwrap_or_default()
+    best(row, |best| {
+        let mark = if best.limit.is_some() { " (90 %)" } else { "" };
+        format!("{}{mark}", short(best.sampling, 4))
+    })
 }
 
 /// The figure of merit at the best σ̂, which is infinite where there is no variance.
 fn best_fom(row: &Row) -> String {
-    match (row.best_sampling, row.best_fom) {
-        (Some(_), None) => "∞".to_owned(),
-        (_, fom) => digits(fom, 4),
-    }
+    best(row, |best| best.fom.map_or("∞".to_owned(), |fom| fixed(fom, 4)))
 }
 
 /// What is shown of problems with several channels alone, with two decimals.
@@ -232,9 +240,9 @@ fn of_channel(row: &Row, value: Option<f64>) -> String {
 }
 
 /// A z, in parentheses where it is not to be read as normal.
-pub fn score(row: &Row, name: &str, z: Option<f64>) -> String {
+pub fn score(row: &Row, score: Score, z: Option<f64>) -> String {
     let text = z.map(signed).unwrap_or_default();
-    if row.not_normal.contains(&name) { format!("({text})") } else { text }
+    if row.not_normal.contains(&score) { format!("({text})") } else { text }
 }
 
 /// The measured variance over the predicted one.

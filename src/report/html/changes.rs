@@ -3,7 +3,7 @@
 use maud::{Markup, html};
 
 use super::{page, words};
-use crate::record::baseline::{Change, Comparison, Drift, Quantity};
+use crate::record::baseline::{Change, Comparison, Drift, Measured, Quantity};
 use crate::report::diff;
 use numeric::digits::{fixed, short};
 
@@ -58,9 +58,8 @@ fn change(change: &Change) -> Markup {
     };
     // A ratio without bound is as good as none in a record that was read.
     let arrow = if change.ratio < 1.0 { "↓" } else { "↑" };
-    let value = |[value, error]: [f64; 2]| {
-        let error =
-            if error.is_finite() { format!(" ± {}", short(error, 2)) } else { String::new() };
+    let value = |Measured { value, error }: Measured| {
+        let error = error.map_or(String::new(), |error| format!(" ± {}", short(error, 2)));
         format!("{}{error}{unit}", number(value, 5))
     };
     html! { tr {

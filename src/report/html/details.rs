@@ -4,25 +4,24 @@ use maud::{Markup, html};
 
 use super::plots::Plot;
 use super::{page, sparks, words};
-use crate::record::{Finding, Row, Verdict};
+use crate::record::{Finding, Row, Score, Verdict};
 use crate::report::likely;
-use crate::report::rows::JoinedRow;
 
 /// Everything that is known of a row.
-pub fn of(joined: &JoinedRow, plots: &[Plot]) -> Markup {
-    let JoinedRow { case, row, .. } = joined;
+pub fn of(row: &Row, plots: &[Plot]) -> Markup {
+    let case = row.case;
     html! {
         @if !row.reason.is_empty() { p.reason { (row.reason) } }
         @if !row.decide.is_empty() { (page::command(Some(("decide", &row.decide)))) }
-        (page::command(Some(("repeat", &row.command))))
-        (page::causes(&likely::lines(case, row)))
-        p { a href={ "#" (words::anchor(case, row)) } { "Address of this row" } }
-        @if row.verdict != Some(Verdict::Refused) { (numbers(row)) (sparks::evidence(&row.findings)) }
+        (page::command(Some(("repeat", &row.experiment.command))))
+        (page::causes(&likely::lines(row)))
+        p { a href={ "#" (words::anchor(row)) } { "Address of this row" } }
+        @if row.verdict != Some(Verdict::Refused) { (numbers(row)) (sparks::evidence(&row.findings().collect::<Vec<_>>())) }
         dl.facts {
             div { dt { "Problem and medium" } dd { (case.problem) ", " (case.medium) } }
-            @for (name, value) in facts(joined) { div { dt { (name) } dd { (value) } } }
+            @for (name, value) in facts(row) { div { dt { (name) } dd { (value) } } }
         }
-        @for course in &row.courses { (sparks::course(course)) }
+        @for course in &row.experiment.courses { (sparks::course(course)) }
         @for plot in plots { (plot.show()) }
     }
 }
@@ -45,10 +44,16 @@ const TITLES: [&str; 10] =
 /// not pass line by line, the others in one.
 fn numbers(row: &Row) -> Markup {
     let lines = lines(row);
-    let is_told = |finding: &&Finding| {
-        lines.iter().filter_map(|line| line.finding).any(|other| std::ptr::eq(other, *finding))
-    };
-    let rest = row.findings.iter().filter(|finding| !is_told(finding));
+    // The first finding of each of the three is in its own line.
+    let mut open: Vec<&str> = lines
+        .iter()
+        .filter_map(|line| line.finding)
+        .map(|finding| finding.check.as_str())
+        .collect();
+    let rest = row.findings().filter(|finding| {
+        let at = open.iter().position(|check| *check == finding.check && !finding.expects_bias);
+        at.map(|at| open.remove(at)).is_none()
+    });
     let (told, plain): (Vec<_>, Vec<_>) = rest.partition(|finding| {
         finding.gate.is_some() || !finding.reason.is_empty() || finding.verdict != Verdict::Pass
     });
@@ -77,19 +82,19 @@ fn numbers(row: &Row) -> Markup {
 }
 
 /// The three that every experiment is asked for, and the figure of merit, as far as they are known.
-fn lines(row: &Row) -> Vec<Line<'_>> {
+fn lines<'a>(row: &Row<'a>) -> Vec<Line<'a>> {
     let found = |check: &str| {
-        row.findings.iter().find(|finding| finding.check == check && !finding.expects_bias)
+        row.findings().find(|finding| finding.check == check && !finding.expects_bias)
     };
-    let z = |name: &str, z: Option<f64>| words::z(row, name, z);
-    let has_setup = row.setup_lookups.is_some_and(|lookups| lookups > 0);
+    let z = |score: Score, z: Option<f64>| words::z(row, score, z);
+    let has_setup = row.experiment.setup_lookups.is_some_and(|lookups| lookups > 0);
     let lines = [
         Line {
             name: "mean",
             measured: row.mean,
             deviation: row.standard_error,
             theory: row.truth,
-            z: z("z_mean", row.z_mean),
+            z: z(Score::Mean, row.z_mean),
             finding: found("mean"),
         },
         Line {
@@ -97,15 +102,15 @@ fn lines(row: &Row) -> Vec<Line<'_>> {
             measured: row.variance,
             deviation: row.variance_deviation,
             theory: row.predicted_variance,
-            z: z("z_variance", row.z_variance),
+            z: z(Score::Variance, row.z_variance),
             finding: found("variance"),
         },
         Line {
             name: "lookups per draw",
-            measured: row.lookups_per_draw,
-            deviation: row.lookups_deviation,
-            theory: row.predicted_lookups,
-            z: z("z_lookups", row.z_lookups),
+            measured: row.experiment.lookups_per_draw,
+            deviation: row.experiment.lookups_deviation,
+            theory: row.experiment.predicted_lookups,
+            z: z(Score::Lookups, row.experiment.z_lookups),
             finding: found("lookups"),
         },
         Line {
@@ -170,34 +175,53 @@ fn p(p: f64) -> String {
 }
 
 /// Other facts, by name; what is unknown is left out.
-fn facts(joined: &JoinedRow) -> Vec<(&'static str, String)> {
-    let row = joined.row;
+fn facts(row: &Row) -> Vec<(&'static str, String)> {
     let number = |value: Option<f64>| words::number(value, 5);
-    let sampling =
-        if row.sampling.is_some() { number(row.sampling) } else { row.sampling_kind.clone() };
+    let sampling = if row.experiment.sampling().is_some() {
+        number(row.experiment.sampling())
+    } else {
+        row.experiment.id.sampling.kind.clone()
+    };
     let mut facts = vec![
         ("σ\u{302}", sampling),
-        ("Control", row.control.clone()),
-        ("Swept value", number(row.swept.filter(|_| row.swept != row.sampling))),
+        ("Control", row.experiment.id.control.clone()),
+        (
+            "Swept value",
+            number(
+                row.experiment
+                    .swept()
+                    .filter(|_| row.experiment.swept() != row.experiment.sampling()),
+            ),
+        ),
         ("ε", words::number(row.detectable_bias, 3)),
-        ("Draws of the statistics", words::count(row.draws)),
-        ("Draws to the verdict", words::count(row.drawn)),
-        ("p of the law", number(row.p_law)),
+        ("Draws of the statistics", words::count(row.experiment.draws)),
+        ("Draws to the verdict", words::count(row.experiment.drawn)),
+        ("p of the law", number(row.experiment.p_law)),
         ("Skewness in theory", number(row.predicted_skewness)),
         ("Kurtosis in theory", number(row.predicted_kurtosis)),
-        ("Setup lookups of a ray", words::count(row.setup_lookups.filter(|&count| count > 0))),
-        ("n, draws of a ray", words::count(joined.case.draws_per_ray.filter(|&n| n > 1))),
-        ("Needs", row.needs.clone()),
-        ("Best σ\u{302}", number(row.best_sampling)),
-        ("Best σ\u{302} is", row.best_kind.clone()),
-        ("Best figure of merit", number(row.best_fom)),
-        ("Limit of the figure of merit", number(row.best_limit)),
-        ("Kernel", row.kernel.clone()),
-        ("Stream", row.stream.map_or_else(String::new, |stream| stream.to_string())),
-        ("Drawn as", row.same_as.clone()),
+        (
+            "Setup lookups of a ray",
+            words::count(row.experiment.setup_lookups.filter(|&count| count > 0)),
+        ),
+        ("n, draws of a ray", words::count(row.case.draws_per_ray.filter(|&n| n > 1))),
+        ("Needs", row.experiment.needs.clone()),
+        ("Best σ\u{302}", number(row.best_sampling())),
+        ("Best σ\u{302} is", row.best_kind().to_owned()),
+        ("Best figure of merit", number(row.best_fom())),
+        ("Limit of the figure of merit", number(row.best_limit())),
+        ("Kernel", row.experiment.kernel.clone()),
+        ("Stream", row.experiment.stream.map_or_else(String::new, |stream| stream.to_string())),
+        ("Drawn as", row.experiment.same_as()),
         ("All values in units of exp(−u), u", number(row.log_unit)),
-        ("Processor time [s]", words::number(joined.seconds, 3)),
-        ("Draws", if joined.is_reused { "of an earlier run".to_owned() } else { String::new() }),
+        ("Processor time [s]", words::number(row.experiment.spent.seconds, 3)),
+        (
+            "Draws",
+            if row.experiment.spent.is_reused {
+                "of an earlier run".to_owned()
+            } else {
+                String::new()
+            },
+        ),
     ];
     facts.retain(|(_, value)| !value.is_empty() && value != words::UNKNOWN);
     facts

@@ -5,7 +5,7 @@ use maud::{Markup, html};
 use super::{page, words};
 use crate::record::baseline::Comparison;
 use crate::record::{Record, Verdict};
-use crate::report::failures::{Failure, experiment, failing};
+use crate::report::failures::{Failure, failing};
 use crate::report::likely;
 use crate::report::totals;
 use numeric::digits::{percent, range, short, time};
@@ -40,7 +40,7 @@ pub fn verdict(record: &Record) -> RunVerdict {
         (.., true) => "pass",
         _ => "refused",
     };
-    let rows = record.results.cases.iter().map(|case| case.rows.len()).sum();
+    let rows = record.results.rows().count();
     RunVerdict { class, failing, open, is_worse, rows }
 }
 
@@ -136,19 +136,15 @@ fn facts(record: &Record) -> Vec<(&'static str, String)> {
 
 /// The largest ln E of all checks that no declared bias makes large, beside the limit at which it fails, and where.
 fn strongest(record: &Record) -> Option<String> {
-    let rows =
-        record.results.cases.iter().flat_map(|case| case.rows.iter().map(move |row| (case, row)));
-    let gated = rows.flat_map(|(case, row)| {
-        let asked = row.findings.iter().filter(|finding| !finding.expects_bias);
-        asked.filter_map(move |finding| {
-            Some((words::ordered(finding.gate?.ln_e), case, row, finding))
-        })
+    let gated = record.results.rows().flat_map(|row| {
+        let asked = row.findings().filter(|finding| !finding.expects_bias);
+        asked.filter_map(move |finding| Some((words::ordered(finding.gate?.ln_e), row, finding)))
     });
     // Of equal ones the first.
-    let (ln_e, case, row, finding) = gated.reduce(|a, b| if b.0 > a.0 { b } else { a })?;
+    let (ln_e, row, finding) = gated.reduce(|a, b| if b.0 > a.0 { b } else { a })?;
     let limit = words::number(Some(finding.gate?.ln_e_limit), 3);
-    let (ln_e, of) = (words::evidence(ln_e), experiment(case, row));
-    Some(format!("ln E = {ln_e} of {limit}: {} of {}, {of}", finding.check, case.name))
+    let (ln_e, of) = (words::evidence(ln_e), row.name());
+    Some(format!("ln E = {ln_e} of {limit}: {} of {}, {of}", finding.check, row.case.name))
 }
 
 fn suspects(record: &Record) -> Markup {
@@ -192,11 +188,11 @@ fn failures(title: &str, failures: &[Failure]) -> Markup {
                 h2 { (title) }
                 @for failure in failures.iter().take(MOST) {
                     article {
-                        h3 { a href={ "#" (words::anchor(failure.case, failure.row)) } { (failure.case.name) ": " (failure.experiment()) } }
+                        h3 { a href={ "#" (words::anchor(&failure.row)) } { (failure.row.case.name) ": " (failure.experiment()) } }
                         p { @if !failure.check().is_empty() { b { (failure.check()) } ": " }
                             (failure.reason()) " (" (failure.place()) ")" }
                         (page::command(failure.row.next_command()))
-                        (page::causes(&likely::lines(failure.case, failure.row)))
+                        (page::causes(&likely::lines(&failure.row)))
                     }
                 }
                 (more(failures.len(), MOST))

@@ -62,8 +62,8 @@ pub fn ground() -> Markup {
 }
 
 /// ln E of each check of a row from look to look, in units of the limit at which it fails; nothing where the gate looked at none.
-pub fn evidence(findings: &[Finding]) -> Markup {
-    let asked = findings.iter().filter(|finding| !finding.path.is_empty());
+pub fn evidence(findings: &[&Finding]) -> Markup {
+    let asked = findings.iter().copied().filter(|finding| !finding.path.is_empty());
     let [first, last] = ends(asked.clone().flat_map(|one| one.path.iter().map(|look| look[0])));
     let line = |finding: &Finding| {
         let limit = finding.gate?.ln_e_limit;

@@ -1,15 +1,16 @@
 //! Numbers and verdicts as they stand on the page.
 
-use crate::record::{CaseRecord, Row, Verdict};
+use crate::record::{Row, Score, Verdict};
 use numeric::digits::{short, signed};
 
 /// What is unknown, or without bound.
 pub const UNKNOWN: &str = "–";
 
-/// What a row is called in the page's address, now and after every run of the same case.
-pub fn anchor(case: &CaseRecord, row: &Row) -> String {
-    let place = case.rows.iter().take_while(|other| !std::ptr::eq(*other, row)).count();
-    format!("{}:{place}", case.name.replace(char::is_whitespace, "-"))
+/// Anchor of a row in the page: the text of its identity, the same after every run of the case.
+pub fn anchor(row: &Row) -> String {
+    let id = &row.experiment.id;
+    let comma = if row.channel.is_empty() { "" } else { ", " };
+    format!("{id}{comma}{}", row.channel).replace(char::is_whitespace, "-")
 }
 
 /// A number in so many digits.
@@ -24,10 +25,10 @@ pub fn count(value: Option<u64>) -> String {
 }
 
 /// A z-score, in parentheses where it is not to be read as normal.
-pub fn z(row: &Row, name: &str, z: Option<f64>) -> String {
+pub fn z(row: &Row, score: Score, z: Option<f64>) -> String {
     match z.filter(|z| z.is_finite()) {
         None => UNKNOWN.to_owned(),
-        Some(z) if row.not_normal.contains(&name) => format!("({})", signed(z)),
+        Some(z) if row.not_normal.contains(&score) => format!("({})", signed(z)),
         Some(z) => signed(z),
     }
 }

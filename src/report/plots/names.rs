@@ -2,15 +2,15 @@
 
 use std::ops::RangeInclusive;
 
-use crate::report::labels::Labels;
+use crate::record::Digits;
 use crate::report::plots::series::Group;
 use numeric::digits::count;
 
 /// Labels of the series, no two alike: the estimator, its control, its σ̂ where others of its name have another, and
 /// the channel.
-pub(super) fn labels(groups: &[Group], digits: Labels) -> Vec<String> {
+pub(super) fn labels(groups: &[Group], digits: Digits) -> Vec<String> {
     let estimator = |group: &Group| match (group.rows.first(), group.curve) {
-        (Some(row), _) => row.estimator.clone(),
+        (Some(row), _) => row.experiment.label.clone(),
         (None, Some(curve)) => curve.estimator.clone(),
         (None, None) => String::new(),
     };
@@ -40,20 +40,23 @@ pub fn numbered(texts: Vec<String>) -> Vec<String> {
 
 /// The control, where all rows have the same.
 fn control(group: &Group) -> String {
-    let first = group.rows.first().map(|row| &row.control);
+    let first = group.rows.first().map(|row| &row.experiment.id.control);
     let first = first.or(group.curve.map(|curve| &curve.control));
-    let same = first.filter(|first| group.rows.iter().all(|row| row.control == **first));
+    let same =
+        first.filter(|first| group.rows.iter().all(|row| row.experiment.id.control == **first));
     same.cloned().unwrap_or_default()
 }
 
 /// σ̂ in words; empty where it is what is swept.
-fn sampling(group: &Group, digits: Labels) -> String {
-    let drawn = || group.rows.iter().filter(|row| !row.sampling_kind.is_empty());
-    if drawn().any(|row| row.swept.is_some() && row.swept == row.sampling) {
+fn sampling(group: &Group, digits: Digits) -> String {
+    let drawn = || group.rows.iter().filter(|row| !row.experiment.id.sampling.kind.is_empty());
+    if drawn().any(|row| {
+        row.experiment.swept().is_some() && row.experiment.swept() == row.experiment.sampling()
+    }) {
         return String::new();
     }
     let Some(first) = drawn().next() else { return String::new() };
-    let ends = drawn().filter_map(|row| row.sampling).fold(None, |ends, value| {
+    let ends = drawn().filter_map(|row| row.experiment.sampling()).fold(None, |ends, value| {
         let [low, high] = ends.unwrap_or([value; 2]);
         Some([f64::min(low, value), f64::max(high, value)])
     });
@@ -62,7 +65,7 @@ fn sampling(group: &Group, digits: Labels) -> String {
             format!("σ\u{302} {} to {}", digits.text(low), digits.text(high))
         }
         Some([value, _]) => format!("σ\u{302} {}", digits.text(value)),
-        None => first.sampling_kind.clone(),
+        None => first.experiment.id.sampling.kind.clone(),
     }
 }
 

@@ -2,8 +2,7 @@
 
 use std::ops::RangeInclusive;
 
-use crate::record::{CaseRecord, Curve, CurvePoint, Row, Sweep, Verdict};
-use crate::report::labels::Labels;
+use crate::record::{CaseRecord, Curve, CurvePoint, Digits, Row, Sweep, Verdict};
 use crate::report::plots::legend::Entry;
 use crate::report::plots::names::{labels, marks};
 use crate::report::plots::style::Style;
@@ -15,7 +14,7 @@ pub struct Series<'a> {
     /// How it looks.
     pub style: Style,
     /// Its rows.
-    pub rows: Vec<&'a Row>,
+    pub rows: Vec<Row<'a>>,
     /// What theory says, if it says anything.
     pub curve: Option<&'a Curve>,
 }
@@ -35,13 +34,17 @@ impl Series<'_> {
     ) -> Vec<(f64, f64)> {
         match self.curve.filter(|curve| !curve.points.is_empty()) {
             Some(curve) => curve.points.iter().map(|point| (point.x, of_point(point))).collect(),
-            None => self.rows.iter().filter_map(|row| Some((row.swept?, of_row(row)?))).collect(),
+            None => self
+                .rows
+                .iter()
+                .filter_map(|row| Some((row.experiment.swept()?, of_row(row)?)))
+                .collect(),
         }
     }
 
     /// Range of the setup lookups of its rows; `None` if all are 0 or unknown.
     pub fn setup_lookups(&self) -> Option<RangeInclusive<u64>> {
-        let counts = || self.rows.iter().filter_map(|row| row.setup_lookups);
+        let counts = || self.rows.iter().filter_map(|row| row.experiment.setup_lookups);
         let most = counts().max().filter(|&most| most > 0)?;
         Some(counts().min().unwrap_or(most)..=most)
     }
@@ -49,8 +52,12 @@ impl Series<'_> {
     /// The entry of the legend: the label, and what the estimator needs.
     pub fn entry(&self) -> Entry {
         let Style { colour, dash, marker } = self.style;
-        let measured = self.rows.iter().any(|row| row.draws.is_some());
-        let needs = self.rows.iter().map(|row| row.needs.as_str()).find(|needs| !needs.is_empty());
+        let measured = self.rows.iter().any(|row| row.experiment.draws.is_some());
+        let needs = self
+            .rows
+            .iter()
+            .map(|row| row.experiment.needs.as_str())
+            .find(|needs| !needs.is_empty());
         let marks = marks(needs.unwrap_or_default(), self.setup_lookups(), self.is_fixed());
         Entry {
             label: format!("{}{marks}", self.label),
@@ -71,7 +78,7 @@ pub fn notes(series: &[Series]) -> Vec<String> {
         let refused = one.rows.iter().filter(|row| row.verdict == Some(Verdict::Refused)).count();
         (refused > 0).then(|| format!("{} at {refused} of {}", one.label, one.rows.len()))
     };
-    let exact = |row: &&Row| row.variance.or(row.predicted_variance) == Some(0.0);
+    let exact = |row: &Row| row.variance.or(row.predicted_variance) == Some(0.0);
     let exact = |one: &Series| one.rows.iter().any(exact).then(|| one.label.clone());
     [list("Refused", &refused), list("Variance 0, which a logarithmic axis cannot show", &exact)]
         .into_iter()
@@ -79,8 +86,8 @@ pub fn notes(series: &[Series]) -> Vec<String> {
         .collect()
 }
 
-fn is_fixed(rows: &[&Row], curve: Option<&Curve>) -> bool {
-    curve.is_none() && rows.iter().all(|row| row.swept.is_none())
+fn is_fixed(rows: &[Row], curve: Option<&Curve>) -> bool {
+    curve.is_none() && rows.iter().all(|row| row.experiment.swept().is_none())
 }
 
 /// The rows of one estimator of the case, one channel of its value.
@@ -88,7 +95,7 @@ pub(super) struct Group<'a> {
     /// The number of the estimator.
     listed: usize,
     pub(super) channel: &'a str,
-    pub(super) rows: Vec<&'a Row>,
+    pub(super) rows: Vec<Row<'a>>,
     pub(super) curve: Option<&'a Curve>,
 }
 
@@ -97,19 +104,18 @@ const CROWD: usize = 12;
 
 /// The series of a case, in the order of its rows; a curve without rows is a series, too.
 pub fn collect<'a>(case: &'a CaseRecord, sweep: &'a Sweep) -> Vec<Series<'a>> {
-    let (of_rows, of_curves) = numbers(case, sweep);
     let mut groups: Vec<Group> = Vec::new();
-    for (row, listed) in case.rows.iter().zip(of_rows) {
-        group(&mut groups, listed, &row.channel).rows.push(row);
+    for row in case.rows() {
+        group(&mut groups, row.experiment.listed, &row.values.channel).rows.push(row);
     }
     join_refused(&mut groups);
-    for (curve, listed) in sweep.curves.iter().zip(of_curves) {
-        group(&mut groups, listed, &curve.channel).curve.get_or_insert(curve);
+    for curve in &sweep.curves {
+        group(&mut groups, curve.listed, &curve.channel).curve.get_or_insert(curve);
     }
     if groups.len() > CROWD {
         keep_last_channels(&mut groups);
     }
-    let labels = labels(&groups, Labels::of(case));
+    let labels = labels(&groups, Digits::of(case));
     let series = groups.into_iter().zip(labels).enumerate().map(|(i, (group, label))| {
         let Group { rows, curve, .. } = group;
         Series { label, style: Style::of(i), rows, curve }
@@ -129,41 +135,6 @@ fn group<'a, 'b>(
         groups.len() - 1
     });
     &mut groups[at]
-}
-
-/// The numbers of the estimators that rows and curves are of. Records from before they were kept have names only: which
-/// of the experiments with the same names at the same value of the sweep a row is tells twins apart.
-fn numbers(case: &CaseRecord, sweep: &Sweep) -> (Vec<usize>, Vec<usize>) {
-    let of_rows: Option<Vec<usize>> = case.rows.iter().map(|row| row.listed).collect();
-    let of_curves: Option<Vec<usize>> = sweep.curves.iter().map(|curve| curve.listed).collect();
-    if let (Some(of_rows), Some(of_curves)) = (of_rows, of_curves) {
-        return (of_rows, of_curves);
-    }
-    let mut names: Vec<(&str, bool, usize)> = Vec::new();
-    let mut numbered = |name| {
-        names.iter().position(|other| *other == name).unwrap_or_else(|| {
-            names.push(name);
-            names.len() - 1
-        })
-    };
-    let rows = case.rows.iter().enumerate().map(|(i, row)| {
-        let same = |other: &&Row| {
-            (&other.estimator, &other.channel, other.swept)
-                == (&row.estimator, &row.channel, row.swept)
-        };
-        let earlier = case.rows[..i].iter().filter(same).count();
-        numbered((row.estimator.as_str(), row.swept.is_some(), earlier))
-    });
-    let rows: Vec<usize> = rows.collect();
-    let curves = sweep.curves.iter().enumerate().map(|(i, curve)| {
-        let same = |other: &&Curve| {
-            (&other.estimator, &other.channel) == (&curve.estimator, &curve.channel)
-        };
-        let earlier = sweep.curves[..i].iter().filter(same).count();
-        numbered((curve.estimator.as_str(), true, earlier))
-    });
-    let curves = curves.collect();
-    (rows, curves)
 }
 
 /// A refused experiment has no channels: where others of its estimator have, it stands with their first.
@@ -204,91 +175,100 @@ fn keep_last_channels(groups: &mut Vec<Group>) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::case::sweep::What;
+    use crate::plan::ExperimentId;
+    use crate::plan::id::{Number, SamplingName, SweepPoint};
+    use crate::record::{ChannelRecord, ExperimentRecord};
 
-    fn row(estimator: &str, control: &str, swept: Option<f64>) -> Row {
-        let (estimator, control) = (estimator.to_owned(), control.to_owned());
-        Row { estimator, control, swept, ..Row::default() }
+    /// An experiment of one channel; the estimator is listed under the number.
+    fn one(listed: usize, estimator: &str, control: &str, swept: Option<f64>) -> ExperimentRecord {
+        let value = swept.map(|value| SweepPoint { what: What::Sampling, value: Number(value) });
+        let id = ExperimentId { control: control.to_owned(), swept: value, ..Default::default() };
+        let (label, channels) = (estimator.to_owned(), vec![ChannelRecord::default()]);
+        ExperimentRecord { id, label, listed, channels, ..ExperimentRecord::default() }
     }
 
-    fn case(rows: Vec<Row>) -> CaseRecord {
-        let [name, title, problem, medium] = [const { String::new() }; 4];
-        CaseRecord { name, title, problem, medium, rows, ..CaseRecord::default() }
+    /// The experiment with channels of these names.
+    fn with_channels(one: ExperimentRecord, names: &[&str]) -> ExperimentRecord {
+        let channel =
+            |name: &&str| ChannelRecord { channel: (*name).to_owned(), ..ChannelRecord::default() };
+        ExperimentRecord { channels: names.iter().map(channel).collect(), ..one }
+    }
+
+    fn case(experiments: Vec<ExperimentRecord>) -> CaseRecord {
+        CaseRecord { experiments, ..CaseRecord::default() }
+    }
+
+    fn sweep() -> Sweep {
+        let [what, axis] = [const { String::new() }; 2];
+        Sweep { what, axis, log: false, z_limit: None, curves: vec![] }
+    }
+
+    fn labels_of(case: &CaseRecord) -> Vec<(String, usize)> {
+        let sweep = sweep();
+        let series = collect(case, &sweep).into_iter();
+        series.map(|series| (series.label, series.rows.len())).collect()
+    }
+
+    fn are(found: &[(String, usize)], expected: &[(&str, usize)]) {
+        let found: Vec<(&str, usize)> = found.iter().map(|(label, n)| (&**label, *n)).collect();
+        assert_eq!(found, expected);
     }
 
     #[test]
     fn of_a_crowd_each_estimator_shows_its_last_channel() {
-        let empty = String::new;
-        let sweep =
-            Sweep { what: empty(), axis: empty(), log: false, z_limit: None, curves: vec![] };
-        let channels = |estimator: &str, count: usize| -> Vec<Row> {
-            let channel = |i| Row { channel: format!("{i}"), ..row(estimator, "", Some(1.0)) };
-            (1..=count).map(channel).collect()
+        let names = ["1", "2", "3", "4", "5", "6", "7", "8", "9", "10", "11", "12", "13"];
+        let with = |listed, name, count: usize| {
+            with_channels(one(listed, name, "", Some(1.0)), &names[..count])
         };
-        let labels = |rows: Vec<Row>| -> Vec<String> {
-            collect(&case(rows), &sweep).into_iter().map(|one| one.label).collect()
-        };
-        assert_eq!(labels([channels("a", 8), channels("b", 4)].concat()).len(), 12);
-        assert_eq!(labels([channels("a", 8), channels("b", 5)].concat()), ["a, 8", "b, 5"]);
+        assert_eq!(labels_of(&case(vec![with(0, "a", 8), with(1, "b", 4)])).len(), 12);
+        are(&labels_of(&case(vec![with(0, "a", 8), with(1, "b", 5)])), &[("a, 8", 1), ("b, 5", 1)]);
         // Two experiments of one name are two series, of which each shows its last channel.
-        let twins = [channels("a", 8), channels("a", 8)].concat();
-        assert_eq!(labels(twins), ["a, 8", "a, 8 #2"]);
-        // What is refused stands with it.
-        let crowd = case([vec![row("a", "", Some(2.0))], channels("a", 13)].concat());
-        let series = collect(&crowd, &sweep);
-        assert_eq!((series.len(), series[0].label.as_str(), series[0].rows.len()), (1, "a, 13", 2));
+        let twins = case(vec![with(0, "a", 8), with(1, "a", 8)]);
+        are(&labels_of(&twins), &[("a, 8", 1), ("a, 8 #2", 1)]);
+        // A refused experiment stands with others of its estimator.
+        let crowd = case(vec![one(0, "a", "", Some(2.0)), with(0, "a", 13)]);
+        are(&labels_of(&crowd), &[("a, 13", 2)]);
     }
 
     #[test]
     fn twins_are_kept_apart_and_swept_controls_together() {
-        let empty = String::new;
-        let sweep =
-            Sweep { what: empty(), axis: empty(), log: false, z_limit: None, curves: vec![] };
         let twins = case(vec![
-            row("residual", "constant 1", Some(1.0)),
-            row("residual", "constant 2", Some(1.0)),
-            row("residual", "constant 1", Some(2.0)),
-            row("residual", "constant 2", Some(2.0)),
-            row("regular", "", None),
+            one(0, "residual", "constant 1", Some(1.0)),
+            one(1, "residual", "constant 2", Some(1.0)),
+            one(0, "residual", "constant 1", Some(2.0)),
+            one(1, "residual", "constant 2", Some(2.0)),
+            one(2, "regular", "", None),
         ]);
-        let labels: Vec<_> = collect(&twins, &sweep).into_iter().map(|s| s.label).collect();
-        assert_eq!(labels, ["residual, constant 1", "residual, constant 2", "regular"]);
-        let channel = |channel: &str| Row { channel: channel.into(), ..row("walk", "", Some(2.0)) };
-        let refused = case(vec![row("walk", "", Some(1.0)), channel("R"), channel("T")]);
-        let series = collect(&refused, &sweep);
-        let labels: Vec<_> = series.iter().map(|s| (s.label.as_str(), s.rows.len())).collect();
-        assert_eq!(labels, [("walk, R", 2), ("walk, T", 1)]);
+        let expected = [("residual, constant 1", 2), ("residual, constant 2", 2), ("regular", 1)];
+        are(&labels_of(&twins), &expected);
+        let walk = with_channels(one(0, "walk", "", Some(2.0)), &["R", "T"]);
+        let refused = case(vec![one(0, "walk", "", Some(1.0)), walk]);
+        are(&labels_of(&refused), &[("walk, R", 2), ("walk, T", 1)]);
         let swept =
-            case(vec![row("r", "constant 1", Some(1.0)), row("r", "constant 2", Some(2.0))]);
-        let series = collect(&swept, &sweep);
-        assert_eq!((series.len(), series[0].label.as_str()), (1, "r"));
+            case(vec![one(0, "r", "constant 1", Some(1.0)), one(0, "r", "constant 2", Some(2.0))]);
+        are(&labels_of(&swept), &[("r", 2)]);
     }
 
     #[test]
     fn each_experiment_is_a_series_and_labels_are_distinct() {
-        let empty = String::new;
-        let sweep =
-            Sweep { what: empty(), axis: empty(), log: false, z_limit: None, curves: vec![] };
-        let at = |listed: usize, row: Row, sampling: Option<f64>, kind: &str| Row {
-            listed: Some(listed),
-            sampling,
-            sampling_kind: kind.to_owned(),
-            ..row
+        let at = |one: ExperimentRecord, constant: Option<f64>, kind: &str| {
+            let sampling = SamplingName { constant: constant.map(Number), kind: kind.to_owned() };
+            let id = ExperimentId { sampling, ..one.id.clone() };
+            ExperimentRecord { id, ..one }
         };
-        let rows = vec![
+        let found = labels_of(&case(vec![
             // The same name swept in its control, and beside the sweep.
-            at(0, row("decomposition", "constant 0.1", Some(0.1)), Some(0.9), "constant"),
-            at(0, row("decomposition", "constant 0.2", Some(0.2)), Some(0.9), "constant"),
-            at(1, row("decomposition", "minimum", None), Some(0.6), "constant"),
+            at(one(0, "decomposition", "constant 0.1", Some(0.1)), Some(0.9), "constant"),
+            at(one(0, "decomposition", "constant 0.2", Some(0.2)), Some(0.9), "constant"),
+            at(one(1, "decomposition", "minimum", None), Some(0.6), "constant"),
             // Names that differ in σ̂ alone.
-            at(2, row("local-majorant", "", None), None, "local majorants, 10 segments"),
-            at(3, row("local-majorant", "", None), None, "piecewise-constant"),
-            // Twins in everything that a row tells.
-            at(4, row("ratio", "", None), Some(2.0), "constant"),
-            at(5, row("ratio", "", None), Some(2.0), "constant"),
-        ];
-        let case = case(rows);
-        let series = collect(&case, &sweep);
-        let labels: Vec<_> = series.iter().map(|s| (s.label.as_str(), s.rows.len())).collect();
+            at(one(2, "local-majorant", "", None), None, "local majorants, 10 segments"),
+            at(one(3, "local-majorant", "", None), None, "piecewise-constant"),
+            // Twins in everything that a label has.
+            at(one(4, "ratio", "", None), Some(2.0), "constant"),
+            at(one(5, "ratio", "", None), Some(2.0), "constant"),
+        ]));
         let expected = [
             ("decomposition, σ\u{302} 0.9", 2),
             ("decomposition, minimum, σ\u{302} 0.6", 1),
@@ -297,32 +277,24 @@ mod tests {
             ("ratio", 1),
             ("ratio #2", 1),
         ];
-        assert_eq!(labels, expected);
-        // A record from before there were numbers: the swept and the other are told apart all the same.
-        let mut old = case.clone();
-        old.rows.iter_mut().for_each(|row| row.listed = None);
-        assert_eq!(collect(&old, &sweep).len(), 6);
+        are(&found, &expected);
     }
 
     #[test]
     fn what_an_estimator_needs_stands_in_the_legend() {
-        let empty = String::new;
-        let sweep =
-            Sweep { what: empty(), axis: empty(), log: false, z_limit: None, curves: vec![] };
-        let with = |estimator: &str, needs: &str, setup: u64, swept: Option<f64>| Row {
-            needs: needs.to_owned(),
-            setup_lookups: Some(setup),
-            ..row(estimator, "", swept)
+        let with = |listed, name: &str, needs: &str, setup: u64, swept: Option<f64>| {
+            let (needs, setup_lookups) = (needs.to_owned(), Some(setup));
+            ExperimentRecord { needs, setup_lookups, ..one(listed, name, "", swept) }
         };
         let case = case(vec![
-            with("a", "τ", 0, Some(1.0)),
-            with("b", "min σ_t", 0, None),
-            with("c", "", 4, Some(1.0)),
-            with("c", "", 20, Some(2.0)),
-            with("d", "", 0, Some(1.0)),
+            with(0, "a", "τ", 0, Some(1.0)),
+            with(1, "b", "min σ_t", 0, None),
+            with(2, "c", "", 4, Some(1.0)),
+            with(2, "c", "", 20, Some(2.0)),
+            with(3, "d", "", 0, Some(1.0)),
         ]);
         let labels: Vec<String> =
-            collect(&case, &sweep).iter().map(|series| series.entry().label).collect();
+            collect(&case, &sweep()).iter().map(|series| series.entry().label).collect();
         let expected =
             ["a (needs τ)", "b (needs min σₜ; not swept)", "c (4 to 20 setup lookups)", "d"];
         assert_eq!(labels, expected);

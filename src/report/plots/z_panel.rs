@@ -2,7 +2,7 @@
 
 use plotters::style::RGBAColor;
 
-use crate::record::{Row, Sweep};
+use crate::record::{Row, Score, Sweep};
 use crate::report::plots::font::Typeface;
 use crate::report::plots::legend::{self, Key};
 use crate::report::plots::series::Series;
@@ -15,12 +15,13 @@ const USUAL: f64 = 1.96;
 const BAND: RGBAColor = ink(0xEE, 0xF3, 0xF7);
 const LIMIT: RGBAColor = ink(0xB0, 0x30, 0x30);
 
-type Score = (Marker, &'static str, &'static str, fn(&Row) -> Option<f64>);
+/// A score: its marker, its word, its kind, its value.
+type Shown = (Marker, &'static str, Score, fn(&Row) -> Option<f64>);
 
-const SCORES: [Score; 3] = [
-    (Marker::Disc, "mean", "z_mean", |row| row.z_mean),
-    (Marker::Square, "variance", "z_variance", |row| row.z_variance),
-    (Marker::Diamond, "lookups", "z_lookups", |row| row.z_lookups),
+const SCORES: [Shown; 3] = [
+    (Marker::Disc, "mean", Score::Mean, |row| row.z_mean),
+    (Marker::Square, "variance", Score::Variance, |row| row.z_variance),
+    (Marker::Diamond, "lookups", Score::Lookups, |row| row.experiment.z_lookups),
 ];
 
 /// Draws the scores of the series into a panel, whose vertical axis is chosen here.
@@ -82,12 +83,12 @@ fn points(sheet: &mut Sheet, panel: &Panel, series: &[Series]) -> bool {
     let (mut slot, mut edge) = (0.0, panel.right - 9.0);
     for one in series {
         let fixed = one.is_fixed();
-        for (marker, _, column, score) in SCORES {
+        for (marker, _, kind, score) in SCORES {
             let shift = (slot - (slots - 1.0) / 2.0) * step;
             slot += if fixed { 0.0 } else { 1.0 };
             for row in &one.rows {
                 // What is not swept has a place of its own at the right edge, as in other panels.
-                let place = row.swept.map_or(Some(edge), |swept| {
+                let place = row.experiment.swept().map_or(Some(edge), |swept| {
                     Some(panel.across(swept)?.clamp(least, most) + shift)
                 });
                 let (Some(x), Some(z)) = (place, score(row)) else { continue };
@@ -96,7 +97,7 @@ fn points(sheet: &mut Sheet, panel: &Panel, series: &[Series]) -> bool {
                 let at = [x.clamp(panel.left + 4.0, panel.right - 4.0), y];
                 if panel.holds(at) {
                     panel.point(sheet, at, marker, 3.6, one.style.colour);
-                    if row.not_normal.contains(&column) {
+                    if row.not_normal.contains(&kind) {
                         panel.point(sheet, at, marker, 0.8, PAPER);
                     }
                     continue;
@@ -119,7 +120,10 @@ fn points(sheet: &mut Sheet, panel: &Panel, series: &[Series]) -> bool {
 
 /// The smallest distance on the sheet between two values of the sweep.
 fn gap(panel: &Panel, series: &[Series]) -> f64 {
-    let swept = series.iter().flat_map(|one| &one.rows).filter_map(|row| panel.across(row.swept?));
+    let swept = series
+        .iter()
+        .flat_map(|one| &one.rows)
+        .filter_map(|row| panel.across(row.experiment.swept()?));
     let mut places: Vec<f64> = swept.collect();
     places.sort_by(f64::total_cmp);
     let steps = places.windows(2).map(|pair| pair[1] - pair[0]).filter(|step| *step > 0.5);

@@ -141,7 +141,7 @@ fn line(one: &Series, quantity: &Quantity, panel: &Panel) -> Line {
         let has_place = points.iter().any(|&(x, y)| panel.spot(x, y).is_some());
         return if has_place { Line::Points(points) } else { Line::None };
     }
-    let mut fixed = one.rows.iter().filter(|row| row.swept.is_none());
+    let mut fixed = one.rows.iter().filter(|row| row.experiment.swept().is_none());
     let level = fixed.find_map(|row| (quantity.predicted)(row).or((quantity.measured)(row)));
     level.filter(|&y| panel.down(y).is_some()).map_or(Line::None, Line::Level)
 }
@@ -152,13 +152,13 @@ fn points(panel: &Panel, quantity: &Quantity, series: &[Series]) -> Vec<Point> {
     let mut points = Vec::new();
     for (index, one) in series.iter().enumerate() {
         for row in &one.rows {
-            let x = row.swept.map_or(Some(edge), |swept| panel.across(swept));
+            let x = row.experiment.swept().map_or(Some(edge), |swept| panel.across(swept));
             let measured = (quantity.measured)(row);
             let place = measured.and_then(|value| Some((value, [x?, panel.down(value)?])));
             let Some((value, spot)) = place.filter(|(_, spot)| panel.holds(*spot)) else {
                 continue;
             };
-            if row.swept.is_none() {
+            if row.experiment.swept().is_none() {
                 edge -= PLACE;
             }
             let bar = (quantity.deviation)(row);

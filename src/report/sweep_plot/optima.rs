@@ -16,7 +16,6 @@ const RIM: plotters::style::RGBAColor = ink(0x22, 0x22, 0x22);
 /// Whether the star of a best σ̂ is hollow, for the figure of merit has no maximum there; `None` for no star.
 fn is_hollow(best: Option<&Best>) -> Option<bool> {
     let is_drawn = |best: &Best| best.limit.is_some() || best.is_optimum();
-    // Records from before kinds were kept have optima.
     best.map_or(Some(false), |best| is_drawn(best).then_some(best.limit.is_some()))
 }
 

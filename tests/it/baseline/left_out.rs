@@ -7,7 +7,7 @@ use assert_cmd::Command;
 use serde_json::Value;
 use tempfile::TempDir;
 use trueflight::record::baseline::LeftOut;
-use trueflight::record::baseline::{Baseline, Entry};
+use trueflight::record::baseline::{Baseline, ChannelId, Entry};
 use trueflight::record::baseline::{Rules, compare};
 use trueflight::report::diff;
 
@@ -16,7 +16,7 @@ use super::{CASE, RULES, baseline, command, said};
 /// Spoils an entry.
 type Doctor = fn(&mut Entry);
 /// Where that is listed.
-type List = fn(&LeftOut) -> &Vec<String>;
+type List = fn(&LeftOut) -> &Vec<ChannelId>;
 
 /// The same with nothing but what is given.
 fn plain(folder: &Path, arguments: &str) -> Output {
@@ -76,7 +76,10 @@ fn times_that_were_asked_for_and_not_compared_are_an_error() {
     }
     std::fs::write(&path, tree.to_string()).expect("written");
     let text = said(&plain(place, &format!("{run} --baseline main")), 0);
-    assert!(text.contains("time not compared, less than 0.1 s (2): case|woodcock|1"), "{text}");
+    assert!(
+        text.contains("time not compared, less than 0.1 s (2): case:woodcock, σ\u{302} 1"),
+        "{text}"
+    );
     assert!(text.contains("4 variances and lookups compared"), "{text}");
     assert!(text.contains("0 times at a tolerance of 0.25"), "{text}");
     let text = said(&plain(place, &format!("{run} --baseline main --time-tolerance 0.5")), 2);
@@ -91,7 +94,7 @@ fn times_that_were_asked_for_and_not_compared_are_an_error() {
 #[test]
 fn what_is_left_out_is_said_with_its_reason() {
     let (mut stored, mut run) = (baseline(1), baseline(2));
-    let rules = Rules { time_tolerance: 0.25, ..RULES };
+    let rules = Rules { time_tolerance: Some(0.25), ..RULES };
     for entry in stored.entries.iter_mut().chain(&mut run.entries) {
         entry.seconds = Some(1.0);
     }

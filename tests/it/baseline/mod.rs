@@ -19,7 +19,7 @@ use trueflight::plan::Plan;
 use trueflight::record::Record;
 use trueflight::record::baseline::{Baseline, BaselineError, Entry};
 use trueflight::record::baseline::{Comparison, Quantity, Rules, Sequel, compare};
-use trueflight::record::verdict;
+use trueflight::record::build;
 use trueflight::rng::Streams;
 
 const CASE: &str = "title = \"a case\"
@@ -30,7 +30,7 @@ sampling.constant.value = 1
 estimators = [{ woodcock = {} }, { ratio = {} }]
 ";
 
-const RULES: Rules = Rules { alpha: 1e-3, time_tolerance: f64::INFINITY };
+const RULES: Rules = Rules { alpha: 1e-3, time_tolerance: None };
 
 fn case() -> Case {
     let source = Source { name: "case".into(), path: "case.toml".into(), text: CASE.into() };
@@ -42,7 +42,7 @@ fn options(seed: u64) -> Options {
 }
 
 fn record(plan: &Plan) -> Record {
-    verdict::judged(plan, &run::draw(plan, &|_| {}), 0.0)
+    build::judged(plan, &run::draw(plan, &|_| {}), 0.0)
 }
 
 fn baseline(seed: u64) -> Baseline {
@@ -70,7 +70,7 @@ fn a_stored_run_comes_back() {
     let path = Baseline::path(&folder.path().join("new"), "main-1.0").expect("a name");
     let run = baseline(1);
     assert_eq!(run.entries.len(), 2);
-    assert!(run.entries[1].id.starts_with("case|ratio|1|"), "{}", run.entries[1].id);
+    assert_eq!(run.entries[1].id.to_string(), "case:ratio, σ\u{302} 1");
     run.write(&path).expect("written");
     let read = Baseline::read(&path).expect("read");
     let (comparison, next) = compare("main", &read, &run, &RULES);
@@ -98,7 +98,7 @@ fn doctored_baselines_are_flagged_and_equal_runs_are_not() {
     let change = &comparison.changes[1];
     let [low, high] = change.interval.expect("an interval");
     assert!(low > 1.8 && low < change.ratio && change.ratio < high && high < 2.2, "{change:?}");
-    assert!(change.command.contains("--filter") && change.id.contains("ratio"));
+    assert!(change.command.contains("--filter") && change.id.experiment.estimator.name == "ratio");
 
     let mut worse = stored.clone();
     worse.entries[1].variance = worse.entries[1].variance.map(|v| 2.0 * v);
@@ -116,7 +116,7 @@ fn a_time_fails_beyond_its_tolerance_only() {
         stored.entries[0].seconds = Some(before);
         run.entries[0].seconds = Some(now);
         run.entries[0].drawn = stored.entries[0].drawn;
-        let rules = Rules { time_tolerance: 0.25, ..RULES };
+        let rules = Rules { time_tolerance: Some(0.25), ..RULES };
         let (comparison, _) = compare("main", &stored, &run, &rules);
         let times = comparison.changes.iter().filter(|change| change.quantity == Quantity::Time);
         let of_first = times.filter(|change| change.id == run.entries[0].id);
@@ -128,10 +128,10 @@ fn a_time_fails_beyond_its_tolerance_only() {
 #[test]
 fn what_only_one_side_has_is_listed() {
     let (stored, mut run) = (baseline(1), baseline(2));
-    run.entries[0].id = "case|new".into();
+    "new".clone_into(&mut run.entries[0].id.channel);
     run.entries[1].case = "another text".into();
     let (comparison, next) = compare("main", &stored, &run, &RULES);
-    assert_eq!(comparison.added, ["case|new"]);
+    assert_eq!(comparison.added, [run.entries[0].id.clone()]);
     assert_eq!(comparison.missing, [stored.entries[0].id.clone()]);
     assert_eq!(comparison.rewritten, [stored.entries[1].id.clone()]);
     assert_eq!(comparison.compared, 0);
@@ -187,7 +187,8 @@ fn a_small_bias_adds_up_over_runs() {
         }
         limit = plan.levels.ln_fail;
         let found = record(&plan);
-        let mean = found.results.cases[0].rows[1].findings[0].gate.expect("a scalar");
+        let mean = &found.results.cases[0].experiments[1].findings[0];
+        let mean = mean.gate.expect("a scalar");
         assert!(mean.ln_e < limit, "seed {seed}: one run is enough, {} {limit}", mean.ln_e);
         let run = Baseline::of(&found, &cases, "program");
         let Some(before) = stored.take() else {
@@ -198,7 +199,10 @@ fn a_small_bias_adds_up_over_runs() {
         assert_eq!(next.seeds.len() as u64, seed);
         if !comparison.drifts.is_empty() {
             let drift = &comparison.drifts[0];
-            assert!(drift.id.contains("ratio") && drift.check.contains("mean"), "{drift:?}");
+            assert!(
+                drift.id.experiment.estimator.name == "ratio" && drift.check.contains("mean"),
+                "{drift:?}"
+            );
             assert!(comparison.fails() && drift.ln_e >= limit);
             failed_after = Some(seed);
             break;

@@ -21,7 +21,7 @@ use trueflight::plan::Amount;
 use trueflight::plan::Options;
 use trueflight::plan::Plan;
 use trueflight::record::Record;
-use trueflight::record::verdict;
+use trueflight::record::build;
 use trueflight::record::{Finding, Row, Verdict};
 use trueflight::rng::Streams;
 
@@ -52,25 +52,29 @@ pub fn options(seed: u64, draws: u64) -> Options {
 pub fn judged(cases: &[Case], options: &Options) -> Record {
     let plan = Plan::new(cases, options);
     let draws = run::draw(&plan, &|_| {});
-    verdict::judged(&plan, &draws, 0.0)
+    build::judged(&plan, &draws, 0.0)
+}
+
+/// All rows of a record, which stays in memory until the tests end.
+pub fn rows_of(record: Record) -> Vec<Row<'static>> {
+    Box::leak(Box::new(record)).results.rows().collect()
 }
 
 /// Draws and judges one case written as text, from seed 1.
-pub fn rows(text: &str, draws: u64) -> Vec<Row> {
-    let record = judged(&[case("test", text)], &options(1, draws));
-    record.results.cases.into_iter().flat_map(|case| case.rows).collect()
+pub fn rows(text: &str, draws: u64) -> Vec<Row<'static>> {
+    rows_of(judged(&[case("test", text)], &options(1, draws)))
 }
 
 /// What theory says of one case written as text, as `trueflight predict` shows it.
-pub fn predicted(text: &str) -> Vec<Row> {
+pub fn predicted(text: &str) -> Vec<Row<'static>> {
     let cases = [case("test", text)];
-    let record = verdict::predicted(&Plan::new(&cases, &options(1, 1000)));
-    record.results.cases.into_iter().flat_map(|case| case.rows).collect()
+    let record = build::predicted(&Plan::new(&cases, &options(1, 1000)));
+    rows_of(record)
 }
 
 /// The row of an estimator whose name begins as given.
-pub fn row<'a>(rows: &'a [Row], estimator: &str) -> &'a Row {
-    let mut found = rows.iter().filter(|row| row.estimator.starts_with(estimator));
+pub fn row<'a>(rows: &'a [Row<'static>], estimator: &str) -> &'a Row<'static> {
+    let mut found = rows.iter().filter(|row| row.experiment.label.starts_with(estimator));
     found.next().unwrap_or_else(|| panic!("no row of {estimator}"))
 }
 
@@ -80,10 +84,10 @@ pub fn failing(rows: &[Row]) -> Vec<String> {
     for row in rows {
         let unasked: Vec<&str> = ["mean", "variance", "lookups"]
             .into_iter()
-            .filter(|check| row.findings.iter().all(|finding| finding.check != *check))
+            .filter(|check| row.findings().all(|finding| finding.check != *check))
             .collect();
         if row.verdict != Some(Verdict::Pass) || !unasked.is_empty() {
-            let name = &row.estimator;
+            let name = &row.experiment.label;
             wrong.push(format!("{name}: {:?}, {}, without {unasked:?}", row.verdict, row.reason));
         }
     }
@@ -91,14 +95,14 @@ pub fn failing(rows: &[Row]) -> Vec<String> {
 }
 
 /// What a check found in a row.
-pub fn finding<'a>(row: &'a Row, check: &str) -> &'a Finding {
-    let mut found = row.findings.iter().filter(|finding| finding.check == check);
-    found.next().unwrap_or_else(|| panic!("no {check} of {}", row.estimator))
+pub fn finding<'a>(row: &Row<'a>, check: &str) -> &'a Finding {
+    let mut found = row.findings().filter(|finding| finding.check == check);
+    found.next().unwrap_or_else(|| panic!("no {check} of {}", row.experiment.label))
 }
 
 /// The verdict on a row.
 pub fn verdict(row: &Row) -> Verdict {
-    row.verdict.unwrap_or_else(|| panic!("no verdict on {}", row.estimator))
+    row.verdict.unwrap_or_else(|| panic!("no verdict on {}", row.experiment.label))
 }
 
 /// The field along a line or ray, from the lines that a case has under its problem.
@@ -183,7 +187,7 @@ pub fn shipped_plan() -> &'static Plan<'static> {
 pub fn shipped_record() -> &'static Record {
     static RECORD: LazyLock<Record> = LazyLock::new(|| {
         let plan = shipped_plan();
-        verdict::judged(plan, &run::draw(plan, &|_| {}), 0.0)
+        build::judged(plan, &run::draw(plan, &|_| {}), 0.0)
     });
     &RECORD
 }

@@ -4,7 +4,7 @@ use crate::common::{differs, mistakes, none, options, predicted, row, rows, sour
 use trueflight::case::Case;
 use trueflight::plan::Plan;
 use trueflight::record::Row;
-use trueflight::record::verdict;
+use trueflight::record::build;
 use trueflight::report::console::layout::Pen;
 use trueflight::report::console::{self, View};
 use trueflight::report::rows as tables;
@@ -24,8 +24,8 @@ const EXPLORERS: &str =
 /// `1/(V · (N + S/n))`.
 fn merit(row: &Row, draws_per_ray: f64) -> f64 {
     let [variance, lookups] =
-        [row.predicted_variance, row.predicted_lookups].map(|x| x.expect("known"));
-    let setup = row.setup_lookups.expect("counted") as f64;
+        [row.predicted_variance, row.experiment.predicted_lookups].map(|x| x.expect("known"));
+    let setup = row.experiment.setup_lookups.expect("counted") as f64;
     1.0 / (variance * (lookups + setup / draws_per_ray))
 }
 
@@ -35,8 +35,13 @@ fn explorer_lookups_are_charged_to_the_draws_of_a_ray() {
     for (head, draws) in [("", 1.0), ("draws_per_ray = 1", 1.0), ("draws_per_ray = 16", 16.0)] {
         let rows = predicted(&eq21(head, "", EXPLORERS));
         // ∫σ̂ = 0.4 · 20 lookups of a draw, and one at each explorer point.
-        assert_eq!(rows[0].setup_lookups, Some(20), "{head}");
-        wrong.extend(differs("lookups", rows[0].predicted_lookups.expect("known"), 8.0, 1e-12));
+        assert_eq!(rows[0].experiment.setup_lookups, Some(20), "{head}");
+        wrong.extend(differs(
+            "lookups",
+            rows[0].experiment.predicted_lookups.expect("known"),
+            8.0,
+            1e-12,
+        ));
         let fom = rows[0].predicted_fom.expect("a figure of merit");
         wrong.extend(differs(head, fom, merit(&rows[0], draws), 1e-12));
         let ltuv = rows[0].predicted_log10_ltuv().expect("LTUV");
@@ -50,7 +55,7 @@ fn the_measured_figure_of_merit_charges_them_too() {
     for (head, draws) in [("", 1.0), ("draws_per_ray = 5", 5.0)] {
         let row = &rows(&eq21(head, "", EXPLORERS), 20_000)[0];
         let [variance, lookups, fom] =
-            [row.variance, row.lookups_per_draw, row.fom].map(|x| x.expect("measured"));
+            [row.variance, row.experiment.lookups_per_draw, row.fom].map(|x| x.expect("measured"));
         let expected = 1.0 / (variance * (lookups + 20.0 / draws));
         none(&differs(head, fom, expected, 1e-12).into_iter().collect::<Vec<_>>());
     }
@@ -64,7 +69,13 @@ fn what_looks_nothing_up_before_pays_nothing() {
                       { local-majorant.sampling.local-majorants.segments = 8 }, { closed-form = {} }";
     let rows = predicted(&eq21("draws_per_ray = 3", "sampling.constant.value = 0.7", estimators));
     for row in &rows {
-        assert_eq!(row.setup_lookups, Some(0), "{} {}", row.estimator, row.control);
+        assert_eq!(
+            row.experiment.setup_lookups,
+            Some(0),
+            "{} {}",
+            row.experiment.label,
+            row.experiment.id.control
+        );
     }
     let ratio = row(&rows, "ratio");
     assert_eq!(ratio.predicted_fom, Some(merit(ratio, 1.0)));
@@ -74,14 +85,14 @@ fn what_looks_nothing_up_before_pays_nothing() {
 fn a_sweep_of_explorer_points_charges_each_number() {
     let estimators = "{ double = { sampling.constant.value = 0.5, control.explorers.points = 3 } }";
     let rows = predicted(&eq21("", "sweep.points.values = [2, 7, 40]", estimators));
-    let counts: Vec<_> = rows.iter().map(|row| row.setup_lookups).collect();
+    let counts: Vec<_> = rows.iter().map(|row| row.experiment.setup_lookups).collect();
     assert_eq!(counts, [Some(2), Some(7), Some(40)]);
     for row in &rows {
         assert_eq!(row.predicted_fom, Some(merit(row, 1.0)));
     }
     // A ray that misses the medium has nothing to explore.
     let missed = eq21("", "", EXPLORERS).replace("origin = [0, 0, 0]", "origin = [0, 50, 0]");
-    assert_eq!(predicted(&missed)[0].setup_lookups, Some(0));
+    assert_eq!(predicted(&missed)[0].experiment.setup_lookups, Some(0));
 }
 
 #[test]
@@ -94,16 +105,16 @@ fn pilot_rays_look_up_where_they_collide() {
     let mut sum = 0;
     for seed in 0..seeds {
         let cases = [Case::read(&source("pilots", text)).expect("a case")];
-        let record = verdict::predicted(&Plan::new(&cases, &options(seed, 1000)));
-        let rows = &record.results.cases[0].rows;
-        for row in rows {
+        let record = build::predicted(&Plan::new(&cases, &options(seed, 1000)));
+        let rows = record.results.cases[0].rows().collect::<Vec<_>>();
+        for row in &rows {
             assert!(
                 row.predicted_fom.is_none_or(|fom| fom == merit(row, 1.0)),
                 "{}",
-                row.estimator
+                row.experiment.label
             );
         }
-        sum += rows[0].setup_lookups.expect("counted");
+        sum += rows[0].experiment.setup_lookups.expect("counted");
     }
     let mean = sum as f64 / f64::from(u32::try_from(seeds).expect("few"));
     // Five standard errors.
@@ -129,7 +140,7 @@ fn what_no_lookup_pays_for_has_a_name() {
                       { double = { control.mean = {}, sampling.local-majorants.segments = 8 } }, \
                       { ratio = {} }, { residual-ratio.control.constant.value = 0.1 }";
     let rows = predicted(&eq21("", "sampling.constant.value = 0.7", estimators));
-    let needs: Vec<&str> = rows.iter().map(|row| row.needs.as_str()).collect();
+    let needs: Vec<&str> = rows.iter().map(|row| row.experiment.needs.as_str()).collect();
     let both = "τ, max |σ_t − σ_c|";
     assert_eq!(needs, ["τ", "τ", "τ", "min σ_t", "max |σ_t − σ_c|", both, "", ""]);
     // A control or σ̂ that is swept stands in the recipe's place.
@@ -138,18 +149,18 @@ fn what_no_lookup_pays_for_has_a_name() {
         "sampling.constant.value = 0.7\nsweep.control.values = [0, 0.1]",
         "{ residual-ratio = {} }",
     );
-    assert!(predicted(&swept).iter().all(|row| row.needs.is_empty()));
+    assert!(predicted(&swept).iter().all(|row| row.experiment.needs.is_empty()));
     let swept = eq21(
         "",
         "sampling.local-majorants.segments = 4\nsweep.sampling.values = [1, 2]",
         "{ ratio = {} }",
     );
-    assert!(predicted(&swept).iter().all(|row| row.needs.is_empty()));
+    assert!(predicted(&swept).iter().all(|row| row.experiment.needs.is_empty()));
     // A table of theory shows it.
     let cases =
         [Case::read(&source("needs", &eq21("", "sampling.constant.value = 0.7", estimators)))
             .expect("a case")];
-    let record = verdict::predicted(&Plan::new(&cases, &options(1, 1000)));
+    let record = build::predicted(&Plan::new(&cases, &options(1, 1000)));
     let table = console::table(&record, View::Predict, Pen { width: 120, colour: false });
     let line = |name: &str| table.lines().find(|line| line.starts_with(name)).expect("a line");
     assert!(table.contains("needs") && line("closed-form").contains('τ'), "{table}");
@@ -164,7 +175,7 @@ fn exact_transmittances_need_tau() {
              ray = {{ origin = [0, 0, 0], direction = [1, 0, 0], length = 2 }}\n\
              light.position = [1, 1, 0]\nalbedo = 0.9\nphase.isotropic = {{}}\nsampling.constant.value = 1.2\nestimators = [{{ {estimator} }}]"
         );
-        predicted(&text)[0].needs.clone()
+        predicted(&text)[0].experiment.needs.clone()
     };
     assert_eq!(lit("delta-tracking = {}"), "τ");
     assert_eq!(lit("delta-tracking.shadow.ratio.sampling = 1.2"), "");
@@ -173,7 +184,8 @@ fn exact_transmittances_need_tau() {
     let flights = "title = \"flight\"\n[problem.free-flight]\nmedium.constant.extinction = 0.5\n\
                    span = [0, 4]\nsampling.constant.value = 1\n\
                    estimators = [{ inversion = {} }, { woodcock = {} }]";
-    let needs: Vec<String> = predicted(flights).into_iter().map(|row| row.needs).collect();
+    let needs: Vec<String> =
+        predicted(flights).into_iter().map(|row| row.experiment.needs.clone()).collect();
     assert_eq!(needs, ["inverse of τ", ""]);
 }
 
@@ -182,7 +194,7 @@ fn files_gain_columns_at_their_end() {
     let cases =
         [Case::read(&source("columns", &eq21("draws_per_ray = 4", "", EXPLORERS)))
             .expect("a case")];
-    let record = verdict::predicted(&Plan::new(&cases, &options(1, 1000)));
+    let record = build::predicted(&Plan::new(&cases, &options(1, 1000)));
     let csv = tables::csv(&record).expect("renders");
     let lines: Vec<Vec<&str>> = csv.lines().map(|line| line.split(',').collect()).collect();
     let last = ["setup_lookups", "draws_per_ray", "needs", "best_kind", "best_limit"];

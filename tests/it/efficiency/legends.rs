@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use crate::common::{case, none, options, shipped_plan};
 use trueflight::case::Case;
 use trueflight::plan::Plan;
-use trueflight::record::verdict;
+use trueflight::record::build;
 use trueflight::record::{CaseRecord, Record, Row};
 use trueflight::report::plots::Sheet;
 use trueflight::report::plots::paint;
@@ -34,7 +34,8 @@ fn wrong_in(case: &CaseRecord) -> Vec<String> {
     let Some(sweep) = &case.sweep else { return wrong };
     let mut say = |what: String| wrong.push(format!("{}: {what}", case.name));
     let series = collect(case, sweep);
-    let shown: Vec<&Row> = series.iter().flat_map(|one| one.rows.iter().copied()).collect();
+    let key = |row: &Row| (row.experiment.id.clone(), row.number);
+    let shown: Vec<_> = series.iter().flat_map(|one| one.rows.iter().map(key)).collect();
     let all = || series.iter().map(|one| &one.label);
     let labels: BTreeSet<&String> = all().collect();
     if labels.len() != series.len() {
@@ -42,20 +43,23 @@ fn wrong_in(case: &CaseRecord) -> Vec<String> {
     }
     // An experiment, a channel of it, has rows in one series, and a series has rows of one estimator.
     for one in &series {
-        let listed: BTreeSet<_> = one.rows.iter().map(|row| row.listed).collect();
+        let listed: BTreeSet<_> = one.rows.iter().map(|row| row.experiment.listed).collect();
         if listed.len() > 1 || one.rows.is_empty() {
             say(format!("{} is of the estimators {listed:?}", one.label));
         }
     }
-    for row in &case.rows {
-        let count = shown.iter().filter(|other| std::ptr::eq(**other, row)).count();
-        let has_entry =
-            series.iter().any(|one| one.rows.iter().any(|other| other.listed == row.listed));
+    for row in case.rows() {
+        let count = shown.iter().filter(|other| **other == key(&row)).count();
+        let has_entry = series.iter().any(|one| {
+            one.rows.iter().any(|other| other.experiment.listed == row.experiment.listed)
+        });
         let is_crowded = count == 0 && !row.channel.is_empty() && has_entry;
         if count != 1 && !is_crowded {
             say(format!(
                 "{} {} at {:?} stands in {count} series",
-                row.estimator, row.channel, row.swept
+                row.experiment.label,
+                row.channel,
+                row.experiment.swept()
             ));
         }
     }
@@ -78,7 +82,7 @@ fn wrong_in(case: &CaseRecord) -> Vec<String> {
 /// The quantities of the panels, for rows.
 const QUANTITIES: [fn(&Row) -> Option<f64>; 3] = [
     |row| row.predicted_variance.filter(|variance| *variance > 0.0),
-    |row| row.predicted_lookups.filter(|lookups| *lookups > 0.0),
+    |row| row.experiment.predicted_lookups.filter(|lookups| *lookups > 0.0),
     |row| row.predicted_fom,
 ];
 
@@ -88,7 +92,8 @@ fn equal_pairs(series: &[Series]) -> Vec<(String, String)> {
     for quantity in QUANTITIES {
         let values = |one: &Series| -> Vec<(Option<u64>, f64)> {
             let rows = one.rows.iter();
-            rows.filter_map(|row| Some((row.swept.map(f64::to_bits), quantity(row)?))).collect()
+            rows.filter_map(|row| Some((row.experiment.swept().map(f64::to_bits), quantity(row)?)))
+                .collect()
         };
         for (i, a) in series.iter().enumerate() {
             for b in &series[..i] {
@@ -110,7 +115,7 @@ fn equal_pairs(series: &[Series]) -> Vec<(String, String)> {
 
 #[test]
 fn every_experiment_of_the_shipped_cases_has_one_entry() {
-    let record = verdict::predicted(shipped_plan());
+    let record = build::predicted(shipped_plan());
     let cases = || record.results.cases.iter();
     assert!(cases().filter(|case| case.sweep.is_some()).count() > 40);
     none(&cases().flat_map(wrong_in).collect::<Vec<_>>());
@@ -118,8 +123,8 @@ fn every_experiment_of_the_shipped_cases_has_one_entry() {
 
 fn with_curves(cases: &[Case]) -> Record {
     let plan = Plan::new(cases, &options(1, 1000));
-    let mut record = verdict::predicted(&plan);
-    verdict::add_curves(&plan, &mut record);
+    let mut record = build::predicted(&plan);
+    build::add_curves(&plan, &mut record);
     record
 }
 

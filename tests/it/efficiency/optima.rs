@@ -2,10 +2,10 @@
 
 use std::f64::consts::PI;
 
-use crate::common::{case, differs, none, options};
+use crate::common::{case, differs, none, options, rows_of};
 use trueflight::numeric::digits;
 use trueflight::plan::Plan;
-use trueflight::record::verdict;
+use trueflight::record::build;
 use trueflight::record::{Record, Row};
 use trueflight::report::console::layout::{self, Pen};
 use trueflight::report::console::{self, View};
@@ -13,11 +13,11 @@ use trueflight::report::sweep_plot;
 
 fn record(text: &str) -> Record {
     let cases = [case("test", text)];
-    verdict::predicted_with_optima(&Plan::new(&cases, &options(1, 1000)))
+    build::predicted_with_optima(&Plan::new(&cases, &options(1, 1000)))
 }
 
-fn with_optima(text: &str) -> Vec<Row> {
-    record(text).results.cases.into_iter().flat_map(|case| case.rows).collect()
+fn with_optima(text: &str) -> Vec<Row<'static>> {
+    rows_of(record(text))
 }
 
 /// A homogeneous line of length 4 with σ_t = 1/2, for some estimators.
@@ -50,8 +50,9 @@ fn a_rising_figure_of_merit_has_a_limit_and_no_optimum() {
         let limit = 1.0 / (t * t * 4.0 * square);
         let y = root(1e-3, 5.0, |y| y / y.exp_m1() - 0.9);
         let row = &rows[0];
-        assert_eq!(row.best_kind, "90 % of the limit", "{estimator}");
-        let found = [row.best_limit, row.best_fom, row.best_sampling].map(|x| x.expect("found"));
+        assert_eq!(row.best_kind(), "90 % of the limit", "{estimator}");
+        let found =
+            [row.best_limit(), row.best_fom(), row.best_sampling()].map(|x| x.expect("found"));
         let expected = [limit, 0.9 * limit, square / y];
         let names = ["limit", "figure of merit", "σ̂"];
         let wrong = names.iter().zip(found.into_iter().zip(expected));
@@ -85,9 +86,9 @@ fn setup_lookups_move_the_best_sampling_extinction() {
         let limit = 1.0 / (t * t * square * length);
         let best = root(1e-3, 1e3, |sampling| 0.9 * limit - fom(sampling));
         let row = &rows[0];
-        assert_eq!((row.setup_lookups, row.best_kind.as_str()), (Some(2), "90 % of the limit"));
+        assert_eq!((row.experiment.setup_lookups, row.best_kind()), (Some(2), "90 % of the limit"));
         let found =
-            [row.best_limit, row.best_sampling, row.predicted_fom].map(|x| x.expect("found"));
+            [row.best_limit(), row.best_sampling(), row.predicted_fom].map(|x| x.expect("found"));
         let wrong: Vec<_> = ["limit", "σ̂", "at 1"]
             .iter()
             .zip(found.into_iter().zip([limit, best, fom(1.0)]))
@@ -104,9 +105,9 @@ fn a_thin_medium_reaches_its_limit_below_the_search() {
                 sampling.constant.value = 1\nestimators = [{ ratio = {} }]";
     let row = &with_optima(text)[0];
     let y = root(1e-3, 5.0, |y| y / y.exp_m1() - 0.9);
-    assert_eq!(row.best_kind, "90 % of the limit");
+    assert_eq!(row.best_kind(), "90 % of the limit");
     none(
-        &differs("σ̂", row.best_sampling.expect("found"), 1e-8 / y, 1e-4)
+        &differs("σ̂", row.best_sampling().expect("found"), 1e-8 / y, 1e-4)
             .into_iter()
             .collect::<Vec<_>>(),
     );
@@ -121,10 +122,10 @@ fn where_collisions_are_too_many_the_limit_is_named_all_the_same() {
     let row = &with_optima(text)[0];
     // ∫σ_t² = 1 + 1999e-6, τ = 1 + 1.999.
     let (square, t) = (1.0 + 1999e-6_f64, (-2.999_f64).exp());
-    assert_eq!(row.best_kind, "90 % of the limit");
+    assert_eq!(row.best_kind(), "90 % of the limit");
     let limit = 1.0 / (t * t * 2000.0 * square);
     none(
-        &differs("limit", row.best_limit.expect("found"), limit, 1e-3)
+        &differs("limit", row.best_limit().expect("found"), limit, 1e-3)
             .into_iter()
             .collect::<Vec<_>>(),
     );
@@ -136,9 +137,9 @@ fn an_optimum_is_called_one() {
         "sampling.constant.value = 1",
         "{ woodcock = {} }, { closed-form = {} }",
     ));
-    assert_eq!((rows[0].best_kind.as_str(), rows[0].best_limit), ("optimum", None));
+    assert_eq!((rows[0].best_kind(), rows[0].best_limit()), ("optimum", None));
     // What takes no σ̂ has none that is best.
-    let none = (rows[1].best_sampling, rows[1].best_fom, rows[1].best_kind.as_str());
+    let none = (rows[1].best_sampling(), rows[1].best_fom(), rows[1].best_kind());
     assert_eq!(none, (None, None, ""));
 }
 
@@ -148,7 +149,7 @@ fn without_a_variance_there_is_no_best() {
     let text = "title = \"a rod\"\n[problem.rod]\nmedium.constant.extinction = 0.5\nspan = [0, 4]\nalbedo = 0.7\n\
                 forward = 0.5\nsampling.constant.value = 1\nestimators = [{ roulette = {} }]";
     for row in with_optima(text) {
-        assert_eq!((row.best_sampling, row.best_kind.as_str()), (None, ""), "{}", row.channel);
+        assert_eq!((row.best_sampling(), row.best_kind()), (None, ""), "{}", row.channel);
     }
 }
 
@@ -176,8 +177,8 @@ fn plots_have_a_filled_star_for_an_optimum_and_a_hollow_one_for_a_limit() {
     let plot = |estimators: &str, values: &str| -> String {
         let cases = [case("test", &line(&format!("sweep.sampling.values = {values}"), estimators))];
         let plan = Plan::new(&cases, &options(1, 1000));
-        let mut record = verdict::predicted(&plan);
-        verdict::add_curves(&plan, &mut record);
+        let mut record = build::predicted(&plan);
+        build::add_curves(&plan, &mut record);
         let artifacts = sweep_plot::render(&record).expect("renders");
         let svg = artifacts.into_iter().find(|a| a.path.ends_with("test.svg")).expect("a plot");
         String::from_utf8(svg.bytes).expect("text")

@@ -12,6 +12,7 @@ use std::{env, fs};
 use quick_xml::events::Event;
 use record::record;
 use trueflight::record::{Row, Verdict};
+use trueflight::plan::id::Number;
 use trueflight::report::Artifact;
 use trueflight::report::console::{self, View, layout::Pen};
 use trueflight::report::junit::Inconclusive;
@@ -153,8 +154,8 @@ fn infinite_numbers_do_not_break_the_json() {
     let text = report::record_json::text(&record).expect("renders");
     assert!(text.starts_with("{\"schema\":"), "{text}");
     let parsed: serde_json::Value = serde_json::from_str(&text).expect("is JSON");
-    let gate = &parsed["results"]["cases"][0]["rows"][2]["findings"][0]["gate"];
-    assert_eq!(gate["needed"], serde_json::Value::Null);
+    let gate = &parsed["results"]["cases"][0]["experiments"][2]["findings"][0]["gate"];
+    assert_eq!(gate["needed"], "inf");
     assert_eq!(gate["tolerance"], 0.003);
 }
 
@@ -176,12 +177,15 @@ fn nothing_is_too_odd_to_draw() {
     let odd = [0.0, -1.0, f64::NAN, f64::INFINITY, f64::NEG_INFINITY, 1e308, 5e-324];
     for value in odd {
         for case in &mut record.results.cases {
-            for row in &mut case.rows {
-                row.swept = row.swept.map(|_| value);
-                row.variance = Some(value);
-                row.z_mean = Some(value);
-                row.variance_deviation = Some(value);
-                row.fom = Some(value);
+            for one in &mut case.experiments {
+                let swept = one.id.swept.as_mut();
+                swept.into_iter().for_each(|point| point.value = Number(value));
+                for channel in &mut one.channels {
+                    channel.variance = Some(value);
+                    channel.z_mean = Some(value);
+                    channel.variance_deviation = Some(value);
+                    channel.fom = Some(value);
+                }
             }
             if let Some(sweep) = &mut case.sweep {
                 sweep.z_limit = Some(value);
@@ -199,7 +203,7 @@ fn nothing_is_too_odd_to_draw() {
         report::render(&record).expect("renders");
     }
     for case in &mut record.results.cases {
-        case.rows.clear();
+        case.experiments.clear();
         if let Some(sweep) = &mut case.sweep {
             sweep.curves.clear();
         }

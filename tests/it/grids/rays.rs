@@ -1,14 +1,14 @@
 //! Rays that meet nothing of their volume: every command says so.
 
 use trueflight::plan::Plan;
-use trueflight::record::verdict;
+use trueflight::record::build;
 
 use super::{data, run, text};
 use crate::common::{case, mistakes, options};
 
 fn notes(text: &str) -> Vec<String> {
     let cases = [case("test", text)];
-    let record = verdict::planned(&Plan::new(&cases, &options(1, 1000)));
+    let record = build::planned(&Plan::new(&cases, &options(1, 1000)));
     record.results.cases[0].notes.clone()
 }
 

@@ -48,7 +48,7 @@ fn what_is_no_record_is_named_with_its_cure() {
         ("", "not a record, or a broken one"),
         ("{\"schema\": 1, \"results\": {", "not a record, or a broken one"),
         ("{\"schema\": 1}", "missing field `results`"),
-        ("{\"schema\": 99, \"results\": 3}", "a record of form 99, this program reads 1"),
+        ("{\"schema\": 99, \"results\": 3}", "a record of form 99, this program reads 1 and 2"),
     ] {
         fs::write(&path, text).expect("writes");
         refused(words);

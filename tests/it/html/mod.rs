@@ -8,8 +8,7 @@ use std::collections::BTreeSet;
 use trueflight::case::Case;
 use trueflight::case::suite;
 use trueflight::plan::{Plan, PlannedCase};
-use trueflight::record::verdict;
-use trueflight::record::{Record, Row, Verdict};
+use trueflight::record::{CaseRecord, Record, Row, Verdict, build};
 use trueflight::report::{html, record_json};
 
 use crate::common::{options, shipped_plan, shipped_record};
@@ -42,7 +41,7 @@ fn built_in() -> Record {
     let bare = cases.iter().map(|case| PlannedCase { case, experiments: Vec::new() });
     let levels = shipped_plan().levels;
     let plan = Plan { options: options(1, 1), cases: bare.collect(), levels };
-    verdict::add_curves(&plan, &mut record);
+    build::add_curves(&plan, &mut record);
     record
 }
 
@@ -69,12 +68,13 @@ fn assert_whole(html: &str, record: &Record) {
     let bodies: Vec<&Element> = all(&elements, "tbody");
     let experiments: Vec<_> =
         bodies.iter().filter(|body| body.attributes.contains_key("data-verdict")).collect();
-    let rows =
-        record.results.cases.iter().flat_map(|case| case.rows.iter().map(move |row| (case, row)));
-    let rows: Vec<_> = rows.collect();
+    let rows: Vec<Row> = record.results.rows().collect();
     assert_eq!(experiments.len(), rows.len());
-    for (body, (case, row)) in experiments.iter().zip(rows) {
-        for word in [&case.name, &row.estimator, &row.channel, &row.reason, &row.command] {
+    for (body, row) in experiments.iter().zip(rows) {
+        let experiment = row.experiment;
+        let words =
+            [&row.case.name, &experiment.label, &row.channel, &row.reason, &experiment.command];
+        for word in words {
             assert!(body.text.contains(word.as_str()), "{word} is not in {}", body.text);
         }
         let word = row.verdict.map_or("undecided", Verdict::word);
@@ -111,7 +111,7 @@ fn read_back(record: &Record) -> Record {
 #[test]
 fn the_page_of_the_built_in_suite_is_small_and_the_same_from_its_json() {
     let record = built_in();
-    let rows: Vec<&Row> = record.results.cases.iter().flat_map(|case| &case.rows).collect();
+    let rows: Vec<Row> = record.results.rows().collect();
     for verdict in [Verdict::Pass, Verdict::Inconclusive, Verdict::Underpowered, Verdict::Refused] {
         assert!(rows.iter().any(|row| row.verdict == Some(verdict)), "none is {}", verdict.word());
     }
@@ -127,40 +127,35 @@ fn numbers_that_json_cannot_hold_make_the_same_page_from_it() {
         let mut record = record();
         let results = &mut record.results;
         let gate = &mut results.gate;
-        (gate.ln_e_limit, gate.ln_p_limit) = (odd, odd);
         for place in [&mut gate.ln_mean_e, &mut gate.smallest_margin, &mut gate.worst_bias] {
             *place = Some(odd);
         }
         for case in &mut results.cases {
-            (case.visible_bias, case.pace) = (Some([0.01, odd]), Some(odd));
-            for row in &mut case.rows {
-                for place in [
-                    &mut row.mean,
-                    &mut row.standard_error,
-                    &mut row.variance,
-                    &mut row.z_mean,
-                    &mut row.z_variance,
-                    &mut row.lookups_per_draw,
-                    &mut row.predicted_variance,
-                    &mut row.fom,
-                    &mut row.detectable_bias,
-                    &mut row.predicted_kurtosis,
-                ] {
-                    *place = place.map(|_| odd);
-                }
-                for finding in &mut row.findings {
-                    finding.path.iter_mut().for_each(|look| look[1] = odd);
-                    if let Some(gate) = &mut finding.gate {
-                        (gate.variance, gate.ln_e, gate.ln_p) = (odd, odd, [odd; 2]);
+            case.pace = Some(odd);
+            for one in &mut case.experiments {
+                one.lookups_per_draw = one.lookups_per_draw.map(|_| odd);
+                for channel in &mut one.channels {
+                    for place in [
+                        &mut channel.mean,
+                        &mut channel.standard_error,
+                        &mut channel.variance,
+                        &mut channel.z_mean,
+                        &mut channel.z_variance,
+                        &mut channel.predicted_variance,
+                        &mut channel.fom,
+                        &mut channel.detectable_bias,
+                        &mut channel.predicted_kurtosis,
+                    ] {
+                        *place = place.map(|_| odd);
                     }
                 }
-                row.courses.iter_mut().for_each(|course| course.sampling = vec![odd; 4]);
+                for gate in one.findings.iter_mut().filter_map(|finding| finding.gate.as_mut()) {
+                    (gate.variance, gate.ln_e, gate.ln_p) = (odd, odd, [odd; 2]);
+                }
             }
-        }
-        let comparison = record.comparison.as_mut().expect("a comparison");
-        for change in &mut comparison.changes {
-            (change.before, change.now, change.ratio) = ([1.0, odd], [odd; 2], odd);
-            change.interval = Some([0.5, odd]);
+            if let Some(anatomy) = &mut case.anatomy {
+                anatomy.deviation.fill(odd);
+            }
         }
         let html = text(&record);
         assert_whole(&html, &record);
@@ -174,11 +169,13 @@ fn a_record_without_paths_and_fields_has_a_page() {
     let mut json: serde_json::Value =
         serde_json::from_str(&record_json::text(&record).expect("renders")).expect("is JSON");
     let cases = json["results"]["cases"].as_array_mut().expect("cases");
-    let rows = cases.iter_mut().flat_map(|case| case["rows"].as_array_mut().expect("rows"));
-    for row in rows {
-        let row = row.as_object_mut().expect("a row");
-        row.remove("courses");
-        for finding in row["findings"].as_array_mut().expect("findings") {
+    let experiments = cases.iter_mut();
+    let experiments =
+        experiments.flat_map(|case| case["experiments"].as_array_mut().expect("experiments"));
+    for experiment in experiments {
+        let experiment = experiment.as_object_mut().expect("an experiment");
+        experiment.remove("courses");
+        for finding in experiment["findings"].as_array_mut().expect("findings") {
             finding.as_object_mut().expect("a finding").remove("path");
         }
     }
@@ -217,16 +214,20 @@ fn words_of_a_case_are_text_whatever_is_in_them() {
         for word in [&mut case.title, &mut case.path, &mut case.problem, &mut case.medium] {
             *word = HOSTILE.to_owned();
         }
-        for row in &mut case.rows {
-            for word in [&mut row.estimator, &mut row.channel, &mut row.control, &mut row.reason] {
+        for one in &mut case.experiments {
+            for word in [&mut one.label, &mut one.id.control, &mut one.command] {
                 *word = HOSTILE.to_owned();
             }
-            row.command = HOSTILE.to_owned();
-            for finding in &mut row.findings {
+            for channel in &mut one.channels {
+                channel.channel = HOSTILE.to_owned();
+                channel.reason = HOSTILE.to_owned();
+            }
+            for finding in &mut one.findings {
                 (finding.check, finding.channel) = (HOSTILE.to_owned(), HOSTILE.to_owned());
                 finding.reason = HOSTILE.to_owned();
             }
         }
+        case.name_experiments();
         if let Some(sweep) = &mut case.sweep {
             sweep.axis = HOSTILE.to_owned();
         }
@@ -256,8 +257,10 @@ fn the_first_line_is_the_verdict() {
     assert!(line.starts_with("fail: 3 of 11 fail, something became worse"), "{line}");
     record.comparison = None;
     let set = |record: &mut Record, verdicts: &[Verdict]| {
-        let rows = record.results.cases.iter_mut().flat_map(|case| &mut case.rows);
-        rows.zip(verdicts.iter().cycle()).for_each(|(row, &verdict)| row.verdict = Some(verdict));
+        let channels = record.results.cases.iter_mut().flat_map(CaseRecord::channels_mut);
+        channels
+            .zip(verdicts.iter().cycle())
+            .for_each(|(row, &verdict)| row.verdict = Some(verdict));
     };
     set(&mut record, &[Verdict::Pass, Verdict::Inconclusive]);
     assert_eq!(heading(&record), "inconclusive: 5 of 11 are inconclusive");

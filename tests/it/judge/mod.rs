@@ -23,7 +23,7 @@ use trueflight::plan::Amount;
 use trueflight::plan::BLOCK;
 use trueflight::plan::Options;
 use trueflight::plan::Plan;
-use trueflight::record::verdict;
+use trueflight::record::{Finding, build};
 use trueflight::stats::gate::{Decision, Design, GateSums, tolerance_of};
 
 const CASE: &str = "title = \"a case\"
@@ -341,7 +341,7 @@ fn bad_input_is_2_with_one_clear_error() {
 fn drawn(case: &Case, draws: u64) -> (Vec<f64>, serde_json::Value) {
     let options = Options { draws: Amount::Exactly(draws), ..Options::default() };
     let plan = Plan::new(std::slice::from_ref(case), &options);
-    let record = verdict::judged(&plan, &run::draw(&plan, &|_| {}), 0.0);
+    let record = build::judged(&plan, &run::draw(&plan, &|_| {}), 0.0);
     let planned = &plan.cases[0].experiments[1];
     let ready = planned.outcome.as_ref().expect("it is drawn");
     let (mut values, mut buffer) = (Vec::new(), DrawBuffer::new(1));
@@ -352,7 +352,11 @@ fn drawn(case: &Case, draws: u64) -> (Vec<f64>, serde_json::Value) {
             values.extend_from_slice(&buffer.values[0]);
         }
     }
-    let row = serde_json::to_value(&record.results.cases[0].rows[1]).expect("JSON");
+    let row = record.results.rows().nth(1).expect("a row");
+    let findings: Vec<&Finding> = row.findings().collect();
+    let row = serde_json::json!({
+        "verdict": row.verdict, "truth": row.truth, "findings": findings,
+    });
     (values, row)
 }
 

@@ -11,7 +11,7 @@ use trueflight::draw::run;
 use trueflight::gate::causes::{CAUSES, Pattern, Place, Side, TABLE, line};
 use trueflight::mutants::{self, streams};
 use trueflight::plan::Plan;
-use trueflight::record::verdict;
+use trueflight::record::build;
 use trueflight::record::{CaseRecord, Verdict};
 use trueflight::report::likely;
 use trueflight::self_test;
@@ -171,7 +171,7 @@ fn swept_with(bug: &str) -> CaseRecord {
         planned.outcome.as_mut().expect("it can be drawn").experiment = faulty;
     }
     let draws = run::draw(&plan, &|_| {});
-    verdict::judged(&plan, &draws, 0.0).results.cases.remove(0)
+    build::judged(&plan, &draws, 0.0).results.cases.remove(0)
 }
 
 /// In Eq. 21 σ_t is below 0.956, and a walk has 20 σ̂ collisions on average.
@@ -185,11 +185,11 @@ fn a_failure_at_one_end_of_a_sweep_is_told_as_such() {
     ] {
         let case = swept_with(bug);
         let failing: Vec<_> =
-            case.rows.iter().filter(|row| row.verdict == Some(Verdict::Fail)).collect();
+            case.rows().filter(|row| row.verdict == Some(Verdict::Fail)).collect();
         assert!(!failing.is_empty(), "{bug}");
         for row in failing {
-            assert_eq!(likely::pattern(&case, row).place, end, "{bug}");
-            let said = likely::lines(&case, row).join(" ");
+            assert_eq!(likely::pattern(&row).place, end, "{bug}");
+            let said = likely::lines(&row).join(" ");
             let hint = end.hint().unwrap_or("usual causes where");
             assert!(said.contains(hint), "{bug}: {said}");
         }

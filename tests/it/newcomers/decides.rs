@@ -11,7 +11,7 @@ use trueflight::plan::Amount;
 use trueflight::plan::Options;
 use trueflight::plan::Plan;
 use trueflight::record::Verdict;
-use trueflight::record::verdict;
+use trueflight::record::build;
 
 /// Mean and variance need different numbers of draws at each σ̂; the names have spaces and parentheses.
 const SWEPT: &str = "title = \"too few draws\"
@@ -137,24 +137,25 @@ fn the_plan_foresees_what_a_run_finds() {
     let cases: Vec<Case> =
         sources.iter().map(|source| Case::read(source).expect("a built-in case")).collect();
     let plan = Plan::new(&cases, &common::options(1, 20_000));
-    let planned = verdict::planned(&plan);
-    let drawn = verdict::judged(&plan, &run::draw(&plan, &|_| {}), 0.0);
+    let planned = build::planned(&plan);
+    let drawn = build::judged(&plan, &run::draw(&plan, &|_| {}), 0.0);
     let (mut wrong, mut open) = (Vec::new(), 0);
     let pairs = planned.results.cases.iter().zip(&drawn.results.cases);
-    for (before, after) in pairs.flat_map(|(a, b)| a.rows.iter().zip(&b.rows)) {
+    for (before, after) in pairs.flat_map(|(a, b)| a.rows().zip(b.rows())) {
         let is_weak =
             |verdict| matches!(verdict, Some(Verdict::Inconclusive | Verdict::Underpowered));
         if before.foreseen == Some(Verdict::Inconclusive) {
             open += 1;
             // It may fail, never pass.
             if !matches!(after.verdict, Some(Verdict::Inconclusive | Verdict::Fail)) {
-                wrong.push(format!("{}: foreseen, but {:?}", after.estimator, after.verdict));
+                wrong
+                    .push(format!("{}: foreseen, but {:?}", after.experiment.label, after.verdict));
             }
         } else if is_weak(after.verdict) && before.foreseen.is_none() {
-            let findings =
-                after.findings.iter().filter(|found| Some(found.verdict) == after.verdict);
-            if findings.clone().any(|found| !found.reason.ends_with("too few draws for a test")) {
-                wrong.push(format!("{}: not foreseen: {}", after.estimator, after.reason));
+            let mut findings =
+                after.findings().filter(|found| Some(found.verdict) == after.verdict);
+            if findings.any(|found| !found.reason.ends_with("too few draws for a test")) {
+                wrong.push(format!("{}: not foreseen: {}", after.experiment.label, after.reason));
             }
         }
     }
@@ -168,11 +169,13 @@ fn the_plan_foresees_what_a_run_finds() {
 fn the_cases_of_the_repository_have_enough_draws_for_a_ci() {
     let cases = common::shipped();
     let options = Options { draws: Amount::CaseOr(400_000), ..Options::default() };
-    let planned = verdict::planned(&Plan::new(&cases, &options));
+    let planned = build::planned(&Plan::new(&cases, &options));
     let mut wrong = Vec::new();
     for case in &planned.results.cases {
-        let open = case.rows.iter().filter(|row| row.foreseen == Some(Verdict::Inconclusive));
-        wrong.extend(open.map(|row| format!("{}: {}: {}", case.name, row.estimator, row.reason)));
+        let open = case.rows().filter(|row| row.foreseen == Some(Verdict::Inconclusive));
+        wrong.extend(
+            open.map(|row| format!("{}: {}: {}", case.name, row.experiment.label, row.reason)),
+        );
     }
     none(&wrong);
 }

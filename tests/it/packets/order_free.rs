@@ -33,11 +33,11 @@ fn kernels_without_fused_instructions_are_judged_like_any_other() {
         }
     }
     let draws = trueflight::draw::run::draw(&plan, &|_| {});
-    let record = trueflight::record::verdict::judged(&plan, &draws, 0.0);
-    let failed = record.results.cases.iter().flat_map(|case| &case.rows);
+    let record = trueflight::record::build::judged(&plan, &draws, 0.0);
+    let failed = record.results.rows();
     let failed: Vec<String> = failed
         .filter(|row| row.verdict == Some(Verdict::Fail))
-        .map(|row| format!("{}: {}", row.estimator, row.reason))
+        .map(|row| format!("{}: {}", row.experiment.label, row.reason))
         .collect();
     none(&failed);
 }
@@ -99,17 +99,23 @@ fn order_free_draws_have_the_law_of_the_ordered_ones_in_every_field() {
 fn order_free_draws_have_the_law(matrix: Matrix, least: usize) {
     let cases = order_free(matrix);
     let record = crate::common::judged(&cases, &options(1, 60_000));
-    let rows: Vec<&Row> = record.results.cases.iter().flat_map(|case| &case.rows).collect();
+    let rows: Vec<Row> = record.results.rows().collect();
     let failed: Vec<String> = rows
         .iter()
         // So few draws need not show a bias that a case declares.
-        .filter(|row| row.findings.iter().all(|finding| !finding.expects_bias))
+        .filter(|row| row.findings().all(|finding| !finding.expects_bias))
         .filter(|row| row.verdict == Some(Verdict::Fail))
-        .map(|row| format!("{}, {}: {}", row.command, row.sampling_kind, row.reason))
+        .map(|row| {
+            format!(
+                "{}, {}: {}",
+                row.experiment.command, row.experiment.id.sampling.kind, row.reason
+            )
+        })
         .collect();
     none(&failed);
-    let passed =
-        |row: &&&Row| row.estimator.contains("order-free") && row.verdict == Some(Verdict::Pass);
+    let passed = |row: &&Row| {
+        row.experiment.label.contains("order-free") && row.verdict == Some(Verdict::Pass)
+    };
     let passed = rows.iter().filter(passed).count();
     assert!(passed > least, "only {passed} passed");
 }
@@ -122,12 +128,12 @@ fn order_free_draws_say_so() {
         estimators = [{ ratio = {} }, { ratio.kernel = \"ordered\" },
                       { single.rule = \"clamped\" }, { next-flight = {} }]";
     let rows = crate::common::rows(text, 1_000_000);
-    let names: Vec<&str> = rows.iter().map(|row| row.estimator.as_str()).collect();
+    let names: Vec<&str> = rows.iter().map(|row| row.experiment.label.as_str()).collect();
     assert_eq!(
         names,
         ["ratio (order-free)", "ratio", "single (clamped, order-free)", "next-flight"]
     );
-    let asked = |row: &Row, check: &str| row.findings.iter().any(|finding| finding.check == check);
+    let asked = |row: &Row, check: &str| row.findings().any(|finding| finding.check == check);
     for check in ["invariant", "streams"] {
         assert!(!asked(&rows[0], check) && asked(&rows[1], check), "{check}");
     }
@@ -163,23 +169,33 @@ const SWEEP: &str = "title = \"sweep\"\nkernel = \"order-free\"\n[problem.transm
 fn shared_lookups_change_no_draw() {
     let sweep = [case("sweep", SWEEP)];
     let all = crate::common::judged(&sweep, &options(3, 90_000));
-    let all = &all.results.cases[0].rows;
+    let all: Vec<Row> = all.results.rows().collect();
     let mut shared = 0;
     for pattern in ["*:ratio*", "*:double*", "*:woodcock*", "*:single*"] {
         let filter = Filter::new(pattern);
         let filter = Some(filter.expect("a pattern"));
         let alone = crate::common::judged(&sweep, &Options { filter, ..options(3, 90_000) });
-        for row in &alone.results.cases[0].rows {
+        for row in alone.results.rows() {
             let same = |other: &&Row| {
-                (&other.estimator, &other.sampling_kind, other.swept)
-                    == (&row.estimator, &row.sampling_kind, row.swept)
+                (
+                    &other.experiment.label,
+                    &other.experiment.id.sampling.kind,
+                    other.experiment.swept(),
+                ) == (
+                    &row.experiment.label,
+                    &row.experiment.id.sampling.kind,
+                    row.experiment.swept(),
+                )
             };
             let together = all.iter().find(same).expect("the same experiment");
-            assert_eq!(row.mean, together.mean, "{}", row.command);
+            assert_eq!(row.mean, together.mean, "{}", row.experiment.command);
             assert_eq!(row.variance, together.variance);
-            assert_eq!(row.lookups_per_draw, together.lookups_per_draw);
-            assert!(row.sharing.is_none() || row.sharing < together.sharing);
-            shared += usize::from(together.sharing.is_some());
+            assert_eq!(row.experiment.lookups_per_draw, together.experiment.lookups_per_draw);
+            assert!(
+                row.experiment.sharing.is_none()
+                    || row.experiment.sharing < together.experiment.sharing
+            );
+            shared += usize::from(together.experiment.sharing.is_some());
         }
     }
     assert!(shared >= 14, "only {shared} shared their lookups");

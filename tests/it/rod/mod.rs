@@ -2,10 +2,10 @@
 
 mod settings;
 
-use crate::common::{case, differs, none, options};
+use crate::common::{case, differs, none, options, rows_of};
 use serde_json::Value;
 use trueflight::plan::Plan;
-use trueflight::record::verdict;
+use trueflight::record::build;
 use trueflight::record::{Row, Verdict};
 
 const EQ21: &str = "volume.eq21 = {}
@@ -25,12 +25,12 @@ fn numbers(entry: &Value) -> Vec<f64> {
 }
 
 /// What a plan says of a rod with one estimator.
-fn planned(rod: &str, estimator: &str) -> Vec<Row> {
+fn planned(rod: &str, estimator: &str) -> Vec<Row<'static>> {
     let text =
         format!("title = \"a rod\"\n[problem.rod]\n{rod}\nestimators = [{{ {estimator} = {{}} }}]");
     let cases = [case("test", &text)];
-    let record = verdict::planned(&Plan::new(&cases, &options(1, 100_000)));
-    record.results.cases.into_iter().flat_map(|case| case.rows).collect()
+    let record = build::planned(&Plan::new(&cases, &options(1, 100_000)));
+    rows_of(record)
 }
 
 /// The truths of a rod, channel by channel.
@@ -138,7 +138,7 @@ fn raw(row: &Row, k: usize) -> f64 {
 /// `E[R²]`, `E[T²]`, `E[R⁴]`, `E[T⁴]` and the expected lookups.
 fn found(rows: &[Row]) -> [f64; 5] {
     let [reflected, transmitted] = rows else { panic!("{}", rows[0].reason) };
-    let lookups = reflected.predicted_lookups.expect("lookups");
+    let lookups = reflected.experiment.predicted_lookups.expect("lookups");
     [raw(reflected, 2), raw(transmitted, 2), raw(reflected, 4), raw(transmitted, 4), lookups]
 }
 
@@ -195,8 +195,8 @@ fn the_adaptive_rule_never_has_the_smaller_variance() {
                 assert!(a2 >= b2 * (1.0 - 1e-10), "{albedo}, {sampling}: {a2} < {b2}");
                 worse += usize::from(a2 > b2 * 1.001);
             }
-            let [a, b] =
-                [&adaptive, &other].map(|rows| rows[0].predicted_lookups.expect("lookups"));
+            let [a, b] = [&adaptive, &other]
+                .map(|rows| rows[0].experiment.predicted_lookups.expect("lookups"));
             assert!(a <= b * (1.0 + 1e-10), "{albedo}, {sampling}: {a} > {b} lookups");
         }
     }
@@ -208,7 +208,7 @@ fn both_ends_together_look_up_what_the_whole_sampling_extinction_asks() {
     for rod in [ramp as fn(bool) -> String, layers] {
         let lookups = |from_the_end: bool| {
             let rod = format!("{}\nsampling.constant.value = 1.9", rod(from_the_end));
-            planned(&rod, "non-terminating")[0].predicted_lookups.expect("lookups")
+            planned(&rod, "non-terminating")[0].experiment.predicted_lookups.expect("lookups")
         };
         let length = if rod(false).contains("[0, 3]") { 3.0 } else { 3.5 };
         let mean = 0.5 * (lookups(false) + lookups(true));
@@ -341,6 +341,6 @@ fn a_truth_that_is_not_known_passes_nothing() {
         &format!("title = \"t\"\n[problem.rod]\n{text}\nestimators = [{{ analog = {{}} }}]"),
     );
     let record = crate::common::judged(&[case], &crate::common::options(1, 20_000));
-    let through = record.results.cases[0].rows.iter().find(|row| row.channel == "transmittance");
+    let through = record.results.cases[0].rows().find(|row| row.channel == "transmittance");
     assert_ne!(through.and_then(|row| row.verdict), Some(Verdict::Pass));
 }

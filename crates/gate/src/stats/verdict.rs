@@ -45,33 +45,32 @@ impl Verdict {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct GateFinding {
     /// ε: the bias that a pass excludes.
-    #[cfg_attr(feature = "serde", serde(deserialize_with = "numeric::null::read"))]
+    #[cfg_attr(feature = "serde", serde(with = "crate::extended"))]
     pub tolerance: f64,
     /// V: the variance of the scalar in theory; it may be infinite.
-    #[cfg_attr(feature = "serde", serde(deserialize_with = "numeric::null::endless"))]
+    #[cfg_attr(feature = "serde", serde(with = "crate::extended"))]
     pub variance: f64,
     /// The observed mean of the scalar, 0 when all is well.
-    #[cfg_attr(feature = "serde", serde(deserialize_with = "numeric::null::read"))]
+    #[cfg_attr(feature = "serde", serde(with = "crate::extended"))]
     pub mean: f64,
     /// How many draws were planned, 27 V/ε²; infinite where none would do.
-    #[cfg_attr(feature = "serde", serde(deserialize_with = "numeric::null::endless"))]
+    #[cfg_attr(feature = "serde", serde(with = "crate::extended"))]
     pub planned: f64,
     /// How many draws it took to decide, or were made without a decision.
     pub draws: u64,
     /// ln E, the evidence against a correct scalar.
-    #[cfg_attr(feature = "serde", serde(deserialize_with = "numeric::null::endless"))]
+    #[cfg_attr(feature = "serde", serde(with = "crate::extended"))]
     pub ln_e: f64,
     /// The ln E at which it fails.
-    #[cfg_attr(feature = "serde", serde(deserialize_with = "numeric::null::read"))]
     pub ln_e_limit: f64,
     /// ln of the evidence against a bias of +ε and of −ε.
-    #[cfg_attr(feature = "serde", serde(deserialize_with = "numeric::null::read"))]
+    #[cfg_attr(feature = "serde", serde(with = "crate::extended"))]
     pub ln_p: [f64; 2],
     /// The ln P at which it passes.
-    #[cfg_attr(feature = "serde", serde(deserialize_with = "numeric::null::read"))]
     pub ln_p_limit: f64,
     /// The draws that it would need, where more than were planned; infinite where none would do.
-    /// `None` only where the plan suffices: in JSON the finding's verdict tells the two apart.
+    /// `None` where the plan suffices.
+    #[cfg_attr(feature = "serde", serde(default, with = "crate::extended"))]
     pub needed: Option<f64>,
     /// Whether it was decided.
     pub is_decided: bool,

@@ -1,24 +1,16 @@
-//! What a comparison of two runs says.
+//! Result of a comparison of two runs.
 
 use serde::{Deserialize, Serialize};
 
-use numeric::null;
+use crate::record::baseline::ChannelId;
 
 /// What the comparison is to say at which level.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Rules {
     /// The chance that equal code shows any regression of a variance or of lookups.
     pub alpha: f64,
-    /// How much more time per draw is no regression, as a share.
-    #[serde(deserialize_with = "null::endless")]
-    pub time_tolerance: f64,
-}
-
-impl Rules {
-    /// Whether any time could be a regression.
-    pub fn asks_for_times(&self) -> bool {
-        self.time_tolerance < f64::INFINITY
-    }
+    /// Relative increase of the time per draw that is no regression; `None` if times are not compared.
+    pub time_tolerance: Option<f64>,
 }
 
 /// What changed.
@@ -45,11 +37,11 @@ pub struct Comparison {
     /// Checks that fail over all runs together.
     pub drifts: Vec<Drift>,
     /// Experiments of this run that the baseline has not.
-    pub added: Vec<String>,
+    pub added: Vec<ChannelId>,
     /// Experiments of the baseline that this run has not.
-    pub missing: Vec<String>,
+    pub missing: Vec<ChannelId>,
     /// Experiments whose case has another text than in the baseline.
-    pub rewritten: Vec<String>,
+    pub rewritten: Vec<ChannelId>,
 }
 
 /// Whether the e-values of both runs multiply.
@@ -76,24 +68,29 @@ pub enum Quantity {
     Time,
 }
 
+/// A value with its standard error.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Measured {
+    /// The value.
+    pub value: f64,
+    /// Its standard error; `None` for times, for one figure has none.
+    pub error: Option<f64>,
+}
+
 /// A quantity that differs.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Change {
     /// The experiment.
-    pub id: String,
+    pub id: ChannelId,
     /// The quantity.
     pub quantity: Quantity,
-    /// Its stored value, with its standard error.
-    #[serde(deserialize_with = "null::read")]
-    pub before: [f64; 2],
-    /// Its value now, with its standard error.
-    #[serde(deserialize_with = "null::read")]
-    pub now: [f64; 2],
+    /// Its stored value.
+    pub before: Measured,
+    /// Its value now.
+    pub now: Measured,
     /// now/before.
-    #[serde(deserialize_with = "null::read")]
     pub ratio: f64,
     /// Where the true ratio is; `None` for times.
-    #[serde(deserialize_with = "null::read")]
     pub interval: Option<[f64; 2]>,
     /// Whether it became worse.
     pub is_regression: bool,
@@ -105,14 +102,12 @@ pub struct Change {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Drift {
     /// The experiment.
-    pub id: String,
+    pub id: ChannelId,
     /// The check.
     pub check: String,
     /// ln E of all runs together.
-    #[serde(deserialize_with = "null::endless")]
     pub ln_e: f64,
     /// The limit.
-    #[serde(deserialize_with = "null::read")]
     pub limit: f64,
     /// The command that repeats the experiment.
     pub command: String,
@@ -153,15 +148,15 @@ impl Comparison {
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct LeftOut {
     /// σ̂ was learned from other pilot rays: neither variance nor lookups are of the same estimator.
-    pub relearned: Vec<String>,
+    pub relearned: Vec<ChannelId>,
     /// The variance is too uncertain.
-    pub blunt: Vec<String>,
+    pub blunt: Vec<ChannelId>,
     /// Theory has no kurtosis, so that nobody knows how uncertain the variance is.
-    pub unpredicted: Vec<String>,
+    pub unpredicted: Vec<ChannelId>,
     /// Theory has no variance of the number of lookups.
-    pub uncounted: Vec<String>,
+    pub uncounted: Vec<ChannelId>,
     /// The draws took less than 0.1 s, then or now.
-    pub brief: Vec<String>,
+    pub brief: Vec<ChannelId>,
     /// The lookups were shared with other experiments, then or now: the time is of their company.
-    pub shared: Vec<String>,
+    pub shared: Vec<ChannelId>,
 }

@@ -1,0 +1,263 @@
+//! Results of an experiment: its identity, its channels, and the findings of the checks.
+
+use serde::{Deserialize, Serialize};
+
+use crate::plan::ExperimentId;
+use crate::record::{Best, Course, GateFinding, Verdict};
+
+/// Results of one experiment: one estimator at one point of the sweep.
+#[derive(Debug, Clone, Default, Serialize, Deserialize)]
+#[serde(default)]
+pub struct ExperimentRecord {
+    /// Identity of the experiment.
+    pub id: ExperimentId,
+    /// Label of the estimator in tables, as in `single (non-terminating, a=0.7)`.
+    pub label: String,
+    /// Name of the experiment within its case, as in `ratio, σ̂ 0.5, control mean`: short, and distinct from others.
+    pub name: String,
+    /// The number of the estimator in the case's list, from 0.
+    pub listed: usize,
+    /// Knowledge of the medium that σ̂, control and estimator need beside lookups, as in `τ`; empty for none.
+    pub needs: String,
+    /// The kernel that draws, `ordered` or `order-free`; empty if the experiment is refused.
+    pub kernel: String,
+    /// The earlier experiment of the case that is the same by definition: both share their draws.
+    pub same_as: Option<ExperimentId>,
+    /// Number of experiments of the case, this one included, that share their lookups; `None` if each has its own.
+    pub sharing: Option<u64>,
+    /// The share of the ray's support, in space of the box about the volume, that is skipped as empty: σ̂ is 0 there.
+    /// `None` where σ̂ is as the case has it.
+    pub skipped: Option<f64>,
+    /// Number of draws of the means, variances and z-scores, fixed by the plan.
+    pub draws: Option<u64>,
+    /// Number of draws that the gate took to decide.
+    pub drawn: Option<u64>,
+    /// The name of the experiment's streams: with the seed and a block's number it addresses them.
+    pub stream: Option<u64>,
+    /// The command that repeats the experiment.
+    pub command: String,
+    /// Lookups of σ_t for a ray before its first draw, as at explorer points and by pilot rays; no part of the lookups per
+    /// draw. `None` if the experiment is refused.
+    pub setup_lookups: Option<u64>,
+    /// The mean number of lookups of σ_t.
+    pub lookups_per_draw: Option<f64>,
+    /// The predicted mean number of lookups of σ_t.
+    pub predicted_lookups: Option<f64>,
+    /// (lookups − predicted) in predicted standard errors.
+    pub z_lookups: Option<f64>,
+    /// The predicted standard deviation of the mean number of lookups, for error bars.
+    pub lookups_deviation: Option<f64>,
+    /// The predicted variance of the number of lookups of one draw.
+    pub lookups_variance: Option<f64>,
+    /// Predicted probabilities `P(0), P(1), …` of the number of lookups of one draw; empty if unknown or longer than 100.
+    pub lookups_pmf: Vec<f64>,
+    /// The share of the ray on which `w ≤ 2σ_t`, the stability condition, holds.
+    pub stable_share: Option<f64>,
+    /// The smallest p-value of the tests of distributions.
+    pub p_law: Option<f64>,
+    /// The fields along the ray, one for each channel of the medium, if the experiment is refused.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub courses: Vec<Course>,
+    /// Findings of all checks, in the order of the catalogue.
+    pub findings: Vec<Finding>,
+    /// Time of the drawing: it differs from run to run.
+    #[serde(skip)]
+    pub spent: Spent,
+    /// The channels of a draw; one without a name if the experiment is refused, or if a draw is one value.
+    pub channels: Vec<ChannelRecord>,
+}
+
+/// Time of an experiment.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Spent {
+    /// Processor seconds of the drawing; `None` if nothing was drawn.
+    pub seconds: Option<f64>,
+    /// Whether an earlier run made the draws, and spent the time.
+    pub is_reused: bool,
+}
+
+/// Results of one channel of an experiment.
+#[derive(Debug, Clone, Default, Serialize, Deserialize)]
+#[serde(default)]
+pub struct ChannelRecord {
+    /// The channel's name, as in `T(5)` or `reflectance`; empty if a draw is one value.
+    #[serde(rename = "name")]
+    pub channel: String,
+    /// The mean of the draws.
+    pub mean: Option<f64>,
+    /// The standard error of the mean from the draws' own variance.
+    pub standard_error: Option<f64>,
+    /// The exact answer.
+    pub truth: Option<f64>,
+    /// The bound on the truth's own error.
+    pub truth_error: Option<f64>,
+    /// (mean − truth) in predicted standard errors.
+    pub z_mean: Option<f64>,
+    /// The unbiased sample variance of one draw.
+    pub variance: Option<f64>,
+    /// The predicted variance of one draw.
+    pub predicted_variance: Option<f64>,
+    /// (variance − predicted) in predicted standard deviations of the sample variance.
+    pub z_variance: Option<f64>,
+    /// The predicted standard deviation of the sample variance, for error bars.
+    pub variance_deviation: Option<f64>,
+    /// The z-scores that are not to be read as normal: the draws are too few, or their tails too heavy.
+    pub not_normal: Vec<Score>,
+    /// The predicted skewness of one draw.
+    pub predicted_skewness: Option<f64>,
+    /// The predicted kurtosis of one draw (3 for the normal distribution).
+    pub predicted_kurtosis: Option<f64>,
+    /// ε of the mean: the smallest bias, relative to the truth, that a pass excludes.
+    pub detectable_bias: Option<f64>,
+    /// The measured figure of merit, 1/(variance · (lookups per draw + setup lookups/draws per ray)).
+    pub fom: Option<f64>,
+    /// The predicted figure of merit.
+    pub predicted_fom: Option<f64>,
+    /// The constant σ̂ with the largest predicted figure of merit; `None` if it was not searched.
+    pub best: Option<Best>,
+    /// `pass`, `fail`, `inconclusive`, `underpowered` or `refused`; `None` if nothing was drawn.
+    pub verdict: Option<Verdict>,
+    /// Reason of the verdict; empty for a plain pass.
+    pub reason: String,
+    /// The command that decides an inconclusive channel, or, of a plan, all of the case that it leaves inconclusive.
+    /// Empty if no number of draws does, and for all others.
+    #[serde(skip_serializing_if = "String::is_empty")]
+    pub decide: String,
+    /// `inconclusive` or `underpowered` if a plan has too few draws for a pass; `None` in a run.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub foreseen: Option<Verdict>,
+    /// Number of draws that such a channel of a plan needs; `None` if no number of draws is enough.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub needed_draws: Option<f64>,
+    /// `J_k = ∫ σ̂ E[(1 − W)^k]`, k = 1 … 4, of product estimators.
+    #[serde(with = "gate::extended")]
+    pub losses: Option<[f64; 4]>,
+    /// The predicted central moments `μ_k/T^k` of one draw, k = 2, 3, 4; `None` if they are
+    /// unknown or overflow.
+    pub relative_moments: [Option<f64>; 3],
+    /// A bound on the relative error of the predicted variance and, if that is known, of the fourth
+    /// moment; `None` without a bound.
+    pub moments_error: Option<f64>,
+    /// `n(2)`: with fewer draws the events that make the variance are not seen.
+    pub rare_event_size: Option<f64>,
+    /// `E[X⁸]/E[X⁴]²`, the weight of the tails of the sample variance.
+    pub eighth_moment_ratio: Option<f64>,
+    /// All values of the channel are in units of `exp(−log_unit)`; `None` if they are as they are.
+    pub log_unit: Option<f64>,
+}
+
+/// A z-score of a channel.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Score {
+    /// That of the mean.
+    #[serde(rename = "z_mean")]
+    Mean,
+    /// That of the variance.
+    #[serde(rename = "z_variance")]
+    Variance,
+    /// That of the lookups.
+    #[serde(rename = "z_lookups")]
+    Lookups,
+}
+
+impl Score {
+    /// The name of its column in files.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Mean => "z_mean",
+            Self::Variance => "z_variance",
+            Self::Lookups => "z_lookups",
+        }
+    }
+}
+
+/// Finding of one check about one experiment.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub struct Finding {
+    /// The check's name in the catalogue.
+    pub check: String,
+    /// The quantity, as in `the mean`.
+    pub what: String,
+    /// Whether the case declares a bias that the check must show.
+    pub expects_bias: bool,
+    /// The channel; empty for the experiment as a whole, or if its channel has no name.
+    pub channel: String,
+    /// The statistic, in standard deviations, if the check has one.
+    pub z: Option<f64>,
+    /// The p-value, for tests of a whole distribution.
+    pub p: Option<f64>,
+    /// Numbers of the gate, for scalars.
+    pub gate: Option<GateFinding>,
+    /// Pairs of draws and ln E at the gate's looks, ascending: the last is the decision's. Of more than 64 looks an even
+    /// choice, ln E in steps of 0.001.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub path: Vec<[f64; 2]>,
+    /// The block at whose end it was decided, or that has the first violation.
+    pub block: Option<u64>,
+    /// The verdict of the check.
+    pub verdict: Verdict,
+    /// Reason of the verdict, with the numbers.
+    pub reason: String,
+}
+
+impl Finding {
+    /// Whether it is about a channel, or about the experiment as a whole.
+    pub fn is_about(&self, channel: &str) -> bool {
+        self.channel.is_empty() || self.channel == channel
+    }
+}
+
+impl ExperimentRecord {
+    /// The constant sampling extinction, 1/length; `None` where σ̂ varies or is not used.
+    pub fn sampling(&self) -> Option<f64> {
+        self.id.sampling.constant.map(|value| value.0)
+    }
+
+    /// The value of the swept quantity; `None` for experiments outside the sweep.
+    pub fn swept(&self) -> Option<f64> {
+        self.id.swept_value()
+    }
+
+    /// The findings about a channel, and about the experiment as a whole.
+    pub fn findings_about(&self, channel: &str) -> impl Iterator<Item = &Finding> {
+        self.findings.iter().filter(move |finding| finding.is_about(channel))
+    }
+
+    /// Label of the experiment that is the same by definition; empty for none.
+    pub fn same_as(&self) -> String {
+        self.same_as.as_ref().map_or(String::new(), ExperimentId::label)
+    }
+}
+
+impl ChannelRecord {
+    /// `log₁₀ LTUV`, LTUV = V · lookups of a draw with its share of the setup lookups: the lookups to unit variance of
+    /// Miller et al. 2019, section 6; the figure of merit upside down.
+    pub fn log10_ltuv(&self) -> Option<f64> {
+        self.fom.map(|fom| -fom.log10())
+    }
+
+    /// The constant σ̂ with the largest predicted figure of merit, 1/length; `None` if it was not searched.
+    pub fn best_sampling(&self) -> Option<f64> {
+        self.best.as_ref().map(|best| best.sampling)
+    }
+
+    /// The figure of merit at the best σ̂; `None` if it is infinite.
+    pub fn best_fom(&self) -> Option<f64> {
+        self.best.as_ref().and_then(|best| best.fom)
+    }
+
+    /// The kind of the best σ̂; empty if it was not searched.
+    pub fn best_kind(&self) -> &str {
+        self.best.as_ref().map_or("", |best| &best.kind)
+    }
+
+    /// The limit of a figure of merit that rises with σ̂ to one.
+    pub fn best_limit(&self) -> Option<f64> {
+        self.best.as_ref().and_then(|best| best.limit)
+    }
+
+    /// The predicted `log₁₀ LTUV`.
+    pub fn predicted_log10_ltuv(&self) -> Option<f64> {
+        self.predicted_fom.map(|fom| -fom.log10())
+    }
+}

@@ -1,0 +1,177 @@
+//! Predictions and statistics of an experiment, as a record has them.
+
+use crate::checks::normality::{Tails, needed};
+use crate::draw::drawn::Drawn;
+use crate::plan::{Planned, PlannedCase};
+use crate::record::{ChannelRecord, Course, ExperimentRecord, Score, Verdict};
+use estimators::Refusal;
+use gate::stats::Tally;
+use theory::prediction::CERTAIN;
+use theory::{Channel, Prediction};
+
+/// A longer list of probabilities is left out of the record.
+const LONGEST_LAW: usize = 100;
+
+/// The experiment at an index of a case with the predictions of each channel, or with the reason of its refusal.
+pub fn predicted(case: &PlannedCase, index: usize) -> ExperimentRecord {
+    let planned = &case.experiments[index];
+    let blank = ExperimentRecord {
+        id: planned.id.clone(),
+        label: planned.id.label(),
+        listed: planned.estimator,
+        needs: planned.needs.clone(),
+        ..ExperimentRecord::default()
+    };
+    let ready = match &planned.outcome {
+        Ok(ready) => ready,
+        Err(refusal) => {
+            let (verdict, reason) = (Some(Verdict::Refused), refusal.to_string());
+            let channels = vec![ChannelRecord { verdict, reason, ..ChannelRecord::default() }];
+            let courses = courses(case, planned, refusal);
+            return ExperimentRecord { courses, channels, ..blank };
+        }
+    };
+    let prediction = &ready.prediction;
+    let law = prediction.lookups.as_ref();
+    let cost = prediction.cost(planned.draws_per_ray);
+    let pmf = law.filter(|law| law.pmf.len() <= LONGEST_LAW).map(|law| law.pmf.clone());
+    ExperimentRecord {
+        kernel: ready.experiment.order().word().to_owned(),
+        sharing: sharing(case, planned),
+        same_as: case.twin(index).map(|twin| case.experiments[twin].id.clone()),
+        skipped: Some(ready.experiment.skipped()).filter(|&share| share > 0.0),
+        predicted_lookups: law.map(|law| law.mean),
+        setup_lookups: Some(prediction.setup_lookups),
+        stable_share: prediction.stable_share,
+        lookups_variance: law.map(|law| law.variance),
+        lookups_pmf: pmf.unwrap_or_default(),
+        channels: prediction.channels.iter().map(|channel| of_channel(channel, cost)).collect(),
+        ..blank
+    }
+}
+
+/// Predictions of a channel; `cost` is the number of lookups that a draw is charged with.
+fn of_channel(channel: &Channel, cost: Option<f64>) -> ChannelRecord {
+    let moments = channel.resolved_moments();
+    let variance = moments.map(|moments| moments.variance());
+    ChannelRecord {
+        channel: channel.name.clone(),
+        truth: Some(channel.truth.value),
+        truth_error: Some(channel.truth.error),
+        predicted_variance: finite(variance),
+        predicted_skewness: finite(moments.and_then(|m| m.skewness())),
+        predicted_kurtosis: finite(moments.and_then(|m| m.kurtosis())),
+        predicted_fom: finite(variance.zip(cost).map(|(v, m)| 1.0 / (v * m))),
+        losses: channel.losses,
+        relative_moments: moments
+            .map_or([None; 3], |moments| moments.relative.map(|m| finite(Some(m)))),
+        moments_error: finite(channel.moments_error()),
+        rare_event_size: finite(moments.map(|_| channel.tails.rare_event_size)),
+        eighth_moment_ratio: finite(moments.map(|_| channel.tails.eighth_moment_ratio)),
+        log_unit: Some(channel.log_unit).filter(|&unit| unit != 0.0),
+        ..ChannelRecord::default()
+    }
+}
+
+/// The fields along the ray, which show where an inequality fails; places where a field has no finite value are left out.
+fn courses(case: &PlannedCase, planned: &Planned, refusal: &Refusal) -> Vec<Course> {
+    let at = match refusal {
+        Refusal::Inequality { at, .. } => Some(*at),
+        _ => None,
+    };
+    let case = case.case.at(planned.variation);
+    let courses = case.map(|case| case.courses(planned.estimator, planned.address, at));
+    let courses = courses.unwrap_or_default();
+    courses.into_iter().map(Course::finite).collect()
+}
+
+/// Number of experiments of the case that share an experiment's lookups; `None` if each has its own.
+fn sharing(case: &PlannedCase, planned: &Planned) -> Option<u64> {
+    let shared = planned.shared?;
+    let all = case.experiments.iter().filter(|other| other.shared == Some(shared)).count();
+    (all > 1).then_some(all as u64)
+}
+
+/// A number that files can hold.
+pub fn finite(x: Option<f64>) -> Option<f64> {
+    x.filter(|x| x.is_finite())
+}
+
+/// Adds statistics of the fixed draws: lookups, and for each channel mean and variance with their z-scores.
+pub fn measure(record: &mut ExperimentRecord, planned: &Planned, drawn: &Drawn) {
+    let Ok(ready) = &planned.outcome else { return };
+    let prediction = &ready.prediction;
+    let channels = prediction.channels.iter().zip(&drawn.tallies);
+    record.draws = drawn.tallies.first().map(|tally| tally.draws);
+    if record.draws.is_some() {
+        measure_lookups(record, prediction, drawn);
+    }
+    let setup = prediction.shared_setup(planned.draws_per_ray);
+    let cost = record.lookups_per_draw.map(|lookups| lookups + setup);
+    let of_lookups = prediction.lookups.as_ref().map(|law| needed(law.kurtosis, 1.0));
+    let looked = drawn.lookups.draws as f64;
+    let z_lookups = (record.z_lookups, of_lookups.is_some_and(|needed| looked >= needed));
+    for (values, (channel, tally)) in record.channels.iter_mut().zip(channels) {
+        measure_channel(values, channel, tally);
+        let fom = values.variance.zip(cost).map(|(v, m)| 1.0 / (v * m));
+        values.fom = finite(fom.filter(|_| values.z_mean.is_some()));
+        values.not_normal = not_normal(values, tally.draws as f64, z_lookups);
+    }
+}
+
+/// Mean lookups of the fixed draws, and their z-score.
+fn measure_lookups(record: &mut ExperimentRecord, prediction: &Prediction, drawn: &Drawn) {
+    let n = drawn.lookups.draws as f64;
+    let law = prediction.lookups.as_ref();
+    let observed = drawn.lookups.moments().map(|m| m.mean);
+    record.lookups_per_draw = observed.map(|mean| mean + law.map_or(0.0, |law| law.mean));
+    if let Some(law) = law.filter(|law| law.variance > 0.0) {
+        let deviation = (law.variance / n).sqrt();
+        record.lookups_deviation = Some(deviation);
+        record.z_lookups = observed.map(|mean| mean / deviation);
+    }
+}
+
+/// Mean and variance of the fixed draws, and their z-scores.
+fn measure_channel(values: &mut ChannelRecord, channel: &Channel, tally: &Tally) {
+    let n = tally.draws as f64;
+    let unit = channel.truth.value;
+    let moments = tally.moments();
+    values.mean = finite(moments.map(|m| channel.mean.value + m.mean * unit));
+    values.variance = finite(moments.and_then(|m| m.variance).map(|v| v * unit * unit));
+    values.standard_error = values.variance.map(|v| (v / n).sqrt());
+    let predicted = channel.resolved_moments().filter(|m| m.relative[0] > CERTAIN);
+    let Some(predicted) = predicted else { return };
+    values.variance_deviation = finite(
+        predicted.spread_of_sample_variance(n).map(|s| s.max(0.0).sqrt() * predicted.variance()),
+    );
+    let spread = (predicted.variance() / n).sqrt();
+    values.z_mean = finite(values.mean.map(|mean| (mean - channel.truth.value) / spread));
+    let testable = |kurtosis: &f64| *kurtosis > 1.0 + 1e-6 && kurtosis.is_finite();
+    let kurtosis = predicted.kurtosis().filter(testable);
+    let square = tally.mean_square().map(|square| square * unit * unit / predicted.variance());
+    values.z_variance = finite(
+        square
+            .zip(kurtosis)
+            .map(|(square, kurtosis)| (square - 1.0) / ((kurtosis - 1.0) / n).sqrt()),
+    );
+}
+
+/// The z-scores of a channel over `n` draws that are not to be read as normal; that of the lookups comes with whether it is.
+fn not_normal(
+    values: &ChannelRecord,
+    n: f64,
+    (z_lookups, is_normal): (Option<f64>, bool),
+) -> Vec<Score> {
+    let tails = Tails {
+        kurtosis: values.predicted_kurtosis,
+        eighth_moment_ratio: values.eighth_moment_ratio,
+        rare_event_size: values.rare_event_size,
+    };
+    let all = [
+        (Score::Mean, values.z_mean, tails.has_normal_mean(n)),
+        (Score::Variance, values.z_variance, tails.has_normal_variance(n)),
+        (Score::Lookups, z_lookups, is_normal),
+    ];
+    all.into_iter().filter(|(_, z, is)| z.is_some() && !is).map(|(score, ..)| score).collect()
+}
