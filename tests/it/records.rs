@@ -97,7 +97,8 @@ fn records_come_back_from_their_files() {
                 sweep.sampling = [0.4, 4]\nestimators = [{ ratio = {} }, { woodcock = {} }]";
     let record = judged(&[case("test", text)], &options(1, 40_000));
     assert_comes_back(&record);
-    let later = record_json::text(&record).expect("JSON").replacen("\"schema\":2", "\"schema\":3", 1);
+    let later =
+        record_json::text(&record).expect("JSON").replacen("\"schema\":2", "\"schema\":3", 1);
     let error = record_json::read(later.as_bytes()).expect_err("another form").to_string();
     assert_eq!(error, "a record of form 3, this program reads 1 and 2");
 }

@@ -2,11 +2,11 @@
 //! extreme depths and majorants, breaks at the same places. Correct estimators never fail, biased ones never pass, and
 //! each experiment is predicted in numbers or refused in words.
 
-use crate::common::{case, none};
+use crate::common::{case, none, rows_of};
 use trueflight::case::Case;
 use trueflight::draw::run;
 use trueflight::plan::{Amount, Options, Plan, Planned};
-use trueflight::record::{Row, Verdict, evaluate, verdict};
+use trueflight::record::{Row, Verdict, build, evaluate};
 use trueflight::stats::ties;
 
 /// The run-level α of each case: a correct estimator that fails is a bug.
@@ -85,10 +85,10 @@ fn options(seed: u64, draws: u64) -> Options {
     Options { seed, draws: Amount::Exactly(draws), alpha: ALPHA, ..Options::default() }
 }
 
-fn judged(case: &Case, seed: u64, draws: u64) -> Vec<Row> {
+fn judged(case: &Case, seed: u64, draws: u64) -> Vec<Row<'static>> {
     let plan = Plan::new(std::slice::from_ref(case), &options(seed, draws));
-    let record = verdict::judged(&plan, &run::draw(&plan, &|_| {}), 0.0);
-    record.results.cases.into_iter().flat_map(|case| case.rows).collect()
+    let record = build::judged(&plan, &run::draw(&plan, &|_| {}), 0.0);
+    rows_of(record)
 }
 
 /// Rows of cases, few draws and many, with a verdict that is wrong.
@@ -98,7 +98,8 @@ fn wrong(cases: &[(&str, &str, &str)], seeds: u64, is_wrong: impl Fn(&Row) -> bo
         let case = read("transmittance", lines, estimators);
         for (seed, draws) in (1..=seeds).flat_map(|seed| [(seed, 2_000), (seed, 40_000)]) {
             for row in judged(&case, seed, draws).into_iter().filter(&is_wrong) {
-                wrong.push(format!("{name}, seed {seed}, {}: {}", row.estimator, row.reason));
+                wrong
+                    .push(format!("{name}, seed {seed}, {}: {}", row.experiment.label, row.reason));
             }
         }
     }
@@ -194,7 +195,7 @@ fn at_the_edge(case: &Case, what: &str, is_drawn: bool) -> Vec<String> {
         plan.experiments().filter_map(|(_, planned)| trouble(planned)).collect();
     if is_drawn {
         let failing = judged(case, 1, 1 << 13).into_iter().filter(fails);
-        wrong.extend(failing.map(|row| format!("{}: {}", row.estimator, row.reason)));
+        wrong.extend(failing.map(|row| format!("{}: {}", row.experiment.label, row.reason)));
     }
     wrong.into_iter().map(|wrong| format!("{what}, {wrong}")).collect()
 }
