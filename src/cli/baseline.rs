@@ -10,7 +10,7 @@ use crate::case::Case;
 use crate::record::Record;
 use crate::record::Verdict;
 use crate::record::baseline::{Baseline, BaselineError, Comparison, Rules, compare, fingerprint};
-use crate::report::diff;
+use crate::report::run::diff;
 
 /// Options that all commands which draw share.
 #[derive(Debug, Clone, Args)]

@@ -152,8 +152,8 @@ impl Arguments {
         let text = match self.format {
             Format::Table if console.quiet => return Ok(()),
             Format::Table => page::console::table(bench, output::pen(console)),
-            Format::Csv => page::rows::csv(bench)?,
-            Format::Json => page::rows::json(bench)?,
+            Format::Csv => page::tables::csv(bench)?,
+            Format::Json => page::tables::json(bench)?,
         };
         output::print(&text)
     }

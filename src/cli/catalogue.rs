@@ -112,7 +112,7 @@ pub fn pages(catalogue: &Catalogue) -> Vec<(String, Page)> {
     lists.extend([
         ("problems".to_owned(), problems::CATALOGUE),
         ("checks".to_owned(), checks::CATALOGUE),
-        ("reports".to_owned(), report::CATALOGUE),
+        ("reports".to_owned(), report::run::CATALOGUE),
         ("files".to_owned(), crate::case::CATALOGUE),
         ("files".to_owned(), render::CATALOGUE),
     ]);

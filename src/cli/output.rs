@@ -12,8 +12,10 @@ use indicatif::{HumanDuration, ProgressBar, ProgressDrawTarget, ProgressState, P
 use super::{Console, USAGE};
 use crate::case::CaseError;
 use crate::record::Record;
-use crate::report::console::{self, View, layout::Pen};
-use crate::report::{self, Artifact, ReportError, rows};
+use crate::report::layout::Pen;
+use crate::report::run::console::{self, View};
+use crate::report::run::summary_csv;
+use crate::report::{self, Artifact, ReportError};
 
 /// When to use colours.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, ValueEnum)]
@@ -61,8 +63,8 @@ pub fn print_record(
     let text = match format {
         Format::Table if options.quiet => return Ok(()),
         Format::Table => console::table(record, view, pen(options)),
-        Format::Csv => rows::csv(record)?,
-        Format::Json => rows::json(record)?,
+        Format::Csv => summary_csv::csv(record)?,
+        Format::Json => summary_csv::json(record)?,
     };
     print(&text)
 }

@@ -13,7 +13,7 @@ use crate::draw::store::{Header, Store};
 use crate::plan::options::DRAWS;
 use crate::record::baseline::fingerprint;
 use crate::record::build;
-use crate::report::console::View;
+use crate::report::run::console::View;
 
 /// Arguments of `predict`.
 #[derive(Debug, Args)]

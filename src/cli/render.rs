@@ -59,8 +59,8 @@ pub fn main(arguments: &Arguments, catalogue: &Catalogue, console: &Console) -> 
         records.push((record, sheet));
     }
     bar.finish_and_clear();
-    let page = Artifact::text("report.html", report::html::gallery::text(&records));
-    let rows = report::render::table::csv(records.iter().map(|(record, _)| record))?;
+    let page = Artifact::text("report.html", report::render::html::text(&records));
+    let rows = report::render::csv(records.iter().map(|(record, _)| record))?;
     write(&[Artifact::text("gallery.csv", rows), page], &out)?;
     if !console.quiet {
         let page = output::report_in(&out);

@@ -6,7 +6,7 @@ use super::USAGE;
 use super::output::{self, Errors};
 use crate::record::baseline::Comparison;
 use crate::record::{Record, Verdict};
-use crate::report::junit;
+use crate::report::run::junit;
 
 /// Nothing fails, but something is not decided.
 pub const UNDECIDED: u8 = 3;

@@ -1,38 +1,25 @@
-//! Record → artifacts: a report is a pure function from what a run found to the bytes of files.
+//! Reports: pure functions from results to the text on the screen and the bytes of files.
 //!
-//! Floor 7. A report sees nothing but the [`Record`] and does no arithmetic beyond formatting.
-//! It is one file and one line in the list at the foot of this page.
+//! Reports are stored by input: each folder has the screen, the tables, the page and the plots of one kind of results.
+//! [`run`] is about a [`Record`](crate::record::Record). Shared are [`columns`], [`layout`], [`page`], [`mod@html`] and [`plots`].
+//! A report does no arithmetic beyond formatting.
 
-pub mod anatomy_plot;
-pub mod annotations;
 pub mod bench;
-pub mod case_csv;
-pub mod checks_csv;
 pub mod columns;
-pub mod console;
-pub mod diff;
-pub mod failures;
 pub mod html;
 pub mod judge;
-pub mod junit;
-pub mod likely;
-pub mod markdown;
+pub mod layout;
+pub mod page;
 pub mod plots;
-pub mod record_json;
 pub mod render;
-pub mod rows;
+pub mod run;
 pub mod self_test;
 pub mod stress;
-pub mod summary_csv;
-pub mod sweep_plot;
-pub mod totals;
 
 use std::fs;
 use std::io;
 use std::path::{Component, Path, PathBuf};
 
-use crate::record::Record;
-use media::catalogue::PageList;
 use media::files;
 
 /// A file that a report would have.
@@ -50,9 +37,6 @@ impl Artifact {
         Self { path: path.into(), bytes: text.into_bytes() }
     }
 }
-
-/// Renders a report's files from a record.
-pub type Report = fn(&Record) -> Result<Vec<Artifact>, ReportError>;
 
 /// Why a report could not be rendered or written.
 #[derive(Debug, thiserror::Error)]
@@ -101,16 +85,6 @@ pub enum ReportError {
     },
 }
 
-/// Renders every report that a run writes.
-///
-/// # Errors
-///
-/// The first error of any report.
-pub fn render(record: &Record) -> Result<Vec<Artifact>, ReportError> {
-    let rendered: Result<Vec<_>, _> = REPORTS.iter().map(|render| render(record)).collect();
-    Ok(rendered?.into_iter().flatten().collect())
-}
-
 /// Writes the artifacts below `out_dir`, each under a temporary name that is then renamed. What can be
 /// written is, whatever becomes of the others; answers what could not.
 pub fn write(artifacts: &[Artifact], out_dir: &Path) -> Vec<ReportError> {
@@ -133,33 +107,6 @@ fn write_one(artifact: &Artifact, out_dir: &Path) -> Result<(), ReportError> {
 /// A case's file: its name, which may have folders, with an ending.
 pub fn case_path(case: &str, ending: &str) -> PathBuf {
     PathBuf::from(format!("{case}.{ending}"))
-}
-
-/// Lists the reports: from one line each come the module and the rows below. Those after the
-/// semicolon are written only where an option asks for them.
-macro_rules! reports {
-    ($($module:ident,)*; $($asked:ident,)*) => {
-        /// Every page, in the order of registration.
-        pub const CATALOGUE: PageList =
-            PageList { name: "reports", pages: &[$(media::page!($module),)* $(media::page!($asked)),*] };
-
-        /// Every report that a run writes, in the same order.
-        pub const REPORTS: &[Report] = &[$($module::render),*];
-    };
-}
-
-reports! {
-    summary_csv,
-    checks_csv,
-    case_csv,
-    sweep_plot,
-    anatomy_plot,
-    record_json,
-    html,
-    ;
-    junit,
-    markdown,
-    annotations,
 }
 
 #[cfg(test)]

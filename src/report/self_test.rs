@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use crate::report::columns::{self, Column, columns};
-use crate::report::console::layout::{Field, Grid, Paint, Pen};
+use crate::report::layout::{Field, Grid, Paint, Pen};
 use crate::report::{Artifact, ReportError};
 use crate::self_test::SelfTest;
 use lab::calibration::{Calibration, Rate};

@@ -8,7 +8,7 @@ use quick_xml::events::{BytesStart, Event};
 use trueflight::record::{
     CaseRecord, ChannelRecord, ExperimentRecord, Finding, Record, Results, Spent, Timing, Verdict,
 };
-use trueflight::report::junit::{self, Inconclusive};
+use trueflight::report::run::junit::{self, Inconclusive};
 
 /// An element with its attributes, its children and its text.
 #[derive(Default)]

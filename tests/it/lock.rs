@@ -11,7 +11,8 @@ use trueflight::catalogue::Page;
 use trueflight::estimators;
 use trueflight::lab::streams;
 use trueflight::problems;
-use trueflight::report::{checks_csv, rows, self_test};
+use trueflight::report::run::{checks_csv, summary_csv};
+use trueflight::report::self_test;
 use trueflight::self_test::{SelfTest, calibration, mutation};
 
 /// Columns that identify a row of a case.
@@ -225,7 +226,7 @@ fn all_cases_predict_and_draw_what_they_did() {
         None if shipped_draws() != LOCKED_DRAWS => return,
         None => {
             let record = shipped_record();
-            let summary = rows::csv(record).expect("renders");
+            let summary = summary_csv::csv(record).expect("renders");
             let checks = checks_csv::render(record).expect("renders").remove(0).bytes;
             let checks = String::from_utf8(checks).expect("text");
             Lock::new(&Table::parse(&summary), &Table::parse(&checks))

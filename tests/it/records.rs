@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 
 use crate::common::{case, judged, none, options, shipped_plan};
 use trueflight::record::{Record, build};
-use trueflight::report::{html, record_json, rows};
+use trueflight::report::run::{html, record_json, summary_csv};
 
 /// A record of version 1, and the table that the same program made of it.
 const OLD: (&[u8], &str) =
@@ -34,7 +34,7 @@ fn identities_texts_and_names_of_experiments_are_distinct() {
 
 #[test]
 fn a_record_of_version_1_has_the_same_table() {
-    let table = rows::csv(&old()).expect("a table");
+    let table = summary_csv::csv(&old()).expect("a table");
     for (found, expected) in table.lines().zip(OLD.1.lines()) {
         assert_eq!(found, expected);
     }
@@ -86,7 +86,7 @@ fn assert_comes_back(record: &Record) {
     let text = record_json::text(record).expect("JSON");
     let read = record_json::read(text.as_bytes()).expect("a record");
     assert!(record_json::text(&read).expect("JSON") == text, "it came back otherwise");
-    let table = |record| rows::csv(record).expect("a table");
+    let table = |record| summary_csv::csv(record).expect("a table");
     assert_eq!(table(&read), table(record));
 }
 

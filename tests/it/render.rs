@@ -215,7 +215,7 @@ fn pictures_are_the_same_on_any_number_of_threads() {
         let records: Vec<PictureRecord> =
             pool.install(|| texts.iter().map(|text| rendered(text, 2)).collect());
         let sheets = records.iter().map(|record| report::artifacts(record).expect("a sheet"));
-        (sheets.collect::<Vec<_>>(), report::table::csv(&records).expect("a table"))
+        (sheets.collect::<Vec<_>>(), report::csv(&records).expect("a table"))
     };
     let one = bytes(1);
     assert!(one == bytes(2) && one == bytes(7));

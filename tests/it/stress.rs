@@ -10,7 +10,7 @@ use trueflight::case::Source;
 use trueflight::plan::Amount;
 use trueflight::plan::Options;
 use trueflight::plan::Plan;
-use trueflight::report::console::layout::Pen;
+use trueflight::report::layout::Pen;
 use trueflight::report::stress as page;
 use trueflight::stress::{Effort, Measure, PAGES, Row, Run, Stress, narrow};
 

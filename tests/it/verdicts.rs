@@ -3,8 +3,9 @@
 use crate::common::{case, finding, judged, options, row, rows, verdict};
 use trueflight::record::Record;
 use trueflight::record::{Results, Score, Verdict};
-use trueflight::report::console::{self, View, layout::Pen};
-use trueflight::report::rows as joined;
+use trueflight::report::layout::Pen;
+use trueflight::report::run::console::{self, View};
+use trueflight::report::run::summary_csv as joined;
 
 /// A dense layer between thin ones, T = e⁻²·⁸⁵: asymmetric, and not zero at the ends.
 const LAYERS: &str = "

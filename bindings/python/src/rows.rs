@@ -12,7 +12,7 @@ use trueflight::plan::Plan;
 use trueflight::plan::options::DRAWS;
 use trueflight::record::Record;
 use trueflight::record::build;
-use trueflight::report::rows;
+use trueflight::report::run::summary_csv;
 
 use crate::background::{Progress, work};
 use crate::cases::Asked;

@@ -13,7 +13,7 @@ impl Arguments {
                 let width = output::pen(console).width;
                 let blocks: Vec<String> = judged
                     .iter()
-                    .map(|found| report::console::block(&found.judgement, &found.name(), width))
+                    .map(|found| report::block(&found.judgement, &found.name(), width))
                     .collect();
                 output::print(&(blocks.join("\n") + &self.together(judged)))
             }
@@ -47,7 +47,7 @@ impl Arguments {
             _ if judged.len() == files.len() => format!("of {} files", judged.len()),
             _ => format!("of {} channels of {} files", judged.len(), files.len()),
         };
-        report::console::together(&verdicts, &of, worst(&verdicts), self.alpha)
+        report::together(&verdicts, &of, worst(&verdicts), self.alpha)
     }
 
     /// All of it as JSON has it.

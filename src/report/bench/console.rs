@@ -6,8 +6,8 @@ use super::diff;
 use crate::bench::record::{Bench, BenchCase, BenchRow, Times};
 use crate::bench::spread::Spread;
 use crate::record::Digits;
-use crate::report::console::layout::{Column, Grid, Paint, Pen, Spec, end_elided, wrapped};
-use crate::report::console::views::swept_apart;
+use crate::report::layout::{Column, Grid, Paint, Pen, Spec, end_elided, wrapped};
+use crate::report::run::console::views::swept_apart;
 use numeric::digits::{count, fixed, short, time};
 
 /// The heading of σ̂; constant ones have as many digits as tell them apart.

@@ -2,7 +2,7 @@
 
 use crate::bench::comparison::{Change, Comparison};
 use crate::bench::spread::Spread;
-use crate::report::diff::{counts, ending, listed, not_empty};
+use crate::report::run::diff::{counts, ending, listed, not_empty};
 use numeric::digits::{fixed, short};
 
 /// What was compared, and how.

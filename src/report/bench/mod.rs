@@ -9,12 +9,12 @@
 
 pub mod console;
 pub mod diff;
-pub mod error_csv;
+pub mod html;
 pub mod plot;
-pub mod rows;
+pub mod tables;
 
 use crate::bench::record::{Bench, BenchCase};
-use crate::report::{Artifact, ReportError, html};
+use crate::report::{Artifact, ReportError};
 
 /// Every file of a bench.
 ///
@@ -23,11 +23,11 @@ use crate::report::{Artifact, ReportError, html};
 /// Where an encoder or a painter gives up.
 pub fn render(bench: &Bench) -> Result<Vec<Artifact>, ReportError> {
     let mut artifacts = vec![
-        Artifact::text("bench.csv", rows::csv(bench)?),
-        Artifact::text("report.html", html::bench::text(bench)?),
+        Artifact::text("bench.csv", tables::csv(bench)?),
+        Artifact::text("report.html", html::text(bench)?),
     ];
     for case in plotted(bench) {
-        artifacts.push(error_csv::artifact(case)?);
+        artifacts.push(tables::errors(case)?);
         artifacts.extend(plot::artifacts(bench, case)?);
     }
     Ok(artifacts)

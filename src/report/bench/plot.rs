@@ -9,7 +9,7 @@ use crate::bench::record::{Bench, BenchCase, BenchRow, CurvePoint, Times};
 use crate::record::Digits;
 use crate::report::plots::figure::{Figure, Foot, LEFT};
 use crate::report::plots::legend::Entry;
-use crate::report::plots::names::{marks, numbered};
+use crate::report::plots::series::{marks, numbered};
 use crate::report::plots::style::Style;
 use crate::report::plots::{self, Axis, Panel, Sheet};
 use crate::report::{Artifact, ReportError};

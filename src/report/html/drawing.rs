@@ -1,4 +1,4 @@
-//! A sheet as the shapes of an SVG in few bytes: what follows each other in one look is one path, from point to
+//! Plots of a page, each once and shown wherever it is wanted. A sheet becomes the shapes of an SVG in few bytes: what follows each other in one look is one path, from point to
 //! point by whole tenths of a pixel.
 
 use std::fmt::Write;
@@ -14,6 +14,16 @@ const UNITS: f64 = 10.0;
 const FARTHEST: f64 = 1e6;
 /// What puts the middle of small letters on a line, in sizes of the em.
 const HALF_A_LETTER: f64 = 0.27;
+
+/// A plot that the page defines.
+pub struct Plot {
+    /// Its place in the page.
+    id: String,
+    /// What it shows, for those who do not see it.
+    label: String,
+    view: String,
+    shapes: Markup,
+}
 
 /// How a path is drawn.
 #[derive(Clone, PartialEq)]
@@ -163,4 +173,33 @@ fn unit(length: f64) -> i64 {
     #[expect(clippy::cast_possible_truncation)]
     let whole = (length * UNITS).round().clamp(-FARTHEST, FARTHEST) as i64;
     whole
+}
+
+/// A plot of a sheet.
+pub fn plot(id: String, label: String, sheet: &Sheet) -> Plot {
+    Plot { id, label, view: view(sheet), shapes: shapes(sheet) }
+}
+
+impl Plot {
+    /// The plot, as large as its place allows.
+    pub fn show(&self) -> Markup {
+        html! {
+            div.wide tabindex="0" role="group" aria-label="plot" {
+                svg.plot viewBox=(self.view) role="img" aria-label=(self.label) {
+                    use href={ "#" (self.id) } {}
+                }
+            }
+        }
+    }
+}
+
+/// The shapes of all plots, shown nowhere.
+pub fn definitions(plots: &[Vec<Plot>]) -> Markup {
+    html! {
+        svg.hidden aria-hidden="true" focusable="false" {
+            @for plot in plots.iter().flatten() {
+                symbol id=(plot.id) viewBox=(plot.view) fill="none" { (plot.shapes) }
+            }
+        }
+    }
 }

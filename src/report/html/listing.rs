@@ -1,8 +1,8 @@
 //! A plain table that the page's script can filter and sort: of a bench, of a stress test.
 
-use maud::{Markup, html};
-
 use super::words;
+use maud::{Markup, html};
+use std::collections::BTreeSet;
 
 /// A column: its title, and what its cells are.
 pub struct Column<T> {
@@ -50,5 +50,29 @@ pub fn table<T>(
                 }
             }
         }
+    }
+}
+
+/// What a row is chosen by, and the values that there are: a row has its own in `data-NAME` or in the column of that title.
+pub type Choice = (&'static str, BTreeSet<String>);
+
+/// A field for words, a list for each choice, and how many rows of so many are shown.
+pub fn form(choices: &[Choice], rows: usize) -> Markup {
+    html! {
+        form #filters hidden {
+            label { "Text " input type="search" name="text" autocomplete="off"; }
+            @for (name, values) in choices {
+                label { (name) " "
+                    select name=(name) {
+                        option value="" { "all" }
+                        @for value in values { option value={ "=" (value) } { (value) } }
+                    }
+                }
+            }
+            button type="reset" { "Show all" }
+            output #shown role="status" { (rows) " of " (rows) }
+        }
+        p #chosen {}
+        p #none hidden { "Nothing is as the filters want it." }
     }
 }

@@ -9,7 +9,7 @@ use quick_junit::{NonSuccessKind, Report, TestCase, TestCaseStatus, TestSuite};
 use crate::judge::{Judgement, images};
 use crate::record::Verdict;
 use crate::report::ReportError;
-use crate::report::junit::Inconclusive;
+use crate::report::run::junit::Inconclusive;
 use numeric::digits::exact;
 
 /// A verdict on a file or a stack of images.

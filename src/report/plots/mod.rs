@@ -7,7 +7,6 @@ pub mod axis;
 pub mod figure;
 pub mod font;
 pub mod legend;
-pub mod names;
 pub mod overlap;
 pub mod paint;
 pub mod panel;

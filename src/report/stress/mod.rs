@@ -1,15 +1,16 @@
 //! The stress test's table on the screen, as CSV and as JSON, and single precision as CSV and a plot.
 
-pub(super) mod plot;
+mod html;
+mod plot;
 
 use std::fmt::Write;
 
 use serde_json::json;
 
 use crate::report::columns::table as csv;
-use crate::report::console::layout::{Column, Field, Grid, Paint, Pen, wrapped};
+use crate::report::layout::{Column, Field, Grid, Paint, Pen, wrapped};
 use crate::report::plots;
-use crate::report::{Artifact, ReportError, html};
+use crate::report::{Artifact, ReportError};
 use crate::stress::narrow::{Along, Curve, DRAWS, Point};
 use crate::stress::{Row, Stress};
 use numeric::digits::{count, exact, short};
@@ -210,7 +211,7 @@ pub fn artifacts(found: &Stress) -> Result<Vec<Artifact>, ReportError> {
         artifact("stress.csv", stress),
         artifact("stress.json", json(found)?),
         artifact("single-precision.csv", narrow),
-        artifact("report.html", html::stress::text(found)?),
+        artifact("report.html", html::text(found)?),
     ];
     let sheet = plot::figure(&found.narrow.curves)?;
     all.extend(plots::artifacts(&format!("{FOLDER}/single-precision"), "", &sheet)?);

@@ -9,7 +9,7 @@ use tempfile::TempDir;
 use trueflight::record::baseline::LeftOut;
 use trueflight::record::baseline::{Baseline, ChannelId, Entry};
 use trueflight::record::baseline::{Rules, compare};
-use trueflight::report::diff;
+use trueflight::report::run::diff;
 
 use super::{CASE, RULES, baseline, command, said};
 

@@ -5,9 +5,9 @@ use trueflight::case::Case;
 use trueflight::plan::Plan;
 use trueflight::record::Row;
 use trueflight::record::build;
-use trueflight::report::console::layout::Pen;
-use trueflight::report::console::{self, View};
-use trueflight::report::rows as tables;
+use trueflight::report::layout::Pen;
+use trueflight::report::run::console::{self, View};
+use trueflight::report::run::summary_csv as tables;
 
 /// The central ray of Eq. 21, with more keys of the case and its estimators.
 fn eq21(head: &str, more: &str, estimators: &str) -> String {

@@ -11,7 +11,7 @@ use trueflight::report::plots::Sheet;
 use trueflight::report::plots::paint;
 use trueflight::report::plots::series::{Series, collect};
 use trueflight::report::plots::sheet::{Align, Shape};
-use trueflight::report::sweep_plot;
+use trueflight::report::run::sweep_plot;
 
 /// The sizes of the words of legends and of notes.
 const LEGEND: f64 = 13.5;

@@ -7,9 +7,9 @@ use trueflight::numeric::digits;
 use trueflight::plan::Plan;
 use trueflight::record::build;
 use trueflight::record::{Record, Row};
-use trueflight::report::console::layout::{self, Pen};
-use trueflight::report::console::{self, View};
-use trueflight::report::sweep_plot;
+use trueflight::report::layout::{self, Pen};
+use trueflight::report::run::console::{self, View};
+use trueflight::report::run::sweep_plot;
 
 fn record(text: &str) -> Record {
     let cases = [case("test", text)];

@@ -6,8 +6,8 @@ use trueflight::bench::clock::Clock;
 use trueflight::bench::comparison::{Change, Comparison};
 use trueflight::bench::record::{Bench, BenchCase, BenchRow, Conditions, CurvePoint, Times};
 use trueflight::bench::spread::Spread;
-use trueflight::report::bench::{console, render, rows};
-use trueflight::report::console::layout::Pen;
+use trueflight::report::bench::{console, render, tables};
+use trueflight::report::layout::Pen;
 
 use super::{assert_drawn, compare};
 
@@ -169,10 +169,10 @@ fn files_of_a_bench() {
 
 #[test]
 fn rows_of_a_bench() {
-    let json = rows::json(&bench()).expect("renders");
+    let json = tables::json(&bench()).expect("renders");
     let parsed: Vec<serde_json::Map<String, serde_json::Value>> =
         serde_json::from_str(&json).expect("is JSON");
-    let csv = rows::csv(&bench()).expect("renders");
+    let csv = tables::csv(&bench()).expect("renders");
     let header: Vec<&str> = csv.lines().next().expect("a line").split(',').collect();
     assert_eq!(parsed.len(), 5);
     assert!(header.iter().all(|&name| parsed[0].contains_key(name)));

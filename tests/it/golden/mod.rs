@@ -11,12 +11,13 @@ use std::{env, fs};
 
 use quick_xml::events::Event;
 use record::record;
-use trueflight::record::{Row, Verdict};
 use trueflight::plan::id::Number;
+use trueflight::record::{ChannelRecord, ExperimentRecord, Verdict};
 use trueflight::report::Artifact;
-use trueflight::report::console::{self, View, layout::Pen};
-use trueflight::report::junit::Inconclusive;
-use trueflight::report::{self, annotations, junit, markdown, rows};
+use trueflight::report::layout::Pen;
+use trueflight::report::run::console::{self, View};
+use trueflight::report::run::junit::Inconclusive;
+use trueflight::report::run::{self, annotations, junit, markdown, record_json, summary_csv};
 
 /// Compares with the committed file of this name, or rewrites it.
 fn compare(name: &Path, bytes: &[u8]) {
@@ -71,7 +72,7 @@ fn assert_drawn(artifact: &Artifact, width: u32) {
 
 #[test]
 fn files() {
-    let artifacts = report::render(&record()).expect("renders");
+    let artifacts = run::render(&record()).expect("renders");
     let mut compared = 0;
     for artifact in &artifacts {
         let ending = artifact.path.extension().unwrap_or_default();
@@ -87,11 +88,11 @@ fn files() {
 
 #[test]
 fn rows_on_stdout_are_those_of_the_files() {
-    let files = report::render(&record()).expect("renders");
+    let files = run::render(&record()).expect("renders");
     let summary = files.iter().find(|file| file.path == Path::new("summary.csv")).expect("a file");
-    let csv = rows::csv(&record()).expect("renders");
+    let csv = summary_csv::csv(&record()).expect("renders");
     assert_eq!(csv.as_bytes(), summary.bytes);
-    let json = rows::json(&record()).expect("renders");
+    let json = summary_csv::json(&record()).expect("renders");
     let parsed: Vec<serde_json::Map<String, serde_json::Value>> =
         serde_json::from_str(&json).expect("is JSON");
     assert_eq!(parsed.len(), 11);
@@ -151,7 +152,7 @@ fn github_shows_no_more_than_ten_of_a_kind() {
 fn infinite_numbers_do_not_break_the_json() {
     let mut record = record();
     record.results.gate.smallest_margin = Some(f64::NEG_INFINITY);
-    let text = report::record_json::text(&record).expect("renders");
+    let text = record_json::text(&record).expect("renders");
     assert!(text.starts_with("{\"schema\":"), "{text}");
     let parsed: serde_json::Value = serde_json::from_str(&text).expect("is JSON");
     let gate = &parsed["results"]["cases"][0]["experiments"][2]["findings"][0]["gate"];
@@ -200,7 +201,7 @@ fn nothing_is_too_odd_to_draw() {
                 anatomy.measured[0].deviation = value;
             }
         }
-        report::render(&record).expect("renders");
+        run::render(&record).expect("renders");
     }
     for case in &mut record.results.cases {
         case.experiments.clear();
@@ -208,5 +209,5 @@ fn nothing_is_too_odd_to_draw() {
             sweep.curves.clear();
         }
     }
-    report::render(&record).expect("renders");
+    run::render(&record).expect("renders");
 }

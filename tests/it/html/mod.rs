@@ -9,7 +9,7 @@ use trueflight::case::Case;
 use trueflight::case::suite;
 use trueflight::plan::{Plan, PlannedCase};
 use trueflight::record::{CaseRecord, Record, Row, Verdict, build};
-use trueflight::report::{html, record_json};
+use trueflight::report::run::{html, record_json};
 
 use crate::common::{options, shipped_plan, shipped_record};
 use crate::golden::record::record;

@@ -13,7 +13,7 @@ use trueflight::mutants::{self, streams};
 use trueflight::plan::Plan;
 use trueflight::record::build;
 use trueflight::record::{CaseRecord, Verdict};
-use trueflight::report::likely;
+use trueflight::report::run::failures;
 use trueflight::self_test;
 use trueflight::self_test::known_bugs::{self, Walk};
 
@@ -188,8 +188,8 @@ fn a_failure_at_one_end_of_a_sweep_is_told_as_such() {
             case.rows().filter(|row| row.verdict == Some(Verdict::Fail)).collect();
         assert!(!failing.is_empty(), "{bug}");
         for row in failing {
-            assert_eq!(likely::pattern(&row).place, end, "{bug}");
-            let said = likely::lines(&row).join(" ");
+            assert_eq!(failures::pattern(&row).place, end, "{bug}");
+            let said = failures::causes(&row).join(" ");
             let hint = end.hint().unwrap_or("usual causes where");
             assert!(said.contains(hint), "{bug}: {said}");
         }

@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use crate::judge::images::Judgement;
 use crate::judge::images::judgement::{Comparison, Dependence, Tile};
-use crate::report::console::layout::wrapped;
+use crate::report::layout::wrapped;
 use numeric::digits::{fixed, percent, short, signed};
 
 /// The widest word at the left.

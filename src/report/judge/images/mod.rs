@@ -3,11 +3,14 @@
 pub mod console;
 mod maps;
 pub mod p_values;
-pub mod tiles_csv;
 pub mod z_map;
 
 use crate::judge::images::Judgement;
+use crate::judge::images::judgement::Tile;
+use crate::record::Verdict;
+use crate::report::columns::table;
 use crate::report::{Artifact, ReportError};
+use numeric::digits::exact;
 
 /// `judgement.json`, and `tiles.csv`, `z-map.png` and `p-values.png` where tiles were judged.
 ///
@@ -18,7 +21,7 @@ pub fn artifacts(judgement: &Judgement, name: &str) -> Result<Vec<Artifact>, Rep
     let json = serde_json::to_string_pretty(judgement)? + "\n";
     let mut files = vec![Artifact::text("judgement.json", json)];
     if !judgement.tiles.is_empty() {
-        files.push(Artifact::text("tiles.csv", tiles_csv::csv(judgement)?));
+        files.push(Artifact::text("tiles.csv", tiles(judgement)?));
         for (figure, png) in [
             ("z-map", z_map::png as fn(&Judgement, &str) -> Result<Vec<u8>, String>),
             ("p-values", p_values::png),
@@ -29,4 +32,59 @@ pub fn artifacts(judgement: &Judgement, name: &str) -> Result<Vec<Artifact>, Rep
         }
     }
     Ok(files)
+}
+
+const HEADER: [&str; 18] = [
+    "size",
+    "row",
+    "column",
+    "height",
+    "width",
+    "channel",
+    "truth",
+    "mean",
+    "standard_error",
+    "z",
+    "p",
+    "ln_e",
+    "ln_p_above",
+    "ln_p_below",
+    "tolerance",
+    "verdict",
+    "fails_by_holm",
+    "listed_by_e_bh",
+];
+
+/// `tiles.csv`: every tile in each channel, with its verdict.
+///
+/// # Errors
+///
+/// Where the encoder gives up.
+fn tiles(judgement: &Judgement) -> Result<String, ReportError> {
+    table("tiles", HEADER, judgement.tiles.iter().map(row))
+}
+
+fn row(tile: &Tile) -> [String; 18] {
+    let optional = |x: Option<f64>| x.map(exact).unwrap_or_default();
+    let is_failing = tile.verdict == Verdict::Fail;
+    [
+        tile.size.to_string(),
+        tile.row.to_string(),
+        tile.column.to_string(),
+        tile.height.to_string(),
+        tile.width.to_string(),
+        tile.channel.to_string(),
+        exact(tile.truth),
+        exact(tile.mean),
+        exact(tile.standard_error),
+        optional(tile.z),
+        optional(tile.p),
+        exact(tile.ln_e),
+        exact(tile.ln_p[0]),
+        exact(tile.ln_p[1]),
+        optional(tile.tolerance),
+        tile.verdict.word().to_owned(),
+        is_failing.to_string(),
+        tile.is_listed.to_string(),
+    ]
 }

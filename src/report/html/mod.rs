@@ -1,0 +1,61 @@
+//! Pages of HTML: head, style, script, tables, plots.
+
+pub mod drawing;
+pub mod listing;
+pub mod words;
+
+use maud::{DOCTYPE, Markup, PreEscaped, html};
+
+const STYLE: &str = include_str!("style.css");
+const SCRIPT: &str = include_str!("script.js");
+
+/// Nothing is fetched from anywhere, whatever is on the page.
+const POLICY: &str = "default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inline'; img-src data:; base-uri 'none'; form-action 'none'";
+
+/// The ends of elements that HTML does without: a tenth of a page. What a record says has no `<`, for it is escaped.
+const OPTIONAL: [&str; 7] = ["</td>", "</th>", "</tr>", "</dt>", "</dd>", "</li>", "</option>"];
+
+/// A page of HTML with this title and these sections.
+pub fn document(title: &str, sections: &Markup) -> String {
+    let page = html! {
+        (DOCTYPE)
+        html lang="en" {
+            head {
+                meta charset="utf-8";
+                meta http-equiv="Content-Security-Policy" content=(POLICY);
+                meta name="viewport" content="width=device-width, initial-scale=1";
+                meta name="color-scheme" content="light dark";
+                title { (title) }
+                style { (PreEscaped(STYLE)) }
+            }
+            body {
+                a.skip href="#experiments" { "To the table of experiments" }
+                main { (sections) }
+                script { (PreEscaped(SCRIPT)) }
+            }
+        }
+    };
+    OPTIONAL.iter().fold(page.into_string(), |page, end| page.replace(end, ""))
+}
+
+/// Likely causes of a failure, folded.
+pub fn causes(lines: &[String]) -> Markup {
+    let item = |line: &String| line.strip_prefix("- ").unwrap_or(line).to_owned();
+    html! {
+        @if let Some((first, rest)) = lines.split_first() {
+            details {
+                summary { (first) }
+                ul { @for line in rest { li { (item(line)) } } }
+            }
+        }
+    }
+}
+
+/// A command to copy, with the word that says what it does: the page's script adds a button that copies it.
+pub fn command(command: Option<(&str, &str)>) -> Markup {
+    html! {
+        @if let Some((word, command)) = command.filter(|command| !command.1.is_empty()) {
+            p.command { (word) ": " code { (command) } }
+        }
+    }
+}

@@ -1,0 +1,110 @@
+//! Annotations on GitHub: workflow commands that put failures on the page of the change.
+//!
+//! `::error title=…,file=…::message` for what fails, `::warning` for what is inconclusive and for notes on cases. GitHub
+//! shows ten of each per step: where there are more, the tenth and following give way to one that
+//! counts them.
+
+use std::fmt::Write;
+
+use crate::record::baseline::Comparison;
+use crate::record::{CaseRecord, Record, Verdict};
+use crate::report::run::diff;
+use crate::report::run::failures::{self, Failure, failing};
+
+/// How many of a kind GitHub shows.
+const MOST: usize = 10;
+
+/// The commands, one to a line; empty where all is well.
+pub fn text(record: &Record) -> String {
+    let of = |verdict| failing(record, verdict).into_iter().map(move |t| of_failure(verdict, &t));
+    let errors = of(Verdict::Fail).chain(record.comparison.iter().flat_map(of_changes));
+    let lines = at_most("error", errors.collect()).into_iter();
+    let notes = record
+        .results
+        .cases
+        .iter()
+        .flat_map(|case| case.notes.iter().map(move |note| of_note(case, note)));
+    let lines = lines.chain(at_most("warning", of(Verdict::Inconclusive).chain(notes).collect()));
+    lines.fold(String::new(), |text, line| text + &line + "\n")
+}
+
+/// The commands that GitHub shows of one kind.
+fn at_most(command: &str, annotations: Vec<String>) -> Vec<String> {
+    let all = annotations.len();
+    let shown = if all > MOST { MOST - 1 } else { all };
+    let mut lines: Vec<String> =
+        annotations.into_iter().take(shown).map(|said| format!("::{command} {said}")).collect();
+    if shown < all {
+        lines.push(format!(
+            "::{command} title=trueflight::and {} more; the summary of the job and the reports \
+             have them all",
+            all - shown
+        ));
+    }
+    lines
+}
+
+/// What became worse than in a stored run.
+fn of_changes(comparison: &Comparison) -> Vec<String> {
+    let title = property(&format!("worse than baseline {}", comparison.name));
+    let worse = diff::all(comparison).into_iter().filter(|change| change.is_worse);
+    let worse = worse.map(|change| {
+        let said = format!("{}\nrepeat: {}", change.line(), change.command);
+        format!("title={title}::{}", message(&said))
+    });
+    let nothing = diff::nothing(comparison).map(|nothing| {
+        let title = property(&format!("baseline {}", comparison.name));
+        format!("title={title}::{}", message(&nothing))
+    });
+    worse.chain(nothing).collect()
+}
+
+fn of_note(case: &CaseRecord, note: &str) -> String {
+    let mut properties = format!("title={}", property(&format!("note {}", case.name)));
+    if !case.path.is_empty() {
+        let path = case.path.strip_prefix("./").unwrap_or(&case.path);
+        let _ = write!(properties, ",file={}", property(path));
+    }
+    format!("{properties}::{}", message(note))
+}
+
+fn of_failure(verdict: Verdict, failure: &Failure) -> String {
+    let Failure { row, .. } = *failure;
+    let case = row.case;
+    let title = format!("{} {}: {}", verdict.word(), case.name, failure.experiment());
+    let mut properties = format!("title={}", property(&title));
+    if !case.path.is_empty() {
+        let path = case.path.strip_prefix("./").unwrap_or(&case.path);
+        let _ = write!(properties, ",file={}", property(path));
+    }
+    let mut said = format!("{} ({})", failure.reason(), failure.place());
+    if !failure.check().is_empty() {
+        said = format!("{}: {said}", failure.check());
+    }
+    if let Some((word, command)) = row.next_command() {
+        said = format!("{said}\n{word}: {command}");
+    }
+    for line in failures::causes(&row) {
+        said = format!("{said}\n{line}");
+    }
+    format!("{properties}::{}", message(&said))
+}
+
+fn message(text: &str) -> String {
+    text.replace('%', "%25").replace('\r', "%0D").replace('\n', "%0A")
+}
+
+fn property(text: &str) -> String {
+    message(text).replace(':', "%3A").replace(',', "%2C")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_github_takes_for_its_own_is_escaped() {
+        assert_eq!(message("5 %\r\na: b, c"), "5 %25%0D%0Aa: b, c");
+        assert_eq!(property("5 %\r\na: b, c"), "5 %25%0D%0Aa%3A b%2C c");
+    }
+}

@@ -1,0 +1,208 @@
+//! The table on the screen: one block per case, then what it all comes to.
+//!
+//! A block is as wide as the screen and no wider: columns leave in the order of their rank, long
+//! names lose their middle, and reasons without a place in the table follow below it. What all
+//! rows of a case share stands once, over the table.
+
+mod closing;
+pub mod views;
+
+use std::fmt::Write;
+
+use crate::record::{CaseRecord, Digits, Record, Row, Verdict};
+use crate::report::layout::{self, Field, Grid, Paint, end_elided};
+use crate::report::run::totals;
+use numeric::digits::{count, short};
+
+/// What the table is about.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum View {
+    /// What was drawn and decided.
+    Run,
+    /// What theory says.
+    Predict,
+    /// What theory says of moments and costs in full.
+    Moments,
+    /// What would be drawn.
+    Plan,
+}
+
+impl View {
+    /// Whether it shows theory only.
+    pub fn is_theory(self) -> bool {
+        matches!(self, Self::Predict | Self::Moments)
+    }
+}
+
+/// The narrowest column of reasons that is worth having.
+const NARROWEST: usize = 20;
+/// From this width on, reasons may stand in the table.
+const WIDE: usize = 120;
+
+/// The table of a record.
+pub fn table(record: &Record, view: View, pen: layout::Pen) -> String {
+    let mut text = String::new();
+    let mut marks = false;
+    for case in &record.results.cases {
+        marks |= block(&mut text, pen, case, view);
+        text.push('\n');
+    }
+    legend(&mut text, pen, marks);
+    closing::write(&mut text, pen, record, view);
+    text
+}
+
+/// The table of a run in short: one line per case, and below it the rows that do not pass.
+pub fn brief(record: &Record, pen: layout::Pen) -> String {
+    let (mut text, mut marks) = (String::new(), false);
+    for case in &record.results.cases {
+        let quiet = |row: &Row| !matches!(row.verdict, Some(Verdict::Pass) | None);
+        let rows: Vec<Row> = case.rows().filter(quiet).collect();
+        let line = format!("{}  {}, {} draws", case.name, totals::words(case), totals::draws(case));
+        if rows.is_empty() {
+            let _ = writeln!(text, "{}", end_elided(&line, pen.width));
+            notes(&mut text, pen, case);
+            continue;
+        }
+        let _ = writeln!(text, "{}", pen.paint(Paint::Bold, &end_elided(&line, pen.width)));
+        notes(&mut text, pen, case);
+        marks |= grid(&mut text, pen, &Block { case, rows, labels: Digits::of(case) }, View::Run);
+    }
+    text.push('\n');
+    legend(&mut text, pen, marks);
+    closing::write(&mut text, pen, record, View::Run);
+    text
+}
+
+/// Rows of a case that are shown.
+struct Block<'a> {
+    case: &'a CaseRecord,
+    rows: Vec<Row<'a>>,
+    labels: Digits,
+}
+
+/// What parentheses mean, where there are any.
+fn legend(text: &mut String, pen: layout::Pen, marks: bool) {
+    if marks {
+        pen.say(text, Paint::Dim, totals::NOT_NORMAL);
+    }
+}
+
+/// Writes a case; answers whether a z is marked.
+fn block(text: &mut String, pen: layout::Pen, case: &CaseRecord, view: View) -> bool {
+    pen.heading(text, &case.name, &case.title);
+    let shown = Block { case, rows: case.rows().collect(), labels: Digits::of(case) };
+    pen.say(text, Paint::Dim, &facts(&shown, view).join(" · "));
+    if view == View::Plan {
+        case.facts.iter().for_each(|fact| pen.note(text, fact, ("", Paint::Plain)));
+    }
+    notes(text, pen, case);
+    grid(text, pen, &shown, view)
+}
+
+/// The rows with their reasons; answers whether a z is marked.
+fn grid(text: &mut String, pen: layout::Pen, block: &Block, view: View) -> bool {
+    let Block { case, rows, labels } = block;
+    let (names, rest) = (views::names(case, rows, *labels), views::columns(rows, view));
+    if view == View::Moments {
+        // All of them were asked for: what does not fit beside stands below.
+        for grid in layout::blocks(names, rest, pen.width) {
+            text.push_str(&grid.render(pen));
+        }
+        closing::costs(text, pen, rows, &|_| true);
+        footnotes(text, pen, block, view, 0);
+        return false;
+    }
+    let mut grid = Grid { columns: names.into_iter().chain(rest).collect() };
+    grid.fit(pen.width);
+    let rest = pen.width.saturating_sub(grid.width() + 2);
+    let longest = rows.iter().map(|row| layout::width(&row.reason)).max().unwrap_or(0);
+    let beside = pen.width >= WIDE && rest >= NARROWEST && longest > 0;
+    if beside {
+        let cells = rows.iter().map(|row| Field::plain(end_elided(&row.reason, rest)));
+        grid.push("reason", cells.collect());
+    }
+    text.push_str(&grid.render(pen));
+    let room = if beside { rest } else { 0 };
+    closing::costs(text, pen, rows, &|head| grid.columns.iter().any(|column| column.head == head));
+    footnotes(text, pen, block, view, room);
+    let scores = grid.columns.iter().filter(|column| views::SCORES.contains(&column.head));
+    scores.flat_map(|column| &column.fields).any(|field| field.text.starts_with('('))
+}
+
+/// What is doubtful about a case.
+fn notes(text: &mut String, pen: layout::Pen, case: &CaseRecord) {
+    for note in &case.notes {
+        pen.note(text, &format!("note {note}"), ("note", Paint::Yellow));
+    }
+}
+
+/// What all rows share, and what the case is about.
+fn facts(block: &Block, view: View) -> Vec<String> {
+    let Block { case, rows, .. } = block;
+    let mut facts = vec![case.problem.clone(), case.medium.clone()];
+    if let Some(truth) = views::shared(rows, |row| row.truth) {
+        facts.push(format!("truth {}", short(truth, 6)));
+    }
+    if let Some(unit) = views::shared(rows, |row| row.log_unit) {
+        facts.push(format!("in units of exp(−{})", short(unit, 6)));
+    }
+    if let Some(draws) =
+        views::shared(rows, |row| row.experiment.draws).filter(|_| !view.is_theory())
+    {
+        let what = if view == View::Run { "statistics of " } else { "" };
+        facts.push(format!("{what}{} each", self::draws(draws)));
+    }
+    if let Some(drawn) =
+        views::shared(rows, |row| row.experiment.drawn).filter(|_| view == View::Run)
+    {
+        facts.push(format!("{} drawn each", count(drawn)));
+    }
+    if rows.iter().any(|row| row.experiment.setup_lookups.is_some_and(|lookups| lookups > 0)) {
+        facts.push(format!("FoM: setup over {} per ray", draws(case.draws_per_ray.unwrap_or(1))));
+    }
+    facts.retain(|fact| !fact.is_empty());
+    facts
+}
+
+fn draws(number: u64) -> String {
+    format!("{} {}", count(number), if number == 1 { "draw" } else { "draws" })
+}
+
+/// The reasons that have no place in the table, each once, with the rows it is about.
+fn footnotes(text: &mut String, pen: layout::Pen, block: &Block, view: View, room: usize) {
+    let Block { case, rows, labels } = block;
+    let mut notes: Vec<Vec<&Row>> = Vec::new();
+    for row in rows.iter().filter(|row| layout::width(&row.reason) > room) {
+        let same = |rows: &&mut Vec<&Row>| {
+            rows[0].reason == row.reason && rows[0].experiment.label == row.experiment.label
+        };
+        match notes.iter_mut().find(same) {
+            Some(rows) => rows.push(row),
+            None => notes.push(vec![row]),
+        }
+    }
+    for row in rows.iter().filter(|row| row.experiment.same_as.is_some()) {
+        let positions = views::positions(case, &[row], *labels);
+        let at = if positions.is_empty() { positions } else { format!(" ({positions})") };
+        let (this, other) = (&row.experiment.label, row.experiment.same_as());
+        let _ = writeln!(text, "  note {this}{at} is {other} by definition: drawn once for both");
+    }
+    let mut commands: Vec<(&str, &str)> = Vec::new();
+    for row in rows.iter().filter(|row| row.verdict == Some(Verdict::Inconclusive)) {
+        let next = row.next_command().map(|(_, command)| (row.experiment.label.as_str(), command));
+        commands.extend(next.filter(|next| !commands.contains(next)));
+    }
+    for rows in notes {
+        let (row, status) = (rows[0], views::status(rows[0], view).text);
+        let positions = views::positions(case, &rows, *labels);
+        let at = if positions.is_empty() { positions } else { format!(" ({positions})") };
+        let word = if status.is_empty() { "note" } else { &status };
+        let note = format!("{word} {}{at}: {}", row.experiment.label, row.reason);
+        pen.note(text, &note, (word, views::status(row, view).paint));
+    }
+    // Whole, so that it can be copied.
+    for (estimator, command) in commands {
+        let _ = writeln!(text, "  to decide {estimator}: {command}");
+    }
+}

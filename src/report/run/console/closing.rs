@@ -1,0 +1,228 @@
+//! What stands below the cases: what each could have seen, where to look, what fails and how to
+//! repeat it, the counts, and the run's error control.
+
+use super::views::{NEEDS, SETUP};
+use super::{View, views};
+use crate::record::baseline::Comparison;
+use crate::record::{Best, CaseRecord, Record, Row, Verdict};
+use crate::report::layout::{Grid, Paint, Pen, wrapped};
+use crate::report::run::diff;
+use crate::report::run::failures::{self, failing};
+use crate::report::run::totals;
+use numeric::digits::{fixed, range, short};
+use std::fmt::Write;
+
+/// Beyond so many, suspects are only counted.
+const SUSPECTS: usize = 5;
+
+/// Adds the closing summary to a text.
+pub fn write(text: &mut String, pen: Pen, record: &Record, view: View) {
+    if view == View::Run {
+        visible(text, pen, record);
+        suspects(text, pen, record);
+        failures(text, pen, record);
+    }
+    if view == View::Plan {
+        foreseen(text, pen, &record.results.cases);
+    }
+    counts(text, pen, record, view);
+    let mut facts = totals::control(record);
+    if view == View::Run {
+        let (seconds, threads) = (short(record.timing.seconds, 3), record.timing.threads);
+        facts.push(format!("{seconds} s, threads: {threads}"));
+    }
+    pen.say(text, Paint::Dim, &facts.join(" · "));
+    if let Some(comparison) = &record.comparison {
+        changed(text, pen, comparison);
+    }
+}
+
+/// What changed since a stored run: only what did.
+fn changed(text: &mut String, pen: Pen, comparison: &Comparison) {
+    text.push('\n');
+    for change in diff::all(comparison) {
+        let (word, paint) = if change.is_worse {
+            ("REGRESSION", Paint::Red)
+        } else {
+            ("improvement", Paint::Green)
+        };
+        pen.note(text, &format!("{word} {}", change.line()), (word, paint));
+        if change.is_worse {
+            let _ = writeln!(text, "    repeat: {}", change.command);
+        }
+    }
+    for remark in diff::remarks(comparison) {
+        pen.say(text, Paint::Dim, &remark);
+    }
+}
+
+/// For each case, the smallest bias that it could have seen, and how soon it was decided.
+fn visible(text: &mut String, pen: Pen, record: &Record) {
+    let cases = record.results.cases.iter().filter(|case| case.visible_bias.is_some());
+    let cases: Vec<&CaseRecord> = cases.collect();
+    if cases.is_empty() {
+        return;
+    }
+    let mut grid = Grid::of(
+        &cases,
+        &[
+            ("case", false, 0, |case| case.name.clone()),
+            ("visible bias", true, 0, |case| case.visible_bias.map(range).unwrap_or_default()),
+            ("time to verdict", true, 0, |case| {
+                case.pace.map(|pace| fixed(pace, 3)).unwrap_or_default()
+            }),
+        ],
+    );
+    grid.fit(pen.width);
+    let _ = writeln!(text, "{}\n", grid.render(pen).trim_end());
+}
+
+fn suspects(text: &mut String, pen: Pen, record: &Record) {
+    let triage = &record.results.gate.triage;
+    if triage.is_empty() {
+        return;
+    }
+    let _ = writeln!(text, "{}", pen.paint(Paint::Bold, "look here first"));
+    for suspect in triage.iter().take(SUSPECTS) {
+        pen.note(text, &totals::suspect(suspect), ("", Paint::Plain));
+    }
+    if let Some(left) = triage.len().checked_sub(SUSPECTS).filter(|&left| left > 0) {
+        let _ = writeln!(text, "  and {left} more");
+    }
+    text.push('\n');
+}
+
+/// A line below a failure, wrapped.
+fn indented(line: &str, pen: Pen) -> Vec<String> {
+    let parts = wrapped(line, pen.width.saturating_sub(6)).into_iter().enumerate();
+    parts.map(|(i, part)| format!("{}{part}", if i == 0 { "    " } else { "      " })).collect()
+}
+
+/// One line per failing finding, and the command that repeats it, whole so that it can be copied.
+fn failures(text: &mut String, pen: Pen, record: &Record) {
+    let failures = failing(record, Verdict::Fail);
+    let mut told: Vec<Vec<String>> = Vec::new();
+    for (i, failure) in failures.iter().enumerate() {
+        let word = Verdict::Fail.word();
+        pen.note(text, &format!("{word} {}", failure.line()), (word, Paint::Red));
+        if let Some((word, command)) = failure.row.next_command() {
+            let _ = writeln!(text, "    {word}: {command}");
+        }
+        // Once for all findings of a row, and once for all rows alike of an estimator.
+        let likely = failures::causes(&failure.row);
+        let next = failures.get(i + 1);
+        let is_last = next.is_none_or(|next| {
+            next.row.name() != failure.row.name() || next.row.case.name != failure.row.case.name
+        });
+        if is_last && !likely.is_empty() && !told.contains(&likely) {
+            for part in likely.iter().flat_map(|line| indented(line, pen)) {
+                let _ = writeln!(text, "{part}");
+            }
+            told.push(likely);
+        }
+    }
+    if !failures.is_empty() {
+        text.push('\n');
+    }
+}
+
+/// Rows that the planned draws leave inconclusive, case by case, with the command that decides them.
+fn foreseen(text: &mut String, pen: Pen, cases: &[CaseRecord]) {
+    let rows = |case: &CaseRecord, verdict| {
+        case.rows().filter(|row| row.foreseen == Some(verdict)).count()
+    };
+    let open = cases.iter().filter(|case| rows(case, Verdict::Inconclusive) > 0);
+    for case in open {
+        let word = Verdict::Inconclusive.word();
+        let (open, all) = (rows(case, Verdict::Inconclusive), case.rows().count());
+        let draws = "the planned draws are too few for a pass";
+        pen.note(
+            text,
+            &format!("{word} {}: {open} of {all} rows: {draws}", case.name),
+            (word, Paint::Yellow),
+        );
+        if let Some(row) = case.rows().find(|row| !row.decide.is_empty()) {
+            let _ = writeln!(text, "    decide: {}", row.decide);
+        }
+    }
+    let weak: usize = cases.iter().map(|case| rows(case, Verdict::Underpowered)).sum();
+    if weak > 0 {
+        let word = Verdict::Underpowered.word();
+        let rows = if weak == 1 { "1 row".to_owned() } else { format!("{weak} rows") };
+        let note = format!(
+            "{word} {rows}: a check other than the mean, or one that the case allows, has too few draws for a \
+             pass; the column `needed` says how many it takes"
+        );
+        pen.note(text, &note, (word, Paint::Dim));
+    }
+}
+
+fn counts(text: &mut String, pen: Pen, record: &Record, view: View) {
+    let cases = &record.results.cases;
+    let rows = || cases.iter().flat_map(CaseRecord::rows);
+    let mut counts: Vec<String> = totals::counts(cases)
+        .into_iter()
+        .map(|(verdict, number)| {
+            pen.paint(views::paint(verdict), &format!("{number} {}", verdict.word()))
+        })
+        .collect();
+    let open = rows().filter(|row| row.verdict.is_none()).count();
+    if open > 0 {
+        let skipped = rows().filter(|row| views::is_skipped(row, view)).count();
+        let word = match view {
+            View::Run => "undecided",
+            View::Predict | View::Moments => "predicted",
+            View::Plan => "planned",
+        };
+        if open > skipped {
+            counts.push(format!("{} {word}", open - skipped));
+        }
+        if skipped > 0 {
+            counts.push(pen.paint(Paint::Dim, &format!("{skipped} skipped")));
+        }
+    }
+    let all = if counts.is_empty() { "no experiments".to_owned() } else { counts.join(" · ") };
+    let _ = writeln!(text, "{all}");
+}
+
+/// Adds the notes, each once; `is_shown` says which columns the table has.
+pub fn costs(text: &mut String, pen: Pen, rows: &[Row], is_shown: &dyn Fn(&str) -> bool) {
+    let mut notes: Vec<String> = Vec::new();
+    let mut say = |row: &Row, channel: &str, what: String| {
+        let names = [row.experiment.label.as_str(), &row.experiment.id.control, channel];
+        let names: Vec<&str> = names.into_iter().filter(|name| !name.is_empty()).collect();
+        let note = format!("note {}: {what}", names.join(", "));
+        if !notes.contains(&note) {
+            notes.push(note);
+        }
+    };
+    for row in rows {
+        if let Some(best) = best(row) {
+            say(row, &row.channel, best);
+        }
+        let setup = row.experiment.setup_lookups.unwrap_or(0);
+        if setup > 0 && !is_shown(SETUP.0) {
+            say(row, "", format!("{setup} setup lookups"));
+        }
+        if !row.experiment.needs.is_empty() && !is_shown(NEEDS.0) {
+            say(row, "", format!("needs {}", row.experiment.needs));
+        }
+    }
+    for note in notes {
+        pen.note(text, &note, ("note", Paint::Plain));
+    }
+}
+
+/// Words for the best σ̂ of a row; `None` where it was not searched.
+fn best(row: &Row) -> Option<String> {
+    let Best { sampling, fom, kind, limit } = row.best.as_ref()?;
+    let fom = fom.map_or("∞".to_owned(), |fom| short(fom, 4));
+    let best = format!("best σ\u{302} {}, best FoM {fom}", short(*sampling, 4));
+    Some(match *limit {
+        Some(limit) => {
+            let limit = short(limit, 4);
+            format!("{best} is {kind}; the limit is {limit}, FoM rises to it with σ\u{302}")
+        }
+        None => format!("{best} ({kind})"),
+    })
+}

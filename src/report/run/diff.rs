@@ -1,0 +1,168 @@
+//! What changed since a stored run, in words that the console and the summaries share.
+
+use std::fmt::Display;
+
+use crate::record::baseline::{
+    Change, ChannelId, Comparison, Drift, LeftOut, Measured, Quantity, Sequel,
+};
+use numeric::digits::{fixed, short};
+
+/// Something that changed.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Difference<'a> {
+    /// Whether it became worse.
+    pub is_worse: bool,
+    /// The experiment.
+    pub experiment: String,
+    /// What changed, with the numbers.
+    pub what: String,
+    /// The command that repeats the experiment.
+    pub command: &'a str,
+}
+
+impl Difference<'_> {
+    /// Everything on one line, but for the command.
+    pub fn line(&self) -> String {
+        format!("{}: {}", self.experiment, self.what)
+    }
+}
+
+/// Longer lists of experiments are cut in words; `record.json` has them whole.
+const MOST: usize = 8;
+
+/// What was left out, each with its reason and the experiments.
+fn left_out(comparison: &Comparison) -> Vec<(&'static str, &[ChannelId])> {
+    let LeftOut { relearned, blunt, unpredicted, uncounted, brief, shared } = &comparison.left_out;
+    let all = [
+        ("variance not compared, too few draws or too heavy a tail", blunt),
+        ("variance not compared, theory has no error of it", unpredicted),
+        ("lookups not compared, theory has no error of them", uncounted),
+        ("variance and lookups not compared, σ\u{302} learned from other pilot draws", relearned),
+        ("time not compared, less than 0.1 s", brief),
+        ("time not compared, lookups shared with other experiments", shared),
+        ("not in the baseline", &comparison.added),
+        ("only in the baseline", &comparison.missing),
+        ("not compared, the case was rewritten", &comparison.rewritten),
+    ];
+    not_empty(all)
+}
+
+/// The lists of experiments that are not empty, each with its reason.
+pub(in crate::report) fn not_empty<'a, T>(
+    lists: impl IntoIterator<Item = (&'static str, &'a Vec<T>)>,
+) -> Vec<(&'static str, &'a [T])> {
+    let lists = lists.into_iter().filter(|(_, ids)| !ids.is_empty());
+    lists.map(|(why, ids)| (why, &ids[..])).collect()
+}
+
+/// How long lists of experiments are, each with its reason.
+pub(in crate::report) fn counts<T>(lists: &[(&'static str, &[T])]) -> String {
+    let counts: Vec<_> = lists.iter().map(|(why, ids)| format!("{why} ({})", ids.len())).collect();
+    counts.join("; ")
+}
+
+/// What is said at the end: that nothing was compared, or that nothing changed.
+pub(in crate::report) fn ending(nothing: Option<String>, has_changes: bool) -> Option<String> {
+    let same = (!has_changes).then(|| "no change in what was compared".to_owned());
+    nothing.or(same)
+}
+
+/// A list of experiments, cut where it is long.
+pub(in crate::report) fn listed(why: &str, ids: &[impl Display]) -> String {
+    let shown: Vec<String> = ids.iter().take(MOST).map(ToString::to_string).collect();
+    let shown = shown.join(", ");
+    let more = match ids.len().saturating_sub(MOST) {
+        0 => String::new(),
+        more => format!(" and {more} more"),
+    };
+    format!("{why} ({}): {shown}{more}", ids.len())
+}
+
+/// Why nothing was compared, where that is so.
+pub fn nothing(comparison: &Comparison) -> Option<String> {
+    comparison.is_empty().then(|| {
+        let counts = counts(&left_out(comparison));
+        let why = if counts.is_empty() { "no experiments on either side" } else { &counts };
+        format!("nothing was compared: {why}")
+    })
+}
+
+/// Why no time was compared, where that is so.
+pub fn no_times(comparison: &Comparison) -> Option<String> {
+    let is_about_all = |why: &str| !why.starts_with("variance") && !why.starts_with("lookups");
+    (comparison.times == 0).then(|| {
+        let mut lists = left_out(comparison);
+        lists.retain(|(why, _)| is_about_all(why));
+        format!("no time was compared: {}", counts(&lists))
+    })
+}
+
+/// What was compared, how, and what was left out.
+pub fn remarks(comparison: &Comparison) -> Vec<String> {
+    let Comparison { name, rules, compared, times, .. } = comparison;
+    let alpha = short(rules.alpha, 3);
+    let times = match rules.time_tolerance {
+        Some(tolerance) => format!("{times} times at a tolerance of {}", short(tolerance, 3)),
+        None => "no times, as any is tolerated".to_owned(),
+    };
+    let mut remarks = vec![format!(
+        "baseline {name}: {compared} variances and lookups compared at α = {alpha}, {times}"
+    )];
+    remarks.push(match comparison.sequel {
+        Sequel::Run(runs) => format!(
+            "e-values multiplied with those stored, {runs} runs together: same program, new seed"
+        ),
+        Sequel::SameSeed => {
+            "e-values not multiplied: the baseline has this seed already".to_owned()
+        }
+        Sequel::OtherProgram => {
+            "e-values not multiplied: another program made the baseline".to_owned()
+        }
+    });
+    remarks.extend(left_out(comparison).into_iter().map(|(why, ids)| listed(why, ids)));
+    let has_changes = !(comparison.changes.is_empty() && comparison.drifts.is_empty());
+    remarks.extend(ending(nothing(comparison), has_changes));
+    remarks
+}
+
+/// What changed: what became worse first.
+pub fn all(comparison: &Comparison) -> Vec<Difference<'_>> {
+    let mut told: Vec<Difference> = comparison.drifts.iter().map(drift).collect();
+    let tolerance = comparison.rules.time_tolerance;
+    told.extend(comparison.changes.iter().map(|one| change(one, tolerance)));
+    told.sort_by_key(|told| !told.is_worse);
+    told
+}
+
+fn drift(drift: &Drift) -> Difference<'_> {
+    let Drift { id, check, ln_e, limit, command } = drift;
+    let what = format!("{check}: ln E = {ln_e:.1} ≥ {limit:.1} of all runs together");
+    Difference { is_worse: true, experiment: id.to_string(), what, command }
+}
+
+fn change(change: &Change, tolerance: Option<f64>) -> Difference<'_> {
+    let (what, unit) = match change.quantity {
+        Quantity::Variance => ("variance", ""),
+        Quantity::Lookups => ("lookups per draw", ""),
+        Quantity::Time => ("processor time per draw", " ns"),
+    };
+    let value = |Measured { value, error }: Measured| {
+        let error = error.map_or(String::new(), |error| format!(" ± {}", short(error, 2)));
+        format!("{}{error}{unit}", fixed(value, 5))
+    };
+    let interval = match change.interval {
+        Some([low, high]) => format!("in [{}, {}]", fixed(low, 4), fixed(high, 4)),
+        None => {
+            let tolerance = tolerance.map_or("∞".to_owned(), |tolerance| short(tolerance, 3));
+            format!("beyond the tolerance of {tolerance}, its error unknown")
+        }
+    };
+    let (before, now) = (value(change.before), value(change.now));
+    let ratio = fixed(change.ratio, 4);
+    Difference {
+        is_worse: change.is_regression,
+        experiment: change.id.to_string(),
+        what: format!("{what} {before} → {now}, ratio {ratio} {interval}"),
+        command: &change.command,
+    }
+}

@@ -1,0 +1,193 @@
+//! What is wrong with a run, finding by finding: the words that the console and the reports share.
+
+use std::borrow::Cow;
+
+use crate::record::{Finding, Record, Row, Score, Verdict};
+use gate::causes::{Pattern, Place};
+use gate::deviation::signed_percent;
+use numeric::digits::{percent, short, signed};
+
+/// A finding that is not as it should be, with what it belongs to.
+#[derive(Debug, Clone, Copy)]
+pub struct Failure<'a> {
+    /// The experiment and channel.
+    pub row: Row<'a>,
+    /// The finding; `None` where the row has a verdict and no findings.
+    pub finding: Option<&'a Finding>,
+    /// The run's seed.
+    pub seed: u64,
+}
+
+/// The failures of all rows with this verdict. A finding about an experiment as a whole stands in all
+/// of its rows, and is listed once.
+pub fn failing(record: &Record, verdict: Verdict) -> Vec<Failure<'_>> {
+    let seed = record.results.seed;
+    let rows = record.results.rows().filter(|row| row.verdict == Some(verdict));
+    let failures = rows.flat_map(|row| of_row(row, seed));
+    let is_own = |failure: &Failure| {
+        let is_of_channel = |finding: &Finding| !finding.channel.is_empty();
+        failure.row.is_first() || failure.finding.is_none_or(is_of_channel)
+    };
+    failures.filter(is_own).collect()
+}
+
+/// The findings that gave a row its verdict.
+pub fn of_row(row: Row<'_>, seed: u64) -> Vec<Failure<'_>> {
+    let guilty = row.findings().filter(|finding| Some(finding.verdict) == row.verdict);
+    let mut failures: Vec<Failure> =
+        guilty.map(|finding| Failure { row, finding: Some(finding), seed }).collect();
+    if failures.is_empty() {
+        failures.push(Failure { row, finding: None, seed });
+    }
+    failures
+}
+
+impl<'a> Failure<'a> {
+    /// What it is about; without a channel where that is the experiment as a whole.
+    pub fn experiment(&self) -> String {
+        let channel = self.finding.map_or(&self.row.values.channel, |finding| &finding.channel);
+        self.row.name_with(channel)
+    }
+
+    /// The check's name; empty where the row has no findings.
+    pub fn check(&self) -> &'a str {
+        self.finding.map_or("", |finding| finding.check.as_str())
+    }
+
+    /// Why, with the most important numbers.
+    pub fn reason(&self) -> &'a str {
+        let reason = self.finding.map_or("", |finding| finding.reason.as_str());
+        if reason.is_empty() { self.row.values.reason.as_str() } else { reason }
+    }
+
+    /// Where the random numbers are: `seed 1, block 3`.
+    pub fn place(&self) -> String {
+        let mut place = format!("seed {}", self.seed);
+        if let Some(block) = self.finding.and_then(|finding| finding.block) {
+            place = format!("{place}, block {block}");
+        }
+        place
+    }
+
+    /// Everything on one line, but for the command.
+    pub fn line(&self) -> String {
+        let experiment = self.experiment();
+        let parts = [self.row.case.name.as_str(), &experiment, self.check(), self.reason()];
+        let parts: Vec<&str> = parts.into_iter().filter(|part| !part.is_empty()).collect();
+        format!("{} ({})", parts.join(": "), self.place())
+    }
+
+    /// Everything that is known, one name and value to a line, and what usually causes it.
+    pub fn details(&self) -> String {
+        let lines = self.facts().into_iter().map(|(name, value)| format!("{name}: {value}"));
+        let all: Vec<String> = lines.chain(causes(&self.row)).collect();
+        all.join("\n") + "\n"
+    }
+
+    fn facts(&self) -> Vec<(&'static str, Cow<'a, str>)> {
+        let row = self.row;
+        let number = |x: f64| Cow::from(short(x, 6));
+        let told = |score: Score, z: f64| -> Cow<'a, str> {
+            let is_normal = !row.not_normal.contains(&score);
+            let note = if is_normal { "" } else { " (its law is not near normal)" };
+            format!("{}{note}", signed(z)).into()
+        };
+        let mut facts: Vec<(&str, Cow<str>)> = vec![
+            ("case", self.row.case.name.as_str().into()),
+            ("experiment", self.experiment().into()),
+            ("check", self.check().into()),
+            ("reason", self.reason().into()),
+            ("seed", self.seed.to_string().into()),
+        ];
+        let mut add = |name, value: Option<Cow<'a, str>>| {
+            facts.extend(value.map(|value| (name, value)));
+        };
+        add("stream", row.experiment.stream.map(|stream| stream.to_string().into()));
+        let finding = self.finding;
+        add("block", finding.and_then(|f| f.block).map(|block| block.to_string().into()));
+        add("draws of the statistics", row.experiment.draws.map(|draws| draws.to_string().into()));
+        add("mean", row.mean.map(number));
+        add("standard error", row.standard_error.map(number));
+        add("truth", row.truth.map(number));
+        add("z of the mean", row.z_mean.map(|z| told(Score::Mean, z)));
+        add("variance", row.variance.map(number));
+        add("predicted variance", row.predicted_variance.map(number));
+        add("z of the variance", row.z_variance.map(|z| told(Score::Variance, z)));
+        add("lookups", row.experiment.lookups_per_draw.map(number));
+        add("predicted lookups", row.experiment.predicted_lookups.map(number));
+        add("z of the lookups", row.experiment.z_lookups.map(|z| told(Score::Lookups, z)));
+        add("p", finding.and_then(|f| f.p).map(number));
+        if let Some(gate) = finding.and_then(|finding| finding.gate) {
+            let [above, below] = gate.ln_p.map(|p| short(p, 4));
+            let is_declared = finding.is_some_and(|finding| finding.expects_bias);
+            let word = if is_declared { "shows the declared bias" } else { "fails" };
+            add("draws of the gate", Some(gate.draws.to_string().into()));
+            add("deviation", Some(signed_percent(gate.mean).into()));
+            add("tolerance", Some(percent(gate.tolerance).into()));
+            add("ln E", Some(limited(&short(gate.ln_e, 4), word, gate.ln_e_limit)));
+            let both = format!("{above} and {below}");
+            add("ln P", Some(limited(&both, "passes", gate.ln_p_limit)));
+            add("draws needed", gate.needed.map(number));
+        }
+        if let Some((word, command)) = row.next_command() {
+            add(word, Some(command.into()));
+        }
+        facts.retain(|fact| !fact.1.is_empty());
+        facts
+    }
+}
+
+fn limited(value: &str, word: &str, limit: f64) -> Cow<'static, str> {
+    format!("{value} ({word} at {})", short(limit, 4)).into()
+}
+
+/// The fewest swept values that have an end.
+const FEWEST: usize = 3;
+
+/// The likely causes of a failing row, line by line; empty for a row that does not fail.
+pub fn causes(row: &Row) -> Vec<String> {
+    pattern(row).lines()
+}
+
+/// Which checks of a row fail, on which side, and where along the sweep.
+pub fn pattern(row: &Row) -> Pattern {
+    let mut pattern = Pattern::default();
+    if row.verdict != Some(Verdict::Fail) {
+        return pattern;
+    }
+    // A declared bias that is not shown has no bug behind it.
+    let failing = row.findings().filter(|f| f.verdict == Verdict::Fail && !f.expects_bias);
+    for finding in failing {
+        // Draws without chance fail by themselves, without the gate.
+        let measured = || row.mean.zip(row.truth).map(|(mean, truth)| mean - truth);
+        let off = finding.gate.map(|gate| gate.mean);
+        pattern
+            .note(&finding.check, off.or_else(|| measured().filter(|_| finding.check == "mean")));
+    }
+    pattern.place = place(row);
+    pattern
+}
+
+/// Whether an estimator fails at one end of a sweep of σ̂ only.
+fn place(row: &Row) -> Place {
+    let is_of_sampling = |what: &str| ["sampling", "sampling-scale"].contains(&what);
+    if !row.case.sweep.as_ref().is_some_and(|sweep| is_of_sampling(&sweep.what)) {
+        return Place::Anywhere;
+    }
+    let is_same = |other: &Row| {
+        (other.experiment.listed, &other.channel) == (row.experiment.listed, &row.channel)
+            && other.verdict != Some(Verdict::Refused)
+    };
+    let along = row.case.rows().filter(is_same).filter_map(|other| {
+        Some((other.experiment.swept()?, other.verdict == Some(Verdict::Fail)))
+    });
+    let mut along: Vec<(f64, bool)> = along.collect();
+    along.sort_by(|a, b| a.0.total_cmp(&b.0));
+    // One change from failing to not failing, or back.
+    let changes = along.windows(2).filter(|pair| pair[0].1 != pair[1].1).count();
+    match (along.len() >= FEWEST && changes == 1, along.first()) {
+        (true, Some((_, true))) => Place::LowEnd,
+        (true, Some((_, false))) => Place::HighEnd,
+        _ => Place::Anywhere,
+    }
+}

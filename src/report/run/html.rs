@@ -1,0 +1,73 @@
+//! `report.html`: the whole record as one page that needs no network and no other file.
+//!
+//! The verdict and what to look at first, then what changed since a stored run, the cases with their plots,
+//! and a table of all experiments, each of which opens. Filters and sorting need JavaScript, nothing else does.
+//! All words of a record go through the template's escapes: a title is text, whatever is in it.
+
+mod cases;
+mod details;
+mod experiments;
+mod first;
+mod sparks;
+
+use maud::html;
+
+use crate::record::{CaseRecord, Record};
+use crate::report::html as page;
+use crate::report::html::drawing::{self, Plot, plot};
+use crate::report::run::{anatomy_plot, sweep_plot};
+use crate::report::{Artifact, ReportError};
+
+/// The record as a page.
+///
+/// # Errors
+///
+/// Where a plot cannot be drawn.
+pub fn render(record: &Record) -> Result<Vec<Artifact>, ReportError> {
+    Ok(vec![Artifact::text("report.html", text(record)?)])
+}
+
+/// The record as a page of HTML.
+///
+/// # Errors
+///
+/// Where a plot cannot be drawn.
+pub fn text(record: &Record) -> Result<String, ReportError> {
+    let plots = plots(record)?;
+    let title = format!("Trueflight: {}", first::verdict(record).words());
+    let body = html! {
+        (drawing::definitions(&plots))
+        (first::section(record))
+        @if let Some(comparison) = &record.comparison { (cases::changes(comparison)) }
+        (cases::section(record, &plots))
+        (experiments::section(record, &plots))
+    };
+    Ok(page::document(&title, &body))
+}
+
+/// The plots of every case, in the cases' order.
+///
+/// # Errors
+///
+/// Where a painter gives up.
+fn plots(record: &Record) -> Result<Vec<Vec<Plot>>, ReportError> {
+    let cases = record.results.cases.iter().enumerate();
+    cases.map(|(place, case)| of_case(place, case, record.results.seed)).collect()
+}
+
+fn of_case(place: usize, case: &CaseRecord, seed: u64) -> Result<Vec<Plot>, ReportError> {
+    let mut plots = Vec::new();
+    if let Some(sweep) = &case.sweep {
+        let what =
+            format!("{}: variance, cost, efficiency and z-scores along {}", case.name, sweep.axis);
+        plots.push(plot(format!("sweep-{place}"), what, &sweep_plot::figure(case, sweep, seed)?));
+    }
+    if let Some(anatomy) = &case.anatomy {
+        let what = format!(
+            "{}: the medium along the ray, and the transmittance with its estimates",
+            case.name
+        );
+        plots.push(plot(format!("ray-{place}"), what, &anatomy_plot::figure(case, anatomy)?));
+    }
+    Ok(plots)
+}

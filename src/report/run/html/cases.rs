@@ -1,0 +1,117 @@
+//! The cases: verdicts, visible bias, plots; and the changes since a stored run.
+
+use crate::record::baseline::{Change, Comparison, Drift, Measured, Quantity};
+use crate::record::{CaseRecord, Record};
+use crate::report::html as page;
+use crate::report::html::drawing::Plot;
+use crate::report::html::words;
+use crate::report::run::diff;
+use crate::report::run::totals;
+use maud::{Markup, html};
+use numeric::digits::{fixed, range, short};
+
+/// A line for each case; those with plots open.
+pub fn section(record: &Record, plots: &[Vec<Plot>]) -> Markup {
+    let cases = &record.results.cases;
+    html! {
+        section aria-labelledby="cases" {
+            h2 #cases { "Cases" }
+            p.quiet { "Each opens to its title, what it could have seen, and its plots." }
+            div.cases { @for (case, plots) in cases.iter().zip(plots) {
+                details.case {
+                    summary { b { (case.name) } " " span.quiet { (totals::words(case)) } }
+                    p { (case.title) }
+                    @for note in &case.notes { p { b { "Note: " } (note) } }
+                    @for fact in &case.facts { p.quiet { (fact) } }
+                    dl.facts { @for (name, value) in facts(case) { div { dt { (name) } dd { (value) } } } }
+                    @for plot in plots { (plot.show()) }
+                }
+            } }
+        }
+    }
+}
+
+fn facts(case: &CaseRecord) -> Vec<(&'static str, String)> {
+    let mut facts = vec![
+        ("Problem", case.problem.clone()),
+        ("Medium", case.medium.clone()),
+        ("File", case.path.clone()),
+        ("Draws", totals::draws(case)),
+        ("Visible bias", case.visible_bias.filter(words::is_known).map(range).unwrap_or_default()),
+        ("Time to verdict, in units of 17 V/ε² draws", words::number(case.pace, 3)),
+    ];
+    facts.retain(|(_, value)| !value.is_empty() && value != words::UNKNOWN);
+    facts
+}
+
+/// The comparison: what became worse first, each with its ratio and where that may be.
+pub fn changes(comparison: &Comparison) -> Markup {
+    let Comparison { changes, drifts, .. } = comparison;
+    let (worse, better): (Vec<_>, Vec<_>) = changes.iter().partition(|one| one.is_regression);
+    html! {
+        section aria-labelledby="changes" {
+            h2 #changes { "Since baseline " (comparison.name) }
+            @if !(changes.is_empty() && drifts.is_empty()) {
+                div.wide tabindex="0" role="group" aria-labelledby="changes" {
+                    table {
+                        thead { tr {
+                            @for head in ["change", "experiment", "quantity", "before", "now", "ratio", "interval", "repeat"] {
+                                th scope="col" { (head) }
+                            }
+                        } }
+                        tbody {
+                            @for one in drifts { (drift(one)) }
+                            @for one in worse { (change(one)) }
+                            @for one in better { (change(one)) }
+                        }
+                    }
+                }
+            }
+            ul { @for remark in diff::remarks(comparison) { li { (remark) } } }
+        }
+    }
+}
+
+fn drift(drift: &Drift) -> Markup {
+    let Drift { id, check, ln_e, limit, command } = drift;
+    html! { tr {
+        td { span.verdict.fail { "✗ fails over all runs" } }
+        th scope="row" { (id) }
+        td { (check) }
+        td colspan="4" { "ln E = " (words::evidence(*ln_e)) " ≥ " (short(*limit, 3)) }
+        td { (page::command(Some(("repeat", command)))) }
+    } }
+}
+
+fn change(change: &Change) -> Markup {
+    let (name, unit) = match change.quantity {
+        Quantity::Variance => ("variance", ""),
+        Quantity::Lookups => ("lookups per draw", ""),
+        Quantity::Time => ("time per draw", " ns"),
+    };
+    let (class, word) = if change.is_regression { ("fail", "worse") } else { ("pass", "better") };
+    let number = |value: f64, digits| {
+        if value.is_finite() { fixed(value, digits) } else { words::UNKNOWN.to_owned() }
+    };
+    // A ratio without bound is as good as none in a record that was read.
+    let arrow = if change.ratio < 1.0 { "↓" } else { "↑" };
+    let value = |Measured { value, error }: Measured| {
+        let error = error.map_or(String::new(), |error| format!(" ± {}", short(error, 2)));
+        format!("{}{error}{unit}", number(value, 5))
+    };
+    html! { tr {
+        td { span class={ "verdict " (class) } { (arrow) " " (word) } }
+        th scope="row" { (change.id) }
+        td { (name) }
+        td.number { (value(change.before)) }
+        td.number { (value(change.now)) }
+        td.number { (number(change.ratio, 4)) }
+        td.number {
+            @match change.interval {
+                Some([low, high]) => { "[" (number(low, 4)) ", " (number(high, 4)) "]" }
+                None => { "unknown" }
+            }
+        }
+        td { @if change.is_regression { (page::command(Some(("repeat", &change.command)))) } }
+    } }
+}

@@ -1,0 +1,127 @@
+//! JUnit XML, which every CI service shows: one test suite per case, one test per experiment and
+//! channel.
+//!
+//! A fail is a `failure` with every number and the command that repeats it; what is refused or
+//! underpowered is `skipped`; inconclusive is an `error`, a `failure` or `skipped`, as asked for. The
+//! time is processor seconds; where an experiment has several channels, the first has them all. The
+//! form is that of the Jenkins schema `junit-10.xsd`.
+
+use std::time::Duration;
+
+use quick_junit::{NonSuccessKind, TestCase, TestCaseStatus, TestSuite};
+
+use crate::record::baseline::Comparison;
+use crate::record::{CaseRecord, Record, Row, Verdict};
+use crate::report::ReportError;
+use crate::report::run::diff;
+use crate::report::run::failures::{self, Failure};
+use numeric::digits::exact;
+
+/// What an inconclusive experiment is for JUnit.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub enum Inconclusive {
+    /// An `error`: the test could not do its work.
+    #[default]
+    Error,
+    /// A `failure`.
+    Failure,
+    /// `skipped`: it turns nothing red.
+    Skipped,
+}
+
+/// The record as JUnit XML.
+///
+/// # Errors
+///
+/// Where the encoder gives up.
+pub fn text(record: &Record, inconclusive: Inconclusive) -> Result<String, ReportError> {
+    let mut report = quick_junit::Report::new("trueflight");
+    report.set_time(duration(record.timing.seconds));
+    for case in &record.results.cases {
+        report.add_test_suite(suite(record, case, inconclusive));
+    }
+    if let Some(comparison) = &record.comparison {
+        report.add_test_suite(changed(comparison));
+    }
+    // The schema has no count of skipped tests at the root; the suites have theirs.
+    let skipped = format!(" skipped=\"{}\"", report.skipped);
+    Ok(report.to_string()?.replacen(&skipped, "", 1))
+}
+
+fn suite(record: &Record, case: &CaseRecord, inconclusive: Inconclusive) -> TestSuite {
+    let results = &record.results;
+    let mut suite = TestSuite::new(&*case.name);
+    for (name, value) in [
+        ("title", case.title.clone()),
+        ("seed", results.seed.to_string()),
+        ("alpha", exact(results.alpha)),
+        ("version", results.version.clone()),
+        ("schema", results.schema.to_string()),
+    ] {
+        suite.add_property((name, &*value));
+    }
+    let mut whole = Duration::ZERO;
+    for row in case.rows() {
+        let time = row.experiment.spent.seconds.filter(|_| row.is_first());
+        let time = time.map_or(Duration::ZERO, duration);
+        whole = whole.saturating_add(time);
+        let status = status(row, results.seed, inconclusive);
+        let mut test = TestCase::new(row.name(), status);
+        test.set_classname(&*case.name).set_time(time);
+        suite.add_test_case(test);
+    }
+    suite.set_time(whole);
+    if !case.notes.is_empty() {
+        suite.set_system_out(case.notes.join("\n"));
+    }
+    suite
+}
+
+/// A suite for what changed since a stored run: a test for each change, or one that nothing did. What was
+/// compared and what was left out is its output.
+fn changed(comparison: &Comparison) -> TestSuite {
+    let mut suite = TestSuite::new(format!("baseline {}", comparison.name));
+    suite.set_system_out(diff::remarks(comparison).join("\n"));
+    let all = diff::all(comparison);
+    if let Some(nothing) = diff::nothing(comparison) {
+        let mut status = TestCaseStatus::non_success(NonSuccessKind::Error);
+        status.set_type("nothing").set_message(nothing);
+        suite.add_test_case(TestCase::new("something was compared", status));
+    } else if !all.iter().any(|change| change.is_worse) {
+        suite.add_test_case(TestCase::new("nothing became worse", TestCaseStatus::success()));
+    }
+    for change in all.iter().filter(|change| change.is_worse) {
+        let mut status = TestCaseStatus::non_success(NonSuccessKind::Failure);
+        status.set_type("regression").set_message(&*change.what);
+        status.set_description(format!("{}\nrepeat: {}\n", change.line(), change.command));
+        suite.add_test_case(TestCase::new(change.experiment.as_str(), status));
+    }
+    suite
+}
+
+fn status(row: Row, seed: u64, inconclusive: Inconclusive) -> TestCaseStatus {
+    let Some(verdict) = row.verdict.filter(|&verdict| verdict != Verdict::Pass) else {
+        return TestCaseStatus::success();
+    };
+    let mut status = match (verdict, inconclusive) {
+        (Verdict::Fail, _) | (Verdict::Inconclusive, Inconclusive::Failure) => {
+            TestCaseStatus::non_success(NonSuccessKind::Failure)
+        }
+        (Verdict::Inconclusive, Inconclusive::Error) => {
+            TestCaseStatus::non_success(NonSuccessKind::Error)
+        }
+        _ => TestCaseStatus::skipped(),
+    };
+    status.set_type(verdict.word());
+    status.set_message(&*row.reason);
+    if matches!(verdict, Verdict::Fail | Verdict::Inconclusive) {
+        let details: Vec<String> =
+            failures::of_row(row, seed).iter().map(Failure::details).collect();
+        status.set_description(details.join("\n"));
+    }
+    status
+}
+
+fn duration(seconds: f64) -> Duration {
+    Duration::try_from_secs_f64(seconds).unwrap_or_default()
+}

@@ -1,0 +1,169 @@
+//! A summary in Markdown, as GitHub shows it on the page of a job: the counts, the cases, what fails
+//! and what is inconclusive, each with the command that repeats it.
+
+use std::fmt::Write;
+
+use crate::record::baseline::Comparison;
+use crate::record::{CaseRecord, Record, Verdict};
+use crate::report::run::diff;
+use crate::report::run::failures::{self, Failure, failing};
+use crate::report::run::totals;
+use numeric::digits::range;
+
+/// A job's summary may have a mebibyte: beyond so many rows the file only counts.
+const MOST: usize = 50;
+
+/// The record as a page of Markdown.
+pub fn text(record: &Record) -> String {
+    let mut text = String::from("## Trueflight\n\n");
+    let counts: Vec<String> = totals::counts(&record.results.cases)
+        .iter()
+        .map(|(verdict, number)| format!("**{number} {}**", verdict.word()))
+        .collect();
+    let counts = if counts.is_empty() { "no experiments".to_owned() } else { counts.join(" · ") };
+    let _ = writeln!(text, "{counts}\n");
+    for (verdict, title) in [(Verdict::Fail, "Failing"), (Verdict::Inconclusive, "Inconclusive")] {
+        section(&mut text, title, &failing(record, verdict));
+    }
+    if let Some(comparison) = &record.comparison {
+        changed(&mut text, comparison);
+    }
+    notes(&mut text, &record.results.cases);
+    cases(&mut text, &record.results.cases);
+    if !record.results.gate.triage.is_empty() {
+        text.push_str("Look here first (e-BH): ");
+        let suspects: Vec<String> =
+            record.results.gate.triage.iter().take(MOST).map(totals::suspect).collect();
+        let _ = writeln!(
+            text,
+            "{}\n",
+            suspects.iter().map(|s| escaped(s)).collect::<Vec<_>>().join("; ")
+        );
+    }
+    let facts: Vec<String> = totals::control(record).iter().map(|fact| escaped(fact)).collect();
+    let _ = writeln!(text, "{}", facts.join(" · "));
+    text
+}
+
+fn section(text: &mut String, title: &str, failures: &[Failure]) {
+    if failures.is_empty() {
+        return;
+    }
+    let _ = writeln!(text, "### {title}\n\n| case | experiment | check | where | why |");
+    text.push_str("|---|---|---|---|---|\n");
+    for failure in failures.iter().take(MOST) {
+        let cells = [
+            failure.row.case.name.clone(),
+            failure.experiment(),
+            failure.check().to_owned(),
+            failure.place(),
+            failure.reason().to_owned(),
+        ];
+        let _ = writeln!(text, "| {} |", cells.map(|cell| escaped(&cell)).join(" | "));
+    }
+    more(text, failures.len());
+    let mut told: Vec<Vec<String>> = Vec::new();
+    for failure in failures.iter().take(MOST) {
+        let lines = failures::causes(&failure.row);
+        if lines.is_empty() || told.contains(&lines) {
+            continue;
+        }
+        let first =
+            format!("{}: {}: {}", failure.row.case.name, failure.row.experiment.label, lines[0]);
+        let _ = writeln!(text, "\n{}\n", escaped(&first));
+        for line in &lines[1..] {
+            let item = line.strip_prefix("- ").unwrap_or(line);
+            let _ = writeln!(text, "- {}", escaped(item));
+        }
+        told.push(lines);
+    }
+    let mut commands: Vec<(&str, &str)> = Vec::new();
+    for failure in failures.iter().take(MOST) {
+        let next = failure.row.next_command();
+        commands.extend(next.filter(|next| !commands.contains(next)));
+    }
+    for word in ["repeat", "decide"] {
+        let of_word = commands.iter().filter(|next| next.0 == word).map(|next| next.1);
+        let of_word: Vec<&str> = of_word.collect();
+        if !of_word.is_empty() {
+            let _ = writeln!(text, "\nTo {word}:\n\n```sh\n{}\n```", of_word.join("\n"));
+        }
+    }
+    text.push('\n');
+}
+
+/// What changed since a stored run.
+fn changed(text: &mut String, comparison: &Comparison) {
+    let _ = writeln!(text, "### Since baseline {}\n", escaped(&comparison.name));
+    let all = diff::all(comparison);
+    for change in all.iter().take(MOST) {
+        let word = if change.is_worse { "**regression**" } else { "improvement" };
+        let _ = writeln!(text, "- {word} {}", escaped(&change.line()));
+    }
+    more(text, all.len());
+    if !all.is_empty() {
+        text.push('\n');
+    }
+    let remarks: Vec<String> = diff::remarks(comparison).iter().map(|r| escaped(r)).collect();
+    let _ = writeln!(text, "{}\n", remarks.join(" · "));
+}
+
+fn more(text: &mut String, all: usize) {
+    if let Some(left) = all.checked_sub(MOST).filter(|&left| left > 0) {
+        let _ = writeln!(text, "\nand {left} more.");
+    }
+}
+
+/// What is doubtful about cases.
+fn notes(text: &mut String, cases: &[CaseRecord]) {
+    let all: Vec<_> =
+        cases.iter().flat_map(|case| case.notes.iter().map(move |note| (case, note))).collect();
+    if all.is_empty() {
+        return;
+    }
+    text.push_str("### Notes\n\n");
+    for (case, note) in all.iter().take(MOST) {
+        let _ = writeln!(text, "- {}: {}", escaped(&case.name), escaped(note));
+    }
+    more(text, all.len());
+    text.push('\n');
+}
+
+fn cases(text: &mut String, cases: &[CaseRecord]) {
+    if cases.is_empty() {
+        return;
+    }
+    text.push_str("### Cases\n\n| case | verdicts | draws | smallest visible bias |\n");
+    text.push_str("|---|---|--:|--:|\n");
+    for case in cases {
+        let bias = case.visible_bias.map(range).unwrap_or_default();
+        let cells = [case.name.clone(), totals::words(case), totals::draws(case), bias];
+        let _ = writeln!(text, "| {} |", cells.map(|cell| escaped(&cell)).join(" | "));
+    }
+    text.push('\n');
+}
+
+/// The text without anything that Markdown would take for markup, on one line.
+fn escaped(text: &str) -> String {
+    let mut plain = String::with_capacity(text.len());
+    for c in text.chars() {
+        match c {
+            '\n' | '\r' => plain.push(' '),
+            '|' | '*' | '_' | '`' | '[' | ']' | '<' | '>' | '\\' | '~' | '#' | '&' => {
+                plain.extend(['\\', c]);
+            }
+            _ => plain.push(c),
+        }
+    }
+    plain
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn words_stay_words() {
+        assert_eq!(escaped("a|b\n<c> *d*"), "a\\|b \\<c\\> \\*d\\*");
+    }
+}

@@ -1,0 +1,200 @@
+//! `CASE.svg` and `CASE.png`: variance, cost, efficiency and z-scores along a sweep, theory as
+//! lines and measurements as points with error bars. Where the medium is swept, the efficiency is upside down: LTUV, the
+//! lookups to unit variance of Miller et al. 2019.
+
+mod graph;
+
+use crate::record::{CaseRecord, Record, Sweep};
+use crate::report::plots::figure::{Figure, Foot, LEFT};
+use crate::report::plots::series::{self, Series, collect};
+use crate::report::plots::{self, Axis, Panel, Sheet, z_panel};
+use crate::report::{Artifact, ReportError};
+use graph::{Graph, Quantity};
+use numeric::digits::{count, short};
+
+const WIDTH: f64 = 1200.0;
+const TOP: f64 = 104.0;
+const PANEL: [f64; 2] = [490.0, 290.0];
+const PITCH: [f64; 2] = [600.0, 374.0];
+
+/// Four panels for each case with a sweep.
+///
+/// # Errors
+///
+/// Where an encoder or a painter gives up.
+pub fn render(record: &Record) -> Result<Vec<Artifact>, ReportError> {
+    let mut artifacts = Vec::new();
+    for case in &record.results.cases {
+        if let Some(sweep) = &case.sweep {
+            let sheet = figure(case, sweep, record.results.seed)?;
+            artifacts.extend(plots::artifacts(&case.name, "", &sheet)?);
+        }
+    }
+    Ok(artifacts)
+}
+
+const VARIANCE_AND_COST: [Quantity; 2] = [
+    Quantity {
+        head: "(a) Variance of one draw",
+        title: "variance V",
+        measured: |row| row.variance,
+        deviation: |row| row.variance_deviation,
+        predicted: |row| row.predicted_variance,
+        theory: |point| point.variance,
+    },
+    Quantity {
+        head: "(b) Cost",
+        title: "lookups per draw N",
+        measured: |row| row.experiment.lookups_per_draw,
+        deviation: |row| row.experiment.lookups_deviation,
+        predicted: |row| row.experiment.predicted_lookups,
+        theory: |point| point.lookups,
+    },
+];
+
+const EFFICIENCY: Quantity = Quantity {
+    head: "(c) Efficiency",
+    title: "figure of merit 1/(V·N)",
+    measured: |row| row.fom,
+    deviation: |_| None,
+    predicted: |row| row.predicted_fom,
+    theory: |point| point.fom,
+};
+
+const LOOKUPS_TO_UNIT_VARIANCE: Quantity = Quantity {
+    head: "(c) Lookups to unit variance",
+    title: "LTUV = V·N",
+    measured: |row| row.fom.map(f64::recip),
+    deviation: |_| None,
+    predicted: |row| row.predicted_fom.map(f64::recip),
+    theory: |point| point.fom.recip(),
+};
+
+/// The figure of a case with a sweep.
+///
+/// # Errors
+///
+/// Where there is no typeface.
+pub fn figure(case: &CaseRecord, sweep: &Sweep, seed: u64) -> Result<Sheet, ReportError> {
+    let series = collect(case, sweep);
+    let x = x_axis(sweep, &series);
+    let of_medium = ["density", "albedo-scale", "contrast"].contains(&&*sweep.what);
+    let has_setup = series.iter().any(|one| one.setup_lookups().is_some());
+    let efficiency = match (of_medium, has_setup) {
+        (true, false) => LOOKUPS_TO_UNIT_VARIANCE,
+        (true, true) => Quantity { title: "LTUV = V·(N + S/n)", ..LOOKUPS_TO_UNIT_VARIANCE },
+        (false, false) => EFFICIENCY,
+        (false, true) => Quantity { title: "figure of merit 1/(V·(N + S/n))", ..EFFICIENCY },
+    };
+    let quantities = [VARIANCE_AND_COST[0], VARIANCE_AND_COST[1], efficiency];
+    let graphs: Vec<Graph> = quantities
+        .into_iter()
+        .enumerate()
+        .map(|(i, quantity)| {
+            Graph::new(place(i, &x, y_axis(&quantity, &series)), quantity, &series)
+        })
+        .collect();
+    let entries: Vec<_> = series.iter().map(Series::entry).collect();
+    let mut notes = vec![z_panel::note(sweep)];
+    notes.extend(z_panel::legend_of_hollow(&series));
+    notes.extend(has_setup.then(|| setup_note(case)));
+    if !of_medium {
+        notes.extend(graph::note_on_optima(&series));
+    }
+    notes.extend(graph::notes(&graphs, &series));
+    notes.extend(series::notes(&series));
+    notes.extend(left_out(case, &series));
+    let foot = Foot { top: TOP + 2.0 * PITCH[1], entries: &entries, notes: &notes };
+    let titles = [&*case.title, &subtitle(case, seed)];
+    let mut figure = Figure::with_foot(&case.name, WIDTH, titles, &foot)?;
+    figure.sheet.height -= 6.0;
+    let Figure { face, sheet, .. } = &mut figure;
+    for (i, graph) in graphs.iter().enumerate() {
+        graph.draw(sheet, &series);
+        if i == 2 && !of_medium {
+            graph::draw_optima(face, sheet, &graph.panel, &series);
+        }
+    }
+    z_panel::draw(face, sheet, place(3, &x, x.clone()), &series, sweep);
+    Ok(figure.close(&foot))
+}
+
+/// Meaning of S and n.
+fn setup_note(case: &CaseRecord) -> String {
+    let draws = count(case.draws_per_ray.unwrap_or(1));
+    format!(
+        "(c): S setup lookups, made once for each ray, are shared by its draws, n = {draws} (draws_per_ray of the case)"
+    )
+}
+
+/// The channels that a crowded plot leaves out, in words.
+fn left_out(case: &CaseRecord, series: &[Series]) -> Option<String> {
+    let shown: Vec<&str> =
+        series.iter().flat_map(|one| &one.rows).map(|row| row.values.channel.as_str()).collect();
+    let mut missing: Vec<&str> = Vec::new();
+    for row in case.rows().filter(|row| !row.channel.is_empty()) {
+        if !shown.contains(&&*row.channel) && !missing.contains(&&*row.channel) {
+            missing.push(&row.values.channel);
+        }
+    }
+    let missing = missing.join("; ");
+    (!missing.is_empty()).then(|| format!("In the CSV only, for lack of room: {missing}"))
+}
+
+fn subtitle(case: &CaseRecord, seed: u64) -> String {
+    let mut parts = vec![case.name.clone(), case.problem.clone(), case.medium.clone()];
+    let truths: Vec<f64> = case.rows().filter_map(|row| row.truth).collect();
+    if let [first, rest @ ..] = &truths[..]
+        && rest.iter().all(|truth| truth == first)
+    {
+        parts.push(format!("truth {}", short(*first, 6)));
+    }
+    let draws: Vec<u64> = case.experiments.iter().filter_map(|one| one.draws).collect();
+    if let (Some(&least), Some(&most)) = (draws.iter().min(), draws.iter().max()) {
+        let to = if least < most { format!(" to {}", count(most)) } else { String::new() };
+        parts.push(format!("{}{to} draws", count(least)));
+        parts.push(format!("seed {seed}"));
+    }
+    parts.retain(|part| !part.is_empty());
+    parts.join("  ·  ")
+}
+
+fn place(index: usize, x: &Axis, y: Axis) -> Panel {
+    let left = LEFT + (index % 2) as f64 * PITCH[0];
+    let top = TOP + (index / 2) as f64 * PITCH[1];
+    Panel { left, top, right: left + PANEL[0], bottom: top + PANEL[1], x: x.clone(), y }
+}
+
+fn x_axis(sweep: &Sweep, series: &[Series]) -> Axis {
+    let swept =
+        series.iter().flat_map(|one| one.rows.iter().filter_map(|row| row.experiment.swept()));
+    let curves = sweep.curves.iter().flat_map(|curve| curve.points.iter().map(|point| point.x));
+    // Estimators that are not swept stand at the right edge and need places of their own.
+    let fixed = series.iter().filter(|one| one.is_fixed()).count() as f64;
+    let shown = swept.chain(curves).filter(|&x| !sweep.log || x > 0.0);
+    let axis = Axis::around(sweep.axis.clone(), sweep.log, 0.04, shown);
+    axis.extended(fixed * graph::PLACE / PANEL[0])
+}
+
+/// A range with every measured point, and of theory what lies within four decades of them: the
+/// variance of some estimators has a pole.
+fn y_axis(quantity: &Quantity, series: &[Series]) -> Axis {
+    let rows = || series.iter().flat_map(|one| &one.rows);
+    let positive = |value: &f64| *value > 0.0 && value.is_finite();
+    let mut shown: Vec<f64> =
+        rows().filter_map(|row| (quantity.measured)(row)).filter(positive).collect();
+    let mut theory: Vec<f64> = series
+        .iter()
+        .flat_map(|one| one.theory(quantity.theory, quantity.predicted))
+        .map(|(_, y)| y)
+        .chain(rows().filter_map(|row| (quantity.predicted)(row)))
+        .filter(positive)
+        .collect();
+    theory.sort_by(f64::total_cmp);
+    let middle = theory.get(theory.len() / 2).copied();
+    let low = shown.iter().copied().reduce(f64::min).or(middle).unwrap_or(1.0);
+    let high = shown.iter().copied().reduce(f64::max).or(middle).unwrap_or(1.0);
+    theory.retain(|&y| y >= low * 1e-4 && y <= high * 1e4);
+    shown.extend(theory);
+    Axis::around(quantity.title, true, 0.06, shown)
+}

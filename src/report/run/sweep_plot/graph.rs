@@ -1,0 +1,246 @@
+//! A panel of variance, cost or efficiency along a sweep: theory as lines, measurements as points with error bars. Stars are the best
+//! constant σ̂ of each series: filled where the figure of merit is largest, hollow where it reaches 90 % of its limit.
+
+use crate::record::Best;
+use crate::record::{CurvePoint, Row};
+use crate::report::plots::font::Typeface;
+use crate::report::plots::legend::{self, Key};
+use crate::report::plots::overlap::{self, Class, Line, classes, side_by_side};
+use crate::report::plots::series::Series;
+use crate::report::plots::style::{Marker, PAPER, ink};
+use crate::report::plots::{Panel, Sheet};
+use numeric::digits::short;
+use plotters::style::Color;
+
+/// The width of the place that an estimator outside of the sweep has at the right edge.
+pub const PLACE: f64 = 13.0;
+/// A marker hides what is nearer to its middle than this.
+const HIDDEN: f64 = 3.5;
+/// Points closer than this hide each other.
+const APART: f64 = 8.0;
+
+/// Quantity of a panel: as measured, with its deviation, and in theory for rows and curves.
+#[derive(Clone, Copy)]
+pub struct Quantity {
+    /// The heading; its second character is the letter of the panel.
+    pub head: &'static str,
+    /// The title of the axis.
+    pub title: &'static str,
+    /// The value as measured.
+    pub measured: fn(&Row) -> Option<f64>,
+    /// The standard deviation of the measured value.
+    pub deviation: fn(&Row) -> Option<f64>,
+    /// The value in theory.
+    pub predicted: fn(&Row) -> Option<f64>,
+    /// The value on theory's line.
+    pub theory: fn(&CurvePoint) -> f64,
+}
+
+/// A measured point: which series it is of, where it stands, and the ends of its error bar about it.
+struct Point {
+    series: usize,
+    spot: [f64; 2],
+    bar: Option<[f64; 3]>,
+}
+
+/// A panel with what is drawn in it.
+pub struct Graph {
+    /// The panel.
+    pub panel: Panel,
+    head: &'static str,
+    lines: Vec<Line>,
+    classes: Vec<Class>,
+    points: Vec<Point>,
+    /// Whether points were moved aside.
+    is_moved: bool,
+}
+
+impl Graph {
+    /// Lays a quantity of the series out in a panel.
+    pub fn new(panel: Panel, quantity: Quantity, series: &[Series]) -> Self {
+        let lines: Vec<Line> = series.iter().map(|one| line(one, &quantity, &panel)).collect();
+        let mut points = points(&panel, &quantity, series);
+        let spots: Vec<[f64; 2]> = points.iter().map(|point| point.spot).collect();
+        let swept = points.iter().filter(|point| !series[point.series].is_fixed());
+        let gap = gap(swept.map(|point| point.spot[0]).collect());
+        let shifts = side_by_side(&spots, APART, 0.4 * gap);
+        let is_moved = shifts.iter().any(|&shift| shift != 0.0);
+        points.iter_mut().zip(shifts).for_each(|(point, shift)| point.spot[0] += shift);
+        let dashes: Vec<&[f64]> = series.iter().map(|one| one.style.dash).collect();
+        let classes = classes(&lines, &dashes);
+        Self { panel, head: quantity.head, lines, classes, points, is_moved }
+    }
+
+    /// Draws the panel.
+    pub fn draw(&self, sheet: &mut Sheet, series: &[Series]) {
+        let panel = &self.panel;
+        panel.grid(sheet);
+        for class in &self.classes {
+            for &member in &class.members {
+                let style = series[member].style;
+                let dash = class.dash(member, style.dash);
+                match &self.lines[member] {
+                    Line::Points(points) => {
+                        panel.line(sheet, points.iter().copied(), (&dash, 2.0, style.colour));
+                    }
+                    Line::Level(y) => {
+                        let across = [panel.x.low, panel.x.high].map(|x| (x, *y));
+                        panel.line(sheet, across, (&dash, 1.6, style.colour));
+                    }
+                    Line::None => {}
+                }
+            }
+        }
+        for Point { series: of, spot, bar } in &self.points {
+            let style = series[*of].style;
+            // A bar within its marker cannot be seen.
+            let is_seen = |bar: &&[f64; 3]| {
+                panel.cuts(**bar)
+                    || bar
+                        .iter()
+                        .filter_map(|&y| panel.down(y))
+                        .any(|y| (y - spot[1]).abs() > HIDDEN)
+            };
+            if let Some(bar) = bar.as_ref().filter(is_seen) {
+                panel.bar(sheet, spot[0], *bar, (4.5, 1.4, style.colour));
+            }
+            panel.point(sheet, *spot, style.marker, 4.6, style.colour);
+        }
+        panel.frame(sheet, self.head);
+    }
+
+    /// The letter of the panel.
+    fn letter(&self) -> char {
+        self.head.chars().nth(1).unwrap_or_default()
+    }
+}
+
+/// Notes on equal lines, moved points and cut error bars.
+pub fn notes(graphs: &[Graph], series: &[Series]) -> Vec<String> {
+    let names: Vec<&str> = series.iter().map(|one| &*one.label).collect();
+    let classes: Vec<(char, Vec<Class>)> =
+        graphs.iter().map(|graph| (graph.letter(), graph.classes.clone())).collect();
+    let mut notes = overlap::notes(&classes, &names);
+    let letters = |test: &dyn Fn(&Graph) -> bool| -> String {
+        let letters = graphs.iter().filter(|graph| test(graph)).map(Graph::letter);
+        letters.map(String::from).collect::<Vec<_>>().join(", ")
+    };
+    let moved = letters(&|graph| graph.is_moved);
+    if !moved.is_empty() {
+        notes.push(format!("({moved}): points that would hide each other stand side by side"));
+    }
+    let cut = letters(&|graph| {
+        graph.points.iter().filter_map(|point| point.bar).any(|bar| graph.panel.cuts(bar))
+    });
+    if !cut.is_empty() {
+        notes.push(format!(
+            "({cut}): an arrow on an error bar: it goes on beyond the panel, or down to 0, which a logarithmic axis \
+             cannot show"
+        ));
+    }
+    notes
+}
+
+/// Theory's line, as far as the panel has a place for it: along the sweep, or across all of it for what is not swept.
+fn line(one: &Series, quantity: &Quantity, panel: &Panel) -> Line {
+    let points = one.theory(quantity.theory, quantity.predicted);
+    if !points.is_empty() {
+        let has_place = points.iter().any(|&(x, y)| panel.spot(x, y).is_some());
+        return if has_place { Line::Points(points) } else { Line::None };
+    }
+    let mut fixed = one.rows.iter().filter(|row| row.experiment.swept().is_none());
+    let level = fixed.find_map(|row| (quantity.predicted)(row).or((quantity.measured)(row)));
+    level.filter(|&y| panel.down(y).is_some()).map_or(Line::None, Line::Level)
+}
+
+/// The measured points: those that are not swept at the right edge, each in a place of its own.
+fn points(panel: &Panel, quantity: &Quantity, series: &[Series]) -> Vec<Point> {
+    let mut edge = panel.right - 9.0;
+    let mut points = Vec::new();
+    for (index, one) in series.iter().enumerate() {
+        for row in &one.rows {
+            let x = row.experiment.swept().map_or(Some(edge), |swept| panel.across(swept));
+            let measured = (quantity.measured)(row);
+            let place = measured.and_then(|value| Some((value, [x?, panel.down(value)?])));
+            let Some((value, spot)) = place.filter(|(_, spot)| panel.holds(*spot)) else {
+                continue;
+            };
+            if row.experiment.swept().is_none() {
+                edge -= PLACE;
+            }
+            let bar = (quantity.deviation)(row);
+            let bar = bar.map(|deviation| [value - deviation, value, value + deviation]);
+            points.push(Point { series: index, spot, bar });
+        }
+    }
+    points
+}
+
+/// The smallest distance across between points that do not stand above each other.
+fn gap(mut places: Vec<f64>) -> f64 {
+    places.sort_by(f64::total_cmp);
+    let steps = places.windows(2).map(|pair| pair[1] - pair[0]).filter(|step| *step > 0.5);
+    steps.fold(100.0, f64::min)
+}
+
+const RIM: plotters::style::RGBAColor = ink(0x22, 0x22, 0x22);
+
+/// Whether the star of a best σ̂ is hollow, for the figure of merit has no maximum there; `None` for no star.
+fn is_hollow(best: Option<&Best>) -> Option<bool> {
+    let is_drawn = |best: &Best| best.limit.is_some() || best.is_optimum();
+    best.map_or(Some(false), |best| is_drawn(best).then_some(best.limit.is_some()))
+}
+
+/// Marks the best σ̂ inside the sweep with a star and a thin line down to the axis, and says what the stars mean.
+pub fn draw_optima(face: &Typeface, sheet: &mut Sheet, panel: &Panel, series: &[Series]) {
+    let (mut filled, mut hollow) = (false, false);
+    for one in series {
+        let Some(curve) = one.curve else { continue };
+        let Some(best) = curve.optimum else { continue };
+        let Some(is_hollow) = is_hollow(curve.best.as_ref()) else { continue };
+        let Some(spot) = panel.spot(best.x, best.fom).filter(|&spot| panel.holds(spot)) else {
+            continue;
+        };
+        let drop = vec![spot, [spot[0], panel.bottom]];
+        sheet.dashed(drop, &[1.5, 3.0], 1.2, one.style.colour.mix(0.8));
+        Marker::Star.draw(sheet, spot, 9.0, RIM);
+        if is_hollow {
+            Marker::Star.fill(sheet, spot, 7.5, one.style.colour);
+            Marker::Star.fill(sheet, spot, 4.6, PAPER);
+            hollow = true;
+        } else {
+            Marker::Star.fill(sheet, spot, 6.5, one.style.colour);
+            filled = true;
+        }
+    }
+    let key = |is_hollow, words| Key { marker: Marker::Star, is_hollow, words };
+    let keys: Vec<Key> = [
+        filled.then(|| key(false, "predicted optimum")),
+        hollow.then(|| key(true, "90 % of the limit")),
+    ]
+    .into_iter()
+    .flatten()
+    .collect();
+    legend::keys(face, sheet, [panel.right, panel.top - 15.0], &keys);
+}
+
+/// Note on the best σ̂ that are shares of limits, or have no star.
+pub fn note_on_optima(series: &[Series]) -> Option<String> {
+    let said = series.iter().filter_map(|one| {
+        let curve = one.curve?;
+        let best = curve.best.as_ref()?;
+        let outside = if curve.optimum.is_none() { ", outside of the panel" } else { "" };
+        let (label, at) = (&one.label, short(best.sampling, 4));
+        match best.limit {
+            Some(limit) => {
+                let limit = short(limit, 4);
+                let kind = &best.kind;
+                Some(format!("{label} rises to {limit}, {kind} at σ\u{302} = {at}{outside}"))
+            }
+            None if outside.is_empty() && best.is_optimum() => None,
+            None => Some(format!("{label}: {} at σ\u{302} = {at}{outside}", best.kind)),
+        }
+    });
+    let said: Vec<String> = said.collect();
+    (!said.is_empty()).then(|| format!("(c), best σ\u{302}: {}", said.join("; ")))
+}
