@@ -12,7 +12,7 @@ use std::{env, fs};
 use quick_xml::events::Event;
 use record::record;
 use trueflight::plan::id::Number;
-use trueflight::record::{ChannelRecord, ExperimentRecord, Verdict};
+use trueflight::record::Verdict;
 use trueflight::report::Artifact;
 use trueflight::report::layout::Pen;
 use trueflight::report::run::console::{self, View};
@@ -128,8 +128,8 @@ fn what_a_ci_reads() {
     // `check` lists what a reader must look at: every row that does not pass.
     let brief = console::brief(&record, Pen { width: 100, colour: false });
     for case in &record.results.cases {
-        let is_open = |row: &&Row| !matches!(row.verdict, Some(Verdict::Pass) | None);
-        let open = case.rows.iter().filter(is_open);
+        let is_open = |row: &trueflight::record::Row| !matches!(row.verdict, Some(Verdict::Pass) | None);
+        let open = case.rows().filter(is_open);
         for row in open {
             let first = row.estimator.split(' ').next().unwrap_or_default();
             assert!(brief.contains(first), "{}: {first} is missing in\n{brief}", case.name);
