@@ -15,7 +15,7 @@ use crate::case::catalogue::{Catalogue, built_in};
 use crate::case::{example, suite};
 use crate::checks;
 use crate::render::{self, Picture, gallery};
-use crate::report::console::page;
+use crate::report::page;
 use crate::{phase, report};
 use estimators::recipes::{controls, sampling};
 use media::catalogue::{Page, PageList, suggestion};

@@ -15,7 +15,7 @@ use crate::draw::share::pieces;
 use crate::draw::store::{Header, Key, Log, Store};
 use crate::plan::Plan;
 use crate::record::baseline::fingerprint;
-use crate::report::{html, record_json};
+use crate::report::run::{html, record_json};
 
 /// Arguments of `merge`.
 #[derive(Debug, Args)]

@@ -14,7 +14,9 @@ use super::output::{self, Errors, Format};
 use super::verdict::Inconclusive;
 use crate::case::Case;
 use crate::record::Record;
-use crate::report::{self, Report, annotations, html, junit, markdown, record_json, summary_csv};
+use crate::report::run::{
+    self, Report, annotations, html, junit, markdown, record_json, summary_csv,
+};
 use media::files;
 
 /// Reports of a run.
@@ -103,7 +105,7 @@ impl Reports {
         let brief: [Report; 3] = [summary_csv::render, record_json::render, html::render];
         let files = || -> Result<Vec<_>, _> {
             if is_whole {
-                return report::render(record);
+                return run::render(record);
             }
             let files: Result<Vec<_>, _> = brief.iter().map(|render| render(record)).collect();
             files.map(|files| files.concat())

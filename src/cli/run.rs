@@ -22,7 +22,7 @@ use crate::draw::store::{Header, Key, Log, Store};
 use crate::draw::workers::{Threads, Workers};
 use crate::plan::{Options, Plan, options::DRAWS};
 use crate::record::baseline::fingerprint;
-use crate::record::{Record, verdict};
+use crate::record::{Record, build};
 
 /// Defaults by which commands differ.
 #[derive(Debug, Clone, Copy)]
@@ -248,7 +248,7 @@ fn judged(plan: &Plan, store: &Store, console: &Console) -> anyhow::Result<(Reco
         Step::Kept(_) => {}
     });
     bar.finish_and_clear();
-    let record = verdict::judged(plan, &draws, begin.elapsed().as_secs_f64());
+    let record = build::judged(plan, &draws, begin.elapsed().as_secs_f64());
     store.error().map_or(Ok((record, draws)), |error| Err(error.into()))
 }
 
@@ -286,7 +286,7 @@ pub fn judge(
             let finishing =
                 finished.as_ref().map_or(Ok(()), |path| store.finish(path, plan, &draws));
             if profile.is_whole {
-                verdict::add_curves(plan, &mut record);
+                build::add_curves(plan, &mut record);
             }
             Ok((record, counts, finishing, store))
         })?;

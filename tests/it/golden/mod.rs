@@ -128,10 +128,11 @@ fn what_a_ci_reads() {
     // `check` lists what a reader must look at: every row that does not pass.
     let brief = console::brief(&record, Pen { width: 100, colour: false });
     for case in &record.results.cases {
-        let is_open = |row: &trueflight::record::Row| !matches!(row.verdict, Some(Verdict::Pass) | None);
+        let is_open =
+            |row: &trueflight::record::Row| !matches!(row.verdict, Some(Verdict::Pass) | None);
         let open = case.rows().filter(is_open);
         for row in open {
-            let first = row.estimator.split(' ').next().unwrap_or_default();
+            let first = &row.experiment.label.split(' ').next().unwrap_or_default();
             assert!(brief.contains(first), "{}: {first} is missing in\n{brief}", case.name);
         }
     }
