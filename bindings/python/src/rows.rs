@@ -102,5 +102,5 @@ fn drawn(plan: &Plan, progress: &Progress) -> Record {
 }
 
 fn json(record: &Record) -> Result<String, Failure> {
-    rows::json(record).map_err(|error| Failure::Wrong(error.to_string()))
+    summary_csv::json(record).map_err(|error| Failure::Wrong(error.to_string()))
 }
