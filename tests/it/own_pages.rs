@@ -235,7 +235,7 @@ fn veiled(
 fn swept(sweep: &str) -> String {
     format!(
         "title = \"veil\"\n[problem.transmittance]\nmedium.veil.strength = 0.75\nspan = [0, 2]\n{sweep}\n\
-         sampling = 2\ncontrol.field.medium.veil.strength = 0.5\nestimators = [\"residual-ratio\"]\n"
+         sampling = 2\ncontrol.field.medium.veil.strength = 0.5\nestimators = [\"double\"]\n"
     )
 }
 
