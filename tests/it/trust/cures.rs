@@ -39,10 +39,10 @@ fn messages(text: &str) -> Vec<String> {
 fn every_error_message_ends_in_a_cure() {
     let (mut wrong, mut found, mut used) = (Vec::new(), 0, [false; NONE.len()]);
     for path in ["src", "crates"].into_iter().flat_map(files) {
-        let name = path.to_string_lossy().into_owned();
-        if !name.ends_with(".rs") {
+        if path.extension().is_none_or(|ending| ending != "rs") {
             continue;
         }
+        let name = path.to_string_lossy().into_owned();
         for message in messages(&read(&name)) {
             found += 1;
             let cure = message.rsplit_once("; ").map_or("", |(_, cure)| cure);
