@@ -33,7 +33,7 @@ const ORDINATES: usize = 40;
 
 /// All rows.
 pub fn rows(run: Run) -> Vec<Row> {
-    let range = "2 … 4 channels, 8 trackers, τ = 1e-4 … 30, σ̂/σ_t = 1 … 100";
+    let range = "2 … 4 channels, 8 trackers, τ = 1e-4 … 10, σ̂/σ_t = 1 … 11";
     let row = Row::moments("spectral transmittance", range);
     let mut rows = run.fill([64, 6400], row, Transmittance::any, transmittance);
     let range = "2 … 4 albedos, 3 trackers, τ = 1e-3 … 10";
@@ -65,7 +65,7 @@ parameters! {
     /// Channels with a medium each: optical depth, `σ̂/σ_t` less 1, and a share of the heroes.
     Transmittance {
         channels: Vec<(f64, f64, f64)> =
-            vec((sized(-4.0, 1.48), sized(-2.0, 2.0), between(0.1, 1.0)), 2..=4),
+            vec((sized(-4.0, 1.0), sized(-2.0, 1.0), between(0.1, 1.0)), 2..=4),
         kind: Kind = any_of(&[
             Kind::Independent,
             Kind::InTurn,
