@@ -59,8 +59,7 @@ impl Always {
         let is_kept = largest <= self.bound;
         if context.expects_bias {
             return if is_kept {
-                let none = Reason::NoBias { bias: 0.0, ln_e: 0.0, limit: 0.0 };
-                (Verdict::Fail, Some(none))
+                (Verdict::Fail, Some(Reason::NoBias))
             } else {
                 (Verdict::Pass, Some(Reason::BiasShown(largest)))
             };
@@ -73,8 +72,11 @@ impl Always {
         } else if self.is_of_lookups {
             Reason::LookupsOff(largest)
         } else {
-            let (what, off) = (context.what.to_owned().into(), context.mean);
-            Reason::DrawOff { what, off, largest, bound: self.bound }
+            let (what, bound) = (context.what.to_owned().into(), self.bound);
+            match context.mean {
+                Some(off) => Reason::MeanOff { what, off, largest, bound },
+                None => Reason::DrawOff { what, largest, bound },
+            }
         };
         (Verdict::Fail, Some(reason))
     }

@@ -215,11 +215,9 @@ fn name(file: &Path) -> String {
     if is_pipe(file) { "stdin".to_owned() } else { file.display().to_string() }
 }
 
-/// Fail before inconclusive before pass.
+/// The verdict on all of them.
 fn worst<'a>(judged: &(impl Iterator<Item = &'a Judgement> + Clone)) -> Verdict {
-    let any = |verdict| judged.clone().any(|judgement| judgement.verdict == verdict);
-    let order = [Verdict::Fail, Verdict::Inconclusive];
-    order.into_iter().find(|&verdict| any(verdict)).unwrap_or(Verdict::Pass)
+    Verdict::worst(judged.clone().map(|judgement| judgement.verdict))
 }
 
 impl Arguments {

@@ -12,6 +12,7 @@
 //! what a decided experiment saves goes to those that are open.
 
 use std::collections::{BTreeMap, VecDeque};
+use std::convert::Infallible;
 use std::time::Instant;
 
 use crate::checks::check::Look;
@@ -22,7 +23,8 @@ use crate::draw::share::{self, Piece, Share};
 use crate::draw::store::Store;
 use crate::draw::workers::Drawing;
 use crate::plan::{BLOCK, Plan, Planned};
-use gate::stats::gate;
+use ::gate::session::{Sink, Until, drive};
+use ::gate::stats::gate;
 
 /// Blocks drawn between two merges, for each thread, and at most: some 600 MB. Results do not depend on it.
 const BATCH: usize = 256;
@@ -43,7 +45,22 @@ struct Running<'p> {
     ahead: VecDeque<Block>,
 }
 
-/// Draws a plan; `progress` hears after each block how many draws it made.
+/// All experiments that are being drawn, round by round.
+struct Rounds<'p> {
+    running: Vec<Running<'p>>,
+}
+
+impl Sink for Rounds<'_> {
+    fn draws(&self) -> u64 {
+        self.running.iter().map(|one| one.at.drawn.draws).sum()
+    }
+
+    fn is_open(&self) -> bool {
+        self.running.iter().any(|one| !one.at.is_done)
+    }
+}
+
+/// Draws a plan; `progress` is called after each block with the number of its draws.
 pub fn draw(plan: &Plan, progress: &(dyn Fn(u64) + Sync)) -> Draws {
     draw_with(plan, &Store::default(), progress)
 }
@@ -63,15 +80,17 @@ pub fn draw_heard(plan: &Plan, store: &Store, listen: &Listener) -> Draws {
         || plan.options.seconds.is_some_and(|limit| begin.elapsed().as_secs_f64() >= limit);
     let is_over = || is_late() || store.is_stopped();
     let drawing = Drawing::new(plan, &is_over);
-    let (mut cases, mut running) = begin_all(plan, store);
+    let (mut cases, running) = begin_all(plan, store);
+    let mut rounds = Rounds { running };
     let progress = Progress::new(plan, listen);
     let listen = |step| progress.hear(step);
     // What a run before had merged.
-    progress.keep(running.iter().map(|one| one.at.drawn.draws));
-    progress.expect(running.iter().map(Running::expected));
+    progress.keep(rounds.running.iter().map(|one| one.at.drawn.draws));
+    progress.expect(rounds.running.iter().map(Running::expected));
     let mut budget = plan.options.budget;
     let (mut cut_by_time, mut cut_by_budget) = (false, false);
-    while !cut_by_time && running.iter().any(|one| !one.at.is_done) {
+    let until = Until { most: None, is_decided: true };
+    let Ok::<_, Infallible>(_) = drive(&mut rounds, until, |Rounds { running }, _| {
         // What others need for their fixed draws is not taken from them.
         let mut reserved: u64 = running.iter().map(Running::reserve).sum();
         for one in running.iter_mut().filter(|one| !one.at.is_done) {
@@ -82,13 +101,13 @@ pub fn draw_heard(plan: &Plan, store: &Store, listen: &Listener) -> Draws {
                 (one.at.is_done, cut_by_budget) = (true, true);
             }
         }
-        let mut round = Round::new(&running, 4 * store.workers.threads());
+        let mut round = Round::new(running, 4 * store.workers.threads());
         while !cut_by_time {
             let units = batch(&mut round, store, |unit| unit.running.len());
             if units.is_empty() {
                 break;
             }
-            let pieces: Vec<Piece> = units.iter().map(|unit| unit.piece(&running)).collect();
+            let pieces: Vec<Piece> = units.iter().map(|unit| unit.piece(running)).collect();
             let drawn = store.blocks(&pieces, &drawing, &listen);
             let members = units.iter().flat_map(|unit| &unit.running);
             for (&one, block) in members.zip(drawn) {
@@ -109,9 +128,10 @@ pub fn draw_heard(plan: &Plan, store: &Store, listen: &Listener) -> Draws {
             one.look(plan);
         }
         progress.expect(running.iter().map(Running::expected));
-    }
+        Ok(!cut_by_time)
+    });
     store.synchronise();
-    for one in running {
+    for one in rounds.running {
         cases[one.case][one.index] = one.at.drawn;
     }
     for (drawn, planned_case) in cases.iter_mut().zip(&plan.cases) {

@@ -21,27 +21,14 @@ pub struct Choice<'a> {
 /// Reason why a choice is no experiment whose draws can be judged.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
+#[allow(missing_docs)] // messages name the fields
 pub enum ChoiceError {
     /// No estimator of that name.
     #[error("{case}: no estimator is called `{name}`; choose one of: {}", candidates.join(", "))]
-    NoEstimator {
-        /// The case.
-        case: String,
-        /// The name asked for.
-        name: String,
-        /// The names that are there.
-        candidates: Vec<String>,
-    },
+    NoEstimator { case: String, name: String, candidates: Vec<String> },
     /// Several estimators of that name.
     #[error("{case}: several estimators are called `{name}`; choose one of: {}", candidates.join(", "))]
-    Ambiguous {
-        /// The case.
-        case: String,
-        /// The name asked for.
-        name: String,
-        /// What the name may mean.
-        candidates: Vec<String>,
-    },
+    Ambiguous { case: String, name: String, candidates: Vec<String> },
     /// A value of the sweep is missing, or is none.
     #[error(
         "{case}: `{estimator}` is swept over {what}: {}; say at which value your draws were made, by --swept (in Python \
@@ -49,15 +36,10 @@ pub enum ChoiceError {
         list(values)
     )]
     Swept {
-        /// The case.
         case: String,
-        /// The estimator.
         estimator: String,
-        /// What is swept.
         what: &'static str,
-        /// The values.
         values: Vec<f64>,
-        /// The values that it could have, in words.
         wanted: &'static str,
     },
     /// A value that the swept thing cannot have.
@@ -67,63 +49,31 @@ pub enum ChoiceError {
         near(*nearest)
     )]
     NoSuchValue {
-        /// The case.
         case: String,
-        /// The estimator.
         estimator: String,
-        /// What is swept.
         what: &'static str,
-        /// The value.
         value: f64,
-        /// The values that it could have, in words.
         wanted: &'static str,
-        /// The nearest value of the sweep.
         nearest: Option<f64>,
     },
     /// A value of a sweep where nothing is swept.
     #[error("{case}: `{estimator}` is not swept; leave the swept value and --nearest out")]
-    NotSwept {
-        /// The case.
-        case: String,
-        /// The estimator.
-        estimator: String,
-    },
+    NotSwept { case: String, estimator: String },
     /// A draw has several values.
     #[error("{case}: a draw has {} channels; choose one of: {}", channels.len(), channels.join(", "))]
-    Channel {
-        /// The case.
-        case: String,
-        /// Their names.
-        channels: Vec<String>,
-    },
+    Channel { case: String, channels: Vec<String> },
     /// Theory works in units of a transmittance that few doubles hold.
     #[error(
         "{case}: `{estimator}` sees an optical depth of {depth:.0}, where theory is in units of T; multiply the \
          draws by e^τ and give the truth 1 and what else is known of them by numbers"
     )]
-    Deep {
-        /// The case.
-        case: String,
-        /// The estimator.
-        estimator: String,
-        /// τ.
-        depth: f64,
-    },
+    Deep { case: String, estimator: String, depth: f64 },
     /// The experiment is refused.
     #[error(
         "{case}: `{estimator}` is refused: {why}{}",
         if nearest.is_some() { near(*nearest) } else { "; choose an estimator that is unbiased there".to_owned() }
     )]
-    Refused {
-        /// The case.
-        case: String,
-        /// The estimator.
-        estimator: String,
-        /// The refusal.
-        why: String,
-        /// The nearest value of the sweep at which it is not refused.
-        nearest: Option<f64>,
-    },
+    Refused { case: String, estimator: String, why: String, nearest: Option<f64> },
 }
 
 /// Largest number of values that are listed; longer lists are cut in the middle.

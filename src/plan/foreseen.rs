@@ -25,9 +25,8 @@ impl Foreseen {
             .filter(about)
             .filter_map(|question| Weak::of(plan, case, question))
             .collect();
-        let order = [Verdict::Inconclusive, Verdict::Underpowered];
-        let verdict =
-            order.into_iter().find(|verdict| weak.iter().any(|one| one.verdict == *verdict));
+        let worst = || Verdict::worst(weak.iter().map(|one| one.verdict));
+        let verdict = (!weak.is_empty()).then(worst);
         let those = || weak.iter().filter(|one| Some(one.verdict) == verdict);
         let needed = those().map(|one| one.needed).fold(0.0, f64::max);
         let mut reasons: Vec<&str> = Vec::new();

@@ -1,4 +1,5 @@
 //! What keeps pictures from being judged.
+#![allow(missing_docs)] // messages name the fields
 
 use std::io;
 
@@ -10,64 +11,24 @@ use super::picture::Size;
 pub enum ImageError {
     /// The system refused.
     #[error("{file}: {cause}; give a file that can be read")]
-    Unreadable {
-        /// The file.
-        file: String,
-        /// What the system said.
-        cause: io::Error,
-    },
+    Unreadable { file: String, cause: io::Error },
     /// The name does not tell a format.
     #[error("{file}: its name ends with none of .npy, .pfm and .exr; give images as one of these")]
-    Format {
-        /// The file.
-        file: String,
-    },
+    Format { file: String },
     /// The file is not what its name says, or only a part of it.
     #[error("{file}: not {what} that can be read ({cause}); {cure}")]
-    Faulty {
-        /// The file.
-        file: String,
-        /// What it should be.
-        what: &'static str,
-        /// What is wrong with it.
-        cause: String,
-        /// What to do.
-        cure: &'static str,
-    },
+    Faulty { file: String, what: &'static str, cause: String, cure: &'static str },
     /// An array of a shape that is no picture.
     #[error("{file}: an array of shape {shape}; save {wanted}")]
-    Shape {
-        /// The file.
-        file: String,
-        /// The shape, as `NumPy` writes it.
-        shape: String,
-        /// What it should be.
-        wanted: &'static str,
-    },
+    Shape { file: String, shape: String, wanted: &'static str },
     /// Pictures of different sizes.
     #[error("{file}: {found}, but {other} has {expected}; give pictures of one size")]
-    Differ {
-        /// The file.
-        file: String,
-        /// Its size.
-        found: Size,
-        /// What it is compared with.
-        other: String,
-        /// The size of that.
-        expected: Size,
-    },
+    Differ { file: String, found: Size, other: String, expected: Size },
     /// Values that do not fill the picture.
     #[error(
         "{found} value(s) for {passes} pass(es) of {expected}; give one for each, and at least one"
     )]
-    Count {
-        /// The size of a pass.
-        expected: Size,
-        /// How many passes.
-        passes: usize,
-        /// How many values there are.
-        found: usize,
-    },
+    Count { expected: Size, passes: usize, found: usize },
     /// One pass alone.
     #[error(
         "there is one pass; give two or more: an array of shape (passes, height, width[, channels]), \
@@ -79,40 +40,22 @@ pub enum ImageError {
         "the {what} of row {row}, column {column}, channel {channel} is {value}, not {wanted}; mend it"
     )]
     Pixel {
-        /// The truth or the variance.
         what: &'static str,
-        /// The row, from 0 at the top.
         row: usize,
-        /// The column, from 0.
         column: usize,
-        /// The channel, from 0.
         channel: usize,
-        /// What it is.
         value: f64,
-        /// What it should be.
         wanted: String,
     },
     /// A number that makes no sense.
     #[error("{what} = {value} is not {wanted}; give {what} as {wanted}")]
-    Number {
-        /// Which.
-        what: &'static str,
-        /// What it is.
-        value: f64,
-        /// What it should be.
-        wanted: &'static str,
-    },
+    Number { what: &'static str, value: f64, wanted: &'static str },
     /// A tolerance that rounding would eat.
     #[error(
         "a tolerance of {tolerance:e} is below 4 times what rounding may add to a pixel, {floor:.1e} of the \
          picture's mean; give a wider tolerance, a smaller rounding, or images of more digits"
     )]
-    Blurred {
-        /// What was asked.
-        tolerance: f64,
-        /// The largest δ.
-        floor: f64,
-    },
+    Blurred { tolerance: f64, floor: f64 },
     /// A truth of 0 everywhere without a tolerance.
     #[error(
         "a truth of 0 everywhere has no relative tolerance; give a tolerance, which is then absolute"

@@ -4,7 +4,7 @@ use super::error::CheckError;
 use super::made::{Closure, Factory};
 use super::said::Said;
 use super::sample::Sample;
-use crate::session::{ClaimError, Lookups, Session, Theory, Wanted};
+use crate::session::{ClaimError, Lookups, Session, Theory};
 use numeric::rng::Stream;
 
 /// More values of a draw than this are not judged together: each has lost its share of α.
@@ -160,32 +160,32 @@ impl<S> Check<S> {
     /// ε: the bias that a pass excludes, relative to the truth (absolute for a truth of 0). Without it 1 %, or
     /// with [`Check::draws`] what so many draws can see, at most 5 %.
     pub fn tolerance(mut self, tolerance: f64) -> Self {
-        self.said.tolerance = Some(tolerance);
+        self.said.wanted.tolerance = Some(tolerance);
         self
     }
 
     /// The same for the variance, relative to it.
     pub fn variance_tolerance(mut self, tolerance: f64) -> Self {
-        self.said.variance_tolerance = Some(tolerance);
+        self.said.wanted.variance_tolerance = Some(tolerance);
         self
     }
 
     /// Judges averages of so many consecutive draws, which is for draws that depend on their neighbours; variance
     /// and kurtosis are then those of an average, and of theory only the mean is taken.
     pub fn batch(mut self, batch: u64) -> Self {
-        self.said.batch = batch;
+        self.said.wanted.batch = batch;
         self
     }
 
     /// α: the chance that a correct estimator fails, 1e-3 without it.
     pub fn alpha(mut self, alpha: f64) -> Self {
-        self.said.alpha = alpha;
+        self.said.wanted.alpha = alpha;
         self
     }
 
     /// So many draws, all of them, in place of as many as the decision takes.
     pub fn draws(mut self, draws: u64) -> Self {
-        self.said.draws = Some(draws);
+        self.said.wanted.most = Some(draws);
         self
     }
 
@@ -210,15 +210,7 @@ impl<S> Check<S> {
             return Err(CheckError::TooManyValues { name: name(), values, most: MAX_VALUES });
         }
         let claims = said.claims(&self.name, values, has_lookups)?;
-        let wanted = Wanted {
-            tolerance: said.tolerance,
-            variance_tolerance: said.variance_tolerance,
-            alpha: said.alpha,
-            batch: said.batch,
-            stop_early: false,
-            most: said.draws,
-        };
-        let session = Session::new(&claims, wanted, length, said.taken(has_lookups));
+        let session = Session::new(&claims, said.wanted, length, said.taken(has_lookups));
         session
             .map_err(|source: ClaimError| CheckError::Claim { name: name(), source: source.into() })
     }

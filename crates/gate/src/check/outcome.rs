@@ -32,9 +32,7 @@ pub struct Outcome {
 impl Outcome {
     /// Fail if any value fails, pass if all pass.
     pub fn verdict(&self) -> Verdict {
-        let any = |verdict| self.values.iter().any(|value| value.verdict == verdict);
-        let order = [Verdict::Fail, Verdict::Inconclusive];
-        order.into_iter().find(|&verdict| any(verdict)).unwrap_or(Verdict::Pass)
+        Verdict::worst(self.values.iter().map(|value| value.verdict))
     }
 
     /// Whether all values pass.

@@ -48,7 +48,8 @@ impl Check<()> {
 
     fn opened(self, numbers: Option<usize>) -> Result<Pushed, CheckError> {
         let values = self.said.values();
-        let length = numbers.map(|numbers| (numbers / values.max(1)) as u64).or(self.said.draws);
+        let length =
+            numbers.map(|numbers| (numbers / values.max(1)) as u64).or(self.said.wanted.most);
         let has_lookups = self.said.has_lookups();
         self.begun(values, has_lookups, length)
     }
@@ -68,7 +69,7 @@ impl Check<()> {
     /// Numbers that address the blocks of draws.
     fn plan(&self) -> Plan {
         let (seed, experiment) = (self.said.seed, name_hash(&self.name));
-        Plan { seed, experiment, most: self.said.draws.unwrap_or(MOST) }
+        Plan { seed, experiment, most: self.said.wanted.most.unwrap_or(MOST) }
     }
 }
 
@@ -159,7 +160,7 @@ impl Pushed {
         mut source: impl FnMut(&mut Self, Request) -> Result<bool, E>,
     ) -> Result<(), E> {
         let plan = self.check.plan();
-        let is_fixed = self.check.said.draws.is_some();
+        let is_fixed = self.check.said.wanted.most.is_some();
         let until = Until { most: Some(plan.most), is_decided: !is_fixed };
         let stopped = drive(self, until, |pushed, draws| {
             let request = Request { draws, block: pushed.next, plan };
@@ -244,7 +245,7 @@ impl Pushed {
         let Self { check, session, stopped, .. } = self;
         let channels = check.said.names(session.values());
         let values = session.outcome(stopped);
-        Ok(Outcome { name: check.name, alpha: check.said.alpha, channels, values })
+        Ok(Outcome { name: check.name, alpha: check.said.wanted.alpha, channels, values })
     }
 
     /// Panics unless the draws pass.

@@ -2,7 +2,7 @@
 
 use super::builder::Values;
 use super::error::CheckError;
-use crate::session::{Claim, Lookups, ROUNDING, Taken, Theory};
+use crate::session::{Claim, Lookups, ROUNDING, Taken, Theory, Wanted};
 
 /// What is known of a draw, and what is wanted of the verdict.
 #[derive(Debug, Clone)]
@@ -18,11 +18,8 @@ pub(super) struct Said {
     /// Number of values of a draw, where the caller gave it.
     pub(super) values: Option<usize>,
     pub(super) mean_only: bool,
-    pub(super) tolerance: Option<f64>,
-    pub(super) variance_tolerance: Option<f64>,
-    pub(super) batch: u64,
-    pub(super) alpha: f64,
-    pub(super) draws: Option<u64>,
+    /// Error rate, tolerances and number of draws.
+    pub(super) wanted: Wanted,
     pub(super) seed: u64,
 }
 
@@ -38,11 +35,7 @@ impl Default for Said {
             theory: None,
             values: None,
             mean_only: false,
-            tolerance: None,
-            variance_tolerance: None,
-            batch: 1,
-            alpha: 1e-3,
-            draws: None,
+            wanted: Wanted::default(),
             seed: 1,
         }
     }
@@ -63,7 +56,7 @@ impl Said {
 
     /// Whether only the mean comes from theory: averages of draws have another variance and distribution.
     fn is_mean_only(&self) -> bool {
-        self.mean_only || self.batch > 1
+        self.mean_only || self.wanted.batch > 1
     }
 
     /// Whether theory says what lookups should be.

@@ -55,17 +55,11 @@ impl Lookups {
 /// A claim that makes no sense.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
+#[allow(missing_docs)] // messages name the fields
 pub enum ClaimError {
     /// Not a finite number, or negative where it must not be.
     #[error("{what} = {} is not {wanted}; give another", number(*value))]
-    Number {
-        /// Which number.
-        what: &'static str,
-        /// What it is.
-        value: f64,
-        /// What it should be.
-        wanted: &'static str,
-    },
+    Number { what: &'static str, value: f64, wanted: &'static str },
     /// A range that does not hold the truth inside.
     #[error(
         "a range of {} to {} {}; give a range around the truth",
@@ -73,27 +67,13 @@ pub enum ClaimError {
         number(*high),
         if low < high { format!("does not have the truth {} inside", number(*truth)) } else { "is empty".to_owned() }
     )]
-    Range {
-        /// Its lower end.
-        low: f64,
-        /// Its upper end.
-        high: f64,
-        /// The truth.
-        truth: f64,
-    },
+    Range { low: f64, high: f64, truth: f64 },
     /// A variance that no draws in the range have.
     #[error(
         "a variance of {variance:e} is impossible in the range: with the mean {truth:e} it is \
          {most:e} at most; mend one of them"
     )]
-    TooSpread {
-        /// The variance.
-        variance: f64,
-        /// The truth.
-        truth: f64,
-        /// The largest variance, (high − T)(T − low).
-        most: f64,
-    },
+    TooSpread { variance: f64, truth: f64, most: f64 },
     /// A truth of 0 without a tolerance.
     #[error("a truth of 0 has no relative tolerance; give a tolerance, which is then absolute")]
     NoUnit,
@@ -102,20 +82,10 @@ pub enum ClaimError {
         "a tolerance of {tolerance:e} for the {what} is below 4 times what rounding and the claim's \
          own error may add, {floor:.1e}; give a wider tolerance or a smaller rounding"
     )]
-    Blurred {
-        /// Which check.
-        what: &'static str,
-        /// What was asked.
-        tolerance: f64,
-        /// δ.
-        floor: f64,
-    },
+    Blurred { what: &'static str, tolerance: f64, floor: f64 },
     /// A tolerance of a variance that is not tested.
     #[error("a tolerance of the variance, but no variance is tested: {why}; leave it out")]
-    NoVariance {
-        /// Why it is not.
-        why: &'static str,
-    },
+    NoVariance { why: &'static str },
 }
 
 impl Claim {
@@ -187,12 +157,12 @@ impl Claim {
     }
 
     /// δ of the mean, in units of u.
-    pub fn floor(&self) -> f64 {
+    pub(super) fn floor(&self) -> f64 {
         mean_floor(self.truth_error, self.rounding_of_draw(), self.unit)
     }
 
     /// The range with what rounding may add at each end.
-    pub fn widened(&self) -> Option<[f64; 2]> {
+    pub(super) fn widened(&self) -> Option<[f64; 2]> {
         let slack = |end: f64| {
             let near = self.rounding * if end.is_finite() { end.abs() } else { 0.0 };
             near.max(self.floor() * self.unit)
@@ -206,7 +176,7 @@ impl Claim {
     }
 
     /// δ of the variance, relative to it.
-    pub fn variance_floor(&self, variance: f64) -> f64 {
+    pub(super) fn variance_floor(&self, variance: f64) -> f64 {
         variance_floor(variance, self.variance_error, self.rounding_of_draw())
     }
 }

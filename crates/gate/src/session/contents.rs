@@ -13,7 +13,7 @@ use crate::stats::sequences::Sequences;
 const FEWEST: u64 = 3;
 
 /// Draws behind averages of `batch` draws each.
-pub struct Contents {
+pub(super) struct Contents {
     batch: u64,
     replays: Replays,
     sequences: Sequences,
@@ -63,13 +63,13 @@ impl Contents {
     }
 
     /// Number of averages, if all hold the same draws, and these are not all alike.
-    pub fn alike(&self) -> Option<u64> {
+    pub(super) fn alike(&self) -> Option<u64> {
         let is_shown = self.are_alike && self.is_varied && self.averages >= FEWEST;
         is_shown.then_some(self.averages)
     }
 
     /// Draws that come again in other averages, at another place.
-    pub fn replay(&self) -> Option<Replay> {
+    pub(super) fn replay(&self) -> Option<Replay> {
         let found = [self.replays.found(), self.sequences.found()].into_iter().flatten();
         let across = |found: &Replay| {
             found.distance > self.batch && !found.distance.is_multiple_of(self.batch)

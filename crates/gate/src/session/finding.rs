@@ -11,7 +11,7 @@ use crate::stats::verdict::{BLOCK, GateFinding, Verdict};
 
 impl Scalar {
     /// What was found.
-    pub fn finding(&self) -> ScalarFinding {
+    pub(super) fn finding(&self) -> ScalarFinding {
         let (verdict, reason) = self.verdict();
         // Bold bets may decide before ε is chosen.
         let decided = (self.decision != Decision::Open).then(|| match self.quantity.tolerance {
@@ -44,22 +44,18 @@ impl Scalar {
 
     /// Reason where the draws do not show their own spread.
     fn unknown_spread(&self) -> Reason {
-        let carry = self.past.effective_draws().floor().max(0.0);
-        let needed = match self.quantity.ground {
-            Some(Ground::Kurtosis(kurtosis)) => {
-                ground::draws_of_bound(kurtosis, self.levels.ln_fail)
+        let Quantity { what, ground, tolerance, .. } = self.quantity.clone();
+        let (draws, carry) = (self.past.draws(), self.past.effective_draws().floor().max(0.0));
+        match (ground, self.assumed()) {
+            (None, _) => Reason::NoTolerance { what, draws, tolerance },
+            (Some(Ground::Kurtosis(kurtosis)), _) => {
+                let needed = ground::draws_of_bound(kurtosis, self.levels.ln_fail);
+                Reason::FewForKurtosis { what, kurtosis, needed, draws, tolerance }
             }
-            _ => 0.0,
-        };
-        let assumed = self.assumed().filter(|_| carry >= ground::EFFECTIVE);
-        Reason::UnknownSpread {
-            what: self.quantity.what.clone(),
-            ground: self.quantity.ground,
-            draws: self.past.draws(),
-            carry,
-            kurtosis: assumed.map(|assumed| [self.past.kurtosis(), assumed]),
-            needed,
-            tolerance: self.quantity.tolerance,
+            (_, Some(assumed)) if carry >= ground::EFFECTIVE => {
+                Reason::HeavyTails { what, shown: self.past.kurtosis(), assumed, tolerance }
+            }
+            _ => Reason::FewCarry { what, carry, draws, tolerance },
         }
     }
 
@@ -128,17 +124,10 @@ impl Scalar {
     }
 
     fn undecided(&self, design: &Design) -> Reason {
-        let draws = self.seen.1;
+        let (what, draws) = (self.quantity.what.clone(), self.seen.1);
         let planned = self.planned_draws(design);
         let needed = if planned > draws as f64 { planned } else { planned * HORIZON / PLANNED };
-        let [above, below] = self.evidence.ln_pass;
-        let undecided = Reason::Undecided {
-            what: self.quantity.what.clone(),
-            draws,
-            ln_pass: [above, below, self.levels.ln_pass],
-            tolerance: design.tolerance,
-            needed,
-        };
+        let undecided = Reason::Undecided { what, draws, tolerance: design.tolerance, needed };
         match self.obvious_z() {
             Some(z) => Reason::Both(Box::new(self.looks_off(z, None)), Box::new(undecided)),
             None => undecided,

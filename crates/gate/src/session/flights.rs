@@ -30,15 +30,15 @@ pub struct Flights {
 }
 
 /// Flights of which those that leave are marked.
-pub struct Marked {
+pub(super) struct Marked {
     /// Marked by the length of the ray.
-    pub at_end: Vec<f64>,
+    pub(super) at_end: Vec<f64>,
     /// Marked by infinity.
-    pub beyond: Vec<f64>,
+    pub(super) beyond: Vec<f64>,
 }
 
 /// Flights on their way, with what the first block of them shows.
-pub struct Ends {
+pub(super) struct Ends {
     flights: Flights,
     rounding: f64,
     /// From here on a flight has left; found by the first block.
@@ -46,7 +46,7 @@ pub struct Ends {
     left: u64,
     seen: u64,
     /// Whether all of them are numbers of single precision.
-    pub is_single: bool,
+    pub(super) is_single: bool,
     /// The number that comes most often among the first flights that do not leave, and its share, where it comes ten
     /// times as often as any other.
     most_frequent: (f64, f64),
@@ -59,7 +59,7 @@ impl Ends {
     }
 
     /// The flights with the ray's length in place of all that leave, and with infinity in their place.
-    pub fn marked(&mut self, block: &[f64]) -> Marked {
+    pub(super) fn marked(&mut self, block: &[f64]) -> Marked {
         let Flights { length, from, .. } = self.flights;
         self.is_single &= ties::all_single_precision(block);
         let single = if self.is_single { SINGLE } else { 0.0 };
@@ -82,7 +82,7 @@ impl Ends {
     }
 
     /// That flights which leave are written in a way that cannot be told from a distance.
-    pub fn wrong(&self) -> Option<String> {
+    pub(super) fn wrong(&self) -> Option<String> {
         let (x, share) = self.most_frequent;
         let Flights { escape, .. } = self.flights;
         let is_shown = escape * self.seen as f64 >= FEWEST && share * self.seen as f64 >= FEWEST;
@@ -100,7 +100,7 @@ impl Ends {
     }
 
     /// The ways to write a flight that leaves.
-    pub fn cure(&self) -> String {
+    pub(super) fn cure(&self) -> String {
         format!(
             "write a flight that leaves as {}, the length of the ray, as a larger number, inf or -1",
             self.flights.length

@@ -29,7 +29,7 @@ const MISSED: f64 = 20.0;
 
 /// A change of the mean.
 #[derive(Debug, Clone, Copy)]
-pub struct Change {
+pub(super) struct Change {
     /// The first draw of the part that differs most from the others.
     pub from: u64,
     /// The draw after its last one; `None` for the end.
@@ -48,7 +48,7 @@ fn limit(carry: f64) -> f64 {
 impl Scalar {
     /// Distance of the mean of y from 0 in standard errors, if it is beyond the limit; infinite for draws that are all alike, where the
     /// range or the variance leaves no room for what was not drawn.
-    pub fn obvious_z(&self) -> Option<f64> {
+    pub(super) fn obvious_z(&self) -> Option<f64> {
         let (n, off) = (self.past.draws() as f64, self.past.mean());
         let excess = off.abs() - self.quantity.floor;
         if n < 2.0 || excess <= 0.0 {
@@ -69,7 +69,7 @@ impl Scalar {
 
     /// The most significant change of the mean, if it is beyond the limit: from a block on, else between two blocks. Where the
     /// mean of all draws does not fail and that of later ones does, less is enough.
-    pub fn obvious_change(&self) -> Option<Change> {
+    pub(super) fn obvious_change(&self) -> Option<Change> {
         let (n, mean) = (self.past.draws() as f64, self.past.mean());
         let (carry, variance) = (self.past.effective_draws(), self.past.variance());
         let need = if self.has_failed() { 1.0 } else { HINTED };

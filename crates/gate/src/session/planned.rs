@@ -197,15 +197,10 @@ impl Planned {
             }
             (Decision::Open, Some(reason)) => (too_weak, Some(reason)),
             (Decision::Open, None) => {
-                let [above, below] = trail.evidence.ln_pass;
-                let is_short = self.draws > trail.draws as f64;
-                let undecided = Reason::Undecided {
-                    what,
-                    draws: trail.draws,
-                    ln_pass: [above, below, levels.ln_pass],
-                    tolerance: self.design.tolerance,
-                    needed: if is_short { self.draws } else { self.draws * HORIZON / PLANNED },
-                };
+                let (draws, tolerance) = (trail.draws, self.design.tolerance);
+                let is_short = self.draws > draws as f64;
+                let needed = if is_short { self.draws } else { self.draws * HORIZON / PLANNED };
+                let undecided = Reason::Undecided { what, draws, tolerance, needed };
                 (Verdict::Inconclusive, Some(undecided))
             }
         }
@@ -223,7 +218,7 @@ impl Planned {
             Decision::Open if was_cut => (Verdict::Inconclusive, Reason::BiasNotShown(trail.draws)),
             _ => {
                 let (bias, ln_e) = (trail.mean, trail.evidence.ln_e);
-                (Verdict::Fail, Reason::NoBias { bias, ln_e, limit: levels.ln_fail })
+                (Verdict::Fail, Reason::SmallBias { bias, ln_e, limit: levels.ln_fail })
             }
         };
         (verdict, Some(reason))

@@ -1,7 +1,7 @@
-//! One scalar of foreign draws on its way through the gate.
+//! One quantity on its way through the gate, where its spread or its tolerance may follow from earlier draws.
 //!
 //! ```text
-//! E      the mean of the e-values of all grounds that hold (`grounds`);   fail at ln E ≥ ln(K/0.8α)
+//! E      the mean of the e-values of all grounds that hold (`ground`);   fail at ln E ≥ ln(K/0.8α)
 //! P±     likewise, of all grounds;                                        pass at both ln P ≥ ln(1/β)
 //! E_c    the same for a change of the mean from any later block on        (`stats::capital`)
 //! ```
@@ -43,27 +43,27 @@ pub struct Scalar {
     pub(super) quantity: Quantity,
     pub(super) levels: Levels,
     /// n: how many draws are planned, if anybody knows.
-    pub planned: Option<f64>,
+    pub(super) planned: Option<f64>,
     pub(super) past: Powers,
     pub(super) of_variance: Option<OfVariance>,
     pub(super) of_range: Option<OfRange>,
     /// What is asked, as soon as V is known or bounded; its ε never becomes wider.
     pub design: Option<Design>,
     /// Whether n draws suffice for a pass.
-    pub is_promised: bool,
+    pub(super) is_promised: bool,
     /// The sum of y in each block, and how many draws there are at its end.
-    pub sums: Vec<(f64, u64)>,
+    pub(super) sums: Vec<(f64, u64)>,
     pub(super) look: u64,
-    /// The decision, and the evidence it was made on.
-    pub decision: Decision,
-    /// Evidence at the last look.
+    /// The decision.
+    pub(super) decision: Decision,
+    /// Evidence at the look of the decision, or at the last.
     pub evidence: Evidence,
     /// Whether what may not fail would have.
-    pub is_doubted: bool,
+    pub(super) is_doubted: bool,
     /// ln `E_c`.
-    pub ln_change: f64,
+    pub(super) ln_change: f64,
     /// Mean of y and number of draws at the last look before the decision.
-    pub seen: (f64, u64),
+    pub(super) seen: (f64, u64),
 }
 
 impl Scalar {
@@ -217,7 +217,7 @@ impl Scalar {
     }
 
     /// Whether more draws may change what is said, were it decided once and for all.
-    pub fn is_open(&self) -> bool {
+    pub(super) fn is_open(&self) -> bool {
         let most = self.planned.unwrap_or(UNPLANNED);
         let limit = match &self.design {
             Some(design) if self.is_promised => design.draws() * gate::HORIZON / gate::PLANNED,
@@ -231,18 +231,18 @@ impl Scalar {
     }
 
     /// Whether it can fail at all.
-    pub fn has_ground(&self) -> bool {
+    pub(super) fn has_ground(&self) -> bool {
         self.of_range.is_some() || self.quantity.is_hard()
     }
 
     /// Whether the draws do not contradict what was assumed of them.
-    pub fn is_founded(&self) -> bool {
+    pub(super) fn is_founded(&self) -> bool {
         let ground = self.of_variance.as_ref();
         !ground.is_some_and(|ground| ground.is_contradicted(&self.past)) || self.of_range.is_some()
     }
 
     /// Whether the mean differs by itself: were the spread what the draws show, it would fail, too.
-    pub fn is_off_by_itself(&self) -> bool {
+    pub(super) fn is_off_by_itself(&self) -> bool {
         let (off, n) = self.seen;
         let by_range = self.of_range.as_ref().map_or(0.0, |ground| ground.capital.ln_e());
         let (spread, ln_fail) = (self.past.mean_square() - off * off, self.levels.ln_fail);
@@ -250,7 +250,7 @@ impl Scalar {
     }
 
     /// The kurtosis that a judgement assumes without a promise of the caller's.
-    pub fn assumed(&self) -> Option<f64> {
+    pub(super) fn assumed(&self) -> Option<f64> {
         if self.quantity.ground != Some(Ground::Shown) {
             return None;
         }

@@ -18,7 +18,7 @@ use super::judgement::DistributionFinding;
 use super::trial::Wanted;
 
 /// The share of α that the tests of the distribution have.
-pub const DISTRIBUTION: f64 = 0.2;
+pub(super) const DISTRIBUTION: f64 = 0.2;
 /// The channel that is a sum of those before it, by fixed weights: draws need not have it.
 const DERIVED: &str = "luminance";
 
@@ -67,13 +67,13 @@ pub struct Tested {
 
 /// Input of a reading of draws beside its claim.
 #[derive(Default)]
-pub struct Background {
+pub(super) struct Background {
     /// The experiment that the claim comes from, in words.
-    pub theory: Option<String>,
+    pub(super) theory: Option<String>,
     /// The tests of the distribution.
-    pub tests: Option<Box<dyn Tests>>,
+    pub(super) tests: Option<Box<dyn Tests>>,
     /// What is not tested, in sentences.
-    pub notes: Vec<String>,
+    pub(super) notes: Vec<String>,
 }
 
 /// Theory of one experiment of a case: a claim for each channel, and the distribution of the draw.

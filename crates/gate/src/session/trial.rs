@@ -113,23 +113,23 @@ impl Trial {
     }
 
     /// √V in units of u, by the claim.
-    pub fn deviation(&self) -> Option<f64> {
+    pub(super) fn deviation(&self) -> Option<f64> {
         self.claim.variance.map(|variance| variance.sqrt() / self.claim.unit)
     }
 
     /// Whether the draws have no spread, by the claim.
-    pub fn is_certain(&self) -> bool {
+    pub(super) fn is_certain(&self) -> bool {
         self.deviation().is_some_and(|deviation| FURTHEST * deviation <= self.claim.floor())
     }
 
     /// Whether rounding hides what the spread says: the variance cannot be tested to its widest tolerance.
-    pub fn is_faint(&self) -> bool {
+    pub(super) fn is_faint(&self) -> bool {
         let variance = self.claim.variance.filter(|&variance| variance > 0.0);
         variance.is_some_and(|v| self.claim.variance_floor(v) > 0.25 * VARIANCE_CAP)
     }
 
     /// What no draw of a claim without spread may exceed, in units of u.
-    pub fn bound(&self) -> f64 {
+    pub(super) fn bound(&self) -> f64 {
         self.claim.floor() + FURTHEST * self.deviation().unwrap_or(0.0)
     }
 

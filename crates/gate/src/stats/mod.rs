@@ -1,11 +1,11 @@
 //! Statistics that have never heard of light. Floor 1.
 
 pub mod anderson_darling;
-pub mod betting;
+pub(crate) mod betting;
 pub mod binomial;
 pub mod capital;
 pub mod catoni;
-pub mod census;
+mod census;
 pub mod chi_square;
 pub mod correlation;
 pub mod estimated_variance;
@@ -13,13 +13,13 @@ pub mod gate;
 pub mod independence;
 pub mod multiplicity;
 pub mod normal;
-pub mod powers;
+mod powers;
 pub mod reflection;
-pub mod replays;
-pub mod runs;
-pub mod sequences;
+pub(crate) mod replays;
+pub(crate) mod runs;
+pub(crate) mod sequences;
 pub mod symmetric;
-pub mod tally;
+mod tally;
 pub mod ties;
 pub mod verdict;
 

@@ -28,6 +28,14 @@ pub enum Verdict {
 }
 
 impl Verdict {
+    /// The verdict on several things together: fail before inconclusive before underpowered before pass.
+    pub fn worst(verdicts: impl IntoIterator<Item = Self>) -> Self {
+        let order = [Self::Fail, Self::Inconclusive, Self::Underpowered];
+        let rank = |verdict: &Self| order.iter().position(|other| other == verdict);
+        let worst = verdicts.into_iter().filter_map(|verdict| rank(&verdict)).min();
+        worst.map_or(Self::Pass, |rank| order[rank])
+    }
+
     /// The word in tables and files.
     pub fn word(self) -> &'static str {
         match self {
