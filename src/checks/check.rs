@@ -54,7 +54,7 @@ pub struct Place {
 
 /// Circumstances of the last look.
 pub struct Context<'a> {
-    /// What the check asks about.
+    /// Name of the quantity or distribution in sentences.
     pub what: &'a str,
     /// Whether the case declares a bias that the check must show.
     pub expects_bias: bool,
@@ -72,7 +72,7 @@ pub struct Context<'a> {
     pub inspected: &'a Inspected<'a>,
 }
 
-/// What a check found.
+/// Result of a check.
 #[derive(Debug, Clone)]
 pub struct Found {
     /// The verdict.
@@ -85,7 +85,7 @@ pub struct Found {
     pub gate: Option<GateFinding>,
     /// Number of draws and ln E at the looks of the gate.
     pub path: Vec<(u64, f64)>,
-    /// The block at whose end it was decided, or where it was found.
+    /// The block that ends with the decision, or that has the draw that fails.
     pub block: Option<u64>,
 }
 
@@ -103,7 +103,7 @@ pub enum Share {
     Gate,
     /// One fifth, by Holm.
     PValues,
-    /// None: it fails by no chance.
+    /// None: correct draws never fail it.
     Nothing,
 }
 
@@ -161,7 +161,7 @@ pub trait Check: Send + Sync {
         None
     }
 
-    /// Adds a bias of so many tolerances to the quantity for the gate, to see whether it is found.
+    /// Adds a bias to the quantity for the gate, in units of its tolerance, to see whether it is found.
     fn shift(&mut self, tolerances: f64) {
         let _ = tolerances;
     }

@@ -13,7 +13,7 @@ pub struct Inspected<'a> {
     pub channels: usize,
     /// The streams of each block.
     pub streams: &'a dyn Fn(u64) -> Streams,
-    /// How many blocks there are.
+    /// Number of blocks.
     pub blocks: u64,
 }
 

@@ -8,9 +8,9 @@ use ::gate::session::Reason;
 use ::gate::stats::verdict::Verdict;
 use numeric::sum::Sum;
 
-/// A test of a whole law by sums over the first draws.
+/// A test of a whole distribution by sums over the first draws.
 pub trait Law: Send + Sync + UnwindSafe + RefUnwindSafe {
-    /// How many sums.
+    /// Number of sums.
     fn size(&self) -> usize;
 
     /// Adds the draws of a buffer, of which the first is the block's draw number `first`, to the

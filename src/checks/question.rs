@@ -5,16 +5,16 @@ use super::law::Law;
 use crate::plan::options::Tolerance;
 use theory::{Channel, Moments, Prediction};
 
-/// What a check knows before the first draw.
+/// Knowledge of a check before the first draw.
 #[derive(Clone, Copy)]
 pub struct Subject<'a> {
-    /// What theory says.
+    /// The prediction of theory.
     pub prediction: &'a Prediction,
-    /// How many draws are planned.
+    /// Number of draws that are planned.
     pub draws: u64,
-    /// How many draws the plan may ask for at most.
+    /// Largest number of draws that the plan may ask for.
     pub most: u64,
-    /// How many of the first draws the tests of laws get, whatever the gate decides.
+    /// Number of the first draws that p-values see, whatever the gate decides.
     pub fixed: u64,
     /// The differences that matter, where the case says.
     pub tolerance: Tolerance,
@@ -24,11 +24,11 @@ pub struct Subject<'a> {
     pub has_invariant: bool,
     /// Whether draws come one like the other; order-free ones come sorted by their lookups.
     pub is_in_turn: bool,
-    /// What pilot draws say of spreads, channel by channel, where theory has none.
+    /// Spreads of pilot draws, channel by channel, where theory has none.
     pub pilots: Option<&'a [Pilot]>,
 }
 
-/// What pilot draws say of the spread of a draw.
+/// The spread of pilot draws.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Pilot {
     /// `Σy²/n`, y the distance from their mean.
@@ -55,9 +55,9 @@ pub struct Question {
     pub check: String,
     /// The channel it is about; `None` for the experiment as a whole.
     pub channel: Option<usize>,
-    /// What it is about, as in `the mean`.
+    /// Name of its subject, as in `the mean`.
     pub what: String,
-    /// How it is answered.
+    /// The check that answers it.
     pub answer: Box<dyn Check>,
     /// Whether the case declares a bias, which the answer must show.
     pub expects_bias: bool,
@@ -98,7 +98,7 @@ pub fn rounding(lookups: f64) -> f64 {
     16.0 * f64::EPSILON * (1.0 + lookups)
 }
 
-/// The same for an experiment: by its expected lookups.
+/// Rounding of a draw of an experiment, by its expected lookups.
 pub fn rounding_of(subject: &Subject) -> f64 {
     rounding(subject.prediction.lookups.as_ref().map_or(0.0, |lookups| lookups.mean))
 }

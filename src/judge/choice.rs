@@ -18,7 +18,7 @@ pub struct Choice<'a> {
     pub seed: u64,
 }
 
-/// Reason why a choice is no experiment whose draws can be judged.
+/// Reason why no draws can be judged by a choice.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 #[allow(missing_docs)] // messages name the fields
@@ -29,7 +29,7 @@ pub enum ChoiceError {
     /// Several estimators of that name.
     #[error("{case}: several estimators are called `{name}`; choose one of: {}", candidates.join(", "))]
     Ambiguous { case: String, name: String, candidates: Vec<String> },
-    /// A value of the sweep is missing, or is none.
+    /// The value of the sweep is missing.
     #[error(
         "{case}: `{estimator}` is swept over {what}: {}; say at which value your draws were made, by --swept (in Python \
          sampling=, elsewhere the last argument of `of`); any value will do that is {wanted}",

@@ -286,49 +286,28 @@ mod tests {
     }
 
     #[test]
-    fn a_choice_is_asked_for() {
-        assert_eq!(
-            error("T,X\n1,2\n", None),
-            "x.csv: 2 columns (T, X); choose one by name or index"
-        );
-        assert_eq!(error("1,2\n", None), "x.csv: 2 columns (0, 1); choose one by name or index");
-    }
-
-    #[test]
-    fn a_column_must_be_there_once() {
-        assert_eq!(
-            error("T,X\n1,2\n", Some("Y")),
-            "x.csv: no column `Y` among T, X; choose one of these"
-        );
-        assert_eq!(
-            error("1,2\n", Some("7")),
-            "x.csv: no column 7, counted from 0, among 0, 1; choose one of these"
-        );
-        assert_eq!(
-            error("T,T\n1,2\n", Some("T")),
-            "x.csv: 2 columns are called `T`; choose one by index"
-        );
-    }
-
-    #[test]
-    fn a_ragged_line_is_named() {
-        assert_eq!(
-            error("T,X\n1,2\n\n3\n", Some("T")),
-            "x.csv, line 4: 1 column(s) where the first line has 2; mend the line"
-        );
-        assert!(error("1\n2,5\n", None).starts_with("x.csv, line 2: 2 column(s)"));
-    }
-
-    #[test]
-    fn a_word_is_named_with_its_place() {
-        assert_eq!(
-            error("T,X\n1,2\n3,4x\n", Some("X")),
-            "x.csv, line 3, column 1: `4x` is not a number; write it as 1.25e-3"
-        );
-        // A first line that begins as a number does is no name: no draw is lost.
-        assert!(error("1.2.3\n1\n", None).starts_with("x.csv, line 1, column 0: `1.2.3`"));
-        assert!(error("T\nU\n1\n", None).starts_with("x.csv, line 2, column 0: `U`"));
-        assert!(error("1\n\"\"\n", None).starts_with("x.csv, line 2, column 0: ``"));
+    fn faults_are_named_with_their_place_and_a_cure() {
+        for (text, column, said) in [
+            ("T,X\n1,2\n", None, ": 2 columns (T, X); choose one by name or index"),
+            ("1,2\n", None, ": 2 columns (0, 1); choose"),
+            ("T,X\n1,2\n", Some("Y"), ": no column `Y` among T, X; choose"),
+            ("1,2\n", Some("7"), ": no column 7, counted from 0, among 0, 1; choose"),
+            ("T,T\n1,2\n", Some("T"), ": 2 columns are called `T`; choose"),
+            (
+                "T,X\n1,2\n\n3\n",
+                Some("T"),
+                ", line 4: 1 column(s) where the first line has 2; mend",
+            ),
+            ("1\n2,5\n", None, ", line 2: 2 column(s)"),
+            ("T,X\n1,2\n3,4x\n", Some("X"), ", line 3, column 1: `4x` is not a number; write it"),
+            // A first line that begins as a number does is no name: no draw is lost.
+            ("1.2.3\n1\n", None, ", line 1, column 0: `1.2.3`"),
+            ("T\nU\n1\n", None, ", line 2, column 0: `U`"),
+            ("1\n\"\"\n", None, ", line 2, column 0: ``"),
+        ] {
+            let error = error(text, column);
+            assert!(error.starts_with(&format!("x.csv{said}")), "{text:?}: {error}");
+        }
     }
 
     #[test]

@@ -102,8 +102,8 @@ pub(crate) fn room(left: u64) -> usize {
     usize::try_from(left).map_or(BUFFER, |left| left.min(BUFFER))
 }
 
-/// Adds blocks to a taker of draws until it needs no more. `next` adds as many draws as it is told, and returns whether there
-/// may be more; returns why it was not asked again.
+/// Adds blocks to a taker of draws until it needs no more. `next` adds at most the given number of draws, and returns whether
+/// there may be more. Returns why `next` was not called again.
 ///
 /// # Errors
 ///

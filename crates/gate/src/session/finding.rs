@@ -10,7 +10,7 @@ use crate::stats::gate::{Decision, Design, HORIZON, PLANNED};
 use crate::stats::verdict::{BLOCK, GateFinding, Verdict};
 
 impl Scalar {
-    /// What was found.
+    /// The finding.
     pub(super) fn finding(&self) -> ScalarFinding {
         let (verdict, reason) = self.verdict();
         // Bold bets may decide before ε is chosen.

@@ -1,7 +1,7 @@
-//! Sessions: draws of one estimator on their way through the gate, whoever makes them.
+//! Sessions: draws of one estimator on their way through the gate, from any source.
 //!
 //! A [`Claim`] says what is known of a draw: its mean and, if known, its variance, kurtosis and range. A [`Session`]
-//! takes draws block by block, from a [`Source`] by [`Session::judge`], from a closure by [`drive`], or from anybody who calls
+//! takes draws block by block, from a [`Source`] by [`Session::judge`], from a closure by [`drive`], or by
 //! [`Session::absorb`]. It returns a [`Judgement`] for each value of a draw.
 //!
 //! ```text

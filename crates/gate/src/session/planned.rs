@@ -1,4 +1,4 @@
-//! Quantities of known variance whose tolerance is planned before the first draw.
+//! Quantities of known variance with a tolerance that is planned before the first draw.
 //!
 //! ```text
 //! ε            as asked; else √(27 V/n) for n planned draws, narrowed to √V/4

@@ -27,7 +27,7 @@ pub enum Ground {
     Variance(f64),
     /// An upper bound of its kurtosis.
     Kurtosis(f64),
-    /// What the draws show. They are no ground to fail.
+    /// The spread that the draws show. It is no ground to fail.
     Shown,
 }
 
@@ -137,7 +137,7 @@ pub fn variance_floor(variance: f64, error: f64, rounding: f64) -> f64 {
     error + noise * (2.0 + noise)
 }
 
-/// Upper bound of the variance of `(X − T)²/V − 1` for draws of kurtosis κ whose moments are known to a relative error.
+/// Upper bound of the variance of `(X − T)²/V − 1` for draws of kurtosis κ with moments known to a relative error.
 ///
 /// `κ = m₄/m₂²` is known three times worse than the moments, and κ − 1 worse still. A kurtosis of 1 is known to rounding
 /// only.

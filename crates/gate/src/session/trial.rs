@@ -6,7 +6,7 @@ use super::quantity::{Ground, MEAN_CAP, Quantity, USUAL, VARIANCE_CAP, variance_
 use crate::stats::gate::Design;
 use crate::stats::verdict::{BLOCK, FURTHEST};
 
-/// How many draws are read at a time: a block.
+/// Number of draws that are read at a time: a block.
 #[allow(clippy::cast_possible_truncation)] // 2¹⁴
 pub const BUFFER: usize = BLOCK as usize;
 
@@ -17,13 +17,13 @@ pub struct Wanted {
     pub tolerance: Option<f64>,
     /// ε of the variance, relative to it.
     pub variance_tolerance: Option<f64>,
-    /// The chance that correct draws fail.
+    /// Probability that correct draws fail.
     pub alpha: f64,
-    /// How many consecutive draws are averaged before they are judged; the claim is then of averages.
+    /// Number of consecutive draws that are averaged before they are judged; the claim is then of averages.
     pub batch: u64,
     /// Whether to stop reading as soon as all is decided.
     pub stop_early: bool,
-    /// How many draws are read at most.
+    /// Largest number of draws that are read.
     pub most: Option<u64>,
 }
 
@@ -128,7 +128,7 @@ impl Trial {
         variance.is_some_and(|v| self.claim.variance_floor(v) > 0.25 * VARIANCE_CAP)
     }
 
-    /// What no draw of a claim without spread may exceed, in units of u.
+    /// Largest deviation of a draw of a claim without spread, in units of u.
     pub(super) fn bound(&self) -> f64 {
         self.claim.floor() + FURTHEST * self.deviation().unwrap_or(0.0)
     }
