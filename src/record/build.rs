@@ -210,11 +210,9 @@ fn experiment(
     record
 }
 
-/// Fail before inconclusive before underpowered before pass, with every reason of that verdict.
+/// The worst verdict, with every reason of it.
 fn worst(findings: &[&Finding]) -> (Verdict, String) {
-    let order = [Verdict::Fail, Verdict::Inconclusive, Verdict::Underpowered, Verdict::Pass];
-    let found = |verdict: &Verdict| findings.iter().any(|finding| finding.verdict == *verdict);
-    let verdict = order.into_iter().find(found).unwrap_or(Verdict::Pass);
+    let verdict = Verdict::worst(findings.iter().map(|finding| finding.verdict));
     let mut reasons: Vec<&str> = Vec::new();
     for finding in findings.iter().filter(|finding| finding.verdict == verdict) {
         if !finding.reason.is_empty() && !reasons.contains(&finding.reason.as_str()) {
