@@ -2,8 +2,8 @@
 
 use std::ffi::OsStr;
 
-use clap::builder::{PossibleValue, TypedValueParser};
-use clap::{Args, Command, CommandFactory};
+use clap::builder::{PossibleValue, TypedValueParser, UnknownArgumentValueParser};
+use clap::{Arg, Args, Command, CommandFactory};
 use clap_complete::Shell;
 
 use super::catalogue::pages;
@@ -138,6 +138,13 @@ pub fn command() -> Command {
             command.after_help(end).mut_args(|argument| argument.display_order(0))
         });
     }
+    for name in ["run", "check", "merge"] {
+        let renamed = [("time", "--budget"), ("json", "--record")].map(|(old, new)| {
+            let suggest = UnknownArgumentValueParser::suggest_arg(new);
+            Arg::new(old).long(old).hide(true).value_parser(suggest)
+        });
+        command = command.mut_subcommand(name, |command| command.args(renamed));
+    }
     command.after_help(
         "Manual: docs/index.md; `trueflight COMMAND --help` shows examples and exit codes",
     )
@@ -182,7 +189,7 @@ impl TypedValueParser for Names {
     fn parse_ref(
         &self,
         command: &Command,
-        argument: Option<&clap::Arg>,
+        argument: Option<&Arg>,
         value: &OsStr,
     ) -> Result<String, clap::Error> {
         clap::builder::StringValueParser::new().parse_ref(command, argument, value)

@@ -1,10 +1,10 @@
-//! A run shared out: which blocks a part of it draws, and whether parts are of the same run.
+//! Shares of a run: the blocks that one machine of many draws.
 //!
 //! ```text
-//! blocks, numbered through the experiments of the plan: number n belongs to part n mod N + 1 of N
+//! blocks are numbered through the experiments of the plan: number n belongs to part n mod N + 1 of N
 //! ```
 //!
-//! A part cannot know when the gate decides, so it draws its share of all blocks up to the horizon.
+//! The gate decides when all parts are there, so a part draws its share of all blocks up to the horizon.
 //! Experiments that share their lookups count as one, so that a part draws them together.
 
 use std::fmt;
@@ -14,17 +14,17 @@ use serde::{Deserialize, Serialize};
 
 use crate::plan::Plan;
 
-/// A part of a run, `1/1` for the whole of it.
+/// Part of a run; `1/1` is the whole run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Share {
-    /// Which part, from 1.
+    /// Number of the part, from 1.
     pub part: u32,
-    /// Of how many.
+    /// Number of parts.
     pub of: u32,
 }
 
 impl Share {
-    /// All of a run.
+    /// Whole run.
     pub const WHOLE: Self = Self { part: 1, of: 1 };
 }
 
@@ -48,10 +48,12 @@ impl FromStr for Share {
     }
 }
 
-/// The experiments that are drawn together: by their numbers through the plan, with their numbers of blocks.
+/// Experiments that share their lookups, or one that shares none.
 #[derive(Debug)]
 struct Company {
+    /// Case and address of the lookups.
     shares: Option<(usize, u64)>,
+    /// Number of each experiment in the plan, and its number of blocks.
     experiments: Vec<(u32, u64)>,
 }
 
@@ -75,16 +77,16 @@ fn companies(plan: &Plan) -> Vec<Company> {
     companies
 }
 
-/// A block of experiments that are drawn together: a piece of work.
+/// Piece of work: one block of experiments that are drawn together.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Piece {
-    /// The experiments, by their numbers through the plan.
+    /// Numbers of the experiments in the plan.
     pub experiments: Vec<u32>,
-    /// The block.
+    /// Number of the block.
     pub block: u64,
 }
 
-/// The blocks of a share, one after the other.
+/// Returns the pieces of a share, in the order of the plan.
 pub fn pieces(plan: &Plan, share: Share) -> impl Iterator<Item = Piece> {
     let mut before = 0;
     companies(plan).into_iter().flat_map(move |company| {

@@ -1,4 +1,4 @@
-//! Who draws: the threads of this process, or those of many processes.
+//! Workers: the threads of this process, or those of many processes, draw pieces.
 
 use std::fmt::Debug;
 
@@ -8,26 +8,26 @@ use crate::draw::store::Header;
 use crate::plan::{Plan, Planned};
 use theory::parallel;
 
-/// Takes what was drawn of the piece of a number: a block for each of its experiments, none where the drawing was over.
+/// Receives the blocks of a piece, after its number: one for each experiment, `None` where the drawing was over.
 pub type Take<'a> = dyn Fn(usize, Vec<Option<Block>>) + Sync + 'a;
 
-/// Those who draw. A block is the same whoever draws it.
+/// Threads that draw; a block does not depend on the thread.
 pub trait Workers: Debug + Send + Sync {
-    /// How many threads draw.
+    /// Returns the number of threads.
     fn threads(&self) -> usize;
 
-    /// Whether all would draw what this header says.
+    /// Compares the draws of all workers with those that a header describes.
     ///
     /// # Errors
     ///
-    /// Who would not, and why.
+    /// Workers would draw something else: their names, and why.
     fn agree(&self, header: &Header) -> Result<(), String>;
 
-    /// Draws pieces, and hands over what each gives when it is done, in any order.
+    /// Draws pieces in any order, and hands over the blocks of each.
     fn draw(&self, pieces: &[Piece], drawing: &Drawing, take: &Take);
 }
 
-/// The threads of this process.
+/// Threads of this process.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Threads;
 
@@ -45,22 +45,22 @@ impl Workers for Threads {
     }
 }
 
-/// The experiments of a plan, drawn by their numbers until that is over.
+/// Drawing of a plan, whose experiments are found by their numbers.
 pub struct Drawing<'p> {
     plan: &'p Plan<'p>,
     experiments: Vec<&'p Planned>,
-    /// Whether the drawing shall end.
+    /// Returns whether the drawing shall end.
     pub is_over: &'p (dyn Fn() -> bool + Sync),
 }
 
 impl<'p> Drawing<'p> {
-    /// Numbers the experiments.
+    /// Numbers the experiments of a plan.
     pub fn new(plan: &'p Plan, is_over: &'p (dyn Fn() -> bool + Sync)) -> Self {
         let experiments = plan.experiments().map(|(_, planned)| planned).collect();
         Self { plan, experiments, is_over }
     }
 
-    /// Draws a piece in this thread: a block for each of its experiments, none where the drawing is over.
+    /// Draws a piece in this thread: one block for each experiment, `None` where the drawing is over.
     pub fn draw(&self, piece: &Piece) -> Vec<Option<Block>> {
         let numbers = piece.experiments.iter();
         let group: Vec<&Planned> = numbers.map(|&one| self.experiments[one as usize]).collect();

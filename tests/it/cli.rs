@@ -319,6 +319,21 @@ fn help_version_and_completions() {
     assert_says(&stdout(&place.run("completions zsh")), &["{compadd -- ", "; _files}"]);
 }
 
+#[test]
+fn an_old_name_of_an_option_is_answered_by_the_new_one() {
+    let place = Place::new(&[("case.toml", GOOD)]);
+    for (arguments, new) in [
+        ("run case.toml --time 5m", "--budget"),
+        ("check case.toml --time 5m", "--budget"),
+        ("check case.toml --json record.json", "--record"),
+    ] {
+        let output = place.run(arguments);
+        assert_eq!(code(&output), 2, "{arguments}");
+        assert_says(&stderr(&output), &["unexpected argument", new]);
+        assert!(!stdout(&place.run("run --help")).contains("--time <"), "it is shown");
+    }
+}
+
 /// Commands that the help of all commands lists.
 fn commands(place: &Place) -> Vec<String> {
     let help = stdout(&place.run("--help"));
