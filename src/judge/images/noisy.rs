@@ -141,5 +141,5 @@ fn by_range(
     let range = Some(range.map(|end| end / unit));
     let mean = Quantity { range, ..terms.mean(None, floor) };
     let of_block = |first: usize, last: usize, to: &mut Vec<f64>| to.extend(&y[first..last]);
-    Some(judged(mean, terms.planned(y.len() as f64), AT_THE_END, y.len(), of_block))
+    Some(judged(mean, Some(terms.planned(y.len() as f64)), AT_THE_END, y.len(), of_block))
 }

@@ -66,8 +66,8 @@ impl Terms {
     }
 
     /// Number of draws that a part with `draws` draws is planned for.
-    pub(super) fn planned(self, draws: f64) -> Option<f64> {
-        Some(draws * PLANNED / planned_units(self.count))
+    pub(super) fn planned(self, draws: f64) -> f64 {
+        draws * PLANNED / planned_units(self.count)
     }
 }
 
@@ -160,7 +160,7 @@ pub(super) fn tile(stack: &Stack, pixels: &Pixels, part: Part, terms: Terms) -> 
             y.extend(averages[first..last].iter().map(|x| (x - truth) / unit));
         }
     };
-    let scalar = judged(mean_quantity, terms.planned(draws), levels, stack.passes, of_block);
+    let scalar = judged(mean_quantity, Some(terms.planned(draws)), levels, stack.passes, of_block);
     (found.ln_e, found.ln_p) = (scalar.evidence.ln_e, scalar.evidence.ln_pass);
     found.tolerance = scalar.design.map(|design| design.tolerance);
     if let (Some(tolerance), true, false) = (found.tolerance, variance.is_some(), is_single) {

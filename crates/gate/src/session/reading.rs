@@ -102,7 +102,7 @@ impl Reading {
         // A known variance is judged in the blocks of a run.
         let is_known = trial.claim.variance.is_some() && trial.wanted.batch == 1;
         let block = if is_known { BUFFER } else { block };
-        let planned = trial.planned(&quantities, length);
+        let planned = Trial::planned(&quantities, length);
         let scalar = |check: &str| {
             let quantity = quantities.iter().find(|quantity| quantity.check == check)?;
             Some(Scalar::new(quantity.clone(), planned, levels))

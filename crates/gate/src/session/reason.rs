@@ -208,6 +208,7 @@ fn fine_percent(difference: f64) -> String {
 
 /// Words of a reason, or none: as files have them.
 #[cfg(feature = "serde")]
+#[allow(clippy::ref_option)] // serde asks for it
 pub(super) fn words<S: serde::Serializer>(
     reason: &Option<Reason>,
     to: S,

@@ -183,7 +183,7 @@ impl Trial {
     }
 
     /// n: the draws that the tolerances asked for need, at most those that there are.
-    pub(super) fn planned(&self, quantities: &[Quantity], length: Option<u64>) -> Option<f64> {
+    pub(super) fn planned(quantities: &[Quantity], length: Option<u64>) -> Option<f64> {
         let needs = |quantity: &Quantity, design: fn(f64, f64, f64) -> Design, tolerance: f64| {
             let variance = quantity.known_variance().filter(|&variance| variance > 0.0)?;
             Some(design(variance, tolerance, 0.0).draws())
