@@ -150,12 +150,11 @@ fn change(change: &Change, tolerance: Option<f64>) -> Difference<'_> {
         let error = error.map_or(String::new(), |error| format!(" ± {}", short(error, 2)));
         format!("{}{error}{unit}", fixed(value, 5))
     };
-    let interval = match change.interval {
-        Some([low, high]) => format!("in [{}, {}]", fixed(low, 4), fixed(high, 4)),
-        None => {
-            let tolerance = tolerance.map_or("∞".to_owned(), |tolerance| short(tolerance, 3));
-            format!("beyond the tolerance of {tolerance}, its error unknown")
-        }
+    let interval = if let Some([low, high]) = change.interval {
+        format!("in [{}, {}]", fixed(low, 4), fixed(high, 4))
+    } else {
+        let tolerance = tolerance.map_or("∞".to_owned(), |tolerance| short(tolerance, 3));
+        format!("beyond the tolerance of {tolerance}, its error unknown")
     };
     let (before, now) = (value(change.before), value(change.now));
     let ratio = fixed(change.ratio, 4);
