@@ -91,7 +91,7 @@ fn upgrade_case(case: &mut Value, of_rows: &dyn Fn(&str, usize) -> Value) -> Vec
             let number = curve["listed"].as_u64();
             let number = number.unwrap_or_else(|| listed.number(&label, true, 0) as u64);
             curve["listed"] = json!(number);
-            retain_whole(&mut curve["points"]);
+            retain_whole(curve.get_mut("points"));
         }
     }
     if !is_whole(&case["visible_bias"]) {
@@ -189,7 +189,7 @@ fn channel(row: &mut Value) -> Value {
 
 /// A finding with its numbers that are not finite as words.
 fn finding(mut finding: Value) -> Value {
-    retain_whole(&mut finding["path"]);
+    retain_whole(finding.get_mut("path"));
     if let Some(gate) = finding["gate"].as_object_mut() {
         for (name, value) in gate.iter_mut().filter(|(name, _)| *name != "needed") {
             let word = if INFINITE.contains(&name.as_str()) { "inf" } else { "nan" };
@@ -207,7 +207,7 @@ fn upgraded_anatomy(mut anatomy: Value, experiments: &[Value]) -> Value {
     for value in items(&mut anatomy["deviation"]) {
         replace_null(value, "nan");
     }
-    retain_whole(&mut anatomy["measured"]);
+    retain_whole(anatomy.get_mut("measured"));
     anatomy["experiment"] = own["id"].clone();
     if is_whole(&anatomy) { anatomy } else { Value::Null }
 }
@@ -221,7 +221,7 @@ fn upgrade_comparison(comparison: &mut Value, sweeps: &BTreeMap<String, String>)
     if let Some(lists) = comparison["left_out"].as_object_mut() {
         lists.values_mut().flat_map(items).for_each(convert);
     }
-    retain_whole(&mut comparison["drifts"]);
+    retain_whole(comparison.get_mut("drifts"));
     items(&mut comparison["drifts"]).for_each(|drift| convert(&mut drift["id"]));
     for change in items(&mut comparison["changes"]) {
         convert(&mut change["id"]);
@@ -264,8 +264,8 @@ fn items(value: &mut Value) -> impl Iterator<Item = &mut Value> {
 }
 
 /// Leaves the items of a list that lack no number.
-fn retain_whole(list: &mut Value) {
-    if let Some(items) = list.as_array_mut() {
+fn retain_whole(list: Option<&mut Value>) {
+    if let Some(items) = list.and_then(Value::as_array_mut) {
         items.retain(is_whole);
     }
 }
