@@ -252,13 +252,16 @@ pub struct Estimators {
     control: Option<Box<dyn controls::Recipe>>,
 }
 
+/// Estimators of problem `P`, and what makes the draws of each.
+pub type EstimatorsOf<P> = (Estimators, Vec<Box<dyn Entry<P>>>);
+
 impl Estimators {
     /// Reads `sampling`, `control` and `estimators` of problem `P`, with what makes the draws of each.
     pub fn read<P: Estimated>(
         settings: &Settings,
         body: Option<&Body>,
         defaults: Defaults,
-    ) -> Option<(Self, Vec<Box<dyn Entry<P>>>)> {
+    ) -> Option<EstimatorsOf<P>> {
         let sampling = read_sampling(settings, body);
         let control = read_if(settings, "control", body, controls::read);
         let list = settings.tables("estimators").map(|tables| {

@@ -118,7 +118,7 @@ impl Case {
     ///
     /// Every mistake in the file.
     pub fn read_with(source: &Source, additions: &Additions) -> Result<Self, CaseError> {
-        Self::of(Spec::parse(source, additions)?)
+        Self::of(&Spec::parse(source, additions)?)
     }
 
     /// Reads a case that is parsed.
@@ -126,8 +126,8 @@ impl Case {
     /// # Errors
     ///
     /// Every mistake in the file.
-    pub fn of(spec: Spec) -> Result<Self, CaseError> {
-        spec.read(|root| Self::from_root(&spec, root))
+    pub fn of(spec: &Spec) -> Result<Self, CaseError> {
+        spec.read(|root| Self::from_root(spec, root))
     }
 
     fn from_root(spec: &Spec, root: &Settings) -> Option<Self> {

@@ -27,6 +27,9 @@ pub enum Reference {
     },
 }
 
+/// Reference for problem `P`, and what makes its draws.
+pub type ReferenceOf<P> = (Reference, Option<Box<dyn Entry<P>>>);
+
 impl Reference {
     /// Reads `reference`, with what makes its draws if it is drawn; its estimator finds a σ̂ that it needs in the picture
     /// if it has one.
@@ -35,7 +38,7 @@ impl Reference {
         has_exact: bool,
         body: Option<&Body>,
         defaults: Defaults,
-    ) -> Option<(Self, Option<Box<dyn Entry<P>>>)> {
+    ) -> Option<ReferenceOf<P>> {
         let names = ["closed-form", "quadrature", "draws"].map(str::to_owned);
         let (index, reference) = settings.chosen("reference", &names)?;
         let read = match index {

@@ -8,7 +8,6 @@ use crate::checks;
 use crate::draw::run;
 use crate::plan::Plan;
 use crate::plan::options::Options;
-use crate::record::Verdict;
 use crate::record::evaluate;
 use lab::calibration::{ALPHA, Calibration, Checked, Counts};
 use theory::parallel;
@@ -54,10 +53,9 @@ fn draw(plan: &mut Plan, seed: u64) -> (u64, Vec<Checked>) {
     let draws = run::draw(plan, &|_| {});
     let drawn = draws.cases.iter().flatten().map(|drawn| drawn.draws).sum();
     let checked = evaluate::run(plan, &draws).into_iter().flatten().flatten().map(|finding| {
-        let (passed, failed) = (finding.verdict == Verdict::Pass, finding.verdict == Verdict::Fail);
         let is_powered = finding.gate.is_some_and(|gate| gate.needed.is_none());
         let (is_scalar, p, check) = (finding.gate.is_some(), finding.p, finding.check);
-        Checked { check, passed, failed, is_scalar, is_powered, p }
+        Checked { check, verdict: finding.verdict, is_scalar, is_powered, p }
     });
     (drawn, checked.collect())
 }

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 /// A file of more lines is two files.
-const MAX_LINES: usize = 400;
+const MAX_LINES: usize = 500;
 
 fn visit(folder: &Path, long: &mut Vec<String>, files: &mut usize) {
     for entry in std::fs::read_dir(folder).expect("a folder") {

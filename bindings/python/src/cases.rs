@@ -36,8 +36,8 @@ impl Asked {
             return Ok(Catalogue::builtin().named(&self.text)?);
         }
         let spec = Spec::parse(&self.source()?, &additions::NONE)?;
-        let Some((key, values)) = &self.sweep else { return Ok(vec![Case::of(spec)?]) };
-        let case = Case::of(spec.with_sweep(key, values)?)?;
+        let Some((key, values)) = &self.sweep else { return Ok(vec![Case::of(&spec)?]) };
+        let case = Case::of(&spec.with_sweep(key, values)?)?;
         if case.sweep.as_ref().is_some_and(|axis| !depends(&case, axis.what)) {
             return Err(idle(&spec, key));
         }
@@ -90,7 +90,7 @@ fn depends(case: &Case, what: What) -> bool {
 /// The error that no estimator depends on what is swept, with what could be swept instead.
 fn idle(spec: &Spec, key: &str) -> Failure {
     let could = What::all().filter(|&what| {
-        let swept = spec.with_sweep(what.key(), &[1.0]).and_then(Case::of);
+        let swept = spec.with_sweep(what.key(), &[1.0]).and_then(|spec| Case::of(&spec));
         swept.is_ok_and(|case| depends(&case, what))
     });
     let python = |key: &str| key.replace('-', "_");

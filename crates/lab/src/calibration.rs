@@ -13,7 +13,7 @@
 
 use std::collections::BTreeMap;
 
-use gate::stats::verdict::MISS;
+use gate::stats::verdict::{MISS, Verdict};
 use gate::stats::{anderson_darling, binomial};
 
 /// The run-level α of the calibration.
@@ -102,14 +102,12 @@ pub struct Counts {
 }
 
 /// Result of one check in one run.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone)]
 pub struct Checked {
     /// The check.
     pub check: String,
-    /// Whether it passed.
-    pub passed: bool,
-    /// Whether it failed.
-    pub failed: bool,
+    /// Its verdict.
+    pub verdict: Verdict,
     /// Whether it is a scalar, judged by the gate.
     pub is_scalar: bool,
     /// Whether the draws sufficed for a pass.
@@ -123,12 +121,12 @@ impl Counts {
     pub fn add_fair(&mut self, draws: u64, checked: Vec<Checked>) {
         self.runs += 1;
         self.draws += draws;
-        self.failed_runs += u64::from(checked.iter().any(|one| one.failed));
-        for Checked { check, failed, is_scalar, p, .. } in checked {
+        self.failed_runs += u64::from(checked.iter().any(|one| one.verdict == Verdict::Fail));
+        for Checked { check, verdict, is_scalar, p, .. } in checked {
             if is_scalar {
                 let [all, some] = self.scalars.entry(check.clone()).or_default();
                 *all += 1;
-                *some += u64::from(failed);
+                *some += u64::from(verdict == Verdict::Fail);
             }
             if let Some(p) = p {
                 self.p.entry(check).or_default().push(p);
@@ -139,10 +137,10 @@ impl Counts {
     /// Counts a run of experiments that are off by their tolerance.
     pub fn add_biased(&mut self, draws: u64, checked: Vec<Checked>) {
         self.draws += draws;
-        for Checked { check, passed, .. } in checked.into_iter().filter(|one| one.is_powered) {
+        for Checked { check, verdict, .. } in checked.into_iter().filter(|one| one.is_powered) {
             let [all, some] = self.biased.entry(check).or_default();
             *all += 1;
-            *some += u64::from(passed);
+            *some += u64::from(verdict == Verdict::Pass);
         }
     }
 
