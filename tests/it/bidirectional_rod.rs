@@ -224,7 +224,9 @@ fn draws_meet_means_variances_covariances_and_lookups() {
             let asked = |check: &str| row.findings().any(|finding| finding.check == check);
             assert!(asked("mean") && asked("variance"), "{} {}", row.experiment.label, row.channel);
         }
-        let asked = |check: &str| found.iter().flat_map(|r| r.findings()).any(|f| f.check == check);
+        let asked = |check: &str| {
+            found.iter().flat_map(trueflight::record::Row::findings).any(|f| f.check == check)
+        };
         assert!(asked("lookups") && asked("covariance"));
         none(&wrong);
     }

@@ -124,7 +124,7 @@ fn a_thin_medium_scatters_by_the_angle_that_the_light_sees() {
         albedo = 0.4
         phase.isotropic = {}
         estimators = [{ source-driven = {} }]";
-    let found = row(&rows(text, 1000), "source-driven").clone();
+    let found = *row(&rows(text, 1000), "source-driven");
     let angle = 2.0 * 2f64.atan();
     let thin = 1e-9 * 0.4 * 3.0 / (16.0 * std::f64::consts::PI.powi(2) * 0.5) * angle;
     let truth = found.truth.expect("a truth");

@@ -29,7 +29,7 @@ const SECOND: &str = "title = \"green\"
 
 fn second(rows: &[Row<'static>], estimator: &str) -> Row<'static> {
     let is_it = |row: &&Row| row.experiment.label == estimator && row.channel == "channel 2";
-    rows.iter().find(is_it).expect("a row").clone()
+    *rows.iter().find(is_it).expect("a row")
 }
 
 #[test]

@@ -115,7 +115,7 @@ static DRAWN: LazyLock<Vec<Known>> = LazyLock::new(|| {
 
 #[test]
 fn all_combinations_meet_the_exact_answer() {
-    let (wrong, squares) = judge(DRAWN.iter().map(|(scene, row, _)| (*scene, row.clone())));
+    let (wrong, squares) = judge(DRAWN.iter().map(|(scene, row, _)| (*scene, *row)));
     none(&wrong);
     assert_eq!(squares.len(), 78);
 }

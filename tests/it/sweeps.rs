@@ -265,7 +265,8 @@ const RATES: [&str; 2] = ["rate", "frequency"];
 #[test]
 fn every_extinction_of_a_page_is_one_that_sweeps_scale() {
     let fields = |name: &str| media::reader::extinctions(name, &additions::NONE);
-    let catalogues: [(_, &dyn Fn(&str) -> &'static [&'static str]); 3] = [
+    type Extinctions<'a> = &'a dyn Fn(&str) -> &'static [&'static str];
+    let catalogues: [(_, Extinctions); 3] = [
         (media::CATALOGUE, &fields),
         (sampling::CATALOGUE, &sampling::extinctions),
         (controls::CATALOGUE, &controls::extinctions),

@@ -180,8 +180,9 @@ fn nothing_is_too_odd_to_draw() {
     for value in odd {
         for case in &mut record.results.cases {
             for one in &mut case.experiments {
-                let swept = one.id.swept.as_mut();
-                swept.into_iter().for_each(|point| point.value = Number(value));
+                if let Some(point) = &mut one.id.swept {
+                    point.value = Number(value);
+                }
                 for channel in &mut one.channels {
                     channel.variance = Some(value);
                     channel.z_mean = Some(value);
