@@ -7,7 +7,7 @@ fn results(text: &str) -> String {
     let record = judged(&[case("test", text)], &options(1, 4000));
     let experiments = &record.results.cases[0].experiments;
     assert!(!experiments.is_empty(), "{text}");
-    format!("{experiments:?}")
+    serde_json::to_string(experiments).expect("JSON")
 }
 
 /// A transmittance case with some more lines.

@@ -262,10 +262,12 @@ fn a_sweep_that_does_not_apply_says_where_and_why() {
 /// What a field, a σ̂ or a control has in 1/length and is not proportional to.
 const RATES: [&str; 2] = ["rate", "frequency"];
 
+/// Names of the settings that a page is proportional to.
+type Extinctions<'a> = &'a dyn Fn(&str) -> &'static [&'static str];
+
 #[test]
 fn every_extinction_of_a_page_is_one_that_sweeps_scale() {
     let fields = |name: &str| media::reader::extinctions(name, &additions::NONE);
-    type Extinctions<'a> = &'a dyn Fn(&str) -> &'static [&'static str];
     let catalogues: [(_, Extinctions); 3] = [
         (media::CATALOGUE, &fields),
         (sampling::CATALOGUE, &sampling::extinctions),
