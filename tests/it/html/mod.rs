@@ -133,7 +133,7 @@ fn numbers_that_json_cannot_hold_make_the_same_page_from_it() {
         for case in &mut results.cases {
             case.pace = Some(odd);
             for one in &mut case.experiments {
-                one.lookups_per_draw = one.lookups_per_draw.map(|_| odd);
+                one.lookups_per_draw = None;
                 for channel in &mut one.channels {
                     for place in [
                         &mut channel.mean,
@@ -146,7 +146,7 @@ fn numbers_that_json_cannot_hold_make_the_same_page_from_it() {
                         &mut channel.detectable_bias,
                         &mut channel.predicted_kurtosis,
                     ] {
-                        *place = place.map(|_| odd);
+                        *place = None;
                     }
                 }
                 for gate in one.findings.iter_mut().filter_map(|finding| finding.gate.as_mut()) {
@@ -218,8 +218,8 @@ fn words_of_a_case_are_text_whatever_is_in_them() {
             for word in [&mut one.label, &mut one.id.control, &mut one.command] {
                 *word = HOSTILE.to_owned();
             }
-            for channel in &mut one.channels {
-                channel.channel = HOSTILE.to_owned();
+            for (number, channel) in one.channels.iter_mut().enumerate() {
+                channel.channel = format!("{HOSTILE}{number}");
                 channel.reason = HOSTILE.to_owned();
             }
             for finding in &mut one.findings {
