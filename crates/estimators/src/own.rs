@@ -13,8 +13,8 @@ pub type EstimatorReader<P> = fn(&Settings) -> Option<Box<dyn Entry<P>>>;
 /// ```
 /// use trueflight_estimators::own::estimator;
 /// use trueflight_estimators::transmittance::ratio::Ratio;
-/// use trueflight_media::catalogue::Page;
-/// use trueflight_theory::problems::Transmittance;
+/// use media::catalogue::Page;
+/// use theory::problems::Transmittance;
 ///
 /// // Ratio tracking by another name; any type that implements `Estimator<Transmittance>` will do.
 /// let page = Page { module: "my_ratio", source: "Mine." };

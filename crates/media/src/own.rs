@@ -135,7 +135,7 @@ fn integral(f: impl Fn(f64) -> f64, span: Span) -> Known {
 /// ```
 /// use trueflight_media::catalogue::{Addition, Page, Settings};
 /// use trueflight_media::own::SpaceFormula;
-/// use trueflight_numeric::geometry::{Aabb, Bounds, Point};
+/// use numeric::geometry::{Aabb, Bounds, Point};
 ///
 /// let page = Page { module: "corner", source: "A cube that is densest in one corner." };
 /// let cube = Bounds::Box(Aabb { low: Point([0.0; 3]), high: Point([1.0; 3]) });
@@ -228,7 +228,7 @@ impl Medium {
     ///
     /// ```
     /// use trueflight_media::Medium;
-    /// use trueflight_numeric::Span;
+    /// use numeric::Span;
     ///
     /// let medium = Medium::from_fn(Span::new(0.0, 4.0), |t| 1.0 / (1.0 + t * t));
     /// let depth = medium.optical_depth(medium.span());

@@ -42,6 +42,10 @@ fn every_error_message_ends_in_a_cure() {
         if path.extension().is_none_or(|ending| ending != "rs") {
             continue;
         }
+        // Reasons of verdicts are no errors.
+        if path.ends_with("session/reason.rs") {
+            continue;
+        }
         let name = path.to_string_lossy().into_owned();
         for message in messages(&read(&name)) {
             found += 1;

@@ -69,7 +69,7 @@ fn every_command_shown_is_one() {
     for (page, text) in manual() {
         for line in blocks(&text, "console").into_iter().flat_map(str::lines) {
             let Some((_, command)) = line.split_once("trueflight ") else { continue };
-            let command = command.split(['#', '|', ';']).next().unwrap_or_default();
+            let command = command.split(['#', '|', ';', '>']).next().unwrap_or_default();
             if !line.starts_with('$') || line.contains("cargo install") {
                 continue;
             }
