@@ -4,16 +4,12 @@ use super::{files, read};
 use crate::common::none;
 
 /// Beginnings of messages without a cure: an encoder or the system gave up, or the message ends in that of another error.
-const NONE: [&str; 17] = [
+const NONE: [&str; 13] = [
     "cannot encode {name} as csv",
     "cannot encode as json: {0}",
     "cannot encode as JUnit XML: {0}",
     "cannot encode truth.json: {0}",
     "cannot draw {figure}: {message}",
-    "cannot {} {}",
-    "{} is no file of blocks",
-    "{} has changed at byte {}",
-    "another run is writing into {}",
     "a record of form {found}",
     "not a record, or a broken one",
     "{case} cannot be exported: theory has no answer",
