@@ -10,8 +10,6 @@ pub mod geometry;
 pub mod known;
 pub mod lane;
 pub mod matrix;
-#[cfg(feature = "serde")]
-pub mod null;
 pub mod pack;
 pub mod quadrature;
 pub mod rng;
