@@ -7,10 +7,10 @@ use crate::draw::block::Block;
 use crate::plan::Planned;
 use gate::stats::Tally;
 
-/// What one experiment drew.
+/// Draws of one experiment.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct Drawn {
-    /// How many draws all of its questions saw.
+    /// Number of draws that all of its checks absorbed.
     pub draws: u64,
     /// One tally per channel over the fixed draws, in units of the truth about the predicted mean.
     pub tallies: Vec<Tally>,
@@ -28,9 +28,9 @@ pub struct Drawn {
 /// Where an experiment stands: everything that what is still to be drawn and decided depends on.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct Standing {
-    /// What it drew.
+    /// Draws so far.
     pub drawn: Drawn,
-    /// How many blocks are merged.
+    /// Number of merged blocks.
     pub blocks: u64,
     /// After how many blocks the next look comes.
     pub look: u64,

@@ -149,13 +149,13 @@ pub struct ChannelRecord {
 /// A z-score of a channel.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Score {
-    /// That of the mean.
+    /// Deviation of the mean.
     #[serde(rename = "z_mean")]
     Mean,
-    /// That of the variance.
+    /// Deviation of the variance.
     #[serde(rename = "z_variance")]
     Variance,
-    /// That of the lookups.
+    /// Deviation of the lookups.
     #[serde(rename = "z_lookups")]
     Lookups,
 }

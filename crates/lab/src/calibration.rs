@@ -30,7 +30,7 @@ const NOT_UNIFORM: f64 = 1e-6;
 pub struct Rate {
     /// What is counted.
     pub what: String,
-    /// How often it happened.
+    /// Number of times it happened.
     pub count: u64,
     /// Out of how many.
     pub trials: u64,
@@ -62,10 +62,10 @@ pub struct Uniformity {
     pub p: Option<f64>,
 }
 
-/// What the calibration found.
+/// Result of the calibration.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Calibration {
-    /// How many independent runs.
+    /// Number of independent runs.
     pub runs: u64,
     /// Scalars in each run.
     pub scalars: usize,

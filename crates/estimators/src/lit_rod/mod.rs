@@ -39,7 +39,7 @@ pub trait Lit: Problem<Value = [f64; 1]> {
         rng: &mut Stream,
     ) -> Draw<[f64; 1]>;
 
-    /// The same in packets, see [`crate::Estimator::draw_packets`].
+    /// Makes the draws in packets, see [`crate::Estimator::draw_packets`].
     fn packets<'a>(
         level: Level,
         techniques: Techniques,

@@ -40,7 +40,7 @@ pub trait ByRule: Problem {
         rng: &mut Stream,
     ) -> Draw<Self::Value>;
 
-    /// The same in packets, see [`crate::Estimator::draw_packets`].
+    /// Makes the draws in packets, see [`crate::Estimator::draw_packets`].
     fn packets<'a>(
         level: Level,
         rule: ParticleRule,

@@ -101,7 +101,7 @@ pub fn claim(name: impl Into<String>) -> Check<()> {
 }
 
 impl<S> Check<S> {
-    /// What theory says of a draw, or the reason why nothing is known, which is then the error of the verdict.
+    /// Sets the theory of a draw, or the reason why nothing is known, which is then the error of the verdict.
     pub fn theory(mut self, theory: Result<Theory, String>) -> Self {
         self.said.theory = Some(theory);
         self

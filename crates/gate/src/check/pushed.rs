@@ -223,12 +223,12 @@ impl Pushed {
         self.session.is_open()
     }
 
-    /// How many values a draw has.
+    /// Number of values of a draw.
     pub fn values(&self) -> usize {
         self.session.values()
     }
 
-    /// How many draws there were.
+    /// Number of draws so far.
     pub fn draws(&self) -> u64 {
         self.session.draws()
     }

@@ -8,7 +8,7 @@ use numeric::digits::number;
 /// product of a hundred factors.
 pub const ROUNDING: f64 = 16.0 * f64::EPSILON * 100.0;
 
-/// What correct draws are like.
+/// Claim on correct draws.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Claim {
     /// The mean of a correct draw.
@@ -128,7 +128,7 @@ impl Claim {
         self.within(self.range)
     }
 
-    /// The same claim with a range.
+    /// Returns the claim with a range.
     ///
     /// # Errors
     ///

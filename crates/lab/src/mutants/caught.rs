@@ -1,4 +1,4 @@
-//! What the gate found of a known bug.
+//! Findings of the gate on a known bug.
 
 /// Result of drawing one mutant in the place of its estimator.
 #[derive(Debug, Clone)]

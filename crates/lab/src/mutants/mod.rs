@@ -185,7 +185,7 @@ mutable! {
 pub enum Walk {
     /// The one with the bug.
     Faulty,
-    /// The same code without it.
+    /// The code without the bug.
     Twin,
 }
 

@@ -125,7 +125,7 @@ impl SingleScattering {
         self.albedo
     }
 
-    /// How light is scattered.
+    /// Phase function.
     pub fn phase(&self) -> Phase {
         self.phase
     }
