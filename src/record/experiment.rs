@@ -40,6 +40,7 @@ pub struct ExperimentRecord {
     /// draw. `None` if the experiment is refused.
     pub setup_lookups: Option<u64>,
     /// The mean number of lookups of σ_t.
+    #[serde(with = "gate::extended")]
     pub lookups_per_draw: Option<f64>,
     /// The predicted mean number of lookups of σ_t.
     pub predicted_lookups: Option<f64>,
@@ -84,20 +85,26 @@ pub struct ChannelRecord {
     #[serde(rename = "name")]
     pub channel: String,
     /// The mean of the draws.
+    #[serde(with = "gate::extended")]
     pub mean: Option<f64>,
     /// The standard error of the mean from the draws' own variance.
+    #[serde(with = "gate::extended")]
     pub standard_error: Option<f64>,
     /// The exact answer.
     pub truth: Option<f64>,
     /// The bound on the truth's own error.
     pub truth_error: Option<f64>,
     /// (mean − truth) in predicted standard errors.
+    #[serde(with = "gate::extended")]
     pub z_mean: Option<f64>,
     /// The unbiased sample variance of one draw.
+    #[serde(with = "gate::extended")]
     pub variance: Option<f64>,
     /// The predicted variance of one draw.
+    #[serde(with = "gate::extended")]
     pub predicted_variance: Option<f64>,
     /// (variance − predicted) in predicted standard deviations of the sample variance.
+    #[serde(with = "gate::extended")]
     pub z_variance: Option<f64>,
     /// The predicted standard deviation of the sample variance, for error bars.
     pub variance_deviation: Option<f64>,
@@ -106,10 +113,13 @@ pub struct ChannelRecord {
     /// The predicted skewness of one draw.
     pub predicted_skewness: Option<f64>,
     /// The predicted kurtosis of one draw (3 for the normal distribution).
+    #[serde(with = "gate::extended")]
     pub predicted_kurtosis: Option<f64>,
     /// ε of the mean: the smallest bias, relative to the truth, that a pass excludes.
+    #[serde(with = "gate::extended")]
     pub detectable_bias: Option<f64>,
     /// The measured figure of merit, 1/(variance · (lookups per draw + setup lookups/draws per ray)).
+    #[serde(with = "gate::extended")]
     pub fom: Option<f64>,
     /// The predicted figure of merit.
     pub predicted_fom: Option<f64>,
