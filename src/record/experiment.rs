@@ -200,7 +200,7 @@ pub struct Finding {
     pub gate: Option<GateFinding>,
     /// Pairs of draws and ln E at the gate's looks, ascending: the last is the decision's. Of more than 64 looks an even
     /// choice, ln E in steps of 0.001.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    #[serde(default, skip_serializing_if = "Vec::is_empty", with = "gate::extended")]
     pub path: Vec<[f64; 2]>,
     /// The block at whose end it was decided, or that has the first violation.
     pub block: Option<u64>,

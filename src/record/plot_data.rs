@@ -124,12 +124,16 @@ pub struct MeasuredPoint {
 #[derive(Debug, Clone, Default, Serialize, Deserialize)]
 pub struct Course {
     /// Distances along the ray, ascending; not more than 100.
+    #[serde(with = "gate::extended")]
     pub t: Vec<f64>,
     /// σ_t there, 1/length.
+    #[serde(with = "gate::extended")]
     pub extinction: Vec<f64>,
     /// The control there, 1/length; empty for none, or where it cannot be made.
+    #[serde(with = "gate::extended")]
     pub control: Vec<f64>,
     /// σ̂ there, 1/length; empty for none, or where it cannot be made.
+    #[serde(with = "gate::extended")]
     pub sampling: Vec<f64>,
     /// Where the inequality does not hold; `None` where something else is refused.
     pub at: Option<f64>,

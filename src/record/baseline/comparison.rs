@@ -72,8 +72,10 @@ pub enum Quantity {
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Measured {
     /// The value.
+    #[serde(with = "gate::extended")]
     pub value: f64,
     /// Its standard error; `None` for times, for one figure has none.
+    #[serde(default, with = "gate::extended")]
     pub error: Option<f64>,
 }
 
@@ -89,8 +91,10 @@ pub struct Change {
     /// Its value now.
     pub now: Measured,
     /// now/before.
+    #[serde(with = "gate::extended")]
     pub ratio: f64,
     /// Where the true ratio is; `None` for times.
+    #[serde(default, with = "gate::extended")]
     pub interval: Option<[f64; 2]>,
     /// Whether it became worse.
     pub is_regression: bool,

@@ -8,11 +8,12 @@ use std::collections::BTreeSet;
 use trueflight::case::Case;
 use trueflight::case::suite;
 use trueflight::plan::{Plan, PlannedCase};
+use trueflight::record::baseline::Measured;
 use trueflight::record::{CaseRecord, Record, Row, Verdict, build};
 use trueflight::report::run::{html, record_json};
 
 use crate::common::{options, shipped_plan, shipped_record};
-use crate::golden::record::record;
+use crate::golden::record;
 use page::{Element, elements};
 
 /// What somebody might write into a case.
@@ -149,13 +150,22 @@ fn numbers_that_json_cannot_hold_make_the_same_page_from_it() {
                         *place = place.map(|_| odd);
                     }
                 }
-                for gate in one.findings.iter_mut().filter_map(|finding| finding.gate.as_mut()) {
-                    (gate.variance, gate.ln_e, gate.ln_p) = (odd, odd, [odd; 2]);
+                for finding in &mut one.findings {
+                    finding.path.iter_mut().for_each(|look| look[1] = odd);
+                    if let Some(gate) = &mut finding.gate {
+                        (gate.variance, gate.ln_e, gate.ln_p) = (odd, odd, [odd; 2]);
+                    }
                 }
+                one.courses.iter_mut().for_each(|course| course.sampling = vec![odd; 4]);
             }
             if let Some(anatomy) = &mut case.anatomy {
                 anatomy.deviation.fill(odd);
             }
+        }
+        for change in &mut record.comparison.as_mut().expect("a comparison").changes {
+            change.before.value = 1.0;
+            change.now = Measured { value: odd, error: Some(odd) };
+            (change.ratio, change.interval) = (odd, Some([0.5, odd]));
         }
         let html = text(&record);
         assert_whole(&html, &record);
