@@ -4,20 +4,25 @@
 //! commit it.
 
 mod bench;
-pub mod record;
 
 use std::path::Path;
 use std::{env, fs};
 
 use quick_xml::events::Event;
-use record::record;
 use trueflight::plan::id::Number;
-use trueflight::record::Verdict;
+use trueflight::record::{Record, Verdict};
 use trueflight::report::Artifact;
 use trueflight::report::layout::Pen;
 use trueflight::report::run::console::{self, View};
 use trueflight::report::run::junit::Inconclusive;
 use trueflight::report::run::{self, annotations, junit, markdown, record_json, summary_csv};
+
+/// A record with everything in it that a report may meet, as it is stored.
+pub fn record() -> Record {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/golden/record.json");
+    let bytes = fs::read(path).expect("the golden record");
+    record_json::read(&bytes[..]).expect("a record")
+}
 
 /// Compares with the committed file of this name, or rewrites it.
 fn compare(name: &Path, bytes: &[u8]) {
