@@ -1,10 +1,9 @@
 //! Bidirectional path tracing in a rod: shares and second moments of every technique against numbers from
 //! another arithmetic, see `tests/data/README.md`, and predictions against draws.
 
-use crate::common::{case, mistakes, none, options, row, rows};
+use crate::common::{none, row, rows};
 use serde::Deserialize;
 use trueflight::numeric::Known;
-use trueflight::plan::Plan;
 use trueflight::record::Verdict;
 use trueflight::theory::Heuristic;
 use trueflight::theory::Prediction;
@@ -309,50 +308,4 @@ fn unscattered_light_of_one_technique_does_not_vary() {
     let alone = row(&found, "technique");
     assert_eq!(alone.verdict, Some(Verdict::Pass));
     assert_eq!(alone.predicted_variance, Some(0.0));
-}
-
-#[test]
-fn what_does_not_fit_is_refused() {
-    let refusal = |text: &str| {
-        let cases = [case("test", text)];
-        let plan = Plan::new(&cases, &options(1, 1000));
-        let (_, planned) = plan.experiments().next().expect("an experiment");
-        planned.outcome.as_ref().err().expect("a refusal").to_string()
-    };
-    let says = |text: &str, expected: &str| {
-        let found = refusal(text);
-        assert!(found.contains(expected), "{found}");
-    };
-    let below = "{ full-mis.sampling.constant.value = 1.4 }";
-    says(&rod("transmitted", 1, 1, below), "σ̂ ≥ σ_t");
-    let uneven = "{ full-mis = { connection = \"ratio\", sampling.constant.value = 2 } }";
-    says(&rod("transmitted", 1, 1, uneven), "one number σ_t/σ̂");
-    let beyond = "{ technique.light-vertices = 4 }";
-    says(&rod("transmitted", 3, 1, beyond), "light vertices");
-    let white = rod("transmitted", 1, 1, "{ full-mis = {} }").replace("0.35", "0");
-    says(&white, "light in every order");
-    let thick = rod("transmitted", 1, 1, "{ full-mis = {} }").replace("2.6", "20");
-    says(&thick, "τ ≤ 12");
-}
-
-#[test]
-fn mistakes_are_named() {
-    let good = rod("reflected", 2, 1, "{ full-mis = {} }");
-    assert!(mistakes(&good).is_none());
-    for (from, to, expected) in [
-        ("orders = 2", "orders = 0", "`orders` is 0"),
-        ("orders = 2", "orders = 6", "`orders` is 6"),
-        ("orders = 2", "", "`orders` is missing"),
-        ("lowest = 1", "lowest = 3", "`lowest` is 3"),
-        ("lowest = 1", "lowest = 0", "`lowest` is 0"),
-        ("\"reflected\"", "\"behind\"", "`sensor` is \"behind\""),
-        ("albedo = 0.85", "albedo = 1.5", "`albedo` is 1.5"),
-        ("full-mis = {}", "technique = {}", "`light-vertices` is missing"),
-        ("full-mis = {}", "full-mis.heuristic = \"maximum\"", "`heuristic` is \"maximum\""),
-        ("full-mis = {}", "directional-mis.connection = \"delta\"", "`connection` is \"delta\""),
-    ] {
-        let error = mistakes(&good.replace(from, to)).expect("a mistake");
-        let shown = error.render(false);
-        assert!(shown.contains(expected) && error.mistakes() == 1, "{expected}: {shown}");
-    }
 }

@@ -1,8 +1,6 @@
 //! What a prediction says of each channel, against numbers derived by hand.
 
-use crate::common::{
-    case, differs, mistakes, none, options, predicted, row, rows, rows_of, verdict,
-};
+use crate::common::{case, differs, none, options, predicted, row, rows, rows_of, verdict};
 use trueflight::media::{Control, Piecewise};
 use trueflight::plan::Plan;
 use trueflight::record::build;
@@ -304,41 +302,4 @@ fn values_of_one_sweep_are_printed_apart() {
     for (name, label) in names.iter().zip(["0.48639", "0.4864"]) {
         assert_eq!(*name, format!("ratio, σ\u{302} {label}"));
     }
-}
-
-#[test]
-fn hints_offer_only_what_would_be_right() {
-    let of = |field: &str| {
-        let text = format!(
-            "title = \"hints\"\n[problem.transmittance]\n{field}\nspan = [0, 1]\n\
-             estimators = [{{ closed-form = {{}} }}]"
-        );
-        mistakes(&text).expect("a mistake").render(false)
-    };
-    for field in ["medium.foo = {}", ""] {
-        let shown = of(field);
-        for name in ["eq21", "noise", "grid", "radial"] {
-            assert!(!shown.contains(name), "{name}:\n{shown}");
-        }
-    }
-    assert!(
-        of("medium.foo = {}").contains("`piecewise-linear`, `exponential`, `gaussian`, `sines`")
-    );
-    // What is known gets a word of its own, and a volume has all of them.
-    assert!(of("medium.eq21 = {}").contains("this field has no 1-D form"));
-    let volume = of("volume.foo = {}");
-    assert!(
-        ["eq21", "noise", "grid", "radial"].iter().all(|name| volume.contains(name)),
-        "{volume}"
-    );
-    // A point light is known only to be refused.
-    let light = mistakes(
-        "title = \"hints\"\n[problem.sphere]\nvolume.radial = { centre = [0, 0, 0], radius = 1, \
-         coefficients = [1] }\nray = { origin = [0, 0, -2], direction = [0, 0, 1] }\nalbedo = 0.5\n\
-         phase.isotropic = {}\nlight.lamp = {}\nsampling.constant.value = 1\n\
-         estimators = [{ particle.rule = \"analog\" }]",
-    );
-    let light = light.expect("a mistake").render(false);
-    assert!(light.contains("`environment`, `black-sphere`, `distant`"), "{light}");
-    assert!(!light.contains("`point`"), "{light}");
 }

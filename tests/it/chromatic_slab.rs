@@ -3,7 +3,7 @@
 
 use trueflight::record::{Row, Verdict};
 
-use crate::common::{case, mistakes, none, predicted, rows};
+use crate::common::{case, none, predicted, rows};
 use crate::packets::{compare, fusing_levels};
 
 const THREE_COLOURS: &str = include_str!("../../cases/chromatic-slab/three-colours.toml");
@@ -116,42 +116,6 @@ fn thin_ends_of_steep_atmospheres_have_a_bound() {
     }
 }
 
-#[test]
-fn walks_without_a_bound_are_refused() {
-    let refused = [
-        (
-            LIKE,
-            "knots = [0, 1], values = [0.95, 1.05]",
-            "knots = [0, 1], values = [0.1, 1.05]",
-            "from one scattering to the next",
-        ),
-        (
-            LIKE,
-            "knots = [0, 1], values = [0.95, 1.05]",
-            "knots = [0, 1], values = [0, 1.05]",
-            "E[X²] is infinite",
-        ),
-        (LIKE, "[0.7, 0.75, 0.8]", "[0.7, 0, 0.8]", "which biases them, or gain without limit"),
-        (
-            THREE_COLOURS,
-            "{ spectral-mis = {} }",
-            "{ spectral-tracking = { sampling.constant.value = 2 } }",
-            "one phase function for all channels",
-        ),
-        (
-            LIKE,
-            "{ spectral-tracking = {} }",
-            "{ spectral-tracking = { sampling = [{ constant.value = 2 }, { constant.value = 2.1 }, { constant.value = 2 }] } }",
-            "one σ̂ for all channels",
-        ),
-    ];
-    for (text, from, to, words) in refused {
-        let rows = predicted(&text.replacen(from, to, 1));
-        let reasons: Vec<&str> = rows.iter().map(|row| row.reason.as_str()).collect();
-        assert!(reasons.iter().any(|reason| reason.contains(words)), "{words}: {reasons:?}");
-    }
-}
-
 /// Packets are walks one by one, of every walker.
 #[test]
 fn walks_side_by_side_are_walks_one_by_one() {
@@ -192,41 +156,4 @@ fn draws_agree_with_adding_and_doubling() {
 #[ignore = "long: 4e6 draws of 8 experiments"]
 fn many_draws_agree_with_adding_and_doubling() {
     draws_agree(4_000_000);
-}
-
-#[test]
-fn mistakes_and_what_is_out_of_reach_are_told() {
-    let said = |from: &str, to: &str| {
-        mistakes(&THREE_COLOURS.replacen(from, to, 1)).expect("a mistake").render(false)
-    };
-    let expected = [
-        (
-            "albedos = [0.95, 0.6, 0.8]",
-            "albedos = [0.95, 0.6]",
-            "`albedos` lists 2 channels, and the",
-        ),
-        ("{ isotropic = {} }, ", "", "`phases` lists 2 channels, and the medium has 3"),
-        ("cosine = 0.6", "cosine = 1.6", "`cosine` is 1.6"),
-        ("hero = [0.5, 0.3, 0.2]", "hero = [0.5, 0.3, 0.3]", "the probabilities sum to 1.1"),
-    ];
-    for (from, to, words) in expected {
-        let said = said(from, to);
-        assert!(said.contains(words), "{words}:\n{said}");
-    }
-    let said = said("constant.extinction = 0.8", "constant.extinction = -1");
-    assert!(!said.contains("not known here"), "{said}");
-    let refused = [
-        (
-            "constant.value = 0.8",
-            "constant.value = 0.7",
-            "σ̂ = 0.700000 and σ_t = 0.800000 in channel 2",
-        ),
-        ("g = 0.6", "g = 0.97", "phase henyey-greenstein, g=0.97 in channel 1"),
-        ("hero = [0.5, 0.3, 0.2]", "hero = [0.5, 0.5]", "there are 2 for 3 channels"),
-    ];
-    for (from, to, words) in refused {
-        let rows = predicted(&THREE_COLOURS.replacen(from, to, 1));
-        let reasons: Vec<&str> = rows.iter().map(|row| row.reason.as_str()).collect();
-        assert!(reasons.iter().any(|reason| reason.contains(words)), "{words}: {reasons:?}");
-    }
 }

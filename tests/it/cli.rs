@@ -40,27 +40,6 @@ fn message(text: &str) -> String {
 }
 
 #[test]
-fn all_pass_is_0() {
-    let output = exits(0, GOOD, "400000");
-    assert_says(&stdout(&output), &["case  2 pass, ", "report: results/report.html"]);
-    assert_eq!(stderr(&output), "", "without a terminal there is no progress");
-}
-
-#[test]
-fn a_failure_is_1() {
-    let biased = GOOD.replace("{ woodcock = {} }", "{ ray-marching = { steps = 2 } }");
-    let biased = biased.replace("medium.constant.extinction = 0.5", LINEAR);
-    assert_says(&stdout(&exits(1, &biased, "10000")), &["fail", "off by"]);
-}
-
-const LINEAR: &str = "medium.piecewise-linear = { knots = [0, 0.5, 2], values = [0.1, 1.0, 0.1] }";
-
-#[test]
-fn too_few_draws_is_3() {
-    assert_says(&stdout(&exits(3, GOOD, "1000")), &["inconclusive", "draws"]);
-}
-
-#[test]
 fn a_case_of_which_nothing_can_be_drawn_is_2() {
     let refused = GOOD.replace("value = 1", "value = 0.4").replace(", { ratio = {} }", "");
     let output = exits(2, &refused, "1000");

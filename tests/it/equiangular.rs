@@ -6,11 +6,11 @@ use std::path::Path;
 
 use serde::Deserialize;
 
-use crate::common::{failing, medium, mistakes, none, predicted, rows, source};
+use crate::common::{failing, medium, none, predicted, rows, source};
 use trueflight::catalogue::Settings;
 use trueflight::media::{Body, Control, Piecewise};
 use trueflight::problems::{Problem, SingleScattering};
-use trueflight::record::{Row, Verdict};
+use trueflight::record::Row;
 use trueflight::theory::single::null_path::Made;
 use trueflight::theory::single::{
     Camera, CameraTracking, Collisions, Mis, NullPaths, Scene, Tracking,
@@ -287,21 +287,4 @@ fn draws_agree_with_the_predictions() {
 #[ignore = "long: 4e6 draws of 28 experiments"]
 fn many_draws_agree_with_the_predictions() {
     draws_agree(4_000_000);
-}
-
-#[test]
-fn a_light_on_the_line_of_the_ray_is_one_mistake() {
-    let on_line = text("EQ-A", "{ delta-tracking = {} }").replace("[0.5, 0, 2.5]", "[0, 0, 2.5]");
-    let said = mistakes(&on_line).expect("a mistake").render(false);
-    assert_eq!(said.matches("error").count(), 1, "{said}");
-    assert!(said.contains("move it off the line: on the ray L is infinite"), "{said}");
-}
-
-#[test]
-fn a_majorant_that_is_none_is_refused() {
-    let low = text("EQ-A", "{ source-delta-mis = { camera = \"ratio\" } }")
-        .replace("sampling.constant.value = 1.2", "sampling.constant.value = 0.7");
-    let row = predicted(&low).remove(0);
-    assert_eq!(row.verdict, Some(Verdict::Refused));
-    assert!(row.reason.contains("σ̂ ≥ σ_t everywhere"), "{}", row.reason);
 }

@@ -4,10 +4,9 @@
 use serde::Deserialize;
 
 use crate::common::lit::{self, ESTIMATORS, techniques};
-use crate::common::{failing, medium, mistakes, none, predicted, row, rows};
+use crate::common::{failing, medium, none, predicted, row, rows};
 use trueflight::media::Piecewise;
 use trueflight::problems::LitRod;
-use trueflight::record::Verdict;
 use trueflight::theory::lit_rod::{self, Combination, Densities, Heuristic, Shadow, Techniques};
 use trueflight::theory::{Mesh, Prediction};
 
@@ -191,83 +190,27 @@ fn all_extreme_rods_are_predicted_or_refused() {
 /// How many experiments in extreme rods are predicted; those of some places in the table, where numbers of its
 /// rows and columns add up.
 fn extremes(is_wanted: fn(usize) -> bool) -> usize {
-    let (mut predictions, mut wrong) = (0, Vec::new());
+    let mut cases = Vec::new();
     for (row, depth) in [1e-9, 1e-3, 1.0, 80.0].into_iter().enumerate() {
         let scatterers = [(0.0, 0.5), (1.0, 0.0), (1.0, 1.0), (0.5, 0.5), (0.999, 0.01)];
         for (column, (albedo, forward)) in scatterers.into_iter().enumerate() {
             for (layer, factor) in [1.0, 1.001, 20.0].into_iter().enumerate() {
-                if !is_wanted(row + column + layer) {
-                    continue;
-                }
-                let text = format!(
-                    "title = \"t\"\n[problem.lit-rod]\nmedium.constant.extinction = {depth:e}\nspan = [0, 1]
-                    albedo = {albedo}\nforward = {forward}\nsampling.constant.value = {:e}
-                    estimators = [{ESTIMATORS}]",
-                    depth * factor
-                );
-                for row in predicted(&text) {
-                    let place = format!(
-                        "{}: τ = {depth}, a = {albedo}, p_f = {forward}, {factor}",
-                        row.experiment.label
+                if is_wanted(row + column + layer) {
+                    let text = format!(
+                        "title = \"t\"\n[problem.lit-rod]\nmedium.constant.extinction = {depth:e}\nspan = [0, 1]
+                        albedo = {albedo}\nforward = {forward}\nsampling.constant.value = {:e}
+                        estimators = [{ESTIMATORS}]",
+                        depth * factor
                     );
-                    if row.verdict == Some(Verdict::Refused) {
-                        wrong.extend((row.reason.len() < 10).then_some(place));
-                        continue;
-                    }
-                    predictions += 1;
-                    let truth = row.truth.unwrap_or(f64::NAN);
-                    let variance = row.predicted_variance.unwrap_or(0.0);
-                    let lookups = row.experiment.predicted_lookups.unwrap_or(f64::NAN);
-                    let is_fine = truth > 0.0 && truth <= 1.0 && variance >= 0.0 && lookups >= 0.0;
-                    if !is_fine
-                        || (row.experiment.label == "unidirectional" && variance > 0.25 + 1e-12)
-                    {
-                        wrong.push(format!("{place}: {truth:e}, {variance:e}, {lookups:e}"));
-                    }
+                    cases.push((
+                        format!("τ = {depth}, a = {albedo}, p_f = {forward}, {factor}"),
+                        text,
+                    ));
                 }
             }
         }
     }
-    none(&wrong);
-    predictions
-}
-
-fn rod_of(medium: &str, sampling: f64) -> String {
-    format!(
-        "title = \"t\"\n[problem.lit-rod]\n{medium}\nalbedo = 0.5\nsampling.constant.value = {sampling}
-        estimators = [{{ full-mis = {{}} }}]"
-    )
-}
-
-#[test]
-fn an_emitter_in_or_behind_a_vacuum_is_one_mistake() {
-    let said = |medium: &str| {
-        let error = mistakes(&rod_of(medium, 1.0)).expect("a mistake").render(false);
-        assert_eq!(error.matches("error").count(), 1, "{error}");
-        error
-    };
-    let inside =
-        "volume.constant = { extinction = 1, bounds.sphere = { centre = [0, 0, 0], radius = 1 } }
-        ray = { origin = [0, 0, -1], direction = [0, 0, 1], length = 3 }";
-    assert!(
-        said(inside).contains("the emitter, at 3, is in a vacuum: the field ends at 2.000000"),
-        "{}",
-        said(inside)
-    );
-    let behind = "medium.constant.extinction = 0\nspan = [0, 1]";
-    assert!(said(behind).contains("the emitter is behind a vacuum"), "{}", said(behind));
-    let fits = inside.replace("length = 3", "length = 2");
-    assert!(mistakes(&rod_of(&fits, 1.0)).is_none());
-}
-
-#[test]
-fn a_majorant_that_is_none_is_refused() {
-    let text = rod_of("medium.constant.extinction = 1\nspan = [0, 1]", 0.8);
-    let rows = predicted(&text);
-    assert_eq!(rows[0].verdict, Some(Verdict::Refused));
-    assert!(rows[0].reason.contains("needs 0 ≤ σ_t ≤ σ̂, but σ̂ = 0.8"), "{}", rows[0].reason);
-    let unknown = "title = \"t\"\n[problem.lit-rod]\nmedium.constant.extinction = 1\nspan = [0, 1]
-        albedo = 0.5\nsampling.constant.value = 1\nestimators = [{ full-mis.shadow = \"delta\" }]";
-    let said = mistakes(unknown).expect("a mistake").render(false);
-    assert!(said.contains("one of `ratio`, `exact`"), "{said}");
+    lit::predictions(&cases, |row, _, variance| {
+        row.experiment.label != "unidirectional" || variance <= 0.25 + 1e-12
+    })
 }

@@ -4,14 +4,13 @@
 use serde::Deserialize;
 
 use crate::common::lit::{self, ESTIMATORS, techniques};
-use crate::common::{failing, medium, mistakes, none, predicted, rows};
+use crate::common::{failing, medium, none, rows};
 use trueflight::media::Piecewise;
 use trueflight::numeric::quadrature::GaussLegendre;
 use trueflight::phase::Phase;
 use trueflight::phase::henyey_greenstein::HenyeyGreenstein;
 use trueflight::problems::LitSlab;
 use trueflight::problems::lit_slab::Light;
-use trueflight::record::Verdict;
 use trueflight::theory::lit_rod::{Combination, Densities, Heuristic, Shadow, Techniques};
 use trueflight::theory::lit_slab::{self, contour::Contour};
 use trueflight::theory::{Mesh, Prediction};
@@ -251,70 +250,6 @@ fn varying_media_and_majorants_in_steps_are_predicted_as_drawn() {
     }
 }
 
-/// A slab with other lines under its problem.
-fn slab(light: &str, more: &str, estimators: &str) -> String {
-    format!(
-        "title = \"t\"\n[problem.lit-slab]\nspan = [0, 1]\nphase.isotropic = {{}}\nlight.{light}
-        sampling.constant.value = 1.5\n{more}\nestimators = [{estimators}]"
-    )
-}
-
-#[test]
-fn lights_that_are_not_behind_the_slab_are_one_mistake_each() {
-    let usual = "medium.constant.extinction = 1\nalbedo = 0.5";
-    for (light, said) in [
-        ("cap.cosine = 1", "`cosine` is 1"),
-        ("cap.cosine = -1.5", "`cosine` is -1.5"),
-        ("cap.cosine = 0", "`cosine` is 0"),
-        ("disc = { distance = -0.5, radius = 1 }", "`distance` is -0.5"),
-        ("disc = { distance = 0, radius = 1 }", "`distance` is 0"),
-        ("disc = { distance = 1, radius = 0 }", "`radius` is 0"),
-        ("disc = { distance = 1 }", "`radius` is missing"),
-        ("distant.cosine = 0", "`cosine` is 0"),
-        ("distant.cosine = 1.01", "`cosine` is 1.01"),
-        ("point.distance = 0", "`distance` is 0"),
-        ("lamp = {}", "`lamp`"),
-        ("cap = { cosine = 0.5, radius = 1 }", "`radius` is not known here"),
-    ] {
-        let error = mistakes(&slab(light, usual, "{ full-mis = {} }")).expect("a mistake");
-        let error = error.render(false);
-        assert_eq!(error.matches("error").count(), 1, "{error}");
-        assert!(error.contains(said), "{error}");
-    }
-    let cap = "cap.cosine = 0.5";
-    for (more, said) in [
-        ("medium.constant.extinction = 0\nalbedo = 0.5", "σ_t = 0"),
-        ("medium.constant.extinction = 1\nalbedo = 0", "`albedo` is 0"),
-        ("medium.constant.extinction = 1\nalbedo = 1.5", "`albedo` is 1.5"),
-    ] {
-        let error = mistakes(&slab(cap, more, "{ full-mis = {} }")).expect("a mistake");
-        let error = error.render(false);
-        assert_eq!(error.matches("error").count(), 1, "{error}");
-        assert!(error.contains(said), "{error}");
-    }
-    assert!(mistakes(&slab(cap, usual, "{ full-mis = {} }")).is_none());
-}
-
-#[test]
-fn what_cannot_be_is_refused_by_name() {
-    let refused = |text: &str, needs: &str, found: &str| {
-        let rows = predicted(text);
-        assert_eq!(rows[0].verdict, Some(Verdict::Refused), "{}", rows[0].reason);
-        assert!(rows[0].reason.contains(needs), "{}", rows[0].reason);
-        assert!(rows[0].reason.contains(found), "{}", rows[0].reason);
-    };
-    let usual = "medium.constant.extinction = 1\nalbedo = 0.5";
-    for light in ["distant.cosine = 0.5", "point.distance = 1"] {
-        let text = slab(light, usual, "{ unidirectional = {} }");
-        refused(&text, "needs a light with a size", "unidirectional tracking finds nothing");
-    }
-    let dense = "medium.constant.extinction = 2\nalbedo = 0.5";
-    let text = slab("cap.cosine = 0.5", dense, "{ full-mis = {} }");
-    refused(&text, "needs 0 ≤ σ_t ≤ σ̂", "σ̂ = 1.5");
-    let text = slab("cap.cosine = 0.01", usual, "{ full-mis = {} }");
-    refused(&text, "needs τ/μ ≤ 64", "1e2");
-}
-
 #[test]
 fn extreme_slabs_are_predicted_or_refused() {
     // Every depth with every phase function, in one of the three lights.
@@ -332,16 +267,13 @@ fn all_extreme_slabs_are_predicted_or_refused() {
 /// How many experiments in extreme slabs are predicted; those of some places in the table, where numbers of its
 /// rows and columns add up.
 fn extremes(is_wanted: fn(usize) -> bool) -> usize {
-    let (mut predictions, mut wrong) = (0, Vec::new());
+    let mut cases = Vec::new();
     let lights =
         ["cap.cosine = 0.05", "cap.cosine = 0.999999", "disc = { distance = 0.01, radius = 1 }"];
     for (row, depth) in [1e-6, 0.3, 30.0].into_iter().enumerate() {
         for (column, g) in [-0.9, 0.0, 0.99].into_iter().enumerate() {
             for (layer, light) in lights.into_iter().enumerate() {
-                for factor in [1.0, 20.0] {
-                    if !is_wanted(row + column + layer) {
-                        continue;
-                    }
+                for factor in [1.0, 20.0].into_iter().filter(|_| is_wanted(row + column + layer)) {
                     let text = format!(
                         "title = \"t\"\n[problem.lit-slab]\nmedium.constant.extinction = {depth:e}\nspan = [0, 1]
                         albedo = 0.9\nphase.henyey-greenstein = {{ g = {g} }}\nlight.{light}
@@ -350,30 +282,15 @@ fn extremes(is_wanted: fn(usize) -> bool) -> usize {
                             {{ next-event = {{}} }}, {{ directional-mis = {{}} }}, {{ full-mis = {{}} }}]",
                         depth * factor
                     );
-                    for row in predicted(&text) {
-                        let place = format!(
-                            "{}: τ = {depth}, g = {g}, {light}, {factor}",
-                            row.experiment.label
-                        );
-                        if row.verdict == Some(Verdict::Refused) {
-                            wrong.extend((row.reason.len() < 10).then_some(place));
-                            continue;
-                        }
-                        predictions += 1;
-                        let truth = row.truth.unwrap_or(f64::NAN);
-                        let variance = row.predicted_variance.unwrap_or(0.0);
-                        let lookups = row.experiment.predicted_lookups.unwrap_or(f64::NAN);
-                        let is_fine =
-                            truth > 0.0 && truth <= 1.0 && variance >= 0.0 && lookups > 0.0;
-                        let is_bit = (variance - truth * (1.0 - truth)).abs() < 1e-12;
-                        if !is_fine || (row.experiment.label == "unidirectional" && !is_bit) {
-                            wrong.push(format!("{place}: {truth:e}, {variance:e}, {lookups:e}"));
-                        }
-                    }
+                    cases.push((format!("τ = {depth}, g = {g}, {light}, {factor}"), text));
                 }
             }
         }
     }
-    none(&wrong);
-    predictions
+    // A hit scores 1 or 0.
+    lit::predictions(&cases, |row, truth, variance| {
+        let is_bit = (variance - truth * (1.0 - truth)).abs() < 1e-12;
+        let is_walked = row.experiment.predicted_lookups > Some(0.0);
+        is_walked && (row.experiment.label != "unidirectional" || is_bit)
+    })
 }

@@ -60,3 +60,4 @@ mod trust;
 mod vdb;
 mod verdicts;
 mod wild;
+mod wrong;

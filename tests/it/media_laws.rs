@@ -1,9 +1,8 @@
 //! Laws that every field keeps, in 1-D and in 3-D, on rays of every kind.
 
-use std::cell::RefCell;
 use std::path::Path;
 
-use trueflight::catalogue::{Entry, Fault, Node, Settings, Value};
+use crate::common::try_body;
 use trueflight::geometry::{Aabb, Point};
 use trueflight::media::{Body, CATALOGUE, Medium};
 use trueflight::numeric::quadrature::GaussLegendre;
@@ -72,37 +71,6 @@ const RAYS: [&str; 8] = [
     "{ origin = [-1, -1, -1], direction = [1, 1, 1], length = 12 }",
 ];
 
-fn node(value: &toml::Value) -> Node {
-    #[allow(clippy::cast_precision_loss)] // small whole numbers
-    let value = match value {
-        toml::Value::Table(table) => Value::Table(entries(table)),
-        toml::Value::Array(items) => Value::Array(items.iter().map(node).collect()),
-        toml::Value::Integer(n) => Value::Number(*n as f64),
-        toml::Value::Float(x) => Value::Number(*x),
-        toml::Value::String(text) => Value::Text(text.clone()),
-        toml::Value::Boolean(flag) => Value::Boolean(*flag),
-        toml::Value::Datetime(_) => Value::Other("a date"),
-    };
-    Node { value, span: 0..0 }
-}
-
-fn entries(table: &toml::Table) -> Vec<Entry> {
-    let entry = |(key, value): (&String, &toml::Value)| Entry {
-        key: key.clone(),
-        key_span: 0..0,
-        node: node(value),
-    };
-    table.iter().map(entry).collect()
-}
-
-fn read(text: &str, folder: &Path) -> Result<Body, Vec<Fault>> {
-    let table: toml::Table = text.parse().expect(text);
-    let (entries, faults) = (entries(&table), RefCell::default());
-    let body = Body::read(&Settings::new(&entries, folder, &faults));
-    let faults = faults.into_inner();
-    body.filter(|_| faults.is_empty()).ok_or(faults)
-}
-
 fn bodies() -> impl Iterator<Item = (String, Body)> {
     let lines = LINES.iter().map(|(field, span)| format!("medium.{field}\nspan = {span}"));
     let volumes = VOLUMES
@@ -110,7 +78,7 @@ fn bodies() -> impl Iterator<Item = (String, Body)> {
         .flat_map(|field| RAYS.iter().map(move |ray| format!("volume.{field}\nray = {ray}")));
     lines.chain(volumes).map(|text| {
         let body =
-            read(&text, Path::new(".")).unwrap_or_else(|faults| panic!("{text}: {faults:?}"));
+            try_body(&text, Path::new(".")).unwrap_or_else(|faults| panic!("{text}: {faults:?}"));
         (text, body)
     })
 }
@@ -236,7 +204,7 @@ fn lookups_are_those_of_the_volume_and_never_negative() {
 fn majorants_are_never_exceeded() {
     for field in VOLUMES {
         let text = format!("volume.{field}\nray = {}", RAYS[0]);
-        let Ok(Body::Volume { volume, .. }) = read(&text, Path::new(".")) else {
+        let Ok(Body::Volume { volume, .. }) = try_body(&text, Path::new(".")) else {
             panic!("{text}");
         };
         for (i, edge) in (0..).zip([4.0, 1.0, 0.3, 0.01].repeat(10)) {
@@ -255,56 +223,6 @@ fn majorants_are_never_exceeded() {
 }
 
 #[test]
-fn wrong_settings_are_refused() {
-    let cube = "bounds.box = { low = [0, 0, 0], high = [4, 4, 4] }";
-    let grid = "random = { size = [2, 2, 2] }";
-    let cases = [
-        ("exponential = { extinction = -1, rate = 1 }".to_owned(), "-1"),
-        ("exponential = { extinction = 1 }".to_owned(), "`rate` is missing"),
-        ("exponential = { extinction = 1, rate = 1, axis = [0, 0, 0] }".to_owned(), "zero vector"),
-        ("gaussian = { peak = 1, centre = [0, 0, 0], width = 0 }".to_owned(), "`width` is 0"),
-        (
-            "radial = { centre = [0, 0, 0], radius = 1, coefficients = [1, -2] }".to_owned(),
-            "σ_t is -1.0000",
-        ),
-        ("sines = { base = 1, amplitudes = [2], vectors = [[1, 0, 0]] }".to_owned(), "take away"),
-        ("sines = { base = 1, amplitudes = [1, 0], vectors = [[1, 0, 0]] }".to_owned(), "1 waves"),
-        ("eq21 = { extinction = 1 }".to_owned(), "not known"),
-        ("noise = { extinction = 1, octaves = 17 }".to_owned(), "17"),
-        ("noise = { extinction = 1, fade = \"linear\" }".to_owned(), "linear"),
-        (format!("grid = {{ {grid} }}"), "no box"),
-        (format!("grid = {{ {grid}, file = \"a.vol\", {cube} }}"), "both"),
-        (format!("grid = {{ {cube} }}"), "no samples"),
-        (format!("grid = {{ file = \"nowhere.vol\", {cube} }}"), "nowhere.vol"),
-        (
-            format!("grid = {{ {grid}, samples = \"vertices\", border = \"zero\", {cube} }}"),
-            "border",
-        ),
-        (
-            format!("grid = {{ random = {{ size = [1, 2, 2] }}, samples = \"vertices\", {cube} }}"),
-            "corner to corner",
-        ),
-        (
-            format!("grid = {{ {grid}, bounds.sphere = {{ centre = [0, 0, 0], radius = 1 }} }}"),
-            "no sphere",
-        ),
-    ];
-    for (field, words) in cases {
-        let text = format!("volume.{field}\nray = {}", RAYS[0]);
-        let faults = read(&text, Path::new(".")).err().unwrap_or_default();
-        assert!(faults.iter().any(|fault| fault.message.contains(words)), "{text}: {faults:?}");
-    }
-    let ball = "radial = { centre = [0, 0, 0], radius = 1, coefficients = [1] }";
-    for (name, span) in
-        [("eq21 = {}", "[0, 1]"), ("noise = { extinction = 1 }", "[0, 1]"), (ball, "[0, 1]")]
-    {
-        let text = format!("medium.{name}\nspan = {span}");
-        let faults = read(&text, Path::new(".")).err().unwrap_or_default();
-        assert!(faults.iter().any(|fault| fault.message.contains("no 1-D form")), "{text}");
-    }
-}
-
-#[test]
 fn a_grid_file_brings_its_box_or_asks_for_one() {
     let folder = tempfile::tempdir().expect("a folder");
     let file = |high: f32| {
@@ -314,7 +232,7 @@ fn a_grid_file_brings_its_box_or_asks_for_one() {
         bytes.extend(reals.iter().flat_map(|x| x.to_le_bytes()));
         std::fs::write(folder.path().join("a.vol"), bytes).expect("written");
         let ray = "{ origin = [0.5, 0.5, -1], direction = [0, 0, 1], length = 9 }";
-        read(&format!("volume.grid = {{ file = \"a.vol\" }}\nray = {ray}"), folder.path())
+        try_body(&format!("volume.grid = {{ file = \"a.vol\" }}\nray = {ray}"), folder.path())
     };
     let medium = file(4.0).unwrap_or_else(|faults| panic!("{faults:?}")).medium();
     // Two cells of length 2, linear between their centres at 1 and 3, constant beyond.

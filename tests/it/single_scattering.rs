@@ -1,6 +1,6 @@
 //! Single scattering: the radiance against independent values, and predictions against draws.
 
-use crate::common::{case, mistakes, options, row, rows};
+use crate::common::{case, options, row, rows};
 use serde::Deserialize;
 use serde_json::Value;
 use trueflight::plan::Plan;
@@ -189,66 +189,6 @@ fn a_forward_phase_function_gathers_light_that_comes_towards_the_origin() {
     assert!(radiance(-0.6, -2.0) > 5.0 * radiance(0.6, -2.0));
 }
 
-const BALL: &str = "title = \"ball\"
-    [problem.single-scattering]
-    volume.constant = { extinction = 0.9, bounds.sphere = { centre = [0, 0, 2], radius = 2 } }
-    ray = { origin = [0.3, 0, -1], direction = [0, 0.1, 1], length = 6 }
-    light.position = [2.4, 0.5, 3]
-    albedo = 0.8
-    phase.isotropic = {}
-    estimators = [";
-
-/// Why an estimator is refused in the ball.
-fn refusal(estimator: &str) -> String {
-    let text = format!("{BALL} {estimator} ]");
-    let found = rows(&text, 100);
-    assert_eq!(found[0].verdict, Some(Verdict::Refused), "{estimator}");
-    found[0].reason.clone()
-}
-
-#[test]
-fn estimators_are_refused_where_they_would_be_biased() {
-    let says = |estimator: &str, words: &str| {
-        let reason = refusal(estimator);
-        assert!(reason.contains(words), "{estimator}: {reason}");
-    };
-    says("{ source-driven.shadow.delta.sampling = 0.8 }", "σ̄ ≥ σ_t on every shadow ray");
-    says("{ source-driven = { camera = \"delta\", sampling.constant.value = 0.8 } }", "σ̂ ≥ σ_t");
-    says("{ delta-tracking.sampling.constant.value = 0.8 }", "σ̂ ≥ σ_t");
-    says("{ source-delta-mis.sampling.constant.value = 0.8 }", "σ̂ ≥ σ_t");
-    says("{ scattering-driven = {} }", "there is none");
-    says("{ scattering-driven.control.constant.value = -0.1 }", "σ_m ≥ 0");
-    says("{ source-scattering-mis.control.constant.value = 0 }", "zero throughout");
-    let gap = "sampling.piecewise-constant = { breaks = [0, 2, 3, 6], values = [1, 0, 1] }";
-    says(&format!("{{ attenuation-driven.{gap} }}"), "σ̂ > 0");
-    says(&format!("{{ attenuation-resampled.{gap} }}"), "σ̂ > 0");
-    says(&format!("{{ shared-walk.{gap} }}"), "σ̂ > 0");
-    // A control that is all of the medium leaves no residual, but there is light to scatter.
-    says(&format!("{{ attenuation-driven = {{ control.constant.value = 0.9, {gap} }} }}"), "σ̂ > 0");
-}
-
-#[test]
-fn cases_without_an_answer_are_mistakes() {
-    let fault = |from: &str, to: &str| {
-        let text = format!("{BALL} {{ source-driven = {{}} }} ]").replace(from, to);
-        mistakes(&text).unwrap_or_else(|| panic!("{to} was taken")).render(false)
-    };
-    assert!(fault("[2.4, 0.5, 3]", "[0.3, 0.2, 1]").contains("line of the ray"));
-    assert!(fault("albedo = 0.8", "albedo = 0").contains("nothing is scattered"));
-    assert!(fault("albedo = 0.8", "albedo = 1.2").contains("albedo"));
-    assert!(fault("phase.isotropic = {}", "").contains("add `phase`, one of `isotropic`"));
-    assert!(fault("phase.isotropic = {}", "phase.henyey-greenstein.g = 1").contains("mean cosine"));
-    let line = "title = \"line\"
-        [problem.single-scattering]
-        medium.constant.extinction = 1
-        span = [0, 2]
-        light.position = [1, 0, 0]
-        albedo = 0.5
-        phase.rayleigh = {}
-        estimators = [{ source-driven = {} }]";
-    assert!(mistakes(line).expect("a mistake").render(false).contains("field in space"));
-}
-
 #[test]
 fn a_sampling_extinction_is_not_used_where_the_camera_is_exact() {
     let of = |estimator: &str| {
@@ -280,18 +220,6 @@ fn a_sampling_extinction_is_not_used_where_the_camera_is_exact() {
             of(&format!("{{ {name} = {{ camera = \"ratio\", sampling.constant.value = 1.5 }} }}"));
         assert_eq!((ratio.len(), ratio[0].experiment.sampling()), (1, Some(1.5)), "{name}");
     }
-    // What is written there is read all the same.
-    let wrong = mistakes(
-        "title = \"cameras\"
-        [problem.single-scattering]
-        volume.constant.extinction = 0.8
-        ray = { origin = [0, 0, 0], direction = [0, 0, 1], length = 6 }
-        light.position = [0.5, 0, 2.5]
-        albedo = 0.9
-        phase.isotropic = {}
-        estimators = [{ source-driven = { sampling.constant.value = -1 } }]",
-    );
-    assert!(wrong.expect("a mistake").render(false).contains("`value` is -1"));
 }
 
 /// A weight of 0 costs its shadow ray all the same, as predicted: ratio tracking where σ̂ = σ_t.

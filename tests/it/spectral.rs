@@ -6,7 +6,7 @@ use serde::Deserialize;
 use trueflight::record::{Row, Verdict};
 use trueflight::theory::spectral_rod::critical;
 
-use crate::common::{failing, mistakes, none, predicted, rows};
+use crate::common::{failing, none, predicted, rows};
 
 #[derive(Deserialize)]
 struct Reference {
@@ -103,74 +103,6 @@ fn multiple_importance_sampling_removes_colour_noise_only() {
     }
 }
 
-/// A case of two channels with the given σ̂ and estimator.
-fn two(media: &str, sampling: &str, estimator: &str) -> String {
-    format!(
-        "title = \"two channels\"\n[problem.spectral-transmittance]\nmedium = [{media}]\nspan = [0, 2]\n\
-         sampling = {sampling}\nestimators = [{{ {estimator} }}]\n"
-    )
-}
-
-const RAMP: &str = "{ piecewise-linear = { knots = [0, 2], values = [0, 1] } }, { constant = { extinction = 0.3 } }";
-
-#[test]
-fn a_hero_whose_majorant_touches_is_refused_with_the_place() {
-    let reason = |text: &str| {
-        let rows = predicted(text);
-        format!("{:?}", rows[0].verdict) + &rows[0].reason
-    };
-    let touches =
-        reason(&two(RAMP, "{ constant = { value = 1 } }", "hero = { collisions = \"delta\" }"));
-    assert!(touches.contains("E[X²] is infinite at t = 2"), "{touches}");
-    let same = RAMP.replace("values = [0, 1]", "values = [1, 1]");
-    let biased =
-        reason(&two(&same, "{ constant = { value = 1 } }", "hero = { collisions = \"delta\" }"));
-    assert!(biased.contains("biases the others, at t = 0"), "{biased}");
-    // Where both channels touch, or nearly so, another place counts, whatever comes first.
-    for [hero, other] in
-        [["[1, 2, 1, 2, 1]", "[1, 1, 1, 2, 1]"], ["[1, 2, 1, 2, 1]", "[1, 2, 1, 1, 1]"]]
-    {
-        let field = |values: &str| {
-            format!("{{ piecewise-linear = {{ knots = [0, 0.5, 1, 1.5, 2], values = {values} }} }}")
-        };
-        let media = format!("{}, {}", field(hero), field(other));
-        let told =
-            reason(&two(&media, "{ constant.value = 2 }", "hero = { collisions = \"delta\" }"));
-        assert!(
-            told.contains("σ̂ = 2.000000 touches σ_t in channel 1: E[X²] is infinite"),
-            "{told}"
-        );
-    }
-    // Multiple importance sampling mends both.
-    for media in [RAMP, &same] {
-        let fine = reason(&two(
-            media,
-            "{ constant = { value = 1 } }",
-            "spectral-mis = { collisions = \"delta\" }",
-        ));
-        assert!(!fine.contains("Refused"), "{fine}");
-    }
-}
-
-#[test]
-fn mistakes_are_named() {
-    let constant = "{ constant = { value = 1 } }";
-    let ratio = "hero = { collisions = \"ratio\" }";
-    for (text, expected) in [
-        (two(RAMP, &format!("[{constant}]"), ratio), "lists 1 channels, and the medium has 2"),
-        (two(RAMP, constant, "hero = { hero = [0.5, 0.6] }"), "the probabilities sum to 1.1"),
-        (two("", constant, ratio), "lists 0 channels"),
-        (two(&[RAMP; 5].join(", "), constant, ratio), "lists 10 channels"),
-        (
-            two(RAMP, constant, ratio).replace("spectral-transmittance", "transmittance"),
-            "this problem is about one channel",
-        ),
-    ] {
-        let found = mistakes(&text).map(|error| error.render(false)).unwrap_or_default();
-        assert!(found.contains(expected), "{expected}: {found}");
-    }
-}
-
 #[derive(Deserialize)]
 struct RodReference {
     id: String,
@@ -252,22 +184,6 @@ fn rods_of_coloured_scatterers_have_the_variances_of_the_references() {
         }
     }
     assert!(count >= 30, "{count}");
-}
-
-#[test]
-fn beyond_the_critical_length_spectral_tracking_is_refused_and_multiple_importance_sampling_is_not()
-{
-    let rows = rod("1.6", &[1.0, 0.0], "0.5");
-    let reasons: Vec<&str> = rows.iter().map(|row| row.reason.as_str()).collect();
-    assert!(
-        reasons[0].contains("E[X²] of channel 1 is infinite from optical length 1.570796 on"),
-        "{reasons:?}"
-    );
-    let fine = rows.iter().filter(|row| row.experiment.label == "spectral-mis");
-    assert!(
-        fine.clone().count() == 3 && fine.clone().all(|row| row.reason.is_empty()),
-        "{reasons:?}"
-    );
 }
 
 /// In a rod that scatters forward only the second moment of a dark hero is e^{999}/2: no number, and no certainty.

@@ -2,7 +2,7 @@
 
 use trueflight::record::Verdict;
 
-use crate::common::{case, mistakes, predicted, rows};
+use crate::common::{case, predicted, rows};
 use crate::packets::{compare, fusing_levels};
 
 const BALL: &str = include_str!("../cases/spectral-furnace/known-bugs.toml");
@@ -73,32 +73,6 @@ fn walks_relative_to_one_walker_find_the_walls() {
     assert!(spread("hero") < 0.2 && spread("spectral-tracking (maximum)") < 0.2);
 }
 
-#[test]
-fn walks_without_a_bound_are_refused() {
-    let refused = [
-        (LIKE, "extinction = 0.9", "extinction = 0.1", "from one scattering to the next"),
-        (LIKE, "[0.7, 0.75, 0.8]", "[0.7, 0, 0.8]", "which biases them, or gain without limit"),
-        (
-            LIKE,
-            "constant = { extinction = 1,",
-            "noise = { extinction = 1, octaves = 2, seed = 1,",
-            "σ_t varies",
-        ),
-        (LIKE, "{ g = 0.3 } }, ", "{ g = 0.2 } }, ", "one phase function for all channels"),
-        (
-            LIKE,
-            "{ spectral-tracking = {} }",
-            "{ spectral-tracking = { sampling = [{ constant.value = 2 }, { constant.value = 2.1 }, { constant.value = 2 }] } }",
-            "one σ̂ for all channels",
-        ),
-    ];
-    for (text, from, to, words) in refused {
-        let rows = predicted(&text.replacen(from, to, 1));
-        let reasons: Vec<&str> = rows.iter().map(|row| row.reason.as_str()).collect();
-        assert!(reasons.iter().any(|reason| reason.contains(words)), "{words}: {reasons:?}");
-    }
-}
-
 /// Forward peaks, losses that cancel and majorants that touch σ_t by rounding have no false bound: no correct estimator fails.
 #[test]
 fn bounds_hold_at_the_edges() {
@@ -166,46 +140,11 @@ fn one_channel_alone_is_certain() {
     }
 }
 
-/// A list of heroes of the wrong length is no panic, even where the estimator is declared biased.
+/// A list of heroes of the wrong length is no panic where the estimator is declared biased.
 #[test]
-fn too_few_heroes_are_refused() {
-    let wrong =
-        BALL.replacen("{ spectral-mis = {} }", "{ spectral-mis = { hero = [0.5, 0.5] } }", 1);
-    let words = "there are 2 for 3 channels";
-    let is_told = |text: &str| predicted(text).iter().any(|row| row.reason.contains(words));
-    assert!(is_told(&wrong));
-    predicted(&wrong.replacen("hero = [0.5, 0.5]", "hero = [0.5, 0.5], expect = \"biased\"", 1));
-}
-
-#[test]
-fn mistakes_and_what_is_out_of_reach_are_told() {
-    let said = |from: &str, to: &str| {
-        mistakes(&BALL.replacen(from, to, 1)).expect("a mistake").render(false)
-    };
-    let expected = [
-        (
-            "albedos = [0.9, 0.5, 0.7]",
-            "albedos = [0.9, 0.5]",
-            "`albedos` lists 2 channels, and the",
-        ),
-        ("{ isotropic = {} }, ", "", "`phases` lists 2 channels, and the medium has 3"),
-        ("{ isotropic = {} }", "{ isotopic = {} }", "did you mean `isotropic`"),
-        ("origin = [0.2, 0.1, -2]", "origin = [3, 0.1, -2]", "the ray misses the volume"),
-        ("radius = 1", "radius = 0.9", "do not fill the same part"),
-        (
-            "constant = { extinction = 0.8,",
-            "constant = { extinction = 0,",
-            "σ_t = 0 everywhere in channel 2",
-        ),
-    ];
-    for (from, to, words) in expected {
-        let said = said(from, to);
-        assert!(said.contains(words), "{words}:\n{said}");
-    }
-    let low = predicted(&BALL.replacen("constant.value = 0.8", "constant.value = 0.7", 1));
-    let row = low.iter().find(|row| row.experiment.label == "spectral-mis").expect("a row");
-    let words = "σ̂ = 0.700000 and σ_t is bounded by 0.800000 in channel 2";
-    assert!(row.reason.contains(words), "{}", row.reason);
+fn too_few_heroes_of_a_declared_bias_are_no_panic() {
+    let heroes = "{ spectral-mis = { hero = [0.5, 0.5], expect = \"biased\" } }";
+    assert!(!predicted(&BALL.replacen("{ spectral-mis = {} }", heroes, 1)).is_empty());
 }
 
 /// Pairs of fields in a ball or a box, of every cost, with every phase function, and σ̂ of one value or two.

@@ -8,7 +8,7 @@ use trueflight::estimators::DrawBuffer;
 use trueflight::plan::Plan;
 use trueflight::record::{Row, Verdict};
 
-use crate::common::{case, finding, mistakes, none, options, predicted, rows};
+use crate::common::{case, finding, none, options, predicted, rows};
 
 const THREE_COLOURS: &str = include_str!("../../cases/spectral-lit-rod/three-colours.toml");
 const ONE_MEDIUM: &str = include_str!("../cases/spectral-lit-rod/one-medium.toml");
@@ -200,20 +200,6 @@ fn forward_rods_have_the_variances_of_the_references() {
 }
 
 #[test]
-fn spectral_tracking_is_refused_where_light_turns() {
-    let text = FORWARD.replace("forward = 1\n", "forward = [1, 0.9, 1]\n");
-    let rows = predicted(&text);
-    for row in of(&rows, "spectral-tracking") {
-        assert!(row.reason.contains("forward = 0.9 in channel 2"), "{}", row.reason);
-    }
-    let apart =
-        FORWARD.replace("{ probabilities = \"average\", sampling.constant.value = 2.3 }", "{}");
-    let rows = predicted(&apart);
-    let reason = &of(&rows, "spectral-tracking (average)")[0].reason;
-    assert!(reason.contains("one σ̂ for all channels, but σ̂ = 1.300000 and 2.300000"), "{reason}");
-}
-
-#[test]
 fn one_hero_for_all_varies_less_than_one_channel_at_a_time() {
     let rows = predicted(ONE_MEDIUM);
     let [alone, hits, both] =
@@ -360,38 +346,4 @@ fn the_algorithm_as_printed_is_biased() {
             assert_eq!(finding(row, "mean").verdict, Verdict::Pass);
         }
     }
-}
-
-#[test]
-fn mistakes_are_named() {
-    let field = "constant.extinction = 1";
-    let said = |text: &str| mistakes(text).map(|error| error.render(false)).unwrap_or_default();
-    let fine = one_medium(field, 2.0, &[0.5, 0.5], &[0.5], 1.0);
-    assert_eq!(said(&fine), "");
-    let text = one_medium(field, 2.0, &[0.5, 0.5], &[0.5, 0.6, 0.7], 1.0);
-    assert!(said(&text).contains("`forward` lists 3 channels, and the medium has 2"));
-    let text = fine.replace("albedos = [0.5, 0.5]", "albedos = [0.5]");
-    assert!(said(&text).contains("`albedos` lists 1 channels, and the medium has 2"));
-    let text = fine.replace("albedos = [0.5, 0.5]", "albedos = [0.5, 1.5]");
-    assert!(said(&text).contains("albedos"));
-    let dark = fine.replace("constant.extinction = 1 }]", "constant.extinction = 0 }]");
-    assert!(said(&dark).contains("σ_t = 0 everywhere in channel 2"), "{}", said(&dark));
-}
-
-#[test]
-fn what_is_no_majorant_is_refused_with_its_channel() {
-    let text = THREE_COLOURS.replace("{ constant.value = 1.2 }", "{ constant.value = 1.1 }");
-    for row in predicted(&text) {
-        assert_eq!(row.verdict, Some(Verdict::Refused));
-        assert!(
-            row.reason.contains("σ̂ = 1.100000 and σ_t = 1.200000 in channel 2"),
-            "{}",
-            row.reason
-        );
-    }
-    let heroes =
-        ONE_MEDIUM.replace("{ next-event-mis = {} }", "{ next-event-mis.hero = [0.5, 0.5] }");
-    let refused = predicted(&heroes);
-    let last = refused.last().expect("a row");
-    assert!(last.reason.contains("there are 2 for 3 channels"), "{}", last.reason);
 }

@@ -4,7 +4,7 @@ use std::sync::LazyLock;
 
 use trueflight::record::{Row, Verdict};
 
-use crate::common::{case, mistakes, predicted, rows};
+use crate::common::{case, predicted, rows};
 use crate::packets::{compare, fusing_levels};
 
 const BALL: &str = include_str!("../cases/spectral-single-scattering/known-bugs.toml");
@@ -133,79 +133,6 @@ fn what_lies_behind_a_wall_fails_no_correct_estimator() {
     );
     for row in rows(&text, 400_000) {
         assert_ne!(row.verdict, Some(Verdict::Fail), "{}: {}", row.channel, row.reason);
-    }
-}
-
-#[test]
-fn mistakes_and_what_is_out_of_reach_are_told() {
-    let expected = [
-        (
-            "albedos = [0.9, 0.5, 0.7]",
-            "albedos = [0.9, 0, 0.7]",
-            "nothing is scattered in channel 2",
-        ),
-        ("{ isotropic = {} }, ", "", "`phases` lists 2 channels, and the medium has 3"),
-        ("radius = 1", "radius = 0.9", "do not fill the same part"),
-        ("position = [0.9, -0.3, 0.4]", "position = [0.2, 0.1, 0.4]", "move it off the line"),
-    ];
-    for (from, to, words) in expected {
-        let said = mistakes(&BALL.replacen(from, to, 1)).expect("a mistake").render(false);
-        assert!(said.contains(words), "{words}:\n{said}");
-    }
-    let gaussian = "gaussian = { peak = 1.5, centre = [0, 0, 0.2], width = 0.9,";
-    let layers = "piecewise-constant = { breaks = [-1, 0, 1], values = [0, 1.5],";
-    let out_of_reach = [
-        (
-            "{ hero = {} }",
-            "{ hero = { sampling = [{ constant.value = 2 }, { constant.value = 0.9 }, { constant.value = 2 }] } }",
-            "σ̂ = σ_t = 0.900000 in channel 2 on a stretch, which biases the others",
-        ),
-        (gaussian, layers, "σ_t = 0 in channel 1 on a stretch, which biases the others"),
-        (
-            "knots = [-1, 1], values = [0.6, 1.3]",
-            "knots = [-1, 0, 1], values = [1.3, 0, 1.3]",
-            "E[X²] is infinite",
-        ),
-        (
-            "{ spectral-tracking = {} }",
-            "{ spectral-tracking = { sampling = [{ constant.value = 2 }, { constant.value = 2.1 }, { constant.value = 2 }] } }",
-            "σ̂ = 2.000000 and 2.100000",
-        ),
-    ];
-    for (from, to, words) in out_of_reach {
-        let rows = predicted(&WITHOUT.replacen(from, to, 1));
-        let reasons: Vec<&str> = rows.iter().map(|row| row.reason.as_str()).collect();
-        assert!(reasons.iter().any(|reason| reason.contains(words)), "{words}: {reasons:?}");
-    }
-    let low = predicted(&BALL.replacen("constant.value = 1 }", "constant.value = 0.7 }", 1));
-    let row = low
-        .iter()
-        .find(|row| row.experiment.label == "spectral-mis (exact shadow)")
-        .expect("a row");
-    let words = "σ̂ = 0.700000 and σ_t = 0.800000 in channel 2";
-    assert!(row.reason.contains(words), "{}", row.reason);
-}
-
-/// Where the hero's σ_t comes down to 0 at both ends of a box, and that of the other channel at one.
-#[test]
-fn heroes_without_scatterings_are_refused_wherever_that_is() {
-    for other in ["[1, 1, 0]", "[0, 1, 1]"] {
-        let volume = ["[0, 1, 0]", other].map(|values| {
-            format!(
-                "{{ piecewise-linear = {{ knots = [-1, 0, 1], values = {values}, \
-                 bounds.box = {{ low = [-1, -1, -1], high = [1, 1, 1] }} }} }}"
-            )
-        });
-        let rows = predicted(&format!(
-            "title = \"box\"\n[problem.spectral-single-scattering]\nvolume = [{}, {}]\n\
-             ray = {{ origin = [0.2, 0.1, -2], direction = [0, 0, 1], length = 4 }}\n\
-             light = {{ position = [0.9, -0.3, 0.4], power = 10 }}\nalbedos = [0.9, 0.7]\n\
-             phases = [{{ isotropic = {{}} }}, {{ isotropic = {{}} }}]\nsampling.constant.value = 2\n\
-             estimators = [{{ hero = {{}} }}]\n",
-            volume[0], volume[1]
-        ));
-        let words = "σ_t comes down to 0 in channel 1: E[X²] is infinite";
-        assert!(rows[0].reason.contains(words), "{other}: {}", rows[0].reason);
     }
 }
 

@@ -3,7 +3,7 @@
 
 use serde::Deserialize;
 
-use crate::common::{case, judged, mistakes, none, options, predicted, rows};
+use crate::common::{case, judged, none, options, predicted, rows};
 use trueflight::plan::Plan;
 use trueflight::record::Verdict;
 use trueflight::theory::sphere::ball::Ball;
@@ -232,89 +232,6 @@ fn bounds_on_variances_hold_and_are_sharp_for_walks_of_weight_one() {
             }
         }
     }
-}
-
-#[test]
-fn what_has_no_answer_is_refused() {
-    let text = |volume: &str, ray: &str, rest: &str, light: &str| {
-        format!(
-            "title = \"s\"\n[problem.sphere]\nvolume.{volume}\nray = {ray}\n{rest}\nlight.{light}\n\
-             sampling.constant.value = 3\nestimators = [{{ particle.rule = \"analog\" }}]"
-        )
-    };
-    let ball = "constant = { extinction = 1, bounds.sphere = { centre = [0, 0, 0], radius = 1 } }";
-    let ray = "{ origin = [0.5, 0, -2], direction = [0, 0, 1], length = 4 }";
-    let white = "albedo = 0.9\nphase.isotropic = {}";
-    let sky = "environment = {}";
-    let inside = "{ origin = [0.5, 0, 0], direction = [0, 0, 1], length = 4 }";
-    let mean = "albedo = 0.9\nphase.isotropic = {}\nsought = \"mean-intensity\"";
-    let cases = [
-        (text("eq21 = {}", ray, white, sky), "depends on the distance"),
-        (text("constant.extinction = 1", ray, white, sky), "without bounds"),
-        (
-            text(
-                "gaussian = { peak = 1, centre = [0, 0, 1], width = 1, \
-                  bounds.sphere = { centre = [0, 0, 0], radius = 1 } }",
-                ray,
-                white,
-                sky,
-            ),
-            "depends on the distance",
-        ),
-        (text(ball, ray, "albedo = 0.9\nphase.rayleigh = {}", sky), "no answer for `rayleigh`"),
-        (
-            text(
-                ball,
-                ray,
-                "albedo.gaussian = { peak = 1, centre = [0, 0, 0], width = 1 }\n\
-                             phase.isotropic = {}",
-                sky,
-            ),
-            "the albedo varies",
-        ),
-        (
-            text(ball, "{ origin = [2, 0, -2], direction = [0, 0, 1], length = 4 }", white, sky),
-            "misses",
-        ),
-        (text(ball, ray, mean, sky), "begins"),
-        (text(ball, ray, white, "black-sphere.radius = 1"), "its radius is 1"),
-        (text(ball, inside, white, "black-sphere.radius = 0.6"), "in the black sphere"),
-        (text(ball, inside, mean, "distant.direction = [0, 0, 1]"), "not radially symmetric"),
-        (text(ball, ray, white, "distant.direction = [0, 0, 1]"), "not radially symmetric"),
-        (text(ball, ray, white, "distant.direction = [0, 0, 0]"), "zero vector"),
-        (text(ball, ray, white, "point.position = [0, 0, 0]"), "infinite variance"),
-    ];
-    for (text, words) in cases {
-        let message = mistakes(&text).expect(words).render(false);
-        assert!(message.contains(words), "{words}: {message}");
-    }
-    let refused = |text: String, words: &str| {
-        let row = &predicted(&text)[0];
-        assert_eq!(row.verdict, Some(Verdict::Refused), "{words}");
-        assert!(row.reason.contains(words), "{words}: {}", row.reason);
-    };
-    let with = |estimator: &str| {
-        let text = text(ball, ray, white, sky);
-        text.replace("{ particle.rule = \"analog\" }", estimator)
-    };
-    let dense = ball.replace("extinction = 1", "extinction = 40");
-    let thick = || text(&dense, ray, white, sky).replace("value = 3", "value = 50");
-    refused(thick(), "σ_t R ≤ 30");
-    refused(thick(), "it may reach 40");
-    // A pinhead of a lamp: what is said is how well the answer is known.
-    refused(text(ball, ray, white, "black-sphere.radius = 0.0005"), "only");
-    refused(
-        with("{ particle = { rule = \"weighted\", sampling.constant.value = 0.9 } }"),
-        "σ̂ ≥ σ_t",
-    );
-    let origin = "{ origin = [0, 0, 0], direction = [0, 0, 1], length = 4 }";
-    refused(text(ball, origin, mean, "distant.direction = [0, 0, 1]"), "met with chance 0");
-    let delta = "{ next-event = { rule = \"analog\", shadow.delta = { sampling = 0.9 } } }";
-    refused(with(delta), "σ̄ ≥ σ_t on every shadow ray");
-    let wild = "{ next-event = { rule = \"analog\", shadow.ratio = { sampling = 0.1 } } }";
-    refused(with(wild), "E[T̂²]");
-    let endless = "{ next-event = { rule = \"analog\", shadow.ratio = { sampling = 1e5 } } }";
-    refused(with(endless), "across the ball");
 }
 
 /// Error bounds of the resolution that draws are judged by cover what a finer one finds, in balls

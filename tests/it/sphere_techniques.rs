@@ -4,7 +4,7 @@ use std::cell::RefCell;
 use std::path::Path;
 use std::sync::LazyLock;
 
-use crate::common::{case, mistakes, none, options, predicted, rows, rows_of, source};
+use crate::common::{case, none, options, predicted, rows, rows_of, source};
 use trueflight::catalogue::Settings;
 use trueflight::draw::run;
 use trueflight::estimators::DrawBuffer;
@@ -253,28 +253,4 @@ fn a_distant_light_is_found_by_all_but_hits() {
     let light = "albedo = 0.9\nlight.distant = { direction = [1, -2, 2] }";
     let (wrong, _) = drawn(&[[THINNING, light, centre]], 60_000);
     none(&wrong);
-}
-
-#[test]
-fn mistakes_are_told() {
-    let told = |estimator: &str, words: &str| {
-        let text = text(SCENES[0], estimator);
-        let message = mistakes(&text).expect(words).render(false);
-        assert!(message.contains(words), "{words}: {message}");
-    };
-    told("{ full-mis = {} }", "rule");
-    told("{ full-mis = { rule = \"analog\", shadow = \"delta\" } }", "delta");
-    told("{ full-mis = { rule = \"analog\", heuristic = \"best\" } }", "best");
-    told("{ directional-mis = { rule = \"analog\", shadow = \"ratio\" } }", "shadow");
-    told("{ bidirectional.subpaths = \"both\" }", "both");
-    told("{ bidirectional.rule = \"analog\" }", "rule");
-    let refused = |estimator: &str, words: &str| {
-        let row = &predicted(&text(SCENES[0], estimator))[0];
-        assert_eq!(row.verdict, Some(Verdict::Refused), "{words}");
-        assert!(row.reason.contains(words), "{words}: {}", row.reason);
-    };
-    refused("{ bidirectional.sampling.constant.value = 0.9 }", "0 ≤ σ_t ≤ σ̂");
-    refused("{ full-mis = { rule = \"weighted\", sampling.constant.value = 0.9 } }", "σ̂ ≥ σ_t");
-    let shadow = "{ directional-mis = { rule = \"analog\", shadow.delta = { sampling = 0.9 } } }";
-    refused(shadow, "σ̄ ≥ σ_t on every shadow ray");
 }

@@ -9,7 +9,7 @@ use trueflight::record::build;
 use trueflight::record::curves;
 use trueflight::record::{Row, Verdict};
 
-use crate::common::{case, failing, mistakes, none, options, predicted, rows};
+use crate::common::{case, failing, none, options, predicted, rows};
 
 /// A case with a sweep, and the same without it for some of its values.
 type Written = (&'static str, &'static str, &'static [(f64, &'static str)]);
@@ -181,81 +181,6 @@ fn the_lines_of_theory_go_through_the_experiments_and_between_them() {
             (Some(at.variance), Some(at.lookups)),
             (row.predicted_variance, row.experiment.predicted_lookups)
         );
-    }
-}
-
-/// What is said of a case that is wrong.
-fn said(text: &str) -> String {
-    mistakes(&titled(text)).unwrap_or_else(|| panic!("{text} is well written")).render(false)
-}
-
-#[test]
-fn a_sweep_that_does_not_apply_says_where_and_why() {
-    let rod = "spectral-rod]\nmedium.constant.extinction = 1\nspan = [0, 1]\nalbedos = [0.8, 0.4]\n\
-               sampling.constant.value = 1\nestimators = [{ spectral-mis = {} }]\n";
-    let channels =
-        "span = [0, 1]\nsampling.constant.value = 1\nestimators = [{ independent = {} }]\n";
-    let one = "transmittance]\nmedium.constant.extinction = 1\nspan = [0, 1]\n\
-               sampling.constant.value = 1\nestimators = [{ ratio = {} }]\n";
-    let cases: [(String, &[&str]); 10] = [
-        (
-            "transmittance]\nvolume.eq21 = {}\nsweep.density.values = [2]\n\
-             ray = { origin = [0, 0, 0], direction = [0, 0, 1], length = 20 }\n\
-             sampling.constant.value = 1\nestimators = [{ ratio = {} }]\n"
-                .into(),
-            &["at density = 2: this field has no extinction to scale", "3 | volume.eq21", "a field that has one"],
-        ),
-        (
-            format!("{rod}sweep.albedo-scale.values = [1, 1.5]\n"),
-            &["at albedo-scale = 1.5: 1.2", "stands in `albedos`", "problem.spectral-rod.albedos", "from 0 to 1"],
-        ),
-        (
-            format!("{one}sweep.albedo-scale.values = [0.5]\n"),
-            &["at albedo-scale = 0.5: the medium has no albedo", "sweep.albedo-scale", "give `albedo`"],
-        ),
-        (
-            format!("{one}sweep.contrast.values = [0.5]\n"),
-            &["at contrast = 0.5: no channel differs", "channel by channel"],
-        ),
-        (
-            format!("{rod}sweep.albedo.values = [0.5]\n"),
-            &["no estimator of this case has an albedo", "`albedo-scale`"],
-        ),
-        (
-            format!(
-                "spectral-transmittance]\nmedium = [{{ constant.extinction = 1 }}, \
-                 {{ exponential = {{ extinction = 1, rate = 1 }} }}]\n{channels}sweep.contrast.values = [0.5]\n"
-            ),
-            &["at contrast = 0.5: this differs from the first in more than its extinctions", "the same field"],
-        ),
-        (
-            format!(
-                "spectral-transmittance]\nmedium = [{{ piecewise-constant = {{ breaks = [0, 1], values = [1] }} }}, \
-                 {{ piecewise-constant = {{ breaks = [0, 2], values = [1] }} }}]\n{channels}sweep.contrast.values = [0.5]\n"
-            ),
-            &["at contrast = 0.5: this differs from the first in more than its extinctions"],
-        ),
-        (
-            format!(
-                "spectral-transmittance]\nmedium = [{{ constant.extinction = 1 }}, {{ constant.extinction = 0.2 }}]\n\
-                 {channels}sweep.contrast.values = [0.5, 4]\n"
-            ),
-            &["at contrast = 4: `extinction` is -1", "not negative"],
-        ),
-        (
-            "spectral-transmittance]\nmedium = [{ constant.extinction = 1 }, { constant.extinction = 0.2 }]\n\
-             span = [0, 1]\nsampling = [{ constant.value = 1 }, { constant.value = 0.5 }]\n\
-             estimators = [{ independent.sampling.local-majorants.segments = 2 }]\nsweep.contrast.values = [0.5]\n"
-                .into(),
-            &["at contrast = 0.5: this differs from the first", "6 | estimators"],
-        ),
-        (format!("{one}sweep.density.values = [0]\n"), &["above 0"]),
-    ];
-    for (text, words) in cases {
-        let said = said(&text);
-        for word in words {
-            assert!(said.contains(word), "{word} is not said of\n{text}\n{said}");
-        }
     }
 }
 

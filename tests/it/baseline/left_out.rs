@@ -1,9 +1,5 @@
 //! What of a comparison is left out, and comparisons of nothing.
 
-use std::path::Path;
-use std::process::Output;
-
-use assert_cmd::Command;
 use serde_json::Value;
 use tempfile::TempDir;
 use trueflight::record::baseline::LeftOut;
@@ -11,50 +7,43 @@ use trueflight::record::baseline::{Baseline, ChannelId, Entry};
 use trueflight::record::baseline::{Rules, compare};
 use trueflight::report::run::diff;
 
-use super::{CASE, RULES, baseline, command, said};
+use super::{CASE, RULES, baseline, said, usual};
+use crate::common::place::Place;
 
 /// Spoils an entry.
 type Doctor = fn(&mut Entry);
 /// Where that is listed.
 type List = fn(&LeftOut) -> &Vec<ChannelId>;
 
-/// The same with nothing but what is given.
-fn plain(folder: &Path, arguments: &str) -> Output {
-    let mut command = Command::cargo_bin("trueflight").expect("the binary");
-    command.current_dir(folder).env("COLUMNS", "400").args(arguments.split_whitespace());
-    command.output().expect("it runs")
-}
-
 #[test]
 fn a_comparison_of_nothing_is_an_error() {
-    let folder = TempDir::new().expect("a folder");
-    let place = folder.path();
-    std::fs::write(place.join("case.toml"), CASE).expect("a case");
-    said(&command(place, "--save-baseline main --filter *:woodcock"), 0);
-    let stored = std::fs::read(place.join("baselines/main.json")).expect("a file");
-    let text = said(&command(place, "--baseline main --save-baseline main --filter *:ratio"), 2);
+    let place = Place::new(&[("case.toml", CASE)]);
+    said(&place, &usual("--save-baseline main --filter *:woodcock"), 0);
+    let stored = std::fs::read(place.path().join("baselines/main.json")).expect("a file");
+    let text = said(&place, &usual("--baseline main --save-baseline main --filter *:ratio"), 2);
     let place_of_file = "baselines/main.json: nothing was compared: not in the baseline (1); only in the baseline (1)";
     for words in [place_of_file, "--save-baseline", "not stored: nothing was compared"] {
         assert!(text.contains(words), "{words}: {text}");
     }
     assert!(!text.contains("no change"), "{text}");
-    assert_eq!(std::fs::read(place.join("baselines/main.json")).expect("a file"), stored);
+    assert_eq!(std::fs::read(place.path().join("baselines/main.json")).expect("a file"), stored);
     let reports = "--junit junit.xml --markdown summary.md --record record.json";
     let check = "check case.toml --filter *:ratio --draws 400000 --alpha 1e-6 --baseline main";
-    said(&plain(place, &format!("{check} {reports}")), 2);
+    said(&place, &format!("{check} {reports}"), 2);
     for file in ["junit.xml", "summary.md"] {
-        let text = std::fs::read_to_string(place.join(file)).expect("a report");
+        let text = std::fs::read_to_string(place.path().join(file)).expect("a report");
         assert!(text.contains("nothing was compared"), "{file}: {text}");
         assert!(!text.contains("nothing became worse") && !text.contains("no change"), "{text}");
     }
     let record: Value =
-        serde_json::from_slice(&std::fs::read(place.join("record.json")).expect("a report"))
+        serde_json::from_slice(&std::fs::read(place.path().join("record.json")).expect("a report"))
             .expect("JSON");
     let ids = |list: &str| record["comparison"][list].as_array().expect("a list").len();
     assert_eq!((ids("added"), ids("missing")), (1, 1));
     // Another text of the case.
-    std::fs::write(place.join("case.toml"), CASE.replace("a case", "another")).expect("a case");
-    let text = said(&command(place, "--baseline main --filter *:woodcock"), 2);
+    std::fs::write(place.path().join("case.toml"), CASE.replace("a case", "another"))
+        .expect("a case");
+    let text = said(&place, &usual("--baseline main --filter *:woodcock"), 2);
     assert!(
         text.contains("nothing was compared: not compared, the case was rewritten (1)"),
         "{text}"
@@ -63,26 +52,24 @@ fn a_comparison_of_nothing_is_an_error() {
 
 #[test]
 fn times_that_were_asked_for_and_not_compared_are_an_error() {
-    let folder = TempDir::new().expect("a folder");
-    let place = folder.path();
-    std::fs::write(place.join("case.toml"), CASE).expect("a case");
+    let place = Place::new(&[("case.toml", CASE)]);
     let run = "run case.toml --draws 400000 --fixed-draws --alpha 1e-6";
-    said(&plain(place, &format!("{run} --save-baseline main")), 0);
-    let path = place.join("baselines/main.json");
+    said(&place, &format!("{run} --save-baseline main"), 0);
+    let path = place.path().join("baselines/main.json");
     let mut tree: Value =
         serde_json::from_slice(&std::fs::read(&path).expect("a file")).expect("JSON");
     for entry in tree["entries"].as_array_mut().expect("a list") {
         entry["seconds"] = 0.01.into();
     }
     std::fs::write(&path, tree.to_string()).expect("written");
-    let text = said(&plain(place, &format!("{run} --baseline main")), 0);
+    let text = said(&place, &format!("{run} --baseline main"), 0);
     assert!(
         text.contains("time not compared, less than 0.1 s (2): case:woodcock, σ\u{302} 1"),
         "{text}"
     );
     assert!(text.contains("4 variances and lookups compared"), "{text}");
     assert!(text.contains("0 times at a tolerance of 0.25"), "{text}");
-    let text = said(&plain(place, &format!("{run} --baseline main --time-tolerance 0.5")), 2);
+    let text = said(&place, &format!("{run} --baseline main --time-tolerance 0.5"), 2);
     assert!(
         text.contains(
             "--time-tolerance 0.5: no time was compared: time not compared, less than 0.1 s (2)"

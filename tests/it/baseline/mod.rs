@@ -2,10 +2,6 @@
 
 mod left_out;
 
-use std::path::Path;
-use std::process::Output;
-
-use assert_cmd::Command;
 use serde_json::Value;
 use tempfile::TempDir;
 use trueflight::case::Case;
@@ -21,6 +17,9 @@ use trueflight::record::baseline::{Baseline, BaselineError, Entry};
 use trueflight::record::baseline::{Comparison, Quantity, Rules, Sequel, compare};
 use trueflight::record::build;
 use trueflight::rng::Streams;
+
+use crate::common::Nothing;
+use crate::common::place::{self, Place};
 
 const CASE: &str = "title = \"a case\"
 [problem.transmittance]
@@ -212,13 +211,6 @@ fn a_small_bias_adds_up_over_runs() {
     assert!(failed_after.is_some_and(|runs| runs > 1), "{failed_after:?} {stored:?} {limit}");
 }
 
-/// Stands in for an experiment while that is wrapped.
-struct Nothing;
-
-impl Experiment for Nothing {
-    fn fill_by(&self, _: Kernel, _: &mut Streams, _: usize, _: &mut DrawBuffer) {}
-}
-
 #[test]
 fn another_program_and_the_same_seed_multiply_nothing() {
     let (stored, mut run) = (baseline(1), baseline(2));
@@ -259,32 +251,28 @@ fn what_is_no_baseline_is_an_error_with_its_cure() {
     }
 }
 
-/// A folder in which the command runs.
-fn command(folder: &Path, arguments: &str) -> Output {
-    let mut command = Command::cargo_bin("trueflight").expect("the binary");
-    command.current_dir(folder).env("COLUMNS", "400");
-    let usual = "run case.toml --draws 400000 --alpha 1e-6 --time-tolerance inf";
-    command.args(usual.split(' ')).args(arguments.split_whitespace()).output().expect("it runs")
+/// A run with some words more.
+fn usual(more: &str) -> String {
+    format!("run case.toml --draws 400000 --alpha 1e-6 --time-tolerance inf {more}")
 }
 
-fn said(output: &Output, code: i32) -> String {
-    let text = [output.stdout.clone(), output.stderr.clone()].concat();
-    let text = String::from_utf8(text).expect("text");
-    assert_eq!(output.status.code(), Some(code), "{text}");
+/// What a command says that must end with this exit code.
+fn said(place: &Place, arguments: &str, expected: i32) -> String {
+    let output = place.command(arguments).env("COLUMNS", "400").output().expect("it runs");
+    let text = place::said(&output);
+    assert_eq!(place::code(&output), expected, "{text}");
     text
 }
 
 #[test]
 fn the_command_stores_compares_and_accumulates() {
-    let folder = TempDir::new().expect("a folder");
-    let place = folder.path();
-    std::fs::write(place.join("case.toml"), CASE).expect("a case");
-    let file = place.join("baselines/main.json");
-    let text = said(&command(place, "--save-baseline main"), 0);
+    let place = Place::new(&[("case.toml", CASE)]);
+    let file = place.path().join("baselines/main.json");
+    let text = said(&place, &usual("--save-baseline main"), 0);
     assert!(text.contains("baseline main stored"), "{text}");
-    let text = said(&command(place, "--baseline main"), 0);
+    let text = said(&place, &usual("--baseline main"), 0);
     assert!(text.contains("this seed already") && text.contains("no change"), "{text}");
-    let text = said(&command(place, "--baseline main --save-baseline main --seed 2"), 0);
+    let text = said(&place, &usual("--baseline main --save-baseline main --seed 2"), 0);
     assert!(text.contains("e-values multiplied"), "{text}");
     let read = || -> Value {
         serde_json::from_slice(&std::fs::read(&file).expect("a file")).expect("JSON")
@@ -295,19 +283,16 @@ fn the_command_stores_compares_and_accumulates() {
     tree["entries"][1]["variance"] = (0.5 * variance).into();
     std::fs::write(&file, tree.to_string()).expect("written");
     let both = "--baseline main --save-baseline main --seed 3";
-    let text = said(&command(place, both), 1);
+    let text = said(&place, &usual(both), 1);
     assert!(text.contains("REGRESSION") && text.contains("not stored"), "{text}");
     assert_eq!(read(), tree, "what became worse is not stored");
-    let text = said(&command(place, "--baseline main --quiet"), 1);
+    let text = said(&place, &usual("--baseline main --quiet"), 1);
     assert!(text.is_empty(), "{text}");
 }
 
 #[test]
 fn a_bad_baseline_is_known_before_the_drawing() {
-    let folder = TempDir::new().expect("a folder");
-    let place = folder.path();
-    std::fs::write(place.join("case.toml"), CASE).expect("a case");
-    std::fs::write(place.join("bad.json"), "{").expect("a file");
+    let place = Place::new(&[("case.toml", CASE), ("bad.json", "{")]);
     for (arguments, cure) in [
         ("--baseline nowhere", "--save-baseline"),
         ("--baselines . --baseline bad", "--save-baseline"),
@@ -315,15 +300,7 @@ fn a_bad_baseline_is_known_before_the_drawing() {
         ("--baselines case.toml --save-baseline x", "--baselines"),
     ] {
         let begin = std::time::Instant::now();
-        let mut command = Command::cargo_bin("trueflight").expect("the binary");
-        let drawing = "run case.toml --draws 1000000000";
-        let output = command
-            .current_dir(place)
-            .args(drawing.split(' '))
-            .args(arguments.split(' '))
-            .output()
-            .expect("it runs");
-        let text = said(&output, 2);
+        let text = said(&place, &format!("run case.toml --draws 1000000000 {arguments}"), 2);
         assert!(text.contains(cure), "{text}");
         assert!(begin.elapsed().as_secs() < 20, "it drew first");
     }

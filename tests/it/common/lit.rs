@@ -1,5 +1,7 @@
 //! What the reference values of emitters behind rods and slabs have in common.
 
+use super::{none, predicted};
+use trueflight::record::{Row, Verdict};
 use trueflight::theory::Prediction;
 use trueflight::theory::lit_rod::{Combination, Densities, Heuristic, Shadow, Techniques};
 
@@ -37,6 +39,31 @@ pub fn differs(
     let off = (found - value).abs();
     let is_wrong = off > uncertainty || off > error + uncertainty || error > bound;
     is_wrong.then(|| format!("{what}: {found} ± {error:e} against {value}"))
+}
+
+/// How many experiments of extreme cases, each with its place in words, are predicted in numbers that can be; all others
+/// are refused in words.
+pub fn predictions(cases: &[(String, String)], can_be: impl Fn(&Row, f64, f64) -> bool) -> usize {
+    let (mut count, mut wrong) = (0, Vec::new());
+    for (place, text) in cases {
+        for row in predicted(text) {
+            let place = format!("{}: {place}", row.experiment.label);
+            if row.verdict == Some(Verdict::Refused) {
+                wrong.extend((row.reason.len() < 10).then_some(place));
+                continue;
+            }
+            count += 1;
+            let truth = row.truth.unwrap_or(f64::NAN);
+            let variance = row.predicted_variance.unwrap_or(0.0);
+            let lookups = row.experiment.predicted_lookups.unwrap_or(f64::NAN);
+            let is_fine = truth > 0.0 && truth <= 1.0 && variance >= 0.0 && lookups >= 0.0;
+            if !is_fine || !can_be(&row, truth, variance) {
+                wrong.push(format!("{place}: {truth:e}, {variance:e}, {lookups:e}"));
+            }
+        }
+    }
+    none(&wrong);
+    count
 }
 
 /// Every estimator of such a problem.

@@ -13,7 +13,7 @@ use fearless_simd::Level;
 use trueflight::case::Case;
 use trueflight::case::CaseError;
 use trueflight::case::Source;
-use trueflight::catalogue::Settings;
+use trueflight::catalogue::{Fault, Settings};
 use trueflight::draw::run;
 use trueflight::estimators::{DrawBuffer, Experiment, Kernel};
 use trueflight::media::{Body, Medium};
@@ -105,12 +105,19 @@ pub fn verdict(row: &Row) -> Verdict {
     row.verdict.unwrap_or_else(|| panic!("no verdict on {}", row.experiment.label))
 }
 
-/// The field along a line or ray, from the lines that a case has under its problem.
-pub fn body(text: &str) -> Body {
+/// The field along a line or ray, from the lines that a case in a folder has under its problem.
+pub fn try_body(text: &str, folder: &Path) -> Result<Body, Vec<Fault>> {
     let faults = RefCell::default();
     let root = source("medium", text).parse(&faults);
-    let body = Body::read(&Settings::new(&root, Path::new("tests/data"), &faults));
-    body.unwrap_or_else(|| panic!("{text}: {:?}", faults.borrow()))
+    let body = Body::read(&Settings::new(&root, folder, &faults));
+    let faults = faults.into_inner();
+    body.filter(|_| faults.is_empty()).ok_or(faults)
+}
+
+/// The field of lines without mistakes.
+pub fn body(text: &str) -> Body {
+    let body = try_body(text, Path::new("tests/data"));
+    body.unwrap_or_else(|faults| panic!("{text}: {faults:?}"))
 }
 
 /// The same as the ray sees it.

@@ -1,6 +1,6 @@
 //! Lookups before the first draw of a ray, their share in figures of merit, and what no lookup pays for.
 
-use crate::common::{differs, mistakes, none, options, predicted, row, rows, source};
+use crate::common::{differs, none, options, predicted, row, rows, source};
 use trueflight::case::Case;
 use trueflight::plan::Plan;
 use trueflight::record::Row;
@@ -119,17 +119,6 @@ fn pilot_rays_look_up_where_they_collide() {
     let mean = sum as f64 / f64::from(u32::try_from(seeds).expect("few"));
     // Five standard errors.
     assert!((mean - 10.0).abs() < 5.0 * (10.0_f64 / 400.0).sqrt(), "{mean}");
-}
-
-#[test]
-fn draws_of_a_ray_are_a_whole_number_from_1() {
-    for wrong in ["0", "-1", "1.5", "nan", "inf", "1e308", "\"many\"", "[1]", "true"] {
-        let error = mistakes(&eq21(&format!("draws_per_ray = {wrong}"), "", EXPLORERS));
-        let error = error.unwrap_or_else(|| panic!("{wrong} is read"));
-        let text = error.render(false);
-        assert!(error.mistakes() == 1 && text.contains("draws_per_ray"), "{wrong}: {text}");
-    }
-    assert!(mistakes(&eq21("draws_per_ray = 1e6", "", EXPLORERS)).is_none());
 }
 
 #[test]

@@ -4,7 +4,7 @@ use trueflight::media::axes::Axes;
 use trueflight::media::grid_file::{Choice, Samples};
 
 use super::{data, refused, run, text, written};
-use crate::common::{mistakes, predicted};
+use crate::common::predicted;
 
 fn npy(kind: &str, shape: &str, order: &str, numbers: &[u8]) -> Vec<u8> {
     let header = format!("{{'descr': '{kind}', 'fortran_order': {order}, 'shape': {shape}, }}\n");
@@ -99,35 +99,4 @@ fn plan_says_how_many_voxels_are_along_x_y_and_z() {
         text.contains("grid zyx.npy: 4 × 3 × 2 voxels (x, y, z), box [0, 0, 0] to [4, 3, 2]"),
         "{text}"
     );
-}
-
-#[test]
-fn settings_of_other_formats_are_refused_with_their_cure() {
-    let case = |settings: &str| {
-        format!(
-            "title = \"t\"\n[problem.transmittance]\nvolume.grid = {{ {settings} }}\n\
-             ray = {{ origin = [0, 0, 0], direction = [1, 0, 0], length = 1 }}\nestimators = [{{ closed-form = {{}} }}]"
-        )
-    };
-    let there = data("field/23-npy-axes/zyx.npy").display().to_string();
-    let vol = data("field/02-vol-variants/u8.vol").display().to_string();
-    let boxed = "bounds.box = { low = [0, 0, 0], high = [1, 1, 1] }";
-    for (settings, words) in [
-        (format!("file = \"{there}\", axes = \"XYZ\", {boxed}"), "`axes` is \"XYZ\""),
-        (format!("file = \"{there}\", axes = \"xxz\", {boxed}"), "`axes` is \"xxz\""),
-        (format!("file = \"{there}\", axes = 3, {boxed}"), "`axes` is 3"),
-        (format!("file = \"{there}\", channel = 0, {boxed}"), "`channel` has no say in .npy"),
-        (format!("file = \"{vol}\", axes = \"xyz\""), "`axes` has no say in .vol"),
-        (format!("file = \"{vol}\", grid = \"density\""), "`grid` has no say in .vol"),
-        (format!("file = \"{vol}\", channel = -1"), "`channel` is -1"),
-        (format!("file = \"{vol}\", channel = 0.5"), "`channel` is 0.5"),
-        (format!("file = \"{vol}\", channel = 9"), "no channel 9"),
-        (
-            format!("random.size = [2, 2, 2], axes = \"xyz\", {boxed}"),
-            "`axes` has no say in samples of this kind",
-        ),
-    ] {
-        let error = mistakes(&case(&settings)).expect("a mistake").render(false);
-        assert!(error.contains(words), "{settings}: {error}");
-    }
 }

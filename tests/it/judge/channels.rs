@@ -180,38 +180,6 @@ fn a_channel_is_taken_from_a_file_of_all_or_of_one() {
 }
 
 #[test]
-fn arrays_of_another_shape_are_refused_with_the_cure() {
-    let few = rows(&draws(4)[..5]);
-    let place = Place::new(&[
-        ("three.toml", CASE.as_bytes()),
-        ("two.npy", &npy("<f8", "(6, 2)", &raw(&few[..12]))),
-        ("turned.npy", &npy("<f8", "(2, 5)", &raw(&few[..10]))),
-        ("deep.npy", &npy("<f8", "(2, 2, 3)", &raw(&few[..12]))),
-        ("short.npy", &npy("<f8", "(7, 3)", &raw(&few))),
-        ("empty.npy", &npy("<f8", "(0, 3)", &[])),
-        ("two.csv", b"1,2\n3,4\n"),
-        ("ragged.csv", b"1,2,3\n3,4\n"),
-        ("word.csv", b"channel 1,channel 2,channel 3\n1,2,3\n1,x,3\n"),
-    ]);
-    for (file, words) in [
-        ("two.npy", "a draw has 2 values"),
-        ("turned.npy", "did you mean x.T?"),
-        ("deep.npy", "shape (2, 2, 3)"),
-        ("short.npy", "ends after 5 of 7 draws"),
-        ("two.csv", "a draw has 2 values"),
-        ("ragged.csv", "line 2"),
-        ("word.csv", "line 3, column 1: `x` is not a number"),
-    ] {
-        place.expect(
-            2,
-            &format!("--case three.toml --estimator independent {file}"),
-            &[words, file],
-        );
-    }
-    place.expect(2, "--case three.toml --estimator independent empty.npy", &["empty.npy"]);
-}
-
-#[test]
 fn a_wrong_channel_is_named_and_fails_the_file() {
     let mut wrong = draws(5);
     for x in &mut wrong {

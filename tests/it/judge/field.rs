@@ -17,10 +17,6 @@ fn units(seed: u64, n: usize) -> Vec<f64> {
     (0..n).map(|_| next()).collect()
 }
 
-fn coins(seed: u64, n: usize, p: f64) -> Vec<f64> {
-    units(seed, n).iter().map(|&u| f64::from(u8::from(u < p))).collect()
-}
-
 fn times(draws: &[f64], n: usize) -> Vec<f64> {
     draws.iter().copied().cycle().take(n).collect()
 }
@@ -86,54 +82,6 @@ fn any_number_of_repetitions_is_found() {
     let place = Place::new(&[("x.f64", &raw(&passes))]);
     let (code, text) = place.says("--truth 0.495 --range 0,1 --batch 100 x.f64", &[]);
     assert!(code != 1 && text.contains("nothing found"), "{text}");
-}
-
-#[test]
-fn repeated_draws_of_few_values_are_found() {
-    let claim = "--truth 0.5 --range 0,1 x.f64";
-    for (seed, (period, n)) in
-        (20..).zip([(1000, 400_000), (65_536, 131_072), (100, 200), (60, 180), (100, 500_000)])
-    {
-        let said = format!("the same draws come again {period} draws later");
-        for levels in [2.0, 3.0, 256.0] {
-            let coarse: Vec<f64> =
-                units(seed, period).iter().map(|u| (u * levels).floor() / (levels - 1.0)).collect();
-            let place = Place::new(&[("x.f64", &raw(&times(&coarse, n)))]);
-            place.expect(3, claim, &[&said]);
-        }
-    }
-    for (p, period, n) in
-        [(0.01, 20_000, 400_000), (0.001, 200_000, 400_000), (0.999, 200_000, 999_999)]
-    {
-        let place = Place::new(&[("x.f64", &raw(&times(&coins(30, period, p), n)))]);
-        let said = format!("the same draws come again {period} draws later");
-        place.expect(3, &format!("--truth {p} --range 0,1 x.f64"), &[&said]);
-    }
-    // Two threads with one seed that write in turn: each draw twice, or each thousand.
-    for (size, said) in
-        [(1, "draws are written more than once: each 2 times"), (1000, "again 1000 draws later")]
-    {
-        let once = coins(31, 50_000, 0.5);
-        let both: Vec<f64> = once.chunks(size).flat_map(|part| [part, part].concat()).collect();
-        let place = Place::new(&[("x.f64", &raw(&both))]);
-        place.expect(3, claim, &[said]);
-    }
-}
-
-#[test]
-fn independent_draws_of_few_values_are_not_accused() {
-    for seed in 40..44 {
-        for p in [0.5, 0.999, 1e-6, 0.0] {
-            let place = Place::new(&[("x.f64", &raw(&coins(seed, 400_000, p)))]);
-            let truth = if p == 0.0 { 1e-6 } else { p };
-            let claim = format!("--truth {truth} --range 0,1 x.f64");
-            let (code, text) = place.says(&claim, &[]);
-            assert!(code != 1 && text.contains("nothing found"), "{p}, {seed}: {text}");
-        }
-    }
-    // Draws that are all alike.
-    let place = Place::new(&[("x.f64", &raw(&vec![0.5; 50_000]))]);
-    place.expect(0, "--truth 0.5 --range 0,1 x.f64", &["nothing found"]);
 }
 
 /// Truth of the batch means of the field.

@@ -140,23 +140,6 @@ fn order_free_draws_say_so() {
     assert!(asked(&rows[0], "counts") && asked(&rows[2], "counts"));
 }
 
-#[test]
-fn an_order_free_kernel_that_is_not_there_is_a_mistake() {
-    let text = |kernel: &str| {
-        format!(
-            "title = \"k\"\n[problem.transmittance]\nmedium.constant.extinction = 1.0\nspan = [0, 2]
-            sampling.constant.value = 1.5\nestimators = [{{ next-flight.kernel = \"{kernel}\" }}]"
-        )
-    };
-    let message =
-        |kernel: &str| crate::common::mistakes(&text(kernel)).map(|error| error.render(false));
-    assert!(message("ordered").is_none());
-    let missing = message("order-free").expect("a mistake");
-    assert!(missing.contains("`next-flight` has no order-free kernel"), "{missing}");
-    let unknown = message("free").expect("a mistake");
-    assert!(unknown.contains("one of `ordered`, `order-free`"), "{unknown}");
-}
-
 /// A sweep of σ̂ and estimators of other controls and rules, all on the same lookups.
 const SWEEP: &str = "title = \"sweep\"\nkernel = \"order-free\"\n[problem.transmittance]
     volume.eq21 = {}\nray = { origin = [1, 0, -3], direction = [0, 0.1, 1], length = 30 }
@@ -199,15 +182,4 @@ fn shared_lookups_change_no_draw() {
         }
     }
     assert!(shared >= 14, "only {shared} shared their lookups");
-}
-
-#[test]
-fn order_free_draws_of_too_many_collisions_are_refused() {
-    let text = "title = \"many\"\n[problem.transmittance]
-        medium.constant.extinction = 5.0\nspan = [0, 4]\nsampling.constant.value = 1e6
-        estimators = [{ woodcock.kernel = \"order-free\" }, { woodcock = {} }]";
-    let rows = crate::common::predicted(text);
-    assert_eq!(rows[0].verdict, Some(Verdict::Refused));
-    assert!(rows[0].reason.contains("order-free"), "{}", rows[0].reason);
-    assert_eq!(rows[1].verdict, None, "{}", rows[1].reason);
 }

@@ -1,7 +1,5 @@
 //! The rod against numbers from another arithmetic, see `tests/data/README.md`.
 
-mod settings;
-
 use crate::common::{case, differs, none, options, rows_of};
 use serde_json::Value;
 use trueflight::plan::Plan;
