@@ -50,7 +50,7 @@ fn main() {
     let case = cases.remove(0);
     let address = Address { seed: 1, experiment: 1, block: 0, lane: 0 };
     let estimator = (0..case.scenario.estimators())
-        .find(|&estimator| case.names(estimator, None).estimator.name == "ratio")
+        .find(|&estimator| case.id(estimator, None).estimator.name == "ratio")
         .expect("ratio tracking");
     let ready = case.at(Some((What::Sampling, 1.0))).and_then(|at| at.prepare(estimator, address));
     let experiment = ready.unwrap_or_else(|refusal| panic!("{refusal}")).experiment;

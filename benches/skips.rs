@@ -122,7 +122,7 @@ fn main() {
         let folder = tempfile::tempdir().expect("a folder");
         let path = folder.path().join("draws.bin");
         let mut kept = Store::new(Header::new(&plan, "this program", &[], None));
-        kept.finish(&path, &plan, &run::draw(&plan, &|_| {})).expect("written");
+        kept.finish(&path, &run::draw(&plan, &|_| {})).expect("written");
         kept.reuse(&path, false).expect("it can be read");
         report("an experiment drawn by an earlier run", || {
             [time(&plan, &kept), time(&plan, &Store::default())]

@@ -14,7 +14,6 @@ use serde::{Deserialize, Serialize};
 use super::curve::Sample;
 use crate::plan::{BLOCK, Planned};
 use estimators::{DrawBuffer, Kernel};
-use numeric::pack;
 
 /// What time is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -80,11 +79,6 @@ pub struct Stopwatch {
 }
 
 impl Stopwatch {
-    /// The vector hardware in a word.
-    pub fn level_name(&self) -> String {
-        pack::word(self.level)
-    }
-
     /// Times a round of an experiment; `sample` sees its draws. The rounds' draws differ, the ways
     /// of drawing do not differ in them.
     pub fn lap(&self, planned: &Planned, round: u32, draws: u64, sample: &mut Sample) -> Lap {

@@ -17,26 +17,19 @@
 //! kept apart ([`record::Times`]).
 
 pub mod clock;
-pub mod compare;
-pub mod comparison;
-pub mod curve;
-pub mod figures;
+mod curve;
 pub mod record;
-pub mod rows;
-pub mod spread;
+mod rows;
 pub mod stored;
 
 use std::time::Instant;
 
 use fearless_simd::Level;
 
-use self::clock::{Clock, Stopwatch};
+use self::clock::{Clock, Lap, Stopwatch};
 use self::curve::Sample;
-use self::record::{Bench, BenchCase, Conditions};
-use self::rows::Laps;
-use self::spread::Spread;
-use crate::plan::{Plan, PlannedCase};
-#[cfg(doc)]
+use self::record::{Bench, BenchCase, Conditions, Spread};
+use crate::plan::{Plan, Planned, PlannedCase};
 use numeric::pack;
 
 /// How much is timed, and with what.
@@ -58,18 +51,19 @@ pub fn measure(plan: &Plan, amounts: Amounts, progress: &dyn Fn(u64)) -> Bench {
     let begin = Instant::now();
     let threads = rayon::current_num_threads();
     let stopwatch = Stopwatch { clock: Clock::of(threads), level: amounts.level, threads };
-    let timed =
-        || plan.experiments().filter_map(|(_, planned)| planned.outcome.is_ok().then_some(planned));
-    let mut all: Vec<(Laps, Sample)> =
-        timed().map(|planned| (Laps::default(), Sample::of(planned, amounts.draws))).collect();
+    let all = plan.experiments().map(|(case, planned)| {
+        let sample = Sample::of(planned, amounts.draws);
+        Measured { case, planned, laps: Vec::new(), sample }
+    });
+    let mut all: Vec<Measured> = all.collect();
     for round in 0..amounts.rounds {
-        for (planned, (laps, sample)) in timed().zip(&mut all) {
-            laps.push(stopwatch.lap(planned, round, amounts.draws, sample));
+        for one in all.iter_mut().filter(|one| one.planned.outcome.is_ok()) {
+            one.laps.push(stopwatch.lap(one.planned, round, amounts.draws, &mut one.sample));
             progress(amounts.draws);
         }
     }
-    let mut found = all.into_iter();
-    let cases: Vec<BenchCase> = plan.cases.iter().map(|case| case_of(case, &mut found)).collect();
+    let cases = all.chunk_by(|a, b| a.planned.id.case == b.planned.id.case);
+    let cases: Vec<BenchCase> = cases.map(case_of).collect();
     let speedups =
         cases.iter().flat_map(BenchCase::experiments).filter_map(|row| row.times.as_ref());
     Bench {
@@ -80,7 +74,7 @@ pub fn measure(plan: &Plan, amounts: Amounts, progress: &dyn Fn(u64)) -> Bench {
         conditions: Conditions {
             threads,
             clock: stopwatch.clock,
-            level: stopwatch.level_name(),
+            level: pack::word(amounts.level),
             seconds: begin.elapsed().as_secs_f64(),
             speedup: Spread::of(speedups.map(|times| times.speedup.median)),
         },
@@ -89,21 +83,19 @@ pub fn measure(plan: &Plan, amounts: Amounts, progress: &dyn Fn(u64)) -> Bench {
     }
 }
 
-fn case_of(planned: &PlannedCase, found: &mut impl Iterator<Item = (Laps, Sample)>) -> BenchCase {
-    let case = planned.case;
-    let (mut rows, mut estimators) = (Vec::new(), Vec::new());
-    for experiment in &planned.experiments {
-        match &experiment.outcome {
-            Err(refusal) => rows.push(rows::refused(experiment, refusal)),
-            Ok(ready) => {
-                // In the order in which they were timed.
-                let Some((laps, sample)) = found.next() else { continue };
-                rows.extend(rows::measured(experiment, ready, &laps, &sample));
-            }
-        }
-        estimators.resize(rows.len(), experiment.estimator);
-    }
-    rows::choose(&mut rows, &estimators);
+/// An experiment with what was timed and drawn of it.
+struct Measured<'p> {
+    case: &'p PlannedCase<'p>,
+    planned: &'p Planned,
+    /// The rounds; none where it is refused.
+    laps: Vec<Lap>,
+    sample: Sample,
+}
+
+fn case_of(measured: &[Measured]) -> BenchCase {
+    let case = measured[0].case.case;
+    let mut rows: Vec<_> = measured.iter().flat_map(rows::of).collect();
+    rows::choose(&mut rows);
     BenchCase {
         name: case.name.clone(),
         title: case.title.clone(),

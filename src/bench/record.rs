@@ -3,14 +3,14 @@
 //! Unknown is `None`, never zero. All times are in [`Times`] and [`Conditions`]; everything else is
 //! the same for any number of threads on any machine.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::clock::Clock;
-use super::comparison::Comparison;
-use super::spread::Spread;
+use super::stored::Comparison;
+use crate::case::id::ExperimentId;
 
 /// A finished bench.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone)]
 pub struct Bench {
     /// The version of the tool.
     pub version: String,
@@ -29,7 +29,7 @@ pub struct Bench {
 }
 
 /// Where and how it was timed.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone)]
 pub struct Conditions {
     /// How many threads drew at once.
     pub threads: usize,
@@ -74,16 +74,10 @@ impl BenchCase {
 pub struct BenchRow {
     /// Whether it is the first row of its experiment.
     pub is_first: bool,
-    /// The estimator with its own settings.
-    pub estimator: String,
-    /// The constant sampling extinction, 1/length; `None` where σ̂ varies or is not used.
-    pub sampling: Option<f64>,
-    /// The sampling extinction in words; empty where none is used.
-    pub sampling_kind: String,
-    /// The control in words; empty for none.
-    pub control: String,
-    /// The value of the swept quantity.
-    pub swept: Option<f64>,
+    /// Identity of the experiment.
+    pub id: ExperimentId,
+    /// The number of the estimator in the case's list, from 0.
+    pub listed: usize,
     /// The channel's name; empty where the value has one channel only.
     pub channel: String,
     /// How many draws the mean and the variance are of: those of all rounds.
@@ -157,15 +151,98 @@ pub struct Times {
     pub seconds_to: Option<[f64; 3]>,
     /// 1/(variance · seconds of a draw).
     pub efficiency: Option<f64>,
-    /// Seconds at the points of the curve.
-    pub seconds: Vec<f64>,
-    /// Seconds of the plain loop there.
-    pub plain_seconds: Vec<f64>,
+}
+
+impl BenchRow {
+    /// The constant sampling extinction, 1/length; `None` where σ̂ varies or is not used.
+    pub fn sampling(&self) -> Option<f64> {
+        self.id.sampling.constant.map(|value| value.0)
+    }
 }
 
 impl Times {
+    /// Seconds of so many draws.
+    pub fn seconds(&self, draws: u64) -> f64 {
+        draws as f64 * self.ns_per_draw.median * 1e-9
+    }
+
+    /// Seconds of so many draws of the plain loop.
+    pub fn plain_seconds(&self, draws: u64) -> f64 {
+        draws as f64 * self.plain_ns_per_draw.median * 1e-9
+    }
+
     /// TTUV, the time to unit variance: variance · seconds of a draw, the efficiency upside down.
     pub fn ttuv(&self) -> Option<f64> {
         self.efficiency.map(f64::recip)
+    }
+}
+
+/// The median of the rounds with the least and the most.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Spread {
+    /// The median; of an even number of rounds, the mean of the middle two.
+    pub median: f64,
+    /// The least.
+    pub least: f64,
+    /// The most.
+    pub most: f64,
+}
+
+impl Spread {
+    /// The spread of some figures; `None` of none.
+    pub fn of(figures: impl IntoIterator<Item = f64>) -> Option<Self> {
+        let mut sorted: Vec<f64> = figures.into_iter().collect();
+        sorted.sort_by(f64::total_cmp);
+        let (least, most) = (*sorted.first()?, *sorted.last()?);
+        let (upper, lower) = (sorted[sorted.len() / 2], sorted[(sorted.len() - 1) / 2]);
+        Some(Self { median: lower.midpoint(upper), least, most })
+    }
+
+    /// All three times a factor above 0.
+    #[must_use]
+    pub fn times(self, factor: f64) -> Self {
+        let [median, least, most] = [self.median, self.least, self.most].map(|x| x * factor);
+        Self { median, least, most }
+    }
+}
+
+/// The relative standard errors to which times are given.
+pub const ERRORS: [f64; 3] = [1e-2, 1e-3, 1e-4];
+
+/// The time until the standard error is `error` of the truth: `V/(ε²T²)` draws.
+pub fn time_to(error: f64, variance: f64, truth: f64, seconds_per_draw: f64) -> f64 {
+    let deviation = variance.sqrt() / (error * truth);
+    deviation * deviation * seconds_per_draw
+}
+
+/// `1/(variance · price)`, where both are above 0.
+pub fn efficiency(variance: f64, price: f64) -> Option<f64> {
+    Some(1.0 / (variance * price)).filter(|efficiency| efficiency.is_finite())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_median_is_in_the_middle() {
+        let of = |figures: &[f64]| Spread::of(figures.iter().copied());
+        assert_eq!(of(&[]), None);
+        assert_eq!(of(&[3.0, 1.0, 2.0]), Some(Spread { median: 2.0, least: 1.0, most: 3.0 }));
+        assert_eq!(of(&[4.0, 1.0, 2.0, 3.0]).map(|spread| spread.median), Some(2.5));
+    }
+
+    #[test]
+    fn a_hand_worked_case() {
+        // V = 4, T = 2: a relative error of 1e-2 takes 4/(1e-4 · 4) = 1e4 draws.
+        assert!((time_to(1e-2, 4.0, 2.0, 1e-6) - 1e-2).abs() < 1e-16);
+        assert_eq!(efficiency(4.0, 0.5), Some(0.5));
+        assert_eq!(efficiency(0.0, 1.0), None);
+    }
+
+    #[test]
+    fn a_tenth_of_the_error_takes_a_hundred_times_the_time() {
+        let [first, second, third] = ERRORS.map(|error| time_to(error, 0.3, 0.02, 1e-7));
+        assert!((second / first - 100.0).abs() < 1e-9 && (third / second - 100.0).abs() < 1e-9);
     }
 }

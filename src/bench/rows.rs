@@ -2,58 +2,38 @@
 
 use std::collections::BTreeMap;
 
+use super::Measured;
 use super::clock::Lap;
 use super::curve::{ChannelSample, Sample};
-use super::figures::{ERRORS, efficiency, time_to};
-use super::record::{BenchRow, CurvePoint, Times};
-use super::spread::Spread;
-use crate::case::build::Ready;
+use super::record::{BenchRow, CurvePoint, ERRORS, Spread, Times, efficiency, time_to};
 use crate::plan::Planned;
-use estimators::Refusal;
 use theory::Channel;
 use theory::prediction::CERTAIN;
 
 /// What is said where a round took no time that the clock could tell.
 const TOO_SHORT: &str = "a round is shorter than the clock can tell; give more --draws";
 
-/// The rounds of one experiment.
-#[derive(Debug, Clone, Default)]
-pub struct Laps(Vec<Lap>);
-
-impl Laps {
-    /// Adds a round.
-    pub fn push(&mut self, lap: Lap) {
-        self.0.push(lap);
-    }
-
-    /// A figure over the rounds; `None` where the clock was too coarse for one of them.
-    fn spread(&self, figure: impl Fn(&Lap) -> f64) -> Option<Spread> {
-        let figures: Vec<f64> = self.0.iter().map(figure).collect();
-        let is_told = figures.iter().all(|x| x.is_finite() && *x > 0.0);
-        Spread::of(figures).filter(|_| is_told)
-    }
-}
-
-/// The row of an experiment that cannot be drawn.
-pub fn refused(planned: &Planned, refusal: &Refusal) -> BenchRow {
-    BenchRow { is_refused: true, reason: refusal.to_string(), is_first: true, ..named(planned) }
+/// A figure over the rounds of one experiment; `None` where the clock was too coarse for one of them.
+fn spread(laps: &[Lap], figure: impl Fn(&Lap) -> f64) -> Option<Spread> {
+    let figures: Vec<f64> = laps.iter().map(figure).collect();
+    let is_told = figures.iter().all(|x| x.is_finite() && *x > 0.0);
+    Spread::of(figures).filter(|_| is_told)
 }
 
 fn named(planned: &Planned) -> BenchRow {
-    let id = &planned.id;
-    BenchRow {
-        estimator: id.label(),
-        sampling: id.sampling.constant.map(|value| value.0),
-        sampling_kind: id.sampling.kind.clone(),
-        control: id.control.clone(),
-        swept: planned.variation.map(|(_, value)| value),
-        needs: planned.needs.clone(),
-        ..BenchRow::default()
-    }
+    let (id, needs) = (planned.id.clone(), planned.needs.clone());
+    BenchRow { id, listed: planned.estimator, needs, ..BenchRow::default() }
 }
 
-/// The rows of an experiment, one to a channel.
-pub fn measured(planned: &Planned, ready: &Ready, laps: &Laps, sample: &Sample) -> Vec<BenchRow> {
+/// The rows of an experiment, one to a channel, or one that says why it cannot be drawn.
+pub fn of(Measured { planned, laps, sample, .. }: &Measured) -> Vec<BenchRow> {
+    let ready = match &planned.outcome {
+        Ok(ready) => ready,
+        Err(refusal) => {
+            let row = BenchRow { is_refused: true, is_first: true, ..named(planned) };
+            return vec![BenchRow { reason: refusal.to_string(), ..row }];
+        }
+    };
     let observed = sample.lookups.moments().map(|moments| moments.mean);
     let predicted_lookups = ready.prediction.lookups.as_ref().map(|law| law.mean);
     let lookups = predicted_lookups.or(observed);
@@ -70,7 +50,7 @@ pub fn measured(planned: &Planned, ready: &Ready, laps: &Laps, sample: &Sample) 
             Some(m) if m.relative[0] <= CERTAIN && !planned.expect_biased => Vec::new(),
             _ => curve(sample, drawn, (truth, known), cost),
         };
-        let times = times(laps, &curve, (truth, known), lookups);
+        let times = times(laps, (truth, known), lookups);
         let reason = if times.is_some() { reason } else { TOO_SHORT.to_owned() };
         BenchRow {
             is_first: index == 0,
@@ -141,40 +121,36 @@ fn curve(
 }
 
 fn times(
-    laps: &Laps,
-    curve: &[CurvePoint],
+    laps: &[Lap],
     (truth, variance): (f64, Option<f64>),
     lookups: Option<f64>,
 ) -> Option<Times> {
-    let draw = laps.spread(|lap| lap.together.unwrap_or(lap.single))?;
-    let plain = laps.spread(|lap| lap.plain)?;
-    let together = laps.0.first().is_some_and(|lap| lap.together.is_some());
-    let scaling = laps.spread(|lap| lap.single / lap.together.unwrap_or(lap.single));
-    let at = |per_draw: f64| curve.iter().map(|point| point.draws as f64 * per_draw).collect();
+    let draw = spread(laps, |lap| lap.together.unwrap_or(lap.single))?;
+    let plain = spread(laps, |lap| lap.plain)?;
+    let together = laps.first().is_some_and(|lap| lap.together.is_some());
+    let scaling = spread(laps, |lap| lap.single / lap.together.unwrap_or(lap.single));
     Some(Times {
         ns_per_draw: draw.times(1e9),
         plain_ns_per_draw: plain.times(1e9),
-        speedup: laps.spread(|lap| lap.plain / lap.single)?,
+        speedup: spread(laps, |lap| lap.plain / lap.single)?,
         scaling: scaling.filter(|_| together),
         draws_per_second: 1.0 / draw.median,
         ns_per_lookup: lookups.filter(|&n| n > 0.0).map(|n| draw.median * 1e9 / n),
         seconds_to: variance.map(|v| ERRORS.map(|error| time_to(error, v, truth, draw.median))),
         efficiency: variance.and_then(|v| efficiency(v, draw.median)),
-        seconds: at(draw.median),
-        plain_seconds: at(plain.median),
     })
 }
 
-/// Chooses what a plot shows: of each estimator, given by its number in the case, the last channel
-/// of the sweep point with the largest figure of merit.
-pub fn choose(rows: &mut [BenchRow], estimators: &[usize]) {
+/// Chooses what a plot shows: of each estimator of a case the last channel of the sweep point with the largest figure of
+/// merit.
+pub fn choose(rows: &mut [BenchRow]) {
     let merit = |row: &BenchRow| row.fom.unwrap_or(0.0);
     let mut best: BTreeMap<usize, usize> = BTreeMap::new();
-    for (at, &estimator) in estimators.iter().enumerate() {
+    for (at, row) in rows.iter().enumerate() {
         let is_last = rows.get(at + 1).is_none_or(|next| next.is_first);
-        let is_better = |&other: &usize| merit(&rows[at]) > merit(&rows[other]);
-        if is_last && !rows[at].curve.is_empty() && best.get(&estimator).is_none_or(is_better) {
-            best.insert(estimator, at);
+        let is_better = |&other: &usize| merit(row) > merit(&rows[other]);
+        if is_last && !row.curve.is_empty() && best.get(&row.listed).is_none_or(is_better) {
+            best.insert(row.listed, at);
         }
     }
     for at in best.into_values() {
@@ -198,12 +174,11 @@ mod tests {
         }
     }
 
-    fn row(estimator: &str, swept: Option<f64>, channel: &str, fom: f64) -> BenchRow {
+    fn row(listed: usize, channel: &str, fom: f64) -> BenchRow {
         BenchRow {
             is_first: channel.is_empty() || channel == "T(1)",
-            estimator: estimator.to_owned(),
+            listed,
             channel: channel.to_owned(),
-            swept,
             fom: Some(fom),
             curve: vec![point(64)],
             ..BenchRow::default()
@@ -213,16 +188,16 @@ mod tests {
     #[test]
     fn a_plot_shows_the_best_of_a_sweep_and_the_last_of_a_curve() {
         let mut rows = vec![
-            row("ratio", Some(1.0), "", 2.0),
-            row("ratio", Some(2.0), "", 3.0),
-            row("ratio", Some(4.0), "", 1.0),
-            row("regular", None, "", 0.0),
-            row("double", None, "T(1)", 9.0),
-            row("double", None, "T(2)", 5.0),
-            row("double", None, "T(3)", 1.0),
-            row("double", None, "T(1)", 9.0),
+            row(0, "", 2.0),
+            row(0, "", 3.0),
+            row(0, "", 1.0),
+            row(1, "", 0.0),
+            row(2, "T(1)", 9.0),
+            row(2, "T(2)", 5.0),
+            row(2, "T(3)", 1.0),
+            row(3, "T(1)", 9.0),
         ];
-        choose(&mut rows, &[0, 0, 0, 1, 2, 2, 2, 3]);
+        choose(&mut rows);
         let shown: Vec<usize> = (0..rows.len()).filter(|&i| rows[i].is_shown).collect();
         assert_eq!(shown, [1, 3, 6, 7]);
     }
@@ -230,9 +205,9 @@ mod tests {
     #[test]
     fn figures_agree_with_each_other() {
         let lap = |single| Lap { single, together: None, plain: 6e-8 };
-        let laps = Laps(vec![lap(2e-8), lap(1e-8), lap(3e-8)]);
+        let laps = [lap(2e-8), lap(1e-8), lap(3e-8)];
         let (truth, variance, lookups) = (0.5, 0.02, 4.0);
-        let times = times(&laps, &[point(64), point(100)], (truth, Some(variance)), Some(lookups));
+        let times = times(&laps, (truth, Some(variance)), Some(lookups));
         let times = times.expect("rounds");
         let near = |a: f64, b: f64| assert!((a / b - 1.0).abs() < 1e-12, "{a} {b}");
         near(times.ns_per_draw.median, 20.0);
@@ -247,14 +222,14 @@ mod tests {
             let draws = seconds * times.draws_per_second;
             near((variance / draws).sqrt() / truth, error);
         }
-        near(times.seconds[1], 2e-6);
+        near(times.seconds(100), 2e-6);
         assert_eq!(times.scaling, None);
     }
 
     #[test]
     fn a_clock_that_stands_still_tells_nothing() {
         let lap = |single| Lap { single, together: None, plain: 6e-8 };
-        let laps = Laps(vec![lap(2e-8), lap(0.0)]);
-        assert_eq!(times(&laps, &[point(64)], (0.5, Some(0.1)), Some(1.0)), None);
+        let laps = [lap(2e-8), lap(0.0)];
+        assert_eq!(times(&laps, (0.5, Some(0.1)), Some(1.0)), None);
     }
 }

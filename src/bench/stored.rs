@@ -1,18 +1,23 @@
 //! Stored benches: the times that a later bench is compared with.
 //!
 //! They stand beside the stored runs, as `NAME.bench.json`, and are read and written in the same way.
+//!
+//! A time per draw has changed if the rounds of both sides do not overlap and the ratio of the
+//! medians is beyond the tolerance. Two benches were timed apart, and what else the machine did
+//! differs; the speedup over the plain loop, timed in turn with it, is told beside the time: where
+//! it stayed, the plain loop became slower as well.
 
 use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
 use super::clock::Clock;
-use super::record::{Bench, BenchCase, BenchRow};
-use super::spread::Spread;
-use crate::record::baseline::{Baseline, BaselineError, file};
+use super::record::{Bench, BenchCase, BenchRow, Spread};
+use crate::case::id::ExperimentId;
+use crate::record::baseline::{self, Baseline, BaselineError, Matches};
 
 /// The version of the file's form.
-pub const SCHEMA: u32 = 1;
+pub const SCHEMA: u32 = 2;
 
 /// A stored bench.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -34,8 +39,8 @@ pub struct Stored {
 /// One experiment.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Timed {
-    /// `case|estimator|sampling|control|swept`.
-    pub id: String,
+    /// The experiment.
+    pub id: ExperimentId,
     /// A hash of the case's text.
     pub case: String,
     /// Nanoseconds of a draw.
@@ -50,7 +55,7 @@ impl Stored {
         let timed = |case: &BenchCase, row: &BenchRow| {
             let times = row.times.as_ref()?;
             Some(Timed {
-                id: id(case, row),
+                id: row.id.clone(),
                 case: case.digest.clone(),
                 ns_per_draw: times.ns_per_draw,
                 speedup: times.speedup,
@@ -85,7 +90,7 @@ impl Stored {
     ///
     /// There is none, or it is not what this program writes.
     pub fn read(path: &Path) -> Result<Self, BaselineError> {
-        file::read(path, SCHEMA, "timed")
+        baseline::read(path, SCHEMA, "timed")
     }
 
     /// Writes the file under a temporary name, then renames it.
@@ -94,12 +99,140 @@ impl Stored {
     ///
     /// The system refuses.
     pub fn write(&self, path: &Path) -> Result<(), BaselineError> {
-        file::write(self, path)
+        baseline::write(self, path)
     }
 }
 
-fn id(case: &BenchCase, row: &BenchRow) -> String {
-    let sampling = row.sampling.map_or_else(|| row.sampling_kind.clone(), |x| x.to_string());
-    let swept = row.swept.map_or(String::new(), |x| x.to_string());
-    [&case.name, &row.estimator, &sampling, &row.control, &swept].map(String::as_str).join("|")
+/// What changed.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Comparison {
+    /// What the stored bench is called.
+    pub name: String,
+    /// How much more time is no regression, as a share.
+    pub tolerance: f64,
+    /// How many experiments were compared.
+    pub compared: usize,
+    /// What became slower or faster.
+    pub changes: Vec<Change>,
+    /// Experiments of this bench that the stored one has not.
+    pub added: Vec<ExperimentId>,
+    /// Experiments of the stored bench that this one has not.
+    pub missing: Vec<ExperimentId>,
+    /// Experiments whose case has another text.
+    pub rewritten: Vec<ExperimentId>,
+    /// The vector hardware of both, where it differs.
+    pub levels: Option<[String; 2]>,
+}
+
+/// A time per draw that changed.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Change {
+    /// The experiment.
+    pub id: ExperimentId,
+    /// Nanoseconds of a draw, stored and now.
+    pub ns_per_draw: [Spread; 2],
+    /// The speedup over the plain loop, stored and now.
+    pub speedup: [Spread; 2],
+    /// Now over stored, of the medians of the times.
+    pub ratio: f64,
+    /// Whether it became slower.
+    pub is_regression: bool,
+}
+
+impl Comparison {
+    /// Whether anything became slower.
+    pub fn fails(&self) -> bool {
+        self.changes.iter().any(|change| change.is_regression)
+    }
+
+    /// Whether nothing was compared with anything: such a comparison says nothing.
+    pub fn is_empty(&self) -> bool {
+        self.compared == 0
+    }
+}
+
+/// Compares a bench with the stored one called `name`.
+pub fn compare(name: &str, stored: &Stored, now: &Stored, tolerance: f64) -> Comparison {
+    let place = |timed: &'_ Timed| (timed.id.clone(), timed.case.clone());
+    let Matches { pairs, added, missing, rewritten } =
+        Matches::of(&stored.timed, &now.timed, place);
+    Comparison {
+        name: name.to_owned(),
+        tolerance,
+        compared: pairs.len(),
+        changes: pairs.iter().filter_map(|[before, now]| change(before, now, tolerance)).collect(),
+        added,
+        missing,
+        rewritten,
+        levels: (stored.level != now.level).then(|| [stored.level.clone(), now.level.clone()]),
+    }
+}
+
+/// A change beyond both sides' rounds and the tolerance.
+fn change(stored: &Timed, now: &Timed, tolerance: f64) -> Option<Change> {
+    let (before, after) = (stored.ns_per_draw, now.ns_per_draw);
+    let ratio = after.median / before.median;
+    let is_regression = after.least > before.most && ratio > 1.0 + tolerance;
+    let is_improvement = after.most < before.least && ratio * (1.0 + tolerance) < 1.0;
+    (is_regression || is_improvement).then(|| Change {
+        id: now.id.clone(),
+        ns_per_draw: [before, after],
+        speedup: [stored.speedup, now.speedup],
+        ratio,
+        is_regression,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn id(name: &str) -> ExperimentId {
+        ExperimentId { case: name.to_owned(), ..ExperimentId::default() }
+    }
+
+    fn stored(times: &[(&str, [f64; 3])]) -> Stored {
+        let timed = times.iter().map(|&(id, rounds)| Timed {
+            id: self::id(id),
+            case: "text".to_owned(),
+            ns_per_draw: Spread::of(rounds).expect("rounds"),
+            speedup: Spread::of([4.0]).expect("rounds"),
+        });
+        Stored {
+            schema: 1,
+            version: String::new(),
+            threads: 1,
+            clock: Clock::Processor,
+            level: "avx2".to_owned(),
+            timed: timed.collect(),
+        }
+    }
+
+    #[test]
+    fn what_overlaps_or_is_within_the_tolerance_has_not_changed() {
+        let before = stored(&[("a", [9.0, 10.0, 11.0]), ("b", [9.0, 10.0, 20.0])]);
+        let same = compare("main", &before, &before, 0.0);
+        assert!(!same.fails() && same.changes.is_empty() && same.compared == 2);
+        let later = stored(&[("a", [11.5, 12.0, 12.5]), ("b", [19.0, 21.0, 22.0])]);
+        assert!(compare("main", &before, &later, 0.25).changes.is_empty());
+        assert!(compare("main", &before, &later, 0.1).fails(), "a is 20 % slower");
+    }
+
+    #[test]
+    fn slower_fails_faster_is_told_and_others_are_listed() {
+        let before =
+            stored(&[("a", [9.0, 10.0, 11.0]), ("b", [9.0, 10.0, 11.0]), ("old", [1.0; 3])]);
+        let mut later =
+            stored(&[("a", [19.0, 20.0, 21.0]), ("b", [4.0, 5.0, 6.0]), ("new", [1.0; 3])]);
+        let found = compare("main", &before, &later, 0.25);
+        assert!(found.fails());
+        let told: Vec<_> = found.changes.iter().map(|c| (c.ratio, c.is_regression)).collect();
+        assert_eq!(told, [(2.0, true), (0.5, false)]);
+        assert_eq!((found.added, found.missing), (vec![id("new")], vec![id("old")]));
+        "another".clone_into(&mut later.timed[0].case);
+        let found = compare("main", &before, &later, 0.25);
+        assert!(!found.fails() && found.rewritten == [id("a")] && !found.is_empty());
+        let other = stored(&[("other", [1.0; 3])]);
+        assert!(compare("main", &before, &other, 0.25).is_empty());
+    }
 }

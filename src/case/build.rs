@@ -105,17 +105,9 @@ pub trait AnyProblem: Send + Sync {
     fn has_albedo(&self, estimator: usize) -> bool;
 
     /// The control, where the parts fit together.
-    ///
-    /// # Errors
-    ///
-    /// σ̂ that is not given in space, or weights that are no doubles.
     fn fitting_control(&self, estimator: usize, parts: Parts) -> Result<Control, Refusal>;
 
     /// An experiment with its prediction; a `forced` one is drawn outside its domain, too.
-    ///
-    /// # Errors
-    ///
-    /// The violated inequality and where on the ray.
     fn prepare(
         &self,
         estimator: usize,
@@ -131,10 +123,6 @@ pub trait AnyProblem: Send + Sync {
     fn ray_view(&self, estimator: usize, parts: Parts, address: Address) -> Option<RayView>;
 
     /// Prepares the `Setup<P>` of an experiment, for draws that are made outside the catalogue.
-    ///
-    /// # Errors
-    ///
-    /// Parts that do not fit together.
     fn setup(&self, estimator: usize, parts: Parts) -> Result<Box<dyn Any>, Refusal>;
 }
 
@@ -268,11 +256,7 @@ fn require_weights(
 }
 
 /// Refuses an experiment if its answer leaves the range of doubles, or if its draws would take too many lookups.
-///
-/// # Errors
-///
-/// The answer, or the expected lookups.
-pub fn refuse_what_cannot_be_computed(ready: Ready) -> Result<Ready, Refusal> {
+pub(super) fn refuse_what_cannot_be_computed(ready: Ready) -> Result<Ready, Refusal> {
     for channel in &ready.prediction.channels {
         let truth = channel.truth.value;
         let is_known = channel.truth.error.is_finite();

@@ -6,9 +6,8 @@
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
-use crate::case::Case;
-use crate::case::source::{CaseError, Source};
-use crate::case::suite;
+use crate::case::spec::{CaseError, Source};
+use crate::case::{Case, suite};
 use estimators::{self, Estimated};
 use media;
 use media::catalogue::{Addition, Additions, PageList, suggestion};

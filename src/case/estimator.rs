@@ -1,6 +1,6 @@
 //! The estimators of a case or a picture: their own settings, σ̂ and control.
 
-use crate::case::names::EstimatorName;
+use crate::case::id::EstimatorName;
 use crate::case::sweep::What;
 use estimators::own::EstimatorReader;
 use estimators::recipes::sampling::spectral::Spectral;

@@ -31,24 +31,21 @@
 //! that needs no settings stands alone or with an empty table, wherever a name is chosen: `control = "mean"`,
 //! `phase = "isotropic"`, `estimators = ["ratio", "woodcock"]`.
 
-pub mod at;
-pub mod build;
+pub(crate) mod build;
 pub mod catalogue;
-pub mod estimator;
-pub mod example;
-pub mod names;
+pub(crate) mod estimator;
+pub mod id;
 mod scaling;
-pub mod scenario;
+pub(crate) mod scenario;
 mod shorthand;
-pub mod source;
-pub mod spec;
+pub(crate) mod spec;
 pub mod suite;
 pub mod sweep;
 
-pub use at::At;
+pub use build::Ready;
 pub use catalogue::Catalogue;
-pub use source::{CaseError, Source};
-pub use spec::Spec;
+pub use scenario::{At, Course, Scenario};
+pub use spec::{CaseError, Source, Spec};
 
 /// The manual of case files.
 pub const CATALOGUE: PageList = PageList {
@@ -59,11 +56,9 @@ pub const CATALOGUE: PageList = PageList {
 use std::path::PathBuf;
 
 use crate::case::estimator::{Defaults, read_expect, read_kernel};
-use crate::case::names::Names;
-use crate::case::scenario::Scenario;
+use crate::case::id::ExperimentId;
+use crate::case::scenario::Held;
 use crate::case::sweep::{SweepAxis, Variation, What};
-use crate::plan::options::Tolerance;
-use crate::plan::{ExperimentId, addresses};
 use estimators::{Order, Refusal};
 use media::Body;
 use media::catalogue::additions::{self, Additions};
@@ -179,18 +174,15 @@ impl Case {
     /// A value beside the sweep at which the case cannot be read.
     pub fn at(&self, variation: Variation) -> Result<At<'_>, Refusal> {
         let is_swept = |what| self.sweep.as_ref().is_some_and(|axis| axis.what == what);
-        let Some((what, value)) =
-            variation.filter(|&(what, _)| what.varies_medium() && is_swept(what))
-        else {
-            return Ok(At::listed(&self.scenario, variation));
-        };
+        let varied = variation.filter(|&(what, _)| what.varies_medium() && is_swept(what));
+        let Some((what, value)) = varied else { return Ok(self.as_written(variation)) };
         if let Some((_, known)) = self.varied.iter().find(|(known, _)| *known == value) {
-            return Ok(At::listed(known, None));
+            return Ok(At::new(self, Held::Listed(known), variation));
         }
         match read_varied(&self.spec, &self.scenario, what, value) {
             Ok(mut scenario) => {
                 scenario.draw_by(|estimator| self.scenario.wished_order(estimator));
-                Ok(At::beside(scenario))
+                Ok(At::new(self, Held::Beside(Box::new(scenario)), variation))
             }
             Err(faults) => {
                 let needs = "a case that can be read at this value of the sweep";
@@ -200,10 +192,19 @@ impl Case {
         }
     }
 
-    /// Names of an experiment in tables.
-    pub fn names(&self, estimator: usize, variation: Variation) -> Names {
-        let at = self.at(variation).unwrap_or_else(|_| At::listed(&self.scenario, None));
-        at.names(estimator)
+    /// Identity of an experiment.
+    pub fn id(&self, estimator: usize, variation: Variation) -> ExperimentId {
+        self.at(variation).unwrap_or_else(|_| self.as_written(variation)).id(estimator)
+    }
+
+    /// Address of the random numbers of an experiment.
+    pub fn address(&self, seed: u64, estimator: usize, variation: Variation) -> Address {
+        let at = self.at(variation).unwrap_or_else(|_| self.as_written(variation));
+        at.id(estimator).address(seed, at.alias(estimator).as_ref())
+    }
+
+    fn as_written(&self, variation: Variation) -> At<'_> {
+        At::new(self, Held::Listed(&self.scenario), variation)
     }
 
     /// Draws by a kernel, whatever the case says, where an estimator has it.
@@ -217,9 +218,27 @@ impl Case {
     /// Address of the random numbers of an estimator's pilot rays. It is the same all along a sweep, so that the theory's
     /// line and the experiments on it learn the same σ̂.
     pub fn pilots(&self, seed: u64, estimator: usize) -> Address {
-        let names = self.names(estimator, None);
-        let id = ExperimentId::new([&self.name, &self.problem], &names, None, estimator);
-        addresses::own(seed, &id, names.alias.as_ref())
+        let at = self.as_written(None);
+        let id = ExperimentId { namesake: estimator + 1, ..at.unnumbered(estimator) };
+        id.address(seed, at.alias(estimator).as_ref())
+    }
+}
+
+/// The smallest relative differences that must be seen; `None` where the case does not say.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Tolerance {
+    /// Of the mean, relative to the truth.
+    pub mean: Option<f64>,
+    /// Of the variance, relative to the prediction.
+    pub variance: Option<f64>,
+    /// Of the lookups, relative to the prediction.
+    pub lookups: Option<f64>,
+}
+
+impl Tolerance {
+    /// Whether the case has any.
+    pub fn is_given(&self) -> bool {
+        *self != Self::default()
     }
 }
 

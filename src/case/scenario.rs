@@ -1,25 +1,34 @@
-//! A problem with its medium and the estimators of a case, and the parts of their experiments.
+//! A problem with its medium and the estimators of a case; and, at one value of the sweep, the names, predictions and
+//! preparation of its experiments.
 
+use std::any::Any;
 use std::sync::{Arc, OnceLock};
 
-use crate::case::build::{AnyProblem, Parts, ProblemKind};
+use serde::{Deserialize, Serialize};
+
+use crate::case::Case;
+use crate::case::build::{AnyProblem, Parts, ProblemKind, Ready, refuse_what_cannot_be_computed};
 use crate::case::estimator::{Defaults, Estimators};
+use crate::case::id::{EstimatorName, ExperimentId, Number, SamplingName, SweepPoint};
 use crate::case::sweep::{Variation, What};
-use estimators::recipes::controls;
-use estimators::{Order, Refusal, Site};
+use estimators::recipes::{controls, sampling};
+use estimators::{Order, RayView, Refusal, Site};
 use media::body::RayNeed;
 use media::catalogue::Settings;
-use media::{Body, Medium, Piecewise, misses};
+use media::{Body, Control, Medium, Piecewise, misses};
 use numeric::rng::Address;
-use theory::Mesh;
+use theory::{Mesh, Prediction};
+
+/// Address of pilot rays where only theory is asked: it needs no random numbers, but recipes that learn do.
+const NOWHERE: Address = Address { seed: 0, experiment: 0, block: 0, lane: 0 };
 
 /// A problem with its medium and estimators, which are numbered in the order of the case.
 pub struct Scenario {
     body: Body,
-    pub(super) problem: Box<dyn AnyProblem>,
+    problem: Box<dyn AnyProblem>,
     /// Mesh of each channel.
     meshes: OnceLock<Vec<Arc<Mesh>>>,
-    pub(super) estimators: Estimators,
+    estimators: Estimators,
     /// Requirement of the problem on the ray.
     ray: RayNeed,
 }
@@ -63,11 +72,6 @@ impl Scenario {
     /// Number of estimators.
     pub fn estimators(&self) -> usize {
         self.estimators.list.len()
-    }
-
-    /// Contents of the files of the medium, a sentence each.
-    pub fn facts(&self) -> Vec<String> {
-        self.body.facts()
     }
 
     /// Doubts about the medium and its ray, a sentence each.
@@ -114,7 +118,7 @@ impl Scenario {
         self.estimators.list[estimator].expect_biased
     }
 
-    pub(super) fn mesh(&self) -> &Arc<Mesh> {
+    fn mesh(&self) -> &Arc<Mesh> {
         &self.meshes()[0]
     }
 
@@ -123,12 +127,12 @@ impl Scenario {
         self.meshes.get_or_init(|| self.problem.media().iter().map(cut).collect())
     }
 
-    pub(super) fn site(&self, address: Address) -> Site<'_> {
+    fn site(&self, address: Address) -> Site<'_> {
         Site { body: &self.body.channels()[0], mesh: self.mesh(), address }
     }
 
     /// Calls `f` with the control that an experiment uses.
-    pub(super) fn with_control<T>(
+    fn with_control<T>(
         &self,
         estimator: usize,
         variation: Variation,
@@ -136,10 +140,14 @@ impl Scenario {
     ) -> T {
         let parsed = &self.estimators.list[estimator];
         let varied = match variation {
-            Some((What::Points, points)) => self
-                .estimators
-                .given_control(parsed)
-                .and_then(|control| control.with_points(whole(points))),
+            Some((What::Points, points)) => {
+                #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
+                // a checked count
+                let points = points as usize;
+                self.estimators
+                    .given_control(parsed)
+                    .and_then(|control| control.with_points(points))
+            }
             Some((What::Control, value)) if self.depends_on(estimator, What::Control) => {
                 Some(Box::new(controls::constant::Constant { value }) as Box<dyn controls::Recipe>)
             }
@@ -148,19 +156,9 @@ impl Scenario {
         f(varied.as_deref().unwrap_or(self.estimators.control_of(parsed)))
     }
 
-    /// Parts of an experiment, at a constant σ̂ if one is given.
-    pub(super) fn parts(
-        &self,
-        estimator: usize,
-        variation: Variation,
-        what_if: Option<f64>,
-        address: Address,
-    ) -> Result<Parts<'_>, Refusal> {
-        self.counted_parts(estimator, variation, what_if, address).map(|(parts, _)| parts)
-    }
-
-    /// Parts of an experiment, and the number of lookups of σ_t that control and σ̂ took.
-    pub(super) fn counted_parts(
+    /// Parts of an experiment, at a constant σ̂ of `what_if` if one is given, and the number of lookups of σ_t that control
+    /// and σ̂ took.
+    fn parts(
         &self,
         estimator: usize,
         variation: Variation,
@@ -211,7 +209,249 @@ impl Scenario {
     }
 }
 
-#[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // a checked count
-fn whole(points: f64) -> usize {
-    points as usize
+/// A case at one value of its sweep.
+pub struct At<'a> {
+    case: &'a Case,
+    scenario: Held<'a>,
+    /// Point of the sweep.
+    swept: Variation,
+}
+
+/// A scenario of the case, or one that was read for a value beside its sweep.
+pub(super) enum Held<'a> {
+    Listed(&'a Scenario),
+    Beside(Box<Scenario>),
+}
+
+impl<'a> At<'a> {
+    /// A scenario of the case at a point of the sweep.
+    pub(super) fn new(case: &'a Case, scenario: Held<'a>, swept: Variation) -> Self {
+        Self { case, scenario, swept }
+    }
+
+    /// The medium and the estimators.
+    pub fn scenario(&self) -> &Scenario {
+        match &self.scenario {
+            Held::Listed(scenario) => scenario,
+            Held::Beside(scenario) => scenario,
+        }
+    }
+
+    /// Swept quantity other than the medium, which the scenario has, with its value.
+    fn variation(&self) -> Variation {
+        self.swept.filter(|(what, _)| !what.varies_medium())
+    }
+
+    /// Identity of an experiment; those that agree in all else, as where each has a field of its own as control, are
+    /// numbered.
+    pub fn id(&self, estimator: usize) -> ExperimentId {
+        let own = self.unnumbered(estimator);
+        let earlier = (0..estimator).filter(|&other| self.unnumbered(other) == own).count();
+        ExperimentId { namesake: earlier + 1, ..own }
+    }
+
+    /// Identity of the first experiment of such names.
+    pub(super) fn unnumbered(&self, estimator: usize) -> ExperimentId {
+        let (scenario, variation) = (self.scenario(), self.variation());
+        let parsed = &scenario.estimators.list[estimator];
+        let (constant, kind) = match (variation, scenario.estimators.sampling_of(parsed)) {
+            (Some((What::Sampling, value)), _)
+                if scenario.depends_on(estimator, What::Sampling) =>
+            {
+                (Some(value), "constant".into())
+            }
+            (Some((What::SamplingScale, factor)), Some(recipe)) => {
+                let kind = format!("{factor} × {}", recipe.label());
+                (recipe.constant().map(|value| value * factor), kind)
+            }
+            (_, Some(recipe)) => (recipe.constant(), recipe.label()),
+            (_, None) => (None, String::new()),
+        };
+        ExperimentId {
+            case: self.case.name.clone(),
+            problem: self.case.problem.clone(),
+            estimator: parsed.label(!matches!(variation, Some((What::Albedo, _)))),
+            sampling: SamplingName { constant: constant.map(Number), kind },
+            control: scenario.with_control(estimator, variation, |recipe| recipe.label()),
+            swept: self.swept.map(|(what, value)| SweepPoint { what, value: Number(value) }),
+            namesake: 1,
+        }
+    }
+
+    /// The estimator that an experiment is by definition, where that is another one.
+    pub(super) fn alias(&self, estimator: usize) -> Option<EstimatorName> {
+        let ExperimentId { sampling, control, .. } = self.unnumbered(estimator);
+        let is_plain = control.is_empty() && sampling.constant.is_some();
+        self.scenario().estimators.list[estimator].alias().filter(|_| is_plain)
+    }
+
+    /// Knowledge of the medium that an experiment needs beside lookups, as in `τ, max |σ_t − σ_c|`.
+    pub fn needs(&self, estimator: usize) -> String {
+        let (scenario, variation) = (self.scenario(), self.variation());
+        let parsed = &scenario.estimators.list[estimator];
+        let control = scenario.with_control(estimator, variation, |recipe| recipe.needs());
+        // A swept σ̂ stands in the recipe's place.
+        let is_swept = matches!(variation, Some((What::Sampling, _)));
+        let recipe = scenario.estimators.sampling_of(parsed);
+        let recipe =
+            recipe.filter(|_| !(is_swept && scenario.depends_on(estimator, What::Sampling)));
+        let own = parsed.features.needs.filter(|own| control != Some(own));
+        let needs = [own, control, recipe.and_then(sampling::Recipe::needs)];
+        needs.into_iter().flatten().collect::<Vec<_>>().join(", ")
+    }
+
+    /// Prepares an experiment; pilot rays find their random numbers at `address`.
+    ///
+    /// # Errors
+    ///
+    /// Why it cannot be drawn.
+    pub fn prepare(&self, estimator: usize, address: Address) -> Result<Ready, Refusal> {
+        let (scenario, variation) = (self.scenario(), self.variation());
+        let (parts, setup_lookups) = scenario.parts(estimator, variation, None, address)?;
+        let parsed = &scenario.estimators.list[estimator];
+        let mut ready =
+            scenario.problem.prepare(estimator, parts, parsed.order(), parsed.expect_biased)?;
+        ready.prediction.setup_lookups = setup_lookups;
+        refuse_what_cannot_be_computed(ready)
+    }
+
+    /// Prediction of an experiment, at a constant σ̂ of `what_if` if one is given; `None` if it is refused.
+    pub fn predict(
+        &self,
+        estimator: usize,
+        what_if: Option<f64>,
+        pilots: Address,
+    ) -> Option<Prediction> {
+        let (scenario, variation) = (self.scenario(), self.variation());
+        let (parts, setup_lookups) = scenario.parts(estimator, variation, what_if, pilots).ok()?;
+        let order = scenario.estimators.list[estimator].order();
+        let prediction = scenario.problem.predict(estimator, parts, order)?;
+        Some(Prediction { setup_lookups, ..prediction })
+    }
+
+    /// The ray seen from the side and the places where the control was fitted, for estimators of a
+    /// curve.
+    pub fn ray_view(&self, estimator: usize, address: Address) -> Option<(RayView, Vec<[f64; 2]>)> {
+        let (scenario, variation) = (self.scenario(), self.variation());
+        let parts = scenario.parts(estimator, variation, None, address).ok()?.0;
+        let ray_view = scenario.problem.ray_view(estimator, parts, address)?;
+        let site = scenario.site(address);
+        let points = scenario.with_control(estimator, variation, |recipe| recipe.points(&site));
+        Some((ray_view, points))
+    }
+
+    /// σ_t, control and σ̂ of each channel along the ray, and at the place of interest; places where a field has no finite
+    /// value are left out.
+    pub fn courses(&self, estimator: usize, address: Address, at: Option<f64>) -> Vec<Course> {
+        let scenario = self.scenario();
+        let parts = scenario.parts(estimator, self.variation(), None, address).ok();
+        let parts = parts.map(|(parts, _)| parts);
+        let sampling = parts.as_ref().map(|parts| {
+            let further = parts.further.iter().map(|(_, sampling)| sampling.as_ref());
+            std::iter::once(parts.sampling.as_ref()).chain(further).collect::<Vec<_>>()
+        });
+        let control = parts.as_ref().map(|parts| &parts.control);
+        let media = scenario.media().iter().enumerate();
+        let fields = media.map(|(channel, medium)| Fields {
+            medium,
+            control,
+            sampling: sampling.as_ref().and_then(|all| *all.get(channel)?),
+        });
+        fields.filter_map(|fields| fields.course(at)).map(Course::finite).collect()
+    }
+
+    /// The largest `|σ_t − σ_c|` on the ray, 1/length: the natural scale of σ̂ for an estimator.
+    pub fn natural_scale(&self, estimator: usize) -> f64 {
+        let scenario = self.scenario();
+        let parts = scenario.parts(estimator, self.variation(), None, NOWHERE);
+        let control =
+            parts.and_then(|(parts, _)| scenario.problem.fitting_control(estimator, parts));
+        let Ok(control) = control else { return 0.0 };
+        let largest = scenario.mesh().largest(|t, sigma| (sigma - control.extinction(t)).abs());
+        largest.map_or(0.0, |(_, size)| size)
+    }
+
+    /// Prepares the `Setup<P>` of an experiment, for draws that are made outside the catalogue.
+    ///
+    /// # Errors
+    ///
+    /// Why it cannot be drawn.
+    pub fn setup(&self, estimator: usize, address: Address) -> Result<Box<dyn Any>, Refusal> {
+        let scenario = self.scenario();
+        let (parts, _) = scenario.parts(estimator, self.variation(), None, address)?;
+        scenario.problem.setup(estimator, parts)
+    }
+}
+
+/// σ_t, control and σ̂ along the ray of an experiment that is refused.
+#[derive(Debug, Clone, Default, Serialize, Deserialize)]
+pub struct Course {
+    /// Distances along the ray, ascending; not more than 100.
+    #[serde(with = "gate::extended")]
+    pub t: Vec<f64>,
+    /// σ_t there, 1/length.
+    #[serde(with = "gate::extended")]
+    pub extinction: Vec<f64>,
+    /// The control there, 1/length; empty for none, or where it cannot be made.
+    #[serde(with = "gate::extended")]
+    pub control: Vec<f64>,
+    /// σ̂ there, 1/length; empty for none, or where it cannot be made.
+    #[serde(with = "gate::extended")]
+    pub sampling: Vec<f64>,
+    /// Where the inequality does not hold; `None` where something else is refused.
+    pub at: Option<f64>,
+}
+
+impl Course {
+    /// Leaves out the places where a field has no finite value.
+    fn finite(self) -> Self {
+        let fields = [&self.t, &self.extinction, &self.control, &self.sampling];
+        let is_finite =
+            |i: &usize| fields.iter().all(|field| field.get(*i).is_none_or(|v| v.is_finite()));
+        let kept: Vec<usize> = (0..self.t.len()).filter(is_finite).collect();
+        let [t, extinction, control, sampling] =
+            fields.map(|field| kept.iter().filter_map(|&i| field.get(i).copied()).collect());
+        Self { t, extinction, control, sampling, at: self.at }
+    }
+}
+
+/// Number of evenly spaced places on the ray; the place where an inequality fails is added.
+const PLACES: usize = 99;
+
+/// The fields of a channel, as far as they could be made.
+struct Fields<'a> {
+    /// σ_t.
+    medium: &'a Medium,
+    /// σ_c.
+    control: Option<&'a Control>,
+    /// σ̂.
+    sampling: Option<&'a Piecewise>,
+}
+
+impl Fields<'_> {
+    /// Values along the ray and at a place of interest; `None` on a ray of infinite length.
+    fn course(&self, at: Option<f64>) -> Option<Course> {
+        let (span, support) = (self.medium.span(), self.medium.support());
+        let length = span.length();
+        if !(length.is_finite() && length > 0.0) {
+            return None;
+        }
+        let place = |i: usize| span.from + length * (i as f64 / (PLACES - 1) as f64);
+        let mut t: Vec<f64> = (0..PLACES).map(place).collect();
+        t.extend(at.filter(|at| span.from <= *at && *at <= span.to));
+        t.sort_by(f64::total_cmp);
+        t.dedup();
+        let inside = |t: f64| support.from <= t && t <= support.to;
+        let along = |field: &dyn Fn(f64) -> f64| -> Vec<f64> {
+            t.iter().map(|&t| if inside(t) { field(t) } else { 0.0 }).collect()
+        };
+        let control = self.control.filter(|control| !control.is_none());
+        Some(Course {
+            extinction: along(&|t| self.medium.extinction(t)),
+            control: control.map_or_else(Vec::new, |control| along(&|t| control.extinction(t))),
+            sampling: self.sampling.map_or_else(Vec::new, |field| along(&|t| field.value(t))),
+            at,
+            t,
+        })
+    }
 }

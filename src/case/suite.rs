@@ -1,6 +1,8 @@
-//! The cases that are built into the binary: a choice of those under `cases/` and `tests/cases/`, one line each.
+//! The cases that are built into the binary: a choice of those under `cases/` and `tests/cases/`, one line each; and
+//! examples for the pages of the catalogue, which are built-in cases reduced to what a page needs.
 
-use crate::case::source::{BuiltIn, Source};
+use crate::case::spec::{BuiltIn, Source, Spec, entry};
+use media::catalogue::{Entry, Node, Value, additions};
 
 /// Lists built-in cases by their path below `cases/`, without `.toml`; `in "tests/"` means `tests/cases/`.
 macro_rules! cases {
@@ -95,11 +97,6 @@ const CALIBRATION: BuiltIn = cases![
 /// A case of which `explain` shows a part, where no case of the suite has that estimator.
 const SHOWN: BuiltIn = cases!["lambertian/eq21",];
 
-/// Every case that `explain` may show a part of.
-pub fn shown() -> Vec<Source> {
-    [suite(), SHOWN.all()].concat()
-}
-
 /// The cases on which the gate itself is tested.
 pub fn calibration() -> Vec<Source> {
     CALIBRATION.all()
@@ -113,4 +110,141 @@ pub fn suite() -> Vec<Source> {
 /// The built-in case of a name.
 pub fn find(name: &str) -> Option<Source> {
     CASES.find(name).or_else(|| CALIBRATION.find(name))
+}
+
+/// Letters by which a sweep makes a case less suited.
+const SWEEP: usize = 400;
+/// Letters by which a declared bias does.
+const BIASED: usize = 300;
+/// Letters by which a problem other than transmittance does, if the page is of no problem.
+const OTHER_PROBLEM: usize = 200;
+
+/// Returns a complete case in which a page of a part of the catalogue is used, as in `example("media", "eq21")`; `None`
+/// for pages of other parts, and for those of a program's own.
+///
+/// A problem has its shortest case. An estimator, a medium, a phase function, a recipe for σ̂ or a control has the
+/// shortest case in which it stands, with one estimator. Cases without a sweep, and of transmittance, go first.
+pub fn example(part: &str, name: &str) -> Option<String> {
+    let page = Wanted { part, name };
+    let sources = [suite(), SHOWN.all()].concat();
+    let candidates = sources.iter().flat_map(|source| page.candidates(source));
+    let (_, text) = candidates.min()?;
+    Some(text)
+}
+
+/// The page that an example is of.
+struct Wanted<'a> {
+    part: &'a str,
+    name: &'a str,
+}
+
+impl Wanted<'_> {
+    /// Every way to reduce a case to an example, with what makes it less suited.
+    fn candidates(&self, source: &Source) -> Vec<(usize, String)> {
+        let Ok(spec) = Spec::parse(source, &additions::NONE) else { return Vec::new() };
+        let Some((problem, body)) = spec.problem() else { return Vec::new() };
+        let root = spec.entries();
+        let Some(list) = entry(body, "estimators") else { return Vec::new() };
+        let Value::Array(items) = &list.node.value else { return Vec::new() };
+        let others: Vec<&Entry> = body.iter().filter(|own| own.key != "estimators").collect();
+        if self.part == "problems" {
+            let all = (problem == self.name).then(|| self.reduced(source, root, None));
+            return all.map(|text| (text.len(), text)).into_iter().collect();
+        }
+        let fitting = items.iter().filter(|item| self.is_in(problem, &others, item));
+        let candidate = |item: &Node| {
+            let text = self.reduced(source, root, Some((&list.node, item)));
+            let is_general = !self.part.starts_with("estimators");
+            let cost = [
+                (entry(body, "sweep").is_some(), SWEEP),
+                (text.contains("expect"), BIASED),
+                (is_general && problem != "transmittance", OTHER_PROBLEM),
+            ];
+            (
+                text.len() + cost.iter().filter(|(is, _)| *is).map(|(_, cost)| cost).sum::<usize>(),
+                text,
+            )
+        };
+        fitting.map(candidate).collect()
+    }
+
+    /// Whether the page is used by this estimator of a case, or by the case's own settings.
+    fn is_in(&self, problem: &str, others: &[&Entry], item: &Node) -> bool {
+        let Value::Table(item) = &item.value else { return false };
+        let among = |keys: &[&str]| others.iter().any(|own| self.names(own, keys));
+        let within = |key: &str| item.iter().any(|own| self.stands_below(own, key));
+        match self.part {
+            "media" => among(&["medium", "volume"]),
+            "phases" => among(&["phase"]),
+            "controls" => within("control"),
+            "sampling" => {
+                let has_own = item.iter().any(|own| has_key(&own.node.value, "sampling"));
+                if has_own { within("sampling") } else { among(&["sampling"]) }
+            }
+            part => {
+                let own = part.strip_prefix("estimators of ").is_some_and(|of| of == problem);
+                own && item.first().is_some_and(|estimator| estimator.key == self.name)
+            }
+        }
+    }
+
+    /// Whether an entry has one of these keys, and the page as its choice.
+    fn names(&self, own: &Entry, keys: &[&str]) -> bool {
+        let chosen = |value: &Value| matches!(value, Value::Table(table) if entry(table, self.name).is_some());
+        keys.contains(&own.key.as_str())
+            && match &own.node.value {
+                Value::Array(channels) => channels.iter().any(|node| chosen(&node.value)),
+                value => chosen(value),
+            }
+    }
+
+    /// Whether an entry, or one below it, has this key and the page as its choice.
+    fn stands_below(&self, own: &Entry, key: &str) -> bool {
+        let below = |table: &Vec<Entry>| table.iter().any(|own| self.stands_below(own, key));
+        self.names(own, &[key]) || matches!(&own.node.value, Value::Table(table) if below(table))
+    }
+
+    /// The case's text with a title of its own, without the comments at its head, and with one estimator if one is given.
+    fn reduced(&self, source: &Source, root: &[Entry], only: Option<(&Node, &Node)>) -> String {
+        let text = &source.text;
+        let kind = if self.part == "problems" { "problem" } else { self.part };
+        let title = format!("\"An example of {} ({kind})\"", self.name);
+        let mut cuts = vec![];
+        if let Some(own) = entry(root, "title") {
+            cuts.push((own.node.span.clone(), title));
+        }
+        if let Some((list, item)) = only {
+            let item = &text[item.span.clone()];
+            cuts.push((list.span.clone(), format!("[\n  {item},\n]")));
+        }
+        // From the end on, so that what is before keeps its place.
+        cuts.sort_by_key(|(span, _)| std::cmp::Reverse(span.start));
+        let mut reduced = text.clone();
+        for (span, new) in cuts {
+            reduced.replace_range(span, &new);
+        }
+        let kept = reduced.lines().skip_while(|line| line.is_empty() || line.starts_with('#'));
+        kept.flat_map(|line| [line, "\n"]).collect()
+    }
+}
+
+/// Whether a table has such a key, at any depth.
+fn has_key(value: &Value, key: &str) -> bool {
+    let is_there = |own: &Entry| own.key == key || has_key(&own.node.value, key);
+    matches!(value, Value::Table(table) if table.iter().any(is_there))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_page_has_the_shortest_case_in_which_it_stands() {
+        let text = example("media", "eq21").expect("an example");
+        assert!(text.starts_with("title = \"An example of eq21 (media)\"\n"), "{text}");
+        assert!(text.contains("volume.eq21") && text.contains("[problem.transmittance]"), "{text}");
+        assert_eq!(text.matches("\n  { ").count(), 1, "{text}");
+        assert_eq!(example("checks", "mean"), None);
+        assert_eq!(example("estimators of transmittance", "no-such"), None);
+    }
 }

@@ -5,8 +5,8 @@
 //! is none of them is strange: a single one fails the check where the list is complete.
 
 use super::batch::{Batch, each_value};
+use super::check::{Question, Subject};
 use super::law::Law;
-use super::question::{Question, Subject};
 use gate::stats::chi_square;
 use theory::{self, Prediction};
 

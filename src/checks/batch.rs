@@ -6,12 +6,41 @@
 
 use std::cell::OnceCell;
 
-use super::observe::{Observe, Observer};
 use estimators::DrawBuffer;
 use gate::stats::{Census, Tally};
+use numeric::pack::in_fused_code;
 
 /// Draws that are observed at once.
 const PART: usize = 1024;
+
+/// Adds a y for each of the draws to the second argument.
+pub type Observer<T> = Box<dyn Fn(&T, &mut Vec<f64>) + Send + Sync>;
+
+/// How a y comes from a draw.
+pub enum Observe {
+    /// From the value of one channel.
+    Value(usize, Observer<[f64]>),
+    /// From the number of lookups.
+    Lookups(Observer<[u32]>),
+    /// From the draw as a whole.
+    Draw(Observer<DrawBuffer>),
+}
+
+impl Observe {
+    /// `f` of each value of a channel, on the hardware's registers: `f` must be inlined.
+    pub fn each_value(channel: usize, f: impl Fn(f64) -> f64 + Send + Sync + 'static) -> Self {
+        let observer = move |values: &[f64], y: &mut Vec<f64>| {
+            // Not extended: that is compiled for the least machine.
+            let first = y.len();
+            y.resize(first + values.len(), 0.0);
+            in_fused_code(
+                #[inline(always)]
+                || y[first..].iter_mut().zip(values).for_each(|(y, &x)| *y = f(x)),
+            );
+        };
+        Self::Value(channel, Box::new(observer))
+    }
+}
 
 /// Draws, with what is known of their values.
 pub struct Batch<'a> {

@@ -8,8 +8,8 @@
 //! It applies where theory knows the law and at least two classes expect enough draws.
 
 use super::batch::{Batch, each_value};
+use super::check::{Question, Subject};
 use super::law::Law;
-use super::question::{Question, Subject};
 use gate::stats::chi_square;
 use theory::Prediction;
 

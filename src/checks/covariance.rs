@@ -9,14 +9,12 @@
 
 use std::panic::AssertUnwindSafe;
 
-use super::batch::Batch;
-use super::check::{Check, Untestable};
+use super::batch::{Batch, Observe};
+use super::check::{Check, Question, Subject, Untestable};
 use super::law::Law;
 use super::mean::is_faint;
-use super::observe::Observe;
-use super::question::{Question, Subject};
 use super::scalar::{Scalar, variance};
-use crate::plan::options::Tolerance;
+use crate::case::Tolerance;
 use estimators::DrawBuffer;
 use gate::session::Quantity;
 use gate::stats::gate::GateSums;

@@ -12,10 +12,9 @@
 //! Source: the martingale is Eq. 13 of Szirmay-Kalos et al. 2017, whose increments over disjoint
 //! stretches are independent; the supremum is the reflection principle of Brownian motion.
 
-use super::batch::Batch;
+use super::batch::{Batch, Observe};
+use super::check::{Question, Subject, rounding_of};
 use super::law::Law;
-use super::observe::Observe;
-use super::question::{Question, Subject, rounding_of};
 use super::scalar::{Scalar, variance};
 use estimators::DrawBuffer;
 use gate::session::Quantity;

@@ -12,9 +12,9 @@
 //! based on stochastic processes*, Annals of Mathematical Statistics 23 (1952), 193–212.
 
 use super::batch::Batch;
+use super::check::{Question, Subject};
 use super::distances::Classes;
 use super::law::Law;
-use super::question::{Question, Subject};
 use gate::stats::anderson_darling;
 use theory::Prediction;
 

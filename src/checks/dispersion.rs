@@ -9,10 +9,10 @@
 //! the run. The χ² law needs blocks of at least 100 κ draws and ten times the rare-event size.
 
 use super::batch::Batch;
+use super::check::{Question, Subject, last_channel};
 use super::law::Law;
-use super::question::{Question, Subject, last_channel};
 use crate::checks::normality;
-use crate::plan::addresses::BLOCK;
+use crate::plan::BLOCK;
 use gate::stats::chi_square;
 use numeric::sum::sum_in_lanes;
 

@@ -8,8 +8,8 @@
 //! Distances are counted once, in the thousand classes that [`super::depth`] looks at; bins are made of those.
 
 use super::batch::Batch;
+use super::check::{Question, Subject};
 use super::law::Law;
-use super::question::{Question, Subject};
 use ::theory::{self, Prediction};
 use estimators::DrawBuffer;
 use gate::stats::chi_square;

@@ -11,8 +11,8 @@
 //! the third gives the p-value. The words of a block are those of its lanes in turn, so that lanes
 //! are compared with each other as blocks are.
 
-use super::inspection::{Inspected, Inspection};
-use super::question::{Question, Subject};
+use super::check::{Question, Subject};
+use super::law::{Inspected, Inspection};
 use estimators::Order;
 use gate::stats::{correlation, ties};
 

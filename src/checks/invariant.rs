@@ -9,7 +9,7 @@
 //! transmitted light are all the light there was. It applies to walks that measure their own defect.
 
 use super::always::Always;
-use super::question::{Question, Subject, rounding};
+use super::check::{Question, Subject, rounding};
 use estimators::DrawBuffer;
 
 const LANES: usize = 8;

@@ -8,8 +8,8 @@
 //! theory says is always the same must be met by every draw.
 
 use super::always::Always;
-use super::observe::Observe;
-use super::question::{Question, Subject};
+use super::batch::Observe;
+use super::check::{Question, Subject};
 use super::scalar::{Scalar, variance};
 use estimators::DrawBuffer;
 use gate::session::Quantity;

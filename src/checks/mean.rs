@@ -13,9 +13,8 @@
 //! has no variance for it, that of pilot draws is used, doubled.
 
 use super::always::Always;
-use super::check::{Check, Untestable};
-use super::observe::Observe;
-use super::question::{Question, Subject, rounding_of};
+use super::batch::Observe;
+use super::check::{Check, Question, Subject, Untestable, rounding_of};
 use super::scalar::{Scalar, variance};
 use estimators::DrawBuffer;
 use gate::session::Quantity;

@@ -4,9 +4,9 @@
 //! draw: the levels are then shared among all questions of the run. Each question has an answer, a
 //! [`check::Check`]. Quantities for the gate ([`scalar`]) may stop the drawing; distributions ([`law`])
 //! have a p-value on a number of draws fixed beforehand; a bound ([`always`]) must hold for every draw;
-//! and an [`inspection`] looks at the streams of random numbers themselves.
+//! and an inspection ([`law::Inspection`]) looks at the streams of random numbers themselves.
 //!
-//! From bottom to top: [`observe`], [`batch`], [`check`], [`question`], the pages.
+//! From bottom to top: [`batch`], [`check`], the kinds, the pages.
 
 pub mod always;
 pub mod atoms;
@@ -19,15 +19,12 @@ pub mod depth;
 pub mod dispersion;
 pub mod distances;
 pub mod generator;
-pub mod inspection;
 pub mod invariant;
 pub mod law;
 pub mod lookups;
 pub mod mean;
 pub mod normality;
 pub mod numeric;
-pub mod observe;
-pub mod question;
 pub mod resolution;
 pub mod scalar;
 pub mod streams;
@@ -35,11 +32,9 @@ pub mod variance;
 
 use media::catalogue::PageList;
 
-pub use check::Check;
-pub use inspection::Inspected;
-pub use law::Law;
-pub use observe::Observe;
-pub use question::{Pilot, Question, Subject, rounding};
+pub use batch::Observe;
+pub use check::{Check, Pilot, Question, Subject, rounding};
+pub use law::{Inspected, Law};
 pub use scalar::Scalar;
 
 /// A page of the catalogue of checks.

@@ -4,7 +4,7 @@
 //! such draws exists.
 
 use super::always::Always;
-use super::question::{Question, Subject};
+use super::check::{Question, Subject};
 use estimators::DrawBuffer;
 use numeric::sum::sum_in_lanes;
 

@@ -11,9 +11,9 @@
 //! Coarse random numbers and positions in single precision escape every mean and variance. The
 //! check looks at the collisions of one block, drawn once more.
 
-use super::inspection::{Inspected, Inspection};
-use super::question::{Question, Subject};
-use crate::plan::addresses::BLOCK;
+use super::check::{Question, Subject};
+use super::law::{Inspected, Inspection};
+use crate::plan::BLOCK;
 use gate::stats::ties;
 use theory::{Law, Prediction};
 

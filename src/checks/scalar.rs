@@ -1,9 +1,7 @@
 //! Quantities of a draw that go through the gate: a mean of 0 with a known variance.
 
-use super::batch::Batch;
-use super::check::{Check, Context, Found, Look, Observer, Place, Share, Total};
-use super::observe::Observe;
-use super::question::Subject;
+use super::batch::{Batch, Observe};
+use super::check::{Check, Context, Found, Look, Observer, Place, Share, Subject, Total};
 use crate::plan::BLOCK;
 use ::gate::deviation::signed_percent;
 use ::gate::session::{BlockSums, Ground, Planned, Quantity, Reason, Trail};

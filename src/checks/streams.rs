@@ -11,9 +11,9 @@
 //! first L = 1024 draws of each block.
 
 use super::batch::Batch;
+use super::check::{Question, Subject, last_channel};
 use super::law::Law;
-use super::question::{Question, Subject, last_channel};
-use crate::plan::addresses::BLOCK;
+use crate::plan::BLOCK;
 use gate::stats::correlation;
 
 /// L.

@@ -9,10 +9,9 @@
 //! most of the time. Nothing is asked of draws without spread, of draws with two equally distant
 //! values, and of experiments that a case declares biased.
 
-use super::check::{Check, Untestable};
+use super::batch::Observe;
+use super::check::{Check, Question, Subject, Untestable, rounding_of};
 use super::mean::is_faint;
-use super::observe::Observe;
-use super::question::{Question, Subject, rounding_of};
 use super::scalar::Scalar;
 use gate::session::quantity::{variance_floor, variance_of_squares};
 use gate::session::{Ground, Quantity};

@@ -7,9 +7,8 @@ use clap::Args;
 
 use super::numbers;
 use crate::case::Case;
-use crate::record::Record;
-use crate::record::Verdict;
 use crate::record::baseline::{Baseline, BaselineError, Comparison, Rules, compare, fingerprint};
+use crate::record::{Record, Verdict};
 use crate::report::run::diff;
 
 /// Options that all commands which draw share.

@@ -10,14 +10,11 @@ use super::baseline::Files;
 use super::output::{self, Errors, Format};
 use super::selection::{self, Experiments};
 use super::{Console, numbers};
-use crate::bench::compare::compare;
-use crate::bench::comparison::Comparison;
 use crate::bench::record::Bench;
-use crate::bench::stored::Stored;
+use crate::bench::stored::{Comparison, Stored, compare};
 use crate::bench::{Amounts, measure};
 use crate::case::Catalogue;
-use crate::plan::Amount;
-use crate::plan::Plan;
+use crate::plan::{Amount, Plan};
 use crate::report::bench as page;
 use numeric::pack;
 

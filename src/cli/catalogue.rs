@@ -12,11 +12,10 @@ use super::Console;
 use super::help::Names;
 use super::output::{self, Format};
 use crate::case::catalogue::{Catalogue, built_in};
-use crate::case::{example, suite};
-use crate::checks;
-use crate::render::{self, Picture, gallery};
+use crate::case::suite;
+use crate::render::{self, Picture};
 use crate::report::page;
-use crate::{phase, report};
+use crate::{checks, phase, report};
 use estimators::recipes::{controls, sampling};
 use media::catalogue::{Page, PageList, suggestion};
 use theory::problems;
@@ -154,7 +153,7 @@ fn rows(what: Option<What>, catalogue: &Catalogue) -> Vec<Row> {
         }
     }
     if wanted("pictures") {
-        for source in gallery::gallery() {
+        for source in render::gallery() {
             let title = Picture::read(&source, catalogue.additions())
                 .map(|picture| picture.title)
                 .unwrap_or_default();
@@ -234,13 +233,13 @@ fn explained(name: &str, catalogue: &Catalogue) -> Vec<(String, String)> {
     let mut found = Vec::new();
     for (part, page) in pages(catalogue).into_iter().filter(|(_, page)| page.name() == name) {
         let mut text = page.text().trim_end().to_owned();
-        if let Some(case) = example::of(&part, name) {
+        if let Some(case) = suite::example(&part, name) {
             text += "\n\nA case to copy; `trueflight run case.toml` draws it:\n\n";
             text += &fenced(&case);
         }
         found.push((part, text));
     }
-    let files = [("cases", suite::find(name)), ("pictures", gallery::find(name))];
+    let files = [("cases", suite::find(name)), ("pictures", render::find(name))];
     for (part, source) in files {
         found.extend(source.map(|source| (part.to_owned(), fenced(&source.text))));
     }
@@ -253,7 +252,7 @@ fn fenced(toml: &str) -> String {
 
 /// The error about a name that nothing has, with what was probably meant.
 fn unknown(written: &str, name: &str, catalogue: &Catalogue) -> anyhow::Error {
-    let sources = suite::suite().into_iter().chain(gallery::gallery()).map(|source| source.name);
+    let sources = suite::suite().into_iter().chain(render::gallery()).map(|source| source.name);
     let kinds = What::value_variants().iter().map(|what| what.name());
     let pages = pages(catalogue).into_iter().map(|(_, page)| page.name());
     let mut names: Vec<String> = pages.chain(kinds).chain(sources).collect();

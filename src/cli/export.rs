@@ -7,9 +7,8 @@ use clap::{Args, ValueEnum};
 
 use super::help::Names;
 use super::{Console, numbers, output};
-use crate::case::CaseError;
-use crate::case::Catalogue;
 use crate::case::catalogue::source;
+use crate::case::{CaseError, Catalogue};
 use crate::export::{self, ExportError, Target, Wishes};
 
 /// Arguments of `export`.

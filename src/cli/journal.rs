@@ -10,8 +10,8 @@ use signal_hook::consts::{SIGINT, SIGTERM};
 use signal_hook::flag;
 
 use super::output;
+use crate::draw::share::Workers;
 use crate::draw::store::{Header, Key, Log, Store, entry, lock};
-use crate::draw::workers::Workers;
 use media::files;
 
 /// Exit code of a process that a signal ends: 128 + SIGINT.

@@ -71,16 +71,14 @@ impl Part<'_> {
     /// Returns whether it has all blocks of its share, and no others.
     fn has_all(&self, plan: &Plan, keys: &[u64]) -> bool {
         let pieces = self.header.share.into_iter().flat_map(|share| pieces(plan, share));
-        let mut all = pieces.flat_map(|piece| {
-            let experiments = piece.experiments.into_iter();
-            experiments.map(move |one| (one, piece.block))
-        });
+        let names = pieces.flat_map(|piece| piece.blocks().collect::<Vec<_>>());
+        let mut keys = names.map(|(one, block)| Key::Block(keys[one as usize], block));
         let mut blocks = 0;
-        let has = |(one, block)| {
+        let has_key = |key| {
             blocks += 1;
-            self.log.has(Key::Block(keys[one as usize], block))
+            self.log.has(key)
         };
-        all.all(has) && blocks == self.log.blocks(None)
+        keys.all(has_key) && blocks == self.log.blocks(None)
     }
 }
 

@@ -1,4 +1,4 @@
-//! The command line: arguments, exit codes, progress, and the only prints. Floor 8.
+//! The command line: arguments, exit codes, progress, and the only prints.
 //!
 //! A program with media and estimators of its own has all commands by
 //! `fn main() -> ExitCode { trueflight::cli::main(&catalogue) }`. Where `mpirun` begins it, `bindings/mpi` has
@@ -19,6 +19,7 @@ mod help;
 mod inspect;
 mod journal;
 mod judge;
+pub mod lab;
 mod merge;
 mod numbers;
 mod output;
@@ -28,9 +29,6 @@ mod render;
 mod reports;
 mod run;
 mod selection;
-mod self_test;
-pub mod stress;
-mod verdict;
 
 use std::ffi::OsString;
 use std::process::ExitCode;
@@ -85,9 +83,9 @@ enum Command {
     /// The page report.html of a stored run, for a browser
     Report(merge::Report),
     /// Does the gate keep its promises, and does it catch known bugs?
-    SelfTest(self_test::Arguments),
+    SelfTest(lab::SelfTestArguments),
     /// Numerical stability: every quantity where it is hardest, against 32 digits
-    Stress(stress::Arguments),
+    Stress(lab::Stress),
     /// The catalogue: media, estimators, problems, checks, cases and more
     List(catalogue::List),
     /// The manual page of a medium, an estimator, a check, …
@@ -159,8 +157,8 @@ fn carry_out(catalogue: &Catalogue, join: Option<Join>, cli: &Cli) -> anyhow::Re
         Command::Plan(arguments) => predict::plan(arguments, catalogue, console),
         Command::Render(arguments) => render::main(arguments, catalogue, console),
         Command::Report(arguments) => merge::report(arguments, console),
-        Command::SelfTest(arguments) => self_test::main(arguments, console),
-        Command::Stress(arguments) => stress::main(arguments, console),
+        Command::SelfTest(arguments) => lab::self_test(arguments, console),
+        Command::Stress(arguments) => lab::stress(arguments, console),
         Command::List(arguments) => catalogue::list(arguments, catalogue, console),
         Command::Explain(arguments) => catalogue::explain(arguments, catalogue, console),
         Command::Inspect(arguments) => inspect::main(arguments, console),

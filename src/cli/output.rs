@@ -144,6 +144,11 @@ impl Errors {
     }
 }
 
+/// Writes files below a folder; the first error is returned.
+pub fn write(artifacts: &[Artifact], out: &Path) -> anyhow::Result<()> {
+    report::write(artifacts, out).into_iter().next().map_or(Ok(()), |error| Err(error.into()))
+}
+
 /// Shows mistakes in files in place; the error that says how many there are in files of what kind.
 pub fn mistakes(errors: &[CaseError], console: &Console, kind: &str) -> anyhow::Error {
     let colour = console.color.colours(std::io::stderr().is_terminal());

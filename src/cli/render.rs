@@ -7,10 +7,10 @@ use std::time::Instant;
 use anyhow::bail;
 use clap::Args;
 
-use super::{Console, numbers, output, selection};
-use crate::case::Catalogue;
-use crate::case::source::CaseError;
-use crate::render::{Picture, PictureRecord, gallery as built_in};
+use super::selection::{Seed, Threads};
+use super::{Console, output};
+use crate::case::{CaseError, Catalogue};
+use crate::render::{self, Picture, PictureRecord};
 use crate::report::{self, Artifact};
 use media::catalogue::Additions;
 
@@ -23,12 +23,10 @@ pub struct Arguments {
     /// Folder; the sheets, gallery.csv, report.html and a folder of PFM and EXR images for each picture go to gallery/ in it
     #[arg(long, default_value = "results", value_name = "DIR")]
     out: PathBuf,
-    /// Seed of all random numbers
-    #[arg(long, default_value_t = 1, value_name = "N", value_parser = numbers::seed, allow_negative_numbers = true)]
-    seed: u64,
-    /// Threads [default: one per processor]; pictures do not depend on it
-    #[arg(long, value_name = "N", value_parser = numbers::threads, allow_negative_numbers = true)]
-    threads: Option<u16>,
+    #[command(flatten)]
+    seed: Seed,
+    #[command(flatten)]
+    threads: Threads,
 }
 
 /// Renders, writes, prints.
@@ -40,16 +38,15 @@ pub fn main(arguments: &Arguments, catalogue: &Catalogue, console: &Console) -> 
     let rows = pictures.iter().map(|picture| 2 * picture.rows() as u64).sum();
     let bar = output::progress("rendering", "rows", rows, console);
     let mut records = Vec::new();
-    let threads = arguments.threads.map_or(0, usize::from);
     for picture in &pictures {
         let begin = Instant::now();
-        let render = || Ok(picture.render(arguments.seed, &|| bar.inc(1)));
-        let record = selection::on_threads(threads, render)?;
+        let render = || Ok(picture.render(arguments.seed.seed, &|| bar.inc(1)));
+        let record = arguments.threads.install(render)?;
         if let Some(reason) = record.refusal() {
             bail!("{}: {reason}", picture.name);
         }
         let files = report::render::artifacts(&record)?;
-        write(&files, &out)?;
+        output::write(&files, &out)?;
         if !console.quiet {
             let text = table(&record, begin.elapsed().as_secs_f64());
             bar.suspend(|| output::print(&text))?;
@@ -61,7 +58,7 @@ pub fn main(arguments: &Arguments, catalogue: &Catalogue, console: &Console) -> 
     bar.finish_and_clear();
     let page = Artifact::text("report.html", report::render::html::text(&records));
     let rows = report::render::csv(records.iter().map(|(record, _)| record))?;
-    write(&[Artifact::text("gallery.csv", rows), page], &out)?;
+    output::write(&[Artifact::text("gallery.csv", rows), page], &out)?;
     if !console.quiet {
         let page = output::report_in(&out);
         output::print(&format!("{} pictures in {}\n{page}", records.len(), out.display()))?;
@@ -71,7 +68,7 @@ pub fn main(arguments: &Arguments, catalogue: &Catalogue, console: &Console) -> 
 
 fn read(names: &[String], own: &Additions, console: &Console) -> anyhow::Result<Vec<Picture>> {
     let read: Vec<Result<Picture, CaseError>> = if names.is_empty() {
-        built_in::gallery().iter().map(|source| Picture::read(source, own)).collect()
+        render::gallery().iter().map(|source| Picture::read(source, own)).collect()
     } else {
         names.iter().map(|name| Picture::open(name, own)).collect()
     };
@@ -91,13 +88,6 @@ fn read(names: &[String], own: &Additions, console: &Console) -> anyhow::Result<
     Err(output::mistakes(&errors, console, "picture file(s); nothing was rendered"))
 }
 
-fn write(artifacts: &[Artifact], out: &std::path::Path) -> anyhow::Result<()> {
-    match report::write(artifacts, out).into_iter().next() {
-        Some(error) => Err(error.into()),
-        None => Ok(()),
-    }
-}
-
 fn table(record: &PictureRecord, seconds: f64) -> String {
     let PictureRecord { covered, empty, .. } = record;
     let mut text = format!(
@@ -112,14 +102,16 @@ fn table(record: &PictureRecord, seconds: f64) -> String {
             Ok(found) => writeln!(
                 text,
                 "  {:<40} RMSE {:<9} theory {:<9} lookups/pixel {:<7} draws/pixel {:<7} fom {}",
-                exposure.estimator,
+                exposure.estimator.to_string(),
                 report::render::short(found.rmse),
                 found.predicted_rmse.map_or("–".into(), report::render::short),
                 report::render::short(found.lookups),
                 report::render::short(found.draws),
                 found.figure_of_merit.map_or("–".into(), report::render::short),
             ),
-            Err(reason) => writeln!(text, "  {:<40} refused: {reason}", exposure.estimator),
+            Err(reason) => {
+                writeln!(text, "  {:<40} refused: {reason}", exposure.estimator.to_string())
+            }
         };
     }
     text.push('\n');

@@ -9,20 +9,16 @@ use clap::{Args, Command, FromArgMatches};
 
 use super::baseline::BaselineArguments;
 use super::output::{self, Errors};
-use super::reports::Reports;
+use super::reports::{Reports, UNDECIDED, close};
 use super::selection::{Looks, Selection};
-use super::verdict::{UNDECIDED, close};
 use super::{Console, journal};
 use crate::case::Catalogue;
-use crate::draw::drawn::Draws;
-use crate::draw::progress::Step;
-use crate::draw::run;
-use crate::draw::share::{self, Share};
+use crate::draw::run::{self, Step};
+use crate::draw::share::{self, Share, Threads, Workers};
 use crate::draw::store::{Header, Key, Log, Store};
-use crate::draw::workers::{Threads, Workers};
 use crate::plan::{Options, Plan, options::DRAWS};
 use crate::record::baseline::fingerprint;
-use crate::record::{Record, build};
+use crate::record::build;
 
 /// Defaults by which commands differ.
 #[derive(Debug, Clone, Copy)]
@@ -87,10 +83,9 @@ impl Kept {
 }
 
 impl Asked {
-    /// Returns the words that ask for the same draws, wherever they are made.
-    fn words(&self) -> Vec<String> {
-        let mut words = self.selection.words();
-        words.extend(self.looks.words());
+    /// Returns the words that ask for the draws of these options, wherever they are made.
+    fn words(&self, options: &Options) -> Vec<String> {
+        let mut words = options.words();
         words.push("--".to_owned());
         words.extend_from_slice(self.selection.names());
         words
@@ -113,8 +108,8 @@ impl Arguments {
     }
 
     /// Returns the words that ask for the same draws.
-    pub fn words(&self) -> Vec<String> {
-        self.asked.words()
+    pub fn words(&self) -> anyhow::Result<Vec<String>> {
+        Ok(self.asked.words(&self.options()?))
     }
 
     /// Returns the options of the plan.
@@ -173,7 +168,7 @@ pub fn draw(
         bail!("a share is drawn whole and compared with nothing: leave out --budget and baselines");
     }
     let store = |plan: &Plan| -> anyhow::Result<Store> {
-        let header = Header::new(plan, &fingerprint()?, &asked.words(), kept.shard);
+        let header = Header::new(plan, &fingerprint()?, &asked.words(&plan.options), kept.shard);
         workers.agree(&header).map_err(anyhow::Error::msg)?;
         if asked.looks.shares_draws() {
             // What is left for an experiment depends on what others have drawn.
@@ -237,21 +232,6 @@ fn draw_share(
     Ok(0)
 }
 
-/// Draws what the store does not have, and judges all; returns the draws, too.
-fn judged(plan: &Plan, store: &Store, console: &Console) -> anyhow::Result<(Record, Draws)> {
-    let begin = Instant::now();
-    let bar = output::progress_until("drawing", "draws", 0, plan.options.seconds, console);
-    // Draws of an earlier run tell nothing about the speed of this one.
-    let draws = run::draw_heard(plan, store, &|step| match step {
-        Step::Drawn(draws) => bar.inc(draws),
-        Step::Expected(draws) => bar.set_length(draws),
-        Step::Kept(_) => {}
-    });
-    bar.finish_and_clear();
-    let record = build::judged(plan, &draws, begin.elapsed().as_secs_f64());
-    store.error().map_or(Ok((record, draws)), |error| Err(error.into()))
-}
-
 /// Draws what the store does not have, judges, writes, prints.
 pub fn judge(
     asked: &Asked,
@@ -281,10 +261,19 @@ pub fn judge(
                 store.reuse(path, is_fresh).with_context(wrong)?;
             }
             let counts = store.reusable(plan);
-            let (mut record, draws) = judged(plan, &store, console)
-                .with_context(|| format!("not finished; {cure} goes on with what is kept"))?;
-            let finishing =
-                finished.as_ref().map_or(Ok(()), |path| store.finish(path, plan, &draws));
+            let begin = Instant::now();
+            let bar = output::progress_until("drawing", "draws", 0, plan.options.seconds, console);
+            // Draws of an earlier run tell nothing about the speed of this one.
+            let draws = run::draw_with(plan, &store, &|step| match step {
+                Step::Drawn(draws) => bar.inc(draws),
+                Step::Expected(draws) => bar.set_length(draws),
+                Step::Kept(_) => {}
+            });
+            bar.finish_and_clear();
+            let mut record = build::judged(plan, &draws, begin.elapsed().as_secs_f64());
+            let not_finished = || format!("not finished; {cure} goes on with what is kept");
+            store.error().map_or(Ok(()), Err).with_context(not_finished)?;
+            let finishing = finished.as_ref().map_or(Ok(()), |path| store.finish(path, &draws));
             if profile.is_whole {
                 build::add_curves(plan, &mut record);
             }

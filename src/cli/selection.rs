@@ -6,13 +6,8 @@ use clap::Args;
 use super::help::Names;
 use super::numbers::{self, Budget};
 use super::{Console, output};
-use crate::case::Case;
-use crate::case::Catalogue;
-use crate::case::suite;
-use crate::plan::Amount;
-use crate::plan::Filter;
-use crate::plan::Options;
-use crate::plan::Plan;
+use crate::case::{Case, Catalogue, suite};
+use crate::plan::{Amount, Filter, Options, Plan};
 use estimators::Order;
 
 /// Experiments, and where their random numbers begin.
@@ -30,9 +25,8 @@ pub struct Experiments {
     /// faster, other draws of the same law [default: the case's, or ordered]
     #[arg(long, value_name = "KERNEL", value_parser = kernel)]
     kernel: Option<Order>,
-    /// Seed of all random numbers
-    #[arg(long, default_value_t = 1, value_name = "N", value_parser = numbers::seed, allow_negative_numbers = true)]
-    seed: u64,
+    #[command(flatten)]
+    seed: Seed,
 }
 
 /// Options that the commands on cases share.
@@ -49,6 +43,32 @@ pub struct Selection {
     /// Threads [default: one per processor]; results do not depend on them
     #[arg(long, help_heading = "Drawing", value_name = "N", value_parser = numbers::threads, allow_negative_numbers = true)]
     pub threads: Option<u16>,
+}
+
+/// Threads of a command.
+#[derive(Debug, Clone, Copy, Args)]
+pub struct Threads {
+    /// Threads [default: one per processor]; results do not depend on them
+    #[arg(long, value_name = "N", value_parser = numbers::threads, allow_negative_numbers = true)]
+    pub threads: Option<u16>,
+}
+
+impl Threads {
+    /// Calls `f` on as many threads as wished.
+    pub fn install<T: Send>(
+        self,
+        f: impl FnOnce() -> anyhow::Result<T> + Send,
+    ) -> anyhow::Result<T> {
+        on_threads(self.threads.map_or(0, usize::from), f)
+    }
+}
+
+/// Seed of a command.
+#[derive(Debug, Clone, Copy, Args)]
+pub struct Seed {
+    /// Seed of all random numbers
+    #[arg(long, default_value_t = 1, value_name = "N", value_parser = numbers::seed, allow_negative_numbers = true)]
+    pub seed: u64,
 }
 
 /// When the gate looks, and what stops the drawing.
@@ -71,20 +91,6 @@ pub struct Looks {
 }
 
 impl Looks {
-    /// Returns the words that ask for the same draws.
-    pub fn words(&self) -> Vec<String> {
-        let flags = [("--fixed-draws", self.fixed_draws), ("--strict", self.strict)];
-        let mut words: Vec<String> =
-            flags.iter().filter(|flag| flag.1).map(|flag| flag.0.to_owned()).collect();
-        if self.blocks_per_look != 1 {
-            words.push(format!("--blocks-per-look={}", self.blocks_per_look));
-        }
-        if let Some(Budget::Draws(draws)) = self.budget {
-            words.push(format!("--budget={draws}"));
-        }
-        words
-    }
-
     /// Returns whether all experiments share a number of draws: what is left for one then depends on the others.
     pub fn shares_draws(&self) -> bool {
         matches!(self.budget, Some(Budget::Draws(_)))
@@ -136,7 +142,7 @@ impl Experiments {
     pub fn options(&self, draws: Amount) -> anyhow::Result<Options> {
         let filter = self.filter.as_deref().map(Filter::new).transpose();
         let filter = filter.context("--filter takes a pattern such as \"*eq21*:single\"")?;
-        let (seed, kernel) = (self.seed, self.kernel);
+        let (seed, kernel) = (self.seed.seed, self.kernel);
         Ok(Options { seed, draws, kernel, filter, ..Options::default() })
     }
 
@@ -168,16 +174,6 @@ impl Selection {
     /// Reads the cases; mistakes in files are shown in place.
     pub fn read(&self, catalogue: &Catalogue, console: &Console) -> anyhow::Result<Vec<Case>> {
         self.experiments.read(catalogue, console)
-    }
-
-    /// The words that ask for the same draws.
-    pub fn words(&self) -> Vec<String> {
-        let Experiments { filter, kernel, seed, .. } = &self.experiments;
-        let mut words = vec![format!("--seed={seed}"), format!("--alpha={}", self.alpha)];
-        words.extend(self.draws.map(|draws| format!("--draws={draws}")));
-        words.extend(filter.as_ref().map(|filter| format!("--filter={filter}")));
-        words.extend(kernel.map(|kernel| format!("--kernel={}", kernel.word())));
-        words
     }
 
     /// The cases as they were named.

@@ -1,4 +1,5 @@
-//! One block of one experiment, drawn and absorbed by its questions.
+//! One block of one experiment, drawn and absorbed by its questions; and what blocks come to, merged in the order of
+//! their addresses.
 //!
 //! A block is 2¹⁴ draws, found by its address. Its draws are made buffer by buffer; every question
 //! absorbs each buffer while it is in the second-level cache. P-values and z-scores see only the
@@ -10,10 +11,10 @@ use cpu_time::ThreadTime;
 use fearless_simd::Level;
 use serde::{Deserialize, Serialize};
 
-use crate::case::build::Ready;
+use crate::case::Ready;
 use crate::checks::batch::Batch;
-use crate::checks::check::{Observer, Place};
-use crate::plan::{BLOCK, Planned};
+use crate::checks::check::{Observer, Place, Total};
+use crate::plan::{BLOCK, Planned, PlannedCase};
 use estimators::DrawBuffer;
 use estimators::kernels::order_free::{OrderFree, Request};
 use gate::stats::Tally;
@@ -225,5 +226,89 @@ impl<'p> Drawing<'p> {
         let answers = observers.into_iter().map(|observer| observer.close(fixed)).collect();
         self.scratch.leave();
         Block { draws: self.end - self.start, tallies, lookups, answers, seconds }
+    }
+}
+
+/// Draws of one experiment.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+pub struct Drawn {
+    /// Number of draws that all of its checks absorbed.
+    pub draws: u64,
+    /// One tally per channel over the fixed draws, in units of the truth about the predicted mean.
+    pub tallies: Vec<Tally>,
+    /// The lookups of the fixed draws, about their predicted mean.
+    pub lookups: Tally,
+    /// One total per question.
+    pub totals: Vec<Total>,
+    /// Processor seconds.
+    pub seconds: f64,
+    /// Whether an earlier run drew it.
+    #[serde(skip)]
+    pub is_reused: bool,
+}
+
+/// Where an experiment stands: everything that what is still to be drawn and decided depends on.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+pub struct Standing {
+    /// Draws so far.
+    pub drawn: Drawn,
+    /// Number of merged blocks.
+    pub blocks: u64,
+    /// After how many blocks the next look comes.
+    pub look: u64,
+    /// Whether nothing is left to draw.
+    pub is_done: bool,
+}
+
+impl Standing {
+    /// Before the first block.
+    pub fn new(planned: &Planned) -> Self {
+        Self { drawn: Drawn::new(planned), look: 1, ..Self::default() }
+    }
+}
+
+/// An experiment of a plan with its draws; none where it is refused.
+#[derive(Clone)]
+pub struct DrawnExperiment<'p> {
+    /// The case.
+    pub case: &'p PlannedCase<'p>,
+    /// The experiment.
+    pub planned: &'p Planned,
+    /// Its draws.
+    pub drawn: Drawn,
+}
+
+/// Everything that a plan drew.
+#[derive(Clone)]
+pub struct Draws<'p> {
+    /// The experiments, in the order of the plan.
+    pub experiments: Vec<DrawnExperiment<'p>>,
+    /// Whether the time limit came first, or the wish to stop.
+    pub cut_by_time: bool,
+    /// Whether the budget of draws came first.
+    pub cut_by_budget: bool,
+}
+
+impl Drawn {
+    /// Nothing yet.
+    pub fn new(planned: &Planned) -> Self {
+        let totals = planned.questions.iter().map(|question| question.answer.total());
+        let channels = planned.outcome.as_ref().map_or(0, |ready| ready.prediction.channels.len());
+        let tallies = vec![Tally::default(); channels];
+        Self { totals: totals.collect(), tallies, ..Self::default() }
+    }
+
+    /// Adds the block that follows.
+    pub fn merge(&mut self, planned: &Planned, block: &Block, number: u64) {
+        self.draws += block.draws;
+        for (tally, other) in self.tallies.iter_mut().zip(&block.tallies) {
+            tally.merge(other);
+        }
+        self.lookups.merge(&block.lookups);
+        let questions = planned.questions.iter().zip(&mut self.totals);
+        for ((question, total), numbers) in questions.zip(&block.answers) {
+            question.answer.merge(total, numbers, number);
+        }
+        self.seconds += block.seconds;
     }
 }

@@ -13,87 +13,90 @@
 
 use std::collections::{BTreeMap, VecDeque};
 use std::convert::Infallible;
+use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Instant;
 
 use crate::checks::check::Look;
-use crate::draw::block::Block;
-use crate::draw::drawn::{Drawn, Draws, Standing};
-use crate::draw::progress::{self, Listener, Progress, Step};
-use crate::draw::share::{self, Piece, Share};
+use crate::draw::block::{Block, Drawn, DrawnExperiment, Draws, Standing};
+use crate::draw::share::{self, Drawing, Piece, Share};
 use crate::draw::store::Store;
-use crate::draw::workers::Drawing;
 use crate::plan::{BLOCK, Plan, Planned};
 use ::gate::session::{Sink, Until, drive};
-use ::gate::stats::gate;
+use ::gate::stats::gate::{self, PLANNED, TYPICAL};
 
 /// Blocks drawn between two merges, for each thread, and at most: some 600 MB. Results do not depend on it.
 const BATCH: usize = 256;
-const MOST: usize = 1 << 16;
+const MAX_BATCH: usize = 1 << 16;
 
-/// An experiment that is being drawn.
-struct Running<'p> {
-    case: usize,
-    index: usize,
-    /// Its number through the plan.
-    number: u32,
-    planned: &'p Planned,
-    /// How many draws are merged as one block.
-    step: u64,
-    /// What is merged and decided.
-    at: Standing,
-    /// Blocks drawn ahead of the next look.
-    ahead: VecDeque<Block>,
+/// The last of k scalars passes later than one of them by this share of ln k, as measured on the built-in suite.
+const LAST: f64 = 0.12;
+
+/// Event of a drawing.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Step {
+    /// Draws that this drawing is expected to make in all: an estimate that becomes exact at its end.
+    Expected(u64),
+    /// Draws were made.
+    Drawn(u64),
+    /// Draws of an earlier run were read; they are no part of [`Step::Expected`].
+    Kept(u64),
 }
 
-/// All experiments that are being drawn, round by round.
-struct Rounds<'p> {
-    running: Vec<Running<'p>>,
-}
+/// Listener of a drawing.
+pub type Listener<'a> = dyn Fn(Step) + Sync + 'a;
 
-impl Sink for Rounds<'_> {
-    fn draws(&self) -> u64 {
-        self.running.iter().map(|one| one.at.drawn.draws).sum()
-    }
-
-    fn is_open(&self) -> bool {
-        self.running.iter().any(|one| !one.at.is_done)
-    }
-}
-
-/// Draws a plan; `progress` is called after each block with the number of its draws.
-pub fn draw(plan: &Plan, progress: &(dyn Fn(u64) + Sync)) -> Draws {
-    draw_with(plan, &Store::default(), progress)
+/// Draws a plan; `listen` is called at every step.
+pub fn draw<'p>(plan: &'p Plan, listen: &Listener) -> Draws<'p> {
+    draw_with(plan, &Store::default(), listen)
 }
 
 /// Draws what a store does not have; the store keeps the blocks, and can end the drawing.
-pub fn draw_with(plan: &Plan, store: &Store, progress: &(dyn Fn(u64) + Sync)) -> Draws {
-    draw_heard(plan, store, &|step| match step {
-        Step::Drawn(draws) | Step::Kept(draws) if draws > 0 => progress(draws),
-        _ => {}
-    })
-}
-
-/// Draws what a store does not have; `listen` hears of every step.
-pub fn draw_heard(plan: &Plan, store: &Store, listen: &Listener) -> Draws {
+pub fn draw_with<'p>(plan: &'p Plan, store: &Store, listen: &Listener) -> Draws<'p> {
     let begin = Instant::now();
     let is_late =
         || plan.options.seconds.is_some_and(|limit| begin.elapsed().as_secs_f64() >= limit);
     let is_over = || is_late() || store.is_stopped();
     let drawing = Drawing::new(plan, &is_over);
-    let (mut cases, running) = begin_all(plan, store);
-    let mut rounds = Rounds { running };
-    let progress = Progress::new(plan, listen);
-    let listen = |step| progress.hear(step);
+    let all = plan.experiments().map(|(case, planned)| {
+        let drawn = Drawn::default();
+        DrawnExperiment { case, planned, drawn }
+    });
+    let mut experiments: Vec<DrawnExperiment> = all.collect();
+    let mut running = BTreeMap::new();
+    for one in experiments.iter_mut().filter(|one| one.planned.is_drawn()) {
+        let planned = one.planned;
+        let at = store.standing(planned).unwrap_or_else(|| Standing::new(planned));
+        if at.drawn.is_reused {
+            one.drawn = at.drawn;
+        } else {
+            let (step, ahead) = (plan.step(), VecDeque::new());
+            running.insert(planned.number, Running { planned, step, at, ahead });
+        }
+    }
+    let mut rounds = Rounds(running);
+    let kept = AtomicU64::new(0);
+    let listen = |step| {
+        if let Step::Kept(draws) = step {
+            kept.fetch_add(draws, Ordering::Relaxed);
+        }
+        listen(step);
+    };
+    let expect = |Rounds(running): &Rounds| {
+        let all: u64 = running.values().map(Running::expected).sum();
+        let new = all.saturating_sub(kept.load(Ordering::Relaxed));
+        listen(Step::Expected(plan.options.budget.map_or(new, |budget| new.min(budget))));
+    };
     // What a run before had merged.
-    progress.keep(rounds.running.iter().map(|one| one.at.drawn.draws));
-    progress.expect(rounds.running.iter().map(Running::expected));
+    listen(Step::Kept(rounds.draws()));
+    expect(&rounds);
     let mut budget = plan.options.budget;
     let (mut cut_by_time, mut cut_by_budget) = (false, false);
     let until = Until { most: None, is_decided: true };
-    let Ok::<_, Infallible>(_) = drive(&mut rounds, until, |Rounds { running }, _| {
+    let Ok::<_, Infallible>(_) = drive(&mut rounds, until, |rounds, _| {
+        let Rounds(running) = rounds;
         // What others need for their fixed draws is not taken from them.
-        let mut reserved: u64 = running.iter().map(Running::reserve).sum();
-        for one in running.iter_mut().filter(|one| !one.at.is_done) {
+        let mut reserved: u64 = running.values().map(Running::reserve).sum();
+        for one in running.values_mut().filter(|one| !one.at.is_done) {
             reserved -= one.reserve();
             if take(&mut budget, one.stage(), reserved) {
                 reserved += one.reserve().saturating_sub(one.stage());
@@ -103,45 +106,44 @@ pub fn draw_heard(plan: &Plan, store: &Store, listen: &Listener) -> Draws {
         }
         let mut round = Round::new(running, 4 * store.workers.threads());
         while !cut_by_time {
-            let units = batch(&mut round, store, |unit| unit.running.len());
-            if units.is_empty() {
+            let pieces = batch(&mut round, store);
+            if pieces.is_empty() {
                 break;
             }
-            let pieces: Vec<Piece> = units.iter().map(|unit| unit.piece(running)).collect();
-            let drawn = store.blocks(&pieces, &drawing, &listen);
-            let members = units.iter().flat_map(|unit| &unit.running);
-            for (&one, block) in members.zip(drawn) {
+            let mut drawn = store.blocks(&pieces, &drawing, &listen);
+            for name in pieces.iter().flat_map(Piece::blocks) {
+                let Some(one) = running.get_mut(&name.0) else { continue };
                 // What comes after a missing block is left out: the first blocks are kept.
-                match block {
-                    Some(block) if !cut_by_time => running[one].ahead.push_back(block),
+                match drawn.remove(&name) {
+                    Some(block) if !cut_by_time => one.ahead.push_back(block),
                     _ => cut_by_time = true,
                 }
-                running[one].merge();
+                one.merge();
             }
             if !cut_by_time {
-                store.shorten(running.iter().map(|one| (one.number, &one.at)));
+                store.shorten(running.iter().map(|(&number, one)| (number, &one.at)));
             }
         }
-        for one in running.iter_mut().filter(|one| !one.at.is_done) {
+        for one in running.values_mut().filter(|one| !one.at.is_done) {
             // Blocks drawn ahead of an earlier look may be all that this one waits for.
             one.merge();
             one.look(plan);
         }
-        progress.expect(running.iter().map(Running::expected));
+        expect(rounds);
         Ok(!cut_by_time)
     });
     store.synchronise();
-    for one in rounds.running {
-        cases[one.case][one.index] = one.at.drawn;
+    for (number, one) in rounds.0 {
+        experiments[number as usize].drawn = one.at.drawn;
     }
-    for (drawn, planned_case) in cases.iter_mut().zip(&plan.cases) {
-        for index in 0..drawn.len() {
-            if let Some(twin) = planned_case.twin(index) {
-                drawn[index] = drawn[twin].clone();
-            }
+    for index in 0..experiments.len() {
+        let Some(id) = &experiments[index].planned.same_as else { continue };
+        let same = experiments.iter().find(|other| other.planned.id == *id);
+        if let Some(drawn) = same.map(|other| other.drawn.clone()) {
+            experiments[index].drawn = drawn;
         }
     }
-    Draws { cases, cut_by_time, cut_by_budget }
+    Draws { experiments, cut_by_time, cut_by_budget }
 }
 
 /// Draws a share of a plan into the file of a store, without a look at it; whether all of it is there.
@@ -150,7 +152,7 @@ pub fn draw_share(plan: &Plan, share: Share, store: &Store, listen: &Listener) -
     let drawing = Drawing::new(plan, &is_over);
     let mut pieces = share::pieces(plan, share);
     loop {
-        let some = batch(&mut pieces, store, |piece| piece.experiments.len());
+        let some = batch(&mut pieces, store);
         if some.is_empty() || store.is_stopped() {
             store.synchronise();
             return !store.is_stopped();
@@ -159,80 +161,47 @@ pub fn draw_share(plan: &Plan, share: Share, store: &Store, listen: &Listener) -
     }
 }
 
-/// What is drawn until the next merge; an item is so many blocks.
-fn batch<T>(
-    items: &mut impl Iterator<Item = T>,
-    store: &Store,
-    blocks: impl Fn(&T) -> usize,
-) -> Vec<T> {
-    let most = (BATCH * store.workers.threads()).min(MOST);
-    let (mut some, mut sum) = (Vec::new(), 0);
-    while sum < most {
-        let Some(item) = items.next() else { break };
-        sum += blocks(&item);
-        some.push(item);
+/// What is drawn until the next merge.
+fn batch(pieces: &mut impl Iterator<Item = Piece>, store: &Store) -> Vec<Piece> {
+    let most = (BATCH * store.workers.threads()).min(MAX_BATCH);
+    let (mut some, mut blocks) = (Vec::new(), 0);
+    while blocks < most {
+        let Some(piece) = pieces.next() else { break };
+        blocks += piece.experiments.len();
+        some.push(piece);
     }
     some
 }
 
 /// Takes draws from the budget, if there is one and it has them beside those that are reserved.
 fn take(budget: &mut Option<u64>, draws: u64, reserved: u64) -> bool {
-    let enough = |left: &u64| *left >= reserved;
-    let left = budget.map(|left| left.checked_sub(draws).filter(enough));
-    match left {
-        Some(None) => false,
-        Some(left) => {
-            *budget = left;
-            true
-        }
-        None => true,
+    let Some(all) = *budget else { return true };
+    let left = all.checked_sub(draws).filter(|left| *left >= reserved);
+    *budget = left.or(*budget);
+    left.is_some()
+}
+
+/// All experiments that are being drawn, by their numbers, round by round.
+struct Rounds<'p>(BTreeMap<u32, Running<'p>>);
+
+impl Sink for Rounds<'_> {
+    fn draws(&self) -> u64 {
+        self.0.values().map(|one| one.at.drawn.draws).sum()
+    }
+
+    fn is_open(&self) -> bool {
+        self.0.values().any(|one| !one.at.is_done)
     }
 }
 
-/// What is drawn already, and those that are still to be drawn.
-fn begin_all<'p>(plan: &'p Plan, store: &Store) -> (Vec<Vec<Drawn>>, Vec<Running<'p>>) {
-    let mut cases: Vec<Vec<Drawn>> =
-        plan.cases.iter().map(|case| vec![Drawn::default(); case.experiments.len()]).collect();
-    let mut running = Vec::new();
-    let mut numbers = 0..;
-    for (case, planned_case) in plan.cases.iter().enumerate() {
-        for ((index, planned), number) in
-            planned_case.experiments.iter().enumerate().zip(&mut numbers)
-        {
-            if planned.outcome.is_err() || planned_case.twin(index).is_some() {
-                continue;
-            }
-            let at = store.standing(number, planned).unwrap_or_else(|| Standing::new(planned));
-            if at.drawn.is_reused {
-                cases[case][index] = at.drawn;
-                continue;
-            }
-            let (step, ahead) = (plan.step(), VecDeque::new());
-            running.push(Running { case, index, number, planned, step, at, ahead });
-        }
-    }
-    (cases, running)
-}
-
-/// A block of an experiment, or of several that share their lookups.
-struct Unit {
-    block: u64,
-    running: Vec<usize>,
-}
-
-impl Unit {
-    fn piece(&self, running: &[Running]) -> Piece {
-        let experiments = self.running.iter().map(|&one| running[one].number).collect();
-        Piece { experiments, block: self.block }
-    }
-}
-
-/// The blocks from one number up to another of one that is running.
+/// The blocks from one number up to another of one experiment.
 #[derive(Clone)]
 struct Span {
-    running: usize,
+    experiment: u32,
     from: u64,
     until: u64,
+    /// The last look.
+    last: u64,
 }
 
 /// The blocks up to the next look of every open experiment, block by block so that a time limit cuts all
@@ -240,66 +209,81 @@ struct Span {
 #[derive(Clone)]
 struct Round {
     /// Those that share their lookups are one.
-    companies: Vec<Vec<Span>>,
-    /// The next unit.
+    groups: Vec<Vec<Span>>,
+    /// The next piece.
     block: u64,
-    company: usize,
+    group: usize,
     /// Beyond the last.
     end: u64,
 }
 
 impl Round {
     /// The blocks up to the next looks; and further ones while they are not `enough` to keep all threads at work.
-    fn new(running: &[Running], enough: usize) -> Self {
-        let drawn = |one: &Running| one.at.blocks + one.ahead.len() as u64;
-        let mut until: Vec<u64> = running.iter().map(|one| one.at.look.max(drawn(one))).collect();
-        loop {
-            let mut companies = BTreeMap::<_, Vec<Span>>::new();
-            for (i, one) in running.iter().enumerate().filter(|(_, one)| !one.at.is_done) {
-                let shared = one.planned.shared.map(|shared| (one.case, shared.experiment));
-                // Nobody else has this address.
-                let company = companies.entry((shared.is_none().then_some(i), shared)).or_default();
-                company.push(Span { running: i, from: drawn(one), until: until[i] });
+    fn new(running: &BTreeMap<u32, Running>, enough: usize) -> Self {
+        let span = |planned: &Planned| {
+            let one = &running[&planned.number];
+            let from = one.at.blocks + one.ahead.len() as u64;
+            Span {
+                experiment: planned.number,
+                from,
+                until: one.at.look.max(from),
+                last: one.last(),
             }
-            let companies: Vec<Vec<Span>> = companies.into_values().collect();
-            let spans = || companies.iter().flatten();
-            let block = spans().map(|span| span.from).min().unwrap_or(0);
-            let end = spans().map(|span| span.until).max().unwrap_or(0);
-            let round = Self { companies, block, company: 0, end };
+        };
+        let open = running.values().filter(|one| !one.at.is_done).map(|one| one.planned);
+        let groups = share::groups(open).into_iter();
+        let groups = groups.map(|group| group.into_iter().map(span).collect()).collect();
+        let mut round = Self { groups, block: 0, group: 0, end: 0 };
+        round.block = round.groups.iter().flatten().map(|span| span.from).min().unwrap_or(0);
+        loop {
+            round.end = round.groups.iter().flatten().map(|span| span.until).max().unwrap_or(0);
             let missing = round.clone().take(enough).count();
             // Only where a look waits for blocks is there anything to draw.
             if missing == 0 || missing == enough {
                 return round;
             }
-            let both = running.iter().zip(&until);
-            let longer: Vec<u64> =
-                both.map(|(one, &until)| gate::next_look(until).min(one.last())).collect();
-            if longer == until {
+            let mut is_longer = false;
+            for span in round.groups.iter_mut().flatten() {
+                let longer = gate::next_look(span.until).min(span.last);
+                is_longer |= longer != span.until;
+                span.until = longer;
+            }
+            if !is_longer {
                 return round;
             }
-            until = longer;
         }
     }
 }
 
 impl Iterator for Round {
-    type Item = Unit;
+    type Item = Piece;
 
-    fn next(&mut self) -> Option<Unit> {
+    fn next(&mut self) -> Option<Piece> {
         while self.block < self.end {
-            while let Some(company) = self.companies.get(self.company) {
-                self.company += 1;
-                let there = |span: &&Span| (span.from..span.until).contains(&self.block);
-                let running: Vec<usize> =
-                    company.iter().filter(there).map(|span| span.running).collect();
-                if !running.is_empty() {
-                    return Some(Unit { block: self.block, running });
+            while let Some(group) = self.groups.get(self.group) {
+                self.group += 1;
+                let there =
+                    group.iter().filter(|span| (span.from..span.until).contains(&self.block));
+                let experiments: Vec<u32> = there.map(|span| span.experiment).collect();
+                if !experiments.is_empty() {
+                    return Some(Piece { experiments, block: self.block });
                 }
             }
-            (self.block, self.company) = (self.block + 1, 0);
+            (self.block, self.group) = (self.block + 1, 0);
         }
         None
     }
+}
+
+/// An experiment that is being drawn.
+struct Running<'p> {
+    planned: &'p Planned,
+    /// How many draws are merged as one block.
+    step: u64,
+    /// What is merged and decided.
+    at: Standing,
+    /// Blocks drawn ahead of the next look.
+    ahead: VecDeque<Block>,
 }
 
 impl Running<'_> {
@@ -308,17 +292,21 @@ impl Running<'_> {
         self.planned.horizon.div_ceil(self.step)
     }
 
+    /// Number of draws at the next look.
+    fn until(&self) -> u64 {
+        (self.at.look * self.step).min(self.planned.horizon)
+    }
+
     /// The draws that it is expected to make in all, those ahead of a look that never comes with them.
     fn expected(&self) -> u64 {
         let ahead: u64 = self.ahead.iter().map(|block| block.draws).sum();
         let made = self.at.drawn.draws + ahead;
-        let look = (self.at.look * self.step).min(self.planned.horizon);
-        if self.at.is_done { made } else { made.max(look).max(progress::expected(self.planned)) }
+        if self.at.is_done { made } else { made.max(self.until()).max(expected(self.planned)) }
     }
 
     /// The draws up to the next look.
     fn stage(&self) -> u64 {
-        (self.at.look * self.step).min(self.planned.horizon) - self.at.drawn.draws
+        self.until() - self.at.drawn.draws
     }
 
     /// The draws that are still to come up to the fixed number, in whole blocks.
@@ -361,4 +349,24 @@ impl Running<'_> {
         both.filter(|(question, _)| question.check == *name)
             .any(|(question, total)| question.answer.has_failed(total))
     }
+}
+
+/// The draws that an experiment is expected to make: a correct scalar passes after 17/27 of its plan, and one without
+/// a promise keeps the drawing open until all planned draws are made.
+#[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // a count of draws
+fn expected(planned: &Planned) -> u64 {
+    if planned.horizon <= planned.draws {
+        return planned.horizon;
+    }
+    let promised =
+        planned.scalars().filter(|(_, scalar)| scalar.planned.underpowered.is_none()).count();
+    let typical = TYPICAL / PLANNED * (1.0 + LAST * (promised.max(1) as f64).ln());
+    let longest = planned.scalars().fold(planned.fixed, |longest, (_, scalar)| {
+        let draws = match scalar.planned.underpowered {
+            Some(_) => planned.draws,
+            None => (scalar.planned.draws * typical).ceil() as u64,
+        };
+        longest.max(draws)
+    });
+    (longest.div_ceil(BLOCK) * BLOCK).min(planned.horizon)
 }

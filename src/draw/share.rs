@@ -1,4 +1,5 @@
-//! Shares of a run: the blocks that one machine of many draws.
+//! Pieces of a run, and who draws them: the threads of this process, the ranks of many processes, or one machine of
+//! many, each with its share.
 //!
 //! ```text
 //! blocks are numbered through the experiments of the plan: number n belongs to part n mod N + 1 of N
@@ -7,12 +8,15 @@
 //! The gate decides when all parts are there, so a part draws its share of all blocks up to the horizon.
 //! Experiments that share their lookups count as one, so that a part draws them together.
 
-use std::fmt;
+use std::fmt::{self, Debug};
 use std::str::FromStr;
 
 use serde::{Deserialize, Serialize};
 
-use crate::plan::Plan;
+use crate::draw::block::{self, Block};
+use crate::draw::store::Header;
+use crate::plan::{Plan, Planned};
+use theory::parallel;
 
 /// Part of a run; `1/1` is the whole run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -48,33 +52,18 @@ impl FromStr for Share {
     }
 }
 
-/// Experiments that share their lookups, or one that shares none.
-#[derive(Debug)]
-struct Company {
-    /// Case and address of the lookups.
-    shares: Option<(usize, u64)>,
-    /// Number of each experiment in the plan, and its number of blocks.
-    experiments: Vec<(u32, u64)>,
-}
-
-fn companies(plan: &Plan) -> Vec<Company> {
-    let mut companies: Vec<Company> = Vec::new();
-    let cases = plan.cases.iter().enumerate();
-    let all = cases.flat_map(|(at, case)| (0..case.experiments.len()).map(move |i| (at, case, i)));
-    for ((at, case, index), number) in all.zip(0..) {
-        let planned = &case.experiments[index];
-        if planned.outcome.is_err() || case.twin(index).is_some() {
-            continue;
-        }
-        let member = (number, planned.horizon.div_ceil(plan.step()));
-        let shares = planned.shared.map(|shared| (at, shared.experiment));
-        let same = |company: &&mut Company| shares.is_some() && company.shares == shares;
-        match companies.iter_mut().find(same) {
-            Some(company) => company.experiments.push(member),
-            None => companies.push(Company { shares, experiments: vec![member] }),
+/// Groups of experiments that share their lookups; most experiments share none.
+pub(crate) fn groups<'p>(experiments: impl Iterator<Item = &'p Planned>) -> Vec<Vec<&'p Planned>> {
+    let mut groups: Vec<Vec<&Planned>> = Vec::new();
+    for one in experiments {
+        let shares =
+            |group: &&mut Vec<&Planned>| one.shared.is_some() && group[0].shared == one.shared;
+        match groups.iter_mut().find(shares) {
+            Some(group) => group.push(one),
+            None => groups.push(vec![one]),
         }
     }
-    companies
+    groups
 }
 
 /// Piece of work: one block of experiments that are drawn together.
@@ -86,17 +75,90 @@ pub struct Piece {
     pub block: u64,
 }
 
+/// Name of a block: an experiment by its number in the plan, and the number of the block.
+pub type BlockName = (u32, u64);
+
+impl Piece {
+    /// Returns the names of the blocks.
+    pub fn blocks(&self) -> impl Iterator<Item = BlockName> {
+        self.experiments.iter().map(|&experiment| (experiment, self.block))
+    }
+}
+
 /// Returns the pieces of a share, in the order of the plan.
 pub fn pieces(plan: &Plan, share: Share) -> impl Iterator<Item = Piece> {
-    let mut before = 0;
-    companies(plan).into_iter().flat_map(move |company| {
-        let blocks = company.experiments.iter().map(|one| one.1).max().unwrap_or(0);
+    let drawn = plan.experiments().map(|(_, planned)| planned).filter(|one| one.is_drawn());
+    let (step, mut before) = (plan.step(), 0);
+    groups(drawn).into_iter().flat_map(move |group| {
+        let blocks_of = move |planned: &Planned| planned.horizon.div_ceil(step);
+        let blocks = group.iter().map(|one| blocks_of(one)).max().unwrap_or(0);
         let (part, of) = (u64::from(share.part - 1), u64::from(share.of));
         let first = (part + of - before % of) % of;
         before += blocks;
         (first..blocks).step_by(share.of as usize).map(move |block| {
-            let there = company.experiments.iter().filter(|one| block < one.1);
-            Piece { experiments: there.map(|one| one.0).collect(), block }
+            let there = group.iter().filter(|one| block < blocks_of(one));
+            Piece { experiments: there.map(|one| one.number).collect(), block }
         })
     })
+}
+
+/// Receives blocks that were drawn.
+pub type Take<'a> = dyn Fn(Vec<(BlockName, Block)>) + Sync + 'a;
+
+/// Threads that draw; a block does not depend on the thread.
+pub trait Workers: Debug + Send + Sync {
+    /// Returns the number of threads.
+    fn threads(&self) -> usize;
+
+    /// Compares the draws of all workers with those that a header describes.
+    ///
+    /// # Errors
+    ///
+    /// Workers would draw something else: their names, and why.
+    fn agree(&self, header: &Header) -> Result<(), String>;
+
+    /// Draws pieces in any order, and hands over the blocks of each.
+    fn draw(&self, pieces: &[Piece], drawing: &Drawing, take: &Take);
+}
+
+/// Threads of this process.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Threads;
+
+impl Workers for Threads {
+    fn threads(&self) -> usize {
+        rayon::current_num_threads()
+    }
+
+    fn agree(&self, _: &Header) -> Result<(), String> {
+        Ok(())
+    }
+
+    fn draw(&self, pieces: &[Piece], drawing: &Drawing, take: &Take) {
+        parallel::range(pieces.len(), |number| take(drawing.draw(&pieces[number])));
+    }
+}
+
+/// Drawing of a plan, whose experiments are found by their numbers.
+pub struct Drawing<'p> {
+    blocks_per_look: u64,
+    experiments: Vec<&'p Planned>,
+    /// Returns whether the drawing shall end.
+    pub is_over: &'p (dyn Fn() -> bool + Sync),
+}
+
+impl<'p> Drawing<'p> {
+    /// Draws experiments of a plan.
+    pub fn new(plan: &'p Plan, is_over: &'p (dyn Fn() -> bool + Sync)) -> Self {
+        let experiments = plan.experiments().map(|(_, planned)| planned).collect();
+        Self { blocks_per_look: plan.options.blocks_per_look, experiments, is_over }
+    }
+
+    /// Draws the blocks of a piece in this thread; none where the drawing is over.
+    pub fn draw(&self, piece: &Piece) -> Vec<(BlockName, Block)> {
+        let numbers = piece.experiments.iter();
+        let group: Vec<&Planned> = numbers.map(|&one| self.experiments[one as usize]).collect();
+        let drawn = block::merged(&group, piece.block, self.blocks_per_look, self.is_over);
+        piece.blocks().zip(drawn).filter_map(|(name, block)| Some((name, block?))).collect()
+    }
 }

@@ -10,7 +10,7 @@
 
 use std::fmt::Write;
 
-use super::sampled::FILE as GRID;
+use super::fields::FILE as GRID;
 use super::scene::{Light, Scene, View};
 use media::phase::Phase;
 use numeric::geometry::{Aabb, Bounds, Point};

@@ -1,4 +1,4 @@
-//! Cases as scenes of other renderers, with what their pixels must be on average. Floor 6.
+//! Cases as scenes of other renderers, with what their pixels must be on average.
 //!
 //! ```text
 //! case file → scene (what is rendered) → case.toml (the same field, for theory) → truth.json
@@ -11,25 +11,20 @@
 //!
 //! Files are made in a temporary folder and moved when all are there.
 
-pub mod error;
 mod fields;
-pub mod mitsuba;
-pub mod pbrt;
-pub mod reading;
-pub mod sampled;
-pub mod scene;
-pub mod theory;
+mod mitsuba;
+mod pbrt;
+mod reading;
+mod scene;
 pub mod truth;
 
 use std::fs;
 use std::path::{Path, PathBuf};
 
-pub use error::ExportError;
 use scene::Scene;
 use truth::Truth;
 
-use crate::case::Catalogue;
-use crate::case::Source;
+use crate::case::{CaseError, Catalogue, Source};
 use media::files;
 
 /// A renderer that scenes are written for.
@@ -57,6 +52,46 @@ impl Target {
             Self::Pbrt => "zero",
         }
     }
+}
+
+/// Why a case was not exported.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum ExportError {
+    /// The case file is wrong.
+    #[error(transparent)]
+    Case(#[from] CaseError),
+    /// The case is right, and no renderer can show it.
+    #[error("{case} cannot be exported to {target}: {why}; {cure}")]
+    Unsuitable {
+        /// The case.
+        case: String,
+        /// The renderer.
+        target: &'static str,
+        /// What is in the way.
+        why: String,
+        /// Which case would do.
+        cure: String,
+    },
+    /// Theory has no answer for what would be exported.
+    #[error("{case} cannot be exported: theory has no answer for the sampled field: {why}")]
+    Unknown {
+        /// The case.
+        case: String,
+        /// The reason.
+        why: String,
+    },
+    /// `truth.json` could not be encoded.
+    #[error("cannot encode truth.json: {0}")]
+    Json(#[from] serde_json::Error),
+    /// A file could not be written.
+    #[error("cannot write {}; free some space or give another folder with --out", path.display())]
+    Write {
+        /// The file.
+        path: PathBuf,
+        /// The system's reason.
+        source: std::io::Error,
+    },
 }
 
 /// What was written.
@@ -136,17 +171,17 @@ fn write(scene: &Scene, out: &Path) -> Result<Exported, ExportError> {
     };
     let grids = scene.grids();
     if !grids.is_empty() {
-        put(sampled::FILE.into(), &sampled::vol(&grids))?;
+        put(fields::FILE.into(), &fields::vol(&grids))?;
     }
     if grids.len() > 1 {
         for (channel, grid) in grids.iter().enumerate() {
-            put(sampled::file_of(channel), &sampled::vol(&[grid]))?;
+            put(fields::file_of(channel), &fields::vol(&[grid]))?;
         }
     }
-    put(theory::FILE.into(), theory::case(scene).as_bytes())?;
-    let mut truth = truth::of(scene, &theory::ask(scene, stage.path())?);
+    put(truth::CASE.into(), truth::case(scene).as_bytes())?;
+    let mut truth = truth::of(scene, &truth::ask(scene, stage.path())?);
     if scene.target == Target::Mitsuba {
-        truth.notes.extend(theory::remark(scene, stage.path()));
+        truth.notes.extend(truth::remark(scene, stage.path()));
     }
     for (view, channel) in scene.asked() {
         let name = scene.file(view, channel);

@@ -13,13 +13,11 @@
 use std::slice;
 use std::sync::Arc;
 
-use super::error::ExportError;
 use super::fields::{Fields, Reader, Unsuitable, lobe, one_phase, unread};
 use super::scene::{Channel, Light, Scene, View};
-use super::{Target, Wishes, single};
-use crate::case::Catalogue;
-use crate::case::Source;
+use super::{ExportError, Target, Wishes, single};
 use crate::case::sweep::What;
+use crate::case::{Catalogue, Source};
 use media::phase::Phase;
 use media::phase::isotropic::Isotropic;
 use media::{Body, Medium, Volume};
@@ -32,10 +30,6 @@ use theory::problems::{
 };
 
 /// Reads a case as a scene.
-///
-/// # Errors
-///
-/// Mistakes in the case file, or what is in the way.
 pub fn read(
     catalogue: &Catalogue,
     source: &Source,

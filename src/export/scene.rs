@@ -1,7 +1,7 @@
 //! What is rendered, in nobody's language.
 
 use super::Target;
-use super::sampled::Sampled;
+use super::fields::Sampled;
 use media::phase::Phase;
 use numeric::geometry::{Aabb, Bounds, Point};
 

@@ -7,10 +7,10 @@ use super::choice::{Choice, ChoiceError};
 use super::whole::Known;
 use super::{Claim, Flights, Lookups, Theory};
 use crate::case::Case;
-use crate::case::build::Ready;
+use crate::case::CaseError;
+use crate::case::Ready;
 use crate::case::catalogue::Catalogue;
-use crate::case::names::EstimatorName;
-use crate::case::source::CaseError;
+use crate::case::id::EstimatorName;
 use crate::case::sweep::{SweepAxis, Variation, What};
 use crate::checks;
 use ::theory::{CountLaw, Law, Prediction};
@@ -159,7 +159,7 @@ fn claims(case: &Case, prediction: &Prediction, rounding: f64) -> Vec<(String, C
 /// The estimator of a name, with its label.
 fn find(case: &Case, name: &str) -> Result<(usize, String), ChoiceError> {
     let plain: Vec<EstimatorName> =
-        (0..case.scenario.estimators()).map(|e| case.names(e, None).estimator).collect();
+        (0..case.scenario.estimators()).map(|e| case.id(e, None).estimator).collect();
     // Namesakes are numbered, as in tables.
     let label = |e: usize| {
         let twins = plain[..e].iter().filter(|&other| *other == plain[e]).count();
@@ -181,8 +181,8 @@ fn find(case: &Case, name: &str) -> Result<(usize, String), ChoiceError> {
         [] => Err(ChoiceError::NoEstimator { case, name, candidates: labels }),
         _ => {
             let candidates = found.iter().map(|&e| {
-                let names = one.names(e, None);
-                let about = [names.sampling.map(|s| format!("σ̂ {s}")), Some(names.control)];
+                let id = one.id(e, None);
+                let about = [id.sampling.constant.map(|s| format!("σ̂ {s}")), Some(id.control)];
                 let about: Vec<String> =
                     about.into_iter().flatten().filter(|word| !word.is_empty()).collect();
                 if about.is_empty() {

@@ -1,10 +1,12 @@
-//! How the questions of a run share its error rate: 4/5 of α go to the gate, by e-Bonferroni, 1/5 to
-//! the p-values, by Holm.
+//! How the questions of a run share its error rate, and the verdicts that are known before the first draw.
+//!
+//! 4/5 of α go to the gate, by e-Bonferroni, 1/5 to the p-values, by Holm.
 
+use crate::plan::Planned;
 use gate::session;
 use gate::stats::gate::ln_fail;
 use gate::stats::normal;
-use gate::stats::verdict::MISS;
+use gate::stats::verdict::{MISS, Verdict};
 
 /// The share of the error rate that goes to tests of whole laws.
 const LAW_SHARE: f64 = 0.2;
@@ -51,4 +53,51 @@ impl Levels {
         let ln_fail = if expects_bias { self.ln_biased } else { self.ln_fail };
         session::Levels { ln_fail, ln_pass: self.ln_pass }
     }
+}
+
+/// The best verdict that the planned draws allow, and the draws that allow a better one.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Foreseen {
+    /// `inconclusive` or `underpowered`; `None` where the planned draws suffice for a pass.
+    pub verdict: Option<Verdict>,
+    /// The draws that the checks of that verdict need; `None` where no number of draws is enough.
+    pub needed: Option<f64>,
+    /// Why, with the numbers of draws; empty without a verdict.
+    pub reason: String,
+}
+
+impl Foreseen {
+    /// The best verdict on one channel of an experiment.
+    pub fn of(planned: &Planned, channel: usize) -> Self {
+        let about = planned.questions.iter().filter(|q| q.channel.is_none_or(|one| one == channel));
+        // A bias that must be shown needs no promise of a pass.
+        let promised = about.filter(|q| !q.expects_bias || q.answer.scalar().is_none());
+        let weak: Vec<(Verdict, f64, String)> = promised
+            .filter_map(|question| {
+                let (reason, needed) = question.answer.too_weak(&question.what)?;
+                Some((question.too_weak, needed, reason.to_string()))
+            })
+            .collect();
+        if weak.is_empty() {
+            return Self::default();
+        }
+        let verdict = Verdict::worst(weak.iter().map(|one| one.0));
+        // The checks of the verdict first.
+        let (own, others): (Vec<_>, Vec<_>) = weak.into_iter().partition(|one| one.0 == verdict);
+        let needed = own.iter().map(|one| one.1).fold(0.0, f64::max);
+        let reasons = own.iter().chain(&others).map(|one| one.2.as_str());
+        let (verdict, needed) = (Some(verdict), Some(needed).filter(|needed| needed.is_finite()));
+        Self { verdict, needed, reason: joined(reasons) }
+    }
+}
+
+/// Different reasons as one text; empty ones are left out.
+pub fn joined<'a>(reasons: impl Iterator<Item = &'a str>) -> String {
+    let mut different: Vec<&str> = Vec::new();
+    for reason in reasons {
+        if !reason.is_empty() && !different.contains(&reason) {
+            different.push(reason);
+        }
+    }
+    different.join("; ")
 }

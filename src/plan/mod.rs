@@ -8,34 +8,26 @@
 //! α        4/5 to the gate, by e-Bonferroni; 1/5 to the p-values, by Holm
 //! ```
 
-pub mod addresses;
-pub mod filter;
-pub mod foreseen;
-pub mod id;
 pub mod levels;
 pub mod options;
 
-pub use filter::Filter;
-pub use id::ExperimentId;
-pub use options::{Amount, Options};
+pub use crate::case::id::ExperimentId;
+pub use ::gate::stats::verdict::{BLOCK, MISS};
+pub use options::{Amount, Filter, Options};
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-pub use ::gate::stats::verdict::MISS;
-
-use crate::case::Case;
-use crate::case::build::Ready;
 use crate::case::sweep::Variation;
+use crate::case::{Case, Ready};
 use crate::checks::check::Share;
 use crate::checks::{self, Pilot, Question, Scalar, Subject};
 use crate::plan::levels::Levels;
 use ::gate::stats::gate;
+use ::gate::stats::verdict::Verdict;
 use estimators::{DrawBuffer, Order, Refusal};
 use numeric::pack::WIDTH;
-use numeric::rng::{Address, PILOT, Streams};
+use numeric::rng::{Address, PILOT, Streams, name_hash};
 use theory::parallel;
-
-pub use crate::plan::addresses::BLOCK;
 
 /// Draws that estimate a variance where theory has none.
 const PILOT_DRAWS: usize = 1 << 16;
@@ -58,35 +50,16 @@ pub struct PlannedCase<'a> {
     pub experiments: Vec<Planned>,
 }
 
-impl PlannedCase<'_> {
-    /// The experiment before this one that it is by definition: their draws are the same, and made
-    /// once.
-    pub fn twin(&self, index: usize) -> Option<usize> {
-        let this = &self.experiments[index];
-        let asked = |planned: &Planned| -> Vec<String> {
-            planned.questions.iter().map(|question| question.check.clone()).collect()
-        };
-        let is_same = |other: &Planned| {
-            (other.address, other.draws, other.fixed, other.horizon)
-                == (this.address, this.draws, this.fixed, this.horizon)
-                && other.expect_biased == this.expect_biased
-                && asked(other) == asked(this)
-        };
-        let ready = this.outcome.is_ok();
-        (0..index).find(|&i| {
-            ready && self.experiments[i].outcome.is_ok() && is_same(&self.experiments[i])
-        })
-    }
-}
-
 /// One experiment.
 pub struct Planned {
+    /// Number of the experiment in the plan, from 0.
+    pub number: u32,
     /// Which estimator of the case.
     pub estimator: usize,
-    /// Where in the sweep.
-    pub variation: Variation,
     /// Identity of the experiment.
     pub id: ExperimentId,
+    /// The earlier experiment of the case that is the same by definition: their draws are the same, and made once.
+    pub same_as: Option<ExperimentId>,
     /// Knowledge of the medium that the experiment needs beside lookups; empty for none.
     pub needs: String,
     /// Number of draws that share the setup lookups of a ray.
@@ -115,6 +88,11 @@ impl Planned {
     /// The questions that go through the gate.
     pub fn scalars(&self) -> impl Iterator<Item = (&Question, &Scalar)> {
         self.questions.iter().filter_map(|question| Some((question, question.answer.scalar()?)))
+    }
+
+    /// Whether draws are made for the experiment: not where it is refused, or the same as an earlier one.
+    pub fn is_drawn(&self) -> bool {
+        self.outcome.is_ok() && self.same_as.is_none()
     }
 
     /// How many rows it has in a record: one per channel, or one that says why it is refused.
@@ -152,12 +130,11 @@ impl<'a> Plan<'a> {
         options: &Options,
         listen: &(dyn Fn(usize, usize) + Sync),
     ) -> Self {
-        let points: Vec<Vec<(usize, Variation)>> =
-            cases.iter().map(|case| points(case, options)).collect();
-        let (prepared, all) = (AtomicUsize::new(0), points.iter().map(Vec::len).sum());
+        let points: Vec<(&Case, Vec<(usize, Variation)>)> =
+            cases.iter().map(|case| (case, points(case, options))).collect();
+        let (prepared, all) = (AtomicUsize::new(0), points.iter().map(|one| one.1.len()).sum());
         listen(0, all);
-        let both: Vec<_> = cases.iter().zip(&points).collect();
-        let mut cases = parallel::map(&both, |&(case, points)| {
+        let mut cases = parallel::map(&points, |(case, points)| {
             let experiments = parallel::map(points, |&point| {
                 let planned = plan_experiment(case, options, point);
                 listen(prepared.fetch_add(1, Ordering::Relaxed) + 1, all);
@@ -175,11 +152,17 @@ impl<'a> Plan<'a> {
             // In whole blocks, since looks come at their ends.
             if share < BLOCK { share } else { share / BLOCK * BLOCK }
         });
-        parallel::change(&mut cases, |planned_case| {
-            let case = planned_case.case;
-            for planned in &mut planned_case.experiments {
+        let all = cases.iter_mut().flat_map(|case| &mut case.experiments);
+        (0..).zip(all).for_each(|(number, planned)| planned.number = number);
+        parallel::change(&mut cases, |PlannedCase { case, experiments }| {
+            for planned in &mut *experiments {
                 planned.draws = share.map_or(planned.draws, |share| planned.draws.min(share));
                 planned.ask(case, options);
+            }
+            for index in 0..experiments.len() {
+                let (earlier, rest) = experiments.split_at_mut(index);
+                let same = earlier.iter().find(|other| other.is_same(&rest[0]));
+                rest[0].same_as = same.map(|other| other.id.clone());
             }
         });
         let mut counts = [0; 3];
@@ -249,7 +232,7 @@ fn points(case: &Case, options: &Options) -> Vec<(usize, Variation)> {
     }
     if let Some(filter) = &options.filter {
         points.retain(|&(estimator, variation)| {
-            filter.keeps(&case.name, &case.names(estimator, variation).estimator)
+            filter.keeps(&case.name, &case.id(estimator, variation).estimator)
         });
     }
     points
@@ -261,21 +244,23 @@ fn plan_experiment(
     (estimator, variation): (usize, Variation),
 ) -> Planned {
     let most = options.draws.of(case.draws);
-    let names = case.names(estimator, variation);
-    // Two estimators may have the same names, as where each has a field of its own as control.
-    let namesakes = (0..estimator).filter(|&e| case.names(e, variation) == names).count();
-    let id = ExperimentId::new([&case.name, &case.problem], &names, variation, namesakes);
-    let address = addresses::own(options.seed, &id, names.alias.as_ref());
+    let address = case.address(options.seed, estimator, variation);
     let pilots = case.pilots(options.seed, estimator);
     let at = case.at(variation);
     let needs = at.as_ref().map_or_else(|_| String::new(), |at| at.needs(estimator));
     let outcome = at.and_then(|at| at.prepare(estimator, pilots));
     let stretches = outcome.as_ref().ok().and_then(|ready| ready.experiment.even_places());
-    let shared = stretches.map(|on| addresses::shared(options.seed, &case.name, &on));
+    // Order-free experiments of a case find their collisions at one address if these are as likely anywhere on the same
+    // stretches: whatever the estimator, the control and σ̂.
+    let shared = stretches.map(|on| {
+        let experiment = name_hash(&format!("{}|places{on}", case.name));
+        Address { seed: options.seed, experiment, block: 0, lane: 0 }
+    });
     Planned {
+        number: 0,
         estimator,
-        variation,
-        id,
+        id: case.id(estimator, variation),
+        same_as: None,
         needs,
         draws_per_ray: case.draws_per_ray,
         address,
@@ -291,6 +276,16 @@ fn plan_experiment(
 }
 
 impl Planned {
+    /// Whether two experiments make the same draws, and ask the same of them.
+    fn is_same(&self, other: &Self) -> bool {
+        let of = |one: &Self| (one.address, one.draws, one.fixed, one.horizon, one.expect_biased);
+        let asked = |one: &Self| one.questions.iter().map(|q| q.check.clone()).collect::<Vec<_>>();
+        self.outcome.is_ok()
+            && other.outcome.is_ok()
+            && of(self) == of(other)
+            && asked(self) == asked(other)
+    }
+
     /// Asks all checks, first for the draws that the case's tolerances need, then for good.
     fn ask(&mut self, case: &Case, options: &Options) {
         let Ok(ready) = &self.outcome else { return };
@@ -310,7 +305,7 @@ impl Planned {
             is_in_turn: ready.experiment.order() == Order::Along,
             pilots: pilots.as_deref(),
         };
-        if case.tolerance.says_something() {
+        if case.tolerance.is_given() {
             let needed = needed(&checks::questions(&subject), most);
             subject.draws = needed;
             subject.fixed = fixed(needed);
@@ -332,6 +327,12 @@ impl Planned {
         let is_tight = options.budget.is_some() && self.draws < BLOCK;
         let is_fixed = options.fixed || is_tight || is_certain;
         self.horizon = if is_fixed { self.draws } else { horizon(self.draws) };
+        for question in &mut questions {
+            let counts = question.check == "mean" && !case.allow_underpowered;
+            if counts || options.strict {
+                question.too_weak = Verdict::Inconclusive;
+            }
+        }
         self.questions = questions;
     }
 

@@ -1,7 +1,8 @@
 //! What a run is asked to do, whatever the cases are.
 
-use crate::plan::filter::Filter;
+use crate::case::id::EstimatorName;
 use estimators::Order;
+use glob::{Pattern, PatternError};
 
 /// Draws per experiment where neither the options nor the case say.
 pub const DRAWS: u64 = 4_000_000;
@@ -53,6 +54,25 @@ impl Amount {
     }
 }
 
+impl Options {
+    /// Options of the command line that ask for the same draws.
+    pub fn words(&self) -> Vec<String> {
+        let mut words = vec![format!("--seed={}", self.seed), format!("--alpha={}", self.alpha)];
+        if let Amount::Exactly(draws) = self.draws {
+            words.push(format!("--draws={draws}"));
+        }
+        words.extend(self.budget.map(|draws| format!("--budget={draws}")));
+        words.extend(self.filter.as_ref().map(|filter| format!("--filter={}", filter.pattern())));
+        words.extend(self.kernel.map(|kernel| format!("--kernel={}", kernel.word())));
+        if self.blocks_per_look != 1 {
+            words.push(format!("--blocks-per-look={}", self.blocks_per_look));
+        }
+        let flags = [("--fixed-draws", self.fixed), ("--strict", self.strict)];
+        words.extend(flags.iter().filter(|flag| flag.1).map(|flag| flag.0.to_owned()));
+        words
+    }
+}
+
 impl Default for Options {
     fn default() -> Self {
         Self {
@@ -71,20 +91,52 @@ impl Default for Options {
     }
 }
 
-/// The smallest relative differences that must be seen; `None` where the case does not say.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct Tolerance {
-    /// Of the mean, relative to the truth.
-    pub mean: Option<f64>,
-    /// Of the variance, relative to the prediction.
-    pub variance: Option<f64>,
-    /// Of the lookups, relative to the prediction.
-    pub lookups: Option<f64>,
+/// A pattern that selects experiments by name.
+///
+/// It is matched against the case's name, against the estimator's name without its settings, and
+/// against both as `case:estimator`; `*` also crosses slashes.
+#[derive(Debug, Clone)]
+pub struct Filter(Pattern);
+
+impl Filter {
+    /// A pattern such as `*eq21*`, `ratio` or `transmittance/*:single`.
+    ///
+    /// # Errors
+    ///
+    /// The pattern is malformed.
+    pub fn new(pattern: &str) -> Result<Self, PatternError> {
+        Pattern::new(pattern).map(Self)
+    }
+
+    /// The pattern as it was written.
+    pub fn pattern(&self) -> &str {
+        self.0.as_str()
+    }
+
+    /// Whether an estimator of a case matches.
+    pub fn keeps(&self, case: &str, estimator: &EstimatorName) -> bool {
+        let (name, label) = (&estimator.name, estimator.to_string());
+        let matches = |text: &str| self.0.matches(text);
+        matches(case)
+            || matches(name)
+            || matches(&label)
+            || matches(&format!("{case}:{name}"))
+            || matches(&format!("{case}:{label}"))
+    }
 }
 
-impl Tolerance {
-    /// Whether the case has any.
-    pub fn says_something(&self) -> bool {
-        *self != Self::default()
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn patterns_meet_cases_estimators_and_both() {
+        let keeps = |pattern: &str| {
+            let filter = Filter::new(pattern).expect("a pattern");
+            let estimator = EstimatorName { name: "single".into(), settings: "terminating".into() };
+            filter.keeps("transmittance/eq21-sweep", &estimator)
+        };
+        assert!(keeps("*eq21*") && keeps("single") && keeps("*sweep:single"));
+        assert!(!keeps("double") && !keeps("*noise*"));
     }
 }

@@ -1,35 +1,33 @@
 //! Builds the record of a plan, of its predictions, or of its judged draws.
 
-use crate::draw::drawn::{Drawn, Draws};
-use crate::plan::foreseen::Foreseen;
+use crate::draw::block::Draws;
+use crate::plan::levels::{Foreseen, joined};
 use crate::plan::{MISS, Plan, PlannedCase};
-use crate::record::curves;
-use crate::record::evaluate;
-use crate::record::qualify::explain_blocks;
+use crate::record::evaluate::{self, Judged};
 use crate::record::repeat::{command, deciding, deciding_all};
-use crate::record::summary;
-use crate::record::theory;
 use crate::record::{
-    Anatomy, CaseRecord, ExperimentRecord, Finding, Gate, Record, Results, SCHEMA, Spent, Sweep,
-    Timing, Verdict,
+    CaseRecord, ExperimentRecord, Finding, Gate, Record, Results, Row, SCHEMA, Spent, Suspect,
+    Timing, Verdict, curves, theory,
 };
 use ::theory::parallel;
 use fearless_simd::Level;
+use gate::session::Reason;
+use gate::stats::gate::TYPICAL;
+use gate::stats::multiplicity;
 use numeric::pack;
 
 /// Builds the record of a plan before the first draw: with the numbers of draws, and the verdicts that are certain already.
 pub fn planned(plan: &Plan) -> Record {
-    record(plan, |_, case| {
+    let cases = parallel::map(&plan.cases, |case| {
         let decide = deciding_all(plan, case);
-        let experiments = (0..case.experiments.len()).map(|index| {
-            let planned = &case.experiments[index];
-            let mut record = theory::predicted(case, index);
+        let experiments = case.experiments.iter().map(|planned| {
+            let mut record = theory::predicted(case, planned);
             record.draws = planned.outcome.is_ok().then_some(planned.draws);
             for (channel, values) in record.channels.iter_mut().enumerate() {
                 if values.verdict.is_some() {
                     continue;
                 }
-                let foreseen = Foreseen::of(plan, case, planned, channel);
+                let foreseen = Foreseen::of(planned, channel);
                 (values.foreseen, values.needed_draws) = (foreseen.verdict, foreseen.needed);
                 values.reason = foreseen.reason;
                 if values.foreseen == Some(Verdict::Inconclusive) {
@@ -38,101 +36,93 @@ pub fn planned(plan: &Plan) -> Record {
             }
             record
         });
-        Part::of(experiments.collect(), case)
-    })
+        case_record(case, experiments.collect())
+    });
+    record(plan, cases)
 }
 
 /// Builds the record of the predictions of a plan.
 pub fn predicted(plan: &Plan) -> Record {
-    record(plan, |_, case| {
-        let experiments = 0..case.experiments.len();
-        Part::of(experiments.map(|index| theory::predicted(case, index)).collect(), case)
-    })
+    let cases = parallel::map(&plan.cases, |case| {
+        let experiments = case.experiments.iter().map(|planned| theory::predicted(case, planned));
+        case_record(case, experiments.collect())
+    });
+    record(plan, cases)
 }
 
 /// Builds the record of the predictions of a plan, with the best constant σ̂ of each experiment and channel, which takes
 /// a hundred predictions.
 pub fn predicted_with_optima(plan: &Plan) -> Record {
-    record(plan, |_, case| {
+    let cases = parallel::map(&plan.cases, |case| {
         let best = curves::best_of_each(case, plan.options.seed);
-        let experiments = best.into_iter().enumerate().map(|(index, best)| {
-            let mut record = theory::predicted(case, index);
+        let experiments = best.into_iter().map(|(planned, best)| {
+            let mut record = theory::predicted(case, planned);
             for (channel, values) in record.channels.iter_mut().enumerate() {
                 let best = best.get(channel).copied().flatten();
                 values.best = best.filter(|_| values.verdict.is_none()).map(curves::named_best);
             }
             record
         });
-        Part::of(experiments.collect(), case)
-    })
+        case_record(case, experiments.collect())
+    });
+    record(plan, cases)
 }
 
 /// Builds the record of what a plan drew, judged. The lines of plots are left out, see [`add_curves`].
 pub fn judged(plan: &Plan, draws: &Draws, seconds: f64) -> Record {
-    let findings = evaluate::run(plan, draws);
-    let mut record = record(plan, |number, case| {
-        let found = draws.cases[number].iter().zip(&findings[number]).enumerate();
-        let experiments = found.map(|(i, (drawn, found))| experiment(plan, case, i, drawn, found));
-        let z_limit = Some(plan.levels.z);
-        let part = Part::of(experiments.collect(), case);
-        let sweep = part.sweep.map(|sweep| Sweep { z_limit, ..sweep });
-        let drawn = case.experiments.iter().zip(&draws.cases[number]);
-        let anatomy = drawn.into_iter().find_map(|(p, drawn)| curves::anatomy(case, p, drawn));
-        Part { sweep, anatomy, ..part }
+    let judged = evaluate::run(plan, draws);
+    let of_cases = judged.chunk_by(|a, b| a.of.planned.id.case == b.of.planned.id.case);
+    let cases = parallel::map(&of_cases.collect::<Vec<_>>(), |judged| {
+        let experiments = judged.iter().map(|one| experiment(plan, one));
+        let mut case = case_record(judged[0].of.case, experiments.collect());
+        case.anatomy = judged.iter().find_map(|one| curves::anatomy(one.of));
+        if let Some(sweep) = &mut case.sweep {
+            sweep.z_limit = Some(plan.levels.z);
+        }
+        case.visible_bias = visible_bias(&case);
+        case.pace = pace(&case);
+        case
     });
+    let mut record = record(plan, cases);
     record.results.cut_by_time = draws.cut_by_time;
     record.results.cut_by_budget = draws.cut_by_budget;
-    summary::complete(&mut record.results);
+    complete(&mut record.results);
     record.timing.seconds = seconds;
     record
 }
 
 /// Adds the theory's lines along sweeps, which plots show.
 pub fn add_curves(plan: &Plan, record: &mut Record) {
-    let found = parallel::map(&plan.cases, |case| curves::curves(case.case, plan.options.seed));
-    for (case, curves) in record.results.cases.iter_mut().zip(found) {
-        if let Some(sweep) = &mut case.sweep {
-            sweep.curves = curves;
+    parallel::change(&mut record.results.cases, |case| {
+        let planned = plan.cases.iter().find(|planned| planned.case.name == case.name);
+        if let (Some(planned), Some(sweep)) = (planned, &mut case.sweep) {
+            sweep.curves = curves::curves(planned.case, plan.options.seed);
         }
-    }
-}
-
-/// The parts of a case's record that differ between plans, predictions and runs.
-struct Part {
-    experiments: Vec<ExperimentRecord>,
-    sweep: Option<Sweep>,
-    anatomy: Option<Anatomy>,
-}
-
-impl Part {
-    /// The experiments with the axis of the sweep.
-    fn of(experiments: Vec<ExperimentRecord>, case: &PlannedCase) -> Self {
-        Self { experiments, sweep: curves::axis(case.case), anatomy: None }
-    }
-}
-
-fn record(plan: &Plan, part: impl Fn(usize, &PlannedCase) -> Part + Sync) -> Record {
-    let numbered: Vec<(usize, &PlannedCase)> = plan.cases.iter().enumerate().collect();
-    let cases = parallel::map(&numbered, |&(number, planned)| {
-        let Part { experiments, sweep, anatomy } = part(number, planned);
-        let mut case = CaseRecord {
-            name: planned.case.name.clone(),
-            path: planned.case.path.display().to_string(),
-            title: planned.case.title.clone(),
-            problem: planned.case.problem.clone(),
-            medium: planned.case.scenario.medium().to_owned(),
-            draws_per_ray: Some(planned.case.draws_per_ray),
-            visible_bias: None,
-            pace: None,
-            experiments,
-            sweep,
-            anatomy,
-            facts: planned.case.scenario.facts(),
-            notes: planned.case.scenario.notes(),
-        };
-        case.name_experiments();
-        case
     });
+}
+
+fn case_record(
+    PlannedCase { case, .. }: &PlannedCase,
+    experiments: Vec<ExperimentRecord>,
+) -> CaseRecord {
+    let mut record = CaseRecord {
+        name: case.name.clone(),
+        path: case.path.display().to_string(),
+        title: case.title.clone(),
+        problem: case.problem.clone(),
+        medium: case.scenario.medium().to_owned(),
+        draws_per_ray: Some(case.draws_per_ray),
+        experiments,
+        sweep: curves::axis(case),
+        facts: case.scenario.body().facts(),
+        notes: case.scenario.notes(),
+        ..CaseRecord::default()
+    };
+    record.name_experiments();
+    record
+}
+
+fn record(plan: &Plan, cases: Vec<CaseRecord>) -> Record {
     let timing = Timing {
         threads: rayon::current_num_threads(),
         level: pack::word(Level::new()),
@@ -165,16 +155,10 @@ fn record(plan: &Plan, part: impl Fn(usize, &PlannedCase) -> Part + Sync) -> Rec
     Record { results, timing, comparison: None }
 }
 
-/// The experiment at an index of a case, with its draws and the findings of its checks.
-fn experiment(
-    plan: &Plan,
-    case: &PlannedCase,
-    index: usize,
-    drawn: &Drawn,
-    findings: &[Finding],
-) -> ExperimentRecord {
-    let planned = &case.experiments[index];
-    let mut record = theory::predicted(case, index);
+/// An experiment with its draws and the findings of its checks.
+fn experiment(plan: &Plan, Judged { of, findings }: &Judged) -> ExperimentRecord {
+    let (case, planned, drawn) = (of.case, of.planned, &of.drawn);
+    let mut record = theory::predicted(case, planned);
     let seconds = planned.outcome.is_ok().then_some(drawn.seconds);
     record.spent = Spent { seconds, is_reused: drawn.is_reused };
     if planned.outcome.is_err() {
@@ -184,9 +168,9 @@ fn experiment(
     record.stream = Some(planned.address.experiment);
     record.drawn = Some(drawn.draws);
     record.p_law = findings.iter().filter_map(|finding| finding.p).reduce(f64::min);
-    theory::measure(&mut record, planned, drawn);
-    record.findings = findings.to_vec();
-    explain_blocks(&mut record.findings);
+    theory::measure(&mut record, of);
+    record.findings.clone_from(findings);
+    evaluate::explain_blocks(&mut record.findings);
     for finding in &mut record.findings {
         let channel = record.channels.iter().find(|channel| finding.is_about(&channel.channel));
         finding.z = match finding.check.as_str() {
@@ -213,11 +197,77 @@ fn experiment(
 /// The worst verdict, with every reason of it.
 fn worst(findings: &[&Finding]) -> (Verdict, String) {
     let verdict = Verdict::worst(findings.iter().map(|finding| finding.verdict));
-    let mut reasons: Vec<&str> = Vec::new();
-    for finding in findings.iter().filter(|finding| finding.verdict == verdict) {
-        if !finding.reason.is_empty() && !reasons.contains(&finding.reason.as_str()) {
-            reasons.push(&finding.reason);
-        }
+    let own = findings.iter().filter(|finding| finding.verdict == verdict);
+    (verdict, joined(own.map(|finding| finding.reason.as_str())))
+}
+
+/// Fills in what only the whole run can say.
+fn complete(results: &mut Results) {
+    let (alpha, cases, gate) = (results.alpha, &results.cases, &mut results.gate);
+    let suspects: Vec<Suspect> = cases
+        .iter()
+        .flat_map(|case| scalars(case).map(|(row, finding)| suspect(case, &row, finding)))
+        .collect();
+    let ln_e: Vec<f64> = suspects.iter().map(|suspect| suspect.ln_e).collect();
+    if !ln_e.is_empty() {
+        gate.ln_mean_e = Some(multiplicity::mean_e_value(&ln_e)).filter(|e| e.is_finite());
+        let strongest = ln_e.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        gate.smallest_margin = Some(gate.ln_e_limit - strongest).filter(|m| m.is_finite());
     }
-    (verdict, reasons.join("; "))
+    let listed = multiplicity::e_benjamini_hochberg(&ln_e, alpha);
+    gate.triage = listed.into_iter().map(|index| suspects[index].clone()).collect();
+    let means = || cases.iter().flat_map(CaseRecord::rows).flat_map(|row| row.findings());
+    let passed = |finding: &&Finding| {
+        finding.check == "mean" && finding.verdict == Verdict::Pass && !finding.expects_bias
+    };
+    let assumed = Reason::VarianceAssumed.to_string();
+    gate.variance_assumed = means().filter(passed).filter(|f| f.reason == assumed).count();
+    let biases = means().filter(passed).filter_map(|finding| Some(finding.gate?.tolerance));
+    gate.worst_bias = biases.reduce(f64::max);
+}
+
+/// The scalars of a case with the row that they stand in; those of the whole experiment stand in the first of its rows.
+fn scalars(case: &CaseRecord) -> impl Iterator<Item = (Row<'_>, &Finding)> {
+    // Draws that two experiments share count once.
+    let own = case.rows().filter(|row| row.experiment.same_as.is_none());
+    own.flat_map(|row| {
+        let scalars =
+            row.own_findings().filter(|found| found.gate.is_some() && !found.expects_bias);
+        scalars.map(move |finding| (row, finding))
+    })
+}
+
+fn suspect(case: &CaseRecord, row: &Row, finding: &Finding) -> Suspect {
+    let mut experiment = row.experiment.label.clone();
+    if let Some(swept) = row.experiment.swept() {
+        experiment = format!("{experiment} at {swept}");
+    }
+    if !finding.channel.is_empty() {
+        experiment = format!("{experiment}, {}", finding.channel);
+    }
+    let ln_e = finding.gate.map_or(0.0, |gate| gate.ln_e);
+    Suspect { case: case.name.clone(), experiment, check: finding.check.clone(), ln_e }
+}
+
+/// The range of ε over the means that were promised a pass.
+fn visible_bias(case: &CaseRecord) -> Option<[f64; 2]> {
+    let means = case.rows().flat_map(|row| row.findings()).filter(|f| f.check == "mean");
+    let promised = means.filter_map(|finding| finding.gate.filter(|gate| gate.needed.is_none()));
+    let tolerances: Vec<f64> = promised.map(|gate| gate.tolerance).collect();
+    let least = tolerances.iter().copied().reduce(f64::min)?;
+    let range = [least, tolerances.iter().copied().fold(least, f64::max)];
+    Some(range).filter(|range| range.iter().all(|end| end.is_finite()))
+}
+
+/// See [`CaseRecord::pace`].
+fn pace(case: &CaseRecord) -> Option<f64> {
+    let passed = scalars(case).filter(|(_, finding)| finding.verdict == Verdict::Pass);
+    let (taken, typical) = passed.filter_map(|(_, finding)| finding.gate).fold(
+        (0.0, 0.0),
+        |(taken, typical), gate| {
+            let unit = gate.variance / (gate.tolerance * gate.tolerance);
+            (taken + gate.draws as f64, typical + TYPICAL * unit)
+        },
+    );
+    (typical > 0.0).then(|| taken / typical)
 }

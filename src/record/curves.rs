@@ -1,15 +1,131 @@
-//! The theory's lines along a sweep, the best constant σ̂ of each estimator, and rays seen from the side.
+//! What a record holds for plots: the theory's lines along a sweep, the best constant σ̂ of each estimator, and rays seen
+//! from the side.
+
+use serde::{Deserialize, Serialize};
 
 use crate::case::Case;
-use crate::case::names::Names;
+use crate::case::id::ExperimentId;
 use crate::case::sweep::{SweepAxis, Variation, What};
-use crate::draw::drawn::Drawn;
+use crate::draw::block::DrawnExperiment;
 use crate::plan::{Planned, PlannedCase};
 use crate::record::theory::finite;
-use crate::record::{Anatomy, Best, Curve, CurvePoint, MeasuredPoint, Sweep};
 use ::theory::Channel;
-use ::theory::optimum::{Optimum, best_constants};
+use ::theory::optimum::{Kind, Optimum, best_constants};
 use ::theory::parallel;
+
+/// The axis of a sweep and the theory's curves along it.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub struct Sweep {
+    /// What is swept, by its key in case files, as `sampling` or `density`.
+    pub what: String,
+    /// The axis title with symbol and unit.
+    pub axis: String,
+    /// Whether the axis is logarithmic.
+    pub log: bool,
+    /// The z-score that is as rare as a false alarm of the gate.
+    pub z_limit: Option<f64>,
+    /// One curve per estimator and channel; none where nothing is drawn.
+    pub curves: Vec<Curve>,
+}
+
+/// What theory says of one estimator along the sweep, one channel of its value.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub struct Curve {
+    /// The estimator's label at the first value of the sweep.
+    pub estimator: String,
+    /// The number of the estimator in the case's list: its experiments have the same.
+    pub listed: usize,
+    /// Its control in words at the first value of the sweep.
+    pub control: String,
+    /// The channel.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub channel: String,
+    /// Points in ascending order; refused stretches are left out.
+    pub points: Vec<CurvePoint>,
+    /// Theory at the best constant σ̂, if that was searched and lies inside the sweep.
+    pub optimum: Option<CurvePoint>,
+    /// The best constant σ̂, inside the sweep or not; `None` where it was not searched.
+    pub best: Option<Best>,
+}
+
+/// The constant σ̂ that a search for the largest figure of merit names.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub struct Best {
+    /// σ̂, 1/length.
+    pub sampling: f64,
+    /// The figure of merit there; `None` where it is infinite.
+    pub fom: Option<f64>,
+    /// Kind of this σ̂, in the words of a row's `best_kind`.
+    pub kind: String,
+    /// The limit of a figure of merit that rises with σ̂ to one.
+    pub limit: Option<f64>,
+}
+
+impl Best {
+    /// Whether the figure of merit is largest there.
+    pub fn is_optimum(&self) -> bool {
+        self.kind == Kind::Maximum.words()
+    }
+}
+
+/// Theory at one value of the swept quantity.
+#[derive(Debug, Clone, Copy, Serialize, Deserialize)]
+pub struct CurvePoint {
+    /// The swept value.
+    pub x: f64,
+    /// The variance of one draw.
+    pub variance: f64,
+    /// The expected lookups.
+    pub lookups: f64,
+    /// 1/(variance · (lookups + setup lookups/draws per ray)).
+    pub fom: f64,
+    /// Lookups for a ray before its first draw.
+    #[serde(default)]
+    pub setup_lookups: u64,
+}
+
+/// A ray seen from the side, as in Figures 5 and 8 of Szirmay-Kalos et al. 2017.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub struct Anatomy {
+    /// The experiment that the curves belong to.
+    pub experiment: ExperimentId,
+    /// Distances along the ray, ascending.
+    pub t: Vec<f64>,
+    /// σ_t there, 1/length.
+    pub extinction: Vec<f64>,
+    /// The control there, 1/length; empty for none.
+    pub control: Vec<f64>,
+    /// σ_t less the control there, 1/length.
+    pub residual: Vec<f64>,
+    /// σ̂ there, 1/length.
+    pub sampling: Vec<f64>,
+    /// The exact transmittance T(t) there.
+    pub transmittance: Vec<f64>,
+    /// The standard deviation of one draw of it there; it may be infinite.
+    #[serde(with = "gate::extended")]
+    pub deviation: Vec<f64>,
+    /// Where the control was fitted: (t, value).
+    pub explorers: Vec<[f64; 2]>,
+    /// The tentative collisions of the first walk: (t, σ_t).
+    pub collisions: Vec<[f64; 2]>,
+    /// T̂ of the first few walks at the distances `t`.
+    pub walks: Vec<Vec<f64>>,
+    /// Measured points: one for each channel with finite statistics.
+    pub measured: Vec<MeasuredPoint>,
+}
+
+/// A measured point of the transmittance along a ray.
+#[derive(Debug, Clone, Copy, Serialize, Deserialize)]
+pub struct MeasuredPoint {
+    /// The distance.
+    pub t: f64,
+    /// The mean of the draws.
+    pub mean: f64,
+    /// The standard error of the mean.
+    pub standard_error: f64,
+    /// The standard deviation of one draw.
+    pub deviation: f64,
+}
 
 /// Points of a line.
 const POINTS: usize = 48;
@@ -24,7 +140,7 @@ pub fn curves(case: &Case, seed: u64) -> Vec<Curve> {
     let curves: Vec<Vec<Curve>> = parallel::map(&swept, |&estimator| {
         let predicted: Vec<Vec<(String, Option<CurvePoint>)>> =
             parallel::map(&x, |&x| points(case, seed, estimator, Some((axis.what, x)), x));
-        let names = case.names(estimator, axis.values.first().map(|&x| (axis.what, x)));
+        let id = case.id(estimator, axis.values.first().map(|&x| (axis.what, x)));
         let is_sought = axis.what == What::Sampling;
         let best = is_sought.then(|| best(case, seed, estimator, None));
         let found = |channel: usize| best.as_ref()?.get(channel).copied().flatten();
@@ -38,16 +154,14 @@ pub fn curves(case: &Case, seed: u64) -> Vec<Curve> {
         let named = predicted.iter().max_by_key(|channels| channels.len());
         let named = named.map_or(&[][..], Vec::as_slice);
         let curve = |(index, (channel, _)): (usize, &(String, Option<CurvePoint>))| Curve {
-            estimator: names.estimator.to_string(),
-            control: names.control.clone(),
             channel: channel.clone(),
             points: predicted.iter().filter_map(|p| p.get(index)?.1).collect(),
-            listed: estimator,
             optimum: optimum(index),
             best: found(index).map(named_best),
+            ..without_points(&id, estimator)
         };
         let curves: Vec<Curve> = named.iter().enumerate().map(curve).collect();
-        if curves.is_empty() { vec![refused(names, estimator)] } else { curves }
+        if curves.is_empty() { vec![without_points(&id, estimator)] } else { curves }
     });
     curves.into_iter().flatten().collect()
 }
@@ -61,21 +175,24 @@ pub fn axis(case: &Case) -> Option<Sweep> {
 
 /// The best constant σ̂ of each experiment of a case, channel by channel; empty for those that take none, or
 /// are refused at every σ̂.
-pub fn best_of_each(case: &PlannedCase, seed: u64) -> Vec<Vec<Option<Optimum>>> {
+pub fn best_of_each<'p>(
+    case: &'p PlannedCase,
+    seed: u64,
+) -> Vec<(&'p Planned, Vec<Option<Optimum>>)> {
     // Experiments that differ in nothing but σ̂ have the same.
     let asked = |planned: &Planned| {
         let is_of_sampling =
             |(what, _): &(What, f64)| matches!(what, What::Sampling | What::SamplingScale);
-        (planned.estimator, planned.variation.filter(|variation| !is_of_sampling(variation)))
+        (planned.estimator, planned.id.variation().filter(|variation| !is_of_sampling(variation)))
     };
     let mut questions: Vec<_> = case.experiments.iter().map(asked).collect();
     questions.dedup();
     let found = parallel::map(&questions, |&(estimator, variation)| {
-        best(case.case, seed, estimator, variation)
+        ((estimator, variation), best(case.case, seed, estimator, variation))
     });
-    let answer = |planned: &Planned| {
-        let place = questions.iter().position(|question| *question == asked(planned));
-        place.map(|place| found[place].clone()).unwrap_or_default()
+    let answer = |planned: &'p Planned| {
+        let answer = found.iter().find(|(question, _)| *question == asked(planned));
+        (planned, answer.map_or(Vec::new(), |(_, best)| best.clone()))
     };
     case.experiments.iter().map(answer).collect()
 }
@@ -93,9 +210,9 @@ fn best(case: &Case, seed: u64, estimator: usize, variation: Variation) -> Vec<O
     })
 }
 
-/// The line of an estimator that is refused everywhere: it has no points.
-fn refused(names: Names, listed: usize) -> Curve {
-    let (estimator, control) = (names.estimator.to_string(), names.control);
+/// The line of an estimator without points, as where it is refused everywhere.
+fn without_points(id: &ExperimentId, listed: usize) -> Curve {
+    let (estimator, control) = (id.estimator.to_string(), id.control.clone());
     let (channel, points) = (String::new(), Vec::new());
     Curve { estimator, listed, control, channel, points, optimum: None, best: None }
 }
@@ -153,9 +270,9 @@ fn ends(x: &[f64]) -> (f64, f64) {
 }
 
 /// The anatomy of an experiment on a curve; `None` of any other.
-pub fn anatomy(case: &PlannedCase, planned: &Planned, drawn: &Drawn) -> Option<Anatomy> {
+pub fn anatomy(DrawnExperiment { case, planned, drawn }: &DrawnExperiment) -> Option<Anatomy> {
     let ready = planned.outcome.as_ref().ok()?;
-    let at = case.case.at(planned.variation).ok()?;
+    let at = case.case.at(planned.id.variation()).ok()?;
     let (ray_view, explorers) = at.ray_view(planned.estimator, planned.address)?;
     let distances = at.scenario().distances();
     let channels = ready.prediction.channels.iter().zip(&drawn.tallies).zip(&distances);

@@ -7,34 +7,34 @@
 //! ```
 //!
 //! A mean passes on the strength of its variance; where that one is underpowered the finding says
-//! `variance assumed`, where it fails or is undecided the mean is inconclusive. A mean that is underpowered makes its experiment inconclusive unless the
-//! case allows it.
+//! `variance assumed`, where it fails or is undecided the mean is inconclusive. A mean that is underpowered makes its
+//! experiment inconclusive unless the case allows it.
 
-use crate::case::build::Ready;
+use crate::case::Ready;
 use crate::checks::check::{Context, Look, Total};
 use crate::checks::{Inspected, Question};
-use crate::draw::drawn::{Drawn, Draws};
-use crate::plan::foreseen::too_weak;
-use crate::plan::{BLOCK, Plan, Planned, PlannedCase};
-use crate::record::plot_data::thinned;
-use crate::record::qualify::{qualify_means, show_anywhere};
+use crate::draw::block::{DrawnExperiment, Draws};
+use crate::plan::{BLOCK, Plan, Planned};
 use crate::record::{Finding, Verdict};
 use gate::deviation::Deviation;
-use gate::session::Reason;
+use gate::session::{self, Reason};
 use gate::stats::multiplicity;
 use theory::parallel;
 
-/// What is found of a run: per case, per experiment, per question.
-pub fn run(plan: &Plan, draws: &Draws) -> Vec<Vec<Vec<Finding>>> {
-    let pairs: Vec<_> = plan.cases.iter().zip(&draws.cases).collect();
-    let mut findings: Vec<Vec<Vec<Finding>>> = parallel::map(&pairs, |&(case, drawn)| {
-        let both: Vec<_> = case.experiments.iter().zip(drawn).collect();
-        parallel::map(&both, |&(planned, drawn)| {
-            Experiment { plan, case, planned, drawn }.findings()
-        })
-    });
-    judge_laws(plan, &mut findings.iter_mut().flatten().flatten().collect::<Vec<_>>());
-    findings
+/// An experiment with its draws and the findings of its checks.
+pub struct Judged<'d> {
+    /// The experiment with its draws.
+    pub of: &'d DrawnExperiment<'d>,
+    /// The findings, in the order of the questions.
+    pub findings: Vec<Finding>,
+}
+
+/// Judges what a plan drew, experiment by experiment.
+pub fn run<'d>(plan: &Plan, draws: &'d Draws) -> Vec<Judged<'d>> {
+    let mut judged =
+        parallel::map(&draws.experiments, |of| Judged { of, findings: findings(plan, of) });
+    judge_laws(plan, &mut judged.iter_mut().flat_map(|one| &mut one.findings).collect::<Vec<_>>());
+    judged
 }
 
 /// A finding that says nothing yet.
@@ -54,78 +54,68 @@ fn blank(check: &str, what: &str, channel: String) -> Finding {
     }
 }
 
-/// An experiment and what it drew.
-struct Experiment<'a> {
-    plan: &'a Plan<'a>,
-    case: &'a PlannedCase<'a>,
-    planned: &'a Planned,
-    drawn: &'a Drawn,
+/// What is found of an experiment; laws still have to be judged together.
+fn findings(plan: &Plan, of: &DrawnExperiment) -> Vec<Finding> {
+    let DrawnExperiment { planned, drawn, .. } = of;
+    if drawn.draws == 0 {
+        let reason = "the limit of time or draws came before the first draw".to_owned();
+        return vec![Finding { reason, ..blank("mean", "the mean", String::new()) }];
+    }
+    let Ok(ready) = &planned.outcome else { return Vec::new() };
+    let both = planned.questions.iter().zip(&drawn.totals);
+    let found = both.map(|(question, total)| finding(plan, of, ready, question, total));
+    let mut findings: Vec<Finding> = found.collect();
+    qualify_means(plan, planned, &mut findings);
+    if planned.expect_biased {
+        show_anywhere(&mut findings);
+    }
+    findings
 }
 
-impl Experiment<'_> {
-    /// What is found; laws still have to be judged together.
-    fn findings(&self) -> Vec<Finding> {
-        if self.drawn.draws == 0 {
-            let reason = "the limit of time or draws came before the first draw".to_owned();
-            return vec![Finding { reason, ..blank("mean", "the mean", String::new()) }];
-        }
-        let Ok(ready) = &self.planned.outcome else { return Vec::new() };
-        let both = self.planned.questions.iter().zip(&self.drawn.totals);
-        let mut findings: Vec<Finding> =
-            both.map(|(question, total)| self.finding(ready, question, total)).collect();
-        qualify_means(self.plan, self.planned, &mut findings);
-        if self.planned.expect_biased {
-            show_anywhere(&mut findings);
-        }
-        findings
-    }
-
-    fn finding(&self, ready: &Ready, question: &Question, total: &Total) -> Finding {
-        let Self { plan, case, planned, drawn } = *self;
-        let channel = question.channel.map(|index| &ready.prediction.channels[index]);
-        let look = Look {
-            draws: drawn.draws,
-            planned: planned.draws,
-            levels: plan.levels.of(question.expects_bias),
-        };
-        let inspected = Inspected {
-            experiment: ready.experiment.as_ref(),
-            channels: ready.prediction.channels.len(),
-            streams: &|block| planned.streams(block),
-            blocks: planned.fixed.div_ceil(BLOCK),
-        };
-        let found = question.answer.finish(
-            total,
-            &Context {
-                what: &question.what,
-                expects_bias: question.expects_bias,
-                look,
-                fixed: planned.fixed,
-                too_weak: too_weak(plan, case, question),
-                mean: question.channel.and_then(|index| self.mean(ready, index)),
-                log_unit: channel.map_or(0.0, |channel| channel.log_unit),
-                inspected: &inspected,
-            },
-        );
-        let channel = channel.map_or(String::new(), |channel| channel.name.clone());
-        Finding {
-            expects_bias: question.expects_bias,
-            p: found.p,
-            gate: found.gate,
-            path: thinned(&found.path),
-            block: found.block,
-            verdict: found.verdict,
-            reason: found.reason.map_or(String::new(), |reason| reason.to_string()),
-            ..blank(&question.check, &question.what, channel)
-        }
-    }
-
-    /// Deviation of a channel's mean from the truth.
-    fn mean(&self, ready: &Ready, index: usize) -> Option<Deviation> {
-        let channel = &ready.prediction.channels[index];
-        let (tally, truth) = (self.drawn.tallies.get(index)?, channel.truth.value);
+fn finding(
+    plan: &Plan,
+    of: &DrawnExperiment,
+    ready: &Ready,
+    question: &Question,
+    total: &Total,
+) -> Finding {
+    let DrawnExperiment { planned, drawn, .. } = of;
+    let channel = question.channel.map(|index| &ready.prediction.channels[index]);
+    let levels = plan.levels.of(question.expects_bias);
+    // Deviation of the channel's mean from the truth.
+    let deviation = question.channel.zip(channel).and_then(|(index, channel)| {
+        let (tally, truth) = (drawn.tallies.get(index)?, channel.truth.value);
         let mean = channel.mean.value + tally.moments()?.mean * truth;
         Some(Deviation::new(mean, truth, tally.draws))
+    });
+    let found = question.answer.finish(
+        total,
+        &Context {
+            what: &question.what,
+            expects_bias: question.expects_bias,
+            look: Look { draws: drawn.draws, planned: planned.draws, levels },
+            fixed: planned.fixed,
+            too_weak: question.too_weak,
+            mean: deviation,
+            log_unit: channel.map_or(0.0, |channel| channel.log_unit),
+            inspected: &Inspected {
+                experiment: ready.experiment.as_ref(),
+                channels: ready.prediction.channels.len(),
+                streams: &|block| planned.streams(block),
+                blocks: planned.fixed.div_ceil(BLOCK),
+            },
+        },
+    );
+    let channel = channel.map_or(String::new(), |channel| channel.name.clone());
+    Finding {
+        expects_bias: question.expects_bias,
+        p: found.p,
+        gate: found.gate,
+        path: thinned(&found.path),
+        block: found.block,
+        verdict: found.verdict,
+        reason: found.reason.map_or(String::new(), |reason| reason.to_string()),
+        ..blank(&question.check, &question.what, channel)
     }
 }
 
@@ -141,6 +131,109 @@ fn judge_laws(plan: &Plan, findings: &mut [&mut Finding]) {
             let (what, p) = (finding.what.clone().into(), finding.p.unwrap_or(0.0));
             let differs = Reason::Differs { what, p: format!("{p:.1e}"), details: String::new() };
             finding.reason = differs.to_string();
+        }
+    }
+}
+
+/// What the verdict on a mean is worth, by that on the variance of its channel.
+///
+/// A mean passes if its variance does, could not be tested, or is that of pilot draws. A mean that is off
+/// only in units of a variance that is refuted as too small is not accused: were its spread what the
+/// draws show, it would not fail.
+fn qualify_means(plan: &Plan, planned: &Planned, findings: &mut [Finding]) {
+    let variances = findings.iter().filter(|f| f.check == "variance" && f.verdict != Verdict::Pass);
+    let variances: Vec<Finding> = variances.cloned().collect();
+    let channels = planned.outcome.as_ref().map_or(&[][..], |ready| &ready.prediction.channels);
+    let is_piloted = |name: &str| channels.iter().any(|c| c.by_pilots && c.name == name);
+    for mean in findings.iter_mut().filter(|finding| finding.check == "mean") {
+        let variance = variances.iter().find(|variance| variance.channel == mean.channel);
+        let (verdict, reason) = match (mean.verdict, variance.filter(|_| !mean.expects_bias)) {
+            (Verdict::Pass, Some(variance)) if variance.verdict != Verdict::Underpowered => {
+                (Verdict::Inconclusive, Reason::VarianceOpen)
+            }
+            (Verdict::Pass, Some(_)) => (Verdict::Pass, Reason::VarianceAssumed),
+            (Verdict::Pass, None) if !mean.expects_bias && is_piloted(&mean.channel) => {
+                (Verdict::Pass, Reason::VarianceAssumed)
+            }
+            (Verdict::Fail, Some(variance)) if rests_on(plan, mean, variance) => {
+                (Verdict::Inconclusive, Reason::RestsOnVariance("the mean".into()))
+            }
+            _ => continue,
+        };
+        mean.verdict = verdict;
+        mean.reason = reason.to_string();
+    }
+}
+
+/// Adds the cause to blocks and streams that differ from theory where the mean or the variance fails: the difference is then
+/// no sign of a dependence.
+pub fn explain_blocks(findings: &mut [Finding]) {
+    let fails = |check: &str| {
+        findings.iter().any(|found| found.check == check && found.verdict == Verdict::Fail)
+    };
+    let cause = match [fails("mean"), fails("variance")] {
+        [true, _] => "the mean is off",
+        [_, true] => "the variance is off",
+        _ => return,
+    };
+    let blocks = findings.iter_mut().filter(|found| {
+        ["dispersion", "streams"].contains(&found.check.as_str()) && found.verdict == Verdict::Fail
+    });
+    for found in blocks {
+        found.reason = format!("{}, which follows where {cause}", found.reason);
+    }
+}
+
+/// Whether a mean fails only by a variance that is refuted as too small.
+fn rests_on(plan: &Plan, mean: &Finding, variance: &Finding) -> bool {
+    let gates = mean.gate.zip(variance.gate).filter(|_| variance.verdict == Verdict::Fail);
+    gates.is_some_and(|(mean, variance)| session::rests_on(&mean, &variance, plan.levels.ln_fail))
+}
+
+/// A bias somewhere on a curve is a bias; it need not be everywhere.
+fn show_anywhere(findings: &mut [Finding]) {
+    let shown = |finding: &Finding| finding.check == "mean" && finding.verdict == Verdict::Pass;
+    if findings.iter().any(shown) {
+        for finding in findings.iter_mut().filter(|finding| finding.check == "mean") {
+            if finding.verdict != Verdict::Pass {
+                finding.verdict = Verdict::Pass;
+                finding.reason = Reason::BiasedElsewhere.to_string();
+            }
+        }
+    }
+}
+
+/// More looks of the gate than this are thinned.
+const LOOKS: usize = 64;
+
+/// Draws and ln E at the looks, as a record has them: the first, the last, and those between them evenly. An infinite ln E
+/// becomes the largest number.
+fn thinned(path: &[(u64, f64)]) -> Vec<[f64; 2]> {
+    let last = path.len().saturating_sub(1);
+    let few = path.len().min(LOOKS);
+    let kept = (0..few).map(|i| path[i * last / (few - 1).max(1)]);
+    kept.map(|(draws, ln_e)| [draws as f64, rounded(ln_e)]).collect()
+}
+
+/// A number in steps of 0.001; an infinite one becomes the largest number.
+fn rounded(ln_e: f64) -> f64 {
+    ((ln_e * 1e3).round() / 1e3).clamp(f64::MIN, f64::MAX)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_path_keeps_its_ends_and_its_order() {
+        for looks in [0, 1, 2, 63, 64, 65, 200] {
+            let path: Vec<(u64, f64)> = (0..looks).map(|i| (i * i, i as f64 / 8.0)).collect();
+            let kept = thinned(&path);
+            assert_eq!(kept.len(), path.len().min(LOOKS));
+            assert!(kept.is_sorted_by(|a, b| a[0] < b[0]), "{kept:?}");
+            let last = path.last().map(|&(draws, ln_e)| [draws as f64, ln_e]);
+            assert_eq!(kept.last().copied(), last);
+            assert_eq!(kept.is_empty(), path.is_empty());
         }
     }
 }

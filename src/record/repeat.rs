@@ -1,10 +1,9 @@
 //! The commands that draw an experiment again: the same draws, or as many as decide it.
 
 use crate::case::suite;
-use crate::plan::filter::Filter;
-use crate::plan::foreseen::Foreseen;
+use crate::plan::levels::Foreseen;
 use crate::plan::options::Options;
-use crate::plan::{Plan, Planned, PlannedCase};
+use crate::plan::{Filter, Plan, Planned, PlannedCase};
 use crate::record::{Finding, Verdict};
 use numeric::digits::enough;
 
@@ -34,25 +33,14 @@ fn pattern(planned: &Planned) -> String {
     format!("*:{}", planned.id.estimator)
 }
 
-/// The options that are not as usual, each with a space before it.
+/// The options on all experiments that are not as usual, each with a space before it.
 fn flags(options: &Options) -> String {
-    let Options { alpha, fixed, strict, kernel, blocks_per_look, .. } = options;
-    let usual = Options::default();
-    let mut flags = String::new();
-    let mut add = |flag: String| flags = format!("{flags} {flag}");
-    if *alpha != usual.alpha {
-        add(format!("--alpha {alpha}"));
-    }
-    if let Some(kernel) = kernel {
-        add(format!("--kernel {}", kernel.word()));
-    }
-    if *blocks_per_look != usual.blocks_per_look {
-        add(format!("--blocks-per-look {blocks_per_look}"));
-    }
-    for (flag, _) in [("--fixed-draws", fixed), ("--strict", strict)].iter().filter(|f| *f.1) {
-        add((*flag).to_owned());
-    }
-    flags
+    let usual = Options::default().words();
+    let of_one = |word: &str| {
+        ["--seed", "--draws", "--filter", "--budget"].iter().any(|of| word.starts_with(of))
+    };
+    let own = options.words().into_iter().filter(|word| !usual.contains(word) && !of_one(word));
+    own.fold(String::new(), |flags, word| flags + " " + &word.replacen('=', " ", 1))
 }
 
 fn check(plan: &Plan, case: &PlannedCase, planned: &Planned, draws: &str) -> String {
@@ -76,13 +64,12 @@ pub fn deciding(
     planned: &Planned,
     findings: &[Finding],
 ) -> String {
-    let Some(own) = decisive_draws(plan, case, planned, findings) else { return String::new() };
+    let Some(own) = decisive_draws(case, planned, findings) else { return String::new() };
     let filter = Filter::new(&pattern(planned)).ok();
     let together = case.experiments.iter().filter(|other| {
         filter.as_ref().is_some_and(|f| f.keeps(&case.case.name, &other.id.estimator))
     });
-    let draws =
-        together.filter_map(|other| decisive_draws(plan, case, other, &[])).fold(own, f64::max);
+    let draws = together.filter_map(|other| decisive_draws(case, other, &[])).fold(own, f64::max);
     if draws > MAX_DRAWS { String::new() } else { check(plan, case, planned, &enough(draws)) }
 }
 
@@ -91,11 +78,10 @@ pub fn deciding(
 pub fn deciding_all(plan: &Plan, case: &PlannedCase) -> String {
     let ready = case.experiments.iter().filter(|planned| planned.outcome.is_ok());
     let open = ready.filter(|planned| {
-        (0..planned.channels()).any(|channel| {
-            Foreseen::of(plan, case, planned, channel).verdict == Some(Verdict::Inconclusive)
-        })
+        (0..planned.channels())
+            .any(|channel| Foreseen::of(planned, channel).verdict == Some(Verdict::Inconclusive))
     });
-    let draws = open.filter_map(|planned| decisive_draws(plan, case, planned, &[]));
+    let draws = open.filter_map(|planned| decisive_draws(case, planned, &[]));
     let Some(draws) = draws.reduce(f64::max).filter(|&draws| draws <= MAX_DRAWS) else {
         return String::new();
     };
@@ -110,16 +96,11 @@ pub fn deciding_all(plan: &Plan, case: &PlannedCase) -> String {
 }
 
 /// The draws that decide an experiment; `None` where no number of draws does.
-fn decisive_draws(
-    plan: &Plan,
-    case: &PlannedCase,
-    planned: &Planned,
-    findings: &[Finding],
-) -> Option<f64> {
+fn decisive_draws(case: &PlannedCase, planned: &Planned, findings: &[Finding]) -> Option<f64> {
     planned.outcome.as_ref().ok()?;
     let mut draws = planned.draws as f64;
     for channel in 0..planned.channels() {
-        let foreseen = Foreseen::of(plan, case, planned, channel);
+        let foreseen = Foreseen::of(planned, channel);
         if foreseen.verdict == Some(Verdict::Inconclusive) {
             draws = draws.max(foreseen.needed?);
         }
@@ -133,7 +114,7 @@ fn decisive_draws(
     };
     if findings.iter().any(|finding| is_open(&finding)) {
         // A tolerance of the case is not narrowed by more draws.
-        if case.case.tolerance.says_something() {
+        if case.case.tolerance.is_given() {
             return None;
         }
         draws = draws.max(HALVING * planned.draws as f64);

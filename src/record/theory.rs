@@ -1,7 +1,7 @@
 //! Predictions and statistics of an experiment, as a record has them.
 
 use crate::checks::normality::{Tails, needed};
-use crate::draw::drawn::Drawn;
+use crate::draw::block::DrawnExperiment;
 use crate::plan::{Planned, PlannedCase};
 use crate::record::{ChannelRecord, Course, ExperimentRecord, Score, Verdict};
 use estimators::Refusal;
@@ -12,9 +12,8 @@ use theory::{Channel, Prediction};
 /// A longer list of probabilities is left out of the record.
 const LONGEST_LAW: usize = 100;
 
-/// The experiment at an index of a case with the predictions of each channel, or with the reason of its refusal.
-pub fn predicted(case: &PlannedCase, index: usize) -> ExperimentRecord {
-    let planned = &case.experiments[index];
+/// An experiment of a case with the predictions of each channel, or with the reason of its refusal.
+pub fn predicted(case: &PlannedCase, planned: &Planned) -> ExperimentRecord {
     let blank = ExperimentRecord {
         id: planned.id.clone(),
         label: planned.id.label(),
@@ -38,7 +37,7 @@ pub fn predicted(case: &PlannedCase, index: usize) -> ExperimentRecord {
     ExperimentRecord {
         kernel: ready.experiment.order().word().to_owned(),
         sharing: sharing(case, planned),
-        same_as: case.twin(index).map(|twin| case.experiments[twin].id.clone()),
+        same_as: planned.same_as.clone(),
         skipped: Some(ready.experiment.skipped()).filter(|&share| share > 0.0),
         predicted_lookups: law.map(|law| law.mean),
         setup_lookups: Some(prediction.setup_lookups),
@@ -73,16 +72,14 @@ fn of_channel(channel: &Channel, cost: Option<f64>) -> ChannelRecord {
     }
 }
 
-/// The fields along the ray, which show where an inequality fails; places where a field has no finite value are left out.
+/// The fields along the ray, which show where an inequality fails.
 fn courses(case: &PlannedCase, planned: &Planned, refusal: &Refusal) -> Vec<Course> {
-    let at = match refusal {
+    let place = match refusal {
         Refusal::Inequality { at, .. } => Some(*at),
         _ => None,
     };
-    let case = case.case.at(planned.variation);
-    let courses = case.map(|case| case.courses(planned.estimator, planned.address, at));
-    let courses = courses.unwrap_or_default();
-    courses.into_iter().map(Course::finite).collect()
+    let at = case.case.at(planned.id.variation());
+    at.map_or(Vec::new(), |at| at.courses(planned.estimator, planned.address, place))
 }
 
 /// Number of experiments of the case that share an experiment's lookups; `None` if each has its own.
@@ -98,13 +95,16 @@ pub fn finite(x: Option<f64>) -> Option<f64> {
 }
 
 /// Adds statistics of the fixed draws: lookups, and for each channel mean and variance with their z-scores.
-pub fn measure(record: &mut ExperimentRecord, planned: &Planned, drawn: &Drawn) {
+pub fn measure(
+    record: &mut ExperimentRecord,
+    DrawnExperiment { planned, drawn, .. }: &DrawnExperiment,
+) {
     let Ok(ready) = &planned.outcome else { return };
     let prediction = &ready.prediction;
     let channels = prediction.channels.iter().zip(&drawn.tallies);
     record.draws = drawn.tallies.first().map(|tally| tally.draws);
     if record.draws.is_some() {
-        measure_lookups(record, prediction, drawn);
+        measure_lookups(record, prediction, &drawn.lookups);
     }
     let setup = prediction.shared_setup(planned.draws_per_ray);
     let cost = record.lookups_per_draw.map(|lookups| lookups + setup);
@@ -120,10 +120,10 @@ pub fn measure(record: &mut ExperimentRecord, planned: &Planned, drawn: &Drawn) 
 }
 
 /// Mean lookups of the fixed draws, and their z-score.
-fn measure_lookups(record: &mut ExperimentRecord, prediction: &Prediction, drawn: &Drawn) {
-    let n = drawn.lookups.draws as f64;
+fn measure_lookups(record: &mut ExperimentRecord, prediction: &Prediction, lookups: &Tally) {
+    let n = lookups.draws as f64;
     let law = prediction.lookups.as_ref();
-    let observed = drawn.lookups.moments().map(|m| m.mean);
+    let observed = lookups.moments().map(|m| m.mean);
     record.lookups_per_draw = observed.map(|mean| mean + law.map_or(0.0, |law| law.mean));
     if let Some(law) = law.filter(|law| law.variance > 0.0) {
         let deviation = (law.variance / n).sqrt();

@@ -69,10 +69,6 @@ pub struct PixelValues {
 
 impl Plan {
     /// Shares `budget` lookups per pixel out among draws.
-    ///
-    /// # Errors
-    ///
-    /// Why the estimator is refused at a pixel, or that a draw costs more than there is.
     pub fn new<'a>(
         forecasts: impl Iterator<Item = &'a Result<Forecast, String>>,
         points: usize,

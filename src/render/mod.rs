@@ -1,22 +1,157 @@
-//! Pictures: estimators of one problem for every pixel, side by side at an equal number of lookups.
+//! A picture as written: a volume, a camera, and estimators that are compared pixel by pixel.
 //!
-//! A picture file is read into a [`Picture`] and rendered into a [`PictureRecord`], which is all that
-//! reports see. Every pixel of every estimator has random numbers of its own, found by name and
-//! number, so that pictures do not depend on the number of threads.
+//! | key | meaning | default |
+//! |---|---|---|
+//! | `title` | one line above the picture | required |
+//! | `picture.NAME` | what is shown: `transmittance` (before the sky), `spectral-transmittance` (the same in colour), `single-scattering` (of a point light) or `multiple-scattering` (of the sky) | required |
+//!
+//! Within `[picture.NAME]`:
+//!
+//! | key | meaning | default |
+//! |---|---|---|
+//! | `size = [columns, rows]` | pixels, one ray through the middle of each | required |
+//! | `lookups` | lookups of σ_t per pixel that the volume covers, for every estimator | required |
+//! | `volume.NAME = { … }` | a field in space, bounded; in colour a list of three, for red, green and blue: `[{ NAME = { … } }, …]` | required |
+//! | `camera = { position, target, up, angle }` | pinhole camera; degrees from the lower to the upper edge | up `[0, 1, 0]`, angle 40 |
+//! | `sky.constant = { radiance }` | what is behind the volume | radiance 1 |
+//! | `sky.gradient = { ground, horizon, zenith, up, sun, glare, sharpness }` | radiances straight below, at the horizon and above, and `glare · exp(sharpness (cos − 1))` about the sun | .2, 1, .5, y, y, 0, 50 |
+//! | `sampling`, `control`, `estimators` | as in a case; an estimator may have its own `expect = "biased"` | |
+//! | `shared-control` | so many columns and rows of pixels use the control that is fitted to the ray in their middle | 1 |
+//! | `reference.closed-form = {}` | from the exact optical depth, or for a white furnace | |
+//! | `reference.quadrature = { panels }` | Gauss quadrature along the ray, not for multiple scattering; its error is what half as many panels differ by | 16 panels |
+//! | `reference.draws = { lookups, estimator }` | many draws of one estimator, with their measured error | |
+//! | `light`, `albedo`, `phase` | as in the problem `single-scattering`; multiple scattering takes no light | |
+//!
+//! Every pixel gets the same number of draws, to within one: so many that the estimator takes
+//! `lookups` per covered pixel on average, as the paper compares. The number is fixed before the first
+//! draw, from the expected lookups by theory (`transmittance`) or by pilot draws with random numbers of
+//! their own, which are counted apart. Explorer points count as lookups, once for each ray that a
+//! control is fitted to; the controls `mean` and `minimum` come from theory and cost none. A pixel
+//! that the volume does not cover costs neither lookups nor random numbers. RMSE and figure of merit
+//! are over the covered pixels, and over their channels:
+//!
+//! ```text
+//! MSE = mean of (image − reference)²,   figure of merit = 1/(MSE · lookups per pixel)
+//! ```
+//!
+//! Source: L. Szirmay-Kalos, I. Georgiev, M. Magdics, B. Molnár, D. Légrády, *Unbiased Light
+//! Transport Estimators for Inhomogeneous Participating Media*, Computer Graphics Forum 36 (2017),
+//! section 4.
 
-pub mod budget;
-pub mod gallery;
-pub mod picture;
-pub mod pixel;
+mod budget;
+mod pixel;
 pub mod record;
-pub mod reference;
-pub mod scene;
-pub mod subject;
-pub mod view;
+mod scene;
+mod subject;
+mod view;
 
-pub use picture::Picture;
+use std::path::Path;
+
+use self::scene::{Request, Scene};
+use self::subject::SUBJECTS;
+use crate::case::spec::BuiltIn;
+use crate::case::{CaseError, Source, Spec};
+use media::catalogue::{Additions, Page, PageList, Settings};
+
 pub use record::PictureRecord;
 
 /// The manual of picture files.
-pub const CATALOGUE: media::catalogue::PageList =
-    media::catalogue::PageList { name: "picture files", pages: &[media::page!(picture)] };
+pub const CATALOGUE: PageList = PageList {
+    name: "picture files",
+    pages: &[Page { module: "picture", source: include_str!("mod.rs") }],
+};
+
+/// A picture file, read.
+pub struct Picture {
+    /// Its name.
+    pub name: String,
+    /// One line above it.
+    pub title: String,
+    /// What it shows: the problem's name in the catalogue.
+    pub problem: String,
+    scene: Scene,
+}
+
+impl Picture {
+    /// Reads a picture, with pages of the program's own.
+    ///
+    /// # Errors
+    ///
+    /// Every mistake in the file.
+    pub fn read(source: &Source, additions: &Additions) -> Result<Self, CaseError> {
+        Spec::parse(source, additions)?.read(|root| Self::from_root(source, root))
+    }
+
+    fn from_root(source: &Source, root: &Settings) -> Option<Self> {
+        if let (Some(case), false) = (root.entry("problem"), root.has("picture")) {
+            let help = "run it with `trueflight run`; a picture has `[picture.NAME]`";
+            root.fault_at(case.key_span.clone(), "", "this is a case, not a picture", help);
+            return None;
+        }
+        let title = root.text("title");
+        let names = SUBJECTS.each_ref().map(|kind| kind.name.to_owned());
+        let scene = root.chosen("picture", &names).and_then(|(index, settings)| {
+            let scene = Scene::read(&SUBJECTS[index], &settings);
+            settings.close();
+            Some((names[index].clone(), scene?))
+        });
+        root.close();
+        let (problem, scene) = scene?;
+        Some(Self { name: source.name.clone(), title: title?, problem, scene })
+    }
+
+    /// Reads a picture file, or a built-in picture.
+    ///
+    /// # Errors
+    ///
+    /// The file cannot be read, or every mistake in it.
+    pub fn open(name: &str, additions: &Additions) -> Result<Self, CaseError> {
+        match find(name) {
+            Some(source) if !Path::new(name).exists() => Self::read(&source, additions),
+            _ => Self::read(&Source::read(Path::new(name))?, additions),
+        }
+    }
+
+    /// How many rows of pixels it has.
+    pub fn rows(&self) -> usize {
+        self.scene.view.size[1]
+    }
+
+    /// Renders it with a seed; `progress` is told of every row, twice.
+    pub fn render(&self, seed: u64, progress: &(dyn Fn() + Sync)) -> PictureRecord {
+        let rendered = self.scene.render(&Request { seed, name: &self.name, progress });
+        PictureRecord::new([&self.name, &self.title, &self.problem], &self.scene.view, rendered)
+    }
+}
+
+macro_rules! pictures {
+    ($($name:literal,)*) => {
+        BuiltIn {
+            folder: "pictures/",
+            files: &[$(($name, include_str!(concat!("../../pictures/", $name, ".toml")))),*],
+        }
+    };
+}
+
+/// The built-in pictures, in the order of the gallery.
+const PICTURES: BuiltIn = pictures![
+    "figure-6",
+    "figure-7",
+    "figure-9",
+    "figure-10",
+    "figure-12-300",
+    "figure-12-50",
+    "white-furnace",
+    "spectral-noise",
+    "spectral-density",
+];
+
+/// Every built-in picture, in the order of the gallery.
+pub fn gallery() -> Vec<Source> {
+    PICTURES.all()
+}
+
+/// The built-in picture of a name.
+pub fn find(name: &str) -> Option<Source> {
+    PICTURES.find(name)
+}

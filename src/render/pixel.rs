@@ -7,7 +7,7 @@ use super::subject::{AnyRay, RayOf, SubjectKind};
 use super::view::View;
 use crate::case::build::Parts;
 use crate::case::estimator::{Estimators, ParsedEstimator};
-use crate::case::names::EstimatorName;
+use crate::case::id::EstimatorName;
 use estimators::{DrawBuffer, Experiment, Kernel, Refusal, Site};
 use media::{Body, Control, Majorants, Medium};
 use numeric::Known;
@@ -143,10 +143,6 @@ impl<'a> Pixel<'a> {
     }
 
     /// What a draw is expected to cost and to be spread by, at the covered pixel of a number.
-    ///
-    /// # Errors
-    ///
-    /// Why the estimator is refused.
     pub fn forecast(
         &self,
         number: usize,

@@ -5,6 +5,7 @@ use serde::Serialize;
 use super::budget::PixelValues;
 use super::scene::Rendered;
 use super::view::View;
+use crate::case::id::EstimatorName;
 
 /// A rendered picture.
 #[derive(Debug, Clone, Serialize)]
@@ -57,7 +58,7 @@ pub struct ReferenceRecord {
 #[derive(Debug, Clone, Serialize)]
 pub struct ExposureRecord {
     /// The estimator with its settings.
-    pub estimator: String,
+    pub estimator: EstimatorName,
     /// σ̂ in words.
     pub sampling: String,
     /// The control in words.
@@ -97,7 +98,7 @@ impl PictureRecord {
         let exposures: Vec<ExposureRecord> = images
             .into_iter()
             .map(|(names, outcome)| ExposureRecord {
-                estimator: names.estimator.to_string(),
+                estimator: names.estimator,
                 sampling: names.sampling,
                 control: names.control,
                 outcome: outcome

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::budget::MOST_CHANNELS;
-use super::reference::Reference;
+use super::scene::Reference;
 use super::view::View;
 use crate::case::build::Parts;
 use crate::case::estimator::{Defaults, Estimators};
@@ -40,11 +40,7 @@ pub trait Subject: Estimated {
     /// Reads what all rays share.
     fn read_shared(settings: &Settings, view: Option<&View>) -> Option<Self::Shared>;
 
-    /// Whether a ray can be asked about.
-    ///
-    /// # Errors
-    ///
-    /// What is wrong and the cure.
+    /// Whether a ray can be asked about; the error is what is wrong, and the cure.
     fn allows(shared: &Self::Shared, ray: &Ray) -> Result<(), [String; 2]> {
         let _ = (shared, ray);
         Ok(())
@@ -162,10 +158,6 @@ pub trait AnyRay {
 
     /// An estimator of the picture on the ray, with σ̂ in space where that is given; refused outside
     /// its domain if the first is asked, and with what theory says of it if the second is.
-    ///
-    /// # Errors
-    ///
-    /// Why the estimator is refused.
     fn prepare(
         &self,
         estimator: usize,

@@ -1,9 +1,7 @@
 //! The calibration cases, run from many seeds as they are and with a bias of ε: the counts that
 //! [`lab::calibration`] compares with the promises.
 
-use crate::case::Case;
-use crate::case::CaseError;
-use crate::case::suite;
+use crate::case::{Case, CaseError, suite};
 use crate::checks;
 use crate::draw::run;
 use crate::plan::Plan;
@@ -51,8 +49,9 @@ pub fn calibrate(runs: u64, progress: &(dyn Fn(u64) + Sync)) -> Result<Calibrati
 fn draw(plan: &mut Plan, seed: u64) -> (u64, Vec<Checked>) {
     plan.reseed(seed);
     let draws = run::draw(plan, &|_| {});
-    let drawn = draws.cases.iter().flatten().map(|drawn| drawn.draws).sum();
-    let checked = evaluate::run(plan, &draws).into_iter().flatten().flatten().map(|finding| {
+    let drawn = draws.experiments.iter().map(|one| one.drawn.draws).sum();
+    let findings = evaluate::run(plan, &draws).into_iter().flat_map(|judged| judged.findings);
+    let checked = findings.map(|finding| {
         let is_powered = finding.gate.is_some_and(|gate| gate.needed.is_none());
         let (is_scalar, p, check) = (finding.gate.is_some(), finding.p, finding.check);
         Checked { check, verdict: finding.verdict, is_scalar, is_powered, p }

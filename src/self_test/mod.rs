@@ -6,7 +6,6 @@
 //! hard laws are in [`lab`], which needs no cases.
 
 pub mod calibration;
-pub mod known_bugs;
 pub mod mutation;
 
 use lab::calibration::Calibration;

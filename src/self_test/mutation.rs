@@ -6,20 +6,18 @@
 
 use std::collections::HashMap;
 
-use crate::case::Case;
-use crate::case::CaseError;
-use crate::case::suite;
+use crate::case::{Case, CaseError, suite};
 use crate::draw::run;
 use crate::plan::levels::Levels;
 use crate::plan::options::{Amount, Options};
 use crate::plan::{BLOCK, Plan, Planned};
-use crate::record::evaluate;
-use crate::record::{Finding, Verdict};
-use crate::self_test::known_bugs::{self, Walk};
-use estimators::{DrawBuffer, Experiment};
+use crate::record::{Finding, Verdict, evaluate};
+use estimators::{DrawBuffer, Experiment, Refusal};
 use gate::causes::Pattern;
 use lab::mutants::{self, About, Caught, StreamMutant, Target, streams};
 use theory::parallel;
+
+pub use lab::mutants::Walk;
 
 /// Draws and judges all mutants and their twins.
 ///
@@ -36,14 +34,8 @@ pub fn all(seed: u64) -> Result<Vec<Caught>, CaseError> {
 ///
 /// A built-in case that cannot be read.
 pub fn of(seed: u64, is_wanted: &dyn Fn(&str) -> bool) -> Result<Vec<Caught>, CaseError> {
-    let cases: Vec<Case> = suite::suite().iter().map(Case::read).collect::<Result<_, _>>()?;
-    let options = Options { seed, ..Options::default() };
-    let levels = Plan::new(&cases, &options).levels;
-    let bench = Bench { cases: &cases, options, levels };
-    let abouts: Vec<About> =
-        mutants::all().into_iter().filter(|about| is_wanted(about.name)).collect();
-    let of_streams: Vec<&StreamMutant> =
-        streams::MUTANTS.iter().filter(|mutant| is_wanted(mutant.name)).collect();
+    let bench = Bench::new(Options { seed, ..Options::default() })?;
+    let (abouts, of_streams) = wanted(is_wanted);
     let mut targets: HashMap<(&str, usize), Target> = HashMap::new();
     for target in abouts.iter().map(|about| about.target).chain([streams::TARGET]) {
         targets.insert((target.case, target.index), target);
@@ -71,14 +63,9 @@ pub fn patterns(
     draws: u64,
     is_wanted: &dyn Fn(&str) -> bool,
 ) -> Result<Vec<(&'static str, Pattern)>, CaseError> {
-    let cases: Vec<Case> = suite::suite().iter().map(Case::read).collect::<Result<_, _>>()?;
-    let options = Options { seed, draws: Amount::Exactly(draws), ..Options::default() };
-    let levels = Plan::new(&cases, &options).levels;
-    let bench = Bench { cases: &cases, options, levels };
-    let abouts: Vec<About> =
-        mutants::all().into_iter().filter(|about| is_wanted(about.name)).collect();
-    let of_streams: Vec<&StreamMutant> =
-        streams::MUTANTS.iter().filter(|mutant| is_wanted(mutant.name)).collect();
+    let draws = Amount::Exactly(draws);
+    let bench = Bench::new(Options { seed, draws, ..Options::default() })?;
+    let (abouts, of_streams) = wanted(is_wanted);
     let mut found = parallel::map(&abouts, |about| {
         (about.name, bench.faulty(about, None).map(|judged| judged.pattern()).unwrap_or_default())
     });
@@ -88,16 +75,57 @@ pub fn patterns(
     Ok(found)
 }
 
+/// The mutants of some names, those of estimators and those of streams.
+fn wanted(is_wanted: &dyn Fn(&str) -> bool) -> (Vec<About>, Vec<&'static StreamMutant>) {
+    let abouts = mutants::all().into_iter().filter(|about| is_wanted(about.name));
+    let of_streams = streams::MUTANTS.iter().filter(|mutant| is_wanted(mutant.name));
+    (abouts.collect(), of_streams.collect())
+}
+
+/// Finds a mutant's experiment in a plan that has its case.
+pub fn find<'p>(target: &Target, plan: &'p Plan) -> Option<(&'p Case, &'p Planned)> {
+    let fits = |planned: &Planned| {
+        planned.estimator == target.index && planned.id.swept_value() == target.swept
+    };
+    let mut experiments = plan.experiments();
+    experiments
+        .find(|(case, planned)| case.case.name == target.case && fits(planned))
+        .map(|(case, planned)| (case.case, planned))
+}
+
+/// A mutant's experiment, prepared as the plan prepared the correct one; `None` if the case's problem
+/// has no mutant of that name.
+pub fn experiment(
+    about: &About,
+    walk: Walk,
+    case: &Case,
+    planned: &Planned,
+    seed: u64,
+) -> Option<Result<Box<dyn Experiment>, Refusal>> {
+    let pilots = case.pilots(seed, planned.estimator);
+    match case.at(planned.id.variation()).and_then(|at| at.setup(planned.estimator, pilots)) {
+        Ok(setup) => mutants::experiment(about.name, walk, setup).map(Ok),
+        Err(refusal) => Some(Err(refusal)),
+    }
+}
+
 /// The built-in suite, on which mutants are drawn one experiment at a time.
-struct Bench<'a> {
-    cases: &'a [Case],
+struct Bench {
+    cases: Vec<Case>,
     options: Options,
     levels: Levels,
 }
 
-impl<'a> Bench<'a> {
+impl Bench {
+    /// Reads the suite, and shares the error rate among its checks.
+    fn new(options: Options) -> Result<Self, CaseError> {
+        let cases: Vec<Case> = suite::suite().iter().map(Case::read).collect::<Result<_, _>>()?;
+        let levels = Plan::new(&cases, &options).levels;
+        Ok(Self { cases, options, levels })
+    }
+
     /// The plan of one experiment, at the levels of the suite.
-    fn plan(&self, target: &Target, until_failed: Option<&str>) -> Option<Plan<'a>> {
+    fn plan(&self, target: &Target, until_failed: Option<&str>) -> Option<Plan<'_>> {
         let case = self.cases.iter().find(|case| case.name == target.case)?;
         let until_failed = until_failed.map(str::to_owned);
         let options = Options { until_failed, ..self.options.clone() };
@@ -106,8 +134,9 @@ impl<'a> Bench<'a> {
 
     fn judged(plan: &Plan) -> Judged {
         let fixed = plan.experiments().map(|(_, planned)| planned.fixed).max().unwrap_or(0);
-        let findings = evaluate::run(plan, &run::draw(plan, &|_| {}));
-        Judged { fixed, findings: findings.into_iter().flatten().flatten().collect() }
+        let draws = run::draw(plan, &|_| {});
+        let judged = evaluate::run(plan, &draws).into_iter();
+        Judged { fixed, findings: judged.flat_map(|one| one.findings).collect() }
     }
 
     fn passes(&self, target: &Target) -> bool {
@@ -125,11 +154,11 @@ impl<'a> Bench<'a> {
         about: &About,
         walk: Walk,
         until_failed: Option<&str>,
-    ) -> Option<(Plan<'a>, Box<dyn Experiment>)> {
+    ) -> Option<(Plan<'_>, Box<dyn Experiment>)> {
         let plan = self.plan(&about.target, until_failed)?;
         let case = plan.cases.first()?;
         let (case, planned) = (case.case, case.experiments.first()?);
-        let drawn = known_bugs::experiment(about, walk, case, planned, self.options.seed)?;
+        let drawn = experiment(about, walk, case, planned, self.options.seed)?;
         Some((plan, drawn.ok()?))
     }
 

@@ -3,8 +3,7 @@
 
 use crate::common::place::{Place, code, stdout};
 use crate::common::{case, options};
-use trueflight::bench::figures::ERRORS;
-use trueflight::bench::record::{Bench, BenchRow};
+use trueflight::bench::record::{Bench, BenchRow, ERRORS};
 use trueflight::bench::{Amounts, measure};
 use trueflight::case::Case;
 use trueflight::numeric::pack;
@@ -72,7 +71,7 @@ fn the_figures_of_a_row_agree_with_each_other() {
         let last = row.curve.last().expect("a curve");
         assert_eq!((row.draws, last.draws), (Some(30_000), 10_000));
         near(last.predicted.expect("a variance"), (variance / 1e4).sqrt() / truth);
-        near(times.seconds[row.curve.len() - 1], 1e4 * seconds);
+        near(times.seconds(last.draws), 1e4 * seconds);
         // Six deviations of the root mean square of three rounds.
         assert!(last.relative < 6.0 * last.predicted.expect("a variance"), "{last:?}");
     }
@@ -82,7 +81,7 @@ fn the_figures_of_a_row_agree_with_each_other() {
 #[test]
 fn what_has_no_error_to_wait_for_says_so() {
     let found = bench(&[case("case", CASE), case("bias", BIASED)], 1);
-    let row = |name: &str| rows(&found).find(|row| row.estimator.starts_with(name)).expect("a row");
+    let row = |name: &str| rows(&found).find(|row| row.id.estimator.name == name).expect("a row");
     let (regular, marching, refused) = (row("regular"), row("ray-marching"), row("woodcock"));
     for row in [regular, marching] {
         let times = row.times.as_ref().expect("it was timed");
@@ -216,7 +215,7 @@ fn a_stored_bench_is_compared_with() {
     assert_eq!(output.status.code(), Some(2));
     assert!(String::from_utf8_lossy(&output.stderr).contains("--threads 1"));
     // A bench of other experiments is no comparison.
-    let tree = text.replace("\"id\": \"", "\"id\": \"other ");
+    let tree = text.replace("\"problem\": \"", "\"problem\": \"other ");
     std::fs::write(&path, tree).expect("a baseline");
     let output = place.run(&format!("{bench} --baseline main"));
     assert_eq!(output.status.code(), Some(2));

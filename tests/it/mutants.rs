@@ -75,7 +75,7 @@ fn mutants_stand_where_they_say() {
                 assert!(axis.values.contains(&value), "{name}: {value} is not swept");
                 (axis.what, value)
             });
-            let found = case.names(target.index, variation).estimator.to_string();
+            let found = case.id(target.index, variation).estimator.to_string();
             if found != target.estimator {
                 wrong.push(format!("{name}: {found} is not {}", target.estimator));
             }

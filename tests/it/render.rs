@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use trueflight::case::Source;
 use trueflight::catalogue::additions::NONE;
 use trueflight::render::record::{Exposure, PictureRecord};
-use trueflight::render::{Picture, gallery as built_in};
+use trueflight::render::{self, Picture};
 use trueflight::report::render as report;
 
 fn source(text: &str) -> Source {
@@ -314,13 +314,13 @@ fn a_picture_is_no_case_and_a_case_no_picture() {
 
 #[test]
 fn every_built_in_picture_is_well_written() {
-    let sources = built_in::gallery();
+    let sources = render::gallery();
     assert_eq!(sources.len(), 9);
     for source in &sources {
         let picture =
             Picture::read(source, &NONE).unwrap_or_else(|e| panic!("{}", e.render(false)));
         assert!(picture.title.len() < 100, "{}", picture.name);
-        assert!(built_in::find(&source.name).is_some());
+        assert!(render::find(&source.name).is_some());
     }
 }
 

@@ -1,6 +1,6 @@
 //! Single precision beside double: doubles find the truth, and what fails in single precision is what should.
 
-use trueflight::cli::stress::stated;
+use trueflight::cli::lab::stated;
 use trueflight::numeric::Narrow as F32;
 use trueflight::stress::narrow::compare::{Compare, Estimator};
 use trueflight::stress::narrow::dice::Dice;

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use crate::common::{case, options};
 use trueflight::case::Case;
-use trueflight::draw::drawn;
+use trueflight::draw::block;
 use trueflight::draw::run;
 use trueflight::draw::store::{Header, Store};
 use trueflight::estimators::DrawBuffer;
@@ -136,11 +136,13 @@ fn what_has_not_changed_is_reused_and_no_number_changes() {
     let empty = store(&plan, "program", &path);
     assert_eq!(empty.reusable(&plan), [0, 2]);
     let first = run::draw_with(&plan, &empty, &|_| {});
-    empty.finish(&path, &plan, &first).expect("written");
+    empty.finish(&path, &first).expect("written");
     let read = store(&plan, "program", &path);
     assert_eq!(read.reusable(&plan), [2, 2]);
-    let second = run::draw_with(&plan, &read, &|_| panic!("nothing is drawn"));
-    assert!(second.cases[0].iter().all(|drawn| drawn.is_reused));
+    let second = run::draw_with(&plan, &read, &|step| {
+        assert!(!matches!(step, run::Step::Drawn(1..)), "nothing is drawn");
+    });
+    assert!(second.experiments.iter().all(|one| one.drawn.is_reused));
     let json = |draws| {
         let record = build::judged(&plan, draws, 0.0);
         serde_json::to_string(&record.results).expect("encodes")
@@ -154,7 +156,7 @@ fn what_has_changed_is_drawn_anew() {
     let options = options(3, 200_000);
     let plan = Plan::new(&same, &options);
     let kept = store(&plan, "program", &path);
-    kept.finish(&path, &plan, &run::draw(&plan, &|_| {})).expect("written");
+    kept.finish(&path, &run::draw(&plan, &|_| {})).expect("written");
     let bytes = std::fs::read(&path).expect("a file");
     assert_eq!(store(&plan, "program", &path).reusable(&plan), [2, 2]);
     assert_eq!(store(&plan, "another program", &path).reusable(&plan), [0, 2]);
@@ -182,7 +184,7 @@ fn draws_that_a_limit_cut_short_are_not_kept() {
     let (cases, options, (_folder, path)) = (cases("t"), options(3, 200_000), path());
     let plan = Plan::new(&cases, &options);
     let kept = store(&plan, "program", &path);
-    let cut = drawn::Draws { cut_by_time: true, ..run::draw(&plan, &|_| {}) };
-    kept.finish(&path, &plan, &cut).expect("written");
+    let cut = block::Draws { cut_by_time: true, ..run::draw(&plan, &|_| {}) };
+    kept.finish(&path, &cut).expect("written");
     assert_eq!(store(&plan, "program", &path).reusable(&plan), [0, 2]);
 }

@@ -97,7 +97,11 @@ fn drawn(plan: &Plan, progress: &Progress) -> Record {
     let ready = plan.experiments().filter(|(_, planned)| planned.outcome.is_ok());
     progress.expect(ready.map(|(_, planned)| planned.draws).sum());
     let begin = Instant::now();
-    let draws = drawing::draw(plan, &|draws| progress.add(draws));
+    let draws = drawing::draw(plan, &|step| {
+        if let drawing::Step::Drawn(draws) = step {
+            progress.add(draws);
+        }
+    });
     build::judged(plan, &draws, begin.elapsed().as_secs_f64())
 }
 

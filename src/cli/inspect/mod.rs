@@ -1,9 +1,6 @@
 //! `trueflight inspect`: what files of volumes, images and draws hold.
 
-mod arrays;
-mod draws;
 mod images;
-mod item;
 mod volumes;
 
 use std::fmt::Write;
@@ -12,12 +9,12 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context, bail};
 use clap::Args;
 
-use self::item::Item;
 use super::output::{self, Errors, Format};
 use super::{Console, USAGE};
 use crate::judge::files as draws_files;
 use media::files::Fault;
 use media::grid_file;
+use numeric::digits::{count, short};
 
 /// Arguments of `inspect`.
 #[derive(Debug, Args)]
@@ -40,7 +37,7 @@ pub fn main(arguments: &Arguments, console: &Console) -> anyhow::Result<u8> {
     let text = match arguments.format {
         Format::Table if console.quiet => String::new(),
         Format::Table => table(&items),
-        Format::Csv => item::csv(&items)?,
+        Format::Csv => csv(&items)?,
         Format::Json => serde_json::to_string_pretty(&items)? + "\n",
     };
     output::print(&text)?;
@@ -55,12 +52,12 @@ fn inspected(path: &Path) -> anyhow::Result<Vec<Item>> {
     let ending = path.extension().and_then(|ending| ending.to_str()).unwrap_or_default();
     let ending = ending.to_ascii_lowercase();
     let items = match ending.as_str() {
-        "npy" => arrays::items(&std::fs::read(path)?),
+        "npy" => volumes::array(&std::fs::read(path)?),
         "exr" => images::exr(std::fs::read(path)?),
         "pfm" => images::pfm(&std::fs::read(path)?),
         _ => match grid_file::Format::of(path) {
             Some(format) => volumes::items(format, &std::fs::read(path)?),
-            None if draws_files::Format::of_path(path).is_some() => return draws::items(path),
+            None if draws_files::Format::of_path(path).is_some() => return images::draws(path),
             None => bail!(
                 "its ending is none that is read: vol, npy, vdb, nvdb, pbrt, exr, pfm, csv, txt, f64, bin, raw; rename \
                  or convert it"
@@ -83,4 +80,185 @@ fn table(items: &[Item]) -> String {
         text.push_str(&item.paragraph());
     }
     text
+}
+
+/// A part of a file. What is unknown or makes no sense for it is `None`, or empty.
+#[derive(Debug, Clone, Default, PartialEq, serde::Serialize)]
+pub struct Item {
+    /// The file.
+    pub file: String,
+    /// The format of the file.
+    pub format: String,
+    /// The name of the grid, the medium, the part or the column.
+    pub name: String,
+    /// The type of its numbers.
+    pub kind: String,
+    /// The class of a grid, such as `fog volume`.
+    pub class: String,
+    /// Lengths of its axes.
+    pub size: Vec<u64>,
+    /// Meaning of the numbers of `size`, such as `voxels (x, y, z)`.
+    pub counts: &'static str,
+    /// Values of a voxel or a pixel.
+    pub channels: Option<u64>,
+    /// The lowest corner of its box in the world.
+    pub low: Option<[f64; 3]>,
+    /// The highest corner.
+    pub high: Option<[f64; 3]>,
+    /// The edges of a voxel in the world.
+    pub voxel: Option<[f64; 3]>,
+    /// The smallest finite value.
+    pub least: Option<f64>,
+    /// The largest finite value.
+    pub most: Option<f64>,
+    /// The mean of the finite values.
+    pub mean: Option<f64>,
+    /// The value outside the voxels that are stored.
+    pub background: Option<f64>,
+    /// Number of active voxels.
+    pub active: Option<u64>,
+    /// Further facts of the file: compression, windows, channels, version.
+    pub details: Vec<String>,
+    /// Doubts, such as why a grid is no medium.
+    pub notes: Vec<String>,
+}
+
+/// Minimum, maximum and mean of numbers, and the number of those that are not finite.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Spread {
+    ends: Option<[f64; 2]>,
+    sum: f64,
+    finite: f64,
+    /// Number of values that are not finite.
+    pub wrong: f64,
+    /// Number of negative values.
+    pub negative: f64,
+}
+
+impl Spread {
+    /// Adds a value with its number of times.
+    pub fn add(&mut self, value: f64, times: f64) {
+        if !value.is_finite() {
+            self.wrong += times;
+            return;
+        }
+        let [low, high] = self.ends.unwrap_or([value; 2]);
+        self.ends = Some([low.min(value), high.max(value)]);
+        self.sum += value * times;
+        self.finite += times;
+        if value < 0.0 {
+            self.negative += times;
+        }
+    }
+
+    /// Spread of a list.
+    pub fn of(values: impl IntoIterator<Item = f64>) -> Self {
+        let mut spread = Self::default();
+        values.into_iter().for_each(|value| spread.add(value, 1.0));
+        spread
+    }
+
+    /// Fills in an item.
+    pub fn tell(&self, item: &mut Item) {
+        if let Some([least, most]) = self.ends {
+            (item.least, item.most) = (Some(least), Some(most));
+            item.mean = Some(self.sum / self.finite);
+        }
+        if self.wrong > 0.0 {
+            item.notes.push(format!("{} values are NaN or infinite", self.wrong));
+        }
+    }
+}
+
+fn point(point: [f64; 3]) -> String {
+    format!("[{}]", point.map(|x| short(x, 6)).join(", "))
+}
+
+impl Item {
+    /// The item in a few lines.
+    pub fn paragraph(&self) -> String {
+        let kind = [self.kind.as_str(), self.class.as_str()];
+        let kind = kind.into_iter().filter(|word| !word.is_empty()).collect::<Vec<_>>().join(", ");
+        let name = if self.name.is_empty() { "" } else { &format!("{}  ", self.name) };
+        let mut text = format!("  {name}{kind}\n");
+        let mut line = |parts: &[Option<String>]| {
+            let parts: Vec<&str> = parts.iter().flatten().map(String::as_str).collect();
+            if !parts.is_empty() {
+                let _ = writeln!(text, "    {}", parts.join(", "));
+            }
+        };
+        let sizes: Vec<String> = self.size.iter().map(u64::to_string).collect();
+        line(&[
+            (!sizes.is_empty()).then(|| format!("{} {}", sizes.join(" × "), self.counts)),
+            self.channels.filter(|&n| n != 1).map(|n| format!("{n} channels")),
+            self.active.map(|n| format!("{} active", count(n))),
+        ]);
+        let corners = self.low.zip(self.high);
+        line(&[
+            corners.map(|(low, high)| format!("box {} to {}", point(low), point(high))),
+            self.voxel.map(|edges| format!("voxel {}", edges.map(|x| short(x, 6)).join(" × "))),
+        ]);
+        let range = self.least.zip(self.most);
+        line(&[
+            range.map(|(least, most)| format!("values {} to {}", short(least, 6), short(most, 6))),
+            self.mean.map(|mean| format!("mean {}", short(mean, 6))),
+            self.background.map(|x| format!("background {}", short(x, 6))),
+        ]);
+        self.details.iter().for_each(|detail| line(&[Some(detail.clone())]));
+        self.notes.iter().for_each(|note| line(&[Some(format!("note {note}"))]));
+        text
+    }
+}
+
+/// The items as a table of text: lists are in one field each.
+pub fn csv(items: &[Item]) -> anyhow::Result<String> {
+    let mut writer = csv::Writer::from_writer(Vec::new());
+    writer.write_record([
+        "file",
+        "format",
+        "name",
+        "kind",
+        "class",
+        "size",
+        "counts",
+        "channels",
+        "low",
+        "high",
+        "voxel",
+        "least",
+        "most",
+        "mean",
+        "background",
+        "active",
+        "details",
+        "notes",
+    ])?;
+    let number = |x: Option<f64>| x.map(|x| x.to_string()).unwrap_or_default();
+    let triple =
+        |x: Option<[f64; 3]>| x.map(|x| x.map(|x| x.to_string()).join(" ")).unwrap_or_default();
+    let whole = |n: Option<u64>| n.map(|n| n.to_string()).unwrap_or_default();
+    for item in items {
+        let size: Vec<String> = item.size.iter().map(u64::to_string).collect();
+        writer.write_record([
+            item.file.clone(),
+            item.format.clone(),
+            item.name.clone(),
+            item.kind.clone(),
+            item.class.clone(),
+            size.join(" "),
+            item.counts.to_owned(),
+            whole(item.channels),
+            triple(item.low),
+            triple(item.high),
+            triple(item.voxel),
+            number(item.least),
+            number(item.most),
+            number(item.mean),
+            number(item.background),
+            whole(item.active),
+            item.details.join("; "),
+            item.notes.join("; "),
+        ])?;
+    }
+    Ok(String::from_utf8(writer.into_inner()?)?)
 }

@@ -1,8 +1,9 @@
-//! Voxel grids.
+//! Voxel grids, and arrays of `NumPy`: draws, images, stacks of images or grids, by their axes.
 
-use super::item::{Item, Spread};
+use super::{Item, Spread};
+use media::files::number::Number;
 use media::files::vdb::{Grid, Transform};
-use media::files::{Fault, nvdb, pbrt, vdb, vol::Vol};
+use media::files::{Fault, npy, nvdb, pbrt, vdb, vol::Vol, wrong};
 use media::grid_file::Format;
 use media::grid_vdb;
 use numeric::digits::number;
@@ -16,12 +17,12 @@ pub fn items(format: Format, bytes: &[u8]) -> Result<Vec<Item>, Fault> {
         Format::Pbrt => of_pbrt(bytes),
         Format::Vdb => of_vdb(bytes),
         Format::Nvdb => of_nvdb(bytes),
-        Format::Npy => super::arrays::items(bytes),
+        Format::Npy => array(bytes),
     }
 }
 
 /// Adds that an item is no medium, where a value is negative or no number.
-pub fn doubt(item: &mut Item, spread: &Spread) {
+fn doubt(item: &mut Item, spread: &Spread) {
     if spread.negative > 0.0 {
         let many = spread.negative;
         item.notes.push(format!("no medium: {many} values are negative, and an extinction is not"));
@@ -42,7 +43,7 @@ fn place(item: &mut Item, [low, high]: [[f64; 3]; 2]) {
 fn of_vol(bytes: &[u8]) -> Result<Vec<Item>, Fault> {
     let vol = Vol::read(bytes)?;
     if vol.size.contains(&0) {
-        return media::files::wrong("the file holds no sample", "write one with samples");
+        return wrong("the file holds no sample", "write one with samples");
     }
     let channels = usize::try_from(vol.channels).unwrap_or(usize::MAX);
     let items = (0..channels.min(64)).map(|channel| {
@@ -66,10 +67,7 @@ fn of_vol(bytes: &[u8]) -> Result<Vec<Item>, Fault> {
 
 fn of_pbrt(bytes: &[u8]) -> Result<Vec<Item>, Fault> {
     let Ok(text) = std::str::from_utf8(bytes) else {
-        return media::files::wrong(
-            "the file is no text",
-            "give a scene file of pbrt that is not packed",
-        );
+        return wrong("the file is no text", "give a scene file of pbrt that is not packed");
     };
     let items = pbrt::grids(text)?.into_iter().map(|(name, grid)| {
         let mut item = Item { format: "pbrt scene".to_owned(), name, ..Item::default() };
@@ -190,4 +188,57 @@ fn world(transform: &Transform, ends: [[i64; 3]; 2]) -> [[f64; 3]; 2] {
     corners.fold([corner(0); 2], |[low, high], at| {
         [[0, 1, 2].map(|j| at[j].min(low[j])), [0, 1, 2].map(|j| at[j].max(high[j]))]
     })
+}
+
+/// The array of a file.
+pub fn array(mut bytes: &[u8]) -> Result<Vec<Item>, Fault> {
+    let header = match npy::bytes(&mut bytes).and_then(|header| npy::parse(&header)) {
+        Ok(header) => header,
+        Err(error) => {
+            return wrong(format!("the header cannot be read: {error}"), "write it by numpy.save");
+        }
+    };
+    let shape = header.written_shape();
+    let order = if header.fortran_order { "Fortran order" } else { "C order" };
+    let mut item = Item {
+        format: "NumPy array".to_owned(),
+        kind: header.kind.clone(),
+        size: header.shape.clone(),
+        counts: "along its axes",
+        details: vec![format!("shape {shape}, {order}")],
+        ..Item::default()
+    };
+    let Some(number) = Number::named(&header.kind) else {
+        item.notes.push("not read: its elements are no real numbers".to_owned());
+        return Ok(vec![item]);
+    };
+    let wanted = header.count().and_then(|count| count.checked_mul(number.width() as u64));
+    if wanted != Some(bytes.len() as u64) {
+        return wrong(
+            format!(
+                "{} bytes follow the header, not those of the shape {shape} in {}",
+                bytes.len(),
+                header.kind
+            ),
+            "write one array to its end",
+        );
+    }
+    let spread = Spread::of(number.all(bytes));
+    spread.tell(&mut item);
+    let is = |what: String| Some(what);
+    let may_be = match *header.shape.as_slice() {
+        [n] => is(format!("{n} draws")),
+        [n, m] => is(format!("{n} draws of {m} values, or an image {m} wide and {n} high")),
+        [a, b, c] => is(format!(
+            "a grid of {c} × {b} × {a} voxels (x, y, z; with `axes = \"xyz\"` {a} × {b} × {c}), {a} passes of images {c} \
+             wide and {b} high, or an image {b} wide and {a} high of {c} channels"
+        )),
+        [a, b, c, d] => is(format!("{a} passes of images {c} wide and {b} high of {d} channels")),
+        _ => None,
+    };
+    item.details.extend(may_be.map(|what| format!("may be {what}")));
+    if header.shape.len() == 3 {
+        doubt(&mut item, &spread);
+    }
+    Ok(vec![item])
 }

@@ -1,9 +1,7 @@
 //! What is claimed of draws by the arguments of `trueflight judge`, and the judging by it.
 
 use super::{Arguments, Judged};
-use crate::case::Case;
-use crate::case::Catalogue;
-use crate::case::source::CaseError;
+use crate::case::{Case, CaseError, Catalogue};
 use crate::judge::{
     Choice, ChoiceError, Claim, ClaimError, Draws, Layout, Lookups, Session, Taken, Theory, Trial,
     Wanted, theory_of,

@@ -8,25 +8,24 @@
 //! Blocks are found by their addresses and merged in that order, so that results do not depend on the number of
 //! ranks. MPI ends all ranks where one dies; what rank 0 had received by then is in its log.
 
-mod link;
 mod team;
 
 use std::env;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Mutex, PoisonError, mpsc};
-use std::thread;
+use std::sync::mpsc::{self, Receiver, Sender};
+use std::sync::{Mutex, PoisonError};
+use std::thread::{self, JoinHandle};
+use std::time::Duration;
 
 use anyhow::{anyhow, bail};
 use serde::{Deserialize, Serialize};
 
-pub use self::link::{Join, Link, Outgoing, Received};
 use self::team::Team;
-use super::{Console, journal, output, run};
+use super::{Console, USAGE, journal, output, run};
 use crate::case::Catalogue;
 use crate::draw::block::Block;
-use crate::draw::share::Piece;
+use crate::draw::share::{BlockName, Drawing, Piece};
 use crate::draw::store::Header;
-use crate::draw::workers::Drawing;
 use crate::plan::Plan;
 use crate::record::baseline::fingerprint;
 use theory::parallel;
@@ -38,14 +37,106 @@ enum Message {
     Plan(Vec<String>),
     /// To rank 0: what a rank would draw, on how many threads; or why it cannot.
     Planned(Result<(Header, usize), String>),
-    /// From rank 0: pieces for one thread, each with its number.
-    Draw(Vec<(usize, Piece)>),
+    /// From rank 0: pieces for one thread.
+    Draw(Vec<Piece>),
     /// To rank 0: the blocks of these pieces.
-    Drawn(Vec<(usize, Vec<Option<Block>>)>),
+    Drawn(Vec<(BlockName, Block)>),
     /// From rank 0: pieces that are not begun stay undrawn.
     Stop,
     /// From rank 0: nothing more is to be drawn.
     End,
+}
+
+/// Message of another rank, after its number.
+pub type Received = (usize, Vec<u8>);
+
+/// Task for the thread that carries messages.
+#[derive(Debug)]
+pub enum Outgoing {
+    /// Carry a message to a rank.
+    Message(usize, Vec<u8>),
+    /// End all ranks with this exit code.
+    Abort(u8),
+    /// Leave the other ranks: nothing more is sent or received.
+    Leave,
+}
+
+/// Joins the other ranks, or says why it cannot; `trueflight_mpi::join` in `bindings/mpi` does it by MPI.
+pub type Join = fn() -> Result<Link, String>;
+
+/// Two queues between this rank and a thread that carries its messages, which arrive in the order in which they are sent.
+/// A link that is dropped while its thread panics ends all ranks: the others wait for its messages.
+#[derive(Debug)]
+pub struct Link {
+    /// Number of this rank, from 0.
+    pub rank: usize,
+    /// Number of ranks.
+    pub size: usize,
+    outgoing: Sender<Outgoing>,
+    incoming: Mutex<Receiver<Received>>,
+    carrier: Option<JoinHandle<()>>,
+}
+
+impl Link {
+    /// Connects rank `rank` of `size` by a thread that does the tasks of one queue and fills the other.
+    pub fn new(
+        rank: usize,
+        size: usize,
+        outgoing: Sender<Outgoing>,
+        incoming: Receiver<Received>,
+        carrier: JoinHandle<()>,
+    ) -> Self {
+        Self { rank, size, outgoing, incoming: Mutex::new(incoming), carrier: Some(carrier) }
+    }
+
+    /// Sends a message, and does not wait for it.
+    fn send(&self, to: usize, message: &Message) {
+        // Every message can be encoded; a carrier that has ended is found by the next receiver.
+        let bytes = postcard::to_stdvec(message).unwrap_or_default();
+        let _ = self.outgoing.send(Outgoing::Message(to, bytes));
+    }
+
+    /// Waits for the next message, and returns it after the number of its rank.
+    fn receive(&self) -> (usize, Message) {
+        let received = self.incoming.lock().unwrap_or_else(PoisonError::into_inner).recv();
+        let received = received.unwrap_or_else(|_| self.fail("cannot receive from other ranks"));
+        self.decoded(received)
+    }
+
+    /// Returns the next message if it comes within this time.
+    fn receive_within(&self, time: Duration) -> Option<(usize, Message)> {
+        let incoming = self.incoming.lock().unwrap_or_else(PoisonError::into_inner);
+        Some(self.decoded(incoming.recv_timeout(time).ok()?))
+    }
+
+    fn decoded(&self, (from, bytes): Received) -> (usize, Message) {
+        let message = postcard::from_bytes(&bytes).unwrap_or_else(|_| {
+            self.fail(&format!(
+                "cannot read a message of rank {from}: it is another version of this program"
+            ))
+        });
+        (from, message)
+    }
+
+    /// Ends all ranks with an error message, so that none waits for ever.
+    fn fail(&self, why: &str) -> ! {
+        output::complain(&anyhow!("rank {}: {why}", self.rank));
+        let _ = self.outgoing.send(Outgoing::Abort(USAGE));
+        // The carrier ends the process first.
+        thread::sleep(Duration::from_secs(10));
+        std::process::exit(USAGE.into())
+    }
+}
+
+impl Drop for Link {
+    fn drop(&mut self) {
+        /// Exit code of a process that panics.
+        const PANICKED: u8 = 101;
+        let last = if thread::panicking() { Outgoing::Abort(PANICKED) } else { Outgoing::Leave };
+        let _ = self.outgoing.send(last);
+        // A carrier that has panicked has nothing more to carry.
+        let _ = self.carrier.take().map(JoinHandle::join);
+    }
 }
 
 /// Returns how many processes `mpirun` or a scheduler has begun: by Open MPI, by MPICH and its relatives, or by Slurm.
@@ -107,7 +198,7 @@ pub(super) fn main(
             "{ranks} ranks draw; should one of them die, {again} under mpirun goes on"
         ));
     }
-    team.plan(&asked.words());
+    team.plan(&asked.words()?);
     run::draw(&asked, Box::new(team), catalogue, console)
 }
 
@@ -152,8 +243,8 @@ fn draw(link: &Link, plan: &Plan, header: Header) {
         });
         parallel::range(threads, |_| {
             while let Ok(pieces) = next() {
-                let pieces: Vec<(usize, Piece)> = pieces;
-                let drawn = pieces.iter().map(|(number, piece)| (*number, drawing.draw(piece)));
+                let pieces: Vec<Piece> = pieces;
+                let drawn = pieces.iter().flat_map(|piece| drawing.draw(piece));
                 link.send(0, &Message::Drawn(drawn.collect()));
             }
         });

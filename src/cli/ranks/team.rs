@@ -1,17 +1,14 @@
 //! All ranks, as rank 0 sees them.
 
 use std::collections::BTreeMap;
-use std::ops::Range;
 use std::sync::OnceLock;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::thread;
 use std::time::Duration;
 
-use super::Message;
-use super::link::Link;
-use crate::draw::share::Piece;
+use super::{Link, Message};
+use crate::draw::share::{Drawing, Piece, Take, Workers};
 use crate::draw::store::Header;
-use crate::draw::workers::{Drawing, Take, Workers};
 use theory::parallel;
 
 /// Portions that each thread gets of the pieces of a batch, at least: rank 0 may have to wait for the last ones.
@@ -68,14 +65,12 @@ impl Team {
                 while open[rank] < 2 * threads[rank] {
                     // Towards the end less and less, so that none has much left when the others are done.
                     let left = pieces.len().saturating_sub(next.load(Ordering::Relaxed));
-                    let numbers =
-                        portion(pieces, next, (left / (2 * self.threads())).clamp(1, most));
-                    if numbers.is_empty() {
+                    let dealt = portion(pieces, next, (left / (2 * self.threads())).clamp(1, most));
+                    if dealt.is_empty() {
                         break;
                     }
                     open[rank] += 1;
-                    let dealt = numbers.map(|number| (number, pieces[number].clone())).collect();
-                    self.link.send(rank, &Message::Draw(dealt));
+                    self.link.send(rank, &Message::Draw(dealt.to_vec()));
                 }
             }
             if open.iter().all(|&portions| portions == 0) {
@@ -87,9 +82,7 @@ impl Team {
             }
             if let Some((rank, Message::Drawn(drawn))) = self.link.receive_within(PATIENCE) {
                 open[rank] -= 1;
-                for (number, blocks) in drawn {
-                    take(number, blocks);
-                }
+                take(drawn);
             }
         }
     }
@@ -127,18 +120,18 @@ impl Workers for Team {
         thread::scope(|scope| {
             scope.spawn(|| self.deal(pieces, &next, drawing, take));
             parallel::range(rayon::current_num_threads(), |_| {
-                while let Some(number) = portion(pieces, &next, 1).next() {
-                    take(number, drawing.draw(&pieces[number]));
+                while let [piece] = portion(pieces, &next, 1) {
+                    take(drawing.draw(piece));
                 }
             });
         });
     }
 }
 
-/// Returns the numbers of the next pieces that nobody has yet.
-fn portion(pieces: &[Piece], next: &AtomicUsize, most: usize) -> Range<usize> {
+/// Returns the next pieces that nobody has yet.
+fn portion<'p>(pieces: &'p [Piece], next: &AtomicUsize, most: usize) -> &'p [Piece] {
     let begin = next.fetch_add(most, Ordering::Relaxed).min(pieces.len());
-    begin..(begin + most).min(pieces.len())
+    &pieces[begin..(begin + most).min(pieces.len())]
 }
 
 impl Drop for Team {

@@ -7,7 +7,10 @@
 //!
 //! Nothing is used from the first frame on that is torn, cut, flipped or doubled. Frames of other draws have other
 //! keys. An entry is written at once, so that a killed process loses none; the disk is synchronised at most once a
-//! second.
+//! second. Errors are those of the system, with the path and what was being done, and files that are no logs. After an
+//! error while a log is written or rewritten the file is as it was.
+
+#![allow(clippy::missing_errors_doc)] // the page tells all of them
 
 use std::collections::BTreeMap;
 use std::fs::{self, File, OpenOptions, TryLockError};
@@ -70,10 +73,6 @@ struct Inside {
 }
 
 /// Locks a folder, where the file system has locks: nobody else writes a log there meanwhile.
-///
-/// # Errors
-///
-/// Another process holds the lock.
 pub fn lock(folder: &Path) -> io::Result<Option<File>> {
     // Some systems let no folder be opened, some file systems have no locks.
     let Ok(file) = File::open(folder) else { return Ok(None) };
@@ -87,20 +86,12 @@ pub fn lock(folder: &Path) -> io::Result<Option<File>> {
 }
 
 /// Encodes an entry.
-///
-/// # Errors
-///
-/// The value cannot be encoded.
 pub fn entry(key: Key, value: &impl Serialize) -> io::Result<Vec<u8>> {
     postcard::to_stdvec(&(key, value)).map_err(io::Error::other)
 }
 
 impl Log {
     /// Writes a log, in place of any that was there; each entry comes from [`entry`], the header first.
-    ///
-    /// # Errors
-    ///
-    /// The system refuses; the file is then unchanged.
     pub fn write(
         path: &Path,
         entries: impl IntoIterator<Item = io::Result<Vec<u8>>>,
@@ -129,10 +120,6 @@ impl Log {
     }
 
     /// Opens a log to write into it, and cuts off damaged frames.
-    ///
-    /// # Errors
-    ///
-    /// The system refuses, or the file is no log.
     pub fn resume(path: &Path, lock: Option<File>) -> io::Result<Self> {
         // A run that was killed while it rewrote the file left it; the lock keeps others out.
         let _ = fs::remove_file(beside(path));
@@ -145,10 +132,6 @@ impl Log {
     }
 
     /// Opens a log to read it.
-    ///
-    /// # Errors
-    ///
-    /// The system refuses, or the file is no log.
     pub fn open(path: &Path) -> io::Result<Self> {
         Self::scan(path, File::open(path).map_err(told("open", path))?)
     }
@@ -205,10 +188,6 @@ impl Log {
     }
 
     /// Reads an entry; its hash is checked once more.
-    ///
-    /// # Errors
-    ///
-    /// The system refuses, or the file has changed since it was opened.
     pub fn get<T: DeserializeOwned>(&self, key: Key) -> io::Result<Option<T>> {
         let Some(content) = self.inside().read(&self.path, key)? else { return Ok(None) };
         let decoded = postcard::from_bytes::<(Key, T)>(&content).map_err(io::Error::other);
@@ -216,10 +195,6 @@ impl Log {
     }
 
     /// Appends an entry.
-    ///
-    /// # Errors
-    ///
-    /// The system refuses.
     pub fn put(&self, key: Key, value: &impl Serialize) -> io::Result<()> {
         let mut inside = self.inside();
         let written = entry(key, value).and_then(|content| inside.write(key, &content));
@@ -233,10 +208,6 @@ impl Log {
     }
 
     /// Rewrites the file with these entries and with those of its own that are kept.
-    ///
-    /// # Errors
-    ///
-    /// The system refuses; the file is then unchanged.
     pub fn rewrite(
         &self,
         entries: impl Iterator<Item = io::Result<Vec<u8>>>,
@@ -255,10 +226,6 @@ impl Log {
     }
 
     /// Waits until the disk has everything.
-    ///
-    /// # Errors
-    ///
-    /// The system refuses.
     pub fn synchronise(&self) -> io::Result<()> {
         self.inside().synchronise().map_err(told("write", &self.path))
     }

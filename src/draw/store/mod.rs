@@ -14,11 +14,9 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 pub use self::header::Header;
 pub use self::log::{Key, Log, entry, lock};
-use crate::draw::block::Block;
-use crate::draw::drawn::{Draws, Standing};
-use crate::draw::progress::{Listener, Step};
-use crate::draw::share::Piece;
-use crate::draw::workers::{Drawing, Threads, Workers};
+use crate::draw::block::{Block, Draws, Standing};
+use crate::draw::run::{Listener, Step};
+use crate::draw::share::{BlockName, Drawing, Piece, Threads, Workers};
 use crate::plan::{Plan, Planned};
 
 /// Largest number of finished experiments that are kept for later runs: some 20 MB.
@@ -111,15 +109,13 @@ impl Store {
     /// # Errors
     ///
     /// The system refuses.
-    pub fn finish(&self, path: &Path, plan: &Plan, draws: &Draws) -> io::Result<()> {
+    pub fn finish(&self, path: &Path, draws: &Draws) -> io::Result<()> {
         let mut finished = BTreeMap::new();
         if !draws.cut_by_time && !draws.cut_by_budget {
-            let all = self.keys.iter().zip(plan.experiments()).zip(draws.cases.iter().flatten());
-            for ((&key, (_, planned)), drawn) in all {
-                if is_reusable(planned) {
-                    let drawn = drawn.clone();
-                    finished.insert(key, Standing { drawn, is_done: true, ..Standing::default() });
-                }
+            for one in draws.experiments.iter().filter(|one| is_reusable(one.planned)) {
+                let Some(key) = self.key(one.planned.number) else { continue };
+                let drawn = one.drawn.clone();
+                finished.insert(key, Standing { drawn, is_done: true, ..Standing::default() });
             }
         }
         let old = self.finished.as_ref().map_or(Vec::new(), Log::keys);
@@ -151,8 +147,8 @@ impl Store {
 
     /// Returns the sums of an experiment, interrupted or finished. What an interrupted run has begun goes on, whatever
     /// another run has finished.
-    pub fn standing(&self, number: u32, planned: &Planned) -> Option<Standing> {
-        let &key = self.keys.get(number as usize)?;
+    pub fn standing(&self, planned: &Planned) -> Option<Standing> {
+        let key = self.key(planned.number)?;
         let get = |log: &Log| self.noted(log.get(Key::Standing(key))).flatten();
         let own = self.logs.iter().find_map(get);
         if own.is_some() || self.logs.iter().any(|log| log.blocks(Some(key)) > 0) {
@@ -166,55 +162,46 @@ impl Store {
 
     /// Returns how many experiments of a plan need not be drawn, and how many can be.
     pub fn reusable(&self, plan: &Plan) -> [usize; 2] {
-        let ready = plan.experiments().zip(0..).filter(|((_, planned), _)| planned.outcome.is_ok());
-        let ready: Vec<_> = ready.map(|((_, planned), number)| (planned, number)).collect();
-        let is_reused = |&&(planned, number): &&(&Planned, u32)| {
-            self.standing(number, planned).is_some_and(|standing| standing.drawn.is_reused)
-        };
-        [ready.iter().filter(is_reused).count(), ready.len()]
+        let ready =
+            plan.experiments().map(|(_, planned)| planned).filter(|one| one.outcome.is_ok());
+        let standings = ready.map(|planned| self.standing(planned));
+        standings.fold([0, 0], |[reused, all], standing| {
+            [reused + usize::from(standing.is_some_and(|one| one.drawn.is_reused)), all + 1]
+        })
     }
 
-    /// Returns the blocks of pieces, in their order: read where a log has them, else drawn and kept. `listen` hears
-    /// of all draws.
+    /// Returns the blocks of pieces: read where a log has them, else drawn and kept. `listen` hears of all draws.
     pub fn blocks(
         &self,
         pieces: &[Piece],
         drawing: &Drawing,
         listen: &Listener,
-    ) -> Vec<Option<Block>> {
+    ) -> BTreeMap<BlockName, Block> {
         let mut blocks = BTreeMap::new();
-        let mut missing = Vec::new();
-        for piece in pieces {
-            let mut experiments = Vec::new();
-            for &one in &piece.experiments {
-                match self.find(one, piece.block) {
-                    Some(block) => drop(blocks.insert((one, piece.block), block)),
-                    None => experiments.push(one),
+        let mut missing = pieces.to_vec();
+        for piece in &mut missing {
+            let number = piece.block;
+            piece.experiments.retain(|&one| match self.find((one, number)) {
+                Some(block) => {
+                    blocks.insert((one, number), block);
+                    false
                 }
-            }
-            if !experiments.is_empty() {
-                missing.push(Piece { experiments, block: piece.block });
-            }
+                None => true,
+            });
         }
+        missing.retain(|piece| !piece.experiments.is_empty());
         listen(Step::Kept(blocks.values().map(|block| block.draws).sum()));
         let blocks = Mutex::new(blocks);
         if !(drawing.is_over)() {
-            self.workers.draw(&missing, drawing, &|number, drawn| {
-                let piece = &missing[number];
-                listen(Step::Drawn(drawn.iter().flatten().map(|block| block.draws).sum()));
-                for (&one, block) in piece.experiments.iter().zip(drawn) {
-                    if let Some(block) = block {
-                        self.keep(one, piece.block, &block);
-                        locked(&blocks).insert((one, piece.block), block);
-                    }
+            self.workers.draw(&missing, drawing, &|drawn| {
+                listen(Step::Drawn(drawn.iter().map(|(_, block)| block.draws).sum()));
+                for (name, block) in &drawn {
+                    self.keep(*name, block);
                 }
+                locked(&blocks).extend(drawn);
             });
         }
-        let mut blocks = blocks.into_inner().unwrap_or_else(PoisonError::into_inner);
-        let all = pieces
-            .iter()
-            .flat_map(|piece| piece.experiments.iter().zip(std::iter::repeat(piece.block)));
-        all.map(|(&one, block)| blocks.remove(&(one, block))).collect()
+        blocks.into_inner().unwrap_or_else(PoisonError::into_inner)
     }
 
     /// Rewrites a long log of a run: sums take the place of the blocks that they count.
@@ -224,7 +211,7 @@ impl Store {
             return;
         };
         let standings: BTreeMap<u64, &Standing> =
-            standings.map(|(number, standing)| (self.keys[number as usize], standing)).collect();
+            standings.filter_map(|(number, one)| Some((self.key(number)?, one))).collect();
         let waits = |key| match key {
             Key::Block(one, block) => {
                 standings.get(&one).is_none_or(|one| !one.is_done && block >= one.blocks)
@@ -244,14 +231,18 @@ impl Store {
         self.logs.first().filter(|_| self.keeps)
     }
 
-    fn find(&self, number: u32, block: u64) -> Option<Block> {
-        let key = Key::Block(*self.keys.get(number as usize)?, block);
+    fn key(&self, number: u32) -> Option<u64> {
+        self.keys.get(number as usize).copied()
+    }
+
+    fn find(&self, (number, block): BlockName) -> Option<Block> {
+        let key = Key::Block(self.key(number)?, block);
         self.logs.iter().find_map(|log| self.noted(log.get(key)).flatten())
     }
 
-    fn keep(&self, number: u32, block: u64, drawn: &Block) {
-        if let Some(log) = self.journal_log() {
-            self.noted(log.put(Key::Block(self.keys[number as usize], block), drawn));
+    fn keep(&self, (number, block): BlockName, drawn: &Block) {
+        if let (Some(log), Some(key)) = (self.journal_log(), self.key(number)) {
+            self.noted(log.put(Key::Block(key, block), drawn));
         }
     }
 

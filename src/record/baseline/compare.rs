@@ -23,10 +23,186 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::comparison::{Change, Comparison, Drift, LeftOut, Measured, Quantity, Rules, Sequel};
+use serde::{Deserialize, Serialize};
+
 use super::{Baseline, ChannelId, Entry, Evidence};
 use crate::checks::normality::{Tails, variance_error};
 use gate::stats::normal;
+
+/// What the comparison is to say at which level.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Rules {
+    /// The chance that equal code shows any regression of a variance or of lookups.
+    pub alpha: f64,
+    /// Relative increase of the time per draw that is no regression; `None` if times are not compared.
+    pub time_tolerance: Option<f64>,
+}
+
+/// What changed.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Comparison {
+    /// What the stored run is called.
+    pub name: String,
+    /// The levels.
+    pub rules: Rules,
+    /// Whether e-values were multiplied, and why not.
+    pub sequel: Sequel,
+    /// How many variances and lookups were compared: α is shared among them.
+    pub compared: usize,
+    /// How many times per draw were compared.
+    pub times: usize,
+    /// How many e-values were multiplied with stored ones.
+    pub multiplied: usize,
+    /// How many variances were too uncertain to compare.
+    pub blunt: usize,
+    /// What of the experiments that both have was not compared.
+    pub left_out: LeftOut,
+    /// What grew or shrank.
+    pub changes: Vec<Change>,
+    /// Checks that fail over all runs together.
+    pub drifts: Vec<Drift>,
+    /// Experiments of this run that the baseline has not.
+    pub added: Vec<ChannelId>,
+    /// Experiments of the baseline that this run has not.
+    pub missing: Vec<ChannelId>,
+    /// Experiments whose case has another text than in the baseline.
+    pub rewritten: Vec<ChannelId>,
+}
+
+/// Whether the e-values of both runs multiply.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Sequel {
+    /// They do: so many runs together.
+    Run(usize),
+    /// The seed is among those stored: its draws say nothing new.
+    SameSeed,
+    /// Another program drew.
+    OtherProgram,
+}
+
+/// What is compared.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Quantity {
+    /// The sample variance of one draw.
+    Variance,
+    /// Lookups per draw.
+    Lookups,
+    /// Processor nanoseconds per draw.
+    Time,
+}
+
+/// A value with its standard error.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Measured {
+    /// The value.
+    #[serde(with = "gate::extended")]
+    pub value: f64,
+    /// Its standard error; `None` for times, for one figure has none.
+    #[serde(default, with = "gate::extended")]
+    pub error: Option<f64>,
+}
+
+/// A quantity that differs.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Change {
+    /// The experiment.
+    pub id: ChannelId,
+    /// The quantity.
+    pub quantity: Quantity,
+    /// Its stored value.
+    pub before: Measured,
+    /// Its value now.
+    pub now: Measured,
+    /// now/before.
+    #[serde(with = "gate::extended")]
+    pub ratio: f64,
+    /// Where the true ratio is; `None` for times.
+    #[serde(default, with = "gate::extended")]
+    pub interval: Option<[f64; 2]>,
+    /// Whether it became worse.
+    pub is_regression: bool,
+    /// The command that repeats the experiment.
+    pub command: String,
+}
+
+/// A check that fails over several runs.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Drift {
+    /// The experiment.
+    pub id: ChannelId,
+    /// The check.
+    pub check: String,
+    /// ln E of all runs together.
+    pub ln_e: f64,
+    /// The limit.
+    pub limit: f64,
+    /// The command that repeats the experiment.
+    pub command: String,
+}
+
+impl Comparison {
+    /// Whether anything became worse.
+    pub fn fails(&self) -> bool {
+        !self.drifts.is_empty() || self.changes.iter().any(|change| change.is_regression)
+    }
+
+    /// Whether nothing of the run was compared with anything: such a comparison says nothing.
+    pub fn is_empty(&self) -> bool {
+        self.compared == 0 && self.times == 0 && self.multiplied == 0
+    }
+}
+
+/// The experiments that both runs have of which something was not compared, by the reason.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+pub struct LeftOut {
+    /// σ̂ was learned from other pilot rays: neither variance nor lookups are of the same estimator.
+    pub relearned: Vec<ChannelId>,
+    /// The variance is too uncertain.
+    pub blunt: Vec<ChannelId>,
+    /// Theory has no kurtosis, so that nobody knows how uncertain the variance is.
+    pub unpredicted: Vec<ChannelId>,
+    /// Theory has no variance of the number of lookups.
+    pub uncounted: Vec<ChannelId>,
+    /// The draws took less than 0.1 s, then or now.
+    pub brief: Vec<ChannelId>,
+    /// The lookups were shared with other experiments, then or now: the time is of their company.
+    pub shared: Vec<ChannelId>,
+}
+
+/// Entries of a stored result and of a later one, joined by their identity.
+pub struct Matches<'e, T, I> {
+    /// Entries that both have, stored and now.
+    pub pairs: Vec<[&'e T; 2]>,
+    /// Entries that only the later one has.
+    pub added: Vec<I>,
+    /// Entries that only the stored one has.
+    pub missing: Vec<I>,
+    /// Entries whose case has another text.
+    pub rewritten: Vec<I>,
+}
+
+impl<'e, T, I: Ord> Matches<'e, T, I> {
+    /// Joins entries by a function that returns their identity, and a hash of the text of their case.
+    pub fn of(stored: &'e [T], now: &'e [T], key: impl Fn(&T) -> (I, String)) -> Self {
+        let (mut pairs, mut added, mut rewritten) = (Vec::new(), Vec::new(), Vec::new());
+        let keyed = stored.iter().map(|entry| (key(entry), entry));
+        let mut before: BTreeMap<I, (String, &T)> =
+            keyed.map(|((id, text), entry)| (id, (text, entry))).collect();
+        for entry in now {
+            let (id, text) = key(entry);
+            match before.remove(&id) {
+                None => added.push(id),
+                Some((stored, _)) if stored != text => rewritten.push(id),
+                Some((_, stored)) => pairs.push([stored, entry]),
+            }
+        }
+        let is_missing = |id: &I| before.contains_key(id);
+        let missing = stored.iter().map(|entry| key(entry).0).filter(is_missing).collect();
+        Self { pairs, added, missing, rewritten }
+    }
+}
 
 /// Two numbers of lookups without spread are the same if they are this near.
 const ROUNDING: f64 = 1e-9;
@@ -39,34 +215,40 @@ pub fn compare(
     run: &Baseline,
     rules: &Rules,
 ) -> (Comparison, Baseline) {
+    let place = |entry: &Entry| (entry.id.clone(), entry.case.clone());
+    let Matches { pairs, added, missing, rewritten } =
+        Matches::of(&stored.entries, &run.entries, place);
+    let questions: Vec<_> = pairs.iter().flat_map(|[before, now]| questions(before, now)).collect();
+    let left_out = left_out(&pairs, rules);
+    let z = normal::two_sided(rules.alpha / questions.len().max(1) as f64);
+    let mut changes: Vec<Change> =
+        questions.iter().filter_map(|question| answer(question, z)).collect();
+    let mut times = 0;
+    if let Some(tolerance) = rules.time_tolerance {
+        for [before, now] in &pairs {
+            if let Some(both) = before.nanoseconds().zip(now.nanoseconds()) {
+                times += 1;
+                changes.extend(time_change(now, both.into(), tolerance));
+            }
+        }
+    }
+    let mut comparison = Comparison {
+        name: name.to_owned(),
+        rules: *rules,
+        sequel: sequel(stored, run),
+        compared: questions.len(),
+        times,
+        multiplied: 0,
+        blunt: left_out.blunt.len(),
+        left_out,
+        changes,
+        drifts: Vec::new(),
+        added,
+        missing,
+        rewritten,
+    };
     let before: BTreeMap<&ChannelId, &Entry> =
         stored.entries.iter().map(|entry| (&entry.id, entry)).collect();
-    let ids: BTreeSet<&ChannelId> = run.entries.iter().map(|entry| &entry.id).collect();
-    let mut comparison = Comparison::new(name, rules, sequel(stored, run));
-    let missing = stored.entries.iter().filter(|entry| !ids.contains(&entry.id));
-    comparison.missing = missing.map(|entry| entry.id.clone()).collect();
-    let mut pairs = Vec::new();
-    for now in &run.entries {
-        match before.get(&now.id) {
-            None => comparison.added.push(now.id.clone()),
-            Some(before) if before.case != now.case => comparison.rewritten.push(now.id.clone()),
-            Some(before) => pairs.push((*before, now)),
-        }
-    }
-    let questions: Vec<_> = pairs.iter().flat_map(|(before, now)| questions(before, now)).collect();
-    comparison.compared = questions.len();
-    comparison.left_out = left_out(&pairs, rules);
-    comparison.blunt = comparison.left_out.blunt.len();
-    let z = normal::two_sided(rules.alpha / questions.len().max(1) as f64);
-    comparison.changes = questions.iter().filter_map(|question| answer(question, z)).collect();
-    if let Some(tolerance) = rules.time_tolerance {
-        let timed =
-            |(before, now): &(&Entry, &Entry)| Some((before.nanoseconds()?, now.nanoseconds()?));
-        for (pair, (earlier, later)) in pairs.iter().filter_map(|pair| Some((pair, timed(pair)?))) {
-            comparison.times += 1;
-            comparison.changes.extend(time_change(pair.1, [earlier, later], tolerance));
-        }
-    }
     let mut next = run.clone();
     if comparison.sequel != Sequel::OtherProgram {
         next.ln_e_limit = next.ln_e_limit.max(stored.ln_e_limit);
@@ -224,10 +406,10 @@ fn is_comparable(before: &Entry, now: &Entry) -> bool {
 }
 
 /// What is left out of the experiments that both runs have, each stored and now.
-fn left_out(pairs: &[(&Entry, &Entry)], rules: &Rules) -> LeftOut {
+fn left_out(pairs: &[[&Entry; 2]], rules: &Rules) -> LeftOut {
     let list = |is_out: &dyn Fn(&Entry, &Entry) -> bool| -> Vec<ChannelId> {
-        let out = pairs.iter().filter(|(before, now)| is_out(before, now));
-        out.map(|(_, now)| now.id.clone()).collect()
+        let out = pairs.iter().filter(|[before, now]| is_out(before, now));
+        out.map(|[_, now]| now.id.clone()).collect()
     };
     let of_one = |is_out: &dyn Fn(&Entry, &Entry) -> bool| {
         list(&|before, now| is_comparable(before, now) && is_out(before, now))

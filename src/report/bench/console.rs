@@ -3,8 +3,7 @@
 use std::fmt::Write;
 
 use super::diff;
-use crate::bench::record::{Bench, BenchCase, BenchRow, Times};
-use crate::bench::spread::Spread;
+use crate::bench::record::{Bench, BenchCase, BenchRow, Spread, Times};
 use crate::record::Digits;
 use crate::report::layout::{Column, Grid, Paint, Pen, Spec, end_elided, wrapped};
 use crate::report::run::console::views::swept_apart;
@@ -14,9 +13,9 @@ use numeric::digits::{count, fixed, short, time};
 const SAMPLING: &str = "σ\u{302}";
 
 const COLUMNS: &[Spec<BenchRow>] = &[
-    ("estimator", false, 0, |row| row.estimator.clone()),
-    (SAMPLING, true, 1, |row| row.sampling_kind.clone()),
-    ("control", false, 5, |row| row.control.clone()),
+    ("estimator", false, 0, |row| row.id.label()),
+    (SAMPLING, true, 1, |row| row.id.sampling.kind.clone()),
+    ("control", false, 5, |row| row.id.control.clone()),
     ("channel", false, 1, |row| row.channel.clone()),
     ("ns/draw", true, 1, |row| {
         spread(row, |times| Some(times.ns_per_draw), |s| fixed(s.median, 3))
@@ -69,12 +68,13 @@ fn block(text: &mut String, pen: Pen, case: &BenchCase) {
     for (field, row) in
         sampling.into_iter().flat_map(|column| column.fields.iter_mut().zip(&case.rows))
     {
-        if let Some(sampling) = row.sampling {
+        if let Some(sampling) = row.sampling() {
             field.text = labels.text(sampling);
         }
     }
     if let Some(head) = swept_apart(case.swept.as_deref()) {
-        let text = |row: &BenchRow| row.swept.map(|x| labels.text(x)).unwrap_or_default();
+        let text =
+            |row: &BenchRow| row.id.swept_value().map(|x| labels.text(x)).unwrap_or_default();
         grid.columns.insert(2, Column::of(&case.rows, (head, true, 1), text));
     }
     grid.fit(pen.width);
@@ -84,16 +84,16 @@ fn block(text: &mut String, pen: Pen, case: &BenchCase) {
 
 /// σ̂ and swept values of a case.
 pub(super) fn labels(case: &BenchCase) -> Digits {
-    Digits::new(case.rows.iter().flat_map(|row| [row.sampling, row.swept]))
+    Digits::new(case.rows.iter().flat_map(|row| [row.sampling(), row.id.swept_value()]))
 }
 
 /// Why numbers are missing: each reason once, with the rows it is about.
 fn notes(text: &mut String, pen: Pen, case: &BenchCase) {
     let mut notes: Vec<(&BenchRow, Vec<String>)> = Vec::new();
     for row in case.rows.iter().filter(|row| !row.reason.is_empty()) {
-        let place = row.swept.map(|x| labels(case).text(x));
+        let place = row.id.swept_value().map(|x| labels(case).text(x));
         let same = |note: &&mut (&BenchRow, Vec<String>)| {
-            note.0.reason == row.reason && note.0.estimator == row.estimator
+            note.0.reason == row.reason && note.0.id.label() == row.id.label()
         };
         match notes.iter_mut().find(same) {
             Some(note) => note.1.extend(place),
@@ -105,7 +105,7 @@ fn notes(text: &mut String, pen: Pen, case: &BenchCase) {
         let at =
             if places.is_empty() { String::new() } else { format!(" ({})", places.join(", ")) };
         let word = if row.is_refused { "refused" } else { "note" };
-        let note = format!("{word} {}{at}: {}", row.estimator, row.reason);
+        let note = format!("{word} {}{at}: {}", row.id.label(), row.reason);
         pen.note(text, &note, ("", Paint::Plain));
     }
 }

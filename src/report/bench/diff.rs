@@ -1,7 +1,8 @@
 //! What changed since a stored bench, in words.
 
-use crate::bench::comparison::{Change, Comparison};
-use crate::bench::spread::Spread;
+use crate::bench::record::Spread;
+use crate::bench::stored::{Change, Comparison};
+use crate::case::id::ExperimentId;
 use crate::report::run::diff::{counts, ending, listed, not_empty};
 use numeric::digits::{fixed, short};
 
@@ -22,7 +23,7 @@ pub fn remarks(comparison: &Comparison) -> Vec<String> {
 }
 
 /// What was left out, each with its reason and the experiments.
-fn left_out(comparison: &Comparison) -> Vec<(&'static str, &[String])> {
+fn left_out(comparison: &Comparison) -> Vec<(&'static str, &[ExperimentId])> {
     not_empty([
         ("not in the baseline", &comparison.added),
         ("only in the baseline", &comparison.missing),

@@ -3,8 +3,8 @@
 use maud::{Markup, html};
 
 use super as files;
-use crate::bench::comparison::Comparison;
 use crate::bench::record::{Bench, BenchCase, BenchRow, Times};
+use crate::bench::stored::Comparison;
 use crate::report::ReportError;
 use crate::report::html as page;
 use crate::report::html::drawing::{Plot, definitions, plot};
@@ -30,9 +30,9 @@ macro_rules! timed {
 fn columns<'a>() -> [Column<Joined<'a>>; 15] {
     [
         Column { title: "case", cell: Cell::Text(|(case, _)| case.name.clone()) },
-        Column { title: "estimator", cell: Cell::Text(|(_, row)| row.estimator.clone()) },
+        Column { title: "estimator", cell: Cell::Text(|(_, row)| row.id.label()) },
         Column { title: "σ\u{302}", cell: Cell::Text(sampling) },
-        Column { title: "control", cell: Cell::Text(|(_, row)| row.control.clone()) },
+        Column { title: "control", cell: Cell::Text(|(_, row)| row.id.control.clone()) },
         Column { title: "channel", cell: Cell::Text(|(_, row)| row.channel.clone()) },
         timed!("ns/draw", |times| Some(times.ns_per_draw.median)),
         timed!("least", |times| Some(times.ns_per_draw.least)),
@@ -49,9 +49,10 @@ fn columns<'a>() -> [Column<Joined<'a>>; 15] {
 
 /// σ̂ and the swept value.
 fn sampling((_, row): &Joined) -> String {
-    let numbers = [row.sampling, row.swept.filter(|_| row.swept != row.sampling)];
+    let (constant, swept) = (row.sampling(), row.id.swept_value());
+    let numbers = [constant, swept.filter(|_| swept != constant)];
     let numbers = numbers.into_iter().flatten().map(|x| fixed(x, 4));
-    let kind = Some(row.sampling_kind.clone()).filter(|_| row.sampling.is_none());
+    let kind = Some(row.id.sampling.kind.clone()).filter(|_| constant.is_none());
     kind.into_iter().chain(numbers).filter(|word| !word.is_empty()).collect::<Vec<_>>().join(", ")
 }
 

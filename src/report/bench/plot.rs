@@ -70,9 +70,9 @@ fn subtitle(bench: &Bench, case: &BenchCase) -> String {
 
 /// The words for a row: its estimator, σ̂, control and channel, and what it needs.
 fn label(row: &BenchRow, labels: Digits) -> String {
-    let sampling = row.sampling.map(|sampling| format!("σ\u{302} = {}", labels.text(sampling)));
-    let sampling = sampling.unwrap_or_else(|| row.sampling_kind.clone());
-    let parts = [row.estimator.clone(), sampling, row.control.clone(), row.channel.clone()];
+    let sampling = row.sampling().map(|sampling| format!("σ\u{302} = {}", labels.text(sampling)));
+    let sampling = sampling.unwrap_or_else(|| row.id.sampling.kind.clone());
+    let parts = [row.id.label(), sampling, row.id.control.clone(), row.channel.clone()];
     let label: Vec<String> = parts.into_iter().filter(|part| !part.is_empty()).collect();
     let marks = marks(&row.needs, row.setup_lookups.map(|count| count..=count), false);
     format!("{}{marks}", label.join(", "))
@@ -94,22 +94,27 @@ impl Series<'_> {
         self.row.curve.iter()
     }
 
-    /// Draws the points and the line of theory at these prices.
-    fn draw(&self, sheet: &mut Sheet, panel: &Panel, prices: &[f64]) {
+    /// Draws the points and the line of theory at their prices.
+    fn draw(&self, sheet: &mut Sheet, panel: &Panel, price: impl Fn(&CurvePoint) -> f64) {
         let Style { colour, dash, marker } = self.style;
-        self.line(sheet, panel, prices, (dash, 1.8, colour));
-        for (point, &price) in self.points().zip(prices) {
-            let Some(spot) = panel.spot(price, point.relative) else { continue };
+        self.line(sheet, panel, &price, (dash, 1.8, colour));
+        for point in self.points() {
+            let Some(spot) = panel.spot(price(point), point.relative) else { continue };
             let ends = [point.least, point.relative, point.most];
             panel.bar(sheet, spot[0], ends, (3.5, 1.2, colour.mix(0.6)));
             panel.point(sheet, spot, marker, 4.4, colour);
         }
     }
 
-    /// Draws the line of theory at these prices.
-    fn line(&self, sheet: &mut Sheet, panel: &Panel, prices: &[f64], look: Look) {
-        let both = prices.iter().zip(self.points());
-        let line = both.filter_map(|(&price, point)| Some((price, point.predicted?)));
+    /// Draws the line of theory at the prices of its points.
+    fn line(
+        &self,
+        sheet: &mut Sheet,
+        panel: &Panel,
+        price: impl Fn(&CurvePoint) -> f64,
+        look: Look,
+    ) {
+        let line = self.points().filter_map(|point| Some((price(point), point.predicted?)));
         panel.line(sheet, line, look);
     }
 }
@@ -128,26 +133,30 @@ fn panel(place: f64, title: &str, prices: impl Iterator<Item = f64>, series: &[S
 }
 
 fn in_time(sheet: &mut Sheet, series: &[Series], title: &str) {
-    let seconds =
-        series.iter().flat_map(|one| one.times.seconds.iter().chain(&one.times.plain_seconds));
-    let panel = panel(0.0, title, seconds.copied(), series);
+    let seconds = series.iter().flat_map(|one| {
+        let of = |point: &CurvePoint| {
+            [one.times.seconds(point.draws), one.times.plain_seconds(point.draws)]
+        };
+        one.points().flat_map(of)
+    });
+    let panel = panel(0.0, title, seconds, series);
     panel.grid(sheet);
     for one in series {
-        one.line(sheet, &panel, &one.times.plain_seconds, (&[], 1.1, one.style.colour.mix(0.5)));
+        let look: Look = (&[], 1.1, one.style.colour.mix(0.5));
+        one.line(sheet, &panel, |point| one.times.plain_seconds(point.draws), look);
     }
     for one in series {
-        one.draw(sheet, &panel, &one.times.seconds);
+        one.draw(sheet, &panel, |point| one.times.seconds(point.draws));
     }
     panel.frame(sheet, "(a) Error against time; thin lines: the plain loop");
 }
 
 fn in_lookups(sheet: &mut Sheet, series: &[Series]) {
-    let lookups = |one: &Series| one.points().map(|point| point.lookups).collect::<Vec<f64>>();
-    let all: Vec<f64> = series.iter().flat_map(lookups).collect();
-    let panel = panel(1.0, "lookups of σₜ", all.into_iter(), series);
+    let lookups = series.iter().flat_map(Series::points).map(|point| point.lookups);
+    let panel = panel(1.0, "lookups of σₜ", lookups, series);
     panel.grid(sheet);
     for one in series {
-        one.draw(sheet, &panel, &lookups(one));
+        one.draw(sheet, &panel, |point| point.lookups);
     }
     panel.frame(sheet, "(b) Error against lookups");
 }
@@ -168,7 +177,7 @@ fn notes(case: &BenchCase) -> Vec<String> {
         );
     }
     let lacking = case.rows.iter().filter(|row| !row.is_refused && !row.reason.is_empty());
-    notes.extend(lacking.map(|row| format!("{}: {}", row.estimator, row.reason)));
+    notes.extend(lacking.map(|row| format!("{}: {}", row.id.label(), row.reason)));
     notes.dedup();
     notes
 }

@@ -3,8 +3,7 @@
 //! Columns that `summary.csv` has, too, have the same names. `plain` is the plain scalar loop over
 //! the same draws; `_least` and `_most` are those of the rounds.
 
-use crate::bench::record::{Bench, BenchCase, BenchRow, CurvePoint, Times};
-use crate::bench::spread::Spread;
+use crate::bench::record::{Bench, BenchCase, BenchRow, CurvePoint, Spread, Times};
 use crate::report::columns::{self, Cell, Column, columns};
 use crate::report::{Artifact, ReportError};
 
@@ -37,12 +36,12 @@ fn columns<'a>() -> Vec<Column<Joined<'a>>> {
         "case" = |joined| &joined.case.name;
         "problem" = |joined| &joined.case.problem;
         "medium" = |joined| &joined.case.medium;
-        "estimator" = |joined| &joined.row.estimator;
-        "sampling" = |joined| joined.row.sampling;
-        "control" = |joined| &joined.row.control;
+        "estimator" = |joined| joined.row.id.label();
+        "sampling" = |joined| joined.row.sampling();
+        "control" = |joined| &joined.row.id.control;
         "channel" = |joined| &joined.row.channel;
-        "swept" = |joined| joined.row.swept;
-        "sampling_kind" = |joined| &joined.row.sampling_kind;
+        "swept" = |joined| joined.row.id.swept_value();
+        "sampling_kind" = |joined| &joined.row.id.sampling.kind;
         "seed" = |joined| Some(joined.bench.seed);
         "rounds" = |joined| u64::from(joined.bench.rounds);
         "draws" = |joined| joined.row.draws;
@@ -106,23 +105,22 @@ pub fn json(bench: &Bench) -> Result<String, ReportError> {
 /// A point of a curve with its price.
 struct Priced<'a> {
     row: &'a BenchRow,
-    point: CurvePoint,
-    seconds: f64,
-    plain_seconds: f64,
+    times: &'a Times,
+    point: &'a CurvePoint,
 }
 
 /// The columns of `CASE.error.csv`.
 fn error_columns<'a>() -> Vec<Column<Priced<'a>>> {
     columns! {
-        "estimator" = |of| &of.row.estimator;
-        "sampling" = |of| of.row.sampling.map_or_else(|| Cell::from(&of.row.sampling_kind), Cell::from);
-        "control" = |of| &of.row.control;
+        "estimator" = |of| of.row.id.label();
+        "sampling" = |of| of.row.sampling().map_or_else(|| Cell::from(&of.row.id.sampling.kind), Cell::from);
+        "control" = |of| &of.row.id.control;
         "channel" = |of| &of.row.channel;
-        "swept" = |of| of.row.swept;
+        "swept" = |of| of.row.id.swept_value();
         "draws" = |of| of.point.draws;
         "lookups" = |of| of.point.lookups;
-        "seconds" = |of| of.seconds;
-        "plain_seconds" = |of| of.plain_seconds;
+        "seconds" = |of| of.times.seconds(of.point.draws);
+        "plain_seconds" = |of| of.times.plain_seconds(of.point.draws);
         "error" = |of| of.point.error;
         "relative_error" = |of| of.point.relative;
         "relative_error_least" = |of| of.point.least;
@@ -134,14 +132,7 @@ fn error_columns<'a>() -> Vec<Column<Priced<'a>>> {
 /// One line per row of the case and point of its curve.
 pub(super) fn errors(case: &BenchCase) -> Result<Artifact, ReportError> {
     let timed = case.rows.iter().filter_map(|row| Some((row, row.times.as_ref()?)));
-    let points = timed.flat_map(|(row, times)| {
-        let priced = row.curve.iter().zip(&times.seconds).zip(&times.plain_seconds);
-        priced.map(move |((&point, &seconds), &plain_seconds)| Priced {
-            row,
-            point,
-            seconds,
-            plain_seconds,
-        })
-    });
+    let points = timed
+        .flat_map(|(row, times)| row.curve.iter().map(move |point| Priced { row, times, point }));
     columns::artifact(&format!("{}.error.csv", case.name), &error_columns(), points)
 }

@@ -254,9 +254,9 @@ pub fn marks(needs: &str, setup: Option<RangeInclusive<u64>>, is_fixed: bool) ->
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::case::id::{Number, SamplingName, SweepPoint};
     use crate::case::sweep::What;
     use crate::plan::ExperimentId;
-    use crate::plan::id::{Number, SamplingName, SweepPoint};
     use crate::record::{ChannelRecord, ExperimentRecord};
 
     /// An experiment of one channel; the estimator is listed under the number.

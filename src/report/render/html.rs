@@ -28,7 +28,7 @@ macro_rules! exposed {
 fn columns<'a>() -> [Column<Joined<'a>>; 11] {
     [
         Column { title: "picture", cell: Cell::Text(|(picture, _)| picture.name.clone()) },
-        Column { title: "estimator", cell: Cell::Text(|(_, one)| one.estimator.clone()) },
+        Column { title: "estimator", cell: Cell::Text(|(_, one)| one.estimator.to_string()) },
         Column { title: "σ\u{302}", cell: Cell::Text(|(_, one)| one.sampling.clone()) },
         Column { title: "control", cell: Cell::Text(|(_, one)| one.control.clone()) },
         exposed!("RMSE", |found| Some(found.rmse)),

@@ -41,15 +41,10 @@ pub fn artifacts(record: &PictureRecord) -> Result<Vec<Artifact>, ReportError> {
     keep("reference", &record.reference.image, &record.reference.errors)?;
     for (number, exposure) in (1..).zip(&record.exposures) {
         if let Ok(Exposure { image, errors, .. }) = &exposure.outcome {
-            keep(&format!("{number}-{}", plain(exposure)), image, errors)?;
+            keep(&format!("{number}-{}", exposure.estimator.name), image, errors)?;
         }
     }
     Ok(files)
-}
-
-/// The estimator's name without its settings: good for a file.
-fn plain(exposure: &ExposureRecord) -> &str {
-    exposure.estimator.split(' ').next().unwrap_or_default()
 }
 
 /// σ̂ and control in words.
@@ -85,7 +80,7 @@ struct Row<'a> {
     picture: &'a str,
     problem: &'a str,
     medium: &'a str,
-    estimator: &'a str,
+    estimator: String,
     sampling: &'a str,
     control: &'a str,
     columns: usize,
@@ -123,7 +118,7 @@ pub fn csv<'a>(
                 picture: &record.name,
                 problem: &record.problem,
                 medium: &record.medium,
-                estimator: &exposure.estimator,
+                estimator: exposure.estimator.to_string(),
                 sampling: &exposure.sampling,
                 control: &exposure.control,
                 columns: record.size[0],

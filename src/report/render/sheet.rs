@@ -172,7 +172,7 @@ fn exposure(
 
 /// What stands below an image.
 fn words(face: &Typeface, exposure: &ExposureRecord, room: f64) -> Vec<String> {
-    let mut lines = wrapped(face, &exposure.estimator, room, 2);
+    let mut lines = wrapped(face, &exposure.estimator.to_string(), room, 2);
     lines.extend(wrapped(face, &given(exposure), room, 2));
     lines.extend(exposure.outcome.iter().flat_map(costs));
     lines

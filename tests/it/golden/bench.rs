@@ -3,9 +3,12 @@
 use std::path::Path;
 
 use trueflight::bench::clock::Clock;
-use trueflight::bench::comparison::{Change, Comparison};
-use trueflight::bench::record::{Bench, BenchCase, BenchRow, Conditions, CurvePoint, Times};
-use trueflight::bench::spread::Spread;
+use trueflight::bench::record::{
+    Bench, BenchCase, BenchRow, Conditions, CurvePoint, Spread, Times,
+};
+use trueflight::bench::stored::{Change, Comparison};
+use trueflight::case::id::{EstimatorName, ExperimentId, Number, SamplingName, SweepPoint};
+use trueflight::case::sweep::What;
 use trueflight::report::bench::{console, render, tables};
 use trueflight::report::layout::Pen;
 
@@ -15,8 +18,7 @@ fn spread(median: f64) -> Spread {
     Spread { median, least: median * 0.875, most: median * 1.25 }
 }
 
-fn times(ns: f64, variance: Option<f64>, curve: &[CurvePoint]) -> Times {
-    let at = |ns: f64| curve.iter().map(|point| point.draws as f64 * ns * 1e-9).collect();
+fn times(ns: f64, variance: Option<f64>) -> Times {
     Times {
         ns_per_draw: spread(ns),
         plain_ns_per_draw: spread(4.0 * ns),
@@ -26,8 +28,19 @@ fn times(ns: f64, variance: Option<f64>, curve: &[CurvePoint]) -> Times {
         ns_per_lookup: Some(ns / 8.0),
         seconds_to: variance.map(|v| [1e4, 1e6, 1e8].map(|n| n * v * 16.0 * ns * 1e-9)),
         efficiency: variance.map(|v| 1e9 / (v * ns)),
-        seconds: at(ns),
-        plain_seconds: at(4.0 * ns),
+    }
+}
+
+/// An experiment of the case, at a swept σ̂.
+fn id(estimator: &str, swept: Option<f64>) -> ExperimentId {
+    let constant = swept.map(Number);
+    ExperimentId {
+        case: "bench/eq21-sweep".to_owned(),
+        estimator: EstimatorName { name: estimator.to_owned(), settings: String::new() },
+        sampling: SamplingName { constant, kind: constant.map_or("", |_| "constant").to_owned() },
+        swept: constant.map(|value| SweepPoint { what: What::Sampling, value }),
+        namesake: 1,
+        ..ExperimentId::default()
     }
 }
 
@@ -47,10 +60,7 @@ fn row(estimator: &str, swept: Option<f64>, ns: f64, variance: f64) -> BenchRow 
     let curve: Vec<CurvePoint> = [64, 256, 1024].map(point).into();
     BenchRow {
         is_first: true,
-        estimator: estimator.to_owned(),
-        sampling: swept,
-        sampling_kind: "constant".to_owned(),
-        swept,
+        id: id(estimator, swept),
         draws: Some(3072),
         mean: Some(0.25),
         truth: Some(0.25),
@@ -60,7 +70,7 @@ fn row(estimator: &str, swept: Option<f64>, ns: f64, variance: f64) -> BenchRow 
         predicted_lookups: Some(8.0),
         fom: Some(1.0 / (variance * 8.0)),
         is_shown: swept.is_none_or(|swept| swept == 2.0),
-        times: Some(times(ns, Some(variance), &curve)),
+        times: Some(times(ns, Some(variance))),
         curve,
         ..BenchRow::default()
     }
@@ -70,17 +80,14 @@ fn case() -> BenchCase {
     let refused = BenchRow {
         is_first: true,
         is_refused: true,
-        estimator: "woodcock".to_owned(),
-        sampling: Some(0.5),
-        sampling_kind: "constant".to_owned(),
-        swept: Some(0.5),
+        id: id("woodcock", Some(0.5)),
         reason: "the majorant is 0.9: below it the chance of a real collision would exceed 1"
             .to_owned(),
         ..BenchRow::default()
     };
     let exact = BenchRow {
         is_first: true,
-        estimator: "regular".to_owned(),
+        id: id("regular", None),
         draws: Some(3072),
         mean: Some(0.25),
         truth: Some(0.25),
@@ -90,7 +97,7 @@ fn case() -> BenchCase {
         predicted_lookups: Some(8.0),
         reason: "no variance: each draw is the answer, and there is no error to wait for"
             .to_owned(),
-        times: Some(times(16.0, None, &[])),
+        times: Some(times(16.0, None)),
         ..BenchRow::default()
     };
     BenchCase {
@@ -111,9 +118,9 @@ fn case() -> BenchCase {
 }
 
 fn bench() -> Bench {
-    let id = "bench/eq21-sweep|woodcock|1||1".to_owned();
+    let id = |name: &str| ExperimentId { case: "case".to_owned(), ..id(name, None) };
     let change = |ratio: f64| Change {
-        id: id.clone(),
+        id: self::id("woodcock", Some(1.0)),
         ns_per_draw: [spread(32.0), spread(32.0 * ratio)],
         speedup: [spread(4.0), spread(4.0 / ratio)],
         ratio,
@@ -137,9 +144,9 @@ fn bench() -> Bench {
             tolerance: 0.25,
             compared: 3,
             changes: vec![change(0.5), change(2.0)],
-            added: vec!["case|new".to_owned()],
+            added: vec![id("new")],
             missing: Vec::new(),
-            rewritten: vec!["case|old".to_owned()],
+            rewritten: vec![id("old")],
             levels: Some(["sse2", "avx2"].map(str::to_owned)),
         }),
     }
@@ -202,7 +209,7 @@ fn nothing_is_too_odd_to_plot() {
                 (point.relative, point.least, point.predicted) = (value, value, Some(value));
             }
             if let Some(times) = &mut row.times {
-                times.seconds.fill(value);
+                times.ns_per_draw.median = value;
             }
         }
         render(&bench).expect("renders");

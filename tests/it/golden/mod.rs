@@ -9,7 +9,7 @@ use std::path::Path;
 use std::{env, fs};
 
 use quick_xml::events::Event;
-use trueflight::plan::id::Number;
+use trueflight::case::id::Number;
 use trueflight::record::{Record, Verdict};
 use trueflight::report::Artifact;
 use trueflight::report::layout::Pen;

@@ -14,12 +14,10 @@ use std::time::Instant;
 
 use self::faults::{cuts, flips, kills, strangers, wrong_parts};
 use self::place::{Place, said};
-use trueflight::draw::block;
-use trueflight::draw::drawn::Drawn;
+use trueflight::draw::block::{self, Drawn};
 use trueflight::draw::run;
-use trueflight::draw::share::{Share, pieces};
+use trueflight::draw::share::{Share, Threads, pieces};
 use trueflight::draw::store::{Header, Key, Log, Store, entry};
-use trueflight::draw::workers::Threads;
 use trueflight::plan::Options;
 use trueflight::plan::Plan;
 
@@ -300,9 +298,8 @@ fn a_run_of_1e12_draws_is_planned_and_shared_out() {
     let cases = [case("ray", place::RAY)];
     let plan = Plan::new(&cases, &options(1, 1_000_000_000_000));
     let blocks: u64 = {
-        let once = |index: usize| plan.cases[0].twin(index).is_none();
-        let all = plan.experiments().enumerate().filter(|&(index, _)| once(index));
-        all.map(|(_, (_, planned))| planned.horizon.div_ceil(1 << 14)).sum()
+        let all = plan.experiments().filter(|(_, planned)| planned.same_as.is_none());
+        all.map(|(_, planned)| planned.horizon.div_ceil(1 << 14)).sum()
     };
     assert!(blocks > 400_000_000, "{blocks}");
     let share = Share { part: 7, of: 1_000_000 };

@@ -15,7 +15,7 @@ use trueflight::record::build;
 use trueflight::record::{CaseRecord, Verdict};
 use trueflight::report::run::failures;
 use trueflight::self_test;
-use trueflight::self_test::known_bugs::{self, Walk};
+use trueflight::self_test::mutation::{self, Walk};
 
 /// Share of the known bugs of a kind that their line names, at least.
 const SHARE: f64 = 0.9;
@@ -166,7 +166,7 @@ fn swept_with(bug: &str) -> CaseRecord {
     let mut plan = Plan::new(&cases, &options);
     let about = mutants::all().into_iter().find(|about| about.name == bug).expect("a known bug");
     for planned in &mut plan.cases[0].experiments {
-        let faulty = known_bugs::experiment(&about, Walk::Faulty, &cases[0], planned, 1);
+        let faulty = mutation::experiment(&about, Walk::Faulty, &cases[0], planned, 1);
         let faulty = faulty.expect("a mutant of ratio tracking").expect("it can be drawn");
         planned.outcome.as_mut().expect("it can be drawn").experiment = faulty;
     }

@@ -7,8 +7,8 @@ use crate::common;
 use crate::common::place::Place;
 use trueflight::case::Case;
 use trueflight::case::suite;
-use trueflight::draw::progress::Step;
 use trueflight::draw::run;
+use trueflight::draw::run::Step;
 use trueflight::draw::store::{Header, Store};
 use trueflight::plan::Plan;
 
@@ -109,7 +109,7 @@ fn built_in(names: &[&str]) -> Vec<Case> {
 /// The steps of a drawing, those of draws made and kept summed up: expected first and last, made, kept.
 fn steps(plan: &Plan, store: &Store) -> [u64; 4] {
     let steps = Mutex::new(Vec::new());
-    let draws = run::draw_heard(plan, store, &|step| {
+    let draws = run::draw_with(plan, store, &|step| {
         steps.lock().expect("it").push(step);
     });
     let steps = steps.into_inner().expect("it");
@@ -149,7 +149,7 @@ fn what_an_earlier_run_drew_is_no_part_of_the_total() {
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("draws.bin");
     let mut store = Store::new(Header::new(&plan, "this program", &[], None));
-    store.finish(&path, &plan, &run::draw(&plan, &|_| {})).expect("written");
+    store.finish(&path, &run::draw(&plan, &|_| {})).expect("written");
     store.reuse(&path, false).expect("it can be read");
     let [first, last, made, _] = steps(&plan, &store);
     let fresh = steps(&plan, &Store::default());

@@ -1,7 +1,7 @@
 //! `trueflight explain`: cases to copy that are valid, pages for a terminal, and names that were probably meant.
 
 use trueflight::case::Case;
-use trueflight::case::example;
+use trueflight::case::suite;
 use trueflight::plan::Plan;
 
 use super::{listed, stdout, trueflight};
@@ -28,7 +28,7 @@ fn every_page_that_a_case_may_use_has_a_case_to_copy_that_is_planned() {
         let kind = row.part.split(' ').next().unwrap_or_default();
         let is_used =
             ["media", "phases", "sampling", "controls", "estimators", "problems"].contains(&kind);
-        let Some(text) = example::of(&row.part, &row.name) else {
+        let Some(text) = suite::example(&row.part, &row.name) else {
             if is_used && !row.part.contains("pictures") {
                 wrong.push(format!("{place}: no case"));
             }

@@ -6,8 +6,8 @@ use std::hash::{Hash, Hasher};
 
 use serde::{Deserialize, Serialize};
 
-use crate::case::names::{EstimatorName, Names};
 use crate::case::sweep::{Variation, What};
+use numeric::rng::{Address, name_hash};
 
 /// Identity of an experiment: one estimator of a case at one point of the sweep.
 ///
@@ -29,6 +29,25 @@ pub struct ExperimentId {
     pub swept: Option<SweepPoint>,
     /// Number among the experiments of the case that agree in all else, from 1.
     pub namesake: usize,
+}
+
+/// Name of an estimator in the catalogue, with its own settings.
+#[derive(Debug, Clone, Default, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+pub struct EstimatorName {
+    /// Name in the catalogue.
+    pub name: String,
+    /// Its settings in words, as in `non-terminating, a=0.7`; empty without any.
+    pub settings: String,
+}
+
+/// The label in tables, as in `single (non-terminating, a=0.7)`.
+impl Display for EstimatorName {
+    fn fmt(&self, f: &mut Formatter) -> fmt::Result {
+        match self.settings.as_str() {
+            "" => write!(f, "{}", self.name),
+            settings => write!(f, "{} ({settings})", self.name),
+        }
+    }
 }
 
 /// The sampling extinction σ̂ of an experiment.
@@ -87,27 +106,6 @@ impl Display for Number {
 }
 
 impl ExperimentId {
-    /// Identity of an experiment of a case, which has so many namesakes before it.
-    pub fn new(
-        [case, problem]: [&str; 2],
-        names: &Names,
-        variation: Variation,
-        namesakes: usize,
-    ) -> Self {
-        Self {
-            case: case.to_owned(),
-            problem: problem.to_owned(),
-            estimator: names.estimator.clone(),
-            sampling: SamplingName {
-                constant: names.sampling.map(Number),
-                kind: names.sampling_kind.clone(),
-            },
-            control: names.control.clone(),
-            swept: variation.map(|(what, value)| SweepPoint { what, value: Number(value) }),
-            namesake: namesakes + 1,
-        }
-    }
-
     /// Label of the estimator in tables: its name, its settings, and its number if an earlier estimator has the same.
     pub fn label(&self) -> String {
         match self.namesake {
@@ -116,9 +114,30 @@ impl ExperimentId {
         }
     }
 
+    /// The point of the sweep; `None` outside the sweep.
+    pub fn variation(&self) -> Variation {
+        self.swept.map(|SweepPoint { what, value }| (what, value.0))
+    }
+
     /// The swept value; `None` outside the sweep.
     pub fn swept_value(&self) -> Option<f64> {
-        self.swept.map(|point| point.value.0)
+        self.variation().map(|(_, value)| value)
+    }
+
+    /// Address of the experiment's random numbers. It is made of names, so that an experiment keeps its random numbers
+    /// when other experiments join or leave the run. An experiment that is another estimator by definition, its alias,
+    /// makes the draws of that one.
+    pub fn address(&self, seed: u64, alias: Option<&EstimatorName>) -> Address {
+        let Self { case, sampling: SamplingName { constant, kind }, control, .. } = self;
+        let estimator = alias.unwrap_or(&self.estimator);
+        let constant = constant.map_or(String::new(), |value| value.to_string());
+        let swept =
+            self.swept.map_or(String::new(), |at| format!("{}={}", at.what.key(), at.value));
+        let mut name = format!("{case}|{estimator}|{constant}|{kind}|{control}|{swept}");
+        if self.namesake > 1 {
+            name = format!("{name}|{}", self.namesake - 1);
+        }
+        Address { seed, experiment: name_hash(&name), block: 0, lane: 0 }
     }
 }
 
@@ -156,29 +175,30 @@ impl Display for SamplingName {
 mod tests {
     use super::*;
 
-    fn id(settings: &str, swept: Option<(What, f64)>, namesakes: usize) -> ExperimentId {
-        let names = Names {
+    fn id(settings: &str, swept: Option<(What, f64)>, namesake: usize) -> ExperimentId {
+        ExperimentId {
+            case: "rod/albedos".into(),
+            problem: "rod".into(),
             estimator: EstimatorName { name: "single".into(), settings: settings.into() },
-            sampling: Some(2.0),
-            sampling_kind: "majorant".into(),
+            sampling: SamplingName { constant: Some(Number(2.0)), kind: "majorant".into() },
             control: "mean".into(),
-            alias: None,
-        };
-        ExperimentId::new(["rod/albedos", "rod"], &names, swept, namesakes)
+            swept: swept.map(|(what, value)| SweepPoint { what, value: Number(value) }),
+            namesake,
+        }
     }
 
     #[test]
     fn text_has_all_that_tells_experiments_apart() {
-        let text = id("a=0.7", Some((What::AlbedoScale, 0.5)), 1).to_string();
+        let text = id("a=0.7", Some((What::AlbedoScale, 0.5)), 2).to_string();
         let expected =
             "rod/albedos:single (a=0.7) #2, σ̂ majorant (2), control mean, albedo-scale 0.5";
         assert_eq!(text, expected);
-        assert_eq!(id("", None, 0).to_string(), "rod/albedos:single, σ̂ majorant (2), control mean");
+        assert_eq!(id("", None, 1).to_string(), "rod/albedos:single, σ̂ majorant (2), control mean");
     }
 
     #[test]
     fn json_gives_the_identity_back() {
-        for id in [id("a=0.7", Some((What::Points, 3.0)), 1), id("", None, 0)] {
+        for id in [id("a=0.7", Some((What::Points, 3.0)), 2), id("", None, 1)] {
             let text = serde_json::to_string(&id).expect("an identity is JSON");
             assert_eq!(serde_json::from_str::<ExperimentId>(&text).expect("an identity"), id);
         }

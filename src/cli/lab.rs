@@ -1,0 +1,118 @@
+//! `trueflight stress` and `trueflight self-test`: where doubles run out of digits, and the test button of the gate itself.
+
+use std::path::PathBuf;
+use std::time::Instant;
+
+use clap::Args;
+use numeric::rng::Address;
+
+use super::selection::{Seed, Threads};
+use super::{Console, numbers, output};
+use crate::case::{Case, Source};
+use crate::report::{self_test, stress as page};
+use crate::self_test::{SelfTest, calibration, mutation};
+use crate::stress::{self, Effort, PAGES, Run};
+use lab::streams;
+
+/// Arguments of `stress`.
+#[derive(Debug, Args)]
+pub struct Stress {
+    /// A short form of every part: seconds instead of minutes
+    #[arg(long)]
+    quick: bool,
+    #[command(flatten)]
+    seed: Seed,
+    #[command(flatten)]
+    threads: Threads,
+    /// Folder of results; report.html, tables and plot go to `stress` below it
+    #[arg(long, default_value = "results", value_name = "DIR")]
+    out: PathBuf,
+}
+
+/// Runs the stress test, prints and writes the table, and returns 1 if any bound is broken.
+pub(super) fn stress(arguments: &Stress, console: &Console) -> anyhow::Result<u8> {
+    output::writable(&arguments.out.join("stress"))?;
+    let effort = if arguments.quick { Effort::Quick } else { Effort::Full };
+    // Single precision comes after the pages.
+    let bar = output::progress("stressing", "parts", PAGES.len() as u64 + 1, console);
+    let run = Run { effort, seed: arguments.seed.seed };
+    let found = arguments.threads.install(|| Ok(stress::all(run, stated, &|_| bar.inc(1))))?;
+    bar.finish_and_clear();
+    let written = output::write(&page::artifacts(&found)?, &arguments.out);
+    if !console.quiet {
+        output::print(&page::table(&found, output::pen(console)))?;
+    }
+    written?;
+    if !console.quiet {
+        output::print(&output::report_in(&arguments.out.join("stress")))?;
+    }
+    Ok(u8::from(!found.holds()))
+}
+
+/// Returns truth and relative variance that theory states of a channel of a case with one estimator.
+pub fn stated(text: &str, channel: &str) -> Option<(f64, Option<f64>)> {
+    /// Address of pilot draws, where theory has no variance.
+    const NOWHERE: Address = Address { seed: 0, experiment: 0, block: 0, lane: 0 };
+    let source = Source { name: "stress".into(), path: "stress.toml".into(), text: text.into() };
+    let case = Case::read(&source).ok()?;
+    let ready = case.at(None).and_then(|at| at.prepare(0, NOWHERE)).ok()?;
+    let found = ready.prediction.channels.iter().find(|found| found.name == channel)?;
+    let truth = found.truth.value;
+    let variance = found.moments.map(|moments| moments.variance() / (truth * truth));
+    Some((truth, variance.filter(|variance| variance.is_finite())))
+}
+
+/// Independent runs of the long calibration.
+const LONG: u64 = 10_000;
+
+/// Streams of each law in the long form.
+const MANY: u64 = 1000;
+
+/// Arguments of `self-test`.
+#[derive(Debug, Args)]
+pub struct SelfTestArguments {
+    /// Independent runs of the calibration
+    #[arg(long, default_value_t = 400, value_name = "N", value_parser = numbers::whole::<u64>(1..=1_000_000), allow_negative_numbers = true)]
+    runs: u64,
+    /// Streams of correct foreign draws of each law
+    #[arg(long, default_value_t = 5, value_name = "N", value_parser = numbers::whole::<u64>(1..=1_000_000), allow_negative_numbers = true)]
+    streams: u64,
+    /// Calibrate with 10 000 independent runs, and judge 1000 streams of each law
+    #[arg(long, conflicts_with_all = ["runs", "streams"])]
+    long: bool,
+    #[command(flatten)]
+    seed: Seed,
+    #[command(flatten)]
+    threads: Threads,
+    /// Also write the tables as CSV into this folder
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+}
+
+/// Calibrates, draws all mutants, and prints the tables.
+pub(super) fn self_test(arguments: &SelfTestArguments, console: &Console) -> anyhow::Result<u8> {
+    if let Some(out) = &arguments.out {
+        output::writable(out)?;
+    }
+    let runs = if arguments.long { LONG } else { arguments.runs };
+    let many = if arguments.long { MANY } else { arguments.streams };
+    let begin = Instant::now();
+    let found = arguments.threads.install(|| {
+        let bar = output::progress("calibrating", "runs", runs, console);
+        let calibration = calibration::calibrate(runs, &|n| bar.inc(n))?;
+        bar.finish_and_clear();
+        let laws = streams::LAWS.len() as u64;
+        let bar = output::progress("judging", "streams", many * laws, console);
+        let streams = streams::all(many, &|n| bar.inc(n));
+        bar.finish_and_clear();
+        let mutants = mutation::all(arguments.seed.seed)?;
+        Ok(SelfTest { calibration, streams, mutants, seconds: begin.elapsed().as_secs_f64() })
+    })?;
+    if let Some(out) = &arguments.out {
+        output::write(&self_test::artifacts(&found)?, out)?;
+    }
+    if !console.quiet {
+        output::print(&self_test::table(&found, output::pen(console)))?;
+    }
+    Ok(u8::from(!found.holds()))
+}
