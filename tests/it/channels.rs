@@ -1,6 +1,6 @@
 //! What a prediction says of each channel, against numbers derived by hand.
 
-use crate::common::{case, differs, none, options, predicted, row, rows, rows_of, verdict};
+use crate::common::{case, differs, none, options, predicted, row, rows, verdict, with_optima};
 use trueflight::media::{Control, Piecewise};
 use trueflight::plan::Plan;
 use trueflight::record::build;
@@ -174,12 +174,6 @@ fn rod(more: &str) -> String {
          ray = {{ origin = [0, 0, 0], direction = [0, 0, 1], length = 20 }}\nforward = 0.5\n\
          {more}\nestimators = [{{ non-terminating = {{}} }}]"
     )
-}
-
-fn with_optima(text: &str) -> Vec<Row<'static>> {
-    let cases = [case("test", text)];
-    let record = build::predicted_with_optima(&Plan::new(&cases, &options(1, 1000)));
-    rows_of(record)
 }
 
 #[test]

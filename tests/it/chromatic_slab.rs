@@ -1,18 +1,14 @@
 //! Slabs in which every channel has a medium of its own: against slabs of one channel and of coloured scatterers, drawn,
 //! and what is refused.
 
-use trueflight::record::{Row, Verdict};
+use trueflight::record::Verdict;
 
-use crate::common::{case, none, predicted, rows};
+use crate::common::{case, channels, none, not_passing, predicted, rows};
 use crate::packets::{compare, fusing_levels};
 
 const THREE_COLOURS: &str = include_str!("../../cases/chromatic-slab/three-colours.toml");
 
 const LIKE: &str = include_str!("../../cases/chromatic-slab/like-colours.toml");
-
-fn of<'a>(rows: &'a [Row<'static>], estimator: &str) -> Vec<&'a Row<'static>> {
-    rows.iter().filter(|row| row.experiment.label == estimator).collect()
-}
 
 fn near(found: Option<f64>, expected: Option<f64>, relative: f64) {
     let (found, expected) = (found.expect("known"), expected.expect("known"));
@@ -22,7 +18,7 @@ fn near(found: Option<f64>, expected: Option<f64>, relative: f64) {
 #[test]
 fn every_channel_is_the_slab_of_its_own_medium() {
     let rows = predicted(THREE_COLOURS);
-    let of_channels = of(&rows, "independent");
+    let of_channels = channels(&rows, "independent");
     let alone = [
         ("exponential = { extinction = 2, rate = 1 }", 0.95, "henyey-greenstein.g = 0.6", 2.0),
         ("constant.extinction = 0.8", 0.6, "isotropic = {}", 0.8),
@@ -133,13 +129,8 @@ fn draws_agree(draws: u64) {
     for text in [THREE_COLOURS, &diffuse] {
         let rows = rows(text, draws);
         assert_eq!(rows.len(), 4 * 6);
-        let wrong = rows.iter().filter(|row| row.verdict != Some(Verdict::Pass));
-        none(
-            &wrong
-                .map(|row| format!("{} {}", row.experiment.label, row.reason))
-                .collect::<Vec<_>>(),
-        );
-        let (alone, together) = (of(&rows, "independent"), of(&rows, "spectral-mis"));
+        none(&not_passing(&rows, &[]));
+        let (alone, together) = (channels(&rows, "independent"), channels(&rows, "spectral-mis"));
         for (alone, together) in alone.iter().zip(together) {
             // Colour noise is what multiple importance sampling takes away.
             assert!(together.variance.expect("drawn") < alone.variance.expect("drawn"));

@@ -1,6 +1,7 @@
-//! Names and numbers in the place of tables: the same case by either spelling, and what is said of near misses.
+//! Names and numbers in the place of tables: the same case by either spelling. What is said of near misses is in
+//! `tests/wrong/`.
 
-use super::common::{case, judged, mistakes, options, predicted};
+use super::common::{case, judged, options, predicted};
 
 /// What is drawn and judged of a case, without its name: bit for bit.
 fn results(text: &str) -> String {
@@ -74,26 +75,6 @@ fn shadows_are_spelled_alike_everywhere() {
         let [one, other] = [format!(" = \"{word}\""), format!(".{word} = {{}}")].map(|w| lit(&w));
         assert_eq!(results(&one), results(&other), "{word}");
     }
-    let told = |text: &str, message: &str, help: &str| {
-        let told = mistakes(text).unwrap_or_else(|| panic!("{text} was read")).render(false);
-        assert!(told.contains(message) && told.contains(help), "{text}\n{told}");
-        assert_eq!(told.matches("error: ").count(), 1, "{told}");
-    };
-    // What is right beside one estimator is named beside another.
-    told(
-        &lit(".ratio = { sampling = 1.5 }"),
-        "`ratio` takes no settings here",
-        "write `shadow = \"ratio\"`",
-    );
-    let needy = field.replace("shadow = \"exact\"", "shadow = \"ratio\"");
-    told(&needy, "`sampling` is missing", "write `shadow.ratio = { sampling = … }`");
-    let number = field.replace("shadow.ratio = { sampling = 1.5 }", "shadow.ratio = 1.5");
-    told(&number, "`ratio` is 1.5", "write `shadow.ratio = { sampling = … }`");
-    let near = field.replace("shadow = \"exact\"", "shadow = \"exakt\"");
-    told(&near, "`exakt` is not known here", "did you mean `exact`?");
-    told(&lit(" = \"exakt\""), "`shadow` is \"exakt\"", "did you mean `exact`?");
-    told(&lit(" = 1"), "`shadow` is 1", "one of `exact`, `delta`, `ratio`");
-    told(&lit(".exact = true"), "`exact` takes no settings here", "shadow = \"exact\"");
 }
 
 #[test]
@@ -107,21 +88,6 @@ fn phases_lights_and_bounds_may_be_names_too() {
     let [long, short] =
         [slab(".isotropic = {}", ".diffuse = {}"), slab(" = \"isotropic\"", " = \"diffuse\"")];
     assert_eq!(results(&long), results(&short));
-    let told = |text: &str, words: &[&str]| {
-        let told = mistakes(text).unwrap_or_else(|| panic!("{text} was read")).render(false);
-        for words in words {
-            assert!(told.contains(words), "{text}\n{told}");
-        }
-    };
-    told(
-        &slab(" = \"henyey-greenstein\"", " = \"diffuse\""),
-        &["`g` is missing", "phase.henyey-greenstein = { g = … }"],
-    );
-    told(
-        &slab(".henyey-greenstein = 0.5", " = \"collimated\""),
-        &["write `phase.henyey-greenstein = { g = … }`", "incidence.collimated = { cosine = … }"],
-    );
-    told(&slab(" = 0.5", " = \"diffuse\""), &["`phase` is 0.5", "one of `isotropic`"]);
 }
 
 #[test]

@@ -72,6 +72,21 @@ pub fn predicted(text: &str) -> Vec<Row<'static>> {
     rows_of(record)
 }
 
+/// The same with the best σ̂ of each channel.
+pub fn with_optima(text: &str) -> Vec<Row<'static>> {
+    let cases = [case("test", text)];
+    rows_of(build::predicted_with_optima(&Plan::new(&cases, &options(1, 1000))))
+}
+
+/// The channels of an estimator of this name, or else of those whose names begin as given.
+pub fn channels<'a>(rows: &'a [Row<'static>], estimator: &str) -> Vec<&'a Row<'static>> {
+    let of = |is_it: &dyn Fn(&str) -> bool| -> Vec<&'a Row<'static>> {
+        rows.iter().filter(|row| is_it(&row.experiment.label)).collect()
+    };
+    let own = of(&|label| label == estimator);
+    if own.is_empty() { of(&|label| label.starts_with(estimator)) } else { own }
+}
+
 /// The row of an estimator whose name begins as given.
 pub fn row<'a>(rows: &'a [Row<'static>], estimator: &str) -> &'a Row<'static> {
     let mut found = rows.iter().filter(|row| row.experiment.label.starts_with(estimator));
@@ -80,15 +95,22 @@ pub fn row<'a>(rows: &'a [Row<'static>], estimator: &str) -> &'a Row<'static> {
 
 /// What of some rows does not pass, or was not asked about mean, variance and lookups.
 pub fn failing(rows: &[Row]) -> Vec<String> {
+    not_passing(rows, &["mean", "variance", "lookups"])
+}
+
+/// What of some rows does not pass, or was not asked about these checks.
+pub fn not_passing(rows: &[Row], checks: &[&str]) -> Vec<String> {
     let mut wrong = Vec::new();
     for row in rows {
-        let unasked: Vec<&str> = ["mean", "variance", "lookups"]
-            .into_iter()
-            .filter(|check| row.findings().all(|finding| finding.check != *check))
-            .collect();
+        let is_unasked = |check: &&&str| row.findings().all(|finding| finding.check != **check);
+        let unasked: Vec<&&str> = checks.iter().filter(is_unasked).collect();
         if row.verdict != Some(Verdict::Pass) || !unasked.is_empty() {
-            let name = &row.experiment.label;
-            wrong.push(format!("{name}: {:?}, {}, without {unasked:?}", row.verdict, row.reason));
+            let (name, channel) = (&row.experiment.label, &row.channel);
+            let verdict = row.verdict;
+            wrong.push(format!(
+                "{name} {channel}: {verdict:?}, {}, without {unasked:?}",
+                row.reason
+            ));
         }
     }
     wrong

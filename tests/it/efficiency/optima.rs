@@ -2,11 +2,11 @@
 
 use std::f64::consts::PI;
 
-use crate::common::{case, differs, none, options, rows_of};
+use crate::common::{case, differs, none, options, with_optima};
 use trueflight::numeric::digits;
 use trueflight::plan::Plan;
+use trueflight::record::Record;
 use trueflight::record::build;
-use trueflight::record::{Record, Row};
 use trueflight::report::layout::{self, Pen};
 use trueflight::report::run::console::{self, View};
 use trueflight::report::run::sweep_plot;
@@ -14,10 +14,6 @@ use trueflight::report::run::sweep_plot;
 fn record(text: &str) -> Record {
     let cases = [case("test", text)];
     build::predicted_with_optima(&Plan::new(&cases, &options(1, 1000)))
-}
-
-fn with_optima(text: &str) -> Vec<Row<'static>> {
-    rows_of(record(text))
 }
 
 /// A homogeneous line of length 4 with σ_t = 1/2, for some estimators.
