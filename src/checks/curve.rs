@@ -19,7 +19,7 @@ use super::scalar::{Scalar, variance};
 use estimators::DrawBuffer;
 use gate::session::Quantity;
 use gate::session::quantity::MEAN_CAP;
-use gate::stats::{chi_square, reflection};
+use gate::stats::{chi_square, normal};
 use numeric::sum::{sum_in_lanes, sum_of_pairs};
 use theory::{Increment, Prediction};
 
@@ -84,7 +84,7 @@ impl Law for Increments {
             furthest = furthest.max(f64::abs(path));
             clock += step;
         }
-        let supremum = reflection::upper_tail(furthest / (draws * clock).sqrt());
+        let supremum = normal::excursion_tail(furthest / (draws * clock).sqrt());
         // Two looks at the same draws.
         Some((2.0 * chi_square::upper(square, degrees).min(supremum)).min(1.0))
     }

@@ -3,15 +3,12 @@
 //! The session of [`gate::session`] judges draws in memory, in `files` of several formats, and stacks of `images`.
 //! [`OfCase`] takes what is claimed of a draw from a case.
 
-mod choice;
 pub mod files;
-mod fineness;
 pub mod images;
 mod of_case;
 mod whole;
 
-pub use choice::{Choice, ChoiceError};
 pub use files::{Column, Draws, ForeignError, Format, Layout, count};
-pub use of_case::{OfCase, theory as theory_of};
+pub use of_case::{Choice, ChoiceError, OfCase, theory as theory_of};
 
 pub use gate::session::*;

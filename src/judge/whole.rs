@@ -17,12 +17,12 @@
 use std::borrow::Cow;
 use std::sync::Arc;
 
-use super::fineness::{self, Fineness};
 use super::{Asked, Distribution, DistributionFinding, Reason, Tested, Tests};
 use crate::checks::batch::Batch;
+use crate::checks::resolution::{self, Resolution};
 use crate::checks::{self, Law};
 use estimators::DrawBuffer;
-use gate::stats::verdict::Verdict;
+use gate::stats::verdict::{BLOCK, Verdict};
 use gate::stats::{multiplicity, ties};
 use numeric::digits::short;
 use theory::{self, Prediction};
@@ -236,7 +236,7 @@ impl Whole {
             tests.extend(law.map(|law| Test::new("curve", what, law, [least, f64::INFINITY])));
         }
         match &mut self.fine {
-            Some(fine) if rounding <= fineness::COARSE => fine.is_single = is_single,
+            Some(fine) if rounding <= COARSE => fine.is_single = is_single,
             _ => self.fine = None,
         }
         tests
@@ -350,4 +350,51 @@ fn most_draws(prediction: &Prediction, rounding: f64) -> f64 {
 #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // saturates
 fn whole(count: f64) -> u32 {
     count.round() as u32
+}
+
+/// Spacing of numbers of single precision, relative.
+const SINGLE: f64 = 2.4e-7;
+/// Coarser rounding than this leaves the resolution untested.
+const COARSE: f64 = 1e-6;
+/// Bits of random numbers that are fine enough.
+const BITS: i32 = 22;
+
+/// The first flights of another program: too many ties mean that distances are rounded more than single precision.
+struct Fineness {
+    resolution: Resolution,
+    first: Vec<f64>,
+    /// Whether they are numbers of single precision.
+    is_single: bool,
+}
+
+impl Fineness {
+    /// Before the first flight; `None` for draws that are no distances.
+    fn of(prediction: &Prediction) -> Option<Self> {
+        let resolution = Resolution::of(prediction)?;
+        Some(Self { resolution, first: Vec::new(), is_single: true })
+    }
+
+    /// Adds flights, until there are enough.
+    fn absorb(&mut self, flights: &[f64]) {
+        let room = usize::try_from(BLOCK).unwrap_or(usize::MAX).saturating_sub(self.first.len());
+        self.first.extend(flights.iter().take(room));
+    }
+
+    /// The p-value of the number of ties, with details in words; `None` for too few collisions.
+    fn p_value(&self) -> Option<(f64, String)> {
+        let mut collisions = self.first.clone();
+        self.resolution.collisions(&mut collisions);
+        if collisions.len() < resolution::FEWEST {
+            return None;
+        }
+        let spacing = if self.is_single { SINGLE } else { f64::EPSILON };
+        let all = collisions.len();
+        let expected = self.resolution.expected(all as f64, BITS, spacing);
+        let found = ties::ties(&mut collisions);
+        let details = format!(
+            "{found} of {all} flights have the length of an earlier one, {expected:.0} at most are expected of single \
+             precision"
+        );
+        Some((ties::p_value(found, expected), details))
+    }
 }

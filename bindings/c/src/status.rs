@@ -4,7 +4,7 @@
 use std::cell::Cell;
 use std::ffi::{CStr, CString, c_char};
 
-use gate::check::{CheckError, MAX_VALUES};
+use gate::check::{CheckError, CheckFault, MAX_VALUES};
 
 /// Result of a call; `tf_last_error` returns the message of an error.
 #[repr(C)]
@@ -50,44 +50,41 @@ impl Error {
 /// Messages that name a function have its name in C.
 impl From<CheckError> for Error {
     fn from(error: CheckError) -> Self {
-        let status = match &error {
-            CheckError::Case { .. } => Status::Case,
-            CheckError::NoTruth { .. }
-            | CheckError::Claim { .. }
-            | CheckError::Values { .. }
-            | CheckError::Count { .. }
-            | CheckError::Whole { .. }
-            | CheckError::Channels { .. }
-            | CheckError::Twice { .. } => Status::Claim,
-            CheckError::NoLookups { .. }
-            | CheckError::NoLookupsWanted { .. }
-            | CheckError::Lookups { .. }
-            | CheckError::Ragged { .. }
-            | CheckError::NoValues { .. }
-            | CheckError::TooManyValues { .. }
-            | CheckError::NoDraws { .. } => Status::Draws,
+        let status = match &error.fault {
+            CheckFault::Case(_) => Status::Case,
+            CheckFault::NoTruth
+            | CheckFault::Claim(_)
+            | CheckFault::Values { .. }
+            | CheckFault::Count { .. }
+            | CheckFault::Whole { .. }
+            | CheckFault::Channels { .. }
+            | CheckFault::Twice(_) => Status::Claim,
+            CheckFault::NoLookups
+            | CheckFault::NoLookupsWanted
+            | CheckFault::Lookups { .. }
+            | CheckFault::Ragged { .. }
+            | CheckFault::NoValues
+            | CheckFault::TooManyValues(_)
+            | CheckFault::NoDraws => Status::Draws,
             _ => Status::Internal,
         };
-        let message = match &error {
-            CheckError::NoTruth { name } => {
-                format!("check `{name}`: the truth is not known; set TF_TRUTH, or call tf_check_of")
+        let message = match &error.fault {
+            CheckFault::NoTruth => {
+                "the truth is not known; set TF_TRUTH, or call tf_check_of".to_owned()
             }
-            CheckError::NoLookups { name } => format!(
-                "check `{name}`: the claim has lookups; add draws by tf_check_absorb_with_lookups, or leave \
-                 TF_LOOKUPS out"
-            ),
-            CheckError::NoLookupsWanted { name } => format!(
-                "check `{name}`: nothing is known of the lookups; set TF_LOOKUPS, or add draws without lookups"
-            ),
-            CheckError::Twice { name, what } => format!(
-                "check `{name}`: the {what} is given twice, by a number and by tf_check_of; leave one of them out, \
-                 or set TF_MEAN_ONLY"
-            ),
-            CheckError::NoValues { name } => {
-                format!("check `{name}`: a draw has no values; give 1 to {MAX_VALUES}")
+            CheckFault::NoLookups => {
+                "the claim has lookups; add draws by tf_check_absorb_with_lookups, or leave TF_LOOKUPS out".to_owned()
             }
+            CheckFault::NoLookupsWanted => {
+                "nothing is known of the lookups; set TF_LOOKUPS, or add draws without lookups".to_owned()
+            }
+            CheckFault::Twice(what) => format!(
+                "the {what} is given twice, by a number and by tf_check_of; leave one of them out, or set TF_MEAN_ONLY"
+            ),
+            CheckFault::NoValues => format!("a draw has no values; give 1 to {MAX_VALUES}"),
             other => other.to_string(),
         };
+        let message = format!("check `{}`: {message}", error.check);
         Self { status, message }
     }
 }

@@ -3,7 +3,7 @@
 use pyo3::import_exception;
 use pyo3::prelude::*;
 use trueflight::case::CaseError;
-use trueflight::check::CheckError;
+use trueflight::check::{CheckError, CheckFault};
 
 import_exception!(trueflight._errors, Error);
 import_exception!(trueflight._errors, CaseNotFound);
@@ -47,22 +47,21 @@ impl From<CaseError> for Failure {
 /// Messages of the library, with its methods as arguments of Python.
 impl From<CheckError> for Failure {
     fn from(error: CheckError) -> Self {
-        Self::Wrong(match &error {
-            CheckError::NoTruth { name } => format!(
-                "check `{name}`: the truth is not known; give it by truth=…, or by case=… and estimator=…"
+        let message = match &error.fault {
+            CheckFault::NoTruth => {
+                "the truth is not known; give it by truth=…, or by case=… and estimator=…".to_owned()
+            }
+            CheckFault::Twice(what) => format!(
+                "the {what} is given twice, by a number and by case=…; leave one of them out, or add mean_only=True"
             ),
-            CheckError::Twice { name, what } => format!(
-                "check `{name}`: the {what} is given twice, by a number and by case=…; leave one of them out, or \
-                 add mean_only=True"
-            ),
-            CheckError::NoLookups { name } => format!(
-                "check `{name}`: a draw does not tell its lookups; give the pair (draws, lookups), or leave \
-                 lookups=… out"
-            ),
-            CheckError::NoLookupsWanted { name } => format!(
-                "check `{name}`: nothing is known of the lookups; give lookups=(mean, variance), or draws alone"
-            ),
+            CheckFault::NoLookups => {
+                "a draw does not tell its lookups; give the pair (draws, lookups), or leave lookups=… out".to_owned()
+            }
+            CheckFault::NoLookupsWanted => {
+                "nothing is known of the lookups; give lookups=(mean, variance), or draws alone".to_owned()
+            }
             other => other.to_string(),
-        })
+        };
+        Self::Wrong(format!("check `{}`: {message}", error.check))
     }
 }

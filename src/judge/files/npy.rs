@@ -1,7 +1,6 @@
 //! `NumPy`'s array file: a header, then words, in rows if the array has two axes.
 
-use super::raw::Words;
-use super::rows::Rows;
+use super::raw::{Rows, Words};
 use super::{Bytes, ForeignError, Layout};
 use media::files::npy::{self, Word};
 
@@ -119,22 +118,6 @@ mod tests {
     }
 
     #[test]
-    fn several_axes_are_refused() {
-        let bytes = doubles("(2, 1, 3)", &[0.0; 6]);
-        assert_eq!(
-            pipe(bytes).expect_err("a shape").to_string(),
-            "x.npy: an array of shape (2, 1, 3), whose order of draws is not known; \
-             save one axis, by x.ravel() or x[:, k], or choose a column k of an array of shape (draws, values) by --column"
-        );
-        let bytes = whole_header("'<f8'", "True", "(2, 3)");
-        assert!(matches!(pipe(bytes), Err(ForeignError::Shape { .. })));
-        let bytes = doubles("(2, 1, 3, 2)", &[0.0; 12]);
-        let layout = Layout::column(Some(Column::Index(0)));
-        let draws = Draws::from_reader_as(Cursor::new(bytes), "x.npy", Format::Npy, &layout);
-        assert!(matches!(draws, Err(ForeignError::Shape { .. })));
-    }
-
-    #[test]
     fn columns_come_back_in_both_orders() {
         // Row i has i, i + 0.25 and i + 0.5.
         let n = 20_000_u32;
@@ -181,89 +164,61 @@ mod tests {
         }
     }
 
-    #[test]
-    fn columns_that_are_not_the_channels_are_refused() {
-        let channels = ["a", "b", "c"].map(str::to_owned).to_vec();
-        let layout = Layout { channels, ..Layout::default() };
-        let open = |bytes| Draws::from_reader_as(Cursor::new(bytes), "x.npy", Format::Npy, &layout);
-        assert_eq!(
-            open(doubles("(4, 2)", &[0.0; 8])).expect_err("two").to_string(),
-            "x.npy: a draw has 2 values, but the case has the channels a, b, c; write draws of 3 values, or choose one of the \
-             channels by --channel"
-        );
-        assert_eq!(
-            open(doubles("(3, 8)", &[0.0; 24])).expect_err("turned").to_string(),
-            "x.npy: an array of shape (3, 8), fewer draws than values; a row is a draw: did you mean x.T?"
-        );
-        assert!(
-            open(doubles("(4,)", &[0.0; 4])).expect_err("one").to_string().contains("1 value,")
-        );
-    }
-
-    fn header(kind: &str, shape: &str) -> Vec<u8> {
-        whole_header(kind, "False", shape)
+    fn refused(bytes: Vec<u8>, layout: &Layout) -> ForeignError {
+        let draws = Draws::from_reader_as(Cursor::new(bytes), "x.npy", Format::Npy, layout);
+        draws.and_then(all).expect_err("an error")
     }
 
     #[test]
-    fn shapes_beyond_counting_are_refused() {
-        for shape in [
-            "(9223372036854775807, 9223372036854775807, 4)",
-            "(0, 9223372036854775807, 9223372036854775807)",
-            "(18446744073709551615,)",
+    fn other_shapes_and_types_are_refused() {
+        let header = |kind: &str, shape: &str| whole_header(kind, "False", shape);
+        let (one, channels) = (Layout::default(), ["a", "b", "c"].map(str::to_owned).to_vec());
+        let first = Layout::column(Some(Column::Index(0)));
+        let three = Layout { channels, ..Layout::default() };
+        for (bytes, layout) in [
+            (doubles("(2, 1, 3)", &[0.0; 6]), &one),
+            (whole_header("'<f8'", "True", "(2, 3)"), &one),
+            (doubles("(2, 1, 3, 2)", &[0.0; 12]), &first),
+            (header("'<f8'", "(9223372036854775807, 9223372036854775807, 4)"), &one),
+            (header("'<f8'", "(0, 9223372036854775807, 9223372036854775807)"), &one),
+            (header("'<f8'", "(18446744073709551615,)"), &one),
         ] {
-            let error = pipe(header("'<f8'", shape)).expect_err("a shape");
-            assert!(matches!(error, ForeignError::Shape { .. }), "{error}");
+            assert!(matches!(refused(bytes, layout), ForeignError::Shape { .. }));
+        }
+        for (values, shape) in [(2, "(4, 2)"), (1, "(4,)")] {
+            let error = refused(doubles(shape, &vec![0.0; 4 * values]), &three);
+            assert!(matches!(error, ForeignError::Channels { found, .. } if found == values));
+        }
+        let turned = refused(doubles("(3, 8)", &[0.0; 24]), &three);
+        assert!(matches!(turned, ForeignError::Transposed { .. }));
+        for kind in ["'<i4'", "'<c16'", "'<f2'", "'|b1'", "[('a', '<f8'), ('b', '<f8')]"] {
+            let error = refused(header(kind, "(3,)"), &one);
+            assert!(matches!(error, ForeignError::ElementType { .. }), "{kind}");
         }
         for shape in ["(99999999999999999999,)", "(-1,)", "7"] {
-            let error = pipe(header("'<f8'", shape)).expect_err("a shape");
+            let error = refused(header("'<f8'", shape), &one);
+            assert!(matches!(error, ForeignError::NotNpy { .. }), "{shape}");
+        }
+        let huge = refused(header("'<f8'", "(1000000000000,)"), &one);
+        assert!(matches!(huge, ForeignError::Truncated { found: 0, .. }));
+    }
+
+    #[test]
+    fn files_of_another_length_are_refused() {
+        let whole = doubles("(5,)", &[0.5; 5]);
+        let is_cut = |error| matches!(error, ForeignError::Truncated { found: 3, expected: 5, .. });
+        let is_long = |error| matches!(error, ForeignError::Overlong { expected: 5, .. });
+        let cut = whole[..whole.len() - 9].to_vec();
+        assert!(is_cut(open(&cut).expect_err("cut")) && is_cut(refused(cut, &Layout::default())));
+        let twice = whole.repeat(2);
+        assert!(is_long(open(&twice).expect_err("two arrays")));
+        assert!(is_long(refused(twice, &Layout::default())));
+        for bytes in [whole[..40].to_vec(), b"T,X\n0.5,0.25\n".to_vec()] {
+            let error = refused(bytes, &Layout::default());
             assert!(matches!(error, ForeignError::NotNpy { .. }), "{error}");
         }
-        let huge = pipe(header("'<f8'", "(1000000000000,)")).expect("a header");
-        assert!(matches!(all(huge), Err(ForeignError::Truncated { found: 0, .. })));
-    }
-
-    #[test]
-    fn other_types_are_refused() {
-        let bytes = array("<i4", "(3,)", [1i32, 2, 3].map(i32::to_le_bytes).into_iter());
-        assert_eq!(
-            pipe(bytes).expect_err("a type").to_string(),
-            "x.npy: an array of type <i4; save it as float64 or float32, by x.astype('<f8')"
-        );
-        for kind in ["'<c16'", "'<f2'", "'|b1'", "[('a', '<f8'), ('b', '<f8')]"] {
-            let bytes = header(kind, "(3,)");
-            assert!(matches!(pipe(bytes), Err(ForeignError::ElementType { .. })), "{kind}");
+        for bytes in [Vec::new(), doubles("(0,)", &[])] {
+            assert!(matches!(refused(bytes, &Layout::default()), ForeignError::Empty { .. }));
         }
-    }
-
-    #[test]
-    fn a_file_cut_off_is_refused() {
-        let whole = doubles("(5,)", &[0.5; 5]);
-        let cut = whole[..whole.len() - 9].to_vec();
-        let message = ": ends after 3 of 5 draws; write it to the end";
-        assert!(open(&cut).expect_err("cut").to_string().ends_with(message));
-        let error = all(pipe(cut).expect("a header")).expect_err("cut").to_string();
-        assert_eq!(error, format!("x.npy{message}"));
-        let error = pipe(whole[..40].to_vec()).expect_err("cut");
-        assert!(matches!(error, ForeignError::NotNpy { .. }), "{error}");
-    }
-
-    #[test]
-    fn a_file_that_goes_on_is_refused() {
-        let whole = doubles("(5,)", &[0.5; 5]);
-        let twice = [whole.clone(), whole].concat();
-        let message = ": goes on after its 5 draws; write one array a file";
-        assert!(open(&twice).expect_err("two arrays").to_string().ends_with(message));
-        let error = all(pipe(twice).expect("a header")).expect_err("two arrays").to_string();
-        assert_eq!(error, format!("x.npy{message}"));
-    }
-
-    #[test]
-    fn what_is_no_array_is_refused() {
-        assert!(matches!(pipe(Vec::new()), Err(ForeignError::Empty { .. })));
-        let none = doubles("(0,)", &[]);
-        assert!(matches!(pipe(none), Err(ForeignError::Empty { .. })));
-        let error = pipe(b"T,X\n0.5,0.25\n".to_vec()).expect_err("a table");
-        assert!(matches!(error, ForeignError::NotNpy { .. }), "{error}");
-        assert!(error.to_string().ends_with("write it by numpy.save"), "{error}");
     }
 }

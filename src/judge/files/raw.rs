@@ -1,6 +1,5 @@
-//! Numbers of a fixed width, one after the other.
+//! Numbers of a fixed width, one after the other or in rows of which some columns are read.
 
-use super::rows::Rows;
 use super::{Bytes, ForeignError, Layout};
 use media::files::npy::Word;
 
@@ -17,7 +16,7 @@ pub(super) struct Words {
     /// How many there are, where it is known.
     length: Option<u64>,
     /// Number of numbers of a draw, for messages.
-    pub(super) width: u64,
+    width: u64,
     given: u64,
     chunk: Vec<u8>,
     /// What is read and not yet given, `chunk[start..end]`.
@@ -75,16 +74,12 @@ impl Words {
         }
     }
 
-    pub(super) fn known_length(&self) -> Option<u64> {
+    fn known_length(&self) -> Option<u64> {
         self.length
     }
 
     /// Appends the next numbers, until the buffer holds `at_most`.
-    pub(super) fn read(
-        &mut self,
-        numbers: &mut Vec<f64>,
-        at_most: usize,
-    ) -> Result<(), ForeignError> {
+    fn read(&mut self, numbers: &mut Vec<f64>, at_most: usize) -> Result<(), ForeignError> {
         let width = self.word.width();
         let before = numbers.len();
         while numbers.len() < at_most {
@@ -119,7 +114,7 @@ impl Words {
     }
 
     /// That the numbers end within a draw.
-    pub(super) fn partial_row(&self, numbers: u64, values: usize) -> ForeignError {
+    fn partial_row(&self, numbers: u64, values: usize) -> ForeignError {
         match self.announced {
             Some(announced) => {
                 let (found, expected) = (numbers / values as u64, announced / values as u64);
@@ -147,6 +142,92 @@ impl Words {
             }
             _ => Ok(()),
         }
+    }
+}
+
+/// Rows of numbers.
+pub(super) struct Rows {
+    words: Words,
+    /// Number of numbers in a row.
+    width: usize,
+    /// The columns that are read.
+    places: Vec<usize>,
+    /// Numbers that were read and not yet given.
+    row: Vec<f64>,
+    /// Whether whole columns follow each other: then all numbers are read first.
+    by_column: bool,
+    /// All numbers, where whole columns follow each other, and how many rows of them were given.
+    all: Option<(Vec<f64>, usize)>,
+    /// Number of numbers that were read.
+    numbers: u64,
+}
+
+impl Rows {
+    pub(super) fn new(mut words: Words, width: usize, places: Vec<usize>, by_column: bool) -> Self {
+        words.width = width as u64;
+        Self { words, width, places, row: Vec::new(), by_column, all: None, numbers: 0 }
+    }
+
+    /// Number of rows, where it is known.
+    pub(super) fn known_length(&self) -> Option<u64> {
+        self.words.known_length().map(|numbers| numbers / self.width as u64)
+    }
+
+    /// Number of values of a draw.
+    pub(super) fn values(&self) -> usize {
+        self.places.len()
+    }
+
+    /// Appends the next draws to the columns, `at_most` of them.
+    pub(super) fn read(
+        &mut self,
+        columns: &mut [Vec<f64>],
+        at_most: usize,
+    ) -> Result<(), ForeignError> {
+        if let ([column], 1) = (&mut *columns, self.width) {
+            return self.words.read(column, at_most);
+        }
+        if self.by_column {
+            return self.read_by_column(columns, at_most);
+        }
+        self.row.clear();
+        self.words.read(&mut self.row, at_most.saturating_mul(self.width))?;
+        self.numbers += self.row.len() as u64;
+        if !self.row.len().is_multiple_of(self.width) {
+            return Err(self.words.partial_row(self.numbers, self.width));
+        }
+        for row in self.row.chunks_exact(self.width) {
+            for (column, &place) in columns.iter_mut().zip(&self.places) {
+                column.push(row[place]);
+            }
+        }
+        Ok(())
+    }
+
+    fn read_by_column(
+        &mut self,
+        columns: &mut [Vec<f64>],
+        at_most: usize,
+    ) -> Result<(), ForeignError> {
+        let (all, given) = match &mut self.all {
+            Some((all, given)) => (all, given),
+            none => {
+                let mut all = Vec::new();
+                self.words.read(&mut all, usize::MAX)?;
+                // A second look finds what is missing, or what is too much.
+                self.words.read(&mut Vec::new(), usize::MAX)?;
+                let (all, given) = none.insert((all, 0));
+                (all, given)
+            }
+        };
+        let rows = all.len() / self.width;
+        let count = at_most.min(rows - *given);
+        for (column, &place) in columns.iter_mut().zip(&self.places) {
+            let first = place * rows + *given;
+            column.extend_from_slice(&all[first..first + count]);
+        }
+        *given += count;
+        Ok(())
     }
 }
 
@@ -205,30 +286,17 @@ mod tests {
     }
 
     #[test]
-    fn a_partial_draw_is_refused() {
-        let message = "2 draws of 8 bytes; write little-endian float64 and nothing else";
-        let mut bytes = bytes(&[1.0, 2.0]);
-        bytes.extend([1, 2, 3]);
-        let file = file(&bytes);
-        let error = Draws::open(file.path(), Format::Raw).expect_err("a partial draw").to_string();
-        assert!(error.ends_with(message) && error.contains("3 byte(s)"), "{error}");
-        let draws = Draws::from_reader(Cursor::new(bytes), "stdin", Format::Raw).expect("draws");
-        let error = all(draws).expect_err("a partial draw").to_string();
-        assert_eq!(error, format!("stdin: 3 byte(s) are left after {message}"));
-    }
-
-    #[test]
-    fn nothing_is_no_draws() {
-        let error = Draws::from_reader(std::io::empty(), "stdin", Format::Raw);
-        assert!(matches!(error, Err(ForeignError::Empty { .. })));
-        let file = file(&[]);
-        assert!(matches!(Draws::open(file.path(), Format::Raw), Err(ForeignError::Empty { .. })));
-    }
-
-    #[test]
-    fn what_the_system_refuses_is_said() {
-        let error = Draws::open(std::path::Path::new("/nowhere/x.f64"), Format::Raw);
-        let error = error.expect_err("no file").to_string();
-        assert!(error.starts_with("/nowhere/x.f64: "), "{error}");
+    fn a_partial_draw_and_no_draw_are_refused() {
+        let partial = [bytes(&[1.0, 2.0]), vec![1, 2, 3]].concat();
+        let open = |bytes: &[u8]| Draws::open(file(bytes).path(), Format::Raw);
+        let read =
+            |bytes: &[u8]| Draws::from_reader(Cursor::new(bytes.to_vec()), "stdin", Format::Raw);
+        let is_partial =
+            |error| matches!(error, ForeignError::PartialDraw { whole: 2, rest: 3, .. });
+        assert!(is_partial(open(&partial).expect_err("a partial draw")));
+        assert!(is_partial(read(&partial).and_then(all).expect_err("a partial draw")));
+        for none in [open(&[]), read(&[])] {
+            assert!(matches!(none, Err(ForeignError::Empty { .. })));
+        }
     }
 }

@@ -1,7 +1,10 @@
 //! What is said of a stack of pictures.
 
-use super::picture::Size;
-use gate::stats::verdict::Verdict;
+use super::picture::{Size, Stack};
+use crate::judge::LISTED;
+use gate::causes::Pattern;
+use gate::stats::gate::Evidence;
+use gate::stats::verdict::{MISS, Verdict};
 
 /// The verdict on a stack, with its numbers.
 #[derive(Debug, Clone, serde::Serialize)]
@@ -84,8 +87,7 @@ pub struct Refuted {
 impl Refuted {
     /// The value at a place of a pass.
     pub(super) fn at(size: Size, pass: usize, index: usize, value: f64) -> Self {
-        let (pixel, channel) = (index / size.channels, index % size.channels);
-        let (row, column) = (pixel / size.columns, pixel % size.columns);
+        let [row, column, channel] = size.place(index);
         Self { pass, row, column, channel, value }
     }
 }
@@ -210,7 +212,7 @@ pub struct Tile {
 const WORST: usize = 5;
 
 /// Numbers of tiles by their verdicts.
-pub(super) fn counts(tiles: &[Tile]) -> Counts {
+fn counts(tiles: &[Tile]) -> Counts {
     let of = |verdict| tiles.iter().filter(|tile| tile.verdict == verdict).count();
     Counts {
         tiles: tiles.len(),
@@ -221,9 +223,71 @@ pub(super) fn counts(tiles: &[Tile]) -> Counts {
 }
 
 /// The tiles with the most evidence against them, of those that fail or are listed.
-pub(super) fn worst(tiles: &[Tile]) -> Vec<Tile> {
+fn worst(tiles: &[Tile]) -> Vec<Tile> {
     let is_off = |tile: &&Tile| tile.is_listed || tile.verdict == Verdict::Fail;
     let mut off: Vec<&Tile> = tiles.iter().filter(is_off).collect();
     off.sort_by(|a, b| b.ln_e.total_cmp(&a.ln_e));
     off.into_iter().take(WORST).cloned().collect()
+}
+
+impl Tile {
+    /// The evidence on the mean.
+    pub(super) fn evidence(&self) -> Evidence {
+        Evidence { ln_e: self.ln_e, ln_pass: self.ln_p }
+    }
+}
+
+impl Judgement {
+    /// A judgement of passes of which nothing is known yet.
+    pub(super) fn new(stack: &Stack, alpha: f64, tile: usize) -> Self {
+        Self {
+            verdict: Verdict::Inconclusive,
+            reason: String::new(),
+            guarantees: Vec::new(),
+            alpha,
+            beta: MISS,
+            listed_rate: LISTED,
+            passes: stack.passes,
+            size: stack.size,
+            tile,
+            refuted_by: None,
+            refuting: 0,
+            order: Dependence::default(),
+            neighbours: Dependence::default(),
+            repeated: Vec::new(),
+            variance: None,
+            estimate: None,
+            truth_passes: None,
+            comparison: None,
+            whole: Vec::new(),
+            tiles: Vec::new(),
+            counts: Counts::default(),
+            worst: Vec::new(),
+        }
+    }
+
+    /// Takes the tiles and the whole picture.
+    pub(super) fn take(&mut self, tiles: Vec<Tile>, whole: Vec<Tile>) {
+        (self.worst, self.counts) = (worst(&tiles), counts(&tiles));
+        (self.tiles, self.whole) = (tiles, whole);
+    }
+
+    /// Which checks fail, and on which side; passes that depend on each other have no other side.
+    pub fn pattern(&self) -> Pattern {
+        let mut pattern = Pattern::default();
+        if self.order.is_refuted() {
+            pattern.dependence = true;
+            return pattern;
+        }
+        pattern.number = self.refuted_by.is_some();
+        if self.variance.is_some_and(|variance| variance.is_refuted) {
+            pattern.note("variance", Some(1.0));
+        }
+        let failing =
+            self.whole.iter().chain(&self.tiles).filter(|tile| tile.verdict == Verdict::Fail);
+        for tile in failing {
+            pattern.note("mean", Some(tile.mean - tile.truth));
+        }
+        pattern
+    }
 }

@@ -5,8 +5,8 @@
 //! ```text
 //! values      a number that is not finite, out of the range, or off where there is no spread:   fail
 //! passes      independent of each other (`order`, `repeats`), at α_d/3 each:       else inconclusive
-//! pixels      of a pass independent of each other (`neighbours`), at α_d/3:        else averages of passes
-//! variance    not larger than claimed (`spread`), at α/5:                          else fail
+//! pixels      of a pass independent of each other (`order`), at α_d/3:             else averages of passes
+//! variance    not larger than claimed (`variance`), at α/5:                        else fail
 //! tiles       of N, 2N, 4N … pixels: the mean of each, in each channel (`tiles`), by Holm at 3α/5: else fail
 //! whole       the mean of the picture, in each channel, at α/5:                    else fail
 //! pass        the whole and every tile exclude a bias of ε, with chance β each; s²/V is 1.1 at most
@@ -37,41 +37,29 @@
 
 pub mod against;
 mod claim;
-mod error;
-mod estimate;
 pub mod files;
 pub mod judgement;
-mod likely;
-mod neighbours;
 mod noisy;
 mod order;
 mod picture;
 mod repeats;
-mod same;
-mod spread;
 mod tiles;
+mod variance;
 mod verdict;
 
-pub use claim::{Claim, Level};
-pub use error::ImageError;
+pub use claim::{Claim, ImageError, Level};
 pub use judgement::Judgement;
 pub use picture::{Picture, Size, Stack};
 
 use self::claim::Pixels;
-use self::judgement::{Dependence, Refuted, Tile, Variance, counts, worst};
+use self::judgement::{Dependence, Refuted, Tile, Variance};
 use self::tiles::{Part, Terms};
-use crate::judge::Levels;
-use gate::stats::gate::VARIANCE_MARGIN;
-use gate::stats::multiplicity::{e_benjamini_hochberg, holm};
-use gate::stats::verdict::{MISS, Verdict};
+use crate::judge::{Levels, SIDE_SHARE, decide_together, is_by_spread, main_share};
+use gate::stats::gate::{Evidence, VARIANCE_MARGIN};
 use theory::parallel;
 
-/// The shares of α: tiles, the whole, the variance.
-const SHARES: [f64; 3] = [0.6, 0.2, 0.2];
 /// Dependence is looked for at α, but not below this level: orders of passes are drawn.
 const LEAST: f64 = 1e-4;
-/// The rate of false ones on the list of tiles.
-const LISTED: f64 = 0.05;
 /// A tile has so many values of all passes, unless its size is asked for: then all tiles can pass.
 const VALUES: usize = 2048;
 /// Number of values of a tile where the passes must show a variance, too.
@@ -134,117 +122,102 @@ pub fn judge(stack: &Stack, claim: &Claim, wanted: &Wanted) -> Result<Judgement,
         Some(found) => wanted.tile(size, stack.passes.min(found.passes), NOISY_VALUES),
         None => wanted.tile(size, stack.passes, VALUES),
     };
-    let (refuted_by, refuting) = refuted(stack, &pixels);
-    let neighbours = neighbours_of(stack, alpha);
-    let is_free = !neighbours.is_refuted();
+    let mut judgement = Judgement::new(stack, alpha, tile);
+    judgement.truth_passes = claim.truth_passes;
+    let range = pixels.widened().unwrap_or([f64::NEG_INFINITY, f64::INFINITY]);
+    let bound = |i| if pixels.is_certain(i) { pixels.bound(i) } else { f64::MAX };
+    let bounds: Vec<f64> = (0..size.values()).map(bound).collect();
+    (judgement.refuted_by, judgement.refuting) = refuted(stack, |i, value| {
+        let is_near = (value - pixels.truth[i]).abs() <= bounds[i];
+        is_near && range[0] <= value && value <= range[1]
+    });
+    judgement.neighbours = neighbours_of(stack, alpha);
     // Passes without spread are one image where they should be.
     let is_certain = (0..size.values()).all(|index| pixels.is_certain(index));
-    let (mut order, repeated) = order_of(stack, is_certain || pixels.is_flat(), alpha);
+    (judgement.order, judgement.repeated) = order_of(stack, is_certain || pixels.is_flat(), alpha);
     if let Some(reason) = own(stack, &pixels, claim) {
-        order.reason = reason;
+        judgement.order.reason = reason;
     }
-    let (parts, whole) = (tiles::parts(size, tile, pixels.estimate.is_some()), tiles::wholes(size));
-    let q = |parts: &[Part]| match pixels.estimate.as_ref().filter(|_| refuting == 0) {
+    let (is_free, is_whole) = (!judgement.neighbours.is_refuted(), judgement.refuting == 0);
+    let (parts, wholes) =
+        (tiles::parts(size, tile, pixels.estimate.is_some()), tiles::wholes(size));
+    let q = |parts: &[Part]| match pixels.estimate.as_ref().filter(|_| is_whole) {
         Some(found) => {
             let stacks: Vec<&Stack> = found.stack.iter().chain([stack]).collect();
-            estimate::all_q(&stacks, parts, claim.kurtosis)
+            variance::all_q(&stacks, parts, claim.kurtosis)
         }
         None => vec![0.0; parts.len()],
     };
-    let (q_tiles, q_whole) = (q(&parts), q(&whole));
-    let is_noisy = pixels.estimate.is_some() || pixels.truth_share > 0.0;
-    let variance = match (refuting, is_noisy) {
-        (0, false) => spread::squares(stack, &pixels, is_free)
-            .map(|found| variance_of(found, alpha, VARIANCE_MARGIN)),
-        (0, true) => {
-            let q = q_whole.iter().copied().fold(0.0, f64::max);
-            spread::pairs(stack, &pixels, q, is_free, SHARES[2] * alpha)
-                .map(|(found, excess)| variance_of(found, alpha, VARIANCE_MARGIN * excess))
-        }
-        _ => None,
-    };
-    let has_variance = !variance.is_some_and(|variance| variance.is_refuted);
-    let terms = terms([is_free, has_variance], wanted, parts.len());
-    let whole_terms = Terms {
-        is_capped: true,
-        count: 1,
-        levels: Levels::new(SHARES[1] * alpha, whole.len()),
-        ..terms
-    };
-    let all = |parts: &[Part], terms: Terms, q: &[f64]| {
-        // Averages of pixels that depend on each other have a range alone.
-        let is_possible =
-            |part: &Part| is_free || pixels.truth_share > 0.0 || part.height * part.width == 1;
-        let one = |i: usize| {
-            if is_noisy && is_possible(&parts[i]) {
-                noisy::tile(stack, &pixels, parts[i], terms, q[i])
-            } else {
-                tiles::tile(stack, &pixels, parts[i], terms)
-            }
-        };
-        parallel::range(if refuting == 0 { parts.len() } else { 0 }, one)
-    };
-    let (mut tiles, mut whole) = (all(&parts, terms, &q_tiles), all(&whole, whole_terms, &q_whole));
-    let estimate =
+    let (q_tiles, q_whole) = (q(&parts), q(&wholes));
+    judgement.estimate =
         pixels.estimate.as_ref().map(|found| found.told(claim, size, tile, &parts, &q_tiles));
-    let is_judged = !order.is_refuted();
-    decide(&mut tiles, SHARES[0] * alpha, is_judged);
-    decide(&mut whole, SHARES[1] * alpha, is_judged);
-    let mut judgement = Judgement {
-        verdict: Verdict::Inconclusive,
-        reason: String::new(),
-        guarantees: Vec::new(),
-        alpha,
-        beta: MISS,
-        listed_rate: LISTED,
-        passes: stack.passes,
-        size,
-        tile,
-        refuted_by,
-        refuting,
-        order,
-        neighbours,
-        repeated,
-        variance,
-        estimate,
-        truth_passes: claim.truth_passes,
-        comparison: None,
-        worst: worst(&tiles),
-        counts: counts(&tiles),
-        whole,
-        tiles,
-    };
+    if is_whole {
+        let q = q_whole.iter().copied().fold(0.0, f64::max);
+        judgement.variance = variance_of(stack, &pixels, q, is_free, alpha);
+        let terms = Terms {
+            is_free,
+            has_variance: !judgement.variance.is_some_and(|variance| variance.is_refuted),
+            tolerance: wanted.tolerance,
+            is_capped: false,
+            count: parts.len(),
+            levels: Levels::new(main_share(2) * alpha, parts.len()),
+        };
+        let levels = Levels::new(SIDE_SHARE * alpha, wholes.len());
+        let whole_terms = Terms { is_capped: true, count: 1, levels, ..terms };
+        let mut tiles = evidence(stack, &pixels, &parts, terms, &q_tiles);
+        let mut whole = evidence(stack, &pixels, &wholes, whole_terms, &q_whole);
+        if !judgement.order.is_refuted() {
+            decide(&mut tiles, main_share(2) * alpha);
+            decide(&mut whole, SIDE_SHARE * alpha);
+        }
+        judgement.take(tiles, whole);
+    }
     verdict::decide(&mut judgement, &pixels, claim);
     Ok(judgement)
 }
 
-/// The terms of tiles.
-fn terms([is_free, has_variance]: [bool; 2], wanted: &Wanted, count: usize) -> Terms {
-    Terms {
-        is_free,
-        has_variance,
-        tolerance: wanted.tolerance,
-        is_capped: false,
-        count,
-        levels: Levels::new(SHARES[0] * wanted.alpha, count),
+/// Whether the truth or the variance is known with an error only.
+fn is_noisy(pixels: &Pixels) -> bool {
+    pixels.estimate.is_some() || pixels.truth_share > 0.0
+}
+
+/// The evidence on parts of the picture.
+fn evidence(stack: &Stack, pixels: &Pixels, parts: &[Part], terms: Terms, q: &[f64]) -> Vec<Tile> {
+    // Averages of pixels that depend on each other have a range alone.
+    let is_possible =
+        |part: Part| terms.is_free || pixels.truth_share > 0.0 || part.height * part.width == 1;
+    parallel::range(parts.len(), |i| {
+        if is_noisy(pixels) && is_possible(parts[i]) {
+            noisy::tile(stack, pixels, parts[i], terms, q[i])
+        } else {
+            tiles::tile(stack, pixels, parts[i], terms)
+        }
+    })
+}
+
+/// Decides tiles that share `alpha`.
+fn decide(tiles: &mut [Tile], alpha: f64) {
+    let evidence: Vec<Evidence> = tiles.iter().map(Tile::evidence).collect();
+    for (tile, joint) in tiles.iter_mut().zip(decide_together(&evidence, alpha)) {
+        (tile.verdict, tile.is_listed) = (joint.verdict(), joint.is_listed);
     }
 }
 
 /// Why images that were made of the passes judged are no grounds.
 fn own(stack: &Stack, pixels: &Pixels, claim: &Claim) -> Option<String> {
-    if same::is_own_truth(stack, pixels) {
+    if repeats::is_own_truth(stack, pixels) {
         return Some(
             "the truth image is the mean of these very passes; give that of others".to_owned(),
         );
     }
     if let Some(other) = &claim.variance_stack {
-        let [p, q] = same::shared(stack, other)?;
+        let [p, q] = repeats::shared(stack, other)?;
         return Some(format!(
             "pass {p} and pass {q} of the stack of the variance share values, counted from 0; give passes with \
              seeds of their own"
         ));
     }
-    let is_own = pixels.estimate.is_some() && same::is_own_variance(stack, pixels);
+    let is_own = pixels.estimate.is_some() && repeats::is_own_variance(stack, pixels);
     is_own.then(|| {
         "the variance image is that of these very passes; give that of others, or a bound on the kurtosis by \
          --kurtosis instead of it"
@@ -252,35 +225,15 @@ fn own(stack: &Stack, pixels: &Pixels, claim: &Claim) -> Option<String> {
     })
 }
 
-/// The first value that refutes the claim by itself, and how many do.
-fn refuted(stack: &Stack, pixels: &Pixels) -> (Option<Refuted>, u64) {
-    let size = stack.size;
-    let range = pixels.widened().unwrap_or([f64::NEG_INFINITY, f64::INFINITY]);
-    // What no value may be further away from than.
-    let bounds: Vec<f64> = (0..size.values())
-        .map(|i| if pixels.is_certain(i) { pixels.bound(i) } else { f64::MAX })
-        .collect();
+/// The first value that is wrong by itself, and the number of such values.
+fn refuted(stack: &Stack, is_right: impl Fn(usize, f64) -> bool) -> (Option<Refuted>, u64) {
     let (mut first, mut count) = (None, 0);
     for pass in 0..stack.passes {
         for (index, &value) in stack.pass(pass).iter().enumerate() {
-            let is_near = (value - pixels.truth[index]).abs() <= bounds[index];
-            if is_near && range[0] <= value && value <= range[1] {
-                continue;
+            if !is_right(index, value) {
+                count += 1;
+                first.get_or_insert_with(|| Refuted::at(stack.size, pass, index, value));
             }
-            count += 1;
-            first.get_or_insert_with(|| Refuted::at(size, pass, index, value));
-        }
-    }
-    (first, count)
-}
-
-/// The first value that is NaN or infinite, and the number of such values.
-fn not_finite(stack: &Stack) -> (Option<Refuted>, u64) {
-    let (mut first, mut count) = (None, 0);
-    for pass in 0..stack.passes {
-        for (index, &value) in stack.pass(pass).iter().enumerate().filter(|(_, x)| !x.is_finite()) {
-            count += 1;
-            first.get_or_insert_with(|| Refuted::at(stack.size, pass, index, value));
         }
     }
     (first, count)
@@ -292,7 +245,7 @@ fn limit(alpha: f64) -> f64 {
 }
 
 fn neighbours_of(stack: &Stack, alpha: f64) -> Dependence {
-    let (found, limit) = (neighbours::neighbours(stack), limit(alpha));
+    let (found, limit) = (order::neighbours(stack), limit(alpha));
     let mut said = Dependence {
         evidence: found.ln_e,
         limit,
@@ -341,38 +294,22 @@ fn order_of(stack: &Stack, is_certain: bool, alpha: f64) -> (Dependence, Vec<u32
     (said, repeated)
 }
 
-fn variance_of(found: spread::Squares, alpha: f64, margin: f64) -> Variance {
-    let limit = -(SHARES[2] * alpha).ln();
-    let spread::Squares { ln_e, about_truth, about_mean } = found;
-    // Means that are off make squares about the truth large, but not those about the mean.
-    let is_spread = about_mean - 1.0 >= 0.5 * (about_truth - 1.0);
-    Variance {
-        about_truth,
-        about_mean,
-        margin,
-        ln_e,
-        limit,
-        is_refuted: ln_e >= limit && is_spread,
-    }
-}
-
-/// Fail by Holm, pass by both sides, and the list.
-fn decide(tiles: &mut [Tile], alpha: f64, is_judged: bool) {
-    if !is_judged {
-        return;
-    }
-    let ln_e: Vec<f64> = tiles.iter().map(|tile| tile.ln_e).collect();
-    let p: Vec<f64> = ln_e.iter().map(|ln_e| (-ln_e).exp().min(1.0)).collect();
-    let rejected = holm(&p, tiles.len(), alpha);
-    for (tile, is_rejected) in tiles.iter_mut().zip(rejected) {
-        let has_passed = tile.ln_p.iter().all(|&ln_p| ln_p >= -MISS.ln());
-        tile.verdict = match (is_rejected, has_passed) {
-            (true, _) => Verdict::Fail,
-            (false, true) => Verdict::Pass,
-            (false, false) => Verdict::Inconclusive,
-        };
-    }
-    for index in e_benjamini_hochberg(&ln_e, LISTED) {
-        tiles[index].is_listed = true;
-    }
+/// Whether the claimed variance is too small; `None` where nothing is known of it, or rounding hides it.
+fn variance_of(
+    stack: &Stack,
+    pixels: &Pixels,
+    q: f64,
+    is_free: bool,
+    alpha: f64,
+) -> Option<Variance> {
+    let level = SIDE_SHARE * alpha;
+    let (found, excess) = if is_noisy(pixels) {
+        variance::pairs(stack, pixels, q, is_free, level)?
+    } else {
+        (variance::squares(stack, pixels, is_free)?, 1.0)
+    };
+    let variance::Squares { ln_e, about_truth, about_mean } = found;
+    let (margin, limit) = (VARIANCE_MARGIN * excess, -level.ln());
+    let is_refuted = ln_e >= limit && is_by_spread(about_truth, about_mean);
+    Some(Variance { about_truth, about_mean, margin, ln_e, limit, is_refuted })
 }

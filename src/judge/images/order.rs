@@ -1,4 +1,6 @@
-//! Whether passes depend on those shortly before them: their order against random orders.
+//! Whether passes depend on those shortly before them, and pixels on their neighbours.
+//!
+//! The order of the passes is compared with random orders:
 //!
 //! ```text
 //! G_pq = Σ_i (x_pi − x̄_i)(x_qi − x̄_i)/s_i²                              over the pixels i that vary
@@ -15,6 +17,8 @@
 //! after 20 orders with a T as large.
 
 use super::picture::Stack;
+use gate::stats::capital::ln_mean_exp;
+use gate::stats::independence::Signs;
 use numeric::rng::{Address, unit};
 use theory::parallel;
 
@@ -133,6 +137,51 @@ fn standardise(values: &mut [f64]) -> bool {
     deviation.is_finite() && deviation > 1e-14 * mean.abs()
 }
 
+/// What was found.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Neighbours {
+    /// ln E.
+    pub ln_e: f64,
+    /// The stronger of the two correlations.
+    pub correlation: f64,
+}
+
+/// Compares each pixel with a neighbour: exact signs, as `stats::independence` takes of draws.
+///
+/// ```text
+/// a = x_pi − x_qi,  b = x_pj − x_qj    for passes p, q = 2k, 2k + 1 and neighbours i, j, each in one pair
+/// of independent pixels ab is as often positive as negative (exchange x_pi and x_qi)
+/// E = mean of e for neighbours in a row and for neighbours in a column
+/// ```
+///
+/// A filter that blends pixels, or one seed for all of them, makes ab positive; samples that are spread over
+/// the picture like blue noise make it negative. The channels of a pixel, which share paths, are added up.
+pub(super) fn neighbours(stack: &Stack) -> Neighbours {
+    let (rows, columns) = (stack.size.rows, stack.size.columns);
+    let mut questions = [Signs::default(); 2];
+    for first in (0..stack.passes - 1).step_by(2) {
+        let apart = |row: usize, column: usize| {
+            let pixel = row * columns + column;
+            stack.grey(first, pixel) - stack.grey(first + 1, pixel)
+        };
+        for row in 0..rows {
+            for column in 0..columns {
+                let here = apart(row, column);
+                if column % 2 == 1 {
+                    questions[0].add(apart(row, column - 1), here);
+                }
+                if row % 2 == 1 {
+                    questions[1].add(apart(row - 1, column), here);
+                }
+            }
+        }
+    }
+    let [row, column] = &questions;
+    let stronger = if row.ln_e() > column.ln_e() { row } else { column };
+    let ln_e = ln_mean_exp(&questions.map(|signs| signs.ln_e()));
+    Neighbours { ln_e, correlation: stronger.correlation() }
+}
+
 #[cfg(test)]
 mod tests {
     use super::super::picture::Size;
@@ -180,5 +229,30 @@ mod tests {
     fn what_does_not_vary_says_nothing() {
         let size = Size { rows: 1, columns: 2, channels: 1 };
         assert_eq!(order(&Stack::new(3, size, vec![0.1; 6]).expect("a stack")), None);
+    }
+
+    /// Two passes of 64 × 64 pixels that are blended with the pixels to the left and above.
+    fn blended(seed: u64, blend: f64) -> Stack {
+        let size = Size { rows: 64, columns: 64, channels: 1 };
+        let mut rng = Address { seed, experiment: 9, block: 0, lane: 0 }.stream();
+        let mut values = Vec::new();
+        for _ in 0..2 {
+            let noise: Vec<f64> = (0..65 * 65).map(|_| unit(&mut rng).powi(8)).collect();
+            for (row, column) in (0..64).flat_map(|row| (0..64).map(move |column| (row, column))) {
+                let at = |row: usize, column: usize| noise[row * 65 + column];
+                let others = at(row, column + 1) + at(row + 1, column);
+                values.push(at(row + 1, column + 1) + blend * others);
+            }
+        }
+        Stack::new(2, size, values).expect("a stack")
+    }
+
+    #[test]
+    fn blended_pixels_are_found_and_independent_ones_are_not() {
+        for seed in 0..200 {
+            assert!(neighbours(&blended(seed, 0.0)).ln_e < 7.6, "seed {seed}");
+        }
+        let found = neighbours(&blended(1, 0.3));
+        assert!(found.ln_e > 20.0 && (0.15..0.4).contains(&found.correlation), "{found:?}");
     }
 }

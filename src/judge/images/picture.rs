@@ -2,7 +2,7 @@
 
 use std::num::NonZeroUsize;
 
-use super::error::ImageError;
+use super::claim::ImageError;
 
 /// How large a picture is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
@@ -24,6 +24,12 @@ impl Size {
     /// How many values there are.
     pub fn values(self) -> usize {
         self.pixels() * self.channels
+    }
+
+    /// Row, column and channel of a value, each from 0.
+    pub(super) fn place(self, index: usize) -> [usize; 3] {
+        let (pixel, channel) = (index / self.channels, index % self.channels);
+        [pixel / self.columns, pixel % self.columns, channel]
     }
 }
 
@@ -149,6 +155,22 @@ impl Stack {
     pub(super) fn pass(&self, pass: usize) -> &[f64] {
         let length = self.size.values();
         &self.values[pass * length..(pass + 1) * length]
+    }
+
+    /// A value in all passes.
+    fn all(&self, index: usize) -> impl Iterator<Item = f64> {
+        (0..self.passes).map(move |pass| self.pass(pass)[index])
+    }
+
+    /// The mean of a value over the passes.
+    pub(super) fn mean(&self, index: usize) -> f64 {
+        self.all(index).sum::<f64>() / self.passes as f64
+    }
+
+    /// The sample variance of a value over the passes.
+    pub(super) fn variance(&self, index: usize) -> f64 {
+        let mean = self.mean(index);
+        self.all(index).map(|x| (x - mean).powi(2)).sum::<f64>() / (self.passes as f64 - 1.0)
     }
 
     /// The sum of a pixel's channels in a pass.

@@ -15,7 +15,7 @@
 use super::claim::Pixels;
 use super::judgement::Tile;
 use super::picture::{Size, Stack};
-use crate::judge::{Ground, Levels, Quantity, Scalar};
+use crate::judge::{AT_THE_END, Ground, Levels, Quantity, Scalar};
 use gate::session::quantity::MEAN_CAP;
 use gate::stats::gate::PLANNED;
 use gate::stats::normal::{upper_quantile, upper_tail};
@@ -50,7 +50,7 @@ pub(super) struct Terms {
 }
 
 /// s²: how many V/ε² a part is planned for, so that all `count` of them pass.
-pub(super) fn planned_units(count: usize) -> f64 {
+fn planned_units(count: usize) -> f64 {
     let z = upper_quantile(0.025 / count.max(1) as f64);
     // The mean and the spread of ln P± of n normal draws, in units of s: κ − κ²ρ/2 and κ, κ = 0.6, ρ = 1.1.
     let (gain, noise, needed) = (0.402, 0.6 * z, -MISS.ln());
@@ -83,27 +83,65 @@ impl Part {
     }
 }
 
-/// A tile of which nothing is known but its truth, its mean and the standard error of that.
-pub(super) fn empty(part: Part, [truth, mean, standard_error]: [f64; 3]) -> Tile {
-    let z = if mean == truth { 0.0 } else { (mean - truth) / standard_error };
-    let z = Some(z).filter(|z| z.is_finite());
-    Tile {
-        size: part.size,
-        row: part.row,
-        column: part.column,
-        height: part.height,
-        width: part.width,
-        channel: part.channel,
-        truth,
-        mean,
-        standard_error,
-        z,
-        p: z.map(|z| 2.0 * upper_tail(z.abs())),
-        ln_e: 0.0,
-        ln_p: [f64::NEG_INFINITY; 2],
-        tolerance: None,
-        is_listed: false,
-        verdict: Verdict::Inconclusive,
+/// The mean of numbers at some places.
+pub(super) fn mean_at(places: &[usize], of: impl Fn(usize) -> f64) -> f64 {
+    places.iter().map(|&i| of(i)).sum::<f64>() / places.len() as f64
+}
+
+impl Tile {
+    /// A tile of which nothing is known but its truth, its mean and the standard error of that.
+    pub(super) fn new(part: Part, [truth, mean, standard_error]: [f64; 3]) -> Self {
+        let z = if mean == truth { 0.0 } else { (mean - truth) / standard_error };
+        let z = Some(z).filter(|z| z.is_finite());
+        Self {
+            size: part.size,
+            row: part.row,
+            column: part.column,
+            height: part.height,
+            width: part.width,
+            channel: part.channel,
+            truth,
+            mean,
+            standard_error,
+            z,
+            p: z.map(|z| 2.0 * upper_tail(z.abs())),
+            ln_e: 0.0,
+            ln_p: [f64::NEG_INFINITY; 2],
+            tolerance: None,
+            is_listed: false,
+            verdict: Verdict::Inconclusive,
+        }
+    }
+
+    /// A tile without spread, all of whose values are its truth within `tolerance`.
+    pub(super) fn without_doubt(self, tolerance: f64) -> Self {
+        Self { tolerance: Some(tolerance), ln_p: [f64::INFINITY; 2], ..self }
+    }
+
+    /// −ln of the tails of a distribution beyond a bias of +ε and of −ε, for a mean with this standard error; all in units
+    /// of `unit`.
+    pub(super) fn sides(
+        &self,
+        tolerance: f64,
+        [error, unit]: [f64; 2],
+        tail: impl Fn(f64) -> f64,
+    ) -> [f64; 2] {
+        let off = (self.mean - self.truth) / unit;
+        [tolerance - off, tolerance + off].map(|room| -tail(room / error).ln())
+    }
+
+    /// Sets ε, at `quantiles` standard errors if none was asked for, and P± by the tails of a distribution.
+    pub(super) fn promise(
+        &mut self,
+        asked: Option<f64>,
+        is_capped: bool,
+        quantiles: f64,
+        [error, unit]: [f64; 2],
+        tail: impl Fn(f64) -> f64,
+    ) {
+        let cap = if is_capped { MEAN_CAP } else { f64::INFINITY };
+        let tolerance = asked.unwrap_or((quantiles * error).min(cap));
+        (self.tolerance, self.ln_p) = (Some(tolerance), self.sides(tolerance, [error, unit], tail));
     }
 }
 
@@ -112,43 +150,31 @@ pub(super) fn tile(stack: &Stack, pixels: &Pixels, part: Part, terms: Terms) -> 
     let places: Vec<usize> = part.places(stack).collect();
     let count = places.len() as f64;
     let unit = pixels.units[part.channel];
-    let mean_of = |of: &dyn Fn(usize) -> f64| places.iter().map(|&i| of(i)).sum::<f64>() / count;
-    let truth = mean_of(&|i| pixels.truth[i]);
+    let truth = mean_at(&places, |i| pixels.truth[i]);
     let is_single = places.len() == 1;
     let is_free = terms.is_free || is_single;
     let variance = pixels.variance.as_ref().filter(|_| terms.has_variance && is_free);
-    let variance = variance.map(|variance| mean_of(&|i| variance[i]));
-    let averages: Vec<f64> = (0..stack.passes)
-        .map(|pass| {
-            let values = stack.pass(pass);
-            mean_of(&|i| values[i])
-        })
-        .collect();
+    let variance = variance.map(|variance| mean_at(&places, |i| variance[i]));
+    let averages: Vec<f64> =
+        (0..stack.passes).map(|pass| mean_at(&places, |i| stack.pass(pass)[i])).collect();
     let n = stack.passes as f64;
     let mean = averages.iter().sum::<f64>() / n;
     let shown = averages.iter().map(|x| (x - mean) * (x - mean)).sum::<f64>() / (n - 1.0);
     let standard_error = (variance.map_or(shown, |variance| variance / count) / n).sqrt();
-    let mut found = empty(part, [truth, mean, standard_error]);
+    let mut found = Tile::new(part, [truth, mean, standard_error]);
     if places.iter().all(|&i| pixels.is_certain(i)) {
         // What has no spread was compared with its truth, value by value.
-        (found.tolerance, found.ln_p) = (Some(0.0), [f64::INFINITY; 2]);
-        return found;
+        return found.without_doubt(0.0);
     }
     let draws = if is_free { n * count } else { n };
-    let limits =
-        |x: f64, of: fn(f64, f64) -> f64| places.iter().map(|&i| pixels.truth[i]).fold(x, of);
-    let [least, most] = if is_free {
-        [limits(f64::INFINITY, f64::min), limits(f64::NEG_INFINITY, f64::max)]
-    } else {
-        [truth; 2]
-    };
     let known = variance.map(|variance| Ground::Variance(variance / unit / unit));
     let bounded = pixels.kurtosis.filter(|_| pixels.variance.is_none() && is_free);
     let bounded = bounded.map(Ground::Kurtosis);
     let levels = if known.is_none() && bounded.is_some() { terms.levels } else { AT_THE_END };
+    let truths = if is_free { pixels.truths(&places) } else { vec![truth] };
     let mean_quantity = Quantity {
-        range: pixels.widened().map(|[low, high]| [(low - most) / unit, (high - least) / unit]),
-        ..terms.mean(known.or(bounded), mean_of(&|i| pixels.floor(i)) / unit)
+        range: pixels.range_about(&truths, unit),
+        ..terms.mean(known.or(bounded), mean_at(&places, |i| pixels.floor(i)) / unit)
     };
     let of_block = |first: usize, last: usize, y: &mut Vec<f64>| {
         if is_free {
@@ -160,16 +186,13 @@ pub(super) fn tile(stack: &Stack, pixels: &Pixels, part: Part, terms: Terms) -> 
             y.extend(averages[first..last].iter().map(|x| (x - truth) / unit));
         }
     };
-    let scalar = judged(mean_quantity, Some(terms.planned(draws)), levels, stack.passes, of_block);
+    let planned = Some(terms.planned(draws));
+    let scalar = Scalar::of_all(mean_quantity, planned, levels, stack.passes, of_block);
     (found.ln_e, found.ln_p) = (scalar.evidence.ln_e, scalar.evidence.ln_pass);
     found.tolerance = scalar.design.map(|design| design.tolerance);
     if let (Some(tolerance), true, false) = (found.tolerance, variance.is_some(), is_single) {
         // Catoni's function hardly sees a bias that sits in one pixel of many; the plain mean does.
-        let (off, error) = ((mean - truth) / unit, standard_error / unit);
-        let sides = [tolerance - off, tolerance + off].map(|room| {
-            // −ln of the normal law's upper tail
-            -upper_tail(room / error).ln()
-        });
+        let sides = found.sides(tolerance, [standard_error / unit, unit], upper_tail);
         found.ln_p = [0, 1].map(|side| found.ln_p[side].min(sides[side]));
     }
     found
@@ -209,46 +232,10 @@ fn spans(length: usize, size: usize, is_joined: bool) -> Vec<(usize, usize)> {
 }
 
 /// The whole picture, each channel.
-pub(super) fn wholes(size: Size) -> Vec<Part> {
-    let Size { rows, columns, channels } = size;
-    let part = |channel| Part {
-        size: rows.max(columns),
-        row: 0,
-        column: 0,
-        height: rows,
-        width: columns,
-        channel,
-    };
+pub(super) fn wholes(Size { rows, columns, channels }: Size) -> Vec<Part> {
+    let size = rows.max(columns);
+    let part = |channel| Part { size, row: 0, column: 0, height: rows, width: columns, channel };
     (0..channels).map(part).collect()
-}
-
-/// Levels that nothing reaches before the end.
-pub(super) const AT_THE_END: Levels = Levels { ln_fail: f64::INFINITY, ln_pass: f64::INFINITY };
-
-/// Judges a quantity of `blocks` passes, or of other blocks; `y` adds those of the blocks from one number up to another.
-///
-/// Stakes on a range learn from the passes before: the gate gets as many passes at once as all before them.
-pub(super) fn judged(
-    quantity: Quantity,
-    planned: Option<f64>,
-    levels: Levels,
-    blocks: usize,
-    mut y: impl FnMut(usize, usize, &mut Vec<f64>),
-) -> Scalar {
-    let (mut scalar, mut values) = (Scalar::new(quantity, planned, levels), Vec::new());
-    for (first, last) in doubling(blocks) {
-        values.clear();
-        y(first, last, &mut values);
-        scalar.absorb(&values);
-    }
-    scalar.decide();
-    scalar
-}
-
-/// The passes in blocks: 1, 1, 2, 4, 8, …
-fn doubling(passes: usize) -> impl Iterator<Item = (usize, usize)> {
-    let begins = std::iter::successors(Some(0_usize), |&at| Some((2 * at).max(1)));
-    begins.take_while(move |&at| at < passes).map(move |at| (at, (2 * at).max(1).min(passes)))
 }
 
 #[cfg(test)]
@@ -260,10 +247,7 @@ mod tests {
         assert_eq!(planned_units(1), 27.0);
         // z = 4.33 and 4.95 for 0.025/K: 0.402 s² − 0.6 z s − 4.605 = 0.
         for (count, s) in [(4096, 7.966), (65_536, 8.697)] {
-            let found = planned_units(count).sqrt();
-            let z = upper_quantile(0.025 / count as f64);
-            assert!((0.402 * found * found - 0.6 * z * found - 4.605_17).abs() < 1e-4);
-            assert!((found - s).abs() < 1e-3, "{count}: {found}");
+            assert!((planned_units(count).sqrt() - s).abs() < 1e-3, "{count}");
         }
     }
 
@@ -273,11 +257,5 @@ mod tests {
         assert_eq!(spans(18, 8, true), [(0, 8), (8, 10)]);
         assert_eq!(spans(20, 8, true), [(0, 8), (8, 8), (16, 4)]);
         assert_eq!(spans(3, 8, true), [(0, 3)]);
-    }
-
-    #[test]
-    fn blocks_double_and_cover_all_passes() {
-        let blocks: Vec<_> = doubling(11).collect();
-        assert_eq!(blocks, [(0, 1), (1, 2), (2, 4), (4, 8), (8, 11)]);
     }
 }

@@ -1,75 +1,127 @@
-//! What is said of a stack, and in which order.
+//! What is said of a stack, and of two stacks; the order is that of a session.
 
 use super::claim::{Claim, Pixels};
-use super::judgement::{Judgement, Refuted, Tile};
+use super::judgement::{Comparison, Judgement, Refuted, Tile};
+use crate::judge::{Reasons, SIDE_SHARE};
 use gate::deviation::{Deviation, signed_percent};
 use gate::stats::verdict::Verdict;
 use numeric::digits::{percent, short};
 
-/// The verdict of the whole, and what it promises.
+/// The verdict on a stack, and what it promises.
 pub(super) fn decide(judgement: &mut Judgement, pixels: &Pixels, claim: &Claim) {
-    let (verdict, reason) = said(judgement, pixels, claim);
-    (judgement.verdict, judgement.reason) = (verdict, reason);
+    let refuted = judgement.refuted_by;
+    let refuted = refuted.map(|refuted| fault(judgement, refuted, pixels));
+    let mut failing: Vec<String> = too_small(judgement).into_iter().collect();
+    // Where the variance is refuted, no tile fails by it; the one that stands out may tell why.
+    let strange = furthest(judgement.tiles.iter());
+    if let Some(tile) = strange.filter(|_| judgement.counts.fail == 0 && !failing.is_empty()) {
+        failing.push(format!(
+            "what stands out most, {}: {} (not judged by that variance; give a range, too)",
+            place(judgement, tile),
+            off(judgement, tile)
+        ));
+    }
+    failing.extend(means_off(judgement, judgement.worst.first()));
+    let open = open(judgement, claim);
+    finish(judgement, Reasons { refuted, failing, open, ..Reasons::default() });
     judgement.guarantees = guarantees(judgement, claim);
 }
 
-fn said(judgement: &Judgement, pixels: &Pixels, claim: &Claim) -> (Verdict, String) {
-    if let Some(refuted) = judgement.refuted_by {
-        return (Verdict::Fail, fault(judgement, refuted, pixels));
-    }
-    if judgement.order.is_refuted() {
-        let reason = format!("{}; the means are not judged", judgement.order.reason);
-        return (Verdict::Inconclusive, reason);
-    }
+/// The verdict on two stacks, and what it promises; `differing` is how many tiles differ by the test of equal distributions
+/// alone.
+pub(super) fn decide_against(judgement: &mut Judgement, comparison: &Comparison, differing: usize) {
+    let refuted = judgement.refuted_by.map(|refuted| {
+        let Refuted { pass, row, column, value, .. } = refuted;
+        let count = judgement.refuting;
+        format!(
+            "numeric: pass {pass}, row {row}, column {column} is {value}, all counted from 0; values like that: {count}"
+        )
+    });
     let mut failing = Vec::new();
-    if let Some(variance) = judgement.variance.filter(|variance| variance.is_refuted) {
+    if comparison.is_same_law && comparison.spread_p <= SIDE_SHARE * judgement.alpha {
+        let times = |x| format!("{} times as wide", short(x, 4));
+        let spread = comparison.spread.map_or("differently".to_owned(), times);
+        let p = short(comparison.spread_p, 2);
         failing.push(format!(
-            "the variance is too small: values spread {:.3} times as wide, {} (ln E = {:.1} ≥ {:.1}){}",
-            variance.about_mean,
-            signed_percent(variance.about_mean - 1.0),
-            variance.ln_e,
-            variance.limit,
-            match judgement.estimate {
-                Some(_) => "",
-                None => "; if it was estimated from N other passes, say so by --variance-passes N",
-            }
+            "the variance is off: the passes spread {spread} as those of the reference (p = {p})"
         ));
-        // Where the variance is refuted, no tile fails by it; the one that stands out may tell why.
-        let size = |tile: &&Tile| tile.z.map_or(0.0, f64::abs);
-        let strange = judgement.tiles.iter().max_by(|a, b| size(a).total_cmp(&size(b)));
-        if let Some(tile) = strange.filter(|_| judgement.counts.fail == 0) {
-            failing.push(format!(
-                "what stands out most, {}: {} (not judged by that variance; give a range, too)",
-                place(judgement, tile),
-                off(judgement, tile)
-            ));
+    }
+    let failed = judgement.tiles.iter().filter(|tile| tile.verdict == Verdict::Fail);
+    failing.extend(means_off(judgement, furthest(failed)));
+    let open = open_against(judgement, comparison, differing);
+    finish(judgement, Reasons { refuted, failing, open, ..Reasons::default() });
+    judgement.guarantees = guarantees_against(judgement, comparison);
+}
+
+/// Sets the verdict and its reason.
+fn finish(judgement: &mut Judgement, reasons: Reasons) {
+    let order = &judgement.order;
+    let not_judged = || format!("{}; the means are not judged", order.reason);
+    let (dependent, passing) = (order.is_refuted().then(not_judged), excluded(judgement));
+    let reasons = Reasons { dependent, passing, ..reasons };
+    (judgement.verdict, judgement.reason) = reasons.verdict();
+}
+
+/// The tile with the largest |z|.
+fn furthest<'a>(tiles: impl Iterator<Item = &'a Tile>) -> Option<&'a Tile> {
+    let size = |tile: &&Tile| tile.z.map_or(0.0, f64::abs);
+    tiles.max_by(|a, b| size(a).total_cmp(&size(b)))
+}
+
+/// That the variance is refuted.
+fn too_small(judgement: &Judgement) -> Option<String> {
+    let variance = judgement.variance.filter(|variance| variance.is_refuted)?;
+    Some(format!(
+        "the variance is too small: values spread {:.3} times as wide, {} (ln E = {:.1} ≥ {:.1}){}",
+        variance.about_mean,
+        signed_percent(variance.about_mean - 1.0),
+        variance.ln_e,
+        variance.limit,
+        match judgement.estimate {
+            Some(_) => "",
+            None => "; if it was estimated from N other passes, say so by --variance-passes N",
         }
-    }
-    for whole in judgement.whole.iter().filter(|whole| whole.verdict == Verdict::Fail) {
-        failing.push(format!("the picture is off: {}", off(judgement, whole)));
-    }
+    ))
+}
+
+/// What fails of the means.
+fn means_off(judgement: &Judgement, worst: Option<&Tile>) -> Vec<String> {
+    let fails = |whole: &&Tile| whole.verdict == Verdict::Fail;
+    let whole = |whole| format!("the picture is off: {}", off(judgement, whole));
+    let mut failing: Vec<String> = judgement.whole.iter().filter(fails).map(whole).collect();
     if judgement.counts.fail > 0 {
         let (fail, tiles) = (judgement.counts.fail, judgement.counts.tiles);
-        let worst = judgement.worst.first().map_or(String::new(), |worst| {
+        let worst = worst.map_or(String::new(), |worst| {
             format!("; the worst, {}: {}", place(judgement, worst), off(judgement, worst))
         });
         failing.push(format!("{fail} of {tiles} tiles are off{worst}"));
     }
-    if !failing.is_empty() {
-        return (Verdict::Fail, failing.join("; "));
-    }
-    let open = open(judgement, claim);
-    if open.is_empty() {
-        return (Verdict::Pass, excluded(judgement));
-    }
-    (Verdict::Inconclusive, open.join("; "))
+    failing
+}
+
+/// What is not decided of the means.
+fn means_open(judgement: &Judgement) -> Vec<String> {
+    let undecided = |tile: &&Tile| tile.verdict != Verdict::Pass;
+    let whole = |whole| format!("the picture may be off {}; render more passes", bias(whole));
+    let whole = judgement.whole.iter().find(undecided).map(whole);
+    let count = judgement.tiles.iter().filter(undecided).count();
+    let tile = judgement.tiles.iter().find(undecided).map(|tile| {
+        format!(
+            "{count} of {} tiles may be off, the first, {}, {}; render more passes, or give a larger --tile or a wider \
+             --tolerance",
+            judgement.counts.tiles,
+            place(judgement, tile),
+            bias(tile)
+        )
+    });
+    whole.into_iter().chain(tile).collect()
 }
 
 /// The widest ε, in units of the picture's mean, that a pass needs no words for.
 const WIDE: f64 = 0.05;
 
 /// The bias that a pass excludes, in words, where it is large: the widest ε of all tiles and of the whole.
-pub(super) fn excluded(judgement: &Judgement) -> String {
+fn excluded(judgement: &Judgement) -> Vec<String> {
     let widest =
         |tiles: &[Tile]| tiles.iter().filter_map(|tile| tile.tolerance).fold(0.0, f64::max);
     let (tile, whole) = (widest(&judgement.tiles), widest(&judgement.whole));
@@ -89,7 +141,7 @@ pub(super) fn excluded(judgement: &Judgement) -> String {
     if unknown > 0 {
         said.push(format!("{unknown} values without a variance are not judged"));
     }
-    said.join("; ")
+    said
 }
 
 /// What keeps a picture that does not fail from passing.
@@ -135,32 +187,19 @@ fn open(judgement: &Judgement, claim: &Claim) -> Vec<String> {
             variance.about_mean
         ));
     }
-    let undecided = |tile: &&Tile| tile.verdict != Verdict::Pass;
-    if let Some(whole) = judgement.whole.iter().find(undecided) {
-        open.push(format!("the picture may be off {}; render more passes", bias(whole)));
-    }
-    let count = judgement.tiles.iter().filter(undecided).count();
-    if let Some(tile) = judgement.tiles.iter().find(undecided) {
-        open.push(format!(
-            "{count} of {} tiles may be off, the first, {}, {}; render more passes, or give a larger \
-             --tile or a wider --tolerance",
-            judgement.counts.tiles,
-            place(judgement, tile),
-            bias(tile)
-        ));
-    }
+    open.extend(means_open(judgement));
     open
 }
 
 /// ε in words.
-pub(super) fn bias(tile: &Tile) -> String {
+fn bias(tile: &Tile) -> String {
     tile.tolerance.map_or("by any amount".to_owned(), |tolerance| {
         format!("by {:.2} % of the picture's mean or more", 100.0 * tolerance)
     })
 }
 
 /// Where a tile is.
-pub(super) fn place(judgement: &Judgement, tile: &Tile) -> String {
+fn place(judgement: &Judgement, tile: &Tile) -> String {
     let span = |what: &str, first: usize, count: usize| match count {
         1 => format!("{what} {first}"),
         _ => format!("{what}s {first} to {}", first + count - 1),
@@ -174,7 +213,7 @@ fn channel(judgement: &Judgement, channel: usize) -> String {
     if judgement.size.channels > 1 { format!(", channel {channel}") } else { String::new() }
 }
 
-pub(super) fn off(judgement: &Judgement, tile: &Tile) -> String {
+fn off(judgement: &Judgement, tile: &Tile) -> String {
     let told = Deviation::new(tile.mean, tile.truth, judgement.passes as u64)
         .with_z(tile.z.unwrap_or(f64::NAN));
     let told = Deviation { unit: "passes", ..told };
@@ -296,6 +335,70 @@ fn guarantees(judgement: &Judgement, claim: &Claim) -> Vec<String> {
             "of the {} tiles on the list, a share of {} at most is right, on average",
             judgement.counts.listed, judgement.listed_rate
         ));
+    }
+    said
+}
+
+/// What keeps two stacks that do not fail from passing.
+fn open_against(judgement: &Judgement, comparison: &Comparison, differing: usize) -> Vec<String> {
+    let mut open = Vec::new();
+    if differing > 0 {
+        let p = short(comparison.p, 2);
+        let (why, cure) = if judgement.neighbours.is_refuted() {
+            (
+                "pixels depend on each other, so that nothing follows for means of different laws",
+                "judge averages of blocks wider than the filter by --average N",
+            )
+        } else {
+            (
+                "with the kurtosis of these values it may be the shape of the law and not its mean",
+                "render more passes",
+            )
+        };
+        let all = judgement.tiles.len() + judgement.whole.len();
+        open.push(format!(
+            "the stacks have different laws in {differing} of {all} tiles and wholes (p = {p}), but {why}; {cure}, or claim by \
+             --same-law that both renderers have one law in each pixel"
+        ));
+    }
+    if comparison.method == "none" {
+        open.push(
+            "the passes are too few to be exchanged, and pixels depend on each other; render 8 passes or more of each stack"
+                .to_owned(),
+        );
+    }
+    open.extend(means_open(judgement));
+    open
+}
+
+fn guarantees_against(judgement: &Judgement, comparison: &Comparison) -> Vec<String> {
+    let alpha = judgement.alpha;
+    let pixels = if comparison.method == "signs" { ", and pixels are independent," } else { "" };
+    let mut said = vec![format!(
+        "if both stacks have one law in every pixel{pixels} they fail with chance {alpha} at most: exact, for any law and \
+         number of passes"
+    )];
+    if !comparison.is_same_law {
+        let kurtosis = comparison
+            .kurtosis
+            .map_or(String::new(), |k| format!(" ({} as measured)", short(k, 3)));
+        said.push(format!(
+            "if only their means are equal the level {alpha} is nominal: it assumes independent pixels and that no tile has a \
+             larger kurtosis than these passes show{kurtosis}; rare values that neither stack drew may carry a mean"
+        ));
+    }
+    said.push(format!(
+        "a picture, or a tile, that is off by its tolerance passes with chance {} at most: nominal, by averages that are near \
+         normal",
+        judgement.beta
+    ));
+    if judgement.neighbours.is_refuted() {
+        said.push(format!("{}: averages of whole passes are judged", judgement.neighbours.reason));
+    }
+    if !judgement.order.is_tested {
+        said.push(
+            "the passes are too few to see whether each depends on the one before".to_owned(),
+        );
     }
     said
 }

@@ -12,11 +12,16 @@ use std::fmt::Write;
 /// The widest word at the left.
 const INDENT: usize = 10;
 
-/// The block, `width` columns wide.
+/// The block on draws, `width` columns wide.
 pub fn block(judgement: &Judgement, name: &str, width: usize) -> String {
+    lines(&judgement.lines(name), width)
+}
+
+/// Lines, each with a word at its left, `width` columns wide.
+fn lines(lines: &[(&str, String)], width: usize) -> String {
     let mut text = String::new();
-    for (word, what) in judgement.lines(name) {
-        for (i, part) in wrapped(&what, width.max(40) - INDENT).iter().enumerate() {
+    for (word, what) in lines {
+        for (i, part) in wrapped(what, width.max(40) - INDENT).iter().enumerate() {
             let word = if i == 0 { word } else { "" };
             let _ = writeln!(text, "{word:INDENT$}{part}");
         }

@@ -1,10 +1,8 @@
-//! What is asked of an estimator: where its draws come from, and what they should be.
+//! What a check asks of an estimator: where its draws come from, and what they should be.
 
-use super::error::CheckError;
-use super::made::{Closure, Factory};
-use super::said::Said;
-use super::sample::Sample;
-use crate::session::{ClaimError, Lookups, Session, Theory};
+use super::made::{Closure, Factory, Sample};
+use super::outcome::{CheckError, CheckFault};
+use crate::session::{Claim, Lookups, ROUNDING, Session, Taken, Theory, Wanted};
 use numeric::rng::Stream;
 
 /// More values of a draw than this are not judged together: each has lost its share of α.
@@ -202,16 +200,163 @@ impl<S> Check<S> {
         has_lookups: bool,
         length: Option<u64>,
     ) -> Result<Session, CheckError> {
-        let (name, said) = (|| self.name.clone(), &self.said);
-        if values == 0 {
-            return Err(CheckError::NoValues { name: name() });
+        let said = &self.said;
+        let session = || match values {
+            0 => Err(CheckFault::NoValues),
+            1..=MAX_VALUES => {
+                let claims = said.claims(values, has_lookups)?;
+                Session::new(&claims, said.wanted, length, said.taken(has_lookups))
+                    .map_err(CheckFault::Claim)
+            }
+            _ => Err(CheckFault::TooManyValues(values)),
+        };
+        session().map_err(|fault| fault.of(&self.name))
+    }
+}
+
+/// What is known of a draw, and what is wanted of the verdict.
+#[derive(Debug, Clone)]
+pub(super) struct Said {
+    pub(super) truth: Option<Values>,
+    pub(super) variance: Option<Values>,
+    pub(super) kurtosis: Option<Values>,
+    pub(super) range: Option<[f64; 2]>,
+    pub(super) lookups: Option<Lookups>,
+    pub(super) rounding: f64,
+    /// Theory of the draw, or the reason why it is missing.
+    pub(super) theory: Option<Result<Theory, String>>,
+    /// Number of values of a draw, where the caller gave it.
+    pub(super) values: Option<usize>,
+    pub(super) mean_only: bool,
+    /// Error rate, tolerances and number of draws.
+    pub(super) wanted: Wanted,
+    pub(super) seed: u64,
+}
+
+impl Default for Said {
+    fn default() -> Self {
+        Self {
+            truth: None,
+            variance: None,
+            kurtosis: None,
+            range: None,
+            lookups: None,
+            rounding: ROUNDING,
+            theory: None,
+            values: None,
+            mean_only: false,
+            wanted: Wanted::default(),
+            seed: 1,
         }
-        if values > MAX_VALUES {
-            return Err(CheckError::TooManyValues { name: name(), values, most: MAX_VALUES });
+    }
+}
+
+impl Said {
+    /// Number of values of a pushed draw.
+    pub(super) fn values(&self) -> usize {
+        let truths = self.truth.as_ref().map_or(1, |Values(list)| list.len());
+        let known = self.known().map_or(truths, |theory| theory.channels.len());
+        self.values.unwrap_or(known.max(1))
+    }
+
+    /// The theory of the draw.
+    fn known(&self) -> Option<&Theory> {
+        self.theory.as_ref().and_then(|theory| theory.as_ref().ok())
+    }
+
+    /// Whether only the mean comes from theory: averages of draws have another variance and distribution.
+    fn is_mean_only(&self) -> bool {
+        self.mean_only || self.wanted.batch > 1
+    }
+
+    /// Whether theory says what lookups should be.
+    pub(super) fn knows_lookups(&self) -> bool {
+        let first = self.known().and_then(|theory| theory.channels.first());
+        !self.is_mean_only() && first.is_some_and(|(_, claim)| claim.lookups.is_some())
+    }
+
+    /// The names of the values, where theory has any.
+    pub(super) fn names(&self, values: usize) -> Vec<String> {
+        let channels = self.known().and_then(|theory| theory.channels_of(values));
+        let names = channels.unwrap_or_default().iter().map(|(name, _)| name.clone());
+        if values > 1 { names.collect() } else { Vec::new() }
+    }
+
+    /// What a session takes from theory.
+    pub(super) fn taken(&self, has_lookups: bool) -> Option<Taken<'_>> {
+        // Numbers of the caller's are not those that theory has the distribution of.
+        let has_lookups = has_lookups && self.lookups.is_none() && self.knows_lookups();
+        let theory = self.known()?;
+        Some(Taken { theory, has_lookups, is_mean_only: self.mean_only })
+    }
+
+    /// Whether a pushed draw tells its lookups.
+    pub(super) fn has_lookups(&self) -> bool {
+        self.lookups.is_some()
+    }
+
+    /// What is claimed of each value of a draw.
+    pub(super) fn claims(&self, values: usize, lookups: bool) -> Result<Vec<Claim>, CheckFault> {
+        if self.lookups.is_some() && !lookups {
+            return Err(CheckFault::NoLookups);
         }
-        let claims = said.claims(&self.name, values, has_lookups)?;
-        let session = Session::new(&claims, said.wanted, length, said.taken(has_lookups));
-        session
-            .map_err(|source: ClaimError| CheckError::Claim { name: name(), source: source.into() })
+        let number = |what, given: &Option<Values>, index: usize| match given {
+            None => Ok(None),
+            Some(Values(list)) if list.len() == 1 => Ok(Some(list[0])),
+            Some(Values(list)) if list.len() == values => Ok(Some(list[index])),
+            Some(Values(list)) => {
+                Err(CheckFault::Values { what, found: list.len(), wanted: values })
+            }
+        };
+        let theory = match &self.theory {
+            None => None,
+            Some(Err(message)) => return Err(CheckFault::Case(message.clone())),
+            Some(Ok(known)) => {
+                let channels = known.channels_of(values).ok_or_else(|| CheckFault::Channels {
+                    found: values,
+                    channels: known.names(),
+                    wanted: known.widths(),
+                })?;
+                Some(channels)
+            }
+        };
+        if self.truth.is_none() && theory.is_none() {
+            return Err(CheckFault::NoTruth);
+        }
+        let mean_only = self.is_mean_only();
+        let twice = [
+            ("truth", self.truth.is_some()),
+            ("variance", self.variance.is_some() && !mean_only),
+            ("kurtosis", self.kurtosis.is_some() && !mean_only),
+        ];
+        if let (Some(_), Some((what, _))) = (theory, twice.into_iter().find(|(_, is)| *is)) {
+            return Err(CheckFault::Twice(what));
+        }
+        let claim = |index: usize| {
+            let numbers = Claim {
+                variance: number("variance", &self.variance, index)?,
+                kurtosis: number("kurtosis", &self.kurtosis, index)?,
+                lookups: self.lookups,
+                rounding: self.rounding,
+                ..Claim::of_truth(match theory {
+                    Some(channels) => channels[index].1.truth,
+                    None => number("truth", &self.truth, index)?.unwrap_or(f64::NAN),
+                })
+            };
+            let known = theory.map(|channels| {
+                let claim = channels[index].1;
+                Claim { rounding: claim.rounding.max(self.rounding), ..claim }
+            });
+            let claim = |numbers: Claim| match known {
+                None => numbers,
+                Some(known) if mean_only => numbers.about(known),
+                Some(known) => {
+                    Claim { lookups: self.lookups.or(known.lookups.filter(|_| lookups)), ..known }
+                }
+            };
+            let claim = numbers.validated().and_then(|numbers| claim(numbers).within(self.range));
+            claim.map_err(CheckFault::Claim)
+        };
+        (0..values).map(claim).collect()
     }
 }

@@ -8,12 +8,72 @@ use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 use std::thread;
 
 use super::builder::Check;
-use super::error::CheckError;
-use super::outcome::Outcome;
+use super::outcome::{CheckError, CheckFault, Outcome};
 use super::pushed::{Plan, Request};
-use super::sample::Sample;
 use crate::session::Block;
 use numeric::rng::Stream;
+
+/// One draw: a value, or several, with the number of lookups of σ_t that it took or without.
+pub trait Sample: Send {
+    /// How many values it has.
+    const VALUES: usize;
+    /// Whether it tells the number of lookups.
+    const HAS_LOOKUPS: bool = false;
+
+    /// Adds the draw to one column for each value.
+    fn append(&self, columns: &mut [Vec<f64>]);
+
+    /// The number of lookups, where it is told.
+    fn lookups(&self) -> f64 {
+        0.0
+    }
+}
+
+impl Sample for f64 {
+    const VALUES: usize = 1;
+
+    #[inline(always)]
+    fn append(&self, columns: &mut [Vec<f64>]) {
+        columns[0].push(*self);
+    }
+}
+
+impl Sample for f32 {
+    const VALUES: usize = 1;
+
+    #[inline(always)]
+    fn append(&self, columns: &mut [Vec<f64>]) {
+        columns[0].push(f64::from(*self));
+    }
+}
+
+/// The channels of a coloured draw.
+impl<const K: usize> Sample for [f64; K] {
+    const VALUES: usize = K;
+
+    #[inline(always)]
+    fn append(&self, columns: &mut [Vec<f64>]) {
+        for (column, value) in columns.iter_mut().zip(self) {
+            column.push(*value);
+        }
+    }
+}
+
+/// A draw with its number of lookups.
+impl<S: Sample> Sample for (S, u64) {
+    const VALUES: usize = S::VALUES;
+    const HAS_LOOKUPS: bool = true;
+
+    #[inline(always)]
+    fn append(&self, columns: &mut [Vec<f64>]) {
+        self.0.append(columns);
+    }
+
+    #[inline(always)]
+    fn lookups(&self) -> f64 {
+        self.1 as f64
+    }
+}
 
 /// A closure that makes one draw a call.
 #[derive(Debug, Clone)]
@@ -76,7 +136,7 @@ impl Check<()> {
         let mut pushed = self.begun(T::VALUES, T::HAS_LOOKUPS, length)?;
         pushed.drive(|pushed, request| {
             let block = source(request).map_err(|Panic { draw, message }| {
-                CheckError::Panicked { name: name.clone(), draw, seed, message }
+                CheckFault::Panicked { draw, seed, message }.of(&name)
             })?;
             pushed.absorb_block(&block);
             Ok(true)

@@ -1,9 +1,12 @@
-//! What a check found.
+//! What a check found, or why it has no verdict.
 
+use std::error::Error;
 use std::fmt;
 
-use crate::session::Judgement;
+use super::builder::MAX_VALUES;
+use crate::session::{ClaimError, Judgement};
 use crate::stats::verdict::Verdict;
+use numeric::digits::number;
 
 /// So many values are told of.
 const TOLD: usize = 8;
@@ -88,9 +91,11 @@ impl fmt::Display for Outcome {
         }
         // Those that decide come first where there are too many to tell.
         let verdict = self.verdict();
-        let mut told: Vec<(usize, &Judgement)> = self.values.iter().enumerate().collect();
+        let all = || self.values.iter().enumerate();
+        let mut told: Vec<(usize, &Judgement)> = all().collect();
         if told.len() > TOLD {
-            told.sort_by_key(|(_, value)| value.verdict != verdict);
+            let is_it = |(_, value): &(usize, &Judgement)| value.verdict == verdict;
+            told = all().filter(is_it).chain(all().filter(|other| !is_it(other))).collect();
         }
         for (index, value) in told.iter().take(TOLD) {
             let name = if self.values.len() > 1 { self.value(*index) } else { self.name.clone() };
@@ -103,4 +108,177 @@ impl fmt::Display for Outcome {
             rest => write!(f, "\n  and {rest} other values"),
         }
     }
+}
+
+/// Reason why a check has no verdict, with the name of the check.
+#[derive(Debug)]
+pub struct CheckError {
+    /// Name of the check.
+    pub check: String,
+    /// The reason.
+    pub fault: CheckFault,
+}
+
+/// Reason why a check has no verdict.
+#[derive(Debug)]
+#[non_exhaustive]
+pub enum CheckFault {
+    /// Nothing says what the mean of a correct draw is.
+    NoTruth,
+    /// The claim is invalid.
+    Claim(ClaimError),
+    /// A draw has no values.
+    NoValues,
+    /// A draw has more values, so many, than are judged together.
+    TooManyValues(usize),
+    /// A property is given for another number of values than a draw has.
+    Values {
+        /// The property.
+        what: &'static str,
+        /// Number of numbers that were given.
+        found: usize,
+        /// Number of values of a draw.
+        wanted: usize,
+    },
+    /// A draw has another number of values than the case has channels.
+    Channels {
+        /// Number of values of a draw.
+        found: usize,
+        /// Names of the channels.
+        channels: Vec<String>,
+        /// Numbers of values that a draw may have, in words.
+        wanted: String,
+    },
+    /// A property takes another number of numbers.
+    Count {
+        /// The property.
+        what: &'static str,
+        /// Number of numbers that were given.
+        found: usize,
+        /// Numbers that it takes, in words.
+        wanted: &'static str,
+    },
+    /// A number is not whole, or out of bounds.
+    Whole {
+        /// The property.
+        what: &'static str,
+        /// The number.
+        value: f64,
+        /// Smallest valid number.
+        min: u64,
+        /// Largest valid number.
+        max: u64,
+    },
+    /// A property is given by a number, and by theory.
+    Twice(&'static str),
+    /// The number of lookups is claimed, and draws come without.
+    NoLookups,
+    /// Draws come with lookups, and nothing is claimed of these.
+    NoLookupsWanted,
+    /// There are more or fewer lookups than draws.
+    Lookups {
+        /// Number of lookups.
+        found: usize,
+        /// Number of draws.
+        wanted: usize,
+    },
+    /// The case could not be read; the message says why.
+    Case(String),
+    /// The estimator panicked.
+    Panicked {
+        /// Number of the draw, counted from 0.
+        draw: u64,
+        /// Seed of the check.
+        seed: u64,
+        /// Message of the panic.
+        message: String,
+    },
+    /// The last draw is not whole.
+    Ragged {
+        /// Number of numbers.
+        found: usize,
+        /// Number of values of a draw.
+        wanted: usize,
+    },
+    /// There are no draws.
+    NoDraws,
+}
+
+impl CheckFault {
+    /// Adds the name of the check.
+    pub(super) fn of(self, check: &str) -> CheckError {
+        CheckError { check: check.to_owned(), fault: self }
+    }
+}
+
+impl Error for CheckError {}
+
+impl fmt::Display for CheckError {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        write!(f, "check `{}`: {}", self.check, self.fault)
+    }
+}
+
+impl fmt::Display for CheckFault {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        match self {
+            Self::NoTruth => f.write_str(
+                "the truth is not known; give it by .truth(…), or by .of(case, estimator, σ̂)",
+            ),
+            Self::Claim(error) => error.fmt(f),
+            Self::NoValues => f.write_str("a draw has no values; return one at least"),
+            Self::TooManyValues(values) => {
+                write!(f, "a draw has {values} values; {MAX_VALUES} are judged together at most")
+            }
+            Self::Values { what, found, wanted } => {
+                let (found, wanted) = (counted(*found, "number"), counted(*wanted, "value"));
+                write!(
+                    f,
+                    "{found} for the {what}, but a draw has {wanted}; give one for each value, or one for all"
+                )
+            }
+            Self::Channels { found, channels, wanted } => {
+                let names = match &channels[..] {
+                    [one] if one.is_empty() => "its only one".to_owned(),
+                    _ => channels.join(", "),
+                };
+                let (found, all) = (counted(*found, "value"), counted(channels.len(), "channel"));
+                write!(f, "a draw has {found}, but the case has {all} ({names}); give draws of {wanted}")
+            }
+            Self::Count { what, found, wanted } => {
+                write!(f, "{what} takes {wanted}, but was given {}", counted(*found, "number"))
+            }
+            Self::Whole { what, value, min, max } => {
+                let value = number(*value);
+                write!(f, "{what} = {value} is not a whole number from {min} to {max}; give another")
+            }
+            Self::Twice(what) => write!(
+                f,
+                "the {what} is given twice, by a number and by .of(…); leave one of them out, or add .mean_only()"
+            ),
+            Self::NoLookups => f.write_str(
+                "a draw does not tell its lookups; return (value, lookups), or leave .lookups(…) out",
+            ),
+            Self::NoLookupsWanted => f.write_str(
+                "nothing is known of the lookups; give .lookups(mean, variance), or push draws alone",
+            ),
+            Self::Lookups { found, wanted } => {
+                write!(f, "{found} lookups for {wanted} draws; give one for each draw")
+            }
+            Self::Case(message) => f.write_str(message),
+            Self::Panicked { draw, seed, message } => {
+                write!(f, "the estimator panicked in draw {draw} (seed {seed}): {message}")
+            }
+            Self::Ragged { found, wanted } => write!(
+                f,
+                "{found} numbers are no whole number of draws of {wanted} values; push whole draws"
+            ),
+            Self::NoDraws => f.write_str("there are no draws; make one at least"),
+        }
+    }
+}
+
+/// A number of things in words.
+fn counted(count: usize, thing: &str) -> String {
+    format!("{count} {thing}{}", if count == 1 { "" } else { "s" })
 }

@@ -1,7 +1,7 @@
 //! Properties of a check by name, for interfaces in other languages.
 
 use super::builder::{Check, MAX_VALUES};
-use super::error::CheckError;
+use super::outcome::{CheckError, CheckFault};
 
 /// Property of a check that numbers set, as the method of the same name does.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -95,8 +95,13 @@ impl<S> Check<S> {
     /// assert!(check.set(Property::Draws, &[0.5]).is_err());
     /// # Ok::<(), trueflight_gate::check::CheckError>(())
     /// ```
-    pub fn set(mut self, property: Property, numbers: &[f64]) -> Result<Self, CheckError> {
-        let given = Given { check: self.name.clone(), what: property.name(), numbers };
+    pub fn set(self, property: Property, numbers: &[f64]) -> Result<Self, CheckError> {
+        let name = self.name.clone();
+        self.with(property, numbers).map_err(|fault| fault.of(&name))
+    }
+
+    fn with(mut self, property: Property, numbers: &[f64]) -> Result<Self, CheckFault> {
+        let given = Given { what: property.name(), numbers };
         let list = || numbers.to_vec();
         Ok(match property {
             Property::Truth => self.truth(list()),
@@ -130,34 +135,26 @@ impl<S> Check<S> {
 
 /// Numbers for a property.
 struct Given<'a> {
-    check: String,
     what: &'static str,
     numbers: &'a [f64],
 }
 
 impl Given<'_> {
     /// Returns exactly `N` numbers.
-    fn exactly<const N: usize>(&self, wanted: &'static str) -> Result<[f64; N], CheckError> {
-        self.numbers.try_into().map_err(|_| CheckError::Count {
-            name: self.check.clone(),
-            what: self.what,
-            found: self.numbers.len(),
-            wanted,
-        })
+    fn exactly<const N: usize>(&self, wanted: &'static str) -> Result<[f64; N], CheckFault> {
+        let (what, found) = (self.what, self.numbers.len());
+        self.numbers.try_into().map_err(|_| CheckFault::Count { what, found, wanted })
     }
 
-    fn one(&self) -> Result<f64, CheckError> {
+    fn one(&self) -> Result<f64, CheckFault> {
         self.exactly("1 number").map(|[number]| number)
     }
 
     /// Returns one whole number within bounds.
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // whole, and within bounds
-    fn whole(&self, min: u64, max: u64) -> Result<u64, CheckError> {
-        let value = self.one()?;
-        if value >= min as f64 && value <= max as f64 && value.fract() == 0.0 {
-            return Ok(value as u64);
-        }
-        let (name, what) = (self.check.clone(), self.what);
-        Err(CheckError::Whole { name, what, value, min, max })
+    fn whole(&self, min: u64, max: u64) -> Result<u64, CheckFault> {
+        let (what, value) = (self.what, self.one()?);
+        let is_valid = value >= min as f64 && value <= max as f64 && value.fract() == 0.0;
+        if is_valid { Ok(value as u64) } else { Err(CheckFault::Whole { what, value, min, max }) }
     }
 }

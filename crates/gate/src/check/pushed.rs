@@ -1,9 +1,8 @@
 //! Draws that somebody else makes and pushes.
 
 use super::builder::{Check, MOST};
-use super::error::CheckError;
 use super::made::assert_pass;
-use super::outcome::Outcome;
+use super::outcome::{CheckError, CheckFault, Outcome};
 use crate::session::{BUFFER, Block, Session, Sink, Stop, Until, drive, room};
 use numeric::rng::{Address, Stream, name_hash};
 
@@ -185,7 +184,7 @@ impl Pushed {
     /// The last draw is not whole, or the check wants lookups.
     pub fn absorb(&mut self, draws: &[f64]) -> Result<(), CheckError> {
         if self.has_lookups {
-            return Err(CheckError::NoLookups { name: self.check.name.clone() });
+            return Err(CheckFault::NoLookups.of(&self.check.name));
         }
         self.push(draws, &[])
     }
@@ -201,10 +200,9 @@ impl Pushed {
         draws: &[f64],
         lookups: &[f64],
     ) -> Result<(), CheckError> {
-        let name = self.check.name.clone();
         if !self.has_lookups {
             if self.draws() > 0 || !self.check.said.knows_lookups() {
-                return Err(CheckError::NoLookupsWanted { name });
+                return Err(CheckFault::NoLookupsWanted.of(&self.check.name));
             }
             // Theory knows them: the first draw tells whether they come.
             self.session = self.check.session(self.values(), true, self.length)?;
@@ -212,7 +210,7 @@ impl Pushed {
         }
         let (found, wanted) = (lookups.len(), draws.len() / self.values());
         if found != wanted {
-            return Err(CheckError::Lookups { name, found, wanted });
+            return Err(CheckFault::Lookups { found, wanted }.of(&self.check.name));
         }
         self.push(draws, lookups)
     }
@@ -240,7 +238,7 @@ impl Pushed {
     /// There were none.
     pub fn verdict(self) -> Result<Outcome, CheckError> {
         if self.draws() == 0 {
-            return Err(CheckError::NoDraws { name: self.check.name });
+            return Err(CheckFault::NoDraws.of(&self.check.name));
         }
         let Self { check, session, stopped, .. } = self;
         let channels = check.said.names(session.values());
@@ -262,8 +260,8 @@ impl Pushed {
     fn push(&mut self, draws: &[f64], lookups: &[f64]) -> Result<(), CheckError> {
         let wanted = self.values();
         if !draws.len().is_multiple_of(wanted) {
-            let (name, found) = (self.check.name.clone(), draws.len());
-            return Err(CheckError::Ragged { name, found, wanted });
+            let fault = CheckFault::Ragged { found: draws.len(), wanted };
+            return Err(fault.of(&self.check.name));
         }
         if wanted == 1 {
             self.session.absorb(&[draws], lookups);

@@ -116,13 +116,15 @@ fn is_left(x: f64) -> bool {
 /// The number that comes ten times as often as any other, and its count; a count of 0 without such a number.
 fn most_frequent(mut values: Vec<f64>) -> (f64, usize) {
     values.sort_unstable_by(f64::total_cmp);
-    let mut groups: Vec<&[f64]> = values.chunk_by(|a, b| a == b).collect();
-    groups.sort_by_key(|group| std::cmp::Reverse(group.len()));
-    let second = groups.get(1).map_or(0, |group| group.len());
-    match groups.first() {
-        Some(group) if group.len() >= 10 * second => (group[0], group.len()),
-        _ => (f64::NAN, 0),
+    let (mut most, mut second) = ((f64::NAN, 0), 0);
+    for group in values.chunk_by(|a, b| a == b) {
+        if group.len() > most.1 {
+            (most, second) = ((group[0], group.len()), most.1);
+        } else {
+            second = second.max(group.len());
+        }
     }
+    if most.1 >= 10 * second { most } else { (f64::NAN, 0) }
 }
 
 #[cfg(test)]

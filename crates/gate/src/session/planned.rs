@@ -224,10 +224,3 @@ impl Planned {
         (verdict, Some(reason))
     }
 }
-
-/// Whether a mean that fails rests on a variance that is refuted as too small: were its spread what the draws show, it would
-/// not fail.
-pub fn rests_on(mean: &GateFinding, variance: &GateFinding, ln_fail: f64) -> bool {
-    let spread = mean.variance * (1.0 + variance.mean) - mean.mean * mean.mean;
-    variance.mean > 0.0 && !gate::is_off_by_itself(mean.mean, spread, mean.draws as f64, ln_fail)
-}

@@ -1,23 +1,19 @@
 //! Draws on their way through all questions, block by block.
 
-use super::contents::Contents;
+use super::claim::{BUFFER, Trial};
+use super::dependence::Contents;
 use super::flights::Ends;
 use super::judgement::{Fault, Judgement, Stop};
-use super::scalar::{Levels, Scalar};
-use super::theory::{Background, DISTRIBUTION, Tested, Tests};
-use super::trial::{BUFFER, Trial};
+use super::scalar::{Levels, Scalar, main_share};
+use super::theory::{Background, Tested, Tests};
 use super::{dependence, verdict};
 use crate::stats::independence::Independence;
-use crate::stats::replays::Replays;
-use crate::stats::runs::Runs;
+use crate::stats::replays::{Replays, Runs};
 use crate::stats::sequences::Sequences;
-use crate::stats::verdict::MISS;
-use crate::stats::verdict::Verdict;
+use crate::stats::verdict::{MISS, Verdict};
 use crate::stats::{Powers, ties};
 use numeric::sum::Sum;
 
-/// The share of α that the drift has, a question of its own.
-pub(super) const DRIFT: f64 = 0.2;
 /// The fewest draws that are judged at a time.
 const FEW: usize = 64;
 /// So many different values among the first draws are no small set.
@@ -91,9 +87,8 @@ impl Reading {
     /// The state before the first draw.
     pub(super) fn new(trial: Trial, background: Background) -> Self {
         let quantities = trial.quantities();
-        let share = if trial.is_certain() { 1.0 } else { 1.0 - DRIFT };
-        let share = if background.tests.is_some() { share - DISTRIBUTION } else { share };
-        let levels = Levels::new(share * trial.wanted.alpha, quantities.len());
+        let others = u32::from(!trial.is_certain()) + u32::from(background.tests.is_some());
+        let levels = Levels::new(main_share(others) * trial.wanted.alpha, quantities.len());
         let most = trial.wanted.most.unwrap_or(u64::MAX);
         let length = trial.length.map(|length| length.min(most) / trial.wanted.batch);
         // Few draws make small blocks, so that later ones can be judged by earlier ones.

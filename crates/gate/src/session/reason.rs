@@ -1,7 +1,7 @@
 //! Reasons of verdicts: an enum for programs, with its numbers, and one sentence each for people.
-#![allow(missing_docs)] // the fields are the numbers of the sentence above them
 
 use std::borrow::Cow;
+use std::fmt;
 
 use super::ground::EFFECTIVE;
 use super::quantity::Ground;
@@ -12,147 +12,322 @@ use numeric::digits::{enough, percent};
 /// Name of a quantity in a sentence, as in `the mean`.
 pub type What = Cow<'static, str>;
 
-/// Reason of a verdict.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+/// Reason of a verdict. `what` is the quantity that it is about.
+#[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub enum Reason {
-    /// The evidence refutes the expected value. `tolerance` is one that was asked for, where the deviation is below it;
-    /// `remark` is on the unit of the deviation.
-    #[error("{what} is off by {off}{remark} (ln E = {ln_e:.1} ≥ {limit:.1}){}", below(*tolerance))]
+    /// The evidence refutes the expected value.
     Off {
+        /// The quantity.
         what: What,
+        /// Its deviation.
         off: Deviation,
+        /// Words on the unit of the deviation; may be empty.
         remark: String,
+        /// ln E.
         ln_e: f64,
+        /// ln E at which it fails.
         limit: f64,
+        /// Tolerance that was asked for, where the deviation is below it.
         tolerance: Option<f64>,
     },
     /// The deviation is obvious and within the tolerance that was asked for.
-    #[error("{what} is off by {off}, within the tolerance of {tolerance:.1e} that was asked for")]
-    Tolerated { what: What, off: Deviation, tolerance: f64 },
-    /// The deviation is obvious, but what is known of the draws does not allow a failure. `excluded` is the bias that the
-    /// gate excludes, where it has decided.
-    #[error(
-        "{what} looks off by {off}{}, but {}{}",
-        if *are_alike { ", and all draws are alike" } else { "" },
-        not_shown(what, off, *ground),
-        excluded_bias(*excluded)
-    )]
-    LooksOff {
+    Tolerated {
+        /// The quantity.
         what: What,
+        /// Its deviation.
         off: Deviation,
+        /// ε, as asked for.
+        tolerance: f64,
+    },
+    /// The deviation is obvious, but what is known of the draws does not allow a failure.
+    LooksOff {
+        /// The quantity.
+        what: What,
+        /// Its deviation.
+        off: Deviation,
+        /// Whether all draws are alike.
         are_alike: bool,
+        /// What is known of the spread; `None` for a range alone.
         ground: Option<Ground>,
+        /// Bias that the gate excludes, where it has decided.
         excluded: Option<f64>,
     },
-    /// The draws do not decide. `needed` is the number of draws that the tolerance needs.
-    #[error(
-        "{what} is undecided after {draws} draws; a tolerance of {tolerance:.2e} needs {needed:.1e}"
-    )]
-    Undecided { what: What, draws: u64, tolerance: f64, needed: f64 },
-    /// No first draws show the spread that a tolerance is chosen by.
-    #[error("{what} is undecided after {draws} draws, too few to choose a tolerance by{}", untested(*tolerance))]
-    NoTolerance { what: What, draws: u64, tolerance: Option<f64> },
-    /// A bound on the kurtosis needs more draws to bound the variance.
-    #[error(
-        "the spread of {what} is not known: with a kurtosis of {kurtosis} it needs a first block of draws, {needed:.0} of \
-         them or more, and others after it; there are {draws}{}",
-        untested(*tolerance)
-    )]
-    FewForKurtosis { what: What, kurtosis: f64, needed: f64, draws: u64, tolerance: Option<f64> },
-    /// The draws show a larger kurtosis than was assumed.
-    #[error(
-        "the spread of {what} is not known: the draws show a kurtosis of {shown:.0}, more than the {assumed:.0} that was \
-         assumed; give {}{}",
-        cure(what),
-        untested(*tolerance)
-    )]
-    HeavyTails { what: What, shown: f64, assumed: f64, tolerance: Option<f64> },
-    /// Too few draws carry the spread.
-    #[error(
-        "the spread of {what} is not known: {carry} of {draws} draws carry it, and {EFFECTIVE} of more than {BLOCK} are \
-         needed; give {}{}",
-        cure(what),
-        untested(*tolerance)
-    )]
-    FewCarry { what: What, carry: f64, draws: u64, tolerance: Option<f64> },
-    /// Too few draws are planned. Where no number of draws suffices, the prediction's own error `floor` is the reason.
-    #[error("{}", too_few_planned(what, *needed, *floor))]
-    TooFewPlanned { what: What, needed: f64, floor: f64 },
+    /// The draws do not decide.
+    Undecided {
+        /// The quantity.
+        what: What,
+        /// Number of draws.
+        draws: u64,
+        /// ε.
+        tolerance: f64,
+        /// Number of draws that the tolerance needs.
+        needed: f64,
+    },
+    /// The draws do not show the spread that a decision needs.
+    UnknownSpread {
+        /// The quantity.
+        what: What,
+        /// Number of draws.
+        draws: u64,
+        /// Tolerance that was asked for, which is then not tested.
+        tolerance: Option<f64>,
+        /// What is missing.
+        missing: Missing,
+    },
+    /// Too few draws are planned.
+    TooFewPlanned {
+        /// The quantity.
+        what: What,
+        /// Number of draws that a pass needs; infinite where the prediction is not exact enough for any.
+        needed: f64,
+        /// Relative error of the prediction.
+        floor: f64,
+    },
     /// Nothing can be tested, whatever the draws say.
-    #[error("{what} cannot be tested: {why}")]
-    Untestable { what: What, why: String },
-    /// The bias that was declared is shown.
-    #[error("biased-as-expected: {}", fine_percent(*.0))]
+    Untestable {
+        /// The quantity.
+        what: What,
+        /// The reason in words.
+        why: String,
+    },
+    /// The bias that was declared is shown: its relative size.
     BiasShown(f64),
-    /// The draws ended before the bias that was declared was shown.
-    #[error("the bias is not shown after {0} draws")]
+    /// The draws, so many, ended before the bias that was declared was shown.
     BiasNotShown(u64),
     /// A bias was declared, and the evidence for it is too small.
-    #[error("expected a bias, found {} (ln E = {ln_e:.1} of {limit:.1})", fine_percent(*bias))]
-    SmallBias { bias: f64, ln_e: f64, limit: f64 },
+    SmallBias {
+        /// Relative size of the bias.
+        bias: f64,
+        /// ln E.
+        ln_e: f64,
+        /// ln E at which it is shown.
+        limit: f64,
+    },
     /// A bias was declared, and every draw is right.
-    #[error("expected a bias, found none")]
     NoBias,
     /// The bias that was declared is shown in another channel.
-    #[error("biased elsewhere")]
     BiasedElsewhere,
     /// Draws are NaN or infinite.
-    #[error("draws are not finite numbers")]
     NotFinite,
     /// The mean and single draws are off by more than rounding explains.
-    #[error(
-        "{what} is off by {off}; a draw by up to {}, of which rounding explains {}",
-        percent(*largest),
-        percent(*bound)
-    )]
-    MeanOff { what: What, off: Deviation, largest: f64, bound: f64 },
+    MeanOff {
+        /// The quantity.
+        what: What,
+        /// Deviation of the mean.
+        off: Deviation,
+        /// Largest relative deviation of a draw.
+        largest: f64,
+        /// Relative deviation that rounding explains.
+        bound: f64,
+    },
     /// A draw is off by more than rounding explains.
-    #[error("{what} is off by {} in a draw; rounding explains {}", percent(*largest), percent(*bound))]
-    DrawOff { what: What, largest: f64, bound: f64 },
-    /// A draw takes another number of lookups than all draws take.
-    #[error("the number of lookups is off by {0:.0} in a draw; theory has one number for all")]
+    DrawOff {
+        /// The quantity.
+        what: What,
+        /// Largest relative deviation of a draw.
+        largest: f64,
+        /// Relative deviation that rounding explains.
+        bound: f64,
+    },
+    /// A draw takes another number of lookups than all draws take: the largest difference.
     LookupsOff(f64),
     /// The draws ended before the number that a p-value needs.
-    #[error("{what}: cut after {draws} of {fixed} draws")]
-    Cut { what: What, draws: u64, fixed: u64 },
-    /// There are too few draws for a p-value.
-    #[error("{0} has too few draws for a test")]
+    Cut {
+        /// The distribution.
+        what: What,
+        /// Number of draws.
+        draws: u64,
+        /// Number of draws that the p-value needs.
+        fixed: u64,
+    },
+    /// There are too few draws for a p-value of this distribution.
     TooFew(What),
-    /// The distribution of the draws is refuted, with p in words.
-    #[error("{what} differs from theory: p = {p}{}", in_parentheses(details))]
-    Differs { what: What, p: String, details: String },
+    /// The distribution of the draws is refuted.
+    Differs {
+        /// The distribution.
+        what: What,
+        /// The p-value in words.
+        p: String,
+        /// Numbers behind it in words; may be empty.
+        details: String,
+    },
     /// A pass relies on a variance that is not tested.
-    #[error("variance assumed")]
     VarianceAssumed,
     /// A pass relies on a variance that does not pass.
-    #[error("the mean relies on a variance that does not pass")]
     VarianceOpen,
-    /// A failure rests on a variance that is refuted as too small.
-    #[error("{0} rests on a variance that is refuted")]
+    /// A failure of this quantity rests on a variance that is refuted as too small.
     RestsOnVariance(What),
     /// The squares about the truth are too large because the mean is off.
-    #[error(
-        "squares about the truth are too large by {}, for the mean is off; about the mean of the draws by {}",
-        signed_percent(*about_truth),
-        signed_percent(*about_mean)
-    )]
-    SquaresByMean { about_truth: f64, about_mean: f64 },
-    /// The mean changes on the way: from a draw to before another one, or to the end.
-    #[error(
-        "the mean changes: from draw {from} {} it is off by {off}, {z:+.1} standard errors from all other draws",
-        to.map_or("on".to_owned(), |to| format!("to draw {to}"))
-    )]
-    Changes { from: u64, to: Option<u64>, off: Deviation, z: f64 },
-    /// The draws depend on each other.
-    #[error("the draws are not independent: {0}")]
+    SquaresByMean {
+        /// Relative excess of the mean square about the truth.
+        about_truth: f64,
+        /// Relative excess of the variance about the mean of the draws.
+        about_mean: f64,
+    },
+    /// The mean changes on the way.
+    Changes {
+        /// First draw of the part that differs.
+        from: u64,
+        /// Draw after the last one of that part; `None` for the end.
+        to: Option<u64>,
+        /// Deviation of that part.
+        off: Deviation,
+        /// Distance from all other draws in standard errors.
+        z: f64,
+    },
+    /// The draws depend on each other, in the way that the words say.
     Dependent(String),
-    /// A quantity is not judged because the draws depend on each other.
-    #[error("{0} is not judged: the draws are not independent")]
+    /// The quantity is not judged because the draws depend on each other.
     NotJudged(What),
     /// A reason that adds another.
-    #[error("{0}; {1}")]
     Both(Box<Self>, Box<Self>),
+}
+
+/// What a spread is not known for.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Missing {
+    /// First draws to choose a tolerance by.
+    FirstDraws,
+    /// Draws enough to bound the variance by a kurtosis.
+    DrawsOfKurtosis {
+        /// The kurtosis that was given.
+        kurtosis: f64,
+        /// Number of draws that it needs.
+        needed: f64,
+    },
+    /// Tails as light as was assumed.
+    LightTails {
+        /// Kurtosis that the draws show.
+        shown: f64,
+        /// Kurtosis that was assumed.
+        assumed: f64,
+    },
+    /// Draws that carry the spread: so many do.
+    Carriers(f64),
+}
+
+impl fmt::Display for Reason {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        match self {
+            Self::Off { what, off, remark, ln_e, limit, tolerance } => {
+                let below = below(*tolerance);
+                write!(f, "{what} is off by {off}{remark} (ln E = {ln_e:.1} ≥ {limit:.1}){below}")
+            }
+            Self::Tolerated { what, off, tolerance } => {
+                write!(
+                    f,
+                    "{what} is off by {off}, within the tolerance of {tolerance:.1e} that was asked for"
+                )
+            }
+            Self::LooksOff { what, off, are_alike, ground, excluded } => {
+                let alike = if *are_alike { ", and all draws are alike" } else { "" };
+                let (why, excluded) = (not_shown(what, off, *ground), excluded_bias(*excluded));
+                write!(f, "{what} looks off by {off}{alike}, but {why}{excluded}")
+            }
+            Self::Undecided { what, draws, tolerance, needed } => write!(
+                f,
+                "{what} is undecided after {draws} draws; a tolerance of {tolerance:.2e} needs {needed:.1e}"
+            ),
+            Self::UnknownSpread { what, draws, tolerance, missing } => {
+                missing.write(f, what, *draws)?;
+                tolerance.map_or(Ok(()), |asked| {
+                    write!(f, "; the tolerance of {asked:.1e} is not tested without that")
+                })
+            }
+            Self::TooFewPlanned { what, needed, .. } if needed.is_finite() => {
+                write!(f, "{what} needs {} draws", enough(*needed))
+            }
+            Self::TooFewPlanned { what, floor, .. } => {
+                write!(f, "the prediction of {what} is known to {floor:.0e} only")
+            }
+            Self::Untestable { what, why } => write!(f, "{what} cannot be tested: {why}"),
+            Self::BiasShown(bias) => write!(f, "biased-as-expected: {}", fine_percent(*bias)),
+            Self::BiasNotShown(draws) => write!(f, "the bias is not shown after {draws} draws"),
+            Self::SmallBias { bias, ln_e, limit } => {
+                let bias = fine_percent(*bias);
+                write!(f, "expected a bias, found {bias} (ln E = {ln_e:.1} of {limit:.1})")
+            }
+            Self::NoBias => f.write_str("expected a bias, found none"),
+            Self::BiasedElsewhere => f.write_str("biased elsewhere"),
+            Self::NotFinite => f.write_str("draws are not finite numbers"),
+            Self::MeanOff { what, off, largest, bound } => {
+                let (largest, bound) = (percent(*largest), percent(*bound));
+                write!(
+                    f,
+                    "{what} is off by {off}; a draw by up to {largest}, of which rounding explains {bound}"
+                )
+            }
+            Self::DrawOff { what, largest, bound } => {
+                let (largest, bound) = (percent(*largest), percent(*bound));
+                write!(f, "{what} is off by {largest} in a draw; rounding explains {bound}")
+            }
+            Self::LookupsOff(off) => write!(
+                f,
+                "the number of lookups is off by {off:.0} in a draw; theory has one number for all"
+            ),
+            Self::Cut { what, draws, fixed } => {
+                write!(f, "{what}: cut after {draws} of {fixed} draws")
+            }
+            Self::TooFew(what) => write!(f, "{what} has too few draws for a test"),
+            Self::Differs { what, p, details } => {
+                write!(f, "{what} differs from theory: p = {p}")?;
+                if details.is_empty() { Ok(()) } else { write!(f, " ({details})") }
+            }
+            Self::VarianceAssumed => f.write_str("variance assumed"),
+            Self::VarianceOpen => f.write_str("the mean relies on a variance that does not pass"),
+            Self::RestsOnVariance(what) => write!(f, "{what} rests on a variance that is refuted"),
+            Self::SquaresByMean { about_truth, about_mean } => {
+                let (truth, mean) = (signed_percent(*about_truth), signed_percent(*about_mean));
+                write!(
+                    f,
+                    "squares about the truth are too large by {truth}, for the mean is off; about the mean of the draws by {mean}"
+                )
+            }
+            Self::Changes { from, to, off, z } => {
+                let to = to.map_or("on".to_owned(), |to| format!("to draw {to}"));
+                write!(
+                    f,
+                    "the mean changes: from draw {from} {to} it is off by {off}, {z:+.1} standard errors from all other draws"
+                )
+            }
+            Self::Dependent(how) => write!(f, "the draws are not independent: {how}"),
+            Self::NotJudged(what) => {
+                write!(f, "{what} is not judged: the draws are not independent")
+            }
+            Self::Both(one, other) => write!(f, "{one}; {other}"),
+        }
+    }
+}
+
+impl Missing {
+    fn write(&self, f: &mut fmt::Formatter, what: &str, draws: u64) -> fmt::Result {
+        match self {
+            Self::FirstDraws => {
+                write!(
+                    f,
+                    "{what} is undecided after {draws} draws, too few to choose a tolerance by"
+                )
+            }
+            Self::DrawsOfKurtosis { kurtosis, needed } => write!(
+                f,
+                "the spread of {what} is not known: with a kurtosis of {kurtosis} it needs a first block of draws, \
+                 {needed:.0} of them or more, and others after it; there are {draws}"
+            ),
+            Self::LightTails { shown, assumed } => write!(
+                f,
+                "the spread of {what} is not known: the draws show a kurtosis of {shown:.0}, more than the {assumed:.0} \
+                 that was assumed; give {}",
+                cure(what)
+            ),
+            Self::Carriers(carry) => write!(
+                f,
+                "the spread of {what} is not known: {carry} of {draws} draws carry it, and {EFFECTIVE} of more than \
+                 {BLOCK} are needed; give {}",
+                cure(what)
+            ),
+        }
+    }
 }
 
 /// Grounds that would let a quantity fail.
@@ -168,11 +343,6 @@ fn below(tolerance: Option<f64>) -> String {
     tolerance.map_or(String::new(), |asked| format!("; below the tolerance of {asked:.1e}, {why}"))
 }
 
-fn untested(tolerance: Option<f64>) -> String {
-    let untested = |asked| format!("; the tolerance of {asked:.1e} is not tested without that");
-    tolerance.map_or(String::new(), untested)
-}
-
 fn excluded_bias(excluded: Option<f64>) -> String {
     let cure = "give a tolerance to accept a smaller one";
     excluded.map_or(String::new(), |bias| format!("; a bias of {bias:.2e} is excluded: {cure}"))
@@ -186,18 +356,6 @@ fn not_shown(what: &str, off: &Deviation, ground: Option<Ground>) -> String {
         Some(Ground::Shown) => format!("no number of draws shows it without {}", cure(what)),
         None => format!("{draws} of the range given do not show it: give more, or the variance"),
     }
-}
-
-fn too_few_planned(what: &str, needed: f64, floor: f64) -> String {
-    if needed.is_finite() {
-        format!("{what} needs {} draws", enough(needed))
-    } else {
-        format!("the prediction of {what} is known to {floor:.0e} only")
-    }
-}
-
-fn in_parentheses(details: &str) -> String {
-    if details.is_empty() { String::new() } else { format!(" ({details})") }
 }
 
 /// A relative difference in percent with two decimals, or in powers of ten where it is small.

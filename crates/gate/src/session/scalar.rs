@@ -22,6 +22,15 @@ const UNPLANNED: f64 = 67_108_864.0;
 /// Twice as many draws as show their variance where no number of draws is planned.
 const UNPLANNED_PILOT: f64 = 131_072.0;
 
+/// Share of α that a question beside the main quantities has. With its draws known, a session asks for a drift and for the
+/// distribution; images ask for the whole image and for the variance beside the tiles; a run asks for distributions.
+pub const SIDE_SHARE: f64 = 0.2;
+
+/// Share of α that the main quantities have beside so many other questions.
+pub fn main_share(others: u32) -> f64 {
+    1.0 - SIDE_SHARE * f64::from(others)
+}
+
 /// The levels of the gate.
 #[derive(Debug, Clone, Copy)]
 pub struct Levels {

@@ -13,12 +13,10 @@ use std::fmt;
 use std::panic::{RefUnwindSafe, UnwindSafe};
 use std::sync::Arc;
 
-use super::claim::Claim;
+use super::claim::{Claim, Wanted};
 use super::judgement::DistributionFinding;
-use super::trial::Wanted;
+use super::scalar::SIDE_SHARE;
 
-/// The share of α that the tests of the distribution have.
-pub(super) const DISTRIBUTION: f64 = 0.2;
 /// The channel that is a sum of those before it, by fixed weights: draws need not have it.
 const DERIVED: &str = "luminance";
 
@@ -151,7 +149,7 @@ impl Taken<'_> {
         } else if wanted.batch > 1 {
             background.notes.push(untested("averages of draws have another one"));
         } else {
-            let alpha = DISTRIBUTION * wanted.alpha;
+            let alpha = SIDE_SHARE * wanted.alpha;
             let rounding = claims.first().map_or(0.0, |claim| claim.rounding);
             let asked = Asked { alpha, length, has_lookups, rounding, values };
             match theory.distribution.tests(asked) {

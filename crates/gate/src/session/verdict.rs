@@ -1,4 +1,4 @@
-//! What is said of foreign draws, and in which order.
+//! What is said of foreign draws, of images and of stacks of images, and in which order.
 //!
 //! ```text
 //! a draw that refutes the claim by itself   fail, before all else
@@ -11,13 +11,58 @@
 
 use super::dependence::off_without_change;
 use super::flights::Ends;
-use super::judgement::Fault;
-use super::judgement::{IndependenceFinding, Judgement, ScalarFinding, Stop};
+use super::judgement::{Fault, IndependenceFinding, Judgement, ScalarFinding, Stop};
 use super::reading::{Reading, Refuted};
 use super::reason::Reason;
 use super::scalar::Scalar;
-use crate::stats::verdict::Verdict;
+use crate::stats::gate;
+use crate::stats::verdict::{GateFinding, Verdict};
 use numeric::digits::short;
+
+/// What was found, in sentences, by the verdict that it leads to.
+#[derive(Debug, Clone, Default)]
+pub struct Reasons {
+    /// A draw that refutes the claim by itself: fail.
+    pub refuted: Option<String>,
+    /// A dependence, under which nothing else counts: inconclusive.
+    pub dependent: Option<String>,
+    /// What fails.
+    pub failing: Vec<String>,
+    /// What is not decided.
+    pub open: Vec<String>,
+    /// Remarks on a pass.
+    pub passing: Vec<String>,
+}
+
+impl Reasons {
+    /// The verdict and its reason; the reason of a plain pass is empty.
+    pub fn verdict(self) -> (Verdict, String) {
+        let Self { refuted, dependent, failing, open, passing } = self;
+        let alone = |reason: Option<String>| reason.into_iter().collect::<Vec<_>>();
+        let decisive = [
+            (Verdict::Fail, alone(refuted)),
+            (Verdict::Inconclusive, alone(dependent)),
+            (Verdict::Fail, failing),
+            (Verdict::Inconclusive, open),
+        ];
+        let found = decisive.into_iter().find(|(_, reasons)| !reasons.is_empty());
+        let (verdict, reasons) = found.unwrap_or((Verdict::Pass, passing));
+        (verdict, reasons.join("; "))
+    }
+}
+
+/// Whether a mean that fails rests on a variance that is refuted as too small: were its spread what the draws show, it would
+/// not fail.
+pub fn rests_on(mean: &GateFinding, variance: &GateFinding, ln_fail: f64) -> bool {
+    let spread = mean.variance * (1.0 + variance.mean) - mean.mean * mean.mean;
+    variance.mean > 0.0 && !gate::is_off_by_itself(mean.mean, spread, mean.draws as f64, ln_fail)
+}
+
+/// Whether squares about many truths at once, such as those of all pixels, are too large by their spread: the relative excess
+/// about the means of the draws is half of that about the truths or more. Means that are off enlarge the latter alone.
+pub fn is_by_spread(about_truth: f64, about_mean: f64) -> bool {
+    about_mean - 1.0 >= 0.5 * (about_truth - 1.0)
+}
 
 /// The verdict of the whole, and what it promises.
 pub(super) fn decide(reading: &Reading, judgement: &mut Judgement) {
@@ -31,29 +76,24 @@ pub(super) fn decide(reading: &Reading, judgement: &mut Judgement) {
     if is_dependent {
         withhold(judgement);
     }
-    // A pass has words where the mean is off within the tolerance.
-    let order = [Verdict::Fail, Verdict::Inconclusive, Verdict::Pass];
-    let said = order.into_iter().find_map(|verdict| {
+    let of = |verdict: Verdict| -> Vec<String> {
         let drift = judgement.drift.as_ref().map(|found| (found.verdict, &found.reason));
         let scalars = judgement.findings.iter().map(|found| (found.verdict, &found.reason));
         let tests = judgement.distribution.iter().map(|found| (found.verdict, &found.reason));
         let alike = scalars.chain(drift).chain(tests).filter(|(found, _)| *found == verdict);
-        let reasons: Vec<String> =
-            alike.filter_map(|(_, reason)| reason.as_ref().map(Reason::to_string)).collect();
-        (!reasons.is_empty()).then(|| (verdict, reasons.join("; ")))
-    });
-    (judgement.verdict, judgement.reason) = said.unwrap_or((Verdict::Pass, String::new()));
-    if is_dependent {
-        judgement.verdict = Verdict::Inconclusive;
-        judgement.reason = dependent(&judgement.independence);
-    }
-    if let Some(wrong) = reading.ends.as_ref().and_then(Ends::wrong) {
-        (judgement.verdict, judgement.reason) = (Verdict::Fail, wrong);
-    }
-    if let Some(refuted) = &reading.refuted {
-        judgement.verdict = Verdict::Fail;
-        judgement.reason = fault(reading, refuted, judgement.refuting);
-    }
+        alike.filter_map(|(_, reason)| reason.as_ref().map(Reason::to_string)).collect()
+    };
+    let refuted = reading.refuted.as_ref();
+    let refuted = refuted.map(|refuted| fault(reading, refuted, judgement.refuting));
+    let reasons = Reasons {
+        refuted: refuted.or_else(|| reading.ends.as_ref().and_then(Ends::wrong)),
+        dependent: is_dependent.then(|| dependent(&judgement.independence)),
+        failing: of(Verdict::Fail),
+        open: of(Verdict::Inconclusive),
+        // A mean that is off within the tolerance.
+        passing: of(Verdict::Pass),
+    };
+    (judgement.verdict, judgement.reason) = reasons.verdict();
     judgement.guarantees = guarantees(reading, judgement);
 }
 

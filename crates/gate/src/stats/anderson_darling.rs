@@ -172,14 +172,6 @@ mod tests {
     ];
 
     #[test]
-    fn agrees_with_the_tables() {
-        // R. B. D'Agostino, M. A. Stephens, Goodness-of-Fit Techniques (1986), table 4.2, case 0.
-        for (p, x) in [(0.25, 1.248), (0.10, 1.933), (0.05, 2.492), (0.025, 3.070), (0.01, 3.880)] {
-            assert!((upper_tail(x) / p - 1.0).abs() < 1e-2, "{x}: {}", upper_tail(x));
-        }
-    }
-
-    #[test]
     fn the_far_tail_is_that_of_its_first_term() {
         // P → √(3/(πx)) e^{−x}; the next term of the expansion is of order 1/x.
         for x in [100.0, 600.0] {
@@ -219,13 +211,6 @@ mod tests {
         let (exact, classed) = (p_value_of_uniforms(&u), p_value_of_classes(&classes(&u, 1024)));
         assert!(exact < 1e-3 && exact > 1e-9, "{exact}");
         assert!((classed.expect("counts") / exact - 1.0).abs() < 0.05, "{classed:?} {exact}");
-    }
-
-    #[test]
-    fn a_law_a_little_off_is_seen() {
-        let u: Vec<f64> = uniforms(&mut stream(2), 100_000).iter().map(|u| u.powf(1.03)).collect();
-        assert!(p_value_of_uniforms(&u) < 1e-6);
-        assert!(p_value_of_classes(&classes(&u, 128)).expect("counts") < 1e-6);
     }
 
     #[test]

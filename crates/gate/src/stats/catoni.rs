@@ -76,14 +76,12 @@ impl<const N: usize> Default for PsiSums<N> {
 impl<const N: usize> PsiSums<N> {
     /// Adds draws.
     pub fn absorb(&mut self, y: &[f64], arguments: &[Argument; N]) {
-        let products = &mut self.products;
-        pack::on(Level::new(), Each { products, y, arguments });
+        pack::on(Level::new(), Each { products: &mut self.products, y, arguments });
     }
 
     /// Adds draws that come so many times each.
     pub fn absorb_counted(&mut self, y: &[f64], times: &[f64], arguments: &[Argument; N]) {
-        let products = &mut self.products;
-        pack::on(Level::new(), Counted { products, y, times, arguments });
+        pack::on(Level::new(), Counted { products: &mut self.products, y, times, arguments });
     }
 
     /// The sums.
@@ -98,14 +96,14 @@ impl<const N: usize> PsiSums<N> {
 }
 
 /// Draws with how often each comes, for all sums.
-struct Counted<'a, const N: usize> {
-    products: &'a mut [Product; N],
+struct Counted<'a> {
+    products: &'a mut [Product],
     y: &'a [f64],
     times: &'a [f64],
-    arguments: &'a [Argument; N],
+    arguments: &'a [Argument],
 }
 
-impl<const N: usize> Task for Counted<'_, N> {
+impl Task for Counted<'_> {
     type Output = ();
 
     #[inline(always)]
@@ -137,13 +135,13 @@ fn terms<L: Lane>(y: L, argument: &Argument) -> L {
 }
 
 /// Draws one by one, for all sums.
-struct Each<'a, const N: usize> {
-    products: &'a mut [Product; N],
+struct Each<'a> {
+    products: &'a mut [Product],
     y: &'a [f64],
-    arguments: &'a [Argument; N],
+    arguments: &'a [Argument],
 }
 
-impl<const N: usize> Task for Each<'_, N> {
+impl Task for Each<'_> {
     type Output = ();
 
     #[inline(always)]

@@ -1,28 +1,28 @@
-//! Statistics that have never heard of light. Floor 1.
+//! Statistics: evidence on means, and tests of independence, repetition and distributions.
 
+#[cfg(feature = "distributions")]
 pub mod anderson_darling;
 pub(crate) mod betting;
+#[cfg(feature = "distributions")]
 pub mod binomial;
 pub mod capital;
 pub mod catoni;
-mod census;
+#[cfg(feature = "distributions")]
 pub mod chi_square;
+#[cfg(feature = "distributions")]
 pub mod correlation;
 pub mod estimated_variance;
 pub mod gate;
 pub mod independence;
 pub mod multiplicity;
+#[cfg(feature = "distributions")]
 pub mod normal;
 mod powers;
-pub mod reflection;
 pub(crate) mod replays;
-pub(crate) mod runs;
 pub(crate) mod sequences;
-pub mod symmetric;
 mod tally;
 pub mod ties;
 pub mod verdict;
 
-pub use census::Census;
 pub use powers::Powers;
-pub use tally::{Moments2, Tally};
+pub use tally::{Census, Moments2, Tally};

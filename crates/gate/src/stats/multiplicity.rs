@@ -15,8 +15,6 @@
 //! E-values are given by their logarithms, −∞ and ∞ included. What is not a number is no evidence: a
 //! NaN among the p-values counts as 1, among the e-values as 0, and either still counts in `K`.
 
-use std::cmp::Ordering;
-
 use super::capital::ln_mean_exp;
 
 /// Which hypotheses Holm's procedure rejects at family-wise level `alpha`, out of `hypotheses` of which
@@ -24,10 +22,8 @@ use super::capital::ln_mean_exp;
 pub fn holm(p: &[f64], hypotheses: usize, alpha: f64) -> Vec<bool> {
     let hypotheses = hypotheses.max(p.len());
     let p: Vec<f64> = p.iter().map(|&p| if p.is_nan() { 1.0 } else { p }).collect();
-    let mut order: Vec<usize> = (0..p.len()).collect();
-    order.sort_by(|&i, &j| p[i].total_cmp(&p[j]));
     let mut rejected = vec![false; p.len()];
-    for (rank, &index) in order.iter().enumerate() {
+    for (rank, index) in order(&p).into_iter().enumerate() {
         if p[index] > alpha / (hypotheses - rank) as f64 {
             break;
         }
@@ -39,8 +35,7 @@ pub fn holm(p: &[f64], hypotheses: usize, alpha: f64) -> Vec<bool> {
 /// The indices on the e-BH list at false discovery rate `alpha`, largest e-value first, ties by
 /// index.
 pub fn e_benjamini_hochberg(ln_e: &[f64], alpha: f64) -> Vec<usize> {
-    let mut order: Vec<usize> = (0..ln_e.len()).collect();
-    order.sort_by(|&i, &j| largest_first(ln_e[i], ln_e[j]));
+    let mut order = order(&ln_e.iter().map(|&ln_e| -evidence(ln_e)).collect::<Vec<_>>());
     let all = e_bonferroni_threshold(ln_e.len(), alpha);
     let listed = |k: usize| evidence(ln_e[order[k - 1]]) >= all - (k as f64).ln();
     let longest = (1..=order.len()).rev().find(|&k| listed(k)).unwrap_or(0);
@@ -63,8 +58,11 @@ fn evidence(ln_e: f64) -> f64 {
     if ln_e.is_nan() { f64::NEG_INFINITY } else { ln_e }
 }
 
-fn largest_first(x: f64, y: f64) -> Ordering {
-    evidence(y).total_cmp(&evidence(x))
+/// Indices of values, the smallest first, ties by index.
+fn order(values: &[f64]) -> Vec<usize> {
+    let mut order: Vec<usize> = (0..values.len()).collect();
+    order.sort_by(|&i, &j| values[i].total_cmp(&values[j]));
+    order
 }
 
 #[cfg(test)]

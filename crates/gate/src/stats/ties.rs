@@ -8,8 +8,6 @@
 //! Source: D. E. Knuth, *The Art of Computer Programming*, volume 2, 3rd edition (1997), section
 //! 3.3.2 I (the test of collisions). A law of 53 bits gives n²/2⁵⁴ ties, one of 24 bits n²/2²⁵.
 
-use crate::stats::chi_square;
-
 /// How many values equal another one before them; sorts the values.
 ///
 /// `0` and `−0` are equal; NaN equals nothing.
@@ -31,12 +29,13 @@ pub fn resolution(values: &mut [f64]) -> Option<f64> {
 }
 
 /// The chance of so many ties or more where `expected` are expected: a Poisson number of them.
+#[cfg(feature = "distributions")]
 pub fn p_value(ties: usize, expected: f64) -> f64 {
     if ties == 0 {
         return 1.0;
     }
     // P(N ≥ k) = P(Gamma(k) < λ) = P(χ² with 2k degrees < 2λ).
-    chi_square::lower(2.0 * expected, 2.0 * ties as f64)
+    super::chi_square::lower(2.0 * expected, 2.0 * ties as f64)
 }
 
 /// Whether every finite value is a single-precision number; false without finite values.
@@ -89,6 +88,7 @@ mod tests {
         assert!((found - expected).abs() < 5.0 * expected.sqrt(), "{found} against {expected}");
     }
 
+    #[cfg(feature = "distributions")]
     #[test]
     fn chances_of_ties_by_hand() {
         assert_eq!(p_value(0, 1e-8), 1.0);

@@ -12,13 +12,12 @@
 use statrs::distribution::{ContinuousCDF, StudentsT};
 
 use super::super::judgement::Tile;
+use super::super::noisy::slack;
 use super::super::picture::Stack;
-use super::super::tiles::{self, Part};
-use super::super::{ImageError, Wanted, estimate};
-use gate::session::quantity::MEAN_CAP;
+use super::super::tiles::{Part, mean_at};
+use super::super::{ImageError, Wanted, variance};
 use gate::stats::estimated_variance::Estimate;
-use gate::stats::normal::{upper_quantile, upper_tail};
-use gate::stats::symmetric;
+use gate::stats::normal::{p_value_of_symmetric, upper_quantile, upper_tail};
 use gate::stats::verdict::MISS;
 use theory::parallel;
 
@@ -46,7 +45,9 @@ impl<'a> Evidence<'a> {
     ) -> Result<Self, ImageError> {
         let size = stack.size;
         let mut units = vec![0.0; size.channels];
-        let means = [stack, reference].map(mean);
+        let of =
+            |stack: &Stack| -> Vec<f64> { (0..size.values()).map(|i| stack.mean(i)).collect() };
+        let means = [stack, reference].map(of);
         // A dark reference may have missed rare values: the other stack has a scale then.
         for means in means.iter().rev() {
             if units.iter().all(|&unit| unit == 0.0) {
@@ -64,7 +65,7 @@ impl<'a> Evidence<'a> {
         units.iter_mut().filter(|unit| **unit == 0.0).for_each(|unit| *unit = 1.0);
         let rounding = rounding.max(stack.rounding).max(reference.rounding);
         let variances =
-            [estimate::variances(stack)?.values, estimate::variances(reference)?.values];
+            [variance::variances(stack)?.values, variance::variances(reference)?.values];
         let [n, m] = [stack.passes as f64, reference.passes as f64];
         let all = |i: usize| (n * means[0][i] + m * means[1][i]) / (n + m);
         let square = |i: usize| {
@@ -85,7 +86,7 @@ impl<'a> Evidence<'a> {
     fn averages(&self, places: &[usize]) -> Vec<f64> {
         let of = |stack: &'a Stack| (0..stack.passes).map(move |pass| stack.pass(pass));
         let passes = of(self.stacks[0]).chain(of(self.stacks[1]));
-        passes.map(|x| places.iter().map(|&i| x[i]).sum::<f64>() / places.len() as f64).collect()
+        passes.map(|x| mean_at(places, |i| x[i])).collect()
     }
 
     /// The averages of every part in every pass, pass after pass, and the prior variance of each part.
@@ -124,7 +125,7 @@ impl<'a> Evidence<'a> {
     /// All tiles; the first `count` are tiles, the others the whole. `p` are their p-values for equal distributions;
     /// without these, signs give them.
     pub(super) fn tiles(&self, parts: &[Part], count: usize, p: Option<&[f64]>) -> Vec<Tile> {
-        let q = self.stacks.map(|stack| estimate::all_q(&[stack], parts, None));
+        let q = self.stacks.map(|stack| variance::all_q(&[stack], parts, None));
         parallel::range(parts.len(), |i| {
             let is_whole = i >= count;
             let number = if is_whole { 1 } else { count };
@@ -152,30 +153,28 @@ impl<'a> Evidence<'a> {
                 squares += d * d;
             }
         }
-        Some(symmetric::p_value(sum, squares))
+        Some(p_value_of_symmetric(sum, squares))
     }
 
     fn tile(&self, part: Part, q: [f64; 2], count: usize, is_whole: bool) -> Tile {
         let places: Vec<usize> = part.places(self.stacks[0]).collect();
         let pixels = places.len() as f64;
         let unit = self.units[part.channel];
-        let mean_of = |x: &[f64]| places.iter().map(|&i| x[i]).sum::<f64>() / pixels;
+        let mean_of = |x: &[f64]| mean_at(&places, |i| x[i]);
         let [mean, truth] = self.means.each_ref().map(|x| mean_of(x));
         let passes = self.passes();
         let [first, second] = [0, 1].map(|k| mean_of(&self.variances[k]) / passes[k]);
         let is_free = self.is_free || places.len() == 1;
         let variance = first + second;
         let error = if is_free { (variance / pixels).sqrt() } else { self.welch(&places) };
-        let mut found = tiles::empty(part, [truth, mean, error]);
+        let mut found = Tile::new(part, [truth, mean, error]);
         let y: Vec<f64> =
             places.iter().map(|&i| (self.means[0][i] - self.means[1][i]) / unit).collect();
         let floor = self.rounding * truth.abs() / unit;
         if variance == 0.0 {
-            let slack = 4.0 * floor + 1e-15;
-            if y.iter().all(|y| y.abs() <= slack) {
-                (found.tolerance, found.ln_p) = (Some(slack), [f64::INFINITY; 2]);
-            }
-            return found;
+            let slack = slack(floor);
+            let is_same = y.iter().all(|y| y.abs() <= slack);
+            return if is_same { found.without_doubt(slack) } else { found };
         }
         // How far either variance may be off: values that one stack did not see make its own look small.
         let pairs = self.stacks.map(|stack| (stack.passes / 2) as f64 * pixels);
@@ -199,15 +198,11 @@ impl<'a> Evidence<'a> {
             (false, None) => (None, 0.0),
         };
         if let Some(error) = bound.filter(|error| *error > 0.0) {
-            let cap = if is_whole { MEAN_CAP } else { f64::INFINITY };
-            let tolerance = self.wanted.tolerance.unwrap_or((quantiles * error).min(cap));
-            let off = (mean - truth) / unit;
-            let above = |z: f64| match (&student, is_free) {
+            let tail = |z: f64| match (&student, is_free) {
                 (Some(law), false) => law.cdf(-z),
                 _ => upper_tail(z),
             };
-            found.tolerance = Some(tolerance);
-            found.ln_p = [tolerance - off, tolerance + off].map(|room| -above(room / error).ln());
+            found.promise(self.wanted.tolerance, is_whole, quantiles, [error, unit], tail);
         }
         found
     }
@@ -223,13 +218,4 @@ impl<'a> Evidence<'a> {
         };
         (of(one) + of(other)).sqrt()
     }
-}
-
-fn mean(stack: &Stack) -> Vec<f64> {
-    let mut sums = vec![0.0; stack.size.values()];
-    for pass in 0..stack.passes {
-        sums.iter_mut().zip(stack.pass(pass)).for_each(|(sum, x)| *sum += x);
-    }
-    let n = stack.passes as f64;
-    sums.into_iter().map(|sum| sum / n).collect()
 }

@@ -5,7 +5,7 @@
 //! ```text
 //! same law    the passes of both stacks have one distribution in every pixel: an exact level α
 //!             `stats::permutation` of passes, all tiles and the whole at one level; pixels may depend on each other
-//!             `stats::symmetric` signs of differences where the passes are too few for that; independent pixels
+//!             `stats::normal` signs of differences where the passes are too few for that; independent pixels
 //! same mean   distributions may differ (a better sampler, more samples a pass), means may not:
 //!             `stats::estimated_variance` of x̄ − ȳ over the pixels of a tile, V by both stacks, with the kurtosis that
 //!             they show; Holm at α
@@ -21,16 +21,14 @@
 
 mod evidence;
 pub mod permutation;
-mod verdict;
 
 use self::evidence::Evidence;
-use super::judgement::{Comparison, Dependence, Judgement, Tile, counts, worst};
-use super::{ImageError, LISTED, NOISY_VALUES, Stack, Wanted, claim, estimate, same, tiles};
-use super::{neighbours_of, not_finite, order_of};
-use crate::judge::ROUNDING;
-use crate::judge::images::against::permutation::{Groups, distinct};
-use gate::stats::multiplicity::{e_benjamini_hochberg, holm};
-use gate::stats::verdict::{MISS, Verdict};
+use self::permutation::{Groups, distinct};
+use super::judgement::{Comparison, Dependence, Judgement, Tile};
+use super::{ImageError, NOISY_VALUES, Stack, Wanted, claim, repeats, tiles, variance, verdict};
+use super::{neighbours_of, order_of, refuted};
+use crate::judge::{ROUNDING, SIDE_SHARE, decide_together, main_share};
+use gate::stats::verdict::Verdict;
 
 /// What is claimed of two stacks.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -46,9 +44,6 @@ impl Default for Terms {
         Self { is_same_law: false, rounding: ROUNDING }
     }
 }
-
-/// The shares of α where variances are compared, too: tiles with the whole, and the variance.
-const SHARES: [f64; 2] = [0.8, 0.2];
 
 /// Judges a stack by a reference.
 ///
@@ -87,69 +82,24 @@ pub fn compare(
     check(stack, reference, terms)?;
     let (size, alpha) = (stack.size, wanted.alpha);
     let tile = wanted.tile(size, stack.passes.min(reference.passes), NOISY_VALUES);
-    let (refuted_by, refuting) = not_finite(stack);
-    let neighbours = either([stack, reference].map(|stack| neighbours_of(stack, alpha)));
-    let is_free = !neighbours.is_refuted();
-    let is_flat = [stack, reference].iter().all(|stack| super::repeats::is_one_image(stack));
+    let mut judgement = Judgement::new(stack, alpha, tile);
+    (judgement.refuted_by, judgement.refuting) = refuted(stack, |_, value| value.is_finite());
+    judgement.neighbours = either([stack, reference].map(|stack| neighbours_of(stack, alpha)));
+    let is_free = !judgement.neighbours.is_refuted();
+    let is_flat = [stack, reference].iter().all(|stack| repeats::is_one_image(stack));
     let of = |stack| order_of(stack, is_flat, alpha);
     let ((one, repeated), (mut other, _)) = (of(stack), of(reference));
     if other.is_refuted() {
         other.reason = format!("the reference: {}", other.reason);
     }
-    let mut order = either([one, other]);
-    if let Some([p, q]) = same::shared(stack, reference) {
-        order.reason = format!(
+    (judgement.order, judgement.repeated) = (either([one, other]), repeated);
+    if let Some([p, q]) = repeats::shared(stack, reference) {
+        judgement.order.reason = format!(
             "pass {p} and pass {q} of the reference share values, counted from 0: two stacks of the same passes say \
              nothing; give each stack seeds of its own"
         );
     }
-    let Tested { mut all, count, comparison, differing } = if refuting == 0 && !order.is_refuted() {
-        let evidence = Evidence::new(stack, reference, terms.rounding, wanted, is_free)?;
-        tested([stack, reference], &evidence, terms, tile, alpha)
-    } else {
-        Tested { all: Vec::new(), count: 0, comparison: untested(reference, terms), differing: 0 }
-    };
-    let whole = all.split_off(count.min(all.len()));
-    let mut judgement = Judgement {
-        verdict: Verdict::Inconclusive,
-        reason: String::new(),
-        guarantees: Vec::new(),
-        alpha,
-        beta: MISS,
-        listed_rate: LISTED,
-        passes: stack.passes,
-        size,
-        tile,
-        refuted_by,
-        refuting,
-        order,
-        neighbours,
-        repeated,
-        variance: None,
-        estimate: None,
-        truth_passes: None,
-        comparison: Some(comparison),
-        worst: worst(&all),
-        counts: counts(&all),
-        whole,
-        tiles: all,
-    };
-    verdict::decide(&mut judgement, differing);
-    Ok(judgement)
-}
-
-/// The tiles, then the wholes, with what was found of both stacks.
-struct Tested {
-    all: Vec<Tile>,
-    /// Number of tiles.
-    count: usize,
-    comparison: Comparison,
-    /// Number of tiles and wholes that are rejected for equal distributions alone.
-    differing: usize,
-}
-
-fn untested(reference: &Stack, terms: Terms) -> Comparison {
-    Comparison {
+    let mut comparison = Comparison {
         passes: reference.passes,
         method: "none",
         permutations: 0,
@@ -158,35 +108,41 @@ fn untested(reference: &Stack, terms: Terms) -> Comparison {
         spread: None,
         spread_p: 1.0,
         kurtosis: None,
+    };
+    let mut differing = 0;
+    if judgement.refuting == 0 && !judgement.order.is_refuted() {
+        let evidence = Evidence::new(stack, reference, terms.rounding, wanted, is_free)?;
+        differing = test([stack, reference], &evidence, &mut comparison, &mut judgement);
     }
+    judgement.comparison = Some(comparison.clone());
+    verdict::decide_against(&mut judgement, &comparison, differing);
+    Ok(judgement)
 }
 
-/// Both tests of all tiles and wholes.
-fn tested(
+/// Makes both tests of all tiles and wholes, and returns how many are rejected for equal distributions alone.
+fn test(
     stacks: [&Stack; 2],
     evidence: &Evidence,
-    terms: Terms,
-    tile: usize,
-    alpha: f64,
-) -> Tested {
-    let size = stacks[0].size;
+    comparison: &mut Comparison,
+    judgement: &mut Judgement,
+) -> usize {
+    let Judgement { size, tile, alpha, .. } = *judgement;
     let mut parts = tiles::parts(size, tile, true);
     let count = parts.len();
     parts.extend(tiles::wholes(size));
-    let mut comparison = untested(stacks[1], terms);
     let smallest: Vec<_> = parts.iter().copied().filter(|part| part.size == tile).collect();
-    let q = stacks.map(|stack| estimate::all_q(&[stack], &smallest, None));
+    let q = stacks.map(|stack| variance::all_q(&[stack], &smallest, None));
     let q = q.iter().flatten().copied().filter(|q| q.is_finite()).fold(0.0, f64::max);
-    comparison.kurtosis = (q > 0.0).then(|| estimate::kurtosis(q));
+    comparison.kurtosis = (q > 0.0).then(|| variance::kurtosis(q));
     comparison.spread = evidence.spread();
     let rows = stacks.map(|stack| stack.passes);
-    let level = if terms.is_same_law { SHARES[0] * alpha } else { alpha };
+    let level = if comparison.is_same_law { main_share(1) * alpha } else { alpha };
     let (mut all, adjusted) = if distinct(rows[0], rows[1]) >= 2.0 / level {
         let (values, prior) = evidence.rows(&parts);
         let found = Groups::new(values, rows, &prior).compare(level, 1);
         (comparison.method, comparison.permutations) = ("permutation", found.deals);
         let (values, prior) = evidence.spreads();
-        let spread = Groups::new(values, rows, &[prior]).compare(SHARES[1] * alpha, 2);
+        let spread = Groups::new(values, rows, &[prior]).compare(SIDE_SHARE * alpha, 2);
         comparison.spread_p = spread.p[0];
         (evidence.tiles(&parts, count, Some(&found.p)), found.adjusted)
     } else {
@@ -200,8 +156,10 @@ fn tested(
         (all, adjusted)
     };
     comparison.p = adjusted.iter().copied().fold(1.0, f64::min);
-    let differing = decide(&mut all, &adjusted, level, alpha, terms.is_same_law);
-    Tested { all, count, comparison, differing }
+    let differing = decide(&mut all, &adjusted, level, alpha, comparison.is_same_law);
+    let whole = all.split_off(count);
+    judgement.take(all, whole);
+    differing
 }
 
 fn check(stack: &Stack, reference: &Stack, terms: Terms) -> Result<(), ImageError> {
@@ -247,22 +205,18 @@ fn decide(
     alpha: f64,
     is_same_law: bool,
 ) -> usize {
-    let ln_e: Vec<f64> = tiles.iter().map(|tile| tile.ln_e).collect();
-    let p: Vec<f64> = ln_e.iter().map(|ln_e| (-ln_e).exp().min(1.0)).collect();
-    let is_off = holm(&p, tiles.len(), alpha);
+    let evidence: Vec<_> = tiles.iter().map(Tile::evidence).collect();
+    let joint = decide_together(&evidence, alpha);
     let mut differing = 0;
-    for ((tile, &adjusted), is_off) in tiles.iter_mut().zip(adjusted).zip(is_off) {
-        let has_passed = tile.ln_p.iter().all(|&ln_p| ln_p >= -MISS.ln());
+    for ((tile, &adjusted), joint) in tiles.iter_mut().zip(adjusted).zip(joint) {
         let is_different = adjusted <= level;
-        differing += usize::from(is_different && !is_off && !is_same_law);
-        tile.verdict = match (is_different, is_off || is_same_law, has_passed) {
+        differing += usize::from(is_different && !joint.is_off && !is_same_law);
+        tile.verdict = match (is_different, joint.is_off || is_same_law, joint.has_passed) {
             (true, true, _) => Verdict::Fail,
             (false, _, true) => Verdict::Pass,
             _ => Verdict::Inconclusive,
         };
-    }
-    for index in e_benjamini_hochberg(&ln_e, LISTED) {
-        tiles[index].is_listed = true;
+        tile.is_listed = joint.is_listed;
     }
     differing
 }

@@ -1,73 +1,47 @@
 //! What is said of a stack of images, on the screen: a small block of lines.
 
-use std::fmt::Write;
-
 use crate::judge::images::Judgement;
 use crate::judge::images::judgement::{Comparison, Dependence, Tile};
-use crate::report::layout::wrapped;
 use numeric::digits::{fixed, percent, short, signed};
-
-/// The widest word at the left.
-const INDENT: usize = 10;
 
 /// The block, `width` columns wide.
 pub fn block(judgement: &Judgement, name: &str, width: usize) -> String {
-    let mut text = String::new();
-    let mut line = |word: &str, what: &str| {
-        for (i, part) in wrapped(what, width.max(40) - INDENT).iter().enumerate() {
-            let word = if i == 0 { word } else { "" };
-            let _ = writeln!(text, "{word:INDENT$}{part}");
-        }
-    };
-    line("images", &format!("{} passes of {} in {name}", judgement.passes, judgement.size));
-    for whole in &judgement.whole {
-        line("whole", &whole_line(judgement, whole));
-    }
-    if let Some(comparison) = &judgement.comparison {
-        line("against", &against_line(comparison));
-    }
-    if let Some(found) = judgement.estimate {
+    let passes = format!("{} passes of {} in {name}", judgement.passes, judgement.size);
+    let mut lines = vec![("images", passes)];
+    lines.extend(judgement.whole.iter().map(|whole| ("whole", whole_line(judgement, whole))));
+    lines.extend(judgement.comparison.iter().map(|found| ("against", against_line(found))));
+    lines.extend(judgement.estimate.map(|found| {
         let source = if found.is_given { "as given" } else { "measured" };
-        line(
-            "estimate",
-            &format!(
-                "the variance is that of {} passes; kurtosis {} at most ({source}); {} negative, {} no numbers",
-                found.passes,
-                short(found.kurtosis, 3),
-                found.negative,
-                found.unknown
-            ),
+        let what = format!(
+            "the variance is that of {} passes; kurtosis {} at most ({source}); {} negative, {} no numbers",
+            found.passes,
+            short(found.kurtosis, 3),
+            found.negative,
+            found.unknown
         );
-    }
-    if let Some(variance) = judgement.variance {
-        line(
-            "variance",
-            &format!(
-                "s²/V = {}, ln E = {:.1} of {:.1} against V as the largest",
-                fixed(variance.about_mean, 5),
-                variance.ln_e,
-                variance.limit
-            ),
-        );
-    }
+        ("estimate", what)
+    }));
+    lines.extend(judgement.variance.map(|variance| {
+        let (ratio, found, limit) = (fixed(variance.about_mean, 5), variance.ln_e, variance.limit);
+        let what =
+            format!("s²/V = {ratio}, ln E = {found:.1} of {limit:.1} against V as the largest");
+        ("variance", what)
+    }));
     if judgement.counts.tiles > 0 {
-        line("tiles", &tiles(judgement));
+        lines.push(("tiles", tiles(judgement)));
     }
-    for worst in &judgement.worst {
-        line("worst", &worst_line(judgement, worst));
-    }
-    line("passes", &dependence(&judgement.order, "ln 1/p", "there are too few to tell"));
-    line("pixels", &dependence(&judgement.neighbours, "ln E", "there is one"));
-    for promise in &judgement.guarantees {
-        line("promise", promise);
-    }
+    lines.extend(judgement.worst.iter().map(|worst| ("worst", worst_line(judgement, worst))));
+    let order = dependence(&judgement.order, "ln 1/p", "there are too few to tell");
+    lines.extend([
+        ("passes", order),
+        ("pixels", dependence(&judgement.neighbours, "ln E", "there is one")),
+    ]);
+    lines.extend(judgement.guarantees.iter().map(|promise| ("promise", promise.clone())));
     let why =
         if judgement.reason.is_empty() { String::new() } else { format!(": {}", judgement.reason) };
-    line("verdict", &format!("{}{why}", judgement.verdict.word()));
-    for likely in judgement.pattern().lines() {
-        line("likely", &likely);
-    }
-    text
+    lines.push(("verdict", format!("{}{why}", judgement.verdict.word())));
+    lines.extend(judgement.pattern().lines().into_iter().map(|likely| ("likely", likely)));
+    super::super::lines(&lines, width)
 }
 
 fn channel(judgement: &Judgement, tile: &Tile) -> String {

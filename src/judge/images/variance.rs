@@ -1,4 +1,4 @@
-//! A variance that was itself estimated: what its entries are, and how far it may be off.
+//! The variance of the pixels: how far an estimated one may be off, and whether the claimed one is too small.
 //!
 //! ```text
 //! V_i   the sample variance of Q other passes in pixel i; below 0: 0, no number: the pixel is not judged
@@ -11,12 +11,23 @@
 //! A negative entry is noise of an estimate. Counting it as 0 makes V̂ larger, so that evidence gets less. A 0 says that
 //! nothing was seen in Q passes, not that nothing varies: nothing fails for that. Rare bright values that were seen in
 //! one tile make q large in all.
+//!
+//! Whether it is too small is asked of squares over all pixels:
+//!
+//! ```text
+//! y = (x − T)²/V − 1 ≥ −1      in the mean over a pixel's channels; blocks of passes as for tiles
+//! E    bets against a mean of y above 0: squares need no kurtosis to be refuted as too large
+//! s²/V the mean over pixels of what their passes show about their own mean
+//! ```
+//!
+//! Where the pixels of a pass depend on each other a draw is the average of y over a pass.
 
-use super::claim::{Claim, Level};
-use super::error::ImageError;
+use super::claim::{Claim, ImageError, Level, Pixels};
 use super::judgement;
 use super::picture::{Picture, Size, Stack};
 use super::tiles::Part;
+use crate::judge::{AT_THE_END, Quantity, Scalar};
+use gate::session::quantity::{VARIANCE_CAP, variance_floor};
 use gate::stats::estimated_variance::Estimate;
 use theory::parallel;
 
@@ -69,9 +80,7 @@ impl Estimated {
         let stack = claim.variance_stack.clone();
         Ok(Some((variance, Self { passes, is_unknown, negative, unknown, first, stack })))
     }
-}
 
-impl Estimated {
     /// What is said of it.
     pub(super) fn told(
         &self,
@@ -82,29 +91,20 @@ impl Estimated {
         q: &[f64],
     ) -> judgement::Estimate {
         let smallest = parts.iter().zip(q).filter(|(part, _)| part.size == tile);
-        let place = |index: usize| {
-            let (pixel, channel) = (index / size.channels, index % size.channels);
-            [pixel / size.columns, pixel % size.columns, channel]
-        };
         judgement::Estimate {
             passes: self.passes,
             kurtosis: kurtosis(smallest.map(|(_, q)| *q).fold(0.0, f64::max)),
             is_given: claim.kurtosis.is_some(),
             negative: self.negative,
             unknown: self.unknown,
-            first: self.first.map(place),
+            first: self.first.map(|index| size.place(index)),
         }
     }
 }
 
 /// Sample variances of the passes of each value.
 pub(super) fn variances(stack: &Stack) -> Result<Picture, ImageError> {
-    let n = stack.passes as f64;
-    let of = |i: usize| {
-        let values = || (0..stack.passes).map(|pass| stack.pass(pass)[i]);
-        let mean = values().sum::<f64>() / n;
-        values().map(|x| (x - mean).powi(2)).sum::<f64>() / (n - 1.0)
-    };
+    let of = |i: usize| stack.variance(i);
     Picture::new(stack.size, (0..stack.size.values()).map(of).collect())
 }
 
@@ -170,4 +170,126 @@ pub(super) fn kurtosis(q: f64) -> f64 {
 /// The estimate of the variance of a tile of `pixels` pixels, V̂ above 0, from Q passes.
 pub(super) fn of_tile(variance: f64, q: f64, passes: usize, pixels: f64) -> Estimate {
     Estimate { variance, error: q / ((passes / 2) as f64 * pixels) }
+}
+
+/// What was found of the variance.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Squares {
+    /// ln E.
+    pub ln_e: f64,
+    /// 1 + the mean of y.
+    pub about_truth: f64,
+    /// s²/V.
+    pub about_mean: f64,
+}
+
+/// ln E of squares y against a variance that is not too small, and the sum of all y; `y` appends those of a unit.
+fn too_small(
+    floor: f64,
+    units: usize,
+    is_free: bool,
+    y: impl Fn(usize, &mut Vec<f64>),
+) -> (f64, f64) {
+    let mut sum = 0.0;
+    let of_block = |first: usize, last: usize, to: &mut Vec<f64>| {
+        for unit in first..last {
+            let before = to.len();
+            y(unit, to);
+            let all: f64 = to[before..].iter().sum();
+            sum += all;
+            if !is_free {
+                let draws = (to.len() - before) as f64;
+                to.truncate(before);
+                to.push(all / draws);
+            }
+        }
+    };
+    let range = Some([-1.0, f64::INFINITY]); // a square is never below 0
+    let quantity = Quantity { range, ..Quantity::variance(None, floor) };
+    let scalar = Scalar::of_all(quantity, None, AT_THE_END, units, of_block);
+    (scalar.evidence.ln_e, sum)
+}
+
+/// Compares squares with the variance; `None` where none is claimed, or all are certain.
+pub(super) fn squares(stack: &Stack, pixels: &Pixels, is_free: bool) -> Option<Squares> {
+    let variance = pixels.variance.as_ref()?;
+    let channels = stack.size.channels;
+    let judged: Vec<usize> = (0..stack.size.pixels())
+        .filter(|pixel| (0..channels).all(|c| !pixels.is_certain(pixel * channels + c)))
+        .collect();
+    if judged.is_empty() {
+        return None;
+    }
+    let of_pixel = |pixel: usize, of: &dyn Fn(usize) -> f64| {
+        let first = pixel * channels;
+        (first..first + channels).map(|i| of(i) / variance[i]).sum::<f64>() / channels as f64
+    };
+    // Too much rounding hides the variance.
+    let noise = |i: usize| variance_floor(variance[i], 0.0, pixels.floor(i));
+    let floors = judged.iter().flat_map(|pixel| (0..channels).map(move |c| pixel * channels + c));
+    let floor = floors.map(noise).sum::<f64>() / (judged.len() * channels) as f64;
+    if floor > 0.25 * VARIANCE_CAP {
+        return None;
+    }
+    let n = stack.passes as f64;
+    let (ln_e, sum) = too_small(floor, stack.passes, is_free, |pass, y| {
+        let values = stack.pass(pass);
+        let square = |i: usize| (values[i] - pixels.truth[i]).powi(2);
+        y.extend(judged.iter().map(|&pixel| of_pixel(pixel, &square) - 1.0));
+    });
+    let shown = |pixel: &usize| of_pixel(*pixel, &|i| stack.variance(i));
+    let about_mean = judged.iter().map(shown).sum::<f64>();
+    Some(Squares {
+        ln_e,
+        about_truth: 1.0 + sum / (n * judged.len() as f64),
+        about_mean: about_mean / judged.len() as f64,
+    })
+}
+
+/// Compares pairs of passes with a variance that was estimated, or where the truth has an error of its own.
+///
+/// ```text
+/// y = (x_2k − x_2k+1)²/(2V) − 1 ≥ −1;   V of the pixel where it is exact, else a bound on the mean of all pixels:
+///     V̂/(1 − √(2r ln(2/α_v)))    as of `stats::estimated_variance`, which takes half of the level α_v
+/// ```
+pub(super) fn pairs(
+    stack: &Stack,
+    pixels: &Pixels,
+    q: f64,
+    is_free: bool,
+    level: f64,
+) -> Option<(Squares, f64)> {
+    let variance = pixels.variance.as_ref()?;
+    let is_judged = |&i: &usize| {
+        !pixels.is_certain(i) && pixels.estimate.as_ref().is_none_or(|found| !found.is_unknown[i])
+    };
+    let judged: Vec<usize> = (0..stack.size.values()).filter(is_judged).collect();
+    let count = judged.len() as f64;
+    let claimed = judged.iter().map(|&i| variance[i]).sum::<f64>() / count;
+    if claimed.is_nan() || claimed <= 0.0 {
+        return None;
+    }
+    // The channels of a pixel depend on each other: they are one draw.
+    let pixel = |i: &usize| i / stack.size.channels;
+    let groups: Vec<&[usize]> = judged.chunk_by(|i, j| pixel(i) == pixel(j)).collect();
+    let draws = groups.len() as f64;
+    let excess = match &pixels.estimate {
+        Some(found) => of_tile(1.0, q, found.passes, draws).upper(0.5 * level)?,
+        None => 1.0,
+    };
+    let of = |i: usize| if pixels.estimate.is_some() { claimed * excess } else { variance[i] };
+    let floor = judged.iter().map(|&i| pixels.floor(i).powi(2) / of(i)).sum::<f64>() / count;
+    if floor > 0.25 * VARIANCE_CAP {
+        return None;
+    }
+    let count_pairs = stack.passes / 2;
+    let (ln_e, sum) = too_small(floor, count_pairs, is_free, |pair, y| {
+        let (one, other) = (stack.pass(2 * pair), stack.pass(2 * pair + 1));
+        let square = |i: &usize| 0.5 * (one[*i] - other[*i]).powi(2) / of(*i);
+        let of_group = |group: &&[usize]| group.iter().map(square).sum::<f64>() * draws / count;
+        y.extend(groups.iter().map(|group| of_group(group) - 1.0));
+    });
+    let ratio = (1.0 + sum / (count_pairs as f64 * draws)) * excess;
+    let ln_share = if pixels.estimate.is_some() { std::f64::consts::LN_2 } else { 0.0 };
+    Some((Squares { ln_e: ln_e - ln_share, about_truth: ratio, about_mean: ratio }, excess))
 }
