@@ -15,7 +15,7 @@ use super::curve::Sample;
 use crate::plan::{BLOCK, Planned};
 use estimators::{DrawBuffer, Kernel};
 
-/// What time is.
+/// Clock of the times.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Clock {
@@ -26,7 +26,7 @@ pub enum Clock {
 }
 
 impl Clock {
-    /// The clock for so many threads.
+    /// The clock for a number of threads.
     pub fn of(threads: usize) -> Self {
         if threads > 1 { Self::Elapsed } else { Self::Processor }
     }
@@ -56,7 +56,7 @@ impl Clock {
     }
 }
 
-/// What one round says of one experiment, in seconds for a draw.
+/// Times of one experiment in one round, in seconds for a draw.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Lap {
     /// On one thread, as a run draws.
@@ -67,14 +67,14 @@ pub struct Lap {
     pub plain: f64,
 }
 
-/// What times.
+/// Timer of the ways of drawing.
 #[derive(Debug, Clone, Copy)]
 pub struct Stopwatch {
-    /// What time is.
+    /// Clock of the times.
     pub clock: Clock,
     /// The vector hardware.
     pub level: Level,
-    /// How many threads draw at once.
+    /// Number of threads that draw at once.
     pub threads: usize,
 }
 

@@ -1,4 +1,4 @@
-//! What the draws of an experiment come to, and how their error falls.
+//! Draws of an experiment, summed up, and their error after growing numbers of draws.
 //!
 //! ```text
 //! error(n) = √(mean over rounds of (mean of the round's first n draws − T)²),  n = 64, 128, …
@@ -36,7 +36,7 @@ pub struct ChannelSample {
     pub tally: Tally,
     /// `errors[round][look]`: (mean − T)/T, signed.
     pub errors: Vec<Vec<f64>>,
-    /// The same as `tally`, for this round.
+    /// Draws of this round, as in `tally`.
     round: Tally,
 }
 
@@ -52,7 +52,7 @@ pub struct Error {
 }
 
 impl Sample {
-    /// Of an experiment that makes so many draws in a round.
+    /// The sample of an experiment that makes this number of draws in a round.
     pub fn of(planned: &Planned, draws: u64) -> Self {
         let truths = planned.outcome.as_ref().map_or_else(
             |_| Vec::new(),

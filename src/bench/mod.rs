@@ -32,7 +32,7 @@ use self::record::{Bench, BenchCase, Conditions, Spread};
 use crate::plan::{Plan, Planned, PlannedCase};
 use numeric::pack;
 
-/// How much is timed, and with what.
+/// Amount of draws that are timed, and the hardware.
 #[derive(Debug, Clone, Copy)]
 pub struct Amounts {
     /// Draws of an experiment in a round.

@@ -1,4 +1,4 @@
-//! What a bench found: all that its reports may know.
+//! Record of a bench: all that its reports see.
 //!
 //! Unknown is `None`, never zero. All times are in [`Times`] and [`Conditions`]; everything else is
 //! the same for any number of threads on any machine.
@@ -20,20 +20,20 @@ pub struct Bench {
     pub draws: u64,
     /// Rounds.
     pub rounds: u32,
-    /// Where and how it was timed.
+    /// Conditions of the timing.
     pub conditions: Conditions,
     /// The cases, in the order they were given.
     pub cases: Vec<BenchCase>,
-    /// What changed since a stored bench, where it was compared with one.
+    /// Changes since a stored bench, if the bench was compared with one.
     pub comparison: Option<Comparison>,
 }
 
-/// Where and how it was timed.
+/// Conditions of the timing.
 #[derive(Debug, Clone)]
 pub struct Conditions {
-    /// How many threads drew at once.
+    /// Number of threads that drew at once.
     pub threads: usize,
-    /// What time is.
+    /// Clock of the times.
     pub clock: Clock,
     /// The vector hardware that was used.
     pub level: String,
@@ -43,7 +43,7 @@ pub struct Conditions {
     pub speedup: Option<Spread>,
 }
 
-/// What was found for one case.
+/// Results of one case.
 #[derive(Debug, Clone, Serialize)]
 pub struct BenchCase {
     /// The case's name.
@@ -80,7 +80,7 @@ pub struct BenchRow {
     pub listed: usize,
     /// The channel's name; empty where the value has one channel only.
     pub channel: String,
-    /// How many draws the mean and the variance are of: those of all rounds.
+    /// Number of draws of the mean and the variance: those of all rounds.
     pub draws: Option<u64>,
     /// The mean of the draws.
     pub mean: Option<f64>,
@@ -92,7 +92,7 @@ pub struct BenchRow {
     pub predicted_variance: Option<f64>,
     /// The mean number of lookups of σ_t.
     pub lookups_per_draw: Option<f64>,
-    /// The same in theory.
+    /// The predicted mean number of lookups of σ_t.
     pub predicted_lookups: Option<f64>,
     /// Lookups of σ_t for a ray before its first draw, as at explorer points and by pilot rays.
     pub setup_lookups: Option<u64>,
@@ -100,7 +100,7 @@ pub struct BenchRow {
     pub needs: String,
     /// 1/(variance · (lookups per draw + setup lookups/draws per ray)), both those of theory where it has them.
     pub fom: Option<f64>,
-    /// How the error falls.
+    /// Error after growing numbers of draws.
     pub curve: Vec<CurvePoint>,
     /// Whether a plot with room for one line per estimator shows this one: of a sweep the point with
     /// the largest figure of merit, of a curve the last channel.
@@ -109,7 +109,7 @@ pub struct BenchRow {
     pub is_refused: bool,
     /// Why it is refused, or why numbers are missing; empty where all is there.
     pub reason: String,
-    /// What depends on the machine; `None` where nothing was drawn.
+    /// Times, which depend on the machine; `None` where nothing was drawn.
     pub times: Option<Times>,
 }
 
@@ -122,7 +122,7 @@ pub struct CurvePoint {
     pub lookups: f64,
     /// |mean − T|, absolute: the root of its mean square over the rounds.
     pub error: f64,
-    /// The same, relative to the truth.
+    /// The error relative to the truth.
     pub relative: f64,
     /// The least of the rounds, relative.
     pub least: f64,
@@ -132,16 +132,16 @@ pub struct CurvePoint {
     pub predicted: Option<f64>,
 }
 
-/// What depends on the machine.
+/// Times of an experiment, which depend on the machine.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Times {
     /// Nanoseconds of a draw; with several threads, of all threads together.
     pub ns_per_draw: Spread,
     /// Nanoseconds of a draw of the plain loop on one thread.
     pub plain_ns_per_draw: Spread,
-    /// How many times as fast as the plain loop a single thread is.
+    /// Speed of a single thread relative to the plain loop.
     pub speedup: Spread,
-    /// How many times as fast as one thread all are; `None` with one thread.
+    /// Speed of all threads relative to one; `None` with one thread.
     pub scaling: Option<Spread>,
     /// Draws in a second.
     pub draws_per_second: f64,
@@ -161,12 +161,12 @@ impl BenchRow {
 }
 
 impl Times {
-    /// Seconds of so many draws.
+    /// Seconds of a number of draws.
     pub fn seconds(&self, draws: u64) -> f64 {
         draws as f64 * self.ns_per_draw.median * 1e-9
     }
 
-    /// Seconds of so many draws of the plain loop.
+    /// Seconds of a number of draws of the plain loop.
     pub fn plain_seconds(&self, draws: u64) -> f64 {
         draws as f64 * self.plain_ns_per_draw.median * 1e-9
     }

@@ -26,9 +26,9 @@ pub struct Stored {
     pub schema: u32,
     /// The version of the tool.
     pub version: String,
-    /// How many threads drew at once.
+    /// Number of threads that drew at once.
     pub threads: usize,
-    /// What time was.
+    /// Clock of the times.
     pub clock: Clock,
     /// The vector hardware.
     pub level: String,
@@ -45,12 +45,12 @@ pub struct Timed {
     pub case: String,
     /// Nanoseconds of a draw.
     pub ns_per_draw: Spread,
-    /// How many times as fast as the plain loop.
+    /// Speed relative to the plain loop.
     pub speedup: Spread,
 }
 
 impl Stored {
-    /// What a bench found, to be stored.
+    /// The times of a bench, to be stored.
     pub fn of(bench: &Bench) -> Self {
         let timed = |case: &BenchCase, row: &BenchRow| {
             let times = row.times.as_ref()?;
@@ -103,22 +103,22 @@ impl Stored {
     }
 }
 
-/// What changed.
+/// Comparison of two benches.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Comparison {
-    /// What the stored bench is called.
+    /// Name of the stored bench.
     pub name: String,
-    /// How much more time is no regression, as a share.
+    /// Relative increase of the time that is no regression.
     pub tolerance: f64,
-    /// How many experiments were compared.
+    /// Number of experiments that were compared.
     pub compared: usize,
-    /// What became slower or faster.
+    /// Experiments that became slower or faster.
     pub changes: Vec<Change>,
     /// Experiments of this bench that the stored one has not.
     pub added: Vec<ExperimentId>,
     /// Experiments of the stored bench that this one has not.
     pub missing: Vec<ExperimentId>,
-    /// Experiments whose case has another text.
+    /// Experiments of a case with another text.
     pub rewritten: Vec<ExperimentId>,
     /// The vector hardware of both, where it differs.
     pub levels: Option<[String; 2]>,

@@ -227,11 +227,11 @@ impl Case {
 /// The smallest relative differences that must be seen; `None` where the case does not say.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Tolerance {
-    /// Of the mean, relative to the truth.
+    /// Tolerance of the mean, relative to the truth.
     pub mean: Option<f64>,
-    /// Of the variance, relative to the prediction.
+    /// Tolerance of the variance, relative to the prediction.
     pub variance: Option<f64>,
-    /// Of the lookups, relative to the prediction.
+    /// Tolerance of the lookups, relative to the prediction.
     pub lookups: Option<f64>,
 }
 

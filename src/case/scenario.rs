@@ -398,7 +398,7 @@ pub struct Course {
     /// σ̂ there, 1/length; empty for none, or where it cannot be made.
     #[serde(with = "gate::extended")]
     pub sampling: Vec<f64>,
-    /// Where the inequality does not hold; `None` where something else is refused.
+    /// Place where the inequality does not hold; `None` where something else is refused.
     pub at: Option<f64>,
 }
 

@@ -16,7 +16,7 @@ const PART: usize = 1024;
 /// Adds a y for each of the draws to the second argument.
 pub type Observer<T> = Box<dyn Fn(&T, &mut Vec<f64>) + Send + Sync>;
 
-/// How a y comes from a draw.
+/// Function of a draw that a check observes.
 pub enum Observe {
     /// From the value of one channel.
     Value(usize, Observer<[f64]>),
@@ -50,7 +50,7 @@ pub struct Batch<'a> {
     pub values: Vec<Option<Census<f64>>>,
     /// The numbers of lookups, where they are few.
     pub lookups: Option<Census<u32>>,
-    /// How many draws are in each class of the experiment's distances, once somebody has asked.
+    /// Number of draws in each class of the experiment's distances, counted when it is first needed.
     distances: OnceCell<Vec<f64>>,
 }
 

@@ -24,7 +24,7 @@ use theory::prediction::Covariance as Predicted;
 /// The largest error of a covariance, relative to the product of the standard deviations, that is
 /// still worth a promise.
 const CAP: f64 = 0.2;
-/// The same of a prediction.
+/// Relative error of a predicted covariance.
 const ERROR: f64 = 1e-10;
 
 /// A covariance as a test with a p-value: `min(1, 1/E)`, E the gate's e-value after a number of draws that is fixed

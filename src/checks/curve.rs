@@ -23,7 +23,7 @@ use gate::stats::{chi_square, normal};
 use numeric::sum::{sum_in_lanes, sum_of_pairs};
 use theory::{Increment, Prediction};
 
-/// A step whose variance is known worse than this is not part of a limit law.
+/// Largest relative error of a step's variance for the asymptotic tests.
 const SHARP: f64 = 1e-3;
 
 /// The increments `X_j/T_j − X_{j−1}/T_{j−1}`, of which some may be joined.

@@ -37,23 +37,23 @@ pub struct Classes {
     /// The upper ends of all classes, the last of which is the distance of the rays that escape, and
     /// [`NEAR`] that are no number: nothing reaches those.
     ends: Vec<f64>,
-    /// How many classes.
+    /// Number of classes.
     total: usize,
     /// Equal cells from the first end to the last but one, one before and one behind them: how many ends surely
     /// lie before each.
     guide: Vec<u16>,
-    /// Where the cells begin.
+    /// Distance at which the cells begin.
     first: f64,
     /// The number of the last cell.
     last: f64,
-    /// How many there are in a length of 1.
+    /// Number of cells in a length of 1.
     scale: f64,
     /// The probability that a ray escapes.
     escapes: f64,
 }
 
 impl Classes {
-    /// As many as theory has.
+    /// The classes of the predicted distribution.
     pub fn of(prediction: &Prediction) -> Option<Self> {
         let Some(theory::Law::Distances { bins, end, escape, .. }) = &prediction.law else {
             return None;
@@ -61,7 +61,7 @@ impl Classes {
         Some(Self::new(bins.clone(), *end, *escape))
     }
 
-    /// Of the ends of all classes but the last.
+    /// Classes from the ends of all of them but the last.
     fn new(mut ends: Vec<f64>, escape: f64, escapes: f64) -> Self {
         let first = ends.first().copied().unwrap_or_default();
         let length = ends.last().map_or(0.0, |last| last - first);
@@ -111,12 +111,12 @@ impl Classes {
         }
     }
 
-    /// How many classes, escape not counted.
+    /// Number of classes, escape not counted.
     pub(super) fn len(&self) -> usize {
         self.total
     }
 
-    /// How many draws are in each class, in order, and of the rays that escape.
+    /// Number of draws in each class, in order, and of the rays that escape.
     pub fn count(&self, draws: &DrawBuffer) -> Vec<f64> {
         let mut counts = vec![[0_u32; FOLD]; self.total + 1];
         // The cells of a row at once: that has no branches and no lists.
@@ -134,7 +134,7 @@ impl Classes {
     }
 }
 
-/// The bins, each so many classes.
+/// Bins of `size` classes.
 struct Bins {
     classes: Classes,
     size: usize,

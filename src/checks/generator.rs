@@ -18,13 +18,13 @@ use gate::stats::{correlation, ties};
 
 /// The streams of how many blocks are compared.
 const BLOCKS: u64 = 16;
-/// How many words of each block are searched for overlaps.
+/// Number of words of each block that are searched for overlaps.
 const WORDS: usize = 1 << 14;
-/// How many numbers of each enter the correlations.
+/// Number of uniform numbers of each block in the correlations.
 const NUMBERS: usize = 1024;
 /// The largest lag.
 const LAG: i32 = 16;
-/// How many words must show all bits.
+/// Number of words that must show all bits.
 const SHORT: usize = 256;
 
 /// What is asked.

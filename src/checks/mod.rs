@@ -39,7 +39,7 @@ pub use scalar::Scalar;
 
 /// A page of the catalogue of checks.
 struct Page {
-    /// What it asks of an experiment; nothing where it does not apply.
+    /// Returns its questions about an experiment; none where it does not apply.
     questions: fn(&Subject) -> Vec<Question>,
     /// Whether it asks of experiments that a case declares biased, too.
     of_biased: bool,

@@ -17,7 +17,7 @@ const BLUNT: f64 = 0.1;
 /// The least `(κ − 1) n` of a variance that is left to chance.
 const LEAST: f64 = 100.0;
 
-/// How heavy the tails of draws are; `None` where nobody knows.
+/// Heaviness of the tails of draws; `None` where it is unknown.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Tails {
     /// κ.

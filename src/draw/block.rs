@@ -20,10 +20,10 @@ use estimators::kernels::order_free::{OrderFree, Request};
 use gate::stats::Tally;
 use numeric::rng::Streams;
 
-/// What a block found.
+/// Numbers of one block of one experiment.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct Block {
-    /// How many draws.
+    /// Number of draws.
     pub draws: u64,
     /// One tally per channel over the fixed draws, in units of the truth about the predicted mean.
     pub tallies: Vec<Tally>,
@@ -147,7 +147,7 @@ struct Drawing<'p> {
     planned: &'p Planned,
     ready: &'p Ready,
     streams: Streams,
-    /// How many draws the buffer takes.
+    /// Number of draws that the buffer takes.
     length: u64,
     scratch: Scratch,
     observers: Vec<Box<dyn Observer + 'p>>,
@@ -180,12 +180,12 @@ impl<'p> Drawing<'p> {
         })
     }
 
-    /// Whether the next draws are among those whose number the plan has fixed.
+    /// Whether the next draws are among those that the plan has fixed.
     fn is_fixed(&self) -> bool {
         self.at < self.planned.fixed
     }
 
-    /// How many draws the next buffer takes; 0 at the end.
+    /// Number of draws that the next buffer takes; 0 at the end.
     #[allow(clippy::cast_possible_truncation)] // at most a buffer's length
     fn count(&self) -> usize {
         let until = if self.is_fixed() { self.end.min(self.planned.fixed) } else { self.end };
@@ -247,7 +247,7 @@ pub struct Drawn {
     pub is_reused: bool,
 }
 
-/// Where an experiment stands: everything that what is still to be drawn and decided depends on.
+/// Progress of an experiment: everything that further draws and decisions depend on.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct Standing {
     /// Draws so far.

@@ -4,7 +4,7 @@
 //! looks after 1, 2, 3, … blocks, growing by 1.15, and at the horizon
 //! ```
 //!
-//! With `--blocks-per-look K` a block here is K blocks of 2¹⁴ draws, merged by whoever draws them.
+//! With `--blocks-per-look K` a block here is K blocks of 2¹⁴ draws, which are merged where they are drawn.
 //!
 //! A look uses exactly the blocks up to it. Blocks that other threads drew ahead wait for their
 //! look, and are discarded if it never comes: what is decided does not depend on the threads. In
@@ -208,7 +208,7 @@ struct Span {
 /// alike. They are made one by one: those between two looks may be more than memory holds.
 #[derive(Clone)]
 struct Round {
-    /// Those that share their lookups are one.
+    /// Spans of experiments that share their lookups are drawn together.
     groups: Vec<Vec<Span>>,
     /// The next piece.
     block: u64,
@@ -278,7 +278,7 @@ impl Iterator for Round {
 /// An experiment that is being drawn.
 struct Running<'p> {
     planned: &'p Planned,
-    /// How many draws are merged as one block.
+    /// Number of draws that are merged as one block.
     step: u64,
     /// What is merged and decided.
     at: Standing,

@@ -1,4 +1,4 @@
-//! Pieces of a run, and who draws them: the threads of this process, the ranks of many processes, or one machine of
+//! Pieces of a run, and workers that draw them: the threads of this process, the ranks of many processes, or one machine of
 //! many, each with its share.
 //!
 //! ```text
@@ -139,7 +139,7 @@ impl Workers for Threads {
     }
 }
 
-/// Drawing of a plan, whose experiments are found by their numbers.
+/// Drawing of a plan; experiments are found by their numbers.
 pub struct Drawing<'p> {
     blocks_per_look: u64,
     experiments: Vec<&'p Planned>,

@@ -214,7 +214,7 @@ pub fn file_of(channel: usize) -> String {
 /// Samples in a box.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Sampled {
-    /// How many along x, y and z.
+    /// Numbers of samples along x, y and z.
     pub size: [usize; 3],
     /// `values[(z·ny + y)·nx + x]`, 1/length.
     pub values: Vec<f32>,

@@ -108,7 +108,7 @@ fn vector(what: &str, point: Point) -> String {
     format!("<{what} x=\"{x}\" y=\"{y}\" z=\"{z}\"/>")
 }
 
-/// The camera, all of whose rays are one.
+/// The camera; all of its rays are one.
 fn camera(scene: &Scene, text: &mut String) {
     let [right, up, onward] = scene.axes();
     let Aabb { low, high } = scene.bounds();

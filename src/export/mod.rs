@@ -45,7 +45,7 @@ impl Target {
         }
     }
 
-    /// How its grids are read beyond their outermost samples, in words of `trueflight explain grid`.
+    /// Border of its grids beyond their outermost samples, in words of `trueflight explain grid`.
     pub fn border(self) -> &'static str {
         match self {
             Self::Mitsuba => "clamp",
@@ -94,14 +94,14 @@ pub enum ExportError {
     },
 }
 
-/// What was written.
+/// Result of an export.
 #[derive(Debug)]
 pub struct Exported {
     /// The files, in the folder asked for.
     pub files: Vec<PathBuf>,
     /// The scenes and fields of an earlier export that are still there, and do not belong to this one.
     pub older: Vec<PathBuf>,
-    /// What `truth.json` says.
+    /// Content of `truth.json`.
     pub truth: Truth,
 }
 

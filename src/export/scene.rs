@@ -1,18 +1,18 @@
-//! What is rendered, in nobody's language.
+//! Scene of a renderer, before it is written in the language of one.
 
 use super::Target;
 use super::fields::Sampled;
 use media::phase::Phase;
 use numeric::geometry::{Aabb, Bounds, Point};
 
-/// A medium, lights and one ray, all of whose numbers are of single precision.
+/// A medium, lights and one ray; all numbers are of single precision.
 #[derive(Debug, Clone)]
 pub struct Scene {
     /// The name of the case.
     pub case: String,
     /// The name of its problem, of one channel.
     pub problem: &'static str,
-    /// Who renders it.
+    /// The renderer.
     pub target: Target,
     /// The box or ball that the medium fills.
     pub shape: Bounds,
@@ -20,11 +20,11 @@ pub struct Scene {
     pub channels: Vec<Channel>,
     /// Whether a homogeneous medium is written as a heterogeneous one.
     pub is_heterogeneous: bool,
-    /// How light is scattered.
+    /// The phase function.
     pub phase: Phase,
-    /// Where the camera's only ray begins.
+    /// Origin of the camera's only ray.
     pub eye: Point,
-    /// Where it goes: a unit vector, but for the rounding of its coordinates.
+    /// Direction of the ray: a unit vector, but for the rounding of its coordinates.
     pub direction: Point,
     /// Whether the ray begins within the medium.
     pub is_inside: bool,
@@ -34,7 +34,7 @@ pub struct Scene {
     pub scatterings: Option<u32>,
     /// One picture each.
     pub views: Vec<View>,
-    /// What of the case is not in the scene, in sentences.
+    /// Parts of the case that are not in the scene, in sentences.
     pub notes: Vec<String>,
 }
 
@@ -87,11 +87,11 @@ impl Field {
 pub struct View {
     /// What is sought, which names the file, too.
     pub name: &'static str,
-    /// Where light of radiance 1 comes from.
+    /// Source of light of radiance 1.
     pub light: Light,
 }
 
-/// Where light comes from.
+/// Source of light.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Light {
     /// From all sides, radiance 1.
@@ -102,7 +102,7 @@ pub enum Light {
     Below,
     /// From a point, all of its power evenly to all sides.
     Point {
-        /// Where it is.
+        /// Position.
         position: Point,
         /// Φ.
         power: f64,
@@ -167,7 +167,7 @@ impl Scene {
         self.shape.enclosing_box().unwrap_or(Aabb { low: self.eye, high: self.eye })
     }
 
-    /// The axes of a picture whose rays go along the direction: right, up, onward.
+    /// The axes of a picture with rays along the direction: right, up, onward.
     pub fn axes(&self) -> [Point; 3] {
         let onward = self.direction;
         let [x, y, _] = onward.0.map(f64::abs);

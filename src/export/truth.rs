@@ -46,10 +46,10 @@ pub const VERSIONS: [u32; 2] = [1, 2];
 /// Rounding errors of single precision that are allowed for each of the mean collisions of a straight ray.
 const ROUNDINGS: f64 = 16.0;
 
-/// What pixels must be.
+/// Expected values of pixels.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Truth {
-    /// What the keys mean.
+    /// Version of the keys.
     pub version: u32,
     /// The name of the case.
     pub case: String,
@@ -61,7 +61,7 @@ pub struct Truth {
     pub camera_in_medium: bool,
     /// The samples.
     pub field: Option<Samples>,
-    /// What of the case is not in the scene.
+    /// Parts of the case that are not in the scene.
     pub notes: Vec<String>,
     /// One for each picture.
     pub questions: Vec<Question>,
@@ -72,7 +72,7 @@ pub struct Truth {
 pub struct Samples {
     /// The file.
     pub file: String,
-    /// How many along x, y and z.
+    /// Numbers of samples along x, y and z.
     pub size: [usize; 3],
     /// A corner of the box.
     pub low: [f64; 3],
@@ -86,7 +86,7 @@ pub struct Samples {
     pub peak: f64,
 }
 
-/// What the samples of a picture are.
+/// Expected samples of a picture.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Question {
     /// What is sought.
@@ -100,7 +100,7 @@ pub struct Question {
     pub mean: f64,
     /// A bound on the error of this number.
     pub error: f64,
-    /// What single precision may do to a sample, relative to the mean.
+    /// Effect of single precision on a sample, relative to the mean.
     pub rounding: f64,
     /// Of integrators that find lights by scattering only.
     pub without_emitter_sampling: Option<Law>,
@@ -108,7 +108,7 @@ pub struct Question {
     pub with_emitter_sampling: Option<Law>,
 }
 
-/// What is known of the law of one sample.
+/// Known properties of the distribution of one sample.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub struct Law {
     /// No sample is below.
@@ -134,7 +134,7 @@ impl Truth {
     }
 }
 
-/// What theory's prediction of the exported case says of the pictures.
+/// Expected values of the pictures, by theory's prediction of the exported case.
 pub fn of(scene: &Scene, prediction: &Prediction) -> Truth {
     let diagonal = (scene.bounds().high - scene.bounds().low).norm();
     let rounding = ROUNDINGS * f64::from(f32::EPSILON) * (1.0 + scene.peak() * diagonal);
@@ -208,7 +208,7 @@ fn channel_of<'a>(
     prediction.channels.iter().find(|channel| channel.name == name)
 }
 
-/// Where samples lie without and with shadow rays, and whether theory's moments are theirs.
+/// Range of samples without and with shadow rays, and whether theory's moments are theirs.
 ///
 /// Without shadow rays a sample is `aⁿ` or nothing. With them and weights that add up to at most 1, every
 /// scattering brings at most `aⁿ`: `Σ aⁿ = 1/(1 − a)`.
@@ -357,7 +357,7 @@ pub fn remark(scene: &Scene, folder: &Path) -> Option<String> {
     ))
 }
 
-/// What theory predicts of the case file in a folder.
+/// Prediction of the case file in a folder.
 ///
 /// # Errors
 ///

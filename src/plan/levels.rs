@@ -1,4 +1,4 @@
-//! How the questions of a run share its error rate, and the verdicts that are known before the first draw.
+//! Shares of the questions of a run in its error rate, and the verdicts that are known before the first draw.
 //!
 //! 4/5 of α go to the gate, by e-Bonferroni, 1/5 to the p-values, by Holm.
 
@@ -8,17 +8,17 @@ use gate::stats::gate::ln_fail;
 use gate::stats::normal;
 use gate::stats::verdict::{MISS, Verdict};
 
-/// The share of the error rate that goes to tests of whole laws.
+/// The share of the error rate that goes to tests of whole distributions.
 const LAW_SHARE: f64 = 0.2;
 
 /// The levels that the run's questions share, fixed before the first draw.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Levels {
-    /// How many scalars go through the gate.
+    /// Number of scalars that go through the gate.
     pub scalars: usize,
-    /// How many p-values there are.
+    /// Number of p-values.
     pub laws: usize,
-    /// How many experiments are declared biased: they have an α of their own.
+    /// Number of declared biases, which have an α of their own.
     pub biased: usize,
     /// A scalar fails at `ln E ≥ ln(K/(0.8 α))`.
     pub ln_fail: f64,
@@ -26,14 +26,14 @@ pub struct Levels {
     pub ln_biased: f64,
     /// A scalar passes at `ln P± ≥ ln(1/β)`.
     pub ln_pass: f64,
-    /// What the p-values share, by Holm.
+    /// Error rate that the p-values share, by Holm.
     pub law_alpha: f64,
     /// The z-score that the gate's level corresponds to, for plots.
     pub z: f64,
 }
 
 impl Levels {
-    /// The levels at which so many scalars, laws and declared biases share α.
+    /// The levels at which these numbers of scalars, distributions and declared biases share α.
     pub fn new(alpha: f64, [scalars, laws, biased]: [usize; 3]) -> Self {
         let share = alpha * (1.0 - LAW_SHARE) / scalars.max(1) as f64;
         Self {

@@ -34,7 +34,7 @@ const PILOT_DRAWS: usize = 1 << 16;
 
 /// A run, ready to draw.
 pub struct Plan<'a> {
-    /// What was asked.
+    /// Options of the run.
     pub options: Options,
     /// The cases.
     pub cases: Vec<PlannedCase<'a>>,
@@ -64,23 +64,23 @@ pub struct Planned {
     pub needs: String,
     /// Number of draws that share the setup lookups of a ray.
     pub draws_per_ray: u64,
-    /// Where its random numbers are.
+    /// Address of its random numbers.
     pub address: Address,
-    /// Where its collisions are, where it may share their lookups with others.
+    /// Address of its collisions, if it may share their lookups with others.
     pub shared: Option<Address>,
     /// n: how many draws are planned.
     pub draws: u64,
-    /// How many of the first draws the p-values and z-scores get.
+    /// Number of the first draws that p-values and z-scores see.
     pub fixed: u64,
-    /// How many draws the gate may take.
+    /// Largest number of draws that the gate may take.
     pub horizon: u64,
     /// Whether the case declares it biased.
     pub expect_biased: bool,
-    /// What draws and what theory says, or why it is refused.
+    /// The experiment with its prediction, or the reason of its refusal.
     pub outcome: Result<Ready, Refusal>,
     /// What is asked of the draws.
     pub questions: Vec<Question>,
-    /// Where a block's address finds its streams.
+    /// Function that returns the streams of a block's address.
     pub find_streams: fn(Address) -> Streams,
 }
 
@@ -95,7 +95,7 @@ impl Planned {
         self.outcome.is_ok() && self.same_as.is_none()
     }
 
-    /// How many rows it has in a record: one per channel, or one that says why it is refused.
+    /// Number of its channels in a record: one that says why it is refused, if it is.
     pub fn channels(&self) -> usize {
         self.outcome.as_ref().map_or(1, |ready| ready.prediction.channels.len())
     }
@@ -114,7 +114,7 @@ impl Planned {
 }
 
 impl<'a> Plan<'a> {
-    /// How many draws are merged before the gate may look.
+    /// Number of draws that are merged before the gate may look.
     pub fn step(&self) -> u64 {
         self.options.blocks_per_look * BLOCK
     }
@@ -203,7 +203,7 @@ impl<'a> Plan<'a> {
         Some(Self { options: options.clone(), cases, levels })
     }
 
-    /// The same plan with the random numbers of another seed; pilots stay as they are.
+    /// Changes the seed of the random numbers; pilots stay as they are.
     pub fn reseed(&mut self, seed: u64) {
         self.options.seed = seed;
         for planned in self.cases.iter_mut().flat_map(|case| &mut case.experiments) {
@@ -336,7 +336,7 @@ impl Planned {
         self.questions = questions;
     }
 
-    /// What a few draws from streams of their own say of spreads, channel by channel.
+    /// Spreads of a few draws from streams of their own, channel by channel.
     fn pilots(&self, ready: &Ready) -> Vec<Pilot> {
         let mut streams = Address { block: PILOT, ..self.address }.streams();
         let channels = ready.prediction.channels.len();

@@ -1,4 +1,4 @@
-//! What a run is asked to do, whatever the cases are.
+//! Options of a run, whatever the cases are.
 
 use crate::case::id::EstimatorName;
 use estimators::Order;
@@ -7,23 +7,23 @@ use glob::{Pattern, PatternError};
 /// Draws per experiment where neither the options nor the case say.
 pub const DRAWS: u64 = 4_000_000;
 
-/// What a run is asked to do.
+/// Options of a run.
 #[derive(Debug, Clone)]
 pub struct Options {
     /// The seed of all random numbers.
     pub seed: u64,
-    /// How many draws.
+    /// Number of draws of an experiment.
     pub draws: Amount,
     /// The kernel that the cases were told to draw by, whatever they say: part of the command that
     /// repeats an experiment.
     pub kernel: Option<Order>,
-    /// The chance that a correct run shows any failure.
+    /// The probability that a correct run shows any failure.
     pub alpha: f64,
     /// Stop drawing after this many seconds.
     pub seconds: Option<f64>,
     /// Stop drawing after this many draws of all experiments together.
     pub budget: Option<u64>,
-    /// How many blocks of 2¹⁴ draws are drawn, kept and merged as one; the gate looks between them.
+    /// Number of blocks of 2¹⁴ draws that are drawn, kept and merged as one; the gate looks between them.
     pub blocks_per_look: u64,
     /// Draw exactly what is planned: the gate stops nothing.
     pub fixed: bool,
@@ -35,17 +35,17 @@ pub struct Options {
     pub filter: Option<Filter>,
 }
 
-/// How many draws an experiment makes.
+/// Number of draws of an experiment.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Amount {
-    /// So many, whatever the cases say.
+    /// This number, whatever the cases say.
     Exactly(u64),
-    /// What the case says; without a word of it, so many.
+    /// The number of the case, or this number if the case has none.
     CaseOr(u64),
 }
 
 impl Amount {
-    /// How many draws of an experiment whose case says `case`.
+    /// Number of draws of an experiment; `case` is the number of its case.
     pub(crate) fn of(self, case: Option<u64>) -> u64 {
         match self {
             Self::Exactly(draws) => draws,

@@ -1,4 +1,4 @@
-//! What a record holds for plots: the theory's lines along a sweep, the best constant σ̂ of each estimator, and rays seen
+//! Data for plots in a record: the theory's lines along a sweep, the best constant σ̂ of each estimator, and rays seen
 //! from the side.
 
 use serde::{Deserialize, Serialize};
@@ -28,7 +28,7 @@ pub struct Sweep {
     pub curves: Vec<Curve>,
 }
 
-/// What theory says of one estimator along the sweep, one channel of its value.
+/// Predictions of one channel of an estimator along the sweep.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct Curve {
     /// The estimator's label at the first value of the sweep.
@@ -104,7 +104,7 @@ pub struct Anatomy {
     /// The standard deviation of one draw of it there; it may be infinite.
     #[serde(with = "gate::extended")]
     pub deviation: Vec<f64>,
-    /// Where the control was fitted: (t, value).
+    /// Places where the control was fitted: (t, value).
     pub explorers: Vec<[f64; 2]>,
     /// The tentative collisions of the first walk: (t, σ_t).
     pub collisions: Vec<[f64; 2]>,
@@ -166,7 +166,7 @@ pub fn curves(case: &Case, seed: u64) -> Vec<Curve> {
     curves.into_iter().flatten().collect()
 }
 
-/// What a case sweeps, without lines.
+/// The sweep of a case, without lines.
 pub fn axis(case: &Case) -> Option<Sweep> {
     let axis = case.sweep.as_ref()?;
     let (what, title) = (axis.what.key().to_owned(), axis.what.axis().to_owned());

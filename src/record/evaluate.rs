@@ -135,7 +135,7 @@ fn judge_laws(plan: &Plan, findings: &mut [&mut Finding]) {
     }
 }
 
-/// What the verdict on a mean is worth, by that on the variance of its channel.
+/// Qualifies the verdict on a mean by that on the variance of its channel.
 ///
 /// A mean passes if its variance does, could not be tested, or is that of pilot draws. A mean that is off
 /// only in units of a variance that is refuted as too small is not accused: were its spread what the

@@ -1,4 +1,4 @@
-//! How many draws each pixel makes, and what the draws of all pixels come to.
+//! Numbers of draws of pixels, and sums over their draws.
 
 use numeric::digits::{number, rounded};
 
@@ -26,10 +26,10 @@ pub struct Forecast {
     pub pilots: u64,
 }
 
-/// What the draws of a pixel came to.
+/// Sums over the draws of a pixel.
 #[derive(Debug, Clone, Copy)]
 pub struct PixelDraws {
-    /// How many.
+    /// Number of draws.
     pub draws: u64,
     /// The sum of their values.
     pub sum: Colour,
@@ -39,7 +39,7 @@ pub struct PixelDraws {
     pub lookups: u64,
 }
 
-/// How many draws each pixel makes: fixed before the first.
+/// Number of draws of each pixel, fixed before the first.
 #[derive(Debug, Clone)]
 pub struct Plan {
     draws: f64,
@@ -50,7 +50,7 @@ pub struct Plan {
     biases: Vec<Colour>,
 }
 
-/// What an estimator found at the covered pixels.
+/// Results of an estimator at the covered pixels.
 #[derive(Debug, Clone, Default)]
 pub struct PixelValues {
     /// The pixels' values, all channels of one after those of the other.
@@ -120,7 +120,7 @@ impl Plan {
         until(number + 1) - until(number)
     }
 
-    /// Gathers what pixels of so many channels came to.
+    /// Gathers the sums over the draws of pixels.
     pub fn gather(&self, channels: usize, pixels: &[PixelDraws]) -> PixelValues {
         let spread = |pixel: &PixelDraws, c: usize| {
             let n = pixel.draws as f64;

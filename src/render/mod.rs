@@ -67,7 +67,7 @@ pub struct Picture {
     pub name: String,
     /// One line above it.
     pub title: String,
-    /// What it shows: the problem's name in the catalogue.
+    /// The problem's name in the catalogue.
     pub problem: String,
     scene: Scene,
 }
@@ -112,12 +112,12 @@ impl Picture {
         }
     }
 
-    /// How many rows of pixels it has.
+    /// Number of rows of pixels.
     pub fn rows(&self) -> usize {
         self.scene.view.size[1]
     }
 
-    /// Renders it with a seed; `progress` is told of every row, twice.
+    /// Renders the picture with a seed; `progress` is called after every row, twice.
     pub fn render(&self, seed: u64, progress: &(dyn Fn() + Sync)) -> PictureRecord {
         let rendered = self.scene.render(&Request { seed, name: &self.name, progress });
         PictureRecord::new([&self.name, &self.title, &self.problem], &self.scene.view, rendered)

@@ -18,7 +18,7 @@ use theory::Mesh;
 const PANELS: usize = 16;
 /// A pixel of every so many columns and rows makes pilot draws.
 const PILOTS_EVERY: usize = 2;
-/// So many pilot draws even in the smallest picture: their mean is what a draw costs to a few hundredths.
+/// Smallest number of pilot draws in a picture: their mean is the cost of a draw to a few hundredths.
 const LEAST_PILOTS: u64 = 2048;
 /// Fewer draws than this are made one by one.
 const FEW: u64 = 32;
@@ -26,7 +26,7 @@ const FEW: u64 = 32;
 /// No pilot rays: recipes that learn are not read.
 const NOWHERE: Address = Address { seed: 0, experiment: 0, block: 0, lane: 0 };
 
-/// How an estimator is called.
+/// Names of an estimator.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Label {
     /// The estimator with its settings.
@@ -49,7 +49,7 @@ pub struct Listed<'a> {
     pub lookups: u64,
     /// σ̂ in space, for draws that leave the ray: the same for all pixels.
     pub space: Option<Arc<Majorants>>,
-    /// Where its random numbers are found, but for the pixel: those of pilots, and those of the image.
+    /// Addresses of its random numbers, but for the pixel: those of pilots, and those of the image.
     pub addresses: [Address; 2],
 }
 
@@ -63,7 +63,7 @@ pub struct Pixel<'a> {
     /// The field of each channel.
     meshes: Vec<Arc<Mesh>>,
     bodies: Vec<Body>,
-    /// Where a control is fitted that several pixels share; `None` for a pixel that fits its own.
+    /// Ray to which a control is fitted that several pixels share; `None` for a pixel that fits its own.
     leader: Option<(Body, Mesh)>,
     index: usize,
 }
@@ -91,7 +91,7 @@ impl<'a> Pixel<'a> {
         Some(Self { view, kind, ray, sky, meshes, bodies: view.bodies(along), leader, index })
     }
 
-    /// The exact answer in each channel, or that of a quadrature with so many panels.
+    /// The exact answer in each channel, or that of a quadrature with `panels` panels.
     pub fn answer(&self, panels: Option<usize>) -> Option<Vec<Known>> {
         let found = panels.map_or_else(|| self.ray.exact(), |n| self.ray.by_quadrature(n))?;
         let seen = |known: Known| Known::new(known.value * self.sky, known.error * self.sky);
@@ -142,7 +142,7 @@ impl<'a> Pixel<'a> {
         })
     }
 
-    /// What a draw is expected to cost and to be spread by, at the covered pixel of a number.
+    /// Expected cost and spread of a draw at the covered pixel of a number.
     pub fn forecast(
         &self,
         number: usize,
@@ -178,7 +178,7 @@ impl<'a> Pixel<'a> {
         Ok(Forecast { lookups, variance: None, bias: Colour::default(), leads, pilots })
     }
 
-    /// So many draws at the covered pixel of a number.
+    /// Sums over draws at the covered pixel of a number.
     pub fn draw(
         &self,
         number: usize,

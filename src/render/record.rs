@@ -1,4 +1,4 @@
-//! What a rendered picture is: all that reports see of it.
+//! Record of a rendered picture: all that reports see.
 
 use serde::Serialize;
 
@@ -14,17 +14,17 @@ pub struct PictureRecord {
     pub name: String,
     /// One line above it.
     pub title: String,
-    /// What it shows.
+    /// The problem's name.
     pub problem: String,
     /// The field.
     pub medium: String,
     /// Columns and rows.
     pub size: [usize; 2],
-    /// How many values a pixel has: one, or those of red, green and blue.
+    /// Number of values of a pixel: one, or those of red, green and blue.
     pub channels: usize,
-    /// How many pixels the volume covers.
+    /// Number of pixels that the volume covers.
     pub covered: usize,
-    /// How many it does not: they cost nothing.
+    /// Number of pixels that it does not cover: they cost nothing.
     pub empty: usize,
     /// The lookups per covered pixel that every estimator was to take.
     pub budget: u64,
@@ -32,16 +32,16 @@ pub struct PictureRecord {
     pub white: f64,
     /// The difference that is shown in the strongest colour.
     pub strongest: f64,
-    /// What the images are compared with.
+    /// The reference of the images.
     pub reference: ReferenceRecord,
     /// One for each estimator, in the order of the file.
     pub exposures: Vec<ExposureRecord>,
 }
 
-/// What images are compared with.
+/// Reference of images.
 #[derive(Debug, Clone, Serialize)]
 pub struct ReferenceRecord {
-    /// How it was found, in words.
+    /// Method by which it was found, in words.
     pub how: String,
     /// The root of its mean squared error over covered pixels: measured where it was drawn; not a number
     /// where it is not known.
@@ -83,7 +83,7 @@ pub struct Exposure {
     pub pilots: f64,
     /// The root of the mean squared difference to the reference.
     pub rmse: f64,
-    /// What theory says of it; `None` where it is not asked.
+    /// The predicted root mean squared difference; `None` where theory is not asked.
     pub predicted_rmse: Option<f64>,
     /// The mean difference to the reference.
     pub bias: f64,
@@ -214,7 +214,7 @@ fn whole(mut image: Vec<f64>, channels: usize, covered: &[usize], values: &[f64]
     image
 }
 
-/// What all but a hundredth of the pixels do not exceed: a few bright ones do not darken the rest.
+/// The 99th percentile of the pixels: a few bright ones do not darken the rest.
 fn bright(image: &[f64]) -> f64 {
     let mut sorted = image.to_vec();
     sorted.sort_by(f64::total_cmp);

@@ -14,33 +14,33 @@ use numeric::Known;
 use numeric::rng::{Address, name_hash};
 use theory::parallel;
 
-/// What a rendering needs to know.
+/// Request of a rendering.
 pub struct Request<'a> {
     /// The seed of all random numbers.
     pub seed: u64,
     /// The picture's name.
     pub name: &'a str,
-    /// Is told of every row that is done, of the first pass and of the second.
+    /// Called after every row of the first pass and of the second.
     pub progress: &'a (dyn Fn() + Sync),
 }
 
-/// What was found for all covered pixels.
+/// Results for all covered pixels.
 pub struct Rendered {
     /// The lookups per covered pixel that were to be taken.
     pub budget: u64,
-    /// How many channels a pixel has.
+    /// Number of channels of a pixel.
     pub channels: usize,
     /// The numbers of the covered pixels.
     pub covered: Vec<usize>,
-    /// How the reference was found, and the reference.
+    /// The method of the reference, and the reference.
     pub reference: (String, PixelValues),
-    /// What each estimator found, or why it did not.
+    /// Results of each estimator, or the reason why it has no image.
     pub images: Vec<(Label, Result<PixelValues, String>)>,
 }
 
 /// A volume, a camera and estimators of one problem.
 pub struct Scene {
-    /// What the camera sees.
+    /// The camera's view.
     pub view: View,
     kind: &'static SubjectKind,
     ray_of: RayOf,
@@ -175,13 +175,13 @@ impl Scene {
     }
 }
 
-/// How the reference is found.
+/// Method of the reference.
 pub enum Reference {
     /// In closed form.
     Exact,
     /// By Gauss quadrature.
     Quadrature {
-        /// How many panels of 16 nodes; twice as many are used.
+        /// Number of panels of 16 nodes; twice as many are used.
         panels: usize,
     },
     /// By many draws of an estimator.

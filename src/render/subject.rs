@@ -1,4 +1,4 @@
-//! What a picture shows: a problem that every pixel's ray has its own of.
+//! Subjects of pictures: every pixel's ray has a problem of its own.
 
 use std::sync::Arc;
 
@@ -25,7 +25,7 @@ use theory::{Mesh, Prediction};
 
 /// A problem that pictures are made of.
 pub trait Subject: Estimated {
-    /// What all its rays share beside the volume.
+    /// Data that all its rays share beside the volume.
     type Shared: Send + Sync;
 
     /// Whether draws weight the light of the sky behind the volume.
@@ -81,7 +81,7 @@ pub struct SubjectKind {
     pub along_ray: bool,
     /// See [`Subject::IS_PREDICTED`].
     pub is_predicted: bool,
-    /// How many channels a pixel has: 1, or 3 where the medium has them.
+    /// Number of channels of a pixel: 1, or 3 where the medium has them.
     pub channels: usize,
     /// Its reader.
     pub read: Read,
@@ -145,7 +145,7 @@ fn read<P: Subject>(
     Some((ray_of, estimators, reference))
 }
 
-/// The problem of one ray, whose type is no longer visible.
+/// The problem of one ray, without its type.
 pub trait AnyRay {
     /// The field of each channel along the ray.
     fn media(&self) -> &[Medium];

@@ -1,4 +1,4 @@
-//! Where a picture is taken from.
+//! Cameras, and the volume that they see.
 
 use std::f64::consts::PI;
 use std::sync::Arc;
@@ -88,9 +88,9 @@ pub struct View {
     pub volumes: Vec<Arc<Volume>>,
     /// What is behind it.
     pub sky: Sky,
-    /// How many columns and rows.
+    /// Number of columns and rows.
     pub size: [usize; 2],
-    /// So many columns and rows of pixels share a control that takes lookups.
+    /// Number of columns and rows of pixels that share a control that takes lookups.
     pub shared_control: usize,
     /// Whether the sky is seen beside it; else it is black there.
     pub shows_sky: bool,
@@ -130,7 +130,7 @@ impl View {
         self.volumes.iter().map(body).collect()
     }
 
-    /// How many pixels there are.
+    /// Number of pixels.
     pub fn pixels(&self) -> usize {
         self.size[0] * self.size[1]
     }

@@ -72,7 +72,7 @@ struct Inside {
     synced: Instant,
 }
 
-/// Locks a folder, where the file system has locks: nobody else writes a log there meanwhile.
+/// Locks a folder, where the file system has locks: no other process writes a log there meanwhile.
 pub fn lock(folder: &Path) -> io::Result<Option<File>> {
     // Some systems let no folder be opened, some file systems have no locks.
     let Ok(file) = File::open(folder) else { return Ok(None) };

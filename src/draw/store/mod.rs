@@ -26,7 +26,7 @@ const MAX_FINISHED: usize = 2000;
 const MIN_REWRITE: u64 = 2 << 20;
 const REWRITE_RATIO: u64 = 4;
 
-/// Logs that are read and written, and those who draw what is missing.
+/// Logs that are read and written, and workers that draw what is missing.
 #[derive(Debug)]
 pub struct Store {
     /// Description of the draws.

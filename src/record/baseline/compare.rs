@@ -29,35 +29,35 @@ use super::{Baseline, ChannelId, Entry, Evidence};
 use crate::checks::normality::{Tails, variance_error};
 use gate::stats::normal;
 
-/// What the comparison is to say at which level.
+/// Levels of a comparison.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Rules {
-    /// The chance that equal code shows any regression of a variance or of lookups.
+    /// The probability that equal code shows any regression of a variance or of lookups.
     pub alpha: f64,
     /// Relative increase of the time per draw that is no regression; `None` if times are not compared.
     pub time_tolerance: Option<f64>,
 }
 
-/// What changed.
+/// Comparison of two runs.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Comparison {
-    /// What the stored run is called.
+    /// Name of the stored run.
     pub name: String,
     /// The levels.
     pub rules: Rules,
     /// Whether e-values were multiplied, and why not.
     pub sequel: Sequel,
-    /// How many variances and lookups were compared: α is shared among them.
+    /// Number of variances and lookups that were compared and share α.
     pub compared: usize,
-    /// How many times per draw were compared.
+    /// Number of times per draw that were compared.
     pub times: usize,
-    /// How many e-values were multiplied with stored ones.
+    /// Number of e-values that were multiplied with stored ones.
     pub multiplied: usize,
-    /// How many variances were too uncertain to compare.
+    /// Number of variances that were too uncertain to compare.
     pub blunt: usize,
-    /// What of the experiments that both have was not compared.
+    /// Quantities of common experiments that were not compared.
     pub left_out: LeftOut,
-    /// What grew or shrank.
+    /// Quantities that grew or shrank.
     pub changes: Vec<Change>,
     /// Checks that fail over all runs together.
     pub drifts: Vec<Drift>,
@@ -65,7 +65,7 @@ pub struct Comparison {
     pub added: Vec<ChannelId>,
     /// Experiments of the baseline that this run has not.
     pub missing: Vec<ChannelId>,
-    /// Experiments whose case has another text than in the baseline.
+    /// Experiments of a case with another text than in the baseline.
     pub rewritten: Vec<ChannelId>,
 }
 
@@ -73,7 +73,7 @@ pub struct Comparison {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Sequel {
-    /// They do: so many runs together.
+    /// They multiply: number of runs together.
     Run(usize),
     /// The seed is among those stored: its draws say nothing new.
     SameSeed,
@@ -118,7 +118,7 @@ pub struct Change {
     /// now/before.
     #[serde(with = "gate::extended")]
     pub ratio: f64,
-    /// Where the true ratio is; `None` for times.
+    /// Interval of the true ratio; `None` for times.
     #[serde(default, with = "gate::extended")]
     pub interval: Option<[f64; 2]>,
     /// Whether it became worse.
@@ -161,7 +161,7 @@ pub struct LeftOut {
     pub relearned: Vec<ChannelId>,
     /// The variance is too uncertain.
     pub blunt: Vec<ChannelId>,
-    /// Theory has no kurtosis, so that nobody knows how uncertain the variance is.
+    /// Theory has no kurtosis: the error of the variance is unknown.
     pub unpredicted: Vec<ChannelId>,
     /// Theory has no variance of the number of lookups.
     pub uncounted: Vec<ChannelId>,
@@ -179,7 +179,7 @@ pub struct Matches<'e, T, I> {
     pub added: Vec<I>,
     /// Entries that only the stored one has.
     pub missing: Vec<I>,
-    /// Entries whose case has another text.
+    /// Entries of a case with another text.
     pub rewritten: Vec<I>,
 }
 
@@ -317,7 +317,7 @@ fn not_drawn(stored: &Baseline, run: &Baseline) -> Vec<Entry> {
     kept.cloned().collect()
 }
 
-/// What of two entries can be compared: the quantity, then and now.
+/// Quantities of two entries that can be compared, then and now.
 fn questions<'e>(before: &Entry, now: &'e Entry) -> Vec<Question<'e>> {
     if !is_comparable(before, now) {
         return Vec::new();
@@ -332,7 +332,7 @@ fn questions<'e>(before: &Entry, now: &'e Entry) -> Vec<Question<'e>> {
 /// An entry, the quantity that is compared, its values then and now.
 type Question<'e> = (&'e Entry, Quantity, (Relative, Relative));
 
-/// What changed by more than its error, if anything.
+/// A quantity that changed by more than its error.
 fn answer(&(entry, quantity, (before, now)): &Question, z: f64) -> Option<Change> {
     let ratio = now.0 / before.0;
     let error = z * before.1.hypot(now.1) + ROUNDING;
@@ -378,7 +378,7 @@ impl Entry {
         Some((variance, variance_error(kurtosis, n)))
     }
 
-    /// Whether the sample variance has a law that can be compared.
+    /// Whether the sample variance has a distribution that can be compared.
     fn is_sharp(&self) -> bool {
         self.variance().is_some()
             && Tails {

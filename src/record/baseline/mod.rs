@@ -39,7 +39,7 @@ pub struct Baseline {
     pub executable: String,
     /// The largest ln E at which a scalar fails, of all runs that are joined here.
     pub ln_e_limit: f64,
-    /// The seeds whose e-values are multiplied into the entries.
+    /// Seeds of the e-values that are multiplied into the entries.
     pub seeds: Vec<u64>,
     /// The experiments.
     pub entries: Vec<Entry>,
@@ -72,7 +72,7 @@ pub struct Entry {
     pub seed: u64,
     /// Whether its σ̂ depends on the seed.
     pub learns: bool,
-    /// How many draws the mean, the variance and the lookups are of.
+    /// Number of draws of the mean, the variance and the lookups.
     pub draws: u64,
     /// The mean.
     pub mean: Option<f64>,
@@ -90,7 +90,7 @@ pub struct Entry {
     pub lookups_variance: Option<f64>,
     /// Processor seconds of all draws; given once per experiment.
     pub seconds: Option<f64>,
-    /// How many draws took them.
+    /// Number of draws that took them.
     pub drawn: u64,
     /// ln E of each check, all seeds together.
     pub checks: Vec<Evidence>,
@@ -108,7 +108,7 @@ pub struct Evidence {
 }
 
 impl Baseline {
-    /// What a run found, to be stored; `cases` are those of its plan.
+    /// The results of a run, to be stored; `cases` are those of its plan.
     pub fn of(record: &Record, cases: &[Case], executable: &str) -> Self {
         let results = &record.results;
         let digest = |name: &str| cases.iter().find(|case| case.name == name).map(|c| c.digest);
@@ -254,7 +254,7 @@ pub enum BaselineError {
     Unreadable {
         /// The file.
         path: PathBuf,
-        /// What the system said.
+        /// Error of the system.
         cause: io::Error,
     },
     /// The file is not a baseline.
@@ -262,7 +262,7 @@ pub enum BaselineError {
     Broken {
         /// The file.
         path: PathBuf,
-        /// What the decoder said.
+        /// Error of the decoder.
         cause: serde_json::Error,
     },
     /// The file is another of this program's.
@@ -270,7 +270,7 @@ pub enum BaselineError {
     OtherKind {
         /// The file.
         path: PathBuf,
-        /// What it is.
+        /// Kind of the file.
         found: &'static str,
     },
     /// A number that no run has.
@@ -299,7 +299,7 @@ pub enum BaselineError {
     Unwritable {
         /// The file.
         path: PathBuf,
-        /// What the system said.
+        /// Error of the system.
         cause: io::Error,
     },
     /// The program cannot read itself.
@@ -307,7 +307,7 @@ pub enum BaselineError {
     Executable(io::Error),
 }
 
-/// Reads a file of this version of its form, whose content is in the given list.
+/// Reads a file of this version of its form, with its content in the given list.
 pub(crate) fn read<T: DeserializeOwned>(
     path: &Path,
     expected: u32,
@@ -337,7 +337,7 @@ pub(crate) fn read<T: DeserializeOwned>(
     serde_json::from_value(tree).map_err(|cause| BaselineError::Broken { path, cause })
 }
 
-/// What else of this program a file is, that has not the list of what is sought.
+/// Kind of a file of this program without the list that is sought.
 fn other_kind(tree: &serde_json::Value, list: &str) -> Option<&'static str> {
     let kinds = [
         ("entries", "a stored run"),
