@@ -8,14 +8,10 @@
 //! rounding errors kept
 //! ```
 
-use proptest::collection::vec;
 use proptest::num::u64::ANY as WORD;
 
-use super::parameters::{any_of, parameters, sized};
-use super::row::{Measure, Row};
-use super::table::{Run, Seen, central};
+use super::prelude::*;
 use gate::stats::{Powers, Tally};
-use numeric::Wide;
 use numeric::rng::Stream;
 use numeric::sum::Sum;
 

@@ -11,17 +11,9 @@
 //!
 //! Where nothing is absorbed and the black sphere is as bright as the sky, J = 1 everywhere, whatever σ_t.
 
-use proptest::collection::vec;
-use proptest::prop_oneof;
-use proptest::strategy::Strategy;
-
 use super::ordinates::{directions, roots, solved_pivoted};
-use super::parameters::{between, parameters, share, sized};
-use super::row::Row;
-use super::table::{Run, Seen};
+use super::prelude::*;
 use estimators::sphere::BLURRED;
-use numeric::quadrature::GaussLegendre;
-use numeric::{Span, Wide};
 use theory::sphere::ball::Ball;
 use theory::sphere::shells::{Centre, Resolution};
 use theory::sphere::{Lights, Observable, answers};
@@ -61,7 +53,7 @@ parameters! {
     Scene {
         field: Radial = radial(),
         core: Option<f64> = prop_oneof![
-            2 => proptest::strategy::Just(None),
+            2 => Just(None),
             2 => sized(-2.0, 0.0).prop_map(Some),
             2 => between(0.05, 0.95).prop_map(Some),
         ],

@@ -8,18 +8,13 @@
 //! (n + 1) aₙ₊₁ = (1 − ρ^k − n) aₙ − ρ^k [g_k]ₙ,   m_k = g_k + A_k
 //! ```
 
-use super::series::{binomial, coefficient, value};
-use proptest::collection::vec;
+use super::prelude::*;
+use super::series::{self, add, binomial, constant, inverse, power, product, value};
 
 use super::depths::knots;
 use super::fields;
-use super::parameters::{between, parameters, sized};
-use super::row::Row;
-use super::table::{Run, Seen, central};
 use estimators::transmittance::next_flight::NextFlight;
 use estimators::transmittance::unidirectional_mis::UnidirectionalMis;
-use numeric::Wide;
-use theory::Mesh;
 use theory::volterra::{self, Source};
 
 /// Terms of a series: at a quarter of its radius, 4⁻⁴⁸ = 1e-29 of the largest.
@@ -60,41 +55,29 @@ fn trial(Layers { collisions, layers }: &Layers, seen: &mut Seen) {
 }
 
 /// A power series in t, cut off.
-type Series = Vec<Wide>;
-
-fn product(a: &Series, b: &Series) -> Series {
-    (0..TERMS).map(|n| coefficient(a, b, n)).collect()
-}
+type Series = series::Series<TERMS>;
 
 /// `v` and what is added at a collision, around `v₀`: `v` or `v/(1 + v)`.
 fn parts(centre: Wide, is_shared: bool) -> [Series; 2] {
-    let mut v = vec![Wide::default(); TERMS];
-    (v[0], v[1]) = (centre, centre);
+    let mut v = constant(centre);
+    v[1] = centre;
     if !is_shared {
-        return [v.clone(), v];
+        return [v; 2];
     }
-    // 1/(1 + v₀ + v₀t)
-    let below = 1.0 / (1.0 + centre);
-    let mut inverse = vec![below];
-    for n in 1..TERMS {
-        inverse.push(-(inverse[n - 1] * centre * below));
-    }
-    let shared = product(&v, &inverse);
-    [v, shared]
+    let mut below = v;
+    below[0] += Wide::ONE;
+    [v, product(&v, &inverse(&below))]
 }
 
 /// `g_k` without and with what comes later, `A_1 … A_{k−1}`.
 fn added(k: usize, v: &Series, powers: &[Series], later: &[Series], is_shared: bool) -> Series {
-    let mut sum = powers[k].clone();
-    let mut add = |factor: f64, more: Series| {
-        sum.iter_mut().zip(more).for_each(|(sum, more)| *sum += factor * more);
-    };
+    let mut sum = powers[k];
     if is_shared {
         // v(2u)^k + (1 − v)u^k
-        add(2f64.powi(i32::try_from(k).unwrap_or(0)) - 1.0, product(v, &powers[k]));
+        add(&mut sum, power(Wide::from(2.0), k) - 1.0, &product(v, &powers[k]));
     }
     for j in 1..k {
-        add(binomial(k, j), product(&powers[k - j], &later[j - 1]));
+        add(&mut sum, Wide::from(binomial(k, j)), &product(&powers[k - j], &later[j - 1]));
     }
     sum
 }
@@ -123,9 +106,7 @@ fn raw(breaks: &[f64], values: &[f64], sampling: f64, is_shared: bool) -> [Wide;
 }
 
 fn powers(part: &Series) -> Vec<Series> {
-    let mut one = vec![Wide::default(); TERMS];
-    one[0] = Wide::ONE;
-    let mut powers = vec![one];
+    let mut powers = vec![constant(Wide::ONE)];
     for k in 0..ORDERS {
         powers.push(product(&powers[k], part));
     }
@@ -140,11 +121,10 @@ fn continued(centre: Wide, rho: Wide, values: [Wide; ORDERS], is_shared: bool) -
     for (k, &value) in (1_u32..).zip(&values) {
         let kept = rho.powi(k);
         let source = added(all.len() + 1, &v, &powers, &all, is_shared);
-        let mut series = vec![value];
+        let mut series = constant(value);
         for n in 0..TERMS - 1 {
             let at = n as f64;
-            let sum = (1.0 - kept - at) * series[n] - kept * source[n];
-            series.push(sum / (at + 1.0));
+            series[n + 1] = ((1.0 - kept - at) * series[n] - kept * source[n]) / (at + 1.0);
         }
         all.push(series);
     }

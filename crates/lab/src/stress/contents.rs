@@ -9,13 +9,8 @@
 use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
 
-use proptest::collection::vec;
-use proptest::prop_oneof;
-use proptest::strategy::{Just, Strategy};
-
-use super::parameters::{any_of, between, parameters, sign, sized};
-use super::row::Row;
-use super::table::{Run, Seen};
+use super::prelude::*;
+use media::Volume;
 use media::constant::Constant;
 use media::exponential::Exponential;
 use media::gaussian::Gaussian;
@@ -25,11 +20,8 @@ use media::piecewise_linear::Layers;
 use media::radial::Radial;
 use media::sines::Sines;
 use media::voxels::{Interpolation, Placement};
-use media::{Piecewise, Volume};
 use numeric::geometry::{Aabb, Bounds, Point};
-use numeric::quadrature::GaussLegendre;
 use numeric::sum::Sum;
-use numeric::{Known, Span, Wide};
 use theory::space::content;
 
 /// Chords of fields that jump across them: a thousand fields take seconds, not minutes.

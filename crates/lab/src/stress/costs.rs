@@ -6,21 +6,14 @@
 //! steps of a curve:  E[Δ²] = e^{J₂(s)} (e^{J₂(s') − J₂(s)} − 1),  J₂ = ∫σ̂ r²
 //! ```
 
-use proptest::collection::vec;
-use proptest::prop_oneof;
-
 use super::depths::knots;
 use super::fields::{homogeneous, pieces};
-use super::parameters::{between, parameters, sized};
+use super::prelude::*;
 use super::rods::lookups;
-use super::row::Row;
-use super::table::{Run, Seen};
-use media::{Control, Piecewise};
-use numeric::{Span, Wide};
 use theory::curve::predict as predict_curve;
 use theory::product::Product;
 use theory::rules::{Single, Weight};
-use theory::{CountLaw, Mesh, flight};
+use theory::{CountLaw, flight};
 
 /// All rows.
 pub fn rows(run: Run) -> Vec<Row> {

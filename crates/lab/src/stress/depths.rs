@@ -1,18 +1,10 @@
 //! Optical depths of every field, thick and thin, long and short, against closed forms in 32 digits,
 //! and those of 3-D fields without one against quadrature of their lookups.
 
-use proptest::collection::vec;
-use proptest::strategy::{Just, Strategy};
-
 use super::fields::{Field, Line, Space, crossed};
-use super::parameters::{any_of, between, parameters, sign, sized};
-use super::row::Row;
-use super::table::{Run, Seen, over};
-use media::Medium;
+use super::prelude::*;
 use media::voxels::Interpolation::{Nearest, Trilinear};
-use numeric::Span;
 use numeric::geometry::{Point, Ray};
-use numeric::quadrature::GaussLegendre;
 use numeric::sum::Sum;
 
 /// All rows.
@@ -154,7 +146,7 @@ parameters! {
         ]),
         target: [f64; 3] = [between(-6.0, 6.0), between(-6.0, 6.0), between(2.0, 18.0)],
         direction: [f64; 3] = [between(-1.0, 1.0); 3],
-        away: f64 = proptest::prop_oneof![Just(12.0), sized(1.5, 4.0)],
+        away: f64 = prop_oneof![Just(12.0), sized(1.5, 4.0)],
     }
 }
 

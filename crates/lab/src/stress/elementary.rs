@@ -1,9 +1,7 @@
 //! Elementary functions of draws: logarithm, exponential, sine and cosine.
 
-use super::parameters::{between, parameters, sign, sized};
-use super::row::{Measure, Row};
-use super::table::{Run, off};
-use numeric::{Lane, Wide};
+use super::prelude::*;
+use numeric::Lane;
 
 parameters! {
     /// An argument of each function.

@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use super::prelude::*;
 use super::tails::normal_between;
 use media::body::Body;
 use media::constant::{Constant, Homogeneous};
@@ -13,9 +14,8 @@ use media::noise::Noise;
 use media::radial::Radial;
 use media::sines::{Wave, Waves};
 use media::voxels::{Interpolation, Placement};
-use media::{Medium, Piecewise, Profile, Volume};
+use media::{Profile, Volume};
 use numeric::geometry::{Aabb, Bounds, Point, Ray};
-use numeric::{Span, Wide};
 
 /// A field on a stretch of a line.
 #[derive(Debug, Clone)]

@@ -1,15 +1,8 @@
 //! Free flights: the distance at which an optical depth is reached.
 
-use proptest::collection::vec;
-use proptest::strategy::Strategy;
-
 use super::depths::knots;
 use super::fields::{Field, Line};
-use super::parameters::{between, parameters, sign, sized};
-use super::row::Row;
-use super::table::{Run, Seen, off};
-use media::Piecewise;
-use numeric::{Span, Wide};
+use super::prelude::*;
 
 /// All rows.
 pub fn rows(run: Run) -> Vec<Row> {

@@ -9,19 +9,10 @@
 //! E[X^k] = ∫ p (σ_t S/p)^k e^{−A_k} e^{−B_k} ds,   V_k = ∫ₛ Σⱼ (k over j) σ̂ (σ_t S/σ̂)ʲ e^{−Bⱼ} w^{k−j} V_{k−j} e^{A_{k−j} − A_k} ds
 //! ```
 
-use proptest::prop_oneof;
-use proptest::strategy::Just;
-
-use super::parameters::{between, parameters, sized};
-use super::row::Row;
+use super::prelude::*;
 use super::scattering::{Lit, lit_field, panels};
 use super::series::binomial;
 use super::shared_walk::{ORDERS, degree, of_mean};
-use super::table::{Run, Seen, central};
-use media::{Control, Medium, Piecewise};
-use numeric::quadrature::GaussLegendre;
-use numeric::{Span, Wide};
-use theory::Mesh;
 use theory::problems::{Problem, SingleScattering};
 use theory::single::predict::DENSITY;
 use theory::single::{Camera, CameraTracking, Node, Points, Scene, Technique, Tracking, walks};

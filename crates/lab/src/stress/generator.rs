@@ -1,14 +1,9 @@
 //! Random numbers: their ends and their grain. Every run checks streams for overlaps, correlation and spread.
 
 use proptest::num::u64::ANY as WORD;
-use proptest::strategy::Strategy;
 
-use super::parameters::{any_of, parameters, sized};
-use super::row::{Measure, Row};
-use super::table::{Run, Seen, off};
-use media::Piecewise;
+use super::prelude::*;
 use numeric::rng::{Stream, exponential, unit};
-use numeric::{Span, Wide};
 
 /// Uniform numbers are multiples of this.
 const GRAIN: f64 = f64::EPSILON / 2.0;

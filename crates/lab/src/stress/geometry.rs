@@ -3,13 +3,10 @@
 use std::sync::Arc;
 
 use super::fields::crossed;
-use super::parameters::{Number, between, parameters, sign, sized};
-use super::row::Row;
-use super::table::{Run, Seen, off, over};
+use super::prelude::*;
 use media::constant::Constant;
 use numeric::double_double::{two_prod, two_sum};
 use numeric::geometry::{Aabb, Bounds, Point, Ray};
-use numeric::{Known, Span, Wide};
 
 /// All rows.
 pub fn rows(run: Run) -> Vec<Row> {
@@ -42,14 +39,15 @@ pub fn rows(run: Run) -> Vec<Row> {
     rows
 }
 
-/// A ball and a ray past it; the depth of the chord is a parameter of its own.
-#[derive(Debug, Clone)]
-struct Scene {
-    radius: f64,
-    centre: [f64; 3],
-    direction: [f64; 3],
-    side: [f64; 3],
-    away: f64,
+parameters! {
+    /// A ball and a ray past it; the depth of the chord is a parameter of its own.
+    Scene(range: Number) {
+        radius: f64 = sized(-3.0, 3.0),
+        centre: [f64; 3] = [between(-2.0, 2.0); 3],
+        direction: [f64; 3] = [between(-1.0, 1.0); 3],
+        side: [f64; 3] = [between(-1.0, 1.0); 3],
+        away: f64 = range,
+    }
 }
 
 /// A ball, and a ray that passes its centre at `(1 − depth)` radii.
@@ -61,21 +59,6 @@ struct Chord {
 }
 
 impl Scene {
-    fn any(away: Number) -> impl proptest::strategy::Strategy<Value = Self> {
-        let anywhere = [between(-1.0, 1.0); 3];
-        let parameters = (sized(-3.0, 3.0), [between(-2.0, 2.0); 3], anywhere, anywhere, away);
-        proptest::strategy::Strategy::prop_map(
-            parameters,
-            |(radius, centre, direction, side, away)| Self {
-                radius,
-                centre,
-                direction,
-                side,
-                away,
-            },
-        )
-    }
-
     fn chord(&self, depth: f64) -> Option<Chord> {
         let radius = self.radius;
         let centre = Point(self.centre) * radius;

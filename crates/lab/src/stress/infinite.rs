@@ -10,13 +10,7 @@
 //!
 //! have theirs at π/2: h = 1/6 leaves 1e-26.
 
-use proptest::collection::vec;
-use proptest::prop_oneof;
-
-use super::parameters::{between, parameters, share, sized};
-use super::row::Row;
-use super::table::{Run, Seen};
-use numeric::{Known, Wide};
+use super::prelude::*;
 use theory::h_function::{self, h_function};
 use theory::space::infinite;
 

@@ -7,17 +7,10 @@
 //! Y^k, Y = Σ c w:           A = σ̂(1 − Q_k − S_k p_f), B = σ̂ S_k p_b,  s from Y, …, Y^{k−1}
 //! ```
 
-use proptest::collection::vec;
-use proptest::strategy::Strategy;
-
 use super::line::{Both, Line, NOTHING, after};
-use super::parameters::{Number, share, sized};
+use super::prelude::*;
 use super::rods::{moments_of, rod_with, rule};
-use super::row::Row;
 use super::series::{add, binomial, constant, power};
-use super::table::{Run, Seen, central};
-use media::Piecewise;
-use numeric::Wide;
 use theory::particle::ParticleRule;
 use theory::problems::rod::{self, HIGHEST_ORDER, MOST_PARTS, Quantity};
 use theory::rod as rods;
@@ -52,29 +45,18 @@ fn row_of(seen: Quantity) -> Option<usize> {
     }
 }
 
-/// A rod of one or two halves, and what is seen of it.
-#[derive(Debug, Clone)]
-struct Case {
-    depth: f64,
-    forward: f64,
-    albedo: Vec<f64>,
-    parts: usize,
-    highest_order: usize,
+parameters! {
+    /// A rod of one or two halves, and what is seen of it.
+    Case(range: Number, orders: std::ops::RangeInclusive<usize>) {
+        depth: f64 = range,
+        forward: f64 = share(),
+        albedo: Vec<f64> = vec(share(), 1..=2),
+        parts: usize = 1..=MOST_PARTS,
+        highest_order: usize = orders,
+    }
 }
 
 impl Case {
-    fn any(depth: Number, order: std::ops::RangeInclusive<usize>) -> impl Strategy<Value = Self> {
-        (depth, share(), vec(share(), 1..=2), 1..=MOST_PARTS, order).prop_map(
-            |(depth, forward, albedo, parts, highest_order)| Self {
-                depth,
-                forward,
-                albedo,
-                parts,
-                highest_order,
-            },
-        )
-    }
-
     fn channels(&self) -> Vec<Quantity> {
         rod::channels(self.parts, true, Some(self.highest_order))
     }

@@ -13,13 +13,8 @@
 
 use super::fields::homogeneous;
 use super::line::{Both, Line, NOTHING, Series, after};
-use super::parameters::{any_of, between, parameters, share, sized};
-use super::row::Row;
+use super::prelude::*;
 use super::series::{add, binomial, constant, exponential, inverse, power, product};
-use super::table::{Run, Seen, central};
-use media::Piecewise;
-use numeric::{Known, Wide};
-use theory::Mesh;
 use theory::bidirectional_rod::{self, Connection, Rules, Scene};
 use theory::lit_rod::{self, Combination, Densities, Heuristic, Shadow, Techniques};
 use theory::problems::LitRod;

@@ -7,15 +7,10 @@
 //! ```
 
 use super::fields::homogeneous;
-use super::parameters::{any_of, between, parameters, sized};
-use super::row::Row;
+use super::prelude::*;
 use super::series::power;
 use super::slabs::henyey_greenstein;
-use super::table::{Run, Seen, central, over};
-use media::Piecewise;
 use media::phase::Phase;
-use numeric::Wide;
-use theory::Mesh;
 use theory::lit_rod::{Combination, Densities, Heuristic, Shadow, Techniques};
 use theory::lit_slab;
 use theory::problems::LitSlab;

@@ -79,6 +79,20 @@ mod tally;
 mod techniques;
 pub mod walks;
 
+/// What most pages use.
+mod prelude {
+    pub(super) use super::parameters::{Number, any_of, between, parameters, share, sign, sized};
+    pub(super) use super::row::{Measure, Row};
+    pub(super) use super::table::{Run, Seen, central, off, over};
+    pub(super) use media::{Control, Medium, Piecewise};
+    pub(super) use numeric::quadrature::GaussLegendre;
+    pub(super) use numeric::{Known, Span, Wide};
+    pub(super) use proptest::collection::vec;
+    pub(super) use proptest::prop_oneof;
+    pub(super) use proptest::strategy::{Just, Strategy};
+    pub(super) use theory::Mesh;
+}
+
 pub use self::row::{Measure, Row};
 pub use self::table::{Effort, Run};
 use theory::parallel;

@@ -5,18 +5,12 @@
 //! m₂ = expm1 J₂, and so on as in `theory::moments`, without cancellation and in 32 digits
 //! ```
 
-use proptest::strategy::Strategy;
-
 use super::fields::homogeneous;
-use super::parameters::{any_of, between, parameters, sign, sized};
-use super::row::Row;
-use super::table::{Run, Seen, off};
-use media::{Control, Piecewise};
-use numeric::{Span, Wide};
+use super::prelude::*;
+use theory::Rule;
 use theory::prediction::transmittance;
 use theory::product::Product;
 use theory::rules::{Single, Weight};
-use theory::{Mesh, Rule};
 
 /// All rows.
 pub fn rows(run: Run) -> Vec<Row> {

@@ -16,9 +16,8 @@
 //!
 //! Source: S. Chandrasekhar, *Radiative Transfer* (Oxford University Press, 1950), chapters 2, 3 and 7.
 
+use super::prelude::*;
 use super::series::solved;
-use numeric::Wide;
-use numeric::quadrature::GaussLegendre;
 use theory::problems::slab::Light;
 
 /// Directions and the solutions in them.

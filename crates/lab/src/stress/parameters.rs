@@ -7,9 +7,12 @@ use std::fmt::Debug;
 use proptest::strategy::{NewTree, Strategy, ValueTree};
 use proptest::test_runner::TestRunner;
 
-/// Declares a struct of parameters, and `any()`, the strategy that draws it.
+/// Declares a struct of parameters, and `any()`, the strategy that draws it, given its arguments if there are any.
 macro_rules! parameters {
-    ($($(#[$doc:meta])* $name:ident { $($field:ident: $type:ty = $strategy:expr,)* })*) => {$(
+    ($(
+        $(#[$doc:meta])*
+        $name:ident $(($($given:ident: $of:ty),*))? { $($field:ident: $type:ty = $strategy:expr,)* }
+    )*) => {$(
         $(#[$doc])*
         #[derive(Debug, Clone)]
         struct $name {
@@ -17,7 +20,7 @@ macro_rules! parameters {
         }
 
         impl $name {
-            fn any() -> impl proptest::strategy::Strategy<Value = Self> {
+            fn any($($($given: $of),*)?) -> impl proptest::strategy::Strategy<Value = Self> {
                 proptest::strategy::Strategy::prop_map(
                     ($($strategy,)*),
                     |($($field,)*)| Self { $($field,)* },

@@ -9,9 +9,9 @@
 //! R(μ₀) = ∫ e^{−u/μ₀} s W dx/μ₀,   of light from all sides with 2E₂(u) in place of e^{−u/μ₀}/μ₀
 //! ```
 
+use super::prelude::*;
 use super::series::solved;
-use numeric::quadrature::GaussLegendre;
-use numeric::{Span, exponential_integrals as exponentials};
+use numeric::exponential_integrals as exponentials;
 use theory::problems::slab::Light;
 
 /// Nodes of a panel.

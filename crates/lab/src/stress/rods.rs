@@ -7,19 +7,12 @@
 //! two halves:  R = R₁ + T₁² R₂/(1 − R₁R₂),  T = T₁T₂/(1 − R₁R₂)
 //! ```
 
-use proptest::collection::vec;
-use proptest::strategy::Strategy;
-
 use super::fields::homogeneous;
-use super::parameters::{Number, between, parameters, share, sized};
-use super::row::Row;
-use super::table::{Run, Seen, central};
-use media::Piecewise;
-use numeric::{Known, Wide};
+use super::prelude::*;
 use theory::particle::ParticleRule;
 use theory::problems::Rod;
 use theory::problems::rod::{self, Quantity};
-use theory::{CountLaw, Mesh, rod as rods};
+use theory::{CountLaw, rod as rods};
 
 /// All rows.
 pub fn rows(run: Run) -> Vec<Row> {
@@ -41,21 +34,12 @@ pub fn rows(run: Run) -> Vec<Row> {
     rows
 }
 
-/// A rod of length 1 in equal parts of other albedos.
-#[derive(Debug, Clone)]
-struct Parts {
-    depth: f64,
-    forward: f64,
-    albedos: Vec<f64>,
-}
-
-impl Parts {
-    fn any(depth: Number, count: usize) -> impl Strategy<Value = Self> {
-        (depth, share(), vec(share(), count)).prop_map(|(depth, forward, albedos)| Self {
-            depth,
-            forward,
-            albedos,
-        })
+parameters! {
+    /// A rod of length 1 in equal parts of other albedos.
+    Parts(range: Number, count: usize) {
+        depth: f64 = range,
+        forward: f64 = share(),
+        albedos: Vec<f64> = vec(share(), count),
     }
 }
 

@@ -10,17 +10,10 @@
 //! at n points, one walk         E[A₁^{n₁} A₂^{n₂} …], likewise
 //! ```
 
-use super::parameters::{between, parameters, sign, sized};
+use super::prelude::*;
 use super::rods::lookups;
-use super::row::Row;
 use super::scattering::lit;
-use super::table::{Run, Seen, central};
 use super::techniques::{Case, Wanted};
-use media::{Control, Piecewise};
-use numeric::Wide;
-use proptest::prop_oneof;
-use proptest::strategy::Strategy;
-use theory::Mesh;
 use theory::problems::Problem;
 use theory::single::predict::DENSITY;
 use theory::single::{Camera, CameraTracking, Node, Scene, Tracking};
@@ -97,7 +90,7 @@ parameters! {
         albedo: f64 = between(0.1, 1.0),
         control: f64 = residual(),
         shadow: Tracking = prop_oneof![
-            proptest::strategy::Just(Tracking::Exact),
+            Just(Tracking::Exact),
             (sized(-0.3, 1.0), residual())
                 .prop_map(|(sampling, control)| Tracking::Ratio { sampling, control }),
             sized(0.0, 1.0).prop_map(|sampling| Tracking::Delta { sampling }),
@@ -110,7 +103,7 @@ parameters! {
 
 /// A control in one of two.
 fn residual() -> impl Strategy<Value = f64> {
-    prop_oneof![proptest::strategy::Just(0.0), between(0.0, 1.2)]
+    prop_oneof![Just(0.0), between(0.0, 1.2)]
 }
 
 fn trial(

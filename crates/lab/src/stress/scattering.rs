@@ -9,23 +9,15 @@
 
 use std::f64::consts::TAU;
 
-use proptest::strategy::Strategy;
-
 use super::chains::arsinh;
 use super::fields::Space;
-use super::parameters::{any_of, between, parameters, sized};
-use super::row::Row;
-use super::table::{Run, Seen, over};
+use super::prelude::*;
 use crate::stress::slabs::henyey_greenstein;
 use media::phase::Phase;
 use media::phase::isotropic::Isotropic;
-use media::{Control, Piecewise};
 use numeric::geometry::{Point, Ray};
-use numeric::quadrature::GaussLegendre;
 use numeric::sum::Sum;
-use numeric::{Known, Span, Wide};
 use theory::Heuristic;
-use theory::Mesh;
 use theory::problems::single_scattering::Lamp;
 use theory::problems::{Problem, SingleScattering};
 use theory::single::{Camera, CameraTracking, Collisions, Mis, NullPaths, Scene, Tracking};

@@ -1,18 +1,11 @@
 //! Slabs: adding and doubling against itself with more directions, and against discrete ordinates, see
 //! `ordinates`.
 
-use proptest::collection::vec;
-use proptest::prop_oneof;
-use proptest::strategy::Strategy;
-
 use super::ordinates::Ordinates;
-use super::parameters::{Number, between, share, sized};
-use super::row::Row;
-use super::table::{Run, Seen};
+use super::prelude::*;
 use media::phase::{
     Phase, henyey_greenstein::HenyeyGreenstein, isotropic::Isotropic, rayleigh::Rayleigh,
 };
-use numeric::{Known, Wide};
 use theory::problems::slab::Light;
 use theory::slab::{self, Answer, Energy, Resolution, layer::Slice};
 
@@ -33,23 +26,16 @@ pub fn rows(run: Run) -> Vec<Row> {
     rows
 }
 
-/// A slab in several lights.
-#[derive(Debug, Clone)]
-struct Slab {
-    depth: f64,
-    albedo: f64,
-    lights: Vec<Light>,
+parameters! {
+    /// A slab in several lights.
+    Slab(range: Number) {
+        depth: f64 = range,
+        albedo: f64 = share(),
+        lights: Vec<Light> = lights(),
+    }
 }
 
 impl Slab {
-    fn any(depth: Number) -> impl Strategy<Value = Self> {
-        (depth, share(), lights()).prop_map(|(depth, albedo, lights)| Self {
-            depth,
-            albedo,
-            lights,
-        })
-    }
-
     /// Compares R, T and collisions in each light.
     fn compare(&self, found: Vec<Answer>, exact: Vec<[Wide; 3]>, seen: &mut Seen) {
         for ((found, exact), light) in found.into_iter().zip(exact).zip(&self.lights) {

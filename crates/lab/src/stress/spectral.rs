@@ -6,27 +6,19 @@
 //!     albedo a, above 1, too; tracking at P_s:  L(a_λ^k/P_s^{k−1});  independent:  w^{1−k} L(a_λ)
 //! ```
 
-use proptest::collection::vec;
-use proptest::prop_oneof;
-use proptest::strategy::Strategy;
-
 use super::fields::homogeneous;
 use super::ordinates::Ordinates;
-use super::parameters::{any_of, between, parameters, sized};
+use super::prelude::*;
 use super::rods::{critical, leaving, light};
-use super::row::Row;
 use super::series::power;
-use super::table::{Run, Seen, central};
-use media::Piecewise;
 use media::phase::{Phase, isotropic::Isotropic};
-use numeric::Wide;
 use theory::problems::slab::{Incidence, Light};
 use theory::problems::spectral_rod::{Colours, End};
 use theory::problems::{ChromaticSlab, SpectralRod, SpectralSlab};
 use theory::spectral::{self, Chance};
 use theory::spectral_rod::{Body, Rods, Spectrum, Tracker};
 use theory::spectral_slab::Slabs;
-use theory::{Channel, Mesh, Moments, chromatic_slab};
+use theory::{Channel, Moments, chromatic_slab};
 
 /// Directions of the ordinates.
 const ORDINATES: usize = 40;

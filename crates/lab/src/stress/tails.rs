@@ -2,21 +2,14 @@
 
 use std::f64::consts::PI;
 
-use proptest::collection::vec;
-use proptest::strategy::Strategy;
-
-use super::parameters::{any_of, between, parameters, sign, sized};
-use super::row::Row;
-use super::table::{Run, Seen, off};
+use super::prelude::*;
 use gate::stats::catoni::{Argument, PsiSums};
 use gate::stats::{anderson_darling, binomial, chi_square, normal};
-use numeric::Wide;
-use numeric::quadrature::GaussLegendre;
 use theory::CountLaw;
 
 /// All rows.
 pub fn rows(run: Run) -> Vec<Row> {
-    let level = || proptest::prop_oneof![sized(-300.0, -0.4), sized(-13.0, -0.4)];
+    let level = || prop_oneof![sized(-300.0, -0.4), sized(-13.0, -0.4)];
     let row = Row::relative("normal quantile", "levels 1e-300 … 0.5", 1e-9);
     let mut rows = run.fill([256, 10_240], [row], level, quantile);
     let row = Row::relative("erf and erfc", "0 … 26", 4.0 * f64::EPSILON);
@@ -36,7 +29,7 @@ pub fn rows(run: Run) -> Vec<Row> {
     let row = Row::relative("Catoni's sums", "4096 draws of 1e-12 … 1e150, both signs", 1e-13);
     rows.extend(run.fill([32, 656], [row], catoni_draws, catoni));
     let row = Row::relative("Anderson–Darling tail", "A² = 0.1 … 700, p = 1 … 1e-300", 1e-11);
-    let square = || proptest::prop_oneof![sized(-1.0, 1.6), sized(1.6, 2.84)];
+    let square = || prop_oneof![sized(-1.0, 1.6), sized(1.6, 2.84)];
     rows.extend(run.fill([16, 176], [row], square, anderson_darling));
     rows
 }

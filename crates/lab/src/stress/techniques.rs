@@ -1,10 +1,9 @@
 //! Techniques of single scattering in a homogeneous medium, as theory has them and as chains, see `scattered`.
 
 use super::chains::{Chain, Term};
+use super::prelude::*;
 use super::series::{binomial, power};
 use super::shared_walk::{ORDERS, degree, of_mean};
-use media::Piecewise;
-use numeric::Wide;
 use theory::problems::{Problem, SingleScattering};
 use theory::single::{CameraTracking, Collisions, Node, Points, Scene, Technique, Tracking, walks};
 

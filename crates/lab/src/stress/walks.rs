@@ -10,26 +10,18 @@
 //! E[M] = (1 − R₀ − T₀)/(1 − Q₀ − S₀),  R₀ and T₀ those of k = 0
 //! ```
 
-use proptest::collection::vec;
-use proptest::prop_oneof;
-use proptest::strategy::Strategy;
-
 use super::fields;
 use super::ordinates::Ordinates;
-use super::parameters::{between, parameters, sized};
 use super::peierls::Peierls;
+use super::prelude::*;
 use super::rods::{lookups, moments_of};
-use super::row::Row;
 use super::slabs::{LIGHTS, henyey_greenstein, lights, phase};
-use super::table::{Run, Seen, central};
-use media::Piecewise;
 use media::phase::{Phase, isotropic::Isotropic};
-use numeric::{Known, Wide};
+use theory::Moments;
 use theory::particle::ParticleRule;
 use theory::problems::slab::{Incidence, Light};
 use theory::slab::layer::Slice;
 use theory::slab::{self, Answer, Energy, Existence, Piece, Pieces, Resolution, Walk};
-use theory::{Mesh, Moments};
 
 /// Directions of the ordinates.
 const ORDINATES: usize = 48;
@@ -102,7 +94,7 @@ parameters! {
         ends: [f64; 2] = [between(0.0, 1.4); 2],
         kind: usize = 0..2_usize,
         phase: Phase = prop_oneof![
-            1 => proptest::strategy::Just(Phase::Isotropic(Isotropic)),
+            1 => Just(Phase::Isotropic(Isotropic)),
             3 => between(-0.6, 0.6).prop_map(henyey_greenstein),
         ],
         lights: Vec<Light> = lights(),
