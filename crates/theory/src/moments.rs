@@ -83,9 +83,10 @@ fn near_one(j2: f64, j3: f64, j4: f64) -> [f64; 3] {
     let (u, v, z) = (j2.exp_m1(), (-j3).exp_m1(), j4.exp_m1());
     let cube = (1.0 + u).powi(3);
     let mixed = 4.0 * u * (3.0 + u * (3.0 + u)) + cube * v * (6.0 + v * (4.0 + v));
-    let m4 = u * u * (3.0 + u * (16.0 + u * (15.0 + u * (6.0 + u))))
-        + cube * v * mixed
-        + (6.0 * j2 - 4.0 * j3).exp() * z;
+    // Where e^{J₄} alone overflows, the product of both exponentials may be finite, or smaller than 1.
+    let exponent = 6.0 * j2 - 4.0 * j3;
+    let last = if z.is_finite() { exponent.exp() * z } else { (exponent + j4).exp() };
+    let m4 = u * u * (3.0 + u * (16.0 + u * (15.0 + u * (6.0 + u)))) + cube * v * mixed + last;
     [u, cube * v + u * u * (3.0 + u), m4]
 }
 
@@ -126,6 +127,12 @@ mod tests {
             assert_eq!(moments.spread_of_sample_variance(1e6), Some(f64::INFINITY));
             assert!(!moments.skewness().expect("spread").is_nan(), "{losses:?}");
             assert!(!moments.variance().is_nan());
+        }
+        // e^{J₄} alone overflows: J₄ = 710 and 717.6, as of ratio tracking with r = 2900 and r = 39.2.
+        for losses in [[0.0, 8.44e-5, 0.2448, 710.0], [0.0, 0.466_665, 18.300_59, 717.665]] {
+            let [_, j2, j3, j4] = losses;
+            let [_, _, m4] = Moments::of_product(1.0, losses, 0.0).relative;
+            assert!((m4.ln() / (6.0 * j2 - 4.0 * j3 + j4) - 1.0).abs() < 1e-15, "{losses:?}: {m4}");
         }
         // Just short of it: 6J₂ = 696.
         let finite = Moments::of_product(1.0, [0.0, 116.0, 0.0, 0.0], 0.0);

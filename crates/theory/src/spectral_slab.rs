@@ -124,7 +124,7 @@ impl Body for Slabs<'_> {
         let steepest = self.slab.incidence.light.cosine().map_or(6.0, |cosine| 4.0 + 1.0 / cosine);
         let all: f64 = found.iter().flatten().sum();
         let error = OF_ORDERS + (all - 1.0).abs();
-        Some(Orders { found, error, blur: steepest * depth.error })
+        Some(Orders { found, error, each: 0.0, blur: steepest * depth.error })
     }
 
     fn lookups(&self, heroes: &[(f64, f64)]) -> Option<CountLaw> {

@@ -75,10 +75,15 @@ const LEAST: f64 = 1e-280;
 impl Points {
     /// Of one technique.
     pub fn of(scene: &Scene, technique: &Technique) -> Self {
+        Self::with_cuts(scene, technique, Vec::new())
+    }
+
+    /// Of one technique, by panels that end at cuts, too.
+    pub fn with_cuts(scene: &Scene, technique: &Technique, cuts: Vec<f64>) -> Self {
         let mut parts = [MOMENT; 13];
         parts[5..9].fill(LOOKUPS);
         parts[9..].fill(f64::INFINITY);
-        let found = scene.integrate(parts, &|node| {
+        let found = scene.integrate(parts, cuts, &|node| {
             let density = (technique.density)(node);
             if density <= 0.0 {
                 return [0.0; 13];

@@ -13,7 +13,7 @@ const RADIANCE: f64 = 2e-14;
 /// What sums and exponentials lose, relative to the whole.
 const ROUNDING: f64 = 2e-13;
 /// Steps into which the support is cut at least.
-const STEPS: usize = 24;
+pub const STEPS: usize = 24;
 /// Panels are no wider than this in the stretched variable.
 const WIDEST: f64 = 0.5;
 /// Halvings of one panel at most.
@@ -193,14 +193,15 @@ impl<'a> Scene<'a> {
         sum
     }
 
-    /// `∫ f ds` over the support: panels are halved until the two resolutions agree to the given
-    /// parts of the whole.
+    /// `∫ f ds` over the support, with panels that end at cuts, too: panels are halved until the two resolutions agree to
+    /// the given parts of the whole.
     pub fn integrate<const N: usize>(
         &self,
         parts: [f64; N],
+        mut cuts: Vec<f64>,
         f: &dyn Fn(&Node) -> [f64; N],
     ) -> Integral<N> {
-        let mut cuts = self.cuts.clone();
+        cuts.extend(&self.cuts);
         cuts.extend(self.camera.cuts());
         self.over(parts, cuts, &|place| f(&self.node(place)))
     }

@@ -76,7 +76,7 @@ fn scattered(scene: &Scene, at: impl Fn(&Node) -> ([f64; 4], [f64; 4], f64)) -> 
     let mut parts = [MOMENT; 12];
     parts[4..8].fill(LOOKUPS);
     parts[8..].fill(f64::INFINITY);
-    let found = scene.integrate(parts, &|node| {
+    let found = scene.integrate(parts, Vec::new(), &|node| {
         let (powers, lookups, blur) = at(node);
         let rows = [powers, lookups, powers.map(|power| power.abs() * blur)];
         std::array::from_fn(|i| rows[i / 4][i % 4])

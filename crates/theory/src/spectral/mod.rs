@@ -223,6 +223,52 @@ impl Spectrum {
         Some(found)
     }
 
+    /// What rounding changes `E[X_λ^k]` by, relative to it: of walks that are weighted by other channels the exponents, which may
+    /// be hundreds, and null extinctions, differences of σ̂ and σ_t.
+    ///
+    /// ```text
+    /// ε [(k − 1) μ̄_h ℓ + k μ̄ ℓ + ∫ n^k/d^{k−1} (1 + k μ̄/n + (k − 1) b) dt],  b = μ̄_h/n_h, 1/P_n or 0
+    /// ```
+    fn rounding(&self, channel: usize, k: f64) -> f64 {
+        let own = self.majorants[channel];
+        // n^k/d^{k−1}, d the density of nulls, and b.
+        let gathered = |density: &dyn Fn(&[f64]) -> [f64; 2]| {
+            self.integrate(|n| {
+                let [density, off] = density(n);
+                let null = n[channel];
+                if null <= 0.0 {
+                    return 0.0;
+                }
+                power(null, k) / power(density, k - 1.0) * (1.0 + k * own / null + (k - 1.0) * off)
+            })
+        };
+        let exponents = match self.tracker {
+            Tracker::Hero { delta } => {
+                let heroes = (0..self.channels()).filter(|&hero| self.hero[hero] > 0.0);
+                let of = |hero: usize| {
+                    let majorant = self.majorants[hero];
+                    let flights = ((k - 1.0) * majorant + k * own) * self.length();
+                    flights
+                        + gathered(&|n| {
+                            if delta { [n[hero], majorant / n[hero]] } else { [majorant, 0.0] }
+                        })
+                };
+                heroes.map(of).fold(0.0, f64::max)
+            }
+            Tracker::Tracking(chance) => {
+                let majorant = self.majorants[0];
+                let of_null = |n: &[f64]| {
+                    let shares: Vec<f64> = n.iter().map(|n| n / majorant).collect();
+                    let chance = chance.of_null(&shares);
+                    [majorant * chance, 1.0 / chance]
+                };
+                majorant * self.length() + gathered(&of_null)
+            }
+            _ => 0.0,
+        };
+        f64::EPSILON * exponents
+    }
+
     /// The sum over the number of collisions, for densities that depend on nothing else.
     fn by_count(&self, nulls: f64, depth: f64, total: f64) -> f64 {
         let length = self.length();
@@ -251,11 +297,6 @@ impl Spectrum {
                 return f64::NAN;
             }
         }
-    }
-
-    /// `Σ w_h p_h`.
-    fn mean(&self, densities: &[f64]) -> f64 {
-        self.hero.iter().zip(densities).map(|(w, p)| w * p).sum()
     }
 }
 

@@ -67,9 +67,15 @@ impl Spectrum {
             let m2 = (second - 1.0).max(0.0);
             let m3 = third - 3.0 * second + 2.0;
             let m4 = (fourth - 4.0 * third + 6.0 * second - 3.0).max(m2 * m2);
-            let relative = ROUNDING + self.mesh.relative_error() * self.most_collisions().max(1.0);
+            let relative = |k: f64| {
+                let scored = (0..self.channels()).filter(|&channel| form[channel] != 0.0);
+                let rounding = scored.map(|channel| self.rounding(channel, k)).fold(0.0, f64::max);
+                let by_depth = self.mesh.relative_error() * self.most_collisions().max(1.0);
+                ROUNDING + by_depth + rounding
+            };
             let of = |size: f64, moment: f64| if moment > 0.0 { size / moment } else { 0.0 };
-            let error = of(second, m2).max(of(fourth + 4.0 * third + 6.0 * second, m4)) * relative;
+            let of_fourth = of((fourth + 4.0 * third + 6.0 * second) * relative(4.0), m4);
+            let error = of(second * relative(2.0), m2).max(of_fourth);
             Some(Moments { scale: value, relative: [m2, m3, m4], error })
         })();
         let is_one = index < self.channels();
@@ -159,5 +165,34 @@ impl Spectrum {
             rare_event_size: (2.0 * slope - of(2.0)).max(0.0).exp(),
             eighth_moment_ratio: (of(8.0) - 2.0 * of(4.0)).exp(),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::Tracker;
+    use super::*;
+    use crate::Mesh;
+    use media::Medium;
+    use media::constant::Homogeneous;
+    use numeric::Span;
+    use std::sync::Arc;
+
+    /// A thin hero walks for a thick channel: the second moment is e^584, whose exponent has few digits left after the point.
+    #[test]
+    fn large_exponents_are_part_of_the_error() {
+        let span = Span::new(0.0, 1.0);
+        let (depths, above, shares) = ([0.0003, 0.0734], [0.153, 2.2329], [0.3, 1.0]);
+        let meshes = depths.map(|extinction| {
+            Mesh::new(Medium::new(Arc::new(Homogeneous { extinction }), span, span))
+        });
+        let majorants = (0..2).map(|i| depths[i] * (1.0 + above[i])).collect();
+        let heroes = shares.map(|share| share / 1.3).to_vec();
+        let meshes: Vec<&Mesh> = meshes.iter().collect();
+        let spectrum = Spectrum::new(&meshes, majorants, heroes, Tracker::Hero { delta: true });
+        let moments = spectrum.predict(&[]).channels[1].moments.expect("known");
+        // In 60 digits, of the same doubles.
+        let off = (moments.relative[0] / 2.388_350_829_586_169_4e253 - 1.0).abs();
+        assert!(off <= moments.error && moments.error < 1e-11, "{off:e}, {:e}", moments.error);
     }
 }

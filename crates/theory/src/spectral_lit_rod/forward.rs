@@ -158,10 +158,7 @@ impl Forward {
         }
         let length = self.mesh.support().length();
         let begin = self.majorants.iter().map(|majorant| (-majorant * length).exp()).collect();
-        let mean = |densities: &[f64]| -> f64 {
-            self.heroes.iter().zip(densities).map(|(w, p)| w * p).sum()
-        };
-        let atoms = balanced(&cells, begin, &mean)?;
+        let atoms = balanced(&cells, begin, &self.heroes)?;
         Some(self.moments(&|powers| {
             let of = |(probability, x): &(f64, Vec<f64>)| {
                 let product: f64 = x.iter().zip(powers).map(|(x, &k)| x.powi(k)).product();

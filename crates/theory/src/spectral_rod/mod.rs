@@ -24,15 +24,14 @@ use super::{Channel, CountLaw, Moments, Prediction, Tails};
 use crate::problems::spectral_rod::{Colours, End};
 use numeric::Known;
 
-/// What rounding leaves of a moment, relative to it.
-const ROUNDING: f64 = 1e-13;
-
 /// Probabilities to leave after r scatterings that never absorb.
 pub struct Orders {
     /// Reflected and transmitted.
     pub found: Vec<[f64; 2]>,
     /// A bound on their relative error.
     pub error: f64,
+    /// A bound on the absolute error of each beside that: rare ones have fewer digits, and large weights.
+    pub each: f64,
     /// What is not known of their sum, absolute.
     pub blur: f64,
 }
@@ -158,16 +157,18 @@ impl<'a> Spectrum<'a> {
             Tracker::Mis => {
                 let orders = self.orders.as_ref()?;
                 let mut powers = vec![1.0; k.len()];
-                let mut sum = 0.0;
+                let [mut sum, mut off] = [0.0, orders.blur];
                 for order in &orders.found {
                     let density: f64 = self.hero.iter().zip(&powers).map(|(w, a)| w * a).sum();
                     if density > 0.0 {
                         let weights = powers.iter().zip(k).map(|(a, &k)| (a / density).powi(k));
-                        sum += order[side] * density * weights.product::<f64>();
+                        let weight = density * weights.product::<f64>();
+                        sum += order[side] * weight;
+                        off += orders.each * weight;
                     }
                     powers.iter_mut().zip(&self.colours.albedos).for_each(|(power, a)| *power *= a);
                 }
-                Some(Known::new(sum, orders.error * sum + orders.blur))
+                Some(Known::new(sum, orders.error * sum + off))
             }
         }
     }
