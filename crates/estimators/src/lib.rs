@@ -32,6 +32,7 @@ pub mod sphere;
 pub mod transmittance;
 pub mod transmittance_curve;
 pub mod trial;
+pub mod walks;
 
 use fearless_simd::Level;
 
@@ -229,7 +230,7 @@ macro_rules! product_draws {
             medium: &media::Lookups,
             rng: &mut numeric::rng::Stream,
         ) -> $crate::Draw {
-            $crate::kernels::walk::product(setup, &$rule, medium, rng)
+            $crate::transmittance::product::draw(setup, &$rule, medium, rng)
         }
 
         fn order_free<'a>(
@@ -247,7 +248,7 @@ macro_rules! product_draws {
             medium: &media::Lookups,
             request: $crate::kernels::packet::Request<'a>,
         ) -> Option<$crate::kernels::packet::Request<'a>> {
-            $crate::kernels::packet::product(level, setup, &$rule, medium, request)
+            $crate::transmittance::product::packets(level, setup, &$rule, medium, request)
         }
     };
 }
@@ -280,7 +281,8 @@ macro_rules! scored {
                 medium: &media::Lookups,
                 rng: &mut numeric::rng::Stream,
             ) -> $crate::Draw {
-                $crate::kernels::scoring::walk(setup, self, medium, rng)
+                let walk = $crate::transmittance::scoring::Scoring::new(Self, setup);
+                $crate::walks::draw(&walk, &setup.sampling, medium, rng)
             }
 
             fn draw_packets<'a>(
@@ -290,7 +292,9 @@ macro_rules! scored {
                 medium: &media::Lookups,
                 request: $crate::kernels::packet::Request<'a>,
             ) -> Option<$crate::kernels::packet::Request<'a>> {
-                $crate::kernels::packet::score(level, setup, self, medium, request)
+                let ground = $crate::walks::Ground::new(setup, medium);
+                let walk = $crate::transmittance::scoring::Scoring::new(Self, setup);
+                $crate::walks::packets(level, &walk, ground, request)
             }
         }
     };

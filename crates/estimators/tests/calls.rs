@@ -117,8 +117,8 @@ fn what_is_drawn_never_calls_the_platforms_functions() {
     for file in File::all() {
         let whole = [
             "theory/src/rules.rs",
-            "kernels/scoring.rs",
-            "kernels/walk.rs",
+            "transmittance/product.rs",
+            "transmittance/scoring.rs",
             "transmittance/next_flight.rs",
             "transmittance/unidirectional_mis.rs",
             "rng/mod.rs",

@@ -1,22 +1,28 @@
 //! Parts of walks against values by hand. They stand here and not beside the code, so that kernels are compiled once.
 
+use std::sync::Arc;
+
 use fearless_simd::{Level, Simd, f64x8};
-use numeric::Twin;
+use media::{Medium, Piecewise};
 use numeric::geometry::Point;
 use numeric::pack::{Task, WIDTH, on};
 use numeric::rng::{LANES, PACKS};
 use numeric::twin::PAIR;
-use theory::problems::rod::{Quantity, channels};
+use numeric::{Span, Twin};
+use theory::ParticleRule;
+use theory::problems::Rod;
+use theory::problems::rod::channels;
 use theory::rules::{Collision, Met, Null, Single, Weight};
 use trueflight_estimators::kernels::order_free::collisions::{Collisions, Weights};
 use trueflight_estimators::kernels::packet::bank::Slots;
-use trueflight_estimators::kernels::scoring::{Score, Share};
-use trueflight_estimators::rod::walk::Fate;
+use trueflight_estimators::rod::walk::{By, InRod, Particle};
 use trueflight_estimators::slab::walk::turned;
 use trueflight_estimators::sphere::connect::{Connect, Honest, cone, meets};
+use trueflight_estimators::transmittance::scoring::{Score, Share};
 use trueflight_estimators::transmittance::{
     next_flight::NextFlight, unidirectional_mis::UnidirectionalMis,
 };
+use trueflight_estimators::walks::Walk;
 
 #[test]
 fn every_draw_has_one_slot_and_lanes_take_turns() {
@@ -159,19 +165,20 @@ fn the_cone_of_a_sphere_is_half_space_at_its_surface_and_shrinks_like_the_square
 
 #[test]
 fn a_particle_is_seen_at_its_end_and_by_its_order() {
-    let channels = channels(1, true, Some(2));
-    let fate = Fate {
-        left: Some(Quantity::Reflected),
-        weight: 0.5,
-        order: 1,
-        absorbed: 0.2,
-        flux: [0.3, 0.0, 0.0, 0.0],
+    let span = Span::new(0.0, 1.0);
+    let [albedo, forward] = [0.5; 2].map(|value| Piecewise::constant(value, span));
+    let medium = Medium::new(Arc::new(Piecewise::constant(0.7, span)), span, span);
+    let rod = Rod::new(medium, &albedo, &forward, channels(1, true, Some(2)));
+    let walk = InRod { rod: &rod, steps: By { rule: ParticleRule::Analog, roulette: None } };
+    let values = |particle: &Particle<f64>, left| {
+        let value = |channel| walk.value(particle, left, channel);
+        (0..walk.channels()).map(value).collect::<Vec<_>>()
     };
-    let values = fate.values(&channels);
+    let flux = [0.3, 0.0, 0.0, 0.0];
+    let reflected = Particle { is_forward: false, weight: 0.5, order: 1.0, absorbed: 0.2, flux };
     // Flux, T0, R1, T1, R2, T2, absorbed, R, T.
-    assert_eq!(values.as_ref(), [0.3, 0.0, 0.5, 0.0, 0.0, 0.0, 0.2, 0.5, 0.0]);
-    let lost = Fate { left: None, ..fate };
-    assert_eq!(lost.values(&channels).as_ref()[6..], [0.2, 0.0, 0.0]);
-    let often = Fate { order: 7, ..fate };
-    assert_eq!(often.values(&channels).as_ref()[1..6], [0.0; 5]);
+    assert_eq!(values(&reflected, true), [0.3, 0.0, 0.5, 0.0, 0.0, 0.0, 0.2, 0.5, 0.0]);
+    assert_eq!(values(&reflected, false)[6..], [0.2, 0.0, 0.0]);
+    let often = Particle { order: 7.0, ..reflected };
+    assert_eq!(values(&often, true)[1..6], [0.0; 5]);
 }

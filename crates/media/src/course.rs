@@ -1,60 +1,56 @@
-//! Eight walks side by side through straight pieces.
+//! Flights through straight pieces: of one walk, or of a pack of walks side by side.
 //!
-//! Specification: walk i of a course stands where a [`super::Cursor`] stands after the same flights
-//! through the same [`Piecewise`] field, to the bit.
-
-use fearless_simd::{ExtractToken, Simd, SimdBase, SimdMask, f64x8, mask64x8};
+//! ```text
+//! y₀ s + k s²/2 = u   ⇒   s = 2u / (y₀ + √(y₀² + 2ku))
+//! ```
 
 use super::{Piecewise, even};
-use numeric::Lane;
-use numeric::pack::WIDTH;
+use numeric::{Kept, Lane, Mask};
 
-/// Where eight walks stand.
-pub trait Course<S: Simd> {
+/// Where walks stand.
+pub trait Course<L: Lane>: Copy {
     /// Each flies on through an optical depth; answers which are still before the last knot.
-    fn fly(&mut self, depth: f64x8<S>) -> mask64x8<S>;
+    fn fly(&mut self, depth: L) -> L::Mask;
 
     /// The distances reached.
-    fn reached(&self) -> f64x8<S>;
+    fn reached(&self) -> L;
 
     /// `σ̂` there.
-    fn sampling(&self) -> f64x8<S>;
+    fn sampling(&self) -> L;
 
     /// The mean free paths `1/σ̂` there.
-    fn mean_free_path(&self) -> f64x8<S>;
+    fn mean_free_path(&self) -> L;
 
     /// These begin anew.
-    fn restart(&mut self, which: mask64x8<S>);
+    fn restart(&mut self, which: L::Mask);
 }
 
 /// A course that walks may go back, too.
-pub trait BothWays<S: Simd>: Course<S> {
+pub trait BothWays<L: Lane>: Course<L> {
     /// Each flies on or back through an optical depth; answers which are still between the ends.
-    fn fly_either_way(&mut self, depth: f64x8<S>, is_forward: mask64x8<S>) -> mask64x8<S>;
+    fn fly_either_way(&mut self, depth: L, is_forward: L::Mask) -> L::Mask;
 
     /// These stand where they stand on another course through the same field.
-    fn stand_as(&mut self, which: mask64x8<S>, other: &Self);
+    fn stand_as(&mut self, which: L::Mask, other: &Self);
 }
 
 /// Through one value, but for gaps.
 #[derive(Clone, Copy)]
-pub struct Even<'a, S: Simd> {
+pub struct Even<'a, L> {
     field: &'a even::Even,
-    begin: f64x8<S>,
-    end: f64x8<S>,
-    rate: f64x8<S>,
-    path: f64x8<S>,
-    way: f64x8<S>,
+    begin: L,
+    end: L,
+    rate: L,
+    path: L,
+    way: L,
 }
 
-impl<'a, S: Simd> Even<'a, S> {
-    /// At the beginning of a field.
+impl<'a, L: Lane> Even<'a, L> {
+    /// At the beginning of a field; any lane is given.
     #[inline(always)]
-    pub fn new(simd: S, field: &'a even::Even) -> Self {
-        let begin = f64x8::splat(simd, field.from);
-        let end = f64x8::splat(simd, field.to);
-        let path = f64x8::splat(simd, 1.0 / field.value);
-        let rate = f64x8::splat(simd, field.value);
+    pub fn new(any: L, field: &'a even::Even) -> Self {
+        let (begin, end) = (any.each(field.from), any.each(field.to));
+        let (rate, path) = (any.each(field.value), any.each(1.0 / field.value));
         Self { field, begin, end, rate, path, way: begin }
     }
 
@@ -66,211 +62,157 @@ impl<'a, S: Simd> Even<'a, S> {
     }
 }
 
-impl<S: Simd> Course<S> for Even<'_, S> {
+impl<L: Lane> Course<L> for Even<'_, L> {
     #[inline(always)]
-    fn fly(&mut self, depth: f64x8<S>) -> mask64x8<S> {
+    fn fly(&mut self, depth: L) -> L::Mask {
         self.way = depth.times_plus(self.path, self.way);
         self.way.below(self.end)
     }
 
     #[inline(always)]
-    fn reached(&self) -> f64x8<S> {
+    fn reached(&self) -> L {
         self.field.spread(self.way)
     }
 
     #[inline(always)]
-    fn sampling(&self) -> f64x8<S> {
+    fn sampling(&self) -> L {
         self.rate
     }
 
     #[inline(always)]
-    fn mean_free_path(&self) -> f64x8<S> {
+    fn mean_free_path(&self) -> L {
         self.path
     }
 
     #[inline(always)]
-    fn restart(&mut self, which: mask64x8<S>) {
-        self.way = Lane::select(which, self.begin, self.way);
+    fn restart(&mut self, which: L::Mask) {
+        self.way.set_where(which, self.begin);
     }
 }
 
-impl<S: Simd> BothWays<S> for Even<'_, S> {
+impl<L: Lane> BothWays<L> for Even<'_, L> {
     #[inline(always)]
-    fn fly_either_way(&mut self, depth: f64x8<S>, is_forward: mask64x8<S>) -> mask64x8<S> {
-        self.way = Lane::select(is_forward, depth, -depth).times_plus(self.path, self.way);
+    fn fly_either_way(&mut self, depth: L, is_forward: L::Mask) -> L::Mask {
+        self.way = L::select(is_forward, depth, -depth).times_plus(self.path, self.way);
         (is_forward & self.way.below(self.end)) | (!is_forward & self.begin.below(self.way))
     }
 
     #[inline(always)]
-    fn stand_as(&mut self, which: mask64x8<S>, other: &Self) {
-        self.way = Lane::select(which, other.way, self.way);
+    fn stand_as(&mut self, which: L::Mask, other: &Self) {
+        self.way.set_where(which, other.way);
     }
 }
 
 /// Through any pieces: each walk has its own at hand, and looks the next one up when it crosses.
 #[derive(Clone, Copy)]
-pub struct Pieces<'a, S: Simd> {
+pub struct Pieces<'a, L> {
     field: &'a Piecewise,
-    piece: [usize; WIDTH],
-    knot: f64x8<S>,
-    end: f64x8<S>,
-    left: f64x8<S>,
-    right: f64x8<S>,
-    slope: f64x8<S>,
-    t: f64x8<S>,
+    /// The number of the piece, and what [`Piecewise::rows`] says of it.
+    piece: L,
+    at_hand: [L; 5],
+    t: L,
 }
 
-impl<'a, S: Simd> Pieces<'a, S> {
-    /// At the first knot.
+impl<'a, L: Lane> Pieces<'a, L> {
+    /// At the first knot; any lane is given.
     #[inline(always)]
-    pub fn new(simd: S, field: &'a Piecewise) -> Self {
-        let zero = f64x8::splat(simd, 0.0);
-        let t = f64x8::splat(simd, field.knots[0]);
-        let (knot, end, left, right, slope) = (t, zero, zero, zero, zero);
-        let mut walks = Self { field, piece: [0; WIDTH], knot, end, left, right, slope, t };
-        walks.look_up(u64::MAX);
-        walks
+    pub fn new(any: L, field: &'a Piecewise) -> Self {
+        let (piece, t) = (any.each(0.0), any.each(field.knots[0]));
+        Self { field, piece, at_hand: piece.columns(&field.rows), t }
     }
 
     /// σ̂ at the distances reached.
     #[inline(always)]
-    fn here(&self) -> f64x8<S> {
-        self.left + self.slope * (self.t - self.knot)
+    fn here(&self) -> L {
+        let [knot, left, slope, ..] = self.at_hand;
+        left + slope * (self.t - knot)
     }
 
-    /// Takes the pieces of some walks to hand.
+    /// Takes pieces to hand.
     #[inline(always)]
-    fn look_up(&mut self, which: u64) {
-        let packs =
-            [&mut self.knot, &mut self.end, &mut self.left, &mut self.right, &mut self.slope];
-        let mut rows = [[0.0; WIDTH]; 5];
-        for (number, row) in rows.iter_mut().enumerate() {
-            packs[number].store_slice(row);
-        }
-        for (lane, &piece) in self.piece.iter().enumerate() {
-            if which >> lane & 1 == 1 {
-                let (knot, end) = (self.field.knots[piece], self.field.knots[piece + 1]);
-                let (left, slope) = (self.field.left[piece], self.field.slope[piece]);
-                let values = [knot, end, left, self.field.line(piece, end), slope];
-                for (number, row) in rows.iter_mut().enumerate() {
-                    row[lane] = values[number];
-                }
-            }
-        }
-        let simd = self.t.token();
-        for (number, pack) in packs.into_iter().enumerate() {
-            *pack = f64x8::from_slice(simd, &rows[number]);
-        }
+    fn look_up(&mut self, which: L::Mask) {
+        self.at_hand.set_where(which, self.piece.columns(&self.field.rows));
     }
 
     /// Each flies through an optical depth: on, or, where `BOTH`, either way.
     #[inline(always)]
-    fn go<const BOTH: bool>(
-        &mut self,
-        mut depth: f64x8<S>,
-        is_forward: mask64x8<S>,
-    ) -> mask64x8<S> {
-        let simd = depth.token();
-        let zero = depth.each(0.0);
-        let signed = |x: f64x8<S>| if BOTH { Lane::select(is_forward, x, -x) } else { x };
-        let forward = if BOTH { is_forward.to_bitmask() } else { u64::MAX };
-        let last = self.field.left.len() - 1;
-        let mut flying = mask64x8::splat(simd, true);
-        let mut arrived = mask64x8::splat(simd, false);
+    fn go<const BOTH: bool>(&mut self, mut depth: L, is_forward: L::Mask) -> L::Mask {
+        let (zero, one) = (depth.each(0.0), depth.each(1.0));
+        let ahead = |on: L, back: L| if BOTH { L::select(is_forward, on, back) } else { on };
+        let signed = |x: L| ahead(x, -x);
+        let last = zero.each((self.field.left.len() - 1) as f64);
+        let (mut flying, mut arrived) = (zero.at_most(zero), zero.below(zero));
         loop {
-            let here = self.here();
-            let (mut edge, mut there) = (self.end, self.right);
-            if BOTH {
-                edge = Lane::select(is_forward, edge, self.knot);
-                there = Lane::select(is_forward, there, self.left);
+            let [knot, left, slope, end, right] = self.at_hand;
+            let (here, edge, there) = (self.here(), ahead(end, knot), ahead(right, left));
+            let rest = signed(edge - self.t) * 0.5 * (here + there);
+            let arrives = flying & depth.below(rest);
+            if arrives.maybe() {
+                let root = (here * here + signed(slope * 2.0 * depth)).or_more(zero).root();
+                self.t.set_where(arrives, self.t + signed(depth * 2.0 / (here + root)));
+                arrived |= arrives;
             }
-            let left = signed(edge - self.t) * 0.5 * (here + there);
-            let arrives = depth.below(left) & flying;
-            let root = (here * here + signed(self.slope * 2.0 * depth)).or_more(zero).root();
-            let landed = self.t + signed(depth * 2.0 / (here + root));
-            self.t = Lane::select(arrives, landed, self.t);
-            arrived |= arrives;
-            flying &= !arrives;
-            if !flying.any_true() {
+            // The others cross the edge of their piece, or leave.
+            let mut crosses = self.piece.below(last);
+            if BOTH {
+                crosses = (is_forward & crosses) | (!is_forward & zero.below(self.piece));
+            }
+            flying &= !arrives & crosses;
+            if !flying.any() {
                 return arrived;
             }
-            depth = Lane::select(flying, depth - left, depth);
-            self.t = Lane::select(flying, edge, self.t);
-            let mut crossing = flying.to_bitmask();
-            for (lane, piece) in self.piece.iter_mut().enumerate() {
-                if crossing >> lane & 1 == 1 {
-                    let is_forward = forward >> lane & 1 == 1;
-                    if *piece == if is_forward { last } else { 0 } {
-                        crossing &= !(1 << lane);
-                    } else {
-                        *piece = if is_forward { *piece + 1 } else { *piece - 1 };
-                    }
-                }
-            }
-            flying = mask64x8::from_bitmask(simd, crossing);
-            self.look_up(crossing);
+            depth.set_where(flying, depth - rest);
+            self.t.set_where(flying, edge);
+            self.piece.set_where(flying, self.piece + signed(one));
+            self.look_up(flying);
         }
     }
 }
 
-impl<S: Simd> Course<S> for Pieces<'_, S> {
+impl<L: Lane> Course<L> for Pieces<'_, L> {
     #[inline(always)]
-    fn fly(&mut self, depth: f64x8<S>) -> mask64x8<S> {
-        self.go::<false>(depth, mask64x8::splat(depth.token(), true))
+    fn fly(&mut self, depth: L) -> L::Mask {
+        self.go::<false>(depth, depth.at_most(depth))
     }
 
     #[inline(always)]
-    fn reached(&self) -> f64x8<S> {
+    fn reached(&self) -> L {
         self.t
     }
 
     #[inline(always)]
-    fn sampling(&self) -> f64x8<S> {
+    fn sampling(&self) -> L {
         self.here()
     }
 
     #[inline(always)]
-    fn mean_free_path(&self) -> f64x8<S> {
+    fn mean_free_path(&self) -> L {
         self.t.each(1.0) / self.here()
     }
 
     #[inline(always)]
-    fn restart(&mut self, which: mask64x8<S>) {
-        let bits = which.to_bitmask();
-        if bits != 0 {
-            for (lane, piece) in self.piece.iter_mut().enumerate() {
-                if bits >> lane & 1 == 1 {
-                    *piece = 0;
-                }
-            }
-            self.look_up(bits);
-            self.t = Lane::select(which, self.t.each(self.field.knots[0]), self.t);
+    fn restart(&mut self, which: L::Mask) {
+        if which.any() {
+            let zero = self.piece.each(0.0);
+            self.piece.set_where(which, zero);
+            self.at_hand.set_where(which, zero.columns(&self.field.rows));
+            self.t.set_where(which, zero.each(self.field.knots[0]));
         }
     }
 }
 
-impl<S: Simd> BothWays<S> for Pieces<'_, S> {
+impl<L: Lane> BothWays<L> for Pieces<'_, L> {
     #[inline(always)]
-    fn fly_either_way(&mut self, depth: f64x8<S>, is_forward: mask64x8<S>) -> mask64x8<S> {
+    fn fly_either_way(&mut self, depth: L, is_forward: L::Mask) -> L::Mask {
         self.go::<true>(depth, is_forward)
     }
 
     #[inline(always)]
-    fn stand_as(&mut self, which: mask64x8<S>, other: &Self) {
-        let bits = which.to_bitmask();
-        if bits == 0 {
-            return;
+    fn stand_as(&mut self, which: L::Mask, other: &Self) {
+        if which.any() {
+            self.piece.set_where(which, other.piece);
+            self.at_hand.set_where(which, other.at_hand);
+            self.t.set_where(which, other.t);
         }
-        for (lane, piece) in self.piece.iter_mut().enumerate() {
-            if bits >> lane & 1 == 1 {
-                *piece = other.piece[lane];
-            }
-        }
-        self.knot = Lane::select(which, other.knot, self.knot);
-        self.end = Lane::select(which, other.end, self.end);
-        self.left = Lane::select(which, other.left, self.left);
-        self.right = Lane::select(which, other.right, self.right);
-        self.slope = Lane::select(which, other.slope, self.slope);
-        self.t = Lane::select(which, other.t, self.t);
     }
 }

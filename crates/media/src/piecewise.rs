@@ -20,8 +20,9 @@ pub struct Piecewise {
     pub(super) depth: Vec<f64>,
     pub(super) even: Option<Even>,
     search: Search,
-    /// Knot, left and slope of each piece, for lookups; the other columns are empty.
-    rows: Vec<Row>,
+    /// Knot, left and slope of each piece, for lookups, and for flights its end and the value there.
+    pub(super) rows: Vec<Row>,
+    stretches: Vec<Row>,
 }
 
 impl Piecewise {
@@ -58,11 +59,18 @@ impl Piecewise {
             sum.add(width * (left[i] + 0.5 * slope[i] * width));
             depth.push(sum.value());
         }
-        let row =
-            |(i, &knot): (usize, &f64)| Row([knot, left[i], slope[i], 0.0, 0.0, 0.0, 0.0, 0.0]);
+        let row = |(i, &knot): (usize, &f64)| {
+            let end = knots[i + 1];
+            let right = left[i] + slope[i] * (end - knot);
+            Row([knot, left[i], slope[i], end, right, 0.0, 0.0, 0.0])
+        };
         let rows = knots[..left.len()].iter().enumerate().map(row).collect();
         let even = Even::of(knots, &left, &slope);
-        Self { knots: knots.to_vec(), left, slope, depth, even, search: Search::new(knots), rows }
+        let stretch =
+            |i: usize| Row([knots[i], knots[i + 1], 1.0 / left[i], 0.0, 0.0, 0.0, 0.0, 0.0]);
+        let stretches = (0..left.len()).filter(|&i| left[i] > 0.0).map(stretch).collect();
+        let search = Search::new(knots);
+        Self { knots: knots.to_vec(), left, slope, depth, even, search, rows, stretches }
     }
 
     /// The same field restricted to, or continued over, a span.
@@ -137,10 +145,10 @@ impl Piecewise {
         self.knots.windows(2).zip(&self.left).map(|(ends, &value)| ([ends[0], ends[1]], value))
     }
 
-    /// The ends of every piece that begins above zero, and the mean free path `1/σ̂` there.
+    /// Beginning, end and mean free path `1/σ̂` of every piece that begins above zero.
     #[inline(always)]
-    pub fn stretches(&self) -> impl Iterator<Item = ([f64; 2], f64)> + '_ {
-        self.segments().filter(|&(_, value)| value > 0.0).map(|(ends, value)| (ends, 1.0 / value))
+    pub fn stretches(&self) -> &[Row] {
+        &self.stretches
     }
 
     /// Both one-sided values at every knot, for a search of extremes.
@@ -271,8 +279,8 @@ mod tests {
     #[test]
     fn stretches_are_the_pieces_that_hold_something() {
         let steps = Piecewise::steps(&[0.0, 1.0, 2.0, 3.0, 4.0], &[0.0, 2.0, 0.0, 0.5]);
-        let found: Vec<_> = steps.stretches().collect();
-        assert_eq!(found, [([1.0, 2.0], 0.5), ([3.0, 4.0], 2.0)]);
+        let row = |begin, end, path| Row([begin, end, path, 0.0, 0.0, 0.0, 0.0, 0.0]);
+        assert_eq!(steps.stretches(), [row(1.0, 2.0, 0.5), row(3.0, 4.0, 2.0)]);
     }
 
     #[test]

@@ -4,11 +4,14 @@
 //! of AVX2, four of SSE2. So the same draws come out of every machine that fuses multiplication and
 //! addition, and what is drawn never depends on the width.
 
+use std::sync::atomic::{AtomicU64, Ordering};
+
 use fearless_simd::{
-    Bytes, ExtractToken, Level, Select, Simd, SimdBase, SimdFloat, SimdInt, f64x4, f64x8, i64x8,
-    mask64x8, u32x16, u64x8,
+    Bytes, ExtractToken, Level, Select, Simd, SimdBase, SimdFloat, SimdInt, SimdMask, f64x4, f64x8,
+    i64x8, mask64x8, u32x16, u64x8,
 };
 
+use super::mask::Mask;
 use super::single::{ROOT_HALF, ROUNDER};
 use super::words::apart;
 use super::{Lane, Row};
@@ -185,9 +188,44 @@ fn two_rows<S: Simd>(simd: S, first: &Row, second: &Row) -> f64x8<S> {
     simd.combine_f64x4(low, f64x4::from_slice(simd, &second.0[..4]))
 }
 
+impl<S: Simd> Mask for mask64x8<S> {
+    #[inline(always)]
+    fn any(self) -> bool {
+        self.any_true()
+    }
+
+    #[inline(always)]
+    fn maybe(self) -> bool {
+        true
+    }
+
+    #[inline(always)]
+    fn bits(self) -> u64 {
+        self.to_bitmask()
+    }
+
+    #[inline(always)]
+    fn set_where(&mut self, which: Self, other: Self) {
+        *self = which.select(other, *self);
+    }
+}
+
+/// 0, which a compiler does not know: other crates could write it.
+pub static ZERO: AtomicU64 = AtomicU64::new(0);
+
 impl<S: Simd> Lane for f64x8<S> {
     type Mask = mask64x8<S>;
     type Words = u64x8<S>;
+
+    #[inline(always)]
+    fn sealed(self) -> Self {
+        if converts(self.token()) {
+            return self;
+        }
+        let zero = u64x8::splat(self.token(), ZERO.load(Ordering::Relaxed));
+        let bits: u64x8<S> = self.bitcast();
+        (bits | zero).bitcast()
+    }
 
     #[inline(always)]
     fn each(self, value: f64) -> Self {

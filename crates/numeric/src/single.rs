@@ -49,10 +49,44 @@ pub fn place(number: f64, length: usize) -> usize {
     (number as usize).min(length - 1)
 }
 
+/// A lane of one number.
+pub trait Single: Lane<Mask = bool> {
+    /// A double, rounded to what the lane holds.
+    fn of(x: f64) -> Self;
+
+    /// As a double.
+    fn double(self) -> f64;
+}
+
+impl Single for f64 {
+    #[inline(always)]
+    fn of(x: f64) -> Self {
+        x
+    }
+
+    #[inline(always)]
+    fn double(self) -> f64 {
+        self
+    }
+}
+
 /// A lane of one number. What is not arithmetic is done in doubles and rounded.
 macro_rules! single {
     ($Single:ident($number:ty), |$x:ident, $factor:ident, $term:ident| $times_plus:expr, $($function:ident)*) => {
         single!(operators $Single($number): Add::add, Sub::sub, Mul::mul, Div::div);
+
+        #[allow(clippy::cast_possible_truncation)] // to 24 bits
+        impl Single for $Single {
+            #[inline(always)]
+            fn of(x: f64) -> Self {
+                Self(x as $number)
+            }
+
+            #[inline(always)]
+            fn double(self) -> f64 {
+                f64::from(self.0)
+            }
+        }
 
         impl Neg for $Single {
             type Output = Self;

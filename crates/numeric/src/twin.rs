@@ -4,10 +4,13 @@
 //! looks only so far ahead for work. So polynomials go by Horner's rule here, the longest chain with the
 //! fewest operations; all else has the bits that each lane has by itself.
 
-use std::ops::{Add, BitAnd, BitOr, BitXor, Div, Mul, Neg, Not, Sub};
+use std::ops::{
+    Add, BitAnd, BitAndAssign, BitOr, BitOrAssign, BitXor, BitXorAssign, Div, Mul, Neg, Not, Sub,
+};
 
 use fearless_simd::{Simd, SimdBase, SimdMask, f64x8, mask64x8};
 
+use super::mask::Mask;
 use super::pack::WIDTH;
 use super::words::Words32;
 use super::{Lane, Row, elementary};
@@ -86,6 +89,42 @@ operators! {
     Not::not();
 }
 operators!(by a number: Add::add, Sub::sub, Mul::mul);
+
+macro_rules! assigned {
+    ($($Operator:ident::$of:ident),*) => {
+        $(impl<T: $Operator> $Operator for Twin<T> {
+            #[inline(always)]
+            fn $of(&mut self, other: Self) {
+                self.0.$of(other.0);
+                self.1.$of(other.1);
+            }
+        })*
+    };
+}
+assigned!(BitAndAssign::bitand_assign, BitOrAssign::bitor_assign, BitXorAssign::bitxor_assign);
+
+impl<M: Mask> Mask for Twin<M> {
+    #[inline(always)]
+    fn any(self) -> bool {
+        self.0.any() | self.1.any()
+    }
+
+    #[inline(always)]
+    fn maybe(self) -> bool {
+        self.0.maybe() | self.1.maybe()
+    }
+
+    #[inline(always)]
+    fn bits(self) -> u64 {
+        self.0.bits() | self.1.bits() << WIDTH
+    }
+
+    #[inline(always)]
+    fn set_where(&mut self, which: Self, other: Self) {
+        self.0.set_where(which.0, other.0);
+        self.1.set_where(which.1, other.1);
+    }
+}
 
 impl<W: Words32> Words32 for Twin<W> {
     both! {

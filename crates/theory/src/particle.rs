@@ -177,6 +177,13 @@ impl ParticleRule {
 }
 
 impl<L: Lane> Odds<L> {
+    /// What numbers decide for those that a mask names: who is scattered, and who goes straight on.
+    #[inline(always)]
+    pub fn decide_each(&self, which: L::Mask, number: L) -> (L::Mask, L::Mask) {
+        let scattered = which & number.below(self.scatter);
+        (scattered, which & !scattered & number.below(self.scatter + self.transmit))
+    }
+
     #[inline(always)]
     fn select(mask: L::Mask, yes: Self, no: Self) -> Self {
         Self {

@@ -263,7 +263,7 @@ impl<S: Simd, const ALL: bool> Particles<S> for InSlab<'_, S, ALL> {
     }
 
     #[inline(always)]
-    fn collect(&self, ended: u64, slots: &mut Slots, _: &mut DrawBuffer) -> u64 {
+    fn collect(&mut self, ended: u64, slots: &mut Slots, _: &mut DrawBuffer) -> u64 {
         let zero = self.cosine.each(0.0);
         let (reflected, transmitted) = (zero.each(REFLECTED), zero.each(TRANSMITTED));
         let face = Lane::select(zero.below(self.cosine), transmitted, reflected);

@@ -14,10 +14,13 @@
 
 use fearless_simd::Level;
 
-use crate::kernels::packet::{self, Request};
+use crate::kernels::packet::Request;
+use crate::walks::{self, Ground, Met, Route, Walk};
 use crate::{Draw, Estimator, Inputs, Refusal, Setup};
-use media::{Extinction, Lookups};
-use numeric::rng::Stream;
+use media::Lookups;
+use media::course::BothWays;
+use numeric::rng::{Random, Stream};
+use numeric::{Lane, Span, kept};
 use theory::problems::{FreeFlight, Problem};
 use theory::rules::Null;
 use theory::{Prediction, flight};
@@ -45,19 +48,8 @@ impl Estimator<FreeFlight> for Woodcock {
     }
 
     #[inline(always)]
-    fn draw(&self, setup: &Setup<FreeFlight>, medium: &Lookups, rng: &mut Stream) -> Draw {
-        let ray = setup.problem.medium().span();
-        let mut cursor = setup.sampling.begin();
-        let mut lookups = 0;
-        loop {
-            let (depth, number) = (-rng.ln_uniform(), rng.uniform());
-            let Some(sampling) = setup.sampling.fly(&mut cursor, depth) else { break };
-            lookups += 1;
-            if number < medium.extinction(cursor.t) * (1.0 / sampling) {
-                return Draw::free([cursor.t - ray.from], lookups);
-            }
-        }
-        Draw::free([ray.length()], lookups)
+    fn draw(&self, setup: &Setup<FreeFlight>, medium: &Lookups, random: &mut Stream) -> Draw {
+        walks::draw(&Flights::new(setup), &setup.sampling, medium, random)
     }
 
     fn draw_packets<'a>(
@@ -67,6 +59,66 @@ impl Estimator<FreeFlight> for Woodcock {
         medium: &Lookups,
         request: Request<'a>,
     ) -> Option<Request<'a>> {
-        packet::flight(level, setup, medium, request)
+        let ground = Ground::new(setup, medium);
+        walks::packets(level, &Flights::new(setup), ground, request)
+    }
+}
+
+kept! {
+    /// A walk to its first real collision.
+    pub struct Flight<L> {
+        /// The distance of the last tentative collision.
+        t: L,
+    }
+}
+
+#[derive(Clone, Copy)]
+struct Flights {
+    ray: Span,
+}
+
+impl Flights {
+    #[inline(always)]
+    fn new(setup: &Setup<FreeFlight>) -> Self {
+        Self { ray: setup.problem.medium().span() }
+    }
+}
+
+impl Walk for Flights {
+    type State<L: Lane> = Flight<L>;
+
+    const IS_FIXED: bool = true;
+
+    #[inline(always)]
+    fn begin<L: Lane>(&self, one: L, _: L::Mask, _: &mut impl Random<L>) -> Flight<L> {
+        Flight { t: one }
+    }
+
+    #[inline(always)]
+    fn fly<L: Lane>(
+        &self,
+        flight: &mut Flight<L>,
+        route: &mut Route<impl BothWays<L>>,
+        depth: L,
+    ) -> L::Mask {
+        let inside = route.here.fly(depth);
+        flight.t = route.here.reached();
+        inside
+    }
+
+    #[inline(always)]
+    fn collide<L: Lane>(
+        &self,
+        _: &mut Flight<L>,
+        _: &mut Route<impl BothWays<L>>,
+        met: &Met<L>,
+        _: &mut impl Random<L>,
+    ) -> L::Mask {
+        met.inside & !met.number.below(met.ratio())
+    }
+
+    #[inline(always)]
+    fn value<L: Lane>(&self, flight: &Flight<L>, left: L::Mask, _: usize) -> L {
+        L::select(left, flight.t.each(self.ray.length()), flight.t - self.ray.from)
     }
 }

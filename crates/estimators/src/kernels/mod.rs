@@ -9,7 +9,5 @@ pub mod draw;
 pub mod hero;
 pub mod order_free;
 pub mod packet;
-pub mod scoring;
-pub mod walk;
 
 pub use draw::{Draw, DrawBuffer};

@@ -24,7 +24,7 @@
 //! integral formulation of light transport*, ACM Transactions on Graphics 38 (2019), section 6; the power
 //! heuristic: E. Veach, *Robust Monte Carlo Methods for Light Transport Simulation*, doctoral thesis, Stanford (1997).
 
-use super::{Lit, label, read_shadow, walks};
+use super::{Lit, label, lit, read_shadow};
 use crate::Estimator;
 use media::catalogue::Settings;
 use theory::lit_rod::{Combination, Densities, Heuristic, Shadow, Techniques};
@@ -54,5 +54,5 @@ impl<P: Lit> Estimator<P> for DirectionalMis {
         label(self.shadow, self.heuristic)
     }
 
-    walks!(self => self.techniques());
+    lit!(self => self.techniques());
 }

@@ -24,7 +24,7 @@
 //! Source: B. Miller, I. Georgiev, W. Jarosz, *A null-scattering path integral formulation of light
 //! transport*, ACM Transactions on Graphics 38 (2019), section 5.3, Algorithms 1 and 2, Eq. 42.
 
-use super::{Lit, label, read_shadow, walks};
+use super::{Lit, label, lit, read_shadow};
 use crate::Estimator;
 use media::catalogue::Settings;
 use theory::lit_rod::{Combination, Densities, Heuristic, Shadow, Techniques};
@@ -54,5 +54,5 @@ impl<P: Lit> Estimator<P> for FullMis {
         label(self.shadow, self.heuristic)
     }
 
-    walks!(self => self.techniques());
+    lit!(self => self.techniques());
 }

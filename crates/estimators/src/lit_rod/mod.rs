@@ -3,13 +3,14 @@
 pub mod directional_mis;
 pub mod full_mis;
 pub mod next_event;
-pub mod packet;
+pub mod shadow;
 pub mod unidirectional;
 pub mod walk;
 
 use fearless_simd::Level;
 
 use crate::kernels::packet::Request;
+use crate::walks::{self, Ground};
 use crate::{Draw, Refusal, Setup, estimators};
 use media::Lookups;
 use media::catalogue::Settings;
@@ -87,8 +88,23 @@ impl Lit for LitRod {
         medium: &Lookups,
         request: Request<'a>,
     ) -> Option<Request<'a>> {
-        packet::walks(level, setup, techniques, medium, request)
+        let walk = walk::ToEmitter::of(setup, techniques);
+        packets(level, &walk, Ground::new(setup, medium), request)
     }
+}
+
+/// The draws of walks that cast shadow rays, see [`walks::packets`].
+pub(crate) fn packets<'a>(
+    level: Level,
+    walk: &impl walks::Walk,
+    ground: Ground,
+    request: Request<'a>,
+) -> Option<Request<'a>> {
+    // Lanes that turn from walks to shadow rays and back load other pieces of σ̂ each time.
+    if ground.sampling.even().is_none() && !ground.medium.is_costly() {
+        return Some(request);
+    }
+    walks::packets(level, walk, ground, request)
 }
 
 /// Reads `shadow`, one of some words.
@@ -117,8 +133,8 @@ fn label(shadow: Shadow, heuristic: Heuristic) -> String {
     }
 }
 
-/// The plumbing of a page: all that differs are its techniques, as in `walks!(self => self.techniques())`.
-macro_rules! walks {
+/// The plumbing of a page: all that differs are its techniques, as in `lit!(self => self.techniques())`.
+macro_rules! lit {
     ($this:ident => $techniques:expr) => {
         const INPUTS: $crate::Inputs = $crate::Inputs::SAMPLING;
         const IN_PACKETS: bool = true;
@@ -160,7 +176,7 @@ macro_rules! walks {
         }
     };
 }
-use walks;
+use lit;
 
 estimators! {
     LitRod:

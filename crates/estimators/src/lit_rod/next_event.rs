@@ -22,7 +22,7 @@
 //! Science and Engineering 27 (1967); J. Novák, A. Selle, W. Jarosz, *Residual Ratio Tracking for Estimating
 //! Attenuation in Participating Media*, ACM Transactions on Graphics 33 (2014).
 
-use super::{Lit, label, read_shadow, walks};
+use super::{Lit, label, lit, read_shadow};
 use crate::Estimator;
 use media::catalogue::Settings;
 use theory::lit_rod::{Combination, Heuristic, Shadow, Techniques};
@@ -49,5 +49,5 @@ impl<P: Lit> Estimator<P> for NextEvent {
         label(self.shadow, Heuristic::Balance)
     }
 
-    walks!(self => self.techniques());
+    lit!(self => self.techniques());
 }

@@ -13,7 +13,7 @@
 //! Georgiev, W. Jarosz, *A null-scattering path integral formulation of light transport*, ACM Transactions on Graphics
 //! 38 (2019), section 5.2.
 
-use super::{Lit, walks};
+use super::{Lit, lit};
 use crate::Estimator;
 use media::catalogue::Settings;
 use theory::lit_rod::{Combination, Techniques};
@@ -30,5 +30,5 @@ impl<P: Lit> Estimator<P> for Unidirectional {
         Some(Self)
     }
 
-    walks!(self => TECHNIQUES);
+    lit!(self => TECHNIQUES);
 }

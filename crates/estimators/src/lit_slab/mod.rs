@@ -3,7 +3,6 @@
 pub mod directional_mis;
 pub mod full_mis;
 pub mod next_event;
-pub mod packet;
 pub mod unidirectional;
 pub mod walk;
 
@@ -11,6 +10,7 @@ use fearless_simd::Level;
 
 use super::lit_rod::{self, Lit};
 use crate::kernels::packet::Request;
+use crate::walks::Ground;
 use crate::{Draw, Refusal, Setup, estimators};
 use media::Lookups;
 use numeric::pack::in_fused_code;
@@ -64,7 +64,8 @@ impl Lit for LitSlab {
         request: Request<'a>,
     ) -> Option<Request<'a>> {
         let techniques = lit_slab::possible(techniques, setup.problem.light);
-        lit_rod::packet::walks(level, setup, techniques, medium, request)
+        let walk = walk::ToLight::of(setup, techniques, walk::Right);
+        lit_rod::packets(level, &walk, Ground::new(setup, medium), request)
     }
 }
 

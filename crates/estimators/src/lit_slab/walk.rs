@@ -1,59 +1,101 @@
 //! The walk from the camera to one scattering, and on to the light, by delta tracking; a shadow ray from there.
 //!
 //! ```text
-//! fly down through σ̂;  at a tentative collision, r = σ_t/σ̂:  null, 1 − r;  absorbed: the end;  scattered, a r:
-//!   a direction μ to the light is chosen, the score of a shadow ray along it is added, q = p(μ)/p_nee
-//!   a direction μ is drawn from p;  unless it meets the light the walk ends;  ρ ← q
-//!   fly on along it:  null, 1 − r: ρ ← ρ (1 − r), where null collisions are part of ρ;  real: the end
-//!   leaving: the weight of a hit is added
+//! begin    at the top, straight down
+//! fly      an optical depth of u goes u μ deep
+//! collide  r = σ_t/σ̂
+//!   a walk        null, 1 − r;  absorbed: the end;  scattered, a r:
+//!                   a direction μ to the light is chosen: a shadow ray along it, q = p(μ)/p_nee, and the walk waits
+//!                   a direction μ is drawn from p;  unless it meets the light the walk ends;  ρ ← q
+//!   a shadow ray  t̂ ← t̂ (1 − r), or ended with probability r;  behind the slab its score is added
+//!   to a hit      null, 1 − r: ρ ← ρ (1 − r), where null collisions are part of ρ;  real: the end
+//!                 behind the slab the weight of a hit is added
 //! ```
 //!
-//! A flight of optical depth u along a direction of cosine μ goes u μ deep. It takes two random numbers, that of a shadow
-//! ray too; a scattering takes one for each direction that is chosen or drawn. Who seeks no hits draws none.
-//! Eight at a time: [`super::packet`].
+//! Every flight takes two random numbers; a scattering takes one for each direction that is chosen or drawn. A technique
+//! without hits draws none.
 
-use crate::lit_rod::walk::{Steps, Way, transmittance};
+use crate::lit_rod::shadow::{Before, ShadowRays, Steps};
+use crate::walks::{self, Met, Route, Walk};
 use crate::{Draw, Setup};
+use media::Lookups;
+use media::course::BothWays;
 use media::phase::Phase;
-use media::{Extinction, Lookups};
-use numeric::rng::Stream;
+use numeric::rng::{Random, Stream};
+use numeric::{Lane, Mask, kept};
 use theory::ParticleRule;
 use theory::lit_rod::Shadow;
-use theory::particle::Event;
-use theory::problems::LitSlab;
+use theory::problems::{LitSlab, Problem};
 
-/// What directions are worth, which a known bug may replace; the steps along them are those of rods.
-pub trait Directions {
+/// Densities of directions, each of which a known bug may replace; the steps along them are those of rods.
+pub trait Directions: Copy {
     /// The phase function of a chosen direction.
     #[inline(always)]
-    fn scattered(&self, phase: &Phase, cosine: f64) -> f64 {
+    fn scattered<L: Lane>(&self, phase: &Phase, cosine: L) -> L {
         phase.value(cosine)
     }
 
     /// `1/p_nee` of a chosen direction, from what is right.
     #[inline(always)]
-    fn spread(&self, right: f64, cosine: f64) -> f64 {
+    fn spread<L: Lane>(&self, right: L, cosine: L) -> L {
         let _ = cosine;
         right
     }
 
-    /// The same of a direction that was drawn.
+    /// `1/p_nee` of a drawn direction, from what is right.
     #[inline(always)]
-    fn spread_of_hit(&self, right: f64) -> f64 {
+    fn spread_of_hit<L: Lane>(&self, right: L) -> L {
         right
     }
 
     /// How deep a shadow ray flies in a unit of optical depth.
     #[inline(always)]
-    fn slant(&self, cosine: f64) -> f64 {
+    fn slant<L: Lane>(&self, cosine: L) -> L {
         cosine
     }
 }
 
-/// The right ones.
+/// The right densities.
+#[derive(Clone, Copy)]
 pub struct Right;
 
 impl Directions for Right {}
+
+kept! {
+    /// A walk in flight, or waiting for its shadow ray.
+    pub struct Path<L> {
+        /// Lanes that fly to a hit.
+        seeks: L::Mask,
+        /// Lanes with a drawn direction that meets the light.
+        meets: L::Mask,
+        /// The cosine of the flight.
+        cosine: L,
+        /// The cosine that was drawn.
+        drawn: L,
+        /// ρ of the hit.
+        ratio: L,
+        score: L,
+        shadow: ShadowRays<L>,
+    }
+}
+
+/// The walk to a light behind a slab.
+#[derive(Clone, Copy)]
+pub struct ToLight<'a, S, D> {
+    slab: &'a LitSlab,
+    before: Before<'a>,
+    steps: S,
+    directions: D,
+}
+
+impl<'a, S: Steps, D: Directions> ToLight<'a, S, D> {
+    /// The walk on a setup.
+    #[inline(always)]
+    pub fn of(setup: &'a Setup<LitSlab>, steps: S, directions: D) -> Self {
+        let (slab, sampling, end) = (&*setup.problem, &setup.sampling, setup.mesh.support().to);
+        Self { slab, before: Before { medium: slab.medium(), sampling, end }, steps, directions }
+    }
+}
 
 /// Makes one draw.
 #[inline(always)]
@@ -61,69 +103,125 @@ pub fn draw(
     (steps, directions): (&impl Steps, &impl Directions),
     setup: &Setup<LitSlab>,
     medium: &Lookups,
-    rng: &mut Stream,
+    random: &mut Stream,
 ) -> Draw<[f64; 1]> {
-    let LitSlab { albedo, phase, light, .. } = &*setup.problem;
-    let techniques = steps.techniques();
-    let mut cursor = setup.sampling.begin();
-    let mut lookups = 0;
-    loop {
-        let (depth, number) = (-rng.ln_uniform(), rng.uniform());
-        let Some(sampling) = setup.sampling.fly(&mut cursor, depth) else {
-            return Draw::free([0.0], lookups);
-        };
-        lookups += 1;
-        let real = medium.extinction(cursor.t) * (1.0 / sampling);
-        match ParticleRule::Analog.odds(real, *albedo).decide(number) {
-            Event::Transmitted => {}
-            Event::Scattered => break,
-            Event::Absorbed => return Draw::free([0.0], lookups),
-        }
+    walks::draw(&ToLight::of(setup, *steps, *directions), &setup.sampling, medium, random)
+}
+
+impl<S: Steps, D: Directions> Walk for ToLight<'_, S, D> {
+    type State<L: Lane> = Path<L>;
+
+    const PAUSES: bool = true;
+
+    #[inline(always)]
+    fn begin<L: Lane>(&self, one: L, _: L::Mask, _: &mut impl Random<L>) -> Path<L> {
+        let (none, score, shadow) = (one.below(one), one.each(0.0), ShadowRays::none(one));
+        Path { seeks: none, meets: none, cosine: one, drawn: one, ratio: one, score, shadow }
     }
-    let before = setup.problem.end() - cursor.t;
-    let mut score = 0.0;
-    let chosen = techniques.shadow.map(|shadow| {
-        let number = if light.can_be_hit() { rng.uniform() } else { 0.0 };
-        (shadow, light.chosen(number, before))
-    });
-    let drawn = techniques.has_hits().then(|| phase.cosine(rng.uniform()));
-    if let Some((shadow, [cosine, spread])) = chosen {
-        let density = directions.scattered(phase, cosine) * directions.spread(spread, cosine);
-        let found = if shadow == Shadow::Exact {
-            transmittance(setup, cursor.t, directions.slant(cosine))
+
+    #[inline(always)]
+    fn restart<L: Lane>(&self, path: &mut Path<L>, which: L::Mask, one: L, _: &mut impl Random<L>) {
+        // A scattering sets all else.
+        path.cosine.set_where(which, one);
+        path.score.set_where(which, one.each(0.0));
+    }
+
+    #[inline(always)]
+    fn fly<L: Lane>(
+        &self,
+        path: &mut Path<L>,
+        route: &mut Route<impl BothWays<L>>,
+        depth: L,
+    ) -> L::Mask {
+        route.here.fly(depth * path.cosine)
+    }
+
+    #[inline(always)]
+    fn collide<L: Lane>(
+        &self,
+        path: &mut Path<L>,
+        route: &mut Route<impl BothWays<L>>,
+        met: &Met<L>,
+        random: &mut impl Random<L>,
+    ) -> L::Mask {
+        let (Met { inside, t, number, .. }, real) = (*met, met.ratio());
+        let (casts, seeks) = (path.shadow.casts, path.seeks);
+        let albedo = t.each(self.slab.albedo);
+        let odds = ParticleRule::Analog.odds(real, albedo);
+        let (scattered, null) = odds.decide_each(inside & !casts & !seeks, number);
+        let hits = seeks & !inside;
+        if hits.any() {
+            path.score.add_where(hits, self.steps.hit(path.ratio));
+        }
+        path.seeks = seeks & inside & !number.below(real);
+        if self.steps.techniques().has_nulls() {
+            path.ratio.set_where(path.seeks, self.steps.after_null(path.ratio, real.one_minus()));
+        }
+        if casts.any() {
+            let (here, along) = ((&mut *route, met), (path.cosine, albedo));
+            let ends = path.shadow.track(&self.steps, &self.before, here, along, &mut path.score);
+            path.seeks |= ends & path.meets;
+            path.cosine.set_where(ends, path.drawn);
+        }
+        if scattered.any() {
+            self.scatter(path, route, t, scattered, random);
+        }
+        null | path.shadow.casts | path.seeks
+    }
+
+    #[inline(always)]
+    fn value<L: Lane>(&self, path: &Path<L>, _: L::Mask, _: usize) -> L {
+        path.score
+    }
+}
+
+impl<S: Steps, D: Directions> ToLight<'_, S, D> {
+    /// Walks in `scattered` choose a direction to the light, and draw one.
+    #[inline(always)]
+    fn scatter<L: Lane>(
+        &self,
+        path: &mut Path<L>,
+        route: &mut Route<impl BothWays<L>>,
+        t: L,
+        scattered: L::Mask,
+        random: &mut impl Random<L>,
+    ) {
+        let (LitSlab { phase, light, .. }, directions) = (self.slab, self.directions);
+        let techniques = self.steps.techniques();
+        let before = t.each(self.slab.end()) - t;
+        let is_exact = techniques.shadow == Some(Shadow::Exact);
+        let (mut slant, mut density) = (t.each(1.0), t.each(0.0));
+        if techniques.shadow.is_some() {
+            let number =
+                if light.can_be_hit() { random.uniform_where(scattered) } else { t.each(0.0) };
+            let [cosine, spread] = light.chosen(number, before);
+            density = directions.scattered(phase, cosine) * directions.spread(spread, cosine);
+            slant = directions.slant(cosine);
+            if is_exact {
+                let found = self.before.transmittance(t, slant, scattered);
+                path.score.add_where(scattered, self.steps.connected(density, found));
+            }
+        }
+        if techniques.has_hits() {
+            let drawn = phase.cosine(random.uniform_where(scattered));
+            let meets = scattered & light.is_met(drawn, before);
+            if techniques.shadow.is_some() && meets.any() {
+                let spread = directions.spread_of_hit(light.spread(drawn, before));
+                let mut found = t.each(0.0);
+                if is_exact {
+                    found = self.before.transmittance(t, drawn, meets);
+                }
+                path.ratio.set_where(meets, techniques.ratio(phase.value(drawn) * spread, found));
+            }
+            path.drawn.set_where(scattered, drawn);
+            path.meets = (path.meets & !scattered) | meets;
+        }
+        if techniques.shadow.is_none() || is_exact {
+            path.seeks |= scattered & path.meets;
+            path.cosine.set_where(scattered, path.drawn);
         } else {
-            let is_delta = shadow == Shadow::Delta;
-            let way = Way {
-                is_delta,
-                cosine: directions.slant(cosine),
-                albedo: |_| *albedo,
-                sampling: &setup.sampling,
-                end: setup.mesh.support().to,
-            };
-            let mut ray = cursor;
-            let (found, cast) = way.track(steps, medium, (&mut ray, rng));
-            lookups += cast;
-            found
-        };
-        score += steps.connected(density, found, *albedo);
-    }
-    let Some(cosine) = drawn.filter(|&cosine| light.is_met(cosine, before)) else {
-        return Draw::free([score], lookups);
-    };
-    let density = phase.value(cosine) * directions.spread_of_hit(light.spread(cosine, before));
-    let is_exact = techniques.shadow == Some(Shadow::Exact);
-    let found = if is_exact { transmittance(setup, cursor.t, cosine) } else { 0.0 };
-    let mut ratio = techniques.ratio(density, found);
-    loop {
-        let (depth, number) = (-rng.ln_uniform(), rng.uniform());
-        let Some(sampling) = setup.sampling.fly(&mut cursor, depth * cosine) else {
-            return Draw::free([score + steps.hit(ratio)], lookups);
-        };
-        lookups += 1;
-        let real = medium.extinction(cursor.t) * (1.0 / sampling);
-        if number < real {
-            return Draw::free([score], lookups);
+            path.shadow.cast_where::<S>(scattered, route, (t, density));
+            path.cosine.set_where(scattered, slant);
         }
-        ratio = steps.after_null(ratio, 1.0 - real);
     }
 }

@@ -20,10 +20,10 @@
 //! Transport Estimators for Inhomogeneous Participating Media*, Computer Graphics Forum 36 (2017),
 //! section 4.1, `SimulateParticle`.
 
-use super::walks;
+use super::by_rule;
 
 /// The adaptive rule; σ̂ is its only input.
 #[derive(Debug, Clone)]
 pub struct Adaptive;
 
-walks!(Adaptive);
+by_rule!(Adaptive);

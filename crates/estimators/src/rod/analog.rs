@@ -12,10 +12,10 @@
 //! Source: B. Miller, I. Georgiev, W. Jarosz, *A null-scattering path integral formulation of light
 //! transport*, ACM Transactions on Graphics 38 (2019), section 5.2.
 
-use super::walks;
+use super::by_rule;
 
 /// Analog delta tracking; σ̂ is its only input.
 #[derive(Debug, Clone)]
 pub struct Analog;
 
-walks!(Analog);
+by_rule!(Analog);

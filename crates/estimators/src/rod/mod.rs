@@ -3,7 +3,6 @@
 pub mod adaptive;
 pub mod analog;
 pub mod non_terminating;
-pub mod packet;
 pub mod roulette;
 pub mod terminating;
 pub mod walk;
@@ -12,6 +11,7 @@ pub mod weighted;
 use fearless_simd::Level;
 
 use crate::kernels::packet::Request;
+use crate::walks::{self, Ground};
 use crate::{Draw, Refusal, Setup, estimators};
 use media::Lookups;
 use numeric::rng::Stream;
@@ -19,6 +19,7 @@ use theory::problems::rod::Values;
 use theory::problems::{Problem, Rod};
 use theory::rod::{self, NoVariance};
 use theory::{ParticleRule, Prediction};
+use walk::{By, InRod};
 
 /// A problem whose walks collide by a rule: the pages of its estimators are the same.
 pub trait ByRule: Problem {
@@ -99,7 +100,7 @@ impl ByRule for Rod {
         medium: &Lookups,
         rng: &mut Stream,
     ) -> Draw<Values> {
-        walk::draw(&rule, setup, medium, rng)
+        walk::draw(&By { rule, roulette: None }, setup, medium, rng)
     }
 
     fn packets<'a>(
@@ -109,12 +110,13 @@ impl ByRule for Rod {
         medium: &Lookups,
         request: Request<'a>,
     ) -> Option<Request<'a>> {
-        packet::walks(level, setup, (rule, None), medium, request)
+        let walk = InRod { rod: &setup.problem, steps: By { rule, roulette: None } };
+        walks::packets(level, &walk, Ground::new(setup, medium), request)
     }
 }
 
-/// The page of a rule, as in `walks!(Adaptive)`.
-macro_rules! walks {
+/// The page of a rule, as in `by_rule!(Adaptive)`.
+macro_rules! by_rule {
     ($Page:ident) => {
         impl<P: $crate::rod::ByRule> $crate::Estimator<P> for $Page {
             const INPUTS: $crate::Inputs = $crate::Inputs::SAMPLING;
@@ -152,7 +154,7 @@ macro_rules! walks {
         }
     };
 }
-use walks;
+use by_rule;
 
 estimators! {
     Rod:

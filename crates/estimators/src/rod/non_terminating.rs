@@ -17,10 +17,10 @@
 //! Transport Estimators for Inhomogeneous Participating Media*, Computer Graphics Forum 36 (2017),
 //! sections 3.2 and 3.3, Eq. 12.
 
-use super::walks;
+use super::by_rule;
 
 /// The non-terminating rule; σ̂ is its only input.
 #[derive(Debug, Clone)]
 pub struct NonTerminating;
 
-walks!(NonTerminating);
+by_rule!(NonTerminating);

@@ -27,16 +27,17 @@
 
 use fearless_simd::Level;
 
-use super::walk::{self, Steps};
-use super::{ByRule, packet};
+use super::ByRule;
+use super::walk::{self, By, InRod};
 use crate::kernels::packet::Request;
+use crate::walks::{self, Ground};
 use crate::{Draw, Estimator, Inputs, Refusal, Setup};
 use media::Lookups;
 use media::catalogue::{Domain, Settings};
 use numeric::rng::Stream;
 use theory::problems::Rod;
 use theory::problems::rod::{Quantity, Values};
-use theory::{Odds, ParticleRule, Prediction, rod};
+use theory::{ParticleRule, Prediction, rod};
 
 /// The non-terminating rule with roulette; σ̂ is its input.
 #[derive(Debug, Clone, Copy)]
@@ -45,18 +46,10 @@ pub struct Roulette {
     pub below: f64,
 }
 
-impl Steps for Roulette {
+impl Roulette {
     #[inline(always)]
-    fn odds_at(&self, ratio: f64, albedo: f64) -> Odds {
-        ParticleRule::NonTerminating.odds(ratio, albedo)
-    }
-
-    #[inline(always)]
-    fn keep(&self, rng: &mut Stream, weight: f64) -> Option<f64> {
-        if weight.abs() >= self.below {
-            return Some(weight);
-        }
-        (rng.uniform() * self.below < weight.abs()).then(|| self.below.copysign(weight))
+    fn steps(self) -> By {
+        By { rule: ParticleRule::NonTerminating, roulette: Some(self.below) }
     }
 }
 
@@ -97,7 +90,7 @@ impl Estimator<Rod> for Roulette {
 
     #[inline(always)]
     fn draw(&self, setup: &Setup<Rod>, medium: &Lookups, rng: &mut Stream) -> Draw<Values> {
-        walk::draw(self, setup, medium, rng)
+        walk::draw(&self.steps(), setup, medium, rng)
     }
 
     fn draw_packets<'a>(
@@ -107,7 +100,7 @@ impl Estimator<Rod> for Roulette {
         medium: &Lookups,
         request: Request<'a>,
     ) -> Option<Request<'a>> {
-        let rule = (ParticleRule::NonTerminating, Some(self.below));
-        packet::walks(level, setup, rule, medium, request)
+        let walk = InRod { rod: &setup.problem, steps: self.steps() };
+        walks::packets(level, &walk, Ground::new(setup, medium), request)
     }
 }

@@ -15,10 +15,10 @@
 //! Transport Estimators for Inhomogeneous Participating Media*, Computer Graphics Forum 36 (2017),
 //! sections 3.1 and 3.2, Eq. 9, and `SimulateParticle`.
 
-use super::walks;
+use super::by_rule;
 
 /// The terminating rule; σ̂ is its only input.
 #[derive(Debug, Clone)]
 pub struct Terminating;
 
-walks!(Terminating);
+by_rule!(Terminating);

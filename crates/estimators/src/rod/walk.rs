@@ -1,93 +1,194 @@
 //! The walk of a particle through a rod, `SimulateParticle` in one dimension.
 //!
 //! ```text
-//! fly forward or backward through σ̂; at a tentative collision r = σ_t/σ̂ and the rule says whether
-//! the particle goes straight on, is scattered or is absorbed, and what becomes of its weight w;
-//! scattered, it turns round with probability 1 − p_f
+//! begin    at the front, forward;  w = 1
+//! fly      on or back through an optical depth −ln u of σ̂;  beyond an end it has left
+//! collide  r = σ_t/σ̂;  as the odds of the rule and u say:
+//!            scattered     w ← w · a r/q_s;  turns round with probability 1 − p_f
+//!            straight on   w ← w · (1 − r)/q_t
+//!            absorbed      the end
+//!          whichever it is, absorbed += w r (1 − a) and flux += w/(σ̂ width) with the w before
+//!          roulette, where it is played: small |w| ← w₀ with probability |w|/w₀, else the end
+//! see      w at the end where it left
 //! ```
 //!
 //! A flight and what happens at its end take a random number each; a scattering takes a third, and so does
-//! roulette where it is played. Eight at a time: [`super::packet`].
+//! roulette. By this page [`line`] follows one particle, or sixteen side by side.
 
+use crate::walks::{self, Met, Route, Walk};
 use crate::{Draw, Setup};
-use media::{Extinction, Lookups};
-use numeric::rng::Stream;
+use media::Lookups;
+use media::course::BothWays;
+use numeric::rng::{Random, Stream};
+use numeric::{Lane, Mask, kept};
 use theory::ParticleRule;
-use theory::particle::{Event, Odds};
+use theory::particle::Odds;
 use theory::problems::Rod;
-use theory::problems::rod::{MOST, MOST_PARTS, Quantity, Values};
+use theory::problems::rod::{MOST_PARTS, Quantity, Values};
+
+kept! {
+    /// Particles on their way.
+    pub struct Particle<L> {
+        /// Lanes that fly forward.
+        pub is_forward: L::Mask,
+        /// w.
+        pub weight: L,
+        /// Numbers of scatterings.
+        pub order: L,
+        /// `Σ w r (1 − a)`.
+        pub absorbed: L,
+        /// `Σ w/(σ̂ width)` in each part of the rod.
+        pub flux: [L; MOST_PARTS],
+    }
+}
+
+/// A rod, and the steps of walks through it.
+#[derive(Clone, Copy)]
+pub struct InRod<'a, S> {
+    /// The rod.
+    pub rod: &'a Rod,
+    /// The steps at a collision.
+    pub steps: S,
+}
+
+impl<S: Steps> Walk for InRod<'_, S> {
+    type State<L: Lane> = Particle<L>;
+
+    #[inline(always)]
+    fn begin<L: Lane>(&self, one: L, all: L::Mask, _: &mut impl Random<L>) -> Particle<L> {
+        let zero = one.each(0.0);
+        let is_forward = all | !all;
+        Particle { is_forward, weight: one, order: zero, absorbed: zero, flux: [zero; MOST_PARTS] }
+    }
+
+    #[inline(always)]
+    fn fly<L: Lane>(
+        &self,
+        particle: &mut Particle<L>,
+        route: &mut Route<impl BothWays<L>>,
+        depth: L,
+    ) -> L::Mask {
+        route.here.fly_either_way(depth, particle.is_forward)
+    }
+
+    #[inline(always)]
+    fn collide<L: Lane>(
+        &self,
+        particle: &mut Particle<L>,
+        _: &mut Route<impl BothWays<L>>,
+        met: &Met<L>,
+        rng: &mut impl Random<L>,
+    ) -> L::Mask {
+        let (Met { inside, t, number, .. }, ratio) = (*met, met.ratio());
+        let albedo = self.rod.albedo.value(t);
+        self.score(particle, met, albedo);
+        let odds = self.steps.odds(ratio, albedo);
+        let (scattered, straight_on) = odds.decide_each(inside, number);
+        if scattered.maybe() {
+            particle.weight.scale_where(scattered, odds.scatter_weight);
+            particle.order.count_where(scattered);
+            let forward = self.rod.forward.value(t);
+            particle.is_forward ^= self.steps.turns(scattered, forward, number, rng);
+        }
+        if straight_on.maybe() {
+            particle.weight.scale_where(straight_on, odds.transmit_weight);
+        }
+        self.steps.survive(scattered | straight_on, &mut particle.weight, rng)
+    }
+
+    #[inline(always)]
+    fn channels(&self) -> usize {
+        self.rod.channels.len()
+    }
+
+    #[inline(always)]
+    fn value<L: Lane>(&self, particle: &Particle<L>, left: L::Mask, channel: usize) -> L {
+        let Particle { is_forward, weight, order, absorbed, flux } = *particle;
+        let of_those = |which| L::select(left & which, weight, weight.each(0.0));
+        match self.rod.channels[channel] {
+            Quantity::Absorbed => absorbed,
+            Quantity::Flux(part) => L::one_of(&flux, part),
+            Quantity::Transmitted => of_those(is_forward),
+            Quantity::Reflected => of_those(!is_forward),
+            Quantity::TransmittedBy(n) => of_those(is_forward & order.equals(n as f64)),
+            Quantity::ReflectedBy(n) => of_those(!is_forward & order.equals(n as f64)),
+        }
+    }
+}
+
+impl<S> InRod<'_, S> {
+    /// What is seen of a tentative collision, whatever comes of it.
+    #[inline(always)]
+    fn score<L: Lane>(&self, particle: &mut Particle<L>, met: &Met<L>, albedo: L) {
+        let Met { inside, t, mean_free_path, .. } = *met;
+        let (weight, ratio) = (particle.weight, met.ratio());
+        particle.absorbed.add_where(inside, weight * ratio * albedo.one_minus());
+        if self.rod.parts > 0 {
+            let width = self.rod.width();
+            let (at, flux) =
+                ((t - self.rod.begin()) / t.each(width), weight * (mean_free_path * (1.0 / width)));
+            for (part, sum) in particle.flux.iter_mut().enumerate().take(self.rod.parts) {
+                sum.add_where(inside & self.rod.is_in(part, at), flux);
+            }
+        }
+    }
+}
 
 /// The steps of a walk that a known bug may replace.
-pub trait Steps {
-    /// The odds at a collision with the given ratio `σ_t/σ̂` and albedo.
-    fn odds_at(&self, ratio: f64, albedo: f64) -> Odds;
+pub trait Steps: Copy {
+    /// The odds at collisions with the given ratio `σ_t/σ̂` and albedo.
+    fn odds<L: Lane>(&self, ratio: L, albedo: L) -> Odds<L>;
 
-    /// The weight of a particle that goes on after a collision; `None` if it does not.
+    /// Lanes of `scattered` that turn round, where a share goes on forward; `decided` is the number that decided the collision.
     #[inline(always)]
-    fn keep(&self, rng: &mut Stream, weight: f64) -> Option<f64> {
-        let _ = rng;
-        Some(weight)
-    }
-
-    /// The number that decides the new direction: uniform, and independent of the one that decided
-    /// the collision.
-    #[inline(always)]
-    fn direction(&self, rng: &mut Stream, decided: f64) -> f64 {
+    fn turns<L: Lane>(
+        &self,
+        scattered: L::Mask,
+        forward: L,
+        decided: L,
+        rng: &mut impl Random<L>,
+    ) -> L::Mask {
         let _ = decided;
-        rng.uniform()
+        scattered & forward.at_most(rng.uniform_where(scattered))
     }
 
-    /// Whether a scattered particle turns round.
+    /// Lanes of `goes_on` that survive roulette, with their weights.
+    fn survive<L: Lane>(
+        &self,
+        goes_on: L::Mask,
+        weight: &mut L,
+        rng: &mut impl Random<L>,
+    ) -> L::Mask;
+}
+
+/// The right steps: a rule, with or without roulette.
+#[derive(Debug, Clone, Copy)]
+pub struct By {
+    /// The rule at a collision.
+    pub rule: ParticleRule,
+    /// w₀, the weight below which roulette is played.
+    pub roulette: Option<f64>,
+}
+
+impl Steps for By {
     #[inline(always)]
-    fn turns(&self, number: f64, forward: f64) -> bool {
-        number >= forward
+    fn odds<L: Lane>(&self, ratio: L, albedo: L) -> Odds<L> {
+        self.rule.odds(ratio, albedo)
     }
-}
 
-impl Steps for ParticleRule {
     #[inline(always)]
-    fn odds_at(&self, ratio: f64, albedo: f64) -> Odds {
-        self.odds(ratio, albedo)
-    }
-}
-
-/// What became of a particle.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Fate {
-    /// The end at which it left; `None` if it was absorbed.
-    pub left: Option<Quantity>,
-    /// Its weight.
-    pub weight: f64,
-    /// How often it was scattered.
-    pub order: usize,
-    /// `Σ w r (1 − a)`.
-    pub absorbed: f64,
-    /// `Σ w/(σ̂ width)` in each part of the rod.
-    pub flux: [f64; MOST_PARTS],
-}
-
-impl Fate {
-    /// What each channel of the rod sees of it.
-    #[inline(always)]
-    pub fn values(&self, channels: &[Quantity]) -> Values {
-        let mut values = Values { at: [0.0; MOST], count: channels.len() };
-        for (number, seen) in channels.iter().enumerate() {
-            let by_order = match self.left {
-                Some(Quantity::Reflected) => Some(Quantity::ReflectedBy(self.order)),
-                Some(_) => Some(Quantity::TransmittedBy(self.order)),
-                None => None,
-            };
-            values.at[number] = if *seen == Quantity::Absorbed {
-                self.absorbed
-            } else if let Quantity::Flux(part) = *seen {
-                self.flux[part]
-            } else if self.left == Some(*seen) || by_order == Some(*seen) {
-                self.weight
-            } else {
-                0.0
-            };
-        }
-        values
+    fn survive<L: Lane>(
+        &self,
+        goes_on: L::Mask,
+        weight: &mut L,
+        rng: &mut impl Random<L>,
+    ) -> L::Mask {
+        let Some(least) = self.roulette.map(|least| weight.each(least)) else { return goes_on };
+        let size = weight.size();
+        let plays = goes_on & size.below(least);
+        let survives = (rng.uniform_where(plays) * least).below(size);
+        weight.set_where(plays, least.with_sign_of(*weight));
+        goes_on & (!plays | survives)
     }
 }
 
@@ -99,47 +200,27 @@ pub fn draw(
     medium: &Lookups,
     rng: &mut Stream,
 ) -> Draw<Values> {
-    let rod = &*setup.problem;
-    let (sees_flux, parts_per_length) = (rod.parts > 0, 1.0 / rod.width());
-    let mut cursor = setup.sampling.begin();
-    let mut is_forward = true;
-    let mut fate =
-        Fate { left: None, weight: 1.0, order: 0, absorbed: 0.0, flux: [0.0; MOST_PARTS] };
-    let mut lookups = 0;
-    loop {
-        let (depth, number) = (-rng.ln_uniform(), rng.uniform());
-        let flown = if is_forward {
-            setup.sampling.fly(&mut cursor, depth)
-        } else {
-            setup.sampling.fly_back(&mut cursor, depth)
-        };
-        let Some(sampling) = flown else {
-            fate.left = Some(if is_forward { Quantity::Transmitted } else { Quantity::Reflected });
-            break;
-        };
-        lookups += 1;
-        let path = 1.0 / sampling;
-        let ratio = medium.extinction(cursor.t) * path;
-        let albedo = rod.albedo.value(cursor.t);
-        fate.absorbed += fate.weight * ratio * (1.0 - albedo);
-        if sees_flux {
-            fate.flux[rod.part(cursor.t)] += fate.weight * (path * parts_per_length);
-        }
-        let odds = steps.odds_at(ratio, albedo);
-        match odds.decide(number) {
-            Event::Transmitted => fate.weight *= odds.transmit_weight,
-            Event::Scattered => {
-                fate.weight *= odds.scatter_weight;
-                fate.order += 1;
-                let direction = steps.direction(rng, number);
-                is_forward ^= steps.turns(direction, rod.forward.value(cursor.t));
-            }
-            Event::Absorbed => break,
-        }
-        match steps.keep(rng, fate.weight) {
-            Some(weight) => fate.weight = weight,
-            None => break,
+    walks::draw(&InRod { rod: &setup.problem, steps: *steps }, &setup.sampling, medium, rng)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use numeric::rng::Address;
+
+    #[test]
+    fn what_roulette_takes_it_gives_back() {
+        let steps = By { rule: ParticleRule::NonTerminating, roulette: Some(0.4) };
+        let mut rng = Address { seed: 1, experiment: 2, block: 3, lane: 4 }.stream();
+        let mut kept =
+            |mut weight: f64| steps.survive::<f64>(true, &mut weight, &mut rng).then_some(weight);
+        assert_eq!(kept(0.4), Some(0.4));
+        assert_eq!(kept(0.0), None);
+        for weight in [0.1, -0.3] {
+            let draws = 100_000;
+            let mean = (0..draws).filter_map(|_| kept(weight)).sum::<f64>() / f64::from(draws);
+            // A standard deviation of 0.0006 at most.
+            assert!((mean - weight).abs() < 0.004, "{mean} for {weight}");
         }
     }
-    Draw::free(fate.values(&rod.channels), lookups)
 }

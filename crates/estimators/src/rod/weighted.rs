@@ -17,10 +17,10 @@
 //! weight); the chances below σ_t: M. Galtier et al., *Integral formulation of null-collision Monte Carlo
 //! algorithms*, Journal of Quantitative Spectroscopy and Radiative Transfer 125 (2013).
 
-use super::walks;
+use super::by_rule;
 
 /// Weighted delta tracking; σ̂ is its only input.
 #[derive(Debug, Clone)]
 pub struct Weighted;
 
-walks!(Weighted);
+by_rule!(Weighted);

@@ -3,15 +3,16 @@
 pub mod adaptive;
 pub mod analog;
 pub mod non_terminating;
-pub mod packet;
 pub mod terminating;
 pub mod walk;
 pub mod weighted;
 
 use fearless_simd::Level;
 
+use self::walk::InSlab;
 use super::rod::ByRule;
 use crate::kernels::packet::Request;
+use crate::walks::{self, Ground};
 use crate::{Draw, Refusal, Setup, estimators};
 use media::Lookups;
 use numeric::digits::rounded;
@@ -103,7 +104,12 @@ impl ByRule for Slab {
         medium: &Lookups,
         request: Request<'a>,
     ) -> Option<Request<'a>> {
-        packet::walks(level, setup, rule, medium, request)
+        walks::packets(
+            level,
+            &InSlab::of(&setup.problem, rule),
+            Ground::new(setup, medium),
+            request,
+        )
     }
 }
 

@@ -1,55 +1,138 @@
 //! The walk of a particle through a slab, `SimulateParticle` in three dimensions.
 //!
 //! ```text
-//! a flight of optical depth u along a direction of cosine μ goes u|μ| deep through σ̂(z), down for μ > 0;
-//! at a tentative collision r = σ_t/σ̂ and the rule says whether the particle goes straight on, is
-//! scattered or is absorbed, and what becomes of its weight;
-//! scattered by an angle θ at an azimuth φ, μ' = μ cos θ + √(1 − μ²) sin θ cos φ
+//! begin    at the top;  μ that of the light, √u where it is diffuse;  w = 1
+//! fly      −ln u |μ| deep through σ̂(z), down for μ > 0;  beyond a boundary it has left
+//! collide  r = σ_t/σ̂;  as the odds of the rule and u say:
+//!            scattered     w ← w · a r/q_s;  by an angle θ at an azimuth φ:  μ ← μ cos θ + √(1 − μ²) sin θ cos φ
+//!            straight on   w ← w · (1 − r)/q_t
+//!            absorbed      the end
+//! see      w at the boundary where it left
 //! ```
 //!
 //! A flight and what happens at its end take a random number each; a scattering takes one for θ and one
-//! for φ, of which an isotropic one needs the first only. Diffuse light takes one for `μ₀ = √u`. Eight at a
-//! time: [`super::packet`].
+//! for φ, of which an isotropic one needs the first only. Diffuse light takes one for `μ₀ = √u`.
 
+use std::f64::consts::TAU;
+
+use crate::walks::{self, Met, Route, Walk};
 use crate::{Draw, Setup};
+use media::Lookups;
+use media::course::BothWays;
 use media::phase::Phase;
 use media::phase::isotropic::Isotropic;
-use media::{Extinction, Lookups};
-use numeric::Lane;
-use numeric::rng::Stream;
-use theory::particle::{Event, Odds, ParticleRule};
+use numeric::rng::{Random, Stream};
+use numeric::{Lane, Mask, kept};
+use theory::particle::{Odds, ParticleRule};
+use theory::problems::Slab;
 use theory::problems::slab::{Incidence, Light};
-use theory::problems::{Problem, Slab};
 
-/// The steps of a walk that a known bug may replace.
-pub trait Steps {
-    /// The odds at a collision with the given ratio `σ_t/σ̂` and albedo.
-    fn odds_at(&self, ratio: f64, albedo: f64) -> Odds;
-
-    /// The depth of a flight, in optical depth, of the given length along a direction.
-    #[inline(always)]
-    fn descent(&self, length: f64, cosine: f64) -> f64 {
-        length * cosine.abs()
-    }
-
-    /// The cosine of the scattering angle.
-    #[inline(always)]
-    fn deflection(&self, phase: &Phase, rng: &mut Stream) -> f64 {
-        phase.cosine(rng.uniform())
-    }
-
-    /// The cosine of diffuse light, in `(0, 1]`.
-    #[inline(always)]
-    fn diffuse(&self, rng: &mut Stream) -> f64 {
-        (1.0 - rng.uniform()).sqrt()
+kept! {
+    /// Particles on their way.
+    pub struct Particle<L> {
+        /// μ.
+        cosine: L,
+        /// w.
+        weight: L,
+        /// Numbers of scatterings.
+        order: L,
     }
 }
 
-impl Steps for ParticleRule {
+/// A slab, and the steps of walks through it; with `ORDERS` how often they are scattered is seen, too.
+#[derive(Clone, Copy)]
+pub struct InSlab<'a, S, const ORDERS: bool = false> {
+    /// The light on it, and its phase function.
+    pub incidence: &'a Incidence,
+    /// a.
+    pub albedo: f64,
+    /// The steps of the walk.
+    pub steps: S,
+}
+
+impl<S: Steps, const ORDERS: bool> Walk for InSlab<'_, S, ORDERS> {
+    type State<L: Lane> = Particle<L>;
+
     #[inline(always)]
-    fn odds_at(&self, ratio: f64, albedo: f64) -> Odds {
-        self.odds(ratio, albedo)
+    fn begin<L: Lane>(&self, one: L, which: L::Mask, rng: &mut impl Random<L>) -> Particle<L> {
+        let cosine = entering(self.incidence.light, &self.steps, which, one, rng);
+        Particle { cosine, weight: one, order: one.each(0.0) }
     }
+
+    #[inline(always)]
+    fn fly<L: Lane>(
+        &self,
+        particle: &mut Particle<L>,
+        route: &mut Route<impl BothWays<L>>,
+        depth: L,
+    ) -> L::Mask {
+        let descent = self.steps.descent(depth, particle.cosine);
+        route.here.fly_either_way(descent, is_down(particle))
+    }
+
+    #[inline(always)]
+    fn collide<L: Lane>(
+        &self,
+        particle: &mut Particle<L>,
+        _: &mut Route<impl BothWays<L>>,
+        met: &Met<L>,
+        rng: &mut impl Random<L>,
+    ) -> L::Mask {
+        let (Met { inside, number, .. }, ratio) = (*met, met.ratio());
+        let odds = self.steps.odds(ratio, ratio.each(self.albedo));
+        let (scattered, straight_on) = odds.decide_each(inside, number);
+        if scattered.maybe() {
+            if ORDERS {
+                particle.order.count_where(scattered);
+            }
+            let phase = &self.incidence.phase;
+            let mut cosine = self.steps.deflection(phase, rng.uniform_where(scattered));
+            if *phase != Phase::Isotropic(Isotropic) {
+                let azimuth = (rng.uniform_where(scattered) * TAU).cos();
+                cosine = turned(particle.cosine, cosine, azimuth);
+            }
+            particle.cosine.set_where(scattered, cosine);
+        }
+        let goes_on = scattered | straight_on;
+        let factor = L::select(scattered, odds.scatter_weight, odds.transmit_weight);
+        particle.weight.scale_where(goes_on, factor);
+        goes_on
+    }
+
+    #[inline(always)]
+    fn channels(&self) -> usize {
+        if ORDERS { 3 } else { 2 }
+    }
+
+    #[inline(always)]
+    fn value<L: Lane>(&self, particle: &Particle<L>, left: L::Mask, channel: usize) -> L {
+        let there = match channel {
+            0 => !is_down(particle),
+            1 => is_down(particle),
+            _ => return particle.order,
+        };
+        L::select(left & there, particle.weight, particle.weight.each(0.0))
+    }
+}
+
+/// The cosines with which particles enter; those that a mask names take a number for it where light is diffuse.
+#[inline(always)]
+pub fn entering<L: Lane>(
+    light: Light,
+    steps: &impl Steps,
+    which: L::Mask,
+    one: L,
+    rng: &mut impl Random<L>,
+) -> L {
+    match light {
+        Light::Collimated(cosine) => one.each(cosine),
+        Light::Diffuse => steps.diffuse(rng.uniform_where(which)),
+    }
+}
+
+#[inline(always)]
+fn is_down<L: Lane>(particle: &Particle<L>) -> L::Mask {
+    particle.cosine.each(0.0).below(particle.cosine)
 }
 
 /// The cosine with the normal after a deflection about the direction of travel.
@@ -62,63 +145,34 @@ pub fn turned<L: Lane>(cosine: L, deflection: L, azimuth: L) -> L {
     turned.or_less(one).or_more(-one)
 }
 
-/// What became of a particle.
-pub struct Left {
-    /// Whether it left at the bottom, or at the top; `None` if it was absorbed.
-    pub below: Option<bool>,
-    /// Its weight.
-    pub weight: f64,
-    /// How often it was scattered.
-    pub order: u32,
-    /// The tentative collisions.
-    pub lookups: u32,
+/// The steps of a walk that a known bug may replace.
+pub trait Steps: Copy {
+    /// The odds at collisions with the given ratio `σ_t/σ̂` and albedo.
+    fn odds<L: Lane>(&self, ratio: L, albedo: L) -> Odds<L>;
+
+    /// The depth of flights, in optical depth, of the given length along a direction.
+    #[inline(always)]
+    fn descent<L: Lane>(&self, length: L, cosine: L) -> L {
+        length * cosine.size()
+    }
+
+    /// The cosine of the scattering angle, from a uniform number.
+    #[inline(always)]
+    fn deflection<L: Lane>(&self, phase: &Phase, number: L) -> L {
+        phase.cosine(number)
+    }
+
+    /// The cosine of diffuse light, in `(0, 1]`, from a uniform number.
+    #[inline(always)]
+    fn diffuse<L: Lane>(&self, number: L) -> L {
+        number.one_minus().root()
+    }
 }
 
-/// Walks through a slab of an albedo.
-#[inline(always)]
-pub fn walk<P: Problem>(
-    steps: &impl Steps,
-    (incidence, albedo): (&Incidence, f64),
-    setup: &Setup<P>,
-    medium: &Lookups,
-    rng: &mut Stream,
-) -> Left {
-    let mut cosine = match incidence.light {
-        Light::Collimated(cosine) => cosine,
-        Light::Diffuse => steps.diffuse(rng),
-    };
-    let mut cursor = setup.sampling.begin();
-    let mut weight = 1.0;
-    let (mut order, mut lookups) = (0, 0);
-    loop {
-        let (length, number) = (-rng.ln_uniform(), rng.uniform());
-        let depth = steps.descent(length, cosine);
-        let is_down = cosine > 0.0;
-        let flown = if is_down {
-            setup.sampling.fly(&mut cursor, depth)
-        } else {
-            setup.sampling.fly_back(&mut cursor, depth)
-        };
-        let Some(sampling) = flown else {
-            return Left { below: Some(is_down), weight, order, lookups };
-        };
-        lookups += 1;
-        let odds = steps.odds_at(medium.extinction(cursor.t) * (1.0 / sampling), albedo);
-        match odds.decide(number) {
-            Event::Transmitted => weight *= odds.transmit_weight,
-            Event::Scattered => {
-                weight *= odds.scatter_weight;
-                order += 1;
-                let deflection = steps.deflection(&incidence.phase, rng);
-                cosine = if incidence.phase == Phase::Isotropic(Isotropic) {
-                    deflection
-                } else {
-                    let azimuth = Lane::cos(std::f64::consts::TAU * rng.uniform());
-                    turned(cosine, deflection, azimuth)
-                };
-            }
-            Event::Absorbed => return Left { below: None, weight, order, lookups },
-        }
+impl Steps for ParticleRule {
+    #[inline(always)]
+    fn odds<L: Lane>(&self, ratio: L, albedo: L) -> Odds<L> {
+        ParticleRule::odds(*self, ratio, albedo)
     }
 }
 
@@ -130,12 +184,12 @@ pub fn draw(
     medium: &Lookups,
     rng: &mut Stream,
 ) -> Draw<[f64; 2]> {
-    let slab = &*setup.problem;
-    let left = walk(steps, (&slab.incidence, slab.albedo), setup, medium, rng);
-    let value = match left.below {
-        Some(true) => [0.0, left.weight],
-        Some(false) => [left.weight, 0.0],
-        None => [0.0; 2],
-    };
-    Draw::free(value, left.lookups)
+    walks::draw(&InSlab::of(&setup.problem, *steps), &setup.sampling, medium, rng)
+}
+
+impl<'a, S> InSlab<'a, S> {
+    /// A slab.
+    pub fn of(slab: &'a Slab, steps: S) -> Self {
+        Self { incidence: &slab.incidence, albedo: slab.albedo, steps }
+    }
 }

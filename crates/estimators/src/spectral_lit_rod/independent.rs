@@ -21,8 +21,9 @@ use fearless_simd::Level;
 
 use super::{packet, realisable, spectrum};
 use crate::kernels::packet::Request;
-use crate::lit_rod::walk::{self, Place};
+use crate::lit_rod::walk::ToEmitter;
 use crate::setup::heroes::Heroes;
+use crate::walks;
 use crate::{Draw, Estimator, Inputs, Refusal, Setup};
 use media::Lookups;
 use media::body::MOST_CHANNELS;
@@ -76,9 +77,9 @@ impl Estimator<SpectralLitRod> for Independent {
         let hero = self.heroes.choose(count, rng.uniform());
         let own = &setup.channels[hero];
         let rod = &setup.problem.rods[hero].rod;
-        let place = Place { rod, sampling: &own.sampling, end: own.mesh.support().to };
         let techniques = if self.is_full { FULL } else { HITS };
-        let drawn = walk::walk(&techniques, place, medium.channel(hero), rng);
+        let walk = ToEmitter::new(rod, &own.sampling, own.mesh.support().to, techniques);
+        let drawn: Draw = walks::draw(&walk, &own.sampling, medium.channel(hero), rng);
         let mut scores = [0.0; MOST_CHANNELS];
         scores[hero] = drawn.value[0] / self.heroes.probability(count, hero);
         Draw::free(setup.problem.values(scores), drawn.lookups)

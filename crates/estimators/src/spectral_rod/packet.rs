@@ -14,8 +14,7 @@ use super::walk::Scores;
 use crate::kernels::packet::bank::{Numbers, Particles, Slot, Slots};
 use crate::kernels::packet::hero::{Law, number_of_hero};
 use crate::kernels::packet::{Request, line};
-use crate::slab::packet::entering;
-use crate::slab::walk::turned;
+use crate::slab::walk::{entering, turned};
 use crate::{DrawBuffer, Setup};
 use media::Lookups;
 use media::body::MOST_CHANNELS;
@@ -92,10 +91,10 @@ struct Walks<'a> {
 }
 
 impl<'a> line::Walks for Walks<'a> {
-    type Pack<S: Simd, C: BothWays<S> + Copy> = InBody<'a, S, C>;
+    type Pack<S: Simd, C: BothWays<f64x8<S>>> = InBody<'a, S, C>;
 
     #[inline(always)]
-    fn begin<S: Simd, C: BothWays<S> + Copy>(
+    fn begin<S: Simd, C: BothWays<f64x8<S>>>(
         &self,
         course: C,
         from: f64x8<S>,
@@ -141,7 +140,7 @@ struct InBody<'a, S: Simd, C> {
     order: f64x8<S>,
 }
 
-impl<S: Simd, C: BothWays<S>> InBody<'_, S, C> {
+impl<S: Simd, C: BothWays<f64x8<S>>> InBody<'_, S, C> {
     /// Some of them enter.
     #[inline(always)]
     fn enter(&mut self, which: mask64x8<S>, numbers: &mut Numbers<S>) {
@@ -158,7 +157,11 @@ impl<S: Simd, C: BothWays<S>> InBody<'_, S, C> {
             Place::Rod(_) => Light::Collimated(1.0),
             Place::Slab(incidence) => incidence.light,
         };
-        self.cosine = Lane::select(which, entering(light, numbers, which, one), self.cosine);
+        self.cosine = Lane::select(
+            which,
+            entering(light, &ParticleRule::Analog, which, one, numbers),
+            self.cosine,
+        );
     }
 
     /// Who is scattered, and who passes.
@@ -197,7 +200,7 @@ impl<S: Simd, C: BothWays<S>> InBody<'_, S, C> {
     }
 }
 
-impl<S: Simd, C: BothWays<S>> Particles<S> for InBody<'_, S, C> {
+impl<S: Simd, C: BothWays<f64x8<S>>> Particles<S> for InBody<'_, S, C> {
     type Found = f64x8<S>;
 
     #[inline(always)]
@@ -221,7 +224,7 @@ impl<S: Simd, C: BothWays<S>> Particles<S> for InBody<'_, S, C> {
     }
 
     #[inline(always)]
-    fn collect(&self, ended: u64, slots: &mut Slots, buffer: &mut DrawBuffer) -> u64 {
+    fn collect(&mut self, ended: u64, slots: &mut Slots, buffer: &mut DrawBuffer) -> u64 {
         let (inside, is_down) = (self.inside.to_bitmask(), self.is_down.to_bitmask());
         let mut ends = Ends { inside, is_down, hero: [0.0; WIDTH], order: [0.0; WIDTH] };
         self.hero.store_slice(&mut ends.hero);

@@ -8,6 +8,7 @@ pub mod spectral_tracking;
 use super::spectral_rod::Coloured;
 use super::spectral_rod::packet::Place;
 use super::spectral_rod::walk::Left;
+use crate::walks;
 use crate::{Refusal, Setup, estimators, slab};
 use ::theory::problems::SpectralSlab;
 use ::theory::problems::spectral_rod::{Colours, End};
@@ -53,11 +54,17 @@ impl Coloured for SpectralSlab {
 
     #[inline(always)]
     fn walk(setup: &Setup<Self>, medium: &Lookups, rng: &mut Stream, scatter: f64) -> Left {
-        let asked = (&setup.problem.incidence, scatter);
-        let slab::walk::Left { below, order, lookups, .. } =
-            slab::walk::walk(&ParticleRule::Analog, asked, setup, medium, rng);
-        let end = below.map(|below| if below { End::Transmitted } else { End::Reflected });
-        Left { end, order, lookups }
+        let incidence = &setup.problem.incidence;
+        let steps = ParticleRule::Analog;
+        let walk = slab::walk::InSlab::<_, true> { incidence, albedo: scatter, steps };
+        let found = walks::draw::<[f64; 3]>(&walk, &setup.sampling, medium, rng);
+        let end = match found.value {
+            [_, below, _] if below > 0.0 => Some(End::Transmitted),
+            [above, ..] if above > 0.0 => Some(End::Reflected),
+            _ => None,
+        };
+        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // a count
+        Left { end, order: found.value[2] as u32, lookups: found.lookups }
     }
 }
 

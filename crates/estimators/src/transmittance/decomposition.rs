@@ -20,12 +20,14 @@
 use fearless_simd::Level;
 
 use super::woodcock::{ZERO_OR_ONE, zero_or_one};
-use crate::kernels::packet::{self, Request};
+use crate::kernels::packet::Request;
 use crate::recipes::controls;
+use crate::walks::{self, Ground, Met, Route, Walk};
 use crate::{Draw, Estimator, Inputs, Refusal, Setup};
-use media::{Control, Extinction, Lookups};
-use numeric::Lane;
-use numeric::rng::Stream;
+use media::course::BothWays;
+use media::{Control, Lookups};
+use numeric::rng::{Random, Stream};
+use numeric::{Lane, kept};
 use theory::Prediction;
 use theory::problems::Transmittance;
 use theory::rules::Null;
@@ -72,28 +74,8 @@ impl Estimator<Transmittance> for Decomposition {
     }
 
     #[inline(always)]
-    fn draw(&self, setup: &Setup<Transmittance>, medium: &Lookups, rng: &mut Stream) -> Draw {
-        let support = setup.mesh.support();
-        let control = setup.control.extinction(support.from);
-        // A control of 0 stops no flight: it is infinite, or no number for a depth of 0. It takes
-        // two random numbers like every step of the walk.
-        let (depth, _) = (-rng.ln_uniform(), rng.word());
-        let flown = depth.times_plus(1.0 / control, support.from);
-        let mut cursor = setup.sampling.begin();
-        let mut lookups = 0;
-        loop {
-            let (depth, number) = (-rng.ln_uniform(), rng.uniform());
-            let Some(sampling) = setup.sampling.fly(&mut cursor, depth) else { break };
-            if flown <= cursor.t {
-                break;
-            }
-            lookups += 1;
-            if number < (medium.extinction(cursor.t) - control) * (1.0 / sampling) {
-                return Draw::free([0.0], lookups);
-            }
-        }
-        let stopped = flown < support.to;
-        Draw::free([if stopped { 0.0 } else { Lane::exp(setup.log_unit) }], lookups)
+    fn draw(&self, setup: &Setup<Transmittance>, medium: &Lookups, random: &mut Stream) -> Draw {
+        walks::draw(&Residual::new(setup), &setup.sampling, medium, random)
     }
 
     fn draw_packets<'a>(
@@ -103,7 +85,89 @@ impl Estimator<Transmittance> for Decomposition {
         medium: &Lookups,
         request: Request<'a>,
     ) -> Option<Request<'a>> {
-        let control = setup.control.extinction(setup.mesh.support().from);
-        packet::decomposition(level, setup, control, medium, request)
+        let ground = Ground::new(setup, medium);
+        walks::packets(level, &Residual::new(setup), ground, request)
+    }
+}
+
+kept! {
+    /// A walk through the residual.
+    pub struct Flight<L> {
+        /// Whether the next step is the control's flight, which looks nothing up.
+        begins: L::Mask,
+        /// The end of the control's flight.
+        stop: L,
+    }
+}
+
+/// Woodcock tracking of `σ_t − σ_c` up to where the control's flight ended.
+#[derive(Clone, Copy)]
+struct Residual {
+    control: f64,
+    begin: f64,
+    end: f64,
+    /// The value of walks that pass.
+    unit: f64,
+}
+
+impl Residual {
+    #[inline(always)]
+    fn new(setup: &Setup<Transmittance>) -> Self {
+        let support = setup.mesh.support();
+        Self {
+            control: setup.control.extinction(support.from),
+            begin: support.from,
+            end: support.to,
+            unit: Lane::exp(setup.log_unit),
+        }
+    }
+}
+
+impl Walk for Residual {
+    type State<L: Lane> = Flight<L>;
+
+    const IS_FIXED: bool = true;
+    const PAUSES: bool = true;
+
+    #[inline(always)]
+    fn begin<L: Lane>(&self, one: L, _: L::Mask, _: &mut impl Random<L>) -> Flight<L> {
+        Flight { begins: one.at_most(one), stop: one.each(self.begin) }
+    }
+
+    #[inline(always)]
+    fn fly<L: Lane>(
+        &self,
+        flight: &mut Flight<L>,
+        route: &mut Route<impl BothWays<L>>,
+        depth: L,
+    ) -> L::Mask {
+        let begins = flight.begins;
+        // A control of 0 stops no flight: its stop is infinite, or no number for a depth of 0.
+        let stop = depth.times_plus(depth.each(1.0 / self.control), depth.each(self.begin));
+        flight.stop.set_where(begins, stop);
+        let inside = route.here.fly(depth);
+        route.here.restart(begins);
+        inside & !begins & !flight.stop.at_most(route.here.reached())
+    }
+
+    #[inline(always)]
+    fn collide<L: Lane>(
+        &self,
+        flight: &mut Flight<L>,
+        _: &mut Route<impl BothWays<L>>,
+        met: &Met<L>,
+        _: &mut impl Random<L>,
+    ) -> L::Mask {
+        let Met { inside, mean_free_path, extinction, number, .. } = *met;
+        let is_real = number.below((extinction - self.control) * mean_free_path);
+        let goes_on = flight.begins | (inside & !is_real);
+        flight.begins = flight.begins & !flight.begins;
+        goes_on
+    }
+
+    #[inline(always)]
+    fn value<L: Lane>(&self, flight: &Flight<L>, left: L::Mask, _: usize) -> L {
+        let is_stopped = flight.stop.below(flight.stop.each(self.end));
+        L::select(left & !is_stopped, flight.stop.each(self.unit), flight.stop.each(0.0))
     }
 }

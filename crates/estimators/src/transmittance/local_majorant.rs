@@ -21,11 +21,13 @@
 use fearless_simd::Level;
 
 use super::woodcock::{ZERO_OR_ONE, zero_or_one};
-use crate::kernels::packet::{self, Request};
+use crate::kernels::packet::Request;
+use crate::walks::{self, Met, Route, Walk};
 use crate::{Draw, Estimator, Inputs, Refusal, Setup};
-use media::{Extinction, Lookups};
-use numeric::Lane;
-use numeric::rng::Stream;
+use media::Lookups;
+use media::course::BothWays;
+use numeric::rng::{Random, Stream};
+use numeric::{Kept, Lane, Row, kept};
 use theory::Prediction;
 use theory::problems::Transmittance;
 use theory::rules::Null;
@@ -55,24 +57,11 @@ impl Estimator<Transmittance> for LocalMajorant {
     }
 
     #[inline(always)]
-    fn draw(&self, setup: &Setup<Transmittance>, medium: &Lookups, rng: &mut Stream) -> Draw {
-        let mut lookups = 0;
-        // A segment without extinction is left out: there is nothing to collide with.
-        for (ends, path) in setup.sampling.stretches() {
-            let mut t = ends[0];
-            loop {
-                let (depth, number) = (-rng.ln_uniform(), rng.uniform());
-                t = depth.times_plus(path, t);
-                if !t.below(ends[1]) {
-                    break;
-                }
-                lookups += 1;
-                if number < medium.extinction(t) * path {
-                    return Draw::free([0.0], lookups);
-                }
-            }
-        }
-        Draw::free([setup.control_transmittance], lookups)
+    fn draw(&self, setup: &Setup<Transmittance>, medium: &Lookups, random: &mut Stream) -> Draw {
+        let Some(walk) = Segments::of(setup) else {
+            return Draw::free([setup.control_transmittance], 0);
+        };
+        walks::plain::draw_nowhere(&walk, medium, random)
     }
 
     fn draw_packets<'a>(
@@ -82,6 +71,93 @@ impl Estimator<Transmittance> for LocalMajorant {
         medium: &Lookups,
         request: Request<'a>,
     ) -> Option<Request<'a>> {
-        packet::majorants(level, setup, medium, request)
+        let Some(walk) = Segments::of(setup) else { return Some(request) };
+        walks::packets_nowhere(level, &walk, medium, request)
+    }
+}
+
+kept! {
+    /// A walk in its segment.
+    pub struct Hop<L> {
+        segment: L,
+        t: L,
+        end: L,
+        mean_free_path: L,
+    }
+}
+
+/// Woodcock tracking from segment to segment. A step is a flight within a segment: no lane waits for those that cross several.
+#[derive(Clone, Copy)]
+struct Segments<'a> {
+    /// Beginning, end and mean free path of each.
+    rows: &'a [Row],
+    /// The value of walks that pass.
+    unit: f64,
+}
+
+impl<'a> Segments<'a> {
+    /// `None` where no segment has an extinction: there is nothing to collide with.
+    #[inline(always)]
+    fn of(setup: &'a Setup<Transmittance>) -> Option<Self> {
+        let rows = setup.sampling.stretches();
+        (!rows.is_empty()).then_some(Self { rows, unit: setup.control_transmittance })
+    }
+
+    /// At the beginning of a segment.
+    #[inline(always)]
+    fn enter<L: Lane>(&self, segment: L) -> Hop<L> {
+        let [t, end, mean_free_path, ..] = segment.columns(self.rows);
+        Hop { segment, t, end, mean_free_path }
+    }
+}
+
+impl Walk for Segments<'_> {
+    type State<L: Lane> = Hop<L>;
+
+    const IS_FIXED: bool = true;
+    const PAUSES: bool = true;
+
+    #[inline(always)]
+    fn begin<L: Lane>(&self, one: L, _: L::Mask, _: &mut impl Random<L>) -> Hop<L> {
+        self.enter(one.each(0.0))
+    }
+
+    #[inline(always)]
+    fn fly<L: Lane>(&self, hop: &mut Hop<L>, _: &mut Route<impl BothWays<L>>, depth: L) -> L::Mask {
+        let t = depth.times_plus(hop.mean_free_path, hop.t);
+        let inside = t.below(hop.end);
+        hop.t.set_where(inside, t);
+        inside
+    }
+
+    #[inline(always)]
+    fn distance<L: Lane>(&self, hop: &Hop<L>, _: &Route<impl BothWays<L>>) -> L {
+        hop.t
+    }
+
+    #[inline(always)]
+    fn mean_free_path<L: Lane>(&self, hop: &Hop<L>, _: &Route<impl BothWays<L>>) -> L {
+        hop.mean_free_path
+    }
+
+    #[inline(always)]
+    fn collide<L: Lane>(
+        &self,
+        hop: &mut Hop<L>,
+        _: &mut Route<impl BothWays<L>>,
+        met: &Met<L>,
+        _: &mut impl Random<L>,
+    ) -> L::Mask {
+        let Met { inside, number, .. } = *met;
+        let is_real = number.below(met.ratio());
+        let last = hop.segment.each((self.rows.len() - 1) as f64);
+        let crosses = !inside & hop.segment.below(last);
+        hop.set_where(crosses, self.enter(hop.segment + 1.0));
+        crosses | (inside & !is_real)
+    }
+
+    #[inline(always)]
+    fn value<L: Lane>(&self, hop: &Hop<L>, left: L::Mask, _: usize) -> L {
+        L::select(left, hop.t.each(self.unit), hop.t.each(0.0))
     }
 }

@@ -19,14 +19,14 @@
 //! I. Georgiev et al., *Integral formulations of volumetric transmittance*, ACM Transactions on
 //! Graphics 38 (2019).
 
-use crate::kernels::scoring::Share;
+use super::scoring::Share;
 use crate::{Setup, scored};
 use numeric::Lane;
 use theory::problems::Transmittance;
 use theory::volterra::{ORDERS, Source, binomial, power};
 
 /// The next-flight estimator; a constant σ̂ is its only input.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Copy)]
 pub struct NextFlight;
 
 impl Source for NextFlight {

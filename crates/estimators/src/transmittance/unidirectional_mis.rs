@@ -17,14 +17,14 @@
 //! Source: I. Georgiev, Z. Misso, T. Hachisuka, D. Nowrouzezahrai, J. Křivánek, W. Jarosz,
 //! *Integral formulations of volumetric transmittance*, ACM Transactions on Graphics 38 (2019).
 
-use crate::kernels::scoring::Share;
+use super::scoring::Share;
 use crate::{Setup, scored};
 use numeric::Lane;
 use theory::problems::Transmittance;
 use theory::volterra::{ORDERS, Source, binomial, power};
 
 /// The unidirectional-MIS estimator; a constant σ̂ is its only input.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Copy)]
 pub struct UnidirectionalMis;
 
 impl Source for UnidirectionalMis {

@@ -21,13 +21,15 @@
 
 use fearless_simd::Level;
 
-use super::packet;
 use super::ray_view::{self, RayView};
 use crate::kernels::packet::Request;
-use crate::kernels::walk::Invariant;
+use crate::transmittance::product::{Invariant, Subtracted};
+use crate::walks::{self, Ground, Met, Route, Walk};
 use crate::{Draw, Estimator, Inputs, Refusal, Setup};
-use media::{Extinction, Lookups, Medium};
-use numeric::rng::{Address, Stream, exponential};
+use media::course::BothWays;
+use media::{Lookups, Medium};
+use numeric::rng::{Address, Random, Stream, exponential};
+use numeric::{Lane, kept};
 use theory::problems::TransmittanceCurve;
 use theory::problems::transmittance_curve::{MOST, Values};
 use theory::rules::Weight;
@@ -75,31 +77,9 @@ impl Estimator<TransmittanceCurve> for DoubleCurve {
         &self,
         setup: &Setup<TransmittanceCurve>,
         medium: &Lookups,
-        rng: &mut Stream,
+        random: &mut Stream,
     ) -> Draw<Values> {
-        let distances = setup.problem.ascending();
-        let mut values = Values { at: [0.0; MOST], count: distances.len() };
-        let mut next = 0;
-        let mut pass = |until: f64, weight: f64| {
-            while next < distances.len() && distances[next] <= until {
-                values.at[next] = weight * setup.control_curve[next];
-                next += 1;
-            }
-        };
-        let mut cursor = setup.sampling.begin();
-        let mut weight = 1.0;
-        let mut invariant = Invariant::open(weight);
-        let mut lookups = 0;
-        while let Some(sampling) = setup.sampling.fly(&mut cursor, -rng.ln_uniform()) {
-            pass(cursor.t, weight);
-            let residual = medium.extinction(cursor.t) - setup.control.extinction(cursor.t);
-            let due = 1.0 - residual * (1.0 / sampling);
-            invariant.take(weight, due);
-            weight *= due;
-            lookups += 1;
-        }
-        pass(f64::INFINITY, weight);
-        Draw { value: values, lookups, defect: invariant.defect(weight) }
+        walks::draw(&Curve::new(setup), &setup.sampling, medium, random)
     }
 
     fn draw_packets<'a>(
@@ -109,6 +89,111 @@ impl Estimator<TransmittanceCurve> for DoubleCurve {
         medium: &Lookups,
         request: Request<'a>,
     ) -> Option<Request<'a>> {
-        packet::curve(level, setup, medium, request)
+        let ground = Ground::with_control(setup, medium);
+        walks::packets(level, &Curve::new(setup), ground, request)
+    }
+}
+
+kept! {
+    /// A walk along the ray of a curve.
+    ///
+    /// A collision at t changes the weight at all distances beyond it: what is kept of a distance is the weight with which
+    /// it was last ahead.
+    ///
+    /// ```text
+    /// w ← w (1 − r(t));  w_k ← w  where t < s_k;  at the end T̂(s_k) = T_c(s_k) w_k
+    /// ```
+    pub struct Weights<L> {
+        weight: L,
+        ahead: [L; MOST],
+        invariant: Invariant<L>,
+    }
+}
+
+#[derive(Clone, Copy)]
+struct Curve<'a> {
+    control: Subtracted<'a>,
+    distances: &'a [f64],
+    /// T_c at the distances.
+    units: &'a [f64],
+}
+
+impl<'a> Curve<'a> {
+    #[inline(always)]
+    fn new(setup: &'a Setup<TransmittanceCurve>) -> Self {
+        let distances = setup.problem.ascending();
+        let control = Subtracted::new(&setup.control);
+        Self { control, distances, units: &setup.control_curve }
+    }
+}
+
+impl Walk for Curve<'_> {
+    type State<L: Lane> = Weights<L>;
+
+    const DECIDES: bool = false;
+    const HAS_DEFECT: bool = true;
+
+    #[inline(always)]
+    fn begin<L: Lane>(&self, one: L, _: L::Mask, _: &mut impl Random<L>) -> Weights<L> {
+        Weights { weight: one, ahead: [one; MOST], invariant: Invariant::open(one) }
+    }
+
+    #[inline(always)]
+    fn restart<L: Lane>(
+        &self,
+        weights: &mut Weights<L>,
+        which: L::Mask,
+        one: L,
+        _: &mut impl Random<L>,
+    ) {
+        let Weights { weight, ahead, invariant } = weights;
+        *weight = L::select(which, one, *weight).sealed();
+        let mut fresh = *invariant;
+        fresh.restart(which);
+        (invariant.taken, invariant.scale) = (fresh.taken.sealed(), fresh.scale.sealed());
+        for ahead in &mut ahead[..self.distances.len()] {
+            *ahead = L::select(which, one, *ahead).sealed();
+        }
+    }
+
+    #[inline(always)]
+    fn collide<L: Lane>(
+        &self,
+        weights: &mut Weights<L>,
+        _: &mut Route<impl BothWays<L>>,
+        met: &Met<L>,
+        _: &mut impl Random<L>,
+    ) -> L::Mask {
+        let Met { inside, t, mean_free_path, extinction, .. } = *met;
+        let residual = extinction - self.control.extinction(t);
+        let due = t.each(1.0) - residual * mean_free_path;
+        let Weights { weight, ahead, invariant } = weights;
+        // The whole state is in memory, for `ahead` has an index.
+        let (mut taken, before) = (*invariant, *weight);
+        taken.take_where(inside, before, due);
+        (invariant.taken, invariant.scale) = (taken.taken.sealed(), taken.scale.sealed());
+        let after = L::select(inside, before * due, before).sealed();
+        *weight = after;
+        let t = L::select(inside, t, t.each(f64::INFINITY));
+        for (number, &distance) in self.distances.iter().enumerate() {
+            let is_ahead = t.below(t.each(distance));
+            ahead[number] = L::select(is_ahead, after, ahead[number]).sealed();
+        }
+        inside
+    }
+
+    #[inline(always)]
+    fn channels(&self) -> usize {
+        self.distances.len()
+    }
+
+    #[inline(always)]
+    fn value<L: Lane>(&self, weights: &Weights<L>, _: L::Mask, distance: usize) -> L {
+        weights.ahead[distance] * self.units[distance]
+    }
+
+    #[inline(always)]
+    fn defect<L: Lane>(&self, weights: &Weights<L>, _: L) -> L {
+        weights.invariant.defect(weights.weight)
     }
 }

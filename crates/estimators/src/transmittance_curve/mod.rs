@@ -1,7 +1,6 @@
 //! Estimators of the transmittance at many distances from one walk.
 
 pub mod double;
-pub mod packet;
 pub mod ray_view;
 
 use crate::estimators;

@@ -10,7 +10,7 @@
 
 use super::target::{CURVE, CURVE_CONTROL};
 use super::{About, Mutant, with};
-use estimators::kernels::walk::Invariant;
+use estimators::transmittance::product::Invariant;
 use estimators::{Draw, Setup};
 use media::{Extinction, Lookups};
 use numeric::rng::{Stream, exponential};

@@ -1,7 +1,6 @@
 //! The steps of walks that scatter, through rods, slabs and space, one function each.
 
 use estimators::space::{self, Particle};
-use estimators::{rod, slab};
 use media::Majorants;
 use media::majorants::Flight;
 use media::phase::Phase;
@@ -19,14 +18,6 @@ pub struct Steps {
     pub odds: fn(Odds, f64) -> Odds,
     /// The weight after roulette, from that before it and what is right.
     pub kept: fn(f64, f64) -> f64,
-    /// In a rod, the number that decides the new direction; the one that decided the collision is given.
-    pub direction: fn(&mut Stream, f64) -> f64,
-    /// In a rod, whether a particle turns round, from that number and `p_f`.
-    pub turns: fn(f64, f64) -> bool,
-    /// In a slab, the depth of a flight of a length along a cosine.
-    pub descent: fn(f64, f64) -> f64,
-    /// In a slab, the cosine of diffuse light.
-    pub diffuse: fn(&mut Stream) -> f64,
     /// The cosine of the scattering angle.
     pub deflection: fn(&Phase, &mut Stream) -> f64,
     /// In space, the cosine with the normal of light from all sides.
@@ -45,10 +36,6 @@ pub fn right(particle: Particle) -> Steps {
         particle,
         odds: |right, _| right,
         kept: |_, right| right,
-        direction: |rng, _| rng.uniform(),
-        turns: |number, forward| number >= forward,
-        descent: |length, cosine| length * cosine.abs(),
-        diffuse: |rng| (1.0 - rng.uniform()).sqrt(),
         deflection: |phase, rng| phase.cosine(rng.uniform()),
         first_cosine: |number| (1.0 - number).sqrt(),
         depth: |rng| (-rng.ln_uniform(), None),
@@ -90,42 +77,6 @@ impl Steps {
 
     fn keeps(&self, rng: &mut Stream, weight: f64) -> Option<f64> {
         space::Steps::keep(&self.particle, rng, weight).map(|right| (self.kept)(weight, right))
-    }
-}
-
-impl rod::walk::Steps for Steps {
-    fn odds_at(&self, ratio: f64, albedo: f64) -> Odds {
-        self.odds_of(ratio, albedo)
-    }
-
-    fn keep(&self, rng: &mut Stream, weight: f64) -> Option<f64> {
-        self.keeps(rng, weight)
-    }
-
-    fn direction(&self, rng: &mut Stream, decided: f64) -> f64 {
-        (self.direction)(rng, decided)
-    }
-
-    fn turns(&self, number: f64, forward: f64) -> bool {
-        (self.turns)(number, forward)
-    }
-}
-
-impl slab::walk::Steps for Steps {
-    fn odds_at(&self, ratio: f64, albedo: f64) -> Odds {
-        self.odds_of(ratio, albedo)
-    }
-
-    fn descent(&self, length: f64, cosine: f64) -> f64 {
-        (self.descent)(length, cosine)
-    }
-
-    fn deflection(&self, phase: &Phase, rng: &mut Stream) -> f64 {
-        (self.deflection)(phase, rng)
-    }
-
-    fn diffuse(&self, rng: &mut Stream) -> f64 {
-        (self.diffuse)(rng)
     }
 }
 

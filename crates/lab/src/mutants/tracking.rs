@@ -9,8 +9,8 @@ use super::target::{DECOMPOSITION, LOCAL_MAJORANT};
 use super::{About, Mutant, with};
 use estimators::{Draw, Setup};
 use media::{Extinction, Lookups};
-use numeric::Lane;
 use numeric::rng::Stream;
+use numeric::{Lane, Row};
 use theory::problems::Transmittance;
 
 /// The family.
@@ -76,12 +76,12 @@ fn local_majorant(
 ) -> Draw {
     let mut lookups = 0;
     let mut came_to = setup.mesh.support().from;
-    for (ends, path) in setup.sampling.stretches() {
-        let mut t = if overshoots { came_to.max(ends[0]) } else { ends[0] };
-        while t < ends[1] {
+    for &Row([begin, end, path, ..]) in setup.sampling.stretches() {
+        let mut t = if overshoots { came_to.max(begin) } else { begin };
+        while t < end {
             let (depth, number) = (-rng.ln_uniform(), rng.uniform());
             t = depth.times_plus(path, t);
-            if !t.below(ends[1]) {
+            if !t.below(end) {
                 break;
             }
             lookups += 1;

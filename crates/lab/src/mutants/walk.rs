@@ -1,4 +1,4 @@
-//! The walks of `kernels/walk.rs` and `estimators/free_flight/woodcock.rs`, step by step.
+//! The walks of `estimators/transmittance/product.rs` and `estimators/free_flight/woodcock.rs`, step by step.
 //!
 //! ```text
 //! X = T_c ∏ W(tᵢ),  tᵢ a Poisson process of rate σ̂ on the support
@@ -11,7 +11,7 @@
 
 use super::fault::{Fault, Memory, RIGHT};
 use super::{About, Mutant, Target, with};
-use estimators::kernels::walk::Invariant;
+use estimators::transmittance::product::Invariant;
 use estimators::{Draw, Setup};
 use media::Lookups;
 use numeric::rng::Stream;

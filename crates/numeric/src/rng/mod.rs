@@ -10,16 +10,77 @@
 
 pub mod xoshiro;
 
-use fearless_simd::Level;
+use fearless_simd::{Level, Simd, f64x8, mask64x8, u64x8};
 use rand::Rng;
 use rand_pcg::Pcg64;
 
-use crate::{Lane, pack::WIDTH};
+use crate::{Lane, Single, pack::WIDTH};
 
 pub use xoshiro::{Lanes, Xoshiro};
 
 /// The generator of one stream of draws: xoshiro256+.
 pub type Stream = Xoshiro<u64>;
+
+/// Random numbers for each element of a lane: from one stream for a scalar, from eight for a pack.
+pub trait Random<L: Lane> {
+    /// Uniform in `[0, 1)`.
+    fn uniform(&mut self) -> L;
+
+    /// `ln u` with `u` uniform in `(0, 1]`: minus an exponential with mean 1.
+    fn ln_uniform(&mut self) -> L;
+
+    /// Uniform numbers for those that a mask names; the streams of the others stay where they are, and their numbers
+    /// mean nothing.
+    fn uniform_where(&mut self, which: L::Mask) -> L;
+
+    /// The same of [`Self::ln_uniform`].
+    fn ln_uniform_where(&mut self, which: L::Mask) -> L;
+}
+
+impl<L: Single> Random<L> for Stream {
+    #[inline(always)]
+    fn uniform(&mut self) -> L {
+        L::of(Xoshiro::uniform(self))
+    }
+
+    #[inline(always)]
+    fn ln_uniform(&mut self) -> L {
+        // `1 − u` is exact.
+        L::of(1.0 - Xoshiro::uniform(self)).ln()
+    }
+
+    #[inline(always)]
+    fn uniform_where(&mut self, which: bool) -> L {
+        L::of(if which { Xoshiro::uniform(self) } else { 0.0 })
+    }
+
+    #[inline(always)]
+    fn ln_uniform_where(&mut self, which: bool) -> L {
+        if which { Random::ln_uniform(self) } else { L::of(0.0) }
+    }
+}
+
+impl<S: Simd> Random<f64x8<S>> for Xoshiro<u64x8<S>> {
+    #[inline(always)]
+    fn uniform(&mut self) -> f64x8<S> {
+        Xoshiro::uniform(self)
+    }
+
+    #[inline(always)]
+    fn ln_uniform(&mut self) -> f64x8<S> {
+        Xoshiro::ln_uniform(self)
+    }
+
+    #[inline(always)]
+    fn uniform_where(&mut self, which: mask64x8<S>) -> f64x8<S> {
+        Xoshiro::uniform_where(self, which)
+    }
+
+    #[inline(always)]
+    fn ln_uniform_where(&mut self, which: mask64x8<S>) -> f64x8<S> {
+        Xoshiro::ln_uniform_where(self, which)
+    }
+}
 
 /// The packs of streams of a block: a step of a walk waits for the one before it, and the steps of a second
 /// pack fill that time.

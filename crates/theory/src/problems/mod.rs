@@ -189,6 +189,30 @@ pub struct Values<const N: usize> {
     pub count: usize,
 }
 
+/// Numbers, one per channel.
+pub trait Channels {
+    /// So many, one after the other.
+    fn of(count: usize, value: impl Fn(usize) -> f64) -> Self;
+}
+
+impl<const N: usize> Channels for [f64; N] {
+    #[inline(always)]
+    fn of(count: usize, value: impl Fn(usize) -> f64) -> Self {
+        let mut at = [0.0; N];
+        for (number, at) in at[..count].iter_mut().enumerate() {
+            *at = value(number);
+        }
+        at
+    }
+}
+
+impl<const N: usize> Channels for Values<N> {
+    #[inline(always)]
+    fn of(count: usize, value: impl Fn(usize) -> f64) -> Self {
+        Self { at: Channels::of(count, value), count }
+    }
+}
+
 impl<const N: usize> AsRef<[f64]> for Values<N> {
     fn as_ref(&self) -> &[f64] {
         &self.at[..self.count]

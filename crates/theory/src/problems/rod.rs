@@ -36,7 +36,7 @@ use super::{Problem, default_albedo, number};
 use media::catalogue::{Domain, Node, Settings, Value};
 use media::piecewise_linear::read_pieces;
 use media::{Body, Medium, Piecewise};
-use numeric::Span;
+use numeric::{Lane, Span};
 
 /// The most channels that a draw can have.
 pub const MOST: usize = 20;
@@ -117,11 +117,22 @@ impl Rod {
     }
 
     /// The part that holds a distance inside the rod.
-    #[inline(always)]
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // at most the number of parts
     pub fn part(&self, t: f64) -> usize {
         let part = (t - self.begin()) / self.width();
         (part as usize).min(self.parts.saturating_sub(1))
+    }
+
+    /// Which distances inside the rod, in widths of its parts, lie in one of them.
+    #[inline(always)]
+    pub fn is_in<L: Lane>(&self, part: usize, at: L) -> L::Mask {
+        let (from, to) = (at.each(part as f64), at.each((part + 1) as f64));
+        match part {
+            0 if self.parts == 1 => at.at_most(at),
+            0 => at.below(to),
+            _ if part + 1 == self.parts => from.at_most(at),
+            _ => from.at_most(at) & at.below(to),
+        }
     }
 }
 

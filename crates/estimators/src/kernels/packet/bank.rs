@@ -35,7 +35,7 @@ pub trait Particles<S: Simd> {
     fn collide(&mut self, found: &Self::Found, numbers: &mut Numbers<S>) -> u64;
 
     /// Makes draws of the walks that ended, as bits; answers whose last ones these are.
-    fn collect(&self, ended: u64, slots: &mut Slots, buffer: &mut DrawBuffer) -> u64;
+    fn collect(&mut self, ended: u64, slots: &mut Slots, buffer: &mut DrawBuffer) -> u64;
 
     /// Begins the walks anew that ended in this step.
     fn restart(&mut self, numbers: &mut Numbers<S>);

@@ -11,10 +11,10 @@ use numeric::pack::{self, Task};
 /// How walks along a line begin.
 pub trait Walks {
     /// Eight of them on a course.
-    type Pack<S: Simd, C: BothWays<S> + Copy>: Particles<S, Found = f64x8<S>>;
+    type Pack<S: Simd, C: BothWays<f64x8<S>>>: Particles<S, Found = f64x8<S>>;
 
     /// At the beginning of a course, which lies at a distance.
-    fn begin<S: Simd, C: BothWays<S> + Copy>(
+    fn begin<S: Simd, C: BothWays<f64x8<S>>>(
         &self,
         course: C,
         from: f64x8<S>,
@@ -55,12 +55,12 @@ impl<W: Walks> Task for AlongLine<'_, '_, W> {
             Some(even) => pack::outlined(
                 simd,
                 #[inline(always)]
-                move || self.through(simd, Even::new(simd, even)),
+                move || self.through(simd, Even::new(f64x8::splat(simd, 0.0), even)),
             ),
             None => pack::outlined(
                 simd,
                 #[inline(always)]
-                move || self.through(simd, Pieces::new(simd, sampling)),
+                move || self.through(simd, Pieces::new(f64x8::splat(simd, 0.0), sampling)),
             ),
         }
     }
@@ -68,7 +68,7 @@ impl<W: Walks> Task for AlongLine<'_, '_, W> {
 
 impl<W: Walks> AlongLine<'_, '_, W> {
     #[inline(always)]
-    fn through<S: Simd, C: BothWays<S> + Copy>(self, simd: S, course: C) {
+    fn through<S: Simd, C: BothWays<f64x8<S>>>(self, simd: S, course: C) {
         let Self { walks, sampling, medium, request } = self;
         let from = f64x8::splat(simd, sampling.begin().t);
         bank::run(

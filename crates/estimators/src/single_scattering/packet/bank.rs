@@ -110,7 +110,7 @@ impl<'a, P: Pages<'a>> Task for Walks<'a, '_, P> {
     #[inline(always)]
     fn run<S: Simd>(self, simd: S) {
         let Self { frame: Frame { world, even, rays, in_space, medium }, pages, request } = self;
-        let walk = Walk::new(simd, Even::new(simd, even), world.support.from);
+        let walk = Walk::new(simd, Even::new(f64x8::splat(simd, 0.0), even), world.support.from);
         let Request { streams, count, buffer } = request;
         buffer.make_room(count);
         let turn = streams.turn;

@@ -54,7 +54,7 @@ impl World<'_> {
 /// Eight walks through σ̂ along the ray.
 #[derive(Clone, Copy)]
 pub struct Walk<'a, S: Simd> {
-    course: Even<'a, S>,
+    course: Even<'a, f64x8<S>>,
     from: f64x8<S>,
     /// Who is on its way.
     pub on: mask64x8<S>,
@@ -69,7 +69,7 @@ pub struct Walk<'a, S: Simd> {
 impl<'a, S: Simd> Walk<'a, S> {
     /// None is on its way.
     #[inline(always)]
-    pub fn new(simd: S, course: Even<'a, S>, from: f64) -> Self {
+    pub fn new(simd: S, course: Even<'a, f64x8<S>>, from: f64) -> Self {
         let (from, none) = (f64x8::splat(simd, from), mask64x8::splat(simd, false));
         Self { course, from, on: none, flew: none, inside: none, t: from }
     }

@@ -208,7 +208,7 @@ impl<S: Simd> Particles<S> for Alone<'_, S> {
     }
 
     #[inline(always)]
-    fn collect(&self, ended: u64, slots: &mut Slots, buffer: &mut DrawBuffer) -> u64 {
+    fn collect(&mut self, ended: u64, slots: &mut Slots, buffer: &mut DrawBuffer) -> u64 {
         let (media, zero) = (&self.page.media, self.score.each(0.0));
         let score = self.score / number_of_hero(self.hero, &media.chances[..media.count]);
         let mut scores = [zero; MOST_CHANNELS];

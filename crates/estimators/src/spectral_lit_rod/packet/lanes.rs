@@ -218,7 +218,7 @@ impl<S: Simd> Particles<S> for InLitRod<'_, S> {
     }
 
     #[inline(always)]
-    fn collect(&self, ended: u64, slots: &mut Slots, buffer: &mut DrawBuffer) -> u64 {
+    fn collect(&mut self, ended: u64, slots: &mut Slots, buffer: &mut DrawBuffer) -> u64 {
         collect(&self.lookups, &self.last, (ended, slots), buffer, &mut self.events.borrow_mut())
     }
 

@@ -138,7 +138,7 @@ impl<S: Simd> Particles<S> for Tracked<'_, S> {
     }
 
     #[inline(always)]
-    fn collect(&self, ended: u64, slots: &mut Slots, buffer: &mut DrawBuffer) -> u64 {
+    fn collect(&mut self, ended: u64, slots: &mut Slots, buffer: &mut DrawBuffer) -> u64 {
         let weights = &self.weights[..self.page.media.count];
         left::draws(weights, &self.lookups, (ended, slots), buffer)
     }

@@ -264,7 +264,7 @@ impl<S: Simd> Particles<S> for AlongRay<'_, S> {
     }
 
     #[inline(always)]
-    fn collect(&self, ended: u64, slots: &mut Slots, buffer: &mut DrawBuffer) -> u64 {
+    fn collect(&mut self, ended: u64, slots: &mut Slots, buffer: &mut DrawBuffer) -> u64 {
         // Who ends inside is killed.
         let hero = Lane::select(self.inside, self.hero.each(KILLED), self.hero);
         let count = self.setup.channels.len();

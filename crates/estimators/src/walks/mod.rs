@@ -1,0 +1,338 @@
+//! Walks from tentative collision to tentative collision, each written once for one lane and for packs of lanes.
+//!
+//! ```text
+//! begin
+//! repeat
+//!     fly       through an optical depth −ln u of σ̂
+//!     look up   σ_t at the tentative collision, unless the walk has left the medium
+//!     collide   another random number decides; some walks end
+//! value
+//! ```
+//!
+//! A [`Walk`] says what happens in each of these steps, for any [`Lane`]. Three drivers run it. They make the same
+//! draws, bit for bit:
+//!
+//! | driver | walks side by side | for |
+//! |---|--:|---|
+//! | [`plain`] | 1 | every walk |
+//! | [`window`] | 16 | walks whose steps all take the same random numbers: no step has a branch |
+//! | [`bank`] | 16 | all other walks |
+//!
+//! Source: F. B. Brown, W. R. Martin, *Monte Carlo methods for radiation transport analysis on vector
+//! computers*, Progress in Nuclear Energy 14 (1984), for [`window`] and [`bank`].
+
+pub mod bank;
+pub mod plain;
+mod route;
+pub mod window;
+
+use fearless_simd::{Level, Simd, SimdBase, f64x8};
+
+use crate::Setup;
+use crate::kernels::packet::{Request, pays};
+use media::course::{BothWays, Even, Pieces};
+use media::{Control, Inlined, Lookups, Piecewise};
+use numeric::pack::{self, Task};
+use numeric::rng::Random;
+use numeric::{Kept, Lane, Twin};
+
+pub use plain::draw;
+pub use route::{Nowhere, Route};
+
+/// A walk along a line, as one formula for every lane type.
+pub trait Walk: Copy {
+    /// The state of a walk, beside its position.
+    type State<L: Lane>: Kept<L::Mask>;
+
+    /// Whether a step takes a second random number, by which it is decided what happens at the collision.
+    const DECIDES: bool = true;
+
+    /// Whether a step takes no further random numbers, a draw has one channel, and its value and defect are known before
+    /// [`Walk::collide`]: the walk runs in a [`window`].
+    const IS_FIXED: bool = false;
+
+    /// Whether a walk may go on after a step without a lookup, as shadow rays do that leave the medium.
+    const PAUSES: bool = false;
+
+    /// Whether [`Walk::defect`] is more than 0.
+    const HAS_DEFECT: bool = false;
+
+    /// Whether the formula of Eq. 21 is compiled into the loop of packs, see [`Inlined`].
+    const INLINES_EQ21: bool = false;
+
+    /// Whether the formula of voxel grids is compiled into the loop of packs, see [`Inlined`].
+    const INLINES_GRID: bool = false;
+
+    /// The state at the beginning. Only lanes in `which` may take random numbers; `one` is 1 in every lane.
+    fn begin<L: Lane>(&self, one: L, which: L::Mask, random: &mut impl Random<L>)
+    -> Self::State<L>;
+
+    /// Replaces the walks that have ended, those of the lanes in `which`. A walk that overwrites parts of its state before
+    /// it reads them need not reset these.
+    #[inline(always)]
+    fn restart<L: Lane>(
+        &self,
+        state: &mut Self::State<L>,
+        which: L::Mask,
+        one: L,
+        random: &mut impl Random<L>,
+    ) {
+        state.set_where(which, self.begin(one, which, random));
+    }
+
+    /// Flies through an optical depth; answers which lanes come to a tentative collision.
+    #[inline(always)]
+    fn fly<L: Lane>(
+        &self,
+        state: &mut Self::State<L>,
+        route: &mut Route<impl BothWays<L>>,
+        depth: L,
+    ) -> L::Mask {
+        let _ = state;
+        route.here.fly(depth)
+    }
+
+    /// The distance of the tentative collision.
+    #[inline(always)]
+    fn distance<L: Lane>(&self, state: &Self::State<L>, route: &Route<impl BothWays<L>>) -> L {
+        let _ = state;
+        route.here.reached()
+    }
+
+    /// `1/σ̂` there.
+    #[inline(always)]
+    fn mean_free_path<L: Lane>(
+        &self,
+        state: &Self::State<L>,
+        route: &Route<impl BothWays<L>>,
+    ) -> L {
+        let _ = state;
+        route.here.mean_free_path()
+    }
+
+    /// Handles the collision, or that the medium was left; answers which lanes go on.
+    fn collide<L: Lane>(
+        &self,
+        state: &mut Self::State<L>,
+        route: &mut Route<impl BothWays<L>>,
+        met: &Met<L>,
+        random: &mut impl Random<L>,
+    ) -> L::Mask;
+
+    /// The number of channels of a draw.
+    #[inline(always)]
+    fn channels(&self) -> usize {
+        1
+    }
+
+    /// The value of walks that have ended, in one channel. Lanes in `left` have left the medium; the others ended at a
+    /// collision.
+    fn value<L: Lane>(&self, state: &Self::State<L>, left: L::Mask, channel: usize) -> L;
+
+    /// See [`crate::Draw::defect`].
+    #[inline(always)]
+    fn defect<L: Lane>(&self, state: &Self::State<L>, zero: L) -> L {
+        let _ = state;
+        zero
+    }
+}
+
+/// A tentative collision. Lanes that came to none have any numbers.
+#[derive(Clone, Copy)]
+pub struct Met<L: Lane> {
+    /// Lanes at a tentative collision.
+    pub inside: L::Mask,
+    /// The distance.
+    pub t: L,
+    /// `1/σ̂`.
+    pub mean_free_path: L,
+    /// `σ_t`.
+    pub extinction: L,
+    /// Uniform in `[0, 1)`, if the walk [`Walk::DECIDES`].
+    pub number: L,
+}
+
+impl<L: Lane> Met<L> {
+    /// `r = σ_t/σ̂`.
+    #[inline(always)]
+    pub fn ratio(&self) -> L {
+        self.extinction * self.mean_free_path
+    }
+}
+
+/// The fields that walks fly through.
+#[derive(Clone, Copy)]
+pub struct Ground<'a> {
+    /// σ̂.
+    pub sampling: &'a Piecewise,
+    /// σ_c.
+    pub control: &'a Control,
+    /// σ_t.
+    pub medium: &'a Lookups<'a>,
+}
+
+impl<'a> Ground<'a> {
+    /// The fields of a setup, without its control.
+    pub fn new<P>(setup: &'a Setup<P>, medium: &'a Lookups<'a>) -> Self {
+        Self { sampling: &setup.sampling, control: &Control::None, medium }
+    }
+
+    /// The fields of a setup.
+    pub fn with_control<P>(setup: &'a Setup<P>, medium: &'a Lookups<'a>) -> Self {
+        Self { sampling: &setup.sampling, control: &setup.control, medium }
+    }
+}
+
+/// Makes the draws of a request on the hardware of a level. The request is handed back where the hardware is too narrow, and
+/// where [`plain`] is faster.
+pub fn packets<'a>(
+    level: Level,
+    walk: &impl Walk,
+    ground: Ground,
+    request: Request<'a>,
+) -> Option<Request<'a>> {
+    if !pays(ground.medium, ground.sampling, ground.control) {
+        return Some(request);
+    }
+    pack::on_wide(level, SideBySide { walk, ground, request }).err().map(|task| task.request)
+}
+
+/// Makes the draws of a walk that keeps its own position, as [`packets`] does.
+pub fn packets_nowhere<'a>(
+    level: Level,
+    walk: &impl Walk,
+    medium: &Lookups,
+    request: Request<'a>,
+) -> Option<Request<'a>> {
+    pack::on_wide(level, Anywhere { walk, medium, request }).err().map(|task| task.request)
+}
+
+struct SideBySide<'a, 'r, W> {
+    walk: &'a W,
+    ground: Ground<'a>,
+    request: Request<'r>,
+}
+
+impl<W: Walk> Task for SideBySide<'_, '_, W> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<S: Simd>(self, simd: S) {
+        let Self { walk, ground: Ground { sampling, medium, .. }, request } = self;
+        let zero = f64x8::splat(simd, 0.0);
+        let Some(even) = sampling.even() else {
+            return outlined(simd, *walk, Pieces::new(zero, sampling), medium, request);
+        };
+        let course = Even::new(zero, even);
+        if !W::IS_FIXED {
+            return outlined(simd, *walk, course, medium, request);
+        }
+        if let Some(value) = medium.single_value() {
+            let value = Twin::splat(simd, value);
+            return in_window(
+                simd,
+                *walk,
+                course,
+                #[inline(always)]
+                move |_| value,
+                request,
+            );
+        }
+        match medium.inlined() {
+            Some(Inlined::Eq21(field)) if const { W::INLINES_EQ21 && pack::is_one_register::<S>() } =>
+            {
+                in_window(
+                    simd,
+                    *walk,
+                    course,
+                    #[inline(always)]
+                    move |t| each(field, t),
+                    request,
+                );
+            }
+            Some(Inlined::Grid(field)) if const { W::INLINES_GRID && pack::is_one_register::<S>() } =>
+            {
+                in_window(
+                    simd,
+                    *walk,
+                    course,
+                    #[inline(always)]
+                    move |t| each(field, t),
+                    request,
+                );
+            }
+            _ => outlined(simd, *walk, course, medium, request),
+        }
+    }
+}
+
+struct Anywhere<'a, 'r, W> {
+    walk: &'a W,
+    medium: &'a Lookups<'a>,
+    request: Request<'r>,
+}
+
+impl<W: Walk> Task for Anywhere<'_, '_, W> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<S: Simd>(self, simd: S) {
+        outlined(simd, *self.walk, Nowhere, self.medium, self.request);
+    }
+}
+
+/// Lookups by calls, in a function of its own for each course: compile time grows as the square of a function's length.
+#[inline(always)]
+fn outlined<S: Simd, W: Walk, C: BothWays<f64x8<S>>>(
+    simd: S,
+    walk: W,
+    course: C,
+    medium: &Lookups,
+    request: Request,
+) {
+    if W::IS_FIXED {
+        return in_window(
+            simd,
+            walk,
+            course,
+            #[inline(always)]
+            move |t| medium.pair(simd, t),
+            request,
+        );
+    }
+    pack::outlined(
+        simd,
+        #[inline(always)]
+        move || {
+            bank::run(
+                simd,
+                walk,
+                course,
+                #[inline(always)]
+                move |t| medium.pair(simd, t),
+                request,
+            );
+        },
+    );
+}
+
+#[inline(always)]
+fn in_window<S: Simd, W: Walk, C: BothWays<f64x8<S>>>(
+    simd: S,
+    walk: W,
+    course: C,
+    look_up: impl Fn(Twin<f64x8<S>>) -> Twin<f64x8<S>>,
+    request: Request,
+) {
+    pack::outlined(
+        simd,
+        #[inline(always)]
+        move || window::run(simd, walk, course, look_up, request),
+    );
+}
+
+/// `σ_t` of a field of a known type, with the bits of [`Lookups::pair`].
+#[inline(always)]
+fn each<S: Simd>(field: &impl media::Extinction, t: Twin<f64x8<S>>) -> Twin<f64x8<S>> {
+    Twin(field.extinction(t.0), field.extinction(t.1))
+}

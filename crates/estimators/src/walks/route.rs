@@ -1,0 +1,77 @@
+//! Positions of walks on their course through σ̂.
+
+use media::course::{BothWays, Course};
+use numeric::Lane;
+
+/// Where walks are, and a vertex to which they may return.
+#[derive(Clone, Copy)]
+pub struct Route<C> {
+    /// Where they are.
+    pub here: C,
+    vertex: C,
+}
+
+impl<C: Copy> Route<C> {
+    /// At the beginning of a course.
+    #[inline(always)]
+    pub fn new(course: C) -> Self {
+        Self { here: course, vertex: course }
+    }
+
+    /// Lanes in `which` note where they are as their vertex.
+    #[inline(always)]
+    pub fn mark_where<L: Lane>(&mut self, which: L::Mask)
+    where
+        C: BothWays<L>,
+    {
+        self.vertex.stand_as(which, &self.here);
+    }
+
+    /// Lanes in `which` return to their vertex.
+    #[inline(always)]
+    pub fn return_where<L: Lane>(&mut self, which: L::Mask)
+    where
+        C: BothWays<L>,
+    {
+        self.here.stand_as(which, &self.vertex);
+    }
+}
+
+/// The course of walks that keep their own position and never ask for this one.
+#[derive(Clone, Copy)]
+pub struct Nowhere;
+
+impl<L: Lane> Course<L> for Nowhere {
+    #[inline(always)]
+    fn fly(&mut self, depth: L) -> L::Mask {
+        depth.below(depth)
+    }
+
+    #[inline(always)]
+    fn reached(&self) -> L {
+        unreachable!("the walk keeps its own position")
+    }
+
+    #[inline(always)]
+    fn sampling(&self) -> L {
+        unreachable!("the walk keeps its own position")
+    }
+
+    #[inline(always)]
+    fn mean_free_path(&self) -> L {
+        unreachable!("the walk keeps its own position")
+    }
+
+    #[inline(always)]
+    fn restart(&mut self, _: L::Mask) {}
+}
+
+impl<L: Lane> BothWays<L> for Nowhere {
+    #[inline(always)]
+    fn fly_either_way(&mut self, depth: L, _: L::Mask) -> L::Mask {
+        depth.below(depth)
+    }
+
+    #[inline(always)]
+    fn stand_as(&mut self, _: L::Mask, _: &Self) {}
+}

@@ -1,0 +1,368 @@
+//! The driver of packs whose steps all take the same random numbers.
+//!
+//! Draw j is, bit for bit, the draw that [`super::plain`] makes from stream j mod 16.
+//!
+//! Steps have no branches: each stores a row with the values that walks have if they end here, and a bit for each
+//! lane whose walk does end here. After [`STEPS`] steps these bits are searched, and every walk that ended becomes the next
+//! draw of its lane. A walk that ends is replaced at once, so that no lane waits.
+//!
+//! How many draws a lane makes is fixed beforehand: to stop when enough draws are done would prefer short walks, which is a
+//! bias. A lane that has made its draws walks on until the others have; its stream is then set back to where its last draw
+//! left it.
+//!
+//! A block has two packs of streams, and their steps alternate: a step waits for the one before it, and the step of the
+//! other pack fills that time.
+
+use fearless_simd::{Simd, SimdBase, SimdMask, f64x8, mask64x8, u8x64, u64x8};
+
+use super::{Met, Route, Walk};
+use crate::kernels::packet::Request;
+use media::course::BothWays;
+use numeric::pack::WIDTH;
+use numeric::rng::{LANES, PACKS, Random, Stream, Xoshiro};
+use numeric::{Lane, Mask, Twin};
+
+/// Steps between two searches for walks that ended; what a lane did in them fits into a word.
+const STEPS: usize = 64;
+
+/// The value of each lane, and its defect or, where walks pause, its lookups.
+#[derive(Clone, Copy, Default)]
+#[repr(align(64))]
+struct Row([[f64; WIDTH]; 2]);
+
+/// The random numbers of a step.
+#[derive(Clone, Copy)]
+struct Numbers<L> {
+    /// An optical depth of mean 1.
+    depth: L,
+    /// Uniform in `[0, 1)`.
+    decision: L,
+}
+
+/// Walks with a fixed number of random numbers a step take no others.
+impl<L: Lane> Random<L> for Numbers<L> {
+    #[inline(always)]
+    fn uniform(&mut self) -> L {
+        self.decision
+    }
+
+    #[inline(always)]
+    fn ln_uniform(&mut self) -> L {
+        -self.depth
+    }
+
+    #[inline(always)]
+    fn uniform_where(&mut self, _: L::Mask) -> L {
+        self.decision
+    }
+
+    #[inline(always)]
+    fn ln_uniform_where(&mut self, _: L::Mask) -> L {
+        -self.depth
+    }
+}
+
+/// Eight walks. The walk itself is no part of it: a call may take its address, and would take that of the pack.
+struct Pack<L: Lane, W: Walk, C> {
+    route: Route<C>,
+    state: W::State<L>,
+    inside: L::Mask,
+    /// Lookups, where walks pause.
+    lookups: L,
+}
+
+impl<S: Simd, W: Walk, C: BothWays<f64x8<S>>> Pack<f64x8<S>, W, C> {
+    #[inline(always)]
+    fn new(simd: S, walk: &W, course: C) -> Self {
+        let (zero, all) = (f64x8::splat(simd, 0.0), mask64x8::splat(simd, true));
+        let mut none = Numbers { depth: zero, decision: zero };
+        let state = walk.begin(f64x8::splat(simd, 1.0), all, &mut none);
+        Self { route: Route::new(course), state, inside: all, lookups: zero }
+    }
+
+    /// Flies; answers the distances at which σ_t is looked up. Those of lanes that came to no collision may lie outside.
+    #[inline(always)]
+    fn fly(&mut self, walk: &W, numbers: &Numbers<f64x8<S>>) -> f64x8<S> {
+        self.inside = walk.fly(&mut self.state, &mut self.route, numbers.depth);
+        walk.distance(&self.state, &self.route)
+    }
+
+    /// Collides; answers as bits which walks end, and which are inside.
+    #[inline(always)]
+    fn collide(
+        &mut self,
+        walk: &W,
+        (t, extinction): (f64x8<S>, f64x8<S>),
+        numbers: &Numbers<f64x8<S>>,
+        row: &mut Row,
+    ) -> [u64; 2] {
+        let inside = self.inside;
+        walk.value(&self.state, !inside, 0).store_slice(&mut row.0[0]);
+        if W::HAS_DEFECT {
+            walk.defect(&self.state, t.each(0.0)).store_slice(&mut row.0[1]);
+        }
+        let mean_free_path = walk.mean_free_path(&self.state, &self.route);
+        let met = Met { inside, t, mean_free_path, extinction, number: numbers.decision };
+        if W::PAUSES {
+            self.lookups.count_where(inside);
+        }
+        let goes_on = walk.collide(&mut self.state, &mut self.route, &met, &mut { *numbers });
+        if W::PAUSES {
+            self.lookups.store_slice(&mut row.0[1]);
+            self.lookups.set_where(!goes_on, t.each(0.0));
+        }
+        walk.restart(&mut self.state, !goes_on, t.each(1.0), &mut { *numbers });
+        self.route.here.restart(!goes_on);
+        [(!goes_on).bits(), inside.bits()]
+    }
+}
+
+/// The random numbers of [`STEPS`] steps.
+struct Ahead<S: Simd> {
+    logarithms: [f64x8<S>; STEPS],
+    /// Left out where chance does not decide.
+    decisions: [f64x8<S>; STEPS],
+}
+
+impl<S: Simd> Ahead<S> {
+    #[inline(always)]
+    fn find(&mut self, step: usize, streams: &mut Xoshiro<u64x8<S>>, decides: bool) {
+        self.logarithms[step] = streams.ln_uniform();
+        if decides {
+            self.decisions[step] = streams.uniform();
+        }
+    }
+
+    #[inline(always)]
+    fn find_all(&mut self, streams: &mut Xoshiro<u64x8<S>>, decides: bool) {
+        for step in 0..STEPS {
+            self.find(step, streams, decides);
+        }
+    }
+}
+
+/// What a pack does in [`STEPS`] steps. Walks and streams are no part of it: beside arrays with an index a compiler would
+/// not keep them in registers.
+struct Window<S: Simd> {
+    ahead: Ahead<S>,
+    rows: [Row; STEPS],
+    /// A bit for each lane whose walk ended in the step.
+    ended: [u8; STEPS],
+    /// A bit for each lane that looked σ_t up in the step.
+    inside: [u8; STEPS],
+    /// Where the streams were at the first step.
+    before: Xoshiro<u64x8<S>>,
+}
+
+impl<S: Simd> Window<S> {
+    #[inline(always)]
+    fn open(simd: S, streams: &mut Xoshiro<u64x8<S>>, decides: bool) -> Self {
+        let (before, none) = (*streams, [f64x8::splat(simd, 0.0); STEPS]);
+        let mut ahead = Ahead { logarithms: none, decisions: none };
+        ahead.find_all(streams, decides);
+        let rows = [Row::default(); STEPS];
+        Self { ahead, rows, ended: [0; STEPS], inside: [0; STEPS], before }
+    }
+
+    /// The random numbers of a step.
+    #[inline(always)]
+    fn numbers(
+        &mut self,
+        step: usize,
+        streams: &mut Xoshiro<u64x8<S>>,
+        decides: bool,
+    ) -> Numbers<f64x8<S>> {
+        let depth = -self.ahead.logarithms[step];
+        if !decides {
+            return Numbers { depth, decision: depth };
+        }
+        let now = Numbers { depth, decision: self.ahead.decisions[step] };
+        // A step waits for the one before it. The numbers of the next window wait for nothing and fill the time.
+        self.ahead.find(step, streams, true);
+        now
+    }
+
+    #[inline(always)]
+    #[allow(clippy::cast_possible_truncation)] // eight bits of a mask
+    fn note(&mut self, step: usize, [ended, inside]: [u64; 2], decides: bool) {
+        self.ended[step] = ended as u8;
+        if decides {
+            self.inside[step] = inside as u8;
+        }
+    }
+
+    /// Makes draws of the walks that ended, and begins the next window, whose first numbers the streams made at `next`.
+    #[inline(always)]
+    fn turn<W: Walk>(
+        &mut self,
+        simd: S,
+        next: Xoshiro<u64x8<S>>,
+        streams: &mut Xoshiro<u64x8<S>>,
+        (draws, lanes): (&mut Draws<'_>, &mut [Stream]),
+        pack: usize,
+    ) {
+        let over = draws.collect::<W>(pack, &self.rows, &by_lanes(simd, &self.ended, &self.inside));
+        if over != [0; WIDTH] {
+            let words = if W::DECIDES { 2 } else { 1 };
+            let before = self.before.at_rest().apart();
+            let lanes = &mut lanes[pack * WIDTH..];
+            for ((stream, before), steps) in lanes.iter_mut().zip(before).zip(over) {
+                if steps > 0 {
+                    *stream = before;
+                    for _ in 0..steps * words {
+                        stream.word();
+                    }
+                }
+            }
+        }
+        self.before = next;
+        if !W::DECIDES {
+            // In a loop of their own: then all that a step needs stays in registers.
+            self.ahead.find_all(streams, false);
+        }
+    }
+}
+
+/// The steps in which a lane ended a walk, and those in which it looked σ_t up, as bits.
+#[derive(Clone, Copy, Default)]
+struct Steps {
+    ended: u64,
+    inside: u64,
+}
+
+/// Bits of lanes by steps, as bits of steps by lanes.
+#[inline(always)]
+fn by_lanes<S: Simd>(simd: S, ended: &[u8; STEPS], inside: &[u8; STEPS]) -> [Steps; WIDTH] {
+    let (ended, inside) = (u8x64::from_slice(simd, ended), u8x64::from_slice(simd, inside));
+    let mut steps = [Steps::default(); WIDTH];
+    for (lane, steps) in steps.iter_mut().enumerate() {
+        let bit = 1 << lane;
+        steps.ended = (ended & bit).simd_eq(bit).to_bitmask();
+        steps.inside = (inside & bit).simd_eq(bit).to_bitmask();
+    }
+    steps
+}
+
+/// What a lane has to do and has done.
+#[derive(Clone, Copy, Default)]
+struct Quota {
+    /// The number of its next draw.
+    draw: usize,
+    /// The number of the step in which its walk began.
+    began: u32,
+}
+
+/// What a pack has to do and has done.
+#[derive(Clone, Copy, Default)]
+struct Account {
+    quotas: [Quota; WIDTH],
+    /// How many lanes have draws left.
+    open: usize,
+    /// The number of the first step of the window.
+    first: u32,
+}
+
+/// The draws so far.
+struct Draws<'a> {
+    accounts: [Account; PACKS],
+    values: &'a mut [f64],
+    lookups: &'a mut [u32],
+    defects: &'a mut [f64],
+}
+
+impl Draws<'_> {
+    /// Makes draws of the walks of a pack that ended. Answers for each lane after how many of the steps it had made its last
+    /// draw, or 0.
+    #[inline(never)]
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // counts
+    fn collect<W: Walk>(
+        &mut self,
+        pack: usize,
+        rows: &[Row; STEPS],
+        steps: &[Steps; WIDTH],
+    ) -> [usize; WIDTH] {
+        let mut over = [0; WIDTH];
+        let Account { quotas, open, first } = &mut self.accounts[pack];
+        // All of one length, which the loop then knows.
+        let count = self.values.len().min(self.lookups.len()).min(self.defects.len());
+        let (values, lookups) = (&mut self.values[..count], &mut self.lookups[..count]);
+        let defects = &mut self.defects[..count];
+        for (lane, (quota, steps)) in quotas.iter_mut().zip(steps).enumerate() {
+            let Quota { mut draw, mut began } = *quota;
+            let mut ended = steps.ended;
+            // A lane that has made its draws walks on for nothing.
+            while ended != 0 && draw < count {
+                let step = ended.trailing_zeros() & (STEPS as u32 - 1);
+                ended &= ended - 1;
+                let [value, other] = &rows[step as usize].0;
+                values[draw] = value[lane];
+                defects[draw] = if W::HAS_DEFECT { other[lane] } else { 0.0 };
+                let now = first.wrapping_add(step);
+                lookups[draw] = if W::PAUSES {
+                    other[lane] as u32
+                } else {
+                    now.wrapping_sub(began) + (steps.inside >> step & 1) as u32
+                };
+                began = now.wrapping_add(1);
+                draw += LANES;
+                if draw >= count {
+                    *open -= 1;
+                    over[lane] = step as usize + 1;
+                }
+            }
+            *quota = Quota { draw, began };
+        }
+        *first = first.wrapping_add(STEPS as u32);
+        over
+    }
+
+    fn are_open(&self) -> bool {
+        self.accounts.iter().any(|account| account.open > 0)
+    }
+}
+
+/// Makes the draws of a request. Both packs take each step together: `look_up` answers for sixteen lanes.
+#[inline(always)]
+pub fn run<S: Simd, W: Walk, C: BothWays<f64x8<S>>>(
+    simd: S,
+    walk: W,
+    course: C,
+    look_up: impl Fn(Twin<f64x8<S>>) -> Twin<f64x8<S>>,
+    request: Request,
+) {
+    // Not in `const`: branches of other walks mention this function, too.
+    debug_assert!(W::IS_FIXED && !(W::HAS_DEFECT && W::PAUSES), "a row has one place for both");
+    let Request { streams, count, buffer } = request;
+    let Some((values, lookups, defects)) = buffer.one_channel(count) else { return };
+    let mut accounts = [Account::default(); PACKS];
+    for lane in 0..LANES {
+        let account = &mut accounts[lane / WIDTH];
+        let draw = (lane + LANES - streams.turn) % LANES;
+        account.quotas[lane % WIDTH].draw = draw;
+        account.open += usize::from(draw < count);
+    }
+    let mut draws = Draws { accounts, values, lookups, defects };
+    let [first, second] = streams.packs();
+    streams.turn = (streams.turn + count) % LANES;
+    let lanes = &mut streams.lanes[..];
+    let (mut pack, mut other) = (Pack::new(simd, &walk, course), Pack::new(simd, &walk, course));
+    let (mut streams, mut other_streams) = (first.awake(simd), second.awake(simd));
+    let mut window = Window::open(simd, &mut streams, W::DECIDES);
+    let mut other_window = Window::open(simd, &mut other_streams, W::DECIDES);
+    while draws.are_open() {
+        let (next, other_next) = (streams, other_streams);
+        for step in 0..STEPS {
+            let numbers = window.numbers(step, &mut streams, W::DECIDES);
+            let other_numbers = other_window.numbers(step, &mut other_streams, W::DECIDES);
+            let t = Twin(pack.fly(&walk, &numbers), other.fly(&walk, &other_numbers));
+            let found = look_up(t);
+            let bits = pack.collide(&walk, (t.0, found.0), &numbers, &mut window.rows[step]);
+            window.note(step, bits, W::DECIDES);
+            let bits =
+                other.collide(&walk, (t.1, found.1), &other_numbers, &mut other_window.rows[step]);
+            other_window.note(step, bits, W::DECIDES);
+        }
+        window.turn::<W>(simd, next, &mut streams, (&mut draws, &mut *lanes), 0);
+        other_window.turn::<W>(simd, other_next, &mut other_streams, (&mut draws, &mut *lanes), 1);
+    }
+}
