@@ -4,7 +4,7 @@ use super::{files, read};
 use crate::common::none;
 
 /// Beginnings of messages without a cure: an encoder or the system gave up, or the message ends in that of another error.
-const NONE: [&str; 13] = [
+const NONE: [&str; 15] = [
     "cannot encode {name} as csv",
     "cannot encode as json: {0}",
     "cannot encode as JUnit XML: {0}",
@@ -16,14 +16,26 @@ const NONE: [&str; 13] = [
     "{path}: no case file (*.toml)",
     "{} mistake(s) in {}",
     "{case}: `{estimator}`",
-    "check `{name}`: ",
+    "check `{}`: ",
+    "the estimator panicked in draw {draw}",
+    "{what} takes {wanted}, but was given {}",
     "needs {needs}, but {found}",
 ];
 
-/// The messages of the error types in a source text: the format strings of `#[error("…")]`.
+/// The messages of the error types in a source text: the format strings of `#[error("…")]`, and those that `Display` of a type
+/// named `…Error` or `…Fault` writes.
 fn messages(text: &str) -> Vec<String> {
-    let attributes = text.split("#[error(").skip(1);
-    let quoted = attributes.filter_map(|rest| rest.trim_start().strip_prefix('"'));
+    let displays = text.split("impl fmt::Display for ").skip(1).filter_map(|rest| {
+        let (name, body) = rest.split_once(" {")?;
+        let is_error = name.ends_with("Error") || name.ends_with("Fault");
+        is_error.then(|| body.split("\n}\n").next().unwrap_or(body))
+    });
+    let written = displays.flat_map(|body| {
+        let calls = body.split("write!(").skip(1).chain(body.split("f.write_str(").skip(1));
+        calls.map(|call| call.trim_start().trim_start_matches("f,").trim_start())
+    });
+    let attributes = text.split("#[error(").skip(1).map(str::trim_start);
+    let quoted = attributes.chain(written).filter_map(|rest| rest.strip_prefix('"'));
     let strings = quoted.filter_map(|rest| {
         let ends = rest.match_indices('"').find(|&(at, _)| !rest[..at].ends_with('\\'));
         ends.map(|(at, _)| rest[..at].to_owned())

@@ -46,7 +46,7 @@ impl<L: Single> Random<L> for Stream {
     #[inline(always)]
     fn ln_uniform(&mut self) -> L {
         // `1 − u` is exact.
-        L::of(1.0 - Xoshiro::uniform(self)).ln()
+        Lane::ln(L::of(1.0 - Xoshiro::uniform(self)))
     }
 
     #[inline(always)]
