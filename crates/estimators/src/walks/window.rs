@@ -3,7 +3,7 @@
 //! Draw j is, bit for bit, the draw that [`super::plain`] makes from stream j mod 16.
 //!
 //! Steps have no branches: each stores a row with the values that walks have if they end here, and a bit for each
-//! lane whose walk does end here. After [`STEPS`] steps these bits are searched, and every walk that ended becomes the next
+//! lane whose walk does end here. After 64 steps these bits are searched, and every walk that ended becomes the next
 //! draw of its lane. A walk that ends is replaced at once, so that no lane waits.
 //!
 //! How many draws a lane makes is fixed beforehand: to stop when enough draws are done would prefer short walks, which is a

@@ -57,7 +57,7 @@ pub fn join(cells: &mut Vec<Cell>, nothing: f64, length: f64, rates: &[f64]) {
 
 /// The probability of every number of events in all cells, and the densities of all heroes relative to their mean.
 ///
-/// Numbers of events are left out where they add less than [`RARE`] to the probability and to `E[X⁴]/T⁴` of every channel:
+/// Numbers of events are left out where they add less than `RARE` to the probability and to `E[X⁴]/T⁴` of every channel:
 /// a draw is at most `1/w`, so that with `T = e^{−μ̄ℓ + Σ l d}` all numbers of later events together add
 ///
 /// ```text

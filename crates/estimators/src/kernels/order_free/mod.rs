@@ -1,7 +1,7 @@
 //! Order-free draws: the walks of a request side by side, one collision after the other.
 //!
 //! Specification: the draws of a request, in no order, have the law of as many draws of
-//! [`super::walk::product`]; their numbers of lookups have the law of [`CountLaw::in_layers`].
+//! [`crate::transmittance::product`]; their numbers of lookups have the law of [`CountLaw::in_layers`].
 //!
 //! A product estimator does not care in which order its collisions come, and they lie as they like:
 //!
