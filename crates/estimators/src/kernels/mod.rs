@@ -1,8 +1,8 @@
 //! Kernels: loops that make draws, whatever the estimator. Floor 4.
 //!
 //! Walks along a line are in [`crate::walks`]. [`packet`] has the packets of chromatic media and of bidirectional paths, and
-//! the slots of particle banks; [`order_free`] takes all walks of a request through one collision after the other. What happens at a collision is
-//! the estimator's. [`hero`] is what a path scores in each channel of a chromatic medium, whoever walked it.
+//! the slots of particle banks. [`order_free`] takes all walks of a request through one collision after the other. [`hero`] is
+//! the score of a path in each channel of a chromatic medium.
 
 pub mod draw;
 pub mod hero;

@@ -3,10 +3,10 @@
 use media::course::{BothWays, Course};
 use numeric::Lane;
 
-/// Where walks are, and a vertex to which they may return.
+/// The positions of walks, and vertices to which they may return.
 #[derive(Clone, Copy)]
 pub struct Route<C> {
-    /// Where they are.
+    /// The positions.
     pub here: C,
     vertex: C,
 }

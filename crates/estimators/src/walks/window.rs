@@ -1,9 +1,9 @@
-//! The driver of packs whose steps all take the same random numbers.
+//! The driver of packs with the same random numbers in every step.
 //!
 //! Draw j is, bit for bit, the draw that [`super::plain`] makes from stream j mod 16.
 //!
-//! Steps have no branches: each stores a row with the values that walks have if they end here, and a bit for each
-//! lane whose walk does end here. After 64 steps these bits are searched, and every walk that ended becomes the next
+//! Steps have no branches: each stores a row with the values that walks have if they end here, and a bit for
+//! each lane in which the walk does end here. After 64 steps these bits are searched, and every walk that ended becomes the next
 //! draw of its lane. A walk that ends is replaced at once, so that no lane waits.
 //!
 //! How many draws a lane makes is fixed beforehand: to stop when enough draws are done would prefer short walks, which is a
@@ -120,7 +120,7 @@ impl<S: Simd, W: Walk, C: BothWays<f64x8<S>>> Pack<f64x8<S>, W, C> {
 /// The random numbers of [`STEPS`] steps.
 struct Ahead<S: Simd> {
     logarithms: [f64x8<S>; STEPS],
-    /// Left out where chance does not decide.
+    /// Not found for walks without [`Walk::DECIDES`].
     decisions: [f64x8<S>; STEPS],
 }
 
@@ -141,16 +141,16 @@ impl<S: Simd> Ahead<S> {
     }
 }
 
-/// What a pack does in [`STEPS`] steps. Walks and streams are no part of it: beside arrays with an index a compiler would
+/// [`STEPS`] steps of a pack. Walks and streams are no part of it: beside arrays with an index a compiler would
 /// not keep them in registers.
 struct Window<S: Simd> {
     ahead: Ahead<S>,
     rows: [Row; STEPS],
-    /// A bit for each lane whose walk ended in the step.
+    /// A bit for each lane in which a walk ended in the step.
     ended: [u8; STEPS],
     /// A bit for each lane that looked σ_t up in the step.
     inside: [u8; STEPS],
-    /// Where the streams were at the first step.
+    /// The streams at the first step.
     before: Xoshiro<u64x8<S>>,
 }
 
@@ -191,7 +191,7 @@ impl<S: Simd> Window<S> {
         }
     }
 
-    /// Makes draws of the walks that ended, and begins the next window, whose first numbers the streams made at `next`.
+    /// Makes draws of the walks that ended, and begins the next window. The streams made its first numbers at `next`.
     #[inline(always)]
     fn turn<W: Walk>(
         &mut self,
@@ -243,7 +243,7 @@ fn by_lanes<S: Simd>(simd: S, ended: &[u8; STEPS], inside: &[u8; STEPS]) -> [Ste
     steps
 }
 
-/// What a lane has to do and has done.
+/// The draws that a lane has made, and when its walk began.
 #[derive(Clone, Copy, Default)]
 struct Quota {
     /// The number of its next draw.
@@ -252,11 +252,11 @@ struct Quota {
     began: u32,
 }
 
-/// What a pack has to do and has done.
+/// The quotas of the lanes of a pack.
 #[derive(Clone, Copy, Default)]
 struct Account {
     quotas: [Quota; WIDTH],
-    /// How many lanes have draws left.
+    /// The number of lanes that have draws left.
     open: usize,
     /// The number of the first step of the window.
     first: u32,

@@ -1,4 +1,4 @@
-//! What a check asks of an estimator: where its draws come from, and what they should be.
+//! A check as its author builds it: the source of the draws, and what they should be.
 
 use super::made::{Closure, Factory, Sample};
 use super::outcome::{CheckError, CheckFault};
@@ -282,7 +282,7 @@ impl Said {
         if values > 1 { names.collect() } else { Vec::new() }
     }
 
-    /// What a session takes from theory.
+    /// The numbers that a session takes from theory.
     pub(super) fn taken(&self, has_lookups: bool) -> Option<Taken<'_>> {
         // Numbers of the caller's are not those that theory has the distribution of.
         let has_lookups = has_lookups && self.lookups.is_none() && self.knows_lookups();

@@ -15,7 +15,7 @@ use numeric::rng::Stream;
 
 /// One draw: a value, or several, with the number of lookups of σ_t that it took or without.
 pub trait Sample: Send {
-    /// How many values it has.
+    /// The number of its values.
     const VALUES: usize;
     /// Whether it tells the number of lookups.
     const HAS_LOOKUPS: bool = false;
@@ -23,7 +23,7 @@ pub trait Sample: Send {
     /// Adds the draw to one column for each value.
     fn append(&self, columns: &mut [Vec<f64>]);
 
-    /// The number of lookups, where it is told.
+    /// The number of lookups, if it is given.
     fn lookups(&self) -> f64 {
         0.0
     }

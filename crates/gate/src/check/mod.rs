@@ -56,7 +56,7 @@ impl<T: Sample, F: FnMut(&mut Stream) -> T, M: Fn() -> F + Sync> Planned for Che
     }
 }
 
-/// Checks that share one α: where all estimators are correct, any of them fails with chance α at most. Each has an
+/// Checks that share one α: where all estimators are correct, any of them fails with probability α at most. Each has an
 /// equal share.
 ///
 /// ```
@@ -85,7 +85,7 @@ impl<'a> Gate<'a> {
         Self::default()
     }
 
-    /// The chance that any of the checks fails where all estimators are correct.
+    /// The probability that any of the checks fails where all estimators are correct.
     pub fn alpha(mut self, alpha: f64) -> Self {
         self.alpha = alpha;
         self
@@ -109,7 +109,7 @@ impl<'a> Gate<'a> {
     ///
     /// # Panics
     ///
-    /// Any verdict is fail or inconclusive, or there is none.
+    /// Any verdict is fail or inconclusive, or there are no verdicts.
     #[track_caller]
     pub fn assert_pass(self) {
         assert!(

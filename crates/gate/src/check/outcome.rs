@@ -1,4 +1,4 @@
-//! What a check found, or why it has no verdict.
+//! The outcome of a check, or the reason that it has no verdict.
 
 use std::error::Error;
 use std::fmt;
