@@ -170,7 +170,7 @@ fn cheap(cases: &[Case], is_wanted: &dyn Fn(&str) -> bool) {
             && rounds.iter().all(|&[bare, _]: &[f64; 2]| bare < 2.0 * FAST)
         {
             let alone = per_draw(&mut |block| bare(planned, block, &mut buffer));
-            let whole = per_draw(&mut |block| drop(black_box(block::blocks(&[planned], block))));
+            let whole = per_draw(&mut |block| drop(black_box(block::Block::drawn(planned, block))));
             rounds.push([alone, whole]);
         }
         let alone = median(rounds.iter().map(|round| round[0]));

@@ -20,8 +20,7 @@ use rand::Rng;
 use rand_pcg::Pcg64;
 use trueflight::case::Case;
 use trueflight::case::Source;
-use trueflight::draw::block;
-use trueflight::estimators::{DrawBuffer, Kernel, Order};
+use trueflight::estimators::{DrawBuffer, Kernel};
 use trueflight::media::lattice::hash3;
 use trueflight::plan::Amount;
 use trueflight::plan::Options;
@@ -37,8 +36,8 @@ const BLOCKS: u64 = 16;
 /// One comparison.
 struct Contest {
     name: &'static str,
-    /// At least so many times as fast, on AVX-512: ordered, and order-free; `None` without order-free draws.
-    targets: Option<[f64; 2]>,
+    /// At least so many times as fast on AVX-512; `None` for no target.
+    target: Option<f64>,
     case: &'static str,
     textbook: fn(&mut Pcg64) -> f64,
 }
@@ -58,39 +57,29 @@ const NOISE: &str = "volume.noise = { extinction = 1, octaves = 12, seed = 1 }
     sampling.constant.value = 1";
 
 const CONTESTS: [Contest; 6] = [
-    Contest {
-        name: "Eq. 21, ratio",
-        targets: Some([15.0, 33.0]),
-        case: "ratio",
-        textbook: eq21_ratio,
-    },
+    Contest { name: "Eq. 21, ratio", target: Some(15.0), case: "ratio", textbook: eq21_ratio },
     Contest {
         name: "Eq. 21, woodcock",
-        targets: Some([15.0, 30.0]),
+        target: Some(15.0),
         case: "woodcock",
         textbook: eq21_woodcock,
     },
     Contest {
         name: "Eq. 21, next-flight",
-        targets: None,
+        target: None,
         case: "next-flight",
         textbook: eq21_next_flight,
     },
-    Contest {
-        name: "128³ grid, ratio",
-        targets: Some([6.0, 10.0]),
-        case: "grid",
-        textbook: grid_ratio,
-    },
+    Contest { name: "128³ grid, ratio", target: Some(6.0), case: "grid", textbook: grid_ratio },
     Contest {
         name: "12-octave noise, ratio",
-        targets: Some([8.0, 10.0]),
+        target: Some(8.0),
         case: "noise",
         textbook: noise_ratio,
     },
     Contest {
         name: "homogeneous, ratio",
-        targets: Some([7.0, 7.0]),
+        target: Some(7.0),
         case: "homogeneous",
         textbook: homogeneous,
     },
@@ -301,25 +290,14 @@ fn of_kernel(planned: &Planned, kernel: Kernel, round: u64) -> (f64, f64) {
     (seconds / draws as f64, sum / draws as f64)
 }
 
-fn kernels() -> Vec<(&'static str, Order, Kernel)> {
+fn kernels() -> Vec<(&'static str, Kernel)> {
     let best = Level::new();
-    let (ordered, free) = (Order::Along, Order::Free);
-    let mut kernels = vec![
-        ("ordered", ordered, Kernel::Packets(best)),
-        ("order-free", free, Kernel::Packets(best)),
-    ];
+    let mut kernels = vec![("packets", Kernel::Packets(best))];
     #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
-    {
-        let levels = [
-            ("ordered, avx2", ordered, best.as_avx2().map(Level::Avx2)),
-            ("order-free, avx2", free, best.as_avx2().map(Level::Avx2)),
-            ("order-free, sse2", free, best.as_sse2().map(Level::Sse2)),
-        ];
-        kernels.extend(levels.into_iter().filter_map(|(name, order, level)| {
-            level.map(|level| (name, order, Kernel::Packets(level)))
-        }));
+    if let Some(level) = best.as_avx2() {
+        kernels.push(("packets, avx2", Kernel::Packets(Level::Avx2(level))));
     }
-    kernels.push(("one by one", ordered, Kernel::Single));
+    kernels.push(("one by one", Kernel::Single));
     kernels
 }
 
@@ -328,48 +306,15 @@ fn median(values: &mut [f64]) -> f64 {
     values[values.len() / 2]
 }
 
-/// How much a sweep of eight σ̂ gains by looking the medium up once for all.
-fn sharing(name: &str, field: &str) {
-    let field = field.rsplit_once("sampling.").map_or(field, |(field, _)| field);
-    let text = format!(
-        "title = \"{name}\"\nkernel = \"order-free\"\n[problem.transmittance]\n{field}
-        sweep.sampling = {{ from = 0.7, to = 2, points = 8 }}\nestimators = [{{ ratio = {{}} }}]"
-    );
-    let source = Source { name: name.into(), path: format!("{name}.toml").into(), text };
-    let cases = [Case::read(&source).unwrap_or_else(|error| panic!("{}", error.render(false)))];
-    let options = Options { draws: Amount::Exactly(BLOCK), ..Options::default() };
-    let mut plan = Plan::new(&cases, &options);
-    // Nothing is asked of the draws: only their making is timed.
-    plan.cases[0].experiments.iter_mut().for_each(|planned| planned.questions.clear());
-    let all: Vec<&Planned> = plan.cases[0].experiments.iter().collect();
-    let time = |f: &dyn Fn()| {
-        let begin = ThreadTime::now();
-        f();
-        begin.elapsed().as_secs_f64()
-    };
-    let mut ratios = Vec::new();
-    for _ in 0..ROUNDS {
-        let alone = time(&|| {
-            for planned in &all {
-                black_box(block::blocks(&[planned], 0));
-            }
-        });
-        ratios.push(alone / time(&|| drop(black_box(block::blocks(&all, 0)))));
-    }
-    println!("\n{name}, eight σ̂ on shared lookups {:.2}×", median(&mut ratios));
-}
-
 fn main() {
     println!("{:?}, {ROUNDS} rounds, processor time of one draw", Level::new());
     let word = std::env::args().skip(1).find(|word| !word.starts_with('-')).unwrap_or_default();
     for contest in CONTESTS.into_iter().filter(|contest| contest.name.contains(&word)) {
-        let mut cases = [case(contest.case), case(contest.case)];
-        cases[1].draw_by(Order::Free);
+        let cases = [case(contest.case)];
         let options = Options { draws: Amount::Exactly(BLOCK), ..Options::default() };
         let plan = Plan::new(&cases, &options);
-        let of = |order| &plan.cases[usize::from(order == Order::Free)].experiments[0];
-        let mut kernels = kernels();
-        kernels.retain(|&(_, order, _)| order == Order::Along || contest.targets.is_some());
+        let planned = &plan.cases[0].experiments[0];
+        let kernels = kernels();
         let (mut book, mut book_mean) = (Vec::new(), 0.0);
         let mut times = vec![Vec::new(); kernels.len()];
         let mut ratios = vec![Vec::new(); kernels.len()];
@@ -378,28 +323,23 @@ fn main() {
             let (textbook, mean) = of_textbook(contest.textbook, round as u128);
             book.push(textbook);
             book_mean += mean / ROUNDS as f64;
-            for (i, (_, order, kernel)) in kernels.iter().enumerate() {
-                let (time, mean) = of_kernel(of(*order), *kernel, round as u64);
+            for (i, (_, kernel)) in kernels.iter().enumerate() {
+                let (time, mean) = of_kernel(planned, *kernel, round as u64);
                 times[i].push(time);
                 ratios[i].push(textbook / time);
                 means[i] += mean / ROUNDS as f64;
             }
         }
-        let targets = contest.targets.map(|[a, b]| format!(" (targets {a}×, order-free {b}×)"));
-        println!("\n{}{}", contest.name, targets.unwrap_or_default());
+        let target = contest.target.map(|target| format!(" (target {target}×)"));
+        println!("\n{}{}", contest.name, target.unwrap_or_default());
         println!(
             "  {:16} {:8.2} ns          mean {book_mean:.5}",
             "textbook",
             1e9 * median(&mut book)
         );
-        for (i, (name, ..)) in kernels.iter().enumerate() {
+        for (i, (name, _)) in kernels.iter().enumerate() {
             let (time, ratio) = (1e9 * median(&mut times[i]), median(&mut ratios[i]));
             println!("  {name:16} {time:8.2} ns {ratio:7.2}× mean {:.5}", means[i]);
         }
-    }
-    if "sharing".contains(&word) {
-        sharing("Eq. 21", EQ21);
-        sharing("128³ grid", GRID);
-        sharing("12-octave noise", NOISE);
     }
 }

@@ -78,11 +78,6 @@ fn eq21(name: &str, estimators: &str) -> Case {
 
 fn main() {
     let both = "{ ratio = {} }, { double = {} }";
-    let sampling = ["0.6", "0.8", "1", "1.2", "1.5", "2", "2.5", "3"];
-    let one = |x: &str| {
-        format!("{{ ratio = {{ kernel = \"order-free\", sampling.constant.value = {x} }} }}")
-    };
-    let sweep = sampling.map(one).join(", ");
     let pairs = [
         Pair {
             name: "a ray clipped to where the field is (1 of 4)",
@@ -103,11 +98,6 @@ fn main() {
             name: "ratio and double are the same",
             skipping: vec![eq21("both", both)],
             whole: vec![eq21("ratio", "{ ratio = {} }"), eq21("double", "{ double = {} }")],
-        },
-        Pair {
-            name: "eight order-free experiments share lookups",
-            skipping: vec![eq21("sweep", &sweep)],
-            whole: sampling.map(|x| eq21(x, &one(x))).into(),
         },
     ];
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("a thread");

@@ -8,7 +8,7 @@
 //! theory has a variance, it should follow √(V/n).
 
 use crate::plan::Planned;
-use estimators::{DrawBuffer, Order};
+use estimators::DrawBuffer;
 use gate::stats::Tally;
 
 /// The first point of a curve.
@@ -58,13 +58,7 @@ impl Sample {
             |_| Vec::new(),
             |ready| ready.prediction.channels.iter().map(|channel| channel.truth.value).collect(),
         );
-        let mut sample = Self::about(&truths, draws);
-        if planned.outcome.as_ref().is_ok_and(|ready| ready.experiment.order() == Order::Free) {
-            // Draws of a request come sorted: only whole requests are a sample.
-            let length = DrawBuffer::length(truths.len()) as u64;
-            sample.looks.retain(|&look| look % length == 0 || look == draws);
-        }
-        sample
+        Self::about(&truths, draws)
     }
 
     /// About these truths, one to a channel.

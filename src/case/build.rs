@@ -7,7 +7,7 @@ use std::sync::Arc;
 use crate::case::estimator::{Defaults, Estimators};
 use estimators::recipes::sampling;
 use estimators::trial::Entry;
-use estimators::{Estimated, Experiment, Order, RayView, Refusal, Setup};
+use estimators::{Estimated, Experiment, RayView, Refusal, Setup};
 use media::body::RayNeed;
 use media::catalogue::Settings;
 use media::{Body, Control, Medium, Piecewise};
@@ -108,16 +108,10 @@ pub trait AnyProblem: Send + Sync {
     fn fitting_control(&self, estimator: usize, parts: Parts) -> Result<Control, Refusal>;
 
     /// An experiment with its prediction; a `forced` one is drawn outside its domain, too.
-    fn prepare(
-        &self,
-        estimator: usize,
-        parts: Parts,
-        order: Order,
-        forced: bool,
-    ) -> Result<Ready, Refusal>;
+    fn prepare(&self, estimator: usize, parts: Parts, forced: bool) -> Result<Ready, Refusal>;
 
     /// Prediction without distributions; `None` if the experiment is refused.
-    fn predict(&self, estimator: usize, parts: Parts, order: Order) -> Option<Prediction>;
+    fn predict(&self, estimator: usize, parts: Parts) -> Option<Prediction>;
 
     /// The ray seen from the side, for estimators of a curve.
     fn ray_view(&self, estimator: usize, parts: Parts, address: Address) -> Option<RayView>;
@@ -163,12 +157,6 @@ impl<P: Estimated> Typed<P> {
     }
 }
 
-/// Prediction of the draws of a kernel.
-fn predict<P: Estimated>(entry: &dyn Entry<P>, setup: &Setup<P>, order: Order) -> Prediction {
-    let prediction = entry.predict(setup);
-    if order == Order::Free { prediction.order_free() } else { prediction }
-}
-
 impl<P: Estimated> AnyProblem for Typed<P> {
     fn problem(&self) -> &dyn Any {
         &*self.problem
@@ -191,36 +179,26 @@ impl<P: Estimated> AnyProblem for Typed<P> {
         self.joined(estimator, parts).map(|setup| setup.control)
     }
 
-    fn prepare(
-        &self,
-        estimator: usize,
-        parts: Parts,
-        order: Order,
-        forced: bool,
-    ) -> Result<Ready, Refusal> {
+    fn prepare(&self, estimator: usize, parts: Parts, forced: bool) -> Result<Ready, Refusal> {
         let albedo = parts.albedo;
         let setup = self.joined(estimator, parts)?;
-        if order == Order::Free {
-            let needs = "∫σ̂ ≤ 1e6 for order-free draws (the ordered kernel has no such limit)";
-            setup.require_few_collisions(needs)?;
-        }
         self.with_entry(estimator, albedo, |entry| {
             let prediction = match entry.domain(&setup) {
-                Ok(()) => predict(entry, &setup, order),
+                Ok(()) => entry.predict(&setup),
                 // Forced: the formulas do not hold here, only the truth does.
                 Err(_) if forced => entry.predict(&setup).only_the_truth(),
                 Err(refusal) => return Err(refusal),
             };
-            Ok(Ready { experiment: entry.experiment(setup, order), prediction })
+            Ok(Ready { experiment: entry.experiment(setup), prediction })
         })
     }
 
-    fn predict(&self, estimator: usize, parts: Parts, order: Order) -> Option<Prediction> {
+    fn predict(&self, estimator: usize, parts: Parts) -> Option<Prediction> {
         let albedo = parts.albedo;
         let setup = Setup { laws: false, ..self.joined(estimator, parts).ok()? };
         self.with_entry(estimator, albedo, |entry| {
             entry.domain(&setup).ok()?;
-            Some(predict(entry, &setup, order))
+            Some(entry.predict(&setup))
         })
     }
 

@@ -6,7 +6,7 @@ use estimators::own::EstimatorReader;
 use estimators::recipes::sampling::spectral::Spectral;
 use estimators::recipes::{controls, sampling};
 use estimators::trial::Entry;
-use estimators::{Estimated, Inputs, Order};
+use estimators::{Estimated, Inputs};
 use media::Body;
 use media::catalogue::{Page, Settings, Value};
 
@@ -16,8 +16,6 @@ pub struct Features {
     pub inputs: Inputs,
     /// Inputs that it takes with some settings.
     pub may_take: Inputs,
-    /// Whether the order of its collisions may be free.
-    pub is_order_free: bool,
     /// The estimator that it is by definition without a control.
     pub alias: Option<&'static str>,
     /// The control that it uses where the case gives none.
@@ -33,7 +31,6 @@ impl Features {
         Self {
             inputs: entry.inputs(),
             may_take: entry.may_take(),
-            is_order_free: entry.is_order_free(),
             alias: entry.without_control(),
             default_control: entry.default_control(),
             needs: entry.needs(),
@@ -54,8 +51,6 @@ pub struct ParsedEstimator {
     pub control: Option<Box<dyn controls::Recipe>>,
     /// Whether the case declares it biased.
     pub expect_biased: bool,
-    /// Kernel that the case asks for.
-    pub order: Order,
 }
 
 /// Settings for all estimators of a case that have none of their own.
@@ -63,8 +58,6 @@ pub struct ParsedEstimator {
 pub struct Defaults {
     /// Whether they are declared biased.
     pub expect_biased: bool,
-    /// The kernel of those that have it.
-    pub order: Order,
     /// Whether there is a σ̂ for all.
     pub sampling: bool,
     /// Swept quantity.
@@ -76,12 +69,6 @@ pub struct Defaults {
 /// Reads `expect = "biased"`; `None` after a mistake.
 pub fn read_expect(settings: &Settings) -> Option<bool> {
     settings.word_or("expect", &["unbiased", "biased"], "unbiased").map(|word| word == "biased")
-}
-
-/// Reads `kernel = "order-free"`; `None` after a mistake.
-pub fn read_kernel(settings: &Settings) -> Option<Order> {
-    let words = Order::ALL.map(Order::word);
-    settings.word_or("kernel", &words, Order::default().word()).and_then(Order::of)
 }
 
 /// The forms of `sampling` and `control`, for messages.
@@ -129,18 +116,9 @@ fn read_sampling(
 }
 
 impl ParsedEstimator {
-    /// In which order the collisions of its draws come.
-    pub fn order(&self) -> Order {
-        if self.features.is_order_free { self.order } else { Order::Along }
-    }
-
-    /// A name with its own settings, as in `single (terminating, order-free)`.
+    /// A name with its own settings, as in `single (terminating)`.
     fn label_of(&self, name: &str, albedo: bool) -> EstimatorName {
-        let mut settings = self.features.label[usize::from(albedo)].clone();
-        if self.order() == Order::Free {
-            let comma = if settings.is_empty() { "" } else { ", " };
-            settings = format!("{settings}{comma}{}", Order::Free.word());
-        }
+        let settings = self.features.label[usize::from(albedo)].clone();
         EstimatorName { name: name.to_owned(), settings }
     }
 
@@ -154,7 +132,7 @@ impl ParsedEstimator {
         self.features.alias.map(|name| self.label_of(name, true))
     }
 
-    /// Reads what `{ NAME = { …, sampling, control, expect, kernel } }` says beside the estimator's own settings.
+    /// Reads what `{ NAME = { …, sampling, control, expect } }` says beside the estimator's own settings.
     fn read(
         name: &str,
         features: Option<Features>,
@@ -167,8 +145,6 @@ impl ParsedEstimator {
         } else {
             Some(defaults.expect_biased)
         };
-        let own_kernel = settings.has("kernel");
-        let order = if own_kernel { read_kernel(settings) } else { Some(defaults.order) };
         let Some(features) = features else {
             // The page's own mistakes are listed; what it would have taken is not known.
             settings.entry("sampling");
@@ -177,7 +153,7 @@ impl ParsedEstimator {
             return None;
         };
         // What the page takes with other settings is read, and not used.
-        let Features { inputs, may_take, is_order_free, .. } = features;
+        let Features { inputs, may_take, .. } = features;
         let sampling = if may_take.sampling {
             let read = read_sampling(settings, body);
             read.map(|sampling| sampling.filter(|_| inputs.sampling))
@@ -195,10 +171,6 @@ impl ParsedEstimator {
             let help = "add `sampling = …` to it or to the problem, or sweep it";
             settings.fault_at(settings.span.clone(), "", message, help);
         }
-        if own_kernel && order == Some(Order::Free) && !is_order_free {
-            let message = format!("`{name}` has no order-free kernel");
-            settings.fault("kernel", message, "product estimators have one; leave `kernel` out");
-        }
         settings.close();
         Some(Self {
             name: name.to_owned(),
@@ -206,7 +178,6 @@ impl ParsedEstimator {
             sampling: sampling?,
             control: control?,
             expect_biased: own_expect?,
-            order: order?,
         })
     }
 }

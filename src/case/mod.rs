@@ -9,7 +9,6 @@
 //! | `tolerance.variance` | ε of variances, relative | what the draws see, at most 0.2 |
 //! | `tolerance.lookups` | ε of the numbers of lookups, relative | what the draws see, at most 0.02 |
 //! | `underpowered` | `"allow"`: a mean that cannot pass with so many draws is no reason for exit code 3 | `"refuse"` |
-//! | `kernel` | how product estimators draw: `"ordered"`, collision after collision along the ray, or `"order-free"`, faster, other draws of the same law; `--kernel` overrides it | `"ordered"` |
 //! | `expect` | `"biased"`: passes only if the bias is shown, and estimators outside their domain are drawn | `"unbiased"` |
 //! | `problem.NAME` | what is sought, one of the names of `trueflight list problems` | required |
 //!
@@ -55,11 +54,11 @@ pub const CATALOGUE: PageList = PageList {
 
 use std::path::PathBuf;
 
-use crate::case::estimator::{Defaults, read_expect, read_kernel};
+use crate::case::estimator::{Defaults, read_expect};
 use crate::case::id::ExperimentId;
 use crate::case::scenario::Held;
 use crate::case::sweep::{SweepAxis, Variation, What};
-use estimators::{Order, Refusal};
+use estimators::Refusal;
 use media::Body;
 use media::catalogue::additions::{self, Additions};
 use media::catalogue::{Domain, Fault, Page, PageList, Settings, Value};
@@ -180,10 +179,7 @@ impl Case {
             return Ok(At::new(self, Held::Listed(known), variation));
         }
         match read_varied(&self.spec, &self.scenario, what, value) {
-            Ok(mut scenario) => {
-                scenario.draw_by(|estimator| self.scenario.wished_order(estimator));
-                Ok(At::new(self, Held::Beside(Box::new(scenario)), variation))
-            }
+            Ok(scenario) => Ok(At::new(self, Held::Beside(Box::new(scenario)), variation)),
             Err(faults) => {
                 let needs = "a case that can be read at this value of the sweep";
                 let found = faults.first().map_or_else(String::new, |fault| fault.message.clone());
@@ -205,14 +201,6 @@ impl Case {
 
     fn as_written(&self, variation: Variation) -> At<'_> {
         At::new(self, Held::Listed(&self.scenario), variation)
-    }
-
-    /// Draws by a kernel, whatever the case says, where an estimator has it.
-    pub fn draw_by(&mut self, order: Order) {
-        let varied = self.varied.iter_mut().map(|(_, scenario)| scenario);
-        for scenario in std::iter::once(&mut self.scenario).chain(varied) {
-            scenario.draw_by(|_| order);
-        }
     }
 
     /// Address of the random numbers of an estimator's pilot rays. It is the same all along a sweep, so that the theory's
@@ -249,9 +237,9 @@ struct Problem {
     sweep: Option<SweepAxis>,
 }
 
-/// Reads `expect`, `kernel` and `problem`, and not what is beside them.
+/// Reads `expect` and `problem`, and not what is beside them.
 fn read_problem(root: &Settings) -> Option<Problem> {
-    let (expect_biased, order) = (read_expect(root), read_kernel(root));
+    let expect_biased = read_expect(root);
     let names: Vec<String> = problems::CATALOGUE.pages.iter().map(Page::name).collect();
     let (index, settings) = root.chosen("problem", &names)?;
     let kind = build::kind(index);
@@ -259,16 +247,12 @@ fn read_problem(root: &Settings) -> Option<Problem> {
     let body = body.filter(|body| kind.spectral || has_one_channel(&settings, body));
     let sweep = read_sweep(&settings);
     let swept = sweep.as_ref().and_then(|sweep| sweep.as_ref()).map(|axis| axis.what);
-    let defaults = Defaults {
-        expect_biased: expect_biased.unwrap_or_default(),
-        order: order.unwrap_or_default(),
-        swept,
-        ..Defaults::default()
-    };
+    let defaults =
+        Defaults { expect_biased: expect_biased.unwrap_or_default(), swept, ..Defaults::default() };
     let scenario = Scenario::read(&kind, &settings, body.as_ref(), defaults);
     settings.close();
     let (scenario, sweep) = (scenario?, sweep?);
-    expect_biased.and(order)?;
+    expect_biased?;
     let none_has = |what| !(0..scenario.estimators()).any(|e| scenario.depends_on(e, what));
     if swept.is_some_and(|what| what == What::Albedo && none_has(what)) {
         let help = "those of colours are swept by `albedo-scale`";

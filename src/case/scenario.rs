@@ -12,7 +12,7 @@ use crate::case::estimator::{Defaults, Estimators};
 use crate::case::id::{EstimatorName, ExperimentId, Number, SamplingName, SweepPoint};
 use crate::case::sweep::{Variation, What};
 use estimators::recipes::{controls, sampling};
-use estimators::{Order, RayView, Refusal, Site};
+use estimators::{RayView, Refusal, Site};
 use media::body::RayNeed;
 use media::catalogue::Settings;
 use media::{Body, Control, Medium, Piecewise, misses};
@@ -82,18 +82,6 @@ impl Scenario {
     /// The field's name in the catalogue.
     pub fn medium(&self) -> &str {
         self.body.name()
-    }
-
-    /// Draws by a kernel where an estimator has it, estimator by estimator.
-    pub(super) fn draw_by(&mut self, order: impl Fn(usize) -> Order) {
-        for (number, estimator) in self.estimators.list.iter_mut().enumerate() {
-            estimator.order = order(number);
-        }
-    }
-
-    /// Kernel that the case asks for.
-    pub(super) fn wished_order(&self, estimator: usize) -> Order {
-        self.estimators.list[estimator].order
     }
 
     /// Whether an estimator depends on a swept quantity.
@@ -309,8 +297,7 @@ impl<'a> At<'a> {
         let (scenario, variation) = (self.scenario(), self.variation());
         let (parts, setup_lookups) = scenario.parts(estimator, variation, None, address)?;
         let parsed = &scenario.estimators.list[estimator];
-        let mut ready =
-            scenario.problem.prepare(estimator, parts, parsed.order(), parsed.expect_biased)?;
+        let mut ready = scenario.problem.prepare(estimator, parts, parsed.expect_biased)?;
         ready.prediction.setup_lookups = setup_lookups;
         refuse_what_cannot_be_computed(ready)
     }
@@ -324,8 +311,7 @@ impl<'a> At<'a> {
     ) -> Option<Prediction> {
         let (scenario, variation) = (self.scenario(), self.variation());
         let (parts, setup_lookups) = scenario.parts(estimator, variation, what_if, pilots).ok()?;
-        let order = scenario.estimators.list[estimator].order();
-        let prediction = scenario.problem.predict(estimator, parts, order)?;
+        let prediction = scenario.problem.predict(estimator, parts)?;
         Some(Prediction { setup_lookups, ..prediction })
     }
 

@@ -40,8 +40,6 @@ pub struct Subject<'a> {
     pub expect_biased: bool,
     /// Whether an invariant holds for each draw, see [`estimators::Draw::defect`].
     pub has_invariant: bool,
-    /// Whether draws come one like the other; order-free ones come sorted by their lookups.
-    pub is_in_turn: bool,
     /// Spreads of pilot draws, channel by channel, where theory has none.
     pub pilots: Option<&'a [Pilot]>,
 }

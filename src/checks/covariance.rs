@@ -59,7 +59,6 @@ pub fn of(prediction: &Prediction, draws: u64, values: usize) -> Vec<(String, im
         tolerance: Tolerance::default(),
         expect_biased: false,
         has_invariant: false,
-        is_in_turn: true,
         pilots: None,
     };
     let asked = scalars(&subject).filter(|asked| asked.channel < values);

@@ -13,7 +13,6 @@
 
 use super::check::{Question, Subject};
 use super::law::{Inspected, Inspection};
-use estimators::Order;
 use gate::stats::{correlation, ties};
 
 /// The streams of how many blocks are compared.
@@ -43,11 +42,7 @@ pub fn questions(subject: &Subject) -> Vec<Question> {
 
 /// The words of a block as the draws use them.
 fn words(inspected: &Inspected, block: u64) -> Box<dyn Iterator<Item = u64>> {
-    let streams = (inspected.streams)(block);
-    match inspected.experiment.order() {
-        Order::Along => Box::new(streams.words()),
-        Order::Free => Box::new(streams.branched_words()),
-    }
+    Box::new((inspected.streams)(block).words())
 }
 
 fn p_value(inspected: &Inspected) -> f64 {

@@ -68,7 +68,7 @@ pub fn questions(subject: &Subject) -> Vec<Question> {
     let enough = blocks >= FEWEST && (kurtosis - 3.0) <= MOST_EXCESS * blocks as f64;
     let eighth = channel.tails.eighth_moment_ratio * kurtosis * kurtosis;
     let by_one = eighth / (6.0 * FIRST as f64 * (blocks as f64).powi(3));
-    let enough = enough && by_one <= MOST_BY_ONE && subject.is_in_turn;
+    let enough = enough && by_one <= MOST_BY_ONE;
     let (mean, scale) = (channel.mean.value, 1.0 / moments.variance().sqrt());
     let law = IndexSums { mean, scale, kurtosis };
     Question::law("the sums across streams", enough.then_some(law))

@@ -11,7 +11,7 @@ use super::reports::Reports;
 use super::run::{self, Kept, RUN};
 use super::{Console, journal};
 use crate::case::Catalogue;
-use crate::draw::share::pieces;
+use crate::draw::share;
 use crate::draw::store::{Header, Key, Log, Store};
 use crate::plan::Plan;
 use crate::record::baseline::fingerprint;
@@ -70,8 +70,7 @@ struct Part<'a> {
 impl Part<'_> {
     /// Returns whether it has all blocks of its share, and no others.
     fn has_all(&self, plan: &Plan, keys: &[u64]) -> bool {
-        let pieces = self.header.share.into_iter().flat_map(|share| pieces(plan, share));
-        let names = pieces.flat_map(|piece| piece.blocks().collect::<Vec<_>>());
+        let names = self.header.share.into_iter().flat_map(|share| share::blocks(plan, share));
         let mut keys = names.map(|(one, block)| Key::Block(keys[one as usize], block));
         let mut blocks = 0;
         let has_key = |key| {

@@ -69,7 +69,7 @@ pub struct Kept {
     fresh: bool,
     /// Resume the interrupted run in this folder; its own command says what is drawn
     #[arg(long, value_name = "DIR", conflicts_with_all = [
-        "cases", "filter", "kernel", "seed", "draws", "alpha", "out", "fixed_draws", "fresh", "strict", "blocks_per_look", "shard",
+        "cases", "filter", "seed", "draws", "alpha", "out", "fixed_draws", "fresh", "strict", "blocks_per_look", "shard",
     ])]
     resume: Option<PathBuf>,
     /// Draw a share of all blocks, such as part 3 of 16, and judge nothing: that does `trueflight merge`
@@ -203,8 +203,8 @@ fn draw_share(
             return Ok((true, true));
         }
         // A share is drawn up to the horizon: nobody looks at it before all shares are there.
-        let steps = share::pieces(plan, share).map(|piece| piece.experiments.len() as u64);
-        let bar = output::progress("drawing", "draws", steps.sum::<u64>() * plan.step(), console);
+        let blocks = share::blocks(plan, share).count() as u64;
+        let bar = output::progress("drawing", "draws", blocks * plan.step(), console);
         let is_whole = run::draw_share(plan, share, &store, &|step| match step {
             Step::Drawn(draws) => bar.inc(draws),
             Step::Kept(draws) => bar.dec_length(draws),

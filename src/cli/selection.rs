@@ -8,7 +8,6 @@ use super::numbers::{self, Budget};
 use super::{Console, output};
 use crate::case::{Case, Catalogue, suite};
 use crate::plan::{Amount, Filter, Options, Plan};
-use estimators::Order;
 
 /// Experiments, and where their random numbers begin.
 #[derive(Debug, Clone, Args)]
@@ -21,10 +20,6 @@ pub struct Experiments {
     /// Only experiments that match: a case, an estimator, or `case:estimator`, with `*` and `?`
     #[arg(long, value_name = "GLOB", value_parser = Names::Experiments, hide_possible_values = true)]
     filter: Option<String>,
-    /// How product estimators draw, whatever the cases say: `ordered` along the ray, or `order-free`,
-    /// faster, other draws of the same law [default: the case's, or ordered]
-    #[arg(long, value_name = "KERNEL", value_parser = kernel)]
-    kernel: Option<Order>,
     #[command(flatten)]
     seed: Seed,
 }
@@ -127,11 +122,6 @@ impl Experiments {
                 .named(name)
                 .map_or_else(|found| errors.extend(found), |found| cases.extend(found));
         }
-        if let Some(order) = self.kernel {
-            for case in &mut cases {
-                case.draw_by(order);
-            }
-        }
         if errors.is_empty() {
             return distinct(cases);
         }
@@ -142,8 +132,7 @@ impl Experiments {
     pub fn options(&self, draws: Amount) -> anyhow::Result<Options> {
         let filter = self.filter.as_deref().map(Filter::new).transpose();
         let filter = filter.context("--filter takes a pattern such as \"*eq21*:single\"")?;
-        let (seed, kernel) = (self.seed.seed, self.kernel);
-        Ok(Options { seed, draws, kernel, filter, ..Options::default() })
+        Ok(Options { seed: self.seed.seed, draws, filter, ..Options::default() })
     }
 
     /// Plans the cases, with a bar of progress; a selection that keeps nothing is an error.
@@ -232,9 +221,4 @@ fn distinct(cases: Vec<Case>) -> anyhow::Result<Vec<Case>> {
         }
     }
     Ok(kept)
-}
-
-/// Reads a kernel's name.
-fn kernel(text: &str) -> Result<Order, String> {
-    Order::of(text).ok_or_else(|| "it takes `ordered` or `order-free`".into())
 }

@@ -8,7 +8,6 @@
 use std::cell::RefCell;
 
 use cpu_time::ThreadTime;
-use fearless_simd::Level;
 use serde::{Deserialize, Serialize};
 
 use crate::case::Ready;
@@ -16,7 +15,6 @@ use crate::checks::batch::Batch;
 use crate::checks::check::{Observer, Place, Total};
 use crate::plan::{BLOCK, Planned, PlannedCase};
 use estimators::DrawBuffer;
-use estimators::kernels::order_free::{OrderFree, Request};
 use gate::stats::Tally;
 use numeric::rng::Streams;
 
@@ -35,57 +33,44 @@ pub struct Block {
     pub seconds: f64,
 }
 
-/// Draws a block of an experiment, or the same block of several that share their lookups. Each makes
-/// the draws that it would make alone; the processor time is shared out evenly.
-pub fn blocks(group: &[&Planned], block: u64) -> Vec<Option<Block>> {
-    // Processor time, not wall time: other processes do not count.
-    let begin = ThreadTime::now();
-    let mut drawings: Vec<Option<Drawing>> =
-        group.iter().map(|planned| Drawing::begin(planned, block)).collect();
-    loop {
-        let open = drawings.iter_mut().flatten().filter(|drawing| drawing.count() > 0);
-        let mut open: Vec<&mut Drawing> = open.collect();
-        match &mut open[..] {
-            [] => break,
-            [drawing] => drawing.fill(),
-            several => fill_together(several),
-        }
-        open.into_iter().for_each(Drawing::absorb);
-    }
-    let seconds = begin.elapsed().as_secs_f64() / group.len() as f64;
-    drawings.into_iter().map(|drawing| drawing.map(|drawing| drawing.close(seconds))).collect()
-}
-
-/// Draws `every` blocks one after the other, and merges them into one: number `number` of such. Nothing, if `is_over`
-/// comes true before the last.
+/// Draws `every` blocks one after the other, and merges them into one: number `number` of such. `None` of what is
+/// refused, and if `is_over` comes true before the last.
 pub fn merged(
-    group: &[&Planned],
+    planned: &Planned,
     number: u64,
     every: u64,
     is_over: &dyn Fn() -> bool,
-) -> Vec<Option<Block>> {
-    let mut found: Vec<Option<Block>> = vec![None; group.len()];
+) -> Option<Block> {
+    let mut found: Option<Block> = None;
     for block in number * every..(number + 1) * every {
-        let is_there = |&i: &usize| block * BLOCK < group[i].horizon;
-        let there: Vec<usize> = (0..group.len()).filter(is_there).collect();
-        if there.is_empty() {
+        if block * BLOCK >= planned.horizon {
             break;
         }
         if is_over() {
-            return vec![None; group.len()];
+            return None;
         }
-        let members: Vec<&Planned> = there.iter().map(|&i| group[i]).collect();
-        for (i, drawn) in there.into_iter().zip(blocks(&members, block)) {
-            match (&mut found[i], drawn) {
-                (Some(all), Some(next)) => all.merge(group[i], &next),
-                (none, next) => *none = next,
-            }
+        let next = Block::drawn(planned, block)?;
+        match &mut found {
+            Some(all) => all.merge(planned, &next),
+            none => *none = Some(next),
         }
     }
     found
 }
 
 impl Block {
+    /// Draws a block of an experiment; `None` of what is refused.
+    pub fn drawn(planned: &Planned, block: u64) -> Option<Self> {
+        // Processor time, not wall time: other processes do not count.
+        let begin = ThreadTime::now();
+        let mut drawing = Drawing::begin(planned, block)?;
+        while drawing.count() > 0 {
+            drawing.fill();
+            drawing.absorb();
+        }
+        Some(drawing.close(begin.elapsed().as_secs_f64()))
+    }
+
     /// Adds the one that follows.
     fn merge(&mut self, planned: &Planned, next: &Self) {
         self.draws += next.draws;
@@ -96,24 +81,6 @@ impl Block {
         for ((question, numbers), next) in questions.zip(&next.answers) {
             question.answer.join(numbers, next);
         }
-    }
-}
-
-/// Fills a buffer of each by lookups that they share.
-fn fill_together(drawings: &mut [&mut Drawing]) {
-    let Some(leader) = drawings.first().map(|drawing| drawing.ready) else { return };
-    let mut places = None;
-    let walks = drawings.iter_mut().filter_map(|drawing| {
-        // The same for all: they find them at the same address.
-        places = Some(drawing.streams.places());
-        let (count, counts) = (drawing.count(), &mut drawing.streams.counts);
-        let request = Request { counts, count, buffer: &mut drawing.scratch.buffer };
-        drawing.ready.experiment.order_free(request)
-    });
-    let mut walks: Vec<Box<dyn OrderFree + '_>> = walks.collect();
-    let mut requests: Vec<&mut dyn OrderFree> = walks.iter_mut().map(|w| &mut **w as _).collect();
-    if let Some(places) = places {
-        leader.experiment.draw_order_free(Level::new(), &places, &mut requests);
     }
 }
 

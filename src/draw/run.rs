@@ -18,7 +18,7 @@ use std::time::Instant;
 
 use crate::checks::check::Look;
 use crate::draw::block::{Block, Drawn, DrawnExperiment, Draws, Standing};
-use crate::draw::share::{self, Drawing, Piece, Share};
+use crate::draw::share::{self, BlockName, Drawing, Share};
 use crate::draw::store::Store;
 use crate::plan::{BLOCK, Plan, Planned};
 use ::gate::session::{Sink, Until, drive};
@@ -106,12 +106,12 @@ pub fn draw_with<'p>(plan: &'p Plan, store: &Store, listen: &Listener) -> Draws<
         }
         let mut round = Round::new(running, 4 * store.workers.threads());
         while !cut_by_time {
-            let pieces = batch(&mut round, store);
-            if pieces.is_empty() {
+            let names = batch(&mut round, store);
+            if names.is_empty() {
                 break;
             }
-            let mut drawn = store.blocks(&pieces, &drawing, &listen);
-            for name in pieces.iter().flat_map(Piece::blocks) {
+            let mut drawn = store.blocks(&names, &drawing, &listen);
+            for name in names {
                 let Some(one) = running.get_mut(&name.0) else { continue };
                 // What comes after a missing block is left out: the first blocks are kept.
                 match drawn.remove(&name) {
@@ -150,9 +150,9 @@ pub fn draw_with<'p>(plan: &'p Plan, store: &Store, listen: &Listener) -> Draws<
 pub fn draw_share(plan: &Plan, share: Share, store: &Store, listen: &Listener) -> bool {
     let is_over = || store.is_stopped();
     let drawing = Drawing::new(plan, &is_over);
-    let mut pieces = share::pieces(plan, share);
+    let mut names = share::blocks(plan, share);
     loop {
-        let some = batch(&mut pieces, store);
+        let some = batch(&mut names, store);
         if some.is_empty() || store.is_stopped() {
             store.synchronise();
             return !store.is_stopped();
@@ -162,15 +162,8 @@ pub fn draw_share(plan: &Plan, share: Share, store: &Store, listen: &Listener) -
 }
 
 /// What is drawn until the next merge.
-fn batch(pieces: &mut impl Iterator<Item = Piece>, store: &Store) -> Vec<Piece> {
-    let most = (BATCH * store.workers.threads()).min(MAX_BATCH);
-    let (mut some, mut blocks) = (Vec::new(), 0);
-    while blocks < most {
-        let Some(piece) = pieces.next() else { break };
-        blocks += piece.experiments.len();
-        some.push(piece);
-    }
-    some
+fn batch(names: &mut impl Iterator<Item = BlockName>, store: &Store) -> Vec<BlockName> {
+    names.take((BATCH * store.workers.threads()).min(MAX_BATCH)).collect()
 }
 
 /// Takes draws from the budget, if there is one and it has them beside those that are reserved.
@@ -208,11 +201,10 @@ struct Span {
 /// alike. They are made one by one: those between two looks may be more than memory holds.
 #[derive(Clone)]
 struct Round {
-    /// Spans of experiments that share their lookups are drawn together.
-    groups: Vec<Vec<Span>>,
-    /// The next piece.
+    spans: Vec<Span>,
+    /// The next block, and whose.
     block: u64,
-    group: usize,
+    span: usize,
     /// Beyond the last.
     end: u64,
 }
@@ -220,30 +212,27 @@ struct Round {
 impl Round {
     /// The blocks up to the next looks; and further ones while they are not `enough` to keep all threads at work.
     fn new(running: &BTreeMap<u32, Running>, enough: usize) -> Self {
-        let span = |planned: &Planned| {
-            let one = &running[&planned.number];
+        let span = |one: &Running| {
             let from = one.at.blocks + one.ahead.len() as u64;
             Span {
-                experiment: planned.number,
+                experiment: one.planned.number,
                 from,
                 until: one.at.look.max(from),
                 last: one.last(),
             }
         };
-        let open = running.values().filter(|one| !one.at.is_done).map(|one| one.planned);
-        let groups = share::groups(open).into_iter();
-        let groups = groups.map(|group| group.into_iter().map(span).collect()).collect();
-        let mut round = Self { groups, block: 0, group: 0, end: 0 };
-        round.block = round.groups.iter().flatten().map(|span| span.from).min().unwrap_or(0);
+        let spans: Vec<Span> = running.values().filter(|one| !one.at.is_done).map(span).collect();
+        let block = spans.iter().map(|span| span.from).min().unwrap_or(0);
+        let mut round = Self { spans, block, span: 0, end: 0 };
         loop {
-            round.end = round.groups.iter().flatten().map(|span| span.until).max().unwrap_or(0);
+            round.end = round.spans.iter().map(|span| span.until).max().unwrap_or(0);
             let missing = round.clone().take(enough).count();
             // Only where a look waits for blocks is there anything to draw.
             if missing == 0 || missing == enough {
                 return round;
             }
             let mut is_longer = false;
-            for span in round.groups.iter_mut().flatten() {
+            for span in &mut round.spans {
                 let longer = gate::next_look(span.until).min(span.last);
                 is_longer |= longer != span.until;
                 span.until = longer;
@@ -256,20 +245,17 @@ impl Round {
 }
 
 impl Iterator for Round {
-    type Item = Piece;
+    type Item = BlockName;
 
-    fn next(&mut self) -> Option<Piece> {
+    fn next(&mut self) -> Option<BlockName> {
         while self.block < self.end {
-            while let Some(group) = self.groups.get(self.group) {
-                self.group += 1;
-                let there =
-                    group.iter().filter(|span| (span.from..span.until).contains(&self.block));
-                let experiments: Vec<u32> = there.map(|span| span.experiment).collect();
-                if !experiments.is_empty() {
-                    return Some(Piece { experiments, block: self.block });
+            while let Some(span) = self.spans.get(self.span) {
+                self.span += 1;
+                if (span.from..span.until).contains(&self.block) {
+                    return Some((span.experiment, self.block));
                 }
             }
-            (self.block, self.group) = (self.block + 1, 0);
+            (self.block, self.span) = (self.block + 1, 0);
         }
         None
     }

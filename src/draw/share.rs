@@ -1,4 +1,4 @@
-//! Pieces of a run, and workers that draw them: the threads of this process, the ranks of many processes, or one machine of
+//! Blocks of a run, and workers that draw them: the threads of this process, the ranks of many processes, or one machine of
 //! many, each with its share.
 //!
 //! ```text
@@ -6,7 +6,6 @@
 //! ```
 //!
 //! The gate decides when all parts are there, so a part draws its share of all blocks up to the horizon.
-//! Experiments that share their lookups count as one, so that a part draws them together.
 
 use std::fmt::{self, Debug};
 use std::str::FromStr;
@@ -52,58 +51,24 @@ impl FromStr for Share {
     }
 }
 
-/// Groups of experiments that share their lookups; most experiments share none.
-pub(crate) fn groups<'p>(experiments: impl Iterator<Item = &'p Planned>) -> Vec<Vec<&'p Planned>> {
-    let mut groups: Vec<Vec<&Planned>> = Vec::new();
-    for one in experiments {
-        let shares =
-            |group: &&mut Vec<&Planned>| one.shared.is_some() && group[0].shared == one.shared;
-        match groups.iter_mut().find(shares) {
-            Some(group) => group.push(one),
-            None => groups.push(vec![one]),
-        }
-    }
-    groups
-}
-
-/// Piece of work: one block of experiments that are drawn together.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Piece {
-    /// Numbers of the experiments in the plan.
-    pub experiments: Vec<u32>,
-    /// Number of the block.
-    pub block: u64,
-}
-
 /// Name of a block: an experiment by its number in the plan, and the number of the block.
 pub type BlockName = (u32, u64);
 
-impl Piece {
-    /// Returns the names of the blocks.
-    pub fn blocks(&self) -> impl Iterator<Item = BlockName> {
-        self.experiments.iter().map(|&experiment| (experiment, self.block))
-    }
-}
-
-/// Returns the pieces of a share, in the order of the plan.
-pub fn pieces(plan: &Plan, share: Share) -> impl Iterator<Item = Piece> {
+/// Returns the blocks of a share, in the order of the plan.
+pub fn blocks(plan: &Plan, share: Share) -> impl Iterator<Item = BlockName> {
     let drawn = plan.experiments().map(|(_, planned)| planned).filter(|one| one.is_drawn());
     let (step, mut before) = (plan.step(), 0);
-    groups(drawn).into_iter().flat_map(move |group| {
-        let blocks_of = move |planned: &Planned| planned.horizon.div_ceil(step);
-        let blocks = group.iter().map(|one| blocks_of(one)).max().unwrap_or(0);
+    drawn.flat_map(move |planned| {
+        let blocks = planned.horizon.div_ceil(step);
         let (part, of) = (u64::from(share.part - 1), u64::from(share.of));
         let first = (part + of - before % of) % of;
         before += blocks;
-        (first..blocks).step_by(share.of as usize).map(move |block| {
-            let there = group.iter().filter(|one| block < blocks_of(one));
-            Piece { experiments: there.map(|one| one.number).collect(), block }
-        })
+        (first..blocks).step_by(share.of as usize).map(move |block| (planned.number, block))
     })
 }
 
-/// Receives blocks that were drawn.
-pub type Take<'a> = dyn Fn(Vec<(BlockName, Block)>) + Sync + 'a;
+/// Receives blocks that were drawn; none where the drawing is over.
+pub type Take<'a> = dyn Fn(BlockName, Option<Block>) + Sync + 'a;
 
 /// Threads that draw; a block does not depend on the thread.
 pub trait Workers: Debug + Send + Sync {
@@ -117,8 +82,8 @@ pub trait Workers: Debug + Send + Sync {
     /// Workers would draw something else: their names, and why.
     fn agree(&self, header: &Header) -> Result<(), String>;
 
-    /// Draws pieces in any order, and hands over the blocks of each.
-    fn draw(&self, pieces: &[Piece], drawing: &Drawing, take: &Take);
+    /// Draws blocks in any order, and hands each over.
+    fn draw(&self, names: &[BlockName], drawing: &Drawing, take: &Take);
 }
 
 /// Threads of this process.
@@ -134,8 +99,8 @@ impl Workers for Threads {
         Ok(())
     }
 
-    fn draw(&self, pieces: &[Piece], drawing: &Drawing, take: &Take) {
-        parallel::range(pieces.len(), |number| take(drawing.draw(&pieces[number])));
+    fn draw(&self, names: &[BlockName], drawing: &Drawing, take: &Take) {
+        parallel::range(names.len(), |number| take(names[number], drawing.draw(names[number])));
     }
 }
 
@@ -154,11 +119,9 @@ impl<'p> Drawing<'p> {
         Self { blocks_per_look: plan.options.blocks_per_look, experiments, is_over }
     }
 
-    /// Draws the blocks of a piece in this thread; none where the drawing is over.
-    pub fn draw(&self, piece: &Piece) -> Vec<(BlockName, Block)> {
-        let numbers = piece.experiments.iter();
-        let group: Vec<&Planned> = numbers.map(|&one| self.experiments[one as usize]).collect();
-        let drawn = block::merged(&group, piece.block, self.blocks_per_look, self.is_over);
-        piece.blocks().zip(drawn).filter_map(|(name, block)| Some((name, block?))).collect()
+    /// Draws a block in this thread; `None` where the drawing is over.
+    pub fn draw(&self, (experiment, block): BlockName) -> Option<Block> {
+        let planned = self.experiments[experiment as usize];
+        block::merged(planned, block, self.blocks_per_look, self.is_over)
     }
 }

@@ -24,9 +24,9 @@ use crate::checks::{self, Pilot, Question, Scalar, Subject};
 use crate::plan::levels::Levels;
 use ::gate::stats::gate;
 use ::gate::stats::verdict::Verdict;
-use estimators::{DrawBuffer, Order, Refusal};
+use estimators::{DrawBuffer, Refusal};
 use numeric::pack::WIDTH;
-use numeric::rng::{Address, PILOT, Streams, name_hash};
+use numeric::rng::{Address, PILOT, Streams};
 use theory::parallel;
 
 /// Draws that estimate a variance where theory has none.
@@ -66,8 +66,6 @@ pub struct Planned {
     pub draws_per_ray: u64,
     /// Address of its random numbers.
     pub address: Address,
-    /// Address of its collisions, if it may share their lookups with others.
-    pub shared: Option<Address>,
     /// n: how many draws are planned.
     pub draws: u64,
     /// Number of the first draws that p-values and z-scores see.
@@ -102,14 +100,7 @@ impl Planned {
 
     /// The streams of a block.
     pub fn streams(&self, block: u64) -> Streams {
-        let own = (self.find_streams)(Address { block, ..self.address });
-        match self.shared {
-            Some(shared) => {
-                let shared = (self.find_streams)(Address { block, ..shared });
-                Streams { counts: own.counts, ..shared }
-            }
-            None => own,
-        }
+        (self.find_streams)(Address { block, ..self.address })
     }
 }
 
@@ -208,7 +199,6 @@ impl<'a> Plan<'a> {
         self.options.seed = seed;
         for planned in self.cases.iter_mut().flat_map(|case| &mut case.experiments) {
             planned.address.seed = seed;
-            planned.shared = planned.shared.map(|shared| Address { seed, ..shared });
         }
     }
 
@@ -249,13 +239,6 @@ fn plan_experiment(
     let at = case.at(variation);
     let needs = at.as_ref().map_or_else(|_| String::new(), |at| at.needs(estimator));
     let outcome = at.and_then(|at| at.prepare(estimator, pilots));
-    let stretches = outcome.as_ref().ok().and_then(|ready| ready.experiment.even_places());
-    // Order-free experiments of a case find their collisions at one address if these are as likely anywhere on the same
-    // stretches: whatever the estimator, the control and σ̂.
-    let shared = stretches.map(|on| {
-        let experiment = name_hash(&format!("{}|places{on}", case.name));
-        Address { seed: options.seed, experiment, block: 0, lane: 0 }
-    });
     Planned {
         number: 0,
         estimator,
@@ -264,7 +247,6 @@ fn plan_experiment(
         needs,
         draws_per_ray: case.draws_per_ray,
         address,
-        shared,
         draws: most,
         fixed: most,
         horizon: most,
@@ -302,7 +284,6 @@ impl Planned {
             tolerance: case.tolerance,
             expect_biased: self.expect_biased,
             has_invariant: ready.experiment.has_invariant(),
-            is_in_turn: ready.experiment.order() == Order::Along,
             pilots: pilots.as_deref(),
         };
         if case.tolerance.is_given() {

@@ -1,7 +1,6 @@
 //! Options of a run, whatever the cases are.
 
 use crate::case::id::EstimatorName;
-use estimators::Order;
 use glob::{Pattern, PatternError};
 
 /// Draws per experiment where neither the options nor the case say.
@@ -14,9 +13,6 @@ pub struct Options {
     pub seed: u64,
     /// Number of draws of an experiment.
     pub draws: Amount,
-    /// The kernel that the cases were told to draw by, whatever they say: part of the command that
-    /// repeats an experiment.
-    pub kernel: Option<Order>,
     /// The probability that a correct run shows any failure.
     pub alpha: f64,
     /// Stop drawing after this many seconds.
@@ -63,7 +59,6 @@ impl Options {
         }
         words.extend(self.budget.map(|draws| format!("--budget={draws}")));
         words.extend(self.filter.as_ref().map(|filter| format!("--filter={}", filter.pattern())));
-        words.extend(self.kernel.map(|kernel| format!("--kernel={}", kernel.word())));
         if self.blocks_per_look != 1 {
             words.push(format!("--blocks-per-look={}", self.blocks_per_look));
         }
@@ -78,7 +73,6 @@ impl Default for Options {
         Self {
             seed: 1,
             draws: Amount::CaseOr(DRAWS),
-            kernel: None,
             alpha: 1e-3,
             seconds: None,
             budget: None,

@@ -145,7 +145,7 @@ fn record(plan: &Plan, cases: Vec<CaseRecord>) -> Record {
         alpha: plan.options.alpha,
         streams:
             "xoshiro256+ by address (seed, experiment, block, lane), seeded by PCG XSL RR 128/64; \
-                  draw j of a block from lane j mod 16, order-free draws from branches of the lanes"
+                  draw j of a block from lane j mod 16"
                 .to_owned(),
         gate,
         cut_by_time: false,

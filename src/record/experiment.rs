@@ -19,12 +19,8 @@ pub struct ExperimentRecord {
     pub listed: usize,
     /// Knowledge of the medium that σ̂, control and estimator need beside lookups, as in `τ`; empty for none.
     pub needs: String,
-    /// The kernel that draws, `ordered` or `order-free`; empty if the experiment is refused.
-    pub kernel: String,
     /// The earlier experiment of the case that is the same by definition: both share their draws.
     pub same_as: Option<ExperimentId>,
-    /// Number of experiments of the case, this one included, that share their lookups; `None` if each has its own.
-    pub sharing: Option<u64>,
     /// The share of the ray's support, in space of the box about the volume, that is skipped as empty: σ̂ is 0 there.
     /// `None` where σ̂ is as the case has it.
     pub skipped: Option<f64>,

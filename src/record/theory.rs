@@ -35,8 +35,6 @@ pub fn predicted(case: &PlannedCase, planned: &Planned) -> ExperimentRecord {
     let cost = prediction.cost(planned.draws_per_ray);
     let pmf = law.filter(|law| law.pmf.len() <= LONGEST_LAW).map(|law| law.pmf.clone());
     ExperimentRecord {
-        kernel: ready.experiment.order().word().to_owned(),
-        sharing: sharing(case, planned),
         same_as: planned.same_as.clone(),
         skipped: Some(ready.experiment.skipped()).filter(|&share| share > 0.0),
         predicted_lookups: law.map(|law| law.mean),
@@ -80,13 +78,6 @@ fn courses(case: &PlannedCase, planned: &Planned, refusal: &Refusal) -> Vec<Cour
     };
     let at = case.case.at(planned.id.variation());
     at.map_or(Vec::new(), |at| at.courses(planned.estimator, planned.address, place))
-}
-
-/// Number of experiments of the case that share an experiment's lookups; `None` if each has its own.
-fn sharing(case: &PlannedCase, planned: &Planned) -> Option<u64> {
-    let shared = planned.shared?;
-    let all = case.experiments.iter().filter(|other| other.shared == Some(shared)).count();
-    (all > 1).then_some(all as u64)
 }
 
 /// A number that files can hold.

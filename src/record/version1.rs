@@ -8,10 +8,8 @@ use std::collections::BTreeMap;
 use serde_json::{Value, json};
 
 /// The fields of a row that belong to its experiment.
-const OF_EXPERIMENT: [&str; 18] = [
+const OF_EXPERIMENT: [&str; 16] = [
     "needs",
-    "kernel",
-    "sharing",
     "skipped",
     "draws",
     "drawn",

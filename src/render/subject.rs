@@ -8,7 +8,7 @@ use super::view::View;
 use crate::case::build::Parts;
 use crate::case::estimator::{Defaults, Estimators};
 use estimators::trial::Entry;
-use estimators::{Estimated, Experiment, Order, Refusal, Setup};
+use estimators::{Estimated, Experiment, Refusal, Setup};
 use media::catalogue::{Domain, Settings};
 use media::phase::Phase;
 use media::{Body, Majorants, Medium, Volume};
@@ -207,7 +207,7 @@ impl<P: Subject> AnyRay for OneRay<P> {
             entry.domain(&setup)?;
         }
         let prediction = is_predicted.then(|| entry.predict(&setup));
-        Ok((prediction, entry.experiment(setup, Order::Along)))
+        Ok((prediction, entry.experiment(setup)))
     }
 }
 

@@ -85,8 +85,7 @@ fn what_an_own_medium_hides_is_found() {
         medium.haze = {}
         span = [0, 3]
         sampling.constant.value = 2.0
-        estimators = [{ woodcock = {} }, { ratio = {} }, { closed-form = {} },
-            { ratio = { kernel = "order-free" } }, { next-flight = {} }]"#,
+        estimators = [{ woodcock = {} }, { ratio = {} }, { closed-form = {} }, { next-flight = {} }]"#,
     );
     let space = text(
         r"[problem.transmittance]

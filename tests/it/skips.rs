@@ -40,19 +40,14 @@ fn problem(medium: &str, estimator: &str) -> String {
 #[test]
 fn a_gap_is_flown_over_as_if_sampling_were_zero_there() {
     for (name, settings) in [("ratio", ""), ("woodcock", ""), ("single", "rule = \"clamped\", ")] {
-        for kernel in ["ordered", "order-free"] {
-            let entry = |sampling: &str| {
-                format!("{{ {name} = {{ {settings}{sampling}, kernel = \"{kernel}\" }} }}")
-            };
-            let constant = entry("sampling.constant = { value = 2 }");
-            let zero = entry(
-                "sampling.piecewise-constant = { breaks = [0, 1, 3, 4], values = [2, 0, 2] }",
-            );
-            let (skipping, skipped) = first_draws(&problem(GAP, &constant));
-            let (explicit, nothing) = first_draws(&problem(GAP, &zero));
-            assert_eq!((skipped, nothing), (0.5, 0.0), "{name}");
-            assert_same(&skipping, &explicit);
-        }
+        let entry = |sampling: &str| format!("{{ {name} = {{ {settings}{sampling} }} }}");
+        let constant = entry("sampling.constant = { value = 2 }");
+        let zero =
+            entry("sampling.piecewise-constant = { breaks = [0, 1, 3, 4], values = [2, 0, 2] }");
+        let (skipping, skipped) = first_draws(&problem(GAP, &constant));
+        let (explicit, nothing) = first_draws(&problem(GAP, &zero));
+        assert_eq!((skipped, nothing), (0.5, 0.0), "{name}");
+        assert_same(&skipping, &explicit);
     }
 }
 
@@ -62,15 +57,11 @@ fn a_ray_is_clipped_to_where_the_field_begins_and_ends() {
         span = [0, 9]";
     let narrow = "medium.piecewise-linear = { knots = [2, 2.5, 3], values = [0, 1, 0] }
         span = [2, 3]";
-    for kernel in ["ordered", "order-free"] {
-        let ratio = format!(
-            "{{ ratio = {{ sampling.constant = {{ value = 1.5 }}, kernel = \"{kernel}\" }} }}"
-        );
-        let (clipped, skipped) = first_draws(&problem(wide, &ratio));
-        let (whole, nothing) = first_draws(&problem(narrow, &ratio));
-        assert!((skipped - 8.0 / 9.0).abs() < 1e-15 && nothing == 0.0);
-        assert_same(&clipped, &whole);
-    }
+    let ratio = "{ ratio = { sampling.constant = { value = 1.5 } } }";
+    let (clipped, skipped) = first_draws(&problem(wide, ratio));
+    let (whole, nothing) = first_draws(&problem(narrow, ratio));
+    assert!((skipped - 8.0 / 9.0).abs() < 1e-15 && nothing == 0.0);
+    assert_same(&clipped, &whole);
 }
 
 #[test]

@@ -162,7 +162,7 @@ const ALL: &str = "{ woodcock = {} }, { ratio = {} }, { residual-ratio = {} }, \
     { single = { rule = \"non-terminating\", albedo = 0.6 } }, \
     { single = { rule = \"adaptive\", albedo = 0.6 } }, { single.rule = \"clamped\" }, \
     { weighted-delta = {} }, { decomposition = {} }, { next-flight = {} }, { unidirectional-mis = {} }, \
-    { closed-form = {} }, { regular = {} }, { ratio.kernel = \"order-free\" }";
+    { closed-form = {} }, { regular = {} }";
 
 /// What is wrong with the prediction of an experiment: neither numbers nor a refusal in words.
 fn trouble(planned: &Planned) -> Option<String> {
@@ -287,7 +287,7 @@ fn at_breaks(step: usize) -> Vec<String> {
                 let estimators = format!(
                     "{{ double.control.{control} }}, {{ single = {{ rule = \"clamped\", control.{control} }} }}, \
                      {{ single = {{ rule = \"adaptive\", albedo = 1, control.{control} }} }}, \
-                     {{ double = {{ kernel = \"order-free\", control.{control} }} }}, {{ woodcock = {{}} }}, \
+                     {{ woodcock = {{}} }}, \
                      {{ next-flight.sampling.constant.value = 2 }}, {{ decomposition = {{}} }}"
                 );
                 cases.push((lines, control, estimators));

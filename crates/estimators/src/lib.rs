@@ -36,7 +36,7 @@ pub mod walks;
 
 use fearless_simd::Level;
 
-use crate::kernels::{order_free, packet};
+use crate::kernels::packet;
 use crate::recipes::controls;
 use media::Lookups;
 use media::catalogue::{PageList, Settings};
@@ -49,7 +49,7 @@ pub use crate::setup::Setup;
 
 pub use crate::kernels::{Draw, DrawBuffer};
 pub use transmittance_curve::RayView;
-pub use trial::{Experiment, Kernel, Order};
+pub use trial::{Experiment, Kernel};
 
 /// What an estimator takes beside the medium.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -79,8 +79,6 @@ pub trait Estimator<P: Problem>: Clone + Send + Sync + 'static {
     const SKIPS: bool = false;
     /// Whether it draws eight at a time, by [`Estimator::draw_packets`].
     const IN_PACKETS: bool = false;
-    /// Whether its draws may be made in any order of their collisions, by [`Estimator::order_free`].
-    const ORDER_FREE: bool = false;
 
     /// The estimator itself, where it has no settings.
     const PLAIN: Option<Self> = None;
@@ -143,16 +141,6 @@ pub trait Estimator<P: Problem>: Clone + Send + Sync + 'static {
 
     /// Makes one draw.
     fn draw(&self, setup: &Setup<P>, medium: &Lookups, rng: &mut Stream) -> Draw<P::Value>;
-
-    /// So many draws to be made in any order of their collisions; `None` where that cannot be.
-    fn order_free<'a>(
-        &'a self,
-        setup: &'a Setup<P>,
-        request: order_free::Request<'a>,
-    ) -> Option<Box<dyn order_free::OrderFree + 'a>> {
-        let _ = (setup, request);
-        None
-    }
 
     /// Makes the draws of a request as [`Estimator::draw`] makes them from the request's streams in
     /// turn, bit for bit, on the hardware of a level. What the hardware has no kernel for is handed
@@ -221,7 +209,6 @@ macro_rules! product_draws {
         const HAS_INVARIANT: bool = true;
         const SKIPS: bool = true;
         const IN_PACKETS: bool = true;
-        const ORDER_FREE: bool = true;
 
         #[inline(always)]
         fn draw(
@@ -231,14 +218,6 @@ macro_rules! product_draws {
             rng: &mut numeric::rng::Stream,
         ) -> $crate::Draw {
             $crate::transmittance::product::draw(setup, &$rule, medium, rng)
-        }
-
-        fn order_free<'a>(
-            &'a $this,
-            setup: &'a $crate::Setup<Transmittance>,
-            request: $crate::kernels::order_free::Request<'a>,
-        ) -> Option<Box<dyn $crate::kernels::order_free::OrderFree + 'a>> {
-            $crate::kernels::order_free::product(setup, $rule, request)
         }
 
         fn draw_packets<'a>(

@@ -2,18 +2,14 @@
 
 use std::sync::Arc;
 
-use fearless_simd::{Level, Simd, f64x8};
 use media::{Medium, Piecewise};
+use numeric::Span;
 use numeric::geometry::Point;
-use numeric::pack::{Task, WIDTH, on};
+use numeric::pack::WIDTH;
 use numeric::rng::{LANES, PACKS};
-use numeric::twin::PAIR;
-use numeric::{Span, Twin};
 use theory::ParticleRule;
 use theory::problems::Rod;
 use theory::problems::rod::channels;
-use theory::rules::{Collision, Met, Null, Single, Weight};
-use trueflight_estimators::kernels::order_free::collisions::{Collisions, Weights};
 use trueflight_estimators::kernels::packet::bank::Slots;
 use trueflight_estimators::rod::walk::{By, InRod, Particle};
 use trueflight_estimators::slab::walk::turned;
@@ -66,66 +62,6 @@ fn shares_are_those_of_flight_and_next_flight() {
     // The balance heuristic of v = 1/2 against 1.
     assert!((UnidirectionalMis.of(left) - 1.0 / 3.0).abs() < 1e-15);
     assert_eq!([NextFlight.of(1e9), UnidirectionalMis.of(1e9)], [0.0; 2]);
-}
-
-const COUNT: usize = 2 * PAIR + 5;
-
-/// Walks of weight 1 at collisions with ratio ¼, but for one; the number ½ decides.
-struct Meeting<R>(R, usize, f64);
-
-impl<R: Collision> Task for Meeting<R> {
-    type Output = (Vec<f64>, bool);
-
-    #[inline(always)]
-    fn run<S: Simd>(self, simd: S) -> Self::Output {
-        let Self(rule, odd, value) = self;
-        let mut weights = [1.0; COUNT];
-        let mut weights = Weights { values: &mut weights, survivors: 0 };
-        let is_unknown = weights.collide(
-            simd,
-            &rule,
-            0,
-            COUNT,
-            #[inline(always)]
-            |from| {
-                let at = |lane| if from + lane == odd { value } else { 0.5 };
-                let residual = Twin::<f64x8<S>>::from_slice(simd, &std::array::from_fn(at));
-                let half = Twin::<f64x8<S>>::splat(simd, 0.5);
-                let sampling = Twin::<f64x8<S>>::splat(simd, 2.0);
-                Collisions { met: Met { residual, sampling, mean_free_path: half }, decision: half }
-            },
-        );
-        (weights.values[..weights.survivors].to_vec(), is_unknown)
-    }
-}
-
-#[test]
-fn walks_are_weighed_and_killed_by_their_ratio() {
-    for level in [Level::new(), Level::baseline()] {
-        for odd in [3, COUNT - 2] {
-            let mut weighed = [0.75; COUNT];
-            weighed[odd] = -1.0;
-            assert_eq!(on(level, Meeting(Weight, odd, 4.0)), (weighed.to_vec(), false));
-            assert_eq!(on(level, Meeting(Null, odd, 4.0)), (vec![1.0; COUNT - 1], false));
-            let (single, _) = on(level, Meeting(Single::Clamped, odd, 4.0));
-            assert_eq!((single.len(), single.iter().sum::<f64>()), (COUNT, COUNT as f64 - 2.0));
-        }
-    }
-}
-
-#[test]
-fn a_ratio_that_is_no_number_shows() {
-    let shows = |(weights, is_unknown): (Vec<f64>, bool)| {
-        is_unknown && weights.iter().any(|weight| weight.is_nan())
-    };
-    for level in [Level::new(), Level::baseline()] {
-        for odd in [0, 13, COUNT - 1] {
-            // Weights that stay say nothing of it.
-            assert!(on(level, Meeting(Null, odd, f64::NAN)).1);
-            assert!(shows(on(level, Meeting(Weight, odd, f64::NAN))));
-            assert!(shows(on(level, Meeting(Single::Clamped, odd, f64::NAN))));
-        }
-    }
 }
 
 #[test]

@@ -1,8 +1,6 @@
 //! The part of a medium that is integrated exactly.
 
-use fearless_simd::Level;
-
-use super::{Extinction, LookUp, Medium, Piecewise};
+use super::{Extinction, Medium, Piecewise};
 use numeric::{Known, Lane, Span};
 
 /// A control variate `σ_c(t)`: any field with a closed-form optical depth, or none.
@@ -31,27 +29,6 @@ impl Control {
             },
             // One by one: kernels are not compiled for every pair of fields.
             Self::Field(field) => t.map(|t| field.extinction(t)),
-        }
-    }
-
-    /// `σ_c` at many distances, eight at a time on the hardware of a level.
-    pub fn look_up(&self, level: Level, at: &[f64], extinction: &mut [f64]) {
-        match self {
-            Self::None => extinction.fill(0.0),
-            Self::Pieces(pieces) => {
-                extinction.copy_from_slice(at);
-                pieces.lookups(level).replace_all(extinction);
-            }
-            Self::Field(field) => {
-                extinction.copy_from_slice(at);
-                field.lookups(level).replace_all(extinction);
-                let support = field.support();
-                for (extinction, &t) in extinction.iter_mut().zip(at) {
-                    if t < support.from || t > support.to {
-                        *extinction = 0.0;
-                    }
-                }
-            }
         }
     }
 

@@ -6,11 +6,9 @@
 //!
 //! | kernel | field | time |
 //! |---|---|--:|
-//! | Woodcock, order-free | Eq. 21 | 0.86 |
-//! | Woodcock, along the ray | Eq. 21 | 0.89 |
-//! | next-flight, along the ray; unidirectional MIS has the same loop | Eq. 21 | 0.90 |
-//! | ratio, order-free | Eq. 21 | 0.92 |
-//! | ratio, along the ray | 128³ grid | 0.89 |
+//! | Woodcock | Eq. 21 | 0.89 |
+//! | next-flight; unidirectional MIS has the same loop | Eq. 21 | 0.90 |
+//! | ratio | 128³ grid | 0.89 |
 //!
 //! Each line is a loop that is compiled once more for each rule, so this list stays short. On AVX2, where a pack takes
 //! two registers, none of them gains a tenth.

@@ -38,7 +38,6 @@ pub mod phase;
 pub mod piecewise;
 pub mod piecewise_constant;
 pub mod piecewise_linear;
-pub mod placement;
 pub mod radial;
 pub mod reader;
 pub mod search;
@@ -65,7 +64,6 @@ pub use lookup::{Batches, Lookups, Points};
 pub use majorants::Majorants;
 pub use medium::Medium;
 pub use piecewise::Piecewise;
-pub use placement::Placement;
 pub use reader::Reader;
 
 /// A field that can be looked up: `σ_t(t)` in 1/length at distance `t` along the ray.

@@ -24,7 +24,7 @@ trait Batch: Send + Sync {
     /// Replaces the distances of two packs by `σ_t`, with the bits of [`Batch::one`].
     fn pair(&self, t: &mut [f64; PAIR]);
 
-    /// Replaces distances by `σ_t`, to rounding; their number is a multiple of eight.
+    /// The same of so many distances, a multiple of eight.
     fn all(&self, t: &mut [f64]);
 }
 
@@ -56,14 +56,7 @@ impl<F: Extinction, S: Simd> Batch for Compiled<'_, F, S> {
         self.simd.vectorize(
             #[inline(always)]
             || {
-                // The hashes of two packs of noise do not fit into sixteen registers.
-                let is_narrow = self.field.is_costly() && !pack::converts(self.simd);
-                let twins = if is_narrow { 0 } else { t.len() / PAIR * PAIR };
-                let (pairs, rest) = t.split_at_mut(twins);
-                for pair in pairs.as_chunks_mut::<PAIR>().0 {
-                    self.field.extinction(Twin::from_slice(self.simd, pair)).store_slice(pair);
-                }
-                for pack in rest.as_chunks_mut::<WIDTH>().0 {
+                for pack in t.as_chunks_mut::<WIDTH>().0 {
                     self.field.extinction(f64x8::from_slice(self.simd, pack)).store_slice(pack);
                 }
             },
@@ -168,16 +161,6 @@ impl<'a> Lookups<'a> {
         }
         for t in rest {
             *t = self.batch.one(*t);
-        }
-    }
-
-    /// The same to rounding and faster, for draws that no others have to equal; their number is a multiple
-    /// of eight.
-    #[inline(always)]
-    pub fn replace_all(&self, t: &mut [f64]) {
-        match self.single_value {
-            Some(value) => t.fill(value),
-            None => self.batch.all(t),
         }
     }
 }

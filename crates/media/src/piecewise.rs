@@ -119,6 +119,11 @@ impl Piecewise {
         &self.knots
     }
 
+    /// The optical depth of all pieces, signed.
+    pub fn whole_depth(&self) -> f64 {
+        self.depth[self.depth.len() - 1]
+    }
+
     /// The value, if there is only one.
     pub fn single_value(&self) -> Option<f64> {
         (self.left.len() == 1 && self.slope[0] == 0.0).then(|| self.left[0])

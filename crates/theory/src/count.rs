@@ -1,8 +1,5 @@
 //! How many lookups a draw makes.
 
-use statrs::function::gamma::{gamma, gamma_lr};
-
-use super::product::Integrals;
 use super::raw;
 
 /// Above this mean a law is left without probabilities.
@@ -62,48 +59,6 @@ impl CountLaw {
         let fourth = fourth - 4.0 * mean * cube + 6.0 * mean * mean * square - 3.0 * mean.powi(4);
         let kurtosis = (fourth / (variance * variance)).max(1.0);
         Self { mean, variance, error: 0.0, kurtosis, poisson: false, pmf: Vec::new() }
-    }
-}
-
-impl CountLaw {
-    /// The lookups of an order-free draw: of N ~ Poisson(Λ) collisions it looks at one after the
-    /// other, in any order, until it has survived them all or one has killed it. Each lies anywhere,
-    /// so each is survived with the same chance `s = 1 − K/Λ`, `K = ∫σ̂(1 − q)`.
-    ///
-    /// ```text
-    /// P(M = 0) = P(N = 0),   P(M = m) = s^{m−1} ((1 − s) P(N ≥ m) + s P(N = m))
-    /// E[M] = (1 − e^{−K})/(1 − s)
-    /// ```
-    ///
-    /// Without probabilities, for Λ > 2000, moments are those of a walk with `r` constant.
-    pub fn in_layers(collisions: f64, deaths: f64) -> Self {
-        let poisson = Self::poisson(collisions);
-        if !(deaths > 1e-13 && deaths <= collisions && collisions.is_finite()) {
-            return poisson;
-        }
-        let killed = deaths / collisions;
-        let survival = 1.0 - killed;
-        let mut pmf = poisson.pmf;
-        let (mut beyond, mut power) = (0.0, vec![1.0; pmf.len()]);
-        for m in 2..pmf.len() {
-            power[m] = power[m - 1] * survival;
-        }
-        for m in (1..pmf.len()).rev() {
-            let there = pmf[m];
-            beyond += there;
-            pmf[m] = power[m] * (killed * beyond + survival * there);
-        }
-        while pmf.last().is_some_and(|&last| last < 1e-17) {
-            pmf.pop();
-        }
-        let lookups: [f64; 4] = std::array::from_fn(|k| {
-            // k ∫₀^Λ e^{−(1−s)x} (sx)^{k−1} dx
-            let order = (k + 1) as f64;
-            let whole = survival.powf(order - 1.0) * gamma(order + 1.0) / killed.powf(order);
-            whole * gamma_lr(order, deaths)
-        });
-        let integrals = Integrals { lookups, flown: collisions, ..Integrals::default() };
-        Self { pmf, poisson: false, ..integrals.count() }
     }
 }
 
@@ -172,26 +127,6 @@ pub fn poisson(n: u32, mean: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn moments_in_layers_are_those_of_the_probabilities() {
-        for (collisions, survival) in [(0.3, 0.9), (8.0, 0.0), (20.0, 0.83), (300.0, 0.999)] {
-            let law = CountLaw::in_layers(collisions, (1.0 - survival) * collisions);
-            let moment = |f: &dyn Fn(f64) -> f64| -> f64 {
-                law.pmf.iter().enumerate().map(|(m, p)| f(m as f64) * p).sum()
-            };
-            let mean = moment(&|m| m);
-            let variance = moment(&|m| (m - mean).powi(2));
-            let kurtosis = moment(&|m| (m - mean).powi(4)) / (variance * variance);
-            assert!((moment(&|_| 1.0) - 1.0).abs() < 1e-12);
-            assert!((law.mean / mean - 1.0).abs() < 1e-12, "{collisions}, {survival}");
-            assert!((law.variance / variance - 1.0).abs() < 1e-9, "{collisions}, {survival}");
-            assert!((law.kurtosis / kurtosis - 1.0).abs() < 1e-8, "{collisions}, {survival}");
-            let exact = -(-(1.0 - survival) * collisions).exp_m1() / (1.0 - survival);
-            assert!((law.mean / exact - 1.0).abs() < 1e-12);
-        }
-        assert!(CountLaw::in_layers(5.0, 0.0).poisson, "nothing kills");
-    }
 
     #[test]
     fn poisson_probabilities_sum_to_one() {

@@ -12,9 +12,6 @@ pub struct Prediction {
     pub lookups: Option<CountLaw>,
     /// Lookups of σ_t that recipes for σ̂ and σ_c make for a ray before its first draw, as at explorer points and by pilot rays.
     pub setup_lookups: u64,
-    /// Λ = ∫σ̂ and ∫σ̂(1 − q), which make the law of an order-free draw's lookups; `None` where there
-    /// are no such draws.
-    pub layers: Option<[f64; 2]>,
     /// `E[random numbers]` of one draw as this crate makes it; `None` where it is not worked out.
     pub random_numbers: Option<f64>,
     /// The whole law of the draw, where it is known.
@@ -224,13 +221,6 @@ impl Prediction {
         }
         let Self { stable_share, setup_lookups, .. } = self;
         Self { channels, setup_lookups, stable_share, ..Self::default() }
-    }
-
-    /// The same of order-free draws: their values have the same law, their lookups may have not.
-    #[must_use]
-    pub fn order_free(self) -> Self {
-        let lookups = self.layers.map(|[flown, killed]| CountLaw::in_layers(flown, killed));
-        Self { lookups, random_numbers: None, ..self }
     }
 
     /// An experiment with one unbiased channel.

@@ -51,8 +51,6 @@ pub struct Integrals {
     pub decisions: f64,
     /// `∫σ̂`.
     pub flown: f64,
-    /// `∫σ̂(1 − q)`.
-    pub killed: f64,
     /// `e^{−K(S)}`: how many walks nothing ends.
     pub alive: f64,
     /// The length on which `w ≤ 2σ_t`.
@@ -155,8 +153,7 @@ impl<'a> Product<'a> {
         // One for each flight, the last one included, and one for each fate that is open.
         let walked = lookups.mean + all.alive + all.decisions;
         let random_numbers = (self.killing == 0.0).then_some(walked);
-        let layers = (self.killing == 0.0).then_some([all.flown, all.killed]);
-        Prediction { layers, random_numbers, stable_share, ..Prediction::single(channel, lookups) }
+        Prediction { random_numbers, stable_share, ..Prediction::single(channel, lookups) }
     }
 }
 
@@ -245,7 +242,6 @@ impl Totals {
             lookups: self.lookups.map(|sum| sum.value()),
             decisions: self.decisions.value(),
             flown: self.flown.value(),
-            killed: self.deaths.value(),
             alive: (-self.deaths.value()).exp(),
             stable: self.stable.value(),
         }

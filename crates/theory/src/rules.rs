@@ -50,13 +50,6 @@ pub trait Collision: Rule + Copy + 'static {
         self.at(met.ratio()).survival.at_most(number)
     }
 
-    /// The weight after a collision, from the one before it: of order-free walks, whose draws no others have
-    /// to equal.
-    #[inline(always)]
-    fn weigh<L: Lane>(&self, weight: L, met: &Met<L>) -> L {
-        weight * self.at(met.ratio()).weight
-    }
-
     /// `(1 − r)/q`: the factor that a survivor ought to have.
     #[inline(always)]
     fn due<L: Lane>(&self, ratio: L, survival: L) -> L {
@@ -90,12 +83,6 @@ impl Collision for Weight {
     fn at<L: Lane>(&self, ratio: L) -> Outcome<L> {
         let one = ratio.each(1.0);
         Outcome { survival: one, death: ratio.each(0.0), weight: one - ratio, loss: ratio }
-    }
-
-    /// `w − (σ_t − σ_c) w/σ̂`, which waits less for the extinction than `w(1 − r)`.
-    #[inline(always)]
-    fn weigh<L: Lane>(&self, weight: L, met: &Met<L>) -> L {
-        (-met.residual).times_plus(weight * met.mean_free_path, weight)
     }
 
     #[inline(always)]

@@ -24,7 +24,7 @@ use self::team::Team;
 use super::{Console, USAGE, journal, output, run};
 use crate::case::Catalogue;
 use crate::draw::block::Block;
-use crate::draw::share::{BlockName, Drawing, Piece};
+use crate::draw::share::{BlockName, Drawing};
 use crate::draw::store::Header;
 use crate::plan::Plan;
 use crate::record::baseline::fingerprint;
@@ -37,11 +37,11 @@ enum Message {
     Plan(Vec<String>),
     /// To rank 0: what a rank would draw, on how many threads; or why it cannot.
     Planned(Result<(Header, usize), String>),
-    /// From rank 0: pieces for one thread.
-    Draw(Vec<Piece>),
-    /// To rank 0: the blocks of these pieces.
-    Drawn(Vec<(BlockName, Block)>),
-    /// From rank 0: pieces that are not begun stay undrawn.
+    /// From rank 0: blocks for one thread to draw.
+    Draw(Vec<BlockName>),
+    /// To rank 0: these blocks, but those that stay undrawn.
+    Drawn(Vec<(BlockName, Option<Block>)>),
+    /// From rank 0: blocks that are not begun stay undrawn.
     Stop,
     /// From rank 0: nothing more is to be drawn.
     End,
@@ -235,16 +235,16 @@ fn draw(link: &Link, plan: &Plan, header: Header) {
             loop {
                 match link.receive().1 {
                     // The threads take portions until no more are dealt.
-                    Message::Draw(pieces) => drop(dealt.send(pieces)),
+                    Message::Draw(names) => drop(dealt.send(names)),
                     Message::Stop => is_stopped.store(true, Ordering::Relaxed),
                     _ => return,
                 }
             }
         });
         parallel::range(threads, |_| {
-            while let Ok(pieces) = next() {
-                let pieces: Vec<Piece> = pieces;
-                let drawn = pieces.iter().flat_map(|piece| drawing.draw(piece));
+            while let Ok(names) = next() {
+                let names: Vec<BlockName> = names;
+                let drawn = names.into_iter().map(|name| (name, drawing.draw(name)));
                 link.send(0, &Message::Drawn(drawn.collect()));
             }
         });

@@ -7,11 +7,11 @@ use std::thread;
 use std::time::Duration;
 
 use super::{Link, Message};
-use crate::draw::share::{Drawing, Piece, Take, Workers};
+use crate::draw::share::{BlockName, Drawing, Take, Workers};
 use crate::draw::store::Header;
 use theory::parallel;
 
-/// Portions that each thread gets of the pieces of a batch, at least: rank 0 may have to wait for the last ones.
+/// Portions that each thread gets of the blocks of a batch, at least: rank 0 may have to wait for the last ones.
 const PORTIONS: usize = 16;
 
 /// Longest time until rank 0 sees that the drawing is over.
@@ -55,17 +55,17 @@ impl Team {
         Some(self.link.receive())
     }
 
-    /// Deals portions to the other ranks, two for each thread at a time, until all pieces are drawn.
-    fn deal(&self, pieces: &[Piece], next: &AtomicUsize, drawing: &Drawing, take: &Take) {
+    /// Deals portions to the other ranks, two for each thread at a time, until all blocks are drawn.
+    fn deal(&self, names: &[BlockName], next: &AtomicUsize, drawing: &Drawing, take: &Take) {
         let Some(threads) = self.threads.get() else { return };
-        let most = (pieces.len() / (PORTIONS * self.threads())).max(1);
+        let most = (names.len() / (PORTIONS * self.threads())).max(1);
         let (mut open, mut is_told) = (vec![0; threads.len()], false);
         loop {
             for rank in 1..threads.len() {
                 while open[rank] < 2 * threads[rank] {
                     // Towards the end less and less, so that none has much left when the others are done.
-                    let left = pieces.len().saturating_sub(next.load(Ordering::Relaxed));
-                    let dealt = portion(pieces, next, (left / (2 * self.threads())).clamp(1, most));
+                    let left = names.len().saturating_sub(next.load(Ordering::Relaxed));
+                    let dealt = portion(names, next, (left / (2 * self.threads())).clamp(1, most));
                     if dealt.is_empty() {
                         break;
                     }
@@ -82,7 +82,7 @@ impl Team {
             }
             if let Some((rank, Message::Drawn(drawn))) = self.link.receive_within(PATIENCE) {
                 open[rank] -= 1;
-                take(drawn);
+                drawn.into_iter().for_each(|(name, block)| take(name, block));
             }
         }
     }
@@ -115,23 +115,23 @@ impl Workers for Team {
     }
 
     /// One thread deals to the others and takes their blocks, while those of the pool draw.
-    fn draw(&self, pieces: &[Piece], drawing: &Drawing, take: &Take) {
+    fn draw(&self, names: &[BlockName], drawing: &Drawing, take: &Take) {
         let next = AtomicUsize::new(0);
         thread::scope(|scope| {
-            scope.spawn(|| self.deal(pieces, &next, drawing, take));
+            scope.spawn(|| self.deal(names, &next, drawing, take));
             parallel::range(rayon::current_num_threads(), |_| {
-                while let [piece] = portion(pieces, &next, 1) {
-                    take(drawing.draw(piece));
+                while let &[name] = portion(names, &next, 1) {
+                    take(name, drawing.draw(name));
                 }
             });
         });
     }
 }
 
-/// Returns the next pieces that nobody has yet.
-fn portion<'p>(pieces: &'p [Piece], next: &AtomicUsize, most: usize) -> &'p [Piece] {
-    let begin = next.fetch_add(most, Ordering::Relaxed).min(pieces.len());
-    &pieces[begin..(begin + most).min(pieces.len())]
+/// Returns the next blocks that nobody has yet.
+fn portion<'n>(names: &'n [BlockName], next: &AtomicUsize, most: usize) -> &'n [BlockName] {
+    let begin = next.fetch_add(most, Ordering::Relaxed).min(names.len());
+    &names[begin..(begin + most).min(names.len())]
 }
 
 impl Drop for Team {

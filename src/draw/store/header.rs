@@ -101,7 +101,7 @@ fn key(plan: &Plan, case: &PlannedCase, planned: &Planned, made_by: &str) -> u64
         let channels = ready.prediction.channels.iter();
         channels.map(|of| (of.truth, of.mean, of.moments)).collect::<Vec<_>>()
     });
-    let place = (case.case.digest, &planned.id, planned.address, planned.shared);
+    let place = (case.case.digest, &planned.id, planned.address);
     let looks = (plan.levels, plan.options.fixed, plan.options.blocks_per_look);
     let first = first_draws(planned);
     name_hash(&format!("{:?}", (made_by, place, numbers, asked, predicted, first, looks)))

@@ -16,7 +16,7 @@ pub use self::header::Header;
 pub use self::log::{Key, Log, entry, lock};
 use crate::draw::block::{Block, Draws, Standing};
 use crate::draw::run::{Listener, Step};
-use crate::draw::share::{BlockName, Drawing, Piece, Threads, Workers};
+use crate::draw::share::{BlockName, Drawing, Threads, Workers};
 use crate::plan::{Plan, Planned};
 
 /// Largest number of finished experiments that are kept for later runs: some 20 MB.
@@ -170,35 +170,25 @@ impl Store {
         })
     }
 
-    /// Returns the blocks of pieces: read where a log has them, else drawn and kept. `listen` hears of all draws.
+    /// Returns blocks: read where a log has them, else drawn and kept. `listen` hears of all draws.
     pub fn blocks(
         &self,
-        pieces: &[Piece],
+        names: &[BlockName],
         drawing: &Drawing,
         listen: &Listener,
     ) -> BTreeMap<BlockName, Block> {
-        let mut blocks = BTreeMap::new();
-        let mut missing = pieces.to_vec();
-        for piece in &mut missing {
-            let number = piece.block;
-            piece.experiments.retain(|&one| match self.find((one, number)) {
-                Some(block) => {
-                    blocks.insert((one, number), block);
-                    false
-                }
-                None => true,
-            });
-        }
-        missing.retain(|piece| !piece.experiments.is_empty());
+        let kept = names.iter().filter_map(|&name| Some((name, self.find(name)?)));
+        let blocks: BTreeMap<BlockName, Block> = kept.collect();
+        let missing = names.iter().copied().filter(|name| !blocks.contains_key(name));
+        let missing: Vec<BlockName> = missing.collect();
         listen(Step::Kept(blocks.values().map(|block| block.draws).sum()));
         let blocks = Mutex::new(blocks);
         if !(drawing.is_over)() {
-            self.workers.draw(&missing, drawing, &|drawn| {
-                listen(Step::Drawn(drawn.iter().map(|(_, block)| block.draws).sum()));
-                for (name, block) in &drawn {
-                    self.keep(*name, block);
-                }
-                locked(&blocks).extend(drawn);
+            self.workers.draw(&missing, drawing, &|name, drawn| {
+                let Some(block) = drawn else { return };
+                listen(Step::Drawn(block.draws));
+                self.keep(name, &block);
+                locked(&blocks).insert(name, block);
             });
         }
         blocks.into_inner().unwrap_or_else(PoisonError::into_inner)

@@ -167,8 +167,6 @@ pub struct LeftOut {
     pub uncounted: Vec<ChannelId>,
     /// The draws took less than 0.1 s, then or now.
     pub brief: Vec<ChannelId>,
-    /// The lookups were shared with other experiments, then or now: the time is of their company.
-    pub shared: Vec<ChannelId>,
 }
 
 /// Entries of a stored result and of a later one, joined by their identity.
@@ -436,11 +434,6 @@ fn left_out(pairs: &[[&Entry; 2]], rules: &Rules) -> LeftOut {
         brief: timed(&|before, now| {
             let has_both = before.seconds.is_some() && now.seconds.is_some();
             has_both && (before.nanoseconds().is_none() || now.nanoseconds().is_none())
-        }),
-        // Times and lookups stand in the first entry of an experiment only.
-        shared: timed(&|before, now| {
-            let is_first = before.lookups.is_some() || now.lookups.is_some();
-            is_first && (before.seconds.is_none() || now.seconds.is_none())
         }),
     }
 }

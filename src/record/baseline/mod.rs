@@ -206,8 +206,6 @@ impl Entry {
 
     fn of(row: &Row, seed: u64, digest: &str) -> Self {
         let (experiment, is_first) = (row.experiment, row.is_first());
-        // The time of shared lookups depends on the experiments that share them.
-        let is_timed = is_first && experiment.sharing.is_none();
         let draws = experiment.draws.unwrap_or(0);
         // Where the law of the lookups is known and has no spread, there is no deviation.
         let spread =
@@ -231,7 +229,7 @@ impl Entry {
             rare_event_size: row.rare_event_size,
             lookups: experiment.lookups_per_draw.filter(|_| is_first),
             lookups_variance: spread.or(experiment.predicted_lookups.map(|_| 0.0)),
-            seconds: experiment.spent.seconds.filter(|_| is_timed),
+            seconds: experiment.spent.seconds.filter(|_| is_first),
             drawn: experiment.drawn.unwrap_or(0),
             checks: checks.collect(),
             command: experiment.command.clone(),

@@ -32,14 +32,13 @@ const MOST: usize = 8;
 
 /// What was left out, each with its reason and the experiments.
 fn left_out(comparison: &Comparison) -> Vec<(&'static str, &[ChannelId])> {
-    let LeftOut { relearned, blunt, unpredicted, uncounted, brief, shared } = &comparison.left_out;
+    let LeftOut { relearned, blunt, unpredicted, uncounted, brief } = &comparison.left_out;
     let all = [
         ("variance not compared, too few draws or too heavy a tail", blunt),
         ("variance not compared, theory has no error of it", unpredicted),
         ("lookups not compared, theory has no error of them", uncounted),
         ("variance and lookups not compared, σ\u{302} learned from other pilot draws", relearned),
         ("time not compared, less than 0.1 s", brief),
-        ("time not compared, lookups shared with other experiments", shared),
         ("not in the baseline", &comparison.added),
         ("only in the baseline", &comparison.missing),
         ("not compared, the case was rewritten", &comparison.rewritten),

@@ -74,9 +74,7 @@ pub fn columns<'a>() -> Vec<Column<Line<'a>>> {
         "best_fom" = |line| line.best_fom();
         "p_law" = |line| line.experiment.p_law;
         "drawn" = |line| line.experiment.drawn;
-        "kernel" = |line| &line.experiment.kernel;
         "same_as" = |line| line.experiment.same_as();
-        "sharing" = |line| line.experiment.sharing;
         "skipped" = |line| line.experiment.skipped;
         "loss_1" = |line| line.losses.map(|losses| losses[0]);
         "loss_2" = |line| line.losses.map(|losses| losses[1]);

@@ -90,12 +90,11 @@ fn what_is_left_out_is_said_with_its_reason() {
     assert_eq!((all.compared, all.times, &all.left_out), (4, 2, &LeftOut::default()));
     assert!(all.multiplied > 0 && !all.is_empty());
     let id = stored.entries[0].id.clone();
-    let doctors: [(Doctor, List, &str, [usize; 2]); 6] = [
+    let doctors: [(Doctor, List, &str, [usize; 2]); 5] = [
         (|entry| entry.kurtosis = None, |out| &out.unpredicted, "no error of it", [3, 2]),
         (|entry| entry.eighth_moment_ratio = None, |out| &out.blunt, "too heavy a tail", [3, 2]),
         (|entry| entry.lookups_variance = None, |out| &out.uncounted, "no error of them", [3, 2]),
         (|entry| entry.seconds = Some(0.09), |out| &out.brief, "less than 0.1 s", [4, 1]),
-        (|entry| entry.seconds = None, |out| &out.shared, "shared with other", [4, 1]),
         (|entry| entry.learns = true, |out| &out.relearned, "pilot draws", [2, 2]),
     ];
     for (doctor, list, words, counts) in doctors {

@@ -236,24 +236,6 @@ pub fn none(messages: &[String]) {
     assert!(messages.is_empty(), "{} differ:\n{}", messages.len(), messages.join("\n"));
 }
 
-/// An experiment at a level of vector hardware that is not the machine's best.
-pub struct At {
-    /// The experiment.
-    pub experiment: Box<dyn Experiment>,
-    /// The level.
-    pub level: Level,
-}
-
-impl Experiment for At {
-    fn fill_by(&self, _: Kernel, streams: &mut Streams, count: usize, buffer: &mut DrawBuffer) {
-        self.experiment.fill_by(Kernel::Packets(self.level), streams, count, buffer);
-    }
-
-    fn has_invariant(&self) -> bool {
-        self.experiment.has_invariant()
-    }
-}
-
 /// An experiment that draws nothing, to stand in another's place for a moment.
 pub struct Nothing;
 

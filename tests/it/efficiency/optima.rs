@@ -111,8 +111,7 @@ fn a_thin_medium_reaches_its_limit_below_the_search() {
 
 #[test]
 fn where_collisions_are_too_many_the_limit_is_named_all_the_same() {
-    // Order-free draws are refused above 1e6 collisions: 1e3 times the largest residual is beyond that.
-    let text = "title = \"thick\"\nkernel = \"order-free\"\n[problem.transmittance]\n\
+    let text = "title = \"thick\"\n[problem.transmittance]\n\
                 medium.piecewise-constant = { breaks = [0, 1, 2000], values = [1, 1e-3] }\nspan = [0, 2000]\n\
                 sampling.constant.value = 2\nestimators = [{ ratio = {} }]";
     let row = &with_optima(text)[0];

@@ -16,7 +16,7 @@ use self::faults::{cuts, flips, kills, strangers, wrong_parts};
 use self::place::{Place, said};
 use trueflight::draw::block::{self, Drawn};
 use trueflight::draw::run;
-use trueflight::draw::share::{Share, Threads, pieces};
+use trueflight::draw::share::{self, Share, Threads};
 use trueflight::draw::store::{Header, Key, Log, Store, entry};
 use trueflight::plan::Options;
 use trueflight::plan::Plan;
@@ -162,7 +162,7 @@ fn what_a_block_costs_those_who_draw_and_those_who_merge() {
             let mut drawn = Drawn::new(planned);
             for block in 0..(512 / blocks_per_look).min(64) {
                 let begin = Instant::now();
-                let one = block::merged(&[planned], block, blocks_per_look, &|| false).remove(0);
+                let one = block::merged(planned, block, blocks_per_look, &|| false);
                 let one = one.expect("a block");
                 draw += begin.elapsed().as_secs_f64();
                 let begin = Instant::now();
@@ -270,13 +270,7 @@ fn shares_are_all_blocks_once() {
         estimators = [{ woodcock = {} }, { ratio = {} }, { double = {} }, { next-flight = {} }]";
     let cases = [case("all", text)];
     let plan = Plan::new(&cases, &options(1, 300_000));
-    let blocks = |share| -> Vec<(u32, u64)> {
-        let of = |piece: trueflight::draw::share::Piece| {
-            let block = piece.block;
-            piece.experiments.into_iter().map(move |one| (one, block))
-        };
-        pieces(&plan, share).flat_map(of).collect()
-    };
+    let blocks = |share| -> Vec<(u32, u64)> { share::blocks(&plan, share).collect() };
     let mut all = blocks(Share::WHOLE);
     all.sort_unstable();
     for of in [2, 3, 16, 1000] {
@@ -303,7 +297,7 @@ fn a_run_of_1e12_draws_is_planned_and_shared_out() {
     };
     assert!(blocks > 400_000_000, "{blocks}");
     let share = Share { part: 7, of: 1_000_000 };
-    let own = pieces(&plan, share).map(|piece| piece.experiments.len() as u64).sum::<u64>();
+    let own = share::blocks(&plan, share).count() as u64;
     assert!(own.abs_diff(blocks / 1_000_000) <= 4, "{own} of {blocks}");
 }
 

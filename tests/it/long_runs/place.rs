@@ -27,8 +27,7 @@ estimators = [{ double = {} }, { double.control.explorers.points = 9 }]
 ";
 
 /// What asks for the same draws everywhere; they take about half a second.
-const ASKED: &str =
-    "run ray.toml curve.toml --seed 5 --draws 15e5 --alpha 1e-6 --kernel order-free";
+const ASKED: &str = "run ray.toml curve.toml --seed 5 --draws 15e5 --alpha 1e-6";
 
 pub struct Place {
     /// The program.

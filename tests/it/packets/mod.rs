@@ -5,7 +5,6 @@
 //! kernels round differently and are judged like any estimator.
 
 mod fields;
-mod order_free;
 mod rays;
 mod single_scattering;
 mod space;
@@ -13,7 +12,7 @@ mod space;
 use crate::common::{none, options};
 use fearless_simd::Level;
 use trueflight::case::Case;
-use trueflight::estimators::{DrawBuffer, Kernel, Order};
+use trueflight::estimators::{DrawBuffer, Kernel};
 use trueflight::numeric::pack::fuses;
 use trueflight::plan::Plan;
 use trueflight::plan::Planned;
@@ -50,14 +49,13 @@ pub fn fusing_levels() -> Vec<Level> {
     levels
 }
 
-/// Compares all ordered experiments of cases on all levels; answers how many comparisons that were.
+/// Compares all experiments of cases on all levels; answers how many comparisons that were.
 pub fn compare(cases: &[Case]) -> usize {
     let plan = Plan::new(cases, &options(1, 1_000));
     let (mut wrong, mut compared) = (Vec::new(), 0);
     for (_, planned) in plan.experiments() {
-        let Ok(ready) = &planned.outcome else { continue };
-        if ready.experiment.order() == Order::Free {
-            continue; // Those are other draws.
+        if planned.outcome.is_err() {
+            continue;
         }
         let single = drawn(planned, Kernel::Single);
         for level in fusing_levels() {

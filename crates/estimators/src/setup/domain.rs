@@ -1,7 +1,6 @@
 //! Where an estimator exists and is unbiased.
 
 use super::{Refusal, Setup};
-use media::Placement;
 use numeric::Span;
 use numeric::digits::{number, rounded};
 use theory::Rule;
@@ -26,7 +25,7 @@ impl<P: Problem> Setup<P> {
     ///
     /// What is needed, and Λ.
     pub fn require_few_collisions(&self, needs: &'static str) -> Result<(), Refusal> {
-        let collisions = Placement::new(&self.sampling).depth();
+        let collisions = self.sampling.whole_depth();
         if collisions <= MOST_COLLISIONS {
             return Ok(());
         }
@@ -90,7 +89,7 @@ impl<P: Problem> Setup<P> {
         let Some((_, largest)) = cut.largest(factor).filter(|&(_, largest)| largest > 1.0) else {
             return Ok(());
         };
-        let collisions = Placement::new(&self.sampling).depth();
+        let collisions = self.sampling.whole_depth();
         let rarity = |n: f64| n * (n / collisions).ln() - n + collisions;
         let (mut few, mut many) = (collisions, 2.0 * collisions + 1.0);
         while rarity(many) < NEVER {

@@ -5,12 +5,11 @@
 //! of it, so that any number of them makes the same draws.
 //!
 //! A block has [`LANES`] streams, and draw j of the block comes from stream j mod [`LANES`]: for
-//! every estimator, whether it draws one by one or in packs. One more stream serves order-free draws:
-//! it says how many walks of a request have how many collisions.
+//! every estimator, whether it draws one by one or in packs.
 
 pub mod xoshiro;
 
-use fearless_simd::{Level, Simd, f64x8, mask64x8, u64x8};
+use fearless_simd::{Simd, f64x8, mask64x8, u64x8};
 use rand::Rng;
 use rand_pcg::Pcg64;
 
@@ -98,8 +97,7 @@ pub struct Address {
     pub experiment: u64,
     /// The block of draws within the experiment; [`PILOT`] for draws before the first.
     pub block: u64,
-    /// The lane within the block: below [`LANES`] for draws, [`LANES`] for the numbers of collisions
-    /// of order-free draws, [`PILOT`] for pilot rays.
+    /// The lane within the block: below [`LANES`] for draws, [`PILOT`] for pilot rays.
     pub lane: u64,
 }
 
@@ -143,7 +141,7 @@ impl Address {
     /// The streams of the block, at their beginnings.
     pub fn streams(self) -> Streams {
         let stream = |lane: usize| Self { lane: lane as u64, ..self }.stream();
-        Streams { lanes: std::array::from_fn(stream), turn: 0, counts: stream(LANES) }
+        Streams { lanes: std::array::from_fn(stream), turn: 0 }
     }
 }
 
@@ -154,8 +152,6 @@ pub struct Streams {
     pub lanes: [Stream; LANES],
     /// The lane of the next draw; the first draw comes from the first.
     pub turn: usize,
-    /// The stream of the numbers of collisions of order-free draws.
-    pub counts: Stream,
 }
 
 impl Streams {
@@ -171,28 +167,6 @@ impl Streams {
     pub fn packs(&self) -> [Lanes; PACKS] {
         let (packs, _) = self.lanes.as_chunks();
         std::array::from_fn(|pack| Lanes::of(&packs[pack]))
-    }
-
-    /// The places of the next request of order-free draws: the first pack of streams as it stands. Each of
-    /// these goes on by one word.
-    pub fn places(&mut self) -> Lanes {
-        let [places, ..] = self.packs();
-        for lane in &mut self.lanes[..WIDTH] {
-            lane.word();
-        }
-        places
-    }
-
-    /// The words that order-free draws use: those of the first branches of each request's places.
-    pub fn branched_words(mut self) -> impl Iterator<Item = u64> {
-        const BRANCHES: u32 = 8;
-        const WORDS: usize = 64;
-        std::iter::repeat_with(move || self.places()).flat_map(|places| {
-            (0..BRANCHES).flat_map(move |number| {
-                let mut lanes = places.branch(Level::new(), number).apart();
-                (0..WORDS).map(move |n| lanes[n % WIDTH].word())
-            })
-        })
     }
 
     /// The next word of each lane in turn, for those who look at the streams themselves.
@@ -261,8 +235,6 @@ mod tests {
         let mut beginnings: Vec<u64> = (0..4)
             .flat_map(|block| Address { block, ..base }.streams().words().take(LANES))
             .collect();
-        beginnings.extend((0..4).map(|block| Address { block, ..base }.streams().counts.word()));
-        beginnings.extend(base.streams().branched_words().take(4096));
         beginnings.push(base.pilot().next_u64());
         beginnings.sort_unstable();
         assert!(beginnings.windows(2).all(|pair| pair[0] != pair[1]));

@@ -15,14 +15,11 @@
 use std::convert::Infallible;
 use std::ops::{BitOr, BitXor, Shl, Shr};
 
-use fearless_simd::{
-    Bytes, ExtractToken, Level, Select, Simd, SimdBase, SimdInt, f64x8, mask64x8, u64x8,
-};
+use fearless_simd::{Bytes, ExtractToken, Select, Simd, SimdBase, SimdInt, f64x8, mask64x8, u64x8};
 use rand::TryRng;
 
-use super::mix;
 use crate::Lane;
-use crate::pack::{self, Task, WIDTH};
+use crate::pack::{self, WIDTH};
 
 /// `2^-53`, the distance between uniform numbers.
 pub const SCALE: f64 = 1.0 / (1_u64 << 53) as f64;
@@ -149,12 +146,6 @@ impl Lanes {
         Self(std::array::from_fn(|i| std::array::from_fn(|lane| word(i, lane))))
     }
 
-    /// The streams of a branch: found from where these stand and a number, without going there.
-    #[must_use]
-    pub fn branch(&self, level: Level, number: u32) -> Self {
-        pack::on(level, Branch { lanes: *self, shift: mix(u64::from(number) + 1) })
-    }
-
     /// Each of the streams by itself.
     pub fn apart(&self) -> [Xoshiro<u64>; WIDTH] {
         std::array::from_fn(|lane| Xoshiro { state: self.0.map(|words| words[lane]) })
@@ -172,23 +163,6 @@ impl Lanes {
                 u64x8::from_slice(simd, d),
             ],
         }
-    }
-}
-
-struct Branch {
-    lanes: Lanes,
-    shift: u64,
-}
-
-impl Task for Branch {
-    type Output = Lanes;
-
-    #[inline(always)]
-    fn run<S: Simd>(mut self, _: S) -> Lanes {
-        for word in self.lanes.0.as_flattened_mut() {
-            *word = mix(*word ^ self.shift);
-        }
-        self.lanes
     }
 }
 

@@ -211,7 +211,6 @@ fn facts(row: &Row) -> Vec<(&'static str, String)> {
         ("Best σ\u{302} is", row.best_kind().to_owned()),
         ("Best figure of merit", number(row.best_fom())),
         ("Limit of the figure of merit", number(row.best_limit())),
-        ("Kernel", row.experiment.kernel.clone()),
         ("Stream", row.experiment.stream.map_or_else(String::new, |stream| stream.to_string())),
         ("Drawn as", row.experiment.same_as()),
         ("All values in units of exp(−u), u", number(row.log_unit)),
