@@ -12,6 +12,7 @@ use trueflight::estimators::space::Particle;
 use trueflight::estimators::sphere::combined::{Sharing, Steps, Subpaths};
 use trueflight::estimators::sphere::{Honest, Page};
 use trueflight::media::{Body, Majorants};
+use trueflight::numeric::Lane;
 use trueflight::plan::Plan;
 use trueflight::plan::Planned;
 use trueflight::problems::{Problem, Sphere};
@@ -165,11 +166,18 @@ fn sphere(scene: [&str; 3]) -> (Sphere, Majorants) {
 }
 
 /// Nothing but one technique counts, with its weight beside the others.
+#[derive(Clone, Copy)]
 struct Only(usize);
 
 impl Steps for Only {
-    fn weight(&self, heuristic: Heuristic, own: usize, densities: [f64; 3]) -> f64 {
-        if own == self.0 { heuristic.weight(own, densities) } else { 0.0 }
+    fn weight<L: Lane, const N: usize>(
+        &self,
+        heuristic: Heuristic,
+        own: usize,
+        densities: [L; N],
+    ) -> L {
+        let right = heuristic.weight(own, densities);
+        if own == self.0 { right } else { right.each(0.0) }
     }
 
     fn unscattered(&self) -> f64 {
@@ -198,9 +206,9 @@ fn shares_of_techniques_add_up() {
                 for _ in 0..draws {
                     let begin = rng;
                     let at = (&sphere, &majorants);
-                    let whole = page.draw(&Honest, at, &mut rng).value[0];
+                    let whole = page.draw(Honest, at, &mut rng).value[0];
                     let shares: [f64; 3] = std::array::from_fn(|own| {
-                        page.draw(&Only(own), at, &mut begin.clone()).value[0]
+                        page.draw(Only(own), at, &mut begin.clone()).value[0]
                     });
                     assert!((shares.iter().sum::<f64>() - whole).abs() < 1e-12);
                     sums.iter_mut().zip(shares).for_each(|(sum, share)| *sum += share);

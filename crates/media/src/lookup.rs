@@ -8,7 +8,7 @@
 //! Source: F. B. Brown, W. R. Martin, *Monte Carlo methods for radiation transport analysis on vector
 //! computers*, Progress in Nuclear Energy 14 (1984).
 
-use fearless_simd::{ExtractToken, Level, Simd, SimdBase, f64x8};
+use fearless_simd::{Level, Simd, SimdBase, f64x8};
 
 use super::{Extinction, Field, Inlined, Medium};
 use numeric::geometry::{Bounds, Point};
@@ -335,13 +335,13 @@ impl<'a> Batches<'a> {
     /// where they begin and where they end. `None` where the field has no formula for lanes, see
     /// [`Field::depths_along`].
     #[inline(always)]
-    pub fn depths<S: Simd>(&self, rays: &[f64x8<S>; 8]) -> Option<f64x8<S>> {
+    pub fn depths<L: Lane>(&self, rays: &[L; 8]) -> Option<L> {
         let mut rows = [[0.0; WIDTH]; 8];
         for (number, row) in rows.iter_mut().enumerate() {
-            rays[number].store_slice(row);
+            rays[number].store(row);
         }
         let depths = self.batch.depths(&rows)?;
-        Some(f64x8::from_slice(rays[0].token(), &depths))
+        Some(rays[0].load(&depths))
     }
 }
 

@@ -63,6 +63,37 @@ pub trait Lane:
         )
     }
 
+    /// Writes the elements in order to the beginning of a row.
+    #[inline(always)]
+    fn store(self, row: &mut [f64]) {
+        let _ = self.replaced(
+            #[inline(always)]
+            |elements| row[..elements.len()].copy_from_slice(elements),
+        );
+    }
+
+    /// Another such lane, of the elements at the beginning of a row.
+    #[must_use]
+    #[inline(always)]
+    fn load(self, row: &[f64]) -> Self {
+        self.replaced(
+            #[inline(always)]
+            |elements| elements.copy_from_slice(&row[..elements.len()]),
+        )
+    }
+
+    /// Computes in a function of its own where the lane is a pack, and in place elsewhere, see [`pack::outlined`].
+    #[inline(always)]
+    fn outlined<R>(self, compute: impl FnOnce() -> R) -> R {
+        compute()
+    }
+
+    /// Computes in a function of its own where the lane takes several registers, and in place elsewhere.
+    #[inline(always)]
+    fn outlined_if_narrow<R>(self, compute: impl FnOnce() -> R) -> R {
+        compute()
+    }
+
     /// `self · factor + term`, rounded once where the machine can.
     #[must_use]
     fn times_plus(self, factor: Self, term: Self) -> Self;

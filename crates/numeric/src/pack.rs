@@ -241,6 +241,26 @@ impl<S: Simd> Lane for f64x8<S> {
     }
 
     #[inline(always)]
+    fn store(self, row: &mut [f64]) {
+        self.store_slice(&mut row[..WIDTH]);
+    }
+
+    #[inline(always)]
+    fn load(self, row: &[f64]) -> Self {
+        Self::from_slice(self.token(), &row[..WIDTH])
+    }
+
+    #[inline(always)]
+    fn outlined<R>(self, compute: impl FnOnce() -> R) -> R {
+        outlined(self.token(), compute)
+    }
+
+    #[inline(always)]
+    fn outlined_if_narrow<R>(self, compute: impl FnOnce() -> R) -> R {
+        outlined_if_narrow(self.token(), compute)
+    }
+
+    #[inline(always)]
     fn times_plus(self, factor: Self, term: Self) -> Self {
         self.mul_add(factor, term)
     }

@@ -3,21 +3,17 @@
 pub mod particle;
 pub mod splitting;
 
-use fearless_simd::{Level, Simd, mask64x8};
-
-use crate::kernels::packet::Request;
-use crate::kernels::packet::bank::Numbers;
-use crate::space::exit::{Points, splat};
-use crate::space::packet::walks;
-use crate::space::tally::{Collision, Departure, add_where};
-use crate::space::{self, By, Particle, Start, Sums, Tally, Walked};
+use crate::space::tally::{Collision, Departure};
+use crate::space::{self, Particle, Tally, Walked};
 use crate::{Draw, Refusal, Setup, estimators};
 use numeric::Lane;
-use numeric::rng::Stream;
+use numeric::rng::Random;
 use theory::Prediction;
-use theory::problems::Furnace;
+use theory::problems::{Furnace, Scene};
 
 impl Walked for Furnace {
+    type Tally<'a> = Energy<'a>;
+
     fn domain(setup: &Setup<Self>, particle: &Particle) -> Result<(), Refusal> {
         let scene = &setup.problem.scene;
         space::realisable(setup, scene, particle)?;
@@ -34,49 +30,44 @@ impl Walked for Furnace {
         Prediction::uncounted(space::energy_channel(bound.unwrap_or(f64::INFINITY), depth))
     }
 
-    fn draw(by: By, _: &Particle, setup: &Setup<Self>, rng: &mut Stream) -> Draw {
-        let furnace = &*setup.problem;
-        let Some(majorants) = setup.space.as_deref() else {
-            // Without σ̂ there is nothing to draw; such an experiment is refused.
-            return Draw::free([f64::NAN], 0);
-        };
-        let start = Start { place: furnace.entry, direction: furnace.direction, weight: 1.0 };
-        let mut sums = Sums::new(furnace);
-        let lookups = space::walk(by, &furnace.scene, majorants, start, &mut sums, rng);
-        Draw::free(sums.at, lookups)
+    fn scene(&self) -> &Scene {
+        &self.scene
     }
 
-    fn draw_packets<'a>(
-        level: Level,
-        particle: &Particle,
-        setup: &Setup<Self>,
-        request: Request<'a>,
-    ) -> Option<Request<'a>> {
-        let furnace = &*setup.problem;
-        walks(level, furnace, particle, (&furnace.scene, setup.space.as_ref()), request)
+    fn tally<'a>(setup: &'a Setup<Self>, _: &Particle) -> Result<Energy<'a>, Draw> {
+        Ok(Energy(&setup.problem))
     }
 }
 
 /// The energy that a particle brings.
-impl Tally<1> for Furnace {
+pub struct Energy<'a>(&'a Furnace);
+
+impl Tally for Energy<'_> {
+    type Found<L: Lane> = [L; 1];
+
     #[inline(always)]
-    fn begin<S: Simd>(&self, simd: S, _: &mut Numbers<S>, _: mask64x8<S>) -> [Points<S>; 2] {
-        [splat(simd, self.entry), splat(simd, self.direction)]
+    fn nothing<L: Lane>(&self, zero: L) -> [L; 1] {
+        [zero]
+    }
+
+    #[inline(always)]
+    fn sums<L: Lane>(found: &[L; 1]) -> &[L] {
+        found
+    }
+
+    #[inline(always)]
+    fn begin<L: Lane>(&self, one: L, _: L::Mask, _: &mut impl Random<L>) -> [[L; 3]; 2] {
+        [self.0.entry.each(one), self.0.direction.each(one)]
     }
 
     #[inline(always)]
     fn collided<L: Lane>(&self, [energy]: &mut [L; 1], at: &Collision<L>) {
-        let rest = at.albedo.each(1.0) - at.albedo;
-        add_where(energy, at.inside, at.weight * at.ratio * rest);
+        energy.add_where(at.inside, at.weight * at.ratio * at.albedo.one_minus());
     }
 
     #[inline(always)]
     fn escaped<L: Lane>(&self, [energy]: &mut [L; 1], at: &Departure<L>) {
-        add_where(energy, at.left, at.weight);
-    }
-
-    fn channels(&self) -> &[usize] {
-        &[0]
+        energy.add_where(at.left, at.weight);
     }
 }
 

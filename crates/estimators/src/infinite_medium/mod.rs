@@ -2,20 +2,14 @@
 
 pub mod particle;
 
-use fearless_simd::{Level, Simd, mask64x8};
-
-use crate::kernels::packet::Request;
-use crate::kernels::packet::bank::Numbers;
-use crate::space::exit::{Points, splat};
-use crate::space::packet::walks;
-use crate::space::tally::{Collision, add_where};
-use crate::space::{self, By, Particle, Start, Sums, Tally, Walked};
+use crate::space::tally::Collision;
+use crate::space::{Particle, Tally, Walked};
 use crate::{Draw, Refusal, Setup, estimators};
-use numeric::geometry::{Point, frame};
-use numeric::rng::Stream;
+use numeric::geometry::Point;
+use numeric::rng::Random;
 use numeric::{Known, Lane};
-use theory::problems::InfiniteMedium;
 use theory::problems::infinite_medium::{MOST_RADII, Values};
+use theory::problems::{InfiniteMedium, Scene};
 use theory::space::infinite;
 use theory::{Channel, CountLaw, Moments, ParticleRule, Prediction, Tails};
 
@@ -43,6 +37,8 @@ fn geometric(mean: f64, end: f64) -> Moments {
 }
 
 impl Walked for InfiniteMedium {
+    type Tally<'a> = Within<'a>;
+
     /// Walks must end, and no weight may grow.
     fn domain(setup: &Setup<Self>, particle: &Particle) -> Result<(), Refusal> {
         use ParticleRule::{Analog, Terminating};
@@ -126,25 +122,12 @@ impl Walked for InfiniteMedium {
         Prediction { channels, lookups, ..Prediction::default() }
     }
 
-    fn draw(by: By, _: &Particle, setup: &Setup<Self>, rng: &mut Stream) -> Draw<Values> {
-        let mut sums = Sums::new(&*setup.problem);
-        let cosine = 2.0 * rng.uniform() - 1.0;
-        let direction = frame::turned(Point([0.0, 0.0, 1.0]), cosine, rng.uniform());
-        let start = Start { place: Point([0.0; 3]), direction, weight: 1.0 };
-        let Some(majorants) = setup.space.as_deref() else { return Draw::free(sums.values(), 0) };
-        let scene = &setup.problem.scene;
-        let lookups = space::walk(by, scene, majorants, start, &mut sums, rng);
-        Draw::free(sums.values(), lookups)
+    fn scene(&self) -> &Scene {
+        &self.scene
     }
 
-    fn draw_packets<'a>(
-        level: Level,
-        particle: &Particle,
-        setup: &Setup<Self>,
-        request: Request<'a>,
-    ) -> Option<Request<'a>> {
-        let problem = &*setup.problem;
-        walks(level, problem, particle, (&problem.scene, setup.space.as_ref()), request)
+    fn tally<'a>(setup: &'a Setup<Self>, _: &Particle) -> Result<Within<'a>, Draw<Values>> {
+        Ok(Within(&setup.problem))
     }
 }
 
@@ -168,10 +151,29 @@ const CHANNELS: [[usize; SUMS]; SUMS - 1] = {
 };
 
 /// Collisions within each radius, then the squared distance and the collisions.
-impl Tally<SUMS> for InfiniteMedium {
+pub struct Within<'a>(&'a InfiniteMedium);
+
+impl Tally for Within<'_> {
+    type Found<L: Lane> = [L; SUMS];
+
     #[inline(always)]
-    fn begin<S: Simd>(&self, simd: S, _: &mut Numbers<S>, _: mask64x8<S>) -> [Points<S>; 2] {
-        [splat(simd, Point([0.0; 3])), splat(simd, Point([0.0, 0.0, 1.0]))]
+    fn nothing<L: Lane>(&self, zero: L) -> [L; SUMS] {
+        [zero; SUMS]
+    }
+
+    #[inline(always)]
+    fn sums<L: Lane>(found: &[L; SUMS]) -> &[L] {
+        found
+    }
+
+    fn channels(&self) -> &[usize] {
+        let count = self.0.radii.len();
+        &CHANNELS[count][..count + 2]
+    }
+
+    #[inline(always)]
+    fn begin<L: Lane>(&self, one: L, _: L::Mask, _: &mut impl Random<L>) -> [[L; 3]; 2] {
+        [Point([0.0; 3]).each(one), Point([0.0, 0.0, 1.0]).each(one)]
     }
 
     fn begins_turned(&self) -> bool {
@@ -185,18 +187,12 @@ impl Tally<SUMS> for InfiniteMedium {
         let square = x * x + y * y + z * z;
         // So many that the compiler knows their places: what an index finds lies in memory.
         for (number, sum) in sums.iter_mut().enumerate().take(MOST_RADII) {
-            if let Some(radius) = self.radii.get(number) {
-                let within = square.below(square.each(radius * radius));
-                add_where(sum, at.inside & within, real);
+            if let Some(radius) = self.0.radii.get(number) {
+                sum.add_where(at.inside & square.below(square.each(radius * radius)), real);
             }
         }
-        let rest = at.albedo.each(1.0) - at.albedo;
-        add_where(&mut sums[MOST_RADII], at.inside, real * rest * square);
-        add_where(&mut sums[MOST_RADII + 1], at.inside, real);
-    }
-
-    fn channels(&self) -> &[usize] {
-        &CHANNELS[self.radii.len()][..self.radii.len() + 2]
+        sums[MOST_RADII].add_where(at.inside, real * at.albedo.one_minus() * square);
+        sums[MOST_RADII + 1].add_where(at.inside, real);
     }
 }
 

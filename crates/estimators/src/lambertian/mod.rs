@@ -3,21 +3,13 @@
 pub mod particle;
 pub mod splitting;
 
-use fearless_simd::{ExtractToken, Level, Simd, f64x8, mask64x8};
-
-use crate::kernels::packet::Request;
-use crate::kernels::packet::bank::Numbers;
-use crate::space::exit::Points;
-use crate::space::packet::walks;
-use crate::space::tally::{Collision, Departure, add_where};
-use crate::space::{self, By, Particle, Start, Sums, Tally, Walked};
+use crate::space::tally::{Collision, Departure};
+use crate::space::{self, Particle, Tally, Walked};
 use crate::{Draw, Refusal, Setup, estimators};
-use numeric::geometry::frame;
-use numeric::rng::Stream;
-use numeric::{Known, Lane, pack};
-use theory::problems::Lambertian;
+use numeric::rng::Random;
+use numeric::{Known, Lane};
 use theory::problems::lambertian::Values;
-use theory::problems::rod::MOST;
+use theory::problems::{Lambertian, Scene};
 use theory::space::content;
 use theory::{Channel, Moments, ParticleRule, Prediction, Tails};
 
@@ -66,11 +58,9 @@ fn piloted(name: &str, truth: Known) -> Channel {
     Channel { name: name.to_owned(), moments: None, by_pilots: true, ..certain }
 }
 
-/// Without σ̂ there is nothing to draw; such an experiment is refused.
-const NOTHING: Draw<Values> =
-    Draw { value: Values { at: [0.0; MOST], count: 1 }, lookups: 0, defect: 0.0 };
-
 impl Walked for Lambertian {
+    type Tally<'a> = Entering<'a>;
+
     fn domain(setup: &Setup<Self>, particle: &Particle) -> Result<(), Refusal> {
         let scene = &setup.problem.scene;
         space::realisable(setup, scene, particle)?;
@@ -123,42 +113,20 @@ impl Walked for Lambertian {
         Prediction { channels, ..Prediction::default() }
     }
 
-    fn draw(by: By, particle: &Particle, setup: &Setup<Self>, rng: &mut Stream) -> Draw<Values> {
-        let Some(majorants) = setup.space.as_deref() else { return NOTHING };
-        let (u, v) = (rng.uniform(), rng.uniform());
-        let (place, inward) = setup.problem.on_boundary(u, v);
-        let cosine = by.steps().first_cosine(rng.uniform());
-        let direction = frame::turned(inward, cosine, rng.uniform());
-        let entering = Entering::new(&setup.problem, Channels::of(setup, particle));
-        let (mut sums, start) = (Sums::new(&entering), Start { place, direction, weight: 1.0 });
-        let lookups = space::walk(by, &setup.problem.scene, majorants, start, &mut sums, rng);
-        Draw::free(sums.values(), lookups)
+    fn scene(&self) -> &Scene {
+        &self.scene
     }
 
-    fn draw_packets<'a>(
-        level: Level,
+    fn tally<'a>(
+        setup: &'a Setup<Self>,
         particle: &Particle,
-        setup: &Setup<Self>,
-        request: Request<'a>,
-    ) -> Option<Request<'a>> {
-        let problem = &*setup.problem;
-        let entering = Entering::new(problem, Channels::of(setup, particle));
-        walks(level, &entering, particle, (&problem.scene, setup.space.as_ref()), request)
+    ) -> Result<Entering<'a>, Draw<Values>> {
+        Ok(Entering::new(&setup.problem, Channels::of(setup, particle)))
     }
 }
 
-/// [`Lambertian::boundary_lanes`], in a function of its own on AVX2.
-#[inline(always)]
-fn on_boundary<S: Simd>(problem: &Lambertian, numbers: [f64x8<S>; 2]) -> [Points<S>; 2] {
-    pack::outlined_if_narrow(
-        numbers[0].token(),
-        #[inline(always)]
-        move || problem.boundary_lanes(numbers),
-    )
-}
-
-/// Where particles enter, and the sums over their collisions.
-struct Entering<'a> {
+/// Particles that enter from all sides, and the sums over their collisions.
+pub struct Entering<'a> {
     problem: &'a Lambertian,
     channels: [usize; 4],
     count: usize,
@@ -177,11 +145,31 @@ impl<'a> Entering<'a> {
 }
 
 /// Energy, path length, collisions, tentative collisions.
-impl Tally<4> for Entering<'_> {
+impl Tally for Entering<'_> {
+    type Found<L: Lane> = [L; 4];
+
     #[inline(always)]
-    fn begin<S: Simd>(&self, _: S, numbers: &mut Numbers<S>, which: mask64x8<S>) -> [Points<S>; 2] {
-        let [u, v] = [numbers.uniform_where(which), numbers.uniform_where(which)];
-        on_boundary(self.problem, [u, v])
+    fn nothing<L: Lane>(&self, zero: L) -> [L; 4] {
+        [zero; 4]
+    }
+
+    #[inline(always)]
+    fn sums<L: Lane>(found: &[L; 4]) -> &[L] {
+        found
+    }
+
+    fn channels(&self) -> &[usize] {
+        &self.channels[..self.count]
+    }
+
+    #[inline(always)]
+    fn begin<L: Lane>(&self, _: L, which: L::Mask, random: &mut impl Random<L>) -> [[L; 3]; 2] {
+        let (u, v) = (random.uniform_where(which), random.uniform_where(which));
+        let problem = self.problem;
+        u.outlined_if_narrow(
+            #[inline(always)]
+            move || problem.boundary_lanes([u, v]),
+        )
     }
 
     fn begins_turned(&self) -> bool {
@@ -190,7 +178,7 @@ impl Tally<4> for Entering<'_> {
 
     #[inline(always)]
     fn first_cosine<L: Lane>(&self, number: L) -> L {
-        (number.each(1.0) - number).root()
+        number.one_minus().root()
     }
 
     #[inline(always)]
@@ -201,19 +189,15 @@ impl Tally<4> for Entering<'_> {
     #[inline(always)]
     fn collided<L: Lane>(&self, sums: &mut [L; 4], at: &Collision<L>) {
         let [energy, _, collisions, tentative] = sums;
-        let (one, real) = (at.albedo.each(1.0), at.weight * at.ratio);
-        add_where(tentative, at.inside, one);
-        add_where(collisions, at.inside, real);
-        add_where(energy, at.inside, real * (one - at.albedo));
+        let real = at.weight * at.ratio;
+        tentative.count_where(at.inside);
+        collisions.add_where(at.inside, real);
+        energy.add_where(at.inside, real * at.albedo.one_minus());
     }
 
     #[inline(always)]
     fn escaped<L: Lane>(&self, [energy, ..]: &mut [L; 4], at: &Departure<L>) {
-        add_where(energy, at.left, at.weight);
-    }
-
-    fn channels(&self) -> &[usize] {
-        &self.channels[..self.count]
+        energy.add_where(at.left, at.weight);
     }
 }
 

@@ -3,22 +3,18 @@
 pub mod particle;
 pub mod splitting;
 
-use fearless_simd::{Level, Simd, mask64x8};
-
-use crate::kernels::packet::Request;
-use crate::kernels::packet::bank::Numbers;
-use crate::space::exit::{Points, splat};
-use crate::space::packet::walks;
-use crate::space::tally::{Departure, add_where};
-use crate::space::{self, By, Particle, Start, Sums, Tally, Walked};
+use crate::space::tally::Departure;
+use crate::space::{self, Particle, Tally, Walked};
 use crate::{Draw, Refusal, Setup, estimators};
 use numeric::geometry::Point;
-use numeric::rng::Stream;
+use numeric::rng::Random;
 use numeric::{Known, Lane};
-use theory::problems::MultipleScattering;
+use theory::problems::{MultipleScattering, Scene, Sky};
 use theory::{Channel, CountLaw, Moments, Prediction, Tails};
 
 impl Walked for MultipleScattering {
+    type Tally<'a> = Gathering<'a>;
+
     /// Its draws may be spread without bound all the same, see `furnace`.
     fn domain(setup: &Setup<Self>, particle: &Particle) -> Result<(), Refusal> {
         space::realisable(setup, &setup.problem.scene, particle)
@@ -38,47 +34,48 @@ impl Walked for MultipleScattering {
         Prediction::single(channel, CountLaw::always(0.0))
     }
 
-    fn draw(by: By, _: &Particle, setup: &Setup<Self>, rng: &mut Stream) -> Draw {
-        let problem = &*setup.problem;
-        let (Some([place, direction]), Some(majorants)) = (problem.entry(), setup.space.as_deref())
-        else {
-            return Draw::free([problem.background()], 0);
-        };
-        let start = Start { place, direction, weight: 1.0 };
-        let mut sums = Sums::new(problem);
-        let lookups = space::walk(by, &problem.scene, majorants, start, &mut sums, rng);
-        Draw::free(sums.at, lookups)
+    fn scene(&self) -> &Scene {
+        &self.scene
     }
 
-    fn draw_packets<'a>(
-        level: Level,
-        particle: &Particle,
-        setup: &Setup<Self>,
-        request: Request<'a>,
-    ) -> Option<Request<'a>> {
+    fn tally<'a>(setup: &'a Setup<Self>, _: &Particle) -> Result<Gathering<'a>, Draw> {
         let problem = &*setup.problem;
-        if problem.entry().is_none() {
-            return Some(request);
+        match problem.entry() {
+            Some(entry) => Ok(Gathering { sky: &problem.sky, entry }),
+            None => Err(Draw::free([problem.background()], 0)),
         }
-        walks(level, problem, particle, (&problem.scene, setup.space.as_ref()), request)
     }
 }
 
 /// The light of the sky that a walk gathers.
-impl Tally<1> for MultipleScattering {
+pub struct Gathering<'a> {
+    sky: &'a Sky,
+    /// The place where walks begin, and the direction.
+    entry: [Point; 2],
+}
+
+impl Tally for Gathering<'_> {
+    type Found<L: Lane> = [L; 1];
+
     #[inline(always)]
-    fn begin<S: Simd>(&self, simd: S, _: &mut Numbers<S>, _: mask64x8<S>) -> [Points<S>; 2] {
-        let [place, direction] = self.entry().unwrap_or([Point([0.0; 3]); 2]);
-        [splat(simd, place), splat(simd, direction)]
+    fn nothing<L: Lane>(&self, zero: L) -> [L; 1] {
+        [zero]
+    }
+
+    #[inline(always)]
+    fn sums<L: Lane>(found: &[L; 1]) -> &[L] {
+        found
+    }
+
+    #[inline(always)]
+    fn begin<L: Lane>(&self, one: L, _: L::Mask, _: &mut impl Random<L>) -> [[L; 3]; 2] {
+        let [place, direction] = self.entry;
+        [place.each(one), direction.each(one)]
     }
 
     #[inline(always)]
     fn escaped<L: Lane>(&self, [radiance]: &mut [L; 1], at: &Departure<L>) {
-        add_where(radiance, at.left, at.weight * self.sky.radiance_lanes(at.direction));
-    }
-
-    fn channels(&self) -> &[usize] {
-        &[0]
+        radiance.add_where(at.left, at.weight * self.sky.radiance_lanes(at.direction));
     }
 }
 

@@ -1,13 +1,11 @@
 //! Walks of particles through volumes: what all problems in space share.
 
-pub mod exit;
-pub mod flights;
-mod grazing;
-mod pack;
-pub mod packet;
+pub mod bank;
+pub mod draws;
 pub mod particle;
 pub mod segment;
 pub mod shadow;
+mod splitting;
 pub mod tally;
 pub mod walk;
 mod walker;
@@ -22,10 +20,11 @@ use theory::problems::{Problem, Scene};
 use theory::space::Walks;
 use theory::{Channel, Moments, Tails};
 
+pub use numeric::geometry::exit;
 pub use particle::{Particle, Splitting};
-pub use tally::{Sums, Tally};
-pub use walk::{By, Scattering, Sink, Start, Steps, walk};
-pub use walker::{Splitter, Walked, Walker};
+pub use tally::Tally;
+pub use walk::Steps;
+pub use walker::{Splitter, Walked, Walker, draw, nothing};
 
 /// Rounding of a sum over the collisions of a walk.
 const ROUNDING: f64 = 1e-12;

@@ -1,11 +1,15 @@
-//! The honest particle: a rule, and where asked for roulette and splitting.
+//! The settings of a particle: a rule, and where asked for roulette and splitting.
 
 use super::walk::Steps;
+use crate::rod;
+use crate::rod::walk::Steps as _;
 use media::catalogue::{Domain, Settings};
-use numeric::rng::Stream;
-use theory::{Odds, ParticleRule};
+use numeric::Lane;
+use numeric::rng::Random;
+use theory::ParticleRule;
+use theory::particle::Odds;
 
-/// How far both of what a collision leaves are followed.
+/// The collisions after which both the scattered particle and the one that goes straight on are followed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Splitting {
     /// Never: one particle at most.
@@ -16,7 +20,18 @@ pub enum Splitting {
     Budget(u32),
 }
 
-/// How a particle walks.
+impl Splitting {
+    /// Whether a collision splits, after so many splits on the way from the start and in the walk as a whole.
+    pub fn splits(self, depth: u32, total: u32) -> bool {
+        match self {
+            Self::None => false,
+            Self::Depth(most) => depth < most,
+            Self::Budget(most) => total < most,
+        }
+    }
+}
+
+/// The settings of a particle, and the right steps of its walk.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Particle {
     /// What happens at a collision that does not split.
@@ -81,27 +96,26 @@ fn whole(count: u64) -> u32 {
     count as u32
 }
 
+impl Particle {
+    #[inline(always)]
+    fn by(&self) -> rod::walk::By {
+        rod::walk::By { rule: self.rule, roulette: self.roulette }
+    }
+}
+
 impl Steps for Particle {
     #[inline(always)]
-    fn odds_at(&self, ratio: f64, albedo: f64) -> Odds {
+    fn odds<L: Lane>(&self, ratio: L, albedo: L) -> Odds<L> {
         self.rule.odds(ratio, albedo)
     }
 
     #[inline(always)]
-    fn splits(&self, depth: u32, total: u32) -> bool {
-        match self.splitting {
-            Splitting::None => false,
-            Splitting::Depth(most) => depth < most,
-            Splitting::Budget(most) => total < most,
-        }
-    }
-
-    #[inline(always)]
-    fn keep(&self, rng: &mut Stream, weight: f64) -> Option<f64> {
-        let Some(below) = self.roulette else { return Some(weight) };
-        if weight.abs() >= below {
-            return Some(weight);
-        }
-        (rng.uniform() * below < weight.abs()).then(|| below.copysign(weight))
+    fn survive<L: Lane>(
+        &self,
+        goes_on: L::Mask,
+        weight: &mut L,
+        random: &mut impl Random<L>,
+    ) -> L::Mask {
+        self.by().survive(goes_on, weight, random)
     }
 }

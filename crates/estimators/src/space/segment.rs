@@ -1,40 +1,34 @@
-//! Segments of null-scattering paths through σ̂ in space.
+//! Segments of null-scattering paths through σ̂ in space, tracked at once from one end to the other.
 //!
 //! ```text
 //! by ratio tracking, to a given end:       T̂ = ∏ (1 − σ_t/σ̂) over the tentative collisions, all of them null
-//! by delta tracking, to a real collision:  each collision is real with chance σ_t/σ̂, else null
+//! by delta tracking, to a real collision:  each collision is real with probability σ_t/σ̂, else null
 //! ```
 //!
-//! The null collisions of a path have the same places by either; what their densities differ by are the chances to be
-//! null, which only what decides has to win. A flight takes a random number, a decision another one.
+//! The null collisions of a path have the same places by either; their densities differ by the probabilities to be null, which
+//! only delta tracking has to draw. A flight takes a random number, a decision another one.
 
-use media::Majorants;
-use numeric::geometry::{Point, Ray};
-use numeric::pack::in_fused_code;
-use numeric::rng::Stream;
+use media::majorants::flights::{Flights, Flown, Ground};
+use numeric::geometry::Point;
+use numeric::geometry::exit::rows;
+use numeric::rng::Random;
+use numeric::{Lane, Mask};
 use theory::ParticleRule;
-use theory::problems::Scene;
+use theory::problems::{Albedo, Scene};
 
-/// A segment with a given end.
-#[derive(Debug, Clone, Copy)]
-pub struct Tracked {
-    /// `T̂`.
-    pub transmittance: f64,
-    /// The chance that a particle, which walks by a rule, takes all its collisions for null.
-    pub chance: f64,
-    /// Its lookups.
-    pub lookups: u32,
-}
-
-/// A segment that ends with a real collision, or leaves.
-#[derive(Debug, Clone, Copy)]
-pub struct Flown {
-    /// Where the real collision is.
-    pub collision: Option<Point>,
-    /// The chance of its null collisions, `∏ (1 − σ_t/σ̂)`.
-    pub chance: f64,
-    /// Its lookups.
-    pub lookups: u32,
+/// Segments.
+#[derive(Clone, Copy)]
+pub struct Segment<L: Lane> {
+    /// Lanes that end with a real collision.
+    pub collided: L::Mask,
+    /// The place of the collision.
+    pub place: [L; 3],
+    /// `T̂`, where it is tracked.
+    pub transmittance: L,
+    /// The probability that all collisions before the end are null.
+    pub chance: L,
+    /// Lookups.
+    pub lookups: L,
 }
 
 /// A medium and σ̂ in it.
@@ -43,54 +37,112 @@ pub struct Tracker<'a> {
     /// The medium.
     pub scene: &'a Scene,
     /// σ̂.
-    pub majorants: &'a Majorants,
+    pub ground: &'a Ground<'a>,
+}
+
+/// A field at places, one lane after the other; 0 outside `which`.
+#[inline(always)]
+fn each<L: Lane>(place: [L; 3], which: L::Mask, at: impl Fn(Point) -> f64) -> L {
+    let ([x, y, z], bits) = (rows(place), which.bits());
+    place[0].replaced(
+        #[inline(always)]
+        |elements| {
+            for (lane, element) in elements.iter_mut().enumerate() {
+                let is_asked = bits >> lane & 1 == 1;
+                *element = if is_asked { at(Point([x[lane], y[lane], z[lane]])) } else { 0.0 };
+            }
+        },
+    )
 }
 
 impl Tracker<'_> {
-    /// Ratio tracking from the origin of a ray, in the bounds, over a distance; chances are those of a rule.
-    #[inline(never)]
-    pub fn ratio(self, ray: &Ray, distance: f64, rule: ParticleRule, rng: &mut Stream) -> Tracked {
-        let field = self.scene.volume.points();
-        in_fused_code(
-            #[inline(always)]
-            || {
-                let mut found = Tracked { transmittance: 1.0, chance: 1.0, lookups: 0 };
-                let mut flight = self.majorants.enter(ray.origin, ray.direction);
-                loop {
-                    let flown = self.majorants.fly(&mut flight, -rng.ln_uniform());
-                    let Some(sampling) = flown.filter(|_| flight.t < distance) else {
-                        return found;
-                    };
-                    found.lookups += 1;
-                    let place = flight.place();
-                    let ratio = field.extinction(place) / sampling;
-                    found.transmittance *= 1.0 - ratio;
-                    found.chance *= rule.odds(ratio, self.scene.albedo.at(place)).transmit;
-                }
-            },
-        )
+    /// The albedo at places of the lanes in `which`.
+    #[inline(always)]
+    pub fn albedo<L: Lane>(self, place: [L; 3], which: L::Mask) -> L {
+        match &self.scene.albedo {
+            Albedo::Even(albedo) => place[0].each(*albedo),
+            field @ Albedo::Field(..) => each(place, which, |place| field.at(place)),
+        }
     }
 
-    /// Delta tracking from the origin of a ray, in the bounds or on their boundary.
-    #[inline(never)]
-    pub fn delta(self, ray: &Ray, rng: &mut Stream) -> Flown {
-        let field = self.scene.volume.points();
-        in_fused_code(
+    /// Ratio tracking of the lanes in `which`, from places in the bounds, over distances; the probabilities of null collisions
+    /// are those of a rule.
+    #[inline(always)]
+    pub fn ratio<L: Lane>(
+        self,
+        rays: [[L; 3]; 2],
+        (which, distance): (L::Mask, L),
+        rule: ParticleRule,
+        random: &mut impl Random<L>,
+    ) -> Segment<L> {
+        let (mut flights, mut segment) = self.begin(rays, which);
+        let mut on = which;
+        while on.any() {
+            let (flown, ratio) = self.fly(&mut flights, on, random);
+            on &= flown.inside & flights.t.below(distance);
+            segment.lookups.count_where(on);
+            segment.transmittance.scale_where(on, ratio.one_minus());
+            let odds = rule.odds(ratio, self.albedo(flown.place, on));
+            segment.chance.scale_where(on, odds.transmit);
+        }
+        segment
+    }
+
+    /// Delta tracking of the lanes in `which`, from places in the bounds or on their boundary.
+    #[inline(always)]
+    pub fn delta<L: Lane>(
+        self,
+        rays: [[L; 3]; 2],
+        which: L::Mask,
+        random: &mut impl Random<L>,
+    ) -> Segment<L> {
+        let (mut flights, mut segment) = self.begin(rays, which);
+        let mut on = which;
+        while on.any() {
+            let (flown, ratio) = self.fly(&mut flights, on, random);
+            on &= flown.inside;
+            segment.lookups.count_where(on);
+            let collides = on & random.uniform_where(on).below(ratio);
+            segment.collided |= collides;
+            for (axis, place) in segment.place.iter_mut().enumerate() {
+                place.set_where(collides, flown.place[axis]);
+            }
+            on &= !collides;
+            segment.chance.scale_where(on, ratio.one_minus());
+        }
+        segment
+    }
+
+    #[inline(always)]
+    fn begin<L: Lane>(self, rays: [[L; 3]; 2], which: L::Mask) -> (Flights<L>, Segment<L>) {
+        let [origin, direction] = rays;
+        let (zero, one) = (origin[0].each(0.0), origin[0].each(1.0));
+        let mut flights = Flights::new(zero);
+        (flights.origin, flights.direction) = (origin, direction);
+        flights.enter(self.ground, which, &self.ground.reach(rays, which));
+        let (collided, place) = (which & !which, origin);
+        let segment = Segment { collided, place, transmittance: one, chance: one, lookups: zero };
+        (flights, segment)
+    }
+
+    /// Flies to the next tentative collision; answers `σ_t/σ̂` there.
+    #[inline(always)]
+    fn fly<L: Lane>(
+        self,
+        flights: &mut Flights<L>,
+        which: L::Mask,
+        random: &mut impl Random<L>,
+    ) -> (Flown<L>, L) {
+        let depth = -random.ln_uniform_where(which);
+        let flown = flights.fly(
+            self.ground,
+            which,
+            depth,
             #[inline(always)]
-            || {
-                let mut found = Flown { collision: None, chance: 1.0, lookups: 0 };
-                let mut flight = self.majorants.enter(ray.origin, ray.direction);
-                while let Some(sampling) = self.majorants.fly(&mut flight, -rng.ln_uniform()) {
-                    found.lookups += 1;
-                    let place = flight.place();
-                    let ratio = field.extinction(place) / sampling;
-                    if rng.uniform() < ratio {
-                        return Flown { collision: Some(place), ..found };
-                    }
-                    found.chance *= 1.0 - ratio;
-                }
-                found
-            },
-        )
+            |here, _| here,
+        );
+        let field = self.scene.volume.points();
+        let extinction = each(flown.place, flown.inside, |place| field.extinction(place));
+        (flown, extinction / flown.sampling)
     }
 }

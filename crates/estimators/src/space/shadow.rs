@@ -1,4 +1,4 @@
-//! Shadow rays from scatterings side by side: event-based tracking of what next-event estimation asks for.
+//! Shadow rays from scatterings, side by side: event-based tracking of their transmittances.
 //!
 //! ```text
 //! T̂ = e^(−σ_c ℓ) ∏ (1 − (σ_t − σ_c)/σ̂)   ratio and residual-ratio tracking
@@ -9,14 +9,13 @@
 //! walks of the other lanes. Bit for bit what
 //! [`transmittance`](crate::single_scattering::connection::transmittance) finds.
 
-use fearless_simd::{Simd, SimdBase, SimdMask, f64x8, mask64x8};
-
-use super::exit::{Points, rows};
-use crate::kernels::packet::bank::Numbers;
+use crate::single_scattering::connection;
 use media::{Batches, Volume};
+use numeric::geometry::exit::{along, rows};
 use numeric::geometry::{Bounds, Point, Ray};
 use numeric::pack::WIDTH;
-use numeric::{Lane, Span};
+use numeric::rng::Random;
+use numeric::{Kept, Lane, Mask, Span, kept};
 use theory::single::Tracking;
 
 /// How shadow rays are cast: through a volume, from within its bounds.
@@ -70,25 +69,29 @@ impl<L: Lane> Aim<L> {
     }
 }
 
-/// Light that has been found, and by which rays.
-pub type Found<S> = (mask64x8<S>, f64x8<S>);
+/// The lanes whose shadow rays have found light, and how much.
+pub type Lit<L> = (<L as Lane>::Mask, L);
 
-/// The shadow rays of eight particles: one each at most, from where its flight begins.
-#[derive(Clone, Copy)]
-pub struct Shadows<S: Simd> {
-    /// Which particles cast one.
-    pub on: mask64x8<S>,
-    direction: Points<S>,
-    t: f64x8<S>,
-    end: f64x8<S>,
-    /// T̂ so far, where it is tracked.
-    pub through: f64x8<S>,
-    /// The weight times what the light is worth.
-    worth: f64x8<S>,
+/// [`Lit`] of a pack.
+pub type Found<S> = Lit<fearless_simd::f64x8<S>>;
+
+kept! {
+    /// Shadow rays of walks: one each at most, from where its flight begins.
+    pub struct Shadows<L> {
+        /// Lanes with a shadow ray in flight.
+        pub on: L::Mask,
+        direction: [L; 3],
+        t: L,
+        end: L,
+        /// T̂ so far, where it is tracked.
+        pub through: L,
+        /// The weight times what the light is worth.
+        worth: L,
+    }
 }
 
 impl<'a> ShadowRays<'a> {
-    /// Those through a volume, from within bounds.
+    /// Shadow rays through a volume, from within bounds.
     pub fn new(volume: &'a Volume, bounds: Bounds, tracking: Tracking) -> Self {
         let sampling = match tracking {
             Tracking::Ratio { sampling, .. } | Tracking::Delta { sampling } => sampling,
@@ -97,119 +100,132 @@ impl<'a> ShadowRays<'a> {
         Self { volume, bounds, tracking, mean_free_path: 1.0 / sampling }
     }
 
-    /// In closed form, ray by ray, for those whose bits are set.
+    /// The exact transmittance of stretches of rays within the volume, for the lanes in `which`; 1 for the others. `fields`
+    /// has the formula of a field for lanes, if there is one.
+    #[inline(always)]
+    pub fn exact<L: Lane>(
+        &self,
+        fields: Option<&Batches>,
+        which: L::Mask,
+        [origin, direction]: [[L; 3]; 2],
+        [from, to]: [L; 2],
+    ) -> L {
+        let one = from.each(1.0);
+        if !which.any() {
+            return one;
+        }
+        if let Some(value) = self.volume.single_value() {
+            return L::select(which, (-((to - from) * value)).exp(), one);
+        }
+        let ([a, b, c], [x, y, z]) = (origin, direction);
+        if let Some(depths) = fields.and_then(
+            #[inline(always)]
+            |fields| fields.depths(&[a, b, c, x, y, z, from, to]),
+        ) {
+            return L::select(which, (-depths).exp(), one);
+        }
+        let (lines, [start, ..], bits) =
+            ([rows(origin), rows(direction)], rows([from; 3]), which.bits());
+        let through = to.replaced(|ends| self.one_by_one(bits, &lines, ends, &start));
+        L::select(which, through, one)
+    }
+
+    /// Replaces the ends of stretches by their transmittances, for the lanes whose bits are set.
     #[inline(never)]
-    fn exact(&self, which: u64, rays: &[[[f64; WIDTH]; 3]; 2], ends: &mut [f64], from: &[f64]) {
+    fn one_by_one(
+        &self,
+        which: u64,
+        rays: &[[[f64; WIDTH]; 3]; 2],
+        ends: &mut [f64],
+        from: &[f64],
+    ) {
         for (lane, end) in ends.iter_mut().enumerate().filter(|(lane, _)| which >> lane & 1 == 1) {
             let [origin, direction] = rays.map(|rows| Point(rows.map(|row| row[lane])));
             let inside = Span::new(from[lane], *end);
             let ray = Ray { origin, direction, length: f64::INFINITY };
-            let profile = self.volume.along(&ray, inside);
-            *end = Lane::exp(-profile.optical_depth(inside).value);
+            *end = connection::exact(self.volume, &ray, inside);
         }
     }
 }
 
-impl<S: Simd> Shadows<S> {
-    /// None.
+impl<L: Lane> Shadows<L> {
+    /// No shadow ray.
     #[inline(always)]
-    pub fn new(simd: S) -> Self {
-        let zero = f64x8::splat(simd, 0.0);
+    pub fn new(zero: L) -> Self {
         let on = zero.below(zero);
         Self { on, direction: [zero; 3], t: zero, end: zero, through: zero, worth: zero }
     }
 
-    /// The rays that a mask names begin at places with weights, their lines within the bounds from and to; what needs
-    /// no tracking is found at once.
+    /// Begins the rays of the lanes in `which` at places with weights, their lines within the bounds from and to. Answers what
+    /// needs no tracking and is found at once, and its transmittance.
     #[inline(always)]
     pub fn cast(
         &mut self,
-        (rays, field): (&ShadowRays, &Batches),
-        which: mask64x8<S>,
-        light: &Light<f64x8<S>>,
-        (origin, weight): (Points<S>, f64x8<S>),
-        [from, to]: [f64x8<S>; 2],
-    ) -> Found<S> {
-        let (zero, one) = (weight.each(0.0), weight.each(1.0));
-        let (from, end) = (from.or_more(zero), light.distance.or_less(to));
+        (rays, fields): (&ShadowRays, Option<&Batches>),
+        which: L::Mask,
+        light: &Light<L>,
+        (origin, weight): ([L; 3], L),
+        [from, to]: [L; 2],
+    ) -> (Lit<L>, L) {
+        let one = weight.each(1.0);
+        let (from, end) = (from.or_more(weight.each(0.0)), light.distance.or_less(to));
         let is_blocked = which & from.below(end);
         let worth = weight * light.share;
         let control = match rays.tracking {
             Tracking::Ratio { control, .. } => control,
             Tracking::Delta { .. } => 0.0,
             Tracking::Exact => {
-                let blocked = is_blocked.to_bitmask();
-                if blocked == 0 {
-                    return (which, worth);
-                }
-                if let Some(value) = rays.volume.single_value() {
-                    let through = (-((end - from) * value)).exp();
-                    return (which, worth * Lane::select(is_blocked, through, one));
-                }
-                let ([a, b, c], [x, y, z]) = (origin, light.direction);
-                if let Some(depths) = field.depths(&[a, b, c, x, y, z, from, end]) {
-                    let through = (-depths).exp();
-                    return (which, worth * Lane::select(is_blocked, through, one));
-                }
-                let (lines, [start, ..]) = ([rows(origin), rows(light.direction)], rows([from; 3]));
-                let through = end.replaced(|ends| rays.exact(blocked, &lines, ends, &start));
-                return (which, worth * Lane::select(is_blocked, through, one));
+                let through =
+                    rays.exact(fields, is_blocked, [origin, light.direction], [from, end]);
+                return ((which, worth * through), through);
             }
         };
         self.on |= is_blocked;
-        for (axis, direction) in self.direction.iter_mut().enumerate() {
-            *direction = Lane::select(is_blocked, light.direction[axis], *direction);
-        }
-        self.t = Lane::select(is_blocked, from, self.t);
-        self.end = Lane::select(is_blocked, end, self.end);
-        self.worth = Lane::select(is_blocked, worth, self.worth);
+        self.direction.set_where(is_blocked, light.direction);
+        self.t.set_where(is_blocked, from);
+        self.end.set_where(is_blocked, end);
+        self.worth.set_where(is_blocked, worth);
         let through = if control == 0.0 { one } else { ((end - from) * -control).exp() };
-        self.through = Lane::select(is_blocked, through, self.through);
-        (which & !is_blocked, worth)
+        self.through.set_where(is_blocked, through);
+        ((which & !is_blocked, worth), one)
     }
 
-    /// Each flies an optical depth through σ̂; answers where, and whether it is still on the ray.
+    /// Flies an optical depth through σ̂; answers places, and the lanes that are still on their rays.
     #[inline(always)]
-    pub fn fly(
-        &mut self,
-        rays: &ShadowRays,
-        [a, b, c]: Points<S>,
-        depth: f64x8<S>,
-    ) -> (Points<S>, mask64x8<S>) {
-        self.t += depth * rays.mean_free_path;
-        let ([x, y, z], t) = (self.direction, self.t);
-        ([a + x * t, b + y * t, c + z * t], self.on & !self.end.at_most(t))
+    pub fn fly(&mut self, rays: &ShadowRays, origin: [L; 3], depth: L) -> ([L; 3], L::Mask) {
+        self.t = self.t + depth * rays.mean_free_path;
+        (along(origin, self.direction, self.t), self.on & !self.end.at_most(self.t))
     }
 
-    /// What becomes of each, given σ_t where it has come to: those that have come to their ends, or are
-    /// absorbed, have found what they bring.
+    /// Handles collisions at places, given σ_t; answers what the rays have found that have come to their ends or are
+    /// absorbed.
     #[inline(always)]
     pub fn collide(
         &mut self,
         rays: &ShadowRays,
-        numbers: &mut Numbers<S>,
-        (place, inside): (Points<S>, mask64x8<S>),
-        extinction: f64x8<S>,
-    ) -> Found<S> {
+        random: &mut impl Random<L>,
+        (place, inside): ([L; 3], L::Mask),
+        extinction: L,
+    ) -> Lit<L> {
         let zero = extinction.each(0.0);
         let extinction = match rays.bounds {
             Bounds::Sphere { centre, radius } => {
                 let distance = centre.square_to(place, 1.0).root();
-                Lane::select(distance.at_most(zero.each(radius)), extinction, zero)
+                L::select(distance.at_most(zero.each(radius)), extinction, zero)
             }
-            // Boxes are clipped by who looks up.
+            // Lookups clip to boxes.
             Bounds::Everywhere | Bounds::Box(_) => extinction,
         };
         let mut ends = self.on & !inside;
         match rays.tracking {
             Tracking::Ratio { control, .. } => {
-                let kept = zero.each(1.0) - (extinction - control) * rays.mean_free_path;
-                self.through = Lane::select(inside, self.through * kept, self.through);
+                let kept = (extinction - control) * rays.mean_free_path;
+                self.through.scale_where(inside, kept.one_minus());
             }
             Tracking::Delta { sampling } => {
-                let number = numbers.uniform_where(inside);
+                let number = random.uniform_where(inside);
                 let is_absorbed = inside & (number * sampling).below(extinction);
-                self.through = Lane::select(is_absorbed, zero, self.through);
+                self.through.set_where(is_absorbed, zero);
                 ends |= is_absorbed;
             }
             Tracking::Exact => {}

@@ -1,22 +1,17 @@
-//! What walks in space are worth: sums over what happens on the way, one formula for one walk and for eight.
+//! Sums over what happens to walks in space, as one formula for every lane type.
 
-use fearless_simd::{Simd, f64x8, mask64x8};
-
-use super::exit::Points;
-use super::shadow::{Aim, Found, ShadowRays};
-use super::walk::Sink;
-use crate::kernels::packet::bank::Numbers;
-use numeric::Lane;
+use super::shadow::{Aim, Light, Lit, ShadowRays};
 use numeric::geometry::Point;
-use theory::problems::Values;
+use numeric::rng::Random;
+use numeric::{Kept, Lane};
 
-/// A tentative collision, or eight.
+/// Tentative collisions.
 pub struct Collision<L: Lane> {
-    /// Which of them there are.
+    /// Lanes with a collision.
     pub inside: L::Mask,
-    /// Where.
+    /// The place.
     pub place: [L; 3],
-    /// The weights before them.
+    /// The weight before it.
     pub weight: L,
     /// `r = σ_t/σ̂`.
     pub ratio: L,
@@ -24,50 +19,72 @@ pub struct Collision<L: Lane> {
     pub albedo: L,
 }
 
-/// A particle that may have left, or eight.
+/// Particles that leave.
 pub struct Departure<L: Lane> {
-    /// Which of them have.
+    /// Lanes that leave.
     pub left: L::Mask,
-    /// Where.
+    /// The place.
     pub place: [L; 3],
-    /// In which direction.
+    /// The direction.
     pub direction: [L; 3],
-    /// With which weight.
+    /// The weight.
     pub weight: L,
-    /// Which of all were never scattered.
+    /// Lanes that were never scattered.
     pub unscattered: L::Mask,
 }
 
-/// How walks of a problem begin, and what they are worth: so many sums, which begin at 0.
-pub trait Tally<const SUMS: usize> {
+/// Particles that are scattered, before their new directions are drawn.
+pub struct Scattering<L: Lane> {
+    /// Lanes that are scattered with a weight that is not 0.
+    pub which: L::Mask,
+    /// The place.
+    pub place: [L; 3],
+    /// The weight after it, the albedo in it.
+    pub weight: L,
+}
+
+/// The beginning of the walks of a problem, and their values.
+pub trait Tally {
+    /// What a walk has found so far.
+    type Found<L: Lane>: Kept<L::Mask>;
+
     /// Whether particles cast shadow rays where they are scattered.
     const CASTS: bool = false;
 
-    /// Where particles set out, and in which directions; those that a mask names may take numbers for it.
-    /// Their weight is 1.
-    fn begin<S: Simd>(
-        &self,
-        simd: S,
-        numbers: &mut Numbers<S>,
-        which: mask64x8<S>,
-    ) -> [Points<S>; 2];
+    /// Whether something else is estimated from scatterings, see [`Tally::connect`].
+    const CONNECTS: bool = false;
 
-    /// Particles flew lengths, with weights.
-    #[inline(always)]
-    fn flown<L: Lane>(&self, sums: &mut [L; SUMS], length: L, weight: L) {
-        let _ = (sums, length, weight);
+    /// What a walk has found when it begins.
+    fn nothing<L: Lane>(&self, zero: L) -> Self::Found<L>;
+
+    /// Numbers found, of which the channels of a draw are some.
+    fn sums<L: Lane>(found: &Self::Found<L>) -> &[L];
+
+    /// The numbers that are the channels of a draw.
+    fn channels(&self) -> &[usize] {
+        &[0]
     }
 
-    /// They met tentative collisions.
+    /// The places where particles set out, and their directions. Their weight is 1. Only lanes in `which` may take random
+    /// numbers.
+    fn begin<L: Lane>(&self, one: L, which: L::Mask, random: &mut impl Random<L>) -> [[L; 3]; 2];
+
+    /// Particles fly lengths, with weights.
     #[inline(always)]
-    fn collided<L: Lane>(&self, sums: &mut [L; SUMS], at: &Collision<L>) {
-        let _ = (sums, at);
+    fn flown<L: Lane>(&self, found: &mut Self::Found<L>, length: L, weight: L) {
+        let _ = (found, length, weight);
     }
 
-    /// They left.
+    /// Particles come to tentative collisions.
     #[inline(always)]
-    fn escaped<L: Lane>(&self, sums: &mut [L; SUMS], at: &Departure<L>) {
-        let _ = (sums, at);
+    fn collided<L: Lane>(&self, found: &mut Self::Found<L>, at: &Collision<L>) {
+        let _ = (found, at);
+    }
+
+    /// Particles leave.
+    #[inline(always)]
+    fn escaped<L: Lane>(&self, found: &mut Self::Found<L>, at: &Departure<L>) {
+        let _ = (found, at);
     }
 
     /// A black ball that stops all that meets it.
@@ -75,7 +92,7 @@ pub trait Tally<const SUMS: usize> {
         None
     }
 
-    /// How shadow rays are cast.
+    /// The shadow rays, if they are cast.
     fn shadow_rays(&self) -> Option<ShadowRays<'_>> {
         None
     }
@@ -91,75 +108,66 @@ pub trait Tally<const SUMS: usize> {
         number * 2.0 - 1.0
     }
 
-    /// The one direction of all shadow rays, which take no numbers then.
+    /// The one direction of all shadow rays, which then take no numbers.
     fn parallel(&self) -> Option<Point> {
         None
     }
 
-    /// How shadow rays from places are aimed by uniform numbers.
+    /// The aim of shadow rays from places, of uniform numbers.
     #[inline(always)]
-    fn aim<S: Simd>(&self, place: Points<S>, number: f64x8<S>) -> Aim<f64x8<S>> {
+    fn aim<L: Lane>(&self, place: [L; 3], number: L) -> Aim<L> {
         let _ = number;
         let zero = place[0].each(0.0);
         Aim { axis: place, cosine: zero, share: zero, distance: zero }
     }
 
-    /// Those that a mask names are scattered at places, or begin there as if they were.
+    /// The light that shadow rays from places are cast to, from the light aimed at.
     #[inline(always)]
-    fn scattered<L: Lane>(&self, sums: &mut [L; SUMS], which: L::Mask, place: [L; 3]) {
-        let _ = (sums, which, place);
+    fn light<L: Lane>(&self, place: [L; 3], aimed: Light<L>) -> Light<L> {
+        let _ = place;
+        aimed
     }
 
-    /// Shadow rays found light through tracked transmittances.
+    /// The lanes in `which` are scattered at places, or begin there as if they were.
     #[inline(always)]
-    fn lit<S: Simd>(&self, sums: &mut [f64x8<S>; SUMS], found: Found<S>, through: f64x8<S>) {
-        let _ = (sums, found, through);
+    fn scattered<L: Lane>(&self, found: &mut Self::Found<L>, which: L::Mask, place: [L; 3]) {
+        let _ = (found, which, place);
     }
 
-    /// Which sum each channel of a draw is.
-    fn channels(&self) -> &[usize];
+    /// Shadow rays find light through transmittances.
+    #[inline(always)]
+    fn lit<L: Lane>(&self, found: &mut Self::Found<L>, light: Lit<L>, through: L) {
+        let _ = (found, light, through);
+    }
+
+    /// Casts shadow rays, whose lines are in the bounds from and to, if these are no [`Tally::shadow_rays`]; answers lookups.
+    #[inline(always)]
+    fn track<L: Lane>(
+        &self,
+        found: &mut Self::Found<L>,
+        at: &Scattering<L>,
+        (light, ends): (&Light<L>, [L; 2]),
+        random: &mut impl Random<L>,
+    ) -> L {
+        let _ = (found, light, ends, random);
+        at.weight.each(0.0)
+    }
+
+    /// Estimates something else from scatterings, after their shadow rays; answers lookups.
+    #[inline(always)]
+    fn connect<L: Lane>(
+        &self,
+        found: &mut Self::Found<L>,
+        at: &Scattering<L>,
+        random: &mut impl Random<L>,
+    ) -> L {
+        let _ = (found, random);
+        at.weight.each(0.0)
+    }
 }
 
 /// Adds to a sum where a mask says so.
 #[inline(always)]
 pub fn add_where<L: Lane>(sum: &mut L, mask: L::Mask, term: L) {
-    *sum = L::select(mask, *sum + term, *sum);
-}
-
-/// The sums of one walk.
-pub struct Sums<'a, T, const SUMS: usize> {
-    tally: &'a T,
-    /// What they have come to.
-    pub at: [f64; SUMS],
-}
-
-impl<'a, T: Tally<SUMS>, const SUMS: usize> Sums<'a, T, SUMS> {
-    /// Of a walk that begins.
-    pub fn new(tally: &'a T) -> Self {
-        Self { tally, at: [0.0; SUMS] }
-    }
-
-    /// The channels of the draw.
-    pub fn values<const N: usize>(&self) -> Values<N> {
-        let channels = self.tally.channels();
-        let mut values = Values { at: [0.0; N], count: channels.len() };
-        values.at.iter_mut().zip(channels).for_each(|(value, &sum)| *value = self.at[sum]);
-        values
-    }
-}
-
-impl<T: Tally<SUMS>, const SUMS: usize> Sink for Sums<'_, T, SUMS> {
-    fn flown(&mut self, length: f64, weight: f64) {
-        self.tally.flown(&mut self.at, length, weight);
-    }
-
-    fn collided(&mut self, at: &Collision<f64>) {
-        self.tally.collided(&mut self.at, at);
-    }
-
-    fn escaped(&mut self, at: Point, direction: Point, weight: f64, order: u32) {
-        let (place, direction) = (at.0, direction.0);
-        let at = Departure { left: true, place, direction, weight, unscattered: order == 0 };
-        self.tally.escaped(&mut self.at, &at);
-    }
+    sum.add_where(mask, term);
 }

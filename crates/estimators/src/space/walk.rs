@@ -1,285 +1,428 @@
 //! The walk of a particle through a volume: `SimulateParticle`.
 //!
 //! ```text
-//! fly an optical depth −ln u through σ̂; beyond the bounds the particle has left
-//! at a tentative collision r = σ_t/σ̂ and the rule says whether it goes straight on, is scattered or is
-//! absorbed, and what becomes of its weight; scattered, it turns by an angle θ at an azimuth φ
+//! begin    where the tally says;  w = 1
+//! fly      through an optical depth −ln u of σ̂;  beyond the bounds the particle has left
+//! collide  r = σ_t/σ̂;  as the odds of the rule and u say:
+//!            scattered     w ← w · a r/q_s;  it waits to turn by an angle θ at an azimuth φ
+//!            straight on   w ← w · (1 − r)/q_t
+//!            absorbed      the end
+//!          roulette, where it is played: small |w| ← w₀ with probability |w|/w₀, else the end
+//! set out  where shadow rays are cast, one is cast from each scattering first; then it turns, and flies on
 //! ```
 //!
-//! What a walk is worth is not its business: a [`Sink`] is told what happens on the way. Which bugs a walk
-//! may have is not its business either: its [`Steps`] can be replaced one by one. The loop is compiled
-//! twice for each type of volume, for the honest [`Particle`] and for steps that are looked up as they
-//! come; nothing in it depends on the problem.
+//! A flight takes a random number, a collision one where more than one event is possible, a scattering one for θ and one for
+//! φ, roulette one. Cells without σ̂, and all that lies outside the bounds, cost nothing. What a walk is worth, a [`Tally`] says;
+//! each of its [`Steps`] may be that of a known bug.
 //!
-//! A flight takes a random number, a collision one where chance is left (a rule that never ends a walk asks
-//! for none in a medium that only absorbs), a scattering one for θ and one for φ, roulette one. Cells
-//! without σ̂, and all that lies outside the bounds, cost nothing at all.
+//! Shadow rays and new directions cost more than a step. Lanes wait for them until several of a pack need one; meanwhile, the
+//! others go on.
 
-use super::particle::Particle;
-use super::tally::Collision;
-use media::majorants::Flight;
+use super::bank::Walk;
+use super::shadow::{ShadowRays, Shadows};
+use super::tally::{Collision, Departure, Scattering, Tally};
+use media::majorants::flights::{Flights, Flown, Ground};
 use media::phase::Phase;
-use media::{Majorants, Points};
-use numeric::geometry::{Point, frame};
-use numeric::pack::in_fused_code;
-use numeric::rng::Stream;
-use theory::particle::{Event, Odds};
+use media::{Batches, Majorants};
+use numeric::geometry::frame::turned_lanes;
+use numeric::rng::Random;
+use numeric::{Kept, Lane, Mask, kept};
+use theory::particle::Odds;
 use theory::problems::Scene;
 
-/// A particle that sets out: where from, in which direction, with which weight.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Start {
-    /// Where it is: in the bounds, or on their boundary.
-    pub place: Point,
-    /// A unit vector.
-    pub direction: Point,
-    /// w.
-    pub weight: f64,
-}
+/// The steps of a walk, each of which a known bug may replace.
+pub trait Steps: Copy {
+    /// The odds at collisions of the given ratio `σ_t/σ̂` and albedo.
+    fn odds<L: Lane>(&self, ratio: L, albedo: L) -> Odds<L>;
 
-/// A particle that is scattered, before its new direction is drawn.
-#[derive(Debug, Clone, Copy)]
-pub struct Scattering {
-    /// Where.
-    pub place: Point,
-    /// The direction of travel before.
-    pub direction: Point,
-    /// The weight after, the albedo in it.
-    pub weight: f64,
-    /// How often the particle has been scattered, this time included.
-    pub order: u32,
-}
+    /// Lanes of `goes_on` that survive roulette, with their weights.
+    fn survive<L: Lane>(
+        &self,
+        goes_on: L::Mask,
+        weight: &mut L,
+        random: &mut impl Random<L>,
+    ) -> L::Mask;
 
-/// What a walk reports to.
-pub trait Sink {
-    /// A particle flew a length, with a weight.
-    fn flown(&mut self, length: f64, weight: f64) {
-        let _ = (length, weight);
-    }
-
-    /// It met a tentative collision, whatever comes of it.
-    fn collided(&mut self, at: &Collision<f64>) {
-        let _ = at;
-    }
-
-    /// It was scattered. What is estimated from here, as the light of a lamp, may draw random numbers;
-    /// the answer is the number of lookups that it took.
-    fn scattered(&mut self, at: &Scattering, rng: &mut Stream) -> u32 {
-        let _ = (at, rng);
-        0
-    }
-
-    /// It left at a place, in a direction, with a weight, after so many scatterings.
-    fn escaped(&mut self, at: Point, direction: Point, weight: f64, order: u32) {
-        let _ = (at, direction, weight, order);
-    }
-}
-
-/// The steps of a walk that a known bug may replace.
-pub trait Steps {
-    /// The odds at a collision with the given ratio `σ_t/σ̂` and albedo.
-    fn odds_at(&self, ratio: f64, albedo: f64) -> Odds;
-
-    /// The cosine with the normal of light from all sides, of a uniform number: the law of Lambert.
+    /// σ̂ of a flight in a cell, from σ̂ of the cell and of that in which the flight begins.
     #[inline(always)]
-    fn first_cosine(&self, number: f64) -> f64 {
-        (1.0 - number).sqrt()
+    fn through<L: Lane>(&self, here: L, begun: L) -> L {
+        let _ = begun;
+        here
     }
 
-    /// Whether both that goes straight on and that is scattered are followed, after so many such splits
-    /// on the way from the start, and in the walk as a whole.
+    /// The uniform number that decides a collision, for the lanes in `which`; `depth` is the optical depth of the flight.
     #[inline(always)]
-    fn splits(&self, depth: u32, total: u32) -> bool {
-        let _ = (depth, total);
-        false
+    fn number<L: Lane>(&self, which: L::Mask, depth: L, random: &mut impl Random<L>) -> L {
+        let _ = depth;
+        random.uniform_where(which)
     }
 
-    /// The optical depth of a flight, and a number for later where one is wrongly kept.
+    /// The cosine of the scattering angle, of a uniform number.
     #[inline(always)]
-    fn depth(&self, rng: &mut Stream) -> (f64, Option<f64>) {
-        (-rng.ln_uniform(), None)
+    fn deflection<L: Lane>(&self, phase: &Phase, number: L) -> L {
+        phase.cosine(number)
     }
 
-    /// Flies to the next tentative collision and answers σ̂ there; `None` beyond the bounds.
+    /// The axis about which a particle of a direction turns.
     #[inline(always)]
-    fn fly(&self, majorants: &Majorants, flight: &mut Flight, depth: f64) -> Option<f64> {
-        majorants.fly(flight, depth)
+    fn axis<L: Lane>(&self, direction: [L; 3]) -> [L; 3] {
+        direction
     }
 
-    /// What happens at a collision.
+    /// The cosine with which a walk begins, from a uniform number and what is right.
     #[inline(always)]
-    fn decide(&self, odds: &Odds, kept: Option<f64>, rng: &mut Stream) -> Event {
-        if odds.scatter <= 0.0 && odds.transmit >= 1.0 {
-            Event::Transmitted
-        } else if odds.scatter >= 1.0 {
-            Event::Scattered
-        } else {
-            odds.decide(kept.unwrap_or_else(|| rng.uniform()))
-        }
-    }
-
-    /// The cosine of the scattering angle.
-    #[inline(always)]
-    fn deflection(&self, phase: &Phase, rng: &mut Stream) -> f64 {
-        phase.cosine(rng.uniform())
-    }
-
-    /// The direction after a deflection, at an azimuth in turns.
-    #[inline(always)]
-    fn turned(&self, direction: Point, cosine: f64, turns: f64) -> Point {
-        frame::turned(direction, cosine, turns)
-    }
-
-    /// Whether a walk goes on with its weight, and with which: Russian roulette, where it is played.
-    #[inline(always)]
-    fn keep(&self, rng: &mut Stream, weight: f64) -> Option<f64> {
-        let _ = rng;
-        Some(weight)
+    fn first_cosine<L: Lane>(&self, right: L, number: L) -> L {
+        let _ = number;
+        right
     }
 }
 
-/// Who makes the steps of a walk.
+kept! {
+    /// Particles.
+    pub struct Path<L> {
+        /// The flights.
+        pub flights: Flights<L>,
+        /// w.
+        pub weight: L,
+        /// Lanes that were never scattered.
+        pub unscattered: L::Mask,
+    }
+}
+
+/// Walks on their way.
 #[derive(Clone, Copy)]
-pub enum By<'a> {
-    /// A particle, by its rule.
-    Rule(&'a Particle),
-    /// Any steps, looked up as they come.
-    Steps(&'a dyn Steps),
+pub struct State<L: Lane, F> {
+    /// The particles.
+    pub path: Path<L>,
+    /// What they have found.
+    pub found: F,
+    /// Lookups so far.
+    pub lookups: L,
+    shadows: Shadows<L>,
+    ended: L::Mask,
+    /// Lanes that were scattered in this step.
+    scattered: L::Mask,
+    /// Lanes whose shadow ray came to its end in this step.
+    lit: L::Mask,
+    /// Lanes that wait to cast a shadow ray.
+    aims: L::Mask,
+    /// Lanes that wait to turn and to set out.
+    turns: L::Mask,
+    /// Lanes that wait to set out as they are.
+    begins: L::Mask,
 }
 
-impl<'a> By<'a> {
-    /// The steps, whosever they are.
-    pub fn steps(self) -> &'a dyn Steps {
-        match self {
-            Self::Rule(particle) => particle,
-            Self::Steps(steps) => steps,
-        }
-    }
+/// Flights of walks and of their shadow rays.
+#[derive(Clone, Copy)]
+pub struct Flight<L: Lane> {
+    flown: Flown<L>,
+    /// The optical depth.
+    pub depth: L,
 }
 
-/// Walks from a start and answers how many lookups that took.
-#[inline(never)]
-pub fn walk(
-    by: By,
-    scene: &Scene,
-    majorants: &Majorants,
-    start: Start,
-    sink: &mut dyn Sink,
-    rng: &mut Stream,
-) -> u32 {
-    let field = scene.volume.points();
-    in_fused_code(
-        #[inline(always)]
-        || match by {
-            By::Rule(steps) => Walk { steps, scene, field, majorants, start, sink, rng }.follow(),
-            By::Steps(steps) => Walk { steps, scene, field, majorants, start, sink, rng }.follow(),
-        },
-    )
-}
-
-struct Walk<'a, S: ?Sized> {
-    steps: &'a S,
+/// Particles in a scene, their steps, and what they find.
+pub struct InSpace<'a, T, S> {
+    tally: &'a T,
+    steps: S,
     scene: &'a Scene,
-    field: Points<'a>,
-    majorants: &'a Majorants,
-    start: Start,
-    sink: &'a mut dyn Sink,
-    rng: &'a mut Stream,
+    ground: Ground<'a>,
+    shadow_rays: Option<ShadowRays<'a>>,
+    /// σ_t for packs.
+    fields: Option<&'a Batches<'a>>,
 }
 
-/// A particle between two flights.
-#[derive(Debug, Clone, Copy)]
-struct Traveller {
-    start: Start,
-    /// How often it has been scattered.
-    order: u32,
-    /// How many splits lie behind it.
-    depth: u32,
+impl<'a, T: Tally, S: Steps> InSpace<'a, T, S> {
+    /// The walk through a scene and its σ̂; packs give the fields that they look up.
+    pub fn new(
+        tally: &'a T,
+        steps: S,
+        (scene, majorants): (&'a Scene, &'a Majorants),
+        fields: Option<&'a Batches<'a>>,
+    ) -> Self {
+        let ground = Ground::new(majorants, tally.core());
+        Self { tally, steps, scene, ground, shadow_rays: tally.shadow_rays(), fields }
+    }
+
+    /// Lanes that wait for others to set out with.
+    #[inline(always)]
+    fn waits<L: Lane>(state: &State<L, T::Found<L>>) -> L::Mask {
+        state.aims | state.turns | state.begins
+    }
+
+    /// Counts lookups and tells the tally what happens; answers tentative collisions.
+    #[inline(always)]
+    pub fn score<L: Lane>(
+        &self,
+        state: &mut State<L, T::Found<L>>,
+        flight: &Flight<L>,
+        [extinction, albedo]: [L; 2],
+        random: &mut impl Random<L>,
+    ) -> Collision<L> {
+        let Flown { inside, sampling, place, .. } = flight.flown;
+        state.lookups.count_where(inside);
+        let casts = state.shadows.on;
+        if let (true, Some(rays)) = (T::CASTS, &self.shadow_rays) {
+            let light = state.shadows.collide(rays, random, (place, casts & inside), extinction);
+            self.tally.lit(&mut state.found, light, state.shadows.through);
+            state.lit = light.0;
+        }
+        let walks = !(casts | Self::waits(state));
+        let (inside, left) = (inside & walks, walks & !inside);
+        let Path { weight, unscattered, flights: Flights { direction, .. } } = state.path;
+        let at = Collision { inside, place, weight, ratio: extinction / sampling, albedo };
+        self.tally.collided(&mut state.found, &at);
+        let departure = Departure { left, place, direction, weight, unscattered };
+        self.tally.escaped(&mut state.found, &departure);
+        state.ended = walks;
+        at
+    }
+
+    /// Decides what happens at collisions after flights of optical depths; answers the lanes whose walks end.
+    #[inline(always)]
+    pub fn decide<L: Lane>(
+        &self,
+        state: &mut State<L, T::Found<L>>,
+        at: &Collision<L>,
+        depth: L,
+        random: &mut impl Random<L>,
+    ) -> L::Mask {
+        let Collision { inside, place, weight, ratio, albedo } = *at;
+        let (zero, one, walks) = (weight.each(0.0), weight.each(1.0), state.ended);
+        let odds = self.steps.odds(ratio, albedo);
+        // Only where more than one event is possible is a number taken.
+        let surely_on = odds.scatter.at_most(zero) & one.at_most(odds.transmit);
+        let surely_scattered = !surely_on & one.at_most(odds.scatter);
+        let by_chance = inside & !surely_on & !surely_scattered;
+        let number = self.steps.number(by_chance, depth, random);
+        let (is_scattered, is_passed) = odds.decide_each(by_chance, number);
+        let is_scattered = is_scattered | (inside & surely_scattered);
+        let goes_on = is_scattered | is_passed | (inside & surely_on);
+        let factor = L::select(is_scattered, odds.scatter_weight, odds.transmit_weight);
+        state.path.weight.scale_where(goes_on, factor);
+        let goes_on = self.steps.survive(goes_on, &mut state.path.weight, random);
+        state.ended = walks & !goes_on;
+        self.scatter(state, is_scattered & goes_on, place);
+        state.ended
+    }
+
+    /// Goes both ways at collisions: the scattered particles go on, and those that go straight on are handed back.
+    #[inline(always)]
+    pub fn split<L: Lane>(&self, state: &mut State<L, T::Found<L>>, at: &Collision<L>) -> Path<L> {
+        let straight = Path { weight: at.weight * at.ratio.one_minus(), ..state.path };
+        state.path.weight = at.weight * at.albedo * at.ratio;
+        state.ended = !at.inside;
+        self.scatter(state, at.inside, at.place);
+        straight
+    }
+
+    #[inline(always)]
+    fn scatter<L: Lane>(
+        &self,
+        state: &mut State<L, T::Found<L>>,
+        scattered: L::Mask,
+        place: [L; 3],
+    ) {
+        state.scattered = scattered;
+        state.path.unscattered &= !scattered;
+        state.path.flights.origin.set_where(scattered, place);
+    }
+
+    /// The lanes that wait set out.
+    #[inline(always)]
+    fn set_out<L: Lane>(&self, state: &mut State<L, T::Found<L>>, random: &mut impl Random<L>) {
+        let (zero, origin) = (state.path.weight.each(0.0), state.path.flights.origin);
+        let moves = Self::waits(state);
+        let (casts, turns, sets_out) = (state.aims, state.turns, state.turns | state.begins);
+        let nobody = moves & !moves;
+        (state.aims, state.turns, state.begins) = (nobody, nobody, nobody);
+        if T::CONNECTS {
+            let weight = state.path.weight;
+            let at = Scattering { which: turns & !weight.equals(0.0), place: origin, weight };
+            state.lookups = state.lookups + self.tally.connect(&mut state.found, &at, random);
+        }
+        let parallel = if T::CASTS { self.tally.parallel() } else { None };
+        let draws = if parallel.is_some() { turns } else { turns | casts };
+        let (mut direction, mut number) = (state.path.flights.direction, zero);
+        if draws.any() {
+            number = random.uniform_where(draws);
+            direction = self.turned(&state.path, (draws, number), casts, random);
+        }
+        if let Some(towards) = parallel {
+            direction.set_where(casts, towards.each(zero));
+        }
+        let reach = self.ground.reach([origin, direction], moves);
+        if T::CASTS {
+            let light = self.tally.aim(origin, number).light(direction, reach.stop);
+            let (light, weight) = (self.tally.light(origin, light), state.path.weight);
+            if let Some(rays) = &self.shadow_rays {
+                let (rays, from) = ((rays, self.fields), (origin, weight));
+                let (found, through) = state.shadows.cast(rays, casts, &light, from, reach.ends);
+                self.tally.lit(&mut state.found, found, through);
+            } else {
+                let at = Scattering { which: casts, place: origin, weight };
+                let tracked = self.tally.track(&mut state.found, &at, (&light, reach.ends), random);
+                state.lookups = state.lookups + tracked;
+            }
+            // Lanes whose ray needed no tracking turn next.
+            state.turns = casts & !state.shadows.on;
+        }
+        state.path.flights.direction.set_where(turns, direction);
+        state.path.flights.enter(&self.ground, sets_out, &reach);
+    }
+
+    /// New directions of the lanes in `which`, of uniform numbers: those of shadow rays in the lanes that cast one, those of
+    /// walks in the others.
+    #[inline(always)]
+    fn turned<L: Lane>(
+        &self,
+        path: &Path<L>,
+        (which, number): (L::Mask, L),
+        casts: L::Mask,
+        random: &mut impl Random<L>,
+    ) -> [L; 3] {
+        let (before, phase, steps) = (path.flights.direction, &self.scene.phase, &self.steps);
+        let mut cosine = number.outlined_if_narrow(
+            #[inline(always)]
+            move || steps.deflection(phase, number),
+        );
+        let mut axis = steps.axis(before);
+        if self.tally.begins_turned() {
+            let first = steps.first_cosine(self.tally.first_cosine(number), number);
+            cosine.set_where(path.unscattered, first);
+        }
+        if T::CASTS {
+            let aim = self.tally.aim(path.flights.origin, number);
+            axis.set_where(casts, aim.axis);
+            cosine.set_where(casts, aim.cosine);
+        }
+        let turns = random.uniform_where(which);
+        let mut direction = before;
+        direction.set_where(
+            which,
+            turns.outlined_if_narrow(
+                #[inline(always)]
+                move || turned_lanes(axis, cosine, turns),
+            ),
+        );
+        direction
+    }
 }
 
-impl<S: Steps + ?Sized> Walk<'_, S> {
-    #[inline(always)]
-    fn follow(mut self) -> u32 {
-        let (mut lookups, mut splits) = (0, 0);
-        let mut waiting: Vec<Traveller> = Vec::new();
-        let mut next = Some(Traveller { start: self.start, order: 0, depth: 0 });
-        while let Some(traveller) = next.take().or_else(|| waiting.pop()) {
-            next = self.one_flight(traveller, (&mut lookups, &mut splits), &mut waiting);
-        }
-        lookups
-    }
+impl<T: Tally, S: Steps> Walk for InSpace<'_, T, S> {
+    type State<L: Lane> = State<L, T::Found<L>>;
+    type Flight<L: Lane> = Flight<L>;
+    type Met<L: Lane> = [L; 2];
 
-    /// Flies until a particle leaves, is scattered or ends; what is scattered goes on.
+    const TOGETHER: u32 = 3;
+
     #[inline(always)]
-    fn one_flight(
-        &mut self,
-        mut traveller: Traveller,
-        (lookups, splits): (&mut u32, &mut u32),
-        waiting: &mut Vec<Traveller>,
-    ) -> Option<Traveller> {
-        let Start { place, direction, mut weight } = traveller.start;
-        let mut flight = self.majorants.enter(place, direction);
-        loop {
-            let before = flight.t;
-            let (depth, kept) = self.steps.depth(self.rng);
-            let flown = self.steps.fly(self.majorants, &mut flight, depth);
-            self.sink.flown(flight.t - before, weight);
-            let place = flight.place();
-            let Some(sampling) = flown else {
-                self.sink.escaped(place, direction, weight, traveller.order);
-                return None;
-            };
-            *lookups += 1;
-            let ratio = self.field.extinction(place) / sampling;
-            let albedo = self.scene.albedo.at(place);
-            let at = Collision { inside: true, place: place.0, weight, ratio, albedo };
-            self.sink.collided(&at);
-            if self.steps.splits(traveller.depth, *splits) {
-                *splits += 1;
-                traveller.depth += 1;
-                let scattered = weight * albedo * ratio;
-                weight *= 1.0 - ratio;
-                if scattered != 0.0 {
-                    let other = Traveller { order: traveller.order + 1, ..traveller };
-                    let other = self.scatter(place, direction, scattered, other, lookups);
-                    if weight == 0.0 {
-                        return Some(other);
-                    }
-                    waiting.push(other);
-                } else if weight == 0.0 {
-                    return None;
-                }
-                continue;
-            }
-            let odds = self.steps.odds_at(ratio, albedo);
-            match self.steps.decide(&odds, kept, self.rng) {
-                Event::Transmitted => {
-                    weight = self.steps.keep(self.rng, weight * odds.transmit_weight)?;
-                }
-                Event::Scattered => {
-                    traveller.order += 1;
-                    let weight = self.steps.keep(self.rng, weight * odds.scatter_weight)?;
-                    return Some(self.scatter(place, direction, weight, traveller, lookups));
-                }
-                Event::Absorbed => return None,
-            }
+    fn none<L: Lane>(&self, one: L) -> Self::State<L> {
+        let (zero, all, none) = (one.each(0.0), one.at_most(one), one.below(one));
+        State {
+            path: Path { flights: Flights::new(zero), weight: one, unscattered: all },
+            found: self.tally.nothing(zero),
+            lookups: zero,
+            shadows: Shadows::new(zero),
+            ended: all,
+            scattered: none,
+            lit: none,
+            aims: none,
+            turns: none,
+            begins: none,
         }
     }
 
-    /// Tells of a scattering, and turns.
     #[inline(always)]
-    fn scatter(
-        &mut self,
-        place: Point,
-        direction: Point,
-        weight: f64,
-        traveller: Traveller,
-        lookups: &mut u32,
-    ) -> Traveller {
-        let at = Scattering { place, direction, weight, order: traveller.order };
-        *lookups += self.sink.scattered(&at, self.rng);
-        let cosine = self.steps.deflection(&self.scene.phase, self.rng);
-        let direction = self.steps.turned(direction, cosine, self.rng.uniform());
-        Traveller { start: Start { place, direction, weight }, ..traveller }
+    fn restart<L: Lane>(&self, state: &mut Self::State<L>, random: &mut impl Random<L>) {
+        let (ended, one) = (state.ended, state.path.weight.each(1.0));
+        let [origin, direction] = self.tally.begin(one, ended, random);
+        state.path.flights.origin.set_where(ended, origin);
+        state.path.flights.direction.set_where(ended, direction);
+        state.path.weight.set_where(ended, one);
+        state.path.unscattered |= ended;
+        state.found.set_where(ended, self.tally.nothing(one.each(0.0)));
+        state.lookups.set_where(ended, one.each(0.0));
+    }
+
+    #[inline(always)]
+    fn fly<L: Lane>(
+        &self,
+        state: &mut Self::State<L>,
+        random: &mut impl Random<L>,
+    ) -> (Flight<L>, [L; 3]) {
+        let (waits, origin) = (Self::waits(state), state.path.flights.origin);
+        let depth = -random.ln_uniform_where(!waits);
+        let walks = if T::CASTS { !waits & !state.shadows.on } else { !waits };
+        let steps = &self.steps;
+        let mut flown = state.path.flights.fly(
+            &self.ground,
+            walks,
+            depth,
+            #[inline(always)]
+            move |here, begun| steps.through(here, begun),
+        );
+        let mut place = origin;
+        place.set_where(walks, flown.place);
+        self.tally.flown(&mut state.found, flown.length, state.path.weight);
+        if let (true, Some(rays)) = (T::CASTS, &self.shadow_rays) {
+            let (reached, inside) = state.shadows.fly(rays, origin, depth);
+            place.set_where(state.shadows.on, reached);
+            flown.inside |= inside;
+        }
+        flown.place = place;
+        (Flight { flown, depth }, place)
+    }
+
+    #[inline(always)]
+    fn inside<L: Lane>(flight: &Flight<L>) -> L::Mask {
+        flight.flown.inside
+    }
+
+    #[inline(always)]
+    fn collide<L: Lane>(
+        &self,
+        state: &mut Self::State<L>,
+        flight: &Flight<L>,
+        met: [L; 2],
+        random: &mut impl Random<L>,
+    ) -> L::Mask {
+        let at = self.score(state, flight, met, random);
+        self.decide(state, &at, flight.depth, random)
+    }
+
+    /// Lanes that were scattered cast shadow rays, or turn; these and those that begin set out, as soon as there are enough
+    /// of them.
+    #[inline(always)]
+    fn go_on<L: Lane>(
+        &self,
+        state: &mut Self::State<L>,
+        together: u32,
+        random: &mut impl Random<L>,
+    ) {
+        let (weight, origin) = (state.path.weight, state.path.flights.origin);
+        let sets_out = state.scattered | state.ended;
+        let turns = if self.tally.begins_turned() { sets_out } else { state.scattered };
+        state.begins |= sets_out & !turns;
+        if T::CASTS {
+            self.tally.scattered(&mut state.found, turns, origin);
+            let is_nothing = weight.equals(0.0);
+            state.aims |= turns & !is_nothing;
+            state.turns |= (turns & is_nothing) | state.lit;
+        } else {
+            state.turns |= turns;
+        }
+        if Self::waits(state).bits().count_ones() >= together {
+            self.set_out(state, random);
+        }
+    }
+
+    #[inline(always)]
+    fn numbers<L: Lane>(state: &Self::State<L>) -> &[L] {
+        T::sums(&state.found)
+    }
+
+    #[inline(always)]
+    fn lookups<L: Lane>(state: &Self::State<L>) -> L {
+        state.lookups
     }
 }

@@ -2,17 +2,21 @@
 
 use fearless_simd::Level;
 
-use super::{By, Particle};
+use super::walk::Steps;
+use super::{Particle, Tally, draws};
 use crate::kernels::packet::Request;
 use crate::{Draw, Estimator, Inputs, Refusal, Setup};
 use media::Lookups;
 use media::catalogue::Settings;
 use numeric::rng::Stream;
 use theory::Prediction;
-use theory::problems::Problem;
+use theory::problems::{Channels, Problem, Scene};
 
 /// A problem whose estimators are particles that walk in space.
-pub trait Walked: Problem {
+pub trait Walked: Problem<Value: Channels> {
+    /// The beginning of walks, and their values.
+    type Tally<'a>: Tally;
+
     /// Whether a rule exists here, and what it finds is known.
     ///
     /// # Errors
@@ -20,24 +24,42 @@ pub trait Walked: Problem {
     /// What is needed, and what was found.
     fn domain(setup: &Setup<Self>, particle: &Particle) -> Result<(), Refusal>;
 
-    /// What theory says of a draw.
+    /// The prediction for a draw.
     fn predict(setup: &Setup<Self>, particle: &Particle) -> Prediction;
 
-    /// Makes a draw of a particle, whose steps may be those of a known bug.
-    fn draw(
-        by: By,
-        particle: &Particle,
-        setup: &Setup<Self>,
-        rng: &mut Stream,
-    ) -> Draw<Self::Value>;
+    /// The medium.
+    fn scene(&self) -> &Scene;
 
-    /// Makes draws by packets.
-    fn draw_packets<'a>(
-        level: Level,
+    /// The beginning of walks, and their values.
+    ///
+    /// # Errors
+    ///
+    /// All draws, where nothing walks.
+    fn tally<'a>(
+        setup: &'a Setup<Self>,
         particle: &Particle,
-        setup: &Setup<Self>,
-        request: Request<'a>,
-    ) -> Option<Request<'a>>;
+    ) -> Result<Self::Tally<'a>, Draw<Self::Value>>;
+}
+
+/// Makes a draw of a particle by its steps; it follows what splits off if it `SPLITS`.
+pub fn draw<P: Walked, const SPLITS: bool>(
+    steps: impl Steps,
+    particle: &Particle,
+    setup: &Setup<P>,
+    random: &mut Stream,
+) -> Draw<P::Value> {
+    let (tally, majorants) = match (P::tally(setup, particle), setup.space.as_deref()) {
+        (Err(draw), _) => return draw,
+        (Ok(_), None) => return nothing(),
+        (Ok(tally), Some(majorants)) => (tally, majorants),
+    };
+    let world = (setup.problem.scene(), majorants);
+    draws::draw::<_, _, SPLITS>(&tally, (steps, particle.splitting), world, random)
+}
+
+/// A draw without σ̂, which is refused.
+pub fn nothing<V: Channels>() -> Draw<V> {
+    Draw::free(V::of(1, |_| f64::NAN), 0)
 }
 
 /// A particle that walks; σ̂ in space is its input. With `SPLITS` it splits.
@@ -69,8 +91,8 @@ impl<P: Walked, const SPLITS: bool> Estimator<P> for Walker<SPLITS> {
     }
 
     #[inline]
-    fn draw(&self, setup: &Setup<P>, _: &Lookups, rng: &mut Stream) -> Draw<P::Value> {
-        P::draw(By::Rule(&self.0), &self.0, setup, rng)
+    fn draw(&self, setup: &Setup<P>, _: &Lookups, random: &mut Stream) -> Draw<P::Value> {
+        draw::<P, SPLITS>(self.0, &self.0, setup, random)
     }
 
     fn draw_packets<'a>(
@@ -80,6 +102,10 @@ impl<P: Walked, const SPLITS: bool> Estimator<P> for Walker<SPLITS> {
         _: &Lookups,
         request: Request<'a>,
     ) -> Option<Request<'a>> {
-        P::draw_packets(level, &self.0, setup, request)
+        let (Some(majorants), Ok(tally)) = (setup.space.as_deref(), P::tally(setup, &self.0))
+        else {
+            return Some(request);
+        };
+        draws::packets(level, &tally, &self.0, (setup.problem.scene(), majorants), request)
     }
 }

@@ -36,27 +36,23 @@
 //! `estimators/sphere/combined.rs`, the bound in `theory/sphere/spread.rs`.
 
 use super::combined::{Sharing, Subpaths};
-use super::{Page, pages};
+use super::page::{BIDIRECTIONAL, Page, Techniques};
 use crate::space::Particle;
 use media::catalogue::Settings;
 use theory::lit_rod::Densities;
 use theory::{Heuristic, ParticleRule};
 
 /// Three techniques.
-#[derive(Debug, Clone)]
-pub struct Bidirectional(Page);
+pub type Bidirectional = Techniques<BIDIRECTIONAL>;
 
-impl Bidirectional {
-    fn page(settings: &Settings) -> Option<Page> {
-        let heuristic = Heuristic::read(settings);
-        let words = ["independent", "shared"];
-        let subpaths = settings
-            .word_or("subpaths", &words, words[0])
-            .map(|word| if word == words[0] { Subpaths::Independent } else { Subpaths::Shared });
-        let (densities, shadow) = (Densities::Full, None);
-        let sharing = Sharing { densities, heuristic: heuristic?, shadow, subpaths };
-        subpaths.map(|_| Page { particle: Particle::of(ParticleRule::Analog), sharing })
-    }
+/// Reads the settings.
+pub(super) fn page(settings: &Settings) -> Option<Page> {
+    let heuristic = Heuristic::read(settings);
+    let words = ["independent", "shared"];
+    let subpaths = settings
+        .word_or("subpaths", &words, words[0])
+        .map(|word| if word == words[0] { Subpaths::Independent } else { Subpaths::Shared });
+    let (densities, shadow) = (Densities::Full, None);
+    let sharing = Sharing { densities, heuristic: heuristic?, shadow, subpaths };
+    subpaths.map(|_| Page { particle: Particle::of(ParticleRule::Analog), sharing })
 }
-
-pages!(Bidirectional);

@@ -20,18 +20,21 @@
 //! A vertex of the light is the first real collision y of a particle that sets out from its surface; y is connected to
 //! the scatterings x of the walk by ratio tracking.
 
-use super::connect::{Connect, Finder, Honest, ShadowRay, is_met, meets};
+use super::connect::{Honest, Seeker, meets_light, share};
 use super::emission;
 use crate::single_scattering::connection;
 use crate::space::segment::Tracker;
-use crate::space::tally::Collision;
-use crate::space::{Scattering, Sink};
+use crate::space::shadow::{Aim, Light, Lit, ShadowRays};
+use crate::space::tally::{Collision, Departure, Scattering, Tally};
 use media::Majorants;
+use media::majorants::Ground;
+use numeric::geometry::exit::{self, dot, rows};
 use numeric::geometry::{Point, Ray};
-use numeric::rng::Stream;
+use numeric::rng::Random;
+use numeric::{Kept, Lane, Mask, kept};
 use theory::lit_rod::Densities;
 use theory::problems::Sphere;
-use theory::problems::sphere::Light;
+use theory::problems::sphere::{self, Sought};
 use theory::single::Tracking;
 use theory::{Heuristic, ParticleRule};
 
@@ -68,295 +71,398 @@ impl Sharing {
 }
 
 /// The steps that a known bug may replace.
-pub trait Steps: Sync {
-    /// The chance of a null collision, as densities of the walk have it.
-    fn chance(&self, right: f64) -> f64 {
+pub trait Steps: Copy {
+    /// The probability of a null collision, as densities of the walk have it.
+    #[inline(always)]
+    fn chance<L: Lane>(&self, right: L) -> L {
         right
     }
 
-    /// The chances of null collisions with which a segment begins, from those of the one before.
-    fn segment(&self, before: f64) -> f64 {
-        let _ = before;
-        1.0
+    /// The probability of null collisions with which a segment begins, from that of the one before.
+    #[inline(always)]
+    fn segment<L: Lane>(&self, before: L) -> L {
+        before.each(1.0)
     }
 
-    /// The weight of a hit, a shadow ray or a connection: 0, 1 or 2.
-    fn weight(&self, heuristic: Heuristic, own: usize, densities: [f64; 3]) -> f64 {
+    /// The weight of a hit, a shadow ray or a connection: 0, 1 or 2. Densities of connections may be left out.
+    #[inline(always)]
+    fn weight<L: Lane, const N: usize>(
+        &self,
+        heuristic: Heuristic,
+        own: usize,
+        densities: [L; N],
+    ) -> L {
         heuristic.weight(own, densities)
     }
 
     /// The weight of what was never scattered.
+    #[inline(always)]
     fn unscattered(&self) -> f64 {
         1.0
     }
 
-    /// What a shadow ray of some transmittance scores, but for its weight.
-    fn lit(&self, right: f64, transmittance: f64) -> f64 {
+    /// The score of a shadow ray of some transmittance, but for its weight.
+    #[inline(always)]
+    fn lit<L: Lane>(&self, right: L, transmittance: L) -> L {
         let _ = transmittance;
         right
     }
 
-    /// The density of a connection of two scatterings of the walk, whose squared distance is given.
-    fn linked(&self, right: f64, square: f64) -> f64 {
+    /// The density of a connection of two scatterings of the walk, of a squared distance.
+    #[inline(always)]
+    fn linked<L: Lane>(&self, right: L, square: L) -> L {
         let _ = square;
         right
     }
 
-    /// What a connection scores, but for its weight.
-    fn connected(&self, right: f64, link: &Link) -> f64 {
+    /// The score of a connection, but for its weight.
+    #[inline(always)]
+    fn connected<L: Lane>(&self, right: L, link: &Link<L>) -> L {
         let _ = link;
         right
     }
 
-    /// Whether the black sphere is between the ends of a connection.
-    fn is_hidden(&self, right: bool) -> bool {
+    /// Lanes in which the black sphere is between the ends of a connection.
+    #[inline(always)]
+    fn is_hidden<M: Mask>(&self, right: M) -> M {
         right
     }
 
     /// The cosine with the normal of light that leaves its surface, of a uniform number: the law of Lambert.
-    fn cosine(&self, number: f64) -> f64 {
-        (1.0 - number).sqrt()
+    #[inline(always)]
+    fn cosine<L: Lane>(&self, number: L) -> L {
+        number.one_minus().root()
     }
 }
 
 impl Steps for Honest {}
 
-/// q, the share of all directions in which the light is seen.
-fn share(sphere: &Sphere, place: Point) -> f64 {
-    match sphere.light {
-        Light::BlackSphere(core) => Honest.share(core, (sphere.centre - place).norm()),
-        Light::Environment | Light::Distant(_) => 1.0,
+/// Connections.
+#[derive(Debug, Clone, Copy)]
+pub struct Link<L> {
+    /// d.
+    pub distance: L,
+    /// a at the vertex of the light.
+    pub albedo: L,
+    /// T̂.
+    pub transmittance: L,
+}
+
+kept! {
+    /// What walks have found, and the densities of what they may find.
+    pub struct Vertices<L> {
+        light: L,
+        /// q at the last scattering, or at the place whose mean intensity is sought.
+        share: L,
+        /// The probability of the null collisions since.
+        chance: L,
+        /// The same without the last collision, which may turn out to be real.
+        before: L,
+        /// The density of a connection of the last scattering with the one before.
+        linked: L,
+        /// Lanes with a scattering, and its place.
+        is_scattered: L::Mask,
+        place: [L; 3],
+        /// Lanes from whose light a particle has set out, and those in which it came to a real collision.
+        has_emitted: L::Mask,
+        is_emitted: L::Mask,
+        /// The place of that collision, and the density of a shadow ray from it.
+        first: [L; 3],
+        lit: L,
     }
 }
 
-/// A connection.
-#[derive(Debug, Clone, Copy)]
-pub struct Link {
-    /// d.
-    pub distance: f64,
-    /// a at the vertex of the light.
-    pub albedo: f64,
-    /// T̂.
-    pub transmittance: f64,
-}
-
-/// A scattering of the walk, or the place whose mean intensity is sought.
-#[derive(Debug, Clone, Copy)]
-struct Vertex {
-    place: Point,
-    /// q.
-    share: f64,
-    /// The density of a connection of it with the one before.
-    linked: f64,
-}
-
-/// A real collision of a particle from the light.
-#[derive(Debug, Clone, Copy)]
-struct Emitted {
-    place: Point,
-    /// The density of a shadow ray from it.
-    lit: f64,
-}
-
-/// The chances of the null collisions of a segment in flight.
-#[derive(Debug, Clone, Copy)]
-struct Nulls {
-    /// Up to the last collision but one.
-    before: f64,
-    /// Of the last one, which may turn out to be real.
-    last: f64,
-}
-
-/// A walk that shares.
-pub struct Combined<'a> {
-    sphere: &'a Sphere,
-    tracker: Tracker<'a>,
+/// A walk whose techniques share. Packs make no connections; then there is less to keep.
+pub struct Combined<'a, B, const CONNECTS: bool> {
+    seeker: Seeker<'a, Honest, true>,
+    ground: Ground<'a>,
     rule: ParticleRule,
     sharing: Sharing,
     tracking: Option<Tracking>,
-    steps: &'a dyn Steps,
-    last: Option<Vertex>,
-    nulls: Nulls,
-    /// Whether a particle has set out from the light, and its vertex, if it came to one.
-    has_emitted: bool,
-    emitted: Option<Emitted>,
-    found: f64,
+    steps: B,
 }
 
-impl<'a> Combined<'a> {
-    /// By the steps of someone.
+impl<'a, B: Steps, const CONNECTS: bool> Combined<'a, B, CONNECTS> {
+    /// The walk of a particle by a rule through a ball and σ̂.
     pub fn new(
-        (sphere, tracker): (&'a Sphere, Tracker<'a>),
+        (sphere, majorants): (&'a Sphere, &'a Majorants),
         rule: ParticleRule,
-        (sharing, steps): (Sharing, &'a dyn Steps),
+        (sharing, steps): (Sharing, B),
     ) -> Self {
-        let nulls = Nulls { before: 1.0, last: 1.0 };
-        let tracking = sharing.tracking(rule, tracker.majorants);
-        Self {
-            sphere,
-            tracker,
-            rule,
-            sharing,
-            tracking,
-            steps,
-            last: None,
-            nulls,
-            has_emitted: false,
-            emitted: None,
-            found: 0.0,
-        }
+        let tracking = sharing.tracking(rule, majorants);
+        let shadow = tracking.unwrap_or(Tracking::Exact);
+        let seeker = Seeker { sphere, shadow, connect: Honest };
+        Self { seeker, ground: Ground::new(majorants, None), rule, sharing, tracking, steps }
     }
 
-    /// Whether densities hold the chances of null collisions.
+    fn sphere(&self) -> &'a Sphere {
+        self.seeker.sphere
+    }
+
+    fn tracker(&self) -> Tracker<'_> {
+        Tracker { scene: &self.sphere().scene, ground: &self.ground }
+    }
+
+    /// Whether densities hold the probabilities of null collisions.
     fn has_nulls(&self) -> bool {
         self.sharing.densities == Densities::Full && self.sharing.shadow.is_none()
     }
 
-    /// The density of a hit.
-    fn hit(&self) -> f64 {
-        if matches!(self.sphere.light, Light::Distant(_)) { 0.0 } else { 1.0 }
+    /// The weight of a technique, given the density of shadow rays and that of connections.
+    #[inline(always)]
+    fn weight<L: Lane>(&self, own: usize, lit: L, connected: L) -> L {
+        let is_distant = matches!(self.sphere().light, sphere::Light::Distant(_));
+        let hit = lit.each(if is_distant { 0.0 } else { 1.0 });
+        if CONNECTS {
+            return self.steps.weight(self.sharing.heuristic, own, [hit, lit, connected]);
+        }
+        self.steps.weight(self.sharing.heuristic, own, [hit, lit])
     }
 
-    /// `4 d²/(a ρ²)`; a is that where light was scattered first.
-    fn apart(&self, square: f64, first: Point) -> f64 {
-        let radius = emission::radius(self.sphere);
-        let albedo = self.sphere.scene.albedo.at(first);
+    /// `4 d²/(a ρ²)`, given d² and the place where light was scattered first.
+    #[inline(always)]
+    fn apart<L: Lane>(&self, square: L, first: [L; 3], which: L::Mask) -> L {
+        let radius = emission::radius(self.sphere());
         // Two that are one point share nothing; a number keeps it from being 0/0.
-        4.0 * square.max(1e-200) / (albedo * radius * radius)
+        let square = square.or_more(square.each(1e-200));
+        square * 4.0 / (self.tracker().albedo(first, which) * radius * radius)
     }
 
-    /// The walk is at a vertex, with a weight.
-    fn at_vertex(&mut self, place: Point, weight: f64, rng: &mut Stream) -> u32 {
-        let linked = match (self.sharing.subpaths, self.last) {
-            (Some(_), Some(before)) => {
-                let away = place - before.place;
-                let square = away.dot(away);
-                self.steps.linked(self.apart(square, place) / self.nulls.before, square)
+    /// Scores shadow rays through transmittances, with the probabilities of their null collisions.
+    #[inline(always)]
+    fn add_lit<L: Lane>(
+        &self,
+        found: &mut Vertices<L>,
+        (which, light): Lit<L>,
+        [through, chance]: [L; 2],
+    ) {
+        let one = light.each(1.0);
+        let is_full = self.sharing.densities == Densities::Full;
+        let lit = one / (found.share * if is_full { chance } else { one });
+        let score = self.steps.lit(light, through) * self.weight(1, lit, found.linked);
+        found.light.add_where(which, score);
+    }
+
+    /// The exact transmittances of last segments.
+    #[inline(always)]
+    fn exact<L: Lane>(&self, from: [L; 3], at: &Departure<L>, which: L::Mask) -> L {
+        let ([a, b, c], [x, y, z], ends) = (rows(from), rows(at.direction), rows(at.place));
+        let (volume, bits) = (&*self.sphere().scene.volume, which.bits());
+        at.weight.replaced(|elements| {
+            for (lane, element) in elements.iter_mut().enumerate() {
+                let origin = Point([a[lane], b[lane], c[lane]]);
+                let direction = Point([x[lane], y[lane], z[lane]]);
+                let length = (Point(ends.map(|row| row[lane])) - origin).norm();
+                let ray = Ray { origin, direction, length };
+                let is_asked = bits >> lane & 1 == 1;
+                let exact = || connection::exact(volume, &ray, volume.bounds().clip(&ray));
+                *element = if is_asked { exact() } else { 1.0 };
             }
-            _ => 0.0,
-        };
-        let Nulls { before, last } = self.nulls;
-        self.nulls = Nulls { before: self.steps.segment(before * last), last: 1.0 };
-        let vertex = Vertex { place, share: share(self.sphere, place), linked };
-        self.last = Some(vertex);
-        if weight == 0.0 {
-            return 0;
-        }
-        let lookups = self.cast(&vertex, weight, rng);
-        lookups + self.connect(place, weight, rng)
+        })
     }
 
-    /// Casts a shadow ray from a vertex.
-    fn cast(&mut self, vertex: &Vertex, weight: f64, rng: &mut Stream) -> u32 {
-        let ray = ShadowRay::cast(self.sphere, &Honest, vertex.place, rng);
-        let (through, chance, lookups) = match self.tracking {
-            Some(shadow) => {
-                let (through, lookups) = ray.transmittance(self.sphere, shadow, rng);
-                (through, through, lookups)
-            }
-            None if ray.inside.is_empty() => (1.0, 1.0, 0),
-            None => {
-                let found = self.tracker.ratio(&ray.ray, ray.inside.to, self.rule, rng);
-                (found.transmittance, found.chance, found.lookups)
-            }
-        };
-        if through != 0.0 {
-            let chance = if self.sharing.densities == Densities::Full { chance } else { 1.0 };
-            let densities = [self.hit(), 1.0 / (vertex.share * chance), vertex.linked];
-            let worth = self.steps.lit(weight * ray.share * through, through);
-            self.found += worth * self.steps.weight(self.sharing.heuristic, 1, densities);
-        }
-        lookups
-    }
-
-    /// Connects a vertex with one of the light.
-    fn connect(&mut self, place: Point, weight: f64, rng: &mut Stream) -> u32 {
-        let Some(subpaths) = self.sharing.subpaths else { return 0 };
-        let mut lookups = 0;
-        if !self.has_emitted || subpaths == Subpaths::Independent {
-            (self.emitted, lookups) = self.emit(rng);
-            self.has_emitted = true;
-        }
-        let Some(Emitted { place: first, lit }) = self.emitted else { return lookups };
-        let away = first - place;
-        let distance = away.norm();
-        let Some(direction) = away.normalised() else { return lookups };
-        let hidden = match self.sphere.light {
-            Light::BlackSphere(core) => meets(place, direction, self.sphere.centre, core)
-                .is_some_and(|stop| stop < distance),
-            Light::Environment | Light::Distant(_) => false,
-        };
-        if self.steps.is_hidden(hidden) {
-            return lookups;
-        }
-        let ray = Ray { origin: place, direction, length: distance };
-        let found = self.tracker.ratio(&ray, distance, self.rule, rng);
-        lookups += found.lookups;
-        let transmittance = found.transmittance;
-        if transmittance != 0.0 {
-            let apart = self.apart(distance * distance, first);
-            let densities = [self.hit(), lit, apart / found.chance];
-            let link = Link { distance, albedo: self.sphere.scene.albedo.at(first), transmittance };
-            let worth = self.steps.connected(weight * transmittance / apart, &link);
-            self.found += worth * self.steps.weight(self.sharing.heuristic, 2, densities);
-        }
-        lookups
-    }
-
-    /// A particle sets out from the light; what its first real collision is worth to connections, if there is one.
-    fn emit(&self, rng: &mut Stream) -> (Option<Emitted>, u32) {
-        let ray = emission::ray(self.sphere, |number| self.steps.cosine(number), rng);
-        let flown = self.tracker.delta(&ray, rng);
-        let emitted = flown.collision.map(|place| {
-            let share = share(self.sphere, place);
-            Emitted { place, lit: 1.0 / (share * self.steps.chance(flown.chance)) }
-        });
-        (emitted, flown.lookups)
+    /// Particles set out from the light in the lanes of `which`; answers lookups.
+    #[inline(always)]
+    fn emit<L: Lane>(
+        &self,
+        found: &mut Vertices<L>,
+        which: L::Mask,
+        random: &mut impl Random<L>,
+    ) -> L {
+        let (sphere, one) = (self.sphere(), found.light.each(1.0));
+        let cosine = |number| self.steps.cosine(number);
+        let rays = emission::rays(sphere, cosine, (one, which), random);
+        let flown = self.tracker().delta(rays, which, random);
+        let lit = one / (share(sphere, flown.place) * self.steps.chance(flown.chance));
+        found.has_emitted |= which;
+        found.is_emitted.set_where(which, flown.collided);
+        found.first.set_where(which, flown.place);
+        found.lit.set_where(which, lit);
+        flown.lookups
     }
 }
 
-impl Finder for Combined<'_> {
-    fn begin(&mut self, sought: Option<Point>, rng: &mut Stream) -> u32 {
-        sought.map_or(0, |place| self.at_vertex(place, 1.0, rng))
+impl<B: Steps, const CONNECTS: bool> Tally for Combined<'_, B, CONNECTS> {
+    type Found<L: Lane> = Vertices<L>;
+
+    const CASTS: bool = true;
+
+    const CONNECTS: bool = CONNECTS;
+
+    #[inline(always)]
+    fn nothing<L: Lane>(&self, zero: L) -> Vertices<L> {
+        let (none, one) = (zero.below(zero), zero.each(1.0));
+        Vertices {
+            light: zero,
+            share: one,
+            chance: one,
+            before: one,
+            linked: zero,
+            is_scattered: none,
+            place: [zero; 3],
+            has_emitted: none,
+            is_emitted: none,
+            first: [zero; 3],
+            lit: zero,
+        }
     }
 
-    fn found(&self) -> f64 {
-        self.found
+    #[inline(always)]
+    fn sums<L: Lane>(found: &Vertices<L>) -> &[L] {
+        std::slice::from_ref(&found.light)
     }
-}
 
-impl Sink for Combined<'_> {
-    fn collided(&mut self, at: &Collision<f64>) {
+    #[inline(always)]
+    fn begin<L: Lane>(&self, one: L, which: L::Mask, random: &mut impl Random<L>) -> [[L; 3]; 2] {
+        self.seeker.begin(one, which, random)
+    }
+
+    fn begins_turned(&self) -> bool {
+        self.seeker.begins_turned()
+    }
+
+    #[inline(always)]
+    fn collided<L: Lane>(&self, found: &mut Vertices<L>, at: &Collision<L>) {
         if self.has_nulls() {
-            let chance = self.rule.odds(at.ratio, at.albedo).transmit;
-            let Nulls { before, last } = self.nulls;
-            self.nulls = Nulls { before: before * last, last: self.steps.chance(chance) };
-        }
-    }
-
-    fn scattered(&mut self, at: &Scattering, rng: &mut Stream) -> u32 {
-        self.at_vertex(at.place, at.weight, rng)
-    }
-
-    fn escaped(&mut self, at: Point, direction: Point, weight: f64, _: u32) {
-        if !is_met(self.sphere, at) {
-            return;
-        }
-        let Some(Vertex { place, share, linked }) = self.last else {
-            self.found += weight * self.steps.unscattered();
-            return;
-        };
-        let chance = match self.sharing {
-            Sharing { densities: Densities::Directional, .. } => 1.0,
-            Sharing { shadow: None, .. } => self.nulls.before * self.nulls.last,
-            Sharing { shadow: Some(_), .. } => {
-                let sphere = self.sphere;
-                let ray = Ray { origin: place, direction, length: (at - place).norm() };
-                let inside = sphere.scene.volume.bounds().clip(&ray);
-                connection::exact(&*sphere.scene.volume, &ray, inside)
+            let chance = self.steps.chance(self.rule.odds(at.ratio, at.albedo).transmit);
+            if CONNECTS {
+                found.before.set_where(at.inside, found.chance);
             }
-        };
-        let densities = [self.hit(), 1.0 / (share * chance), linked];
-        self.found += weight * self.steps.weight(self.sharing.heuristic, 0, densities);
+            found.chance.scale_where(at.inside, chance);
+        }
     }
+
+    #[inline(always)]
+    fn scattered<L: Lane>(&self, found: &mut Vertices<L>, which: L::Mask, place: [L; 3]) {
+        if !which.maybe() {
+            return;
+        }
+        if CONNECTS {
+            let [a, b, c] = found.place;
+            let away = [place[0] - a, place[1] - b, place[2] - c];
+            let square = dot(away, away);
+            let linked = self.apart(square, place, which) / found.before;
+            let is_linked = self.sharing.subpaths.is_some();
+            found.linked.set_where(which, square.each(0.0));
+            if is_linked {
+                let linked = self.steps.linked(linked, square);
+                found.linked.set_where(which & found.is_scattered, linked);
+            }
+            found.is_scattered |= which;
+            found.place.set_where(which, place);
+        }
+        found.share.set_where(which, share(self.sphere(), place));
+        found.chance.set_where(which, self.steps.segment(found.chance));
+    }
+
+    /// What was never scattered can be hit only.
+    #[inline(always)]
+    fn escaped<L: Lane>(&self, found: &mut Vertices<L>, at: &Departure<L>) {
+        let (met, one) = (meets_light(self.sphere(), at), at.weight.each(1.0));
+        if !met.maybe() {
+            return;
+        }
+        let chance = match self.sharing {
+            Sharing { densities: Densities::Directional, .. } => one,
+            Sharing { shadow: Some(_), .. } if CONNECTS => {
+                self.exact(found.place, at, met & found.is_scattered)
+            }
+            Sharing { .. } => found.chance,
+        };
+        let mut weight = self.weight(0, one / (found.share * chance), found.linked);
+        if self.sphere().sought == Sought::Radiance {
+            weight.set_where(at.unscattered, one.each(self.steps.unscattered()));
+        }
+        found.light.add_where(met, at.weight * weight);
+    }
+
+    fn core(&self) -> Option<(Point, f64)> {
+        self.seeker.core()
+    }
+
+    fn shadow_rays(&self) -> Option<ShadowRays<'_>> {
+        self.tracking.and_then(|_| self.seeker.shadow_rays())
+    }
+
+    fn parallel(&self) -> Option<Point> {
+        self.seeker.parallel()
+    }
+
+    #[inline(always)]
+    fn aim<L: Lane>(&self, place: [L; 3], number: L) -> Aim<L> {
+        self.seeker.aim(place, number)
+    }
+
+    #[inline(always)]
+    fn lit<L: Lane>(&self, found: &mut Vertices<L>, light: Lit<L>, through: L) {
+        self.add_lit(found, light, [through, through]);
+    }
+
+    /// By ratio tracking through the σ̂ of the walk.
+    #[inline(always)]
+    fn track<L: Lane>(
+        &self,
+        found: &mut Vertices<L>,
+        at: &Scattering<L>,
+        (light, [from, to]): (&Light<L>, [L; 2]),
+        random: &mut impl Random<L>,
+    ) -> L {
+        let (from, end) = (from.or_more(to.each(0.0)), light.distance.or_less(to));
+        let is_blocked = at.which & from.below(end);
+        let rays = [at.place, light.direction];
+        let segment = self.tracker().ratio(rays, (is_blocked, end), self.rule, random);
+        let through = segment.transmittance;
+        let light = (at.which, at.weight * light.share * through);
+        self.add_lit(found, light, [through, segment.chance]);
+        segment.lookups
+    }
+
+    /// Connects scatterings with vertices of the light.
+    #[inline(always)]
+    fn connect<L: Lane>(
+        &self,
+        found: &mut Vertices<L>,
+        at: &Scattering<L>,
+        random: &mut impl Random<L>,
+    ) -> L {
+        let (zero, sphere) = (at.weight.each(0.0), self.sphere());
+        let Some(subpaths) = self.sharing.subpaths else { return zero };
+        if !at.which.any() {
+            return zero;
+        }
+        let is_shared = subpaths == Subpaths::Shared;
+        let emits = if is_shared { at.which & !found.has_emitted } else { at.which };
+        let lookups = self.emit(found, emits, random);
+        let ([x, y, z], [a, b, c]) = (found.first, at.place);
+        let away = [x - a, y - b, z - c];
+        let distance = dot(away, away).root();
+        let (direction, is_apart) = normalised(away);
+        let mut which = at.which & found.is_emitted & is_apart;
+        if let sphere::Light::BlackSphere(core) = sphere.light {
+            let (misses, near) = exit::meets(sphere.centre, core, at.place, direction);
+            which &= !self.steps.is_hidden(!misses & near.below(distance));
+        }
+        let rays = [at.place, direction];
+        let segment = self.tracker().ratio(rays, (which, distance), self.rule, random);
+        let transmittance = segment.transmittance;
+        let apart = self.apart(distance * distance, found.first, which);
+        let albedo = self.tracker().albedo(found.first, which);
+        let link = Link { distance, albedo, transmittance };
+        let score = self.steps.connected(at.weight * transmittance / apart, &link);
+        let weight = self.weight(2, found.lit, apart / segment.chance);
+        found.light.add_where(which & !transmittance.equals(0.0), score * weight);
+        lookups + segment.lookups
+    }
+}
+
+/// Vectors of length 1 in the same directions, and whether there are any: [`Point::normalised`] side by side.
+#[inline(always)]
+fn normalised<L: Lane>([x, y, z]: [L; 3]) -> ([L; 3], L::Mask) {
+    let zero = x.each(0.0);
+    let largest = zero.or_more(x.size()).or_more(y.size()).or_more(z.size());
+    let scale = largest.each(1.0) / largest;
+    let [x, y, z] = [x * scale, y * scale, z * scale];
+    let factor = scale.each(1.0) / dot([x, y, z], [x, y, z]).root();
+    let is_vector = zero.below(largest) & largest.below(zero.each(f64::INFINITY));
+    ([x * factor, y * factor, z * factor], is_vector)
 }

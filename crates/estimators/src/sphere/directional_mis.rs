@@ -27,7 +27,7 @@
 //! `theory/sphere/spread.rs`.
 
 use super::combined::Sharing;
-use super::{Page, pages};
+use super::page::{DIRECTIONAL, Page, Techniques};
 use crate::single_scattering::connection;
 use crate::space::Particle;
 use media::catalogue::Settings;
@@ -35,19 +35,15 @@ use theory::Heuristic;
 use theory::lit_rod::Densities;
 
 /// Multiple importance sampling over directions.
-#[derive(Debug, Clone)]
-pub struct DirectionalMis(Page);
+pub type DirectionalMis = Techniques<DIRECTIONAL>;
 
-impl DirectionalMis {
-    fn page(settings: &Settings) -> Option<Page> {
-        let particle = Particle::read(settings);
-        let shadow = connection::read_shadow(settings);
-        let heuristic = Heuristic::read(settings);
-        let densities = Densities::Directional;
-        let sharing =
-            Sharing { densities, heuristic: heuristic?, shadow: Some(shadow?), subpaths: None };
-        Some(Page { particle: particle?, sharing })
-    }
+/// Reads the settings.
+pub(super) fn page(settings: &Settings) -> Option<Page> {
+    let particle = Particle::read(settings);
+    let shadow = connection::read_shadow(settings);
+    let heuristic = Heuristic::read(settings);
+    let densities = Densities::Directional;
+    let sharing =
+        Sharing { densities, heuristic: heuristic?, shadow: Some(shadow?), subpaths: None };
+    Some(Page { particle: particle?, sharing })
 }
-
-pages!(DirectionalMis);

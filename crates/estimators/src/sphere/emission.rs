@@ -11,8 +11,10 @@
 //! leaves a surface of radius ρ. That of a distant light of irradiance 4π is `1/(πρ²)`, worth as much.
 
 use super::connect::UP;
-use numeric::geometry::{Point, Ray, frame};
-use numeric::rng::Stream;
+use numeric::Lane;
+use numeric::geometry::exit::along;
+use numeric::geometry::frame::turned_lanes;
+use numeric::rng::Random;
 use theory::problems::Sphere;
 use theory::problems::sphere::Light;
 
@@ -24,23 +26,40 @@ pub fn radius(sphere: &Sphere) -> f64 {
     }
 }
 
-/// A particle at the light's surface; the cosine with the normal is made of a uniform number.
-pub fn ray(sphere: &Sphere, cosine: impl Fn(f64) -> f64, rng: &mut Stream) -> Ray {
-    // Numbers are taken in this order.
-    let lambert = |axis: Point, rng: &mut Stream| {
-        let cosine = cosine(rng.uniform());
-        frame::turned(axis, cosine, rng.uniform())
-    };
+/// Directions about an axis by Lambert's law, for the lanes in `which`.
+#[inline(always)]
+fn lambert<L: Lane>(
+    axis: [L; 3],
+    cosine: impl Fn(L) -> L,
+    which: L::Mask,
+    random: &mut impl Random<L>,
+) -> [L; 3] {
+    let cosine = cosine(random.uniform_where(which));
+    turned_lanes(axis, cosine, random.uniform_where(which))
+}
+
+/// Places of particles at the light's surface and their directions, for the lanes in `which`; the cosine with the normal is
+/// made of a uniform number.
+#[inline(always)]
+pub fn rays<L: Lane>(
+    sphere: &Sphere,
+    cosine: impl Fn(L) -> L,
+    (one, which): (L, L::Mask),
+    random: &mut impl Random<L>,
+) -> [[L; 3]; 2] {
     let (normal, direction) = match sphere.light {
         // A point of the disc is the foot of one of the sphere: by Lambert's law any of them is as likely.
-        Light::Distant(towards) => (lambert(towards, rng), towards * -1.0),
+        Light::Distant(towards) => {
+            (lambert(towards.each(one), cosine, which, random), (towards * -1.0).each(one))
+        }
         light => {
-            let normal = frame::turned(UP, 2.0 * rng.uniform() - 1.0, rng.uniform());
+            let height = random.uniform_where(which) * 2.0 - 1.0;
+            let normal = turned_lanes(UP.each(one), height, random.uniform_where(which));
+            let [x, y, z] = normal;
             let is_outwards = matches!(light, Light::BlackSphere(_));
-            let axis = if is_outwards { normal } else { normal * -1.0 };
-            (normal, lambert(axis, rng))
+            let axis = if is_outwards { normal } else { [x * -1.0, y * -1.0, z * -1.0] };
+            (normal, lambert(axis, cosine, which, random))
         }
     };
-    let origin = sphere.centre + normal * radius(sphere);
-    Ray { origin, direction, length: f64::INFINITY }
+    [along(sphere.centre.each(one), normal, one.each(radius(sphere))), direction]
 }

@@ -27,7 +27,7 @@
 //! `theory/sphere/spread.rs`.
 
 use super::combined::Sharing;
-use super::{Page, pages};
+use super::page::{FULL, Page, Techniques};
 use crate::space::Particle;
 use media::catalogue::Settings;
 use theory::Heuristic;
@@ -35,19 +35,15 @@ use theory::lit_rod::Densities;
 use theory::single::Tracking;
 
 /// Multiple importance sampling over null-scattering paths.
-#[derive(Debug, Clone)]
-pub struct FullMis(Page);
+pub type FullMis = Techniques<FULL>;
 
-impl FullMis {
-    fn page(settings: &Settings) -> Option<Page> {
-        let particle = Particle::read(settings);
-        let shadow = settings.word_or("shadow", &["ratio", "exact"], "ratio");
-        let heuristic = Heuristic::read(settings);
-        let shadow = (shadow? == "exact").then_some(Tracking::Exact);
-        let densities = Densities::Full;
-        let sharing = Sharing { densities, heuristic: heuristic?, shadow, subpaths: None };
-        Some(Page { particle: particle?, sharing })
-    }
+/// Reads the settings.
+pub(super) fn page(settings: &Settings) -> Option<Page> {
+    let particle = Particle::read(settings);
+    let shadow = settings.word_or("shadow", &["ratio", "exact"], "ratio");
+    let heuristic = Heuristic::read(settings);
+    let shadow = (shadow? == "exact").then_some(Tracking::Exact);
+    let densities = Densities::Full;
+    let sharing = Sharing { densities, heuristic: heuristic?, shadow, subpaths: None };
+    Some(Page { particle: particle?, sharing })
 }
-
-pages!(FullMis);

@@ -7,30 +7,21 @@ pub mod directional_mis;
 pub mod emission;
 pub mod full_mis;
 pub mod next_event;
-mod packet;
 pub mod page;
 pub mod particle;
 
-use fearless_simd::Level;
-
-use crate::kernels::packet::Request;
-use crate::space::{self, By, Particle, Start, Steps, Walked};
+use crate::space::{self, Particle, Walked};
 use crate::{Draw, Refusal, Setup, estimators};
-use media::Majorants;
-use media::majorants::Flight;
 use numeric::Known;
 use numeric::digits::rounded;
-use numeric::geometry::{Point, frame};
-use numeric::rng::Stream;
 use theory::problems::Sphere;
 use theory::problems::sphere::{Light, Sought};
 use theory::single::Tracking;
 use theory::sphere::{Answer, Lights, Observable, Scene, Spread, Spreads, Techniques, cached};
-use theory::{Channel, Law, Moments, Odds, ParticleRule, Prediction, Tails};
+use theory::{Channel, Law, Moments, ParticleRule, Prediction, Tails, problems};
 
-pub use connect::{Connect, Finder, Honest, Seeker};
+pub use connect::{Connect, Honest, Seeker};
 pub use page::Page;
-use page::pages;
 
 /// The largest error of an exact answer, relative to it, that is worth drawing against.
 pub const BLURRED: f64 = 1e-4;
@@ -193,79 +184,9 @@ fn predict_by_pilots(setup: &Setup<Sphere>) -> Prediction {
     Prediction::uncounted(Channel { by_pilots: true, ..channel })
 }
 
-/// A particle that a black sphere stops.
-struct Stopped<'a> {
-    particle: &'a Particle,
-    core: Option<(Point, f64)>,
-}
-
-impl Steps for Stopped<'_> {
-    #[inline(always)]
-    fn odds_at(&self, ratio: f64, albedo: f64) -> Odds {
-        self.particle.odds_at(ratio, albedo)
-    }
-
-    #[inline(always)]
-    fn fly(&self, majorants: &Majorants, flight: &mut Flight, depth: f64) -> Option<f64> {
-        let flown = majorants.fly(flight, depth);
-        let Some((centre, radius)) = self.core else { return flown };
-        match connect::meets(flight.origin, flight.direction, centre, radius) {
-            Some(at) if at < flight.t => {
-                flight.t = at;
-                None
-            }
-            _ => flown,
-        }
-    }
-
-    #[inline(always)]
-    fn keep(&self, rng: &mut Stream, weight: f64) -> Option<f64> {
-        self.particle.keep(rng, weight)
-    }
-}
-
-/// The black sphere that stops a particle, if there is one.
-fn core(sphere: &Sphere) -> Option<(Point, f64)> {
-    match sphere.light {
-        Light::BlackSphere(radius) => Some((sphere.centre, radius)),
-        Light::Environment | Light::Distant(_) => None,
-    }
-}
-
-/// Makes a draw: with shadow rays, or without.
-pub fn draw_by(
-    particle: &Particle,
-    connect: Option<(&dyn Connect, Tracking)>,
-    setup: &Setup<Sphere>,
-    rng: &mut Stream,
-) -> Draw {
-    let Some(majorants) = setup.space.as_deref() else { return Draw::free([f64::NAN], 0) };
-    let mut seeker = Seeker::new(&setup.problem, connect);
-    find(particle, &mut seeker, (&setup.problem, majorants), rng)
-}
-
-/// Makes a draw of what finds light along a walk through σ̂.
-fn find(
-    particle: &Particle,
-    finder: &mut impl Finder,
-    (sphere, majorants): (&Sphere, &Majorants),
-    rng: &mut Stream,
-) -> Draw {
-    let place = sphere.entry();
-    let is_point = sphere.sought == Sought::MeanIntensity;
-    let mut lookups = finder.begin(is_point.then_some(place), rng);
-    let direction = if is_point {
-        frame::turned(Point([0.0, 0.0, 1.0]), 2.0 * rng.uniform() - 1.0, rng.uniform())
-    } else {
-        sphere.direction()
-    };
-    let steps = Stopped { particle, core: core(sphere) };
-    let start = Start { place, direction, weight: 1.0 };
-    lookups += space::walk(By::Steps(&steps), &sphere.scene, majorants, start, finder, rng);
-    Draw::free([finder.found()], lookups)
-}
-
 impl Walked for Sphere {
+    type Tally<'a> = Seeker<'a, Honest, false>;
+
     /// A walk must be able to find the light by itself.
     fn domain(setup: &Setup<Self>, particle: &Particle) -> Result<(), Refusal> {
         if matches!(setup.problem.light, Light::Distant(_)) {
@@ -291,18 +212,12 @@ impl Walked for Sphere {
         }
     }
 
-    /// By the particle, whose walks a black sphere may stop.
-    fn draw(_: By, particle: &Particle, setup: &Setup<Self>, rng: &mut Stream) -> Draw {
-        draw_by(particle, None, setup, rng)
+    fn scene(&self) -> &problems::Scene {
+        &self.scene
     }
 
-    fn draw_packets<'a>(
-        level: Level,
-        particle: &Particle,
-        setup: &Setup<Self>,
-        request: Request<'a>,
-    ) -> Option<Request<'a>> {
-        packet::draw_by_packets(level, particle, None, setup, request)
+    fn tally<'a>(setup: &'a Setup<Self>, _: &Particle) -> Result<Self::Tally<'a>, Draw> {
+        Ok(Seeker { sphere: &setup.problem, shadow: Tracking::Exact, connect: Honest })
     }
 }
 

@@ -27,10 +27,10 @@
 
 use fearless_simd::Level;
 
-use super::Honest;
+use super::{Connect, Honest, Seeker};
 use crate::kernels::packet::Request;
 use crate::single_scattering::connection;
-use crate::space::Particle;
+use crate::space::{self, Particle, Splitting, draws};
 use crate::{Draw, Estimator, Inputs, Refusal, Setup};
 use media::Lookups;
 use media::catalogue::Settings;
@@ -43,8 +43,26 @@ use theory::sphere::Techniques;
 /// A walk with shadow rays.
 #[derive(Debug, Clone)]
 pub struct NextEvent {
-    particle: Particle,
-    shadow: Tracking,
+    /// The particle.
+    pub particle: Particle,
+    /// The tracking of shadow rays.
+    pub shadow: Tracking,
+}
+
+impl NextEvent {
+    /// Makes a draw by steps.
+    pub fn draw_by(
+        &self,
+        connect: impl Connect,
+        setup: &Setup<Sphere>,
+        random: &mut Stream,
+    ) -> Draw {
+        let Some(majorants) = setup.space.as_deref() else { return space::nothing() };
+        let sphere = &*setup.problem;
+        let seeker = Seeker::<_, true> { sphere, shadow: self.shadow, connect };
+        let (steps, world) = ((self.particle, Splitting::None), (&sphere.scene, majorants));
+        draws::draw::<_, _, false>(&seeker, steps, world, random)
+    }
 }
 
 impl Estimator<Sphere> for NextEvent {
@@ -74,8 +92,8 @@ impl Estimator<Sphere> for NextEvent {
     }
 
     #[inline]
-    fn draw(&self, setup: &Setup<Sphere>, _: &Lookups, rng: &mut Stream) -> Draw {
-        super::draw_by(&self.particle, Some((&Honest, self.shadow)), setup, rng)
+    fn draw(&self, setup: &Setup<Sphere>, _: &Lookups, random: &mut Stream) -> Draw {
+        self.draw_by(Honest, setup, random)
     }
 
     fn draw_packets<'a>(
@@ -85,6 +103,9 @@ impl Estimator<Sphere> for NextEvent {
         _: &Lookups,
         request: Request<'a>,
     ) -> Option<Request<'a>> {
-        super::packet::draw_by_packets(level, &self.particle, Some(self.shadow), setup, request)
+        let Some(majorants) = setup.space.as_deref() else { return Some(request) };
+        let sphere = &*setup.problem;
+        let seeker = Seeker::<_, true> { sphere, shadow: self.shadow, connect: Honest };
+        draws::packets(level, &seeker, &self.particle, (&sphere.scene, majorants), request)
     }
 }

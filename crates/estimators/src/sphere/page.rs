@@ -1,35 +1,37 @@
-//! What estimators of several techniques have in common.
+//! Estimators of several techniques: their settings, predictions and draws.
 
 use fearless_simd::Level;
 
 use super::combined::{Combined, Sharing, Steps, Subpaths};
-use super::{connected, find, packet, predict_by_pilots, predict_together, realisable};
+use super::{
+    Honest, bidirectional, connected, directional_mis, full_mis, predict_by_pilots,
+    predict_together, realisable,
+};
 use crate::kernels::packet::Request;
 use crate::single_scattering::connection;
-use crate::space::Particle;
-use crate::space::segment::Tracker;
-use crate::{Draw, Refusal, Setup};
-use media::Majorants;
+use crate::space::{self, Particle, Splitting, draws};
+use crate::{Draw, Estimator, Inputs, Refusal, Setup};
+use media::catalogue::Settings;
+use media::{Lookups, Majorants};
 use numeric::rng::Stream;
 use theory::lit_rod::Densities;
 use theory::problems::Sphere;
 use theory::problems::sphere::Light;
 use theory::single::Tracking;
-use theory::sphere::Techniques;
-use theory::{Heuristic, Prediction};
+use theory::{Heuristic, Prediction, sphere};
 
-/// What the settings of a page say.
+/// The settings of an estimator.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Page {
-    /// How the particle walks.
+    /// The particle.
     pub particle: Particle,
-    /// Which techniques share what it finds.
+    /// The techniques that share.
     pub sharing: Sharing,
 }
 
 impl Page {
     /// In words, as in `analog, ratio shadow, power`.
-    pub fn label(&self) -> String {
+    fn label(&self) -> String {
         let Sharing { heuristic, shadow, subpaths, .. } = self.sharing;
         let mut words = match subpaths {
             Some(Subpaths::Independent) => vec!["independent subpaths".into()],
@@ -45,25 +47,8 @@ impl Page {
         words.join(", ")
     }
 
-    /// Knowledge that exact shadow rays need.
-    pub fn needs(&self) -> Option<&'static str> {
-        self.sharing.shadow.and_then(connection::shadow_needs)
-    }
-
-    /// Whether it is unbiased, and judged by something.
-    ///
-    /// # Errors
-    ///
-    /// The violated inequality.
-    pub fn domain(&self, setup: &Setup<Sphere>) -> Result<(), Refusal> {
-        match self.sharing.shadow {
-            Some(shadow) => connected(setup, &self.particle, shadow),
-            None => realisable(setup, &self.particle),
-        }
-    }
-
-    /// What theory says of a draw.
-    pub fn predict(&self, setup: &Setup<Sphere>) -> Prediction {
+    /// The prediction for a draw.
+    fn predict(&self, setup: &Setup<Sphere>) -> Prediction {
         let Sharing { densities, heuristic, shadow, subpaths } = self.sharing;
         let is_distant = matches!(setup.problem.light, Light::Distant(_));
         // Ratio tracking through a majorant is no wilder than delta tracking.
@@ -71,105 +56,112 @@ impl Page {
         let techniques = match subpaths {
             Some(Subpaths::Shared) => return predict_by_pilots(setup),
             Some(Subpaths::Independent) if is_distant => return predict_by_pilots(setup),
-            Some(Subpaths::Independent) => Techniques::Bidirectional(heuristic),
-            None if is_distant => Techniques::NextEvent,
-            None => Techniques::Mis(densities, heuristic),
+            Some(Subpaths::Independent) => sphere::Techniques::Bidirectional(heuristic),
+            None if is_distant => sphere::Techniques::NextEvent,
+            None => sphere::Techniques::Mis(densities, heuristic),
         };
         predict_together(setup, techniques, shadow)
     }
 
-    /// Makes a draw through σ̂, by the steps of someone.
+    /// Makes a draw through σ̂ by steps.
     pub fn draw(
         &self,
-        steps: &dyn Steps,
+        steps: impl Steps,
         (sphere, majorants): (&Sphere, &Majorants),
-        rng: &mut Stream,
+        random: &mut Stream,
     ) -> Draw {
-        let tracker = Tracker { scene: &sphere.scene, majorants };
-        let rule = self.particle.rule;
-        let mut combined = Combined::new((sphere, tracker), rule, (self.sharing, steps));
-        find(&self.particle, &mut combined, (sphere, majorants), rng)
+        let Self { particle, sharing } = *self;
+        let combined =
+            Combined::<_, true>::new((sphere, majorants), particle.rule, (sharing, steps));
+        let world = (&sphere.scene, majorants);
+        draws::draw::<_, _, false>(&combined, (particle, Splitting::None), world, random)
     }
 
     /// Makes draws by packets: not of connections, and of null-scattering paths where shadow rays have a tracking with
     /// numbers of their own.
-    pub fn draw_packets<'a>(
+    fn draw_packets<'a>(
         &self,
         level: Level,
         setup: &Setup<Sphere>,
         request: Request<'a>,
     ) -> Option<Request<'a>> {
-        let (rule, sharing) = (self.particle.rule, &self.sharing);
+        let Self { particle, sharing } = *self;
         let is_exact = sharing.densities == Densities::Full && sharing.shadow.is_some();
         let majorants = setup.space.as_deref().filter(|_| sharing.subpaths.is_none() && !is_exact);
-        let Some(shadow) = majorants.and_then(|majorants| sharing.tracking(rule, majorants)) else {
+        let Some(majorants) =
+            majorants.filter(|majorants| sharing.tracking(particle.rule, majorants).is_some())
+        else {
             return Some(request);
         };
-        packet::share_by_packets(level, self, shadow, setup, request)
+        let (sphere, steps) = (&*setup.problem, (sharing, Honest));
+        let combined = Combined::<_, false>::new((sphere, majorants), particle.rule, steps);
+        draws::packets(level, &combined, &particle, (&sphere.scene, majorants), request)
     }
 
-    /// The same for an experiment; no number where there is no σ̂.
-    pub fn draw_for(&self, steps: &dyn Steps, setup: &Setup<Sphere>, rng: &mut Stream) -> Draw {
+    /// Makes a draw of an experiment by steps.
+    pub fn draw_for(&self, steps: impl Steps, setup: &Setup<Sphere>, random: &mut Stream) -> Draw {
         match setup.space.as_deref() {
-            Some(majorants) => self.draw(steps, (&setup.problem, majorants), rng),
-            None => Draw::free([f64::NAN], 0),
+            Some(majorants) => self.draw(steps, (&setup.problem, majorants), random),
+            None => space::nothing(),
         }
     }
 }
 
-/// The plumbing of a page: all that differs is how it reads its settings, as in `pages!(FullMis)`.
-macro_rules! pages {
-    ($Page:ident) => {
-        impl $crate::Estimator<theory::problems::Sphere> for $Page {
-            const INPUTS: $crate::Inputs = $crate::Inputs::SAMPLING;
-            const IN_PACKETS: bool = true;
+/// [`directional_mis`].
+pub const DIRECTIONAL: u8 = 0;
+/// [`full_mis`].
+pub const FULL: u8 = 1;
+/// [`bidirectional`].
+pub const BIDIRECTIONAL: u8 = 2;
 
-            fn read(settings: &media::catalogue::Settings) -> Option<Self> {
-                Self::page(settings).map(Self)
-            }
+/// An estimator whose techniques share, of a kind.
+#[derive(Debug, Clone)]
+pub struct Techniques<const KIND: u8>(Page);
 
-            fn label(&self, _: bool) -> String {
-                self.0.label()
-            }
+impl<const KIND: u8> Estimator<Sphere> for Techniques<KIND> {
+    const INPUTS: Inputs = Inputs::SAMPLING;
+    const IN_PACKETS: bool = true;
 
-            fn needs(&self) -> Option<&'static str> {
-                self.0.needs()
-            }
+    fn read(settings: &Settings) -> Option<Self> {
+        let page = match KIND {
+            DIRECTIONAL => directional_mis::page(settings),
+            FULL => full_mis::page(settings),
+            _ => bidirectional::page(settings),
+        };
+        page.map(Self)
+    }
 
-            fn domain(
-                &self,
-                setup: &$crate::Setup<theory::problems::Sphere>,
-            ) -> Result<(), $crate::Refusal> {
-                self.0.domain(setup)
-            }
+    fn label(&self, _: bool) -> String {
+        self.0.label()
+    }
 
-            fn predict(
-                &self,
-                setup: &$crate::Setup<theory::problems::Sphere>,
-            ) -> theory::Prediction {
-                self.0.predict(setup)
-            }
+    fn needs(&self) -> Option<&'static str> {
+        self.0.sharing.shadow.and_then(connection::shadow_needs)
+    }
 
-            #[inline]
-            fn draw(
-                &self,
-                setup: &$crate::Setup<theory::problems::Sphere>,
-                _: &media::Lookups,
-                rng: &mut numeric::rng::Stream,
-            ) -> $crate::Draw {
-                self.0.draw_for(&$crate::sphere::Honest, setup, rng)
-            }
-
-            fn draw_packets<'a>(
-                &self,
-                level: fearless_simd::Level,
-                setup: &$crate::Setup<theory::problems::Sphere>,
-                _: &media::Lookups,
-                request: $crate::kernels::packet::Request<'a>,
-            ) -> Option<$crate::kernels::packet::Request<'a>> {
-                self.0.draw_packets(level, setup, request)
-            }
+    fn domain(&self, setup: &Setup<Sphere>) -> Result<(), Refusal> {
+        match self.0.sharing.shadow {
+            Some(shadow) => connected(setup, &self.0.particle, shadow),
+            None => realisable(setup, &self.0.particle),
         }
-    };
+    }
+
+    fn predict(&self, setup: &Setup<Sphere>) -> Prediction {
+        self.0.predict(setup)
+    }
+
+    #[inline]
+    fn draw(&self, setup: &Setup<Sphere>, _: &Lookups, random: &mut Stream) -> Draw {
+        self.0.draw_for(Honest, setup, random)
+    }
+
+    fn draw_packets<'a>(
+        &self,
+        level: Level,
+        setup: &Setup<Sphere>,
+        _: &Lookups,
+        request: Request<'a>,
+    ) -> Option<Request<'a>> {
+        self.0.draw_packets(level, setup, request)
+    }
 }
-pub(super) use pages;

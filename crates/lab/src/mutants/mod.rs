@@ -29,7 +29,6 @@ pub mod null_paths;
 pub mod precision;
 pub mod rod;
 pub mod rules;
-pub mod scattering;
 pub mod scores;
 pub mod single_scattering;
 pub mod slab;

@@ -6,11 +6,13 @@
 
 use super::target::{SPHERE_LAMP, SPHERE_LAMP_EXACT, SPHERE_SKY};
 use super::{About, Mutant, with};
-use estimators::space::{Particle, Scattering};
-use estimators::sphere::{Connect, Honest, draw_by};
-use numeric::Span;
+use estimators::space::Particle;
+use estimators::space::shadow::Light;
+use estimators::sphere::Connect;
+use estimators::sphere::next_event::NextEvent;
+use numeric::{Lane, Mask};
 use theory::ParticleRule;
-use theory::problems::Sphere;
+use theory::problems::{Sphere, sphere};
 use theory::single::Tracking;
 
 /// The family.
@@ -18,7 +20,7 @@ use theory::single::Tracking;
 pub fn mutants() -> Vec<Mutant<Sphere>> {
     let ratio = Tracking::Ratio { sampling: 2.0, control: 0.0 };
     let by = |bug, shadow| with((bug, shadow), |(bug, shadow), setup, _, rng| {
-        draw_by(&Particle::of(ParticleRule::Weighted), Some((bug, *shadow)), setup, rng)
+        NextEvent { particle: Particle::of(ParticleRule::Weighted), shadow: *shadow }.draw_by(*bug, setup, rng)
     });
     let of = |name, text, target, shadow, bug: Bug| {
         Mutant::new(About { name, bug: text, target, check: "mean" }, by(bug, shadow), by(Bug::None, shadow))
@@ -42,25 +44,27 @@ enum Bug {
 }
 
 impl Connect for Bug {
-    fn weight(&self, sphere: &Sphere, at: &Scattering) -> f64 {
-        let albedo = sphere.scene.albedo.even().unwrap_or(1.0);
-        if *self == Self::WithoutAlbedo { at.weight / albedo } else { at.weight }
-    }
-
-    fn share(&self, core: f64, distance: f64) -> f64 {
-        if *self == Self::PerArea {
-            // 2πρ²(1 − ρ/r)/4π, the visible area of the sphere.
-            0.5 * core * core * (1.0 - core / distance)
-        } else {
-            Honest.share(core, distance)
+    #[inline(always)]
+    fn light<L: Lane>(&self, sphere: &Sphere, place: [L; 3], right: Light<L>) -> Light<L> {
+        let one = right.share.each(1.0);
+        match (self, sphere.light) {
+            (Self::Through, _) => Light { distance: one.each(f64::INFINITY), ..right },
+            (Self::PerArea, sphere::Light::BlackSphere(core)) => {
+                // 2πρ²(1 − ρ/r)/4π, the visible area of the sphere.
+                let distance = sphere.centre.square_to(place, 1.0).root();
+                let share = (one - one.each(core) / distance) * (0.5 * core * core);
+                Light { share, ..right }
+            }
+            (Self::WithoutAlbedo, _) => {
+                let albedo = sphere.scene.albedo.even().unwrap_or(1.0);
+                Light { share: right.share / one.each(albedo), ..right }
+            }
+            _ => right,
         }
     }
 
-    fn reach(&self, within: Span, light: f64) -> Span {
-        if *self == Self::Through { within } else { Honest.reach(within, light) }
-    }
-
-    fn counts(&self, order: u32) -> bool {
-        *self == Self::Twice || Honest.counts(order)
+    #[inline(always)]
+    fn counts<M: Mask>(&self, right: M) -> M {
+        if *self == Self::Twice { right | !right } else { right }
     }
 }

@@ -15,6 +15,7 @@ use estimators::sphere::{Honest, Page};
 use estimators::{Draw, Setup};
 use media::Lookups;
 use numeric::rng::Stream;
+use numeric::{Lane, Mask};
 use theory::lit_rod::Densities;
 use theory::problems::Sphere;
 use theory::single::Tracking;
@@ -60,7 +61,7 @@ fn draw(
     _: &Lookups,
     rng: &mut Stream,
 ) -> Draw<[f64; 1]> {
-    page.draw_for(steps, setup, rng)
+    page.draw_for(*steps, setup, rng)
 }
 
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -84,42 +85,58 @@ enum Bug {
 }
 
 impl Steps for Bug {
-    fn chance(&self, right: f64) -> f64 {
-        if *self == Self::NullsInOne { 1.0 } else { right }
+    #[inline(always)]
+    fn chance<L: Lane>(&self, right: L) -> L {
+        if *self == Self::NullsInOne { right.each(1.0) } else { right }
     }
 
-    fn segment(&self, before: f64) -> f64 {
-        if *self == Self::NullsOfAll { before } else { 1.0 }
+    #[inline(always)]
+    fn segment<L: Lane>(&self, before: L) -> L {
+        if *self == Self::NullsOfAll { before } else { before.each(1.0) }
     }
 
-    fn weight(&self, heuristic: Heuristic, own: usize, densities: [f64; 3]) -> f64 {
-        let [walk, shadow, connection] = densities;
+    #[inline(always)]
+    fn weight<L: Lane, const N: usize>(
+        &self,
+        heuristic: Heuristic,
+        own: usize,
+        mut densities: [L; N],
+    ) -> L {
+        let one = densities[own].each(1.0);
         let right = heuristic.weight(own, densities);
         match self {
-            Self::HitsAlone if own == 0 => 1.0,
+            Self::HitsAlone if own == 0 => one,
             Self::PhaseAlone if own == 0 => {
-                heuristic.weight(0, [walk, 4.0 * std::f64::consts::PI, connection])
+                densities[1] = one.each(4.0 * std::f64::consts::PI);
+                heuristic.weight(0, densities)
             }
-            Self::Averaged => 0.5 * right,
+            Self::Averaged => right * 0.5,
             Self::TwoHeuristics if own == 0 => Heuristic::Balance.weight(0, densities),
-            Self::Added if own < 2 => heuristic.weight(own, [walk, shadow, 0.0]),
+            Self::Added if own < 2 => {
+                densities.iter_mut().skip(2).for_each(|connection| *connection = one.each(0.0));
+                heuristic.weight(own, densities)
+            }
             _ => right,
         }
     }
 
+    #[inline(always)]
     fn unscattered(&self) -> f64 {
         if *self == Self::Unscattered { 0.5 } else { 1.0 }
     }
 
-    fn lit(&self, right: f64, transmittance: f64) -> f64 {
+    #[inline(always)]
+    fn lit<L: Lane>(&self, right: L, transmittance: L) -> L {
         if *self == Self::ShadowTwice { right * transmittance } else { right }
     }
 
-    fn linked(&self, right: f64, square: f64) -> f64 {
+    #[inline(always)]
+    fn linked<L: Lane>(&self, right: L, square: L) -> L {
         if *self == Self::GeometryInOne { right / square } else { right }
     }
 
-    fn connected(&self, right: f64, link: &Link) -> f64 {
+    #[inline(always)]
+    fn connected<L: Lane>(&self, right: L, link: &Link<L>) -> L {
         match self {
             Self::WithoutDistance => right * link.distance * link.distance,
             Self::AlbedoMissing => right / link.albedo,
@@ -128,11 +145,13 @@ impl Steps for Bug {
         }
     }
 
-    fn is_hidden(&self, right: bool) -> bool {
-        right && *self != Self::ThroughLight
+    #[inline(always)]
+    fn is_hidden<M: Mask>(&self, right: M) -> M {
+        if *self == Self::ThroughLight { right & !right } else { right }
     }
 
-    fn cosine(&self, number: f64) -> f64 {
-        if *self == Self::EvenEmission { 1.0 - number } else { Honest.cosine(number) }
+    #[inline(always)]
+    fn cosine<L: Lane>(&self, number: L) -> L {
+        if *self == Self::EvenEmission { number.one_minus() } else { Honest.cosine(number) }
     }
 }

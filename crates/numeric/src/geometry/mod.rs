@@ -1,7 +1,9 @@
 //! Points, rays and the bodies that bound a medium. Floor 0.
 
 pub mod bounds;
+pub mod exit;
 pub mod frame;
+mod grazing;
 pub mod point;
 pub mod ray;
 

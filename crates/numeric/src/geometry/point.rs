@@ -15,6 +15,13 @@ impl Point {
         self.0[0] * other.0[0] + self.0[1] * other.0[1] + self.0[2] * other.0[2]
     }
 
+    /// The same point in every element of a lane.
+    #[inline(always)]
+    pub fn each<L: Lane>(self, like: L) -> [L; 3] {
+        let Self([x, y, z]) = self;
+        [like.each(x), like.each(y), like.each(z)]
+    }
+
     /// Scalar product with points side by side.
     #[inline(always)]
     pub fn along<L: Lane>(self, [x, y, z]: [L; 3]) -> L {

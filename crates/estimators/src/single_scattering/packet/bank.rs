@@ -6,10 +6,10 @@ use super::walk::{Walk, World};
 use super::{Page, Pages, Sums, collisions, interactions, mis, points, shared};
 use crate::kernels::packet::Request;
 use crate::kernels::packet::bank::{self, Numbers, Slots};
+use crate::kernels::packet::left;
 use crate::single_scattering::main_part::MainPart;
 use crate::single_scattering::technique::{Kind, Sharing};
 use crate::space::exit;
-use crate::space::packet::collect;
 use crate::space::shadow::{Found, Light, ShadowRays, Shadows};
 use crate::space::tally::add_where;
 use crate::{DrawBuffer, Setup};
@@ -143,7 +143,7 @@ struct Pack<S: Simd, P> {
     page: P,
     numbers: Numbers<S>,
     sums: Sums<S>,
-    shadows: Shadows<S>,
+    shadows: Shadows<f64x8<S>>,
     /// Where shadow rays begin.
     origin: exit::Points<S>,
     /// Where they have come to in this step.
@@ -166,7 +166,7 @@ impl<S: Simd, P: Page<S>> Pack<S, P> {
         let (zero, none) = (f64x8::splat(simd, 0.0), mask64x8::splat(simd, false));
         let mut sums = Sums { value: zero, lookups: zero };
         page.begin(&mut numbers, !none, &mut sums);
-        let shadows = Shadows::new(simd);
+        let shadows = Shadows::new(zero);
         let (origin, place) = ([zero; 3], [zero; 3]);
         Self {
             page,
@@ -234,7 +234,8 @@ impl<S: Simd, P: Page<S>> Pack<S, P> {
             let light = Light { direction, share: one, distance };
             let ends = exit::ends(&rays.bounds, [origin, direction], casts);
             let from = (origin, one);
-            let (which, through) = self.shadows.cast((rays, in_space), casts, &light, from, ends);
+            let ((which, through), _) =
+                self.shadows.cast((rays, Some(in_space)), casts, &light, from, ends);
             // What a ray that was cast before has found, and what one finds at once.
             found = (found.0 | which, Lane::select(which, through, found.1));
         }
@@ -261,7 +262,7 @@ impl<S: Simd, P: Page<S>> Pack<S, P> {
         let [ended, begins] = self.page.finish();
         if ended.any_true() {
             let Sums { value, lookups } = self.sums;
-            let over = collect(&[value], &lookups, &[0], (ended.to_bitmask(), slots), buffer);
+            let over = left::draws(&[value], &lookups, (ended.to_bitmask(), slots), buffer);
             bank::leave(streams, number, over, self.numbers);
             let zero = value.each(0.0);
             self.sums.value = Lane::select(ended, zero, value);

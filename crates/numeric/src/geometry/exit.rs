@@ -1,4 +1,4 @@
-//! Where eight rays that begin in a body leave it: [`Bounds::clip`] for rays side by side, bit for bit.
+//! Ends of rays that begin in a body: [`Bounds::clip`] for rays side by side, bit for bit.
 //!
 //! ```text
 //! ball:  foot = (c − o)·d,  offset = |c − o − foot d|,  end = foot + √((R − offset)(R + offset))
@@ -9,12 +9,12 @@
 
 use std::ops::RangeInclusive;
 
-use fearless_simd::{ExtractToken, Simd, SimdBase, SimdMask, f64x8, mask64x8};
+use fearless_simd::f64x8;
 
-use super::grazing;
-use numeric::Lane;
-use numeric::geometry::{Aabb, Bounds, Point, Ray};
-use numeric::pack::{self, WIDTH, fuses};
+use super::{Aabb, Bounds, Point, Ray, grazing};
+use crate::lane::fuses;
+use crate::pack::WIDTH;
+use crate::{Kept, Lane, Mask};
 
 /// Radii of which no square overflows or underflows, nor what is left of one after 32 digits.
 const SIZES: RangeInclusive<f64> = 1e-60..=1e60;
@@ -22,42 +22,41 @@ const SIZES: RangeInclusive<f64> = 1e-60..=1e60;
 /// Three coordinates of eight points or directions.
 pub type Points<S> = [f64x8<S>; 3];
 
-/// The same point in every lane.
-#[inline(always)]
-pub fn splat<S: Simd>(simd: S, Point([x, y, z]): Point) -> Points<S> {
-    [f64x8::splat(simd, x), f64x8::splat(simd, y), f64x8::splat(simd, z)]
-}
-
-/// The scalar products of two packs of vectors.
+/// The scalar products of vectors side by side.
 #[inline(always)]
 pub fn dot<L: Lane>([a, b, c]: [L; 3], [x, y, z]: [L; 3]) -> L {
     a * x + b * y + c * z
 }
 
-/// Where the lines of rays that begin in a body enter and leave it, for the rays that a mask names: from no later than
-/// their beginnings, to infinity where there is no boundary. The one is not before the other where a ray only grazes.
+/// Points `t` along rays.
+#[inline(always)]
+pub fn along<L: Lane>([a, b, c]: [L; 3], [x, y, z]: [L; 3], t: L) -> [L; 3] {
+    [a + x * t, b + y * t, c + z * t]
+}
+
+/// Distances at which the lines of rays that begin in a body enter and leave it, for the lanes in `which`: from no later
+/// than their beginnings, to infinity where there is no boundary. A ray that only grazes leaves no later than it enters.
 ///
 /// On AVX2 it is a function of its own.
 #[inline(always)]
-pub fn ends<S: Simd>(bounds: &Bounds, rays: [Points<S>; 2], which: mask64x8<S>) -> [f64x8<S>; 2] {
+pub fn ends<L: Lane>(bounds: &Bounds, rays: [[L; 3]; 2], which: L::Mask) -> [L; 2] {
+    let like = rays[0][0];
     if matches!(bounds, Bounds::Everywhere) {
-        let simd = rays[0][0].token();
-        return [f64x8::splat(simd, 0.0), f64x8::splat(simd, f64::INFINITY)];
+        return [like.each(0.0), like.each(f64::INFINITY)];
     }
-    pack::outlined_if_narrow(
-        rays[0][0].token(),
+    like.outlined_if_narrow(
         #[inline(always)]
         move || ends_in_place(bounds, rays, which),
     )
 }
 
-/// The same in place, for who asks in every step.
+/// [`ends`] in place, for loops that need them in every step.
 #[inline(always)]
-pub fn ends_in_place<S: Simd>(
+pub fn ends_in_place<L: Lane>(
     bounds: &Bounds,
-    [origin, direction]: [Points<S>; 2],
-    which: mask64x8<S>,
-) -> [f64x8<S>; 2] {
+    [origin, direction]: [[L; 3]; 2],
+    which: L::Mask,
+) -> [L; 2] {
     match bounds {
         Bounds::Everywhere => [origin[0].each(0.0), origin[0].each(f64::INFINITY)],
         Bounds::Box(within) => of_box(within, origin, direction),
@@ -65,40 +64,37 @@ pub fn ends_in_place<S: Simd>(
     }
 }
 
-/// Where the lines of rays that begin in a ball enter and leave it, for the rays that a mask names; the one is
-/// not before the other where they do not.
+/// Distances at which the lines of rays that begin in a ball enter and leave it, for the lanes in `which`; without a chord
+/// a ray leaves no later than it enters.
 #[inline(always)]
-pub fn chords<S: Simd>(
+pub fn chords<L: Lane>(
     centre: Point,
     radius: f64,
-    [origin, direction]: [Points<S>; 2],
-    which: mask64x8<S>,
-) -> [f64x8<S>; 2] {
+    [origin, direction]: [[L; 3]; 2],
+    which: L::Mask,
+) -> [L; 2] {
     let ([from, to], is_plain) = of_ball(centre, radius, origin, direction);
     let is_grazing = which & !is_plain;
-    let grazing = is_grazing.to_bitmask();
-    if grazing == 0 {
+    if !is_grazing.any() {
         return [from, to];
     }
-    if fuses(to.token().level()) && SIZES.contains(&radius) {
-        let [begin, end] = pack::outlined(
-            to.token(),
-            #[inline(always)]
-            move || grazing::chord(centre, radius, origin, direction),
+    let mut chord = [from, to];
+    if fuses() && SIZES.contains(&radius) {
+        chord.set_where(
+            is_grazing,
+            to.outlined(
+                #[inline(always)]
+                move || grazing::chord(centre, radius, origin, direction),
+            ),
         );
-        return [Lane::select(is_grazing, begin, from), Lane::select(is_grazing, end, to)];
+        return chord;
     }
-    let mut ends = rows([from, to, to]);
-    one_by_one(
-        &Bounds::Sphere { centre, radius },
-        &[rows(origin), rows(direction)],
-        grazing,
-        &mut ends,
-    );
-    [f64x8::from_slice(to.token(), &ends[0]), f64x8::from_slice(to.token(), &ends[1])]
+    let (ball, mut ends) = (Bounds::Sphere { centre, radius }, rows([from, to, to]));
+    one_by_one(&ball, &[rows(origin), rows(direction)], is_grazing.bits(), &mut ends);
+    [from.load(&ends[0]), to.load(&ends[1])]
 }
 
-/// Where the lines of rays are nearest to a point, and how near that is.
+/// Distances at which the lines of rays are nearest to a point, and how near that is.
 #[inline(always)]
 pub fn foot_and_offset<L: Lane>(centre: Point, origin: [L; 3], direction: [L; 3]) -> [L; 2] {
     let (Point([a, b, c]), [x, y, z]) = (centre, origin);
@@ -110,7 +106,7 @@ pub fn foot_and_offset<L: Lane>(centre: Point, origin: [L; 3], direction: [L; 3]
     [foot, dot(aside, aside).root()]
 }
 
-/// Which rays do not meet a ball that they begin outside, and how far it is for the others.
+/// Rays that miss a ball which they begin outside, and the distances at which the others meet it.
 #[inline(always)]
 pub fn meets<L: Lane>(
     centre: Point,
@@ -124,14 +120,14 @@ pub fn meets<L: Lane>(
     (foot.at_most(zero) | size.at_most(offset), near)
 }
 
-/// By doubles, and whether these keep the digits: see [`Bounds::clip`].
+/// The ends by doubles, and whether these keep the digits: see [`Bounds::clip`].
 #[inline(always)]
-fn of_ball<S: Simd>(
+fn of_ball<L: Lane>(
     centre: Point,
     radius: f64,
-    origin: Points<S>,
-    direction: Points<S>,
-) -> ([f64x8<S>; 2], mask64x8<S>) {
+    origin: [L; 3],
+    direction: [L; 3],
+) -> ([L; 2], L::Mask) {
     let [foot, offset] = foot_and_offset(centre, origin, direction);
     let size = foot.each(radius);
     let half = ((size - offset) * (size + offset)).root();
@@ -140,7 +136,7 @@ fn of_ball<S: Simd>(
     ([foot - half, foot + half], offset.below(size * 0.9) & is_large)
 }
 
-/// The same ray by ray, for those whose bits are set.
+/// [`Bounds::clip`] ray by ray, for those whose bits are set.
 #[inline(never)]
 pub fn one_by_one(
     bounds: &Bounds,
@@ -155,12 +151,12 @@ pub fn one_by_one(
     }
 }
 
-/// The elements of three packs.
+/// The elements of three lanes.
 #[inline(always)]
-pub fn rows<S: Simd>(points: Points<S>) -> [[f64; WIDTH]; 3] {
+pub fn rows<L: Lane>(points: [L; 3]) -> [[f64; WIDTH]; 3] {
     let mut rows = [[0.0; WIDTH]; 3];
     for (axis, row) in rows.iter_mut().enumerate() {
-        points[axis].store_slice(row);
+        points[axis].store(row);
     }
     rows
 }

@@ -1,16 +1,15 @@
-//! Where rays that graze a ball leave it, in 32 digits: [`Bounds::clip`](numeric::geometry::Bounds::clip) for
-//! rays side by side, bit for bit.
+//! Ends of rays that graze a ball, in 32 digits: [`Bounds::clip`](super::Bounds::clip) for rays side by side, bit for bit.
 //!
 //! ```text
 //! q = |d|²,  foot = (c − o)·d/q,  offset² = |c − o − foot d|²
 //! end = foot + √((R² − offset²)/q), rounded once
 //! ```
 
-use numeric::Lane;
-use numeric::double_double::{two_prod, two_sum};
-use numeric::geometry::Point;
+use super::Point;
+use crate::Lane;
+use crate::double_double::{two_prod, two_sum};
 
-/// Where the lines of rays that begin in a ball enter and leave it; its radius is neither so large nor so
+/// Distances at which the lines of rays that begin in a ball enter and leave it; its radius is neither so large nor so
 /// small that a square is lost. Without a chord both are the foot.
 #[inline(always)]
 pub fn chord<L: Lane>(

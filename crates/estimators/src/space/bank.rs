@@ -1,0 +1,210 @@
+//! Drivers of walks in space: two packs of eight walks, and one walk alone.
+//!
+//! Both make the same draws, bit for bit: draw j of a request comes from stream j mod 16.
+//!
+//! ```text
+//! fly       each walk flies to its next collision
+//! look up   one call answers for all sixteen places
+//! collide   some walks end: they make draws and are replaced at once
+//! go on     what is costly waits until several lanes need it
+//! ```
+//!
+//! A step has no branches: what happens to a walk is a mask, and streams that a step asks for no number stay where they are.
+//!
+//! Source: F. B. Brown, W. R. Martin, *Monte Carlo methods for radiation transport analysis on vector computers*, Progress in
+//! Nuclear Energy 14 (1984).
+
+use fearless_simd::{Simd, SimdBase, f64x8};
+
+use crate::DrawBuffer;
+use crate::kernels::packet::Request;
+use crate::kernels::packet::bank::{Numbers, Slot, Slots, leave};
+use numeric::pack::WIDTH;
+use numeric::rng::{LANES, Random, Stream};
+use numeric::twin::PAIR;
+use numeric::{Lane, Mask, Single};
+
+/// A walk in space, as one formula for every lane type.
+pub trait Walk {
+    /// The state of a walk, its place included.
+    type State<L: Lane>: Copy;
+
+    /// A flight.
+    type Flight<L: Lane>: Copy;
+
+    /// The fields at a place.
+    type Met<L: Lane>: Copy;
+
+    /// Lanes of a pack that [`Walk::go_on`] together.
+    const TOGETHER: u32 = 1;
+
+    /// Walks that have all ended.
+    fn none<L: Lane>(&self, one: L) -> Self::State<L>;
+
+    /// Replaces walks that have ended.
+    fn restart<L: Lane>(&self, state: &mut Self::State<L>, random: &mut impl Random<L>);
+
+    /// Flies; answers places at which fields are looked up.
+    fn fly<L: Lane>(
+        &self,
+        state: &mut Self::State<L>,
+        random: &mut impl Random<L>,
+    ) -> (Self::Flight<L>, [L; 3]);
+
+    /// Lanes that need the fields at the end of a flight.
+    fn inside<L: Lane>(flight: &Self::Flight<L>) -> L::Mask;
+
+    /// Collides; answers which walks end.
+    fn collide<L: Lane>(
+        &self,
+        state: &mut Self::State<L>,
+        flight: &Self::Flight<L>,
+        met: Self::Met<L>,
+        random: &mut impl Random<L>,
+    ) -> L::Mask;
+
+    /// Does what is costly, if so many lanes wait for it.
+    #[inline(always)]
+    fn go_on<L: Lane>(
+        &self,
+        state: &mut Self::State<L>,
+        together: u32,
+        random: &mut impl Random<L>,
+    ) {
+        let _ = (state, together, random);
+    }
+
+    /// Numbers that a walk has found.
+    fn numbers<L: Lane>(state: &Self::State<L>) -> &[L];
+
+    /// Lookups of a walk.
+    fn lookups<L: Lane>(state: &Self::State<L>) -> L;
+}
+
+/// Makes one draw: follows a walk to its end.
+#[inline(always)]
+pub fn one<L: Single, W: Walk>(
+    walk: &W,
+    look_up: impl Fn(Option<[L; 3]>) -> W::Met<L>,
+    random: &mut Stream,
+) -> W::State<L> {
+    let mut state = walk.none(L::of(1.0));
+    walk.restart(&mut state, random);
+    loop {
+        walk.go_on(&mut state, 1, random);
+        let (flight, place) = walk.fly(&mut state, random);
+        let met = look_up(W::inside(&flight).then_some(place));
+        if walk.collide(&mut state, &flight, met, random) {
+            return state;
+        }
+    }
+}
+
+/// The numbers that eight walks have found. They are no part of the pack, which a compiler keeps in registers only where
+/// nothing of it is reached by an index.
+pub struct Rows {
+    /// Number by number.
+    pub numbers: Vec<[f64; WIDTH]>,
+    /// Lookups.
+    pub lookups: [f64; WIDTH],
+}
+
+/// Makes the draws of a request. Both packs take each step together: `look_up` answers for sixteen places, and `write` writes
+/// the draws that a pack has ended.
+#[inline(always)]
+pub fn run<S: Simd, W: Walk>(
+    simd: S,
+    walk: &W,
+    look_up: impl Fn(&[[f64; PAIR]; 3]) -> [W::Met<f64x8<S>>; 2],
+    request: Request,
+    write: impl Fn(&Rows, Slot, &mut DrawBuffer),
+) {
+    let Request { streams, count, buffer } = request;
+    buffer.make_room(count);
+    let (turn, one) = (streams.turn, f64x8::splat(simd, 1.0));
+    let [first, second] = streams.packs();
+    let (mut slots, mut other_slots) = (Slots::new(count, turn, 0), Slots::new(count, turn, 1));
+    // Two names, no array: what an index reaches lies in memory, and AVX2 then chooses by masked stores.
+    let (mut pack, mut first) = begin(walk, one, first.awake(simd));
+    let (mut other, mut second) = begin(walk, one, second.awake(simd));
+    let mut rows =
+        Rows { numbers: vec![[0.0; WIDTH]; W::numbers(&pack).len()], lookups: [0.0; WIDTH] };
+    while slots.are_open() || other_slots.are_open() {
+        let mut points = [[0.0; PAIR]; 3];
+        let flight = fly(walk, &mut pack, &mut first, 0, &mut points);
+        let other_flight = fly(walk, &mut other, &mut second, WIDTH, &mut points);
+        let [met, other_met] = look_up(&points);
+        let ended = walk.collide(&mut pack, &flight, met, &mut first);
+        if ended.any() {
+            rows.store::<_, W>(&pack);
+            let over = rows.write(ended.bits(), &mut slots, buffer, &write);
+            leave(streams, 0, over, first);
+            walk.restart(&mut pack, &mut first);
+        }
+        walk.go_on(&mut pack, W::TOGETHER, &mut first);
+        let ended = walk.collide(&mut other, &other_flight, other_met, &mut second);
+        if ended.any() {
+            rows.store::<_, W>(&other);
+            let over = rows.write(ended.bits(), &mut other_slots, buffer, &write);
+            leave(streams, 1, over, second);
+            walk.restart(&mut other, &mut second);
+        }
+        walk.go_on(&mut other, W::TOGETHER, &mut second);
+    }
+    streams.turn = (turn + count) % LANES;
+}
+
+/// Eight walks that begin, and their streams: values, no references, which would keep both in memory.
+#[inline(always)]
+fn begin<S: Simd, W: Walk>(
+    walk: &W,
+    one: f64x8<S>,
+    mut random: Numbers<S>,
+) -> (W::State<f64x8<S>>, Numbers<S>) {
+    one.outlined_if_narrow(
+        #[inline(always)]
+        move || {
+            let mut pack = walk.none(one);
+            walk.restart(&mut pack, &mut random);
+            walk.go_on(&mut pack, W::TOGETHER, &mut random);
+            (pack, random)
+        },
+    )
+}
+
+#[inline(always)]
+fn fly<S: Simd, W: Walk>(
+    walk: &W,
+    pack: &mut W::State<f64x8<S>>,
+    random: &mut Numbers<S>,
+    from: usize,
+    points: &mut [[f64; PAIR]; 3],
+) -> W::Flight<f64x8<S>> {
+    let (flight, place) = walk.fly(pack, random);
+    for (axis, row) in points.iter_mut().enumerate() {
+        place[axis].store_slice(&mut row[from..][..WIDTH]);
+    }
+    flight
+}
+
+impl Rows {
+    #[inline(always)]
+    fn store<S: Simd, W: Walk>(&mut self, pack: &W::State<f64x8<S>>) {
+        for (number, lanes) in W::numbers(pack).iter().enumerate() {
+            lanes.store_slice(&mut self.numbers[number]);
+        }
+        W::lookups(pack).store_slice(&mut self.lookups);
+    }
+
+    /// Writes the draws of some lanes, as bits; answers the lanes that have made their last one.
+    #[inline(never)]
+    fn write(
+        &self,
+        ended: u64,
+        slots: &mut Slots,
+        buffer: &mut DrawBuffer,
+        write: impl Fn(&Self, Slot, &mut DrawBuffer),
+    ) -> u64 {
+        slots.fill(ended, |slot| write(self, slot, buffer))
+    }
+}
