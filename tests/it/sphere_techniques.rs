@@ -9,7 +9,7 @@ use trueflight::catalogue::Settings;
 use trueflight::draw::run;
 use trueflight::estimators::DrawBuffer;
 use trueflight::estimators::space::Particle;
-use trueflight::estimators::sphere::combined::{Sharing, Steps, Subpaths};
+use trueflight::estimators::sphere::sharing::{Sharing, Steps, Subpaths};
 use trueflight::estimators::sphere::{Honest, Page};
 use trueflight::media::{Body, Majorants};
 use trueflight::numeric::Lane;
@@ -19,7 +19,7 @@ use trueflight::problems::{Problem, Sphere};
 use trueflight::record::build;
 use trueflight::record::{Row, Verdict};
 use trueflight::rng::Address;
-use trueflight::theory::lit_rod::Densities;
+use trueflight::theory::sphere::Techniques;
 use trueflight::theory::{Channel, Heuristic, ParticleRule};
 
 /// Every page with its settings; σ̂ of shadow rays is a majorant of both balls.
@@ -190,12 +190,8 @@ impl Steps for Only {
 fn shares_of_techniques_add_up() {
     for heuristic in [Heuristic::Balance, Heuristic::Power] {
         for subpaths in [Subpaths::Independent, Subpaths::Shared] {
-            let sharing = Sharing {
-                densities: Densities::Full,
-                heuristic,
-                shadow: None,
-                subpaths: Some(subpaths),
-            };
+            let techniques = Techniques::Bidirectional(heuristic);
+            let sharing = Sharing { techniques, shadow: None, subpaths: Some(subpaths) };
             let page = Page { particle: Particle::of(ParticleRule::Analog), sharing };
             for scene in [SCENES[1], SCENES[3]] {
                 let (sphere, majorants) = sphere(scene);

@@ -156,6 +156,8 @@ pub struct Within<'a>(&'a InfiniteMedium);
 impl Tally for Within<'_> {
     type Found<L: Lane> = [L; SUMS];
 
+    const SUMS: usize = SUMS;
+
     #[inline(always)]
     fn nothing<L: Lane>(&self, zero: L) -> [L; SUMS] {
         [zero; SUMS]

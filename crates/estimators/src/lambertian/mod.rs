@@ -148,6 +148,8 @@ impl<'a> Entering<'a> {
 impl Tally for Entering<'_> {
     type Found<L: Lane> = [L; 4];
 
+    const SUMS: usize = 4;
+
     #[inline(always)]
     fn nothing<L: Lane>(&self, zero: L) -> [L; 4] {
         [zero; 4]

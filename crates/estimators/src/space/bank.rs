@@ -74,8 +74,11 @@ pub trait Walk {
         let _ = (state, together, random);
     }
 
-    /// Numbers that a walk has found.
-    fn numbers<L: Lane>(state: &Self::State<L>) -> &[L];
+    /// The number of numbers that walks leave.
+    fn count(&self) -> usize;
+
+    /// Writes the numbers that walks leave, number by number.
+    fn store<L: Lane>(&self, state: &Self::State<L>, rows: &mut [[f64; WIDTH]]);
 
     /// Lookups of a walk.
     fn lookups<L: Lane>(state: &Self::State<L>) -> L;
@@ -100,8 +103,8 @@ pub fn one<L: Single, W: Walk>(
     }
 }
 
-/// The numbers that eight walks have found. They are no part of the pack, which a compiler keeps in registers only where
-/// nothing of it is reached by an index.
+/// The numbers that eight walks leave. They are no part of the pack, which a compiler keeps in registers only where nothing of
+/// it is reached by an index.
 pub struct Rows {
     /// Number by number.
     pub numbers: Vec<[f64; WIDTH]>,
@@ -127,8 +130,7 @@ pub fn run<S: Simd, W: Walk>(
     // Two names, no array: what an index reaches lies in memory, and AVX2 then chooses by masked stores.
     let (mut pack, mut first) = begin(walk, one, first.awake(simd));
     let (mut other, mut second) = begin(walk, one, second.awake(simd));
-    let mut rows =
-        Rows { numbers: vec![[0.0; WIDTH]; W::numbers(&pack).len()], lookups: [0.0; WIDTH] };
+    let mut rows = Rows { numbers: vec![[0.0; WIDTH]; walk.count()], lookups: [0.0; WIDTH] };
     while slots.are_open() || other_slots.are_open() {
         let mut points = [[0.0; PAIR]; 3];
         let flight = fly(walk, &mut pack, &mut first, 0, &mut points);
@@ -136,7 +138,7 @@ pub fn run<S: Simd, W: Walk>(
         let [met, other_met] = look_up(&points);
         let ended = walk.collide(&mut pack, &flight, met, &mut first);
         if ended.any() {
-            rows.store::<_, W>(&pack);
+            rows.store(walk, &pack);
             let over = rows.write(ended.bits(), &mut slots, buffer, &write);
             leave(streams, 0, over, first);
             walk.restart(&mut pack, &mut first);
@@ -144,7 +146,7 @@ pub fn run<S: Simd, W: Walk>(
         walk.go_on(&mut pack, W::TOGETHER, &mut first);
         let ended = walk.collide(&mut other, &other_flight, other_met, &mut second);
         if ended.any() {
-            rows.store::<_, W>(&other);
+            rows.store(walk, &other);
             let over = rows.write(ended.bits(), &mut other_slots, buffer, &write);
             leave(streams, 1, over, second);
             walk.restart(&mut other, &mut second);
@@ -189,10 +191,8 @@ fn fly<S: Simd, W: Walk>(
 
 impl Rows {
     #[inline(always)]
-    fn store<S: Simd, W: Walk>(&mut self, pack: &W::State<f64x8<S>>) {
-        for (number, lanes) in W::numbers(pack).iter().enumerate() {
-            lanes.store_slice(&mut self.numbers[number]);
-        }
+    fn store<S: Simd, W: Walk>(&mut self, walk: &W, pack: &W::State<f64x8<S>>) {
+        walk.store(pack, &mut self.numbers);
         W::lookups(pack).store_slice(&mut self.lookups);
     }
 

@@ -20,7 +20,7 @@ use numeric::{Fused, Plain, Single, Twin};
 use theory::problems::{Albedo, Channels, Scene};
 
 /// With more cells of σ̂ than this a walk spends its time on their planes, which packs cross no faster.
-const MAX_CELLS: usize = 1000;
+const MAX_CELLS: usize = 100_000;
 
 /// Makes one draw of a particle by its steps; it follows what splits off if it `SPLITS`.
 #[inline(never)]

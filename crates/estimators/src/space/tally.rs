@@ -57,10 +57,13 @@ pub trait Tally {
     /// What a walk has found when it begins.
     fn nothing<L: Lane>(&self, zero: L) -> Self::Found<L>;
 
-    /// Numbers found, of which the channels of a draw are some.
+    /// The number of [`Tally::sums`].
+    const SUMS: usize = 1;
+
+    /// Sums, of which the channels of a draw are some.
     fn sums<L: Lane>(found: &Self::Found<L>) -> &[L];
 
-    /// The numbers that are the channels of a draw.
+    /// The sums that are the channels of a draw.
     fn channels(&self) -> &[usize] {
         &[0]
     }

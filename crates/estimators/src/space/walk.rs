@@ -25,6 +25,7 @@ use media::majorants::flights::{Flights, Flown, Ground};
 use media::phase::Phase;
 use media::{Batches, Majorants};
 use numeric::geometry::frame::turned_lanes;
+use numeric::pack::WIDTH;
 use numeric::rng::Random;
 use numeric::{Kept, Lane, Mask, kept};
 use theory::particle::Odds;
@@ -201,7 +202,7 @@ impl<'a, T: Tally, S: Steps> InSpace<'a, T, S> {
         state.path.weight.scale_where(goes_on, factor);
         let goes_on = self.steps.survive(goes_on, &mut state.path.weight, random);
         state.ended = walks & !goes_on;
-        self.scatter(state, is_scattered & goes_on, place);
+        Self::scatter(state, is_scattered & goes_on, place);
         state.ended
     }
 
@@ -211,17 +212,13 @@ impl<'a, T: Tally, S: Steps> InSpace<'a, T, S> {
         let straight = Path { weight: at.weight * at.ratio.one_minus(), ..state.path };
         state.path.weight = at.weight * at.albedo * at.ratio;
         state.ended = !at.inside;
-        self.scatter(state, at.inside, at.place);
+        Self::scatter(state, at.inside, at.place);
         straight
     }
 
+    /// The lanes in `scattered` are scattered at places.
     #[inline(always)]
-    fn scatter<L: Lane>(
-        &self,
-        state: &mut State<L, T::Found<L>>,
-        scattered: L::Mask,
-        place: [L; 3],
-    ) {
+    fn scatter<L: Lane>(state: &mut State<L, T::Found<L>>, scattered: L::Mask, place: [L; 3]) {
         state.scattered = scattered;
         state.path.unscattered &= !scattered;
         state.path.flights.origin.set_where(scattered, place);
@@ -416,9 +413,15 @@ impl<T: Tally, S: Steps> Walk for InSpace<'_, T, S> {
         }
     }
 
+    fn count(&self) -> usize {
+        T::SUMS
+    }
+
     #[inline(always)]
-    fn numbers<L: Lane>(state: &Self::State<L>) -> &[L] {
-        T::sums(&state.found)
+    fn store<L: Lane>(&self, state: &Self::State<L>, rows: &mut [[f64; WIDTH]]) {
+        for (number, sum) in T::sums(&state.found).iter().enumerate() {
+            sum.store(&mut rows[number]);
+        }
     }
 
     #[inline(always)]

@@ -35,15 +35,15 @@
 //! Transactions on Graphics 38 (2019), section 5.5, Eqs. 43 and 44. Densities are derived in
 //! `estimators/sphere/combined.rs`, the bound in `theory/sphere/spread.rs`.
 
-use super::combined::{Sharing, Subpaths};
-use super::page::{BIDIRECTIONAL, Page, Techniques};
+use super::page::{BIDIRECTIONAL, Connected, Page};
+use super::sharing::{Sharing, Subpaths};
 use crate::space::Particle;
 use media::catalogue::Settings;
-use theory::lit_rod::Densities;
+use theory::sphere::Techniques;
 use theory::{Heuristic, ParticleRule};
 
 /// Three techniques.
-pub type Bidirectional = Techniques<BIDIRECTIONAL>;
+pub type Bidirectional = Connected<BIDIRECTIONAL>;
 
 /// Reads the settings.
 pub(super) fn page(settings: &Settings) -> Option<Page> {
@@ -52,7 +52,7 @@ pub(super) fn page(settings: &Settings) -> Option<Page> {
     let subpaths = settings
         .word_or("subpaths", &words, words[0])
         .map(|word| if word == words[0] { Subpaths::Independent } else { Subpaths::Shared });
-    let (densities, shadow) = (Densities::Full, None);
-    let sharing = Sharing { densities, heuristic: heuristic?, shadow, subpaths };
+    let techniques = Techniques::Bidirectional(heuristic?);
+    let sharing = Sharing { techniques, shadow: None, subpaths };
     subpaths.map(|_| Page { particle: Particle::of(ParticleRule::Analog), sharing })
 }

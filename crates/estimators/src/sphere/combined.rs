@@ -20,8 +20,9 @@
 //! A vertex of the light is the first real collision y of a particle that sets out from its surface; y is connected to
 //! the scatterings x of the walk by ratio tracking.
 
-use super::connect::{Honest, Seeker, meets_light, share};
+use super::connect::{Seeker, aim, meets_light, share};
 use super::emission;
+use super::sharing::{Link, Sharing, Steps, Subpaths};
 use crate::single_scattering::connection;
 use crate::space::segment::Tracker;
 use crate::space::shadow::{Aim, Light, Lit, ShadowRays};
@@ -29,124 +30,14 @@ use crate::space::tally::{Collision, Departure, Scattering, Tally};
 use media::Majorants;
 use media::majorants::Ground;
 use numeric::geometry::exit::{self, dot, rows};
-use numeric::geometry::{Point, Ray};
+use numeric::geometry::{Bounds, Point, Ray};
 use numeric::rng::Random;
 use numeric::{Kept, Lane, Mask, kept};
-use theory::lit_rod::Densities;
+use theory::ParticleRule;
 use theory::problems::Sphere;
 use theory::problems::sphere::{self, Sought};
 use theory::single::Tracking;
-use theory::{Heuristic, ParticleRule};
-
-/// Which vertices of the light a walk is connected with.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Subpaths {
-    /// Each of its scatterings with one of its own.
-    Independent,
-    /// All of them with the same one.
-    Shared,
-}
-
-/// Which techniques share, and by which densities.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Sharing {
-    /// What densities know.
-    pub densities: Densities,
-    /// How weights are made of them.
-    pub heuristic: Heuristic,
-    /// How shadow rays are tracked; by ratio tracking through the σ̂ of the walk, where nothing is said.
-    pub shadow: Option<Tracking>,
-    /// Which connections there are, if any.
-    pub subpaths: Option<Subpaths>,
-}
-
-impl Sharing {
-    /// The tracking of shadow rays with numbers of their own: also through one σ̂ of the walk, where the chance of all
-    /// collisions of a shadow ray to be null is its tracked transmittance.
-    pub fn tracking(&self, rule: ParticleRule, majorants: &Majorants) -> Option<Tracking> {
-        let is_its_own = !matches!(rule, ParticleRule::NonTerminating | ParticleRule::Adaptive);
-        let of_walk = majorants.single_value().filter(|_| is_its_own);
-        self.shadow.or(of_walk.map(|sampling| Tracking::Ratio { sampling, control: 0.0 }))
-    }
-}
-
-/// The steps that a known bug may replace.
-pub trait Steps: Copy {
-    /// The probability of a null collision, as densities of the walk have it.
-    #[inline(always)]
-    fn chance<L: Lane>(&self, right: L) -> L {
-        right
-    }
-
-    /// The probability of null collisions with which a segment begins, from that of the one before.
-    #[inline(always)]
-    fn segment<L: Lane>(&self, before: L) -> L {
-        before.each(1.0)
-    }
-
-    /// The weight of a hit, a shadow ray or a connection: 0, 1 or 2. Densities of connections may be left out.
-    #[inline(always)]
-    fn weight<L: Lane, const N: usize>(
-        &self,
-        heuristic: Heuristic,
-        own: usize,
-        densities: [L; N],
-    ) -> L {
-        heuristic.weight(own, densities)
-    }
-
-    /// The weight of what was never scattered.
-    #[inline(always)]
-    fn unscattered(&self) -> f64 {
-        1.0
-    }
-
-    /// The score of a shadow ray of some transmittance, but for its weight.
-    #[inline(always)]
-    fn lit<L: Lane>(&self, right: L, transmittance: L) -> L {
-        let _ = transmittance;
-        right
-    }
-
-    /// The density of a connection of two scatterings of the walk, of a squared distance.
-    #[inline(always)]
-    fn linked<L: Lane>(&self, right: L, square: L) -> L {
-        let _ = square;
-        right
-    }
-
-    /// The score of a connection, but for its weight.
-    #[inline(always)]
-    fn connected<L: Lane>(&self, right: L, link: &Link<L>) -> L {
-        let _ = link;
-        right
-    }
-
-    /// Lanes in which the black sphere is between the ends of a connection.
-    #[inline(always)]
-    fn is_hidden<M: Mask>(&self, right: M) -> M {
-        right
-    }
-
-    /// The cosine with the normal of light that leaves its surface, of a uniform number: the law of Lambert.
-    #[inline(always)]
-    fn cosine<L: Lane>(&self, number: L) -> L {
-        number.one_minus().root()
-    }
-}
-
-impl Steps for Honest {}
-
-/// Connections.
-#[derive(Debug, Clone, Copy)]
-pub struct Link<L> {
-    /// d.
-    pub distance: L,
-    /// a at the vertex of the light.
-    pub albedo: L,
-    /// T̂.
-    pub transmittance: L,
-}
+use theory::sphere::Techniques;
 
 kept! {
     /// What walks have found, and the densities of what they may find.
@@ -174,7 +65,7 @@ kept! {
 
 /// A walk whose techniques share. Packs make no connections; then there is less to keep.
 pub struct Combined<'a, B, const CONNECTS: bool> {
-    seeker: Seeker<'a, Honest, true>,
+    seeker: Seeker<'a>,
     ground: Ground<'a>,
     rule: ParticleRule,
     sharing: Sharing,
@@ -189,10 +80,14 @@ impl<'a, B: Steps, const CONNECTS: bool> Combined<'a, B, CONNECTS> {
         rule: ParticleRule,
         (sharing, steps): (Sharing, B),
     ) -> Self {
-        let tracking = sharing.tracking(rule, majorants);
-        let shadow = tracking.unwrap_or(Tracking::Exact);
-        let seeker = Seeker { sphere, shadow, connect: Honest };
-        Self { seeker, ground: Ground::new(majorants, None), rule, sharing, tracking, steps }
+        Self {
+            seeker: Seeker { sphere },
+            ground: Ground::new(majorants, None),
+            rule,
+            sharing,
+            tracking: sharing.tracking(rule, majorants),
+            steps,
+        }
     }
 
     fn sphere(&self) -> &'a Sphere {
@@ -205,18 +100,19 @@ impl<'a, B: Steps, const CONNECTS: bool> Combined<'a, B, CONNECTS> {
 
     /// Whether densities hold the probabilities of null collisions.
     fn has_nulls(&self) -> bool {
-        self.sharing.densities == Densities::Full && self.sharing.shadow.is_none()
+        self.sharing.is_full() && self.sharing.shadow.is_none()
     }
 
     /// The weight of a technique, given the density of shadow rays and that of connections.
     #[inline(always)]
     fn weight<L: Lane>(&self, own: usize, lit: L, connected: L) -> L {
+        let Some((_, heuristic)) = self.sharing.weights() else { return lit.each(1.0) };
         let is_distant = matches!(self.sphere().light, sphere::Light::Distant(_));
         let hit = lit.each(if is_distant { 0.0 } else { 1.0 });
         if CONNECTS {
-            return self.steps.weight(self.sharing.heuristic, own, [hit, lit, connected]);
+            return self.steps.weight(heuristic, own, [hit, lit, connected]);
         }
-        self.steps.weight(self.sharing.heuristic, own, [hit, lit])
+        self.steps.weight(heuristic, own, [hit, lit])
     }
 
     /// `4 d²/(a ρ²)`, given d² and the place where light was scattered first.
@@ -237,8 +133,7 @@ impl<'a, B: Steps, const CONNECTS: bool> Combined<'a, B, CONNECTS> {
         [through, chance]: [L; 2],
     ) {
         let one = light.each(1.0);
-        let is_full = self.sharing.densities == Densities::Full;
-        let lit = one / (found.share * if is_full { chance } else { one });
+        let lit = one / (found.share * if self.sharing.is_full() { chance } else { one });
         let score = self.steps.lit(light, through) * self.weight(1, lit, found.linked);
         found.light.add_where(which, score);
     }
@@ -334,7 +229,7 @@ impl<B: Steps, const CONNECTS: bool> Tally for Combined<'_, B, CONNECTS> {
 
     #[inline(always)]
     fn scattered<L: Lane>(&self, found: &mut Vertices<L>, which: L::Mask, place: [L; 3]) {
-        if !which.maybe() {
+        if !which.maybe() || self.sharing.techniques == Techniques::NextEvent {
             return;
         }
         if CONNECTS {
@@ -362,17 +257,18 @@ impl<B: Steps, const CONNECTS: bool> Tally for Combined<'_, B, CONNECTS> {
         if !met.maybe() {
             return;
         }
-        let chance = match self.sharing {
-            Sharing { densities: Densities::Directional, .. } => one,
-            Sharing { shadow: Some(_), .. } if CONNECTS => {
-                self.exact(found.place, at, met & found.is_scattered)
-            }
-            Sharing { .. } => found.chance,
+        let is_ray = self.sphere().sought == Sought::Radiance;
+        let unscattered = if is_ray { at.unscattered } else { at.left & !at.left };
+        if self.sharing.techniques == Techniques::NextEvent {
+            return found.light.add_where(met & self.steps.counts(unscattered), at.weight);
+        }
+        let chance = match self.sharing.shadow {
+            _ if !self.sharing.is_full() => one,
+            Some(_) if CONNECTS => self.exact(found.place, at, met & found.is_scattered),
+            _ => found.chance,
         };
         let mut weight = self.weight(0, one / (found.share * chance), found.linked);
-        if self.sphere().sought == Sought::Radiance {
-            weight.set_where(at.unscattered, one.each(self.steps.unscattered()));
-        }
+        weight.set_where(unscattered, one.each(self.steps.unscattered()));
         found.light.add_where(met, at.weight * weight);
     }
 
@@ -381,16 +277,31 @@ impl<B: Steps, const CONNECTS: bool> Tally for Combined<'_, B, CONNECTS> {
     }
 
     fn shadow_rays(&self) -> Option<ShadowRays<'_>> {
-        self.tracking.and_then(|_| self.seeker.shadow_rays())
+        let Sphere { centre, radius, .. } = *self.sphere();
+        let volume = &*self.sphere().scene.volume;
+        let bounds = Bounds::Sphere { centre, radius };
+        self.tracking.map(|tracking| ShadowRays::new(volume, bounds, tracking))
     }
 
     fn parallel(&self) -> Option<Point> {
-        self.seeker.parallel()
+        match self.sphere().light {
+            sphere::Light::Distant(direction) => Some(direction),
+            sphere::Light::Environment | sphere::Light::BlackSphere(_) => None,
+        }
     }
 
     #[inline(always)]
     fn aim<L: Lane>(&self, place: [L; 3], number: L) -> Aim<L> {
-        self.seeker.aim(place, number)
+        let sphere = self.sphere();
+        number.outlined_if_narrow(
+            #[inline(always)]
+            move || aim(sphere, place, number),
+        )
+    }
+
+    #[inline(always)]
+    fn light<L: Lane>(&self, place: [L; 3], aimed: Light<L>) -> Light<L> {
+        self.steps.light(self.sphere(), place, aimed)
     }
 
     #[inline(always)]

@@ -11,37 +11,14 @@
 //! again; met before the first one, it is. A point whose mean intensity is sought is a first scattering of
 //! weight 1. A shadow ray of weight 0 is not cast, and one that leaves the ball at once costs nothing.
 
-use crate::space::shadow::{Aim, Light, Lit, ShadowRays};
+use crate::space::shadow::Aim;
 use crate::space::tally::{Departure, Tally};
+use numeric::Lane;
+use numeric::geometry::Point;
 use numeric::geometry::exit::dot;
-use numeric::geometry::{Bounds, Point};
 use numeric::rng::Random;
-use numeric::{Lane, Mask};
 use theory::problems::Sphere;
 use theory::problems::sphere::{self, Sought};
-use theory::single::Tracking;
-
-/// The steps of next-event estimation that a known bug may replace.
-pub trait Connect: Copy {
-    /// The light of shadow rays from places, from what is right.
-    #[inline(always)]
-    fn light<L: Lane>(&self, sphere: &Sphere, place: [L; 3], right: Light<L>) -> Light<L> {
-        let _ = (sphere, place);
-        right
-    }
-
-    /// Lanes in which light that a walk meets counts beside shadow rays, from those that are right.
-    #[inline(always)]
-    fn counts<M: Mask>(&self, right: M) -> M {
-        right
-    }
-}
-
-/// The right steps.
-#[derive(Debug, Clone, Copy)]
-pub struct Honest;
-
-impl Connect for Honest {}
 
 /// `1 − √(1 − ρ²/r²)`, without cancellation.
 #[inline(always)]
@@ -107,20 +84,14 @@ pub fn meets_light<L: Lane>(sphere: &Sphere, at: &Departure<L>) -> L::Mask {
     }
 }
 
-/// Walks that look for light, with shadow rays or without.
-pub struct Seeker<'a, C, const CASTS: bool> {
+/// Walks that look for the light by themselves.
+pub struct Seeker<'a> {
     /// The ball.
     pub sphere: &'a Sphere,
-    /// The tracking of shadow rays; [`Tracking::Exact`] where there are none.
-    pub shadow: Tracking,
-    /// The steps.
-    pub connect: C,
 }
 
-impl<C: Connect, const CASTS: bool> Tally for Seeker<'_, C, CASTS> {
+impl Tally for Seeker<'_> {
     type Found<L: Lane> = [L; 1];
-
-    const CASTS: bool = CASTS;
 
     #[inline(always)]
     fn nothing<L: Lane>(&self, zero: L) -> [L; 1] {
@@ -146,16 +117,9 @@ impl<C: Connect, const CASTS: bool> Tally for Seeker<'_, C, CASTS> {
         self.sphere.sought == Sought::MeanIntensity
     }
 
-    /// Beside shadow rays only what was never scattered counts, and that of rays only.
     #[inline(always)]
     fn escaped<L: Lane>(&self, [found]: &mut [L; 1], at: &Departure<L>) {
-        let met = meets_light(self.sphere, at);
-        if !CASTS {
-            return found.add_where(met, at.weight);
-        }
-        let is_ray = self.sphere.sought == Sought::Radiance;
-        let unscattered = if is_ray { at.unscattered } else { at.left & !at.left };
-        found.add_where(met & self.connect.counts(unscattered), at.weight);
+        found.add_where(meets_light(self.sphere, at), at.weight);
     }
 
     fn core(&self) -> Option<(Point, f64)> {
@@ -163,38 +127,5 @@ impl<C: Connect, const CASTS: bool> Tally for Seeker<'_, C, CASTS> {
             sphere::Light::BlackSphere(radius) => Some((self.sphere.centre, radius)),
             sphere::Light::Environment | sphere::Light::Distant(_) => None,
         }
-    }
-
-    fn shadow_rays(&self) -> Option<ShadowRays<'_>> {
-        let Sphere { centre, radius, .. } = *self.sphere;
-        let volume = &*self.sphere.scene.volume;
-        let bounds = Bounds::Sphere { centre, radius };
-        CASTS.then(|| ShadowRays::new(volume, bounds, self.shadow))
-    }
-
-    fn parallel(&self) -> Option<Point> {
-        match self.sphere.light {
-            sphere::Light::Distant(direction) => Some(direction),
-            sphere::Light::Environment | sphere::Light::BlackSphere(_) => None,
-        }
-    }
-
-    #[inline(always)]
-    fn aim<L: Lane>(&self, place: [L; 3], number: L) -> Aim<L> {
-        let sphere = self.sphere;
-        number.outlined_if_narrow(
-            #[inline(always)]
-            move || aim(sphere, place, number),
-        )
-    }
-
-    #[inline(always)]
-    fn light<L: Lane>(&self, place: [L; 3], right: Light<L>) -> Light<L> {
-        self.connect.light(self.sphere, place, right)
-    }
-
-    #[inline(always)]
-    fn lit<L: Lane>(&self, [found]: &mut [L; 1], (which, light): Lit<L>, _: L) {
-        found.add_where(which, light);
     }
 }

@@ -26,24 +26,24 @@
 //! Monte Carlo Methods for Light Transport Simulation*, doctoral thesis, Stanford (1997). The bound is derived in
 //! `theory/sphere/spread.rs`.
 
-use super::combined::Sharing;
-use super::page::{DIRECTIONAL, Page, Techniques};
+use super::page::{Connected, DIRECTIONAL, Page};
+use super::sharing::Sharing;
 use crate::single_scattering::connection;
 use crate::space::Particle;
 use media::catalogue::Settings;
 use theory::Heuristic;
 use theory::lit_rod::Densities;
+use theory::sphere::Techniques;
 
 /// Multiple importance sampling over directions.
-pub type DirectionalMis = Techniques<DIRECTIONAL>;
+pub type DirectionalMis = Connected<DIRECTIONAL>;
 
 /// Reads the settings.
 pub(super) fn page(settings: &Settings) -> Option<Page> {
     let particle = Particle::read(settings);
     let shadow = connection::read_shadow(settings);
     let heuristic = Heuristic::read(settings);
-    let densities = Densities::Directional;
-    let sharing =
-        Sharing { densities, heuristic: heuristic?, shadow: Some(shadow?), subpaths: None };
+    let techniques = Techniques::Mis(Densities::Directional, heuristic?);
+    let sharing = Sharing { techniques, shadow: Some(shadow?), subpaths: None };
     Some(Page { particle: particle?, sharing })
 }

@@ -26,16 +26,17 @@
 //! Transactions on Graphics 38 (2019), section 5.3, Algorithms 1 and 2, Eq. 42. The bound is derived in
 //! `theory/sphere/spread.rs`.
 
-use super::combined::Sharing;
-use super::page::{FULL, Page, Techniques};
+use super::page::{Connected, FULL, Page};
+use super::sharing::Sharing;
 use crate::space::Particle;
 use media::catalogue::Settings;
 use theory::Heuristic;
 use theory::lit_rod::Densities;
 use theory::single::Tracking;
+use theory::sphere::Techniques;
 
 /// Multiple importance sampling over null-scattering paths.
-pub type FullMis = Techniques<FULL>;
+pub type FullMis = Connected<FULL>;
 
 /// Reads the settings.
 pub(super) fn page(settings: &Settings) -> Option<Page> {
@@ -43,7 +44,7 @@ pub(super) fn page(settings: &Settings) -> Option<Page> {
     let shadow = settings.word_or("shadow", &["ratio", "exact"], "ratio");
     let heuristic = Heuristic::read(settings);
     let shadow = (shadow? == "exact").then_some(Tracking::Exact);
-    let densities = Densities::Full;
-    let sharing = Sharing { densities, heuristic: heuristic?, shadow, subpaths: None };
+    let techniques = Techniques::Mis(Densities::Full, heuristic?);
+    let sharing = Sharing { techniques, shadow, subpaths: None };
     Some(Page { particle: particle?, sharing })
 }

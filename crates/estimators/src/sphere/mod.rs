@@ -9,6 +9,7 @@ pub mod full_mis;
 pub mod next_event;
 pub mod page;
 pub mod particle;
+pub mod sharing;
 
 use crate::space::{self, Particle, Walked};
 use crate::{Draw, Refusal, Setup, estimators};
@@ -20,8 +21,9 @@ use theory::single::Tracking;
 use theory::sphere::{Answer, Lights, Observable, Scene, Spread, Spreads, Techniques, cached};
 use theory::{Channel, Law, Moments, ParticleRule, Prediction, Tails, problems};
 
-pub use connect::{Connect, Honest, Seeker};
+pub use connect::Seeker;
 pub use page::Page;
+pub use sharing::Honest;
 
 /// The largest error of an exact answer, relative to it, that is worth drawing against.
 pub const BLURRED: f64 = 1e-4;
@@ -185,7 +187,7 @@ fn predict_by_pilots(setup: &Setup<Sphere>) -> Prediction {
 }
 
 impl Walked for Sphere {
-    type Tally<'a> = Seeker<'a, Honest, false>;
+    type Tally<'a> = Seeker<'a>;
 
     /// A walk must be able to find the light by itself.
     fn domain(setup: &Setup<Self>, particle: &Particle) -> Result<(), Refusal> {
@@ -217,7 +219,7 @@ impl Walked for Sphere {
     }
 
     fn tally<'a>(setup: &'a Setup<Self>, _: &Particle) -> Result<Self::Tally<'a>, Draw> {
-        Ok(Seeker { sphere: &setup.problem, shadow: Tracking::Exact, connect: Honest })
+        Ok(Seeker { sphere: &setup.problem })
     }
 }
 

@@ -1,10 +1,11 @@
-//! Estimators of several techniques: their settings, predictions and draws.
+//! Estimators with shadow rays: their settings, predictions and draws.
 
 use fearless_simd::Level;
 
-use super::combined::{Combined, Sharing, Steps, Subpaths};
+use super::combined::Combined;
+use super::sharing::{Honest, Sharing, Steps, Subpaths};
 use super::{
-    Honest, bidirectional, connected, directional_mis, full_mis, predict_by_pilots,
+    bidirectional, connected, directional_mis, full_mis, next_event, predict_by_pilots,
     predict_together, realisable,
 };
 use crate::kernels::packet::Request;
@@ -14,11 +15,11 @@ use crate::{Draw, Estimator, Inputs, Refusal, Setup};
 use media::catalogue::Settings;
 use media::{Lookups, Majorants};
 use numeric::rng::Stream;
-use theory::lit_rod::Densities;
 use theory::problems::Sphere;
 use theory::problems::sphere::Light;
 use theory::single::Tracking;
-use theory::{Heuristic, Prediction, sphere};
+use theory::sphere::Techniques;
+use theory::{Heuristic, Prediction};
 
 /// The settings of an estimator.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -32,7 +33,7 @@ pub struct Page {
 impl Page {
     /// In words, as in `analog, ratio shadow, power`.
     fn label(&self) -> String {
-        let Sharing { heuristic, shadow, subpaths, .. } = self.sharing;
+        let Sharing { shadow, subpaths, .. } = self.sharing;
         let mut words = match subpaths {
             Some(Subpaths::Independent) => vec!["independent subpaths".into()],
             Some(Subpaths::Shared) => vec!["shared subpaths".into()],
@@ -41,7 +42,7 @@ impl Page {
                 vec![self.particle.label(), shadow]
             }
         };
-        if heuristic == Heuristic::Power {
+        if self.sharing.weights().is_some_and(|(_, heuristic)| heuristic == Heuristic::Power) {
             words.push("power".into());
         }
         words.join(", ")
@@ -49,17 +50,16 @@ impl Page {
 
     /// The prediction for a draw.
     fn predict(&self, setup: &Setup<Sphere>) -> Prediction {
-        let Sharing { densities, heuristic, shadow, subpaths } = self.sharing;
+        let Sharing { techniques, shadow, subpaths } = self.sharing;
         let is_distant = matches!(setup.problem.light, Light::Distant(_));
-        // Ratio tracking through a majorant is no wilder than delta tracking.
-        let shadow = shadow.unwrap_or(Tracking::Exact);
         let techniques = match subpaths {
             Some(Subpaths::Shared) => return predict_by_pilots(setup),
             Some(Subpaths::Independent) if is_distant => return predict_by_pilots(setup),
-            Some(Subpaths::Independent) => sphere::Techniques::Bidirectional(heuristic),
-            None if is_distant => sphere::Techniques::NextEvent,
-            None => sphere::Techniques::Mis(densities, heuristic),
+            None if is_distant => Techniques::NextEvent,
+            _ => techniques,
         };
+        // Ratio tracking through a majorant is no wilder than delta tracking.
+        let shadow = shadow.unwrap_or(Tracking::Exact);
         predict_together(setup, techniques, shadow)
     }
 
@@ -86,7 +86,7 @@ impl Page {
         request: Request<'a>,
     ) -> Option<Request<'a>> {
         let Self { particle, sharing } = *self;
-        let is_exact = sharing.densities == Densities::Full && sharing.shadow.is_some();
+        let is_exact = sharing.is_full() && sharing.shadow.is_some();
         let majorants = setup.space.as_deref().filter(|_| sharing.subpaths.is_none() && !is_exact);
         let Some(majorants) =
             majorants.filter(|majorants| sharing.tracking(particle.rule, majorants).is_some())
@@ -107,23 +107,26 @@ impl Page {
     }
 }
 
+/// [`next_event`].
+pub const NEXT_EVENT: u8 = 0;
 /// [`directional_mis`].
-pub const DIRECTIONAL: u8 = 0;
+pub const DIRECTIONAL: u8 = 1;
 /// [`full_mis`].
-pub const FULL: u8 = 1;
+pub const FULL: u8 = 2;
 /// [`bidirectional`].
-pub const BIDIRECTIONAL: u8 = 2;
+pub const BIDIRECTIONAL: u8 = 3;
 
-/// An estimator whose techniques share, of a kind.
+/// An estimator with shadow rays, of a kind.
 #[derive(Debug, Clone)]
-pub struct Techniques<const KIND: u8>(Page);
+pub struct Connected<const KIND: u8>(Page);
 
-impl<const KIND: u8> Estimator<Sphere> for Techniques<KIND> {
+impl<const KIND: u8> Estimator<Sphere> for Connected<KIND> {
     const INPUTS: Inputs = Inputs::SAMPLING;
     const IN_PACKETS: bool = true;
 
     fn read(settings: &Settings) -> Option<Self> {
         let page = match KIND {
+            NEXT_EVENT => next_event::page(settings),
             DIRECTIONAL => directional_mis::page(settings),
             FULL => full_mis::page(settings),
             _ => bidirectional::page(settings),

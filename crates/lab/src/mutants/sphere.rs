@@ -8,20 +8,23 @@ use super::target::{SPHERE_LAMP, SPHERE_LAMP_EXACT, SPHERE_SKY};
 use super::{About, Mutant, with};
 use estimators::space::Particle;
 use estimators::space::shadow::Light;
-use estimators::sphere::Connect;
-use estimators::sphere::next_event::NextEvent;
+use estimators::sphere::Page;
+use estimators::sphere::sharing::{Sharing, Steps};
 use numeric::{Lane, Mask};
 use theory::ParticleRule;
 use theory::problems::{Sphere, sphere};
 use theory::single::Tracking;
+use theory::sphere::Techniques;
 
 /// The family.
 #[rustfmt::skip] // one mutant, one entry
 pub fn mutants() -> Vec<Mutant<Sphere>> {
     let ratio = Tracking::Ratio { sampling: 2.0, control: 0.0 };
-    let by = |bug, shadow| with((bug, shadow), |(bug, shadow), setup, _, rng| {
-        NextEvent { particle: Particle::of(ParticleRule::Weighted), shadow: *shadow }.draw_by(*bug, setup, rng)
-    });
+    let by = |bug, shadow| {
+        let sharing = Sharing { techniques: Techniques::NextEvent, shadow: Some(shadow), subpaths: None };
+        let page = Page { particle: Particle::of(ParticleRule::Weighted), sharing };
+        with((bug, page), |(bug, page), setup, _, rng| page.draw_for(*bug, setup, rng))
+    };
     let of = |name, text, target, shadow, bug: Bug| {
         Mutant::new(About { name, bug: text, target, check: "mean" }, by(bug, shadow), by(Bug::None, shadow))
     };
@@ -43,7 +46,7 @@ enum Bug {
     WithoutAlbedo,
 }
 
-impl Connect for Bug {
+impl Steps for Bug {
     #[inline(always)]
     fn light<L: Lane>(&self, sphere: &Sphere, place: [L; 3], right: Light<L>) -> Light<L> {
         let one = right.share.each(1.0);

@@ -10,7 +10,7 @@ use super::target::{
 };
 use super::{About, Mutant, with};
 use estimators::space::Particle;
-use estimators::sphere::combined::{Link, Sharing, Steps, Subpaths};
+use estimators::sphere::sharing::{Link, Sharing, Steps, Subpaths};
 use estimators::sphere::{Honest, Page};
 use estimators::{Draw, Setup};
 use media::Lookups;
@@ -19,6 +19,7 @@ use numeric::{Lane, Mask};
 use theory::lit_rod::Densities;
 use theory::problems::Sphere;
 use theory::single::Tracking;
+use theory::sphere::Techniques;
 use theory::{Heuristic, ParticleRule};
 
 /// The family.
@@ -27,12 +28,13 @@ pub fn mutants() -> Vec<Mutant<Sphere>> {
     let of = |name, bug, target: Target, page: Page, wrong: Bug| {
         Mutant::new(About { name, bug, target, check: "mean" }, with((wrong, page), draw), with((Bug::None, page), draw))
     };
-    let full = Sharing { densities: Densities::Full, heuristic: Heuristic::Balance, shadow: None, subpaths: None };
+    let balance = Heuristic::Balance;
+    let full = Sharing { techniques: Techniques::Mis(Densities::Full, balance), shadow: None, subpaths: None };
     let particle = Particle::of(ParticleRule::Analog);
-    let directional = Sharing { densities: Densities::Directional, shadow: Some(Tracking::Delta { sampling: 2.5 }), ..full };
+    let directional = Sharing { techniques: Techniques::Mis(Densities::Directional, balance), shadow: Some(Tracking::Delta { sampling: 2.5 }), ..full };
     let directional = Page { particle, sharing: directional };
-    let power = Page { particle, sharing: Sharing { heuristic: Heuristic::Power, ..full } };
-    let three = Page { particle, sharing: Sharing { subpaths: Some(Subpaths::Independent), ..full } };
+    let power = Page { particle, sharing: Sharing { techniques: Techniques::Mis(Densities::Full, Heuristic::Power), ..full } };
+    let three = Page { particle, sharing: Sharing { techniques: Techniques::Bidirectional(balance), subpaths: Some(Subpaths::Independent), ..full } };
     let full = Page { particle, sharing: full };
     vec![
         of("sphere-mis-hits-alone", "hits are not divided by p_uni + p_nee", SPHERE_DIRECTIONAL, directional, Bug::HitsAlone),
