@@ -22,6 +22,9 @@ pub trait Mask:
     /// of eight walks some will be, and what is done for the others changes nothing.
     fn maybe(self) -> bool;
 
+    /// Whether it names so many elements of a pack that what is done for them together pays; a scalar never waits.
+    fn are_enough(self, of_pack: u32) -> bool;
+
     /// Which elements it names, as bits.
     fn bits(self) -> u64;
 
@@ -37,6 +40,11 @@ impl Mask for bool {
 
     #[inline(always)]
     fn maybe(self) -> bool {
+        self
+    }
+
+    #[inline(always)]
+    fn are_enough(self, _: u32) -> bool {
         self
     }
 

@@ -200,6 +200,11 @@ impl<S: Simd> Mask for mask64x8<S> {
     }
 
     #[inline(always)]
+    fn are_enough(self, of_pack: u32) -> bool {
+        self.to_bitmask().count_ones() >= of_pack
+    }
+
+    #[inline(always)]
     fn bits(self) -> u64 {
         self.to_bitmask()
     }

@@ -115,6 +115,11 @@ impl<M: Mask> Mask for Twin<M> {
     }
 
     #[inline(always)]
+    fn are_enough(self, of_pack: u32) -> bool {
+        self.bits().count_ones() >= of_pack
+    }
+
+    #[inline(always)]
     fn bits(self) -> u64 {
         self.0.bits() | self.1.bits() << WIDTH
     }

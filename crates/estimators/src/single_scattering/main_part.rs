@@ -47,6 +47,24 @@ impl<'a> MainPart<'a> {
         self.pieces.value(s) * Lane::exp(-depth) / s.each(self.absorbed)
     }
 
+    /// [`Self::point`], out of line where packs are narrow.
+    #[inline(always)]
+    pub fn outlined_point<L: Lane>(self, u: L) -> L {
+        u.outlined_if_narrow(
+            #[inline(always)]
+            move || self.point(u),
+        )
+    }
+
+    /// [`Self::density`], out of line where packs are narrow.
+    #[inline(always)]
+    pub fn outlined_density<L: Lane>(self, s: L) -> L {
+        s.outlined_if_narrow(
+            #[inline(always)]
+            move || self.density(s),
+        )
+    }
+
     #[inline(always)]
     fn depth(&self, s: f64) -> Known {
         let before = Span::new(self.support.from, s);
@@ -57,11 +75,6 @@ impl<'a> MainPart<'a> {
     pub fn blur(&self, s: f64) -> f64 {
         DENSITY + self.depth(s).error
     }
-}
-
-/// The kinks of the density.
-pub fn cuts(setup: &Setup<SingleScattering>) -> Vec<f64> {
-    setup.control.breaks()
 }
 
 /// Straight pieces that are nowhere negative, and not zero throughout.

@@ -21,69 +21,23 @@
 //!
 //! Source: Szirmay-Kalos et al. 2017, section 4.3.
 
-use super::Connection;
-use super::in_packets;
-use super::main_part::{self, MainPart};
-use crate::{Draw, Estimator, Inputs, Refusal, Setup};
-use media::Lookups;
+use super::plan::{ByPlan, Plan, Planned, Technique, Vertices};
+use crate::Inputs;
 use media::catalogue::Settings;
-use numeric::rng::Stream;
-use theory::Prediction;
-use theory::problems::SingleScattering;
-use theory::single::{Points, Technique};
 
 /// Scattering-driven.
+pub type ScatteringDriven = ByPlan<Points>;
+
+/// The points of the plan.
 #[derive(Debug, Clone)]
-pub struct ScatteringDriven {
-    connection: Connection,
-}
+pub struct Points;
 
-impl Estimator<SingleScattering> for ScatteringDriven {
+impl Planned for Points {
     const INPUTS: Inputs = Inputs::BOTH;
-    in_packets!(self => self.connection.kind(false, true));
 
-    fn read(settings: &Settings) -> Option<Self> {
-        Some(Self { connection: Connection::read(settings, &["exact", "ratio"])? })
-    }
-
-    fn inputs(&self) -> Inputs {
-        Inputs { control: true, ..self.connection.inputs() }
-    }
-
-    fn label(&self, _: bool) -> String {
-        self.connection.label()
-    }
-
-    fn needs(&self) -> Option<&'static str> {
-        self.connection.needs()
-    }
-
-    fn domain(&self, setup: &Setup<SingleScattering>) -> Result<(), Refusal> {
-        main_part::require(setup)?;
-        self.connection.domain(setup)
-    }
-
-    fn predict(&self, setup: &Setup<SingleScattering>) -> Prediction {
-        let main = MainPart::of(setup);
-        let density = |s: f64| main.map_or(0.0, |main| main.density(s));
-        let technique = Technique {
-            density: &|node| density(node.s),
-            gain: &|node| node.extinction * node.source / density(node.s),
-            blur: &|node| main.map_or(0.0, |main| main.blur(node.s)),
-            found: None,
-            weighted: None,
-        };
-        let scene = self.connection.scene(setup, main_part::cuts(setup));
-        Points::of(&scene, &technique).prediction()
-    }
-
-    #[inline(always)]
-    fn draw(
-        &self,
-        setup: &Setup<SingleScattering>,
-        medium: &Lookups,
-        rng: &mut Stream,
-    ) -> Draw<[f64; 1]> {
-        self.connection.draw(setup, medium, [false, true], rng)
+    fn read(settings: &Settings) -> Option<Plan> {
+        let vertices = Vertices { light: false, main: true, ..Vertices::FROM_LIGHT }
+            .read(settings, &["exact", "ratio"]);
+        Plan::read(vertices.map(Technique::Vertices), settings)
     }
 }

@@ -20,69 +20,22 @@
 //! Source: C. Kulla, M. Fajardo, *Importance Sampling Techniques for Path Tracing in Participating
 //! Media*, Computer Graphics Forum 31 (2012), section 4; Szirmay-Kalos et al. 2017, section 4.3.
 
-use super::Connection;
-use super::in_packets;
-use crate::{Draw, Estimator, Inputs, Refusal, Setup};
-use media::Lookups;
+use super::plan::{ByPlan, Plan, Planned, Technique, Vertices};
+use crate::Inputs;
 use media::catalogue::Settings;
-use numeric::rng::Stream;
-use theory::Prediction;
-use theory::problems::SingleScattering;
-use theory::single::predict::DENSITY;
-use theory::single::{Points, Technique};
 
 /// Source-driven scattering.
+pub type SourceDriven = ByPlan<Points>;
+
+/// The points of the plan.
 #[derive(Debug, Clone)]
-pub struct SourceDriven {
-    connection: Connection,
-}
+pub struct Points;
 
-impl Estimator<SingleScattering> for SourceDriven {
+impl Planned for Points {
     const INPUTS: Inputs = Inputs::BOTH;
-    in_packets!(self => self.connection.kind(true, false));
 
-    fn read(settings: &Settings) -> Option<Self> {
-        let connection = Connection::read(settings, &["exact", "ratio", "delta"])?;
-        Some(Self { connection })
-    }
-
-    fn inputs(&self) -> Inputs {
-        self.connection.inputs()
-    }
-
-    fn label(&self, _: bool) -> String {
-        self.connection.label()
-    }
-
-    fn needs(&self) -> Option<&'static str> {
-        self.connection.needs()
-    }
-
-    fn domain(&self, setup: &Setup<SingleScattering>) -> Result<(), Refusal> {
-        self.connection.domain(setup)
-    }
-
-    fn predict(&self, setup: &Setup<SingleScattering>) -> Prediction {
-        let problem = &setup.problem;
-        let technique = Technique {
-            density: &|node| problem.equiangular_density_beyond(node.along),
-            gain: &|node| {
-                node.extinction * node.source / problem.equiangular_density_beyond(node.along)
-            },
-            blur: &|_| DENSITY,
-            found: None,
-            weighted: None,
-        };
-        Points::of(&self.connection.scene(setup, Vec::new()), &technique).prediction()
-    }
-
-    #[inline(always)]
-    fn draw(
-        &self,
-        setup: &Setup<SingleScattering>,
-        medium: &Lookups,
-        rng: &mut Stream,
-    ) -> Draw<[f64; 1]> {
-        self.connection.draw(setup, medium, [true, false], rng)
+    fn read(settings: &Settings) -> Option<Plan> {
+        let vertices = Vertices::FROM_LIGHT.read(settings, &["exact", "ratio", "delta"]);
+        Plan::read(vertices.map(Technique::Vertices), settings)
     }
 }

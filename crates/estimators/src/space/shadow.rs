@@ -6,8 +6,7 @@
 //! ```
 //!
 //! A flight along a shadow ray is a step like any other: it shares its logarithm and its lookup with the
-//! walks of the other lanes. Bit for bit what
-//! [`transmittance`](crate::single_scattering::connection::transmittance) finds.
+//! walks of the other lanes.
 
 use crate::single_scattering::connection;
 use media::{Batches, Volume};

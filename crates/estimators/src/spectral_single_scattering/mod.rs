@@ -10,7 +10,7 @@ pub mod walk;
 
 use crate::setup::heroes::Heroes;
 use crate::setup::walker::Walker;
-use crate::single_scattering::delta_tracking::{Absorption, DeltaTracking};
+use crate::single_scattering::plan::{Absorption, at_collisions};
 use crate::{Refusal, Setup, estimators};
 use ::theory::Prediction;
 use ::theory::problems::SpectralSingleScattering;
@@ -73,7 +73,7 @@ fn alone(setup: &Setup<SpectralSingleScattering>, shadow: Shadow) -> Vec<Points>
         };
         let (mesh, sampling) = (channel.mesh.clone(), Some(channel.sampling.clone()));
         let own = Setup::new(problem.clone(), mesh, sampling, Control::None);
-        DeltaTracking { absorption: Absorption::Analog, shadow }.points(&own)
+        at_collisions(&own, Absorption::Analog, shadow)
     });
     points.collect()
 }

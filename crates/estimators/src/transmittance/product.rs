@@ -119,7 +119,7 @@ impl<R: Collision> Walk for Product<'_, R> {
         met: &Met<L>,
         _: &mut impl Random<L>,
     ) -> L::Mask {
-        let Met { inside, t, mean_free_path, extinction, number } = *met;
+        let Met { inside, t, mean_free_path, extinction, number, .. } = *met;
         let residual = extinction - self.control.extinction(t);
         let met = rules::Met { residual, sampling: route.here.sampling(), mean_free_path };
         let (ratio, outcome) = (met.ratio(), self.rule.at(met.ratio()));
@@ -185,7 +185,7 @@ impl<R: Collision> Walk for Survival<'_, R> {
         met: &Met<L>,
         _: &mut impl Random<L>,
     ) -> L::Mask {
-        let Met { inside, t, mean_free_path, extinction, number } = *met;
+        let Met { inside, t, mean_free_path, extinction, number, .. } = *met;
         let residual = extinction - self.0.control.extinction(t);
         let met = rules::Met { residual, sampling: route.here.sampling(), mean_free_path };
         let goes_on = inside & !self.0.rule.kills(&met, number);

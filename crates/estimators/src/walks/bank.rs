@@ -5,15 +5,19 @@
 //! A walk that ends is replaced at once, so that no lane waits. How many draws a lane makes is fixed beforehand. A lane that
 //! has made them walks on until the others have; its stream stays where its last draw left it.
 
+use std::hint::black_box;
+
 use fearless_simd::{Simd, SimdBase, SimdMask, f64x8, mask64x8};
 
 use super::{Met, Route, Walk};
 use crate::kernels::DrawBuffer;
 use crate::kernels::packet::Request;
 use crate::kernels::packet::bank::{Numbers, Slot, Slots, leave};
+use media::body::MOST_CHANNELS;
 use media::course::BothWays;
 use numeric::pack::WIDTH;
 use numeric::rng::LANES;
+use numeric::twin::PAIR;
 use numeric::{Lane, Mask, Twin};
 
 /// Eight walks. The walk itself is no part of it: a call may take its address, and would take that of the pack.
@@ -58,8 +62,8 @@ impl<S: Simd, W: Walk, C: BothWays<f64x8<S>>> Pack<f64x8<S>, W, C> {
     /// Flies; answers the distances at which σ_t is looked up.
     #[inline(always)]
     fn fly(&mut self, walk: &W, random: &mut Numbers<S>) -> f64x8<S> {
-        let depth = -random.ln_uniform();
-        self.number = if W::DECIDES { random.uniform() } else { depth };
+        let [depth, number] = walk.numbers(&mut self.state, random);
+        self.number = number;
         self.inside = walk.fly(&mut self.state, &mut self.route, depth);
         self.t = Lane::select(self.inside, walk.distance(&self.state, &self.route), self.from);
         self.t
@@ -67,12 +71,22 @@ impl<S: Simd, W: Walk, C: BothWays<f64x8<S>>> Pack<f64x8<S>, W, C> {
 
     /// Collides; answers as bits which walks end.
     #[inline(always)]
-    fn collide(&mut self, walk: &W, extinction: f64x8<S>, random: &mut Numbers<S>) -> u64 {
+    fn collide(
+        &mut self,
+        walk: &W,
+        extinction: f64x8<S>,
+        on_shadow: &[f64x8<S>],
+        random: &mut Numbers<S>,
+    ) -> u64 {
         let Self { inside, t, number, .. } = *self;
         let mean_free_path = walk.mean_free_path(&self.state, &self.route);
-        let met = Met { inside, t, mean_free_path, extinction, number };
+        let met = Met { inside, t, mean_free_path, extinction, on_shadow, number };
         if W::PAUSES {
-            self.lookups.count_where(inside);
+            let mut counted = inside;
+            if W::CASTS {
+                counted |= walk.on_shadow_rays(&self.state).0;
+            }
+            self.lookups.count_where(counted);
         }
         self.goes_on = walk.collide(&mut self.state, &mut self.route, &met, random);
         (!self.goes_on).bits()
@@ -95,7 +109,8 @@ impl<S: Simd, W: Walk, C: BothWays<f64x8<S>>> Pack<f64x8<S>, W, C> {
             walk.defect(&self.state, self.t.each(0.0)).store_slice(&mut rows.defects);
         }
         if W::PAUSES {
-            self.lookups.store_slice(&mut rows.lookups);
+            let lookups = walk.lookups(&self.state, self.lookups);
+            lookups.store_slice(&mut rows.lookups);
         }
         rows.write::<W>(ended, self.inside.bits(), slots, buffer)
     }
@@ -157,25 +172,61 @@ pub fn run<S: Simd, W: Walk, C: BothWays<f64x8<S>>>(
     // Two names, no array: what an index reaches lies in memory, and AVX2 then chooses by masked stores.
     let mut pack = Pack::new(simd, &walk, course, &mut first);
     let mut other = Pack::new(simd, &walk, course, &mut second);
+    let mut on_shadow = [[f64x8::splat(simd, 0.0); MOST_CHANNELS]; 2];
     let none = [0.0; WIDTH];
     let mut rows = Rows { values: vec![none; walk.channels()], defects: none, lookups: none };
     let (mut slots, mut other_slots) = (Slots::new(count, turn, 0), Slots::new(count, turn, 1));
+    let own = &walk;
     while slots.are_open() || other_slots.are_open() {
-        let found = look_up(Twin(pack.fly(&walk, &mut first), other.fly(&walk, &mut second)));
-        let ended = pack.collide(&walk, found.0, &mut first);
-        let other_ended = other.collide(&walk, found.1, &mut second);
+        // LLVM copies a loop for each of its constant conditions, of which these walks have many.
+        let walk = if const { W::CASTS } { black_box(own) } else { own };
+        let found = look_up(Twin(pack.fly(walk, &mut first), other.fly(walk, &mut second)));
+        if W::CASTS {
+            look_up_shadows(simd, walk, [&pack.state, &other.state], &mut on_shadow);
+        }
+        let [here, there] = &on_shadow;
+        let ended = pack.collide(walk, found.0, here, &mut first);
+        let other_ended = other.collide(walk, found.1, there, &mut second);
         if ended != 0 {
-            let over = pack.collect(&walk, ended, &mut rows, &mut slots, buffer);
+            let over = pack.collect(walk, ended, &mut rows, &mut slots, buffer);
             leave(streams, 0, over, first);
-            pack.restart(&walk, &mut first);
+            pack.restart(walk, &mut first);
         }
         if other_ended != 0 {
-            let over = other.collect(&walk, other_ended, &mut rows, &mut other_slots, buffer);
+            let over = other.collect(walk, other_ended, &mut rows, &mut other_slots, buffer);
             leave(streams, 1, over, second);
-            other.restart(&walk, &mut second);
+            other.restart(walk, &mut second);
         }
         slots.step();
         other_slots.step();
     }
     streams.turn = (turn + count) % LANES;
+}
+
+/// Looks σ_t up on the shadow rays of both packs, if there are any.
+#[inline(always)]
+fn look_up_shadows<S: Simd, W: Walk>(
+    simd: S,
+    walk: &W,
+    [here, there]: [&W::State<f64x8<S>>; 2],
+    [found, other]: &mut [[f64x8<S>; MOST_CHANNELS]; 2],
+) {
+    let ((inside, place), (other_inside, other_place)) =
+        (walk.on_shadow_rays(here), walk.on_shadow_rays(there));
+    if !(inside | other_inside).any_true() {
+        return;
+    }
+    let mut places = [[0.0; PAIR]; 3];
+    for (axis, row) in places.iter_mut().enumerate() {
+        Twin(place[axis], other_place[axis]).store_slice(row);
+    }
+    if !W::IS_CHROMATIC {
+        // No index: the loop keeps one pack in registers.
+        let fields = walk.shadow_fields();
+        Twin(found[0], other[0]) = fields[0].pair(simd, &places);
+        return;
+    }
+    for (channel, field) in walk.shadow_fields().iter().enumerate() {
+        Twin(found[channel], other[channel]) = field.pair(simd, &places);
+    }
 }

@@ -31,7 +31,8 @@ use fearless_simd::{Level, Simd, SimdBase, f64x8};
 use crate::Setup;
 use crate::kernels::packet::{Request, pays};
 use media::course::{BothWays, Even, Pieces};
-use media::{Control, Inlined, Lookups, Piecewise};
+use media::{Batches, Control, Inlined, Lookups, Piecewise};
+use numeric::geometry::Point;
 use numeric::pack::{self, Task};
 use numeric::rng::Random;
 use numeric::{Kept, Lane, Twin};
@@ -53,6 +54,16 @@ pub trait Walk: Copy {
 
     /// Whether a walk may go on after a step without a lookup, as shadow rays do that leave the medium.
     const PAUSES: bool = false;
+
+    /// Whether each walk flies through the σ̂ of a channel of its own, of which each has one value, and σ_t of
+    /// [`Walk::media`] channels is looked up.
+    const IS_CHROMATIC: bool = false;
+
+    /// Whether walks cast shadow rays in space, on which σ_t is looked up too, see [`Walk::on_shadow_rays`].
+    const CASTS: bool = false;
+
+    /// Whether packs fly through a σ̂ of several values, too; else one walk after the other does.
+    const IN_PIECES: bool = true;
 
     /// Whether [`Walk::defect`] is more than 0.
     const HAS_DEFECT: bool = false;
@@ -78,6 +89,14 @@ pub trait Walk: Copy {
         random: &mut impl Random<L>,
     ) {
         state.set_where(which, self.begin(one, which, random));
+    }
+
+    /// The random numbers of a step: the optical depth of its flights, and the number that decides.
+    #[inline(always)]
+    fn numbers<L: Lane>(&self, state: &mut Self::State<L>, random: &mut impl Random<L>) -> [L; 2] {
+        let _ = state;
+        let depth = -random.ln_uniform();
+        [depth, if Self::DECIDES { random.uniform() } else { depth }]
     }
 
     /// Flies through an optical depth; answers which lanes come to a tentative collision.
@@ -119,6 +138,39 @@ pub trait Walk: Copy {
         random: &mut impl Random<L>,
     ) -> L::Mask;
 
+    /// The number of channels whose σ_t is looked up.
+    #[inline(always)]
+    fn media(&self) -> usize {
+        1
+    }
+
+    /// Lanes at a tentative collision on their shadow rays, and the places of all lanes there.
+    #[inline(always)]
+    fn on_shadow_rays<L: Lane>(&self, state: &Self::State<L>) -> (L::Mask, [L; 3]) {
+        let _ = state;
+        unreachable!("the walk casts no shadow rays")
+    }
+
+    /// The fields on shadow rays as packs look them up, one a channel.
+    #[inline(always)]
+    fn shadow_fields(&self) -> &[Batches<'_>] {
+        &[]
+    }
+
+    /// σ_t of a channel at a place on a shadow ray.
+    #[inline(always)]
+    fn shadow_extinction(&self, channel: usize, place: Point) -> f64 {
+        let _ = (channel, place);
+        0.0
+    }
+
+    /// The number of lookups of walks that cast shadow rays, given those that the driver counted.
+    #[inline(always)]
+    fn lookups<L: Lane>(&self, state: &Self::State<L>, counted: L) -> L {
+        let _ = state;
+        counted
+    }
+
     /// The number of channels of a draw.
     #[inline(always)]
     fn channels(&self) -> usize {
@@ -139,7 +191,7 @@ pub trait Walk: Copy {
 
 /// A tentative collision. Lanes that came to none have any numbers.
 #[derive(Clone, Copy)]
-pub struct Met<L: Lane> {
+pub struct Met<'a, L: Lane> {
     /// Lanes at a tentative collision.
     pub inside: L::Mask,
     /// The distance.
@@ -148,11 +200,13 @@ pub struct Met<L: Lane> {
     pub mean_free_path: L,
     /// `σ_t`.
     pub extinction: L,
+    /// `σ_t` on the shadow rays, one a channel, if the walk [`Walk::CASTS`].
+    pub on_shadow: &'a [L],
     /// Uniform in `[0, 1)`, if the walk [`Walk::DECIDES`].
     pub number: L,
 }
 
-impl<L: Lane> Met<L> {
+impl<L: Lane> Met<'_, L> {
     /// `r = σ_t/σ̂`.
     #[inline(always)]
     pub fn ratio(&self) -> L {
@@ -185,13 +239,15 @@ impl<'a> Ground<'a> {
 
 /// Makes the draws of a request on the hardware of a level. The request is handed back where the hardware is too narrow, and
 /// where [`plain`] is faster.
-pub fn packets<'a>(
+#[inline(always)] // in the codegen unit of the caller
+pub fn packets<'a, W: Walk>(
     level: Level,
-    walk: &impl Walk,
+    walk: &W,
     ground: Ground,
     request: Request<'a>,
 ) -> Option<Request<'a>> {
-    if !pays(ground.medium, ground.sampling, ground.control) {
+    let is_possible = W::IN_PIECES || ground.sampling.even().is_some();
+    if !is_possible || !pays(ground.medium, ground.sampling, ground.control) {
         return Some(request);
     }
     pack::on_wide(level, SideBySide { walk, ground, request }).err().map(|task| task.request)
@@ -221,9 +277,23 @@ impl<W: Walk> Task for SideBySide<'_, '_, W> {
         let Self { walk, ground: Ground { sampling, medium, .. }, request } = self;
         let zero = f64x8::splat(simd, 0.0);
         let Some(even) = sampling.even() else {
-            return outlined(simd, *walk, Pieces::new(zero, sampling), medium, request);
+            if const { W::IN_PIECES } {
+                outlined(simd, *walk, Pieces::new(zero, sampling), medium, request);
+            }
+            return;
         };
         let course = Even::new(zero, even);
+        if const { !W::IN_PIECES } {
+            // Alone in this function.
+            return bank::run(
+                simd,
+                *walk,
+                course,
+                #[inline(always)]
+                move |t| medium.pair(simd, t),
+                request,
+            );
+        }
         if !W::IS_FIXED {
             return outlined(simd, *walk, course, medium, request);
         }

@@ -2,8 +2,10 @@
 
 use super::{Met, Nowhere, Route, Walk};
 use crate::kernels::Draw;
+use media::body::MOST_CHANNELS;
 use media::course::{BothWays, Even, Pieces};
 use media::{Extinction, Lookups, Piecewise};
+use numeric::geometry::Point;
 use numeric::lane::fuses;
 use numeric::rng::{Random, Stream};
 use numeric::{Fused, Plain, Single};
@@ -53,6 +55,7 @@ pub fn through<L: Single, V: Channels>(
 }
 
 #[inline(always)]
+#[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // counts
 fn follow<L: Single, W: Walk, V: Channels>(
     walk: &W,
     course: impl BothWays<L>,
@@ -64,10 +67,14 @@ fn follow<L: Single, W: Walk, V: Channels>(
     let mut route = Route::new(course);
     let mut lookups = 0;
     let left = loop {
-        let depth = -random.ln_uniform();
-        let number = if W::DECIDES { random.uniform() } else { depth };
+        let [depth, number] = walk.numbers(&mut state, random);
         let inside = walk.fly(&mut state, &mut route, depth);
-        let mut met = Met { inside, t: zero, mean_free_path: zero, extinction: zero, number };
+        let mut on_shadow = [zero; MOST_CHANNELS];
+        if W::CASTS {
+            lookups += look_up_shadow(walk, &state, &mut on_shadow);
+        }
+        let (t, on_shadow) = (zero, &on_shadow[..]);
+        let mut met = Met { inside, t, mean_free_path: t, extinction: t, on_shadow, number };
         if inside {
             lookups += 1;
             met.t = walk.distance(&state, &route);
@@ -80,7 +87,28 @@ fn follow<L: Single, W: Walk, V: Channels>(
             break !inside;
         }
     };
+    if W::CASTS {
+        lookups = walk.lookups(&state, L::of(f64::from(lookups))).double() as u32;
+    }
     let value = |channel| walk.value(&state, left, channel).double();
     let defect = if W::HAS_DEFECT { walk.defect(&state, zero).double() } else { 0.0 };
     Draw { value: V::of(walk.channels(), value), lookups, defect }
+}
+
+/// Looks σ_t up on a shadow ray, if there is one; answers the number of lookups.
+#[inline(always)]
+fn look_up_shadow<L: Single, W: Walk>(
+    walk: &W,
+    state: &W::State<L>,
+    found: &mut [L; MOST_CHANNELS],
+) -> u32 {
+    let (inside, place) = walk.on_shadow_rays(state);
+    if inside {
+        for (channel, found) in found[..walk.media()].iter_mut().enumerate() {
+            let [x, y, z] = place;
+            let place = Point([x.double(), y.double(), z.double()]);
+            *found = L::of(walk.shadow_extinction(channel, place));
+        }
+    }
+    u32::from(inside)
 }

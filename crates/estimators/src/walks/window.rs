@@ -102,7 +102,8 @@ impl<S: Simd, W: Walk, C: BothWays<f64x8<S>>> Pack<f64x8<S>, W, C> {
             walk.defect(&self.state, t.each(0.0)).store_slice(&mut row.0[1]);
         }
         let mean_free_path = walk.mean_free_path(&self.state, &self.route);
-        let met = Met { inside, t, mean_free_path, extinction, number: numbers.decision };
+        let number = numbers.decision;
+        let met = Met { inside, t, mean_free_path, extinction, on_shadow: &[], number };
         if W::PAUSES {
             self.lookups.count_where(inside);
         }

@@ -6,25 +6,27 @@
 
 use super::target::{SINGLE_NULL_PATHS, SINGLE_ONE_SAMPLE, SINGLE_POWER};
 use super::{About, Mutant, with};
-use estimators::single_scattering::connection::{camera, shadow};
-use estimators::{Draw, Setup};
-use media::{Extinction, Lookups};
-use numeric::rng::Stream;
+use estimators::Setup;
+use estimators::single_scattering::plan::{Absorption, Vertices};
+use estimators::single_scattering::vertices::{Right, Steps, Vertex};
 use numeric::{Lane, Span};
 use theory::Heuristic;
 use theory::problems::{Problem, SingleScattering};
 use theory::single::{CameraTracking, Tracking};
 
+/// Shadow rays of all targets.
+const SHADOW: Tracking = Tracking::Ratio { sampling: 1.5, control: 0.0 };
+
 /// The family.
 #[rustfmt::skip] // one mutant, one entry
 pub fn mutants() -> Vec<Mutant<SingleScattering>> {
-    let both = Mis { bug: Bug::None, is_one: false, heuristic: Heuristic::Balance };
-    let one = Mis { is_one: true, ..both };
-    let power = Mis { heuristic: Heuristic::Power, ..both };
-    let of = |name, text, target, check, twin: Mis, bug| {
+    let both = Vertices { camera: CameraTracking::Ratio, collision: Some(Absorption::Analog), ..Vertices::FROM_LIGHT };
+    let one = Vertices { is_one: true, ..both };
+    let power = Vertices { heuristic: Heuristic::Power, ..both };
+    let of = |name, text, target, check, plan: Vertices, bug| {
         let about = About { name, bug: text, target, check };
-        let draws = |mis: Mis| with(mis, |mis, setup, medium, rng| mis.draw(setup, medium, rng));
-        Mutant::new(about, draws(Mis { bug, ..twin }), draws(twin))
+        let draws = |bug| with(bug, move |&bug, setup, medium, rng| plan.draw((Wrong { bug, setup }, SHADOW), setup, medium, rng));
+        Mutant::new(about, draws(bug), draws(Bug::None))
     };
     vec![
         of("null-paths-nulls-left-out", "the density of delta tracking leaves out its null collisions where it was sampled", SINGLE_NULL_PATHS, "mean", both, Bug::NullsLeftOut),
@@ -56,119 +58,66 @@ enum Bug {
     SquaredWeights,
 }
 
-/// Shadow rays of all targets.
-const SHADOW: Tracking = Tracking::Ratio { sampling: 1.5, control: 0.0 };
-
-/// Null-scattering paths with analog absorption, see `estimators/single_scattering/source_delta_mis.rs`.
+/// Steps of null-scattering paths with analog absorption, of which a bug makes one wrong.
 #[derive(Clone, Copy)]
-struct Mis {
+struct Wrong<'a> {
     bug: Bug,
-    is_one: bool,
-    heuristic: Heuristic,
+    setup: &'a Setup<SingleScattering>,
 }
 
-/// A scattering: where, σ_t there, and the product over null collisions before it.
-type Scattering = [f64; 3];
-
-impl Mis {
-    fn draw(self, setup: &Setup<SingleScattering>, medium: &Lookups, rng: &mut Stream) -> Draw {
-        let problem = &setup.problem;
-        let mut draw = Draw::free([0.0], 0);
-        let from_light = !self.is_one || rng.uniform() < 0.5;
-        if from_light {
-            let angle = rng.uniform() * problem.angles().length() + problem.angles().from;
-            let angle = if self.bug == Bug::WrongEnd { -angle } else { angle };
-            let s = problem.at_angle(angle);
-            let extinction = medium.extinction(s);
-            draw.lookups += 1;
-            if extinction > 0.0 {
-                let (kept, walked) = camera(setup, medium, CameraTracking::Ratio, s, rng);
-                draw.lookups += walked;
-                self.add(setup, [s, extinction, kept], true, rng, &mut draw);
-            }
+impl Steps for Wrong<'_> {
+    #[inline(always)]
+    fn point<L: Lane>(&self, problem: &SingleScattering, number: L) -> L {
+        if self.bug == Bug::WrongEnd {
+            let angles = problem.angles();
+            return problem.at_angle(-(number * angles.length() + angles.from));
         }
-        if !(self.is_one && from_light) {
-            let (scattering, lookups) = self.collide(setup, medium, rng);
-            draw.lookups += lookups;
-            if let Some(scattering) = scattering {
-                self.add(setup, scattering, false, rng, &mut draw);
-            }
-        }
-        draw
+        Right.point(problem, number)
     }
 
-    fn collide(
-        self,
-        setup: &Setup<SingleScattering>,
-        medium: &Lookups,
-        rng: &mut Stream,
-    ) -> (Option<Scattering>, u32) {
-        let mut cursor = setup.sampling.begin();
-        let (mut nulls, mut lookups) = (1.0, 0);
-        loop {
-            let (depth, number) = (-rng.ln_uniform(), rng.uniform());
-            let Some(sampling) = setup.sampling.fly(&mut cursor, depth) else {
-                return (None, lookups);
-            };
-            lookups += 1;
-            let extinction = medium.extinction(cursor.t);
-            let null = 1.0 - extinction / sampling;
-            if number * sampling < extinction * setup.problem.albedo() {
-                let is_null = self.bug == Bug::ScatteringIsNull;
-                let nulls = if is_null { nulls * null } else { nulls };
-                return (Some([cursor.t, extinction, nulls]), lookups);
-            }
-            if number * sampling < extinction && self.bug != Bug::AbsorbedGoOn {
-                return (None, lookups);
-            }
-            nulls *= null;
-        }
+    #[inline(always)]
+    fn ends<L: Lane>(&self, real: L::Mask, scattered: L::Mask) -> L::Mask {
+        if self.bug == Bug::AbsorbedGoOn { scattered } else { real }
     }
 
-    fn add(
-        self,
-        setup: &Setup<SingleScattering>,
-        [s, extinction, kept]: Scattering,
-        from_light: bool,
-        rng: &mut Stream,
-        draw: &mut Draw,
-    ) {
-        let problem = &setup.problem;
-        let scatters = problem.albedo();
-        let (lit, cast) = shadow(problem, SHADOW, s, rng);
-        let lit = if self.bug == Bug::ShadowTwice { lit * lit } else { lit };
-        draw.lookups += cast;
-        let known = match self.bug {
-            Bug::NullsLeftOut if !from_light => 1.0,
+    #[inline(always)]
+    fn light<L: Lane>(&self, right: L, _: L) -> L {
+        if self.bug == Bug::ShadowTwice { right * right } else { right }
+    }
+
+    #[inline(always)]
+    fn score<L: Lane>(&self, vertex: Vertex<L>, score: impl Fn(Vertex<L>) -> L) -> L {
+        let (Vertex { s, extinction, kept, is_chosen, .. }, problem) =
+            (vertex, &*self.setup.problem);
+        let one = s.each(1.0);
+        let of_collisions =
+            |other: L| score(Vertex { kept: L::select(is_chosen, kept, other), ..vertex });
+        match self.bug {
+            Bug::NullsLeftOut => of_collisions(one),
+            Bug::ScatteringIsNull => {
+                let sampling = self.setup.sampling.single_value().unwrap_or(f64::NAN);
+                of_collisions(kept * (extinction / s.each(sampling)).one_minus())
+            }
             Bug::ByTransmittance => {
-                let before = Span::new(problem.medium().support().from, s);
-                Lane::exp(-problem.medium().optical_depth(before).value)
+                let from = problem.medium().support().from;
+                let known =
+                    s.map(|s| Lane::exp(-problem.medium().optical_depth(Span::new(from, s)).value));
+                // The densities take it; a point from the light is worth what was tracked.
+                let worth = L::select(is_chosen, kept / known, one);
+                score(Vertex { kept: known, ..vertex }) * worth
             }
-            _ => kept,
-        };
-        // What delta tracking finds is divided by its own density: of f/q × weight only the weight is left.
-        let (collision, point) = (extinction * scatters * known, problem.equiangular_density(s));
-        let found = if from_light { extinction * scatters * kept } else { collision };
-        let (own, other) = if from_light { (point, collision) } else { (collision, point) };
-        let density = match self.bug {
-            Bug::SquaredWeights => (own + other) * (own + other) / own,
-            _ => self.heuristic.shared(own, other),
-        };
-        let source = match self.bug {
-            Bug::AlbedoTwice => problem.source(s),
-            _ => problem.source(s) / scatters,
-        };
-        let found = if self.bug == Bug::NothingScattered && from_light {
-            found / extinction
-        } else {
-            found
-        };
-        let times = match (self.is_one, self.bug) {
-            (true, Bug::Averaged) => 1.0,
-            (true, _) => 2.0,
-            (false, Bug::Averaged) => 0.5,
-            (false, _) => 1.0,
-        };
-        draw.value[0] += times * (found * source * lit / density);
+            Bug::NothingScattered => score(vertex) / L::select(is_chosen, extinction, one),
+            Bug::Averaged => score(vertex) * 0.5,
+            Bug::AlbedoTwice => score(vertex) * problem.albedo(),
+            Bug::SquaredWeights => {
+                let collision = extinction * problem.albedo() * kept;
+                let point = problem.equiangular_density(s);
+                let own = L::select(is_chosen, point, collision);
+                let other = L::select(is_chosen, collision, point);
+                let sum = own + other;
+                score(vertex) * Heuristic::Power.shared(own, other) * own / (sum * sum)
+            }
+            _ => score(vertex),
+        }
     }
 }

@@ -6,23 +6,23 @@
 
 use super::target::{SINGLE_EXACT, SINGLE_RATIO, SINGLE_SHADOW};
 use super::{About, Mutant, with};
-use estimators::single_scattering::connection::{camera, shadow};
-use estimators::{Draw, Setup};
-use media::{Extinction, Lookups};
-use numeric::Lane;
-use numeric::rng::Stream;
-use theory::problems::SingleScattering;
+use estimators::single_scattering::plan::Vertices;
+use estimators::single_scattering::vertices::{Steps, Vertex};
+use numeric::{Lane, elementary};
+use theory::problems::{Problem, SingleScattering};
 use theory::single::{CameraTracking, Tracking};
 
 /// The family.
 #[rustfmt::skip] // one mutant, one entry
 pub fn mutants() -> Vec<Mutant<SingleScattering>> {
-    let exact = SourceDriven { bug: Bug::None, camera: CameraTracking::Exact, shadow: Tracking::Exact };
-    let ratio = SourceDriven { camera: CameraTracking::Ratio, ..exact };
-    let tracked = SourceDriven { shadow: Tracking::Ratio { sampling: 1.5, control: 0.0 }, ..exact };
-    let of = |name, text, target, twin: SourceDriven, bug| {
+    let by = |camera, shadow| (Vertices { camera, ..Vertices::FROM_LIGHT }, shadow);
+    let exact = by(CameraTracking::Exact, Tracking::Exact);
+    let ratio = by(CameraTracking::Ratio, Tracking::Exact);
+    let tracked = by(CameraTracking::Exact, Tracking::Ratio { sampling: 1.5, control: 0.0 });
+    let of = |name, text, target, (vertices, shadow): (Vertices, Tracking), bug| {
         let about = About { name, bug: text, target, check: "mean" };
-        Mutant::new(about, with(SourceDriven { bug, ..twin }, draw), with(twin, draw))
+        let draws = |bug| with(bug, move |&bug, setup, medium, rng| vertices.draw((Wrong { bug, problem: &setup.problem }, shadow), setup, medium, rng));
+        Mutant::new(about, draws(bug), draws(Bug::None))
     };
     vec![
         of("single-shadow-not-clipped", "the shadow ray goes on through the field beyond the bounds of the volume", SINGLE_EXACT, exact, Bug::Unclipped),
@@ -47,51 +47,56 @@ enum Bug {
     Unshadowed,
 }
 
-/// Source-driven scattering, see `estimators/single_scattering/source_driven.rs`.
+/// Steps of source-driven scattering, of which a bug makes one wrong.
 #[derive(Clone, Copy)]
-struct SourceDriven {
+struct Wrong<'a> {
     bug: Bug,
-    camera: CameraTracking,
-    shadow: Tracking,
+    problem: &'a SingleScattering,
 }
 
-fn draw(
-    technique: &SourceDriven,
-    setup: &Setup<SingleScattering>,
-    medium: &Lookups,
-    rng: &mut Stream,
-) -> Draw {
-    let problem = &setup.problem;
-    let mut beginning = *rng;
-    let angles = problem.angles();
-    let s = problem.at_angle(angles.from + rng.uniform() * angles.length());
-    let extinction = medium.extinction(s);
-    if extinction <= 0.0 {
-        return Draw::free([0.0], 1);
+impl Steps for Wrong<'_> {
+    #[inline(always)]
+    fn depth<L: Lane>(&self, right: L, here: L, s: L) -> L {
+        let problem = self.problem;
+        let (angles, begin) = (problem.angles(), problem.medium().support().from);
+        if self.bug != Bug::NumberTwice {
+            return right;
+        }
+        // The number that chose the point.
+        let number = s.map(|s| {
+            let angle = elementary::atan((s - problem.foot()) / problem.distance());
+            (angle - angles.from) / angles.length()
+        });
+        let again = -L::ln(number.one_minus().or_more(s.each(f64::EPSILON)));
+        L::select(here.equals(begin), again, right)
     }
-    let numbers = if technique.bug == Bug::NumberTwice { &mut beginning } else { &mut *rng };
-    let (transmittance, walked) = camera(setup, medium, technique.camera, s, numbers);
-    if technique.camera == CameraTracking::Delta && transmittance == 0.0 {
-        return Draw::free([0.0], 1 + walked);
+
+    #[inline(always)]
+    fn light<L: Lane>(&self, right: L, s: L) -> L {
+        match self.bug {
+            Bug::Unshadowed => right.each(1.0),
+            Bug::Unclipped => s.map(|s| {
+                self.problem.shadow(s).map_or(1.0, |(ray, _)| {
+                    let whole = self.problem.volume().along(&ray, ray.span());
+                    Lane::exp(-whole.optical_depth(ray.span()).value)
+                })
+            }),
+            _ => right,
+        }
     }
-    let (lit, cast) = shadow(problem, technique.shadow, s, rng);
-    let lit = match technique.bug {
-        Bug::Unshadowed => 1.0,
-        Bug::Unclipped => problem.shadow(s).map_or(1.0, |(ray, _)| {
-            let whole = problem.volume().along(&ray, ray.span());
-            Lane::exp(-whole.optical_depth(ray.span()).value)
-        }),
-        _ => lit,
-    };
-    let cosine = problem.cosine(s);
-    let cosine = if technique.bug == Bug::Reversed { -cosine } else { cosine };
-    let source = extinction * problem.scattered(s, cosine);
-    let square = problem.distance() / (angles.length() * problem.equiangular_density(s));
-    let density = match technique.bug {
-        Bug::PerAngle => 1.0 / angles.length(),
-        Bug::PerSolidAngle => problem.equiangular_density(s) * square,
-        _ => problem.equiangular_density(s),
-    };
-    let factor = if technique.bug == Bug::AlbedoTwice { problem.albedo() } else { 1.0 };
-    Draw::free([transmittance * source * lit / density * factor], 1 + walked + cast)
+
+    #[inline(always)]
+    fn score<L: Lane>(&self, vertex: Vertex<L>, score: impl Fn(Vertex<L>) -> L) -> L {
+        let (problem, s, right) = (self.problem, vertex.s, score(vertex));
+        let density = problem.equiangular_density(s);
+        let width = problem.angles().length();
+        match self.bug {
+            Bug::Reversed => right * (problem.scattered(s, -problem.cosine(s)) / problem.source(s)),
+            Bug::PerAngle => right * density * width,
+            // r² is D/(Δθ p).
+            Bug::PerSolidAngle => right * density * width / s.each(problem.distance()),
+            Bug::AlbedoTwice => right * problem.albedo(),
+            _ => right,
+        }
+    }
 }

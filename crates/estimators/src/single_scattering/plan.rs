@@ -1,0 +1,467 @@
+//! What estimators of single scattering do, as data: their techniques, domains, predictions and draws.
+
+use std::marker::PhantomData;
+
+use fearless_simd::Level;
+
+use super::connection::{self, require_shadow};
+use super::ground::Ground;
+use super::interactions::Interactions;
+use super::main_part::{self, MainPart};
+use super::shared::Shared;
+use super::vertices::{Right, Steps, ToVertices};
+use crate::kernels::packet::Request;
+use crate::space::shadow::ShadowRays;
+use crate::walks::{self, Walk};
+use crate::{Draw, Estimator, Inputs, Refusal, Setup};
+use media::catalogue::Settings;
+use media::{Control, Lookups};
+use numeric::geometry::Bounds;
+use numeric::pack::in_fused_code;
+use numeric::rng::Stream;
+use theory::problems::{Problem, SingleScattering};
+use theory::single::predict::DENSITY;
+use theory::single::{
+    Camera, CameraTracking, Collisions, Mis, Node, NullPaths, Points, Scene, Tracking,
+    walks as along,
+};
+use theory::{Heuristic, Prediction};
+
+/// An estimator: its technique, and its shadow rays.
+#[derive(Debug, Clone, Copy)]
+pub struct Plan {
+    /// How scattering points are found.
+    pub technique: Technique,
+    /// How the transmittance of a shadow ray is found.
+    pub shadow: Tracking,
+}
+
+/// How scattering points are found.
+#[derive(Debug, Clone, Copy)]
+pub enum Technique {
+    /// One after the other.
+    Vertices(Vertices),
+    /// At all interaction points of a walk.
+    Interactions,
+    /// At one of them.
+    Resampled,
+    /// At so many points from the light, with one walk.
+    Shared(usize),
+}
+
+/// Scattering points one after the other.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Vertices {
+    /// How the transmittance from the ray's origin is found.
+    pub camera: CameraTracking,
+    /// Whether there is a point from the light.
+    pub light: bool,
+    /// Whether there is a point from the main part of the control.
+    pub main: bool,
+    /// Whether there is a first real collision, and what absorption does on the way there.
+    pub collision: Option<Absorption>,
+    /// Whether a draw has one of these points.
+    pub is_one: bool,
+    /// How a point from the light and a collision are weighted.
+    pub heuristic: Heuristic,
+}
+
+/// What absorption does to a walk.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Absorption {
+    /// It is a factor of what a real collision brings.
+    Weight,
+    /// It ends walks.
+    Analog,
+}
+
+impl Absorption {
+    /// Reads `absorption`.
+    pub fn read(settings: &Settings) -> Option<Self> {
+        let word = settings.word_or("absorption", &["weight", "analog"], "weight")?;
+        Some(if word == "analog" { Self::Analog } else { Self::Weight })
+    }
+
+    /// The probability that a real collision scatters.
+    #[inline(always)]
+    pub fn scatters(self, albedo: f64) -> f64 {
+        if self == Self::Analog { albedo } else { 1.0 }
+    }
+
+    fn collisions(self, setup: &Setup<SingleScattering>) -> Collisions<'_> {
+        let scatters = self.scatters(setup.problem.albedo());
+        Collisions { medium: setup.problem.medium(), sampling: &setup.sampling, scatters }
+    }
+}
+
+impl Vertices {
+    /// A point from the light with an exact transmittance from the ray's origin.
+    pub const FROM_LIGHT: Self = Self {
+        camera: CameraTracking::Exact,
+        light: true,
+        main: false,
+        collision: None,
+        is_one: false,
+        heuristic: Heuristic::Balance,
+    };
+
+    /// Reads `camera`, one of the words.
+    pub fn read(self, settings: &Settings, words: &[&'static str]) -> Option<Self> {
+        let camera = match settings.word_or("camera", words, "exact")? {
+            "ratio" => CameraTracking::Ratio,
+            "delta" => CameraTracking::Delta,
+            _ => CameraTracking::Exact,
+        };
+        Some(Self { camera, ..self })
+    }
+
+    fn is_chosen(self) -> bool {
+        self.light || self.main
+    }
+
+    fn label(self) -> String {
+        let Self { camera, is_one, heuristic, .. } = self;
+        let Some(absorption) = self.collision else {
+            let word = match camera {
+                CameraTracking::Exact => "exact",
+                CameraTracking::Ratio => "ratio",
+                CameraTracking::Delta => "delta",
+            };
+            return format!("{word} camera, ");
+        };
+        let said = [
+            (camera == CameraTracking::Ratio, "null paths, "),
+            (absorption == Absorption::Analog, "analog, "),
+            (is_one, "one sample, "),
+            (heuristic == Heuristic::Power, "power, "),
+        ];
+        said.iter().filter(|(is, _)| *is).map(|(_, word)| *word).collect()
+    }
+
+    fn inputs(self) -> Inputs {
+        if self.collision.is_some() {
+            return Inputs::SAMPLING;
+        }
+        let along = match self.camera {
+            CameraTracking::Exact => Inputs::NONE,
+            CameraTracking::Ratio => Inputs::BOTH,
+            CameraTracking::Delta => Inputs::SAMPLING,
+        };
+        Inputs { control: along.control || self.main, ..along }
+    }
+
+    fn domain(self, setup: &Setup<SingleScattering>) -> Result<(), Refusal> {
+        match (self.main, self.light) {
+            (true, true) => main_part::require_straight(setup)?,
+            (true, false) => main_part::require(setup)?,
+            _ => {}
+        }
+        if self.collision.is_some() || self.camera == CameraTracking::Delta {
+            setup.require_ratio_at_most(1.0, "σ̂ ≥ σ_t everywhere")
+        } else if self.camera == CameraTracking::Ratio {
+            setup.require_coverage()
+        } else {
+            Ok(())
+        }
+    }
+
+    /// Runs the walk by steps.
+    #[inline(always)]
+    fn run<S: Steps, R: Run>(self, ground: Ground, steps: S, run: R) -> R::Output {
+        match (self.is_chosen(), self.collision.is_some()) {
+            (true, false) => run.run(&ToVertices::<S, true, false>::new(ground, self, steps)),
+            (true, true) => run.run(&ToVertices::<S, true, true>::new(ground, self, steps)),
+            _ => run.run(&ToVertices::<S, false, true>::new(ground, self, steps)),
+        }
+    }
+
+    /// Makes one draw by the steps of a walk.
+    #[inline(always)]
+    pub fn draw(
+        self,
+        (steps, shadow): (impl Steps, Tracking),
+        setup: &Setup<SingleScattering>,
+        medium: &Lookups,
+        random: &mut Stream,
+    ) -> Draw {
+        let volume = setup.problem.volume();
+        let rays = ShadowRays::new(volume, volume.bounds(), shadow);
+        let ground = Ground::new(setup, medium, &rays, &[]);
+        self.run(ground, steps, One { setup, medium, random })
+    }
+
+    fn predict(self, setup: &Setup<SingleScattering>, shadow: Tracking) -> Prediction {
+        let Some(absorption) = self.collision else {
+            return self.points(setup, shadow).prediction();
+        };
+        if !self.light {
+            return at_collisions(setup, absorption, shadow).prediction();
+        }
+        let nulls = (self.camera == CameraTracking::Ratio)
+            .then(|| NullPaths::new(&setup.mesh, &setup.sampling, self.heuristic));
+        let scene = &scene(setup, (self.camera, shadow), setup.sampling.knots().to_vec());
+        let (collisions, heuristic) = (absorption.collisions(setup), self.heuristic);
+        let [first, second] = Mis { scene, collisions, heuristic, nulls }.points();
+        let found = if self.is_one { first.either(&second) } else { first.plus(&second) };
+        found.prediction()
+    }
+
+    /// The moments of points that are chosen.
+    fn points(self, setup: &Setup<SingleScattering>, shadow: Tracking) -> Points {
+        let main = if self.main { MainPart::of(setup) } else { None };
+        let from_light = |node: &Node| setup.problem.equiangular_density_beyond(node.along);
+        let from_main = |node: &Node| main.map_or(0.0, |main| main.density(node.s));
+        let sum = |node: &Node| {
+            let light = if self.light { from_light(node) } else { 0.0 };
+            light + from_main(node)
+        };
+        let cuts = if self.main { setup.control.breaks() } else { Vec::new() };
+        let scene = scene(setup, (self.camera, shadow), cuts);
+        let of = |density: &dyn Fn(&Node) -> f64| {
+            let technique = theory::single::Technique {
+                density,
+                gain: &|node| node.extinction * node.source / sum(node),
+                blur: &|node| main.map_or(DENSITY, |main| main.blur(node.s)),
+                found: None,
+                weighted: None,
+            };
+            Points::of(&scene, &technique)
+        };
+        match (self.light, self.main) {
+            (true, true) => of(&from_light).plus(&of(&from_main)),
+            (true, false) => of(&from_light),
+            _ => of(&from_main),
+        }
+    }
+}
+
+/// The moments of first real collisions as scattering points.
+pub fn at_collisions(
+    setup: &Setup<SingleScattering>,
+    absorption: Absorption,
+    shadow: Tracking,
+) -> Points {
+    let collisions = absorption.collisions(setup);
+    let technique = theory::single::Technique {
+        density: &|node| collisions.density(node),
+        gain: &|node| collisions.worth(node),
+        blur: &|node| node.error[1],
+        found: Some(&collisions),
+        weighted: None,
+    };
+    let knots = setup.sampling.knots().to_vec();
+    Points::of(&scene(setup, (CameraTracking::Exact, shadow), knots), &technique)
+}
+
+/// The setup for theory, with more kinks of the integrand.
+fn scene(
+    setup: &Setup<SingleScattering>,
+    (camera, shadow): (CameraTracking, Tracking),
+    cuts: Vec<f64>,
+) -> Scene<'_> {
+    let camera = Camera::new(&setup.mesh, &setup.sampling, &setup.control, camera);
+    Scene::new(&setup.problem, camera, shadow, cuts)
+}
+
+impl Plan {
+    /// Reads `shadow`.
+    pub fn read(technique: Option<Technique>, settings: &Settings) -> Option<Self> {
+        let shadow = connection::read_shadow(settings);
+        Some(Self { technique: technique?, shadow: shadow? })
+    }
+
+    fn label(&self) -> String {
+        let technique = match &self.technique {
+            Technique::Vertices(vertices) => vertices.label(),
+            Technique::Shared(points) => format!("{points} points, "),
+            _ => String::new(),
+        };
+        technique + &connection::shadow_label(self.shadow)
+    }
+
+    fn needs(&self) -> Option<&'static str> {
+        let is_exact = matches!(&self.technique, Technique::Vertices(vertices)
+            if vertices.is_chosen() && vertices.camera == CameraTracking::Exact);
+        is_exact.then_some("τ").or(connection::shadow_needs(self.shadow))
+    }
+
+    fn domain(&self, setup: &Setup<SingleScattering>) -> Result<(), Refusal> {
+        match &self.technique {
+            Technique::Vertices(vertices) => vertices.domain(setup)?,
+            Technique::Shared(_) => setup.require_coverage()?,
+            // σ̂ must reach wherever the residual is not zero, and wherever there is anything to scatter.
+            Technique::Interactions | Technique::Resampled => {
+                setup.require_coverage()?;
+                if !setup.control.is_none() {
+                    let sampling = Some(setup.sampling.clone());
+                    let (problem, mesh) = (setup.problem.clone(), setup.mesh.clone());
+                    Setup::new(problem, mesh, sampling, Control::None).require_coverage()?;
+                }
+            }
+        }
+        require_shadow(setup, self.shadow)
+    }
+
+    fn predict(&self, setup: &Setup<SingleScattering>) -> Prediction {
+        let scene = || scene(setup, (CameraTracking::Ratio, self.shadow), Vec::new());
+        match &self.technique {
+            Technique::Vertices(vertices) => vertices.predict(setup, self.shadow),
+            Technique::Interactions => along::at_collisions(&scene()).prediction(),
+            Technique::Resampled => {
+                along::resampled(&scene(), self.shadow == Tracking::Exact).prediction()
+            }
+            Technique::Shared(points) => {
+                let density = |node: &Node| setup.problem.equiangular_density_beyond(node.along);
+                along::at_points(&scene(), *points, &density).prediction()
+            }
+        }
+    }
+
+    /// Runs the walk of the plan.
+    #[inline(always)]
+    fn run<R: Run>(&self, ground: Ground, run: R) -> R::Output {
+        match self.technique {
+            Technique::Vertices(vertices) => vertices.run(ground, Right, run),
+            Technique::Interactions => run.run(&Interactions::<false> { ground }),
+            Technique::Resampled => run.run(&Interactions::<true> { ground }),
+            Technique::Shared(points) => run.run(&Shared { ground, points }),
+        }
+    }
+
+    /// Makes one draw: compiled once for all pages.
+    #[inline(never)]
+    fn draw(&self, setup: &Setup<SingleScattering>, medium: &Lookups, random: &mut Stream) -> Draw {
+        let volume = setup.problem.volume();
+        let rays = ShadowRays::new(volume, volume.bounds(), self.shadow);
+        let ground = Ground::new(setup, medium, &rays, &[]);
+        in_fused_code(
+            #[inline(always)]
+            || self.run(ground, One { setup, medium, random }),
+        )
+    }
+
+    /// Makes the draws of a request side by side; it is handed back where the hardware is too narrow, where σ̂ has several
+    /// values, and where one draw after the other is faster.
+    fn draw_packets<'r>(
+        &self,
+        level: Level,
+        setup: &Setup<SingleScattering>,
+        medium: &Lookups,
+        request: Request<'r>,
+    ) -> Option<Request<'r>> {
+        let (volume, shadow) = (setup.problem.volume(), self.shadow);
+        let is_single = setup.control.single_value().is_some();
+        // One cheap sample alone, and a main part of many pieces beside a tracked camera do not pay.
+        let is_slow = matches!(self.technique, Technique::Vertices(plan)
+            if plan.is_one && shadow == Tracking::Exact && !medium.is_costly()
+                || plan.main && plan.camera != CameraTracking::Exact && !is_single);
+        if is_slow {
+            return Some(request);
+        }
+        let rays = ShadowRays::new(volume, volume.bounds(), shadow);
+        let fields = [volume.batches(level, matches!(rays.bounds, Bounds::Box(_)))];
+        let ground = Ground::new(setup, medium, &rays, &fields);
+        self.run(ground, SideBySide { level, setup, medium, request })
+    }
+}
+
+/// A use of a walk.
+trait Run {
+    type Output;
+
+    fn run(self, walk: &impl Walk) -> Self::Output;
+}
+
+/// One draw.
+struct One<'a, 'r> {
+    setup: &'a Setup<SingleScattering>,
+    medium: &'a Lookups<'a>,
+    random: &'r mut Stream,
+}
+
+impl Run for One<'_, '_> {
+    type Output = Draw;
+
+    #[inline(always)]
+    fn run(self, walk: &impl Walk) -> Draw {
+        walks::draw(walk, &self.setup.sampling, self.medium, self.random)
+    }
+}
+
+/// The draws of a request, side by side.
+struct SideBySide<'a, 'r> {
+    level: Level,
+    setup: &'a Setup<SingleScattering>,
+    medium: &'a Lookups<'a>,
+    request: Request<'r>,
+}
+
+impl<'r> Run for SideBySide<'_, 'r> {
+    type Output = Option<Request<'r>>;
+
+    #[inline(always)]
+    fn run(self, walk: &impl Walk) -> Self::Output {
+        let ground = walks::Ground::with_control(self.setup, self.medium);
+        walks::packets(self.level, walk, ground, self.request)
+    }
+}
+
+/// The plan of a page of the catalogue.
+pub trait Planned: Clone + Send + Sync + 'static {
+    /// What the estimator takes, unless its settings say otherwise.
+    const INPUTS: Inputs;
+
+    /// Reads the settings.
+    fn read(settings: &Settings) -> Option<Plan>;
+}
+
+/// An estimator by a plan.
+#[derive(Debug, Clone)]
+pub struct ByPlan<P>(Plan, PhantomData<P>);
+
+impl<P: Planned> Estimator<SingleScattering> for ByPlan<P> {
+    const INPUTS: Inputs = P::INPUTS;
+    const IN_PACKETS: bool = true;
+
+    fn read(settings: &Settings) -> Option<Self> {
+        P::read(settings).map(|plan| Self(plan, PhantomData))
+    }
+
+    fn inputs(&self) -> Inputs {
+        match &self.0.technique {
+            Technique::Vertices(vertices) => vertices.inputs(),
+            _ => Inputs::BOTH,
+        }
+    }
+
+    fn label(&self, _: bool) -> String {
+        self.0.label()
+    }
+
+    fn needs(&self) -> Option<&'static str> {
+        self.0.needs()
+    }
+
+    fn domain(&self, setup: &Setup<SingleScattering>) -> Result<(), Refusal> {
+        self.0.domain(setup)
+    }
+
+    fn predict(&self, setup: &Setup<SingleScattering>) -> Prediction {
+        self.0.predict(setup)
+    }
+
+    #[inline(always)]
+    fn draw(&self, setup: &Setup<SingleScattering>, medium: &Lookups, rng: &mut Stream) -> Draw {
+        self.0.draw(setup, medium, rng)
+    }
+
+    fn draw_packets<'a>(
+        &self,
+        level: Level,
+        setup: &Setup<SingleScattering>,
+        medium: &Lookups,
+        request: Request<'a>,
+    ) -> Option<Request<'a>> {
+        self.0.draw_packets(level, setup, medium, request)
+    }
+}

@@ -1,0 +1,123 @@
+//! Shadow rays of walks to scattering points: cast, tracked and collected side by side.
+//!
+//! A lane that has come to a scattering point waits until so many of its pack have: to find where shadow rays lead costs more
+//! than a step. A lane that has found light waits likewise. Neither takes random numbers in the meantime.
+
+use super::ground::Ground;
+use crate::space::shadow::{Light, Shadows};
+use crate::walks::Met;
+use numeric::geometry::exit;
+use numeric::rng::Random;
+use numeric::{Kept, Lane, Mask, kept};
+use theory::single::Tracking;
+
+/// The number of lanes of a pack that cast their shadow rays together.
+pub const TOGETHER: u32 = 4;
+
+kept! {
+    /// The way of each lane from a scattering point to the light.
+    pub struct ToLight<L> {
+        /// Lanes that wait to cast a shadow ray.
+        aims: L::Mask,
+        /// Lanes with a shadow ray in flight at the beginning of the step.
+        casts: L::Mask,
+        /// Lanes of these that came to a tentative collision.
+        inside: L::Mask,
+        place: [L; 3],
+        origin: [L; 3],
+        shadows: Shadows<L>,
+        /// Lanes that have found light, and how much.
+        lit: L::Mask,
+        light: L,
+    }
+}
+
+impl<L: Lane> ToLight<L> {
+    /// No shadow rays.
+    #[inline(always)]
+    pub fn none(zero: L) -> Self {
+        let (none, nowhere) = (zero.below(zero), [zero; 3]);
+        Self {
+            aims: none,
+            casts: none,
+            inside: none,
+            place: nowhere,
+            origin: nowhere,
+            shadows: Shadows::new(zero),
+            lit: none,
+            light: zero,
+        }
+    }
+
+    /// Begins a step; answers the lanes that are on their way to the light.
+    #[inline(always)]
+    pub fn step(&mut self) -> L::Mask {
+        self.casts = self.shadows.on;
+        self.casts | self.aims | self.lit
+    }
+
+    /// Draws the optical depths of flights, of shadow rays and of the lanes in `flies` along the camera's ray.
+    #[inline(always)]
+    pub fn depth(&self, flies: L::Mask, random: &mut impl Random<L>) -> L {
+        let moves = flies | self.casts;
+        if moves.any() { -random.ln_uniform_where(moves) } else { self.light.each(0.0) }
+    }
+
+    /// Flies along the shadow rays.
+    #[inline(always)]
+    pub fn fly(&mut self, ground: &Ground, depth: L) {
+        self.inside = self.casts;
+        // Packs fly without a ray, too: a branch that no machine foresees costs more.
+        if ground.rays.tracking != Tracking::Exact && self.casts.maybe() {
+            (self.place, self.inside) = self.shadows.fly(ground.rays, self.origin, depth);
+        }
+    }
+
+    /// Lanes at a tentative collision on their shadow rays, and the places of all lanes.
+    #[inline(always)]
+    pub fn collisions(&self) -> (L::Mask, [L; 3]) {
+        (self.inside & self.casts, self.place)
+    }
+
+    /// Handles the collisions, and casts the shadow rays of the lanes in `aims` from distances s along the camera's ray. Answers
+    /// lanes that have found light and how much, as soon as `enough` of a pack have.
+    #[inline(always)]
+    pub fn collide(
+        &mut self,
+        ground: &Ground,
+        met: &Met<L>,
+        (aims, s): (L::Mask, L),
+        enough: u32,
+        random: &mut impl Random<L>,
+    ) -> (L::Mask, L) {
+        let (none, one) = (aims & !aims, s.each(1.0));
+        let rays = ground.rays;
+        let mut found = (none, one);
+        if rays.tracking != Tracking::Exact && self.casts.maybe() {
+            let at = (self.place, self.inside & self.casts);
+            found = self.shadows.collide(rays, random, at, met.on_shadow[0]);
+        }
+        self.aims |= aims;
+        if self.aims.are_enough(TOGETHER) {
+            let casts = self.aims;
+            self.aims = none;
+            let (origin, direction, distance) = ground.setup.problem.to_light(s);
+            self.origin.set_where(casts, origin);
+            let light = Light { direction, share: one, distance };
+            let ends = exit::ends(&rays.bounds, [origin, direction], casts);
+            let through = (rays, ground.fields.first());
+            let ((which, light), _) =
+                self.shadows.cast(through, casts, &light, (origin, one), ends);
+            // Light of rays that were cast before, and light that is found at once.
+            found = (found.0 | which, L::select(which, light, found.1));
+        }
+        self.lit |= found.0;
+        self.light.set_where(found.0, found.1);
+        if !self.lit.are_enough(enough) {
+            return (none, self.light);
+        }
+        let lit = self.lit;
+        self.lit = none;
+        (lit, self.light)
+    }
+}

@@ -1,0 +1,475 @@
+//! The walk to scattering points that are chosen one after the other: points from the light, points from the main part of the
+//! control, and first real collisions.
+//!
+//! ```text
+//! begin    a point s, or none where a collision comes first
+//! fly      through σ̂ to the point, or to the next tentative collision
+//! collide  at the point      σ_t = 0: the next one
+//!          on the way there  exact: at once;  ratio  T̂ ← T̂ (1 − r);  delta  the end with probability σ_t/σ̂
+//!          no point          null  x ← x (1 − r);  scattered: s;  absorbed: the next one
+//!          a shadow ray is cast from s; the draw is the sum of what the points score
+//! ```
+//!
+//! | points | score |
+//! |---|---|
+//! | chosen | `T̂ σ_t S T̂_shadow/p`, p the sum of the densities of both kinds |
+//! | collisions | `S/c T̂_shadow` |
+//! | both | `q S/c T̂_shadow/(p_i/w_i)`, `q = c σ_t x` |
+
+use super::ground::Ground;
+use super::main_part::MainPart;
+use super::plan::{Absorption, Vertices};
+use super::shadow::{TOGETHER, ToLight};
+use crate::walks::{Met, Route, Walk};
+use media::Batches;
+use media::course::BothWays;
+use numeric::geometry::Point;
+use numeric::rng::Random;
+use numeric::{Lane, Mask, kept};
+use theory::problems::SingleScattering;
+use theory::single::CameraTracking;
+
+/// The steps of a walk that a known bug may replace.
+pub trait Steps: Copy {
+    /// The point from the light that a uniform number chooses.
+    #[inline(always)]
+    fn point<L: Lane>(&self, problem: &SingleScattering, number: L) -> L {
+        let angles = problem.angles();
+        problem.at_angle(number * angles.length() + angles.from)
+    }
+
+    /// The optical depth of a flight from a distance `here` to the point at s.
+    #[inline(always)]
+    fn depth<L: Lane>(&self, right: L, here: L, s: L) -> L {
+        let _ = (here, s);
+        right
+    }
+
+    /// Lanes of real collisions that end their walk, of which some scatter.
+    #[inline(always)]
+    fn ends<L: Lane>(&self, real: L::Mask, scattered: L::Mask) -> L::Mask {
+        let _ = scattered;
+        real
+    }
+
+    /// The transmittance of the shadow ray from s.
+    #[inline(always)]
+    fn light<L: Lane>(&self, right: L, s: L) -> L {
+        let _ = s;
+        right
+    }
+
+    /// The score of a vertex, where `score` is right for any.
+    #[inline(always)]
+    fn score<L: Lane>(&self, vertex: Vertex<L>, score: impl Fn(Vertex<L>) -> L) -> L {
+        score(vertex)
+    }
+}
+
+/// The right steps.
+#[derive(Clone, Copy)]
+pub struct Right;
+
+impl Steps for Right {}
+
+/// A scattering point that has found light.
+#[derive(Clone, Copy)]
+pub struct Vertex<L: Lane> {
+    /// The distance.
+    pub s: L,
+    /// `σ_t` there.
+    pub extinction: L,
+    /// The transmittance from the ray's origin, or x.
+    pub kept: L,
+    /// Lanes whose point was chosen; the others collided there.
+    pub is_chosen: L::Mask,
+    /// The transmittance of the shadow ray.
+    pub light: L,
+}
+
+kept! {
+    /// Walks to their points.
+    pub struct Path<L> {
+        /// Lanes that begin a point, and lanes that set out from the ray's origin, both in the next step.
+        begins: L::Mask,
+        sets_out: L::Mask,
+        /// Lanes at a point whose σ_t is not known yet.
+        looks: L::Mask,
+        /// Lanes on their way along the ray, and those of them that fly in this step.
+        walks: L::Mask,
+        flies: L::Mask,
+        /// Lanes whose point was chosen.
+        is_chosen: L::Mask,
+        /// Lanes at the second of two chosen points.
+        is_second: L::Mask,
+        /// Lanes that wait to begin their next point or draw.
+        done: L::Mask,
+        s: L,
+        extinction: L,
+        kept: L,
+        score: L,
+        /// The number of lookups that needed no step.
+        known: L,
+        to_light: ToLight<L>,
+    }
+}
+
+/// The walk, by points that are `CHOSEN`, by collisions where it `COLLIDES`, or by both.
+#[derive(Clone, Copy)]
+pub struct ToVertices<'a, S, const CHOSEN: bool, const COLLIDES: bool> {
+    ground: Ground<'a>,
+    plan: Vertices,
+    main: Option<MainPart<'a>>,
+    /// c, the probability that a real collision scatters.
+    scatters: f64,
+    steps: S,
+}
+
+impl<'a, S: Steps, const CHOSEN: bool, const COLLIDES: bool> ToVertices<'a, S, CHOSEN, COLLIDES> {
+    /// The number of lanes of a pack that score together, and the number that begin together. Waiting lanes do not move: at
+    /// least one of eight must not wait.
+    const SCORES: u32 = if CHOSEN { 4 } else { 1 };
+    const BEGIN: u32 = if CHOSEN { 2 } else { 1 };
+
+    /// The walk on a ground.
+    #[inline(always)]
+    pub fn new(ground: Ground<'a>, plan: Vertices, steps: S) -> Self {
+        const { assert!(TOGETHER + Self::SCORES + Self::BEGIN < 8 + 3, "all lanes may wait") };
+        let absorption = plan.collision.unwrap_or(Absorption::Weight);
+        let scatters = absorption.scatters(ground.setup.problem.albedo());
+        let main = if plan.main { MainPart::of(ground.setup) } else { None };
+        Self { ground, plan, main, scatters, steps }
+    }
+
+    #[inline(always)]
+    fn is_tracked(&self) -> bool {
+        self.plan.camera != CameraTracking::Exact
+    }
+
+    #[inline(always)]
+    fn has_two_points(&self) -> bool {
+        !COLLIDES && self.plan.light && self.main.is_some()
+    }
+
+    #[inline(always)]
+    fn chosen<L: Lane>(path: &Path<L>) -> L::Mask {
+        match (CHOSEN, COLLIDES) {
+            (true, true) => path.is_chosen,
+            (true, false) => path.looks | !path.looks,
+            _ => path.looks & !path.looks,
+        }
+    }
+
+    /// Begins the next point of the lanes in `which`.
+    #[inline(always)]
+    fn start<L: Lane>(&self, path: &mut Path<L>, which: L::Mask, random: &mut impl Random<L>) {
+        let mut looks = which;
+        if !CHOSEN {
+            path.sets_out |= which;
+            return;
+        }
+        if COLLIDES && self.plan.is_one {
+            let number = random.uniform_where(which);
+            looks &= number.below(number.each(0.5));
+            Self::seek(path, which & !looks);
+        }
+        let number = random.uniform_where(looks);
+        let s = match (&self.main, self.plan.light) {
+            (Some(main), false) => main.outlined_point(number),
+            (Some(main), true) => {
+                let from_light = self.steps.point(&self.ground.setup.problem, number);
+                L::select(path.is_second, main.outlined_point(number), from_light)
+            }
+            (None, _) => self.steps.point(&self.ground.setup.problem, number),
+        };
+        path.s.set_where(looks, s);
+        path.is_chosen |= looks;
+        match self.ground.extinction {
+            // σ_t needs no step.
+            Some(value) if value > 0.0 && self.is_tracked() => {
+                path.known.count_where(looks);
+                path.extinction.set_where(looks, s.each(value));
+                path.sets_out |= looks;
+            }
+            _ => path.looks |= looks,
+        }
+    }
+
+    /// Lanes in `which` go on to their first real collision.
+    #[inline(always)]
+    fn seek<L: Lane>(path: &mut Path<L>, which: L::Mask) {
+        path.is_chosen &= !which;
+        path.sets_out |= which;
+    }
+
+    /// Lanes set out from the ray's origin.
+    #[inline(always)]
+    fn set_out<L: Lane>(&self, path: &mut Path<L>) {
+        path.walks |= path.sets_out;
+        if CHOSEN && self.plan.camera == CameraTracking::Ratio {
+            path.kept.set_where(path.sets_out, self.ground.controlled(path.s));
+        } else if CHOSEN {
+            path.kept.set_where(path.sets_out, path.s.each(1.0));
+        }
+    }
+
+    /// Handles collisions without a point; answers which lanes scatter, and which have come to their end.
+    #[inline(always)]
+    fn track<L: Lane>(
+        &self,
+        path: &mut Path<L>,
+        here: &impl BothWays<L>,
+        met: &Met<L>,
+        inside: L::Mask,
+    ) -> [L::Mask; 2] {
+        let Met { t, number, extinction, .. } = *met;
+        let (chosen, left) = (Self::chosen(path), path.flies & !inside);
+        let threshold = number * here.sampling();
+        let real = inside & !chosen & threshold.below(extinction);
+        let hits = real & threshold.below(extinction * self.scatters);
+        let ends = self.steps.ends::<L>(real, hits);
+        if CHOSEN && self.is_tracked() {
+            let kept = self.ground.kept(here, t, extinction);
+            path.kept.scale_where(inside & !ends, kept);
+        }
+        path.walks &= !(ends | left);
+        path.s.set_where(hits, t);
+        path.extinction.set_where(hits, extinction);
+        [hits | (left & chosen), (ends & !hits) | (left & !chosen)]
+    }
+
+    /// Handles collisions on the way to points; answers which lanes arrive, and which end.
+    #[inline(always)]
+    fn approach<L: Lane>(
+        &self,
+        path: &mut Path<L>,
+        here: &impl BothWays<L>,
+        met: &Met<L>,
+        inside: L::Mask,
+        random: &mut impl Random<L>,
+    ) -> [L::Mask; 2] {
+        let Met { t, extinction, .. } = *met;
+        let arrives = path.flies & !inside;
+        let mut ends = inside & !inside;
+        if self.plan.camera == CameraTracking::Delta {
+            let number = random.uniform_where(inside);
+            ends = inside & (number * here.sampling()).below(extinction);
+        } else {
+            path.kept.scale_where(inside, self.ground.kept(here, t, extinction));
+        }
+        path.walks &= !(arrives | ends);
+        [arrives, ends]
+    }
+
+    /// Scores the vertices of the lanes in `which`.
+    #[inline(always)]
+    fn score<L: Lane>(&self, path: &mut Path<L>, which: L::Mask, light: L) {
+        let Path { s, extinction, mut kept, .. } = *path;
+        if CHOSEN && !self.is_tracked() {
+            kept = self.ground.transmittance(s, which);
+        }
+        let light = self.steps.light(light, s);
+        let vertex = Vertex { s, extinction, kept, is_chosen: Self::chosen(path), light };
+        let score = self.steps.score(
+            vertex,
+            #[inline(always)]
+            |vertex| self.value(vertex),
+        );
+        // The one point's score is the draw's, its sign included where it is 0.
+        let is_only = CHOSEN && !COLLIDES && !self.has_two_points();
+        path.score.set_where(which, if is_only { score } else { path.score + score });
+    }
+
+    /// The score of a vertex.
+    #[inline(always)]
+    fn value<L: Lane>(&self, vertex: Vertex<L>) -> L {
+        let (Vertex { s, extinction, kept, is_chosen, light }, plan) = (vertex, &self.plan);
+        let problem = &*self.ground.setup.problem;
+        if !COLLIDES {
+            let density = match (&self.main, plan.light) {
+                (None, _) => problem.equiangular_density(s),
+                (Some(main), false) => main.outlined_density(s),
+                (Some(main), true) => problem.equiangular_density(s) + main.outlined_density(s),
+            };
+            return kept * (extinction * problem.source(s)) * light / density;
+        }
+        let source = problem.source(s) / s.each(self.scatters);
+        if !CHOSEN {
+            return source * light;
+        }
+        let collision = extinction * self.scatters * kept;
+        let point = problem.equiangular_density(s);
+        let own = L::select(is_chosen, point, collision);
+        let other = L::select(is_chosen, collision, point);
+        let density = plan.heuristic.shared(own, other);
+        collision * source * light / density * if plan.is_one { 2.0 } else { 1.0 }
+    }
+}
+
+impl<S: Steps, const CHOSEN: bool, const COLLIDES: bool> Walk
+    for ToVertices<'_, S, CHOSEN, COLLIDES>
+{
+    type State<L: Lane> = Path<L>;
+
+    const PAUSES: bool = true;
+    const CASTS: bool = true;
+    const IN_PIECES: bool = false;
+
+    #[inline(always)]
+    fn begin<L: Lane>(&self, one: L, all: L::Mask, _: &mut impl Random<L>) -> Path<L> {
+        let (zero, none, s) = (one.each(0.0), !all, one.each(self.ground.support.from));
+        Path {
+            begins: all,
+            sets_out: none,
+            looks: none,
+            walks: none,
+            flies: none,
+            is_chosen: none,
+            is_second: none,
+            done: none,
+            s,
+            extinction: zero,
+            kept: one,
+            score: zero,
+            known: zero,
+            to_light: ToLight::none(zero),
+        }
+    }
+
+    #[inline(always)]
+    fn restart<L: Lane>(&self, path: &mut Path<L>, which: L::Mask, one: L, _: &mut impl Random<L>) {
+        path.begins |= which;
+        path.score.set_where(which, one.each(0.0));
+        path.known.set_where(which, one.each(0.0));
+    }
+
+    #[inline(always)]
+    fn numbers<L: Lane>(&self, path: &mut Path<L>, random: &mut impl Random<L>) -> [L; 2] {
+        // In one place: it is long.
+        if path.begins.any() {
+            self.start(path, path.begins, random);
+            path.begins &= !path.begins;
+        }
+        if path.sets_out.any() {
+            self.set_out(path);
+        }
+        path.flies = path.walks & !path.to_light.step();
+        let depth = path.to_light.depth(path.flies, random);
+        let decides = path.flies & !Self::chosen(path);
+        [depth, if COLLIDES { random.uniform_where(decides) } else { depth }]
+    }
+
+    #[inline(always)]
+    fn fly<L: Lane>(
+        &self,
+        path: &mut Path<L>,
+        route: &mut Route<impl BothWays<L>>,
+        depth: L,
+    ) -> L::Mask {
+        path.to_light.fly(&self.ground, depth);
+        route.here.restart(path.sets_out);
+        path.sets_out &= !path.sets_out;
+        let mut inside = path.flies;
+        if (COLLIDES || self.is_tracked()) && path.flies.maybe() {
+            let mut flown = L::select(path.flies, depth, depth.each(0.0));
+            if CHOSEN {
+                flown = self.steps.depth(flown, route.here.reached(), path.s);
+            }
+            inside &= route.here.fly(flown);
+            if CHOSEN {
+                inside &= !Self::chosen(path) | route.here.reached().below(path.s);
+            }
+        }
+        inside | path.looks
+    }
+
+    #[inline(always)]
+    fn distance<L: Lane>(&self, path: &Path<L>, route: &Route<impl BothWays<L>>) -> L {
+        if !CHOSEN {
+            return route.here.reached();
+        }
+        L::select(path.looks, path.s, route.here.reached())
+    }
+
+    #[inline(always)]
+    fn collide<L: Lane>(
+        &self,
+        path: &mut Path<L>,
+        route: &mut Route<impl BothWays<L>>,
+        met: &Met<L>,
+        random: &mut impl Random<L>,
+    ) -> L::Mask {
+        let looked = path.looks;
+        let (none, inside) = (looked & !looked, met.inside & !looked);
+        let [mut arrives, mut ends] = if COLLIDES {
+            self.track(path, &route.here, met, inside)
+        } else if self.is_tracked() {
+            self.approach(path, &route.here, met, inside, random)
+        } else {
+            [none; 2]
+        };
+        let mut found = none;
+        if CHOSEN && looked.any() {
+            let extinction = met.extinction;
+            let scatters = looked & extinction.each(0.0).below(extinction);
+            path.extinction.set_where(looked, extinction);
+            path.looks = none;
+            found = looked & !scatters;
+            if self.is_tracked() {
+                path.sets_out |= scatters;
+            } else {
+                arrives |= scatters;
+            }
+        }
+        let at = (arrives, path.s);
+        let (lit, light) = path.to_light.collide(&self.ground, met, at, Self::SCORES, random);
+        if lit.any() {
+            self.score(path, lit, light);
+            found |= lit;
+        }
+        if CHOSEN && COLLIDES && !self.plan.is_one {
+            let first = found & path.is_chosen;
+            Self::seek(path, first);
+            found &= !first;
+        }
+        ends |= found;
+        path.done |= ends;
+        if !path.done.are_enough(Self::BEGIN) {
+            return !none;
+        }
+        let mut over = path.done;
+        path.done = none;
+        if self.has_two_points() {
+            let again = over & !path.is_second;
+            path.is_second ^= over;
+            over &= !again;
+            path.begins |= again;
+        }
+        !over
+    }
+
+    #[inline(always)]
+    fn on_shadow_rays<L: Lane>(&self, path: &Path<L>) -> (L::Mask, [L; 3]) {
+        path.to_light.collisions()
+    }
+
+    #[inline(always)]
+    fn shadow_fields(&self) -> &[Batches<'_>] {
+        self.ground.fields
+    }
+
+    #[inline(always)]
+    fn shadow_extinction(&self, _: usize, place: Point) -> f64 {
+        self.ground.rays.volume.extinction_at(place)
+    }
+
+    #[inline(always)]
+    fn lookups<L: Lane>(&self, path: &Path<L>, counted: L) -> L {
+        counted + path.known
+    }
+
+    #[inline(always)]
+    fn value<L: Lane>(&self, path: &Path<L>, _: L::Mask, _: usize) -> L {
+        path.score
+    }
+}
