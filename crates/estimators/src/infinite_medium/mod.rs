@@ -16,7 +16,7 @@ use theory::{Channel, CountLaw, Moments, ParticleRule, Prediction, Tails};
 /// More collisions than this in a walk are a mistake in the case.
 const MOST_COLLISIONS: f64 = 1e5;
 
-/// The chance that a tentative collision ends the walk, where that is the same for all of them.
+/// The probability that a tentative collision ends the walk, where that is the same for all of them.
 fn end(setup: &Setup<InfiniteMedium>, particle: &Particle) -> Option<f64> {
     let plain = *particle == Particle::of(particle.rule);
     let odds = particle.rule.odds(ratio(setup)?, setup.problem.albedo());
@@ -28,7 +28,7 @@ fn ratio(setup: &Setup<InfiniteMedium>) -> Option<f64> {
     Some(setup.problem.extinction / setup.space.as_deref()?.single_value()?)
 }
 
-/// Moments of a multiple of the number of collisions up to one that ends the walk, with chance p each:
+/// Moments of a multiple of the number of collisions up to one that ends the walk, with probability p each:
 /// mean 1/p, variance (1 − p)/p², skewness (2 − p)/√(1 − p), kurtosis 9 + p²/(1 − p).
 fn geometric(mean: f64, end: f64) -> Moments {
     let rest = 1.0 - end;
@@ -134,7 +134,8 @@ impl Walked for InfiniteMedium {
 /// The sums of a draw at most.
 const SUMS: usize = MOST_RADII + 2;
 
-/// Which sums are the channels of a draw with so many radii: those of the radii, the squared distance and the collisions.
+/// The sums that are the channels of a draw, by its number of radii: those of the radii, the squared distance and the
+/// collisions.
 const CHANNELS: [[usize; SUMS]; SUMS - 1] = {
     let mut lists = [[0; SUMS]; SUMS - 1];
     let mut count = 0;

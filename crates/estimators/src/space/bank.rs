@@ -63,7 +63,7 @@ pub trait Walk {
         random: &mut impl Random<L>,
     ) -> L::Mask;
 
-    /// Does what is costly, if so many lanes wait for it.
+    /// Does what is costly, if `together` lanes wait for it.
     #[inline(always)]
     fn go_on<L: Lane>(
         &self,

@@ -35,12 +35,12 @@ const MOST_COLLISIONS: f64 = 1e4;
 ///
 /// # Errors
 ///
-/// That there is none.
+/// No σ̂ is given.
 pub fn majorants<P: Problem>(setup: &Setup<P>) -> Result<&Arc<Majorants>, Refusal> {
     setup.space.as_ref().ok_or_else(|| Refusal::mismatch("σ̂ in space", "none is given"))
 }
 
-/// What bounds on the walks of a particle depend on.
+/// The arguments of bounds on the walks of a particle.
 pub fn walks(scene: &Scene, majorants: &Majorants, particle: &Particle) -> Walks {
     let across = match majorants.bounds() {
         Bounds::Everywhere => f64::INFINITY,
@@ -96,7 +96,7 @@ pub fn energy(walks: &Walks) -> Result<Channel, Refusal> {
     Ok(energy_channel(bound, walks.depth))
 }
 
-/// The same given the bound, and `∫σ̂` straight through.
+/// [`energy`], given the bound on its variance and `∫σ̂` straight through.
 pub fn energy_channel(bound: f64, depth: f64) -> Channel {
     // A walk that nothing ends wanders for about depth² collisions, and each rounds.
     let rounding = ROUNDING + 4.0 * f64::EPSILON * depth * depth;

@@ -14,14 +14,14 @@ use theory::particle::Odds;
 pub enum Splitting {
     /// Never: one particle at most.
     None,
-    /// Up to so many times on any way from the start: 2ⁿ particles at most.
+    /// Up to n times on any way from the start: 2ⁿ particles at most.
     Depth(u32),
-    /// Up to so many times in a walk: n + 1 particles at most.
+    /// Up to n times in a walk: n + 1 particles at most.
     Budget(u32),
 }
 
 impl Splitting {
-    /// Whether a collision splits, after so many splits on the way from the start and in the walk as a whole.
+    /// Whether a collision splits, after `depth` splits on the way from the start and `total` in the walk as a whole.
     pub fn splits(self, depth: u32, total: u32) -> bool {
         match self {
             Self::None => false,
@@ -34,7 +34,7 @@ impl Splitting {
 /// The settings of a particle, and the right steps of its walk.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Particle {
-    /// What happens at a collision that does not split.
+    /// The rule at a collision that does not split.
     pub rule: ParticleRule,
     /// w₀, the weight below which roulette is played.
     pub roulette: Option<f64>,

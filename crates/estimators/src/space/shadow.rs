@@ -17,13 +17,13 @@ use numeric::rng::Random;
 use numeric::{Kept, Lane, Mask, Span, kept};
 use theory::single::Tracking;
 
-/// How shadow rays are cast: through a volume, from within its bounds.
+/// Settings of shadow rays: through a volume, from within its bounds.
 pub struct ShadowRays<'a> {
-    /// What is in the way.
+    /// The volume.
     pub volume: &'a Volume,
-    /// Where it is.
+    /// Its bounds.
     pub bounds: Bounds,
-    /// How the transmittance is found.
+    /// The tracking of transmittances.
     pub tracking: Tracking,
     /// `1/σ̂`; 1 where nothing is tracked.
     mean_free_path: f64,
@@ -34,22 +34,22 @@ pub struct ShadowRays<'a> {
 pub struct Light<L> {
     /// In which direction it is looked for, a unit vector.
     pub direction: [L; 3],
-    /// What it is worth without a medium.
+    /// Its share without a medium.
     pub share: L,
-    /// How far it is.
+    /// Its distance.
     pub distance: L,
 }
 
-/// How shadow rays are aimed: at an angle from an axis, at any azimuth.
+/// Aims of shadow rays: an angle from an axis, at any azimuth.
 #[derive(Clone, Copy)]
 pub struct Aim<L> {
     /// A unit vector.
     pub axis: [L; 3],
     /// The cosine with it.
     pub cosine: L,
-    /// What the light is worth without a medium.
+    /// The share of the light without a medium.
     pub share: L,
-    /// How far it is to the light's centre.
+    /// The distance of the light's centre.
     pub distance: L,
 }
 
@@ -68,11 +68,8 @@ impl<L: Lane> Aim<L> {
     }
 }
 
-/// The lanes whose shadow rays have found light, and how much.
+/// Lanes with light that shadow rays have found, and how much.
 pub type Lit<L> = (<L as Lane>::Mask, L);
-
-/// [`Lit`] of a pack.
-pub type Found<S> = Lit<fearless_simd::f64x8<S>>;
 
 kept! {
     /// Shadow rays of walks: one each at most, from where its flight begins.
@@ -129,7 +126,7 @@ impl<'a> ShadowRays<'a> {
         L::select(which, through, one)
     }
 
-    /// Replaces the ends of stretches by their transmittances, for the lanes whose bits are set.
+    /// Replaces the ends of stretches by their transmittances, for the lanes in `which`, as bits.
     #[inline(never)]
     fn one_by_one(
         &self,

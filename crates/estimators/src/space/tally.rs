@@ -45,7 +45,7 @@ pub struct Scattering<L: Lane> {
 
 /// The beginning of the walks of a problem, and their values.
 pub trait Tally {
-    /// What a walk has found so far.
+    /// Sums and notes of a walk so far.
     type Found<L: Lane>: Kept<L::Mask>;
 
     /// Whether particles cast shadow rays where they are scattered.
@@ -54,7 +54,7 @@ pub trait Tally {
     /// Whether something else is estimated from scatterings, see [`Tally::connect`].
     const CONNECTS: bool = false;
 
-    /// What a walk has found when it begins.
+    /// Sums and notes of a walk that begins.
     fn nothing<L: Lane>(&self, zero: L) -> Self::Found<L>;
 
     /// The number of [`Tally::sums`].
@@ -143,7 +143,8 @@ pub trait Tally {
         let _ = (found, light, through);
     }
 
-    /// Casts shadow rays, whose lines are in the bounds from and to, if these are no [`Tally::shadow_rays`]; answers lookups.
+    /// Casts shadow rays to a light, if there are no [`Tally::shadow_rays`]; answers lookups. Their lines are in the bounds
+    /// between `ends`.
     #[inline(always)]
     fn track<L: Lane>(
         &self,
@@ -167,10 +168,4 @@ pub trait Tally {
         let _ = (found, random);
         at.weight.each(0.0)
     }
-}
-
-/// Adds to a sum where a mask says so.
-#[inline(always)]
-pub fn add_where<L: Lane>(sum: &mut L, mask: L::Mask, term: L) {
-    sum.add_where(mask, term);
 }

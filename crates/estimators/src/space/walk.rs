@@ -95,7 +95,7 @@ kept! {
 pub struct State<L: Lane, F> {
     /// The particles.
     pub path: Path<L>,
-    /// What they have found.
+    /// Their sums and notes.
     pub found: F,
     /// Lookups so far.
     pub lookups: L,
@@ -103,7 +103,7 @@ pub struct State<L: Lane, F> {
     ended: L::Mask,
     /// Lanes that were scattered in this step.
     scattered: L::Mask,
-    /// Lanes whose shadow ray came to its end in this step.
+    /// Lanes with a shadow ray that came to its end in this step.
     lit: L::Mask,
     /// Lanes that wait to cast a shadow ray.
     aims: L::Mask,
@@ -178,7 +178,7 @@ impl<'a, T: Tally, S: Steps> InSpace<'a, T, S> {
         at
     }
 
-    /// Decides what happens at collisions after flights of optical depths; answers the lanes whose walks end.
+    /// Decides what happens at collisions after flights of optical depths; answers the lanes that end.
     #[inline(always)]
     pub fn decide<L: Lane>(
         &self,

@@ -12,7 +12,7 @@ use numeric::rng::Stream;
 use theory::Prediction;
 use theory::problems::{Channels, Problem, Scene};
 
-/// A problem whose estimators are particles that walk in space.
+/// A problem with particles that walk in space as its estimators.
 pub trait Walked: Problem<Value: Channels> {
     /// The beginning of walks, and their values.
     type Tally<'a>: Tally;

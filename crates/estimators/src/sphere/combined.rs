@@ -1,4 +1,4 @@
-//! A walk from the eye whose hits, shadow rays and connections share the paths that each of them can make.
+//! A walk from the eye with hits, shadow rays and connections that share the paths each of them can make.
 //!
 //! A path ends with a scattering y, before it perhaps with another one x, and its last segment leads to the light. What
 //! comes before x is the same for all techniques. Relative to a walk that hits the light, they make it with the
@@ -11,7 +11,7 @@
 //!               of the ball, through which an environment and a distant light shine
 //! ```
 //!
-//! ν and ν' are the chances of the null collisions of the last segment and of that between x and y. Densities of
+//! ν and ν' are the probabilities of the null collisions of the last segment and of that between x and y. Densities of
 //! directions leave them out (ν = 1); where transmittances are exact, `ν = T`. In the last density is
 //! `f/p = a p p G/p_e T̂`: light leaves by Lambert's law with density `cos θ/(4π²ρ²)`, phase functions are 1/4π, and
 //! `G = 1/d²`. A connection needs both x and y: a camera has no scattering before the first one, but a place whose mean
@@ -40,21 +40,21 @@ use theory::single::Tracking;
 use theory::sphere::Techniques;
 
 kept! {
-    /// What walks have found, and the densities of what they may find.
+    /// Light that walks have found, and densities of what they may find.
     pub struct Vertices<L> {
         light: L,
-        /// q at the last scattering, or at the place whose mean intensity is sought.
+        /// q at the last scattering, or at the place of a sought mean intensity.
         share: L,
         /// The probability of the null collisions since.
         chance: L,
-        /// The same without the last collision, which may turn out to be real.
+        /// That probability without the last collision, which may turn out to be real.
         before: L,
         /// The density of a connection of the last scattering with the one before.
         linked: L,
         /// Lanes with a scattering, and its place.
         is_scattered: L::Mask,
         place: [L; 3],
-        /// Lanes from whose light a particle has set out, and those in which it came to a real collision.
+        /// Lanes with a particle from the light, and those in which it came to a real collision.
         has_emitted: L::Mask,
         is_emitted: L::Mask,
         /// The place of that collision, and the density of a shadow ray from it.
@@ -63,7 +63,7 @@ kept! {
     }
 }
 
-/// A walk whose techniques share. Packs make no connections; then there is less to keep.
+/// A walk with techniques that share. Packs make no connections; then there is less to keep.
 pub struct Combined<'a, B, const CONNECTS: bool> {
     seeker: Seeker<'a>,
     ground: Ground<'a>,
@@ -250,7 +250,7 @@ impl<B: Steps, const CONNECTS: bool> Tally for Combined<'_, B, CONNECTS> {
         found.chance.set_where(which, self.steps.segment(found.chance));
     }
 
-    /// What was never scattered can be hit only.
+    /// Light that was never scattered can be hit only.
     #[inline(always)]
     fn escaped<L: Lane>(&self, found: &mut Vertices<L>, at: &Departure<L>) {
         let (met, one) = (meets_light(self.sphere(), at), at.weight.each(1.0));

@@ -70,7 +70,7 @@ pub fn share<L: Lane>(sphere: &Sphere, place: [L; 3]) -> L {
     }
 }
 
-/// Lanes that have met the light.
+/// Lanes that leave into the light.
 #[inline(always)]
 pub fn meets_light<L: Lane>(sphere: &Sphere, at: &Departure<L>) -> L::Mask {
     match sphere.light {
@@ -103,7 +103,7 @@ impl Tally for Seeker<'_> {
         found
     }
 
-    /// Where the direction may be any, they turn from here.
+    /// Walks in all directions turn from this one.
     #[inline(always)]
     fn begin<L: Lane>(&self, one: L, _: L::Mask, _: &mut impl Random<L>) -> [[L; 3]; 2] {
         let direction = match self.sphere.sought {

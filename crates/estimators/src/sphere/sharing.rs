@@ -23,7 +23,7 @@ pub enum Subpaths {
 pub struct Sharing {
     /// The techniques and their weights.
     pub techniques: Techniques,
-    /// The tracking of shadow rays; by ratio tracking through the σ̂ of the walk, if there is none.
+    /// The tracking of shadow rays; without one, ratio tracking through the σ̂ of the walk.
     pub shadow: Option<Tracking>,
     /// The connections, if there are any.
     pub subpaths: Option<Subpaths>,
@@ -45,7 +45,7 @@ impl Sharing {
         self.weights().is_some_and(|(densities, _)| densities == Densities::Full)
     }
 
-    /// The tracking of shadow rays with numbers of their own: also through one σ̂ of the walk, where the chance of all
+    /// The tracking of shadow rays with numbers of their own: also through one σ̂ of the walk, where the probability of all
     /// collisions of a shadow ray to be null is its tracked transmittance.
     pub fn tracking(&self, rule: ParticleRule, majorants: &Majorants) -> Option<Tracking> {
         let is_its_own = !matches!(rule, ParticleRule::NonTerminating | ParticleRule::Adaptive);

@@ -34,7 +34,7 @@ pub struct Ground<'a> {
 /// Distances at which rays end.
 #[derive(Clone, Copy)]
 pub struct Reach<L: Lane> {
-    /// Where their lines enter and leave the body.
+    /// The distances at which their lines enter and leave the body.
     pub ends: [L; 2],
     /// Rays that pass the black ball, and where the others meet it.
     pub stop: Option<(L::Mask, L)>,
@@ -71,15 +71,15 @@ impl<'a> Ground<'a> {
 kept! {
     /// Particles, each on its way in one direction.
     pub struct Flights<L> {
-        /// Where they began.
+        /// Their beginnings.
         pub origin: [L; 3],
-        /// Where they go, unit vectors.
+        /// Unit vectors.
         pub direction: [L; 3],
-        /// How far they have come.
+        /// The distances flown.
         pub t: L,
-        /// Where they leave the body.
+        /// The distances at which they leave the body.
         end: L,
-        /// Where they meet the black ball; infinite where they do not.
+        /// The distances of the black ball; infinite where they do not meet it.
         stop: L,
         cell: [L; 3],
         planes: [L; 3],
@@ -121,7 +121,7 @@ impl<L: Lane> Flights<L> {
         }
     }
 
-    /// The lanes in `which` begin anew, from the origins and in the directions that are set.
+    /// The lanes in `which` begin, from the origins and in the directions that are set.
     #[inline(always)]
     pub fn enter(&mut self, ground: &Ground, which: L::Mask, reach: &Reach<L>) {
         let Reach { ends: [_, end], stop } = *reach;
@@ -161,8 +161,8 @@ impl<L: Lane> Flights<L> {
         )
     }
 
-    /// The lanes in `which` fly an optical depth through σ̂; the places of the others mean nothing. A cell is flown through as
-    /// `through` says of its σ̂ and that of the cell in which the flight begins.
+    /// The lanes in `which` fly an optical depth through σ̂; the places of the others mean nothing. σ̂ in a cell is
+    /// `through` of its σ̂ and of that of the cell in which the flight begins.
     #[inline(always)]
     pub fn fly(
         &mut self,

@@ -65,7 +65,7 @@ impl Majorants {
         Some(Self { bounds, low, width, cells, values, largest_ratio: 1.0 / factor })
     }
 
-    /// The same times a factor.
+    /// σ̂ times a factor.
     #[must_use]
     pub fn scaled(mut self, factor: f64) -> Self {
         self.values.iter_mut().for_each(|value| *value *= factor);
@@ -73,7 +73,7 @@ impl Majorants {
         self
     }
 
-    /// Where particles are followed.
+    /// The body in which particles are followed.
     pub fn bounds(&self) -> &Bounds {
         &self.bounds
     }

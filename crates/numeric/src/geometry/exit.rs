@@ -136,7 +136,7 @@ fn of_ball<L: Lane>(
     ([foot - half, foot + half], offset.below(size * 0.9) & is_large)
 }
 
-/// [`Bounds::clip`] ray by ray, for those whose bits are set.
+/// [`Bounds::clip`] ray by ray, for those in `which`, as bits.
 #[inline(never)]
 pub fn one_by_one(
     bounds: &Bounds,
