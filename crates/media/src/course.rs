@@ -23,10 +23,25 @@ pub trait Course<L: Lane>: Copy {
 
     /// These begin anew.
     fn restart(&mut self, which: L::Mask);
+
+    /// Flies on through a σ̂ of other values, one for each lane, with these mean free paths. Only where σ̂ has one value.
+    #[inline(always)]
+    fn change(&mut self, mean_free_path: L) {
+        let _ = mean_free_path;
+    }
 }
 
 /// A course that walks may go back, too.
 pub trait BothWays<L: Lane>: Course<L> {
+    /// Where walks stand, to be kept.
+    type Place: Copy;
+
+    /// Where they stand.
+    fn place(&self) -> Self::Place;
+
+    /// All stand there from now on.
+    fn stand_at(&mut self, place: Self::Place);
+
     /// Each flies on or back through an optical depth; answers which are still between the ends.
     fn fly_either_way(&mut self, depth: L, is_forward: L::Mask) -> L::Mask;
 
@@ -88,9 +103,26 @@ impl<L: Lane> Course<L> for Even<'_, L> {
     fn restart(&mut self, which: L::Mask) {
         self.way.set_where(which, self.begin);
     }
+
+    #[inline(always)]
+    fn change(&mut self, mean_free_path: L) {
+        self.path = mean_free_path;
+    }
 }
 
 impl<L: Lane> BothWays<L> for Even<'_, L> {
+    type Place = L;
+
+    #[inline(always)]
+    fn place(&self) -> L {
+        self.way
+    }
+
+    #[inline(always)]
+    fn stand_at(&mut self, way: L) {
+        self.way = way;
+    }
+
     #[inline(always)]
     fn fly_either_way(&mut self, depth: L, is_forward: L::Mask) -> L::Mask {
         self.way = L::select(is_forward, depth, -depth).times_plus(self.path, self.way);
@@ -119,6 +151,15 @@ impl<'a, L: Lane> Pieces<'a, L> {
     pub fn new(any: L, field: &'a Piecewise) -> Self {
         let (piece, t) = (any.each(0.0), any.each(field.knots[0]));
         Self { field, piece, at_hand: piece.columns(&field.rows), t }
+    }
+
+    /// At the last knot.
+    #[must_use]
+    #[inline(always)]
+    pub fn from_end(self) -> Self {
+        let last = self.field.left.len() - 1;
+        let (piece, t) = (self.t.each(last as f64), self.t.each(self.field.knots[last + 1]));
+        Self { piece, at_hand: piece.columns(&self.field.rows), t, ..self }
     }
 
     /// σ̂ at the distances reached.
@@ -202,6 +243,18 @@ impl<L: Lane> Course<L> for Pieces<'_, L> {
 }
 
 impl<L: Lane> BothWays<L> for Pieces<'_, L> {
+    type Place = Self;
+
+    #[inline(always)]
+    fn place(&self) -> Self {
+        *self
+    }
+
+    #[inline(always)]
+    fn stand_at(&mut self, place: Self) {
+        *self = place;
+    }
+
     #[inline(always)]
     fn fly_either_way(&mut self, depth: L, is_forward: L::Mask) -> L::Mask {
         self.go::<true>(depth, is_forward)
@@ -214,5 +267,64 @@ impl<L: Lane> BothWays<L> for Pieces<'_, L> {
             self.at_hand.set_where(which, other.at_hand);
             self.t.set_where(which, other.t);
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use numeric::Span;
+
+    fn courses(field: &Piecewise) -> [Pieces<'_, f64>; 2] {
+        let begin = Pieces::new(0.0, field);
+        [begin, begin.from_end()]
+    }
+
+    #[test]
+    fn a_flight_back_undoes_a_flight() {
+        let fields = [
+            Piecewise::lines(&[0.0, 1.0, 2.5, 4.0], &[0.2, 1.5, 0.4, 0.9]),
+            Piecewise::steps(&[0.0, 1.0, 2.0, 3.0], &[1.0, 0.0, 1.0]),
+            Piecewise::constant(0.7, Span::new(-1.0, 4.0)),
+            Piecewise::steps(&[0.0, 1.0, 2.0, 3.0], &[1.0, 0.0, 1.3]),
+        ];
+        for field in &fields {
+            for step in 1..17 {
+                let (there, back) = (0.1 * f64::from(step), 0.07 * f64::from(step));
+                let [mut course, mut direct] = [courses(field)[0]; 2];
+                assert!(course.fly(there) && course.fly_either_way(back, false));
+                assert!(direct.fly(there - back));
+                assert!((course.reached() - direct.reached()).abs() < 1e-14, "{field:?} at {step}");
+                assert!((course.sampling() - direct.sampling()).abs() < 1e-14);
+                if let Some(even) = field.even() {
+                    let mut along = Even::new(0.0, even);
+                    assert!(along.fly(there) && along.fly_either_way(back, false));
+                    assert!((along.reached() - course.reached()).abs() < 1e-14);
+                }
+                assert!(!course.fly_either_way(there, false), "beyond the first knot");
+            }
+        }
+    }
+
+    #[test]
+    fn flights_from_both_ends_meet() {
+        let field = Piecewise::lines(&[0.0, 1.0, 2.5, 4.0], &[0.2, 1.5, 0.4, 0.9]);
+        let whole = 0.85 + 0.75 * 1.9 + 0.75 * 1.3;
+        for share in [0.1, 0.4, 0.9] {
+            let [mut begin, mut end] = courses(&field);
+            let place = begin.place();
+            assert!(begin.fly(share * whole) && end.fly_either_way((1.0 - share) * whole, false));
+            assert!((begin.reached() - end.reached()).abs() < 1e-14);
+            begin.stand_at(place);
+            assert_eq!(begin.reached(), 0.0);
+        }
+        let constant = Piecewise::constant(2.0, Span::new(1.0, 4.0));
+        let even = constant.even().expect("one value");
+        let mut end = Even::new(0.0, even).from_end();
+        assert!(end.fly_either_way(1.0, false));
+        assert_eq!(end.reached(), 3.5);
+        end.change(0.25);
+        assert!(end.fly(1.0));
+        assert_eq!((end.reached(), end.mean_free_path()), (3.75, 0.25));
     }
 }

@@ -1,4 +1,4 @@
-//! Walks through straight pieces, on and back, by closed forms.
+//! Walks through straight pieces by closed forms.
 
 use super::Piecewise;
 use numeric::Lane;
@@ -19,16 +19,6 @@ impl Piecewise {
     pub fn begin(&self) -> Cursor {
         let t = self.even.as_ref().map_or(self.knots[0], |even| even.from);
         Cursor { t, way: t, piece: 0 }
-    }
-
-    /// A walk back from the last knot, or from where a field ends that is [`Piecewise::even`].
-    #[inline]
-    pub fn end(&self) -> Cursor {
-        let piece = self.left.len() - 1;
-        let t = self.knots[piece + 1];
-        let even = self.even.as_ref();
-        let way = even.map_or(t, |even| even.to);
-        Cursor { t: even.map_or(t, |even| even.spread(way)), way, piece }
     }
 
     /// A walk over the pieces from any distance between the first and the last knot.
@@ -84,39 +74,6 @@ impl Piecewise {
         }
         None
     }
-
-    /// Flies back through an optical depth, from where a flight ended inside, and answers the field
-    /// there; `None` before the first knot. Non-negative fields only.
-    #[inline(always)]
-    pub fn fly_back(&self, cursor: &mut Cursor, depth: f64) -> Option<f64> {
-        if let Some(even) = &self.even {
-            cursor.way = Lane::times_plus(-depth, 1.0 / even.value, cursor.way);
-            cursor.t = even.spread(cursor.way);
-            return (cursor.way > even.from).then_some(even.value);
-        }
-        self.fly_back_over(cursor, depth)
-    }
-
-    /// The same over several pieces.
-    #[inline]
-    fn fly_back_over(&self, cursor: &mut Cursor, mut depth: f64) -> Option<f64> {
-        loop {
-            let (begin, slope) = (self.knots[cursor.piece], self.slope[cursor.piece]);
-            let here = self.line(cursor.piece, cursor.t);
-            let left = (cursor.t - begin) * 0.5 * (here + self.left[cursor.piece]);
-            if depth < left {
-                let root = Lane::or_more(here * here - 2.0 * slope * depth, 0.0).sqrt();
-                cursor.t -= 2.0 * depth / (here + root);
-                return Some(self.line(cursor.piece, cursor.t));
-            }
-            if cursor.piece == 0 {
-                return None;
-            }
-            depth -= left;
-            cursor.t = begin;
-            cursor.piece -= 1;
-        }
-    }
 }
 
 #[cfg(test)]
@@ -125,10 +82,6 @@ mod tests {
     use super::super::even::Even;
     use super::*;
     use numeric::Span;
-
-    fn lines() -> Piecewise {
-        Piecewise::lines(&[0.0, 1.0, 2.5, 4.0], &[0.2, 1.5, 0.4, 0.9])
-    }
 
     #[test]
     fn a_flight_begins_where_an_even_field_does() {
@@ -159,29 +112,6 @@ mod tests {
             if let Some(t) = flown {
                 let back = field.optical_depth(Span::new(0.0, t)).value;
                 assert!((back - depth).abs() < 1e-14, "{t}");
-            }
-        }
-    }
-
-    #[test]
-    fn a_flight_back_undoes_a_flight() {
-        let fields = [
-            lines(),
-            Piecewise::steps(&[0.0, 1.0, 2.0, 3.0], &[1.0, 0.0, 1.0]),
-            Piecewise::constant(0.7, Span::new(-1.0, 4.0)),
-            Piecewise::steps(&[0.0, 1.0, 2.0, 3.0], &[1.0, 0.0, 1.3]),
-        ];
-        for field in fields {
-            for step in 1..17 {
-                let (there, back) = (0.1 * f64::from(step), 0.07 * f64::from(step));
-                let mut cursor = field.begin();
-                field.fly(&mut cursor, there).expect("inside");
-                let value = field.fly_back(&mut cursor, back).expect("still inside");
-                let mut direct = field.begin();
-                let expected = field.fly(&mut direct, there - back).expect("inside");
-                assert!((cursor.t - direct.t).abs() < 1e-14, "{field:?} at {step}");
-                assert!((value - expected).abs() < 1e-14);
-                assert_eq!(field.fly_back(&mut cursor, there), None);
             }
         }
     }

@@ -153,6 +153,12 @@ pub trait Lane:
         self
     }
 
+    /// [`Self::set_where`] of a number in memory, see [`Self::sealed`].
+    #[inline(always)]
+    fn keep_where(&mut self, which: Self::Mask, other: Self) {
+        *self = Self::select(which, other, *self).sealed();
+    }
+
     /// One of a list. What an index finds lies in memory, and the whole list with it: this finds it among registers.
     #[inline(always)]
     fn one_of<const N: usize>(list: &[Self; N], wanted: usize) -> Self {

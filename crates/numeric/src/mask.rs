@@ -86,7 +86,7 @@ macro_rules! kept {
         }
     ) => {
         $(#[$about])*
-        #[derive(Debug, Clone, Copy)]
+        #[derive(Clone, Copy)]
         $visible struct $Name<$L: $crate::Lane> {
             $($(#[$says])* $shown $field: $Type,)*
         }

@@ -1,13 +1,14 @@
 //! Techniques of bidirectional path tracing in a rod, alone and together.
 
+mod batch;
 pub mod directional_mis;
 pub mod full_mis;
 pub mod subpath;
 pub mod technique;
 pub mod walk;
 
+pub use self::batch::packets;
 use self::walk::Steps;
-use crate::kernels::packet::bidirectional::Techniques;
 use crate::{Draw, Refusal, Setup, estimators};
 use ::theory::Heuristic;
 use ::theory::Prediction;
@@ -73,12 +74,6 @@ impl Page {
             is_tracked: connection? == "ratio",
             is_shared: subpaths? == "shared",
         })
-    }
-
-    /// What packets draw: paths with subpaths of their own.
-    fn techniques(self) -> Option<Techniques> {
-        let Self { combination, is_tracked, is_shared } = self;
-        (!is_shared).then_some(Techniques { combination, is_tracked })
     }
 
     /// In words, as in `power, ratio connection`.
@@ -239,12 +234,7 @@ macro_rules! pages {
                 medium: &media::Lookups,
                 request: $crate::kernels::packet::Request<'a>,
             ) -> Option<$crate::kernels::packet::Request<'a>> {
-                match self.0.techniques() {
-                    None => Some(request),
-                    Some(techniques) => $crate::kernels::packet::bidirectional::paths(
-                        level, techniques, setup, medium, request,
-                    ),
-                }
+                $crate::bidirectional_rod::packets(level, &self.0, setup, medium, request)
             }
         }
     };

@@ -1,137 +1,188 @@
-//! Subpaths by delta tracking, from the light or from the sensor.
+//! Subpaths by delta tracking, from the light or from the sensor, and connections by ratio tracking.
 //!
 //! A flight and each tentative collision take a random number, a scattering one more, which says whether the
 //! particle is absorbed, goes straight on or turns. The last vertex of a subpath is a real collision, where
-//! nothing is decided yet.
+//! nothing is decided yet. A flight goes on until the last lane has come to its next real collision; lanes that have none
+//! left wait, and their streams with them.
 
+use super::walk::Path;
 use crate::Setup;
-use media::{Cursor, Extinction, Lookups};
-use numeric::rng::Stream;
+use media::course::BothWays;
+use numeric::rng::Random;
+use numeric::{Lane, Mask};
 use theory::problems::BidirectionalRod;
-use theory::problems::bidirectional_rod::{HIGHEST_ORDER, Sensor};
+use theory::problems::bidirectional_rod::{HIGHEST_ORDER, MOST, Sensor};
 
-/// Real collisions of one walk.
-#[derive(Clone, Copy)]
-pub struct Subpath {
-    /// How many there are.
-    pub count: usize,
-    /// Where, as distances along the ray.
-    pub at: [f64; HIGHEST_ORDER],
-    /// The direction of each flight: to each collision, and out of the rod.
-    pub is_forward: [bool; HIGHEST_ORDER + 1],
-    /// `∏ (1 − σ_t/σ̂)` over the null vertices of each flight.
-    pub nulls: [f64; HIGHEST_ORDER + 1],
-    /// The walk at its beginning and at each collision.
-    pub cursors: [Cursor; HIGHEST_ORDER + 1],
-    /// The end of the rod, forward or not, at which it left after all of them.
-    pub left: Option<bool>,
+/// The side from which a subpath begins.
+#[derive(Clone, Copy, PartialEq)]
+pub enum Side {
+    /// The light.
+    Light = 0,
+    /// The sensor.
+    Camera = 1,
 }
 
-/// Tracking through the rod of one experiment.
+/// Real collisions of walks.
 #[derive(Clone, Copy)]
-pub struct Tracker<'a> {
+pub struct Subpath<L: Lane, P> {
+    /// Their distances along the ray.
+    pub at: [L; HIGHEST_ORDER],
+    /// Whether each flight goes forward: to each collision, and out of the rod.
+    pub is_forward: [L::Mask; HIGHEST_ORDER + 1],
+    /// `∏ (1 − σ_t/σ̂)` over the null vertices of each flight.
+    pub nulls: [L; HIGHEST_ORDER + 1],
+    /// Where the walk stood at its beginning and at each collision.
+    pub places: [P; HIGHEST_ORDER + 1],
+    /// Lanes with so many collisions at least.
+    pub reached: [L::Mask; HIGHEST_ORDER + 1],
+    /// Lanes that left the rod after so many collisions.
+    pub left: [L::Mask; HIGHEST_ORDER + 1],
+}
+
+/// What is computed for all lanes together.
+pub trait Field<L: Lane> {
+    /// σ_t at distances.
+    fn extinction(&self, t: L) -> L;
+
+    /// `e^x`, with the bits that each lane has by itself.
+    fn exp(&self, x: L) -> L;
+}
+
+/// Tracking through the rod of one experiment. All of it stays where it is: copies would cost more than what is drawn.
+pub struct Tracker<'a, L: Lane, C: BothWays<L>, F> {
     /// The rod and σ̂.
     pub setup: &'a Setup<BidirectionalRod>,
     /// σ_t.
-    pub medium: &'a Lookups<'a>,
+    pub field: F,
+    /// Walks at the beginning of σ̂, and at its end.
+    ends: [C; 2],
+    /// The number of lookups so far.
+    pub lookups: L,
+    /// The last subpaths from either side.
+    pub subpaths: [Subpath<L, C::Place>; 2],
+    /// The path that they make.
+    pub path: Path<L>,
+    /// The values of channels so far.
+    pub values: [L; MOST],
 }
 
-impl Tracker<'_> {
-    /// A walk to so many collisions and, where that is asked for, one flight beyond.
+impl<'a, L: Lane, C: BothWays<L>, F: Field<L>> Tracker<'a, L, C, F> {
+    /// Without lookups so far; `ends` are at the beginning and at the end of σ̂.
     #[inline(always)]
-    pub fn subpath(
-        &self,
-        from_light: bool,
-        [collisions, beyond]: [usize; 2],
-        rng: &mut Stream,
-        lookups: &mut u32,
-    ) -> Subpath {
-        let sampling = &self.setup.sampling;
-        let mut is_forward = from_light || self.setup.problem.sensor == Sensor::Reflected;
-        let mut cursor = if is_forward { sampling.begin() } else { sampling.end() };
-        let mut subpath = Subpath {
-            count: 0,
-            at: [0.0; HIGHEST_ORDER],
-            is_forward: [true; HIGHEST_ORDER + 1],
-            nulls: [1.0; HIGHEST_ORDER + 1],
-            cursors: [cursor; HIGHEST_ORDER + 1],
-            left: None,
+    pub fn new(setup: &'a Setup<BidirectionalRod>, zero: L, ends: [C; 2], field: F) -> Self {
+        let (none, place) = (zero.below(zero), ends[0].place());
+        let subpath = Subpath {
+            at: [zero; HIGHEST_ORDER],
+            is_forward: [none; HIGHEST_ORDER + 1],
+            nulls: [zero; HIGHEST_ORDER + 1],
+            places: [place; HIGHEST_ORDER + 1],
+            reached: [none; HIGHEST_ORDER + 1],
+            left: [none; HIGHEST_ORDER + 1],
         };
+        let path = Path::new(zero.each(1.0), setup.problem.albedo);
+        let (subpaths, values) = ([subpath; 2], [zero; MOST]);
+        Self { setup, field, ends, lookups: zero, subpaths, path, values }
+    }
+
+    /// Makes walks of the lanes in `which` to so many collisions and, where that is asked for, one flight beyond.
+    #[inline(always)]
+    pub fn walk(
+        &mut self,
+        side: Side,
+        [collisions, beyond]: [usize; 2],
+        which: L::Mask,
+        random: &mut impl Random<L>,
+    ) {
+        let (problem, none) = (&*self.setup.problem, which & !which);
+        let begins_forward = side == Side::Light || problem.sensor == Sensor::Reflected;
+        let mut course = self.ends[usize::from(!begins_forward)];
+        let (mut flying, mut is_forward) = (which, if begins_forward { !none } else { none });
+        let one = self.lookups.each(1.0);
+        let (albedo, forward) =
+            (one.each(problem.albedo), one.each(problem.albedo * problem.forward));
+        let side = side as usize;
+        (self.subpaths[side].places[0], self.subpaths[side].reached[0]) = (course.place(), which);
         for flight in 0..collisions + beyond {
             if flight > 0 {
-                let Some(turns) = self.scatter(rng) else { return subpath };
-                is_forward ^= turns;
+                let number = random.uniform_where(flying);
+                flying &= number.below(albedo);
+                is_forward ^= flying & forward.at_most(number);
             }
-            let (nulls, is_real) = self.fly(&mut cursor, is_forward, rng, lookups);
+            let (real, nulls) = self.fly(&mut course, flying, is_forward, random);
+            let subpath = &mut self.subpaths[side];
             subpath.is_forward[flight] = is_forward;
             subpath.nulls[flight] = nulls;
-            if !is_real {
-                subpath.left = Some(is_forward);
-                return subpath;
-            }
+            subpath.left[flight] = flying & !real;
             if flight < collisions {
-                subpath.at[flight] = cursor.t;
-                subpath.count += 1;
-                subpath.cursors[subpath.count] = cursor;
+                subpath.at[flight] = course.reached();
+                subpath.places[flight + 1] = course.place();
+                subpath.reached[flight + 1] = real;
             }
+            flying = real;
         }
-        subpath
     }
 
-    /// Whether a scattered particle turns; `None` if it is absorbed.
-    #[inline(always)]
-    fn scatter(&self, rng: &mut Stream) -> Option<bool> {
-        let (number, problem) = (rng.uniform(), &self.setup.problem);
-        (number < problem.albedo).then(|| number >= problem.albedo * problem.forward)
-    }
-
-    /// Flies to the next real collision, or out of the rod.
+    /// Flies lanes to their next real collisions, or out of the rod; answers which collided, and the products over null
+    /// vertices.
     #[inline(always)]
     fn fly(
-        &self,
-        cursor: &mut Cursor,
-        is_forward: bool,
-        rng: &mut Stream,
-        lookups: &mut u32,
-    ) -> (f64, bool) {
-        let mut nulls = 1.0;
-        while let Some(sampling) = self.step(cursor, is_forward, rng) {
-            *lookups += 1;
-            let ratio = self.medium.extinction(cursor.t) / sampling;
-            if rng.uniform() < ratio {
-                return (nulls, true);
-            }
-            nulls *= 1.0 - ratio;
+        &mut self,
+        course: &mut C,
+        mut flying: L::Mask,
+        is_forward: L::Mask,
+        random: &mut impl Random<L>,
+    ) -> (L::Mask, L) {
+        let (mut nulls, mut real) = (self.lookups.each(1.0), flying & !flying);
+        while flying.any() {
+            flying &= step(course, flying, is_forward, random);
+            let ratio = self.look_up(course, flying);
+            let collides = flying & random.uniform_where(flying).below(ratio);
+            flying &= !collides;
+            nulls.scale_where(flying, ratio.one_minus());
+            real |= collides;
         }
-        (nulls, false)
+        (real, nulls)
     }
 
-    /// `∏ (1 − σ_t/σ̂)` on the way to a place: ratio tracking.
+    /// `∏ (1 − σ_t/σ̂)` of lanes on the way from a place to distances: ratio tracking.
     #[inline(always)]
     pub fn connect(
-        &self,
-        mut cursor: Cursor,
-        to: f64,
-        is_forward: bool,
-        rng: &mut Stream,
-        lookups: &mut u32,
-    ) -> f64 {
-        let mut nulls = 1.0;
-        while let Some(sampling) = self.step(&mut cursor, is_forward, rng) {
-            let is_beyond = if is_forward { cursor.t >= to } else { cursor.t <= to };
-            if is_beyond {
-                break;
-            }
-            *lookups += 1;
-            nulls *= 1.0 - self.medium.extinction(cursor.t) / sampling;
+        &mut self,
+        from: C::Place,
+        to: L,
+        (mut flying, is_forward): (L::Mask, L::Mask),
+        random: &mut impl Random<L>,
+    ) -> L {
+        let (mut nulls, mut course) = (to.each(1.0), self.ends[0]);
+        course.stand_at(from);
+        while flying.any() {
+            flying &= step(&mut course, flying, is_forward, random);
+            let t = course.reached();
+            flying &= (is_forward & t.below(to)) | (!is_forward & to.below(t));
+            let ratio = self.look_up(&course, flying);
+            nulls.scale_where(flying, ratio.one_minus());
         }
         nulls
     }
 
-    /// σ̂ at the next tentative collision.
+    /// `σ_t/σ̂` where lanes are that are on their way.
     #[inline(always)]
-    fn step(&self, cursor: &mut Cursor, is_forward: bool, rng: &mut Stream) -> Option<f64> {
-        let (sampling, depth) = (&self.setup.sampling, -rng.ln_uniform());
-        if is_forward { sampling.fly(cursor, depth) } else { sampling.fly_back(cursor, depth) }
+    fn look_up(&mut self, course: &C, flying: L::Mask) -> L {
+        self.lookups.count_where(flying);
+        // Beyond both ends there is no field to look at.
+        let t = L::select(flying, course.reached(), self.ends[0].reached());
+        self.field.extinction(t) / course.sampling()
     }
+}
+
+/// Flies to the next tentative collisions; answers which lanes are inside. The others stay where they are.
+#[inline(always)]
+fn step<L: Lane>(
+    course: &mut impl BothWays<L>,
+    flying: L::Mask,
+    is_forward: L::Mask,
+    random: &mut impl Random<L>,
+) -> L::Mask {
+    let depth = -random.ln_uniform_where(flying);
+    course.fly_either_way(L::select(flying, depth, depth.each(0.0)), is_forward)
 }

@@ -10,50 +10,96 @@
 //! absorbed, leaves, or has been scattered as often as the highest order, and all techniques of all orders take
 //! their first vertices.
 
-use super::subpath::{Subpath, Tracker};
+use super::subpath::{Field, Side, Subpath, Tracker};
 use crate::{Draw, Setup};
-use media::Lookups;
-use numeric::rng::Stream;
-use numeric::{Lane, Span};
+use media::course::{BothWays, Even, Pieces};
+use media::{Extinction, Lookups};
+use numeric::lane::fuses;
+use numeric::rng::{Random, Stream};
+use numeric::twin::PAIR;
+use numeric::{Fused, Lane, Mask, Plain, Single, Span};
 use theory::bidirectional_rod::{Combination, quotient};
 use theory::problems::bidirectional_rod::{HIGHEST_ORDER, MOST, Sensor, Values};
 use theory::problems::{BidirectionalRod, Problem};
 
-/// A path from the light to the sensor.
-#[derive(Debug, Clone, Copy)]
-pub struct Path {
-    /// How often it is scattered, r.
+/// Paths from the light to the sensor, all by the same technique.
+#[derive(Clone, Copy)]
+pub struct Path<L: Lane> {
+    /// How often they are scattered, r.
     pub order: usize,
-    /// How many of its vertices were made from the light, s.
+    /// How many of their vertices were made from the light, s.
     pub light: usize,
     /// Light, scatterings and sensor, as distances along the ray.
-    pub at: [f64; HIGHEST_ORDER + 2],
+    pub at: [L; HIGHEST_ORDER + 2],
     /// Whether each segment goes forward.
-    pub is_forward: [bool; HIGHEST_ORDER + 1],
+    pub is_forward: [L::Mask; HIGHEST_ORDER + 1],
     /// `T̂ⱼ` of each segment.
-    pub transmittance: [f64; HIGHEST_ORDER + 1],
+    pub transmittance: [L; HIGHEST_ORDER + 1],
     /// ρ at each scattering, from the first on.
-    pub phase: [f64; HIGHEST_ORDER],
+    pub phase: [L; HIGHEST_ORDER],
     /// a.
     pub albedo: f64,
 }
 
-impl Path {
-    /// `c_s = f/p_s` of a technique for this path.
+impl<L: Lane> Path<L> {
+    /// Room for paths.
     #[inline(always)]
-    pub fn quotient(&self, s: usize) -> f64 {
-        let scattered = |i: usize| self.albedo * self.phase[i - 1];
-        quotient(s, self.order, |j| self.transmittance[j], scattered)
+    pub fn new(one: L, albedo: f64) -> Self {
+        Self {
+            order: 0,
+            light: 0,
+            at: [one; HIGHEST_ORDER + 2],
+            is_forward: [one.at_most(one); HIGHEST_ORDER + 1],
+            transmittance: [one; HIGHEST_ORDER + 1],
+            phase: [one; HIGHEST_ORDER],
+            albedo,
+        }
     }
 
-    /// The weight of the technique that made it.
+    /// `c_s = f/p_s` of a technique for these paths.
     #[inline(always)]
-    pub fn weight(&self, combination: Combination) -> f64 {
+    pub fn quotient(&self, s: usize) -> L {
+        quotient(
+            s,
+            self.order,
+            #[inline(always)]
+            |j| self.transmittance[j],
+            #[inline(always)]
+            |i| self.phase[i - 1] * self.albedo,
+        )
+    }
+
+    /// The same without a and T̂.
+    #[inline(always)]
+    fn directions(&self, s: usize) -> L {
+        quotient(
+            s,
+            self.order,
+            #[inline(always)]
+            |_| self.at[0].each(1.0),
+            #[inline(always)]
+            |i| self.phase[i - 1],
+        )
+    }
+
+    /// The weight of the technique that made them.
+    #[inline(always)]
+    pub fn weight(&self, combination: Combination) -> L {
+        let (light, order) = (self.light, self.order);
         match combination {
-            Combination::Full(heuristic) => {
-                heuristic.share(self.light, self.order, |j| self.quotient(j))
-            }
-            _ => combination.weight(&self.phase[..self.order], self.light),
+            Combination::Full(heuristic) => heuristic.share(
+                light,
+                order,
+                #[inline(always)]
+                |s| self.quotient(s),
+            ),
+            Combination::Directional(heuristic) => heuristic.share(
+                light,
+                order,
+                #[inline(always)]
+                |s| self.directions(s),
+            ),
+            Combination::Technique(_) => self.at[0].each(1.0),
         }
     }
 }
@@ -71,125 +117,215 @@ pub trait Steps {
 
     /// What the generator does before each path: it goes on.
     #[inline(always)]
-    fn begin(&self, rng: &mut Stream, beginning: &Stream) {
-        let _ = (rng, beginning);
+    fn begin<R: Copy>(&self, random: &mut R, beginning: &R) {
+        let _ = (random, beginning);
     }
 
     /// Where the connection of a path begins: the last vertex from the light.
     #[inline(always)]
-    fn joined(&self, path: &Path) -> usize {
+    fn joined<L: Lane>(&self, path: &Path<L>) -> usize {
         path.light - 1
     }
 
-    /// What a path is worth; `T̂` of its connection is positive.
+    /// What paths are worth; `T̂` of their connections is positive.
     #[inline(always)]
-    fn worth(&self, path: &Path) -> f64 {
+    fn worth<L: Lane>(&self, path: &Path<L>) -> L {
         path.weight(self.combination()) * path.quotient(path.light)
     }
 
     /// What all techniques are worth together.
     #[inline(always)]
-    fn together(&self, each: &[f64]) -> f64 {
-        each.iter().sum()
+    fn together<L: Lane>(&self, each: &[L]) -> L {
+        let (first, rest) = (each[0], &each[1..]);
+        let mut sum = first;
+        for &worth in rest {
+            sum = sum + worth;
+        }
+        sum
     }
 }
 
-/// Makes one draw: a path of each technique.
+/// Makes one draw.
 #[inline(always)]
 pub fn draw(
     steps: &impl Steps,
     setup: &Setup<BidirectionalRod>,
     medium: &Lookups,
-    rng: &mut Stream,
+    random: &mut Stream,
 ) -> Draw<Values> {
-    let tracker = Tracker { setup, medium };
-    let mut values = Values { at: [0.0; MOST], count: 0 };
-    let (mut lookups, beginning) = (0, *rng);
-    let orders = setup.problem.orders.clone();
-    let shared = steps.is_shared().then(|| {
-        let whole = [*orders.end(), 1];
-        [true, false].map(|from_light| tracker.subpath(from_light, whole, rng, &mut lookups))
-    });
-    for order in orders {
-        for s in steps.combination().techniques(order) {
-            steps.begin(rng, &beginning);
-            let subpaths = match shared {
-                Some(subpaths) => Some(subpaths),
-                None => independent(&tracker, order, s, rng, &mut lookups),
-            };
-            let path = subpaths.and_then(|subpaths| {
-                joined(&tracker, steps, [order, s], &subpaths, rng, &mut lookups)
-            });
-            values.at[values.count] = path.map_or(0.0, |path| steps.worth(&path));
-            values.count += 1;
-        }
+    if fuses() {
+        one::<Fused>(steps, setup, medium, random)
+    } else {
+        one::<Plain>(steps, setup, medium, random)
     }
-    let sum = steps.together(&values.at[..values.count]);
-    if !setup.problem.has_shares {
-        values.count = 0;
-    }
-    if values.count != 1 {
-        values.at[values.count] = sum;
-        values.count += 1;
-    }
-    Draw::free(values, lookups)
 }
 
-/// The subpaths of a technique; `None` where that from the light ends too soon.
 #[inline(always)]
-fn independent(
-    tracker: &Tracker,
-    order: usize,
-    s: usize,
-    rng: &mut Stream,
-    lookups: &mut u32,
-) -> Option<[Subpath; 2]> {
+fn one<L: Single>(
+    steps: &impl Steps,
+    setup: &Setup<BidirectionalRod>,
+    medium: &Lookups,
+    random: &mut Stream,
+) -> Draw<Values> {
+    let (zero, alone) = (L::of(0.0), Alone(medium));
+    if let Some(even) = setup.sampling.even() {
+        let begin = Even::new(zero, even);
+        through(steps, Tracker::new(setup, zero, [begin, begin.from_end()], alone), random)
+    } else {
+        let begin = Pieces::new(zero, &setup.sampling);
+        through(steps, Tracker::new(setup, zero, [begin, begin.from_end()], alone), random)
+    }
+}
+
+#[inline(always)]
+#[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // a count
+fn through<L: Single, C: BothWays<L>>(
+    steps: &impl Steps,
+    mut tracker: Tracker<'_, L, C, impl Field<L>>,
+    random: &mut Stream,
+) -> Draw<Values> {
+    let count = draw_each(steps, &mut tracker, true, random);
+    let mut values = Values { at: [0.0; MOST], count };
+    for (value, drawn) in values.at[..count].iter_mut().zip(tracker.values) {
+        *value = drawn.double();
+    }
+    Draw::free(values, tracker.lookups.double() as u32)
+}
+
+/// The lookups of one lane.
+struct Alone<'a>(&'a Lookups<'a>);
+
+impl<L: Lane> Field<L> for Alone<'_> {
+    #[inline(always)]
+    fn extinction(&self, t: L) -> L {
+        self.0.extinction(t)
+    }
+
+    #[inline(always)]
+    fn exp(&self, x: L) -> L {
+        x.exp()
+    }
+}
+
+/// Makes a draw of each lane in `which`: a path of each technique. Answers the number of channels.
+#[inline(always)]
+pub fn draw_each<L: Lane, C: BothWays<L>, R: Random<L> + Copy>(
+    steps: &impl Steps,
+    tracker: &mut Tracker<'_, L, C, impl Field<L>>,
+    which: L::Mask,
+    random: &mut R,
+) -> usize {
+    let (problem, beginning) = (&*tracker.setup.problem, *random);
+    let zero = tracker.lookups.each(0.0);
+    (tracker.lookups, tracker.values[0]) = (zero, zero);
+    let mut count = 0;
+    if steps.is_shared() {
+        let whole = [*problem.orders.end(), 1];
+        tracker.walk(Side::Light, whole, which, random);
+        tracker.walk(Side::Camera, whole, which, random);
+    }
+    for order in problem.orders.clone() {
+        for s in steps.combination().techniques(order) {
+            steps.begin(random, &beginning);
+            if !steps.is_shared() {
+                walk_for(tracker, [order, s], which, random);
+            }
+            (tracker.path.order, tracker.path.light) = (order, s);
+            let valid = join(tracker, steps, which, random);
+            let mut worth = zero;
+            if valid.any() {
+                worth = L::select(valid, steps.worth(&tracker.path), zero);
+            }
+            tracker.values[count] = worth;
+            count += 1;
+        }
+    }
+    let sum = steps.together(&tracker.values[..count.max(1)]);
+    if !problem.has_shares {
+        count = 0;
+    }
+    if count != 1 {
+        tracker.values[count] = sum;
+        count += 1;
+    }
+    count
+}
+
+/// Makes the subpaths of a technique `[r, s]`; that from the sensor where that from the light does not end too soon.
+#[inline(always)]
+fn walk_for<L: Lane, C: BothWays<L>>(
+    tracker: &mut Tracker<'_, L, C, impl Field<L>>,
+    [order, s]: [usize; 2],
+    which: L::Mask,
+    random: &mut impl Random<L>,
+) {
     let [light, camera] = match s {
         0 => [[0, 0], [order, 1]],
         _ if s == order + 2 => [[order, 1], [0, 0]],
         _ => [[s - 1, 0], [order + 1 - s, 0]],
     };
-    let from_light = tracker.subpath(true, light, rng, lookups);
-    let is_whole = from_light.count == light[0];
-    is_whole.then(|| [from_light, tracker.subpath(false, camera, rng, lookups)])
+    tracker.walk(Side::Light, light, which, random);
+    let is_whole = tracker.subpaths[Side::Light as usize].reached[light[0]];
+    tracker.walk(Side::Camera, camera, is_whole, random);
 }
 
-/// A path by a technique with `[r, s]`, from the first vertices of two subpaths; `None` where one of them has
-/// too few, a hit misses, or nothing comes through.
+/// Makes paths by a technique of the first vertices of two subpaths; answers the lanes in which it does: not where one of
+/// them has too few, a hit misses, or nothing comes through.
 #[inline(always)]
-fn joined(
-    tracker: &Tracker,
+fn join<L: Lane, C: BothWays<L>>(
+    tracker: &mut Tracker<'_, L, C, impl Field<L>>,
     steps: &impl Steps,
-    [order, s]: [usize; 2],
-    [light, camera]: &[Subpath; 2],
-    rng: &mut Stream,
-    lookups: &mut u32,
-) -> Option<Path> {
-    let (problem, support) = (&*tracker.setup.problem, tracker.setup.mesh.support());
+    which: L::Mask,
+    random: &mut impl Random<L>,
+) -> L::Mask {
+    let (problem, path) = (&*tracker.setup.problem, &mut tracker.path);
+    let (order, s) = (path.order, path.light);
     let is_transmitted = problem.sensor == Sensor::Transmitted;
     let is_hit = s == 0 || s == order + 2;
     // Scatterings that each of the two makes.
     let from_light = s.saturating_sub(1).min(order);
     let from_camera = order - from_light;
-    if light.count < from_light || camera.count < from_camera {
-        return None;
+    let [light, camera] = &tracker.subpaths;
+    let mut valid = which & light.reached[from_light] & camera.reached[from_camera];
+    if s == 0 {
+        valid &= camera.left[order] & !camera.is_forward[order];
+    } else if is_hit {
+        let is_forward = light.is_forward[order];
+        valid &= light.left[order] & if is_transmitted { is_forward } else { !is_forward };
     }
-    if is_hit {
-        let (whole, leaves) = if s == 0 { (camera, false) } else { (light, is_transmitted) };
-        if whole.count != order || whole.left != Some(leaves) {
-            return None;
-        }
+    if !valid.any() {
+        return valid;
     }
-    let mut path = Path {
-        order,
-        light: s,
-        at: [support.from; HIGHEST_ORDER + 2],
-        is_forward: [true; HIGHEST_ORDER + 1],
-        transmittance: [1.0; HIGHEST_ORDER + 1],
-        phase: [0.0; HIGHEST_ORDER],
-        albedo: problem.albedo,
-    };
-    path.at[order + 1] = if is_transmitted { support.to } else { support.from };
+    gather(tracker.setup, [light, camera], path);
+    if !is_hit && steps.is_tracked() {
+        let (from, to) = (light.places[from_light], path.at[s]);
+        let flying = (valid, path.is_forward[s - 1]);
+        tracker.path.transmittance[s - 1] = tracker.connect(from, to, flying, random);
+    }
+    if !steps.is_tracked() {
+        attenuate(problem, steps, (&mut tracker.path, &tracker.field), valid);
+    }
+    if !is_hit {
+        let found = tracker.path.transmittance[s - 1];
+        valid &= found.each(0.0).below(found);
+    }
+    valid
+}
+
+/// Gathers the vertices of paths before they are connected.
+#[inline(always)]
+fn gather<L: Lane, P>(
+    setup: &Setup<BidirectionalRod>,
+    [light, camera]: [&Subpath<L, P>; 2],
+    path: &mut Path<L>,
+) {
+    let (problem, support) = (&*setup.problem, setup.mesh.support());
+    let (order, s, one) = (path.order, path.light, path.at[0].each(1.0));
+    let (all, is_transmitted) = (one.at_most(one), problem.sensor == Sensor::Transmitted);
+    let from_light = s.saturating_sub(1).min(order);
+    let from_camera = order - from_light;
+    path.at[0] = one.each(support.from);
+    path.at[order + 1] = one.each(if is_transmitted { support.to } else { support.from });
     for i in 0..from_light {
         path.at[i + 1] = light.at[i];
     }
@@ -197,7 +333,7 @@ fn joined(
         path.at[order - i] = camera.at[i];
     }
     // A hit has one more segment than scatterings.
-    for j in 0..from_light + usize::from(is_hit && s > 0) {
+    for j in 0..from_light + usize::from(s == order + 2) {
         path.is_forward[j] = light.is_forward[j];
         path.transmittance[j] = light.nulls[j];
     }
@@ -205,42 +341,66 @@ fn joined(
         path.is_forward[order - j] = !camera.is_forward[j];
         path.transmittance[order - j] = camera.nulls[j];
     }
-    if !is_hit {
-        let j = s - 1;
-        path.is_forward[j] = match s {
-            _ if s == order + 1 => is_transmitted,
-            1 => true,
-            _ => path.at[j] < path.at[s],
+    if s >= 1 && s <= order + 1 {
+        path.is_forward[s - 1] = match s {
+            _ if s == order + 1 && is_transmitted => all,
+            _ if s == order + 1 => !all,
+            1 => all,
+            _ => path.at[s - 1].below(path.at[s]),
         };
-        if steps.is_tracked() {
-            let (begin, is_forward) = (light.cursors[from_light], path.is_forward[j]);
-            path.transmittance[j] = tracker.connect(begin, path.at[s], is_forward, rng, lookups);
-        }
+        path.transmittance[s - 1] = one;
     }
     for i in 0..order {
-        let goes_on = path.is_forward[i] == path.is_forward[i + 1];
-        path.phase[i] = if goes_on { problem.forward } else { 1.0 - problem.forward };
+        let turns = path.is_forward[i] ^ path.is_forward[i + 1];
+        let (on, back) = (one.each(problem.forward), one.each(1.0 - problem.forward));
+        path.phase[i] = L::select(turns, back, on);
     }
-    if !steps.is_tracked() {
-        attenuate(problem, steps, &mut path);
-    }
-    (is_hit || path.transmittance[s - 1] > 0.0).then_some(path)
 }
 
 /// `T̂` in closed form: of the connection, or of all segments where weights ask for them.
 #[inline(always)]
-fn attenuate(problem: &BidirectionalRod, steps: &impl Steps, path: &mut Path) {
-    let between = |a: f64, b: f64| {
-        let depth = problem.medium().optical_depth(Span::new(a.min(b), a.max(b))).value;
-        Lane::exp(-depth)
-    };
+fn attenuate<L: Lane>(
+    problem: &BidirectionalRod,
+    steps: &impl Steps,
+    (path, field): (&mut Path<L>, &impl Field<L>),
+    which: L::Mask,
+) {
     if matches!(steps.combination(), Combination::Full(_)) {
         for j in 0..=path.order {
-            path.transmittance[j] = between(path.at[j], path.at[j + 1]);
+            path.transmittance[j] =
+                field.exp(minus_depths(problem, [path.at[j], path.at[j + 1]], which));
         }
     }
     if path.light >= 1 && path.light <= path.order + 1 {
-        let from = steps.joined(path);
-        path.transmittance[path.light - 1] = between(path.at[from], path.at[path.light]);
+        let (from, to) = (path.at[steps.joined(path)], path.at[path.light]);
+        path.transmittance[path.light - 1] = field.exp(minus_depths(problem, [from, to], which));
     }
+}
+
+/// Minus the optical depths between distances, of the lanes in `which`.
+#[inline(always)]
+fn minus_depths<L: Lane>(problem: &BidirectionalRod, [a, b]: [L; 2], which: L::Mask) -> L {
+    let (bits, mut ends, mut lane) = (which.bits(), [0.0; PAIR], 0);
+    let _ = a.or_more(b).replaced(
+        #[inline(always)]
+        |elements| {
+            for element in elements {
+                ends[lane] = *element;
+                lane += 1;
+            }
+        },
+    );
+    lane = 0;
+    a.or_less(b).replaced(
+        #[inline(always)]
+        |elements| {
+            for from in elements {
+                let is_asked = bits >> lane & 1 == 1;
+                let span = Span::new(*from, ends[lane]);
+                let depth = || problem.medium().optical_depth(span).value;
+                *from = if is_asked { -depth() } else { 0.0 };
+                lane += 1;
+            }
+        },
+    )
 }

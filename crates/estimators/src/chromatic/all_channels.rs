@@ -2,7 +2,7 @@
 
 use fearless_simd::Level;
 
-use super::{Chromatic, draw_all};
+use super::{By, Chromatic, WEIGHING, draw};
 use crate::kernels::packet::Request;
 use crate::setup::heroes::Heroes;
 use crate::setup::walker::{MIS, Walker};
@@ -62,7 +62,7 @@ impl<P: Chromatic, const KIND: u8> Estimator<P> for AllChannels<KIND> {
 
     #[inline(always)]
     fn draw(&self, setup: &Setup<P>, medium: &Lookups, rng: &mut Stream) -> Draw<P::Value> {
-        draw_all(&self.walker, setup, medium, rng)
+        draw(&self.walker, true, setup, medium, rng)
     }
 
     fn draw_packets<'a>(
@@ -72,6 +72,7 @@ impl<P: Chromatic, const KIND: u8> Estimator<P> for AllChannels<KIND> {
         medium: &Lookups,
         request: Request<'a>,
     ) -> Option<Request<'a>> {
-        P::packets::<true>(level, &self.walker, setup, medium, request)
+        let by = By { walker: &self.walker, weighing: WEIGHING, scores_all: true };
+        P::packets(level, by, setup, medium, request)
     }
 }

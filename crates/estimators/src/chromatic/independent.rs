@@ -2,7 +2,7 @@
 
 use fearless_simd::Level;
 
-use super::{Chromatic, draw_alone};
+use super::{By, Chromatic, WEIGHING, draw};
 use crate::kernels::packet::Request;
 use crate::setup::heroes::Heroes;
 use crate::setup::walker::Walker;
@@ -43,7 +43,7 @@ impl<P: Chromatic> Estimator<P> for Independent {
 
     #[inline(always)]
     fn draw(&self, setup: &Setup<P>, medium: &Lookups, rng: &mut Stream) -> Draw<P::Value> {
-        draw_alone((&self.walker, &self.heroes), setup, medium, rng)
+        draw(&self.walker, false, setup, medium, rng)
     }
 
     fn draw_packets<'a>(
@@ -53,6 +53,7 @@ impl<P: Chromatic> Estimator<P> for Independent {
         medium: &Lookups,
         request: Request<'a>,
     ) -> Option<Request<'a>> {
-        P::packets::<false>(level, &self.walker, setup, medium, request)
+        let by = By { walker: &self.walker, weighing: WEIGHING, scores_all: false };
+        P::packets(level, by, setup, medium, request)
     }
 }

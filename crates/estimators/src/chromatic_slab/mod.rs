@@ -2,26 +2,26 @@
 
 pub mod hero;
 pub mod independent;
-pub mod packet;
 pub mod spectral_mis;
 pub mod spectral_tracking;
 pub mod walk;
 
 use fearless_simd::Level;
 
-use super::chromatic::{Chromatic, Left, Steps};
+use self::walk::InSlab;
+use super::chromatic::{By, Chromatic, Right, Steps};
 use crate::kernels::packet::Request;
 use crate::setup::channels;
 use crate::setup::walker::Walker;
-use crate::{Refusal, Setup, estimators};
+use crate::walks::{self, Ground};
+use crate::{Draw, Refusal, Setup, estimators};
 use media::Lookups;
-use media::body::MOST_CHANNELS;
 use numeric::digits::rounded;
 use numeric::rng::Stream;
 use theory::Prediction;
 use theory::chromatic_slab::Spectrum;
 use theory::problems::ChromaticSlab;
-use theory::problems::spectral_rod::{End, Values};
+use theory::problems::spectral_rod::Values;
 
 /// For theory.
 fn spectrum(setup: &Setup<ChromaticSlab>) -> Spectrum<'_> {
@@ -40,22 +40,26 @@ fn realisable(setup: &Setup<ChromaticSlab>) -> Result<(), Refusal> {
 }
 
 impl Chromatic for ChromaticSlab {
-    type End = End;
-
     #[inline(always)]
-    fn walk(
-        steps: &impl Steps,
+    fn draw(
+        steps: impl Steps,
+        by: By,
         setup: &Setup<Self>,
-        walker: (&Walker, usize),
         medium: &Lookups,
-        rng: &mut Stream,
-    ) -> Left<End> {
-        walk::walk(steps, setup, walker, medium, rng)
+        random: &mut Stream,
+    ) -> Draw<Values> {
+        let walk = InSlab::new(steps, by, setup);
+        walks::draw(&walk, &setup.channels[0].sampling, medium, random)
     }
 
-    #[inline(always)]
-    fn values(&self, end: Option<End>, scores: &[f64; MOST_CHANNELS]) -> Values {
-        self.colours.values(end, scores)
+    fn packets<'a>(
+        level: Level,
+        by: By,
+        setup: &Setup<Self>,
+        medium: &Lookups,
+        request: Request<'a>,
+    ) -> Option<Request<'a>> {
+        walks::packets(level, &InSlab::new(Right, by, setup), Ground::new(setup, medium), request)
     }
 
     fn require(setup: &Setup<Self>, walker: &Walker) -> Result<(), Refusal> {
@@ -90,16 +94,6 @@ impl Chromatic for ChromaticSlab {
     ) -> Prediction {
         let heroes = walker.heroes().map(|heroes| heroes.of(setup.channels.len()));
         spectrum(setup).relative(heroes.as_deref(), second_moment_bounds)
-    }
-
-    fn packets<'a, const ALL: bool>(
-        level: Level,
-        walker: &Walker,
-        setup: &Setup<Self>,
-        medium: &Lookups,
-        request: Request<'a>,
-    ) -> Option<Request<'a>> {
-        packet::walks::<ALL>(level, walker, setup, medium, request)
     }
 }
 

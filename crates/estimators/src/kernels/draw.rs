@@ -29,6 +29,8 @@ pub struct DrawBuffer {
     pub lookups: Vec<u32>,
     /// `defects[draw]`, see [`Draw::defect`].
     pub defects: Vec<f64>,
+    /// Room for the numbers that draws are made of when all are known.
+    pub(crate) left: Vec<f64>,
 }
 
 impl DrawBuffer {
@@ -41,7 +43,7 @@ impl DrawBuffer {
 
     /// An empty buffer for draws of the given number of channels.
     pub fn new(channels: usize) -> Self {
-        Self { values: vec![Vec::new(); channels], lookups: Vec::new(), defects: Vec::new() }
+        Self { values: vec![Vec::new(); channels], ..Self::default() }
     }
 
     /// How many draws of so many channels a buffer is to be filled with.

@@ -21,42 +21,7 @@ use crate::setup::heroes::Heroes;
 use media::body::MOST_CHANNELS;
 use numeric::Lane;
 
-/// Where the transmittance of the last piece through σ̂ is.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum LastPiece {
-    /// In f and in the densities.
-    Everywhere,
-    /// In neither.
-    Nowhere,
-    /// In f only.
-    InContribution,
-}
-
-/// How a path is weighted: right, or with a known bug.
-#[derive(Debug, Clone, Copy)]
-pub struct Weighing {
-    /// Where the transmittance of the last piece is.
-    pub last_piece: LastPiece,
-    /// Whether next-event estimation is among the techniques.
-    pub has_next_event: bool,
-    /// Whether the null collisions of the last segment are in `p_uni`.
-    pub has_nulls: bool,
-    /// How many of the last channels are missing among the heroes.
-    pub missing: usize,
-    /// What the sum of the densities is multiplied by.
-    pub share: f64,
-}
-
-impl Weighing {
-    /// As it should be.
-    pub const RIGHT: Self = Self {
-        last_piece: LastPiece::Everywhere,
-        has_next_event: true,
-        has_nulls: true,
-        missing: 0,
-        share: 1.0,
-    };
-}
+pub use crate::walks::hero::{LastPiece, Weighing};
 
 /// A path that grows, as the densities of all channels see it.
 #[derive(Debug, Clone, Copy)]

@@ -38,6 +38,27 @@ kept! {
     }
 }
 
+/// What scatters where walks are.
+pub trait Scatterers<L: Lane> {
+    /// a.
+    fn albedo(&self, t: L) -> L;
+
+    /// `p_f`.
+    fn forward(&self, t: L) -> L;
+}
+
+impl<L: Lane> Scatterers<L> for &Rod {
+    #[inline(always)]
+    fn albedo(&self, t: L) -> L {
+        self.albedo.value(t)
+    }
+
+    #[inline(always)]
+    fn forward(&self, t: L) -> L {
+        self.forward.value(t)
+    }
+}
+
 /// The walk to an emitter at the end of a rod.
 #[derive(Clone, Copy)]
 pub struct ToEmitter<'a, S> {
@@ -108,16 +129,7 @@ impl<S: Steps> Walk for ToEmitter<'_, S> {
         met: &Met<L>,
         random: &mut impl Random<L>,
     ) -> L::Mask {
-        let (rays, walks) = (path.shadow.casts, !path.shadow.casts);
-        let (mut goes_on, albedo) = (rays, self.rod.albedo.value(met.t));
-        if rays.maybe() {
-            let along = (met.t.each(1.0), albedo);
-            path.shadow.track(&self.steps, &self.before, (route, met), along, &mut path.score);
-        }
-        if walks.maybe() {
-            goes_on |= self.step(path, route, (met, albedo), walks, random);
-        }
-        goes_on
+        self.collide_among(&self.rod, path, route, met, random)
     }
 
     #[inline(always)]
@@ -127,10 +139,33 @@ impl<S: Steps> Walk for ToEmitter<'_, S> {
 }
 
 impl<S: Steps> ToEmitter<'_, S> {
+    /// Handles walks and shadow rays among scatterers, as [`Walk::collide`].
+    #[inline(always)]
+    pub fn collide_among<L: Lane>(
+        &self,
+        among: &impl Scatterers<L>,
+        path: &mut Path<L>,
+        route: &mut Route<impl BothWays<L>>,
+        met: &Met<L>,
+        random: &mut impl Random<L>,
+    ) -> L::Mask {
+        let (rays, walks) = (path.shadow.casts, !path.shadow.casts);
+        let (mut goes_on, albedo) = (rays, among.albedo(met.t));
+        if rays.maybe() {
+            let along = (met.t.each(1.0), albedo);
+            path.shadow.track(&self.steps, &self.before, (route, met), along, &mut path.score);
+        }
+        if walks.maybe() {
+            goes_on |= self.step(among, path, route, (met, albedo), walks, random);
+        }
+        goes_on
+    }
+
     /// Handles walks at a collision or behind the medium; answers which go on.
     #[inline(always)]
     fn step<L: Lane>(
         &self,
+        among: &impl Scatterers<L>,
         path: &mut Path<L>,
         route: &mut Route<impl BothWays<L>>,
         (met, albedo): (&Met<L>, L),
@@ -151,7 +186,7 @@ impl<S: Steps> ToEmitter<'_, S> {
             path.ratio.set_where(null & !path.unscattered, after_null);
         }
         if scattered.maybe() {
-            self.scatter(path, route, (t, albedo), scattered, random);
+            self.scatter(among, path, route, (t, albedo), scattered, random);
         }
         scattered | null
     }
@@ -160,6 +195,7 @@ impl<S: Steps> ToEmitter<'_, S> {
     #[inline(always)]
     fn scatter<L: Lane>(
         &self,
+        among: &impl Scatterers<L>,
         path: &mut Path<L>,
         route: &mut Route<impl BothWays<L>>,
         (t, albedo): (L, L),
@@ -167,7 +203,7 @@ impl<S: Steps> ToEmitter<'_, S> {
         random: &mut impl Random<L>,
     ) {
         let direction = random.uniform_where(scattered);
-        let forward = self.rod.forward.value(t);
+        let forward = among.forward(t);
         let phase = self.steps.phase(forward, path.is_forward, albedo);
         let techniques = self.steps.techniques();
         let mut exact = t.each(0.0);

@@ -34,14 +34,12 @@ kept! {
         cosine: L,
         /// w.
         weight: L,
-        /// Numbers of scatterings.
-        order: L,
     }
 }
 
-/// A slab, and the steps of walks through it; with `ORDERS` how often they are scattered is seen, too.
+/// A slab, and the steps of walks through it.
 #[derive(Clone, Copy)]
-pub struct InSlab<'a, S, const ORDERS: bool = false> {
+pub struct InSlab<'a, S> {
     /// The light on it, and its phase function.
     pub incidence: &'a Incidence,
     /// a.
@@ -50,13 +48,13 @@ pub struct InSlab<'a, S, const ORDERS: bool = false> {
     pub steps: S,
 }
 
-impl<S: Steps, const ORDERS: bool> Walk for InSlab<'_, S, ORDERS> {
+impl<S: Steps> Walk for InSlab<'_, S> {
     type State<L: Lane> = Particle<L>;
 
     #[inline(always)]
     fn begin<L: Lane>(&self, one: L, which: L::Mask, rng: &mut impl Random<L>) -> Particle<L> {
         let cosine = entering(self.incidence.light, &self.steps, which, one, rng);
-        Particle { cosine, weight: one, order: one.each(0.0) }
+        Particle { cosine, weight: one }
     }
 
     #[inline(always)]
@@ -82,9 +80,6 @@ impl<S: Steps, const ORDERS: bool> Walk for InSlab<'_, S, ORDERS> {
         let odds = self.steps.odds(ratio, ratio.each(self.albedo));
         let (scattered, straight_on) = odds.decide_each(inside, number);
         if scattered.maybe() {
-            if ORDERS {
-                particle.order.count_where(scattered);
-            }
             let phase = &self.incidence.phase;
             let mut cosine = self.steps.deflection(phase, rng.uniform_where(scattered));
             if *phase != Phase::Isotropic(Isotropic) {
@@ -101,16 +96,12 @@ impl<S: Steps, const ORDERS: bool> Walk for InSlab<'_, S, ORDERS> {
 
     #[inline(always)]
     fn channels(&self) -> usize {
-        if ORDERS { 3 } else { 2 }
+        2
     }
 
     #[inline(always)]
     fn value<L: Lane>(&self, particle: &Particle<L>, left: L::Mask, channel: usize) -> L {
-        let there = match channel {
-            0 => !is_down(particle),
-            1 => is_down(particle),
-            _ => return particle.order,
-        };
+        let there = if channel == 0 { !is_down(particle) } else { is_down(particle) };
         L::select(left & there, particle.weight, particle.weight.each(0.0))
     }
 }

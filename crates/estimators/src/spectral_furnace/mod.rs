@@ -9,17 +9,16 @@ pub mod walk;
 
 use fearless_simd::Level;
 
-use super::chromatic::{Chromatic, Left, Steps};
+use super::chromatic::{By, Chromatic, Steps};
 use crate::kernels::packet::Request;
 use crate::setup::walker::Walker;
-use crate::{Refusal, Setup, estimators};
+use crate::{Draw, Refusal, Setup, estimators};
 use ::theory::problems::SpectralFurnace;
 use ::theory::problems::spectral_furnace::Values;
 use ::theory::spectral::bound::{self, Flight};
 use ::theory::spectral::rates::Rates;
 use ::theory::{Prediction, spectral_furnace as theory};
 use media::Lookups;
-use media::body::MOST_CHANNELS;
 use numeric::digits::rounded;
 use numeric::geometry::Bounds;
 use numeric::rng::Stream;
@@ -60,22 +59,29 @@ fn realisable(setup: &Setup<SpectralFurnace>) -> Result<(), Refusal> {
 }
 
 impl Chromatic for SpectralFurnace {
-    type End = ();
-
     #[inline(always)]
-    fn walk(
-        steps: &impl Steps,
+    fn draw(
+        steps: impl Steps,
+        by: By,
         setup: &Setup<Self>,
-        walker: (&Walker, usize),
         _: &Lookups,
         rng: &mut Stream,
-    ) -> Left<()> {
-        walk::walk(steps, setup, walker, rng)
+    ) -> Draw<Values> {
+        walk::draw(&steps, by, setup, rng)
     }
 
-    #[inline(always)]
-    fn values(&self, _: Option<()>, scores: &[f64; MOST_CHANNELS]) -> Values {
-        self.scored(*scores)
+    fn packets<'a>(
+        level: Level,
+        By { walker, scores_all, .. }: By,
+        setup: &Setup<Self>,
+        _: &Lookups,
+        request: Request<'a>,
+    ) -> Option<Request<'a>> {
+        if scores_all {
+            packet::walks::<true>(level, walker, setup, request)
+        } else {
+            packet::walks::<false>(level, walker, setup, request)
+        }
     }
 
     fn require(setup: &Setup<Self>, walker: &Walker) -> Result<(), Refusal> {
@@ -122,16 +128,6 @@ impl Chromatic for SpectralFurnace {
 
     fn predict_relative(_: &Setup<Self>, _: &Walker, second_moment_bounds: &[f64]) -> Prediction {
         theory::relative(second_moment_bounds)
-    }
-
-    fn packets<'a, const ALL: bool>(
-        level: Level,
-        walker: &Walker,
-        setup: &Setup<Self>,
-        _: &Lookups,
-        request: Request<'a>,
-    ) -> Option<Request<'a>> {
-        packet::walks::<ALL>(level, walker, setup, request)
     }
 }
 

@@ -11,24 +11,57 @@
 //! and f is relative to them. A flight takes one random number, a collision one, a scattering one for θ and one for the azimuth, the
 //! choice of the hero one.
 
-use crate::Setup;
-use crate::chromatic::{Left, Steps};
+use crate::chromatic::{By, Steps};
 use crate::kernels::hero::Path;
 use crate::setup::walker::Walker;
+use crate::{Draw, Setup};
 use media::body::MOST_CHANNELS;
 use numeric::geometry::{Point, Ray, frame};
 use numeric::rng::Stream;
 use theory::particle::Event;
 use theory::problems::SpectralFurnace;
+use theory::problems::spectral_furnace::Values;
+
+/// What became of a walk.
+struct Left {
+    path: Path,
+    lookups: u32,
+}
+
+/// Makes one draw.
+#[inline(always)]
+pub fn draw(
+    steps: &impl Steps,
+    by: By,
+    setup: &Setup<SpectralFurnace>,
+    rng: &mut Stream,
+) -> Draw<Values> {
+    let (By { walker, weighing, scores_all }, problem) = (by, &*setup.problem);
+    let count = setup.channels.len();
+    let hero = walker.choose(count, || rng.uniform());
+    let Left { path, lookups } = walk(steps, setup, (walker, hero), rng);
+    if let (Some(heroes), false) = (walker.heroes(), scores_all) {
+        let mut scores = [0.0; MOST_CHANNELS];
+        scores[hero] = 1.0 / heroes.probability(count, hero);
+        return Draw::free(problem.scored(scores), lookups);
+    }
+    let Walker::Mis(heroes) = walker else {
+        return Draw::free(problem.scored(path.relative(setup)), lookups);
+    };
+    let scores = path.score(setup, heroes, weighing);
+    let weighted = scores[..count].iter().enumerate();
+    let sum: f64 = weighted.map(|(channel, x)| heroes.probability(count, channel) * x).sum();
+    Draw { value: problem.scored(scores), lookups, defect: (sum - 1.0).abs() }
+}
 
 /// Walks; the furnace shines wherever a walk ends.
 #[inline(always)]
-pub fn walk(
+fn walk(
     steps: &impl Steps,
     setup: &Setup<SpectralFurnace>,
     (walker, hero): (&Walker, usize),
     rng: &mut Stream,
-) -> Left<()> {
+) -> Left {
     let (problem, count) = (&*setup.problem, setup.channels.len());
     let (own, majorant) = (&problem.channels[hero], setup.channels[hero].majorant);
     let mut path = Path::begin(hero);
@@ -39,7 +72,7 @@ pub fn walk(
         let end = problem.bounds.clip(&ray).to;
         if flight >= end {
             path.go_on(end.max(0.0));
-            return Left { end: Some(()), path, lookups };
+            return Left { path, lookups };
         }
         path.go_on(flight);
         lookups += 1;
@@ -56,12 +89,13 @@ pub fn walk(
         let density = if event == Event::Scattered { own.phase.value(cosine) } else { 1.0 };
         let of_all = walker.together().map(|_| chances.of(event) * density);
         path.collide(count, of_all, |channel| {
-            let phase = &problem.channels[steps.phase_of(channel, hero)].phase;
+            let phase =
+                &problem.channels[if steps.has_heros_phase() { hero } else { channel }].phase;
             let albedo = problem.albedos[channel];
             steps.factor(event, ratios[channel], albedo, phase.value(cosine))
         });
         if event == Event::Absorbed {
-            return Left { end: Some(()), path, lookups };
+            return Left { path, lookups };
         }
     }
 }
@@ -76,7 +110,8 @@ fn ratios(
 ) -> [f64; MOST_CHANNELS] {
     let mut ratios = [0.0; MOST_CHANNELS];
     for (channel, medium) in setup.problem.channels.iter().enumerate() {
-        let majorant = setup.channels[steps.majorant_of(channel, hero)].majorant;
+        let majorant =
+            setup.channels[if steps.has_heros_majorant() { hero } else { channel }].majorant;
         ratios[channel] = medium.volume.points().extinction(place) / majorant;
     }
     ratios

@@ -22,11 +22,10 @@
 //! transport*, ACM Transactions on Graphics 38 (2019), Algorithms 1 and 2.
 
 use super::pages;
-use super::walk::Found;
+use super::steps::{Found, Steps};
 use crate::Estimator;
-use crate::kernels::hero::{LastPiece, Weighing};
 use crate::setup::heroes::Heroes;
-use crate::spectral_lit_rod::walk::Steps;
+use crate::walks::hero::{LastPiece, Weighing};
 use media::catalogue::Settings;
 use theory::problems::SpectralLitRod;
 use theory::spectral_lit_rod::Tracker;

@@ -17,21 +17,20 @@
 //! Source: B. Miller, I. Georgiev, W. Jarosz, *A null-scattering path integral formulation of light
 //! transport*, ACM Transactions on Graphics 38 (2019), section 6.
 
-use fearless_simd::Level;
-
-use super::{packet, realisable, spectrum};
-use crate::kernels::packet::Request;
-use crate::lit_rod::walk::ToEmitter;
+use super::{Albedos, realisable, spectrum};
+use crate::lit_rod::walk::{Path, Scatterers, ToEmitter};
 use crate::setup::heroes::Heroes;
-use crate::walks;
-use crate::{Draw, Estimator, Inputs, Refusal, Setup};
-use media::Lookups;
+use crate::walks::hero::{Law, number_of_hero, of_hero, or_of_hero};
+use crate::walks::{Met, Route, Walk, drawn};
+use crate::{Estimator, Inputs, Refusal, Setup};
 use media::body::MOST_CHANNELS;
 use media::catalogue::Settings;
-use numeric::rng::Stream;
+use media::course::BothWays;
+use numeric::rng::Random;
+use numeric::{Lane, kept};
 use theory::Prediction;
+use theory::lit_rod::Techniques;
 use theory::problems::SpectralLitRod;
-use theory::problems::spectral_lit_rod::Values;
 use theory::spectral_lit_rod::{FULL, HITS, Tracker};
 
 /// Independent tracking.
@@ -39,6 +38,33 @@ use theory::spectral_lit_rod::{FULL, HITS, Tracker};
 pub struct Independent {
     is_full: bool,
     heroes: Heroes,
+}
+
+impl Independent {
+    #[inline(always)]
+    fn walk<'a>(
+        &self,
+        setup: &'a Setup<SpectralLitRod>,
+        albedos: Albedos<'a>,
+    ) -> OfHero<'a, Techniques> {
+        let (count, first) = (setup.channels.len(), &setup.channels[0]);
+        let [mut mean_free_paths, mut probabilities] = [[0.0; MOST_CHANNELS]; 2];
+        for (channel, own) in setup.channels.iter().enumerate() {
+            mean_free_paths[channel] = 1.0 / own.majorant;
+            probabilities[channel] = self.heroes.probability(count, channel);
+        }
+        let (rod, end) = (&setup.problem.rods[0].rod, setup.mesh.support().to);
+        let techniques = if self.is_full { FULL } else { HITS };
+        OfHero {
+            walk: ToEmitter::new(rod, &first.sampling, end, techniques),
+            law: Law::new(&self.heroes, count),
+            count,
+            mean_free_paths,
+            probabilities,
+            forward: &setup.problem.forward,
+            albedos,
+        }
+    }
 }
 
 impl Estimator<SpectralLitRod> for Independent {
@@ -66,34 +92,129 @@ impl Estimator<SpectralLitRod> for Independent {
         spectrum(setup, &self.heroes, tracker).predict(setup.laws)
     }
 
+    drawn!(self, setup: SpectralLitRod =>
+        self.walk(setup, Albedos::of(setup)),
+        self.walk(setup, Albedos::found(setup))
+    );
+}
+
+kept! {
+    /// Walks through the media of their heroes.
+    pub struct Alone<L> {
+        /// The number of the hero, its mean free path, and its probability to keep the direction.
+        hero: L,
+        mean_free_path: L,
+        forward: L,
+        path: Path<L>,
+    }
+}
+
+/// A walk through the medium of its hero.
+#[derive(Clone, Copy)]
+struct OfHero<'a, S> {
+    walk: ToEmitter<'a, S>,
+    law: Law,
+    count: usize,
+    mean_free_paths: [f64; MOST_CHANNELS],
+    probabilities: [f64; MOST_CHANNELS],
+    forward: &'a [f64],
+    albedos: Albedos<'a>,
+}
+
+/// The medium of heroes where they are.
+struct Own<L> {
+    albedo: L,
+    forward: L,
+}
+
+impl<L: Lane> Scatterers<L> for Own<L> {
     #[inline(always)]
-    fn draw(
-        &self,
-        setup: &Setup<SpectralLitRod>,
-        medium: &Lookups,
-        rng: &mut Stream,
-    ) -> Draw<Values> {
-        let count = setup.channels.len();
-        let hero = self.heroes.choose(count, rng.uniform());
-        let own = &setup.channels[hero];
-        let rod = &setup.problem.rods[hero].rod;
-        let techniques = if self.is_full { FULL } else { HITS };
-        let walk = ToEmitter::new(rod, &own.sampling, own.mesh.support().to, techniques);
-        let drawn: Draw = walks::draw(&walk, &own.sampling, medium.channel(hero), rng);
-        let mut scores = [0.0; MOST_CHANNELS];
-        scores[hero] = drawn.value[0] / self.heroes.probability(count, hero);
-        Draw::free(setup.problem.values(scores), drawn.lookups)
+    fn albedo(&self, _: L) -> L {
+        self.albedo
     }
 
-    fn draw_packets<'a>(
+    #[inline(always)]
+    fn forward(&self, _: L) -> L {
+        self.forward
+    }
+}
+
+impl Walk for OfHero<'_, Techniques> {
+    type State<L: Lane> = Alone<L>;
+
+    const IS_CHROMATIC: bool = true;
+    const PAUSES: bool = true;
+
+    #[inline(always)]
+    fn begin<L: Lane>(&self, one: L, which: L::Mask, random: &mut impl Random<L>) -> Alone<L> {
+        let path = self.walk.begin(one, which, random);
+        let mut alone = Alone { hero: one, mean_free_path: one, forward: one, path };
+        self.restart(&mut alone, which, one, random);
+        alone
+    }
+
+    #[inline(always)]
+    fn restart<L: Lane>(
         &self,
-        level: Level,
-        setup: &Setup<SpectralLitRod>,
-        medium: &Lookups,
-        request: Request<'a>,
-    ) -> Option<Request<'a>> {
-        let techniques = if self.is_full { FULL } else { HITS };
-        let page = (techniques, &self.heroes);
-        packet::independent::walks(level, page, setup, medium, request)
+        alone: &mut Alone<L>,
+        which: L::Mask,
+        one: L,
+        random: &mut impl Random<L>,
+    ) {
+        self.walk.restart(&mut alone.path, which, one, random);
+        let (hero, count) = (self.law.choose(random.uniform_where(which)), self.count);
+        let mean_free_path = number_of_hero(hero, &self.mean_free_paths[..count]);
+        alone.hero.set_where(which, hero);
+        alone.mean_free_path.set_where(which, mean_free_path);
+        alone.forward.set_where(which, number_of_hero(hero, &self.forward[..count]));
+    }
+
+    #[inline(always)]
+    fn fly<L: Lane>(
+        &self,
+        alone: &mut Alone<L>,
+        route: &mut Route<impl BothWays<L>>,
+        depth: L,
+    ) -> L::Mask {
+        self.walk.fly(&mut alone.path, route, depth)
+    }
+
+    #[inline(always)]
+    fn mean_free_path<L: Lane>(&self, alone: &Alone<L>, _: &Route<impl BothWays<L>>) -> L {
+        alone.mean_free_path
+    }
+
+    #[inline(always)]
+    fn collide<L: Lane>(
+        &self,
+        alone: &mut Alone<L>,
+        route: &mut Route<impl BothWays<L>>,
+        met: &Met<L>,
+        random: &mut impl Random<L>,
+    ) -> L::Mask {
+        let (hero, mut albedo) = (alone.hero, met.t);
+        for channel in 0..self.count {
+            albedo = or_of_hero(hero, channel, albedo, self.albedos.at(channel, met.t));
+        }
+        let met = Met { extinction: of_hero(hero, met.extinctions), ..*met };
+        let own = Own { albedo, forward: alone.forward };
+        self.walk.collide_among(&own, &mut alone.path, route, &met, random)
+    }
+
+    #[inline(always)]
+    fn media(&self) -> usize {
+        self.count
+    }
+
+    #[inline(always)]
+    fn channels(&self) -> usize {
+        self.count
+    }
+
+    #[inline(always)]
+    fn value<L: Lane>(&self, alone: &Alone<L>, left: L::Mask, channel: usize) -> L {
+        let score = self.walk.value(&alone.path, left, 0);
+        let own = score / score.each(self.probabilities[channel]);
+        L::select(alone.hero.equals(channel as f64), own, score.each(0.0))
     }
 }

@@ -3,14 +3,16 @@
 pub mod as_printed;
 pub mod independent;
 pub mod next_event_mis;
-pub mod packet;
 pub mod spectral_mis;
 pub mod spectral_tracking;
+pub mod steps;
 pub mod walk;
 
 use crate::setup::channels;
 use crate::setup::heroes::Heroes;
 use crate::{Refusal, Setup, estimators};
+use media::body::MOST_CHANNELS;
+use numeric::Lane;
 use theory::lit_rod;
 use theory::problems::SpectralLitRod;
 use theory::spectral_lit_rod::{Spectrum, Tracker};
@@ -40,7 +42,41 @@ fn spectrum<'a>(
     Spectrum::new(&setup.problem, media.collect(), heroes, tracker)
 }
 
-/// The plumbing of a page whose [`walk::Steps`] it is: what differs are the law of the hero and what theory calls it.
+/// Albedos of all channels.
+#[derive(Clone, Copy)]
+struct Albedos<'a> {
+    problem: &'a SpectralLitRod,
+    /// Those that are the same everywhere, if that was found out.
+    numbers: Option<[f64; MOST_CHANNELS]>,
+}
+
+impl<'a> Albedos<'a> {
+    #[inline(always)]
+    fn of(setup: &'a Setup<SpectralLitRod>) -> Self {
+        Self { problem: &setup.problem, numbers: None }
+    }
+
+    /// For many draws: finds out whether they are the same everywhere.
+    fn found(setup: &'a Setup<SpectralLitRod>) -> Self {
+        let numbers = setup.problem.albedos().map(|albedos| {
+            let mut numbers = [0.0; MOST_CHANNELS];
+            numbers[..albedos.len()].copy_from_slice(&albedos);
+            numbers
+        });
+        Self { numbers, ..Self::of(setup) }
+    }
+
+    /// a of a channel at distances.
+    #[inline(always)]
+    fn at<L: Lane>(&self, channel: usize, t: L) -> L {
+        match &self.numbers {
+            Some(albedos) => t.each(albedos[channel]),
+            None => self.problem.albedo(channel, t),
+        }
+    }
+}
+
+/// The plumbing of a page whose [`steps::Steps`] it is: what differs are the law of the hero and what theory calls it.
 macro_rules! pages {
     ($this:ident => $heroes:expr, $tracker:expr) => {
         const INPUTS: $crate::Inputs = $crate::Inputs::SAMPLING;
@@ -62,25 +98,10 @@ macro_rules! pages {
             spectrum.predict(setup.laws)
         }
 
-        #[inline(always)]
-        fn draw(
-            &$this,
-            setup: &$crate::Setup<SpectralLitRod>,
-            medium: &media::Lookups,
-            rng: &mut numeric::rng::Stream,
-        ) -> $crate::Draw<theory::problems::spectral_lit_rod::Values> {
-            $crate::spectral_lit_rod::walk::draw($this, setup, medium, rng)
-        }
-
-        fn draw_packets<'a>(
-            &$this,
-            level: fearless_simd::Level,
-            setup: &$crate::Setup<SpectralLitRod>,
-            medium: &media::Lookups,
-            request: $crate::kernels::packet::Request<'a>,
-        ) -> Option<$crate::kernels::packet::Request<'a>> {
-            $crate::spectral_lit_rod::packet::walks(level, $this, setup, medium, request)
-        }
+        $crate::walks::drawn!($this, setup: SpectralLitRod =>
+            $crate::spectral_lit_rod::walk::ToEmitter::of($this, setup),
+            $crate::spectral_lit_rod::walk::ToEmitter::prepared($this, setup)
+        );
     };
 }
 use pages;

@@ -23,9 +23,9 @@
 //! transport*, ACM Transactions on Graphics 38 (2019), sections 5.3 and 5.4, Algorithms 1 and 2.
 
 use super::pages;
+use super::steps::Steps;
 use crate::Estimator;
 use crate::setup::heroes::Heroes;
-use crate::spectral_lit_rod::walk::Steps;
 use media::catalogue::Settings;
 use theory::problems::SpectralLitRod;
 use theory::spectral_lit_rod::Tracker;

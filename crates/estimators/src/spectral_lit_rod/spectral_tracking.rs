@@ -19,21 +19,19 @@
 //! Source: P. Kutz, R. Habel, Y. K. Li, J. Novák, *Spectral and Decomposition Tracking for Rendering
 //! Heterogeneous Volumes*, ACM Transactions on Graphics 36 (2017), section 5.1.
 
-use fearless_simd::Level;
-
-use super::{packet, realisable, spectrum};
-use crate::kernels::packet::Request;
+use super::{Albedos, realisable, spectrum};
 use crate::setup::channels;
 use crate::setup::heroes::Heroes;
 use crate::setup::walker::read_chances;
-use crate::{Draw, Estimator, Inputs, Refusal, Setup};
+use crate::walks::{Met, Route, Walk, drawn};
+use crate::{Estimator, Inputs, Refusal, Setup};
 use media::body::MOST_CHANNELS;
 use media::catalogue::Settings;
-use media::{Extinction, Lookups};
-use numeric::rng::Stream;
+use media::course::BothWays;
+use numeric::rng::Random;
+use numeric::{Lane, kept};
 use theory::Prediction;
 use theory::problems::SpectralLitRod;
-use theory::problems::spectral_lit_rod::Values;
 use theory::spectral::Chances;
 use theory::spectral_lit_rod::Tracker;
 
@@ -71,47 +69,110 @@ impl Estimator<SpectralLitRod> for SpectralTracking {
         spectrum(setup, &Heroes::Uniform, tracker).predict(setup.laws)
     }
 
+    drawn!(self, setup: SpectralLitRod =>
+        Together::new(self.chances, setup, Albedos::of(setup)),
+        Together::new(self.chances, setup, Albedos::found(setup))
+    );
+}
+
+kept! {
+    /// Walks of all channels together. All of it is in memory.
+    pub struct Path<L> {
+        weights: [L; MOST_CHANNELS],
+        /// `μ_n/μ̄`, `μ_s/μ̄` and `μ_a/μ̄` of each channel where they are.
+        nulls: [L; MOST_CHANNELS],
+        scattered: [L; MOST_CHANNELS],
+        absorbed: [L; MOST_CHANNELS],
+    }
+}
+
+/// The walk of all channels together.
+#[derive(Clone, Copy)]
+struct Together<'a> {
+    chances: Chances,
+    majorant: f64,
+    albedos: Albedos<'a>,
+    count: usize,
+}
+
+impl<'a> Together<'a> {
     #[inline(always)]
-    fn draw(
-        &self,
-        setup: &Setup<SpectralLitRod>,
-        medium: &Lookups,
-        rng: &mut Stream,
-    ) -> Draw<Values> {
-        let (common, count) = (&setup.channels[0], setup.channels.len());
-        let mut cursor = common.sampling.begin();
-        let (mut weights, mut shares) = ([1.0; MOST_CHANNELS], [[0.0; 3]; MOST_CHANNELS]);
-        let mut lookups = 0;
-        loop {
-            let (depth, number) = (-rng.ln_uniform(), rng.uniform());
-            if common.sampling.fly(&mut cursor, depth).is_none() {
-                return Draw::free(setup.problem.values(weights), lookups);
-            }
-            lookups += 1;
-            for (channel, share) in shares[..count].iter_mut().enumerate() {
-                let real = medium.channel(channel).extinction(cursor.t) / common.majorant;
-                let scattered = real * setup.problem.albedo(channel, cursor.t);
-                *share = [1.0 - real, scattered, real - scattered];
-            }
-            let chances =
-                self.chances.of_events(count, |channel| shares[channel], &weights[..count]);
-            let event = usize::from(number >= chances[0]);
-            if number >= chances[0] + chances[1] {
-                return Draw::free(setup.problem.values([0.0; MOST_CHANNELS]), lookups);
-            }
-            for (weight, share) in weights[..count].iter_mut().zip(&shares) {
-                *weight *= share[event] / chances[event];
-            }
+    fn new(chances: Chances, setup: &Setup<SpectralLitRod>, albedos: Albedos<'a>) -> Self {
+        let (majorant, count) = (setup.channels[0].majorant, setup.channels.len());
+        Self { chances, majorant, albedos, count }
+    }
+}
+
+impl Walk for Together<'_> {
+    type State<L: Lane> = Path<L>;
+
+    const IS_CHROMATIC: bool = true;
+
+    #[inline(always)]
+    fn begin<L: Lane>(&self, one: L, _: L::Mask, _: &mut impl Random<L>) -> Path<L> {
+        let ones = [one; MOST_CHANNELS];
+        Path { weights: ones, nulls: ones, scattered: ones, absorbed: ones }
+    }
+
+    #[inline(always)]
+    fn restart<L: Lane>(&self, path: &mut Path<L>, which: L::Mask, one: L, _: &mut impl Random<L>) {
+        for weight in &mut path.weights[..self.count] {
+            weight.keep_where(which, one);
         }
     }
 
-    fn draw_packets<'a>(
+    #[inline(always)]
+    fn mean_free_path<L: Lane>(&self, path: &Path<L>, _: &Route<impl BothWays<L>>) -> L {
+        path.weights[0].each(1.0 / self.majorant)
+    }
+
+    #[inline(always)]
+    fn collide<L: Lane>(
         &self,
-        level: Level,
-        setup: &Setup<SpectralLitRod>,
-        medium: &Lookups,
-        request: Request<'a>,
-    ) -> Option<Request<'a>> {
-        packet::tracking::walks(level, self.chances, setup, medium, request)
+        path: &mut Path<L>,
+        _: &mut Route<impl BothWays<L>>,
+        met: &Met<L>,
+        _: &mut impl Random<L>,
+    ) -> L::Mask {
+        let (Met { inside, t, extinctions, number, .. }, one) = (*met, met.t.each(1.0));
+        let majorant = one.each(self.majorant);
+        for (channel, &extinction) in extinctions.iter().enumerate() {
+            let real = extinction / majorant;
+            let scattered = real * self.albedos.at(channel, t);
+            path.nulls[channel] = one - real;
+            path.scattered[channel] = scattered;
+            path.absorbed[channel] = real - scattered;
+        }
+        let [null, scattered, _] = self.chances.of_events(
+            self.count,
+            #[inline(always)]
+            |channel| [path.nulls[channel], path.scattered[channel], path.absorbed[channel]],
+            &path.weights,
+        );
+        let is_real = null.at_most(number);
+        let chance = L::select(is_real, scattered, null);
+        for channel in 0..self.count {
+            let share = L::select(is_real, path.scattered[channel], path.nulls[channel]);
+            let weight = path.weights[channel] * (share / chance);
+            path.weights[channel].keep_where(inside, weight);
+        }
+        inside & number.below(null + scattered)
+    }
+
+    #[inline(always)]
+    fn media(&self) -> usize {
+        self.count
+    }
+
+    #[inline(always)]
+    fn channels(&self) -> usize {
+        self.count
+    }
+
+    #[inline(always)]
+    fn value<L: Lane>(&self, path: &Path<L>, left: L::Mask, channel: usize) -> L {
+        // An absorbed walk brings nothing.
+        let weight = path.weights[channel];
+        L::select(left, weight, weight.each(0.0))
     }
 }

@@ -10,76 +10,93 @@
 //! ```
 //!
 //! The hero is one for the whole path, shadow rays too. A flight takes two random numbers, that of a shadow ray one, a
-//! scattering one, the choice of the hero one.
+//! scattering one, the choice of the hero one. A lane flies as a walk or as a shadow ray: where a walk is scattered its place is
+//! kept, its shadow ray flies on from there with the weights of the path, and when it has ended the walk does.
+//!
+//! ```text
+//! X_λ = f_λ/Σ_h w_h (p_uni,h + p_nee,h),   f_λ = p_uni,λ = q_λ ρ_λ,  p_nee,λ = q_λ,  ρ_λ = p_λ(ω) Π (1 − r_λ)
+//! ```
+//!
+//! q is what both techniques have in common: the path up to the last real scattering, the transmittances through
+//! σ̂ and the rates of tentative collisions; ρ what hits must win by chance on the last segment, the direction and its
+//! null collisions. A hit scores what a shadow ray along the same path scores. Where the path was never scattered, and
+//! where no shadow rays are cast, `p_nee = 0`. Densities are relative to those of the hero, see [`Media::common`].
 
-use crate::kernels::hero::{Path, Weighing};
-use crate::setup::heroes::Heroes;
+use super::Albedos;
+use super::steps::{Found, Steps};
+use crate::walks::hero::{LastPiece, Law, Media, Weighing, number_of_hero, of_hero, or_of_hero};
+use crate::walks::{self, GROUPS, Met, Route, SOME_LEFT, Scores, Walk};
 use crate::{Draw, Setup};
+use media::Lookups;
 use media::body::MOST_CHANNELS;
-use media::{Cursor, Extinction, Lookups};
-use numeric::rng::Stream;
+use media::course::BothWays;
+use numeric::rng::{Random, Stream};
+use numeric::{Lane, Mask, kept};
 use theory::ParticleRule;
-use theory::particle::Event;
 use theory::problems::SpectralLitRod;
 use theory::problems::spectral_lit_rod::Values;
 
-/// How a path was found.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Found {
-    /// By a walk that was never scattered.
-    Unscattered,
-    /// By a walk, after a scattering.
-    Hit,
-    /// By a shadow ray.
-    Connected,
+/// Numbers of all channels.
+type Channels = [f64; MOST_CHANNELS];
+
+/// The walk of a hero to the emitter.
+pub struct ToEmitter<'a, S> {
+    setup: &'a Setup<SpectralLitRod>,
+    steps: &'a S,
+    media: Media,
+    law: Law,
+    mean_free_paths: Channels,
+    albedos: Albedos<'a>,
+    /// The probability to keep the direction by channel and hero.
+    forward: [Channels; MOST_CHANNELS],
+    /// How paths are weighted: see [`Found`].
+    weighings: [Weighing; 3],
+    casts: bool,
 }
 
-/// The steps of a walk that a known bug may replace.
-pub trait Steps {
-    /// The law of the hero.
-    fn heroes(&self) -> &Heroes;
+impl<S> Clone for ToEmitter<'_, S> {
+    fn clone(&self) -> Self {
+        *self
+    }
+}
 
-    /// Whether shadow rays are cast.
-    fn casts(&self) -> bool;
+impl<S> Copy for ToEmitter<'_, S> {}
 
-    /// How a path is weighted.
+impl<'a, S: Steps> ToEmitter<'a, S> {
+    /// The walk on a setup.
     #[inline(always)]
-    fn weighing(&self, found: Found) -> Weighing {
-        let has_next_event = self.casts() && found != Found::Unscattered;
-        Weighing { has_next_event, ..Weighing::RIGHT }
+    pub fn of(steps: &'a S, setup: &'a Setup<SpectralLitRod>) -> Self {
+        Self::new(steps, setup, Albedos::of(setup))
     }
 
-    /// The channel whose phase function counts in a channel.
-    #[inline(always)]
-    fn phase_of(&self, channel: usize, hero: usize) -> usize {
-        let _ = hero;
-        channel
+    /// The same for many draws.
+    pub fn prepared(steps: &'a S, setup: &'a Setup<SpectralLitRod>) -> Self {
+        Self::new(steps, setup, Albedos::found(setup))
     }
 
-    /// The channel whose σ̂ the hero's collisions are decided by.
     #[inline(always)]
-    fn decides(&self, hero: usize) -> usize {
-        hero
-    }
-
-    /// The hero of a shadow ray.
-    #[inline(always)]
-    fn casts_by(&self, hero: usize, count: usize, rng: &mut Stream) -> usize {
-        let _ = (count, rng);
-        hero
-    }
-
-    /// Whether the densities of the next segment begin anew at a scattering.
-    #[inline(always)]
-    fn begins_anew(&self) -> bool {
-        true
-    }
-
-    /// What f gains at a scattering that the densities do not.
-    #[inline(always)]
-    fn gains(&self, albedo: f64) -> f64 {
-        let _ = albedo;
-        1.0
+    fn new(steps: &'a S, setup: &'a Setup<SpectralLitRod>, albedos: Albedos<'a>) -> Self {
+        let (heroes, count) = (steps.heroes(), setup.channels.len());
+        let [mut mean_free_paths, mut probabilities] = [[0.0; MOST_CHANNELS]; 2];
+        let mut forward = [[0.0; MOST_CHANNELS]; MOST_CHANNELS];
+        for (channel, own) in setup.channels.iter().enumerate() {
+            mean_free_paths[channel] = 1.0 / own.majorant;
+            probabilities[channel] = heroes.probability(count, channel);
+            for (hero, forward) in forward[channel][..count].iter_mut().enumerate() {
+                *forward = setup.problem.forward[steps.phase_of(channel, hero)];
+            }
+        }
+        Self {
+            setup,
+            steps,
+            media: Media::new(setup, &probabilities),
+            law: Law::new(heroes, count),
+            mean_free_paths,
+            albedos,
+            forward,
+            weighings: Found::ALL.map(|found| steps.weighing(found)),
+            casts: steps.casts(),
+        }
     }
 }
 
@@ -89,148 +106,379 @@ pub fn draw(
     steps: &impl Steps,
     setup: &Setup<SpectralLitRod>,
     medium: &Lookups,
-    rng: &mut Stream,
+    random: &mut Stream,
 ) -> Draw<Values> {
-    let (problem, support) = (&setup.problem, setup.mesh.support());
-    let count = setup.channels.len();
-    let hero = steps.heroes().choose(count, rng.uniform());
-    let own = &setup.channels[hero];
-    let mut cursor = own.sampling.begin();
-    let mut path = Path::begin(hero);
-    let (mut is_forward, mut found) = (true, Found::Unscattered);
-    let (mut scores, mut lookups) = ([0.0; MOST_CHANNELS], 0);
-    loop {
-        let (depth, number, from) = (-rng.ln_uniform(), rng.uniform(), cursor.t);
-        let flown = if is_forward {
-            own.sampling.fly(&mut cursor, depth)
-        } else {
-            own.sampling.fly_back(&mut cursor, depth)
+    walks::draw(&ToEmitter::of(steps, setup), &setup.sampling, medium, random)
+}
+
+kept! {
+    /// Walks on their way, and shadow rays. All of it is in memory.
+    pub struct Particle<L> {
+        is_forward: L::Mask,
+        /// Lanes that fly as shadow rays, and of them those whose walks kept their directions.
+        casts: L::Mask,
+        keeps: L::Mask,
+        /// Lanes that score in this step, and of them shadow rays, which then return to their vertices.
+        scores: L::Mask,
+        connected: L::Mask,
+        /// How the path is found if it arrives, see [`Found`].
+        found: L,
+        /// The number of each hero, its mean free path, and by channel its probability to keep the direction.
+        hero: L,
+        mean_free_path: L,
+        forward: [L; MOST_CHANNELS],
+        /// The beginning of the flight, and its length, forward.
+        before: L,
+        last: L,
+        /// The length of the path and its tentative collisions; both at the vertex of a shadow ray.
+        length: L,
+        collisions: L,
+        at_vertex: [L; 2],
+        /// What the real scatterings make of q, relative to the hero's.
+        weights: [L; MOST_CHANNELS],
+        /// `p_λ(ω)` on the last segment, and `Π (1 − r_λ)` over its null collisions.
+        phases: [L; MOST_CHANNELS],
+        nulls: [L; MOST_CHANNELS],
+        /// Both at the vertex of a shadow ray, if [`Steps::GOES_ON`].
+        last_phases: [L; MOST_CHANNELS],
+        last_nulls: [L; MOST_CHANNELS],
+        /// What f has more than the densities, if [`Steps::GAINS`].
+        excess: [L; MOST_CHANNELS],
+        /// `σ_t/σ̂` and a of each channel where they are, and what the weights are to be.
+        real: [L; MOST_CHANNELS],
+        albedos: [L; MOST_CHANNELS],
+        next: [L; MOST_CHANNELS],
+    }
+}
+
+impl<S: Steps> Walk for ToEmitter<'_, S> {
+    type State<L: Lane> = Particle<L>;
+
+    const IS_CHROMATIC: bool = true;
+    const DECIDES: bool = false;
+    const PAUSES: bool = true;
+    const SCORES: Scores = Scores::Often;
+
+    #[inline(always)]
+    fn begin<L: Lane>(&self, one: L, which: L::Mask, random: &mut impl Random<L>) -> Particle<L> {
+        let (zero, all, ones) = (one.each(0.0), one.at_most(one), [one; MOST_CHANNELS]);
+        let mut path = Particle {
+            is_forward: all,
+            casts: !all,
+            keeps: all,
+            scores: !all,
+            connected: !all,
+            found: zero,
+            hero: zero,
+            mean_free_path: one,
+            forward: ones,
+            before: zero,
+            length: zero,
+            collisions: zero,
+            at_vertex: [zero; 2],
+            weights: ones,
+            phases: ones,
+            nulls: ones,
+            last_phases: ones,
+            last_nulls: ones,
+            excess: ones,
+            last: zero,
+            real: ones,
+            albedos: ones,
+            next: ones,
         };
-        if flown.is_none() {
-            if is_forward {
-                path.go_on(support.to - from);
-                add(&mut scores, path.score(setup, steps.heroes(), steps.weighing(found)));
+        self.restart(&mut path, which, one, random);
+        path
+    }
+
+    #[inline(always)]
+    fn restart<L: Lane>(
+        &self,
+        path: &mut Particle<L>,
+        which: L::Mask,
+        one: L,
+        random: &mut impl Random<L>,
+    ) {
+        let (zero, count) = (one.each(0.0), self.media.count);
+        for channel in 0..count {
+            path.weights[channel].keep_where(which, one);
+            path.phases[channel].keep_where(which, one);
+            path.nulls[channel].keep_where(which, one);
+            if S::GAINS {
+                path.excess[channel].keep_where(which, one);
             }
-            break;
         }
-        lookups += 1;
-        path.go_on((cursor.t - from).abs());
-        path.collisions += 1;
-        let extinctions = looked_up(setup, medium, cursor.t);
-        let real = extinctions[hero] / setup.channels[steps.decides(hero)].majorant;
-        match ParticleRule::Analog.odds(real, problem.albedo(hero, cursor.t)).decide(number) {
-            Event::Transmitted => pass(&mut path, setup, &extinctions),
-            Event::Scattered => {
-                let direction = rng.uniform();
-                scatter(&mut path, steps, setup, (cursor.t, &extinctions));
-                if steps.casts() {
-                    let towards = |channel: usize| {
-                        let forward = problem.forward[steps.phase_of(channel, hero)];
-                        if is_forward { forward } else { 1.0 - forward }
-                    };
-                    let mut ray = path;
-                    for channel in 0..count {
-                        turn(&mut ray, steps, channel, towards(channel));
-                    }
-                    lookups += cast(steps, &mut ray, setup, medium, (cursor, rng));
-                    let weighing = steps.weighing(Found::Connected);
-                    add(&mut scores, ray.score(setup, steps.heroes(), weighing));
-                }
-                let keeps = direction < problem.forward[hero];
-                for channel in 0..count {
-                    let forward = problem.forward[steps.phase_of(channel, hero)];
-                    turn(&mut path, steps, channel, if keeps { forward } else { 1.0 - forward });
-                }
-                is_forward ^= !keeps;
-                found = Found::Hit;
+        path.length.keep_where(which, zero);
+        path.collisions.keep_where(which, zero);
+        path.found.keep_where(which, zero);
+        path.is_forward |= which;
+        let hero = self.law.choose(random.uniform_where(which));
+        path.hero.keep_where(which, hero);
+        self.follow(path, which, hero);
+        for channel in 0..count {
+            let forward = number_of_hero(hero, &self.forward[channel][..count]);
+            path.forward[channel].keep_where(which, forward);
+        }
+    }
+
+    #[inline(always)]
+    fn mean_free_path<L: Lane>(&self, path: &Particle<L>, _: &Route<impl BothWays<L>>) -> L {
+        path.mean_free_path
+    }
+
+    #[inline(always)]
+    fn fly<L: Lane>(
+        &self,
+        path: &mut Particle<L>,
+        route: &mut Route<impl BothWays<L>>,
+        depth: L,
+    ) -> L::Mask {
+        if self.casts && path.connected.any() {
+            self.go_back(path, route);
+        }
+        path.before = route.here.reached();
+        route.here.fly_either_way(depth, path.is_forward | path.casts)
+    }
+
+    #[inline(always)]
+    fn collide<L: Lane>(
+        &self,
+        path: &mut Particle<L>,
+        route: &mut Route<impl BothWays<L>>,
+        met: &Met<L>,
+        random: &mut impl Random<L>,
+    ) -> L::Mask {
+        let (Met { inside, t, extinctions, .. }, count) = (*met, self.media.count);
+        let (one, casts) = (t.each(1.0), path.casts);
+        let number = random.uniform_where(!casts);
+        let end = one.each(self.setup.mesh.support().to);
+        path.last = L::select(inside, t, end) - path.before;
+        path.length = path.length + path.last.size();
+        path.collisions = path.collisions + L::select(inside, one, one.each(0.0));
+        let (mut own, mut albedo) = (one, one);
+        for (channel, &extinction) in extinctions.iter().enumerate() {
+            let majorant = one.each(self.media.majorants[channel]);
+            path.real[channel] = extinction / majorant;
+            path.albedos[channel] = self.albedos.at(channel, t);
+            own = or_of_hero(path.hero, channel, own, path.real[channel]);
+            albedo = or_of_hero(path.hero, channel, albedo, path.albedos[channel]);
+        }
+        let (hero, first) = (path.hero, self.media.majorants[0]);
+        let decides = self.steps.decides(
+            own,
+            #[inline(always)]
+            || of_hero(hero, extinctions) / one.each(first),
+        );
+        let odds = ParticleRule::Analog.odds(decides, albedo);
+        let (scattered, null) = odds.decide_each(inside & !casts, number);
+        let passes = null | (casts & inside);
+        for channel in 0..count {
+            let passed = path.nulls[channel] * (one - path.real[channel]);
+            path.nulls[channel].keep_where(passes, passed);
+        }
+        path.connected = casts & !inside;
+        path.scores = (path.is_forward & !inside & !casts) | path.connected;
+        if scattered.any() {
+            self.scatter(path, route, scattered, random);
+        }
+        casts | scattered | null
+    }
+
+    #[inline(always)]
+    fn media(&self) -> usize {
+        self.media.count
+    }
+
+    #[inline(always)]
+    fn channels(&self) -> usize {
+        self.media.count
+    }
+
+    #[inline(always)]
+    fn scores<L: Lane>(&self, path: &Particle<L>, _: L::Mask) -> L::Mask {
+        path.scores
+    }
+
+    #[inline(always)]
+    fn leaves<'a, L: Lane>(
+        &self,
+        path: &'a Particle<L>,
+        some: &'a mut [L; SOME_LEFT],
+    ) -> [&'a [L]; GROUPS] {
+        let found = L::select(path.connected, Found::Connected.as_lane(path.hero), path.found);
+        *some = [path.hero, path.length, path.collisions, path.last, found];
+        let (all, gains) = (..self.media.count, if S::GAINS { self.media.count } else { 0 });
+        [&some[..], &path.weights[all], &path.phases[all], &path.nulls[all], &path.excess[..gains]]
+    }
+
+    #[inline(always)]
+    fn score<L: Lane>(&self, numbers: &[L], _: L::Mask, _: L, values: &mut [L]) -> L {
+        let (count, zero, one) = (self.media.count, numbers[0].each(0.0), numbers[0].each(1.0));
+        let [hero, length, collisions, last, found, lists @ ..] = numbers else { return zero };
+        let without = self.of_found(*found, |by| f64::from(by.last_piece != LastPiece::Everywhere));
+        let next_event = self.of_found(*found, |by| f64::from(by.has_next_event));
+        let share = self.of_found(*found, |by| by.share);
+        for (channel, value) in values.iter_mut().enumerate() {
+            *value = lists[channel];
+        }
+        self.media.common(*hero, [*length - *last * without, *collisions], values);
+        let mut density = zero;
+        for (channel, value) in values.iter_mut().enumerate() {
+            let (common, probability) = (*value, self.media.chances[channel]);
+            let direction = common * lists[count + channel];
+            let by_hit = direction * lists[2 * count + channel];
+            *value = by_hit;
+            if S::GAINS {
+                *value = *value * lists[3 * count + channel];
             }
-            Event::Absorbed => break,
+            if self.has(|by| by.last_piece == LastPiece::InContribution) {
+                let in_contribution =
+                    |by: &Weighing| f64::from(by.last_piece == LastPiece::InContribution);
+                let is_added = zero.below(self.of_found(*found, in_contribution));
+                let last = (-(*last * self.media.majorants[channel])).exp();
+                *value = L::select(is_added, *value * last, *value);
+            }
+            if channel + self.weighings[0].missing < count {
+                let has_nulls = self.of_found(*found, |by| f64::from(by.has_nulls));
+                let by_hit = L::select(zero.below(has_nulls), by_hit, direction);
+                density = density + by_hit * probability;
+                density = density + common * probability * next_event;
+            }
+        }
+        let scale = L::select(zero.below(density), one / (density * share), zero);
+        for value in values {
+            *value = *value * scale;
+        }
+        zero
+    }
+}
+
+impl<S: Steps> ToEmitter<'_, S> {
+    /// What is said of the ways in which paths were found.
+    #[inline(always)]
+    fn of_found<L: Lane>(&self, found: L, says: impl Fn(&Weighing) -> f64) -> L {
+        let [unscattered, hit, connected] = &self.weighings;
+        let (unscattered, hit) = (found.each(says(unscattered)), found.each(says(hit)));
+        let by_walk = L::select(found.equals(0.0), unscattered, hit);
+        L::select(found.below(found.each(2.0)), by_walk, found.each(says(connected)))
+    }
+
+    /// Whether something is said of a way in which paths are found.
+    #[inline(always)]
+    fn has(&self, says: impl Fn(&Weighing) -> bool) -> bool {
+        let [unscattered, hit, connected] = &self.weighings;
+        says(unscattered) || says(hit) || says(connected)
+    }
+
+    /// Begins segments in directions that were kept or not.
+    #[inline(always)]
+    fn turn<L: Lane>(&self, path: &mut Particle<L>, which: L::Mask, keeps: L::Mask) {
+        let one = path.hero.each(1.0);
+        for channel in 0..self.media.count {
+            let forward = path.forward[channel];
+            let mut phase = L::select(keeps, forward, one - forward);
+            if S::GOES_ON {
+                phase = phase * path.phases[channel];
+            } else {
+                path.nulls[channel].keep_where(which, one);
+            }
+            path.phases[channel].keep_where(which, phase);
         }
     }
-    Draw::free(problem.values(scores), lookups)
-}
 
-/// σ_t of all channels at a distance.
-#[inline(always)]
-fn looked_up(setup: &Setup<SpectralLitRod>, medium: &Lookups, t: f64) -> [f64; MOST_CHANNELS] {
-    let mut found = [0.0; MOST_CHANNELS];
-    for (channel, found) in found[..setup.channels.len()].iter_mut().enumerate() {
-        *found = medium.channel(channel).extinction(t);
+    /// Scatters walks: the segment joins the path.
+    #[inline(always)]
+    fn scatter<L: Lane>(
+        &self,
+        path: &mut Particle<L>,
+        route: &mut Route<impl BothWays<L>>,
+        which: L::Mask,
+        random: &mut impl Random<L>,
+    ) {
+        let (count, one) = (self.media.count, path.hero.each(1.0));
+        let mut own = one;
+        for channel in 0..count {
+            let mut next = path.weights[channel] * (path.real[channel] * path.albedos[channel]);
+            if !S::GOES_ON {
+                next = next * (path.phases[channel] * path.nulls[channel]);
+            }
+            if S::GAINS {
+                let excess = path.excess[channel] * path.albedos[channel];
+                path.excess[channel].keep_where(which, excess);
+            }
+            path.next[channel] = next;
+            own = or_of_hero(path.hero, channel, own, next);
+        }
+        // Only where a bug lets it happen is the hero's 0.
+        let own = L::select(one.each(0.0).below(own), own, one);
+        for channel in 0..count {
+            let next = path.next[channel] / own;
+            path.weights[channel].keep_where(which, next);
+        }
+        // Whoever's phase functions count, the hero's own is among them.
+        let own = of_hero(path.hero, &path.forward[..count]);
+        let keeps = random.uniform_where(which).below(own);
+        if self.casts {
+            self.cast(path, route, (which, keeps), random);
+        } else {
+            self.turn(path, which, keeps);
+        }
+        path.is_forward ^= which & !keeps;
+        path.found.keep_where(which, Found::Hit.as_lane(one));
     }
-    found
-}
 
-#[inline(always)]
-fn add(scores: &mut [f64; MOST_CHANNELS], found: [f64; MOST_CHANNELS]) {
-    for (score, found) in scores.iter_mut().zip(found) {
-        *score += found;
-    }
-}
-
-/// Passes a null collision.
-#[inline(always)]
-fn pass(path: &mut Path, setup: &Setup<SpectralLitRod>, extinctions: &[f64; MOST_CHANNELS]) {
-    for (channel, own) in setup.channels.iter().enumerate() {
-        path.nulls[channel] *= 1.0 - extinctions[channel] / own.majorant;
-    }
-}
-
-/// Scatters: the segment joins the path.
-#[inline(always)]
-fn scatter(
-    path: &mut Path,
-    steps: &impl Steps,
-    setup: &Setup<SpectralLitRod>,
-    (t, extinctions): (f64, &[f64; MOST_CHANNELS]),
-) {
-    let mut weights = path.weights;
-    for (channel, own) in setup.channels.iter().enumerate() {
-        let albedo = setup.problem.albedo(channel, t);
-        weights[channel] *= extinctions[channel] / own.majorant * albedo;
-        path.excess[channel] *= steps.gains(albedo);
-        if steps.begins_anew() {
-            weights[channel] *= path.phases[channel] * path.nulls[channel];
+    /// Casts shadow rays of walks that are scattered.
+    #[inline(always)]
+    fn cast<L: Lane>(
+        &self,
+        path: &mut Particle<L>,
+        route: &mut Route<impl BothWays<L>>,
+        (which, keeps): (L::Mask, L::Mask),
+        random: &mut impl Random<L>,
+    ) {
+        if S::GOES_ON {
+            for channel in 0..self.media.count {
+                path.last_phases[channel].keep_where(which, path.phases[channel]);
+                path.last_nulls[channel].keep_where(which, path.nulls[channel]);
+            }
+        }
+        let is_forward = path.is_forward;
+        self.turn(path, which, is_forward);
+        route.mark_where(which);
+        path.at_vertex[0].keep_where(which, path.length);
+        path.at_vertex[1].keep_where(which, path.collisions);
+        path.casts |= which;
+        path.keeps.set_where(which, keeps);
+        if S::CASTS_ANEW {
+            self.follow(path, which, self.law.choose(random.uniform_where(which)));
         }
     }
-    // Only where a bug lets it happen is the hero's 0.
-    let hero = if weights[path.hero] > 0.0 { weights[path.hero] } else { 1.0 };
-    for (own, weight) in path.weights.iter_mut().zip(weights) {
-        *own = weight / hero;
-    }
-}
 
-/// Begins a segment in a direction.
-#[inline(always)]
-fn turn(path: &mut Path, steps: &impl Steps, channel: usize, phase: f64) {
-    if steps.begins_anew() {
-        path.phases[channel] = phase;
-        path.nulls[channel] = 1.0;
-    } else {
-        path.phases[channel] *= phase;
-    }
-}
-
-/// Tracks a shadow ray to the emitter; answers its lookups.
-#[inline(always)]
-fn cast(
-    steps: &impl Steps,
-    path: &mut Path,
-    setup: &Setup<SpectralLitRod>,
-    medium: &Lookups,
-    (mut cursor, rng): (Cursor, &mut Stream),
-) -> u32 {
-    let hero = steps.casts_by(path.hero, setup.channels.len(), rng);
-    let sampling = &setup.channels[hero].sampling;
-    let mut lookups = 0;
-    loop {
-        let from = cursor.t;
-        if sampling.fly(&mut cursor, -rng.ln_uniform()).is_none() {
-            path.go_on(setup.mesh.support().to - from);
-            return lookups;
+    /// Walks go on from where their shadow rays were cast.
+    #[inline(always)]
+    fn go_back<L: Lane>(&self, path: &mut Particle<L>, route: &mut Route<impl BothWays<L>>) {
+        let (which, keeps, [length, collisions]) = (path.connected, path.keeps, path.at_vertex);
+        route.return_where(which);
+        path.length.keep_where(which, length);
+        path.collisions.keep_where(which, collisions);
+        if S::GOES_ON {
+            for channel in 0..self.media.count {
+                path.phases[channel].keep_where(which, path.last_phases[channel]);
+                path.nulls[channel].keep_where(which, path.last_nulls[channel]);
+            }
         }
-        lookups += 1;
-        path.go_on(cursor.t - from);
-        path.collisions += 1;
-        pass(path, setup, &looked_up(setup, medium, cursor.t));
+        self.turn(path, which, keeps);
+        path.casts &= !which;
+        if S::CASTS_ANEW {
+            self.follow(path, which, path.hero);
+            route.here.change(path.mean_free_path);
+        }
+    }
+
+    /// Lanes in `which` fly through the σ̂ of a hero.
+    #[inline(always)]
+    fn follow<L: Lane>(&self, path: &mut Particle<L>, which: L::Mask, hero: L) {
+        let mean_free_path = number_of_hero(hero, &self.mean_free_paths[..self.media.count]);
+        path.mean_free_path.keep_where(which, mean_free_path);
     }
 }

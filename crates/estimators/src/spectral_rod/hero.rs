@@ -40,7 +40,7 @@ impl Hero {
     }
 }
 
-impl walk::Scores for Hero {
+impl walk::Page for Hero {
     #[inline(always)]
     fn heroes(&self) -> Option<&Heroes> {
         Some(&self.heroes)

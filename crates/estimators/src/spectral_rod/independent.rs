@@ -28,7 +28,7 @@ pub struct Independent {
     heroes: Heroes,
 }
 
-impl walk::Scores for Independent {
+impl walk::Page for Independent {
     #[inline(always)]
     fn heroes(&self) -> Option<&Heroes> {
         Some(&self.heroes)

@@ -2,14 +2,11 @@
 
 pub mod hero;
 pub mod independent;
-pub mod packet;
 pub mod spectral_mis;
 pub mod spectral_tracking;
 pub mod walk;
 
 use crate::{Refusal, Setup, estimators};
-use media::Lookups;
-use numeric::rng::Stream;
 use theory::problems::spectral_rod::{Colours, Values};
 use theory::problems::{Problem, SpectralRod};
 use theory::spectral_rod::{Body, Rods, Spectrum, Tracker};
@@ -29,11 +26,8 @@ pub trait Coloured: Problem<Value = Values> {
     /// What theory knows of it.
     fn body(setup: &Setup<Self>) -> Box<dyn Body + '_>;
 
-    /// Where walks take place, for packets.
-    fn place(&self) -> packet::Place<'_>;
-
-    /// Walks with a chance to be scattered at a real collision.
-    fn walk(setup: &Setup<Self>, medium: &Lookups, rng: &mut Stream, scatter: f64) -> walk::Left;
+    /// Where walks take place.
+    fn place(&self) -> walk::Place<'_>;
 }
 
 impl Coloured for SpectralRod {
@@ -49,13 +43,8 @@ impl Coloured for SpectralRod {
         Box::new(Rods::new(&setup.problem, &setup.mesh, &setup.sampling))
     }
 
-    fn place(&self) -> packet::Place<'_> {
-        packet::Place::Rod(self.forward)
-    }
-
-    #[inline(always)]
-    fn walk(setup: &Setup<Self>, medium: &Lookups, rng: &mut Stream, scatter: f64) -> walk::Left {
-        walk::walk(setup, medium, rng, scatter)
+    fn place(&self) -> walk::Place<'_> {
+        walk::Place::Rod(self.forward)
     }
 }
 
@@ -64,7 +53,7 @@ fn spectrum<P: Coloured>(setup: &Setup<P>, heroes: Vec<f64>, tracker: Tracker) -
     Spectrum::new(P::body(setup), setup.problem.colours(), heroes, tracker)
 }
 
-/// The draws of a page: all that differs are its [`walk::Scores`].
+/// The draws of a page: all that differs are its [`walk::Page`].
 macro_rules! scored {
     () => {
         const INPUTS: $crate::Inputs = $crate::Inputs::SAMPLING;
@@ -87,7 +76,7 @@ macro_rules! scored {
             medium: &media::Lookups,
             request: $crate::kernels::packet::Request<'a>,
         ) -> Option<$crate::kernels::packet::Request<'a>> {
-            $crate::spectral_rod::packet::walks(level, setup, self, medium, request)
+            $crate::spectral_rod::walk::packets(level, self, setup, medium, request)
         }
     };
 }

@@ -28,10 +28,11 @@ use theory::spectral_rod::Tracker;
 /// The balance heuristic over heroes.
 #[derive(Debug, Clone)]
 pub struct SpectralMis {
-    heroes: Heroes,
+    /// The law of the hero.
+    pub heroes: Heroes,
 }
 
-impl walk::Scores for SpectralMis {
+impl walk::Page for SpectralMis {
     #[inline(always)]
     fn heroes(&self) -> Option<&Heroes> {
         Some(&self.heroes)

@@ -30,7 +30,8 @@ use theory::spectral_rod::{Spectrum, Tracker};
 /// Spectral tracking.
 #[derive(Debug, Clone)]
 pub struct SpectralTracking {
-    maximum: bool,
+    /// Whether by the largest shares, not by the mean.
+    pub maximum: bool,
 }
 
 impl SpectralTracking {
@@ -53,7 +54,7 @@ impl SpectralTracking {
     }
 }
 
-impl walk::Scores for SpectralTracking {
+impl walk::Page for SpectralTracking {
     #[inline(always)]
     fn heroes(&self) -> Option<&Heroes> {
         None

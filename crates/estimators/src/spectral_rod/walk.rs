@@ -1,4 +1,4 @@
-//! The analog walk through a rod, and what its number of scatterings says of all channels.
+//! The analog walk through a rod or a slab, and what its number of scatterings says of all channels.
 //!
 //! ```text
 //! fly forward or backward through σ̂; at a tentative collision the particle goes straight on with probability
@@ -6,59 +6,42 @@
 //! ```
 //!
 //! A flight and what happens at its end take a random number each; a scattering takes a third, the choice of a hero
-//! the first of all. Eight at a time: [`super::packet`].
+//! the first of all. A rod is a slab with two directions, of cosines 1 and −1; slabs decide as `slab` does.
+
+use std::f64::consts::TAU;
+
+use fearless_simd::Level;
 
 use super::Coloured;
+use crate::kernels::packet::Request;
 use crate::setup::heroes::Heroes;
+use crate::slab::walk::{entering, turned};
+use crate::walks::hero::{Law, number_of_hero};
+use crate::walks::{self, GROUPS, Ground, Met, Route, SOME_LEFT, Scores, Walk};
 use crate::{Draw, Refusal, Setup};
+use media::Lookups;
 use media::body::MOST_CHANNELS;
-use media::{Extinction, Lookups};
-use numeric::rng::Stream;
-use theory::problems::SpectralRod;
-use theory::problems::spectral_rod::{End, Values};
+use media::course::BothWays;
+use media::phase::Phase;
+use media::phase::isotropic::Isotropic;
+use numeric::pack::WIDTH;
+use numeric::rng::{Random, Stream};
+use numeric::{Lane, Mask, kept};
+use theory::ParticleRule;
+use theory::problems::slab::{Incidence, Light};
+use theory::problems::spectral_rod::{Colours, End, Values};
 
-/// What became of a particle.
-pub struct Left {
-    /// The end at which it left; `None` if it was absorbed.
-    pub end: Option<End>,
-    /// How often it was scattered.
-    pub order: u32,
-    /// The tentative collisions.
-    pub lookups: u32,
-}
-
-/// Walks with a chance to be scattered at a real collision.
-#[inline(always)]
-pub fn walk(setup: &Setup<SpectralRod>, medium: &Lookups, rng: &mut Stream, scatter: f64) -> Left {
-    let mut cursor = setup.sampling.begin();
-    let mut is_forward = true;
-    let (mut order, mut lookups) = (0, 0);
-    loop {
-        let (depth, number) = (-rng.ln_uniform(), rng.uniform());
-        let flown = if is_forward {
-            setup.sampling.fly(&mut cursor, depth)
-        } else {
-            setup.sampling.fly_back(&mut cursor, depth)
-        };
-        let Some(sampling) = flown else {
-            let end = Some(if is_forward { End::Transmitted } else { End::Reflected });
-            return Left { end, order, lookups };
-        };
-        lookups += 1;
-        let ratio = medium.extinction(cursor.t) / sampling;
-        if number < 1.0 - ratio {
-            continue;
-        }
-        if number >= 1.0 - ratio + scatter * ratio {
-            return Left { end: None, order, lookups };
-        }
-        order += 1;
-        is_forward ^= rng.uniform() >= setup.problem.forward;
-    }
+/// Where walks take place.
+#[derive(Clone, Copy)]
+pub enum Place<'a> {
+    /// In a rod, where scattering keeps the direction with a probability.
+    Rod(f64),
+    /// In a slab.
+    Slab(&'a Incidence),
 }
 
 /// Whose walk it is, and what it is worth in every channel.
-pub trait Scores {
+pub trait Page {
     /// The law of the hero; `None` where one walk is that of all channels, number 0.
     fn heroes(&self) -> Option<&Heroes>;
 
@@ -84,21 +67,234 @@ pub fn relative(albedos: &[f64], hero: usize, order: u32) -> [f64; MOST_CHANNELS
     weights
 }
 
+kept! {
+    /// Particles on their way.
+    pub struct Particle<L> {
+        /// The cosine of the direction with the normal of a slab; 1 or −1 in a rod.
+        cosine: L,
+        /// The number of the hero, and its probability to be scattered at a real collision.
+        hero: L,
+        chance: L,
+        /// The number of scatterings.
+        order: L,
+    }
+}
+
+/// The walk through a body.
+#[derive(Clone, Copy)]
+pub struct InBody<'a> {
+    place: Place<'a>,
+    colours: &'a Colours,
+    page: &'a dyn Page,
+    /// The law of the hero, if one is chosen.
+    law: Option<Law>,
+    /// The number of heroes, and their probabilities to be scattered at a real collision.
+    heroes: usize,
+    chances: [f64; MOST_CHANNELS],
+    /// Weights by channel, order and hero: of [`TABLE`] orders, or of none.
+    table: &'a [f64],
+}
+
+/// Orders that stand in the table.
+const TABLE: usize = 16;
+
+impl<'a> InBody<'a> {
+    #[inline(always)]
+    fn new<P: Coloured>(page: &'a dyn Page, setup: &'a Setup<P>) -> Self {
+        let (place, colours) = (setup.problem.place(), setup.problem.colours());
+        let albedos = &colours.albedos;
+        let law = page.heroes().map(|heroes| Law::new(heroes, albedos.len()));
+        let heroes = if law.is_some() { albedos.len() } else { 1 };
+        let mut chances = [0.0; MOST_CHANNELS];
+        for (hero, chance) in chances[..heroes].iter_mut().enumerate() {
+            *chance = page.chance(albedos, hero);
+        }
+        Self { place, colours, page, law, heroes, chances, table: &[] }
+    }
+
+    /// The weights of walks with an order and a hero by their number, `order · heroes + hero`.
+    fn weights_of(&self, number: usize) -> [f64; MOST_CHANNELS] {
+        let order = u32::try_from(number / self.heroes).unwrap_or(u32::MAX);
+        self.page.weights(&self.colours.albedos, number % self.heroes, order)
+    }
+
+    /// Weights by channel, order and hero.
+    fn tabulated(&self) -> Vec<f64> {
+        let of: Vec<_> = (0..TABLE * self.heroes).map(|number| self.weights_of(number)).collect();
+        let of_channel = |channel: usize| of.iter().map(move |weights| weights[channel]);
+        (0..self.colours.albedos.len()).flat_map(of_channel).collect()
+    }
+
+    /// Lanes at a collision that are scattered, and those that pass.
+    #[inline(always)]
+    fn decide<L: Lane>(&self, met: &Met<L>, chance: L, sampling: L) -> [L::Mask; 2] {
+        let Met { inside, extinction, number, .. } = *met;
+        if let Place::Slab(_) = self.place {
+            let (scattered, passes) =
+                ParticleRule::Analog.odds(met.ratio(), chance).decide_each(inside, number);
+            return [scattered, passes];
+        }
+        let ratio = extinction / sampling;
+        let null = ratio.one_minus();
+        let passes = inside & number.below(null);
+        [inside & !passes & number.below(null + chance * ratio), passes]
+    }
+
+    /// The cosines of lanes that are scattered.
+    #[inline(always)]
+    fn turned<L: Lane>(&self, cosine: L, which: L::Mask, random: &mut impl Random<L>) -> L {
+        let number = random.uniform_where(which);
+        let phase = match self.place {
+            Place::Rod(forward) => {
+                return L::select(number.below(number.each(forward)), cosine, -cosine);
+            }
+            Place::Slab(incidence) => &incidence.phase,
+        };
+        let deflection = phase.cosine(number);
+        if *phase == Phase::Isotropic(Isotropic) {
+            return deflection;
+        }
+        turned(cosine, deflection, (random.uniform_where(which) * TAU).cos())
+    }
+
+    /// What walks are worth in all channels.
+    #[inline(always)]
+    fn weights<L: Lane>(&self, hero: L, order: L) -> [L; MOST_CHANNELS] {
+        let mut weights = [hero; MOST_CHANNELS];
+        let mut number = order * self.heroes as f64 + hero;
+        let size = TABLE * self.heroes;
+        let is_known = order.below(order.each(TABLE as f64));
+        if !self.table.is_empty() && !(!is_known).any() {
+            for (channel, table) in self.table.chunks_exact(size).enumerate() {
+                weights[channel] = number.entry(table);
+            }
+            return weights;
+        }
+        let mut lanes = [[0.0; MOST_CHANNELS]; WIDTH];
+        let mut note = |numbers: &mut [f64]| {
+            for (lane, number) in numbers.iter().enumerate() {
+                lanes[lane] = self.weights_of(whole(*number));
+            }
+        };
+        number = number.replaced(&mut note);
+        for channel in 0..self.colours.albedos.len() {
+            weights[channel] = number.replaced(
+                #[inline(always)]
+                |elements| {
+                    for (lane, element) in elements.iter_mut().enumerate() {
+                        *element = lanes[lane][channel];
+                    }
+                },
+            );
+        }
+        weights
+    }
+}
+
+#[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // a count
+fn whole(number: f64) -> usize {
+    number as usize
+}
+
+impl Walk for InBody<'_> {
+    type State<L: Lane> = Particle<L>;
+
+    const SCORES: Scores = Scores::Later;
+
+    #[inline(always)]
+    fn begin<L: Lane>(&self, one: L, which: L::Mask, random: &mut impl Random<L>) -> Particle<L> {
+        let zero = one.each(0.0);
+        let hero = match &self.law {
+            Some(law) => law.choose(random.uniform_where(which)),
+            None => zero,
+        };
+        let light = match self.place {
+            Place::Rod(_) => Light::Collimated(1.0),
+            Place::Slab(incidence) => incidence.light,
+        };
+        let cosine = entering(light, &ParticleRule::Analog, which, one, random);
+        let chance = number_of_hero(hero, &self.chances[..self.heroes]);
+        Particle { cosine, hero, chance, order: zero }
+    }
+
+    #[inline(always)]
+    fn fly<L: Lane>(
+        &self,
+        particle: &mut Particle<L>,
+        route: &mut Route<impl BothWays<L>>,
+        depth: L,
+    ) -> L::Mask {
+        let cosine = particle.cosine;
+        route.here.fly_either_way(depth * cosine.size(), cosine.each(0.0).below(cosine))
+    }
+
+    #[inline(always)]
+    fn collide<L: Lane>(
+        &self,
+        particle: &mut Particle<L>,
+        route: &mut Route<impl BothWays<L>>,
+        met: &Met<L>,
+        random: &mut impl Random<L>,
+    ) -> L::Mask {
+        let [scattered, passes] = self.decide(met, particle.chance, route.here.sampling());
+        if scattered.maybe() {
+            let cosine = self.turned(particle.cosine, scattered, random);
+            particle.cosine.set_where(scattered, cosine);
+            particle.order.count_where(scattered);
+        }
+        scattered | passes
+    }
+
+    #[inline(always)]
+    fn channels(&self) -> usize {
+        self.colours.seen.len()
+    }
+
+    #[inline(always)]
+    fn leaves<'a, L: Lane>(
+        &self,
+        particle: &'a Particle<L>,
+        some: &'a mut [L; SOME_LEFT],
+    ) -> [&'a [L]; GROUPS] {
+        (some[0], some[1], some[2]) = (particle.cosine, particle.hero, particle.order);
+        [&some[..3], &[], &[], &[], &[]]
+    }
+
+    #[inline(always)]
+    fn score<L: Lane>(&self, numbers: &[L], left: L::Mask, _: L, values: &mut [L]) -> L {
+        let (cosine, zero) = (numbers[0], numbers[0].each(0.0));
+        let (weights, is_down) = (self.weights(numbers[1], numbers[2]), zero.below(cosine));
+        for (number, &(end, channel)) in self.colours.seen.iter().enumerate() {
+            let there = if end == End::Transmitted { is_down } else { !is_down };
+            values[number] = L::select(left & there, weights[channel], zero).sealed();
+        }
+        zero
+    }
+}
+
 /// Makes one draw.
 #[inline(always)]
 pub fn draw<P: Coloured>(
-    page: &impl Scores,
+    page: &impl Page,
     setup: &Setup<P>,
     medium: &Lookups,
-    rng: &mut Stream,
+    random: &mut Stream,
 ) -> Draw<Values> {
-    let colours = setup.problem.colours();
-    let albedos = &colours.albedos;
-    let heroes = page.heroes();
-    let hero = heroes.map_or(0, |heroes| heroes.choose(albedos.len(), rng.uniform()));
-    let left = P::walk(setup, medium, rng, page.chance(albedos, hero));
-    let weights = page.weights(albedos, hero, left.order);
-    Draw::free(colours.values(left.end, &weights), left.lookups)
+    walks::draw(&InBody::new(page, setup), &setup.sampling, medium, random)
+}
+
+/// Makes the draws in packets, see [`crate::Estimator::draw_packets`].
+pub fn packets<'r, P: Coloured>(
+    level: Level,
+    page: &dyn Page,
+    setup: &Setup<P>,
+    medium: &Lookups,
+    request: Request<'r>,
+) -> Option<Request<'r>> {
+    let walk = InBody::new(page, setup);
+    let table = walk.tabulated();
+    let walk = InBody { table: &table, ..walk };
+    walks::packets(level, &walk, Ground::new(setup, medium), request)
 }
 
 /// σ̂ ≥ σ_t, few collisions, one hero probability for each channel, and an answer.

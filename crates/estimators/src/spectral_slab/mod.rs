@@ -6,18 +6,14 @@ pub mod spectral_mis;
 pub mod spectral_tracking;
 
 use super::spectral_rod::Coloured;
-use super::spectral_rod::packet::Place;
-use super::spectral_rod::walk::Left;
-use crate::walks;
-use crate::{Refusal, Setup, estimators, slab};
+use super::spectral_rod::walk::Place;
+use crate::{Refusal, Setup, estimators};
 use ::theory::problems::SpectralSlab;
 use ::theory::problems::spectral_rod::{Colours, End};
+use ::theory::slab as theory;
 use ::theory::spectral_rod::Body;
 use ::theory::spectral_slab::Slabs;
-use ::theory::{ParticleRule, slab as theory};
-use media::Lookups;
 use numeric::digits::rounded;
-use numeric::rng::Stream;
 
 /// The largest error of an exact answer, relative to it, that is worth drawing against.
 const BLURRED: f64 = 1e-4;
@@ -50,21 +46,6 @@ impl Coloured for SpectralSlab {
 
     fn place(&self) -> Place<'_> {
         Place::Slab(&self.incidence)
-    }
-
-    #[inline(always)]
-    fn walk(setup: &Setup<Self>, medium: &Lookups, rng: &mut Stream, scatter: f64) -> Left {
-        let incidence = &setup.problem.incidence;
-        let steps = ParticleRule::Analog;
-        let walk = slab::walk::InSlab::<_, true> { incidence, albedo: scatter, steps };
-        let found = walks::draw::<[f64; 3]>(&walk, &setup.sampling, medium, rng);
-        let end = match found.value {
-            [_, below, _] if below > 0.0 => Some(End::Transmitted),
-            [above, ..] if above > 0.0 => Some(End::Reflected),
-            _ => None,
-        };
-        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // a count
-        Left { end, order: found.value[2] as u32, lookups: found.lookups }
     }
 }
 

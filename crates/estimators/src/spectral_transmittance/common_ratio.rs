@@ -16,20 +16,12 @@
 //! Source: J. Novák, A. Selle, W. Jarosz, *Residual Ratio Tracking for Estimating Attenuation in Participating
 //! Media*, ACM Transactions on Graphics 33 (2014), with one majorant for all channels.
 
-use fearless_simd::Level;
-
-use super::walk;
-use crate::kernels::packet::Request;
-use crate::kernels::packet::spectral::{self as packet, Rule};
+use super::trackers;
 use crate::setup::channels;
 use crate::setup::heroes::Heroes;
-use crate::{Draw, Estimator, Inputs, Refusal, Setup};
-use media::Lookups;
+use crate::{Estimator, Refusal, Setup};
 use media::catalogue::Settings;
-use numeric::rng::Stream;
-use theory::Prediction;
 use theory::problems::SpectralTransmittance;
-use theory::problems::spectral_transmittance::Values;
 use theory::spectral::Tracker;
 
 /// The ratio tracker of all channels.
@@ -37,9 +29,6 @@ use theory::spectral::Tracker;
 pub struct CommonRatio;
 
 impl Estimator<SpectralTransmittance> for CommonRatio {
-    const INPUTS: Inputs = Inputs::SAMPLING;
-    const IN_PACKETS: bool = true;
-
     fn read(_: &Settings) -> Option<Self> {
         Some(Self)
     }
@@ -49,32 +38,5 @@ impl Estimator<SpectralTransmittance> for CommonRatio {
         channels::require_common(&setup.channels)
     }
 
-    fn predict(&self, setup: &Setup<SpectralTransmittance>) -> Prediction {
-        let tracker = Tracker::Hero { delta: false };
-        walk::spectrum(setup, &Heroes::Uniform, tracker).predict(&setup.problem.luminance)
-    }
-
-    #[inline(always)]
-    fn draw(
-        &self,
-        setup: &Setup<SpectralTransmittance>,
-        medium: &Lookups,
-        rng: &mut Stream,
-    ) -> Draw<Values> {
-        let count = setup.channels.len();
-        let passed = walk::walk(setup, medium, rng, (0, false), 0..count);
-        Draw::free(setup.problem.values(&passed.ratios[..count]), passed.lookups)
-    }
-
-    fn draw_packets<'a>(
-        &self,
-        level: Level,
-        setup: &Setup<SpectralTransmittance>,
-        medium: &Lookups,
-        request: Request<'a>,
-    ) -> Option<Request<'a>> {
-        let tracker = Tracker::Hero { delta: false };
-        let rule = Rule { tracker, is_common: true, heroes: &Heroes::Uniform };
-        packet::walks(level, setup, rule, medium, request)
-    }
+    trackers!(self => common, &Heroes::Uniform, Tracker::Hero { delta: false });
 }

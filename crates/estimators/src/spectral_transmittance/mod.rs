@@ -5,10 +5,30 @@ pub mod hero;
 pub mod independent;
 pub mod spectral_mis;
 pub mod spectral_tracking;
+pub mod steps;
 pub mod walk;
 
 use crate::estimators;
 use theory::problems::SpectralTransmittance;
+
+/// The plumbing of a page: all that differs is whether all channels walk together, the law of the hero, and its tracker.
+macro_rules! trackers {
+    ($this:ident => $walk:ident, $heroes:expr, $tracker:expr) => {
+        const INPUTS: $crate::Inputs = $crate::Inputs::SAMPLING;
+        const IN_PACKETS: bool = true;
+
+        fn predict(&$this, setup: &Setup<SpectralTransmittance>) -> theory::Prediction {
+            let spectrum = $crate::spectral_transmittance::walk::spectrum(setup, $heroes, $tracker);
+            spectrum.predict(&setup.problem.luminance)
+        }
+
+        $crate::walks::drawn!($this, setup: SpectralTransmittance => {
+            use $crate::spectral_transmittance::{steps::Right, walk::AlongRay};
+            AlongRay::$walk(setup, $heroes, $tracker, Right)
+        });
+    };
+}
+use trackers;
 
 estimators! {
     SpectralTransmittance:

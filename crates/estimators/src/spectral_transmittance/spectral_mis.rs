@@ -20,21 +20,12 @@
 //! Source: B. Miller, I. Georgiev, W. Jarosz, *A Null-Scattering Path Integral Formulation of Light
 //! Transport*, ACM Transactions on Graphics 38 (2019), section 5.1.
 
-use fearless_simd::Level;
-
-use super::walk;
-use crate::kernels::packet::Request;
-use crate::kernels::packet::spectral::{self as packet, Rule};
+use super::{trackers, walk};
 use crate::setup::channels;
 use crate::setup::heroes::Heroes;
-use crate::{Draw, Estimator, Inputs, Refusal, Setup};
-use media::Lookups;
-use media::body::MOST_CHANNELS;
+use crate::{Estimator, Refusal, Setup};
 use media::catalogue::Settings;
-use numeric::rng::Stream;
-use theory::Prediction;
 use theory::problems::SpectralTransmittance;
-use theory::problems::spectral_transmittance::Values;
 use theory::spectral::Tracker;
 
 /// The balance heuristic over heroes.
@@ -45,9 +36,6 @@ pub struct SpectralMis {
 }
 
 impl Estimator<SpectralTransmittance> for SpectralMis {
-    const INPUTS: Inputs = Inputs::SAMPLING;
-    const IN_PACKETS: bool = true;
-
     fn read(settings: &Settings) -> Option<Self> {
         let (delta, heroes) = (walk::read_delta(settings), Heroes::read(settings));
         Some(Self { delta: delta?, heroes: heroes? })
@@ -63,46 +51,5 @@ impl Estimator<SpectralTransmittance> for SpectralMis {
         if self.delta { channels::require_majorants(&setup.channels) } else { Ok(()) }
     }
 
-    fn predict(&self, setup: &Setup<SpectralTransmittance>) -> Prediction {
-        let tracker = Tracker::Mis { delta: self.delta };
-        walk::spectrum(setup, &self.heroes, tracker).predict(&setup.problem.luminance)
-    }
-
-    #[inline(always)]
-    fn draw(
-        &self,
-        setup: &Setup<SpectralTransmittance>,
-        medium: &Lookups,
-        rng: &mut Stream,
-    ) -> Draw<Values> {
-        let count = setup.channels.len();
-        let hero = self.heroes.choose(setup.channels.len(), rng.uniform());
-        let passed = walk::walk(setup, medium, rng, (hero, self.delta), 0..count);
-        let mut found = [0.0; MOST_CHANNELS];
-        if passed.is_alive {
-            let mut density = 0.0;
-            for (channel, found) in found[..count].iter_mut().enumerate() {
-                let relative = walk::relative_density(setup, channel, hero, passed.lookups);
-                *found = relative * passed.ratios[channel];
-                let by_hero = if self.delta { *found } else { relative };
-                density += self.heroes.probability(count, channel) * by_hero;
-            }
-            for found in &mut found[..count] {
-                *found /= density;
-            }
-        }
-        Draw::free(setup.problem.values(&found[..count]), passed.lookups)
-    }
-
-    fn draw_packets<'a>(
-        &self,
-        level: Level,
-        setup: &Setup<SpectralTransmittance>,
-        medium: &Lookups,
-        request: Request<'a>,
-    ) -> Option<Request<'a>> {
-        let tracker = Tracker::Mis { delta: self.delta };
-        let rule = Rule { tracker, is_common: false, heroes: &self.heroes };
-        packet::walks(level, setup, rule, medium, request)
-    }
+    trackers!(self => new, &self.heroes, Tracker::Mis { delta: self.delta });
 }

@@ -9,23 +9,24 @@ use std::hint::black_box;
 
 use fearless_simd::{Simd, SimdBase, SimdMask, f64x8, mask64x8};
 
-use super::{Met, Route, Walk};
+use super::left::{self, Events, Groups, Left};
+use super::{Met, Route, SOME_LEFT, Scores, Walk};
 use crate::kernels::DrawBuffer;
 use crate::kernels::packet::Request;
 use crate::kernels::packet::bank::{Numbers, Slot, Slots, leave};
 use media::body::MOST_CHANNELS;
 use media::course::BothWays;
-use numeric::pack::WIDTH;
+use numeric::pack::{self, WIDTH};
 use numeric::rng::LANES;
 use numeric::twin::PAIR;
 use numeric::{Lane, Mask, Twin};
 
-/// Eight walks. The walk itself is no part of it: a call may take its address, and would take that of the pack.
-struct Pack<L: Lane, W: Walk, C> {
+/// Eight walks. The walk itself is no part of it: a call may take its address, and would take that of the pack. Neither is
+/// the state: an index into a list of it would keep all in memory.
+struct Pack<L: Lane, C> {
     /// A distance inside the medium, where lanes look σ_t up that need it nowhere.
     from: L,
     route: Route<C>,
-    state: W::State<L>,
     number: L,
     t: L,
     inside: L::Mask,
@@ -34,23 +35,27 @@ struct Pack<L: Lane, W: Walk, C> {
     lookups: L,
 }
 
+/// σ_t of all channels for a pack.
+type Channels<S> = [f64x8<S>; MOST_CHANNELS];
+
 /// Numbers that eight draws are made of. They are no part of the pack, which a compiler keeps in registers only where nothing of it needs to
 /// be dropped.
 struct Rows {
     values: Vec<[f64; WIDTH]>,
     defects: [f64; WIDTH],
     lookups: [f64; WIDTH],
+    /// Those of draws that are scored later, and of walks that score often.
+    left: Left,
+    events: Events,
 }
 
-impl<S: Simd, W: Walk, C: BothWays<f64x8<S>>> Pack<f64x8<S>, W, C> {
+impl<S: Simd, C: BothWays<f64x8<S>>> Pack<f64x8<S>, C> {
     #[inline(always)]
-    fn new(simd: S, walk: &W, course: C, random: &mut Numbers<S>) -> Self {
+    fn new(simd: S, course: C) -> Self {
         let (zero, all) = (f64x8::splat(simd, 0.0), mask64x8::splat(simd, true));
-        let state = walk.begin(f64x8::splat(simd, 1.0), all, random);
         Self {
             from: course.reached(),
             route: Route::new(course),
-            state,
             number: zero,
             t: zero,
             inside: all,
@@ -61,65 +66,106 @@ impl<S: Simd, W: Walk, C: BothWays<f64x8<S>>> Pack<f64x8<S>, W, C> {
 
     /// Flies; answers the distances at which σ_t is looked up.
     #[inline(always)]
-    fn fly(&mut self, walk: &W, random: &mut Numbers<S>) -> f64x8<S> {
-        let [depth, number] = walk.numbers(&mut self.state, random);
+    fn fly<W: Walk>(
+        &mut self,
+        walk: &W,
+        state: &mut W::State<f64x8<S>>,
+        random: &mut Numbers<S>,
+    ) -> f64x8<S> {
+        let [depth, number] = walk.numbers(state, random);
         self.number = number;
-        self.inside = walk.fly(&mut self.state, &mut self.route, depth);
-        self.t = Lane::select(self.inside, walk.distance(&self.state, &self.route), self.from);
+        if W::IS_CHROMATIC {
+            self.route.here.change(walk.mean_free_path(state, &self.route));
+        }
+        self.inside = walk.fly(state, &mut self.route, depth);
+        self.t = Lane::select(self.inside, walk.distance(state, &self.route), self.from);
         self.t
     }
 
     /// Collides; answers as bits which walks end.
     #[inline(always)]
-    fn collide(
+    fn collide<W: Walk>(
         &mut self,
         walk: &W,
+        state: &mut W::State<f64x8<S>>,
         extinction: f64x8<S>,
-        on_shadow: &[f64x8<S>],
+        [extinctions, on_shadow]: [&[f64x8<S>]; 2],
         random: &mut Numbers<S>,
     ) -> u64 {
         let Self { inside, t, number, .. } = *self;
-        let mean_free_path = walk.mean_free_path(&self.state, &self.route);
-        let met = Met { inside, t, mean_free_path, extinction, on_shadow, number };
+        let mean_free_path = walk.mean_free_path(state, &self.route);
+        let met = Met { inside, t, mean_free_path, extinction, extinctions, on_shadow, number };
         if W::PAUSES {
             let mut counted = inside;
             if W::CASTS {
-                counted |= walk.on_shadow_rays(&self.state).0;
+                counted |= walk.on_shadow_rays(state).0;
             }
             self.lookups.count_where(counted);
         }
-        self.goes_on = walk.collide(&mut self.state, &mut self.route, &met, random);
+        self.goes_on = walk.collide(state, &mut self.route, &met, random);
         (!self.goes_on).bits()
     }
 
-    /// Makes draws of the walks that end, as bits; answers the lanes that have made their last one.
+    /// Notes events of walks of a pack that score often.
     #[inline(always)]
-    fn collect(
+    fn score<W: Walk>(
         &self,
         walk: &W,
-        ended: u64,
+        state: &W::State<f64x8<S>>,
+        pack: usize,
+        events: &mut Events,
+    ) {
+        let which = walk.scores(state, !self.goes_on);
+        if which.any() {
+            let mut some = [self.from; SOME_LEFT];
+            events.push(pack, which.bits(), walk.leaves(state, &mut some));
+        }
+    }
+
+    /// Makes draws of the walks of a pack that end, as bits; answers the lanes that have made their last one.
+    #[inline(always)]
+    fn collect<W: Walk>(
+        &self,
+        walk: &W,
+        state: &W::State<f64x8<S>>,
+        (pack, ended): (usize, u64),
         rows: &mut Rows,
-        slots: &mut Slots,
-        buffer: &mut DrawBuffer,
+        (slots, buffer): (&mut Slots, &mut DrawBuffer),
     ) -> u64 {
-        for (channel, row) in rows.values.iter_mut().enumerate() {
-            walk.value(&self.state, !self.inside, channel).store_slice(row);
+        if W::SCORES == Scores::AtOnce {
+            for (channel, row) in rows.values.iter_mut().enumerate() {
+                walk.value(state, !self.inside, channel).store_slice(row);
+            }
         }
         if W::HAS_DEFECT {
-            walk.defect(&self.state, self.t.each(0.0)).store_slice(&mut rows.defects);
+            walk.defect(state, self.t.each(0.0)).store_slice(&mut rows.defects);
         }
         if W::PAUSES {
-            let lookups = walk.lookups(&self.state, self.lookups);
+            let lookups = walk.lookups(state, self.lookups);
             lookups.store_slice(&mut rows.lookups);
         }
-        rows.write::<W>(ended, self.inside.bits(), slots, buffer)
+        let inside = self.inside.bits();
+        match W::SCORES {
+            Scores::AtOnce => rows.write::<W>([ended, inside], slots, buffer),
+            Scores::Later => {
+                let mut some = [self.from; SOME_LEFT];
+                let groups = walk.leaves(state, &mut some);
+                rows.write_left::<S, W>([ended, inside], groups, slots, buffer)
+            }
+            Scores::Often => rows.write_events::<W>(pack, [ended, inside], slots, buffer),
+        }
     }
 
     /// Replaces the walks that ended.
     #[inline(always)]
-    fn restart(&mut self, walk: &W, random: &mut Numbers<S>) {
+    fn restart<W: Walk>(
+        &mut self,
+        walk: &W,
+        state: &mut W::State<f64x8<S>>,
+        random: &mut Numbers<S>,
+    ) {
         let ended = !self.goes_on;
-        walk.restart(&mut self.state, ended, self.from.each(1.0), random);
+        walk.restart(state, ended, self.from.each(1.0), random);
         self.route.here.restart(ended);
         if W::PAUSES {
             self.lookups.set_where(ended, self.from.each(0.0));
@@ -128,38 +174,128 @@ impl<S: Simd, W: Walk, C: BothWays<f64x8<S>>> Pack<f64x8<S>, W, C> {
 }
 
 impl Rows {
+    /// Room for what walks of a request leave.
+    #[inline(always)]
+    fn new<S: Simd, W: Walk>(
+        walk: &W,
+        state: &W::State<f64x8<S>>,
+        one: f64x8<S>,
+        (draws, buffer): (usize, &mut DrawBuffer),
+    ) -> Self {
+        let numbers = left::count(walk.leaves(state, &mut [one; SOME_LEFT]));
+        Self::with_room::<W>(walk, numbers, draws, &mut buffer.left)
+    }
+
+    #[inline(never)]
+    fn with_room<W: Walk>(walk: &W, numbers: usize, draws: usize, room: &mut Vec<f64>) -> Self {
+        let none = [0.0; WIDTH];
+        let of = |scores, count: usize| if W::SCORES == scores { count } else { 0 };
+        Self {
+            values: vec![none; of(Scores::AtOnce, walk.channels())],
+            defects: none,
+            lookups: none,
+            left: Left::new(numbers, of(Scores::Later, draws), room),
+            events: Events::new(numbers, of(Scores::Often, draws), room),
+        }
+    }
+
     /// Writes the draws of some lanes, as bits; answers the lanes that have made their last one.
     #[inline(never)]
-    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // counts
     fn write<W: Walk>(
         &self,
-        ended: u64,
-        inside: u64,
+        [ended, inside]: [u64; 2],
         slots: &mut Slots,
         buffer: &mut DrawBuffer,
     ) -> u64 {
-        slots.fill(ended, |Slot { lane, draw, steps }| {
+        slots.fill(ended, |slot| {
             for (channel, row) in buffer.values.iter_mut().zip(&self.values) {
-                channel[draw] = row[lane];
+                channel[slot.draw] = row[slot.lane];
             }
-            buffer.defects[draw] = self.defects[lane];
-            buffer.lookups[draw] = if W::PAUSES {
-                self.lookups[lane] as u32
-            } else {
-                // The step that leaves looks nothing up.
-                steps + (inside >> lane & 1) as u32
-            };
+            buffer.defects[slot.draw] = self.defects[slot.lane];
+            buffer.lookups[slot.draw] = self.lookups::<W>(inside, slot);
         })
+    }
+
+    /// Writes what draws are scored by later.
+    #[inline(never)]
+    fn write_left<S: Simd, W: Walk>(
+        &mut self,
+        [ended, inside]: [u64; 2],
+        groups: Groups<S>,
+        slots: &mut Slots,
+        buffer: &mut DrawBuffer,
+    ) -> u64 {
+        slots.fill(ended, |slot| {
+            let left = if inside >> slot.lane & 1 == 1 { 0.0 } else { 1.0 };
+            self.left.write(slot.draw, left, groups, slot.lane);
+            buffer.lookups[slot.draw] = self.lookups::<W>(inside, slot);
+        })
+    }
+
+    /// Writes of which draws the events are.
+    #[inline(never)]
+    fn write_events<W: Walk>(
+        &mut self,
+        pack: usize,
+        [ended, inside]: [u64; 2],
+        slots: &mut Slots,
+        buffer: &mut DrawBuffer,
+    ) -> u64 {
+        let over = slots.fill(ended, |slot| {
+            self.events.belong(pack, slot.lane, slot.draw);
+            buffer.defects[slot.draw] = 0.0;
+            buffer.lookups[slot.draw] = self.lookups::<W>(inside, slot);
+        });
+        self.events.forget(pack, ended);
+        over
+    }
+
+    #[inline(always)]
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // counts
+    fn lookups<W: Walk>(&self, inside: u64, Slot { lane, steps, .. }: Slot) -> u32 {
+        if W::PAUSES {
+            self.lookups[lane] as u32
+        } else {
+            // The step that leaves looks nothing up.
+            steps + (inside >> lane & 1) as u32
+        }
+    }
+
+    /// Gives the room for numbers back.
+    fn give_back<W: Walk>(self, buffer: &mut DrawBuffer) {
+        match W::SCORES {
+            Scores::AtOnce => {}
+            Scores::Later => buffer.left = self.left.into_room(),
+            Scores::Often => buffer.left = self.events.into_room(),
+        }
+    }
+
+    /// Makes values of what walks left.
+    #[inline(always)]
+    fn score<S: Simd, W: Walk>(&self, simd: S, walk: W, draws: usize, buffer: &mut DrawBuffer) {
+        match W::SCORES {
+            Scores::AtOnce => {}
+            Scores::Later => pack::outlined(
+                simd,
+                #[inline(always)]
+                move || self.left.score(simd, &walk, draws, buffer),
+            ),
+            Scores::Often => pack::outlined(
+                simd,
+                #[inline(always)]
+                move || self.events.score(simd, &walk, buffer),
+            ),
+        }
     }
 }
 
-/// Makes the draws of a request. Both packs take each step together: `look_up` answers for sixteen lanes.
+/// Makes the draws of a request. Both packs take each step together: `look_up` answers for sixteen lanes, and a channel.
 #[inline(always)]
 pub fn run<S: Simd, W: Walk, C: BothWays<f64x8<S>>>(
     simd: S,
     walk: W,
     course: C,
-    look_up: impl Fn(Twin<f64x8<S>>) -> Twin<f64x8<S>>,
+    look_up: impl Fn(usize, Twin<f64x8<S>>) -> Twin<f64x8<S>>,
     request: Request,
 ) {
     let Request { streams, count, buffer } = request;
@@ -170,36 +306,63 @@ pub fn run<S: Simd, W: Walk, C: BothWays<f64x8<S>>>(
         |lanes| lanes.awake(simd),
     );
     // Two names, no array: what an index reaches lies in memory, and AVX2 then chooses by masked stores.
-    let mut pack = Pack::new(simd, &walk, course, &mut first);
-    let mut other = Pack::new(simd, &walk, course, &mut second);
-    let mut on_shadow = [[f64x8::splat(simd, 0.0); MOST_CHANNELS]; 2];
-    let none = [0.0; WIDTH];
-    let mut rows = Rows { values: vec![none; walk.channels()], defects: none, lookups: none };
+    let (mut pack, mut other) = (Pack::new(simd, course), Pack::new(simd, course));
+    let (one, all) = (f64x8::splat(simd, 1.0), mask64x8::splat(simd, true));
+    let mut state = walk.begin(one, all, &mut first);
+    let mut other_state = walk.begin(one, all, &mut second);
+    let mut rows = Rows::new::<S, W>(&walk, &state, one, (count, &mut *buffer));
     let (mut slots, mut other_slots) = (Slots::new(count, turn, 0), Slots::new(count, turn, 1));
+    let none: Channels<S> = [f64x8::splat(simd, 0.0); MOST_CHANNELS];
+    let (mut channels, mut other_channels) = (none, none);
+    let mut on_shadow = [none; 2];
+    let media = if W::IS_CHROMATIC { walk.media() } else { 0 };
     let own = &walk;
     while slots.are_open() || other_slots.are_open() {
         // LLVM copies a loop for each of its constant conditions, of which these walks have many.
-        let walk = if const { W::CASTS } { black_box(own) } else { own };
-        let found = look_up(Twin(pack.fly(walk, &mut first), other.fly(walk, &mut second)));
-        if W::CASTS {
-            look_up_shadows(simd, walk, [&pack.state, &other.state], &mut on_shadow);
+        let is_branched =
+            const { W::CASTS || W::IS_CHROMATIC && !matches!(W::SCORES, Scores::AtOnce) };
+        let walk = if is_branched { black_box(own) } else { own };
+        let t = Twin(
+            pack.fly(walk, &mut state, &mut first),
+            other.fly(walk, &mut other_state, &mut second),
+        );
+        let mut found = Twin(none[0], none[0]);
+        if W::IS_CHROMATIC {
+            for channel in 0..media {
+                let Twin(here, there) = look_up(channel, t);
+                (channels[channel], other_channels[channel]) = (here, there);
+            }
+        } else {
+            found = look_up(0, t);
         }
-        let [here, there] = &on_shadow;
-        let ended = pack.collide(walk, found.0, here, &mut first);
-        let other_ended = other.collide(walk, found.1, there, &mut second);
+        if W::CASTS {
+            look_up_shadows(simd, walk, [&state, &other_state], &mut on_shadow);
+        }
+        let others = [&channels[..media], &on_shadow[0]];
+        let ended = pack.collide(walk, &mut state, found.0, others, &mut first);
+        let others = [&other_channels[..media], &on_shadow[1]];
+        let other_ended = other.collide(walk, &mut other_state, found.1, others, &mut second);
+        if W::SCORES == Scores::Often {
+            pack.score(walk, &state, 0, &mut rows.events);
+            other.score(walk, &other_state, 1, &mut rows.events);
+        }
         if ended != 0 {
-            let over = pack.collect(walk, ended, &mut rows, &mut slots, buffer);
+            let draws = (&mut slots, &mut *buffer);
+            let over = pack.collect(walk, &state, (0, ended), &mut rows, draws);
             leave(streams, 0, over, first);
-            pack.restart(walk, &mut first);
+            pack.restart(walk, &mut state, &mut first);
         }
         if other_ended != 0 {
-            let over = other.collect(walk, other_ended, &mut rows, &mut other_slots, buffer);
+            let draws = (&mut other_slots, &mut *buffer);
+            let over = other.collect(walk, &other_state, (1, other_ended), &mut rows, draws);
             leave(streams, 1, over, second);
-            other.restart(walk, &mut second);
+            other.restart(walk, &mut other_state, &mut second);
         }
         slots.step();
         other_slots.step();
     }
+    rows.score(simd, walk, count, buffer);
+    rows.give_back::<W>(buffer);
     streams.turn = (turn + count) % LANES;
 }
 

@@ -18,10 +18,14 @@
 //! | [`window`] | 16 | walks whose steps all take the same random numbers: no step has a branch |
 //! | [`bank`] | 16 | all other walks |
 //!
+//! A walk in several channels flies through the σ̂ of one of them, its [`hero`].
+//!
 //! Source: F. B. Brown, W. R. Martin, *Monte Carlo methods for radiation transport analysis on vector
 //! computers*, Progress in Nuclear Energy 14 (1984), for [`window`] and [`bank`].
 
 pub mod bank;
+pub mod hero;
+mod left;
 pub mod plain;
 mod route;
 pub mod window;
@@ -67,6 +71,9 @@ pub trait Walk: Copy {
 
     /// Whether [`Walk::defect`] is more than 0.
     const HAS_DEFECT: bool = false;
+
+    /// When finished walks are scored.
+    const SCORES: Scores = Scores::AtOnce;
 
     /// Whether the formula of Eq. 21 is compiled into the loop of packs, see [`Inlined`].
     const INLINES_EQ21: bool = false;
@@ -178,8 +185,39 @@ pub trait Walk: Copy {
     }
 
     /// The value of walks that have ended, in one channel. Lanes in `left` have left the medium; the others ended at a
-    /// collision.
-    fn value<L: Lane>(&self, state: &Self::State<L>, left: L::Mask, channel: usize) -> L;
+    /// collision. Asked for if walks are scored [`Scores::AtOnce`].
+    #[inline(always)]
+    fn value<L: Lane>(&self, state: &Self::State<L>, left: L::Mask, channel: usize) -> L {
+        let _ = (state, left, channel);
+        unreachable!("the walk is scored later")
+    }
+
+    /// The numbers that walks leave for [`Walk::score`], at most [`MOST_LEFT`] altogether: lists of the state, and numbers that
+    /// are copied to `some`, so that they themselves stay in registers.
+    #[inline(always)]
+    fn leaves<'a, L: Lane>(
+        &self,
+        state: &'a Self::State<L>,
+        some: &'a mut [L; SOME_LEFT],
+    ) -> [&'a [L]; GROUPS] {
+        let _ = (state, some);
+        [&[]; GROUPS]
+    }
+
+    /// Lanes that leave numbers in this step, where walks are scored [`Scores::Often`].
+    #[inline(always)]
+    fn scores<L: Lane>(&self, state: &Self::State<L>, ended: L::Mask) -> L::Mask {
+        let _ = state;
+        ended
+    }
+
+    /// Makes values of the numbers that walks left, and of their lookups; answers the defect. Lanes in `left` had left the
+    /// medium, if walks are scored [`Scores::Later`].
+    #[inline(always)]
+    fn score<L: Lane>(&self, numbers: &[L], left: L::Mask, lookups: L, values: &mut [L]) -> L {
+        let _ = (numbers, left, values);
+        lookups.each(0.0)
+    }
 
     /// See [`crate::Draw::defect`].
     #[inline(always)]
@@ -188,6 +226,26 @@ pub trait Walk: Copy {
         zero
     }
 }
+
+/// When walks are scored.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub enum Scores {
+    /// Where they end.
+    AtOnce,
+    /// By numbers that they leave where they end, eight draws at a time: few walks end in the same step.
+    Later,
+    /// By numbers that they leave at any step, eight times at a time. A draw is the sum.
+    Often,
+}
+
+/// Lists of numbers that a walk leaves.
+pub const GROUPS: usize = 5;
+/// The most of these numbers that are copied.
+pub const SOME_LEFT: usize = 5;
+/// The most numbers that a walk leaves.
+pub const MOST_LEFT: usize = 40;
+/// The most values of a draw that is not scored at once.
+pub const MOST_SCORED: usize = 16;
 
 /// A tentative collision. Lanes that came to none have any numbers.
 #[derive(Clone, Copy)]
@@ -198,8 +256,10 @@ pub struct Met<'a, L: Lane> {
     pub t: L,
     /// `1/σ̂`.
     pub mean_free_path: L,
-    /// `σ_t`.
+    /// `σ_t`, unless the walk [`Walk::IS_CHROMATIC`].
     pub extinction: L,
+    /// `σ_t` of each channel, if it is.
+    pub extinctions: &'a [L],
     /// `σ_t` on the shadow rays, one a channel, if the walk [`Walk::CASTS`].
     pub on_shadow: &'a [L],
     /// Uniform in `[0, 1)`, if the walk [`Walk::DECIDES`].
@@ -246,12 +306,43 @@ pub fn packets<'a, W: Walk>(
     ground: Ground,
     request: Request<'a>,
 ) -> Option<Request<'a>> {
-    let is_possible = W::IN_PIECES || ground.sampling.even().is_some();
+    let is_possible = (W::IN_PIECES && !W::IS_CHROMATIC) || ground.sampling.even().is_some();
     if !is_possible || !pays(ground.medium, ground.sampling, ground.control) {
         return Some(request);
     }
     pack::on_wide(level, SideBySide { walk, ground, request }).err().map(|task| task.request)
 }
+
+/// The draws of a page that are those of a walk on its setup, as in `drawn!(self, setup: LitRod => Walk::of(setup))`. What is made for
+/// many draws in packets may differ: `drawn!(self, setup: LitRod => Walk::of(setup), Walk::prepared(setup))`.
+macro_rules! drawn {
+    ($this:ident, $setup:ident: $Problem:ty => $walk:expr) => {
+        $crate::walks::drawn!($this, $setup: $Problem => $walk, $walk);
+    };
+    ($this:ident, $setup:ident: $Problem:ty => $walk:expr, $prepared:expr) => {
+        #[inline(always)]
+        fn draw(
+            &$this,
+            $setup: &$crate::Setup<$Problem>,
+            medium: &media::Lookups,
+            random: &mut numeric::rng::Stream,
+        ) -> $crate::Draw<<$Problem as theory::problems::Problem>::Value> {
+            $crate::walks::draw(&$walk, &$setup.sampling, medium, random)
+        }
+
+        fn draw_packets<'a>(
+            &$this,
+            level: fearless_simd::Level,
+            $setup: &$crate::Setup<$Problem>,
+            medium: &media::Lookups,
+            request: $crate::kernels::packet::Request<'a>,
+        ) -> Option<$crate::kernels::packet::Request<'a>> {
+            let ground = $crate::walks::Ground::new($setup, medium);
+            $crate::walks::packets(level, &$prepared, ground, request)
+        }
+    };
+}
+pub(crate) use drawn;
 
 /// Makes the draws of a walk that keeps its own position, as [`packets`] does.
 pub fn packets_nowhere<'a>(
@@ -277,7 +368,7 @@ impl<W: Walk> Task for SideBySide<'_, '_, W> {
         let Self { walk, ground: Ground { sampling, medium, .. }, request } = self;
         let zero = f64x8::splat(simd, 0.0);
         let Some(even) = sampling.even() else {
-            if const { W::IN_PIECES } {
+            if const { W::IN_PIECES && !W::IS_CHROMATIC } {
                 outlined(simd, *walk, Pieces::new(zero, sampling), medium, request);
             }
             return;
@@ -290,7 +381,7 @@ impl<W: Walk> Task for SideBySide<'_, '_, W> {
                 *walk,
                 course,
                 #[inline(always)]
-                move |t| medium.pair(simd, t),
+                move |_, t| medium.pair(simd, t),
                 request,
             );
         }
@@ -379,7 +470,7 @@ fn outlined<S: Simd, W: Walk, C: BothWays<f64x8<S>>>(
                 walk,
                 course,
                 #[inline(always)]
-                move |t| medium.pair(simd, t),
+                move |channel, t| medium.channel(channel).pair(simd, t),
                 request,
             );
         },

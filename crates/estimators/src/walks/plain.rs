@@ -1,6 +1,6 @@
 //! The driver of one walk, with one lookup at a time.
 
-use super::{Met, Nowhere, Route, Walk};
+use super::{MOST_LEFT, MOST_SCORED, Met, Nowhere, Route, SOME_LEFT, Scores, Walk};
 use crate::kernels::Draw;
 use media::body::MOST_CHANNELS;
 use media::course::{BothWays, Even, Pieces};
@@ -65,34 +65,79 @@ fn follow<L: Single, W: Walk, V: Channels>(
     let (zero, one) = (L::of(0.0), L::of(1.0));
     let mut state = walk.begin(one, true, random);
     let mut route = Route::new(course);
-    let mut lookups = 0;
+    let (mut lookups, mut extinctions) = (0, [zero; MOST_CHANNELS]);
+    let extinctions = &mut extinctions[..walk.media()];
+    let mut sums = [zero; MOST_SCORED];
     let left = loop {
         let [depth, number] = walk.numbers(&mut state, random);
+        if W::IS_CHROMATIC {
+            route.here.change(walk.mean_free_path(&state, &route));
+        }
         let inside = walk.fly(&mut state, &mut route, depth);
         let mut on_shadow = [zero; MOST_CHANNELS];
         if W::CASTS {
             lookups += look_up_shadow(walk, &state, &mut on_shadow);
         }
-        let (t, on_shadow) = (zero, &on_shadow[..]);
-        let mut met = Met { inside, t, mean_free_path: t, extinction: t, on_shadow, number };
+        let (mut t, mut mean_free_path) = (zero, zero);
         if inside {
             lookups += 1;
-            met.t = walk.distance(&state, &route);
-            met.mean_free_path = walk.mean_free_path(&state, &route);
-            met.extinction = medium.extinction(met.t);
+            t = walk.distance(&state, &route);
+            mean_free_path = walk.mean_free_path(&state, &route);
+            for (channel, found) in extinctions.iter_mut().enumerate() {
+                *found = medium.channel(channel).extinction(t);
+            }
         } else if !W::PAUSES {
             break true;
         }
-        if !walk.collide(&mut state, &mut route, &met, random) {
+        let extinction = extinctions[0];
+        let (extinctions, on_shadow) = (&*extinctions, &on_shadow[..]);
+        let met = Met { inside, t, mean_free_path, extinction, extinctions, on_shadow, number };
+        let goes_on = walk.collide(&mut state, &mut route, &met, random);
+        if W::SCORES == Scores::Often && walk.scores(&state, !goes_on) {
+            let (found, _) = score(walk, &state, true, zero);
+            for (sum, found) in sums.iter_mut().zip(found) {
+                *sum = *sum + found;
+            }
+        }
+        if !goes_on {
             break !inside;
         }
     };
     if W::CASTS {
         lookups = walk.lookups(&state, L::of(f64::from(lookups))).double() as u32;
     }
-    let value = |channel| walk.value(&state, left, channel).double();
-    let defect = if W::HAS_DEFECT { walk.defect(&state, zero).double() } else { 0.0 };
-    Draw { value: V::of(walk.channels(), value), lookups, defect }
+    let count = walk.channels();
+    match W::SCORES {
+        Scores::AtOnce => {
+            let value = |channel| walk.value(&state, left, channel).double();
+            let defect = if W::HAS_DEFECT { walk.defect(&state, zero).double() } else { 0.0 };
+            Draw { value: V::of(count, value), lookups, defect }
+        }
+        Scores::Later => {
+            let (found, defect) = score(walk, &state, left, L::of(f64::from(lookups)));
+            let value = V::of(count, |channel| found[channel].double());
+            Draw { value, lookups, defect: defect.double() }
+        }
+        Scores::Often => Draw::free(V::of(count, |channel| sums[channel].double()), lookups),
+    }
+}
+
+/// The score of the numbers that a walk leaves, and its defect.
+#[inline(always)]
+fn score<L: Single, W: Walk>(
+    walk: &W,
+    state: &W::State<L>,
+    left: bool,
+    lookups: L,
+) -> ([L; MOST_SCORED], L) {
+    let (mut numbers, mut values) = ([lookups; MOST_LEFT], [lookups; MOST_SCORED]);
+    let (mut count, mut some) = (0, [lookups; SOME_LEFT]);
+    for &number in walk.leaves(state, &mut some).into_iter().flatten() {
+        numbers[count] = number;
+        count += 1;
+    }
+    let defect = walk.score(&numbers[..count], left, lookups, &mut values[..walk.channels()]);
+    (values, defect)
 }
 
 /// Looks σ_t up on a shadow ray, if there is one; answers the number of lookups.

@@ -67,6 +67,14 @@ impl<L: Lane> Course<L> for Nowhere {
 }
 
 impl<L: Lane> BothWays<L> for Nowhere {
+    type Place = ();
+
+    #[inline(always)]
+    fn place(&self) {}
+
+    #[inline(always)]
+    fn stand_at(&mut self, (): ()) {}
+
     #[inline(always)]
     fn fly_either_way(&mut self, depth: L, _: L::Mask) -> L::Mask {
         depth.below(depth)

@@ -103,7 +103,8 @@ impl<S: Simd, W: Walk, C: BothWays<f64x8<S>>> Pack<f64x8<S>, W, C> {
         }
         let mean_free_path = walk.mean_free_path(&self.state, &self.route);
         let number = numbers.decision;
-        let met = Met { inside, t, mean_free_path, extinction, on_shadow: &[], number };
+        let (extinctions, on_shadow): (&[f64x8<S>], &[f64x8<S>]) = (&[], &[]);
+        let met = Met { inside, t, mean_free_path, extinction, extinctions, on_shadow, number };
         if W::PAUSES {
             self.lookups.count_where(inside);
         }

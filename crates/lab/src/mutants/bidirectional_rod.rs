@@ -10,7 +10,7 @@ use super::target::{
 use super::{About, Mutant, with};
 use estimators::bidirectional_rod::walk::{self, Path, Steps};
 use estimators::bidirectional_rod::{Page, draw};
-use numeric::rng::Stream;
+use numeric::Lane;
 use theory::Heuristic;
 use theory::bidirectional_rod::{Combination, quotient};
 use theory::problems::BidirectionalRod;
@@ -62,21 +62,28 @@ struct Wrong {
 
 impl Wrong {
     /// `a ρ` at the camera's end of the connection.
-    fn camera(path: &Path) -> f64 {
+    fn camera<L: Lane>(path: &Path<L>) -> L {
         let s = path.light;
-        if (1..=path.order).contains(&s) { path.albedo * path.phase[s - 1] } else { 1.0 }
+        let one = path.at[0].each(1.0);
+        if (1..=path.order).contains(&s) { path.phase[s - 1] * path.albedo } else { one }
     }
 
     /// `T̂` of the connection.
-    fn connection(path: &Path) -> f64 {
+    fn connection<L: Lane>(path: &Path<L>) -> L {
         let s = path.light;
-        if (1..=path.order + 1).contains(&s) { path.transmittance[s - 1] } else { 1.0 }
+        let one = path.at[0].each(1.0);
+        if (1..=path.order + 1).contains(&s) { path.transmittance[s - 1] } else { one }
     }
 
     /// The inverse of `cⱼ` with null vertices in the path's own technique only.
-    fn density(path: &Path, j: usize) -> f64 {
-        let of = |i: usize| if i + 1 == path.light { path.transmittance[i] } else { 1.0 };
-        1.0 / quotient(j, path.order, of, |i| path.albedo * path.phase[i - 1])
+    fn density<L: Lane>(path: &Path<L>, j: usize) -> L {
+        let one = path.at[0].each(1.0);
+        let of = |i: usize| if i + 1 == path.light { path.transmittance[i] } else { one };
+        one / quotient(j, path.order, of, |i| path.phase[i - 1] * path.albedo)
+    }
+
+    fn sum<L: Lane>(path: &Path<L>, terms: impl Iterator<Item = L>) -> L {
+        terms.fold(path.at[0].each(0.0), |sum, term| sum + term)
     }
 }
 
@@ -93,31 +100,32 @@ impl Steps for Wrong {
         self.page.is_shared
     }
 
-    fn begin(&self, rng: &mut Stream, beginning: &Stream) {
+    fn begin<R: Copy>(&self, random: &mut R, beginning: &R) {
         if self.bug == Bug::SameNumbers {
-            *rng = *beginning;
+            *random = *beginning;
         }
     }
 
-    fn joined(&self, path: &Path) -> usize {
+    fn joined<L: Lane>(&self, path: &Path<L>) -> usize {
         let is_wrong = self.bug == Bug::WrongSegment && path.light >= 2;
         path.light - if is_wrong { 2 } else { 1 }
     }
 
-    fn worth(&self, path: &Path) -> f64 {
+    fn worth<L: Lane>(&self, path: &Path<L>) -> L {
         let (worth, s) = (self.page.worth(path), path.light);
         let is_hit = |j: usize| j == 0 || j == path.order + 2;
+        let one = worth.each(1.0);
         match self.bug {
             Bug::VertexCount => worth / Self::camera(path),
             Bug::Reversed if (1..=path.order).contains(&s) => {
-                worth * (1.0 - path.phase[s - 1]) / path.phase[s - 1]
+                worth * path.phase[s - 1].one_minus() / path.phase[s - 1]
             }
             Bug::HitsWithoutDensity => {
                 let others = (0..path.order + 3).filter(|&j| !is_hit(j));
-                1.0 / others.map(|j| 1.0 / path.quotient(j)).sum::<f64>()
+                one / Self::sum(path, others.map(|j| one / path.quotient(j)))
             }
             Bug::NullsInOne => {
-                let all = (0..path.order + 3).map(|j| Self::density(path, j)).sum::<f64>();
+                let all = Self::sum(path, (0..path.order + 3).map(|j| Self::density(path, j)));
                 Self::density(path, s) / all * path.quotient(s)
             }
             Bug::TrackedTwice => worth * Self::connection(path),
@@ -126,11 +134,11 @@ impl Steps for Wrong {
         }
     }
 
-    fn together(&self, each: &[f64]) -> f64 {
+    fn together<L: Lane>(&self, each: &[L]) -> L {
         let sum = self.page.together(each);
         match self.bug {
             Bug::Twice => sum + each[1],
-            Bug::Averaged => sum / each.len() as f64,
+            Bug::Averaged => sum / sum.each(each.len() as f64),
             _ => sum,
         }
     }

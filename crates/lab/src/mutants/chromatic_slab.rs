@@ -10,7 +10,7 @@
 use super::spectral_furnace::{Slip, Wrong};
 use super::target::{CHROMATIC_SLAB, CHROMATIC_SLAB_TRACKING};
 use super::{About, Mutant, Target, with};
-use estimators::chromatic::{draw, draw_all};
+use estimators::chromatic::{Chromatic, draw};
 use estimators::setup::heroes::Heroes;
 use estimators::setup::walker::Walker;
 use theory::problems::ChromaticSlab;
@@ -29,8 +29,8 @@ pub fn mutants() -> Vec<Mutant<ChromaticSlab>> {
         let right = walker.clone();
         Mutant::new(
             about,
-            with(Wrong { slip, walker }, |wrong, setup, medium, rng| draw(wrong, (&wrong.walker, wrong.weighing()), setup, medium, rng)),
-            with(right, draw_all),
+            with(Wrong { slip, walker }, |wrong, setup, medium, rng| ChromaticSlab::draw(wrong, wrong.by(), setup, medium, rng)),
+            with(right, |right, setup, medium, rng| draw(right, true, setup, medium, rng)),
         )
     };
     vec![

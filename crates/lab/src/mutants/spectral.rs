@@ -12,28 +12,33 @@ use super::target::{
     SPECTRAL_HISTORY, SPECTRAL_INDEPENDENT, SPECTRAL_MAXIMUM, SPECTRAL_MIS_DELTA,
     SPECTRAL_MIS_RATIO,
 };
-use super::{About, Mutant, with};
+use super::{About, Mutant, Target, with};
 use estimators::setup::heroes::Heroes;
-use estimators::spectral_transmittance::walk::{Passed, relative_density};
+use estimators::spectral_transmittance::steps::{Right, Steps};
+use estimators::spectral_transmittance::walk::AlongRay;
+use estimators::walks::hero::Law;
 use estimators::{Draw, Setup};
-use media::body::MOST_CHANNELS;
-use media::{Extinction, Lookups};
+use media::Lookups;
 use numeric::Lane;
-use numeric::rng::Stream;
+use numeric::rng::{Random, Stream};
 use theory::problems::SpectralTransmittance;
 use theory::problems::spectral_transmittance::Values;
+use theory::spectral::{Chance, Tracker};
 
 /// The family.
 #[rustfmt::skip] // one mutant, one entry
 pub fn mutants() -> Vec<Mutant<SpectralTransmittance>> {
-    let of = |name, bug, target, check, honest: Kind, slip| {
-        let by = |slip| with((honest, slip), |&(kind, slip), setup, medium, rng| draw(kind, slip, setup, medium, rng));
-        Mutant::new(About { name, bug, target, check }, by(slip), by(Slip::None))
+    let of = |name, bug, target: Target, check, tracker: Tracker, slip| {
+        let walker = (tracker, [SPECTRAL_MAXIMUM, SPECTRAL_HISTORY].contains(&target));
+        let wrong = with((walker, slip), |&(walker, slip), setup, medium, rng| draw(walker, slip, setup, medium, rng));
+        let right = with(walker, |&walker, setup, medium, rng| walk(walker, setup, Right).draw(medium, rng));
+        Mutant::new(About { name, bug, target, check }, wrong, right)
     };
-    let (ratio, delta) = (Kind::Mis { delta: false }, Kind::Mis { delta: true });
+    let (ratio, delta) = (Tracker::Mis { delta: false }, Tracker::Mis { delta: true });
+    let (independent, maximum) = (Tracker::Independent { delta: true }, Tracker::Tracking(Chance::Maximum));
     vec![
-        of("spectral-choice-free", "the one channel that is drawn is not divided by its probability", SPECTRAL_INDEPENDENT, "mean", Kind::Independent, Slip::ChoiceFree),
-        of("spectral-grey", "what the hero finds is scored for all channels", SPECTRAL_INDEPENDENT, "mean", Kind::Independent, Slip::Grey),
+        of("spectral-choice-free", "the one channel that is drawn is not divided by its probability", SPECTRAL_INDEPENDENT, "mean", independent, Slip::ChoiceFree),
+        of("spectral-grey", "what the hero finds is scored for all channels", SPECTRAL_INDEPENDENT, "mean", independent, Slip::Grey),
         of("spectral-channel-dropped", "the last channel is missing from the denominator", SPECTRAL_MIS_RATIO, "mean", ratio, Slip::Dropped),
         of("spectral-twice-as-many", "the densities are averaged over 2N techniques, of which N are drawn", SPECTRAL_MIS_RATIO, "mean", ratio, Slip::TwiceAsMany),
         of("spectral-hero-luminance", "the hero is chosen by the luminance, and weighted as if all were alike", SPECTRAL_MIS_RATIO, "mean", ratio, Slip::ByLuminance),
@@ -42,24 +47,14 @@ pub fn mutants() -> Vec<Mutant<SpectralTransmittance>> {
         of("spectral-last-stretch", "f and p lack the transmittance of the last stretch (Algorithm 2, line 9, as printed)", SPECTRAL_MIS_RATIO, "mean", ratio, Slip::LastStretch),
         of("spectral-nulls-in-f-only", "the densities of delta tracking lack the probabilities of null collisions", SPECTRAL_MIS_DELTA, "mean", delta, Slip::NullsInContributionOnly),
         of("spectral-own-density", "each channel is divided by its own density", SPECTRAL_MIS_RATIO, "mean", ratio, Slip::OwnDensity),
-        of("spectral-maximum-raw", "the chance max n/μ̄ is not normalised where weights are divided by it", SPECTRAL_MAXIMUM, "mean", Kind::Maximum, Slip::Raw),
-        of("spectral-history-forgotten", "the chance of history-aware tracking forgets the weights", SPECTRAL_HISTORY, "variance", Kind::History, Slip::Forgotten),
+        of("spectral-maximum-raw", "the chance max n/μ̄ is not normalised where weights are divided by it", SPECTRAL_MAXIMUM, "mean", maximum, Slip::Raw),
+        of("spectral-history-forgotten", "the chance of history-aware tracking forgets the weights", SPECTRAL_HISTORY, "variance", delta, Slip::Forgotten),
     ]
-}
-
-/// Which estimator has the bug.
-#[derive(Clone, Copy, PartialEq)]
-enum Kind {
-    Independent,
-    Mis { delta: bool },
-    Maximum,
-    History,
 }
 
 /// What goes wrong.
 #[derive(Clone, Copy, PartialEq)]
 enum Slip {
-    None,
     ChoiceFree,
     Grey,
     Dropped,
@@ -74,162 +69,101 @@ enum Slip {
     Forgotten,
 }
 
+/// A tracker, and whether all channels walk together.
+type Walker = (Tracker, bool);
+
 fn draw(
-    kind: Kind,
+    walker: Walker,
     slip: Slip,
     setup: &Setup<SpectralTransmittance>,
     medium: &Lookups,
     rng: &mut Stream,
 ) -> Draw<Values> {
-    match kind {
-        Kind::Independent => independent(slip, setup, medium, rng),
-        Kind::Mis { delta } => balanced(delta, slip, setup, medium, rng),
-        Kind::Maximum | Kind::History => tracked(kind == Kind::History, slip, setup, medium, rng),
+    if slip == Slip::LastStretch {
+        return walk(walker, setup, LastStretch).draw(medium, rng);
     }
-}
-
-/// Delta tracking of one channel, see `estimators/spectral_transmittance/independent.rs`.
-fn independent(
-    slip: Slip,
-    setup: &Setup<SpectralTransmittance>,
-    medium: &Lookups,
-    rng: &mut Stream,
-) -> Draw<Values> {
     let count = setup.channels.len();
-    let hero = Heroes::Uniform.choose(setup.channels.len(), rng.uniform());
-    let (passed, _) = walk(slip, setup, medium, rng, (hero, true));
-    let weight = if slip == Slip::ChoiceFree { 1.0 } else { count as f64 };
-    let value = if passed.is_alive { weight } else { 0.0 };
-    let mut found = [0.0; MOST_CHANNELS];
-    match slip {
-        Slip::Grey => found[..count].fill(value / count as f64),
-        _ => found[hero] = value,
+    let mut walk = walk(walker, setup, Wrong { slip, count });
+    if slip == Slip::ByLuminance {
+        walk.law = Law::new(&Heroes::Luminance, count);
     }
-    Draw::free(setup.problem.values(&found[..count]), passed.lookups)
+    walk.draw(medium, rng)
 }
 
-/// The balance heuristic, see `estimators/spectral_transmittance/spectral_mis.rs`.
-fn balanced(
-    delta: bool,
-    slip: Slip,
+fn walk<S: Steps>(
+    (tracker, is_common): Walker,
     setup: &Setup<SpectralTransmittance>,
-    medium: &Lookups,
-    rng: &mut Stream,
-) -> Draw<Values> {
-    let count = setup.channels.len();
-    let chosen = if slip == Slip::ByLuminance { Heroes::Luminance } else { Heroes::Uniform };
-    let hero = chosen.choose(setup.channels.len(), rng.uniform());
-    let (passed, last) = walk(slip, setup, medium, rng, (hero, delta));
-    let mut found = [0.0; MOST_CHANNELS];
-    if passed.is_alive {
-        let (mut density, mut own) = (0.0, [0.0; MOST_CHANNELS]);
-        for channel in 0..count {
-            let mut relative = relative_density(setup, channel, hero, passed.lookups);
-            if slip == Slip::LastStretch {
-                let length = setup.mesh.support().to - last;
-                let [mine, heros] = [channel, hero].map(|c| setup.channels[c].majorant);
-                relative *= Lane::exp((mine - heros) * length);
-            }
-            found[channel] = relative * passed.ratios[channel];
-            let nulls = delta && slip != Slip::NullsInContributionOnly;
-            let by_hero = if nulls { found[channel] } else { relative };
-            own[channel] = by_hero;
-            if slip != Slip::Dropped || channel + 1 < count {
-                density += Heroes::Uniform.probability(count, channel) * by_hero;
-            }
-        }
-        if slip == Slip::TwiceAsMany {
-            density *= 0.5;
-        }
-        for (found, own) in found[..count].iter_mut().zip(own) {
-            *found /= if slip == Slip::OwnDensity { own } else { density };
-        }
-    }
-    Draw::free(setup.problem.values(&found[..count]), passed.lookups)
+    steps: S,
+) -> AlongRay<'_, S> {
+    let make = if is_common { AlongRay::common } else { AlongRay::new };
+    make(setup, &Heroes::Uniform, tracker, steps)
 }
 
-/// The walk of a hero, and the place of its last collision; see
-/// `estimators/spectral_transmittance/walk.rs`.
-fn walk(
+/// The steps of a walk with a slip.
+#[derive(Clone, Copy)]
+struct Wrong {
     slip: Slip,
-    setup: &Setup<SpectralTransmittance>,
-    medium: &Lookups,
-    rng: &mut Stream,
-    (mut hero, delta): (usize, bool),
-) -> (Passed, f64) {
-    let sampling = &setup.channels[hero].sampling;
-    let mut cursor = sampling.begin();
-    let mut passed = Passed { lookups: 0, ratios: [1.0; MOST_CHANNELS], is_alive: true };
-    loop {
-        let last = cursor.t;
-        let depth = -rng.ln_uniform();
-        let number = if delta { rng.uniform() } else { 0.0 };
-        if sampling.fly(&mut cursor, depth).is_none() {
-            return (passed, last);
+    /// The number of channels.
+    count: usize,
+}
+
+impl Steps for Wrong {
+    fn decides<L: Lane>(&self, hero: L, inside: L::Mask, random: &mut impl Random<L>) -> L {
+        if self.slip != Slip::Anew {
+            return hero;
         }
-        passed.lookups += 1;
-        if slip == Slip::Anew {
-            hero = Heroes::Uniform.choose(setup.channels.len(), rng.uniform());
-        }
-        let mut survival = 1.0;
-        for (channel, own) in setup.channels.iter().enumerate() {
-            let is_heros = slip == Slip::HerosMajorant;
-            let majorant = if is_heros { setup.channels[hero].majorant } else { own.majorant };
-            let null = 1.0 - medium.channel(channel).extinction(cursor.t) / majorant;
-            passed.ratios[channel] *= null;
-            if channel == hero {
-                survival = null;
+        Law::new(&Heroes::Uniform, self.count).choose(random.uniform_where(inside))
+    }
+
+    fn majorant<L: Lane>(&self, own: L, heros: impl Fn() -> L) -> L {
+        if self.slip == Slip::HerosMajorant { heros() } else { own }
+    }
+
+    fn tracked<L: Lane>(&self, right: L, shares: &[L]) -> [L; 2] {
+        match self.slip {
+            Slip::Raw => {
+                let largest =
+                    shares.iter().fold(right.each(0.0), |most, &share| most.or_more(share));
+                [right, largest]
             }
+            Slip::Forgotten => [Chance::Average.of_null(shares); 2],
+            _ => [right; 2],
         }
-        if delta && number >= survival {
-            passed.is_alive = false;
-            return (passed, cursor.t);
+    }
+
+    fn alone<L: Lane>(&self, is_hero: L::Mask, value: L, probability: f64) -> L {
+        match self.slip {
+            Slip::Grey => value,
+            Slip::ChoiceFree => L::select(is_hero, value, value.each(0.0)),
+            _ => Right.alone(is_hero, value, probability),
+        }
+    }
+
+    fn density<L: Lane>(&self, delta: bool, contribution: L, relative: L) -> L {
+        Right.density(delta && self.slip != Slip::NullsInContributionOnly, contribution, relative)
+    }
+
+    fn share(&self, probability: f64, is_last: bool) -> f64 {
+        if self.slip == Slip::Dropped && is_last { 0.0 } else { probability }
+    }
+
+    fn divisor<L: Lane>(&self, mean: L, own: L) -> L {
+        match self.slip {
+            Slip::TwiceAsMany => mean * 0.5,
+            Slip::OwnDensity => own,
+            _ => mean,
         }
     }
 }
 
-/// Spectral tracking, see `estimators/spectral_transmittance/spectral_tracking.rs`.
-fn tracked(
-    remembers: bool,
-    slip: Slip,
-    setup: &Setup<SpectralTransmittance>,
-    medium: &Lookups,
-    rng: &mut Stream,
-) -> Draw<Values> {
-    use theory::spectral::Chance;
-    let count = setup.channels.len();
-    let common = &setup.channels[0];
-    let mut cursor = common.sampling.begin();
-    let (mut weights, mut shares) = ([1.0; MOST_CHANNELS], [0.0; MOST_CHANNELS]);
-    let (weights, shares) = (&mut weights[..count], &mut shares[..count]);
-    let mut lookups = 0;
-    loop {
-        let (depth, number) = (-rng.ln_uniform(), rng.uniform());
-        if common.sampling.fly(&mut cursor, depth).is_none() {
-            return Draw::free(setup.problem.values(weights), lookups);
-        }
-        lookups += 1;
-        for (channel, share) in shares.iter_mut().enumerate() {
-            let extinction = medium.channel(channel).extinction(cursor.t);
-            *share = 1.0 - extinction / common.majorant;
-        }
-        let null = if remembers && slip != Slip::Forgotten {
-            let (mut nulls, mut all) = (0.0, 0.0);
-            for (weight, share) in weights.iter().zip(shares.iter()) {
-                nulls += weight * share;
-                all += weight;
-            }
-            nulls / all
-        } else {
-            (if remembers { Chance::Average } else { Chance::Maximum }).of_null(shares)
-        };
-        if number >= null {
-            return Draw::free(setup.problem.values(&[0.0; MOST_CHANNELS][..count]), lookups);
-        }
-        let largest = shares.iter().fold(0.0f64, |most, &share| most.max(share));
-        let divisor = if slip == Slip::Raw { largest } else { null };
-        for (weight, share) in weights.iter_mut().zip(shares.iter()) {
-            *weight *= share / divisor;
-        }
+/// [`Slip::LastStretch`].
+#[derive(Clone, Copy)]
+struct LastStretch;
+
+impl Steps for LastStretch {
+    const KEEPS_LAST: bool = true;
+
+    fn relative<L: Lane>(&self, right: L, [own, heros]: [L; 2], last: impl Fn() -> L) -> L {
+        right * ((own - heros) * last()).exp()
     }
 }

@@ -8,10 +8,11 @@
 
 use super::target::{SPECTRAL_FURNACE, SPECTRAL_FURNACE_TRACKING};
 use super::{About, Mutant, Target, with};
-use estimators::chromatic::{Steps, WEIGHING, draw, draw_all};
-use estimators::kernels::hero::{LastPiece, Weighing};
+use estimators::chromatic::{By, Chromatic, Right, Steps, WEIGHING, draw};
 use estimators::setup::heroes::Heroes;
 use estimators::setup::walker::Walker;
+use estimators::walks::hero::{LastPiece, Weighing};
+use numeric::Lane;
 use theory::particle::Event;
 use theory::problems::SpectralFurnace;
 use theory::spectral::{Chance, Chances};
@@ -29,8 +30,8 @@ pub fn mutants() -> Vec<Mutant<SpectralFurnace>> {
         let right = walker.clone();
         Mutant::new(
             about,
-            with(Wrong { slip, walker }, |wrong, setup, medium, rng| draw(wrong, (&wrong.walker, wrong.weighing()), setup, medium, rng)),
-            with(right, draw_all),
+            with(Wrong { slip, walker }, |wrong, setup, medium, rng| SpectralFurnace::draw(wrong, wrong.by(), setup, medium, rng)),
+            with(right, |right, setup, medium, rng| draw(right, true, setup, medium, rng)),
         )
     };
     vec![
@@ -67,36 +68,35 @@ pub(super) struct Wrong {
 }
 
 impl Wrong {
-    pub(super) fn weighing(&self) -> Weighing {
-        match self.slip {
+    pub(super) fn by(&self) -> By<'_> {
+        let weighing = match self.slip {
             Slip::Dropped => Weighing { missing: 1, ..WEIGHING },
             Slip::ExitMissing => Weighing { last_piece: LastPiece::Nowhere, ..WEIGHING },
             _ => WEIGHING,
-        }
+        };
+        By { walker: &self.walker, weighing, scores_all: true }
     }
 }
 
-impl Steps for Wrong {
-    fn factor(&self, event: Event, ratio: f64, albedo: f64, density: f64) -> f64 {
+impl Steps for &Wrong {
+    fn factor<L: Lane>(&self, event: Event, ratio: L, albedo: L, density: L) -> L {
         match (self.slip, event) {
-            (Slip::NullsLeftOut, Event::Transmitted) => 1.0,
+            (Slip::NullsLeftOut, Event::Transmitted) => ratio.each(1.0),
             (Slip::AlbedoMissing, Event::Scattered) => ratio * density,
             (Slip::AbsorbedWhole, Event::Absorbed) => ratio,
-            (_, Event::Transmitted) => 1.0 - ratio,
-            (_, Event::Scattered) => ratio * albedo * density,
-            (_, Event::Absorbed) => ratio * (1.0 - albedo),
+            _ => Right.factor(event, ratio, albedo, density),
         }
     }
 
-    fn majorant_of(&self, channel: usize, hero: usize) -> usize {
-        if self.slip == Slip::OtherMajorant { hero } else { channel }
+    fn has_heros_majorant(&self) -> bool {
+        self.slip == Slip::OtherMajorant
     }
 
-    fn phase_of(&self, channel: usize, hero: usize) -> usize {
-        if self.slip == Slip::PhaseOfHero { hero } else { channel }
+    fn has_heros_phase(&self) -> bool {
+        self.slip == Slip::PhaseOfHero
     }
 
-    fn flown(&self, depth: f64, cosine: f64) -> f64 {
-        if self.slip == Slip::Upright { depth.abs() } else { depth / cosine }
+    fn flown<L: Lane>(&self, depth: L, cosine: L) -> L {
+        if self.slip == Slip::Upright { depth.size() } else { depth / cosine }
     }
 }

@@ -9,14 +9,15 @@
 //! `cases/spectral-lit-rod/as-printed.toml` tells how large the bias of the printed ones is.
 
 use super::target::{SPECTRAL_LIT_FULL, SPECTRAL_LIT_HITS};
-use super::{About, Mutant, Target, with};
-use estimators::kernels::hero::{LastPiece, Weighing};
+use super::{About, Draws, Mutant, Target, with};
 use estimators::setup::heroes::Heroes;
 use estimators::spectral_lit_rod::as_printed::{AsPrinted, Error};
 use estimators::spectral_lit_rod::next_event_mis::NextEventMis;
 use estimators::spectral_lit_rod::spectral_mis::SpectralMis;
-use estimators::spectral_lit_rod::walk::{Found, Steps, draw};
-use numeric::rng::Stream;
+use estimators::spectral_lit_rod::steps::{Found, Steps};
+use estimators::spectral_lit_rod::walk::draw;
+use estimators::walks::hero::{LastPiece, Weighing};
+use numeric::Lane;
 use theory::problems::SpectralLitRod;
 
 /// The family.
@@ -30,11 +31,16 @@ pub fn mutants() -> Vec<Mutant<SpectralLitRod>> {
     let slip = |name, bug, target: Target, slip| {
         let about = About { name, bug, target, check: "mean" };
         let casts = target == SPECTRAL_LIT_FULL;
-        let wrong = with(Wrong { casts, slip }, draw);
-        if casts {
+        let mutant = |wrong: Box<Draws<SpectralLitRod>>| if casts {
             Mutant::new(about, wrong, with(NextEventMis { heroes: heroes() }, draw))
         } else {
             Mutant::new(about, wrong, with(SpectralMis { heroes: heroes() }, draw))
+        };
+        match slip {
+            Slip::NotReset => mutant(Box::new(with(Wrong::<true, false, false> { casts, slip }, draw))),
+            Slip::AlbedoTwice => mutant(Box::new(with(Wrong::<false, true, false> { casts, slip }, draw))),
+            Slip::HeroAnew => mutant(Box::new(with(Wrong::<false, false, true> { casts, slip }, draw))),
+            _ => mutant(Box::new(with(Wrong::<false, false, false> { casts, slip }, draw))),
         }
     };
     vec![
@@ -70,12 +76,18 @@ enum Slip {
 }
 
 /// The steps of a walk with one slip.
-struct Wrong {
+struct Wrong<const GOES_ON: bool, const GAINS: bool, const CASTS_ANEW: bool> {
     casts: bool,
     slip: Slip,
 }
 
-impl Steps for Wrong {
+impl<const GOES_ON: bool, const GAINS: bool, const CASTS_ANEW: bool> Steps
+    for Wrong<GOES_ON, GAINS, CASTS_ANEW>
+{
+    const GOES_ON: bool = GOES_ON;
+    const GAINS: bool = GAINS;
+    const CASTS_ANEW: bool = CASTS_ANEW;
+
     fn heroes(&self) -> &Heroes {
         &Heroes::Uniform
     }
@@ -102,23 +114,7 @@ impl Steps for Wrong {
         if self.slip == Slip::PhaseOfHero { hero } else { channel }
     }
 
-    fn decides(&self, hero: usize) -> usize {
-        if self.slip == Slip::OtherMajorant { 0 } else { hero }
-    }
-
-    fn casts_by(&self, hero: usize, count: usize, rng: &mut Stream) -> usize {
-        if self.slip == Slip::HeroAnew {
-            Heroes::Uniform.choose(count, rng.uniform())
-        } else {
-            hero
-        }
-    }
-
-    fn begins_anew(&self) -> bool {
-        self.slip != Slip::NotReset
-    }
-
-    fn gains(&self, albedo: f64) -> f64 {
-        if self.slip == Slip::AlbedoTwice { albedo } else { 1.0 }
+    fn decides<L: Lane>(&self, right: L, by_first: impl Fn() -> L) -> L {
+        if self.slip == Slip::OtherMajorant { by_first() } else { right }
     }
 }

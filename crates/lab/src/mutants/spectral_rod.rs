@@ -6,36 +6,32 @@ use super::target::{
 use super::{About, Mutant, Target, with};
 use estimators::setup::heroes::Heroes;
 use estimators::spectral_rod::Coloured;
-use estimators::{Draw, Setup};
-use media::Lookups;
+use estimators::spectral_rod::spectral_mis::SpectralMis;
+use estimators::spectral_rod::spectral_tracking::SpectralTracking;
+use estimators::spectral_rod::walk::{Page, draw, relative};
 use media::body::MOST_CHANNELS;
-use numeric::rng::Stream;
-use theory::problems::spectral_rod::Values;
 use theory::problems::{SpectralRod, SpectralSlab};
 
 /// A bug in draws of a body.
-fn of<P: Coloured>(
-    name: &'static str,
-    bug: &'static str,
-    target: Target,
-    draw: Draws<P>,
-    slip: Slip,
-) -> Mutant<P> {
-    let by = |slip| {
-        with((draw, slip), |&(draw, slip), setup, medium, rng| draw(slip, setup, medium, rng))
-    };
-    Mutant::new(About { name, bug, target, check: "mean" }, by(slip), by(Slip::None))
+fn of<P: Coloured>(name: &'static str, bug: &'static str, target: Target, slip: Slip) -> Mutant<P> {
+    let about = About { name, bug, target, check: "mean" };
+    let wrong = with(slip, draw);
+    if slip.is_of_tracking() {
+        Mutant::new(about, wrong, with(SpectralTracking { maximum: false }, draw))
+    } else {
+        Mutant::new(about, wrong, with(SpectralMis { heroes: Heroes::Uniform }, draw))
+    }
 }
 
 /// The family.
 #[rustfmt::skip] // one mutant, one entry
 pub fn mutants() -> Vec<Mutant<SpectralRod>> {
     vec![
-        of("spectral-rod-dropped", "the last channel is missing from the denominator", SPECTRAL_ROD_MIS, balanced, Slip::Dropped),
-        of("spectral-rod-albedo-twice", "the hero's albedo is a chance and stays in the weight", SPECTRAL_ROD_MIS, balanced, Slip::AlbedoTwice),
-        of("spectral-rod-hero-anew", "every scattering has the density of a hero of its own: the mean albedo", SPECTRAL_ROD_MIS, balanced, Slip::Anew),
-        of("spectral-rod-chance-kept", "the weight is not divided by the chance to be scattered", SPECTRAL_ROD_TRACKING, tracked, Slip::ChanceKept),
-        of("spectral-rod-largest-albedo", "weights are divided by the largest albedo, not by the chance", SPECTRAL_ROD_TRACKING, tracked, Slip::Largest),
+        of("spectral-rod-dropped", "the last channel is missing from the denominator", SPECTRAL_ROD_MIS, Slip::Dropped),
+        of("spectral-rod-albedo-twice", "the hero's albedo is a chance and stays in the weight", SPECTRAL_ROD_MIS, Slip::AlbedoTwice),
+        of("spectral-rod-hero-anew", "every scattering has the density of a hero of its own: the mean albedo", SPECTRAL_ROD_MIS, Slip::Anew),
+        of("spectral-rod-chance-kept", "the weight is not divided by the chance to be scattered", SPECTRAL_ROD_TRACKING, Slip::ChanceKept),
+        of("spectral-rod-largest-albedo", "weights are divided by the largest albedo, not by the chance", SPECTRAL_ROD_TRACKING, Slip::Largest),
     ]
 }
 
@@ -43,20 +39,16 @@ pub fn mutants() -> Vec<Mutant<SpectralRod>> {
 #[rustfmt::skip] // one mutant, one entry
 pub fn in_slab() -> Vec<Mutant<SpectralSlab>> {
     vec![
-        of("spectral-slab-dropped", "the last channel is missing from the denominator", SPECTRAL_SLAB_MIS, balanced, Slip::Dropped),
-        of("spectral-slab-hero-anew", "every scattering has the density of a hero of its own: the mean albedo", SPECTRAL_SLAB_MIS, balanced, Slip::Anew),
-        of("spectral-slab-chance-kept", "the weight is not divided by the chance to be scattered", SPECTRAL_SLAB_TRACKING, tracked, Slip::ChanceKept),
-        of("spectral-slab-largest-albedo", "weights are divided by the largest albedo, not by the chance", SPECTRAL_SLAB_TRACKING, tracked, Slip::Largest),
+        of("spectral-slab-dropped", "the last channel is missing from the denominator", SPECTRAL_SLAB_MIS, Slip::Dropped),
+        of("spectral-slab-hero-anew", "every scattering has the density of a hero of its own: the mean albedo", SPECTRAL_SLAB_MIS, Slip::Anew),
+        of("spectral-slab-chance-kept", "the weight is not divided by the chance to be scattered", SPECTRAL_SLAB_TRACKING, Slip::ChanceKept),
+        of("spectral-slab-largest-albedo", "weights are divided by the largest albedo, not by the chance", SPECTRAL_SLAB_TRACKING, Slip::Largest),
     ]
 }
-
-/// Draws with a slip.
-type Draws<P> = fn(Slip, &Setup<P>, &Lookups, &mut Stream) -> Draw<Values>;
 
 /// What goes wrong.
 #[derive(Clone, Copy, PartialEq)]
 enum Slip {
-    None,
     Dropped,
     AlbedoTwice,
     Anew,
@@ -64,60 +56,65 @@ enum Slip {
     Largest,
 }
 
-/// The balance heuristic, see `estimators/spectral_rod/spectral_mis.rs`.
-fn balanced<P: Coloured>(
-    slip: Slip,
-    setup: &Setup<P>,
-    medium: &Lookups,
-    rng: &mut Stream,
-) -> Draw<Values> {
-    let (colours, heroes) = (setup.problem.colours(), Heroes::Uniform);
-    let count = colours.albedos.len();
-    let hero = heroes.choose(count, rng.uniform());
-    let left = P::walk(setup, medium, rng, colours.albedos[hero]);
-    let mut weights = [1.0; MOST_CHANNELS];
-    for _ in 0..left.order {
-        for (weight, albedo) in weights.iter_mut().zip(&colours.albedos) {
-            *weight *= albedo / colours.albedos[hero];
-        }
+impl Slip {
+    /// Whether it is one of spectral tracking by the mean albedo, not of the balance heuristic.
+    fn is_of_tracking(self) -> bool {
+        matches!(self, Self::ChanceKept | Self::Largest)
     }
-    let mut density = 0.0;
-    for (channel, weight) in weights[..count].iter().enumerate() {
-        if slip != Slip::Dropped || channel + 1 < count {
-            density += heroes.probability(count, channel) * weight;
-        }
-    }
-    if slip == Slip::Anew {
-        let mean = colours.albedos.iter().sum::<f64>() / count as f64;
-        density = (0..left.order).fold(1.0, |density, _| density * mean / colours.albedos[hero]);
-    }
-    let twice = if slip == Slip::AlbedoTwice { colours.albedos[hero] } else { 1.0 };
-    for weight in &mut weights[..count] {
-        *weight = *weight / density * twice;
-    }
-    Draw::free(colours.values(left.end, &weights), left.lookups)
 }
 
-/// Spectral tracking by the mean albedo, see `estimators/spectral_rod/spectral_tracking.rs`.
-fn tracked<P: Coloured>(
-    slip: Slip,
-    setup: &Setup<P>,
-    medium: &Lookups,
-    rng: &mut Stream,
-) -> Draw<Values> {
-    let colours = setup.problem.colours();
-    let scatter = colours.albedos.iter().sum::<f64>() / colours.albedos.len() as f64;
-    let left = P::walk(setup, medium, rng, scatter);
-    let divisor = match slip {
-        Slip::ChanceKept => 1.0,
-        Slip::Largest => colours.albedos.iter().fold(0.0f64, |most, &a| most.max(a)),
-        _ => scatter,
-    };
+impl Page for Slip {
+    fn heroes(&self) -> Option<&Heroes> {
+        (!self.is_of_tracking()).then_some(&Heroes::Uniform)
+    }
+
+    fn chance(&self, albedos: &[f64], hero: usize) -> f64 {
+        if self.is_of_tracking() { mean(albedos) } else { albedos[hero] }
+    }
+
+    fn weights(&self, albedos: &[f64], hero: usize, order: u32) -> [f64; MOST_CHANNELS] {
+        let largest = || albedos.iter().fold(0.0f64, |most, &a| most.max(a));
+        match self {
+            Self::ChanceKept => divided(albedos, 1.0, order),
+            Self::Largest => divided(albedos, largest(), order),
+            _ => self.balanced(albedos, hero, order),
+        }
+    }
+}
+
+impl Slip {
+    fn balanced(self, albedos: &[f64], hero: usize, order: u32) -> [f64; MOST_CHANNELS] {
+        let count = albedos.len();
+        let mut weights = relative(albedos, hero, order);
+        let mut density = 0.0;
+        for (channel, weight) in weights[..count].iter().enumerate() {
+            if self != Self::Dropped || channel + 1 < count {
+                density += Heroes::Uniform.probability(count, channel) * weight;
+            }
+        }
+        if self == Self::Anew {
+            let mean = mean(albedos);
+            density = (0..order).fold(1.0, |density, _| density * mean / albedos[hero]);
+        }
+        let twice = if self == Self::AlbedoTwice { albedos[hero] } else { 1.0 };
+        for weight in &mut weights[..count] {
+            *weight = *weight / density * twice;
+        }
+        weights
+    }
+}
+
+fn mean(albedos: &[f64]) -> f64 {
+    albedos.iter().sum::<f64>() / albedos.len() as f64
+}
+
+/// `(a_λ/d)^r`.
+fn divided(albedos: &[f64], divisor: f64, order: u32) -> [f64; MOST_CHANNELS] {
     let mut weights = [1.0; MOST_CHANNELS];
-    for _ in 0..left.order {
-        for (weight, albedo) in weights.iter_mut().zip(&colours.albedos) {
+    for _ in 0..order {
+        for (weight, albedo) in weights.iter_mut().zip(albedos) {
             *weight *= albedo / divisor;
         }
     }
-    Draw::free(colours.values(left.end, &weights), left.lookups)
+    weights
 }

@@ -21,13 +21,23 @@ pub enum Chance {
 impl Chance {
     /// `P_n`, given `n/μ̄` of each channel.
     #[inline(always)]
-    pub fn of_null(self, shares: &[f64]) -> f64 {
+    pub fn of_null<L: Lane>(self, shares: &[L]) -> L {
+        let (zero, one) = (shares[0].each(0.0), shares[0].each(1.0));
         match self {
-            Self::Average => shares.iter().sum::<f64>() / shares.len() as f64,
+            Self::Average => {
+                let mut sum = zero;
+                for &share in shares {
+                    sum = sum + share;
+                }
+                sum / one.each(shares.len() as f64)
+            }
             Self::Maximum => {
-                let largest = shares.iter().fold(0.0f64, |most, &share| most.max(share));
-                let least = shares.iter().fold(1.0f64, |least, &share| least.min(share));
-                largest / (largest + (1.0 - least))
+                let (mut most, mut least) = (zero, one);
+                for &share in shares {
+                    most = most.or_more(share);
+                    least = least.or_less(share);
+                }
+                most / (most + (one - least))
             }
         }
     }

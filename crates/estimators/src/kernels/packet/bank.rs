@@ -1,4 +1,4 @@
-//! A particle bank: two packs of eight walks that take as many random numbers as they need.
+//! Slots of particle banks: two packs of eight walks that take as many random numbers as they need.
 //!
 //! Specification: draw j is, bit for bit, the draw that the walk's page makes from stream j mod 16.
 //!
@@ -12,8 +12,6 @@
 
 use fearless_simd::{Simd, f64x8, u64x8};
 
-use super::Request;
-use crate::kernels::DrawBuffer;
 use media::Lookups;
 use media::body::MOST_CHANNELS;
 use numeric::Twin;
@@ -22,75 +20,6 @@ use numeric::rng::{LANES, Streams, Xoshiro};
 
 /// The streams of a pack.
 pub type Numbers<S> = Xoshiro<u64x8<S>>;
-
-/// The state of eight particles.
-pub trait Particles<S: Simd> {
-    /// What is looked up for eight of them.
-    type Found: Copy;
-
-    /// Each flies on; answers where σ_t is asked for: inside the support.
-    fn fly(&mut self, numbers: &mut Numbers<S>) -> f64x8<S>;
-
-    /// What happens to each there, given what was looked up; answers whose walks end, as bits.
-    fn collide(&mut self, found: &Self::Found, numbers: &mut Numbers<S>) -> u64;
-
-    /// Makes draws of the walks that ended, as bits; answers whose last ones these are.
-    fn collect(&mut self, ended: u64, slots: &mut Slots, buffer: &mut DrawBuffer) -> u64;
-
-    /// Begins the walks anew that ended in this step.
-    fn restart(&mut self, numbers: &mut Numbers<S>);
-}
-
-/// Walks until every lane has made its draws; `look_up` answers for both packs in the place of what they found before.
-#[inline(always)]
-pub fn run<S: Simd, P: Particles<S>>(
-    simd: S,
-    begin: impl Fn(&mut Numbers<S>) -> P,
-    mut found: [P::Found; 2],
-    look_up: impl Fn(Twin<f64x8<S>>, &mut [P::Found; 2]),
-    request: Request,
-) {
-    let Request { streams, count, buffer } = request;
-    buffer.make_room(count);
-    let turn = streams.turn;
-    let [mut first, mut second] = streams.packs().map(
-        #[inline(always)]
-        |lanes| lanes.awake(simd),
-    );
-    let (mut particles, mut others) = (begin(&mut first), begin(&mut second));
-    let (mut slots, mut other_slots) = (Slots::new(count, turn, 0), Slots::new(count, turn, 1));
-    while slots.are_open() || other_slots.are_open() {
-        let places = Twin(particles.fly(&mut first), others.fly(&mut second));
-        look_up(places, &mut found);
-        let ended = particles.collide(&found[0], &mut first);
-        let other_ended = others.collide(&found[1], &mut second);
-        if ended != 0 {
-            let over = particles.collect(ended, &mut slots, buffer);
-            leave(streams, 0, over, first);
-            particles.restart(&mut first);
-        }
-        if other_ended != 0 {
-            let over = others.collect(other_ended, &mut other_slots, buffer);
-            leave(streams, 1, over, second);
-            others.restart(&mut second);
-        }
-        slots.step();
-        other_slots.step();
-    }
-    streams.turn = (turn + count) % LANES;
-}
-
-/// σ_t for both packs.
-#[inline(always)]
-pub fn extinctions<S: Simd>(
-    simd: S,
-    medium: &Lookups,
-    t: Twin<f64x8<S>>,
-    found: &mut [f64x8<S>; 2],
-) {
-    let Twin(here, there) = medium.pair(simd, t);
-    *found = [here, there];
-}
 
 /// σ_t of so many channels for both packs.
 #[inline(always)]

@@ -3,14 +3,11 @@
 //! Specification of each: draw j is, bit for bit, the draw that its page makes from stream j mod 16.
 
 pub mod bank;
-pub mod bidirectional;
 pub mod colours;
-pub mod hero;
 pub mod kept;
 pub mod left;
-pub mod line;
-pub mod paths;
-pub mod spectral;
+
+pub use crate::walks::hero;
 
 use super::DrawBuffer;
 use media::{Control, Lookups, Piecewise};

@@ -1,0 +1,154 @@
+//! Draws of sixteen lanes in step: all of them make the same technique at the same time.
+//!
+//! Draw j is, bit for bit, the draw that [`super::walk::draw`] makes from stream j mod 16.
+
+use fearless_simd::{Level, Simd, SimdBase, SimdMask, f64x8, mask64x8};
+
+use super::subpath::{Field, Tracker};
+use super::walk::{Steps, draw_each};
+use crate::DrawBuffer;
+use crate::kernels::packet::Request;
+use crate::kernels::packet::bank::{Numbers, leave};
+use crate::setup::Setup;
+use media::Lookups;
+use media::course::Even;
+use numeric::pack::{self, Task, WIDTH};
+use numeric::rng::{LANES, Random};
+use numeric::{Lane, Twin};
+use theory::problems::BidirectionalRod;
+
+/// Makes the draws of a request on the hardware of a level. The request is handed back where the hardware is too narrow, or σ̂
+/// has several values.
+pub fn packets<'r>(
+    level: Level,
+    steps: &(impl Steps + Copy),
+    setup: &Setup<BidirectionalRod>,
+    medium: &Lookups,
+    request: Request<'r>,
+) -> Option<Request<'r>> {
+    if setup.sampling.even().is_none() {
+        return Some(request);
+    }
+    let task = Draws { steps: *steps, setup, medium, request };
+    pack::on_wide(level, task).err().map(|task| task.request)
+}
+
+struct Draws<'a, 'r, P> {
+    steps: P,
+    setup: &'a Setup<BidirectionalRod>,
+    medium: &'a Lookups<'a>,
+    request: Request<'r>,
+}
+
+impl<P: Steps + Copy> Task for Draws<'_, '_, P> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<S: Simd>(self, simd: S) {
+        let Self { steps, setup, medium, request: Request { streams, count, buffer } } = self;
+        let Some(sampling) = setup.sampling.even() else { return };
+        buffer.make_room(count);
+        buffer.defects.fill(0.0);
+        let zero = Twin::splat(simd, 0.0);
+        let begin = Even::new(zero, sampling);
+        let ends = [begin, begin.from_end()];
+        let [first, second] = streams.packs();
+        let mut random = Both(first.awake(simd), second.awake(simd));
+        let mut tracker = Tracker::new(setup, zero, ends, InPairs { simd, medium });
+        for base in (0..count).step_by(LANES) {
+            let draws = Batch { base, turn: streams.turn };
+            let lives = draws.lives(count);
+            let first = mask64x8::from_bitmask(simd, lives & 0xff);
+            let lives = Twin(first, mask64x8::from_bitmask(simd, lives >> WIDTH));
+            let channels = draw_each(&steps, &mut tracker, lives, &mut random);
+            draws.write(&tracker.values[..channels], &tracker.lookups, buffer);
+        }
+        leave(streams, 0, u64::from(u8::MAX), random.0);
+        leave(streams, 1, u64::from(u8::MAX), random.1);
+        streams.turn = (streams.turn + count) % LANES;
+    }
+}
+
+/// The lookups of both packs.
+struct InPairs<'a, S> {
+    simd: S,
+    medium: &'a Lookups<'a>,
+}
+
+impl<S: Simd> Field<Twin<f64x8<S>>> for InPairs<'_, S> {
+    #[inline(always)]
+    fn extinction(&self, t: Twin<f64x8<S>>) -> Twin<f64x8<S>> {
+        self.medium.pair(self.simd, t)
+    }
+
+    #[inline(always)]
+    fn exp(&self, x: Twin<f64x8<S>>) -> Twin<f64x8<S>> {
+        Twin(x.0.exp(), x.1.exp())
+    }
+}
+
+/// The streams of both packs.
+#[derive(Clone, Copy)]
+struct Both<S: Simd>(Numbers<S>, Numbers<S>);
+
+impl<S: Simd> Random<Twin<f64x8<S>>> for Both<S> {
+    #[inline(always)]
+    fn uniform(&mut self) -> Twin<f64x8<S>> {
+        Twin(self.0.uniform(), self.1.uniform())
+    }
+
+    #[inline(always)]
+    fn ln_uniform(&mut self) -> Twin<f64x8<S>> {
+        Twin(self.0.ln_uniform(), self.1.ln_uniform())
+    }
+
+    #[inline(always)]
+    fn uniform_where(&mut self, which: Twin<mask64x8<S>>) -> Twin<f64x8<S>> {
+        Twin(self.0.uniform_where(which.0), self.1.uniform_where(which.1))
+    }
+
+    #[inline(always)]
+    fn ln_uniform_where(&mut self, which: Twin<mask64x8<S>>) -> Twin<f64x8<S>> {
+        Twin(self.0.ln_uniform_where(which.0), self.1.ln_uniform_where(which.1))
+    }
+}
+
+/// Sixteen draws in a row, each from the lane whose turn it is.
+struct Batch {
+    base: usize,
+    turn: usize,
+}
+
+impl Batch {
+    fn draw(&self, lane: usize) -> usize {
+        self.base + (lane + LANES - self.turn) % LANES
+    }
+
+    /// Lanes that have one of so many draws, as bits.
+    fn lives(&self, count: usize) -> u64 {
+        (0..LANES).fold(0, |bits, lane| bits | u64::from(self.draw(lane) < count) << lane)
+    }
+
+    /// Writes values and lookups of lanes into their draws.
+    #[inline(never)]
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // a count
+    fn write<S: Simd>(
+        &self,
+        values: &[Twin<f64x8<S>>],
+        lookups: &Twin<f64x8<S>>,
+        buffer: &mut DrawBuffer,
+    ) {
+        let of = |twin: &Twin<f64x8<S>>, lane: usize| {
+            let pack = if lane < WIDTH { &twin.0 } else { &twin.1 };
+            pack.as_slice()[lane % WIDTH]
+        };
+        for lane in 0..LANES {
+            let draw = self.draw(lane);
+            let Some(own) = buffer.lookups.get_mut(draw) else { continue };
+            *own = of(lookups, lane) as u32;
+            for (row, value) in buffer.values.iter_mut().zip(values) {
+                row[draw] = of(value, lane);
+            }
+        }
+    }
+}

@@ -1,0 +1,187 @@
+//! Numbers that walks leave, and the draws that are made of them eight at a time.
+
+use fearless_simd::{Simd, SimdBase, f64x8};
+
+use super::{GROUPS, MOST_LEFT, MOST_SCORED, Walk};
+use crate::kernels::DrawBuffer;
+use numeric::Lane;
+use numeric::pack::WIDTH;
+
+/// No event, or no draw.
+const NONE: u32 = u32::MAX;
+
+/// Numbers that eight walks leave.
+pub type Groups<'a, S> = [&'a [f64x8<S>]; GROUPS];
+
+/// How many they are, and one more.
+pub fn count<S: Simd>(groups: Groups<S>) -> usize {
+    1 + groups.iter().map(|group| group.len()).sum::<usize>()
+}
+
+/// Numbers of each draw or event: those of eight of them side by side, number by number.
+pub struct Left {
+    numbers: usize,
+    at: Vec<f64>,
+}
+
+impl Left {
+    /// Room for so many numbers of so many draws: none of them needs any if there are no draws.
+    pub fn new(numbers: usize, draws: usize, room: &mut Vec<f64>) -> Self {
+        let mut left = Self { numbers, at: Vec::new() };
+        if draws > 0 {
+            left.at = std::mem::take(room);
+            left.make_room(draws);
+        }
+        left
+    }
+
+    /// The room, for others.
+    pub fn into_room(self) -> Vec<f64> {
+        self.at
+    }
+
+    fn make_room(&mut self, draws: usize) {
+        self.at.resize(draws.next_multiple_of(WIDTH) * self.numbers, 0.0);
+    }
+
+    /// Writes a number that says how a walk ended, and those that it leaves in a lane.
+    #[inline(always)]
+    pub fn write<S: Simd>(&mut self, draw: usize, how: f64, groups: Groups<S>, lane: usize) {
+        let mut place = draw / WIDTH * self.numbers * WIDTH + draw % WIDTH;
+        self.at[place] = how;
+        for group in groups {
+            for lanes in group {
+                place += WIDTH;
+                self.at[place] = lanes.as_slice()[lane];
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn read<S: Simd>(&self, simd: S, first: usize, numbers: &mut [f64x8<S>]) {
+        for (number, lanes) in numbers.iter_mut().enumerate() {
+            let place = first * self.numbers + number * WIDTH;
+            *lanes = f64x8::from_slice(simd, &self.at[place..place + WIDTH]);
+        }
+    }
+
+    /// Makes the values of so many draws, whose lookups are in the buffer.
+    #[inline(always)]
+    pub fn score<S: Simd>(&self, simd: S, walk: &impl Walk, draws: usize, buffer: &mut DrawBuffer) {
+        let zero = f64x8::splat(simd, 0.0);
+        let (mut numbers, mut values) = ([zero; MOST_LEFT + 1], [zero; MOST_SCORED]);
+        let (numbers, values) = (&mut numbers[..self.numbers], &mut values[..walk.channels()]);
+        buffer.make_room(draws.next_multiple_of(WIDTH));
+        for first in (0..draws).step_by(WIDTH) {
+            self.read(simd, first, numbers);
+            let mut lookups = [0.0; WIDTH];
+            for (lane, lookups) in lookups.iter_mut().enumerate() {
+                *lookups = f64::from(buffer.lookups[first + lane]);
+            }
+            let lookups = f64x8::from_slice(simd, &lookups);
+            let defect = walk.score(&numbers[1..], zero.below(numbers[0]), lookups, values);
+            defect.store_slice(&mut buffer.defects[first..first + WIDTH]);
+            // Pictures ask for fewer channels.
+            for (channel, row) in buffer.values.iter_mut().enumerate() {
+                values[channel].store_slice(&mut row[first..first + WIDTH]);
+            }
+        }
+        buffer.make_room(draws);
+    }
+}
+
+/// Events of walks that score at any step: which draw one belongs to is known when its walk has ended.
+pub struct Events {
+    left: Left,
+    /// The draw of each.
+    draws: Vec<u32>,
+    /// The event of the same walk before each.
+    before: Vec<u32>,
+    /// The last event of the walk of each lane.
+    last: [[u32; WIDTH]; 2],
+    count: usize,
+}
+
+impl Events {
+    /// Room for some events with so many numbers.
+    pub fn new(numbers: usize, some: usize, room: &mut Vec<f64>) -> Self {
+        let (left, none) = (Left::new(numbers, some, room), Vec::new());
+        let last = [[NONE; WIDTH]; 2];
+        let mut events = Self { left, draws: none.clone(), before: none, last, count: 0 };
+        events.make_room(some.next_multiple_of(WIDTH));
+        events
+    }
+
+    /// The room for numbers, for others.
+    pub fn into_room(self) -> Vec<f64> {
+        self.left.into_room()
+    }
+
+    fn make_room(&mut self, events: usize) {
+        self.left.make_room(events);
+        self.draws.resize(events, NONE);
+        self.before.resize(events, NONE);
+    }
+
+    /// Adds events of some lanes of a pack, as bits.
+    #[inline(never)]
+    #[allow(clippy::cast_possible_truncation)] // fewer than 2^32
+    pub fn push<S: Simd>(&mut self, pack: usize, mut which: u64, groups: Groups<S>) {
+        if self.count + WIDTH > self.draws.len() {
+            self.make_room(2 * self.draws.len() + WIDTH);
+        }
+        while which != 0 {
+            let lane = (which.trailing_zeros() & 7) as usize;
+            which &= which - 1;
+            self.left.write(self.count, 1.0, groups, lane);
+            self.before[self.count] = self.last[pack][lane];
+            self.last[pack][lane] = self.count as u32;
+            self.count += 1;
+        }
+    }
+
+    /// The walks of some lanes of a pack, as bits, end without a draw.
+    #[inline(always)]
+    pub fn forget(&mut self, pack: usize, which: u64) {
+        for (lane, last) in self.last[pack].iter_mut().enumerate() {
+            *last = if which >> lane & 1 == 1 { NONE } else { *last };
+        }
+    }
+
+    /// The walk of a lane of a pack ends, and is a draw.
+    #[inline(always)]
+    #[allow(clippy::cast_possible_truncation)] // fewer than 2^32
+    pub fn belong(&mut self, pack: usize, lane: usize, draw: usize) {
+        let mut event = self.last[pack][lane];
+        while let Some(own) = self.draws.get_mut(event as usize) {
+            *own = draw as u32;
+            event = self.before[event as usize];
+        }
+    }
+
+    /// Adds all scores to their draws.
+    #[inline(always)]
+    pub fn score<S: Simd>(&self, simd: S, walk: &impl Walk, buffer: &mut DrawBuffer) {
+        let zero = f64x8::splat(simd, 0.0);
+        let (mut numbers, mut values) = ([zero; MOST_LEFT + 1], [zero; MOST_SCORED]);
+        let (numbers, values) = (&mut numbers[..self.left.numbers], &mut values[..walk.channels()]);
+        for channel in &mut buffer.values {
+            channel.fill(0.0);
+        }
+        for first in (0..self.count).step_by(WIDTH) {
+            self.left.read(simd, first, numbers);
+            walk.score(&numbers[1..], zero.at_most(zero), zero, values);
+            add(values, &self.draws[first..first + WIDTH], buffer);
+        }
+    }
+}
+
+/// Adds the scores of eight events to their draws.
+#[inline(never)]
+fn add<S: Simd>(values: &[f64x8<S>], draws: &[u32], buffer: &mut DrawBuffer) {
+    for (lane, &draw) in draws.iter().enumerate().filter(|(_, draw)| **draw != NONE) {
+        for (row, value) in buffer.values.iter_mut().zip(values) {
+            row[draw as usize] += value.as_slice()[lane];
+        }
+    }
+}
