@@ -81,11 +81,11 @@ fn what_an_own_medium_hides_is_found() {
         .expect("names that are free");
     let text = |problem: &str| format!("title = \"own\"\n{problem}");
     let line = text(
-        r#"[problem.transmittance]
+        r"[problem.transmittance]
         medium.haze = {}
         span = [0, 3]
         sampling.constant.value = 2.0
-        estimators = [{ woodcock = {} }, { ratio = {} }, { closed-form = {} }, { next-flight = {} }]"#,
+        estimators = [{ woodcock = {} }, { ratio = {} }, { closed-form = {} }, { next-flight = {} }]",
     );
     let space = text(
         r"[problem.transmittance]

@@ -245,7 +245,8 @@ fn the_law_of_the_lookups_is_that_of_a_line_without_scattering() {
     (1..60).for_each(|n| poisson.push(poisson[n - 1] * collisions / n as f64));
     let chance = |m: usize| {
         let beyond: f64 = poisson[m..].iter().sum();
-        survival.powi(m as i32 - 1) * ((1.0 - survival) * beyond + survival * poisson[m])
+        survival.powi(i32::try_from(m).expect("a few") - 1)
+            * ((1.0 - survival) * beyond + survival * poisson[m])
     };
     let moment = |f: &dyn Fn(f64) -> f64| -> f64 {
         poisson[0] * f(0.0) + (1..60).map(|m| chance(m) * f(m as f64)).sum::<f64>()

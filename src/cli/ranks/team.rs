@@ -82,7 +82,9 @@ impl Team {
             }
             if let Some((rank, Message::Drawn(drawn))) = self.link.receive_within(PATIENCE) {
                 open[rank] -= 1;
-                drawn.into_iter().for_each(|(name, block)| take(name, block));
+                for (name, block) in drawn {
+                    take(name, block);
+                }
             }
         }
     }

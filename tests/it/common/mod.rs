@@ -9,7 +9,6 @@ use std::cell::RefCell;
 use std::path::{Path, PathBuf};
 use std::sync::LazyLock;
 
-use fearless_simd::Level;
 use trueflight::case::Case;
 use trueflight::case::CaseError;
 use trueflight::case::Source;
