@@ -32,7 +32,7 @@ measure() {
 cases=$root/cases
 lights=--seed=1
 hits=--no-emitter-sampling
-parts=${PARTS:-transmittance furnace slab single-scattering sphere limits bugs}
+parts=${PARTS:-transmittance furnace slab single-scattering ball limits bugs}
 for part in $parts; do
     case $part in
     transmittance)
@@ -45,7 +45,7 @@ for part in $parts; do
     single-scattering)
         for case in known-bugs null-paths-layers grid; do measure "$cases/$part/$case.toml" $lights; done
         ;;
-    sphere) measure "$cases/$part/black-light.toml" $hits $lights ;;
+    ball) measure "$cases/$part/black-light.toml" $hits $lights ;;
     # What Mitsuba cannot do: a scene of a hundredth, pixels that depend on each other, a light deep in a medium.
     limits)
         measure "$root/results/renderers/small.toml" $lights --pixels
@@ -61,10 +61,10 @@ for part in $parts; do
         FORM=--heterogeneous
         measure "$scenes/cube-heterogeneous.toml" $lights
         FORM=
-        measure "$cases/spectral-transmittance/layers.toml" $lights
-        for case in like-colours known-bugs; do measure "$cases/spectral-furnace/$case.toml" $hits $lights; done
-        measure "$cases/spectral-slab/three-albedos.toml" $hits $lights
-        measure "$cases/chromatic-slab/like-colours.toml" $hits $lights
+        measure "$cases/transmittance/spectral-layers.toml" $lights
+        for case in like-colours known-bugs; do measure "$cases/furnace/spectral-$case.toml" $hits $lights; done
+        measure "$cases/slab/spectral-three-albedos.toml" $hits $lights
+        measure "$cases/slab/chromatic-like-colours.toml" $hits $lights
         measure "$root/results/renderers/coloured-lamp.toml" $lights
         ;;
     # Bugs of the client, in a table of their own.

@@ -13,7 +13,8 @@ use media::catalogue::Settings;
 use media::{Body, Control, Medium, Piecewise};
 use numeric::digits::rounded;
 use numeric::rng::Address;
-use theory::problems::{self, each_problem};
+use theory::problems::options::chosen;
+use theory::problems::{self, ProblemOption, each_problem};
 use theory::{Mesh, Prediction};
 
 /// Smallest transmittance of which the ratio of a draw to the truth is still a double.
@@ -29,8 +30,10 @@ pub struct Ready {
     pub prediction: Prediction,
 }
 
-/// A problem of the catalogue, before a case is read.
+/// A form of a problem of the catalogue, before a case is read.
 pub struct ProblemKind {
+    /// Options that choose the form.
+    pub options: &'static [ProblemOption],
     /// Requirement on the ray through a volume.
     pub ray: RayNeed,
     /// Whether its medium may have several channels.
@@ -44,19 +47,21 @@ pub type Build =
     fn(Option<&Body>, &Settings, Defaults) -> Option<(Box<dyn AnyProblem>, Estimators)>;
 
 macro_rules! kinds {
-    ($($module:ident :: $Problem:ident,)*) => {
-        [$(ProblemKind::of::<problems::$Problem>),*]
+    ($($module:ident: $($Form:ident)*,)*) => {
+        [$(vec![$(ProblemKind::of::<problems::$Form>()),*]),*]
     };
 }
 
-/// The problem at a position of the catalogue.
-pub fn kind(index: usize) -> ProblemKind {
-    each_problem!(kinds)[index]()
+/// The form that settings ask for of the problem at a position of the catalogue; `None` after a mistake.
+pub fn kind(index: usize, settings: &Settings) -> Option<ProblemKind> {
+    let mut forms = each_problem!(kinds).into_iter().nth(index)?;
+    let options: Vec<_> = forms.iter().map(|form| form.options).collect();
+    Some(forms.swap_remove(chosen(&options, settings)?))
 }
 
 impl ProblemKind {
     fn of<P: Estimated>() -> Self {
-        Self { ray: P::RAY, spectral: P::SPECTRAL, build: build::<P> }
+        Self { options: P::OPTIONS, ray: P::RAY, spectral: P::SPECTRAL, build: build::<P> }
     }
 }
 

@@ -11,7 +11,7 @@ use crate::case::{Case, suite};
 use estimators::{self, Estimated};
 use media;
 use media::catalogue::{Addition, Additions, PageList, suggestion};
-use theory::problems::{self, MultipleScattering};
+use theory::problems::{MultipleScattering, Named};
 
 /// The built-in pages with those of a program's own.
 ///
@@ -150,11 +150,11 @@ pub fn source(name: &str) -> Result<Source, CaseError> {
 
 /// The built-in lists that a program may add to, each with the part that it is.
 pub fn built_in() -> Vec<(String, PageList)> {
-    let of_problems = problems::CATALOGUE.pages.iter().zip(estimators::catalogues());
+    let part = |title: &str| format!("estimators of {title}");
     let estimators =
-        of_problems.map(|(problem, list)| (format!("estimators of {}", problem.name()), list));
-    let of_pictures = <MultipleScattering as Estimated>::CATALOGUE;
-    let of_pictures = ("estimators of pictures of multiple-scattering".to_owned(), of_pictures);
+        estimators::catalogues().into_iter().map(|form| (part(&form.title), form.list));
+    let of_pictures =
+        (part(&MultipleScattering::title()), <MultipleScattering as Estimated>::CATALOGUE);
     let media = ("media".to_owned(), media::CATALOGUE);
     std::iter::once(media).chain(estimators).chain([of_pictures]).collect()
 }

@@ -1,5 +1,6 @@
 //! The estimators of a case or a picture: their own settings, σ̂ and control.
 
+use crate::case::forms::explain_estimator;
 use crate::case::id::EstimatorName;
 use crate::case::sweep::What;
 use estimators::own::EstimatorReader;
@@ -191,7 +192,9 @@ pub fn read<P: Estimated>(
     let own = || table.additions().of::<EstimatorReader<P>>();
     let pages = P::CATALOGUE.pages.iter().chain(own().map(|(page, _)| page));
     let names: Vec<String> = pages.map(Page::name).collect();
-    let (index, settings) = table.choice(&names)?;
+    let problem = P::MODULE.replace('_', "-");
+    let explain = |name: &str| explain_estimator(&problem, P::OPTIONS, name);
+    let (index, settings) = table.choice_explained(&names, &explain)?;
     let entry = match index.checked_sub(P::CATALOGUE.pages.len()) {
         None => P::read_estimator(index, &settings),
         Some(place) => own().nth(place).and_then(|(_, read)| read(&settings)),

@@ -33,6 +33,7 @@
 pub(crate) mod build;
 pub mod catalogue;
 pub(crate) mod estimator;
+pub(crate) mod forms;
 pub mod id;
 mod scaling;
 pub(crate) mod scenario;
@@ -241,8 +242,9 @@ struct Problem {
 fn read_problem(root: &Settings) -> Option<Problem> {
     let expect_biased = read_expect(root);
     let names: Vec<String> = problems::CATALOGUE.pages.iter().map(Page::name).collect();
-    let (index, settings) = root.chosen("problem", &names)?;
-    let kind = build::kind(index);
+    let explain = |name: &str| forms::explain_problem("problem", name);
+    let (index, settings) = root.chosen_explained("problem", &names, &explain)?;
+    let kind = build::kind(index, &settings)?;
     let body = Body::read_for(&settings, kind.ray);
     let body = body.filter(|body| kind.spectral || has_one_channel(&settings, body));
     let sweep = read_sweep(&settings);
@@ -316,7 +318,7 @@ fn read_varied(
 fn has_one_channel(settings: &Settings, body: &Body) -> bool {
     let Body::Spectral { .. } = body else { return true };
     let key = if settings.has("medium") { "medium" } else { "volume" };
-    let help = "give it one field, as in { constant = { value = 1 } }; `spectral-transmittance` takes a list";
+    let help = "give it one field, as in { constant = { extinction = 1 } }";
     settings.fault(key, "this problem is about one channel", help);
     false
 }

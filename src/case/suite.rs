@@ -1,6 +1,7 @@
 //! The cases that are built into the binary: a choice of those under `cases/` and `tests/cases/`, one line each; and
 //! examples for the pages of the catalogue, which are built-in cases reduced to what a page needs.
 
+use crate::case::forms::title;
 use crate::case::spec::{BuiltIn, Source, Spec, entry};
 use media::catalogue::{Entry, Node, Value, additions};
 
@@ -41,57 +42,57 @@ const CASES: BuiltIn = cases![
     "free-flight/layers-with-gap",
     "free-flight/exponential",
     "free-flight/known-bugs" in "tests/",
-    "spectral-transmittance/layers",
-    "spectral-transmittance/smooth" in "tests/",
-    "transmittance-curve/eq21-figure-8",
-    "transmittance-curve/noise-figure-5",
-    "transmittance-curve/known-bugs" in "tests/",
+    "transmittance/spectral-layers",
+    "transmittance/spectral-smooth" in "tests/",
+    "transmittance/curve-eq21-figure-8",
+    "transmittance/curve-noise-figure-5",
+    "transmittance/curve-known-bugs" in "tests/",
     "rod/three-rules-a0.7",
     "rod/roulette",
     "rod/known-bugs" in "tests/",
-    "spectral-rod/three-albedos",
-    "spectral-rod/near-albedos" in "tests/",
-    "lit-rod/homogeneous",
-    "lit-rod/rising" in "tests/",
-    "lit-rod/albedos",
-    "lit-slab/known-bugs" in "tests/",
-    "lit-slab/distant",
-    "lit-slab/cap-wide",
-    "spectral-lit-rod/three-colours",
-    "spectral-lit-rod/one-medium" in "tests/",
-    "spectral-lit-rod/as-printed",
-    "spectral-lit-rod/contrast",
+    "rod/spectral-three-albedos",
+    "rod/spectral-near-albedos" in "tests/",
+    "rod/lit-homogeneous",
+    "rod/lit-rising" in "tests/",
+    "rod/lit-albedos",
+    "slab/lit-known-bugs" in "tests/",
+    "slab/lit-distant",
+    "slab/lit-cap-wide",
+    "rod/spectral-lit-three-colours",
+    "rod/spectral-lit-one-medium" in "tests/",
+    "rod/spectral-lit-as-printed",
+    "rod/spectral-lit-contrast",
     "single-scattering/homogeneous",
     "single-scattering/known-bugs" in "tests/",
     "single-scattering/null-paths-layers",
-    "spectral-single-scattering/known-bugs" in "tests/",
-    "spectral-single-scattering/without-mis",
+    "single-scattering/spectral-known-bugs" in "tests/",
+    "single-scattering/spectral-without-mis",
     "slab/known-bugs" in "tests/",
     "slab/known-bugs-diffuse" in "tests/",
-    "spectral-slab/known-bugs" in "tests/",
-    "chromatic-slab/three-colours",
-    "chromatic-slab/like-colours",
+    "slab/spectral-known-bugs" in "tests/",
+    "slab/chromatic-three-colours",
+    "slab/chromatic-like-colours",
     "furnace/eq21",
     "furnace/known-bugs" in "tests/",
-    "spectral-furnace/known-bugs" in "tests/",
-    "spectral-furnace/like-colours",
+    "furnace/spectral-known-bugs" in "tests/",
+    "furnace/spectral-like-colours",
     "lambertian/known-bugs" in "tests/",
     "lambertian/known-bugs-cells" in "tests/",
     "infinite-medium/known-bugs" in "tests/",
-    "sphere/known-bugs" in "tests/",
-    "sphere/known-bugs-paths" in "tests/",
-    "sphere/techniques",
-    "sphere/techniques-homogeneous" in "tests/",
-    "sphere/techniques-lamp" in "tests/",
-    "sphere/environment",
-    "bidirectional-rod/known-bugs" in "tests/",
+    "ball/known-bugs" in "tests/",
+    "ball/known-bugs-paths" in "tests/",
+    "ball/techniques",
+    "ball/techniques-homogeneous" in "tests/",
+    "ball/techniques-lamp" in "tests/",
+    "ball/environment",
+    "rod/bidirectional-known-bugs" in "tests/",
 ];
 
 /// The cases of `trueflight self-test`, which are no part of the suite.
 const CALIBRATION: BuiltIn = cases![
     "transmittance/calibration" in "tests/",
     "free-flight/calibration" in "tests/",
-    "transmittance-curve/calibration" in "tests/",
+    "transmittance/curve-calibration" in "tests/",
 ];
 
 /// A case of which `explain` shows a part, where no case of the suite has that estimator.
@@ -116,6 +117,8 @@ pub fn find(name: &str) -> Option<Source> {
 const SWEEP: usize = 400;
 /// Letters by which a declared bias does.
 const BIASED: usize = 300;
+/// Letters by which options of a problem do, if the page is that of the problem.
+const WITH_OPTIONS: usize = 1000;
 /// Letters by which a problem other than transmittance does, if the page is of no problem.
 const OTHER_PROBLEM: usize = 200;
 
@@ -143,22 +146,24 @@ impl Wanted<'_> {
     fn candidates(&self, source: &Source) -> Vec<(usize, String)> {
         let Ok(spec) = Spec::parse(source, &additions::NONE) else { return Vec::new() };
         let Some((problem, body)) = spec.problem() else { return Vec::new() };
+        let title = title(problem, body).unwrap_or_default();
         let root = spec.entries();
         let Some(list) = entry(body, "estimators") else { return Vec::new() };
         let Value::Array(items) = &list.node.value else { return Vec::new() };
         let others: Vec<&Entry> = body.iter().filter(|own| own.key != "estimators").collect();
         if self.part == "problems" {
             let all = (problem == self.name).then(|| self.reduced(source, root, None));
-            return all.map(|text| (text.len(), text)).into_iter().collect();
+            let extra = if title == problem { 0 } else { WITH_OPTIONS };
+            return all.map(|text| (text.len() + extra, text)).into_iter().collect();
         }
-        let fitting = items.iter().filter(|item| self.is_in(problem, &others, item));
+        let fitting = items.iter().filter(|item| self.is_in(&title, &others, item));
         let candidate = |item: &Node| {
             let text = self.reduced(source, root, Some((&list.node, item)));
             let is_general = !self.part.starts_with("estimators");
             let cost = [
                 (entry(body, "sweep").is_some(), SWEEP),
                 (text.contains("expect"), BIASED),
-                (is_general && problem != "transmittance", OTHER_PROBLEM),
+                (is_general && title != "transmittance", OTHER_PROBLEM),
             ];
             (
                 text.len() + cost.iter().filter(|(is, _)| *is).map(|(_, cost)| cost).sum::<usize>(),
@@ -169,7 +174,7 @@ impl Wanted<'_> {
     }
 
     /// Whether the page is used by this estimator of a case, or by the case's own settings.
-    fn is_in(&self, problem: &str, others: &[&Entry], item: &Node) -> bool {
+    fn is_in(&self, title: &str, others: &[&Entry], item: &Node) -> bool {
         let Value::Table(item) = &item.value else { return false };
         let among = |keys: &[&str]| others.iter().any(|own| self.names(own, keys));
         let within = |key: &str| item.iter().any(|own| self.stands_below(own, key));
@@ -182,7 +187,7 @@ impl Wanted<'_> {
                 if has_own { within("sampling") } else { among(&["sampling"]) }
             }
             part => {
-                let own = part.strip_prefix("estimators of ").is_some_and(|of| of == problem);
+                let own = part.strip_prefix("estimators of ").is_some_and(|of| of == title);
                 own && item.first().is_some_and(|estimator| estimator.key == self.name)
             }
         }

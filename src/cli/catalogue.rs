@@ -12,6 +12,7 @@ use super::Console;
 use super::help::Names;
 use super::output::{self, Format};
 use crate::case::catalogue::{Catalogue, built_in};
+use crate::case::forms::explain_problem;
 use crate::case::suite;
 use crate::render::{self, Picture};
 use crate::report::page;
@@ -252,6 +253,9 @@ fn fenced(toml: &str) -> String {
 
 /// The error about a name that nothing has, with what was probably meant.
 fn unknown(written: &str, name: &str, catalogue: &Catalogue) -> anyhow::Error {
+    if let Some([message, _]) = explain_problem("problem", name) {
+        return anyhow::anyhow!("{message}; `trueflight list problems` shows all");
+    }
     let sources = suite::suite().into_iter().chain(render::gallery()).map(|source| source.name);
     let kinds = What::value_variants().iter().map(|what| what.name());
     let pages = pages(catalogue).into_iter().map(|(_, page)| page.name());

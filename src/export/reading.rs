@@ -2,13 +2,13 @@
 //!
 //! | problem | scene |
 //! |---|---|
-//! | `transmittance`, `spectral-transmittance` | the field as layers along the ray, or the grid itself, black, in front of light from all sides |
-//! | `furnace`, `spectral-furnace` | the field in a box, white, in light from all sides; the ray begins outside |
-//! | `slab`, `spectral-slab`, `chromatic-slab` | layers between mirrors, which is an infinite slab; light from above (reflectance) or below (transmittance) |
-//! | `single-scattering`, `spectral-single-scattering` | the field in a box with a point light; the ray goes on to where it leaves the box |
-//! | `sphere` | a homogeneous ball in light from all sides, or about a black sphere that shines |
+//! | `transmittance` | the field as layers along the ray, or the grid itself, black, in front of light from all sides |
+//! | `furnace` | the field in a box, white, in light from all sides; the ray begins outside |
+//! | `slab` without `light` | layers between mirrors, which is an infinite slab; light from above (reflectance) or below (transmittance) |
+//! | `single-scattering` | the field in a box with a point light; the ray goes on to where it leaves the box |
+//! | `ball` | a homogeneous ball in light from all sides, or about a black sphere that shines |
 //!
-//! A homogeneous medium is written as one, in a box or a ball.
+//! Of one channel or several, at the end of the ray only. A homogeneous medium is written as one, in a box or a ball.
 
 use std::slice;
 use std::sync::Arc;
@@ -17,13 +17,13 @@ use super::fields::{Fields, Reader, Unsuitable, lobe, one_phase, unread};
 use super::scene::{Channel, Light, Scene, View};
 use super::{ExportError, Target, Wishes, single};
 use crate::case::sweep::What;
-use crate::case::{Catalogue, Source};
+use crate::case::{Catalogue, Source, forms};
 use media::phase::Phase;
 use media::phase::isotropic::Isotropic;
 use media::{Body, Medium, Volume};
 use numeric::geometry::{Bounds, Point, Ray};
+use theory::problems::ball::{Light as BallLight, Sought};
 use theory::problems::slab::{Incidence, Light as Side};
-use theory::problems::sphere::{Light as BallLight, Sought};
 use theory::problems::{
     ChromaticSlab, Furnace, Problem, SingleScattering, Slab, SpectralFurnace,
     SpectralSingleScattering, SpectralSlab, SpectralTransmittance, Sphere, Transmittance,
@@ -60,9 +60,11 @@ pub fn read(
     } else if let Some(sphere) = scenario.problem::<Sphere>() {
         reader.sphere(body, sphere)
     } else {
+        let settings = case.spec.problem().map_or(&[][..], |(_, settings)| settings);
+        let asked = forms::title(&case.problem, settings).unwrap_or_default();
         Err((
-            format!("renderers do not answer what `{}` asks", case.problem),
-            "take a case of transmittance, furnace, slab, single-scattering (of one channel or several) or sphere",
+            format!("renderers do not answer what `{asked}` asks"),
+            "take a case of transmittance, furnace, slab or single-scattering (of one channel or several), or ball",
         ))
     };
     let swept = case.sweep.as_ref().map(|axis| axis.what);
@@ -288,7 +290,7 @@ impl Reader<'_> {
 
     fn sphere(&self, body: &Body, sphere: &Sphere) -> Result<Scene, Unsuitable> {
         let Body::Volume { ray, .. } = body else { return Err(unread()) };
-        let cure = "take a homogeneous one that asks for the radiance, such as sphere/black-light";
+        let cure = "take a homogeneous one that asks for the radiance, such as ball/black-light";
         if sphere.sought == Sought::MeanIntensity {
             return Err((
                 "a pixel is a radiance, and the case asks for all directions".into(),
@@ -305,7 +307,7 @@ impl Reader<'_> {
             BallLight::Environment | BallLight::Distant(_) => Light::Everywhere,
         };
         let albedo = sphere.scene.albedo.even().unwrap_or_default();
-        let mut scene = self.scene("sphere", fields, [ray.origin, ray.direction], light);
+        let mut scene = self.scene("ball", fields, [ray.origin, ray.direction], light);
         scene.channels[0].albedo = single(albedo);
         Ok(scene)
     }

@@ -130,17 +130,6 @@ impl Scene {
         self.grids().is_empty() && !self.is_heterogeneous
     }
 
-    /// The problem that theory is asked about.
-    pub fn problem_of_theory(&self) -> &'static str {
-        match self.problem {
-            one if !self.is_coloured() => one,
-            "transmittance" => "spectral-transmittance",
-            "slab" => "chromatic-slab",
-            "furnace" => "spectral-furnace",
-            _ => "spectral-single-scattering",
-        }
-    }
-
     /// The largest extinction of all channels, 1/length.
     pub fn peak(&self) -> f64 {
         self.channels.iter().map(|channel| channel.field.peak()).fold(0.0, f64::max)

@@ -178,7 +178,7 @@ pub fn of(scene: &Scene, prediction: &Prediction) -> Truth {
     Truth {
         version: VERSIONS[usize::from(scene.is_coloured())],
         case: scene.case.clone(),
-        problem: scene.problem_of_theory().to_owned(),
+        problem: scene.problem.to_owned(),
         target: scene.target.name().to_owned(),
         camera_in_medium: scene.is_inside,
         field,
@@ -237,7 +237,7 @@ fn laws(scene: &Scene, light: Light) -> [Option<(Law, bool)>; 2] {
 /// `trueflight run` and `trueflight bench` take it, so that both can be timed on the same field.
 pub fn case(scene: &Scene) -> String {
     let Scene { direction, .. } = scene;
-    let (problem, is_coloured) = (scene.problem_of_theory(), scene.is_coloured());
+    let (problem, is_coloured) = (scene.problem, scene.is_coloured());
     let mut text = format!(
         "# {}, as `trueflight export --to {}` sampled it.\ntitle = {:?}\ndraws = 1_000_000\n\
          underpowered = \"allow\"\n\n[problem.{problem}]\n",
@@ -282,7 +282,7 @@ pub fn case(scene: &Scene) -> String {
         Some(Light::Core { radius }) => {
             line(format!("light.black-sphere = {{ radius = {radius:?} }}"));
         }
-        Some(Light::Everywhere) if problem == "sphere" => line("light.environment = {}".into()),
+        Some(Light::Everywhere) if problem == "ball" => line("light.environment = {}".into()),
         _ => {}
     }
     if scene.has_mirrors {
@@ -290,14 +290,14 @@ pub fn case(scene: &Scene) -> String {
     }
     let peak = scene.peak();
     line(format!("sampling.constant = {{ value = {peak:?} }}"));
-    let estimator = match problem {
+    let estimator = match (problem, is_coloured) {
         // Of several channels one whose σ̂ may be the largest σ_t of all.
-        "spectral-transmittance" => "{ independent = { collisions = \"delta\" } }".to_owned(),
-        "spectral-single-scattering" => "{ independent = { shadow = \"ratio\" } }".to_owned(),
-        "spectral-furnace" | "chromatic-slab" => "{ independent = {} }".to_owned(),
-        "transmittance" => "{ woodcock = {} }".to_owned(),
-        "slab" => "{ weighted = {} }".to_owned(),
-        "single-scattering" => {
+        ("transmittance", true) => "{ independent = { collisions = \"delta\" } }".to_owned(),
+        ("single-scattering", true) => "{ independent = { shadow = \"ratio\" } }".to_owned(),
+        (_, true) => "{ independent = {} }".to_owned(),
+        ("transmittance", _) => "{ woodcock = {} }".to_owned(),
+        ("slab", _) => "{ weighted = {} }".to_owned(),
+        ("single-scattering", _) => {
             format!("{{ delta-tracking = {{ shadow.ratio = {{ sampling = {peak:?} }} }} }}")
         }
         _ => "{ particle = { rule = \"weighted\" } }".to_owned(),

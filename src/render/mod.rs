@@ -3,7 +3,7 @@
 //! | key | meaning | default |
 //! |---|---|---|
 //! | `title` | one line above the picture | required |
-//! | `picture.NAME` | what is shown: `transmittance` (before the sky), `spectral-transmittance` (the same in colour), `single-scattering` (of a point light) or `multiple-scattering` (of the sky) | required |
+//! | `picture.NAME` | what is shown: `transmittance` (before the sky; in colour where `volume` is a list of three), `single-scattering` (of a point light) or `multiple-scattering` (of the sky) | required |
 //!
 //! Within `[picture.NAME]`:
 //!
@@ -49,6 +49,7 @@ use std::path::Path;
 
 use self::scene::{Request, Scene};
 use self::subject::SUBJECTS;
+use crate::case::forms::explain_problem;
 use crate::case::spec::BuiltIn;
 use crate::case::{CaseError, Source, Spec};
 use media::catalogue::{Additions, Page, PageList, Settings};
@@ -89,9 +90,12 @@ impl Picture {
             return None;
         }
         let title = root.text("title");
-        let names = SUBJECTS.each_ref().map(|kind| kind.name.to_owned());
-        let scene = root.chosen("picture", &names).and_then(|(index, settings)| {
-            let scene = Scene::read(&SUBJECTS[index], &settings);
+        let mut names = SUBJECTS.each_ref().map(|kind| kind.name.to_owned()).to_vec();
+        names.dedup();
+        let explain = |name: &str| explain_problem("picture", name);
+        let chosen = root.chosen_explained("picture", &names, &explain);
+        let scene = chosen.and_then(|(index, settings)| {
+            let scene = Scene::read(subject::kind(&names[index], &settings)?, &settings);
             settings.close();
             Some((names[index].clone(), scene?))
         });

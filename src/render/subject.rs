@@ -14,11 +14,12 @@ use media::phase::Phase;
 use media::{Body, Majorants, Medium, Volume};
 use numeric::geometry::Ray;
 use numeric::{Known, Lane};
+use theory::problems::options::chosen;
 use theory::problems::scene::read_albedo;
 use theory::problems::single_scattering::{Lamp, OnTheLine};
 use theory::problems::{
-    Albedo, MultipleScattering, Problem, Scene, SingleScattering, Sky, SpectralTransmittance,
-    Transmittance,
+    Albedo, MultipleScattering, Problem, ProblemOption, Scene, SingleScattering, Sky,
+    SpectralTransmittance, Transmittance,
 };
 use theory::single::quick;
 use theory::{Mesh, Prediction};
@@ -73,6 +74,8 @@ pub trait Subject: Estimated {
 pub struct SubjectKind {
     /// Its name in picture files.
     pub name: &'static str,
+    /// Options that choose the form.
+    pub options: &'static [ProblemOption],
     /// See [`Subject::BEFORE_SKY`].
     pub before_sky: bool,
     /// See [`Subject::SHOWS_SKY`].
@@ -97,15 +100,23 @@ pub type RayOf = Box<dyn Fn(&[Arc<Volume>], &Ray) -> Option<Box<dyn AnyRay>> + S
 /// What is shown, in the order of the catalogue.
 pub static SUBJECTS: [SubjectKind; 4] = [
     SubjectKind::of::<Transmittance>("transmittance"),
-    SubjectKind::of::<SpectralTransmittance>("spectral-transmittance"),
+    SubjectKind::of::<SpectralTransmittance>("transmittance"),
     SubjectKind::of::<SingleScattering>("single-scattering"),
     SubjectKind::of::<MultipleScattering>("multiple-scattering"),
 ];
+
+/// The subject of a name in the form that settings ask for; `None` after a mistake.
+pub fn kind(name: &str, settings: &Settings) -> Option<&'static SubjectKind> {
+    let forms: Vec<_> = SUBJECTS.iter().filter(|kind| kind.name == name).collect();
+    let options: Vec<_> = forms.iter().map(|kind| kind.options).collect();
+    chosen(&options, settings).map(|form| forms[form])
+}
 
 impl SubjectKind {
     const fn of<P: Subject>(name: &'static str) -> Self {
         Self {
             name,
+            options: P::OPTIONS,
             before_sky: P::BEFORE_SKY,
             shows_sky: P::SHOWS_SKY,
             along_ray: P::ALONG_RAY,

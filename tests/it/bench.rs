@@ -18,7 +18,7 @@ estimators = [{ woodcock = {} }, { ratio = {} }, { regular = {} }]
 ";
 
 const CURVE: &str = "title = \"a curve\"
-[problem.transmittance-curve]
+[problem.transmittance]
 medium.constant.extinction = 0.5
 span = [0, 2]
 distances = 2

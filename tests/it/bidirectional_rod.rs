@@ -188,7 +188,7 @@ fn a_tight_majorant_needs_no_null_vertices() {
 fn rod(sensor: &str, orders: usize, lowest: usize, estimators: &str) -> String {
     format!(
         "title = \"a rod\"
-        [problem.bidirectional-rod]
+        [problem.rod]
         medium.piecewise-constant = {{ breaks = [0, 1, 2, 2.6], values = [0.6, 0, 1.5] }}
         span = [0, 2.6]
         albedo = 0.85

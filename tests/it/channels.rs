@@ -50,7 +50,7 @@ fn the_clock_of_a_curve_in_a_homogeneous_medium() {
 #[test]
 fn the_steps_of_a_clock_add_up_and_agree_with_the_channels() {
     let prediction = &predictions(
-        "title = \"a curve\"\n[problem.transmittance-curve]\nvolume.eq21 = {}\n\
+        "title = \"a curve\"\n[problem.transmittance]\nvolume.eq21 = {}\n\
          ray = { origin = [0, 0, 0], direction = [0, 0, 1], length = 20 }\ndistances = 12\n\
          sampling.constant.value = 1.2\nestimators = [{ double = {} }]",
     )[0];

@@ -6,9 +6,9 @@ use trueflight::record::Verdict;
 use crate::common::{case, channels, none, not_passing, predicted, rows};
 use crate::packets::{compare, fusing_levels};
 
-const THREE_COLOURS: &str = include_str!("../../cases/chromatic-slab/three-colours.toml");
+const THREE_COLOURS: &str = include_str!("../../cases/slab/chromatic-three-colours.toml");
 
-const LIKE: &str = include_str!("../../cases/chromatic-slab/like-colours.toml");
+const LIKE: &str = include_str!("../../cases/slab/chromatic-like-colours.toml");
 
 fn near(found: Option<f64>, expected: Option<f64>, relative: f64) {
     let (found, expected) = (found.expect("known"), expected.expect("known"));
@@ -46,11 +46,11 @@ fn channels_that_differ_in_albedo_alone_are_a_slab_of_coloured_scatterers() {
         estimators = [{ spectral-mis = {} }]";
     let medium = "{ constant.extinction = 1.2 }";
     let chromatic = format!(
-        "title = \"t\"\ndraws = 800_000\n[problem.chromatic-slab]\nmedium = [{medium}, {medium}, {medium}]
+        "title = \"t\"\ndraws = 800_000\n[problem.slab]\nmedium = [{medium}, {medium}, {medium}]
         phases = [{{ isotropic = {{}} }}, {{ isotropic = {{}} }}, {{ isotropic = {{}} }}]\n{rest}"
     );
     let coloured = predicted(&format!(
-        "title = \"t\"\n[problem.spectral-slab]\nmedium.constant.extinction = 1.2\nphase.isotropic = {{}}\n{rest}"
+        "title = \"t\"\n[problem.slab]\nmedium.constant.extinction = 1.2\nphase.isotropic = {{}}\n{rest}"
     ));
     let drawn = rows(&chromatic, 800_000);
     assert_eq!(drawn.len(), 6);
@@ -71,11 +71,11 @@ fn bounds_of_walks_relative_to_one_walker_are_above_their_variances() {
             { spectral-tracking = { probabilities = \"maximum\" } }]";
     let medium = "{ constant.extinction = 1.2 }";
     let chromatic = format!(
-        "title = \"t\"\ndraws = 800_000\n[problem.chromatic-slab]\nmedium = [{medium}, {medium}, {medium}]
+        "title = \"t\"\ndraws = 800_000\n[problem.slab]\nmedium = [{medium}, {medium}, {medium}]
         phases = [{{ isotropic = {{}} }}, {{ isotropic = {{}} }}, {{ isotropic = {{}} }}]\n{rest}"
     );
     let coloured = predicted(&format!(
-        "title = \"t\"\n[problem.spectral-slab]\nmedium.constant.extinction = 1.2\nphase.isotropic = {{}}\n{rest}"
+        "title = \"t\"\n[problem.slab]\nmedium.constant.extinction = 1.2\nphase.isotropic = {{}}\n{rest}"
     ));
     let drawn = rows(&chromatic, 800_000);
     assert_eq!(drawn.len(), 3 * 6);
@@ -99,7 +99,7 @@ fn bounds_of_walks_relative_to_one_walker_are_above_their_variances() {
 #[test]
 fn thin_ends_of_steep_atmospheres_have_a_bound() {
     let text = "title = \"steep\"
-        [problem.chromatic-slab]
+        [problem.slab]
         medium = [{ exponential = { extinction = 1, rate = 40 } }]
         span = [0, 1]
         albedos = [0.5]

@@ -115,7 +115,8 @@ fn a_rod_without_a_way_back_has_moments_by_hand() {
 
 #[test]
 fn power_heuristics_and_majorants_in_steps_are_predicted_as_drawn() {
-    let text = "title = \"t\"\ndraws = 4_000_000\n[problem.lit-rod]
+    let text = "title = \"t\"\ndraws = 4_000_000\n[problem.rod]
+        light = 'emitter'
         medium.piecewise-constant = { breaks = [0, 1, 1.5, 2.5, 3], values = [0.4, 0, 1.5, 0.7] }
         span = [0, 3]
         albedo.piecewise-linear = { knots = [0, 3], values = [0.95, 0.5] }
@@ -146,7 +147,7 @@ fn draws_agree(draws: u64) {
     assert_eq!(means.len(), 3);
     for reference in means {
         let text = format!(
-            "title = \"t\"\n[problem.lit-rod]\n{}\nalbedo = {}\nforward = {}
+            "title = \"t\"\n[problem.rod]\nlight = 'emitter'\n{}\nalbedo = {}\nforward = {}
             sampling.constant.value = {}
             estimators = [{ESTIMATORS}]",
             reference.medium(),
@@ -162,7 +163,7 @@ fn draws_agree(draws: u64) {
 
 #[test]
 fn an_estimator_is_best_per_draw_and_another_per_lookup() {
-    let text = "title = \"t\"\n[problem.lit-rod]\nmedium.constant.extinction = 1\nspan = [0, 2]
+    let text = "title = \"t\"\n[problem.rod]\nlight = 'emitter'\nmedium.constant.extinction = 1\nspan = [0, 2]
         albedo = 0.9\nforward = 0.75\nsampling.constant.value = 1.6
         estimators = [{ unidirectional = {} }, { full-mis = {} }]";
     let rows = predicted(text);
@@ -197,7 +198,7 @@ fn extremes(is_wanted: fn(usize) -> bool) -> usize {
             for (layer, factor) in [1.0, 1.001, 20.0].into_iter().enumerate() {
                 if is_wanted(row + column + layer) {
                     let text = format!(
-                        "title = \"t\"\n[problem.lit-rod]\nmedium.constant.extinction = {depth:e}\nspan = [0, 1]
+                        "title = \"t\"\n[problem.rod]\nlight = 'emitter'\nmedium.constant.extinction = {depth:e}\nspan = [0, 1]
                         albedo = {albedo}\nforward = {forward}\nsampling.constant.value = {:e}
                         estimators = [{ESTIMATORS}]",
                         depth * factor

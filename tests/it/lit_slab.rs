@@ -212,11 +212,15 @@ fn draws_agree(draws: u64) {
     assert_eq!(means.len(), 3);
     for reference in means {
         let text = format!(
-            "title = \"t\"\n[problem.lit-slab]\n{}\nalbedo = {}\nphase.henyey-greenstein = {{ g = {} }}
+            "title = \"t\"\n[problem.slab]\n{}\nalbedo = {}\nphase.henyey-greenstein = {{ g = {} }}
             light.{}\nsampling.constant.value = {}
             estimators = [{ESTIMATORS}]
             [tolerance]\nmean = {}\nvariance = {}",
-            reference.medium(), reference.a, reference.g, reference.light_in_words(), reference.majorant,
+            reference.medium(),
+            reference.a,
+            reference.g,
+            reference.light_in_words(),
+            reference.majorant,
             if reference.case == "CAP-NARROW" { 0.5 } else { 0.05 },
             if reference.case == "CAP-NARROW" { 0.5 } else { 0.2 },
         );
@@ -235,7 +239,7 @@ fn varying_media_and_majorants_in_steps_are_predicted_as_drawn() {
         ("point.distance = 0.5", ""),
     ] {
         let text = format!(
-            "title = \"t\"\n[problem.lit-slab]
+            "title = \"t\"\n[problem.slab]
             medium.piecewise-constant = {{ breaks = [0, 1, 1.5, 2.5, 3], values = [0.4, 0, 1.5, 0.7] }}
             span = [0, 3]\nalbedo = 0.8\nphase.henyey-greenstein = {{ g = 0.5 }}\nlight.{light}
             sampling.piecewise-constant = {{ breaks = [0, 1, 1.6, 3], values = [0.6, 3, 2] }}
@@ -275,7 +279,7 @@ fn extremes(is_wanted: fn(usize) -> bool) -> usize {
             for (layer, light) in lights.into_iter().enumerate() {
                 for factor in [1.0, 20.0].into_iter().filter(|_| is_wanted(row + column + layer)) {
                     let text = format!(
-                        "title = \"t\"\n[problem.lit-slab]\nmedium.constant.extinction = {depth:e}\nspan = [0, 1]
+                        "title = \"t\"\n[problem.slab]\nmedium.constant.extinction = {depth:e}\nspan = [0, 1]
                         albedo = 0.9\nphase.henyey-greenstein = {{ g = {g} }}\nlight.{light}
                         sampling.constant.value = {:e}
                         estimators = [{{ unidirectional = {{}} }}, {{ next-event.shadow = \"delta\" }},

@@ -8,9 +8,8 @@ use std::{env, fs};
 
 use crate::common::{LOCKED_DRAWS, none, shipped_draws, shipped_record};
 use trueflight::catalogue::Page;
-use trueflight::estimators;
+use trueflight::estimators::{self, FormCatalogue};
 use trueflight::lab::streams;
-use trueflight::problems;
 use trueflight::report::run::{checks_csv, summary_csv};
 use trueflight::report::self_test;
 use trueflight::self_test::{SelfTest, calibration, mutation};
@@ -238,16 +237,15 @@ fn all_cases_predict_and_draw_what_they_did() {
 #[test]
 fn every_estimator_of_the_catalogue_is_drawn() {
     let rows = frozen().digits.rows;
-    let problems = problems::CATALOGUE.pages.iter().map(Page::name);
     let mut missing = Vec::new();
-    for (problem, list) in problems.zip(estimators::catalogues()) {
+    for FormCatalogue { problem, title, list, .. } in estimators::catalogues() {
         let of_problem = |row: &&Vec<String>| row[0].split('/').next() == Some(problem.as_str());
         let drawn = rows.iter().filter(of_problem).filter(|row| row[6] != "refused");
         let names: BTreeSet<&str> = drawn.filter_map(|row| row[1].split(' ').next()).collect();
         let all = list.pages.iter().map(Page::name);
         missing.extend(
             all.filter(|name| !names.contains(name.as_str()))
-                .map(|name| format!("{problem}: {name}")),
+                .map(|name| format!("{title}: {name}")),
         );
     }
     none(&missing);

@@ -282,7 +282,7 @@ fn an_own_medium_that_is_not_proportional_is_not_swept() {
         assert!(found.contains("at density = 0.5: ") && found.contains(words), "{found}");
     }
     // At c = 1 channels are as written, and at 1/2 not halfway between t and t³.
-    let colours = "title = \"veil\"\n[problem.spectral-transmittance]\nspan = [0, 2]\nsampling = 9\n\
+    let colours = "title = \"veil\"\n[problem.transmittance]\nspan = [0, 2]\nsampling = 9\n\
          medium = [{ veil.strength = 1 }, { veil.strength = 3 }]\nestimators = [\"spectral-mis\"]\n";
     let found = veiled(&["strength"], power, &format!("{colours}sweep.contrast = [1, 0.5]\n"));
     let found = found.err().expect("a mistake");

@@ -67,7 +67,7 @@ fn shadows_are_spelled_alike_everywhere() {
     assert_eq!(results(field), results(&table));
     let lit = |shadow: &str| {
         format!(
-            "title = \"x\"\n[problem.lit-rod]\nmedium = 1\nspan = [0, 1]\nalbedo = 0.5\nforward = 0.6\nsampling = 2\n\
+            "title = \"x\"\n[problem.rod]\nlight = 'emitter'\nmedium = 1\nspan = [0, 1]\nalbedo = 0.5\nforward = 0.6\nsampling = 2\n\
              estimators = [{{ next-event.shadow{shadow} }}]\n"
         )
     };
@@ -113,7 +113,7 @@ fn a_sweep_takes_the_list_alone_and_scales_short_forms() {
 fn channels_may_be_listed_by_numbers() {
     let frame = |medium: &str, sampling: &str| {
         format!(
-            "title = \"x\"\n[problem.spectral-transmittance]\nmedium = {medium}\nspan = [0, 2]\nsampling = {sampling}\n\
+            "title = \"x\"\n[problem.transmittance]\nmedium = {medium}\nspan = [0, 2]\nsampling = {sampling}\n\
              estimators = [{{ hero = {{ collisions = \"delta\" }} }}, \"independent\"]\n"
         )
     };

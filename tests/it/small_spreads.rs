@@ -34,7 +34,7 @@ fn steps_of_a_curve_without_spread_join_the_next() {
         ["control.explorers.points = 7", "control.explorers.points = 4", "control.none = {}"]
     {
         let text = format!(
-            "title = \"t\"\n[problem.transmittance-curve]\n\
+            "title = \"t\"\n[problem.transmittance]\n\
              medium.piecewise-linear = {{ knots = [0, 1, 2, 3], values = [0.2, 1, 0.5, 0.1] }}\n\
              span = [0, 3]\ndistances = 6\nsampling.constant.value = 1.2\n\
              estimators = [{{ double.{control} }}]"

@@ -194,7 +194,7 @@ fn rays_that_are_not_walked_need_not_be_given() {
             "ray = { origin = [0, 0, -5], direction = [0.1, 0.05, 1] }",
         ),
         (
-            "sphere",
+            "ball",
             "volume.radial = { centre = [0, 0, 0], radius = 1.5, coefficients = [2, -2] }\n\
              albedo = 0.9\nphase.isotropic = {}\nlight.environment = {}",
             "ray = { origin = [0.1, 0.2, -4], direction = [0, 0, 1], length = 6 }",

@@ -15,9 +15,9 @@ struct Reference {
     error: f64,
 }
 
-const LAYERS: &str = include_str!("../../cases/spectral-transmittance/layers.toml");
-const SMOOTH: &str = include_str!("../cases/spectral-transmittance/smooth.toml");
-const HERO_DELTA: &str = include_str!("../../cases/spectral-transmittance/hero-delta.toml");
+const LAYERS: &str = include_str!("../../cases/transmittance/spectral-layers.toml");
+const SMOOTH: &str = include_str!("../cases/transmittance/spectral-smooth.toml");
+const HERO_DELTA: &str = include_str!("../../cases/transmittance/spectral-hero-delta.toml");
 
 /// The trackers by the names of the reference values.
 const TRACKERS: [(&str, &str, &str); 10] = [
@@ -120,7 +120,7 @@ struct RodParams {
 /// A rod of that optical length, the same whatever its fields.
 fn rod(length: &str, albedos: &[f64], forward: &str) -> Vec<Row<'static>> {
     predicted(&format!(
-        "title = \"rod\"\n[problem.spectral-rod]\nmedium.constant = {{ extinction = 0.5 }}\nspan = [0, {}]\n\
+        "title = \"rod\"\n[problem.rod]\nmedium.constant = {{ extinction = 0.5 }}\nspan = [0, {}]\n\
          albedos = {albedos:?}\nforward = {forward}\nsampling.constant = {{ value = 0.8 }}\nestimators = [\n\
          {{ spectral-tracking = {{ probabilities = \"average\" }} }},\n\
          {{ spectral-tracking = {{ probabilities = \"maximum\" }} }},\n{{ spectral-mis = {{}} }} ]\n",
@@ -192,7 +192,7 @@ fn what_no_number_holds_is_not_taken_for_nothing() {
     for (albedos, forward) in [("[1, 0.001]", 1.0), ("[1, 0.0026]", 1.0), ("[1, 0.001]", 0.999)] {
         let rows = rows(
             &format!(
-                "title = \"rod\"\n[problem.spectral-rod]\nmedium.constant.extinction = 1\nspan = [0, 1]\nforward = {forward}\n\
+                "title = \"rod\"\n[problem.rod]\nmedium.constant.extinction = 1\nspan = [0, 1]\nforward = {forward}\n\
                  albedos = {albedos}\nsampling.constant.value = 1.5\nestimators = [{{ hero = {{}} }}]\n"
             ),
             20_000,
@@ -226,7 +226,7 @@ struct SlabParams {
 /// A slab of that optical depth, the same whatever its fields; `more` are its phase function and its estimators.
 fn slab(depth: f64, cosine: f64, albedos: &[f64], more: &str) -> String {
     format!(
-        "title = \"slab\"\n[problem.spectral-slab]\nmedium.constant = {{ extinction = 0.5 }}\nspan = [0, {}]\n\
+        "title = \"slab\"\n[problem.slab]\nmedium.constant = {{ extinction = 0.5 }}\nspan = [0, {}]\n\
          albedos = {albedos:?}\nincidence.collimated = {{ cosine = {cosine} }}\nsampling.constant = {{ value = 0.8 }}\n{more}",
         2.0 * depth
     )
@@ -294,7 +294,8 @@ fn slabs_of_coloured_scatterers_are_drawn_as_predicted() {
 fn history_aware_tracking_of_smooth_forward_rods_is_judged_by_a_bound() {
     let rows = rows(
         "title = \"smooth\"
-        [problem.spectral-lit-rod]
+        [problem.rod]
+        light = 'emitter'
         medium = [{ exponential = { extinction = 1, rate = 1 } }, { constant.extinction = 0.7 }]
         span = [0, 2]
         albedos = [0.9, 0.3]

@@ -5,9 +5,9 @@ use trueflight::record::Verdict;
 use crate::common::{case, predicted, rows};
 use crate::packets::{compare, fusing_levels};
 
-const BALL: &str = include_str!("../cases/spectral-furnace/known-bugs.toml");
-const LIKE: &str = include_str!("../../cases/spectral-furnace/like-colours.toml");
-const NOISE: &str = include_str!("../cases/spectral-furnace/noise.toml");
+const BALL: &str = include_str!("../cases/furnace/spectral-known-bugs.toml");
+const LIKE: &str = include_str!("../../cases/furnace/spectral-like-colours.toml");
+const NOISE: &str = include_str!("../cases/furnace/spectral-noise.toml");
 
 #[test]
 fn every_channel_is_as_bright_as_the_walls() {
@@ -85,7 +85,7 @@ fn bounds_hold_at_the_edges() {
             format!("{{ constant = {{ extinction = {extinction:?}, bounds.sphere = {{ centre = [0, 0, 0], radius = {radius:?} }} }} }}")
         });
         format!(
-            "title = \"edge\"\n[problem.spectral-furnace]\nvolume = [{}, {}]\n\
+            "title = \"edge\"\n[problem.furnace]\nvolume = [{}, {}]\n\
              ray = {{ origin = [0.1, 0.05, -2], direction = [0, 0, 1], length = 4 }}\nalbedos = {albedos:?}\n\
              phases = [{{ henyey-greenstein.g = {:?} }}, {{ henyey-greenstein.g = {:?} }}]\n{sampling}\nestimators = [{{ hero = {{}} }}]\n",
             volume[0], volume[1], g[0], g[1]
@@ -128,7 +128,7 @@ fn bounds_hold_at_the_edges() {
 #[test]
 fn one_channel_alone_is_certain() {
     let text = "title = \"one\"
-        [problem.spectral-furnace]
+        [problem.furnace]
         volume = [{ constant = { extinction = 1, bounds.sphere = { centre = [0, 0, 0], radius = 1 } } }]
         ray = { origin = [0, 0, -2], direction = [0, 0, 1], length = 4 }
         albedos = [0.5]
@@ -171,7 +171,7 @@ fn walks_side_by_side_are_walks_one_by_one() {
             let [one, two] = [first, other].map(volume);
             let [here, there] = [first % PHASES.len(), (other + body) % PHASES.len()];
             let text = format!(
-                "title = \"walks\"\n[problem.spectral-furnace]\nvolume = [{one}, {two}]
+                "title = \"walks\"\n[problem.furnace]\nvolume = [{one}, {two}]
                 ray = {{ origin = [0.3, 0.2, -3], direction = [0.1, 0, 1], length = 9 }}
                 albedos = [0.95, 1]\nphases = [{{ {} }}, {{ {} }}]\nsampling.constant.value = 2.1
                 estimators = [{{ independent = {{}} }}, {{ spectral-mis = {{}} }},

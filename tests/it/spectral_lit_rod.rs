@@ -10,16 +10,16 @@ use trueflight::record::{Row, Verdict};
 
 use crate::common::{case, channels, finding, none, not_passing, options, predicted, rows};
 
-const THREE_COLOURS: &str = include_str!("../../cases/spectral-lit-rod/three-colours.toml");
-const ONE_MEDIUM: &str = include_str!("../cases/spectral-lit-rod/one-medium.toml");
-const FORWARD: &str = include_str!("../../cases/spectral-lit-rod/forward.toml");
-const AS_PRINTED: &str = include_str!("../../cases/spectral-lit-rod/as-printed.toml");
+const THREE_COLOURS: &str = include_str!("../../cases/rod/spectral-lit-three-colours.toml");
+const ONE_MEDIUM: &str = include_str!("../cases/rod/spectral-lit-one-medium.toml");
+const FORWARD: &str = include_str!("../../cases/rod/spectral-lit-forward.toml");
+const AS_PRINTED: &str = include_str!("../../cases/rod/spectral-lit-as-printed.toml");
 
 /// A case with channels of the same field.
 fn one_medium(field: &str, length: f64, albedos: &[f64], forward: &[f64], majorant: f64) -> String {
     let media = vec![format!("{{ {field} }}"); albedos.len()].join(", ");
     format!(
-        "title = \"t\"\n[problem.spectral-lit-rod]\nmedium = [{media}]\nspan = [0, {length:?}]\nalbedos = {albedos:?}
+        "title = \"t\"\n[problem.rod]\nlight = 'emitter'\nmedium = [{media}]\nspan = [0, {length:?}]\nalbedos = {albedos:?}
         forward = {forward:?}\nsampling.constant.value = {majorant:?}
         estimators = [{{ spectral-mis = {{}} }}, {{ next-event-mis = {{}} }}, {{ independent = {{}} }},
             {{ independent.technique = \"unidirectional\" }}]"
@@ -97,14 +97,14 @@ fn channels_that_are_the_same_have_the_moments_of_one() {
     }
 }
 
-/// Where channels differ in their albedos alone, hits have the moments of `spectral-rod`, found from the coefficients
+/// Where channels differ in their albedos alone, hits have the moments of a rod with `albedos`, found from the coefficients
 /// of its transmittance.
 #[test]
 fn hits_of_channels_that_differ_in_albedo_are_those_of_coloured_scatterers() {
     let albedos = [0.9, 0.5, 0.1];
     let here = predicted(&one_medium("constant.extinction = 1", 2.0, &albedos, &[0.75; 3], 1.6));
     let there = predicted(&format!(
-        "title = \"t\"\n[problem.spectral-rod]\nmedium.constant.extinction = 1\nspan = [0, 2]\nalbedos = {albedos:?}
+        "title = \"t\"\n[problem.rod]\nmedium.constant.extinction = 1\nspan = [0, 2]\nalbedos = {albedos:?}
         forward = 0.75\nsampling.constant.value = 1.6\nestimators = [{{ spectral-mis = {{}} }}]"
     ));
     let there: Vec<&Row> =
@@ -134,7 +134,7 @@ fn a_rod_without_a_way_back_has_moments_by_hand() {
     let rows = predicted(&text);
     let spectral = channels(&rows, "spectral-mis");
     let scatterers = predicted(&format!(
-        "title = \"t\"\n[problem.spectral-rod]\nmedium.constant.extinction = 1\nspan = [0, {tau}]\nalbedos = {albedos:?}
+        "title = \"t\"\n[problem.rod]\nmedium.constant.extinction = 1\nspan = [0, {tau}]\nalbedos = {albedos:?}
         forward = 1\nsampling.constant.value = 1\nestimators = [{{ spectral-mis = {{}} }}]"
     ));
     assert_eq!(scatterers.len(), 2);
@@ -252,8 +252,8 @@ fn draws_agree(draws: u64) {
     let texts = [
         THREE_COLOURS.to_owned(),
         ONE_MEDIUM.to_owned(),
-        include_str!("../cases/spectral-lit-rod/phases.toml").to_owned(),
-        include_str!("../cases/spectral-lit-rod/extinctions.toml").to_owned(),
+        include_str!("../cases/rod/spectral-lit-phases.toml").to_owned(),
+        include_str!("../cases/rod/spectral-lit-extinctions.toml").to_owned(),
         one_medium(
             "exponential = { extinction = 2, rate = 1 }",
             2.0,

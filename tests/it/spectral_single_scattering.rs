@@ -7,9 +7,9 @@ use trueflight::record::{Row, Verdict};
 use crate::common::{case, predicted, rows};
 use crate::packets::{compare, fusing_levels};
 
-const BALL: &str = include_str!("../cases/spectral-single-scattering/known-bugs.toml");
+const BALL: &str = include_str!("../cases/single-scattering/spectral-known-bugs.toml");
 
-const WITHOUT: &str = include_str!("../../cases/spectral-single-scattering/without-mis.toml");
+const WITHOUT: &str = include_str!("../../cases/single-scattering/spectral-without-mis.toml");
 
 /// Rows of [`BALL`], drawn once for all tests.
 static DRAWN: LazyLock<Vec<Row<'static>>> = LazyLock::new(|| rows(BALL, 800_000));
@@ -87,7 +87,7 @@ fn walks_relative_to_one_walker_agree_with_theory() {
 fn one_channel_is_delta_tracking() {
     let alone = predicted(SECOND);
     let text = "title = \"green\"
-        [problem.spectral-single-scattering]
+        [problem.single-scattering]
         volume = [{ constant = { extinction = 0.8, bounds.sphere = { centre = [0, 0, 0], radius = 1 } } }]
         ray = { origin = [0.2, 0.1, -2], direction = [0, 0, 1], length = 4 }
         light = { position = [0.9, -0.3, 0.4], power = 10 }
@@ -120,7 +120,7 @@ fn what_lies_behind_a_wall_fails_no_correct_estimator() {
     };
     let text = format!(
         "title = \"a wall\"
-        [problem.spectral-single-scattering]
+        [problem.single-scattering]
         volume = [{}, {}]
         ray = {{ origin = [0.2, 0.1, -2], direction = [0, 0, 1], length = 4 }}
         light = {{ position = [0.9, -0.3, 0.4], power = 10 }}
@@ -146,7 +146,7 @@ fn thin_tails_of_two_colours_are_no_reason_to_refuse() {
         )
     });
     let rows = predicted(&format!(
-        "title = \"tails\"\n[problem.spectral-single-scattering]\nvolume = [{}, {}]\n\
+        "title = \"tails\"\n[problem.single-scattering]\nvolume = [{}, {}]\n\
          ray = {{ origin = [0, 0, -2], direction = [0, 0, 1], length = 4 }}\n\
          light = {{ position = [0.9, -0.3, 0.4], power = 10 }}\nalbedos = [0.7, 0.8]\n\
          phases = [{{ isotropic = {{}} }}, {{ isotropic = {{}} }}]\nsampling.constant.value = 1.6\n\
@@ -180,7 +180,7 @@ fn walks_side_by_side_are_walks_one_by_one() {
             let [one, two] = [first, other].map(volume);
             let light = if first % 2 == 0 { "[0.9, -0.3, 0.4]" } else { "[-2, 1.5, -4]" };
             let text = format!(
-                "title = \"walks\"\n[problem.spectral-single-scattering]\nvolume = [{one}, {two}]
+                "title = \"walks\"\n[problem.single-scattering]\nvolume = [{one}, {two}]
                 ray = {{ origin = [0.3, 0.2, -3], direction = [0.1, 0, 1], length = 9 }}
                 light = {{ position = {light}, power = 10 }}\nalbedos = [0.95, 0.4]
                 phases = [{{ henyey-greenstein = {{ g = -0.7 }} }}, {{ rayleigh = {{}} }}]

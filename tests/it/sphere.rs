@@ -134,7 +134,7 @@ fn text_of(reference: &Reference, at: f64, estimators: &str) -> String {
         _ => "light.environment = {}",
     };
     format!(
-        "title = \"sphere\"\n[problem.sphere]\n{volume}\n\
+        "title = \"sphere\"\n[problem.ball]\n{volume}\n\
          ray = {{ origin = [{origin}], direction = [0.6, 0, 0.8], length = 9 }}\n\
          sought = \"{sought}\"\nalbedo = {}\nphase.isotropic = {{}}\n{light}\n\
          sampling.constant.value = {sampling}\nestimators = [{estimators}]",

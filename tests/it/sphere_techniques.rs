@@ -60,7 +60,7 @@ const SCENES: [[&str; 3]; 6] = [
 /// A case, 2.5 the σ̂ of its walks.
 fn text([volume, light, ray]: [&str; 3], estimators: &str) -> String {
     format!(
-        "title = \"techniques\"\n[problem.sphere]\n{volume}\n{light}\n{ray}\nphase.isotropic = {{}}\n\
+        "title = \"techniques\"\n[problem.ball]\n{volume}\n{light}\n{ray}\nphase.isotropic = {{}}\n\
          sampling.constant.value = 2.5\nestimators = [{estimators}]"
     )
 }
@@ -227,7 +227,7 @@ fn directional_and_full_are_the_same_where_nothing_is_null() {
     for light in [SKY, LAMP] {
         for heuristic in ["balance", "power"] {
             let text = format!(
-                "title = \"s\"\n[problem.sphere]\n{HOMOGENEOUS}\n{light}\n{BESIDE}\n\
+                "title = \"s\"\n[problem.ball]\n{HOMOGENEOUS}\n{light}\n{BESIDE}\n\
                  phase.isotropic = {{}}\nsampling.constant.value = 1\nestimators = [\
                  {{ directional-mis = {{ rule = \"analog\", heuristic = \"{heuristic}\", \
                  shadow.ratio = {{ sampling = 1 }} }} }}, \

@@ -41,7 +41,7 @@ const WRITTEN: [Written; 6] = [
         )],
     ),
     (
-        "spectral-transmittance]\nmedium = [\n\
+        "transmittance]\nmedium = [\n\
          { piecewise-constant = { breaks = [0, 1, 2], values = [1, 0.2] } },\n\
          { piecewise-constant = { values = [0.2, 0.4], breaks = [0, 1, 2] } },\n]\nspan = [0, 2]\n\
          sampling = [{ constant.value = 1.2 }, { constant.value = 0.6 }]\n",
@@ -51,7 +51,7 @@ const WRITTEN: [Written; 6] = [
         &[
             (
                 0.0,
-                "spectral-transmittance]\nmedium = [\n\
+                "transmittance]\nmedium = [\n\
                  { piecewise-constant = { breaks = [0, 1, 2], values = [0.6, 0.3] } },\n\
                  { piecewise-constant = { breaks = [0, 1, 2], values = [0.6, 0.3] } },\n]\nspan = [0, 2]\n\
                  sampling = [{ constant.value = 0.9 }, { constant.value = 0.9 }]\n\
@@ -61,7 +61,7 @@ const WRITTEN: [Written; 6] = [
             ),
             (
                 0.5,
-                "spectral-transmittance]\nmedium = [\n\
+                "transmittance]\nmedium = [\n\
                  { piecewise-constant = { breaks = [0, 1, 2], values = [0.8, 0.25] } },\n\
                  { piecewise-constant = { breaks = [0, 1, 2], values = [0.4, 0.35] } },\n]\nspan = [0, 2]\n\
                  sampling = [{ constant.value = 1.05 }, { constant.value = 0.75 }]\n\
@@ -72,34 +72,34 @@ const WRITTEN: [Written; 6] = [
         ],
     ),
     (
-        "spectral-rod]\nmedium.constant.extinction = 1\nspan = [0, 1.5]\nalbedos = [0.8, 0.4, 0.6]\n\
+        "rod]\nmedium.constant.extinction = 1\nspan = [0, 1.5]\nalbedos = [0.8, 0.4, 0.6]\n\
          sampling.constant.value = 1.2\n",
         "contrast.values = [0.5, 1]\nestimators = [{ spectral-mis = {} }, { spectral-tracking = {} }]",
         &[(
             0.5,
-            "spectral-rod]\nmedium.constant.extinction = 1\nspan = [0, 1.5]\nalbedos = [0.7, 0.5, 0.6]\n\
+            "rod]\nmedium.constant.extinction = 1\nspan = [0, 1.5]\nalbedos = [0.7, 0.5, 0.6]\n\
              sampling.constant.value = 1.2\nestimators = [{ spectral-mis = {} }, { spectral-tracking = {} }]",
         )],
     ),
     (
-        "spectral-lit-rod]\nmedium = [{ constant.extinction = 1 }, { constant.extinction = 0.5 }]\nspan = [0, 2]\n\
+        "rod]\nlight = 'emitter'\nmedium = [{ constant.extinction = 1 }, { constant.extinction = 0.5 }]\nspan = [0, 2]\n\
          albedos = [{ piecewise-constant = { breaks = [0, 1, 2], values = [1, 0.5] } }, \
          { piecewise-linear = { knots = [0, 2], values = [0.2, 0.8] } }]\nsampling.constant.value = 1.2\n",
         "albedo-scale.values = [0.5, 1]\nestimators = [{ independent = {} }]",
         &[(
             0.5,
-            "spectral-lit-rod]\nmedium = [{ constant.extinction = 1 }, { constant.extinction = 0.5 }]\nspan = [0, 2]\n\
+            "rod]\nlight = 'emitter'\nmedium = [{ constant.extinction = 1 }, { constant.extinction = 0.5 }]\nspan = [0, 2]\n\
              albedos = [{ piecewise-constant = { breaks = [0, 1, 2], values = [0.5, 0.25] } }, \
              { piecewise-linear = { knots = [0, 2], values = [0.1, 0.4] } }]\nsampling.constant.value = 1.2\n\
              estimators = [{ independent = {} }]",
         )],
     ),
     (
-        "lit-rod]\nmedium.constant.extinction = 1\nspan = [0, 2]\nalbedo = 0.9\nsampling.constant.value = 1.5\n",
+        "rod]\nlight = 'emitter'\nmedium.constant.extinction = 1\nspan = [0, 2]\nalbedo = 0.9\nsampling.constant.value = 1.5\n",
         "albedo-scale.values = [0.5]\nestimators = [{ unidirectional = {} }, { full-mis = {} }]",
         &[(
             0.5,
-            "lit-rod]\nmedium.constant.extinction = 1\nspan = [0, 2]\nalbedo = 0.45\nsampling.constant.value = 1.5\n\
+            "rod]\nlight = 'emitter'\nmedium.constant.extinction = 1\nspan = [0, 2]\nalbedo = 0.45\nsampling.constant.value = 1.5\n\
              estimators = [{ unidirectional = {} }, { full-mis = {} }]",
         )],
     ),
@@ -220,7 +220,7 @@ fn an_infinite_variance_along_a_sweep_is_refused_where_it_begins() {
     // P_s = 1/2 whatever the contrast, and E[w²] is that of a rod of albedo a' = (1 + c)²/2, infinite from the length
     // atan2(w, a'/2 − 1)/w, w² = a' − 1, on: 6.96 at c = 0.5, 1.87 at 0.9, π/2 at 1.
     let text = titled(
-        "spectral-rod]\nmedium.constant.extinction = 1\nspan = [0, 1.5]\nalbedos = [1, 0]\n\
+        "rod]\nmedium.constant.extinction = 1\nspan = [0, 1.5]\nalbedos = [1, 0]\n\
          sampling.constant.value = 1\nsweep.contrast.values = [0, 0.5, 0.9, 1]\n\
          estimators = [{ spectral-tracking = {} }]\n",
     );

@@ -44,7 +44,7 @@ fn cases() -> Vec<Case> {
         case(
             "curve",
             "title = \"a curve\"
-            [problem.transmittance-curve]
+            [problem.transmittance]
             medium.gaussian = { peak = 1.5, centre = 2, width = 0.7 }
             span = [0, 4]
             sampling.constant.value = 1.2

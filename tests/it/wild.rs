@@ -222,7 +222,7 @@ fn swept(depths: &[f64], ratios: &[f64], lengths: &[f64]) -> Vec<String> {
             for (problem, lines, estimators) in [
                 ("transmittance", &lines, ALL),
                 ("free-flight", &lines, "{ woodcock = {} }, { inversion = {} }"),
-                ("transmittance-curve", &curve, "{ double = {} }"),
+                ("transmittance", &curve, "{ double = {} }"),
             ] {
                 let case = read(problem, lines, estimators);
                 // More expected collisions are predicted and not drawn.

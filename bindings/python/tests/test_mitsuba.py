@@ -71,20 +71,20 @@ def verdicts(folder, tmp_path, *words):
 
 def test_every_channel_is_judged_by_its_own_truth(export, tmp_path):
     words = ["--integrator", "volpathmis", "--draws", "1000000", "--alpha", "1e-6"]
-    code, rows = verdicts(export("spectral-slab/known-bugs"), tmp_path, *words)
+    code, rows = verdicts(export("slab/spectral-known-bugs"), tmp_path, *words)
     sides, numbers = ("reflectance", "transmittance"), (1, 2, 3)
     assert code == 0 and [row[0] for row in rows] == [f"{side}, channel {n}" for side in sides for n in numbers]
 
 
 def test_lights_counted_twice_are_found_in_each_channel(export, tmp_path):
-    code, rows = verdicts(export("spectral-slab/known-bugs"), tmp_path, "--bug", "emission", *SMALL)
+    code, rows = verdicts(export("slab/spectral-known-bugs"), tmp_path, "--bug", "emission", *SMALL)
     assert code == 1 and len(rows) == 6
     assert all(verdict == "fail" and 0.9 < off < 1.1 for _, verdict, off in rows)
 
 
 CUBE = """
 title = "An absorbing cube of side 2 in three colours"
-[problem.spectral-transmittance]
+[problem.transmittance]
 medium = [0.5, 1, 2]
 span = [0, 2]
 sampling = 2

@@ -42,7 +42,7 @@ use media::Lookups;
 use media::catalogue::{PageList, Settings};
 use numeric::rng::{Address, Stream};
 use theory::Prediction;
-use theory::problems::{Named, Problem, each_problem};
+use theory::problems::{Named, Problem, ProblemOption, each_problem};
 
 pub use crate::recipes::{Refusal, Site};
 pub use crate::setup::Setup;
@@ -158,7 +158,7 @@ pub trait Estimator<P: Problem>: Clone + Send + Sync + 'static {
 }
 
 /// A problem with a catalogue of estimators.
-pub trait Estimated: Problem + Named {
+pub trait Estimated: Named {
     /// The estimators of this problem.
     const CATALOGUE: PageList;
 
@@ -166,14 +166,34 @@ pub trait Estimated: Problem + Named {
     fn read_estimator(index: usize, settings: &Settings) -> Option<Box<dyn trial::Entry<Self>>>;
 }
 
+/// The estimators of one form of a problem.
+#[derive(Debug, Clone)]
+pub struct FormCatalogue {
+    /// Name of the problem.
+    pub problem: String,
+    /// Options that choose the form.
+    pub options: &'static [ProblemOption],
+    /// Name of the form, as in `rod with light`.
+    pub title: String,
+    /// The estimators.
+    pub list: PageList,
+}
+
+impl FormCatalogue {
+    fn of<P: Estimated>() -> Self {
+        let (problem, list) = (P::MODULE.replace('_', "-"), P::CATALOGUE);
+        Self { problem, options: P::OPTIONS, title: P::title(), list }
+    }
+}
+
 macro_rules! estimators_of {
-    ($($module:ident :: $Problem:ident,)*) => {
-        vec![$(<theory::problems::$Problem as Estimated>::CATALOGUE),*]
+    ($($module:ident: $($Form:ident)*,)*) => {
+        vec![$($(FormCatalogue::of::<theory::problems::$Form>()),*),*]
     };
 }
 
-/// The estimators of every problem, in the order of the problems.
-pub fn catalogues() -> Vec<PageList> {
+/// The estimators of every problem, form by form, in the order of the problems.
+pub fn catalogues() -> Vec<FormCatalogue> {
     each_problem!(estimators_of)
 }
 

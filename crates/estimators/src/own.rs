@@ -24,5 +24,5 @@ pub type EstimatorReader<P> = fn(&Settings) -> Option<Box<dyn Entry<P>>>;
 pub fn estimator<P: Estimated, E: Estimator<P>>(page: Page) -> Addition {
     let read: EstimatorReader<P> =
         |settings| E::read(settings).map(|page| Box::new(page) as Box<dyn Entry<P>>);
-    Addition::new(format!("estimators of {}", P::MODULE.replace('_', "-")), page, read)
+    Addition::new(format!("estimators of {}", P::title()), page, read)
 }

@@ -48,7 +48,7 @@ fn cube() -> Source {
 #[test]
 fn a_homogeneous_cube_of_three_colours_is_written_as_one() {
     let (folder, truth) = exported(&cube(), Target::Mitsuba, &Wishes::default()).expect("a scene");
-    assert_eq!((truth.version, truth.problem.as_str()), (2, "spectral-transmittance"));
+    assert_eq!((truth.version, truth.problem.as_str()), (2, "transmittance"));
     assert!(truth.field.is_none() && !folder.path().join("density.vol").exists());
     let scene = text(&folder, "transmittance.xml");
     assert!(scene.contains("<medium id=\"medium\" type=\"homogeneous\">"), "{scene}");
@@ -79,7 +79,7 @@ fn layers_of_three_colours_are_one_grid_of_three_channels() {
     };
     let media = [[1.0, 0.0], [0.5, 1.5], [0.25, 0.25]];
     let case = format!(
-        "title = \"x\"\n[problem.spectral-transmittance]\nmedium = [{}]\nspan = [0, 2]\nsampling = 2\n\
+        "title = \"x\"\n[problem.transmittance]\nmedium = [{}]\nspan = [0, 2]\nsampling = 2\n\
          estimators = [\"independent\"]\n",
         media.map(layers).join(", ")
     );
@@ -120,8 +120,8 @@ fn slabs_furnaces_and_lamps_have_a_truth_per_channel() {
         exported(&source(case), Target::Mitsuba, wishes).unwrap_or_else(|e| panic!("{case}: {e}"))
     };
     // One extinction, three albedos: both pictures in three channels, each as that of the slab of one albedo.
-    let (folder, truth) = albedos("spectral-slab/three-albedos", &Wishes::default());
-    assert_eq!(truth.problem, "chromatic-slab");
+    let (folder, truth) = albedos("slab/spectral-three-albedos", &Wishes::default());
+    assert_eq!(truth.problem, "slab");
     let scene = text(&folder, "reflectance.xml");
     assert!(scene.contains("value=\"1.0 0.7 0.45714286\""), "{scene}");
     assert_eq!(truth.questions.len(), 6);
@@ -142,22 +142,22 @@ fn slabs_furnaces_and_lamps_have_a_truth_per_channel() {
             assert!((stated / right - 1.0).abs() < 1e-8, "channel {number}: {stated}, {right}");
         }
     }
-    let (_, truth) = albedos("chromatic-slab/like-colours", &Wishes::default());
+    let (_, truth) = albedos("slab/chromatic-like-colours", &Wishes::default());
     let names: Vec<&str> = truth.questions.iter().map(|q| q.name.as_str()).collect();
     assert_eq!(names[..2], ["reflectance, channel 1", "reflectance, channel 2"]);
-    let (folder, truth) = albedos("spectral-furnace/like-colours", &Wishes::default());
+    let (folder, truth) = albedos("furnace/spectral-like-colours", &Wishes::default());
     assert!(truth.questions.iter().all(|question| question.mean == 1.0));
     assert_eq!(truth.questions.len(), 3);
     let scene = text(&folder, "radiance.xml");
     assert!(scene.contains("type=\"homogeneous\"") && scene.contains("type=\"sphere\""), "{scene}");
     assert!(truth.notes.iter().any(|note| note.contains("white")));
     // Renderers have one phase function, and the radiance in a furnace is 1 with any.
-    let (folder, truth) = albedos("spectral-furnace/known-bugs", &Wishes::default());
+    let (folder, truth) = albedos("furnace/spectral-known-bugs", &Wishes::default());
     assert!(truth.notes.iter().any(|note| note.contains("phase function of the first")));
     assert!(text(&folder, "radiance.xml").contains("name=\"g\" value=\"0.6\""));
     assert!(truth.questions.iter().all(|question| question.mean == 1.0));
     // One channel alone is grey, and its law is known.
-    let (folder, one) = albedos("spectral-single-scattering/known-bugs", &channels(&[2]));
+    let (folder, one) = albedos("single-scattering/spectral-known-bugs", &channels(&[2]));
     assert_eq!((one.version, one.problem.as_str()), (1, "single-scattering"));
     assert_eq!(one.questions.len(), 1);
     assert!(one.questions[0].with_emitter_sampling.and_then(|law| law.variance).is_some());
@@ -168,7 +168,7 @@ fn slabs_furnaces_and_lamps_have_a_truth_per_channel() {
 #[test]
 fn what_a_picture_cannot_hold_is_refused_with_a_cure() {
     let many = written(
-        "title = \"x\"\n[problem.spectral-transmittance]\nmedium = [1, 2, 3, 4]\nspan = [0, 1]\nsampling = 4\n\
+        "title = \"x\"\n[problem.transmittance]\nmedium = [1, 2, 3, 4]\nspan = [0, 1]\nsampling = 4\n\
          estimators = [\"independent\"]\n",
     );
     let told = refused(&many, Target::Mitsuba, &Wishes::default());
@@ -190,7 +190,7 @@ fn what_a_picture_cannot_hold_is_refused_with_a_cure() {
     }
     assert_eq!(means.len(), 2);
     assert!(truth.notes.iter().any(|note| note.ends_with("4, 2")), "{:?}", truth.notes);
-    let phases = source("chromatic-slab/three-colours");
+    let phases = source("slab/chromatic-three-colours");
     let told = refused(&phases, Target::Mitsuba, &Wishes::default());
     assert!(told.contains("phase functions") && told.contains("--channels 1"), "{told}");
     assert!(exported(&phases, Target::Mitsuba, &channels(&[3])).is_ok());

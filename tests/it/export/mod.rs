@@ -57,5 +57,5 @@ const CASES: &[&str] = &[
     "slab/known-bugs",
     "single-scattering/grid",
     "single-scattering/known-bugs",
-    "sphere/black-light",
+    "ball/black-light",
 ];

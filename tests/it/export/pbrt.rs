@@ -228,7 +228,7 @@ fn bad_counts(parameters: &[(String, Vec<Token>)]) -> Option<String> {
 #[test]
 fn every_scene_is_in_the_documented_format() {
     let mut read = 0;
-    let coloured = ["spectral-transmittance/layers", "spectral-furnace/like-colours"];
+    let coloured = ["transmittance/spectral-layers", "furnace/spectral-like-colours"];
     for case in CASES.iter().chain(&coloured).filter(|case| !case.starts_with("slab")) {
         // Rayleigh scattering, which pbrt has not.
         if *case == "furnace/known-bugs" {

@@ -23,14 +23,14 @@ fn cases_that_no_renderer_can_show_are_refused_with_a_cure() {
     let cases = [
         ("rod/known-bugs", Target::Mitsuba, "asks"),
         ("slab/known-bugs-diffuse", Target::Mitsuba, "incidence.collimated"),
-        ("sphere/albedos", Target::Mitsuba, "all directions"),
+        ("ball/albedos", Target::Mitsuba, "all directions"),
         ("slab/known-bugs", Target::Pbrt, "0.9999"),
         ("furnace/known-bugs", Target::Pbrt, "Rayleigh"),
         ("single-scattering/homogeneous", Target::Mitsuba, "bounds.box"),
-        ("sphere/environment", Target::Mitsuba, "sphere/black-light"),
-        ("sphere/escape", Target::Mitsuba, "all directions"),
+        ("ball/environment", Target::Mitsuba, "ball/black-light"),
+        ("ball/escape", Target::Mitsuba, "all directions"),
         ("transmittance/eq21-missing", Target::Mitsuba, "misses"),
-        ("spectral-rod/albedos", Target::Mitsuba, "one channel or several"),
+        ("rod/spectral-albedos", Target::Mitsuba, "one channel or several"),
     ];
     for (case, target, words) in cases {
         let Err(error) = scene(case, target, None) else { panic!("{case} was exported") };

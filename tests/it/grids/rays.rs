@@ -86,8 +86,8 @@ fn every_problem_with_a_ray_tells() {
     let list = |volume: &str| format!("[{volume}, {volume}]");
     for (problem, volume, settings) in [
         ("free-flight", CUBE.to_owned(), ALONG.replace("closed-form", "inversion")),
-        ("transmittance-curve", CUBE.to_owned(), "distances = 2\nsampling.constant.value = 2\nestimators = [{ double = {} }]".to_owned()),
-        ("spectral-transmittance", list(CUBE), format!("{sampling}estimators = [{{ spectral-mis = {{}} }}]")),
+        ("transmittance", CUBE.to_owned(), "distances = 2\nsampling.constant.value = 2\nestimators = [{ double = {} }]".to_owned()),
+        ("transmittance", list(CUBE), format!("{sampling}estimators = [{{ spectral-mis = {{}} }}]")),
         ("single-scattering", CUBE.to_owned(), "light = { position = [0.5, 0.5, 3], power = 1 }\nalbedo = 0.5\nphase.isotropic = {}\nsampling.constant.value = 2\nestimators = [{ delta-tracking = {} }]".to_owned()),
     ] {
         let told = std::panic::catch_unwind(|| through(problem, &volume, beside, &settings));

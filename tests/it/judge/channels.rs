@@ -11,7 +11,7 @@ const FIELD: &str =
 const NAMES: [&str; 3] = ["channel 1", "channel 2", "channel 3"];
 /// Three extinctions on [0, 2], each with a σ̂ that it equals: the three transmittances are those of depths 0.5, 1 and 2.
 const CASE: &str = "title = \"three colours\"
-[problem.spectral-transmittance]
+[problem.transmittance]
 medium = [ { constant.extinction = 0.25 }, { constant.extinction = 0.5 }, { constant.extinction = 1 } ]
 span = [0, 2]
 sampling = [{ constant.value = 0.25 }, { constant.value = 0.5 }, { constant.value = 1 }]

@@ -19,7 +19,7 @@ sampling.constant.value = 1.6
 estimators = [{ woodcock = {} }, { ratio = {} }, { double = {} }, { next-flight = {} }, { regular = {} }]
 ";
 pub const CURVE: &str = "title = \"a curve\"
-[problem.transmittance-curve]
+[problem.transmittance]
 medium.gaussian = { peak = 1.5, centre = 2, width = 0.7 }
 span = [0, 4]
 sampling.constant.value = 1.2

@@ -107,7 +107,7 @@ const CENTRE: &str = "eq21";
 
 /// Slabs with a medium for each channel, in both lights.
 fn slabs_of_media() -> [Case; 2] {
-    let slab = include_str!("../../../cases/chromatic-slab/three-colours.toml");
+    let slab = include_str!("../../../cases/slab/chromatic-three-colours.toml");
     let diffuse = slab.replace("collimated = { cosine = 0.6 }", "diffuse = {}");
     assert_ne!(slab, diffuse);
     [case("colours", slab), case("colours-diffuse", &diffuse)]
@@ -115,19 +115,19 @@ fn slabs_of_media() -> [Case; 2] {
 
 pub fn cases(matrix: Matrix) -> Vec<Case> {
     let mut cases = if matrix == Matrix::Full { shipped() } else { Vec::new() };
-    cases.push(case("layers", include_str!("../../../cases/spectral-transmittance/layers.toml")));
-    cases.push(case("smooth", include_str!("../../cases/spectral-transmittance/smooth.toml")));
-    cases.push(case("hero", include_str!("../../../cases/spectral-transmittance/hero-delta.toml")));
+    cases.push(case("layers", include_str!("../../../cases/transmittance/spectral-layers.toml")));
+    cases.push(case("smooth", include_str!("../../cases/transmittance/spectral-smooth.toml")));
+    cases.push(case("hero", include_str!("../../../cases/transmittance/spectral-hero-delta.toml")));
     for (name, text) in [
-        ("three-colours", include_str!("../../../cases/spectral-lit-rod/three-colours.toml")),
-        ("extinctions", include_str!("../../cases/spectral-lit-rod/extinctions.toml")),
-        ("phases", include_str!("../../cases/spectral-lit-rod/phases.toml")),
-        ("forward", include_str!("../../../cases/spectral-lit-rod/forward.toml")),
-        ("as-printed", include_str!("../../../cases/spectral-lit-rod/as-printed.toml")),
-        ("one-medium", include_str!("../../cases/spectral-lit-rod/one-medium.toml")),
-        ("connected", include_str!("../../cases/bidirectional-rod/known-bugs.toml")),
-        ("unscattered", include_str!("../../cases/bidirectional-rod/unscattered.toml")),
-        ("reflected", include_str!("../../cases/bidirectional-rod/reflected.toml")),
+        ("three-colours", include_str!("../../../cases/rod/spectral-lit-three-colours.toml")),
+        ("extinctions", include_str!("../../cases/rod/spectral-lit-extinctions.toml")),
+        ("phases", include_str!("../../cases/rod/spectral-lit-phases.toml")),
+        ("forward", include_str!("../../../cases/rod/spectral-lit-forward.toml")),
+        ("as-printed", include_str!("../../../cases/rod/spectral-lit-as-printed.toml")),
+        ("one-medium", include_str!("../../cases/rod/spectral-lit-one-medium.toml")),
+        ("connected", include_str!("../../cases/rod/bidirectional-known-bugs.toml")),
+        ("unscattered", include_str!("../../cases/rod/bidirectional-unscattered.toml")),
+        ("reflected", include_str!("../../cases/rod/bidirectional-reflected.toml")),
     ] {
         cases.push(case(name, text));
     }
@@ -156,7 +156,7 @@ pub fn cases(matrix: Matrix) -> Vec<Case> {
             estimators = [{{ woodcock = {{}} }}, {{ woodcock.sampling.local-majorants.segments = 5 }}]"
         );
         let curve = format!(
-            "title = \"{name}, curve\"\n[problem.transmittance-curve]\n{medium}\ndistances = 5
+            "title = \"{name}, curve\"\n[problem.transmittance]\n{medium}\ndistances = 5
             sampling.constant.value = 1.5
             estimators = [{{ double = {{}} }}, {{ double.control.explorers.points = 40 }},
                 {{ double = {{ control.mean = {{}}, sampling.local-majorants.segments = 5 }} }},
@@ -177,7 +177,7 @@ pub fn cases(matrix: Matrix) -> Vec<Case> {
             // The emitter is in the field.
             let medium = medium.replace("length = 30", "length = 12");
             let lit = format!(
-                "title = \"{name}, lit\"\n[problem.lit-rod]\n{medium}\nforward = 0.7
+                "title = \"{name}, lit\"\n[problem.rod]\nlight = 'emitter'\n{medium}\nforward = 0.7
                 albedo.piecewise-linear = {{ knots = [0, 4], values = [0.9, 0.6] }}
                 sampling.constant.value = 1.6
                 estimators = [{{ unidirectional = {{}} }}, {{ next-event.shadow = \"exact\" }},
@@ -226,7 +226,7 @@ fn lit_slabs(name: &str, medium: &str) -> Vec<Case> {
     ];
     let of = |(light, hits)| {
         let slab = format!(
-            "title = \"{name}, lit slab\"\n[problem.lit-slab]\n{medium}\nalbedo = 0.9
+            "title = \"{name}, lit slab\"\n[problem.slab]\n{medium}\nalbedo = 0.9
             phase.henyey-greenstein = {{ g = 0.4 }}\nlight.{light}\nsampling.constant.value = 1.6
             estimators = [{{ next-event.shadow = \"exact\" }}, {{ next-event.shadow = \"delta\" }},
                 {{ next-event = {{}} }}, {{ directional-mis = {{}} }}, {{ full-mis.shadow = \"exact\" }},
@@ -246,7 +246,7 @@ fn coloured(name: &str, medium: &str) -> Vec<Case> {
     ];
     let of = |(body, settings)| {
         let text = format!(
-            "title = \"{name}, coloured {body}\"\n[problem.spectral-{body}]\n{medium}\n{settings}
+            "title = \"{name}, coloured {body}\"\n[problem.{body}]\n{medium}\n{settings}
             albedos = [0.9, 0, 0.6]\nsampling.constant.value = 1.6
             estimators = [{{ independent = {{}} }}, {{ independent.hero = [0.1, 0.2, 0.7] }},
                 {{ spectral-mis = {{}} }}, {{ spectral-mis.sampling.local-majorants.segments = 5 }},

@@ -72,7 +72,7 @@ const ESTIMATORS: &str = "{ particle.rule = \"terminating\" }, { particle.rule =
     { splitting = { rule = \"analog\", depth = 2 } }";
 
 fn cases() -> Vec<Case> {
-    let mut cases = shipped_in(&["furnace", "lambertian", "infinite-medium", "sphere"]);
+    let mut cases = shipped_in(&["furnace", "lambertian", "infinite-medium", "ball"]);
     let phases = ["isotropic = {}", "rayleigh = {}", "henyey-greenstein = { g = 0.6 }"];
     let albedos = [
         "albedo = 0.8",

@@ -52,7 +52,7 @@ fn every_page_that_a_case_may_use_has_a_case_to_copy_that_is_planned() {
         }
     }
     none(&wrong);
-    assert!(planned > 125, "only {planned} cases were planned");
+    assert!(planned > 114, "only {planned} cases were planned");
 }
 
 #[test]
@@ -71,7 +71,7 @@ fn a_case_that_is_shown_runs() {
 
 #[test]
 fn a_terminal_sees_no_signs_of_markdown() {
-    for name in ["woodcock", "grid", "local-majorants", "mean", "transmittance", "sphere"] {
+    for name in ["woodcock", "grid", "local-majorants", "mean", "transmittance", "ball"] {
         let page = stdout(&["explain", name, "--color", "always"]);
         assert!(page.contains("\x1b[1m"), "{name}: nothing is bold");
         for sign in ["`", "\n# ", "\n| ", "|---", "\n```"] {

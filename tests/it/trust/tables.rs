@@ -124,10 +124,11 @@ fn what_is_refused_below_the_density_is_what_the_manual_says() {
     let cases = [
         ("transmittance", ""),
         ("rod", "albedo = 0.5\nforward = 0.5\n"),
-        ("lit-rod", "albedo = 0.5\nforward = 0.5\n"),
+        ("rod with light", "albedo = 0.5\nforward = 0.5\nlight = 'emitter'\n"),
     ];
     let (mut wrong, mut compared) = (Vec::new(), 0);
     for (problem, body) in cases {
+        let kind = problem.split(' ').next().unwrap_or_default();
         for ((_, name), domain) in
             said.iter().filter(|((part, _), _)| *part == format!("estimators of {problem}"))
         {
@@ -142,7 +143,7 @@ fn what_is_refused_below_the_density_is_what_the_manual_says() {
                 name => format!("{{ {name} = {{}} }}"),
             };
             let text = format!(
-                "title = \"t\"\n[problem.{problem}]\nmedium.constant.extinction = 1\nspan = [0, 0.2]\n{body}sampling.constant.value = 0.4\nestimators = [{settings}]\n"
+                "title = \"t\"\n[problem.{kind}]\nmedium.constant.extinction = 1\nspan = [0, 0.2]\n{body}sampling.constant.value = 0.4\nestimators = [{settings}]\n"
             );
             let cases = [crate::common::case("test", &text)];
             let plan = trueflight::plan::Plan::new(&cases, &crate::common::options(1, 1000));

@@ -25,5 +25,5 @@ int main()
     told("three of one", [&] { return check("a", one).truth({.5, .5, .5}).range(0, 1).verdict(); });
     told("two variances", [&] { return check("a", pair).truth(.5).variance({1. / 12, 1. / 12}).verdict(); });
     told("three variances", [&] { return check("a", pair).truth(.5).variance({1, 1, 1}).verdict(); });
-    told("a case", [&] { return check("a", one).of("spectral-transmittance/smooth", "common-ratio").verdict(); });
+    told("a case", [&] { return check("a", one).of("transmittance/spectral-smooth", "common-ratio").verdict(); });
 }

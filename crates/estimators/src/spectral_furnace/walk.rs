@@ -19,8 +19,8 @@ use media::body::MOST_CHANNELS;
 use numeric::geometry::{Point, Ray, frame};
 use numeric::rng::Stream;
 use theory::particle::Event;
+use theory::problems::ChannelValues as Values;
 use theory::problems::SpectralFurnace;
-use theory::problems::spectral_furnace::Values;
 
 /// What became of a walk.
 struct Left {

@@ -3,7 +3,7 @@
 //! Unbiased for: a constant σ̂ ≥ σ_t in each channel; refused elsewhere.
 //!
 //! ```text
-//! X_h = x_h/w_h, the others 0,  h of probability w_h,  x_h a draw of `full-mis` in `lit-rod`
+//! X_h = x_h/w_h, the others 0,  h of probability w_h,  x_h a draw of `full-mis` in one channel
 //! ```
 //!
 //! | setting | meaning | default |

@@ -16,7 +16,7 @@
 //! sum, with `p_nee` from the last real scattering on and none before the first; the phase function is that of each
 //! channel. The hero is one for the whole path, shadow rays too.
 //!
-//! With one channel it is `full-mis` of `lit-rod`. The variance is known where all channels have the same σ_t and σ̂;
+//! With one channel it is `full-mis`. The variance is known where all channels have the same σ_t and σ̂;
 //! elsewhere it is bounded, see [`theory::spectral_lit_rod::bound`].
 //!
 //! Source: B. Miller, I. Georgiev, W. Jarosz, *A null-scattering path integral formulation of light

@@ -13,7 +13,7 @@
 //! | `sampling` | one constant σ̂ ≥ σ_t for all channels | required here or in the case |
 //!
 //! For rods in which light goes on forward (`forward = 1`): what a weight becomes where light turns, and from which length
-//! on its variance is infinite, see `spectral-rod`. Forward, variances are finite, and known. An absorbing channel makes them
+//! on its variance is infinite, see `spectral-tracking` of a rod with `albedos`. Forward, variances are finite, and known. An absorbing channel makes them
 //! large all the same: its chance to absorb is that of all, and the weights of those that survive grow.
 //!
 //! Source: P. Kutz, R. Habel, Y. K. Li, J. Novák, *Spectral and Decomposition Tracking for Rendering

@@ -33,8 +33,8 @@ use media::course::BothWays;
 use numeric::rng::{Random, Stream};
 use numeric::{Lane, Mask, kept};
 use theory::ParticleRule;
+use theory::problems::ChannelValues as Values;
 use theory::problems::SpectralLitRod;
-use theory::problems::spectral_lit_rod::Values;
 
 /// Numbers of all channels.
 type Channels = [f64; MOST_CHANNELS];

@@ -12,8 +12,8 @@ use media::Lookups;
 use media::catalogue::Settings;
 use numeric::rng::Stream;
 use theory::Prediction;
+use theory::problems::ChannelValues as Values;
 use theory::problems::SpectralSingleScattering;
-use theory::problems::spectral_single_scattering::Values;
 
 /// A walk that scores all channels, of a kind of walker.
 #[derive(Debug, Clone)]

@@ -25,8 +25,8 @@ use numeric::Lane;
 use numeric::pack::in_fused_code;
 use numeric::rng::Stream;
 use theory::particle::Event;
+use theory::problems::ChannelValues as Values;
 use theory::problems::SpectralSingleScattering;
-use theory::problems::spectral_single_scattering::Values;
 
 /// The steps of a walk that a known bug may replace.
 pub trait Steps {

@@ -35,7 +35,7 @@ use numeric::rng::Random;
 use numeric::{Kept, Lane, Mask, kept};
 use theory::ParticleRule;
 use theory::problems::Sphere;
-use theory::problems::sphere::{self, Sought};
+use theory::problems::ball::{self, Sought};
 use theory::single::Tracking;
 use theory::sphere::Techniques;
 
@@ -107,7 +107,7 @@ impl<'a, B: Steps, const CONNECTS: bool> Combined<'a, B, CONNECTS> {
     #[inline(always)]
     fn weight<L: Lane>(&self, own: usize, lit: L, connected: L) -> L {
         let Some((_, heuristic)) = self.sharing.weights() else { return lit.each(1.0) };
-        let is_distant = matches!(self.sphere().light, sphere::Light::Distant(_));
+        let is_distant = matches!(self.sphere().light, ball::Light::Distant(_));
         let hit = lit.each(if is_distant { 0.0 } else { 1.0 });
         if CONNECTS {
             return self.steps.weight(heuristic, own, [hit, lit, connected]);
@@ -285,8 +285,8 @@ impl<B: Steps, const CONNECTS: bool> Tally for Combined<'_, B, CONNECTS> {
 
     fn parallel(&self) -> Option<Point> {
         match self.sphere().light {
-            sphere::Light::Distant(direction) => Some(direction),
-            sphere::Light::Environment | sphere::Light::BlackSphere(_) => None,
+            ball::Light::Distant(direction) => Some(direction),
+            ball::Light::Environment | ball::Light::BlackSphere(_) => None,
         }
     }
 
@@ -349,7 +349,7 @@ impl<B: Steps, const CONNECTS: bool> Tally for Combined<'_, B, CONNECTS> {
         let distance = dot(away, away).root();
         let (direction, is_apart) = normalised(away);
         let mut which = at.which & found.is_emitted & is_apart;
-        if let sphere::Light::BlackSphere(core) = sphere.light {
+        if let ball::Light::BlackSphere(core) = sphere.light {
             let (misses, near) = exit::meets(sphere.centre, core, at.place, direction);
             which &= !self.steps.is_hidden(!misses & near.below(distance));
         }

@@ -18,7 +18,7 @@ use numeric::geometry::Point;
 use numeric::geometry::exit::dot;
 use numeric::rng::Random;
 use theory::problems::Sphere;
-use theory::problems::sphere::{self, Sought};
+use theory::problems::ball::{self, Sought};
 
 /// `1 − √(1 − ρ²/r²)`, without cancellation.
 #[inline(always)]
@@ -44,15 +44,15 @@ fn to_centre<L: Lane>(sphere: &Sphere, [x, y, z]: [L; 3]) -> ([L; 3], L) {
 pub fn aim<L: Lane>(sphere: &Sphere, place: [L; 3], number: L) -> Aim<L> {
     let one = number.each(1.0);
     match sphere.light {
-        sphere::Light::Environment => {
+        ball::Light::Environment => {
             let (axis, distance) = (UP.each(one), one.each(f64::INFINITY));
             Aim { axis, cosine: number * 2.0 - 1.0, share: one, distance }
         }
-        sphere::Light::Distant(direction) => {
+        ball::Light::Distant(direction) => {
             let (axis, distance) = (direction.each(one), one.each(f64::INFINITY));
             Aim { axis, cosine: one, share: one, distance }
         }
-        sphere::Light::BlackSphere(core) => {
+        ball::Light::BlackSphere(core) => {
             let ([x, y, z], distance) = to_centre(sphere, place);
             let cone = cone(core, distance);
             let (cosine, scale) = (one - number * cone, one / distance);
@@ -65,8 +65,8 @@ pub fn aim<L: Lane>(sphere: &Sphere, place: [L; 3], number: L) -> Aim<L> {
 #[inline(always)]
 pub fn share<L: Lane>(sphere: &Sphere, place: [L; 3]) -> L {
     match sphere.light {
-        sphere::Light::BlackSphere(core) => cone(core, to_centre(sphere, place).1) * 0.5,
-        sphere::Light::Environment | sphere::Light::Distant(_) => place[0].each(1.0),
+        ball::Light::BlackSphere(core) => cone(core, to_centre(sphere, place).1) * 0.5,
+        ball::Light::Environment | ball::Light::Distant(_) => place[0].each(1.0),
     }
 }
 
@@ -74,9 +74,9 @@ pub fn share<L: Lane>(sphere: &Sphere, place: [L; 3]) -> L {
 #[inline(always)]
 pub fn meets_light<L: Lane>(sphere: &Sphere, at: &Departure<L>) -> L::Mask {
     match sphere.light {
-        sphere::Light::Environment => at.left,
-        sphere::Light::Distant(_) => at.left & !at.left,
-        sphere::Light::BlackSphere(core) => {
+        ball::Light::Environment => at.left,
+        ball::Light::Distant(_) => at.left & !at.left,
+        ball::Light::BlackSphere(core) => {
             let middle = 0.5 * (core + sphere.radius);
             let distance = sphere.centre.square_to(at.place, 1.0).root();
             at.left & distance.below(distance.each(middle))
@@ -124,8 +124,8 @@ impl Tally for Seeker<'_> {
 
     fn core(&self) -> Option<(Point, f64)> {
         match self.sphere.light {
-            sphere::Light::BlackSphere(radius) => Some((self.sphere.centre, radius)),
-            sphere::Light::Environment | sphere::Light::Distant(_) => None,
+            ball::Light::BlackSphere(radius) => Some((self.sphere.centre, radius)),
+            ball::Light::Environment | ball::Light::Distant(_) => None,
         }
     }
 }

@@ -16,7 +16,7 @@ use numeric::geometry::exit::along;
 use numeric::geometry::frame::turned_lanes;
 use numeric::rng::Random;
 use theory::problems::Sphere;
-use theory::problems::sphere::Light;
+use theory::problems::ball::Light;
 
 /// ρ, the radius of the surface that light comes from, or through.
 pub fn radius(sphere: &Sphere) -> f64 {

@@ -16,7 +16,7 @@ use crate::{Draw, Refusal, Setup, estimators};
 use numeric::Known;
 use numeric::digits::rounded;
 use theory::problems::Sphere;
-use theory::problems::sphere::{Light, Sought};
+use theory::problems::ball::{Light, Sought};
 use theory::single::Tracking;
 use theory::sphere::{Answer, Lights, Observable, Scene, Spread, Spreads, Techniques, cached};
 use theory::{Channel, Law, Moments, ParticleRule, Prediction, Tails, problems};

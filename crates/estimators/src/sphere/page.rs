@@ -16,7 +16,7 @@ use media::catalogue::Settings;
 use media::{Lookups, Majorants};
 use numeric::rng::Stream;
 use theory::problems::Sphere;
-use theory::problems::sphere::Light;
+use theory::problems::ball::Light;
 use theory::single::Tracking;
 use theory::sphere::Techniques;
 use theory::{Heuristic, Prediction};

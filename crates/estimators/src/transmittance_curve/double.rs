@@ -31,7 +31,7 @@ use media::{Lookups, Medium};
 use numeric::rng::{Address, Random, Stream, exponential};
 use numeric::{Lane, kept};
 use theory::problems::TransmittanceCurve;
-use theory::problems::transmittance_curve::{MOST, Values};
+use theory::problems::transmittance::{CurveValues, MAX_DISTANCES};
 use theory::rules::Weight;
 use theory::{Prediction, curve};
 
@@ -78,7 +78,7 @@ impl Estimator<TransmittanceCurve> for DoubleCurve {
         setup: &Setup<TransmittanceCurve>,
         medium: &Lookups,
         random: &mut Stream,
-    ) -> Draw<Values> {
+    ) -> Draw<CurveValues> {
         walks::draw(&Curve::new(setup), &setup.sampling, medium, random)
     }
 
@@ -105,7 +105,7 @@ kept! {
     /// ```
     pub struct Weights<L> {
         weight: L,
-        ahead: [L; MOST],
+        ahead: [L; MAX_DISTANCES],
         invariant: Invariant<L>,
     }
 }
@@ -135,7 +135,7 @@ impl Walk for Curve<'_> {
 
     #[inline(always)]
     fn begin<L: Lane>(&self, one: L, _: L::Mask, _: &mut impl Random<L>) -> Weights<L> {
-        Weights { weight: one, ahead: [one; MOST], invariant: Invariant::open(one) }
+        Weights { weight: one, ahead: [one; MAX_DISTANCES], invariant: Invariant::open(one) }
     }
 
     #[inline(always)]

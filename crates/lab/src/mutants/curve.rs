@@ -16,7 +16,7 @@ use media::{Extinction, Lookups};
 use numeric::rng::{Stream, exponential};
 use numeric::{Lane, Span};
 use theory::problems::TransmittanceCurve;
-use theory::problems::transmittance_curve::{MOST, Values};
+use theory::problems::transmittance::{CurveValues, MAX_DISTANCES};
 
 /// The family.
 #[rustfmt::skip] // one mutant, one entry
@@ -53,10 +53,10 @@ fn curve(
     setup: &Setup<TransmittanceCurve>,
     medium: &Lookups,
     rng: &mut Stream,
-) -> Draw<Values> {
+) -> Draw<CurveValues> {
     let support = setup.mesh.support();
     let distances = setup.problem.ascending();
-    let mut values = Values { at: [0.0; MOST], count: distances.len() };
+    let mut values = CurveValues { at: [0.0; MAX_DISTANCES], count: distances.len() };
     let mut next = 0;
     let mut pass = |until: f64, last: f64, weight: f64| {
         while next < distances.len() && distances[next] <= until {
@@ -109,7 +109,7 @@ fn fresh_walks(
     setup: &Setup<TransmittanceCurve>,
     medium: &Lookups,
     rng: &mut Stream,
-) -> Draw<Values> {
+) -> Draw<CurveValues> {
     let walk = |rng: &mut Stream| curve(Slip::None, setup, medium, rng);
     let mut draw = walk(rng);
     for k in 0..draw.value.count - 1 {

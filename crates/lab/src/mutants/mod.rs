@@ -50,16 +50,11 @@ pub mod weights;
 use std::any::Any;
 use std::sync::Arc;
 
-use estimators::{Draw, Estimated, Experiment, Setup};
+use estimators::{Draw, Experiment, Setup};
 use media::Lookups;
 use numeric::pack::in_fused_code;
 use numeric::rng::Stream;
-use theory::problems::{
-    BidirectionalRod, ChromaticSlab, FreeFlight, Furnace, InfiniteMedium, Lambertian, LitRod,
-    LitSlab, Problem, Rod, SingleScattering, Slab, SpectralFurnace, SpectralLitRod, SpectralRod,
-    SpectralSingleScattering, SpectralSlab, SpectralTransmittance, Sphere, Transmittance,
-    TransmittanceCurve, each_problem,
-};
+use theory::problems::Problem;
 
 pub use caught::Caught;
 pub use fault::{Fault, RIGHT};
@@ -67,7 +62,7 @@ pub use streams::StreamMutant;
 pub use target::Target;
 pub use trial::{Draws, Trial};
 
-/// What a mutant is, without its draws.
+/// Description of a mutant, without its draws.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct About {
     /// The name, unique among all mutants.
@@ -82,7 +77,7 @@ pub struct About {
 
 /// A known bug in an estimator of problem `P`.
 pub struct Mutant<P: Problem> {
-    /// What it is.
+    /// Description.
     pub about: About,
     faulty: Arc<Draws<P>>,
     honest: Arc<Draws<P>>,
@@ -99,10 +94,19 @@ impl<P: Problem> Mutant<P> {
         Self { about, faulty: compiled(faulty), honest: compiled(honest), fault: RIGHT }
     }
 
-    /// The same on a setup and a generator that a fault makes wrong.
+    /// Applies a fault to the setup and the generator of the mutant.
     #[must_use]
     pub fn on_faulty_setup(self, fault: Fault) -> Self {
         Self { fault, ..self }
+    }
+
+    /// The experiment of a walk on a prepared `Setup<P>`; `None` for the setup of another problem.
+    fn drawn(&self, walk: Walk, setup: Box<dyn Any>) -> Option<Box<dyn Experiment>> {
+        let setup = *setup.downcast::<Setup<P>>().ok()?;
+        Some(match walk {
+            Walk::Faulty => self.experiment(setup),
+            Walk::Twin => self.twin(setup),
+        })
     }
 
     /// The experiment with the bug.
@@ -136,50 +140,7 @@ fn compiled<P: Problem>(
     })
 }
 
-/// A problem with known bugs.
-pub trait Mutable: Estimated {
-    /// Every mutant, family by family.
-    fn mutants() -> Vec<Mutant<Self>>;
-}
-
-macro_rules! mutable {
-    ($($Problem:ident: $($family:expr),*;)*) => {
-        $(
-            impl Mutable for $Problem {
-                fn mutants() -> Vec<Mutant<Self>> {
-                    [$($family),*].into_iter().flatten().collect()
-                }
-            }
-        )*
-    };
-}
-
-mutable! {
-    Transmittance: control::mutants(), lookups::mutants(), flight::mutants(), weights::mutants(),
-        rules::mutants(), decisions::mutants(), scores::mutants(), tracking::mutants(),
-        precision::mutants();
-    FreeFlight: free_flight::mutants(), precision::flights();
-    TransmittanceCurve: curve::mutants();
-    SpectralTransmittance: spectral::mutants();
-    SpectralRod: spectral_rod::mutants();
-    Rod: rod::mutants();
-    LitRod: lit_rod::mutants();
-    LitSlab: lit_slab::mutants();
-    SpectralLitRod: spectral_lit_rod::mutants();
-    SingleScattering: single_scattering::mutants(), null_paths::mutants();
-    SpectralSingleScattering: spectral_single_scattering::mutants();
-    Furnace: space::in_furnace();
-    SpectralFurnace: spectral_furnace::mutants();
-    Lambertian: space::under_light();
-    InfiniteMedium: space::in_infinite_medium();
-    Slab: slab::mutants();
-    SpectralSlab: spectral_rod::in_slab();
-    ChromaticSlab: chromatic_slab::mutants();
-    Sphere: sphere::mutants(), sphere_paths::mutants();
-    BidirectionalRod: bidirectional_rod::mutants();
-}
-
-/// Which of a mutant's two walks.
+/// One of a mutant's two walks.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Walk {
     /// The one with the bug.
@@ -188,43 +149,62 @@ pub enum Walk {
     Twin,
 }
 
-/// Makes the experiment of a mutant on a prepared `Setup<P>`; `None` if problem `P` has no mutant of that name.
-pub fn experiment(name: &str, walk: Walk, setup: Box<dyn Any>) -> Option<Box<dyn Experiment>> {
-    type Made = Result<Option<Box<dyn Experiment>>, Box<dyn Any>>;
-    fn on<P: Mutable>(name: &str, walk: Walk, setup: Box<dyn Any>) -> Made {
-        let setup = *setup.downcast::<Setup<P>>()?;
-        let mutant = P::mutants().into_iter().find(|mutant| mutant.about.name == name);
-        Ok(mutant.map(|mutant| match walk {
-            Walk::Faulty => mutant.experiment(setup),
-            Walk::Twin => mutant.twin(setup),
-        }))
-    }
-    macro_rules! on_each {
-        ($($module:ident :: $Problem:ident,)*) => {
-            [$(on::<theory::problems::$Problem>),*]
-        };
-    }
-    let mut setup = setup;
-    for on in each_problem!(on_each) {
-        match on(name, walk, setup) {
-            Ok(made) => return made,
-            Err(other) => setup = other,
+macro_rules! families {
+    ($($family:expr,)*) => {
+        /// Every mutant of every problem, without the wrong streams.
+        pub fn all() -> Vec<About> {
+            let mut all = Vec::new();
+            $(all.extend($family.into_iter().map(|mutant| mutant.about));)*
+            all
         }
-    }
-    None
+
+        /// Makes the experiment of a mutant on the prepared `Setup<P>` of its problem; `None` if no mutant has that
+        /// name, or if the setup is of another problem.
+        pub fn experiment(
+            name: &str,
+            walk: Walk,
+            setup: Box<dyn Any>,
+        ) -> Option<Box<dyn Experiment>> {
+            $(if let Some(mutant) = $family.into_iter().find(|own| own.about.name == name) {
+                return mutant.drawn(walk, setup);
+            })*
+            None
+        }
+    };
 }
 
-/// Every mutant of every problem, without the wrong streams.
-pub fn all() -> Vec<About> {
-    fn about<P: Mutable>() -> Vec<About> {
-        P::mutants().into_iter().map(|mutant| mutant.about).collect()
-    }
-    macro_rules! of_all {
-        ($($module:ident :: $Problem:ident,)*) => {
-            [$(about::<theory::problems::$Problem>),*]
-        };
-    }
-    each_problem!(of_all).into_iter().flat_map(|about| about()).collect()
+families! {
+    control::mutants(),
+    lookups::mutants(),
+    flight::mutants(),
+    weights::mutants(),
+    rules::mutants(),
+    decisions::mutants(),
+    scores::mutants(),
+    tracking::mutants(),
+    precision::mutants(),
+    free_flight::mutants(),
+    precision::flights(),
+    curve::mutants(),
+    spectral::mutants(),
+    rod::mutants(),
+    spectral_rod::mutants(),
+    lit_rod::mutants(),
+    lit_slab::mutants(),
+    spectral_lit_rod::mutants(),
+    slab::mutants(),
+    spectral_rod::in_slab(),
+    chromatic_slab::mutants(),
+    single_scattering::mutants(),
+    null_paths::mutants(),
+    spectral_single_scattering::mutants(),
+    space::in_furnace(),
+    spectral_furnace::mutants(),
+    space::under_light(),
+    space::in_infinite_medium(),
+    sphere::mutants(),
+    sphere_paths::mutants(),
+    bidirectional_rod::mutants(),
 }
 
 /// Returns the names of the checks that some mutant must be caught by.

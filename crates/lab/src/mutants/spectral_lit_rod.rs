@@ -6,7 +6,7 @@
 //!
 //! Several are errors of Algorithms 1 and 2 of B. Miller, I. Georgiev, W. Jarosz, *A null-scattering path integral
 //! formulation of light transport*, ACM Transactions on Graphics 38 (2019), as printed, or ways to read them. A run of
-//! `cases/spectral-lit-rod/as-printed.toml` tells how large the bias of the printed ones is.
+//! `cases/rod/spectral-lit-as-printed.toml` tells how large the bias of the printed ones is.
 
 use super::target::{SPECTRAL_LIT_FULL, SPECTRAL_LIT_HITS};
 use super::{About, Draws, Mutant, Target, with};

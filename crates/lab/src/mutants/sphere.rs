@@ -12,7 +12,7 @@ use estimators::sphere::Page;
 use estimators::sphere::sharing::{Sharing, Steps};
 use numeric::{Lane, Mask};
 use theory::ParticleRule;
-use theory::problems::{Sphere, sphere};
+use theory::problems::{Sphere, ball};
 use theory::single::Tracking;
 use theory::sphere::Techniques;
 
@@ -52,7 +52,7 @@ impl Steps for Bug {
         let one = right.share.each(1.0);
         match (self, sphere.light) {
             (Self::Through, _) => Light { distance: one.each(f64::INFINITY), ..right },
-            (Self::PerArea, sphere::Light::BlackSphere(core)) => {
+            (Self::PerArea, ball::Light::BlackSphere(core)) => {
                 // 2πρ²(1 − ρ/r)/4π, the visible area of the sphere.
                 let distance = sphere.centre.square_to(place, 1.0).root();
                 let share = (one - one.each(core) / distance) * (0.5 * core * core);

@@ -67,9 +67,9 @@ pub const FLIGHT: Target = on("free-flight/known-bugs", 0, "woodcock");
 /// Free flight through a linear majorant.
 pub const FLIGHT_LINEAR: Target = on("free-flight/known-bugs", 1, "woodcock");
 /// The curve without a control.
-pub const CURVE: Target = on("transmittance-curve/known-bugs", 0, "double");
+pub const CURVE: Target = on("transmittance/curve-known-bugs", 0, "double");
 /// The curve with a control whose knots are not on the ends.
-pub const CURVE_CONTROL: Target = on("transmittance-curve/known-bugs", 1, "double");
+pub const CURVE_CONTROL: Target = on("transmittance/curve-known-bugs", 1, "double");
 /// `σ̂ = 1.6`, `a` from 0.9 to 0.5 and `p_f` from 0.8 to 0.3 along the rod.
 pub const ROD_TERMINATING: Target = on("rod/known-bugs", 0, "terminating");
 /// `σ̂ = 1.6`.
@@ -83,22 +83,22 @@ pub const ROD_ADAPTIVE: Target = on("rod/known-bugs", 4, "adaptive");
 /// `σ̂ = 2.4`, `a = 0.6`, roulette below 1/2.
 pub const ROD_ROULETTE: Target = on("rod/roulette", 0, "roulette (below 0.5)");
 /// Extinction that rises to the emitter, `p_f = 0.4`, `σ̂ = 1.25`.
-pub const LIT_NEXT_EVENT_DELTA: Target = on("lit-rod/rising", 2, "next-event (delta shadow)");
+pub const LIT_NEXT_EVENT_DELTA: Target = on("rod/lit-rising", 2, "next-event (delta shadow)");
 /// The same.
-pub const LIT_NEXT_EVENT: Target = on("lit-rod/rising", 3, "next-event (ratio shadow)");
+pub const LIT_NEXT_EVENT: Target = on("rod/lit-rising", 3, "next-event (ratio shadow)");
 /// The same.
-pub const LIT_DIRECTIONAL: Target = on("lit-rod/rising", 4, "directional-mis (delta shadow)");
+pub const LIT_DIRECTIONAL: Target = on("rod/lit-rising", 4, "directional-mis (delta shadow)");
 /// The same.
-pub const LIT_FULL: Target = on("lit-rod/rising", 6, "full-mis (ratio shadow)");
+pub const LIT_FULL: Target = on("rod/lit-rising", 6, "full-mis (ratio shadow)");
 /// A wide disc close behind a slab whose extinction rises, g = 0.6, `σ̂ = 1.5`.
-pub const LIT_SLAB_NEXT_EVENT: Target = on("lit-slab/known-bugs", 3, "next-event (ratio shadow)");
+pub const LIT_SLAB_NEXT_EVENT: Target = on("slab/lit-known-bugs", 3, "next-event (ratio shadow)");
 /// The same.
 pub const LIT_SLAB_DIRECTIONAL: Target =
-    on("lit-slab/known-bugs", 4, "directional-mis (delta shadow)");
+    on("slab/lit-known-bugs", 4, "directional-mis (delta shadow)");
 /// The same.
-pub const LIT_SLAB_FULL: Target = on("lit-slab/known-bugs", 6, "full-mis (ratio shadow)");
+pub const LIT_SLAB_FULL: Target = on("slab/lit-known-bugs", 6, "full-mis (ratio shadow)");
 /// The same slab, a beam.
-pub const LIT_SLAB_DISTANT: Target = on("lit-slab/distant", 3, "full-mis (ratio shadow)");
+pub const LIT_SLAB_DISTANT: Target = on("slab/lit-distant", 3, "full-mis (ratio shadow)");
 /// Single scattering in a homogeneous ball, light outside, exact transmittances.
 pub const SINGLE_EXACT: Target =
     on("single-scattering/known-bugs", 0, "source-driven (exact camera, exact shadow)");
@@ -156,88 +156,88 @@ pub const INFINITE_ANALOG: Target = on("infinite-medium/known-bugs", 0, "particl
 pub const INFINITE_WEIGHTED: Target =
     on("infinite-medium/known-bugs", 1, "particle (weighted, roulette 0.5)");
 /// A weighted walk in a ball, ratio-tracked shadow rays to a black light sphere.
-pub const SPHERE_LAMP: Target = on("sphere/known-bugs", 0, "next-event (weighted, ratio shadow 2)");
+pub const SPHERE_LAMP: Target = on("ball/known-bugs", 0, "next-event (weighted, ratio shadow 2)");
 /// The same with exact shadow rays.
 pub const SPHERE_LAMP_EXACT: Target =
-    on("sphere/known-bugs", 1, "next-event (weighted, exact shadow)");
+    on("ball/known-bugs", 1, "next-event (weighted, exact shadow)");
 /// The same ball in an environment.
-pub const SPHERE_SKY: Target = on("sphere/environment", 0, "next-event (weighted, ratio shadow 2)");
+pub const SPHERE_SKY: Target = on("ball/environment", 0, "next-event (weighted, ratio shadow 2)");
 /// A black light sphere in a ball that thins out, by directions.
 pub const SPHERE_DIRECTIONAL: Target =
-    on("sphere/known-bugs-paths", 0, "directional-mis (analog, delta shadow 2.5)");
+    on("ball/known-bugs-paths", 0, "directional-mis (analog, delta shadow 2.5)");
 /// The same by null-scattering paths.
-pub const SPHERE_FULL: Target = on("sphere/known-bugs-paths", 1, "full-mis (analog, ratio shadow)");
+pub const SPHERE_FULL: Target = on("ball/known-bugs-paths", 1, "full-mis (analog, ratio shadow)");
 /// The same, the power heuristic.
 pub const SPHERE_POWER: Target =
-    on("sphere/known-bugs-paths", 2, "full-mis (analog, ratio shadow, power)");
+    on("ball/known-bugs-paths", 2, "full-mis (analog, ratio shadow, power)");
 /// The same, with connections.
 pub const SPHERE_BIDIRECTIONAL: Target =
-    on("sphere/known-bugs-paths", 3, "bidirectional (independent subpaths)");
+    on("ball/known-bugs-paths", 3, "bidirectional (independent subpaths)");
 /// In an environment, by null-scattering paths.
-pub const SPHERE_FULL_SKY: Target = on("sphere/techniques", 3, "full-mis (analog, ratio shadow)");
+pub const SPHERE_FULL_SKY: Target = on("ball/techniques", 3, "full-mis (analog, ratio shadow)");
 /// The same with connections.
 pub const SPHERE_BIDIRECTIONAL_SKY: Target =
-    on("sphere/techniques", 6, "bidirectional (independent subpaths)");
+    on("ball/techniques", 6, "bidirectional (independent subpaths)");
 /// Three layers in three channels, one channel a draw.
 pub const SPECTRAL_INDEPENDENT: Target =
-    on("spectral-transmittance/layers", 0, "independent (delta)");
+    on("transmittance/spectral-layers", 0, "independent (delta)");
 /// All channels by one walk, `σ̂ = 1.6, 1.1, 1.9`.
 pub const SPECTRAL_MIS_RATIO: Target =
-    on("spectral-transmittance/layers", 4, "spectral-mis (ratio)");
+    on("transmittance/spectral-layers", 4, "spectral-mis (ratio)");
 /// The same by delta tracking.
 pub const SPECTRAL_MIS_DELTA: Target =
-    on("spectral-transmittance/layers", 5, "spectral-mis (delta)");
+    on("transmittance/spectral-layers", 5, "spectral-mis (delta)");
 /// `σ̂ = 1.9` for all channels.
 pub const SPECTRAL_MAXIMUM: Target =
-    on("spectral-transmittance/layers", 9, "spectral-tracking (maximum)");
+    on("transmittance/spectral-layers", 9, "spectral-tracking (maximum)");
 /// `σ̂ = 1.9` for all channels.
 pub const SPECTRAL_HISTORY: Target =
-    on("spectral-transmittance/layers", 10, "spectral-tracking (history)");
+    on("transmittance/spectral-layers", 10, "spectral-tracking (history)");
 /// Albedos .99, .5 and .1, `p_f = .75`, an optical length of 2.
-pub const SPECTRAL_ROD_MIS: Target = on("spectral-rod/three-albedos", 1, "spectral-mis");
+pub const SPECTRAL_ROD_MIS: Target = on("rod/spectral-three-albedos", 1, "spectral-mis");
 /// The same with a thin rod of albedos .6, .5 and .4.
 pub const SPECTRAL_ROD_TRACKING: Target =
-    on("spectral-rod/near-albedos", 1, "spectral-tracking (average)");
+    on("rod/spectral-near-albedos", 1, "spectral-tracking (average)");
 /// A slab of albedos .9, .5 and .2, σ̂ above σ_t.
-pub const SPECTRAL_SLAB_MIS: Target = on("spectral-slab/known-bugs", 3, "spectral-mis");
+pub const SPECTRAL_SLAB_MIS: Target = on("slab/spectral-known-bugs", 3, "spectral-mis");
 /// The same.
 pub const SPECTRAL_SLAB_TRACKING: Target =
-    on("spectral-slab/known-bugs", 1, "spectral-tracking (average)");
+    on("slab/spectral-known-bugs", 1, "spectral-tracking (average)");
 /// The same scattering a point light once, exact shadow rays.
 pub const SPECTRAL_SINGLE_EXACT: Target =
-    on("spectral-single-scattering/known-bugs", 2, "spectral-mis (exact shadow)");
+    on("single-scattering/spectral-known-bugs", 2, "spectral-mis (exact shadow)");
 /// Tracked shadow rays.
 pub const SPECTRAL_SINGLE_RATIO: Target =
-    on("spectral-single-scattering/known-bugs", 3, "spectral-mis (ratio shadow)");
+    on("single-scattering/spectral-known-bugs", 3, "spectral-mis (ratio shadow)");
 /// The walk of a hero without multiple importance sampling, tracked shadow rays.
 pub const SPECTRAL_SINGLE_HERO: Target =
-    on("spectral-single-scattering/without-mis", 1, "hero (ratio shadow, hero 0.3 0.3 0.4)");
+    on("single-scattering/spectral-without-mis", 1, "hero (ratio shadow, hero 0.3 0.3 0.4)");
 /// All channels together.
 pub const SPECTRAL_SINGLE_TRACKING: Target =
-    on("spectral-single-scattering/without-mis", 2, "spectral-tracking (exact shadow, average)");
+    on("single-scattering/spectral-without-mis", 2, "spectral-tracking (exact shadow, average)");
 /// All channels together in a slab.
 pub const CHROMATIC_SLAB_TRACKING: Target =
-    on("chromatic-slab/like-colours", 3, "spectral-tracking (average)");
+    on("slab/chromatic-like-colours", 3, "spectral-tracking (average)");
 /// All channels together in a furnace.
 pub const SPECTRAL_FURNACE_TRACKING: Target =
-    on("spectral-furnace/like-colours", 4, "spectral-tracking (maximum)");
+    on("furnace/spectral-like-colours", 4, "spectral-tracking (maximum)");
 /// Three channels of different σ_t, σ̂, albedo and phase function in a slab, light from aslant.
-pub const CHROMATIC_SLAB: Target = on("chromatic-slab/three-colours", 1, "spectral-mis");
+pub const CHROMATIC_SLAB: Target = on("slab/chromatic-three-colours", 1, "spectral-mis");
 /// Three channels of different σ_t, σ̂, albedo and phase function in a furnace.
-pub const SPECTRAL_FURNACE: Target = on("spectral-furnace/known-bugs", 1, "spectral-mis");
+pub const SPECTRAL_FURNACE: Target = on("furnace/spectral-known-bugs", 1, "spectral-mis");
 /// Three channels of different σ_t, σ̂, albedo and `p_f`, a σ̂ that touches its σ_t, hits alone.
-pub const SPECTRAL_LIT_HITS: Target = on("spectral-lit-rod/three-colours", 1, "spectral-mis");
+pub const SPECTRAL_LIT_HITS: Target = on("rod/spectral-lit-three-colours", 1, "spectral-mis");
 /// The same by hits and shadow rays.
-pub const SPECTRAL_LIT_FULL: Target = on("spectral-lit-rod/three-colours", 2, "next-event-mis");
+pub const SPECTRAL_LIT_FULL: Target = on("rod/spectral-lit-three-colours", 2, "next-event-mis");
 /// Both orders of a rod by all techniques, exact connections.
 pub const BIDIRECTIONAL_FULL: Target =
-    on("bidirectional-rod/known-bugs", 0, "full-mis (exact connection)");
+    on("rod/bidirectional-known-bugs", 0, "full-mis (exact connection)");
 /// The same with ratio-tracked connections.
 pub const BIDIRECTIONAL_TRACKED: Target =
-    on("bidirectional-rod/known-bugs", 1, "full-mis (ratio connection)");
+    on("rod/bidirectional-known-bugs", 1, "full-mis (ratio connection)");
 /// Directional weights.
 pub const BIDIRECTIONAL_DIRECTIONAL: Target =
-    on("bidirectional-rod/known-bugs", 2, "directional-mis (exact connection)");
+    on("rod/bidirectional-known-bugs", 2, "directional-mis (exact connection)");
 /// One technique: a connection between two scatterings.
 pub const BIDIRECTIONAL_TECHNIQUE: Target =
-    on("bidirectional-rod/known-bugs", 3, "technique (s=2, exact connection)");
+    on("rod/bidirectional-known-bugs", 3, "technique (s=2, exact connection)");

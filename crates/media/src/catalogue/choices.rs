@@ -21,6 +21,10 @@ pub(super) enum Form<'a> {
     Value(usize),
 }
 
+/// Explains a name that is not among those of a choice: the message and the cure; `None` without a better explanation
+/// than the list of names.
+pub type Explain<'a> = &'a dyn Fn(&str) -> Option<[String; 2]>;
+
 impl<'a> Settings<'a> {
     /// One of some words that must be there.
     pub fn word(&self, key: &'static str, words: &[&'static str]) -> Option<&'static str> {
@@ -130,19 +134,39 @@ impl<'a> Settings<'a> {
         self.choice_among(names, names)
     }
 
+    /// A choice in which some other names are explained.
+    pub fn choice_explained(
+        &self,
+        names: &[String],
+        explain: Explain,
+    ) -> Option<(usize, Settings<'a>)> {
+        self.choice_of(names, names, explain)
+    }
+
     /// A table with exactly one key, one of `names`; hints list only the names that are `offered`.
     pub(crate) fn choice_among(
         &self,
         names: &[String],
         offered: &[String],
     ) -> Option<(usize, Settings<'a>)> {
+        self.choice_of(names, offered, &|_| None)
+    }
+
+    fn choice_of(
+        &self,
+        names: &[String],
+        offered: &[String],
+        explain: Explain,
+    ) -> Option<(usize, Settings<'a>)> {
         let list = quoted(offered);
         let position = |name: &str, span: &Range<usize>| {
             let index = names.iter().position(|known| known == name);
             if index.is_none() {
-                let message = format!("`{}` is not known here", brief(name));
                 let words: Vec<&str> = offered.iter().map(String::as_str).collect();
-                let help = suggestion(name, &words, &format!("one of {list}"));
+                let [message, help] = explain(name).unwrap_or_else(|| {
+                    let message = format!("`{}` is not known here", brief(name));
+                    [message, suggestion(name, &words, &format!("one of {list}"))]
+                });
                 self.fault_at(span.clone(), "", message, help);
             }
             index
@@ -187,6 +211,17 @@ impl<'a> Settings<'a> {
         offered: &[String],
     ) -> Option<(usize, Settings<'a>)> {
         self.naming(key, &format!("one of {}", quoted(offered)))?.choice_among(names, offered)
+    }
+
+    /// A choice that must be there, in which some other names are explained.
+    pub fn chosen_explained(
+        &self,
+        key: &'static str,
+        names: &[String],
+        explain: Explain,
+    ) -> Option<(usize, Settings<'a>)> {
+        let wanted = format!("one of {}", quoted(names));
+        self.naming(key, &wanted)?.choice_of(names, names, explain)
     }
 
     /// Records that a key is missing, with its cure.

@@ -12,6 +12,7 @@
 //! Another program may write a flight that leaves as S, as any larger number, as `inf` or as `-1`.
 //! NaN and other negative numbers are no distances; `judge` names them.
 
+use std::slice;
 use std::sync::OnceLock;
 
 use super::Problem;
@@ -25,7 +26,7 @@ pub struct FreeFlight {
 }
 
 impl FreeFlight {
-    /// Where optical depths are reached; prepared when it is first asked for.
+    /// Distances at which optical depths are reached; computed at the first call.
     pub fn inverse(&self) -> &Inverse {
         self.inverse.get_or_init(|| self.medium.inverse())
     }
@@ -38,7 +39,7 @@ impl Problem for FreeFlight {
         Some(Self { medium: body?.medium(), inverse: OnceLock::new() })
     }
 
-    fn medium(&self) -> &Medium {
-        &self.medium
+    fn media(&self) -> &[Medium] {
+        slice::from_ref(&self.medium)
     }
 }

@@ -78,7 +78,7 @@ impl Lambertian {
         (Point(place), Point(inward))
     }
 
-    /// The same for numbers side by side.
+    /// Points on the boundary and inward normals for packs of numbers.
     #[inline(always)]
     pub fn boundary_lanes<L: Lane>(&self, [u, v]: [L; 2]) -> [[L; 3]; 2] {
         let (zero, one) = (u.each(0.0), u.each(1.0));
@@ -92,7 +92,7 @@ impl Lambertian {
                 let size = (within.high - within.low).0;
                 let [a, b, c] = size;
                 let areas = [b * c, c * a, a * b];
-                // Which pair of faces, which of the two, and where across it: all from one number.
+                // One number chooses the pair of faces, the face, and the coordinate across it.
                 let left = u * (areas[0] + areas[1] + areas[2]);
                 let not_first = u.each(areas[0]).at_most(left);
                 let left = L::select(not_first, left - areas[0], left);

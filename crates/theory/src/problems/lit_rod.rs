@@ -1,38 +1,12 @@
-//! What a camera sees of an emitter through a rod: light that scatters forward and backward along a line.
-//!
-//! ```text
-//! the camera stands at the beginning and looks forward; the emitter is the end of the rod, of radiance 1
-//! a path from the camera collides (rate σ_t), is scattered with probability a, and then keeps its direction with
-//! probability p_f; L is the chance that it reaches the emitter: the rod's transmittance
-//! ```
-//!
-//! | setting | meaning | default |
-//! |---|---|---|
-//! | `medium` with `span = [from, to]` | a field in 1-D and where it is asked about | one of the two |
-//! | `volume` with `ray = { origin, direction, length }` | a field in 3-D and a ray through it: the rod | is required |
-//! | `albedo` | a in [0, 1]: a number, or a field as in `rod` | required unless swept |
-//! | `forward` | `p_f` in [0, 1], the probability that scattering keeps the direction; likewise | 0.5 |
-//! | `sampling` | σ̂ of every estimator without its own; a majorant | required unless swept |
-//! | `sweep` | one of `sampling`, `sampling-scale`, `albedo`, `density`, `albedo-scale` | none |
-//! | `estimators` | what is tested | required |
-//!
-//! The emitter touches the medium: a ray that ends beyond the field's bounds, or on which nothing is
-//! ever met, is a mistake.
-//!
-//! In a rod the emitter fills every direction in which it lies, so that a shadow ray from y finds it for certain:
-//! next-event estimation has the pdf 1 for its direction, and unidirectional tracking the phase function, `p_f` or
-//! `1 − p_f`.
-//!
-//! The answer is exact: a closed form where a and `p_f` are constant, elsewhere by two coupled equations.
-//!
-//! Source: the rod is that of R. Bellman, R. Kalaba, G. M. Wing, *Invariant Imbedding and Mathematical Physics*,
-//! Journal of Mathematical Physics 1 (1960); what is sampled, that of B. Miller, I. Georgiev, W. Jarosz, *A
-//! null-scattering path integral formulation of light transport*, ACM Transactions on Graphics 38 (2019), section 5.
+//! The forms of `rod` with `light`: what a camera sees of an emitter through it, in one channel or several.
 
-use super::rod::{Quantity, Rod, share};
-use super::{Problem, default_albedo};
-use media::catalogue::Settings;
+use super::channels::agree;
+use super::rod::{Quantity, Rod, read_scattering, shares};
+use super::{ChannelValues, Problem, ProblemOption, number as read_number};
+use media::body::MOST_CHANNELS;
+use media::catalogue::{Domain, Settings, Value};
 use media::{Body, Medium, Piecewise};
+use numeric::Lane;
 use numeric::digits::{number, rounded};
 
 /// A support that ends so little before its ray, relative to the ray's length, ends with it.
@@ -51,8 +25,13 @@ impl LitRod {
     }
 }
 
+/// Reads `light`: an emitter is the only one that a rod may have.
+fn read_light(settings: &Settings) -> Option<()> {
+    settings.word("light", &["emitter"]).map(drop)
+}
+
 /// The field along a rod that touches its emitter.
-pub(super) fn before_emitter(body: &Body, settings: &Settings) -> Option<Medium> {
+fn before_emitter(body: &Body, settings: &Settings) -> Option<Medium> {
     let key = if matches!(body, Body::Volume { .. }) { "ray" } else { "medium" };
     let medium = body.medium();
     let (span, support) = (medium.span(), medium.support());
@@ -73,18 +52,90 @@ pub(super) fn before_emitter(body: &Body, settings: &Settings) -> Option<Medium>
 impl Problem for LitRod {
     type Value = [f64; 1];
 
+    const OPTIONS: &'static [ProblemOption] = &[ProblemOption::Light];
+
     fn read(body: Option<&Body>, settings: &Settings) -> Option<Self> {
-        let albedo = share(settings, "albedo", default_albedo(settings));
-        let forward = share(settings, "forward", Some(0.5));
+        let (scattering, light) = (read_scattering(settings), read_light(settings));
         let medium = before_emitter(body?, settings)?;
-        Some(Self::new(medium, &albedo?, &forward?))
+        let ([albedo, forward], ()) = (scattering?, light?);
+        Some(Self::new(medium, &albedo, &forward))
     }
 
-    fn medium(&self) -> &Medium {
-        self.rod.medium()
+    fn media(&self) -> &[Medium] {
+        self.rod.media()
     }
 
     fn with_albedo(&self, albedo: f64) -> Option<Self> {
         self.rod.with_albedo(albedo).map(|rod| Self { rod })
+    }
+}
+
+/// A rod with an emitter at its end, in several channels.
+pub struct SpectralLitRod {
+    media: Vec<Medium>,
+    /// The rod of each channel.
+    pub rods: Vec<LitRod>,
+    /// `p_f` of each channel.
+    pub forward: Vec<f64>,
+}
+
+impl SpectralLitRod {
+    /// Through the media of the channels, with one albedo and one probability to scatter forward for each.
+    pub fn new(media: Vec<Medium>, albedos: &[Piecewise], forward: Vec<f64>) -> Self {
+        let rod = |((medium, albedo), &forward): ((&Medium, &Piecewise), &f64)| {
+            let forward = Piecewise::constant(forward, medium.span());
+            LitRod::new(medium.clone(), albedo, &forward)
+        };
+        let rods = media.iter().zip(albedos).zip(&forward).map(rod).collect();
+        Self { media, rods, forward }
+    }
+
+    /// a of each channel, where they are numbers.
+    pub fn albedos(&self) -> Option<Vec<f64>> {
+        let one = |rod: &LitRod| rod.rod.albedo.on(self.media[0].support()).single_value();
+        self.rods.iter().map(one).collect()
+    }
+
+    /// a of a channel at a distance.
+    #[inline(always)]
+    pub fn albedo<L: Lane>(&self, channel: usize, t: L) -> L {
+        self.rods[channel].rod.albedo.value(t)
+    }
+
+    /// Values of a draw.
+    #[inline(always)]
+    pub fn values(&self, at: [f64; MOST_CHANNELS]) -> ChannelValues {
+        ChannelValues { at, count: self.rods.len() }
+    }
+}
+
+impl Problem for SpectralLitRod {
+    type Value = ChannelValues;
+
+    const OPTIONS: &'static [ProblemOption] =
+        &[ProblemOption::Light, ProblemOption::Albedos, ProblemOption::Media];
+
+    fn read(body: Option<&Body>, settings: &Settings) -> Option<Self> {
+        let (albedos, light) = (shares(settings, "albedos"), read_light(settings));
+        let forward = settings.entry("forward");
+        let forward = if forward.is_some_and(|entry| matches!(entry.node.value, Value::Array(_))) {
+            settings.numbers("forward", Domain::Unit, 1)
+        } else {
+            read_number(settings, "forward", Some(0.5)).map(|forward| vec![forward])
+        };
+        let channels = body?.channels();
+        let media = channels.iter().map(|channel| before_emitter(channel, settings));
+        let media: Vec<Medium> = media.collect::<Option<_>>()?;
+        let (albedos, mut forward) = (albedos?, forward?);
+        if forward.len() == 1 {
+            forward = vec![forward[0]; media.len()];
+        }
+        let lists = [("albedos", albedos.len()), ("forward", forward.len())];
+        light.and(agree(settings, media.len(), lists))?;
+        Some(Self::new(media, &albedos, forward))
+    }
+
+    fn media(&self) -> &[Medium] {
+        &self.media
     }
 }

@@ -1,58 +1,25 @@
-//! What a camera sees of a light behind a slab by one scattering: directions are found by chance, or chosen.
-//!
-//! ```text
-//! the camera looks along the normal of a slab; its ray enters at the beginning and collides (rate σ_t) at a depth z,
-//! is scattered with probability a by the phase function p, and flies to the far side without another real collision
-//! L = ∫ a σ_t e^{−τ(z)} ∫ p(μ) e^{−(τ(end) − τ(z))/μ} L_e dω dz,   L_e = 1 from the light, 0 from elsewhere
-//! ```
-//!
-//! | setting | meaning | default |
-//! |---|---|---|
-//! | `medium` with `span = [from, to]` | σ_t as a function of the depth z, and the slab | one of the two |
-//! | `volume` with `ray = { origin, direction, length }` | `σ_t(z)` as a ray through a 3-D field sees it | is required |
-//! | `albedo` | a in (0, 1], the same everywhere | required unless swept |
-//! | `phase.NAME = { … }` | a phase function: `trueflight list phases` | required |
-//! | `light.cap = { cosine = c₀ }` | all directions within arccos c₀ of the normal, 0 < c₀ < 1; Ω = 2π(1 − c₀) | one of |
-//! | `light.disc = { distance, radius }` | a disc that faces the slab, so far behind it, about the ray | these |
-//! | `light.distant = { cosine = μ₀ }` | a beam of irradiance 1, 0 < μ₀ ≤ 1: no direction is ever met by chance | is |
-//! | `light.point = { distance }` | a point of intensity 1 on the ray, so far behind the slab | required |
-//! | `sampling` | σ̂ of every estimator without its own, as a function of the depth; a majorant | required unless swept |
-//! | `sweep` | one of `sampling`, `sampling-scale`, `albedo`, `density`, `albedo-scale` | none |
-//! | `estimators` | what is tested | required |
-//!
-//! Unscattered light is left out, and light that is scattered twice. Shadow rays choose the directions of a cap evenly,
-//! and the points of a disc of area A; seen from a point D before the disc,
-//!
-//! ```text
-//! p_nee = 1/Ω (cap),   p_nee = D²/(A μ³) (disc),   q = p/p_nee
-//! ```
-//!
-//! so that q, the pdf of a direction by chance over that of the choice, may exceed 1. A light in no direction's
-//! neighbourhood, `distant` or `point`, has q = p, or p/D²; only shadow rays find it.
-//!
-//! Source: the integral is that of S. Chandrasekhar, *Radiative Transfer* (Oxford University Press, 1950), chapter 1;
-//! what is sampled, that of B. Miller, I. Georgiev, W. Jarosz, *A null-scattering path integral formulation of light
-//! transport*, ACM Transactions on Graphics 38 (2019), section 5.
+//! The form of `slab` with `light`: what a camera sees of a light behind it by one scattering.
 
 use std::f64::consts::{PI, TAU};
+use std::slice;
 
-use super::{Problem, default_albedo};
+use super::slab::read_cosine;
+use super::{Problem, ProblemOption, default_albedo};
 use media::catalogue::{Domain, Settings};
 use media::phase::Phase;
 use media::{Body, Medium};
 use numeric::Lane;
-use numeric::digits::number;
 
-/// What shines behind the slab.
+/// Light behind the slab.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Light {
     /// All directions whose cosine with the normal is at least this.
     Cap(f64),
     /// A disc about the ray.
     Disc {
-        /// How far behind the slab.
+        /// Distance behind the slab.
         distance: f64,
-        /// Its radius.
+        /// Radius.
         radius: f64,
     },
     /// A beam of irradiance 1, by its cosine with the normal.
@@ -135,7 +102,7 @@ pub struct LitSlab {
     pub albedo: f64,
     /// p.
     pub phase: Phase,
-    /// What shines behind the slab.
+    /// Light behind the slab.
     pub light: Light,
 }
 
@@ -154,6 +121,8 @@ impl LitSlab {
 
 impl Problem for LitSlab {
     type Value = [f64; 1];
+
+    const OPTIONS: &'static [ProblemOption] = &[ProblemOption::Light];
 
     fn read(body: Option<&Body>, settings: &Settings) -> Option<Self> {
         let albedo = super::number(settings, "albedo", default_albedo(settings));
@@ -176,8 +145,8 @@ impl Problem for LitSlab {
         Some(Self::new(medium, albedo?, phase?, light?))
     }
 
-    fn medium(&self) -> &Medium {
-        &self.medium
+    fn media(&self) -> &[Medium] {
+        slice::from_ref(&self.medium)
     }
 
     fn with_albedo(&self, albedo: f64) -> Option<Self> {
@@ -188,45 +157,24 @@ impl Problem for LitSlab {
 fn read_light(settings: &Settings) -> Option<Light> {
     let names = ["cap", "disc", "distant", "point"].map(str::to_owned);
     let (index, light) = settings.chosen("light", &names)?;
+    let length = |key: &'static str| light.number(key, Domain::Positive);
     let read = match index {
         0 => {
             let help = "the light is behind the slab, and has a size: 0 < cosine < 1";
-            within(&light, "cosine", &|c| 0.0 < c && c < 1.0, help).map(Light::Cap)
+            read_cosine(&light, |cosine| cosine < 1.0, help).map(Light::Cap)
         }
         1 => {
-            let distance = behind(&light);
-            let radius = light.number("radius", Domain::Positive);
+            let (distance, radius) = (length("distance"), length("radius"));
             distance.zip(radius).map(|(distance, radius)| Light::Disc { distance, radius })
         }
         2 => {
             let help = "the light is behind the slab: 0 < cosine ≤ 1";
-            within(&light, "cosine", &|c| 0.0 < c && c <= 1.0, help).map(Light::Distant)
+            read_cosine(&light, |cosine| cosine <= 1.0, help).map(Light::Distant)
         }
-        _ => behind(&light).map(Light::Point),
+        _ => length("distance").map(Light::Point),
     };
     light.close();
     read
-}
-
-/// How far a light is behind the slab.
-fn behind(light: &Settings) -> Option<f64> {
-    let help = "the light is behind the slab, this far from its end: distance > 0";
-    within(light, "distance", &|distance| distance > 0.0, help)
-}
-
-/// A number that is where a light may be.
-fn within(
-    light: &Settings,
-    key: &'static str,
-    is_right: &dyn Fn(f64) -> bool,
-    help: &'static str,
-) -> Option<f64> {
-    let found = light.number(key, Domain::Finite)?;
-    if is_right(found) {
-        return Some(found);
-    }
-    light.fault(key, format!("`{key}` is {}", number(found)), help);
-    None
 }
 
 #[cfg(test)]

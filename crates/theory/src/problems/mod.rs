@@ -1,108 +1,95 @@
-//! What is sought: each problem knows its own exact answer. Floor 2.
+//! Problems: the quantities that estimators answer, each with the settings of its cases. Floor 2.
 
+pub mod ball;
 pub mod bidirectional_rod;
-pub mod chromatic_slab;
+pub mod channels;
+pub mod coloured_slab;
 pub mod free_flight;
 pub mod furnace;
 pub mod infinite_medium;
 pub mod lambertian;
 pub mod lit_rod;
 pub mod lit_slab;
+pub mod options;
 pub mod rod;
+pub mod scene;
 pub mod single_scattering;
+pub mod sky;
 pub mod slab;
-pub mod spectral_furnace;
-pub mod spectral_lit_rod;
 pub mod spectral_rod;
-pub mod spectral_single_scattering;
-pub mod spectral_slab;
 pub mod spectral_transmittance;
-pub mod sphere;
 pub mod transmittance;
-pub mod transmittance_curve;
 
 use fearless_simd::Level;
 
-use media::body::RayNeed;
+use media::body::{MOST_CHANNELS, RayNeed};
 use media::catalogue::{Domain, PageList, Settings, Value};
 use media::{Body, Lookups, Medium, Volume};
 
-pub mod multiple_scattering;
-pub mod scene;
-pub mod sky;
-
+pub use ball::{MultipleScattering, Sphere};
 pub use bidirectional_rod::BidirectionalRod;
-pub use chromatic_slab::ChromaticSlab;
+pub use coloured_slab::{ChromaticSlab, SpectralSlab};
 pub use free_flight::FreeFlight;
-pub use furnace::Furnace;
+pub use furnace::{Furnace, SpectralFurnace};
 pub use infinite_medium::InfiniteMedium;
 pub use lambertian::Lambertian;
-pub use lit_rod::LitRod;
+pub use lit_rod::{LitRod, SpectralLitRod};
 pub use lit_slab::LitSlab;
-pub use multiple_scattering::MultipleScattering;
+pub use options::ProblemOption;
 pub use rod::Rod;
 pub use scene::{Albedo, Scene};
-pub use single_scattering::SingleScattering;
+pub use single_scattering::{SingleScattering, SpectralSingleScattering};
 pub use sky::Sky;
 pub use slab::Slab;
-pub use spectral_furnace::SpectralFurnace;
-pub use spectral_lit_rod::SpectralLitRod;
 pub use spectral_rod::SpectralRod;
-pub use spectral_single_scattering::SpectralSingleScattering;
-pub use spectral_slab::SpectralSlab;
 pub use spectral_transmittance::SpectralTransmittance;
-pub use sphere::Sphere;
-pub use transmittance::Transmittance;
-pub use transmittance_curve::TransmittanceCurve;
+pub use transmittance::{Transmittance, TransmittanceCurve};
 
-/// Hands every problem, in the order of the design, to another macro. From its one line here come the
-/// module, the name in case files, the reader of its cases, and its rows in `trueflight list`.
+/// Hands every problem with its forms to another macro, in the order of the catalogue. A form is the type of the draws
+/// that a case's options ask for; the first has no options. From the line of a problem come its page and its name in
+/// case files, and from that of a form its estimators.
 #[macro_export]
 macro_rules! each_problem {
     ($then:ident) => {
         $then! {
-            transmittance::Transmittance,
-            free_flight::FreeFlight,
-            transmittance_curve::TransmittanceCurve,
-            spectral_transmittance::SpectralTransmittance,
-            rod::Rod,
-            spectral_rod::SpectralRod,
-            lit_rod::LitRod,
-            lit_slab::LitSlab,
-            spectral_lit_rod::SpectralLitRod,
-            slab::Slab,
-            spectral_slab::SpectralSlab,
-            chromatic_slab::ChromaticSlab,
-            single_scattering::SingleScattering,
-            spectral_single_scattering::SpectralSingleScattering,
-            furnace::Furnace,
-            spectral_furnace::SpectralFurnace,
-            lambertian::Lambertian,
-            infinite_medium::InfiniteMedium,
-            sphere::Sphere,
-            bidirectional_rod::BidirectionalRod,
+            transmittance: Transmittance TransmittanceCurve SpectralTransmittance,
+            free_flight: FreeFlight,
+            rod: Rod LitRod SpectralRod SpectralLitRod BidirectionalRod,
+            slab: Slab LitSlab SpectralSlab ChromaticSlab,
+            single_scattering: SingleScattering SpectralSingleScattering,
+            furnace: Furnace SpectralFurnace,
+            lambertian: Lambertian,
+            infinite_medium: InfiniteMedium,
+            ball: Sphere,
         }
     };
 }
 pub use each_problem;
 
 macro_rules! pages {
-    ($($module:ident :: $Problem:ident,)*) => {
+    ($($module:ident: $($Form:ident)*,)*) => {
         /// Every problem.
         pub const CATALOGUE: PageList =
             PageList { name: "problems", pages: &[$(media::page!($module)),*] };
 
-        $(impl Named for $Problem {
+        $($(impl Named for $Form {
             const MODULE: &'static str = stringify!($module);
-        })*
+        })*)*
     };
 }
 each_problem!(pages);
 
-/// A problem's name.
-pub trait Named {
-    /// That of its module, as in `single_scattering`.
+/// The name of a problem.
+pub trait Named: Problem {
+    /// Module of the problem's page, as in `single_scattering`.
     const MODULE: &'static str;
+
+    /// Name of the form, as in `rod with light`; that of the problem where the form has no options.
+    fn title() -> String {
+        let name = Self::MODULE.replace('_', "-");
+        let options = options::joined(Self::OPTIONS, ProblemOption::name);
+        options.map_or(name.clone(), |options| format!("{name} with {options}"))
+    }
 }
 
 /// Multiple scattering is sought in pictures only.
@@ -114,23 +101,25 @@ impl Named for MultipleScattering {
 ///
 /// Estimators are written for one problem, so that a wrong pairing does not compile.
 pub trait Problem: Send + Sync + Sized + 'static {
-    /// What one draw is: one number per channel.
+    /// Type of a draw: one number per channel.
     type Value: Copy + AsRef<[f64]>;
 
-    /// What it asks of the ray through a volume.
+    /// The options of a case that choose this form of the problem.
+    const OPTIONS: &'static [ProblemOption] = &[];
+    /// Requirement on the ray through a volume.
     const RAY: RayNeed = RayNeed::Whole;
-    /// Whether its medium may have several channels (wavelengths).
-    const SPECTRAL: bool = false;
+    /// Whether each channel (wavelength) has a medium of its own.
+    const SPECTRAL: bool = options::has_media(Self::OPTIONS);
 
     /// Reads what the problem needs beside the field, which is absent after a mistake.
     fn read(body: Option<&Body>, settings: &Settings) -> Option<Self>;
 
-    /// The field along the ray.
-    fn medium(&self) -> &Medium;
+    /// The field of each channel along the ray.
+    fn media(&self) -> &[Medium];
 
-    /// The field of each channel along the ray, that of [`Problem::medium`] first.
-    fn media(&self) -> &[Medium] {
-        std::slice::from_ref(self.medium())
+    /// The field along the ray, of the first channel.
+    fn medium(&self) -> &Medium {
+        &self.media()[0]
     }
 
     /// Their lookups, for kernels on the hardware of a level.
@@ -143,7 +132,7 @@ pub trait Problem: Send + Sync + Sized + 'static {
         None
     }
 
-    /// The same problem in a medium of another albedo; `None` if the answer does not depend on it.
+    /// A copy in a medium of another albedo; `None` if the answer does not depend on it.
     fn with_albedo(&self, albedo: f64) -> Option<Self> {
         let _ = albedo;
         None
@@ -162,11 +151,11 @@ pub trait Problem: Send + Sync + Sized + 'static {
     }
 }
 
-/// What problems have in common whose particles walk through a `scene`.
+/// Methods of problems with particles that walk through a `scene`.
 macro_rules! in_space {
     () => {
-        fn medium(&self) -> &Medium {
-            &self.medium
+        fn media(&self) -> &[Medium] {
+            std::slice::from_ref(&self.medium)
         }
 
         fn volume(&self) -> Option<&media::Volume> {
@@ -185,13 +174,16 @@ use in_space;
 pub struct Values<const N: usize> {
     /// The values; the first `count` are meant.
     pub at: [f64; N],
-    /// How many.
+    /// Number of values.
     pub count: usize,
 }
 
+/// The values of one draw, one for each channel (wavelength).
+pub type ChannelValues = Values<MOST_CHANNELS>;
+
 /// Numbers, one per channel.
 pub trait Channels {
-    /// So many, one after the other.
+    /// Values of the first `count` channels.
     fn of(count: usize, value: impl Fn(usize) -> f64) -> Self;
 }
 

@@ -1,4 +1,5 @@
-//! What a rod sends back and lets through: light that scatters forward and backward along a line.
+//! Reflectance and transmittance of a rod, or a light seen through it: light that scatters forward and backward along a
+//! line.
 //!
 //! ```text
 //! a particle enters at the beginning, going forward; where it collides (rate σ_t) it is scattered
@@ -16,7 +17,7 @@
 //! | `flux` | up to 4: the mean flux, forward and backward together, in so many equal parts of the rod are channels too, scored at every tentative collision: Σ w/(σ̂ width) | none |
 //! | `orders` | K, up to 6: reflectance and transmittance by order of scattering, 0 to K, are channels too | none |
 //! | `sampling` | σ̂ of every estimator without its own | required unless swept |
-//! | `sweep` | one of `sampling`, `sampling-scale`, `albedo`, `density`, `albedo-scale` | none |
+//! | `sweep` | one of `sampling`, `sampling-scale`, `albedo`, `density`, `albedo-scale`; of several channels `contrast` in place of `albedo` | none |
 //! | `estimators` | what is tested | required |
 //!
 //! A field of numbers along the rod is `{ piecewise-linear = { knots, values } }` or
@@ -24,13 +25,43 @@
 //! first and the last value go on. In empty space the particle flies on, so that only the part of a
 //! ray inside the field's bounds is the rod.
 //!
+//! Options choose another form of the problem, in which `absorbed`, `flux` and `orders` as above have no place:
+//!
+//! | option | what is sought | settings |
+//! |---|---|---|
+//! | `light = "emitter"` | the probability that a path of a camera at the beginning reaches an emitter of radiance 1, the end of the rod: T, by hits and by shadow rays | as above |
+//! | `albedos` | R where it is not 0, and T, for each of 1 to 8 channels (wavelengths) by one draw | `albedos`: numbers; `forward`: a number; σ̂ ≥ σ_t |
+//! | `albedos`, `light` and a list as `medium` or `volume` | what the camera sees of the emitter in 1 to 8 channels by one draw; each has its own σ_t, within the same bounds | `albedos`: numbers or fields, `forward`: a number, or a list with one for each channel; `sampling`: σ̂ ≥ σ_t for all channels or a list |
+//! | `sensor = "transmitted"` or `"reflected"` | light that enters at the beginning and is scattered r times before it meets a sensor at the end, or at the beginning, by bidirectional path tracing: `I_r = ∫ ∏ᵢ a ρᵢ e^{−Σ dⱼ} du₁ … du_r`, u the optical depths of the scatterings | `albedo` and `forward`: numbers; `orders`: the highest r, up to 5, required; `lowest`: the lowest r (0, or 1 of reflected light); `shares`: whether what each technique contributes is a channel beside their sum (true) |
+//!
+//! **Emitter.** It touches the medium: a ray that ends beyond the field's bounds, or on which nothing is ever met, is a
+//! mistake. In a rod it fills every direction in which it lies: a shadow ray finds it for certain, so that next-event
+//! estimation has the pdf 1 for its direction, and unidirectional tracking the phase function, `p_f` or `1 − p_f`.
+//!
+//! **Channels.** With one extinction for all of them, `R_λ = Σ_r a_λ^r R_r` and `T_λ = Σ_r a_λ^r T_r`, r the number of
+//! scatterings: all moments depend on the optical length alone and are closed forms. With a medium for each, moments are
+//! exact where one channel is drawn at a time, where all channels have the same σ_t and σ̂ and albedos are numbers, and
+//! of hits where light goes on forward through what is constant in each cell; elsewhere variances of draws that score
+//! all channels at once are bounded. Means, variances and the covariances of neighbouring channels are tested. One lookup
+//! answers σ_t of all channels.
+//!
+//! **Sensor.** A path of r scatterings has r + 2 vertices, light and sensor included, and can be made in r + 3 ways: its
+//! first s vertices from the light, s = 0 … r + 2, the others from the sensor. Channels are what each technique
+//! contributes, `s = 0` to `s = r + 2` (of several orders `r = …, s = …`), and `sum`; the estimator `technique`
+//! has one technique only, and no shares. A record therefore holds shares and second moments by technique.
+//!
 //! The answer is exact. Where a and `p_f` are constant it is a closed form that depends on the optical
 //! depth only; elsewhere, and by order, two coupled equations are solved to a stated error. An
 //! experiment with a channel whose answer is 0 is refused: `absorbed` where `a = 1`, `reflectance` where
-//! `a = 0` or `p_f = 1`.
+//! `a = 0` or `p_f = 1`, with a sensor an odd number of scatterings forward where `p_f = 0`.
 //!
-//! Source: the two-stream equations of a rod, as in R. Bellman, R. Kalaba, G. M. Wing, *Invariant
-//! Imbedding and Mathematical Physics*, Journal of Mathematical Physics 1 (1960).
+//! Sources: the two-stream equations of a rod, as in R. Bellman, R. Kalaba, G. M. Wing, *Invariant
+//! Imbedding and Mathematical Physics*, Journal of Mathematical Physics 1 (1960); emitter, sensor and several media: B.
+//! Miller, I. Georgiev, W. Jarosz, *A Null-Scattering Path Integral Formulation of Light Transport*, ACM Transactions on
+//! Graphics 38 (2019), section 5; albedos: P. Kutz, R. Habel, Y. K. Li, J. Novák, *Spectral and Decomposition Tracking
+//! for Rendering Heterogeneous Volumes*, ACM Transactions on Graphics 36 (2017), section 5, in one dimension.
+
+use std::slice;
 
 use super::{Problem, default_albedo, number};
 use media::catalogue::{Domain, Node, Settings, Value};
@@ -45,12 +76,12 @@ pub const MOST_PARTS: usize = 4;
 /// The highest order of scattering that has a channel of its own.
 pub const HIGHEST_ORDER: u64 = 6;
 
-/// What a channel is about.
+/// Quantity of a channel.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Quantity {
-    /// The weight that leaves at the beginning after so many scatterings.
+    /// The weight that leaves at the beginning after this number of scatterings.
     ReflectedBy(usize),
-    /// The weight that leaves at the end after so many scatterings.
+    /// The weight that leaves at the end after this number of scatterings.
     TransmittedBy(usize),
     /// The mean flux in a part of the rod, from 0.
     Flux(usize),
@@ -83,9 +114,9 @@ pub struct Rod {
     pub albedo: Piecewise,
     /// `p_f`, as a function of the distance.
     pub forward: Piecewise,
-    /// What the channels of a draw are about, the last two always reflectance and transmittance.
+    /// Quantities of the channels of a draw; the last two are always reflectance and transmittance.
     pub channels: Vec<Quantity>,
-    /// How many parts of the rod have their flux as a channel: 0 or all of them.
+    /// Number of parts of the rod whose flux is a channel: 0 or all of them.
     pub parts: usize,
 }
 
@@ -106,12 +137,12 @@ impl Rod {
         Self { medium, albedo: albedo.on(span), forward: forward.on(span), channels, parts }
     }
 
-    /// The length of such a part.
+    /// Length of a part of the rod.
     pub fn width(&self) -> f64 {
         self.medium.support().length() / self.parts.max(1) as f64
     }
 
-    /// Where the rod begins.
+    /// Beginning of the rod.
     pub fn begin(&self) -> f64 {
         self.medium.support().from
     }
@@ -123,7 +154,7 @@ impl Rod {
         (part as usize).min(self.parts.saturating_sub(1))
     }
 
-    /// Which distances inside the rod, in widths of its parts, lie in one of them.
+    /// Mask of the distances inside the rod, in widths of its parts, that lie in a part.
     #[inline(always)]
     pub fn is_in<L: Lane>(&self, part: usize, at: L) -> L::Mask {
         let (from, to) = (at.each(part as f64), at.each((part + 1) as f64));
@@ -157,20 +188,19 @@ impl Problem for Rod {
 
     #[allow(clippy::cast_possible_truncation)] // at most six and four
     fn read(body: Option<&Body>, settings: &Settings) -> Option<Self> {
-        let albedo = share(settings, "albedo", default_albedo(settings));
-        let forward = share(settings, "forward", Some(0.5));
+        let scattering = read_scattering(settings);
         let absorbed = settings.flag_or("absorbed", false);
         let parts = settings.count_or("flux", 0..=MOST_PARTS as u64, 0);
         let orders = settings.optional("orders", |key| settings.count(key, 0..=HIGHEST_ORDER));
         let medium = body?.medium();
-        let (albedo, forward) = (albedo?, forward?);
+        let [albedo, forward] = scattering?;
         let channels =
             channels(parts? as usize, absorbed?, orders?.map(|highest| highest as usize));
         Some(Self::new(medium, &albedo, &forward, channels))
     }
 
-    fn medium(&self) -> &Medium {
-        &self.medium
+    fn media(&self) -> &[Medium] {
+        slice::from_ref(&self.medium)
     }
 
     fn with_albedo(&self, albedo: f64) -> Option<Self> {
@@ -180,15 +210,18 @@ impl Problem for Rod {
     }
 }
 
+/// Reads `albedo` and `forward`.
+pub(super) fn read_scattering(settings: &Settings) -> Option<[Piecewise; 2]> {
+    let albedo = share(settings, "albedo", default_albedo(settings));
+    let forward = share(settings, "forward", Some(0.5));
+    Some([albedo?, forward?])
+}
+
 /// Reads a share, a number or a field; `default` where the key is absent.
-pub(super) fn share(
-    settings: &Settings,
-    key: &'static str,
-    default: Option<f64>,
-) -> Option<Piecewise> {
+fn share(settings: &Settings, key: &'static str, default: Option<f64>) -> Option<Piecewise> {
     let value = settings.entry(key).map(|entry| &entry.node.value);
     if !matches!(value, Some(Value::Table(_))) {
-        // It goes on to both sides.
+        // The value goes on to both sides.
         let everywhere = |value| Piecewise::constant(value, Span::empty(0.0));
         return number(settings, key, default).map(everywhere);
     }

@@ -11,7 +11,7 @@ use numeric::geometry::Point;
 /// The albedo a of a medium.
 #[derive(Clone)]
 pub enum Albedo {
-    /// The same everywhere.
+    /// One number everywhere.
     Even(f64),
     /// A field of numbers from 0 to the given one, at most 1; 0 outside its bounds.
     Field(Arc<Volume>, f64),
@@ -51,7 +51,7 @@ pub struct Scene {
     pub volume: Arc<Volume>,
     /// a.
     pub albedo: Albedo,
-    /// How light is scattered.
+    /// Phase function.
     pub phase: Phase,
 }
 
@@ -68,7 +68,7 @@ impl Scene {
         Some(scene)
     }
 
-    /// The same for any volume.
+    /// Reads `albedo` and `phase` beside any volume.
     pub fn read(body: Option<&Body>, settings: &Settings) -> Option<Self> {
         let phase = Phase::read(settings);
         let volume = match body {
@@ -84,7 +84,7 @@ impl Scene {
         Some(Self { volume: volume?, albedo: albedo?, phase: phase? })
     }
 
-    /// The same with another albedo, everywhere.
+    /// A copy with another albedo, everywhere.
     #[must_use]
     pub fn with_albedo(&self, albedo: f64) -> Self {
         Self { albedo: Albedo::Even(albedo), ..self.clone() }

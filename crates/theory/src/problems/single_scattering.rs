@@ -5,13 +5,21 @@
 //! r = |p(s) − l|,   cos θ = ((p(s) − l)/r) · (−d)
 //! ```
 //!
-//! Settings are those of `transmittance` with a `volume` and a `ray`, and
+//! | setting | meaning | default |
+//! |---|---|---|
+//! | `volume` with `ray = { origin, direction, length }` | a field in space and the ray | required |
+//! | `light = { position, power }` | a point light that shines alike in all directions and channels; length, power | power 1 |
+//! | `albedo` | a above 0 and up to 1, the same everywhere | required |
+//! | `phase.NAME = { … }` | p, see `trueflight list phases`; 1/sr | required |
+//! | `sampling` | σ̂ of every estimator without its own | required unless swept |
+//! | `control` | σ_c of every estimator that takes one and has none of its own | none |
+//! | `sweep` | as in `transmittance`; of several channels `sampling`, `sampling-scale` | none |
+//! | `estimators` | what is tested | required |
 //!
-//! | setting | meaning | unit | default |
-//! |---|---|---|---|
-//! | `light = { position, power }` | a point light that shines alike in all directions | length, power | power 1 |
-//! | `albedo` | a, the same everywhere, 0 to 1 | – | required |
-//! | `phase.NAME = { … }` | p, see `trueflight list phases` | 1/sr | required |
+//! **Several channels** (wavelengths): `volume` is a list of 1 to 8 fields within the same bounds; `albedos` and
+//! `phases = [{ NAME = { … } }, …]` list one for each channel in place of `albedo` and `phase`; `sampling` is a constant σ̂
+//! for all channels, or a list with one for each. `L_λ` is the radiance in the channel λ = 1 … N, and one lookup answers
+//! σ_t of all channels.
 //!
 //! Light goes from l to p(s) and from there against the ray to its origin; `cos θ` is that between
 //! the two directions of travel. Both stretches are clipped to the bounds of the volume. What comes
@@ -21,14 +29,18 @@
 //!
 //! The answer is a quadrature over s to 12 digits; the optical depths of both stretches are exact.
 //!
-//! Source: L. Szirmay-Kalos, I. Georgiev, M. Magdics, B. Molnár, D. Légrády, *Unbiased Light
+//! Sources: L. Szirmay-Kalos, I. Georgiev, M. Magdics, B. Molnár, D. Légrády, *Unbiased Light
 //! Transport Estimators for Inhomogeneous Participating Media*, Computer Graphics Forum 36 (2017),
-//! section 4.3, Eq. 22.
+//! section 4.3, Eq. 22; channels: B. Miller, I. Georgiev, W. Jarosz, *A Null-Scattering Path Integral Formulation of
+//! Light Transport*, ACM Transactions on Graphics 38 (2019), section 5.
 
 use std::f64::consts::PI;
+use std::slice;
 use std::sync::{Arc, OnceLock};
 
-use super::Problem;
+use super::channels::{Channel, read_channels};
+use super::{ChannelValues, Problem, ProblemOption};
+use media::body::MOST_CHANNELS;
 use media::catalogue::{Domain, Settings};
 use media::phase::Phase;
 use media::{Body, Medium, Volume};
@@ -52,9 +64,9 @@ pub struct SingleScattering {
 /// A point light that shines alike in all directions.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Lamp {
-    /// Where it is.
+    /// Position.
     pub position: Point,
-    /// Its power Φ.
+    /// Power Φ.
     pub power: f64,
 }
 
@@ -67,9 +79,9 @@ pub struct OnTheLine(pub f64);
 struct Light {
     position: Point,
     power: f64,
-    /// Where the ray's line is nearest to it, from the ray's origin.
+    /// Distance from the ray's origin to the point of its line that is nearest to the light.
     foot: f64,
-    /// How near that is, > 0.
+    /// Distance of the light from that point, > 0.
     distance: f64,
     /// The angles, seen from the light and measured from its foot, of the ends of the support.
     angles: Span,
@@ -99,7 +111,7 @@ impl SingleScattering {
         let angle = |along: f64| elementary::atan(along / distance);
         let angles = Span::new(angle(ends[0]), angle(ends[1]));
         let width = if ends[0] * ends[1] > 0.0 {
-            // Of a light beyond either end both angles are near a right one.
+            // Both angles are near a right one if the light is beyond either end.
             let apart = distance * support.length();
             elementary::atan(apart / (distance * distance + ends[0] * ends[1]))
         } else {
@@ -135,7 +147,7 @@ impl SingleScattering {
         Lamp { position: self.light.position, power: self.light.power }
     }
 
-    /// Where the ray is nearest to the light, from its origin.
+    /// Distance from the ray's origin to the point that is nearest to the light.
     pub fn foot(&self) -> f64 {
         self.light.foot
     }
@@ -151,7 +163,7 @@ impl SingleScattering {
         self.square_beyond(s - self.light.foot)
     }
 
-    /// The same of the point so far beyond the foot.
+    /// The squared distance of the light from the point that is this far beyond the foot.
     #[inline(always)]
     fn square_beyond<L: Lane>(&self, along: L) -> L {
         let across = self.light.distance;
@@ -198,7 +210,7 @@ impl SingleScattering {
         self.equiangular_density_beyond(s - self.light.foot)
     }
 
-    /// The same at the point so far beyond the foot: next to the light `s` has lost the digits of its
+    /// The density at the point that is this far beyond the foot: next to the light `s` has lost the digits of its
     /// distance from there.
     #[inline(always)]
     pub fn equiangular_density_beyond<L: Lane>(&self, along: L) -> L {
@@ -285,7 +297,7 @@ impl Lamp {
         Some(Self { position: Point(position?), power: power? })
     }
 
-    /// Where a ray's line is nearest to the light, from the ray's origin, and how near that is.
+    /// Distance from a ray's origin to the point of its line that is nearest to the light, and the distance between both.
     ///
     /// # Errors
     ///
@@ -315,16 +327,66 @@ impl Problem for SingleScattering {
             settings.fault("albedo", "nothing is scattered", "the albedo is above 0");
             return None;
         }
-        let found = Self::new(volume.clone(), *ray, light, albedo, phase);
-        if let Err(OnTheLine(distance)) = found {
-            let found = format!("the light is {distance:e} away from the line of the ray");
-            settings.fault("light", found, "move it off the line: on the ray L is infinite");
-        }
-        found.ok()
+        off_the_line(settings, Self::new(volume.clone(), *ray, light, albedo, phase))
     }
 
-    fn medium(&self) -> &Medium {
-        &self.medium
+    fn media(&self) -> &[Medium] {
+        slice::from_ref(&self.medium)
+    }
+}
+
+/// Reports a light on the line of the ray.
+fn off_the_line<T>(settings: &Settings, found: Result<T, OnTheLine>) -> Option<T> {
+    if let Err(OnTheLine(distance)) = found {
+        let found = format!("the light is {distance:e} away from the line of the ray");
+        settings.fault("light", found, "move it off the line: on the ray L is infinite");
+    }
+    found.ok()
+}
+
+/// Single scattering of a point light in several channels.
+pub struct SpectralSingleScattering {
+    /// Each channel by itself.
+    pub channels: Vec<Arc<SingleScattering>>,
+    /// Their albedos.
+    pub albedos: Vec<f64>,
+    media: Vec<Medium>,
+}
+
+impl SpectralSingleScattering {
+    /// Values of a draw.
+    #[inline(always)]
+    pub fn values(&self, at: [f64; MOST_CHANNELS]) -> ChannelValues {
+        ChannelValues { at, count: self.channels.len() }
+    }
+}
+
+impl Problem for SpectralSingleScattering {
+    type Value = ChannelValues;
+
+    const OPTIONS: &'static [ProblemOption] = &[ProblemOption::Albedos, ProblemOption::Media];
+
+    fn read(body: Option<&Body>, settings: &Settings) -> Option<Self> {
+        let (lamp, scatterers) = (Lamp::read(settings), read_channels(body, settings));
+        let (lamp, scatterers) = (lamp?, scatterers?);
+        if let Some(dark) = scatterers.iter().position(|channel| channel.albedo <= 0.0) {
+            let found = format!("nothing is scattered in channel {}", dark + 1);
+            settings.fault("albedos", found, "every albedo is above 0");
+            return None;
+        }
+        let Body::Volume { ray, .. } = &body?.channels()[0] else { return None };
+        let channel = |of: &Channel| {
+            SingleScattering::new(of.volume.clone(), *ray, lamp, of.albedo, of.phase).map(Arc::new)
+        };
+        let channels: Result<Vec<_>, OnTheLine> = scatterers.iter().map(channel).collect();
+        let channels = off_the_line(settings, channels)?;
+        let media = channels.iter().map(|channel| channel.medium.clone()).collect();
+        let albedos = scatterers.iter().map(|channel| channel.albedo).collect();
+        Some(Self { channels, albedos, media })
+    }
+
+    fn media(&self) -> &[Medium] {
+        &self.media
     }
 }
 

@@ -10,12 +10,12 @@ use media::catalogue::{Domain, Settings};
 use numeric::Lane;
 use numeric::geometry::Point;
 
-/// What light comes from outside, a function of the direction in which it is looked for.
+/// Light from outside, a function of the direction of looking.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Sky {
-    /// The same from everywhere.
+    /// One radiance in all directions.
     Constant {
-        /// Its radiance.
+        /// Radiance.
         radiance: f64,
     },
     /// From the ground over the horizon to the zenith, and a soft sun.
@@ -32,7 +32,7 @@ pub enum Sky {
         sun: Point,
         /// The radiance of the sun's middle.
         glare: f64,
-        /// How narrow the sun is: `glare · exp(sharpness (cos − 1))`.
+        /// Sharpness of the sun: `glare · exp(sharpness (cos − 1))`.
         sharpness: f64,
     },
 }
@@ -66,7 +66,7 @@ impl Sky {
         self.radiance_lanes(direction.0)
     }
 
-    /// The same for directions side by side.
+    /// Radiances that come against packs of directions.
     #[inline(always)]
     pub fn radiance_lanes<L: Lane>(&self, direction: [L; 3]) -> L {
         let like = direction[0];

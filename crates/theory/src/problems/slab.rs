@@ -1,5 +1,5 @@
-//! What a plane-parallel slab sends back and lets through: light that scatters in all directions of
-//! space, in a medium that varies with the depth only.
+//! Reflectance and transmittance of a plane-parallel slab, or a light seen through it: light that scatters in all
+//! directions of space, in a medium that varies with the depth only.
 //!
 //! ```text
 //! a particle enters at the top; it flies through σ_t(z), a length s for a depth of s|μ|; where it
@@ -16,22 +16,53 @@
 //! | `incidence.collimated = { cosine = μ₀ }` | light from one direction, 0 < μ₀ ≤ 1; 1 is straight down | one of the two |
 //! | `incidence.diffuse = {}` | light evenly from all sides, the Lambertian law 2μ₀ dμ₀ | is required |
 //! | `sampling` | σ̂ of every estimator without its own, as a function of the depth | required unless swept |
-//! | `sweep` | one of `sampling`, `sampling-scale`, `albedo`, `density`, `albedo-scale` | none |
+//! | `sweep` | one of `sampling`, `sampling-scale`, `albedo`, `density`, `albedo-scale`; of several channels `contrast` in place of `albedo` | none |
 //! | `estimators` | what is tested | required |
+//!
+//! Options choose another form of the problem:
+//!
+//! | option | what is sought | settings |
+//! |---|---|---|
+//! | `albedos` | R where it is not 0, and T, for each of 1 to 8 channels (wavelengths) by one draw | σ̂ ≥ σ_t |
+//! | `albedos` and a list as `medium` or `volume` | the same where each channel has its own σ_t, within the same bounds; one lookup answers all of them | `phases = [{ NAME = { … } }, …]`, one for each channel, in place of `phase`; `sampling`: a constant σ̂ for all channels or a list |
+//! | `light.cap = { cosine = c₀ }` | L through the slab: of all directions within arccos c₀ of the normal, 0 < c₀ < 1; Ω = 2π(1 − c₀) | as above, `albedo` above 0, no `incidence`; σ̂ ≥ σ_t |
+//! | `light.disc = { distance, radius }` | L of a disc that faces the slab, so far behind it, about the ray | likewise |
+//! | `light.distant = { cosine = μ₀ }` | L of a beam of irradiance 1, 0 < μ₀ ≤ 1: no direction is ever met by chance | likewise |
+//! | `light.point = { distance }` | L of a point of intensity 1 on the ray, so far behind the slab | likewise |
 //!
 //! The answer depends on the optical depth of the slab, a, the phase function and the incidence only,
 //! and is worked out by adding and doubling with a stated error: better than 1e-10 for isotropic and
-//! Rayleigh scattering, than 1e-8 for Henyey–Greenstein's up to g = 0.9.
+//! Rayleigh scattering, than 1e-8 for Henyey–Greenstein's up to g = 0.9. Of `albedos` in one medium all moments
+//! depend on that alone, too, whatever the fields σ_t and σ̂ are: `R_λ = Σ_r a_λ^r R_r` and `T_λ = Σ_r a_λ^r T_r`, r the number
+//! of scatterings.
 //!
-//! Source: S. Chandrasekhar, *Radiative Transfer* (Oxford University Press, 1950), chapter 1; H. C. van
-//! de Hulst, *Multiple Light Scattering* (Academic Press, 1980).
+//! **Light.** A camera looks along the normal; its ray enters at the beginning of the slab and is scattered once:
+//!
+//! ```text
+//! L = ∫ a σ_t e^{−τ(z)} ∫ p(μ) e^{−(τ(end) − τ(z))/μ} L_e dω dz,   L_e = 1 from the light, 0 from elsewhere
+//! p_nee = 1/Ω (cap),   p_nee = D²/(A μ³) (disc),   q = p/p_nee
+//! ```
+//!
+//! Unscattered light is left out, and light that is scattered twice. Shadow rays choose the directions of a cap evenly,
+//! and the points of a disc of area A, here seen from a point D before it: q, the pdf of a direction by the phase function
+//! over that of the choice, may exceed 1. A light in no direction's neighbourhood, `distant` or `point`, has q = p, or p/D²; only
+//! shadow rays find it.
+//!
+//! Sources: S. Chandrasekhar, *Radiative Transfer* (Oxford University Press, 1950), chapter 1; H. C. van
+//! de Hulst, *Multiple Light Scattering* (Academic Press, 1980); light and several media: B. Miller, I. Georgiev, W.
+//! Jarosz, *A Null-Scattering Path Integral Formulation of Light Transport*, ACM Transactions on Graphics 38 (2019),
+//! section 5; albedos: P. Kutz, R. Habel, Y. K. Li, J. Novák, *Spectral and Decomposition Tracking for Rendering
+//! Heterogeneous Volumes*, ACM Transactions on Graphics 36 (2017), section 5.
 
-use super::{Problem, default_albedo, number};
+use std::slice;
+
+use super::{Problem, default_albedo};
 use media::catalogue::{Domain, Settings};
 use media::phase::Phase;
 use media::{Body, Medium};
+use numeric::digits::number;
 
-/// Where light comes from.
+/// Direction of the light that enters the slab.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Light {
     /// From one direction, by its cosine `μ₀` with the normal of the slab, in `(0, 1]`.
@@ -53,9 +84,9 @@ impl Light {
 /// Light and how it is scattered.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Incidence {
-    /// Where light comes from.
+    /// Direction of the light.
     pub light: Light,
-    /// How it is scattered.
+    /// Phase function.
     pub phase: Phase,
 }
 
@@ -76,19 +107,17 @@ impl Slab {
 }
 
 impl Problem for Slab {
-    /// What leaves at the top, and at the bottom.
+    /// Weights that leave at the top and at the bottom.
     type Value = [f64; 2];
 
     fn read(body: Option<&Body>, settings: &Settings) -> Option<Self> {
-        let albedo = number(settings, "albedo", default_albedo(settings));
-        let phase = Phase::read(settings);
-        let light = read_light(settings);
-        let incidence = Incidence { light: light?, phase: phase? };
-        Some(Self::new(body?.medium(), albedo?, incidence))
+        let albedo = super::number(settings, "albedo", default_albedo(settings));
+        let incidence = read_incidence(settings);
+        Some(Self::new(body?.medium(), albedo?, incidence?))
     }
 
-    fn medium(&self) -> &Medium {
-        &self.medium
+    fn media(&self) -> &[Medium] {
+        slice::from_ref(&self.medium)
     }
 
     fn with_albedo(&self, albedo: f64) -> Option<Self> {
@@ -96,23 +125,37 @@ impl Problem for Slab {
     }
 }
 
+/// Reads `phase` and `incidence`.
+pub(super) fn read_incidence(settings: &Settings) -> Option<Incidence> {
+    let (phase, light) = (Phase::read(settings), read_light(settings));
+    Some(Incidence { light: light?, phase: phase? })
+}
+
 /// Reads `incidence`.
 pub(super) fn read_light(settings: &Settings) -> Option<Light> {
     let (index, light) = settings.chosen("incidence", &["collimated".into(), "diffuse".into()])?;
     let read = if index == 0 {
-        light.number("cosine", Domain::Positive).and_then(|cosine| {
-            if cosine > 1.0 {
-                let help = "it is the cosine of the angle with the normal of the slab, at most 1";
-                light.fault("cosine", format!("`cosine` is {cosine}"), help);
-                return None;
-            }
-            Some(Light::Collimated(cosine))
-        })
+        let help = "it is the cosine of the angle with the normal of the slab: 0 < cosine ≤ 1";
+        read_cosine(&light, |cosine| cosine <= 1.0, help).map(Light::Collimated)
     } else {
         Some(Light::Diffuse)
     };
     light.close();
     read
+}
+
+/// Reads `cosine`, above 0 and allowed.
+pub(super) fn read_cosine(
+    light: &Settings,
+    is_allowed: fn(f64) -> bool,
+    help: &'static str,
+) -> Option<f64> {
+    let cosine = light.number("cosine", Domain::Finite)?;
+    if cosine > 0.0 && is_allowed(cosine) {
+        return Some(cosine);
+    }
+    light.fault("cosine", format!("`cosine` is {}", number(cosine)), help);
+    None
 }
 
 #[cfg(test)]

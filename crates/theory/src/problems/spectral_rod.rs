@@ -1,29 +1,11 @@
-//! What a rod of coloured scatterers sends back and lets through: one albedo for each channel (wavelength).
-//!
-//! ```text
-//! as in `rod`, with the albedo a_λ of the channel λ = 1 … N, and one extinction for all of them
-//! R_λ = Σ_r a_λ^r R_r,  T_λ = Σ_r a_λ^r T_r,  r the number of scatterings
-//! ```
-//!
-//! | setting | meaning | default |
-//! |---|---|---|
-//! | `medium` with `span = [from, to]` | a field in 1-D and where it is asked about | one of the two |
-//! | `volume` with `ray = { origin, direction, length }` | a field in 3-D and a ray through it: the rod | is required |
-//! | `albedos` | 1 to 8 numbers in [0, 1], one for each channel | required |
-//! | `forward` | `p_f` in [0, 1], the probability that scattering keeps the direction | 0.5 |
-//! | `sampling` | σ̂ ≥ σ_t of every estimator without its own | required unless swept |
-//! | `sweep` | one of `sampling`, `sampling-scale`, `density`, `albedo-scale`, `contrast` | none |
-//! | `estimators` | what is tested | required |
-//!
-//! The channels of a draw are the reflectances that are not 0 and the transmittances. All moments of all
-//! estimators depend on the optical length alone and are closed forms, whatever the fields σ_t and σ̂ are.
-//!
-//! Source: P. Kutz, R. Habel, Y. K. Li, J. Novák, *Spectral and Decomposition Tracking for Rendering
-//! Heterogeneous Volumes*, ACM Transactions on Graphics 36 (2017), section 5, in one dimension.
+//! The form of `rod` with `albedos`, and what coloured rods and slabs have in common.
 
-use super::{Problem, number};
+use std::slice;
+
+use super::channels::read_albedos;
+use super::{Problem, ProblemOption, number};
 use media::body::MOST_CHANNELS;
-use media::catalogue::{Domain, Settings};
+use media::catalogue::Settings;
 use media::{Body, Medium};
 
 /// The most values of one draw.
@@ -32,7 +14,7 @@ pub const MOST: usize = 2 * MOST_CHANNELS;
 /// The values of one draw.
 pub type Values = super::Values<MOST>;
 
-/// Where a particle leaves.
+/// End at which a particle leaves.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum End {
     /// At the beginning.
@@ -41,7 +23,7 @@ pub enum End {
     Transmitted,
 }
 
-/// One albedo for each channel, and what is seen of the body that has them.
+/// One albedo for each channel, and the values of a draw.
 #[derive(Debug, Clone)]
 pub struct Colours {
     /// The albedo of each channel.
@@ -58,17 +40,6 @@ impl Colours {
         let reflected = all.clone().filter(comes_back).map(|channel| (End::Reflected, channel));
         let seen = reflected.chain(all.map(|channel| (End::Transmitted, channel))).collect();
         Self { albedos, seen }
-    }
-
-    /// Reads `albedos`.
-    pub fn read_albedos(settings: &Settings) -> Option<Vec<f64>> {
-        let albedos = settings.numbers("albedos", Domain::Unit, 1)?;
-        if albedos.len() > MOST_CHANNELS {
-            let message = format!("`albedos` lists {} channels", albedos.len());
-            settings.fault("albedos", message, format!("it takes 1 to {MOST_CHANNELS}"));
-            return None;
-        }
-        Some(albedos)
     }
 
     /// The values of a draw that left at an end with a weight for each channel.
@@ -102,13 +73,15 @@ impl SpectralRod {
 impl Problem for SpectralRod {
     type Value = Values;
 
+    const OPTIONS: &'static [ProblemOption] = &[ProblemOption::Albedos];
+
     fn read(body: Option<&Body>, settings: &Settings) -> Option<Self> {
-        let albedos = Colours::read_albedos(settings);
+        let albedos = read_albedos(settings);
         let forward = number(settings, "forward", Some(0.5));
         Some(Self::new(body?.medium(), albedos?, forward?))
     }
 
-    fn medium(&self) -> &Medium {
-        &self.medium
+    fn media(&self) -> &[Medium] {
+        slice::from_ref(&self.medium)
     }
 }

@@ -1,27 +1,7 @@
-//! The transmittance of a ray through a chromatic medium, all channels (wavelengths) by one draw.
-//!
-//! ```text
-//! T_λ = exp(−∫ σ_t,λ(t) dt),  λ = 1 … N;   Y = Σ_λ l_λ T_λ
-//! ```
-//!
-//! | setting | meaning | default |
-//! |---|---|---|
-//! | `medium = [{ NAME = { … } }, …]` with `span = [from, to]` | a field in 1-D for each of 1 to 8 channels | one of the two |
-//! | `volume = [{ NAME = { … } }, …]` with `ray = { origin, direction, length }` | a field in 3-D for each channel, within the same bounds | is required |
-//! | `sampling` | σ̂ of every estimator without its own: a table for all channels, or a list with one for each | required unless swept |
-//! | `sweep` | one of `sampling` (the same σ̂ for all channels), `sampling-scale`, `density`, `contrast` | none |
-//! | `estimators` | what is tested | required |
-//!
-//! The channels of a draw are the N transmittances and, for N > 1, the luminance Y: with weights l =
-//! (.2126, .7152, .0722) for N = 3 (red, green, blue of ITU-R BT.709) and 1/N elsewhere. Means, variances and
-//! the covariances of neighbouring channels are tested.
-//!
-//! One lookup answers σ_t of all channels.
-//!
-//! Source: B. Miller, I. Georgiev, W. Jarosz, *A Null-Scattering Path Integral Formulation of Light
-//! Transport*, ACM Transactions on Graphics 38 (2019), sections 5.1 and 6.
+//! The form of `transmittance` with a list of media.
 
-use super::Problem;
+use super::channels::media;
+use super::{Problem, ProblemOption};
 use media::body::MOST_CHANNELS;
 use media::catalogue::Settings;
 use media::{Body, Medium};
@@ -47,7 +27,7 @@ impl SpectralTransmittance {
         Self { media, luminance }
     }
 
-    /// What a draw scores, given the transmittance of each channel.
+    /// Values of a draw with the given transmittances.
     #[inline(always)]
     pub fn values(&self, transmittances: &[f64]) -> Values {
         let mut values = Values { at: [0.0; MOST], count: transmittances.len() };
@@ -71,14 +51,10 @@ pub fn luminance(channels: usize, channel: usize) -> f64 {
 impl Problem for SpectralTransmittance {
     type Value = Values;
 
-    const SPECTRAL: bool = true;
+    const OPTIONS: &'static [ProblemOption] = &[ProblemOption::Media];
 
     fn read(body: Option<&Body>, _: &Settings) -> Option<Self> {
-        Some(Self::new(body?.channels().iter().map(Body::medium).collect()))
-    }
-
-    fn medium(&self) -> &Medium {
-        &self.media[0]
+        Some(Self::new(media(body?)))
     }
 
     fn media(&self) -> &[Medium] {

@@ -264,9 +264,9 @@ impl Estimator for Space {
                 let body = format!("volume.constant = {{ extinction = {:e} }}\n{ray}", scene.depth);
                 ("infinite-medium", body, particle)
             }
-            Sought::Met => ("sphere", ball + environment, particle),
-            Sought::Ratio => ("sphere", ball + environment, shadow("ratio")),
-            Sought::Delta => ("sphere", ball + environment, shadow("delta")),
+            Sought::Met => ("ball", ball + environment, particle),
+            Sought::Ratio => ("ball", ball + environment, shadow("ratio")),
+            Sought::Delta => ("ball", ball + environment, shadow("delta")),
         };
         let phase = if self.is_isotropic() {
             "isotropic = {}".to_owned()

@@ -1,0 +1,84 @@
+//! Settings of several channels (wavelengths): a value, or a medium, for each.
+
+use std::sync::Arc;
+
+use media::body::MOST_CHANNELS;
+use media::catalogue::{Domain, Settings};
+use media::phase::Phase;
+use media::{Body, Medium, Volume};
+
+/// The medium of one channel in space.
+#[derive(Clone)]
+pub struct Channel {
+    /// σ_t.
+    pub volume: Arc<Volume>,
+    /// a.
+    pub albedo: f64,
+    /// Phase function.
+    pub phase: Phase,
+}
+
+/// The field of each channel along the ray.
+pub(super) fn media(body: &Body) -> Vec<Medium> {
+    body.channels().iter().map(Body::medium).collect()
+}
+
+/// Reads `albedos`, 1 to 8 numbers.
+pub(super) fn read_albedos(settings: &Settings) -> Option<Vec<f64>> {
+    let albedos = settings.numbers("albedos", Domain::Unit, 1)?;
+    if albedos.len() > MOST_CHANNELS {
+        let message = format!("`albedos` lists {} channels", albedos.len());
+        settings.fault("albedos", message, format!("it takes 1 to {MOST_CHANNELS}"));
+        return None;
+    }
+    Some(albedos)
+}
+
+/// Checks that settings list as many channels as the medium has.
+pub(super) fn agree(
+    settings: &Settings,
+    count: usize,
+    lists: [(&'static str, usize); 2],
+) -> Option<()> {
+    let (key, listed) = lists.into_iter().find(|&(_, listed)| listed != count).unzip();
+    let (Some(key), Some(listed)) = (key, listed) else { return Some(()) };
+    let message = format!("`{key}` lists {listed} channels, and the medium has {count}");
+    settings.fault(key, message, "give one for each channel");
+    None
+}
+
+/// Reads `albedos` and `phases`, one of each for each channel of a field.
+pub(super) fn read_scatterers(
+    body: Option<&Body>,
+    settings: &Settings,
+) -> Option<(Vec<f64>, Vec<Phase>)> {
+    let albedos = read_albedos(settings);
+    let phases = settings.tables("phases").and_then(|tables| {
+        let phases: Vec<_> = tables.iter().map(Phase::read_listed).collect();
+        phases.into_iter().collect::<Option<Vec<Phase>>>()
+    });
+    let (albedos, phases, count) = (albedos?, phases?, body?.channels().len());
+    agree(settings, count, [("albedos", albedos.len()), ("phases", phases.len())])?;
+    Some((albedos, phases))
+}
+
+/// Reads `albedos` and `phases` beside a field in space for each channel.
+pub(super) fn read_channels(body: Option<&Body>, settings: &Settings) -> Option<Vec<Channel>> {
+    let (albedos, phases) = read_scatterers(body, settings)?;
+    let mut channels = Vec::new();
+    for ((body, albedo), phase) in body?.channels().iter().zip(albedos).zip(phases) {
+        let Body::Volume { volume, .. } = body else {
+            let help = "write `volume` instead of `medium`";
+            settings.fault("medium", "particles walk through a field in space", help);
+            return None;
+        };
+        channels.push(Channel { volume: volume.clone(), albedo, phase });
+    }
+    let bounds = channels[0].volume.bounds();
+    if channels.iter().any(|channel| channel.volume.bounds() != bounds) {
+        let found = "the channels do not fill the same part of space";
+        settings.fault("volume", found, "give all of them the same `bounds`");
+        return None;
+    }
+    Some(channels)
+}

@@ -1,0 +1,111 @@
+//! Forms of problems: the type of draws that a case's options ask for, and what is said of names that a form has not.
+
+use std::cell::RefCell;
+use std::path::Path;
+
+use media::catalogue::{Entry, Settings};
+use theory::problems::ProblemOption;
+use theory::problems::options::{chosen, listed};
+
+/// Problems of earlier versions, each with its new name and what a case then gives.
+const OLD_PROBLEMS: [(&str, &str, &str); 12] = [
+    ("transmittance-curve", "transmittance", "`distances`, as in `distances = 8`"),
+    ("spectral-transmittance", "transmittance", "a list of several media"),
+    ("lit-rod", "rod", "`light = \"emitter\"`"),
+    ("spectral-rod", "rod", "`albedos`"),
+    ("spectral-lit-rod", "rod", "`light = \"emitter\"`, `albedos` and a list of several media"),
+    ("bidirectional-rod", "rod", "`sensor`"),
+    ("lit-slab", "slab", "`light`"),
+    ("spectral-slab", "slab", "`albedos`"),
+    ("chromatic-slab", "slab", "`albedos`, `phases` and a list of several media"),
+    ("spectral-single-scattering", "single-scattering", "`albedos`, `phases` and several volumes"),
+    ("spectral-furnace", "furnace", "`albedos`, `phases` and several volumes"),
+    ("sphere", "ball", ""),
+];
+
+/// Explains the name of a problem of earlier versions in a file's section, `problem` or `picture`: message and cure.
+pub fn explain_problem(section: &str, name: &str) -> Option<[String; 2]> {
+    let (old, new, option) = OLD_PROBLEMS.into_iter().find(|(old, ..)| *old == name)?;
+    let with = if option.is_empty() { String::new() } else { format!(", with {option}") };
+    Some([format!("`{old}` is now `{new}`{with}"), format!("write `{section}.{new}`{with}")])
+}
+
+/// Explains the name of an estimator that another form of a problem has: message and cure. `own` are the options of the
+/// case's form.
+pub fn explain_estimator(problem: &str, own: &[ProblemOption], name: &str) -> Option<[String; 2]> {
+    let forms = estimators::catalogues().into_iter().filter(|form| form.problem == problem);
+    let has_name =
+        |form: &estimators::FormCatalogue| form.list.pages.iter().any(|page| page.name() == name);
+    let forms: Vec<_> = forms.filter(has_name).collect();
+    let cure = |form: &estimators::FormCatalogue| {
+        let without = |from: &[ProblemOption], others: &[ProblemOption]| -> Vec<ProblemOption> {
+            from.iter().filter(|option| !others.contains(option)).copied().collect()
+        };
+        let (missing, surplus) = (without(form.options, own), without(own, form.options));
+        match (missing.as_slice(), surplus.as_slice()) {
+            (missing, []) => format!("give {}", listed(missing)),
+            ([], surplus) => format!("leave {} out", listed(surplus)),
+            (missing, surplus) => {
+                format!("give {} and leave {} out", listed(missing), listed(surplus))
+            }
+        }
+    };
+    let needs: Vec<String> = forms.iter().map(|form| needed(form.options)).collect();
+    let cures: Vec<String> = forms.iter().map(cure).collect();
+    let message = format!("`{name}` needs {}", needs.join(", or "));
+    (!forms.is_empty()).then(|| [message, cures.join("; or ")])
+}
+
+/// Requirement of a form on a case, in words.
+fn needed(options: &[ProblemOption]) -> String {
+    use ProblemOption::{Albedos, Light, Media};
+    match options {
+        [] => "a case without options".to_owned(),
+        [Albedos | Media] | [Albedos, Media] => "several channels".to_owned(),
+        [Light, Albedos, Media] => "several channels and a `light`".to_owned(),
+        others => listed(others),
+    }
+}
+
+/// Name of the form that a problem's settings ask for, as in `rod with light`; `None` where no form has all options.
+pub fn title(problem: &str, settings: &[Entry]) -> Option<String> {
+    let faults = RefCell::default();
+    let settings = Settings::new(settings, Path::new(""), &faults);
+    let forms = estimators::catalogues().into_iter().filter(|form| form.problem == problem);
+    let mut forms: Vec<_> = forms.collect();
+    let options: Vec<_> = forms.iter().map(|form| form.options).collect();
+    Some(forms.swap_remove(chosen(&options, &settings)?).title)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_estimator_of_another_form_says_what_it_needs() {
+        let says = |own: &[ProblemOption], name: &str| explain_estimator("rod", own, name);
+        let text = |[message, help]: [&str; 2]| Some([message.to_owned(), help.to_owned()]);
+        assert_eq!(says(&[], "hero"), text(["`hero` needs several channels", "give `albedos`"]));
+        assert_eq!(
+            says(&[ProblemOption::Light], "terminating"),
+            text(["`terminating` needs a case without options", "leave a `light` out"])
+        );
+        assert_eq!(
+            says(&[], "full-mis"),
+            text([
+                "`full-mis` needs a `light`, or a `sensor`",
+                "give a `light`; or give a `sensor`"
+            ])
+        );
+        assert_eq!(says(&[], "no-such"), None);
+    }
+
+    #[test]
+    fn every_old_problem_has_a_new_one() {
+        let problems = theory::problems::CATALOGUE.pages;
+        for (old, new, _) in OLD_PROBLEMS {
+            assert!(problems.iter().any(|page| page.name() == new), "{new}");
+            assert!(problems.iter().all(|page| page.name() != old), "{old}");
+        }
+    }
+}
