@@ -4,11 +4,10 @@
 //! X = (X₁ + X₂)/2,  Var X = Var X₁/2,  twice the lookups
 //! ```
 
-use trueflight::estimators::transmittance::ratio::Ratio;
-use trueflight::estimators::{Draw, Estimator, Inputs, Refusal, Setup};
-use trueflight::media::Lookups;
+use trueflight::estimators::transmittance::{product, ratio::Ratio};
+use trueflight::estimators::{Draw, Estimator, Inputs, Kernel, Refusal, Request, Setup, walks};
 use trueflight::problems::Transmittance;
-use trueflight::rng::Stream;
+use trueflight::theory::rules::Weight;
 use trueflight::theory::{CountLaw, Moments, Prediction};
 
 /// Two rays; σ̂ is their only input.
@@ -37,10 +36,16 @@ impl Estimator<Transmittance> for TwoRays {
         Prediction { channels: vec![channel], lookups, ..Prediction::default() }
     }
 
-    #[inline(always)]
-    fn draw(&self, setup: &Setup<Transmittance>, medium: &Lookups, rng: &mut Stream) -> Draw {
-        let [first, second] = [0, 1].map(|_| Ratio.draw(setup, medium, rng));
-        let value = 0.5 * (first.value[0] + second.value[0]);
-        Draw::free([value], first.lookups + second.lookups)
+    fn fill(&self, _: Kernel, setup: &Setup<Transmittance>, request: Request) {
+        walks::one_by_one(
+            setup,
+            request,
+            #[inline(always)]
+            |medium, random| {
+                let [first, second] = [0, 1].map(|_| product::draw(setup, &Weight, medium, random));
+                let value = 0.5 * (first.value[0] + second.value[0]);
+                Draw::free([value], first.lookups + second.lookups)
+            },
+        );
     }
 }

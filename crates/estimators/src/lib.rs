@@ -34,20 +34,16 @@ pub mod transmittance_curve;
 pub mod trial;
 pub mod walks;
 
-use fearless_simd::Level;
-
-use crate::kernels::packet;
 use crate::recipes::controls;
-use media::Lookups;
 use media::catalogue::{PageList, Settings};
-use numeric::rng::{Address, Stream};
+use numeric::rng::Address;
 use theory::Prediction;
 use theory::problems::{Named, Problem, ProblemOption, each_problem};
 
 pub use crate::recipes::{Refusal, Site};
 pub use crate::setup::Setup;
 
-pub use crate::kernels::{Draw, DrawBuffer};
+pub use crate::kernels::{Draw, DrawBuffer, Request};
 pub use transmittance_curve::RayView;
 pub use trial::{Experiment, Kernel};
 
@@ -77,8 +73,6 @@ pub trait Estimator<P: Problem>: Clone + Send + Sync + 'static {
     const HAS_INVARIANT: bool = false;
     /// Whether σ̂ may be 0 wherever the residual is: collisions there change nothing but the cost.
     const SKIPS: bool = false;
-    /// Whether it draws eight at a time, by [`Estimator::draw_packets`].
-    const IN_PACKETS: bool = false;
 
     /// The estimator itself, where it has no settings.
     const PLAIN: Option<Self> = None;
@@ -139,22 +133,10 @@ pub trait Estimator<P: Problem>: Clone + Send + Sync + 'static {
         None
     }
 
-    /// Makes one draw.
-    fn draw(&self, setup: &Setup<P>, medium: &Lookups, rng: &mut Stream) -> Draw<P::Value>;
-
-    /// Makes the draws of a request as [`Estimator::draw`] makes them from the request's streams in
-    /// turn, bit for bit, on the hardware of a level. What the hardware has no kernel for is handed
-    /// back.
-    fn draw_packets<'a>(
-        &self,
-        level: Level,
-        setup: &Setup<P>,
-        medium: &Lookups,
-        request: packet::Request<'a>,
-    ) -> Option<packet::Request<'a>> {
-        let _ = (level, setup, medium);
-        Some(request)
-    }
+    /// Makes the draws of a request: the same draws, bit for bit, by any kernel and level that fuses.
+    ///
+    /// Draw j comes from stream j mod 16. [`walks::fill`] makes them of a walk, [`walks::one_by_one`] of a function.
+    fn fill(&self, kernel: Kernel, setup: &Setup<P>, request: Request);
 }
 
 /// A problem with a catalogue of estimators.
@@ -222,32 +204,20 @@ macro_rules! estimators {
 }
 use estimators;
 
-/// The draws of a product estimator of transmittance, by all kernels: all that differs is the rule at
-/// a collision, as in `product_draws!(self => self.rule)`.
+/// The draws of a product estimator of transmittance: all that differs is the rule at a collision, as in
+/// `product_draws!(self => self.rule)`.
 macro_rules! product_draws {
     ($this:ident => $rule:expr) => {
         const HAS_INVARIANT: bool = true;
         const SKIPS: bool = true;
-        const IN_PACKETS: bool = true;
 
-        #[inline(always)]
-        fn draw(
+        fn fill(
             &$this,
+            kernel: $crate::Kernel,
             setup: &$crate::Setup<Transmittance>,
-            medium: &media::Lookups,
-            rng: &mut numeric::rng::Stream,
-        ) -> $crate::Draw {
-            $crate::transmittance::product::draw(setup, &$rule, medium, rng)
-        }
-
-        fn draw_packets<'a>(
-            &$this,
-            level: fearless_simd::Level,
-            setup: &$crate::Setup<Transmittance>,
-            medium: &media::Lookups,
-            request: $crate::kernels::packet::Request<'a>,
-        ) -> Option<$crate::kernels::packet::Request<'a>> {
-            $crate::transmittance::product::packets(level, setup, &$rule, medium, request)
+            request: $crate::Request,
+        ) {
+            $crate::transmittance::product::fill(kernel, setup, &$rule, request);
         }
     };
 }
@@ -260,7 +230,6 @@ macro_rules! scored {
         impl $crate::Estimator<Transmittance> for $Page {
             const INPUTS: $crate::Inputs = $crate::Inputs::SAMPLING;
             const PLAIN: Option<Self> = Some(Self);
-            const IN_PACKETS: bool = true;
 
             fn domain(&self, setup: &Setup<Transmittance>) -> Result<(), $crate::Refusal> {
                 setup.require_plain_unit("τ ≤ 300 (its draws are sums of terms of every size)")?;
@@ -273,27 +242,14 @@ macro_rules! scored {
                 theory::volterra::predict(&setup.mesh, sampling, self)
             }
 
-            #[inline(always)]
-            fn draw(
+            fn fill(
                 &self,
+                kernel: $crate::Kernel,
                 setup: &Setup<Transmittance>,
-                medium: &media::Lookups,
-                rng: &mut numeric::rng::Stream,
-            ) -> $crate::Draw {
+                request: $crate::Request,
+            ) {
                 let walk = $crate::transmittance::scoring::Scoring::new(Self, setup);
-                $crate::walks::draw(&walk, &setup.sampling, medium, rng)
-            }
-
-            fn draw_packets<'a>(
-                &self,
-                level: fearless_simd::Level,
-                setup: &Setup<Transmittance>,
-                medium: &media::Lookups,
-                request: $crate::kernels::packet::Request<'a>,
-            ) -> Option<$crate::kernels::packet::Request<'a>> {
-                let ground = $crate::walks::Ground::new(setup, medium);
-                let walk = $crate::transmittance::scoring::Scoring::new(Self, setup);
-                $crate::walks::packets(level, &walk, ground, request)
+                $crate::walks::fill(&walk, kernel, setup, request);
             }
         }
     };

@@ -3,10 +3,8 @@
 use fearless_simd::Level;
 
 use super::{DrawBuffer, Estimator, Inputs, RayView, Refusal, Setup};
-use crate::kernels::packet::Request;
+use crate::kernels::Request;
 use crate::recipes::controls;
-use media::Lookups;
-use numeric::pack::in_fused_code;
 use numeric::rng::{Address, Streams};
 use theory::Prediction;
 use theory::problems::Problem;
@@ -137,21 +135,7 @@ impl<P: Problem, E: Estimator<P>> Experiment for Trial<P, E> {
         count: usize,
         buffer: &mut DrawBuffer,
     ) {
-        let request = Request { streams, count, buffer };
-        let left = match kernel {
-            Kernel::Packets(level) if E::IN_PACKETS => {
-                let medium = self.setup.problem.lookups(level);
-                self.estimator.draw_packets(level, &self.setup, &medium, request)
-            }
-            _ => Some(request),
-        };
-        if let Some(mut request) = left {
-            let medium = self.setup.problem.lookups(Level::new());
-            in_fused_code(
-                #[inline(always)]
-                || self.one_by_one(&medium, &mut request),
-            );
-        }
+        self.estimator.fill(kernel, &self.setup, Request { streams, count, buffer });
     }
 
     fn has_invariant(&self) -> bool {
@@ -160,16 +144,5 @@ impl<P: Problem, E: Estimator<P>> Experiment for Trial<P, E> {
 
     fn skipped(&self) -> f64 {
         self.setup.skipped
-    }
-}
-
-impl<P: Problem, E: Estimator<P>> Trial<P, E> {
-    #[inline(always)]
-    fn one_by_one(&self, medium: &Lookups, request: &mut Request) {
-        request.buffer.clear();
-        for _ in 0..request.count {
-            let stream = request.streams.of_next_draw();
-            request.buffer.push(&self.estimator.draw(&self.setup, medium, stream));
-        }
     }
 }

@@ -10,7 +10,7 @@ use numeric::rng::{LANES, PACKS};
 use theory::ParticleRule;
 use theory::problems::Rod;
 use theory::problems::rod::channels;
-use trueflight_estimators::kernels::packet::bank::Slots;
+use trueflight_estimators::kernels::bank::Slots;
 use trueflight_estimators::rod::walk::{By, InRod, Particle};
 use trueflight_estimators::slab::walk::turned;
 use trueflight_estimators::sphere::connect::cone;

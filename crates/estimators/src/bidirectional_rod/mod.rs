@@ -189,7 +189,6 @@ macro_rules! pages {
     ($Page:ident) => {
         impl $crate::Estimator<theory::problems::BidirectionalRod> for $Page {
             const INPUTS: $crate::Inputs = $crate::Inputs::SAMPLING;
-            const IN_PACKETS: bool = true;
 
             fn read(settings: &media::catalogue::Settings) -> Option<Self> {
                 Page::read(settings, Self::combination).map(Self)
@@ -217,24 +216,22 @@ macro_rules! pages {
                 self.0.predict(setup)
             }
 
-            #[inline(always)]
-            fn draw(
+            fn fill(
                 &self,
+                kernel: $crate::Kernel,
                 setup: &$crate::Setup<theory::problems::BidirectionalRod>,
-                medium: &media::Lookups,
-                rng: &mut numeric::rng::Stream,
-            ) -> $crate::Draw<theory::problems::bidirectional_rod::Values> {
-                $crate::bidirectional_rod::draw(&self.0, setup, medium, rng)
-            }
-
-            fn draw_packets<'a>(
-                &self,
-                level: fearless_simd::Level,
-                setup: &$crate::Setup<theory::problems::BidirectionalRod>,
-                medium: &media::Lookups,
-                request: $crate::kernels::packet::Request<'a>,
-            ) -> Option<$crate::kernels::packet::Request<'a>> {
-                $crate::bidirectional_rod::packets(level, &self.0, setup, medium, request)
+                request: $crate::Request,
+            ) {
+                $crate::walks::by(
+                    kernel,
+                    setup,
+                    request,
+                    |level, medium, request| {
+                        $crate::bidirectional_rod::packets(level, &self.0, setup, medium, request)
+                    },
+                    #[inline(always)]
+                    |medium, rng| $crate::bidirectional_rod::draw(&self.0, setup, medium, rng),
+                );
             }
         }
     };

@@ -1,15 +1,10 @@
 //! All channels by one draw: the page of a hero, of spectral tracking and of the balance heuristic, in all bodies.
 
-use fearless_simd::Level;
-
 use super::{By, Chromatic, WEIGHING, draw};
-use crate::kernels::packet::Request;
 use crate::setup::heroes::Heroes;
 use crate::setup::walker::{MIS, Walker};
-use crate::{Draw, Estimator, Inputs, Refusal, Setup};
-use media::Lookups;
+use crate::{Estimator, Inputs, Kernel, Refusal, Request, Setup, walks};
 use media::catalogue::Settings;
-use numeric::rng::Stream;
 use theory::Prediction;
 use theory::spectral::Chances;
 
@@ -23,7 +18,6 @@ pub struct AllChannels<const KIND: u8> {
 impl<P: Chromatic, const KIND: u8> Estimator<P> for AllChannels<KIND> {
     const INPUTS: Inputs = Inputs::SAMPLING;
     const HAS_INVARIANT: bool = KIND == MIS;
-    const IN_PACKETS: bool = true;
 
     fn read(settings: &Settings) -> Option<Self> {
         Some(Self { walker: Walker::read(KIND, settings)? })
@@ -60,19 +54,17 @@ impl<P: Chromatic, const KIND: u8> Estimator<P> for AllChannels<KIND> {
         }
     }
 
-    #[inline(always)]
-    fn draw(&self, setup: &Setup<P>, medium: &Lookups, rng: &mut Stream) -> Draw<P::Value> {
-        draw(&self.walker, true, setup, medium, rng)
-    }
-
-    fn draw_packets<'a>(
-        &self,
-        level: Level,
-        setup: &Setup<P>,
-        medium: &Lookups,
-        request: Request<'a>,
-    ) -> Option<Request<'a>> {
-        let by = By { walker: &self.walker, weighing: WEIGHING, scores_all: true };
-        P::packets(level, by, setup, medium, request)
+    fn fill(&self, kernel: Kernel, setup: &Setup<P>, request: Request) {
+        walks::by(
+            kernel,
+            setup,
+            request,
+            |level, medium, request| {
+                let by = By { walker: &self.walker, weighing: WEIGHING, scores_all: true };
+                P::packets(level, by, setup, medium, request)
+            },
+            #[inline(always)]
+            |medium, rng| draw(&self.walker, true, setup, medium, rng),
+        );
     }
 }

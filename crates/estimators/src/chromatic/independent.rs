@@ -1,15 +1,10 @@
 //! One channel a draw, by an analog walk through its own medium: the page of all bodies.
 
-use fearless_simd::Level;
-
 use super::{By, Chromatic, WEIGHING, draw};
-use crate::kernels::packet::Request;
 use crate::setup::heroes::Heroes;
 use crate::setup::walker::Walker;
-use crate::{Draw, Estimator, Inputs, Refusal, Setup};
-use media::Lookups;
+use crate::{Estimator, Inputs, Kernel, Refusal, Request, Setup, walks};
 use media::catalogue::Settings;
-use numeric::rng::Stream;
 use theory::Prediction;
 
 /// One channel a draw.
@@ -22,7 +17,6 @@ pub struct Independent {
 
 impl<P: Chromatic> Estimator<P> for Independent {
     const INPUTS: Inputs = Inputs::SAMPLING;
-    const IN_PACKETS: bool = true;
 
     fn read(settings: &Settings) -> Option<Self> {
         let heroes = Heroes::read(settings)?;
@@ -41,19 +35,17 @@ impl<P: Chromatic> Estimator<P> for Independent {
         P::predict_independent(setup, &self.heroes.of(setup.channels.len()))
     }
 
-    #[inline(always)]
-    fn draw(&self, setup: &Setup<P>, medium: &Lookups, rng: &mut Stream) -> Draw<P::Value> {
-        draw(&self.walker, false, setup, medium, rng)
-    }
-
-    fn draw_packets<'a>(
-        &self,
-        level: Level,
-        setup: &Setup<P>,
-        medium: &Lookups,
-        request: Request<'a>,
-    ) -> Option<Request<'a>> {
-        let by = By { walker: &self.walker, weighing: WEIGHING, scores_all: false };
-        P::packets(level, by, setup, medium, request)
+    fn fill(&self, kernel: Kernel, setup: &Setup<P>, request: Request) {
+        walks::by(
+            kernel,
+            setup,
+            request,
+            |level, medium, request| {
+                let by = By { walker: &self.walker, weighing: WEIGHING, scores_all: false };
+                P::packets(level, by, setup, medium, request)
+            },
+            #[inline(always)]
+            |medium, rng| draw(&self.walker, false, setup, medium, rng),
+        );
     }
 }

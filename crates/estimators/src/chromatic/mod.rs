@@ -8,7 +8,7 @@ pub mod independent;
 
 use fearless_simd::Level;
 
-use crate::kernels::packet::Request;
+use crate::kernels::Request;
 use crate::setup::walker::Walker;
 use crate::walks::hero::Weighing;
 use crate::{Draw, Refusal, Setup};

@@ -10,10 +10,10 @@ use fearless_simd::Level;
 
 use self::walk::InSlab;
 use super::chromatic::{By, Chromatic, Right, Steps};
-use crate::kernels::packet::Request;
+use crate::kernels::Request;
 use crate::setup::channels;
 use crate::setup::walker::Walker;
-use crate::walks::{self, Ground};
+use crate::walks;
 use crate::{Draw, Refusal, Setup, estimators};
 use media::Lookups;
 use numeric::digits::rounded;
@@ -59,7 +59,7 @@ impl Chromatic for ChromaticSlab {
         medium: &Lookups,
         request: Request<'a>,
     ) -> Option<Request<'a>> {
-        walks::packets(level, &InSlab::new(Right, by, setup), Ground::new(setup, medium), request)
+        walks::packets(level, &InSlab::new(Right, by, setup), setup, medium, request)
     }
 
     fn require(setup: &Setup<Self>, walker: &Walker) -> Result<(), Refusal> {

@@ -15,9 +15,8 @@
 //!
 //! Source: Szirmay-Kalos et al. 2017, Eq. 4.
 
-use crate::{Draw, Estimator, Inputs, Refusal, Setup};
-use media::Lookups;
-use numeric::rng::{Stream, exponential};
+use crate::{Draw, Estimator, Inputs, Kernel, Refusal, Request, Setup, walks};
+use numeric::rng::exponential;
 use theory::problems::{FreeFlight, Problem};
 use theory::{CountLaw, Prediction, flight};
 
@@ -42,9 +41,16 @@ impl Estimator<FreeFlight> for Inversion {
     }
 
     #[inline(always)]
-    fn draw(&self, setup: &Setup<FreeFlight>, _: &Lookups, rng: &mut Stream) -> Draw {
-        let ray = setup.problem.medium().span();
-        let end = setup.problem.inverse().free_flight(exponential(rng)).unwrap_or(ray.to);
-        Draw::free([end - ray.from], 0)
+    fn fill(&self, _: Kernel, setup: &Setup<FreeFlight>, request: Request) {
+        let (ray, inverse) = (setup.problem.medium().span(), setup.problem.inverse());
+        walks::one_by_one(
+            setup,
+            request,
+            #[inline(always)]
+            |_, random| {
+                let end = inverse.free_flight(exponential(random)).unwrap_or(ray.to);
+                Draw::free([end - ray.from], 0)
+            },
+        );
     }
 }

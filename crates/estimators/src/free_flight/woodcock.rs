@@ -12,14 +12,10 @@
 //! Source: E. R. Woodcock, T. Murphy, P. Hemmings, T. Longworth, *Techniques used in the GEM code
 //! for Monte Carlo neutronics calculations*, ANL-7050 (1965).
 
-use fearless_simd::Level;
-
-use crate::kernels::packet::Request;
-use crate::walks::{self, Ground, Met, Route, Walk};
-use crate::{Draw, Estimator, Inputs, Refusal, Setup};
-use media::Lookups;
+use crate::walks::{self, Met, Route, Walk};
+use crate::{Estimator, Inputs, Kernel, Refusal, Request, Setup};
 use media::course::BothWays;
-use numeric::rng::{Random, Stream};
+use numeric::rng::Random;
 use numeric::{Lane, Span, kept};
 use theory::problems::{FreeFlight, Problem};
 use theory::rules::Null;
@@ -33,7 +29,6 @@ impl Estimator<FreeFlight> for Woodcock {
     const INPUTS: Inputs = Inputs::SAMPLING;
     const PLAIN: Option<Self> = Some(Self);
     const SKIPS: bool = true;
-    const IN_PACKETS: bool = true;
 
     fn domain(&self, setup: &Setup<FreeFlight>) -> Result<(), Refusal> {
         setup.require_ratio_at_most(1.0, "σ̂ ≥ σ_t everywhere")?;
@@ -47,20 +42,8 @@ impl Estimator<FreeFlight> for Woodcock {
         flight::predict(&setup.mesh, product.lookups(&mesh, &all))
     }
 
-    #[inline(always)]
-    fn draw(&self, setup: &Setup<FreeFlight>, medium: &Lookups, random: &mut Stream) -> Draw {
-        walks::draw(&Flights::new(setup), &setup.sampling, medium, random)
-    }
-
-    fn draw_packets<'a>(
-        &self,
-        level: Level,
-        setup: &Setup<FreeFlight>,
-        medium: &Lookups,
-        request: Request<'a>,
-    ) -> Option<Request<'a>> {
-        let ground = Ground::new(setup, medium);
-        walks::packets(level, &Flights::new(setup), ground, request)
+    fn fill(&self, kernel: Kernel, setup: &Setup<FreeFlight>, request: Request) {
+        walks::fill(&Flights::new(setup), kernel, setup, request);
     }
 }
 

@@ -1,5 +1,7 @@
 //! Draws, one by one and in a buffer.
 
+use numeric::rng::Streams;
+
 /// One realisation.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Draw<V = [f64; 1]> {
@@ -83,10 +85,32 @@ impl DrawBuffer {
         Some((values, &mut self.lookups, &mut self.defects))
     }
 
+    /// Repeats the draws until there are so many.
+    pub fn repeat(&mut self, count: usize) {
+        fn cycled<T: Copy>(list: &mut Vec<T>, count: usize) {
+            *list = list.iter().copied().cycle().take(count).collect();
+        }
+        if self.lookups.len() < count {
+            self.values.iter_mut().for_each(|channel| cycled(channel, count));
+            cycled(&mut self.lookups, count);
+            cycled(&mut self.defects, count);
+        }
+    }
+
     /// Makes room for exactly so many draws, to be written anew.
     pub fn make_room(&mut self, count: usize) {
         self.values.iter_mut().for_each(|channel| channel.resize(count, 0.0));
         self.lookups.resize(count, 0);
         self.defects.resize(count, 0.0);
     }
+}
+
+/// What is to be drawn.
+pub struct Request<'a> {
+    /// The streams of the block, where the draws before left them.
+    pub streams: &'a mut Streams,
+    /// How many draws.
+    pub count: usize,
+    /// Where they go.
+    pub buffer: &'a mut DrawBuffer,
 }

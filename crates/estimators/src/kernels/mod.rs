@@ -1,10 +1,6 @@
-//! Kernels: loops that make draws, whatever the estimator. Floor 4.
-//!
-//! Walks along a line are in [`crate::walks`]. [`packet`] has the slots of particle banks, and the packets of walks in space with
-//! channels. [`hero`] is the score of their paths in each channel.
+//! Draws, their buffers, and the slots in which packs of walks write them.
 
+pub mod bank;
 pub mod draw;
-pub mod hero;
-pub mod packet;
 
-pub use draw::{Draw, DrawBuffer};
+pub use draw::{Draw, DrawBuffer, Request};

@@ -7,15 +7,8 @@ pub mod shadow;
 pub mod unidirectional;
 pub mod walk;
 
-use fearless_simd::Level;
-
-use crate::kernels::packet::Request;
-use crate::walks::{self, Ground};
-use crate::{Draw, Refusal, Setup, estimators};
-use media::Lookups;
+use crate::{Kernel, Refusal, Request, Setup, estimators};
 use media::catalogue::Settings;
-use numeric::pack::in_fused_code;
-use numeric::rng::Stream;
 use theory::lit_rod::{self, Heuristic, Shadow, Techniques};
 use theory::problems::{LitRod, Problem};
 use theory::{ParticleRule, Prediction};
@@ -32,22 +25,8 @@ pub trait Lit: Problem<Value = [f64; 1]> {
     /// What theory says of its draws.
     fn predict(setup: &Setup<Self>, techniques: Techniques) -> Prediction;
 
-    /// One of them: compiled once for all pages.
-    fn draw(
-        techniques: Techniques,
-        setup: &Setup<Self>,
-        medium: &Lookups,
-        rng: &mut Stream,
-    ) -> Draw<[f64; 1]>;
-
-    /// Makes the draws in packets, see [`crate::Estimator::draw_packets`].
-    fn packets<'a>(
-        level: Level,
-        techniques: Techniques,
-        setup: &Setup<Self>,
-        medium: &Lookups,
-        request: Request<'a>,
-    ) -> Option<Request<'a>>;
+    /// Makes the draws of a request: compiled once for all pages.
+    fn fill(techniques: Techniques, kernel: Kernel, setup: &Setup<Self>, request: Request);
 }
 
 impl Lit for LitRod {
@@ -68,43 +47,9 @@ impl Lit for LitRod {
         lit_rod::predict(mesh, problem, sampling, techniques, setup.laws)
     }
 
-    #[inline(never)]
-    fn draw(
-        techniques: Techniques,
-        setup: &Setup<Self>,
-        medium: &Lookups,
-        rng: &mut Stream,
-    ) -> Draw<[f64; 1]> {
-        in_fused_code(
-            #[inline(always)]
-            || walk::draw(&techniques, setup, medium, rng),
-        )
+    fn fill(techniques: Techniques, kernel: Kernel, setup: &Setup<Self>, request: Request) {
+        walk::fill(techniques, kernel, setup, request);
     }
-
-    fn packets<'a>(
-        level: Level,
-        techniques: Techniques,
-        setup: &Setup<Self>,
-        medium: &Lookups,
-        request: Request<'a>,
-    ) -> Option<Request<'a>> {
-        let walk = walk::ToEmitter::of(setup, techniques);
-        packets(level, &walk, Ground::new(setup, medium), request)
-    }
-}
-
-/// The draws of walks that cast shadow rays, see [`walks::packets`].
-pub(crate) fn packets<'a>(
-    level: Level,
-    walk: &impl walks::Walk,
-    ground: Ground,
-    request: Request<'a>,
-) -> Option<Request<'a>> {
-    // Lanes that turn from walks to shadow rays and back load other pieces of σ̂ each time.
-    if ground.sampling.even().is_none() && !ground.medium.is_costly() {
-        return Some(request);
-    }
-    walks::packets(level, walk, ground, request)
 }
 
 /// Reads `shadow`, one of some words.
@@ -137,7 +82,6 @@ fn label(shadow: Shadow, heuristic: Heuristic) -> String {
 macro_rules! lit {
     ($this:ident => $techniques:expr) => {
         const INPUTS: $crate::Inputs = $crate::Inputs::SAMPLING;
-        const IN_PACKETS: bool = true;
 
         fn needs(&$this) -> Option<&'static str> {
             let is_exact = $techniques.shadow == Some(theory::lit_rod::Shadow::Exact);
@@ -155,24 +99,13 @@ macro_rules! lit {
             P::predict(setup, $techniques)
         }
 
-        #[inline(always)]
-        fn draw(
+        fn fill(
             &$this,
+            kernel: $crate::Kernel,
             setup: &$crate::Setup<P>,
-            medium: &media::Lookups,
-            rng: &mut numeric::rng::Stream,
-        ) -> $crate::Draw<[f64; 1]> {
-            P::draw($techniques, setup, medium, rng)
-        }
-
-        fn draw_packets<'a>(
-            &$this,
-            level: fearless_simd::Level,
-            setup: &$crate::Setup<P>,
-            medium: &media::Lookups,
-            request: $crate::kernels::packet::Request<'a>,
-        ) -> Option<$crate::kernels::packet::Request<'a>> {
-            P::packets(level, $techniques, setup, medium, request)
+            request: $crate::Request,
+        ) {
+            P::fill($techniques, kernel, setup, request);
         }
     };
 }

@@ -17,10 +17,10 @@
 
 use super::shadow::{Before, ShadowRays, Steps};
 use crate::walks::{self, Met, Route, Walk};
-use crate::{Draw, Setup};
+use crate::{Kernel, Request, Setup};
+use media::Piecewise;
 use media::course::BothWays;
-use media::{Lookups, Piecewise};
-use numeric::rng::{Random, Stream};
+use numeric::rng::Random;
 use numeric::{Lane, Mask, kept};
 use theory::ParticleRule;
 use theory::lit_rod::Shadow;
@@ -81,15 +81,9 @@ impl<'a, S: Steps> ToEmitter<'a, S> {
     }
 }
 
-/// Makes one draw.
-#[inline(always)]
-pub fn draw(
-    steps: &impl Steps,
-    setup: &Setup<LitRod>,
-    medium: &Lookups,
-    random: &mut Stream,
-) -> Draw<[f64; 1]> {
-    walks::draw(&ToEmitter::of(setup, *steps), &setup.sampling, medium, random)
+/// Makes the draws of a request.
+pub fn fill(steps: impl Steps, kernel: Kernel, setup: &Setup<LitRod>, request: Request) {
+    walks::fill(&ToEmitter::of(setup, steps), kernel, setup, request);
 }
 
 impl<S: Steps> Walk for ToEmitter<'_, S> {

@@ -6,15 +6,8 @@ pub mod next_event;
 pub mod unidirectional;
 pub mod walk;
 
-use fearless_simd::Level;
-
-use super::lit_rod::{self, Lit};
-use crate::kernels::packet::Request;
-use crate::walks::Ground;
-use crate::{Draw, Refusal, Setup, estimators};
-use media::Lookups;
-use numeric::pack::in_fused_code;
-use numeric::rng::Stream;
+use super::lit_rod::Lit;
+use crate::{Kernel, Refusal, Request, Setup, estimators};
 use theory::lit_rod::{Combination, Techniques};
 use theory::problems::LitSlab;
 use theory::{ParticleRule, Prediction, lit_slab};
@@ -42,30 +35,9 @@ impl Lit for LitSlab {
         lit_slab::predict(mesh, problem, sampling, techniques, setup.laws)
     }
 
-    #[inline(never)]
-    fn draw(
-        techniques: Techniques,
-        setup: &Setup<Self>,
-        medium: &Lookups,
-        rng: &mut Stream,
-    ) -> Draw<[f64; 1]> {
+    fn fill(techniques: Techniques, kernel: Kernel, setup: &Setup<Self>, request: Request) {
         let techniques = lit_slab::possible(techniques, setup.problem.light);
-        in_fused_code(
-            #[inline(always)]
-            || walk::draw((&techniques, &walk::Right), setup, medium, rng),
-        )
-    }
-
-    fn packets<'a>(
-        level: Level,
-        techniques: Techniques,
-        setup: &Setup<Self>,
-        medium: &Lookups,
-        request: Request<'a>,
-    ) -> Option<Request<'a>> {
-        let techniques = lit_slab::possible(techniques, setup.problem.light);
-        let walk = walk::ToLight::of(setup, techniques, walk::Right);
-        lit_rod::packets(level, &walk, Ground::new(setup, medium), request)
+        walk::fill((techniques, walk::Right), kernel, setup, request);
     }
 }
 

@@ -17,11 +17,10 @@
 
 use crate::lit_rod::shadow::{Before, ShadowRays, Steps};
 use crate::walks::{self, Met, Route, Walk};
-use crate::{Draw, Setup};
-use media::Lookups;
+use crate::{Kernel, Request, Setup};
 use media::course::BothWays;
 use media::phase::Phase;
-use numeric::rng::{Random, Stream};
+use numeric::rng::Random;
 use numeric::{Lane, Mask, kept};
 use theory::ParticleRule;
 use theory::lit_rod::Shadow;
@@ -97,15 +96,14 @@ impl<'a, S: Steps, D: Directions> ToLight<'a, S, D> {
     }
 }
 
-/// Makes one draw.
-#[inline(always)]
-pub fn draw(
-    (steps, directions): (&impl Steps, &impl Directions),
+/// Makes the draws of a request.
+pub fn fill(
+    (steps, directions): (impl Steps, impl Directions),
+    kernel: Kernel,
     setup: &Setup<LitSlab>,
-    medium: &Lookups,
-    random: &mut Stream,
-) -> Draw<[f64; 1]> {
-    walks::draw(&ToLight::of(setup, *steps, *directions), &setup.sampling, medium, random)
+    request: Request,
+) {
+    walks::fill(&ToLight::of(setup, steps, directions), kernel, setup, request);
 }
 
 impl<S: Steps, D: Directions> Walk for ToLight<'_, S, D> {

@@ -8,18 +8,11 @@ pub mod terminating;
 pub mod walk;
 pub mod weighted;
 
-use fearless_simd::Level;
-
-use crate::kernels::packet::Request;
-use crate::walks::{self, Ground};
-use crate::{Draw, Refusal, Setup, estimators};
-use media::Lookups;
-use numeric::rng::Stream;
-use theory::problems::rod::Values;
+use crate::{Kernel, Refusal, Request, Setup, estimators};
 use theory::problems::{Problem, Rod};
 use theory::rod::{self, NoVariance};
 use theory::{ParticleRule, Prediction};
-use walk::{By, InRod};
+use walk::By;
 
 /// A problem whose walks collide by a rule: the pages of its estimators are the same.
 pub trait ByRule: Problem {
@@ -33,22 +26,8 @@ pub trait ByRule: Problem {
     /// What theory says of its draws.
     fn predict(setup: &Setup<Self>, rule: ParticleRule) -> Prediction;
 
-    /// One of them.
-    fn draw(
-        rule: ParticleRule,
-        setup: &Setup<Self>,
-        medium: &Lookups,
-        rng: &mut Stream,
-    ) -> Draw<Self::Value>;
-
-    /// Makes the draws in packets, see [`crate::Estimator::draw_packets`].
-    fn packets<'a>(
-        level: Level,
-        rule: ParticleRule,
-        setup: &Setup<Self>,
-        medium: &Lookups,
-        request: Request<'a>,
-    ) -> Option<Request<'a>>;
+    /// Makes the draws of a request.
+    fn fill(rule: ParticleRule, kernel: Kernel, setup: &Setup<Self>, request: Request);
 }
 
 impl ByRule for Rod {
@@ -93,25 +72,8 @@ impl ByRule for Rod {
         rod::predict(&setup.mesh, &setup.problem, &setup.sampling, rule, setup.laws)
     }
 
-    #[inline(always)]
-    fn draw(
-        rule: ParticleRule,
-        setup: &Setup<Self>,
-        medium: &Lookups,
-        rng: &mut Stream,
-    ) -> Draw<Values> {
-        walk::draw(&By { rule, roulette: None }, setup, medium, rng)
-    }
-
-    fn packets<'a>(
-        level: Level,
-        rule: ParticleRule,
-        setup: &Setup<Self>,
-        medium: &Lookups,
-        request: Request<'a>,
-    ) -> Option<Request<'a>> {
-        let walk = InRod { rod: &setup.problem, steps: By { rule, roulette: None } };
-        walks::packets(level, &walk, Ground::new(setup, medium), request)
+    fn fill(rule: ParticleRule, kernel: Kernel, setup: &Setup<Self>, request: Request) {
+        walk::fill(By { rule, roulette: None }, kernel, setup, request);
     }
 }
 
@@ -121,7 +83,6 @@ macro_rules! by_rule {
         impl<P: $crate::rod::ByRule> $crate::Estimator<P> for $Page {
             const INPUTS: $crate::Inputs = $crate::Inputs::SAMPLING;
             const PLAIN: Option<Self> = Some(Self);
-            const IN_PACKETS: bool = true;
 
             fn domain(&self, setup: &$crate::Setup<P>) -> Result<(), $crate::Refusal> {
                 P::realisable(setup, theory::ParticleRule::$Page)
@@ -131,25 +92,13 @@ macro_rules! by_rule {
                 P::predict(setup, theory::ParticleRule::$Page)
             }
 
-            #[inline(always)]
-            fn draw(
+            fn fill(
                 &self,
+                kernel: $crate::Kernel,
                 setup: &$crate::Setup<P>,
-                medium: &media::Lookups,
-                rng: &mut numeric::rng::Stream,
-            ) -> $crate::Draw<P::Value> {
-                P::draw(theory::ParticleRule::$Page, setup, medium, rng)
-            }
-
-            fn draw_packets<'a>(
-                &self,
-                level: fearless_simd::Level,
-                setup: &$crate::Setup<P>,
-                medium: &media::Lookups,
-                request: $crate::kernels::packet::Request<'a>,
-            ) -> Option<$crate::kernels::packet::Request<'a>> {
-                let rule = theory::ParticleRule::$Page;
-                P::packets(level, rule, setup, medium, request)
+                request: $crate::Request,
+            ) {
+                P::fill(theory::ParticleRule::$Page, kernel, setup, request);
             }
         }
     };

@@ -25,18 +25,12 @@
 //! Source: H. Kahn, *Use of Different Monte Carlo Sampling Techniques*, RAND P-766 (1955); the walk: that
 //! of `non-terminating`.
 
-use fearless_simd::Level;
-
 use super::ByRule;
-use super::walk::{self, By, InRod};
-use crate::kernels::packet::Request;
-use crate::walks::{self, Ground};
-use crate::{Draw, Estimator, Inputs, Refusal, Setup};
-use media::Lookups;
+use super::walk::{self, By};
+use crate::{Estimator, Inputs, Kernel, Refusal, Request, Setup};
 use media::catalogue::{Domain, Settings};
-use numeric::rng::Stream;
 use theory::problems::Rod;
-use theory::problems::rod::{Quantity, Values};
+use theory::problems::rod::Quantity;
 use theory::{ParticleRule, Prediction, rod};
 
 /// The non-terminating rule with roulette; σ̂ is its input.
@@ -55,7 +49,6 @@ impl Roulette {
 
 impl Estimator<Rod> for Roulette {
     const INPUTS: Inputs = Inputs::SAMPLING;
-    const IN_PACKETS: bool = true;
 
     fn read(settings: &Settings) -> Option<Self> {
         let below = settings.number_or("below", Domain::Positive, 0.1)?;
@@ -88,19 +81,7 @@ impl Estimator<Rod> for Roulette {
         rod::bounded(&setup.mesh, &setup.problem)
     }
 
-    #[inline(always)]
-    fn draw(&self, setup: &Setup<Rod>, medium: &Lookups, rng: &mut Stream) -> Draw<Values> {
-        walk::draw(&self.steps(), setup, medium, rng)
-    }
-
-    fn draw_packets<'a>(
-        &self,
-        level: Level,
-        setup: &Setup<Rod>,
-        medium: &Lookups,
-        request: Request<'a>,
-    ) -> Option<Request<'a>> {
-        let walk = InRod { rod: &setup.problem, steps: self.steps() };
-        walks::packets(level, &walk, Ground::new(setup, medium), request)
+    fn fill(&self, kernel: Kernel, setup: &Setup<Rod>, request: Request) {
+        walk::fill(self.steps(), kernel, setup, request);
     }
 }

@@ -16,15 +16,14 @@
 //! roulette. By this page [`line`] follows one particle, or sixteen side by side.
 
 use crate::walks::{self, Met, Route, Walk};
-use crate::{Draw, Setup};
-use media::Lookups;
+use crate::{Kernel, Request, Setup};
 use media::course::BothWays;
-use numeric::rng::{Random, Stream};
+use numeric::rng::Random;
 use numeric::{Lane, Mask, kept};
 use theory::ParticleRule;
 use theory::particle::Odds;
 use theory::problems::Rod;
-use theory::problems::rod::{MOST_PARTS, Quantity, Values};
+use theory::problems::rod::{MOST_PARTS, Quantity};
 
 kept! {
     /// Particles on their way.
@@ -192,15 +191,9 @@ impl Steps for By {
     }
 }
 
-/// Makes one draw.
-#[inline(always)]
-pub fn draw(
-    steps: &impl Steps,
-    setup: &Setup<Rod>,
-    medium: &Lookups,
-    rng: &mut Stream,
-) -> Draw<Values> {
-    walks::draw(&InRod { rod: &setup.problem, steps: *steps }, &setup.sampling, medium, rng)
+/// Makes the draws of a request.
+pub fn fill(steps: impl Steps, kernel: Kernel, setup: &Setup<Rod>, request: Request) {
+    walks::fill(&InRod { rod: &setup.problem, steps }, kernel, setup, request);
 }
 
 #[cfg(test)]

@@ -10,10 +10,9 @@ use super::interactions::Interactions;
 use super::main_part::{self, MainPart};
 use super::shared::Shared;
 use super::vertices::{Right, Steps, ToVertices};
-use crate::kernels::packet::Request;
 use crate::space::shadow::ShadowRays;
 use crate::walks::{self, Walk};
-use crate::{Draw, Estimator, Inputs, Refusal, Setup};
+use crate::{Draw, Estimator, Inputs, Kernel, Refusal, Request, Setup};
 use media::catalogue::Settings;
 use media::{Control, Lookups};
 use numeric::geometry::Bounds;
@@ -401,8 +400,7 @@ impl<'r> Run for SideBySide<'_, 'r> {
 
     #[inline(always)]
     fn run(self, walk: &impl Walk) -> Self::Output {
-        let ground = walks::Ground::with_control(self.setup, self.medium);
-        walks::packets(self.level, walk, ground, self.request)
+        walks::packets(self.level, walk, self.setup, self.medium, self.request)
     }
 }
 
@@ -421,7 +419,6 @@ pub struct ByPlan<P>(Plan, PhantomData<P>);
 
 impl<P: Planned> Estimator<SingleScattering> for ByPlan<P> {
     const INPUTS: Inputs = P::INPUTS;
-    const IN_PACKETS: bool = true;
 
     fn read(settings: &Settings) -> Option<Self> {
         P::read(settings).map(|plan| Self(plan, PhantomData))
@@ -450,18 +447,14 @@ impl<P: Planned> Estimator<SingleScattering> for ByPlan<P> {
         self.0.predict(setup)
     }
 
-    #[inline(always)]
-    fn draw(&self, setup: &Setup<SingleScattering>, medium: &Lookups, rng: &mut Stream) -> Draw {
-        self.0.draw(setup, medium, rng)
-    }
-
-    fn draw_packets<'a>(
-        &self,
-        level: Level,
-        setup: &Setup<SingleScattering>,
-        medium: &Lookups,
-        request: Request<'a>,
-    ) -> Option<Request<'a>> {
-        self.0.draw_packets(level, setup, medium, request)
+    fn fill(&self, kernel: Kernel, setup: &Setup<SingleScattering>, request: Request) {
+        walks::by(
+            kernel,
+            setup,
+            request,
+            |level, medium, request| self.0.draw_packets(level, setup, medium, request),
+            #[inline(always)]
+            |medium, rng| self.0.draw(setup, medium, rng),
+        );
     }
 }

@@ -7,16 +7,9 @@ pub mod terminating;
 pub mod walk;
 pub mod weighted;
 
-use fearless_simd::Level;
-
-use self::walk::InSlab;
 use super::rod::ByRule;
-use crate::kernels::packet::Request;
-use crate::walks::{self, Ground};
-use crate::{Draw, Refusal, Setup, estimators};
-use media::Lookups;
+use crate::{Kernel, Refusal, Request, Setup, estimators};
 use numeric::digits::rounded;
-use numeric::rng::Stream;
 use theory::problems::{Problem, Slab};
 use theory::slab::{self, Answer, Existence, Pieces, Walk};
 use theory::{ParticleRule, Prediction};
@@ -87,29 +80,8 @@ impl ByRule for Slab {
         walk_of(setup, rule).predict(&truth(setup).unwrap_or(Answer::UNKNOWN))
     }
 
-    #[inline(always)]
-    fn draw(
-        rule: ParticleRule,
-        setup: &Setup<Self>,
-        medium: &Lookups,
-        rng: &mut Stream,
-    ) -> Draw<[f64; 2]> {
-        walk::draw(&rule, setup, medium, rng)
-    }
-
-    fn packets<'a>(
-        level: Level,
-        rule: ParticleRule,
-        setup: &Setup<Self>,
-        medium: &Lookups,
-        request: Request<'a>,
-    ) -> Option<Request<'a>> {
-        walks::packets(
-            level,
-            &InSlab::of(&setup.problem, rule),
-            Ground::new(setup, medium),
-            request,
-        )
+    fn fill(rule: ParticleRule, kernel: Kernel, setup: &Setup<Self>, request: Request) {
+        walk::fill(rule, kernel, setup, request);
     }
 }
 

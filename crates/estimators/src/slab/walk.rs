@@ -16,12 +16,11 @@
 use std::f64::consts::TAU;
 
 use crate::walks::{self, Met, Route, Walk};
-use crate::{Draw, Setup};
-use media::Lookups;
+use crate::{Kernel, Request, Setup};
 use media::course::BothWays;
 use media::phase::Phase;
 use media::phase::isotropic::Isotropic;
-use numeric::rng::{Random, Stream};
+use numeric::rng::Random;
 use numeric::{Lane, Mask, kept};
 use theory::particle::{Odds, ParticleRule};
 use theory::problems::Slab;
@@ -167,15 +166,9 @@ impl Steps for ParticleRule {
     }
 }
 
-/// Makes one draw: reflectance and transmittance.
-#[inline(always)]
-pub fn draw(
-    steps: &impl Steps,
-    setup: &Setup<Slab>,
-    medium: &Lookups,
-    rng: &mut Stream,
-) -> Draw<[f64; 2]> {
-    walks::draw(&InSlab::of(&setup.problem, *steps), &setup.sampling, medium, rng)
+/// Makes the draws of a request: reflectance and transmittance.
+pub fn fill(steps: impl Steps, kernel: Kernel, setup: &Setup<Slab>, request: Request) {
+    walks::fill(&InSlab::of(&setup.problem, steps), kernel, setup, request);
 }
 
 impl<'a, S> InSlab<'a, S> {

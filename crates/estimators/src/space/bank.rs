@@ -17,8 +17,8 @@
 use fearless_simd::{Simd, SimdBase, f64x8};
 
 use crate::DrawBuffer;
-use crate::kernels::packet::Request;
-use crate::kernels::packet::bank::{Numbers, Slot, Slots, leave};
+use crate::kernels::Request;
+use crate::kernels::bank::{Numbers, Slot, Slots, leave};
 use numeric::pack::WIDTH;
 use numeric::rng::{LANES, Random, Stream};
 use numeric::twin::PAIR;
@@ -120,7 +120,7 @@ pub fn run<S: Simd, W: Walk>(
     walk: &W,
     look_up: impl Fn(&[[f64; PAIR]; 3]) -> [W::Met<f64x8<S>>; 2],
     request: Request,
-    write: impl Fn(&Rows, Slot, &mut DrawBuffer),
+    mut write: impl FnMut(&Rows, Slot, &mut DrawBuffer),
 ) {
     let Request { streams, count, buffer } = request;
     buffer.make_room(count);
@@ -139,7 +139,7 @@ pub fn run<S: Simd, W: Walk>(
         let ended = walk.collide(&mut pack, &flight, met, &mut first);
         if ended.any() {
             rows.store(walk, &pack);
-            let over = rows.write(ended.bits(), &mut slots, buffer, &write);
+            let over = rows.write(ended.bits(), &mut slots, buffer, &mut write);
             leave(streams, 0, over, first);
             walk.restart(&mut pack, &mut first);
         }
@@ -147,7 +147,7 @@ pub fn run<S: Simd, W: Walk>(
         let ended = walk.collide(&mut other, &other_flight, other_met, &mut second);
         if ended.any() {
             rows.store(walk, &other);
-            let over = rows.write(ended.bits(), &mut other_slots, buffer, &write);
+            let over = rows.write(ended.bits(), &mut other_slots, buffer, &mut write);
             leave(streams, 1, over, second);
             walk.restart(&mut other, &mut second);
         }
@@ -203,7 +203,7 @@ impl Rows {
         ended: u64,
         slots: &mut Slots,
         buffer: &mut DrawBuffer,
-        write: impl Fn(&Self, Slot, &mut DrawBuffer),
+        write: &mut impl FnMut(&Self, Slot, &mut DrawBuffer),
     ) -> u64 {
         slots.fill(ended, |slot| write(self, slot, buffer))
     }

@@ -1,12 +1,8 @@
 //! The estimators of problems in space: particles that walk by a rule, and particles that split.
 
-use fearless_simd::Level;
-
 use super::walk::Steps;
 use super::{Particle, Tally, draws};
-use crate::kernels::packet::Request;
-use crate::{Draw, Estimator, Inputs, Refusal, Setup};
-use media::Lookups;
+use crate::{Draw, Estimator, Inputs, Kernel, Refusal, Request, Setup, walks};
 use media::catalogue::Settings;
 use numeric::rng::Stream;
 use theory::Prediction;
@@ -71,7 +67,6 @@ pub type Splitter = Walker<true>;
 
 impl<P: Walked, const SPLITS: bool> Estimator<P> for Walker<SPLITS> {
     const INPUTS: Inputs = Inputs::SAMPLING;
-    const IN_PACKETS: bool = true;
 
     fn read(settings: &Settings) -> Option<Self> {
         let read = if SPLITS { Particle::read_splitting } else { Particle::read };
@@ -90,22 +85,21 @@ impl<P: Walked, const SPLITS: bool> Estimator<P> for Walker<SPLITS> {
         P::predict(setup, &self.0)
     }
 
-    #[inline]
-    fn draw(&self, setup: &Setup<P>, _: &Lookups, random: &mut Stream) -> Draw<P::Value> {
-        draw::<P, SPLITS>(self.0, &self.0, setup, random)
-    }
-
-    fn draw_packets<'a>(
-        &self,
-        level: Level,
-        setup: &Setup<P>,
-        _: &Lookups,
-        request: Request<'a>,
-    ) -> Option<Request<'a>> {
-        let (Some(majorants), Ok(tally)) = (setup.space.as_deref(), P::tally(setup, &self.0))
-        else {
-            return Some(request);
-        };
-        draws::packets(level, &tally, &self.0, (setup.problem.scene(), majorants), request)
+    fn fill(&self, kernel: Kernel, setup: &Setup<P>, request: Request) {
+        walks::by(
+            kernel,
+            setup,
+            request,
+            |level, _, request| {
+                let (Some(majorants), Ok(tally)) =
+                    (setup.space.as_deref(), P::tally(setup, &self.0))
+                else {
+                    return Some(request);
+                };
+                draws::packets(level, &tally, &self.0, (setup.problem.scene(), majorants), request)
+            },
+            #[inline(always)]
+            |_, random| draw::<P, SPLITS>(self.0, &self.0, setup, random),
+        );
     }
 }

@@ -1,8 +1,8 @@
 //! Walks into a furnace in several channels, all of them by one draw.
 
+mod draws;
 pub mod hero;
 pub mod independent;
-pub mod packet;
 pub mod spectral_mis;
 pub mod spectral_tracking;
 pub mod walk;
@@ -10,7 +10,7 @@ pub mod walk;
 use fearless_simd::Level;
 
 use super::chromatic::{By, Chromatic, Steps};
-use crate::kernels::packet::Request;
+use crate::kernels::Request;
 use crate::setup::walker::Walker;
 use crate::{Draw, Refusal, Setup, estimators};
 use ::theory::problems::ChannelValues as Values;
@@ -65,23 +65,19 @@ impl Chromatic for SpectralFurnace {
         by: By,
         setup: &Setup<Self>,
         _: &Lookups,
-        rng: &mut Stream,
+        random: &mut Stream,
     ) -> Draw<Values> {
-        walk::draw(&steps, by, setup, rng)
+        draws::draw(steps, by, setup, random)
     }
 
     fn packets<'a>(
         level: Level,
-        By { walker, scores_all, .. }: By,
+        by: By,
         setup: &Setup<Self>,
         _: &Lookups,
         request: Request<'a>,
     ) -> Option<Request<'a>> {
-        if scores_all {
-            packet::walks::<true>(level, walker, setup, request)
-        } else {
-            packet::walks::<false>(level, walker, setup, request)
-        }
+        draws::packets(level, by, setup, request)
     }
 
     fn require(setup: &Setup<Self>, walker: &Walker) -> Result<(), Refusal> {

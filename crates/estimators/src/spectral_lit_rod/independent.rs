@@ -69,7 +69,6 @@ impl Independent {
 
 impl Estimator<SpectralLitRod> for Independent {
     const INPUTS: Inputs = Inputs::SAMPLING;
-    const IN_PACKETS: bool = true;
 
     fn read(settings: &Settings) -> Option<Self> {
         let technique = settings.word_or("technique", &["full-mis", "unidirectional"], "full-mis");

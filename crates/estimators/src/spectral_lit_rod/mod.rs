@@ -80,7 +80,6 @@ impl<'a> Albedos<'a> {
 macro_rules! pages {
     ($this:ident => $heroes:expr, $tracker:expr) => {
         const INPUTS: $crate::Inputs = $crate::Inputs::SAMPLING;
-        const IN_PACKETS: bool = true;
 
         fn domain(
             &$this,

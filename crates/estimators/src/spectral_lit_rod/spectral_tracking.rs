@@ -43,7 +43,6 @@ pub struct SpectralTracking {
 
 impl Estimator<SpectralLitRod> for SpectralTracking {
     const INPUTS: Inputs = Inputs::SAMPLING;
-    const IN_PACKETS: bool = true;
 
     fn read(settings: &Settings) -> Option<Self> {
         Some(Self { chances: read_chances(settings)? })

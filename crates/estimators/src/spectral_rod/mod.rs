@@ -57,26 +57,18 @@ fn spectrum<P: Coloured>(setup: &Setup<P>, heroes: Vec<f64>, tracker: Tracker) -
 macro_rules! scored {
     () => {
         const INPUTS: $crate::Inputs = $crate::Inputs::SAMPLING;
-        const IN_PACKETS: bool = true;
 
-        #[inline(always)]
-        fn draw(
-            &self,
-            setup: &$crate::Setup<P>,
-            medium: &media::Lookups,
-            rng: &mut numeric::rng::Stream,
-        ) -> $crate::Draw<theory::problems::spectral_rod::Values> {
-            $crate::spectral_rod::walk::draw(self, setup, medium, rng)
-        }
-
-        fn draw_packets<'a>(
-            &self,
-            level: fearless_simd::Level,
-            setup: &$crate::Setup<P>,
-            medium: &media::Lookups,
-            request: $crate::kernels::packet::Request<'a>,
-        ) -> Option<$crate::kernels::packet::Request<'a>> {
-            $crate::spectral_rod::walk::packets(level, self, setup, medium, request)
+        fn fill(&self, kernel: $crate::Kernel, setup: &$crate::Setup<P>, request: $crate::Request) {
+            $crate::walks::by(
+                kernel,
+                setup,
+                request,
+                |level, medium, request| {
+                    $crate::spectral_rod::walk::packets(level, self, setup, medium, request)
+                },
+                #[inline(always)]
+                |medium, rng| $crate::spectral_rod::walk::draw(self, setup, medium, rng),
+            );
         }
     };
 }

@@ -13,11 +13,11 @@ use std::f64::consts::TAU;
 use fearless_simd::Level;
 
 use super::Coloured;
-use crate::kernels::packet::Request;
+use crate::kernels::Request;
 use crate::setup::heroes::Heroes;
 use crate::slab::walk::{entering, turned};
 use crate::walks::hero::{Law, number_of_hero};
-use crate::walks::{self, GROUPS, Ground, Met, Route, SOME_LEFT, Scores, Walk};
+use crate::walks::{self, GROUPS, Met, Route, SOME_LEFT, Scores, Walk};
 use crate::{Draw, Refusal, Setup};
 use media::Lookups;
 use media::body::MOST_CHANNELS;
@@ -294,7 +294,7 @@ pub fn packets<'r, P: Coloured>(
     let walk = InBody::new(page, setup);
     let table = walk.tabulated();
     let walk = InBody { table: &table, ..walk };
-    walks::packets(level, &walk, Ground::new(setup, medium), request)
+    walks::packets(level, &walk, setup, medium, request)
 }
 
 /// σ̂ ≥ σ_t, few collisions, one hero probability for each channel, and an answer.

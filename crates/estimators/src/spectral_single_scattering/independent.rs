@@ -17,22 +17,15 @@
 //! Source: B. Miller, I. Georgiev, W. Jarosz, *A null-scattering path integral formulation of light transport*,
 //! ACM Transactions on Graphics 38 (2019), section 6.
 
-use fearless_simd::Level;
-
-use super::walk::{self, Steps};
-use super::{Shadow, alone, packet, realisable};
-use crate::kernels::packet::Request;
+use super::walk::{self, Right};
+use super::{Shadow, alone, realisable};
 use crate::setup::channels;
 use crate::setup::heroes::Heroes;
 use crate::setup::walker::Walker;
-use crate::{Draw, Estimator, Inputs, Refusal, Setup};
-use ::theory::problems::ChannelValues as Values;
+use crate::{Estimator, Inputs, Kernel, Refusal, Request, Setup, walks};
 use ::theory::problems::SpectralSingleScattering;
 use ::theory::{Prediction, spectral_single_scattering as theory};
-use media::Lookups;
-use media::body::MOST_CHANNELS;
 use media::catalogue::Settings;
-use numeric::rng::Stream;
 
 /// One channel a draw.
 #[derive(Debug, Clone)]
@@ -45,11 +38,8 @@ pub struct Independent {
     shadow: Shadow,
 }
 
-impl Steps for Independent {}
-
 impl Estimator<SpectralSingleScattering> for Independent {
     const INPUTS: Inputs = Inputs::SAMPLING;
-    const IN_PACKETS: bool = true;
 
     fn read(settings: &Settings) -> Option<Self> {
         let (heroes, shadow) = (Heroes::read(settings), Shadow::read(settings));
@@ -75,35 +65,18 @@ impl Estimator<SpectralSingleScattering> for Independent {
         theory::independent(&alone(setup, self.shadow), &self.heroes.of(setup.channels.len()))
     }
 
-    #[inline(always)]
-    fn draw(
-        &self,
-        setup: &Setup<SpectralSingleScattering>,
-        medium: &Lookups,
-        rng: &mut Stream,
-    ) -> Draw<Values> {
-        let count = setup.channels.len();
-        let hero = self.heroes.choose(count, rng.uniform());
-        let (lit, mut scores) = (&setup.problem.channels[hero], [0.0; MOST_CHANNELS]);
-        let walker = (&self.walker, hero);
-        let (s, mut path, mut lookups) = walk::scattering(self, setup, walker, medium, rng);
-        if let Some(s) = s {
-            let asked = (setup, hero..hero + 1);
-            let (through, cast) = walk::cast(self, self.shadow, asked, &mut path, s, rng);
-            let chance = self.heroes.probability(count, hero);
-            scores[hero] = lit.source(s) / lit.albedo() * through[hero] / chance;
-            lookups += cast;
-        }
-        Draw::free(setup.problem.values(scores), lookups)
-    }
-
-    fn draw_packets<'a>(
-        &self,
-        level: Level,
-        setup: &Setup<SpectralSingleScattering>,
-        medium: &Lookups,
-        request: Request<'a>,
-    ) -> Option<Request<'a>> {
-        packet::walks::<false>(level, (&self.walker, self.shadow), setup, medium, request)
+    fn fill(&self, kernel: Kernel, setup: &Setup<SpectralSingleScattering>, request: Request) {
+        walks::by(
+            kernel,
+            setup,
+            request,
+            |level, medium, request| {
+                walk::packets::<false>(level, (&self.walker, self.shadow), setup, medium, request)
+            },
+            #[inline(always)]
+            |medium, rng| {
+                walk::draw::<false>(Right, (&self.walker, self.shadow), setup, medium, rng)
+            },
+        );
     }
 }

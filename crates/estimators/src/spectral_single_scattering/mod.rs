@@ -2,7 +2,6 @@
 
 pub mod hero;
 pub mod independent;
-pub mod packet;
 pub mod page;
 pub mod spectral_mis;
 pub mod spectral_tracking;

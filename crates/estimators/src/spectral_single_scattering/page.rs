@@ -1,15 +1,13 @@
 //! What the pages that score all channels share: a walk scatters once, and its weights are relative to the density of the
 //! walker, or of all heroes.
 
-use fearless_simd::Level;
-
-use super::walk::draw_all;
-use super::{Shadow, packet, predict, realisable};
-use crate::kernels::packet::Request;
+use super::walk::{self, Right};
+use super::{Shadow, predict, realisable};
 use crate::setup::walker::Walker;
-use crate::{Draw, Estimator, Inputs, Refusal, Setup};
+use crate::{Draw, Estimator, Inputs, Kernel, Refusal, Request, Setup, walks};
 use media::Lookups;
 use media::catalogue::Settings;
+use numeric::pack::in_fused_code;
 use numeric::rng::Stream;
 use theory::Prediction;
 use theory::problems::ChannelValues as Values;
@@ -26,7 +24,6 @@ pub struct AllChannels<const KIND: u8> {
 
 impl<const KIND: u8> Estimator<SpectralSingleScattering> for AllChannels<KIND> {
     const INPUTS: Inputs = Inputs::SAMPLING;
-    const IN_PACKETS: bool = true;
 
     fn read(settings: &Settings) -> Option<Self> {
         let (walker, shadow) = (Walker::read(KIND, settings), Shadow::read(settings));
@@ -50,23 +47,30 @@ impl<const KIND: u8> Estimator<SpectralSingleScattering> for AllChannels<KIND> {
         predict(setup, &self.walker, self.shadow)
     }
 
-    #[inline(always)]
-    fn draw(
-        &self,
-        setup: &Setup<SpectralSingleScattering>,
-        medium: &Lookups,
-        rng: &mut Stream,
-    ) -> Draw<Values> {
-        draw_all((&self.walker, self.shadow), setup, medium, rng)
+    fn fill(&self, kernel: Kernel, setup: &Setup<SpectralSingleScattering>, request: Request) {
+        walks::by(
+            kernel,
+            setup,
+            request,
+            |level, medium, request| {
+                walk::packets::<true>(level, (&self.walker, self.shadow), setup, medium, request)
+            },
+            #[inline(always)]
+            |medium, rng| draw((&self.walker, self.shadow), setup, medium, rng),
+        );
     }
+}
 
-    fn draw_packets<'a>(
-        &self,
-        level: Level,
-        setup: &Setup<SpectralSingleScattering>,
-        medium: &Lookups,
-        request: Request<'a>,
-    ) -> Option<Request<'a>> {
-        packet::walks::<true>(level, (&self.walker, self.shadow), setup, medium, request)
-    }
+/// Makes one draw: compiled once for all walkers.
+#[inline(never)]
+fn draw(
+    by: (&Walker, Shadow),
+    setup: &Setup<SpectralSingleScattering>,
+    medium: &Lookups,
+    rng: &mut Stream,
+) -> Draw<Values> {
+    in_fused_code(
+        #[inline(always)]
+        || walk::draw::<true>(Right, by, setup, medium, rng),
+    )
 }

@@ -10,217 +10,486 @@
 //!
 //! In spectral tracking all channels walk together through one σ̂: chances `P_e` decide, and q is their product.
 //! T̂ is exact, or `Π (1 − r_λ)` over the collisions of a shadow ray through the hero's σ̂, whose rates and transmittances
-//! through σ̂ then are factors of q, too. q is kept relative to the hero's, see [`Path`]. The first flight and decision take
-//! two random numbers each time, a flight of a shadow ray one, the choice of the hero one.
+//! through σ̂ then are factors of q, too. q is kept relative to the hero's, see [`Media::common`]. The first flight and
+//! decision take two random numbers each time, a flight of a shadow ray one, the choice of the hero one. Walks are scored when
+//! all have ended, exact shadow rays included.
 
-use std::ops::Range;
+use fearless_simd::Level;
 
 use super::Shadow;
-use crate::kernels::hero::Path;
+use crate::kernels::Request;
 use crate::setup::walker::Walker;
+use crate::space::exit::{along, ends};
+use crate::space::shadow::ShadowRays;
+use crate::walks::hero::{Law, Media, number_of_hero, of_hero, or_of_hero};
+use crate::walks::{self, GROUPS, Met, Route, SOME_LEFT, Scores, Walk};
 use crate::{Draw, Setup};
 use media::body::MOST_CHANNELS;
-use media::{Extinction, Lookups};
-use numeric::Lane;
-use numeric::pack::in_fused_code;
-use numeric::rng::Stream;
-use theory::particle::Event;
+use media::course::BothWays;
+use media::{Batches, Lookups};
+use numeric::geometry::Point;
+use numeric::rng::{Random, Stream};
+use numeric::{Kept, Lane, Mask, kept};
+use theory::ParticleRule;
 use theory::problems::ChannelValues as Values;
 use theory::problems::SpectralSingleScattering;
+use theory::single::Tracking;
+use theory::spectral::chance::shares;
+
+/// The number of lanes of a pack that cast their shadow rays together: to find where these lead costs more than a step.
+const TOGETHER: u32 = 4;
+
+/// Stands in the place of the hero of a walk that was not scattered.
+const LOST: f64 = -1.0;
 
 /// The steps of a walk that a known bug may replace.
-pub trait Steps {
-    /// What a null collision on the way to the scattering makes of q.
-    #[inline(always)]
-    fn passed(&self, ratio: f64) -> f64 {
-        1.0 - ratio
-    }
+pub trait Steps: Copy {
+    /// Whether collisions along the ray are counted by themselves, see [`Steps::has_shadow_density`].
+    const COUNTS: bool = false;
 
-    /// What a scattering makes of q.
-    #[inline(always)]
-    fn scattered(&self, ratio: f64, albedo: f64) -> f64 {
-        ratio * albedo
-    }
-
-    /// The channel whose σ̂ and σ_t count in a channel on the shadow ray.
-    #[inline(always)]
-    fn shadow_of(&self, channel: usize, hero: usize) -> usize {
-        let _ = hero;
-        channel
-    }
-
-    /// Whether the shadow ray's collisions and transmittances through σ̂ are factors of the densities.
+    /// Whether length and collisions of a tracked shadow ray are in the densities.
     #[inline(always)]
     fn has_shadow_density(&self) -> bool {
         true
     }
 
-    /// How many of the last channels are missing among the heroes.
+    /// The factor of q at a null collision on the way to the scattering.
     #[inline(always)]
-    fn missing(&self) -> usize {
-        0
+    fn passed<L: Lane>(&self, ratio: L) -> L {
+        ratio.one_minus()
+    }
+
+    /// The factor of q at a scattering.
+    #[inline(always)]
+    fn scattered<L: Lane>(&self, ratio: L, albedo: f64) -> L {
+        ratio * albedo
+    }
+
+    /// The transmittance of a channel's shadow ray, given that of the hero's.
+    #[inline(always)]
+    fn through<L: Lane>(&self, own: L, heros: impl Fn() -> L) -> L {
+        let _ = heros;
+        own
+    }
+
+    /// The probability of a hero in the mean density.
+    #[inline(always)]
+    fn share(&self, probability: f64, is_last: bool) -> f64 {
+        let _ = is_last;
+        probability
     }
 }
 
 /// The right steps.
-struct Right;
+#[derive(Clone, Copy)]
+pub struct Right;
 
 impl Steps for Right {}
 
-/// Makes one draw that scores all channels: compiled once for all walkers.
-#[inline(never)]
-pub fn draw_all(
-    walker: (&Walker, Shadow),
-    setup: &Setup<SpectralSingleScattering>,
-    medium: &Lookups,
-    rng: &mut Stream,
-) -> Draw<Values> {
-    in_fused_code(
-        #[inline(always)]
-        || draw(&Right, walker, setup, medium, rng),
-    )
+kept! {
+    /// Walks to their scattering, and shadow rays from there.
+    pub struct Flight<L> {
+        /// Lanes on their way along the ray, lanes that wait to cast a shadow ray, and lanes with one in flight.
+        walks: L::Mask,
+        aims: L::Mask,
+        casts: L::Mask,
+        /// Lanes of these at a tentative collision.
+        inside: L::Mask,
+        /// The number of each hero, its mean free path through σ̂ and its albedo.
+        hero: L,
+        mean_free_path: L,
+        albedo: L,
+        /// The length of the path, and where it scatters.
+        length: L,
+        s: L,
+        /// The number of collisions along the ray, if [`Steps::COUNTS`].
+        collisions: L,
+        /// q of each channel relative to the hero's, but for σ̂.
+        weights: [L; MOST_CHANNELS],
+        /// The shadow ray, where it has come to, and its end.
+        origin: [L; 3],
+        direction: [L; 3],
+        t: L,
+        end: L,
+        /// `Π (1 − r_λ)` along it.
+        through: [L; MOST_CHANNELS],
+    }
 }
 
-/// Makes one draw that scores all channels, by the steps of a walk.
+/// The walk; it scores all channels, or the hero alone.
+#[derive(Clone, Copy)]
+pub struct ToScattering<'a, S, const ALL: bool> {
+    setup: &'a Setup<SpectralSingleScattering>,
+    walker: &'a Walker,
+    law: Option<Law>,
+    media: Media,
+    albedos: [f64; MOST_CHANNELS],
+    /// Whether shadow rays are tracked.
+    tracks: bool,
+    /// The fields on shadow rays, as packs look them up; none for one lane.
+    fields: &'a [Batches<'a>],
+    steps: S,
+}
+
+/// Makes one draw.
 #[inline(always)]
-pub fn draw(
-    steps: &impl Steps,
+pub fn draw<const ALL: bool>(
+    steps: impl Steps,
     (walker, shadow): (&Walker, Shadow),
     setup: &Setup<SpectralSingleScattering>,
     medium: &Lookups,
-    rng: &mut Stream,
+    random: &mut Stream,
 ) -> Draw<Values> {
-    let (problem, count) = (&setup.problem, setup.channels.len());
-    let hero = walker.choose(count, || rng.uniform());
-    let (s, mut path, walked) = scattering(steps, setup, (walker, hero), medium, rng);
-    let Some(s) = s else { return Draw::free(problem.values([0.0; MOST_CHANNELS]), walked) };
-    let (through, cast) = cast(steps, shadow, (setup, 0..count), &mut path, s, rng);
-    let length = path.length;
-    let (mut scores, mut density) = ([0.0; MOST_CHANNELS], 0.0);
-    for (channel, lit) in problem.channels.iter().enumerate() {
-        let common = path.common(setup, channel, length);
-        if let Walker::Mis(heroes) = walker
-            && channel + steps.missing() < count
-        {
-            density += heroes.probability(count, channel) * common;
-        }
-        scores[channel] = common * through[channel] * lit.source(s) / lit.albedo();
-    }
-    if matches!(walker, Walker::Mis(_)) {
-        for score in &mut scores[..count] {
-            *score /= density;
-        }
-    }
-    Draw::free(problem.values(scores), walked + cast)
+    let walk = ToScattering::<_, ALL>::new(setup, (walker, shadow), &[], steps);
+    walks::draw(&walk, &setup.channels[0].sampling, medium, random)
 }
 
-/// Where the hero scatters, if it does, with the densities up to there, and the lookups.
-#[inline(always)]
-pub fn scattering(
-    steps: &impl Steps,
+/// Makes the draws of a request in packs, see [`crate::Estimator::draw_packets`].
+pub fn packets<'a, const ALL: bool>(
+    level: Level,
+    (walker, shadow): (&Walker, Shadow),
     setup: &Setup<SpectralSingleScattering>,
-    (walker, hero): (&Walker, usize),
     medium: &Lookups,
-    rng: &mut Stream,
-) -> (Option<f64>, Path, u32) {
-    let (own, channels) = (&setup.channels[hero], &setup.problem.channels);
-    let (albedos, count) = (&setup.problem.albedos, channels.len());
-    let mut cursor = own.sampling.begin();
-    let (mut path, mut lookups) = (Path::begin(hero), 0);
-    loop {
-        let (depth, number, from) = (-rng.ln_uniform(), rng.uniform(), cursor.t);
-        if own.sampling.fly(&mut cursor, depth).is_none() {
-            return (None, path, lookups);
+    request: Request<'a>,
+) -> Option<Request<'a>> {
+    let channels = setup.problem.channels.iter();
+    let fields: Vec<_> = channels.map(|channel| channel.volume().batches(level, false)).collect();
+    let walk = ToScattering::<_, ALL>::new(setup, (walker, shadow), &fields, Right);
+    walks::packets(level, &walk, setup, medium, request)
+}
+
+impl<'a, S: Steps, const ALL: bool> ToScattering<'a, S, ALL> {
+    #[inline(always)]
+    fn new(
+        setup: &'a Setup<SpectralSingleScattering>,
+        (walker, shadow): (&'a Walker, Shadow),
+        fields: &'a [Batches<'a>],
+        steps: S,
+    ) -> Self {
+        let (count, mut albedos) = (setup.channels.len(), [0.0; MOST_CHANNELS]);
+        albedos[..count].copy_from_slice(&setup.problem.albedos);
+        let law = walker.heroes().map(
+            #[inline(always)]
+            |heroes| Law::new(heroes, count),
+        );
+        let (media, tracks) =
+            (Media::new(setup, &walker.probabilities(count)), shadow == Shadow::Ratio);
+        Self { setup, walker, law, media, albedos, tracks, fields, steps }
+    }
+
+    /// The probabilities to be scattered and to go straight on, given the hero's ratio and all.
+    #[inline(always)]
+    fn chances<L: Lane>(&self, path: &Flight<L>, own: L, ratios: &[L]) -> [L; 2] {
+        if ALL && let Some(chances) = self.walker.together() {
+            let [passes, scatters, _] = chances.of_events(
+                self.media.count,
+                #[inline(always)]
+                |channel| shares(ratios[channel], self.albedos[channel]),
+                &path.weights,
+            );
+            return [scatters, passes];
         }
-        lookups += 1;
-        path.go_on(cursor.t - from);
-        path.collisions += 1;
-        let mut ratios = [0.0; MOST_CHANNELS];
-        for (channel, ratio) in ratios[..channels.len()].iter_mut().enumerate() {
-            let majorant = setup.channels[channel].majorant;
-            *ratio = medium.channel(channel).extinction(cursor.t) / majorant;
+        let odds = ParticleRule::Analog.odds(own, path.albedo);
+        [odds.scatter, odds.transmit]
+    }
+
+    /// Multiplies the densities by the factors of events of these probabilities, and divides by the walker's.
+    #[inline(always)]
+    fn weigh<L: Lane>(
+        &self,
+        path: &mut Flight<L>,
+        [is_scattered, is_null]: [L::Mask; 2],
+        [scatters, passes]: [L; 2],
+        ratios: &[L],
+    ) {
+        let (mut next, mut own) = (path.weights, path.length);
+        for (channel, &ratio) in ratios.iter().enumerate() {
+            let scattered = self.steps.scattered(ratio, self.albedos[channel]);
+            let factor = L::select(is_null, self.steps.passed(ratio), scattered);
+            next[channel] = path.weights[channel] * factor;
+            own = or_of_hero(path.hero, channel, own, next[channel]);
         }
-        let chances = walker.chances(hero, &ratios[..count], albedos, &path.weights[..count]);
-        let event = chances.decide(number);
-        for (channel, albedo) in albedos.iter().enumerate() {
-            path.weights[channel] *= match event {
-                Event::Transmitted => steps.passed(ratios[channel]),
-                _ => steps.scattered(ratios[channel], *albedo),
-            };
+        if self.walker.together().is_some() {
+            own = L::select(is_null, passes, scatters);
         }
-        let scale = walker.together().map_or(path.weights[hero], |_| chances.of(event));
-        path.weights.iter_mut().for_each(|weight| *weight /= scale);
-        match event {
-            Event::Transmitted => {}
-            Event::Scattered => return (Some(cursor.t), path, lookups),
-            Event::Absorbed => return (None, path, lookups),
+        for (weight, next) in path.weights.iter_mut().zip(next).take(ratios.len()) {
+            weight.keep_where(is_scattered | is_null, next / own);
+        }
+    }
+
+    /// Shadow rays from distances s, and their stretches within the bounds of the medium.
+    #[inline(always)]
+    fn shadows<L: Lane>(&self, which: L::Mask, s: L) -> ([[L; 3]; 2], [L; 2]) {
+        let lit = &self.setup.problem.channels[0];
+        let (origin, direction, distance) = lit.to_light(s);
+        let [from, to] = ends(&lit.volume().bounds(), [origin, direction], which);
+        ([origin, direction], [from.or_more(s.each(0.0)), distance.or_less(to)])
+    }
+
+    /// Casts the shadow rays of the lanes in `which`; answers which meet the medium.
+    #[inline(always)]
+    fn cast<L: Lane>(&self, path: &mut Flight<L>, which: L::Mask) -> L::Mask {
+        let ([origin, direction], [from, to]) = self.shadows(which, path.s);
+        path.origin.set_where(which, origin);
+        path.direction.set_where(which, direction);
+        path.t.keep_where(which, from);
+        path.end.keep_where(which, to);
+        let is_blocked = which & from.below(to);
+        if self.steps.has_shadow_density() {
+            path.length.add_where(is_blocked, to - from);
+        }
+        is_blocked
+    }
+
+    /// Exact transmittances of the shadow rays from distances s, of all channels or of the heroes'.
+    #[inline(always)]
+    fn exact<L: Lane>(&self, [hero, s]: [L; 2], is_lit: L::Mask, through: &mut [L]) {
+        let (lines, [from, to]) = self.shadows(is_lit, s);
+        let is_blocked = is_lit & from.below(to);
+        for (channel, through) in through.iter_mut().enumerate() {
+            let volume = self.setup.problem.channels[channel].volume();
+            let rays = ShadowRays::new(volume, volume.bounds(), Tracking::Exact);
+            let which = if ALL { is_blocked } else { is_blocked & hero.equals(channel as f64) };
+            *through = rays.exact(self.fields.get(channel), which, lines, [from, to]);
         }
     }
 }
 
-/// The transmittances of the shadow ray in some channels, and its lookups.
-#[inline(always)]
-pub fn cast(
-    steps: &impl Steps,
-    shadow: Shadow,
-    (setup, asked): (&Setup<SpectralSingleScattering>, Range<usize>),
-    path: &mut Path,
-    s: f64,
-    rng: &mut Stream,
-) -> ([f64; MOST_CHANNELS], u32) {
-    match shadow {
-        Shadow::Exact => (exact(steps, (&setup.problem, asked), path.hero, s), 0),
-        Shadow::Ratio => tracked(steps, (setup, asked), path, s, rng),
-    }
-}
+impl<S: Steps, const ALL: bool> Walk for ToScattering<'_, S, ALL> {
+    type State<L: Lane> = Flight<L>;
 
-/// The exact transmittances of the shadow ray.
-fn exact(
-    steps: &impl Steps,
-    (problem, asked): (&SpectralSingleScattering, Range<usize>),
-    hero: usize,
-    s: f64,
-) -> [f64; MOST_CHANNELS] {
-    let mut through = [1.0; MOST_CHANNELS];
-    for channel in asked {
-        let lit = &problem.channels[steps.shadow_of(channel, hero)];
-        if let Some((ray, inside)) = lit.shadow(s) {
-            let profile = lit.volume().along(&ray, inside);
-            through[channel] = Lane::exp(-profile.optical_depth(inside).value);
-        }
-    }
-    through
-}
+    const IS_CHROMATIC: bool = true;
+    const PAUSES: bool = true;
+    const CASTS: bool = true;
+    const SCORES: Scores = Scores::Later;
 
-/// `Π (1 − r_λ)` over the collisions of the shadow ray through the hero's σ̂, and its lookups.
-#[inline(always)]
-fn tracked(
-    steps: &impl Steps,
-    (setup, asked): (&Setup<SpectralSingleScattering>, Range<usize>),
-    path: &mut Path,
-    s: f64,
-    rng: &mut Stream,
-) -> ([f64; MOST_CHANNELS], u32) {
-    let (channels, hero) = (&setup.problem.channels, path.hero);
-    let (mut through, mut lookups) = ([1.0; MOST_CHANNELS], 0);
-    let Some((ray, inside)) = channels[0].shadow(s) else { return (through, 0) };
-    let mean_free_path = 1.0 / setup.channels[hero].majorant;
-    let mut t = inside.from;
-    loop {
-        t -= rng.ln_uniform() * mean_free_path;
-        if t >= inside.to {
-            break;
+    #[inline(always)]
+    fn begin<L: Lane>(&self, one: L, all: L::Mask, random: &mut impl Random<L>) -> Flight<L> {
+        let (none, zero, ones) = (all & !all, one.each(0.0), [one; MOST_CHANNELS]);
+        let s = one.each(self.setup.mesh.support().from);
+        // Lanes without a shadow ray look σ_t up where this one enters.
+        let (origin, direction, _) = self.setup.problem.channels[0].to_light(s);
+        let mut path = Flight {
+            walks: none,
+            aims: none,
+            casts: none,
+            inside: none,
+            hero: zero,
+            mean_free_path: one,
+            albedo: one,
+            length: zero,
+            s,
+            collisions: zero,
+            weights: ones,
+            origin,
+            direction,
+            t: zero,
+            end: zero,
+            through: ones,
+        };
+        self.restart(&mut path, all, one, random);
+        path
+    }
+
+    #[inline(always)]
+    fn restart<L: Lane>(
+        &self,
+        path: &mut Flight<L>,
+        which: L::Mask,
+        one: L,
+        random: &mut impl Random<L>,
+    ) {
+        let (count, zero) = (self.media.count, one.each(0.0));
+        let hero = match &self.law {
+            Some(law) => law.choose(random.uniform_where(which)),
+            None => zero,
+        };
+        let majorant = number_of_hero(hero, &self.media.majorants[..count]);
+        path.hero.keep_where(which, hero);
+        path.mean_free_path.keep_where(which, one / majorant);
+        path.albedo.keep_where(which, number_of_hero(hero, &self.albedos[..count]));
+        path.length.keep_where(which, zero);
+        path.walks |= which;
+        if S::COUNTS {
+            path.collisions.keep_where(which, zero);
         }
-        lookups += 1;
-        for channel in asked.clone() {
-            let of = steps.shadow_of(channel, hero);
-            let extinction = channels[of].volume().points().extinction(ray.at(t));
-            through[channel] *= 1.0 - extinction / setup.channels[of].majorant;
+        if ALL {
+            for weight in &mut path.weights[..count] {
+                weight.keep_where(which, one);
+            }
+        }
+        if self.tracks {
+            for through in &mut path.through[..count] {
+                through.keep_where(which, one);
+            }
         }
     }
-    if steps.has_shadow_density() {
-        path.go_on(inside.length());
-        path.collisions += lookups;
+
+    #[inline(always)]
+    fn numbers<L: Lane>(&self, path: &mut Flight<L>, random: &mut impl Random<L>) -> [L; 2] {
+        let depth = -random.ln_uniform_where(path.walks | path.casts);
+        [depth, random.uniform_where(path.walks)]
     }
-    (through, lookups)
+
+    #[inline(always)]
+    fn mean_free_path<L: Lane>(&self, path: &Flight<L>, _: &Route<impl BothWays<L>>) -> L {
+        path.mean_free_path
+    }
+
+    #[inline(always)]
+    fn fly<L: Lane>(
+        &self,
+        path: &mut Flight<L>,
+        route: &mut Route<impl BothWays<L>>,
+        depth: L,
+    ) -> L::Mask {
+        path.inside = path.casts;
+        if path.casts.any() {
+            path.t.keep_where(path.casts, path.t + depth * path.mean_free_path);
+            path.inside &= !path.end.at_most(path.t);
+        }
+        let from = route.here.reached();
+        let flies = L::select(path.walks, depth, depth.each(0.0));
+        let inside = path.walks & route.here.fly(flies);
+        path.length.add_where(inside, route.here.reached() - from);
+        inside
+    }
+
+    #[inline(always)]
+    fn collide<L: Lane>(
+        &self,
+        path: &mut Flight<L>,
+        _: &mut Route<impl BothWays<L>>,
+        met: &Met<L>,
+        _: &mut impl Random<L>,
+    ) -> L::Mask {
+        let (Met { inside, t, number, .. }, one) = (*met, met.t.each(1.0));
+        let Flight { walks, casts, .. } = *path;
+        if S::COUNTS {
+            path.collisions.count_where(inside);
+        }
+        let mut ends = walks & !inside;
+        let mut is_scattered = walks & !walks;
+        if walks.maybe() {
+            let (mut ratios, mut own) = ([one; MOST_CHANNELS], one);
+            let ratios = &mut ratios[..met.extinctions.len()];
+            for (channel, ratio) in ratios.iter_mut().enumerate() {
+                *ratio = met.extinctions[channel] / one.each(self.media.majorants[channel]);
+                own = or_of_hero(path.hero, channel, own, *ratio);
+            }
+            let [scatters, passes] = self.chances(path, own, ratios);
+            is_scattered = inside & number.below(scatters);
+            let is_null = inside & !is_scattered & number.below(scatters + passes);
+            if ALL {
+                self.weigh(path, [is_scattered, is_null], [scatters, passes], ratios);
+            }
+            path.s.keep_where(is_scattered, t);
+            ends = walks & !is_scattered & !is_null;
+            path.hero.keep_where(ends, one.each(LOST));
+            path.walks = is_null;
+        }
+        if !self.tracks {
+            return !(ends | is_scattered);
+        }
+        if casts.any() {
+            for (channel, &extinction) in met.on_shadow.iter().enumerate() {
+                let ratio = extinction / one.each(self.media.majorants[channel]);
+                let through = path.through[channel] * ratio.one_minus();
+                path.through[channel].keep_where(path.inside, through);
+            }
+            path.casts = path.inside;
+            ends |= casts & !path.inside;
+        }
+        path.aims |= is_scattered;
+        if path.aims.are_enough(TOGETHER) {
+            let aims = path.aims;
+            path.aims = aims & !aims;
+            let is_blocked = self.cast(path, aims);
+            path.casts |= is_blocked;
+            ends |= aims & !is_blocked;
+        }
+        !ends
+    }
+
+    #[inline(always)]
+    fn media(&self) -> usize {
+        self.media.count
+    }
+
+    #[inline(always)]
+    fn on_shadow_rays<L: Lane>(&self, path: &Flight<L>) -> (L::Mask, [L; 3]) {
+        // Beyond the end there is no field to look at.
+        let t = L::select(path.inside, path.t, path.end);
+        (path.inside, along(path.origin, path.direction, t))
+    }
+
+    #[inline(always)]
+    fn shadow_fields(&self) -> &[Batches<'_>] {
+        self.fields
+    }
+
+    #[inline(always)]
+    fn shadow_extinction(&self, channel: usize, place: Point) -> f64 {
+        self.setup.problem.channels[channel].volume().points().extinction(place)
+    }
+
+    #[inline(always)]
+    fn channels(&self) -> usize {
+        self.media.count
+    }
+
+    #[inline(always)]
+    fn leaves<'a, L: Lane>(
+        &self,
+        path: &'a Flight<L>,
+        some: &'a mut [L; SOME_LEFT],
+    ) -> [&'a [L]; GROUPS] {
+        let count = self.media.count;
+        (some[0], some[1], some[2], some[3]) = (path.hero, path.length, path.s, path.collisions);
+        let weights = if ALL { &path.weights[..count] } else { &[] };
+        let through = if self.tracks { &path.through[..count] } else { &[] };
+        [&some[..4], weights, through, &[], &[]]
+    }
+
+    #[inline(always)]
+    fn score<L: Lane>(&self, numbers: &[L], _: L::Mask, lookups: L, values: &mut [L]) -> L {
+        let [hero, length, s, collisions, rest @ ..] = numbers else { return lookups };
+        let (hero, length, s, zero) = (*hero, *length, *s, lookups.each(0.0));
+        let collisions = if self.steps.has_shadow_density() { lookups } else { *collisions };
+        let (is_lit, count) = (zero.at_most(hero), self.media.count);
+        let mut through = [lookups; MOST_CHANNELS];
+        let through = &mut through[..count];
+        if self.tracks {
+            through.copy_from_slice(&rest[rest.len() - count..]);
+        } else {
+            self.exact([hero, s], is_lit, through);
+        }
+        let heros = || of_hero(hero, through);
+        if !ALL {
+            for (channel, value) in values.iter_mut().enumerate() {
+                let lit = &self.setup.problem.channels[channel];
+                let chance = zero.each(self.media.chances[channel]);
+                let alone = lit.source(s) / zero.each(lit.albedo()) * through[channel] / chance;
+                *value = L::select(hero.equals(channel as f64), alone, zero);
+            }
+            return zero;
+        }
+        values.copy_from_slice(&rest[..count]);
+        self.media.common(hero, [length, collisions], values);
+        let mut density = zero;
+        for (channel, value) in values.iter_mut().enumerate() {
+            let (common, lit) = (*value, &self.setup.problem.channels[channel]);
+            let is_last = channel + 1 == count;
+            density = density + common * self.steps.share(self.media.chances[channel], is_last);
+            let through = self.steps.through(through[channel], heros);
+            *value = common * through * lit.source(s) / zero.each(lit.albedo());
+        }
+        if !matches!(self.walker, Walker::Mis(_)) {
+            density = zero.each(1.0);
+        }
+        for value in values.iter_mut() {
+            *value = L::select(is_lit, *value / density, zero);
+        }
+        zero
+    }
 }

@@ -15,7 +15,6 @@ use theory::problems::SpectralTransmittance;
 macro_rules! trackers {
     ($this:ident => $walk:ident, $heroes:expr, $tracker:expr) => {
         const INPUTS: $crate::Inputs = $crate::Inputs::SAMPLING;
-        const IN_PACKETS: bool = true;
 
         fn predict(&$this, setup: &Setup<SpectralTransmittance>) -> theory::Prediction {
             let spectrum = $crate::spectral_transmittance::walk::spectrum(setup, $heroes, $tracker);

@@ -8,12 +8,11 @@ use super::{
     bidirectional, connected, directional_mis, full_mis, next_event, predict_by_pilots,
     predict_together, realisable,
 };
-use crate::kernels::packet::Request;
 use crate::single_scattering::connection;
 use crate::space::{self, Particle, Splitting, draws};
-use crate::{Draw, Estimator, Inputs, Refusal, Setup};
+use crate::{Draw, Estimator, Inputs, Kernel, Refusal, Request, Setup, walks};
+use media::Majorants;
 use media::catalogue::Settings;
-use media::{Lookups, Majorants};
 use numeric::rng::Stream;
 use theory::problems::Sphere;
 use theory::problems::ball::Light;
@@ -122,7 +121,6 @@ pub struct Connected<const KIND: u8>(Page);
 
 impl<const KIND: u8> Estimator<Sphere> for Connected<KIND> {
     const INPUTS: Inputs = Inputs::SAMPLING;
-    const IN_PACKETS: bool = true;
 
     fn read(settings: &Settings) -> Option<Self> {
         let page = match KIND {
@@ -153,18 +151,14 @@ impl<const KIND: u8> Estimator<Sphere> for Connected<KIND> {
         self.0.predict(setup)
     }
 
-    #[inline]
-    fn draw(&self, setup: &Setup<Sphere>, _: &Lookups, random: &mut Stream) -> Draw {
-        self.0.draw_for(Honest, setup, random)
-    }
-
-    fn draw_packets<'a>(
-        &self,
-        level: Level,
-        setup: &Setup<Sphere>,
-        _: &Lookups,
-        request: Request<'a>,
-    ) -> Option<Request<'a>> {
-        self.0.draw_packets(level, setup, request)
+    fn fill(&self, kernel: Kernel, setup: &Setup<Sphere>, request: Request) {
+        walks::by(
+            kernel,
+            setup,
+            request,
+            |level, _, request| self.0.draw_packets(level, setup, request),
+            #[inline(always)]
+            |_, random| self.0.draw_for(Honest, setup, random),
+        );
     }
 }

@@ -12,9 +12,7 @@
 //! Source: J. Novák, I. Georgiev, J. Hanika, W. Jarosz, *Monte Carlo Methods for Volumetric Light
 //! Transport Simulation*, Computer Graphics Forum 37 (2018), section 4.1.
 
-use crate::{Draw, Estimator, Inputs, Refusal, Setup};
-use media::Lookups;
-use numeric::rng::Stream;
+use crate::{Draw, Estimator, Inputs, Kernel, Refusal, Request, Setup, walks};
 use theory::prediction::transmittance;
 use theory::problems::Transmittance;
 use theory::{Channel, CountLaw, Law, Moments, Prediction, Tails};
@@ -54,8 +52,12 @@ impl Estimator<Transmittance> for ClosedForm {
         exact(setup, 0)
     }
 
-    #[inline(always)]
-    fn draw(&self, setup: &Setup<Transmittance>, _: &Lookups, _: &mut Stream) -> Draw {
-        Draw::free([setup.transmittance], 0)
+    fn fill(&self, _: Kernel, setup: &Setup<Transmittance>, request: Request) {
+        walks::one_by_one(
+            setup,
+            request,
+            #[inline(always)]
+            |_, _| Draw::free([setup.transmittance], 0),
+        );
     }
 }

@@ -17,16 +17,13 @@
 //! Source: P. Kutz, R. Habel, Y. K. Li, J. Novák, *Spectral and Decomposition Tracking for
 //! Rendering Heterogeneous Volumes*, ACM Transactions on Graphics 36 (2017), section 4.
 
-use fearless_simd::Level;
-
 use super::woodcock::{ZERO_OR_ONE, zero_or_one};
-use crate::kernels::packet::Request;
 use crate::recipes::controls;
-use crate::walks::{self, Ground, Met, Route, Walk};
-use crate::{Draw, Estimator, Inputs, Refusal, Setup};
+use crate::walks::{self, Met, Route, Walk};
+use crate::{Estimator, Inputs, Kernel, Refusal, Request, Setup};
+use media::Control;
 use media::course::BothWays;
-use media::{Control, Lookups};
-use numeric::rng::{Random, Stream};
+use numeric::rng::Random;
 use numeric::{Lane, kept};
 use theory::Prediction;
 use theory::problems::Transmittance;
@@ -47,7 +44,6 @@ fn constant_control(setup: &Setup<Transmittance>) -> Option<f64> {
 impl Estimator<Transmittance> for Decomposition {
     const INPUTS: Inputs = Inputs::BOTH;
     const PLAIN: Option<Self> = Some(Self);
-    const IN_PACKETS: bool = true;
 
     fn default_control() -> Option<Box<dyn controls::Recipe>> {
         Some(Box::new(controls::minimum::Minimum))
@@ -73,20 +69,8 @@ impl Estimator<Transmittance> for Decomposition {
         zero_or_one(product.predict())
     }
 
-    #[inline(always)]
-    fn draw(&self, setup: &Setup<Transmittance>, medium: &Lookups, random: &mut Stream) -> Draw {
-        walks::draw(&Residual::new(setup), &setup.sampling, medium, random)
-    }
-
-    fn draw_packets<'a>(
-        &self,
-        level: Level,
-        setup: &Setup<Transmittance>,
-        medium: &Lookups,
-        request: Request<'a>,
-    ) -> Option<Request<'a>> {
-        let ground = Ground::new(setup, medium);
-        walks::packets(level, &Residual::new(setup), ground, request)
+    fn fill(&self, kernel: Kernel, setup: &Setup<Transmittance>, request: Request) {
+        walks::fill(&Residual::new(setup), kernel, setup, request);
     }
 }
 
@@ -102,20 +86,28 @@ kept! {
 
 /// Woodcock tracking of `σ_t − σ_c` up to where the control's flight ended.
 #[derive(Clone, Copy)]
-struct Residual {
-    control: f64,
-    begin: f64,
-    end: f64,
+pub struct Residual {
+    /// σ_c of the first flight.
+    pub control: f64,
+    /// σ_c that collisions subtract.
+    pub subtracted: f64,
+    /// The beginning of the support.
+    pub begin: f64,
+    /// The end of the support: a control's flight that ends before it stops the walk.
+    pub end: f64,
     /// The value of walks that pass.
-    unit: f64,
+    pub unit: f64,
 }
 
 impl Residual {
+    /// The walk on a setup.
     #[inline(always)]
-    fn new(setup: &Setup<Transmittance>) -> Self {
+    pub fn new(setup: &Setup<Transmittance>) -> Self {
         let support = setup.mesh.support();
+        let control = setup.control.extinction(support.from);
         Self {
-            control: setup.control.extinction(support.from),
+            control,
+            subtracted: control,
             begin: support.from,
             end: support.to,
             unit: Lane::exp(setup.log_unit),
@@ -159,7 +151,7 @@ impl Walk for Residual {
         _: &mut impl Random<L>,
     ) -> L::Mask {
         let Met { inside, mean_free_path, extinction, number, .. } = *met;
-        let is_real = number.below((extinction - self.control) * mean_free_path);
+        let is_real = number.below((extinction - self.subtracted) * mean_free_path);
         let goes_on = flight.begins | (inside & !is_real);
         flight.begins = flight.begins & !flight.begins;
         goes_on

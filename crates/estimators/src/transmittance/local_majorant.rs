@@ -18,15 +18,11 @@
 //! sampling for rendering inhomogeneous participating media*, ACM Transactions on Graphics 29
 //! (2010).
 
-use fearless_simd::Level;
-
 use super::woodcock::{ZERO_OR_ONE, zero_or_one};
-use crate::kernels::packet::Request;
 use crate::walks::{self, Met, Route, Walk};
-use crate::{Draw, Estimator, Inputs, Refusal, Setup};
-use media::Lookups;
+use crate::{Draw, Estimator, Inputs, Kernel, Refusal, Request, Setup};
 use media::course::BothWays;
-use numeric::rng::{Random, Stream};
+use numeric::rng::Random;
 use numeric::{Kept, Lane, Row, kept};
 use theory::Prediction;
 use theory::problems::Transmittance;
@@ -40,7 +36,6 @@ impl Estimator<Transmittance> for LocalMajorant {
     const INPUTS: Inputs = Inputs::SAMPLING;
     const PLAIN: Option<Self> = Some(Self);
     const SKIPS: bool = true;
-    const IN_PACKETS: bool = true;
 
     fn domain(&self, setup: &Setup<Transmittance>) -> Result<(), Refusal> {
         setup.require_plain_unit(ZERO_OR_ONE)?;
@@ -56,23 +51,16 @@ impl Estimator<Transmittance> for LocalMajorant {
         zero_or_one(Prediction { random_numbers: None, ..prediction })
     }
 
-    #[inline(always)]
-    fn draw(&self, setup: &Setup<Transmittance>, medium: &Lookups, random: &mut Stream) -> Draw {
-        let Some(walk) = Segments::of(setup) else {
-            return Draw::free([setup.control_transmittance], 0);
-        };
-        walks::plain::draw_nowhere(&walk, medium, random)
-    }
-
-    fn draw_packets<'a>(
-        &self,
-        level: Level,
-        setup: &Setup<Transmittance>,
-        medium: &Lookups,
-        request: Request<'a>,
-    ) -> Option<Request<'a>> {
-        let Some(walk) = Segments::of(setup) else { return Some(request) };
-        walks::packets_nowhere(level, &walk, medium, request)
+    fn fill(&self, kernel: Kernel, setup: &Setup<Transmittance>, request: Request) {
+        match Segments::of(setup) {
+            Some(walk) => walks::fill(&walk, kernel, setup, request),
+            None => walks::one_by_one(
+                setup,
+                request,
+                #[inline(always)]
+                |_, _| Draw::free([setup.control_transmittance], 0),
+            ),
+        }
     }
 }
 
@@ -114,6 +102,7 @@ impl<'a> Segments<'a> {
 impl Walk for Segments<'_> {
     type State<L: Lane> = Hop<L>;
 
+    const IS_NOWHERE: bool = true;
     const IS_FIXED: bool = true;
     const PAUSES: bool = true;
 

@@ -14,15 +14,13 @@
 //! X(S) + Σᵢ X(tᵢ⁻)(1 − (1 − rᵢ)/qᵢ) = T_c
 //! ```
 
-use fearless_simd::Level;
-
-use crate::kernels::packet::Request;
-use crate::walks::{self, Ground, Met, Route, Walk};
-use crate::{Draw, Setup};
+use crate::walks::{self, Met, Route, Walk};
+use crate::{Draw, Kernel, Request, Setup};
 use media::course::BothWays;
 use media::{Control, Lookups};
 use numeric::rng::{Random, Stream};
 use numeric::{Lane, kept};
+use theory::problems::Problem;
 use theory::rules::{self, Collision};
 
 /// The walk of a product estimator.
@@ -224,19 +222,18 @@ pub fn draw<P, R: Collision>(
     }
 }
 
-/// Makes the draws of a request by packs, see [`walks::packets`].
-pub fn packets<'a, P, R: Collision>(
-    level: Level,
+/// Makes the draws of a request.
+pub fn fill<P: Problem<Value = [f64; 1]>, R: Collision>(
+    kernel: Kernel,
     setup: &Setup<P>,
     rule: &R,
-    medium: &Lookups,
-    request: Request<'a>,
-) -> Option<Request<'a>> {
-    let (walk, ground) = (Product::new(rule, setup), Ground::with_control(setup, medium));
+    request: Request,
+) {
+    let walk = Product::new(rule, setup);
     if R::WEIGHS {
-        walks::packets(level, &walk, ground, request)
+        walks::fill(&walk, kernel, setup, request);
     } else {
-        walks::packets(level, &Survival(walk), ground, request)
+        walks::fill(&Survival(walk), kernel, setup, request);
     }
 }
 

@@ -21,18 +21,17 @@
 //! Source: M. Raab, D. Seibert, A. Keller, *Unbiased Global Illumination with Participating Media*,
 //! Monte Carlo and Quasi-Monte Carlo Methods 2006, Springer (2008).
 
-use fearless_simd::{Level, Simd, SimdBase, f64x8};
+use fearless_simd::{Simd, SimdBase, f64x8};
 
-use crate::kernels::packet::Request;
-use crate::kernels::packet::bank;
-use crate::{Draw, Estimator, Inputs, Refusal, Setup};
+use crate::kernels::bank;
+use crate::{Draw, Estimator, Inputs, Kernel, Refusal, Request, Setup, walks};
 use media::catalogue::Settings;
 use media::{Extinction, Lookups};
 use numeric::pack::{self, Task, WIDTH};
 use numeric::quadrature::GaussLegendre;
 use numeric::rng::{LANES, Stream};
 use numeric::{Known, Lane};
-use theory::problems::Transmittance;
+use theory::problems::{Problem, Transmittance};
 use theory::{Channel, CountLaw, Moments, Prediction, Tails};
 
 /// Panels of the quadrature over the offset: σ_t may have kinks, so the rule is a dense one.
@@ -63,11 +62,17 @@ impl RayMarching {
     fn value<M: Extinction, L: Lane>(&self, setup: &Setup<Transmittance>, medium: &M, u: L) -> L {
         (u.each(setup.log_unit) - self.depth(setup, medium, u)).exp()
     }
+
+    /// One march.
+    #[inline(always)]
+    fn march(&self, setup: &Setup<Transmittance>, medium: &Lookups, random: &mut Stream) -> f64 {
+        let u = if self.jitter { random.uniform() } else { 0.5 };
+        self.value(setup, medium, u)
+    }
 }
 
 impl Estimator<Transmittance> for RayMarching {
     const INPUTS: Inputs = Inputs::NONE;
-    const IN_PACKETS: bool = true;
 
     fn read(settings: &Settings) -> Option<Self> {
         let steps = settings.count("steps", 1..=1_000_000);
@@ -119,20 +124,22 @@ impl Estimator<Transmittance> for RayMarching {
     }
 
     #[inline(always)]
-    fn draw(&self, setup: &Setup<Transmittance>, medium: &Lookups, rng: &mut Stream) -> Draw {
-        let u = if self.jitter { rng.uniform() } else { 0.5 };
-        Draw::free([self.value(setup, medium, u)], self.steps)
-    }
-
-    fn draw_packets<'a>(
-        &self,
-        level: Level,
-        setup: &Setup<Transmittance>,
-        medium: &Lookups,
-        request: Request<'a>,
-    ) -> Option<Request<'a>> {
-        let task = Marches { estimator: self, setup, medium, request };
-        pack::on_wide(level, task).err().map(|task| task.request)
+    fn fill(&self, kernel: Kernel, setup: &Setup<Transmittance>, request: Request) {
+        let left = match kernel {
+            Kernel::Single => Some(request),
+            Kernel::Packets(level) => {
+                let medium = &setup.problem.lookups(level);
+                let task = Marches { estimator: self, setup, medium, request };
+                pack::on_wide(level, task).err().map(|task| task.request)
+            }
+        };
+        let Some(request) = left else { return };
+        walks::one_by_one(
+            setup,
+            request,
+            #[inline(always)]
+            |medium, random| Draw::free([self.march(setup, medium, random)], self.steps),
+        );
     }
 }
 
@@ -170,7 +177,7 @@ impl Task for Marches<'_, '_> {
             bank::leave(streams, pack, u64::MAX, numbers);
         }
         for value in rest {
-            [*value] = estimator.draw(setup, medium, streams.of_next_draw()).value;
+            *value = estimator.march(setup, medium, streams.of_next_draw());
         }
     }
 }

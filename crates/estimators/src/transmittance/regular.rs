@@ -14,10 +14,9 @@
 //! 1987; the name after Novák et al. 2018, section 4.2.
 
 use super::closed_form::exact;
-use crate::{Draw, Estimator, Inputs, Refusal, Setup};
+use crate::{Draw, Estimator, Inputs, Kernel, Refusal, Request, Setup, walks};
 use media::{Extinction, Lookups};
 use numeric::Lane;
-use numeric::rng::Stream;
 use theory::Prediction;
 use theory::problems::Transmittance;
 
@@ -49,20 +48,31 @@ impl Estimator<Transmittance> for Regular {
     }
 
     #[inline(always)]
-    fn draw(&self, setup: &Setup<Transmittance>, medium: &Lookups, _: &mut Stream) -> Draw {
-        let mut weight = 1.0;
-        let mut left = setup.log_unit;
-        let mut lookups = 0;
-        for panel in setup.mesh.panels() {
-            let extinction = medium.extinction(panel.span.middle());
-            lookups += 1;
-            if setup.log_unit == 0.0 {
-                weight *= Lane::exp(-extinction * panel.span.length());
-            } else {
-                // The product would underflow: its logarithm is taken from that of the unit.
-                left -= extinction * panel.span.length();
-            }
-        }
-        Draw::free([weight * Lane::exp(left)], lookups)
+    fn fill(&self, _: Kernel, setup: &Setup<Transmittance>, request: Request) {
+        walks::one_by_one(
+            setup,
+            request,
+            #[inline(always)]
+            |medium, _| tracked(setup, medium),
+        );
     }
+}
+
+/// `∏ exp(−σ_t h)` over the pieces.
+#[inline(always)]
+fn tracked(setup: &Setup<Transmittance>, medium: &Lookups) -> Draw {
+    let mut weight = 1.0;
+    let mut left = setup.log_unit;
+    let mut lookups = 0;
+    for panel in setup.mesh.panels() {
+        let extinction = medium.extinction(panel.span.middle());
+        lookups += 1;
+        if setup.log_unit == 0.0 {
+            weight *= Lane::exp(-extinction * panel.span.length());
+        } else {
+            // The product would underflow: its logarithm is taken from that of the unit.
+            left -= extinction * panel.span.length();
+        }
+    }
+    Draw::free([weight * Lane::exp(left)], lookups)
 }

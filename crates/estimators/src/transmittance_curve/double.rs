@@ -19,19 +19,16 @@
 //! Transport Estimators for Inhomogeneous Participating Media*, Computer Graphics Forum 36 (2017),
 //! sections 4.2–4.3, Figures 5 and 8.
 
-use fearless_simd::Level;
-
 use super::ray_view::{self, RayView};
-use crate::kernels::packet::Request;
 use crate::transmittance::product::{Invariant, Subtracted};
-use crate::walks::{self, Ground, Met, Route, Walk};
-use crate::{Draw, Estimator, Inputs, Refusal, Setup};
+use crate::walks::{self, Met, Route, Walk};
+use crate::{Estimator, Inputs, Kernel, Refusal, Request, Setup};
+use media::Medium;
 use media::course::BothWays;
-use media::{Lookups, Medium};
 use numeric::rng::{Address, Random, Stream, exponential};
 use numeric::{Lane, kept};
 use theory::problems::TransmittanceCurve;
-use theory::problems::transmittance::{CurveValues, MAX_DISTANCES};
+use theory::problems::transmittance::MAX_DISTANCES;
 use theory::rules::Weight;
 use theory::{Prediction, curve};
 
@@ -57,7 +54,6 @@ impl Estimator<TransmittanceCurve> for DoubleCurve {
     const PLAIN: Option<Self> = Some(Self);
     const SKIPS: bool = true;
     const HAS_INVARIANT: bool = true;
-    const IN_PACKETS: bool = true;
 
     fn domain(&self, setup: &Setup<TransmittanceCurve>) -> Result<(), Refusal> {
         setup.require_coverage()?;
@@ -72,25 +68,8 @@ impl Estimator<TransmittanceCurve> for DoubleCurve {
         Some(ray_view::ray_view(setup, address))
     }
 
-    #[inline(always)]
-    fn draw(
-        &self,
-        setup: &Setup<TransmittanceCurve>,
-        medium: &Lookups,
-        random: &mut Stream,
-    ) -> Draw<CurveValues> {
-        walks::draw(&Curve::new(setup), &setup.sampling, medium, random)
-    }
-
-    fn draw_packets<'a>(
-        &self,
-        level: Level,
-        setup: &Setup<TransmittanceCurve>,
-        medium: &Lookups,
-        request: Request<'a>,
-    ) -> Option<Request<'a>> {
-        let ground = Ground::with_control(setup, medium);
-        walks::packets(level, &Curve::new(setup), ground, request)
+    fn fill(&self, kernel: Kernel, setup: &Setup<TransmittanceCurve>, request: Request) {
+        walks::fill(&Curve::new(setup), kernel, setup, request);
     }
 }
 

@@ -24,23 +24,21 @@
 //! computers*, Progress in Nuclear Energy 14 (1984), for [`window`] and [`bank`].
 
 pub mod bank;
+pub mod draws;
 pub mod hero;
 mod left;
 pub mod plain;
 mod route;
 pub mod window;
 
-use fearless_simd::{Level, Simd, SimdBase, f64x8};
-
-use crate::Setup;
-use crate::kernels::packet::{Request, pays};
-use media::course::{BothWays, Even, Pieces};
-use media::{Batches, Control, Inlined, Lookups, Piecewise};
+use media::Batches;
+use media::course::BothWays;
 use numeric::geometry::Point;
-use numeric::pack::{self, Task};
 use numeric::rng::Random;
-use numeric::{Kept, Lane, Twin};
+use numeric::{Kept, Lane};
 
+pub(crate) use draws::drawn;
+pub use draws::{by, fill, one_by_one, packets};
 pub use plain::draw;
 pub use route::{Nowhere, Route};
 
@@ -71,6 +69,9 @@ pub trait Walk: Copy {
 
     /// Whether [`Walk::defect`] is more than 0.
     const HAS_DEFECT: bool = false;
+
+    /// Whether the walk keeps its own position and never asks for a route.
+    const IS_NOWHERE: bool = false;
 
     /// When finished walks are scored.
     const SCORES: Scores = Scores::AtOnce;
@@ -272,228 +273,4 @@ impl<L: Lane> Met<'_, L> {
     pub fn ratio(&self) -> L {
         self.extinction * self.mean_free_path
     }
-}
-
-/// The fields that walks fly through.
-#[derive(Clone, Copy)]
-pub struct Ground<'a> {
-    /// σ̂.
-    pub sampling: &'a Piecewise,
-    /// σ_c.
-    pub control: &'a Control,
-    /// σ_t.
-    pub medium: &'a Lookups<'a>,
-}
-
-impl<'a> Ground<'a> {
-    /// The fields of a setup, without its control.
-    pub fn new<P>(setup: &'a Setup<P>, medium: &'a Lookups<'a>) -> Self {
-        Self { sampling: &setup.sampling, control: &Control::None, medium }
-    }
-
-    /// The fields of a setup.
-    pub fn with_control<P>(setup: &'a Setup<P>, medium: &'a Lookups<'a>) -> Self {
-        Self { sampling: &setup.sampling, control: &setup.control, medium }
-    }
-}
-
-/// Makes the draws of a request on the hardware of a level. The request is handed back where the hardware is too narrow, and
-/// where [`plain`] is faster.
-#[inline(always)] // in the codegen unit of the caller
-pub fn packets<'a, W: Walk>(
-    level: Level,
-    walk: &W,
-    ground: Ground,
-    request: Request<'a>,
-) -> Option<Request<'a>> {
-    let is_possible = (W::IN_PIECES && !W::IS_CHROMATIC) || ground.sampling.even().is_some();
-    if !is_possible || !pays(ground.medium, ground.sampling, ground.control) {
-        return Some(request);
-    }
-    pack::on_wide(level, SideBySide { walk, ground, request }).err().map(|task| task.request)
-}
-
-/// The draws of a page that are those of a walk on its setup, as in `drawn!(self, setup: LitRod => Walk::of(setup))`. What is made for
-/// many draws in packets may differ: `drawn!(self, setup: LitRod => Walk::of(setup), Walk::prepared(setup))`.
-macro_rules! drawn {
-    ($this:ident, $setup:ident: $Problem:ty => $walk:expr) => {
-        $crate::walks::drawn!($this, $setup: $Problem => $walk, $walk);
-    };
-    ($this:ident, $setup:ident: $Problem:ty => $walk:expr, $prepared:expr) => {
-        #[inline(always)]
-        fn draw(
-            &$this,
-            $setup: &$crate::Setup<$Problem>,
-            medium: &media::Lookups,
-            random: &mut numeric::rng::Stream,
-        ) -> $crate::Draw<<$Problem as theory::problems::Problem>::Value> {
-            $crate::walks::draw(&$walk, &$setup.sampling, medium, random)
-        }
-
-        fn draw_packets<'a>(
-            &$this,
-            level: fearless_simd::Level,
-            $setup: &$crate::Setup<$Problem>,
-            medium: &media::Lookups,
-            request: $crate::kernels::packet::Request<'a>,
-        ) -> Option<$crate::kernels::packet::Request<'a>> {
-            let ground = $crate::walks::Ground::new($setup, medium);
-            $crate::walks::packets(level, &$prepared, ground, request)
-        }
-    };
-}
-pub(crate) use drawn;
-
-/// Makes the draws of a walk that keeps its own position, as [`packets`] does.
-pub fn packets_nowhere<'a>(
-    level: Level,
-    walk: &impl Walk,
-    medium: &Lookups,
-    request: Request<'a>,
-) -> Option<Request<'a>> {
-    pack::on_wide(level, Anywhere { walk, medium, request }).err().map(|task| task.request)
-}
-
-struct SideBySide<'a, 'r, W> {
-    walk: &'a W,
-    ground: Ground<'a>,
-    request: Request<'r>,
-}
-
-impl<W: Walk> Task for SideBySide<'_, '_, W> {
-    type Output = ();
-
-    #[inline(always)]
-    fn run<S: Simd>(self, simd: S) {
-        let Self { walk, ground: Ground { sampling, medium, .. }, request } = self;
-        let zero = f64x8::splat(simd, 0.0);
-        let Some(even) = sampling.even() else {
-            if const { W::IN_PIECES && !W::IS_CHROMATIC } {
-                outlined(simd, *walk, Pieces::new(zero, sampling), medium, request);
-            }
-            return;
-        };
-        let course = Even::new(zero, even);
-        if const { !W::IN_PIECES } {
-            // Alone in this function.
-            return bank::run(
-                simd,
-                *walk,
-                course,
-                #[inline(always)]
-                move |_, t| medium.pair(simd, t),
-                request,
-            );
-        }
-        if !W::IS_FIXED {
-            return outlined(simd, *walk, course, medium, request);
-        }
-        if let Some(value) = medium.single_value() {
-            let value = Twin::splat(simd, value);
-            return in_window(
-                simd,
-                *walk,
-                course,
-                #[inline(always)]
-                move |_| value,
-                request,
-            );
-        }
-        match medium.inlined() {
-            Some(Inlined::Eq21(field)) if const { W::INLINES_EQ21 && pack::is_one_register::<S>() } =>
-            {
-                in_window(
-                    simd,
-                    *walk,
-                    course,
-                    #[inline(always)]
-                    move |t| each(field, t),
-                    request,
-                );
-            }
-            Some(Inlined::Grid(field)) if const { W::INLINES_GRID && pack::is_one_register::<S>() } =>
-            {
-                in_window(
-                    simd,
-                    *walk,
-                    course,
-                    #[inline(always)]
-                    move |t| each(field, t),
-                    request,
-                );
-            }
-            _ => outlined(simd, *walk, course, medium, request),
-        }
-    }
-}
-
-struct Anywhere<'a, 'r, W> {
-    walk: &'a W,
-    medium: &'a Lookups<'a>,
-    request: Request<'r>,
-}
-
-impl<W: Walk> Task for Anywhere<'_, '_, W> {
-    type Output = ();
-
-    #[inline(always)]
-    fn run<S: Simd>(self, simd: S) {
-        outlined(simd, *self.walk, Nowhere, self.medium, self.request);
-    }
-}
-
-/// Lookups by calls, in a function of its own for each course: compile time grows as the square of a function's length.
-#[inline(always)]
-fn outlined<S: Simd, W: Walk, C: BothWays<f64x8<S>>>(
-    simd: S,
-    walk: W,
-    course: C,
-    medium: &Lookups,
-    request: Request,
-) {
-    if W::IS_FIXED {
-        return in_window(
-            simd,
-            walk,
-            course,
-            #[inline(always)]
-            move |t| medium.pair(simd, t),
-            request,
-        );
-    }
-    pack::outlined(
-        simd,
-        #[inline(always)]
-        move || {
-            bank::run(
-                simd,
-                walk,
-                course,
-                #[inline(always)]
-                move |channel, t| medium.channel(channel).pair(simd, t),
-                request,
-            );
-        },
-    );
-}
-
-#[inline(always)]
-fn in_window<S: Simd, W: Walk, C: BothWays<f64x8<S>>>(
-    simd: S,
-    walk: W,
-    course: C,
-    look_up: impl Fn(Twin<f64x8<S>>) -> Twin<f64x8<S>>,
-    request: Request,
-) {
-    pack::outlined(
-        simd,
-        #[inline(always)]
-        move || window::run(simd, walk, course, look_up, request),
-    );
-}
-
-/// `σ_t` of a field of a known type, with the bits of [`Lookups::pair`].
-#[inline(always)]
-fn each<S: Simd>(field: &impl media::Extinction, t: Twin<f64x8<S>>) -> Twin<f64x8<S>> {
-    Twin(field.extinction(t.0), field.extinction(t.1))
 }

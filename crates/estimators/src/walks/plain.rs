@@ -20,34 +20,23 @@ pub fn draw<V: Channels>(
     random: &mut Stream,
 ) -> Draw<V> {
     if fuses() {
-        through::<Fused, V>(walk, sampling, medium, random)
+        through::<Fused, _, V>(walk, sampling, medium, random)
     } else {
-        through::<Plain, V>(walk, sampling, medium, random)
-    }
-}
-
-/// Makes one draw of a walk that keeps its own position.
-#[inline(always)]
-pub fn draw_nowhere<V: Channels>(
-    walk: &impl Walk,
-    medium: &Lookups,
-    random: &mut Stream,
-) -> Draw<V> {
-    if fuses() {
-        follow::<Fused, _, V>(walk, Nowhere, medium, random)
-    } else {
-        follow::<Plain, _, V>(walk, Nowhere, medium, random)
+        through::<Plain, _, V>(walk, sampling, medium, random)
     }
 }
 
 /// Makes one draw in any lane of one number.
 #[inline(always)]
-pub fn through<L: Single, V: Channels>(
-    walk: &impl Walk,
+pub fn through<L: Single, W: Walk, V: Channels>(
+    walk: &W,
     sampling: &Piecewise,
     medium: &Lookups,
     random: &mut impl Random<L>,
 ) -> Draw<V> {
+    if W::IS_NOWHERE {
+        return follow(walk, Nowhere, medium, random);
+    }
     match sampling.even() {
         Some(even) => follow(walk, Even::new(L::of(0.0), even), medium, random),
         None => follow(walk, Pieces::new(L::of(0.0), sampling), medium, random),

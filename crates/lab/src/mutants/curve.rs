@@ -31,7 +31,7 @@ pub fn mutants() -> Vec<Mutant<TransmittanceCurve>> {
         of("curve-control-whole", "T_c is that of the whole ray at every distance", CURVE_CONTROL, "mean", Slip::WholeControl),
         of("curve-control-to-collision", "between collisions the curve is flat: T_c is taken at the last collision before s", CURVE_CONTROL, "mean", Slip::ControlToCollision),
         of("curve-log2", "log2 for ln in the flight", CURVE_CONTROL, "lookups", Slip::Log2),
-        Mutant::new(fresh, fresh_walks, by(Slip::None)),
+        Mutant::new(fresh, with((), |(), setup, medium, random| fresh_walks(setup, medium, random)), by(Slip::None)),
     ]
 }
 

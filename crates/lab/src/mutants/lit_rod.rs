@@ -8,9 +8,9 @@
 //! formulation of light transport*, ACM Transactions on Graphics 38 (2019), as printed, or ways to read them.
 
 use super::target::{LIT_DIRECTIONAL, LIT_FULL, LIT_NEXT_EVENT, LIT_NEXT_EVENT_DELTA};
-use super::{About, Mutant, Target, with};
+use super::{About, Mutant, Target, filled};
 use estimators::lit_rod::shadow::Steps;
-use estimators::lit_rod::walk::draw;
+use estimators::lit_rod::walk::fill;
 use numeric::Lane;
 use theory::lit_rod::{Combination, Densities, Heuristic, Shadow, Techniques};
 use theory::problems::LitRod;
@@ -42,14 +42,17 @@ pub(super) struct Wrong(pub(super) Techniques, pub(super) Bug);
 impl Steps for Wrong {
     const KEEPS_LAST: bool = true;
 
+    #[inline(always)]
     fn techniques(&self) -> Techniques {
         self.0
     }
 
+    #[inline(always)]
     fn unscattered<L: Lane>(&self, one: L) -> L {
         if self.1 == Bug::UnscatteredWeighted { self.0.of_hit(one) } else { one }
     }
 
+    #[inline(always)]
     fn hit<L: Lane>(&self, ratio: L) -> L {
         let right = self.0.of_hit(ratio);
         match self.1 {
@@ -60,6 +63,7 @@ impl Steps for Wrong {
         }
     }
 
+    #[inline(always)]
     fn connected<L: Lane>(&self, density: L, transmittance: L) -> L {
         let right = self.0.of_shadow_ray(density, transmittance);
         match self.1 {
@@ -71,14 +75,17 @@ impl Steps for Wrong {
         }
     }
 
+    #[inline(always)]
     fn after_null<L: Lane>(&self, ratio: L, null: L) -> L {
         if self.1 == Bug::NullsMissing { ratio } else { self.0.after_null(ratio, null) }
     }
 
+    #[inline(always)]
     fn after_scattering<L: Lane>(&self, before: L, right: L) -> L {
         if self.1 == Bug::NotReset { right * before } else { right }
     }
 
+    #[inline(always)]
     fn phase<L: Lane>(&self, forward: L, is_forward: L::Mask, albedo: L) -> L {
         let right = self.0.phase(forward, is_forward, albedo);
         match self.1 {
@@ -89,14 +96,17 @@ impl Steps for Wrong {
         }
     }
 
+    #[inline(always)]
     fn stops<L: Lane>(&self, ratio: L, albedo: L) -> L {
         if self.1 == Bug::ThroughScattering { ratio * albedo.one_minus() } else { ratio }
     }
 
+    #[inline(always)]
     fn arrived<L: Lane>(&self, transmittance: L, last: impl Fn() -> L) -> L {
         if self.1 == Bug::LastSegment { transmittance * last().exp() } else { transmittance }
     }
 
+    #[inline(always)]
     fn returns(&self) -> bool {
         self.1 != Bug::CarriedAlong
     }
@@ -107,7 +117,7 @@ impl Steps for Wrong {
 pub fn mutants() -> Vec<Mutant<LitRod>> {
     let mutant = |name, bug, target: Target, techniques, wrong| {
         let about = About { name, bug, target, check: "mean" };
-        Mutant::new(about, with(Wrong(techniques, wrong), draw), with(Wrong(techniques, Bug::None), draw))
+        Mutant::new(about, filled(Wrong(techniques, wrong), fill), filled(Wrong(techniques, Bug::None), fill))
     };
     let balanced = |shadow, densities| {
         let combination = Combination::Mis(densities, Heuristic::Balance);

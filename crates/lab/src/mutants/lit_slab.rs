@@ -6,8 +6,8 @@
 
 use super::lit_rod::{self, Wrong};
 use super::target::{LIT_SLAB_DIRECTIONAL, LIT_SLAB_DISTANT, LIT_SLAB_FULL, LIT_SLAB_NEXT_EVENT};
-use super::{About, Mutant, Target, with};
-use estimators::lit_slab::walk::{Directions, Right, draw};
+use super::{About, Mutant, Target, filled};
+use estimators::lit_slab::walk::{Directions, Right, fill};
 use media::phase::Phase;
 use numeric::Lane;
 use theory::lit_rod::{Combination, Densities, Heuristic, Shadow, Techniques};
@@ -25,14 +25,17 @@ enum Bug {
 }
 
 impl Directions for Bug {
+    #[inline(always)]
     fn scattered<L: Lane>(&self, phase: &Phase, cosine: L) -> L {
         phase.value(if *self == Self::Reversed { -cosine } else { cosine })
     }
 
+    #[inline(always)]
     fn spread<L: Lane>(&self, right: L, cosine: L) -> L {
         if *self == Self::CosineMissing { right / cosine } else { right }
     }
 
+    #[inline(always)]
     fn spread_of_hit<L: Lane>(&self, right: L) -> L {
         match self {
             Self::AreasMixed => right.each(std::f64::consts::PI * 1.44),
@@ -41,6 +44,7 @@ impl Directions for Bug {
         }
     }
 
+    #[inline(always)]
     fn slant<L: Lane>(&self, cosine: L) -> L {
         if *self == Self::Upright { cosine.each(1.0) } else { Right.slant(cosine) }
     }
@@ -50,9 +54,7 @@ impl Directions for Bug {
 #[rustfmt::skip] // one mutant, one entry
 pub fn mutants() -> Vec<Mutant<LitSlab>> {
     use lit_rod::Bug as Step;
-    let twin = |walk: (Wrong, Bug)| {
-        with(walk, |(steps, directions): &(Wrong, Bug), setup, medium, rng| draw((steps, directions), setup, medium, rng))
-    };
+    let twin = |walk: (Wrong, Bug)| filled(walk, fill);
     let mutant = |name, bug, target: Target, honest: Techniques, wrong: (Wrong, Bug)| {
         Mutant::new(About { name, bug, target, check: "mean" }, twin(wrong), twin((Wrong(honest, Step::None), Bug::None)))
     };

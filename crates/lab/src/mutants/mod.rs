@@ -50,9 +50,8 @@ pub mod weights;
 use std::any::Any;
 use std::sync::Arc;
 
-use estimators::{Draw, Experiment, Setup};
+use estimators::{Draw, Experiment, Kernel, Request, Setup, walks};
 use media::Lookups;
-use numeric::pack::in_fused_code;
 use numeric::rng::Stream;
 use theory::problems::Problem;
 
@@ -88,10 +87,10 @@ impl<P: Problem> Mutant<P> {
     /// Joins a bug and the same draws without it.
     pub fn new(
         about: About,
-        faulty: impl Fn(&Setup<P>, &Lookups, &mut Stream) -> Draw<P::Value> + Send + Sync + 'static,
-        honest: impl Fn(&Setup<P>, &Lookups, &mut Stream) -> Draw<P::Value> + Send + Sync + 'static,
+        faulty: impl Fn(Kernel, &Setup<P>, Request) + Send + Sync + 'static,
+        honest: impl Fn(Kernel, &Setup<P>, Request) + Send + Sync + 'static,
     ) -> Self {
-        Self { about, faulty: compiled(faulty), honest: compiled(honest), fault: RIGHT }
+        Self { about, faulty: Arc::new(faulty), honest: Arc::new(honest), fault: RIGHT }
     }
 
     /// Applies a fault to the setup and the generator of the mutant.
@@ -121,23 +120,27 @@ impl<P: Problem> Mutant<P> {
     }
 }
 
-/// Draws by a way to make them, right or wrong.
+/// Draws one by one, by a way to make one, right or wrong.
 fn with<P: Problem, B: Send + Sync + 'static>(
     bug: B,
     draw: impl Fn(&B, &Setup<P>, &Lookups, &mut Stream) -> Draw<P::Value> + Send + Sync + 'static,
-) -> impl Fn(&Setup<P>, &Lookups, &mut Stream) -> Draw<P::Value> + Send + Sync + 'static {
-    move |setup, medium, rng| draw(&bug, setup, medium, rng)
+) -> impl Fn(Kernel, &Setup<P>, Request) + Send + Sync + 'static {
+    move |_, setup, request| {
+        walks::one_by_one(
+            setup,
+            request,
+            #[inline(always)]
+            |medium, random| draw(&bug, setup, medium, random),
+        );
+    }
 }
 
-fn compiled<P: Problem>(
-    draw: impl Fn(&Setup<P>, &Lookups, &mut Stream) -> Draw<P::Value> + Send + Sync + 'static,
-) -> Arc<Draws<P>> {
-    Arc::new(move |setup: &Setup<P>, medium: &Lookups<'_>, rng: &mut Stream| {
-        in_fused_code(
-            #[inline(always)]
-            || draw(setup, medium, rng),
-        )
-    })
+/// Draws of a walk whose steps are right or wrong, by any kernel.
+fn filled<P: Problem, B: Copy + Send + Sync + 'static>(
+    steps: B,
+    fill: impl Fn(B, Kernel, &Setup<P>, Request) + Send + Sync + 'static,
+) -> impl Fn(Kernel, &Setup<P>, Request) + Send + Sync + 'static {
+    move |kernel, setup, request| fill(steps, kernel, setup, request)
 }
 
 /// One of a mutant's two walks.

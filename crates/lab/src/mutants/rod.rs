@@ -8,8 +8,8 @@
 use super::target::{
     ROD_ADAPTIVE, ROD_ANALOG, ROD_NON_TERMINATING, ROD_ROULETTE, ROD_TERMINATING, ROD_WEIGHTED,
 };
-use super::{About, Mutant, with};
-use estimators::rod::walk::{By, Steps, draw};
+use super::{About, Mutant, filled};
+use estimators::rod::walk::{By, Steps, fill};
 use numeric::Lane;
 use numeric::rng::Random;
 use theory::Odds;
@@ -82,7 +82,7 @@ impl Steps for Wrong {
 pub fn mutants() -> Vec<Mutant<Rod>> {
     let of = |rule| By { rule, roulette: None };
     let rod = |name, bug, target, honest: By, wrong: Wrong| {
-        Mutant::new(About { name, bug, target, check: "mean" }, with(wrong, draw), with(Wrong(honest, Bug::None), draw))
+        Mutant::new(About { name, bug, target, check: "mean" }, filled(wrong, fill), filled(Wrong(honest, Bug::None), fill))
     };
     let (analog, non_terminating, halved) = (of(Analog), of(NonTerminating), By { rule: NonTerminating, roulette: Some(0.5) });
     vec![

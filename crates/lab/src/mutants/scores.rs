@@ -37,8 +37,8 @@ pub fn mutants() -> Vec<Mutant<Transmittance>> {
         of("next-flight-counted-twice", "a walk that reaches the end adds its weight to what it has already scored", NEXT_FLIGHT, next_flight, Scores { end: |weight, _| weight, ..next_flight }),
         of("mis-without-flight", "a flight that reaches the end does not score its own share", MIS, mis, Scores { end: |_, _| 0.0, ..mis }),
         of("mis-unweighted", "next flight and flight count in full, unweighted", MIS, mis, Scores { share: |v| v, ..mis }),
-        Mutant::new(marching, ray_marching, right()),
-        Mutant::new(mean, averaged, right()),
+        Mutant::new(marching, with((), |(), setup, medium, random| ray_marching(setup, medium, random)), right()),
+        Mutant::new(mean, with((), |(), setup, medium, random| averaged(setup, medium, random)), right()),
     ]
 }
 

@@ -8,8 +8,8 @@
 use super::target::{
     SLAB_ADAPTIVE, SLAB_ANALOG, SLAB_DIFFUSE, SLAB_NON_TERMINATING, SLAB_WEIGHTED,
 };
-use super::{About, Mutant, with};
-use estimators::slab::walk::{Steps, draw};
+use super::{About, Mutant, filled};
+use estimators::slab::walk::{Steps, fill};
 use media::phase::Phase;
 use numeric::Lane;
 use theory::Odds;
@@ -31,6 +31,7 @@ enum Bug {
 struct Wrong(ParticleRule, Bug);
 
 impl Steps for Wrong {
+    #[inline(always)]
     fn odds<L: Lane>(&self, ratio: L, albedo: L) -> Odds<L> {
         let right = Steps::odds(&self.0, ratio, albedo);
         match self.1 {
@@ -39,6 +40,7 @@ impl Steps for Wrong {
         }
     }
 
+    #[inline(always)]
     fn descent<L: Lane>(&self, length: L, cosine: L) -> L {
         match self.1 {
             Bug::Unslanted => length,
@@ -47,11 +49,13 @@ impl Steps for Wrong {
         }
     }
 
+    #[inline(always)]
     fn deflection<L: Lane>(&self, phase: &Phase, number: L) -> L {
         let right = self.0.deflection(phase, number);
         if self.1 == Bug::Backward { -right } else { right }
     }
 
+    #[inline(always)]
     fn diffuse<L: Lane>(&self, number: L) -> L {
         if self.1 == Bug::EvenLight { number.one_minus() } else { self.0.diffuse(number) }
     }
@@ -61,7 +65,7 @@ impl Steps for Wrong {
 #[rustfmt::skip] // one mutant, one entry
 pub fn mutants() -> Vec<Mutant<Slab>> {
     let slab = |name, bug, target, check, honest, wrong| {
-        Mutant::new(About { name, bug, target, check }, with(wrong, draw), with(Wrong(honest, Bug::None), draw))
+        Mutant::new(About { name, bug, target, check }, filled(wrong, fill), filled(Wrong(honest, Bug::None), fill))
     };
     vec![
         slab("slab-cosine-sign", "the cosine of Henyey and Greenstein has the wrong sign: forward is backward", SLAB_ANALOG, "mean", Analog, Wrong(Analog, Bug::Backward)),

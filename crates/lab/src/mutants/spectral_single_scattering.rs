@@ -11,7 +11,8 @@ use super::{About, Mutant, Target, with};
 use estimators::setup::heroes::Heroes;
 use estimators::setup::walker::Walker;
 use estimators::spectral_single_scattering::Shadow;
-use estimators::spectral_single_scattering::walk::{Steps, draw, draw_all};
+use estimators::spectral_single_scattering::walk::{Right, Steps, draw};
+use numeric::Lane;
 use theory::problems::SpectralSingleScattering;
 use theory::spectral::{Chance, Chances};
 
@@ -32,8 +33,8 @@ pub fn mutants() -> Vec<Mutant<SpectralSingleScattering>> {
         let right = walker.clone();
         Mutant::new(
             about,
-            with(Wrong { slip, shadow, walker }, |wrong, setup, medium, rng| draw(wrong, (&wrong.walker, wrong.shadow), setup, medium, rng)),
-            with(right, move |right, setup, medium, rng| draw_all((right, shadow), setup, medium, rng)),
+            with(walker, move |walker, setup, medium, rng| draw::<true>(Wrong(slip), (walker, shadow), setup, medium, rng)),
+            with(right, move |walker, setup, medium, rng| draw::<true>(Right, (walker, shadow), setup, medium, rng)),
         )
     };
     vec![
@@ -60,30 +61,34 @@ enum Slip {
 }
 
 /// The steps of a walk with one slip.
-struct Wrong {
-    slip: Slip,
-    shadow: Shadow,
-    walker: Walker,
-}
+#[derive(Clone, Copy)]
+struct Wrong(Slip);
 
 impl Steps for Wrong {
-    fn passed(&self, ratio: f64) -> f64 {
-        if self.slip == Slip::NullsLeftOut { 1.0 } else { 1.0 - ratio }
+    const COUNTS: bool = true;
+
+    #[inline(always)]
+    fn passed<L: Lane>(&self, ratio: L) -> L {
+        if self.0 == Slip::NullsLeftOut { ratio.each(1.0) } else { ratio.one_minus() }
     }
 
-    fn scattered(&self, ratio: f64, albedo: f64) -> f64 {
-        if self.slip == Slip::AlbedoMissing { ratio } else { ratio * albedo }
+    #[inline(always)]
+    fn scattered<L: Lane>(&self, ratio: L, albedo: f64) -> L {
+        if self.0 == Slip::AlbedoMissing { ratio } else { ratio * albedo }
     }
 
-    fn shadow_of(&self, channel: usize, hero: usize) -> usize {
-        if self.slip == Slip::ShadowOfHero { hero } else { channel }
+    #[inline(always)]
+    fn through<L: Lane>(&self, own: L, heros: impl Fn() -> L) -> L {
+        if self.0 == Slip::ShadowOfHero { heros() } else { own }
     }
 
+    #[inline(always)]
     fn has_shadow_density(&self) -> bool {
-        self.slip != Slip::ShadowNotDense
+        self.0 != Slip::ShadowNotDense
     }
 
-    fn missing(&self) -> usize {
-        usize::from(self.slip == Slip::Dropped)
+    #[inline(always)]
+    fn share(&self, probability: f64, is_last: bool) -> f64 {
+        if is_last && self.0 == Slip::Dropped { 0.0 } else { probability }
     }
 }

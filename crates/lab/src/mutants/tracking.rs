@@ -1,4 +1,4 @@
-//! Mistakes of trackers with loops of their own: decomposition and local majorants.
+//! Mistakes of decomposition and of local majorants.
 //!
 //! ```text
 //! decomposition   X = 1 if the control's flight passes S and no residual collision comes before it
@@ -6,8 +6,9 @@
 //! ```
 
 use super::target::{DECOMPOSITION, LOCAL_MAJORANT};
-use super::{About, Mutant, with};
-use estimators::{Draw, Setup};
+use super::{About, Mutant, filled, with};
+use estimators::transmittance::decomposition::Residual;
+use estimators::{Draw, Kernel, Request, Setup, walks};
 use media::{Extinction, Lookups};
 use numeric::rng::Stream;
 use numeric::{Lane, Row};
@@ -16,54 +17,27 @@ use theory::problems::Transmittance;
 /// The family.
 #[rustfmt::skip] // one mutant, one entry
 pub fn mutants() -> Vec<Mutant<Transmittance>> {
-    let by = |whole, passes| with(Decomposition { whole, passes }, decomposition);
-    let of = |name, bug, check, whole, passes| {
-        Mutant::new(About { name, bug, target: DECOMPOSITION, check }, by(whole, passes), by(false, false))
+    let right: fn(Residual) -> Residual = |right| right;
+    let of = |name, bug, check, wrong: fn(Residual) -> Residual| {
+        Mutant::new(About { name, bug, target: DECOMPOSITION, check }, filled(wrong, decomposition), filled(right, decomposition))
     };
     let local = |overshoots| with(overshoots, |&overshoots, setup, medium, rng| local_majorant(overshoots, setup, medium, rng));
     let overshoot = About { name: "local-majorant-overshoot", bug: "a flight beyond a segment's end goes on from where it came to, not from the boundary", target: LOCAL_MAJORANT, check: "mean" };
     vec![
-        of("decomposition-whole", "the chance of a real collision is σ_t/σ̂, not (σ_t − σ_c)/σ̂", "mean", true, false),
-        of("decomposition-passes", "a draw without a residual collision is 1, wherever the control's flight ended", "atoms", false, true),
+        of("decomposition-whole", "the chance of a real collision is σ_t/σ̂, not (σ_t − σ_c)/σ̂", "mean", |right| Residual { subtracted: 0.0, ..right }),
+        of("decomposition-passes", "a draw without a residual collision is 1, wherever the control's flight ended", "atoms", |right| Residual { end: f64::NEG_INFINITY, ..right }),
         Mutant::new(overshoot, local(true), local(false)),
     ]
 }
 
-/// What goes wrong in decomposition tracking.
-struct Decomposition {
-    /// Collides with all of σ_t.
-    whole: bool,
-    /// Forgets the control's flight at the end.
-    passes: bool,
-}
-
-/// See `estimators/transmittance/decomposition.rs`.
+/// Decomposition tracking, with a walk made wrong.
 fn decomposition(
-    bug: &Decomposition,
+    wrong: fn(Residual) -> Residual,
+    kernel: Kernel,
     setup: &Setup<Transmittance>,
-    medium: &Lookups,
-    rng: &mut Stream,
-) -> Draw {
-    let support = setup.mesh.support();
-    let control = setup.control.extinction(support.from);
-    let (depth, _) = (-rng.ln_uniform(), rng.word());
-    let flown = depth.times_plus(1.0 / control, support.from);
-    let subtracted = if bug.whole { 0.0 } else { control };
-    let mut cursor = setup.sampling.begin();
-    let mut lookups = 0;
-    loop {
-        let (depth, number) = (-rng.ln_uniform(), rng.uniform());
-        let Some(sampling) = setup.sampling.fly(&mut cursor, depth) else { break };
-        if flown <= cursor.t {
-            break;
-        }
-        lookups += 1;
-        if number < (medium.extinction(cursor.t) - subtracted) * (1.0 / sampling) {
-            return Draw::free([0.0], lookups);
-        }
-    }
-    let stopped = flown < support.to && !bug.passes;
-    Draw::free([f64::from(u8::from(!stopped))], lookups)
+    request: Request,
+) {
+    walks::fill(&wrong(Residual::new(setup)), kernel, setup, request);
 }
 
 /// Local majorants, see `estimators/transmittance/local_majorant.rs`; who overshoots does not go back to the

@@ -1,20 +1,16 @@
-//! The loop over a mutant's draws; the estimators' own is in `estimators/trial.rs`.
+//! An experiment that draws as a mutant does.
 
 use std::sync::Arc;
 
-use fearless_simd::Level;
-
-use estimators::{Draw, DrawBuffer, Experiment, Kernel, Setup};
-use media::Lookups;
-use numeric::rng::{Stream, Streams};
+use estimators::{DrawBuffer, Experiment, Kernel, Request, Setup};
+use numeric::rng::Streams;
 use theory::problems::Problem;
 
 /// The draws between two beginnings of a generator that starts again.
 const PERIOD: usize = 1024;
 
-/// Makes one draw, rightly or wrongly.
-pub type Draws<P> =
-    dyn Fn(&Setup<P>, &Lookups, &mut Stream) -> Draw<<P as Problem>::Value> + Send + Sync;
+/// Makes the draws of a request, rightly or wrongly.
+pub type Draws<P> = dyn Fn(Kernel, &Setup<P>, Request) + Send + Sync;
 
 /// Draws on a setup.
 pub struct Trial<P: Problem> {
@@ -27,15 +23,15 @@ pub struct Trial<P: Problem> {
 }
 
 impl<P: Problem> Experiment for Trial<P> {
-    fn fill_by(&self, _: Kernel, streams: &mut Streams, count: usize, buffer: &mut DrawBuffer) {
-        buffer.clear();
-        let begin = streams.clone();
-        let medium = &self.setup.problem.lookups(Level::new());
-        for number in 0..count {
-            if self.replays && number % PERIOD == 0 {
-                streams.clone_from(&begin);
-            }
-            buffer.push(&(self.draws)(&self.setup, medium, streams.of_next_draw()));
-        }
+    fn fill_by(
+        &self,
+        kernel: Kernel,
+        streams: &mut Streams,
+        count: usize,
+        buffer: &mut DrawBuffer,
+    ) {
+        let made = if self.replays { count.min(PERIOD) } else { count };
+        (self.draws)(kernel, &self.setup, Request { streams, count: made, buffer });
+        buffer.repeat(count);
     }
 }

@@ -1,0 +1,265 @@
+//! The draws of a request: which driver makes them, and through which course and lookups.
+
+use fearless_simd::{Level, Simd, SimdBase, f64x8};
+
+use super::{Nowhere, Walk, bank, draw, window};
+use crate::{Draw, Kernel, Request, Setup};
+use media::course::{BothWays, Even, Pieces};
+use media::{Control, Inlined, Lookups, Piecewise};
+use numeric::Twin;
+use numeric::pack::{self, Task, in_fused_code};
+use numeric::rng::Stream;
+use theory::problems::{Channels, Problem};
+
+/// With more pieces of σ̂ or of the control than this, lanes that cross them hold the others up for longer than
+/// eight lookups at once gain, unless lookups are costly or σ̂ is constant.
+const MOST_PIECES: usize = 8;
+
+/// Whether packs are faster than one walk after the other.
+fn pays<W: Walk>(sampling: &Piecewise, control: &Control, medium: &Lookups) -> bool {
+    if !W::IN_PIECES && sampling.even().is_none() {
+        return false;
+    }
+    if W::IS_NOWHERE || medium.is_costly() || sampling.even().is_some() {
+        return true;
+    }
+    // Lanes that turn from walks to shadow rays and back load other pieces of σ̂ each time.
+    let turns = W::PAUSES && !W::IS_FIXED;
+    let controls = if let Control::Pieces(pieces) = control { pieces.count() } else { 0 };
+    !turns && sampling.count() <= MOST_PIECES && controls <= MOST_PIECES
+}
+
+/// Makes the draws of a request: side by side where the kernel and the hardware allow it and that is faster, else one by one.
+pub fn fill<P: Problem>(walk: &impl Walk, kernel: Kernel, setup: &Setup<P>, request: Request)
+where
+    P::Value: Channels,
+{
+    by(
+        kernel,
+        setup,
+        request,
+        |level, medium, request| packets(level, walk, setup, medium, request),
+        #[inline(always)]
+        |medium, random| draw(walk, &setup.sampling, medium, random),
+    );
+}
+
+/// Makes the draws of a request by packets, and what these hand back one by one.
+#[inline(always)]
+pub fn by<'r, P: Problem>(
+    kernel: Kernel,
+    setup: &Setup<P>,
+    request: Request<'r>,
+    packets: impl FnOnce(Level, &Lookups, Request<'r>) -> Option<Request<'r>>,
+    draw: impl Fn(&Lookups, &mut Stream) -> Draw<P::Value>,
+) {
+    let left = match kernel {
+        Kernel::Single => Some(request),
+        Kernel::Packets(level) => packets(level, &setup.problem.lookups(level), request),
+    };
+    if let Some(request) = left {
+        one_by_one(setup, request, draw);
+    }
+}
+
+/// Makes the draws of a request one after the other by a function, which `#[inline(always)]` compiles for machines that fuse.
+#[inline(always)]
+pub fn one_by_one<P: Problem>(
+    setup: &Setup<P>,
+    request: Request,
+    draw: impl Fn(&Lookups, &mut Stream) -> Draw<P::Value>,
+) {
+    let medium = setup.problem.lookups(Level::new());
+    let Request { streams, count, buffer } = request;
+    in_fused_code(
+        #[inline(always)]
+        || {
+            buffer.clear();
+            for _ in 0..count {
+                let stream = streams.of_next_draw();
+                buffer.push(&draw(&medium, stream));
+            }
+        },
+    );
+}
+
+/// Makes the draws of a request side by side. The request is handed back where the hardware is too narrow, and where [`super::plain`]
+/// is faster.
+#[inline(always)] // in the codegen unit of the caller
+pub fn packets<'r, P, W: Walk>(
+    level: Level,
+    walk: &W,
+    setup: &Setup<P>,
+    medium: &Lookups,
+    request: Request<'r>,
+) -> Option<Request<'r>> {
+    if !pays::<W>(&setup.sampling, &setup.control, medium) {
+        return Some(request);
+    }
+    let task = SideBySide { walk, sampling: &setup.sampling, medium, request };
+    pack::on_wide(level, task).err().map(|task| task.request)
+}
+
+/// The draws of a page that are those of a walk on its setup, as in `drawn!(self, setup: LitRod => Walk::of(setup))`. What is made for
+/// many draws in packets may differ: `drawn!(self, setup: LitRod => Walk::of(setup), Walk::prepared(setup))`.
+macro_rules! drawn {
+    ($this:ident, $setup:ident: $Problem:ty => $walk:expr) => {
+        fn fill(
+            &$this,
+            kernel: $crate::Kernel,
+            $setup: &$crate::Setup<$Problem>,
+            request: $crate::Request,
+        ) {
+            $crate::walks::fill(&$walk, kernel, $setup, request);
+        }
+    };
+    ($this:ident, $setup:ident: $Problem:ty => $walk:expr, $prepared:expr) => {
+        fn fill(
+            &$this,
+            kernel: $crate::Kernel,
+            $setup: &$crate::Setup<$Problem>,
+            request: $crate::Request,
+        ) {
+            match kernel {
+                $crate::Kernel::Single => $crate::walks::fill(&$walk, kernel, $setup, request),
+                $crate::Kernel::Packets(_) => {
+                    $crate::walks::fill(&$prepared, kernel, $setup, request);
+                }
+            }
+        }
+    };
+}
+pub(crate) use drawn;
+
+struct SideBySide<'a, 'r, W> {
+    walk: &'a W,
+    sampling: &'a Piecewise,
+    medium: &'a Lookups<'a>,
+    request: Request<'r>,
+}
+
+impl<W: Walk> Task for SideBySide<'_, '_, W> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<S: Simd>(self, simd: S) {
+        let Self { walk, sampling, medium, request } = self;
+        if W::IS_NOWHERE {
+            return outlined(simd, *walk, Nowhere, medium, request);
+        }
+        let zero = f64x8::splat(simd, 0.0);
+        let Some(even) = sampling.even() else {
+            if const { W::IN_PIECES && !W::IS_CHROMATIC } {
+                outlined(simd, *walk, Pieces::new(zero, sampling), medium, request);
+            }
+            return;
+        };
+        let course = Even::new(zero, even);
+        if const { !W::IN_PIECES } {
+            // Alone in this function.
+            return bank::run(
+                simd,
+                *walk,
+                course,
+                #[inline(always)]
+                move |_, t| medium.pair(simd, t),
+                request,
+            );
+        }
+        if !W::IS_FIXED {
+            return outlined(simd, *walk, course, medium, request);
+        }
+        if let Some(value) = medium.single_value() {
+            let value = Twin::splat(simd, value);
+            return in_window(
+                simd,
+                *walk,
+                course,
+                #[inline(always)]
+                move |_| value,
+                request,
+            );
+        }
+        match medium.inlined() {
+            Some(Inlined::Eq21(field)) if const { W::INLINES_EQ21 && pack::is_one_register::<S>() } =>
+            {
+                in_window(
+                    simd,
+                    *walk,
+                    course,
+                    #[inline(always)]
+                    move |t| each(field, t),
+                    request,
+                );
+            }
+            Some(Inlined::Grid(field)) if const { W::INLINES_GRID && pack::is_one_register::<S>() } =>
+            {
+                in_window(
+                    simd,
+                    *walk,
+                    course,
+                    #[inline(always)]
+                    move |t| each(field, t),
+                    request,
+                );
+            }
+            _ => outlined(simd, *walk, course, medium, request),
+        }
+    }
+}
+
+/// Lookups by calls, in a function of its own for each course: compile time grows as the square of a function's length.
+#[inline(always)]
+fn outlined<S: Simd, W: Walk, C: BothWays<f64x8<S>>>(
+    simd: S,
+    walk: W,
+    course: C,
+    medium: &Lookups,
+    request: Request,
+) {
+    if W::IS_FIXED {
+        return in_window(
+            simd,
+            walk,
+            course,
+            #[inline(always)]
+            move |t| medium.pair(simd, t),
+            request,
+        );
+    }
+    pack::outlined(
+        simd,
+        #[inline(always)]
+        move || {
+            bank::run(
+                simd,
+                walk,
+                course,
+                #[inline(always)]
+                move |channel, t| medium.channel(channel).pair(simd, t),
+                request,
+            );
+        },
+    );
+}
+
+#[inline(always)]
+fn in_window<S: Simd, W: Walk, C: BothWays<f64x8<S>>>(
+    simd: S,
+    walk: W,
+    course: C,
+    look_up: impl Fn(Twin<f64x8<S>>) -> Twin<f64x8<S>>,
+    request: Request,
+) {
+    pack::outlined(
+        simd,
+        #[inline(always)]
+        move || window::run(simd, walk, course, look_up, request),
+    );
+}
+
+/// `σ_t` of a field of a known type, with the bits of [`Lookups::pair`].
+#[inline(always)]
+fn each<S: Simd>(field: &impl media::Extinction, t: Twin<f64x8<S>>) -> Twin<f64x8<S>> {
+    Twin(field.extinction(t.0), field.extinction(t.1))
+}
