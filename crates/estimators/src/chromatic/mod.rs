@@ -80,7 +80,7 @@ pub trait Chromatic: Problem {
         random: &mut Stream,
     ) -> Draw<Self::Value>;
 
-    /// Makes the draws in packets, see [`crate::Estimator::draw_packets`].
+    /// Makes the draws in packets.
     fn packets<'a>(
         level: Level,
         by: By,

@@ -38,6 +38,7 @@ pub trait Walked: Problem<Value: Channels> {
 }
 
 /// Makes a draw of a particle by its steps; it follows what splits off if it `SPLITS`.
+#[inline(always)]
 pub fn draw<P: Walked, const SPLITS: bool>(
     steps: impl Steps,
     particle: &Particle,

@@ -283,7 +283,7 @@ pub fn draw<P: Coloured>(
     walks::draw(&InBody::new(page, setup), &setup.sampling, medium, random)
 }
 
-/// Makes the draws in packets, see [`crate::Estimator::draw_packets`].
+/// Makes the draws in packets.
 pub fn packets<'r, P: Coloured>(
     level: Level,
     page: &dyn Page,

@@ -144,7 +144,7 @@ pub fn draw<const ALL: bool>(
     walks::draw(&walk, &setup.channels[0].sampling, medium, random)
 }
 
-/// Makes the draws of a request in packs, see [`crate::Estimator::draw_packets`].
+/// Makes the draws of a request in packs.
 pub fn packets<'a, const ALL: bool>(
     level: Level,
     (walker, shadow): (&Walker, Shadow),

@@ -76,10 +76,10 @@ pub trait Walk: Copy {
     /// When finished walks are scored.
     const SCORES: Scores = Scores::AtOnce;
 
-    /// Whether the formula of Eq. 21 is compiled into the loop of packs, see [`Inlined`].
+    /// Whether the formula of Eq. 21 is compiled into the loop of packs, see [`media::Inlined`].
     const INLINES_EQ21: bool = false;
 
-    /// Whether the formula of voxel grids is compiled into the loop of packs, see [`Inlined`].
+    /// Whether the formula of voxel grids is compiled into the loop of packs, see [`media::Inlined`].
     const INLINES_GRID: bool = false;
 
     /// The state at the beginning. Only lanes in `which` may take random numbers; `one` is 1 in every lane.
