@@ -22,7 +22,7 @@ pub const CURVE: &str = "title = \"a curve\"
 [problem.transmittance]
 medium.gaussian = { peak = 1.5, centre = 2, width = 0.7 }
 span = [0, 4]
-distances = [1, 2, 3, 4]
+distances = 4
 sampling.constant.value = 1.2
 estimators = [{ double = {} }, { double.control.explorers.points = 9 }]
 ";
