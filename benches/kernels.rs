@@ -36,7 +36,7 @@ const BLOCKS: u64 = 16;
 /// One comparison.
 struct Contest {
     name: &'static str,
-    /// At least so many times as fast on AVX-512; `None` for no target.
+    /// The least ratio of times on AVX-512; `None` for no target.
     target: Option<f64>,
     case: &'static str,
     textbook: fn(&mut Pcg64) -> f64,

@@ -202,7 +202,7 @@ struct Span {
 #[derive(Clone)]
 struct Round {
     spans: Vec<Span>,
-    /// The next block, and whose.
+    /// The next block, and the place of its experiment.
     block: u64,
     span: usize,
     /// Beyond the last.

@@ -9,7 +9,7 @@ use numeric::rng::{Address, Streams};
 use theory::Prediction;
 use theory::problems::Problem;
 
-/// How draws are made: the same draws either way.
+/// A way to make draws: all make the same ones.
 #[derive(Debug, Clone, Copy)]
 pub enum Kernel {
     /// One after the other.

@@ -33,7 +33,7 @@ pub trait Course<L: Lane>: Copy {
 
 /// A course that walks may go back, too.
 pub trait BothWays<L: Lane>: Course<L> {
-    /// Where walks stand, to be kept.
+    /// Positions of walks, to be kept.
     type Place: Copy;
 
     /// Where they stand.

@@ -24,7 +24,7 @@ trait Batch: Send + Sync {
     /// Replaces the distances of two packs by `σ_t`, with the bits of [`Batch::one`].
     fn pair(&self, t: &mut [f64; PAIR]);
 
-    /// The same of so many distances, a multiple of eight.
+    /// Replaces any multiple of eight distances by `σ_t`, with the bits of [`Batch::one`].
     fn all(&self, t: &mut [f64]);
 }
 

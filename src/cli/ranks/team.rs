@@ -130,7 +130,7 @@ impl Workers for Team {
     }
 }
 
-/// Returns the next blocks that nobody has yet.
+/// Returns the next blocks that are not dealt yet.
 fn portion<'n>(names: &'n [BlockName], next: &AtomicUsize, most: usize) -> &'n [BlockName] {
     let begin = next.fetch_add(most, Ordering::Relaxed).min(names.len());
     &names[begin..(begin + most).min(names.len())]

@@ -27,7 +27,7 @@ sampling.constant.value = 1.2
 estimators = [{ double = {} }, { double.control.explorers.points = 9 }]
 ";
 
-/// What asks for the same draws everywhere; they take about half a second.
+/// Words that ask for the same draws everywhere; they take about half a second.
 const ASKED: &str = "run ray.toml curve.toml --seed 5 --draws 15e5 --alpha 1e-6";
 
 pub struct Place {

@@ -113,7 +113,7 @@ impl<S: Simd> Random<Twin<f64x8<S>>> for Both<S> {
     }
 }
 
-/// Sixteen draws in a row, each from the lane whose turn it is.
+/// Sixteen draws in a row, one from each lane in turn.
 struct Batch {
     base: usize,
     turn: usize,
@@ -124,7 +124,7 @@ impl Batch {
         self.base + (lane + LANES - self.turn) % LANES
     }
 
-    /// Lanes that have one of so many draws, as bits.
+    /// Lanes that have one of `count` draws, as bits.
     fn lives(&self, count: usize) -> u64 {
         (0..LANES).fold(0, |bits, lane| bits | u64::from(self.draw(lane) < count) << lane)
     }

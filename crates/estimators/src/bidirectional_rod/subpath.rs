@@ -31,11 +31,11 @@ pub struct Subpath<L: Lane, P> {
     pub is_forward: [L::Mask; HIGHEST_ORDER + 1],
     /// `∏ (1 − σ_t/σ̂)` over the null vertices of each flight.
     pub nulls: [L; HIGHEST_ORDER + 1],
-    /// Where the walk stood at its beginning and at each collision.
+    /// Positions of the walk at its beginning and at each collision.
     pub places: [P; HIGHEST_ORDER + 1],
-    /// Lanes with so many collisions at least.
+    /// Lanes with at least this number of collisions.
     pub reached: [L::Mask; HIGHEST_ORDER + 1],
-    /// Lanes that left the rod after so many collisions.
+    /// Lanes that left the rod after this number of collisions.
     pub left: [L::Mask; HIGHEST_ORDER + 1],
 }
 

@@ -25,9 +25,9 @@ use theory::problems::{BidirectionalRod, Problem};
 /// Paths from the light to the sensor, all by the same technique.
 #[derive(Clone, Copy)]
 pub struct Path<L: Lane> {
-    /// How often they are scattered, r.
+    /// Numbers of scatterings, r.
     pub order: usize,
-    /// How many of their vertices were made from the light, s.
+    /// Numbers of vertices made from the light, s.
     pub light: usize,
     /// Light, scatterings and sensor, as distances along the ray.
     pub at: [L; HIGHEST_ORDER + 2],
@@ -127,7 +127,7 @@ pub trait Steps {
         path.light - 1
     }
 
-    /// What paths are worth; `T̂` of their connections is positive.
+    /// Values of paths; `T̂` of their connections is positive.
     #[inline(always)]
     fn worth<L: Lane>(&self, path: &Path<L>) -> L {
         path.weight(self.combination()) * path.quotient(path.light)

@@ -23,9 +23,9 @@ pub struct Scatterers<'a, S> {
     pub albedos: &'a [f64],
     /// The phase function of each channel.
     pub phases: [Phase; MOST_CHANNELS],
-    /// Whose walks they are.
+    /// The walker.
     pub walker: &'a Walker,
-    /// What a known bug may replace.
+    /// The steps, which a known bug may replace.
     pub steps: S,
 }
 
@@ -60,7 +60,7 @@ impl<L: Lane> Densities<L> {
         Self { weights: ones, next: ones, ratios: ones }
     }
 
-    /// Lanes in `which` begin anew.
+    /// Restarts the lanes in `which`.
     #[inline(always)]
     pub fn restart(&mut self, count: usize, which: L::Mask, one: L) {
         for weight in &mut self.weights[..count] {

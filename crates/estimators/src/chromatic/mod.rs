@@ -58,12 +58,12 @@ pub struct Right;
 
 impl Steps for Right {}
 
-/// Whose walk it is, and what it scores.
+/// A walker, and the channels that its walks score.
 #[derive(Clone, Copy)]
 pub struct By<'a> {
-    /// Whose walk.
+    /// The walker.
     pub walker: &'a Walker,
-    /// How the balance heuristic weights it.
+    /// The weighting of walks by the balance heuristic.
     pub weighing: Weighing,
     /// Whether it scores all channels, or the hero's alone.
     pub scores_all: bool,

@@ -34,7 +34,7 @@ pub struct InSlab<'a, S> {
     among: Scatterers<'a, S>,
     weighing: Weighing,
     scores_all: bool,
-    /// The law of the hero, if one is chosen.
+    /// The distribution of the hero, if one is chosen.
     law: Option<Law>,
     /// `1/σ̂` of each channel.
     mean_free_paths: [f64; MOST_CHANNELS],

@@ -85,7 +85,7 @@ impl DrawBuffer {
         Some((values, &mut self.lookups, &mut self.defects))
     }
 
-    /// Repeats the draws until there are so many.
+    /// Repeats the draws until their number is `count`.
     pub fn repeat(&mut self, count: usize) {
         fn cycled<T: Copy>(list: &mut Vec<T>, count: usize) {
             *list = list.iter().copied().cycle().take(count).collect();
@@ -105,12 +105,12 @@ impl DrawBuffer {
     }
 }
 
-/// What is to be drawn.
+/// A request of draws.
 pub struct Request<'a> {
     /// The streams of the block, where the draws before left them.
     pub streams: &'a mut Streams,
-    /// How many draws.
+    /// The number of draws.
     pub count: usize,
-    /// Where they go.
+    /// The buffer of the draws.
     pub buffer: &'a mut DrawBuffer,
 }

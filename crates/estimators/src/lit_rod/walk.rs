@@ -38,7 +38,7 @@ kept! {
     }
 }
 
-/// What scatters where walks are.
+/// The scattering at the places of walks.
 pub trait Scatterers<L: Lane> {
     /// a.
     fn albedo(&self, t: L) -> L;

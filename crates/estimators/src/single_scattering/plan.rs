@@ -1,4 +1,4 @@
-//! What estimators of single scattering do, as data: their techniques, domains, predictions and draws.
+//! Plans of estimators of single scattering, as data: techniques, domains, predictions and draws.
 
 use std::marker::PhantomData;
 
@@ -44,7 +44,7 @@ pub enum Technique {
     Interactions,
     /// At one of them.
     Resampled,
-    /// At so many points from the light, with one walk.
+    /// At a number of points from the light, with one walk.
     Shared(usize),
 }
 

@@ -47,7 +47,7 @@ kept! {
     }
 }
 
-/// The walk past so many points.
+/// The walk past a number of points.
 #[derive(Clone, Copy)]
 pub struct Shared<'a> {
     /// The ground.

@@ -4,7 +4,7 @@ use crate::setup::heroes::Heroes;
 use crate::walks::hero::Weighing;
 use numeric::Lane;
 
-/// How a path was found.
+/// The way in which a path was found.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Found {
     /// By a walk that was never scattered.
@@ -37,13 +37,13 @@ pub trait Steps: Sync {
     /// Whether every shadow ray has a hero of its own.
     const CASTS_ANEW: bool = false;
 
-    /// The law of the hero.
+    /// The distribution of the hero.
     fn heroes(&self) -> &Heroes;
 
     /// Whether shadow rays are cast.
     fn casts(&self) -> bool;
 
-    /// How a path is weighted.
+    /// The weighting of a path.
     #[inline(always)]
     fn weighing(&self, found: Found) -> Weighing {
         let has_next_event = self.casts() && found != Found::Unscattered;

@@ -49,7 +49,7 @@ pub struct ToEmitter<'a, S> {
     albedos: Albedos<'a>,
     /// The probability to keep the direction by channel and hero.
     forward: [Channels; MOST_CHANNELS],
-    /// How paths are weighted: see [`Found`].
+    /// Weightings of paths: see [`Found`].
     weighings: [Weighing; 3],
     casts: bool,
 }
@@ -121,7 +121,7 @@ kept! {
         /// Lanes that score in this step, and of them shadow rays, which then return to their vertices.
         scores: L::Mask,
         connected: L::Mask,
-        /// How the path is found if it arrives, see [`Found`].
+        /// The way in which the path is found if it arrives, see [`Found`].
         found: L,
         /// The number of each hero, its mean free path, and by channel its probability to keep the direction.
         hero: L,

@@ -26,7 +26,7 @@ pub trait Coloured: Problem<Value = Values> {
     /// What theory knows of it.
     fn body(setup: &Setup<Self>) -> Box<dyn Body + '_>;
 
-    /// Where walks take place.
+    /// The place of walks.
     fn place(&self) -> walk::Place<'_>;
 }
 

@@ -28,7 +28,7 @@ use theory::spectral_rod::Tracker;
 /// The balance heuristic over heroes.
 #[derive(Debug, Clone)]
 pub struct SpectralMis {
-    /// The law of the hero.
+    /// The distribution of the hero.
     pub heroes: Heroes,
 }
 

@@ -31,7 +31,7 @@ use theory::ParticleRule;
 use theory::problems::slab::{Incidence, Light};
 use theory::problems::spectral_rod::{Colours, End, Values};
 
-/// Where walks take place.
+/// The place of walks.
 #[derive(Clone, Copy)]
 pub enum Place<'a> {
     /// In a rod, where scattering keeps the direction with a probability.
@@ -86,7 +86,7 @@ pub struct InBody<'a> {
     place: Place<'a>,
     colours: &'a Colours,
     page: &'a dyn Page,
-    /// The law of the hero, if one is chosen.
+    /// The distribution of the hero, if one is chosen.
     law: Option<Law>,
     /// The number of heroes, and their probabilities to be scattered at a real collision.
     heroes: usize,
@@ -157,7 +157,7 @@ impl<'a> InBody<'a> {
         turned(cosine, deflection, (random.uniform_where(which) * TAU).cos())
     }
 
-    /// What walks are worth in all channels.
+    /// Values of walks in all channels.
     #[inline(always)]
     fn weights<L: Lane>(&self, hero: L, order: L) -> [L; MOST_CHANNELS] {
         let mut weights = [hero; MOST_CHANNELS];

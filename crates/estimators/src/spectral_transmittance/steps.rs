@@ -29,7 +29,7 @@ pub trait Steps: Copy {
         [right, right]
     }
 
-    /// The score of a channel by a walk for its hero alone, whose hero it is or not.
+    /// The score of a channel by a walk for its hero alone, be that channel the hero or not.
     #[inline(always)]
     fn alone<L: Lane>(&self, is_hero: L::Mask, value: L, probability: f64) -> L {
         L::select(is_hero, value * (1.0 / probability), value.each(0.0))
@@ -55,7 +55,7 @@ pub trait Steps: Copy {
         probability
     }
 
-    /// What a contribution is divided by: the mean density, or, by mistake, its own.
+    /// The divisor of a contribution: the mean density, or, by mistake, its own.
     #[inline(always)]
     fn divisor<L: Lane>(&self, mean: L, own: L) -> L {
         let _ = own;

@@ -57,7 +57,7 @@ pub struct AlongRay<'a, S> {
     tracker: Tracker,
     /// Whether one walk serves all channels through their common σ̂: no hero is chosen.
     is_common: bool,
-    /// The law by which heroes are chosen.
+    /// The distribution of heroes.
     pub law: Law,
     media: Media,
     /// `1/σ̂` of each channel.

@@ -146,7 +146,7 @@ pub enum LastPiece {
     InContribution,
 }
 
-/// How a path is weighted: right, or with a known bug.
+/// The weighting of a path: right, or with a known bug.
 #[derive(Debug, Clone, Copy)]
 pub struct Weighing {
     /// Where the transmittance of the last piece is.
@@ -155,9 +155,9 @@ pub struct Weighing {
     pub has_next_event: bool,
     /// Whether the null collisions of the last segment are in `p_uni`.
     pub has_nulls: bool,
-    /// How many of the last channels are missing among the heroes.
+    /// The number of the last channels that are missing among the heroes.
     pub missing: usize,
-    /// What the sum of the densities is multiplied by.
+    /// The factor on the sum of the densities.
     pub share: f64,
 }
 

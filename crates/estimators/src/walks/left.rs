@@ -25,7 +25,7 @@ pub struct Left {
 }
 
 impl Left {
-    /// Room for so many numbers of so many draws: none of them needs any if there are no draws.
+    /// Room for some numbers of each of some draws: none of them needs any if there are no draws.
     pub fn new(numbers: usize, draws: usize, room: &mut Vec<f64>) -> Self {
         let mut left = Self { numbers, at: Vec::new() };
         if draws > 0 {
@@ -65,7 +65,7 @@ impl Left {
         }
     }
 
-    /// Makes the values of so many draws, whose lookups are in the buffer.
+    /// Makes the values of some draws, whose lookups are in the buffer.
     #[inline(always)]
     pub fn score<S: Simd>(&self, simd: S, walk: &impl Walk, draws: usize, buffer: &mut DrawBuffer) {
         let zero = f64x8::splat(simd, 0.0);
@@ -103,7 +103,7 @@ pub struct Events {
 }
 
 impl Events {
-    /// Room for some events with so many numbers.
+    /// Room for some events with some numbers each.
     pub fn new(numbers: usize, some: usize, room: &mut Vec<f64>) -> Self {
         let (left, none) = (Left::new(numbers, some, room), Vec::new());
         let last = [[NONE; WIDTH]; 2];
