@@ -72,7 +72,7 @@ impl BenchCase {
 /// One experiment, one channel of its value.
 #[derive(Debug, Clone, Default, Serialize)]
 pub struct BenchRow {
-    /// Whether it is the first row of its experiment.
+    /// True if it is the first row of its experiment.
     pub is_first: bool,
     /// Identity of the experiment.
     pub id: ExperimentId,
@@ -102,10 +102,10 @@ pub struct BenchRow {
     pub fom: Option<f64>,
     /// Error after growing numbers of draws.
     pub curve: Vec<CurvePoint>,
-    /// Whether a plot with room for one line per estimator shows this one: of a sweep the point with
-    /// the largest figure of merit, of a curve the last channel.
+    /// True if a plot with room for one line per estimator shows this one: of a sweep the point with the largest figure
+    /// of merit, of a curve the last channel.
     pub is_shown: bool,
-    /// Whether it was refused.
+    /// True if it was refused.
     pub is_refused: bool,
     /// Why it is refused, or why numbers are missing; empty where all is there.
     pub reason: String,

@@ -135,17 +135,17 @@ pub struct Change {
     pub speedup: [Spread; 2],
     /// Now over stored, of the medians of the times.
     pub ratio: f64,
-    /// Whether it became slower.
+    /// True if it became slower.
     pub is_regression: bool,
 }
 
 impl Comparison {
-    /// Whether anything became slower.
+    /// Returns whether anything became slower.
     pub fn fails(&self) -> bool {
         self.changes.iter().any(|change| change.is_regression)
     }
 
-    /// Whether nothing was compared with anything: such a comparison says nothing.
+    /// Returns whether nothing was compared with anything: such a comparison says nothing.
     pub fn is_empty(&self) -> bool {
         self.compared == 0
     }

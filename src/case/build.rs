@@ -36,7 +36,7 @@ pub struct ProblemKind {
     pub options: &'static [ProblemOption],
     /// Requirement on the ray through a volume.
     pub ray: RayNeed,
-    /// Whether its medium may have several channels.
+    /// True if its medium may have several channels.
     pub spectral: bool,
     /// Reader of the problem and its estimators.
     pub build: Build,
@@ -106,7 +106,7 @@ pub trait AnyProblem: Send + Sync {
     /// The distance that each channel of a draw is about.
     fn distances(&self) -> Vec<f64>;
 
-    /// Whether an estimator, or the problem itself, depends on an albedo.
+    /// Returns whether an estimator, or the problem itself, depends on an albedo.
     fn has_albedo(&self, estimator: usize) -> bool;
 
     /// The control, where the parts fit together.

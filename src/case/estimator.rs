@@ -50,20 +50,20 @@ pub struct ParsedEstimator {
     pub sampling: Option<Box<dyn sampling::Recipe>>,
     /// Its own control.
     pub control: Option<Box<dyn controls::Recipe>>,
-    /// Whether the case declares it biased.
+    /// True if the case declares it biased.
     pub expect_biased: bool,
 }
 
 /// Settings for all estimators of a case that have none of their own.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Defaults {
-    /// Whether they are declared biased.
+    /// True if they are declared biased.
     pub expect_biased: bool,
-    /// Whether there is a σ̂ for all.
+    /// True if there is a σ̂ for all.
     pub sampling: bool,
     /// Swept quantity.
     pub swept: Option<What>,
-    /// Whether all lookups are counted, so that no σ̂ may learn from some that are not.
+    /// True if all lookups are counted, so that no σ̂ may learn from some that are not.
     pub counts_lookups: bool,
 }
 

@@ -91,7 +91,7 @@ pub struct Case {
     pub draws_per_ray: u64,
     /// The relative differences that matter.
     pub tolerance: Tolerance,
-    /// Whether experiments that are too short to pass are allowed.
+    /// True if experiments that are too short to pass are allowed.
     pub allow_underpowered: bool,
     /// A hash of the file's text.
     pub digest: u64,
@@ -225,7 +225,7 @@ pub struct Tolerance {
 }
 
 impl Tolerance {
-    /// Whether the case has any.
+    /// Returns whether the case has any.
     pub fn is_given(&self) -> bool {
         *self != Self::default()
     }

@@ -84,7 +84,7 @@ impl Scenario {
         self.body.name()
     }
 
-    /// Whether an estimator depends on a swept quantity.
+    /// Returns whether an estimator depends on a swept quantity.
     pub fn depends_on(&self, estimator: usize, what: What) -> bool {
         let parsed = &self.estimators.list[estimator];
         let inputs = parsed.features.inputs;
@@ -101,7 +101,7 @@ impl Scenario {
         }
     }
 
-    /// Whether the case declares an estimator biased.
+    /// Returns whether the case declares an estimator biased.
     pub fn expects_bias(&self, estimator: usize) -> bool {
         self.estimators.list[estimator].expect_biased
     }

@@ -173,7 +173,7 @@ impl Wanted<'_> {
         fitting.map(candidate).collect()
     }
 
-    /// Whether the page is used by this estimator of a case, or by the case's own settings.
+    /// Returns whether the page is used by this estimator of a case, or by the case's own settings.
     fn is_in(&self, title: &str, others: &[&Entry], item: &Node) -> bool {
         let Value::Table(item) = &item.value else { return false };
         let among = |keys: &[&str]| others.iter().any(|own| self.names(own, keys));
@@ -193,7 +193,7 @@ impl Wanted<'_> {
         }
     }
 
-    /// Whether an entry has one of these keys, and the page as its choice.
+    /// Returns whether an entry has one of these keys, and the page as its choice.
     fn names(&self, own: &Entry, keys: &[&str]) -> bool {
         let chosen = |value: &Value| matches!(value, Value::Table(table) if entry(table, self.name).is_some());
         keys.contains(&own.key.as_str())
@@ -203,7 +203,7 @@ impl Wanted<'_> {
             }
     }
 
-    /// Whether an entry, or one below it, has this key and the page as its choice.
+    /// Returns whether an entry, or one below it, has this key and the page as its choice.
     fn stands_below(&self, own: &Entry, key: &str) -> bool {
         let below = |table: &Vec<Entry>| table.iter().any(|own| self.stands_below(own, key));
         self.names(own, &[key]) || matches!(&own.node.value, Value::Table(table) if below(table))
@@ -233,7 +233,7 @@ impl Wanted<'_> {
     }
 }
 
-/// Whether a table has such a key, at any depth.
+/// Returns whether a table has such a key, at any depth.
 fn has_key(value: &Value, key: &str) -> bool {
     let is_there = |own: &Entry| own.key == key || has_key(&own.node.value, key);
     matches!(value, Value::Table(table) if table.iter().any(is_there))

@@ -73,7 +73,7 @@ pub struct SweepAxis {
     pub what: What,
     /// The values, in the order of the case.
     pub values: Vec<f64>,
-    /// Whether they are spaced by factors.
+    /// True if they are spaced by factors.
     pub log: bool,
 }
 
@@ -93,12 +93,12 @@ impl What {
         KINDS.iter().map(|kind| kind.0)
     }
 
-    /// Whether the medium itself varies, and with it the answer.
+    /// Returns whether the medium itself varies, and with it the answer.
     pub fn varies_medium(self) -> bool {
         matches!(self, Self::Density | Self::AlbedoScale | Self::Contrast)
     }
 
-    /// Whether it can have that value.
+    /// Returns whether it can have that value.
     pub fn allows(self, value: f64) -> bool {
         let is_whole = self != Self::Points || (value >= 2.0 && value.fract() == 0.0);
         self.kind().3.contains(value) && is_whole
@@ -172,7 +172,7 @@ fn tidy(x: f64) -> f64 {
     format!("{x:.8e}").parse().unwrap_or(x)
 }
 
-/// Whether positive values spread over a factor of 8 or more: then a log axis shows them better.
+/// Returns whether positive values spread over a factor of 8 or more: then a log axis shows them better.
 fn is_log(values: &[f64]) -> bool {
     let (low, high) =
         values.iter().fold((f64::INFINITY, 0.0f64), |(low, high), &x| (low.min(x), high.max(x)));

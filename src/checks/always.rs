@@ -12,7 +12,7 @@ pub struct Always {
     pub largest: Box<dyn Fn(&DrawBuffer) -> f64 + Send + Sync>,
     /// Largest allowed value.
     pub bound: f64,
-    /// Whether it is about the number of lookups, which all draws share.
+    /// True if it is about the number of lookups, which all draws share.
     pub is_of_lookups: bool,
 }
 

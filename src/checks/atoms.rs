@@ -31,7 +31,7 @@ impl Values {
         Self { value, probability, same }
     }
 
-    /// Whether two neighbouring values are too close for draws that are rounded to be told apart.
+    /// Returns whether two neighbouring values are too close for draws that are rounded to be told apart.
     fn is_blurred(&self) -> bool {
         let gaps = self.value.windows(2).map(|pair| pair[1] - pair[0]);
         let sizes = self.value.windows(2).map(|pair| pair[0].abs().max(pair[1].abs()));

@@ -36,9 +36,9 @@ pub struct Subject<'a> {
     pub fixed: u64,
     /// The differences that matter, where the case says.
     pub tolerance: Tolerance,
-    /// Whether the case declares the experiment biased.
+    /// True if the case declares the experiment biased.
     pub expect_biased: bool,
-    /// Whether an invariant holds for each draw, see [`estimators::Draw::defect`].
+    /// True if an invariant holds for each draw, see [`estimators::Draw::defect`].
     pub has_invariant: bool,
     /// Spreads of pilot draws, channel by channel, where theory has none.
     pub pilots: Option<&'a [Pilot]>,
@@ -75,7 +75,7 @@ pub struct Question {
     pub what: String,
     /// The check that answers it.
     pub answer: Box<dyn Check>,
-    /// Whether the case declares a bias, which the answer must show.
+    /// True if the case declares a bias, which the answer must show.
     pub expects_bias: bool,
     /// The verdict on an answer that was never promised to pass.
     pub too_weak: Verdict,
@@ -132,7 +132,7 @@ pub struct Look {
 pub struct Place {
     /// Number of its first draw in the block.
     pub first: usize,
-    /// Whether p-values see its draws.
+    /// True if p-values see its draws.
     pub is_fixed: bool,
 }
 
@@ -140,7 +140,7 @@ pub struct Place {
 pub struct Context<'a> {
     /// Name of the quantity or distribution in sentences.
     pub what: &'a str,
-    /// Whether the case declares a bias that the check must show.
+    /// True if the case declares a bias that the check must show.
     pub expects_bias: bool,
     /// The number of draws, and the levels.
     pub look: Look,
@@ -225,7 +225,7 @@ pub trait Check: Send + Sync {
         false
     }
 
-    /// Whether the total fails, whatever draws come later.
+    /// Returns whether the total fails, whatever draws come later.
     fn has_failed(&self, total: &Total) -> bool {
         let _ = total;
         false

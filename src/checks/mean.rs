@@ -22,7 +22,7 @@ use gate::session::quantity::{MEAN_CAP, mean_floor};
 use gate::stats::verdict::FURTHEST;
 use theory::Channel;
 
-/// Whether rounding spoils what the draws' spread says, if they have any.
+/// Returns whether rounding spoils what the draws' spread says, if they have any.
 pub fn is_faint(subject: &Subject, channel: &Channel) -> bool {
     deviation(channel).is_some_and(|deviation| deviation <= 1e3 * floor(subject, channel))
 }

@@ -41,7 +41,7 @@ pub use scalar::Scalar;
 struct Page {
     /// Returns its questions about an experiment; none where it does not apply.
     questions: fn(&Subject) -> Vec<Question>,
-    /// Whether it asks of experiments that a case declares biased, too.
+    /// True if it asks of experiments that a case declares biased, too.
     of_biased: bool,
     /// Whether its p-values are uniform when all is well, or only never too often small.
     is_uniform: bool,
@@ -80,7 +80,7 @@ pub fn questions(subject: &Subject) -> Vec<Question> {
     asked.collect()
 }
 
-/// Whether the p-values of the check of that name are uniform when all is well.
+/// Returns whether the p-values of the check of that name are uniform when all is well.
 pub fn is_uniform(name: &str) -> bool {
     let named = CATALOGUE.pages.iter().zip(ALL).find(|(page, _)| page.name() == name);
     named.is_some_and(|(_, check)| check.is_uniform)

@@ -39,13 +39,13 @@ pub fn variance_error(kurtosis: f64, n: f64) -> f64 {
 }
 
 impl Tails {
-    /// Whether the mean of n draws is near normal.
+    /// Returns whether the mean of n draws is near normal.
     pub fn has_normal_mean(&self, n: f64) -> bool {
         let known = self.kurtosis.zip(self.rare_event_size);
         known.is_some_and(|(kurtosis, rare)| n >= needed(kurtosis, rare))
     }
 
-    /// Whether the sample variance of n draws is near normal.
+    /// Returns whether the sample variance of n draws is near normal.
     pub fn has_normal_variance(&self, n: f64) -> bool {
         let known = self.eighth_moment_ratio.zip(self.rare_event_size);
         let is_near = known.is_some_and(|(eighth, rare)| n >= needed(eighth, rare));

@@ -93,7 +93,7 @@ pub struct Baselines {
 }
 
 impl BaselineArguments {
-    /// Whether a run is stored or compared.
+    /// Returns whether a run is stored or compared.
     pub fn is_used(&self) -> bool {
         self.baseline.is_some() || self.save_baseline.is_some()
     }

@@ -30,7 +30,7 @@ pub enum When {
 }
 
 impl When {
-    /// Whether a stream gets colours.
+    /// Returns whether a stream gets colours.
     pub fn colours(self, terminal: bool) -> bool {
         let wished = std::env::var_os("NO_COLOR").is_none_or(|value| value.is_empty());
         match self {
@@ -119,7 +119,7 @@ impl Errors {
         self.0.extend(errors.into_iter().map(Into::into));
     }
 
-    /// Whether all went well so far.
+    /// Returns whether all went well so far.
     pub fn is_empty(&self) -> bool {
         self.0.is_empty()
     }

@@ -27,7 +27,7 @@ pub struct Profile {
     draws: u64,
     /// Folder of the results.
     out: Option<&'static str>,
-    /// Whether unchanged experiments of an earlier run are reused, and all reports are written.
+    /// True if unchanged experiments of an earlier run are reused, and all reports are written.
     is_whole: bool,
 }
 

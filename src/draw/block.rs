@@ -147,7 +147,7 @@ impl<'p> Drawing<'p> {
         })
     }
 
-    /// Whether the next draws are among those that the plan has fixed.
+    /// Returns whether the next draws are among those that the plan has fixed.
     fn is_fixed(&self) -> bool {
         self.at < self.planned.fixed
     }
@@ -209,7 +209,7 @@ pub struct Drawn {
     pub totals: Vec<Total>,
     /// Processor seconds.
     pub seconds: f64,
-    /// Whether an earlier run drew it.
+    /// True if an earlier run drew it.
     #[serde(skip)]
     pub is_reused: bool,
 }
@@ -223,7 +223,7 @@ pub struct Standing {
     pub blocks: u64,
     /// After how many blocks the next look comes.
     pub look: u64,
-    /// Whether nothing is left to draw.
+    /// True if nothing is left to draw.
     pub is_done: bool,
 }
 
@@ -250,9 +250,9 @@ pub struct DrawnExperiment<'p> {
 pub struct Draws<'p> {
     /// The experiments, in the order of the plan.
     pub experiments: Vec<DrawnExperiment<'p>>,
-    /// Whether the time limit came first, or the wish to stop.
+    /// True if the time limit came first, or the wish to stop.
     pub cut_by_time: bool,
-    /// Whether the budget of draws came first.
+    /// True if the budget of draws came first.
     pub cut_by_budget: bool,
 }
 

@@ -328,7 +328,7 @@ impl Running<'_> {
         self.at.look = gate::next_look(self.at.look).min(self.last());
     }
 
-    /// Whether the one check that matters has failed.
+    /// Returns whether the one check that matters has failed.
     fn has_failed(&self, plan: &Plan) -> bool {
         let Some(name) = &plan.options.until_failed else { return false };
         let both = self.planned.questions.iter().zip(&self.at.drawn.totals);

@@ -220,7 +220,7 @@ pub struct Sampled {
     pub values: Vec<f32>,
     /// The box, of corners in single precision.
     pub bounds: Aabb,
-    /// Whether a lookup takes the nearest sample; otherwise it is trilinear.
+    /// True if a lookup takes the nearest sample; otherwise it is trilinear.
     pub nearest: bool,
 }
 
@@ -262,7 +262,7 @@ impl Sampled {
         self.values.iter().fold(0.0, |peak, &value| peak.max(f64::from(value)))
     }
 
-    /// Whether every sample can be an extinction.
+    /// Returns whether every sample can be an extinction.
     pub fn is_extinction(&self) -> bool {
         self.values.iter().all(|value| value.is_finite() && *value >= 0.0)
     }

@@ -113,7 +113,7 @@ pub struct Wishes {
     pub cells: Option<usize>,
     /// The channels, from 1, of a case that has several: 1 to 3 of them, in this order; without it all.
     pub channels: Option<Vec<usize>>,
-    /// Whether a homogeneous medium is written as a heterogeneous one, to test how a renderer tracks through that.
+    /// True if a homogeneous medium is written as a heterogeneous one, to test how a renderer tracks through that.
     pub heterogeneous: bool,
 }
 

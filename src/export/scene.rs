@@ -18,7 +18,7 @@ pub struct Scene {
     pub shape: Bounds,
     /// The medium of each channel, 1 to 3: one where all colours are alike.
     pub channels: Vec<Channel>,
-    /// Whether a homogeneous medium is written as a heterogeneous one.
+    /// True if a homogeneous medium is written as a heterogeneous one.
     pub is_heterogeneous: bool,
     /// The phase function.
     pub phase: Phase,
@@ -26,9 +26,9 @@ pub struct Scene {
     pub eye: Point,
     /// Direction of the ray: a unit vector, but for the rounding of its coordinates.
     pub direction: Point,
-    /// Whether the ray begins within the medium.
+    /// True if the ray begins within the medium.
     pub is_inside: bool,
-    /// Whether mirrors stand at half of the box's width, along z: what is between them is an infinite slab.
+    /// True if mirrors stand at half of the box's width, along z: what is between them is an infinite slab.
     pub has_mirrors: bool,
     /// The largest number of scatterings; `None` for any.
     pub scatterings: Option<u32>,
@@ -73,7 +73,7 @@ impl Field {
         }
     }
 
-    /// Whether every value can be an extinction in single precision.
+    /// Returns whether every value can be an extinction in single precision.
     pub fn is_extinction(&self) -> bool {
         match self {
             Self::Even(extinction) => extinction.is_finite() && *extinction >= 0.0,
@@ -125,7 +125,7 @@ impl Scene {
         grids
     }
 
-    /// Whether the scene's medium is a homogeneous one to the renderer.
+    /// Returns whether the scene's medium is a homogeneous one to the renderer.
     pub fn is_homogeneous(&self) -> bool {
         self.grids().is_empty() && !self.is_heterogeneous
     }
@@ -146,7 +146,7 @@ impl Scene {
         Self { channels: vec![self.channels[index].clone()], ..self.clone() }
     }
 
-    /// Whether channels differ, so that each has an answer of its own.
+    /// Returns whether channels differ, so that each has an answer of its own.
     pub fn is_coloured(&self) -> bool {
         self.channels.len() > 1
     }

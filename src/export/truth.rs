@@ -57,7 +57,7 @@ pub struct Truth {
     pub problem: String,
     /// The renderer.
     pub target: String,
-    /// Whether the camera is in the medium.
+    /// True if the camera is in the medium.
     pub camera_in_medium: bool,
     /// The samples.
     pub field: Option<Samples>,

@@ -30,7 +30,7 @@ pub struct Choice<'a> {
     pub estimator: &'a str,
     /// The swept value, where it is swept.
     pub swept: Option<f64>,
-    /// Whether the nearest value of the case's sweep is taken in place of the swept value. Otherwise the value is taken
+    /// True if the nearest value of the case's sweep is taken in place of the swept value. Otherwise the value is taken
     /// as it is, be it in the sweep or not; without a sweep it is a constant σ̂.
     pub nearest: bool,
     /// The channel, where a draw has several.

@@ -305,7 +305,7 @@ impl Whole {
     }
 }
 
-/// Whether theory knows covariances of the values.
+/// Returns whether theory knows covariances of the values.
 fn has_covariances(prediction: &Prediction, asked: Asked) -> bool {
     prediction.covariances.iter().any(|covariance| covariance.pair[1] < asked.values)
 }
@@ -363,7 +363,7 @@ const BITS: i32 = 22;
 struct Fineness {
     resolution: Resolution,
     first: Vec<f64>,
-    /// Whether they are numbers of single precision.
+    /// True if they are numbers of single precision.
     is_single: bool,
 }
 

@@ -72,7 +72,7 @@ pub struct Planned {
     pub fixed: u64,
     /// Largest number of draws that the gate may take.
     pub horizon: u64,
-    /// Whether the case declares it biased.
+    /// True if the case declares it biased.
     pub expect_biased: bool,
     /// The experiment with its prediction, or the reason of its refusal.
     pub outcome: Result<Ready, Refusal>,
@@ -88,7 +88,7 @@ impl Planned {
         self.questions.iter().filter_map(|question| Some((question, question.answer.scalar()?)))
     }
 
-    /// Whether draws are made for the experiment: not where it is refused, or the same as an earlier one.
+    /// Returns whether draws are made for the experiment: not where it is refused, or the same as an earlier one.
     pub fn is_drawn(&self) -> bool {
         self.outcome.is_ok() && self.same_as.is_none()
     }
@@ -258,7 +258,7 @@ fn plan_experiment(
 }
 
 impl Planned {
-    /// Whether two experiments make the same draws, and ask the same of them.
+    /// Returns whether two experiments make the same draws, and ask the same of them.
     fn is_same(&self, other: &Self) -> bool {
         let of = |one: &Self| (one.address, one.draws, one.fixed, one.horizon, one.expect_biased);
         let asked = |one: &Self| one.questions.iter().map(|q| q.check.clone()).collect::<Vec<_>>();

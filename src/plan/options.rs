@@ -23,7 +23,7 @@ pub struct Options {
     pub blocks_per_look: u64,
     /// Draw exactly what is planned: the gate stops nothing.
     pub fixed: bool,
-    /// Whether each check that is underpowered makes its experiment inconclusive.
+    /// True if each check that is underpowered makes its experiment inconclusive.
     pub strict: bool,
     /// Stop an experiment as soon as the check of this name has failed.
     pub until_failed: Option<String>,
@@ -107,7 +107,7 @@ impl Filter {
         self.0.as_str()
     }
 
-    /// Whether an estimator of a case matches.
+    /// Returns whether an estimator of a case matches.
     pub fn keeps(&self, case: &str, estimator: &EstimatorName) -> bool {
         let (name, label) = (&estimator.name, estimator.to_string());
         let matches = |text: &str| self.0.matches(text);

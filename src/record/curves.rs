@@ -20,7 +20,7 @@ pub struct Sweep {
     pub what: String,
     /// The axis title with symbol and unit.
     pub axis: String,
-    /// Whether the axis is logarithmic.
+    /// True if the axis is logarithmic.
     pub log: bool,
     /// The z-score that is as rare as a false alarm of the gate.
     pub z_limit: Option<f64>,
@@ -62,7 +62,7 @@ pub struct Best {
 }
 
 impl Best {
-    /// Whether the figure of merit is largest there.
+    /// Returns whether the figure of merit is largest there.
     pub fn is_optimum(&self) -> bool {
         self.kind == Kind::Maximum.words()
     }

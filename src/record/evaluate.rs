@@ -184,7 +184,7 @@ pub fn explain_blocks(findings: &mut [Finding]) {
     }
 }
 
-/// Whether a mean fails only by a variance that is refuted as too small.
+/// Returns whether a mean fails only by a variance that is refuted as too small.
 fn rests_on(plan: &Plan, mean: &Finding, variance: &Finding) -> bool {
     let gates = mean.gate.zip(variance.gate).filter(|_| variance.verdict == Verdict::Fail);
     gates.is_some_and(|(mean, variance)| session::rests_on(&mean, &variance, plan.levels.ln_fail))

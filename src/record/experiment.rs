@@ -69,7 +69,7 @@ pub struct ExperimentRecord {
 pub struct Spent {
     /// Processor seconds of the drawing; `None` if nothing was drawn.
     pub seconds: Option<f64>,
-    /// Whether an earlier run made the draws, and spent the time.
+    /// True if an earlier run made the draws, and spent the time.
     pub is_reused: bool,
 }
 
@@ -184,7 +184,7 @@ pub struct Finding {
     pub check: String,
     /// The quantity, as in `the mean`.
     pub what: String,
-    /// Whether the case declares a bias that the check must show.
+    /// True if the case declares a bias that the check must show.
     pub expects_bias: bool,
     /// The channel; empty for the experiment as a whole, or if its channel has no name.
     pub channel: String,
@@ -207,7 +207,7 @@ pub struct Finding {
 }
 
 impl Finding {
-    /// Whether it is about a channel, or about the experiment as a whole.
+    /// Returns whether it is about a channel, or about the experiment as a whole.
     pub fn is_about(&self, channel: &str) -> bool {
         self.channel.is_empty() || self.channel == channel
     }

@@ -61,9 +61,9 @@ pub struct Results {
     pub streams: String,
     /// Shares of the error rate, and the evidence found.
     pub gate: Gate,
-    /// Whether a time limit or an interruption cut the draws short; such results depend on the machine.
+    /// True if a time limit or an interruption cut the draws short; such results depend on the machine.
     pub cut_by_time: bool,
-    /// Whether the budget of draws ran out before all was decided.
+    /// True if the budget of draws ran out before all was decided.
     pub cut_by_budget: bool,
     /// The cases, in the order they were given.
     pub cases: Vec<CaseRecord>,
@@ -231,7 +231,7 @@ impl Deref for Row<'_> {
 }
 
 impl<'a> Row<'a> {
-    /// Whether it is the first of its experiment.
+    /// Returns whether it is the first of its experiment.
     pub fn is_first(&self) -> bool {
         self.number == 0
     }

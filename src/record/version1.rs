@@ -278,7 +278,7 @@ fn replace_null(value: &mut Value, word: &str) {
     }
 }
 
-/// Whether no number is missing in a value.
+/// Returns whether no number is missing in a value.
 fn is_whole(value: &Value) -> bool {
     match value {
         Value::Null => false,

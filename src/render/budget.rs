@@ -20,7 +20,7 @@ pub struct Forecast {
     pub variance: Option<Colour>,
     /// By how much its mean is off in each channel, by theory.
     pub bias: Colour,
-    /// Whether the pixel fits its own control.
+    /// True if the pixel fits its own control.
     pub leads: bool,
     /// The lookups of the pilot.
     pub pilots: u64,

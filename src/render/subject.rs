@@ -29,13 +29,13 @@ pub trait Subject: Estimated {
     /// Data that all its rays share beside the volume.
     type Shared: Send + Sync;
 
-    /// Whether draws weight the light of the sky behind the volume.
+    /// True if draws weight the light of the sky behind the volume.
     const BEFORE_SKY: bool;
-    /// Whether the sky is seen beside the volume; else it is black there.
+    /// True if the sky is seen beside the volume; else it is black there.
     const SHOWS_SKY: bool;
-    /// Whether its draws walk along the ray, which is then looked at first.
+    /// True if its draws walk along the ray, which is then looked at first.
     const ALONG_RAY: bool = true;
-    /// Whether theory is quick enough to be asked at every pixel.
+    /// True if theory is quick enough to be asked at every pixel.
     const IS_PREDICTED: bool;
 
     /// Reads what all rays share.
@@ -50,7 +50,7 @@ pub trait Subject: Estimated {
     /// The problem of one ray; `None` where it is not allowed.
     fn at(shared: &Self::Shared, volumes: &[Arc<Volume>], ray: &Ray) -> Option<Self>;
 
-    /// Whether [`Subject::exact`] knows all answers.
+    /// Returns whether [`Subject::exact`] knows all answers.
     fn has_exact(shared: &Self::Shared) -> bool {
         let _ = shared;
         false

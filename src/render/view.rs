@@ -92,7 +92,7 @@ pub struct View {
     pub size: [usize; 2],
     /// Number of columns and rows of pixels that share a control that takes lookups.
     pub shared_control: usize,
-    /// Whether the sky is seen beside it; else it is black there.
+    /// True if the sky is seen beside it; else it is black there.
     pub shows_sky: bool,
     camera: Camera,
     /// The length of all rays: they leave the volume before.

@@ -15,7 +15,7 @@ const SHORTEST: usize = 10;
 pub struct Pen {
     /// Columns of the screen.
     pub width: usize,
-    /// Whether it shows colours.
+    /// True if it shows colours.
     pub colour: bool,
 }
 
@@ -115,7 +115,7 @@ pub type Spec<T> = (&'static str, bool, u8, fn(&T) -> String);
 pub struct Column {
     /// Its heading.
     pub head: &'static str,
-    /// Whether its fields end at the same place, as numbers do.
+    /// True if its fields end at the same place, as numbers do.
     pub right: bool,
     /// Columns of the highest rank leave first; rank 0 stays.
     pub rank: u8,

@@ -37,7 +37,7 @@ struct Page {
     text: String,
     /// The words of the paragraph, heading, item or cell that is being read.
     words: Vec<Word>,
-    /// Whether the next letters belong to the last word.
+    /// True if the next letters belong to the last word.
     is_glued: bool,
     paints: Vec<Paint>,
     /// For each open list the number of its next item; `None` for bullets.

@@ -26,7 +26,7 @@ pub struct SelfTest {
 }
 
 impl SelfTest {
-    /// Whether every promise is kept and every bug is caught.
+    /// Returns whether every promise is kept and every bug is caught.
     pub fn holds(&self) -> bool {
         self.calibration.holds()
             && self.streams.iter().all(StreamVerdicts::is_kept)

@@ -239,7 +239,7 @@ fn caught(
     Caught { name, bug, case, estimator, check, draws, failed, twin_passes }
 }
 
-/// Whether two experiments make the same draws, bit for bit, over a buffer.
+/// Returns whether two experiments make the same draws, bit for bit, over a buffer.
 fn same(planned: &Planned, twin: &dyn Experiment) -> bool {
     let Ok(ready) = &planned.outcome else { return false };
     let fill = |experiment: &dyn Experiment| {

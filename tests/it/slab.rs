@@ -210,7 +210,7 @@ fn lookups(walk: &Walk) -> Known {
     Known::new(law.mean, law.mean * law.error)
 }
 
-/// Whether a number is known to be what it should be.
+/// Returns whether a number is known to be what it should be.
 fn is(known: Known, expected: f64) -> bool {
     (known.value - expected).abs() <= known.error
 }

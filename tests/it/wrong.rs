@@ -23,7 +23,7 @@ struct Sheet {
 struct Right {
     text: String,
     file: String,
-    /// Whether each of the changes is one mistake and no more.
+    /// True if each of the changes is one mistake and no more.
     is_one_each: bool,
     mistakes: Vec<Vec<String>>,
     refused: Vec<Vec<String>>,
@@ -45,7 +45,7 @@ fn changed<'a>(text: &str, line: &'a [String]) -> (String, Vec<&'a str>) {
     (text, words)
 }
 
-/// Whether a text has the words of a line, and none of those after `!`.
+/// Returns whether a text has the words of a line, and none of those after `!`.
 fn says(text: &str, words: &[&str]) -> bool {
     words.iter().all(|word| {
         let forbidden = word.strip_prefix('!');

@@ -82,7 +82,7 @@ fn from_json(text: &str) -> Result<String, Failure> {
     toml::to_string(&table).map_err(|error| wrong(&error))
 }
 
-/// Whether any estimator of a case depends on what is swept.
+/// Returns whether any estimator of a case depends on what is swept.
 fn depends(case: &Case, what: What) -> bool {
     (0..case.scenario.estimators()).any(|estimator| case.scenario.depends_on(estimator, what))
 }

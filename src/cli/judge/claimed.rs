@@ -18,7 +18,7 @@ pub(super) struct Claimed {
 }
 
 impl Claimed {
-    /// Whether theory says what is claimed.
+    /// Returns whether theory says what is claimed.
     pub(super) fn has_theory(&self) -> bool {
         self.theory.is_some()
     }

@@ -20,7 +20,7 @@ pub struct Header {
     pub version: String,
     /// Fingerprint of the program's file.
     pub program: String,
-    /// Whether packs multiply and add in one rounding: machines that do make other bits than those that do not.
+    /// True if packs multiply and add in one rounding: machines that do make other bits than those that do not.
     pub is_fused: bool,
     /// Words of the command that asks for these draws.
     pub words: Vec<String>,

@@ -33,7 +33,7 @@ pub struct Store {
     pub header: Header,
     /// Log of this run, or logs of all shares.
     pub logs: Vec<Log>,
-    /// Whether new blocks are written into the first log.
+    /// True if new blocks are written into the first log.
     pub keeps: bool,
     /// Set to end the drawing.
     pub stop: Arc<AtomicBool>,

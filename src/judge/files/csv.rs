@@ -27,7 +27,7 @@ pub(super) struct Table {
     record: ByteRecord,
     /// The column of lookups, if one is read.
     lookups: Option<usize>,
-    /// Whether the draw in `record` was not given yet: the table was opened with it.
+    /// True if the draw in `record` was not given yet: the table was opened with it.
     is_first: bool,
 }
 
@@ -213,12 +213,12 @@ fn number(field: &[u8]) -> Option<f64> {
     std::str::from_utf8(field.trim_ascii()).ok()?.parse().ok()
 }
 
-/// Whether a field is a name.
+/// Returns whether a field is a name.
 fn is_name(field: &[u8]) -> bool {
     number(field).is_none() && !like_a_number(field)
 }
 
-/// Whether a field begins as numbers do: then it is a number gone wrong, not a name.
+/// Returns whether a field begins as numbers do: then it is a number gone wrong, not a name.
 fn like_a_number(field: &[u8]) -> bool {
     let begins = |byte: &u8| byte.is_ascii_digit() || b"+-.".contains(byte);
     field.trim_ascii().first().is_none_or(begins)

@@ -28,12 +28,12 @@ impl Layout {
         Self { column, ..Self::default() }
     }
 
-    /// Whether all channels of a draw are read.
+    /// Returns whether all channels of a draw are read.
     pub(super) fn takes_all(&self) -> bool {
         self.channels.len() > 1 && self.channel.is_none() && self.column.is_none()
     }
 
-    /// Whether the number of columns is that of a draw's channels.
+    /// Returns whether the number of columns is that of a draw's channels.
     fn fits(&self, width: usize) -> bool {
         let all = self.channels.len();
         all > 1 && (all - self.derived..=all).contains(&width)

@@ -154,7 +154,7 @@ pub(super) struct Rows {
     places: Vec<usize>,
     /// Numbers that were read and not yet given.
     row: Vec<f64>,
-    /// Whether whole columns follow each other: then all numbers are read first.
+    /// True if whole columns follow each other: then all numbers are read first.
     by_column: bool,
     /// All numbers, where whole columns follow each other, and how many rows of them were given.
     all: Option<(Vec<f64>, usize)>,

@@ -158,13 +158,13 @@ impl Pixels {
         self.rounding * self.truth[index].abs()
     }
 
-    /// Whether the truth is an end of the range; the mean of a few passes may equal it without being exact.
+    /// Returns whether the truth is an end of the range; the mean of a few passes may equal it without being exact.
     fn is_end(&self, index: usize) -> bool {
         let is_end = self.range.is_some_and(|range| range.contains(&self.truth[index]));
         is_end && self.truth_share == 0.0
     }
 
-    /// Whether a value has no spread: by its exact variance, or because its truth is an end of the range.
+    /// Returns whether a value has no spread: by its exact variance, or because its truth is an end of the range.
     pub(super) fn is_certain(&self, index: usize) -> bool {
         let is_end = self.is_end(index);
         let exact = self.variance.as_ref().filter(|_| self.estimate.is_none());
@@ -172,7 +172,7 @@ impl Pixels {
         is_end || variance.is_some_and(|v| FURTHEST * v.sqrt() <= self.floor(index))
     }
 
-    /// Whether a variance that was estimated is 0 everywhere.
+    /// Returns whether a variance that was estimated is 0 everywhere.
     pub(super) fn is_flat(&self) -> bool {
         let estimated = self.variance.as_ref().filter(|_| self.estimate.is_some());
         estimated.is_some_and(|variance| variance.iter().all(|&v| v == 0.0))

@@ -105,12 +105,12 @@ pub struct Dependence {
     pub correlation: Option<f64>,
     /// Its lag, in passes.
     pub lag: Option<usize>,
-    /// Whether there is enough to tell.
+    /// True if there is enough to tell.
     pub is_tested: bool,
 }
 
 impl Dependence {
-    /// Whether a dependence was found.
+    /// Returns whether a dependence was found.
     pub fn is_refuted(&self) -> bool {
         !self.reason.is_empty()
     }
@@ -129,7 +129,7 @@ pub struct Variance {
     pub ln_e: f64,
     /// The ln E at which it is refuted.
     pub limit: f64,
-    /// Whether it is.
+    /// True if it is.
     pub is_refuted: bool,
 }
 
@@ -140,7 +140,7 @@ pub struct Estimate {
     pub passes: usize,
     /// Kurtosis of the values of the smallest tiles that is relied on: measured, or given.
     pub kurtosis: f64,
-    /// Whether the caller gave the kurtosis.
+    /// True if the caller gave the kurtosis.
     pub is_given: bool,
     /// Number of negative variances, which count as 0.
     pub negative: u64,
@@ -161,7 +161,7 @@ pub struct Comparison {
     pub permutations: u64,
     /// Least p-value of all tiles and the whole together, for equal distributions.
     pub p: f64,
-    /// Whether the caller claims equal distributions in each pixel.
+    /// True if the caller claims equal distributions in each pixel.
     pub is_same_law: bool,
     /// Variance of the test over that of the reference, over all pixels; `None` where neither varies.
     pub spread: Option<f64>,
@@ -202,7 +202,7 @@ pub struct Tile {
     pub ln_p: [f64; 2],
     /// ε, in units of the picture's mean truth in that channel; `None` where nothing could be asked.
     pub tolerance: Option<f64>,
-    /// Whether it is on the list of tiles that are off.
+    /// True if it is on the list of tiles that are off.
     pub is_listed: bool,
     /// What is said of it.
     pub verdict: Verdict,

@@ -176,7 +176,7 @@ pub fn judge(stack: &Stack, claim: &Claim, wanted: &Wanted) -> Result<Judgement,
     Ok(judgement)
 }
 
-/// Whether the truth or the variance is known with an error only.
+/// Returns whether the truth or the variance is known with an error only.
 fn is_noisy(pixels: &Pixels) -> bool {
     pixels.estimate.is_some() || pixels.truth_share > 0.0
 }

@@ -139,7 +139,7 @@ fn alike(stack: &Stack) -> Option<Repeat> {
 /// So many different values no law without many of them gives to all passes alike.
 const VARIED: usize = 8;
 
-/// Whether all passes are one image, of many values: passes of few may be the same by chance.
+/// Returns whether all passes are one image, of many values: passes of few may be the same by chance.
 pub(super) fn is_one_image(stack: &Stack) -> bool {
     let first = stack.pass(0);
     let mut values: Vec<u64> = first.iter().map(|x| x.to_bits()).collect();
@@ -159,7 +159,7 @@ const FEWEST: usize = 32;
 /// ln of the probability below which passes count as shared.
 const LN_SHARED: f64 = -23.0;
 
-/// Whether the truth is the mean of the passes.
+/// Returns whether the truth is the mean of the passes.
 pub(super) fn is_own_truth(stack: &Stack, pixels: &Pixels) -> bool {
     let n = stack.passes as f64;
     let mut compared = 0;
@@ -177,7 +177,7 @@ pub(super) fn is_own_truth(stack: &Stack, pixels: &Pixels) -> bool {
     compared >= FEWEST
 }
 
-/// Whether the variance is that of the passes.
+/// Returns whether the variance is that of the passes.
 pub(super) fn is_own_variance(stack: &Stack, pixels: &Pixels) -> bool {
     let (Some(claimed), Ok(own)) = (&pixels.variance, variance::variances(stack)) else {
         return false;

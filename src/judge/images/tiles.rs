@@ -35,13 +35,13 @@ pub(super) struct Part {
 /// What evidence may rest on, and what is wanted of it.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Terms {
-    /// Whether the pixels of a pass count as independent.
+    /// True if the pixels of a pass count as independent.
     pub is_free: bool,
-    /// Whether the variance may be relied on.
+    /// True if the variance may be relied on.
     pub has_variance: bool,
     /// ε in units of u.
     pub tolerance: Option<f64>,
-    /// Whether ε has the cap of a mean where nobody asked for one.
+    /// True if ε has the cap of a mean where nobody asked for one.
     pub is_capped: bool,
     /// K.
     pub count: usize,

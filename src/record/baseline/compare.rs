@@ -121,7 +121,7 @@ pub struct Change {
     /// Interval of the true ratio; `None` for times.
     #[serde(default, with = "gate::extended")]
     pub interval: Option<[f64; 2]>,
-    /// Whether it became worse.
+    /// True if it became worse.
     pub is_regression: bool,
     /// The command that repeats the experiment.
     pub command: String,
@@ -143,12 +143,12 @@ pub struct Drift {
 }
 
 impl Comparison {
-    /// Whether anything became worse.
+    /// Returns whether anything became worse.
     pub fn fails(&self) -> bool {
         !self.drifts.is_empty() || self.changes.iter().any(|change| change.is_regression)
     }
 
-    /// Whether nothing of the run was compared with anything: such a comparison says nothing.
+    /// Returns whether nothing of the run was compared with anything: such a comparison says nothing.
     pub fn is_empty(&self) -> bool {
         self.compared == 0 && self.times == 0 && self.multiplied == 0
     }
@@ -376,7 +376,7 @@ impl Entry {
         Some((variance, variance_error(kurtosis, n)))
     }
 
-    /// Whether the sample variance has a distribution that can be compared.
+    /// Returns whether the sample variance has a distribution that can be compared.
     fn is_sharp(&self) -> bool {
         self.variance().is_some()
             && Tails {
@@ -398,7 +398,7 @@ impl Entry {
     }
 }
 
-/// Whether both are of the same σ̂: not where it was learned from other pilot rays.
+/// Returns whether both are of the same σ̂: not where it was learned from other pilot rays.
 fn is_comparable(before: &Entry, now: &Entry) -> bool {
     !now.learns || before.seed == now.seed
 }

@@ -70,7 +70,7 @@ pub struct Entry {
     pub case: String,
     /// The seed of the numbers below.
     pub seed: u64,
-    /// Whether its σ̂ depends on the seed.
+    /// True if its σ̂ depends on the seed.
     pub learns: bool,
     /// Number of draws of the mean, the variance and the lookups.
     pub draws: u64,
@@ -192,7 +192,7 @@ pub fn fingerprint() -> Result<String, BaselineError> {
 }
 
 impl Entry {
-    /// Whether its numbers can be those of a run.
+    /// Returns whether its numbers can be those of a run.
     fn makes_sense(&self) -> bool {
         let sizes = [self.variance, self.lookups, self.lookups_variance, self.seconds];
         let is_size = |x: &f64| *x >= 0.0 && *x < f64::MAX;

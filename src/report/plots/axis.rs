@@ -7,7 +7,7 @@ use numeric::digits::short;
 pub struct Axis {
     /// The title with symbol and unit.
     pub title: String,
-    /// Whether it is logarithmic.
+    /// True if it is logarithmic.
     pub log: bool,
     /// The value at its beginning.
     pub low: f64,

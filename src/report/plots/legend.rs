@@ -82,7 +82,7 @@ pub fn draw(face: &Typeface, sheet: &mut Sheet, [x, y]: Spot, entries: &[Entry],
 pub struct Key {
     /// The marker.
     pub marker: Marker,
-    /// Whether it is hollow.
+    /// True if it is hollow.
     pub is_hollow: bool,
     /// Its meaning.
     pub words: &'static str,

@@ -20,7 +20,7 @@ pub enum Line {
 }
 
 impl Line {
-    /// Whether all of this line lies on another.
+    /// Returns whether all of this line lies on another.
     fn lies_on(&self, other: &Self) -> bool {
         let same = |a: f64, b: f64| a == b || (a - b).abs() <= SAME * a.abs().max(b.abs());
         match (self, other) {

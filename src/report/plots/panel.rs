@@ -47,7 +47,7 @@ impl Panel {
         Some(self.bottom - (self.bottom - self.top) * self.y.place(y)?)
     }
 
-    /// Whether a spot lies in the panel.
+    /// Returns whether a spot lies in the panel.
     pub fn holds(&self, [x, y]: Spot) -> bool {
         (self.left - 0.5..=self.right + 0.5).contains(&x)
             && (self.top - 0.5..=self.bottom + 0.5).contains(&y)

@@ -19,7 +19,7 @@ pub struct Series<'a> {
 }
 
 impl Series<'_> {
-    /// Whether it is drawn once, outside of the sweep.
+    /// Returns whether it is drawn once, outside of the sweep.
     pub fn is_fixed(&self) -> bool {
         is_fixed(&self.rows, self.curve)
     }

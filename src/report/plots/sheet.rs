@@ -67,7 +67,7 @@ pub struct Label {
     pub colour: RGBAColor,
     /// Which part of the text stands at its place.
     pub align: Align,
-    /// Whether it runs upwards.
+    /// True if it runs upwards.
     pub upward: bool,
 }
 

@@ -28,7 +28,7 @@ pub enum View {
 }
 
 impl View {
-    /// Whether it shows theory only.
+    /// Returns whether it shows theory only.
     pub fn is_theory(self) -> bool {
         matches!(self, Self::Predict | Self::Moments)
     }

@@ -10,7 +10,7 @@ use numeric::digits::{fixed, short};
 /// Something that changed.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Difference<'a> {
-    /// Whether it became worse.
+    /// True if it became worse.
     pub is_worse: bool,
     /// The experiment.
     pub experiment: String,

@@ -11,7 +11,7 @@ struct Vol {
     low: [f64; 3],
     high: [f64; 3],
     values: Vec<f32>,
-    /// Whether samples beyond the box are zero; otherwise they are those of its border.
+    /// True if samples beyond the box are zero; otherwise they are those of its border.
     zero: bool,
 }
 

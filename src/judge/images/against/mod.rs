@@ -33,7 +33,7 @@ use gate::stats::verdict::Verdict;
 /// What is claimed of two stacks.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Terms {
-    /// Whether both have one distribution in each pixel, and not only one mean.
+    /// True if both have one distribution in each pixel, and not only one mean.
     pub is_same_law: bool,
     /// Rounding error of a value relative to its mean, at most; at least that of the files.
     pub rounding: f64,

@@ -174,7 +174,7 @@ pub fn positions(case: &CaseRecord, rows: &[&Row], labels: Digits) -> String {
     parts.join("; ")
 }
 
-/// Whether a row is planned but neither drawn nor refused, for a reason.
+/// Returns whether a row is planned but neither drawn nor refused, for a reason.
 pub fn is_skipped(row: &Row, view: View) -> bool {
     view == View::Plan
         && row.verdict.is_none()

@@ -51,7 +51,7 @@ pub struct Graph {
     lines: Vec<Line>,
     classes: Vec<Class>,
     points: Vec<Point>,
-    /// Whether points were moved aside.
+    /// True if points were moved aside.
     is_moved: bool,
 }
 
