@@ -1,12 +1,12 @@
-//! What a check costs over the draws themselves: ratio tracking of Eq. 21 as a closure, at σ̂ = 1.
+//! Cost of a check beside that of the draws: ratio tracking of Eq. 21 as a closure, at σ̂ = 1.
 //!
 //! ```text
 //! cargo bench --bench closure
 //! ```
 //!
-//! Four loops are timed in turn, the median of 9 rounds each: the closure alone, `check` with it and all that theory
-//! knows, the plain loop of `run` over the same experiment, and `check` with a closure that hands out the draws of
-//! that loop. What theory takes before the first draw is told apart.
+//! Four loops are timed in turn, the median of 9 rounds each: the closure alone; `check` with it and everything that
+//! theory knows; the plain loop of `run` over the same experiment; and `check` with a closure that hands out the draws
+//! of that loop. The time that theory takes before the first draw is reported separately.
 
 use std::hint::black_box;
 use std::time::Instant;
@@ -19,7 +19,7 @@ use trueflight::{Catalogue, check};
 
 const DRAWS: u32 = 1 << 20;
 const ROUNDS: usize = 9;
-/// How many draws the plain loop makes at a time.
+/// Number of draws that the plain loop makes at a time.
 const BUFFER: u32 = 256;
 const CASE: &str = "transmittance/eq21-overview";
 

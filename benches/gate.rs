@@ -1,22 +1,21 @@
-//! What the gate costs: the built-in suite drawn with and without it, in turn, in one process.
+//! Cost of the gate: the built-in suite drawn with and without it, in turn, in one process.
 //!
 //! ```text
 //! cargo bench --bench gate              # or with -- WORD: the cases whose name has the word
 //! ```
 //!
-//! Every round draws the same blocks of every experiment of the suite in each of these ways, on one
-//! thread, and takes the processor time; the table shows the medians over the rounds of a round's
-//! differences and ratios.
+//! Every round draws the same blocks of every experiment of the suite in each of these ways, on one thread, and
+//! measures the processor time. The table shows medians over the rounds of the differences and ratios within a round.
 //!
 //! | way | what is done to each draw |
 //! |---|---|
-//! | kernels | it is made |
+//! | kernels | drawn |
 //! | statistics | mean, variance and lookups of the summary, too |
-//! | gate | and the scalars of the gate |
-//! | all checks | and the sums of the laws and the bounds on every draw |
+//! | gate | the quantities of the gate, too |
+//! | all checks | the sums of the distribution tests and the bounds on every draw, too |
 //!
-//! A second table names the experiments whose bare draws take less than 20 ns, each by itself: what all
-//! checks together make of them.
+//! A second table lists, one by one, the experiments that take less than 20 ns for a bare draw, with the time that all
+//! checks together add.
 
 use std::hint::black_box;
 
@@ -36,7 +35,7 @@ const DRAWS: u64 = 2 * BLOCK;
 /// Rounds; the median counts.
 const ROUNDS: usize = 7;
 
-/// What is asked of the draws.
+/// Work that is done on each draw.
 #[derive(Clone, Copy, PartialEq)]
 enum Way {
     Kernels,
@@ -61,7 +60,7 @@ fn main() {
         }
         report("the built-in suite", &cases, &|_| true);
         cheap(&cases, &|_| true);
-        // Walks so short that the gate can be told from them.
+        // Walks so short that the time of the gate shows beside theirs.
         let short: Vec<Case> = suite::calibration()
             .iter()
             .map(|source| Case::read(source).expect("the built-in cases have no mistakes"))
@@ -70,7 +69,7 @@ fn main() {
     });
 }
 
-/// Times all ways over the cases that are wanted.
+/// Times all ways over the wanted cases.
 fn report(title: &str, cases: &[Case], is_wanted: &dyn Fn(&str) -> bool) {
     let options = Options { draws: Amount::Exactly(DRAWS), fixed: true, ..Options::default() };
     let plans = WAYS.map(|way| plan(cases, &options, way, is_wanted));
@@ -116,7 +115,7 @@ fn plan<'a>(
     let mut plan = Plan::new(cases, options);
     for case in &mut plan.cases {
         let is_wanted = is_wanted(&case.case.name);
-        // Without chance nothing is drawn but one block.
+        // Deterministic estimators draw one block only: they are left out.
         case.experiments
             .retain(|planned| is_wanted && planned.outcome.is_ok() && planned.draws == DRAWS);
         for planned in &mut case.experiments {
@@ -151,7 +150,7 @@ fn bare(planned: &Planned, block: u64, buffer: &mut DrawBuffer) {
     }
 }
 
-/// Experiments that are so fast that their checks can be told, the slowest by comparison first.
+/// Prints experiments so fast that the time of their checks shows, the largest relative cost first.
 fn cheap(cases: &[Case], is_wanted: &dyn Fn(&str) -> bool) {
     const FAST: f64 = 20.0;
     let options = Options { draws: Amount::Exactly(DRAWS), fixed: true, ..Options::default() };

@@ -1,13 +1,12 @@
-//! What it saves to leave out what a scene does not need: each pair drawn with and without, in turn,
-//! in one process, on one thread.
+//! Time saved by skipping work that a scene does not need: each pair drawn with and without skips, in turn, in one
+//! process, on one thread.
 //!
 //! ```text
 //! cargo bench --bench skips
 //! ```
 //!
-//! Where a field is 1e-300 instead of 0 nothing is left out, and no draw is another but for the
-//! collisions in vain. That skipping changes no number is tested by `tests/skips.rs`,
-//! `tests/packets.rs` and `tests/verdicts.rs`.
+//! A field of 1e-300 in place of 0 disables the skip and changes no draw except for the lookups that cannot matter.
+//! `tests/it/skips.rs`, `packets` and `verdicts` test that skips change no number.
 
 use cpu_time::ProcessTime;
 use trueflight::case::Case;
@@ -23,7 +22,7 @@ const DRAWS: u64 = 1 << 17;
 /// Rounds; the median counts.
 const ROUNDS: usize = 7;
 
-/// The same answers, with something left out and without.
+/// Cases with equal answers, with and without skips.
 struct Pair {
     name: &'static str,
     skipping: Vec<Case>,
@@ -36,7 +35,7 @@ fn case(name: &str, text: &str) -> Case {
     Case::read(&source).unwrap_or_else(|error| panic!("{}", error.render(false)))
 }
 
-/// A piecewise constant medium of the given values on stretches of length 1, by ratio tracking.
+/// Returns a piecewise constant medium of these values on pieces of length 1, by ratio tracking.
 fn layers(values: &str, nothing: &str) -> Case {
     let values = values.replace('_', nothing);
     let count = values.split(',').count();
@@ -124,7 +123,7 @@ fn plan(cases: &[Case]) -> Plan<'_> {
     Plan::new(cases, &Options { draws: Amount::Exactly(DRAWS), fixed: true, ..Options::default() })
 }
 
-/// Processor seconds of the drawing.
+/// Returns the processor seconds of the drawing.
 fn time(plan: &Plan, kept: &Store) -> f64 {
     let begin = ProcessTime::now();
     std::hint::black_box(run::draw_with(plan, kept, &|_| {}));

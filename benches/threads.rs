@@ -1,13 +1,12 @@
-//! What a second thread gains on each medium of the built-in suite.
+//! Gain by a second thread on each medium of the built-in suite.
 //!
 //! ```text
 //! cargo bench --bench threads
 //! ```
 //!
-//! Windows of some milliseconds on one thread and on two take turns, in rounds over all experiments,
-//! so that what drifts on the machine drifts for all of them. The last line is a loop of
-//! multiply-adds in registers, which shares nothing: where it gains less than twice, the machine, or
-//! its host, has no second processor to give at the time.
+//! Windows of some milliseconds on one thread and on two take turns, in rounds over all experiments, so that a drift of
+//! the machine's speed affects all of them. The last line is a loop of multiply-adds in registers, which shares
+//! nothing. Where it gains less than twice, the machine or its host has no second processor free at the time.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::hint::black_box;
@@ -21,22 +20,22 @@ use trueflight::plan::Options;
 use trueflight::plan::Plan;
 use trueflight::plan::{BLOCK, Planned};
 
-/// Threads.
+/// Number of threads.
 const THREADS: usize = 2;
 /// Rounds; the median counts.
 const ROUNDS: usize = 101;
 /// Seconds of a window on one thread.
 const WINDOW: f64 = 4e-3;
 
-/// Something that a thread does so many times, given its number.
+/// Work of a thread, given the thread's number and a count.
 type Work<'a> = dyn Fn(usize, u64) + Sync + 'a;
 
-/// What is timed.
+/// Work that is timed.
 struct Timed<'a> {
     medium: &'a str,
     name: String,
     work: Box<Work<'a>>,
-    /// How much of it fills a window.
+    /// Count that fills a window.
     count: u64,
     gains: Vec<f64>,
 }
@@ -84,7 +83,7 @@ fn main() {
     });
 }
 
-/// A line for each medium.
+/// Prints a line for each medium.
 fn report(all: Vec<Timed>) {
     let mut media: BTreeMap<&str, Vec<(f64, String)>> = BTreeMap::new();
     for timed in all {
@@ -116,7 +115,7 @@ fn registers(_: usize, count: u64) {
     black_box(values);
 }
 
-/// Draws alone; threads take turns with the blocks.
+/// Draws alone; threads take blocks in turn.
 fn bare(planned: &Planned, thread: usize, draws: u64) {
     let Ok(ready) = &planned.outcome else { return };
     let mut buffer = DrawBuffer::new(ready.prediction.channels.len());
@@ -132,14 +131,14 @@ fn bare(planned: &Planned, thread: usize, draws: u64) {
     }
 }
 
-/// Seconds on this thread.
+/// Returns the seconds on this thread.
 fn alone(work: &Work, count: u64) -> f64 {
     let begin = Instant::now();
     work(0, count);
     begin.elapsed().as_secs_f64()
 }
 
-/// Seconds until all threads have done it; they begin when all are awake.
+/// Returns the seconds until all threads have finished; the clock starts when all are awake.
 fn together(work: &Work, count: u64) -> f64 {
     let awake = AtomicUsize::new(0);
     let times = rayon::broadcast(|context| {

@@ -1,13 +1,13 @@
-//! How many draws a pass takes: the built-in suite, judged with many seeds.
+//! Number of draws until a pass: the built-in suite, judged with many seeds.
 //!
 //! ```text
 //! cargo bench --bench verdict              # 24 seeds, about 10 minutes on two cores
 //! cargo bench --bench verdict -- 4         # so many seeds
 //! ```
 //!
-//! A scalar of relative variance V and tolerance ε typically passes after 17 V/ε² draws; each case's
-//! figure is the draws of all its scalars in units of that, as `trueflight run` shows it for one
-//! seed. With one seed a case of few scalars tells little: they pass early or late together.
+//! A scalar of relative variance V and tolerance ε typically passes after 17 V/ε² draws. Each case's figure is the
+//! number of draws of all its scalars in units of that, as `trueflight run` shows it for one seed. One seed of a case
+//! with few scalars is little evidence: they pass early or late together.
 
 use trueflight::case::Case;
 use trueflight::case::suite;

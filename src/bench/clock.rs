@@ -1,8 +1,8 @@
 //! One round of one experiment, each way of drawing timed in turn.
 //!
-//! Only the filling of buffers is timed. Before the first lap of each way a buffer is filled and
-//! thrown away, so that none pays for what is read or mapped for the first time; every other round
-//! goes through the ways backwards, so that none is always the second.
+//! Only the filling of buffers is timed. Before the first lap of each way a buffer is filled and discarded, so that no
+//! way is charged for memory that is read or mapped for the first time. Every other round takes the ways in reverse
+//! order, so that no way always comes second.
 
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Instant;
@@ -21,17 +21,17 @@ use estimators::{DrawBuffer, Kernel};
 pub enum Clock {
     /// The time that the drawing thread had a processor: other processes hardly count.
     Processor,
-    /// The time on the wall, the only one that tells what several threads gain.
+    /// Wall-clock time, the only clock that shows the gain by several threads.
     Elapsed,
 }
 
 impl Clock {
-    /// The clock for a number of threads.
+    /// Returns the clock for a number of threads.
     pub fn of(threads: usize) -> Self {
         if threads > 1 { Self::Elapsed } else { Self::Processor }
     }
 
-    /// The word in tables and files.
+    /// Returns the word in tables and files.
     pub fn word(self) -> &'static str {
         match self {
             Self::Processor => "processor",
@@ -39,7 +39,7 @@ impl Clock {
         }
     }
 
-    /// The seconds that something takes.
+    /// Returns the seconds that a call takes.
     fn time(self, f: impl FnOnce()) -> f64 {
         match self {
             Self::Processor => {
@@ -56,14 +56,14 @@ impl Clock {
     }
 }
 
-/// Times of one experiment in one round, in seconds for a draw.
+/// Times of one experiment in one round, in seconds per draw.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Lap {
-    /// On one thread, as a run draws.
+    /// One thread, as a run draws.
     pub single: f64,
-    /// On all threads together, where there are several.
+    /// All threads together; `None` with one thread.
     pub together: Option<f64>,
-    /// On one thread, one draw after the other.
+    /// One thread, one draw after the other.
     pub plain: f64,
 }
 
@@ -72,15 +72,15 @@ pub struct Lap {
 pub struct Stopwatch {
     /// Clock of the times.
     pub clock: Clock,
-    /// The vector hardware.
+    /// Vector hardware.
     pub level: Level,
     /// Number of threads that draw at once.
     pub threads: usize,
 }
 
 impl Stopwatch {
-    /// Times a round of an experiment; `sample` sees its draws. The rounds' draws differ, the ways
-    /// of drawing do not differ in them.
+    /// Times a round of an experiment; `sample` absorbs its draws. Rounds make different draws; the ways of drawing
+    /// make the same draws.
     pub fn lap(&self, planned: &Planned, round: u32, draws: u64, sample: &mut Sample) -> Lap {
         let mut lap = Lap { single: 0.0, together: None, plain: 0.0 };
         let mut ways = [Way::Packets, Way::Together, Way::Plain];
@@ -108,7 +108,7 @@ impl Stopwatch {
         lap
     }
 
-    /// Seconds for a draw on this thread; `look` sees each buffer, untimed.
+    /// Returns the seconds per draw on this thread; `look` receives each buffer, untimed.
     fn alone(
         &self,
         planned: &Planned,
@@ -126,8 +126,8 @@ impl Stopwatch {
         seconds / draws as f64
     }
 
-    /// Seconds for a draw on all threads of the pool, which make so many for each thread: whoever is free takes
-    /// the next block, as in a run. Time begins when all are awake.
+    /// Returns the seconds per draw on all threads of the pool. Each thread adds the same number of draws to the work,
+    /// and a free thread takes the next block, as in a run. The clock starts when all threads are awake.
     fn together(&self, planned: &Planned, round: u32, draws: u64) -> f64 {
         let (kernel, threads) = (Kernel::Packets(self.level), self.threads as u64);
         let (blocks, each) = (threads * draws.div_ceil(BLOCK), draws.min(BLOCK));
@@ -155,7 +155,7 @@ impl Stopwatch {
     }
 }
 
-/// A way of drawing.
+/// Way of drawing.
 #[derive(Clone, Copy)]
 enum Way {
     Packets,
@@ -163,7 +163,7 @@ enum Way {
     Plain,
 }
 
-/// A buffer that has been filled once.
+/// Returns a buffer that has been filled once.
 fn warm(planned: &Planned, kernel: Kernel, draws: u64) -> DrawBuffer {
     let channels = planned.outcome.as_ref().map_or(0, |ready| ready.prediction.channels.len());
     let mut buffer = DrawBuffer::new(channels);
@@ -172,7 +172,7 @@ fn warm(planned: &Planned, kernel: Kernel, draws: u64) -> DrawBuffer {
     buffer
 }
 
-/// Calls `f` for each buffer of so many draws from a block on, with what fills it.
+/// Calls `f` for each buffer of the draws from block `first` on, with a function that fills the buffer.
 fn each_buffer(
     planned: &Planned,
     kernel: Kernel,

@@ -14,25 +14,25 @@ use gate::stats::Tally;
 /// The first point of a curve.
 const FIRST: u64 = 64;
 
-/// The draws of all rounds.
+/// Draws of all rounds.
 #[derive(Debug, Clone)]
 pub struct Sample {
-    /// The numbers of draws at which the error is looked at.
+    /// Numbers of draws at which the error is looked at.
     pub looks: Vec<u64>,
     /// One entry per channel.
     pub channels: Vec<ChannelSample>,
-    /// The lookups of all draws, as they are.
+    /// Lookups of all draws, as they are.
     pub lookups: Tally,
-    /// The draws of this round so far.
+    /// Number of draws of this round so far.
     drawn: u64,
 }
 
-/// The draws of one channel.
+/// Draws of one channel.
 #[derive(Debug, Clone)]
 pub struct ChannelSample {
     /// The exact answer.
     truth: f64,
-    /// All rounds, about the truth and in units of it.
+    /// Draws of all rounds, about the truth and in units of it.
     pub tally: Tally,
     /// `errors[round][look]`: (mean − T)/T, signed.
     pub errors: Vec<Vec<f64>>,
@@ -40,19 +40,19 @@ pub struct ChannelSample {
     round: Tally,
 }
 
-/// The error over the rounds after a number of draws, relative to the truth.
+/// Error over the rounds after a number of draws, relative to the truth.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Error {
-    /// The root of the mean of its square.
+    /// Root mean square.
     pub typical: f64,
-    /// The least of the rounds.
+    /// Minimum over the rounds.
     pub least: f64,
-    /// The most of the rounds.
+    /// Maximum over the rounds.
     pub most: f64,
 }
 
 impl Sample {
-    /// The sample of an experiment that makes this number of draws in a round.
+    /// Returns an empty sample for an experiment that makes this number of draws in a round.
     pub fn of(planned: &Planned, draws: u64) -> Self {
         let truths = planned.outcome.as_ref().map_or_else(
             |_| Vec::new(),
@@ -61,7 +61,7 @@ impl Sample {
         Self::about(&truths, draws)
     }
 
-    /// About these truths, one to a channel.
+    /// Returns an empty sample about these truths, one per channel.
     pub fn about(truths: &[f64], draws: u64) -> Self {
         let doubled = std::iter::successors(Some(FIRST), |n| n.checked_mul(2));
         let mut looks: Vec<u64> = doubled.take_while(|&n| n < draws).collect();
@@ -117,7 +117,7 @@ impl Sample {
 }
 
 impl ChannelSample {
-    /// The error at a look; `None` where no round looked.
+    /// Returns the error at a look; `None` before the first round has reached it.
     pub fn error(&self, look: usize) -> Option<Error> {
         let sizes = || self.errors.iter().filter_map(|round| Some(round.get(look)?.abs()));
         let n = sizes().count();

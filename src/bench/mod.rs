@@ -1,4 +1,4 @@
-//! Run time against error: what each estimator's draws cost, and how soon they reach an error.
+//! Run time against error: cost of the draws of each estimator, and time until they reach an error.
 //!
 //! ```text
 //! time to ε   V/(ε²T²) · time of a draw      until the standard error is ε of the truth
@@ -7,14 +7,13 @@
 //! speedup     time of a draw of the plain loop / time of a draw
 //! ```
 //!
-//! V is the variance in theory, or the sample's where theory has none. The plain loop makes the same
-//! draws one after the other, as a textbook would. Both are timed in turn in every round (`clock`), so
-//! that a ratio is taken within its round; the rounds go over all experiments again and again, so that
-//! what drifts on the machine drifts for all of them. Medians are reported, with the least and the
-//! most of the rounds.
+//! V is the variance in theory, or that of the sample where theory has none. The plain loop makes the same draws one
+//! after the other, as a textbook would. Both are timed in turn in every round (`clock`), so that a ratio is taken
+//! within its round. The rounds go over all experiments again and again, so that a drift of the machine's speed affects
+//! all of them. Medians are reported, with the minimum and the maximum of the rounds.
 //!
-//! What was drawn is the same for any number of threads on any machine; the times are not, and are
-//! kept apart ([`record::Times`]).
+//! The draws are the same for any number of threads on any machine; the times are not, and are kept apart
+//! ([`record::Times`]).
 
 pub mod clock;
 mod curve;
@@ -43,8 +42,8 @@ pub struct Amounts {
     pub level: Level,
 }
 
-/// Times every experiment of a plan on the threads of the pool in which it is called; `progress` is
-/// told after each experiment of each round how many draws were timed.
+/// Times every experiment of a plan on the threads of the pool in which it is called. After each experiment of each
+/// round, `progress` receives the number of draws that were timed.
 ///
 /// With one thread it times by processor time, with several by elapsed time.
 pub fn measure(plan: &Plan, amounts: Amounts, progress: &dyn Fn(u64)) -> Bench {
@@ -83,11 +82,11 @@ pub fn measure(plan: &Plan, amounts: Amounts, progress: &dyn Fn(u64)) -> Bench {
     }
 }
 
-/// An experiment with what was timed and drawn of it.
+/// Experiment with its times and draws.
 struct Measured<'p> {
     case: &'p PlannedCase<'p>,
     planned: &'p Planned,
-    /// The rounds; none where it is refused.
+    /// Times of each round; empty for a refused experiment.
     laps: Vec<Lap>,
     sample: Sample,
 }

@@ -1,4 +1,4 @@
-//! Record of a bench: all that its reports see.
+//! Record of a bench: everything that its reports use.
 //!
 //! Unknown is `None`, never zero. All times are in [`Times`] and [`Conditions`]; everything else is
 //! the same for any number of threads on any machine.
@@ -124,11 +124,11 @@ pub struct CurvePoint {
     pub error: f64,
     /// The error relative to the truth.
     pub relative: f64,
-    /// The least of the rounds, relative.
+    /// Minimum over the rounds, relative.
     pub least: f64,
-    /// The most of the rounds, relative.
+    /// Maximum over the rounds, relative.
     pub most: f64,
-    /// √(V/n)/T; `None` where the draws have no variance that is known.
+    /// √(V/n)/T; `None` where the variance of the draws is unknown.
     pub predicted: Option<f64>,
 }
 
@@ -147,7 +147,7 @@ pub struct Times {
     pub draws_per_second: f64,
     /// Nanoseconds of a lookup of σ_t; `None` where nothing was looked up.
     pub ns_per_lookup: Option<f64>,
-    /// Seconds to a relative standard error of 1e-2, 1e-3 and 1e-4; `None` where none is known.
+    /// Seconds to a relative standard error of 1e-2, 1e-3 and 1e-4; `None` where the variance is unknown.
     pub seconds_to: Option<[f64; 3]>,
     /// 1/(variance · seconds of a draw).
     pub efficiency: Option<f64>,
@@ -171,25 +171,25 @@ impl Times {
         draws as f64 * self.plain_ns_per_draw.median * 1e-9
     }
 
-    /// TTUV, the time to unit variance: variance · seconds of a draw, the efficiency upside down.
+    /// Returns the time to unit variance (TTUV), variance · seconds of a draw: the reciprocal of the efficiency.
     pub fn ttuv(&self) -> Option<f64> {
         self.efficiency.map(f64::recip)
     }
 }
 
-/// The median of the rounds with the least and the most.
+/// Median of the rounds with the minimum and the maximum.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Spread {
-    /// The median; of an even number of rounds, the mean of the middle two.
+    /// Median; of an even number of rounds, the mean of the middle two.
     pub median: f64,
-    /// The least.
+    /// Minimum.
     pub least: f64,
-    /// The most.
+    /// Maximum.
     pub most: f64,
 }
 
 impl Spread {
-    /// The spread of some figures; `None` of none.
+    /// Returns the spread of some figures; `None` of none.
     pub fn of(figures: impl IntoIterator<Item = f64>) -> Option<Self> {
         let mut sorted: Vec<f64> = figures.into_iter().collect();
         sorted.sort_by(f64::total_cmp);
@@ -198,7 +198,7 @@ impl Spread {
         Some(Self { median: lower.midpoint(upper), least, most })
     }
 
-    /// All three times a factor above 0.
+    /// Multiplies all three by a factor above 0.
     #[must_use]
     pub fn times(self, factor: f64) -> Self {
         let [median, least, most] = [self.median, self.least, self.most].map(|x| x * factor);

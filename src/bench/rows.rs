@@ -1,4 +1,4 @@
-//! From what was timed and drawn to rows.
+//! Turns times and draws into rows.
 
 use std::collections::BTreeMap;
 
@@ -10,10 +10,10 @@ use crate::plan::Planned;
 use theory::Channel;
 use theory::prediction::CERTAIN;
 
-/// What is said where a round took no time that the clock could tell.
+/// Reason if a round took no time that the clock could measure.
 const TOO_SHORT: &str = "a round is shorter than the clock can tell; give more --draws";
 
-/// A figure over the rounds of one experiment; `None` where the clock was too coarse for one of them.
+/// Returns a figure over the rounds of one experiment; `None` where the clock was too coarse for one of them.
 fn spread(laps: &[Lap], figure: impl Fn(&Lap) -> f64) -> Option<Spread> {
     let figures: Vec<f64> = laps.iter().map(figure).collect();
     let is_told = figures.iter().all(|x| x.is_finite() && *x > 0.0);
@@ -25,7 +25,7 @@ fn named(planned: &Planned) -> BenchRow {
     BenchRow { id, listed: planned.estimator, needs, ..BenchRow::default() }
 }
 
-/// The rows of an experiment, one to a channel, or one that says why it cannot be drawn.
+/// Returns the rows of an experiment, one per channel, or one row that says why it cannot be drawn.
 pub fn of(Measured { planned, laps, sample, .. }: &Measured) -> Vec<BenchRow> {
     let ready = match &planned.outcome {
         Ok(ready) => ready,
@@ -46,7 +46,7 @@ pub fn of(Measured { planned, laps, sample, .. }: &Measured) -> Vec<BenchRow> {
         let variance = variance.filter(|v| v.is_finite());
         let (known, reason) = known_variance(channel, variance, planned.expect_biased);
         let curve = match channel.moments {
-            // What is left of the error is rounding, and does not fall; a bias is more than that.
+            // The rest of the error is rounding and does not fall; a bias is larger than that.
             Some(m) if m.relative[0] <= CERTAIN && !planned.expect_biased => Vec::new(),
             _ => curve(sample, drawn, (truth, known), cost),
         };
@@ -73,7 +73,7 @@ pub fn of(Measured { planned, laps, sample, .. }: &Measured) -> Vec<BenchRow> {
     rows.collect()
 }
 
-/// The variance that an error falls with, or why there is none.
+/// Returns the variance that determines the error, or the reason why it has none.
 fn known_variance(
     channel: &Channel,
     sample: Option<f64>,
@@ -141,7 +141,8 @@ fn times(
     })
 }
 
-/// Chooses what a plot shows: of each estimator of a case the last channel of the sweep point with the largest figure of
+/// Chooses the rows of a plot: for each estimator of a case the last channel of the sweep point with the largest figure
+/// of merit.
 /// merit.
 pub fn choose(rows: &mut [BenchRow]) {
     let merit = |row: &BenchRow| row.fom.unwrap_or(0.0);
@@ -218,7 +219,7 @@ mod tests {
         near(times.speedup.most, 6.0);
         near(times.efficiency.expect("a variance"), 1.0 / (variance * 2e-8));
         for (seconds, error) in times.seconds_to.expect("a variance").iter().zip(ERRORS) {
-            // After that time the standard error is what was asked.
+            // After that time the standard error equals the requested error.
             let draws = seconds * times.draws_per_second;
             near((variance / draws).sqrt() / truth, error);
         }

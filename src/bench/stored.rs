@@ -1,11 +1,10 @@
 //! Stored benches: the times that a later bench is compared with.
 //!
-//! They stand beside the stored runs, as `NAME.bench.json`, and are read and written in the same way.
+//! They are stored beside the stored runs, as `NAME.bench.json`, and are read and written in the same way.
 //!
-//! A time per draw has changed if the rounds of both sides do not overlap and the ratio of the
-//! medians is beyond the tolerance. Two benches were timed apart, and what else the machine did
-//! differs; the speedup over the plain loop, timed in turn with it, is told beside the time: where
-//! it stayed, the plain loop became slower as well.
+//! A time per draw has changed if the rounds of both sides do not overlap and the ratio of the medians is beyond the
+//! tolerance. Two benches are timed apart, under different loads of the machine. The speedup over the plain loop, timed
+//! in turn with it, is therefore reported beside the time: where it stayed, the plain loop became slower as well.
 
 use std::path::{Path, PathBuf};
 
@@ -88,7 +87,7 @@ impl Stored {
     ///
     /// # Errors
     ///
-    /// There is none, or it is not what this program writes.
+    /// The file does not exist, or is not a stored bench.
     pub fn read(path: &Path) -> Result<Self, BaselineError> {
         baseline::read(path, SCHEMA, "timed")
     }

@@ -1,5 +1,5 @@
-//! From a spec's settings to what can be drawn: a problem and its estimators without their types, and experiments on
-//! them. What no computer with doubles can test in a lifetime is refused.
+//! Turns the settings of a spec into experiments that can be drawn: a problem and its estimators without their types.
+//! An experiment that a program with doubles cannot test within a lifetime is refused.
 
 use std::any::Any;
 use std::sync::Arc;
@@ -30,7 +30,7 @@ pub struct Ready {
     pub prediction: Prediction,
 }
 
-/// A form of a problem of the catalogue, before a case is read.
+/// Form of a problem of the catalogue, before a case is read.
 pub struct ProblemKind {
     /// Options that choose the form.
     pub options: &'static [ProblemOption],
@@ -52,7 +52,7 @@ macro_rules! kinds {
     };
 }
 
-/// The form that settings ask for of the problem at a position of the catalogue; `None` after a mistake.
+/// Returns the form that settings ask for, of the problem at a position of the catalogue; `None` after a mistake.
 pub fn kind(index: usize, settings: &Settings) -> Option<ProblemKind> {
     let mut forms = each_problem!(kinds).into_iter().nth(index)?;
     let options: Vec<_> = forms.iter().map(|form| form.options).collect();
@@ -81,21 +81,21 @@ pub struct Parts<'a> {
     pub mesh: &'a Arc<Mesh>,
     /// σ̂ along the ray.
     pub sampling: Option<Piecewise>,
-    /// Medium and σ̂ of each channel after the first.
+    /// Medium and σ̂ of each channel but the first.
     pub further: Vec<(Arc<Mesh>, Option<Piecewise>)>,
     /// σ_c.
     pub control: Control,
-    /// A constant σ̂, 1/length, in place of the recipe's.
+    /// Constant σ̂, 1/length, in place of the recipe's.
     pub constant: Option<f64>,
     /// Recipe of σ̂ in space.
     pub recipe: Option<&'a dyn sampling::Recipe>,
-    /// The factor on that σ̂.
+    /// Factor on that σ̂.
     pub factor: f64,
-    /// The swept albedo, in place of the one in the case.
+    /// Swept albedo, in place of the one in the case.
     pub albedo: Option<f64>,
 }
 
-/// A problem with the estimators of a case; estimators are numbered in the order of the case.
+/// Problem with the estimators of a case; estimators are numbered in the order of the case.
 pub trait AnyProblem: Send + Sync {
     /// The problem, of its own type.
     fn problem(&self) -> &dyn Any;
@@ -103,22 +103,22 @@ pub trait AnyProblem: Send + Sync {
     /// The field of each channel along the ray.
     fn media(&self) -> &[Medium];
 
-    /// The distance that each channel of a draw is about.
+    /// Returns the distance that each channel of a draw belongs to.
     fn distances(&self) -> Vec<f64>;
 
     /// Returns whether an estimator, or the problem itself, depends on an albedo.
     fn has_albedo(&self, estimator: usize) -> bool;
 
-    /// The control, where the parts fit together.
+    /// Returns the control of an experiment, if medium, σ̂ and control fit together.
     fn fitting_control(&self, estimator: usize, parts: Parts) -> Result<Control, Refusal>;
 
-    /// An experiment with its prediction; a `forced` one is drawn outside its domain, too.
+    /// Prepares an experiment with its prediction; a `forced` one is drawn outside its domain, too.
     fn prepare(&self, estimator: usize, parts: Parts, forced: bool) -> Result<Ready, Refusal>;
 
-    /// Prediction without distributions; `None` if the experiment is refused.
+    /// Predicts an experiment, without distributions; `None` if it is refused.
     fn predict(&self, estimator: usize, parts: Parts) -> Option<Prediction>;
 
-    /// The ray seen from the side, for estimators of a curve.
+    /// Returns the ray seen from the side, for estimators of a curve.
     fn ray_view(&self, estimator: usize, parts: Parts, address: Address) -> Option<RayView>;
 
     /// Prepares the `Setup<P>` of an experiment, for draws that are made outside the catalogue.
@@ -190,7 +190,7 @@ impl<P: Estimated> AnyProblem for Typed<P> {
         self.with_entry(estimator, albedo, |entry| {
             let prediction = match entry.domain(&setup) {
                 Ok(()) => entry.predict(&setup),
-                // Forced: the formulas do not hold here, only the truth does.
+                // Forced: outside the domain the formulas do not hold, only the truth does.
                 Err(_) if forced => entry.predict(&setup).only_the_truth(),
                 Err(refusal) => return Err(refusal),
             };
@@ -253,7 +253,7 @@ pub(super) fn refuse_what_cannot_be_computed(ready: Ready) -> Result<Ready, Refu
             };
             return Err(Refusal::mismatch(needs, found));
         }
-        // What is biased may have another mean than the truth, in units of which all is counted.
+        // The mean of a biased estimator may differ from the truth, which is the unit of all numbers.
         let mean = channel.mean.value;
         if !mean.is_finite() {
             let needs = "draws whose mean is below 1e300 truths";

@@ -1,7 +1,7 @@
-//! Catalogue of names: the built-in pages, and those of a program's own.
+//! Catalogue of names: the built-in pages, and the pages that a program adds.
 //!
-//! A program adds its media and estimators before it reads a case; from then on case files name them, and plots,
-//! verdicts, `bench` and `explain` know them as they know the built-in ones.
+//! A program adds its media and estimators before it reads a case. From then on case files name them, and plots,
+//! verdicts, `bench` and `explain` treat them as built-in ones.
 
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
@@ -13,7 +13,7 @@ use media;
 use media::catalogue::{Addition, Additions, PageList, suggestion};
 use theory::problems::{MultipleScattering, Named};
 
-/// The built-in pages with those of a program's own.
+/// Built-in pages together with those that a program adds.
 ///
 /// ```
 /// use trueflight::catalogue::{Addition, Page};
@@ -43,7 +43,7 @@ pub struct Catalogue {
     additions: Additions,
 }
 
-/// Error of a page with the name of another one.
+/// Error of a page that has the name of another one.
 #[derive(Debug, thiserror::Error)]
 #[error("`{name}` is the name of another page ({part}); choose another name")]
 pub struct NameTaken {
@@ -54,12 +54,12 @@ pub struct NameTaken {
 }
 
 impl Catalogue {
-    /// The built-in pages alone.
+    /// Returns the built-in pages alone.
     pub fn builtin() -> Self {
         Self::default()
     }
 
-    /// One page more.
+    /// Adds a page.
     ///
     /// # Errors
     ///
@@ -76,7 +76,7 @@ impl Catalogue {
         Ok(self)
     }
 
-    /// The pages of the program's own.
+    /// Returns the pages that the program added.
     pub fn additions(&self) -> &Additions {
         &self.additions
     }
@@ -90,11 +90,11 @@ impl Catalogue {
         Case::read_with(source, &self.additions)
     }
 
-    /// Reads what a user names: a case file, a folder of them, or a built-in case.
+    /// Reads all cases that a user's argument stands for: a case file, a folder of them, or a built-in case.
     ///
     /// # Errors
     ///
-    /// All files that cannot be read or are wrong.
+    /// All files that cannot be read or contain mistakes.
     pub fn named(&self, name: &str) -> Result<Vec<Case>, Vec<CaseError>> {
         if Path::new(name).is_dir() {
             return self.read_all(&[name]);
@@ -107,7 +107,7 @@ impl Catalogue {
     ///
     /// # Errors
     ///
-    /// All files that cannot be read or are wrong.
+    /// All files that cannot be read or contain mistakes.
     pub fn read_all(&self, paths: &[impl AsRef<Path>]) -> Result<Vec<Case>, Vec<CaseError>> {
         let mut cases = Vec::new();
         let mut errors = Vec::new();
@@ -128,7 +128,7 @@ impl Catalogue {
     }
 }
 
-/// The text that a user names: a case file, or a built-in case.
+/// Returns the text that a user's argument stands for: a case file or a built-in case.
 ///
 /// # Errors
 ///
@@ -148,7 +148,7 @@ pub fn source(name: &str) -> Result<Source, CaseError> {
     }
 }
 
-/// The built-in lists that a program may add to, each with the part that it is.
+/// Returns the built-in lists that a program may add to, each with the name of its part of the catalogue.
 pub fn built_in() -> Vec<(String, PageList)> {
     let part = |title: &str| format!("estimators of {title}");
     let estimators =
@@ -159,7 +159,7 @@ pub fn built_in() -> Vec<(String, PageList)> {
     std::iter::once(media).chain(estimators).chain([of_pictures]).collect()
 }
 
-/// The case files of a path, in the order of their names.
+/// Returns the case files of a path, in the order of their names.
 fn files(path: &Path) -> Result<Vec<PathBuf>, CaseError> {
     let unreadable = |cause| CaseError::Unreadable { path: path.display().to_string(), cause };
     if !path.is_dir() {

@@ -59,11 +59,11 @@ pub struct ParsedEstimator {
 pub struct Defaults {
     /// True if they are declared biased.
     pub expect_biased: bool,
-    /// True if there is a σ̂ for all.
+    /// True if the case gives a σ̂ for all.
     pub sampling: bool,
     /// Swept quantity.
     pub swept: Option<What>,
-    /// True if all lookups are counted, so that no σ̂ may learn from some that are not.
+    /// True if every lookup must be counted: then σ̂ may not be learned from lookups that are not.
     pub counts_lookups: bool,
 }
 
@@ -117,7 +117,7 @@ fn read_sampling(
 }
 
 impl ParsedEstimator {
-    /// A name with its own settings, as in `single (terminating)`.
+    /// Returns a name with the estimator's own settings, as in `single (terminating)`.
     fn label_of(&self, name: &str, albedo: bool) -> EstimatorName {
         let settings = self.features.label[usize::from(albedo)].clone();
         EstimatorName { name: name.to_owned(), settings }
@@ -128,7 +128,7 @@ impl ParsedEstimator {
         self.label_of(&self.name, albedo)
     }
 
-    /// Label under the name of the estimator that it is by definition without a control.
+    /// Returns the label under the name of the estimator that it is by definition without a control.
     pub fn alias(&self) -> Option<EstimatorName> {
         self.features.alias.map(|name| self.label_of(name, true))
     }
@@ -147,13 +147,13 @@ impl ParsedEstimator {
             Some(defaults.expect_biased)
         };
         let Some(features) = features else {
-            // The page's own mistakes are listed; what it would have taken is not known.
+            // The page's mistakes are listed; the inputs that it would have taken are unknown.
             settings.entry("sampling");
             settings.entry("control");
             settings.close();
             return None;
         };
-        // What the page takes with other settings is read, and not used.
+        // Inputs that the page takes with other settings are read, and not used.
         let Features { inputs, may_take, .. } = features;
         let sampling = if may_take.sampling {
             let read = read_sampling(settings, body);
@@ -183,7 +183,7 @@ impl ParsedEstimator {
     }
 }
 
-/// Reads `{ NAME = { … } }`: an estimator of problem `P`, and what the case says beside its own settings.
+/// Reads `{ NAME = { … } }`: an estimator of problem `P`, and the common settings beside its own.
 pub fn read<P: Estimated>(
     table: &Settings,
     body: Option<&Body>,
@@ -204,7 +204,7 @@ pub fn read<P: Estimated>(
     Some((parsed, entry?))
 }
 
-/// Refuses a σ̂ that learns from lookups where all of them are counted; `None` after a mistake.
+/// Refuses a σ̂ that learns from lookups if every lookup must be counted; `None` after a mistake.
 fn countable(
     settings: &Settings,
     defaults: Defaults,
@@ -218,7 +218,7 @@ fn countable(
     Some(())
 }
 
-/// The estimators of a case or a picture, in its order, with σ̂ and control for all.
+/// Estimators of a case or a picture, in its order, with σ̂ and control for all.
 pub struct Estimators {
     /// The estimators.
     pub list: Vec<ParsedEstimator>,
@@ -226,11 +226,11 @@ pub struct Estimators {
     control: Option<Box<dyn controls::Recipe>>,
 }
 
-/// Estimators of problem `P`, and what makes the draws of each.
+/// Estimators of problem `P`, and the entries that make their draws.
 pub type EstimatorsOf<P> = (Estimators, Vec<Box<dyn Entry<P>>>);
 
 impl Estimators {
-    /// Reads `sampling`, `control` and `estimators` of problem `P`, with what makes the draws of each.
+    /// Reads `sampling`, `control` and `estimators` of problem `P`, with the entries that make the draws.
     pub fn read<P: Estimated>(
         settings: &Settings,
         body: Option<&Body>,
@@ -260,7 +260,7 @@ impl Estimators {
         Some((Self { list, sampling: sampling?, control: control? }, entries))
     }
 
-    /// σ̂ of an estimator; `None` where it takes none.
+    /// Returns the σ̂ of an estimator; `None` if it takes none.
     pub fn sampling_of<'a>(
         &'a self,
         parsed: &'a ParsedEstimator,
@@ -269,7 +269,7 @@ impl Estimators {
         wanted.then(|| parsed.sampling.as_deref().or(self.sampling.as_deref())).flatten()
     }
 
-    /// The control that is given for an estimator.
+    /// Returns the control that the case gives for an estimator.
     pub fn given_control<'a>(
         &'a self,
         parsed: &'a ParsedEstimator,
@@ -278,7 +278,7 @@ impl Estimators {
         wanted.then(|| parsed.control.as_deref().or(self.control.as_deref())).flatten()
     }
 
-    /// The control of an estimator.
+    /// Returns the control of an estimator.
     pub fn control_of<'a>(&'a self, parsed: &'a ParsedEstimator) -> &'a dyn controls::Recipe {
         let default = parsed.features.default_control.as_deref();
         let default = default.filter(|_| parsed.features.inputs.control);
@@ -286,7 +286,7 @@ impl Estimators {
     }
 }
 
-/// A control, or a sweep of one, that no estimator takes is a mistake.
+/// Records a mistake for a control, or a sweep of one, that no estimator takes.
 fn refuse_idle_controls(settings: &Settings, estimators: &[ParsedEstimator], swept: Option<What>) {
     if estimators.is_empty() || estimators.iter().any(|e| e.features.inputs.control) {
         return;

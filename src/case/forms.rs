@@ -1,4 +1,5 @@
-//! Forms of problems: the type of draws that a case's options ask for, and what is said of names that a form has not.
+//! Forms of problems: the type of draws that a case's options ask for, and messages about names that a form does not
+//! have.
 
 use std::cell::RefCell;
 use std::path::Path;
@@ -7,7 +8,7 @@ use media::catalogue::{Entry, Settings};
 use theory::problems::ProblemOption;
 use theory::problems::options::{chosen, listed};
 
-/// Problems of earlier versions, each with its new name and what a case then gives.
+/// Problems of earlier versions, each with its new name and the settings that a case then gives.
 const OLD_PROBLEMS: [(&str, &str, &str); 12] = [
     ("transmittance-curve", "transmittance", "`distances`, as in `distances = 8`"),
     ("spectral-transmittance", "transmittance", "a list of several media"),

@@ -1,4 +1,4 @@
-//! The identity of an experiment, as data.
+//! Identity of an experiment, as data.
 
 use std::cmp::Ordering;
 use std::fmt::{self, Display, Formatter};
@@ -124,9 +124,9 @@ impl ExperimentId {
         self.variation().map(|(_, value)| value)
     }
 
-    /// Address of the experiment's random numbers. It is made of names, so that an experiment keeps its random numbers
-    /// when other experiments join or leave the run. An experiment that is another estimator by definition, its alias,
-    /// makes the draws of that one.
+    /// Returns the address of the experiment's random numbers. It is made of names, so that an experiment keeps its
+    /// random numbers when other experiments join or leave the run. An experiment with an alias, that is, one that
+    /// equals another estimator by definition, makes the draws of that estimator.
     pub fn address(&self, seed: u64, alias: Option<&EstimatorName>) -> Address {
         let Self { case, sampling: SamplingName { constant, kind }, control, .. } = self;
         let estimator = alias.unwrap_or(&self.estimator);

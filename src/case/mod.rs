@@ -1,4 +1,4 @@
-//! A case as written: a problem, its estimators, a sweep and what the user asks of the answer.
+//! Case as written: a problem, its estimators, a sweep and the tolerances of the answer.
 //!
 //! | key | meaning | default |
 //! |---|---|---|
@@ -12,8 +12,8 @@
 //! | `expect` | `"biased"`: passes only if the bias is shown, and estimators outside their domain are drawn | `"unbiased"` |
 //! | `problem.NAME` | what is sought, one of the names of `trueflight list problems` | required |
 //!
-//! With a tolerance an experiment is planned for as many draws as it and the widest tolerances of the
-//! others need, at most `draws`.
+//! With a tolerance an experiment is planned for as many draws as that tolerance and the widest tolerances of the other
+//! quantities need, at most `draws`.
 //!
 //! Within `[problem.NAME]`:
 //!
@@ -67,7 +67,7 @@ use numeric::digits::number;
 use numeric::rng::{Address, name_hash};
 use theory::problems;
 
-/// A case file, read.
+/// Case file that was read.
 pub struct Case {
     /// The case's name.
     pub name: String,
@@ -98,7 +98,8 @@ pub struct Case {
 }
 
 impl Case {
-    /// Reads a case of the built-in catalogue; [`crate::case::Catalogue`] reads those with pages of a program's own.
+    /// Reads a case of the built-in catalogue; [`crate::case::Catalogue`] also reads cases with pages that a program
+    /// adds.
     ///
     /// # Errors
     ///
@@ -107,7 +108,7 @@ impl Case {
         Self::read_with(source, &additions::NONE)
     }
 
-    /// Reads a case with pages of the program's own.
+    /// Reads a case with pages that the program adds.
     ///
     /// # Errors
     ///
@@ -116,7 +117,7 @@ impl Case {
         Self::of(&Spec::parse(source, additions)?)
     }
 
-    /// Reads a case that is parsed.
+    /// Reads a case that was parsed.
     ///
     /// # Errors
     ///
@@ -167,11 +168,11 @@ impl Case {
         })
     }
 
-    /// The case at a value of its sweep, or as written.
+    /// Returns the case at a value of its sweep, or as written.
     ///
     /// # Errors
     ///
-    /// A value beside the sweep at which the case cannot be read.
+    /// The value is not in the sweep, and the case cannot be read at it.
     pub fn at(&self, variation: Variation) -> Result<At<'_>, Refusal> {
         let is_swept = |what| self.sweep.as_ref().is_some_and(|axis| axis.what == what);
         let varied = variation.filter(|&(what, _)| what.varies_medium() && is_swept(what));
@@ -204,8 +205,8 @@ impl Case {
         At::new(self, Held::Listed(&self.scenario), variation)
     }
 
-    /// Address of the random numbers of an estimator's pilot rays. It is the same all along a sweep, so that the theory's
-    /// line and the experiments on it learn the same σ̂.
+    /// Returns the address of the random numbers of an estimator's pilot rays. It is the same all along a sweep, so
+    /// that the curve in theory and the experiments on it learn the same σ̂.
     pub fn pilots(&self, seed: u64, estimator: usize) -> Address {
         let at = self.as_written(None);
         let id = ExperimentId { namesake: estimator + 1, ..at.unnumbered(estimator) };
@@ -213,7 +214,7 @@ impl Case {
     }
 }
 
-/// The smallest relative differences that must be seen; `None` where the case does not say.
+/// Smallest relative differences that must be detected; `None` where the case does not say.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Tolerance {
     /// Tolerance of the mean, relative to the truth.
@@ -225,20 +226,20 @@ pub struct Tolerance {
 }
 
 impl Tolerance {
-    /// Returns whether the case has any.
+    /// Returns whether the case gives any tolerance.
     pub fn is_given(&self) -> bool {
         *self != Self::default()
     }
 }
 
-/// `[problem.NAME]`, read.
+/// Settings `[problem.NAME]` that were read.
 struct Problem {
     name: String,
     scenario: Scenario,
     sweep: Option<SweepAxis>,
 }
 
-/// Reads `expect` and `problem`, and not what is beside them.
+/// Reads `expect` and `problem`, and no other key.
 fn read_problem(root: &Settings) -> Option<Problem> {
     let expect_biased = read_expect(root);
     let names: Vec<String> = problems::CATALOGUE.pages.iter().map(Page::name).collect();
@@ -265,7 +266,7 @@ fn read_problem(root: &Settings) -> Option<Problem> {
 }
 
 impl Problem {
-    /// The scenarios at the values of a sweep of the medium; `None` after a mistake in one of them.
+    /// Reads the scenarios at the values of a sweep of the medium; `None` after a mistake in one of them.
     fn varied(&self, spec: &Spec, root: &Settings) -> Option<Vec<(f64, Scenario)>> {
         let axis = self.sweep.as_ref().filter(|axis| axis.what.varies_medium());
         let Some(SweepAxis { what, values, .. }) = axis else { return Some(Vec::new()) };
@@ -314,7 +315,7 @@ fn read_varied(
     Ok(scenario)
 }
 
-/// Refuses a spectral medium where a problem is about one wavelength.
+/// Records a mistake if the medium is spectral and the problem is about one wavelength.
 fn has_one_channel(settings: &Settings, body: &Body) -> bool {
     let Body::Spectral { .. } = body else { return true };
     let key = if settings.has("medium") { "medium" } else { "volume" };

@@ -1,9 +1,9 @@
-//! Sweeps of the medium: the numbers of a spec are changed, and what was read from it is read from that.
+//! Sweeps of the medium: the numbers of a spec are changed, and the case is read again from the changed spec.
 //!
-//! Every page names the settings that its field is proportional to, all together ([`Field::EXTINCTIONS`]): what is
-//! multiplied or blended here is multiplied or blended exactly, and theory knows of it all that it knows of what is
-//! written. Numbers are rounded to 15 digits. A field of a program's own is compared with what a sweep should have made
-//! of it.
+//! Every page names the settings that its field is proportional to, all together ([`Field::EXTINCTIONS`]). A factor or
+//! a blend of these settings is therefore exact, and theory has the same knowledge of a swept field as of a written
+//! one. Numbers are rounded to 15 digits. A field that a program adds is compared with the field that the sweep should
+//! have made.
 //!
 //! [`Field::EXTINCTIONS`]: media::Field::EXTINCTIONS
 
@@ -17,18 +17,18 @@ use numeric::digits::number;
 /// Keys of fields.
 const FIELDS: [&str; 2] = ["medium", "volume"];
 
-/// Places along the ray at which a field of a program's own is compared.
+/// Number of places along the ray at which a field that a program adds is compared.
 const PLACES: usize = 33;
 
-/// Relative difference, of the largest σ_t, that the rounding of a program's own field may make.
+/// Relative difference, in units of the largest σ_t, that rounding may make in a field that a program adds.
 const AGREEMENT: f64 = 1e-9;
 
 impl Spec {
-    /// The spec at a value of a sweep of the medium; a mistake that has no place of its own is the sweep's.
+    /// Returns the spec at a value of a sweep of the medium; a mistake that has no place of its own is at the sweep.
     ///
     /// # Errors
     ///
-    /// A case that the sweep does not apply to.
+    /// The sweep does not apply to the case.
     pub fn at(&self, what: What, value: f64) -> Result<Self, Fault> {
         let mut spec = self.clone();
         let scaling = Scaling { additions: self.additions() };
@@ -43,8 +43,8 @@ impl Spec {
     }
 }
 
-/// Whether the media of all channels are what a sweep makes of those as written, where a program's own field is among
-/// them.
+/// Returns whether the media of all channels at a value of a sweep are those as written, scaled by the sweep. Only
+/// fields that a program adds are compared.
 pub fn is_proportional(name: &str, [written, varied]: [&[Medium]; 2], what: What, x: f64) -> bool {
     let is_built_in = |name: &str| CATALOGUE.pages.iter().any(|page| page.name() == name);
     if name.split(", ").all(is_built_in) {
@@ -119,9 +119,9 @@ impl Scaling<'_> {
         if scaled > 0 { Ok(()) } else { Err(idle("the medium has no albedo", help)) }
     }
 
-    /// `x_λ → (1 − c) x̄ + c x_λ` for what is listed channel by channel, x̄ the mean over the channels; an estimator's σ̂
-    /// for all channels about the mean of the case's list. A mistake is channels that differ in more than that, or
-    /// nothing that is listed channel by channel.
+    /// `x_λ → (1 − c) x̄ + c x_λ` for settings that are listed channel by channel, x̄ the mean over the channels. An
+    /// estimator's σ̂ for all channels is blended with the mean of the case's list. It is a mistake if channels differ
+    /// in anything else, or if nothing is listed channel by channel.
     fn contrast(&self, problem: &mut [Entry], contrast: f64) -> Result<(), Fault> {
         let (mut blended, mut grey) = (false, None);
         for entry in problem.iter_mut() {
@@ -180,7 +180,7 @@ impl Scaling<'_> {
         }
     }
 
-    /// The scope of an entry within a table.
+    /// Returns the scope of an entry within a table.
     fn within(&self, scope: Scope, key: &str) -> Scope<'static> {
         match scope {
             Scope::Numbers => Scope::Numbers,
@@ -194,7 +194,7 @@ impl Scaling<'_> {
         }
     }
 
-    /// Blends channels with their mean, and returns that.
+    /// Blends channels with their mean, and returns the mean.
     fn blended(&self, channels: &mut [Node], scope: Scope, contrast: f64) -> Result<Mean, Fault> {
         let share = 1.0 / channels.len() as f64;
         let mut mean: Option<Mean> = None;
@@ -231,7 +231,7 @@ impl Scaling<'_> {
         mean.check(&frame, node)
     }
 
-    /// Visits the numbers of a scope, and returns all else in words.
+    /// Visits the numbers of a scope, and returns everything else in words.
     fn walk(&self, node: &mut Node, scope: Scope, visit: &mut dyn FnMut(&mut f64)) -> String {
         let (open, parts, close): (_, Vec<String>, _) = match &mut node.value {
             Value::Number(x) if matches!(scope, Scope::Numbers) => {
@@ -259,7 +259,7 @@ impl Scaling<'_> {
     }
 }
 
-/// The mean of channels that differ in the numbers of a scope alone.
+/// Mean of channels that differ in the numbers of a scope only.
 struct Mean {
     numbers: Vec<f64>,
     /// Everything else in words.
@@ -277,7 +277,7 @@ impl Mean {
     }
 }
 
-/// The scope of an albedo or of a probability to scatter forward, which is a number or a field.
+/// Returns the scope of an albedo or of a probability to scatter forward, which is a number or a field.
 fn share(node: &Node) -> Scope<'static> {
     match &node.value {
         Value::Array(items) => items.first().map_or(Scope::Numbers, share),
@@ -296,7 +296,7 @@ fn of_estimators(problem: &mut [Entry]) -> impl Iterator<Item = &mut Entry> {
     tables.flat_map(entries).flat_map(|estimator| entries(&mut estimator.node))
 }
 
-/// The entries of a table; none of anything else.
+/// Returns the entries of a table; no entries for any other node.
 fn entries(node: &mut Node) -> std::slice::IterMut<'_, Entry> {
     match &mut node.value {
         Value::Table(entries) => entries.iter_mut(),
@@ -304,12 +304,12 @@ fn entries(node: &mut Node) -> std::slice::IterMut<'_, Entry> {
     }
 }
 
-/// Mistake of a sweep that changes nothing in the case.
+/// Returns the mistake of a sweep that changes nothing in the case.
 fn idle(message: &str, help: &str) -> Fault {
     Fault { span: 0..0, path: String::new(), message: message.to_owned(), help: help.to_owned() }
 }
 
-/// Rounds to 15 digits, without the noise of the last one: 1.5600000000000001 becomes 1.56.
+/// Rounds to 15 digits, which removes rounding errors in the last one: 1.5600000000000001 becomes 1.56.
 fn rounded(x: f64) -> f64 {
     format!("{x:.14e}").parse().unwrap_or(x)
 }

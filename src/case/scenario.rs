@@ -1,4 +1,4 @@
-//! A problem with its medium and the estimators of a case; and, at one value of the sweep, the names, predictions and
+//! Problem with its medium and the estimators of a case; and, at one value of the sweep, the names, predictions and
 //! preparation of its experiments.
 
 use std::any::Any;
@@ -19,10 +19,10 @@ use media::{Body, Control, Medium, Piecewise, misses};
 use numeric::rng::Address;
 use theory::{Mesh, Prediction};
 
-/// Address of pilot rays where only theory is asked: it needs no random numbers, but recipes that learn do.
+/// Address of pilot rays for predictions alone: these need no random numbers, but recipes that learn σ̂ do.
 const NOWHERE: Address = Address { seed: 0, experiment: 0, block: 0, lane: 0 };
 
-/// A problem with its medium and estimators, which are numbered in the order of the case.
+/// Problem with its medium and estimators, which are numbered in the order of the case.
 pub struct Scenario {
     body: Body,
     problem: Box<dyn AnyProblem>,
@@ -34,7 +34,7 @@ pub struct Scenario {
 }
 
 impl Scenario {
-    /// Reads what follows the field: σ̂ and control for all, and the estimators.
+    /// Reads the settings after the field: σ̂ and control for all, and the estimators.
     pub(super) fn read(
         kind: &ProblemKind,
         settings: &Settings,
@@ -64,7 +64,7 @@ impl Scenario {
         self.problem.media()
     }
 
-    /// The distance that each channel of a draw is about.
+    /// Returns the distance that each channel of a draw belongs to.
     pub fn distances(&self) -> Vec<f64> {
         self.problem.distances()
     }
@@ -74,7 +74,7 @@ impl Scenario {
         self.estimators.list.len()
     }
 
-    /// Doubts about the medium and its ray, a sentence each.
+    /// Returns notes about doubtful settings of the medium and its ray, a sentence each.
     pub fn notes(&self) -> Vec<String> {
         misses::notes(&self.body, self.ray)
     }
@@ -144,8 +144,8 @@ impl Scenario {
         f(varied.as_deref().unwrap_or(self.estimators.control_of(parsed)))
     }
 
-    /// Parts of an experiment, at a constant σ̂ of `what_if` if one is given, and the number of lookups of σ_t that control
-    /// and σ̂ took.
+    /// Returns the parts of an experiment, with σ̂ = `what_if` if that is given, and the number of lookups of σ_t for
+    /// control and σ̂.
     fn parts(
         &self,
         estimator: usize,
@@ -197,7 +197,7 @@ impl Scenario {
     }
 }
 
-/// A case at one value of its sweep.
+/// Case at one value of its sweep.
 pub struct At<'a> {
     case: &'a Case,
     scenario: Held<'a>,
@@ -205,14 +205,14 @@ pub struct At<'a> {
     swept: Variation,
 }
 
-/// A scenario of the case, or one that was read for a value beside its sweep.
+/// Scenario of the case, or one that was read for a value beside its sweep.
 pub(super) enum Held<'a> {
     Listed(&'a Scenario),
     Beside(Box<Scenario>),
 }
 
 impl<'a> At<'a> {
-    /// A scenario of the case at a point of the sweep.
+    /// Takes a scenario of the case at a point of the sweep.
     pub(super) fn new(case: &'a Case, scenario: Held<'a>, swept: Variation) -> Self {
         Self { case, scenario, swept }
     }
@@ -225,20 +225,20 @@ impl<'a> At<'a> {
         }
     }
 
-    /// Swept quantity other than the medium, which the scenario has, with its value.
+    /// Returns the swept quantity with its value, unless the medium is swept: the scenario already has that.
     fn variation(&self) -> Variation {
         self.swept.filter(|(what, _)| !what.varies_medium())
     }
 
-    /// Identity of an experiment; those that agree in all else, as where each has a field of its own as control, are
-    /// numbered.
+    /// Returns the identity of an experiment. Identities that agree in all else, such as those of two estimators with
+    /// fields as controls, are numbered.
     pub fn id(&self, estimator: usize) -> ExperimentId {
         let own = self.unnumbered(estimator);
         let earlier = (0..estimator).filter(|&other| self.unnumbered(other) == own).count();
         ExperimentId { namesake: earlier + 1, ..own }
     }
 
-    /// Identity of the first experiment of such names.
+    /// Returns the identity of an experiment before it is numbered.
     pub(super) fn unnumbered(&self, estimator: usize) -> ExperimentId {
         let (scenario, variation) = (self.scenario(), self.variation());
         let parsed = &scenario.estimators.list[estimator];
@@ -266,7 +266,7 @@ impl<'a> At<'a> {
         }
     }
 
-    /// The estimator that an experiment is by definition, where that is another one.
+    /// Returns the name of the estimator that an experiment equals by definition, if there is one.
     pub(super) fn alias(&self, estimator: usize) -> Option<EstimatorName> {
         let ExperimentId { sampling, control, .. } = self.unnumbered(estimator);
         let is_plain = control.is_empty() && sampling.constant.is_some();
@@ -278,7 +278,7 @@ impl<'a> At<'a> {
         let (scenario, variation) = (self.scenario(), self.variation());
         let parsed = &scenario.estimators.list[estimator];
         let control = scenario.with_control(estimator, variation, |recipe| recipe.needs());
-        // A swept σ̂ stands in the recipe's place.
+        // A swept σ̂ replaces the recipe.
         let is_swept = matches!(variation, Some((What::Sampling, _)));
         let recipe = scenario.estimators.sampling_of(parsed);
         let recipe =
@@ -288,7 +288,7 @@ impl<'a> At<'a> {
         needs.into_iter().flatten().collect::<Vec<_>>().join(", ")
     }
 
-    /// Prepares an experiment; pilot rays find their random numbers at `address`.
+    /// Prepares an experiment; pilot rays take their random numbers at `address`.
     ///
     /// # Errors
     ///
@@ -302,7 +302,7 @@ impl<'a> At<'a> {
         refuse_what_cannot_be_computed(ready)
     }
 
-    /// Prediction of an experiment, at a constant σ̂ of `what_if` if one is given; `None` if it is refused.
+    /// Predicts an experiment, with σ̂ = `what_if` if that is given; `None` if it is refused.
     pub fn predict(
         &self,
         estimator: usize,
@@ -315,8 +315,7 @@ impl<'a> At<'a> {
         Some(Prediction { setup_lookups, ..prediction })
     }
 
-    /// The ray seen from the side and the places where the control was fitted, for estimators of a
-    /// curve.
+    /// Returns the ray seen from the side and the places where the control was fitted, for estimators of a curve.
     pub fn ray_view(&self, estimator: usize, address: Address) -> Option<(RayView, Vec<[f64; 2]>)> {
         let (scenario, variation) = (self.scenario(), self.variation());
         let parts = scenario.parts(estimator, variation, None, address).ok()?.0;
@@ -326,8 +325,8 @@ impl<'a> At<'a> {
         Some((ray_view, points))
     }
 
-    /// σ_t, control and σ̂ of each channel along the ray, and at the place of interest; places where a field has no finite
-    /// value are left out.
+    /// Returns σ_t, control and σ̂ of each channel along the ray, and at the place of interest. Places where a field
+    /// has no finite value are left out.
     pub fn courses(&self, estimator: usize, address: Address, at: Option<f64>) -> Vec<Course> {
         let scenario = self.scenario();
         let parts = scenario.parts(estimator, self.variation(), None, address).ok();
@@ -346,7 +345,7 @@ impl<'a> At<'a> {
         fields.filter_map(|fields| fields.course(at)).map(Course::finite).collect()
     }
 
-    /// The largest `|σ_t − σ_c|` on the ray, 1/length: the natural scale of σ̂ for an estimator.
+    /// Returns the largest `|σ_t − σ_c|` on the ray, 1/length: the natural scale of σ̂ for an estimator.
     pub fn natural_scale(&self, estimator: usize) -> f64 {
         let scenario = self.scenario();
         let parts = scenario.parts(estimator, self.variation(), None, NOWHERE);
@@ -404,7 +403,7 @@ impl Course {
 /// Number of evenly spaced places on the ray; the place where an inequality fails is added.
 const PLACES: usize = 99;
 
-/// The fields of a channel, as far as they could be made.
+/// Fields of a channel, as far as they could be made.
 struct Fields<'a> {
     /// σ_t.
     medium: &'a Medium,
@@ -415,7 +414,7 @@ struct Fields<'a> {
 }
 
 impl Fields<'_> {
-    /// Values along the ray and at a place of interest; `None` on a ray of infinite length.
+    /// Returns the values along the ray and at a place of interest; `None` on a ray of infinite length.
     fn course(&self, at: Option<f64>) -> Option<Course> {
         let (span, support) = (self.medium.span(), self.medium.support());
         let length = span.length();

@@ -1,4 +1,4 @@
-//! Short forms of a case, spelled out before it is read.
+//! Short forms of a case, expanded before it is read.
 //!
 //! | written | says |
 //! |---|---|
@@ -19,7 +19,7 @@ use std::ops::Range;
 use media::catalogue::{Entry, Fault, Node, Value};
 use numeric::digits::number;
 
-/// Keys that choose a page, and the only required setting of the page `constant` among their pages.
+/// Keys that choose a page, each with the only required setting of its page `constant`.
 const CONSTANTS: [(&str, &str); 4] = [
     ("medium", "extinction"),
     ("volume", "extinction"),
@@ -27,7 +27,7 @@ const CONSTANTS: [(&str, &str); 4] = [
     ("control", "value"),
 ];
 
-/// Spells out what a case or picture says in short; what is nearly a short form is a mistake with its cure.
+/// Expands the short forms of a case or picture; a setting that is almost a short form is a mistake with its cure.
 pub fn spell_out(root: &mut [Entry], faults: &RefCell<Vec<Fault>>) {
     let writer = Writer { faults };
     for top in root.iter_mut().filter(|entry| matches!(&*entry.key, "problem" | "picture")) {
@@ -38,23 +38,23 @@ pub fn spell_out(root: &mut [Entry], faults: &RefCell<Vec<Fault>>) {
     }
 }
 
-/// The entries of a table; none of anything else.
+/// Returns the entries of a table; no entries for any other node.
 fn entries(node: &mut Node) -> &mut [Entry] {
     if let Value::Table(entries) = &mut node.value { entries } else { &mut [] }
 }
 
-/// Puts a value into a list or table of its own, which stands where the value stood.
+/// Moves a value into a list or table of its own, which takes its place.
 fn wrap(node: &mut Node, within: impl FnOnce(Node) -> Value) {
     let value = mem::replace(&mut node.value, Value::Boolean(false));
     node.value = within(Node { value, span: node.span.clone() });
 }
 
-/// A table with one key.
+/// Returns a function that makes a table with one key.
 fn keyed(key: &str) -> impl FnOnce(Node) -> Value {
     |node| Value::Table(vec![Entry { key: key.to_owned(), key_span: node.span.clone(), node }])
 }
 
-/// A list of one value.
+/// Returns a list of one value.
 fn listed(node: Node) -> Value {
     Value::Array(vec![node])
 }
@@ -65,7 +65,7 @@ struct Writer<'a> {
 }
 
 impl Writer<'_> {
-    /// `[problem.NAME]`, which stands at a path.
+    /// Expands `[problem.NAME]`, which stands at a path.
     fn problem(&self, settings: &mut [Entry], path: &str) {
         self.constants(settings, &CONSTANTS, path);
         for Entry { key, node, .. } in settings {
@@ -90,14 +90,14 @@ impl Writer<'_> {
         }
     }
 
-    /// `{ NAME = { sampling, control } }`.
+    /// Expands `{ NAME = { sampling, control } }`.
     fn estimator(&self, node: &mut Node, path: &str) {
         for Entry { key, node, .. } in entries(node) {
             self.constants(entries(node), &CONSTANTS[2..], &format!("{path}.{key}"));
         }
     }
 
-    /// The `medium`, `volume`, `sampling` and `control` of a table.
+    /// Expands the `medium`, `volume`, `sampling` and `control` of a table.
     fn constants(&self, settings: &mut [Entry], known: &[(&str, &str)], path: &str) {
         for Entry { key, node, .. } in settings {
             let Some((_, setting)) = known.iter().find(|(name, _)| name == key) else { continue };
@@ -111,7 +111,7 @@ impl Writer<'_> {
         }
     }
 
-    /// A number in the place of a page, or of the settings of the page `constant`.
+    /// Expands a number in the place of a page, or of the settings of the page `constant`.
     fn constant(&self, node: &mut Node, [key, setting]: [&str; 2], path: &str) {
         if let Value::Number(_) = node.value {
             wrap(node, keyed(setting));
@@ -145,7 +145,7 @@ impl Writer<'_> {
                 let help = format!("write `{key} = {x}` or `{key}.constant.{setting} = {x}`");
                 let place = only.node.span.clone();
                 self.fault(place, format!("{path}.{key}.{name}"), message, help);
-                // Reading goes on as if it were right.
+                // Reading continues as if the name were right.
                 setting.clone_into(&mut only.key);
                 wrap(node, keyed("constant"));
             }
@@ -154,7 +154,7 @@ impl Writer<'_> {
         }
     }
 
-    /// `sweep.WHAT`.
+    /// Expands `sweep.WHAT`.
     fn sweep(&self, what: &mut Entry, path: &str) {
         if let Value::Number(x) = what.node.value {
             let (key, x) = (&what.key, number(x));

@@ -1,4 +1,4 @@
-//! A case or a picture as written: parsed once, a tree of settings that says where each value stands.
+//! Case or picture as written: parsed once into a tree of settings with the place of each value.
 //!
 //! ```text
 //! text → Spec → typed problem, medium and estimators        (cases, pictures, exports)
@@ -6,7 +6,7 @@
 //!        Spec → text                                         (programs that write cases)
 //! ```
 //!
-//! Short forms are spelled out: `sampling = 2` and `sampling.constant.value = 2` are the same tree. It serialises to the
+//! Short forms are expanded: `sampling = 2` and `sampling.constant.value = 2` are the same tree. It serialises to the
 //! document that it was parsed from, without places.
 
 use std::cell::RefCell;
@@ -19,7 +19,7 @@ use toml::de::{DeTable, DeValue};
 use crate::case::shorthand::spell_out;
 use media::catalogue::{Additions, Entry, Fault, Node, Settings, Value};
 
-/// A case or a picture, parsed.
+/// Parsed case or picture.
 #[derive(Debug, Clone)]
 pub struct Spec {
     source: Source,
@@ -36,16 +36,16 @@ impl Serialize for Spec {
 }
 
 impl Spec {
-    /// Parses a text for a catalogue with a program's own pages.
+    /// Parses a text for a catalogue with the pages that a program adds.
     ///
     /// # Errors
     ///
-    /// A text that is not TOML.
+    /// The text is not TOML.
     pub fn parse(source: &Source, additions: &Additions) -> Result<Self, CaseError> {
         let faults = RefCell::default();
         let mut root = source.parse(&faults);
         if !faults.borrow().is_empty() {
-            // Half a file is missing keys that the other half may hold: nothing else is reported.
+            // A part of a file lacks keys that the rest may hold: nothing but the syntax error is reported.
             return Err(source.faulty(faults.into_inner()));
         }
         spell_out(&mut root, &faults);
@@ -58,12 +58,12 @@ impl Spec {
         &self.source
     }
 
-    /// The pages of the program's own.
+    /// Returns the pages that the program adds.
     pub fn additions(&self) -> &Additions {
         &self.additions
     }
 
-    /// Reads what it says; `read` records mistakes and returns `None` after one.
+    /// Reads the spec; `read` records mistakes and returns `None` after one.
     ///
     /// # Errors
     ///
@@ -77,7 +77,7 @@ impl Spec {
         }
     }
 
-    /// Reads what it says, with the mistakes found.
+    /// Reads the spec, and returns the mistakes found as well.
     pub(super) fn attempt<T>(
         &self,
         read: impl FnOnce(&Settings) -> Option<T>,
@@ -207,7 +207,7 @@ pub enum CaseError {
         /// Name that may have been meant.
         hint: String,
     },
-    /// A name that no report could show.
+    /// Name that no report could show.
     #[error("{name:?}: a case's name has no control characters; rename the file")]
     Name {
         /// The name.

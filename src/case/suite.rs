@@ -1,5 +1,5 @@
-//! The cases that are built into the binary: a choice of those under `cases/` and `tests/cases/`, one line each; and
-//! examples for the pages of the catalogue, which are built-in cases reduced to what a page needs.
+//! Cases that are built into the binary: a choice of those under `cases/` and `tests/cases/`, one line each; and
+//! examples for the pages of the catalogue, which are built-in cases reduced to the settings that a page needs.
 
 use crate::case::forms::title;
 use crate::case::spec::{BuiltIn, Source, Spec, entry};
@@ -88,17 +88,17 @@ const CASES: BuiltIn = cases![
     "rod/bidirectional-known-bugs" in "tests/",
 ];
 
-/// The cases of `trueflight self-test`, which are no part of the suite.
+/// Cases of `trueflight self-test`, which are not part of the suite.
 const CALIBRATION: BuiltIn = cases![
     "transmittance/calibration" in "tests/",
     "free-flight/calibration" in "tests/",
     "transmittance/curve-calibration" in "tests/",
 ];
 
-/// A case of which `explain` shows a part, where no case of the suite has that estimator.
+/// Cases for `explain` only, with an estimator that no case of the suite has.
 const SHOWN: BuiltIn = cases!["lambertian/eq21",];
 
-/// The cases on which the gate itself is tested.
+/// Returns the cases that test the gate itself.
 pub fn calibration() -> Vec<Source> {
     CALIBRATION.all()
 }
@@ -113,17 +113,17 @@ pub fn find(name: &str) -> Option<Source> {
     CASES.find(name).or_else(|| CALIBRATION.find(name))
 }
 
-/// Letters by which a sweep makes a case less suited.
+/// Penalty of a case with a sweep, in letters of its text.
 const SWEEP: usize = 400;
-/// Letters by which a declared bias does.
+/// Penalty of a declared bias.
 const BIASED: usize = 300;
-/// Letters by which options of a problem do, if the page is that of the problem.
+/// Penalty of options of a problem, for an example of that problem.
 const WITH_OPTIONS: usize = 1000;
-/// Letters by which a problem other than transmittance does, if the page is of no problem.
+/// Penalty of problems other than transmittance, for an example of any other page.
 const OTHER_PROBLEM: usize = 200;
 
 /// Returns a complete case in which a page of a part of the catalogue is used, as in `example("media", "eq21")`; `None`
-/// for pages of other parts, and for those of a program's own.
+/// for pages of other parts, and for those that a program adds.
 ///
 /// A problem has its shortest case. An estimator, a medium, a phase function, a recipe for σ̂ or a control has the
 /// shortest case in which it stands, with one estimator. Cases without a sweep, and of transmittance, go first.
@@ -135,14 +135,14 @@ pub fn example(part: &str, name: &str) -> Option<String> {
     Some(text)
 }
 
-/// The page that an example is of.
+/// Page that an example is made for.
 struct Wanted<'a> {
     part: &'a str,
     name: &'a str,
 }
 
 impl Wanted<'_> {
-    /// Every way to reduce a case to an example, with what makes it less suited.
+    /// Returns every way to reduce a case to an example, with its length and penalties.
     fn candidates(&self, source: &Source) -> Vec<(usize, String)> {
         let Ok(spec) = Spec::parse(source, &additions::NONE) else { return Vec::new() };
         let Some((problem, body)) = spec.problem() else { return Vec::new() };
@@ -193,7 +193,7 @@ impl Wanted<'_> {
         }
     }
 
-    /// Returns whether an entry has one of these keys, and the page as its choice.
+    /// Returns whether an entry has one of these keys and chooses the page.
     fn names(&self, own: &Entry, keys: &[&str]) -> bool {
         let chosen = |value: &Value| matches!(value, Value::Table(table) if entry(table, self.name).is_some());
         keys.contains(&own.key.as_str())
@@ -203,7 +203,7 @@ impl Wanted<'_> {
             }
     }
 
-    /// Returns whether an entry, or one below it, has this key and the page as its choice.
+    /// Returns whether an entry, or one below it, has this key and chooses the page.
     fn stands_below(&self, own: &Entry, key: &str) -> bool {
         let below = |table: &Vec<Entry>| table.iter().any(|own| self.stands_below(own, key));
         self.names(own, &[key]) || matches!(&own.node.value, Value::Table(table) if below(table))
@@ -222,7 +222,7 @@ impl Wanted<'_> {
             let item = &text[item.span.clone()];
             cuts.push((list.span.clone(), format!("[\n  {item},\n]")));
         }
-        // From the end on, so that what is before keeps its place.
+        // From the end on: earlier spans keep their places.
         cuts.sort_by_key(|(span, _)| std::cmp::Reverse(span.start));
         let mut reduced = text.clone();
         for (span, new) in cuts {

@@ -1,4 +1,4 @@
-//! What is swept in a case: every experiment is drawn at every value.
+//! Sweep of a case: every experiment is drawn at every value of one quantity.
 //!
 //! | key | varies | takes |
 //! |---|---|---|
@@ -15,13 +15,13 @@
 //! contrast   x_λ → (1 − c) x̄ + c x_λ,  x̄ the mean over the channels: grey at c = 0, as written at c = 1
 //! ```
 //!
-//! The channels are the same field then, with other extinctions. An estimator's σ̂ for all channels moves likewise about
-//! the mean of the case's `sampling` list, and the largest of the list stays the largest. The last three sweeps change
-//! the answer: every estimator is drawn at every value.
+//! The channels then share one field with different extinctions. An estimator's σ̂ for all channels moves likewise
+//! about the mean of the case's `sampling` list, and the largest of the list stays the largest. The last three sweeps
+//! change the answer: every estimator is drawn at every value.
 //!
-//! Each is a list of values, as in `sweep.sampling = [1, 2, 4]`, which is short for `{ values = [ … ] }`, or
-//! `{ from, to, points, scale }` with `scale = "linear"` or `"log"`: `points` values from end to end. Estimators that do
-//! not depend on it are drawn once.
+//! Each is a list of values, as in `sweep.sampling = [1, 2, 4]`, which is short for `{ values = [ … ] }`. The other
+//! form is `{ from, to, points, scale }` with `scale = "linear"` or `"log"`: `points` values from end to end.
+//! Estimators that do not depend on the swept quantity are drawn once.
 
 use media::catalogue::{Domain, Settings};
 use serde::{Deserialize, Serialize};
@@ -48,10 +48,10 @@ pub enum What {
     Contrast,
 }
 
-/// One value of a sweep.
+/// Swept quantity with one of its values; `None` outside the sweep.
 pub type Variation = Option<(What, f64)>;
 
-/// Every quantity with its key in case files, the axis title, and the numbers it takes.
+/// Every quantity with its key in case files, the axis title, and the range of its values.
 const KINDS: [(What, &str, &str, Domain); 8] = {
     use Domain::{Finite, NonNegative, Positive, Unit};
     [
@@ -66,7 +66,7 @@ const KINDS: [(What, &str, &str, Domain); 8] = {
     ]
 };
 
-/// A sweep: what, and its values.
+/// Swept quantity and its values.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SweepAxis {
     /// Swept quantity.
@@ -98,13 +98,13 @@ impl What {
         matches!(self, Self::Density | Self::AlbedoScale | Self::Contrast)
     }
 
-    /// Returns whether it can have that value.
+    /// Returns whether the quantity can have that value.
     pub fn allows(self, value: f64) -> bool {
         let is_whole = self != Self::Points || (value >= 2.0 && value.fract() == 0.0);
         self.kind().3.contains(value) && is_whole
     }
 
-    /// The values that it can have, in words.
+    /// Returns the values that it can have, in words.
     pub fn domain(self) -> &'static str {
         if self == Self::Points { "a whole number from 2" } else { self.kind().3.words() }
     }
@@ -166,8 +166,8 @@ impl SweepAxis {
     }
 }
 
-/// A swept value to nine significant digits: 0.55652 reads better in tables than
-/// 0.5565196017382173, and is as good a point to test at.
+/// Rounds a swept value to nine significant digits: 0.55652 reads better in tables than 0.5565196017382173, and is as
+/// good a point to test at.
 fn tidy(x: f64) -> f64 {
     format!("{x:.8e}").parse().unwrap_or(x)
 }

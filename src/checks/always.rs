@@ -12,12 +12,12 @@ pub struct Always {
     pub largest: Box<dyn Fn(&DrawBuffer) -> f64 + Send + Sync>,
     /// Largest allowed value.
     pub bound: f64,
-    /// True if it is about the number of lookups, which all draws share.
+    /// True if it is a bound on the number of lookups, which all draws share.
     pub is_of_lookups: bool,
 }
 
 impl Always {
-    /// A bound on the deviation of a draw that rounding explains.
+    /// Returns a bound on the deviation of a draw that rounding explains.
     pub fn new(largest: impl Fn(&DrawBuffer) -> f64 + Send + Sync + 'static, bound: f64) -> Self {
         Self { largest: Box::new(largest), bound, is_of_lookups: false }
     }
@@ -82,7 +82,7 @@ impl Always {
     }
 }
 
-/// The largest value of a block.
+/// Largest value of a block.
 struct Largest<'a> {
     always: &'a Always,
     largest: f64,
@@ -98,7 +98,7 @@ impl Observer for Largest<'_> {
     }
 }
 
-/// Maximum of two numbers; NaN where one of them is.
+/// Returns the maximum of two numbers; NaN if one of them is NaN.
 fn larger(a: f64, b: f64) -> f64 {
     if a.is_nan() || b.is_nan() { f64::NAN } else { a.max(b) }
 }

@@ -1,8 +1,8 @@
-//! A draw with few possible values: each value's share against its probability, by Pearson's χ².
+//! Draw with few possible values: each value's share against its probability, by Pearson's χ².
 //!
-//! It applies where theory knows all values: 0 and 1 of tracking estimators, the powers
-//! `T_c (1 − r)^N` of a constant ratio, the single value of deterministic estimators. A draw that
-//! is none of them is strange: a single one fails the check where the list is complete.
+//! It applies where theory knows all values: 0 and 1 of tracking estimators, the powers `T_c (1 − r)^N` of a constant
+//! ratio, the single value of deterministic estimators. A draw that equals none of them is unexpected: where the list
+//! is complete, one such draw fails the check.
 
 use super::batch::{Batch, each_value};
 use super::check::{Question, Subject};
@@ -10,13 +10,13 @@ use super::law::Law;
 use gate::stats::chi_square;
 use theory::{self, Prediction};
 
-/// A draw this near to a value, relative to the value's size, is that value.
+/// A draw counts as a value if it is this close to it, relative to the value's size.
 pub const SAME: f64 = 1e-9;
-/// So is one this near to it in units of the largest value: 1 − r is rounded, and 0 where r = 1 may be
-/// drawn as 1e-16.
+/// A draw also counts as a value if it is this close to it in units of the largest value: 1 − r is rounded, and the 0
+/// of r = 1 may be drawn as 1e-16.
 const ROUNDING: f64 = 1e-15;
 
-/// The values in ascending order with their probabilities.
+/// Values in ascending order with their probabilities.
 struct Values {
     value: Vec<f64>,
     probability: Vec<f64>,
@@ -31,19 +31,19 @@ impl Values {
         Self { value, probability, same }
     }
 
-    /// Returns whether two neighbouring values are too close for draws that are rounded to be told apart.
+    /// Returns whether two adjacent values are too close to be distinguished in rounded draws.
     fn is_blurred(&self) -> bool {
         let gaps = self.value.windows(2).map(|pair| pair[1] - pair[0]);
         let sizes = self.value.windows(2).map(|pair| pair[0].abs().max(pair[1].abs()));
         gaps.zip(sizes).any(|(gap, size)| gap < 4.0 * self.same * size)
     }
 
-    /// Expected number of draws beside all listed values.
+    /// Returns the expected number of draws outside the list of values.
     fn left_out(&self, draws: f64) -> f64 {
         (1.0 - self.probability.iter().sum::<f64>()).max(0.0) * draws
     }
 
-    /// The nearest atom, if it is near enough.
+    /// Returns the index of the nearest value, if it is close enough.
     fn find(&self, x: f64) -> Option<usize> {
         let after = self.value.partition_point(|&value| value < x);
         let ends = [self.value.first(), self.value.last()];
@@ -71,8 +71,8 @@ impl Law for Values {
 
     fn p_value(&self, sums: &[f64], draws: f64) -> Option<f64> {
         let known = self.value.len();
-        // A product of many factors may fall below the last listed power; such draws are as rare
-        // as the probability that the list leaves out.
+        // A product of many factors may fall below the last listed power; such draws are as rare as the probability
+        // that the list leaves out.
         let expected = self.left_out(draws);
         let strange = if expected < 1e-6 { 0.0 } else { 10.0 + 10.0 * expected };
         if sums[known] > strange {
@@ -91,12 +91,12 @@ impl Law for Values {
     }
 }
 
-/// The test for draws that are rounded to `same`, relative to their size.
+/// Returns the test for draws that are rounded to `same`, relative to their size.
 ///
 /// # Errors
 ///
-/// Why there is no test, although theory knows the values: rounding hides which one a draw is. `Ok(None)` where theory
-/// knows no values.
+/// The reason why there is no test although theory knows the values: rounding hides which one a draw is. `Ok(None)` if
+/// theory knows no values.
 pub fn of(prediction: &Prediction, same: f64) -> Result<Option<impl Law + use<>>, String> {
     let Some(theory::Law::Atoms(atoms)) = &prediction.law else { return Ok(None) };
     let values = Values::of(atoms.clone(), same);
@@ -106,7 +106,7 @@ pub fn of(prediction: &Prediction, same: f64) -> Result<Option<impl Law + use<>>
     Ok(Some(values))
 }
 
-/// What is asked.
+/// Returns the questions of this check.
 pub fn questions(subject: &Subject) -> Vec<Question> {
     let Some(theory::Law::Atoms(atoms)) = &subject.prediction.law else { return Vec::new() };
     let values = Values::of(atoms.clone(), SAME);
@@ -126,7 +126,7 @@ mod tests {
             [Some(0), Some(0), Some(1)]
         );
         assert_eq!([values.find(1e-9), values.find(0.5), values.find(1.1)], [None; 3]);
-        // Powers of a small ratio are apart from each other, however small.
+        // Powers of a small ratio are separated, however small they are.
         let powers = Values::of((0..20).map(|n| (0.01f64.powi(n), 0.05)).collect(), SAME);
         assert_eq!(powers.find(0.01f64.powi(3) * (1.0 + 1e-12)), Some(16));
         assert_eq!(powers.find(0.5 * 0.01f64.powi(3)), None);

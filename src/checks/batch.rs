@@ -1,8 +1,7 @@
-//! A batch of draws, counted where they take few values.
+//! Batch of draws, counted if they take few values.
 //!
-//! Walks that end as 0 or 1, products of equal factors, and the numbers of lookups of most
-//! experiments take far fewer values than there are draws. What a question asks of them is then asked
-//! once for each value.
+//! Walks that end as 0 or 1, products of equal factors, and the numbers of lookups of most experiments take far fewer
+//! values than there are draws. A check then observes each value once.
 
 use std::cell::OnceCell;
 
@@ -10,27 +9,27 @@ use estimators::DrawBuffer;
 use gate::stats::{Census, Tally};
 use numeric::pack::in_fused_code;
 
-/// Draws that are observed at once.
+/// Number of draws that are observed at once.
 const PART: usize = 1024;
 
-/// Adds a y for each of the draws to the second argument.
+/// Appends a y for each of the draws to the second argument.
 pub type Observer<T> = Box<dyn Fn(&T, &mut Vec<f64>) + Send + Sync>;
 
 /// Function of a draw that a check observes.
 pub enum Observe {
-    /// From the value of one channel.
+    /// Value of one channel.
     Value(usize, Observer<[f64]>),
-    /// From the number of lookups.
+    /// Number of lookups.
     Lookups(Observer<[u32]>),
-    /// From the draw as a whole.
+    /// Draw as a whole.
     Draw(Observer<DrawBuffer>),
 }
 
 impl Observe {
-    /// `f` of each value of a channel, on the hardware's registers: `f` must be inlined.
+    /// Observes `f` of each value of a channel with the vector registers of the hardware: `f` must be inlined.
     pub fn each_value(channel: usize, f: impl Fn(f64) -> f64 + Send + Sync + 'static) -> Self {
         let observer = move |values: &[f64], y: &mut Vec<f64>| {
-            // Not extended: that is compiled for the least machine.
+            // Not by `extend`, which is compiled for the baseline target.
             let first = y.len();
             y.resize(first + values.len(), 0.0);
             in_fused_code(
@@ -42,15 +41,15 @@ impl Observe {
     }
 }
 
-/// Draws, with what is known of their values.
+/// Draws with counts of their values.
 pub struct Batch<'a> {
     /// The draws.
     pub draws: &'a DrawBuffer,
-    /// Per channel its values, where they are few.
+    /// Counts of each channel's values; `None` where they are many.
     pub values: Vec<Option<Census<f64>>>,
-    /// The numbers of lookups, where they are few.
+    /// Counts of the numbers of lookups; `None` where they are many.
     pub lookups: Option<Census<u32>>,
-    /// Number of draws in each class of the experiment's distances, counted when it is first needed.
+    /// Number of draws in each class of the experiment's distances, counted on first use.
     distances: OnceCell<Vec<f64>>,
 }
 
@@ -62,8 +61,8 @@ impl<'a> Batch<'a> {
         Self { draws, values, lookups, distances: OnceCell::new() }
     }
 
-    /// Hands over what is observed of each value and how often each comes, or what is observed of each draw,
-    /// part by part, so that it is still at hand; `y` is where it lies.
+    /// Passes the y of each value with its count, or the y of each draw, to a callback. Draws come in parts that stay
+    /// in the cache; `y` is the buffer.
     pub fn observe(
         &self,
         observe: &Observe,
@@ -87,15 +86,14 @@ impl<'a> Batch<'a> {
         }
     }
 
-    /// Adds how many draws are in each class of the experiment's distances: counted once for all
-    /// that ask.
+    /// Adds the number of draws in each class of the experiment's distances, counted once for all checks.
     pub fn add_distances(&self, count: impl Fn(&DrawBuffer) -> Vec<f64>, sums: &mut [f64]) {
         let counts = self.distances.get_or_init(|| count(self.draws));
         debug_assert_eq!(sums.len(), counts.len(), "an experiment has one law of distances");
         sums.iter_mut().zip(counts).for_each(|(sum, count)| *sum += count);
     }
 
-    /// The tally of a channel.
+    /// Returns the tally of a channel.
     pub fn tally(&self, channel: usize, shift: f64, scale: f64) -> Tally {
         match &self.values[channel] {
             Some(census) => Tally::counted(census, shift, scale),
@@ -103,7 +101,7 @@ impl<'a> Batch<'a> {
         }
     }
 
-    /// The tally of the lookups about their expected number.
+    /// Returns the tally of the lookups about their expected number.
     pub fn tally_of_lookups(&self, expected: f64) -> Tally {
         if let Some(census) = &self.lookups {
             return Tally::counted(census, expected, 1.0);
@@ -113,7 +111,7 @@ impl<'a> Batch<'a> {
     }
 }
 
-/// Hands over each value with how often it comes, or each draw as coming once.
+/// Passes each value with its count to a callback, or each draw with a count of 1.
 pub fn each_value<T: Copy>(census: Option<&Census<T>>, draws: &[T], mut count: impl FnMut(T, f64)) {
     match census {
         Some(census) => census.values.iter().zip(&census.times).for_each(|(&x, &n)| count(x, n)),
@@ -150,7 +148,7 @@ mod tests {
         buffer
     }
 
-    /// The sum of the y's, whichever way they come.
+    /// Returns the sum of the y's, from counted values or from draws.
     fn sum(batch: &Batch, observe: &Observe) -> (bool, f64) {
         let (mut few, mut sum) = (false, 0.0);
         batch.observe(observe, &mut Vec::new(), |y, times| {

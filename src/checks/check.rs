@@ -1,4 +1,5 @@
-//! Questions about draws, and checks at work, which answer them: they observe draws, merge blocks, look at what is merged, and finish with a finding.
+//! Questions about draws, and the checks that answer them: they observe draws, merge blocks, look at the merged total,
+//! and finish with a finding.
 //!
 //! ```text
 //! observe  the draws of a block, buffer by buffer  → numbers of the block
@@ -7,8 +8,8 @@
 //! finish   the total  → a finding
 //! ```
 //!
-//! Numbers and totals are plain data, so that files and other machines can hold them. Each kind of check owns their
-//! meaning: a quantity for the gate ([`super::scalar`]), a p-value ([`super::law`]), a bound on every draw
+//! Numbers and totals are plain data, so that files and other machines can hold them. Their meaning depends on the kind
+//! of check: a quantity for the gate ([`super::scalar`]), a p-value ([`super::law`]), a bound on every draw
 //! ([`super::always`]), an inspection of the streams ([`super::law::Inspection`]).
 
 use serde::{Deserialize, Serialize};
@@ -23,18 +24,18 @@ use ::gate::stats::verdict::{GateFinding, Verdict};
 use numeric::sum::Sum;
 use theory::{Channel, Moments, Prediction};
 
-/// Knowledge of a check before the first draw.
+/// Input of a check before the first draw.
 #[derive(Clone, Copy)]
 pub struct Subject<'a> {
     /// The prediction of theory.
     pub prediction: &'a Prediction,
     /// Number of draws that are planned.
     pub draws: u64,
-    /// Largest number of draws that the plan may ask for.
+    /// Largest number of draws that the plan may demand.
     pub most: u64,
     /// Number of the first draws that p-values see, whatever the gate decides.
     pub fixed: u64,
-    /// The differences that matter, where the case says.
+    /// Differences that matter, where the case says.
     pub tolerance: Tolerance,
     /// True if the case declares the experiment biased.
     pub expect_biased: bool,
@@ -44,18 +45,18 @@ pub struct Subject<'a> {
     pub pilots: Option<&'a [Pilot]>,
 }
 
-/// The spread of pilot draws.
+/// Spread of pilot draws.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Pilot {
     /// `Σy²/n`, y the distance from their mean.
     pub variance: f64,
-    /// `(Σy²)²/Σy⁴`: how many draws made the variance; its own relative deviation is about one over the
-    /// root of it.
+    /// `(Σy²)²/Σy⁴`: effective number of draws that contribute to the variance. The relative standard error of the
+    /// variance is about one over its root.
     pub size: f64,
 }
 
 impl Pilot {
-    /// Of some draws.
+    /// Measures the spread of some draws.
     pub fn of(values: &[f64]) -> Self {
         let n = values.len() as f64;
         let mean = values.iter().sum::<f64>() / n;
@@ -65,11 +66,11 @@ impl Pilot {
     }
 }
 
-/// One question.
+/// Question about the draws of an experiment.
 pub struct Question {
-    /// The name of the check that asks.
+    /// Name of its check.
     pub check: String,
-    /// The channel it is about; `None` for the experiment as a whole.
+    /// Channel; `None` for the experiment as a whole.
     pub channel: Option<usize>,
     /// Name of its subject, as in `the mean`.
     pub what: String,
@@ -77,22 +78,22 @@ pub struct Question {
     pub answer: Box<dyn Check>,
     /// True if the case declares a bias, which the answer must show.
     pub expects_bias: bool,
-    /// The verdict on an answer that was never promised to pass.
+    /// Verdict if the draws are too few for the answer to pass reliably.
     pub too_weak: Verdict,
 }
 
 impl Question {
-    /// A question about the experiment as a whole, without the name of its check.
+    /// Returns a question about the experiment as a whole, without the name of its check.
     pub fn whole(what: &str, answer: impl Check + 'static) -> Self {
         Self { channel: None, ..Self::channel(0, what, Box::new(answer)) }
     }
 
-    /// A question about a distribution, where there is one to test.
+    /// Returns a question about a distribution; none if there is no test.
     pub fn law(what: &str, law: Option<impl Law + 'static>) -> Vec<Self> {
         law.into_iter().map(|law| Self::whole(what, law)).collect()
     }
 
-    /// A question about one channel.
+    /// Returns a question about one channel.
     pub fn channel(channel: usize, what: &str, answer: Box<dyn Check>) -> Self {
         Self {
             check: String::new(),
@@ -116,7 +117,7 @@ pub struct Total {
     pub trail: Option<Trail>,
 }
 
-/// A number of draws at which a check looks.
+/// Number of draws at which a check looks.
 #[derive(Debug, Clone, Copy)]
 pub struct Look {
     /// Number of draws so far.
@@ -127,7 +128,7 @@ pub struct Look {
     pub levels: Levels,
 }
 
-/// Place of a buffer of draws.
+/// Place of a buffer of draws in its block.
 #[derive(Debug, Clone, Copy)]
 pub struct Place {
     /// Number of its first draw in the block.
@@ -146,7 +147,7 @@ pub struct Context<'a> {
     pub look: Look,
     /// Number of draws that p-values see.
     pub fixed: u64,
-    /// The verdict on a check that was never promised to pass.
+    /// Verdict if the draws are too few for the check to pass reliably.
     pub too_weak: Verdict,
     /// Deviation of the mean of the channel.
     pub mean: Option<Deviation>,
@@ -163,24 +164,24 @@ pub struct Found {
     pub verdict: Verdict,
     /// The reason; `None` for a plain pass.
     pub reason: Option<Reason>,
-    /// The p-value, which the p-values of the run are judged with.
+    /// p-value, which is judged together with all p-values of the run.
     pub p: Option<f64>,
     /// Numbers of the gate.
     pub gate: Option<GateFinding>,
     /// Number of draws and ln E at the looks of the gate.
     pub path: Vec<(u64, f64)>,
-    /// The block that ends with the decision, or that has the draw that fails.
+    /// Block at whose end it was decided, or that has the draw that fails.
     pub block: Option<u64>,
 }
 
 impl Found {
-    /// A verdict alone.
+    /// Returns a finding with a verdict and a reason alone.
     pub fn new(verdict: Verdict, reason: Option<Reason>) -> Self {
         Self { verdict, reason, p: None, gate: None, path: Vec::new(), block: None }
     }
 }
 
-/// The share of the error rate that a check takes from.
+/// Part of the error rate that a check uses.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Share {
     /// Four fifths, by e-Bonferroni.
@@ -191,19 +192,19 @@ pub enum Share {
     Nothing,
 }
 
-/// A way to check draws.
+/// Way to check draws.
 pub trait Check: Send + Sync {
-    /// The share of the error rate that it takes from.
+    /// Returns the part of the error rate that it uses.
     fn share(&self) -> Share {
         Share::Nothing
     }
 
-    /// The total before the first block.
+    /// Returns the total before the first block.
     fn total(&self) -> Total {
         Total::default()
     }
 
-    /// An observer of the draws of a block.
+    /// Returns an observer of the draws of a block.
     fn observe(&self) -> Box<dyn Observer + '_> {
         Box::new(Blind)
     }
@@ -231,36 +232,36 @@ pub trait Check: Send + Sync {
         false
     }
 
-    /// The finding.
+    /// Returns the finding.
     fn finish(&self, total: &Total, context: &Context) -> Found;
 
-    /// Reason why the plan allows no pass, and the number of draws that do; `None` where it allows one.
+    /// Returns the reason why the plan allows no pass, and the number of draws that would; `None` if it allows one.
     fn too_weak(&self, what: &str) -> Option<(Reason, f64)> {
         let _ = what;
         None
     }
 
-    /// The quantity for the gate, if that is what the check asks for.
+    /// Returns the quantity for the gate, if the check has one.
     fn scalar(&self) -> Option<&Scalar> {
         None
     }
 
-    /// Adds a bias to the quantity for the gate, in units of its tolerance, to see whether it is found.
+    /// Adds a bias to the quantity for the gate, in units of its tolerance, to test whether it is detected.
     fn shift(&mut self, tolerances: f64) {
         let _ = tolerances;
     }
 }
 
-/// Numbers of a block on their way.
+/// Observer of a block: absorbs its draws, and returns its numbers.
 pub trait Observer {
-    /// Adds a buffer of draws; `y` is room for what is made of them.
+    /// Adds a buffer of draws; `y` is scratch space for the observed values.
     fn absorb(&mut self, draws: &Batch, place: Place, y: &mut Vec<f64>);
 
-    /// The numbers of the block, of which p-values see the first `fixed` draws.
+    /// Returns the numbers of the block, of which p-values see the first `fixed` draws.
     fn close(self: Box<Self>, fixed: usize) -> Vec<f64>;
 }
 
-/// An observer of nothing.
+/// Observer that ignores all draws.
 struct Blind;
 
 impl Observer for Blind {
@@ -271,7 +272,7 @@ impl Observer for Blind {
     }
 }
 
-/// A check that tests nothing, and why.
+/// Check that cannot test anything, with the reason.
 pub struct Untestable(pub String);
 
 impl Check for Untestable {
@@ -286,23 +287,23 @@ impl Check for Untestable {
     }
 }
 
-/// Relative error of a variance beyond which the spread of draws cannot be compared with it.
+/// Relative error of a predicted variance beyond which the spread of draws cannot be compared with it.
 pub const BLURRED: f64 = 1e-2;
 
-/// The last channel of an experiment and its moments, where draws can be told from them: where these are
-/// known, and rounding does not spoil what draws say of them.
+/// Returns the last channel of an experiment and its moments, if these are known sharply enough to be compared with the
+/// spread of draws; `None` otherwise.
 pub fn last_channel<'a>(subject: &Subject<'a>) -> Option<(&'a Channel, Moments)> {
     let channel = subject.prediction.channels.last()?;
     let moments = channel.moments.filter(|moments| moments.error <= BLURRED)?;
     (!super::mean::is_faint(subject, channel)).then_some((channel, moments))
 }
 
-/// Rounding of a product of `lookups` factors, relative to the result.
+/// Returns the rounding error of a product of `lookups` factors, relative to the result.
 pub fn rounding(lookups: f64) -> f64 {
     16.0 * f64::EPSILON * (1.0 + lookups)
 }
 
-/// Rounding of a draw of an experiment, by its expected lookups.
+/// Returns the rounding error of a draw of an experiment, by its expected lookups.
 pub fn rounding_of(subject: &Subject) -> f64 {
     rounding(subject.prediction.lookups.as_ref().map_or(0.0, |lookups| lookups.mean))
 }

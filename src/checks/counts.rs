@@ -1,11 +1,11 @@
-//! The number of lookups against its whole law, by Pearson's χ².
+//! The number of lookups against its whole distribution, by Pearson's χ².
 //!
 //! ```text
 //! double:  P(M = m) = Λᵐ e^{−Λ}/m!,  Λ = ∫σ̂
 //! single:  P(M = m) = e^{−K(S)} Pois(m; A(S)) + ∫ σ̂(1 − q) e^{−K} Pois(m − 1; A) dt
 //! ```
 //!
-//! It applies where theory knows the law and at least two classes expect enough draws.
+//! It applies where theory knows the distribution and at least two classes expect enough draws.
 
 use super::batch::{Batch, each_value};
 use super::check::{Question, Subject};
@@ -33,7 +33,7 @@ impl Law for Classes {
     }
 }
 
-/// The test, where theory knows the distribution of the number of lookups.
+/// Returns the test; `None` if theory does not know the distribution of the number of lookups.
 pub fn of(prediction: &Prediction) -> Option<impl Law + use<>> {
     classes(prediction)
 }
@@ -43,7 +43,7 @@ fn classes(prediction: &Prediction) -> Option<Classes> {
     (!law.pmf.is_empty()).then(|| Classes { probability: law.pmf.clone() })
 }
 
-/// What is asked.
+/// Returns the questions of this check.
 pub fn questions(subject: &Subject) -> Vec<Question> {
     let classes = classes(subject.prediction);
     let bins = |law: &Classes| chi_square::testable_bins(&law.probability, subject.fixed as f64);

@@ -1,11 +1,11 @@
-//! The covariance of neighbouring distances of one walk against theory, by the gate.
+//! The covariance of consecutive distances of one walk against theory, by the gate.
 //!
 //! ```text
 //! y = ((X₁ − T₁)(X₂ − T₂) − C)/(sd₁ sd₂),  C = T₁T₂ expm1(J₂(s₁)),  Var[y] in theory
 //! ```
 //!
-//! It applies to problems with several channels, and is reported with the farther one. Neighbours
-//! are enough: increments over disjoint stretches are uncorrelated, so theirs determine the others.
+//! It applies to problems with several channels, and is reported with the farther one. Consecutive channels are enough:
+//! increments over disjoint stretches are uncorrelated, so these covariances determine all others.
 
 use std::panic::AssertUnwindSafe;
 
@@ -21,13 +21,13 @@ use gate::stats::gate::GateSums;
 use theory::Prediction;
 use theory::prediction::Covariance as Predicted;
 
-/// The largest error of a covariance, relative to the product of the standard deviations, that is
-/// still worth a promise.
+/// Largest error of a covariance for which a pass is still promised, relative to the product of the standard
+/// deviations.
 const CAP: f64 = 0.2;
 /// Relative error of a predicted covariance.
 const ERROR: f64 = 1e-10;
 
-/// A covariance as a test with a p-value: `min(1, 1/E)`, E the gate's e-value after a number of draws that is fixed
+/// Covariance as a test with a p-value: `min(1, 1/E)`, E the gate's e-value after a number of draws that is fixed
 /// beforehand. `P(E ≥ 1/p) ≤ p` by Markov's inequality.
 struct ByGate(AssertUnwindSafe<Scalar>);
 
@@ -49,7 +49,7 @@ impl Law for ByGate {
     }
 }
 
-/// Tests of the covariances of neighbours among the first `values` channels, each with its name in words.
+/// Returns the tests of the covariances of consecutive channels among the first `values`, each with its name in words.
 pub fn of(prediction: &Prediction, draws: u64, values: usize) -> Vec<(String, impl Law + use<>)> {
     let subject = Subject {
         prediction,
@@ -69,7 +69,7 @@ pub fn of(prediction: &Prediction, draws: u64, values: usize) -> Vec<(String, im
     tests.collect()
 }
 
-/// What is asked.
+/// Returns the questions of this check.
 pub fn questions(subject: &Subject) -> Vec<Question> {
     let questions = scalars(subject).map(|Asked { channel, what, scalar }| {
         let answer: Box<dyn Check> = match scalar {
@@ -81,7 +81,7 @@ pub fn questions(subject: &Subject) -> Vec<Question> {
     questions.collect()
 }
 
-/// The covariance of a channel with the one before it; no scalar where its variance overflows.
+/// Covariance of a channel with the one before it; no scalar if its variance overflows.
 struct Asked {
     channel: usize,
     what: String,

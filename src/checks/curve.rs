@@ -5,12 +5,11 @@
 //! Σ_j n (ΔR_j)²/Δg_j is χ²;   √n max|R|/√g(S) has P(D > x) ≤ 4 Σ (−1)^k Φ̄((2k + 1)x)
 //! ```
 //!
-//! It sees a walk that goes wrong on the way and is right at the end. Both limits need
-//! `n ≥ 100 κ`, κ the kurtosis of an increment, and ten times the rare-event size; below that each
-//! increment goes through the gate instead.
+//! It detects a walk that goes wrong on the way and is right at the end. Both limits need `n ≥ 100 κ`, κ the kurtosis
+//! of an increment, and ten times the rare-event size; below that each increment goes through the gate instead.
 //!
-//! Source: the martingale is Eq. 13 of Szirmay-Kalos et al. 2017, whose increments over disjoint
-//! stretches are independent; the supremum is the reflection principle of Brownian motion.
+//! Source: the martingale is Eq. 13 of Szirmay-Kalos et al. 2017, in which increments over disjoint stretches are
+//! independent. The supremum is the reflection principle of Brownian motion.
 
 use super::batch::{Batch, Observe};
 use super::check::{Question, Subject, rounding_of};
@@ -26,9 +25,9 @@ use theory::{Increment, Prediction};
 /// Largest relative error of a step's variance for the asymptotic tests.
 const SHARP: f64 = 1e-3;
 
-/// The increments `X_j/T_j − X_{j−1}/T_{j−1}`, of which some may be joined.
+/// Increments `X_j/T_j − X_{j−1}/T_{j−1}`, some of them joined.
 struct Increments {
-    /// The channel j at the end of each.
+    /// Channel j at the end of each.
     at: Vec<usize>,
     /// `1/T_j`.
     scale: Vec<f64>,
@@ -37,8 +36,8 @@ struct Increments {
 }
 
 impl Increments {
-    /// Joins to the next what rounding in `draws` draws could spoil: a step counts if
-    /// `Δg > n (10³ δ)²`. `None` if there is no such step.
+    /// Joins an increment to the next if rounding in `draws` draws could spoil it: a step counts if `Δg > n (10³ δ)²`.
+    /// `None` if there is no such step.
     fn of(prediction: &Prediction, draws: u64, rounding: f64) -> Option<Self> {
         let least = draws as f64 * (1e3 * rounding).powi(2);
         let scale = scale(prediction);
@@ -85,13 +84,13 @@ impl Law for Increments {
             clock += step;
         }
         let supremum = normal::excursion_tail(furthest / (draws * clock).sqrt());
-        // Two looks at the same draws.
+        // Twice the smaller p-value: two tests of the same draws.
         Some((2.0 * chi_square::upper(square, degrees).min(supremum)).min(1.0))
     }
 }
 
-/// The fewest draws for which the limits hold; `None` where theory has no steps, or their variances are too
-/// uncertain.
+/// Returns the smallest number of draws for which the limits hold; `None` where theory has no steps, or their variances
+/// are too uncertain.
 pub fn needed(prediction: &Prediction) -> Option<f64> {
     let increments = &prediction.increments;
     let kurtosis = increments.iter().fold(0.0f64, |most, step| most.max(step.kurtosis));
@@ -101,18 +100,18 @@ pub fn needed(prediction: &Prediction) -> Option<f64> {
     is_sharp.then(|| (100.0 * kurtosis).max(10.0 * rare))
 }
 
-/// Test of the steps for at least `draws` draws with a relative rounding error of `rounding`; `None` where theory has no
-/// steps that are larger than rounding.
+/// Returns the test of the steps for at least `draws` draws with a relative rounding error of `rounding`; `None` where
+/// theory has no steps that are larger than rounding.
 pub fn of(prediction: &Prediction, draws: u64, rounding: f64) -> Option<impl Law + use<>> {
     Increments::of(prediction, draws, rounding)
 }
 
-/// `1/T_j`.
+/// Returns `1/T_j`.
 fn scale(prediction: &Prediction) -> Vec<f64> {
     prediction.channels.iter().map(|channel| 1.0 / channel.truth.value).collect()
 }
 
-/// What is asked.
+/// Returns the questions of this check.
 pub fn questions(subject: &Subject) -> Vec<Question> {
     let increments = &subject.prediction.increments;
     if increments.is_empty() {

@@ -1,12 +1,12 @@
-//! Free-flight distances against their law by the Anderson–Darling statistic, which weighs the
-//! tails: very near and very far collisions.
+//! Free-flight distances against their distribution by the Anderson–Darling statistic, which weighs the tails: very
+//! near and very far collisions.
 //!
 //! ```text
 //! A² = n ∫ (F_n − F)²/(F(1 − F)) dF,  F = (1 − T(s))/(1 − T(S)) of the rays that collide
 //! ```
 //!
-//! Distances are counted in about a thousand equally probable classes, so that memory does not grow
-//! with the draws; the law of A² is not changed visibly by that.
+//! Distances are counted in about a thousand equally probable classes, so that memory does not grow with the draws. The
+//! effect on the distribution of A² is negligible.
 //!
 //! Source: T. W. Anderson, D. A. Darling, *Asymptotic theory of certain "goodness of fit" criteria
 //! based on stochastic processes*, Annals of Mathematical Statistics 23 (1952), 193–212.
@@ -34,12 +34,12 @@ impl Law for Empirical {
     }
 }
 
-/// The test, where theory knows the distribution of the distances.
+/// Returns the test; `None` if theory does not know the distribution of the distances.
 pub fn of(prediction: &Prediction) -> Option<impl Law + use<>> {
     Classes::of(prediction).map(Empirical)
 }
 
-/// What is asked.
+/// Returns the questions of this check.
 pub fn questions(subject: &Subject) -> Vec<Question> {
     Question::law("the tails of the distances", of(subject.prediction))
 }

@@ -4,9 +4,9 @@
 //! z_b = Σ (X − E[X])/√(n_b V),  Σ_b z_b² is χ² with as many degrees of freedom as blocks
 //! ```
 //!
-//! Blocks have streams of their own. Streams that repeat each other make blocks agree too well;
-//! streams that depend on each other make them differ too much. Neither need show in the mean of
-//! the run. The χ² law needs blocks of at least 100 κ draws and ten times the rare-event size.
+//! Blocks have streams of their own. Streams that repeat each other make blocks agree too well; streams that depend on
+//! each other make them differ too much. Neither need show in the mean of the run. The χ² distribution holds for blocks
+//! of at least 100 κ draws and ten times the rare-event size.
 
 use super::batch::Batch;
 use super::check::{Question, Subject, last_channel};
@@ -16,13 +16,13 @@ use crate::plan::BLOCK;
 use gate::stats::chi_square;
 use numeric::sum::sum_in_lanes;
 
-/// The fewest blocks that make a test.
+/// Smallest number of blocks for a test.
 const FEWEST: u64 = 4;
 
 struct BlockMeans {
     mean: f64,
     scale: f64,
-    /// The fewest draws of a block that make its mean near normal.
+    /// Smallest number of draws for which the mean of a block is nearly normal.
     least: f64,
 }
 
@@ -54,7 +54,7 @@ impl Law for BlockMeans {
     }
 }
 
-/// What is asked.
+/// Returns the questions of this check.
 pub fn questions(subject: &Subject) -> Vec<Question> {
     let Some((channel, moments)) = last_channel(subject) else { return Vec::new() };
     let kurtosis = moments.kurtosis().unwrap_or(f64::INFINITY);

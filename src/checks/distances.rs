@@ -1,11 +1,11 @@
-//! Free-flight distances against their law: twenty equally probable bins and the atom of the rays
-//! that escape, by Pearson's χ².
+//! Free-flight distances against their distribution: twenty equally probable bins and the atom of the rays that escape,
+//! by Pearson's χ².
 //!
 //! ```text
 //! P(s ≤ t) = 1 − T(t),  P(s = S) = T(S)
 //! ```
 //!
-//! Distances are counted once, in the thousand classes that [`super::depth`] looks at; bins are made of those.
+//! Distances are counted once, in the thousand classes of [`super::depth`]; bins are made of those.
 
 use super::batch::Batch;
 use super::check::{Question, Subject};
@@ -16,44 +16,44 @@ use gate::stats::chi_square;
 use numeric::digits::short;
 use numeric::pack::in_fused_code;
 
-/// The number of bins.
+/// Number of bins.
 const BINS: usize = 20;
 
-/// Cells of the guide per class.
+/// Number of cells of the guide per class.
 const CELLS: usize = 8;
-/// The share of a cell by which rounding surely moves no distance.
+/// Share of a cell that rounding of a distance certainly does not exceed.
 const SLACK: f64 = 0.0625;
-/// From here on doubles are whole numbers.
+/// From this value on all doubles are whole numbers: 2⁵².
 const INTEGERS: f64 = 4_503_599_627_370_496.0;
-/// Distances that are counted at once.
+/// Number of distances that are counted at once.
 const ROW: usize = 512;
-/// Ends that a distance is compared with at once.
+/// Number of ends that a distance is compared with at once.
 const NEAR: usize = 2;
-/// Counts are kept twice, so that one need not wait for the last to be stored.
+/// Number of copies of the counts: one increment need not wait until the last is stored.
 const FOLD: usize = 2;
 
 /// Equally probable classes of the distances of the rays that collide.
 pub struct Classes {
-    /// The upper ends of all classes, the last of which is the distance of the rays that escape, and
-    /// [`NEAR`] that are no number: nothing reaches those.
+    /// Upper ends of all classes, the last of which is the distance of the rays that escape, and [`NEAR`] NaNs behind
+    /// them, which compare false with every distance.
     ends: Vec<f64>,
     /// Number of classes.
     total: usize,
-    /// Equal cells from the first end to the last but one, one before and one behind them: how many ends surely
-    /// lie before each.
+    /// Number of ends that certainly lie before each cell: equal cells from the first end to the last but one, one
+    /// before and one behind them.
     guide: Vec<u16>,
     /// Distance at which the cells begin.
     first: f64,
-    /// The number of the last cell.
+    /// Number of the last cell.
     last: f64,
-    /// Number of cells in a length of 1.
+    /// Number of cells per unit of length.
     scale: f64,
-    /// The probability that a ray escapes.
+    /// Probability that a ray escapes.
     escapes: f64,
 }
 
 impl Classes {
-    /// The classes of the predicted distribution.
+    /// Returns the classes of the predicted distribution.
     pub fn of(prediction: &Prediction) -> Option<Self> {
         let Some(theory::Law::Distances { bins, end, escape, .. }) = &prediction.law else {
             return None;
@@ -61,7 +61,7 @@ impl Classes {
         Some(Self::new(bins.clone(), *end, *escape))
     }
 
-    /// Classes from the ends of all of them but the last.
+    /// Makes classes from the ends of all of them but the last.
     fn new(mut ends: Vec<f64>, escape: f64, escapes: f64) -> Self {
         let first = ends.first().copied().unwrap_or_default();
         let length = ends.last().map_or(0.0, |last| last - first);
@@ -72,8 +72,8 @@ impl Classes {
         // A distance that rounding puts into the next cell still finds its class ahead.
         let before = |cell: usize| first + width * (cell as f64 - 1.0 - SLACK);
         let passed = |cell| ends.partition_point(|&end| end < before(cell));
-        // Fewer than there are is a guide, too. What is farther by a cell has the last one: rays that escape
-        // come often, and by no rule, which would mislead a branch.
+        // The guide may be too small, never too large. Distances farther by a cell get the class of escape: rays that
+        // escape are frequent and irregular, which would make a branch unpredictable.
         let guide = (0..=cells + 2).map(|cell| u16::try_from(passed(cell)).unwrap_or(u16::MAX));
         let scale = if width > 0.0 { 1.0 / width } else { 0.0 };
         let (guide, last) = (guide.collect(), (cells + 2) as f64);
@@ -81,28 +81,28 @@ impl Classes {
         Self { ends, total, guide, first, last, scale, escapes }
     }
 
-    /// The cell of a distance.
+    /// Returns the cell of a distance.
     #[inline(always)]
     #[allow(clippy::cast_possible_truncation)] // the last bits of 2^52 and a little more
     fn cell(&self, s: f64) -> u32 {
-        // The nearest integer of half a cell less: a conversion that need not guard against overflow.
+        // Rounds half a cell less to the nearest integer: this conversion needs no guard against overflow.
         let cell = (s - self.first) * self.scale + 0.5;
-        // One instruction each, unlike `max` and `min`; what is no number comes to lie in the first cell.
+        // One instruction each, unlike `max` and `min`; NaN goes to the first cell.
         let cell = if cell > 0.0 { cell } else { 0.0 };
         let cell = if cell < self.last { cell } else { self.last };
         (cell + INTEGERS).to_bits() as u32
     }
 
-    /// The class of a distance in a cell, that of the rays that escape last: how many ends are not beyond
-    /// it.
+    /// Returns the class of a distance in a cell, the class of the rays that escape last: the number of ends that are
+    /// not beyond it.
     #[inline(always)]
     fn class(&self, s: f64, cell: u32) -> usize {
         let mut class = self.guide.get(cell as usize).map_or(0, |&before| usize::from(before));
         loop {
             let near = self.ends.get(class..).and_then(<[f64]>::first_chunk::<NEAR>);
             let Some(near) = near else { return class };
-            // Most cells lie in one class or two, and escape is one more: sums do not hang on chance, as
-            // branches would.
+            // Most cells lie in one class or two, and escape is one more. Sums take the same time for all distances;
+            // branches would be mispredicted.
             let reached = near.iter().map(|&end| usize::from(end <= s)).sum::<usize>();
             class += reached;
             if reached < NEAR {
@@ -111,15 +111,15 @@ impl Classes {
         }
     }
 
-    /// Number of classes, escape not counted.
+    /// Returns the number of classes, escape not counted.
     pub(super) fn len(&self) -> usize {
         self.total
     }
 
-    /// Number of draws in each class, in order, and of the rays that escape.
+    /// Returns the number of draws in each class, in order, and of the rays that escape.
     pub fn count(&self, draws: &DrawBuffer) -> Vec<f64> {
         let mut counts = vec![[0_u32; FOLD]; self.total + 1];
-        // The cells of a row at once: that has no branches and no lists.
+        // All cells of a row at once, without branches and lists.
         let mut cells = [0; ROW];
         for values in draws.values[0].chunks(ROW) {
             in_fused_code(
@@ -163,7 +163,7 @@ impl Law for Bins {
     fn details(&self, sums: &[f64], draws: f64) -> String {
         let escaped = sums.last().copied().unwrap_or_default();
         let expected = self.classes.escapes * draws;
-        // Otherwise the share is right, or too little is known of it.
+        // Otherwise the share is right, or too few draws decide about it.
         if (escaped - expected).abs() <= 5.0 * expected.max(1.0).sqrt() {
             return String::new();
         }
@@ -172,14 +172,14 @@ impl Law for Bins {
     }
 }
 
-/// The test of the bins, where theory knows the distribution of the distances.
+/// Returns the test of the bins; `None` if theory does not know the distribution of the distances.
 pub fn of(prediction: &Prediction) -> Option<impl Law + use<>> {
     let classes = Classes::of(prediction)?;
     let size = (classes.len() / BINS).max(1);
     Some(Bins { classes, size })
 }
 
-/// What is asked.
+/// Returns the questions of this check.
 pub fn questions(subject: &Subject) -> Vec<Question> {
     Question::law("the law of the distances", of(subject.prediction))
 }
@@ -209,7 +209,7 @@ mod tests {
         sums[64] = 36_000.0;
         let p = |sums: &[f64]| bins.p_value(sums, 1e5);
         assert!(p(&sums).is_some_and(|p| p > 0.999), "{:?}", p(&sums));
-        // What lies within a bin is not seen, what lies in another one is.
+        // A shift within a bin is not detected, one into another bin is.
         (sums[4], sums[7]) = (0.0, 2000.0);
         assert!(p(&sums).is_some_and(|p| p > 0.999));
         (sums[8], sums[7]) = (3000.0, 0.0);

@@ -15,20 +15,20 @@ use super::check::{Question, Subject};
 use super::law::{Inspected, Inspection};
 use gate::stats::{correlation, ties};
 
-/// The streams of how many blocks are compared.
+/// Number of blocks with streams that are compared.
 const BLOCKS: u64 = 16;
 /// Number of words of each block that are searched for overlaps.
 const WORDS: usize = 1 << 14;
 /// Number of uniform numbers of each block in the correlations.
 const NUMBERS: usize = 1024;
-/// The largest lag.
+/// Largest lag.
 const LAG: i32 = 16;
 /// Number of words that must show all bits.
 const SHORT: usize = 256;
 
-/// What is asked.
+/// Returns the questions of this check.
 pub fn questions(subject: &Subject) -> Vec<Question> {
-    // One look at the streams needs draws that use them.
+    // Streams are inspected only if draws use them.
     let random = subject
         .prediction
         .channels
@@ -40,13 +40,13 @@ pub fn questions(subject: &Subject) -> Vec<Question> {
     vec![Question::whole("the streams of random numbers", Inspection(p_value))]
 }
 
-/// The words of a block as the draws use them.
+/// Returns the words of a block as the draws use them.
 fn words(inspected: &Inspected, block: u64) -> Box<dyn Iterator<Item = u64>> {
     Box::new((inspected.streams)(block).words())
 }
 
 fn p_value(inspected: &Inspected) -> f64 {
-    // Neighbouring blocks follow each other, and so do blocks far apart.
+    // Compares consecutive blocks, and blocks far apart.
     let blocks = inspected.blocks.clamp(2, BLOCKS);
     let mut marked = Vec::new();
     for block in 0..blocks {

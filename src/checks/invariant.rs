@@ -1,5 +1,5 @@
-//! A law that holds for every single draw: what a particle still carries and what its collisions took
-//! is what it began with.
+//! Invariant of every single draw: the weight that a particle still carries and the weight that its collisions took add
+//! up to its initial weight.
 //!
 //! ```text
 //! X(S) + Σᵢ X(tᵢ⁻)(1 − (1 − rᵢ)/qᵢ) = T_c   to rounding, 16 ε (1 + M) relative to the sizes of all terms
@@ -15,7 +15,7 @@ use estimators::DrawBuffer;
 const LANES: usize = 8;
 
 fn largest(draws: &DrawBuffer) -> f64 {
-    // Eight by eight: their divisions and comparisons need not wait for each other.
+    // Eight at a time: their divisions and comparisons are independent.
     let (mut most, mut sum) = ([0.0; LANES], [0.0; LANES]);
     let mut add = |defects: &[f64], lookups: &[u32]| {
         let lanes = most.iter_mut().zip(&mut sum);
@@ -31,12 +31,12 @@ fn largest(draws: &DrawBuffer) -> f64 {
         add(defects, lookups);
     }
     add(last_defects, last_lookups);
-    // Defects are sizes: their sum is no number only where one of them is none.
+    // Defects are not negative: their sum is NaN only if one of them is.
     let sum: f64 = sum.iter().sum();
     if sum.is_nan() { sum } else { most.into_iter().fold(0.0, f64::max) }
 }
 
-/// What is asked.
+/// Returns the questions of this check.
 pub fn questions(subject: &Subject) -> Vec<Question> {
     if !subject.has_invariant {
         return Vec::new();

@@ -16,19 +16,18 @@ pub trait Law: Send + Sync + UnwindSafe + RefUnwindSafe {
     /// Number of sums.
     fn size(&self) -> usize;
 
-    /// Adds the draws of a buffer, of which the first is the block's draw number `first`, to the
-    /// sums of the block.
+    /// Adds the draws of a buffer to the sums of the block; the first of them is the block's draw number `first`.
     fn add(&self, draws: &Batch, first: usize, sums: &mut [f64]);
 
-    /// Turns the sums of a block of `draws` draws into what is summed over blocks.
+    /// Turns the sums of a block of `draws` draws into terms that are summed over blocks.
     fn close(&self, draws: usize, sums: &mut [f64]) {
         let _ = (draws, sums);
     }
 
-    /// The p-value of the sums over `draws` draws; `None` where they test nothing.
+    /// Returns the p-value of the sums over `draws` draws; `None` if they test nothing.
     fn p_value(&self, sums: &[f64], draws: f64) -> Option<f64>;
 
-    /// Details beside the p-value, in words; empty where there is nothing to add.
+    /// Returns details beside the p-value, in words; empty if there are none.
     fn details(&self, sums: &[f64], draws: f64) -> String {
         let _ = (sums, draws);
         String::new()
@@ -63,7 +62,7 @@ impl<L: Law> Check for L {
     }
 }
 
-/// The sums of a block.
+/// Sums of a block.
 struct Sums<'a, L: Law> {
     law: &'a L,
     sums: Vec<f64>,
@@ -78,7 +77,7 @@ impl<L: Law> Observer for Sums<'_, L> {
 
     fn close(mut self: Box<Self>, fixed: usize) -> Vec<f64> {
         if fixed == 0 {
-            // No draw is asked: nothing need be kept.
+            // No fixed draw: no sums.
             return Vec::new();
         }
         self.law.close(fixed, &mut self.sums);
@@ -86,20 +85,20 @@ impl<L: Law> Observer for Sums<'_, L> {
     }
 }
 
-/// An experiment with its streams, for checks that look for themselves.
+/// Experiment with its streams, for checks that inspect them.
 pub struct Inspected<'a> {
-    /// The experiment.
+    /// Experiment.
     pub experiment: &'a dyn Experiment,
-    /// The channels of a draw.
+    /// Number of channels of a draw.
     pub channels: usize,
-    /// The streams of each block.
+    /// Returns the streams of a block.
     pub streams: &'a dyn Fn(u64) -> Streams,
     /// Number of blocks.
     pub blocks: u64,
 }
 
 impl Inspected<'_> {
-    /// The first `count` values of the first block's draws, last channel.
+    /// Returns the first `count` values of the first block's draws, last channel.
     pub fn first_draws(&self, count: u64) -> Vec<f64> {
         let mut streams = (self.streams)(0);
         let mut buffer = DrawBuffer::new(self.channels);
@@ -112,7 +111,7 @@ impl Inspected<'_> {
     }
 }
 
-/// A function that returns a p-value.
+/// Function that returns a p-value.
 pub struct Inspection<F>(pub F);
 
 impl<F: Fn(&Inspected) -> f64 + Send + Sync> Check for Inspection<F> {

@@ -4,8 +4,8 @@
 //! y = M/E[M] − 1,  Var[y] = Var[M]/E[M]²
 //! ```
 //!
-//! It sees wrong free flights and wrong endings that the mean hides, and much sooner. A number that
-//! theory says is always the same must be met by every draw.
+//! It detects wrong free flights and wrong endings that the mean hides, and much sooner. If the number is constant in
+//! theory, every draw must have it.
 
 use super::always::Always;
 use super::batch::Observe;
@@ -15,7 +15,7 @@ use estimators::DrawBuffer;
 use gate::session::Quantity;
 use theory::CountLaw;
 
-/// What is asked.
+/// Returns the questions of this check.
 pub fn questions(subject: &Subject) -> Vec<Question> {
     let Some(law) = &subject.prediction.lookups else { return Vec::new() };
     let mean = law.mean;
@@ -35,7 +35,7 @@ pub fn questions(subject: &Subject) -> Vec<Question> {
             let counts = draws.lookups.iter();
             counts.fold(0.0, |most: f64, &m| most.max((f64::from(m) - mean).abs()))
         };
-        // The law's own number may be rounded; a draw that differs by one is far beyond that.
+        // The predicted number may be rounded; a draw that differs by one is far beyond that.
         Question::whole(what, Always { is_of_lookups: true, ..Always::new(largest, 0.5) })
     };
     vec![question]

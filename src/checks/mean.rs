@@ -4,13 +4,14 @@
 //! y = (X − T)/u,  V = Var[X]/u² in theory,  u = T, or the opacity 1 − T where τ < 0.1
 //! ```
 //!
-//! The mean may pass only if the variance of the same experiment passes too; where that one is
-//! underpowered the pass says so (`variance assumed`). Draws without spread must all be the truth
-//! to rounding; where the spread is small but not nothing, the gate knows how much rounding may add. Where theory
-//! has no more than a bound on the variance, V is that bound, and no variance is tested: the promise of a pass is then
-//! made to draws that keep the bound. Where it has none but knows that tails are light, as of the length of a walk, V is
-//! twice that of pilot draws. A case that declares an experiment biased passes only if the bias is shown; where theory
-//! has no variance for it, that of pilot draws is used, doubled.
+//! The mean may pass only if the variance of the same experiment passes too; where the variance is underpowered, the
+//! pass says so (`variance assumed`). Draws without spread must all equal the truth to rounding. Where the spread is
+//! small but not 0, the gate allows for rounding.
+//!
+//! Where theory has only a bound on the variance, V is that bound, and no variance is tested: a pass is then promised
+//! for draws that keep the bound. Where theory has no bound but knows that tails are light, as for the length of a
+//! walk, V is twice the variance of pilot draws. A case that declares an experiment biased passes only if the bias is
+//! shown; where theory has no variance for it, V is also twice that of pilot draws.
 
 use super::always::Always;
 use super::batch::Observe;
@@ -22,24 +23,24 @@ use gate::session::quantity::{MEAN_CAP, mean_floor};
 use gate::stats::verdict::FURTHEST;
 use theory::Channel;
 
-/// Returns whether rounding spoils what the draws' spread says, if they have any.
+/// Returns whether rounding dominates the spread of the draws, if they have any.
 pub fn is_faint(subject: &Subject, channel: &Channel) -> bool {
     deviation(channel).is_some_and(|deviation| deviation <= 1e3 * floor(subject, channel))
 }
 
-/// √V in units of the channel.
+/// Returns √V in units of the channel.
 fn deviation(channel: &Channel) -> Option<f64> {
     let moments = channel.moments?;
     Some(moments.relative[0].sqrt() * moments.scale / channel.unit)
 }
 
-/// δ: what the truth's own error and rounding may add, in units of the channel.
+/// Returns δ, a bound on the truth's own error and on rounding, in units of the channel.
 fn floor(subject: &Subject, channel: &Channel) -> f64 {
     let truth = channel.truth;
     mean_floor(truth.error, truth.value.abs() * rounding_of(subject), channel.unit)
 }
 
-/// What is asked.
+/// Returns the questions of this check.
 pub fn questions(subject: &Subject) -> Vec<Question> {
     let channels = subject.prediction.channels.iter().enumerate();
     channels
@@ -49,7 +50,7 @@ pub fn questions(subject: &Subject) -> Vec<Question> {
         .collect()
 }
 
-/// Fewer draws than this that make the variance of all pilot draws leave it unknown.
+/// Effective number of pilot draws below which their variance counts as unknown.
 const SETTLED: f64 = 40.0;
 
 fn answer(subject: &Subject, index: usize, channel: &Channel) -> Box<dyn Check> {
@@ -58,7 +59,7 @@ fn answer(subject: &Subject, index: usize, channel: &Channel) -> Box<dyn Check> 
     let floor = floor(subject, channel);
     let blur = channel.truth.error / channel.unit;
     if blur.is_nan() || blur > subject.tolerance.mean.unwrap_or(MEAN_CAP) {
-        // Whatever the draws say, it would be within the truth's own error.
+        // Every mean would be within the truth's own error.
         return untestable(format!("the exact answer is known to {blur:.1e} only"));
     }
     if let Some(furthest) = deviation(channel).map(|d| FURTHEST * d).filter(|&far| far <= floor) {
@@ -76,7 +77,7 @@ fn answer(subject: &Subject, index: usize, channel: &Channel) -> Box<dyn Check> 
         return untestable("a few of the pilot draws make all of their variance".into());
     }
     let doubled = pilot.map(|pilot| 2.0 * pilot.variance);
-    // A bound is that of the right estimator: what is declared biased has a spread of its own.
+    // The bound holds for the correct estimator: a biased one has a spread of its own.
     let assumed = if subject.expect_biased {
         doubled.or(channel.most_variance)
     } else {

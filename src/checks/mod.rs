@@ -1,10 +1,9 @@
-//! What is asked of the draws, one check per page.
+//! Checks of draws, one page each.
 //!
-//! A check turns what theory says of an experiment into questions, all of them before the first
-//! draw: the levels are then shared among all questions of the run. Each question has an answer, a
-//! [`check::Check`]. Quantities for the gate ([`scalar`]) may stop the drawing; distributions ([`law`])
-//! have a p-value on a number of draws fixed beforehand; a bound ([`always`]) must hold for every draw;
-//! and an inspection ([`law::Inspection`]) looks at the streams of random numbers themselves.
+//! A check turns the prediction of an experiment into questions before the first draw: the levels are then shared among
+//! all questions of the run. Each question has an answer, a [`check::Check`]. Quantities for the gate ([`scalar`]) may
+//! stop the drawing; distributions ([`law`]) have a p-value on a number of draws fixed beforehand; a bound ([`always`])
+//! must hold for every draw; and an inspection ([`law::Inspection`]) looks at the streams of random numbers themselves.
 //!
 //! From bottom to top: [`batch`], [`check`], the kinds, the pages.
 
@@ -37,13 +36,13 @@ pub use check::{Check, Pilot, Question, Subject, rounding};
 pub use law::{Inspected, Law};
 pub use scalar::Scalar;
 
-/// A page of the catalogue of checks.
+/// Page of the catalogue of checks.
 struct Page {
     /// Returns its questions about an experiment; none where it does not apply.
     questions: fn(&Subject) -> Vec<Question>,
-    /// True if it asks of experiments that a case declares biased, too.
+    /// True if it also applies to experiments that a case declares biased.
     of_biased: bool,
-    /// Whether its p-values are uniform when all is well, or only never too often small.
+    /// True if the p-values of correct draws are uniform; otherwise their probability to be at most p is below p.
     is_uniform: bool,
 }
 
@@ -52,18 +51,18 @@ impl Page {
         Self { questions, of_biased: false, is_uniform: true }
     }
 
-    /// It asks of experiments that a case declares biased, too.
+    /// Applies the check to experiments that a case declares biased, too.
     const fn of_biased(self) -> Self {
         Self { of_biased: true, ..self }
     }
 
-    /// Its p-values are never too often small, but not uniform.
+    /// Declares that the p-values of correct draws are not uniform: the probability of p or less is below p.
     const fn not_uniform(self) -> Self {
         Self { is_uniform: false, ..self }
     }
 }
 
-/// All questions of all checks, in the order of the catalogue.
+/// Returns all questions of all checks, in the order of the catalogue.
 pub fn questions(subject: &Subject) -> Vec<Question> {
     let pages = CATALOGUE.pages.iter().zip(ALL);
     let asking = pages.filter(|(_, check)| check.of_biased || !subject.expect_biased);
@@ -80,13 +79,13 @@ pub fn questions(subject: &Subject) -> Vec<Question> {
     asked.collect()
 }
 
-/// Returns whether the p-values of the check of that name are uniform when all is well.
+/// Returns whether the p-values of the check of that name are uniform for correct draws.
 pub fn is_uniform(name: &str) -> bool {
     let named = CATALOGUE.pages.iter().zip(ALL).find(|(page, _)| page.name() == name);
     named.is_some_and(|(_, check)| check.is_uniform)
 }
 
-/// Lists the checks: from one line each come the name, the row in `list`, and of what it is asked.
+/// Lists the checks: each line gives the name, the row in `list`, and the experiments to which the check applies.
 macro_rules! checks {
     ($($module:ident $($how:ident)*,)*) => {
         /// Every check, in the order of registration.
@@ -104,7 +103,7 @@ checks! {
     lookups of_biased,
     covariance,
     counts of_biased,
-    // Two values have their exact binomial law, whose p-values are discrete.
+    // Two values have an exact binomial distribution, which has discrete p-values.
     atoms not_uniform,
     distances,
     depth,

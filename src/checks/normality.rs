@@ -1,20 +1,20 @@
-//! Which z may be read as those of a normal law.
+//! Conditions under which a z may be read as that of a normal distribution.
 //!
 //! ```text
 //! mean of n terms y:  n ≥ 100 E[y⁴]/E[y²]²,  n ≥ 10 n(2)
 //! variance:           y = (X − E[X])², of which E[X⁸]/E[X⁴]² tells;  √((κ − 1)/n) ≤ 0.1,  (κ − 1) n ≥ 100
 //! ```
 //!
-//! n(2) is the rare-event size: with fewer draws the events that make the variance are not seen. Where
-//! theory does not know a tail it counts as too heavy.
+//! n(2) is the rare-event size: fewer draws do not contain the events that make the variance. A tail that theory does
+//! not know counts as too heavy.
 
-/// The largest share of n that the ratio of moments may be.
+/// Largest ratio of moments, as a share of n.
 const HEAVY: f64 = 0.01;
-/// Draws in units of the rare-event size, from which on the variance's events are seen.
+/// Number of draws, in units of the rare-event size, that is enough to contain the variance's events.
 const SEEN: f64 = 10.0;
-/// The largest relative standard error of a variance.
+/// Largest relative standard error of a variance.
 const BLUNT: f64 = 0.1;
-/// The least `(κ − 1) n` of a variance that is left to chance.
+/// Smallest `(κ − 1) n` for which a variance is random enough to have a normal z.
 const LEAST: f64 = 100.0;
 
 /// Heaviness of the tails of draws; `None` where it is unknown.
@@ -28,12 +28,12 @@ pub struct Tails {
     pub rare_event_size: Option<f64>,
 }
 
-/// The fewest terms whose mean is near normal, by `E[y⁴]/E[y²]²` and their rare-event size.
+/// Returns the smallest number of terms with a nearly normal mean, by `E[y⁴]/E[y²]²` and their rare-event size.
 pub fn needed(heaviness: f64, rare_event_size: f64) -> f64 {
     (heaviness / HEAVY).max(SEEN * rare_event_size)
 }
 
-/// The relative standard error of a sample variance of n draws.
+/// Returns the relative standard error of a sample variance of n draws.
 pub fn variance_error(kurtosis: f64, n: f64) -> f64 {
     ((kurtosis - (n - 3.0) / (n - 1.0)).max(0.0) / n).sqrt()
 }

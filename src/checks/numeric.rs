@@ -1,7 +1,6 @@
 //! Every draw is a finite number.
 //!
-//! A draw that is not a number, or infinite, is a failure whatever else the draws say: no mean of
-//! such draws exists.
+//! A draw that is NaN or infinite is a failure whatever the other draws are: no mean of such draws exists.
 
 use super::always::Always;
 use super::check::{Question, Subject};
@@ -9,11 +8,11 @@ use estimators::DrawBuffer;
 use numeric::sum::sum_in_lanes;
 
 fn largest(draws: &DrawBuffer) -> f64 {
-    // x · 0 is 0 for every finite x and not a number otherwise.
+    // x · 0 is 0 for every finite x and NaN otherwise.
     draws.values.iter().map(|values| sum_in_lanes(values, |x| x * 0.0)).sum()
 }
 
-/// What is asked.
+/// Returns the questions of this check.
 pub fn questions(_: &Subject) -> Vec<Question> {
     vec![Question::whole("every draw", Always::new(largest, 0.0))]
 }

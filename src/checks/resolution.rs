@@ -1,15 +1,15 @@
 //! The resolution of free-flight distances: no ties, and not all of them single precision.
 //!
 //! ```text
-//! ties among n distances of the law: Poisson of mean  n²/2⁵⁴ + ½ Σ_k n_k² ulp(s_k)/width_k
+//! ties among n predicted distances: Poisson of mean  n²/2⁵⁴ + ½ Σ_k n_k² ulp(s_k)/width_k
 //! ```
 //!
-//! over the classes k of the law: the first term is the random number's resolution, 1e-8 for 2¹⁴
-//! distances, the second that of a double at the distance `s_k`. Flights of 24 bits tie 8 times on
-//! average. Whether all distances are single-precision numbers is asked where they have room to differ.
+//! over the classes k of the distribution: the first term is the random number's resolution, 1e-8 for 2¹⁴ distances,
+//! the second that of a double at the distance `s_k`. Flights of 24 bits tie 8 times on average. Another test is
+//! whether all distances are single-precision numbers, where they have room to differ.
 //!
-//! Coarse random numbers and positions in single precision escape every mean and variance. The
-//! check looks at the collisions of one block, drawn once more.
+//! No mean and no variance shows coarse random numbers or positions in single precision. The check looks at the
+//! collisions of one block, drawn once more.
 
 use super::check::{Question, Subject};
 use super::law::{Inspected, Inspection};
@@ -17,10 +17,10 @@ use crate::plan::BLOCK;
 use gate::stats::ties;
 use theory::{Law, Prediction};
 
-/// Fewer collisions than this say nothing about their resolution.
+/// Smallest number of collisions that is evidence of their resolution.
 pub const FEWEST: usize = 100;
 
-/// What is asked.
+/// Returns the questions of this check.
 pub fn questions(subject: &Subject) -> Vec<Question> {
     let Some(resolution) = Resolution::of(subject.prediction) else { return Vec::new() };
     let look = Inspection(move |inspected: &Inspected| p_value(inspected, &resolution));
@@ -30,14 +30,14 @@ pub fn questions(subject: &Subject) -> Vec<Question> {
 /// Ties among distances, in theory.
 #[derive(Debug, Clone, Copy)]
 pub struct Resolution {
-    /// The distance of the rays that escape.
+    /// Distance of the rays that escape.
     end: f64,
     /// See [`grain`].
     grain: f64,
 }
 
 impl Resolution {
-    /// Ties among the distances of an experiment; `None` where it has none.
+    /// Describes the ties of an experiment; `None` if it has no distances.
     pub fn of(prediction: &Prediction) -> Option<Self> {
         let Some(Law::Distances { bins, end, from, .. }) = &prediction.law else { return None };
         Some(Self { end: *end, grain: grain(bins, *end, *from) })
@@ -48,14 +48,15 @@ impl Resolution {
         distances.retain(|&s| s < self.end);
     }
 
-    /// Expected number of ties among n distances with random numbers of `bits` bits and positions that are rounded to
-    /// `spacing`, relative.
+    /// Returns the expected number of ties among n distances with random numbers of `bits` bits and positions that are
+    /// rounded to `spacing`, relative.
     pub fn expected(&self, n: f64, bits: i32, spacing: f64) -> f64 {
         0.5 * n * n * (2f64.powi(-bits) + self.grain * (spacing / f64::EPSILON))
     }
 }
 
-/// `Σ_k ulp(s_k)/(width_k K²)` over the K classes: twice the ties of a pair of distances as doubles.
+/// Returns `Σ_k ulp(s_k)/(width_k K²)` over the K classes: twice the expected number of ties of a pair of distances as
+/// doubles.
 fn grain(bins: &[f64], end: f64, from: f64) -> f64 {
     let inner: Vec<f64> = bins.windows(2).map(|ends| ends[1] - ends[0]).collect();
     // The first class may begin, and the last one end, far from the medium.

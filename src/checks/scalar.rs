@@ -8,17 +8,17 @@ use ::gate::session::{BlockSums, Ground, Planned, Quantity, Reason, Trail};
 use ::gate::stats::gate::Decision;
 use numeric::digits::short;
 
-/// A quantity y of each draw that has mean 0 and a known variance when all is well.
+/// Quantity y of each draw that has mean 0 and a known variance if the draws are correct.
 pub struct Scalar {
     /// y.
     pub observe: Observe,
-    /// A number added to every y: 0, except where a bias is put in on purpose.
+    /// Number added to every y: 0, except where a bias is added on purpose.
     pub bias: f64,
-    /// The quantity and its tolerance.
+    /// Quantity and its tolerance.
     pub planned: Planned,
 }
 
-/// A variance with its relative error bound, as an upper bound.
+/// Returns the ground for an upper bound of a variance: the variance and its relative error bound.
 pub fn variance(variance: f64, error: f64) -> Option<Ground> {
     Some(Ground::Variance(variance * (1.0 + error)))
 }
@@ -29,7 +29,7 @@ impl Scalar {
         Self { observe, bias: 0.0, planned: quantity.planned(subject.draws as f64) }
     }
 
-    /// What is added to a deviation: a thin medium is judged by its opacity, a thick one in units of its own.
+    /// Returns a remark about a deviation: a thin medium is judged by its opacity, a thick one in units of its own.
     fn remark(&self, trail: &Trail, log_unit: f64) -> String {
         let Quantity { check, expected, scale, .. } = self.planned.quantity;
         let mut text = String::new();
@@ -105,7 +105,7 @@ impl Check for Scalar {
     }
 }
 
-/// The sums of a block.
+/// Sums of a block.
 struct Sums<'a> {
     scalar: &'a Scalar,
     sums: BlockSums,

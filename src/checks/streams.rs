@@ -4,11 +4,11 @@
 //! S_i = Σ_b z_{b,i},  z = (X − E[X])/√V;   Σ_i S_i²/B has mean L and variance L(2 + (κ − 3)/B)
 //! ```
 //!
-//! The law of the sum is that of many draws: `(κ − 3)/B ≤ 1/2`, and `E[z⁸] ≤ 0.06 L B³`, so that no
-//! single draw of a heavy tail decides.
+//! The sum over blocks needs two conditions: `(κ − 3)/B ≤ 1/2`, and `E[z⁸] ≤ 0.06 L B³`, so that no single draw of a
+//! heavy tail decides.
 //!
-//! B blocks that share a seed have sums B times as wide; two that share one, twice. It looks at the
-//! first L = 1024 draws of each block.
+//! Sums over B blocks that share a seed have B times the variance, twice it for two blocks. The test uses the first L =
+//! 1024 draws of each block.
 
 use super::batch::Batch;
 use super::check::{Question, Subject, last_channel};
@@ -18,11 +18,11 @@ use gate::stats::correlation;
 
 /// L.
 const FIRST: usize = 1024;
-/// The fewest blocks that make a test.
+/// Smallest number of blocks for a test.
 const FEWEST: u64 = 4;
-/// The largest `(κ − 3)/B` for which the sums are near normal.
+/// Largest `(κ − 3)/B` for which the sums are nearly normal.
 const MOST_EXCESS: f64 = 0.5;
-/// The largest `E[z⁸]/(6 L B³)`: beyond, a single draw may decide.
+/// Largest `E[z⁸]/(6 L B³)`: beyond it, a single draw may decide.
 const MOST_BY_ONE: f64 = 0.01;
 
 struct IndexSums {
@@ -45,7 +45,7 @@ impl Law for IndexSums {
     }
 
     fn close(&self, draws: usize, sums: &mut [f64]) {
-        // A last block that does not reach all places says nothing.
+        // A last block that does not reach all places is left out.
         if draws < FIRST {
             sums.fill(0.0);
         } else {
@@ -60,7 +60,7 @@ impl Law for IndexSums {
     }
 }
 
-/// What is asked.
+/// Returns the questions of this check.
 pub fn questions(subject: &Subject) -> Vec<Question> {
     let Some((channel, moments)) = last_channel(subject) else { return Vec::new() };
     let kurtosis = moments.kurtosis().unwrap_or(f64::INFINITY);

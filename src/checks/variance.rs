@@ -4,9 +4,10 @@
 //! y = (X − E[X])²/V − 1,  Var[y] = κ − 1 in theory
 //! ```
 //!
-//! The predicted mean is known, so nothing is lost to an estimated one, and the exact kurtosis κ
-//! makes this a test at its level; normal theory would fail correct estimators of high kurtosis
-//! most of the time. Nothing is asked of draws without spread, of draws with two equally distant
+//! The predicted mean is known, so that no power is lost to an estimated one. The exact kurtosis κ makes this a test at
+//! its level; a normal approximation would fail correct estimators of high kurtosis most of the time. No question is
+//! asked of draws without spread, of draws with two equally distant values, and of experiments that a case declares
+//! biased.
 //! values, and of experiments that a case declares biased.
 
 use super::batch::Observe;
@@ -17,10 +18,10 @@ use gate::session::quantity::{variance_floor, variance_of_squares};
 use gate::session::{Ground, Quantity};
 use theory::Channel;
 
-/// A kurtosis this near to 1 makes `(X − E[X])²` constant: nothing is left to test.
+/// A kurtosis this close to 1 makes `(X − E[X])²` constant: there is nothing left to test.
 const TWO_POINT: f64 = 1.0 + 1e-6;
 
-/// What is asked.
+/// Returns the questions of this check.
 pub fn questions(subject: &Subject) -> Vec<Question> {
     let channels = subject.prediction.channels.iter().enumerate();
     channels

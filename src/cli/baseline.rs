@@ -25,26 +25,26 @@ pub struct BaselineArguments {
     /// Folder of the baselines
     #[arg(long, value_name = "DIR", default_value = "baselines")]
     baselines: PathBuf,
-    /// How much more processor time per draw is no regression, as a share; `inf` for any. Given, it is
-    /// an error that no time can be compared [default: 0.25]
+    /// Increase of the processor time per draw that is no regression, as a share; `inf` for any. Given, it is an error
+    /// that no time can be compared [default: 0.25]
     #[arg(long, value_name = "R", value_parser = numbers::share)]
     #[arg(allow_hyphen_values = true)]
     time_tolerance: Option<f64>,
 }
 
-/// The tolerance of times where none is given.
+/// Tolerance of times if no option gives it.
 const TIME_TOLERANCE: f64 = 0.25;
 
-/// What a result is compared with, and where it is stored: names and files.
+/// Stored result to compare with, and place to store the new one: names and files.
 pub struct Files<T> {
-    /// What it is compared with.
+    /// Name, file and content of the stored result.
     pub stored: Option<(String, PathBuf, T)>,
-    /// Where it is stored.
+    /// Name and file of the new one.
     pub save: Option<(String, PathBuf)>,
 }
 
 impl<T> Files<T> {
-    /// Reads the one and tries the other, where there are names.
+    /// Reads the stored result and checks that the new one can be written, if they are named.
     pub fn open(
         [stored, save]: [Option<&String>; 2],
         path: impl Fn(&str) -> Result<PathBuf, BaselineError>,
@@ -63,14 +63,14 @@ impl<T> Files<T> {
         Ok(Self { stored: stored.transpose()?, save: save.transpose()? })
     }
 
-    /// An error where nothing was compared: why, and what to do in its place.
+    /// Returns the error of a comparison that compared nothing: the reason, and the cure.
     pub fn complaint(&self, nothing: &str, cure: &str) -> Option<anyhow::Error> {
         let (_, path, _) = self.stored.as_ref()?;
         let path = path.display();
         Some(anyhow!("{path}: {nothing}; {cure}, or make it anew with --save-baseline"))
     }
 
-    /// Stores the result where that is wished, unless there is a reason not to. Answers what to print.
+    /// Stores the result if an option asks for it, unless there is a reason not to. Returns the text to print.
     pub fn store(
         &self,
         why_not: Option<&str>,
@@ -85,7 +85,7 @@ impl<T> Files<T> {
     }
 }
 
-/// What the drawing must be compared with, and where it is stored; known before the first draw.
+/// Baseline to compare with and place to store the run, both checked before the first draw.
 pub struct Baselines {
     files: Files<Baseline>,
     executable: String,
@@ -98,7 +98,7 @@ impl BaselineArguments {
         self.baseline.is_some() || self.save_baseline.is_some()
     }
 
-    /// Reads the baseline and tries the folder, before anything is drawn.
+    /// Reads the baseline and checks the folder, before the first draw.
     pub fn open(&self) -> anyhow::Result<Baselines> {
         let files = Files::open(
             [self.baseline.as_ref(), self.save_baseline.as_ref()],
@@ -111,7 +111,7 @@ impl BaselineArguments {
 }
 
 impl Baselines {
-    /// Compares a run with the stored one, if there is one; answers what to store.
+    /// Compares a run with the baseline, if there is one; returns the baseline to store as well.
     pub fn compare(&self, mut record: Record, cases: &[Case]) -> (Record, Option<Baseline>) {
         let Files { stored, save } = &self.files;
         if stored.is_none() && save.is_none() {
@@ -131,7 +131,7 @@ impl Baselines {
         (record, Some(run))
     }
 
-    /// What is wrong with a comparison that was asked for and says nothing.
+    /// Returns the error of a comparison that was asked for and compared nothing.
     pub fn complaint(&self, record: &Record) -> Option<anyhow::Error> {
         let comparison = record.comparison.as_ref()?;
         if let Some(nothing) = diff::nothing(comparison) {
@@ -145,7 +145,7 @@ impl Baselines {
         ))
     }
 
-    /// Stores a run where that is wished; what fails or became worse is not stored. Answers what to
+    /// Stores a run if an option asks for it; a run that fails or became worse is not stored. Returns the text to
     /// print.
     pub fn store(&self, record: &Record, run: Option<&Baseline>) -> anyhow::Result<String> {
         let Some(run) = run else { return Ok(String::new()) };

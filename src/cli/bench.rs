@@ -31,11 +31,11 @@ pub struct Arguments {
     /// Rounds; each times every experiment and its plain loop in turn
     #[arg(long, default_value_t = 5, value_name = "N", value_parser = numbers::whole::<u32>(1..=10_000), allow_negative_numbers = true)]
     rounds: u32,
-    /// Threads that draw at once, so many times as many draws; with several, time is elapsed and not processor
+    /// Threads that draw at once, each with the full number of draws; with several, time is elapsed and not processor
     /// time, and the column `scaling` compares them with one: give more draws then
     #[arg(long, default_value_t = 1, value_name = "N", value_parser = numbers::threads, allow_negative_numbers = true)]
     threads: u16,
-    /// Vector hardware to draw with, of what this machine has [default: the best]
+    /// Vector hardware to draw with, one of those of this machine [default: the best]
     #[arg(long, value_name = "LEVEL", value_parser = level)]
     level: Option<Level>,
     /// Folder for report.html, bench.csv, the cases' CSV files and the plots
@@ -50,11 +50,11 @@ pub struct Arguments {
     /// Folder of the baselines
     #[arg(long, value_name = "DIR", default_value = "baselines")]
     baselines: PathBuf,
-    /// How much more time per draw is no regression, as a share; `inf` for any
+    /// Increase of the time per draw that is no regression, as a share; `inf` for any
     #[arg(long, value_name = "R", default_value_t = 0.25, value_parser = numbers::share)]
     #[arg(allow_hyphen_values = true)]
     time_tolerance: f64,
-    /// How the rows are printed
+    /// Form of the rows on stdout
     #[arg(long, value_enum, default_value_t)]
     format: Format,
 }
@@ -66,7 +66,7 @@ pub fn main(arguments: &Arguments, catalogue: &Catalogue, console: &Console) -> 
     let options = experiments.options(Amount::Exactly(*draws))?;
     output::writable(&arguments.out)?;
     let baselines = arguments.open()?;
-    // Whatever is timed on, the plan may use all processors.
+    // The plan may use all processors, whatever the number of timed threads.
     let plan = selection::on_threads(0, || experiments.plan(&cases, &options, console))?;
     let ready = drawable(&plan)?;
     let level = arguments.level.unwrap_or_else(Level::new);
@@ -106,7 +106,7 @@ pub fn main(arguments: &Arguments, catalogue: &Catalogue, console: &Console) -> 
     Ok(errors.close(u8::from(is_worse)))
 }
 
-/// A level of vector hardware by its name.
+/// Returns a level of vector hardware by its name.
 fn level(name: &str) -> Result<Level, String> {
     let levels = pack::levels();
     let found = levels.iter().find(|level| pack::word(**level) == name);
@@ -116,7 +116,7 @@ fn level(name: &str) -> Result<Level, String> {
     })
 }
 
-/// How many experiments can be timed; none is an error.
+/// Returns the number of experiments that can be timed; 0 is an error.
 fn drawable(plan: &Plan) -> anyhow::Result<u64> {
     match plan.experiments().filter(|(_, planned)| planned.outcome.is_ok()).count() {
         0 => bail!(
@@ -127,7 +127,7 @@ fn drawable(plan: &Plan) -> anyhow::Result<u64> {
 }
 
 impl Arguments {
-    /// Reads the baseline and tries the folder.
+    /// Reads the baseline and checks the folder.
     fn open(&self) -> anyhow::Result<Files<Stored>> {
         Files::open(
             [self.baseline.as_ref(), self.save_baseline.as_ref()],

@@ -95,7 +95,7 @@ impl TypedValueParser for Kind {
     }
 }
 
-/// One row: a part of the catalogue, a name and one sentence.
+/// One row: part of the catalogue, name and one sentence.
 #[derive(serde::Serialize)]
 struct Row {
     part: String,
@@ -103,7 +103,7 @@ struct Row {
     summary: String,
 }
 
-/// Every page with the name of its part; those of the program's own come last in theirs.
+/// Returns every page with the name of its part; pages that the program adds come last in theirs.
 pub fn pages(catalogue: &Catalogue) -> Vec<(String, Page)> {
     let mut lists = built_in();
     let own = [("phases", phase::CATALOGUE), ("sampling", sampling::CATALOGUE)];
@@ -136,7 +136,7 @@ pub fn list(arguments: &List, catalogue: &Catalogue, console: &Console) -> anyho
     Ok(0)
 }
 
-/// Rows of one part of the catalogue, or of all of it.
+/// Returns the rows of one part of the catalogue, or of all of it.
 fn rows(what: Option<What>, catalogue: &Catalogue) -> Vec<Row> {
     let what = what.map(What::name);
     let wanted =
@@ -197,8 +197,8 @@ pub struct Explain {
     name: Vec<String>,
 }
 
-/// Prints every page of a name, or the list of a part: for a terminal without the signs of Markdown and as wide as
-/// it is, else as it is written.
+/// Prints every page of a name, or the list of a part: on a terminal without the signs of Markdown and within its
+/// width, elsewhere as written.
 pub fn explain(
     arguments: &Explain,
     catalogue: &Catalogue,
@@ -229,7 +229,7 @@ pub fn explain(
     Ok(0)
 }
 
-/// The pages of a name: for each the part of the catalogue, and the text in Markdown with a case to copy.
+/// Returns the pages of a name: for each the part of the catalogue, and the text in Markdown with a case to copy.
 fn explained(name: &str, catalogue: &Catalogue) -> Vec<(String, String)> {
     let mut found = Vec::new();
     for (part, page) in pages(catalogue).into_iter().filter(|(_, page)| page.name() == name) {
@@ -251,7 +251,7 @@ fn fenced(toml: &str) -> String {
     format!("```toml\n{}\n```", toml.trim_end())
 }
 
-/// The error about a name that nothing has, with what was probably meant.
+/// Returns the error about an unknown name, with similar names.
 fn unknown(written: &str, name: &str, catalogue: &Catalogue) -> anyhow::Error {
     if let Some([message, _]) = explain_problem("problem", name) {
         return anyhow::anyhow!("{message}; `trueflight list problems` shows all");

@@ -1,4 +1,4 @@
-//! `trueflight export`: a case as a scene of another renderer, with what its pixels must be.
+//! `trueflight export`: a case as a scene of another renderer, with the expected values of its pixels.
 
 use std::fmt::Write;
 use std::path::PathBuf;
@@ -17,7 +17,7 @@ pub struct Arguments {
     /// A case file, or the name of a built-in case
     #[arg(value_name = "CASE", value_parser = Names::Cases, hide_possible_values = true)]
     case: String,
-    /// Who renders it
+    /// Renderer of the scene
     #[arg(long, value_enum, value_name = "RENDERER")]
     to: Renderer,
     /// Folder for the scene, its field, truth.json and case.toml
@@ -29,12 +29,12 @@ pub struct Arguments {
     /// Channels of a case that has several, from 1 and at most three, such as 1,3 [default: all]
     #[arg(long, value_name = "LIST", value_delimiter = ',', value_parser = numbers::whole::<u16>(1..=8), allow_negative_numbers = true)]
     channels: Option<Vec<u16>>,
-    /// Write a homogeneous medium as a heterogeneous one, to test how Mitsuba tracks through that
+    /// Write a homogeneous medium as a heterogeneous one, to test how Mitsuba tracks through it
     #[arg(long)]
     heterogeneous: bool,
 }
 
-/// Whom scenes are written for.
+/// Renderer that a scene is written for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 enum Renderer {
     /// Mitsuba 3
@@ -43,7 +43,7 @@ enum Renderer {
     Pbrt,
 }
 
-/// Writes the scene, prints what its pixels must be.
+/// Writes the scene, and prints the expected values of its pixels.
 pub fn main(arguments: &Arguments, catalogue: &Catalogue, console: &Console) -> anyhow::Result<u8> {
     let name = &arguments.case;
     let source = source(name);

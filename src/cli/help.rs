@@ -213,7 +213,7 @@ pub fn main(arguments: &Arguments) -> anyhow::Result<u8> {
     clap_complete::generate(arguments.shell, &mut command(), output::program(), &mut script);
     let mut script = String::from_utf8(script)?;
     if arguments.shell == Shell::Zsh {
-        // Case files, too: zsh completes by the names alone, where bash and fish fall back to files.
+        // Names alone would hide case files in zsh; bash and fish fall back to files.
         let names = Names::Cases.names().join(" ");
         script = script.replace(&format!("({names})"), &format!("{{compadd -- {names}; _files}}"));
     }

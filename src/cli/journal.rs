@@ -1,4 +1,4 @@
-//! The logs of the store beside the results: begun, resumed, ended, and the signals that end a drawing.
+//! Logs of the store beside the results: begun, resumed, ended; and the signals that end a drawing.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -17,12 +17,12 @@ use media::files;
 /// Exit code of a process that a signal ends: 128 + SIGINT.
 const INTERRUPTED: i32 = 130;
 
-/// Returns where a folder has the blocks of a share or of an interrupted run.
+/// Returns the path of the blocks of a share or of an interrupted run in a folder.
 pub fn blocks(folder: &Path) -> PathBuf {
     folder.join("blocks.bin")
 }
 
-/// Returns where a folder has the experiments that its runs have finished.
+/// Returns the path of the experiments that the runs of a folder have finished.
 pub fn finished(folder: &Path) -> PathBuf {
     folder.join("draws.bin")
 }
@@ -51,7 +51,7 @@ pub fn header(folder: &Path) -> anyhow::Result<Header> {
     Ok(open(folder)?.1)
 }
 
-/// Begins a log, or resumes one of the same draws. A log that is in the way is an error, unless the run is fresh.
+/// Begins a log, or resumes one of the same draws. An existing log of other draws is an error, unless the run is fresh.
 pub fn store(
     folder: &Path,
     header: Header,
@@ -61,7 +61,7 @@ pub fn store(
 ) -> anyhow::Result<Store> {
     let (path, lock) = (blocks(folder), lock(folder)?);
     if is_resumed {
-        // Before frames of another program are cut off.
+        // This must come before frames of another program are cut off.
         if let Some(why) = open(folder)?.1.mismatch(&header) {
             bail!("cannot go on with {}: {why}; begin anew with --fresh", path.display());
         }
@@ -93,7 +93,7 @@ pub fn store(
 fn stop() -> anyhow::Result<Arc<AtomicBool>> {
     let stop = Arc::new(AtomicBool::new(false));
     for signal in [SIGINT, SIGTERM] {
-        // In this order: the first finds the flag not set yet.
+        // This order matters: the first call must find the flag unset.
         flag::register_conditional_shutdown(signal, INTERRUPTED, Arc::clone(&stop))
             .and_then(|_| flag::register(signal, Arc::clone(&stop)))
             .context("cannot listen to signals")?;
@@ -101,7 +101,7 @@ fn stop() -> anyhow::Result<Arc<AtomicBool>> {
     Ok(stop)
 }
 
-/// Removes the blocks of a run when the disk has its results.
+/// Removes the blocks of a run once its results are on the disk.
 pub fn end(folder: &Path) -> anyhow::Result<()> {
     for path in [folder.join("record.json"), finished(folder)] {
         files::synchronise(&path);

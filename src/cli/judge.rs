@@ -1,4 +1,4 @@
-//! `trueflight judge`: the gate over the draws of another renderer, or over its images.
+//! `trueflight judge`: the gate over the draws or images of another renderer.
 
 mod claimed;
 mod images;
@@ -19,7 +19,7 @@ use crate::report::judge as report;
 use crate::report::judge::junit::Told;
 use media::files;
 
-/// How many draws are read of a pipe, which need not end.
+/// Largest number of draws that are read from a pipe, which may be endless.
 const OF_A_PIPE: u64 = 1 << 26;
 
 /// Arguments of `judge`.
@@ -29,18 +29,18 @@ pub struct Arguments {
     /// --input. Several files share --alpha. With --images a stack (.npy), or a pass in each (.npy, .pfm, .exr)
     #[arg(value_name = "FILE", required = true)]
     files: Vec<PathBuf>,
-    /// What the mean should be
+    /// Expected mean of the draws
     #[arg(long, value_name = "T", allow_hyphen_values = true, conflicts_with = "case")]
     #[arg(required_unless_present_any = ["case", "truth_image", "against"], value_parser = numbers::number)]
     truth: Option<f64>,
-    /// The variance of one draw, or of one average with --batch; without it, it is not tested
+    /// The variance of one draw, or of one average with --batch; without it the variance is not tested
     #[arg(long, value_name = "V", allow_hyphen_values = true, value_parser = numbers::number)]
     variance: Option<f64>,
-    /// The kurtosis of one draw (3 for the normal law); without --variance, an upper bound of it. With --images an
-    /// upper bound of that of all values of a tile about their truths
+    /// The kurtosis of one draw (3 for the normal distribution); without --variance, an upper bound of it. With
+    /// --images an upper bound of that of all values of a tile about their truths
     #[arg(long, value_name = "K", allow_hyphen_values = true, value_parser = numbers::number)]
     kurtosis: Option<f64>,
-    /// Where all correct draws lie, as in 0,1 or 0,inf: a ground for a verdict without a variance
+    /// Range of all correct draws, as in 0,1 or 0,inf: a ground for a verdict without a variance
     #[arg(long, value_name = "LOW,HIGH", allow_hyphen_values = true, value_parser = range)]
     range: Option<[f64; 2]>,
     /// Take truth, variance, kurtosis, lookups and the distribution from theory: a case file or a built-in case
@@ -55,10 +55,10 @@ pub struct Arguments {
     /// Take the nearest value of the case's sweep in place of --swept
     #[arg(long, requires = "swept")]
     nearest: bool,
-    /// The one channel to judge, where a draw has several [default: all, from a file that has them as columns]
+    /// The one channel to judge, if a draw has several [default: all, from a file that has them as columns]
     #[arg(long, value_name = "NAME", requires = "case")]
     channel: Option<String>,
-    /// Take the case's truth alone, for an estimator of your own
+    /// Take only the truth from the case, for an estimator of your own
     #[arg(long, requires = "case")]
     mean_only: bool,
     /// Seed of the case's pilot rays, where σ̂ is learned from them
@@ -73,14 +73,14 @@ pub struct Arguments {
     /// fails, even a smaller one [default: what the file's draws can see, at most 0.05; for a pipe 0.01]
     #[arg(long, value_name = "E", allow_hyphen_values = true, value_parser = numbers::number)]
     tolerance: Option<f64>,
-    /// The same for the variance, relative to it [default: what the draws can see, at most 0.2]
+    /// Tolerance of the variance, relative to it [default: what the draws can see, at most 0.2]
     #[arg(long, value_name = "E", allow_hyphen_values = true, value_parser = numbers::number)]
     variance_tolerance: Option<f64>,
-    /// Chance that correct draws fail, all files together
+    /// Probability that correct draws fail, all files together
     #[arg(long, default_value_t = 1e-3, value_name = "A", value_parser = numbers::alpha)]
     #[arg(allow_hyphen_values = true)]
     alpha: f64,
-    /// What rounding may add to a draw, relative to the truth (absolute for a truth of 0)
+    /// Rounding error of a draw, relative to the truth (absolute for a truth of 0)
     #[arg(long, default_value_t = ROUNDING, value_name = "R", allow_hyphen_values = true, value_parser = numbers::number)]
     rounding: f64,
     /// Column of a table or of an array of shape (draws, values), by name or by place from 0 on
@@ -89,36 +89,36 @@ pub struct Arguments {
     /// Column of a table with the number of lookups of each draw
     #[arg(long, value_name = "COLUMN")]
     lookups: Option<String>,
-    /// What the mean number of lookups should be
+    /// Expected mean number of lookups
     #[arg(long, value_name = "M", requires = "lookups", conflicts_with = "case", value_parser = numbers::number)]
     #[arg(allow_hyphen_values = true)]
     expected_lookups: Option<f64>,
     /// The variance of the number of lookups of one draw, or of one average with --batch
     #[arg(long, value_name = "V", requires = "expected_lookups", allow_hyphen_values = true, value_parser = numbers::number)]
     lookups_variance: Option<f64>,
-    /// How the draws are written [default: by the file's ending]
+    /// Format of the draws [default: by the file's ending]
     #[arg(long, value_enum, value_name = "FORMAT")]
     input: Option<Input>,
-    /// Stop reading as soon as all is decided: what comes later is not seen
+    /// Stop reading as soon as everything is decided: later draws are ignored
     #[arg(long)]
     stop_early: bool,
-    /// How many draws are read at most [default: all of a file, 67108864 of a pipe]
+    /// Largest number of draws to read [default: all of a file, 67108864 of a pipe]
     #[arg(long, value_name = "N", value_parser = numbers::draws, allow_hyphen_values = true)]
     draws: Option<u64>,
-    /// What an inconclusive verdict counts as [default: exit code 3]
+    /// Verdict that an inconclusive one counts as [default: exit code 3]
     #[arg(long, value_enum, value_name = "AS")]
     inconclusive: Option<Inconclusive>,
     /// Write a JUnit report
     #[arg(long, value_name = "FILE")]
     junit: Option<PathBuf>,
-    /// How the verdict is printed
+    /// Form of the verdict on stdout
     #[arg(long, value_enum, default_value_t)]
     format: Shown,
     #[command(flatten)]
     images: images::Arguments,
 }
 
-/// The two ends of a range.
+/// Returns the two ends of a range.
 fn range(text: &str) -> Result<[f64; 2], String> {
     let wrong = || format!("`{text}` is no range; give LOW,HIGH as in 0,1 or 0,inf");
     let (low, high) = text.split_once(',').ok_or_else(wrong)?;
@@ -127,7 +127,7 @@ fn range(text: &str) -> Result<[f64; 2], String> {
     if low < high { Ok([low, high]) } else { Err(wrong()) }
 }
 
-/// How draws are written.
+/// Format of draws.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 enum Input {
     /// One number a line, or a column of a table
@@ -138,7 +138,7 @@ enum Input {
     F64,
 }
 
-/// How the verdict is printed.
+/// Form of the verdict.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, ValueEnum)]
 enum Shown {
     /// A block of lines for people
@@ -162,7 +162,7 @@ pub fn main(arguments: &Arguments, catalogue: &Catalogue, console: &Console) -> 
         stop_early: arguments.stop_early,
         most: arguments.draws,
     };
-    // What is wrong with the question is said before anything is read.
+    // Mistakes in the arguments are reported before anything is read.
     claimed.check(wanted)?;
     if arguments.files.iter().filter(|file| is_pipe(file)).count() > 1 {
         anyhow::bail!("there is one pipe; give `-` once");
@@ -190,16 +190,16 @@ pub fn main(arguments: &Arguments, catalogue: &Catalogue, console: &Console) -> 
     Ok(arguments.code(worst(&judged.iter().map(|found| &found.judgement))))
 }
 
-/// The verdict on the draws of a file, or on one channel of them.
+/// Verdict on the draws of a file, or on one channel of them.
 struct Judged {
     file: String,
-    /// Empty where a draw has one channel only, or one was chosen.
+    /// Name of the channel; empty if a draw has one channel only, or one was chosen.
     channel: String,
     judgement: Judgement,
 }
 
 impl Judged {
-    /// Name in a report.
+    /// Returns the name in a report.
     fn name(&self) -> String {
         let Self { file, channel, .. } = self;
         if channel.is_empty() { file.clone() } else { format!("{channel} of {file}") }
@@ -214,13 +214,13 @@ fn name(file: &Path) -> String {
     if is_pipe(file) { "stdin".to_owned() } else { file.display().to_string() }
 }
 
-/// The verdict on all of them.
+/// Returns the worst of all verdicts.
 fn worst<'a>(judged: &(impl Iterator<Item = &'a Judgement> + Clone)) -> Verdict {
     Verdict::worst(judged.clone().map(|judgement| judgement.verdict))
 }
 
 impl Arguments {
-    /// Fails now rather than after the reading if the JUnit report cannot be written.
+    /// Fails before the reading, not after it, if the JUnit report cannot be written.
     fn check_junit(&self, what: &str) -> anyhow::Result<()> {
         let Some(path) = &self.junit else { return Ok(()) };
         let wrong = || format!("cannot write {}; give another file with --junit", path.display());
@@ -238,7 +238,7 @@ impl Arguments {
             .with_context(|| format!("cannot write {} (--junit)", path.display()))
     }
 
-    /// The exit code.
+    /// Returns the exit code.
     fn code(&self, verdict: Verdict) -> u8 {
         let open = match self.inconclusive {
             None => 3,
@@ -257,7 +257,7 @@ impl Arguments {
         let format = self.input_format(file)?;
         let layout = claimed.layout(self.column.as_deref());
         if !file.is_file() && (is_pipe(file) || file.exists()) {
-            // A pipe is opened once, and need not end.
+            // A pipe can be opened only once, and may be endless.
             let mut draws = if is_pipe(file) {
                 Draws::from_reader_as(std::io::stdin(), "stdin", format, &layout)?
             } else {
@@ -270,7 +270,7 @@ impl Arguments {
         }
         let length = match (Draws::open_as(file, format.clone(), &layout)?.known_length(), &format)
         {
-            // The tests of a distribution are of a number of draws that is known before the first.
+            // Tests of a distribution need a number of draws that is known before the first.
             (None, Format::Csv { .. }) if self.tolerance.is_none() || claimed.has_theory() => {
                 Some(judge::count(file, format.clone(), &layout)?)
             }
@@ -302,7 +302,7 @@ impl Arguments {
         }
     }
 
-    /// Prints one verdict by itself, several with what they come to.
+    /// Prints one verdict by itself, or several with a summary.
     fn show(&self, judged: &[Judged], console: &Console) -> anyhow::Result<()> {
         match self.format {
             Shown::Table if console.quiet || judged.is_empty() => Ok(()),
@@ -319,14 +319,14 @@ impl Arguments {
         }
     }
 
-    /// The channels of each file.
+    /// Returns the channels of each file.
     fn by_file(judged: &[Judged]) -> Vec<&[Judged]> {
         judged
             .chunk_by(|a, b| a.file == b.file && !b.channel.is_empty() && a.channel != b.channel)
             .collect()
     }
 
-    /// Summary of several verdicts.
+    /// Returns the summary of several verdicts.
     fn together(&self, judged: &[Judged]) -> String {
         let verdicts = judged.iter().map(|found| &found.judgement);
         let files = Self::by_file(judged);
@@ -347,7 +347,7 @@ impl Arguments {
         report::together(&verdicts, &of, worst(&verdicts), self.alpha)
     }
 
-    /// All of it as JSON has it.
+    /// Returns all verdicts as JSON.
     fn json(&self, judged: &[Judged]) -> serde_json::Result<String> {
         match (judged, self.files.len()) {
             ([one], 1) if one.channel.is_empty() => serde_json::to_string_pretty(&one.judgement),
@@ -380,7 +380,7 @@ impl Arguments {
     }
 }
 
-/// The object with one entry more.
+/// Returns the object with one more entry.
 fn with(mut object: serde_json::Value, key: &str, value: serde_json::Value) -> serde_json::Value {
     object[key] = value;
     object

@@ -1,4 +1,4 @@
-//! `trueflight stress` and `trueflight self-test`: where doubles run out of digits, and the test button of the gate itself.
+//! `trueflight stress` and `trueflight self-test`: the limits of doubles, and the test of the gate itself.
 
 use std::path::PathBuf;
 use std::time::Instant;
@@ -62,10 +62,10 @@ pub fn stated(text: &str, channel: &str) -> Option<(f64, Option<f64>)> {
     Some((truth, variance.filter(|variance| variance.is_finite())))
 }
 
-/// Independent runs of the long calibration.
+/// Number of independent runs of the long calibration.
 const LONG: u64 = 10_000;
 
-/// Streams of each law in the long form.
+/// Number of streams of each distribution in the long form.
 const MANY: u64 = 1000;
 
 /// Arguments of `self-test`.
@@ -74,10 +74,10 @@ pub struct SelfTestArguments {
     /// Independent runs of the calibration
     #[arg(long, default_value_t = 400, value_name = "N", value_parser = numbers::whole::<u64>(1..=1_000_000), allow_negative_numbers = true)]
     runs: u64,
-    /// Streams of correct foreign draws of each law
+    /// Streams of correct foreign draws of each distribution
     #[arg(long, default_value_t = 5, value_name = "N", value_parser = numbers::whole::<u64>(1..=1_000_000), allow_negative_numbers = true)]
     streams: u64,
-    /// Calibrate with 10 000 independent runs, and judge 1000 streams of each law
+    /// Calibrate with 10 000 independent runs, and judge 1000 streams of each distribution
     #[arg(long, conflicts_with_all = ["runs", "streams"])]
     long: bool,
     #[command(flatten)]

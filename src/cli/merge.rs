@@ -27,7 +27,7 @@ pub struct Merge {
     reports: Reports,
 }
 
-/// Reads the parts, and does with them what `run` does with its draws.
+/// Reads the parts, and treats them as `run` treats its draws.
 pub fn merge(arguments: &Merge, catalogue: &Catalogue, console: &Console) -> anyhow::Result<u8> {
     let mut parts = Vec::new();
     for folder in &arguments.parts {
@@ -47,7 +47,7 @@ pub fn merge(arguments: &Merge, catalogue: &Catalogue, console: &Console) -> any
     let header = parts[0].header.clone();
     let mut asked = run::Arguments::of(&header.words)?.asked;
     asked.reports = arguments.reports.clone();
-    // Draws of an earlier run are no part.
+    // Draws of an earlier run are not a part.
     run::judge(&asked, RUN, &Kept::FRESH, catalogue, console, |plan| {
         let own = Header::new(plan, &fingerprint()?, &header.words, None);
         if let Some(why) = header.mismatch(&own) {
@@ -60,7 +60,7 @@ pub fn merge(arguments: &Merge, catalogue: &Catalogue, console: &Console) -> any
     })
 }
 
-/// Part of a run: its folder, and what is in it.
+/// Part of a run: its folder and content.
 struct Part<'a> {
     folder: &'a Path,
     log: Log,
@@ -81,7 +81,7 @@ impl Part<'_> {
     }
 }
 
-/// Returns everything that keeps parts from being one run.
+/// Returns all reasons why parts cannot be one run.
 fn faults(parts: &[Part]) -> Vec<String> {
     let Some(first) = parts.first() else { return vec!["there are no parts".to_owned()] };
     let of = first.header.share.map_or(0, |share| share.of);

@@ -1,8 +1,8 @@
-//! The command line: arguments, exit codes, progress, and the only prints.
+//! Command line: arguments, exit codes, progress, and the only prints.
 //!
-//! A program with media and estimators of its own has all commands by
-//! `fn main() -> ExitCode { trueflight::cli::main(&catalogue) }`. Where `mpirun` begins it, `bindings/mpi` has
-//! the way to join the others for [`main_among`].
+//! A program with media and estimators of its own gets all commands by
+//! `fn main() -> ExitCode { trueflight::cli::main(&catalogue) }`. If `mpirun` starts it, `bindings/mpi` has the
+//! function by which [`main_among`] joins the other ranks.
 //!
 //! | exit code | meaning |
 //! |---|---|
@@ -38,11 +38,11 @@ use clap::{Args, FromArgMatches, Parser, Subcommand};
 use self::ranks::Join;
 use crate::case::Catalogue;
 
-/// Everything that went wrong before or beside the verdicts.
+/// Exit code of every error before or beside the verdicts.
 pub const USAGE: u8 = 2;
 
-/// Prove that a light-transport estimator is fair: compare its mean, variance, cost and law with
-/// exact theory over millions of draws.
+/// Test whether a light-transport estimator is unbiased and as noisy as theory says: compare its mean, variance, cost
+/// and distribution with exact theory over millions of draws.
 #[derive(Debug, Parser)]
 #[command(name = "trueflight", version, max_term_width = 100)]
 struct Cli {
@@ -52,7 +52,7 @@ struct Cli {
     console: Console,
 }
 
-/// Options on the console, whatever the command.
+/// Options on the console, for every command.
 #[derive(Debug, Clone, Args)]
 #[command(next_help_heading = "Console")]
 pub struct Console {
@@ -66,7 +66,7 @@ pub struct Console {
 
 #[derive(Debug, Subcommand)]
 enum Command {
-    /// Draw, judge, and write tables and plots: the main job
+    /// Draw, judge, and write tables and plots: the main command
     Run(run::Arguments),
     /// Judge a run that many machines drew: the parts of `run --shard`
     Merge(merge::Merge),
@@ -74,9 +74,9 @@ enum Command {
     Check(run::Asked),
     /// Theory only, no draws: moments, costs, the best σ̂, what is refused
     Predict(predict::Predict),
-    /// Run time against error: ns per draw, time to an error, and how much faster than a plain loop
+    /// Run time against error: ns per draw, time to an error, and speedup over a plain loop
     Bench(bench::Arguments),
-    /// What would run, what is refused, and why
+    /// The plan of a run: its experiments, and those that are refused with reasons
     Plan(predict::Plan),
     /// Pictures: estimators side by side at an equal number of lookups, with their errors
     Render(render::Arguments),
@@ -94,22 +94,22 @@ enum Command {
     Inspect(inspect::Arguments),
     /// Judge the draws of another renderer, from a file or a pipe
     Judge(Box<judge::Arguments>),
-    /// A case as a scene of Mitsuba 3 or pbrt-v4, with what its pixels must be
+    /// A case as a scene of Mitsuba 3 or pbrt-v4, with the expected values of its pixels
     Export(export::Arguments),
     /// Shell completions
     Completions(help::Arguments),
 }
 
-/// Runs the command that the program's arguments ask for, with this catalogue, and answers its exit code.
+/// Runs the command of the program's arguments with this catalogue, and returns its exit code.
 pub fn main(catalogue: &Catalogue) -> ExitCode {
     run_with(catalogue, None, &parsed())
 }
 
-/// The same with these arguments, the first of which is the program's name.
+/// Runs the command of these arguments, the first of which is the program's name.
 ///
 /// # Errors
 ///
-/// What is wrong with the arguments, in the words of the command line.
+/// A mistake in the arguments, as the command line reports it.
 pub fn run_as<T: Into<OsString> + Clone>(
     catalogue: &Catalogue,
     arguments: impl IntoIterator<Item = T>,
@@ -120,7 +120,7 @@ pub fn run_as<T: Into<OsString> + Clone>(
     Ok(run_with(catalogue, None, &cli))
 }
 
-/// [`main`] for a program that `mpirun` may have begun among others, and that knows how to join them.
+/// [`main`] for a program that `mpirun` may have started as one of several ranks, with the function to join them.
 pub fn main_among(catalogue: &Catalogue, join: Join) -> ExitCode {
     run_with(catalogue, Some(join), &parsed())
 }
@@ -142,7 +142,7 @@ fn run_with(catalogue: &Catalogue, join: Option<Join>, cli: &Cli) -> ExitCode {
 }
 
 fn carry_out(catalogue: &Catalogue, join: Option<Join>, cli: &Cli) -> anyhow::Result<u8> {
-    // Every command is refused among others, but for `run`.
+    // Only `run` can be shared by ranks.
     let link = ranks::join(matches!(cli.command, Command::Run(_)), join)?;
     let console = &cli.console;
     match &cli.command {

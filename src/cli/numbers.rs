@@ -1,4 +1,4 @@
-//! The numbers that options take, and what is said of others.
+//! Numbers that options take, and messages about wrong ones.
 
 use std::fmt::Display;
 use std::ops::RangeInclusive;
@@ -6,7 +6,7 @@ use std::str::FromStr;
 
 use crate::plan::BLOCK;
 
-/// Whole numbers of a range.
+/// Returns a parser of whole numbers of a range.
 pub fn whole<N>(range: RangeInclusive<N>) -> impl Fn(&str) -> Result<N, String> + Clone
 where
     N: FromStr + PartialOrd + Display + Clone,
@@ -18,22 +18,22 @@ where
     }
 }
 
-/// A seed of random numbers.
+/// Parses a seed of random numbers.
 pub fn seed(text: &str) -> Result<u64, String> {
     whole(0..=u64::MAX)(text)
 }
 
-/// A number of threads.
+/// Parses a number of threads.
 pub fn threads(text: &str) -> Result<u16, String> {
     whole(1..=1024)(text)
 }
 
-/// A number of draws such as 4e6.
+/// Parses a number of draws such as 4e6.
 pub fn draws(text: &str) -> Result<u64, String> {
     whole_draws(text).ok_or_else(|| "it takes a whole number from 2 to 1e12, such as 4e6".into())
 }
 
-/// A whole number that may be written with an exponent.
+/// Parses a whole number that may be written with an exponent.
 #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // checked just before
 fn whole_draws(text: &str) -> Option<u64> {
     let number = text.parse::<f64>().ok();
@@ -41,12 +41,12 @@ fn whole_draws(text: &str) -> Option<u64> {
     number.map(|n| n as u64)
 }
 
-/// Any number.
+/// Parses any number.
 pub fn number(text: &str) -> Result<f64, String> {
     text.parse().map_err(|_| "it takes a number, such as 0.25 or 1e-3".into())
 }
 
-/// A probability.
+/// Parses a probability.
 pub fn alpha(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
         Ok(alpha) if alpha > 0.0 && alpha < 1.0 => Ok(alpha),
@@ -54,7 +54,7 @@ pub fn alpha(text: &str) -> Result<f64, String> {
     }
 }
 
-/// A share of 0 or more.
+/// Parses a share of 0 or more.
 pub fn share(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
         Ok(share) if share >= 0.0 => Ok(share),
@@ -71,7 +71,7 @@ pub enum Budget {
     Draws(u64),
 }
 
-/// A time with its unit, or a number of draws: one block at least, for all experiments together.
+/// Parses a time with its unit, or a number of draws: one block at least, for all experiments together.
 pub fn budget(text: &str) -> Result<Budget, String> {
     let takes =
         format!("a time such as 30s or 5m, or a number of draws from {BLOCK} to 1e12, such as 1e8");
@@ -93,7 +93,7 @@ pub fn budget(text: &str) -> Result<Budget, String> {
         text.parse::<f64>().ok().filter(small),
     ) {
         (Some(draws), _) => Ok(Budget::Draws(draws)),
-        // Five of what?
+        // A number without a unit is ambiguous.
         (None, Some(_)) => Err(format!(
             "without a unit it is a number of draws, and {text} is less than one block of {BLOCK}: give \
              {text}s, {text}m or {text}h for a time, or {BLOCK} draws at least"

@@ -1,4 +1,4 @@
-//! What goes to the console: results to stdout, the rest to stderr.
+//! Output on the console: results on stdout, the rest on stderr.
 
 use std::fmt;
 use std::io::{ErrorKind, IsTerminal, Write};
@@ -17,7 +17,7 @@ use crate::report::run::console::{self, View};
 use crate::report::run::summary_csv;
 use crate::report::{self, Artifact, ReportError};
 
-/// When to use colours.
+/// Condition for colours.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, ValueEnum)]
 pub enum When {
     /// On a terminal, unless `NO_COLOR` is set
@@ -41,7 +41,7 @@ impl When {
     }
 }
 
-/// How rows are printed.
+/// Form of rows.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, ValueEnum)]
 pub enum Format {
     /// A table for people
@@ -49,7 +49,7 @@ pub enum Format {
     Table,
     /// The columns of the CSV file of all rows
     Csv,
-    /// The same as an array of objects
+    /// An array of objects with the same columns
     Json,
 }
 
@@ -69,7 +69,7 @@ pub fn print_record(
     print(&text)
 }
 
-/// Prints what a run found to stdout: what does not pass and a line for each case, or every row.
+/// Prints the results of a run to stdout: rows that do not pass and a line for each case, or every row.
 pub fn print_run(
     record: &Record,
     format: Format,
@@ -82,12 +82,12 @@ pub fn print_run(
     print(&console::brief(record, pen(options)))
 }
 
-/// The last line of a command that wrote a page: where to open it.
+/// Returns the last line of a command that wrote a page: the page's place.
 pub fn report_in(out: &Path) -> String {
     format!("report: {}\n", out.join("report.html").display())
 }
 
-/// Writes to stdout. A reader that has seen enough (`| head`) is no error.
+/// Writes to stdout. A reader that closes early (`| head`) is not an error.
 pub fn print(text: &str) -> anyhow::Result<()> {
     match std::io::stdout().write_all(text.as_bytes()) {
         Err(error) if error.kind() == ErrorKind::BrokenPipe => Ok(()),
@@ -97,16 +97,16 @@ pub fn print(text: &str) -> anyhow::Result<()> {
 
 /// Writes an error to stderr.
 pub fn complain(error: &anyhow::Error) {
-    // With stderr gone there is nobody left to tell.
+    // Without stderr there is no place to report to.
     let _ = writeln!(std::io::stderr(), "error: {error:#}");
 }
 
-/// What went wrong beside the verdicts: it keeps nothing else from being told.
+/// Errors beside the verdicts; all other output is still written.
 #[derive(Debug, Default)]
 pub struct Errors(Vec<anyhow::Error>);
 
 impl Errors {
-    /// Keeps an error, in whose place there is a default value.
+    /// Keeps an error, and returns a default value in its place.
     pub fn keep<T: Default, E: Into<anyhow::Error>>(&mut self, result: Result<T, E>) -> T {
         result.unwrap_or_else(|error| {
             self.extend([error]);
@@ -119,12 +119,12 @@ impl Errors {
         self.0.extend(errors.into_iter().map(Into::into));
     }
 
-    /// Returns whether all went well so far.
+    /// Returns whether there is no error so far.
     pub fn is_empty(&self) -> bool {
         self.0.is_empty()
     }
 
-    /// Writes files below a folder; answers how many were written, `None` where none could be rendered.
+    /// Writes files below a folder. Returns the number of written files; `None` if they could not be rendered.
     pub fn write(
         &mut self,
         artifacts: Result<Vec<Artifact>, ReportError>,
@@ -137,29 +137,29 @@ impl Errors {
         Some(written)
     }
 
-    /// Tells all on stderr; answers the exit code.
+    /// Prints all errors on stderr; returns the exit code.
     pub fn close(&self, code: u8) -> u8 {
         self.0.iter().for_each(complain);
         if self.0.is_empty() { code } else { USAGE }
     }
 }
 
-/// Writes files below a folder; the first error is returned.
+/// Writes files below a folder; returns the first error.
 pub fn write(artifacts: &[Artifact], out: &Path) -> anyhow::Result<()> {
     report::write(artifacts, out).into_iter().next().map_or(Ok(()), |error| Err(error.into()))
 }
 
-/// Shows mistakes in files in place; the error that says how many there are in files of what kind.
+/// Shows mistakes in files in place. Returns the error with the number of mistakes and files.
 pub fn mistakes(errors: &[CaseError], console: &Console, kind: &str) -> anyhow::Error {
     let colour = console.color.colours(std::io::stderr().is_terminal());
     let shown: Vec<String> = errors.iter().map(|error| error.render(colour)).collect();
-    // With stderr gone there is nobody left to tell.
+    // Without stderr there is no place to report to.
     let _ = writeln!(std::io::stderr(), "{}\n", shown.join("\n\n"));
     let mistakes: usize = errors.iter().map(CaseError::mistakes).sum();
     anyhow::anyhow!("{mistakes} mistake(s) in {} {kind}", errors.len())
 }
 
-/// What this program is called.
+/// Returns the name of this program.
 pub fn program() -> String {
     let name = std::env::args_os().next().map(PathBuf::from);
     let stem = name.as_deref().and_then(Path::file_stem);
@@ -171,22 +171,22 @@ pub fn warn(text: &str) {
     tell("warning", text);
 }
 
-/// What is good to know.
+/// Writes a note to stderr.
 pub fn note(text: &str) {
     tell("note", text);
 }
 
 fn tell(kind: &str, text: &str) {
-    // With stderr gone there is nobody left to tell.
+    // Without stderr there is no place to report to.
     let _ = writeln!(std::io::stderr(), "{kind}: {text}");
 }
 
-/// A bar on the terminal's stderr; hidden where there is none.
+/// Returns a bar on the terminal's stderr; hidden if stderr is not a terminal.
 pub fn progress(doing: &str, things: &str, length: u64, options: &Console) -> ProgressBar {
     progress_until(doing, things, length, None, options)
 }
 
-/// A bar of work that ends after `seconds` at the latest, if there is a limit.
+/// Returns a bar of work that ends after `seconds` at the latest, if there is a limit.
 pub fn progress_until(
     doing: &str,
     things: &str,
@@ -203,7 +203,7 @@ pub fn progress_until(
         let left = move |state: &ProgressState, text: &mut dyn fmt::Write| {
             let limited = limit.map(|limit| limit.saturating_sub(state.elapsed()));
             let left = limited.unwrap_or(Duration::MAX).min(state.eta());
-            // A bar has nowhere to tell of an error.
+            // A bar has no place to report an error to.
             let _ = write!(text, "{:#}", HumanDuration(left));
         };
         if let Ok(style) = ProgressStyle::with_template(&template) {
@@ -214,7 +214,7 @@ pub fn progress_until(
     bar
 }
 
-/// Fails now rather than after the drawing if a folder cannot be written into.
+/// Fails before the drawing, not after it, if a folder cannot be written to.
 pub fn writable(out: &Path) -> anyhow::Result<()> {
     let cure = || format!("cannot write into {}; give another folder with --out", out.display());
     std::fs::create_dir_all(out).with_context(cure)?;
@@ -222,13 +222,13 @@ pub fn writable(out: &Path) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// How wide and how colourful stdout is; below 40 columns nothing fits.
+/// Returns the width and the colours of stdout; the width is at least 40 columns.
 pub fn pen(options: &Console) -> Pen {
     let colour = options.color.colours(std::io::stdout().is_terminal());
     Pen { width: width().max(40), colour }
 }
 
-/// The width of the terminal, or `COLUMNS`, or 120.
+/// Returns the width of the terminal, or `COLUMNS`, or 120.
 fn width() -> usize {
     let terminal = terminal_size::terminal_size().map(|(width, _)| usize::from(width.0));
     let wished = std::env::var("COLUMNS").ok().and_then(|columns| columns.parse().ok());

@@ -23,9 +23,9 @@ pub struct Predict {
     /// Show J₁ to J₄, the relative central moments with their error, the cost and the rare-event size
     #[arg(long)]
     moments: bool,
-    /// Search the constant σ̂ with the largest figure of merit, channel by channel: a hundred
-    /// predictions for each estimator. Where the figure of merit rises with σ̂ to a limit there is no
-    /// optimum: the σ̂ that reaches 90 % of the limit is named so, with the limit
+    /// Search the constant σ̂ with the largest figure of merit, channel by channel: a hundred predictions for each
+    /// estimator. If the figure of merit rises with σ̂ to a limit there is no optimum: the table then shows the σ̂ that
+    /// reaches 90 % of the limit, and the limit
     #[arg(long)]
     optimum: bool,
     /// Form of the rows on stdout

@@ -33,7 +33,7 @@ pub struct Arguments {
 pub fn main(arguments: &Arguments, catalogue: &Catalogue, console: &Console) -> anyhow::Result<u8> {
     let pictures = read(&arguments.pictures, catalogue.additions(), console)?;
     let out = arguments.out.join("gallery");
-    // Better to learn now than after the rendering that nothing can be written.
+    // A folder that cannot be written to is reported before the rendering, not after it.
     output::writable(&out)?;
     let rows = pictures.iter().map(|picture| 2 * picture.rows() as u64).sum();
     let bar = output::progress("rendering", "rows", rows, console);

@@ -1,8 +1,8 @@
-//! Options on reports, for all commands that judge experiments: where they are written, and what is printed; and the
-//! exit codes of verdicts.
+//! Options on reports, for all commands that judge experiments: their places, and the printed rows; and the exit codes
+//! of verdicts.
 //!
-//! All reports are written before the process ends, whatever the verdict; that they can be is known
-//! before the first draw.
+//! All reports are written before the process ends, whatever the verdict. Before the first draw it is checked that they
+//! can be written.
 
 use std::fs::OpenOptions;
 use std::io::Write;
@@ -62,7 +62,7 @@ impl Reports {
         files.into_iter().filter_map(|(flag, path)| Some((flag, path.as_deref()?)))
     }
 
-    /// Fails if something cannot be written, or would be written over the cases or over another report.
+    /// Fails if a report cannot be written, or would overwrite a case or another report.
     pub fn writable(&self, out: Option<&Path>, cases: &[Case]) -> anyhow::Result<()> {
         let mut taken: Vec<PathBuf> =
             cases.iter().filter_map(|case| case.path.canonicalize().ok()).collect();
@@ -125,7 +125,7 @@ impl Reports {
         let Some(path) = path.map(PathBuf::from) else { return };
         let file = OpenOptions::new().append(true).create(true).open(&path);
         let text = markdown::text(record) + "\n";
-        // Without the summary the verdict is still the verdict.
+        // A failed summary does not change the verdict.
         if let Err(error) = file.and_then(|mut file| file.write_all(text.as_bytes())) {
             output::warn(&format!("cannot add the summary to {}: {error}", path.display()));
         }
@@ -135,7 +135,7 @@ impl Reports {
 /// Nothing fails, but something is not decided.
 pub const UNDECIDED: u8 = 3;
 
-/// What an inconclusive experiment does to the exit code.
+/// Effect of an inconclusive experiment on the exit code.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum Inconclusive {
     /// It counts as failing: exit code 1
@@ -145,7 +145,7 @@ pub enum Inconclusive {
 }
 
 impl Inconclusive {
-    /// What it is in a JUnit report.
+    /// Returns the result of an inconclusive experiment in a JUnit report.
     pub fn in_junit(wish: Option<Self>) -> junit::Inconclusive {
         match wish {
             None => junit::Inconclusive::Error,
@@ -155,14 +155,14 @@ impl Inconclusive {
     }
 }
 
-/// The exit code at the end of a command, with what went wrong beside the verdicts.
+/// Returns the exit code at the end of a command, given the errors beside the verdicts.
 pub fn close(record: &Record, inconclusive: Option<Inconclusive>, errors: &Errors) -> u8 {
     let errors_first = errors.close(0);
     let code = exit_code(record, inconclusive);
     if errors_first == 0 { code } else { errors_first }
 }
 
-/// Fail, or worse than a stored run, before refused cases before inconclusive before pass.
+/// Returns the exit code. Fail, or worse than a stored run, precedes refused cases, then inconclusive, then pass.
 fn exit_code(record: &Record, inconclusive: Option<Inconclusive>) -> u8 {
     let any = |verdict| record.results.rows().any(|row| row.verdict == Some(verdict));
     let is_worse = record.comparison.as_ref().is_some_and(Comparison::fails);

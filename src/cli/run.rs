@@ -23,7 +23,7 @@ use crate::record::build;
 /// Defaults by which commands differ.
 #[derive(Debug, Clone, Copy)]
 pub struct Profile {
-    /// Draws per experiment where neither an argument nor the case says.
+    /// Number of draws per experiment if neither an argument nor the case gives it.
     draws: u64,
     /// Folder of the results.
     out: Option<&'static str>,
@@ -83,7 +83,7 @@ impl Kept {
 }
 
 impl Asked {
-    /// Returns the words that ask for the draws of these options, wherever they are made.
+    /// Returns the words that ask for the draws of these options, on any machine.
     fn words(&self, options: &Options) -> Vec<String> {
         let mut words = options.words();
         words.push("--".to_owned());
@@ -144,17 +144,17 @@ impl Arguments {
     }
 }
 
-/// Draws what is asked for, or what is missing of it.
+/// Draws a run, or the missing part of it.
 pub fn main(arguments: &Arguments, catalogue: &Catalogue, console: &Console) -> anyhow::Result<u8> {
     draw(&arguments.resumed()?, Box::new(Threads), catalogue, console)
 }
 
-/// Draws and judges what is asked for by the defaults of `check`.
+/// Draws and judges with the defaults of `check`.
 pub fn check(asked: &Asked, catalogue: &Catalogue, console: &Console) -> anyhow::Result<u8> {
     judge(asked, CHECK, &Kept::FRESH, catalogue, console, |_| Ok(Store::default()))
 }
 
-/// Lets workers draw what is asked for, as it was resumed.
+/// Lets workers draw a run, or the rest of a resumed one.
 pub fn draw(
     arguments: &Arguments,
     workers: Box<dyn Workers>,
@@ -171,7 +171,7 @@ pub fn draw(
         let header = Header::new(plan, &fingerprint()?, &asked.words(&plan.options), kept.shard);
         workers.agree(&header).map_err(anyhow::Error::msg)?;
         if asked.looks.shares_draws() {
-            // What is left for an experiment depends on what others have drawn.
+            // The number of draws left for an experiment depends on what others have drawn.
             let mut store = Store::new(header);
             store.workers = workers;
             return Ok(store);
@@ -202,7 +202,7 @@ fn draw_share(
         if was_finished {
             return Ok((true, true));
         }
-        // A share is drawn up to the horizon: nobody looks at it before all shares are there.
+        // A share is drawn up to the horizon: the gate looks only when all shares are there.
         let blocks = share::blocks(plan, share).count() as u64;
         let bar = output::progress("drawing", "draws", blocks * plan.step(), console);
         let is_whole = run::draw_share(plan, share, &store, &|step| match step {
@@ -232,7 +232,7 @@ fn draw_share(
     Ok(0)
 }
 
-/// Draws what the store does not have, judges, writes, prints.
+/// Draws the blocks that the store does not have, judges, writes, prints.
 pub fn judge(
     asked: &Asked,
     profile: Profile,
@@ -244,7 +244,7 @@ pub fn judge(
     let (selection, reports) = (&asked.selection, &asked.reports);
     let cases = selection.read(catalogue, console)?;
     let out = asked.out(profile);
-    // Better to learn now than after the drawing that nothing can be written.
+    // A folder that cannot be written to is reported before the drawing, not after it.
     reports.writable(out.as_deref(), &cases)?;
     let baselines = asked.baseline.open()?;
     // A comparison needs times and evidence of its own.
@@ -263,7 +263,7 @@ pub fn judge(
             let counts = store.reusable(plan);
             let begin = Instant::now();
             let bar = output::progress_until("drawing", "draws", 0, plan.options.seconds, console);
-            // Draws of an earlier run tell nothing about the speed of this one.
+            // Draws of an earlier run are not part of the speed of this one.
             let draws = run::draw_with(plan, &store, &|step| match step {
                 Step::Drawn(draws) => bar.inc(draws),
                 Step::Expected(draws) => bar.set_length(draws),
@@ -279,7 +279,7 @@ pub fn judge(
             }
             Ok((record, counts, finishing, store))
         })?;
-    // A run that was begun with a limit of time is over when the time is; one that was interrupted or resumed is not.
+    // A run with a time limit is complete when the time is over; an interrupted or resumed run is not.
     let is_asked = store.stop.load(Ordering::Relaxed) || kept.resume.is_some();
     let was_stopped = record.results.cut_by_time && is_asked && store.keeps;
     let (record, run) = baselines.compare(record, &cases);
@@ -292,7 +292,7 @@ pub fn judge(
     drop(store);
     errors.keep(output::print_run(&record, reports.format, reports.verbose, console));
     errors.extend(baselines.complaint(&record));
-    // A run that is to be resumed is no baseline yet.
+    // A run that will be resumed is no baseline yet.
     let store = || baselines.store(&record, run.as_ref());
     let mut told = if was_stopped { String::new() } else { errors.keep(store()) };
     if let (Some(out), Some(files)) = (&out, files) {
@@ -314,6 +314,6 @@ pub fn judge(
             "interrupted, or out of time: this is judged on what was drawn; {cure} goes on"
         ));
     }
-    // What was cut short is no pass, whatever counts as one.
+    // A run that was cut short is no pass, whatever counts as one.
     Ok(if was_stopped && code == 0 { UNDECIDED } else { code })
 }

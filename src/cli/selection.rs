@@ -1,4 +1,4 @@
-//! Which cases, and how they are drawn.
+//! Selection of cases, and options of their drawing.
 
 use anyhow::Context;
 use clap::Args;
@@ -9,7 +9,7 @@ use super::{Console, output};
 use crate::case::{Case, Catalogue, suite};
 use crate::plan::{Amount, Filter, Options, Plan};
 
-/// Experiments, and where their random numbers begin.
+/// Experiments, and the seed of their random numbers.
 #[derive(Debug, Clone, Args)]
 #[command(next_help_heading = "Experiments")]
 pub struct Experiments {
@@ -32,7 +32,7 @@ pub struct Selection {
     /// Draws per experiment, such as 1e6, whatever the cases say [default: the case's, or 4e6; check: 4e5]
     #[arg(long, help_heading = "Drawing", value_name = "N", value_parser = numbers::draws, allow_hyphen_values = true)]
     draws: Option<u64>,
-    /// Chance that a correct run shows any failure
+    /// Probability that a correct run shows any failure
     #[arg(long, help_heading = "Drawing", default_value_t = 1e-3, value_name = "A", value_parser = numbers::alpha, allow_hyphen_values = true)]
     alpha: f64,
     /// Threads [default: one per processor]; results do not depend on them
@@ -66,7 +66,7 @@ pub struct Seed {
     pub seed: u64,
 }
 
-/// When the gate looks, and what stops the drawing.
+/// Looks of the gate, and limits that stop the drawing.
 #[derive(Debug, Clone, Args)]
 #[command(next_help_heading = "Drawing")]
 pub struct Looks {
@@ -86,17 +86,17 @@ pub struct Looks {
 }
 
 impl Looks {
-    /// Returns whether all experiments share a number of draws: what is left for one then depends on the others.
+    /// Returns whether all experiments share a number of draws: the number left for one then depends on the others.
     pub fn shares_draws(&self) -> bool {
         matches!(self.budget, Some(Budget::Draws(_)))
     }
 
-    /// Returns the same with the budget of another.
+    /// Returns these options with the budget of others.
     pub fn with_budget_of(self, other: &Self) -> Self {
         Self { budget: other.budget, ..self }
     }
 
-    /// Returns options that say so.
+    /// Adds these options to those of a plan.
     pub fn of(&self, options: Options) -> Options {
         let Self { fixed_draws: fixed, strict, blocks_per_look, budget } = *self;
         let (seconds, budget) = match budget {
@@ -128,14 +128,14 @@ impl Experiments {
         Err(output::mistakes(&errors, console, "case file(s); nothing was run"))
     }
 
-    /// The options of a plan that draws so much.
+    /// Returns the options of a plan that makes this amount of draws.
     pub fn options(&self, draws: Amount) -> anyhow::Result<Options> {
         let filter = self.filter.as_deref().map(Filter::new).transpose();
         let filter = filter.context("--filter takes a pattern such as \"*eq21*:single\"")?;
         Ok(Options { seed: self.seed.seed, draws, filter, ..Options::default() })
     }
 
-    /// Plans the cases, with a bar of progress; a selection that keeps nothing is an error.
+    /// Plans the cases, with a progress bar; a selection without experiments is an error.
     pub fn plan<'a>(
         &self,
         cases: &'a [Case],
@@ -165,17 +165,17 @@ impl Selection {
         self.experiments.read(catalogue, console)
     }
 
-    /// The cases as they were named.
+    /// Returns the cases as they were named.
     pub fn names(&self) -> &[String] {
         &self.experiments.cases
     }
 
-    /// The same on as many threads as another one.
+    /// Returns these options with the number of threads of others.
     pub fn on_threads_of(self, other: &Self) -> Self {
         Self { threads: other.threads, ..self }
     }
 
-    /// The options of a plan; `usual` is what is drawn where neither an argument nor the case says.
+    /// Returns the options of a plan; `usual` is the number of draws if neither an argument nor the case gives it.
     pub fn options(&self, usual: u64) -> anyhow::Result<Options> {
         let draws = self.draws.map_or(Amount::CaseOr(usual), Amount::Exactly);
         let options = self.experiments.options(draws)?;
@@ -196,7 +196,7 @@ impl Selection {
     }
 }
 
-/// Calls `f` on so many threads; 0 is one per processor.
+/// Calls `f` on this number of threads; 0 is one per processor.
 pub fn on_threads<T: Send>(
     threads: usize,
     f: impl FnOnce() -> anyhow::Result<T> + Send,
@@ -204,7 +204,7 @@ pub fn on_threads<T: Send>(
     rayon::ThreadPoolBuilder::new().num_threads(threads).build()?.install(f)
 }
 
-/// Leaves out what is given twice. Two cases of one name would share their random numbers and files.
+/// Leaves out repeated cases. Two different cases of one name are an error: they would share random numbers and files.
 fn distinct(cases: Vec<Case>) -> anyhow::Result<Vec<Case>> {
     let mut kept: Vec<Case> = Vec::with_capacity(cases.len());
     for case in cases {

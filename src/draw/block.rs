@@ -1,4 +1,4 @@
-//! One block of one experiment, drawn and absorbed by its questions; and what blocks come to, merged in the order of
+//! One block of one experiment, drawn and absorbed by its questions; and the totals of blocks, merged in the order of
 //! their addresses.
 //!
 //! A block is 2¹⁴ draws, found by its address. Its draws are made buffer by buffer; every question
@@ -33,8 +33,8 @@ pub struct Block {
     pub seconds: f64,
 }
 
-/// Draws `every` blocks one after the other, and merges them into one: number `number` of such. `None` of what is
-/// refused, and if `is_over` comes true before the last.
+/// Draws `every` blocks one after the other and merges them into block number `number` of that size. `None` for a
+/// refused experiment, or if `is_over` becomes true before the last block.
 pub fn merged(
     planned: &Planned,
     number: u64,
@@ -59,7 +59,7 @@ pub fn merged(
 }
 
 impl Block {
-    /// Draws a block of an experiment; `None` of what is refused.
+    /// Draws a block of an experiment; `None` if it is refused.
     pub fn drawn(planned: &Planned, block: u64) -> Option<Self> {
         // Processor time, not wall time: other processes do not count.
         let begin = ThreadTime::now();
@@ -71,7 +71,7 @@ impl Block {
         Some(drawing.close(begin.elapsed().as_secs_f64()))
     }
 
-    /// Adds the one that follows.
+    /// Adds the block that follows.
     fn merge(&mut self, planned: &Planned, next: &Self) {
         self.draws += next.draws;
         self.seconds += next.seconds;
@@ -84,7 +84,7 @@ impl Block {
     }
 }
 
-/// Scratch for draws and for what a question makes of them.
+/// Scratch for draws and for the values that a question observes.
 #[derive(Default)]
 struct Scratch {
     buffer: DrawBuffer,
@@ -92,8 +92,8 @@ struct Scratch {
 }
 
 thread_local! {
-    /// What the blocks before have left to the thread: so much memory, asked for anew, would cost a block as
-    /// much time as some of its questions.
+    /// Memory that earlier blocks of the thread have left. Allocating it for each block would take as much time as some
+    /// of the questions.
     static SCRATCH: RefCell<Vec<Scratch>> = const { RefCell::new(Vec::new()) };
 }
 
@@ -109,7 +109,7 @@ impl Scratch {
     }
 }
 
-/// A block on its way.
+/// Block that is being drawn.
 struct Drawing<'p> {
     planned: &'p Planned,
     ready: &'p Ready,
@@ -120,14 +120,14 @@ struct Drawing<'p> {
     observers: Vec<Box<dyn Observer + 'p>>,
     tallies: Vec<Tally>,
     lookups: Tally,
-    /// The numbers of its first draw, of the next, and of the first beyond it.
+    /// Numbers of its first draw, of the next one, and of the first one behind it.
     start: u64,
     at: u64,
     end: u64,
 }
 
 impl<'p> Drawing<'p> {
-    /// At the first draw; `None` for what is refused.
+    /// Starts at the first draw; `None` for a refused experiment.
     fn begin(planned: &'p Planned, block: u64) -> Option<Self> {
         let ready = planned.outcome.as_ref().ok()?;
         let channels = ready.prediction.channels.len();
@@ -164,7 +164,7 @@ impl<'p> Drawing<'p> {
         self.ready.experiment.fill(&mut self.streams, count, &mut self.scratch.buffer);
     }
 
-    /// Every question absorbs the buffer.
+    /// Lets every question absorb the buffer.
     fn absorb(&mut self) {
         let (count, is_fixed) = (self.count(), self.is_fixed());
         let Scratch { buffer, y } = &mut self.scratch;
@@ -221,20 +221,20 @@ pub struct Standing {
     pub drawn: Drawn,
     /// Number of merged blocks.
     pub blocks: u64,
-    /// After how many blocks the next look comes.
+    /// Number of blocks after which the next look comes.
     pub look: u64,
     /// True if nothing is left to draw.
     pub is_done: bool,
 }
 
 impl Standing {
-    /// Before the first block.
+    /// Returns the progress before the first block.
     pub fn new(planned: &Planned) -> Self {
         Self { drawn: Drawn::new(planned), look: 1, ..Self::default() }
     }
 }
 
-/// An experiment of a plan with its draws; none where it is refused.
+/// Experiment of a plan with its draws; no draws if it is refused.
 #[derive(Clone)]
 pub struct DrawnExperiment<'p> {
     /// The case.
@@ -250,14 +250,14 @@ pub struct DrawnExperiment<'p> {
 pub struct Draws<'p> {
     /// The experiments, in the order of the plan.
     pub experiments: Vec<DrawnExperiment<'p>>,
-    /// True if the time limit came first, or the wish to stop.
+    /// True if a time limit or a request to stop ended the drawing.
     pub cut_by_time: bool,
-    /// True if the budget of draws came first.
+    /// True if the budget of draws ended the drawing.
     pub cut_by_budget: bool,
 }
 
 impl Drawn {
-    /// Nothing yet.
+    /// Returns the sums without draws.
     pub fn new(planned: &Planned) -> Self {
         let totals = planned.questions.iter().map(|question| question.answer.total());
         let channels = planned.outcome.as_ref().map_or(0, |ready| ready.prediction.channels.len());

@@ -4,12 +4,12 @@
 //! looks after 1, 2, 3, … blocks, growing by 1.15, and at the horizon
 //! ```
 //!
-//! With `--blocks-per-look K` a block here is K blocks of 2¹⁴ draws, which are merged where they are drawn.
+//! With `--blocks-per-look K` a block here is K blocks of 2¹⁴ draws, which are merged by the thread that draws them.
 //!
-//! A look uses exactly the blocks up to it. Blocks that other threads drew ahead wait for their
-//! look, and are discarded if it never comes: what is decided does not depend on the threads. In
-//! each round every open experiment gets the blocks to its next look, in the order of the cases;
-//! what a decided experiment saves goes to those that are open.
+//! A look uses exactly the blocks up to it. Blocks that other threads drew ahead are kept until their look, and are
+//! discarded if it never comes: decisions do not depend on the number of threads. In each round every open experiment
+//! gets the blocks to its next look, in the order of the cases. Draws that a decided experiment saves go to the open
+//! ones.
 
 use std::collections::{BTreeMap, VecDeque};
 use std::convert::Infallible;
@@ -86,7 +86,7 @@ pub fn draw_with<'p>(plan: &'p Plan, store: &Store, listen: &Listener) -> Draws<
         let new = all.saturating_sub(kept.load(Ordering::Relaxed));
         listen(Step::Expected(plan.options.budget.map_or(new, |budget| new.min(budget))));
     };
-    // What a run before had merged.
+    // Blocks that an earlier run had merged.
     listen(Step::Kept(rounds.draws()));
     expect(&rounds);
     let mut budget = plan.options.budget;
@@ -94,7 +94,7 @@ pub fn draw_with<'p>(plan: &'p Plan, store: &Store, listen: &Listener) -> Draws<
     let until = Until { most: None, is_decided: true };
     let Ok::<_, Infallible>(_) = drive(&mut rounds, until, |rounds, _| {
         let Rounds(running) = rounds;
-        // What others need for their fixed draws is not taken from them.
+        // Draws that other experiments need up to their fixed numbers are reserved.
         let mut reserved: u64 = running.values().map(Running::reserve).sum();
         for one in running.values_mut().filter(|one| !one.at.is_done) {
             reserved -= one.reserve();
@@ -113,7 +113,7 @@ pub fn draw_with<'p>(plan: &'p Plan, store: &Store, listen: &Listener) -> Draws<
             let mut drawn = store.blocks(&names, &drawing, &listen);
             for name in names {
                 let Some(one) = running.get_mut(&name.0) else { continue };
-                // What comes after a missing block is left out: the first blocks are kept.
+                // Blocks behind a missing one are left out: the kept blocks are the first ones.
                 match drawn.remove(&name) {
                     Some(block) if !cut_by_time => one.ahead.push_back(block),
                     _ => cut_by_time = true,
@@ -125,7 +125,7 @@ pub fn draw_with<'p>(plan: &'p Plan, store: &Store, listen: &Listener) -> Draws<
             }
         }
         for one in running.values_mut().filter(|one| !one.at.is_done) {
-            // Blocks drawn ahead of an earlier look may be all that this one waits for.
+            // Blocks drawn ahead of an earlier look may complete this one.
             one.merge();
             one.look(plan);
         }
@@ -146,7 +146,7 @@ pub fn draw_with<'p>(plan: &'p Plan, store: &Store, listen: &Listener) -> Draws<
     Draws { experiments, cut_by_time, cut_by_budget }
 }
 
-/// Draws a share of a plan into the file of a store, without a look at it; whether all of it is there.
+/// Draws a share of a plan into the file of a store, without looks. Returns whether the share is complete.
 pub fn draw_share(plan: &Plan, share: Share, store: &Store, listen: &Listener) -> bool {
     let is_over = || store.is_stopped();
     let drawing = Drawing::new(plan, &is_over);
@@ -161,12 +161,12 @@ pub fn draw_share(plan: &Plan, share: Share, store: &Store, listen: &Listener) -
     }
 }
 
-/// What is drawn until the next merge.
+/// Returns the blocks to draw until the next merge.
 fn batch(names: &mut impl Iterator<Item = BlockName>, store: &Store) -> Vec<BlockName> {
     names.take((BATCH * store.workers.threads()).min(MAX_BATCH)).collect()
 }
 
-/// Takes draws from the budget, if there is one and it has them beside those that are reserved.
+/// Takes draws from the budget; false if it has too few beside those that are reserved.
 fn take(budget: &mut Option<u64>, draws: u64, reserved: u64) -> bool {
     let Some(all) = *budget else { return true };
     let left = all.checked_sub(draws).filter(|left| *left >= reserved);
@@ -187,30 +187,30 @@ impl Sink for Rounds<'_> {
     }
 }
 
-/// The blocks from one number up to another of one experiment.
+/// Blocks from one number up to another of one experiment.
 #[derive(Clone)]
 struct Span {
     experiment: u32,
     from: u64,
     until: u64,
-    /// The last look.
+    /// Number of the block at the last look.
     last: u64,
 }
 
-/// The blocks up to the next look of every open experiment, block by block so that a time limit cuts all
-/// alike. They are made one by one: those between two looks may be more than memory holds.
+/// Blocks up to the next look of every open experiment, block by block, so that a time limit affects all equally. They
+/// are generated one by one: those between two looks may be more than memory holds.
 #[derive(Clone)]
 struct Round {
     spans: Vec<Span>,
     /// The next block, and the place of its experiment.
     block: u64,
     span: usize,
-    /// Beyond the last.
+    /// End of the blocks, exclusive.
     end: u64,
 }
 
 impl Round {
-    /// The blocks up to the next looks; and further ones while they are not `enough` to keep all threads at work.
+    /// Returns the blocks up to the next looks, and further ones until there are `enough` to keep all threads at work.
     fn new(running: &BTreeMap<u32, Running>, enough: usize) -> Self {
         let span = |one: &Running| {
             let from = one.at.blocks + one.ahead.len() as u64;
@@ -227,7 +227,7 @@ impl Round {
         loop {
             round.end = round.spans.iter().map(|span| span.until).max().unwrap_or(0);
             let missing = round.clone().take(enough).count();
-            // Only where a look waits for blocks is there anything to draw.
+            // Only looks that miss blocks need draws.
             if missing == 0 || missing == enough {
                 return round;
             }
@@ -261,41 +261,41 @@ impl Iterator for Round {
     }
 }
 
-/// An experiment that is being drawn.
+/// Experiment that is being drawn.
 struct Running<'p> {
     planned: &'p Planned,
     /// Number of draws that are merged as one block.
     step: u64,
-    /// What is merged and decided.
+    /// Merged blocks and decisions so far.
     at: Standing,
     /// Blocks drawn ahead of the next look.
     ahead: VecDeque<Block>,
 }
 
 impl Running<'_> {
-    /// The last look.
+    /// Returns the number of blocks at the last look.
     fn last(&self) -> u64 {
         self.planned.horizon.div_ceil(self.step)
     }
 
-    /// Number of draws at the next look.
+    /// Returns the number of draws at the next look.
     fn until(&self) -> u64 {
         (self.at.look * self.step).min(self.planned.horizon)
     }
 
-    /// The draws that it is expected to make in all, those ahead of a look that never comes with them.
+    /// Returns the number of draws that it is expected to make in all, draws ahead of a look that never comes included.
     fn expected(&self) -> u64 {
         let ahead: u64 = self.ahead.iter().map(|block| block.draws).sum();
         let made = self.at.drawn.draws + ahead;
         if self.at.is_done { made } else { made.max(self.until()).max(expected(self.planned)) }
     }
 
-    /// The draws up to the next look.
+    /// Returns the number of draws up to the next look.
     fn stage(&self) -> u64 {
         self.until() - self.at.drawn.draws
     }
 
-    /// The draws that are still to come up to the fixed number, in whole blocks.
+    /// Returns the number of draws that are still to be made up to the fixed number, in whole blocks.
     fn reserve(&self) -> u64 {
         if self.at.is_done {
             return 0;
@@ -304,7 +304,7 @@ impl Running<'_> {
         fixed.min(self.planned.horizon).saturating_sub(self.at.drawn.draws)
     }
 
-    /// Merges what was drawn, up to the next look.
+    /// Merges drawn blocks, up to the next look.
     fn merge(&mut self) {
         while self.at.blocks < self.at.look {
             let Some(block) = self.ahead.pop_front() else { return };
@@ -314,7 +314,7 @@ impl Running<'_> {
         }
     }
 
-    /// Decides what can be decided, and whether to go on.
+    /// Decides every question that can be decided, and whether to go on.
     fn look(&mut self, plan: &Plan) {
         let planned = self.planned;
         let draws = self.at.drawn.draws;
@@ -328,7 +328,7 @@ impl Running<'_> {
         self.at.look = gate::next_look(self.at.look).min(self.last());
     }
 
-    /// Returns whether the one check that matters has failed.
+    /// Returns whether the check that ends the drawing has failed.
     fn has_failed(&self, plan: &Plan) -> bool {
         let Some(name) = &plan.options.until_failed else { return false };
         let both = self.planned.questions.iter().zip(&self.at.drawn.totals);
@@ -337,8 +337,8 @@ impl Running<'_> {
     }
 }
 
-/// The draws that an experiment is expected to make: a correct scalar passes after 17/27 of its plan, and one without
-/// a promise keeps the drawing open until all planned draws are made.
+/// Returns the number of draws that an experiment is expected to make. A correct scalar passes after 17/27 of its plan;
+/// one that is not promised to pass keeps the drawing open until all planned draws are made.
 #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // a count of draws
 fn expected(planned: &Planned) -> u64 {
     if planned.horizon <= planned.draws {

@@ -5,7 +5,7 @@
 //! blocks are numbered through the experiments of the plan: number n belongs to part n mod N + 1 of N
 //! ```
 //!
-//! The gate decides when all parts are there, so a part draws its share of all blocks up to the horizon.
+//! The gate decides when all parts are present, so a part draws its share of all blocks up to the horizon.
 
 use std::fmt::{self, Debug};
 use std::str::FromStr;
@@ -75,11 +75,11 @@ pub trait Workers: Debug + Send + Sync {
     /// Returns the number of threads.
     fn threads(&self) -> usize;
 
-    /// Compares the draws of all workers with those that a header describes.
+    /// Compares the draws of all workers with the draws that a header describes.
     ///
     /// # Errors
     ///
-    /// Workers would draw something else: their names, and why.
+    /// Workers would make other draws: their names, and why.
     fn agree(&self, header: &Header) -> Result<(), String>;
 
     /// Draws blocks in any order, and hands each over.

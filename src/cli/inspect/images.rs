@@ -1,4 +1,4 @@
-//! Pictures, and draws in tables of text and in raw numbers.
+//! Pictures, draws in tables of text and draws in raw numbers.
 
 use std::fs::File;
 use std::io::{BufRead, BufReader};
@@ -11,7 +11,7 @@ use media::files::{Fault, Pixels, pfm, wrong};
 
 const PIXELS: &str = "pixels (columns, rows)";
 
-/// The parts of an `OpenEXR` file.
+/// Returns the parts of an `OpenEXR` file.
 pub fn exr(bytes: Vec<u8>) -> Result<Vec<Item>, Fault> {
     let whole = "write it by OpenEXR, to its end";
     let parts = exr::parts(&bytes).or_else(|cause| wrong(cause, whole))?;
@@ -66,7 +66,7 @@ fn item(part: &Part, is_one_of_several: bool) -> Item {
     }
 }
 
-/// The picture of a PFM file.
+/// Returns the picture of a PFM file.
 pub fn pfm(bytes: &[u8]) -> Result<Vec<Item>, Fault> {
     let cure = "write Pf or PF, columns, rows, -1 and all values as float32";
     let pixels = pfm::read(bytes).or_else(|cause| wrong(cause, cure))?;
@@ -85,10 +85,10 @@ pub fn pfm(bytes: &[u8]) -> Result<Vec<Item>, Fault> {
 
 /// Maximum number of columns of a table.
 const MAX_COLUMNS: usize = 64;
-/// Draws that are read at a time.
+/// Number of draws that are read at a time.
 const BLOCK: usize = 1 << 14;
 
-/// The columns of a file of draws, a table of text or raw numbers.
+/// Returns the columns of a file of draws, a table of text or raw numbers.
 pub fn draws(path: &Path) -> anyhow::Result<Vec<Item>> {
     let file = path.display().to_string();
     let Some(Format::Csv { lookups, .. }) = Format::of_path(path) else {
@@ -108,7 +108,7 @@ pub fn draws(path: &Path) -> anyhow::Result<Vec<Item>> {
     Ok(items)
 }
 
-/// The names of a table's columns, or their places.
+/// Returns the names of a table's columns, or their indices.
 fn names(path: &Path) -> anyhow::Result<Vec<String>> {
     let mut lines = BufReader::new(File::open(path)?).lines();
     let first = lines.find(|line| {
@@ -125,7 +125,7 @@ fn names(path: &Path) -> anyhow::Result<Vec<String>> {
     Ok(words.iter().enumerate().map(name).collect())
 }
 
-/// Reads draws through.
+/// Reads all draws of a column.
 fn column(mut draws: Draws, file: &str) -> anyhow::Result<Item> {
     let (mut spread, mut count, mut buffer) = (Spread::default(), 0, Vec::new());
     while draws.read(&mut buffer, BLOCK)? > 0 {

@@ -1,4 +1,4 @@
-//! `trueflight inspect`: what files of volumes, images and draws hold.
+//! `trueflight inspect`: the content of files of volumes, images and draws.
 
 mod images;
 mod volumes;
@@ -27,7 +27,7 @@ pub struct Arguments {
     format: Format,
 }
 
-/// Prints what each file holds; a file that cannot be read is an error, and the others are shown all the same.
+/// Prints the content of each file. A file that cannot be read is an error, and the others are still printed.
 pub fn main(arguments: &Arguments, console: &Console) -> anyhow::Result<u8> {
     let (mut items, mut errors) = (Vec::new(), Errors::default());
     for path in &arguments.files {
@@ -44,7 +44,7 @@ pub fn main(arguments: &Arguments, console: &Console) -> anyhow::Result<u8> {
     Ok(if errors.is_empty() { 0 } else { errors.close(USAGE) })
 }
 
-/// The grids, images or columns of a file, by its ending.
+/// Returns the grids, images or columns of a file, by its ending.
 fn inspected(path: &Path) -> anyhow::Result<Vec<Item>> {
     if std::fs::metadata(path)?.is_dir() {
         bail!("it is a folder; give the files in it");
@@ -69,7 +69,7 @@ fn inspected(path: &Path) -> anyhow::Result<Vec<Item>> {
     Ok(items.into_iter().map(|item| Item { file: file.clone(), ..item }).collect())
 }
 
-/// A block for each file, a paragraph for each of its items.
+/// Returns the table for people: a block for each file, a paragraph for each of its items.
 fn table(items: &[Item]) -> String {
     let mut text = String::new();
     for (place, item) in items.iter().enumerate() {
@@ -82,44 +82,44 @@ fn table(items: &[Item]) -> String {
     text
 }
 
-/// A part of a file. What is unknown or makes no sense for it is `None`, or empty.
+/// Part of a file. Facts that are unknown or do not apply are `None`, or empty.
 #[derive(Debug, Clone, Default, PartialEq, serde::Serialize)]
 pub struct Item {
     /// The file.
     pub file: String,
-    /// The format of the file.
+    /// Format of the file.
     pub format: String,
-    /// The name of the grid, the medium, the part or the column.
+    /// Name of the grid, the medium, the part or the column.
     pub name: String,
-    /// The type of its numbers.
+    /// Type of its numbers.
     pub kind: String,
-    /// The class of a grid, such as `fog volume`.
+    /// Class of a grid, such as `fog volume`.
     pub class: String,
     /// Lengths of its axes.
     pub size: Vec<u64>,
     /// Meaning of the numbers of `size`, such as `voxels (x, y, z)`.
     pub counts: &'static str,
-    /// Values of a voxel or a pixel.
+    /// Number of values of a voxel or a pixel.
     pub channels: Option<u64>,
-    /// The lowest corner of its box in the world.
+    /// Lowest corner of its box in the world.
     pub low: Option<[f64; 3]>,
-    /// The highest corner.
+    /// Highest corner.
     pub high: Option<[f64; 3]>,
-    /// The edges of a voxel in the world.
+    /// Edges of a voxel in the world.
     pub voxel: Option<[f64; 3]>,
-    /// The smallest finite value.
+    /// Smallest finite value.
     pub least: Option<f64>,
-    /// The largest finite value.
+    /// Largest finite value.
     pub most: Option<f64>,
-    /// The mean of the finite values.
+    /// Mean of the finite values.
     pub mean: Option<f64>,
-    /// The value outside the voxels that are stored.
+    /// Value outside the voxels that are stored.
     pub background: Option<f64>,
     /// Number of active voxels.
     pub active: Option<u64>,
     /// Further facts of the file: compression, windows, channels, version.
     pub details: Vec<String>,
-    /// Doubts, such as why a grid is no medium.
+    /// Notes on doubtful content, such as why a grid cannot be a medium.
     pub notes: Vec<String>,
 }
 
@@ -136,7 +136,7 @@ pub struct Spread {
 }
 
 impl Spread {
-    /// Adds a value with its number of times.
+    /// Adds a value that occurs a number of times.
     pub fn add(&mut self, value: f64, times: f64) {
         if !value.is_finite() {
             self.wrong += times;
@@ -151,7 +151,7 @@ impl Spread {
         }
     }
 
-    /// Spread of a list.
+    /// Returns the spread of a list.
     pub fn of(values: impl IntoIterator<Item = f64>) -> Self {
         let mut spread = Self::default();
         values.into_iter().for_each(|value| spread.add(value, 1.0));
@@ -175,7 +175,7 @@ fn point(point: [f64; 3]) -> String {
 }
 
 impl Item {
-    /// The item in a few lines.
+    /// Returns the item as a few lines.
     pub fn paragraph(&self) -> String {
         let kind = [self.kind.as_str(), self.class.as_str()];
         let kind = kind.into_iter().filter(|word| !word.is_empty()).collect::<Vec<_>>().join(", ");
@@ -210,7 +210,7 @@ impl Item {
     }
 }
 
-/// The items as a table of text: lists are in one field each.
+/// Returns the items as a table of text: lists are in one field each.
 pub fn csv(items: &[Item]) -> anyhow::Result<String> {
     let mut writer = csv::Writer::from_writer(Vec::new());
     writer.write_record([

@@ -10,7 +10,7 @@ use numeric::digits::number;
 
 const VOXELS: &str = "voxels (x, y, z)";
 
-/// The grids of a file.
+/// Returns the grids of a file.
 pub fn items(format: Format, bytes: &[u8]) -> Result<Vec<Item>, Fault> {
     match format {
         Format::Vol => of_vol(bytes),
@@ -21,7 +21,7 @@ pub fn items(format: Format, bytes: &[u8]) -> Result<Vec<Item>, Fault> {
     }
 }
 
-/// Adds that an item is no medium, where a value is negative or no number.
+/// Adds a note that an item cannot be a medium, if a value is negative or not finite.
 fn doubt(item: &mut Item, spread: &Spread) {
     if spread.negative > 0.0 {
         let many = spread.negative;
@@ -138,7 +138,7 @@ fn of_nvdb(bytes: &[u8]) -> Result<Vec<Item>, Fault> {
     Ok(items.collect())
 }
 
-/// Adds what the voxels of a grid say.
+/// Adds the facts of a grid of voxels.
 fn tree(item: &mut Item, read: Result<Grid, Fault>) {
     let grid = match read {
         Ok(grid) => grid,
@@ -181,7 +181,7 @@ fn tree(item: &mut Item, read: Result<Grid, Fault>) {
     }
 }
 
-/// The box along the axes about a box of indices.
+/// Returns the axis-aligned box around a box of indices.
 fn world(transform: &Transform, ends: [[i64; 3]; 2]) -> [[f64; 3]; 2] {
     let corner = |n: usize| transform.world(std::array::from_fn(|j| ends[n >> j & 1][j] as f64));
     let corners = (1..8).map(corner);
@@ -190,7 +190,7 @@ fn world(transform: &Transform, ends: [[i64; 3]; 2]) -> [[f64; 3]; 2] {
     })
 }
 
-/// The array of a file.
+/// Returns the array of a file.
 pub fn array(mut bytes: &[u8]) -> Result<Vec<Item>, Fault> {
     let header = match npy::bytes(&mut bytes).and_then(|header| npy::parse(&header)) {
         Ok(header) => header,

@@ -1,4 +1,4 @@
-//! What is claimed of draws by the arguments of `trueflight judge`, and the judging by it.
+//! Claims about draws by the arguments of `trueflight judge`, and verdicts by them.
 
 use super::{Arguments, Judged};
 use crate::case::{Case, CaseError, Catalogue};
@@ -7,23 +7,23 @@ use crate::judge::{
     Wanted, theory_of,
 };
 
-/// What is claimed of the draws.
+/// Claims about the draws of a file.
 pub(super) struct Claimed {
-    /// A claim for each channel, with its name; the name is empty where there is one only.
+    /// A claim for each channel, with its name; the name is empty if there is only one.
     claims: Vec<(String, Claim)>,
     theory: Option<Theory>,
-    /// The one channel that is judged, where it was chosen.
+    /// Index of the judged channel, if one was chosen.
     channel: Option<usize>,
     is_mean_only: bool,
 }
 
 impl Claimed {
-    /// Returns whether theory says what is claimed.
+    /// Returns whether the claims come from theory.
     pub(super) fn has_theory(&self) -> bool {
         self.theory.is_some()
     }
 
-    /// Whether what is wanted makes sense for the claims.
+    /// Validates the options of the gate against the claims.
     pub(super) fn check(&self, wanted: Wanted) -> Result<(), ClaimError> {
         let judged = |(index, _): &(usize, _)| self.channel.is_none_or(|channel| channel == *index);
         let claims = self.claims.iter().enumerate().filter(judged);
@@ -32,7 +32,7 @@ impl Claimed {
             .try_for_each(|claim| Trial::new(claim, wanted, None).map(drop))
     }
 
-    /// The columns of a file that are judged.
+    /// Returns the columns of a file that are judged.
     pub(super) fn layout(&self, column: Option<&str>) -> Layout {
         let channels: Vec<String> = self.claims.iter().map(|(name, _)| name.clone()).collect();
         let theory = self.theory.as_ref();
@@ -73,7 +73,7 @@ impl Claimed {
 }
 
 impl Arguments {
-    /// What is claimed, by numbers or by a case.
+    /// Returns the claims, from numbers or from a case.
     pub(super) fn claimed(&self, catalogue: &Catalogue) -> anyhow::Result<Claimed> {
         let (Some(name), Some(estimator)) = (&self.case, &self.estimator) else {
             let claims = vec![(String::new(), self.claim_by_numbers()?)];
@@ -115,14 +115,14 @@ impl Arguments {
         Ok(Claimed { claims: claims?, theory: Some(theory), channel, is_mean_only: self.mean_only })
     }
 
-    /// The channel that is chosen.
+    /// Returns the index of the chosen channel.
     fn channel_of(&self, case: &Case, theory: &Theory) -> anyhow::Result<Option<usize>> {
         let names = theory.names();
         let place = |name: &String| names.iter().position(|other| other == name);
         let wrong = || ChoiceError::Channel { case: case.name.clone(), channels: names.clone() };
         match &self.channel {
             Some(name) => Ok(Some(place(name).ok_or_else(wrong)?)),
-            // A column is one channel; which, only the caller can say.
+            // A column is one channel, and only the caller knows which.
             None if self.column.is_some() && names.len() > 1 => anyhow::bail!(
                 "--column is one channel of {}; say which, by --channel: {}",
                 case.name,

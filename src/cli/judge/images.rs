@@ -13,7 +13,7 @@ use crate::judge::images::{Claim, Judgement, Level, Stack, Wanted, files, judge}
 use crate::report::judge::images as report;
 use crate::report::judge::junit::Told;
 
-/// What concerns images alone.
+/// Options on images.
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Images")]
 pub struct Arguments {
@@ -21,7 +21,7 @@ pub struct Arguments {
     #[arg(long, conflicts_with_all = ["case", "batch", "variance_tolerance", "column"])]
     #[arg(conflicts_with_all = ["lookups", "input", "stop_early", "draws"])]
     pub images: bool,
-    /// What the mean of each pixel should be: an image
+    /// Expected mean of each pixel: an image
     #[arg(long, value_name = "FILE", requires = "images", conflicts_with = "truth")]
     truth_image: Option<PathBuf>,
     /// The truth image is the mean of N independent passes, and has their error; needs a variance of one pass
@@ -47,12 +47,12 @@ pub struct Arguments {
     #[arg(conflicts_with_all = ["case", "truth", "truth_image", "truth_passes", "variance", "variance_image"])]
     #[arg(conflicts_with_all = ["variance_passes", "variance_stack", "kurtosis", "range"])]
     against: Vec<PathBuf>,
-    /// Both stacks of --against have one law in each pixel, not only one mean: the exact test alone decides, and the
-    /// variances must agree, too
+    /// Both stacks of --against have the same distribution in each pixel, not only the same mean: the exact test alone
+    /// decides, and the variances must agree, too
     #[arg(long, requires = "against", conflicts_with = "case")]
     same_law: bool,
-    /// Judge tiles of N × N pixels; 1 for single pixels [default: the least power of 2 with 2048
-    /// values of all passes, 8192 where the variance comes from passes]
+    /// Judge tiles of N × N pixels; 1 for single pixels [default: the smallest power of 2 with 2048 values of all
+    /// passes, 8192 where the variance comes from passes]
     #[arg(long, value_name = "N", requires = "images")]
     #[arg(value_parser = numbers::whole::<u32>(1..=u32::MAX), allow_negative_numbers = true)]
     tile: Option<u32>,
@@ -76,7 +76,7 @@ pub fn main(arguments: &super::Arguments, console: &Console) -> anyhow::Result<u
     if arguments.files.iter().any(|file| super::is_pipe(file)) {
         bail!("images are not read of a pipe; give files");
     }
-    // Where an option that is required conflicts with another that is given, clap forgets the requirement.
+    // If a required option conflicts with another given option, clap does not enforce the requirement.
     if images.same_law && images.against.is_empty() {
         bail!("--same-law says something of two stacks; give the second by --against");
     }
@@ -168,7 +168,7 @@ fn judged(arguments: &super::Arguments, wanted: &Wanted) -> anyhow::Result<Judge
     Ok(judge(&read(&arguments.files)?, &claim, wanted)?)
 }
 
-/// The files of a stack; those of a folder in the order of their names.
+/// Returns the files of a stack; those of a folder in the order of their names.
 fn passes(paths: &[PathBuf]) -> anyhow::Result<Vec<PathBuf>> {
     let [folder] = paths else { return Ok(paths.to_vec()) };
     if !folder.is_dir() {
@@ -195,7 +195,7 @@ fn passes(paths: &[PathBuf]) -> anyhow::Result<Vec<PathBuf>> {
     Ok(found)
 }
 
-/// The first of several files with how many there are.
+/// Returns the name of the first of several files, with their number.
 fn name(files: &[PathBuf]) -> String {
     let first = files.first().map_or(Path::new(""), PathBuf::as_path).display();
     match files.len() {

@@ -5,8 +5,8 @@
 //! others   plan the same, and draw the pieces that rank 0 deals
 //! ```
 //!
-//! Blocks are found by their addresses and merged in that order, so that results do not depend on the number of
-//! ranks. MPI ends all ranks where one dies; what rank 0 had received by then is in its log.
+//! Blocks are found by their addresses and merged in that order, so that results do not depend on the number of ranks.
+//! MPI ends all ranks if one dies; the blocks that rank 0 had received by then are in its log.
 
 mod team;
 
@@ -35,11 +35,11 @@ use theory::parallel;
 enum Message {
     /// From rank 0: words that ask for the run.
     Plan(Vec<String>),
-    /// To rank 0: what a rank would draw, on how many threads; or why it cannot.
+    /// To rank 0: the draws that a rank would make, on how many threads; or the reason why it cannot.
     Planned(Result<(Header, usize), String>),
     /// From rank 0: blocks for one thread to draw.
     Draw(Vec<BlockName>),
-    /// To rank 0: these blocks, but those that stay undrawn.
+    /// To rank 0: these blocks, except for those that stay undrawn.
     Drawn(Vec<(BlockName, Option<Block>)>),
     /// From rank 0: blocks that are not begun stay undrawn.
     Stop,
@@ -78,7 +78,7 @@ pub struct Link {
 }
 
 impl Link {
-    /// Connects rank `rank` of `size` by a thread that does the tasks of one queue and fills the other.
+    /// Connects rank `rank` of `size` by a thread that carries out the tasks of one queue and fills the other.
     pub fn new(
         rank: usize,
         size: usize,
@@ -91,7 +91,7 @@ impl Link {
 
     /// Sends a message, and does not wait for it.
     fn send(&self, to: usize, message: &Message) {
-        // Every message can be encoded; a carrier that has ended is found by the next receiver.
+        // Every message can be encoded; the next receiver finds a carrier that has ended.
         let bytes = postcard::to_stdvec(message).unwrap_or_default();
         let _ = self.outgoing.send(Outgoing::Message(to, bytes));
     }
@@ -122,7 +122,7 @@ impl Link {
     fn fail(&self, why: &str) -> ! {
         output::complain(&anyhow!("rank {}: {why}", self.rank));
         let _ = self.outgoing.send(Outgoing::Abort(USAGE));
-        // The carrier ends the process first.
+        // The carrier ends the process before that.
         thread::sleep(Duration::from_secs(10));
         std::process::exit(USAGE.into())
     }
@@ -134,12 +134,13 @@ impl Drop for Link {
         const PANICKED: u8 = 101;
         let last = if thread::panicking() { Outgoing::Abort(PANICKED) } else { Outgoing::Leave };
         let _ = self.outgoing.send(last);
-        // A carrier that has panicked has nothing more to carry.
+        // A carrier that has panicked carries nothing more.
         let _ = self.carrier.take().map(JoinHandle::join);
     }
 }
 
-/// Returns how many processes `mpirun` or a scheduler has begun: by Open MPI, by MPICH and its relatives, or by Slurm.
+/// Returns the number of processes that `mpirun` or a scheduler has started: Open MPI, MPICH and its relatives, or
+/// Slurm.
 fn size() -> usize {
     let slurm = env::var_os("PMIX_RANK").map(|_| "SLURM_NTASKS");
     let names = ["OMPI_COMM_WORLD_SIZE", "PMI_SIZE"].into_iter().chain(slurm);
@@ -172,14 +173,14 @@ pub(super) fn join(is_run: bool, join: Option<Join>) -> anyhow::Result<Option<Li
     Ok(Some(link))
 }
 
-/// Draws what is asked for as a rank among others.
+/// Draws a run as one of several ranks.
 pub(super) fn main(
     link: Link,
     arguments: &run::Arguments,
     catalogue: &Catalogue,
     console: &Console,
 ) -> anyhow::Result<u8> {
-    // One thread a processor, the default of a single process, would be that many for each rank.
+    // The default of a single process, one thread per processor, would start that many threads on each rank.
     let mut arguments = arguments.clone();
     arguments.asked.selection.threads.get_or_insert(1);
     if link.rank > 0 {
@@ -192,7 +193,7 @@ pub(super) fn main(
         bail!("a share is drawn by one process: leave out mpirun, or --shard");
     }
     if !console.quiet {
-        // MPI ends rank 0 with any other, and leaves it no time to say so then.
+        // MPI ends rank 0 together with any other rank, without time for a message then.
         let (ranks, again) = (team.size(), journal::resume(&asked.out()));
         output::note(&format!(
             "{ranks} ranks draw; should one of them die, {again} under mpirun goes on"
@@ -202,7 +203,7 @@ pub(super) fn main(
     run::draw(&asked, Box::new(team), catalogue, console)
 }
 
-/// Draws the pieces that rank 0 deals. Rank 0 receives every error, and tells the user.
+/// Draws the pieces that rank 0 deals. Errors go to rank 0, which reports them to the user.
 fn serve(link: &Link, arguments: &run::Arguments, catalogue: &Catalogue, console: &Console) {
     let Message::Plan(words) = link.receive().1 else { return };
     let drawn = run::Arguments::of(&words).and_then(|asked| {
@@ -219,7 +220,7 @@ fn serve(link: &Link, arguments: &run::Arguments, catalogue: &Catalogue, console
     }
 }
 
-/// One thread receives while those of the pool draw.
+/// Receives on one thread while the threads of the pool draw.
 fn draw(link: &Link, plan: &Plan, header: Header) {
     let threads = rayon::current_num_threads();
     link.send(0, &Message::Planned(Ok((header, threads))));
@@ -279,7 +280,7 @@ mod tests {
         from.into_iter().enumerate().map(link).collect()
     }
 
-    /// Returns the checks that a run by so many ranks writes.
+    /// Returns the checks that a run by this number of ranks writes.
     fn checks(folder: &Path, ranks: usize) -> String {
         let out = folder.join(ranks.to_string()).display().to_string();
         let case = folder.join("ray.toml").display().to_string();

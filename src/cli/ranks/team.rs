@@ -1,4 +1,4 @@
-//! All ranks, as rank 0 sees them.
+//! All ranks, from the side of rank 0.
 
 use std::collections::BTreeMap;
 use std::sync::OnceLock;
@@ -11,19 +11,19 @@ use crate::draw::share::{BlockName, Drawing, Take, Workers};
 use crate::draw::store::Header;
 use theory::parallel;
 
-/// Portions that each thread gets of the blocks of a batch, at least: rank 0 may have to wait for the last ones.
+/// Smallest number of portions of a batch per thread: rank 0 may have to wait for the last ones.
 const PORTIONS: usize = 16;
 
 /// Longest time until rank 0 sees that the drawing is over.
 const PATIENCE: Duration = Duration::from_millis(10);
 
-/// Rank 0 with the others.
+/// Rank 0 with the other ranks.
 #[derive(Debug)]
 pub struct Team {
     link: Link,
     /// Threads of each rank.
     threads: OnceLock<Vec<usize>>,
-    /// Ranks that have still to say what they would draw.
+    /// Number of ranks that have not yet described their draws.
     planning: AtomicUsize,
 }
 
@@ -48,7 +48,7 @@ impl Team {
         (1..self.link.size).for_each(|rank| self.link.send(rank, &message()));
     }
 
-    /// Receives what a rank would draw, while there is one that has still to say so.
+    /// Receives the description of a rank's draws, if one is still missing.
     fn planned(&self) -> Option<(usize, Message)> {
         let more = |left: usize| left.checked_sub(1);
         self.planning.fetch_update(Ordering::Relaxed, Ordering::Relaxed, more).ok()?;
@@ -63,7 +63,7 @@ impl Team {
         loop {
             for rank in 1..threads.len() {
                 while open[rank] < 2 * threads[rank] {
-                    // Towards the end less and less, so that none has much left when the others are done.
+                    // Portions shrink towards the end, so that no rank has much left when the others are done.
                     let left = names.len().saturating_sub(next.load(Ordering::Relaxed));
                     let dealt = portion(names, next, (left / (2 * self.threads())).clamp(1, most));
                     if dealt.is_empty() {
@@ -116,7 +116,7 @@ impl Workers for Team {
         if faults.is_empty() { Ok(()) } else { Err(faults.join("\n")) }
     }
 
-    /// One thread deals to the others and takes their blocks, while those of the pool draw.
+    /// Deals to the other ranks and takes their blocks on one thread, while the threads of the pool draw.
     fn draw(&self, names: &[BlockName], drawing: &Drawing, take: &Take) {
         let next = AtomicUsize::new(0);
         thread::scope(|scope| {

@@ -10,7 +10,7 @@ use numeric::pack;
 use numeric::rng::{hash, name_hash};
 use theory::parallel;
 
-/// Draws that tell one data file from another.
+/// Number of draws by which data files are distinguished.
 const FIRST_DRAWS: usize = 256;
 
 /// Everything that draws depend on.

@@ -5,10 +5,10 @@
 //! frame  length of the content (u32), content (key and value), hash of the content (u64)
 //! ```
 //!
-//! Nothing is used from the first frame on that is torn, cut, flipped or doubled. Frames of other draws have other
+//! Frames behind the first one that is torn, cut, flipped or doubled are not used. Frames of other draws have other
 //! keys. An entry is written at once, so that a killed process loses none; the disk is synchronised at most once a
-//! second. Errors are those of the system, with the path and what was being done, and files that are no logs. After an
-//! error while a log is written or rewritten the file is as it was.
+//! second. Errors are those of the system, with the path and the operation, and files that are not logs. After an error
+//! while a log is written or rewritten the file is as it was before.
 
 #![allow(clippy::missing_errors_doc)] // the page tells all of them
 
@@ -121,7 +121,7 @@ impl Log {
 
     /// Opens a log to write into it, and cuts off damaged frames.
     pub fn resume(path: &Path, lock: Option<File>) -> io::Result<Self> {
-        // A run that was killed while it rewrote the file left it; the lock keeps others out.
+        // A run that was killed while it rewrote the file left it; the lock excludes other processes.
         let _ = fs::remove_file(beside(path));
         let file = OpenOptions::new().read(true).write(true).open(path);
         let log = Self { lock, ..Self::scan(path, file.map_err(told("open", path))?)? };
@@ -225,7 +225,7 @@ impl Log {
         Ok(())
     }
 
-    /// Waits until the disk has everything.
+    /// Waits until the disk has all entries.
     pub fn synchronise(&self) -> io::Result<()> {
         self.inside().synchronise().map_err(told("write", &self.path))
     }
@@ -266,7 +266,7 @@ impl Inside {
     }
 }
 
-/// Adds the path, and what was being done, to an error.
+/// Adds the path and the operation to an error.
 fn told(doing: &str, path: &Path) -> impl Fn(io::Error) -> io::Error {
     let what = format!("cannot {doing} {}", path.display());
     move |error| io::Error::new(error.kind(), format!("{what}: {error}"))

@@ -1,7 +1,7 @@
 //! Store of draws: one format and one key for resumed runs, shares, and experiments that earlier runs have finished.
 //!
-//! An experiment is found by a hash of everything that its draws and decisions depend on ([`Header`]), a block by
-//! that key and its number. What no log has is drawn by [`Workers`], and written into the log of the run.
+//! An experiment is found by a hash of everything that its draws and decisions depend on ([`Header`]), a block by that
+//! key and its number. Blocks that no log has are drawn by [`Workers`], and written into the log of the run.
 
 mod header;
 mod log;
@@ -22,7 +22,7 @@ use crate::plan::{Plan, Planned};
 /// Largest number of finished experiments that are kept for later runs: some 20 MB.
 const MAX_FINISHED: usize = 2000;
 
-/// Bytes of blocks before a log is rewritten, at least and as a multiple of the sums that take their place.
+/// Bytes of blocks before a log is rewritten: a minimum, and a multiple of the sums that replace them.
 const MIN_REWRITE: u64 = 2 << 20;
 const REWRITE_RATIO: u64 = 4;
 
@@ -84,7 +84,7 @@ impl Store {
     }
 
     /// Opens the experiments that earlier runs have finished; a fresh run adds to them, and does not use them.
-    /// Those of another program, and a damaged file, count as none.
+    /// Experiments of another program and a damaged file are ignored.
     ///
     /// # Errors
     ///
@@ -103,8 +103,8 @@ impl Store {
         Ok(())
     }
 
-    /// Writes what earlier runs and this one have finished, unless a limit cut this one short. Too many are
-    /// replaced by those of this run.
+    /// Writes the experiments that earlier runs and this one have finished, unless a limit cut this one short. If they
+    /// are too many, those of earlier runs are dropped.
     ///
     /// # Errors
     ///
@@ -145,8 +145,8 @@ impl Store {
         locked(&self.error).take()
     }
 
-    /// Returns the sums of an experiment, interrupted or finished. What an interrupted run has begun goes on, whatever
-    /// another run has finished.
+    /// Returns the sums of an experiment, interrupted or finished. An experiment that an interrupted run has begun is
+    /// continued, even if another run has finished it.
     pub fn standing(&self, planned: &Planned) -> Option<Standing> {
         let key = self.key(planned.number)?;
         let get = |log: &Log| self.noted(log.get(Key::Standing(key))).flatten();
@@ -170,7 +170,7 @@ impl Store {
         })
     }
 
-    /// Returns blocks: read where a log has them, else drawn and kept. `listen` hears of all draws.
+    /// Returns blocks: read where a log has them, else drawn and kept. `listen` is called for all draws.
     pub fn blocks(
         &self,
         names: &[BlockName],
@@ -245,8 +245,8 @@ impl Store {
     }
 }
 
-/// Returns whether a later run may use the draws of an experiment. Without moments it may not: 256 draws alone would
-/// tell one data file from another.
+/// Returns whether a later run may use the draws of an experiment. It may not if theory has no moments: 256 draws alone
+/// would distinguish one data file from another.
 fn is_reusable(planned: &Planned) -> bool {
     planned.outcome.as_ref().is_ok_and(|ready| {
         ready.prediction.channels.iter().all(|channel| channel.moments.is_some())
