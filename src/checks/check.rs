@@ -170,7 +170,7 @@ pub struct Found {
     pub gate: Option<GateFinding>,
     /// Number of draws and ln E at the looks of the gate.
     pub path: Vec<(u64, f64)>,
-    /// Block at whose end it was decided, or that has the draw that fails.
+    /// Block after which it was decided, or the block with the draw that fails.
     pub block: Option<u64>,
 }
 

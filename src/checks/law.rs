@@ -27,7 +27,7 @@ pub trait Law: Send + Sync + UnwindSafe + RefUnwindSafe {
     /// Returns the p-value of the sums over `draws` draws; `None` if they test nothing.
     fn p_value(&self, sums: &[f64], draws: f64) -> Option<f64>;
 
-    /// Returns details beside the p-value, in words; empty if there are none.
+    /// Returns details beside the p-value, in words; may be empty.
     fn details(&self, sums: &[f64], draws: f64) -> String {
         let _ = (sums, draws);
         String::new()

@@ -1,4 +1,4 @@
-//! The fields of a case as a renderer reads them: homogeneous, or samples in a box, channel by channel.
+//! Fields of a case as a renderer reads them: homogeneous, or samples in a box, channel by channel.
 //!
 //! Samples are of single precision, in the middle of cells:
 //!
@@ -6,7 +6,8 @@
 //! sample (i, j, k) = σ_t at low + ((i, j, k) + ½) · (high − low)/n,   rounded to single precision
 //! ```
 //!
-//! Written as a `.vol` file, see `trueflight explain grid`, whose truth is that of the page `grid`.
+//! Files are `.vol` files, see `trueflight explain grid`. The truth is that of the page `grid`, read from the same
+//! file.
 
 use std::sync::Arc;
 
@@ -19,45 +20,45 @@ use media::phase::henyey_greenstein::HenyeyGreenstein;
 use media::{Body, Medium, Volume};
 use numeric::geometry::{Aabb, Bounds, Point};
 
-/// Cells along the longest side of a field in space, and along a line.
+/// Number of cells along the longest side of a field in space, and along a line.
 const CELLS: [usize; 2] = [32, 256];
 
-/// The most channels of a picture: red, green and blue.
+/// Maximum number of channels of a picture: red, green and blue.
 const MAX_CHANNELS: usize = 3;
 
-/// What is in the way, and which case would do.
+/// Obstacle to an export, and a kind of case without it.
 pub(super) type Unsuitable = (String, &'static str);
 
-/// The size of a case's own grids, and whether lookups take the nearest sample.
+/// Size of a case's own grids, and whether lookups take the nearest sample.
 pub(super) type OwnGrid = ([usize; 3], bool);
 
-/// The options of one export.
+/// Options of one export.
 pub(super) struct Reader<'a> {
     /// The name of the case.
     pub name: String,
     /// The renderer.
     pub target: Target,
-    /// The form of the scene.
+    /// Form of the scene.
     pub wishes: &'a Wishes,
 }
 
-/// The place of a medium, and σ_t of each channel, all of them homogeneous or all of them sampled.
+/// Place of a medium, and σ_t of each channel, all of them homogeneous or all of them sampled.
 pub(super) struct Fields {
-    /// The box or ball.
+    /// Box or ball.
     pub shape: Bounds,
-    /// One for each channel.
+    /// Field of each channel.
     pub fields: Vec<Field>,
 }
 
 impl Fields {
-    /// Its length along z.
+    /// Returns the length along z.
     pub fn length(&self) -> f64 {
         self.shape.enclosing_box().map_or(0.0, |bounds| bounds.high.0[2])
     }
 }
 
 impl Reader<'_> {
-    /// The channels that are exported of all that a case has.
+    /// Returns the exported ones among all channels of a case.
     pub fn chosen<T>(&self, all: Vec<T>) -> Result<Vec<T>, Unsuitable> {
         const CURE: &str = "choose up to three of them, as in `--channels 1,2,3`, and export the others to another folder";
         let count = all.len();
@@ -81,7 +82,7 @@ impl Reader<'_> {
         Ok(numbers.iter().filter_map(|number| all[number - 1].take()).collect())
     }
 
-    /// Notes on a scene's channels and its medium.
+    /// Returns notes on a scene's channels and its medium.
     pub fn remarks(&self, scene: &Scene) -> Vec<String> {
         let mut remarks = Vec::new();
         if let Some(numbers) = &self.wishes.channels {
@@ -103,7 +104,7 @@ impl Reader<'_> {
         remarks
     }
 
-    /// Volumes in a box, or a homogeneous box or ball; with the size of their own grid, if they have one.
+    /// Returns volumes in a box, or a homogeneous box or ball; with the size of their own grid, if they have one.
     pub fn in_space(
         &self,
         volumes: &[Arc<Volume>],
@@ -134,7 +135,7 @@ impl Reader<'_> {
         Ok(Fields { shape: Bounds::Box(rounded(around)), fields })
     }
 
-    /// Media along one line, as layers along z that begin at 0 in a box as wide to both sides as it is long.
+    /// Returns media along one line, as layers along z that begin at 0, in a box that is twice as wide as long.
     pub fn along(&self, media: &[Medium]) -> Fields {
         let length = single(media[0].support().length());
         let shape =
@@ -150,8 +151,8 @@ impl Reader<'_> {
         Fields { shape, fields }
     }
 
-    /// The size of the grids of samples in the middle of cells that the exported channels of a case have, and whether
-    /// the nearest is taken; `None` where one has another, or none.
+    /// Returns the size of the grids of samples, at the centres of cells, that all exported channels have, and whether
+    /// lookups take the nearest sample. `None` if a channel has another grid, or none.
     pub fn own_grids(&self, body: &Body) -> Result<Option<OwnGrid>, Unsuitable> {
         let grid = |body: &Body| match body {
             Body::Volume { volume, .. } => volume.cells(),
@@ -163,12 +164,12 @@ impl Reader<'_> {
     }
 }
 
-/// Mistakes in case files are found before.
+/// Returns the error of a case that cannot be read; mistakes in case files are reported earlier.
 pub(super) fn unread() -> Unsuitable {
     ("it cannot be read".into(), "run `trueflight plan` on it")
 }
 
-/// A phase function with its number in single precision.
+/// Rounds the parameter of a phase function to single precision.
 pub(super) fn lobe(phase: Phase) -> Phase {
     match phase {
         Phase::HenyeyGreenstein(lobe) => {
@@ -178,7 +179,7 @@ pub(super) fn lobe(phase: Phase) -> Phase {
     }
 }
 
-/// The phase function of all channels.
+/// Returns the phase function of all channels.
 pub(super) fn one_phase(phases: &[Phase]) -> Result<Phase, Unsuitable> {
     if phases.windows(2).any(|pair| pair[0] != pair[1]) {
         let why = "its channels have different phase functions, and that of a renderer is grey";
@@ -190,12 +191,12 @@ pub(super) fn one_phase(phases: &[Phase]) -> Result<Phase, Unsuitable> {
     Ok(lobe(phases[0]))
 }
 
-/// A box with corners in single precision.
+/// Rounds the corners of a box to single precision.
 fn rounded(Aabb { low, high }: Aabb) -> Aabb {
     Aabb { low: Point(low.0.map(single)), high: Point(high.0.map(single)) }
 }
 
-/// The numbers of cubic cells of a box along each axis, `most` of them along the longest.
+/// Returns the numbers of cubic cells of a box along each axis, `most` of them along the longest.
 #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // from 1 to `most`
 fn cells(bounds: Aabb, most: usize) -> [usize; 3] {
     let edges: [f64; 3] = std::array::from_fn(|axis| bounds.high.0[axis] - bounds.low.0[axis]);
@@ -203,10 +204,10 @@ fn cells(bounds: Aabb, most: usize) -> [usize; 3] {
     edges.map(|edge| ((edge / longest * most as f64).round() as usize).max(1))
 }
 
-/// The name of the file.
+/// Name of the file.
 pub const FILE: &str = "density.vol";
 
-/// The name of the file of one channel of several, counted from 0.
+/// Returns the name of the file of one channel of several, counted from 0.
 pub fn file_of(channel: usize) -> String {
     format!("density-{}.vol", channel + 1)
 }
@@ -218,14 +219,14 @@ pub struct Sampled {
     pub size: [usize; 3],
     /// `values[(z·ny + y)·nx + x]`, 1/length.
     pub values: Vec<f32>,
-    /// The box, of corners in single precision.
+    /// Box, with corners in single precision.
     pub bounds: Aabb,
     /// True if a lookup takes the nearest sample; otherwise it is trilinear.
     pub nearest: bool,
 }
 
 impl Sampled {
-    /// A field in space.
+    /// Samples a field in space.
     pub fn of_volume(volume: &Volume, bounds: Aabb, size: [usize; 3], nearest: bool) -> Self {
         let bounds = rounded(bounds);
         let place = |axis: usize, index: usize| {
@@ -244,9 +245,10 @@ impl Sampled {
         Self { size, values, bounds, nearest }
     }
 
-    /// A field along a line, as layers along z that begin at 0, in a box as wide to both sides as it is long.
+    /// Samples a field along a line, as layers along z that begin at 0, in a box that is twice as wide as long.
     ///
-    /// Two samples in x and y: where samples beyond the box are zero, one would not be the same on its whole width.
+    /// There are two samples in x and y: where samples beyond the box are zero, a single one would not be constant over
+    /// the whole width.
     pub fn of_line(medium: &Medium, cells: usize) -> Self {
         let support = medium.support();
         let length = single(support.length());
@@ -257,7 +259,7 @@ impl Sampled {
         Self { size: [2, 2, cells], values, bounds, nearest: false }
     }
 
-    /// The largest sample, which is the majorant of renderers.
+    /// Returns the largest sample, which is the majorant of renderers.
     pub fn peak(&self) -> f64 {
         self.values.iter().fold(0.0, |peak, &value| peak.max(f64::from(value)))
     }
@@ -268,7 +270,7 @@ impl Sampled {
     }
 }
 
-/// The bytes of a `.vol` file of one channel, or of three: of two the second stands for the third, too.
+/// Returns the bytes of a `.vol` file of one channel, or of three: with two, the second is repeated as the third.
 pub fn vol(channels: &[&Sampled]) -> Vec<u8> {
     let Some(first) = channels.first() else { return Vec::new() };
     let count = if channels.len() > 1 { 3 } else { 1 };

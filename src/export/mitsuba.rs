@@ -1,10 +1,10 @@
 //! Scenes of Mitsuba 3, in XML.
 //!
-//! One orthographic camera whose rays are all the same, a box filter and one sample a pixel, so that every pixel is
-//! one sample; `-D integrator=volpathmis`, `-D sampling=false`, `-D width=…`, `-D height=…` and `-D seed=…` change
-//! what they say. Fields are `gridvolume`s placed by `to_world`: corners in `.vol` files may be those of something
-//! else. Roulette is off, for it would change the law of a sample. Channels are red, green and blue of the variants
-//! `…_rgb`, which take them as they are: `raw` keeps grids of three channels from being turned into spectra.
+//! All rays of the one orthographic camera are equal, with a box filter and one sample per pixel: every pixel is one
+//! sample. `-D integrator=volpathmis`, `-D sampling=false`, `-D width=…`, `-D height=…` and `-D seed=…` set these
+//! values. Fields are `gridvolume`s placed by `to_world`, since corners in `.vol` files may belong to something else.
+//! Roulette is off, for it would change the distribution of a sample. Channels are red, green and blue of the variants
+//! `…_rgb`, which take them as they are: `raw` keeps grids of three channels from being converted to spectra.
 //!
 //! Source: W. Jakob et al., *Mitsuba 3 renderer* (2022), its plugin reference.
 
@@ -15,13 +15,13 @@ use super::scene::{Light, Scene, View};
 use media::phase::Phase;
 use numeric::geometry::{Aabb, Bounds, Point};
 
-/// A number of single precision with all of its digits.
+/// Returns a number of single precision with all of its digits.
 #[allow(clippy::cast_possible_truncation)] // it is of single precision
 pub(super) fn number(x: f64) -> String {
     format!("{:?}", x as f32)
 }
 
-/// The text of a scene file.
+/// Returns the text of a scene file.
 pub fn text(scene: &Scene, view: &View) -> String {
     let depth = scene.scatterings.map_or(-1, |most| i64::from(most) + 1);
     let mut text = format!(
@@ -48,7 +48,7 @@ pub fn text(scene: &Scene, view: &View) -> String {
     text + "</scene>\n"
 }
 
-/// What is within the medium's element.
+/// Writes the content of the medium's element.
 fn medium(scene: &Scene, text: &mut String) {
     if let Some(grid) = scene.grids().first() {
         let Aabb { low, high } = grid.bounds;
@@ -72,7 +72,7 @@ fn medium(scene: &Scene, text: &mut String) {
     } else {
         let mut extinctions: Vec<f64> =
             scene.channels.iter().map(|channel| channel.field.peak()).collect();
-        // Constant volumes hold numbers from 0 to 1: up to Mitsuba 3.4 it refuses others.
+        // Up to version 3.4 Mitsuba refuses constant volumes outside [0, 1].
         let scale = scene.peak();
         if scale > 1.0 {
             for extinction in &mut extinctions {
@@ -93,7 +93,7 @@ fn medium(scene: &Scene, text: &mut String) {
     let _ = writeln!(text, "    {phase}\n  </medium>");
 }
 
-/// A colour that is the same everywhere; the last channel stands for those that are not there.
+/// Returns a constant colour; the last channel also stands for missing ones.
 fn value(name: &str, channels: &[f64]) -> String {
     let colour =
         [0, 1, 2].map(|n| channels.get(n).or(channels.last()).copied().unwrap_or_default());
@@ -108,7 +108,7 @@ fn vector(what: &str, point: Point) -> String {
     format!("<{what} x=\"{x}\" y=\"{y}\" z=\"{z}\"/>")
 }
 
-/// The camera; all of its rays are one.
+/// Writes the camera; all of its rays are equal.
 fn camera(scene: &Scene, text: &mut String) {
     let [right, up, onward] = scene.axes();
     let Aabb { low, high } = scene.bounds();
@@ -143,7 +143,7 @@ fn camera(scene: &Scene, text: &mut String) {
     );
 }
 
-/// The surface of the medium, and the mirrors within.
+/// Writes the surface of the medium, and the mirrors within.
 fn boundary(scene: &Scene, text: &mut String) {
     let null =
         "    <bsdf type=\"null\"/>\n    <ref name=\"interior\" id=\"medium\"/>\n  </shape>\n";
@@ -169,7 +169,7 @@ fn boundary(scene: &Scene, text: &mut String) {
     let mirror = "    <bsdf type=\"conductor\"><string name=\"material\" value=\"none\"/></bsdf>\n  </shape>\n";
     let length = high.0[2];
     for (axis, sign) in [(0, 1.0), (0, -1.0), (1, 1.0), (1, -1.0)] {
-        // Columns of a rectangle in x and y whose normal, z, points to the middle.
+        // Columns of a rectangle in x and y with its normal, z, towards the centre.
         let mut columns = [Point([0.0; 3]); 4];
         columns[0].0[1 - axis] = length;
         columns[2].0[axis] = -sign;
@@ -183,7 +183,7 @@ fn boundary(scene: &Scene, text: &mut String) {
     }
 }
 
-/// A rectangle by the columns of its matrix: half of its sides, its normal, its middle.
+/// Returns a rectangle by the columns of its matrix: half of its sides, its normal, its centre.
 fn rectangle(columns: [Point; 4]) -> String {
     let rows = [0, 1, 2].map(|row| columns.map(|column| number(column.0[row])).join(" "));
     format!(
@@ -193,7 +193,7 @@ fn rectangle(columns: [Point; 4]) -> String {
     )
 }
 
-/// The beginning of a sphere's element.
+/// Returns the beginning of a sphere's element.
 fn ball(centre: Point, radius: f64) -> String {
     let [x, y, z] = centre.0.map(number);
     format!(
@@ -231,7 +231,7 @@ fn light(scene: &Scene, light: Light, text: &mut String) {
         }
         Light::Core { radius } => {
             let Bounds::Sphere { centre, .. } = scene.shape else { return };
-            // What meets it stays in the medium: it is no boundary.
+            // Light that hits it stays in the medium: it is no boundary.
             format!("{}{black}{area}", ball(centre, radius))
         }
     };

@@ -1,15 +1,15 @@
-//! Cases as scenes of other renderers, with what their pixels must be on average.
+//! Cases as scenes of other renderers, with the expected values of their pixels.
 //!
 //! ```text
 //! case file → scene (what is rendered) → case.toml (the same field, for theory) → truth.json
 //!                                      → scene files of the renderer
 //! ```
 //!
-//! A renderer reads a field as samples in single precision. The truth that is written is that of these samples,
-//! read as the renderer reads them, and not of the field that they were taken from. All numbers of a scene
-//! are rounded to single precision before theory sees them.
+//! A renderer reads a field as samples in single precision. The truth in `truth.json` is that of these samples, read as
+//! the renderer reads them, and not of the field that they were taken from. All numbers of a scene are rounded to
+//! single precision before theory uses them.
 //!
-//! Files are made in a temporary folder and moved when all are there.
+//! Files are made in a temporary folder and moved when all are complete.
 
 mod fields;
 mod mitsuba;
@@ -27,7 +27,7 @@ use truth::Truth;
 use crate::case::{CaseError, Catalogue, Source};
 use media::files;
 
-/// A renderer that scenes are written for.
+/// Renderer that scenes are written for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Target {
     /// Mitsuba 3.
@@ -37,7 +37,7 @@ pub enum Target {
 }
 
 impl Target {
-    /// Its name.
+    /// Returns the name.
     pub fn name(self) -> &'static str {
         match self {
             Self::Mitsuba => "mitsuba",
@@ -45,7 +45,7 @@ impl Target {
         }
     }
 
-    /// Border of its grids beyond their outermost samples, in words of `trueflight explain grid`.
+    /// Returns the border of its grids beyond their outermost samples, in words of `trueflight explain grid`.
     pub fn border(self) -> &'static str {
         match self {
             Self::Mitsuba => "clamp",
@@ -54,26 +54,26 @@ impl Target {
     }
 }
 
-/// Why a case was not exported.
+/// Reason why a case was not exported.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum ExportError {
-    /// The case file is wrong.
+    /// The case file has mistakes.
     #[error(transparent)]
     Case(#[from] CaseError),
-    /// The case is right, and no renderer can show it.
+    /// The case has no mistakes, and the renderer cannot show it.
     #[error("{case} cannot be exported to {target}: {why}; {cure}")]
     Unsuitable {
         /// The case.
         case: String,
         /// The renderer.
         target: &'static str,
-        /// What is in the way.
+        /// Obstacle.
         why: String,
-        /// Which case would do.
+        /// Kind of case without it.
         cure: String,
     },
-    /// Theory has no answer for what would be exported.
+    /// Theory has no answer for the exported field.
     #[error("{case} cannot be exported: theory has no answer for the sampled field: {why}")]
     Unknown {
         /// The case.
@@ -99,7 +99,7 @@ pub enum ExportError {
 pub struct Exported {
     /// The files, in the folder asked for.
     pub files: Vec<PathBuf>,
-    /// The scenes and fields of an earlier export that are still there, and do not belong to this one.
+    /// Scenes and fields of an earlier export that are still there, and do not belong to this one.
     pub older: Vec<PathBuf>,
     /// Content of `truth.json`.
     pub truth: Truth,
@@ -108,16 +108,16 @@ pub struct Exported {
 /// Options of an export.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Wishes {
-    /// The number of cells along the longest side of a field that is sampled; without it 32 in space and 256 along a
+    /// Number of cells along the longest side of a field that is sampled. `None` stands for 32 in space and 256 along a
     /// line. A grid keeps its own.
     pub cells: Option<usize>,
-    /// The channels, from 1, of a case that has several: 1 to 3 of them, in this order; without it all.
+    /// Exported channels, from 1, of a case with several: 1 to 3 of them, in this order; `None` for all.
     pub channels: Option<Vec<usize>>,
-    /// True if a homogeneous medium is written as a heterogeneous one, to test how a renderer tracks through that.
+    /// True if a homogeneous medium is written as a heterogeneous one, to test how a renderer tracks through it.
     pub heterogeneous: bool,
 }
 
-/// Writes a case of a catalogue as a scene, with a number of cells and all else by default.
+/// Writes a case of a catalogue as a scene with a number of cells, and defaults for everything else.
 ///
 /// # Errors
 ///
@@ -132,12 +132,12 @@ pub fn export(
     export_with(catalogue, source, target, &Wishes { cells, ..Wishes::default() }, out)
 }
 
-/// Writes a case of a catalogue as a scene into a folder, which is made if it is not there.
+/// Writes a case of a catalogue as a scene into a folder, which is created if it does not exist.
 ///
 /// # Errors
 ///
-/// A case that is wrong, that the target cannot show, or whose answer theory does not know, and files that cannot be
-/// written. Nothing is left behind then.
+/// The case has mistakes, the target cannot show it, theory does not know its answer, or a file cannot be written. No
+/// file is left behind then.
 pub fn export_with(
     catalogue: &Catalogue,
     source: &Source,
@@ -149,13 +149,13 @@ pub fn export_with(
     let was_there = out.exists();
     let written = write(&scene, out);
     if written.is_err() && !was_there {
-        // What was made for the files goes with them; where that fails nothing worse has happened.
+        // Removes the folder that was made for the files; an error here changes nothing.
         let _ = fs::remove_dir(out);
     }
     written
 }
 
-/// Writes a scene into a folder, all of it or nothing.
+/// Writes a scene into a folder, completely or not at all.
 fn write(scene: &Scene, out: &Path) -> Result<Exported, ExportError> {
     let io = |path: &Path| {
         let path = path.to_owned();
@@ -189,7 +189,7 @@ fn write(scene: &Scene, out: &Path) -> Result<Exported, ExportError> {
             continue;
         }
         let text = match (scene.target, channel) {
-            // All channels are in one scene.
+            // One scene has all channels.
             (Target::Mitsuba, Some(2..)) => continue,
             (Target::Mitsuba, _) => mitsuba::text(scene, view),
             (Target::Pbrt, Some(channel)) => {
@@ -205,7 +205,7 @@ fn write(scene: &Scene, out: &Path) -> Result<Exported, ExportError> {
     Ok(Exported { files: names.iter().map(|name| out.join(name)).collect(), older, truth })
 }
 
-/// The files of an earlier export that this one does not replace.
+/// Returns the files of an earlier export that this one does not replace.
 fn older(out: &Path, names: &[String]) -> Vec<PathBuf> {
     let Ok(entries) = fs::read_dir(out) else { return Vec::new() };
     let is_old = |path: &PathBuf| {
@@ -220,7 +220,7 @@ fn older(out: &Path, names: &[String]) -> Vec<PathBuf> {
     older
 }
 
-/// Moves what is complete to where it belongs; `truth.json`, which a client reads first, comes last.
+/// Moves complete files to their places; `truth.json`, which a client reads first, comes last.
 fn move_all(stage: &Path, out: &Path, names: &[String]) -> Result<(), ExportError> {
     let io = |name: &String| {
         let path = out.join(name);
@@ -236,14 +236,14 @@ fn move_all(stage: &Path, out: &Path, names: &[String]) -> Result<(), ExportErro
     Ok(())
 }
 
-/// The nearest number of single precision, which is what renderers compute with.
+/// Returns the nearest number of single precision, with which renderers compute.
 #[allow(clippy::cast_possible_truncation)] // that is what it is for
 pub fn single(x: f64) -> f64 {
     f64::from(x as f32)
 }
 
 impl Scene {
-    /// The name of a scene file, of one of several channels where pictures have none.
+    /// Returns the name of a scene file; that of one channel if there are several and pictures have none.
     fn file(&self, view: &scene::View, channel: Option<usize>) -> String {
         match (self.target, channel) {
             (Target::Mitsuba, _) => format!("{}.xml", view.name),
@@ -252,7 +252,7 @@ impl Scene {
         }
     }
 
-    /// What is asked: each picture, and each of its channels, from 1, where there are several.
+    /// Returns the questions: each picture, and each of its channels, from 1, if there are several.
     fn asked(&self) -> Vec<(&scene::View, Option<usize>)> {
         let channels: Vec<Option<usize>> = if self.is_coloured() {
             (1..=self.channels.len()).map(Some).collect()

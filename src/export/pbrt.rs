@@ -1,9 +1,9 @@
 //! Scenes of pbrt-v4.
 //!
 //! Grids are `uniformgrid` media, which are zero beyond the box: between the outermost samples and its faces σ_t falls
-//! to half, and `truth.json` is of that. Lights have the colour (1, 1, 1). pbrt draws wavelengths for each sample, so
-//! that a sample has a colour and a law of its own: only its mean is known. It has no channels: where a case has several,
-//! each is a scene of its own, grey.
+//! to half, and `truth.json` takes that into account. Lights have the colour (1, 1, 1). pbrt draws wavelengths for each
+//! sample, so that only the mean of a sample is known, not its distribution. pbrt has no channels: where a case has
+//! several, each is a grey scene of its own.
 //!
 //! Source: M. Pharr, W. Jakob, G. Humphreys, *Physically Based Rendering*, 4th edition (2023), and the description
 //! of its scene format.
@@ -15,10 +15,10 @@ use super::scene::{Channel, Field, Light, Scene, View};
 use media::phase::Phase;
 use numeric::geometry::{Aabb, Bounds, Point};
 
-/// Scatterings of a path that is not meant to end.
+/// Number of scatterings of a path without a limit.
 const DEEP: u32 = 1_000_000;
 
-/// The text of a scene file of a name: of the first channel.
+/// Returns the text of a scene file of a name: of the first channel.
 pub fn text(scene: &Scene, view: &View, file: &str) -> String {
     let ([_, up, onward], half) = (scene.axes(), number(scene.aperture()));
     let mut text = format!(
@@ -36,7 +36,7 @@ pub fn text(scene: &Scene, view: &View, file: &str) -> String {
         scene.scatterings.unwrap_or(DEEP),
     );
     if scene.is_inside {
-        // A camera is in the medium that stands before it.
+        // The camera is in the medium that is named before it.
         let first = format!("{}MediumInterface \"\" \"medium\"\n", medium(scene));
         text = text.replacen("Camera ", &(first + "Camera "), 1);
     }
@@ -57,7 +57,7 @@ fn triple(point: Point) -> String {
     point.0.map(number).join(" ")
 }
 
-/// A spectrum that is the same everywhere.
+/// Returns a constant spectrum.
 fn even(name: &str, x: f64) -> String {
     format!("\"spectrum {name}\" [ 200 {0} 900 {0} ]", number(x))
 }
@@ -137,7 +137,7 @@ fn light(scene: &Scene, light: Light, text: &mut String) {
                 ball(centre, radius)
             )
         }
-        // Slabs stand between mirrors, which pbrt has not: they are refused.
+        // Slabs need mirrors, which pbrt does not have: they are refused.
         Light::Above | Light::Below => return,
     };
     text.push_str(&lines);

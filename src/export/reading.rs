@@ -1,4 +1,4 @@
-//! From a case to a scene, problem by problem.
+//! Conversion of a case to a scene, problem by problem.
 //!
 //! | problem | scene |
 //! |---|---|
@@ -8,7 +8,8 @@
 //! | `single-scattering` | the field in a box with a point light; the ray goes on to where it leaves the box |
 //! | `ball` | a homogeneous ball in light from all sides, or about a black sphere that shines |
 //!
-//! Of one channel or several, at the end of the ray only. A homogeneous medium is written as one, in a box or a ball.
+//! The case has one channel or several, at the end of the ray only. A homogeneous medium stays homogeneous, in a box or
+//! a ball.
 
 use std::slice;
 use std::sync::Arc;
@@ -108,7 +109,7 @@ pub fn read(
 }
 
 impl Reader<'_> {
-    /// A black scene with one picture, in light from all sides.
+    /// Returns a black scene with one picture, in light from all sides.
     fn scene(&self, problem: &'static str, fields: Fields, ray: [Point; 2], light: Light) -> Scene {
         let [eye, direction] = ray.map(|point| Point(point.0.map(single)));
         let name = if problem == "transmittance" { problem } else { "radiance" };
@@ -197,7 +198,7 @@ impl Reader<'_> {
         Ok(scene)
     }
 
-    /// A white medium in light from all sides, seen from outside.
+    /// Returns a white medium in light from all sides, viewed from outside.
     fn white(&self, fields: Fields, ray: [Point; 2], phase: Phase, is_white: bool) -> Scene {
         let mut scene = self.scene("furnace", fields, ray, Light::Everywhere);
         let bounds = scene.bounds();
@@ -234,7 +235,7 @@ impl Reader<'_> {
         self.layers(channels.map(|((medium, albedo), &light)| (medium, albedo, light)).collect())
     }
 
-    /// An infinite slab by the medium, albedo, and incidence of each channel.
+    /// Returns an infinite slab from the medium, albedo, and incidence of each channel.
     fn layers(&self, channels: Vec<(Medium, f64, Incidence)>) -> Result<Scene, Unsuitable> {
         let channels = self.chosen(channels)?;
         let phases: Vec<Phase> = channels.iter().map(|channel| channel.2.phase).collect();
@@ -256,7 +257,7 @@ impl Reader<'_> {
         Ok(Scene { phase, has_mirrors: true, views, ..scene })
     }
 
-    /// A medium beside a point light, which is scattered once at most, channel by channel.
+    /// Returns a medium beside a point light with at most one scattering, channel by channel.
     fn single_scattering<'a>(
         &self,
         body: &Body,

@@ -1,22 +1,22 @@
-//! Scene of a renderer, before it is written in the language of one.
+//! Scene of a renderer, before it is written in the renderer's format.
 
 use super::Target;
 use super::fields::Sampled;
 use media::phase::Phase;
 use numeric::geometry::{Aabb, Bounds, Point};
 
-/// A medium, lights and one ray; all numbers are of single precision.
+/// Medium, lights and one ray; all numbers are of single precision.
 #[derive(Debug, Clone)]
 pub struct Scene {
     /// The name of the case.
     pub case: String,
-    /// The name of its problem, of one channel.
+    /// Name of its problem, of one channel.
     pub problem: &'static str,
     /// The renderer.
     pub target: Target,
-    /// The box or ball that the medium fills.
+    /// Box or ball that the medium fills.
     pub shape: Bounds,
-    /// The medium of each channel, 1 to 3: one where all colours are alike.
+    /// Medium of each channel, 1 to 3; one if all channels are equal.
     pub channels: Vec<Channel>,
     /// True if a homogeneous medium is written as a heterogeneous one.
     pub is_heterogeneous: bool,
@@ -28,13 +28,14 @@ pub struct Scene {
     pub direction: Point,
     /// True if the ray begins within the medium.
     pub is_inside: bool,
-    /// True if mirrors stand at half of the box's width, along z: what is between them is an infinite slab.
+    /// True if mirrors stand at half of the box's width, along z: they turn the medium between them into an infinite
+    /// slab.
     pub has_mirrors: bool,
-    /// The largest number of scatterings; `None` for any.
+    /// Largest number of scatterings; `None` for no limit.
     pub scatterings: Option<u32>,
-    /// One picture each.
+    /// Pictures of the scene.
     pub views: Vec<View>,
-    /// Parts of the case that are not in the scene, in sentences.
+    /// Sentences about parts of the case that are not in the scene.
     pub notes: Vec<String>,
 }
 
@@ -57,7 +58,7 @@ pub enum Field {
 }
 
 impl Field {
-    /// The largest extinction, 1/length.
+    /// Returns the largest extinction, 1/length.
     pub fn peak(&self) -> f64 {
         match self {
             Self::Even(extinction) => *extinction,
@@ -65,7 +66,7 @@ impl Field {
         }
     }
 
-    /// The samples, unless the medium is homogeneous.
+    /// Returns the samples; `None` if the medium is homogeneous.
     pub fn grid(&self) -> Option<&Sampled> {
         match self {
             Self::Even(_) => None,
@@ -85,7 +86,7 @@ impl Field {
 /// A picture of the scene.
 #[derive(Debug, Clone)]
 pub struct View {
-    /// What is sought, which names the file, too.
+    /// Name of the quantity, and of the file.
     pub name: &'static str,
     /// Source of light of radiance 1.
     pub light: Light,
@@ -100,7 +101,7 @@ pub enum Light {
     Above,
     /// From a plane below it, radiance 1.
     Below,
-    /// From a point, all of its power evenly to all sides.
+    /// Point that emits its power evenly to all sides.
     Point {
         /// Position.
         position: Point,
@@ -115,7 +116,7 @@ pub enum Light {
 }
 
 impl Scene {
-    /// The samples of the channels, where the medium is not homogeneous; one where all have the same.
+    /// Returns the samples of the channels, one if all have the same; none if the medium is homogeneous.
     pub fn grids(&self) -> Vec<&Sampled> {
         let fields = self.channels.iter().map(|channel| &channel.field);
         let mut grids: Vec<&Sampled> = fields.filter_map(Field::grid).collect();
@@ -125,22 +126,22 @@ impl Scene {
         grids
     }
 
-    /// Returns whether the scene's medium is a homogeneous one to the renderer.
+    /// Returns whether the scene's medium is written as a homogeneous one.
     pub fn is_homogeneous(&self) -> bool {
         self.grids().is_empty() && !self.is_heterogeneous
     }
 
-    /// The largest extinction of all channels, 1/length.
+    /// Returns the largest extinction of all channels, 1/length.
     pub fn peak(&self) -> f64 {
         self.channels.iter().map(|channel| channel.field.peak()).fold(0.0, f64::max)
     }
 
-    /// The channels' albedos.
+    /// Returns the channels' albedos.
     pub fn albedos(&self) -> Vec<f64> {
         self.channels.iter().map(|channel| channel.albedo).collect()
     }
 
-    /// The scene of one channel alone.
+    /// Returns the scene of one channel alone.
     #[must_use]
     pub fn of_channel(&self, index: usize) -> Self {
         Self { channels: vec![self.channels[index].clone()], ..self.clone() }
@@ -151,12 +152,12 @@ impl Scene {
         self.channels.len() > 1
     }
 
-    /// The smallest box about the medium.
+    /// Returns the smallest box around the medium.
     pub fn bounds(&self) -> Aabb {
         self.shape.enclosing_box().unwrap_or(Aabb { low: self.eye, high: self.eye })
     }
 
-    /// The axes of a picture with rays along the direction: right, up, onward.
+    /// Returns the axes of a picture with rays along the direction: right, up, forward.
     pub fn axes(&self) -> [Point; 3] {
         let onward = self.direction;
         let [x, y, _] = onward.0.map(f64::abs);
@@ -165,7 +166,7 @@ impl Scene {
         [right, onward.cross(right), onward]
     }
 
-    /// Half the width of a picture: so small that all of its rays are one.
+    /// Returns half the width of a picture, so small that all of its rays are equal.
     pub fn aperture(&self) -> f64 {
         let Aabb { low, high } = self.bounds();
         1e-7 * (high - low).norm()

@@ -1,24 +1,24 @@
-//! `truth.json`: what the pixels of each picture must be.
+//! `truth.json`: expected values of the pixels of each picture.
 //!
 //! ```text
 //! version              1, or 2 where questions have channels; it grows when a key changes its meaning
-//! case, problem        what was exported
+//! case, problem        the exported case
 //! target               "mitsuba" or "pbrt"
 //! camera_in_medium     whether the ray begins within the medium
 //! field                file, size, low, high, interpolation, border and peak of the samples; null for a ball
-//! notes                what of the case is not in the scene, in sentences
+//! notes                parts of the case that are not in the scene, in sentences
 //! questions            one for each picture:
-//!   name, scene        what is sought, and the scene file
-//!   channel            of several: which one, from 1; of Mitsuba's pixels 1 is red, 2 green, 3 blue, of pbrt's each
-//!                      channel has a scene of its own
+//!   name, scene        the quantity, and the scene file
+//!   channel            one of several, from 1: in Mitsuba's pixels 1 is red, 2 green, 3 blue; in pbrt each channel has
+//!                      a scene of its own
 //!   mean, error        the mean of one sample of any pixel, and a bound on the error of this number
-//!   rounding           what single precision may do to a sample, relative to the mean: an allowance, no bound
+//!   rounding           effect of single precision on a sample, relative to the mean: an allowance, not a bound
 //!   without_emitter_sampling, with_emitter_sampling
-//!                      the law of one sample, for integrators that find lights by scattering only, and for those
-//!                      that cast shadow rays: null where light cannot be found that way, and for pbrt, whose
-//!                      samples have wavelengths. Of several channels only the ends are known: how a renderer chooses
-//!                      the channel that it samples for is its own affair
-//!     low, high        where all samples lie; null for no end
+//!                      the distribution of one sample, for integrators that find lights by scattering only, and for
+//!                      those that cast shadow rays: null where light cannot be found that way, and for pbrt, which
+//!                      draws wavelengths. With several channels only the range is known: it is up to the renderer
+//!                      for which channel it samples
+//!     low, high        range of all samples; null for no end
 //!     variance, variance_error, kurtosis
 //!                      of an integrator that tracks through the largest sample, and weights by the albedo;
 //!                      variance_error is relative; null where theory does not know
@@ -37,13 +37,13 @@ use media::phase::Phase;
 use numeric::geometry::{Aabb, Bounds, Point};
 use theory::{self, Prediction};
 
-/// The name of the file.
+/// Name of the file.
 pub const FILE: &str = "truth.json";
-/// The name of the case file, by which theory is asked.
+/// Name of the case file from which theory predicts the answer.
 pub const CASE: &str = "case.toml";
-/// The versions of the file without channels and with them.
+/// Versions of the file without channels and with them.
 pub const VERSIONS: [u32; 2] = [1, 2];
-/// Rounding errors of single precision that are allowed for each of the mean collisions of a straight ray.
+/// Number of rounding errors of single precision that are allowed for each of the mean collisions of a straight ray.
 const ROUNDINGS: f64 = 16.0;
 
 /// Expected values of pixels.
@@ -61,9 +61,9 @@ pub struct Truth {
     pub camera_in_medium: bool,
     /// The samples.
     pub field: Option<Samples>,
-    /// Parts of the case that are not in the scene.
+    /// Sentences about parts of the case that are not in the scene.
     pub notes: Vec<String>,
-    /// One for each picture.
+    /// Expected samples, one entry per picture.
     pub questions: Vec<Question>,
 }
 
@@ -80,61 +80,61 @@ pub struct Samples {
     pub high: [f64; 3],
     /// `"trilinear"` or `"nearest"`.
     pub interpolation: String,
-    /// `"clamp"` or `"zero"`: what is beyond the outermost samples.
+    /// Value beyond the outermost samples: `"clamp"` or `"zero"`.
     pub border: String,
-    /// The largest, 1/length.
+    /// Largest sample, 1/length.
     pub peak: f64,
 }
 
 /// Expected samples of a picture.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Question {
-    /// What is sought.
+    /// Name of the quantity.
     pub name: String,
-    /// The scene file.
+    /// Scene file.
     pub scene: String,
-    /// The channel, from 1, where there are several.
+    /// Channel, from 1, if there are several.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub channel: Option<usize>,
-    /// The mean of one sample.
+    /// Mean of one sample.
     pub mean: f64,
-    /// A bound on the error of this number.
+    /// Bound on the error of the mean.
     pub error: f64,
     /// Effect of single precision on a sample, relative to the mean.
     pub rounding: f64,
-    /// Of integrators that find lights by scattering only.
+    /// Distribution for integrators that find lights by scattering only.
     pub without_emitter_sampling: Option<Law>,
-    /// Of integrators that cast shadow rays.
+    /// Distribution for integrators that cast shadow rays.
     pub with_emitter_sampling: Option<Law>,
 }
 
 /// Known properties of the distribution of one sample.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub struct Law {
-    /// No sample is below.
+    /// Lower bound of all samples.
     pub low: Option<f64>,
-    /// No sample is above.
+    /// Upper bound of all samples.
     pub high: Option<f64>,
-    /// Its variance.
+    /// Variance.
     pub variance: Option<f64>,
-    /// A bound on the relative error of the variance.
+    /// Bound on the relative error of the variance.
     pub variance_error: Option<f64>,
-    /// Its kurtosis.
+    /// Kurtosis.
     pub kurtosis: Option<f64>,
 }
 
 impl Truth {
-    /// The text of the file.
+    /// Returns the text of the file.
     ///
     /// # Errors
     ///
-    /// The encoder gave up.
+    /// The encoder fails.
     pub fn json(&self) -> Result<String, ExportError> {
         Ok(serde_json::to_string_pretty(self)? + "\n")
     }
 }
 
-/// Expected values of the pictures, by theory's prediction of the exported case.
+/// Returns the expected values of the pictures, by theory's prediction of the exported case.
 pub fn of(scene: &Scene, prediction: &Prediction) -> Truth {
     let diagonal = (scene.bounds().high - scene.bounds().low).norm();
     let rounding = ROUNDINGS * f64::from(f32::EPSILON) * (1.0 + scene.peak() * diagonal);
@@ -187,8 +187,8 @@ pub fn of(scene: &Scene, prediction: &Prediction) -> Truth {
     }
 }
 
-/// The predicted channel of a picture. Theory lists the channels of one quantity after those of another, and omits
-/// channels that are always 0.
+/// Returns the predicted channel of a picture. Theory lists the channels of one quantity after those of another, and
+/// omits channels that are always 0.
 fn channel_of<'a>(
     prediction: &'a Prediction,
     scene: &Scene,
@@ -208,10 +208,10 @@ fn channel_of<'a>(
     prediction.channels.iter().find(|channel| channel.name == name)
 }
 
-/// Range of samples without and with shadow rays, and whether theory's moments are theirs.
+/// Returns the range of samples without and with shadow rays, and whether theory's moments apply to them.
 ///
-/// Without shadow rays a sample is `aⁿ` or nothing. With them and weights that add up to at most 1, every
-/// scattering brings at most `aⁿ`: `Σ aⁿ = 1/(1 − a)`.
+/// Without shadow rays a sample is `aⁿ` or 0. With them and weights that add up to at most 1, every scattering
+/// contributes at most `aⁿ`: `Σ aⁿ = 1/(1 − a)`.
 fn laws(scene: &Scene, light: Light) -> [Option<(Law, bool)>; 2] {
     let within = |high: Option<f64>| Law { low: Some(0.0), high, ..Law::default() };
     let sure = Law { variance: Some(0.0), variance_error: Some(0.0), ..Law::default() };
@@ -233,8 +233,8 @@ fn laws(scene: &Scene, light: Light) -> [Option<(Law, bool)>; 2] {
     }
 }
 
-/// The case file: the exported field, ray and light, and the estimator that a renderer's integrator is nearest to.
-/// `trueflight run` and `trueflight bench` take it, so that both can be timed on the same field.
+/// Returns the case file: the exported field, ray and light, and the estimator closest to a renderer's integrator.
+/// `trueflight run` and `trueflight bench` read it, so that both can be timed on the same field.
 pub fn case(scene: &Scene) -> String {
     let Scene { direction, .. } = scene;
     let (problem, is_coloured) = (scene.problem, scene.is_coloured());
@@ -255,7 +255,7 @@ pub fn case(scene: &Scene) -> String {
     });
     let Aabb { low, high } = scene.bounds();
     let length = 2.0 * ((high - low).norm() + (scene.eye - low).norm());
-    // A slab's σ_t is a function of the depth, whatever the angle of its light.
+    // σ_t of a slab is a function of depth, whatever the angle of its light.
     let (eye, direction) = if scene.has_mirrors {
         (Point([0.0; 3]), Point([0.0, 0.0, 1.0]))
     } else {
@@ -291,7 +291,7 @@ pub fn case(scene: &Scene) -> String {
     let peak = scene.peak();
     line(format!("sampling.constant = {{ value = {peak:?} }}"));
     let estimator = match (problem, is_coloured) {
-        // Of several channels one whose σ̂ may be the largest σ_t of all.
+        // With several channels an estimator that can take the largest σ_t of all channels as σ̂.
         ("transmittance", true) => "{ independent = { collisions = \"delta\" } }".to_owned(),
         ("single-scattering", true) => "{ independent = { shadow = \"ratio\" } }".to_owned(),
         (_, true) => "{ independent = {} }".to_owned(),
@@ -306,7 +306,7 @@ pub fn case(scene: &Scene) -> String {
     text
 }
 
-/// The volume of a channel in the case file.
+/// Returns the volume of a channel in the case file.
 fn volume(scene: &Scene, channel: usize) -> String {
     let field = match &scene.channels[channel].field {
         Field::Grid(grid) => {
@@ -333,7 +333,7 @@ fn volume(scene: &Scene, channel: usize) -> String {
     format!("{field}, bounds.{bounds} }}")
 }
 
-/// The phase function of the case file.
+/// Returns the phase function of the case file.
 fn phase(phase: Phase) -> String {
     match phase {
         Phase::Isotropic(_) => "isotropic = {}".into(),
@@ -342,8 +342,8 @@ fn phase(phase: Phase) -> String {
     }
 }
 
-/// The reason why a renderer is biased, or has no variance, that tracks for one channel through the largest σ_t of all
-/// without multiple importance sampling, as far as theory knows one.
+/// Returns the reason why some renderers are biased or have infinite variance here, as far as theory knows one: those
+/// that track for one channel through the largest σ_t of all, without multiple importance sampling.
 pub fn remark(scene: &Scene, folder: &Path) -> Option<String> {
     if !scene.is_coloured() || scene.is_homogeneous() || scene.problem != "transmittance" {
         return None;
@@ -357,11 +357,11 @@ pub fn remark(scene: &Scene, folder: &Path) -> Option<String> {
     ))
 }
 
-/// Prediction of the case file in a folder.
+/// Predicts the case file in a folder.
 ///
 /// # Errors
 ///
-/// Why theory has no answer.
+/// The reason why theory has no answer.
 pub fn ask(scene: &Scene, folder: &Path) -> Result<Prediction, ExportError> {
     let case = Case::read(&Source::read(&folder.join(CASE))?)?;
     let ready = case.at(None).and_then(|at| at.prepare(0, case.pilots(1, 0)));

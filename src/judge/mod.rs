@@ -1,7 +1,7 @@
-//! Draws that another program made: whether they are what they are claimed to be.
+//! Verdicts on draws that another program made.
 //!
 //! The session of [`gate::session`] judges draws in memory, in `files` of several formats, and stacks of `images`.
-//! [`OfCase`] takes what is claimed of a draw from a case.
+//! [`OfCase`] takes the claims about a draw from a case.
 
 pub mod files;
 pub mod images;

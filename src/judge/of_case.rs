@@ -1,4 +1,4 @@
-//! Choice of one experiment of a case, and what theory claims of it.
+//! Choice of one experiment of a case, and the claims that theory makes about it.
 
 use std::fmt::Write;
 use std::sync::Arc;
@@ -16,26 +16,26 @@ use ::theory::{CountLaw, Law, Prediction};
 use gate::Check;
 use numeric::digits::{number, short};
 
-/// The problem with distances as draws.
+/// Name of the problem with distances as draws.
 const FLIGHTS: &str = "free-flight";
-/// Largest deviation of a length that is always the same, relative to it.
+/// Largest relative deviation of a length that is constant.
 const SURE: f64 = 1e-6;
-/// Largest number of values of a sweep that are tried where a value beside them is refused.
+/// Maximum number of values of a sweep that are tried as replacements of a refused one.
 const TRIED: usize = 8;
 
-/// Which experiment of a case.
+/// Choice of an experiment of a case.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Choice<'a> {
-    /// The estimator's label in tables, or its name in the catalogue.
+    /// Estimator: its label in tables, or its name in the catalogue.
     pub estimator: &'a str,
-    /// The swept value, where it is swept.
+    /// Swept value, if the estimator is swept.
     pub swept: Option<f64>,
-    /// True if the nearest value of the case's sweep is taken in place of the swept value. Otherwise the value is taken
-    /// as it is, be it in the sweep or not; without a sweep it is a constant σ̂.
+    /// True if the nearest value of the case's sweep replaces the swept value. Otherwise the value is taken as it is,
+    /// in the sweep or not; without a sweep it is a constant σ̂.
     pub nearest: bool,
-    /// The channel, where a draw has several.
+    /// Channel, if a draw has several.
     pub channel: Option<&'a str>,
-    /// The seed of pilot rays, where σ̂ is learned from them.
+    /// Seed of pilot rays, if σ̂ is learned from them.
     pub seed: u64,
 }
 
@@ -63,7 +63,7 @@ pub enum ChoiceError {
         values: Vec<f64>,
         wanted: &'static str,
     },
-    /// A value that the swept thing cannot have.
+    /// A value that the swept quantity cannot have.
     #[error(
         "{case}: `{estimator}`: {what} = {} is not {wanted}{}",
         number(*value),
@@ -77,13 +77,13 @@ pub enum ChoiceError {
         wanted: &'static str,
         nearest: Option<f64>,
     },
-    /// A value of a sweep where nothing is swept.
+    /// A swept value for an estimator that is not swept.
     #[error("{case}: `{estimator}` is not swept; leave the swept value and --nearest out")]
     NotSwept { case: String, estimator: String },
     /// A draw has several values.
     #[error("{case}: a draw has {} channels; choose one of: {}", channels.len(), channels.join(", "))]
     Channel { case: String, channels: Vec<String> },
-    /// Theory works in units of a transmittance that few doubles hold.
+    /// The unit is a transmittance that few doubles can represent.
     #[error(
         "{case}: `{estimator}` sees an optical depth of {depth:.0}, where theory is in units of T; multiply the \
          draws by e^τ and give the truth 1 and what else is known of them by numbers"
@@ -97,11 +97,11 @@ pub enum ChoiceError {
     Refused { case: String, estimator: String, why: String, nearest: Option<f64> },
 }
 
-/// Returns theory of one experiment of a case, with a claim for each channel; the choice of a channel does not matter.
+/// Returns the theory of one experiment of a case, with a claim for each channel; the choice of a channel is ignored.
 ///
 /// # Errors
 ///
-/// The choice fits none or several, or the experiment is refused.
+/// No experiment or several fit the choice, or the experiment is refused.
 pub fn theory(case: &Case, choice: &Choice, rounding: f64) -> Result<Theory, ChoiceError> {
     let (index, label) = find(case, choice.estimator)?;
     let axis = case.sweep.as_ref();
@@ -125,13 +125,13 @@ pub fn theory(case: &Case, choice: &Choice, rounding: f64) -> Result<Theory, Cho
     Ok(Theory { channels, about, distribution })
 }
 
-/// Takes what is known of a draw from a case.
+/// Claims about draws from a case.
 pub trait OfCase: Sized {
     /// Takes mean, variance, kurtosis and lookups from theory and, where theory knows it, the whole distribution.
     ///
-    /// The estimator has its name in tables or in the catalogue. It is taken at any value of what the case sweeps, or at a
-    /// constant σ̂ where the case sweeps nothing; `None` takes the case's own σ̂. The case is a built-in one or a file. Every
-    /// channel of the case is a value of the draw; a luminance may be left out.
+    /// The estimator has its name in tables or in the catalogue. The value may be any value of the swept quantity, or
+    /// of a constant σ̂ if the case sweeps nothing; `None` takes the case's own σ̂. The case is a built-in one or a
+    /// file. Every channel of the case is a value of the draw; a luminance may be left out.
     ///
     /// A free flight that leaves the ray is written as the ray's length, as any larger number, as infinity or as −1.
     ///
@@ -157,7 +157,7 @@ pub trait OfCase: Sized {
     #[must_use]
     fn of(self, case: &str, estimator: &str, swept: impl Into<Option<f64>>) -> Self;
 
-    /// Takes the same from a case that was read before.
+    /// Takes the claims from a case that was read before.
     #[must_use]
     fn of_case(self, case: &Case, choice: &Choice) -> Self;
 }
@@ -187,18 +187,18 @@ impl<S> OfCase for Check<S> {
     }
 }
 
-/// A claim for each channel.
+/// Returns a claim for each channel.
 fn claims(case: &Case, prediction: &Prediction, rounding: f64) -> Vec<(String, Claim)> {
     let lookups = prediction.lookups.as_ref();
     let flights = match prediction.law {
         Some(Law::Distances { end, from, escape, .. }) => {
             Some(Flights { length: end, from, escape })
         }
-        // Without a medium all flights leave.
+        // Without a medium all flights leave the ray.
         None if case.problem == FLIGHTS => {
             let channel = prediction.channels.first();
             let length = channel.map(|channel| channel.truth.value);
-            // All have the length of the ray then, to rounding.
+            // All flights then have the length of the ray, to rounding.
             let is_sure = |length: &f64| {
                 let moments = channel.and_then(|channel| channel.moments);
                 moments.is_some_and(|m| m.variance().sqrt() <= SURE * length)
@@ -229,7 +229,7 @@ fn claims(case: &Case, prediction: &Prediction, rounding: f64) -> Vec<(String, C
     claims.collect()
 }
 
-/// The estimator of a name, with its label.
+/// Returns the index of the estimator of a name, with its label.
 fn find(case: &Case, name: &str) -> Result<(usize, String), ChoiceError> {
     let plain: Vec<EstimatorName> =
         (0..case.scenario.estimators()).map(|e| case.id(e, None).estimator).collect();
@@ -269,7 +269,7 @@ fn find(case: &Case, name: &str) -> Result<(usize, String), ChoiceError> {
     }
 }
 
-/// An estimator of a case, with what is swept of it.
+/// Estimator of a case, with its swept quantity.
 struct Point<'a> {
     case: &'a Case,
     index: usize,
@@ -279,7 +279,7 @@ struct Point<'a> {
 }
 
 impl Point<'_> {
-    /// The swept value that is taken.
+    /// Returns the point of the sweep that is chosen.
     fn variation(&self, choice: &Choice) -> Result<Variation, ChoiceError> {
         let scenario = &self.case.scenario;
         let (case, estimator) = (self.case.name.clone(), self.label.to_owned());
@@ -311,7 +311,7 @@ impl Point<'_> {
         }
     }
 
-    /// Whether what is swept can have that value.
+    /// Validates a value of the swept quantity.
     fn allowed(&self, what: What, value: f64) -> Result<(), ChoiceError> {
         if what.allows(value) {
             return Ok(());
@@ -322,7 +322,7 @@ impl Point<'_> {
         Err(ChoiceError::NoSuchValue { case, estimator, what, value, wanted, nearest })
     }
 
-    /// The values of the sweep, the nearest first.
+    /// Returns the values of the sweep, the nearest first.
     fn by_distance(&self, value: f64) -> Vec<f64> {
         let mut values = self.axis.map_or(Vec::new(), |axis| axis.values.clone());
         values.sort_by(|a, b| (a - value).abs().total_cmp(&(b - value).abs()));
@@ -338,7 +338,7 @@ impl Point<'_> {
     fn prediction(&self, variation: Variation) -> Result<Prediction, ChoiceError> {
         self.prepared(variation).map_err(|why| {
             let (case, estimator) = (self.case.name.clone(), self.label.to_owned());
-            // A value beside the sweep may be refused where those of the sweep are not.
+            // A value outside the sweep may be refused where those of the sweep are not.
             let beside = variation
                 .filter(|(_, value)| self.axis.is_some_and(|axis| !axis.values.contains(value)));
             let nearest = beside.and_then(|(what, value)| {
@@ -353,7 +353,7 @@ impl Point<'_> {
 /// Largest number of values that are listed; longer lists are cut in the middle.
 const LISTED: usize = 8;
 
-/// Values as tables print them; of many the first and the last.
+/// Lists values as tables print them, of many only the first and the last.
 fn list(values: &[f64]) -> String {
     let words = |values: &[f64]| {
         let words: Vec<String> = values.iter().map(|&value| short(value, 4)).collect();
@@ -367,7 +367,7 @@ fn list(values: &[f64]) -> String {
     }
 }
 
-/// The value of a sweep that could be meant.
+/// Suggests the nearest value of the sweep.
 fn near(nearest: Option<f64>) -> String {
     let named = |value: f64| {
         format!("; the nearest value of the sweep is {}: give it, or add --nearest", number(value))

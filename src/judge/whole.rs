@@ -1,4 +1,4 @@
-//! Tests of the whole distribution of foreign draws: those that a run makes of its own.
+//! Tests of the whole distribution of foreign draws: the tests that a run makes of its own draws.
 //!
 //! ```text
 //! distances   twenty classes of free flights and the share that leaves    checks::distances
@@ -7,12 +7,12 @@
 //! atoms       the shares of the values of draws that take few             checks::atoms
 //! counts      the number of lookups                                       checks::counts
 //! curve       the steps of one walk, where a draw has all its channels    checks::curve
-//! covariance  neighbouring channels of a draw                             checks::covariance
+//! covariance  consecutive channels of a draw                              checks::covariance
 //! ```
 //!
-//! Foreign draws may be rounded. Values are matched within their rounding. Distances are not tested where rounding moves as
-//! many of them across the ends of classes as would count. Resolutions of 22 bits or of single precision count as fine; finer
-//! ones are reported, not judged.
+//! Foreign draws may be rounded. Values are matched within their rounding. Distances are not tested if the test would
+//! notice how many of them rounding moves across the ends of classes. Resolutions of 22 bits or of single precision
+//! count as fine; coarser ones fail, and finer ones are reported.
 
 use std::borrow::Cow;
 use std::sync::Arc;
@@ -27,13 +27,13 @@ use gate::stats::{multiplicity, ties};
 use numeric::digits::short;
 use theory::{self, Prediction};
 
-/// The first look, where the number of draws is not known.
+/// Number of draws at the first look if the length is not known.
 const FIRST: u64 = 1 << 11;
 /// Relative error of a product in single precision.
 const SINGLE_PRODUCT: f64 = 1e-5;
 /// Error of a distance in single precision, relative to its position.
 const SINGLE_POSITION: f64 = 1.2e-7;
-/// Number of draws that covariances are tested for, and the largest, where the number is not known.
+/// Number of draws that covariances are tested for, and the largest, if the length is not known.
 const USUAL: u64 = 1 << 18;
 const MOST: u64 = 1 << 24;
 /// Largest shift of a class's share by rounding, in standard errors.
@@ -75,7 +75,7 @@ struct Test {
     what: Cow<'static, str>,
     law: Box<dyn Law>,
     sums: Vec<f64>,
-    /// The numbers of draws between which it holds.
+    /// Smallest and largest number of draws for which the test is valid.
     between: [f64; 2],
     found: Found,
 }
@@ -92,7 +92,7 @@ impl Test {
     }
 }
 
-/// Result of the last look, or of the one that refuted the distribution.
+/// Result of the last look, or of the look that refuted the distribution.
 #[derive(Default)]
 struct Found {
     p: Option<(f64, u64)>,
@@ -104,14 +104,14 @@ struct Found {
 struct Whole {
     prediction: Arc<Prediction>,
     asked: Asked,
-    /// Made with the first draws, which show their precision.
+    /// Tests, made with the first draws, which show their precision.
     laws: Option<Vec<Test>>,
     fine: Option<Fineness>,
-    /// The result of the test of ties.
+    /// Result of the test of ties.
     ties: Found,
     untested: Vec<String>,
     seen: u64,
-    /// The number of draws of the next look, and how many there were.
+    /// Number of draws at the next look.
     next: u64,
     looks: u32,
     buffer: DrawBuffer,
@@ -179,10 +179,10 @@ impl Tests for Whole {
     }
 }
 
-/// The quantity that ties are about.
+/// Quantity of the test of ties.
 const RESOLUTION: &str = "the resolution of the distances";
 
-/// Things in a sentence.
+/// Joins names to a part of a sentence.
 fn listed(things: &[Cow<str>]) -> String {
     match things {
         [one] => format!("{one} is"),
@@ -192,7 +192,7 @@ fn listed(things: &[Cow<str>]) -> String {
 }
 
 impl Whole {
-    /// The tests of draws of that precision.
+    /// Returns the tests for draws of that precision.
     fn prepared(&mut self, is_single: bool) -> Vec<Test> {
         let prediction = Arc::clone(&self.prediction);
         let Asked { rounding, has_lookups, length, values, .. } = self.asked;
@@ -292,13 +292,13 @@ impl Whole {
         let rejected = multiplicity::holm(&p, all.len(), share * self.asked.alpha);
         let tested = all.into_iter().filter_map(|(p, found)| Some((p?, found)));
         for ((p, found), rejected) in tested.zip(rejected) {
-            // A p-value that is not a number comes from draws that are none; they are named elsewhere.
+            // A p-value of NaN comes from draws that are not finite, which are reported elsewhere.
             if !found.is_refuted {
                 (found.p, found.is_refuted) = (Some((p, draws)), rejected);
             }
         }
         self.looks += 1;
-        // Where the number was known, this was the only look.
+        // With a known length, this was the only look.
         if self.asked.length.is_none() {
             self.next = self.next.saturating_mul(2);
         }
@@ -310,7 +310,7 @@ fn has_covariances(prediction: &Prediction, asked: Asked) -> bool {
     prediction.covariances.iter().any(|covariance| covariance.pair[1] < asked.values)
 }
 
-/// The part of the values' distribution that theory does not know, as a sentence.
+/// Returns a sentence about the part of the values' distribution that theory does not know.
 fn unknown(prediction: &Prediction, asked: Asked) -> Option<String> {
     let Prediction { law, increments, channels, .. } = prediction;
     if asked.values != channels.len() && !increments.is_empty() {
@@ -329,8 +329,9 @@ fn unknown(prediction: &Prediction, asked: Asked) -> Option<String> {
     Some(format!("the distribution of the draws is not tested: theory knows {known} of it alone"))
 }
 
-/// Largest number of distances that may be tested if they are rounded to `rounding`, relative to their positions: rounding
-/// moves no end of a class by more than a twentieth of its standard error. Infinite where theory has no distances.
+/// Returns the largest number of distances that may be tested if they are rounded to `rounding`, relative to their
+/// positions. Rounding moves no end of a class by more than a twentieth of its standard error. Infinite if theory has
+/// no distances.
 fn most_draws(prediction: &Prediction, rounding: f64) -> f64 {
     let Some(theory::Law::Distances { bins, from, .. }) = &prediction.law else {
         return f64::INFINITY;
@@ -346,7 +347,7 @@ fn most_draws(prediction: &Prediction, rounding: f64) -> f64 {
     (0..bins.len()).map(most).fold(f64::INFINITY, f64::min)
 }
 
-/// A number of lookups. NaN and negative numbers become 0; they are faults that are named elsewhere.
+/// Converts a number of lookups. NaN and negative numbers become 0; they are faults that are reported elsewhere.
 #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // saturates
 fn whole(count: f64) -> u32 {
     count.round() as u32
@@ -354,12 +355,12 @@ fn whole(count: f64) -> u32 {
 
 /// Spacing of numbers of single precision, relative.
 const SINGLE: f64 = 2.4e-7;
-/// Coarser rounding than this leaves the resolution untested.
+/// Coarsest rounding of distances for which the resolution is tested.
 const COARSE: f64 = 1e-6;
-/// Bits of random numbers that are fine enough.
+/// Number of bits of random numbers that counts as fine enough.
 const BITS: i32 = 22;
 
-/// The first flights of another program: too many ties mean that distances are rounded more than single precision.
+/// First flights of another program: too many ties mean that distances are rounded more than to single precision.
 struct Fineness {
     resolution: Resolution,
     first: Vec<f64>,
@@ -368,7 +369,7 @@ struct Fineness {
 }
 
 impl Fineness {
-    /// Before the first flight; `None` for draws that are no distances.
+    /// Starts before the first flight; `None` for draws that are not distances.
     fn of(prediction: &Prediction) -> Option<Self> {
         let resolution = Resolution::of(prediction)?;
         Some(Self { resolution, first: Vec::new(), is_single: true })
@@ -380,7 +381,7 @@ impl Fineness {
         self.first.extend(flights.iter().take(room));
     }
 
-    /// The p-value of the number of ties, with details in words; `None` for too few collisions.
+    /// Returns the p-value of the number of ties, with details in words; `None` for too few collisions.
     fn p_value(&self) -> Option<(f64, String)> {
         let mut collisions = self.first.clone();
         self.resolution.collisions(&mut collisions);

@@ -1,33 +1,33 @@
-//! One column of a table of text.
+//! Table of text, of which one or several columns are read.
 //!
 //! ```text
 //! T,X          a first line of names is optional, unless the column is chosen by name
 //! 0.5,0.25     numbers as 1, 0.5, −1.25e-3, nan, inf; spaces around them do not matter
 //! ```
 //!
-//! Empty lines, and lines that begin with `#`, hold no draws.
+//! Empty lines, and lines that begin with `#`, are no draws.
 
 use ::csv::{ByteRecord, ErrorKind, Reader, ReaderBuilder};
 
 use super::{Bytes, Column, ForeignError, Layout};
 
-/// How many characters of what is wrong are shown.
+/// Maximum number of characters of a wrong field that are shown.
 const SHOWN: usize = 40;
-/// How many names of columns are shown.
+/// Maximum number of column names that are shown.
 pub(super) const LISTED: usize = 20;
 
 /// An open table.
 pub(super) struct Table {
     reader: Reader<Lines>,
     file: String,
-    /// The columns that are read.
+    /// Indices of the columns that are read.
     places: Vec<usize>,
-    /// How many columns the first line has.
+    /// Number of columns of the first line.
     columns: u64,
     record: ByteRecord,
-    /// The column of lookups, if one is read.
+    /// Index of the column of lookups, if one is read.
     lookups: Option<usize>,
-    /// True if the draw in `record` was not given yet: the table was opened with it.
+    /// True if the draw in `record`, with which the table was opened, was not returned yet.
     is_first: bool,
 }
 
@@ -76,7 +76,7 @@ impl Table {
         Ok(table)
     }
 
-    /// Number of values of a draw.
+    /// Returns the number of values of a draw.
     pub(super) fn values(&self) -> usize {
         self.places.len()
     }
@@ -102,7 +102,7 @@ impl Table {
         Ok(())
     }
 
-    /// Finds the columns of a draw; answers whether the first line is one of names.
+    /// Finds the columns of a draw; returns whether the first line has names.
     fn places(&self, layout: &Layout) -> Result<(Vec<usize>, bool), ForeignError> {
         if layout.channels.len() < 2 || layout.column.is_some() {
             return self.choose(layout.column.as_ref()).map(|(place, named)| (vec![place], named));
@@ -111,7 +111,7 @@ impl Table {
         if let Some(places) = layout.named(&names) {
             return Ok((places, true));
         }
-        // Names that are not the channels': by their order, but for the lookups.
+        // Names other than those of the channels: columns by their order, without the lookups.
         let own: Vec<usize> = (0..names.len()).filter(|&k| Some(k) != self.lookups).collect();
         let places =
             layout.places(&self.file, own.len(), || layout.mismatch(&self.file, own.len()))?;
@@ -120,7 +120,7 @@ impl Table {
         Ok((places, named))
     }
 
-    /// Finds a column by the first line; answers whether that is a line of names.
+    /// Finds a column by the first line; returns whether that line has names.
     fn choose(&self, column: Option<&Column>) -> Result<(usize, bool), ForeignError> {
         let file = || self.file.clone();
         let names: Vec<String> = self.record.iter().map(text).collect();
@@ -179,7 +179,7 @@ impl Table {
         })
     }
 
-    /// Writes the values of the draw in the line at hand; answers its lookups.
+    /// Appends the values of the draw in the current line; returns its lookups.
     #[inline]
     fn draw(&self, values: &mut [f64]) -> Result<f64, ForeignError> {
         if self.record.len() as u64 != self.columns {
@@ -193,7 +193,7 @@ impl Table {
         self.lookups.map_or(Ok(0.0), read)
     }
 
-    /// What is wrong with the line at hand, in the column if its number of columns is right.
+    /// Returns the error of the current line, in the column if its number of columns is right.
     #[cold]
     fn fault(&self, column: usize) -> ForeignError {
         let line = self.reader.get_ref().line(self.reader.position().byte());
@@ -207,7 +207,7 @@ impl Table {
     }
 }
 
-/// The number that a field is.
+/// Parses a field as a number.
 #[inline]
 fn number(field: &[u8]) -> Option<f64> {
     std::str::from_utf8(field.trim_ascii()).ok()?.parse().ok()
@@ -218,13 +218,13 @@ fn is_name(field: &[u8]) -> bool {
     number(field).is_none() && !like_a_number(field)
 }
 
-/// Returns whether a field begins as numbers do: then it is a number gone wrong, not a name.
+/// Returns whether a field begins as numbers do: then it is a malformed number, not a name.
 fn like_a_number(field: &[u8]) -> bool {
     let begins = |byte: &u8| byte.is_ascii_digit() || b"+-.".contains(byte);
     field.trim_ascii().first().is_none_or(begins)
 }
 
-/// The beginning of a text that may be long.
+/// Returns the beginning of a text that may be long.
 fn brief(text: &str) -> String {
     match text.char_indices().nth(SHOWN) {
         Some((end, _)) => format!("{}…", &text[..end]),
@@ -232,27 +232,27 @@ fn brief(text: &str) -> String {
     }
 }
 
-/// A field as text, to show or to compare.
+/// Returns a field as text, to show or to compare.
 fn text(field: &[u8]) -> String {
     String::from_utf8_lossy(field.trim_ascii()).into_owned()
 }
 
-/// How many bytes are asked for at a time.
+/// Number of bytes that are read at a time.
 const CHUNK: usize = 1 << 17;
-/// The longest line: a table of draws has some numbers to a line.
+/// Longest line: a table of draws has few numbers per line.
 const LONGEST: u64 = 1 << 16;
-/// The most bytes between two records, quoted lines, comments and empty lines included.
+/// Maximum number of bytes between two records, quoted lines, comments and empty lines included.
 const MOST: u64 = 1 << 24;
 
-/// Remembers the last bytes it passed on, so that a line can be counted when something is wrong with
-/// it: the csv crate's own count is that of the line before, after empty lines or Windows' line ends.
+/// Keeps the last bytes it passed on, so that the number of a wrong line can be counted. The csv crate counts the line
+/// before instead, after empty lines or Windows' line ends.
 struct Lines {
     bytes: Bytes,
-    /// How many lines ended before the chunk.
+    /// Number of lines that ended before the chunk.
     before: u64,
-    /// How many bytes came before the chunk.
+    /// Number of bytes before the chunk.
     start: u64,
-    /// How many bytes came since a line ended, and since a record began, which may have quoted line ends.
+    /// Number of bytes since a line ended, and since a record began, which may have quoted line ends.
     since: u64,
     taken: u64,
     chunk: Vec<u8>,
@@ -263,12 +263,12 @@ impl Lines {
         Self { bytes, before: 0, start: 0, since: 0, taken: 0, chunk: Vec::new() }
     }
 
-    /// What is read from now on belongs to another record.
+    /// Begins another record with the next byte.
     fn begin_record(&mut self) {
         self.taken = 0;
     }
 
-    /// The line, from 1 on, that holds the last of the first `end` bytes.
+    /// Returns the line, from 1 on, that holds the last of the first `end` bytes.
     fn line(&self, end: u64) -> u64 {
         let last = usize::try_from(end.saturating_sub(self.start + 1)).unwrap_or(usize::MAX);
         1 + self.before + ends(&self.chunk[..last.min(self.chunk.len())])
@@ -284,7 +284,7 @@ impl std::io::Read for Lines {
         let last = buffer[..count].iter().rposition(|&byte| byte == b'\n');
         self.since = last.map_or(self.since + count as u64, |at| (count - 1 - at) as u64);
         self.taken += count as u64;
-        // At the end of the source the last chunk stays.
+        // At the end of the source the last chunk is kept.
         if count > 0 {
             self.before += ends(&self.chunk);
             self.start += self.chunk.len() as u64;
@@ -295,7 +295,7 @@ impl std::io::Read for Lines {
     }
 }
 
-/// How many lines end within the bytes.
+/// Returns the number of lines that end within the bytes.
 fn ends(bytes: &[u8]) -> u64 {
     // Sums of bytes are fast, and a chunk of 255 cannot overflow one.
     let few = |chunk: &[u8]| chunk.iter().map(|&byte| u8::from(byte == b'\n')).sum::<u8>();
@@ -358,7 +358,7 @@ mod tests {
             ),
             ("1\n2,5\n", None, ", line 2: 2 column(s)"),
             ("T,X\n1,2\n3,4x\n", Some("X"), ", line 3, column 1: `4x` is not a number; write it"),
-            // A first line that begins as a number does is no name: no draw is lost.
+            // A first line that begins as a number does is not a name: no draw is lost.
             ("1.2.3\n1\n", None, ", line 1, column 0: `1.2.3`"),
             ("T\nU\n1\n", None, ", line 2, column 0: `U`"),
             ("1\n\"\"\n", None, ", line 2, column 0: ``"),

@@ -1,4 +1,4 @@
-//! Which numbers of a row are a draw.
+//! Numbers of a row that are a draw.
 //!
 //! ```text
 //! no case, or a case of one channel   the only column, or the one that is chosen
@@ -12,18 +12,18 @@ use super::{Column, ForeignError};
 /// Columns of a draw.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Layout {
-    /// The one column that is read.
+    /// Column that is read, if one was chosen.
     pub column: Option<Column>,
-    /// The names of a draw's channels, where it has several.
+    /// Names of a draw's channels, if it has several.
     pub channels: Vec<String>,
-    /// Number of the last channels that may be missing.
+    /// Number of channels at the end that may be missing.
     pub derived: usize,
-    /// The one of these channels that is read.
+    /// Index of the channel that is read, if one was chosen.
     pub channel: Option<usize>,
 }
 
 impl Layout {
-    /// One column, the only one if none is chosen.
+    /// Returns the layout of one column, the only one if none is chosen.
     pub fn column(column: Option<Column>) -> Self {
         Self { column, ..Self::default() }
     }
@@ -39,7 +39,7 @@ impl Layout {
         all > 1 && (all - self.derived..=all).contains(&width)
     }
 
-    /// The numbers of columns that a draw with all its channels may have, in words.
+    /// Returns the possible numbers of columns of a draw with all its channels, in words.
     pub(super) fn widths(&self) -> String {
         let all = self.channels.len();
         match self.channels.last() {
@@ -50,7 +50,8 @@ impl Layout {
         }
     }
 
-    /// Places of a draw's values in a row of `width` numbers without names; `none` is the error where the choice is open.
+    /// Returns the indices of a draw's values in a row of `width` numbers without names; `none` is the error of an open
+    /// choice.
     pub(super) fn places(
         &self,
         file: &str,
@@ -73,7 +74,7 @@ impl Layout {
         }
     }
 
-    /// The places in a row that a first line names; `None` where it names no channels.
+    /// Returns the indices in a row with a first line of names; `None` if it does not name the channels.
     pub(super) fn named(&self, names: &[String]) -> Option<Vec<usize>> {
         let of = |channel: &String| names.iter().position(|name| name == channel);
         if let Some(channel) = self.channel {
@@ -85,7 +86,7 @@ impl Layout {
         (all - self.derived..=all).rev().find_map(found).filter(|places| !places.is_empty())
     }
 
-    /// That rows have another number of columns than the case has channels.
+    /// Returns the error of rows with another number of columns than the case has channels.
     pub(super) fn mismatch(&self, file: &str, found: usize) -> ForeignError {
         let channels = self.channels.join(", ");
         ForeignError::Channels { file: file.to_owned(), found, channels, wanted: self.widths() }

@@ -6,8 +6,8 @@
 //! f64, bin, raw  little-endian float64, nothing else; several values of a draw follow each other
 //! ```
 //!
-//! NaN and ∞ are read as they are: the gate judges them. Whatever keeps a file from being a list of
-//! numbers is a [`ForeignError`]; nothing is skipped.
+//! NaN and ∞ are read as they are: the gate judges them. A file that is not a list of numbers is a [`ForeignError`];
+//! nothing is skipped.
 
 mod csv;
 mod layout;
@@ -24,15 +24,15 @@ pub use layout::Layout;
 
 use super::{BUFFER, Block, Source};
 
-/// How numbers are written.
+/// Format of numbers.
 #[derive(Debug, Clone, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Format {
     /// A table of text, columns separated by commas.
     Csv {
-        /// Which column to read; a table of one column needs no choice.
+        /// Column to read; a table of one column needs no choice.
         column: Option<Column>,
-        /// Which column has the lookups of a draw, if any.
+        /// Column with the lookups of a draw, if any.
         lookups: Option<Column>,
     },
     /// `NumPy`'s array file.
@@ -69,7 +69,7 @@ impl std::fmt::Display for Column {
 }
 
 impl Format {
-    /// The format that a file's ending stands for; `None` where it stands for none.
+    /// Returns the format of a file's ending; `None` for an unknown ending.
     pub fn of_path(path: &Path) -> Option<Self> {
         let ending = path.extension()?.to_str()?.to_ascii_lowercase();
         match ending.as_str() {
@@ -81,7 +81,7 @@ impl Format {
     }
 }
 
-/// Where bytes come from.
+/// Source of bytes.
 type Bytes = Box<dyn Read + Send>;
 
 /// An open source of draws.
@@ -111,11 +111,11 @@ impl Draws {
         Self::open_as(path, format, &Layout::default())
     }
 
-    /// Opens a file of draws that have several values, or of several columns.
+    /// Opens a file with several values per draw, or with several columns.
     ///
     /// # Errors
     ///
-    /// Those of [`Draws::open`], and where the file has other columns.
+    /// The errors of [`Draws::open`], and files with other columns.
     pub fn open_as(path: &Path, format: Format, layout: &Layout) -> Result<Self, ForeignError> {
         let name = path.display().to_string();
         let unreadable = |cause| ForeignError::unreadable(&name, cause);
@@ -125,7 +125,7 @@ impl Draws {
         Self::new(Box::new(file), &name, format, bytes, layout)
     }
 
-    /// Reads a pipe, or anything else that is no file; `name` is what errors call it.
+    /// Reads a pipe, or any other source that is not a file; `name` stands for it in errors.
     ///
     /// # Errors
     ///
@@ -138,11 +138,11 @@ impl Draws {
         Self::from_reader_as(reader, name, format, &Layout::default())
     }
 
-    /// Reads a pipe of draws that have several values, or of several columns.
+    /// Reads a pipe with several values per draw, or with several columns.
     ///
     /// # Errors
     ///
-    /// Those of [`Draws::from_reader`], and where there are other columns.
+    /// The errors of [`Draws::from_reader`], and sources with other columns.
     pub fn from_reader_as(
         reader: impl Read + Send + 'static,
         name: &str,
@@ -172,7 +172,7 @@ impl Draws {
         Ok(Self { source })
     }
 
-    /// How many draws there are in all, where the file says so.
+    /// Returns the number of all draws, if the file gives it.
     pub fn known_length(&self) -> Option<u64> {
         match &self.source {
             Reader::Csv(_) => None,
@@ -180,7 +180,7 @@ impl Draws {
         }
     }
 
-    /// Number of values of a draw.
+    /// Returns the number of values of a draw.
     pub fn values(&self) -> usize {
         match &self.source {
             Reader::Csv(table) => table.values(),
@@ -188,13 +188,12 @@ impl Draws {
         }
     }
 
-    /// Replaces the buffer's contents by the first values of the next draws, `at_most` of them; answers how many, 0 at
-    /// the end. Fewer than asked for come only at the end.
+    /// Replaces the buffer's contents by the first values of the next draws, `at_most` of them, and returns their
+    /// number; 0 at the end. It is smaller than `at_most` only at the end.
     ///
     /// # Errors
     ///
-    /// The source cannot be read on, or what follows is not a draw. The buffer then holds the draws
-    /// before.
+    /// The source cannot be read further, or its next bytes are not a draw. The buffer then holds the draws before.
     pub fn read(&mut self, buffer: &mut Vec<f64>, at_most: usize) -> Result<usize, ForeignError> {
         let mut block = Block::new(self.values());
         let read = self.fill(&mut block, at_most);
@@ -214,7 +213,7 @@ impl Source for Draws {
     }
 }
 
-/// Why numbers could not be read.
+/// Reason why numbers could not be read.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 #[allow(missing_docs)] // messages name the fields
@@ -228,7 +227,7 @@ pub enum ForeignError {
     /// The file ends too early.
     #[error("{file}: ends after {found} of {expected} draws; write it to the end")]
     Truncated { file: String, found: u64, expected: u64 },
-    /// The file goes on where it should end.
+    /// The file continues behind its end.
     #[error("{file}: goes on after its {expected} draws; write one array a file")]
     Overlong { file: String, expected: u64 },
     /// The file ends within a number.
@@ -254,20 +253,20 @@ pub enum ForeignError {
         "{file}: an array of shape {shape}, fewer draws than values; a row is a draw: did you mean x.T?"
     )]
     Transposed { file: String, shape: String },
-    /// Another number of values than a draw of the case has.
+    /// Number of values that differs from that of a draw of the case.
     #[error(
         "{file}: a draw has {found} value{}, but the case has the channels {channels}; write draws of {wanted}, or choose one \
          of the channels by --channel",
         if *found == 1 { "" } else { "s" }
     )]
     Channels { file: String, found: usize, channels: String, wanted: String },
-    /// Numbers without a shape, of which nothing says how many a draw has.
+    /// Numbers without a shape: the number of values of a draw is unknown.
     #[error(
         "{file}: numbers without a shape do not tell how many values a draw has, of the channels {channels} that the case \
          has; write npy of shape (draws, values) or csv, or one channel and choose it by --channel"
     )]
     NoShape { file: String, channels: String },
-    /// A column of numbers that have none.
+    /// Column of lookups in a format without columns.
     #[error(
         "{file}: raw float64 has no columns; write npy of shape (draws, values) or csv, or leave --column out"
     )]
@@ -305,7 +304,7 @@ impl ForeignError {
     }
 }
 
-/// How many draws a file holds: by its length or its header, else by reading it through.
+/// Returns the number of draws in a file: by its length or its header, else by reading it to the end.
 ///
 /// # Errors
 ///
@@ -326,7 +325,7 @@ pub fn count(path: &Path, format: Format, layout: &Layout) -> Result<u64, Foreig
     }
 }
 
-/// Every draw, in small pieces.
+/// Returns every draw, read in small pieces.
 #[cfg(test)]
 fn all(mut draws: Draws) -> Result<Vec<f64>, ForeignError> {
     let (mut all, mut buffer) = (Vec::new(), Vec::new());

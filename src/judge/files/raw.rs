@@ -1,9 +1,9 @@
-//! Numbers of a fixed width, one after the other or in rows of which some columns are read.
+//! Numbers of a fixed width, one after the other or in rows with some columns that are read.
 
 use super::{Bytes, ForeignError, Layout};
 use media::files::npy::Word;
 
-/// How many bytes are asked for at a time: they stay in the second-level cache until converted.
+/// Number of bytes that are read at a time: they stay in the second-level cache until converted.
 const CHUNK: usize = 1 << 17;
 
 /// A stream of words.
@@ -11,15 +11,15 @@ pub(super) struct Words {
     bytes: Bytes,
     file: String,
     word: Word,
-    /// How many a header announces; the stream ends there.
+    /// Number of words that a header announces; the stream ends there.
     announced: Option<u64>,
-    /// How many there are, where it is known.
+    /// Number of words, if it is known.
     length: Option<u64>,
     /// Number of numbers of a draw, for messages.
     width: u64,
     given: u64,
     chunk: Vec<u8>,
-    /// What is read and not yet given, `chunk[start..end]`.
+    /// Bytes that were read and not yet returned, `chunk[start..end]`.
     start: usize,
     end: usize,
 }
@@ -97,8 +97,8 @@ impl Words {
         if numbers.len() < at_most && numbers.len() == before { self.check_end() } else { Ok(()) }
     }
 
-    /// Moves what is left to the front and reads on until a word is there or the source ends;
-    /// answers how many bytes are there.
+    /// Moves the remaining bytes to the front and reads until there is a word or the source ends; returns the number of
+    /// bytes.
     fn fill(&mut self) -> Result<usize, ForeignError> {
         self.chunk.copy_within(self.start..self.end, 0);
         (self.start, self.end) = (0, self.end - self.start);
@@ -113,7 +113,7 @@ impl Words {
         Ok(self.end)
     }
 
-    /// That the numbers end within a draw.
+    /// Returns the error of numbers that end within a draw.
     fn partial_row(&self, numbers: u64, values: usize) -> ForeignError {
         match self.announced {
             Some(announced) => {
@@ -124,7 +124,7 @@ impl Words {
         }
     }
 
-    /// What is wrong with the end, if anything.
+    /// Checks that the source ends where it should.
     fn check_end(&mut self) -> Result<(), ForeignError> {
         let rest = if self.end > self.start { self.end - self.start } else { self.fill()? };
         let file = || self.file.clone();
@@ -152,11 +152,11 @@ pub(super) struct Rows {
     width: usize,
     /// The columns that are read.
     places: Vec<usize>,
-    /// Numbers that were read and not yet given.
+    /// Numbers that were read and not yet returned.
     row: Vec<f64>,
     /// True if whole columns follow each other: then all numbers are read first.
     by_column: bool,
-    /// All numbers, where whole columns follow each other, and how many rows of them were given.
+    /// All numbers, if whole columns follow each other, and the number of rows that were returned.
     all: Option<(Vec<f64>, usize)>,
     /// Number of numbers that were read.
     numbers: u64,
@@ -168,12 +168,12 @@ impl Rows {
         Self { words, width, places, row: Vec::new(), by_column, all: None, numbers: 0 }
     }
 
-    /// Number of rows, where it is known.
+    /// Returns the number of rows, if it is known.
     pub(super) fn known_length(&self) -> Option<u64> {
         self.words.known_length().map(|numbers| numbers / self.width as u64)
     }
 
-    /// Number of values of a draw.
+    /// Returns the number of values of a draw.
     pub(super) fn values(&self) -> usize {
         self.places.len()
     }
@@ -214,7 +214,7 @@ impl Rows {
             none => {
                 let mut all = Vec::new();
                 self.words.read(&mut all, usize::MAX)?;
-                // A second look finds what is missing, or what is too much.
+                // A second read finds missing or surplus bytes.
                 self.words.read(&mut Vec::new(), usize::MAX)?;
                 let (all, given) = none.insert((all, 0));
                 (all, given)
@@ -238,7 +238,7 @@ mod tests {
     use super::super::{Draws, Format, all};
     use super::*;
 
-    /// A pipe that gives three bytes at a time.
+    /// Pipe that returns three bytes at a time.
     struct Trickle(Cursor<Vec<u8>>);
 
     impl Read for Trickle {

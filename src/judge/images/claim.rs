@@ -1,4 +1,4 @@
-//! What is claimed of the pixels of a pass, and what makes no sense of it.
+//! Claims about the pixels of a pass, and mistakes in them.
 
 use std::io;
 
@@ -7,12 +7,12 @@ use super::variance::Estimated;
 use crate::judge::ROUNDING;
 use gate::stats::verdict::FURTHEST;
 
-/// A number for all pixels, or one for each.
+/// One number for all pixels, or one for each.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Level {
-    /// The same for all.
+    /// Number for all pixels.
     All(f64),
-    /// One for each value of a pass. A picture of one channel stands for all channels.
+    /// One number for each value of a pass. A picture of one channel stands for all channels.
     Each(Picture),
 }
 
@@ -43,7 +43,7 @@ impl Level {
     }
 }
 
-/// What correct pixels are like.
+/// Claim about correct pixels.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Claim {
     /// Their means.
@@ -55,19 +55,21 @@ pub struct Claim {
     /// Number of independent passes, other than those judged, that the variance is the sample variance of; `None` for
     /// an exact variance. Entries below 0 count as 0; a value with a variance of NaN or infinity is not judged.
     pub variance_passes: Option<usize>,
-    /// Independent passes of the same law that the variance is taken from, instead of `variance`.
+    /// Independent passes with the distribution of the pixels, from which the variance is estimated, instead of
+    /// `variance`.
     pub variance_stack: Option<Stack>,
-    /// Upper bound of the kurtosis (3 for the normal law) of the values of a tile about their truths. Without any variance
-    /// it is a ground for a verdict; for an estimated variance it takes the place of the kurtosis that the passes show.
+    /// Upper bound of the kurtosis (3 for the normal distribution) of the values of a tile about their truths. Without
+    /// any variance it is a ground for a verdict; with an estimated variance it replaces the kurtosis that the passes
+    /// show.
     pub kurtosis: Option<f64>,
-    /// Where all values lie, if it is known; either end may be infinite.
+    /// Range of all values, if it is known; either end may be infinite.
     pub range: Option<[f64; 2]>,
-    /// What rounding may add to a value, relative to its truth; at least that of the files.
+    /// Bound on the rounding error of a value, relative to its truth; at least that of the files.
     pub rounding: f64,
 }
 
 impl Claim {
-    /// A claim of the truth alone: nothing follows from it unless a variance or a range is added.
+    /// Claims the truth alone: a verdict also needs a variance or a range.
     pub fn of_truth(truth: Level) -> Self {
         Self {
             truth,
@@ -82,7 +84,7 @@ impl Claim {
     }
 }
 
-/// A claim for every value of a pass.
+/// Claim for every value of a pass.
 pub(super) struct Pixels {
     pub truth: Vec<f64>,
     pub variance: Option<Vec<f64>>,
@@ -93,7 +95,7 @@ pub(super) struct Pixels {
     pub kurtosis: Option<f64>,
     pub range: Option<[f64; 2]>,
     pub rounding: f64,
-    /// The mean |truth| of each channel; 1 where that is 0.
+    /// Mean |truth| of each channel; 1 if that is 0.
     pub units: Vec<f64>,
 }
 
@@ -153,7 +155,7 @@ impl Pixels {
         }
     }
 
-    /// What rounding may add to a value.
+    /// Returns a bound on the rounding error of a value.
     pub(super) fn floor(&self, index: usize) -> f64 {
         self.rounding * self.truth[index].abs()
     }
@@ -178,14 +180,14 @@ impl Pixels {
         estimated.is_some_and(|variance| variance.iter().all(|&v| v == 0.0))
     }
 
-    /// How far a value without spread may be from its truth.
+    /// Returns the largest distance of a value without spread from its truth.
     pub(super) fn bound(&self, index: usize) -> f64 {
         let variance = self.variance.as_ref().map_or(0.0, |variance| variance[index]);
         let is_end = self.is_end(index);
         self.floor(index) + if is_end { 0.0 } else { FURTHEST * variance.sqrt() }
     }
 
-    /// The range with what rounding may add at each end.
+    /// Returns the range, widened by the rounding error at each end.
     pub(super) fn widened(&self) -> Option<[f64; 2]> {
         let [low, high] = self.range?;
         let finite = [low, high].map(|end| if end.is_finite() { end.abs() } else { 0.0 });
@@ -193,12 +195,12 @@ impl Pixels {
         Some([low - slack, high + slack])
     }
 
-    /// The truths at some places.
+    /// Returns the truths at some places.
     pub(super) fn truths(&self, places: &[usize]) -> Vec<f64> {
         places.iter().map(|&i| self.truth[i]).collect()
     }
 
-    /// Range of x − T for these T, in units of `unit`.
+    /// Returns the range of x − T for these T, in units of `unit`.
     pub(super) fn range_about(&self, truths: &[f64], unit: f64) -> Option<[f64; 2]> {
         let [low, high] = self.widened()?;
         let least = truths.iter().copied().fold(f64::INFINITY, f64::min);
@@ -206,7 +208,7 @@ impl Pixels {
         Some([low - most, high - least].map(|end| end / unit))
     }
 
-    /// Range of x − T for any T in the range, in units of `unit`.
+    /// Returns the range of x − T for any T in the range, in units of `unit`.
     pub(super) fn span(&self, unit: f64) -> Option<[f64; 2]> {
         self.widened().map(|[low, high]| [low - high, high - low].map(|end| end / unit))
     }
@@ -216,7 +218,7 @@ impl Pixels {
 const EXACT: &str = "a finite number, 0 or more (if the variance was estimated from passes, say from how many by \
                      --variance-passes N: then such values are allowed)";
 
-/// Numbers of passes and the kurtosis.
+/// Validates the numbers of passes and the kurtosis.
 fn check_numbers(claim: &Claim) -> Result<(), ImageError> {
     let number = |what, value, wanted| Err(ImageError::Number { what, value, wanted });
     let few = |passes: Option<usize>| passes.filter(|&passes| passes < 2);
@@ -246,7 +248,7 @@ pub(super) fn check(
     Err(ImageError::Pixel { what, row, column, channel, value, wanted: wanted.to_owned() })
 }
 
-/// Why pictures could not be read or judged.
+/// Reason why pictures could not be read or judged.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 #[allow(missing_docs)] // messages name the fields
@@ -254,13 +256,13 @@ pub enum ImageError {
     /// The system refused.
     #[error("{file}: {cause}; give a file that can be read")]
     Unreadable { file: String, cause: io::Error },
-    /// The name does not tell a format.
+    /// The name does not show the format.
     #[error("{file}: its name ends with none of .npy, .pfm and .exr; give images as one of these")]
     Format { file: String },
-    /// The file is not what its name says, or only a part of it.
+    /// The content is not of the format of the name, or only a part of it.
     #[error("{file}: not {what} that can be read ({cause}); {cure}")]
     Faulty { file: String, what: &'static str, cause: String, cure: &'static str },
-    /// An array of a shape that is no picture.
+    /// The shape of an array is not that of a picture.
     #[error("{file}: an array of shape {shape}; save {wanted}")]
     Shape { file: String, shape: String, wanted: &'static str },
     /// Pictures of different sizes.
@@ -277,7 +279,7 @@ pub enum ImageError {
          or several files of one pass each"
     )]
     OnePass,
-    /// A pixel of a claim that makes no sense.
+    /// A pixel of a claim has an impossible value.
     #[error(
         "the {what} of row {row}, column {column}, channel {channel} is {value}, not {wanted}; mend it"
     )]
@@ -289,10 +291,10 @@ pub enum ImageError {
         value: f64,
         wanted: String,
     },
-    /// A number that makes no sense.
+    /// A number has an impossible value.
     #[error("{what} = {value} is not {wanted}; give {what} as {wanted}")]
     Number { what: &'static str, value: f64, wanted: &'static str },
-    /// A tolerance that rounding would eat.
+    /// A tolerance is smaller than rounding.
     #[error(
         "a tolerance of {tolerance:e} is below 4 times what rounding may add to a pixel, {floor:.1e} of the \
          picture's mean; give a wider tolerance, a smaller rounding, or images of more digits"

@@ -20,26 +20,26 @@ use media::files::exr::{self, Window};
 use media::files::npy::{self, Header, Word};
 use media::files::{Pixels, pfm};
 
-/// The relative rounding of numbers of 24 bits.
+/// Relative rounding error of numbers of 24 bits.
 const SINGLE: f64 = 0.5 * f32::EPSILON as f64;
 
-/// The relative rounding of numbers of 11 bits.
+/// Relative rounding error of numbers of 11 bits.
 const HALF: f64 = 1.0 / 2048.0;
 
 /// Reads a picture.
 ///
 /// # Errors
 ///
-/// The file cannot be read, or is no picture.
+/// The file cannot be read, or is not a picture.
 pub fn picture(path: &Path) -> Result<Picture, ImageError> {
     picture_in(path, Frame::default())
 }
 
-/// Reads a picture as it is laid beside others.
+/// Reads a picture, and places it in a frame.
 ///
 /// # Errors
 ///
-/// The file cannot be read, or is no picture.
+/// The file cannot be read, or is not a picture.
 pub fn picture_in(path: &Path, frame: Frame) -> Result<Picture, ImageError> {
     let file = path.display().to_string();
     match ending(path).as_deref() {
@@ -63,20 +63,20 @@ pub fn picture_in(path: &Path, frame: Frame) -> Result<Picture, ImageError> {
     }
 }
 
-/// Reads a stack of one file, or of several with a pass each.
+/// Reads a stack from one file, or from several with a pass each.
 ///
 /// # Errors
 ///
-/// A file cannot be read or is no picture, they are of different sizes, or there is one pass alone.
+/// A file cannot be read or is not a picture, sizes differ, or there is only one pass.
 pub fn stack(paths: &[impl AsRef<Path>]) -> Result<Stack, ImageError> {
     stack_in(paths, Frame::of(paths)?)
 }
 
-/// Reads a stack as it is laid beside others.
+/// Reads a stack, and places its passes in a frame.
 ///
 /// # Errors
 ///
-/// A file cannot be read or is no picture, they are of different sizes, or there is one pass alone.
+/// A file cannot be read or is not a picture, sizes differ, or there is only one pass.
 pub fn stack_in(paths: &[impl AsRef<Path>], frame: Frame) -> Result<Stack, ImageError> {
     let [first, others @ ..] = paths else { return Err(ImageError::OnePass) };
     let first = first.as_ref();
@@ -125,7 +125,7 @@ fn bytes(path: &Path, file: &str) -> Result<Vec<u8>, ImageError> {
 const STACK: &str = "(passes, height, width) or (passes, height, width, channels), each 1 or more";
 const PICTURE: &str = "(height, width) or (height, width, channels), each 1 or more";
 
-/// Reads a picture of an array.
+/// Reads a picture from an array.
 fn npy_picture(path: &Path, file: &str) -> Result<Picture, ImageError> {
     let array = Array::read(
         path,
@@ -140,7 +140,7 @@ fn npy_picture(path: &Path, file: &str) -> Result<Picture, ImageError> {
     Ok(Picture { rounding: array.rounding, ..Picture::new(array.size, array.values)? })
 }
 
-/// Reads a stack of an array.
+/// Reads a stack from an array.
 fn npy_stack(path: &Path, file: &str) -> Result<Stack, ImageError> {
     let array = Array::read(
         path,
@@ -155,7 +155,7 @@ fn npy_stack(path: &Path, file: &str) -> Result<Stack, ImageError> {
     Ok(Stack { rounding: array.rounding, ..Stack::new(array.passes, array.size, array.values)? })
 }
 
-/// Passes and their size by the lengths of the axes.
+/// Number of passes and their size by the lengths of the axes.
 type Reading<'a> = &'a dyn Fn(&[usize]) -> Option<(usize, Size)>;
 
 struct Array {
@@ -216,27 +216,28 @@ fn lengths(array: &Header) -> Option<Vec<usize>> {
     axes.collect()
 }
 
-/// Headers are shorter than this, but for rare ones.
+/// Length in bytes of all but rare headers.
 const HEAD: u64 = 1 << 16;
 
-/// The most pixels of a frame: a small file may announce any display window.
+/// Maximum number of pixels of a frame: a small file may announce any display window.
 const MOST: usize = 1 << 27;
 
-/// The picture into which pixels are laid; none where files are compared as they are stored.
+/// Frame in which pixels are placed; none if files are compared as they are stored.
 ///
-/// An `OpenEXR` file stores the pixels of its data window, and states its place in the picture, the display window.
-/// Files with the same data window are compared as they are stored. Where data windows differ, as after cropping to
-/// what is not black, pixels are laid into the display window, which must then be the same: outside its data window a
+/// An `OpenEXR` file stores the pixels of its data window, and the place of that window in the picture, the display
+/// window. Files with the same data window are compared as they are stored. If data windows differ, as after cropping
+/// of black borders, pixels are placed in the display window, which must then be the same. Outside its data window a
+/// file is 0, and pixels beyond the display window are left out.
 /// file is 0, and pixels beyond the display window are left out.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Frame(Option<Window>);
 
 impl Frame {
-    /// The frame of files that are compared with each other.
+    /// Returns the frame of files that are compared with each other.
     ///
     /// # Errors
     ///
-    /// Data windows differ, and so do display windows. Faults of a file are found when its pixels are read.
+    /// Data windows differ, and so do display windows. Faults of a file are reported when its pixels are read.
     pub fn of(paths: &[impl AsRef<Path>]) -> Result<Self, ImageError> {
         let windows = paths.iter().filter_map(|path| {
             let path = path.as_ref();
@@ -276,12 +277,12 @@ impl Frame {
         }
     }
 
-    /// The pixels of a data window in the frame.
+    /// Places the pixels of a data window in the frame.
     fn laid(self, pixels: Pixels, data: Window) -> Pixels {
         let Self(Some(frame)) = self else { return pixels };
         let ([columns, rows], [width, height]) = (frame.size(), pixels.size);
         let channels = pixels.channels;
-        // How far the data window begins to the right of the frame, and below it.
+        // Distance of the data window from the left and the upper edge of the frame.
         let [right, below] =
             [0, 1].map(|axis| i64::from(data.low[axis]) - i64::from(frame.low[axis]));
         let mut values = vec![0.0; columns * rows * channels];
@@ -303,7 +304,7 @@ impl Frame {
     }
 }
 
-/// The data window and the display window of a picture; none of a file that has none, or that cannot be read.
+/// Returns the data window and the display window of a picture; `None` without windows, or for an unreadable file.
 fn windows(path: &Path) -> Option<[Window; 2]> {
     if ending(path).as_deref() != Some("exr") {
         return None;

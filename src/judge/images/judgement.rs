@@ -1,4 +1,4 @@
-//! What is said of a stack of pictures.
+//! Judgement of a stack of pictures.
 
 use super::picture::{Size, Stack};
 use crate::judge::LISTED;
@@ -6,106 +6,106 @@ use gate::causes::Pattern;
 use gate::stats::gate::Evidence;
 use gate::stats::verdict::{MISS, Verdict};
 
-/// The verdict on a stack, with its numbers.
+/// Verdict on a stack, with its numbers.
 #[derive(Debug, Clone, serde::Serialize)]
 pub struct Judgement {
     /// `pass`, `fail` or `inconclusive`.
     pub verdict: Verdict,
-    /// Why, in words; of a pass, what it excludes where that is little; else empty for a pass.
+    /// Reason, in words. It is empty for a pass, unless the pass excludes only a large bias.
     pub reason: String,
-    /// What the verdict promises, and what it does not.
+    /// Promises of the verdict, and their assumptions.
     pub guarantees: Vec<String>,
-    /// α: the chance that correct passes fail.
+    /// α, the probability that correct passes fail.
     pub alpha: f64,
-    /// β: the chance that a tile, or the whole, passes although it is off by its tolerance.
+    /// β, the probability that a tile, or the whole, passes although its bias equals its tolerance.
     pub beta: f64,
-    /// The rate of false ones that is kept on the list of tiles.
+    /// Bound on the expected share of false entries on the list of tiles.
     pub listed_rate: f64,
-    /// How many passes there are.
+    /// Number of passes.
     pub passes: usize,
-    /// How large each is.
+    /// Size of each pass.
     pub size: Size,
-    /// Rows and columns of the smallest tiles; fewer at the right and at the foot.
+    /// Rows and columns of the smallest tiles; smaller ones at the right and at the foot.
     pub tile: usize,
-    /// The first value that refutes the claim by itself.
+    /// First value that refutes the claim by itself.
     pub refuted_by: Option<Refuted>,
-    /// How many such values there are.
+    /// Number of such values.
     pub refuting: u64,
-    /// Whether the passes depend on each other.
+    /// Dependence of the passes on each other.
     pub order: Dependence,
-    /// Whether the pixels of a pass do.
+    /// Dependence of the pixels of a pass on each other.
     pub neighbours: Dependence,
-    /// The passes that share values, from 0; empty where none do.
+    /// Passes that share values, from 0; empty if none share any.
     pub repeated: Vec<u32>,
-    /// What the values show of the claimed variance.
+    /// Test of the claimed variance.
     pub variance: Option<Variance>,
-    /// What is known of a variance that was estimated; `None` for an exact one, or none.
+    /// Estimated variance; `None` for an exact one, or for none.
     pub estimate: Option<Estimate>,
     /// Number of passes that the truth image is the mean of; `None` for an exact truth.
     pub truth_passes: Option<usize>,
-    /// Comparison with a second stack; `None` where the truth is given.
+    /// Comparison with a second stack; `None` if the truth is given.
     pub comparison: Option<Comparison>,
-    /// The whole picture, each channel.
+    /// Whole picture, one entry per channel.
     pub whole: Vec<Tile>,
     /// Every tile, the smallest first, row after row from the top, each with all its channels.
     #[serde(skip)]
     pub tiles: Vec<Tile>,
-    /// How many tiles there are, and how many of them pass, fail and are listed.
+    /// Numbers of tiles by their verdicts.
     pub counts: Counts,
-    /// The tiles with the most evidence against them.
+    /// Tiles with the most evidence against them.
     pub worst: Vec<Tile>,
 }
 
-/// How many tiles there are of a kind; a tile counts in each channel.
+/// Numbers of tiles by their verdicts; a tile counts in each channel.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, serde::Serialize)]
 pub struct Counts {
-    /// K.
+    /// K, the number of all tiles.
     pub tiles: usize,
-    /// Those that pass.
+    /// Number of tiles that pass.
     pub pass: usize,
-    /// Those that fail, by Holm.
+    /// Number of tiles that fail, by Holm.
     pub fail: usize,
-    /// Those on the list, by e-BH.
+    /// Number of tiles on the list, by e-BH.
     pub listed: usize,
 }
 
-/// A value that refutes the claim by itself.
+/// Value that refutes the claim by itself.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
 pub struct Refuted {
-    /// The pass, from 0.
+    /// Pass, from 0.
     pub pass: usize,
-    /// The row, from 0 at the top.
+    /// Row, from 0 at the top.
     pub row: usize,
-    /// The column, from 0.
+    /// Column, from 0.
     pub column: usize,
-    /// The channel, from 0.
+    /// Channel, from 0.
     pub channel: usize,
-    /// What it is.
+    /// Value.
     pub value: f64,
 }
 
 impl Refuted {
-    /// The value at a place of a pass.
+    /// Returns the value at a place of a pass.
     pub(super) fn at(size: Size, pass: usize, index: usize, value: f64) -> Self {
         let [row, column, channel] = size.place(index);
         Self { pass, row, column, channel, value }
     }
 }
 
-/// Whether some numbers depend on each other.
+/// Test for dependence of some numbers on each other.
 #[derive(Debug, Clone, Default, serde::Serialize)]
 pub struct Dependence {
-    /// Why they do; empty where nothing was found.
+    /// Description of a dependence; empty if none was found.
     pub reason: String,
     /// ln of the evidence, or of 1/p.
     pub evidence: f64,
-    /// What it must reach.
+    /// Limit of the evidence.
     pub limit: f64,
-    /// The strongest correlation that was seen.
+    /// Strongest correlation that was found.
     pub correlation: Option<f64>,
-    /// Its lag, in passes.
+    /// Lag of that correlation, in passes.
     pub lag: Option<usize>,
-    /// True if there is enough to tell.
+    /// True if the numbers suffice for a test.
     pub is_tested: bool,
 }
 
@@ -116,29 +116,29 @@ impl Dependence {
     }
 }
 
-/// What the values show of the claimed variance, over all pixels.
+/// Test of the claimed variance, over all pixels.
 #[derive(Debug, Clone, Copy, serde::Serialize)]
 pub struct Variance {
-    /// The mean of (x − truth)²/V.
+    /// Mean of (x − truth)²/V.
     pub about_truth: f64,
-    /// The mean of s²/V.
+    /// Mean of s²/V.
     pub about_mean: f64,
-    /// The mean of s²/V beyond which nothing passes.
+    /// Largest mean of s²/V with which a picture may pass.
     pub margin: f64,
-    /// ln E against a variance of V at most.
+    /// ln E against a variance of at most V.
     pub ln_e: f64,
-    /// The ln E at which it is refuted.
+    /// ln E at which the variance is refuted.
     pub limit: f64,
-    /// True if it is.
+    /// True if it is refuted.
     pub is_refuted: bool,
 }
 
-/// A variance that was estimated from passes.
+/// Variance that was estimated from passes.
 #[derive(Debug, Clone, Copy, serde::Serialize)]
 pub struct Estimate {
     /// Number of passes that it was estimated from.
     pub passes: usize,
-    /// Kurtosis of the values of the smallest tiles that is relied on: measured, or given.
+    /// Kurtosis of the values of the smallest tiles that the evidence relies on: measured, or given.
     pub kurtosis: f64,
     /// True if the caller gave the kurtosis.
     pub is_given: bool,
@@ -146,7 +146,7 @@ pub struct Estimate {
     pub negative: u64,
     /// Number of variances that are NaN or infinite: these values are not judged.
     pub unknown: u64,
-    /// The first of either kind: row, column and channel, from 0.
+    /// First of either kind: row, column and channel, from 0.
     pub first: Option<[usize; 3]>,
 }
 
@@ -159,59 +159,59 @@ pub struct Comparison {
     pub method: &'static str,
     /// Number of random permutations; 0 for signs.
     pub permutations: u64,
-    /// Least p-value of all tiles and the whole together, for equal distributions.
+    /// Smallest p-value of all tiles and the whole together, for equal distributions.
     pub p: f64,
     /// True if the caller claims equal distributions in each pixel.
     pub is_same_law: bool,
-    /// Variance of the test over that of the reference, over all pixels; `None` where neither varies.
+    /// Variance of the test over that of the reference, over all pixels; `None` if neither varies.
     pub spread: Option<f64>,
-    /// p-value of that for equal distributions.
+    /// p-value of that ratio for equal distributions.
     pub spread_p: f64,
     /// Largest kurtosis of the smallest tiles' values, as measured.
     pub kurtosis: Option<f64>,
 }
 
-/// A rectangle of pixels in one channel.
+/// Rectangle of pixels in one channel.
 #[derive(Debug, Clone, serde::Serialize)]
 pub struct Tile {
     /// Rows and columns of tiles of its kind.
     pub size: usize,
-    /// The first row, from 0 at the top.
+    /// First row, from 0 at the top.
     pub row: usize,
-    /// The first column, from 0.
+    /// First column, from 0.
     pub column: usize,
-    /// How many rows it has.
+    /// Number of rows.
     pub height: usize,
-    /// How many columns it has.
+    /// Number of columns.
     pub width: usize,
-    /// The channel, from 0.
+    /// Channel, from 0.
     pub channel: usize,
-    /// The mean of the truth.
+    /// Mean of the truth.
     pub truth: f64,
-    /// The mean of all passes.
+    /// Mean of all passes.
     pub mean: f64,
-    /// Its standard error: from the variance claimed, else from that of the passes.
+    /// Standard error of the mean: from the claimed variance, else from that of the passes.
     pub standard_error: f64,
-    /// (mean − truth) in standard errors; `None` where that is no number.
+    /// (mean − truth) in standard errors; `None` if that is not finite.
     pub z: Option<f64>,
-    /// Probability of a difference at least as large where all is well: by a permutation of two stacks, else from z.
+    /// Probability of a difference at least as large for correct passes: by a permutation of two stacks, else from z.
     pub p: Option<f64>,
     /// ln E against the truth.
     pub ln_e: f64,
-    /// ln of the evidence against a bias of +ε and of −ε; infinite where there is no doubt.
+    /// ln of the evidence against a bias of +ε and of −ε; infinite if such a bias is impossible.
     pub ln_p: [f64; 2],
-    /// ε, in units of the picture's mean truth in that channel; `None` where nothing could be asked.
+    /// ε, in units of the picture's mean truth in that channel; `None` if no evidence was possible.
     pub tolerance: Option<f64>,
-    /// True if it is on the list of tiles that are off.
+    /// True if it is on the list of suspect tiles.
     pub is_listed: bool,
-    /// What is said of it.
+    /// Verdict on the tile.
     pub verdict: Verdict,
 }
 
 /// Maximum number of worst tiles that are listed.
 const WORST: usize = 5;
 
-/// Numbers of tiles by their verdicts.
+/// Returns the numbers of tiles by their verdicts.
 fn counts(tiles: &[Tile]) -> Counts {
     let of = |verdict| tiles.iter().filter(|tile| tile.verdict == verdict).count();
     Counts {
@@ -222,7 +222,7 @@ fn counts(tiles: &[Tile]) -> Counts {
     }
 }
 
-/// The tiles with the most evidence against them, of those that fail or are listed.
+/// Returns the tiles with the most evidence against them, of those that fail or are listed.
 fn worst(tiles: &[Tile]) -> Vec<Tile> {
     let is_off = |tile: &&Tile| tile.is_listed || tile.verdict == Verdict::Fail;
     let mut off: Vec<&Tile> = tiles.iter().filter(is_off).collect();
@@ -231,14 +231,14 @@ fn worst(tiles: &[Tile]) -> Vec<Tile> {
 }
 
 impl Tile {
-    /// The evidence on the mean.
+    /// Returns the evidence on the mean.
     pub(super) fn evidence(&self) -> Evidence {
         Evidence { ln_e: self.ln_e, ln_pass: self.ln_p }
     }
 }
 
 impl Judgement {
-    /// A judgement of passes of which nothing is known yet.
+    /// Returns a judgement before any test.
     pub(super) fn new(stack: &Stack, alpha: f64, tile: usize) -> Self {
         Self {
             verdict: Verdict::Inconclusive,
@@ -266,13 +266,13 @@ impl Judgement {
         }
     }
 
-    /// Takes the tiles and the whole picture.
+    /// Takes over the tiles and the whole picture.
     pub(super) fn take(&mut self, tiles: Vec<Tile>, whole: Vec<Tile>) {
         (self.worst, self.counts) = (worst(&tiles), counts(&tiles));
         (self.tiles, self.whole) = (tiles, whole);
     }
 
-    /// Which checks fail, and on which side; passes that depend on each other have no other side.
+    /// Returns which checks fail, and on which side. Passes that depend on each other have no other side.
     pub fn pattern(&self) -> Pattern {
         let mut pattern = Pattern::default();
         if self.order.is_refuted() {

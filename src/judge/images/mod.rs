@@ -1,6 +1,6 @@
-//! Stacks of pictures: whether the passes of a renderer have the right means, tile by tile.
+//! Stacks of pictures: test of the means of a renderer's passes, tile by tile.
 //!
-//! A pass is an independent render. All passes of a pixel have one law, other pixels may have others.
+//! A pass is an independent render. All passes of a pixel have the same distribution, which may differ between pixels.
 //!
 //! ```text
 //! values      a number that is not finite, out of the range, or off where there is no spread:   fail
@@ -9,10 +9,10 @@
 //! variance    not larger than claimed (`variance`), at α/5:                        else fail
 //! tiles       of N, 2N, 4N … pixels: the mean of each, in each channel (`tiles`), by Holm at 3α/5: else fail
 //! whole       the mean of the picture, in each channel, at α/5:                    else fail
-//! pass        the whole and every tile exclude a bias of ε, with chance β each; s²/V is 1.1 at most
+//! pass        the whole and every tile exclude a bias of ε, at error probability β each; s²/V is 1.1 at most
 //! ```
 //!
-//! `α_d` is α, but not below 1e-4. The list of tiles that are off is by e-BH: 5 % of it are false at most, on average.
+//! `α_d` is α, but not below 1e-4. The list of suspect tiles is by e-BH: on average at most 5 % of it are false.
 //!
 //! ```
 //! use trueflight::judge::images::{Claim, Level, Size, Stack, Wanted, judge};
@@ -58,22 +58,22 @@ use crate::judge::{Levels, SIDE_SHARE, decide_together, is_by_spread, main_share
 use gate::stats::gate::{Evidence, VARIANCE_MARGIN};
 use theory::parallel;
 
-/// Dependence is looked for at α, but not below this level: orders of passes are drawn.
+/// Smallest level for tests of dependence, for which random orders of passes are drawn.
 const LEAST: f64 = 1e-4;
-/// A tile has so many values of all passes, unless its size is asked for: then all tiles can pass.
+/// Number of values, over all passes, in the smallest tiles, unless their size is given: then all tiles can pass.
 const VALUES: usize = 2048;
-/// Number of values of a tile where the passes must show a variance, too.
+/// Number of such values if the passes must show a variance, too.
 const NOISY_VALUES: usize = 8192;
 
-/// What is wanted of the verdict.
+/// Options of a verdict.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Wanted {
-    /// Rows and columns of the smallest tiles; without it the least power of 2 that makes 2048 values of all passes.
+    /// Rows and columns of the smallest tiles; `None` for the smallest power of 2 with 2048 values in all passes.
     pub tile: Option<usize>,
-    /// ε of the whole and of each tile, in units of the picture's mean truth; absolute where that is 0.
-    /// Without it, what the passes can see, of the whole 5 % at most.
+    /// ε of the whole and of each tile, in units of the picture's mean truth; absolute if that is 0. `None` for the
+    /// bias that the passes can show, at most 5 % for the whole.
     pub tolerance: Option<f64>,
-    /// The chance that correct passes fail.
+    /// Probability that correct passes fail.
     pub alpha: f64,
 }
 
@@ -98,7 +98,7 @@ impl Wanted {
         }
     }
 
-    /// N, at most the picture.
+    /// Returns N, at most the size of the picture.
     fn tile(&self, size: Size, passes: usize, values: usize) -> usize {
         let chosen = || {
             let sizes = std::iter::successors(Some(1_usize), |size| Some(2 * size));
@@ -113,7 +113,7 @@ impl Wanted {
 ///
 /// # Errors
 ///
-/// What is claimed or wanted makes no sense, or is of another size than the passes.
+/// The claim or the options make no sense, or the claim has another size than the passes.
 pub fn judge(stack: &Stack, claim: &Claim, wanted: &Wanted) -> Result<Judgement, ImageError> {
     wanted.check()?;
     let pixels = Pixels::new(claim, stack, wanted.tolerance)?;
@@ -132,7 +132,7 @@ pub fn judge(stack: &Stack, claim: &Claim, wanted: &Wanted) -> Result<Judgement,
         is_near && range[0] <= value && value <= range[1]
     });
     judgement.neighbours = neighbours_of(stack, alpha);
-    // Passes without spread are one image where they should be.
+    // Passes without spread are supposed to be one image.
     let is_certain = (0..size.values()).all(|index| pixels.is_certain(index));
     (judgement.order, judgement.repeated) = order_of(stack, is_certain || pixels.is_flat(), alpha);
     if let Some(reason) = own(stack, &pixels, claim) {
@@ -176,14 +176,14 @@ pub fn judge(stack: &Stack, claim: &Claim, wanted: &Wanted) -> Result<Judgement,
     Ok(judgement)
 }
 
-/// Returns whether the truth or the variance is known with an error only.
+/// Returns whether the truth or the variance has an error.
 fn is_noisy(pixels: &Pixels) -> bool {
     pixels.estimate.is_some() || pixels.truth_share > 0.0
 }
 
-/// The evidence on parts of the picture.
+/// Returns the evidence on parts of the picture.
 fn evidence(stack: &Stack, pixels: &Pixels, parts: &[Part], terms: Terms, q: &[f64]) -> Vec<Tile> {
-    // Averages of pixels that depend on each other have a range alone.
+    // Averages of pixels that depend on each other have only a range.
     let is_possible =
         |part: Part| terms.is_free || pixels.truth_share > 0.0 || part.height * part.width == 1;
     parallel::range(parts.len(), |i| {
@@ -203,7 +203,7 @@ fn decide(tiles: &mut [Tile], alpha: f64) {
     }
 }
 
-/// Why images that were made of the passes judged are no grounds.
+/// Returns the reason why images that were made from the judged passes cannot be used.
 fn own(stack: &Stack, pixels: &Pixels, claim: &Claim) -> Option<String> {
     if repeats::is_own_truth(stack, pixels) {
         return Some(
@@ -225,7 +225,7 @@ fn own(stack: &Stack, pixels: &Pixels, claim: &Claim) -> Option<String> {
     })
 }
 
-/// The first value that is wrong by itself, and the number of such values.
+/// Returns the first value that is wrong by itself, and the number of such values.
 fn refuted(stack: &Stack, is_right: impl Fn(usize, f64) -> bool) -> (Option<Refuted>, u64) {
     let (mut first, mut count) = (None, 0);
     for pass in 0..stack.passes {
@@ -239,7 +239,7 @@ fn refuted(stack: &Stack, is_right: impl Fn(usize, f64) -> bool) -> (Option<Refu
     (first, count)
 }
 
-/// `ln(3/α_d)`.
+/// Returns `ln(3/α_d)`.
 fn limit(alpha: f64) -> f64 {
     (3.0 / alpha.max(LEAST)).ln()
 }
@@ -262,7 +262,7 @@ fn neighbours_of(stack: &Stack, alpha: f64) -> Dependence {
     said
 }
 
-/// Whether passes depend on each other, and which share values.
+/// Tests passes for dependence on each other, and returns those that share values.
 fn order_of(stack: &Stack, is_certain: bool, alpha: f64) -> (Dependence, Vec<u32>) {
     let limit = limit(alpha);
     let is_tested = stack.passes >= order::fewest((-limit).exp());
@@ -294,7 +294,7 @@ fn order_of(stack: &Stack, is_certain: bool, alpha: f64) -> (Dependence, Vec<u32
     (said, repeated)
 }
 
-/// Whether the claimed variance is too small; `None` where nothing is known of it, or rounding hides it.
+/// Tests whether the claimed variance is too small; `None` if it is unknown, or rounding hides it.
 fn variance_of(
     stack: &Stack,
     pixels: &Pixels,

@@ -1,15 +1,15 @@
-//! The evidence on a tile with an estimated variance, or with a truth that is a mean of passes.
+//! Evidence on a tile with an estimated variance, or with a truth that is a mean of passes.
 //!
 //! ```text
 //! y     (x − T)/u for every pixel of every pass; where T is a mean of R passes: (x̄ − T)/u for every pixel
 //! V     the mean of the pixels' V/u², times 1/N + 1/R for averages
 //! E     `stats::estimated_variance`, and bets on a range where there is one
-//! P±    the normal tail of (ε ∓ ȳ)/σ, σ from a V that the true one exceeds with chance β at most
+//! P±    the normal tail of (ε ∓ ȳ)/σ, σ from a V that the true one exceeds with probability β at most
 //! ε     as asked; else (z_β + z) σ with z the normal quantile of 1 − 0.025/K: a correct picture passes in all of
-//!       its K tiles with chance 0.95
+//!       its K tiles with probability 0.95
 //! ```
 //!
-//! The error of T is one number for all passes of a pixel: averages of pixels are independent then, values are not.
+//! The error of T is the same in all passes of a pixel: averages of pixels are then independent, values are not.
 
 use super::claim::Pixels;
 use super::judgement::Tile;
@@ -22,7 +22,7 @@ use gate::stats::estimated_variance::{Estimate, Gathered};
 use gate::stats::normal::{upper_quantile, upper_tail};
 use gate::stats::verdict::MISS;
 
-/// Evidence of the passes on a part; q as of `variance`, 0 for an exact variance.
+/// Returns the evidence of the passes on a part; q as in `variance`, 0 for an exact variance.
 pub(super) fn tile(stack: &Stack, pixels: &Pixels, part: Part, terms: Terms, q: f64) -> Tile {
     let is_known = |i: &usize| pixels.estimate.as_ref().is_none_or(|found| !found.is_unknown[*i]);
     let places: Vec<usize> = part.places(stack).filter(is_known).collect();
@@ -45,7 +45,7 @@ pub(super) fn tile(stack: &Stack, pixels: &Pixels, part: Part, terms: Terms, q: 
     }
     let floor = mean_at(&places, |i| pixels.floor(i)) / unit;
     let is_exact = pixels.truth_share == 0.0;
-    // All y by blocks: a pass each, or the averages alone.
+    // Blocks of y: one per pass, or one of the averages.
     let blocks = if is_exact { stack.passes } else { 1 };
     let block = |pass: usize| -> Vec<f64> {
         if is_exact {
@@ -104,7 +104,7 @@ pub(super) fn tile(stack: &Stack, pixels: &Pixels, part: Part, terms: Terms, q: 
     found
 }
 
-/// Largest |y| that counts as 0 where no value varied.
+/// Returns the largest |y| that counts as 0 if no value varied.
 pub(super) fn slack(floor: f64) -> f64 {
     4.0 * floor + 1e-15
 }

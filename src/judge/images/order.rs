@@ -1,4 +1,4 @@
-//! Whether passes depend on those shortly before them, and pixels on their neighbours.
+//! Dependence of passes on those shortly before them, and of pixels on adjacent ones.
 //!
 //! The order of the passes is compared with random orders:
 //!
@@ -8,13 +8,13 @@
 //! p    = (1 + how many of B random orders of the passes have a T as large)/(1 + B)
 //! ```
 //!
-//! Independent passes of one law are as likely in one order as in any other, whatever the pixels of a pass have to
-//! do with each other: p is exact. Passes that resemble their neighbours (a chain that goes on, a render that
-//! gets brighter) or avoid them (a sampler that fills gaps) have a large T. Fewer than 8 passes have too few
-//! orders to tell.
+//! Independent passes of one distribution are as likely in one order as in any other, even if the pixels of a pass
+//! depend on each other: p is exact. Passes that resemble the passes before them (a chain that goes on, a render that
+//! gets brighter) or avoid them (a sampler that fills gaps) have a large T. Fewer than 8 passes have too few orders for
+//! a test.
 //!
-//! Source: J. Besag, P. Clifford, *Sequential Monte Carlo p-values*, Biometrika 78 (1991), for stopping
-//! after 20 orders with a T as large.
+//! Source: J. Besag, P. Clifford, *Sequential Monte Carlo p-values*, Biometrika 78 (1991), for stopping after 20 orders
+//! with a T as large.
 
 use super::picture::Stack;
 use gate::stats::capital::ln_mean_exp;
@@ -22,27 +22,27 @@ use gate::stats::independence::Signs;
 use numeric::rng::{Address, unit};
 use theory::parallel;
 
-/// The largest lag.
+/// Largest lag.
 const LAGS: usize = 4;
-/// How many orders are compared at most.
+/// Maximum number of orders that are compared.
 const ORDERS: u32 = 100_000;
-/// Comparing ends when so many have a T as large.
+/// Number of orders with a T as large at which the comparison ends.
 const ENOUGH: u32 = 20;
-/// About how many products are made at most; beyond, every k-th pixel is looked at.
+/// Approximate maximum number of products; beyond it, only every k-th pixel is used.
 const PRODUCTS: usize = 1 << 32;
-/// How many parts of the pixels are summed up apart.
+/// Number of parts of the pixels that are summed up separately.
 const PARTS: usize = 32;
 
-/// What was found.
+/// Comparison of the order of passes with random orders.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Order {
     pub p: f64,
-    /// The lag of the strongest correlation, and that.
+    /// Lag of the strongest correlation.
     pub lag: usize,
     pub correlation: f64,
 }
 
-/// The fewest passes whose orders can tell at that level.
+/// Returns the smallest number of passes with enough orders for a p-value at that level.
 pub(super) fn fewest(level: f64) -> usize {
     let (mut passes, mut orders) = (2_usize, 1.0);
     while 1.0 / orders > level {
@@ -53,7 +53,7 @@ pub(super) fn fewest(level: f64) -> usize {
     passes
 }
 
-/// Compares the order of the passes with others; `None` where no pixel varies.
+/// Compares the order of the passes with random orders; `None` if no pixel varies.
 pub(super) fn order(stack: &Stack) -> Option<Order> {
     let n = stack.passes;
     let gram = gram(stack);
@@ -79,7 +79,7 @@ pub(super) fn order(stack: &Stack) -> Option<Order> {
     let (found, lag, excess) = statistic(&order);
     let mut rng = Address { seed: 1, experiment: 0, block: 0, lane: 0 }.stream();
     let (mut drawn, mut above) = (0, 0);
-    // Reversed orders add up in another order.
+    // Reversed orders add up in another order, with other rounding.
     let limit = found * (1.0 - 1e-9);
     while drawn < ORDERS && above < ENOUGH {
         for last in (1..n).rev() {
@@ -98,7 +98,7 @@ pub(super) fn order(stack: &Stack) -> Option<Order> {
     Some(Order { p, lag, correlation: excess * n as f64 / diagonal })
 }
 
-/// G, row after row.
+/// Returns G, row after row.
 fn gram(stack: &Stack) -> Vec<f64> {
     let (n, pixels) = (stack.passes, stack.size.pixels());
     let step = (n * n).saturating_mul(pixels).div_ceil(PRODUCTS).max(1);
@@ -123,7 +123,7 @@ fn gram(stack: &Stack) -> Vec<f64> {
     gram
 }
 
-/// Mean 0 and mean square 1; `false` for values that do not vary, or are no numbers.
+/// Scales to mean 0 and mean square 1; `false` for values that do not vary, or are not finite.
 fn standardise(values: &mut [f64]) -> bool {
     let n = values.len() as f64;
     let mean = values.iter().sum::<f64>() / n;
@@ -137,16 +137,16 @@ fn standardise(values: &mut [f64]) -> bool {
     deviation.is_finite() && deviation > 1e-14 * mean.abs()
 }
 
-/// What was found.
+/// Evidence of a dependence between adjacent pixels.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Neighbours {
     /// ln E.
     pub ln_e: f64,
-    /// The stronger of the two correlations.
+    /// Stronger of the two correlations.
     pub correlation: f64,
 }
 
-/// Compares each pixel with a neighbour: exact signs, as `stats::independence` takes of draws.
+/// Compares each pixel with an adjacent one by exact signs, as `stats::independence` compares draws.
 ///
 /// ```text
 /// a = x_pi − x_qi,  b = x_pj − x_qj    for passes p, q = 2k, 2k + 1 and neighbours i, j, each in one pair
@@ -154,8 +154,8 @@ pub(super) struct Neighbours {
 /// E = mean of e for neighbours in a row and for neighbours in a column
 /// ```
 ///
-/// A filter that blends pixels, or one seed for all of them, makes ab positive; samples that are spread over
-/// the picture like blue noise make it negative. The channels of a pixel, which share paths, are added up.
+/// A filter that blends pixels, or one seed for all of them, makes ab positive. Samples that are spread over the
+/// picture like blue noise make it negative. The channels of a pixel, which share paths, are added up.
 pub(super) fn neighbours(stack: &Stack) -> Neighbours {
     let (rows, columns) = (stack.size.rows, stack.size.columns);
     let mut questions = [Signs::default(); 2];
@@ -187,7 +187,7 @@ mod tests {
     use super::super::picture::Size;
     use super::*;
 
-    /// Passes of 16 pixels, each pass the last one times `keep` and noise that all pixels share or none.
+    /// Returns passes of 16 pixels: each pass is the last one times `keep` plus noise, the same for all pixels or not.
     fn stack(seed: u64, n: usize, keep: f64, is_shared: bool) -> Stack {
         let mut rng = Address { seed, experiment: 7, block: 0, lane: 0 }.stream();
         let mut state = [0.0; 16];
@@ -231,7 +231,7 @@ mod tests {
         assert_eq!(order(&Stack::new(3, size, vec![0.1; 6]).expect("a stack")), None);
     }
 
-    /// Two passes of 64 × 64 pixels that are blended with the pixels to the left and above.
+    /// Returns two passes of 64 × 64 pixels that are blended with the pixels to the left and above.
     fn blended(seed: u64, blend: f64) -> Stack {
         let size = Size { rows: 64, columns: 64, channels: 1 };
         let mut rng = Address { seed, experiment: 9, block: 0, lane: 0 }.stream();

@@ -4,36 +4,36 @@ use std::num::NonZeroUsize;
 
 use super::claim::ImageError;
 
-/// How large a picture is.
+/// Size of a picture.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
 pub struct Size {
-    /// Rows.
+    /// Number of rows.
     pub rows: usize,
-    /// Columns.
+    /// Number of columns.
     pub columns: usize,
-    /// Values of a pixel.
+    /// Number of values of a pixel.
     pub channels: usize,
 }
 
 impl Size {
-    /// How many pixels there are.
+    /// Returns the number of pixels.
     pub fn pixels(self) -> usize {
         self.rows * self.columns
     }
 
-    /// How many values there are.
+    /// Returns the number of values.
     pub fn values(self) -> usize {
         self.pixels() * self.channels
     }
 
-    /// Row, column and channel of a value, each from 0.
+    /// Returns row, column and channel of a value, each from 0.
     pub(super) fn place(self, index: usize) -> [usize; 3] {
         let (pixel, channel) = (index / self.channels, index % self.channels);
         [pixel / self.columns, pixel % self.columns, channel]
     }
 }
 
-/// Averages of blocks of `block` × `block` pixels, smaller ones at the right and at the foot.
+/// Returns averages of blocks of `block` × `block` pixels, smaller ones at the right and at the foot.
 fn averages(size: Size, values: &[f64], block: usize) -> (Size, Vec<f64>) {
     let (rows, columns) = (size.rows.div_ceil(block), size.columns.div_ceil(block));
     let found = Size { rows, columns, channels: size.channels };
@@ -65,21 +65,21 @@ impl std::fmt::Display for Size {
     }
 }
 
-/// A picture.
+/// Picture.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Picture {
     pub(super) size: Size,
     pub(super) values: Vec<f64>,
-    /// The relative rounding of the format that the values were stored in.
+    /// Relative rounding error of the format that the values were stored in.
     pub(super) rounding: f64,
 }
 
 impl Picture {
-    /// A picture of values in rows from the top, each pixel with its channels one after the other.
+    /// Makes a picture from values in rows from the top, each pixel with its channels one after the other.
     ///
     /// # Errors
     ///
-    /// The values are none, or not as many as the size says.
+    /// There are no values, or their number is not that of the size.
     pub fn new(size: Size, values: Vec<f64>) -> Result<Self, ImageError> {
         if values.is_empty() || values.len() != size.values() {
             let (expected, found) = (size, values.len());
@@ -95,12 +95,12 @@ impl Picture {
         Self { size, values, rounding: self.rounding }
     }
 
-    /// How large it is.
+    /// Returns the size.
     pub fn size(&self) -> Size {
         self.size
     }
 
-    /// Its values.
+    /// Returns the values.
     pub fn values(&self) -> &[f64] {
         &self.values
     }
@@ -116,11 +116,11 @@ pub struct Stack {
 }
 
 impl Stack {
-    /// Passes one after the other, each in the order of a [`Picture`].
+    /// Takes passes one after the other, each in the order of a [`Picture`].
     ///
     /// # Errors
     ///
-    /// There are fewer than two passes, or the values are none or not as many as the size says.
+    /// There are fewer than two passes or no values, or the number of values is not that of the size.
     pub fn new(passes: usize, size: Size, values: Vec<f64>) -> Result<Self, ImageError> {
         if values.is_empty() || Some(values.len()) != passes.checked_mul(size.values()) {
             return Err(ImageError::Count { expected: size, passes, found: values.len() });
@@ -131,7 +131,7 @@ impl Stack {
         Ok(Self { size, passes, values, rounding: 0.0 })
     }
 
-    /// Returns passes of averages of blocks of `block` × `block` pixels. Where a filter blends pixels, averages of blocks
+    /// Returns passes of averages of blocks of `block` × `block` pixels. If a filter blends pixels, averages of blocks
     /// wider than it are nearly independent of each other, as pixels are without it.
     #[must_use]
     pub fn averaged(&self, block: NonZeroUsize) -> Self {
@@ -141,39 +141,39 @@ impl Stack {
         Self { size: averages(size, self.pass(0), block.get()).0, passes, values, rounding }
     }
 
-    /// How large each pass is.
+    /// Returns the size of each pass.
     pub fn size(&self) -> Size {
         self.size
     }
 
-    /// How many passes there are.
+    /// Returns the number of passes.
     pub fn passes(&self) -> usize {
         self.passes
     }
 
-    /// One pass.
+    /// Returns one pass.
     pub(super) fn pass(&self, pass: usize) -> &[f64] {
         let length = self.size.values();
         &self.values[pass * length..(pass + 1) * length]
     }
 
-    /// A value in all passes.
+    /// Returns a value in all passes.
     fn all(&self, index: usize) -> impl Iterator<Item = f64> {
         (0..self.passes).map(move |pass| self.pass(pass)[index])
     }
 
-    /// The mean of a value over the passes.
+    /// Returns the mean of a value over the passes.
     pub(super) fn mean(&self, index: usize) -> f64 {
         self.all(index).sum::<f64>() / self.passes as f64
     }
 
-    /// The sample variance of a value over the passes.
+    /// Returns the sample variance of a value over the passes.
     pub(super) fn variance(&self, index: usize) -> f64 {
         let mean = self.mean(index);
         self.all(index).map(|x| (x - mean).powi(2)).sum::<f64>() / (self.passes as f64 - 1.0)
     }
 
-    /// The sum of a pixel's channels in a pass.
+    /// Returns the sum of a pixel's channels in a pass.
     pub(super) fn grey(&self, pass: usize, pixel: usize) -> f64 {
         let channels = self.size.channels;
         self.pass(pass)[pixel * channels..(pixel + 1) * channels].iter().sum()

@@ -1,4 +1,4 @@
-//! Whether passes repeat each other: one seed for two passes, or for parts of them.
+//! Passes that repeat each other: one seed for two passes, or for parts of them.
 //!
 //! ```text
 //! places   of each pixel: the passes in which a value stands that 2 or more of the n passes have, but not all
@@ -6,13 +6,13 @@
 //! alike    passes a and b, and another one c for each pixel: x_b = x_a ≠ x_c is as probable as x_b = x_c ≠ x_a
 //! ```
 //!
-//! Where passes are independent and of one law, any k passes are as likely to share a pixel's value as any
-//! others, whatever that law. The bound is for pixels of a pass that are independent of each other; all k from 2
-//! to n − 1 share the level. Zeros, the commonest atom, are left out. Pixels of few values, such as 0 and 1, have
-//! equal values in many passes by chance: for them two passes are compared with a third one, by signs that are fair coins
-//! for every law, in e-values whose mean is taken over all pairs (`stats::independence`).
+//! If passes are independent and of one distribution, any k passes are as likely to share a pixel's value as any
+//! others, for any distribution. The bound is for pixels of a pass that are independent of each other; all k from 2 to
+//! n − 1 share the level. Zeros, the commonest atom, are left out. Pixels of few values, such as 0 and 1, have equal
+//! values in many passes by coincidence. For them two passes are compared with a third one by signs, which are ±1 with
+//! equal probability for every distribution, in e-values that are averaged over all pairs (`stats::independence`).
 //!
-//! Images that were made of the very passes that are judged, and stacks that share passes:
+//! Images that were made from the judged passes themselves, and stacks that share passes:
 //!
 //! ```text
 //! truth      equals the mean of the passes, to rounding, wherever rounding is far below the standard error
@@ -21,7 +21,7 @@
 //!            p ≤ C(t, c) (N M)^{1−c};   or two passes equal in every pixel, where others differ in many
 //! ```
 //!
-//! The order within each stack says nothing, so that any two passes are as likely to share a rare value as any others.
+//! The order within each stack does not matter: any two passes are as likely to share a rare value as any others.
 
 use std::collections::BTreeMap;
 use std::f64::consts::LN_2;
@@ -32,24 +32,24 @@ use super::picture::Stack;
 use super::variance;
 use gate::stats::independence::Signs;
 
-/// About how many pixels are looked at.
+/// Approximate number of pixels that are compared.
 const PIXELS: usize = 1 << 16;
 
 /// ln of a probability below which a repetition is certain.
 const SURE: f64 = -20.0;
 
-/// A repetition.
+/// Repetition of values in several passes.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Repeat {
-    /// The passes that share values.
+    /// Passes that share values.
     pub passes: Vec<u32>,
-    /// ln of a bound on the chance of that.
+    /// ln of a bound on the probability of such a repetition.
     pub ln_p: f64,
 }
 
-/// The most surprising repetition; `None` where no value comes twice.
+/// Returns the least probable repetition; `None` if no value occurs twice.
 pub(super) fn repeat(stack: &Stack) -> Option<Repeat> {
-    // Two searches share the level.
+    // The two searches share the level.
     let (values, alike) = (by_values(stack), alike(stack));
     // If two passes of 0 and 1 are equal, all others share the other value in many pixels, without being equal.
     let is_most = |found: &Repeat| 2 * found.passes.len() > stack.passes;
@@ -60,7 +60,7 @@ pub(super) fn repeat(stack: &Stack) -> Option<Repeat> {
     found.min_by(|a, b| a.ln_p.total_cmp(&b.ln_p))
 }
 
-/// The most surprising repetition of values that few passes share.
+/// Returns the least probable repetition of values that few passes share.
 fn by_values(stack: &Stack) -> Option<Repeat> {
     let (n, pixels) = (stack.passes, stack.size.pixels());
     let mut places: BTreeMap<Vec<u32>, u64> = BTreeMap::new();
@@ -88,12 +88,12 @@ fn by_values(stack: &Stack) -> Option<Repeat> {
     found.min_by(|a, b| a.ln_p.total_cmp(&b.ln_p))
 }
 
-/// Parts of a pass of which one must be alike in two passes for these to be compared.
+/// Number of parts of a pass: two passes are compared only if one part is equal in both.
 const PARTS: usize = 8;
 /// Maximum number of pairs of passes that are compared.
 const MAX_PAIRS: usize = 1024;
 
-/// The two passes that are most surprisingly alike, with all others that are the same image.
+/// Returns the two passes with the least probable agreement of pixels, and all others that are the same image.
 fn alike(stack: &Stack) -> Option<Repeat> {
     let (n, pixels) = (stack.passes, stack.size.pixels());
     if n < 3 {
@@ -119,7 +119,7 @@ fn alike(stack: &Stack) -> Option<Repeat> {
     let evidence = |a: usize, b: usize| {
         let mut signs = Signs::default();
         for (&pixel, turn) in looked.iter().zip(0..) {
-            // Another pass for each pixel in turn.
+            // The third pass changes from pixel to pixel.
             let c = (0..3).map(|k| (turn + k) % n).find(|c| ![a, b].contains(c)).unwrap_or(0);
             let [x, y, z] = [a, b, c].map(|pass| stack.grey(pass, pixel));
             if x != z && (x == y || y == z) {
@@ -136,10 +136,10 @@ fn alike(stack: &Stack) -> Option<Repeat> {
     Some(Repeat { passes, ln_p: (ln_choose(n as f64, 2.0) - ln_e).min(0.0) })
 }
 
-/// So many different values no law without many of them gives to all passes alike.
+/// Number of different values in an image above which a distribution cannot plausibly repeat it in all passes.
 const VARIED: usize = 8;
 
-/// Returns whether all passes are one image, of many values: passes of few may be the same by chance.
+/// Returns whether all passes are one image of many values: passes of few values may be equal by coincidence.
 pub(super) fn is_one_image(stack: &Stack) -> bool {
     let first = stack.pass(0);
     let mut values: Vec<u64> = first.iter().map(|x| x.to_bits()).collect();
@@ -149,12 +149,12 @@ pub(super) fn is_one_image(stack: &Stack) -> bool {
         && (1..stack.passes).all(|pass| stack.pass(pass).iter().zip(first).all(|(x, y)| x == y))
 }
 
-/// `ln C(n, k)`.
+/// Returns `ln C(n, k)`.
 fn ln_choose(n: f64, k: f64) -> f64 {
     libm::lgamma(n + 1.0) - libm::lgamma(k + 1.0) - libm::lgamma(n - k + 1.0)
 }
 
-/// Least number of compared values.
+/// Smallest number of compared values.
 const FEWEST: usize = 32;
 /// ln of the probability below which passes count as shared.
 const LN_SHARED: f64 = -23.0;
@@ -191,16 +191,16 @@ pub(super) fn is_own_variance(stack: &Stack, pixels: &Pixels) -> bool {
     is_equal(1.0) || is_equal((n - 1.0) / n)
 }
 
-/// A pass of each stack, from 0, that have values in common; `None` where nothing of that kind is found.
+/// Returns a pass of each stack, from 0, that have values in common; `None` if there are no such passes.
 pub(super) fn shared(one: &Stack, other: &Stack) -> Option<[usize; 2]> {
     equal(one, other).or_else(|| rare_values(one, other))
 }
 
-/// Two passes that are equal in every pixel.
+/// Returns two passes that are equal in every pixel.
 fn equal(one: &Stack, other: &Stack) -> Option<[usize; 2]> {
     let pairs = (0..one.passes).flat_map(|p| (0..other.passes).map(move |q| [p, q]));
     let found = pairs.clone().find(|&[p, q]| one.pass(p) == other.pass(q))?;
-    // How often independent passes agree: the share of all pairs in each pixel.
+    // Probability that independent passes agree: the share of equal pairs in each pixel.
     let all = (one.passes * other.passes) as f64;
     let pixels = one.size.values();
     let ln_p: f64 = (0..pixels)
@@ -215,12 +215,12 @@ fn equal(one: &Stack, other: &Stack) -> Option<[usize; 2]> {
             (counts.values().map(|[a, b]| a * b).sum::<f64>() / all).max(1.0 / all).ln()
         })
         .sum();
-    // Any of all pairs may be equal by chance. What never varies is equal in all passes.
+    // Any pair of passes may be equal by coincidence. A pixel that never varies is equal in all passes.
     let is_constant = ln_p > LN_SHARED - all.ln();
     (!is_constant).then_some(found)
 }
 
-/// Two passes with many values that no other pass has.
+/// Returns two passes with many values that no other pass has.
 fn rare_values(one: &Stack, other: &Stack) -> Option<[usize; 2]> {
     let pixels = one.size.pixels();
     let mut places: BTreeMap<[usize; 2], f64> = BTreeMap::new();

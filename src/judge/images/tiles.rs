@@ -1,16 +1,16 @@
-//! The evidence on the average of a tile of pixels, in one channel.
+//! Evidence on the average of a tile of pixels, in one channel.
 //!
 //! ```text
 //! y     = (x − T)/u     for every pixel of every pass;  u the picture's mean |T| in that channel
 //! V     the mean of the pixels' V/u²:  Σ ln(1 + λ²V_i/2) ≤ n ln(1 + λ²V/2)
 //! range from low less the largest T of the tile to high less its smallest
 //! E, P± as of any quantity of a session, at the end of all passes
-//! ε     as asked; else √(s²V/n), s² such that a correct picture passes in all of its K tiles with chance 0.95:
+//! ε     as asked; else √(s²V/n), s² such that a correct picture passes in all of its K tiles with probability 0.95:
 //!       0.402 s² − 0.6 z s = ln(1/β),   z the normal quantile of 1 − 0.025/K;   27 for K = 1
 //! ```
 //!
-//! Where the pixels of a pass depend on each other, what is drawn is one average a pass, which has no known
-//! variance: a range alone is a ground then. Single pixels are free of that.
+//! If the pixels of a pass depend on each other, a draw is the average over a pass, which has no known variance: only a
+//! range is then a ground. Single pixels are not affected.
 
 use super::claim::Pixels;
 use super::judgement::Tile;
@@ -21,7 +21,7 @@ use gate::stats::gate::PLANNED;
 use gate::stats::normal::{upper_quantile, upper_tail};
 use gate::stats::verdict::{MISS, Verdict};
 
-/// A rectangle of pixels, in one channel.
+/// Rectangle of pixels, in one channel.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Part {
     pub size: usize,
@@ -32,7 +32,7 @@ pub(super) struct Part {
     pub channel: usize,
 }
 
-/// What evidence may rest on, and what is wanted of it.
+/// Grounds of the evidence, and options of the verdict.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Terms {
     /// True if the pixels of a pass count as independent.
@@ -41,38 +41,38 @@ pub(super) struct Terms {
     pub has_variance: bool,
     /// ε in units of u.
     pub tolerance: Option<f64>,
-    /// True if ε has the cap of a mean where nobody asked for one.
+    /// True if ε has the cap of a mean unless a tolerance is given.
     pub is_capped: bool,
-    /// K.
+    /// K, the number of tiles that must pass.
     pub count: usize,
-    /// The levels of a part by itself: a bound on the variance by a kurtosis takes a share of them.
+    /// Levels of a part by itself: a bound on the variance by a kurtosis takes a share of them.
     pub levels: Levels,
 }
 
-/// s²: how many V/ε² a part is planned for, so that all `count` of them pass.
+/// Returns s², the number of draws in units of V/ε² that a part is planned for, so that all `count` parts pass.
 fn planned_units(count: usize) -> f64 {
     let z = upper_quantile(0.025 / count.max(1) as f64);
-    // The mean and the spread of ln P± of n normal draws, in units of s: κ − κ²ρ/2 and κ, κ = 0.6, ρ = 1.1.
+    // Mean and spread of ln P± of n normal draws, in units of s: κ − κ²ρ/2 and κ, κ = 0.6, ρ = 1.1.
     let (gain, noise, needed) = (0.402, 0.6 * z, -MISS.ln());
     let s = (noise + (noise * noise + 4.0 * gain * needed).sqrt()) / (2.0 * gain);
     (s * s).max(PLANNED)
 }
 
 impl Terms {
-    /// The mean of a part, with what is known of its spread and δ.
+    /// Returns the mean of a part, with the ground for its spread and δ.
     pub(super) fn mean(self, ground: Option<Ground>, floor: f64) -> Quantity {
         let cap = if self.is_capped { MEAN_CAP } else { 1e3 };
         Quantity { cap, ..Quantity::mean(ground, floor).within(self.tolerance) }
     }
 
-    /// Number of draws that a part with `draws` draws is planned for.
+    /// Returns the number of draws that a part with `draws` draws is planned for.
     pub(super) fn planned(self, draws: f64) -> f64 {
         draws * PLANNED / planned_units(self.count)
     }
 }
 
 impl Part {
-    /// The places of its values in a pass, row after row.
+    /// Returns the indices of its values in a pass, row after row.
     pub(super) fn places(self, stack: &Stack) -> impl Iterator<Item = usize> + Clone + use<> {
         let (columns, channels) = (stack.size.columns, stack.size.channels);
         let Self { row, column, height, width, channel, .. } = self;
@@ -83,13 +83,13 @@ impl Part {
     }
 }
 
-/// The mean of numbers at some places.
+/// Returns the mean of numbers at some indices.
 pub(super) fn mean_at(places: &[usize], of: impl Fn(usize) -> f64) -> f64 {
     places.iter().map(|&i| of(i)).sum::<f64>() / places.len() as f64
 }
 
 impl Tile {
-    /// A tile of which nothing is known but its truth, its mean and the standard error of that.
+    /// Returns a tile with its truth, its mean and the standard error of the mean, before any test.
     pub(super) fn new(part: Part, [truth, mean, standard_error]: [f64; 3]) -> Self {
         let z = if mean == truth { 0.0 } else { (mean - truth) / standard_error };
         let z = Some(z).filter(|z| z.is_finite());
@@ -113,13 +113,13 @@ impl Tile {
         }
     }
 
-    /// A tile without spread, all of whose values are its truth within `tolerance`.
+    /// Sets ε and P± of a tile without spread if all of its values equal the truth within `tolerance`.
     pub(super) fn without_doubt(self, tolerance: f64) -> Self {
         Self { tolerance: Some(tolerance), ln_p: [f64::INFINITY; 2], ..self }
     }
 
-    /// −ln of the tails of a distribution beyond a bias of +ε and of −ε, for a mean with this standard error; all in units
-    /// of `unit`.
+    /// Returns −ln of the tails of a distribution beyond a bias of +ε and of −ε, for a mean with this standard error;
+    /// all in units of `unit`.
     pub(super) fn sides(
         &self,
         tolerance: f64,
@@ -130,7 +130,7 @@ impl Tile {
         [tolerance - off, tolerance + off].map(|room| -tail(room / error).ln())
     }
 
-    /// Sets ε, at `quantiles` standard errors if none was asked for, and P± by the tails of a distribution.
+    /// Sets ε, by default `quantiles` standard errors, and P± by the tails of a distribution.
     pub(super) fn promise(
         &mut self,
         asked: Option<f64>,
@@ -145,7 +145,7 @@ impl Tile {
     }
 }
 
-/// What the passes say of a part. All of its values are finite.
+/// Returns the evidence of the passes on a part. All of its values are finite.
 pub(super) fn tile(stack: &Stack, pixels: &Pixels, part: Part, terms: Terms) -> Tile {
     let places: Vec<usize> = part.places(stack).collect();
     let count = places.len() as f64;
@@ -163,7 +163,7 @@ pub(super) fn tile(stack: &Stack, pixels: &Pixels, part: Part, terms: Terms) -> 
     let standard_error = (variance.map_or(shown, |variance| variance / count) / n).sqrt();
     let mut found = Tile::new(part, [truth, mean, standard_error]);
     if places.iter().all(|&i| pixels.is_certain(i)) {
-        // What has no spread was compared with its truth, value by value.
+        // Values without spread were compared with their truth one by one.
         return found.without_doubt(0.0);
     }
     let draws = if is_free { n * count } else { n };
@@ -191,15 +191,15 @@ pub(super) fn tile(stack: &Stack, pixels: &Pixels, part: Part, terms: Terms) -> 
     (found.ln_e, found.ln_p) = (scalar.evidence.ln_e, scalar.evidence.ln_pass);
     found.tolerance = scalar.design.map(|design| design.tolerance);
     if let (Some(tolerance), true, false) = (found.tolerance, variance.is_some(), is_single) {
-        // Catoni's function hardly sees a bias that sits in one pixel of many; the plain mean does.
+        // Catoni's function hardly detects a bias in one pixel of many; the plain mean does.
         let sides = found.sides(tolerance, [standard_error / unit, unit], upper_tail);
         found.ln_p = [0, 1].map(|side| found.ln_p[side].min(sides[side]));
     }
     found
 }
 
-/// The tiles, the smallest first, row after row, each with all its channels. Larger ones find what is spread out.
-/// `is_joined`: what is left at the right and at the foot is a part of the last tile where it is less than half of one.
+/// Returns the tiles, the smallest first, row after row, each with all its channels. Larger tiles detect a bias that is
+/// spread out. With `is_joined`, a remainder of less than half a tile at the right or at the foot joins the last tile.
 pub(super) fn parts(
     Size { rows, columns, channels }: Size,
     tile: usize,
@@ -218,7 +218,7 @@ pub(super) fn parts(
     parts
 }
 
-/// First row or column and length of each tile of that size.
+/// Returns the first row or column and the length of each tile of that size.
 fn spans(length: usize, size: usize, is_joined: bool) -> Vec<(usize, usize)> {
     let mut spans: Vec<(usize, usize)> =
         (0..length).step_by(size).map(|first| (first, size.min(length - first))).collect();
@@ -231,7 +231,7 @@ fn spans(length: usize, size: usize, is_joined: bool) -> Vec<(usize, usize)> {
     spans
 }
 
-/// The whole picture, each channel.
+/// Returns the whole picture, one part per channel.
 pub(super) fn wholes(Size { rows, columns, channels }: Size) -> Vec<Part> {
     let size = rows.max(columns);
     let part = |channel| Part { size, row: 0, column: 0, height: rows, width: columns, channel };

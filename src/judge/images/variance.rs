@@ -1,4 +1,4 @@
-//! The variance of the pixels: how far an estimated one may be off, and whether the claimed one is too small.
+//! Variance of the pixels: the error of an estimated one, and a test whether the claimed one is too small.
 //!
 //! ```text
 //! V_i   the sample variance of Q other passes in pixel i; below 0: 0, no number: the pixel is not judged
@@ -8,11 +8,11 @@
 //! r     max(q, the mean q of all tiles of that size)/(⌊Q/2⌋ pixels)         see `stats::estimated_variance`
 //! ```
 //!
-//! A negative entry is noise of an estimate. Counting it as 0 makes V̂ larger, so that evidence gets less. A 0 says that
-//! nothing was seen in Q passes, not that nothing varies: nothing fails for that. Rare bright values that were seen in
-//! one tile make q large in all.
+//! A negative entry is noise of an estimate. Counting it as 0 makes V̂ larger, which weakens the evidence. An entry of
+//! 0 means that Q passes did not vary, not that no pass would: it makes nothing fail. Rare bright values in one tile
+//! make q large in all tiles.
 //!
-//! Whether it is too small is asked of squares over all pixels:
+//! A variance that is too small is detected by squares over all pixels:
 //!
 //! ```text
 //! y = (x − T)²/V − 1 ≥ −1      in the mean over a pixel's channels; blocks of passes as for tiles
@@ -20,7 +20,7 @@
 //! s²/V the mean over pixels of what their passes show about their own mean
 //! ```
 //!
-//! Where the pixels of a pass depend on each other a draw is the average of y over a pass.
+//! If the pixels of a pass depend on each other, a draw is the average of y over a pass.
 
 use super::claim::{Claim, ImageError, Level, Pixels};
 use super::judgement;
@@ -31,7 +31,7 @@ use gate::session::quantity::{VARIANCE_CAP, variance_floor};
 use gate::stats::estimated_variance::Estimate;
 use theory::parallel;
 
-/// What is kept of an estimated variance.
+/// Estimated variance of the pixels.
 pub(super) struct Estimated {
     /// Q.
     pub passes: usize,
@@ -39,14 +39,14 @@ pub(super) struct Estimated {
     pub is_unknown: Vec<bool>,
     pub negative: u64,
     pub unknown: u64,
-    /// The place of the first entry that is negative or no number.
+    /// Index of the first entry that is negative or not finite.
     pub first: Option<usize>,
-    /// The passes that it was taken from, where these are known.
+    /// Passes that it was estimated from, if these are known.
     pub stack: Option<Stack>,
 }
 
 impl Estimated {
-    /// Returns the variances, none of them negative, and what was found of them; `None` for an exact variance, or none.
+    /// Returns the variances, none of them negative, and their estimate; `None` for an exact variance, or none.
     pub(super) fn of(claim: &Claim, size: Size) -> Result<Option<(Vec<f64>, Self)>, ImageError> {
         let (level, passes) = match (&claim.variance_stack, &claim.variance, claim.variance_passes)
         {
@@ -81,7 +81,7 @@ impl Estimated {
         Ok(Some((variance, Self { passes, is_unknown, negative, unknown, first, stack })))
     }
 
-    /// What is said of it.
+    /// Returns the facts about it for a judgement.
     pub(super) fn told(
         &self,
         claim: &Claim,
@@ -102,7 +102,7 @@ impl Estimated {
     }
 }
 
-/// Sample variances of the passes of each value.
+/// Returns the sample variances of the passes of each value.
 pub(super) fn variances(stack: &Stack) -> Result<Picture, ImageError> {
     let of = |i: usize| stack.variance(i);
     Picture::new(stack.size, (0..stack.size.values()).map(of).collect())
@@ -130,15 +130,15 @@ impl Pairs {
         }
     }
 
-    /// q; `None` where nothing varies.
+    /// Returns q; `None` if nothing varies.
     pub(super) fn q(&self) -> Option<f64> {
         let q = self.count * self.squares / (self.sum * self.sum);
         Some(q).filter(|q| q.is_finite())
     }
 }
 
-/// q of each part: its own, or the mean of all parts of that size and channel, whichever is larger; infinite where no
-/// such part varies.
+/// Returns q of each part: its own, or the mean of all parts of that size and channel, whichever is larger; infinite if
+/// no such part varies.
 pub(super) fn all_q(stacks: &[&Stack], parts: &[Part], kurtosis: Option<f64>) -> Vec<f64> {
     if let Some(kurtosis) = kurtosis {
         return vec![0.5 * (kurtosis + 3.0); parts.len()];
@@ -162,17 +162,17 @@ pub(super) fn all_q(stacks: &[&Stack], parts: &[Part], kurtosis: Option<f64>) ->
     parts.iter().zip(own).map(|(part, q)| all(part).max(q.unwrap_or(0.0))).collect()
 }
 
-/// κ that a q stands for.
+/// Returns the κ that corresponds to a q.
 pub(super) fn kurtosis(q: f64) -> f64 {
     (2.0 * q - 3.0).max(1.0)
 }
 
-/// The estimate of the variance of a tile of `pixels` pixels, V̂ above 0, from Q passes.
+/// Returns the estimate of the variance of a tile of `pixels` pixels, V̂ above 0, from Q passes.
 pub(super) fn of_tile(variance: f64, q: f64, passes: usize, pixels: f64) -> Estimate {
     Estimate { variance, error: q / ((passes / 2) as f64 * pixels) }
 }
 
-/// What was found of the variance.
+/// Evidence against the claimed variance.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Squares {
     /// ln E.
@@ -183,7 +183,8 @@ pub(super) struct Squares {
     pub about_mean: f64,
 }
 
-/// ln E of squares y against a variance that is not too small, and the sum of all y; `y` appends those of a unit.
+/// Returns ln E of squares y against a variance that is not too small, and the sum of all y. `y` appends those of a
+/// unit.
 fn too_small(
     floor: f64,
     units: usize,
@@ -210,7 +211,7 @@ fn too_small(
     (scalar.evidence.ln_e, sum)
 }
 
-/// Compares squares with the variance; `None` where none is claimed, or all are certain.
+/// Compares squares with the variance; `None` if none is claimed, or all are certain.
 pub(super) fn squares(stack: &Stack, pixels: &Pixels, is_free: bool) -> Option<Squares> {
     let variance = pixels.variance.as_ref()?;
     let channels = stack.size.channels;
@@ -224,7 +225,7 @@ pub(super) fn squares(stack: &Stack, pixels: &Pixels, is_free: bool) -> Option<S
         let first = pixel * channels;
         (first..first + channels).map(|i| of(i) / variance[i]).sum::<f64>() / channels as f64
     };
-    // Too much rounding hides the variance.
+    // Rounding hides a variance that is too small.
     let noise = |i: usize| variance_floor(variance[i], 0.0, pixels.floor(i));
     let floors = judged.iter().flat_map(|pixel| (0..channels).map(move |c| pixel * channels + c));
     let floor = floors.map(noise).sum::<f64>() / (judged.len() * channels) as f64;
@@ -246,7 +247,7 @@ pub(super) fn squares(stack: &Stack, pixels: &Pixels, is_free: bool) -> Option<S
     })
 }
 
-/// Compares pairs of passes with a variance that was estimated, or where the truth has an error of its own.
+/// Compares pairs of passes with an estimated variance, or for a truth that has an error.
 ///
 /// ```text
 /// y = (x_2k − x_2k+1)²/(2V) − 1 ≥ −1;   V of the pixel where it is exact, else a bound on the mean of all pixels:

@@ -1,4 +1,4 @@
-//! What is said of a stack, and of two stacks; the order is that of a session.
+//! Verdicts on one stack and on two, with their reasons; the order of the reasons is that of a session.
 
 use super::claim::{Claim, Pixels};
 use super::judgement::{Comparison, Judgement, Refuted, Tile};
@@ -7,12 +7,12 @@ use gate::deviation::{Deviation, signed_percent};
 use gate::stats::verdict::Verdict;
 use numeric::digits::{percent, short};
 
-/// The verdict on a stack, and what it promises.
+/// Decides about a stack, and adds the promises of the verdict.
 pub(super) fn decide(judgement: &mut Judgement, pixels: &Pixels, claim: &Claim) {
     let refuted = judgement.refuted_by;
     let refuted = refuted.map(|refuted| fault(judgement, refuted, pixels));
     let mut failing: Vec<String> = too_small(judgement).into_iter().collect();
-    // Where the variance is refuted, no tile fails by it; the one that stands out may tell why.
+    // If the variance is refuted, no tile fails by it; the tile that stands out may show the cause.
     let strange = furthest(judgement.tiles.iter());
     if let Some(tile) = strange.filter(|_| judgement.counts.fail == 0 && !failing.is_empty()) {
         failing.push(format!(
@@ -27,8 +27,8 @@ pub(super) fn decide(judgement: &mut Judgement, pixels: &Pixels, claim: &Claim) 
     judgement.guarantees = guarantees(judgement, claim);
 }
 
-/// The verdict on two stacks, and what it promises; `differing` is how many tiles differ by the test of equal distributions
-/// alone.
+/// Decides about two stacks, and adds the promises of the verdict. `differing` is the number of tiles that differ by
+/// the test of equal distributions alone.
 pub(super) fn decide_against(judgement: &mut Judgement, comparison: &Comparison, differing: usize) {
     let refuted = judgement.refuted_by.map(|refuted| {
         let Refuted { pass, row, column, value, .. } = refuted;
@@ -62,13 +62,13 @@ fn finish(judgement: &mut Judgement, reasons: Reasons) {
     (judgement.verdict, judgement.reason) = reasons.verdict();
 }
 
-/// The tile with the largest |z|.
+/// Returns the tile with the largest |z|.
 fn furthest<'a>(tiles: impl Iterator<Item = &'a Tile>) -> Option<&'a Tile> {
     let size = |tile: &&Tile| tile.z.map_or(0.0, f64::abs);
     tiles.max_by(|a, b| size(a).total_cmp(&size(b)))
 }
 
-/// That the variance is refuted.
+/// Returns the reason if the variance is refuted.
 fn too_small(judgement: &Judgement) -> Option<String> {
     let variance = judgement.variance.filter(|variance| variance.is_refuted)?;
     Some(format!(
@@ -84,7 +84,7 @@ fn too_small(judgement: &Judgement) -> Option<String> {
     ))
 }
 
-/// What fails of the means.
+/// Returns the reasons by which means fail.
 fn means_off(judgement: &Judgement, worst: Option<&Tile>) -> Vec<String> {
     let fails = |whole: &&Tile| whole.verdict == Verdict::Fail;
     let whole = |whole| format!("the picture is off: {}", off(judgement, whole));
@@ -99,7 +99,7 @@ fn means_off(judgement: &Judgement, worst: Option<&Tile>) -> Vec<String> {
     failing
 }
 
-/// What is not decided of the means.
+/// Returns the reasons by which means are undecided.
 fn means_open(judgement: &Judgement) -> Vec<String> {
     let undecided = |tile: &&Tile| tile.verdict != Verdict::Pass;
     let whole = |whole| format!("the picture may be off {}; render more passes", bias(whole));
@@ -117,10 +117,10 @@ fn means_open(judgement: &Judgement) -> Vec<String> {
     whole.into_iter().chain(tile).collect()
 }
 
-/// The widest ε, in units of the picture's mean, that a pass needs no words for.
+/// Widest ε, in units of the picture's mean, of a pass without remark.
 const WIDE: f64 = 0.05;
 
-/// The bias that a pass excludes, in words, where it is large: the widest ε of all tiles and of the whole.
+/// Returns remarks on a pass that excludes only a large bias: the widest ε of all tiles and of the whole.
 fn excluded(judgement: &Judgement) -> Vec<String> {
     let widest =
         |tiles: &[Tile]| tiles.iter().filter_map(|tile| tile.tolerance).fold(0.0, f64::max);
@@ -144,7 +144,7 @@ fn excluded(judgement: &Judgement) -> Vec<String> {
     said
 }
 
-/// What keeps a picture that does not fail from passing.
+/// Returns the reasons why a picture that does not fail does not pass.
 fn open(judgement: &Judgement, claim: &Claim) -> Vec<String> {
     let has_spread = judgement.whole.iter().any(|whole| whole.tolerance != Some(0.0));
     let has_variance = has_variance(claim);
@@ -191,14 +191,14 @@ fn open(judgement: &Judgement, claim: &Claim) -> Vec<String> {
     open
 }
 
-/// ε in words.
+/// Returns ε in words.
 fn bias(tile: &Tile) -> String {
     tile.tolerance.map_or("by any amount".to_owned(), |tolerance| {
         format!("by {:.2} % of the picture's mean or more", 100.0 * tolerance)
     })
 }
 
-/// Where a tile is.
+/// Returns the place of a tile in words.
 fn place(judgement: &Judgement, tile: &Tile) -> String {
     let span = |what: &str, first: usize, count: usize| match count {
         1 => format!("{what} {first}"),
@@ -230,7 +230,7 @@ fn off(judgement: &Judgement, tile: &Tile) -> String {
     format!("the mean{channel} is off by {told} ({p}ln E = {:.1})", tile.ln_e)
 }
 
-/// What is wrong with a value.
+/// Returns the fault of a value in words.
 fn fault(judgement: &Judgement, refuted: Refuted, pixels: &Pixels) -> String {
     let Refuted { pass, row, column, channel: c, value } = refuted;
     let place = format!("pass {pass}, row {row}, column {column}{}", channel(judgement, c));
@@ -253,7 +253,7 @@ fn has_variance(claim: &Claim) -> bool {
     claim.variance.is_some() || claim.variance_stack.is_some()
 }
 
-/// Assumptions of the promises about a variance, and about a truth, that are not exact.
+/// Returns the assumptions about a variance and a truth that are not exact.
 fn estimated(judgement: &Judgement) -> Vec<String> {
     let mut said = Vec::new();
     if let Some(found) = judgement.estimate {
@@ -339,7 +339,7 @@ fn guarantees(judgement: &Judgement, claim: &Claim) -> Vec<String> {
     said
 }
 
-/// What keeps two stacks that do not fail from passing.
+/// Returns the reasons why two stacks that do not fail do not pass.
 fn open_against(judgement: &Judgement, comparison: &Comparison, differing: usize) -> Vec<String> {
     let mut open = Vec::new();
     if differing > 0 {

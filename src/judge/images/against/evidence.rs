@@ -5,8 +5,8 @@
 //! y         (x̄ − ȳ)/u of every pixel;  u the mean |ȳ| of the picture in that channel
 //! V         the mean of s_x²/N + s_y²/M over the pixels;   r the larger of both stacks'
 //! signs     d = x_k − y_k of pass k of both stacks, in every pixel
-//! P±, ε     as of `noisy`; where pixels depend on each other by Student's law of the averages of passes, with the
-//!           degrees of freedom of the smaller stack
+//! P±, ε     as in `noisy`; where pixels depend on each other, by Student's t distribution of the averages of passes,
+//!           with the degrees of freedom of the smaller stack
 //! ```
 
 use statrs::distribution::{ContinuousCDF, StudentsT};
@@ -30,12 +30,12 @@ pub(super) struct Evidence<'a> {
     units: Vec<f64>,
     means: [Vec<f64>; 2],
     variances: [Vec<f64>; 2],
-    /// The mean and the variance of all passes together: no order of the passes changes them.
+    /// Mean and variance of all passes together: the order of the passes does not matter.
     together: [Vec<f64>; 2],
 }
 
 impl<'a> Evidence<'a> {
-    /// The sums; the tolerance is relative to the reference.
+    /// Adds up the passes; the tolerance is relative to the reference.
     pub(super) fn new(
         stack: &'a Stack,
         reference: &'a Stack,
@@ -48,7 +48,7 @@ impl<'a> Evidence<'a> {
         let of =
             |stack: &Stack| -> Vec<f64> { (0..size.values()).map(|i| stack.mean(i)).collect() };
         let means = [stack, reference].map(of);
-        // A dark reference may have missed rare values: the other stack has a scale then.
+        // A dark reference may have missed rare values: then the other stack gives the scale.
         for means in means.iter().rev() {
             if units.iter().all(|&unit| unit == 0.0) {
                 for pixel in means.chunks_exact(size.channels) {
@@ -89,7 +89,7 @@ impl<'a> Evidence<'a> {
         passes.map(|x| mean_at(places, |i| x[i])).collect()
     }
 
-    /// The averages of every part in every pass, pass after pass, and the prior variance of each part.
+    /// Returns the averages of every part in every pass, pass after pass, and the prior variance of each part.
     pub(super) fn rows(&self, parts: &[Part]) -> (Vec<f64>, Vec<f64>) {
         let columns = parallel::map(parts, |part| {
             let places: Vec<usize> = part.places(self.stacks[0]).collect();
@@ -101,7 +101,8 @@ impl<'a> Evidence<'a> {
         (values.collect(), columns.iter().map(|(_, prior)| *prior).collect())
     }
 
-    /// Sum of squares of each pass about the mean of all passes, in units of the variance, and the prior variance of that.
+    /// Returns the sum of squares of each pass about the mean of all passes, in units of the variance, and its prior
+    /// variance.
     pub(super) fn spreads(&self) -> (Vec<f64>, f64) {
         let [mean, variance] = &self.together;
         let of = |x: &[f64]| {
@@ -116,14 +117,14 @@ impl<'a> Evidence<'a> {
         (values, prior)
     }
 
-    /// The variance of the first stack over that of the second, over all values.
+    /// Returns the variance of the first stack over that of the second, over all values.
     pub(super) fn spread(&self) -> Option<f64> {
         let [one, other] = self.variances.each_ref().map(|v| v.iter().sum::<f64>());
         Some(one / other).filter(|ratio| ratio.is_finite() && *ratio > 0.0)
     }
 
-    /// All tiles; the first `count` are tiles, the others the whole. `p` are their p-values for equal distributions;
-    /// without these, signs give them.
+    /// Returns all tiles; the first `count` are tiles, the others the whole. `p` has their p-values for equal
+    /// distributions; without it they come from signs.
     pub(super) fn tiles(&self, parts: &[Part], count: usize, p: Option<&[f64]>) -> Vec<Tile> {
         let q = self.stacks.map(|stack| variance::all_q(&[stack], parts, None));
         parallel::range(parts.len(), |i| {
@@ -138,7 +139,7 @@ impl<'a> Evidence<'a> {
         })
     }
 
-    /// p by the signs of differences; `None` where pixels depend on each other.
+    /// Returns the p-value by the signs of differences; `None` if pixels depend on each other.
     fn by_signs(&self, part: Part) -> Option<f64> {
         if !self.is_free && part.height * part.width > 1 {
             return None;
@@ -176,7 +177,7 @@ impl<'a> Evidence<'a> {
             let is_same = y.iter().all(|y| y.abs() <= slack);
             return if is_same { found.without_doubt(slack) } else { found };
         }
-        // How far either variance may be off: values that one stack did not see make its own look small.
+        // Error of either variance: a stack that missed rare values underestimates its own.
         let pairs = self.stacks.map(|stack| (stack.passes / 2) as f64 * pixels);
         let relative = (q[0] / pairs[0]).max(q[1] / pairs[1]);
         let estimate = Estimate { variance: variance / (unit * unit), error: relative };
@@ -207,7 +208,7 @@ impl<'a> Evidence<'a> {
         found
     }
 
-    /// The standard error of x̄ − ȳ of averages of whole passes.
+    /// Returns the standard error of x̄ − ȳ of averages of whole passes.
     fn welch(&self, places: &[usize]) -> f64 {
         let averages = self.averages(places);
         let (one, other) = averages.split_at(self.stacks[0].passes);

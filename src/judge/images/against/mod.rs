@@ -1,4 +1,4 @@
-//! Two stacks against each other: whether a renderer has the means of a reference, both of them noisy.
+//! Two stacks against each other: test of equal means of a renderer and a reference, both of them noisy.
 //!
 //! Two tests of each tile, and of the whole, with different hypotheses:
 //!
@@ -11,12 +11,12 @@
 //!             they show; Holm at α
 //! ```
 //!
-//! A tile fails where both reject: if the laws are equal with chance α at most, whatever they are; if only the means are
-//! equal the level is nominal, since V̂ and x̄ − ȳ come from the same passes, and since rare values that neither stack
-//! drew may carry the mean (Bahadur and Savage 1956). With `is_same_law` the first test alone decides, and equal
-//! variances are tested, too.
+//! A tile fails if both tests reject. If the distributions are equal, the probability of that is at most α, for any
+//! distribution. If only the means are equal, the level is nominal, for two reasons. V̂ and x̄ − ȳ come from the same
+//! passes; and rare values that neither stack drew may carry the mean (Bahadur and Savage 1956). With `is_same_law` the
+//! first test alone decides, and equal variances are tested, too.
 //!
-//! Source of the question: A. Jung, J. Hanika, C. Dachsbacher, *Detecting Bias in Monte Carlo Renderers using Welch's
+//! Source of the problem: A. Jung, J. Hanika, C. Dachsbacher, *Detecting Bias in Monte Carlo Renderers using Welch's
 //! t-test*, Journal of Computer Graphics Techniques 9 (2020).
 
 mod evidence;
@@ -30,12 +30,12 @@ use super::{neighbours_of, order_of, refuted};
 use crate::judge::{ROUNDING, SIDE_SHARE, decide_together, main_share};
 use gate::stats::verdict::Verdict;
 
-/// What is claimed of two stacks.
+/// Claims about two stacks.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Terms {
-    /// True if both have one distribution in each pixel, and not only one mean.
+    /// True if both have the same distribution in each pixel, not only the same mean.
     pub is_same_law: bool,
-    /// Rounding error of a value relative to its mean, at most; at least that of the files.
+    /// Bound on the rounding error of a value relative to its mean; at least that of the files.
     pub rounding: f64,
 }
 
@@ -71,7 +71,7 @@ impl Default for Terms {
 ///
 /// # Errors
 ///
-/// What is wanted makes no sense, the sizes differ, or a value of the reference is no number.
+/// The options make no sense, the sizes differ, or a value of the reference is not finite.
 pub fn compare(
     stack: &Stack,
     reference: &Stack,
@@ -119,7 +119,7 @@ pub fn compare(
     Ok(judgement)
 }
 
-/// Makes both tests of all tiles and wholes, and returns how many are rejected for equal distributions alone.
+/// Makes both tests of all tiles and wholes. Returns how many are rejected for equal distributions alone.
 fn test(
     stacks: [&Stack; 2],
     evidence: &Evidence,
@@ -187,7 +187,7 @@ fn check(stack: &Stack, reference: &Stack, terms: Terms) -> Result<(), ImageErro
     })
 }
 
-/// The one that was found, if any.
+/// Returns the dependence of either stack, if one was found.
 fn either([one, other]: [Dependence; 2]) -> Dependence {
     if other.is_refuted() && !one.is_refuted() || other.evidence > one.evidence && !one.is_refuted()
     {
@@ -197,7 +197,7 @@ fn either([one, other]: [Dependence; 2]) -> Dependence {
     }
 }
 
-/// Fails what both tests reject, and returns how many are rejected for equal distributions alone.
+/// Fails every tile that both tests reject. Returns how many are rejected for equal distributions alone.
 fn decide(
     tiles: &mut [Tile],
     adjusted: &[f64],

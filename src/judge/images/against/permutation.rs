@@ -1,4 +1,4 @@
-//! Two groups of rows against all ways to deal the rows to the groups: many columns at once.
+//! Two groups of rows, compared with all ways to deal the rows to two groups: many columns at once.
 //!
 //! ```text
 //! t_j  = (ā_j − b̄_j)/√(w v_j(1/N + 1/M) + (1 − w)(s_a²/N + s_b²/M)),    w = 8/(N + M + 6)
@@ -6,11 +6,11 @@
 //! p̃_j  the same of the largest |t| of all columns with a |t| up to that of j: all columns at once, at one level
 //! ```
 //!
-//! Where the N + M rows are independent and of one distribution, every deal is equally likely: `p` and `p̃` are exact
-//! (P(p ≤ α) ≤ α) for any number of rows, whatever the distribution and whatever columns have to do with each other.
-//! `v_j` is a prior variance that does not depend on the deal; it steadies the variance of few rows. With different
-//! distributions of one mean the level holds for many rows only, where averages are near normal: `t` is in units of the
-//! groups' own standard errors.
+//! If the N + M rows are independent and of one distribution, every deal is equally likely: `p` and `p̃` are exact,
+//! `P(p ≤ α) ≤ α`, for any number of rows, any distribution and any dependence of the columns. `v_j` is a prior
+//! variance that does not depend on the deal; it steadies the variance of few rows. With different distributions of one
+//! mean the level holds for many rows only, where averages are nearly normal: `t` is in units of the groups' own
+//! standard errors.
 //!
 //! Sources: A. Janssen, *Studentized permutation tests for non-i.i.d. hypotheses and the generalized Behrens–Fisher
 //! problem*, Statistics & Probability Letters 36 (1997); E. Chung, J. Romano, *Exact and asymptotically robust permutation
@@ -22,46 +22,46 @@ use theory::parallel;
 
 /// Number of rows that the prior variance counts as.
 const PRIOR: f64 = 8.0;
-/// Dealing ends when this number of deals has a largest |t| as large.
+/// Number of deals with a largest |t| as large at which the comparison ends.
 const ENOUGH: u64 = 20;
 /// Number of parts of a round of deals.
 const PARTS: u64 = 16;
-/// The least number of deals, and the most.
+/// Minimum and maximum number of deals.
 const FEWEST: u64 = 1000;
 const MOST: u64 = 200_000;
 
-/// The rows of two groups, a column for each question.
+/// Rows of two groups, with one column per question.
 #[derive(Debug)]
 pub struct Groups {
-    /// Row after row, those of the first group first; each column has mean 0.
+    /// Rows one after the other, those of the first group first; each column has mean 0.
     values: Vec<f64>,
     rows: [usize; 2],
     prior: Vec<f64>,
-    /// The sum of squares of each column.
+    /// Sum of squares of each column.
     squares: Vec<f64>,
 }
 
-/// The p-values of all columns.
+/// p-values of all columns.
 #[derive(Debug, Clone)]
 pub struct Found {
     /// t of each column.
     pub t: Vec<f64>,
     /// p of each column by itself.
     pub p: Vec<f64>,
-    /// p̃: of all columns together.
+    /// p̃, the p-value of all columns together.
     pub adjusted: Vec<f64>,
     /// Number of deals that were compared.
     pub deals: u64,
 }
 
-/// Returns the number of deals of `first` and `second` rows that have a |t| of their own.
+/// Returns the number of deals of `first` and `second` rows with distinct |t|.
 pub fn distinct(first: usize, second: usize) -> f64 {
     let ways = (1..=first).map(|k| (second + k) as f64 / k as f64).product::<f64>();
     if first == second { 0.5 * ways } else { ways }
 }
 
 impl Groups {
-    /// Two groups of rows with a column for each prior variance; columns without any spread have t = 0.
+    /// Takes two groups of rows with a column for each prior variance; columns without any spread have t = 0.
     pub fn new(mut values: Vec<f64>, rows: [usize; 2], prior: &[f64]) -> Self {
         let columns = prior.len();
         let all = (rows[0] + rows[1]) as f64;
@@ -73,7 +73,7 @@ impl Groups {
         for row in values.chunks_exact_mut(columns) {
             for ((x, mean), sum) in row.iter_mut().zip(&means).zip(&mut squares) {
                 *x -= mean;
-                // What rounding leaves of a column without spread.
+                // Rounding error of a column without spread.
                 if x.abs() <= 1e-12 * mean.abs() {
                     *x = 0.0;
                 }
@@ -83,7 +83,7 @@ impl Groups {
         Self { values, rows, prior: prior.to_vec(), squares }
     }
 
-    /// t of all columns where the first group has these rows.
+    /// Returns t of all columns if the first group has these rows.
     fn statistics(&self, chosen: &[usize]) -> Vec<f64> {
         let columns = self.prior.len();
         let (mut sums, mut squares) = (vec![0.0; columns], vec![0.0; columns]);
@@ -115,7 +115,7 @@ impl Groups {
         let t = self.statistics(&(0..self.rows[0]).collect::<Vec<_>>());
         let mut order: Vec<usize> = (0..t.len()).collect();
         order.sort_by(|&i, &j| t[i].abs().total_cmp(&t[j].abs()));
-        // A deal adds up in another order.
+        // A deal adds up in another order, with other rounding.
         let limits: Vec<f64> = t.iter().map(|t| t.abs() * (1.0 - 1e-9)).collect();
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // at most 200,000
         let wanted = ((ENOUGH as f64 / alpha).ceil().min(MOST as f64) as u64).max(FEWEST);
@@ -200,7 +200,7 @@ mod tests {
         // C(4, 2)/2, C(5, 2), C(16, 8)/2.
         assert_eq!((distinct(2, 2), distinct(2, 3)), (3.0, 10.0));
         assert!((distinct(8, 8) - 6435.0).abs() < 1e-9);
-        // The two rows of each group are apart as far as can be: 1 of 3 deals.
+        // The rows of both groups are as far apart as possible: 1 of 3 deals.
         let found = Groups::new(vec![0.0, 0.1, 5.0, 5.1], [2, 2], &[0.0]).compare(1e-3, 1);
         assert!((found.p[0] - 1.0 / 3.0).abs() < 0.1, "{found:?}");
         let flat = Groups::new(vec![0.3; 6], [3, 3], &[0.0]).compare(1e-3, 1);
