@@ -1,4 +1,4 @@
-//! Is my estimator unbiased, and is its variance what theory says? Three lines in a test of one's own:
+//! Tests whether an estimator is unbiased and as noisy as theory says, in three lines of a test:
 //!
 //! ```
 //! use trueflight::OfCase;
@@ -19,27 +19,27 @@
 //!     .assert_pass();
 //! ```
 //!
-//! [`check`](fn@check) draws from the closure until all is decided, compares mean, variance and lookups with what
-//! theory says of this experiment, and panics with the reason unless they agree; a correct estimator fails with
-//! chance 0.001 at most. Without a case, [`Check::truth`], [`Check::variance`] and [`Check::range`] say what is
+//! [`check`](fn@check) draws from the closure until all questions are decided, compares mean, variance and lookups with
+//! theory's prediction of this experiment, and panics with the reason unless they agree. A correct estimator fails with
+//! probability 0.001 at most. Without a case, [`Check::truth`], [`Check::variance`] and [`Check::range`] state what is
 //! known. [`claim`] judges draws that come from elsewhere, [`Gate`] shares one error rate among several checks.
 //!
-//! Trueflight proves that a light-transport estimator is fair. It drives null-collision Monte Carlo estimators of
-//! transmittance, free flight and scattering in heterogeneous media through millions of draws, compares every mean,
-//! variance, cost and law with what theory predicts, and says *pass*, *fail* or *inconclusive*. `Catalogue` takes
-//! media and estimators of one's own, and `cli::main` makes a command of them.
+//! Trueflight makes millions of draws of null-collision Monte Carlo estimators of transmittance, free flight and
+//! scattering in heterogeneous media. It compares every mean, variance, cost and distribution with exact theory, and
+//! says *pass*, *fail* or *inconclusive*. A program adds media and estimators of its own to a `Catalogue`, and gets a
+//! command for them by `cli::main`.
 //!
 //! # Invariants
 //!
-//! - `stats` has never heard of media; `media` has never heard of statistics.
-//! - `theory` contains no generator; `estimators` contain no tolerance; `report` does no arithmetic
-//!   beyond formatting and sees only the record.
+//! - `stats` does not depend on `media`, nor `media` on `stats`.
+//! - `theory` contains no generator; `estimators` contain no tolerance; `report` does no arithmetic beyond formatting
+//!   and sees only the record.
 //! - An estimator is data: no interior mutability, one value serves every thread.
-//! - Every random number has an address (seed, experiment, block, lane). Thread count, shard and
-//!   machine are no part of it, and results merge in address order: the *results* part of a record
-//!   is byte-identical on any number of threads. A run limited by time is exempt, and says so.
-//! - What a draw computes (ln, exp, cos) comes from [`numeric::elementary`], never from the
-//!   platform's library.
+//! - Every random number has an address (seed, experiment, block, lane), whatever the number of threads, the shard and
+//!   the machine. Results merge in address order: the *results* part of a record is byte-identical on any number of
+//!   threads. A run limited by time is exempt, and says so.
+//! - Elementary functions in a draw (ln, exp, cos) come from [`numeric::elementary`], never from the platform's
+//!   library.
 //! - No number is compared with a prediction more strictly than the prediction's own error bound.
 //! - Nothing is clamped, skipped or defaulted silently. Unknown is `None`, never `0`.
 //! - A check that cannot fail is a defect.
@@ -68,7 +68,7 @@ pub use media::{catalogue, files, page, phase};
 pub use numeric::{geometry, rng};
 pub use theory::problems;
 
-/// The examples of README and manual are compiled and run with the documentation's.
+/// Compiles and runs the examples of README and manual with those of the documentation.
 #[cfg(doctest)]
 mod manual {
     #[doc = include_str!("../README.md")]

@@ -8,10 +8,10 @@ use gate::stats::gate::ln_fail;
 use gate::stats::normal;
 use gate::stats::verdict::{MISS, Verdict};
 
-/// The share of the error rate that goes to tests of whole distributions.
+/// Share of the error rate for tests of whole distributions.
 const LAW_SHARE: f64 = 0.2;
 
-/// The levels that the run's questions share, fixed before the first draw.
+/// Levels that the run's questions share, fixed before the first draw.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Levels {
     /// Number of scalars that go through the gate.
@@ -33,7 +33,7 @@ pub struct Levels {
 }
 
 impl Levels {
-    /// The levels at which these numbers of scalars, distributions and declared biases share α.
+    /// Returns the levels at which these numbers of scalars, distributions and declared biases share α.
     pub fn new(alpha: f64, [scalars, laws, biased]: [usize; 3]) -> Self {
         let share = alpha * (1.0 - LAW_SHARE) / scalars.max(1) as f64;
         Self {
@@ -48,29 +48,29 @@ impl Levels {
         }
     }
 
-    /// The levels of a quantity, or of one with a bias that must be shown.
+    /// Returns the levels of a quantity, or of one with a bias that must be shown.
     pub fn of(&self, expects_bias: bool) -> session::Levels {
         let ln_fail = if expects_bias { self.ln_biased } else { self.ln_fail };
         session::Levels { ln_fail, ln_pass: self.ln_pass }
     }
 }
 
-/// The best verdict that the planned draws allow, and the draws that allow a better one.
+/// Best verdict that the planned draws allow, and the number of draws that allows a better one.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Foreseen {
-    /// `inconclusive` or `underpowered`; `None` where the planned draws suffice for a pass.
+    /// `inconclusive` or `underpowered`; `None` if the planned draws suffice for a pass.
     pub verdict: Option<Verdict>,
-    /// The draws that the checks of that verdict need; `None` where no number of draws is enough.
+    /// Number of draws that the checks of that verdict need; `None` if no number of draws is enough.
     pub needed: Option<f64>,
-    /// Why, with the numbers of draws; empty without a verdict.
+    /// Reason, with the numbers of draws; empty without a verdict.
     pub reason: String,
 }
 
 impl Foreseen {
-    /// The best verdict on one channel of an experiment.
+    /// Returns the best verdict on one channel of an experiment.
     pub fn of(planned: &Planned, channel: usize) -> Self {
         let about = planned.questions.iter().filter(|q| q.channel.is_none_or(|one| one == channel));
-        // A bias that must be shown needs no promise of a pass.
+        // A bias that must be shown needs no pass.
         let promised = about.filter(|q| !q.expects_bias || q.answer.scalar().is_none());
         let weak: Vec<(Verdict, f64, String)> = promised
             .filter_map(|question| {
@@ -82,7 +82,7 @@ impl Foreseen {
             return Self::default();
         }
         let verdict = Verdict::worst(weak.iter().map(|one| one.0));
-        // The checks of the verdict first.
+        // Checks of the verdict come first.
         let (own, others): (Vec<_>, Vec<_>) = weak.into_iter().partition(|one| one.0 == verdict);
         let needed = own.iter().map(|one| one.1).fold(0.0, f64::max);
         let reasons = own.iter().chain(&others).map(|one| one.2.as_str());
@@ -91,7 +91,7 @@ impl Foreseen {
     }
 }
 
-/// Different reasons as one text; empty ones are left out.
+/// Joins different reasons to one text; empty ones are left out.
 pub fn joined<'a>(reasons: impl Iterator<Item = &'a str>) -> String {
     let mut different: Vec<&str> = Vec::new();
     for reason in reasons {

@@ -1,5 +1,5 @@
-//! A plan: every experiment of a run, prepared, with its questions and their share of the error
-//! rate, all before the first draw.
+//! Plan of a run: every experiment, prepared, with its questions and their share of the error rate, all before the
+//! first draw.
 //!
 //! ```text
 //! n        what `--draws` or the case says, or what the case's tolerances need
@@ -29,7 +29,7 @@ use numeric::pack::WIDTH;
 use numeric::rng::{Address, PILOT, Streams};
 use theory::parallel;
 
-/// Draws that estimate a variance where theory has none.
+/// Number of draws that estimate a variance if theory has none.
 const PILOT_DRAWS: usize = 1 << 16;
 
 /// A run, ready to draw.
@@ -54,11 +54,11 @@ pub struct PlannedCase<'a> {
 pub struct Planned {
     /// Number of the experiment in the plan, from 0.
     pub number: u32,
-    /// Which estimator of the case.
+    /// Index of the estimator in the case.
     pub estimator: usize,
     /// Identity of the experiment.
     pub id: ExperimentId,
-    /// The earlier experiment of the case that is the same by definition: their draws are the same, and made once.
+    /// Earlier experiment of the case that is the same by definition: both share the same draws.
     pub same_as: Option<ExperimentId>,
     /// Knowledge of the medium that the experiment needs beside lookups; empty for none.
     pub needs: String,
@@ -66,7 +66,7 @@ pub struct Planned {
     pub draws_per_ray: u64,
     /// Address of its random numbers.
     pub address: Address,
-    /// n: how many draws are planned.
+    /// n, the number of planned draws.
     pub draws: u64,
     /// Number of the first draws that p-values and z-scores see.
     pub fixed: u64,
@@ -76,36 +76,36 @@ pub struct Planned {
     pub expect_biased: bool,
     /// The experiment with its prediction, or the reason of its refusal.
     pub outcome: Result<Ready, Refusal>,
-    /// What is asked of the draws.
+    /// Questions about the draws.
     pub questions: Vec<Question>,
-    /// Function that returns the streams of a block's address.
+    /// Returns the streams of a block's address.
     pub find_streams: fn(Address) -> Streams,
 }
 
 impl Planned {
-    /// The questions that go through the gate.
+    /// Returns the questions that go through the gate.
     pub fn scalars(&self) -> impl Iterator<Item = (&Question, &Scalar)> {
         self.questions.iter().filter_map(|question| Some((question, question.answer.scalar()?)))
     }
 
-    /// Returns whether draws are made for the experiment: not where it is refused, or the same as an earlier one.
+    /// Returns whether draws are made for the experiment: not if it is refused, or the same as an earlier one.
     pub fn is_drawn(&self) -> bool {
         self.outcome.is_ok() && self.same_as.is_none()
     }
 
-    /// Number of its channels in a record: one that says why it is refused, if it is.
+    /// Returns the number of its rows in a record: one per channel, or one with the reason if it is refused.
     pub fn channels(&self) -> usize {
         self.outcome.as_ref().map_or(1, |ready| ready.prediction.channels.len())
     }
 
-    /// The streams of a block.
+    /// Returns the streams of a block.
     pub fn streams(&self, block: u64) -> Streams {
         (self.find_streams)(Address { block, ..self.address })
     }
 }
 
 impl<'a> Plan<'a> {
-    /// Number of draws that are merged before the gate may look.
+    /// Returns the number of draws that are merged before the gate may look.
     pub fn step(&self) -> u64 {
         self.options.blocks_per_look * BLOCK
     }
@@ -115,7 +115,7 @@ impl<'a> Plan<'a> {
         Self::heard(cases, options, &|_, _| {})
     }
 
-    /// Prepares every experiment of the cases; `listen` is called with the number of those that are ready, and of all.
+    /// Prepares every experiment of the cases. `listen` receives the number of prepared experiments, and of all.
     pub fn heard(
         cases: &'a [Case],
         options: &Options,
@@ -137,10 +137,10 @@ impl<'a> Plan<'a> {
         let ready =
             |case: &PlannedCase| case.experiments.iter().filter(|e| e.outcome.is_ok()).count();
         let ready: usize = cases.iter().map(ready).sum();
-        // A budget is shared out evenly; what is saved goes to those that are still open.
+        // A budget is shared equally; draws that are saved go to the experiments that are still open.
         let share = options.budget.map(|budget| {
             let share = (budget / ready.max(1) as u64).max(2);
-            // In whole blocks, since looks come at their ends.
+            // Whole blocks, since looks come at their ends.
             if share < BLOCK { share } else { share / BLOCK * BLOCK }
         });
         let all = cases.iter_mut().flat_map(|case| &mut case.experiments);
@@ -171,8 +171,7 @@ impl<'a> Plan<'a> {
         Self { options: options.clone(), cases, levels }
     }
 
-    /// The plan of one experiment at the levels of another plan; `None` if the case has no such
-    /// experiment.
+    /// Returns the plan of one experiment at the levels of another plan; `None` if the case has no such experiment.
     pub fn of_one(
         case: &'a Case,
         options: &Options,
@@ -202,13 +201,13 @@ impl<'a> Plan<'a> {
         }
     }
 
-    /// All experiments with their case.
+    /// Returns all experiments with their case.
     pub fn experiments(&self) -> impl Iterator<Item = (&PlannedCase<'a>, &Planned)> {
         self.cases.iter().flat_map(|case| case.experiments.iter().map(move |e| (case, e)))
     }
 }
 
-/// The experiments of a case that are not left out: each estimator at each value of the sweep.
+/// Returns the selected experiments of a case: each estimator at each value of the sweep.
 fn points(case: &Case, options: &Options) -> Vec<(usize, Variation)> {
     let mut points: Vec<(usize, Variation)> = Vec::new();
     for estimator in 0..case.scenario.estimators() {
@@ -258,7 +257,7 @@ fn plan_experiment(
 }
 
 impl Planned {
-    /// Returns whether two experiments make the same draws, and ask the same of them.
+    /// Returns whether two experiments make the same draws, and have the same questions.
     fn is_same(&self, other: &Self) -> bool {
         let of = |one: &Self| (one.address, one.draws, one.fixed, one.horizon, one.expect_biased);
         let asked = |one: &Self| one.questions.iter().map(|q| q.check.clone()).collect::<Vec<_>>();
@@ -268,7 +267,8 @@ impl Planned {
             && asked(self) == asked(other)
     }
 
-    /// Asks all checks, first for the draws that the case's tolerances need, then for good.
+    /// Collects the questions of all checks, first for the number of draws that the case's tolerances need, then for
+    /// good.
     fn ask(&mut self, case: &Case, options: &Options) {
         let Ok(ready) = &self.outcome else { return };
         let most = self.draws;
@@ -298,13 +298,13 @@ impl Planned {
         let decides = |question: &Question| question.answer.share() != Share::Nothing;
         let is_certain = !questions.iter().any(decides);
         if is_certain {
-            // Draws without chance say in one pack what they would say in many.
+            // Draws without randomness are all equal: one pack is enough.
             subject.draws = subject.draws.min(WIDTH as u64);
             subject.fixed = subject.draws;
             questions = checks::questions(&subject);
         }
         (self.draws, self.fixed) = (subject.draws, subject.fixed);
-        // A budget of less than a block leaves nothing to go on with.
+        // A budget of less than a block allows no continuation.
         let is_tight = options.budget.is_some() && self.draws < BLOCK;
         let is_fixed = options.fixed || is_tight || is_certain;
         self.horizon = if is_fixed { self.draws } else { horizon(self.draws) };
@@ -317,7 +317,7 @@ impl Planned {
         self.questions = questions;
     }
 
-    /// Spreads of a few draws from streams of their own, channel by channel.
+    /// Returns the spreads of a few draws from streams of their own, channel by channel.
     fn pilots(&self, ready: &Ready) -> Vec<Pilot> {
         let mut streams = Address { block: PILOT, ..self.address }.streams();
         let channels = ready.prediction.channels.len();
@@ -331,7 +331,7 @@ impl Planned {
     }
 }
 
-/// Half of the planned draws in whole blocks; all of them where they are few.
+/// Returns half of the planned draws in whole blocks; all of them if they are few.
 fn fixed(draws: u64) -> u64 {
     let half = draws.div_ceil(2).div_ceil(BLOCK) * BLOCK;
     if draws < 4 * BLOCK { draws } else { half }
@@ -342,8 +342,8 @@ fn horizon(draws: u64) -> u64 {
     (draws as f64 * gate::HORIZON / gate::PLANNED).ceil() as u64
 }
 
-/// The draws that keep every promise that `most` draws can keep, at the case's own tolerances and,
-/// where it has none, at the widest that are worth a promise.
+/// Returns the number of draws that every check needs that can pass within `most` draws: at the case's tolerances or,
+/// where it has none, at the widest for which a pass is promised.
 #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // at most `most`
 fn needed(questions: &[Question], most: u64) -> u64 {
     let promised = questions.iter().filter_map(|question| {

@@ -1,19 +1,19 @@
-//! Options of a run, whatever the cases are.
+//! Options of a run, for all cases.
 
 use crate::case::id::EstimatorName;
 use glob::{Pattern, PatternError};
 
-/// Draws per experiment where neither the options nor the case say.
+/// Number of draws per experiment if neither the options nor the case give it.
 pub const DRAWS: u64 = 4_000_000;
 
 /// Options of a run.
 #[derive(Debug, Clone)]
 pub struct Options {
-    /// The seed of all random numbers.
+    /// Seed of all random numbers.
     pub seed: u64,
     /// Number of draws of an experiment.
     pub draws: Amount,
-    /// The probability that a correct run shows any failure.
+    /// Probability that a correct run shows any failure.
     pub alpha: f64,
     /// Stop drawing after this many seconds.
     pub seconds: Option<f64>,
@@ -21,7 +21,7 @@ pub struct Options {
     pub budget: Option<u64>,
     /// Number of blocks of 2¹⁴ draws that are drawn, kept and merged as one; the gate looks between them.
     pub blocks_per_look: u64,
-    /// Draw exactly what is planned: the gate stops nothing.
+    /// Draw exactly the planned numbers: the gate stops no drawing.
     pub fixed: bool,
     /// True if each check that is underpowered makes its experiment inconclusive.
     pub strict: bool,
@@ -41,7 +41,7 @@ pub enum Amount {
 }
 
 impl Amount {
-    /// Number of draws of an experiment; `case` is the number of its case.
+    /// Returns the number of draws of an experiment; `case` is the number of its case.
     pub(crate) fn of(self, case: Option<u64>) -> u64 {
         match self {
             Self::Exactly(draws) => draws,
@@ -51,7 +51,7 @@ impl Amount {
 }
 
 impl Options {
-    /// Options of the command line that ask for the same draws.
+    /// Returns the options of the command line that ask for the same draws.
     pub fn words(&self) -> Vec<String> {
         let mut words = vec![format!("--seed={}", self.seed), format!("--alpha={}", self.alpha)];
         if let Amount::Exactly(draws) = self.draws {
@@ -85,7 +85,7 @@ impl Default for Options {
     }
 }
 
-/// A pattern that selects experiments by name.
+/// Pattern that selects experiments by name.
 ///
 /// It is matched against the case's name, against the estimator's name without its settings, and
 /// against both as `case:estimator`; `*` also crosses slashes.
@@ -93,7 +93,7 @@ impl Default for Options {
 pub struct Filter(Pattern);
 
 impl Filter {
-    /// A pattern such as `*eq21*`, `ratio` or `transmittance/*:single`.
+    /// Parses a pattern such as `*eq21*`, `ratio` or `transmittance/*:single`.
     ///
     /// # Errors
     ///
@@ -102,7 +102,7 @@ impl Filter {
         Pattern::new(pattern).map(Self)
     }
 
-    /// The pattern as it was written.
+    /// Returns the pattern as it was written.
     pub fn pattern(&self) -> &str {
         self.0.as_str()
     }

@@ -68,7 +68,7 @@ pub fn predicted_with_optima(plan: &Plan) -> Record {
     record(plan, cases)
 }
 
-/// Builds the record of what a plan drew, judged. The lines of plots are left out, see [`add_curves`].
+/// Builds the record of the draws of a plan, judged. The curves of plots are left out, see [`add_curves`].
 pub fn judged(plan: &Plan, draws: &Draws, seconds: f64) -> Record {
     let judged = evaluate::run(plan, draws);
     let of_cases = judged.chunk_by(|a, b| a.of.planned.id.case == b.of.planned.id.case);
@@ -91,7 +91,7 @@ pub fn judged(plan: &Plan, draws: &Draws, seconds: f64) -> Record {
     record
 }
 
-/// Adds the theory's lines along sweeps, which plots show.
+/// Adds the curves along sweeps that theory predicts, for plots.
 pub fn add_curves(plan: &Plan, record: &mut Record) {
     parallel::change(&mut record.results.cases, |case| {
         let planned = plan.cases.iter().find(|planned| planned.case.name == case.name);
@@ -155,7 +155,7 @@ fn record(plan: &Plan, cases: Vec<CaseRecord>) -> Record {
     Record { results, timing, comparison: None }
 }
 
-/// An experiment with its draws and the findings of its checks.
+/// Returns the record of an experiment with its draws and the findings of its checks.
 fn experiment(plan: &Plan, Judged { of, findings }: &Judged) -> ExperimentRecord {
     let (case, planned, drawn) = (of.case, of.planned, &of.drawn);
     let mut record = theory::predicted(case, planned);
@@ -194,14 +194,14 @@ fn experiment(plan: &Plan, Judged { of, findings }: &Judged) -> ExperimentRecord
     record
 }
 
-/// The worst verdict, with every reason of it.
+/// Returns the worst verdict, with all of its reasons.
 fn worst(findings: &[&Finding]) -> (Verdict, String) {
     let verdict = Verdict::worst(findings.iter().map(|finding| finding.verdict));
     let own = findings.iter().filter(|finding| finding.verdict == verdict);
     (verdict, joined(own.map(|finding| finding.reason.as_str())))
 }
 
-/// Fills in what only the whole run can say.
+/// Fills in the numbers that depend on the whole run.
 fn complete(results: &mut Results) {
     let (alpha, cases, gate) = (results.alpha, &results.cases, &mut results.gate);
     let suspects: Vec<Suspect> = cases
@@ -226,7 +226,7 @@ fn complete(results: &mut Results) {
     gate.worst_bias = biases.reduce(f64::max);
 }
 
-/// The scalars of a case with the row that they stand in; those of the whole experiment stand in the first of its rows.
+/// Returns the scalars of a case with their rows; those of a whole experiment are in the first of its rows.
 fn scalars(case: &CaseRecord) -> impl Iterator<Item = (Row<'_>, &Finding)> {
     // Draws that two experiments share count once.
     let own = case.rows().filter(|row| row.experiment.same_as.is_none());
@@ -249,7 +249,7 @@ fn suspect(case: &CaseRecord, row: &Row, finding: &Finding) -> Suspect {
     Suspect { case: case.name.clone(), experiment, check: finding.check.clone(), ln_e }
 }
 
-/// The range of ε over the means that were promised a pass.
+/// Returns the range of ε over the means for which a pass was promised.
 fn visible_bias(case: &CaseRecord) -> Option<[f64; 2]> {
     let means = case.rows().flat_map(|row| row.findings()).filter(|f| f.check == "mean");
     let promised = means.filter_map(|finding| finding.gate.filter(|gate| gate.needed.is_none()));
@@ -259,7 +259,7 @@ fn visible_bias(case: &CaseRecord) -> Option<[f64; 2]> {
     Some(range).filter(|range| range.iter().all(|end| end.is_finite()))
 }
 
-/// See [`CaseRecord::pace`].
+/// Returns [`CaseRecord::pace`].
 fn pace(case: &CaseRecord) -> Option<f64> {
     let passed = scalars(case).filter(|(_, finding)| finding.verdict == Verdict::Pass);
     let (taken, typical) = passed.filter_map(|(_, finding)| finding.gate).fold(

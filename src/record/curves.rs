@@ -1,4 +1,4 @@
-//! Data for plots in a record: the theory's lines along a sweep, the best constant σ̂ of each estimator, and rays seen
+//! Data for plots in a record: predicted curves along a sweep, the best constant σ̂ of each estimator, and rays seen
 //! from the side.
 
 use serde::{Deserialize, Serialize};
@@ -13,18 +13,18 @@ use ::theory::Channel;
 use ::theory::optimum::{Kind, Optimum, best_constants};
 use ::theory::parallel;
 
-/// The axis of a sweep and the theory's curves along it.
+/// Axis of a sweep and the predicted curves along it.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct Sweep {
-    /// What is swept, by its key in case files, as `sampling` or `density`.
+    /// Key of the swept quantity in case files, as `sampling` or `density`.
     pub what: String,
     /// The axis title with symbol and unit.
     pub axis: String,
     /// True if the axis is logarithmic.
     pub log: bool,
-    /// The z-score that is as rare as a false alarm of the gate.
+    /// z-score with the two-sided probability of a false alarm of the gate.
     pub z_limit: Option<f64>,
-    /// One curve per estimator and channel; none where nothing is drawn.
+    /// One curve per estimator and channel; none if nothing is drawn.
     pub curves: Vec<Curve>,
 }
 
@@ -33,22 +33,22 @@ pub struct Sweep {
 pub struct Curve {
     /// The estimator's label at the first value of the sweep.
     pub estimator: String,
-    /// The number of the estimator in the case's list: its experiments have the same.
+    /// Index of the estimator in the case's list, which its experiments share.
     pub listed: usize,
     /// Its control in words at the first value of the sweep.
     pub control: String,
     /// The channel.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub channel: String,
-    /// Points in ascending order; refused stretches are left out.
+    /// Points in ascending order, without refused ones.
     pub points: Vec<CurvePoint>,
-    /// Theory at the best constant σ̂, if that was searched and lies inside the sweep.
+    /// Prediction at the best constant σ̂, if that was searched and lies inside the sweep.
     pub optimum: Option<CurvePoint>,
-    /// The best constant σ̂, inside the sweep or not; `None` where it was not searched.
+    /// Best constant σ̂, inside the sweep or not; `None` if it was not searched.
     pub best: Option<Best>,
 }
 
-/// The constant σ̂ that a search for the largest figure of merit names.
+/// Constant σ̂ that a search for the largest figure of merit returns.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct Best {
     /// σ̂, 1/length.
@@ -57,7 +57,7 @@ pub struct Best {
     pub fom: Option<f64>,
     /// Kind of this σ̂, in the words of a row's `best_kind`.
     pub kind: String,
-    /// The limit of a figure of merit that rises with σ̂ to one.
+    /// Limit of the figure of merit, if it rises with σ̂ to one.
     pub limit: Option<f64>,
 }
 
@@ -68,7 +68,7 @@ impl Best {
     }
 }
 
-/// Theory at one value of the swept quantity.
+/// Prediction at one value of the swept quantity.
 #[derive(Debug, Clone, Copy, Serialize, Deserialize)]
 pub struct CurvePoint {
     /// The swept value.
@@ -95,13 +95,13 @@ pub struct Anatomy {
     pub extinction: Vec<f64>,
     /// The control there, 1/length; empty for none.
     pub control: Vec<f64>,
-    /// σ_t less the control there, 1/length.
+    /// σ_t − σ_c there, 1/length.
     pub residual: Vec<f64>,
     /// σ̂ there, 1/length.
     pub sampling: Vec<f64>,
     /// The exact transmittance T(t) there.
     pub transmittance: Vec<f64>,
-    /// The standard deviation of one draw of it there; it may be infinite.
+    /// Standard deviation of one draw of it there; it may be infinite.
     #[serde(with = "gate::extended")]
     pub deviation: Vec<f64>,
     /// Places where the control was fitted: (t, value).
@@ -127,10 +127,10 @@ pub struct MeasuredPoint {
     pub deviation: f64,
 }
 
-/// Points of a line.
+/// Number of points of a curve.
 const POINTS: usize = 48;
 
-/// The lines of a case; none without a sweep. Each takes fifty predictions.
+/// Returns the curves of a case; none without a sweep. Each takes fifty predictions.
 pub fn curves(case: &Case, seed: u64) -> Vec<Curve> {
     let Some(axis) = &case.sweep else { return Vec::new() };
     let swept = (0..case.scenario.estimators()).filter(|&i| case.scenario.depends_on(i, axis.what));
@@ -166,20 +166,20 @@ pub fn curves(case: &Case, seed: u64) -> Vec<Curve> {
     curves.into_iter().flatten().collect()
 }
 
-/// The sweep of a case, without lines.
+/// Returns the sweep of a case, without curves.
 pub fn axis(case: &Case) -> Option<Sweep> {
     let axis = case.sweep.as_ref()?;
     let (what, title) = (axis.what.key().to_owned(), axis.what.axis().to_owned());
     Some(Sweep { what, axis: title, log: axis.log, z_limit: None, curves: Vec::new() })
 }
 
-/// The best constant σ̂ of each experiment of a case, channel by channel; empty for those that take none, or
+/// Returns the best constant σ̂ of each experiment of a case, channel by channel; empty for those that take none, or
 /// are refused at every σ̂.
 pub fn best_of_each<'p>(
     case: &'p PlannedCase,
     seed: u64,
 ) -> Vec<(&'p Planned, Vec<Option<Optimum>>)> {
-    // Experiments that differ in nothing but σ̂ have the same.
+    // Experiments that differ in σ̂ only have the same best σ̂.
     let asked = |planned: &Planned| {
         let is_of_sampling =
             |(what, _): &(What, f64)| matches!(what, What::Sampling | What::SamplingScale);
@@ -197,7 +197,7 @@ pub fn best_of_each<'p>(
     case.experiments.iter().map(answer).collect()
 }
 
-/// The best constant σ̂ of one experiment, channel by channel.
+/// Returns the best constant σ̂ of one experiment, channel by channel.
 fn best(case: &Case, seed: u64, estimator: usize, variation: Variation) -> Vec<Option<Optimum>> {
     if !case.scenario.depends_on(estimator, What::SamplingScale) {
         return Vec::new();
@@ -210,21 +210,21 @@ fn best(case: &Case, seed: u64, estimator: usize, variation: Variation) -> Vec<O
     })
 }
 
-/// The line of an estimator without points, as where it is refused everywhere.
+/// Returns the curve of an estimator without points, as if it is refused everywhere.
 fn without_points(id: &ExperimentId, listed: usize) -> Curve {
     let (estimator, control) = (id.estimator.to_string(), id.control.clone());
     let (channel, points) = (String::new(), Vec::new());
     Curve { estimator, listed, control, channel, points, optimum: None, best: None }
 }
 
-/// The best σ̂ as a record has it.
+/// Converts the best σ̂ for a record.
 pub fn named_best(optimum: Optimum) -> Best {
     let Optimum { sampling, figure_of_merit, kind } = optimum;
     let (fom, limit) = (finite(Some(figure_of_merit)), kind.limit());
     Best { sampling, fom, kind: kind.words().to_owned(), limit }
 }
 
-/// The channels with their points; nothing where the estimator is refused.
+/// Returns the channels with their points; none if the estimator is refused.
 fn points(
     case: &Case,
     seed: u64,
@@ -249,7 +249,7 @@ fn points(
     channels.map(|channel| (channel.name.clone(), point(channel))).collect()
 }
 
-/// The values at which lines are computed: the sweep's own, and more between them.
+/// Returns the values at which curves are computed: the sweep's own, and more between them.
 fn abscissae(axis: &SweepAxis) -> Vec<f64> {
     let (low, high) = ends(&axis.values);
     let mut x = axis.values.clone();
@@ -264,12 +264,12 @@ fn abscissae(axis: &SweepAxis) -> Vec<f64> {
     x
 }
 
-/// The least and the largest of some numbers.
+/// Returns the minimum and the maximum of some numbers.
 fn ends(x: &[f64]) -> (f64, f64) {
     x.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), &x| (low.min(x), high.max(x)))
 }
 
-/// The anatomy of an experiment on a curve; `None` of any other.
+/// Returns the anatomy of an experiment on a curve; `None` for any other.
 pub fn anatomy(DrawnExperiment { case, planned, drawn }: &DrawnExperiment) -> Option<Anatomy> {
     let ready = planned.outcome.as_ref().ok()?;
     let at = case.case.at(planned.id.variation()).ok()?;

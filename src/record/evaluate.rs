@@ -1,4 +1,4 @@
-//! From totals to findings: what each question's answer means.
+//! Turns totals into findings, one per question.
 //!
 //! ```text
 //! gate   failed ⇒ fail, passed ⇒ pass, open ⇒ underpowered if that was known, else inconclusive
@@ -6,8 +6,8 @@
 //! bound  broken by any draw ⇒ fail
 //! ```
 //!
-//! A mean passes on the strength of its variance; where that one is underpowered the finding says
-//! `variance assumed`, where it fails or is undecided the mean is inconclusive. A mean that is underpowered makes its
+//! A mean passes only together with its variance. Where the variance is underpowered the finding says
+//! `variance assumed`; where it fails or is undecided the mean is inconclusive. A mean that is underpowered makes its
 //! experiment inconclusive unless the case allows it.
 
 use crate::case::Ready;
@@ -21,7 +21,7 @@ use gate::session::{self, Reason};
 use gate::stats::multiplicity;
 use theory::parallel;
 
-/// An experiment with its draws and the findings of its checks.
+/// Experiment with its draws and the findings of its checks.
 pub struct Judged<'d> {
     /// The experiment with its draws.
     pub of: &'d DrawnExperiment<'d>,
@@ -29,7 +29,7 @@ pub struct Judged<'d> {
     pub findings: Vec<Finding>,
 }
 
-/// Judges what a plan drew, experiment by experiment.
+/// Judges the draws of a plan, experiment by experiment.
 pub fn run<'d>(plan: &Plan, draws: &'d Draws) -> Vec<Judged<'d>> {
     let mut judged =
         parallel::map(&draws.experiments, |of| Judged { of, findings: findings(plan, of) });
@@ -37,7 +37,7 @@ pub fn run<'d>(plan: &Plan, draws: &'d Draws) -> Vec<Judged<'d>> {
     judged
 }
 
-/// A finding that says nothing yet.
+/// Returns a finding without a result.
 fn blank(check: &str, what: &str, channel: String) -> Finding {
     Finding {
         check: check.to_owned(),
@@ -54,7 +54,7 @@ fn blank(check: &str, what: &str, channel: String) -> Finding {
     }
 }
 
-/// What is found of an experiment; laws still have to be judged together.
+/// Returns the findings of an experiment; p-values of distributions are still to be judged together.
 fn findings(plan: &Plan, of: &DrawnExperiment) -> Vec<Finding> {
     let DrawnExperiment { planned, drawn, .. } = of;
     if drawn.draws == 0 {
@@ -125,7 +125,7 @@ fn judge_laws(plan: &Plan, findings: &mut [&mut Finding]) {
     let rejected = multiplicity::holm(&p, plan.levels.laws, plan.levels.law_alpha);
     let laws = findings.iter_mut().filter(|finding| finding.p.is_some());
     for (finding, rejected) in laws.zip(rejected) {
-        // A p-value that is not a number comes from draws that are none.
+        // A p-value of NaN comes from draws that are not finite.
         if rejected || finding.p.is_some_and(f64::is_nan) {
             finding.verdict = Verdict::Fail;
             let (what, p) = (finding.what.clone().into(), finding.p.unwrap_or(0.0));
@@ -135,11 +135,11 @@ fn judge_laws(plan: &Plan, findings: &mut [&mut Finding]) {
     }
 }
 
-/// Qualifies the verdict on a mean by that on the variance of its channel.
+/// Combines the verdict on a mean with that on the variance of its channel.
 ///
-/// A mean passes if its variance does, could not be tested, or is that of pilot draws. A mean that is off
-/// only in units of a variance that is refuted as too small is not accused: were its spread what the
-/// draws show, it would not fail.
+/// A mean passes if its variance does, could not be tested, or is that of pilot draws. If the variance is refuted as
+/// too small, a mean that is off only in units of that variance does not fail: with the spread of the draws it would
+/// not.
 fn qualify_means(plan: &Plan, planned: &Planned, findings: &mut [Finding]) {
     let variances = findings.iter().filter(|f| f.check == "variance" && f.verdict != Verdict::Pass);
     let variances: Vec<Finding> = variances.cloned().collect();
@@ -165,8 +165,8 @@ fn qualify_means(plan: &Plan, planned: &Planned, findings: &mut [Finding]) {
     }
 }
 
-/// Adds the cause to blocks and streams that differ from theory where the mean or the variance fails: the difference is then
-/// no sign of a dependence.
+/// Adds the cause to blocks and streams that differ from theory if the mean or the variance fails: the difference is
+/// then no evidence of a dependence.
 pub fn explain_blocks(findings: &mut [Finding]) {
     let fails = |check: &str| {
         findings.iter().any(|found| found.check == check && found.verdict == Verdict::Fail)
@@ -184,13 +184,13 @@ pub fn explain_blocks(findings: &mut [Finding]) {
     }
 }
 
-/// Returns whether a mean fails only by a variance that is refuted as too small.
+/// Returns whether a mean fails only because its variance is refuted as too small.
 fn rests_on(plan: &Plan, mean: &Finding, variance: &Finding) -> bool {
     let gates = mean.gate.zip(variance.gate).filter(|_| variance.verdict == Verdict::Fail);
     gates.is_some_and(|(mean, variance)| session::rests_on(&mean, &variance, plan.levels.ln_fail))
 }
 
-/// A bias somewhere on a curve is a bias; it need not be everywhere.
+/// Counts a declared bias as shown if one point of a curve shows it.
 fn show_anywhere(findings: &mut [Finding]) {
     let shown = |finding: &Finding| finding.check == "mean" && finding.verdict == Verdict::Pass;
     if findings.iter().any(shown) {
@@ -203,11 +203,11 @@ fn show_anywhere(findings: &mut [Finding]) {
     }
 }
 
-/// More looks of the gate than this are thinned.
+/// Maximum number of looks in a record.
 const LOOKS: usize = 64;
 
-/// Draws and ln E at the looks, as a record has them: the first, the last, and those between them evenly. An infinite ln E
-/// becomes the largest number.
+/// Returns number of draws and ln E at the looks of a record: the first, the last, and an even choice between them. An
+/// infinite ln E becomes the largest number.
 fn thinned(path: &[(u64, f64)]) -> Vec<[f64; 2]> {
     let last = path.len().saturating_sub(1);
     let few = path.len().min(LOOKS);
@@ -215,7 +215,7 @@ fn thinned(path: &[(u64, f64)]) -> Vec<[f64; 2]> {
     kept.map(|(draws, ln_e)| [draws as f64, rounded(ln_e)]).collect()
 }
 
-/// A number in steps of 0.001; an infinite one becomes the largest number.
+/// Rounds to steps of 0.001; infinity becomes the largest number.
 fn rounded(ln_e: f64) -> f64 {
     ((ln_e * 1e3).round() / 1e3).clamp(f64::MIN, f64::MAX)
 }

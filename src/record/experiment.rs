@@ -19,21 +19,21 @@ pub struct ExperimentRecord {
     pub listed: usize,
     /// Knowledge of the medium that σ̂, control and estimator need beside lookups, as in `τ`; empty for none.
     pub needs: String,
-    /// The earlier experiment of the case that is the same by definition: both share their draws.
+    /// Earlier experiment of the case that is the same by definition: both share their draws.
     pub same_as: Option<ExperimentId>,
-    /// The share of the ray's support, in space of the box about the volume, that is skipped as empty: σ̂ is 0 there.
-    /// `None` where σ̂ is as the case has it.
+    /// Share of the ray's support, or in space of the box around the volume, that is skipped as empty: σ̂ is 0 there.
+    /// `None` if nothing is skipped.
     pub skipped: Option<f64>,
     /// Number of draws of the means, variances and z-scores, fixed by the plan.
     pub draws: Option<u64>,
     /// Number of draws that the gate took to decide.
     pub drawn: Option<u64>,
-    /// The name of the experiment's streams: with the seed and a block's number it addresses them.
+    /// Number of the experiment's streams: with the seed and a block's number it is their address.
     pub stream: Option<u64>,
     /// The command that repeats the experiment.
     pub command: String,
-    /// Lookups of σ_t for a ray before its first draw, as at explorer points and by pilot rays; no part of the lookups per
-    /// draw. `None` if the experiment is refused.
+    /// Lookups of σ_t for a ray before its first draw, as at explorer points and by pilot rays, which are not part of
+    /// the lookups per draw. `None` if the experiment is refused.
     pub setup_lookups: Option<u64>,
     /// The mean number of lookups of σ_t.
     #[serde(with = "gate::extended")]
@@ -104,7 +104,7 @@ pub struct ChannelRecord {
     pub z_variance: Option<f64>,
     /// The predicted standard deviation of the sample variance, for error bars.
     pub variance_deviation: Option<f64>,
-    /// The z-scores that are not to be read as normal: the draws are too few, or their tails too heavy.
+    /// z-scores that are not to be read as normal: the draws are too few, or their tails too heavy.
     pub not_normal: Vec<Score>,
     /// The predicted skewness of one draw.
     pub predicted_skewness: Option<f64>,
@@ -125,8 +125,8 @@ pub struct ChannelRecord {
     pub verdict: Option<Verdict>,
     /// Reason of the verdict; empty for a plain pass.
     pub reason: String,
-    /// The command that decides an inconclusive channel, or, of a plan, all of the case that it leaves inconclusive.
-    /// Empty if no number of draws does, and for all others.
+    /// Command that decides an inconclusive channel; in a plan, one that decides all of the case that it leaves
+    /// inconclusive. Empty if no number of draws does, and for all other channels.
     #[serde(skip_serializing_if = "String::is_empty")]
     pub decide: String,
     /// `inconclusive` or `underpowered` if a plan has too few draws for a pass; `None` in a run.
@@ -141,14 +141,14 @@ pub struct ChannelRecord {
     /// The predicted central moments `μ_k/T^k` of one draw, k = 2, 3, 4; `None` if they are
     /// unknown or overflow.
     pub relative_moments: [Option<f64>; 3],
-    /// A bound on the relative error of the predicted variance and, if that is known, of the fourth
-    /// moment; `None` without a bound.
+    /// Bound on the relative error of the predicted variance and, if that is known, of the fourth moment; `None`
+    /// without a bound.
     pub moments_error: Option<f64>,
-    /// `n(2)`: with fewer draws the events that make the variance are not seen.
+    /// `n(2)`: fewer draws do not contain the events that make the variance.
     pub rare_event_size: Option<f64>,
     /// `E[X⁸]/E[X⁴]²`, the weight of the tails of the sample variance.
     pub eighth_moment_ratio: Option<f64>,
-    /// All values of the channel are in units of `exp(−log_unit)`; `None` if they are as they are.
+    /// Unit of all values of the channel, `exp(−log_unit)`; `None` for plain units.
     pub log_unit: Option<f64>,
 }
 
@@ -167,7 +167,7 @@ pub enum Score {
 }
 
 impl Score {
-    /// The name of its column in files.
+    /// Returns the name of its column in files.
     pub fn word(self) -> &'static str {
         match self {
             Self::Mean => "z_mean",
@@ -194,11 +194,11 @@ pub struct Finding {
     pub p: Option<f64>,
     /// Numbers of the gate, for scalars.
     pub gate: Option<GateFinding>,
-    /// Pairs of draws and ln E at the gate's looks, ascending: the last is the decision's. Of more than 64 looks an even
-    /// choice, ln E in steps of 0.001.
+    /// Pairs of draws and ln E at the gate's looks, ascending: the last is the decision's. Of more than 64 looks an
+    /// even choice, ln E in steps of 0.001.
     #[serde(default, skip_serializing_if = "Vec::is_empty", with = "gate::extended")]
     pub path: Vec<[f64; 2]>,
-    /// The block at whose end it was decided, or that has the first violation.
+    /// Block after which it was decided, or the block with the first violation.
     pub block: Option<u64>,
     /// The verdict of the check.
     pub verdict: Verdict,
@@ -207,62 +207,62 @@ pub struct Finding {
 }
 
 impl Finding {
-    /// Returns whether it is about a channel, or about the experiment as a whole.
+    /// Returns whether it concerns a channel, or the experiment as a whole.
     pub fn is_about(&self, channel: &str) -> bool {
         self.channel.is_empty() || self.channel == channel
     }
 }
 
 impl ExperimentRecord {
-    /// The constant sampling extinction, 1/length; `None` where σ̂ varies or is not used.
+    /// Returns the constant sampling extinction, 1/length; `None` if σ̂ varies or is not used.
     pub fn sampling(&self) -> Option<f64> {
         self.id.sampling.constant.map(|value| value.0)
     }
 
-    /// The value of the swept quantity; `None` for experiments outside the sweep.
+    /// Returns the value of the swept quantity; `None` for experiments outside the sweep.
     pub fn swept(&self) -> Option<f64> {
         self.id.swept_value()
     }
 
-    /// The findings about a channel, and about the experiment as a whole.
+    /// Returns the findings about a channel, and about the experiment as a whole.
     pub fn findings_about(&self, channel: &str) -> impl Iterator<Item = &Finding> {
         self.findings.iter().filter(move |finding| finding.is_about(channel))
     }
 
-    /// Label of the experiment that is the same by definition; empty for none.
+    /// Returns the label of the experiment that is the same by definition; empty for none.
     pub fn same_as(&self) -> String {
         self.same_as.as_ref().map_or(String::new(), ExperimentId::label)
     }
 }
 
 impl ChannelRecord {
-    /// `log₁₀ LTUV`, LTUV = V · lookups of a draw with its share of the setup lookups: the lookups to unit variance of
-    /// Miller et al. 2019, section 6; the figure of merit upside down.
+    /// Returns `log₁₀ LTUV`. LTUV = V · lookups of a draw with its share of the setup lookups is the lookups to unit
+    /// variance of Miller et al. 2019, section 6, the reciprocal of the figure of merit.
     pub fn log10_ltuv(&self) -> Option<f64> {
         self.fom.map(|fom| -fom.log10())
     }
 
-    /// The constant σ̂ with the largest predicted figure of merit, 1/length; `None` if it was not searched.
+    /// Returns the constant σ̂ with the largest predicted figure of merit, 1/length; `None` if it was not searched.
     pub fn best_sampling(&self) -> Option<f64> {
         self.best.as_ref().map(|best| best.sampling)
     }
 
-    /// The figure of merit at the best σ̂; `None` if it is infinite.
+    /// Returns the figure of merit at the best σ̂; `None` if it is infinite.
     pub fn best_fom(&self) -> Option<f64> {
         self.best.as_ref().and_then(|best| best.fom)
     }
 
-    /// The kind of the best σ̂; empty if it was not searched.
+    /// Returns the kind of the best σ̂; empty if it was not searched.
     pub fn best_kind(&self) -> &str {
         self.best.as_ref().map_or("", |best| &best.kind)
     }
 
-    /// The limit of a figure of merit that rises with σ̂ to one.
+    /// Returns the limit of the figure of merit, if it rises with σ̂ to one.
     pub fn best_limit(&self) -> Option<f64> {
         self.best.as_ref().and_then(|best| best.limit)
     }
 
-    /// The predicted `log₁₀ LTUV`.
+    /// Returns the predicted `log₁₀ LTUV`.
     pub fn predicted_log10_ltuv(&self) -> Option<f64> {
         self.predicted_fom.map(|fom| -fom.log10())
     }

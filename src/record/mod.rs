@@ -32,7 +32,7 @@ pub use gate::stats::verdict::{GateFinding, Verdict};
 use crate::record::baseline::Comparison;
 use numeric::digits::short;
 
-/// The version of the record's form: it grows when a field changes its meaning or goes away.
+/// Version of the record's format: it grows when a field changes its meaning or is removed.
 pub const SCHEMA: u32 = 2;
 
 /// A finished run, prediction or plan.
@@ -46,16 +46,16 @@ pub struct Record {
     pub comparison: Option<Comparison>,
 }
 
-/// The part of a record that depends on nothing but the cases, the seed and the options.
+/// Part of a record that depends only on the cases, the seed and the options.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct Results {
-    /// The version of the record's form, [`SCHEMA`].
+    /// Version of the record's format, [`SCHEMA`].
     pub schema: u32,
     /// The version of the tool.
     pub version: String,
     /// The run's seed.
     pub seed: u64,
-    /// The probability that a correct run shows any failure at all.
+    /// Probability that a correct run shows any failure at all.
     pub alpha: f64,
     /// Addressing of random numbers, in words.
     pub streams: String,
@@ -78,7 +78,7 @@ pub struct Gate {
     pub laws: usize,
     /// Number of declared biases, with an α of their own.
     pub biased: usize,
-    /// β, the probability that a scalar passes although its bias is as large as its tolerance.
+    /// β, the probability that a scalar passes although its bias equals its tolerance.
     pub beta: f64,
     /// A scalar fails at this ln E.
     pub ln_e_limit: f64,
@@ -92,7 +92,7 @@ pub struct Gate {
     pub worst_bias: Option<f64>,
     /// Number of means that passed although their variance could not be tested.
     pub variance_assumed: usize,
-    /// The e-BH list at α: where to look first.
+    /// e-BH list at α: the most suspect findings.
     pub triage: Vec<Suspect>,
 }
 
@@ -126,22 +126,21 @@ pub struct CaseRecord {
     pub medium: String,
     /// Number of draws that share the setup lookups of a ray; `None` in records without it.
     pub draws_per_ray: Option<u64>,
-    /// The smallest and the largest bias of a mean, relative to its unit, that its experiments were
-    /// planned to see.
+    /// Smallest and largest bias of a mean, relative to its unit, that its experiments were planned to detect.
     pub visible_bias: Option<[f64; 2]>,
-    /// Number of draws that its scalars took to pass, all together, in units of what is typical,
-    /// `17 V/ε²` draws each.
+    /// Number of draws that its scalars took to pass, all together, in units of the typical number, `17 V/ε²` draws
+    /// each.
     pub pace: Option<f64>,
     /// The experiments: estimators in the order of the case, each over the sweep.
     pub experiments: Vec<ExperimentRecord>,
-    /// The swept quantity, with the theory's curves.
+    /// Swept quantity, with the predicted curves.
     pub sweep: Option<Sweep>,
     /// The ray seen from the side, for cases with a curve.
     pub anatomy: Option<Anatomy>,
     /// Contents of the files of the medium, a sentence each.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub facts: Vec<String>,
-    /// Doubts about the medium and its ray, such as a ray that misses the volume, a sentence each.
+    /// Notes on doubtful settings of the medium and its ray, such as a ray that misses the volume, a sentence each.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub notes: Vec<String>,
 }
@@ -158,14 +157,14 @@ pub struct Timing {
 }
 
 impl Results {
-    /// All rows, in the order of the cases.
+    /// Returns all rows, in the order of the cases.
     pub fn rows(&self) -> impl Iterator<Item = Row<'_>> {
         self.cases.iter().flat_map(CaseRecord::rows)
     }
 }
 
 impl CaseRecord {
-    /// The channels of all experiments.
+    /// Returns the channels of all experiments.
     pub fn rows(&self) -> impl Iterator<Item = Row<'_>> + Clone {
         self.experiments.iter().flat_map(|experiment| {
             experiment.channels.iter().enumerate().map(|(number, values)| Row {
@@ -177,12 +176,12 @@ impl CaseRecord {
         })
     }
 
-    /// The channels of all experiments, to change them.
+    /// Returns the channels of all experiments, to change them.
     pub fn channels_mut(&mut self) -> impl Iterator<Item = &mut ChannelRecord> {
         self.experiments.iter_mut().flat_map(|experiment| &mut experiment.channels)
     }
 
-    /// Names the experiments: σ̂ and swept values in as few digits as tell them apart, namesakes by number.
+    /// Names the experiments: σ̂ and swept values in the fewest digits that distinguish them, namesakes by number.
     pub fn name_experiments(&mut self) {
         let digits = Digits::of(self);
         let what = self.sweep.as_ref().map_or("at", |sweep| sweep.what.as_str());
@@ -209,7 +208,7 @@ impl CaseRecord {
     }
 }
 
-/// One channel of an experiment with all that it belongs to: a row of tables.
+/// Channel of an experiment with everything that it belongs to: a row of tables.
 #[derive(Debug, Clone, Copy)]
 pub struct Row<'a> {
     /// The case.
@@ -236,41 +235,42 @@ impl<'a> Row<'a> {
         self.number == 0
     }
 
-    /// The findings about the channel, and about the experiment as a whole.
+    /// Returns the findings about the channel, and about the experiment as a whole.
     pub fn findings(&self) -> impl Iterator<Item = &'a Finding> + use<'a> {
         self.experiment.findings_about(&self.values.channel)
     }
 
-    /// The findings that stand in the row if each stands once: those about the experiment as a whole are in the first row.
+    /// Returns the findings of the row if each finding is listed once: the first row has those of the whole experiment.
     pub fn own_findings(&self) -> impl Iterator<Item = &'a Finding> + use<'a> {
         let is_first = self.is_first();
         self.findings().filter(move |finding| is_first || !finding.channel.is_empty())
     }
 
-    /// Name of the row within its case, as in `ratio, σ̂ 0.5, control mean, T(5)`.
+    /// Returns the name of the row within its case, as in `ratio, σ̂ 0.5, control mean, T(5)`.
     pub fn name(&self) -> String {
         self.name_with(&self.values.channel)
     }
 
-    /// Name of the experiment with a channel.
+    /// Returns the name of the experiment with a channel.
     pub fn name_with(&self, channel: &str) -> String {
         let comma = if channel.is_empty() { "" } else { ", " };
         format!("{}{comma}{channel}", self.experiment.name)
     }
 
-    /// The reason of the verdict; without one, the doubts about the case.
+    /// Returns the reason of the verdict; without one, the notes on the case.
     pub fn why(&self) -> String {
         let reason = &self.values.reason;
         if reason.is_empty() { self.case.notes.join("; ") } else { reason.clone() }
     }
 
-    /// Nanoseconds of processor time for one lookup of `σ_t`; `None` without lookups.
+    /// Returns the nanoseconds of processor time for one lookup of `σ_t`; `None` without lookups.
     pub fn ns_per_lookup(&self) -> Option<f64> {
         let lookups = self.experiment.drawn? as f64 * self.experiment.lookups_per_draw?;
         (lookups > 0.0).then_some(self.experiment.spent.seconds? * 1e9 / lookups)
     }
 
-    /// The command to run next, with the word before it: to decide an inconclusive row, else to repeat the experiment.
+    /// Returns the command to run next, with the word before it: to decide an inconclusive row, else to repeat the
+    /// experiment.
     pub fn next_command(&self) -> Option<(&'static str, &'a str)> {
         let next = match self.values.verdict {
             Some(Verdict::Inconclusive) => ("decide", self.values.decide.as_str()),
@@ -280,22 +280,22 @@ impl<'a> Row<'a> {
     }
 }
 
-/// Number of digits in which the σ̂ and the swept values of a case are printed: no two different values print alike.
+/// Number of digits in which the σ̂ and the swept values of a case are printed: different values print differently.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Digits(usize);
 
 impl Digits {
-    /// Enough digits for most cases.
+    /// Number of digits that is enough for most cases.
     const FEW: usize = 4;
-    /// Digits that tell any two numbers apart.
+    /// Number of digits that distinguishes any two numbers.
     const ALL: usize = 17;
 
-    /// The digits of a case.
+    /// Returns the digits of a case.
     pub fn of(case: &CaseRecord) -> Self {
         Self::new(case.experiments.iter().flat_map(|one| [one.sampling(), one.swept()]))
     }
 
-    /// The digits of some values.
+    /// Returns the digits of some values.
     pub fn new(values: impl Iterator<Item = Option<f64>>) -> Self {
         let mut values: Vec<f64> = values.flatten().collect();
         values.sort_by(f64::total_cmp);
@@ -307,7 +307,7 @@ impl Digits {
         Self((Self::FEW..Self::ALL).find(is_enough).unwrap_or(Self::ALL))
     }
 
-    /// The text of a value.
+    /// Returns the text of a value.
     pub fn text(self, value: f64) -> String {
         short(value, self.0)
     }

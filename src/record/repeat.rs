@@ -1,4 +1,4 @@
-//! The commands that draw an experiment again: the same draws, or as many as decide it.
+//! Commands that draw an experiment again: with the same draws, or with enough to decide it.
 
 use crate::case::suite;
 use crate::plan::levels::Foreseen;
@@ -7,12 +7,12 @@ use crate::plan::{Filter, Plan, Planned, PlannedCase};
 use crate::record::{Finding, Verdict};
 use numeric::digits::enough;
 
-/// The largest number of draws that `--draws` takes.
+/// Largest number of draws that `--draws` takes.
 const MAX_DRAWS: f64 = 1e12;
-/// Four times the draws halve ε: a bias that half of it hides is then decided.
+/// Factor on the draws that halves ε: a bias of about half of ε is then decided.
 const HALVING: f64 = 4.0;
 
-/// A word as a shell reads it, whatever is in it.
+/// Quotes any word for a shell.
 fn quoted(word: &str) -> String {
     let plain = |c: char| c.is_ascii_alphanumeric() || "_./:@%+=-".contains(c);
     if !word.is_empty() && word.chars().all(plain) {
@@ -21,19 +21,19 @@ fn quoted(word: &str) -> String {
     format!("'{}'", word.replace('\'', "'\\''"))
 }
 
-/// A case as the command takes it: a built-in case has no file, and a file has no name that the command would know.
+/// Returns the case as an argument: its name if it is built in, else its file.
 fn place(case: &PlannedCase) -> String {
     let case = case.case;
     let is_built_in = suite::find(&case.name).is_some_and(|source| source.path == case.path);
     quoted(&if is_built_in { case.name.clone() } else { case.path.display().to_string() })
 }
 
-/// The pattern of an experiment's estimator. Namesakes are numbered by the plan; a filter sees them all under one name.
+/// Returns the pattern of an experiment's estimator. Namesakes are numbered by the plan; a filter gives them one name.
 fn pattern(planned: &Planned) -> String {
     format!("*:{}", planned.id.estimator)
 }
 
-/// The options on all experiments that are not as usual, each with a space before it.
+/// Returns the options on all experiments that differ from the defaults, each with a space before it.
 fn flags(options: &Options) -> String {
     let usual = Options::default().words();
     let of_one = |word: &str| {
@@ -51,13 +51,13 @@ fn check(plan: &Plan, case: &PlannedCase, planned: &Planned, draws: &str) -> Str
     )
 }
 
-/// The command that draws an experiment again, and writes nothing.
+/// Returns the command that draws an experiment again, and writes nothing.
 pub fn command(plan: &Plan, case: &PlannedCase, planned: &Planned) -> String {
     check(plan, case, planned, &planned.draws.to_string())
 }
 
-/// The command that decides an inconclusive experiment, and all others that its filter keeps; empty where no number
-/// of draws does. `findings` are those of the experiment, none before it was drawn.
+/// Returns the command that decides an inconclusive experiment, and all others that its filter keeps; empty if no
+/// number of draws does. `findings` are those of the experiment, empty before it was drawn.
 pub fn deciding(
     plan: &Plan,
     case: &PlannedCase,
@@ -73,8 +73,8 @@ pub fn deciding(
     if draws > MAX_DRAWS { String::new() } else { check(plan, case, planned, &enough(draws)) }
 }
 
-/// The command that decides all experiments of a case that the planned draws leave inconclusive; empty where no number
-/// of draws does.
+/// Returns the command that decides all experiments of a case that the planned draws leave inconclusive; empty if no
+/// number of draws does.
 pub fn deciding_all(plan: &Plan, case: &PlannedCase) -> String {
     let ready = case.experiments.iter().filter(|planned| planned.outcome.is_ok());
     let open = ready.filter(|planned| {
@@ -95,7 +95,7 @@ pub fn deciding_all(plan: &Plan, case: &PlannedCase) -> String {
     command + &flags(&plan.options)
 }
 
-/// The draws that decide an experiment; `None` where no number of draws does.
+/// Returns the number of draws that decide an experiment; `None` if no number does.
 fn decisive_draws(case: &PlannedCase, planned: &Planned, findings: &[Finding]) -> Option<f64> {
     planned.outcome.as_ref().ok()?;
     let mut draws = planned.draws as f64;
@@ -105,7 +105,7 @@ fn decisive_draws(case: &PlannedCase, planned: &Planned, findings: &[Finding]) -
             draws = draws.max(foreseen.needed?);
         }
     }
-    // What was promised a decision and did not get it is off by about half of ε.
+    // A check that was promised a decision and did not get it has a bias of about half of ε.
     let is_open = |finding: &&Finding| {
         finding.verdict == Verdict::Inconclusive
             && finding.gate.is_some_and(|gate| {
@@ -113,7 +113,7 @@ fn decisive_draws(case: &PlannedCase, planned: &Planned, findings: &[Finding]) -
             })
     };
     if findings.iter().any(|finding| is_open(&finding)) {
-        // A tolerance of the case is not narrowed by more draws.
+        // More draws do not narrow a tolerance of the case.
         if case.case.tolerance.is_given() {
             return None;
         }

@@ -1,4 +1,4 @@
-//! Predictions and statistics of an experiment, as a record has them.
+//! Predictions and statistics of an experiment, for a record.
 
 use crate::checks::normality::{Tails, needed};
 use crate::draw::block::DrawnExperiment;
@@ -9,10 +9,10 @@ use gate::stats::Tally;
 use theory::prediction::CERTAIN;
 use theory::{Channel, Prediction};
 
-/// A longer list of probabilities is left out of the record.
+/// Maximum number of probabilities in the record; a longer list is left out.
 const LONGEST_LAW: usize = 100;
 
-/// An experiment of a case with the predictions of each channel, or with the reason of its refusal.
+/// Returns an experiment of a case with the predictions of each channel, or with the reason of its refusal.
 pub fn predicted(case: &PlannedCase, planned: &Planned) -> ExperimentRecord {
     let blank = ExperimentRecord {
         id: planned.id.clone(),
@@ -47,7 +47,7 @@ pub fn predicted(case: &PlannedCase, planned: &Planned) -> ExperimentRecord {
     }
 }
 
-/// Predictions of a channel; `cost` is the number of lookups that a draw is charged with.
+/// Returns the predictions of a channel; `cost` is the number of lookups that a draw is charged with.
 fn of_channel(channel: &Channel, cost: Option<f64>) -> ChannelRecord {
     let moments = channel.resolved_moments();
     let variance = moments.map(|moments| moments.variance());
@@ -70,7 +70,7 @@ fn of_channel(channel: &Channel, cost: Option<f64>) -> ChannelRecord {
     }
 }
 
-/// The fields along the ray, which show where an inequality fails.
+/// Returns the fields along the ray, which show where an inequality fails.
 fn courses(case: &PlannedCase, planned: &Planned, refusal: &Refusal) -> Vec<Course> {
     let place = match refusal {
         Refusal::Inequality { at, .. } => Some(*at),
@@ -80,7 +80,7 @@ fn courses(case: &PlannedCase, planned: &Planned, refusal: &Refusal) -> Vec<Cour
     at.map_or(Vec::new(), |at| at.courses(planned.estimator, planned.address, place))
 }
 
-/// A number that files can hold.
+/// Returns a number that files can hold; `None` for others.
 pub fn finite(x: Option<f64>) -> Option<f64> {
     x.filter(|x| x.is_finite())
 }
@@ -110,7 +110,7 @@ pub fn measure(
     }
 }
 
-/// Mean lookups of the fixed draws, and their z-score.
+/// Adds the mean lookups of the fixed draws, and their z-score.
 fn measure_lookups(record: &mut ExperimentRecord, prediction: &Prediction, lookups: &Tally) {
     let n = lookups.draws as f64;
     let law = prediction.lookups.as_ref();
@@ -123,7 +123,7 @@ fn measure_lookups(record: &mut ExperimentRecord, prediction: &Prediction, looku
     }
 }
 
-/// Mean and variance of the fixed draws, and their z-scores.
+/// Adds mean and variance of the fixed draws, and their z-scores.
 fn measure_channel(values: &mut ChannelRecord, channel: &Channel, tally: &Tally) {
     let n = tally.draws as f64;
     let unit = channel.truth.value;
@@ -148,7 +148,8 @@ fn measure_channel(values: &mut ChannelRecord, channel: &Channel, tally: &Tally)
     );
 }
 
-/// The z-scores of a channel over `n` draws that are not to be read as normal; that of the lookups comes with whether it is.
+/// Returns the z-scores of a channel over `n` draws that are not to be read as normal. For lookups the caller says
+/// whether they are normal.
 fn not_normal(
     values: &ChannelRecord,
     n: f64,

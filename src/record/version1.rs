@@ -26,7 +26,7 @@ const OF_EXPERIMENT: [&str; 16] = [
     "p_law",
     "courses",
 ];
-/// Fields of a finding of the gate that were infinite where they are `null`; others were no numbers.
+/// Fields of a finding of the gate with `null` for infinity; in other fields `null` stood for NaN.
 const INFINITE: [&str; 3] = ["variance", "planned", "ln_e"];
 
 /// Converts a document of version 1.
@@ -56,7 +56,7 @@ pub fn upgraded(mut document: Value) -> Value {
     document
 }
 
-/// Converts a case; returns the times of its experiments. `of_rows` looks up a time of a row.
+/// Converts a case; returns the times of its experiments. `of_rows` returns a time of a row.
 fn upgrade_case(case: &mut Value, of_rows: &dyn Fn(&str, usize) -> Value) -> Vec<Value> {
     let what = text(&case["sweep"]["what"]);
     let names = [text(&case["name"]), text(&case["problem"])];
@@ -99,12 +99,13 @@ fn upgrade_case(case: &mut Value, of_rows: &dyn Fn(&str, usize) -> Value) -> Vec
     times
 }
 
-/// Numbers of estimators, for records without them.
+/// Indices of estimators, for records without them.
 #[derive(Default)]
 struct Listed(Vec<(String, bool, usize)>);
 
 impl Listed {
-    /// The number of an estimator; experiments of one label are told apart by how many at the same swept value come before.
+    /// Returns the index of an estimator. Experiments of one label and one swept value are distinguished by their
+    /// order.
     fn number(&mut self, label: &str, is_swept: bool, earlier: usize) -> usize {
         let key = (label.to_owned(), is_swept, earlier);
         self.0.iter().position(|other| *other == key).unwrap_or_else(|| {
@@ -114,7 +115,7 @@ impl Listed {
     }
 }
 
-/// The experiment of a row, still without channels and findings.
+/// Returns the experiment of a row, still without channels and findings.
 fn experiment(
     [case, problem]: &[String; 2],
     what: &str,
@@ -158,7 +159,7 @@ fn experiment(
     experiment
 }
 
-/// The name and the settings of an estimator, and its number among namesakes, from a label.
+/// Returns the name and the settings of an estimator, and its number among namesakes, from a label.
 fn estimator(label: &str) -> (Value, u64) {
     let numbered = label.rsplit_once(" #").and_then(|(name, n)| Some((name, n.parse().ok()?)));
     let (label, number) = numbered.unwrap_or((label, 1));
@@ -167,7 +168,7 @@ fn estimator(label: &str) -> (Value, u64) {
     (json!({ "name": name.trim_end(), "settings": settings }), number)
 }
 
-/// The channel of a row.
+/// Returns the channel of a row.
 fn channel(row: &mut Value) -> Value {
     let best = json!({
         "sampling": row["best_sampling"], "fom": row["best_fom"],
@@ -185,7 +186,7 @@ fn channel(row: &mut Value) -> Value {
     channel
 }
 
-/// A finding with its numbers that are not finite as words.
+/// Converts a finding, with words for numbers that are not finite.
 fn finding(mut finding: Value) -> Value {
     retain_whole(finding.get_mut("path"));
     if let Some(gate) = finding["gate"].as_object_mut() {
@@ -198,7 +199,7 @@ fn finding(mut finding: Value) -> Value {
     finding
 }
 
-/// A ray seen from the side with the identity of its experiment; nothing if it has numbers that are not finite.
+/// Converts a ray seen from the side, with the identity of its experiment; null if a number is not finite.
 fn upgraded_anatomy(mut anatomy: Value, experiments: &[Value]) -> Value {
     let own = experiments.iter().find(|experiment| experiment["label"] == anatomy["estimator"]);
     let Some(own) = own else { return Value::Null };
@@ -232,7 +233,7 @@ fn upgrade_comparison(comparison: &mut Value, sweeps: &BTreeMap<String, String>)
     }
 }
 
-/// The identity of a channel from the text `case|estimator|sampling|control|swept|channel`.
+/// Returns the identity of a channel from the text `case|estimator|sampling|control|swept|channel`.
 fn identity(id: &str, sweeps: &BTreeMap<String, String>) -> Value {
     let mut parts = id.split('|');
     let mut next = || parts.next().unwrap_or_default();
@@ -256,12 +257,12 @@ fn identity(id: &str, sweeps: &BTreeMap<String, String>) -> Value {
     })
 }
 
-/// The items of a list; none of anything else.
+/// Returns the items of a list; no items for any other value.
 fn items(value: &mut Value) -> impl Iterator<Item = &mut Value> {
     value.as_array_mut().into_iter().flatten()
 }
 
-/// Leaves the items of a list that lack no number.
+/// Removes the items of a list that lack a number.
 fn retain_whole(list: Option<&mut Value>) {
     if let Some(items) = list.and_then(Value::as_array_mut) {
         items.retain(is_whole);
@@ -278,7 +279,7 @@ fn replace_null(value: &mut Value, word: &str) {
     }
 }
 
-/// Returns whether no number is missing in a value.
+/// Returns whether a value has all of its numbers.
 fn is_whole(value: &Value) -> bool {
     match value {
         Value::Null => false,

@@ -2,23 +2,23 @@
 
 use numeric::digits::{number, rounded};
 
-/// The most channels of a pixel: red, green and blue.
+/// Maximum number of channels of a pixel: red, green and blue.
 pub const MOST_CHANNELS: usize = 3;
 
-/// A number for each channel of a pixel; a grey one uses the first only.
+/// Number for each channel of a pixel; a grey one uses the first only.
 pub type Colour = [f64; MOST_CHANNELS];
 
-/// More draws at a pixel than this are a mistake in the picture.
+/// Largest number of draws at a pixel; more are a mistake in the picture.
 const MOST_DRAWS: f64 = 1e7;
 
-/// What is expected of a draw at a pixel.
+/// Expected properties of a draw at a pixel.
 #[derive(Debug, Clone)]
 pub struct Forecast {
-    /// Its lookups; `None` where no pilot was drawn.
+    /// Its lookups; `None` if no pilot was drawn.
     pub lookups: Option<f64>,
     /// Its variance in each channel, by theory.
     pub variance: Option<Colour>,
-    /// By how much its mean is off in each channel, by theory.
+    /// Bias of its mean in each channel, by theory.
     pub bias: Colour,
     /// True if the pixel fits its own control.
     pub leads: bool,
@@ -53,11 +53,11 @@ pub struct Plan {
 /// Results of an estimator at the covered pixels.
 #[derive(Debug, Clone, Default)]
 pub struct PixelValues {
-    /// The pixels' values, all channels of one after those of the other.
+    /// Values of the pixels, all channels of one pixel before those of the next.
     pub values: Vec<f64>,
-    /// Their squared standard errors, measured; not a number where there is one draw only.
+    /// Their squared standard errors, measured; NaN for a single draw.
     pub square_errors: Vec<f64>,
-    /// Their expected squared errors by theory; empty where it does not tell.
+    /// Their expected squared errors by theory; empty if theory does not know them.
     pub predicted: Vec<f64>,
     /// Draws.
     pub draws: Vec<u64>,
@@ -68,7 +68,7 @@ pub struct PixelValues {
 }
 
 impl Plan {
-    /// Shares `budget` lookups per pixel out among draws.
+    /// Shares `budget` lookups per pixel among draws.
     pub fn new<'a>(
         forecasts: impl Iterator<Item = &'a Result<Forecast, String>>,
         points: usize,
@@ -113,14 +113,14 @@ impl Plan {
         Ok(Self { draws, points: fitted, pilots, variances, biases })
     }
 
-    /// The draws of the covered pixel of a number: the whole part of their share so far.
+    /// Returns the number of draws of a covered pixel: the whole part of its accumulated share.
     pub fn draws_of(&self, number: usize) -> u64 {
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // far below 2⁵³
         let until = |n: usize| (self.draws * n as f64).floor() as u64;
         until(number + 1) - until(number)
     }
 
-    /// Gathers the sums over the draws of pixels.
+    /// Returns the values of pixels from the sums over their draws.
     pub fn gather(&self, channels: usize, pixels: &[PixelDraws]) -> PixelValues {
         let spread = |pixel: &PixelDraws, c: usize| {
             let n = pixel.draws as f64;

@@ -1,4 +1,4 @@
-//! A picture as written: a volume, a camera, and estimators that are compared pixel by pixel.
+//! Picture as written: a volume, a camera, and estimators that are compared pixel by pixel.
 //!
 //! | key | meaning | default |
 //! |---|---|---|
@@ -16,19 +16,18 @@
 //! | `sky.constant = { radiance }` | what is behind the volume | radiance 1 |
 //! | `sky.gradient = { ground, horizon, zenith, up, sun, glare, sharpness }` | radiances straight below, at the horizon and above, and `glare · exp(sharpness (cos − 1))` about the sun | .2, 1, .5, y, y, 0, 50 |
 //! | `sampling`, `control`, `estimators` | as in a case; an estimator may have its own `expect = "biased"` | |
-//! | `shared-control` | so many columns and rows of pixels use the control that is fitted to the ray in their middle | 1 |
+//! | `shared-control` | number of columns and rows of pixels that share the control fitted to the ray in their middle | 1 |
 //! | `reference.closed-form = {}` | from the exact optical depth, or for a white furnace | |
 //! | `reference.quadrature = { panels }` | Gauss quadrature along the ray, not for multiple scattering; its error is what half as many panels differ by | 16 panels |
 //! | `reference.draws = { lookups, estimator }` | many draws of one estimator, with their measured error | |
 //! | `light`, `albedo`, `phase` | as in the problem `single-scattering`; multiple scattering takes no light | |
 //!
-//! Every pixel gets the same number of draws, to within one: so many that the estimator takes
-//! `lookups` per covered pixel on average, as the paper compares. The number is fixed before the first
-//! draw, from the expected lookups by theory (`transmittance`) or by pilot draws with random numbers of
-//! their own, which are counted apart. Explorer points count as lookups, once for each ray that a
-//! control is fitted to; the controls `mean` and `minimum` come from theory and cost none. A pixel
-//! that the volume does not cover costs neither lookups nor random numbers. RMSE and figure of merit
-//! are over the covered pixels, and over their channels:
+//! Every pixel gets the same number of draws, to within one, such that the estimator takes `lookups` per covered pixel
+//! on average, as the paper compares. The number is fixed before the first draw, from the expected lookups by theory
+//! (`transmittance`) or by pilot draws with random numbers of their own, which are counted separately. Explorer points
+//! count as lookups, once for each ray that a control is fitted to; the controls `mean` and `minimum` come from theory
+//! and cost none. A pixel that the volume does not cover costs neither lookups nor random numbers. RMSE and figure of
+//! merit are over the covered pixels, and over their channels:
 //!
 //! ```text
 //! MSE = mean of (image − reference)²,   figure of merit = 1/(MSE · lookups per pixel)
@@ -56,13 +55,13 @@ use media::catalogue::{Additions, Page, PageList, Settings};
 
 pub use record::PictureRecord;
 
-/// The manual of picture files.
+/// Manual of picture files.
 pub const CATALOGUE: PageList = PageList {
     name: "picture files",
     pages: &[Page { module: "picture", source: include_str!("mod.rs") }],
 };
 
-/// A picture file, read.
+/// Picture file that was read.
 pub struct Picture {
     /// Its name.
     pub name: String,
@@ -74,7 +73,7 @@ pub struct Picture {
 }
 
 impl Picture {
-    /// Reads a picture, with pages of the program's own.
+    /// Reads a picture, with pages that the program adds.
     ///
     /// # Errors
     ///
@@ -108,7 +107,7 @@ impl Picture {
     ///
     /// # Errors
     ///
-    /// The file cannot be read, or every mistake in it.
+    /// The file cannot be read, or has mistakes, all of which are listed.
     pub fn open(name: &str, additions: &Additions) -> Result<Self, CaseError> {
         match find(name) {
             Some(source) if !Path::new(name).exists() => Self::read(&source, additions),
@@ -116,7 +115,7 @@ impl Picture {
         }
     }
 
-    /// Number of rows of pixels.
+    /// Returns the number of rows of pixels.
     pub fn rows(&self) -> usize {
         self.scene.view.size[1]
     }
@@ -150,12 +149,12 @@ const PICTURES: BuiltIn = pictures![
     "spectral-density",
 ];
 
-/// Every built-in picture, in the order of the gallery.
+/// Returns every built-in picture, in the order of the gallery.
 pub fn gallery() -> Vec<Source> {
     PICTURES.all()
 }
 
-/// The built-in picture of a name.
+/// Returns the built-in picture of a name.
 pub fn find(name: &str) -> Option<Source> {
     PICTURES.find(name)
 }

@@ -1,4 +1,4 @@
-//! One pixel of one estimator: what theory expects of it, and its draws.
+//! One pixel of one estimator: its expected properties, and its draws.
 
 use std::sync::Arc;
 
@@ -14,16 +14,16 @@ use numeric::Known;
 use numeric::rng::Address;
 use theory::Mesh;
 
-/// Panels of 16 nodes on each ray, for what theory expects of its draws.
+/// Number of panels of 16 nodes on each ray, for predictions.
 const PANELS: usize = 16;
-/// A pixel of every so many columns and rows makes pilot draws.
+/// Every pixel whose column and row are multiples of this number makes pilot draws.
 const PILOTS_EVERY: usize = 2;
 /// Smallest number of pilot draws in a picture: their mean is the cost of a draw to a few hundredths.
 const LEAST_PILOTS: u64 = 2048;
-/// Fewer draws than this are made one by one.
+/// Number of draws below which they are made one by one.
 const FEW: u64 = 32;
 
-/// No pilot rays: recipes that learn are not read.
+/// Address without pilot rays: pictures take no recipes that learn.
 const NOWHERE: Address = Address { seed: 0, experiment: 0, block: 0, lane: 0 };
 
 /// Names of an estimator.
@@ -37,39 +37,39 @@ pub struct Label {
     pub control: String,
 }
 
-/// An estimator of a picture.
+/// Estimator of a picture.
 pub struct Listed<'a> {
     /// As parsed.
     pub parsed: &'a ParsedEstimator,
-    /// Its number among those that the subject read.
+    /// Index among the estimators that the subject read.
     pub index: usize,
     /// Its name.
     pub label: Label,
-    /// Lookups per pixel that it is to take.
+    /// Budget of lookups per pixel.
     pub lookups: u64,
-    /// σ̂ in space, for draws that leave the ray: the same for all pixels.
+    /// σ̂ in space, for draws that leave the ray, which all pixels share.
     pub space: Option<Arc<Majorants>>,
-    /// Addresses of its random numbers, but for the pixel: those of pilots, and those of the image.
+    /// Addresses of its random numbers, apart from the pixel: those of pilots, and those of the image.
     pub addresses: [Address; 2],
 }
 
-/// A covered pixel.
+/// Covered pixel.
 pub struct Pixel<'a> {
     view: &'a View,
     kind: &'a SubjectKind,
     ray: Box<dyn AnyRay>,
-    /// The sky behind it, or 1 where that is not seen.
+    /// Radiance of the sky behind it, or 1 if that is not visible.
     sky: f64,
     /// The field of each channel.
     meshes: Vec<Arc<Mesh>>,
     bodies: Vec<Body>,
-    /// Ray to which a control is fitted that several pixels share; `None` for a pixel that fits its own.
+    /// Shared ray to which a control is fitted; `None` for a pixel that fits its own.
     leader: Option<(Body, Mesh)>,
     index: usize,
 }
 
 impl<'a> Pixel<'a> {
-    /// The pixel of a number; `None` where its ray is not allowed.
+    /// Prepares the pixel of a number; `None` if its ray is not allowed.
     pub fn new(
         view: &'a View,
         kind: &'a SubjectKind,
@@ -91,7 +91,7 @@ impl<'a> Pixel<'a> {
         Some(Self { view, kind, ray, sky, meshes, bodies: view.bodies(along), leader, index })
     }
 
-    /// The exact answer in each channel, or that of a quadrature with `panels` panels.
+    /// Returns the exact answer in each channel, or that of a quadrature with `panels` panels.
     pub fn answer(&self, panels: Option<usize>) -> Option<Vec<Known>> {
         let found = panels.map_or_else(|| self.ray.exact(), |n| self.ray.by_quadrature(n))?;
         let seen = |known: Known| Known::new(known.value * self.sky, known.error * self.sky);
@@ -142,7 +142,7 @@ impl<'a> Pixel<'a> {
         })
     }
 
-    /// Expected cost and spread of a draw at the covered pixel of a number.
+    /// Returns the expected cost and spread of a draw at the covered pixel of a number.
     pub fn forecast(
         &self,
         number: usize,
@@ -178,7 +178,7 @@ impl<'a> Pixel<'a> {
         Ok(Forecast { lookups, variance: None, bias: Colour::default(), leads, pilots })
     }
 
-    /// Sums over draws at the covered pixel of a number.
+    /// Returns the sums over draws at the covered pixel of a number.
     pub fn draw(
         &self,
         number: usize,
@@ -195,11 +195,11 @@ impl<'a> Pixel<'a> {
 
     fn drawn(&self, experiment: &dyn Experiment, draws: u64, address: Address) -> PixelDraws {
         let mut streams = address.streams();
-        // Values after those of the picture's channels, as a luminance, are not shown.
+        // Values after those of the picture's channels, such as a luminance, are not shown.
         let mut buffer = DrawBuffer::new(self.kind.channels);
         let (sum, squares) = (Colour::default(), Colour::default());
         let mut pixel = PixelDraws { draws, sum, squares, lookups: 0 };
-        // The same draws either way: packs of eight walk many steps at once, which few draws do not fill.
+        // Both kernels make the same draws: packs of eight need many draws to be filled.
         let kernel =
             if draws < FEW { Kernel::Single } else { Kernel::Packets(fearless_simd::Level::new()) };
         let mut left = draws;

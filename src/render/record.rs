@@ -1,4 +1,4 @@
-//! Record of a rendered picture: all that reports see.
+//! Record of a rendered picture: everything that its reports use.
 
 use serde::Serialize;
 
@@ -26,25 +26,24 @@ pub struct PictureRecord {
     pub covered: usize,
     /// Number of pixels that it does not cover: they cost nothing.
     pub empty: usize,
-    /// The lookups per covered pixel that every estimator was to take.
+    /// Lookups per covered pixel that every estimator was given.
     pub budget: u64,
-    /// The radiance that is shown white.
+    /// Radiance that is shown as white.
     pub white: f64,
-    /// The difference that is shown in the strongest colour.
+    /// Difference that is shown in the strongest colour.
     pub strongest: f64,
     /// The reference of the images.
     pub reference: ReferenceRecord,
-    /// One for each estimator, in the order of the file.
+    /// Estimators, in the order of the file.
     pub exposures: Vec<ExposureRecord>,
 }
 
 /// Reference of images.
 #[derive(Debug, Clone, Serialize)]
 pub struct ReferenceRecord {
-    /// Method by which it was found, in words.
+    /// Method, in words.
     pub how: String,
-    /// The root of its mean squared error over covered pixels: measured where it was drawn; not a number
-    /// where it is not known.
+    /// Root mean squared error over covered pixels: measured if it was drawn; NaN if it is not known.
     pub error: f64,
     /// Its lookups per covered pixel.
     pub lookups: f64,
@@ -54,7 +53,7 @@ pub struct ReferenceRecord {
     pub errors: Vec<f64>,
 }
 
-/// An estimator and what became of it.
+/// Estimator with its image or the reason of its refusal.
 #[derive(Debug, Clone, Serialize)]
 pub struct ExposureRecord {
     /// The estimator with its settings.
@@ -63,7 +62,7 @@ pub struct ExposureRecord {
     pub sampling: String,
     /// The control in words.
     pub control: String,
-    /// The image, or why there is none.
+    /// Image, or the reason why there is no image.
     pub outcome: Result<Exposure, String>,
 }
 
@@ -72,27 +71,26 @@ pub struct ExposureRecord {
 pub struct Exposure {
     /// Row after row from the top, each pixel with its channels.
     pub image: Vec<f64>,
-    /// The standard error of each value, measured: zero where the volume covers nothing, and not a number where
-    /// there is one draw only.
+    /// Standard error of each value, measured: zero outside the volume, and NaN for a single draw.
     pub errors: Vec<f64>,
     /// Draws per pixel.
     pub draws: f64,
     /// Lookups per pixel.
     pub lookups: f64,
-    /// Lookups per pixel of the pilot draws, which are no part of the image.
+    /// Lookups per pixel of the pilot draws, which are not part of the image.
     pub pilots: f64,
-    /// The root of the mean squared difference to the reference.
+    /// Root mean squared difference to the reference.
     pub rmse: f64,
-    /// The predicted root mean squared difference; `None` where theory is not asked.
+    /// Predicted root mean squared difference; `None` without a prediction.
     pub predicted_rmse: Option<f64>,
-    /// The mean difference to the reference.
+    /// Mean difference to the reference.
     pub bias: f64,
     /// `1/(MSE · lookups)`; `None` without error.
     pub figure_of_merit: Option<f64>,
 }
 
 impl PictureRecord {
-    /// Compares what was rendered.
+    /// Compares the images of a rendering with its reference.
     pub(super) fn new([name, title, problem]: [&str; 3], view: &View, rendered: Rendered) -> Self {
         let Rendered { budget, channels, covered, reference, images } = rendered;
         let exposures: Vec<ExposureRecord> = images
@@ -144,7 +142,7 @@ impl PictureRecord {
 }
 
 impl PictureRecord {
-    /// Why there is nothing to show, and what would help; `None` where there is.
+    /// Returns the reason why no image can be shown, and the cure; `None` if one can.
     pub fn refusal(&self) -> Option<String> {
         if self.covered == 0 {
             return Some("the volume covers no pixel: turn the camera, or move it".into());
@@ -194,19 +192,19 @@ fn mean(values: impl Iterator<Item = f64>, count: usize) -> f64 {
     values.sum::<f64>() / count.max(1) as f64
 }
 
-/// The whole image: covered pixels as found, the others exactly.
+/// Returns the whole image: covered pixels as drawn, the others exactly.
 fn image(view: &View, channels: usize, covered: &[usize], values: &[f64]) -> Vec<f64> {
     let background = |pixel| std::iter::repeat_n(view.background(pixel), channels);
     whole((0..view.pixels()).flat_map(background).collect(), channels, covered, values)
 }
 
-/// The roots of squared errors; what is not covered has none.
+/// Returns the roots of squared errors; pixels that are not covered have none.
 fn roots(view: &View, channels: usize, covered: &[usize], squares: &[f64]) -> Vec<f64> {
     let roots: Vec<f64> = squares.iter().map(|square| square.sqrt()).collect();
     whole(vec![0.0; view.pixels() * channels], channels, covered, &roots)
 }
 
-/// An image with the values of the covered pixels.
+/// Returns an image with the values of the covered pixels.
 fn whole(mut image: Vec<f64>, channels: usize, covered: &[usize], values: &[f64]) -> Vec<f64> {
     for (&pixel, values) in covered.iter().zip(values.chunks_exact(channels)) {
         image[pixel * channels..][..channels].copy_from_slice(values);
@@ -214,7 +212,7 @@ fn whole(mut image: Vec<f64>, channels: usize, covered: &[usize], values: &[f64]
     image
 }
 
-/// The 99th percentile of the pixels: a few bright ones do not darken the rest.
+/// Returns the 99th percentile of the pixels, so that a few bright ones do not darken the rest.
 fn bright(image: &[f64]) -> f64 {
     let mut sorted = image.to_vec();
     sorted.sort_by(f64::total_cmp);
@@ -223,7 +221,7 @@ fn bright(image: &[f64]) -> f64 {
     if bright > 0.0 { bright } else { 1.0 }
 }
 
-/// The next of 1, 2, 5, 10, … times a power of ten.
+/// Returns the next of 1, 2, 5, 10, … times a power of ten.
 fn round_up(x: f64) -> f64 {
     if x <= 0.0 || !x.is_finite() {
         return 1.0;

@@ -1,4 +1,4 @@
-//! A picture's volume, camera, estimators and reference: both passes over all pixels.
+//! Volume, camera, estimators and reference of a picture: both passes over all pixels.
 
 use std::sync::Arc;
 
@@ -14,7 +14,7 @@ use numeric::Known;
 use numeric::rng::{Address, name_hash};
 use theory::parallel;
 
-/// Request of a rendering.
+/// Options of a rendering.
 pub struct Request<'a> {
     /// The seed of all random numbers.
     pub seed: u64,
@@ -26,19 +26,19 @@ pub struct Request<'a> {
 
 /// Results for all covered pixels.
 pub struct Rendered {
-    /// The lookups per covered pixel that were to be taken.
+    /// Budget of lookups per covered pixel.
     pub budget: u64,
     /// Number of channels of a pixel.
     pub channels: usize,
     /// The numbers of the covered pixels.
     pub covered: Vec<usize>,
-    /// The method of the reference, and the reference.
+    /// Method of the reference in words, and its values.
     pub reference: (String, PixelValues),
-    /// Results of each estimator, or the reason why it has no image.
+    /// Values of each estimator, or the reason why it has no image.
     pub images: Vec<(Label, Result<PixelValues, String>)>,
 }
 
-/// A volume, a camera and estimators of one problem.
+/// Volume, camera and estimators of one problem.
 pub struct Scene {
     /// The camera's view.
     pub view: View,
@@ -50,7 +50,7 @@ pub struct Scene {
 }
 
 impl Scene {
-    /// Reads all that `[picture.NAME]` holds.
+    /// Reads the settings of `[picture.NAME]`.
     pub fn read(kind: &'static SubjectKind, settings: &Settings) -> Option<Self> {
         let view = View::read(settings, kind.shows_sky, kind.channels > 1);
         // Recipes are read for the ray of the first pixel, and prepared for each.
@@ -62,7 +62,7 @@ impl Scene {
         });
         let body = body.as_ref();
         let lookups = settings.count("lookups", 1..=1_000_000_000);
-        // The lookups of pilot rays are charged to nobody: pictures compare at equal lookups.
+        // Lookups of pilot rays would not be charged: pictures compare at equal lookups.
         let sampling = settings.has("sampling");
         let defaults = Defaults { sampling, counts_lookups: true, ..Defaults::default() };
         let (ray_of, estimators, reference) = (kind.read)(settings, view.as_ref(), body, defaults)?;
@@ -81,7 +81,7 @@ impl Scene {
         }
     }
 
-    /// Every covered pixel in turn, on all threads: what `f` answers, in the order of the pixels.
+    /// Calls `f` for every covered pixel, on all threads, and returns the results in the order of the pixels.
     fn over<T: Send>(
         &self,
         covered: &[usize],
@@ -103,7 +103,7 @@ impl Scene {
         parallel::range(height, row).into_iter().flatten().collect()
     }
 
-    /// The estimators, and after them that of the reference if it is drawn.
+    /// Returns the estimators, and after them that of the reference if it is drawn.
     fn listed(&self, request: &Request) -> Vec<Listed<'_>> {
         let mut listed: Vec<Listed> = Vec::new();
         let reference = match &self.reference {
@@ -134,7 +134,7 @@ impl Scene {
         let covered: Vec<usize> =
             (0..self.view.pixels()).filter(|&pixel| self.view.covered(pixel).is_some()).collect();
         let (listed, estimators) = (self.listed(request), &self.estimators);
-        // First pass: what a draw costs at every pixel, and how far it is spread.
+        // First pass: cost and spread of a draw at every pixel.
         let forecasts = self.over(&covered, request.progress, |number, pixel| {
             let forecast = |listed: &Listed| pixel.forecast(number, estimators, listed);
             listed.iter().map(forecast).collect::<Vec<_>>()
@@ -193,12 +193,12 @@ pub enum Reference {
     },
 }
 
-/// Reference for problem `P`, and what makes its draws.
+/// Reference for problem `P`, and the entry that makes its draws.
 pub type ReferenceOf<P> = (Reference, Option<Box<dyn Entry<P>>>);
 
 impl Reference {
-    /// Reads `reference`, with what makes its draws if it is drawn; its estimator finds a σ̂ that it needs in the picture
-    /// if it has one.
+    /// Reads `reference`, with the entry that makes its draws if it is drawn. Its estimator takes the picture's σ̂ if
+    /// it needs one.
     pub fn read<P: Subject>(
         settings: &Settings,
         has_exact: bool,
@@ -238,8 +238,7 @@ impl Reference {
         read
     }
 
-    /// How it was found, in words, and what was found: from the answers of all covered pixels, or as
-    /// the last of the images.
+    /// Returns the method in words, and the values: from the answers of all covered pixels, or the last of the images.
     pub fn of(
         &self,
         images: &mut Vec<(Label, Result<PixelValues, String>)>,

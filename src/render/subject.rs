@@ -1,4 +1,4 @@
-//! Subjects of pictures: every pixel's ray has a problem of its own.
+//! Subjects of pictures: the ray of every pixel has its own problem.
 
 use std::sync::Arc;
 
@@ -24,30 +24,30 @@ use theory::problems::{
 use theory::single::quick;
 use theory::{Mesh, Prediction};
 
-/// A problem that pictures are made of.
+/// Problem that pictures show.
 pub trait Subject: Estimated {
-    /// Data that all its rays share beside the volume.
+    /// Data that all its rays share, beside the volume.
     type Shared: Send + Sync;
 
     /// True if draws weight the light of the sky behind the volume.
     const BEFORE_SKY: bool;
-    /// True if the sky is seen beside the volume; else it is black there.
+    /// True if the sky is visible beside the volume; otherwise it is black there.
     const SHOWS_SKY: bool;
-    /// True if its draws walk along the ray, which is then looked at first.
+    /// True if its draws walk along the ray: estimators may then skip its empty pieces.
     const ALONG_RAY: bool = true;
-    /// True if theory is quick enough to be asked at every pixel.
+    /// True if theory is fast enough to predict every pixel.
     const IS_PREDICTED: bool;
 
-    /// Reads what all rays share.
+    /// Reads the data that all rays share.
     fn read_shared(settings: &Settings, view: Option<&View>) -> Option<Self::Shared>;
 
-    /// Whether a ray can be asked about; the error is what is wrong, and the cure.
+    /// Validates a ray; the error is the mistake and its cure.
     fn allows(shared: &Self::Shared, ray: &Ray) -> Result<(), [String; 2]> {
         let _ = (shared, ray);
         Ok(())
     }
 
-    /// The problem of one ray; `None` where it is not allowed.
+    /// Returns the problem of one ray; `None` if the ray is not allowed.
     fn at(shared: &Self::Shared, volumes: &[Arc<Volume>], ray: &Ray) -> Option<Self>;
 
     /// Returns whether [`Subject::exact`] knows all answers.
@@ -56,48 +56,48 @@ pub trait Subject: Estimated {
         false
     }
 
-    /// The exact answer in each channel, from closed forms; `None` where there are none.
+    /// Returns the exact answer in each channel, from closed forms; `None` without closed forms.
     fn exact(&self) -> Option<Vec<Known>> {
         None
     }
 
-    /// The answer in each channel by a quadrature of twice so many panels with 16 nodes, and what half of them
-    /// differ by; `None` where there is no such thing.
+    /// Returns the answer in each channel by a quadrature of `2 panels` panels with 16 nodes, with the difference to
+    /// one of `panels` panels as its error; `None` if the problem has no quadrature.
     fn by_quadrature(&self, panels: usize) -> Option<Vec<Known>> {
         let _ = panels;
         None
     }
 }
 
-/// A subject of the catalogue, before a picture is read.
+/// Subject of the catalogue, before a picture is read.
 #[allow(clippy::struct_excessive_bools)] // one for each constant of the trait
 pub struct SubjectKind {
     /// Its name in picture files.
     pub name: &'static str,
     /// Options that choose the form.
     pub options: &'static [ProblemOption],
-    /// See [`Subject::BEFORE_SKY`].
+    /// Value of [`Subject::BEFORE_SKY`].
     pub before_sky: bool,
-    /// See [`Subject::SHOWS_SKY`].
+    /// Value of [`Subject::SHOWS_SKY`].
     pub shows_sky: bool,
-    /// See [`Subject::ALONG_RAY`].
+    /// Value of [`Subject::ALONG_RAY`].
     pub along_ray: bool,
-    /// See [`Subject::IS_PREDICTED`].
+    /// Value of [`Subject::IS_PREDICTED`].
     pub is_predicted: bool,
-    /// Number of channels of a pixel: 1, or 3 where the medium has them.
+    /// Number of channels of a pixel: 1, or 3 if the medium has three.
     pub channels: usize,
     /// Its reader.
     pub read: Read,
 }
 
-/// Reads what all rays share, the estimators and the reference; `None` after a mistake.
+/// Reads the data that all rays share, the estimators and the reference; `None` after a mistake.
 pub type Read =
     fn(&Settings, Option<&View>, Option<&Body>, Defaults) -> Option<(RayOf, Estimators, Reference)>;
 
-/// The problem of one ray with the estimators of the picture; `None` where the ray is not allowed.
+/// Returns the problem of one ray with the estimators of the picture; `None` if the ray is not allowed.
 pub type RayOf = Box<dyn Fn(&[Arc<Volume>], &Ray) -> Option<Box<dyn AnyRay>> + Send + Sync>;
 
-/// What is shown, in the order of the catalogue.
+/// All subjects, in the order of the catalogue.
 pub static SUBJECTS: [SubjectKind; 4] = [
     SubjectKind::of::<Transmittance>("transmittance"),
     SubjectKind::of::<SpectralTransmittance>("transmittance"),
@@ -105,7 +105,7 @@ pub static SUBJECTS: [SubjectKind; 4] = [
     SubjectKind::of::<MultipleScattering>("multiple-scattering"),
 ];
 
-/// The subject of a name in the form that settings ask for; `None` after a mistake.
+/// Returns the subject of a name in the form that settings ask for; `None` after a mistake.
 pub fn kind(name: &str, settings: &Settings) -> Option<&'static SubjectKind> {
     let forms: Vec<_> = SUBJECTS.iter().filter(|kind| kind.name == name).collect();
     let options: Vec<_> = forms.iter().map(|kind| kind.options).collect();
@@ -142,7 +142,7 @@ fn read<P: Subject>(
         }
     }
     let estimators = Estimators::read::<P>(settings, body, defaults);
-    // What cannot be read has been reported.
+    // Unreadable settings were already reported.
     let has_exact = shared.as_ref().is_none_or(P::has_exact);
     let reference = Reference::read::<P>(settings, has_exact, body, defaults);
     let (shared, (estimators, mut entries)) = (shared?, estimators?);
@@ -156,19 +156,19 @@ fn read<P: Subject>(
     Some((ray_of, estimators, reference))
 }
 
-/// The problem of one ray, without its type.
+/// Problem of one ray, without its type.
 pub trait AnyRay {
-    /// The field of each channel along the ray.
+    /// Returns the field of each channel along the ray.
     fn media(&self) -> &[Medium];
 
-    /// See [`Subject::exact`].
+    /// Returns [`Subject::exact`].
     fn exact(&self) -> Option<Vec<Known>>;
 
-    /// See [`Subject::by_quadrature`].
+    /// Returns [`Subject::by_quadrature`].
     fn by_quadrature(&self, panels: usize) -> Option<Vec<Known>>;
 
-    /// An estimator of the picture on the ray, with σ̂ in space where that is given; refused outside
-    /// its domain if the first is asked, and with what theory says of it if the second is.
+    /// Prepares an estimator of the picture on the ray, with σ̂ in space if that is given. The first flag refuses it
+    /// outside its domain; the second asks for its prediction.
     fn prepare(
         &self,
         estimator: usize,
@@ -279,7 +279,7 @@ impl Subject for SpectralTransmittance {
     }
 }
 
-/// A volume along a ray.
+/// Returns a volume along a ray.
 fn along(volume: &Volume, ray: &Ray) -> Medium {
     let support = volume.bounds().clip(ray);
     Medium::new(volume.along(ray, support), ray.span(), support)
@@ -296,7 +296,7 @@ fn transmittance_by_quadrature(medium: &Medium, panels: usize) -> Known {
     Known::new(fine, (fine - transmittance(panels)).abs())
 }
 
-/// A light and how the medium scatters it.
+/// Light, and the scattering of the medium.
 pub struct Lit {
     lamp: Lamp,
     albedo: f64,
@@ -357,7 +357,7 @@ impl Subject for MultipleScattering {
         Some(Self::new(Scene { volume: volumes[0].clone(), albedo, phase }, shared.sky, *ray))
     }
 
-    /// A white furnace: nothing is absorbed, and it is as bright as its walls.
+    /// A white furnace absorbs nothing, and is as bright as its walls.
     fn has_exact(shared: &Sunlit) -> bool {
         shared.albedo.even() == Some(1.0) && matches!(shared.sky, Sky::Constant { .. })
     }
@@ -367,7 +367,7 @@ impl Subject for MultipleScattering {
     }
 }
 
-/// A sky and how the medium scatters it.
+/// Sky, and the scattering of the medium.
 pub struct Sunlit {
     albedo: Albedo,
     phase: Phase,

@@ -1,4 +1,4 @@
-//! Cameras, and the volume that they see.
+//! Cameras, and the volume in their view.
 
 use std::f64::consts::PI;
 use std::sync::Arc;
@@ -11,10 +11,10 @@ use numeric::Lane;
 use numeric::geometry::{Aabb, Point, Ray};
 use theory::problems::Sky;
 
-/// Pictures of more pixels along a side are a mistake.
+/// Maximum number of pixels along a side; more are a mistake.
 const LARGEST: u64 = 4096;
 
-/// A pinhole camera: one ray through the middle of each pixel.
+/// Pinhole camera: one ray through the middle of each pixel.
 ///
 /// Its axes are right-handed: `right = forward × up`. Row 0 is the top row, column 0 the left one.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -28,9 +28,8 @@ pub struct Camera {
 }
 
 impl Camera {
-    /// A camera that looks from a position at a target, with the angle between the directions of the
-    /// picture's lower and upper edge in degrees; `None` where `up` points along the view, or nothing is
-    /// looked at.
+    /// Places a camera at a position, aimed at a target, with the angle between the directions of the picture's lower
+    /// and upper edge in degrees. `None` if `up` points along the view, or position and target are equal.
     pub fn new(
         position: Point,
         target: Point,
@@ -71,7 +70,7 @@ impl Camera {
         found
     }
 
-    /// The direction of the ray through the middle of a pixel.
+    /// Returns the direction of the ray through the middle of a pixel.
     pub fn direction(&self, column: usize, row: usize) -> Option<Point> {
         let [width, height] = self.size.map(|n| n as f64);
         let x = 2.0 * (column as f64 + 0.5) / width - 1.0;
@@ -80,27 +79,27 @@ impl Camera {
     }
 }
 
-/// A volume as a camera sees it.
+/// Volume in the view of a camera.
 pub struct View {
     /// The fields' names in the catalogue, without repetition.
     pub medium: String,
     /// The field: one, or those of red, green and blue light within the same bounds.
     pub volumes: Vec<Arc<Volume>>,
-    /// What is behind it.
+    /// Sky behind it.
     pub sky: Sky,
     /// Number of columns and rows.
     pub size: [usize; 2],
     /// Number of columns and rows of pixels that share a control that takes lookups.
     pub shared_control: usize,
-    /// True if the sky is seen beside it; else it is black there.
+    /// True if the sky is visible beside the volume; otherwise it is black there.
     pub shows_sky: bool,
     camera: Camera,
-    /// The length of all rays: they leave the volume before.
+    /// Length of all rays, beyond the far side of the volume.
     length: f64,
 }
 
 impl View {
-    /// Reads `size`, `camera`, `volume`, of which a coloured picture lists three, and, where it is seen, `sky`.
+    /// Reads `size`, `camera`, `volume` (three fields for a coloured picture) and, if it is visible, `sky`.
     pub fn read(settings: &Settings, shows_sky: bool, is_coloured: bool) -> Option<Self> {
         let size = read_size(settings);
         let camera = Camera::read(settings, size);
@@ -121,7 +120,7 @@ impl View {
         Some(Self { medium, volumes, sky, size, shared_control, shows_sky, camera, length })
     }
 
-    /// The field of each channel with a ray.
+    /// Returns the field of each channel with a ray.
     pub fn bodies(&self, ray: Ray) -> Vec<Body> {
         let body = |volume: &Arc<Volume>| {
             let (name, volume) = (self.medium.clone(), volume.clone());
@@ -130,25 +129,25 @@ impl View {
         self.volumes.iter().map(body).collect()
     }
 
-    /// Number of pixels.
+    /// Returns the number of pixels.
     pub fn pixels(&self) -> usize {
         self.size[0] * self.size[1]
     }
 
-    /// The ray of a pixel, row after row from the top.
+    /// Returns the ray of a pixel, row after row from the top.
     pub fn ray(&self, pixel: usize) -> Option<Ray> {
         let [width, _] = self.size;
         let direction = self.camera.direction(pixel % width, pixel / width)?;
         Ray::new(self.camera.position, direction, self.length)
     }
 
-    /// The ray of a pixel if it meets the volume.
+    /// Returns the ray of a pixel if it hits the volume.
     pub fn covered(&self, pixel: usize) -> Option<Ray> {
         self.ray(pixel).filter(|ray| !self.volumes[0].bounds().clip(ray).is_empty())
     }
 
-    /// The pixel whose ray a control is fitted to that this one uses: that in the middle of its block,
-    /// if the volume covers it.
+    /// Returns the pixel to whose ray the control of this pixel is fitted: the middle one of its block, if the volume
+    /// covers that.
     pub fn leader(&self, pixel: usize) -> usize {
         let ([width, height], block) = (self.size, self.shared_control);
         let middle = |at: usize, end: usize| (at / block * block + block / 2).min(end - 1);
@@ -156,12 +155,12 @@ impl View {
         if self.covered(leader).is_some() { leader } else { pixel }
     }
 
-    /// What is seen at a pixel that the volume does not cover.
+    /// Returns the radiance at a pixel that the volume does not cover.
     pub fn background(&self, pixel: usize) -> f64 {
         if self.shows_sky { self.behind(pixel) } else { 0.0 }
     }
 
-    /// The radiance of the sky behind a pixel.
+    /// Returns the radiance of the sky behind a pixel.
     pub fn behind(&self, pixel: usize) -> f64 {
         self.ray(pixel).map_or(0.0, |ray| self.sky.radiance(ray.direction))
     }
@@ -188,7 +187,7 @@ fn read_colours(settings: &Settings) -> Option<(String, Vec<Arc<Volume>>)> {
     Some((names.join(", "), volumes))
 }
 
-/// A little more than the distance of the furthest corner.
+/// Returns slightly more than the distance of the furthest corner.
 fn furthest(about: &Aabb, from: Point) -> f64 {
     let reach: [f64; 3] = std::array::from_fn(|i| {
         (about.low.0[i] - from.0[i]).abs().max((about.high.0[i] - from.0[i]).abs())

@@ -1,5 +1,5 @@
-//! The calibration cases, run from many seeds as they are and with a bias of ε: the counts that
-//! [`lab::calibration`] compares with the promises.
+//! Calibration cases, run from many seeds as they are and with a bias of ε: the counts that [`lab::calibration`]
+//! compares with the promises.
 
 use crate::case::{Case, CaseError, suite};
 use crate::checks;
@@ -10,14 +10,14 @@ use crate::record::evaluate;
 use lab::calibration::{ALPHA, Calibration, Checked, Counts};
 use theory::parallel;
 
-/// Runs that share one plan.
+/// Number of runs that share one plan.
 const CHUNK: u64 = 50;
 
 /// Runs the calibration cases from `runs` seeds.
 ///
 /// # Errors
 ///
-/// A built-in case that cannot be read.
+/// A built-in case cannot be read.
 pub fn calibrate(runs: u64, progress: &(dyn Fn(u64) + Sync)) -> Result<Calibration, CaseError> {
     let cases: Vec<Case> = suite::calibration().iter().map(Case::read).collect::<Result<_, _>>()?;
     let options = Options { alpha: ALPHA, ..Options::default() };

@@ -1,9 +1,9 @@
-//! The gate tested on the experiments of cases: does it keep its promises on correct estimators, and does it catch known
-//! bugs?
+//! Tests of the gate on the experiments of cases: does it keep its promises on correct estimators, and does it detect
+//! known bugs?
 //!
-//! [`calibration`] runs correct experiments many times; [`mutation`] draws every known bug in the place of its correct
-//! estimator and asks whether the check that must catch it does. What is counted, the bugs, and correct foreign draws of
-//! hard laws are in [`lab`], which needs no cases.
+//! [`calibration`] runs correct experiments many times; [`mutation`] draws every known bug in place of its correct
+//! estimator, and looks whether its check detects it. The promises, the bugs, and correct foreign draws of hard
+//! distributions are in [`lab`], which needs no cases.
 
 pub mod calibration;
 pub mod mutation;

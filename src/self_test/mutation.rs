@@ -1,8 +1,8 @@
-//! Every known bug against the built-in suite: caught by its check, and its correct control is not.
+//! Every known bug against the built-in suite: its check must catch it, and must not catch its correct control.
 //!
-//! The levels are those of the whole suite, and the draws those of its default budget. A twin that
-//! makes the very draws of the estimator, bit for bit, shares the estimator's verdict; it is judged
-//! once for all mutants of an experiment.
+//! The levels are those of the whole suite, and the draws those of its default budget. A control that makes the same
+//! draws as the estimator, bit for bit, shares the estimator's verdict, which is judged once for all mutants of an
+//! experiment.
 
 use std::collections::HashMap;
 
@@ -19,20 +19,20 @@ use theory::parallel;
 
 pub use lab::mutants::Walk;
 
-/// Draws and judges all mutants and their twins.
+/// Draws and judges all mutants and their controls.
 ///
 /// # Errors
 ///
-/// A built-in case that cannot be read.
+/// A built-in case cannot be read.
 pub fn all(seed: u64) -> Result<Vec<Caught>, CaseError> {
     of(seed, &|_| true)
 }
 
-/// Draws and judges the mutants of some names, and their twins.
+/// Draws and judges the mutants of some names, and their controls.
 ///
 /// # Errors
 ///
-/// A built-in case that cannot be read.
+/// A built-in case cannot be read.
 pub fn of(seed: u64, is_wanted: &dyn Fn(&str) -> bool) -> Result<Vec<Caught>, CaseError> {
     let bench = Bench::new(Options { seed, ..Options::default() })?;
     let (abouts, of_streams) = wanted(is_wanted);
@@ -52,12 +52,12 @@ pub fn of(seed: u64, is_wanted: &dyn Fn(&str) -> bool) -> Result<Vec<Caught>, Ca
     Ok(caught)
 }
 
-/// Which checks fail of each mutant of some names where nothing stops the drawing early, in the order of
+/// Returns the failing checks of each mutant of some names if nothing stops the drawing early, in the order of
 /// [`mutants::all`], those of streams at the end.
 ///
 /// # Errors
 ///
-/// A built-in case that cannot be read.
+/// A built-in case cannot be read.
 pub fn patterns(
     seed: u64,
     draws: u64,
@@ -75,7 +75,7 @@ pub fn patterns(
     Ok(found)
 }
 
-/// The mutants of some names, those of estimators and those of streams.
+/// Returns the mutants of some names, those of estimators and those of streams.
 fn wanted(is_wanted: &dyn Fn(&str) -> bool) -> (Vec<About>, Vec<&'static StreamMutant>) {
     let abouts = mutants::all().into_iter().filter(|about| is_wanted(about.name));
     let of_streams = streams::MUTANTS.iter().filter(|mutant| is_wanted(mutant.name));
@@ -93,8 +93,8 @@ pub fn find<'p>(target: &Target, plan: &'p Plan) -> Option<(&'p Case, &'p Planne
         .map(|(case, planned)| (case.case, planned))
 }
 
-/// A mutant's experiment, prepared as the plan prepared the correct one; `None` if the case's problem
-/// has no mutant of that name.
+/// Returns a mutant's experiment, prepared as the plan prepared the correct one; `None` if the case's problem has no
+/// mutant of that name.
 pub fn experiment(
     about: &About,
     walk: Walk,
@@ -109,7 +109,7 @@ pub fn experiment(
     }
 }
 
-/// The built-in suite, on which mutants are drawn one experiment at a time.
+/// Built-in suite, on which mutants are drawn one experiment at a time.
 struct Bench {
     cases: Vec<Case>,
     options: Options,
@@ -124,7 +124,7 @@ impl Bench {
         Ok(Self { cases, options, levels })
     }
 
-    /// The plan of one experiment, at the levels of the suite.
+    /// Returns the plan of one experiment, at the levels of the suite.
     fn plan(&self, target: &Target, until_failed: Option<&str>) -> Option<Plan<'_>> {
         let case = self.cases.iter().find(|case| case.name == target.case)?;
         let until_failed = until_failed.map(str::to_owned);
@@ -148,7 +148,7 @@ impl Bench {
             .all(|finding| matches!(finding.verdict, Verdict::Pass | Verdict::Underpowered))
     }
 
-    /// The plan of a mutant's experiment, and the mutant or its twin.
+    /// Returns the plan of a mutant's experiment, and the mutant or its control.
     fn walk(
         &self,
         about: &About,
@@ -162,7 +162,7 @@ impl Bench {
         Some((plan, drawn.ok()?))
     }
 
-    /// What is found of a mutant.
+    /// Judges the draws of a mutant.
     fn faulty(&self, about: &About, until_failed: Option<&str>) -> Option<Judged> {
         let (mut plan, faulty) = self.walk(about, Walk::Faulty, until_failed)?;
         let planned = plan.cases.first_mut()?.experiments.first_mut()?;
@@ -179,7 +179,7 @@ impl Bench {
         caught([name, bug, check], &target, judged.as_ref(), is_twin && honest_passes)
     }
 
-    /// What is found of wrong streams.
+    /// Judges the draws of wrong streams.
     fn with_streams(&self, mutant: &StreamMutant, until_failed: Option<&str>) -> Option<Judged> {
         let mut plan = self.plan(&streams::TARGET, until_failed)?;
         for planned in plan.cases.iter_mut().flat_map(|case| &mut case.experiments) {
@@ -202,7 +202,7 @@ struct Judged {
 }
 
 impl Judged {
-    /// Which checks fail.
+    /// Returns which checks fail.
     fn pattern(&self) -> Pattern {
         let mut pattern = Pattern::default();
         for finding in self.findings.iter().filter(|found| found.verdict == Verdict::Fail) {
@@ -225,7 +225,7 @@ fn caught(
         .collect();
     let mut failed: Vec<String> = failing.iter().map(|finding| finding.check.clone()).collect();
     failed.dedup();
-    // A law has the plan's fixed draws, a bound what there was when it broke.
+    // A distribution is tested on the plan's fixed draws, a bound on the draws up to its violation.
     let fixed = judged.map_or(0, |judged| judged.fixed);
     let by_check = failing.iter().filter(|finding| finding.check == check);
     let draws = by_check

@@ -1,4 +1,4 @@
-//! A run against a stored one.
+//! Comparison of a run with a stored one.
 //!
 //! ```text
 //! variance  ρ = s²/s₀²,  Var[ln ρ] = v(κ, n) + v(κ₀, n₀),  v = (κ − (n − 3)/(n − 1))/n
@@ -8,17 +8,18 @@
 //! drift     ln E = stored + new, against the limit of the run
 //! ```
 //!
-//! κ and Var N are those of theory, on both sides: each side's own uncertainty counts. A variance is
-//! not compared where, on either side, its relative standard error is above 10 %, its law is not near
-//! normal (`E[X⁸]/E[X⁴]²` > n/100, or fewer draws than ten times the rare-event size), or hardly anything
-//! of it is left to chance (κ − 1 < 100/n). What is left out is listed ([`LeftOut`]), and a
-//! comparison of nothing is none. A regression is an
-//! interval that lies above 1; an improvement, one below, is told and does not fail. The error of a
-//! time is not known from one figure: it fails beyond a factor that the caller chooses.
+//! κ and Var N are those of theory, on both sides: each side's own uncertainty counts. A variance is not compared if,
+//! on either side, its relative standard error is above 10 %, its distribution is not near normal (`E[X⁸]/E[X⁴]²` >
+//! n/100, or fewer draws than ten times the rare-event size), or it hardly varies (κ − 1 < 100/n). Quantities that are
+//! not compared are listed ([`LeftOut`]).
 //!
-//! The product of e-values of independent runs is an e-value: its chance to reach the limit is at most
-//! that of one. It is taken only where the program and the text of the case are the same and the seed
-//! is new. The limit is the highest of the runs that are joined, since what a later run selects is
+//! An interval that lies above 1 is a regression; one below is an improvement, which is reported and does not fail. The
+//! error of a time is not known from one figure: it fails beyond a factor that the caller chooses.
+//!
+//! The product of e-values of independent runs is an e-value: the probability that it reaches the limit is at most that
+//! of a single one. It is taken only if the program and the text of the case are the same and the seed is new. The
+//! limit is the highest of the joined runs, since a later run selects by results of an earlier one. Entries that the
+//! later run has not drawn are kept.
 //! selected by what an earlier one showed; entries that the later run has not drawn are kept.
 
 use std::collections::{BTreeMap, BTreeSet};
@@ -32,7 +33,7 @@ use gate::stats::normal;
 /// Levels of a comparison.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Rules {
-    /// The probability that equal code shows any regression of a variance or of lookups.
+    /// Probability that equal code shows any regression of a variance or of lookups.
     pub alpha: f64,
     /// Relative increase of the time per draw that is no regression; `None` if times are not compared.
     pub time_tolerance: Option<f64>,
@@ -45,7 +46,7 @@ pub struct Comparison {
     pub name: String,
     /// The levels.
     pub rules: Rules,
-    /// Whether e-values were multiplied, and why not.
+    /// Number of runs with multiplied e-values, or the reason why they were not multiplied.
     pub sequel: Sequel,
     /// Number of variances and lookups that were compared and share α.
     pub compared: usize,
@@ -61,31 +62,31 @@ pub struct Comparison {
     pub changes: Vec<Change>,
     /// Checks that fail over all runs together.
     pub drifts: Vec<Drift>,
-    /// Experiments of this run that the baseline has not.
+    /// Experiments of this run that are not in the baseline.
     pub added: Vec<ChannelId>,
-    /// Experiments of the baseline that this run has not.
+    /// Experiments of the baseline that are not in this run.
     pub missing: Vec<ChannelId>,
     /// Experiments of a case with another text than in the baseline.
     pub rewritten: Vec<ChannelId>,
 }
 
-/// Whether the e-values of both runs multiply.
+/// Outcome of the multiplication of e-values.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Sequel {
     /// They multiply: number of runs together.
     Run(usize),
-    /// The seed is among those stored: its draws say nothing new.
+    /// The seed is among those stored: its draws are not new evidence.
     SameSeed,
-    /// Another program drew.
+    /// Another program made the draws.
     OtherProgram,
 }
 
-/// What is compared.
+/// Quantity that is compared.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Quantity {
-    /// The sample variance of one draw.
+    /// Sample variance of one draw.
     Variance,
     /// Lookups per draw.
     Lookups,
@@ -93,18 +94,18 @@ pub enum Quantity {
     Time,
 }
 
-/// A value with its standard error.
+/// Value with its standard error.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Measured {
     /// The value.
     #[serde(with = "gate::extended")]
     pub value: f64,
-    /// Its standard error; `None` for times, for one figure has none.
+    /// Standard error; `None` for times, for one figure has none.
     #[serde(default, with = "gate::extended")]
     pub error: Option<f64>,
 }
 
-/// A quantity that differs.
+/// Quantity that differs.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Change {
     /// The experiment.
@@ -127,7 +128,7 @@ pub struct Change {
     pub command: String,
 }
 
-/// A check that fails over several runs.
+/// Check that fails over several runs.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Drift {
     /// The experiment.
@@ -148,16 +149,16 @@ impl Comparison {
         !self.drifts.is_empty() || self.changes.iter().any(|change| change.is_regression)
     }
 
-    /// Returns whether nothing of the run was compared with anything: such a comparison says nothing.
+    /// Returns whether nothing of the run was compared.
     pub fn is_empty(&self) -> bool {
         self.compared == 0 && self.times == 0 && self.multiplied == 0
     }
 }
 
-/// The experiments that both runs have of which something was not compared, by the reason.
+/// Common experiments with a quantity that was not compared, by the reason.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct LeftOut {
-    /// σ̂ was learned from other pilot rays: neither variance nor lookups are of the same estimator.
+    /// σ̂ was learned from other pilot rays: variance and lookups belong to another estimator.
     pub relearned: Vec<ChannelId>,
     /// The variance is too uncertain.
     pub blunt: Vec<ChannelId>,
@@ -202,11 +203,10 @@ impl<'e, T, I: Ord> Matches<'e, T, I> {
     }
 }
 
-/// Two numbers of lookups without spread are the same if they are this near.
+/// Largest relative difference of two numbers of lookups without spread that count as equal.
 const ROUNDING: f64 = 1e-9;
 
-/// Compares a run with a stored one; answers also what to store next: the run, with the e-values of
-/// both where they multiply.
+/// Compares a run with a stored one. Returns also the run to store next, with the e-values of both if they multiply.
 pub fn compare(
     name: &str,
     stored: &Baseline,
@@ -277,7 +277,7 @@ fn sequel(stored: &Baseline, run: &Baseline) -> Sequel {
     }
 }
 
-/// Adds the stored ln E to those of the run; answers those that reach the limit, and how many there were.
+/// Adds the stored ln E to those of the run; returns those that reach the limit, and the number of all.
 fn multiply(
     next: &mut Baseline,
     before: &BTreeMap<&ChannelId, &Entry>,
@@ -303,7 +303,7 @@ fn multiply(
     (drifts, multiplied)
 }
 
-/// The stored entries that the run has not drawn, of cases that it has not with another text.
+/// Returns the stored entries that the run has not drawn, unless the text of their case has changed.
 fn not_drawn(stored: &Baseline, run: &Baseline) -> Vec<Entry> {
     let texts: BTreeMap<&str, &str> =
         run.entries.iter().map(|entry| (entry.id.experiment.case.as_str(), &*entry.case)).collect();
@@ -315,7 +315,7 @@ fn not_drawn(stored: &Baseline, run: &Baseline) -> Vec<Entry> {
     kept.cloned().collect()
 }
 
-/// Quantities of two entries that can be compared, then and now.
+/// Returns the quantities of two entries that can be compared, before and now.
 fn questions<'e>(before: &Entry, now: &'e Entry) -> Vec<Question<'e>> {
     if !is_comparable(before, now) {
         return Vec::new();
@@ -327,10 +327,10 @@ fn questions<'e>(before: &Entry, now: &'e Entry) -> Vec<Question<'e>> {
     both.into_iter().filter_map(|(quantity, both)| Some((now, quantity, both?))).collect()
 }
 
-/// An entry, the quantity that is compared, its values then and now.
+/// Entry, compared quantity, and its values before and now.
 type Question<'e> = (&'e Entry, Quantity, (Relative, Relative));
 
-/// A quantity that changed by more than its error.
+/// Returns a quantity that changed by more than its error.
 fn answer(&(entry, quantity, (before, now)): &Question, z: f64) -> Option<Change> {
     let ratio = now.0 / before.0;
     let error = z * before.1.hypot(now.1) + ROUNDING;
@@ -348,7 +348,7 @@ fn answer(&(entry, quantity, (before, now)): &Question, z: f64) -> Option<Change
     })
 }
 
-/// A time that changed by more than the tolerance, in either direction.
+/// Returns a time that changed by more than the tolerance, in either direction.
 fn time_change(entry: &Entry, [before, now]: [f64; 2], tolerance: f64) -> Option<Change> {
     let ratio = now / before;
     let is_regression = ratio > 1.0 + tolerance;
@@ -364,9 +364,9 @@ fn time_change(entry: &Entry, [before, now]: [f64; 2], tolerance: f64) -> Option
     })
 }
 
-/// Times below this are noise.
+/// Shortest time, in seconds, that is compared; shorter ones are noise.
 const SHORTEST: f64 = 0.1;
-/// A value with its standard error, relative to it.
+/// Value with its standard error, relative to it.
 type Relative = (f64, f64);
 
 impl Entry {
@@ -376,7 +376,7 @@ impl Entry {
         Some((variance, variance_error(kurtosis, n)))
     }
 
-    /// Returns whether the sample variance has a distribution that can be compared.
+    /// Returns whether the sample variance is certain enough to be compared.
     fn is_sharp(&self) -> bool {
         self.variance().is_some()
             && Tails {
@@ -398,12 +398,12 @@ impl Entry {
     }
 }
 
-/// Returns whether both are of the same σ̂: not where it was learned from other pilot rays.
+/// Returns whether both have the same σ̂: not if it was learned from other pilot rays.
 fn is_comparable(before: &Entry, now: &Entry) -> bool {
     !now.learns || before.seed == now.seed
 }
 
-/// What is left out of the experiments that both runs have, each stored and now.
+/// Returns the quantities of common experiments that are not compared.
 fn left_out(pairs: &[[&Entry; 2]], rules: &Rules) -> LeftOut {
     let list = |is_out: &dyn Fn(&Entry, &Entry) -> bool| -> Vec<ChannelId> {
         let out = pairs.iter().filter(|[before, now]| is_out(before, now));

@@ -1,12 +1,11 @@
-//! Stored runs, which later runs are compared with.
+//! Stored runs, with which later runs are compared.
 //!
-//! A baseline is a file `NAME.json` with one entry per experiment and channel. A later run is compared
-//! with it ([`compare`](fn@compare)): has the variance, the number of lookups or the time grown? And on unchanged
-//! code and cases the e-values of runs with different seeds multiply: a bias too small for one night
-//! is found over many.
+//! A baseline is a file `NAME.json` with one entry per experiment and channel. A later run is compared with it
+//! ([`compare`](fn@compare)): has the variance, the number of lookups or the time grown? On unchanged code and cases
+//! the e-values of runs with different seeds multiply: a bias too small for one night is detected over many.
 //!
-//! A baseline that is missing, broken or of another form is an error; a file is written under a
-//! temporary name and renamed.
+//! A baseline that is missing, broken or of another version is an error; a file is written under a temporary name and
+//! renamed.
 
 mod compare;
 
@@ -25,19 +24,19 @@ use media::files;
 pub(crate) use compare::Matches;
 pub use compare::{Change, Comparison, Drift, LeftOut, Measured, Quantity, Rules, Sequel, compare};
 
-/// The version of the file's form.
+/// Version of the file's format.
 pub const SCHEMA: u32 = 2;
 
 /// A stored run.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Baseline {
-    /// The version of the form, [`SCHEMA`].
+    /// Version of the format, [`SCHEMA`].
     pub schema: u32,
     /// The version of the tool.
     pub version: String,
     /// A hash of the program that drew.
     pub executable: String,
-    /// The largest ln E at which a scalar fails, of all runs that are joined here.
+    /// Largest ln E at which a scalar fails, of all joined runs.
     pub ln_e_limit: f64,
     /// Seeds of the e-values that are multiplied into the entries.
     pub seeds: Vec<u64>,
@@ -68,7 +67,7 @@ pub struct Entry {
     pub id: ChannelId,
     /// A hash of the case's text.
     pub case: String,
-    /// The seed of the numbers below.
+    /// Seed of the numbers below.
     pub seed: u64,
     /// True if its σ̂ depends on the seed.
     pub learns: bool,
@@ -90,25 +89,25 @@ pub struct Entry {
     pub lookups_variance: Option<f64>,
     /// Processor seconds of all draws; given once per experiment.
     pub seconds: Option<f64>,
-    /// Number of draws that took them.
+    /// Number of draws that took this time.
     pub drawn: u64,
     /// ln E of each check, all seeds together.
     pub checks: Vec<Evidence>,
-    /// The command that repeats it.
+    /// Command that repeats it.
     pub command: String,
 }
 
 /// The evidence of one check against the experiment.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Evidence {
-    /// The check with what it asked about.
+    /// Name of the check and of its quantity.
     pub check: String,
     /// ln E.
     pub ln_e: f64,
 }
 
 impl Baseline {
-    /// The results of a run, to be stored; `cases` are those of its plan.
+    /// Takes the results of a run for storing; `cases` are those of its plan.
     pub fn of(record: &Record, cases: &[Case], executable: &str) -> Self {
         let results = &record.results;
         let digest = |name: &str| cases.iter().find(|case| case.name == name).map(|c| c.digest);
@@ -128,7 +127,7 @@ impl Baseline {
         }
     }
 
-    /// The file of a baseline.
+    /// Returns the path of a baseline.
     ///
     /// # Errors
     ///
@@ -145,7 +144,7 @@ impl Baseline {
     ///
     /// # Errors
     ///
-    /// There is none, or it is not what this program writes.
+    /// The file does not exist, or is not a baseline.
     pub fn read(path: &Path) -> Result<Self, BaselineError> {
         let stored: Self = read(path, SCHEMA, "entries")?;
         match stored.entries.iter().find(|entry| !entry.makes_sense()) {
@@ -156,11 +155,11 @@ impl Baseline {
         }
     }
 
-    /// Whether a file can be written, known before the drawing.
+    /// Validates, before the drawing, that a file can be written.
     ///
     /// # Errors
     ///
-    /// Its folder cannot be made or written into.
+    /// Its folder cannot be made or written to.
     pub fn writable(path: &Path) -> Result<(), BaselineError> {
         writable(path)
     }
@@ -175,7 +174,7 @@ impl Baseline {
     }
 }
 
-/// A hash of the program that runs: FNV-1a over words of 8 bytes.
+/// Returns a hash of the running program: FNV-1a over words of 8 bytes.
 ///
 /// # Errors
 ///
@@ -207,7 +206,7 @@ impl Entry {
     fn of(row: &Row, seed: u64, digest: &str) -> Self {
         let (experiment, is_first) = (row.experiment, row.is_first());
         let draws = experiment.draws.unwrap_or(0);
-        // Where the law of the lookups is known and has no spread, there is no deviation.
+        // A predicted number of lookups without spread has deviation 0.
         let spread =
             experiment.lookups_deviation.map(|deviation| deviation * deviation * draws as f64);
         let checks = row.own_findings().filter(|found| !found.expects_bias);
@@ -237,7 +236,7 @@ impl Entry {
     }
 }
 
-/// Why a baseline could not be read or written.
+/// Reason why a baseline could not be read or written.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum BaselineError {
@@ -263,7 +262,7 @@ pub enum BaselineError {
         /// Error of the decoder.
         cause: serde_json::Error,
     },
-    /// The file is another of this program's.
+    /// The file is of another kind of this program.
     #[error("{}: {found}, not a baseline of this command; make one with --save-baseline", path.display())]
     OtherKind {
         /// The file.
@@ -271,7 +270,7 @@ pub enum BaselineError {
         /// Kind of the file.
         found: &'static str,
     },
-    /// A number that no run has.
+    /// A number that no run can have.
     #[error("{}: the numbers of {id} are those of no run; make it anew with --save-baseline", path.display())]
     Nonsense {
         /// The file.
@@ -279,7 +278,7 @@ pub enum BaselineError {
         /// The entry.
         id: String,
     },
-    /// Another version of the form.
+    /// Another version of the format.
     #[error(
         "{}: a baseline of form {found}, this program reads {expected}; \
          make it anew with --save-baseline", path.display()
@@ -287,9 +286,9 @@ pub enum BaselineError {
     Schema {
         /// The file.
         path: PathBuf,
-        /// Its form.
+        /// Version of the file.
         found: u64,
-        /// The form that the program reads.
+        /// Version that the program reads.
         expected: u32,
     },
     /// The file cannot be written.
@@ -300,12 +299,12 @@ pub enum BaselineError {
         /// Error of the system.
         cause: io::Error,
     },
-    /// The program cannot read itself.
+    /// The program's own file cannot be read.
     #[error("the program cannot read its own file: {0}; make it readable")]
     Executable(io::Error),
 }
 
-/// Reads a file of this version of its form, with its content in the given list.
+/// Reads a file of this version of its format, with its content in the given list.
 pub(crate) fn read<T: DeserializeOwned>(
     path: &Path,
     expected: u32,
@@ -326,7 +325,7 @@ pub(crate) fn read<T: DeserializeOwned>(
     if let Some(found) = other_kind(&tree, list) {
         return Err(BaselineError::OtherKind { path, found });
     }
-    // The form is asked first: what else is there depends on it.
+    // The version is read first: everything else depends on it.
     if let Some(found) = tree.get("schema").and_then(serde_json::Value::as_u64)
         && found != u64::from(expected)
     {
@@ -335,7 +334,7 @@ pub(crate) fn read<T: DeserializeOwned>(
     serde_json::from_value(tree).map_err(|cause| BaselineError::Broken { path, cause })
 }
 
-/// Kind of a file of this program without the list that is sought.
+/// Returns the kind of a file of this program that lacks the expected list.
 fn other_kind(tree: &serde_json::Value, list: &str) -> Option<&'static str> {
     let kinds = [
         ("entries", "a stored run"),
@@ -348,12 +347,12 @@ fn other_kind(tree: &serde_json::Value, list: &str) -> Option<&'static str> {
     found.map(|(_, kind)| kind)
 }
 
-/// Whether a file can be written; its folder is made.
+/// Validates that a file can be written; makes its folder.
 pub(crate) fn writable(path: &Path) -> Result<(), BaselineError> {
     folder_of(path).and_then(|()| files::writable(path)).map_err(|cause| unwritable(path, cause))
 }
 
-/// Writes a file whole or not at all.
+/// Writes a file completely or not at all.
 pub(crate) fn write<T: Serialize>(value: &T, path: &Path) -> Result<(), BaselineError> {
     let write = || -> io::Result<()> {
         let text = serde_json::to_string_pretty(value).map_err(io::Error::other)?;
