@@ -16,7 +16,7 @@ use theory::Mesh;
 
 /// Number of panels of 16 nodes on each ray, for predictions.
 const PANELS: usize = 16;
-/// Every pixel whose column and row are multiples of this number makes pilot draws.
+/// Distance of the pixels that make pilot draws, in columns and in rows.
 const PILOTS_EVERY: usize = 2;
 /// Smallest number of pilot draws in a picture: their mean is the cost of a draw to a few hundredths.
 const LEAST_PILOTS: u64 = 2048;

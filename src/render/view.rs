@@ -146,7 +146,7 @@ impl View {
         self.ray(pixel).filter(|ray| !self.volumes[0].bounds().clip(ray).is_empty())
     }
 
-    /// Returns the pixel to whose ray the control of this pixel is fitted: the middle one of its block, if the volume
+    /// Returns the pixel to which the control of this pixel is fitted: the middle one of its block, if the volume
     /// covers that.
     pub fn leader(&self, pixel: usize) -> usize {
         let ([width, height], block) = (self.size, self.shared_control);

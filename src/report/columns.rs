@@ -1,27 +1,27 @@
-//! Columns that CSV and JSON share: a number has one name everywhere.
+//! Columns that CSV and JSON share: a number has the same name everywhere.
 
 use serde::ser::{Serialize, Serializer};
 
 use crate::report::{Artifact, ReportError};
 use numeric::digits::exact;
 
-/// What stands in one field.
+/// Content of one field.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Cell {
-    /// Words; empty where there are none.
+    /// Text; may be empty.
     Text(String),
     /// A word of a fixed list, if there is one.
     Word(Option<&'static str>),
-    /// A number, if it is known.
+    /// Number, if it is known.
     Number(Option<f64>),
-    /// A count, if it is known.
+    /// Count, if it is known.
     Count(Option<u64>),
-    /// Numbers; empty where there are none.
+    /// List of numbers; may be empty.
     List(Vec<f64>),
 }
 
 impl Cell {
-    /// The field in a CSV file; empty where unknown.
+    /// Returns the field in a CSV file; empty if unknown.
     pub fn csv(&self) -> String {
         match self {
             Self::Text(text) => text.clone(),
@@ -69,11 +69,11 @@ cells! {
     &Vec<f64>: |list| Self::List(list.clone());
 }
 
-/// A column: its name in files and what stands in it.
+/// Column: its name in files and the content of its fields.
 pub struct Column<T> {
-    /// The name in the first line.
+    /// Name in the first line.
     pub name: &'static str,
-    /// The field.
+    /// Returns the field.
     pub cell: fn(&T) -> Cell,
 }
 
@@ -88,11 +88,11 @@ macro_rules! columns {
 }
 pub(in crate::report) use columns;
 
-/// Rows as CSV, with a first line of names; `name` is what an error speaks of.
+/// Returns rows as CSV, with a first line of names; `name` is the file in an error.
 ///
 /// # Errors
 ///
-/// Where the encoder gives up.
+/// The encoder fails.
 pub fn csv<T>(
     name: &str,
     columns: &[Column<T>],
@@ -102,12 +102,12 @@ pub fn csv<T>(
     table(name, columns.iter().map(|column| column.name), rows.into_iter().map(line))
 }
 
-/// Rows as a JSON array of objects, one to a line. Unknown is `null`, and so is an infinite number,
-/// which JSON cannot write.
+/// Returns rows as a JSON array of objects, one per line. Unknown is `null`, and so is an infinite number, which JSON
+/// cannot write.
 ///
 /// # Errors
 ///
-/// Where the encoder gives up.
+/// The encoder fails.
 pub fn json<T>(
     columns: &[Column<T>],
     rows: impl IntoIterator<Item = T>,
@@ -123,11 +123,11 @@ pub fn json<T>(
     Ok(if objects.is_empty() { "[]\n".to_owned() } else { format!("[\n{objects}\n]\n") })
 }
 
-/// A file of rows as CSV.
+/// Returns a file of rows as CSV.
 ///
 /// # Errors
 ///
-/// Where the encoder gives up.
+/// The encoder fails.
 pub fn artifact<T>(
     path: &str,
     columns: &[Column<T>],
@@ -136,7 +136,7 @@ pub fn artifact<T>(
     Ok(Artifact::text(path, csv(path, columns, rows)?))
 }
 
-/// CSV text of a header and lines; `name` is what an error speaks of.
+/// Returns the CSV text of a header and lines; `name` is the file in an error.
 pub(in crate::report) fn table<H, L, F>(
     name: &str,
     header: H,

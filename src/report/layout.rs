@@ -1,47 +1,47 @@
-//! Columns that fit a screen: alignment, elision, wrapping and colour. Knows nothing of records.
+//! Columns that fit a screen: alignment, elision, wrapping and colour, independent of records.
 
 use std::fmt::Write;
 
 use unicode_width::{UnicodeWidthChar, UnicodeWidthStr};
 
-/// Between two columns.
+/// Gap between two columns.
 const GAP: &str = "  ";
-/// A name is cut to this width before any column leaves, and no further until all have left.
+/// Width to which names are cut before columns are dropped; they get shorter only when all columns are dropped.
 const COMFORTABLE: usize = 24;
 const SHORTEST: usize = 10;
 
-/// How wide and how colourful the screen is.
+/// Width and colours of the screen.
 #[derive(Debug, Clone, Copy)]
 pub struct Pen {
-    /// Columns of the screen.
+    /// Number of columns of the screen.
     pub width: usize,
     /// True if it shows colours.
     pub colour: bool,
 }
 
-/// A colour or weight of text.
+/// Colour or weight of text.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Paint {
-    /// As is.
+    /// Plain text.
     Plain,
     /// Headings.
     Bold,
-    /// What matters less.
+    /// Less important text.
     Dim,
-    /// Good.
+    /// Good result.
     Green,
-    /// Bad.
+    /// Bad result.
     Red,
-    /// In doubt.
+    /// Undecided result.
     Yellow,
-    /// Titles of works, and words that are stressed.
+    /// Titles of works, and emphasised words.
     Italic,
     /// Names, settings and code.
     Cyan,
 }
 
 impl Pen {
-    /// The text in a colour, if the screen shows colours.
+    /// Returns the text in a colour, if the screen shows colours.
     pub fn paint(self, paint: Paint, text: &str) -> String {
         let code = match paint {
             Paint::Plain => return text.to_owned(),
@@ -56,15 +56,14 @@ impl Pen {
         if self.colour { format!("\x1b[{code}m{text}\x1b[0m") } else { text.to_owned() }
     }
 
-    /// Adds what is said in lines as wide as the screen.
+    /// Adds text in lines as wide as the screen.
     pub fn say(self, text: &mut String, paint: Paint, what: &str) {
         for line in wrapped(what, self.width) {
             let _ = writeln!(text, "{}", self.paint(paint, &line));
         }
     }
 
-    /// Adds what is said, moved in, with its first word painted; of several lines the later ones are
-    /// moved in further.
+    /// Adds indented text, with its first word painted; its further lines are indented more.
     pub fn note(self, text: &mut String, what: &str, (word, paint): (&str, Paint)) {
         for (i, line) in wrapped(what, self.width - 4).into_iter().enumerate() {
             // The word is coloured after the text is wrapped, for colours have no width.
@@ -85,46 +84,46 @@ impl Pen {
     }
 }
 
-/// One field of a table.
+/// Field of a table.
 #[derive(Debug, Clone)]
 pub struct Field {
-    /// What it says.
+    /// Text.
     pub text: String,
-    /// In which colour.
+    /// Colour.
     pub paint: Paint,
 }
 
 impl Field {
-    /// A field without colour.
+    /// Returns a field without colour.
     pub fn plain(text: String) -> Self {
         Self { text, paint: Paint::Plain }
     }
 
-    /// A word in green or red.
+    /// Returns a word in green or red.
     pub fn judged(is_good: bool, [good, bad]: [&str; 2]) -> Self {
         let (text, paint) = if is_good { (good, Paint::Green) } else { (bad, Paint::Red) };
         Self { text: text.to_owned(), paint }
     }
 }
 
-/// A column of rows: its heading, whether it is of numbers, its rank, its text.
+/// Column of rows: heading, whether it has numbers, rank, and text.
 pub type Spec<T> = (&'static str, bool, u8, fn(&T) -> String);
 
-/// A column of a table.
+/// Column of a table.
 #[derive(Debug, Clone)]
 pub struct Column {
-    /// Its heading.
+    /// Heading.
     pub head: &'static str,
-    /// True if its fields end at the same place, as numbers do.
+    /// True if its fields are aligned to the right, as numbers are.
     pub right: bool,
-    /// Columns of the highest rank leave first; rank 0 stays.
+    /// Rank: columns of the highest rank are dropped first; rank 0 stays.
     pub rank: u8,
-    /// Its fields, one to a row.
+    /// Fields, one per row.
     pub fields: Vec<Field>,
 }
 
 impl Column {
-    /// A column whose fields are the rows' texts.
+    /// Makes a column of texts of rows.
     pub fn of<'a, T: 'a>(
         rows: impl IntoIterator<Item = &'a T>,
         (head, right, rank): (&'static str, bool, u8),
@@ -139,7 +138,7 @@ impl Column {
         fields.max(width(self.head))
     }
 
-    /// Marks what is unknown, in a column where others are known.
+    /// Marks unknown fields, if the column has known ones.
     fn fill(&mut self) {
         for field in self.fields.iter_mut().filter(|field| field.text.is_empty()) {
             *field = Field { text: "–".to_owned(), paint: Paint::Dim };
@@ -147,28 +146,28 @@ impl Column {
     }
 }
 
-/// A table.
+/// Table.
 #[derive(Debug, Clone)]
 pub struct Grid {
-    /// Its columns; the first holds the names.
+    /// Columns; the first holds the names.
     pub columns: Vec<Column>,
 }
 
 impl Grid {
-    /// A table of rows.
+    /// Makes a table of rows.
     pub fn of<T>(rows: &[T], specs: &[Spec<T>]) -> Self {
         let column =
             |&(head, right, rank, text): &Spec<T>| Column::of(rows, (head, right, rank), text);
         Self { columns: specs.iter().map(column).collect() }
     }
 
-    /// The width of its lines.
+    /// Returns the width of its lines.
     pub fn width(&self) -> usize {
         let gaps = GAP.len() * self.columns.len().saturating_sub(1);
         self.columns.iter().map(Column::width).sum::<usize>() + gaps
     }
 
-    /// Makes it fit: shortens names somewhat, then lets columns go, then shortens names for good.
+    /// Makes it fit: shortens names somewhat, then drops columns, then shortens names further.
     pub fn fit(&mut self, width: usize) {
         self.columns.retain(|column| column.fields.iter().any(|field| !field.text.is_empty()));
         self.shorten(width, COMFORTABLE);
@@ -196,7 +195,7 @@ impl Grid {
         self.columns.push(Column { head, right: false, rank: 0, fields });
     }
 
-    /// The lines, with headings.
+    /// Returns the lines, with headings.
     pub fn render(&self, pen: Pen) -> String {
         let rows = self.columns.iter().map(|column| column.fields.len()).max().unwrap_or(0);
         let widths: Vec<usize> = self.columns.iter().map(Column::width).collect();
@@ -224,7 +223,7 @@ impl Grid {
     }
 }
 
-/// Columns that all stay, in as many tables as it takes, one below the other, each with the names.
+/// Returns columns that all stay, in as many tables as needed, one below the other, each with the names.
 pub fn blocks(names: Vec<Column>, mut rest: Vec<Column>, width: usize) -> Vec<Grid> {
     rest.retain(|column| column.fields.iter().any(|field| !field.text.is_empty()));
     rest.iter_mut().for_each(Column::fill);
@@ -244,12 +243,12 @@ pub fn blocks(names: Vec<Column>, mut rest: Vec<Column>, width: usize) -> Vec<Gr
     blocks
 }
 
-/// The columns of the screen that a text takes.
+/// Returns the number of columns of the screen that a text takes.
 pub fn width(text: &str) -> usize {
     text.width()
 }
 
-/// The text cut at its end to a width, with an ellipsis.
+/// Returns the text cut at its end to a width, with an ellipsis.
 pub fn end_elided(text: &str, room: usize) -> String {
     if width(text) <= room {
         return text.to_owned();
@@ -258,7 +257,7 @@ pub fn end_elided(text: &str, room: usize) -> String {
     format!("{}…", kept.trim_end())
 }
 
-/// The text with its middle cut out, so that its beginning and its end stay readable.
+/// Returns the text with its middle cut out, so that its beginning and its end stay readable.
 pub fn middle_elided(text: &str, room: usize) -> String {
     if width(text) <= room {
         return text.to_owned();
@@ -279,7 +278,7 @@ fn head(text: &str, room: usize) -> String {
     text.chars().take_while(fits).collect()
 }
 
-/// The text in lines of at most this width, broken between words.
+/// Returns the text in lines of at most this width, broken between words.
 pub fn wrapped(text: &str, room: usize) -> Vec<String> {
     let mut lines = vec![String::new()];
     for word in text.split_whitespace() {

@@ -22,27 +22,27 @@ use std::path::{Component, Path, PathBuf};
 
 use media::files;
 
-/// A file that a report would have.
+/// File of a report.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Artifact {
-    /// Where, below the folder of results.
+    /// Path below the folder of results.
     pub path: PathBuf,
-    /// What.
+    /// Content.
     pub bytes: Vec<u8>,
 }
 
 impl Artifact {
-    /// A file of text.
+    /// Makes a file of text.
     pub fn text(path: impl Into<PathBuf>, text: String) -> Self {
         Self { path: path.into(), bytes: text.into_bytes() }
     }
 }
 
-/// Why a report could not be rendered or written.
+/// Reason why a report could not be rendered or written.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum ReportError {
-    /// The csv encoder gave up.
+    /// The csv encoder failed.
     #[error("cannot encode {name} as csv")]
     Csv {
         /// The file.
@@ -50,10 +50,10 @@ pub enum ReportError {
         /// The encoder's reason.
         source: csv::Error,
     },
-    /// The json encoder gave up.
+    /// The json encoder failed.
     #[error("cannot encode as json: {0}")]
     Json(#[from] serde_json::Error),
-    /// The XML encoder gave up.
+    /// The XML encoder failed.
     #[error("cannot encode as JUnit XML: {0}")]
     Junit(#[from] quick_junit::SerializeError),
     /// A drawing could not be painted.
@@ -85,8 +85,8 @@ pub enum ReportError {
     },
 }
 
-/// Writes the artifacts below `out_dir`, each under a temporary name that is then renamed. What can be
-/// written is, whatever becomes of the others; answers what could not.
+/// Writes the artifacts below `out_dir`, each under a temporary name that is then renamed. An error does not keep other
+/// files from being written. Returns all errors.
 pub fn write(artifacts: &[Artifact], out_dir: &Path) -> Vec<ReportError> {
     artifacts.iter().filter_map(|artifact| write_one(artifact, out_dir).err()).collect()
 }
@@ -104,7 +104,7 @@ fn write_one(artifact: &Artifact, out_dir: &Path) -> Result<(), ReportError> {
         .map_err(|source| ReportError::Write { path: path.clone(), source })
 }
 
-/// A case's file: its name, which may have folders, with an ending.
+/// Returns the path of a case's file: its name, which may have folders, with an ending.
 pub fn case_path(case: &str, ending: &str) -> PathBuf {
     PathBuf::from(format!("{case}.{ending}"))
 }

@@ -1,4 +1,4 @@
-//! A manual page on a terminal: Markdown with headings, emphasis, lists and tables, wrapped to the width.
+//! Manual page on a terminal: Markdown with headings, emphasis, lists and tables, wrapped to the width.
 
 use std::fmt::Write;
 
@@ -6,9 +6,9 @@ use pulldown_cmark::{BrokenLink, CowStr, Event, Options, Parser, Tag, TagEnd};
 
 use super::layout::{Paint, Pen, width};
 
-/// Spaces in front of code.
+/// Number of spaces in front of code.
 const CODE: usize = 4;
-/// Spaces between the columns of a table.
+/// Number of spaces between the columns of a table.
 const GAP: usize = 2;
 /// Smallest width of a column with wrapped words.
 const NARROWEST: usize = 8;
@@ -35,7 +35,7 @@ pub fn rendered(markdown: &str, pen: Pen) -> String {
 struct Page {
     pen: Pen,
     text: String,
-    /// The words of the paragraph, heading, item or cell that is being read.
+    /// Words of the paragraph, heading, item or cell that is being read.
     words: Vec<Word>,
     /// True if the next letters belong to the last word.
     is_glued: bool,
@@ -45,7 +45,7 @@ struct Page {
     /// Bullet or number before the next line.
     bullet: String,
     in_code: bool,
-    /// The rows of the table that is being read; the first one is its head.
+    /// Rows of the table that is being read; the first one is its head.
     rows: Vec<Vec<Vec<Word>>>,
 }
 
@@ -140,7 +140,7 @@ impl Page {
         }
     }
 
-    /// An empty line before a block, but not before the first one or between the items of a list.
+    /// Adds an empty line before a block, but not before the first one or between the items of a list.
     fn gap(&mut self) {
         if !self.text.is_empty() && !self.text.ends_with("\n\n") {
             self.text.push('\n');
@@ -196,7 +196,7 @@ impl Page {
     }
 }
 
-/// Widths of columns that fit a page together: the widest become narrower first.
+/// Returns widths of columns that fit a page together: the widest become narrower first.
 fn widths(rows: &[Vec<Vec<Word>>], room: usize) -> Vec<usize> {
     let columns = rows.iter().map(Vec::len).max().unwrap_or(0);
     let natural =
@@ -212,7 +212,7 @@ fn widths(rows: &[Vec<Vec<Word>>], room: usize) -> Vec<usize> {
     widths
 }
 
-/// The words in lines of at most this width, broken between words.
+/// Returns the words in lines of at most this width, broken between words.
 fn lines(words: &[Word], room: usize) -> Vec<Vec<Word>> {
     let mut lines: Vec<Vec<Word>> = vec![Vec::new()];
     for word in words {
@@ -227,13 +227,13 @@ fn lines(words: &[Word], room: usize) -> Vec<Vec<Word>> {
     lines
 }
 
-/// The width of words with a space between any two.
+/// Returns the width of words with a space between any two.
 fn length(words: &[Word]) -> usize {
     let letters = words.iter().flatten().map(|(_, text)| width(text)).sum::<usize>();
     letters + words.len().saturating_sub(1)
 }
 
-/// The words with a space between any two, which is painted as its neighbours are if these are alike.
+/// Returns the words with a space between any two, which is painted like the words on both sides if these are alike.
 fn painted(words: &[Word], pen: Pen) -> String {
     let mut runs: Vec<(Paint, String)> = Vec::new();
     for (i, word) in words.iter().enumerate() {

@@ -1,4 +1,4 @@
-//! The self-test's tables: promises, streams and mutants, on the screen and as CSV.
+//! Tables of the self-test: promises, streams and mutants, on the screen and as CSV.
 
 use std::fmt::Write;
 
@@ -11,10 +11,10 @@ use lab::mutants::Caught;
 use lab::streams::{ALPHA, StreamVerdicts};
 use numeric::digits::{count, short};
 
-/// What is said of a promise.
+/// Words for a promise.
 const KEPT: [&str; 2] = ["kept", "BROKEN"];
 
-/// The tables for the screen.
+/// Returns the tables for the screen.
 pub fn table(found: &SelfTest, pen: Pen) -> String {
     let mut text = String::new();
     promises(&mut text, pen, &found.calibration);
@@ -87,7 +87,7 @@ fn streams(text: &mut String, pen: Pen, streams: &[StreamVerdicts]) {
     let _ = writeln!(text, "{}", grid.render(pen));
 }
 
-/// All rates that were promised.
+/// Returns all rates with a promise.
 fn rates(calibration: &Calibration) -> impl Iterator<Item = &Rate> {
     let shares = calibration.uniformity.iter().flat_map(|check| &check.below);
     calibration.rates.iter().chain(shares)
@@ -126,12 +126,12 @@ fn mutants(text: &mut String, pen: Pen, mutants: &[Caught]) {
     let _ = writeln!(text, "{}", grid.render(pen));
 }
 
-/// `rod/known-bugs: analog`.
+/// Returns the place of a mutant: `rod/known-bugs: analog`.
 fn place(mutant: &Caught) -> String {
     format!("{}: {}", mutant.case, mutant.estimator)
 }
 
-/// The columns of promised rates.
+/// Returns the columns of promised rates.
 fn of_rates<'a>() -> Vec<Column<&'a Rate>> {
     columns! {
         "what" = |rate| &rate.what;
@@ -144,7 +144,7 @@ fn of_rates<'a>() -> Vec<Column<&'a Rate>> {
     }
 }
 
-/// The columns of foreign streams.
+/// Returns the columns of foreign streams.
 fn of_streams<'a>() -> Vec<Column<&'a StreamVerdicts>> {
     columns! {
         "law" = |verdicts| &verdicts.law;
@@ -158,7 +158,7 @@ fn of_streams<'a>() -> Vec<Column<&'a StreamVerdicts>> {
     }
 }
 
-/// The columns of mutants.
+/// Returns the columns of mutants.
 fn of_mutants<'a>() -> Vec<Column<&'a Caught>> {
     columns! {
         "mutant" = |mutant| mutant.name;
@@ -172,11 +172,11 @@ fn of_mutants<'a>() -> Vec<Column<&'a Caught>> {
     }
 }
 
-/// The tables as CSV files.
+/// Returns the tables as CSV files.
 ///
 /// # Errors
 ///
-/// Where the encoder gives up.
+/// The encoder fails.
 pub fn artifacts(found: &SelfTest) -> Result<Vec<Artifact>, ReportError> {
     Ok(vec![
         columns::artifact("self-test/calibration.csv", &of_rates(), rates(&found.calibration))?,

@@ -8,10 +8,10 @@
 //! drift     ln E = stored + new, against the limit of the run
 //! ```
 //!
-//! κ and Var N are those of theory, on both sides: each side's own uncertainty counts. A variance is not compared if,
-//! on either side, its relative standard error is above 10 %, its distribution is not near normal (`E[X⁸]/E[X⁴]²` >
-//! n/100, or fewer draws than ten times the rare-event size), or it hardly varies (κ − 1 < 100/n). Quantities that are
-//! not compared are listed ([`LeftOut`]).
+//! κ and Var N are those of theory, on both sides: each side's own uncertainty counts. A variance is not compared if
+//! one of these holds on either side: its relative standard error is above 10 %; its distribution is not near normal
+//! (`E[X⁸]/E[X⁴]²` > n/100, or fewer draws than ten times the rare-event size); it hardly varies (κ − 1 < 100/n).
+//! Quantities that are not compared are listed ([`LeftOut`]).
 //!
 //! An interval that lies above 1 is a regression; one below is an improvement, which is reported and does not fail. The
 //! error of a time is not known from one figure: it fails beyond a factor that the caller chooses.

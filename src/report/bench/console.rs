@@ -1,4 +1,4 @@
-//! The table of a bench on the screen: one block per case, then what it all comes to.
+//! Table of a bench on the screen: one block per case, then a summary.
 
 use std::fmt::Write;
 
@@ -9,7 +9,7 @@ use crate::report::layout::{Column, Grid, Paint, Pen, Spec, end_elided, wrapped}
 use crate::report::run::console::views::swept_apart;
 use numeric::digits::{count, fixed, short, time};
 
-/// The heading of σ̂; constant ones have as many digits as tell them apart.
+/// Heading of σ̂; constant ones have as many digits as distinguish them.
 const SAMPLING: &str = "σ\u{302}";
 
 const COLUMNS: &[Spec<BenchRow>] = &[
@@ -42,12 +42,12 @@ fn spread(row: &BenchRow, of: fn(&Times) -> Option<Spread>, text: fn(Spread) -> 
     figure(row, |times| of(times).map(text))
 }
 
-/// The least and the most of the rounds.
+/// Returns the minimum and the maximum of the rounds.
 fn range(spread: Spread) -> String {
     format!("{}–{}", fixed(spread.least, 3), fixed(spread.most, 3))
 }
 
-/// The table, `width` columns wide, with ANSI colours if asked for.
+/// Returns the table, `width` columns wide, with ANSI colours if asked for.
 pub fn table(bench: &Bench, pen: Pen) -> String {
     let mut text = String::new();
     for case in &bench.cases {
@@ -82,12 +82,12 @@ fn block(text: &mut String, pen: Pen, case: &BenchCase) {
     notes(text, pen, case);
 }
 
-/// σ̂ and swept values of a case.
+/// Returns the digits of σ̂ and swept values of a case.
 pub(super) fn labels(case: &BenchCase) -> Digits {
     Digits::new(case.rows.iter().flat_map(|row| [row.sampling(), row.id.swept_value()]))
 }
 
-/// Why numbers are missing: each reason once, with the rows it is about.
+/// Adds the reasons why numbers are missing: each reason once, with its rows.
 fn notes(text: &mut String, pen: Pen, case: &BenchCase) {
     let mut notes: Vec<(&BenchRow, Vec<String>)> = Vec::new();
     for row in case.rows.iter().filter(|row| !row.reason.is_empty()) {

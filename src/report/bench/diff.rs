@@ -1,4 +1,4 @@
-//! What changed since a stored bench, in words.
+//! Changes since a stored bench, in words.
 
 use crate::bench::record::Spread;
 use crate::bench::stored::{Change, Comparison};
@@ -6,7 +6,7 @@ use crate::case::id::ExperimentId;
 use crate::report::run::diff::{counts, ending, listed, not_empty};
 use numeric::digits::{fixed, short};
 
-/// What was compared, and how.
+/// Returns the extent of the comparison, and its conditions.
 pub fn remarks(comparison: &Comparison) -> Vec<String> {
     let Comparison { name, tolerance, compared, .. } = comparison;
     let tolerance = short(*tolerance, 3);
@@ -22,7 +22,7 @@ pub fn remarks(comparison: &Comparison) -> Vec<String> {
     remarks
 }
 
-/// What was left out, each with its reason and the experiments.
+/// Returns the experiments that were left out, by the reason.
 fn left_out(comparison: &Comparison) -> Vec<(&'static str, &[ExperimentId])> {
     not_empty([
         ("not in the baseline", &comparison.added),
@@ -31,13 +31,13 @@ fn left_out(comparison: &Comparison) -> Vec<(&'static str, &[ExperimentId])> {
     ])
 }
 
-/// Why nothing was compared, where that is so.
+/// Returns the reason why nothing was compared; `None` if something was.
 pub fn nothing(comparison: &Comparison) -> Option<String> {
     let is_empty = comparison.is_empty();
     is_empty.then(|| format!("nothing was compared: {}", counts(&left_out(comparison))))
 }
 
-/// What changed, what became slower first: whether it did, and the numbers.
+/// Returns all changes, slower experiments first: whether each became slower, and the numbers.
 pub fn all(comparison: &Comparison) -> Vec<(bool, String)> {
     let mut told: Vec<_> =
         comparison.changes.iter().map(|change| (change.is_regression, line(change))).collect();
@@ -56,7 +56,7 @@ fn line(change: &Change) -> String {
     )
 }
 
-/// The median with the least and the most of the rounds.
+/// Returns the median with the minimum and the maximum of the rounds.
 fn of_rounds(spread: Spread) -> String {
     let [median, least, most] = [spread.median, spread.least, spread.most].map(|x| short(x, 3));
     format!("{median} [{least}, {most}]")

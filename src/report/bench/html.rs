@@ -1,4 +1,4 @@
-//! `report.html` of a bench: times of all experiments, how their errors fall, what changed.
+//! `report.html` of a bench: times of all experiments, decrease of their errors, changes.
 
 use maud::{Markup, html};
 
@@ -11,10 +11,10 @@ use crate::report::html::drawing::{Plot, definitions, plot};
 use crate::report::html::listing::{self, Cell, Column, table};
 use numeric::digits::{count, fixed, time};
 
-/// A row with its case.
+/// Row with its case.
 type Joined<'a> = (&'a BenchCase, &'a BenchRow);
 
-/// A column of a figure of the times.
+/// Makes a column for a figure of the times.
 macro_rules! timed {
     ($title:literal, $figure:expr) => {
         Column {
@@ -47,7 +47,7 @@ fn columns<'a>() -> [Column<Joined<'a>>; 15] {
     ]
 }
 
-/// σ̂ and the swept value.
+/// Returns σ̂ and the swept value.
 fn sampling((_, row): &Joined) -> String {
     let (constant, swept) = (row.sampling(), row.id.swept_value());
     let numbers = [constant, swept.filter(|_| swept != constant)];
@@ -56,11 +56,11 @@ fn sampling((_, row): &Joined) -> String {
     kind.into_iter().chain(numbers).filter(|word| !word.is_empty()).collect::<Vec<_>>().join(", ")
 }
 
-/// The bench as a page of HTML.
+/// Returns the bench as a page of HTML.
 ///
 /// # Errors
 ///
-/// Where a plot cannot be drawn.
+/// A plot cannot be drawn.
 pub fn text(bench: &Bench) -> Result<String, ReportError> {
     let rows: Vec<Joined> =
         bench.cases.iter().flat_map(|case| case.rows.iter().map(move |row| (case, row))).collect();

@@ -1,10 +1,10 @@
-//! What a bench found, as a table on the screen, files and plots.
+//! Results of a bench as a table on the screen, files and plots.
 //!
 //! ```text
 //! bench.csv        one row per experiment and channel: times, ratios, efficiencies
-//! report.html      all of it as a page
-//! CASE.error.csv   the measured error against draws, lookups and time, with what theory expects
-//! CASE.svg, .png   the same as a log-log plot
+//! report.html      everything as a page
+//! CASE.error.csv   the measured error against draws, lookups and time, with the predicted one
+//! CASE.svg, .png   the errors as a log-log plot
 //! ```
 
 pub mod console;
@@ -16,11 +16,11 @@ pub mod tables;
 use crate::bench::record::{Bench, BenchCase};
 use crate::report::{Artifact, ReportError};
 
-/// Every file of a bench.
+/// Returns every file of a bench.
 ///
 /// # Errors
 ///
-/// Where an encoder or a painter gives up.
+/// An encoder or the painter fails.
 pub fn render(bench: &Bench) -> Result<Vec<Artifact>, ReportError> {
     let mut artifacts = vec![
         Artifact::text("bench.csv", tables::csv(bench)?),
@@ -33,7 +33,7 @@ pub fn render(bench: &Bench) -> Result<Vec<Artifact>, ReportError> {
     Ok(artifacts)
 }
 
-/// The cases whose errors are plotted.
+/// Returns the cases with errors to plot.
 pub(super) fn plotted(bench: &Bench) -> impl Iterator<Item = &BenchCase> {
     bench.cases.iter().filter(|case| case.rows.iter().any(|row| !row.curve.is_empty()))
 }

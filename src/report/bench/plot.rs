@@ -1,7 +1,7 @@
 //! `CASE.svg` and `CASE.png`: the measured error against time and against lookups.
 //!
-//! Points are measured, with bars from the least to the most of the rounds; lines are √(V/n), which
-//! falls with slope −1/2. The thin, pale line of the same colour is that of the plain loop.
+//! Points are measured, with bars from the minimum to the maximum of the rounds; lines are √(V/n), with slope −1/2. The
+//! thin, pale line of the same colour is that of the plain loop.
 
 use plotters::style::{Color, RGBAColor};
 
@@ -20,10 +20,10 @@ const TOP: f64 = 104.0;
 const PANEL: [f64; 2] = [490.0, 400.0];
 const PITCH: f64 = 600.0;
 
-/// The dashes, the width and the colour of a line.
+/// Dashes, width and colour of a line.
 type Look = (&'static [f64], f64, RGBAColor);
 
-/// One line of the plot.
+/// Line of the plot.
 struct Series<'a> {
     row: &'a BenchRow,
     times: &'a Times,
@@ -31,12 +31,12 @@ struct Series<'a> {
     label: String,
 }
 
-/// The figure of a case in both formats.
+/// Returns the figure of a case in both formats.
 pub(super) fn artifacts(bench: &Bench, case: &BenchCase) -> Result<Vec<Artifact>, ReportError> {
     plots::artifacts(&case.name, "", &figure(bench, case)?)
 }
 
-/// The figure of a case.
+/// Returns the figure of a case.
 pub(in crate::report) fn figure(bench: &Bench, case: &BenchCase) -> Result<Sheet, ReportError> {
     let shown = case.rows.iter().filter(|row| row.is_shown);
     let shown: Vec<_> =
@@ -68,7 +68,7 @@ fn subtitle(bench: &Bench, case: &BenchCase) -> String {
     words.into_iter().chain(facts).collect::<Vec<_>>().join("  ·  ")
 }
 
-/// The words for a row: its estimator, σ̂, control and channel, and what it needs.
+/// Returns the words for a row: its estimator, σ̂, control and channel, and what it needs.
 fn label(row: &BenchRow, labels: Digits) -> String {
     let sampling = row.sampling().map(|sampling| format!("σ\u{302} = {}", labels.text(sampling)));
     let sampling = sampling.unwrap_or_else(|| row.id.sampling.kind.clone());
@@ -94,7 +94,7 @@ impl Series<'_> {
         self.row.curve.iter()
     }
 
-    /// Draws the points and the line of theory at their prices.
+    /// Draws the points and the predicted line at their prices.
     fn draw(&self, sheet: &mut Sheet, panel: &Panel, price: impl Fn(&CurvePoint) -> f64) {
         let Style { colour, dash, marker } = self.style;
         self.line(sheet, panel, &price, (dash, 1.8, colour));
@@ -106,7 +106,7 @@ impl Series<'_> {
         }
     }
 
-    /// Draws the line of theory at the prices of its points.
+    /// Draws the predicted line at the prices of its points.
     fn line(
         &self,
         sheet: &mut Sheet,
@@ -119,8 +119,8 @@ impl Series<'_> {
     }
 }
 
-/// The panel at this place, its axes around what is shown: of an error bar, at most two decades below
-/// the error itself, for a mean may meet the truth by chance.
+/// Returns the panel at this place, its axes around everything shown. Of an error bar it shows at most two decades
+/// below the error itself, for a mean may agree with the truth by coincidence.
 fn panel(place: f64, title: &str, prices: impl Iterator<Item = f64>, series: &[Series]) -> Panel {
     let points = || series.iter().flat_map(Series::points);
     let errors = points().flat_map(|p| [p.relative, p.most, p.least.max(p.relative * 1e-2)]);
@@ -161,7 +161,7 @@ fn in_lookups(sheet: &mut Sheet, series: &[Series]) {
     panel.frame(sheet, "(b) Error against lookups");
 }
 
-/// What the marks mean, and what the plot cannot show, in words.
+/// Returns the meaning of the marks, and the facts that the plot cannot show, in words.
 fn notes(case: &BenchCase) -> Vec<String> {
     let mut notes = vec![
         "Points: root mean square over the rounds, bars: the least and the most of them, with an arrow where \

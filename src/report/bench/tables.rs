@@ -1,13 +1,14 @@
-//! Tables of a bench: `CASE.error.csv`, the measured error against its price, and the rows, as CSV and JSON: `bench.csv` and `--format csv|json` share these columns.
+//! Tables of a bench: `CASE.error.csv`, the measured error against its price, and the rows, as CSV and JSON:
+//! `bench.csv` and `--format csv|json` share these columns.
 //!
-//! Columns that `summary.csv` has, too, have the same names. `plain` is the plain scalar loop over
-//! the same draws; `_least` and `_most` are those of the rounds.
+//! Columns that `summary.csv` also has have the same names. `plain` is the plain scalar loop over the same draws;
+//! `_least` and `_most` are the minimum and the maximum of the rounds.
 
 use crate::bench::record::{Bench, BenchCase, BenchRow, CurvePoint, Spread, Times};
 use crate::report::columns::{self, Cell, Column, columns};
 use crate::report::{Artifact, ReportError};
 
-/// A row with what it belongs to.
+/// Row with its case and bench.
 #[derive(Debug, Clone, Copy)]
 struct Joined<'a> {
     bench: &'a Bench,
@@ -16,7 +17,7 @@ struct Joined<'a> {
 }
 
 impl Joined<'_> {
-    /// A figure of the times.
+    /// Returns a figure of the times.
     fn timed(&self, figure: impl Fn(&Times) -> Option<f64>) -> Option<f64> {
         self.row.times.as_ref().and_then(figure)
     }
@@ -30,7 +31,7 @@ impl Joined<'_> {
     }
 }
 
-/// The columns, in the order in which files have them.
+/// Returns the columns, in the order of the files.
 fn columns<'a>() -> Vec<Column<Joined<'a>>> {
     columns! {
         "case" = |joined| &joined.case.name;
@@ -84,32 +85,32 @@ fn joined(bench: &Bench) -> impl Iterator<Item = Joined<'_>> {
     cases.flat_map(move |case| case.rows.iter().map(move |row| Joined { bench, case, row }))
 }
 
-/// The rows as CSV, with a first line of names.
+/// Returns the rows as CSV, with a first line of names.
 ///
 /// # Errors
 ///
-/// Where the encoder gives up.
+/// The encoder fails.
 pub fn csv(bench: &Bench) -> Result<String, ReportError> {
     columns::csv("the bench", &columns(), joined(bench))
 }
 
-/// The rows as a JSON array of objects, one to a line; unknown is `null`.
+/// Returns the rows as a JSON array of objects, one per line; unknown is `null`.
 ///
 /// # Errors
 ///
-/// Where the encoder gives up.
+/// The encoder fails.
 pub fn json(bench: &Bench) -> Result<String, ReportError> {
     columns::json(&columns(), joined(bench))
 }
 
-/// A point of a curve with its price.
+/// Point of a curve with its price.
 struct Priced<'a> {
     row: &'a BenchRow,
     times: &'a Times,
     point: &'a CurvePoint,
 }
 
-/// The columns of `CASE.error.csv`.
+/// Returns the columns of `CASE.error.csv`.
 fn error_columns<'a>() -> Vec<Column<Priced<'a>>> {
     columns! {
         "estimator" = |of| of.row.id.label();
@@ -129,7 +130,7 @@ fn error_columns<'a>() -> Vec<Column<Priced<'a>>> {
     }
 }
 
-/// One line per row of the case and point of its curve.
+/// Returns the table with one line per row of the case and point of its curve.
 pub(super) fn errors(case: &BenchCase) -> Result<Artifact, ReportError> {
     let timed = case.rows.iter().filter_map(|row| Some((row, row.times.as_ref()?)));
     let points = timed

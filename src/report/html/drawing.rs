@@ -1,5 +1,5 @@
-//! Plots of a page, each once and shown wherever it is wanted. A sheet becomes the shapes of an SVG in few bytes: what follows each other in one look is one path, from point to
-//! point by whole tenths of a pixel.
+//! Plots of a page, each defined once and shown wherever it is needed. A sheet becomes the shapes of an SVG in few
+//! bytes: consecutive shapes of one style are one path, from point to point by whole tenths of a pixel.
 
 use std::fmt::Write;
 
@@ -8,40 +8,40 @@ use plotters::style::RGBAColor;
 
 use crate::report::plots::sheet::{Align, Image, Label, Shape, Sheet, Spot};
 
-/// Units of a pixel.
+/// Number of units of a pixel.
 const UNITS: f64 = 10.0;
-/// No coordinate is farther from the sheet's corner, in units.
+/// Largest distance of a coordinate from the sheet's corner, in units.
 const FARTHEST: f64 = 1e6;
-/// What puts the middle of small letters on a line, in sizes of the em.
+/// Shift that centres small letters on a line, in sizes of the em.
 const HALF_A_LETTER: f64 = 0.27;
 
-/// A plot that the page defines.
+/// Plot that the page defines.
 pub struct Plot {
-    /// Its place in the page.
+    /// Anchor in the page.
     id: String,
-    /// What it shows, for those who do not see it.
+    /// Description for readers of the page that cannot show it.
     label: String,
     view: String,
     shapes: Markup,
 }
 
-/// How a path is drawn.
+/// Style of a path.
 #[derive(Clone, PartialEq)]
 enum Look {
-    /// As a line of this width, in dashes of these lengths.
+    /// Line of this width, in dashes of these lengths.
     Line(i64, RGBAColor, Vec<i64>),
     /// Filled.
     Fill(RGBAColor),
-    /// As dots of this width.
+    /// Dots of this width.
     Dots(i64, RGBAColor),
 }
 
-/// The view of a sheet, for the element about its shapes.
+/// Returns the view of a sheet, for the element around its shapes.
 pub fn view(sheet: &Sheet) -> String {
     format!("0 0 {} {}", unit(sheet.width), unit(sheet.height))
 }
 
-/// The shapes, for an element with `fill="none"`: words above all others.
+/// Returns the shapes, for an element with `fill="none"`: text above everything else.
 pub fn shapes(sheet: &Sheet) -> Markup {
     let mut open: Option<(Look, String)> = None;
     let mut all = Vec::new();
@@ -77,7 +77,7 @@ pub fn shapes(sheet: &Sheet) -> Markup {
     html! { @for path in all { (path) } @for text in texts { (text) } }
 }
 
-/// The way through points in the words of an SVG path; a single one has a length of nothing.
+/// Returns the path through points as text of an SVG; a single point has a segment of length 0.
 pub fn way(points: impl IntoIterator<Item = [i64; 2]>) -> String {
     let mut way = String::new();
     let mut last: Option<[i64; 2]> = None;
@@ -137,7 +137,7 @@ fn text(label: &Label) -> Markup {
     }
 }
 
-/// Every pixel as a rectangle.
+/// Shows every pixel as a rectangle.
 fn pixels(image: &Image, mut show: impl FnMut([Spot; 4], RGBAColor)) {
     let rows = image.pixels.len() / image.columns.max(1);
     let corner = |column: usize, row: usize| {
@@ -152,7 +152,7 @@ fn pixels(image: &Image, mut show: impl FnMut([Spot; 4], RGBAColor)) {
     }
 }
 
-/// A colour, in three digits where they do.
+/// Returns a colour, in three digits if these suffice.
 fn hue(RGBAColor(red, green, blue, _): RGBAColor) -> String {
     let digits = [red, green, blue];
     if digits.iter().all(|digit| digit % 17 == 0) {
@@ -163,25 +163,25 @@ fn hue(RGBAColor(red, green, blue, _): RGBAColor) -> String {
     }
 }
 
-/// How much it covers, where not all.
+/// Returns the opacity; `None` for full opacity.
 fn part(RGBAColor(.., alpha): RGBAColor) -> Option<String> {
     (alpha < 1.0).then(|| format!("{alpha:.2}"))
 }
 
 fn unit(length: f64) -> i64 {
-    // What is not a number is at the corner; figures clip to their panels long before.
+    // NaN becomes the corner; figures clip to their panels long before.
     #[expect(clippy::cast_possible_truncation)]
     let whole = (length * UNITS).round().clamp(-FARTHEST, FARTHEST) as i64;
     whole
 }
 
-/// A plot of a sheet.
+/// Returns the plot of a sheet.
 pub fn plot(id: String, label: String, sheet: &Sheet) -> Plot {
     Plot { id, label, view: view(sheet), shapes: shapes(sheet) }
 }
 
 impl Plot {
-    /// The plot, as large as its place allows.
+    /// Shows the plot, as large as its place allows.
     pub fn show(&self) -> Markup {
         html! {
             div.wide tabindex="0" role="group" aria-label="plot" {
@@ -193,7 +193,7 @@ impl Plot {
     }
 }
 
-/// The shapes of all plots, shown nowhere.
+/// Returns the shapes of all plots, hidden.
 pub fn definitions(plots: &[Vec<Plot>]) -> Markup {
     html! {
         svg.hidden aria-hidden="true" focusable="false" {

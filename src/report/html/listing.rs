@@ -1,26 +1,26 @@
-//! A plain table that the page's script can filter and sort: of a bench, of a stress test.
+//! Plain table that the page's script can filter and sort: of a bench, of a stress test.
 
 use super::words;
 use maud::{Markup, html};
 use std::collections::BTreeSet;
 
-/// A column: its title, and what its cells are.
+/// Column: its title and its cells.
 pub struct Column<T> {
     /// The title.
     pub title: &'static str,
-    /// What stands in a cell.
+    /// Content of its cells.
     pub cell: Cell<T>,
 }
 
-/// What stands in a cell of a row.
+/// Content of a cell, by its row.
 pub enum Cell<T> {
-    /// Words.
+    /// Text.
     Text(fn(&T) -> String),
-    /// A number in three digits.
+    /// Number in three digits.
     Number(fn(&T) -> Option<f64>),
 }
 
-/// The table; `class` is that of a row's first cell, `data` what a row is chosen by.
+/// Returns the table; `class` is that of a row's first cell, `data` has the values that filters select by.
 pub fn table<T>(
     columns: &[Column<T>],
     rows: &[T],
@@ -53,10 +53,10 @@ pub fn table<T>(
     }
 }
 
-/// What a row is chosen by, and the values that there are: a row has its own in `data-NAME` or in the column of that title.
+/// Filter: a name, and its values. A row has its own value in `data-NAME` or in the column of that title.
 pub type Choice = (&'static str, BTreeSet<String>);
 
-/// A field for words, a list for each choice, and how many rows of so many are shown.
+/// Returns a text field, a list for each filter, and the number of shown rows of all `rows`.
 pub fn form(choices: &[Choice], rows: usize) -> Markup {
     html! {
         form #filters hidden {
@@ -73,6 +73,6 @@ pub fn form(choices: &[Choice], rows: usize) -> Markup {
             output #shown role="status" { (rows) " of " (rows) }
         }
         p #chosen {}
-        p #none hidden { "Nothing is as the filters want it." }
+        p #none hidden { "No row matches the filters." }
     }
 }

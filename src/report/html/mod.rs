@@ -9,13 +9,13 @@ use maud::{DOCTYPE, Markup, PreEscaped, html};
 const STYLE: &str = include_str!("style.css");
 const SCRIPT: &str = include_str!("script.js");
 
-/// Nothing is fetched from anywhere, whatever is on the page.
+/// Content policy: the page loads nothing, whatever it contains.
 const POLICY: &str = "default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inline'; img-src data:; base-uri 'none'; form-action 'none'";
 
-/// The ends of elements that HTML does without: a tenth of a page. What a record says has no `<`, for it is escaped.
+/// Ends of elements that HTML does not need: a tenth of a page. Text of a record has no `<`, for it is escaped.
 const OPTIONAL: [&str; 7] = ["</td>", "</th>", "</tr>", "</dt>", "</dd>", "</li>", "</option>"];
 
-/// A page of HTML with this title and these sections.
+/// Returns a page of HTML with this title and these sections.
 pub fn document(title: &str, sections: &Markup) -> String {
     let page = html! {
         (DOCTYPE)
@@ -38,7 +38,7 @@ pub fn document(title: &str, sections: &Markup) -> String {
     OPTIONAL.iter().fold(page.into_string(), |page, end| page.replace(end, ""))
 }
 
-/// Likely causes of a failure, folded.
+/// Returns likely causes of a failure, folded.
 pub fn causes(lines: &[String]) -> Markup {
     let item = |line: &String| line.strip_prefix("- ").unwrap_or(line).to_owned();
     html! {
@@ -51,7 +51,7 @@ pub fn causes(lines: &[String]) -> Markup {
     }
 }
 
-/// A command to copy, with the word that says what it does: the page's script adds a button that copies it.
+/// Returns a command to copy, after a word that describes it: the page's script adds a button that copies it.
 pub fn command(command: Option<(&str, &str)>) -> Markup {
     html! {
         @if let Some((word, command)) = command.filter(|command| !command.1.is_empty()) {

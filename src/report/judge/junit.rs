@@ -1,8 +1,7 @@
-//! Verdicts on foreign draws as JUnit XML: one test suite, a test for each file or stack of
-//! images.
+//! Verdicts on foreign draws as JUnit XML: one test suite, and one test per file or stack of images.
 //!
-//! A fail is a `failure`; what is inconclusive is an `error`, a `failure` or `skipped`, as asked for. A file
-//! that could not be read is an `error`.
+//! A fail is a `failure`; an inconclusive verdict is an `error`, a `failure` or `skipped`, as asked for. A file that
+//! could not be read is an `error`.
 
 use quick_junit::{NonSuccessKind, Report, TestCase, TestCaseStatus, TestSuite};
 
@@ -12,7 +11,7 @@ use crate::report::ReportError;
 use crate::report::run::junit::Inconclusive;
 use numeric::digits::exact;
 
-/// A verdict on a file or a stack of images.
+/// Verdict on a file or a stack of images.
 #[derive(Debug, Clone)]
 pub struct Told {
     name: String,
@@ -23,7 +22,7 @@ pub struct Told {
 }
 
 impl Told {
-    /// The verdict on draws of this name.
+    /// Returns the verdict on draws of this name.
     pub fn of_draws(name: &str, judgement: &Judgement) -> Self {
         let numbers = [
             ("draws", Some(judgement.draws as f64)),
@@ -45,7 +44,7 @@ impl Told {
         }
     }
 
-    /// The verdict on images of this name.
+    /// Returns the verdict on images of this name.
     pub fn of_images(name: &str, judgement: &images::Judgement) -> Self {
         let counts = judgement.counts;
         let numbers = [
@@ -67,11 +66,12 @@ impl Told {
     }
 }
 
-/// The verdicts, at the level `alpha` together; `unread` are files that could not be read, each with the reason.
+/// Returns the verdicts, at the level `alpha` together; `unread` are files that could not be read, each with the
+/// reason.
 ///
 /// # Errors
 ///
-/// Where the encoder gives up.
+/// The encoder fails.
 pub fn text(
     told: &[Told],
     unread: &[(String, String)],

@@ -9,15 +9,15 @@ use crate::report::layout::wrapped;
 use numeric::digits::short;
 use std::fmt::Write;
 
-/// The widest word at the left.
+/// Width of the widest word at the left.
 const INDENT: usize = 10;
 
-/// The block on draws, `width` columns wide.
+/// Returns the block on draws, `width` columns wide.
 pub fn block(judgement: &Judgement, name: &str, width: usize) -> String {
     lines(&judgement.lines(name), width)
 }
 
-/// Lines, each with a word at its left, `width` columns wide.
+/// Returns lines, each with a word at its left, `width` columns wide.
 fn lines(lines: &[(&str, String)], width: usize) -> String {
     let mut text = String::new();
     for (word, what) in lines {
@@ -29,7 +29,7 @@ fn lines(lines: &[(&str, String)], width: usize) -> String {
     text
 }
 
-/// Summary of several verdicts; `of` names the draws in words.
+/// Returns the summary of several verdicts; `of` names the draws in words.
 pub fn together<'a>(
     judged: &(impl Iterator<Item = &'a Judgement> + Clone),
     of: &str,

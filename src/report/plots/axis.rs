@@ -1,32 +1,32 @@
-//! An axis: its range, its ticks, and where a value stands on it.
+//! Axis: its range, its ticks, and the positions of values on it.
 
 use numeric::digits::short;
 
-/// An axis of a panel.
+/// Axis of a panel.
 #[derive(Debug, Clone)]
 pub struct Axis {
-    /// The title with symbol and unit.
+    /// Title with symbol and unit.
     pub title: String,
     /// True if it is logarithmic.
     pub log: bool,
-    /// The value at its beginning.
+    /// Value at its beginning.
     pub low: f64,
-    /// The value at its end.
+    /// Value at its end.
     pub high: f64,
 }
 
-/// A mark on an axis.
+/// Mark on an axis.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Tick {
-    /// Its value.
+    /// Value.
     pub at: f64,
-    /// Its label; empty for a small mark.
+    /// Label; empty for a small mark.
     pub label: String,
 }
 
 impl Axis {
-    /// An axis that shows all values which it can show, with a margin of this share of its length
-    /// on both sides. One that can show none goes from 0.1 to 1.
+    /// Returns an axis that shows all values which it can show, with a margin of this share of its length on both
+    /// sides. An axis that can show none goes from 0.1 to 1.
     pub fn around(
         title: impl Into<String>,
         log: bool,
@@ -50,22 +50,22 @@ impl Axis {
         axis
     }
 
-    /// The axis with room beyond its end, by a share of its length.
+    /// Returns the axis with room beyond its end, by a share of its length.
     #[must_use]
     pub fn extended(self, share: f64) -> Self {
         let [low, high] = [self.low, self.high].map(|value| self.scaled(value));
         Self { high: self.unscaled(high + share * (high - low)), ..self }
     }
 
-    /// Where a value stands: 0 at the beginning, 1 at the end; `None` where the axis has no place
-    /// for it at all, as a logarithmic one for zero.
+    /// Returns the position of a value: 0 at the beginning, 1 at the end; `None` if it has none, as zero on a
+    /// logarithmic axis.
     pub fn place(&self, value: f64) -> Option<f64> {
         let [low, high, at] = [self.low, self.high, value].map(|v| self.scaled(v));
         let place = (at - low) / (high - low);
         place.is_finite().then_some(place)
     }
 
-    /// The marks, about as many labels as `count`.
+    /// Returns the marks, about as many labels as `count`.
     pub fn ticks(&self, count: usize) -> Vec<Tick> {
         let mut ticks = if self.log { self.log_ticks(count) } else { self.even_ticks(count) };
         ticks.retain(|tick| self.place(tick.at).is_some_and(|p| (-1e-9..=1.0 + 1e-9).contains(&p)));
@@ -134,14 +134,14 @@ impl Axis {
         (0..=4 * u32::try_from(count).unwrap_or(8))
             .map(|i| (first + f64::from(i)) * step)
             .take_while(|&at| at <= self.high + 1e-9 * step)
-            // A zero that is off by rounding would be labelled −0.
+            // A zero with a rounding error would be labelled −0.
             .map(|at| if at.abs() < 1e-9 * step { 0.0 } else { at })
             .map(|at| Tick { at, label: label(at) })
             .collect()
     }
 }
 
-/// The smallest of 1, 2, 5 times a power of ten that is no less than `rough`.
+/// Returns the smallest of 1, 2, 5 times a power of ten that is not below `rough`.
 fn nice_step(rough: f64) -> f64 {
     let power = 10_f64.powf(rough.log10().floor());
     let nice = [1.0, 2.0, 5.0].into_iter().find(|digit| digit * power >= rough * 0.999);
@@ -156,7 +156,7 @@ fn log_label(digit: u8, exponent: i32, powers: bool) -> String {
     if digit == 1 { power } else { format!("{digit}·{power}") }
 }
 
-/// `2.5e-7` as `2.5·10⁻⁷`.
+/// Returns `2.5e-7` as `2.5·10⁻⁷`.
 fn in_powers(text: &str) -> String {
     let text = text.replace('-', "−");
     let Some((mantissa, exponent)) = text.split_once('e') else { return text };

@@ -1,4 +1,4 @@
-//! A figure: a sheet with its title, and the typeface that measures its words.
+//! Figure: a sheet with its title, and the typeface that measures its words.
 
 use crate::report::ReportError;
 use crate::report::plots::font::{Typeface, fit, wrapped};
@@ -6,38 +6,38 @@ use crate::report::plots::legend::{self, Entry, LINE};
 use crate::report::plots::sheet::{Align, Sheet};
 use crate::report::plots::style::{DARK, GREY};
 
-/// The size of notes.
+/// Size of notes.
 const NOTE: f64 = 12.5;
 
-/// The left edge of titles and panels.
+/// Left edge of titles and panels.
 pub const LEFT: f64 = 92.0;
 
-/// A sheet with a title.
+/// Sheet with a title.
 pub struct Figure {
-    /// The typeface.
+    /// Typeface.
     pub face: Typeface,
-    /// The sheet.
+    /// Sheet.
     pub sheet: Sheet,
-    /// How wide words may be.
+    /// Maximum width of text.
     span: f64,
 }
 
-/// What stands below the panels: the series, and notes.
+/// Legend of the series and notes, below the panels.
 pub struct Foot<'a> {
-    /// The sheet's `y` where it begins.
+    /// `y` of the sheet at its top.
     pub top: f64,
-    /// The series.
+    /// Series.
     pub entries: &'a [Entry],
-    /// The notes, each on lines of its own.
+    /// Notes, each on lines of its own.
     pub notes: &'a [String],
 }
 
 impl Figure {
-    /// A sheet of that size with a title and, below it, smaller words.
+    /// Makes a sheet of that size with a title and smaller text below it.
     ///
     /// # Errors
     ///
-    /// Where there is no typeface.
+    /// There is no typeface.
     pub fn new(
         name: &str,
         [width, height]: [f64; 2],
@@ -51,11 +51,11 @@ impl Figure {
         Ok(Self { face, sheet, span })
     }
 
-    /// A sheet of that width with a title, as high as what stands below its panels needs.
+    /// Makes a sheet of that width with a title, with the height that legend and notes need.
     ///
     /// # Errors
     ///
-    /// Where there is no typeface.
+    /// There is no typeface.
     pub fn with_foot(
         name: &str,
         width: f64,
@@ -68,7 +68,7 @@ impl Figure {
         Ok(figure)
     }
 
-    /// Draws what stands below the panels.
+    /// Draws legend and notes.
     pub fn close(mut self, foot: &Foot) -> Sheet {
         let (notes_at, span, lines) = (foot.notes_at(&self), self.span, foot.lines(&self));
         let Self { face, sheet, .. } = &mut self;
@@ -82,23 +82,23 @@ impl Figure {
 }
 
 impl Foot<'_> {
-    /// The notes in lines as wide as the figure.
+    /// Returns the notes in lines as wide as the figure.
     fn lines(&self, figure: &Figure) -> Vec<String> {
         let wrap = |note: &String| wrapped(&figure.face, note, NOTE, figure.span);
         self.notes.iter().flat_map(wrap).collect()
     }
 
-    /// The sheet's `y` where the notes begin.
+    /// Returns the `y` of the sheet at the first note.
     fn notes_at(&self, figure: &Figure) -> f64 {
         self.top + legend::height(&figure.face, self.entries, figure.span)
     }
 }
 
-/// The typeface of a figure.
+/// Returns the typeface of a figure.
 ///
 /// # Errors
 ///
-/// Where it cannot be read.
+/// It cannot be read.
 pub fn typeface(figure: &str) -> Result<Typeface, ReportError> {
     Typeface::load().map_err(|error| ReportError::Draw {
         figure: figure.to_owned(),

@@ -1,19 +1,19 @@
-//! The typeface of the plots: a subset of `DejaVu` Sans with Greek, superscripts and signs.
+//! Typeface of the plots: a subset of `DejaVu` Sans with Greek, superscripts and signs.
 //!
-//! It is part of the program, so that plots look the same on machines without fonts. The licence
-//! stands beside it in `dejavu-sans.LICENSE.txt`.
+//! It is part of the program, so that plots look the same on machines without fonts. Its licence is beside it in
+//! `dejavu-sans.LICENSE.txt`.
 
 use ab_glyph::{Font, FontRef, InvalidFont, PxScale, ScaleFont, point};
 
-/// The families an SVG asks for: any sans-serif has the same letters at about the same widths.
+/// Families that an SVG asks for: any sans-serif has the same letters at about the same widths.
 pub const FAMILY: &str = "DejaVu Sans, sans-serif";
 
 const BYTES: &[u8] = include_bytes!("dejavu-sans.ttf");
 
-/// Where the letters' baseline lies below the middle of a line, in ems: half the height of an `x`.
+/// Distance of the letters' baseline below the middle of a line, in ems: half the height of an `x`.
 const BASELINE: f64 = 0.27;
 
-/// A typeface that measures and rasterises.
+/// Typeface that measures and rasterises.
 pub struct Typeface(FontRef<'static>);
 
 impl Typeface {
@@ -21,19 +21,19 @@ impl Typeface {
     ///
     /// # Errors
     ///
-    /// If the bytes are no font.
+    /// The bytes are not a font.
     pub fn load() -> Result<Self, InvalidFont> {
         FontRef::try_from_slice(BYTES).map(Self)
     }
 
     fn scale(&self, em: f64) -> PxScale {
         let unit = self.0.units_per_em().map_or(1.0, f64::from);
-        // Numbers of pixels are far within what f32 holds.
+        // Numbers of pixels are exact in f32.
         #[expect(clippy::cast_possible_truncation)]
         PxScale::from((em * f64::from(self.0.height_unscaled()) / unit) as f32)
     }
 
-    /// The width of a text.
+    /// Returns the width of a text.
     pub fn width(&self, text: &str, em: f64) -> f64 {
         let font = self.0.as_scaled(self.scale(em));
         text.chars().map(|c| f64::from(font.h_advance(font.glyph_id(c)))).sum()
@@ -45,7 +45,7 @@ impl Typeface {
         let scale = self.scale(em);
         let font = self.0.as_scaled(scale);
         let mut pen = 0.0_f32;
-        // As above.
+        // Numbers of pixels are exact in f32.
         #[expect(clippy::cast_possible_truncation)]
         let baseline = (em * BASELINE) as f32;
         for c in text.chars() {
@@ -64,7 +64,7 @@ impl Typeface {
     }
 }
 
-/// The text cut to a width, with an ellipsis where something went.
+/// Returns the text cut to a width, with an ellipsis if it was cut.
 pub fn fit(face: &Typeface, text: &str, em: f64, width: f64) -> String {
     if face.width(text, em) <= width {
         return text.to_owned();
@@ -76,7 +76,7 @@ pub fn fit(face: &Typeface, text: &str, em: f64, width: f64) -> String {
     format!("{}…", kept.trim_end())
 }
 
-/// The text in lines of at most a width, broken between words; a word that is wider is cut.
+/// Returns the text in lines of at most a width, broken between words; a word that is wider is cut.
 pub fn wrapped(face: &Typeface, text: &str, em: f64, width: f64) -> Vec<String> {
     let mut lines: Vec<String> = Vec::new();
     for word in text.split_whitespace() {

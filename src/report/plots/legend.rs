@@ -6,23 +6,23 @@ use crate::report::plots::font::{Typeface, fit};
 use crate::report::plots::sheet::{Align, Sheet, Spot};
 use crate::report::plots::style::{DARK, GREY, Marker, PAPER};
 
-/// The height of one line of a legend.
+/// Height of one line of a legend.
 pub const LINE: f64 = 22.0;
 const SAMPLE: f64 = 44.0;
 const SIZE: f64 = 13.5;
 const GAP: f64 = 26.0;
 const MOST_COLUMNS: usize = 8;
 
-/// What a legend says of one look.
+/// Entry of a legend.
 #[derive(Debug, Clone)]
 pub struct Entry {
-    /// The words.
+    /// Text.
     pub label: String,
-    /// The line: dashes and width; `None` for none.
+    /// Line: dashes and width; `None` for none.
     pub line: Option<(&'static [f64], f64)>,
-    /// The marker; `None` for none.
+    /// Marker; `None` for none.
     pub marker: Option<Marker>,
-    /// The colour of both.
+    /// Colour of both.
     pub colour: RGBAColor,
 }
 
@@ -38,8 +38,8 @@ impl Entry {
     }
 }
 
-/// Number of lines of the legend, and beginning and width of each column: as many columns as fit, each as wide as its
-/// widest entry.
+/// Returns the number of lines of the legend, and beginning and width of each column: as many columns as fit, each as
+/// wide as its widest entry.
 fn layout(face: &Typeface, entries: &[Entry], width: f64) -> (usize, Vec<[f64; 2]>) {
     let widths: Vec<f64> =
         entries.iter().map(|e| face.width(&e.label, SIZE) + SAMPLE + GAP).collect();
@@ -62,7 +62,7 @@ fn layout(face: &Typeface, entries: &[Entry], width: f64) -> (usize, Vec<[f64; 2
     (lines, columns(lines))
 }
 
-/// The height of a legend of this width.
+/// Returns the height of a legend of this width.
 pub fn height(face: &Typeface, entries: &[Entry], width: f64) -> f64 {
     if entries.is_empty() { 0.0 } else { layout(face, entries, width).0 as f64 * LINE }
 }
@@ -77,14 +77,14 @@ pub fn draw(face: &Typeface, sheet: &mut Sheet, [x, y]: Spot, entries: &[Entry],
     }
 }
 
-/// A marker and what it means, over a panel.
+/// Marker with its meaning, over a panel.
 #[derive(Debug, Clone, Copy)]
 pub struct Key {
-    /// The marker.
+    /// Marker.
     pub marker: Marker,
     /// True if it is hollow.
     pub is_hollow: bool,
-    /// Its meaning.
+    /// Meaning.
     pub words: &'static str,
 }
 

@@ -1,7 +1,7 @@
-//! What the plots are drawn with.
+//! Parts of plots.
 //!
-//! A figure is composed as a [`Sheet`], a list of shapes that knows nothing of file formats, and
-//! the sheet is then painted twice: as SVG and as PNG. The two therefore show the same drawing.
+//! A figure is composed as a [`Sheet`], a list of shapes without a file format, and the sheet is then painted twice: as
+//! SVG and as PNG. Both show the same drawing.
 
 pub mod axis;
 pub mod figure;
@@ -21,12 +21,12 @@ pub use axis::Axis;
 pub use panel::Panel;
 pub use sheet::Sheet;
 
-/// The figure of a case in both formats, as `CASE.svg` and `CASE.png` for the ending `""`, or
+/// Returns the figure of a case in both formats, as `CASE.svg` and `CASE.png` for the ending `""`, or
 /// `CASE.anatomy.svg` and so on for the ending `"anatomy."`.
 ///
 /// # Errors
 ///
-/// Where a backend gives up.
+/// A backend fails.
 pub fn artifacts(case: &str, ending: &str, sheet: &Sheet) -> Result<Vec<Artifact>, ReportError> {
     let wrong = |message| ReportError::Draw { figure: format!("{case} {ending}"), message };
     let svg = paint::svg(sheet).map_err(wrong)?;

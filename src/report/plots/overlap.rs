@@ -1,21 +1,21 @@
-//! Lines that lie on each other: which they are, and how all of them stay visible.
+//! Lines that lie on each other: classes of them, and styles that keep all of them visible.
 //!
-//! Lines that are equal throughout are drawn as one striped line: each has every n-th stripe. A line that is a stretch of
-//! a longer one is drawn over it with gaps.
+//! Equal lines are drawn as one striped line: each has every n-th stripe. A line that coincides with a part of a longer
+//! one is drawn over it with gaps.
 
-/// The length of a stripe, in pixels.
+/// Length of a stripe, in pixels.
 const STRIPE: f64 = 9.0;
-/// Values that differ by less than this share are equal: formulas that are the same differ by rounding.
+/// Relative difference below which values are equal: the same formulas differ by rounding.
 const SAME: f64 = 1e-9;
 
-/// A line of a panel.
+/// Line of a panel.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Line {
-    /// Through points, ascending in x.
+    /// Line through points, ascending in x.
     Points(Vec<(f64, f64)>),
-    /// One value everywhere.
+    /// Constant.
     Level(f64),
-    /// Nothing is drawn.
+    /// No line.
     None,
 }
 
@@ -33,7 +33,7 @@ impl Line {
         }
     }
 
-    /// Number of points; levels are longest.
+    /// Returns the number of points; levels are longest.
     fn length(&self) -> usize {
         match self {
             Self::Points(points) => points.len(),
@@ -43,17 +43,17 @@ impl Line {
     }
 }
 
-/// Lines that are equal, by their numbers, and the longer lines that they lie on.
+/// Class of equal lines, by their numbers, and the longer lines that they lie on.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Class {
-    /// The lines, ascending.
+    /// Lines, ascending.
     pub members: Vec<usize>,
-    /// The first of each class of longer lines below.
+    /// First line of each class of longer lines below.
     pub hosts: Vec<usize>,
 }
 
-/// The classes of equal lines, in the order in which they are drawn: longer ones first, and of those as long solid ones,
-/// so that dashes are seen where two lines share a stretch. `dashes` are those of the lines.
+/// Returns the classes of equal lines, in the order of drawing: longer ones first, and among equally long ones solid
+/// ones first, so that dashes stay visible where two lines coincide. `dashes` are those of the lines.
 pub fn classes(lines: &[Line], dashes: &[&[f64]]) -> Vec<Class> {
     let on = |a: usize, b: usize| lines[a].lies_on(&lines[b]);
     let mut members: Vec<Vec<usize>> = Vec::new();
@@ -80,14 +80,14 @@ pub fn classes(lines: &[Line], dashes: &[&[f64]]) -> Vec<Class> {
     classes
 }
 
-/// Share of a dashed line that is gaps.
+/// Returns the share of a dashed line that is gaps.
 fn gaps(dash: &[f64]) -> f64 {
     let gaps: f64 = dash.iter().skip(1).step_by(2).sum();
     if gaps > 0.0 { gaps / dash.iter().sum::<f64>() } else { 0.0 }
 }
 
 impl Class {
-    /// Dashes of a member: stripes where it is not alone, else its own.
+    /// Returns the dashes of a member: stripes if the class has several members, else its own.
     pub fn dash(&self, member: usize, own: &[f64]) -> Vec<f64> {
         let slots = self.members.len() + usize::from(!self.hosts.is_empty());
         let is_gap_enough = self.members.len() == 1 && !own.is_empty();
@@ -101,7 +101,8 @@ impl Class {
     }
 }
 
-/// Notes on lines that lie on each other, from the classes of each panel with its letter and the names of the lines.
+/// Returns notes on lines that lie on each other, from the classes of each panel with its letter and the names of the
+/// lines.
 pub fn notes(panels: &[(char, Vec<Class>)], names: &[&str]) -> Vec<String> {
     let mut equal: Vec<(String, Vec<char>)> = Vec::new();
     let mut upon: Vec<(String, Vec<char>)> = Vec::new();
@@ -145,8 +146,8 @@ pub fn notes(panels: &[(char, Vec<Class>)], names: &[&str]) -> Vec<String> {
         .collect()
 }
 
-/// Places points side by side that would hide each other: for each point in turn a shift to the right, at most `most` in
-/// size; points closer than `apart` both ways hide each other.
+/// Places points side by side that would hide each other. Returns for each point in turn a shift to the right, at most
+/// `most` in size; points closer than `apart` both ways hide each other.
 pub fn side_by_side(points: &[[f64; 2]], apart: f64, most: f64) -> Vec<f64> {
     let mut placed: Vec<[f64; 2]> = Vec::with_capacity(points.len());
     let shifts = points.iter().map(|&[x, y]| {
@@ -201,7 +202,7 @@ mod tests {
         assert_eq!(classes[0].dash(4, &[]), [9.0, 9.0]);
         assert_eq!(classes[0].dash(6, &[2.0, 3.0]), [0.0, 9.0, 9.0, 0.0]);
         assert_eq!(classes[2].dash(3, &[2.0, 3.0]), [2.0, 3.0]);
-        // A solid line would hide what is below, a dashed one does not.
+        // A solid line would hide the line below it, a dashed one does not.
         assert_eq!(classes[3].dash(1, &[]), [9.0, 9.0]);
         assert_eq!(classes[3].dash(1, &[2.0, 3.0]), [2.0, 3.0]);
         let notes = notes(
@@ -229,7 +230,7 @@ mod tests {
     fn points_that_would_hide_each_other_stand_apart() {
         let points = [[50.0, 10.0], [50.0, 12.0], [50.0, 40.0], [50.0, 10.0], [90.0, 10.0]];
         assert_eq!(side_by_side(&points, 8.0, 20.0), [0.0, 8.0, 0.0, -8.0, 0.0]);
-        // Where there is no room they stay where they are.
+        // Without room they are not moved.
         assert_eq!(side_by_side(&points, 8.0, 4.0), [0.0; 5]);
     }
 }

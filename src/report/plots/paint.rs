@@ -10,19 +10,19 @@ use plotters::style::{
 use crate::report::plots::font::{FAMILY, Typeface};
 use crate::report::plots::sheet::{Align, Image, Label, Shape, Sheet, Spot, strokes};
 
-/// Backends take whole numbers: an SVG counts in tenths of a pixel.
+/// Units of a pixel in an SVG: backends take whole numbers.
 pub const SVG_UNITS: u32 = 10;
-/// A PNG is drawn at three times the size and each 2 × 2 block averaged, which smooths edges.
+/// Units of a pixel in a PNG: it is drawn at three times the size and each 2 × 2 block averaged, which smooths edges.
 const PNG_UNITS: u32 = 3;
 
-/// No coordinate is farther from the sheet's corner, in units.
+/// Largest distance of a coordinate from the sheet's corner, in units.
 const FARTHEST: f64 = 1e6;
 
-/// The sheet as an SVG document.
+/// Returns the sheet as an SVG document.
 ///
 /// # Errors
 ///
-/// In words, where the backend gives up.
+/// The backend fails, with its reason in words.
 pub fn svg(sheet: &Sheet) -> Result<String, String> {
     let (mut text, units) = (String::new(), f64::from(SVG_UNITS));
     let size = pixels(sheet, SVG_UNITS);
@@ -39,18 +39,18 @@ pub fn svg(sheet: &Sheet) -> Result<String, String> {
     Ok(text.replacen(&drawn, &shown, 1))
 }
 
-/// Takes what plotters writes into every element out of it: full opacity, which is the default, and the typeface, which
-/// the first element has for all.
+/// Removes attributes that plotters writes into every element: full opacity, which is the default, and the typeface,
+/// which the first element sets for all.
 fn with_defaults(text: &str) -> String {
     let face = format!(" font-family=\"{FAMILY}\"");
     let text = text.replace(" opacity=\"1\"", "").replace(&face, "");
     text.replacen("<svg", &format!("<svg{face}"), 1)
 }
 
-/// Adds dashes to an SVG document, for plotters writes none: each path is a `polyline`, in the order of the sheet.
+/// Adds dashes to an SVG document, which plotters does not write: each path is a `polyline`, in the order of the sheet.
 fn with_dashes(text: &str, sheet: &Sheet) -> Result<String, String> {
     let paths = sheet.shapes.iter().filter_map(|shape| match shape {
-        // What cannot be seen is not written.
+        // Invisible shapes are not written.
         Shape::Path { colour, dash, .. } if colour.3 > 0.0 => Some(dash),
         _ => None,
     });
@@ -74,21 +74,21 @@ fn with_dashes(text: &str, sheet: &Sheet) -> Result<String, String> {
     }
 }
 
-/// The sheet as the bytes of a PNG file.
+/// Returns the sheet as the bytes of a PNG file.
 ///
 /// # Errors
 ///
-/// In words, where the backend or the encoder gives up.
+/// The backend or the encoder fails, with its reason in words.
 pub fn png(sheet: &Sheet) -> Result<Vec<u8>, String> {
     let (rgb, size) = pixels_of(sheet)?;
     encode(&rgb, size, None).map_err(in_words)
 }
 
-/// Red, green and blue of the sheet's pixels row by row, and how wide and high it is.
+/// Returns red, green and blue of the sheet's pixels row by row, with width and height.
 ///
 /// # Errors
 ///
-/// In words, where the backend gives up.
+/// The backend fails, with its reason in words.
 pub fn pixels_of(sheet: &Sheet) -> Result<(Vec<u8>, (u32, u32)), String> {
     let face = Typeface::load().map_err(in_words)?;
     let (units, (width, height)) = (f64::from(PNG_UNITS), pixels(sheet, PNG_UNITS));
@@ -107,7 +107,7 @@ pub fn pixels_of(sheet: &Sheet) -> Result<(Vec<u8>, (u32, u32)), String> {
     Ok((halved(&fine, width as usize), (width / 2, height / 2)))
 }
 
-/// Paints all shapes; where lines are to be `cut`, each dash by itself.
+/// Paints all shapes; with `cut` each dash of a line separately.
 fn paint<B: DrawingBackend>(
     sheet: &Sheet,
     backend: &mut B,
@@ -143,7 +143,7 @@ fn paint<B: DrawingBackend>(
     backend.present().map_err(in_words)
 }
 
-/// Every pixel as a rectangle; where they meet the later one covers the earlier.
+/// Paints every pixel as a rectangle; where they overlap the later one covers the earlier.
 fn show<B: DrawingBackend>(backend: &mut B, image: &Image, units: f64) -> Result<(), String> {
     let rows = image.pixels.len() / image.columns.max(1);
     let corner = |column: usize, row: usize| {
@@ -159,7 +159,7 @@ fn show<B: DrawingBackend>(backend: &mut B, image: &Image, units: f64) -> Result
     Ok(())
 }
 
-/// A path without repeated points, which have no direction for a thick line to follow.
+/// Returns a path without repeated points, which would give a thick line no direction.
 fn distinct(points: &[Spot], units: f64) -> Vec<(i32, i32)> {
     let mut path: Vec<_> = points.iter().map(|&point| whole(point, units)).collect();
     path.dedup();
@@ -182,8 +182,8 @@ fn text_style(label: &Label, units: f64) -> TextStyle<'_> {
     TextStyle::from(font.transform(turned)).color(&label.colour).pos(Pos::new(h_pos, VPos::Center))
 }
 
-/// Letters by the typeface itself: plotters' own text ignores side bearings, which spoils spacing
-/// and puts the hat of σ̂ beside it.
+/// Writes letters by the typeface itself: plotters' own text ignores side bearings, which spoils spacing and puts the
+/// hat of σ̂ beside it.
 fn write(face: &Typeface, label: &Label, units: f64, mut ink: impl FnMut((i32, i32), RGBAColor)) {
     let em = label.size * units;
     let share = match label.align {
@@ -218,11 +218,11 @@ fn halved(fine: &[u8], width: usize) -> Vec<u8> {
     coarse
 }
 
-/// The bytes of a PNG file: red, green and blue of each pixel, or its number in a palette.
+/// Returns the bytes of a PNG file: red, green and blue of each pixel, or its index in a palette.
 ///
 /// # Errors
 ///
-/// Where the encoder gives up.
+/// The encoder fails.
 pub fn encode(
     data: &[u8],
     (width, height): (u32, u32),
@@ -244,22 +244,22 @@ pub fn encode(
     Ok(bytes)
 }
 
-/// The size in units, even so that it can be halved.
+/// Returns the size in units, even so that it can be halved.
 fn pixels(sheet: &Sheet, units: u32) -> (u32, u32) {
     let even = |length: f64| natural(length / 2.0).max(1) * 2 * units;
     (even(sheet.width), even(sheet.height))
 }
 
 fn whole(at: Spot, units: f64) -> (i32, i32) {
-    // Stops far outside of any sheet, figures clip to their panels long before, and where the
-    // backend's differences of coordinates still fit its integers.
+    // Stops far outside of any sheet: figures clip to their panels long before, and the backend's differences of
+    // coordinates still fit its integers.
     #[expect(clippy::cast_possible_truncation)]
     let round = |x: f64| (x * units).round().clamp(-FARTHEST, FARTHEST) as i32;
     (round(at[0]), round(at[1]))
 }
 
 fn natural(x: f64) -> u32 {
-    // Saturates at zero and at the largest, which no figure has.
+    // Saturates at zero and at the maximum, which no figure reaches.
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
     let n = x.round() as u32;
     n

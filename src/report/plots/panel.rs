@@ -1,4 +1,4 @@
-//! One coordinate system of a figure: frame, grid, titles, and what is drawn inside.
+//! Coordinate system of a figure: frame, grid, titles, and the drawing inside.
 
 use plotters::style::RGBAColor;
 
@@ -6,43 +6,43 @@ use crate::report::plots::Axis;
 use crate::report::plots::sheet::{Align, Sheet, Spot};
 use crate::report::plots::style::{DARK, FAINT, Marker};
 
-/// The size of labels on ticks.
+/// Size of labels on ticks.
 const TICK: f64 = 13.0;
-/// The size of titles of axes and panels.
+/// Size of titles of axes and panels.
 const TITLE: f64 = 14.5;
 
-/// The length of the end of an error bar that leaves the panel, in pixels.
+/// Length of the end of an error bar that leaves the panel, in pixels.
 const STUB: f64 = 20.0;
 
-/// A rectangle of the sheet with two axes.
+/// Rectangle of the sheet with two axes.
 #[derive(Debug, Clone)]
 pub struct Panel {
-    /// The sheet's `x` at the left edge.
+    /// `x` of the sheet at the left edge.
     pub left: f64,
-    /// The sheet's `y` at the upper edge.
+    /// `y` of the sheet at the upper edge.
     pub top: f64,
-    /// The sheet's `x` at the right edge.
+    /// `x` of the sheet at the right edge.
     pub right: f64,
-    /// The sheet's `y` at the lower edge.
+    /// `y` of the sheet at the lower edge.
     pub bottom: f64,
-    /// The horizontal axis.
+    /// Horizontal axis.
     pub x: Axis,
-    /// The vertical axis.
+    /// Vertical axis.
     pub y: Axis,
 }
 
 impl Panel {
-    /// Where a point stands on the sheet, inside the panel or not.
+    /// Returns the place of a point on the sheet, inside the panel or not.
     pub fn spot(&self, x: f64, y: f64) -> Option<Spot> {
         Some([self.across(x)?, self.down(y)?])
     }
 
-    /// Where a value of the horizontal axis stands on the sheet.
+    /// Returns the `x` on the sheet of a value of the horizontal axis.
     pub fn across(&self, x: f64) -> Option<f64> {
         Some(self.left + (self.right - self.left) * self.x.place(x)?)
     }
 
-    /// Where a value of the vertical axis stands on the sheet.
+    /// Returns the `y` on the sheet of a value of the vertical axis.
     pub fn down(&self, y: f64) -> Option<f64> {
         Some(self.bottom - (self.bottom - self.top) * self.y.place(y)?)
     }
@@ -53,7 +53,7 @@ impl Panel {
             && (self.top - 0.5..=self.bottom + 0.5).contains(&y)
     }
 
-    /// Draws what lies behind the data: the grid.
+    /// Draws the grid, which lies behind the data.
     pub fn grid(&self, sheet: &mut Sheet) {
         for tick in self.x.ticks(7).iter().filter(|tick| !tick.label.is_empty()) {
             if let Some(x) = self.across(tick.at) {
@@ -67,7 +67,7 @@ impl Panel {
         }
     }
 
-    /// Draws what lies before the data: frame, ticks, labels and titles.
+    /// Draws frame, ticks, labels and titles, which lie before the data.
     pub fn frame(&self, sheet: &mut Sheet, head: &str) {
         let [left, top, right, bottom] = [self.left, self.top, self.right, self.bottom];
         let corners = [[left, top], [right, top], [right, bottom], [left, bottom], [left, top]];
@@ -92,8 +92,7 @@ impl Panel {
         sheet.text([left, top - 15.0], head, TITLE, DARK, Align::Start);
     }
 
-    /// Draws a line through points, cut off at the panel's edges and open where a point has no
-    /// place.
+    /// Draws a line through points, cut off at the panel's edges and interrupted at points without a place.
     pub fn line(
         &self,
         sheet: &mut Sheet,
@@ -117,7 +116,7 @@ impl Panel {
         sheet.dashed(run, dash, width, colour);
     }
 
-    /// Fills the stretch between two lines, cut off at the panel's upper and lower edges.
+    /// Fills the area between two lines, cut off at the panel's upper and lower edges.
     pub fn band(
         &self,
         sheet: &mut Sheet,
@@ -145,9 +144,9 @@ impl Panel {
         }
     }
 
-    /// Draws a vertical error bar about a value at the sheet's `x`, with caps of this width where its ends lie in the
-    /// panel. An end that does not is an arrow: at the edge, or on a logarithmic axis close by the value, for a bar down to 0
-    /// would go through all decades.
+    /// Draws a vertical error bar around a value at the sheet's `x`, with caps of this width if its ends lie in the
+    /// panel. An end outside is an arrow: at the edge, or on a logarithmic axis close to the value, for a bar down to 0
+    /// would cross all decades.
     pub fn bar(
         &self,
         sheet: &mut Sheet,
@@ -171,14 +170,14 @@ impl Panel {
         }
     }
 
-    /// Whether an end of an error bar becomes an arrow.
+    /// Returns whether an end of an error bar becomes an arrow.
     pub fn cuts(&self, [low, value, high]: [f64; 3]) -> bool {
         let is_shown = |y: f64| self.down(y).is_some_and(|y| self.holds([self.left, y]));
         is_shown(value) && !(is_shown(low) && is_shown(high))
     }
 
-    /// The part of a stroke inside the panel (Y.-D. Liang and B. A. Barsky, "A New Concept and
-    /// Method for Line Clipping", 1984).
+    /// Returns the part of a stroke inside the panel (Y.-D. Liang and B. A. Barsky, "A New Concept and Method for Line
+    /// Clipping", 1984).
     fn clipped(&self, from: Spot, to: Spot) -> Option<[Spot; 2]> {
         let [dx, dy] = [to[0] - from[0], to[1] - from[1]];
         let (mut enter, mut leave) = (0.0_f64, 1.0_f64);
@@ -245,7 +244,7 @@ mod tests {
                 _ => Vec::new(),
             })
             .collect();
-        // Up to its end with a cap, and down by a stub with a head.
+        // A cap at the upper end, a stub with an arrow at the lower one.
         assert_eq!(paths[0], [[45.0, 0.0], [45.0, 45.0 + STUB]]);
         assert_eq!(paths[1], [[42.0, 0.0], [45.0, 0.0], [48.0, 0.0]]);
         assert_eq!(paths[2], [[42.0, 42.0 + STUB], [45.0, 45.0 + STUB], [48.0, 42.0 + STUB]]);

@@ -1,4 +1,4 @@
-//! The series of a sweep: which rows and which curve belong together.
+//! Series of a sweep: the rows and the curve that belong together.
 
 use crate::record::{CaseRecord, Curve, CurvePoint, Digits, Row, Sweep, Verdict};
 use crate::report::plots::legend::Entry;
@@ -6,15 +6,15 @@ use crate::report::plots::style::Style;
 use numeric::digits::count;
 use std::ops::RangeInclusive;
 
-/// One estimator of the case along the sweep, one channel of its value.
+/// Estimator of the case along the sweep, one channel of its value.
 pub struct Series<'a> {
-    /// The estimator, with control, σ̂ and channel where needed: no two series of a plot have the same label.
+    /// Estimator, with control, σ̂ and channel where needed: no two series of a plot have the same label.
     pub label: String,
-    /// How it looks.
+    /// Style.
     pub style: Style,
-    /// Its rows.
+    /// Rows.
     pub rows: Vec<Row<'a>>,
-    /// What theory says, if it says anything.
+    /// Predicted curve, if there is one.
     pub curve: Option<&'a Curve>,
 }
 
@@ -24,8 +24,7 @@ impl Series<'_> {
         is_fixed(&self.rows, self.curve)
     }
 
-    /// Theory's line, through the curve's points, or through the rows' own predictions where there
-    /// is no curve.
+    /// Returns the predicted line, through the curve's points, or through the rows' own predictions without a curve.
     pub fn theory(
         &self,
         of_point: fn(&CurvePoint) -> f64,
@@ -41,14 +40,14 @@ impl Series<'_> {
         }
     }
 
-    /// Range of the setup lookups of its rows; `None` if all are 0 or unknown.
+    /// Returns the range of the setup lookups of its rows; `None` if all are 0 or unknown.
     pub fn setup_lookups(&self) -> Option<RangeInclusive<u64>> {
         let counts = || self.rows.iter().filter_map(|row| row.experiment.setup_lookups);
         let most = counts().max().filter(|&most| most > 0)?;
         Some(counts().min().unwrap_or(most)..=most)
     }
 
-    /// The entry of the legend: the label, and what the estimator needs.
+    /// Returns the entry of the legend: the label, and what the estimator needs.
     pub fn entry(&self) -> Entry {
         let Style { colour, dash, marker } = self.style;
         let measured = self.rows.iter().any(|row| row.experiment.draws.is_some());
@@ -67,7 +66,7 @@ impl Series<'_> {
     }
 }
 
-/// Notes on refusals and on variances of 0, which plots cannot show.
+/// Returns notes on refusals and on variances of 0, which plots cannot show.
 pub fn notes(series: &[Series]) -> Vec<String> {
     let list = |head: &str, of: &dyn Fn(&Series) -> Option<String>| {
         let said: Vec<String> = series.iter().filter_map(of).collect();
@@ -89,19 +88,20 @@ fn is_fixed(rows: &[Row], curve: Option<&Curve>) -> bool {
     curve.is_none() && rows.iter().all(|row| row.experiment.swept().is_none())
 }
 
-/// The rows of one estimator of the case, one channel of its value.
+/// Rows of one estimator of the case, one channel of its value.
 pub(super) struct Group<'a> {
-    /// The number of the estimator.
+    /// Number of the estimator.
     listed: usize,
     pub(super) channel: &'a str,
     pub(super) rows: Vec<Row<'a>>,
     pub(super) curve: Option<&'a Curve>,
 }
 
-/// Of more series than these a plot shows the last channel of each estimator, as the luminance of chromatic media.
+/// Number of series above which a plot shows only the last channel of each estimator, as the luminance of chromatic
+/// media.
 const CROWD: usize = 12;
 
-/// The series of a case, in the order of its rows; a curve without rows is a series, too.
+/// Returns the series of a case, in the order of its rows; a curve without rows is a series, too.
 pub fn collect<'a>(case: &'a CaseRecord, sweep: &'a Sweep) -> Vec<Series<'a>> {
     let mut groups: Vec<Group> = Vec::new();
     for row in case.rows() {
@@ -122,7 +122,7 @@ pub fn collect<'a>(case: &'a CaseRecord, sweep: &'a Sweep) -> Vec<Series<'a>> {
     series.collect()
 }
 
-/// The group of an estimator and a channel, which is added if it is new.
+/// Returns the group of an estimator and a channel, which is added if it is new.
 fn group<'a, 'b>(
     groups: &'b mut Vec<Group<'a>>,
     listed: usize,
@@ -136,7 +136,7 @@ fn group<'a, 'b>(
     &mut groups[at]
 }
 
-/// A refused experiment has no channels: where others of its estimator have, it stands with their first.
+/// Joins a refused experiment, which has no channels, to the first channel of others of its estimator.
 fn join_refused(groups: &mut Vec<Group>) {
     let mut index = 0;
     while index < groups.len() {
@@ -153,7 +153,7 @@ fn join_refused(groups: &mut Vec<Group>) {
     }
 }
 
-/// Leaves the last channel of each estimator, with the experiments that are refused.
+/// Keeps the last channel of each estimator, with the experiments that are refused.
 fn keep_last_channels(groups: &mut Vec<Group>) {
     for index in 0..groups.len() {
         let listed = groups[index].listed;
@@ -171,8 +171,8 @@ fn keep_last_channels(groups: &mut Vec<Group>) {
     });
 }
 
-/// Labels of the series, no two alike: the estimator, its control, its σ̂ where others of its name have another, and
-/// the channel.
+/// Returns labels of the series, no two alike: the estimator, its control, its σ̂ if others of its name have another,
+/// and the channel.
 fn labels(groups: &[Group], digits: Digits) -> Vec<String> {
     let estimator = |group: &Group| match (group.rows.first(), group.curve) {
         (Some(row), _) => row.experiment.label.clone(),
@@ -192,7 +192,7 @@ fn labels(groups: &[Group], digits: Digits) -> Vec<String> {
     numbered(labels)
 }
 
-/// Texts with numbers behind those that have come before.
+/// Returns texts, numbered if an earlier one is equal.
 pub fn numbered(texts: Vec<String>) -> Vec<String> {
     let mut numbered: Vec<String> = Vec::with_capacity(texts.len());
     for text in texts {
@@ -203,7 +203,7 @@ pub fn numbered(texts: Vec<String>) -> Vec<String> {
     numbered
 }
 
-/// The control, where all rows have the same.
+/// Returns the control, if all rows have the same.
 fn control(group: &Group) -> String {
     let first = group.rows.first().map(|row| &row.experiment.id.control);
     let first = first.or(group.curve.map(|curve| &curve.control));
@@ -212,7 +212,7 @@ fn control(group: &Group) -> String {
     same.cloned().unwrap_or_default()
 }
 
-/// σ̂ in words; empty where it is what is swept.
+/// Returns σ̂ in words; empty if it is swept.
 fn sampling(group: &Group, digits: Digits) -> String {
     let drawn = || group.rows.iter().filter(|row| !row.experiment.id.sampling.kind.is_empty());
     if drawn().any(|row| {
@@ -234,8 +234,8 @@ fn sampling(group: &Group, digits: Digits) -> String {
     }
 }
 
-/// Remarks behind a label, in parentheses: knowledge that the estimator needs, its number of setup lookups, and whether it is
-/// outside of the sweep.
+/// Returns remarks behind a label, in parentheses: knowledge that the estimator needs, its number of setup lookups, and
+/// whether it is outside of the sweep.
 pub fn marks(needs: &str, setup: Option<RangeInclusive<u64>>, is_fixed: bool) -> String {
     let mut marks = Vec::new();
     if !needs.is_empty() {
@@ -259,7 +259,7 @@ mod tests {
     use crate::plan::ExperimentId;
     use crate::record::{ChannelRecord, ExperimentRecord};
 
-    /// An experiment of one channel; the estimator is listed under the number.
+    /// Returns an experiment of one channel; the estimator is listed under the number.
     fn one(listed: usize, estimator: &str, control: &str, swept: Option<f64>) -> ExperimentRecord {
         let value = swept.map(|value| SweepPoint { what: What::Sampling, value: Number(value) });
         let id = ExperimentId { control: control.to_owned(), swept: value, ..Default::default() };
@@ -267,7 +267,7 @@ mod tests {
         ExperimentRecord { id, label, listed, channels, ..ExperimentRecord::default() }
     }
 
-    /// The experiment with channels of these names.
+    /// Returns the experiment with channels of these names.
     fn with_channels(one: ExperimentRecord, names: &[&str]) -> ExperimentRecord {
         let channel =
             |name: &&str| ChannelRecord { channel: (*name).to_owned(), ..ChannelRecord::default() };
@@ -302,10 +302,10 @@ mod tests {
         };
         assert_eq!(labels_of(&case(vec![with(0, "a", 8), with(1, "b", 4)])).len(), 12);
         are(&labels_of(&case(vec![with(0, "a", 8), with(1, "b", 5)])), &[("a, 8", 1), ("b, 5", 1)]);
-        // Two experiments of one name are two series, of which each shows its last channel.
+        // Two experiments of one name are two series, each with its last channel.
         let twins = case(vec![with(0, "a", 8), with(1, "a", 8)]);
         are(&labels_of(&twins), &[("a, 8", 1), ("a, 8 #2", 1)]);
-        // A refused experiment stands with others of its estimator.
+        // A refused experiment joins others of its estimator.
         let crowd = case(vec![one(0, "a", "", Some(2.0)), with(0, "a", 13)]);
         are(&labels_of(&crowd), &[("a, 13", 2)]);
     }
@@ -344,7 +344,7 @@ mod tests {
             // Names that differ in σ̂ alone.
             at(one(2, "local-majorant", "", None), None, "local majorants, 10 segments"),
             at(one(3, "local-majorant", "", None), None, "piecewise-constant"),
-            // Twins in everything that a label has.
+            // Equal in everything that a label has.
             at(one(4, "ratio", "", None), Some(2.0), "constant"),
             at(one(5, "ratio", "", None), Some(2.0), "constant"),
         ]));

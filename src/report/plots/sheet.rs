@@ -1,100 +1,100 @@
-//! A drawing as a list of shapes, in units of one pixel at normal size, `y` downwards.
+//! Drawing as a list of shapes, in units of one pixel at normal size, `y` downwards.
 
 use plotters::style::RGBAColor;
 
-/// A point of the sheet.
+/// Point of the sheet.
 pub type Spot = [f64; 2];
 
-/// One shape.
+/// Shape.
 #[derive(Debug, Clone)]
 pub enum Shape {
-    /// A line through points.
+    /// Line through points.
     Path {
-        /// The points.
+        /// Points.
         points: Vec<Spot>,
-        /// The width of the line.
+        /// Width of the line.
         width: f64,
-        /// Its colour.
+        /// Colour.
         colour: RGBAColor,
-        /// Lengths of stroke and gap in turn; empty for a line in one.
+        /// Lengths of stroke and gap in turn; empty for a solid line.
         dash: Vec<f64>,
     },
-    /// A filled polygon.
+    /// Filled polygon.
     Area {
-        /// The corners.
+        /// Corners.
         points: Vec<Spot>,
-        /// Its colour.
+        /// Colour.
         colour: RGBAColor,
     },
-    /// A filled circle.
+    /// Filled circle.
     Disc {
-        /// The centre.
+        /// Centre.
         at: Spot,
-        /// The radius.
+        /// Radius.
         radius: f64,
-        /// Its colour.
+        /// Colour.
         colour: RGBAColor,
     },
-    /// A line of text.
+    /// Line of text.
     Text(Label),
-    /// An image.
+    /// Image.
     Image(Image),
 }
 
-/// A rectangle of pixels.
+/// Rectangle of pixels.
 #[derive(Debug, Clone)]
 pub struct Image {
-    /// Its upper left corner.
+    /// Upper left corner.
     pub at: Spot,
-    /// Its width and height on the sheet.
+    /// Width and height on the sheet.
     pub size: Spot,
-    /// How many pixels stand in a row.
+    /// Number of pixels in a row.
     pub columns: usize,
     /// Red, green and blue of each, row after row from the top.
     pub pixels: Vec<[u8; 3]>,
 }
 
-/// A line of text, centred in height on its place.
+/// Line of text, centred in height on its place.
 #[derive(Debug, Clone)]
 pub struct Label {
-    /// Where.
+    /// Place.
     pub at: Spot,
-    /// What.
+    /// Text.
     pub text: String,
-    /// The size of the em.
+    /// Size of the em.
     pub size: f64,
-    /// Its colour.
+    /// Colour.
     pub colour: RGBAColor,
-    /// Which part of the text stands at its place.
+    /// Part of the text at its place.
     pub align: Align,
     /// True if it runs upwards.
     pub upward: bool,
 }
 
-/// Which part of a text stands at its place.
+/// Part of a text at its place.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Align {
-    /// Its beginning.
+    /// Beginning.
     Start,
-    /// Its middle.
+    /// Middle.
     Middle,
-    /// Its end.
+    /// End.
     End,
 }
 
-/// A drawing.
+/// Drawing.
 #[derive(Debug, Clone)]
 pub struct Sheet {
-    /// Its width.
+    /// Width.
     pub width: f64,
-    /// Its height.
+    /// Height.
     pub height: f64,
-    /// Its shapes, from the back to the front.
+    /// Shapes, from the back to the front.
     pub shapes: Vec<Shape>,
 }
 
 impl Sheet {
-    /// An empty sheet.
+    /// Returns an empty sheet.
     pub fn new(width: f64, height: f64) -> Self {
         Self { width, height, shapes: Vec::new() }
     }
@@ -116,7 +116,7 @@ impl Sheet {
         self.shapes.push(Shape::Disc { at, radius, colour });
     }
 
-    /// Shows an image.
+    /// Adds an image.
     pub fn image(&mut self, image: Image) {
         self.shapes.push(Shape::Image(image));
     }
@@ -134,13 +134,13 @@ impl Sheet {
         self.shapes.push(Shape::Text(Label { at, text, size, colour, align, upward: false }));
     }
 
-    /// Writes a line of text that runs upwards, its middle at the place.
+    /// Writes a line of text that runs upwards, with its middle at the place.
     pub fn upward(&mut self, at: Spot, text: impl Into<String>, size: f64, colour: RGBAColor) {
         let (text, align) = (text.into(), Align::Middle);
         self.shapes.push(Shape::Text(Label { at, text, size, colour, align, upward: true }));
     }
 
-    /// Draws a line in dashes: lengths of stroke and gap in turn, of which one at least is above 0. None draws it in one.
+    /// Draws a dashed line: lengths of stroke and gap in turn, one of them at least above 0. Without any it is solid.
     pub fn dashed(&mut self, points: Vec<Spot>, dash: &[f64], width: f64, colour: RGBAColor) {
         if points.len() > 1 {
             let dash = dash.to_vec();
@@ -149,7 +149,7 @@ impl Sheet {
     }
 }
 
-/// The strokes of a line in dashes, for what can draw lines in one only.
+/// Returns the strokes of a dashed line, for backends without dashes.
 pub fn strokes(points: &[Spot], dash: &[f64]) -> Vec<Vec<Spot>> {
     if dash.iter().sum::<f64>() < 1.0 {
         return vec![points.to_vec()];
@@ -171,7 +171,7 @@ pub fn strokes(points: &[Spot], dash: &[f64]) -> Vec<Vec<Spot>> {
             }
             done += step;
             left -= step;
-            // A rest below a thousandth of a pixel is rounding, and would stall the loop.
+            // A rest below a thousandth of a pixel is rounding, and would make the loop endless.
             if left < 1e-3 {
                 strokes.push(std::mem::take(&mut stroke));
                 turn = (turn + 1) % dash.len();
@@ -202,7 +202,7 @@ mod tests {
         assert_eq!(drawn(&[]), (1, 100.0));
         let (count, length) = drawn(&[6.0, 4.0]);
         assert!(count == 10 && (length - 60.0).abs() < 1e-9);
-        // One that begins with a gap fills what another leaves.
+        // A line that begins with a gap fills the gaps of another.
         let (count, length) = drawn(&[0.0, 6.0, 4.0, 0.0]);
         assert!(count == 10 && (length - 40.0).abs() < 1e-9);
     }

@@ -1,25 +1,25 @@
-//! Colours, dashes and markers: told apart by colour-blind readers and in black and white.
+//! Colours, dashes and markers: distinct for colour-blind readers and in black and white.
 
 use plotters::style::RGBAColor;
 
 use crate::report::plots::sheet::{Sheet, Spot};
 
-/// A colour that covers what is behind it.
+/// Returns an opaque colour.
 pub const fn ink(red: u8, green: u8, blue: u8) -> RGBAColor {
     RGBAColor(red, green, blue, 1.0)
 }
 
-/// Text and frames.
+/// Colour of text and frames.
 pub const DARK: RGBAColor = ink(0x22, 0x22, 0x22);
-/// Text of second rank.
+/// Colour of secondary text.
 pub const GREY: RGBAColor = ink(0x66, 0x66, 0x66);
-/// Lines of the grid.
+/// Colour of lines of the grid.
 pub const FAINT: RGBAColor = ink(0xE6, 0xE6, 0xE6);
-/// The paper.
+/// Colour of the paper.
 pub const PAPER: RGBAColor = ink(0xFF, 0xFF, 0xFF);
 
-/// The palette of M. Okabe and K. Ito, "Color Universal Design" (2008), less its yellow, which is
-/// too pale for lines on paper.
+/// Palette of M. Okabe and K. Ito, "Color Universal Design" (2008), without its yellow, which is too pale for lines on
+/// paper.
 pub const COLOURS: [RGBAColor; 7] = [
     ink(0x00, 0x72, 0xB2),
     ink(0xD5, 0x5E, 0x00),
@@ -32,27 +32,27 @@ pub const COLOURS: [RGBAColor; 7] = [
 
 const DASHES: [&[f64]; 5] = [&[], &[9.0, 4.0], &[2.5, 3.0], &[10.0, 3.5, 2.5, 3.5], &[16.0, 4.0]];
 
-/// How one series looks.
+/// Style of one series.
 #[derive(Debug, Clone, Copy)]
 pub struct Style {
-    /// Its colour.
+    /// Colour.
     pub colour: RGBAColor,
-    /// Its dashes: lengths of stroke and gap.
+    /// Dashes: lengths of stroke and gap.
     pub dash: &'static [f64],
-    /// Its marker.
+    /// Marker.
     pub marker: Marker,
 }
 
 impl Style {
-    /// The look of the series with this number. The periods 7, 5 and 12 have no common factor, so
-    /// that 420 series are distinct.
+    /// Returns the style of the series with this number. The periods 7, 5 and 12 have no common factor, so that 420
+    /// series are distinct.
     pub fn of(index: usize) -> Self {
         let marker = Marker::ALL[index % Marker::ALL.len()];
         Self { colour: COLOURS[index % COLOURS.len()], dash: DASHES[index % DASHES.len()], marker }
     }
 }
 
-/// The shape of a measured point.
+/// Shape of a measured point.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Marker {
     /// ●
@@ -98,7 +98,7 @@ impl Marker {
         Self::Star,
     ];
 
-    /// Draws the marker, with a thin rim of paper that parts it from lines and neighbours.
+    /// Draws the marker, with a thin rim of paper that separates it from lines and other markers.
     pub fn draw(self, sheet: &mut Sheet, at: Spot, radius: f64, colour: RGBAColor) {
         self.fill(sheet, at, radius + 1.2, PAPER);
         self.fill(sheet, at, radius, colour);
@@ -131,7 +131,7 @@ impl Marker {
     }
 }
 
-/// Corners at alternating distances, the first `turn` of a full turn clockwise from the top.
+/// Returns corners at alternating distances, the first `turn` of a full turn clockwise from the top.
 fn ring(at: Spot, corners: u32, turn: f64, even: f64, odd: f64) -> Vec<Spot> {
     let corner = |i: u32| {
         let angle = std::f64::consts::TAU * (turn + f64::from(i) / f64::from(corners));
@@ -141,7 +141,7 @@ fn ring(at: Spot, corners: u32, turn: f64, even: f64, odd: f64) -> Vec<Spot> {
     (0..corners).map(corner).collect()
 }
 
-/// The outline of a cross with four thick arms.
+/// Returns the outline of a cross with four thick arms.
 fn arms(at: Spot, radius: f64, turn: f64) -> Vec<Spot> {
     let (half, notch) = (radius * 0.28, radius * 0.28 * std::f64::consts::SQRT_2);
     let tilt = (half / radius).atan() / std::f64::consts::TAU;

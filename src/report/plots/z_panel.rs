@@ -1,4 +1,4 @@
-//! The panel of z-scores: how far means, variances and lookups are from theory.
+//! Panel of z-scores: deviations of means, variances and lookups from theory.
 
 use plotters::style::RGBAColor;
 
@@ -10,12 +10,12 @@ use crate::report::plots::style::{GREY, Marker, PAPER, ink};
 use crate::report::plots::{Axis, Panel, Sheet};
 use numeric::digits::short;
 
-/// Between these, 95 % of the scores of a correct estimator lie.
+/// Limit of |z| within which 95 % of the scores of a correct estimator lie.
 const USUAL: f64 = 1.96;
 const BAND: RGBAColor = ink(0xEE, 0xF3, 0xF7);
 const LIMIT: RGBAColor = ink(0xB0, 0x30, 0x30);
 
-/// A score: its marker, its word, its kind, its value.
+/// Score: its marker, its word, its kind, its value.
 type Shown = (Marker, &'static str, Score, fn(&Row) -> Option<f64>);
 
 const SCORES: [Shown; 3] = [
@@ -24,7 +24,7 @@ const SCORES: [Shown; 3] = [
     (Marker::Diamond, "lookups", Score::Lookups, |row| row.experiment.z_lookups),
 ];
 
-/// Draws the scores of the series into a panel, whose vertical axis is chosen here.
+/// Draws the scores of the series into a panel, and chooses its vertical axis.
 pub fn draw(
     face: &Typeface,
     sheet: &mut Sheet,
@@ -34,7 +34,7 @@ pub fn draw(
 ) {
     let scores = series.iter().flat_map(|one| &one.rows).flat_map(|row| SCORES.map(|s| s.3(row)));
     let largest = scores.flatten().map(f64::abs).filter(|z| z.is_finite()).fold(0.0, f64::max);
-    // Far outliers of a failed check would flatten all others: they become arrows at the edge.
+    // Far outliers of a failed check would flatten all other scores: they become arrows at the edge.
     let usual = 1.3 * sweep.z_limit.unwrap_or(3.0).max(USUAL);
     let edge = (1.1 * largest).clamp(usual, 2.0 * usual);
     let title = "z, in standard errors".to_owned();
@@ -57,7 +57,7 @@ pub fn draw(
     legend::keys(face, sheet, [right, top - 15.0], &keys);
 }
 
-/// What the band and the dashes mean, in words.
+/// Returns the meaning of the band and the dashes, in words.
 pub fn note(sweep: &Sweep) -> String {
     let band = format!("(d): 95 % of the scores of a correct estimator lie in the band, ±{USUAL}");
     let limit =
@@ -65,18 +65,18 @@ pub fn note(sweep: &Sweep) -> String {
     band + &limit.unwrap_or_default()
 }
 
-/// What hollow points mean, where there are any.
+/// Returns the meaning of hollow points, if there are any.
 pub fn legend_of_hollow(series: &[Series]) -> Option<String> {
     let any = series.iter().flat_map(|one| &one.rows).any(|row| !row.not_normal.is_empty());
     any.then(|| "(d), hollow: too few draws for a normal approximation".to_owned())
 }
 
-/// Draws the points side by side, so that none hides another, and says whether any is off the axis.
+/// Draws the points side by side, so that none hides another; returns whether any is off the axis.
 fn points(sheet: &mut Sheet, panel: &Panel, series: &[Series]) -> bool {
     let swept = series.iter().filter(|one| !one.is_fixed()).count();
     let slots = (swept * SCORES.len()) as f64;
     let step = (0.8 * gap(panel, series) / slots.max(1.0)).min(4.0);
-    // Those of a value at the edge of the sweep stay side by side within the panel.
+    // Points of a value at the edge of the sweep stay side by side within the panel.
     let reach = 4.0 + (slots - 1.0).max(0.0) / 2.0 * step;
     let (least, most) = (panel.left + reach, (panel.right - reach).max(panel.left + reach));
     let mut beyond = false;
@@ -87,12 +87,12 @@ fn points(sheet: &mut Sheet, panel: &Panel, series: &[Series]) -> bool {
             let shift = (slot - (slots - 1.0) / 2.0) * step;
             slot += if fixed { 0.0 } else { 1.0 };
             for row in &one.rows {
-                // What is not swept has a place of its own at the right edge, as in other panels.
+                // Estimators that are not swept have a place at the right edge, as in other panels.
                 let place = row.experiment.swept().map_or(Some(edge), |swept| {
                     Some(panel.across(swept)?.clamp(least, most) + shift)
                 });
                 let (Some(x), Some(z)) = (place, score(row)) else { continue };
-                // An infinite score has no place on the axis, but is all the more beyond it.
+                // An infinite score has no place on the axis, and counts as beyond it.
                 let Some(y) = panel.down(z.clamp(-1e9, 1e9)) else { continue };
                 let at = [x.clamp(panel.left + 4.0, panel.right - 4.0), y];
                 if panel.holds(at) {
@@ -118,7 +118,7 @@ fn points(sheet: &mut Sheet, panel: &Panel, series: &[Series]) -> bool {
     beyond
 }
 
-/// The smallest distance on the sheet between two values of the sweep.
+/// Returns the smallest distance on the sheet between two values of the sweep.
 fn gap(panel: &Panel, series: &[Series]) -> f64 {
     let swept = series
         .iter()

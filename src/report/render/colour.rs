@@ -1,7 +1,6 @@
 //! Numbers as colours.
 
-/// `RdBu` of C. Brewer, *`ColorBrewer`* (2003), from blue over white to red: it can be told apart without
-/// red or green.
+/// `RdBu` of C. Brewer, *`ColorBrewer`* (2003), from blue over white to red: distinct without red or green, too.
 const DIVERGING: [[f64; 3]; 9] = [
     [33.0, 102.0, 172.0],
     [67.0, 147.0, 195.0],
@@ -14,11 +13,11 @@ const DIVERGING: [[f64; 3]; 9] = [
     [178.0, 24.0, 43.0],
 ];
 
-/// Steps to either side of white: files stay small.
+/// Number of steps to either side of white: fewer steps make files small.
 const STEPS: f64 = 24.0;
 
-/// A pixel's radiance in grey, or in red, green and blue, for screens with the sRGB curve: 1 is white, and nothing
-/// is darker than black.
+/// Returns a pixel's radiance in grey, or in red, green and blue, for screens with the sRGB curve: 1 is white, negative
+/// radiances are black.
 pub fn radiance(channels: &[f64]) -> [u8; 3] {
     let shown = |radiance: f64| {
         let x = radiance.clamp(0.0, 1.0);
@@ -28,8 +27,8 @@ pub fn radiance(channels: &[f64]) -> [u8; 3] {
     each(channels, shown)
 }
 
-/// A pixel's difference. In one channel: from −1, blue, over 0, white, to 1, red. In three: each by itself, from
-/// −1, none of it, over 0, half of it, to 1, all of it: what is grey has the right colour.
+/// Returns a pixel's difference. In one channel: from −1, blue, over 0, white, to 1, red. In three channels each of
+/// them separately, from −1, dark, over 0, half, to 1, full: a difference that is equal in all channels is grey.
 pub fn difference(channels: &[f64]) -> [u8; 3] {
     if let &[one] = channels {
         return signed(one);
@@ -37,7 +36,7 @@ pub fn difference(channels: &[f64]) -> [u8; 3] {
     each(channels, |x| byte(127.5 * (1.0 + x.clamp(-1.0, 1.0))))
 }
 
-/// Three channels by a rule, or three times the first.
+/// Applies a rule to three channels, or three times to the first.
 fn each(channels: &[f64], shown: impl Fn(f64) -> u8) -> [u8; 3] {
     match *channels {
         [red, green, blue] => [red, green, blue].map(shown),
@@ -77,7 +76,7 @@ mod tests {
     fn no_difference_is_white_and_the_ends_are_blue_and_red() {
         assert_eq!(signed(0.0), [255; 3]);
         assert_eq!([signed(-7.0), signed(1.0)], [[33, 102, 172], [178, 24, 43]]);
-        // A quarter to red.
+        // A quarter of the way to red.
         assert_eq!(difference(&[0.25]), [253, 219, 199]);
     }
 

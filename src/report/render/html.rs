@@ -9,10 +9,10 @@ use crate::render::record::{Exposure, ExposureRecord};
 use crate::report::html as page;
 use crate::report::html::listing::{self, Cell, Column, table};
 
-/// An image with its picture.
+/// Image with its picture.
 type Joined<'a> = (&'a PictureRecord, &'a ExposureRecord);
 
-/// A column of a figure of what was exposed.
+/// Makes a column for a figure of an image.
 macro_rules! exposed {
     ($title:literal, $figure:expr) => {
         Column {
@@ -45,7 +45,7 @@ fn reason(exposure: &ExposureRecord) -> &str {
     exposure.outcome.as_ref().err().map_or("", String::as_str)
 }
 
-/// Pictures, each with its sheet as a PNG file, as a page of HTML.
+/// Returns a page of HTML with all pictures, each with its sheet as a PNG file.
 pub fn text(pictures: &[(PictureRecord, Vec<u8>)]) -> String {
     let rows: Vec<Joined> = pictures
         .iter()

@@ -15,15 +15,15 @@ use crate::render::record::{Exposure, ExposureRecord};
 use crate::report::{Artifact, ReportError};
 use media::files::{exr, pfm};
 
-/// What the names of an EXR's channels of standard errors begin with.
+/// Prefix of the names of an EXR's channels of standard errors.
 const ERROR: &str = "standard_error.";
 
-/// The files of a picture: `NAME.png`, and `NAME/` with the reference and the image of each estimator, as PFM and, with
-/// the standard error of each value in channels beside its own, as EXR.
+/// Returns the files of a picture: `NAME.png`, and `NAME/` with the reference and the image of each estimator, as PFM
+/// and as EXR. The EXR has the standard error of each value in channels of its own.
 ///
 /// # Errors
 ///
-/// Where the sheet cannot be painted or an image not be encoded.
+/// The sheet cannot be painted, or an image cannot be encoded.
 pub fn artifacts(record: &PictureRecord) -> Result<Vec<Artifact>, ReportError> {
     let wrong = |message| ReportError::Draw { figure: record.name.clone(), message };
     let png = sheet::png(record).map_err(wrong)?;
@@ -47,7 +47,7 @@ pub fn artifacts(record: &PictureRecord) -> Result<Vec<Artifact>, ReportError> {
     Ok(files)
 }
 
-/// σ̂ and control in words.
+/// Returns σ̂ and control in words.
 fn given(exposure: &ExposureRecord) -> String {
     let mut words = Vec::new();
     if !exposure.sampling.is_empty() {
@@ -59,7 +59,7 @@ fn given(exposure: &ExposureRecord) -> String {
     words.join(", ")
 }
 
-/// Three digits, without an exponent where that is short.
+/// Returns three digits, without an exponent if that is short.
 pub fn short(x: f64) -> String {
     let size = x.abs();
     if size == 0.0 {
@@ -74,7 +74,7 @@ pub fn short(x: f64) -> String {
     format!("{x:.decimals$}")
 }
 
-/// One image.
+/// Row of the table: one image.
 #[derive(Serialize)]
 struct Row<'a> {
     picture: &'a str,
@@ -100,11 +100,11 @@ struct Row<'a> {
     reason: &'a str,
 }
 
-/// `gallery.csv`: one row for every image, without times.
+/// Returns `gallery.csv`: one row for every image, without times.
 ///
 /// # Errors
 ///
-/// Where the encoder gives up.
+/// The encoder fails.
 pub fn csv<'a>(
     records: impl IntoIterator<Item = &'a PictureRecord>,
 ) -> Result<String, ReportError> {

@@ -1,18 +1,18 @@
-//! PNG with a palette: a third of the size of one without, for sheets of few colours.
+//! PNG with a palette: a third of the size without one, for sheets of few colours.
 
 use std::collections::BTreeMap;
 
 use crate::report::plots::paint;
 
-/// The most colours of a palette.
+/// Maximum number of colours of a palette.
 const MOST: usize = 256;
 
-/// The bytes of a PNG file. Greys are rounded to every second one; where there are more than 256 colours
-/// all the same, the file has no palette.
+/// Returns the bytes of a PNG file. Greys are rounded to every second one; if there are still more than 256 colours,
+/// the file has no palette.
 ///
 /// # Errors
 ///
-/// Where the encoder gives up.
+/// The encoder fails.
 pub fn encode(rgb: &[u8], size: (u32, u32)) -> Result<Vec<u8>, png::EncodingError> {
     let coarse: Vec<[u8; 3]> =
         rgb.as_chunks::<3>().0.iter().map(|&colour| rounded(colour)).collect();

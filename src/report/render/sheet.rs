@@ -1,5 +1,5 @@
-//! A picture's sheet: the reference and every estimator's image, below each its error in false colour,
-//! and below that what it cost.
+//! Sheet of a picture: the reference and every estimator's image, below each its error in false colour, and below that
+//! its cost.
 
 use super::{colour, given, palette, short};
 use crate::render::PictureRecord;
@@ -9,21 +9,21 @@ use crate::report::plots::paint;
 use crate::report::plots::sheet::{Align, Image, Sheet};
 use crate::report::plots::style::{DARK, FAINT, GREY};
 
-/// Units of the sheet to a pixel of the file.
+/// Number of units of the sheet per pixel of the file.
 const FILE_PIXEL: f64 = 2.0 / 3.0;
-/// The distance of images from each other and from the rim.
+/// Distance of images from each other and from the rim.
 const GAP: f64 = 20.0;
-/// Images in a row at most, the reference among them.
+/// Maximum number of images in a row, the reference among them.
 const MOST: usize = 6;
-/// The size of letters, and the distance of lines.
+/// Size of letters, and distance of lines.
 const LETTER: f64 = 10.5;
 const LINE: f64 = 15.0;
 
-/// The sheet as a PNG file.
+/// Returns the sheet as a PNG file.
 ///
 /// # Errors
 ///
-/// In words, where the painter gives up.
+/// The painter fails, with its reason in words.
 pub fn png(record: &PictureRecord) -> Result<Vec<u8>, String> {
     let face = Typeface::load().map_err(|error| error.to_string())?;
     let sheet = compose(record, &face);
@@ -31,7 +31,7 @@ pub fn png(record: &PictureRecord) -> Result<Vec<u8>, String> {
     palette::encode(&rgb, size).map_err(|error| error.to_string())
 }
 
-/// Where a column of the sheet is.
+/// Place of a column of the sheet.
 struct Column {
     left: f64,
     top: f64,
@@ -40,7 +40,7 @@ struct Column {
 
 fn compose(record: &PictureRecord, face: &Typeface) -> Sheet {
     let count = record.exposures.len() + 1;
-    // Rows of equal length, as few as can be.
+    // The smallest number of rows, of equal length.
     let bands = count.div_ceil(MOST);
     let across = count.div_ceil(bands);
     let [columns, rows] = record.size;
@@ -104,7 +104,7 @@ fn reference(
     write(sheet, place, &lines);
 }
 
-/// What the colours of the errors mean, where the reference would have its own.
+/// Draws the meaning of the colours of the errors, where the error of the reference would be.
 fn legend(sheet: &mut Sheet, record: &PictureRecord, place: &Column) {
     let Column { left, top, size } = *place;
     let top = top + size[1] + 8.0;
@@ -135,7 +135,7 @@ fn legend(sheet: &mut Sheet, record: &PictureRecord, place: &Column) {
     sheet.text([left + 0.5 * size[0], top + 10.0], words, LETTER, DARK, Align::Middle);
 }
 
-/// A round number.
+/// Returns a round number.
 fn number(x: f64) -> String {
     if (1e-3..1e4).contains(&x) { format!("{x}") } else { format!("{x:e}") }
 }
@@ -170,7 +170,7 @@ fn exposure(
     write(sheet, place, &words(face, exposure, room));
 }
 
-/// What stands below an image.
+/// Returns the lines below an image.
 fn words(face: &Typeface, exposure: &ExposureRecord, room: f64) -> Vec<String> {
     let mut lines = wrapped(face, &exposure.estimator.to_string(), room, 2);
     lines.extend(wrapped(face, &given(exposure), room, 2));
@@ -221,7 +221,7 @@ fn difference(record: &PictureRecord, image: &[f64], at: [f64; 2], size: [f64; 2
     Image { at, size, columns: record.size[0], pixels }
 }
 
-/// A text in lines of a width; what does not fit into the last is cut.
+/// Returns a text in lines of a width; the last one is cut if the text is too long.
 fn wrapped(face: &Typeface, text: &str, width: f64, most: usize) -> Vec<String> {
     let mut lines: Vec<String> = Vec::new();
     for word in text.split(' ').filter(|word| !word.is_empty()) {

@@ -1,5 +1,5 @@
-//! `CASE.anatomy.svg` and `.png`: a ray seen from the side, with what an estimator flies through
-//! above and what it says of the transmittance below.
+//! `CASE.anatomy.svg` and `.png`: a ray seen from the side, with the extinctions of an estimator above and its
+//! transmittance below.
 //!
 //! After Figures 5 and 8 of L. Szirmay-Kalos, I. Georgiev, M. Magdics, B. Molnár, D. Légrády,
 //! "Unbiased Light Transport Estimators for Inhomogeneous Participating Media", Computer Graphics
@@ -17,11 +17,11 @@ use crate::report::{Artifact, ReportError};
 const RIGHT: f64 = 940.0;
 const LEGEND: f64 = 968.0;
 
-/// Two panels for each case with a curve.
+/// Returns two panels for each case with a curve.
 ///
 /// # Errors
 ///
-/// Where an encoder or a painter gives up.
+/// An encoder or the painter fails.
 pub fn render(record: &Record) -> Result<Vec<Artifact>, ReportError> {
     let mut artifacts = Vec::new();
     for case in &record.results.cases {
@@ -33,11 +33,11 @@ pub fn render(record: &Record) -> Result<Vec<Artifact>, ReportError> {
     Ok(artifacts)
 }
 
-/// The figure of a case with a curve.
+/// Returns the figure of a case with a curve.
 ///
 /// # Errors
 ///
-/// Where there is no typeface.
+/// There is no typeface.
 pub fn figure(case: &CaseRecord, anatomy: &Anatomy) -> Result<Sheet, ReportError> {
     let label = anatomy.experiment.label();
     let words = [&case.name, &case.medium, &label].map(String::as_str).join("  ·  ");
@@ -56,10 +56,10 @@ fn panel(anatomy: &Anatomy, [top, bottom]: [f64; 2], y: Axis) -> Panel {
     Panel { left: LEFT, top, right: RIGHT, bottom, x, y }
 }
 
-/// A curve of the upper panel: name, values, dashes, width, colour.
+/// Curve of the upper panel: name, values, dashes, width, colour.
 type Profile<'a> = (&'static str, &'a [f64], &'static [f64], f64, RGBAColor);
 
-/// The upper panel: extinctions, where they were explored, and where the first walk collided.
+/// Draws the upper panel: extinctions, explorer points, and collisions of the first walk.
 fn medium(sheet: &mut Sheet, anatomy: &Anatomy) -> Vec<Entry> {
     let profiles: [Profile; 4] = [
         ("sampling σ\u{302}", &anatomy.sampling, &[9.0, 4.0], 2.0, COLOURS[2]),
@@ -99,7 +99,7 @@ fn medium(sheet: &mut Sheet, anatomy: &Anatomy) -> Vec<Entry> {
     entries
 }
 
-/// The lower panel: the exact transmittance, how draws scatter about it, and what was measured.
+/// Draws the lower panel: the exact transmittance, the spread of draws about it, and the measured means.
 fn transmittance(sheet: &mut Sheet, anatomy: &Anatomy) -> Vec<Entry> {
     let panel = panel(anatomy, [506.0, 822.0], transmittance_axis(anatomy));
     let blue = COLOURS[6];
@@ -144,14 +144,14 @@ fn transmittance(sheet: &mut Sheet, anatomy: &Anatomy) -> Vec<Entry> {
     entries
 }
 
-/// The band of one standard deviation: (t, low, high).
+/// Returns the band of one standard deviation: (t, low, high).
 fn spread(anatomy: &Anatomy) -> impl Iterator<Item = (f64, f64, f64)> {
     let curve = anatomy.t.iter().zip(&anatomy.transmittance).zip(&anatomy.deviation);
     curve.map(|((&t, &mean), &deviation)| (t, mean - deviation, mean + deviation))
 }
 
-/// A range with the curve and the means; spread and walks may double it each way, no more, for a
-/// single wild draw would flatten everything else.
+/// Returns a range with the curve and the means. Spread and walks may at most double it to either side, for a single
+/// extreme draw would flatten everything else.
 fn transmittance_axis(anatomy: &Anatomy) -> Axis {
     let means = anatomy.measured.iter().map(|point| point.mean);
     let core = means.chain(anatomy.transmittance.iter().copied()).chain([0.0]);

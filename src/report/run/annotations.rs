@@ -1,8 +1,7 @@
-//! Annotations on GitHub: workflow commands that put failures on the page of the change.
+//! Annotations on GitHub: workflow commands that show failures on the page of the change.
 //!
-//! `::error title=…,file=…::message` for what fails, `::warning` for what is inconclusive and for notes on cases. GitHub
-//! shows ten of each per step: where there are more, the tenth and following give way to one that
-//! counts them.
+//! `::error title=…,file=…::message` for failures, `::warning` for inconclusive results and for notes on cases. GitHub
+//! shows ten of each per step: if there are more, the tenth counts those that are left out.
 
 use std::fmt::Write;
 
@@ -11,10 +10,10 @@ use crate::record::{CaseRecord, Record, Verdict};
 use crate::report::run::diff;
 use crate::report::run::failures::{self, Failure, failing};
 
-/// How many of a kind GitHub shows.
+/// Number of annotations of a kind that GitHub shows.
 const MOST: usize = 10;
 
-/// The commands, one to a line; empty where all is well.
+/// Returns the commands, one per line; empty if there is nothing to report.
 pub fn text(record: &Record) -> String {
     let of = |verdict| failing(record, verdict).into_iter().map(move |t| of_failure(verdict, &t));
     let errors = of(Verdict::Fail).chain(record.comparison.iter().flat_map(of_changes));
@@ -28,7 +27,7 @@ pub fn text(record: &Record) -> String {
     lines.fold(String::new(), |text, line| text + &line + "\n")
 }
 
-/// The commands that GitHub shows of one kind.
+/// Returns the commands that GitHub shows of one kind.
 fn at_most(command: &str, annotations: Vec<String>) -> Vec<String> {
     let all = annotations.len();
     let shown = if all > MOST { MOST - 1 } else { all };
@@ -44,7 +43,7 @@ fn at_most(command: &str, annotations: Vec<String>) -> Vec<String> {
     lines
 }
 
-/// What became worse than in a stored run.
+/// Returns the regressions against a stored run.
 fn of_changes(comparison: &Comparison) -> Vec<String> {
     let title = property(&format!("worse than baseline {}", comparison.name));
     let worse = diff::all(comparison).into_iter().filter(|change| change.is_worse);

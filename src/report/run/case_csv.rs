@@ -1,7 +1,7 @@
-//! `CASE.csv`, `CASE.theory.csv` and `CASE.anatomy.csv`: what the plots of a case are drawn from.
+//! `CASE.csv`, `CASE.theory.csv` and `CASE.anatomy.csv`: data of the plots of a case.
 //!
-//! Results only, without timing, so that the files are the same to the byte for any number of
-//! threads on any machine.
+//! They have results only, without timing, so that the files are the same to the byte for any number of threads on any
+//! machine.
 
 use crate::record::{Anatomy, CaseRecord, Record, Row, Sweep};
 use crate::report::columns::table;
@@ -9,11 +9,11 @@ use crate::report::run::summary_csv::{Line, TIMED, columns};
 use crate::report::{Artifact, ReportError, case_path};
 use numeric::digits::exact;
 
-/// The rows, the theory's curves and the profiles of each case.
+/// Returns the rows, the predicted curves and the profiles of each case.
 ///
 /// # Errors
 ///
-/// Where an encoder or a painter gives up.
+/// An encoder or the painter fails.
 pub fn render(record: &Record) -> Result<Vec<Artifact>, ReportError> {
     let mut artifacts = Vec::new();
     for case in &record.results.cases {
@@ -33,7 +33,7 @@ pub fn render(record: &Record) -> Result<Vec<Artifact>, ReportError> {
     Ok(artifacts)
 }
 
-/// A column of deviations, for error bars.
+/// Column of deviations, for error bars.
 type Bar = (&'static str, fn(&Row) -> Option<f64>);
 
 fn case_rows(case: &CaseRecord, seed: u64) -> Result<String, ReportError> {

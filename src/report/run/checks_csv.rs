@@ -1,24 +1,26 @@
-//! `checks.csv`: every answer of every check on one line, with the numbers behind it.
+//! `checks.csv`: one line for every finding of every check, with its numbers.
 //!
 //! | column | meaning |
 //! |---|---|
-//! | `check`, `what`, `channel` | who asked, about what; the channel is empty for the experiment as a whole |
-//! | `verdict`, `reason` | the answer |
+//! | `check`, `what`, `channel` | check and quantity; the channel is empty for the experiment as a whole |
+//! | `verdict`, `reason` | the result |
 //! | `tolerance`, `variance_of_y` | ε and V of the gate, relative |
-//! | `planned`, `draws`, `needed` | 27 V/ε²; the draws that it took; those it would take, where more than planned |
+//! | `planned`, `draws`, `needed` | 27 V/ε²; the draws that it took; the draws that it would take, if more than planned
+//! |
 //! | `mean_of_y` | the observed relative difference |
-//! | `ln_e`, `ln_e_limit` | the evidence against a correct estimator, and where it fails |
-//! | `ln_p_above`, `ln_p_below`, `ln_p_limit` | the evidence against a bias of +ε and of −ε, and where it passes |
+//! | `ln_e`, `ln_e_limit` | the evidence against a correct estimator, and its limit, at which it fails |
+//! | `ln_p_above`, `ln_p_below`, `ln_p_limit` | the evidence against a bias of +ε and of −ε, and its limit, at which it
+//! passes |
 //! | `z`, `p` | over the fixed draws |
-//! | `block` | where it was decided or found |
+//! | `block` | block after which it was decided, or with the violation |
 //!
-//! What concerns an experiment as a whole stands once, with its first channel.
+//! Findings about an experiment as a whole are listed once, with its first channel.
 
 use crate::record::{Finding, GateFinding, Record, Row};
 use crate::report::columns::{self, Column, columns};
 use crate::report::{Artifact, ReportError};
 
-/// An answer with the row that it belongs to.
+/// Finding with its row.
 struct Answer<'a> {
     of: Row<'a>,
     found: &'a Finding,
@@ -30,7 +32,7 @@ impl Answer<'_> {
     }
 }
 
-/// The columns of the file.
+/// Returns the columns of the file.
 fn columns<'a>() -> Vec<Column<Answer<'a>>> {
     columns! {
         "case" = |answer| &answer.of.case.name;
@@ -61,11 +63,11 @@ fn columns<'a>() -> Vec<Column<Answer<'a>>> {
     }
 }
 
-/// One row per answer.
+/// Returns one row per finding.
 ///
 /// # Errors
 ///
-/// Where an encoder or a painter gives up.
+/// An encoder or the painter fails.
 pub fn render(record: &Record) -> Result<Vec<Artifact>, ReportError> {
     let answers = record
         .results

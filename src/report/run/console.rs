@@ -1,8 +1,8 @@
-//! The table on the screen: one block per case, then what it all comes to.
+//! Table on the screen: one block per case, then a summary.
 //!
-//! A block is as wide as the screen and no wider: columns leave in the order of their rank, long
-//! names lose their middle, and reasons without a place in the table follow below it. What all
-//! rows of a case share stands once, over the table.
+//! A block is at most as wide as the screen: columns are dropped in the order of their rank, long names lose their
+//! middle, and reasons without a place in the table follow below it. Facts that all rows of a case share stand once,
+//! above the table.
 
 mod closing;
 pub mod views;
@@ -14,32 +14,32 @@ use crate::report::layout::{self, Field, Grid, Paint, end_elided};
 use crate::report::run::totals;
 use numeric::digits::{count, short};
 
-/// What the table is about.
+/// Subject of the table.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum View {
-    /// What was drawn and decided.
+    /// Draws and verdicts.
     Run,
-    /// What theory says.
+    /// Predictions.
     Predict,
-    /// What theory says of moments and costs in full.
+    /// Predicted moments and costs in full.
     Moments,
-    /// What would be drawn.
+    /// Planned draws.
     Plan,
 }
 
 impl View {
-    /// Returns whether it shows theory only.
+    /// Returns whether it shows predictions only.
     pub fn is_theory(self) -> bool {
         matches!(self, Self::Predict | Self::Moments)
     }
 }
 
-/// The narrowest column of reasons that is worth having.
+/// Smallest useful width of a column of reasons.
 const NARROWEST: usize = 20;
-/// From this width on, reasons may stand in the table.
+/// Width of the screen from which on reasons may stand in the table.
 const WIDE: usize = 120;
 
-/// The table of a record.
+/// Returns the table of a record.
 pub fn table(record: &Record, view: View, pen: layout::Pen) -> String {
     let mut text = String::new();
     let mut marks = false;
@@ -52,7 +52,7 @@ pub fn table(record: &Record, view: View, pen: layout::Pen) -> String {
     text
 }
 
-/// The table of a run in short: one line per case, and below it the rows that do not pass.
+/// Returns the short table of a run: one line per case, and below it the rows that do not pass.
 pub fn brief(record: &Record, pen: layout::Pen) -> String {
     let (mut text, mut marks) = (String::new(), false);
     for case in &record.results.cases {
@@ -81,14 +81,14 @@ struct Block<'a> {
     labels: Digits,
 }
 
-/// What parentheses mean, where there are any.
+/// Adds the meaning of parentheses, if there are any.
 fn legend(text: &mut String, pen: layout::Pen, marks: bool) {
     if marks {
         pen.say(text, Paint::Dim, totals::NOT_NORMAL);
     }
 }
 
-/// Writes a case; answers whether a z is marked.
+/// Writes a case; returns whether a z is marked.
 fn block(text: &mut String, pen: layout::Pen, case: &CaseRecord, view: View) -> bool {
     pen.heading(text, &case.name, &case.title);
     let shown = Block { case, rows: case.rows().collect(), labels: Digits::of(case) };
@@ -100,12 +100,12 @@ fn block(text: &mut String, pen: layout::Pen, case: &CaseRecord, view: View) -> 
     grid(text, pen, &shown, view)
 }
 
-/// The rows with their reasons; answers whether a z is marked.
+/// Writes the rows with their reasons; returns whether a z is marked.
 fn grid(text: &mut String, pen: layout::Pen, block: &Block, view: View) -> bool {
     let Block { case, rows, labels } = block;
     let (names, rest) = (views::names(case, rows, *labels), views::columns(rows, view));
     if view == View::Moments {
-        // All of them were asked for: what does not fit beside stands below.
+        // All columns were asked for: those that do not fit stand in further tables below.
         for grid in layout::blocks(names, rest, pen.width) {
             text.push_str(&grid.render(pen));
         }
@@ -130,14 +130,14 @@ fn grid(text: &mut String, pen: layout::Pen, block: &Block, view: View) -> bool 
     scores.flat_map(|column| &column.fields).any(|field| field.text.starts_with('('))
 }
 
-/// What is doubtful about a case.
+/// Adds the notes on a case.
 fn notes(text: &mut String, pen: layout::Pen, case: &CaseRecord) {
     for note in &case.notes {
         pen.note(text, &format!("note {note}"), ("note", Paint::Yellow));
     }
 }
 
-/// What all rows share, and what the case is about.
+/// Returns the facts that all rows share, and the subject of the case.
 fn facts(block: &Block, view: View) -> Vec<String> {
     let Block { case, rows, .. } = block;
     let mut facts = vec![case.problem.clone(), case.medium.clone()];
@@ -169,7 +169,7 @@ fn draws(number: u64) -> String {
     format!("{} {}", count(number), if number == 1 { "draw" } else { "draws" })
 }
 
-/// The reasons that have no place in the table, each once, with the rows it is about.
+/// Adds the reasons without a place in the table, each once, with its rows.
 fn footnotes(text: &mut String, pen: layout::Pen, block: &Block, view: View, room: usize) {
     let Block { case, rows, labels } = block;
     let mut notes: Vec<Vec<&Row>> = Vec::new();
@@ -201,7 +201,7 @@ fn footnotes(text: &mut String, pen: layout::Pen, block: &Block, view: View, roo
         let note = format!("{word} {}{at}: {}", row.experiment.label, row.reason);
         pen.note(text, &note, (word, views::status(row, view).paint));
     }
-    // Whole, so that it can be copied.
+    // Commands are not wrapped, so that they can be copied.
     for (estimator, command) in commands {
         let _ = writeln!(text, "  to decide {estimator}: {command}");
     }

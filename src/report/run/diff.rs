@@ -1,4 +1,4 @@
-//! What changed since a stored run, in words that the console and the summaries share.
+//! Changes since a stored run, in words that the console and the summaries share.
 
 use std::fmt::Display;
 
@@ -7,30 +7,30 @@ use crate::record::baseline::{
 };
 use numeric::digits::{fixed, short};
 
-/// Something that changed.
+/// Change of a quantity.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Difference<'a> {
     /// True if it became worse.
     pub is_worse: bool,
     /// The experiment.
     pub experiment: String,
-    /// What changed, with the numbers.
+    /// Description of the change, with the numbers.
     pub what: String,
     /// The command that repeats the experiment.
     pub command: &'a str,
 }
 
 impl Difference<'_> {
-    /// Everything on one line, but for the command.
+    /// Returns everything but the command, on one line.
     pub fn line(&self) -> String {
         format!("{}: {}", self.experiment, self.what)
     }
 }
 
-/// Longer lists of experiments are cut in words; `record.json` has them whole.
+/// Maximum length of lists of experiments in words; `record.json` has them whole.
 const MOST: usize = 8;
 
-/// What was left out, each with its reason and the experiments.
+/// Returns the experiments that were left out, by the reason.
 fn left_out(comparison: &Comparison) -> Vec<(&'static str, &[ChannelId])> {
     let LeftOut { relearned, blunt, unpredicted, uncounted, brief } = &comparison.left_out;
     let all = [
@@ -46,7 +46,7 @@ fn left_out(comparison: &Comparison) -> Vec<(&'static str, &[ChannelId])> {
     not_empty(all)
 }
 
-/// The lists of experiments that are not empty, each with its reason.
+/// Returns the lists of experiments that are not empty, each with its reason.
 pub(in crate::report) fn not_empty<'a, T>(
     lists: impl IntoIterator<Item = (&'static str, &'a Vec<T>)>,
 ) -> Vec<(&'static str, &'a [T])> {
@@ -54,19 +54,19 @@ pub(in crate::report) fn not_empty<'a, T>(
     lists.map(|(why, ids)| (why, &ids[..])).collect()
 }
 
-/// How long lists of experiments are, each with its reason.
+/// Returns the lengths of lists of experiments, each with its reason.
 pub(in crate::report) fn counts<T>(lists: &[(&'static str, &[T])]) -> String {
     let counts: Vec<_> = lists.iter().map(|(why, ids)| format!("{why} ({})", ids.len())).collect();
     counts.join("; ")
 }
 
-/// What is said at the end: that nothing was compared, or that nothing changed.
+/// Returns the closing sentence: nothing was compared, or nothing changed.
 pub(in crate::report) fn ending(nothing: Option<String>, has_changes: bool) -> Option<String> {
     let same = (!has_changes).then(|| "no change in what was compared".to_owned());
     nothing.or(same)
 }
 
-/// A list of experiments, cut where it is long.
+/// Returns a list of experiments, cut if it is long.
 pub(in crate::report) fn listed(why: &str, ids: &[impl Display]) -> String {
     let shown: Vec<String> = ids.iter().take(MOST).map(ToString::to_string).collect();
     let shown = shown.join(", ");
@@ -77,7 +77,7 @@ pub(in crate::report) fn listed(why: &str, ids: &[impl Display]) -> String {
     format!("{why} ({}): {shown}{more}", ids.len())
 }
 
-/// Why nothing was compared, where that is so.
+/// Returns the reason why nothing was compared; `None` if something was.
 pub fn nothing(comparison: &Comparison) -> Option<String> {
     comparison.is_empty().then(|| {
         let counts = counts(&left_out(comparison));
@@ -86,7 +86,7 @@ pub fn nothing(comparison: &Comparison) -> Option<String> {
     })
 }
 
-/// Why no time was compared, where that is so.
+/// Returns the reason why no time was compared; `None` if one was.
 pub fn no_times(comparison: &Comparison) -> Option<String> {
     let is_about_all = |why: &str| !why.starts_with("variance") && !why.starts_with("lookups");
     (comparison.times == 0).then(|| {
@@ -96,7 +96,7 @@ pub fn no_times(comparison: &Comparison) -> Option<String> {
     })
 }
 
-/// What was compared, how, and what was left out.
+/// Returns the extent of the comparison, its conditions, and the experiments that were left out.
 pub fn remarks(comparison: &Comparison) -> Vec<String> {
     let Comparison { name, rules, compared, times, .. } = comparison;
     let alpha = short(rules.alpha, 3);
@@ -124,7 +124,7 @@ pub fn remarks(comparison: &Comparison) -> Vec<String> {
     remarks
 }
 
-/// What changed: what became worse first.
+/// Returns all changes, regressions first.
 pub fn all(comparison: &Comparison) -> Vec<Difference<'_>> {
     let mut told: Vec<Difference> = comparison.drifts.iter().map(drift).collect();
     let tolerance = comparison.rules.time_tolerance;

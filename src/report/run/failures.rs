@@ -1,4 +1,4 @@
-//! What is wrong with a run, finding by finding: the words that the console and the reports share.
+//! Failures of a run, finding by finding, in words that the console and the reports share.
 
 use std::borrow::Cow;
 
@@ -7,19 +7,19 @@ use gate::causes::{Pattern, Place};
 use gate::deviation::signed_percent;
 use numeric::digits::{percent, short, signed};
 
-/// A finding that is not as it should be, with what it belongs to.
+/// Finding with another verdict than pass, with its row.
 #[derive(Debug, Clone, Copy)]
 pub struct Failure<'a> {
     /// The experiment and channel.
     pub row: Row<'a>,
-    /// The finding; `None` where the row has a verdict and no findings.
+    /// Finding; `None` if the row has a verdict and no findings.
     pub finding: Option<&'a Finding>,
     /// The run's seed.
     pub seed: u64,
 }
 
-/// The failures of all rows with this verdict. A finding about an experiment as a whole stands in all
-/// of its rows, and is listed once.
+/// Returns the failures of all rows with this verdict. A finding about an experiment as a whole belongs to all of its
+/// rows, and is listed once.
 pub fn failing(record: &Record, verdict: Verdict) -> Vec<Failure<'_>> {
     let seed = record.results.seed;
     let rows = record.results.rows().filter(|row| row.verdict == Some(verdict));
@@ -31,7 +31,7 @@ pub fn failing(record: &Record, verdict: Verdict) -> Vec<Failure<'_>> {
     failures.filter(is_own).collect()
 }
 
-/// The findings that gave a row its verdict.
+/// Returns the findings that gave a row its verdict.
 pub fn of_row(row: Row<'_>, seed: u64) -> Vec<Failure<'_>> {
     let guilty = row.findings().filter(|finding| Some(finding.verdict) == row.verdict);
     let mut failures: Vec<Failure> =
@@ -43,24 +43,24 @@ pub fn of_row(row: Row<'_>, seed: u64) -> Vec<Failure<'_>> {
 }
 
 impl<'a> Failure<'a> {
-    /// What it is about; without a channel where that is the experiment as a whole.
+    /// Returns its experiment; without a channel if it concerns the experiment as a whole.
     pub fn experiment(&self) -> String {
         let channel = self.finding.map_or(&self.row.values.channel, |finding| &finding.channel);
         self.row.name_with(channel)
     }
 
-    /// The check's name; empty where the row has no findings.
+    /// Returns the check's name; empty if the row has no findings.
     pub fn check(&self) -> &'a str {
         self.finding.map_or("", |finding| finding.check.as_str())
     }
 
-    /// Why, with the most important numbers.
+    /// Returns the reason, with the most important numbers.
     pub fn reason(&self) -> &'a str {
         let reason = self.finding.map_or("", |finding| finding.reason.as_str());
         if reason.is_empty() { self.row.values.reason.as_str() } else { reason }
     }
 
-    /// Where the random numbers are: `seed 1, block 3`.
+    /// Returns the address of the random numbers: `seed 1, block 3`.
     pub fn place(&self) -> String {
         let mut place = format!("seed {}", self.seed);
         if let Some(block) = self.finding.and_then(|finding| finding.block) {
@@ -69,7 +69,7 @@ impl<'a> Failure<'a> {
         place
     }
 
-    /// Everything on one line, but for the command.
+    /// Returns everything but the command, on one line.
     pub fn line(&self) -> String {
         let experiment = self.experiment();
         let parts = [self.row.case.name.as_str(), &experiment, self.check(), self.reason()];
@@ -77,7 +77,7 @@ impl<'a> Failure<'a> {
         format!("{} ({})", parts.join(": "), self.place())
     }
 
-    /// Everything that is known, one name and value to a line, and what usually causes it.
+    /// Returns everything that is known, one name and value per line, and the usual causes.
     pub fn details(&self) -> String {
         let lines = self.facts().into_iter().map(|(name, value)| format!("{name}: {value}"));
         let all: Vec<String> = lines.chain(causes(&self.row)).collect();
@@ -141,24 +141,24 @@ fn limited(value: &str, word: &str, limit: f64) -> Cow<'static, str> {
     format!("{value} ({word} at {})", short(limit, 4)).into()
 }
 
-/// The fewest swept values that have an end.
+/// Smallest number of swept values for which an end is distinguished.
 const FEWEST: usize = 3;
 
-/// The likely causes of a failing row, line by line; empty for a row that does not fail.
+/// Returns the likely causes of a failing row, line by line; empty for a row that does not fail.
 pub fn causes(row: &Row) -> Vec<String> {
     pattern(row).lines()
 }
 
-/// Which checks of a row fail, on which side, and where along the sweep.
+/// Returns which checks of a row fail, on which side, and at which place of the sweep.
 pub fn pattern(row: &Row) -> Pattern {
     let mut pattern = Pattern::default();
     if row.verdict != Some(Verdict::Fail) {
         return pattern;
     }
-    // A declared bias that is not shown has no bug behind it.
+    // A declared bias that is not shown is no evidence of a bug.
     let failing = row.findings().filter(|f| f.verdict == Verdict::Fail && !f.expects_bias);
     for finding in failing {
-        // Draws without chance fail by themselves, without the gate.
+        // Draws without randomness fail a bound, not the gate, so that the bias comes from the mean.
         let measured = || row.mean.zip(row.truth).map(|(mean, truth)| mean - truth);
         let off = finding.gate.map(|gate| gate.mean);
         pattern
@@ -168,7 +168,7 @@ pub fn pattern(row: &Row) -> Pattern {
     pattern
 }
 
-/// Whether an estimator fails at one end of a sweep of σ̂ only.
+/// Returns the end of a sweep of σ̂ if an estimator fails at that end only, else [`Place::Anywhere`].
 fn place(row: &Row) -> Place {
     let is_of_sampling = |what: &str| ["sampling", "sampling-scale"].contains(&what);
     if !row.case.sweep.as_ref().is_some_and(|sweep| is_of_sampling(&sweep.what)) {
@@ -183,7 +183,7 @@ fn place(row: &Row) -> Place {
     });
     let mut along: Vec<(f64, bool)> = along.collect();
     along.sort_by(|a, b| a.0.total_cmp(&b.0));
-    // One change from failing to not failing, or back.
+    // Failing values must be contiguous: exactly one change along the sweep.
     let changes = along.windows(2).filter(|pair| pair[0].1 != pair[1].1).count();
     match (along.len() >= FEWEST && changes == 1, along.first()) {
         (true, Some((_, true))) => Place::LowEnd,

@@ -1,8 +1,8 @@
 //! `report.html`: the whole record as one page that needs no network and no other file.
 //!
-//! The verdict and what to look at first, then what changed since a stored run, the cases with their plots,
-//! and a table of all experiments, each of which opens. Filters and sorting need JavaScript, nothing else does.
-//! All words of a record go through the template's escapes: a title is text, whatever is in it.
+//! First come the verdict and the most important findings, then the changes since a stored run, the cases with their
+//! plots, and a table of all experiments with details that open. Only filters and sorting need JavaScript. All text of
+//! a record goes through the template's escapes, so that a title cannot contain markup.
 
 mod cases;
 mod details;
@@ -18,20 +18,20 @@ use crate::report::html::drawing::{self, Plot, plot};
 use crate::report::run::{anatomy_plot, sweep_plot};
 use crate::report::{Artifact, ReportError};
 
-/// The record as a page.
+/// Returns the record as a page.
 ///
 /// # Errors
 ///
-/// Where a plot cannot be drawn.
+/// A plot cannot be drawn.
 pub fn render(record: &Record) -> Result<Vec<Artifact>, ReportError> {
     Ok(vec![Artifact::text("report.html", text(record)?)])
 }
 
-/// The record as a page of HTML.
+/// Returns the record as a page of HTML.
 ///
 /// # Errors
 ///
-/// Where a plot cannot be drawn.
+/// A plot cannot be drawn.
 pub fn text(record: &Record) -> Result<String, ReportError> {
     let plots = plots(record)?;
     let title = format!("Trueflight: {}", first::verdict(record).words());
@@ -45,11 +45,11 @@ pub fn text(record: &Record) -> Result<String, ReportError> {
     Ok(page::document(&title, &body))
 }
 
-/// The plots of every case, in the cases' order.
+/// Returns the plots of every case, in the cases' order.
 ///
 /// # Errors
 ///
-/// Where a painter gives up.
+/// The painter fails.
 fn plots(record: &Record) -> Result<Vec<Vec<Plot>>, ReportError> {
     let cases = record.results.cases.iter().enumerate();
     cases.map(|(place, case)| of_case(place, case, record.results.seed)).collect()

@@ -1,10 +1,9 @@
-//! JUnit XML, which every CI service shows: one test suite per case, one test per experiment and
-//! channel.
+//! JUnit XML, which every CI service shows: one test suite per case, one test per experiment and channel.
 //!
-//! A fail is a `failure` with every number and the command that repeats it; what is refused or
-//! underpowered is `skipped`; inconclusive is an `error`, a `failure` or `skipped`, as asked for. The
-//! time is processor seconds; where an experiment has several channels, the first has them all. The
-//! form is that of the Jenkins schema `junit-10.xsd`.
+//! A fail is a `failure` with every number and the command that repeats it. Refused and underpowered experiments are
+//! `skipped`. Inconclusive ones are an `error`, a `failure` or `skipped`, as asked for. The time is processor seconds;
+//! if an experiment has several channels, the first has all of it. The form is that of the Jenkins schema
+//! `junit-10.xsd`.
 
 use std::time::Duration;
 
@@ -17,7 +16,7 @@ use crate::report::run::diff;
 use crate::report::run::failures::{self, Failure};
 use numeric::digits::exact;
 
-/// What an inconclusive experiment is for JUnit.
+/// Result of an inconclusive experiment in JUnit.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub enum Inconclusive {
     /// An `error`: the test could not do its work.
@@ -25,15 +24,15 @@ pub enum Inconclusive {
     Error,
     /// A `failure`.
     Failure,
-    /// `skipped`: it turns nothing red.
+    /// `skipped`: no CI service counts it as a failure.
     Skipped,
 }
 
-/// The record as JUnit XML.
+/// Returns the record as JUnit XML.
 ///
 /// # Errors
 ///
-/// Where the encoder gives up.
+/// The encoder fails.
 pub fn text(record: &Record, inconclusive: Inconclusive) -> Result<String, ReportError> {
     let mut report = quick_junit::Report::new("trueflight");
     report.set_time(duration(record.timing.seconds));
@@ -77,8 +76,8 @@ fn suite(record: &Record, case: &CaseRecord, inconclusive: Inconclusive) -> Test
     suite
 }
 
-/// A suite for what changed since a stored run: a test for each change, or one that nothing did. What was
-/// compared and what was left out is its output.
+/// Returns a suite for the changes since a stored run: a test for each change, or one that passes if nothing changed.
+/// Its output is the extent of the comparison, and the experiments that were left out.
 fn changed(comparison: &Comparison) -> TestSuite {
     let mut suite = TestSuite::new(format!("baseline {}", comparison.name));
     suite.set_system_out(diff::remarks(comparison).join("\n"));

@@ -1,5 +1,5 @@
-//! A summary in Markdown, as GitHub shows it on the page of a job: the counts, the cases, what fails
-//! and what is inconclusive, each with the command that repeats it.
+//! Summary in Markdown, as GitHub shows it on the page of a job: the counts, the cases, failing and inconclusive
+//! experiments, each with the command that repeats it.
 
 use std::fmt::Write;
 
@@ -10,10 +10,10 @@ use crate::report::run::failures::{self, Failure, failing};
 use crate::report::run::totals;
 use numeric::digits::range;
 
-/// A job's summary may have a mebibyte: beyond so many rows the file only counts.
+/// Maximum number of rows; more are counted, since a job's summary is limited to a mebibyte.
 const MOST: usize = 50;
 
-/// The record as a page of Markdown.
+/// Returns the record as a page of Markdown.
 pub fn text(record: &Record) -> String {
     let mut text = String::from("## Trueflight\n\n");
     let counts: Vec<String> = totals::counts(&record.results.cases)
@@ -92,7 +92,7 @@ fn section(text: &mut String, title: &str, failures: &[Failure]) {
     text.push('\n');
 }
 
-/// What changed since a stored run.
+/// Adds the changes since a stored run.
 fn changed(text: &mut String, comparison: &Comparison) {
     let _ = writeln!(text, "### Since baseline {}\n", escaped(&comparison.name));
     let all = diff::all(comparison);
@@ -114,7 +114,7 @@ fn more(text: &mut String, all: usize) {
     }
 }
 
-/// What is doubtful about cases.
+/// Adds the notes on cases.
 fn notes(text: &mut String, cases: &[CaseRecord]) {
     let all: Vec<_> =
         cases.iter().flat_map(|case| case.notes.iter().map(move |note| (case, note))).collect();
@@ -143,7 +143,7 @@ fn cases(text: &mut String, cases: &[CaseRecord]) {
     text.push('\n');
 }
 
-/// The text without anything that Markdown would take for markup, on one line.
+/// Returns the text on one line, without characters that Markdown would take for markup.
 fn escaped(text: &str) -> String {
     let mut plain = String::with_capacity(text.len());
     for c in text.chars() {

@@ -32,8 +32,8 @@ pub fn render(record: &Record) -> Result<Vec<Artifact>, ReportError> {
     Ok(rendered?.into_iter().flatten().collect())
 }
 
-/// Lists the reports: from one line each come the module and the rows below. Those after the
-/// semicolon are written only where an option asks for them.
+/// Lists the reports: each line gives the module and its entries in both lists below. Reports after the semicolon are
+/// written only if an option asks for them.
 macro_rules! reports {
     ($($module:ident,)*; $($asked:ident,)*) => {
         /// Every page, in the order of registration.

@@ -1,7 +1,7 @@
 //! `record.json`: the whole record, for machines.
 //!
-//! One object: `schema` (the version of the form), `results` (the same for any number of threads on
-//! any machine), `timing`, and the `comparison` with a stored run or `null`. `results` is a tree: `cases`, each with its
+//! The file is one object: `schema` (the version of the format), `results` (the same for any number of threads on any
+//! machine), `timing`, and the `comparison` with a stored run or `null`. `results` is a tree: `cases`, each with its
 //! `experiments`, each with its `channels`. An experiment has its identity `id`, of `case`, `problem`, `estimator`,
 //! `sampling`, `control`, `swept` and `namesake`; `timing.experiments` has the times of each `id`. Unknown numbers are
 //! `null`; numbers that may be infinite are then the words `inf`, `-inf` or `nan`. Records of schema 1 are read, too.
@@ -15,16 +15,16 @@ use crate::record::baseline::Comparison;
 use crate::record::{Record, Results, SCHEMA, Spent, Timing, version1};
 use crate::report::{Artifact, ReportError};
 
-/// The record as one JSON object.
+/// Returns the record as one JSON object.
 ///
 /// # Errors
 ///
-/// Where an encoder or a painter gives up.
+/// An encoder or the painter fails.
 pub fn render(record: &Record) -> Result<Vec<Artifact>, ReportError> {
     Ok(vec![Artifact::text("record.json", text(record)?)])
 }
 
-/// The document, with the results as a reference or as a value.
+/// Document, with the results as a reference or as a value.
 #[derive(Serialize, Deserialize)]
 struct Document<R> {
     schema: u32,
@@ -40,7 +40,7 @@ struct Times {
     experiments: Vec<Time>,
 }
 
-/// The time of an experiment.
+/// Time of an experiment.
 #[derive(Serialize, Deserialize)]
 struct Time {
     id: ExperimentId,
@@ -48,11 +48,11 @@ struct Time {
     reused: bool,
 }
 
-/// The record as JSON.
+/// Returns the record as JSON.
 ///
 /// # Errors
 ///
-/// Where the encoder gives up.
+/// The encoder fails.
 pub fn text(record: &Record) -> Result<String, ReportError> {
     let Record { results, timing, comparison } = record;
     let experiments = results.cases.iter().flat_map(|case| &case.experiments);
@@ -66,17 +66,17 @@ pub fn text(record: &Record) -> Result<String, ReportError> {
     Ok(serde_json::to_string(&document)? + "\n")
 }
 
-/// Why a text is no record that can be read.
+/// Reason why a text cannot be read as a record.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum UnreadableRecord {
-    /// It is of another version of the form.
+    /// The version of the format is unknown.
     #[error("a record of form {found}, this program reads 1 and {SCHEMA}")]
     Schema {
-        /// Its form.
+        /// Version of the text.
         found: u64,
     },
-    /// It is not what this program writes.
+    /// The text is not a record.
     #[error("not a record, or a broken one ({0})")]
     Broken(#[from] serde_json::Error),
 }
@@ -85,13 +85,13 @@ pub enum UnreadableRecord {
 ///
 /// # Errors
 ///
-/// It is of a later version, or no record.
+/// The text is of a later version, or not a record.
 pub fn read(text: &[u8]) -> Result<Record, UnreadableRecord> {
     #[derive(Deserialize)]
     struct Form {
         schema: u64,
     }
-    // The form is asked first: what else is there depends on it.
+    // The version is read first: everything else depends on it.
     let Form { schema: found } = serde_json::from_slice(text)?;
     let document: Document<Results> = match found {
         1 => serde_json::from_value(version1::upgraded(serde_json::from_slice(text)?))?,

@@ -1,7 +1,7 @@
 //! `summary.csv`: every experiment and channel of the run on one line, results and timing joined.
 //!
-//! `summary.csv`, the files of the cases and `--format csv|json` share these columns, so that a
-//! number has one name everywhere.
+//! `summary.csv`, the files of the cases and `--format csv|json` share these columns, so that a number has the same
+//! name everywhere.
 
 use std::ops::Deref;
 
@@ -9,12 +9,12 @@ use crate::record::{Record, Row, Verdict};
 use crate::report::columns::{self, Column, columns};
 use crate::report::{Artifact, ReportError};
 
-/// A row of a record with the seed of the run; it dereferences to the row.
+/// Row of a record with the seed of the run; it dereferences to the row.
 #[derive(Debug, Clone, Copy)]
 pub struct Line<'a> {
-    /// The row.
+    /// Row.
     pub row: Row<'a>,
-    /// The run's seed.
+    /// Seed of the run.
     pub seed: u64,
 }
 
@@ -26,16 +26,16 @@ impl<'a> Deref for Line<'a> {
     }
 }
 
-/// All rows of a record.
+/// Returns all rows of a record.
 pub fn lines(record: &Record) -> impl Iterator<Item = Line<'_>> {
     let seed = record.results.seed;
     record.results.rows().map(move |row| Line { row, seed })
 }
 
-/// The columns that differ from run to run, so that results proper leave them out.
+/// Columns that differ from run to run, which files of results alone leave out.
 pub const TIMED: [&str; 3] = ["seconds", "ns_per_lookup", "reused"];
 
-/// The columns, in the order in which files have them.
+/// Returns the columns, in the order of the files.
 pub fn columns<'a>() -> Vec<Column<Line<'a>>> {
     columns! {
         "case" = |line| &line.case.name;
@@ -99,21 +99,21 @@ pub fn columns<'a>() -> Vec<Column<Line<'a>>> {
     }
 }
 
-/// The rows of a record as CSV, with a first line of names.
+/// Returns the rows of a record as CSV, with a first line of names.
 ///
 /// # Errors
 ///
-/// Where the encoder gives up.
+/// The encoder fails.
 pub fn csv(record: &Record) -> Result<String, ReportError> {
     columns::csv("the rows", &columns(), lines(record))
 }
 
-/// The rows of a record as a JSON array of objects, one to a line. The names are the columns of
-/// the CSV, and `lookups_pmf`, an array that is empty where it is unknown or long.
+/// Returns the rows of a record as a JSON array of objects, one per line. The names are the columns of the CSV, and
+/// `lookups_pmf`, an array that is empty if it is unknown or long.
 ///
 /// # Errors
 ///
-/// Where the encoder gives up.
+/// The encoder fails.
 pub fn json(record: &Record) -> Result<String, ReportError> {
     let lists: Vec<Column<Line>> = columns! {
         "lookups_pmf" = |line| &line.experiment.lookups_pmf;
@@ -122,11 +122,11 @@ pub fn json(record: &Record) -> Result<String, ReportError> {
     columns::json(&all, lines(record))
 }
 
-/// The file with one row for each experiment and channel.
+/// Returns the file with one row for each experiment and channel.
 ///
 /// # Errors
 ///
-/// Where the encoder gives up.
+/// The encoder fails.
 pub fn render(record: &Record) -> Result<Vec<Artifact>, ReportError> {
     Ok(vec![Artifact::text("summary.csv", csv(record)?)])
 }

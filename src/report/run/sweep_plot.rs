@@ -1,6 +1,6 @@
-//! `CASE.svg` and `CASE.png`: variance, cost, efficiency and z-scores along a sweep, theory as
-//! lines and measurements as points with error bars. Where the medium is swept, the efficiency is upside down: LTUV, the
-//! lookups to unit variance of Miller et al. 2019.
+//! `CASE.svg` and `CASE.png`: variance, cost, efficiency and z-scores along a sweep, theory as lines and measurements
+//! as points with error bars. If the medium is swept, LTUV, the lookups to unit variance of Miller et al. 2019, takes
+//! the place of the efficiency, its reciprocal.
 
 mod graph;
 
@@ -17,11 +17,11 @@ const TOP: f64 = 104.0;
 const PANEL: [f64; 2] = [490.0, 290.0];
 const PITCH: [f64; 2] = [600.0, 374.0];
 
-/// Four panels for each case with a sweep.
+/// Returns four panels for each case with a sweep.
 ///
 /// # Errors
 ///
-/// Where an encoder or a painter gives up.
+/// An encoder or the painter fails.
 pub fn render(record: &Record) -> Result<Vec<Artifact>, ReportError> {
     let mut artifacts = Vec::new();
     for case in &record.results.cases {
@@ -70,11 +70,11 @@ const LOOKUPS_TO_UNIT_VARIANCE: Quantity = Quantity {
     theory: |point| point.fom.recip(),
 };
 
-/// The figure of a case with a sweep.
+/// Returns the figure of a case with a sweep.
 ///
 /// # Errors
 ///
-/// Where there is no typeface.
+/// There is no typeface.
 pub fn figure(case: &CaseRecord, sweep: &Sweep, seed: u64) -> Result<Sheet, ReportError> {
     let series = collect(case, sweep);
     let x = x_axis(sweep, &series);
@@ -119,7 +119,7 @@ pub fn figure(case: &CaseRecord, sweep: &Sweep, seed: u64) -> Result<Sheet, Repo
     Ok(figure.close(&foot))
 }
 
-/// Meaning of S and n.
+/// Returns the meaning of S and n.
 fn setup_note(case: &CaseRecord) -> String {
     let draws = count(case.draws_per_ray.unwrap_or(1));
     format!(
@@ -127,7 +127,7 @@ fn setup_note(case: &CaseRecord) -> String {
     )
 }
 
-/// The channels that a crowded plot leaves out, in words.
+/// Returns a sentence about the channels that a crowded plot leaves out.
 fn left_out(case: &CaseRecord, series: &[Series]) -> Option<String> {
     let shown: Vec<&str> =
         series.iter().flat_map(|one| &one.rows).map(|row| row.values.channel.as_str()).collect();
@@ -169,15 +169,15 @@ fn x_axis(sweep: &Sweep, series: &[Series]) -> Axis {
     let swept =
         series.iter().flat_map(|one| one.rows.iter().filter_map(|row| row.experiment.swept()));
     let curves = sweep.curves.iter().flat_map(|curve| curve.points.iter().map(|point| point.x));
-    // Estimators that are not swept stand at the right edge and need places of their own.
+    // Estimators that are not swept have places of their own at the right edge.
     let fixed = series.iter().filter(|one| one.is_fixed()).count() as f64;
     let shown = swept.chain(curves).filter(|&x| !sweep.log || x > 0.0);
     let axis = Axis::around(sweep.axis.clone(), sweep.log, 0.04, shown);
     axis.extended(fixed * graph::PLACE / PANEL[0])
 }
 
-/// A range with every measured point, and of theory what lies within four decades of them: the
-/// variance of some estimators has a pole.
+/// Returns a range with every measured point, and with predictions within four decades of them: the predicted variance
+/// of some estimators has a pole.
 fn y_axis(quantity: &Quantity, series: &[Series]) -> Axis {
     let rows = || series.iter().flat_map(|one| &one.rows);
     let positive = |value: &f64| *value > 0.0 && value.is_finite();

@@ -1,4 +1,4 @@
-//! What a run comes to, in words that the console and the summaries share.
+//! Totals of a run, in words that the console and the summaries share.
 
 use crate::record::{CaseRecord, Record, Suspect, Verdict};
 use numeric::digits::{count, percent, short};
@@ -6,11 +6,11 @@ use numeric::digits::{count, percent, short};
 const VERDICTS: [Verdict; 5] =
     [Verdict::Pass, Verdict::Fail, Verdict::Inconclusive, Verdict::Underpowered, Verdict::Refused];
 
-/// What a z in parentheses means.
+/// Meaning of a z in parentheses.
 pub const NOT_NORMAL: &str = "(z): the draws are too few, or their tails too heavy, to read it as normal; the \
                               verdict does not rest on it";
 
-/// How many rows have each verdict, without those that none has.
+/// Returns the number of rows of each verdict that occurs.
 pub fn counts(cases: &[CaseRecord]) -> Vec<(Verdict, usize)> {
     let rows = || cases.iter().flat_map(CaseRecord::rows);
     let number = |verdict| rows().filter(|row| row.verdict == Some(verdict)).count();
@@ -18,7 +18,7 @@ pub fn counts(cases: &[CaseRecord]) -> Vec<(Verdict, usize)> {
     all.into_iter().filter(|&(_, number)| number > 0).collect()
 }
 
-/// The verdicts of a case: `15 pass, 1 underpowered`.
+/// Returns the verdicts of a case: `15 pass, 1 underpowered`.
 pub fn words(case: &CaseRecord) -> String {
     let counts = counts(std::slice::from_ref(case));
     let words: Vec<String> =
@@ -26,18 +26,18 @@ pub fn words(case: &CaseRecord) -> String {
     if words.is_empty() { "no experiments".to_owned() } else { words.join(", ") }
 }
 
-/// Number of draws that a case took.
+/// Returns the number of draws that a case took.
 pub fn draws(case: &CaseRecord) -> String {
     count(case.experiments.iter().filter_map(|experiment| experiment.drawn).sum())
 }
 
-/// An entry of the e-BH list: `case: experiment: mean (ln E = 9.1)`.
+/// Returns an entry of the e-BH list: `case: experiment: mean (ln E = 9.1)`.
 pub fn suspect(suspect: &Suspect) -> String {
     let Suspect { case, experiment, check, ln_e } = suspect;
     format!("{case}: {experiment}: {check} (ln E = {})", short(*ln_e, 3))
 }
 
-/// The error control of a run, fact by fact: levels, margins, what is assumed, what was cut.
+/// Returns the error control of a run, fact by fact: levels, margins, assumptions, limits that ended the drawing.
 pub fn control(record: &Record) -> Vec<String> {
     let results = &record.results;
     let gate = &results.gate;

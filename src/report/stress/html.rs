@@ -22,11 +22,11 @@ fn columns<'a>() -> [Column<&'a Row>; 8] {
     ]
 }
 
-/// The stress test as a page of HTML.
+/// Returns the stress test as a page of HTML.
 ///
 /// # Errors
 ///
-/// Where the plot cannot be drawn.
+/// A plot cannot be drawn.
 pub fn text(found: &Stress) -> Result<String, ReportError> {
     let rows: Vec<&Row> = found.rows.iter().collect();
     let broken = rows.iter().filter(|row| !row.holds()).count();

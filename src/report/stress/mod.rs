@@ -1,4 +1,4 @@
-//! The stress test's table on the screen, as CSV and as JSON, and single precision as CSV and a plot.
+//! Tables of the stress test on the screen, as CSV and as JSON, and single precision as CSV and a plot.
 
 mod html;
 mod plot;
@@ -15,10 +15,10 @@ use crate::stress::narrow::{Along, Curve, DRAWS, Point};
 use crate::stress::{Row, Stress};
 use numeric::digits::{count, exact, short};
 
-/// The folder below the results.
+/// Folder below the results.
 const FOLDER: &str = "stress";
 
-/// The tables for the screen.
+/// Returns the tables for the screen.
 pub fn table(found: &Stress, pen: Pen) -> String {
     let mut text = String::new();
     let rows = &found.rows;
@@ -111,7 +111,7 @@ fn single_precision(text: &mut String, pen: Pen, curves: &[Curve]) {
     let _ = writeln!(text, "{}", grid.render(pen));
 }
 
-/// The tables as JSON; what is no number is null.
+/// Returns the tables as JSON; numbers that are not finite are null.
 fn json(found: &Stress) -> Result<String, ReportError> {
     let row = |row: &Row| {
         json!({
@@ -154,11 +154,11 @@ fn json(found: &Stress) -> Result<String, ReportError> {
     Ok(serde_json::to_string_pretty(&document)? + "\n")
 }
 
-/// The tables as CSV and JSON and the plot of single precision, all below `stress/`.
+/// Returns the tables as CSV and JSON and the plot of single precision, all below `stress/`.
 ///
 /// # Errors
 ///
-/// Where an encoder or the painter gives up.
+/// An encoder or the painter fails.
 pub fn artifacts(found: &Stress) -> Result<Vec<Artifact>, ReportError> {
     let rows = found.rows.iter().map(|row| {
         vec![

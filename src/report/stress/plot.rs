@@ -1,5 +1,5 @@
-//! Single precision as a plot: a panel for each quantity that is varied, with the estimator of each family
-//! whose bias outgrows the noise first.
+//! Single precision as a plot: a panel for each quantity that is varied, with the estimator of each family that is the
+//! first to have a bias above the noise.
 
 use plotters::style::Color;
 
@@ -15,16 +15,16 @@ const LEFT: f64 = 84.0;
 const TOP: f64 = 138.0;
 const PANEL: [f64; 2] = [400.0, 300.0];
 const PITCH: f64 = 494.0;
-/// From the bottom of a panel to its legend.
+/// Distance from the bottom of a panel to its legend.
 const BELOW: f64 = 76.0;
-/// What is drawn of a point: below a thousandth the bias is nothing.
+/// Smallest ratio that is drawn: a bias below a thousandth of the noise does not matter.
 const FLOOR: f64 = 1e-3;
 
-/// Bias over noise along every quantity: above 1 single precision is wrong.
+/// Draws bias over noise along every quantity: above 1 single precision is wrong.
 ///
 /// # Errors
 ///
-/// Where there is no typeface.
+/// There is no typeface.
 pub fn figure(curves: &[Curve]) -> Result<Sheet, ReportError> {
     let face = Typeface::load().map_err(|error| ReportError::Draw {
         figure: "single precision".to_owned(),
@@ -67,8 +67,8 @@ pub fn figure(curves: &[Curve]) -> Result<Sheet, ReportError> {
     Ok(sheet)
 }
 
-/// Of each family the curve whose bias is certainly larger than the noise at the least value, and there the
-/// most, with the number of its family; none where none fails.
+/// Returns for each family, with its number, the curve that exceeds the noise at the smallest value; of several such
+/// curves the one with the largest bias there. Families without such a curve are left out.
 fn first_to_fail<'a>(
     curves: &'a [Curve],
     families: &[&str],

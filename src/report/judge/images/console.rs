@@ -1,10 +1,10 @@
-//! What is said of a stack of images, on the screen: a small block of lines.
+//! Judgement of a stack of images on the screen: a small block of lines.
 
 use crate::judge::images::Judgement;
 use crate::judge::images::judgement::{Comparison, Dependence, Tile};
 use numeric::digits::{fixed, percent, short, signed};
 
-/// The block, `width` columns wide.
+/// Returns the block, `width` columns wide.
 pub fn block(judgement: &Judgement, name: &str, width: usize) -> String {
     let passes = format!("{} passes of {} in {name}", judgement.passes, judgement.size);
     let mut lines = vec![("images", passes)];
@@ -48,7 +48,7 @@ fn channel(judgement: &Judgement, tile: &Tile) -> String {
     if judgement.size.channels > 1 { format!("channel {}: ", tile.channel) } else { String::new() }
 }
 
-/// The comparison of two stacks and its method.
+/// Returns the comparison of two stacks and its method.
 fn against_line(found: &Comparison) -> String {
     let method = match found.method {
         "permutation" => format!("{} permutations of passes", found.permutations),
@@ -71,7 +71,7 @@ fn against_line(found: &Comparison) -> String {
     )
 }
 
-/// Mean, error, truth and z.
+/// Returns mean, error, truth and z.
 fn numbers(judgement: &Judgement, tile: &Tile) -> String {
     let truth = if judgement.comparison.is_some() { "reference" } else { "truth" };
     let z = tile.z.map_or(String::new(), |z| format!(", z = {}", signed(z)));

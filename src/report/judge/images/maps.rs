@@ -24,7 +24,7 @@ const FRAMES: usize = 400;
 ///
 /// # Errors
 ///
-/// In words, where the font or the painter fails.
+/// The font or the painter fails, with its reason in words.
 pub fn png(compose: impl FnOnce(&Typeface) -> Sheet) -> Result<Vec<u8>, String> {
     let face = Typeface::load().map_err(|error| error.to_string())?;
     let (rgb, size) = paint::pixels_of(&compose(&face))?;
@@ -51,7 +51,7 @@ pub struct Maps<'a> {
 }
 
 impl<'a> Maps<'a> {
-    /// The places for a stack.
+    /// Returns the places for a stack.
     pub fn new(judgement: &'a Judgement) -> Self {
         let size = judgement.size;
         let scale = LONGEST / size.rows.max(size.columns) as f64;
@@ -101,7 +101,7 @@ impl<'a> Maps<'a> {
         }
     }
 
-    /// The map of a channel, of the smallest tiles, which do not overlap.
+    /// Returns the map of a channel, of the smallest tiles, which do not overlap.
     fn map<S: Fn(f64, &Tile) -> f64, C: Fn(f64) -> [u8; 3]>(
         &self,
         channel: usize,
@@ -124,12 +124,12 @@ impl<'a> Maps<'a> {
     }
 }
 
-/// The smallest tiles, which do not overlap.
+/// Returns the smallest tiles, which do not overlap.
 pub fn smallest(judgement: &Judgement) -> impl Iterator<Item = &Tile> {
     judgement.tiles.iter().filter(|tile| tile.size == judgement.tile)
 }
 
-/// Number of pixels in a row that share a dot of a map.
+/// Returns the number of pixels in a row that share a dot of a map.
 pub fn dot(judgement: &Judgement) -> usize {
     let longest = judgement.size.rows.max(judgement.size.columns) as f64;
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // a quotient of lengths

@@ -1,4 +1,4 @@
-//! What `judge --images` found: on the console, as a table of tiles, and as a picture.
+//! Results of `judge --images`: on the console, as a table of tiles, and as a picture.
 
 pub mod console;
 mod maps;
@@ -12,11 +12,11 @@ use crate::report::columns::table;
 use crate::report::{Artifact, ReportError};
 use numeric::digits::exact;
 
-/// `judgement.json`, and `tiles.csv`, `z-map.png` and `p-values.png` where tiles were judged.
+/// Returns `judgement.json`, and `tiles.csv`, `z-map.png` and `p-values.png` if tiles were judged.
 ///
 /// # Errors
 ///
-/// Where an encoder or the painter gives up.
+/// An encoder or the painter fails.
 pub fn artifacts(judgement: &Judgement, name: &str) -> Result<Vec<Artifact>, ReportError> {
     let json = serde_json::to_string_pretty(judgement)? + "\n";
     let mut files = vec![Artifact::text("judgement.json", json)];
@@ -55,11 +55,11 @@ const HEADER: [&str; 18] = [
     "listed_by_e_bh",
 ];
 
-/// `tiles.csv`: every tile in each channel, with its verdict.
+/// Returns `tiles.csv`: every tile in each channel, with its verdict.
 ///
 /// # Errors
 ///
-/// Where the encoder gives up.
+/// The encoder fails.
 fn tiles(judgement: &Judgement) -> Result<String, ReportError> {
     table("tiles", HEADER, judgement.tiles.iter().map(row))
 }

@@ -1,8 +1,8 @@
 //! `p-values.png`: the p-value of each tile, as a map and as a histogram.
 //!
 //! Source of both pictures: A. Jung, J. Hanika, C. Dachsbacher, *Detecting Bias in Monte Carlo Renderers using Welch's
-//! t-test*, Journal of Computer Graphics Techniques 9 (2020). Here the p-values are those of permutations where two
-//! stacks are compared, which are exact for equal laws; else those of z by the normal law.
+//! t-test*, Journal of Computer Graphics Techniques 9 (2020). For two stacks the p-values are those of permutations,
+//! which are exact for equal distributions; otherwise those of z by the normal distribution.
 
 use super::maps::{Dots, GAP, HEAD, Maps, border, png as encoded, smallest};
 use crate::judge::images::Judgement;
@@ -12,23 +12,23 @@ use crate::report::plots::sheet::{Align, Sheet};
 use crate::report::plots::style::{COLOURS, DARK, GREY, ink};
 use numeric::digits::short;
 
-/// The fewest and the most bins of the histogram; between them a bin for every ten tiles.
+/// Minimum and maximum number of bins of the histogram; between them one bin per ten tiles.
 const BINS: [usize; 2] = [4, 20];
-/// The width of the histogram with its numbers, and the height of its panel.
+/// Width of the histogram with its numbers, and height of its panel.
 const WIDTH: f64 = 420.0;
 const HEIGHT: f64 = 260.0;
-/// p-values up to this are red on the map.
+/// Largest p-value that is red on the map.
 const SMALL: f64 = 1e-3;
-/// The red of small p-values.
+/// Red of small p-values.
 const RED: [u8; 3] = [0xB2, 0x18, 0x2B];
-/// A tile without a p-value.
+/// Colour of a tile without a p-value.
 const NONE: [u8; 3] = [0xF3, 0xE8, 0xC8];
 
-/// The pictures as one PNG file; `name` is that of the images.
+/// Returns the pictures as one PNG file; `name` is that of the images.
 ///
 /// # Errors
 ///
-/// In words, where the painter gives up.
+/// The painter fails, with its reason in words.
 pub fn png(judgement: &Judgement, name: &str) -> Result<Vec<u8>, String> {
     encoded(|face| compose(judgement, name, face))
 }
@@ -45,7 +45,7 @@ fn compose(judgement: &Judgement, name: &str, face: &Typeface) -> Sheet {
     let facts = format!("p-values of tiles of {0} × {0} pixels, {source}", judgement.tile);
     let legend = "map: black to white, p from 0 to 1; red: p ≤ 0.001; a blue frame: it fails. No pattern should be seen";
     maps.head(&mut sheet, face, all - 2.0 * GAP, [name, &facts, legend]);
-    // The smallest of all pixels of a dot; a minimum leaves NaN out.
+    // Minimum of all pixels of a dot; a minimum ignores NaN.
     let join = |shown: f64, tile: &Tile| shown.min(tile.p.unwrap_or(f64::NAN));
     maps.draw(&mut sheet, COLOURS[0], &Dots { none: f64::NAN, join, colour });
     histogram(&mut sheet, judgement, face, maps.end());
@@ -61,7 +61,7 @@ fn colour(p: f64) -> [u8; 3] {
     if p <= SMALL { RED } else { [grey; 3] }
 }
 
-/// Number of tiles in each bin.
+/// Returns the number of tiles in each bin.
 fn counts(judgement: &Judgement) -> Vec<usize> {
     let values: Vec<f64> = smallest(judgement).filter_map(|tile| tile.p).collect();
     let bins = (values.len() / 10).clamp(BINS[0], BINS[1]);

@@ -1,4 +1,4 @@
-//! `z-map.png`: how many standard errors each tile is off, in every channel.
+//! `z-map.png`: bias of each tile in standard errors, in every channel.
 
 use super::maps::{Dots, GAP, HEAD, Maps, border, dot, png as encoded};
 use crate::judge::images::Judgement;
@@ -8,16 +8,16 @@ use crate::report::plots::sheet::{Align, Sheet};
 use crate::report::plots::style::{DARK, GREY, ink};
 use crate::report::render::colour;
 
-/// Colours end at ±5 standard errors.
+/// Number of standard errors at which colours end, to either side.
 const STRONGEST: f64 = 5.0;
-/// The width of the bar of colours with its numbers.
+/// Width of the bar of colours with its numbers.
 const BAR: f64 = 76.0;
 
-/// The map as a PNG file; `name` is that of the images.
+/// Returns the map as a PNG file; `name` is that of the images.
 ///
 /// # Errors
 ///
-/// In words, where the painter gives up.
+/// The painter fails, with its reason in words.
 pub fn png(judgement: &Judgement, name: &str) -> Result<Vec<u8>, String> {
     encoded(|face| compose(judgement, name, face))
 }
@@ -30,7 +30,7 @@ fn compose(judgement: &Judgement, name: &str, face: &Typeface) -> Sheet {
     let legend = "red: too bright, blue: too dark; a frame: it fails";
     maps.head(&mut sheet, face, all - 2.0 * GAP, [name, &facts(judgement), legend]);
     let join = |shown: f64, tile: &Tile| {
-        // What has no number differs where nothing should.
+        // A tile without spread that differs from its truth has an infinite z.
         let z = tile.z.unwrap_or(f64::INFINITY.copysign(tile.mean - tile.truth));
         if z.abs() > shown.abs() { z } else { shown }
     };
@@ -55,7 +55,7 @@ fn facts(judgement: &Judgement) -> String {
     )
 }
 
-/// What the colours mean.
+/// Draws the bar with the meaning of the colours.
 fn bar(sheet: &mut Sheet, left: f64, height: f64) {
     let (high, low, steps) = (HEAD, HEAD + height, 49_u32);
     for step in 0..steps {

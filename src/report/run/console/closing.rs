@@ -1,5 +1,5 @@
-//! What stands below the cases: what each could have seen, where to look, what fails and how to
-//! repeat it, the counts, and the run's error control.
+//! Summary below the cases: the bias that each could have detected, suspects, failures with the commands that repeat
+//! them, the counts, and the run's error control.
 
 use super::views::{NEEDS, SETUP};
 use super::{View, views};
@@ -12,7 +12,7 @@ use crate::report::run::totals;
 use numeric::digits::{fixed, range, short};
 use std::fmt::Write;
 
-/// Beyond so many, suspects are only counted.
+/// Maximum number of suspects that are listed; more are counted.
 const SUSPECTS: usize = 5;
 
 /// Adds the closing summary to a text.
@@ -37,7 +37,7 @@ pub fn write(text: &mut String, pen: Pen, record: &Record, view: View) {
     }
 }
 
-/// What changed since a stored run: only what did.
+/// Adds the changes since a stored run.
 fn changed(text: &mut String, pen: Pen, comparison: &Comparison) {
     text.push('\n');
     for change in diff::all(comparison) {
@@ -56,7 +56,7 @@ fn changed(text: &mut String, pen: Pen, comparison: &Comparison) {
     }
 }
 
-/// For each case, the smallest bias that it could have seen, and how soon it was decided.
+/// Adds for each case the smallest bias that it could have detected, and its pace of decisions.
 fn visible(text: &mut String, pen: Pen, record: &Record) {
     let cases = record.results.cases.iter().filter(|case| case.visible_bias.is_some());
     let cases: Vec<&CaseRecord> = cases.collect();
@@ -92,13 +92,13 @@ fn suspects(text: &mut String, pen: Pen, record: &Record) {
     text.push('\n');
 }
 
-/// A line below a failure, wrapped.
+/// Returns a line below a failure, wrapped.
 fn indented(line: &str, pen: Pen) -> Vec<String> {
     let parts = wrapped(line, pen.width.saturating_sub(6)).into_iter().enumerate();
     parts.map(|(i, part)| format!("{}{part}", if i == 0 { "    " } else { "      " })).collect()
 }
 
-/// One line per failing finding, and the command that repeats it, whole so that it can be copied.
+/// Adds one line per failing finding, and the command that repeats it, on one line so that it can be copied.
 fn failures(text: &mut String, pen: Pen, record: &Record) {
     let failures = failing(record, Verdict::Fail);
     let mut told: Vec<Vec<String>> = Vec::new();
@@ -108,7 +108,7 @@ fn failures(text: &mut String, pen: Pen, record: &Record) {
         if let Some((word, command)) = failure.row.next_command() {
             let _ = writeln!(text, "    {word}: {command}");
         }
-        // Once for all findings of a row, and once for all rows alike of an estimator.
+        // Causes are listed once for all findings of a row, and once for all similar rows of an estimator.
         let likely = failures::causes(&failure.row);
         let next = failures.get(i + 1);
         let is_last = next.is_none_or(|next| {
@@ -126,7 +126,7 @@ fn failures(text: &mut String, pen: Pen, record: &Record) {
     }
 }
 
-/// Rows that the planned draws leave inconclusive, case by case, with the command that decides them.
+/// Adds the rows that the planned draws leave inconclusive, case by case, with the command that decides them.
 fn foreseen(text: &mut String, pen: Pen, cases: &[CaseRecord]) {
     let rows = |case: &CaseRecord, verdict| {
         case.rows().filter(|row| row.foreseen == Some(verdict)).count()
@@ -185,7 +185,7 @@ fn counts(text: &mut String, pen: Pen, record: &Record, view: View) {
     let _ = writeln!(text, "{all}");
 }
 
-/// Adds the notes, each once; `is_shown` says which columns the table has.
+/// Adds the notes, each once; `is_shown` returns whether the table has a column.
 pub fn costs(text: &mut String, pen: Pen, rows: &[Row], is_shown: &dyn Fn(&str) -> bool) {
     let mut notes: Vec<String> = Vec::new();
     let mut say = |row: &Row, channel: &str, what: String| {
@@ -213,7 +213,7 @@ pub fn costs(text: &mut String, pen: Pen, rows: &[Row], is_shown: &dyn Fn(&str) 
     }
 }
 
-/// Words for the best σ̂ of a row; `None` where it was not searched.
+/// Returns words for the best σ̂ of a row; `None` if it was not searched.
 fn best(row: &Row) -> Option<String> {
     let Best { sampling, fom, kind, limit } = row.best.as_ref()?;
     let fom = fom.map_or("∞".to_owned(), |fom| short(fom, 4));

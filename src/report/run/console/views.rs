@@ -1,26 +1,26 @@
-//! Which columns each view of the table has, and what stands in them.
+//! Columns of each view of the table, and their content.
 
 use crate::record::{Best, CaseRecord, Digits, Row, Score, Verdict};
 use crate::report::layout::{Column, Field, Paint};
 use crate::report::run::console::View;
 use numeric::digits::{count, enough, fixed, percent, short, signed};
 
-/// A column of rows: heading, whether it stands at the right, rank, and its words.
+/// Column of rows: heading, whether it is aligned to the right, rank, and text.
 pub type Spec = (&'static str, bool, u8, fn(&Row) -> String);
 
 const DRAWS: Spec = ("draws", true, 10, |row| row.experiment.draws.map(count).unwrap_or_default());
-/// What the gate took; the columns beside it are of the fixed draws.
+/// Number of draws that the gate took; the columns beside it are of the fixed draws.
 const DRAWN: Spec = ("drawn", true, 3, |row| row.experiment.drawn.map(count).unwrap_or_default());
 const TRUTH: Spec = ("truth", true, 11, |row| digits(row.truth, 6));
 
-/// Lookups before the first draw of a ray; empty where none of a case has any.
+/// Lookups before the first draw of a ray; empty if no row of a case has any.
 pub const SETUP: Spec = ("setup", true, 3, |row| {
     row.experiment.setup_lookups.filter(|&lookups| lookups > 0).map(count).unwrap_or_default()
 });
 /// Knowledge that estimators need beside lookups, as in `τ`.
 pub const NEEDS: Spec = ("needs", false, 5, |row| row.experiment.needs.clone());
 
-/// The headings of z.
+/// Headings of z.
 pub const SCORES: [&str; 3] = ["z", "z_V", "z_N"];
 
 /// log₁₀ of variance · lookups, for problems with channels.
@@ -83,7 +83,7 @@ const PLAN: &[Spec] = &[
     ("skipped", true, 3, |row| row.experiment.skipped.map(percent).unwrap_or_default()),
 ];
 
-/// The columns that name the rows of a case, empty ones and all.
+/// Returns the columns that name the rows of a case, empty ones included.
 pub fn names(case: &CaseRecord, rows: &[Row], labels: Digits) -> Vec<Column> {
     let column = |what, text: &dyn Fn(&Row) -> String| Column::of(rows, what, text);
     let sampling = |row: &Row| match row.experiment.sampling() {
@@ -103,10 +103,10 @@ pub fn names(case: &CaseRecord, rows: &[Row], labels: Digits) -> Vec<Column> {
     columns
 }
 
-/// The columns that say something of the rows, empty ones and all.
+/// Returns the columns about the results of the rows, empty ones included.
 pub fn columns(rows: &[Row], view: View) -> Vec<Column> {
     let mut specs: Vec<Spec> = Vec::new();
-    // What all rows share stands over the table.
+    // A number of draws that all rows share stands above the table.
     if !view.is_theory() && shared(rows, |row| row.experiment.draws).is_none() {
         specs.push(if view == View::Plan { (DRAWS.0, DRAWS.1, 2, DRAWS.3) } else { DRAWS });
     }
@@ -130,7 +130,7 @@ pub fn columns(rows: &[Row], view: View) -> Vec<Column> {
     columns
 }
 
-/// The heading of the swept quantity where it is not the sampling extinction itself.
+/// Returns the heading of the swept quantity if it is not the sampling extinction itself.
 pub fn swept_apart(swept: Option<&str>) -> Option<&'static str> {
     match swept? {
         "sampling" => None,
@@ -144,7 +144,7 @@ pub fn swept_apart(swept: Option<&str>) -> Option<&'static str> {
     }
 }
 
-/// A value that at least two rows have and none has differently.
+/// Returns the value that all rows with a value share, if there are at least two.
 pub fn shared<T: PartialEq>(rows: &[Row], value: fn(&Row) -> Option<T>) -> Option<T> {
     let mut known = rows.iter().filter_map(value);
     let first = known.next()?;
@@ -153,7 +153,7 @@ pub fn shared<T: PartialEq>(rows: &[Row], value: fn(&Row) -> Option<T>) -> Optio
     others.all(|other| other == first).then_some(first)
 }
 
-/// Where in their case these rows stand, in words: `σ̂ 0.4, 0.5; T(5)`.
+/// Returns the places of these rows in their case, in words: `σ̂ 0.4, 0.5; T(5)`.
 pub fn positions(case: &CaseRecord, rows: &[&Row], labels: Digits) -> String {
     let mut swept: Vec<_> =
         rows.iter().filter_map(|row| Some(labels.text(row.experiment.swept()?))).collect();
@@ -182,7 +182,7 @@ pub fn is_skipped(row: &Row, view: View) -> bool {
         && !row.reason.is_empty()
 }
 
-/// The word for what became of a row.
+/// Returns the word for the result of a row.
 pub fn status(row: &Row, view: View) -> Field {
     let status_of = |verdict: Option<Verdict>| {
         let paint = verdict.map_or(Paint::Plain, paint);
@@ -196,7 +196,7 @@ pub fn status(row: &Row, view: View) -> Field {
     }
 }
 
-/// The colour of a verdict.
+/// Returns the colour of a verdict.
 pub fn paint(verdict: Verdict) -> Paint {
     match verdict {
         Verdict::Pass => Paint::Green,
@@ -206,7 +206,7 @@ pub fn paint(verdict: Verdict) -> Paint {
     }
 }
 
-/// `J_k`.
+/// Returns `J_k`.
 fn loss(row: &Row, k: usize) -> String {
     digits(row.losses.map(|losses| losses[k - 1]), 4)
 }
@@ -215,12 +215,12 @@ fn digits(value: Option<f64>, digits: usize) -> String {
     value.map(|value| fixed(value, digits)).unwrap_or_default()
 }
 
-/// Text about the best σ̂; empty if it was not searched.
+/// Returns text about the best σ̂; empty if it was not searched.
 fn best(row: &Row, text: fn(&Best) -> String) -> String {
     row.best.as_ref().map(text).unwrap_or_default()
 }
 
-/// The best σ̂, marked where it is a share of a limit.
+/// Returns the best σ̂, marked if it is a share of a limit.
 fn best_sampling(row: &Row) -> String {
     best(row, |best| {
         let mark = if best.limit.is_some() { " (90 %)" } else { "" };
@@ -228,24 +228,24 @@ fn best_sampling(row: &Row) -> String {
     })
 }
 
-/// The figure of merit at the best σ̂, which is infinite where there is no variance.
+/// Returns the figure of merit at the best σ̂, which is infinite without a variance.
 fn best_fom(row: &Row) -> String {
     best(row, |best| best.fom.map_or("∞".to_owned(), |fom| fixed(fom, 4)))
 }
 
-/// What is shown of problems with several channels alone, with two decimals.
+/// Returns a number with two decimals, for problems with several channels only.
 fn of_channel(row: &Row, value: Option<f64>) -> String {
     let value = value.filter(|_| !row.channel.is_empty());
     value.map(signed).unwrap_or_default()
 }
 
-/// A z, in parentheses where it is not to be read as normal.
+/// Returns a z, in parentheses if it is not to be read as normal.
 pub fn score(row: &Row, score: Score, z: Option<f64>) -> String {
     let text = z.map(signed).unwrap_or_default();
     if row.not_normal.contains(&score) { format!("({text})") } else { text }
 }
 
-/// The measured variance over the predicted one.
+/// Returns the measured variance over the predicted one.
 fn ratio(row: &Row) -> String {
     match (row.variance, row.predicted_variance) {
         (Some(measured), Some(predicted)) if predicted > 0.0 => {

@@ -1,4 +1,4 @@
-//! The cases: verdicts, visible bias, plots; and the changes since a stored run.
+//! Cases: verdicts, visible bias, plots; and the changes since a stored run.
 
 use crate::record::baseline::{Change, Comparison, Drift, Measured, Quantity};
 use crate::record::{CaseRecord, Record};
@@ -10,7 +10,7 @@ use crate::report::run::totals;
 use maud::{Markup, html};
 use numeric::digits::{fixed, range, short};
 
-/// A line for each case; those with plots open.
+/// Returns a line for each case; those with plots open.
 pub fn section(record: &Record, plots: &[Vec<Plot>]) -> Markup {
     let cases = &record.results.cases;
     html! {
@@ -44,7 +44,7 @@ fn facts(case: &CaseRecord) -> Vec<(&'static str, String)> {
     facts
 }
 
-/// The comparison: what became worse first, each with its ratio and where that may be.
+/// Returns the comparison: regressions first, each with its ratio and the interval of it.
 pub fn changes(comparison: &Comparison) -> Markup {
     let Comparison { changes, drifts, .. } = comparison;
     let (worse, better): (Vec<_>, Vec<_>) = changes.iter().partition(|one| one.is_regression);
@@ -93,7 +93,7 @@ fn change(change: &Change) -> Markup {
     let number = |value: f64, digits| {
         if value.is_finite() { fixed(value, digits) } else { words::UNKNOWN.to_owned() }
     };
-    // A ratio without bound is as good as none in a record that was read.
+    // A ratio that was infinite may be missing in a record that was read.
     let arrow = if change.ratio < 1.0 { "↓" } else { "↑" };
     let value = |Measured { value, error }: Measured| {
         let error = error.map_or(String::new(), |error| format!(" ± {}", short(error, 2)));

@@ -1,4 +1,4 @@
-//! What opens below an experiment: its plots, all its numbers, its checks and the command that repeats it.
+//! Details of an experiment, which open below it: plots, all numbers, checks and the command that repeats it.
 
 use maud::{Markup, html};
 
@@ -9,7 +9,7 @@ use crate::report::html::drawing::Plot;
 use crate::report::html::words;
 use crate::report::run::failures;
 
-/// Everything that is known of a row.
+/// Returns everything that is known of a row.
 pub fn of(row: &Row, plots: &[Plot]) -> Markup {
     let case = row.case;
     html! {
@@ -28,7 +28,7 @@ pub fn of(row: &Row, plots: &[Plot]) -> Markup {
     }
 }
 
-/// A line of the table of numbers.
+/// Line of the table of numbers.
 struct Line<'a> {
     name: &'static str,
     measured: Option<f64>,
@@ -38,15 +38,15 @@ struct Line<'a> {
     finding: Option<&'a Finding>,
 }
 
-/// The titles of that table.
+/// Titles of that table.
 const TITLES: [&str; 10] =
     ["", "measured", "± 1 σ", "theory", "z or p", "says", "ln E", "ln P of +ε, −ε", "draws", "why"];
 
-/// What was measured and what theory says of it, with what each check found: those of the gate and those that do
-/// not pass line by line, the others in one.
+/// Returns the measured and the predicted numbers, with the findings of the checks: findings of the gate and those that
+/// do not pass line by line, the others in one.
 fn numbers(row: &Row) -> Markup {
     let lines = lines(row);
-    // The first finding of each of the three is in its own line.
+    // The first finding of each of the three quantities is in its own line.
     let mut open: Vec<&str> = lines
         .iter()
         .filter_map(|line| line.finding)
@@ -83,7 +83,7 @@ fn numbers(row: &Row) -> Markup {
     }
 }
 
-/// The three that every experiment is asked for, and the figure of merit, as far as they are known.
+/// Returns mean, variance and lookups, which every experiment has, and the figure of merit, as far as they are known.
 fn lines<'a>(row: &Row<'a>) -> Vec<Line<'a>> {
     let found = |check: &str| {
         row.findings().find(|finding| finding.check == check && !finding.expects_bias)
@@ -142,7 +142,7 @@ fn numbers_of(line: &Line) -> Markup {
     } }
 }
 
-/// The verdict of a check and what it rests on.
+/// Returns the verdict of a check and its grounds.
 fn says(finding: &Finding) -> Markup {
     let Finding { verdict, gate, .. } = finding;
     let number = |value| words::number(Some(value), 4);
@@ -158,7 +158,7 @@ fn says(finding: &Finding) -> Markup {
     }
 }
 
-/// A check's name, what it is about where that says more, and the channel.
+/// Returns a check's name, its quantity if that adds something, and the channel.
 fn name(finding: &Finding) -> String {
     let Finding { check, what, channel, .. } = finding;
     let what = if what.ends_with(check.as_str()) { "" } else { what };
@@ -166,7 +166,7 @@ fn name(finding: &Finding) -> String {
     names.collect::<Vec<_>>().join(": ")
 }
 
-/// A check that passes without a word, on a line with others.
+/// Returns a check that passes without a remark, on a line with others.
 fn passing(finding: &Finding) -> String {
     let words = [finding.check.clone(), finding.p.map_or_else(String::new, p)];
     words.into_iter().filter(|word| !word.is_empty()).collect::<Vec<_>>().join(" ")
@@ -176,7 +176,7 @@ fn p(p: f64) -> String {
     format!("p {}", words::number(Some(p), 3))
 }
 
-/// Other facts, by name; what is unknown is left out.
+/// Returns other facts, by name; unknown ones are left out.
 fn facts(row: &Row) -> Vec<(&'static str, String)> {
     let number = |value: Option<f64>| words::number(value, 5);
     let sampling = if row.experiment.sampling().is_some() {

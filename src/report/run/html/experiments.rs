@@ -1,4 +1,4 @@
-//! The table of all experiments, a row for each channel. Rows are hidden and moved by the page's script.
+//! Table of all experiments, a row for each channel. Rows are hidden and moved by the page's script.
 
 use maud::{Markup, html};
 
@@ -9,7 +9,7 @@ use crate::report::html::listing::{self, Choice};
 use crate::report::html::words;
 use crate::report::run::totals;
 
-/// The columns: title, and how its cells stand. The page's style says which are left out where there is no room.
+/// Columns: title, and alignment of the cells. The page's style leaves some out on narrow screens.
 const COLUMNS: [(&str, Option<&str>); 11] = [
     ("verdict", None),
     ("experiment", None),
@@ -24,7 +24,7 @@ const COLUMNS: [(&str, Option<&str>); 11] = [
     ("draws to verdict", Some("number")),
 ];
 
-/// The table with its filters.
+/// Returns the table with its filters.
 pub fn section(record: &Record, plots: &[Vec<Plot>]) -> Markup {
     let cases = record.results.cases.iter().zip(plots);
     let rows: Vec<(Row, &[Plot])> = cases
@@ -48,7 +48,7 @@ pub fn section(record: &Record, plots: &[Vec<Plot>]) -> Markup {
     }
 }
 
-/// An experiment: its line, and the line that opens.
+/// Returns an experiment: its line, and the line that opens.
 fn body(row: &Row, plots: &[Plot]) -> Markup {
     let case = row.case;
     let word = row.verdict.map_or("undecided", |verdict| verdict.word());
@@ -74,14 +74,14 @@ fn body(row: &Row, plots: &[Plot]) -> Markup {
     }
 }
 
-/// The largest ln E of its checks.
+/// Returns the largest ln E of its checks.
 fn largest(row: &Row) -> String {
     let gates = row.findings().filter_map(|finding| finding.gate);
     let largest = gates.map(|gate| words::ordered(gate.ln_e)).reduce(f64::max);
     largest.map_or_else(|| words::UNKNOWN.to_owned(), words::evidence)
 }
 
-/// What the table is filtered by, beside words.
+/// Returns the filters of the table, besides text.
 fn choices(rows: &[(Row, &[Plot])]) -> Vec<Choice> {
     let verdict = |row: &Row| row.verdict.map_or("undecided", |verdict| verdict.word()).to_owned();
     let values = |of: &dyn Fn(&Row) -> String| rows.iter().map(|(row, _)| of(row)).collect();

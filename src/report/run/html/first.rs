@@ -1,4 +1,4 @@
-//! The first screen: the verdict, the counts, the levels, and what to look at first with its command.
+//! First screen: the verdict, the counts, the levels, and the most important findings with their commands.
 
 use maud::{Markup, html};
 
@@ -10,15 +10,15 @@ use crate::report::run::failures::{self, Failure, failing};
 use crate::report::run::totals;
 use numeric::digits::{percent, range, short, time};
 
-/// So many findings of a kind stand on the first screen; the table has all.
+/// Maximum number of findings of a kind on the first screen; the table has all.
 const MOST: usize = 20;
-/// So many suspects.
+/// Maximum number of suspects on the first screen.
 const SUSPECTS: usize = 5;
 
-/// What the whole run says.
+/// Verdict on the whole run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct RunVerdict {
-    /// In what colour.
+    /// Style class, which gives the colour.
     pub class: &'static str,
     failing: usize,
     open: usize,
@@ -26,7 +26,7 @@ pub struct RunVerdict {
     rows: usize,
 }
 
-/// What a run comes to: a failure, or something worse than a stored run, before what is inconclusive.
+/// Returns the verdict on a run: a failure, or a regression against a stored run, precedes inconclusive results.
 pub fn verdict(record: &Record) -> RunVerdict {
     let counts = totals::counts(&record.results.cases);
     let number =
@@ -45,7 +45,7 @@ pub fn verdict(record: &Record) -> RunVerdict {
 }
 
 impl RunVerdict {
-    /// In one line.
+    /// Returns it in one line.
     pub fn words(&self) -> String {
         let Self { failing, open, is_worse, rows, class } = *self;
         let mut parts = Vec::new();
@@ -66,7 +66,7 @@ impl RunVerdict {
     }
 }
 
-/// The first screen.
+/// Returns the first screen.
 pub fn section(record: &Record) -> Markup {
     let verdict = verdict(record);
     let counts = totals::counts(&record.results.cases);
@@ -97,7 +97,7 @@ pub fn section(record: &Record) -> Markup {
     }
 }
 
-/// The run's levels and circumstances, by name.
+/// Returns the run's levels and conditions, by name.
 fn facts(record: &Record) -> Vec<(&'static str, String)> {
     let (results, timing) = (&record.results, &record.timing);
     let gate = &results.gate;
@@ -134,13 +134,13 @@ fn facts(record: &Record) -> Vec<(&'static str, String)> {
     facts
 }
 
-/// The largest ln E of all checks that no declared bias makes large, beside the limit at which it fails, and where.
+/// Returns the largest ln E of all checks without a declared bias, its limit, and its experiment.
 fn strongest(record: &Record) -> Option<String> {
     let gated = record.results.rows().flat_map(|row| {
         let asked = row.findings().filter(|finding| !finding.expects_bias);
         asked.filter_map(move |finding| Some((words::ordered(finding.gate?.ln_e), row, finding)))
     });
-    // Of equal ones the first.
+    // The first of equal ones.
     let (ln_e, row, finding) = gated.reduce(|a, b| if b.0 > a.0 { b } else { a })?;
     let limit = words::number(Some(finding.gate?.ln_e_limit), 3);
     let (ln_e, of) = (words::evidence(ln_e), row.name());
@@ -165,7 +165,7 @@ fn suspects(record: &Record) -> Markup {
     }
 }
 
-/// What is doubtful about cases.
+/// Returns the notes on cases.
 fn notes(record: &Record) -> Markup {
     let cases = record.results.cases.iter();
     let all: Vec<_> =

@@ -1,4 +1,4 @@
-//! Small plots inside a row that opens: ln E from look to look, and the fields along the ray of what is refused.
+//! Small plots inside a row that opens: ln E from look to look, and the fields along the ray of a refused experiment.
 //! They take their colours from the page, light or dark.
 
 use maud::{Markup, html};
@@ -7,26 +7,26 @@ use crate::record::{Course, Finding};
 use crate::report::html::drawing;
 use numeric::digits::{count, short};
 
-/// The plot's size in its own units.
+/// Size of a plot in its own units.
 const SIZE: [f64; 2] = [400.0, 120.0];
 
-/// Evidence is shown up to so many times its limit, to either side.
+/// Range of the plot of evidence, in units of its limit.
 const EVIDENCE: View = View { x: [0.0, 1.0], y: [-1.2, 1.2] };
 
-/// A line: its name and its points.
+/// Line: its name and its points.
 struct Line {
     name: String,
     points: Vec<[f64; 2]>,
 }
 
-/// The part of the plane that is shown.
+/// Part of the plane that is shown.
 struct View {
     x: [f64; 2],
     y: [f64; 2],
 }
 
 impl View {
-    /// Where a point stands on the plot, in whole units.
+    /// Returns the place of a point on the plot, in whole units.
     fn place(&self, [x, y]: [f64; 2]) -> [f64; 2] {
         let share = |v: f64, [low, high]: [f64; 2]| {
             if high > low { ((v - low) / (high - low)).clamp(0.0, 1.0) } else { 0.5 }
@@ -46,7 +46,7 @@ impl View {
     }
 }
 
-/// What all plots of ln E have behind them, once for the page: the limits, at which a check fails.
+/// Returns the background of all plots of ln E, defined once for the page: the limits, at which a check fails.
 pub fn ground() -> Markup {
     let [limit, zero] = [1.0, 0.0].map(|y| EVIDENCE.height(y));
     html! {
@@ -61,7 +61,8 @@ pub fn ground() -> Markup {
     }
 }
 
-/// ln E of each check of a row from look to look, in units of the limit at which it fails; nothing where the gate looked at none.
+/// Returns plots of ln E of each check of a row from look to look, in units of the limit at which it fails; nothing
+/// without looks of the gate.
 pub fn evidence(findings: &[&Finding]) -> Markup {
     let asked = findings.iter().copied().filter(|finding| !finding.path.is_empty());
     let [first, last] = ends(asked.clone().flat_map(|one| one.path.iter().map(|look| look[0])));
@@ -79,7 +80,7 @@ pub fn evidence(findings: &[&Finding]) -> Markup {
     figure("ln E from look to look", &caption, &html! { use href="#ground" {} }, &lines, &view)
 }
 
-/// σ_t, control and σ̂ along the ray of a refused experiment.
+/// Returns a plot of σ_t, control and σ̂ along the ray of a refused experiment.
 pub fn course(course: &Course) -> Markup {
     let fields =
         [("σ_t", &course.extinction), ("control", &course.control), ("σ\u{302}", &course.sampling)];
@@ -136,7 +137,7 @@ fn draws(draws: f64) -> String {
     count(whole)
 }
 
-/// The least and the largest of the numbers that are finite; zeros of none.
+/// Returns the minimum and the maximum of the finite numbers; zeros without any.
 fn ends(numbers: impl Iterator<Item = f64>) -> [f64; 2] {
     let known = numbers.filter(|number| number.is_finite());
     known.map(|x| [x, x]).reduce(|[a, b], [c, d]| [a.min(c), b.max(d)]).unwrap_or_default()

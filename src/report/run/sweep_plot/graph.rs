@@ -1,5 +1,6 @@
-//! A panel of variance, cost or efficiency along a sweep: theory as lines, measurements as points with error bars. Stars are the best
-//! constant σ̂ of each series: filled where the figure of merit is largest, hollow where it reaches 90 % of its limit.
+//! Panel of variance, cost or efficiency along a sweep: theory as lines, measurements as points with error bars. Stars
+//! are the best constant σ̂ of each series: filled where the figure of merit is largest, hollow where it reaches 90 %
+//! of its limit.
 
 use crate::record::Best;
 use crate::record::{CurvePoint, Row};
@@ -12,38 +13,38 @@ use crate::report::plots::{Panel, Sheet};
 use numeric::digits::short;
 use plotters::style::Color;
 
-/// The width of the place that an estimator outside of the sweep has at the right edge.
+/// Width of the place of an estimator outside of the sweep, at the right edge.
 pub const PLACE: f64 = 13.0;
-/// A marker hides what is nearer to its middle than this.
+/// Distance from the middle of a marker within which it hides everything.
 const HIDDEN: f64 = 3.5;
-/// Points closer than this hide each other.
+/// Distance of points below which they hide each other.
 const APART: f64 = 8.0;
 
 /// Quantity of a panel: as measured, with its deviation, and in theory for rows and curves.
 #[derive(Clone, Copy)]
 pub struct Quantity {
-    /// The heading; its second character is the letter of the panel.
+    /// Heading; its second character is the letter of the panel.
     pub head: &'static str,
-    /// The title of the axis.
+    /// Title of the axis.
     pub title: &'static str,
-    /// The value as measured.
+    /// Measured value.
     pub measured: fn(&Row) -> Option<f64>,
-    /// The standard deviation of the measured value.
+    /// Standard deviation of the measured value.
     pub deviation: fn(&Row) -> Option<f64>,
-    /// The value in theory.
+    /// Predicted value.
     pub predicted: fn(&Row) -> Option<f64>,
-    /// The value on theory's line.
+    /// Value on the predicted line.
     pub theory: fn(&CurvePoint) -> f64,
 }
 
-/// A measured point: which series it is of, where it stands, and the ends of its error bar about it.
+/// Measured point: its series, its place, and the ends of its error bar about it.
 struct Point {
     series: usize,
     spot: [f64; 2],
     bar: Option<[f64; 3]>,
 }
 
-/// A panel with what is drawn in it.
+/// Panel with its drawing.
 pub struct Graph {
     /// The panel.
     pub panel: Panel,
@@ -56,7 +57,7 @@ pub struct Graph {
 }
 
 impl Graph {
-    /// Lays a quantity of the series out in a panel.
+    /// Lays out a quantity of the series in a panel.
     pub fn new(panel: Panel, quantity: Quantity, series: &[Series]) -> Self {
         let lines: Vec<Line> = series.iter().map(|one| line(one, &quantity, &panel)).collect();
         let mut points = points(&panel, &quantity, series);
@@ -109,13 +110,13 @@ impl Graph {
         panel.frame(sheet, self.head);
     }
 
-    /// The letter of the panel.
+    /// Returns the letter of the panel.
     fn letter(&self) -> char {
         self.head.chars().nth(1).unwrap_or_default()
     }
 }
 
-/// Notes on equal lines, moved points and cut error bars.
+/// Returns notes on equal lines, moved points and cut error bars.
 pub fn notes(graphs: &[Graph], series: &[Series]) -> Vec<String> {
     let names: Vec<&str> = series.iter().map(|one| &*one.label).collect();
     let classes: Vec<(char, Vec<Class>)> =
@@ -141,7 +142,7 @@ pub fn notes(graphs: &[Graph], series: &[Series]) -> Vec<String> {
     notes
 }
 
-/// Theory's line, as far as the panel has a place for it: along the sweep, or across all of it for what is not swept.
+/// Returns the predicted line within the panel: along the sweep, or a constant for an estimator that is not swept.
 fn line(one: &Series, quantity: &Quantity, panel: &Panel) -> Line {
     let points = one.theory(quantity.theory, quantity.predicted);
     if !points.is_empty() {
@@ -153,7 +154,7 @@ fn line(one: &Series, quantity: &Quantity, panel: &Panel) -> Line {
     level.filter(|&y| panel.down(y).is_some()).map_or(Line::None, Line::Level)
 }
 
-/// The measured points: those that are not swept at the right edge, each in a place of its own.
+/// Returns the measured points; estimators that are not swept have places at the right edge.
 fn points(panel: &Panel, quantity: &Quantity, series: &[Series]) -> Vec<Point> {
     let mut edge = panel.right - 9.0;
     let mut points = Vec::new();
@@ -176,7 +177,7 @@ fn points(panel: &Panel, quantity: &Quantity, series: &[Series]) -> Vec<Point> {
     points
 }
 
-/// The smallest distance across between points that do not stand above each other.
+/// Returns the smallest horizontal distance between points that do not lie above each other.
 fn gap(mut places: Vec<f64>) -> f64 {
     places.sort_by(f64::total_cmp);
     let steps = places.windows(2).map(|pair| pair[1] - pair[0]).filter(|step| *step > 0.5);
@@ -185,13 +186,13 @@ fn gap(mut places: Vec<f64>) -> f64 {
 
 const RIM: plotters::style::RGBAColor = ink(0x22, 0x22, 0x22);
 
-/// Whether the star of a best σ̂ is hollow, for the figure of merit has no maximum there; `None` for no star.
+/// Returns whether the star of a best σ̂ is hollow, for the figure of merit has no maximum there; `None` for no star.
 fn is_hollow(best: Option<&Best>) -> Option<bool> {
     let is_drawn = |best: &Best| best.limit.is_some() || best.is_optimum();
     best.map_or(Some(false), |best| is_drawn(best).then_some(best.limit.is_some()))
 }
 
-/// Marks the best σ̂ inside the sweep with a star and a thin line down to the axis, and says what the stars mean.
+/// Marks the best σ̂ inside the sweep with a star and a thin line down to the axis, and adds the meaning of the stars.
 pub fn draw_optima(face: &Typeface, sheet: &mut Sheet, panel: &Panel, series: &[Series]) {
     let (mut filled, mut hollow) = (false, false);
     for one in series {
@@ -224,7 +225,7 @@ pub fn draw_optima(face: &Typeface, sheet: &mut Sheet, panel: &Panel, series: &[
     legend::keys(face, sheet, [panel.right, panel.top - 15.0], &keys);
 }
 
-/// Note on the best σ̂ that are shares of limits, or have no star.
+/// Returns a note on best σ̂ that are shares of limits, or have no star.
 pub fn note_on_optima(series: &[Series]) -> Option<String> {
     let said = series.iter().filter_map(|one| {
         let curve = one.curve?;
