@@ -1,5 +1,5 @@
-// A confusion table: honest and buggy estimators of one problem, each with what is known of the honest one. Exit code 0
-// if all honest ones pass and no buggy one does.
+// A confusion table: correct and buggy estimators of one problem, each with the claims about the correct one. Exit code 0
+// if all correct ones pass and no buggy one does.
 //
 // The medium is σ_t(t) = exp(−t) on [0, 3]: τ = 1 − exp(−3), ∫σ² = (1 − exp(−6))/2. Ratio tracking by a constant σ̂
 // with a control of c has E[w²] = exp(−2τ + ∫(σ − c)²/σ̂), and σ̂ L lookups that are Poisson distributed.
@@ -27,7 +27,7 @@ static double spread(double sampling, double control = 0)
     return T * T * (std::exp(over / sampling) - 1);
 }
 
-/** Ratio tracking: what `keep` makes of the weight at each collision. */
+/** Ratio tracking: `keep` returns the weight after each collision. */
 template <class Keep> double track(rng &rng, double sampling, double length, Keep keep)
 {
     double weight = 1;
@@ -51,7 +51,7 @@ static double delta(rng &rng, double sampling)
     return 1;
 }
 
-/** Ratio tracking with roulette of weights below 0.2; survivors get `survivor` of what makes it fair. */
+/** Ratio tracking with roulette of weights below 0.2; survivors get `survivor` of the weight that makes it unbiased. */
 static double roulette(rng &rng, double survivor)
 {
     return track(rng, 1, L, [&](double w, double t) {
@@ -72,7 +72,7 @@ static std::array<double, 2> densities(rng &rng)
     return {full, thin};
 }
 
-/** What is known: the mean and the range; the mean and a variance; all three. */
+/** Claims: the mean and the range; the mean and a variance; all three. */
 static const auto unit = [](auto &c) { c.truth(T).range(0, 1); };
 static auto varied(double variance)
 {
@@ -93,7 +93,7 @@ static void tell(bool honest, const char *name, const trueflight::outcome &found
                 is_right ? "" : "WRONG ", found.reason.c_str());
 }
 
-/** Judged by truth, variance and range where the check says so; `say` says what is known. */
+/** Judges draws by the claims that `say` sets. */
 template <class Draw, class Say> void judge(bool honest, const char *name, Draw draw, Say say)
 {
     auto made = check(name, draw);
@@ -128,7 +128,7 @@ static void honest_ones()
     judge(true, "flights of <random>", [=](rng &r) mutable { return exponential(r) > tau ? 1 : 0; }, unit);
 }
 
-/** Ratio tracking that is pushed, each draw with its lookups. */
+/** Pushes draws of ratio tracking, each with its lookups. */
 static void pushed(bool honest, const char *name, double factor)
 {
     auto made = claim(name);

@@ -20,7 +20,7 @@ int main()
 
     try {
         trueflight::check("three densities", ratio).truth({truth(k[0]), truth(k[1]), truth(k[2])}).range(0, 1).assert_pass();
-        // The same with another truth: what fails, and by how much.
+        // Another truth: the verdict shows which value fails, and by how much.
         const auto found = trueflight::check("wrong", ratio).truth({truth(k[0]), truth(k[1]), 0.39}).range(0, 1).verdict();
         std::cout << found << '\n';
         return found.passed() ? 1 : 0;

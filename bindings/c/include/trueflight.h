@@ -41,9 +41,9 @@ typedef enum {
 
 // Verdict on draws.
 typedef enum {
-  // The draws agree with the claim, and the gate would have seen a difference of the size of the tolerance.
+  // The draws agree with the claim, and the gate would have detected a difference of the size of the tolerance.
   TF_VERDICT_PASS = 0,
-  // The draws differ from the claim by more than chance allows.
+  // The draws differ from the claim by more than random errors allow.
   TF_VERDICT_FAIL = 1,
   // The draws do not decide.
   TF_VERDICT_INCONCLUSIVE = 2,
@@ -71,17 +71,17 @@ typedef enum {
   // suits draws in single precision.
   TF_ROUNDING = 6,
   // ε, above 0: the bias that a pass excludes, relative to |truth|; absolute for a truth of 0, which needs it. Default:
-  // 1 %, or with `TF_DRAWS` as small as that many draws can see, at most 5 %.
+  // 1 %, or with `TF_DRAWS` the smallest that the draws can show, at most 5 %.
   TF_TOLERANCE = 7,
-  // ε of the variance, above 0, relative to the variance. Default: as small as the draws can see, at most 20 %.
+  // ε of the variance, above 0, relative to the variance. Default: the smallest that the draws can show, at most 20 %.
   TF_VARIANCE_TOLERANCE = 8,
   // α, above 0 and below 1: the probability that a correct estimator fails. Default: 1e-3. For n checks together, give
   // each α/n.
   TF_ALPHA = 9,
   // Number of draws, 1 or more. Default: as many as the verdict takes, at most 2^24.
   TF_DRAWS = 10,
-  // Number of consecutive draws that are averaged before they are judged, 1 or more: for draws that depend on their
-  // neighbours. Variance and kurtosis are then those of an average. Default: 1.
+  // Number of consecutive draws that are averaged before they are judged, 1 or more: for draws that depend on each
+  // other. Variance and kurtosis are then those of an average. Default: 1.
   TF_BATCH = 11,
   // Number of values of a pushed draw, from 1 to 65536. Default: as many as there are truths, or channels in the case.
   // The luminance of a chromatic medium, which follows from the other channels, may be left out.
@@ -90,7 +90,7 @@ typedef enum {
   TF_MEAN_ONLY = 13,
 } tf_key;
 
-// A check: a name, what is known of a draw, and the verdict on draws.
+// A check: a name, the claims about a draw, and the verdict on draws.
 typedef struct tf_check tf_check;
 
 // Random stream: xoshiro256+, the generator of the Rust library. Draw numbers from it by `tf_rng_uniform`,
@@ -134,7 +134,7 @@ typedef struct {
 extern "C" {
 #endif // __cplusplus
 
-// Returns the message of the last error on this thread; empty if there was none. The pointer is the same until the thread
+// Returns the message of the last error on this thread; empty before any error. The pointer is the same until the thread
 // ends, and the next error overwrites the text. It is cut after 16383 bytes; `tf_check_text` has all of it.
 const char *tf_last_error(void);
 

@@ -38,17 +38,17 @@ pub enum Key {
     /// suits draws in single precision.
     TfRounding = 6,
     /// ε, above 0: the bias that a pass excludes, relative to |truth|; absolute for a truth of 0, which needs it. Default:
-    /// 1 %, or with `TF_DRAWS` as small as that many draws can see, at most 5 %.
+    /// 1 %, or with `TF_DRAWS` the smallest that the draws can show, at most 5 %.
     TfTolerance = 7,
-    /// ε of the variance, above 0, relative to the variance. Default: as small as the draws can see, at most 20 %.
+    /// ε of the variance, above 0, relative to the variance. Default: the smallest that the draws can show, at most 20 %.
     TfVarianceTolerance = 8,
     /// α, above 0 and below 1: the probability that a correct estimator fails. Default: 1e-3. For n checks together, give
     /// each α/n.
     TfAlpha = 9,
     /// Number of draws, 1 or more. Default: as many as the verdict takes, at most 2^24.
     TfDraws = 10,
-    /// Number of consecutive draws that are averaged before they are judged, 1 or more: for draws that depend on their
-    /// neighbours. Variance and kurtosis are then those of an average. Default: 1.
+    /// Number of consecutive draws that are averaged before they are judged, 1 or more: for draws that depend on each
+    /// other. Variance and kurtosis are then those of an average. Default: 1.
     TfBatch = 11,
     /// Number of values of a pushed draw, from 1 to 65536. Default: as many as there are truths, or channels in the case.
     /// The luminance of a chromatic medium, which follows from the other channels, may be left out.

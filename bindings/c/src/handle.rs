@@ -6,7 +6,7 @@ use std::rc::Rc;
 use crate::session::Session;
 use crate::status::{Error, Status};
 
-/// A check: a name, what is known of a draw, and the verdict on draws.
+/// A check: a name, the claims about a draw, and the verdict on draws.
 pub struct Check {
     session: RefCell<Session>,
     common: Rc<Common>,

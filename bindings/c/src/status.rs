@@ -114,7 +114,7 @@ pub(crate) fn remember(error: &Error) -> Status {
     error.status
 }
 
-/// Returns the message of the last error on this thread; empty if there was none. The pointer is the same until the thread
+/// Returns the message of the last error on this thread; empty before any error. The pointer is the same until the thread
 /// ends, and the next error overwrites the text. It is cut after 16383 bytes; `tf_check_text` has all of it.
 #[unsafe(no_mangle)]
 pub extern "C" fn tf_last_error() -> *const c_char {

@@ -15,9 +15,9 @@ use crate::status::{Error, Status, tf_last_error};
 #[repr(C)]
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Verdict {
-    /// The draws agree with the claim, and the gate would have seen a difference of the size of the tolerance.
+    /// The draws agree with the claim, and the gate would have detected a difference of the size of the tolerance.
     Pass = 0,
-    /// The draws differ from the claim by more than chance allows.
+    /// The draws differ from the claim by more than random errors allow.
     Fail = 1,
     /// The draws do not decide.
     Inconclusive = 2,

@@ -1,6 +1,6 @@
-//! Ranks under `mpirun` for the command of `trueflight`, whose messages one thread carries by MPI.
+//! Ranks under `mpirun` for the command `trueflight`: one thread carries their messages by MPI.
 //!
-//! A program with media and estimators of its own is drawn by ranks with
+//! A program with media and estimators of its own shares its draws among ranks with
 //! `fn main() -> ExitCode { trueflight::cli::main_among(&catalogue, trueflight_mpi::join) }`.
 
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
@@ -18,19 +18,19 @@ use trueflight::cli::ranks::{Link, Outgoing, Received};
 const MIN_SLEEP: Duration = Duration::from_micros(50);
 const MAX_SLEEP: Duration = Duration::from_millis(1);
 
-/// Joins the other ranks; all of them wait for each other where their links end.
+/// Joins the other ranks; all of them wait for each other at the end of their links.
 ///
 /// # Errors
 ///
-/// MPI cannot be begun.
+/// MPI cannot be initialised.
 pub fn join() -> Result<Link, String> {
     let ((outgoing, tasks), (received, incoming)) = (channel(), channel());
     let (told, joined) = channel();
-    // MPI is begun, used and ended by one thread.
+    // One thread initialises, uses and ends MPI.
     let carrier = thread::spawn(move || {
         if let Some((universe, _)) = mpi::initialize_with_threading(Threading::Funneled) {
             let world = universe.world();
-            // Whoever joins waits for it.
+            // The thread that joins waits for it.
             let _ = told.send((number(world.rank()), number(world.size())));
             carry(&world, &tasks, &received);
         }
@@ -69,7 +69,7 @@ fn receive(world: &SimpleCommunicator, received: &Sender<Received>) -> bool {
     let mut is_any = false;
     while let Some(message) = next() {
         let (bytes, status) = message.matched_receive_vec::<u8>();
-        // A rank that does not listen any more is about to leave.
+        // A rank without a receiver is about to leave.
         let _ = received.send((number(status.source_rank()), bytes));
         is_any = true;
     }

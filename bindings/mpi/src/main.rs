@@ -1,4 +1,4 @@
-//! The command `trueflight-mpi`: that of `trueflight`, whose runs are drawn by all ranks that `mpirun` has begun.
+//! The command `trueflight-mpi`: `trueflight` with runs that all ranks of `mpirun` draw.
 
 use std::process::ExitCode;
 

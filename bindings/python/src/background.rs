@@ -101,7 +101,7 @@ fn report(progress: &Progress, tell: Option<&Bound<'_, PyAny>>) -> PyResult<()> 
     }
 }
 
-/// Message of a panic.
+/// Returns the message of a panic.
 fn message(panic: &(dyn Any + Send)) -> String {
     let text = panic.downcast_ref::<&str>().map(|text| (*text).to_owned());
     let text = text.or_else(|| panic.downcast_ref::<String>().cloned());

@@ -13,8 +13,8 @@ use trueflight::catalogue::additions;
 
 use crate::error::Failure;
 
-/// Which cases: how they are told (`named`, `toml` or `json`), the name or the text, and what is swept in place of
-/// the case's own sweep, with its values.
+/// Cases: the form in which they are given (`named`, `toml` or `json`), the name or the text, and a sweep in place of
+/// the case's own, with its values.
 #[derive(Debug, Clone, FromPyObject)]
 #[pyo3(from_item_all)]
 pub struct Asked {
@@ -23,7 +23,7 @@ pub struct Asked {
     sweep: Option<(String, Vec<f64>)>,
 }
 
-/// The names of the built-in cases.
+/// Returns the names of the built-in cases.
 #[pyfunction]
 pub fn built_in() -> Vec<String> {
     suite::suite().into_iter().map(|source| source.name).collect()
@@ -71,7 +71,7 @@ impl Asked {
     }
 }
 
-/// A dict as TOML, so that mistakes are shown in place.
+/// Converts a dict to TOML, so that mistakes are shown in place.
 fn from_json(text: &str) -> Result<String, Failure> {
     let wrong = |error: &dyn std::fmt::Display| {
         Failure::Wrong(format!(
@@ -82,12 +82,12 @@ fn from_json(text: &str) -> Result<String, Failure> {
     toml::to_string(&table).map_err(|error| wrong(&error))
 }
 
-/// Returns whether any estimator of a case depends on what is swept.
+/// Returns whether any estimator of a case depends on the swept quantity.
 fn depends(case: &Case, what: What) -> bool {
     (0..case.scenario.estimators()).any(|estimator| case.scenario.depends_on(estimator, what))
 }
 
-/// The error that no estimator depends on what is swept, with what could be swept instead.
+/// Returns the error that no estimator depends on the swept quantity, with others that could be swept instead.
 fn idle(spec: &Spec, key: &str) -> Failure {
     let could = What::all().filter(|&what| {
         let swept = spec.with_sweep(what.key(), &[1.0]).and_then(|spec| Case::of(&spec));

@@ -13,7 +13,7 @@ use crate::background::work;
 use crate::cases;
 use crate::error::Failure;
 
-/// Number of draws that are read at a time: few enough for the cache, enough for other threads of Python to run meanwhile.
+/// Number of draws that are read at a time: they fit the cache, and other threads of Python run meanwhile.
 const PIECE: usize = 8 * BUFFER;
 
 /// Claim as `trueflight.check` passes it.
@@ -62,7 +62,7 @@ impl Asked {
     }
 }
 
-/// Contiguous array of Python's.
+/// Contiguous array of Python.
 enum Numbers {
     Double(PyBuffer<f64>),
     Single(PyBuffer<f32>),
@@ -103,7 +103,7 @@ impl Numbers {
     }
 }
 
-/// Adds draws: an array of float64 or float32, contiguous, and lookups of float64, if draws tell them.
+/// Adds draws: a contiguous array of float64 or float32, and float64 lookups, if draws have them.
 fn absorb(
     py: Python<'_>,
     pushed: &mut Pushed,

@@ -16,7 +16,7 @@ from ._errors import DrawsError
 
 Array = npt.NDArray[Any]
 
-# Numbers that are copied from a device at a time: 8 MB of float64.
+# Number of numbers that are copied from a device at a time: 8 MB of float64.
 ROWS = 1 << 20
 
 # Devices of DLPack whose memory the host reads: CPU, pinned memory of CUDA and of ROCm, managed memory of CUDA.
@@ -30,7 +30,7 @@ _PROTOCOLS = ("__array__", "__array_interface__", "__dlpack__", "__cuda_array_in
 
 
 def is_array(source: Any) -> bool:
-    """Whether all draws are there at once."""
+    """Returns whether all draws are there at once."""
     if isinstance(source, np.ndarray | list | str):
         return True
     if any(_has(source, name) for name in _PROTOCOLS):
@@ -42,7 +42,7 @@ def is_array(source: Any) -> bool:
 
 
 def dimensions(made: Any) -> int:
-    """Number of dimensions of an array or a nested list, without a copy of its numbers."""
+    """Returns the number of dimensions of an array or a nested list, without a copy of its numbers."""
     shape = getattr(made, "shape", None)
     if isinstance(shape, tuple):
         return len(shape)
@@ -55,7 +55,7 @@ def dimensions(made: Any) -> int:
 
 
 def small_format(made: Any) -> str:
-    """Name of a format that NumPy lacks, as in ``bfloat16``, or an empty text; of a list that of its first number."""
+    """Returns the name of a format that NumPy lacks, as in ``bfloat16``, or an empty text; of a list its first number."""
     while isinstance(made, list | tuple) and made:
         made = made[0]
     name = str(getattr(made, "dtype", "")).rpartition(".")[2]
@@ -63,7 +63,7 @@ def small_format(made: Any) -> str:
 
 
 def rounding(name: str) -> float | None:
-    """Relative rounding of draws of a type with fewer digits than float64.
+    """Returns the relative rounding error of draws of a type with fewer digits than float64.
 
     For float32 and float16, in which estimators compute, eight times the spacing of numbers above 1. For bfloat16 and
     float8, in which draws are only stored, one rounding to nearest: half the spacing.
@@ -77,14 +77,14 @@ def rounding(name: str) -> float | None:
 
 
 def is_remote(made: Any) -> bool:
-    """Whether an array has its numbers on another device, with a shape and slices of its own."""
+    """Returns whether an array has its numbers on another device, with a shape and slices of its own."""
     if isinstance(made, np.ndarray | np.generic | list | tuple | str | bytes):
         return False
     return isinstance(getattr(made, "shape", None), tuple) and _is_on_device(made)
 
 
 def taken(name: str, what: str, made: Any) -> Any:
-    """An array in host memory, or an array on another device as it is."""
+    """Returns an array in host memory, or an array on another device as it is."""
     made = _adopted(made)
     if not is_remote(made):
         return numbers(name, what, made)
@@ -93,7 +93,7 @@ def taken(name: str, what: str, made: Any) -> Any:
 
 
 def local(name: str, what: str, array: Any, first: int, last: int) -> Array:
-    """Rows of an array, in host memory."""
+    """Returns rows of an array, in host memory."""
     if isinstance(array, np.ndarray):
         return array[first:last]
     if last - first == array.shape[0]:
@@ -107,7 +107,7 @@ def local(name: str, what: str, array: Any, first: int, last: int) -> Array:
 
 
 def pieces(array: Any) -> Iterator[tuple[int, int]]:
-    """Ranges of rows that are copied at a time: all of an array in host memory at once."""
+    """Returns ranges of rows that are copied at a time: a single one for an array in host memory."""
     count = int(array.shape[0])
     width = int(np.prod(array.shape[1:])) or 1
     step = max(count, 1) if isinstance(array, np.ndarray) else max(ROWS // width, 1)
@@ -116,7 +116,7 @@ def pieces(array: Any) -> Iterator[tuple[int, int]]:
 
 
 def numbers(name: str, what: str, made: Any) -> Array:
-    """Real numbers as an array of NumPy, without a copy if they are one, or are in a buffer."""
+    """Returns real numbers as an array of NumPy, without a copy if they are one, or are in a buffer."""
     _refuse(name, what, made)
     try:
         array = host(made)
@@ -134,7 +134,7 @@ def numbers(name: str, what: str, made: Any) -> Array:
 
 
 def host(made: Any) -> Array:
-    """A copy in host memory of what is on another device; the array itself, or its buffer, otherwise."""
+    """Returns a copy in host memory of an array on another device; otherwise the array itself, or its buffer."""
     if _holds_foreign(made):
         made = [host(part) for part in made]
     if not is_foreign(made):
@@ -148,14 +148,14 @@ def host(made: Any) -> Array:
         except Exception as error:
             failures.append(error)
             continue
-        # NumPy makes objects of what it can only count.
+        # NumPy wraps what it cannot convert as Python objects.
         if isinstance(array, np.ndarray) and not (array.dtype.kind == "O" and (array.ndim == 0 or _is_on_device(made))):
             return array
     raise failures[0] if failures else TypeError("it has no method that copies it to the host")
 
 
 def _torch(made: Any) -> Array | None:
-    """PyTorch: without gradient, on the CPU, and in a type that NumPy has."""
+    """Returns a tensor of PyTorch without gradient, on the CPU, and in a type that NumPy has."""
     if not all(callable(getattr(made, name, None)) for name in ("detach", "cpu", "numpy")):
         return None
     tensor = made.detach().cpu()
@@ -167,7 +167,7 @@ def _torch(made: Any) -> Array | None:
 
 
 def _method(method: str, is_safe: Callable[[Any], bool] = lambda _: True) -> Callable[[Any], Any]:
-    """A copy by a method without arguments, if there is one."""
+    """Returns a copy by a method without arguments, if there is one."""
 
     def copied(made: Any) -> Any:
         own = getattr(made, method, None)
@@ -177,7 +177,7 @@ def _method(method: str, is_safe: Callable[[Any], bool] = lambda _: True) -> Cal
 
 
 class _Exported:
-    """An array that is asked by DLPack of 2023 for a copy on the CPU, for any version of NumPy."""
+    """Array that DLPack of 2023 copies to the CPU, for any version of NumPy."""
 
     def __init__(self, made: Any) -> None:
         self._made = made
@@ -190,14 +190,14 @@ class _Exported:
 
 
 def _dlpack(made: Any) -> Any:
-    """An array by DLPack, copied if it is on another device."""
+    """Returns an array by DLPack, copied if it is on another device."""
     if not _has(made, "__dlpack__"):
         return None
     return np.from_dlpack(_Exported(made) if _is_on_device(made) else made)
 
 
-# How an array comes to the host, the surest way first. `get` and `numpy` mean something else for other objects (a pandas
-# Series has `get`), so they are asked of arrays on a device only.
+# Ways to copy an array to the host, the safest first. `get` and `numpy` mean something else for other objects (a pandas
+# Series has `get`), so they are used for arrays on a device only.
 _WAYS: tuple[Callable[[Any], Any], ...] = (
     _torch,
     _method("get", lambda made: _is_on_device(made)),
@@ -212,7 +212,7 @@ _WAYS: tuple[Callable[[Any], Any], ...] = (
 
 
 def _adopted(made: Any) -> Any:
-    """What has nothing but ``__cuda_array_interface__``, as an array of an installed library."""
+    """Returns an object with only ``__cuda_array_interface__`` as an array of an installed library."""
     own = ("detach", "get", "copy_to_host", "asnumpy", "to_numpy", "numpy", "__array__", "__dlpack__")
     if not _has(made, "__cuda_array_interface__") or any(_has(made, name) for name in own):
         return made
@@ -232,7 +232,7 @@ _LIBRARIES: tuple[tuple[str, Callable[[Any], Any]], ...] = (
 
 
 def _refuse(name: str, what: str, made: Any) -> None:
-    """Arrays whose numbers are not all there: masked, sparse, with missing values, or without memory."""
+    """Refuses arrays with incomplete numbers: masked, sparse, with missing values, or without memory."""
     kind = type(made).__name__
     if isinstance(made, np.ma.MaskedArray):
         found, cure = "a masked array", f"fill its masked {what} (filled), or drop them (compressed)"
@@ -251,7 +251,7 @@ def _refuse(name: str, what: str, made: Any) -> None:
 
 
 def _missing(made: Any) -> int:
-    """Number of missing values of a column of Arrow, Polars or pandas; NaN is not one."""
+    """Returns the number of missing values of a column of Arrow, Polars or pandas; NaN is not one."""
     try:
         count = getattr(made, "null_count", None)
         if count is not None:
@@ -266,7 +266,7 @@ def _missing(made: Any) -> int:
 
 
 def _uncopied(name: str, what: str, made: Any, error: Exception) -> DrawsError:
-    """The array, its device, and how its numbers get to the host."""
+    """Returns a sentence about the array, its device, and the way of its numbers to the host."""
     place = f" on {_device(made)}" if _is_on_device(made) else ""
     why = (str(error).strip().splitlines() or [type(error).__name__])[0]
     cure = "give its copy in host memory, as by get() of CuPy, detach().cpu().numpy() of PyTorch or copy_to_host() of Numba"
@@ -280,7 +280,7 @@ def _device(made: Any) -> str:
 
 
 def _is_on_device(made: Any) -> bool:
-    """Whether the host cannot read an array's memory."""
+    """Returns whether the host cannot read an array's memory."""
     if _has(made, "__cuda_array_interface__"):
         return True
     kind = getattr(getattr(made, "device", None), "type", "cpu")
@@ -293,14 +293,14 @@ def _is_on_device(made: Any) -> bool:
 
 
 def is_foreign(made: Any) -> bool:
-    """Whether something is an array of another library, which NumPy may have to ask for a copy."""
+    """Returns whether an object is an array of another library, of which NumPy may need a copy."""
     if isinstance(made, np.ndarray | np.generic | list | tuple | str | bytes | int | float):
         return False
     return any(_has(made, name) for name in (*_PROTOCOLS, "detach", "copy_to_host"))
 
 
 def _holds_foreign(made: Any) -> bool:
-    """Whether a list, or one in it, has such arrays; one element of each type is looked at."""
+    """Returns whether a list, or one in it, has such arrays; one element of each type is inspected."""
     if not isinstance(made, list | tuple):
         return False
     kinds = {type(part): part for part in made}
@@ -308,12 +308,12 @@ def _holds_foreign(made: Any) -> bool:
 
 
 def _is_small(dtype: np.dtype[Any]) -> bool:
-    """Whether a dtype is a small number of `ml_dtypes`, of which NumPy knows no more than its name."""
+    """Returns whether a dtype is a small number of `ml_dtypes`, of which NumPy has only the name."""
     return bool(_SMALL.fullmatch(dtype.name) or _SMALL_WHOLE.fullmatch(dtype.name))
 
 
 def _has(made: Any, name: str) -> bool:
-    """Whether there is such an attribute; one that raises is there (PyTorch, of tensors with a gradient)."""
+    """Returns whether there is such an attribute; one that raises exists (PyTorch, for tensors with a gradient)."""
     try:
         return getattr(made, name, None) is not None
     except Exception:
@@ -321,7 +321,7 @@ def _has(made: Any, name: str) -> bool:
 
 
 def _kind(array: Array) -> str:
-    """What an array has in place of real numbers."""
+    """Returns words for the content of an array without real numbers."""
     if array.dtype.kind != "O":
         return array.dtype.name
     if array.ndim == 0:

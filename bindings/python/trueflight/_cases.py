@@ -1,4 +1,4 @@
-"""What theory says of a case, and what its draws are."""
+"""Predictions and runs of cases."""
 
 import json
 import math
@@ -25,23 +25,23 @@ _SWEEPS = ("sampling", "sampling_scale", "albedo", "control", "points", "density
 
 
 def cases() -> list[str]:
-    """The names of the built-in cases."""
+    """Returns the names of the built-in cases."""
     return _trueflight.built_in()
 
 
 def predict(
     case: Case, *, optimum: bool = False, filter: str | None = None, seed: int = 1, threads: int | None = None
 ) -> Columns:
-    """What theory says of each experiment of a case: truth, variance, cost, figure of merit. Nothing is drawn.
+    """Predicts each experiment of a case: truth, variance, cost, figure of merit. Nothing is drawn.
 
-    ``case`` is a built-in name, a path of a file or folder, the text of a case file (what has a line break), or a dict with
+    ``case`` is a built-in name, a path of a file or folder, the text of a case file (a text with a line break), or a dict with
     its keys. ``optimum`` searches the best constant sampling extinction too: a hundred predictions for each estimator.
     ``filter`` keeps experiments that match a pattern such as ``"*eq21*:single"``. ``seed`` is that of pilot rays, where the
-    sampling extinction is learned. ``threads`` is one per processor without it.
+    sampling extinction is learned. By default ``threads`` is one per processor.
 
-    Answers a dict of columns, one row for each estimator, value of the sweep and channel, named as those of
-    ``summary.csv``: texts in lists, numbers in arrays of float64 with NaN for what is not known, counts in arrays of int64
-    where all are known. ``pandas.DataFrame(…)`` and ``polars.DataFrame(…)`` take it. Extinctions are in 1/length.
+    Returns a dict of columns, one row for each estimator, value of the sweep and channel, named as those of
+    ``summary.csv``: texts in lists, numbers in arrays of float64 with NaN for unknown ones, counts in arrays of int64
+    if all are known. ``pandas.DataFrame(…)`` and ``polars.DataFrame(…)`` take it. Extinctions are in 1/length.
 
     Raises ``trueflight.Error`` with every mistake in the case shown in place, ``CaseNotFound``, ``KeyboardInterrupt``.
     """
@@ -61,10 +61,11 @@ def run(
 ) -> Columns:
     """Draws every experiment of a case and judges it; without the GIL.
 
-    ``draws`` are planned for each experiment, 2 to 1e12 (without it what the case says, or 4e6); the gate may stop earlier, or
-    go on. ``alpha`` is the chance that any of them fails where all are correct. Results do not depend on ``threads``.
-    ``progress`` is a callable of the draws made and those planned, or ``True`` for a line on stderr. Ctrl-C ends the drawing
-    within a tenth of a second. The rest is as for ``predict``, with the columns ``mean``, ``z_mean``, ``verdict``, … filled.
+    ``draws`` are planned for each experiment, 2 to 1e12 (by default the number of the case, or 4e6); the gate may stop earlier,
+    or go on. ``alpha`` is the probability that any of them fails although all are correct. Results do not depend on
+    ``threads``. ``progress`` is a callable of the draws made and those planned, or ``True`` for a line on stderr. Ctrl-C ends
+    the drawing within a tenth of a second. The other arguments are those of ``predict``, whose columns ``mean``, ``z_mean``,
+    ``verdict``, … are then filled.
     """
     wanted = _wanted(draws, seed, alpha, filter, threads)
     return _drawn(as_case(case), wanted, progress)
@@ -81,11 +82,11 @@ def sweep(
     progress: Progress = False,
     **values: Sequence[float] | npt.NDArray[Any],
 ) -> Columns:
-    """A single case along values of one quantity, in place of its own sweep; the column ``swept`` has the value.
+    """Sweeps a single case along values of one quantity, in place of its own sweep; the column ``swept`` has the value.
 
     The quantity is one of ``sampling`` and ``control`` (1/length), ``sampling_scale``, ``density``, ``albedo_scale`` (factors),
-    ``albedo``, ``points``, ``contrast``, as in ``sweep(case, sampling=[0.5, 1.0, 2.0])``. Theory only, without ``draws``; with
-    them as ``run``.
+    ``albedo``, ``points``, ``contrast``, as in ``sweep(case, sampling=[0.5, 1.0, 2.0])``. Without ``draws`` it only
+    predicts; with them it draws as ``run`` does.
     """
     if len(values) != 1 or not set(values) <= set(_SWEEPS):
         found = ", ".join(values) or "nothing"
@@ -103,7 +104,7 @@ def sweep(
 
 
 def as_case(case: Case) -> dict[str, Any]:
-    """A case as the library's side takes it."""
+    """Converts a case for the compiled library."""
     if isinstance(case, dict):
         try:
             return _asked("json", json.dumps(_plain("", case), allow_nan=False))
@@ -118,7 +119,7 @@ def as_case(case: Case) -> dict[str, Any]:
 
 
 def whole(what: str, number: Any, least: int, most: int) -> int:
-    """A whole number within bounds; 1e6 is one."""
+    """Converts a whole number within bounds; 1e6 is one."""
     is_integer = isinstance(number, int | np.integer) and not isinstance(number, bool)
     is_whole = is_integer or (isinstance(number, float | np.floating) and math.isfinite(number) and int(number) == number)
     if is_whole and least <= number <= most:
@@ -131,7 +132,7 @@ def _asked(kind: str, text: str) -> dict[str, Any]:
 
 
 def probability(what: str, number: Any) -> float:
-    """A probability above 0 and below 1."""
+    """Converts a probability above 0 and below 1."""
     is_number = isinstance(number, int | float | np.integer | np.floating)
     if is_number and 0.0 < number < 1.0:
         return float(number)
@@ -139,7 +140,7 @@ def probability(what: str, number: Any) -> float:
 
 
 def _plain(place: str, value: Any) -> Any:
-    """What stands at a place of a dict, as JSON has it: NumPy's numbers and arrays and paths, too."""
+    """Converts a value of a dict to one of JSON: NumPy's numbers and arrays and paths, too."""
     if is_foreign(value):
         try:
             value = host(value)
@@ -194,10 +195,10 @@ def _drawn(asked: dict[str, Any], wanted: dict[str, Any], progress: Progress) ->
 
 
 class _Line:
-    """How far the drawing is: a line on stderr, written over itself.
+    """Progress of the drawing: a line on stderr, written over itself.
 
-    The planned draws are no bound: the gate may stop earlier or go on, and blocks are whole. So 99 % is said at most until all
-    is drawn.
+    The planned draws are no bound: the gate may stop earlier or go on, and blocks are whole. The line therefore shows at most
+    99 % until the end.
     """
 
     def __init__(self) -> None:
@@ -208,7 +209,7 @@ class _Line:
         self.tell(f"drawing: {min(100 * done // planned, 99)} % of {planned:.3g} draws")
 
     def tell(self, text: str) -> None:
-        """Writes over what was there."""
+        """Writes over the last text."""
         print("\r" + text.ljust(self._width), end="", file=sys.stderr, flush=True)
         self._width = len(text)
 
@@ -219,7 +220,7 @@ class _Line:
 
 
 def _columns(text: str) -> Columns:
-    """Rows in JSON as columns."""
+    """Converts rows in JSON to columns."""
     rows = json.loads(text)
     names = rows[0].keys() if rows else ()
     return {name: _column(name, [row[name] for row in rows]) for name in names}

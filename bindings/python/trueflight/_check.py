@@ -19,13 +19,13 @@ from ._verdict import Verdict
 
 Values = float | Sequence[float] | npt.NDArray[Any]
 
-# So many numbers are converted at a time, where they are not float64 or float32 side by side.
+# Numbers that are converted at a time, unless they are contiguous float64 or float32.
 PIECE = 1 << 20
 
-# These have one number, or one for each value of a draw.
+# Properties with one number, or one for each value of a draw.
 _LISTS = ("truth", "variance", "kurtosis")
 
-# So many values of a draw are judged together: more have lost their alpha, and their lines nobody reads.
+# Maximum number of values of a draw that are judged together: more would leave each too small a share of alpha.
 WIDEST = 64
 
 
@@ -51,55 +51,57 @@ def check(
     seed: int = 1,
     name: str | None = None,
 ) -> Verdict:
-    """Judges draws: are mean and variance what they should be? A correct estimator fails with chance ``alpha`` at most.
+    """Judges draws: are mean and variance what they should be? A correct estimator fails with probability ``alpha``
+    at most.
 
     ``source`` is one of
 
     - an array of n draws, shape (n,), or of n draws of k values, shape (n, k): NumPy, anything with DLPack or
-      ``__cuda_array_interface__``, a column of pandas, Polars or Arrow, or a buffer. Any real dtype; float64 and float32 side
-      by side are read in place, others some at a time. Arrays on a GPU (CuPy, PyTorch, Numba, JAX) are copied to the host in
+      ``__cuda_array_interface__``, a column of pandas, Polars or Arrow, or a buffer. Any real dtype; contiguous float64
+      and float32 are read in place, others some at a time. Arrays on a GPU (CuPy, PyTorch, Numba, JAX) are copied to the host in
       pieces of 2**20 numbers;
-    - a callable ``f(n)`` or ``f(n, rng)`` that answers n draws in such an array; ``rng`` is a ``numpy.random.Generator`` from
-      seed and name. It is called until all is decided, for 2**24 draws at most;
+    - a callable ``f(n)`` or ``f(n, rng)`` that returns n draws in such an array; ``rng`` is a ``numpy.random.Generator`` from
+      seed and name. It is called until the verdict is decided, for 2**24 draws at most;
     - an iterator of draws, or of such arrays.
 
-    A pair ``(draws, lookups)`` in place of an array tells the number of lookups of each draw, too.
+    A pair ``(draws, lookups)`` in place of an array also gives the number of lookups of each draw.
 
-    What is known of a correct draw (lengths in any unit, as long as draws and truth have the same):
+    Claims about a correct draw (lengths in any unit, if draws and truth have the same):
 
     ``truth``, ``variance``, ``kurtosis``
-        Its mean, its variance (tested, too), its kurtosis (3 for the normal law; without a variance an upper bound). One
-        number, or one for each of the k values.
+        Its mean, its variance (tested, too), its kurtosis (3 for the normal distribution; without a variance an upper
+        bound). One number, or one for each of the k values.
     ``range``
-        Where it lies, (low, high); either may be infinite. A draw outside fails.
+        Its range, (low, high); either may be infinite. A draw outside fails.
     ``lookups``
         Mean and variance of its number of lookups of the extinction.
     ``case``, ``estimator``, ``sampling``
-        An experiment whose theory has all of that, and the whole distribution where it is known: a case as in ``predict``,
-        the estimator's name in it, and any value of what the case sweeps, or a constant sampling extinction in 1/length.
+        An experiment: theory then makes these claims, and one about the whole distribution where it is known. A case as in
+        ``predict``, the estimator's name in it, and any value of the swept quantity, or a constant sampling extinction in
+        1/length.
         Every channel of the case is a value of the draw; a luminance may be left out. A free flight that leaves the ray is
         its length, any larger number, infinity or -1.
     ``nearest``
         Takes the nearest value of the case's sweep in place of ``sampling``.
     ``mean_only``
-        Of theory only the mean, for an estimator that the case does not have.
+        Takes only the mean from theory, for an estimator that the case does not have.
 
-    What is wanted of the verdict:
+    Options of the verdict:
 
     ``tolerance``, ``variance_tolerance``
-        The relative bias that a pass excludes (absolute for a truth of 0). Without them what the draws can see, 5 % and 20 %
-        at most; for callables and iterators without ``draws`` 1 % of the mean.
+        The relative bias that a pass excludes (absolute for a truth of 0). Without them the smallest bias that
+        the draws can show, 5 % and 20 % at most; for callables and iterators without ``draws`` 1 % of the mean.
     ``rounding``
-        What rounding may add to a draw, relative to the truth: 3.6e-13, for arrays of float32 and float16 eight times the
+        Rounding error of a draw, relative to the truth: 3.6e-13, for arrays of float32 and float16 eight times the
         dtype's epsilon, for bfloat16 and float8 half of it (one rounding, of the draw that is stored).
     ``batch``
-        Judges averages of so many consecutive draws, for draws that depend on their neighbours.
+        Number of consecutive draws that are averaged before they are judged, for draws that depend on each other.
     ``alpha``, ``draws``, ``seed``, ``name``
-        The error rate; how many draws, all of them; where callables' random numbers begin; what the verdict calls it.
+        Error rate; total number of draws; seed of the random numbers of callables; name in the verdict.
 
-    Raises ``trueflight.Error`` (a ``ValueError``) where something makes no sense, ``DrawsError`` (also a ``TypeError``) where
-    draws are no real numbers, ``CaseNotFound`` (also a ``FileNotFoundError``). Exceptions of a callable come through. A draw
-    that is NaN or infinite is no error but a fail.
+    Raises ``trueflight.Error`` (a ``ValueError``) for invalid arguments, ``DrawsError`` (also a ``TypeError``) for draws that
+    are not real numbers, ``CaseNotFound`` (also a ``FileNotFoundError``). Exceptions of a callable come through. A draw
+    that is NaN or infinite is not an error but a fail.
 
     >>> import numpy as np
     >>> halves = np.random.default_rng(1).random(1_000_000) < 0.5
@@ -131,7 +133,7 @@ def check(
         "nearest": bool(nearest),
     }
     chunks, length = _chunks(called, source, count, begin)
-    # An array is read to its end, and so is what was announced; else the drawing stops when all is decided.
+    # Arrays, and draws of a given number, are read to their end; otherwise the drawing stops once the verdict is decided.
     if length is not None:
         numbers["draws"] = [float(length)]
     first = next(chunks, None)
@@ -145,7 +147,7 @@ def check(
 
 
 def _chunks(name: str, source: Any, draws: int | None, seed: int) -> tuple[Iterator[Chunk], int | None]:
-    """The draws, and how many there are, where that is known."""
+    """Returns the draws, and their number if it is known."""
     if callable(source) and not is_array(source):
         return _draws.from_callable(name, source, draws, seed), draws
     if _draws.is_pair(source) or is_array(source) or isinstance(source, tuple):
@@ -159,7 +161,7 @@ def _chunks(name: str, source: Any, draws: int | None, seed: int) -> tuple[Itera
 
 
 def _name(source: Any, name: Any) -> str:
-    """What the verdict calls the draws."""
+    """Returns the name of the draws in the verdict."""
     if name is None:
         own = getattr(source, "__name__", None)
         return own.replace("<lambda>", "draws") if isinstance(own, str) else "draws"
@@ -169,7 +171,7 @@ def _name(source: Any, name: Any) -> str:
 
 
 def _not_too_wide(name: str, values: Array) -> None:
-    """Whether so many values of a draw are judged together."""
+    """Refuses draws of more values than can be judged together."""
     count = values.shape[1] if values.ndim == 2 else 1
     if count > WIDEST:
         cure = f"{WIDEST} are judged together at most; check them in parts, each with its share of alpha"
@@ -177,7 +179,7 @@ def _not_too_wide(name: str, values: Array) -> None:
 
 
 def _not_transposed(name: str, shape: tuple[int, ...]) -> None:
-    """Whether an array has a draw for each value at least."""
+    """Refuses an array with fewer draws than values."""
     if len(shape) == 2 and 0 < shape[0] < shape[1]:
         one = "1 draw" if shape[0] == 1 else f"{shape[0]} draws"
         found = f"{one} of {shape[1]} values each, fewer draws than values"
@@ -185,7 +187,7 @@ def _not_transposed(name: str, shape: tuple[int, ...]) -> None:
 
 
 def _arrays(name: str, chunks: Iterable[Chunk]) -> Iterator[tuple[Array, Array | None]]:
-    """Arrays as the library reads them: in place where they are floats side by side, else converted some at a time."""
+    """Returns arrays as the library reads them: contiguous floats in place, others converted some at a time."""
     form = None
     for chunk in chunks:
         form = form or _form(chunk)
@@ -203,7 +205,7 @@ def _arrays(name: str, chunks: Iterable[Chunk]) -> Iterator[tuple[Array, Array |
 
 
 def _form(chunk: Chunk) -> tuple[int, bool]:
-    """Number of values of a draw, and whether it tells its lookups."""
+    """Returns the number of values of a draw, and whether it has lookups."""
     return (chunk.draws.shape[1] if chunk.draws.ndim == 2 else 1), chunk.lookups is not None
 
 
@@ -226,7 +228,7 @@ def _numbers(what: str, given: Values) -> list[float]:
 
 
 def _real(what: str, number: Any, given: Any, cure: str) -> float:
-    """A number as a float; a text is none, whatever it says."""
+    """Converts a number to a float; a text is never a number."""
     try:
         if isinstance(number, str | bytes):
             raise TypeError

@@ -1,6 +1,6 @@
-"""Where draws come from: arrays, iterators and callables, all as chunks of draws with their lookups.
+"""Sources of draws: arrays, iterators and callables, all as chunks of draws with their lookups.
 
-A chunk is an array of numbers, shape (n,) or (n, k), and the lookups, shape (n,), where draws tell them.
+A chunk is an array of numbers, shape (n,) or (n, k), and the lookups, shape (n,), if draws have them.
 """
 
 import inspect
@@ -17,7 +17,7 @@ from ._trueflight import BLOCK, MOST
 
 Shape = tuple[int, ...]
 
-# So many draws a callable is asked for at a time: its arrays stay in the cache, and a call costs little beside them.
+# Number of draws of one call of a callable: its arrays stay in the cache, and the call itself costs little.
 AT_ONCE = 4 * BLOCK
 
 
@@ -32,12 +32,12 @@ class Chunk(NamedTuple):
 
 
 def is_pair(source: Any) -> bool:
-    """Whether these are draws with their lookups."""
+    """Returns whether these are draws with their lookups."""
     return isinstance(source, tuple) and len(source) == 2 and dimensions(source[0]) > 0
 
 
 def from_array(name: str, source: Any, draws: int | None = None, count: int | None = None) -> tuple[Iterator[Chunk], Shape]:
-    """The draws of an array, or of one with its lookups, and its shape.
+    """Returns the draws of an array, or of one with its lookups, and its shape.
 
     ``draws`` is the largest number of rows that are taken, ``count`` the number that was asked for. Arrays on another device
     come to the host some at a time.
@@ -67,7 +67,7 @@ def _chunks(name: str, values: Any, lookups: Any, kind: str, draws: int | None) 
 
 
 def from_callable(name: str, make: Callable[..., Any], draws: int | None, seed: int) -> Iterator[Chunk]:
-    """Asks a callable for draws, some at a time; its exceptions come through."""
+    """Returns the draws of a callable, some at a time; its exceptions pass through."""
     rng = np.random.default_rng([seed, zlib.crc32(name.encode())])
     arguments = (rng,) if _takes_rng(make) else ()
     left = MOST if draws is None else draws
@@ -78,7 +78,7 @@ def from_callable(name: str, make: Callable[..., Any], draws: int | None, seed: 
 
 
 def from_iterator(name: str, source: Iterable[Any], draws: int | None) -> Iterator[Chunk]:
-    """What an iterator yields: draws one by one, or arrays of them; as many as are wanted."""
+    """Returns the draws of an iterator that yields draws one by one, or arrays of them; at most ``draws`` of them."""
     left = MOST if draws is None else draws
     iterator = iter(source)
     for first in iterator:
@@ -100,7 +100,7 @@ def from_iterator(name: str, source: Iterable[Any], draws: int | None) -> Iterat
 
 
 def _takes_rng(make: Callable[..., Any]) -> bool:
-    """Whether a callable wants a generator beside the number of draws."""
+    """Returns whether a callable takes a generator beside the number of draws."""
     try:
         parameters = list(inspect.signature(make).parameters.values())
     except (TypeError, ValueError):

@@ -1,8 +1,8 @@
-"""Why there is no verdict. All are a ``trueflight.Error``, and a ``ValueError``."""
+"""Reasons why there is no verdict. All are a ``trueflight.Error``, and a ``ValueError``."""
 
 
 class Error(ValueError):
-    """What was asked makes no sense; the words name the place and the cure."""
+    """An argument is invalid; the message names the place and the cure."""
 
 
 class CaseNotFound(Error, FileNotFoundError):
@@ -13,14 +13,14 @@ class CaseNotFound(Error, FileNotFoundError):
 
 
 class DrawsError(Error, TypeError):
-    """What should be draws are no real numbers."""
+    """Draws are not real numbers."""
 
 
 def shown(value: object) -> str:
-    """A value in a message: short, whatever it is."""
+    """Returns a value for a message, shortened if it is long."""
     try:
         text = repr(value)
-    except Exception:  # Integers of many digits have none, and anybody's `__repr__` may raise.
+    except Exception:  # Integers of many digits have none, and any `__repr__` may raise.
         text = f"<{type(value).__name__}>"
     return text if len(text) <= 60 else f"{text[:57]}…"
 

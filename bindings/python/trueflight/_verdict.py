@@ -1,4 +1,4 @@
-"""What a check found."""
+"""Result of a check."""
 
 import html
 import json
@@ -15,24 +15,24 @@ _COLOURS = {"pass": "#1a7f37", "fail": "#cf222e", "inconclusive": "#9a6700"}
 class Verdict:
     """The verdict of a check, with its numbers; true if it is a pass.
 
-    A number is a float where a draw is one value, ``None`` where it is not known; and an array of float64, shape (k,), where
-    a draw has k values, with NaN for what is not known. ``str(verdict)`` has all lines of ``trueflight judge``.
+    A number is a float if a draw is one value, ``None`` if it is unknown. If a draw has k values it is an array of float64,
+    shape (k,), with NaN for unknown numbers. ``str(verdict)`` has all lines of ``trueflight judge``.
     """
 
     name: str
-    """The check's name."""
+    """Name of the check."""
     verdict: Literal["pass", "fail", "inconclusive"]
     """Fail if any value of a draw fails, pass if all pass."""
     reason: str
-    """Why, in words; empty for a plain pass."""
+    """Reason, in words; empty for a plain pass."""
     alpha: float
-    """The chance that a correct estimator fails, all values together."""
+    """Probability that a correct estimator fails, all values together."""
     seed: int
-    """Where the random numbers began that callables were given."""
+    """Seed of the random numbers of callables."""
     channels: list[str]
-    """The names of the values, where they are channels of a case; empty otherwise."""
+    """Names of the values, if they are channels of a case; empty otherwise."""
     values: list[dict[str, Any]]
-    """What was found of each value of a draw, by the names of ``record.json``."""
+    """Numbers of each value of a draw, by the names of ``record.json``."""
 
     def __init__(self, found: tuple[Any, str, str, str], seed: int) -> None:
         self.verdict, self.reason, self._text, numbers = found
@@ -43,27 +43,27 @@ class Verdict:
 
     @property
     def passed(self) -> bool:
-        """Whether it is a pass; neither fail nor inconclusive is one."""
+        """True for a pass; false for fail and for inconclusive."""
         return self.verdict == "pass"
 
     @property
     def draws(self) -> int:
-        """How many draws were judged."""
+        """Number of judged draws."""
         return int(self.values[0]["draws"])
 
     @property
     def truth(self) -> Number:
-        """What the mean should be."""
+        """Expected mean."""
         return self._number("truth")
 
     @property
     def mean(self) -> Number:
-        """The mean of the draws."""
+        """Mean of the draws."""
         return self._number("mean")
 
     @property
     def standard_error(self) -> Number:
-        """The mean's standard error: from the variance given, else from that of the draws."""
+        """Standard error of the mean: from the given variance, else from that of the draws."""
         return self._number("standard_error")
 
     @property
@@ -73,38 +73,38 @@ class Verdict:
 
     @property
     def variance(self) -> Number:
-        """The unbiased sample variance of a draw; of an average, where ``batch`` draws are averaged."""
+        """Unbiased sample variance of a draw; of an average if ``batch`` draws are averaged."""
         return self._number("variance")
 
     @property
     def predicted_variance(self) -> Number:
-        """The variance that was given, or that theory has."""
+        """Expected variance, given or from theory."""
         return self._number("predicted_variance")
 
     @property
     def kurtosis(self) -> Number:
-        """The sample kurtosis, 3 for the normal law."""
+        """Sample kurtosis, 3 for the normal distribution."""
         return self._number("kurtosis")
 
     @property
     def lookups(self) -> Number:
-        """The mean number of lookups, where draws tell it; of the first value only."""
+        """Mean number of lookups, if draws have lookups; of the first value only."""
         return self._number("lookups")
 
     @property
     def p_values(self) -> dict[str, float]:
-        """The p-values of tests of the whole distribution, by test, where theory knows it; empty otherwise."""
+        """p-values of the tests of the whole distribution, by test, if theory knows it; empty otherwise."""
         return {found["check"]: float(found["p"]) for found in self.values[0]["distribution"]}
 
     def assert_pass(self) -> "Verdict":
-        """Raises ``AssertionError`` with the lines of the verdict unless it is a pass; answers itself."""
+        """Raises ``AssertionError`` with the lines of the verdict unless it is a pass; returns itself."""
         __tracebackhide__ = True
         if not self.passed:
             raise AssertionError(f"check {self._text}")
         return self
 
     def to_dict(self) -> dict[str, Any]:
-        """Everything, as JSON has it: texts, numbers, lists and dicts."""
+        """Returns everything as values of JSON: texts, numbers, lists and dicts."""
         own = {"name": self.name, "verdict": self.verdict, "reason": self.reason}
         return own | {"alpha": self.alpha, "seed": self.seed, "channels": self.channels, "values": self.values}
 

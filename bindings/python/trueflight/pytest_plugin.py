@@ -1,8 +1,8 @@
-"""The fixture ``unbiased`` for pytest: all tests of a run that ask for it share one alpha.
+"""The fixture ``unbiased`` for pytest: all tests of a run that use it share one alpha.
 
-A run of correct estimators shows a failure with chance ``--tf-alpha`` at most: each of the N collected tests that use the
-fixture has alpha/N, whatever ``-k`` and ``-m`` deselect of them, and the k-th check of one test alpha/(N k (k + 1)), which
-sums up to its share.
+A run of correct estimators shows a failure with probability ``--tf-alpha`` at most. Each of the N collected tests that use
+the fixture has alpha/N, whichever of them ``-k`` and ``-m`` deselect. The k-th check of one test has alpha/(N k (k + 1)),
+which sums up to its share.
 """
 
 import warnings
@@ -22,20 +22,20 @@ _PASSED = pytest.StashKey[bool]()
 
 
 class Unbiased:
-    """What the fixture ``unbiased`` is: a call checks draws as ``trueflight.check`` does, and asserts that they pass."""
+    """Value of the fixture ``unbiased``: a call checks draws as ``trueflight.check`` does, and asserts that they pass."""
 
     def __init__(self, name: str, alpha: float, seed: int) -> None:
         self.name, self.alpha, self.seed = name, alpha, seed
         self.rng = np.random.default_rng([seed, *name.encode()])
         """A ``numpy.random.Generator`` from ``--tf-seed`` and the test's name, for draws that the test makes itself."""
         self.checks = 0
-        """How often it was called."""
+        """Number of calls so far."""
 
     def __call__(self, source: Any, **known: Any) -> Verdict:
-        """Checks draws with the test's share of alpha; answers the verdict of those that pass.
+        """Checks draws with the test's share of alpha; returns the verdict if they pass.
 
-        Takes what ``trueflight.check`` takes, except ``alpha`` and ``seed``, which belong to the run. Raises
-        ``AssertionError`` where they fail, ``trueflight.Inconclusive`` where they do neither.
+        Takes the arguments of ``trueflight.check`` except ``alpha`` and ``seed``, which belong to the run. Raises
+        ``AssertionError`` if the draws fail, ``trueflight.Inconclusive`` if they neither pass nor fail.
         """
         __tracebackhide__ = True
         self.checks += 1
@@ -70,7 +70,7 @@ def unbiased(request: pytest.FixtureRequest) -> Generator[Unbiased, None, None]:
 def pytest_addoption(parser: pytest.Parser) -> None:
     """Adds --tf-alpha, --tf-seed and --tf-inconclusive."""
     group = parser.getgroup("trueflight", "unbiasedness of Monte Carlo estimators")
-    alpha = "chance that any test of correct estimators fails in the whole run [default: 1e-3]"
+    alpha = "probability that any test of correct estimators fails in the whole run [default: 1e-3]"
     group.addoption("--tf-alpha", type=_alpha, default=1e-3, metavar="A", help=alpha)
     group.addoption("--tf-seed", type=_seed, default=1, metavar="N", help="seed of all draws [default: 1]")
     count = "what an inconclusive test counts as for the exit code [default: fail]"
@@ -78,19 +78,19 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 
 
 def pytest_report_header(config: pytest.Config) -> str:
-    """Says with what the run can be repeated."""
+    """Returns the options that repeat the run."""
     return f"trueflight: --tf-alpha={config.getoption('tf_alpha'):g} --tf-seed={config.getoption('tf_seed')}"
 
 
 @pytest.hookimpl(wrapper=True, tryfirst=True)
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> Generator[None, None, None]:
-    """Counts who shares alpha, before ``-k`` and ``-m`` deselect any of them."""
+    """Counts the tests that share alpha, before ``-k`` and ``-m`` deselect any of them."""
     config.stash[_USERS] = sum(map(_asks, items))
     return (yield)
 
 
 def pytest_report_collectionfinish(config: pytest.Config, items: list[pytest.Item]) -> str | list[str]:
-    """Says who shares alpha."""
+    """Returns the number of tests that share alpha."""
     users, selected = config.stash.get(_USERS, 0), sum(map(_asks, items))
     if not selected:
         return []
@@ -104,7 +104,7 @@ def pytest_report_collectionfinish(config: pytest.Config, items: list[pytest.Ite
 def pytest_runtest_makereport(
     item: pytest.Item, call: pytest.CallInfo[Any]
 ) -> Generator[None, pytest.TestReport, pytest.TestReport]:
-    """Marks what is inconclusive."""
+    """Marks inconclusive tests."""
     report = yield
     if call.when == "call":
         item.stash[_PASSED] = report.passed
@@ -117,14 +117,14 @@ def pytest_runtest_makereport(
 
 
 def pytest_report_teststatus(report: Any) -> Any:
-    """An outcome of its own: the letter I."""
+    """Returns an outcome of its own: the letter I."""
     if getattr(report, "tf_inconclusive", None):
         return "inconclusive", "I", ("INCONCLUSIVE", {"yellow": True})
     return None
 
 
 def pytest_terminal_summary(terminalreporter: Any) -> None:
-    """The lines of the inconclusive verdicts."""
+    """Writes the lines of the inconclusive verdicts."""
     reports = terminalreporter.stats.get("inconclusive", [])
     if reports:
         terminalreporter.section("inconclusive", yellow=True)

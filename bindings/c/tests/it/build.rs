@@ -6,12 +6,12 @@ use std::process::{Command, Output};
 
 use tempfile::TempDir;
 
-/// The folder of the crate.
+/// Returns the folder of the crate.
 pub fn here() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
 }
 
-/// The folder of `libtrueflight_c.a` and `.so`: Cargo puts them beside the tests.
+/// Returns the folder of `libtrueflight_c.a` and `.so`: Cargo puts them beside the tests.
 pub fn libraries() -> PathBuf {
     let own = std::env::current_exe().expect("a path");
     let folder = own.parent().expect("a folder").to_owned();
@@ -19,21 +19,21 @@ pub fn libraries() -> PathBuf {
     folder
 }
 
-/// A compiler's name, from the environment as build tools read it.
+/// Returns a compiler's name, from the environment as build tools read it.
 fn compiler(source: &Path) -> String {
     let is_c = source.extension().is_some_and(|extension| extension == "c");
     let (variable, usual) = if is_c { ("CC", "cc") } else { ("CXX", "c++") };
     std::env::var(variable).unwrap_or_else(|_| usual.to_owned())
 }
 
-/// Which library a program is linked with.
+/// Library that a program is linked with.
 #[derive(Clone, Copy)]
 pub enum Link {
     Static,
     Shared,
 }
 
-/// A program, which is removed with its folder.
+/// Program, which is removed with its folder.
 pub struct Program {
     folder: TempDir,
 }
@@ -64,12 +64,12 @@ impl Program {
         Self { folder }
     }
 
-    /// Runs it; its exit code and what it wrote to both channels.
+    /// Runs it; returns its exit code and its output on both channels.
     pub fn run(&self) -> (Option<i32>, String) {
         self.run_with(&[])
     }
 
-    /// The same with arguments.
+    /// Runs it with arguments; returns its exit code and its output on both channels.
     pub fn run_with(&self, arguments: &[&str]) -> (Option<i32>, String) {
         let mut command = command(self.folder.path().join("program"));
         let output = command.args(arguments).output().expect("it runs");
@@ -77,14 +77,14 @@ impl Program {
     }
 }
 
-/// A command that finds libraries where it was linked: Cargo names folders with older ones for its tests.
+/// Returns a command with the library path of the linked libraries: Cargo's own path for tests has older ones.
 pub fn command(program: impl AsRef<OsStr>) -> Command {
     let mut command = Command::new(program);
     command.env_remove("LD_LIBRARY_PATH").env_remove("DYLD_FALLBACK_LIBRARY_PATH");
     command
 }
 
-/// What a command wrote.
+/// Returns the output of a command on both channels.
 pub fn said(output: &Output) -> String {
     let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).into_owned();
     text(&output.stdout) + &text(&output.stderr)

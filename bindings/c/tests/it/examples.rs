@@ -1,4 +1,4 @@
-//! The examples do what they say.
+//! Results of the examples.
 
 use crate::build::{Link, Program, here};
 

@@ -1,4 +1,4 @@
-//! Foreign function interface: errors, exceptions, threads, memory; and draws, which are those of Rust.
+//! Foreign function interface: errors, exceptions, threads, memory; and draws, which equal those of Rust.
 
 use std::process::Command;
 
@@ -94,7 +94,7 @@ fn draws_are_those_of_rust() {
     assert_eq!(run("same.c"), (Some(0), format!("{outcome}\n")));
 }
 
-/// No write beyond its place, no use after it is freed, nothing undefined, and every handle is freed.
+/// Sanitizers find no write out of bounds, no use after free, no undefined behaviour, and no leak.
 #[test]
 fn sanitizers_find_nothing() {
     let flags = ["-g", "-fsanitize=address,undefined", "-fno-sanitize-recover=all"];
@@ -102,7 +102,7 @@ fn sanitizers_find_nothing() {
     let compiler = std::env::var("CC").unwrap_or_else(|_| "cc".into());
     let probed = Command::new(compiler).args(probe).output().expect("a C compiler");
     let said = String::from_utf8_lossy(&probed.stderr);
-    // Nothing on its input: all that fails is a missing `main`.
+    // The input is empty: only a missing `main` may fail.
     if said.contains("cannot find") || said.contains("unrecognized") || said.contains("unsupported")
     {
         println!("skipped: this compiler has no sanitizers");
@@ -114,7 +114,7 @@ fn sanitizers_find_nothing() {
             Program::new(&format!("tests/programs/{source}"), Link::Static, &flags).run();
         assert_eq!(code, Some(0), "{source}: {text}");
     }
-    // They would have found a check that is not freed.
+    // Control: the sanitizer detects a check that is not freed.
     let (code, text) = Program::new("tests/programs/leak.c", Link::Static, &flags).run();
     assert!(code != Some(0) && text.contains("LeakSanitizer"), "{text}");
 }

@@ -10,7 +10,7 @@ use tempfile::TempDir;
 
 use crate::build::{command, here, libraries, said};
 
-/// A tool by the environment or its usual name, if it is there.
+/// Returns a tool by the environment or its usual name, if it is installed.
 fn tool(variable: &str, usual: &str) -> Option<String> {
     let name = std::env::var(variable).unwrap_or_else(|_| usual.to_owned());
     let is_there = Command::new(&name).arg("--version").output().is_ok_and(|o| o.status.success());
@@ -20,7 +20,7 @@ fn tool(variable: &str, usual: &str) -> Option<String> {
     is_there.then_some(name)
 }
 
-/// Runs a command that must succeed, and answers what it wrote.
+/// Runs a command that must succeed, and returns its output.
 fn run<I: IntoIterator<Item = A>, A: AsRef<OsStr>>(
     program: impl AsRef<OsStr>,
     arguments: I,
@@ -32,7 +32,7 @@ fn run<I: IntoIterator<Item = A>, A: AsRef<OsStr>>(
     text
 }
 
-/// Builds a project by CMake, and checks that its programs do what they do elsewhere.
+/// Builds a project by CMake, and checks that its programs have the same output as elsewhere.
 fn consume(cmake: &str, folder: &Path, more: &[String]) {
     let project = here().join("tests/programs/consumer");
     let place = folder.join("consumer");
@@ -105,7 +105,7 @@ fn pkg_config_finds_it_where_it_was_copied() {
     by_pkg_config(prefix);
 }
 
-/// Compiles an example with what pkg-config says.
+/// Compiles an example with the flags of pkg-config.
 fn by_pkg_config(prefix: &Path) {
     let Some(pkg_config) = tool("PKG_CONFIG", "pkg-config") else { return };
     let mut command = Command::new(pkg_config);

@@ -1,4 +1,4 @@
-/* A check that nobody frees: what the leak test must see. */
+/* A check that is never freed: the leak test must detect it. */
 #include "trueflight.h"
 
 int main(void)

@@ -1,4 +1,4 @@
-// Checks on eight threads at once say what they say one after the other, and each thread has its own last error.
+// Checks on eight threads at once return the same as one after the other, and each thread has its own last error.
 #include <iostream>
 #include <thread>
 

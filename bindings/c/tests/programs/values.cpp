@@ -1,4 +1,4 @@
-// How many values a draw has is said by its type.
+// The type of a draw gives its number of values.
 #include <iostream>
 
 #include "trueflight.hpp"

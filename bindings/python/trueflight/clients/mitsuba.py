@@ -42,12 +42,12 @@ SEEDS = 1 << 32
 
 
 class Wrong(Exception):
-    """What was given cannot be used; the message says why, and what would be right."""
+    """An argument is invalid; the message gives the reason and the cure."""
 
 
 @dataclass
 class Row:
-    """What was found of one picture. Seconds to 1 % are for a standard error of a hundredth of the truth."""
+    """Results of one picture. Seconds to 1 % are for a standard error of a hundredth of the truth."""
 
     case: str
     question: str
@@ -72,7 +72,7 @@ class Row:
 
 
 def judge(draws, truth, rounding, law, alpha):
-    """The verdict and the reason of the gate over an array of draws."""
+    """Returns the verdict and the reason of the gate over an array of draws."""
     known = {"rounding": rounding, "variance": law["variance"], "kurtosis": law["kurtosis"]}
     if law["low"] is not None:
         low, high = law["low"] - rounding, law["high"]
@@ -85,7 +85,7 @@ def judge(draws, truth, rounding, law, alpha):
 
 
 def ours(folder, question):
-    """Seconds to 1 % of `trueflight bench` for the estimator of `case.toml`; None where its draws do not vary."""
+    """Returns the seconds to 1 % of `trueflight bench` for the estimator of `case.toml`; None if its draws do not vary."""
     program = os.environ.get("TRUEFLIGHT", "trueflight")
     with tempfile.TemporaryDirectory() as out:
         command = [program, "bench", str(Path(folder, "case.toml")), "--format", "csv", "--out", out]
@@ -101,7 +101,7 @@ def ours(folder, question):
 
 
 def read(folder):
-    """The contents of `truth.json`."""
+    """Returns the contents of `truth.json`."""
     path = Path(folder, "truth.json")
     try:
         truth = json.loads(path.read_text(encoding="utf-8"))
@@ -116,7 +116,7 @@ def read(folder):
 
 
 def scene(mitsuba, folder, truth, question, options):
-    """The scene of a picture, with the bug that was asked for."""
+    """Returns the scene of a picture, with the requested bug."""
     path = Path(folder, question["scene"])
     try:
         text = path.read_text(encoding="utf-8")
@@ -155,7 +155,7 @@ def scene(mitsuba, folder, truth, question, options):
 
 
 def pixels(mitsuba, loaded, count, seed):
-    """The pixels of square pictures, a row with red, green and blue each, and the seconds that they took."""
+    """Returns the pixels of square pictures, a row with red, green and blue each, and the seconds that they took."""
     import numpy
 
     side = loaded.sensors()[0].film().size()[0]
@@ -165,7 +165,7 @@ def pixels(mitsuba, loaded, count, seed):
     pictures, seconds = [], 0.0
     for index in range(-(-count // side**2)):
         begin = time.process_time()
-        # Pixel i of a picture has the seed `seed + i`: pictures take seeds that are so far apart.
+        # Mitsuba gives pixel i the seed `seed + i`: pictures are as many seeds apart as they have pixels.
         image = mitsuba.render(loaded, seed=(seed + index) * side**2, spp=1)
         seconds += time.process_time() - begin
         pictures.append(numpy.array(image)[:, :, :3].astype(float).reshape(-1, 3))
@@ -191,7 +191,7 @@ def samples(mitsuba, loaded, count, seed, is_inside):
 
 
 def laws(question, options):
-    """What is known of the samples of the way in which lights are found."""
+    """Returns the known distribution of samples, with or without emitter sampling."""
     law = question["without_emitter_sampling" if options.no_emitter_sampling else "with_emitter_sampling"]
     if law is None:
         raise Wrong("scattering alone does not find this light; leave --no-emitter-sampling out")
@@ -199,10 +199,10 @@ def laws(question, options):
 
 
 def measure(mitsuba, folder, truth, questions, options):
-    """Renders one picture and judges it, channel by channel where it has several: a row for each question."""
+    """Renders one picture and judges it, channel by channel if it has several: a row for each question."""
     known = [laws(question, options) for question in questions]
     loaded = scene(mitsuba, folder, truth, questions[0], options)
-    # Not the calls from Python are timed, but a picture.
+    # Times a picture, not the calls from Python.
     draws, seconds = pixels(mitsuba, loaded, options.draws if options.pixels else 1, options.seed if options.pixels else 0)
     rate = len(draws) / seconds
     if not options.pixels:
@@ -210,7 +210,7 @@ def measure(mitsuba, folder, truth, questions, options):
     alpha = options.alpha / len(truth["questions"])
     rows = []
     for question, law in zip(questions, known, strict=True):
-        # Of a scene without channels all colours are alike.
+        # In a scene without channels all colours are equal.
         of_channel = draws[:, question.get("channel", 1) - 1].copy()
         row = found(of_channel, truth, (question, law), (rate, alpha), folder, options)
         rows.append(replace(row, mitsuba=mitsuba.__version__))
@@ -218,7 +218,7 @@ def measure(mitsuba, folder, truth, questions, options):
 
 
 def found(draws, truth, question_and_law, rate_and_alpha, folder, options):
-    """The row of one question."""
+    """Returns the row of one question."""
     (question, law), (rate, alpha) = question_and_law, rate_and_alpha
     mean, error = question["mean"], question["error"]
     rounding = question["rounding"] + error / mean
@@ -251,7 +251,7 @@ def found(draws, truth, question_and_law, rate_and_alpha, folder, options):
 
 
 def by_scene(questions):
-    """The questions of each scene, in the order of the scenes."""
+    """Returns the questions of each scene, in the order of the scenes."""
     scenes = {}
     for question in questions:
         scenes.setdefault(question["scene"], []).append(question)
@@ -259,7 +259,7 @@ def by_scene(questions):
 
 
 def arguments(words):
-    """The options of the command line."""
+    """Returns the options of the command line."""
     parser = argparse.ArgumentParser(
         prog="python -m trueflight.clients.mitsuba",
         description=__doc__,
@@ -303,7 +303,7 @@ def arguments(words):
 
 
 def writable(path):
-    """Whether rows can be appended to a table, found out before anything is rendered; leaves no file behind."""
+    """Checks, before anything is rendered, that rows can be appended to a table; leaves no file behind."""
     is_new = not os.path.lexists(path)
     try:
         with open(path, "a+", encoding="utf-8") as file:
@@ -318,7 +318,7 @@ def writable(path):
 
 
 def lines(row):
-    """What the console says of a picture."""
+    """Returns the text of a picture on the console."""
     reason = f": {row.reason}" if row.reason else ""
     z = "–" if row.z is None else f"{row.z:.2f}"
     yield f"{row.case} {row.question}, {row.integrator}: {row.verdict}{reason}"
@@ -338,7 +338,7 @@ def append(path, rows):
 
 
 def main(words=None):
-    """Renders, judges and prints; answers the exit code."""
+    """Renders, judges and prints; returns the exit code."""
     options = arguments(words)
     try:
         truth = read(options.folder)
