@@ -92,7 +92,7 @@ fn what_has_no_error_to_wait_for_says_so() {
     assert!(refused.is_refused && refused.times.is_none() && refused.reason.contains("σ_t"));
 }
 
-/// A bench without what depends on the machine.
+/// Returns a bench without the numbers that depend on the machine.
 fn results(mut bench: Bench) -> String {
     for row in bench.cases.iter_mut().flat_map(|case| &mut case.rows) {
         row.times = None;
@@ -146,7 +146,7 @@ fn the_same_columns_go_everywhere() {
     }
 }
 
-/// With less vector hardware the draws are others only where nothing fuses, and the table names it.
+/// Other vector hardware changes draws only without fused multiply-add; the table names the hardware.
 #[test]
 fn the_level_of_vector_hardware_can_be_chosen() {
     let place = Place::new(&[("case.toml", CASE)]);
@@ -201,7 +201,7 @@ fn a_stored_bench_is_compared_with() {
     let path = place.path().join("baselines/main.bench.json");
     let text = std::fs::read_to_string(&path).expect("a baseline");
     assert_eq!(code(&place.run(&format!("{bench} --baseline main --time-tolerance inf"))), 0);
-    // As if everything had been a million times as fast.
+    // Times as if everything had been a million times as fast.
     let mut tree: serde_json::Value = serde_json::from_str(&text).expect("JSON");
     for timed in tree["timed"].as_array_mut().expect("experiments") {
         for figure in ["median", "least", "most"] {
@@ -214,7 +214,7 @@ fn a_stored_bench_is_compared_with() {
     let output = place.run(&format!("{bench} --baseline main --threads 2"));
     assert_eq!(output.status.code(), Some(2));
     assert!(String::from_utf8_lossy(&output.stderr).contains("--threads 1"));
-    // A bench of other experiments is no comparison.
+    // A bench of other experiments is not comparable.
     let tree = text.replace("\"problem\": \"", "\"problem\": \"other ");
     std::fs::write(&path, tree).expect("a baseline");
     let output = place.run(&format!("{bench} --baseline main"));

@@ -1,5 +1,5 @@
-//! Bidirectional path tracing in a rod: shares and second moments of every technique against numbers from
-//! another arithmetic, see `tests/data/README.md`, and predictions against draws.
+//! Bidirectional path tracing in a rod: shares and second moments of every technique against numbers from another
+//! arithmetic, see `tests/data/README.md`, and predictions against draws.
 
 use crate::common::{none, row, rows};
 use serde::Deserialize;
@@ -23,7 +23,7 @@ fn values() -> Vec<Reference> {
     serde_json::from_str(include_str!("../data/bidirectional-rod.json")).expect("values")
 }
 
-/// The rod of the reference values: τ = 2, a = 0.9, `p_f` = 0.75.
+/// Returns the rod of the reference values: τ = 2, a = 0.9, `p_f` = 0.75.
 fn scene(sensor: &str, order: usize) -> Scene {
     let depth = Known::exact(2.0);
     let is_transmitted = sensor == "T";
@@ -42,7 +42,7 @@ fn predicted(scene: &Scene, combination: Combination, connection: Connection) ->
 const FULL: Combination = Combination::Full(Heuristic::Balance);
 const DIRECTIONAL: Combination = Combination::Directional(Heuristic::Balance);
 
-/// Shares, then second moments, of every technique.
+/// Returns the shares, then the second moments, of every technique.
 fn shares(prediction: &Prediction) -> Vec<f64> {
     let techniques = &prediction.channels[..prediction.channels.len() - 1];
     let share = techniques.iter().map(|channel| channel.truth.value);
@@ -53,7 +53,7 @@ fn shares(prediction: &Prediction) -> Vec<f64> {
     share.chain(second).collect()
 }
 
-/// The variance of the sum.
+/// Returns the variance of the sum.
 fn variance(prediction: &Prediction) -> f64 {
     let sum = prediction.channels.last().expect("a sum");
     assert_eq!(sum.name, "sum");
@@ -97,7 +97,7 @@ fn every_reference_value_is_met() {
 
 #[test]
 fn stated_errors_hold() {
-    // Two resolutions of the same integrals, and numbers from elsewhere, agree to what is stated.
+    // Two resolutions of the same integrals, and numbers from elsewhere, agree within the stated errors.
     for Reference { id, sensor, order, what, value, error } in values() {
         if what != "full" {
             continue;
@@ -113,7 +113,7 @@ fn stated_errors_hold() {
     }
 }
 
-/// Every way to share a path, and every connection.
+/// Returns every combination of techniques with every connection.
 fn combinations() -> Vec<(Combination, Connection)> {
     let heuristics = [Heuristic::Balance, Heuristic::Power];
     let combined = heuristics
@@ -154,7 +154,7 @@ fn shares_add_up_to_the_light_of_their_order() {
 
 #[test]
 fn optimal_weights_are_better_than_any_technique() {
-    // Veach's bound: the second moment of the balance heuristic is the least of all weights.
+    // Veach's bound: the second moment of the balance heuristic is the smallest of all weights.
     for (sensor, order) in [("T", 0), ("T", 2), ("R", 1), ("R", 3)] {
         let scene = scene(sensor, order);
         let second = |combination| {
@@ -171,12 +171,12 @@ fn optimal_weights_are_better_than_any_technique() {
 
 #[test]
 fn a_tight_majorant_needs_no_null_vertices() {
-    // σ̂ = σ_t: a tracked connection is 1 or 0, and weights know no distances.
+    // σ̂ = σ_t: a tracked connection is 1 or 0, and weights do not depend on distances.
     let scene = scene("T", 2);
     let found = predicted(&scene, FULL, Connection::Ratio(1.0));
     let directional = predicted(&scene, DIRECTIONAL, Connection::Ratio(1.0));
     assert_eq!(found.channels.len(), directional.channels.len());
-    // Of a coarse σ̂ many null vertices make a tracked connection nearly exact.
+    // With a large σ̂, many null vertices make a tracked connection nearly exact.
     let exact = predicted(&scene, FULL, Connection::Exact);
     let many = predicted(&scene, FULL, Connection::Ratio(1e-2));
     for (exact, many) in exact.channels.iter().zip(&many.channels) {
@@ -184,7 +184,7 @@ fn a_tight_majorant_needs_no_null_vertices() {
     }
 }
 
-/// A rod with estimators.
+/// Returns a rod with estimators.
 fn rod(sensor: &str, orders: usize, lowest: usize, estimators: &str) -> String {
     format!(
         "title = \"a rod\"
@@ -250,7 +250,7 @@ fn shared_subpaths_have_the_same_shares_and_an_unknown_variance_of_their_sum() {
             let asked = |check: &str| shared.findings().any(|f| f.check == check);
             assert!(asked("mean") && !asked("covariance") && asked("variance") != is_sum);
         }
-        // Two walks, not two for each of the techniques.
+        // Two walks in all, not two for each technique.
         assert!(shared[0].experiment.lookups_per_draw < alone[0].experiment.lookups_per_draw);
         let wrong = found
             .iter()

@@ -1,26 +1,26 @@
-//! Under the null, z-scores are standard normal: their mean square lies in its own χ² band.
+//! Under the null hypothesis z-scores are standard normal: their mean square lies in its own χ² band.
 //!
-//! Every case file is drawn with a fixed number of draws. A predicted variance that is too small
-//! makes the z-scores of its kind large together, long before a single one fails; one that is too
-//! large makes them small, which no single check would ever see.
+//! Every case file is drawn with a fixed number of draws. A predicted variance that is too small makes all z-scores of
+//! its kind large, long before a single one fails. One that is too large makes them small, which no single check would
+//! detect.
 
 use crate::common::{ALPHA, none, shipped_record};
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 use trueflight::record::{Finding, Record, Row, Verdict};
 use trueflight::stats::normal;
 
-/// The band holds all but a thousandth: half of it on either side.
+/// Probability outside the band, half of it on either side.
 const OUTSIDE: f64 = 1e-3;
 
-/// The last row of each experiment that was drawn and is not declared biased: the channels of one
-/// walk are not independent.
+/// Returns the last row of each experiment that was drawn and is not declared biased: the channels of one walk are not
+/// independent.
 fn experiments(record: &Record) -> Vec<(&str, Row<'_>)> {
     let mut found = Vec::new();
     for case in &record.results.cases {
         for experiment in &case.experiments {
             let rows = case.rows().filter(|row| row.experiment.id == experiment.id);
             let Some(row) = rows.last() else { continue };
-            // What a case declares biased is neither fair nor compared with theory.
+            // A declared bias is neither unbiased nor predicted.
             let biased = |finding: &Finding| finding.expects_bias;
             let drawn = row.verdict != Some(Verdict::Refused);
             if drawn && !row.findings().any(biased) {
@@ -31,14 +31,14 @@ fn experiments(record: &Record) -> Vec<(&str, Row<'_>)> {
     found
 }
 
-/// Draws enough for the kurtosis of a draw, so that z-scores are near their limit law.
+/// Returns whether the draws are enough for the kurtosis of a draw, so that z-scores are near their limit distribution.
 fn adequate(row: &Row) -> bool {
     let draws = row.experiment.draws.unwrap_or(0) as f64;
     row.predicted_kurtosis.is_some_and(|kurtosis| draws >= 100.0 * kurtosis)
         && row.verdict != Some(Verdict::Underpowered)
 }
 
-/// What is wrong with a family of z-scores, if anything.
+/// Returns the fault of a family of z-scores, if it has one.
 fn judge(kind: &str, scores: &[(String, f64)]) -> Vec<String> {
     assert!(scores.len() >= 50, "only {} z-scores of the {kind}", scores.len());
     let mut wrong = Vec::new();

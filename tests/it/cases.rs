@@ -1,4 +1,4 @@
-//! Every case file of the repository can be read, planned and drawn, and is not refuted.
+//! Every case file of the repository can be read, planned and drawn, and its experiments do not fail.
 
 use std::collections::BTreeSet;
 
@@ -24,7 +24,7 @@ fn every_case_draws_and_none_is_refuted() {
     none(&wrong);
 }
 
-/// What fails in cases of some names, and what was neither drawn nor refused.
+/// Returns the failures in cases of some names, and the experiments that were neither drawn nor refused.
 fn refuted(record: &Record, is_wanted: impl Fn(&str) -> bool) -> Vec<String> {
     let mut wrong = Vec::new();
     for case in record.results.cases.iter().filter(|case| is_wanted(&case.name)) {

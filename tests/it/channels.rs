@@ -1,4 +1,4 @@
-//! What a prediction says of each channel, against numbers derived by hand.
+//! Predictions of each channel against numbers derived by hand.
 
 use crate::common::{case, differs, none, options, predicted, row, rows, verdict, with_optima};
 use trueflight::media::{Control, Piecewise};
@@ -85,7 +85,7 @@ fn thin_media_are_measured_by_their_opacity() {
             found.iter().filter_map(|found| differs("unit", found.channels[0].unit, unit, 1e-15));
         none(&differences.collect::<Vec<_>>());
     }
-    // A digit of T is none of the opacity: 1e-12 is exact, 1 − T is not.
+    // 1 − T has fewer digits than T: an error of 1e-12 is exact for T, and not for the opacity.
     let faint = predictions(
         "title = \"faint\"\n[problem.transmittance]\nmedium.constant.extinction = 1e-12\n\
          span = [0, 1]\nestimators = [{ closed-form = {} }]",
@@ -98,7 +98,7 @@ fn thin_media_are_measured_by_their_opacity() {
     assert_eq!(flight.channels[0].unit, flight.channels[0].truth.value);
 }
 
-/// τ = 1000 with a control of 999: `X/T = e · ∏ (1 − r)`, r = .1/2.
+/// Text of a case with τ = 1000 and a control of 999: `X/T = e · ∏ (1 − r)`, r = .1/2.
 const THICK: &str = "title = \"thick\"\n[problem.transmittance]\n\
                      medium.constant.extinction = 100\nspan = [0, 10]\n\
                      sampling.constant.value = 2\ncontrol.constant.value = 99.9\n\
@@ -123,7 +123,7 @@ fn thick_media_are_drawn_in_units_of_their_own() {
         let row = row(&found, name);
         assert_eq!((row.truth, row.log_unit), (Some(1.0), Some(1000.0)), "{name}");
         let number = |x: Option<f64>| x.expect("a number");
-        // The residual .1 is a difference of 100 and 99.9: 1e-14 of it is rounding of those.
+        // The residual .1 is a difference of 100 and 99.9: 1e-14 of it is their rounding.
         let found = number(row.predicted_variance);
         differences.extend(differs(&format!("V {name}"), found, variance, 1e-12));
         let found = number(row.experiment.predicted_lookups);
@@ -167,7 +167,7 @@ fn the_unit_does_not_depend_on_which_side_of_the_limit_a_depth_is() {
     none(&differences.collect::<Vec<_>>());
 }
 
-/// A rod through Eq. 21 by the non-terminating rule.
+/// Returns a rod through Eq. 21 by the non-terminating rule.
 fn rod(more: &str) -> String {
     format!(
         "title = \"a rod\"\n[problem.rod]\nvolume.eq21 = {{}}\n\
@@ -178,7 +178,7 @@ fn rod(more: &str) -> String {
 
 #[test]
 fn every_channel_has_an_optimum_of_its_own() {
-    // Figures of merit at σ̂ = 0.6, 0.61, … 1.6 say where the best is to within a step.
+    // Figures of merit at σ̂ = 0.6, 0.61, … 1.6 give the best σ̂ to within a step.
     let steps: Vec<String> = (60..=160).map(|i| format!("{}", f64::from(i) / 100.0)).collect();
     let more = format!("albedo = 0.7\nsweep.sampling.values = [{}]", steps.join(", "));
     let rows = with_optima(&rod(&more));
@@ -197,7 +197,7 @@ fn every_channel_has_an_optimum_of_its_own() {
             assert!((found - at).abs() < 0.01 && found_fom >= merit(best), "{channel}: {found}");
         }
     }
-    // It takes a hundred predictions, and is searched only where it is asked for.
+    // It takes a hundred predictions, and is searched only on request.
     let bare = predicted(&rod("albedo = 0.7\nsampling.constant.value = 1"));
     assert!(bare.iter().all(|row| row.best_sampling().is_none() && row.best_fom().is_none()));
 }
@@ -244,7 +244,7 @@ fn an_optimum_belongs_to_the_albedo_of_its_row() {
     }
 }
 
-/// A table of theory, so many columns wide.
+/// Returns a table of theory, this number of columns wide.
 fn table(text: &str, view: View, width: usize) -> String {
     let cases = [case("test", text)];
     let record = build::predicted(&Plan::new(&cases, &options(1, 1000)));
@@ -286,7 +286,7 @@ fn values_of_one_sweep_are_printed_apart() {
             assert!(shown.contains(value), "{value}:\n{shown}");
         }
     }
-    // The reason of both refusals is told with both places.
+    // The reason that both refusals share is listed with both places.
     let shown = table(text, View::Predict, 100);
     assert!(shown.contains("(σ\u{302} 0.48639)") && shown.contains("(σ\u{302} 0.4864)"), "{shown}");
     let cases = [case("test", text)];

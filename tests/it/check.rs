@@ -1,11 +1,11 @@
-//! `trueflight check`: exit codes, reports whatever the verdict, and what GitHub gets.
+//! `trueflight check`: exit codes, reports for every verdict, and the output for GitHub.
 
 use std::path::Path;
 use std::process::Output;
 
 use crate::common::place::{Place, assert_says, code, said};
 
-/// A case that passes within the usual draws.
+/// Text of a case that passes within the default draws.
 const GOOD: &str = "title = \"a good case\"
 [problem.transmittance]
 medium.piecewise-linear = { knots = [0, 0.5, 2], values = [0.1, 1.0, 0.1] }
@@ -14,26 +14,26 @@ sampling.constant.value = 1.1
 estimators = [{ woodcock = {} }, { ratio = {} }]
 ";
 
-/// The same with an estimator that is wrong and does not say so.
+/// Returns that case with a biased estimator that is not declared biased.
 fn biased() -> String {
     GOOD.replace("{ woodcock = {} }", "{ ray-marching = { steps = 2 } }")
 }
 
 const FILES: &str = "--junit junit.xml --record record.json --markdown summary.md";
 
-/// A folder with one case.
+/// Returns a folder with one case.
 fn place_of(text: &str) -> Place {
     Place::new(&[("cases/case.toml", text)])
 }
 
-/// Expects an exit code.
+/// Runs `check`, and compares the exit code.
 fn check(place: &Place, expected: i32, arguments: &str) -> Output {
     let output = place.run(&format!("check {arguments}"));
     assert_eq!(code(&output), expected, "{arguments}: {}", said(&output));
     output
 }
 
-/// All reports exist, are whole, and hold no colours.
+/// Returns all reports; checks that they exist, are complete, and have no colours.
 fn reports(place: &Place) -> [String; 3] {
     let [junit, json, markdown] =
         ["junit.xml", "record.json", "summary.md"].map(|name| place.read(name));
@@ -85,7 +85,7 @@ fn what_repeats_a_failure_repeats_it() {
     let words = line.expect("a command").split('\'');
     let mut command = place.command("");
     for (i, word) in words.enumerate() {
-        // Every second piece stands in quotes.
+        // Every second piece is quoted.
         if i % 2 == 1 {
             command.arg(word)
         } else {
@@ -114,7 +114,7 @@ fn inconclusive_is_3_unless_one_says_otherwise() {
         assert_eq!(run.status.code(), Some(code), "run {flag}");
     }
     assert!(place.read("results/record.json").starts_with("{\"schema\":"));
-    // No wish turns a failure into anything else.
+    // `--inconclusive` does not change a failure.
     check(&place_of(&biased()), 1, "cases --inconclusive pass");
 }
 
@@ -174,11 +174,11 @@ fn github_gets_annotations_and_a_summary() {
     assert_says(error, &["title=fail case%3A ray-marching", "file=cases/case.toml", "%0Arepeat: "]);
     let written = place.read("summary.md");
     assert!(written.starts_with("before\n## Trueflight"), "{written}");
-    // A summary that cannot be written is no reason to lose the verdict.
+    // A summary that cannot be written does not change the verdict.
     let output = on_github(&place.path().join("no/summary.md"));
     assert_eq!(output.status.code(), Some(1));
     assert_says(&said(&output), &["warning: ", "no/summary.md", "::error "]);
-    // Elsewhere there is neither.
+    // Elsewhere neither is written.
     assert!(!said(&check(&place, 1, "cases")).contains("::error"));
 }
 

@@ -1,5 +1,5 @@
-//! Slabs in which every channel has a medium of its own: against slabs of one channel and of coloured scatterers, drawn,
-//! and what is refused.
+//! Slabs in which every channel has a medium of its own: against slabs of one channel and of coloured scatterers,
+//! against draws, and refusals.
 
 use trueflight::record::Verdict;
 
@@ -39,7 +39,7 @@ fn every_channel_is_the_slab_of_its_own_medium() {
     }
 }
 
-/// Where channels differ in their albedo alone, theory knows the variance from orders of scattering.
+/// If channels differ in their albedo only, theory knows the variance from orders of scattering.
 #[test]
 fn channels_that_differ_in_albedo_alone_are_a_slab_of_coloured_scatterers() {
     let rest = "span = [0, 1]\nalbedos = [1, 0.7, 0.4]\nincidence.diffuse = {}\nsampling.constant.value = 1.5
@@ -62,7 +62,7 @@ fn channels_that_differ_in_albedo_alone_are_a_slab_of_coloured_scatterers() {
     }
 }
 
-/// Where channels differ in their albedo alone, theory knows the variance of a hero and of spectral tracking in a slab of
+/// If channels differ in their albedo only, theory knows the variance of a hero and of spectral tracking in a slab of
 /// coloured scatterers: the bound is above it, and the draws have it.
 #[test]
 fn bounds_of_walks_relative_to_one_walker_are_above_their_variances() {
@@ -88,14 +88,14 @@ fn bounds_of_walks_relative_to_one_walker_are_above_their_variances() {
             drawn.reason
         );
         near(drawn.truth, known.truth, 1e-12);
-        // Null collisions are told apart from real ones here: the maximum then is another law.
+        // Null collisions are distinguished from real ones here, so that the maximum has another distribution.
         if !drawn.experiment.label.contains("maximum") {
             near(drawn.variance, known.predicted_variance, 0.03);
         }
     }
 }
 
-/// What is left of an atmosphere of e^{−40} scatters nothing that counts: its rounding is no reason to refuse.
+/// The rest of an atmosphere of e^{−40} scatters a negligible share: its rounding is no reason to refuse.
 #[test]
 fn thin_ends_of_steep_atmospheres_have_a_bound() {
     let text = "title = \"steep\"
@@ -112,7 +112,7 @@ fn thin_ends_of_steep_atmospheres_have_a_bound() {
     }
 }
 
-/// Packets are walks one by one, of every walker.
+/// Packets and single walks make the same draws, for every walker.
 #[test]
 fn walks_side_by_side_are_walks_one_by_one() {
     let diffuse = LIKE.replace("incidence.collimated = { cosine = 0.8 }", "incidence.diffuse = {}");
@@ -132,7 +132,7 @@ fn draws_agree(draws: u64) {
         none(&not_passing(&rows, &[]));
         let (alone, together) = (channels(&rows, "independent"), channels(&rows, "spectral-mis"));
         for (alone, together) in alone.iter().zip(together) {
-            // Colour noise is what multiple importance sampling takes away.
+            // Multiple importance sampling removes colour noise.
             assert!(together.variance.expect("drawn") < alone.variance.expect("drawn"));
         }
     }

@@ -1,10 +1,10 @@
-//! The command: exit codes, messages for broken case files, what goes where.
+//! The command: exit codes, messages for broken case files, streams of the output.
 
 use std::process::Output;
 
 use crate::common::place::{Place, assert_says, code, stderr, stdout};
 
-/// A case that passes within `--draws 400000`.
+/// Text of a case that passes within `--draws 400000`.
 const GOOD: &str = "title = \"a good case\"
 [problem.transmittance]
 medium.constant.extinction = 0.5
@@ -13,13 +13,13 @@ sampling.constant.value = 1
 estimators = [{ woodcock = {} }, { ratio = {} }]
 ";
 
-/// The first columns of summary.csv, in the order of the design.
+/// First columns of summary.csv, in the order of the design.
 const COLUMNS: &str = "case,problem,medium,estimator,sampling,control,channel,seed,draws,mean,\
                        standard_error,truth,truth_error,z_mean,variance,predicted_variance,\
                        z_variance,lookups_per_draw,predicted_lookups,z_lookups,\
                        predicted_kurtosis,detectable_bias,fom,seconds,ns_per_lookup,verdict,reason";
 
-/// Runs a case file of the given text with `--draws`, expecting an exit code.
+/// Runs a case file of the given text with `--draws`, and compares the exit code.
 fn exits(expected: i32, text: &str, draws: &str) -> Output {
     let place = Place::new(&[("case.toml", text)]);
     let output = place.run(&format!("run case.toml --alpha 1e-6 --draws {draws}"));
@@ -27,7 +27,7 @@ fn exits(expected: i32, text: &str, draws: &str) -> Output {
     output
 }
 
-/// The message about a broken case file: exit code 2, nothing on stdout, nothing written.
+/// Returns the message about a broken case file: exit code 2, nothing on stdout, nothing written.
 fn message(text: &str) -> String {
     let place = Place::new(&[("case.toml", text)]);
     for command in ["run", "predict", "plan"] {
@@ -106,7 +106,7 @@ fn an_unknown_key_is_shown_in_its_line_with_a_caret() {
     let message = message(&GOOD.replace("extinction", "extincton"));
     assert_says(&message, &["`extincton`", "did you mean `extinction`?", "case.toml:3:"]);
     let lines: Vec<&str> = message.lines().collect();
-    // Of the two mistakes, what is missing and what is unknown, the second is at the key.
+    // The second of the two mistakes, a missing and an unknown key, is at the unknown key.
     let line = lines.iter().rposition(|line| line.contains("medium.constant.extincton = 0.5"));
     let line = line.expect("the line of the file");
     let key = lines[line].find("extincton").expect("the key");
@@ -192,7 +192,7 @@ fn results_are_written_where_they_are_wanted() {
     assert_eq!((field("estimator"), field("draws")), ("woodcock".into(), "2000".into()));
     let truth: f64 = field("truth").parse().expect("a number");
     assert!((truth - (-1f64).exp()).abs() < 1e-16);
-    // Nothing is left half written.
+    // No file is incomplete.
     let names = std::fs::read_dir(place.path().join("here")).expect("a folder");
     let temporary = names.filter(|entry| {
         entry.as_ref().expect("an entry").file_name().to_string_lossy().starts_with('.')
@@ -217,7 +217,7 @@ fn csv_and_json_hold_the_columns_and_nothing_else() {
         }
         assert!(rows[0]["moments_error"].is_number(), "{command}");
         assert_eq!(rows[0]["best_fom"].is_number(), command.ends_with("optimum"), "{command}");
-        // What is unknown is empty, and never zero.
+        // Unknown numbers are empty, never zero.
         if !command.starts_with("run") {
             assert_eq!(rows[0]["mean"], serde_json::Value::Null, "{command}");
             assert_eq!(rows[0]["variance"], serde_json::Value::Null, "{command}");
@@ -297,11 +297,11 @@ fn an_old_name_of_an_option_is_answered_by_the_new_one() {
     }
 }
 
-/// Commands that the help of all commands lists.
+/// Returns the commands that the help of all commands lists.
 fn commands(place: &Place) -> Vec<String> {
     let help = stdout(&place.run("--help"));
     let list = help.split("Commands:\n").nth(1).expect("a list").split("\n\n").next();
-    // Lines that are indented further go on with a description.
+    // Lines with more indentation continue a description.
     let lines = list.expect("a list").lines().filter_map(|line| line.strip_prefix("  "));
     let names = lines.filter_map(|line| line.split(' ').next());
     names.filter(|name| !["", "help"].contains(name)).map(str::to_owned).collect()
@@ -376,7 +376,7 @@ fn a_second_run_in_the_same_folder_reuses_what_has_not_changed() {
     assert!(plan.contains("have not changed since the last run in results"), "{plan}");
     let second = place.run("run case.toml --draws 50000");
     assert!(stdout(&second).contains("were reused (--fresh makes them anew)"));
-    // Even the times are those of the first run; only one column tells.
+    // Even the times are those of the first run; only one column shows the reuse.
     let told = summary();
     assert!(told.lines().skip(1).all(|line| line.contains(",yes,") || line.contains("refused")));
     assert_eq!(told.replace(",yes,", ",,"), drawn);

@@ -1,4 +1,4 @@
-//! Estimators as closures: what passes, what fails, and what is said.
+//! Estimators as closures: passes, failures, and their messages.
 
 use trueflight::OfCase;
 use trueflight::case::Case;
@@ -9,12 +9,12 @@ use trueflight::rng::Stream;
 use trueflight::stats::verdict::Verdict;
 use trueflight::{Gate, check, check_with, claim};
 
-/// Eq. 21 on its central ray.
+/// Returns σ_t of Eq. 21 on its central ray.
 fn sigma_t(t: f64) -> f64 {
     (0.75 * t).cos().powi(10) * ((t / 2.0).sin() + 2.0) / 3.0
 }
 
-/// Ratio tracking on [0, 20] with what a collision multiplies, and its lookups.
+/// Ratio tracking on [0, 20] with the factor of a collision, and its lookups.
 fn ratio_of(rng: &mut Stream, sampling: f64, keep: impl Fn(f64) -> f64) -> (f64, u64) {
     let (mut weight, mut t, mut lookups) = (1.0, 0.0, 0);
     loop {
@@ -46,7 +46,7 @@ fn lookups_are_judged_where_they_are_told() {
     let honest = with(|r| 1.0 - r).expect("a verdict");
     assert_eq!(honest.verdict(), Verdict::Pass, "{honest}");
     assert!(honest.values[0].finding("lookups").is_some(), "{honest}");
-    // A draw that counts its lookups twice.
+    // Draws with doubled lookups.
     let twice = check("twice", |rng| {
         let (weight, lookups) = ratio_of(rng, 1.3, |r| 1.0 - r);
         (weight, 2 * lookups)
@@ -58,11 +58,11 @@ fn lookups_are_judged_where_they_are_told() {
 
 #[test]
 fn bugs_of_mean_and_variance_fail() {
-    // Keeps a little too much at each collision.
+    // Each collision keeps slightly too much.
     let bright = check("bright", |rng| ratio_of(rng, 1.0, |r| 1.0 - 0.99 * r).0);
     let bright = bright.of(CASE, "ratio", 1.0).verdict().expect("a verdict");
     assert_eq!(bright.verdict(), Verdict::Fail, "{bright}");
-    // The right mean at another σ̂: the variance tells.
+    // The right mean at another σ̂: the variance differs.
     let other = check("other", |rng| ratio(rng, 1.5)).of(CASE, "ratio", 1.0).verdict();
     let other = other.expect("a verdict");
     assert_eq!(other.verdict(), Verdict::Fail, "{other}");
@@ -73,7 +73,7 @@ fn bugs_of_mean_and_variance_fail() {
 
 #[test]
 fn a_constant_does_not_pass_for_draws_that_vary() {
-    // The right mean without any variance: nothing refutes it without a kurtosis or a range, and nothing bears it out.
+    // The right mean without any variance: without a kurtosis or a range nothing refutes it, and nothing confirms it.
     let constant = || check("constant", |_| 0.4).truth(0.4).variance(0.1).draws(200_000);
     let found = constant().verdict().expect("a verdict");
     assert_eq!(found.verdict(), Verdict::Inconclusive, "{found}");
@@ -135,7 +135,7 @@ fn pushing_by_ones_or_by_millions_is_the_same() {
         assert_eq!(pushed.draws(), 100_000);
         assert_eq!(pushed.verdict().expect("a verdict").to_string(), whole, "{size}");
     }
-    // Two values a draw, and lookups beside them.
+    // Two values per draw, with lookups.
     let mut pairs = claim("pairs").truth([0.5, 0.5]).range(0.0, 1.0).lookups(3.0, 0.0).open();
     let pairs = pairs.as_mut().expect("a claim");
     let counts = vec![3.0; draws.len() / 2];
@@ -191,12 +191,12 @@ fn a_case_of_ones_own_is_as_good() {
     check("layers", estimator).of_case(&case, &choice).assert_pass();
 }
 
-/// What is said of a check without a verdict.
+/// Returns the message of a check without a verdict.
 fn said<T>(verdict: Result<T, CheckError>) -> String {
     verdict.map_or_else(|error| error.to_string(), |_| "a verdict".into())
 }
 
-/// A case whose draws are too small for doubles of their own.
+/// Returns a case with draws that are too small for doubles.
 fn deep() -> Case {
     let text = r#"
         title = "deep"
@@ -223,14 +223,14 @@ fn averages_take_the_mean_alone_and_rounding_counts_whenever_it_is_said() {
         Verdict::Pass
     );
     check("single", single).of(CASE, "ratio", 1.0).rounding(1e-6).assert_pass();
-    // Every draw of `closed-form` is the truth, to the rounding that is said.
+    // Every draw of `closed-form` is the truth, within the rounding that the claim states.
     let truth = check("truth", |_| 0.032_853_9 * (1.0 + 1e-5)).of(CASE, "closed-form", None);
     let truth = truth.mean_only().variance(0.0).draws(20_000);
     assert_eq!(truth.clone().verdict().expect("one").verdict(), Verdict::Fail);
     assert_eq!(truth.rounding(1e-4).verdict().expect("one").verdict(), Verdict::Pass);
 }
 
-/// Wrong claims by themselves are those of `judge::bad_input_is_2_with_one_clear_error`.
+/// Wrong claims alone are in `judge::bad_input_is_2_with_one_clear_error`.
 #[test]
 fn what_makes_no_sense_is_told_with_its_cure() {
     let u = || check("u", Stream::uniform);

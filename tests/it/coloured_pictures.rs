@@ -1,10 +1,10 @@
-//! Pictures of three channels: their colours, their errors, and what is said of mistakes.
+//! Pictures of three channels: their colours, their errors, and messages about mistakes.
 
 use trueflight::report::render as report;
 
 use crate::render::{ball, found, mistakes, rendered};
 
-/// A ball of constant σ_t in each channel.
+/// Returns a ball of constant σ_t in each channel.
 pub fn coloured() -> String {
     let channel = |extinction: f64| {
         let bounds = "bounds.sphere = { centre = [0, 0, 0], radius = 1 }";
@@ -29,9 +29,9 @@ pub fn coloured() -> String {
            ]"
 }
 
-/// `T_λ = exp(−σ_λ c)` of a chord c, channel after channel; and the mean of (image − truth)² is the variance of a
-/// draw by the draws of a pixel: `E[X²] = 3 T` of independent tracking, `T² exp(∫σ²/σ̂)` of the common ratio
-/// tracker. Its spread is 4 %, some 1,900 squares of nearly Gaussian errors.
+/// `T_λ = exp(−σ_λ c)` of a chord c, channel after channel. The mean of (image − truth)² is the variance of a draw over
+/// the draws of a pixel: `E[X²] = 3 T` of independent tracking, `T² exp(∫σ²/σ̂)` of the common ratio tracker. Its
+/// relative standard deviation is 4 %, from some 1,900 squares of nearly Gaussian errors.
 #[test]
 fn a_coloured_picture_has_the_right_colours_and_errors() {
     let record = rendered(&coloured(), 1);
@@ -61,7 +61,7 @@ fn a_coloured_picture_has_the_right_colours_and_errors() {
         let z = found.bias / (found.rmse / pixels.sqrt());
         assert!(z.abs() < 5.0, "{}: z = {z}", exposure.estimator);
     }
-    // With many draws a pixel they come in packets, which score a luminance where it is asked for.
+    // Many draws per pixel are made in packets, which score a luminance on request.
     let many = rendered(&coloured().replace("[32, 32]", "[8, 8]").replace("= 40", "= 400"), 1);
     assert!(many.exposures.iter().all(|exposure| exposure.outcome.is_ok()));
     let files = report::artifacts(&record).expect("files");

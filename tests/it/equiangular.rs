@@ -1,5 +1,5 @@
-//! A point from the light and delta tracking that share what they find: theory against values that were computed by
-//! other means, and draws.
+//! A point from the light and delta tracking that share lookups: theory against values that were computed by other
+//! means, and against draws.
 
 use std::cell::RefCell;
 use std::path::Path;
@@ -31,7 +31,7 @@ fn references() -> Vec<Reference> {
 
 const CASES: [&str; 4] = ["EQ-A", "EQ-A3", "EQ-FAR", "EQ-2L"];
 
-/// The problem of a case, and σ̂ of both of its segments.
+/// Returns the problem of a case, and σ̂ of both of its segments.
 fn scene(case: &str) -> (&'static str, f64) {
     match case {
         "EQ-A" => (
@@ -71,7 +71,7 @@ fn text(case: &str, estimators: &str) -> String {
     )
 }
 
-/// The estimator of a reference value.
+/// Returns the estimator of a reference value.
 fn estimator(what: &str) -> Option<&'static str> {
     Some(match what {
         "dt+nee-ratio" => "{ delta-tracking = { absorption = \"analog\", RATIO } }",
@@ -125,7 +125,7 @@ fn lookups_are_those_of_the_references() {
             let found = row.experiment.predicted_lookups.expect("lookups");
             assert!((found - value).abs() < reference.error, "{}, {what}: {found}", reference.case);
         }
-        // Both in one draw, or one of them.
+        // Both techniques in one draw, or one of them.
         let cost: f64 = reference.value.iter().sum();
         for (what, parts) in [("mis-two-sample", 1.0), ("mis-one-sample", 0.5)] {
             let row = predict(&reference.case, estimator(what).expect("an estimator"));
@@ -146,7 +146,7 @@ fn problem(case: &str) -> SingleScattering {
     problem.unwrap_or_else(|| panic!("{case}: {:?}", faults.borrow()))
 }
 
-/// What the point from the light and delta tracking bring to a draw of both, and the error of either.
+/// Returns the contributions of the point from the light and of delta tracking to a draw of both, with their errors.
 fn shares(case: &str, heuristic: Heuristic) -> [[f64; 2]; 2] {
     let problem = problem(case);
     let mesh = Mesh::new(problem.medium().clone());
@@ -184,7 +184,7 @@ fn shares_are_all_of_the_radiance() {
     }
 }
 
-/// `Σ Pois(i; a) Pois(j; b) f(u^i v^j)`: the mean of f(x) over the null collisions in two layers.
+/// Returns `Σ Pois(i; a) Pois(j; b) f(u^i v^j)`: the mean of f(x) over the null collisions in two layers.
 fn summed([a, b]: [f64; 2], [u, v]: [f64; 2], f: &dyn Fn(f64) -> f64) -> f64 {
     let chances = |mean: f64| {
         let next = move |&(n, p): &(i32, f64)| Some((n + 1, p * mean / f64::from(n + 1)));
@@ -196,7 +196,7 @@ fn summed([a, b]: [f64; 2], [u, v]: [f64; 2], f: &dyn Fn(f64) -> f64) -> f64 {
 
 #[test]
 fn weights_of_null_paths_are_poisson_sums() {
-    // ∫σ̂ = 1.8 where 7/10 are kept and 2.2 where 1/5 is; σ̂ = σ_t keeps nothing.
+    // ∫σ̂ = 1.8 where 7/10 are kept and 2.2 where 1/5 is; at σ̂ = σ_t nothing is kept.
     for kept in [0.2, 0.0] {
         let (low, high) = (0.6, 2.0 * (1.0 - kept));
         let text = format!(
@@ -253,7 +253,7 @@ fn weights_of_null_paths_share_all_of_what_varies() {
     }
 }
 
-/// All that shares, in a medium of two layers and in one that varies.
+/// All techniques that share lookups, in a medium of two layers and in one that varies.
 const SHARING: &str = "{ delta-tracking = { absorption = \"analog\", RATIO } },
     { source-delta-mis = { camera = \"ratio\", RATIO } },
     { source-delta-mis = { camera = \"ratio\", absorption = \"analog\", heuristic = \"power\", RATIO } },

@@ -1,5 +1,5 @@
-//! What `fuzz/` runs under a coverage-guided fuzzer, here on the stable toolchain with mutations of good
-//! inputs: seconds in the tests, and as long as `FUZZ_SECONDS` says.
+//! Targets of `fuzz/`, here on the stable toolchain with mutations of good inputs: seconds in the tests, or as long as
+//! `FUZZ_SECONDS` says.
 //!
 //! ```text
 //! FUZZ_SECONDS=600 cargo test --release --test it fuzz_corpus
@@ -11,13 +11,14 @@ use crate::common::grids::{good, reads_or_refuses};
 use crate::common::mutated::{Choices, mutated, reads_or_names_the_place};
 use crate::common::shipped_texts;
 
-/// Runs a target on the seeds 0, 1, … until the time is over; answers how many and how many were read.
+/// Runs a target on the seeds 0, 1, … until the time is over; returns the number of inputs, and of those that were
+/// read.
 fn for_some_time(share: f64, mut target: impl FnMut(u64) -> bool) -> [u64; 2] {
     let asked = std::env::var("FUZZ_SECONDS").ok().and_then(|seconds| seconds.parse().ok());
     let limit = asked.map(|seconds: f64| Duration::from_secs_f64(seconds * share));
     let begin = Instant::now();
     let mut counts = [0, 0];
-    // Without a time, a fixed number: the tests are the same on every machine.
+    // Without a time limit the number is fixed: the tests are the same on every machine.
     while limit.map_or(counts[0] < 2000, |limit| begin.elapsed() < limit) {
         counts[1] += u64::from(target(counts[0]));
         counts[0] += 1;
@@ -31,7 +32,7 @@ fn spoilt_case_files_are_read_or_refused() {
     let [tried, read] = for_some_time(0.5, |seed| {
         let mut choices = Choices(seed);
         let text = &texts[choices.below(texts.len())];
-        // From one to a dozen mistakes, on top of each other.
+        // From one to a dozen mistakes, each in the result of the last.
         let mut text = mutated(text, seed);
         for more in 0..choices.below(3) {
             text = mutated(&text, seed ^ more as u64 ^ 0xffff);
@@ -42,13 +43,13 @@ fn spoilt_case_files_are_read_or_refused() {
     assert!(read > 0 && read < tried);
 }
 
-/// What the fuzzer of `fuzz/` has found.
+/// Inputs that the fuzzer of `fuzz/` has found.
 #[test]
 fn findings_stay_mended() {
-    // A picture for a case was refused without the key.
+    // A picture in place of a case was refused without the key.
     let picture = "title = \"t\"\n[picture.multiple-scattering]\nsize = [64, 64]\n";
     assert!(reads_or_names_the_place(picture).is_none());
-    // Brackets in the header of an array took npyz minutes.
+    // npyz took minutes to read nested brackets in the header of an array.
     let nested = [b"\x93NUMPY\x01\x00\x28\x00", &[b'{'; 40][..]].concat();
     assert!(reads_or_refuses("npy", &nested).is_none());
 }

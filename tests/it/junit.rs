@@ -1,5 +1,4 @@
-//! The JUnit report keeps to the form that CI services read, after the Jenkins schema
-//! `junit-10.xsd`.
+//! The JUnit report has the form that CI services read, after the Jenkins schema `junit-10.xsd`.
 
 use std::collections::BTreeMap;
 
@@ -10,7 +9,7 @@ use trueflight::report::run::junit::{self, Inconclusive};
 
 use crate::golden;
 
-/// An element with its attributes and its children.
+/// Element with its attributes and its children.
 #[derive(Default)]
 struct Element {
     name: String,
@@ -75,7 +74,7 @@ impl Element {
     }
 }
 
-/// `SUREFIRE_TIME`: digits, perhaps a point, digits.
+/// Asserts the form `SUREFIRE_TIME`: digits, optionally a point and more digits.
 fn assert_time(element: &Element) {
     let time = element.attribute("time");
     assert!(!time.is_empty() && time.chars().all(|c| c.is_ascii_digit() || c == '.'), "{time}");
@@ -128,7 +127,7 @@ fn assert_valid(xml: &str) -> Element {
     root
 }
 
-/// The golden record, whose report `golden` compares byte for byte, with texts and numbers that XML does not take.
+/// Returns the golden record with texts and numbers that XML cannot represent; `golden` compares its report bytewise.
 fn record() -> Record {
     let mut record = golden::record();
     record.comparison = None;

@@ -1,8 +1,8 @@
-//! Files are what a reader looks for as a unit: none is long.
+//! Files are short enough to be read as a unit.
 
 use std::path::Path;
 
-/// A file of more lines is two files.
+/// Maximum number of lines of a file.
 const MAX_LINES: usize = 500;
 
 fn visit(folder: &Path, long: &mut Vec<String>, files: &mut usize) {

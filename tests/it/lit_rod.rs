@@ -1,5 +1,5 @@
-//! The rod with an emitter at its end against reference values that were computed by other means, and draws of
-//! every estimator.
+//! Rod with an emitter at its end against reference values that were computed by other means, and draws of every
+//! estimator.
 
 use serde::Deserialize;
 
@@ -39,7 +39,7 @@ fn references() -> Vec<Reference> {
     serde_json::from_str(include_str!("../data/lit-rod.json")).expect("the reference values")
 }
 
-/// A rod of reference values, with its σ̂.
+/// Returns a rod of reference values, with its σ̂.
 fn rod(reference: &Reference) -> (Mesh, LitRod, Piecewise) {
     let medium = medium(reference.medium());
     let span = medium.span();
@@ -140,7 +140,7 @@ fn many_draws_agree_with_the_predictions() {
     draws_agree(4_000_000);
 }
 
-/// Every estimator of every reference: mean, variance and lookups.
+/// Compares mean, variance and lookups of every estimator of every reference.
 fn draws_agree(draws: u64) {
     let all = references();
     let means: Vec<&Reference> = all.iter().filter(|reference| reference.what == "mean").collect();
@@ -188,8 +188,7 @@ fn all_extreme_rods_are_predicted_or_refused() {
     assert!(predictions > 400, "only {predictions}");
 }
 
-/// How many experiments in extreme rods are predicted; those of some places in the table, where numbers of its
-/// rows and columns add up.
+/// Returns the number of predicted experiments in extreme rods, for places of the table with a wanted sum of indices.
 fn extremes(is_wanted: fn(usize) -> bool) -> usize {
     let mut cases = Vec::new();
     for (row, depth) in [1e-9, 1e-3, 1.0, 80.0].into_iter().enumerate() {

@@ -1,4 +1,4 @@
-//! The slab with a light behind it against reference values that were computed by other means, and draws of every
+//! Slab with a light behind it against reference values that were computed by other means, and draws of every
 //! estimator.
 
 use serde::Deserialize;
@@ -46,7 +46,7 @@ impl Reference {
         }
     }
 
-    /// As in a case file.
+    /// Returns the light as in a case file.
     fn light_in_words(&self) -> String {
         match &self.light {
             Shape::Cap(name, cosine) => format!("{name}.cosine = {cosine}"),
@@ -97,7 +97,7 @@ fn means_and_variances_are_those_of_the_references() {
     none(&wrong);
 }
 
-/// Of a Poisson number of null collisions that each leave 1 − r.
+/// Returns the mean of f over a Poisson number of null collisions that each keep 1 − r.
 fn poisson(mean: f64, left: f64, f: impl Fn(f64) -> f64) -> f64 {
     let (mut sum, mut chance, mut x) = (0.0, (-mean).exp(), 1.0);
     for n in 1..150 {
@@ -165,7 +165,7 @@ fn fourth_moments_are_those_of_sums_over_null_collisions() {
 
 #[test]
 fn all_combinations_have_one_mean() {
-    // Extinction varies, σ̂ touches it: the means of shadow rays and of hits, weighted, are the truth.
+    // Extinction varies, and σ̂ equals its maximum: the means of shadow rays and of hits, weighted, are the truth.
     let text = "medium.exponential = { base = 0.2, extinction = 1.2, rate = 0.5 }\nspan = [0, 3]";
     let disc = Light::Disc { distance: 0.3, radius: 0.5 };
     let field = medium(text);
@@ -205,7 +205,8 @@ fn many_draws_agree_with_the_predictions() {
     draws_agree(4_000_000);
 }
 
-/// Every estimator of every reference: mean, variance and lookups. A narrow cap is hardly ever hit: with wide tolerances.
+/// Compares mean, variance and lookups of every estimator of every reference. A narrow cap is hit rarely, and has wide
+/// tolerances.
 fn draws_agree(draws: u64) {
     let all = references();
     let means: Vec<&Reference> = all.iter().filter(|reference| reference.what == "mean").collect();
@@ -268,8 +269,7 @@ fn all_extreme_slabs_are_predicted_or_refused() {
     assert!(predictions > 200, "only {predictions}");
 }
 
-/// How many experiments in extreme slabs are predicted; those of some places in the table, where numbers of its
-/// rows and columns add up.
+/// Returns the number of predicted experiments in extreme slabs, for places of the table with a wanted sum of indices.
 fn extremes(is_wanted: fn(usize) -> bool) -> usize {
     let mut cases = Vec::new();
     let lights =

@@ -1,6 +1,6 @@
-//! What a change of structure must keep: predictions and draws of all cases, and the tables of the self-test.
+//! Predictions and draws of all cases, and the tables of the self-test, which a change of structure must keep.
 //!
-//! `tests/lock/README.md` says which program the values come from, and how to freeze them again.
+//! `tests/lock/README.md` says which program made the values, and how to freeze them again.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
@@ -136,7 +136,7 @@ impl Lock {
         Self { digits: summary.choose(&names), hashes }
     }
 
-    /// Lists what differs from the frozen form, cell by cell.
+    /// Lists the differences from the frozen form, cell by cell.
     fn differences(&self, now: &Self) -> Vec<String> {
         let keys = |table: &Table| -> BTreeMap<String, Vec<String>> {
             let keyed = table.rows.iter().map(|row| {
@@ -156,7 +156,7 @@ impl Lock {
     }
 }
 
-/// Lists the rows that came or went, and the cells that differ.
+/// Lists the rows that were added or removed, and the cells that differ.
 fn compared(
     frozen: &BTreeMap<String, Vec<String>>,
     now: &BTreeMap<String, Vec<String>>,

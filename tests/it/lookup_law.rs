@@ -1,4 +1,4 @@
-//! The probabilities of the numbers of lookups against closed forms.
+//! Probabilities of the numbers of lookups against closed forms.
 
 use crate::common::{differs, none};
 use trueflight::media::{Control, Piecewise};
@@ -13,8 +13,8 @@ fn law(medium: &str, sampling: f64, killing: f64, rule: &dyn Rule) -> CountLaw {
     product.predict().lookups.expect("a law")
 }
 
-/// Poisson probabilities as the product `e^{−m} ∏ m/k`: unlike a logarithm of a factorial, good to
-/// a few last digits.
+/// Returns Poisson probabilities as the product `e^{−m} ∏ m/k`: unlike a logarithm of a factorial, exact to a few last
+/// digits.
 fn poisson(n: u32, mean: f64) -> f64 {
     (1..=n).map(|k| mean / f64::from(k)).fold((-mean).exp(), |p, factor| p * factor)
 }
@@ -28,7 +28,7 @@ const EQ21: &str = "volume.eq21 = {}\n\
 const STEPS: &str = "medium.piecewise-constant = { breaks = [0, 2, 3, 6, 6.5, 10], \
                      values = [0.1, 1, 0.4, 0, 0.25] }\nspan = [0, 10]";
 
-/// Differences beyond 1e-13 of the largest probability; the tail must be negligible.
+/// Lists differences beyond 1e-13 of the largest probability; the tail must be negligible.
 fn compare(what: &str, law: &CountLaw, exact: impl Fn(u32) -> f64) -> Vec<String> {
     let most = law.pmf.iter().fold(0.0f64, |most, &p| most.max(p));
     let found = (0..).zip(&law.pmf).filter_map(|(m, &p)| {

@@ -1,4 +1,4 @@
-//! Laws that every field keeps, in 1-D and in 3-D, on rays of every kind.
+//! Laws that every field obeys, in 1-D and in 3-D, on rays of every kind.
 
 use std::path::Path;
 
@@ -83,7 +83,7 @@ fn bodies() -> impl Iterator<Item = (String, Body)> {
     })
 }
 
-/// Fractions spread over (0, 1) without a pattern that a lattice could share.
+/// Returns fractions spread over (0, 1) without the pattern of a lattice.
 fn fractions(count: u32) -> impl Iterator<Item = f64> {
     (1..=count).map(|i| (f64::from(i) * 0.618_033_988_749_894_9).fract())
 }
@@ -92,7 +92,7 @@ fn within(span: Span, fraction: f64) -> f64 {
     span.from + fraction * (span.to - span.from)
 }
 
-/// `∫σ_t` of lookups: panels between the breaks, halved until they agree.
+/// Returns `∫σ_t` of lookups: panels between the breaks, halved until they agree.
 fn quadrature(medium: &Medium) -> f64 {
     let (rule, support) = (GaussLegendre::new(20), medium.support());
     let mut ends = medium.breaks();

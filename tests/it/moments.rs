@@ -7,7 +7,7 @@ use trueflight::theory::product::Product;
 use trueflight::theory::rules::{Single, Weight};
 use trueflight::theory::{Mesh, Rule};
 
-/// A row of `transmittance-moments.csv`.
+/// Row of `transmittance-moments.csv`.
 struct Reference {
     columns: Vec<String>,
     fields: Vec<String>,
@@ -95,7 +95,7 @@ fn compare(reference: &Reference, mesh: &Mesh) -> Vec<String> {
     let mean: f64 = numbers().map(|(m, p)| m * p).sum();
     let variance: f64 = numbers().map(|(m, p)| (m - mean) * (m - mean) * p).sum();
     let [j1, j2, j3, j4] = channel.losses.expect("losses");
-    // An error of J_k is one of m_k times |J_k| and more.
+    // An error of J_k changes m_k by |J_k| times as much, and more.
     let sensitive = 1e-12 * (6.0 * j2.abs() + 4.0 * j3.abs() + j4.abs()).max(1.0);
     assert!(0.0 < stated && stated <= sensitive, "{}: {stated:e}", reference.name());
     let checks = [
@@ -118,8 +118,8 @@ fn compare(reference: &Reference, mesh: &Mesh) -> Vec<String> {
     let name = reference.name();
     let random = prediction.random_numbers.expect("random numbers");
     let most = reference.number("E_rand");
-    // The file counts a decision at every collision of the single particle, the crate only where it
-    // is open: for 0 < r < 2 throughout, always.
+    // The file counts a decision at every collision of the single particle, the crate only where it is open: for 0 < r
+    // < 2 throughout, always.
     let (least, largest) = (reference.number("rmin"), reference.number("rmax"));
     let open = least > 1e-6 && largest < 2.0;
     if open || reference.text("estimator") == "DPM" {
@@ -145,9 +145,9 @@ fn every_configuration_agrees_with_30_digit_arithmetic() {
     none(&differences);
 }
 
-/// σ̂; the variances of double, single terminating (if it exists) and single non-terminating at
-/// a = .7; the kurtosis of double to one decimal. Lookups of double are 20 σ̂. Variances are
-/// T² expm1(∫w) in 30-digit arithmetic, panels ending where w has a kink at r = 1.
+/// σ̂; the variances of double, single terminating (if it exists) and single non-terminating at a = .7; the kurtosis of
+/// double to one decimal. Lookups of double are 20 σ̂. Variances are T² expm1(∫w) in 30-digit arithmetic, with panels
+/// that end at the kinks of w at r = 1.
 type TableRow = (f64, [Option<f64>; 3], f64);
 const TABLE: [TableRow; 4] = [
     (0.4, [Some(1.441_433_140_5e-1), None, Some(7.231_465_342_384e-1)], 6.0),
@@ -226,7 +226,7 @@ fn next_flight_and_unidirectional_mis_have_their_check_values() {
     assert!(lookups.into_iter().all(|lookups| (lookups - 3.0).abs() < 1e-14));
 }
 
-/// Beyond 5e4 mean free paths of σ̄ the last flights, which make the whole variance, were not resolved.
+/// Beyond 5e4 mean free paths of σ̄ the last flights, which make the whole variance, were once not resolved.
 #[test]
 fn next_flight_has_its_closed_form_from_few_mean_free_paths_to_many() {
     // σ_t = 2 on [0, 1], r = 2/σ̄, ρ = 1 − r, κ = 1 − ρ²; A₁ = e^{−σ_t z} − e^{−σ̄z}, z = 1 − x, so that

@@ -1,6 +1,6 @@
-//! Every known bug is caught by the check it names, on the experiment of the built-in suite that it
-//! names, at the suite's levels and within its draws; its honest twin makes the estimator's own
-//! draws and passes; and no check of the catalogue is without a bug that it catches.
+//! Every known bug is caught by the check it names, on the experiment of the built-in suite that it names, at the
+//! suite's levels and within its draws. Its control makes the estimator's own draws and passes. Every check of the
+//! catalogue catches at least one bug.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -11,7 +11,7 @@ use trueflight::checks;
 use trueflight::mutants::{self, About, streams};
 use trueflight::self_test::mutation;
 
-/// What is wrong with the mutants of some names.
+/// Lists the faults of the mutants of some names.
 fn escaped(is_wanted: &dyn Fn(&str) -> bool) -> Vec<String> {
     let mut wrong = Vec::new();
     for mutant in mutation::of(1, is_wanted).expect("the built-in cases can be read") {

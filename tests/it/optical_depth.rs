@@ -2,11 +2,11 @@
 
 use crate::common::{differs, none};
 
-/// A field and a ray of `data/optical-depths.json` as a case writes them.
+/// Field and ray of `data/optical-depths.json` as in a case.
 struct Line {
     id: &'static str,
     text: &'static str,
-    /// The reference is `(τ − shift) · scale`: bare noise has both signs, a field has not.
+    /// The reference is `(τ − shift) · scale`: bare noise has both signs, a field does not.
     shift: f64,
     scale: f64,
 }
@@ -15,7 +15,7 @@ const fn depth(id: &'static str, text: &'static str) -> Line {
     Line { id, text, shift: 0.0, scale: 1.0 }
 }
 
-/// `σ_t = ½ + fbm/2B` on a ray of length 12.5; `b` is B.
+/// Returns `σ_t = ½ + fbm/2B` on a ray of length 12.5; `b` is B.
 const fn noise(id: &'static str, text: &'static str, b: f64) -> Line {
     Line { id, text, shift: 6.25, scale: 2.0 * b }
 }
@@ -109,7 +109,7 @@ fn optical_depths_agree_with_quadrature_in_30_digits() {
             depth.value,
             depth.error
         );
-        // Eight units in the last place, or of the argument of a ray that grazes a field.
+        // Eight units in the last place, of the depth or of the argument of a ray that grazes a field.
         differs(line.id, depth.value, exact, 8.0 * f64::EPSILON / exact.min(1.0))
     });
     none(&differences.collect::<Vec<_>>());

@@ -1,4 +1,4 @@
-//! Media and estimators of a program's own: the examples, and what is said when they are wrong.
+//! Media and estimators that a program adds: the examples, and messages about wrong ones.
 
 use std::f64::consts::PI;
 use std::path::Path;
@@ -136,7 +136,7 @@ fn depths_of_closures_keep_what_they_say() {
     let bump = depth(&|t| (-0.5 * ((t - 0.3) / 0.01).powi(2)).exp());
     let exact = 0.01 * (2.0 * PI).sqrt();
     assert!((bump.value - exact).abs() <= bump.error && bump.error < 1e-13, "{bump:?}");
-    // Steps that nobody declared, at 200 places: found, but where they hide beside an end of a panel.
+    // Undeclared steps at 200 places: found, unless they hide near an end of a panel.
     let mut wrong = 0;
     for place in 0..200 {
         let from = (f64::from(place) * 0.618_034).fract() * 0.7;
@@ -151,7 +151,7 @@ fn depths_of_closures_keep_what_they_say() {
         assert!((found.value - 0.2).abs() <= found.error && found.error < 1e-12, "{found:?}");
     }
     assert!(wrong < 4, "{wrong} of 200");
-    // What has no integral, or is too rough for one, ends.
+    // Integration also terminates for fields without an integral, or too rough for one.
     assert!(depth(&|_| f64::NAN).value.is_nan());
     assert!(depth(&|t| 1.0 / (t - t)).value.is_nan());
     let rough = depth(&|t| ((1.0 + t * t) * 1e7).round() * 1e-7);
@@ -169,7 +169,7 @@ fn names_are_taken_once() {
     );
     let once = Catalogue::builtin().with(add(page("mine"))).expect("a free name");
     assert!(once.with(add(page("mine"))).is_err());
-    // Those of pictures are names, too.
+    // Names of estimators of pictures are taken, too.
     let particle = estimator::<MultipleScattering, Walker>(page("particle"));
     assert!(Catalogue::builtin().with(particle).is_err());
 }
@@ -215,7 +215,7 @@ fn wrong_cases_of_own_pages_are_shown_in_place() {
     assert!(found.contains("no 3-D form"), "{found}");
 }
 
-/// A case with the field `veil` of a page that names these settings, or what is wrong with it.
+/// Returns a case with the field `veil` of a page that names these settings, or its mistakes.
 fn veiled(
     extinctions: &'static [&'static str],
     at: fn(strength: f64, t: f64) -> f64,
@@ -238,7 +238,7 @@ fn swept(sweep: &str) -> String {
     )
 }
 
-/// What theory says of the only estimator.
+/// Returns the prediction of the only estimator.
 fn theory(case: &Case, variation: Variation) -> String {
     let at = case.at(variation).expect("a value of the sweep");
     let prediction = at.predict(0, None, case.pilots(1, 0)).expect("a prediction");
@@ -269,7 +269,7 @@ fn an_own_medium_that_is_not_proportional_is_not_swept() {
     let power = |strength: f64, t: f64| t.powf(strength);
     let density = swept("sweep.density = [0.5, 2]");
     for (names, at, words) in [
-        // A page that names no settings, whatever they are called.
+        // A page that names no settings.
         (&[][..], fade as fn(f64, f64) -> f64, "this field has no extinction to scale"),
         // A page that names a wrong one.
         (

@@ -1,4 +1,4 @@
-//! Random media, rays, σ̂ and controls keep the laws; random case files are read or refused in words.
+//! Laws that random media, rays, σ̂ and controls obey; random case files are read, or refused with a message.
 //!
 //! The random numbers are proptest's with a fixed seed: every run tests the same cases.
 
@@ -12,7 +12,7 @@ use trueflight::plan::Planned;
 use trueflight::record::Verdict;
 use trueflight::record::build;
 
-/// Runs a law on so many random inputs, the same in every run.
+/// Tests a property on a number of random inputs, the same in every run.
 fn always<S: Strategy>(
     cases: u32,
     inputs: &S,
@@ -25,12 +25,12 @@ fn always<S: Strategy>(
     }
 }
 
-/// A positive number of any size between two powers of ten.
+/// Returns a positive number of any size between two powers of ten.
 fn sized(least: f64, most: f64) -> impl Strategy<Value = f64> + Clone {
     (least..most).prop_map(|power| 10f64.powf(power))
 }
 
-/// Ascending numbers from 0, and one value for each but the first.
+/// Returns ascending numbers from 0, and one value for each but the first.
 fn steps() -> impl Strategy<Value = (Vec<f64>, Vec<f64>)> {
     let piece = (sized(-3.0, 1.0), prop_oneof![1 => Just(0.0), 5 => sized(-4.0, 2.0)]);
     prop::collection::vec(piece, 1..7).prop_map(|pieces| {
@@ -43,7 +43,7 @@ fn steps() -> impl Strategy<Value = (Vec<f64>, Vec<f64>)> {
     })
 }
 
-/// A field in 1-D with its span.
+/// Returns a field in 1-D with its span.
 fn line() -> impl Strategy<Value = String> {
     let span = (-5.0..5.0f64, sized(-9.0, 3.0)).prop_map(|(from, length)| [from, from + length]);
     let spanned =
@@ -88,7 +88,7 @@ fn line() -> impl Strategy<Value = String> {
     ]
 }
 
-/// A ray that starts near or far, and may miss.
+/// Returns a ray that starts near or far, and may miss.
 fn ray() -> impl Strategy<Value = String> {
     let direction = prop::array::uniform3(-1.0..1.0f64);
     let target = prop::array::uniform3(-6.0..6.0f64);
@@ -103,7 +103,7 @@ fn ray() -> impl Strategy<Value = String> {
     )
 }
 
-/// A field in 3-D with its ray.
+/// Returns a field in 3-D with its ray.
 fn volume() -> impl Strategy<Value = String> {
     let cube = "bounds.box = { low = [-4, -4, -4], high = [4, 4, 4] }";
     let ball = "bounds.sphere = { centre = [1, -1, 2], radius = 5 }";
@@ -183,7 +183,7 @@ fn free_flight_inverts_optical_depth() {
                 return Err(TestCaseError::fail(format!("{s:?} outside {support:?}")));
             };
             let back = medium.optical_depth(Span::new(support.from, s));
-            // A distance is rounded where it stands.
+            // The distance is rounded.
             let grain = f64::EPSILON * s.abs().max(support.from.abs()) * medium.extinction(s);
             let off = (back.value - depth).abs();
             let allowed = 1e-12 * whole.value + back.error + 2.0 * grain;
@@ -195,7 +195,7 @@ fn free_flight_inverts_optical_depth() {
     });
 }
 
-/// Estimators of the transmittance, each with a control and σ̂ of its own choice.
+/// Returns estimators of the transmittance, each with a control and σ̂ of its own choice.
 fn estimators() -> impl Strategy<Value = String> {
     let control = prop_oneof![
         Just("control.none = {}".to_owned()),
@@ -226,7 +226,7 @@ fn estimators() -> impl Strategy<Value = String> {
     })
 }
 
-/// Refused in words, or a truth in range with predictions that are numbers.
+/// Asserts a refusal with a message, or a truth in range with finite predictions.
 fn finite_or_refused(planned: &Planned, most: f64) -> Result<(), TestCaseError> {
     let name = planned.id.label();
     let prediction = match &planned.outcome {
@@ -317,6 +317,6 @@ fn ten_thousand_case_files_are_read_or_refused_with_the_place() {
         read.set(read.get() + u32::from(case.is_some()));
         Ok(())
     });
-    // Both kinds come often.
+    // Both outcomes are frequent.
     assert!((500..9500).contains(&read.get()), "{}", read.get());
 }

@@ -6,7 +6,7 @@ use crate::common::{case, judged, none, options, shipped_plan};
 use trueflight::record::{Record, build};
 use trueflight::report::run::{html, record_json, summary_csv};
 
-/// A record of version 1, and the table that the same program made of it.
+/// Record of version 1, and the table that the same program wrote.
 const OLD: (&[u8], &str) =
     (include_bytes!("../data/record-1.json"), include_str!("../data/record-1.csv"));
 
@@ -65,7 +65,7 @@ fn a_record_of_version_1_becomes_a_tree() {
         "old:residual-ratio, control constant 0.3, sampling 1.5",
     ];
     assert_eq!(texts, expected);
-    // Findings about the whole experiment stand once, those of a channel with it.
+    // Findings about the whole experiment are stored once, those of a channel with the channel.
     let walk = &record.results.cases[1].experiments[0];
     let mut findings = BTreeSet::new();
     for found in &walk.findings {
@@ -81,7 +81,7 @@ fn a_record_of_version_1_becomes_a_tree() {
     assert!(html::text(&record).expect("a page").contains("residual-ratio"));
 }
 
-/// A record as text, read and written again.
+/// Asserts that a record is the same after it is written and read.
 fn assert_comes_back(record: &Record) {
     let text = record_json::text(record).expect("JSON");
     let read = record_json::read(text.as_bytes()).expect("a record");

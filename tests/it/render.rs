@@ -1,5 +1,4 @@
-//! Pictures: what they cost, what theory says of their errors, where they are the same to the byte, and
-//! what is said of mistakes.
+//! Pictures: their costs, the predicted errors, pictures that are the same to the byte, and messages about mistakes.
 
 use std::path::PathBuf;
 
@@ -29,7 +28,7 @@ pub fn found(record: &PictureRecord, number: usize) -> &Exposure {
     record.exposures[number].outcome.as_ref().expect("an image")
 }
 
-/// A ball seen through a window of a size; twice the size shows the same window in the middle.
+/// Returns a ball in a window of a size; at twice the size the same window is in the middle.
 pub fn ball(size: usize, angle: f64) -> String {
     format!(
         "title = \"a ball\"
@@ -46,7 +45,7 @@ pub fn ball(size: usize, angle: f64) -> String {
     )
 }
 
-/// Eq. 21 under a constant sky.
+/// Returns Eq. 21 under a constant sky.
 fn eq21(lookups: u64) -> String {
     format!(
         "title = \"Eq. 21\"
@@ -98,7 +97,7 @@ const MULTIPLE: &str = "title = \"multiple scattering\"
       { particle = { rule = \"terminating\", sampling.constant.value = 0.5 } },
     ]";
 
-/// A frame of empty pixels around a picture takes no random number: the rest stays what it is.
+/// A frame of empty pixels around a picture takes no random number: the other pixels stay the same.
 #[test]
 fn empty_pixels_cost_nothing() {
     let narrow = 24.0_f64;
@@ -130,8 +129,8 @@ fn lookups_are_equal() {
     }
 }
 
-/// `Σ(image − truth)²` against theory's, in standard deviations of a sum of squared means of n draws:
-/// `Var(x̄ − T)² = (μ₄ − 3μ₂²)/n³ + 2μ₂²/n²` with the moments of a coin.
+/// `Σ(image − truth)²` against the prediction, in standard deviations of a sum of squared means of n draws:
+/// `Var(x̄ − T)² = (μ₄ − 3μ₂²)/n³ + 2μ₂²/n²` with the moments of draws of 0 and 1.
 #[test]
 fn the_error_is_what_theory_says() {
     for seed in [1, 2, 3] {
@@ -153,7 +152,7 @@ fn the_error_is_what_theory_says() {
         let predicted = woodcock.predicted_rmse.expect("theory").powi(2);
         let z = (woodcock.rmse.powi(2) - predicted) * pixels / spread.sqrt();
         assert!(z.abs() < 5.0, "seed {seed}: z = {z}");
-        // The means of all pixels are right, too; ray marching has no spread, and a bias.
+        // The mean over all pixels is right, too; ray marching has no spread, and a bias.
         for number in [0, 1] {
             let exposure = found(&record, number);
             let z = exposure.bias / (exposure.rmse / pixels.sqrt());
@@ -225,7 +224,7 @@ fn pictures_are_the_same_on_any_number_of_threads() {
     );
 }
 
-/// A ball to the right and above the middle, seen along −z with y upwards.
+/// A ball to the right and above the middle, in a view along −z with y upwards.
 #[test]
 fn right_is_right_and_up_is_up() {
     let text = ball(16, 40.0).replace("centre = [0, 0, 0]", "centre = [1, 1, 0]");

@@ -1,4 +1,4 @@
-//! Pictures as files: what is written is read again, right side up, by the readers of `judge --images`.
+//! Pictures as files: written files are read again, with the right orientation, by the readers of `judge --images`.
 
 use exr::prelude::{ReadChannels, ReadLayers, read};
 use trueflight::judge::images::files::picture;
@@ -9,7 +9,7 @@ use trueflight::report::render as report;
 use crate::coloured_pictures::coloured;
 use crate::render::{ball, found, rendered};
 
-/// A ball to the right and above the middle: from the top left, columns beyond 7 and rows up to 8.
+/// Returns a ball to the right and above the middle: from the top left, columns beyond 7 and rows up to 8.
 fn record(size: usize) -> PictureRecord {
     rendered(&ball(size, 40.0).replace("centre = [0, 0, 0]", "centre = [1, 1, 0]"), 1)
 }
@@ -61,7 +61,7 @@ fn an_exr_has_the_standard_error_of_each_value_beside_it() {
     let exposure = found(&record, 1);
     assert_eq!(values(0), singles(&exposure.image));
     assert_eq!(values(1), singles(&exposure.errors));
-    // What is measured is as large as what theory says, and what is not covered is exact.
+    // Measured errors are as large as predicted ones, and pixels that are not covered are exact.
     let covered = record.covered as f64;
     let square = exposure.errors.iter().map(|x| x * x).sum::<f64>() / covered;
     let predicted = exposure.predicted_rmse.expect("theory").powi(2);

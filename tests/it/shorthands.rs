@@ -1,9 +1,9 @@
-//! Names and numbers in the place of tables: the same case by either spelling. What is said of near misses is in
+//! Names and numbers in the place of tables: both spellings are the same case. Messages about near misses are in
 //! `tests/wrong/`.
 
 use super::common::{case, judged, options, predicted};
 
-/// What is drawn and judged of a case, without its name: bit for bit.
+/// Returns the draws and findings of a case, without its name: bit for bit.
 fn results(text: &str) -> String {
     let record = judged(&[case("test", text)], &options(1, 4000));
     let experiments = &record.results.cases[0].experiments;
@@ -11,7 +11,7 @@ fn results(text: &str) -> String {
     serde_json::to_string(experiments).expect("JSON")
 }
 
-/// A transmittance case with some more lines.
+/// Returns a transmittance case with some more lines.
 fn transmittance(lines: &str) -> String {
     format!("title = \"x\"\n[problem.transmittance]\nspan = [0, 2]\n{lines}\n")
 }
@@ -60,7 +60,7 @@ fn names_stand_for_tables_without_keys_and_the_other_way_round() {
 
 #[test]
 fn shadows_are_spelled_alike_everywhere() {
-    // The file of a user, who knew the word from lit rods.
+    // The file of a user who took the word from lit rods.
     let field = include_str!("../data/field/19-shadow-keys/cube.toml");
     assert!(field.contains("shadow = \"exact\""));
     let table = field.replace("shadow = \"exact\"", "shadow.exact = {}");
@@ -96,7 +96,7 @@ fn a_sweep_takes_the_list_alone_and_scales_short_forms() {
     let [long, short] = ["sweep.sampling.values = [1, 2, 3]", "sweep.sampling = [1, 2, 3]"]
         .map(|sweep| results(&transmittance(&format!("medium = 0.5\n{sweep}\n{rest}"))));
     assert_eq!(long, short);
-    // T = exp(−s σ_t ℓ) where all of the medium is multiplied by s: a short form must be, too.
+    // T = exp(−s σ_t ℓ) if the whole medium is multiplied by s: a short form must be multiplied, too.
     let text =
         transmittance(&format!("medium = 0.5\nsampling = 2\nsweep.density = [1, 2]\n{rest}"));
     let rows = predicted(&text);

@@ -1,4 +1,4 @@
-//! Single precision beside double: doubles find the truth, and what fails in single precision is what should.
+//! Single precision beside double: doubles find the truth, and single precision fails where it should.
 
 use trueflight::cli::lab::stated;
 use trueflight::numeric::Narrow as F32;
@@ -14,7 +14,7 @@ use trueflight::theory::ParticleRule;
 fn doubles_find_the_mean_of_every_unbiased_estimator() {
     for depth in [0.3, 4.0] {
         let scene = Scene { stated, ..Scene::new(depth, 9.0 * depth, 2.0) };
-        // Enough walks for the spread that roulette makes, 15 times the squared mean.
+        // The number of walks is enough for the spread by roulette, 15 times the squared mean.
         let trial = Trial { scene, seed: 7, budget: 16_000.0 * scene.collisions };
         for (name, estimator, _) in FAMILIES.iter().flat_map(|family| family.entries) {
             let found = estimator.compare(trial);
@@ -61,7 +61,7 @@ fn long_walks_fail_in_single_precision_and_short_ones_do_not() {
 
 #[test]
 fn decisions_that_are_repeated_have_the_mean_of_walks_that_make_their_own() {
-    // So far away that single precision is off by some per cent.
+    // At this distance single precision is off by some per cent.
     let scene = Scene { stated, ..Scene::new(2.0, 12.0, 3e6) };
     let walk = rod(ParticleRule::Weighted);
     let (mut own, mut repeated) = ([0.0; 2], [0.0; 2]);

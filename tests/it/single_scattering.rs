@@ -95,8 +95,8 @@ fn radiances_meet_their_values_to_twelve_digits() {
     }
 }
 
-/// The first raw moment, by quadrature of densities, gains and conditional means, is the radiance by
-/// quadrature of the integrand: for all ways to draw.
+/// The first raw moment, by quadrature of densities, gains and conditional means, equals the radiance by quadrature of
+/// the integrand, for all techniques.
 #[test]
 fn predicted_means_are_the_radiance() {
     for value in values() {
@@ -113,7 +113,7 @@ fn predicted_means_are_the_radiance() {
     }
 }
 
-/// A thin homogeneous medium: nothing is lost, and L = σ a Φ/(16π² D) Δθ.
+/// A thin homogeneous medium without losses: L = σ a Φ/(16π² D) Δθ.
 #[test]
 fn a_thin_medium_scatters_by_the_angle_that_the_light_sees() {
     let text = "title = \"thin\"
@@ -131,8 +131,8 @@ fn a_thin_medium_scatters_by_the_angle_that_the_light_sees() {
     assert!((truth / thin - 1.0).abs() < 1e-8, "{truth:e} for {thin:e}");
 }
 
-/// What a lamp at the centre of a ball sends to a pixel by its first scattering: the values of the
-/// integral equation's first order, see `tests/data/README.md`.
+/// Light that a lamp at the centre of a ball sends to a pixel by its first scattering: the values of the integral
+/// equation's first order, see `tests/data/README.md`.
 #[test]
 fn a_lamp_in_a_ball_shines_as_the_integral_equation_says() {
     let balls: Vec<Value> =
@@ -168,8 +168,8 @@ fn a_lamp_in_a_ball_shines_as_the_integral_equation_says() {
     assert_eq!(seen, 6);
 }
 
-/// Forward light comes from behind the scattering point as the ray's origin sees it: with the light
-/// beyond the ray's end, a forward phase function gathers more than a backward one.
+/// Forward light comes from behind the scattering point, seen from the ray's origin: with the light beyond the ray's
+/// end, a forward phase function gathers more than a backward one.
 #[test]
 fn a_forward_phase_function_gathers_light_that_comes_towards_the_origin() {
     let radiance = |g: f64, z: f64| {
@@ -215,14 +215,14 @@ fn a_sampling_extinction_is_not_used_where_the_camera_is_exact() {
             "{name}"
         );
         assert_eq!(own[0].predicted_variance, bare[0].predicted_variance, "{name}");
-        // With another camera it is its own σ̂, which the sweep leaves alone.
+        // With another camera it has its own σ̂, which the sweep does not change.
         let ratio =
             of(&format!("{{ {name} = {{ camera = \"ratio\", sampling.constant.value = 1.5 }} }}"));
         assert_eq!((ratio.len(), ratio[0].experiment.sampling()), (1, Some(1.5)), "{name}");
     }
 }
 
-/// A weight of 0 costs its shadow ray all the same, as predicted: ratio tracking where σ̂ = σ_t.
+/// A weight of 0 still costs its shadow ray, as predicted: ratio tracking where σ̂ = σ_t.
 #[test]
 fn lookups_of_tight_ratio_tracking_are_predicted() {
     let text = "title = \"tight\"

@@ -1,4 +1,4 @@
-//! What a scene does not need is skipped, and no number changes by it.
+//! Work that a scene does not need is skipped, and no number changes by it.
 
 use std::path::{Path, PathBuf};
 
@@ -12,7 +12,7 @@ use trueflight::plan::Plan;
 use trueflight::record::Verdict;
 use trueflight::record::build;
 
-/// The first draws of the first experiment of a case, from the same streams whatever its name.
+/// Returns the first draws of the first experiment of a case, from the same streams for any name.
 fn first_draws(text: &str) -> (DrawBuffer, f64) {
     let cases = [case("skips", text)];
     let plan = Plan::new(&cases, &options(1, 4096));
@@ -107,7 +107,7 @@ fn cases(title: &str) -> [Case; 1] {
     [case("kept", &format!("title = \"{title}\"\n{text}"))]
 }
 
-/// A store of the draws of a plan by a program, with what a file has finished.
+/// Returns a store of the draws of a plan by a program, with the finished experiments of a file.
 fn store(plan: &Plan, program: &str, path: &Path) -> Store {
     let mut store = Store::new(Header::new(plan, program, &[], None));
     store.reuse(path, false).expect("it can be read");

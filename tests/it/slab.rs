@@ -36,7 +36,7 @@ fn references() -> Vec<Reference> {
     serde_json::from_str(include_str!("../data/slabs.json")).expect("the reference values")
 }
 
-/// The phase function of a slab, and how near its values must come.
+/// Returns the phase function of a slab, and the tolerance of its values.
 fn phase(reference: &Reference) -> Option<(Phase, f64)> {
     let isotropic = Phase::Isotropic(Isotropic);
     match reference.id.as_str() {
@@ -67,7 +67,7 @@ fn reflectance_and_transmittance_are_those_of_the_references() {
                 let error = (known.value - expected).abs();
                 let context = format!("{} {:?} {light:?}", reference.id, reference.params.tau);
                 assert!(error <= tolerance, "{context}: {} for {expected}", known.value);
-                // The bound that the answer states of itself holds, and is no excuse.
+                // The stated error of the answer is an upper bound, but does not widen the tolerance.
                 assert!(error <= known.error, "{context}: {error:e} > {:e}", known.error);
                 assert!(known.error <= tolerance, "{context}: {:e}", known.error);
                 count += 1;
@@ -128,7 +128,7 @@ fn sharp_phase_functions_meet_their_error_bound() {
     }
 }
 
-/// The rule, σ̂ and the file's params of a walk through σ_t = 1 on a slab of thickness D.
+/// Returns the rule, σ̂ and the parameters of a walk through σ_t = 1 on a slab of thickness D.
 fn walk(reference: &Reference) -> (ParticleRule, &'static str, f64, f64) {
     let (name, sampling) = reference.id["spm_slab/".len()..].split_once('/').expect("a rule");
     let (rule, name) = match name {
@@ -165,7 +165,7 @@ fn second_moments_that_predict_prints_are_those_of_the_references() {
         }
     }
     assert_eq!(count, 12);
-    // What the README promises.
+    // The bound that the README states.
     assert!(worst < 7e-10, "{worst:e}");
 }
 
@@ -188,7 +188,7 @@ fn adding_and_doubling_resolves_second_moments_like_truths_where_it_is_asked_to(
     }
 }
 
-/// A walk by the non-terminating rule at a = 0.8 through layers.
+/// Returns a walk by the non-terminating rule at a = 0.8 through layers.
 fn through(light: Light, pieces: Vec<Piece>) -> Walk {
     Walk {
         incidence: Incidence { light, phase: Phase::Rayleigh(Rayleigh) },
@@ -201,8 +201,8 @@ fn through(light: Light, pieces: Vec<Piece>) -> Walk {
     }
 }
 
-/// The mean of the lookups. The gate meets it with 1e9 draws to 1e-5 at best; the statement is that of ten
-/// directions and of eight, and far above what sixteen are off.
+/// Returns the mean of the lookups. The gate tests it to 1e-5 at best, with 1e9 draws. Its error is stated from ten
+/// directions and eight, and is far above that of sixteen.
 fn lookups(walk: &Walk) -> Known {
     let truth = cached(&walk.incidence, Known::exact(1.0), 0.8).expect("finite");
     let law = walk.predict(&truth).lookups.expect("r is constant in each layer");
@@ -210,14 +210,14 @@ fn lookups(walk: &Walk) -> Known {
     Known::new(law.mean, law.mean * law.error)
 }
 
-/// Returns whether a number is known to be what it should be.
+/// Returns whether a number agrees with its expected value within its error.
 fn is(known: Known, expected: f64) -> bool {
     (known.value - expected).abs() <= known.error
 }
 
 #[test]
 fn a_walk_without_end_looks_up_the_mean_chord() {
-    // Lambertian light on both sides: 4V/S = 2D, times the mean σ̂, whatever is in the slab.
+    // Lambertian light on both sides: 4V/S = 2D, times the mean σ̂, for any content of the slab.
     let layers = [(0.7, 0.3), (0.2, 0.9), (1.1, 0.6)];
     let of = |order: &[usize]| {
         let pieces = order.iter().map(|&i| Piece::of(layers[i].0, layers[i].1)).collect();
@@ -233,7 +233,7 @@ fn a_walk_without_end_looks_up_the_mean_chord() {
 
 #[test]
 fn the_law_of_the_lookups_is_that_of_a_line_without_scattering() {
-    // Black, r = 0.4: each of Poisson(∫σ̂/μ₀) collisions is the last with chance r.
+    // Black, r = 0.4: each of Poisson(∫σ̂/μ₀) collisions is the last with probability r.
     let light = Light::Collimated(0.4);
     let black = through(light, vec![Piece::of(1.2, 0.4)]);
     let walk = Walk { albedo: 0.0, rule: ParticleRule::Terminating, ..black };
@@ -288,7 +288,7 @@ fn layers_of_one_kind_are_one_layer() {
 
 #[test]
 fn a_varying_ratio_is_averaged_to_its_error() {
-    // Weighted delta tracking: E[X^k] is the energy of the slab of albedo a^k, whatever r(z) ≤ 1.
+    // Weighted delta tracking: E[X^k] is the energy of the slab of albedo a^k, for any r(z) ≤ 1.
     let ramp = |count: usize| -> Vec<Piece> {
         let layer = |i: usize| {
             let at = |x: f64| (i as f64 + x) / count as f64;
@@ -333,7 +333,7 @@ fn a_walk_far_below_the_extinction_diverges() {
     }
 }
 
-/// Where the second moment diverges is found by halving: next to it nobody says on which side a slab is.
+/// The place where the second moment diverges is found by bisection: next to it the side of a slab is undecided.
 #[test]
 fn next_to_the_critical_extinction_a_slab_is_not_said_to_diverge() {
     let of = |sampling: f64| {

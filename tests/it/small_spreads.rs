@@ -1,4 +1,4 @@
-//! Correct estimators at the edge of what doubles resolve: none of them may fail.
+//! Correct estimators at the resolution of doubles: none of them may fail.
 
 use crate::common::{case, judged, options, rows, verdict};
 use trueflight::plan::Amount;
@@ -14,7 +14,7 @@ fn no_fail(what: &str, rows: &[Row]) {
 #[test]
 fn a_spread_near_rounding_goes_through_the_gate() {
     for digits in 10..=16 {
-        // r = 10^{−digits}: relative spreads from 1e-10 down to 1e-16 and to none.
+        // r = 10^{−digits}: relative spreads from 1e-10 down to 1e-16 and to 0.
         let control = format!("0.{}", "9".repeat(digits));
         let text = format!(
             "title = \"t\"\n[problem.transmittance]\nmedium.constant.extinction = 1\nspan = [0, 3]\n\
@@ -52,7 +52,7 @@ fn a_short_last_block_says_nothing_about_streams() {
     for draws in [65_540, 65_600, 66_000, 82_000] {
         for seed in 1..=4 {
             let draws = Amount::Exactly(draws);
-            // The level of a user: a p-value of 4e-11 or of 1e-6 must not be there.
+            // The usual level of users: no p-value may be 1e-6 or 4e-11.
             let options = Options { seed, draws, fixed: true, ..Options::default() };
             let record = judged(&cases, &options);
             no_fail(&format!("{draws:?}, seed {seed}"), &record.results.rows().collect::<Vec<_>>());

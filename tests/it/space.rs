@@ -1,5 +1,5 @@
-//! Walks in space: exact answers against reference values that were computed by other means, what is
-//! skipped, and the draws of every shipped case.
+//! Walks in space: exact answers against reference values that were computed by other means, skipped cells, and the
+//! draws of every shipped case.
 
 use crate::common::{case, options, shipped_record};
 use serde::Deserialize;
@@ -84,7 +84,7 @@ fn fluence_and_collisions_around_a_point_source_are_those_of_the_references() {
     }
 }
 
-/// Draws of the first experiment of a case, and the streams behind them.
+/// Returns draws of the first experiment of a case, and the final streams.
 fn draws_of(text: &str, count: usize) -> (DrawBuffer, Streams, f64) {
     let cases = [case("space", text)];
     let plan = Plan::new(&cases, &options(1, 100));
@@ -114,7 +114,7 @@ fn a_medium_that_only_absorbs_pays_for_transmittance_and_nothing_else() {
     let forward = furnace(volume, 0.0, "henyey-greenstein = { g = 0.9 }", walk);
     let (other, same, _) = draws_of(&forward, 4096);
     assert_eq!((isotropic.values, &isotropic.lookups, after), (other.values, &other.lookups, same));
-    // A flight a number, as ratio tracking has it: the collisions are the same, draw by draw.
+    // With one random number per flight, as in ratio tracking, the collisions are the same, draw by draw.
     let ratio = format!(
         "title = \"t\"\n[problem.transmittance]\n{volume}\n{RAY}\n\
          estimators = [{{ ratio = {{ sampling.constant = {{ value = 1.2 }} }} }}]\n"
@@ -134,7 +134,7 @@ fn empty_cells_cost_no_lookup() {
     assert_eq!((nothing, skipped), (0.0, 0.5));
     let sum = |draws: &DrawBuffer| draws.lookups.iter().map(|&n| f64::from(n)).sum::<f64>();
     assert!(sum(&cells) < 0.6 * sum(&whole), "{} of {}", sum(&cells), sum(&whole));
-    // Through nothing but empty cells there is no lookup at all.
+    // A path through empty cells only has no lookup at all.
     let volume = LAYERS.replace("[0.8, 0, 1.5]", "[0, 0, 0]");
     let walk = "particle = { rule = \"analog\", sampling.local-majorants = { grid = [2, 2, 2] } }";
     let (empty, ..) = draws_of(&furnace(&volume, 0.6, "isotropic = {}", walk), 100);
@@ -150,7 +150,7 @@ fn means_of_all_shipped_cases_are_off_by_their_standard_errors() {
     let mut squares = Vec::new();
     for case in cases.filter(|case| is_space(&case.name)) {
         for row in case.rows() {
-            // By their own standard error: most of these variances theory does not know.
+            // In units of their own standard errors: theory does not know most of these variances.
             let (Some(mean), Some(error), Some(truth)) = (row.mean, row.standard_error, row.truth)
             else {
                 continue;
@@ -163,8 +163,8 @@ fn means_of_all_shipped_cases_are_off_by_their_standard_errors() {
     let n = squares.len() as f64;
     let mean = squares.iter().sum::<f64>() / n;
     println!("{n} channels, mean z² {mean:.3}");
-    // χ² of n degrees by Wilson and Hilferty, 99.9 %; channels of one experiment are correlated, so
-    // that the band is that of half as many.
+    // χ² of n degrees by Wilson and Hilferty, 99.9 %. Channels of one experiment are correlated, so that the band is
+    // that of half as many.
     let end = |z: f64| {
         let k = 0.5 * n;
         (1.0 - 2.0 / (9.0 * k) + z * (2.0 / (9.0 * k)).sqrt()).powi(3)
@@ -215,14 +215,14 @@ fn rays_that_are_not_walked_need_not_be_given() {
         assert!(!whole.is_empty() && whole.len() == part.len(), "{problem}");
         for (a, b) in whole.iter().zip(&part) {
             assert_ne!(b.verdict, Some(Verdict::Refused), "{problem}: {}", b.reason);
-            // The same to the bit: the ray is no part of a draw.
+            // The same to the bit: draws do not depend on the ray.
             let of = |row: &trueflight::record::Row| {
                 (row.truth, row.mean, row.variance, row.experiment.lookups_per_draw)
             };
             assert_eq!(of(a), of(b), "{problem} {}", a.channel);
         }
     }
-    // Where the length counts it is asked for, and so is a ray that says where light is looked for.
+    // The length is required if it matters, and the ray if radiance is sought along it.
     let text = "title = \"rays\"\n[problem.transmittance]\nvolume.eq21 = {}\n\
                 ray = { origin = [0, 0, 0], direction = [0, 0, 1] }\n\
                 estimators = [{ closed-form = {} }]";

@@ -1,4 +1,4 @@
-//! Chromatic media against reference values that were computed by other means, and what is refused.
+//! Chromatic media against reference values that were computed by other means, and refusals.
 
 use std::collections::BTreeMap;
 
@@ -19,7 +19,7 @@ const LAYERS: &str = include_str!("../../cases/transmittance/spectral-layers.tom
 const SMOOTH: &str = include_str!("../cases/transmittance/spectral-smooth.toml");
 const HERO_DELTA: &str = include_str!("../../cases/transmittance/spectral-hero-delta.toml");
 
-/// The trackers by the names of the reference values.
+/// Trackers by the names of the reference values.
 const TRACKERS: [(&str, &str, &str); 10] = [
     ("indep-delta", "independent (delta)", ""),
     ("indep-ratio", "independent (ratio)", ""),
@@ -33,7 +33,7 @@ const TRACKERS: [(&str, &str, &str); 10] = [
     ("common-ratio", "common-ratio", ""),
 ];
 
-/// The channels of an estimator, the luminance last.
+/// Returns the channels of an estimator, the luminance last.
 fn of<'a>(rows: &'a [Row<'static>], estimator: &str, sampling: &str) -> Vec<&'a Row<'static>> {
     let is_asked = |row: &&Row| {
         row.experiment.label == estimator
@@ -117,7 +117,7 @@ struct RodParams {
     albedos: Vec<f64>,
 }
 
-/// A rod of that optical length, the same whatever its fields.
+/// Returns a rod of that optical length, which is the same for any field.
 fn rod(length: &str, albedos: &[f64], forward: &str) -> Vec<Row<'static>> {
     predicted(&format!(
         "title = \"rod\"\n[problem.rod]\nmedium.constant = {{ extinction = 0.5 }}\nspan = [0, {}]\n\
@@ -135,7 +135,7 @@ fn rods_of_coloured_scatterers_have_the_variances_of_the_references() {
             .expect("the reference values");
     let mut count = 0;
     let mut agrees = |id: &str, found: f64, expected: f64, error: f64| {
-        // What is printed of a variance is exact to its error, and to rounding of the moments it is made of.
+        // A predicted variance is exact to its stated error, and to rounding of its moments.
         let near = error.max(1e-13 * (1.0 + expected.abs()));
         assert!((found - expected).abs() <= near, "{id}: {found} for {expected}");
         count += 1;
@@ -175,7 +175,7 @@ fn rods_of_coloured_scatterers_have_the_variances_of_the_references() {
                 _ => "spectral-mis",
             };
             let Some(row) = of(estimator, &name) else {
-                // A reflectance of 0 is no channel.
+                // A reflectance of 0 is not a channel.
                 assert!(expected.abs() < 1e-15, "{id}: {name}");
                 continue;
             };
@@ -186,7 +186,7 @@ fn rods_of_coloured_scatterers_have_the_variances_of_the_references() {
     assert!(count >= 30, "{count}");
 }
 
-/// In a rod that scatters forward only the second moment of a dark hero is e^{999}/2: no number, and no certainty.
+/// In a rod that scatters forward only, the second moment of a dark hero is e^{999}/2: not a double, and not certain.
 #[test]
 fn what_no_number_holds_is_not_taken_for_nothing() {
     for (albedos, forward) in [("[1, 0.001]", 1.0), ("[1, 0.0026]", 1.0), ("[1, 0.001]", 0.999)] {
@@ -223,7 +223,7 @@ struct SlabParams {
     albedos: Vec<f64>,
 }
 
-/// A slab of that optical depth, the same whatever its fields; `more` are its phase function and its estimators.
+/// Returns a slab of that optical depth, the same for any field; `more` has its phase function and its estimators.
 fn slab(depth: f64, cosine: f64, albedos: &[f64], more: &str) -> String {
     format!(
         "title = \"slab\"\n[problem.slab]\nmedium.constant = {{ extinction = 0.5 }}\nspan = [0, {}]\n\
@@ -282,7 +282,7 @@ fn slabs_of_coloured_scatterers_are_drawn_as_predicted() {
         { spectral-tracking = { probabilities = \"average\" } },
         { spectral-tracking = { probabilities = \"maximum\" } } ]\n";
     none(&failing(&rows(&slab(0.6, 0.5, &[0.6, 0.5, 0.4], more), 400_000)));
-    // Of other phase functions the variance of multiple importance sampling is that of pilots.
+    // With other phase functions the variance of multiple importance sampling is that of pilots.
     let sharp = more.replace("isotropic = {}", "henyey-greenstein = { g = 0.6 }");
     for row in rows(&slab(0.6, 0.5, &[0.6, 0.5, 0.4], &sharp), 800_000) {
         assert_eq!(row.verdict, Some(Verdict::Pass), "{}: {}", row.experiment.label, row.reason);

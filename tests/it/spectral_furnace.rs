@@ -1,4 +1,4 @@
-//! Furnaces in several channels: the radiance is 1 in each, whatever the media are, and what is refused.
+//! Furnaces in several channels: the radiance is 1 in each, for any media; and refusals.
 
 use trueflight::record::Verdict;
 
@@ -26,7 +26,7 @@ fn every_channel_is_as_bright_as_the_walls() {
         let of_balance = rows.iter().filter(|row| row.experiment.label.starts_with("spectral-mis"));
         let heroes = (text.matches("{ spectral-mis").count(), channels);
         assert_eq!(of_balance.clone().count(), heroes.0 * usize::from(heroes.1));
-        // The bound of theory, 1/w − 1, is never reached: all channels score something in most walks.
+        // The predicted bound, 1/w − 1, is never reached: all channels have a score in most walks.
         for row in of_balance {
             let weights: &[f64] = match row.experiment.label.as_str() {
                 "spectral-mis" => &[1.0 / f64::from(channels); 3],
@@ -56,7 +56,7 @@ fn one_channel_a_draw_costs_what_its_chance_says() {
     }
 }
 
-/// Walks without multiple importance sampling find 1, too, with a second moment below its bound.
+/// Walks without multiple importance sampling also have the mean 1, with a second moment below its bound.
 #[test]
 fn walks_relative_to_one_walker_find_the_walls() {
     let rows = rows(LIKE, 400_000);
@@ -68,12 +68,13 @@ fn walks_relative_to_one_walker_find_the_walls() {
         let of = rows.iter().filter(|row| row.experiment.label == estimator);
         of.map(|row| row.variance.expect("drawn")).fold(0.0, f64::max)
     };
-    // Alike as the colours are, weights spread; the balance heuristic bounds them.
+    // Even for similar colours weights spread; the balance heuristic bounds them.
     assert!(spread("spectral-mis") < spread("hero"));
     assert!(spread("hero") < 0.2 && spread("spectral-tracking (maximum)") < 0.2);
 }
 
-/// Forward peaks, losses that cancel and majorants that touch σ_t by rounding have no false bound: no correct estimator fails.
+/// Forward peaks, losses that cancel and majorants that equal σ_t to rounding have valid bounds: no correct estimator
+/// fails.
 #[test]
 fn bounds_hold_at_the_edges() {
     let ball = |extinctions: [f64; 2],
@@ -124,7 +125,7 @@ fn bounds_hold_at_the_edges() {
     }
 }
 
-/// Of one channel every draw is 1.
+/// With one channel every draw is 1.
 #[test]
 fn one_channel_alone_is_certain() {
     let text = "title = \"one\"
@@ -140,7 +141,7 @@ fn one_channel_alone_is_certain() {
     }
 }
 
-/// A list of heroes of the wrong length is no panic where the estimator is declared biased.
+/// A list of heroes of the wrong length does not panic if the estimator is declared biased.
 #[test]
 fn too_few_heroes_of_a_declared_bias_are_no_panic() {
     let heroes = "{ spectral-mis = { hero = [0.5, 0.5], expect = \"biased\" } }";
@@ -163,7 +164,7 @@ fn walks_side_by_side_are_walks_one_by_one() {
         ["isotropic = {}", "rayleigh = {}", "henyey-greenstein = { g = -0.7 }"];
     let mut cases = vec![case("ball", BALL), case("noise", NOISE), case("like", LIKE)];
     for (body, bounds) in [BALL_OF, BOX_OF].into_iter().enumerate() {
-        // Grids have boxes.
+        // Grids exist in boxes only.
         let fields = if body == 0 { &FIELDS[..4] } else { &FIELDS };
         for first in 0..fields.len() {
             let other = (first + 1 + body) % fields.len();

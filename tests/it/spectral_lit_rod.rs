@@ -1,5 +1,5 @@
-//! Rods with an emitter in several channels: against one channel, against rods of coloured scatterers, by hand, and
-//! drawn; and the algorithms as printed.
+//! Rods with an emitter in several channels: against one channel, against rods of coloured scatterers, against values
+//! by hand, and against draws; and the algorithms as printed.
 
 use std::fmt::Write;
 
@@ -15,7 +15,7 @@ const ONE_MEDIUM: &str = include_str!("../cases/rod/spectral-lit-one-medium.toml
 const FORWARD: &str = include_str!("../../cases/rod/spectral-lit-forward.toml");
 const AS_PRINTED: &str = include_str!("../../cases/rod/spectral-lit-as-printed.toml");
 
-/// A case with channels of the same field.
+/// Returns a case with channels of the same field.
 fn one_medium(field: &str, length: f64, albedos: &[f64], forward: &[f64], majorant: f64) -> String {
     let media = vec![format!("{{ {field} }}"); albedos.len()].join(", ");
     format!(
@@ -97,8 +97,8 @@ fn channels_that_are_the_same_have_the_moments_of_one() {
     }
 }
 
-/// Where channels differ in their albedos alone, hits have the moments of a rod with `albedos`, found from the coefficients
-/// of its transmittance.
+/// If channels differ in their albedos only, hits have the moments of a rod with `albedos`, from the coefficients of
+/// its transmittance.
 #[test]
 fn hits_of_channels_that_differ_in_albedo_are_those_of_coloured_scatterers() {
     let albedos = [0.9, 0.5, 0.1];
@@ -150,7 +150,7 @@ fn a_rod_without_a_way_back_has_moments_by_hand() {
         near(row.predicted_variance.expect("known"), second - mean * mean, 1e-8);
         near(coloured.predicted_variance.expect("known"), second - mean * mean, 1e-11);
     }
-    // σ̂ = σ_t: a shadow ray arrives where its flight does, and every score is half of what a hit is.
+    // σ̂ = σ_t: a shadow ray arrives where its flight does, and every score is half of the score of a hit.
     let next_event = channels(&rows, "next-event-mis");
     assert!(variances(&next_event).iter().all(|v| *v > 0.0));
 }
@@ -204,7 +204,7 @@ fn one_hero_for_all_varies_less_than_one_channel_at_a_time() {
     }
 }
 
-/// Two channels of the same σ_t have known variances; where they differ by a billionth, bounded ones.
+/// Two channels of the same σ_t have known variances; if they differ by a billionth, bounded ones.
 #[test]
 fn variances_are_below_their_bounds() {
     for (depth, albedos, forward, majorant) in [
@@ -227,18 +227,18 @@ fn variances_are_below_their_bounds() {
             for (channel, exact) in ready.prediction.channels.iter().zip(exact) {
                 assert!(channel.moments.is_none());
                 let bound = channel.most_variance.expect("a bound");
-                // Many vertices, and heroes that help each other, make it loose.
+                // Many vertices, and the combination of heroes, make the bound loose.
                 assert!(exact <= bound && bound <= 20.0 * exact, "{estimator}: {exact} {bound}");
             }
         }
     }
 }
 
-/// The mean of z² of means, of variances where they are known, and of lookups, with how many there are.
+/// Returns the mean of z² of means, of variances if they are known, and of lookups, with their numbers.
 fn mean_squares(rows: &[Row]) -> [(f64, usize); 3] {
     let mean =
         |all: Vec<f64>| (all.iter().map(|z| z * z).sum::<f64>() / all.len() as f64, all.len());
-    // Where theory has no variance, by the draws' own.
+    // Without a predicted variance, by that of the draws.
     let own = |row: &Row| Some((row.mean? - row.truth?) / row.standard_error?);
     let first = |row: &&Row| row.channel == "channel 1";
     [
@@ -262,14 +262,14 @@ fn draws_agree(draws: u64) {
             2.0,
         ),
     ];
-    // Five channels whose variances are bounded only want more draws.
+    // Five channels with bounded variances need more draws.
     let more = |text: &String| if text.contains("five extinctions") { 4 } else { 1 };
     let all: Vec<Row> = texts.iter().flat_map(|text| rows(text, more(text) * draws)).collect();
     none(&not_passing(&all, &["mean", "lookups"]));
     let mut told = String::new();
     for (what, (square, count)) in ["means", "variances", "lookups"].iter().zip(mean_squares(&all))
     {
-        // χ² of so many: its mean is within four standard deviations.
+        // χ² of this number of degrees: its mean is within four standard deviations.
         let band = 4.0 * (2.0 / count as f64).sqrt();
         writeln!(told, "{what}: {square:.3} of {count}, within {band:.2} of 1").expect("a text");
         assert!((square - 1.0).abs() < band, "{told}");

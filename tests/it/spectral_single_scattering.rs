@@ -1,4 +1,4 @@
-//! Single scattering in several channels: the answers of the channels by themselves, and what is refused.
+//! Single scattering in several channels: the answers of the single channels, and refusals.
 
 use std::sync::LazyLock;
 
@@ -14,7 +14,7 @@ const WITHOUT: &str = include_str!("../../cases/single-scattering/spectral-witho
 /// Rows of [`BALL`], drawn once for all tests.
 static DRAWN: LazyLock<Vec<Row<'static>>> = LazyLock::new(|| rows(BALL, 800_000));
 
-/// The second channel of [`BALL`] by itself.
+/// Case with the second channel of [`BALL`] alone.
 const SECOND: &str = "title = \"green\"
     [problem.single-scattering]
     volume.constant = { extinction = 0.8, bounds.sphere = { centre = [0, 0, 0], radius = 1 } }
@@ -65,8 +65,8 @@ fn colour_noise_is_gone_for_the_same_lookups() {
     }
 }
 
-/// Walks without multiple importance sampling agree with all their moments, and spectral tracking that remembers scores
-/// what the balance heuristic scores.
+/// Walks without multiple importance sampling agree in all their moments, and history-aware spectral tracking has the
+/// scores of the balance heuristic.
 #[test]
 fn walks_relative_to_one_walker_agree_with_theory() {
     let rows = rows(WITHOUT, 800_000);
@@ -82,7 +82,7 @@ fn walks_relative_to_one_walker_agree_with_theory() {
     assert!(lookups("spectral-tracking (exact shadow, maximum)") < lookups("hero (exact shadow)"));
 }
 
-/// Where one channel walks alone all of them are delta tracking.
+/// If one channel walks alone, all estimators are delta tracking.
 #[test]
 fn one_channel_is_delta_tracking() {
     let alone = predicted(SECOND);
@@ -108,8 +108,8 @@ fn one_channel_is_delta_tracking() {
     }
 }
 
-/// What is nearly never found is no reason to fail: behind a wall that one hero in 1e8 walks through there is light,
-/// of which pilots see nothing.
+/// Light that is almost never found is no reason to fail: it is behind a wall that one hero in 1e8 passes, and pilots
+/// do not find it.
 #[test]
 fn what_lies_behind_a_wall_fails_no_correct_estimator() {
     let layers = |values: &str| {
@@ -136,7 +136,7 @@ fn what_lies_behind_a_wall_fails_no_correct_estimator() {
     }
 }
 
-/// A hero that scatters ten times as rarely as another channel, wherever that is, lacks nothing, however thin both are.
+/// A hero with a tenth of the scattering of another channel, everywhere, has a finite variance, however thin both are.
 #[test]
 fn thin_tails_of_two_colours_are_no_reason_to_refuse() {
     let volume = [1.0, 0.1].map(|peak: f64| {
@@ -172,7 +172,7 @@ fn walks_side_by_side_are_walks_one_by_one() {
     ];
     let mut cases = vec![case("ball", BALL), case("without", WITHOUT)];
     for (body, bounds) in [BALL_OF, BOX_OF].into_iter().enumerate() {
-        // Grids have boxes.
+        // Grids exist in boxes only.
         let fields = if body == 0 { &FIELDS[..4] } else { &FIELDS };
         for first in 0..fields.len() {
             let other = (first + 1 + body) % fields.len();

@@ -1,5 +1,5 @@
-//! Balls against reference values that were computed by other means: escape probabilities, radiances
-//! under an environment, a black light sphere and a point source, and draws of all of them.
+//! Balls against reference values that were computed by other means: escape probabilities, radiances under an
+//! environment, a black light sphere and a point source, and draws of all of them.
 
 use serde::Deserialize;
 
@@ -34,7 +34,7 @@ fn references(light: &str) -> Vec<Reference> {
 /// σ_t as a function of r².
 type Profile = fn(f64) -> f64;
 
-/// That of a reference value.
+/// Returns the extinction of a reference value.
 fn extinction(reference: &Reference) -> Profile {
     match reference.ball.as_str() {
         "S1" => |_| 1.0,
@@ -117,7 +117,7 @@ const BALLS: [(&str, &str, f64); 2] = [
     ("S2", "volume.radial = { centre = [1, -1, 2], radius = 1.5, coefficients = [2, -2] }", 2.0),
 ];
 
-/// A case for one of the reference values: the eye looks along a slanted ray.
+/// Returns a case for one of the reference values: the eye looks along a slanted ray.
 fn text_of(reference: &Reference, at: f64, estimators: &str) -> String {
     let (_, volume, sampling) = BALLS[usize::from(reference.ball == "S2")];
     // Two directions at a right angle: along the ray, and from the centre to its foot.
@@ -142,7 +142,7 @@ fn text_of(reference: &Reference, at: f64, estimators: &str) -> String {
     )
 }
 
-/// Every rule by itself and with shadow rays of every kind.
+/// Every rule alone and with shadow rays of every kind.
 const ALL: &str = "
     { particle.rule = \"terminating\" }, { particle.rule = \"non-terminating\" },
     { particle.rule = \"adaptive\" }, { particle.rule = \"analog\" }, { particle.rule = \"weighted\" },
@@ -172,7 +172,7 @@ fn problems_know_the_reference_values() {
     }
 }
 
-/// Means by the gate; variances and whole laws of the walks that theory knows all about.
+/// Means by the gate; variances and distributions of the walks that theory knows completely.
 #[test]
 fn draws_meet_the_reference_values() {
     let (mut wrong, mut passed) = (Vec::new(), 0);
@@ -188,7 +188,7 @@ fn draws_meet_the_reference_values() {
                         Some(Verdict::Pass) => passed += 1,
                         Some(_) => {}
                     }
-                    // A z-score from the sample's own spread, where theory has no more than a bound.
+                    // A z-score from the sample's own spread, if theory has only a bound.
                     let error = row.standard_error.expect("drawn");
                     let z = (row.mean.expect("drawn") - row.truth.expect("known")) / error;
                     if z.abs() > 5.0 {
@@ -202,7 +202,7 @@ fn draws_meet_the_reference_values() {
     assert!(passed > 120, "only {passed} passed");
 }
 
-/// The bound on the variance of next-event estimation holds, and is met where theory says so.
+/// The bound on the variance of next-event estimation holds, and is attained by walks of weight one.
 #[test]
 fn bounds_on_variances_hold_and_are_sharp_for_walks_of_weight_one() {
     let shadows = "
@@ -234,8 +234,7 @@ fn bounds_on_variances_hold_and_are_sharp_for_walks_of_weight_one() {
     }
 }
 
-/// Error bounds of the resolution that draws are judged by cover what a finer one finds, in balls
-/// that the references do not have.
+/// Error bounds at the resolution of runs cover the difference to a finer one, in balls without reference values.
 #[test]
 fn coarse_answers_are_within_their_errors() {
     let extinction = |r2: f64| 0.2 + 4.0 * r2 * r2;
@@ -247,7 +246,7 @@ fn coarse_answers_are_within_their_errors() {
             [Observable::Mean(0.5), Observable::Mean(0.99), from_afar(0.45), from_afar(0.97)];
         let solve = |resolution| answers(&ball, 0.95, lights, resolution, &asked);
         let coarse = solve(Resolution::COARSE).expect("a medium");
-        // No finer than needed: these are whole matrices.
+        // No finer than needed: the matrices are dense.
         let middle =
             Resolution { nodes: 11, directions: 11, surface: 13, core: 19, ..Resolution::FINE };
         let fine = solve(middle).expect("a medium");
@@ -259,8 +258,8 @@ fn coarse_answers_are_within_their_errors() {
     }
 }
 
-/// A lamp of a fifth of the radius in a blob: errors were told by answers of five and six nodes, which could
-/// not follow 1/r², and rays between those where they happened to agree were refused.
+/// A lamp of a fifth of the radius in a blob. Errors were once estimated from five and six nodes, which cannot follow
+/// 1/r², and rays between radii of coincidental agreement were refused.
 #[test]
 fn every_ray_past_a_lamp_is_answered() {
     let extinction = |r2: f64| 3.0 * (-0.5 * r2 / 0.36).exp();
@@ -274,7 +273,7 @@ fn every_ray_past_a_lamp_is_answered() {
     let finer = Resolution { nodes: 9, directions: 9, surface: 11, core: 14, ..Resolution::FINE };
     let (found, fine) = (of(Resolution::COARSE), of(finer));
     for ((found, fine), asked) in found.iter().zip(&fine).zip(&asked) {
-        // As well as draws ask for.
+        // The error is small enough for draws.
         assert!(found.error <= 1e-4 * found.value, "{asked:?}: {found:?}");
         assert!((found.value - fine.value).abs() <= found.error, "{asked:?}: {found:?}, {fine:?}");
     }

@@ -1,4 +1,4 @@
-//! Hits, shadow rays and connections in a ball: what they find together is the exact answer, whatever their weights.
+//! Hits, shadow rays and connections in a ball: their sum is the exact answer, for any weights.
 
 use std::cell::RefCell;
 use std::path::Path;
@@ -47,7 +47,7 @@ const BESIDE: &str = "ray = { origin = [1.6, -1, -2], direction = [0, 0, 1], len
 const INSIDE: &str = "ray = { origin = [1.6, -1, 2], direction = [0, 0, 1], length = 9 }\n\
                       sought = \"mean-intensity\"";
 
-/// Balls, and what is asked about them.
+/// Balls, lights and rays.
 const SCENES: [[&str; 3]; 6] = [
     [HOMOGENEOUS, SKY, SEEN],
     [THINNING, SKY, BESIDE],
@@ -57,7 +57,7 @@ const SCENES: [[&str; 3]; 6] = [
     [THINNING, LAMP, INSIDE],
 ];
 
-/// A case, 2.5 the σ̂ of its walks.
+/// Returns a case with σ̂ = 2.5 for its walks.
 fn text([volume, light, ray]: [&str; 3], estimators: &str) -> String {
     format!(
         "title = \"techniques\"\n[problem.ball]\n{volume}\n{light}\n{ray}\nphase.isotropic = {{}}\n\
@@ -65,13 +65,13 @@ fn text([volume, light, ray]: [&str; 3], estimators: &str) -> String {
     )
 }
 
-/// How far the mean is from the exact answer, in standard errors of the draws.
+/// Returns the distance of the mean from the exact answer, in standard errors of the draws.
 fn z(row: &Row) -> f64 {
     let error = row.standard_error.expect("drawn");
     (row.mean.expect("drawn") - row.truth.expect("known")) / error
 }
 
-/// Draws of all pages in some scenes: those that are wrong, and z² of the means.
+/// Draws all pages in some scenes; returns the faults, and z² of the means.
 fn drawn(scenes: &[[&str; 3]], draws: u64) -> (Vec<String>, Vec<f64>) {
     judge(scenes.iter().flat_map(|&scene| {
         let rows = rows(&text(scene, ALL), draws);
@@ -79,7 +79,7 @@ fn drawn(scenes: &[[&str; 3]], draws: u64) -> (Vec<String>, Vec<f64>) {
     }))
 }
 
-/// What is wrong with some rows, and z² of the means.
+/// Returns the faults of some rows, and z² of the means.
 fn judge<'a>(rows: impl Iterator<Item = ([&'a str; 3], Row<'a>)>) -> (Vec<String>, Vec<f64>) {
     let (mut wrong, mut squares) = (Vec::new(), Vec::new());
     for (scene, row) in rows {
@@ -93,10 +93,10 @@ fn judge<'a>(rows: impl Iterator<Item = ([&'a str; 3], Row<'a>)>) -> (Vec<String
     (wrong, squares)
 }
 
-/// A row of a scene, and what theory says of it.
+/// Row of a scene with its prediction.
 type Known = ([&'static str; 3], Row<'static>, Channel);
 
-/// 200,000 draws of all pages in all scenes, made once.
+/// Draws of all pages in all scenes, 200,000 each, made once.
 static DRAWN: LazyLock<Vec<Known>> = LazyLock::new(|| {
     let of = |scene: [&'static str; 3]| {
         let case = [case("bounds", &text(scene, ALL))];
@@ -128,11 +128,11 @@ fn all_combinations_meet_the_exact_answer_closely() {
     none(&wrong);
     let mean = squares.iter().sum::<f64>() / squares.len() as f64;
     println!("mean z² of {} means: {mean:.3}", squares.len());
-    // Of 78 independent ones: a standard deviation of 0.16.
+    // 78 independent values: a standard deviation of 0.16.
     assert!((mean - 1.0).abs() < 0.8, "{mean}");
 }
 
-/// Bounds of theory hold; that of walks of weight 0 or 1 with densities of directions is the variance.
+/// Predicted bounds hold; for walks of weight 0 or 1 with densities of directions the bound is the variance.
 #[test]
 fn bounds_on_variances_hold() {
     let mut bounded = 0;
@@ -153,7 +153,7 @@ fn bounds_on_variances_hold() {
     assert_eq!(bounded, 6 * 11);
 }
 
-/// The sphere of a scene, and σ̂ for it.
+/// Returns the sphere of a scene, and σ̂ for it.
 fn sphere(scene: [&str; 3]) -> (Sphere, Majorants) {
     let faults = RefCell::default();
     let body = format!("{}\nphase.isotropic = {{}}", scene.join("\n"));
@@ -165,7 +165,7 @@ fn sphere(scene: [&str; 3]) -> (Sphere, Majorants) {
     (sphere, majorants)
 }
 
-/// Nothing but one technique counts, with its weight beside the others.
+/// Technique that alone counts, with its weight beside the others.
 #[derive(Clone, Copy)]
 struct Only(usize);
 
@@ -221,7 +221,7 @@ fn shares_of_techniques_add_up() {
     }
 }
 
-/// Without null collisions there is nothing that densities of directions leave out.
+/// Without null collisions densities of directions are complete.
 #[test]
 fn directional_and_full_are_the_same_where_nothing_is_null() {
     for light in [SKY, LAMP] {
@@ -249,7 +249,7 @@ fn directional_and_full_are_the_same_where_nothing_is_null() {
     }
 }
 
-/// No direction meets a distant light: its shadow rays have weight 1, and vertices of its light are connected.
+/// No direction hits a distant light: its shadow rays have weight 1, and vertices of its light are connected.
 #[test]
 fn a_distant_light_is_found_by_all_but_hits() {
     let centre = "ray = { origin = [1, -1, 2], direction = [1, 0, 0], length = 1 }\n\

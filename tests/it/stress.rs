@@ -1,5 +1,5 @@
-//! `trueflight stress`: the short form holds, finds the same numbers on any threads, and says no when a
-//! bound is broken.
+//! `trueflight stress`: the short form holds, has the same numbers on any number of threads, and fails if a bound is
+//! broken.
 
 use std::fs;
 use std::path::Path;
@@ -34,7 +34,7 @@ fn every_bound_holds_in_the_short_form() {
     assert_eq!(json["holds"], true);
 }
 
-/// What it writes.
+/// Files that it writes.
 const FILES: [&str; 4] =
     ["stress.csv", "stress.json", "single-precision.csv", "single-precision.svg"];
 
@@ -71,7 +71,7 @@ fn no_file_depends_on_the_threads() {
         let [one, three] = outs.each_ref().map(|(out, _)| file(out, name));
         assert!(one == three, "{name} depends on the threads");
     }
-    // The page has the time, too.
+    // The page has times, too.
     let (out, _) = &outs[0];
     assert!(String::from_utf8_lossy(&file(out, "report.html")).contains("bounds hold</h1>"));
 }

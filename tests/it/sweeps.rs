@@ -1,4 +1,4 @@
-//! Sweeps of the medium: at every value a case is what one is that has its numbers written out.
+//! Sweeps of the medium: at every value a case equals one with its numbers written out.
 
 use trueflight::catalogue::Page;
 use trueflight::catalogue::additions;
@@ -11,7 +11,7 @@ use trueflight::record::{Row, Verdict};
 
 use crate::common::{case, failing, none, options, predicted, rows};
 
-/// A case with a sweep, and the same without it for some of its values.
+/// Case with a sweep, and equal cases without it for some of its values.
 type Written = (&'static str, &'static str, &'static [(f64, &'static str)]);
 
 const WRITTEN: [Written; 6] = [
@@ -109,7 +109,7 @@ fn titled(text: &str) -> String {
     format!("title = \"a sweep\"\n[problem.{text}")
 }
 
-/// What theory says of a row.
+/// Returns the prediction of a row.
 fn theory(row: &Row) -> (String, String, [Option<f64>; 4]) {
     let lookups = row.experiment.predicted_lookups;
     let numbers = [row.truth, row.predicted_variance, lookups, row.predicted_kurtosis];
@@ -184,7 +184,7 @@ fn the_lines_of_theory_go_through_the_experiments_and_between_them() {
     }
 }
 
-/// What a field, a σ̂ or a control has in 1/length and is not proportional to.
+/// Settings of a field, a σ̂ or a control in 1/length that it is not proportional to.
 const RATES: [&str; 2] = ["rate", "frequency"];
 
 /// Names of the settings that a page is proportional to.
@@ -217,7 +217,7 @@ fn every_extinction_of_a_page_is_one_that_sweeps_scale() {
 
 #[test]
 fn an_infinite_variance_along_a_sweep_is_refused_where_it_begins() {
-    // P_s = 1/2 whatever the contrast, and E[w²] is that of a rod of albedo a' = (1 + c)²/2, infinite from the length
+    // P_s = 1/2 for any contrast, and E[w²] is that of a rod of albedo a' = (1 + c)²/2, infinite from the length
     // atan2(w, a'/2 − 1)/w, w² = a' − 1, on: 6.96 at c = 0.5, 1.87 at 0.9, π/2 at 1.
     let text = titled(
         "rod]\nmedium.constant.extinction = 1\nspan = [0, 1.5]\nalbedos = [1, 0]\n\

@@ -5,7 +5,7 @@ use trueflight::case::Case;
 
 const DRAWS: u64 = 50_000;
 
-/// Sweeps, controls, pilot rays, whole laws and many channels.
+/// Returns cases with sweeps, controls, pilot rays, whole distributions and many channels.
 fn cases() -> Vec<Case> {
     vec![
         case(
@@ -76,7 +76,7 @@ fn cases() -> Vec<Case> {
     ]
 }
 
-/// The results part of a record drawn on a pool of its own, as text.
+/// Returns the results part of a record drawn on a pool of its own, as text.
 fn on(threads: usize, seed: u64) -> String {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("a pool");
     let record = pool.install(|| judged(&cases(), &options(seed, DRAWS)));

@@ -1,4 +1,4 @@
-//! The gate: what passes, what is caught, what is too short, and what is never drawn.
+//! The gate: passes, failures, runs that are too short, and experiments that are not drawn.
 
 use crate::common::{case, finding, judged, options, row, rows, verdict};
 use trueflight::record::Record;
@@ -7,7 +7,7 @@ use trueflight::report::layout::Pen;
 use trueflight::report::run::console::{self, View};
 use trueflight::report::run::summary_csv as joined;
 
-/// A dense layer between thin ones, T = e⁻²·⁸⁵: asymmetric, and not zero at the ends.
+/// Dense layer between thin ones, T = e⁻²·⁸⁵: asymmetric, and not zero at the ends.
 const LAYERS: &str = "
     medium.piecewise-constant = { breaks = [0, 1, 2.5, 4], values = [0.2, 1.5, 0.4] }
     span = [0, 4]";
@@ -35,7 +35,7 @@ fn correct_estimators_pass() {
 
 #[test]
 fn a_biased_estimator_that_claims_to_be_fair_is_caught() {
-    // Theory knows the bias of marching; the truth is not what marching finds.
+    // Theory knows the bias of ray marching; the truth is not its mean.
     let rows = rows(
         &transmittance(
             "{ ray-marching.steps = 3 }, { ray-marching = { steps = 3, jitter = true } }",
@@ -62,7 +62,7 @@ fn a_declared_bias_passes_once_it_is_seen() {
         assert_eq!(verdict(row), Verdict::Pass, "{}: {}", row.experiment.label, row.reason);
         assert!(row.reason.contains("biased-as-expected"), "{}", row.reason);
     }
-    // Woodcock below the majorant sees min(σ_t, σ̂): T = exp(−.2 − .9·1.5 − .4·1.5).
+    // Woodcock tracking below the majorant has min(σ_t, σ̂): T = exp(−.2 − .9·1.5 − .4·1.5).
     let forced = row(&rows, "woodcock");
     let (mean, error) = (forced.mean.expect("a mean"), forced.standard_error.expect("an error"));
     assert!((mean - (-2.15f64).exp()).abs() < 5.0 * error, "{mean} ± {error}");
@@ -88,7 +88,7 @@ fn a_run_that_is_too_short_says_how_long_it_should_be() {
         .and_then(|pair| pair[0].parse().ok())
         .unwrap_or_else(|| panic!("no number of draws in {}", short[0].reason));
     assert!(needed > 1_000.0);
-    // The number is rounded to two digits; a little more than that is enough.
+    // The number is rounded to two digits; slightly more than that is enough.
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a count of draws")]
     let enough = rows(&text, (1.1 * needed) as u64);
     assert_eq!(finding(&enough[0], "mean").verdict, Verdict::Pass);
@@ -137,8 +137,8 @@ fn only_the_refused_member_of_a_sweep_is_refused() {
 
 #[test]
 fn steep_decays_are_resolved() {
-    // Free flight through σ_t = 600 on [0, 1]: mean depth (1 − e⁻⁶⁰⁰)/600. Walks that end after two
-    // lookups on average: σ̂ = 2σ_t.
+    // Free flight through σ_t = 600 on [0, 1]: mean depth (1 − e⁻⁶⁰⁰)/600. Walks end after two lookups on average: σ̂ =
+    // 2σ_t.
     let text = "title = \"t\"\n[problem.free-flight]\nmedium.constant.extinction = 600\n\
                 span = [0, 1]\nestimators = [{ woodcock.sampling.constant.value = 1200 }]";
     let row = &rows(text, 200_000)[0];
@@ -147,7 +147,7 @@ fn steep_decays_are_resolved() {
     assert_eq!(verdict(row), Verdict::Pass, "{}", row.reason);
 }
 
-/// Ratio tracking and the double particle without a control are one estimator.
+/// Ratio tracking and the double particle without a control are the same estimator.
 #[test]
 fn what_is_the_same_by_definition_is_drawn_once() {
     let text = |estimators: &str| {

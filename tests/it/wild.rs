@@ -1,6 +1,6 @@
 //! Estimators and cases at the edge: signed weights, means that cancel, kurtoses beyond 1e12, weights that overflow,
-//! extreme depths and majorants, breaks at the same places. Correct estimators never fail, biased ones never pass, and
-//! each experiment is predicted in numbers or refused in words.
+//! extreme depths and majorants, breaks at the same places. Correct estimators never fail, and biased ones never pass.
+//! Each experiment has a finite prediction or is refused with a message.
 
 use crate::common::{case, none, rows_of};
 use trueflight::case::Case;
@@ -9,10 +9,10 @@ use trueflight::plan::{Amount, Options, Plan, Planned};
 use trueflight::record::{Row, Verdict, build, evaluate};
 use trueflight::stats::ties;
 
-/// The run-level α of each case: a correct estimator that fails is a bug.
+/// α of each run: a correct estimator that fails is a bug.
 const ALPHA: f64 = 1e-7;
 
-/// Correct estimators at their worst: a name, the case, its estimators.
+/// Correct estimators in their worst cases: a name, the case, its estimators.
 const WILD: [(&str, &str, &str); 8] = [
     (
         "w > 2σ_t on a short ray",
@@ -60,7 +60,7 @@ const WILD: [(&str, &str, &str); 8] = [
     ),
 ];
 
-/// Ray marching with few steps, off by 0.5 to 30 %.
+/// Ray marching with few steps, with a bias of 0.5 to 30 %.
 const BIASED: [(&str, &str, &str); 2] = [
     (
         "a blob between the steps",
@@ -91,7 +91,7 @@ fn judged(case: &Case, seed: u64, draws: u64) -> Vec<Row<'static>> {
     rows_of(record)
 }
 
-/// Rows of cases, few draws and many, with a verdict that is wrong.
+/// Lists the rows of cases with a wrong verdict, for few draws and many.
 fn wrong(cases: &[(&str, &str, &str)], seeds: u64, is_wrong: impl Fn(&Row) -> bool) -> Vec<String> {
     let mut wrong = Vec::new();
     for (name, lines, estimators) in cases {
@@ -130,7 +130,7 @@ fn ray_marching_with_few_steps_does_not_pass() {
     none(&wrong(&BIASED, 2, passes));
 }
 
-/// Unbiased draws, each observation moved by its tolerance: at most one in a hundred passes.
+/// Unbiased draws, each observation shifted by its tolerance: at most one in a hundred passes.
 #[test]
 fn answers_that_are_off_by_the_tolerance_pass_once_in_a_hundred() {
     let (mut passed, mut asked) = (0_usize, 0_usize);
@@ -145,7 +145,7 @@ fn answers_that_are_off_by_the_tolerance_pass_once_in_a_hundred() {
         }
         let drawn = run::draw(&plan, &|_| {});
         for finding in evaluate::run(&plan, &drawn).into_iter().flat_map(|one| one.findings) {
-            // What could not pass anyway promises nothing.
+            // A check that could not pass anyway promises nothing.
             if finding.gate.is_some_and(|gate| gate.needed.is_none()) {
                 asked += 1;
                 passed += usize::from(finding.verdict == Verdict::Pass);
@@ -164,7 +164,7 @@ const ALL: &str = "{ woodcock = {} }, { ratio = {} }, { residual-ratio = {} }, \
     { weighted-delta = {} }, { decomposition = {} }, { next-flight = {} }, { unidirectional-mis = {} }, \
     { closed-form = {} }, { regular = {} }";
 
-/// What is wrong with the prediction of an experiment: neither numbers nor a refusal in words.
+/// Returns the fault of the prediction of an experiment: neither finite nor a refusal with a message.
 fn trouble(planned: &Planned) -> Option<String> {
     let name = planned.id.label();
     let prediction = match &planned.outcome {
@@ -188,7 +188,7 @@ fn trouble(planned: &Planned) -> Option<String> {
     (lookups.is_nan() || lookups < 0.0).then(|| format!("{name}: lookups {lookups:e}"))
 }
 
-/// What is wrong with a case: predictions and, if it is drawn, verdicts.
+/// Lists the faults of a case: predictions and, if it is drawn, verdicts.
 fn at_the_edge(case: &Case, what: &str, is_drawn: bool) -> Vec<String> {
     let plan = Plan::new(std::slice::from_ref(case), &options(1, 1 << 13));
     let mut wrong: Vec<String> =
@@ -225,7 +225,7 @@ fn swept(depths: &[f64], ratios: &[f64], lengths: &[f64]) -> Vec<String> {
                 ("transmittance", &curve, "{ double = {} }"),
             ] {
                 let case = read(problem, lines, estimators);
-                // More expected collisions are predicted and not drawn.
+                // Experiments with more expected collisions are predicted and not drawn.
                 wrong.extend(at_the_edge(&case, &what, depth * ratio <= 100.0));
             }
         }
@@ -257,8 +257,8 @@ fn all_breaks_at_the_same_places_do_no_harm() {
     none(&at_breaks(1));
 }
 
-/// One in so many cases with kinks of medium, σ̂ and control at the same places, with empty stretches, and with controls
-/// that leave nothing to sample.
+/// Lists the faults of every `step`-th case with kinks of medium, σ̂ and control at the same places, with empty
+/// stretches, and with controls that leave nothing to sample.
 fn at_breaks(step: usize) -> Vec<String> {
     let media = [
         "medium.piecewise-constant = { breaks = [0, 1, 2, 3, 4], values = [1, 0, 2, 0] }\nspan = [0, 4]",

@@ -1,8 +1,8 @@
-//! Cases that are wrong, or that ask for what no estimator can do, and what is said of them: the sheets of `tests/wrong/`.
+//! Cases with mistakes, or with requests that no estimator can fulfil, and the messages: the sheets of `tests/wrong/`.
 //!
-//! A sheet has right cases, as text or as a file of the repository, each with lists of changes to it. A line of a list has
-//! changes, `from => to`, and words of the answer. Changes of `mistakes` must be refused when the case is read, those of
-//! `refused` when an experiment is planned.
+//! A sheet has correct cases, as text or as a file of the repository, each with lists of changes to it. A line of a
+//! list has changes, `from => to`, and words of the message. Changes of `mistakes` must be refused when the case is
+//! read, those of `refused` when an experiment is planned.
 
 use std::path::Path;
 
@@ -16,20 +16,20 @@ struct Sheet {
     case: Vec<Right>,
 }
 
-/// A case without mistakes, and what may be wrong with it.
+/// Case without mistakes, and lists of changes to it.
 #[derive(Deserialize)]
 #[serde(default, deny_unknown_fields)]
 #[derive(Default)]
 struct Right {
     text: String,
     file: String,
-    /// True if each of the changes is one mistake and no more.
+    /// True if each of the changes makes exactly one mistake.
     is_one_each: bool,
     mistakes: Vec<Vec<String>>,
     refused: Vec<Vec<String>>,
 }
 
-/// The case with the changes of a line, and the words of the line.
+/// Returns the case with the changes of a line, and the words of the line.
 fn changed<'a>(text: &str, line: &'a [String]) -> (String, Vec<&'a str>) {
     let (mut text, mut words) = (text.to_owned(), Vec::new());
     for part in line {
@@ -53,7 +53,7 @@ fn says(text: &str, words: &[&str]) -> bool {
     })
 }
 
-/// What is not as a sheet has it, and the number of lines in it.
+/// Lists the differences from a sheet, and returns the number of lines in it.
 fn wrong(sheet: &Path) -> (Vec<String>, usize) {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let read = |path: &Path| std::fs::read_to_string(path).expect("a file");

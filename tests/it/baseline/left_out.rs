@@ -1,4 +1,4 @@
-//! What of a comparison is left out, and comparisons of nothing.
+//! Quantities that a comparison leaves out, and comparisons of nothing.
 
 use serde_json::Value;
 use tempfile::TempDir;
@@ -10,9 +10,9 @@ use trueflight::report::run::diff;
 use super::{CASE, RULES, baseline, said, usual};
 use crate::common::place::Place;
 
-/// Spoils an entry.
+/// Change that spoils an entry.
 type Doctor = fn(&mut Entry);
-/// Where that is listed.
+/// List of entries that are left out for that reason.
 type List = fn(&LeftOut) -> &Vec<ChannelId>;
 
 #[test]
@@ -109,7 +109,7 @@ fn what_is_left_out_is_said_with_its_reason() {
         assert!(remarks.iter().any(said), "{words}: {remarks:?}");
         run.entries[0] = honest;
     }
-    // Nothing but e-values are compared.
+    // Only e-values are compared.
     for entry in &mut run.entries {
         (entry.kurtosis, entry.lookups_variance, entry.seconds) = (None, None, None);
     }

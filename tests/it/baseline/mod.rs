@@ -1,4 +1,4 @@
-//! Stored runs: what is flagged against them, what is not, and what adds up over runs.
+//! Stored runs: changes that are flagged against them, changes that are not, and evidence that adds up over runs.
 
 mod left_out;
 
@@ -49,7 +49,7 @@ fn baseline(seed: u64) -> Baseline {
     Baseline::of(&record(&Plan::new(&cases, &options(seed))), &cases, "program")
 }
 
-/// Draws that are all too large by as much.
+/// Draws with a constant added to each.
 struct Biased(Box<dyn Experiment>, f64);
 
 impl Experiment for Biased {
@@ -77,7 +77,7 @@ fn a_stored_run_comes_back() {
     assert!(!comparison.fails() && comparison.changes.is_empty(), "{comparison:?}");
     assert_eq!(comparison.compared, 4);
     assert_eq!(next.seeds, [1]);
-    // Nothing but the baseline is left.
+    // Only the baseline is left.
     assert_eq!(std::fs::read_dir(path.parent().expect("a folder")).expect("listed").count(), 1);
 }
 
@@ -176,7 +176,7 @@ fn a_small_bias_adds_up_over_runs() {
     let mut limit = 0.0;
     for seed in 1..=12 {
         let mut plan = Plan::new(&cases, &Options { fixed: true, ..options(seed) });
-        // Three quarters of what a pass excludes.
+        // A bias of three quarters of the tolerance.
         let planned = &mut plan.cases[0].experiments[1];
         let (_, scalar) = planned.scalars().next().expect("the mean");
         let bias = 0.75 * scalar.planned.design.tolerance * (-1f64).exp();
@@ -251,12 +251,12 @@ fn what_is_no_baseline_is_an_error_with_its_cure() {
     }
 }
 
-/// A run with some words more.
+/// Returns the command of a run with some more words.
 fn usual(more: &str) -> String {
     format!("run case.toml --draws 400000 --alpha 1e-6 --time-tolerance inf {more}")
 }
 
-/// What a command says that must end with this exit code.
+/// Returns the output of a command that must end with this exit code.
 fn said(place: &Place, arguments: &str, expected: i32) -> String {
     let output = place.command(arguments).env("COLUMNS", "400").output().expect("it runs");
     let text = place::said(&output);

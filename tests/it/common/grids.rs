@@ -6,7 +6,7 @@ use std::io::Write;
 
 use trueflight::media::grid_file::{Choice, MOST_SAMPLES, Samples, Unreadable, read};
 
-/// Reads bytes as a grid of the given ending; asserts that what is read is a grid.
+/// Reads bytes as a grid of the given ending; asserts that any result is a grid.
 pub fn reads_or_refuses(ending: &str, bytes: &[u8]) -> Option<Samples> {
     let suffix = format!(".{ending}");
     let mut file = tempfile::Builder::new().suffix(&suffix).tempfile().expect("a file");
@@ -26,7 +26,7 @@ pub fn reads_or_refuses(ending: &str, bytes: &[u8]) -> Option<Samples> {
     }
 }
 
-/// A small file of an ending, to be spoilt.
+/// Returns a small valid file of an ending, to be spoilt.
 pub fn good(ending: &str) -> Vec<u8> {
     match ending {
         "vdb" => return include_bytes!("../../data/vdb/moved.vdb").to_vec(),

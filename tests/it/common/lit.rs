@@ -1,11 +1,11 @@
-//! What the reference values of emitters behind rods and slabs have in common.
+//! Common parts of the reference values of emitters behind rods and slabs.
 
 use super::{none, predicted};
 use trueflight::record::{Row, Verdict};
 use trueflight::theory::Prediction;
 use trueflight::theory::lit_rod::{Combination, Densities, Heuristic, Shadow, Techniques};
 
-/// The techniques that a reference value is of.
+/// Returns the techniques of a reference value.
 pub fn techniques(what: &str) -> Techniques {
     use Combination::{Mis, NextEvent, Unidirectional};
     let balanced = |densities| Mis(densities, Heuristic::Balance);
@@ -22,8 +22,8 @@ pub fn techniques(what: &str) -> Techniques {
     Techniques { shadow, combination }
 }
 
-/// The mean or the variance of a prediction against a reference value and its error, as a message if they differ
-/// by more than that, or by more than both errors, or if the prediction's is above a bound.
+/// Compares mean or variance of a prediction with a reference value. Returns a message if they differ by more than the
+/// reference's error, or by more than both errors, or if the prediction's error is above a bound.
 pub fn differs(
     (what, value, uncertainty): (&str, f64, f64),
     prediction: &Prediction,
@@ -41,8 +41,8 @@ pub fn differs(
     is_wrong.then(|| format!("{what}: {found} ± {error:e} against {value}"))
 }
 
-/// How many experiments of extreme cases, each with its place in words, are predicted in numbers that can be; all others
-/// are refused in words.
+/// Returns the number of experiments of extreme cases, each with its place in words, that are predicted by possible
+/// numbers; all others must be refused in words.
 pub fn predictions(cases: &[(String, String)], can_be: impl Fn(&Row, f64, f64) -> bool) -> usize {
     let (mut count, mut wrong) = (0, Vec::new());
     for (place, text) in cases {
@@ -66,7 +66,7 @@ pub fn predictions(cases: &[(String, String)], can_be: impl Fn(&Row, f64, f64) -
     count
 }
 
-/// Every estimator of such a problem.
+/// Every estimator of a problem with an emitter.
 pub const ESTIMATORS: &str = "{ unidirectional = {} }, { next-event.shadow = \"exact\" },
     { next-event.shadow = \"delta\" }, { next-event = {} }, { directional-mis = {} },
     { full-mis.shadow = \"exact\" }, { full-mis = {} }, { full-mis.heuristic = \"power\" }";

@@ -24,10 +24,10 @@ use trueflight::record::build;
 use trueflight::record::{Finding, Row, Verdict};
 use trueflight::rng::Streams;
 
-/// The level of every run in the tests: a false alarm does not happen.
+/// Level of every run in the tests, small enough that no false alarm occurs.
 pub const ALPHA: f64 = 1e-6;
 
-/// A case of the given name and text.
+/// Makes a case of the given name and text.
 pub fn source(name: &str, text: &str) -> Source {
     Source { name: name.into(), path: PathBuf::from(format!("{name}.toml")), text: text.into() }
 }
@@ -37,12 +37,12 @@ pub fn case(name: &str, text: &str) -> Case {
     Case::read(&source(name, text)).unwrap_or_else(|error| panic!("{}", error.render(false)))
 }
 
-/// The mistakes that reading a case reports, or `None` if it is well written.
+/// Returns the mistakes that reading a case reports; `None` if it has none.
 pub fn mistakes(text: &str) -> Option<CaseError> {
     Case::read(&source("broken", text)).err()
 }
 
-/// A seed and a number of draws at the level of the tests.
+/// Returns options with a seed and a number of draws, at the level of the tests.
 pub fn options(seed: u64, draws: u64) -> Options {
     Options { seed, draws: Amount::Exactly(draws), alpha: ALPHA, ..Options::default() }
 }
@@ -54,7 +54,7 @@ pub fn judged(cases: &[Case], options: &Options) -> Record {
     build::judged(&plan, &draws, 0.0)
 }
 
-/// All rows of a record, which stays in memory until the tests end.
+/// Returns all rows of a record, which stays in memory until the tests end.
 pub fn rows_of(record: Record) -> Vec<Row<'static>> {
     Box::leak(Box::new(record)).results.rows().collect()
 }
@@ -64,20 +64,20 @@ pub fn rows(text: &str, draws: u64) -> Vec<Row<'static>> {
     rows_of(judged(&[case("test", text)], &options(1, draws)))
 }
 
-/// What theory says of one case written as text, as `trueflight predict` shows it.
+/// Returns the predictions of a case written as text, as `trueflight predict` shows them.
 pub fn predicted(text: &str) -> Vec<Row<'static>> {
     let cases = [case("test", text)];
     let record = build::predicted(&Plan::new(&cases, &options(1, 1000)));
     rows_of(record)
 }
 
-/// The same with the best σ̂ of each channel.
+/// Returns the predictions with the best σ̂ of each channel.
 pub fn with_optima(text: &str) -> Vec<Row<'static>> {
     let cases = [case("test", text)];
     rows_of(build::predicted_with_optima(&Plan::new(&cases, &options(1, 1000))))
 }
 
-/// The channels of an estimator of this name, or else of those whose names begin as given.
+/// Returns the channels of the estimator of this name, or else of all estimators with this beginning.
 pub fn channels<'a>(rows: &'a [Row<'static>], estimator: &str) -> Vec<&'a Row<'static>> {
     let of = |is_it: &dyn Fn(&str) -> bool| -> Vec<&'a Row<'static>> {
         rows.iter().filter(|row| is_it(&row.experiment.label)).collect()
@@ -86,18 +86,18 @@ pub fn channels<'a>(rows: &'a [Row<'static>], estimator: &str) -> Vec<&'a Row<'s
     if own.is_empty() { of(&|label| label.starts_with(estimator)) } else { own }
 }
 
-/// The row of an estimator whose name begins as given.
+/// Returns the row of the first estimator with this beginning.
 pub fn row<'a>(rows: &'a [Row<'static>], estimator: &str) -> &'a Row<'static> {
     let mut found = rows.iter().filter(|row| row.experiment.label.starts_with(estimator));
     found.next().unwrap_or_else(|| panic!("no row of {estimator}"))
 }
 
-/// What of some rows does not pass, or was not asked about mean, variance and lookups.
+/// Lists the rows in which mean, variance or lookups do not pass, or were not tested.
 pub fn failing(rows: &[Row]) -> Vec<String> {
     not_passing(rows, &["mean", "variance", "lookups"])
 }
 
-/// What of some rows does not pass, or was not asked about these checks.
+/// Lists the rows in which these checks do not pass, or were not made.
 pub fn not_passing(rows: &[Row], checks: &[&str]) -> Vec<String> {
     let mut wrong = Vec::new();
     for row in rows {
@@ -115,18 +115,18 @@ pub fn not_passing(rows: &[Row], checks: &[&str]) -> Vec<String> {
     wrong
 }
 
-/// What a check found in a row.
+/// Returns the finding of a check in a row.
 pub fn finding<'a>(row: &Row<'a>, check: &str) -> &'a Finding {
     let mut found = row.findings().filter(|finding| finding.check == check);
     found.next().unwrap_or_else(|| panic!("no {check} of {}", row.experiment.label))
 }
 
-/// The verdict on a row.
+/// Returns the verdict on a row.
 pub fn verdict(row: &Row) -> Verdict {
     row.verdict.unwrap_or_else(|| panic!("no verdict on {}", row.experiment.label))
 }
 
-/// The field along a line or ray, from the lines that a case in a folder has under its problem.
+/// Reads the field along a line or ray, from the lines below the problem of a case in a folder.
 pub fn try_body(text: &str, folder: &Path) -> Result<Body, Vec<Fault>> {
     let faults = RefCell::default();
     let root = source("medium", text).parse(&faults);
@@ -135,13 +135,13 @@ pub fn try_body(text: &str, folder: &Path) -> Result<Body, Vec<Fault>> {
     body.filter(|_| faults.is_empty()).ok_or(faults)
 }
 
-/// The field of lines without mistakes.
+/// Returns the field of lines without mistakes.
 pub fn body(text: &str) -> Body {
     let body = try_body(text, Path::new("tests/data"));
     body.unwrap_or_else(|faults| panic!("{text}: {faults:?}"))
 }
 
-/// The same as the ray sees it.
+/// Returns the field along the ray.
 pub fn medium(text: &str) -> Medium {
     body(text).medium()
 }
@@ -196,14 +196,13 @@ pub fn shipped_in(folders: &[&str]) -> Vec<Case> {
 /// Draws per experiment of the frozen values in `tests/lock`.
 pub const LOCKED_DRAWS: u64 = 65_536;
 
-/// Draws per experiment of [`shipped_record`]; `TRUEFLIGHT_DRAWS` asks for another number, for long
-/// campaigns.
+/// Returns the draws per experiment of [`shipped_record`]; `TRUEFLIGHT_DRAWS` sets another number, for long campaigns.
 pub fn shipped_draws() -> u64 {
     let wished = std::env::var("TRUEFLIGHT_DRAWS").ok();
     wished.map_or(LOCKED_DRAWS, |text| text.parse().expect("TRUEFLIGHT_DRAWS is a whole number"))
 }
 
-/// The plan of all shipped cases from seed 1, made once for all tests.
+/// Returns the plan of all shipped cases from seed 1, made once for all tests.
 pub fn shipped_plan() -> &'static Plan<'static> {
     static CASES: LazyLock<Vec<Case>> = LazyLock::new(shipped);
     static PLAN: LazyLock<Plan<'static>> =
@@ -211,7 +210,7 @@ pub fn shipped_plan() -> &'static Plan<'static> {
     &PLAN
 }
 
-/// What it draws, judged once for all tests.
+/// Returns the judged draws of that plan, made once for all tests.
 pub fn shipped_record() -> &'static Record {
     static RECORD: LazyLock<Record> = LazyLock::new(|| {
         let plan = shipped_plan();
@@ -220,7 +219,7 @@ pub fn shipped_record() -> &'static Record {
     &RECORD
 }
 
-/// `found` against `expected` to a relative tolerance, as a message if they differ.
+/// Compares `found` with `expected` to a relative tolerance; returns a message if they differ.
 pub fn differs(what: &str, found: f64, expected: f64, tolerance: f64) -> Option<String> {
     let error = (found - expected).abs();
     let same = found == expected || error <= tolerance * expected.abs();
@@ -235,7 +234,7 @@ pub fn none(messages: &[String]) {
     assert!(messages.is_empty(), "{} differ:\n{}", messages.len(), messages.join("\n"));
 }
 
-/// An experiment that draws nothing, to stand in another's place for a moment.
+/// Experiment that draws nothing, as a temporary replacement.
 pub struct Nothing;
 
 impl Experiment for Nothing {

@@ -1,5 +1,5 @@
-//! Case files with mistakes in them: what a hurried hand, a script or a cat on the keyboard makes of a
-//! good one. Shared by the property tests and by the targets of `fuzz/`.
+//! Case files with random mistakes in a good one, as by a typo, a script or a stray key. Shared by the property tests
+//! and by the targets of `fuzz/`.
 
 #![allow(dead_code)] // each user takes its own part
 
@@ -9,7 +9,7 @@ use trueflight::case::Case;
 use trueflight::case::CaseError;
 use trueflight::case::Source;
 
-/// Values that stand in a number's place.
+/// Values that replace a number.
 const ODD: [&str; 24] = [
     "0",
     "-0.0",
@@ -37,7 +37,7 @@ const ODD: [&str; 24] = [
     "\"\\u0000\"",
 ];
 
-/// What is put somewhere in the text.
+/// Text that is inserted at a random place.
 const STRAY: [&str; 16] = [
     "=",
     ".",
@@ -57,11 +57,11 @@ const STRAY: [&str; 16] = [
     "[problem]\n",
 ];
 
-/// A source of choices: 64 bits at a time.
+/// Source of choices: 64 bits at a time.
 pub struct Choices(pub u64);
 
 impl Choices {
-    /// Below a bound; 0 for none.
+    /// Returns a number below a bound; 0 for a bound of 0.
     #[allow(clippy::cast_possible_truncation)] // below a length
     pub fn below(&mut self, bound: usize) -> usize {
         self.0 = self.0.wrapping_mul(0x5851_f42d_4c95_7f2d).wrapping_add(0x1405_7b7e_f767_814f);
@@ -70,7 +70,7 @@ impl Choices {
     }
 }
 
-/// The text with one to four mistakes.
+/// Returns the text with one to four mistakes.
 pub fn mutated(text: &str, seed: u64) -> String {
     let mut choices = Choices(seed ^ 0x9e37_79b9_7f4a_7c15);
     let mut text = text.to_owned();
@@ -138,7 +138,7 @@ fn with_a_mistake(text: &str, choices: &mut Choices) -> String {
     }
 }
 
-/// One of the words made of such letters, replaced.
+/// Replaces one of the words of these letters.
 fn replaced(
     text: &str,
     choices: &mut Choices,
@@ -177,7 +177,7 @@ fn lines(
     lines.join("\n")
 }
 
-/// Reads a case; asserts that a broken one is refused with every mistake's line, place and cure.
+/// Reads a case; asserts that a broken one is refused with line, place and cure of every mistake.
 pub fn reads_or_names_the_place(text: &str) -> Option<Case> {
     let path = PathBuf::from("cases/transmittance/broken.toml");
     let source = Source { name: "broken".into(), path, text: text.to_owned() };
@@ -195,7 +195,7 @@ pub fn reads_or_names_the_place(text: &str) -> Option<Case> {
         assert!(is_syntax || names_a_key, "no key: {fault:?}\n{text}");
         assert!(fault.message.len() < 2000, "too long: {}…", &fault.message[..200]);
     }
-    // A line and a column for each mistake.
+    // Each mistake has a line and a column.
     let places = shown.matches("broken.toml:").count();
     assert_eq!(places, faults.len().min(50), "{shown}\n{text}");
     None

@@ -1,4 +1,4 @@
-//! A folder in which the command runs, and what it says there.
+//! Folder in which the command runs, and its output there.
 
 use std::path::Path;
 use std::process::Output;
@@ -6,11 +6,11 @@ use std::process::Output;
 use assert_cmd::Command;
 use tempfile::TempDir;
 
-/// A folder in which the command runs, without a terminal.
+/// Folder in which the command runs, without a terminal.
 pub struct Place(TempDir);
 
 impl Place {
-    /// Makes a folder with files, each by its path in it with its text.
+    /// Makes a folder with files, each given by its path in it and its text.
     pub fn new(files: &[(&str, &str)]) -> Self {
         let place = Self(TempDir::new().expect("a folder"));
         for (name, text) in files {
@@ -51,7 +51,7 @@ impl Place {
     }
 }
 
-/// The words of a command line.
+/// Splits a command line into words.
 fn words(line: &str) -> Vec<String> {
     let mut words: Vec<String> = Vec::new();
     for (i, part) in line.split('\'').enumerate() {

@@ -1,4 +1,4 @@
-//! Lookups before the first draw of a ray, their share in figures of merit, and what no lookup pays for.
+//! Lookups before the first draw of a ray, their share in figures of merit, and knowledge that costs no lookups.
 
 use crate::common::{differs, none, options, predicted, row, rows, source};
 use trueflight::case::Case;
@@ -9,7 +9,7 @@ use trueflight::report::layout::Pen;
 use trueflight::report::run::console::{self, View};
 use trueflight::report::run::summary_csv as tables;
 
-/// The central ray of Eq. 21, with more keys of the case and its estimators.
+/// Returns the central ray of Eq. 21, with more keys of the case and its estimators.
 fn eq21(head: &str, more: &str, estimators: &str) -> String {
     format!(
         "title = \"costs\"\n{head}\n[problem.transmittance]\nvolume.eq21 = {{}}\n\
@@ -21,7 +21,7 @@ fn eq21(head: &str, more: &str, estimators: &str) -> String {
 const EXPLORERS: &str =
     "{ double = { sampling.constant.value = 0.4, control.explorers.points = 20 } }";
 
-/// `1/(V · (N + S/n))`.
+/// Returns `1/(V · (N + S/n))`.
 fn merit(row: &Row, draws_per_ray: f64) -> f64 {
     let [variance, lookups] =
         [row.predicted_variance, row.experiment.predicted_lookups].map(|x| x.expect("known"));
@@ -34,7 +34,7 @@ fn explorer_lookups_are_charged_to_the_draws_of_a_ray() {
     let mut wrong = Vec::new();
     for (head, draws) in [("", 1.0), ("draws_per_ray = 1", 1.0), ("draws_per_ray = 16", 16.0)] {
         let rows = predicted(&eq21(head, "", EXPLORERS));
-        // ∫σ̂ = 0.4 · 20 lookups of a draw, and one at each explorer point.
+        // ∫σ̂ = 0.4 · 20 lookups per draw, and one at each explorer point.
         assert_eq!(rows[0].experiment.setup_lookups, Some(20), "{head}");
         wrong.extend(differs(
             "lookups",
@@ -90,7 +90,7 @@ fn a_sweep_of_explorer_points_charges_each_number() {
     for row in &rows {
         assert_eq!(row.predicted_fom, Some(merit(row, 1.0)));
     }
-    // A ray that misses the medium has nothing to explore.
+    // A ray that misses the medium has no explorer points.
     let missed = eq21("", "", EXPLORERS).replace("origin = [0, 0, 0]", "origin = [0, 50, 0]");
     assert_eq!(predicted(&missed)[0].experiment.setup_lookups, Some(0));
 }
@@ -132,7 +132,7 @@ fn what_no_lookup_pays_for_has_a_name() {
     let needs: Vec<&str> = rows.iter().map(|row| row.experiment.needs.as_str()).collect();
     let both = "τ, max |σ_t − σ_c|";
     assert_eq!(needs, ["τ", "τ", "τ", "min σ_t", "max |σ_t − σ_c|", both, "", ""]);
-    // A control or σ̂ that is swept stands in the recipe's place.
+    // A swept control or σ̂ replaces the recipe.
     let swept = eq21(
         "",
         "sampling.constant.value = 0.7\nsweep.control.values = [0, 0.1]",
@@ -145,7 +145,7 @@ fn what_no_lookup_pays_for_has_a_name() {
         "{ ratio = {} }",
     );
     assert!(predicted(&swept).iter().all(|row| row.experiment.needs.is_empty()));
-    // A table of theory shows it.
+    // A table of predictions shows it.
     let cases =
         [Case::read(&source("needs", &eq21("", "sampling.constant.value = 0.7", estimators)))
             .expect("a case")];

@@ -1,4 +1,4 @@
-//! Every experiment has one entry of its plot's legend, entries are distinct, equal lines are said to be equal.
+//! Every experiment has one entry of its plot's legend, entries are distinct, and a note lists equal lines.
 
 use std::collections::BTreeSet;
 
@@ -13,11 +13,11 @@ use trueflight::report::plots::series::{Series, collect};
 use trueflight::report::plots::sheet::{Align, Shape};
 use trueflight::report::run::sweep_plot;
 
-/// The sizes of the words of legends and of notes.
+/// Sizes of the words of legends and of notes.
 const LEGEND: f64 = 13.5;
 const NOTE: f64 = 12.5;
 
-/// The words of a figure that begin at a place, of a size.
+/// Returns the words of a figure that begin at the left edge, of a size.
 fn words(sheet: &Sheet, size: f64) -> Vec<String> {
     let words = sheet.shapes.iter().filter_map(|shape| match shape {
         Shape::Text(label) if label.align == Align::Start && label.size == size => {
@@ -28,7 +28,7 @@ fn words(sheet: &Sheet, size: f64) -> Vec<String> {
     words.collect()
 }
 
-/// What is wrong with the legend of a case's plot.
+/// Lists the faults of the legend of a case's plot.
 fn wrong_in(case: &CaseRecord) -> Vec<String> {
     let mut wrong = Vec::new();
     let Some(sweep) = &case.sweep else { return wrong };
@@ -41,7 +41,7 @@ fn wrong_in(case: &CaseRecord) -> Vec<String> {
     if labels.len() != series.len() {
         say(format!("labels are not distinct: {:?}", all().collect::<Vec<_>>()));
     }
-    // An experiment, a channel of it, has rows in one series, and a series has rows of one estimator.
+    // The rows of an experiment and channel are in one series, and a series has rows of one estimator.
     for one in &series {
         let listed: BTreeSet<_> = one.rows.iter().map(|row| row.experiment.listed).collect();
         if listed.len() > 1 || one.rows.is_empty() {
@@ -79,14 +79,14 @@ fn wrong_in(case: &CaseRecord) -> Vec<String> {
     wrong
 }
 
-/// The quantities of the panels, for rows.
+/// Quantities of the panels, for rows.
 const QUANTITIES: [fn(&Row) -> Option<f64>; 3] = [
     |row| row.predicted_variance.filter(|variance| *variance > 0.0),
     |row| row.experiment.predicted_lookups.filter(|lookups| *lookups > 0.0),
     |row| row.predicted_fom,
 ];
 
-/// Pairs of series with equal rows in theory, in one of the panels.
+/// Returns pairs of series with equal predictions in one of the panels.
 fn equal_pairs(series: &[Series]) -> Vec<(String, String)> {
     let mut pairs = Vec::new();
     for quantity in QUANTITIES {
@@ -158,7 +158,7 @@ fn lines_of_theory_merge_nothing() {
 fn twins_and_crowds_are_told_apart() {
     let sweep = "sweep.sampling.values = [1, 2]";
     let texts = [
-        // Alike in all that a row tells: fields as controls that differ in numbers alone.
+        // Rows with equal labels: controls that are fields with different numbers.
         "estimators = [{ double.control.field.medium.constant.extinction = 0.1 }, \
          { double.control.field.medium.constant.extinction = 0.2 }, { double = {} }, { ratio = {} }, \
          { ratio.sampling.constant.value = 3 }, { ratio.sampling.constant.value = 4 }, \
@@ -191,7 +191,7 @@ fn a_dashed_line_of_a_plot_is_one_element() {
     let dashed = dashed.count();
     let svg = paint::svg(&sheet).expect("painted");
     assert!(dashed > 5 && svg.matches("stroke-dasharray=").count() == dashed, "{dashed}");
-    // As dashes of their own they were a thousand.
+    // Separate dashes would be a thousand.
     assert!(svg.matches("<polyline").count() < 250, "{}", svg.matches("<polyline").count());
     assert!(paint::png(&sheet).is_ok());
 }

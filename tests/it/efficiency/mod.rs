@@ -1,4 +1,4 @@
-//! Comparable estimators: all lookups counted, best σ̂ named for what they are, plots that show each estimator.
+//! Comparable estimators: all lookups are counted, best σ̂ are optima or shares of limits, plots show each estimator.
 
 mod costs;
 mod legends;

@@ -16,7 +16,7 @@ fn record(text: &str) -> Record {
     build::predicted_with_optima(&Plan::new(&cases, &options(1, 1000)))
 }
 
-/// A homogeneous line of length 4 with σ_t = 1/2, for some estimators.
+/// Returns a homogeneous line of length 4 with σ_t = 1/2, for some estimators.
 fn line(more: &str, estimators: &str) -> String {
     format!(
         "title = \"a line\"\n[problem.transmittance]\nmedium.constant.extinction = 0.5\nspan = [0, 4]\n\
@@ -24,7 +24,7 @@ fn line(more: &str, estimators: &str) -> String {
     )
 }
 
-/// The root of a falling function between two places.
+/// Returns the root of a decreasing function between two places.
 fn root(mut low: f64, mut high: f64, f: impl Fn(f64) -> f64) -> f64 {
     for _ in 0..200 {
         let middle = 0.5 * (low + high);
@@ -56,7 +56,7 @@ fn a_rising_figure_of_merit_has_a_limit_and_no_optimum() {
             .filter_map(|(name, (found, expected))| differs(name, found, expected, 1e-5))
             .collect();
         none(&wrong);
-        // The row at σ̂ = 50 is above what is called best, and below the limit.
+        // The row at σ̂ = 50 is above the best row, and below the limit.
         let at_fifty = row.predicted_fom.expect("known");
         assert!(at_fifty > found[1] && at_fifty < found[0], "{at_fifty}");
     }
@@ -133,14 +133,14 @@ fn an_optimum_is_called_one() {
         "{ woodcock = {} }, { closed-form = {} }",
     ));
     assert_eq!((rows[0].best_kind(), rows[0].best_limit()), ("optimum", None));
-    // What takes no σ̂ has none that is best.
+    // An estimator without σ̂ has no best σ̂.
     let none = (rows[1].best_sampling(), rows[1].best_fom(), rows[1].best_kind());
     assert_eq!(none, (None, None, ""));
 }
 
 #[test]
 fn without_a_variance_there_is_no_best() {
-    // Theory bounds the variance of Russian roulette, and does not know it.
+    // Theory has only a bound on the variance of Russian roulette.
     let text = "title = \"a rod\"\n[problem.rod]\nmedium.constant.extinction = 0.5\nspan = [0, 4]\nalbedo = 0.7\n\
                 forward = 0.5\nsampling.constant.value = 1\nestimators = [{ roulette = {} }]";
     for row in with_optima(text) {
@@ -159,7 +159,7 @@ fn tables_say_what_the_best_is_however_narrow() {
             let one_line = table.split_whitespace().collect::<Vec<_>>().join(" ");
             let note = format!("is 90 % of the limit; the limit is {},", digits::short(limit, 4));
             assert!(one_line.contains(&note) && one_line.contains("(optimum)"), "{table}");
-            // Where the column has room its values are marked.
+            // If the column is wide enough its values are marked.
             let mut heads = table.lines().filter(|line| line.starts_with("estimator"));
             let has_column = heads.any(|line| line.contains("best σ\u{302}"));
             assert_eq!(has_column, table.contains(" (90 %)"), "{width}: {table}");
@@ -178,7 +178,7 @@ fn plots_have_a_filled_star_for_an_optimum_and_a_hollow_one_for_a_limit() {
         let svg = artifacts.into_iter().find(|a| a.path.ends_with("test.svg")).expect("a plot");
         String::from_utf8(svg.bytes).expect("text")
     };
-    // The key over the panel and the note below it.
+    // The key above the panel and the note below it.
     let has_star = |svg: &str, key: &str| svg.lines().any(|line| line.trim() == key);
     let [optimum, limit] = ["predicted optimum", "90 % of the limit"];
     let both = "{ ratio = {} }, { woodcock = {} }";

@@ -1,14 +1,14 @@
 //! Fields of extinction, written a second time as plain functions.
 
-/// A function of the distance and of a point inside the piece that is meant at a break.
+/// Function of the distance; at a break the second argument, a point inside the piece, chooses the side.
 pub type Function = Box<dyn Fn(f64, f64) -> f64>;
 
-/// A field written twice: as a case has it and as a function.
+/// Field written twice: as in a case and as a function.
 pub struct Field {
     pub text: String,
     pub breaks: Vec<f64>,
     pub value: Function,
-    /// Whether it has one value, or one value per piece.
+    /// Number of values: one, or one per piece.
     pub shape: Shape,
 }
 
@@ -58,7 +58,7 @@ pub fn no_control() -> Field {
     Field { text: "none = {}".into(), ..constant(0.0) }
 }
 
-/// Lines through σ_t at n points, the ends included.
+/// Returns lines through σ_t at n points, the ends included.
 pub fn explorers(medium: &Field, length: f64, n: usize) -> Field {
     let knots: Vec<f64> = (0..n).map(|i| length * i as f64 / (n - 1) as f64).collect();
     let values: Vec<f64> = knots.iter().map(|&t| (medium.value)(t, t)).collect();
@@ -99,7 +99,7 @@ pub fn waves() -> Field {
     )
 }
 
-/// A second copy of a field that is only looked up.
+/// Returns a second copy of a field, for lookups only.
 pub fn twin(field: &Field) -> Field {
     let known = [homogeneous(), layers(), hills(), atmosphere(), blob(), waves()];
     let mut known = known.into_iter();

@@ -31,12 +31,12 @@ use trueflight::case::Case;
 use trueflight::theory::Prediction;
 use volterra::volterra;
 
-/// How far a prediction may be from the solution of its equation, relatively.
+/// Largest relative difference of a prediction from the solution of its equation.
 const TOLERANCE: f64 = 1e-8;
-/// Beyond this kurtosis moments are not compared.
+/// Largest kurtosis for which moments are compared.
 const WILDEST: f64 = 1e6;
 
-/// A configuration: what all estimators of one case share.
+/// Configuration that all estimators of one case share.
 struct Scene {
     medium: Field,
     sampling: Field,
@@ -60,7 +60,7 @@ impl Scene {
         ends.windows(2).map(|pair| [pair[0], pair[1]]).collect()
     }
 
-    /// The smallest and the largest residual and r.
+    /// Returns the smallest and the largest residual and r.
     fn ranges(&self, controlled: bool) -> [[f64; 2]; 2] {
         let mut ranges = [[f64::INFINITY, f64::NEG_INFINITY]; 2];
         for [from, to] in self.pieces() {
@@ -94,7 +94,7 @@ impl Scene {
     }
 }
 
-/// Which equation an estimator solves.
+/// Equation that an estimator solves.
 #[derive(Clone, Copy, PartialEq)]
 enum Law {
     /// Collisions of the residual, the control integrated.
@@ -111,7 +111,7 @@ enum Law {
 struct Estimator {
     text: &'static str,
     law: Law,
-    /// Whether it exists in a scene with the given ranges of residual and r.
+    /// Returns whether the estimator exists in a scene with the given ranges of residual and r.
     exists: fn(&Scene, [[f64; 2]; 2]) -> bool,
 }
 
@@ -210,7 +210,7 @@ fn compare(what: &str, found: &Prediction, expected: &Solution) -> Vec<String> {
     differences.collect()
 }
 
-/// Every estimator in a scene; answers what differs and how many were compared.
+/// Compares every estimator in a scene; returns the differences and the number of compared estimators.
 fn check(scene: &Scene) -> (Vec<String>, usize) {
     let case = scene.case();
     let mut differences = Vec::new();
@@ -251,7 +251,7 @@ fn check_all(scenes: &[Scene], least: usize) {
     assert!(compared >= least, "only {compared} predictions were compared");
 }
 
-/// All combinations of σ̂ and controls with a medium.
+/// Returns all combinations of σ̂ and controls with a medium.
 fn scenes(
     medium: fn() -> Field,
     length: f64,
@@ -334,7 +334,7 @@ fn plane_waves() {
     check_all(&scenes(waves, 5.0, &samplings, &controls), 100);
 }
 
-/// The ray of Eq. 21 along the axis, from its formula; (1 + cos u)/2 = cos²(u/2).
+/// Returns σ_t of Eq. 21 along the axis, from its formula; (1 + cos u)/2 = cos²(u/2).
 fn eq21(t: f64) -> f64 {
     (0.75 * t).cos().powi(10) * (2.0 + (0.5 * t).sin()) / 3.0
 }

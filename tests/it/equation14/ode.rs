@@ -3,7 +3,7 @@
 use super::rule::Rule;
 use super::{Law, Scene};
 
-/// What is compared: T, V, the central moments over T^k (k = 2, 3, 4), E[M].
+/// Compared numbers: T, V, the central moments over T^k (k = 2, 3, 4), E[M].
 pub struct Solution {
     pub mean: f64,
     pub variance: f64,
@@ -14,15 +14,15 @@ pub struct Solution {
 /// Central moments over T^k, survival, lookups, T and V along the ray.
 type State = [f64; 7];
 
-/// The right-hand sides. Central moments in units of `T^k` follow from `M_k = m_k/T^k` with
+/// Returns the right-hand sides. Central moments in units of `T^k` follow from `M_k = m_k/T^k` with
 /// `dM_k/ds = λ_k M_k`, `λ_k = k σ_t − k σ_c − σ̂ (1 − E[W^k])`:
 ///
 /// ```text
 /// c₂ = M₂ − 1,  c₃ = M₃ − 3M₂ + 2,  c₄ = M₄ − 4M₃ + 6M₂ − 3
 /// ```
 ///
-/// Products have no collisions where medium and control are zero, nor anywhere if they are the same
-/// everywhere (`nothing_left`).
+/// Products have no collisions where medium and control are zero, nor anywhere if they are equal everywhere
+/// (`nothing_left`).
 fn slope(law: Law, nothing_left: bool, scene: &Scene, t: f64, inside: f64, y: &State) -> State {
     let (medium, mut sampling, mut control) = scene.at(t, inside);
     let (mut r, rule, killing) = match law {
@@ -37,7 +37,7 @@ fn slope(law: Law, nothing_left: bool, scene: &Scene, t: f64, inside: f64, y: &S
         (sampling, r) = (0.0, 0.0);
     }
     let lambda = |k: i32| {
-        // A sampled control kills whatever k is; an integrated one multiplies X.
+        // A sampled control ends the walk for any k; an integrated one multiplies X.
         let integrated = if killing == 0.0 { f64::from(k) * control } else { killing };
         f64::from(k) * medium - integrated - sampling * (1.0 - rule.power(r, k))
     };
@@ -70,15 +70,14 @@ pub fn solve(law: Law, scene: &Scene) -> Solution {
         }
         y
     };
-    // A first walk learns the sizes at the end. What grows beyond 1 multiplies early errors too.
+    // A first integration finds the sizes at the end. A component that grows beyond 1 multiplies early errors, too.
     let sizes = walk(&[1e-3; 7], 1e-6).map(|y| y.abs().clamp(1e-12, 1.0));
     let [c2, c3, c4, _, lookups, mean, variance] = walk(&sizes, 1e-14);
     Solution { mean, variance, relative: [c2, c3, c4], lookups }
 }
 
-/// Integrates `y' = f(t, y)` by the pair of J. Dormand and P. Prince, *A family of embedded
-/// Runge–Kutta formulae*, J. Comp. Appl. Math. 6 (1980). The error of a step stays below `local` of
-/// `y` or of `sizes`, whichever is larger.
+/// Integrates `y' = f(t, y)` by the pair of J. Dormand and P. Prince, *A family of embedded Runge–Kutta formulae*, J.
+/// Comp. Appl. Math. 6 (1980). The error of a step stays below `local` of `y` or of `sizes`, whichever is larger.
 fn dormand_prince<const N: usize>(
     [from, to]: [f64; 2],
     mut y: [f64; N],

@@ -1,6 +1,6 @@
-//! What a collision does, from the papers.
+//! Rules of collisions, from the papers.
 
-/// What happens at a collision, from the papers.
+/// Rule of a collision, from the papers.
 #[derive(Clone, Copy, PartialEq)]
 pub enum Rule {
     Double,
@@ -12,7 +12,7 @@ pub enum Rule {
 }
 
 impl Rule {
-    /// `q_tran`.
+    /// Returns `q_tran`.
     pub fn survival(self, r: f64) -> f64 {
         let kept = (1.0 - r).abs();
         let non_terminating = |a: f64| if kept == 0.0 { 0.0 } else { kept / (a * r.abs() + kept) };
@@ -25,7 +25,7 @@ impl Rule {
         }
     }
 
-    /// `E[W^k] = (1 − r)^k q^{1−k}`, and 0 at r = 1.
+    /// Returns `E[W^k] = (1 − r)^k q^{1−k}`, and 0 at r = 1.
     pub fn power(self, r: f64, k: i32) -> f64 {
         match self.survival(r) {
             0.0 => 0.0,
@@ -33,8 +33,8 @@ impl Rule {
         }
     }
 
-    /// The variance introduction density in units of σ̂: Eq. 17, 19, 20, or 18 where the paper has
-    /// no formula of its own.
+    /// Returns the variance introduction density in units of σ̂: Eq. 17, 19, 20, or 18 where the paper has no formula
+    /// of its own.
     pub fn introduced(self, r: f64) -> f64 {
         match self {
             Self::Double => r * r,

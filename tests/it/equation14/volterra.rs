@@ -3,10 +3,10 @@
 use super::ode::Solution;
 use super::{Law, Scene};
 
-/// `E[F^k](0)`, k = 1 … 4, of next-flight or unidirectional MIS, on a grid of n steps per piece.
+/// Returns `E[F^k](0)`, k = 1 … 4, of next-flight or unidirectional MIS, on a grid of n steps per piece.
 ///
-/// `F = G + A` with A the weight that goes on: `A_k(x) = ∫ σ̄ e^{−σ̄(y−x)} ρ(y)^k m_k(y) dy`. The
-/// kernel is exponential, so that the trapezoid sum at x follows from that at x + h.
+/// `F = G + A` with A the remaining weight: `A_k(x) = ∫ σ̄ e^{−σ̄(y−x)} ρ(y)^k m_k(y) dy`. The kernel is exponential,
+/// so that the trapezoid sum at x follows from that at x + h.
 fn trapezoid(law: Law, scene: &Scene, sampling: f64, n: usize) -> [f64; 4] {
     const CHOOSE: [[f64; 5]; 5] = [
         [1.0, 0.0, 0.0, 0.0, 0.0],
@@ -15,7 +15,7 @@ fn trapezoid(law: Law, scene: &Scene, sampling: f64, n: usize) -> [f64; 4] {
         [1.0, 3.0, 3.0, 1.0, 0.0],
         [1.0, 4.0, 6.0, 4.0, 1.0],
     ];
-    // E[F^k] from the moments of what goes on; G is v, or u with 2u at the end of the walk.
+    // E[F^k] from the moments of the remaining weight; G is v, or u with 2u at the end of the walk.
     let moment = |k: usize, v: f64, a: &[f64; 5]| {
         let direct = if law == Law::NextFlight { v } else { v / (1.0 + v) };
         let mixed = |j: usize| CHOOSE[k][j] * power(direct, k - j) * a[j];
@@ -24,7 +24,7 @@ fn trapezoid(law: Law, scene: &Scene, sampling: f64, n: usize) -> [f64; 4] {
         if law == Law::NextFlight {
             whole + on
         } else {
-            // With probability v the flight passes the end: (2u)^k, and nothing goes on.
+            // With probability v the flight passes the end: (2u)^k, and no weight remains.
             v * power(2.0, k) * whole + (1.0 - v) * whole + on
         }
     };
@@ -54,7 +54,7 @@ fn trapezoid(law: Law, scene: &Scene, sampling: f64, n: usize) -> [f64; 4] {
     std::array::from_fn(|k| moment(k + 1, start, &a))
 }
 
-/// Richardson's extrapolation of the trapezoid, whose error is even in the step.
+/// Extrapolates the trapezoid rule by Richardson's method: the error is even in the step.
 pub fn volterra(law: Law, scene: &Scene, sampling: f64) -> Solution {
     let mut table: Vec<[f64; 4]> =
         (0..6).map(|level| trapezoid(law, scene, sampling, 40 << level)).collect();

@@ -1,4 +1,4 @@
-//! Scenes of several channels, each with a truth of its own, and homogeneous media as such.
+//! Scenes of several channels, each with a truth of its own, and homogeneous media.
 
 use serde_json::Value;
 use tempfile::TempDir;
@@ -9,12 +9,12 @@ use trueflight::export::{ExportError, Target, Wishes, export_with};
 
 use super::source;
 
-/// A case of a text.
+/// Makes a case of a text.
 fn written(text: &str) -> Source {
     Source { name: "own".into(), path: "own.toml".into(), text: text.to_owned() }
 }
 
-/// Exports a case and answers its folder and its truth.
+/// Exports a case; returns its folder and its truth.
 fn exported(
     source: &Source,
     target: Target,
@@ -40,7 +40,7 @@ fn channels(list: &[usize]) -> Wishes {
     Wishes { channels: Some(list.to_vec()), ..Wishes::default() }
 }
 
-/// The cube of the field: `T = exp(−2 σ_t)`, `σ_t` = ½, 1, 2.
+/// Returns the cube of the field: `T = exp(−2 σ_t)`, `σ_t` = ½, 1, 2.
 fn cube() -> Source {
     written(include_str!("../../data/field/03-coloured-media/three.toml"))
 }
@@ -52,7 +52,7 @@ fn a_homogeneous_cube_of_three_colours_is_written_as_one() {
     assert!(truth.field.is_none() && !folder.path().join("density.vol").exists());
     let scene = text(&folder, "transmittance.xml");
     assert!(scene.contains("<medium id=\"medium\" type=\"homogeneous\">"), "{scene}");
-    // Numbers above 1 are refused by Mitsuba up to 3.4: σ_t is given in units of the largest.
+    // Mitsuba up to 3.4 refuses numbers above 1: σ_t is given in units of the largest.
     assert!(scene.contains("<float name=\"scale\" value=\"2.0\"/>"), "{scene}");
     assert!(scene.contains("<rgb name=\"value\" value=\"0.25 0.5 1.0\"/>"), "{scene}");
     let told: Vec<_> = truth.questions.iter().map(|q| (q.channel, q.scene.as_str())).collect();
@@ -61,7 +61,7 @@ fn a_homogeneous_cube_of_three_colours_is_written_as_one() {
         assert!((question.mean / (-depth).exp() - 1.0).abs() < 1e-12, "{question:?}");
         let laws = [question.with_emitter_sampling, question.without_emitter_sampling];
         for law in laws.map(|law| law.expect("a law")) {
-            // Which channel a renderer samples for is not known, and with it the variance.
+            // The channel for which a renderer samples is unknown, and with it the variance.
             assert_eq!((law.low, law.high, law.variance), (Some(0.0), None, None));
         }
     }
@@ -90,7 +90,7 @@ fn layers_of_three_colours_are_one_grid_of_three_channels() {
     let header: Vec<i32> = (0..5).map(|n| i32::from_le_bytes(word(n))).collect();
     assert_eq!(header, [1, 2, 2, 64, 3], "float32, 2 × 2 × 64, three channels");
     assert_eq!(bytes.len(), 48 + 4 * 3 * 4 * 64);
-    // The samples of a straight line in the middle of cells have its integral.
+    // The samples of a straight line at the centres of cells have its integral.
     let step = 2.0 / 64.0;
     for (channel, question) in truth.questions.iter().enumerate() {
         let sample = |z: usize| f64::from(f32::from_le_bytes(word(11 + 3 * 4 * z + channel)));
@@ -107,7 +107,7 @@ fn layers_of_three_colours_are_one_grid_of_three_channels() {
         let depth = (0..64).map(|z| sample(z) * step).sum::<f64>();
         assert!((question.mean / (-depth).exp() - 1.0).abs() < 1e-6, "{question:?}");
     }
-    // Where σ_t of the second channel is the majorant, no walk for it has a null collision, and others have.
+    // Where σ_t of the second channel is the majorant, its walks have no null collisions, and other walks have some.
     let note = truth.notes.iter().find(|note| note.contains("tracking for one channel"));
     assert!(note.is_some_and(|note| note.contains("in channel 2 on a stretch")), "{truth:?}");
     let peak = truth.field.as_ref().expect("samples").peak;
@@ -156,7 +156,7 @@ fn slabs_furnaces_and_lamps_have_a_truth_per_channel() {
     assert!(truth.notes.iter().any(|note| note.contains("phase function of the first")));
     assert!(text(&folder, "radiance.xml").contains("name=\"g\" value=\"0.6\""));
     assert!(truth.questions.iter().all(|question| question.mean == 1.0));
-    // One channel alone is grey, and its law is known.
+    // A single channel is grey, and its distribution is known.
     let (folder, one) = albedos("single-scattering/spectral-known-bugs", &channels(&[2]));
     assert_eq!((one.version, one.problem.as_str()), (1, "single-scattering"));
     assert_eq!(one.questions.len(), 1);

@@ -1,4 +1,4 @@
-//! The truth is that of the samples, by arithmetic of the test's own.
+//! The truth is that of the samples, by arithmetic of the test itself.
 
 use trueflight::export::Target;
 use trueflight::media::grid_file::{self, Choice};
@@ -65,7 +65,7 @@ impl Vol {
         sum
     }
 
-    /// Where a line from `origin` on enters the box and leaves it.
+    /// Returns the places where a line from `origin` enters and leaves the box.
     fn crossing(&self, origin: [f64; 3], direction: [f64; 3]) -> [[f64; 3]; 2] {
         let (mut from, mut to) = (0.0f64, f64::INFINITY);
         for axis in (0..3).filter(|&axis| direction[axis] != 0.0) {
@@ -76,7 +76,7 @@ impl Vol {
         [from, to].map(|t| [0, 1, 2].map(|axis| origin[axis] + t * direction[axis]))
     }
 
-    /// `∫ σ_t` from a place to another, by so many midpoints.
+    /// Returns `∫ σ_t` from a place to another, by `steps` midpoints.
     fn depth(&self, from: [f64; 3], to: [f64; 3], steps: u32) -> f64 {
         let way = [0, 1, 2].map(|axis| to[axis] - from[axis]);
         let length = way.iter().map(|x| x * x).sum::<f64>().sqrt();
@@ -88,7 +88,7 @@ impl Vol {
     }
 }
 
-/// The three numbers after a key of `case.toml`.
+/// Returns the three numbers after a key of `case.toml`.
 fn triple(scene: &Scene, key: &str) -> [f64; 3] {
     let text = scene.text("case.toml");
     let rest = text.split(&format!("{key} = [")).nth(1).expect("the key");
@@ -141,7 +141,7 @@ fn single_scattering_is_that_of_the_samples() {
         let place = [0, 1, 2].map(|axis| from[axis] + share * (to[axis] - from[axis]));
         let way = [0, 1, 2].map(|axis| place[axis] - lamp[axis]);
         let distance = norm(way);
-        // Light travels from the lamp to the place, and on against the ray.
+        // Light travels from the lamp to the place, and from there against the ray.
         let cosine = -(0..3).map(|axis| way[axis] * direction[axis]).sum::<f64>() / distance;
         let phase = (1.0 - g * g) / (sphere * (1.0 + g * g - 2.0 * g * cosine).powf(1.5));
         let [_, leaves] = vol.crossing(place, way.map(|x| -x / distance));

@@ -1,4 +1,4 @@
-//! Cases as scenes of other renderers: their files, their truth, and what cannot be exported.
+//! Cases as scenes of other renderers: their files, their truth, and refusals.
 
 mod colours;
 mod field;
@@ -13,12 +13,12 @@ use tempfile::TempDir;
 use trueflight::case::Source;
 use trueflight::export::{self, ExportError, Exported, Target};
 
-/// A case of the repository.
+/// Returns a case of the repository.
 fn source(name: &str) -> Source {
     Source::read(&case_file(name)).expect("a case")
 }
 
-/// An exported case and its folder.
+/// Exported case and its folder.
 struct Scene {
     folder: TempDir,
     exported: Exported,
@@ -47,7 +47,7 @@ fn scene(name: &str, target: Target, cells: Option<usize>) -> Result<Scene, Expo
     Ok(Scene { folder, exported })
 }
 
-/// One case of every kind that is exported.
+/// Cases, one of every kind that is exported.
 const CASES: &[&str] = &[
     "transmittance/eq21-overview",
     "transmittance/grid-trilinear-centres",

@@ -1,12 +1,12 @@
 //! Scenes of pbrt-v4 by a parser: syntax, directives, and parameters against the documented names and types.
 //!
-//! Nothing here runs pbrt.
+//! These tests do not run pbrt.
 
 use trueflight::export::Target;
 
 use super::{CASES, scene};
 
-/// A token of the scene format.
+/// Token of the scene format.
 #[derive(Debug, Clone, PartialEq)]
 enum Token {
     Word(String),
@@ -48,7 +48,7 @@ fn tokens(text: &str) -> Vec<Token> {
     found
 }
 
-/// A directive: its name, the texts and numbers that follow, and its parameters.
+/// Directive: its name, the texts and numbers that follow, and its parameters.
 #[derive(Debug)]
 struct Directive {
     name: String,
@@ -91,7 +91,7 @@ fn directives(text: &str) -> Vec<Directive> {
     found
 }
 
-/// The documented parameters: directive and kind, then type and name; of media the kind is a parameter.
+/// Documented parameters: directive and kind, then type and name; for media the kind is a parameter.
 const DOCUMENTED: &[(&str, &str, &[&str])] = &[
     ("Camera", "orthographic", &["float screenwindow"]),
     (
@@ -132,7 +132,7 @@ const DOCUMENTED: &[(&str, &str, &[&str])] = &[
     ("Shape", "sphere", &["float radius"]),
 ];
 
-/// What is wrong with a scene.
+/// Lists the mistakes in a scene.
 fn mistakes(text: &str) -> Vec<String> {
     let mut wrong = Vec::new();
     let (mut open, mut worlds, mut media) = (0, 0, Vec::new());
@@ -187,7 +187,7 @@ fn mistakes(text: &str) -> Vec<String> {
     wrong
 }
 
-/// Values that are not of the type of their parameter.
+/// Returns the values that are not of the type of their parameter.
 fn bad_values(parameter: &str, values: &[Token]) -> Option<String> {
     let kind = parameter.split(' ').next().unwrap_or_default();
     let is_number = |token: &Token| matches!(token, Token::Number(x) if x.is_finite());
@@ -197,7 +197,7 @@ fn bad_values(parameter: &str, values: &[Token]) -> Option<String> {
         "float" => all(&is_number),
         "integer" => all(&is_whole),
         "point3" | "rgb" => all(&is_number) && values.len().is_multiple_of(3),
-        // Wavelengths and values in turn.
+        // Wavelengths and values alternate.
         "spectrum" => all(&is_number) && values.len() == 4,
         "string" => matches!(values, [Token::Quoted(_)]),
         "bool" => matches!(values, [Token::Word(_)]),
@@ -206,7 +206,7 @@ fn bad_values(parameter: &str, values: &[Token]) -> Option<String> {
     (!fits).then(|| format!("\"{parameter}\" has {} values {:?}", values.len(), values.first()))
 }
 
-/// Lists that do not fit each other.
+/// Returns the lists with incompatible lengths.
 fn bad_counts(parameters: &[(String, Vec<Token>)]) -> Option<String> {
     let values = |key: &str| parameters.iter().find(|(name, _)| name == key).map(|(_, v)| v);
     let whole = |key: &str| match values(key)?.as_slice() {
@@ -230,7 +230,7 @@ fn every_scene_is_in_the_documented_format() {
     let mut read = 0;
     let coloured = ["transmittance/spectral-layers", "furnace/spectral-like-colours"];
     for case in CASES.iter().chain(&coloured).filter(|case| !case.starts_with("slab")) {
-        // Rayleigh scattering, which pbrt has not.
+        // pbrt does not have Rayleigh scattering.
         if *case == "furnace/known-bugs" {
             continue;
         }

@@ -1,4 +1,4 @@
-//! What is not exported, and what is said of it.
+//! Cases that cannot be exported, and the messages.
 
 use std::path::Path;
 use std::process::Output;
@@ -95,7 +95,7 @@ fn cases_that_are_not_there_and_folders_that_cannot_be_written_are_errors() {
     told(&[good, "--to", "cycles", "--out", "scene"], "mitsuba");
     told(&[good, "--to", "mitsuba"], "--out");
     told(&[good, "--to", "mitsuba", "--out", "scene", "--cells", "1"], "--cells");
-    // A folder stands where a file belongs: nothing is moved.
+    // A folder is in the place of a file: nothing is moved.
     std::fs::create_dir_all(folder.path().join("half/truth.json")).expect("a folder");
     told(&[good, "--to", "mitsuba", "--out", "half"], "truth.json");
     assert_eq!(std::fs::read_dir(folder.path().join("half")).expect("a folder").count(), 1);

@@ -1,4 +1,4 @@
-//! The files of each kind of scene.
+//! Files of each kind of scene.
 
 use quick_xml::events::Event;
 use serde_json::Value;
@@ -9,7 +9,7 @@ use trueflight::export::truth::Truth;
 
 use super::{CASES, scene};
 
-/// The elements of an XML text with their attributes; panics where it is not well-formed.
+/// Returns the elements of an XML text with their attributes; panics if it is not well-formed.
 fn elements(text: &str) -> Vec<(String, Vec<(String, String)>)> {
     let mut reader = quick_xml::Reader::from_str(text);
     reader.config_mut().check_end_names = true;
@@ -80,24 +80,24 @@ fn the_case_beside_a_scene_is_a_case_with_its_truth() {
 #[test]
 fn laws_are_those_of_the_renderers_estimators() {
     let of = |case: &str| scene(case, Target::Mitsuba, None).expect("exported").exported.truth;
-    // Light that comes through or does not: T(1 − T), whatever the integrator.
+    // Light passes or does not: T(1 − T), for any integrator.
     let truth = of("transmittance/eq21-overview");
     let [question] = truth.questions.as_slice() else { panic!("one picture") };
     for law in [question.without_emitter_sampling, question.with_emitter_sampling] {
         let variance = law.and_then(|law| law.variance).expect("a variance");
         assert!((variance - question.mean * (1.0 - question.mean)).abs() < 1e-12);
     }
-    // Every path of a white furnace finds light, and nothing else.
+    // Every path in a white furnace finds light.
     let truth = of("furnace/eq21");
     assert_eq!(truth.questions[0].mean, 1.0);
     assert_eq!(truth.questions[0].without_emitter_sampling.and_then(|law| law.variance), Some(0.0));
     assert_eq!(truth.questions[0].with_emitter_sampling.and_then(|law| law.variance), None);
     assert!(truth.notes.iter().any(|note| note.contains("white")), "the albedo was 0.7");
-    // A white slab sends back what it does not let through.
+    // A white slab reflects all light that it does not transmit.
     let truth = of("slab/cloud");
     let sum: f64 = truth.questions.iter().map(|question| question.mean).sum();
     assert!((sum - 1.0).abs() < 1e-8, "{sum}");
-    // Nobody meets a point.
+    // No path hits a point.
     let truth = of("single-scattering/known-bugs");
     assert!(truth.questions[0].without_emitter_sampling.is_none());
     assert!(truth.questions[0].with_emitter_sampling.and_then(|law| law.variance).is_some());

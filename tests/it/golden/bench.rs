@@ -31,7 +31,7 @@ fn times(ns: f64, variance: Option<f64>) -> Times {
     }
 }
 
-/// An experiment of the case, at a swept σ̂.
+/// Returns the identity of an experiment of the case, at a swept σ̂.
 fn id(estimator: &str, swept: Option<f64>) -> ExperimentId {
     let constant = swept.map(Number);
     ExperimentId {
@@ -183,7 +183,7 @@ fn rows_of_a_bench() {
     let header: Vec<&str> = csv.lines().next().expect("a line").split(',').collect();
     assert_eq!(parsed.len(), 5);
     assert!(header.iter().all(|&name| parsed[0].contains_key(name)));
-    // What is unknown is empty, and never zero.
+    // Unknown numbers are empty, never zero.
     assert_eq!(parsed[0]["ns_per_draw"], serde_json::Value::Null);
     assert_eq!(parsed[4]["seconds_to_1e-3"], serde_json::Value::Null);
 }

@@ -1,7 +1,6 @@
-//! Reports of one fixed record: one file of each format byte for byte, and what holds of the others.
+//! Reports of one fixed record: one file of each format byte for byte, and properties of the others.
 //!
-//! `UPDATE_GOLDEN=1 cargo test --test it golden` rewrites the files; look at what changed before you
-//! commit it.
+//! `UPDATE_GOLDEN=1 cargo test --test it golden` rewrites the files; look at the changes before you commit them.
 
 mod bench;
 
@@ -17,7 +16,7 @@ use trueflight::report::run::console::{self, View};
 use trueflight::report::run::junit::Inconclusive;
 use trueflight::report::run::{self, annotations, junit, markdown, record_json, summary_csv};
 
-/// A record with everything in it that a report may meet, as it is stored.
+/// Returns a stored record with every kind of content of reports.
 pub fn record() -> Record {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/golden/record.json");
     let bytes = fs::read(path).expect("the golden record");
@@ -50,7 +49,7 @@ const SHOWN: [&str; 5] = [
     "transmittance/eq21-sweep.theory.csv",
 ];
 
-/// Asserts that a picture is whole: an SVG is well-formed and has numbers only, a PNG has its size.
+/// Asserts that a picture is complete: an SVG is well-formed and has numbers only, a PNG has its size.
 fn assert_drawn(artifact: &Artifact, width: u32) {
     let name = artifact.path.display();
     if artifact.path.extension().is_some_and(|ending| ending == "png") {
@@ -111,7 +110,7 @@ fn consoles() {
     for view in [View::Run, View::Predict, View::Moments, View::Plan] {
         for width in [80, 160] {
             let text = console::table(&record(), view, Pen { width, colour: false });
-            // A command stays whole, so that it can be copied.
+            // A command is on one line, so that it can be copied.
             let is_command = |line: &str| line.contains(": trueflight ");
             let wrapped = text.lines().filter(|line| !is_command(line));
             let widest = wrapped.map(|line| line.chars().count()).max();
@@ -130,7 +129,7 @@ fn what_a_ci_reads() {
     compare(Path::new("junit.xml"), xml.as_bytes());
     compare(Path::new("summary.md"), markdown::text(&record).as_bytes());
     compare(Path::new("annotations.txt"), annotations::text(&record).as_bytes());
-    // `check` lists what a reader must look at: every row that does not pass.
+    // `check` lists every row that does not pass.
     let brief = console::brief(&record, Pen { width: 100, colour: false });
     for case in &record.results.cases {
         let is_open =

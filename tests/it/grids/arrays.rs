@@ -1,4 +1,4 @@
-//! Arrays of `NumPy` as grids: which axis is x, in which order they lie, and what their numbers are.
+//! Arrays of `NumPy` as grids: the axis that is x, the order of the axes, and the type of the numbers.
 
 use trueflight::media::axes::Axes;
 use trueflight::media::grid_file::{Choice, Samples};

@@ -1,4 +1,4 @@
-//! `trueflight inspect`: what files hold, and what is wrong with them.
+//! `trueflight inspect`: the content of files, and faults in them.
 
 use std::path::Path;
 
@@ -160,7 +160,7 @@ fn what_cannot_be_read_is_one_error_each_and_exit_code_2() {
         );
         assert_eq!(error.trim_end().lines().count(), 1, "{error}");
     }
-    // The others are shown all the same.
+    // The other files are still shown.
     let output = run(folder.path(), &["inspect", "a.vol", "good.f64"]);
     assert_eq!(output.status.code(), Some(2));
     assert!(text(&output.stdout).contains("good.f64: raw draws"));

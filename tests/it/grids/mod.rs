@@ -1,4 +1,4 @@
-//! Grids in files of every format, what `plan` and `inspect` say of them, and rays that meet nothing.
+//! Grids in files of every format, the output of `plan` and `inspect`, and rays that miss everything.
 
 mod arrays;
 mod inspect;
@@ -14,12 +14,12 @@ use std::process::Output;
 use assert_cmd::Command;
 use trueflight::media::grid_file::{self, Choice, Samples, Unreadable};
 
-/// A file below `tests/data`.
+/// Returns a file below `tests/data`.
 fn data(file: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data").join(file)
 }
 
-/// Bytes as a file of a name.
+/// Reads bytes as a file of a name.
 fn written(name: &str, bytes: &[u8], choice: &Choice) -> Result<Samples, Unreadable> {
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join(name);
@@ -45,10 +45,10 @@ fn text(bytes: &[u8]) -> String {
     String::from_utf8(bytes.to_vec()).expect("text")
 }
 
-/// Turned lattices, and a background that is not 0, against `OpenVDB`'s samplers and rational arithmetic.
+/// Rotated lattices, and a background that is not 0, against `OpenVDB`'s samplers and rational arithmetic.
 #[test]
 fn turned_lattices_and_backgrounds_are_those_of_openvdb() {
-    // A turned place is a sum of three products along each axis, with as many roundings.
+    // A rotated place is a sum of three products along each axis, with as many roundings.
     assert_eq!(crate::vdb::agrees("grids", 4e-12), 7);
 }
 
@@ -64,7 +64,7 @@ fn a_background_ends_at_its_box_and_plan_says_so() {
     assert!(message.contains("background is -0.5") && help.contains("not negative"), "{message}");
 }
 
-/// Draws through turned grids agree with the exact transmittance.
+/// Draws through rotated grids agree with the exact transmittance.
 #[test]
 fn estimators_pass_in_a_turned_grid() {
     let folder = data("grids");

@@ -1,4 +1,4 @@
-//! Files of `NanoVDB` against those of `OpenVDB` that they were made from: `tests/data/grids/make.py` says how.
+//! Files of `NanoVDB` against those of `OpenVDB` that they were made from, see `tests/data/grids/make.py`.
 
 use trueflight::media::grid_file::{self, Choice, Samples, Unreadable};
 
@@ -10,7 +10,7 @@ fn read(file: &str, grid: Option<&str>) -> Result<Samples, Unreadable> {
     grid_file::read(&data(file), &choice)
 }
 
-/// A zipped file with its grid as it lies in memory, and that grid alone.
+/// Returns a zipped file with its grid uncompressed, and that grid alone.
 fn plain(file: &str) -> [Vec<u8>; 2] {
     let bytes = std::fs::read(data(file)).expect("a file");
     let length = |at: usize| {
@@ -76,7 +76,7 @@ fn plain_files_and_grids_as_they_lie_in_memory_are_read() {
     }
 }
 
-/// The grid that `later.cpp` writes by a later version: voxel n has (n² mod 8)/4 + 1/8.
+/// A grid that `later.cpp` writes in a later version: voxel n has (n² mod 8)/4 + 1/8.
 #[test]
 fn a_later_version_is_read() {
     let Samples { size, values, bounds, .. } = read("grids/later.nvdb", None).expect("a grid");
@@ -90,7 +90,7 @@ fn a_later_version_is_read() {
     }
     assert_eq!(values.iter().filter(|&&x| x == 0.0).count(), 125 - 27);
     let codes = read("grids/later-fp8.nvdb", None).expect("a grid");
-    // Codes of 8 bits are off by half of 1/255 of the range, 1.875, at most.
+    // Codes of 8 bits have an error of at most half of 1/255 of the range, 1.875.
     for (code, value) in codes.values.iter().zip(&values) {
         assert!((code - value).abs() <= 0.51 * 1.875 / 255.0, "{code} and {value}");
     }
@@ -119,7 +119,7 @@ fn other_files_are_refused_with_the_cure() {
         bytes[at..at + new.len()].copy_from_slice(new);
         bytes
     };
-    // The codec of a segment has no say: each grid has its own.
+    // The codec of a segment is ignored: each grid has its own.
     assert!(written("a.nvdb", &with(14, &[9]), &Choice::default()).is_ok());
     let root = 16 + 176 + 8 + 672 + 64;
     for (bytes, words) in [
@@ -140,7 +140,7 @@ fn other_files_are_refused_with_the_cure() {
     }
 }
 
-/// Whatever bits are turned over: a grid of finite samples, or an error; never a panic, never all of the memory.
+/// Flipped bits give a grid of finite samples, or an error; never a panic, and never a huge allocation.
 #[test]
 fn damaged_files_are_read_or_refused() {
     let [whole, _] = plain("grids/later.nvdb");

@@ -61,7 +61,7 @@ fn the_box_moves_with_its_scene() {
     );
     let before = SMOKE.replace("Camera", "LookAt 0 0 5 0 0 0 0 1 0\nCamera");
     assert_eq!(corners(&read(&before)), [[0.0; 3], [2.0, 1.0, 4.0]]);
-    // A mirror along x turns the samples about.
+    // A mirror along x reverses the samples.
     let mirrored = read(&SMOKE.replace("WorldBegin", "WorldBegin Scale -1 1 1"));
     assert_eq!(corners(&mirrored), [[-2.0, 0.0, 0.0], [0.0, 1.0, 4.0]]);
     assert_eq!(mirrored.values, [1.0, 0.5, 0.25, 2.0]);
@@ -78,7 +78,7 @@ fn a_medium_is_chosen_by_its_name() {
     refused("a.pbrt", two.as_bytes(), &Choice::default(), "several media: \"smoke\", \"fog\"");
     let none = Choice { grid: Some("mist".into()), ..Choice::default() };
     refused("a.pbrt", two.as_bytes(), &none, "no medium \"mist\", but \"smoke\", \"fog\"");
-    // Media that are no grids do not make a choice necessary.
+    // Media without grids do not make a choice necessary.
     let air = format!("MakeNamedMedium \"air\" \"string type\" \"homogeneous\"\n{SMOKE}");
     assert_eq!(read(&air), read(SMOKE));
 }

@@ -1,4 +1,4 @@
-//! Rays that meet nothing of their volume: every command says so.
+//! Rays that miss their volume: every command says so.
 
 use trueflight::plan::Plan;
 use trueflight::record::build;
@@ -12,7 +12,7 @@ fn notes(text: &str) -> Vec<String> {
     record.results.cases[0].notes.clone()
 }
 
-/// A ray through a volume, for a problem of some settings.
+/// Returns the notes on a ray through a volume, for a problem with some settings.
 fn through(problem: &str, volume: &str, ray: &str, settings: &str) -> Vec<String> {
     notes(&format!(
         "title = \"t\"\n[problem.{problem}]\nvolume = {volume}\nray = {{ {ray} }}\n{settings}"
@@ -149,7 +149,7 @@ fn furnaces_refuse_a_ray_beside_their_volume() {
     assert!(notes(&text("[-5, 0.5, 0.5]")).is_empty());
 }
 
-/// Of the shipped cases two are about rays that meet nothing, and no other has a note.
+/// Two of the shipped cases have rays that miss everything; all others have no notes.
 #[test]
 fn two_shipped_cases_have_a_note() {
     let cases = crate::common::shipped();

@@ -5,7 +5,7 @@ use trueflight::media::grid_file::{Choice, Samples};
 
 use super::{data, refused, run, text, written};
 
-/// A `.vol` file with the box from (0, 0, 0) to (1, 2, 3).
+/// Returns a `.vol` file with the box from (0, 0, 0) to (1, 2, 3).
 fn vol(size: [i32; 3], kind: i32, channels: i32, samples: &[u8]) -> Vec<u8> {
     let mut bytes = b"VOL\x03".to_vec();
     let integers = [kind, size[0], size[1], size[2], channels];
@@ -40,7 +40,7 @@ fn samples_are_read_in_every_encoding() {
     }
 }
 
-/// Channels of a sample stand side by side.
+/// The channels of a sample are adjacent.
 #[test]
 fn a_channel_is_chosen() {
     let bytes = vol([2, 1, 1], 1, 3, &singles(&[1.0, 2.0, 3.0, 4.0, 5.0, 6.0]));

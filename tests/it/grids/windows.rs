@@ -1,11 +1,11 @@
-//! `OpenEXR` files with different data windows, and those that are not read.
+//! `OpenEXR` files with different data windows, and unreadable ones.
 
 use trueflight::judge::images::ImageError;
 use trueflight::judge::images::files::{Frame, picture, picture_in, stack};
 
 use super::{run, text};
 
-/// An uncompressed picture of one channel as its specification has it, with its windows `[left, top, right, bottom]`.
+/// Returns an uncompressed picture of one channel by the specification, with its windows `[left, top, right, bottom]`.
 pub fn exr(data: [i32; 4], display: [i32; 4], values: &[f32]) -> Vec<u8> {
     with_attributes(data, display, values, 0, 2, b"Y")
 }
@@ -79,7 +79,7 @@ fn passes_of_other_data_windows_are_laid_into_the_display_window() {
     assert_eq!(values(2), [0.0, 0.0, 1.0, 2.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]);
 }
 
-/// Two windows of one size, moved against each other: their pixels stood beside each other before.
+/// Two windows of one size, shifted against each other: their pixels were once compared side by side.
 #[test]
 fn equal_sizes_at_other_places_are_not_compared_by_position() {
     let there = folder(&[
@@ -96,12 +96,12 @@ fn equal_sizes_at_other_places_are_not_compared_by_position() {
     for part in ["(2, 0) to (3, 0)", "(0, 0) to (3, 2)", "not compared by their position"] {
         assert!(words.contains(part), "{words}");
     }
-    // One window for all stays as it is stored.
+    // Files with the same window are compared as they are stored.
     let alike = stack(&[path("b.exr"), path("b.exr")]).expect("a stack");
     assert_eq!((alike.size().columns, alike.size().rows), (2, 1));
 }
 
-/// The truth is laid beside the passes, too.
+/// The truth is placed in the same frame as the passes.
 #[test]
 fn a_truth_of_another_window_is_laid_beside_the_passes() {
     let there = folder(&[

@@ -1,4 +1,4 @@
-//! `report.html`: whole, safe, small, and the same from a stored record.
+//! `report.html`: complete, safe, small, and the same from a stored record.
 
 mod command;
 mod page;
@@ -16,7 +16,7 @@ use crate::common::{options, shipped_plan, shipped_record};
 use crate::golden::record;
 use page::{Element, elements};
 
-/// What somebody might write into a case.
+/// Text in a case that tries to inject markup.
 const HOSTILE: &str = "</title><script>alert(1)</script><img src=x onerror=alert(2)>\"' &amp; ]]>";
 
 fn text(record: &Record) -> String {
@@ -27,7 +27,7 @@ fn all<'a>(elements: &'a [Element], name: &str) -> Vec<&'a Element> {
     elements.iter().filter(|element| element.name == name).collect()
 }
 
-/// The built-in suite, drawn little, with the lines of its plots.
+/// Returns the built-in suite with few draws and the curves of its plots.
 fn built_in() -> Record {
     let sources = suite::suite();
     let cases: Vec<Case> =
@@ -38,7 +38,7 @@ fn built_in() -> Record {
         found.expect("the suite is among the shipped cases").clone()
     };
     record.results.cases = cases.iter().map(of_name).collect();
-    // Lines of theory need no experiments.
+    // Predicted curves need no experiments.
     let bare = cases.iter().map(|case| PlannedCase { case, experiments: Vec::new() });
     let levels = shipped_plan().levels;
     let plan = Plan { options: options(1, 1), cases: bare.collect(), levels };
@@ -46,7 +46,7 @@ fn built_in() -> Record {
     record
 }
 
-/// What holds for every page.
+/// Asserts the properties of every page.
 fn assert_whole(html: &str, record: &Record) {
     let elements = elements(html);
     let ids: Vec<&str> =
@@ -93,7 +93,7 @@ fn a_page_is_well_formed_and_has_every_experiment() {
     assert_whole(&text(&record), &record);
 }
 
-/// Two pages are the same, or the panic shows where they part.
+/// Compares two pages; the panic shows the first difference.
 fn assert_same(one: &str, other: &str) {
     if let Some((line, pair)) =
         one.split('>').zip(other.split('>')).enumerate().find(|(_, (a, b))| a != b)
@@ -103,7 +103,7 @@ fn assert_same(one: &str, other: &str) {
     assert_eq!(one.len(), other.len());
 }
 
-/// The record as it is read back from its file.
+/// Returns the record as read back from its file.
 fn read_back(record: &Record) -> Record {
     let json = record_json::text(record).expect("renders");
     record_json::read(json.as_bytes()).expect("reads")

@@ -1,16 +1,16 @@
-//! A page of HTML as a list of elements, read by a parser of XML that knows which elements have no end.
+//! Page of HTML as a list of elements, read by a parser of XML with a list of the elements without an end.
 
 use std::collections::BTreeMap;
 
 use quick_xml::Reader;
 use quick_xml::events::{BytesStart, Event};
 
-/// Elements that end where another begins or ends.
+/// Elements that end where another one begins or ends.
 const OPTIONAL: [&str; 7] = ["td", "th", "tr", "dt", "dd", "li", "option"];
 /// Elements without an end.
 const VOID: [&str; 3] = ["meta", "input", "link"];
 
-/// An element.
+/// Element.
 pub struct Element {
     pub name: String,
     pub attributes: BTreeMap<String, String>,
@@ -18,7 +18,7 @@ pub struct Element {
     pub text: String,
 }
 
-/// The elements of a page in the order in which they begin. Panics where an end is missing or astray.
+/// Returns the elements of a page in the order in which they begin. Panics if an end is missing or misplaced.
 pub fn elements(html: &str) -> Vec<Element> {
     let html = without(&without(html, "style"), "script");
     let mut reader = Reader::from_str(&html);
@@ -65,7 +65,7 @@ pub fn elements(html: &str) -> Vec<Element> {
     all
 }
 
-/// What ends where this element begins, if it is open.
+/// Returns the elements that end where this one begins, if they are open.
 fn ended_by(name: &str) -> &'static [&'static str] {
     match name {
         "td" | "th" => &["td", "th"],
@@ -87,7 +87,7 @@ fn element(start: &BytesStart) -> Element {
     Element { name, attributes: attributes.collect(), text: String::new() }
 }
 
-/// The page without what is in the first element of this name, which is not HTML.
+/// Returns the page without the content of the first element of this name, which is not HTML.
 fn without(html: &str, name: &str) -> String {
     let (begin, end) = (format!("<{name}>"), format!("</{name}>"));
     let (before, rest) = html.split_once(&begin).expect("the element");

@@ -1,4 +1,4 @@
-//! Draws that have several values: all channels of a case from one file, or one column of it.
+//! Draws with several values: all channels of a case from one file, or one column of it.
 
 use trueflight::OfCase;
 use trueflight::rng::Address;
@@ -9,7 +9,7 @@ use super::{Place, npy, raw};
 const FIELD: &str =
     concat!(env!("CARGO_MANIFEST_DIR"), "/tests/data/field/03-channels-in-one-file");
 const NAMES: [&str; 3] = ["channel 1", "channel 2", "channel 3"];
-/// Three extinctions on [0, 2], each with a σ̂ that it equals: the three transmittances are those of depths 0.5, 1 and 2.
+/// Case with three extinctions on [0, 2], each with an equal σ̂: the transmittances are those of depths 0.5, 1 and 2.
 const CASE: &str = "title = \"three colours\"
 [problem.transmittance]
 medium = [ { constant.extinction = 0.25 }, { constant.extinction = 0.5 }, { constant.extinction = 1 } ]
@@ -19,10 +19,10 @@ estimators = [{ independent = {} }]
 ";
 const DEPTHS: [f64; 3] = [0.5, 1.0, 2.0];
 const N: usize = 300_000;
-/// Tolerances that so many draws pass by far.
+/// Tolerances that the draws pass by far.
 const WIDE: &str = "--tolerance 0.05 --variance-tolerance 0.2";
 
-/// Draws of `independent`: one of the channels by chance, which scores 3 if nothing collides; the others score 0.
+/// Returns draws of `independent`: a random channel scores 3 if nothing collides, the others score 0.
 fn draws(seed: u64) -> Vec<[f64; 3]> {
     let mut rng = Address { seed, experiment: 3, block: 0, lane: 0 }.stream();
     let mut draw = || {
@@ -73,7 +73,7 @@ fn every_format_gives_the_same_verdict_on_all_channels() {
     let by_column = npy("<f8", &shape, &raw(&columns));
     let by_column = String::from_utf8_lossy(&by_column[..128]).replace("False", "True ");
     let fortran = [by_column.as_bytes().to_vec(), raw(&columns)].concat();
-    // The first header is not text in its first byte.
+    // The first byte of the header is not text.
     let fortran = [b"\x93", &fortran["\u{fffd}".len()..]].concat();
     let place = Place::new(&[
         ("three.toml", CASE.as_bytes()),
@@ -162,7 +162,7 @@ fn a_channel_is_taken_from_a_file_of_all_or_of_one() {
             (Some(0), expected.clone(), String::new())
         );
     }
-    // What does not fit is said, with the cure.
+    // Mismatches are reported with the cure.
     for (more, words) in [
         (vec!["one.npy"], "a draw has 1 value, but the case has the channels channel 1, channel 2"),
         (vec!["one.f64"], "numbers without a shape do not tell how many values"),
@@ -232,7 +232,7 @@ fn channels_that_are_right_by_themselves_fail_if_they_do_not_belong_together() {
     let (head, body) = bytes.split_at(128);
     let rows = body.len() / 24;
     let value = |row: usize, k: usize| &body[24 * (row % rows) + 8 * k..][..8];
-    // The second channel is that of the draw before.
+    // The second channel is shifted by one draw.
     let moved: Vec<u8> =
         (0..rows).flat_map(|i| [value(i, 0), value(i + 1, 1), value(i, 2)].concat()).collect();
     let place = Place::new(&[("moved.npy", &[head, &moved].concat())]);

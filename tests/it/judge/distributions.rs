@@ -1,6 +1,6 @@
 //! Foreign draws with the right mean and variance: their distribution is tested, too.
 //!
-//! Draws are made here by inversion, in another arithmetic than the library's.
+//! Draws are made here by inversion, in an arithmetic other than the library's.
 
 use std::path::Path;
 
@@ -11,9 +11,9 @@ use trueflight::stats::verdict::Verdict;
 use super::{Place, npy, raw};
 
 const FIELD: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/data/field/13-free-flight-law");
-/// σ_t = 0.5 on [0, 1] and 2 on [1, 2]: T(2) = e^{−2.5}.
+/// Case with σ_t = 0.5 on [0, 1] and 2 on [1, 2]: T(2) = e^{−2.5}.
 const FLIGHTS: &str = include_str!("../../data/field/13-free-flight-law/ff.toml");
-/// A ray of length 1.3, which is no number of single precision; T = e^{−0.65}.
+/// Case with a ray of length 1.3, which is not a number of single precision; T = e^{−0.65}.
 const ODD: &str = "title = \"a ray of an odd length\"
 [problem.free-flight]
 medium.constant.extinction = 0.5
@@ -21,7 +21,7 @@ span = [0.1, 1.4]
 sampling.constant.value = 0.5
 estimators = [{ woodcock = {} }]
 ";
-/// T = e^{−1}; σ̂ of 2 on [0, 2]: the number of collisions is Poisson distributed with mean 4.
+/// Case with T = e^{−1} and σ̂ = 2 on [0, 2]: the number of collisions is Poisson distributed with mean 4.
 const COUNTED: &str = "title = \"collisions\"
 [problem.transmittance]
 medium.constant.extinction = 0.5
@@ -34,7 +34,7 @@ fn stream(seed: u64) -> Stream {
     Address { seed, experiment: 13, block: 0, lane: 0 }.stream()
 }
 
-/// Flights through the two layers, without an end.
+/// Returns a flight through the two layers, without an end.
 fn flight(rng: &mut Stream) -> f64 {
     let depth = -rng.positive_uniform().ln();
     if depth < 0.5 { depth / 0.5 } else { 1.0 + (depth - 0.5) / 2.0 }
@@ -45,13 +45,13 @@ fn flights(seed: u64, n: usize, put: impl Fn(f64) -> f64) -> Vec<f64> {
     (0..n).map(|_| put(flight(&mut rng))).collect()
 }
 
-/// What is written for a flight that leaves, and the flight itself otherwise.
+/// Returns a function that replaces flights that leave by this number.
 fn or(left: f64) -> impl Fn(f64) -> f64 {
     move |t| if t >= 2.0 { left } else { t }
 }
 
 const N: usize = 200_000;
-/// Tolerances that so many draws pass by far.
+/// Tolerances that the draws pass by far.
 const WIDE: &str = "--tolerance 0.05 --variance-tolerance 0.1";
 
 #[test]
@@ -142,7 +142,7 @@ fn flights_that_never_leave_or_leave_too_often_fail() {
     dropped.retain(|&t| t < 2.0);
     std::fs::write(place.path().join("x.f64"), raw(&dropped)).expect("written");
     place.expect(1, judge, &["0 % of the flights leave, 8.21 % expected"]);
-    // Every eighth of those that collide leaves: the collisions have the right distribution.
+    // Every eighth collision is replaced by an escape: the distances of collisions have the right distribution.
     let mut rng = stream(9);
     let more = flights(1, N, |t| t);
     let more: Vec<f64> =
@@ -173,7 +173,7 @@ fn quantised_flights_fail_and_single_precision_does_not() {
         &format!("--case ff.toml --estimator woodcock {WIDE} x.npy"),
         &["single precision"],
     );
-    // Positions from 0.1 on, of which distances are differences, with the end a little short of 1.3.
+    // Distances are differences of positions from 0.1 on, with the end slightly short of 1.3.
     let mut rng = stream(3);
     let odd: Vec<f64> = (0..N).map(|_| (-rng.positive_uniform().ln() / 0.5).min(1.3)).collect();
     let bytes = npy("<f4", &format!("({N},)"), &single(&odd));
@@ -229,13 +229,13 @@ fn a_value_that_cannot_occur_fails_however_few_there_are() {
     place.expect(1, judge, &["the distribution of the values differs from theory", &words]);
     let found = place.json(judge, &[]);
     assert_eq!(found["findings"][0]["verdict"], "pass", "the mean does not see it");
-    // Among draws that are too few for shares, too.
+    // Also among draws that are too few for shares.
     std::fs::write(place.path().join("x.f64"), raw(&strange[..400])).expect("written");
     assert!(strange[..400].contains(&0.999));
     place.expect(1, judge, &["1 draw is none of the 2 values that can occur"]);
 }
 
-/// A Poisson number by the product of uniforms.
+/// Returns a Poisson number by the product of uniforms.
 fn poisson(rng: &mut Stream, mean: f64) -> i32 {
     let (mut left, mut count) = (rng.positive_uniform(), 0);
     while left > (-mean).exp() {
@@ -261,7 +261,7 @@ fn lookups_of_another_distribution_fail_whose_mean_and_variance_are_right() {
     std::fs::write(place.path().join("x.csv"), table(&|i| counts[i])).expect("written");
     let (code, text) = place.says(judge, &[]);
     assert!(code != 1 && text.contains("counts: p = "), "{text}");
-    // 2 or 6, a fair coin: mean 4, variance 4.
+    // 2 or 6 with equal probability: mean 4, variance 4.
     let coins: Vec<i32> = (0..N).map(|_| if rng.uniform() < 0.5 { 2 } else { 6 }).collect();
     std::fs::write(place.path().join("x.csv"), table(&|i| coins[i])).expect("written");
     place.expect(1, judge, &["the distribution of the lookups differs from theory"]);
@@ -275,11 +275,11 @@ fn products_in_single_precision_are_the_values_that_they_are_rounded_from() {
     // `double` of a constant ratio takes the powers of 3/4.
     let mut rng = stream(7);
     let draws: Vec<f64> = (0..N).map(|_| 0.75f64.powi(poisson(&mut rng, 4.0))).collect();
-    // Some last places off, as the order of the factors may make it.
+    // Rounding errors of some last digits, by another order of the factors.
     #[allow(clippy::cast_possible_truncation)] // single precision
     let off = |x: f64| f64::from((x * (1.0 + 3e-7)) as f32);
     let rounded: Vec<f64> = draws.iter().map(|&x| off(x)).collect();
-    // As much beside doubles is another value.
+    // The same error in a draw of double precision makes it another value.
     let mut wrong = draws.clone();
     wrong[3] *= 1.0 + 3e-7;
     wrong[4] = 0.1;
@@ -306,7 +306,7 @@ fn checks_in_memory_test_the_distribution_too() {
     let outcome = outcome.expect("a verdict");
     assert_eq!(outcome.verdict(), Verdict::Fail);
     assert!(outcome.reason().contains("the distribution of the distances"), "{outcome}");
-    // Pushed, announced or not.
+    // Pushed draws, with a known length or not.
     let mut rng = stream(8);
     let draws: Vec<f64> = (0..50_000).map(|_| two(&mut rng)).collect();
     let claim = || trueflight::claim("pushed").of(&case, "woodcock", None);
@@ -316,7 +316,7 @@ fn checks_in_memory_test_the_distribution_too() {
         let outcome = pushed.verdict().expect("a verdict");
         assert!(outcome.reason().contains("the distribution of the distances"), "{outcome}");
     }
-    // Announced, but not delivered.
+    // A known length that is not reached.
     let mut pushed = claim().draws(60_000).open().expect("a check");
     pushed.absorb(&flights(2, 50_000, |t| t)).expect("pushed");
     let text = pushed.verdict().expect("a verdict").to_string();
@@ -344,7 +344,7 @@ fn lookups_that_are_pushed_with_a_case_are_judged_by_it() {
         (0..50_000).map(|_| if rng.uniform() < 0.5 { 2.0 } else { 6.0 }).collect();
     let outcome = judged(&coins);
     assert!(outcome.reason().contains("the distribution of the lookups"), "{outcome}");
-    // Draws alone first, and then some with lookups.
+    // First draws without lookups, then some with.
     let mut pushed = claim().open().expect("a check");
     pushed.absorb(&draws).expect("pushed");
     assert!(pushed.absorb_with_lookups(&draws, &right).is_err());
@@ -352,7 +352,7 @@ fn lookups_that_are_pushed_with_a_case_are_judged_by_it() {
 
 #[test]
 fn correct_flights_fail_no_more_often_than_promised() {
-    // Half of the streams may fail by α = 0.5, of which the distribution has a fifth.
+    // Half of the streams may fail at α = 0.5, of which the distribution has a fifth.
     let case = Path::new(FIELD).join("ff.toml").display().to_string();
     let checks = || trueflight::claim("flights").of(&case, "woodcock", None).alpha(0.5);
     let streams = 400;
@@ -370,7 +370,7 @@ fn correct_flights_fail_no_more_often_than_promised() {
         };
         (0..streams).filter(is_refuted).count()
     };
-    // The smallest of three p-values is below α/5/3 with a chance of at most α/5 = 0.1: 40 of 400, give or take 6.
+    // The smallest of three p-values is below α/5/3 with a probability of at most α/5 = 0.1: 40 of 400, give or take 6.
     let once = refuted(true);
     assert!((8..=64).contains(&once), "{once}");
     // At the first look of several the level is half of that: 20, give or take 4.4.
@@ -378,7 +378,7 @@ fn correct_flights_fail_no_more_often_than_promised() {
     assert!((2..=40).contains(&first), "{first}");
 }
 
-/// The level of the smallest of three p-values, by Holm.
+/// Returns the level of the smallest of three p-values, by Holm.
 fn test_level(announced: bool) -> f64 {
     let share = if announced { 1.0 } else { 0.5 };
     share * 0.5 * 0.2 / 3.0

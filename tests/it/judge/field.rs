@@ -1,8 +1,8 @@
-//! Draws found in the field: streams that repeat, passes beside large z, a mean that is off from the first draw.
+//! Draws of users: streams that repeat, passes with large z, a mean that is off from the first draw.
 
 use super::{Place, raw, uniform};
 
-/// Uniform numbers in [0, 1), another sequence for each seed.
+/// Returns uniform numbers in [0, 1), another sequence for each seed.
 fn units(seed: u64, n: usize) -> Vec<f64> {
     // Not a multiple of the step: the sequences would overlap.
     let mut state = seed.wrapping_mul(0xd134_2543_de82_ef95);
@@ -55,11 +55,11 @@ fn any_number_of_repetitions_is_found() {
         let said = format!("the same draws come again {period} draws later");
         place.expect(3, "--truth 0.5 --range 0,1 x.f64", &[&said]);
     }
-    // After other draws.
+    // A repetition after other draws.
     let late = [units(9, 30_000), times(&units(10, 777), 13_000)].concat();
     let place = Place::new(&[("x.f64", &raw(&late))]);
     place.expect(3, "--truth 0.5 --range 0,1 x.f64", &["again 777 draws later, 17 times in all"]);
-    // Averages that come again, in draws.
+    // Averages that repeat, given as draws.
     let place = Place::new(&[("x.f64", &raw(&times(&units(11, 500), 12_000)))]);
     let said = "the same averages come again 500 draws later, 24 times in all";
     place.expect(3, "--truth 0.5 --range 0,1 --batch 10 x.f64", &[said]);
@@ -72,7 +72,7 @@ fn any_number_of_repetitions_is_found() {
         let said = "the same draws come again 997 draws later";
         place.expect(3, "--truth 0.5 --range 0,1 --batch 64 x.f64", &[said]);
     }
-    // Passes of a hundred pixels, of which half have one value in all passes, and a quarter are 0 or 1.
+    // Passes of a hundred pixels: half of them have one value in all passes, and a quarter are 0 or 1.
     let pass = |(i, u): (usize, &f64)| match i % 100 {
         0..50 => (i % 100) as f64 / 50.0,
         50..75 => u.round(),
@@ -97,8 +97,8 @@ fn no_pass_stands_beside_a_bias_of_77_standard_errors() {
         "give more",
     ];
     place.expect(3, &format!("{BATCHED} --range 0,1 x.f64"), &looks);
-    // What a range of length 1 can show with so many draws: 12 R/n with R = (1 − T)/T, relative to the truth; up to half of
-    // the draws show the variance before.
+    // Smallest bias that a range of length 1 can show with this number of draws: 12 R/n with R = (1 − T)/T, relative to
+    // the truth; up to half of the draws serve to estimate the variance.
     let found = place.json(&format!("{BATCHED} --range 0,1 x.f64"), &[]);
     let tolerance = found["findings"][0]["gate"]["tolerance"].as_f64().expect("ε");
     let finest = 12.0 * (1.0_f64.exp() - 1.0) / 1000.0;
@@ -109,7 +109,7 @@ fn no_pass_stands_beside_a_bias_of_77_standard_errors() {
         let below = "below the tolerance of 5.0e-2, which is what a pass must exclude";
         place.expect(1, &format!("{BATCHED} {known} --tolerance 0.05 x.f64"), &[said, below]);
     }
-    // Ten and a hundred draws of them, and each of them many times over by other noise.
+    // The first n of these draws never pass, with any range.
     for n in [10, 20, 50, 100, 200, 500] {
         std::fs::write(place.path().join("few.f64"), &file[..8 * n]).expect("written");
         for range in ["0,1", "0.3,0.45", "-10,10"] {
@@ -134,7 +134,7 @@ fn a_tolerance_that_is_asked_for_is_the_one_that_is_tested() {
         &format!("{BATCHED} --range 0,1 --tolerance 0.005 x.f64"),
         &["ε = 0.005", "looks off"],
     );
-    // Wider than a quarter of the spread, and with few draws.
+    // Tolerances wider than a quarter of the spread, and few draws.
     for (claim, tolerance, file) in [
         ("--truth 0.3716 --variance 2.3e-6", 0.05, "few.f64"),
         ("--truth 0.3716 --variance 2.3e-6 --kurtosis 3.1", 0.5, "few.f64"),
@@ -147,7 +147,7 @@ fn a_tolerance_that_is_asked_for_is_the_one_that_is_tested() {
         assert_eq!(found["verdict"], "pass", "{claim}: {}", found["reason"]);
         assert_eq!(gate["tolerance"].as_f64(), Some(tolerance), "{claim}");
     }
-    // Where it cannot be tested, that is said.
+    // A tolerance that cannot be tested is reported.
     place.expect(
         3,
         "--truth 0.3716 --tolerance 0.05 x.f64",
@@ -159,7 +159,7 @@ fn a_tolerance_that_is_asked_for_is_the_one_that_is_tested() {
     place.expect(0, "--truth 0.25 --variance 0 --tolerance 0.05 same.f64", &[unused]);
     place.expect(1, "--truth 0.25 --variance 0 --tolerance 0.05 off.f64", &[unused]);
     place.expect(0, "--truth 0.25 --range 0,1 --tolerance 0.05 off.f64", &["pass"]);
-    // Without one, draws that are all alike and off do not pass.
+    // Without a tolerance, draws that are all equal and off do not pass.
     place.expect(3, "--truth 0.25 --range 0,1 off.f64", &["undecided"]);
 }
 
@@ -241,7 +241,7 @@ fn a_mean_that_changes_is_named_drift() {
     }
 }
 
-/// Rows of `trueflight predict`, by the names of columns.
+/// Returns the rows of `trueflight predict`, by the names of columns.
 fn predicted(case: &str) -> Vec<std::collections::HashMap<String, String>> {
     let place = Place::new(&[("x.toml", case.as_bytes())]);
     let mut command = assert_cmd::Command::cargo_bin("trueflight").expect("the binary");
@@ -270,7 +270,7 @@ fn a_draw_of_0_or_1_has_the_moments_of_a_coin_in_slabs_of_any_depth() {
                     "[{ weighted = { sampling.constant.value = 300 } }, { analog",
                 );
             let rows = predicted(&case);
-            // Refused, where the truth itself is not resolved.
+            // Refused if the truth itself is not resolved.
             let refused = rows.iter().all(|row| row["truth"].is_empty());
             assert!(rows.len() == if refused { 2 } else { 4 }, "{case}");
             for row in &rows {
@@ -280,12 +280,12 @@ fn a_draw_of_0_or_1_has_the_moments_of_a_coin_in_slabs_of_any_depth() {
                 let coin = truth * (1.0 - truth);
                 let error = number("moments_error").expect("an error");
                 let Some(variance) = number("predicted_variance") else {
-                    // What theory does not resolve is not shown.
+                    // Numbers that theory does not resolve are not shown.
                     assert!(error >= 0.5 && row["predicted_kurtosis"].is_empty(), "{context}");
                     continue;
                 };
                 assert!(error < 0.5, "{context}");
-                // No draw in [0, 1] has more.
+                // No draw in [0, 1] has a larger variance.
                 assert!(variance <= coin * (1.0 + error + 1e-9), "{context}");
                 if row["estimator"] == "analog" {
                     assert!((variance / coin - 1.0).abs() < 1e-9 + error, "{context}");

@@ -1,4 +1,4 @@
-//! Verdicts need grounds: nothing fails because of what its draws cannot show.
+//! Verdicts need grounds: missing evidence is no reason to fail.
 
 use trueflight::case::Case;
 use trueflight::case::Source;
@@ -14,7 +14,7 @@ use super::{Place, raw, uniform};
 
 #[test]
 fn rare_events_do_not_fail_a_correct_mean() {
-    // 38 events of chance 9.5e-5, none among the first draws: the mean is the truth.
+    // 38 events of probability 9.5e-5, none among the first draws: the mean is the truth.
     let mut draws = vec![0.0; 400_000];
     draws[20_000..].iter_mut().step_by(10_000).for_each(|x| *x = 1.0);
     let place = Place::new(&[("b.f64", &raw(&draws))]);
@@ -35,13 +35,13 @@ fn correct_draws_of_hard_laws_do_not_fail() {
     for row in &verdicts {
         assert_eq!(row.failed, 0, "{}, {}: {}", row.law, row.known, row.reason);
     }
-    // Every law has its truth and its variance, all but one a kurtosis, all but one a range.
+    // Every distribution has its truth and its variance, all but one a kurtosis, all but one a range.
     assert_eq!(verdicts.len(), 4 * LAWS.len() - 2);
 }
 
 #[test]
 fn the_moments_of_the_laws_are_those_of_their_draws() {
-    // Light tails only: others have no sample moments to compare with.
+    // Light tails only: other distributions have no sample moments to compare with.
     for law in [Law::Bernoulli(1e-2), Law::Exponential, Law::Narrow, Law::Uniform] {
         let claim = law.claim(CLAIMS[2]).expect("a claim");
         let draws = law.draws(9);
@@ -63,7 +63,7 @@ fn the_moments_of_the_laws_are_those_of_their_draws() {
     assert!((claim.kurtosis.expect("κ") / expected - 1.0).abs() < 1e-13);
 }
 
-/// 4e5 draws of ratio tracking along the central ray of Eq. 21.
+/// Returns 4e5 draws of ratio tracking along the central ray of Eq. 21.
 fn eq21(sampling: f64, seed: u64) -> Vec<f64> {
     let text = format!(
         "title = \"Eq. 21\"\n[problem.transmittance]\nvolume.eq21 = {{}}\n\
@@ -91,7 +91,7 @@ fn eq21(sampling: f64, seed: u64) -> Vec<f64> {
     values
 }
 
-/// τ of that ray, by quadrature in 30 digits.
+/// Optical depth τ of that ray, by quadrature in 30 digits.
 const DEPTH: f64 = 3.415_684_260_061_982_3;
 
 #[test]
@@ -140,7 +140,7 @@ fn a_kurtosis_of_one_is_tested() {
     let claim = "--truth 1 --variance 0.25 --kurtosis 1";
     place.expect(0, &format!("{claim} two.f64"), &["pass"]);
     place.expect(1, &format!("{claim} x.f64"), &["the variance is off"]);
-    // A chance of ½ to rounding: κ − 1 = 1.6e-17, and squares differ from V by 4e-9 of it.
+    // A probability of ½ to rounding: κ − 1 = 1.6e-17, and squares differ from V by 4e-9 of it.
     let near = "--truth 0.500000001 --variance 0.25 --kurtosis 1";
     let bernoulli: Vec<f64> = two_point.iter().map(|x| x - 0.5).collect();
     std::fs::write(place.path().join("x.f64"), raw(&bernoulli)).expect("written");
@@ -149,13 +149,13 @@ fn a_kurtosis_of_one_is_tested() {
 
 #[test]
 fn ends_of_a_range_next_to_the_truth_are_no_trouble() {
-    // A mean that no draws of the range can have needs no evidence.
+    // A mean that no draws in the range can have needs no evidence.
     let bernoulli: Vec<f64> =
         uniform(50_000).iter().map(|x| f64::from(u8::from(*x < 1.245))).collect();
     let place = Place::new(&[("x.f64", &raw(&bernoulli))]);
     place.expect(0, "--truth 0.99 --range 0,1 --tolerance 0.02 x.f64", &["pass"]);
     place.expect(1, "--truth 0.97 --range 0,1 --tolerance 0.02 x.f64", &["the mean is off by +"]);
-    // Rounding at one end is none at the other.
+    // Rounding at one end is negligible at the other.
     let near: Vec<f64> = uniform(50_000).iter().map(|x| 1.0 + 6e-7 * (x - 1.0)).collect();
     std::fs::write(place.path().join("x.f64"), raw(&near)).expect("written");
     place.expect(1, "--truth 1 --range 0.999999999,1e6 x.f64", &["range: draw"]);
@@ -163,7 +163,7 @@ fn ends_of_a_range_next_to_the_truth_are_no_trouble() {
 
 #[test]
 fn scales_whose_squares_underflow_are_judged() {
-    // A truth whose square is 0, and draws that spread far more.
+    // A truth with a square of 0, and draws with a far larger spread.
     let wide: Vec<f64> = uniform(100_000).iter().map(|x| 1e-163 + 1e-150 * (x - 1.0)).collect();
     let place = Place::new(&[("x.f64", &raw(&wide))]);
     let claim = format!("--truth 1e-163 --variance {:e} --kurtosis 1.8", 1e-300 / 48.0);
@@ -172,7 +172,7 @@ fn scales_whose_squares_underflow_are_judged() {
     let tiny: Vec<f64> = uniform(100_000).iter().map(|x| x * 1e-163).collect();
     std::fs::write(place.path().join("x.f64"), raw(&tiny)).expect("written");
     place.expect(0, "--truth 1e-163 --range 0.75e-163,1.25e-163 x.f64", &["pass"]);
-    // The unit of such a truth has no inverse.
+    // The inverse of such a truth overflows.
     std::fs::write(place.path().join("x.f64"), raw(&[1.5e-310; 100])).expect("written");
     place.expect(1, "--truth 1e-310 --variance 0 x.f64", &["not 1e-310"]);
 }
@@ -182,7 +182,7 @@ fn a_refuted_variance_is_named_and_a_mean_that_rests_on_it_is_not_accused() {
     let draws = uniform(200_000);
     let biased: Vec<f64> = draws.iter().map(|x| x + 0.01).collect();
     let place = Place::new(&[("x.f64", &raw(&draws)), ("off.f64", &raw(&biased))]);
-    // Thirty times too small a variance makes evidence against any mean.
+    // A variance that is thirty times too small is evidence against any mean.
     let claim = format!("--truth 1 --variance {}", 1.0 / 1440.0);
     for kurtosis in ["", "--kurtosis 1.8"] {
         let found = place.json(&format!("{claim} {kurtosis} x.f64"), &[]);
@@ -196,7 +196,7 @@ fn a_refuted_variance_is_named_and_a_mean_that_rests_on_it_is_not_accused() {
         assert_eq!(found["findings"][0]["check"], "variance");
         let found = place.json(&format!("{claim} {kurtosis} off.f64"), &[]);
         let reason = found["reason"].as_str().expect("words");
-        // Where the mean is off by itself, both are said, and the variance first.
+        // If the mean is off as well, both are reported, the variance first.
         let place = |words: &str| reason.find(words).unwrap_or_else(|| panic!("{reason}"));
         assert!(place("the variance is off") < place("the mean is off"), "{reason}");
     }
@@ -204,7 +204,7 @@ fn a_refuted_variance_is_named_and_a_mean_that_rests_on_it_is_not_accused() {
 
 #[test]
 fn a_kurtosis_that_draws_refute_is_not_assumed() {
-    // Light tails first, heavy ones later: the variance was bounded by what did not stay.
+    // Light tails first, heavy ones later: the kurtosis of the first draws bounded the variance, and does not hold.
     let mut draws = uniform(400_000);
     draws[100_000..].iter_mut().step_by(100).for_each(|x| *x = 1.0 + 30.0 * (*x - 1.0));
     let place = Place::new(&[("x.f64", &raw(&draws))]);

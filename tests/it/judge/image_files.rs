@@ -1,4 +1,4 @@
-//! `judge --images`: pictures in NPY, PFM and EXR, and what is wrong with some.
+//! `judge --images`: pictures in NPY, PFM and EXR, and faults in some.
 
 use std::path::Path;
 
@@ -9,7 +9,7 @@ use trueflight::judge::images::{ImageError, Size};
 
 use super::{Place, npy, raw};
 
-/// 3 columns, 2 rows, of numbers that a half holds.
+/// Numbers that are exact in half precision, in 3 columns and 2 rows.
 const GREY: [f32; 6] = [0.5, 1.0, -0.25, 3.0, 0.0, 1024.0];
 
 fn colours() -> Vec<f32> {
@@ -24,7 +24,7 @@ fn singles(values: &[f32]) -> Vec<u8> {
     values.iter().flat_map(|x| x.to_le_bytes()).collect()
 }
 
-/// A float map of 2 rows.
+/// Returns a float map of 2 rows.
 fn pfm(values: &[f32], columns: usize) -> Vec<u8> {
     let row = values.len() / 2;
     let kind = if row == columns { "Pf" } else { "PF" };
@@ -32,7 +32,7 @@ fn pfm(values: &[f32], columns: usize) -> Vec<u8> {
     [header, singles(&values[row..]), singles(&values[..row])].concat()
 }
 
-/// An uncompressed EXR of 2 rows as its specification has it, with the named channels in their order in the file.
+/// Returns an uncompressed EXR of 2 rows by the specification, with the named channels in their order in the file.
 fn plain_exr(channels: &[(&str, Vec<f32>)], columns: usize) -> Vec<u8> {
     let mut bytes = vec![0x76, 0x2f, 0x31, 0x01, 2, 0, 0, 0];
     let mut attribute = |name: &str, kind: &str, value: &[u8]| {
@@ -73,7 +73,7 @@ fn plain_exr(channels: &[(&str, Vec<f32>)], columns: usize) -> Vec<u8> {
     bytes
 }
 
-/// The same colours by the writer of the crate.
+/// Writes the same colours by the crate `exr`.
 fn packed_exr(path: &Path, compression: Compression, blocks: Blocks) {
     let colours = colours();
     let channels = SpecificChannels::rgb(|Vec2(column, row): Vec2<usize>| {
@@ -122,7 +122,7 @@ fn all_formats_hold_the_same_numbers() {
     }
 }
 
-/// Whatever a byte becomes, and wherever a file ends, a picture is read or an error says why not.
+/// A changed byte or a cut file gives a picture, or an error with the reason.
 #[test]
 fn broken_files_are_errors() {
     let place = Place::new(&[]);

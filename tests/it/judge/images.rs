@@ -12,12 +12,12 @@ use super::{Place, npy, raw};
 const SIZE: Size = Size { rows: 48, columns: 40, channels: 1 };
 const PIXELS: usize = 48 * 40;
 
-/// What a pixel should be: brighter to the right and downwards, from 0.2 to 1.1.
+/// Returns the truth of a pixel: brighter to the right and downwards, from 0.2 to 1.1.
 fn truth(pixel: usize) -> f64 {
     0.2 + 0.01 * (pixel % 40) as f64 + 0.01 * (pixel / 40) as f64
 }
 
-/// Passes of exponential draws, whose variance is the square of the truth, changed by `change(pass, pixel)`.
+/// Returns passes of exponential draws with the square of the truth as variance, changed by `change(pass, pixel)`.
 fn passes(seed: u64, count: usize, change: impl Fn(usize, usize) -> f64) -> Vec<Vec<f64>> {
     let mut rng = Address { seed, experiment: 11, block: 0, lane: 0 }.stream();
     (0..count)
@@ -44,7 +44,7 @@ fn judged(passes: &[Vec<f64>], claim: &Claim, wanted: &Wanted) -> Judgement {
 
 const LOOSE: Wanted = Wanted { tile: None, tolerance: None, alpha: 0.05 };
 
-/// At α = 0.05 at most 200 · 0.05 = 10 of 200 honest stacks may fail on average; the e-values are far below.
+/// At α = 0.05 at most 200 · 0.05 = 10 of 200 correct stacks may fail on average; the e-values are far below.
 #[test]
 fn honest_stacks_never_fail_and_most_pass() {
     let (mut failed, mut passed, mut dependent) = (0, 0, 0);
@@ -54,7 +54,8 @@ fn honest_stacks_never_fail_and_most_pass() {
         passed += usize::from(found.verdict == Verdict::Pass);
         dependent += usize::from(found.order.is_refuted() || found.neighbours.is_refuted());
     }
-    // Binomial(200, 0.05) exceeds 22 with chance 2e-4; a pass has chance 0.95 of the tiles and of the whole each.
+    // Binomial(200, 0.05) exceeds 22 with probability 2e-4. The tiles pass with probability 0.95, and so does the
+    // whole.
     assert!(failed <= 22 && dependent <= 22, "{failed} failed, {dependent} depend");
     assert!(passed >= 160, "{passed}");
 }
@@ -74,14 +75,14 @@ fn what_is_wrong_is_found_where_it_is() {
     assert!(found.reason.contains("rows 16 to 23, columns 8 to 15"), "{}", found.reason);
     assert!(found.worst[0].is_listed && found.worst[0].z.is_some_and(|z| z > 6.0));
 
-    // From as it should be at the left to 16 % too dark at the right.
+    // From no bias at the left to 16 % too dark at the right.
     let dark = |_, pixel: usize| 1.0 - 0.004 * (pixel % 40) as f64;
     let found = judged(&passes(2, 64, dark), &claim(), &tile);
     assert_eq!(found.verdict, Verdict::Fail, "{}", found.reason);
     let dark = failing(&found, 8);
     assert!(!dark.is_empty() && dark.iter().all(|&(_, column)| column >= 16), "{dark:?}");
 
-    // What is 2 % too dark everywhere is too little for small tiles, and shows in large ones and in the whole.
+    // A bias of −2 % everywhere is too small for small tiles, and is detected in large ones and in the whole.
     let found = judged(&passes(3, 256, |_, _| 0.98), &claim(), &tile);
     assert_eq!(found.verdict, Verdict::Fail, "{}", found.reason);
     assert!(found.reason.contains("the picture is off"), "{}", found.reason);
@@ -103,7 +104,7 @@ fn single_pixels_can_fail() {
     assert_eq!(found.verdict, Verdict::Fail, "{}", found.reason);
     let worst = &found.worst[0];
     assert_eq!((worst.row, worst.column, worst.size), (777 / 40, 777 % 40, 1));
-    // Without a bias no single pixel can pass by 64 passes, and that is what is said.
+    // Without a bias no single pixel can pass with 64 passes, and the reason says so.
     let found = judged(&passes(5, 64, |_, _| 1.0), &claim(), &pixels);
     assert_eq!(found.verdict, Verdict::Inconclusive);
     let is_open = |tile: &&Tile| tile.verdict == Verdict::Inconclusive && tile.size == 1;
@@ -125,7 +126,7 @@ fn equal_passes_and_chains_are_inconclusive() {
     assert_eq!(found.verdict, Verdict::Inconclusive);
     assert!(found.reason.contains("one image"), "{}", found.reason);
 
-    // A render that goes on from the last pass: each is half of the one before.
+    // A render that continues from the last pass: each is half of the one before.
     let mut chain = honest;
     for pass in 1..chain.len() {
         let (before, after) = chain.split_at_mut(pass);
@@ -137,11 +138,11 @@ fn equal_passes_and_chains_are_inconclusive() {
     assert!(found.tiles.iter().all(|tile| tile.verdict == Verdict::Inconclusive));
 }
 
-/// Each pixel takes half of its right neighbour's value, as a filter's footprint does.
+/// Returns passes in which each pixel takes half of the value at its right, as by the footprint of a filter.
 fn blended(seed: u64, count: usize) -> Vec<Vec<f64>> {
     let blend = |pass: Vec<f64>| {
         let next = |p: usize| if p % 40 == 39 { p } else { p + 1 };
-        // About its own truth, so that only the spread changes.
+        // Deviations about the pixel's own truth, so that only the spread changes.
         let off = |p: usize| pass[p] / truth(p) - 1.0;
         (0..PIXELS).map(|p| truth(p) * (1.0 + 0.5 * (off(p) + off(next(p))))).collect()
     };
@@ -157,7 +158,7 @@ fn pixels_that_depend_on_each_other_are_judged_by_the_range_alone() {
     // Averages in a range need no independence of pixels: 0 to 40 is far from all of them.
     let wide = Claim { range: Some([0.0, 40.0]), ..claim() };
     assert_ne!(judged(&stack, &wide, &Wanted::default()).verdict, Verdict::Fail);
-    // Stakes of at most ¾ of what a pass can lose gain 0.21 a pass: 20 of 96 passes, where ln(1/0.2α) is 8.5.
+    // Stakes of at most ¾ of the possible loss gain 0.21 per pass: 20 of 96 passes, where ln(1/0.2α) is 8.5.
     let off = Claim { range: Some([0.0, 40.0]), ..Claim::of_truth(Level::All(10.0)) };
     let found = judged(&blended(7, 96), &off, &Wanted::default());
     assert_eq!(found.verdict, Verdict::Fail, "{}", found.reason);
@@ -173,7 +174,7 @@ fn a_variance_that_is_too_small_is_named_and_the_means_are_not_accused() {
         "{}",
         found.reason
     );
-    // Twice as wide, with the kurtosis 9 of exponential draws: ± 2√(8/61440) = 0.023.
+    // Twice the variance, with the kurtosis 9 of exponential draws: ± 2√(8/61440) = 0.023.
     let spread = found.variance.expect("it is claimed").about_mean;
     assert!((spread - 2.0).abs() < 0.1, "{spread}");
     assert_eq!(found.counts.fail, 0);
@@ -186,13 +187,13 @@ fn without_grounds_nothing_is_decided_and_a_range_is_one() {
     let found = judged(&off, &alone, &Wanted::default());
     assert_eq!(found.verdict, Verdict::Inconclusive);
     assert!(found.reason.contains("--variance"), "{}", found.reason);
-    // Coins: 0 or twice the truth.
+    // Draws of 0 or twice the truth.
     let coins = |seed, p: f64| -> Vec<Vec<f64>> {
         let mut rng = Address { seed, experiment: 12, block: 0, lane: 0 }.stream();
         let mut coin = |pixel| if unit(&mut rng) < p { 2.0 * truth(pixel) } else { 0.0 };
         (0..32).map(|_| (0..PIXELS).map(&mut coin).collect()).collect()
     };
-    // Values that are never negative may show that a mean is too large, and nothing else.
+    // Values that are never negative may only show that a mean is too large.
     let endless = Claim { range: Some([0.0, f64::INFINITY]), ..alone.clone() };
     assert_eq!(judged(&off, &endless, &Wanted::default()).verdict, Verdict::Fail);
     let found = judged(&passes(9, 32, |_, _| 0.7), &endless, &Wanted::default());
@@ -260,7 +261,7 @@ fn the_command_says_it_and_writes_it() {
     let out = "--tile 8 --out out --junit report.xml";
     place.expect(1, &format!("{known} {out} dark.npy"), &["worst", "z = -", "tiles are off"]);
     let table = fs::read_to_string(place.path().join("out/tiles.csv")).expect("a table");
-    // Of 8, 16 and 32 pixels.
+    // Tiles of 8, 16 and 32 pixels.
     assert_eq!(table.lines().count(), 1 + 30 + 9 + 4);
     let failing: Vec<&str> = table.lines().filter(|line| line.contains(",fail,true,")).collect();
     let is_dark =

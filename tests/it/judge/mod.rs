@@ -34,7 +34,7 @@ sweep.sampling.values = [0.8, 1.0]
 estimators = [{ ratio = {} }, { ratio = { sampling.constant.value = 2.0 } }, { woodcock = {} }]
 ";
 
-/// Uniform draws about 1 of variance 1/48 and kurtosis 1.8, by a linear congruence.
+/// Returns uniform draws about 1 of variance 1/48 and kurtosis 1.8, by a linear congruence.
 fn uniform(n: usize) -> Vec<f64> {
     let mut state = 7u64;
     let next = |state: &mut u64| {
@@ -84,7 +84,7 @@ impl Place {
         command.args(arguments.split_whitespace()).write_stdin(pipe).output().expect("it runs")
     }
 
-    /// The exit code with what was printed.
+    /// Returns the exit code and the output.
     fn says(&self, arguments: &str, pipe: &[u8]) -> (i32, String) {
         let output = self.judge(arguments, pipe);
         let text = [output.stdout, output.stderr].concat();
@@ -186,8 +186,8 @@ fn the_variance_is_tested_and_can_be_done_without() {
     let draws = uniform(200_000);
     let place = Place::new(&[("x.f64", &raw(&draws))]);
     place.expect(1, "--truth 1 --variance 0.025 --kurtosis 1.8 x.f64", &["the variance is off"]);
-    // A variance that is too small may be refuted by squares alone; one that is too large may wait for
-    // squares that were not drawn, unless a range forbids them.
+    // A variance that is too small may be refuted by squares alone. One that is too large may rest on squares that were
+    // not drawn, unless a range excludes them.
     place.expect(1, "--truth 1 --variance 0.0173 x.f64", &["the variance is off"]);
     let large = "--truth 1 --variance 0.025";
     place.expect(3, &format!("{large} x.f64"), &["looks off", "the kurtosis or the range"]);
@@ -245,14 +245,14 @@ fn a_spread_near_rounding_goes_through_the_gate() {
     let claim = "--truth 1 --variance 2.0833333333333333e-22 --kurtosis 1.8";
     place.expect(0, &format!("{claim} tight.f64"), &[]);
     place.expect(1, &format!("{claim} off.f64"), &[]);
-    // Rounding that hides more than the widest tolerance is a mistake of the caller's.
+    // Rounding above the widest tolerance is a mistake in the arguments.
     place.expect(2, "--truth 1 --variance 1 --rounding 0.02 tight.f64", &[]);
     place.expect(2, "--truth 1 --variance-tolerance 0.1 tight.f64", &[]);
-    // Draws without any spread that are all wrong.
+    // Wrong draws without any spread.
     std::fs::write(place.0.path().join("wrong.f64"), raw(&vec![0.9; 100_000])).expect("a file");
     let wrong = "wrong.f64";
     place.expect(1, &format!("--truth 1 --range 0,2 {wrong}"), &["the mean is off"]);
-    // Without a range each may be the constant of a law that has spikes, too.
+    // Without a range each may also be the constant part of a distribution with rare large values.
     place.expect(3, &format!("--truth 1 {wrong}"), &["is not known: 0 of 100000 draws"]);
     place.expect(1, &format!("--truth 1e-300 {wrong}"), &["beyond measure"]);
 }
@@ -337,7 +337,7 @@ fn bad_input_is_2_with_one_clear_error() {
     place.expect(1, "--truth 1 names.csv", &["numeric"]);
 }
 
-/// A case and draws of its first experiment, in this process.
+/// Returns a case and draws of its first experiment, made in this process.
 fn drawn(case: &Case, draws: u64) -> (Vec<f64>, serde_json::Value) {
     let options = Options { draws: Amount::Exactly(draws), ..Options::default() };
     let plan = Plan::new(std::slice::from_ref(case), &options);

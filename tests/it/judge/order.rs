@@ -1,4 +1,4 @@
-//! What comes in which order: later draws, draws that depend on each other, several files.
+//! Order of draws: a bias of later draws, draws that depend on each other, several files.
 
 use std::io::Read;
 
@@ -31,7 +31,8 @@ fn what_comes_after_the_decision_is_seen() {
 
 #[test]
 fn a_mean_that_is_right_on_average_only_is_drift() {
-    // A bias of 7 standard errors over 50,000 draws, and its opposite after it: of all draws before its end it is 2.6.
+    // A bias of 7 standard errors over 50,000 draws, then its opposite: 2.6 standard errors of all draws before its
+    // end.
     let mut draws = uniform(400_000);
     draws[300_000..350_000].iter_mut().for_each(|x| *x += 0.0045);
     draws[350_000..].iter_mut().for_each(|x| *x -= 0.0045);
@@ -43,7 +44,7 @@ fn a_mean_that_is_right_on_average_only_is_drift() {
     assert_ne!(found["findings"][0]["verdict"], "fail");
 }
 
-/// A chain of correlation .9 with mean 1 and variance 1.
+/// Returns a chain of correlation .9 with mean 1 and variance 1.
 fn chain(n: usize) -> Vec<f64> {
     let noise = uniform(4 * n);
     let mut state = 0.0;
@@ -93,7 +94,7 @@ fn draws_that_depend_on_each_other_are_not_judged_as_if_they_did_not() {
         place.expect(3, &format!("{claim} {file}.f64"), &[words, not_judged]);
     }
     place.expect(0, &format!("{UNIFORM} fine.f64"), &["against independent draws: nothing found"]);
-    // A draw that is no number fails all the same.
+    // A draw of NaN fails in any order.
     let mut broken = doubled;
     broken[399_999] = f64::INFINITY;
     std::fs::write(place.path().join("doubled.f64"), raw(&broken)).expect("written");
@@ -110,7 +111,7 @@ fn draws_that_depend_on_each_other_are_not_judged_as_if_they_did_not() {
     );
 }
 
-/// Halves without end.
+/// Endless pipe of halves.
 struct Endless;
 
 impl Read for Endless {
@@ -160,7 +161,7 @@ fn several_files_share_alpha_and_have_one_report() {
     assert_eq!(found["verdict"], "inconclusive");
     assert_eq!(found["files"][0]["judgement"]["alpha"], 5e-4);
     place.expect(0, &format!("{claim} --inconclusive pass good.f64 short.f64"), &[]);
-    // What can be read is judged and reported although another file cannot.
+    // Readable files are judged and reported although another one cannot be read.
     std::fs::remove_file(place.path().join("report.xml")).expect("removed");
     place.expect(
         2,

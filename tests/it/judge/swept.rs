@@ -1,9 +1,9 @@
-//! A value of what a case sweeps: any, where theory can answer it.
+//! Values of a swept quantity: any value for which theory has an answer.
 
 use super::{Place, raw, uniform};
 use trueflight::OfCase;
 
-/// σ̂ from 0.5 to 4 in seven steps of a factor, and estimators with σ̂ of their own.
+/// Case with σ̂ from 0.5 to 4 in seven steps of a factor, and estimators with σ̂ of their own.
 const SWEPT: &str = "title = \"a sweep\"
 [problem.transmittance]
 medium.constant.extinction = 0.5
@@ -13,7 +13,7 @@ estimators = [{ ratio = {} }, { woodcock = {} }, { closed-form = {} }]
 ";
 const MANY: &str = "points = 30";
 
-/// Explorer points of a control: whole numbers from 2.
+/// Case with explorer points of a control: whole numbers from 2.
 const POINTS: &str = "title = \"explorers\"
 [problem.transmittance]
 medium.constant.extinction = 0.5
@@ -24,7 +24,7 @@ sweep.points.values = [2, 4, 8]
 estimators = [{ double = {} }, { ratio = {} }]
 ";
 
-/// Ratio tracking of σ_t = 0.5 on [0, 2] by σ̂: (1 − 0.5/σ̂)^N, N Poisson distributed of mean 2σ̂.
+/// Returns draws of ratio tracking of σ_t = 0.5 on [0, 2] by σ̂: (1 − 0.5/σ̂)^N, N Poisson distributed of mean 2σ̂.
 fn ratio(sampling: f64, n: usize) -> Vec<f64> {
     let mut rng = trueflight::rng::Address { seed: 8, experiment: 8, block: 0, lane: 0 }.stream();
     let draw = |_| {
@@ -73,10 +73,10 @@ fn any_sampling_extinction_is_taken_as_it_is() {
 fn what_cannot_be_is_refused_with_the_nearest_value() {
     let place = place();
     for (arguments, words) in [
-        // Values as tables have them, few of many.
+        // Values are listed as in tables, some of many.
         ("--case swept.toml --estimator ratio", &["0.5, 0.673, 0.9057", "--swept"][..]),
         ("--case many.toml --estimator ratio", &["0.5, ", "…, 4 (30 values)"]),
-        // σ̂ below σ_t: refused there, but not at the nearest value of the sweep.
+        // σ̂ below σ_t is refused, but the nearest value of the sweep is not.
         (
             "--case swept.toml --estimator woodcock --swept 0.4",
             &["nearest value of the sweep is 0.5"],
@@ -93,14 +93,14 @@ fn what_cannot_be_is_refused_with_the_nearest_value() {
         ("--case swept.toml --estimator ratio --swept -1", &["is not a finite number above 0"]),
         ("--case swept.toml --estimator closed-form --swept 1", &["is not swept"]),
         ("--case swept.toml --estimator closed-form --swept 1 --nearest", &["is not swept"]),
-        // A number of points is no σ̂ of an estimator that has none.
+        // A number of points is not a σ̂ of an estimator without σ̂.
         ("--case points.toml --estimator ratio --swept 4", &["is not swept"]),
         ("--case swept.toml --estimator ratio --nearest", &["--swept"]),
         ("--truth 1 --nearest", &["--swept"]),
     ] {
         place.expect(2, &format!("{arguments} u.f64"), words);
     }
-    // Any number of points, not only those of the sweep; and the nearest for what is none.
+    // Any number of points, not only those of the sweep; the nearest for a number that is not whole.
     for more in ["--swept 5", "--swept 5.4 --nearest", "--swept 4"] {
         let arguments = format!("--case points.toml --estimator double {more} u.f64");
         let (code, text) = place.says(&arguments, &[]);

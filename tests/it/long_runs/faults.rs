@@ -6,14 +6,14 @@ use trueflight::draw::store::{Header, Key, Log, entry};
 
 use super::place::{Place, said};
 
-/// What became of the tries of one fault.
+/// Results of the tries of one fault.
 #[derive(Default)]
 pub struct Counts {
-    /// How many ended as the undisturbed run did.
+    /// Number of runs that ended as the undisturbed one.
     pub identical: usize,
-    /// What those said that were refused.
+    /// Messages of refused runs.
     pub refused: Vec<String>,
-    /// What is neither.
+    /// Messages of runs that were neither.
     wrong: Vec<String>,
 }
 
@@ -22,13 +22,13 @@ impl Counts {
         self.identical + self.refused.len() + self.wrong.len()
     }
 
-    /// Panics if any is neither identical nor refused with a reason.
+    /// Panics if any run is neither identical nor refused with a reason.
     pub fn hold(&self) {
         assert!(self.tried() > 0, "nothing was tried");
         crate::common::none(&self.wrong);
     }
 
-    /// Counts a command that was to write into a folder; `reason` is what a refusal says.
+    /// Counts a command that writes into a folder; `reason` is the expected message of a refusal.
     fn count(&mut self, place: &Place, command: &str, folder: &str, reason: &[&str]) {
         let output = place.say(command);
         let said = said(&output);
@@ -45,7 +45,7 @@ impl Counts {
     }
 }
 
-/// Runs that are killed again and again, and each time resumed, until they are done.
+/// Kills runs repeatedly, and resumes each time until they are done.
 pub fn kills(place: &mut Place, kills: usize) -> Counts {
     let (mut counts, mut killed) = (Counts::default(), 0);
     while killed < kills {
@@ -65,7 +65,7 @@ pub fn kills(place: &mut Place, kills: usize) -> Counts {
                 killed += 1;
             }
             let output = run.wait_with_output().expect("it has ended");
-            // A kill may have come between the results and the end of the process.
+            // A kill may come after the results and before the end of the process.
             let is_over = is_done || place.path("killed/draws.bin").exists();
             if is_done && output.status.code() != Some(0) {
                 counts.wrong.push(format!("{command}: {}", said(&output)));
@@ -85,7 +85,7 @@ pub fn kills(place: &mut Place, kills: usize) -> Counts {
             counts.identical += 1;
         }
     }
-    // A chain of kills is one result; all its kills have led to it.
+    // A chain of kills has one result, which counts for all of its kills.
     counts.identical += killed.saturating_sub(counts.tried());
     counts
 }
@@ -99,11 +99,11 @@ fn resume_with(place: &Place, counts: &mut Counts, bytes: &[u8], reason: &[&str]
 
 const FOREIGN: &[&str] = &["is no file of blocks"];
 
-/// Journals that are cut at a random byte.
+/// Cuts journals at a random byte.
 pub fn cuts(place: &mut Place, tries: usize) -> Counts {
     let (mut counts, journal) = (Counts::default(), place.journal());
     for at in 0..tries {
-        // Every fourth in the header, or near it.
+        // Every fourth cut is in the header, or near it.
         let limit = if at % 4 == 0 { 600 } else { journal.len() };
         let length = place.random(limit as u64);
         #[allow(clippy::cast_possible_truncation)] // below the journal's length
@@ -112,7 +112,7 @@ pub fn cuts(place: &mut Place, tries: usize) -> Counts {
     counts
 }
 
-/// Journals with one bit flipped.
+/// Flips one bit of journals.
 pub fn flips(place: &mut Place, tries: usize) -> Counts {
     let (mut counts, journal) = (Counts::default(), place.journal());
     for at in 0..tries {
@@ -126,7 +126,7 @@ pub fn flips(place: &mut Place, tries: usize) -> Counts {
     counts
 }
 
-/// Journals of other draws, and files that are none.
+/// Resumes from journals of other draws, and from files that are not journals.
 pub fn strangers(place: &mut Place) -> Counts {
     let (mut counts, journal) = (Counts::default(), place.journal());
     for bytes in [&b""[..], b"trueflight", b"trueflight blocks 3\n", &[0; 4096]] {
@@ -146,7 +146,7 @@ pub fn strangers(place: &mut Place) -> Counts {
     counts
 }
 
-/// Parts that are missing, doubled, unfinished, spoilt, or of another run; and, first, those that fit.
+/// Merges parts that are missing, doubled, unfinished, spoilt, or of another run; and, first, valid ones.
 pub fn wrong_parts(place: &mut Place, tries: usize) -> Counts {
     let mut counts = Counts::default();
     let draw = |place: &Place, name: &str, more: &str| {
@@ -163,7 +163,7 @@ pub fn wrong_parts(place: &mut Place, tries: usize) -> Counts {
     counts.count(place, "merge part-3 doubled part-2 --out swapped", "swapped", &[]);
     let part = Log::open(&place.path("part-2/blocks.bin")).expect("a part");
     let header: Header = part.get(Key::Header).expect("readable").expect("a header");
-    // Sound logs without blocks, one of another version.
+    // Valid logs without blocks, one of another version.
     let version = "0.0.1".to_owned();
     for (name, header) in [("old", &Header { version, ..header.clone() }), ("empty", &header)] {
         fs::create_dir(place.path(name)).expect("a folder");
@@ -200,7 +200,7 @@ pub fn wrong_parts(place: &mut Place, tries: usize) -> Counts {
         try_spoilt(place, &mut counts, &whole[..end], &torn);
         try_spoilt(place, &mut counts, &flipped, &torn);
     }
-    // What is left of one goes on, and fits.
+    // A truncated part is resumed, and then merges.
     try_spoilt(place, &mut counts, &whole[..whole.len() / 2], &["is torn or damaged at byte"]);
     let output = place.say("run --resume spoilt");
     assert!(output.status.success(), "{}", said(&output));

@@ -1,6 +1,6 @@
-//! Runs that are interrupted, resumed and shared out: the same bytes as undisturbed, or refused with the reason.
+//! Runs that are interrupted, resumed and shared: the same bytes as undisturbed, or refused with the reason.
 //!
-//! `cargo test --release --test it long_runs -- --ignored --nocapture` does it as often as `results/faults/` says.
+//! `cargo test --release --test it long_runs -- --ignored --nocapture` makes the numbers of tries in `results/faults/`.
 
 mod faults;
 mod place;
@@ -23,7 +23,7 @@ use trueflight::plan::Plan;
 
 use crate::common::{case, options};
 
-/// How often each fault is tried in a quick test.
+/// Number of tries of each fault in a quick test.
 const FEW: usize = 4;
 
 #[test]
@@ -41,14 +41,14 @@ fn a_file_of_many_blocks_stays_short() {
     let asked = "run ray.toml --draws 2e7 --fixed-draws --filter *:woodcock --quiet";
     let finished = place.say(&format!("{asked} --out whole"));
     assert!(finished.status.success(), "{}", said(&finished));
-    // Of 1221 blocks of 9 kB each, no more than some are there at any time.
+    // Of 1221 blocks of 9 kB each, only some are in the file at any time.
     let mut run = place.begin(&format!("{asked} --out long"));
     let (mut longest, mut kills) = (0, 0);
     loop {
         let length = fs::metadata(place.path("long/blocks.bin")).map_or(0, |file| file.len());
         let was_shortened = length < longest;
         longest = longest.max(length);
-        // Killed whenever it was written anew, and resumed from there.
+        // Killed each time the file was rewritten, and resumed from there.
         if was_shortened && kills < 3 && run.kill().is_ok() {
             run.wait().expect("it has ended");
             kills += 1;
@@ -137,7 +137,7 @@ fn the_table_of_faults() {
     }
 }
 
-/// A log without blocks.
+/// Returns a log without blocks.
 fn log(path: &Path, header: &Header) -> Log {
     Log::write(path, [entry(Key::Header, header)]).expect("a file");
     Log::resume(path, None).expect("a log")
@@ -222,7 +222,7 @@ fn the_first_interruption_ends_with_a_verdict_and_the_second_at_once() {
         assert!(sent.expect("a shell").success());
     };
     let mut seen = false;
-    // It may be done before it is interrupted.
+    // The run may end before it is interrupted.
     for _ in 0..20 {
         let _ = fs::remove_dir_all(place.path("stopped"));
         let asked = Place::asked("--out stopped --inconclusive pass");
@@ -241,7 +241,7 @@ fn the_first_interruption_ends_with_a_verdict_and_the_second_at_once() {
     assert!(seen, "no run was interrupted while it was drawing");
     let output = place.say(&Place::asked("--out stopped"));
     assert!(output.status.code() == Some(2) && said(&output).contains("--resume stopped"));
-    // A limit of time ends what is gone on with, and loses nothing.
+    // A time limit ends a resumed run, and no draw is lost.
     let output = place.say("run --resume stopped --budget 0.02s --inconclusive pass");
     assert!(said(&output).contains("--resume stopped"), "{}", said(&output));
     assert!(output.status.code() == Some(3) && place.path("stopped/blocks.bin").exists());
@@ -251,7 +251,7 @@ fn the_first_interruption_ends_with_a_verdict_and_the_second_at_once() {
     assert_eq!(place.difference("stopped"), None);
     let output = place.say("run --resume stopped");
     assert!(output.status.code() == Some(2) && said(&output).contains("nothing was interrupted"));
-    // Two signals, another each, for the same one twice may be told once.
+    // Two different signals, since two equal ones may be delivered once.
     let asked = "run ray.toml --draws 1e9 --fixed-draws --out endless";
     let run = place.drawing(asked, "endless").expect("it draws for minutes");
     send(&["INT", "TERM"], run.id());

@@ -1,4 +1,4 @@
-//! A folder with two cases, what an undisturbed run of them writes, and runs that are killed.
+//! Folder with two cases, the results of an undisturbed run, and runs that are killed.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -10,7 +10,7 @@ use tempfile::TempDir;
 use trueflight::draw::store::Log;
 use trueflight::rng::hash;
 
-/// Sums of the gate, laws, bounds, channels, lookups that are shared, an experiment that is another's twin.
+/// Case with sums of the gate, distributions, bounds, channels, shared lookups, and an experiment that equals another.
 pub const RAY: &str = "title = \"a ray\"
 [problem.transmittance]
 medium.piecewise-constant = { breaks = [0, 1, 2.5, 4], values = [0.2, 1.5, 0.4] }
@@ -31,14 +31,14 @@ estimators = [{ double = {} }, { double.control.explorers.points = 9 }]
 const ASKED: &str = "run ray.toml curve.toml --seed 5 --draws 15e5 --alpha 1e-6";
 
 pub struct Place {
-    /// The program.
+    /// Path of the program.
     program: String,
     folder: TempDir,
-    /// What an undisturbed run wrote.
+    /// Files that an undisturbed run wrote.
     undisturbed: BTreeMap<String, String>,
-    /// How long it took.
+    /// Duration of that run.
     pub time: Duration,
-    /// How many random numbers were taken.
+    /// Number of random numbers that were taken.
     taken: u64,
 }
 
@@ -47,7 +47,7 @@ impl Place {
         Self::with(env!("CARGO_BIN_EXE_trueflight"))
     }
 
-    /// The same by another program.
+    /// Makes a folder for another program.
     pub fn with(program: &str) -> Self {
         let program = program.to_owned();
         let folder = TempDir::new().expect("a folder");
@@ -85,23 +85,23 @@ impl Place {
         command.stdout(Stdio::null()).stderr(Stdio::piped()).spawn().expect("it begins")
     }
 
-    /// The command of the undisturbed run with some words more.
+    /// Returns the command of the undisturbed run with some more words.
     pub fn asked(more: &str) -> String {
         format!("{ASKED} {more}")
     }
 
-    /// A number below `limit`, other ones each time, the same ones in every test.
+    /// Returns a number below `limit`, another one each time, the same ones in every test.
     pub fn random(&mut self, limit: u64) -> u64 {
         self.taken += 1;
         hash(&self.taken.to_le_bytes()) % limit
     }
 
-    /// A moment in the first `share` of a run.
+    /// Returns a random time within the first `share` of a run.
     pub fn moment(&mut self, share: f64) -> Duration {
         self.time.mul_f64(share * self.random(1 << 20) as f64 / f64::from(1 << 20))
     }
 
-    /// What a folder has in place of what the undisturbed run wrote, if that is not the same.
+    /// Returns the difference of a folder from the results of the undisturbed run; `None` if they are equal.
     pub fn difference(&self, folder: &str) -> Option<String> {
         let found = self.results(folder);
         if self.path(folder).join("blocks.bin").exists()
@@ -114,15 +114,15 @@ impl Place {
         differing.next().map(|name| format!("{folder}/{name} differs"))
     }
 
-    /// All files of results, without times.
+    /// Returns all files of results, without times.
     fn results(&self, folder: &str) -> BTreeMap<String, String> {
         let mut files = BTreeMap::new();
         collect(&self.path(folder), "", &mut files);
         files
     }
 
-    /// Begins a command that writes into a folder, and waits until it has kept some blocks; `None` if
-    /// it has ended before that was seen.
+    /// Starts a command that writes into a folder, and waits until it has kept some blocks; `None` if it has ended
+    /// before.
     pub fn drawing(&self, arguments: &str, folder: &str) -> Option<Child> {
         let path = self.path(folder).join("blocks.bin");
         let mut run = self.begin(arguments);
@@ -135,7 +135,7 @@ impl Place {
         None
     }
 
-    /// A file of blocks of a run that was killed while it was drawing.
+    /// Returns a file of blocks of a run that was killed while it was drawing.
     pub fn journal(&self) -> Vec<u8> {
         let path = self.path("torn/blocks.bin");
         for _ in 0..20 {
@@ -151,7 +151,7 @@ impl Place {
     }
 }
 
-/// What a command wrote to stderr, and to stdout.
+/// Returns the output of a command: stderr, then stdout.
 pub fn said(output: &Output) -> String {
     let text = [&output.stderr[..], &output.stdout].concat();
     String::from_utf8(text).expect("text")
@@ -164,7 +164,8 @@ fn collect(folder: &Path, name: &str, files: &mut BTreeMap<String, String>) {
         if entry.path().is_dir() {
             collect(&entry.path(), &name, files);
         } else if name.contains("/.trueflight-") || has_ending(&name, "html") {
-            // A file that a killed run was writing, which is never read; or the page, which is made of the record and has its times.
+            // Skips files that a killed run was writing, which are never read, and the page, which is made of the
+            // record and has times.
         } else if !has_ending(&name, "bin") && !has_ending(&name, "png") {
             let text = fs::read_to_string(entry.path()).expect("a text");
             files.insert(name.clone(), without_times(&name, &text));
@@ -176,7 +177,7 @@ fn has_ending(name: &str, ending: &str) -> bool {
     Path::new(name).extension().is_some_and(|found| found == ending)
 }
 
-/// The results part of a record, and rows without the columns of times.
+/// Returns the results part of a record, or rows without the columns of times.
 fn without_times(name: &str, text: &str) -> String {
     if name.ends_with("record.json") {
         return text.split("\"timing\"").next().unwrap_or_default().to_owned();

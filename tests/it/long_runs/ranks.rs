@@ -1,4 +1,4 @@
-//! Runs drawn by many ranks under `mpirun`: the same bytes as one process, and a rank that dies loses little.
+//! Runs drawn by many ranks under `mpirun`: the same bytes as one process, and a rank that dies loses few draws.
 //!
 //! They need the program of `bindings/mpi`, and its path in `TRUEFLIGHT_MPI`: `.ci/mpi` builds it.
 
@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 
 use super::place::{Place, said};
 
-/// `mpirun` with so many ranks in a folder; containers have few processors and one user.
+/// Returns `mpirun` with a number of ranks in a folder; containers have few processors and one user.
 fn mpirun(place: &Place, ranks: usize) -> Command {
     let mut command = Command::new("mpirun");
     command.current_dir(place.path("")).env("OMPI_ALLOW_RUN_AS_ROOT", "1");
@@ -27,7 +27,7 @@ fn say(place: &Place, ranks: usize, arguments: &str) -> Output {
     mpirun(place, ranks).args(arguments.split_whitespace()).output().expect("mpirun")
 }
 
-/// The processes that draw, by the folder that they write.
+/// Returns the processes that draw, by the folder that they write.
 fn drawing(folder: &str) -> Vec<u32> {
     let mut list = Command::new("pgrep");
     list.args(["-f", &format!("^{} .*--out {folder}", program())]);
@@ -79,7 +79,7 @@ fn a_rank_that_dies_ends_the_run_which_can_be_gone_on_with() {
         assert!(said(&output).contains(&told), "{}", said(&output));
         assert!(blocks.exists() && drawing(&folder).is_empty());
     }
-    // One that is small enough to be drawn to its end.
+    // A run that is small enough to be drawn to its end.
     let mut interrupted = false;
     for _ in 0..20 {
         let _ = fs::remove_dir_all(place.path("torn"));

@@ -1,7 +1,7 @@
 //! Likely causes of failures: the table against the patterns of all known bugs, and against the manual.
 //!
-//! `tests/data/known-bugs.csv` has the pattern that each known bug leaves in a million draws, from seed 1, and the kind
-//! of bug that it is, by hand. [`write_patterns`] prints the patterns again.
+//! `tests/data/known-bugs.csv` has the pattern of each known bug in a million draws, from seed 1, and the kind of the
+//! bug, assigned by hand. [`write_patterns`] prints the patterns again.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
@@ -17,9 +17,9 @@ use trueflight::report::run::failures;
 use trueflight::self_test;
 use trueflight::self_test::mutation::{self, Walk};
 
-/// Share of the known bugs of a kind that their line names, at least.
+/// Smallest share of the known bugs of a kind that their line names.
 const SHARE: f64 = 0.9;
-/// More causes than this are no hint.
+/// Maximum number of causes in a line.
 const MOST: usize = 4;
 
 type Flag = (char, fn(&mut Pattern) -> &mut bool);
@@ -33,7 +33,8 @@ const FLAGS: [Flag; 6] = [
     ('r', |p| &mut p.resolution),
 ];
 
-/// A pattern as one word of the table: mean, variance and lookups by their sign, then a letter for each other check.
+/// Returns a pattern as one word of the table: mean, variance and lookups by their sign, then a letter for each other
+/// check.
 fn word(pattern: &Pattern) -> String {
     let sides = [pattern.mean, pattern.variance, pattern.lookups];
     let mut word: String = sides.map(Side::sign).iter().collect();
@@ -62,7 +63,7 @@ fn pattern(word: &str) -> Pattern {
     pattern
 }
 
-/// The known bugs: name, pattern and kind.
+/// Returns the known bugs: name, pattern and kind.
 fn known_bugs() -> Vec<[String; 3]> {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/known-bugs.csv");
     let mut reader = csv::Reader::from_path(path).expect("the table");
@@ -82,7 +83,7 @@ fn every_known_bug_is_of_a_kind_that_the_table_knows() {
     assert_eq!((kinds.len(), kinds), (CAUSES.len(), used));
 }
 
-/// Numbers of known bugs for each line of the table: with its pattern, and of a kind that it names.
+/// Returns for each line of the table the number of known bugs with its pattern, and of those of a kind that it names.
 fn explained() -> BTreeMap<&'static str, [usize; 2]> {
     let mut counts: BTreeMap<&str, [usize; 2]> =
         TABLE.iter().map(|line| (line.pattern, [0; 2])).collect();
@@ -104,7 +105,7 @@ fn the_causes_that_are_listed_explain_the_known_bugs() {
     assert!(share >= SHARE, "{right} of {all}");
     for line in TABLE {
         assert!(!line.causes.is_empty() && line.causes.len() <= MOST, "{}", line.pattern);
-        // Each line by itself is better than half, too.
+        // Each line by itself is right for more than half, too.
         let [bugs, found] = counts[line.pattern];
         assert!(2 * found >= bugs, "{}: {found} of {bugs}", line.pattern);
     }
@@ -127,7 +128,7 @@ fn the_manual_has_the_table() {
     }
 }
 
-/// One bug of each kind that is quick to draw.
+/// Bugs that are quick to draw, one of each kind.
 const QUICK: [&str; 10] = [
     "control-forgotten",
     "lookup-at-previous",
@@ -153,7 +154,7 @@ fn the_patterns_on_record_are_those_that_bugs_leave() {
     }
 }
 
-/// A case swept over σ̂, with a known bug in the place of ratio tracking, judged.
+/// Returns a judged case swept over σ̂, with a known bug in the place of ratio tracking.
 fn swept_with(bug: &str) -> CaseRecord {
     let text = "title = \"swept\"
         [problem.transmittance]
@@ -196,7 +197,7 @@ fn a_failure_at_one_end_of_a_sweep_is_told_as_such() {
     }
 }
 
-/// Draws of the record.
+/// Number of draws of the record.
 const DRAWS: u64 = 1_000_000;
 
 #[test]

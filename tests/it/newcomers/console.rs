@@ -20,7 +20,7 @@ sampling.constant.value = 1
 estimators = [{ woodcock = {} }, { ratio = {} }]
 ";
 
-/// Ray marching with two steps through a kink is biased, with a random offset and without.
+/// Returns a case with a bias: ray marching with two steps through a kink, with a random offset and without.
 fn biased() -> String {
     let linear = "medium.piecewise-linear = { knots = [0, 0.5, 2], values = [0.1, 1.0, 0.1] }";
     GOOD.replace("{ woodcock = {} }", "{ ray-marching = { steps = 2, jitter = true } }")
@@ -78,7 +78,7 @@ fn a_failure_is_told_in_one_unit_with_its_likely_causes() {
         place.says(1, "check bad.toml --draws 400000 --junit j.xml --markdown s.md --out out");
     let told = |text: &str| {
         let text = text.split_whitespace().collect::<Vec<_>>().join(" ");
-        // A column may cut the first short.
+        // A column may cut the first one short.
         let after = text.rsplit("the mean is off by ").next().expect("a failure").to_owned();
         let after = after.replace("\\_", "_");
         let (percent, rest) = after.split_once(" % (measured ").expect("a percentage");
@@ -106,7 +106,7 @@ fn built_in(names: &[&str]) -> Vec<Case> {
     sources.map(|source| Case::read(&source).expect("a case")).collect()
 }
 
-/// The steps of a drawing, those of draws made and kept summed up: expected first and last, made, kept.
+/// Returns the steps of a drawing, made and kept draws summed up: expected first and last, made, kept.
 fn steps(plan: &Plan, store: &Store) -> [u64; 4] {
     let steps = Mutex::new(Vec::new());
     let draws = run::draw_with(plan, store, &|step| {
@@ -135,7 +135,7 @@ fn the_total_counts_what_will_be_drawn() {
     assert_eq!((last, kept), (made, 0), "at its end the total is what was drawn");
     let share = first as f64 / made as f64;
     assert!((0.7..1.3).contains(&share), "{first} were expected, {made} were drawn");
-    // As many as were planned would be too many.
+    // The number of planned draws would be too many.
     let planned: u64 = plan.experiments().filter(|e| e.1.outcome.is_ok()).map(|e| e.1.draws).sum();
     assert!(planned > made + made / 10, "{planned} planned, {made} drawn");
     assert!(first.abs_diff(made) < planned - made, "{first} expected, {made} drawn");

@@ -1,4 +1,4 @@
-//! The plan says which rows have too few draws; the command that an inconclusive row names decides it.
+//! The plan lists rows with too few draws; the command that an inconclusive row names decides it.
 
 use super::commands;
 use crate::common::place::Place;
@@ -13,7 +13,8 @@ use trueflight::plan::Plan;
 use trueflight::record::Verdict;
 use trueflight::record::build;
 
-/// Mean and variance need different numbers of draws at each σ̂; the names have spaces and parentheses.
+/// Case with means and variances that need different numbers of draws at each σ̂; its names have spaces and
+/// parentheses.
 const SWEPT: &str = "title = \"too few draws\"
 [problem.transmittance]
 volume.eq21 = {}
@@ -22,7 +23,7 @@ sweep.sampling.values = [0.6, 1, 2]
 estimators = [{ ratio = {} }, { single = { rule = \"non-terminating\", albedo = 0.7 } }, { woodcock = {} }]
 ";
 
-/// Tolerances of the case: more draws do not narrow them.
+/// Case with tolerances of its own: more draws do not narrow them.
 const TOLERANT: &str = "title = \"tolerances\"
 [problem.transmittance]
 medium.constant.extinction = 2
@@ -33,7 +34,7 @@ estimators = [{ woodcock = {} }, { ratio = {} }, { residual-ratio = { control.co
 mean = 1e-2
 ";
 
-/// Several channels, and an estimator twice.
+/// Case with several channels, and an estimator listed twice.
 const CHANNELS: &str = "title = \"channels\"
 [problem.rod]
 medium.constant.extinction = 3
@@ -44,7 +45,7 @@ sampling.constant.value = 3.5
 estimators = [{ analog = {} }, { weighted = {} }]
 ";
 
-/// Cases with draws that are too few for them.
+/// Cases with too few draws.
 const OPEN: [(&str, &str, &str); 4] = [
     ("swept", SWEPT, "2e4"),
     ("tolerant", TOLERANT, "5e4"),
@@ -85,7 +86,8 @@ fn the_plan_names_the_rows_and_the_command_for_all_of_them() {
     }
 }
 
-/// The number in the plan is 27 V/ε², with the variance of a draw that is 0 or 1 and ε = 5 %: (1 − T)/T/0.0025 times 27.
+/// The number in the plan is 27 V/ε², with the variance of a draw that is 0 or 1 and ε = 5 %: (1 − T)/T/0.0025 times
+/// 27.
 #[test]
 fn the_draws_that_are_needed_follow_from_the_variance() {
     let transmittance = (-4.0_f64).exp();
@@ -118,7 +120,7 @@ fn every_report_gives_the_command_that_decides() {
     }
 }
 
-/// A run that was cut is decided by the same draws without the limit.
+/// A run that was cut is decided by its draws without the limit.
 #[test]
 fn what_a_budget_cuts_is_decided_without_it() {
     let place = Place::new(&[("case.toml", TOLERANT)]);
@@ -129,8 +131,8 @@ fn what_a_budget_cuts_is_decided_without_it() {
     }
 }
 
-/// For every built-in case, what is foreseen is what a run of few draws finds, row by row: no row is inconclusive or
-/// underpowered that the plan called sufficient, but for whole distributions, of which draws alone tell.
+/// For every built-in case, the plan and a run of few draws agree row by row: no row is inconclusive or underpowered
+/// that the plan called sufficient. Whole distributions are exempt, since only draws can show their power.
 #[test]
 fn the_plan_foresees_what_a_run_finds() {
     let sources = suite::suite();

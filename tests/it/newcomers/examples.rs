@@ -10,7 +10,7 @@ fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
 }
 
-/// README, the pages of the manual and those of the bindings.
+/// Returns README, the pages of the manual and those of the bindings.
 fn pages() -> Vec<PathBuf> {
     let mut pages = vec![root().join("README.md"), root().join("bindings/python/README.md")];
     let manual = fs::read_dir(root().join("docs")).expect("the manual");
@@ -20,7 +20,7 @@ fn pages() -> Vec<PathBuf> {
     pages
 }
 
-/// The blocks of TOML with a table of this name, each with a name of its own.
+/// Returns the blocks of TOML with a table of this name, each with a name of its own.
 fn shown(table: &str) -> Vec<(String, String)> {
     let mut found = Vec::new();
     for page in pages() {
@@ -34,7 +34,7 @@ fn shown(table: &str) -> Vec<(String, String)> {
     found
 }
 
-/// A folder with what cases name: files of the checkout stand in it by the same paths.
+/// Returns a folder with the files that cases name, by the same paths as in the checkout.
 fn place() -> Place {
     let place = Place::new(&[]);
     for data in ["tests/data/vdb", "tests/data/field/23-npy-axes"] {
@@ -48,7 +48,7 @@ fn place() -> Place {
     place
 }
 
-/// Cases that do not end with 0, or have a row that is neither a pass nor declared before the draws.
+/// Lists the cases that do not end with 0, or have a row that is neither a pass nor declared before the draws.
 fn wrong(command: &str, cases: &[(String, String)]) -> Vec<String> {
     let place = place();
     let mut wrong = Vec::new();
@@ -72,7 +72,7 @@ fn every_case_that_is_shown_passes_when_it_is_run() {
     none(&wrong("run", &cases));
 }
 
-/// `check` makes a tenth of the draws where a case does not say how many.
+/// `check` makes a tenth of the draws if a case does not give a number.
 #[test]
 fn every_case_that_is_shown_passes_in_a_ci() {
     let mut cases = shown("[problem.");

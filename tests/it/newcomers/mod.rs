@@ -5,7 +5,7 @@ mod console;
 mod decides;
 mod examples;
 
-/// The commands that stand after a word in a text, without the program's name.
+/// Returns the commands behind a word in a text, without the program's name.
 fn commands(text: &str, word: &str) -> Vec<String> {
     let after = text.lines().filter_map(|line| line.split_once(word)).map(|(_, command)| command);
     let own = after.filter_map(|command| command.trim().strip_prefix("trueflight "));

@@ -3,7 +3,7 @@
 use crate::common::{case, shipped};
 use trueflight::case::Case;
 
-/// The media that the shipped cases do not combine with every estimator, σ̂ and control.
+/// Media that the shipped cases do not combine with every estimator, σ̂ and control.
 pub const MEDIA: [(&str, &str); 14] = [
     ("constant", "medium.constant.extinction = 0.7\nspan = [1, 4]"),
     (
@@ -84,7 +84,7 @@ pub const ESTIMATORS: &str = "
     { double.control.explorers.points = 5 }, { double.control.explorers.points = 40 }, { double.control.constant.value = 0.9 },
     { double.sampling.constant.value = 0.4 },";
 
-/// The other estimators of transmittance that are drawn in packets.
+/// Other estimators of transmittance that are drawn in packets.
 const OTHERS: &str = "
     { next-flight = {} }, { unidirectional-mis = {} }, { next-flight.sampling.constant.value = 0.4 },
     { unidirectional-mis.sampling.constant.value = 300 },
@@ -94,18 +94,18 @@ const OTHERS: &str = "
     { local-majorant = {} }, { local-majorant.sampling.local-majorants.segments = 5 },
     { local-majorant.sampling.local-majorants.segments = 70 },";
 
-/// What is compared: every estimator in every field, or every estimator in one field and one estimator of
-/// each kind in every field, since kernels and fields are compiled apart.
+/// Compared combinations: every estimator in every field, or every estimator in one field and one estimator of each
+/// kind in every field, since kernels and fields are compiled separately.
 #[derive(Clone, Copy, PartialEq)]
 pub enum Matrix {
     Full,
     Cross,
 }
 
-/// The field with every estimator in [`Matrix::Cross`].
+/// Field with every estimator in [`Matrix::Cross`].
 const CENTRE: &str = "eq21";
 
-/// Slabs with a medium for each channel, in both lights.
+/// Returns slabs with a medium for each channel, in both lights.
 fn slabs_of_media() -> [Case; 2] {
     let slab = include_str!("../../../cases/slab/chromatic-three-colours.toml");
     let diffuse = slab.replace("collimated = { cosine = 0.6 }", "diffuse = {}");
@@ -217,7 +217,7 @@ pub fn cases(matrix: Matrix) -> Vec<Case> {
     cases
 }
 
-/// A field as a slab with each kind of light behind it.
+/// Returns a field as a slab with each kind of light behind it.
 fn lit_slabs(name: &str, medium: &str) -> Vec<Case> {
     let lights = [
         ("cap.cosine = 0.6", ", { unidirectional = {} }, { full-mis.heuristic = \"power\" }"),
@@ -237,7 +237,7 @@ fn lit_slabs(name: &str, medium: &str) -> Vec<Case> {
     lights.map(of).into()
 }
 
-/// A field as a rod and as slabs of coloured scatterers.
+/// Returns a field as a rod and as slabs of coloured scatterers.
 fn coloured(name: &str, medium: &str) -> Vec<Case> {
     let bodies = [
         ("rod", "forward = 0.7"),

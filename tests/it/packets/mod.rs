@@ -1,8 +1,8 @@
-//! Draws made side by side are the draws made one by one, to the bit.
+//! Draws of packets equal draws made one by one, to the bit.
 //!
-//! On every level of vector hardware that this machine has and that fuses multiplication and
-//! addition: values, lookups, defects, and where the streams are left. Below those levels the same
-//! kernels round differently and are judged like any estimator.
+//! The comparison is made on every level of vector hardware of this machine with fused multiply-add: values, lookups,
+//! defects, and the final states of the streams. Without fused multiply-add the same kernels round differently and are
+//! judged like any estimator.
 
 mod fields;
 mod rays;
@@ -17,10 +17,10 @@ use trueflight::numeric::pack::fuses;
 use trueflight::plan::Plan;
 use trueflight::plan::Planned;
 
-/// Draws of several requests in a row, which no number of lanes divides.
+/// Numbers of draws of consecutive requests, not multiples of any number of lanes.
 const REQUESTS: [usize; 6] = [1, 3, 8, 100, 257, 5];
 
-/// All that an experiment draws, as bits, and its streams afterwards.
+/// Returns all draws of an experiment, as bits, and its final streams.
 fn drawn(planned: &Planned, kernel: Kernel) -> Vec<u64> {
     let ready = planned.outcome.as_ref().expect("it is not refused");
     let mut buffer = DrawBuffer::new(ready.prediction.channels.len());
@@ -40,7 +40,7 @@ fn drawn(planned: &Planned, kernel: Kernel) -> Vec<u64> {
     bits
 }
 
-/// Every level that fuses, from the best down.
+/// Returns every level with fused multiply-add, from the best down.
 pub fn fusing_levels() -> Vec<Level> {
     let mut levels = vec![Level::new()];
     #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
@@ -49,7 +49,7 @@ pub fn fusing_levels() -> Vec<Level> {
     levels
 }
 
-/// Compares all experiments of cases on all levels; answers how many comparisons that were.
+/// Compares all experiments of cases on all levels; returns the number of comparisons.
 pub fn compare(cases: &[Case]) -> usize {
     let plan = Plan::new(cases, &options(1, 1_000));
     let (mut wrong, mut compared) = (Vec::new(), 0);

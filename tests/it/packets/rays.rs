@@ -1,4 +1,4 @@
-//! Packets along rays, in rods and in slabs, on every level that fuses.
+//! Packets along rays, in rods and in slabs, on every level with fused multiply-add.
 
 use super::fields::{Matrix, cases};
 use super::{compare, fusing_levels};

@@ -1,7 +1,8 @@
-//! Single scattering drawn side by side is single scattering drawn one by one, to the bit.
+//! Packets of single scattering equal single draws, to the bit.
 //!
-//! Values, lookups, and where the streams are left, for every technique with every camera, shadow ray and control: in
-//! the long form in bodies of all kinds and in every shipped case, in the short one in a quarter of the bodies.
+//! Values, lookups, and the final states of the streams are compared, for every technique with every camera, shadow ray
+//! and control: in the long form in bodies of all kinds and in every shipped case, in the short one in a quarter of the
+//! bodies.
 
 use super::{compare, fusing_levels};
 use crate::common::{case, shipped_in};
@@ -62,7 +63,7 @@ const TECHNIQUES: [&str; 28] = [
     "delta-tracking = { sampling.piecewise-constant = { breaks = [0, 2, 9], values = [1, 1.5] },",
 ];
 
-/// One for every `step`-th body with a light.
+/// Returns a case for every `step`-th body with a light.
 fn cases(step: usize) -> Vec<Case> {
     let mut cases = Vec::new();
     let lit = VOLUMES.iter().flat_map(|volume| LIGHTS.map(|light| (volume, light)));

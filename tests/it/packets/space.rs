@@ -1,8 +1,8 @@
-//! Walks in space made side by side are the walks made one by one, to the bit.
+//! Packets of walks in space equal single walks, to the bit.
 //!
-//! Values, lookups, and where the streams are left, on every level of vector hardware that this machine has
-//! and that fuses multiplication and addition, for every problem in space, every field, every phase
-//! function, and for one σ̂ as well as for cells.
+//! Values, lookups, and the final states of the streams are compared, on every level of vector hardware of this machine
+//! with fused multiply-add. The walks are those of every problem in space, every field, every phase function, and of
+//! one σ̂ as well as of cells.
 
 use super::{compare, fusing_levels};
 use crate::common::{case, shipped_in};
@@ -11,7 +11,7 @@ use trueflight::case::Case;
 const BALL: &str = "bounds.sphere = { centre = [0.5, 0, 0], radius = 1.5 }";
 const CUBE: &str = "bounds.box = { low = [-1, -1, -1], high = [1, 1.5, 2] }";
 
-/// Fields in a body, below 2.
+/// Returns fields in a body, below 2.
 fn volumes() -> Vec<(&'static str, String)> {
     let within = |field: &str, body: &str| format!("volume.{field}, {body} }}");
     vec![

@@ -1,4 +1,4 @@
-//! The rod against numbers from another arithmetic, see `tests/data/README.md`.
+//! Rods against numbers from another arithmetic, see `tests/data/README.md`.
 
 use crate::common::{case, differs, none, options, rows_of};
 use serde_json::Value;
@@ -9,20 +9,20 @@ use trueflight::record::{Row, Verdict};
 const EQ21: &str = "volume.eq21 = {}
     ray = { origin = [0, 0, 0], direction = [0, 0, 1], length = 20 }";
 
-/// A value of `rod-values.json`.
+/// Returns the values of `rod-values.json` with this name.
 fn reference(id: &str) -> Vec<Value> {
     let all: Vec<Value> =
         serde_json::from_str(include_str!("../../data/rod-values.json")).expect("JSON");
     all.into_iter().filter(|entry| entry["id"] == id).collect()
 }
 
-/// Its numbers; a moment that diverges is written as null.
+/// Returns the numbers of an entry; a moment that diverges is written as null.
 fn numbers(entry: &Value) -> Vec<f64> {
     let list = entry["value"].as_array().expect("a list");
     list.iter().map(|x| x.as_f64().unwrap_or(f64::INFINITY)).collect()
 }
 
-/// What a plan says of a rod with one estimator.
+/// Returns the predictions of a rod with one estimator.
 fn planned(rod: &str, estimator: &str) -> Vec<Row<'static>> {
     let text =
         format!("title = \"a rod\"\n[problem.rod]\n{rod}\nestimators = [{{ {estimator} = {{}} }}]");
@@ -31,7 +31,7 @@ fn planned(rod: &str, estimator: &str) -> Vec<Row<'static>> {
     rows_of(record)
 }
 
-/// The truths of a rod, channel by channel.
+/// Returns the truths of a rod, channel by channel.
 fn truths(rod: &str) -> Vec<(String, f64)> {
     let rows = planned(rod, "non-terminating");
     let truth = |row: &Row| row.truth.unwrap_or_else(|| panic!("{}", row.reason));
@@ -45,7 +45,7 @@ fn closed_forms_are_met() {
         let [a, pf, tau] =
             ["a", "pf", "tau"].map(|key| entry["params"][key].as_f64().expect("a number"));
         let expected = numbers(&entry);
-        // Only the optical depth matters: one value, and layers with a gap.
+        // Only the optical depth matters: a constant medium, and layers with a gap.
         let (half, quarter) = (0.5 * tau, 0.25 * tau);
         let media = [
             format!("medium.constant.extinction = {tau}\nspan = [0, 1]"),
@@ -66,7 +66,7 @@ fn closed_forms_are_met() {
     none(&wrong);
 }
 
-/// A rod of `rod_lin`, as seen from its beginning or from its end.
+/// Returns a rod of `rod_lin`, seen from its beginning or from its end.
 fn ramp(from_the_end: bool) -> String {
     let (extinction, albedo) =
         if from_the_end { ("[3.5, 0.5]", "[0.35, 0.95]") } else { ("[0.5, 3.5]", "[0.95, 0.35]") };
@@ -76,7 +76,7 @@ fn ramp(from_the_end: bool) -> String {
     )
 }
 
-/// A rod of `rod_pw`, likewise.
+/// Returns a rod of `rod_pw`, seen from its beginning or from its end.
 fn layers(from_the_end: bool) -> String {
     let (breaks, extinction, albedo) = if from_the_end {
         ("[0, 0.5, 2.5, 3.5]", "[2, 1.2, 0.5]", "[1, 0.4, 0.9]")
@@ -126,14 +126,14 @@ fn orders_of_scattering_are_met() {
     none(&wrong);
 }
 
-/// A raw moment from the central ones.
+/// Returns a raw moment from the central ones.
 fn raw(row: &Row, k: usize) -> f64 {
     let m = row.truth.expect("a truth");
     let [m2, m3, m4] = row.relative_moments.map(|moment| moment.unwrap_or(f64::INFINITY));
     if k == 2 { m * m * (1.0 + m2) } else { m.powi(4) * (m4 + 4.0 * m3 + 6.0 * m2 + 1.0) }
 }
 
-/// `E[R²]`, `E[T²]`, `E[R⁴]`, `E[T⁴]` and the expected lookups.
+/// Returns `E[R²]`, `E[T²]`, `E[R⁴]`, `E[T⁴]` and the expected lookups.
 fn found(rows: &[Row]) -> [f64; 5] {
     let [reflected, transmitted] = rows else { panic!("{}", rows[0].reason) };
     let lookups = reflected.experiment.predicted_lookups.expect("lookups");
@@ -155,7 +155,7 @@ fn moments_of_every_rule_are_met() {
             let rows = planned(&rod, rule);
             let found = found(&rows);
             for (row, expected) in rows.iter().zip(numbers(&entry)) {
-                // The error that the row states of its variance holds, and is no excuse.
+                // The stated error of the variance is an upper bound, but does not widen the tolerance.
                 let stated = row.moments_error.expect("an error");
                 let off = (raw(row, 2) - expected).abs() / row.predicted_variance.expect("V");
                 assert!(off <= stated && stated < 1e-8, "{rule} at {sampling}: {off:e} {stated:e}");
@@ -184,7 +184,7 @@ fn the_adaptive_rule_never_has_the_smaller_variance() {
             let (adaptive, other) = (planned(&rod, "adaptive"), planned(&rod, "non-terminating"));
             let is_refused = |rows: &[Row]| rows[0].verdict == Some(Verdict::Refused);
             if is_refused(&adaptive) || is_refused(&other) {
-                // What has no variance without terminating has none with it.
+                // If the variance is infinite without terminating, so it is with it.
                 assert!(is_refused(&adaptive), "{albedo}, {sampling}");
                 continue;
             }
@@ -214,7 +214,8 @@ fn both_ends_together_look_up_what_the_whole_sampling_extinction_asks() {
     }
 }
 
-/// Without scattering the flux is the transmittance; with it, what is absorbed is σ_t (1 − a) times it.
+/// Without scattering the flux is the transmittance; with scattering, the absorbed density is σ_t (1 − a) times the
+/// flux.
 #[test]
 fn the_flux_is_what_absorption_feeds_on() {
     let rod = |albedo: f64| {
@@ -252,8 +253,8 @@ fn what_diverges_is_told_before_a_draw() {
     assert!(above.reason.is_empty() && above.predicted_kurtosis.is_some(), "{}", above.reason);
 }
 
-/// With `σ_t = 1`, `a = 0.7`, `p_f = ½` and `σ̂ = 0.8`, `E[T²] = 1/y(L)` with
-/// `y = cos ωx + (A/ω) sin ωx`, `ω² = B² − A²`, which falls to 0 at the critical length.
+/// With `σ_t = 1`, `a = 0.7`, `p_f = ½` and `σ̂ = 0.8`, `E[T²] = 1/y(L)`, where `y = cos ωx + (A/ω) sin ωx` and
+/// `ω² = B² − A²`. It falls to 0 at the critical length.
 #[test]
 fn near_the_critical_length_a_moment_is_right_or_refused() {
     let (sampling, albedo) = (0.8, 0.7);
@@ -291,8 +292,8 @@ fn near_the_critical_length_a_moment_is_right_or_refused() {
     assert!(known >= 6, "{known} lengths below the critical one are predicted");
 }
 
-/// `E[T²] = 1/y(20)` by fourth-order Magnus steps in another language, 8000 of them, whose digits the 4000 share;
-/// where y turns, the moment is infinite.
+/// `E[T²] = 1/y(20)` by fourth-order Magnus steps in another language: 8000 of them, with the digits that 4000 steps
+/// confirm. Where y changes sign, the moment is infinite.
 #[test]
 fn a_moment_next_to_its_divergence_is_known() {
     let finite = [
@@ -326,7 +327,7 @@ fn a_rule_is_refused_where_it_has_no_chances() {
     assert!(refused.reason.contains("σ_t ≤ σ̂"), "{}", refused.reason);
 }
 
-/// An answer that theory does not know is no answer that draws could agree with.
+/// An unknown answer of theory is not compared with draws.
 #[test]
 fn a_truth_that_is_not_known_passes_nothing() {
     let text = "medium.constant.extinction = 100\nspan = [0, 3]\nalbedo = 0.7

@@ -1,4 +1,4 @@
-//! No address is invented: hosts are on a list, and nothing is installed from where Trueflight is not.
+//! Addresses in documents: hosts are on a list, and no text installs Trueflight from a place that does not have it.
 
 use super::files;
 use crate::common::none;
@@ -32,7 +32,7 @@ const INVENTED: [&str; 10] = [
     "trueflight = { version",
 ];
 
-/// Files with addresses of other projects: registries in lock files, and pictures.
+/// Returns whether a file has addresses of other projects: lock files, which name registries, and pictures.
 fn is_left_out(path: &str) -> bool {
     let endings = [".lock", ".png", ".vdb", ".npy", ".exr", ".pfm", ".vol", ".ttf", ".f64"];
     endings.iter().any(|ending| path.ends_with(ending)) || path.ends_with("trust/addresses.rs")
@@ -70,7 +70,7 @@ fn no_address_is_invented() {
     assert!(read > 400, "only {read} files were read");
 }
 
-/// The addresses of e-mails in a line: letters, an @, and a name with a dot.
+/// Returns the addresses of e-mails in a line: letters, an @, and a name with a dot.
 fn mail(line: &str) -> impl Iterator<Item = String> + '_ {
     let words = line.split(|c: char| !(c.is_ascii_alphanumeric() || "@.-_+".contains(c)));
     let is_mail = |word: &&str| {

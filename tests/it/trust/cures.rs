@@ -1,9 +1,9 @@
-//! Every error message ends in what to do. Messages about case files are tested with random mistakes (`properties`).
+//! Every error message ends in a cure. Messages about case files are tested with random mistakes (`properties`).
 
 use super::{files, read};
 use crate::common::none;
 
-/// Beginnings of messages without a cure: an encoder or the system gave up, or the message ends in that of another error.
+/// Beginnings of messages without a cure: an encoder or the system failed, or the message ends in another error's.
 const NONE: [&str; 15] = [
     "cannot encode {name} as csv",
     "cannot encode as json: {0}",
@@ -22,8 +22,8 @@ const NONE: [&str; 15] = [
     "needs {needs}, but {found}",
 ];
 
-/// The messages of the error types in a source text: the format strings of `#[error("…")]`, and those that `Display` of a type
-/// named `…Error` or `…Fault` writes.
+/// Returns the messages of the error types in a source text: the format strings of `#[error("…")]`, and those that
+/// `Display` of a type named `…Error` or `…Fault` writes.
 fn messages(text: &str) -> Vec<String> {
     let displays = text.split("impl fmt::Display for ").skip(1).filter_map(|rest| {
         let (name, body) = rest.split_once(" {")?;
@@ -50,7 +50,7 @@ fn every_error_message_ends_in_a_cure() {
         if path.extension().is_none_or(|ending| ending != "rs") {
             continue;
         }
-        // Reasons of verdicts are no errors.
+        // Reasons of verdicts are not errors.
         if path.ends_with("session/reason.rs") {
             continue;
         }

@@ -1,4 +1,4 @@
-//! `trueflight explain`: cases to copy that are valid, pages for a terminal, and names that were probably meant.
+//! `trueflight explain`: valid cases to copy, pages for a terminal, and suggestions for unknown names.
 
 use trueflight::case::Case;
 use trueflight::case::suite;
@@ -7,13 +7,13 @@ use trueflight::plan::Plan;
 use super::{listed, stdout, trueflight};
 use crate::common::{case, none, options, source};
 
-/// The blocks of a case file in a page.
+/// Returns the blocks of a case file in a page.
 fn blocks(page: &str) -> Vec<&str> {
     let blocks = page.split("```toml\n").skip(1).filter_map(|rest| rest.split("```").next());
     blocks.filter(|block| block.contains("[problem.")).collect()
 }
 
-/// The error of a command that asks for what is not there.
+/// Returns the error of a command about an unknown name.
 fn error(arguments: &[&str]) -> String {
     let output = trueflight(arguments);
     assert_eq!((output.status.code(), output.stdout.len()), (Some(2), 0), "{arguments:?}");
@@ -42,7 +42,7 @@ fn every_page_that_a_case_may_use_has_a_case_to_copy_that_is_planned() {
                 let cases = [case];
                 let plan = Plan::new(&cases, &options(1, 100_000));
                 planned += 1;
-                // A problem's case may show one that is refused beside others.
+                // The case of a problem may show a refused experiment beside others.
                 let refused =
                     plan.experiments().filter(|(_, planned)| planned.outcome.is_err()).count();
                 if plan.experiments().count() == refused || (refused > 0 && kind != "problems") {
@@ -85,7 +85,7 @@ fn a_terminal_sees_no_signs_of_markdown() {
 #[cfg(target_os = "linux")]
 #[test]
 fn pages_are_as_wide_as_the_terminal() {
-    // util-linux's `script` lends a terminal; where it is missing, `--color always` above stands for one.
+    // util-linux's `script` provides a terminal; without it, `--color always` above is the only test.
     let mut script = std::process::Command::new("script");
     let command =
         format!("stty cols 50 rows 40; {} explain woodcock", env!("CARGO_BIN_EXE_trueflight"));

@@ -19,7 +19,7 @@ fn read(name: &str) -> String {
     std::fs::read_to_string(root().join(name)).unwrap_or_else(|error| panic!("{name}: {error}"))
 }
 
-/// All files below a folder of the repository, by their paths in it; without builds and hidden folders.
+/// Returns all files below a folder of the repository, by their paths in it; without builds and hidden folders.
 fn files(below: &str) -> Vec<PathBuf> {
     let mut found = Vec::new();
     let mut folders = vec![root().join(below)];
@@ -41,7 +41,7 @@ fn files(below: &str) -> Vec<PathBuf> {
     found
 }
 
-/// The pages of the manual and README, by their paths, with their texts.
+/// Returns the pages of the manual and README, by their paths, with their texts.
 fn manual() -> Vec<(String, String)> {
     let pages = files("docs").into_iter().chain([
         "README.md".into(),
@@ -54,7 +54,7 @@ fn manual() -> Vec<(String, String)> {
     names.map(|name| (name.clone(), read(&name))).collect()
 }
 
-/// Output of the command.
+/// Runs the command, and returns its output.
 fn trueflight(arguments: &[&str]) -> Output {
     let mut command = Command::new(env!("CARGO_BIN_EXE_trueflight"));
     command.env_remove("NO_COLOR").env("COLUMNS", "80").args(arguments).output().expect("it runs")
@@ -67,7 +67,7 @@ fn stdout(arguments: &[&str]) -> String {
     String::from_utf8(output.stdout).expect("text")
 }
 
-/// A page of the catalogue as `trueflight list` has it.
+/// Page of the catalogue as `trueflight list` prints it.
 #[derive(Debug, serde::Deserialize)]
 struct Listed {
     part: String,

@@ -1,11 +1,11 @@
-//! README and manual: every link leads somewhere, every page is in the table of contents, every case file shown
-//! can be read, and every command shown is one.
+//! README and manual: every link has a target, every page is in the table of contents, every case file shown can be
+//! read, and every command shown is valid.
 
 use super::{manual, read, root, trueflight};
 use crate::common::{none, source};
 use trueflight::case::Case;
 
-/// The contents of the blocks in a language.
+/// Returns the contents of the blocks in a language.
 fn blocks<'a>(text: &'a str, language: &str) -> Vec<&'a str> {
     let fence = format!("```{language}\n");
     let from_fence = text.split(fence.as_str()).skip(1);
@@ -62,7 +62,7 @@ fn every_case_file_shown_can_be_read() {
     assert!(read >= 5, "only {read} cases are shown");
 }
 
-/// With `--help` at its end a command is parsed, and does nothing else.
+/// With `--help` at its end a command is only parsed.
 #[test]
 fn every_command_shown_is_one() {
     let (mut wrong, mut parsed) = (Vec::new(), 0);

@@ -1,15 +1,15 @@
-//! `results/` holds what documents show and the recorded numbers, and is small.
+//! `results/` has the files that documents show and the recorded numbers, and is small.
 
 use std::collections::BTreeSet;
 
 use super::{manual, read, root};
 use crate::common::none;
 
-/// Bytes, those of folders included as `du -sb` counts them.
+/// Limit in bytes, those of folders included as `du -sb` counts them.
 const LIMIT: u64 = 4_000_000;
 const FOLDER: u64 = 4096;
 
-/// The files that are kept, as `results/.gitignore` lists them.
+/// Returns the files that are kept, as `results/.gitignore` lists them.
 fn kept() -> BTreeSet<String> {
     let ignored = read("results/.gitignore");
     let names = ignored.lines().filter_map(|line| line.strip_prefix("!/"));
@@ -33,7 +33,7 @@ fn results_are_small() {
 fn nothing_else_is_in_the_repository() {
     let mut git = std::process::Command::new("git");
     let output = git.current_dir(root()).args(["ls-files", "-z", "results"]).output();
-    // A copy of the sources without its history has nothing to compare.
+    // Sources without a history cannot be compared.
     let Some(output) =
         output.ok().filter(|output| output.status.success() && !output.stdout.is_empty())
     else {
@@ -64,11 +64,11 @@ fn every_result_is_shown_or_named() {
         .iter()
         .filter(|name| !own.contains(&name.as_str()) && !is_named(name) && !is_linked(name));
     none(&wrong.cloned().collect::<Vec<_>>());
-    // A plot is there once.
+    // A plot is stored in one format only.
     let plots = kept.iter().filter_map(|name| name.strip_suffix(".svg"));
     let twins = plots.filter(|plot| kept.contains(&format!("{plot}.png")));
     none(&twins.map(str::to_owned).collect::<Vec<_>>());
-    // What notes and pages call by its path is there.
+    // Files that notes and pages name by path exist.
     for (page, text) in &pages {
         for name in text.split("../results/").skip(1) {
             let name = name.split([')', ']', '`', ' ', '\n']).next().unwrap_or_default();

@@ -1,29 +1,29 @@
-//! The manual's tables name what `trueflight list` names, and say of it what `trueflight explain` says.
+//! The tables of the manual have the names of `trueflight list`, and the sentences of `trueflight explain`.
 //!
-//! A comment `<!-- list PART -->` stands before a table about a part of the catalogue. Names are the code in the
-//! table's first column; with the part `estimators` the first column has the problems and the second the names. A
-//! column `is` has the sentence of `list`, a column `unbiased for` the paragraph of `explain`.
+//! A comment `<!-- list PART -->` precedes a table about a part of the catalogue. Names are the code in the table's
+//! first column; with the part `estimators` the first column has the problems and the second the names. A column `is`
+//! has the sentence of `list`, a column `unbiased for` the paragraph of `explain`.
 
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::{Listed, files, listed, manual, read, stdout};
 use crate::common::none;
 
-/// The cells of a row.
+/// Returns the cells of a row.
 fn cells(line: &str) -> Vec<String> {
     let inside = line.trim().trim_start_matches('|').trim_end_matches('|').replace("\\|", "\u{1}");
     inside.split('|').map(|cell| cell.trim().replace('\u{1}', "|")).collect()
 }
 
-/// Texts between back ticks.
+/// Returns texts between back ticks.
 fn code(cell: &str) -> Vec<String> {
     cell.split('`').skip(1).step_by(2).map(str::to_owned).collect()
 }
 
-/// A name in a table: its part, the name, and the cells of its row by their heads.
+/// Name in a table: its part, the name, and the cells of its row by their heads.
 type Row = (String, String, BTreeMap<String, String>);
 
-/// The rows of all tables of the manual that are about a part of the catalogue.
+/// Returns the rows of all tables of the manual that are about a part of the catalogue.
 fn rows() -> Vec<Row> {
     let mut rows = Vec::new();
     for (page, text) in manual() {
@@ -113,8 +113,8 @@ fn tables_say_what_the_catalogue_says() {
     assert!(compared > 120, "only {compared} cells were compared");
 }
 
-/// In a homogeneous medium of σ_t = 1 and at σ̂ = 0.4, r is 2.5: no majorant, above 2 and above 2/(a + 1). In one as
-/// thin as 0.2 no variance is infinite.
+/// In a homogeneous medium of σ_t = 1 and at σ̂ = 0.4, r is 2.5: no majorant, above 2 and above 2/(a + 1). In a medium
+/// as thin as 0.2 no variance is infinite.
 #[test]
 fn what_is_refused_below_the_density_is_what_the_manual_says() {
     let said: BTreeMap<_, _> = rows()
@@ -138,7 +138,7 @@ fn what_is_refused_below_the_density_is_what_the_manual_says() {
                 "local-majorant" => {
                     "{ local-majorant = { sampling.piecewise-constant = { breaks = [0, 1], values = [0.4] } } }".to_owned()
                 }
-                // The minimum of σ_t as the control leaves a residual of 0.
+                // As a control the minimum of σ_t leaves a residual of 0.
                 "decomposition" => "{ decomposition = { control.constant.value = 0.5 } }".to_owned(),
                 name => format!("{{ {name} = {{}} }}"),
             };
@@ -193,7 +193,7 @@ fn the_table_of_cases_has_every_file() {
     assert_eq!(shown, names.collect());
 }
 
-/// The table of known bugs is made of `results/self-test/mutants.csv`.
+/// The table of known bugs equals `results/self-test/mutants.csv`.
 #[test]
 fn the_table_of_known_bugs_is_that_of_the_results() {
     let path = super::root().join("results/self-test/mutants.csv");

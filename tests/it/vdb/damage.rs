@@ -1,11 +1,11 @@
-//! Files of `OpenVDB` that are cut or have other bits: one error that tells the cure, or a grid of finite samples that are
+//! Files of `OpenVDB` that are cut or have flipped bits: one error with its cure, or a grid of finite samples that are
 //! not negative; never a panic.
 
 use super::path;
 use crate::common::grids::reads_or_refuses;
 use crate::common::mutated::Choices;
 
-/// The packings, and a grid that is moved.
+/// Packings, and a grid that is moved.
 const FILES: [&str; 8] = [
     "mixed-blosc",
     "mixed-blosc-all",
@@ -39,7 +39,7 @@ fn a_file_that_is_cut_anywhere_is_refused() {
     }
 }
 
-/// A bit of each of the first 700 bytes, where counts, names and places are, and of 500 anywhere.
+/// Flips a bit of each of the first 700 bytes, which have counts, names and places, and of 500 anywhere.
 #[test]
 fn a_file_with_another_bit_is_read_or_refused() {
     for file in FILES {
@@ -67,7 +67,7 @@ fn a_file_with_another_bit_is_read_or_refused() {
     }
 }
 
-/// Where voxels stand too far away for their distance.
+/// Voxels so far from the origin that doubles do not resolve their size.
 #[test]
 fn a_grid_that_is_nowhere_is_refused() {
     let whole = bytes("moved");
@@ -80,7 +80,7 @@ fn a_grid_that_is_nowhere_is_refused() {
     }
 }
 
-/// Counts of four bytes that say much more than there is.
+/// Counts of four bytes that exceed the content by far.
 #[test]
 fn large_counts_are_read_or_refused() {
     for file in ["mixed-blosc", "mixed-zip", "half-zip-mask"] {

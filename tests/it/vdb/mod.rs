@@ -1,4 +1,4 @@
-//! Grids of `OpenVDB`: what its own samplers find, exact optical depths, and what is said of files that are no medium.
+//! Grids of `OpenVDB`: results of its own samplers, exact optical depths, and messages about files without a medium.
 //! The files and the expected values are made by `tests/data/vdb/make.py`.
 
 mod damage;
@@ -32,7 +32,7 @@ fn point(value: &Value) -> [f64; 3] {
     numbers(value).try_into().expect("three numbers")
 }
 
-/// The grid of an entry along a ray, with more settings.
+/// Returns the grid of an entry along a ray, with more settings.
 fn read(folder: &str, entry: &Value, ray: [[f64; 3]; 2], more: &str) -> Body {
     let (file, grid) = (&entry["file"], &entry["grid"]);
     let name = if grid == "" { String::new() } else { format!("grid = {grid}, ") };
@@ -56,8 +56,8 @@ fn values_and_depths_are_those_of_openvdb() {
     assert_eq!(agrees("vdb", 1e-12), 19);
 }
 
-/// Compares the grids of a folder below `tests/data` with its `expected.json`, and the stated errors of optical depths with
-/// the largest that is allowed. Returns the number of grids.
+/// Compares the grids of a folder below `tests/data` with its `expected.json`, and the stated errors of optical depths
+/// with the largest allowed one. Returns the number of grids.
 pub fn agrees(folder: &str, largest_error: f64) -> usize {
     let file = path("..").join(folder).join("expected.json");
     let text = std::fs::read_to_string(file).expect("values");
@@ -77,8 +77,8 @@ pub fn agrees(folder: &str, largest_error: f64) -> usize {
         for seen in entry["points"].as_array().expect("points") {
             let at = Point(point(&seen["at"]));
             let [linear, nearest] = [&linear, &nearest].map(|body| volume(body).extinction_at(at));
-            // Places of up to 40 voxels are off by their rounding along three axes, and values up to 2 change by as much
-            // in a voxel; the library interpolates in single precision, by seven sums and products.
+            // Places of up to 40 voxels have a rounding error along three axes, and values up to 2 change by as much
+            // per voxel; the library interpolates in single precision, by seven sums and products.
             let single = 14.0 * f64::from(f32::EPSILON);
             for (key, found, most) in
                 [("value", linear, 1e-13), ("box", linear, single), ("nearest", nearest, 1e-8)]

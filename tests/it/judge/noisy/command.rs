@@ -7,7 +7,7 @@ use trueflight::rng::{Address, unit};
 use super::super::{Place, npy, raw};
 use super::{Law, draws, values};
 
-/// The passes of the field: fails as an exact variance, passes as what it is.
+/// Passes of a user fail with an exact variance, and pass with it declared as estimated.
 #[test]
 fn the_command_takes_estimated_variances_and_references() {
     let field =
@@ -38,7 +38,7 @@ fn the_command_takes_estimated_variances_and_references() {
     place.expect(2, &format!("{known} --kurtosis 0.5 {passes}"), &["kurtosis"]);
 }
 
-/// Passes of 96 × 96 pixels that a filter of 3 × 3 blends, with a brighter square.
+/// Returns passes of 96 × 96 pixels that a filter of 3 × 3 blends, with a brighter square.
 fn blended(seed: u64, factor: f64) -> Vec<u8> {
     let mut rng = Address { seed, experiment: 33, block: 0, lane: 0 }.stream();
     let mut values = Vec::new();
@@ -109,7 +109,7 @@ fn the_command_writes_the_p_values() {
     let json = place.json("--images --against a.npy --tile 8 b.npy", &[]);
     assert!(json["reason"].as_str().is_some_and(|said| said.starts_with("but only a bias above")));
     assert_eq!(json["comparison"]["method"], "permutation");
-    // A folder of passes is a stack; its files come in the order of their names.
+    // A folder of passes is a stack; its files are taken in the order of their names.
     let folder = place.path().join("reference");
     std::fs::create_dir(&folder).expect("a folder");
     for pass in 0..4 {

@@ -1,4 +1,4 @@
-//! `judge --images` where variances, truths or references are noisy themselves.
+//! `judge --images` with noisy variances, truths or references.
 
 mod command;
 mod references;
@@ -15,13 +15,13 @@ const PIXELS: usize = 24 * 24;
 /// Distributions of a value of mean 1.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Law {
-    /// Of standard deviation 0.5.
+    /// Normal distribution of standard deviation 0.5.
     Normal,
-    /// 1/p with probability p.
+    /// 1/p with probability p, else 0.
     Rare(f64),
-    /// A log-normal weight with probability 0.5.
+    /// Log-normal weight with probability 0.5, else 0.
     Fireflies(f64),
-    /// The mean of 4 of these.
+    /// Mean of 4 such weights.
     FourFireflies(f64),
 }
 
@@ -39,12 +39,12 @@ impl Law {
 const LAWS: [Law; 5] =
     [Law::Normal, Law::Rare(0.05), Law::Rare(0.002), Law::Fireflies(1.0), Law::Fireflies(1.5)];
 
-/// What a pixel should be: brighter to the right.
+/// Returns the truth of a pixel: brighter to the right.
 fn truth(pixel: usize) -> f64 {
     0.2 + 0.05 * (pixel % 24) as f64
 }
 
-/// Passes one after the other.
+/// Returns passes one after the other.
 fn draws(seed: u64, passes: usize, law: Law, change: impl Fn(usize) -> f64) -> Vec<f64> {
     let mut rng = Address { seed, experiment: 31, block: 0, lane: 0 }.stream();
     let mut draw = |law: Law| -> f64 {
@@ -88,7 +88,7 @@ fn image(of: impl Fn(usize) -> f64) -> Level {
     Level::Each(Picture::new(SIZE, (0..PIXELS).map(of).collect()).expect("a picture"))
 }
 
-/// Sums over the passes of a pixel, by pairs, and not as the product has them: `Σ(x_p − x_q)²/(n(n − 1))` over p < q.
+/// Returns the variances by pairs, unlike the product: `Σ(x_p − x_q)²/(n(n − 1))` over the passes p < q of a pixel.
 fn estimated(stack: &[f64]) -> Vec<f64> {
     let n = stack.len() / PIXELS;
     let value = |pass: usize, pixel: usize| stack[pass * PIXELS + pixel];
@@ -112,7 +112,7 @@ fn judged(stack: &Stack, claim: &Claim, alpha: f64) -> Judgement {
 }
 
 /// 5 distributions, 3 numbers of passes, 20 stacks each, at α = 0.05: 300 · 0.05 = 15 on average if the level were
-/// exhausted; Binomial(300, 0.05) exceeds 27 with chance 1e-3. Shares of α and e-values make it far less.
+/// exhausted; Binomial(300, 0.05) exceeds 27 with probability 1e-3. Shares of α and e-values make it far smaller.
 #[test]
 fn correct_stacks_keep_the_level_by_an_estimated_variance() {
     let mut failed = Vec::new();
@@ -147,7 +147,8 @@ fn wrong_renderers_are_found_by_an_estimated_variance() {
         let failing = small.filter(|tile| tile.verdict == Verdict::Fail);
         let places: Vec<_> = failing.map(|tile| (tile.row, tile.column)).collect();
         assert_eq!(places, [(8, 8)], "{law:?}");
-        // 2 % everywhere: 0.02 √(256 · 576)/0.5 = 15 standard errors of the normal law, 1024 passes: 11 of the other.
+        // 2 % everywhere: 0.02 √(256 · 576)/0.5 = 15 standard errors of the normal distribution, 1024 passes: 11 of the
+        // other.
         let dark = stack(3, if law == Law::Normal { 256 } else { 1024 }, law, |_| 0.98);
         let found = judged(&dark, &claim, 1e-3);
         assert_eq!(found.verdict, Verdict::Fail, "{law:?}: {}", found.reason);
@@ -177,7 +178,7 @@ fn a_truth_of_passes_has_their_error() {
         let blind = Claim { truth_passes: None, ..claim };
         without += usize::from(judged(&stack, &blind, 1e-3).verdict == Verdict::Fail);
     }
-    // As an exact truth, its error of 4 standard errors of 64 passes fails nearly always.
+    // Taken as exact, the truth has an error of 4 standard errors of 64 passes and fails nearly always.
     assert!(failed == 0 && without >= 30, "{failed} {without}");
     let reference = values(5, 64, Law::Normal);
     let mean = |i: usize| (0..64).map(|pass| reference[pass * PIXELS + i]).sum::<f64>() / 64.0;
@@ -222,7 +223,7 @@ fn images_without_spread_are_compared_as_they_are() {
     let claim =
         Claim { variance: none, variance_passes: Some(8), ..Claim::of_truth(Level::All(0.5)) };
     assert_eq!(judged(&flat(0.5), &claim, 1e-3).verdict, Verdict::Pass);
-    // Too bright is off; what is too dark may have rare bright values that nobody saw.
+    // A stack that is too bright is off; one that is too dark may have missed rare bright values.
     assert_eq!(judged(&flat(0.6), &claim, 1e-3).verdict, Verdict::Fail);
     assert_eq!(judged(&flat(0.4), &claim, 1e-3).verdict, Verdict::Inconclusive);
     let against = |x: f64| compare(&flat(x), &flat(0.5), Terms::default(), &Wanted::default());
@@ -250,7 +251,7 @@ fn images_of_the_passes_judged_are_no_grounds() {
     let claim = Claim { variance_stack: Some(stack.clone()), ..Claim::of_truth(image(truth)) };
     let found = judged(&stack, &claim, 1e-3);
     assert!(found.reason.contains("share values"), "{}", found.reason);
-    // Half of a pass of 0 and 20 is enough.
+    // Passes with only two values, 0 and 20, are enough evidence.
     let coins = |seed| honest(seed, 8, Law::Rare(0.05));
     let found = compare(&coins(1), &coins(1), Terms::default(), &Wanted::default()).expect("one");
     assert!(found.reason.contains("share values"), "{}", found.reason);
@@ -259,7 +260,8 @@ fn images_of_the_passes_judged_are_no_grounds() {
 #[test]
 fn a_bound_on_the_kurtosis_is_a_ground() {
     let law = Law::Normal;
-    // About their truths, with pixels of unequal brightness: 3 E[T⁴]/E[T²]² = 3 · 1.6 at most in a picture of 0.2 to 1.35.
+    // About their truths, with pixels of unequal brightness: 3 E[T⁴]/E[T²]² = 3 · 1.6 at most in a picture of 0.2 to
+    // 1.35.
     let claim = Claim { kurtosis: Some(6.0), ..Claim::of_truth(image(truth)) };
     for seed in 0..20 {
         let found = judged(&honest(seed, 16, law), &claim, 1e-3);
@@ -270,7 +272,7 @@ fn a_bound_on_the_kurtosis_is_a_ground() {
     assert!(found.guarantees[0].contains("a kurtosis of 6"), "{:?}", found.guarantees);
 }
 
-/// 256 passes of 64 pixels: a tile sees 0.5 · 1.5 · 8/√16384 = 4.7 % of the picture's mean.
+/// With 256 passes of 64 pixels a tile can show 0.5 · 1.5 · 8/√16384 = 4.7 % of the picture's mean.
 #[test]
 fn a_pass_by_a_wide_tolerance_says_so() {
     let law = Law::Normal;

@@ -1,4 +1,4 @@
-//! Two stacks against each other, and how often correct stacks fail.
+//! Two stacks against each other, and the rate at which correct stacks fail.
 
 use std::fmt::Write;
 
@@ -32,7 +32,7 @@ fn correct_stacks_keep_the_level_against_a_reference() {
             }
         }
     }
-    // 216 comparisons for means, 120 for laws: Binomial(336, 0.05) exceeds 30 with chance 1e-3.
+    // 216 comparisons for means, 120 for distributions: Binomial(336, 0.05) exceeds 30 with probability 1e-3.
     assert!(failed.len() <= 12, "{failed:#?}");
 }
 
@@ -51,11 +51,11 @@ fn wrong_renderers_are_found_against_a_reference() {
         assert_eq!(found.comparison.expect("one").method, expected);
         assert!(found.reason.contains("rows 8 to 15, columns 8 to 15"), "{}", found.reason);
     }
-    // The mean of a fourth of the samples has four times the variance: no fault, but for --same-law.
+    // A mean of a fourth of the samples has four times the variance: no fault, except with --same-law.
     let (many, one) = (honest(3, 24, Law::FourFireflies(1.0)), honest(4, 24, Law::Fireflies(1.0)));
     let found = compare(&one, &many, Terms::default(), &wanted).expect("a judgement");
     assert_ne!(found.verdict, Verdict::Fail, "{}", found.reason);
-    // 4, in error by √(κ/n), κ about 450, n = 24 · 576.
+    // 4, with a relative error of √(κ/n), κ about 450, n = 24 · 576.
     let ratio = found.comparison.and_then(|found| found.spread).expect("a ratio");
     assert!((2.6..5.5).contains(&ratio), "{ratio}");
     let terms = Terms { is_same_law: true, ..Terms::default() };
@@ -64,14 +64,14 @@ fn wrong_renderers_are_found_against_a_reference() {
     assert!(found.reason.contains("the variance is off"), "{}", found.reason);
 }
 
-/// How often correct stacks fail, by distribution, number of passes and ground: the table of the manual.
+/// Rates at which correct stacks fail, by distribution, number of passes and ground: the table of the manual.
 #[test]
 #[ignore = "long: 50 stacks of each of 80 kinds, 2 minutes of two cores"]
 fn levels_of_correct_stacks() {
     const STACKS: u64 = 50;
     let mut total = [[0_u64; 2]; 4];
     let mut table = String::new();
-    // A rarer law leaves references of 4 passes black, which have no unit.
+    // Rarer values leave references of 4 passes black, without a unit.
     let laws = LAWS.map(|law| if law == Law::Rare(0.002) { Law::Rare(0.01) } else { law });
     for law in laws {
         for (n, q) in [(4, 4), (16, 16), (64, 64), (8, 64)] {
@@ -103,6 +103,6 @@ fn levels_of_correct_stacks() {
         }
     }
     println!("{table}image, stack, truth of passes, against: {total:?}");
-    // 1,000 of each at α = 1e-3: 1 on average if the level were exhausted, above 5 with chance 6e-4.
+    // 1,000 of each at α = 1e-3: 1 on average if the level were exhausted, above 5 with probability 6e-4.
     assert!(total.iter().all(|[failed, _]| *failed <= 5), "{table}");
 }
