@@ -1,4 +1,4 @@
-// Writes a grid anew by a compression, or answers what OpenVDB's samplers find at points. See make.py.
+// Writes a grid with another compression, or prints the values of OpenVDB's samplers at points. See make.py.
 #include <openvdb/openvdb.h>
 #include <openvdb/tools/Interpolation.h>
 

@@ -1,4 +1,4 @@
-# How often correct renderers pass, fail and stay inconclusive, by distribution, passes and ground (NumPy).
+# Rates at which correct renderers pass, fail and stay inconclusive, by distribution, passes and ground (NumPy).
 # usage: levels.py TRUEFLIGHT STACKS SEED LAW...   laws: normal, const, rareP (hit with probability P), lnS (log-normal of sigma S)
 import numpy as np, subprocess, sys, os, json, tempfile
 TF=os.path.abspath(sys.argv[1]); reps=int(sys.argv[2]); seed=int(sys.argv[3]); laws=sys.argv[4:]
