@@ -56,7 +56,7 @@ pub struct BenchCase {
     pub medium: String,
     /// A hash of the case's text.
     pub digest: String,
-    /// What is swept, if anything.
+    /// Swept quantity, if there is one.
     pub swept: Option<String>,
     /// One row per experiment and channel; the rows of one experiment follow each other.
     pub rows: Vec<BenchRow>,

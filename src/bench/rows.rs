@@ -143,7 +143,6 @@ fn times(
 
 /// Chooses the rows of a plot: for each estimator of a case the last channel of the sweep point with the largest figure
 /// of merit.
-/// merit.
 pub fn choose(rows: &mut [BenchRow]) {
     let merit = |row: &BenchRow| row.fom.unwrap_or(0.0);
     let mut best: BTreeMap<usize, usize> = BTreeMap::new();

@@ -133,7 +133,7 @@ impl ParsedEstimator {
         self.features.alias.map(|name| self.label_of(name, true))
     }
 
-    /// Reads what `{ NAME = { …, sampling, control, expect } }` says beside the estimator's own settings.
+    /// Reads the common settings of `{ NAME = { …, sampling, control, expect } }`, beside the estimator's own.
     fn read(
         name: &str,
         features: Option<Features>,

@@ -5,12 +5,12 @@
 //! | `title` | one line for tables and plots | required |
 //! | `draws` | planned draws per experiment; `--draws` overrides it | 4e6; `check`: 4e5 |
 //! | `draws_per_ray` | n ≥ 1: draws that share the lookups made for a ray before its first one (explorer points, pilot rays); figures of merit charge each draw 1/n of them | 1 |
-//! | `tolerance.mean` | ε of means, relative to the truth (to 1 − T for τ < 0.1), below 1 | what the draws see, at most 0.05 |
-//! | `tolerance.variance` | ε of variances, relative | what the draws see, at most 0.2 |
-//! | `tolerance.lookups` | ε of the numbers of lookups, relative | what the draws see, at most 0.02 |
+//! | `tolerance.mean` | ε of means, relative to the truth (to 1 − T for τ < 0.1), below 1 | the smallest that the draws can show, at most 0.05 |
+//! | `tolerance.variance` | ε of variances, relative | the smallest that the draws can show, at most 0.2 |
+//! | `tolerance.lookups` | ε of the numbers of lookups, relative | the smallest that the draws can show, at most 0.02 |
 //! | `underpowered` | `"allow"`: a mean that cannot pass with so many draws is no reason for exit code 3 | `"refuse"` |
 //! | `expect` | `"biased"`: passes only if the bias is shown, and estimators outside their domain are drawn | `"unbiased"` |
-//! | `problem.NAME` | what is sought, one of the names of `trueflight list problems` | required |
+//! | `problem.NAME` | the problem, one of the names of `trueflight list problems` | required |
 //!
 //! With a tolerance an experiment is planned for as many draws as that tolerance and the widest tolerances of the other
 //! quantities need, at most `draws`.
@@ -23,7 +23,7 @@
 //! | `volume.NAME = { … }` with `ray = { origin, direction, length }` | a field in space, seen along a ray; some problems need less of it, or no ray |
 //! | `sampling.NAME = { … }` | σ̂, for every estimator that takes one |
 //! | `control.NAME = { … }` | σ_c, for every estimator that takes one |
-//! | `sweep.NAME = { … }` | what is varied, see `trueflight explain sweep` |
+//! | `sweep.NAME = { … }` | the swept quantity, see `trueflight explain sweep` |
 //! | `estimators = [{ NAME = { … } }, …]` | each with its own settings, and its own `sampling`, `control`, `expect`, `kernel` |
 //!
 //! Short forms: a number for `medium`, `volume`, `sampling` or `control` is the page `constant`, as in `sampling = 2`. A name

@@ -9,7 +9,7 @@
 //! | `sweep.points` | the number of explorer points, for controls through explorers | whole, ≥ 2 |
 //! | `sweep.density` | a factor s on σ_t, σ̂ and σ_c, wherever they are given in 1/length | > 0 |
 //! | `sweep.albedo-scale` | a factor s on the medium's albedos, which stay within [0, 1] | ≥ 0 |
-//! | `sweep.contrast` | the contrast c of what is listed channel by channel: σ_t, σ̂, albedos and `p_f` | ≥ 0 |
+//! | `sweep.contrast` | the contrast c of settings that are listed channel by channel: σ_t, σ̂, albedos and `p_f` | ≥ 0 |
 //!
 //! ```text
 //! contrast   x_λ → (1 − c) x̄ + c x_λ,  x̄ the mean over the channels: grey at c = 0, as written at c = 1

@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! mean of n terms y:  n ≥ 100 E[y⁴]/E[y²]²,  n ≥ 10 n(2)
-//! variance:           y = (X − E[X])², of which E[X⁸]/E[X⁴]² tells;  √((κ − 1)/n) ≤ 0.1,  (κ − 1) n ≥ 100
+//! variance:           y = (X − E[X])², with E[X⁸]/E[X⁴]² as heaviness;  √((κ − 1)/n) ≤ 0.1,  (κ − 1) n ≥ 100
 //! ```
 //!
 //! n(2) is the rare-event size: fewer draws do not contain the events that make the variance. A tail that theory does

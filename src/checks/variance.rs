@@ -8,7 +8,6 @@
 //! its level; a normal approximation would fail correct estimators of high kurtosis most of the time. No question is
 //! asked of draws without spread, of draws with two equally distant values, and of experiments that a case declares
 //! biased.
-//! values, and of experiments that a case declares biased.
 
 use super::batch::Observe;
 use super::check::{Check, Question, Subject, Untestable, rounding_of};

@@ -70,10 +70,10 @@ pub struct Arguments {
     #[arg(value_parser = numbers::whole::<u64>(1..=1 << 40), allow_negative_numbers = true)]
     batch: u64,
     /// The bias that a pass excludes, relative to the truth (absolute for a truth of 0); a bias that is shown
-    /// fails, even a smaller one [default: what the file's draws can see, at most 0.05; for a pipe 0.01]
+    /// fails, even a smaller one [default: the smallest that the file's draws can show, at most 0.05; for a pipe 0.01]
     #[arg(long, value_name = "E", allow_hyphen_values = true, value_parser = numbers::number)]
     tolerance: Option<f64>,
-    /// Tolerance of the variance, relative to it [default: what the draws can see, at most 0.2]
+    /// Tolerance of the variance, relative to it [default: the smallest that the draws can show, at most 0.2]
     #[arg(long, value_name = "E", allow_hyphen_values = true, value_parser = numbers::number)]
     variance_tolerance: Option<f64>,
     /// Probability that correct draws fail, all files together

@@ -72,7 +72,7 @@ enum Command {
     Merge(merge::Merge),
     /// The gate for a CI: as run, tuned to decide, with JUnit, Markdown and GitHub annotations
     Check(run::Asked),
-    /// Theory only, no draws: moments, costs, the best σ̂, what is refused
+    /// Theory only, no draws: moments, costs, the best σ̂, refusals
     Predict(predict::Predict),
     /// Run time against error: ns per draw, time to an error, and speedup over a plain loop
     Bench(bench::Arguments),

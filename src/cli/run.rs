@@ -67,7 +67,7 @@ pub struct Kept {
     /// that an interrupted one there has begun
     #[arg(long)]
     fresh: bool,
-    /// Resume the interrupted run in this folder; its own command says what is drawn
+    /// Resume the interrupted run in this folder, with the cases and options of its own command
     #[arg(long, value_name = "DIR", conflicts_with_all = [
         "cases", "filter", "seed", "draws", "alpha", "out", "fixed_draws", "fresh", "strict", "blocks_per_look", "shard",
     ])]

@@ -2,7 +2,7 @@
 //! first draw.
 //!
 //! ```text
-//! n        what `--draws` or the case says, or what the case's tolerances need
+//! n        the number of `--draws` or of the case, or the one that the case's tolerances need
 //! fixed    ⌈n/2⌉ in whole blocks: the draws of p-values and z-scores, never a number that data chose
 //! horizon  60/27 n: the gate may go on that far
 //! α        4/5 to the gate, by e-Bonferroni; 1/5 to the p-values, by Holm

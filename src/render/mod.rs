@@ -3,7 +3,7 @@
 //! | key | meaning | default |
 //! |---|---|---|
 //! | `title` | one line above the picture | required |
-//! | `picture.NAME` | what is shown: `transmittance` (before the sky; in colour where `volume` is a list of three), `single-scattering` (of a point light) or `multiple-scattering` (of the sky) | required |
+//! | `picture.NAME` | the subject: `transmittance` (before the sky; in colour where `volume` is a list of three), `single-scattering` (of a point light) or `multiple-scattering` (of the sky) | required |
 //!
 //! Within `[picture.NAME]`:
 //!
@@ -13,12 +13,12 @@
 //! | `lookups` | lookups of σ_t per pixel that the volume covers, for every estimator | required |
 //! | `volume.NAME = { … }` | a field in space, bounded; in colour a list of three, for red, green and blue: `[{ NAME = { … } }, …]` | required |
 //! | `camera = { position, target, up, angle }` | pinhole camera; degrees from the lower to the upper edge | up `[0, 1, 0]`, angle 40 |
-//! | `sky.constant = { radiance }` | what is behind the volume | radiance 1 |
+//! | `sky.constant = { radiance }` | the sky behind the volume | radiance 1 |
 //! | `sky.gradient = { ground, horizon, zenith, up, sun, glare, sharpness }` | radiances straight below, at the horizon and above, and `glare · exp(sharpness (cos − 1))` about the sun | .2, 1, .5, y, y, 0, 50 |
 //! | `sampling`, `control`, `estimators` | as in a case; an estimator may have its own `expect = "biased"` | |
 //! | `shared-control` | number of columns and rows of pixels that share the control fitted to the ray in their middle | 1 |
 //! | `reference.closed-form = {}` | from the exact optical depth, or for a white furnace | |
-//! | `reference.quadrature = { panels }` | Gauss quadrature along the ray, not for multiple scattering; its error is what half as many panels differ by | 16 panels |
+//! | `reference.quadrature = { panels }` | Gauss quadrature along the ray, not for multiple scattering; its error is the difference to half as many panels | 16 panels |
 //! | `reference.draws = { lookups, estimator }` | many draws of one estimator, with their measured error | |
 //! | `light`, `albedo`, `phase` | as in the problem `single-scattering`; multiple scattering takes no light | |
 //!

@@ -157,8 +157,8 @@ tf_status tf_check_seed(tf_check *check, uint64_t seed);
 // Takes mean, variance, kurtosis and lookups from theory, and the whole distribution where theory knows it.
 //
 // The case is a built-in one or a file; the estimator has its name in tables or in the catalogue. `swept` is a value of
-// what the case sweeps, or a constant σ̂ where it sweeps nothing; NAN takes the case's own. Every channel of the case is
-// a value of the draw. A free flight that leaves the ray is its length, any larger number, INFINITY or −1.
+// the swept quantity, or a constant σ̂ if the case sweeps nothing; NAN takes the case's own. Every channel of the case
+// is a value of the draw. A free flight that leaves the ray is its length, any larger number, INFINITY or −1.
 tf_status tf_check_of(tf_check *check,
                       const char *case_,
                       const char *estimator,

@@ -1,4 +1,4 @@
-//! Functions that set what is known of a draw. They record; the check validates the claim before its first draw.
+//! Functions that set the claims about a draw. They record; the check validates the claim before its first draw.
 #![allow(unsafe_code)] // exported functions that take pointers
 #![allow(clippy::missing_safety_doc)] // the crate's documentation has the rules for all of them
 
@@ -124,8 +124,8 @@ pub unsafe extern "C" fn tf_check_seed(check: *mut Check, seed: u64) -> Status {
 /// Takes mean, variance, kurtosis and lookups from theory, and the whole distribution where theory knows it.
 ///
 /// The case is a built-in one or a file; the estimator has its name in tables or in the catalogue. `swept` is a value of
-/// what the case sweeps, or a constant σ̂ where it sweeps nothing; NAN takes the case's own. Every channel of the case is
-/// a value of the draw. A free flight that leaves the ray is its length, any larger number, INFINITY or −1.
+/// the swept quantity, or a constant σ̂ if the case sweeps nothing; NAN takes the case's own. Every channel of the case
+/// is a value of the draw. A free flight that leaves the ray is its length, any larger number, INFINITY or −1.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn tf_check_of(
     check: *mut Check,

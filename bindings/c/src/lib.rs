@@ -5,7 +5,7 @@
 //! status    status codes, and the message of the last error
 //! handle    the handle of a check, which one call at a time uses
 //! session   state behind a handle: a claim, a check that takes draws, or a verdict
-//! claim     functions that set what is known of a draw
+//! claim     functions that set the claims about a draw
 //! draws     functions that take draws, or make them by a callback
 //! verdict   functions that return the verdict
 //! random    random stream of a callback

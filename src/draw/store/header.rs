@@ -39,7 +39,7 @@ pub struct CaseKeys {
 }
 
 impl Header {
-    /// Describes what this program draws of a plan that the words ask for.
+    /// Describes the draws of this program for the plan of a command with these words.
     pub fn new(plan: &Plan, program: &str, words: &[String], share: Option<Share>) -> Self {
         let (version, is_fused) = (env!("CARGO_PKG_VERSION"), pack::fuses(Level::new()));
         let made_by = format!("{version} {program} {is_fused}");
@@ -107,7 +107,7 @@ fn key(plan: &Plan, case: &PlannedCase, planned: &Planned, made_by: &str) -> u64
     name_hash(&format!("{:?}", (made_by, place, numbers, asked, predicted, first, looks)))
 }
 
-/// Returns a hash of the first draws: they depend on more than what theory predicts, such as the order of equal voxels.
+/// Returns a hash of the first draws: they depend on more than the predictions, such as the order of equal voxels.
 fn first_draws(planned: &Planned) -> Option<u64> {
     let ready = planned.outcome.as_ref().ok()?;
     let mut buffer = DrawBuffer::new(ready.prediction.channels.len());

@@ -228,7 +228,6 @@ const MOST: usize = 1 << 27;
 /// window. Files with the same data window are compared as they are stored. If data windows differ, as after cropping
 /// of black borders, pixels are placed in the display window, which must then be the same. Outside its data window a
 /// file is 0, and pixels beyond the display window are left out.
-/// file is 0, and pixels beyond the display window are left out.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Frame(Option<Window>);
 

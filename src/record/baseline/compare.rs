@@ -20,7 +20,6 @@
 //! of a single one. It is taken only if the program and the text of the case are the same and the seed is new. The
 //! limit is the highest of the joined runs, since a later run selects by results of an earlier one. Entries that the
 //! later run has not drawn are kept.
-//! selected by what an earlier one showed; entries that the later run has not drawn are kept.
 
 use std::collections::{BTreeMap, BTreeSet};
 

@@ -2,7 +2,7 @@
 (() => {
   const all = (selector, from = document) => [...from.querySelectorAll(selector)];
 
-  // Copying: where the clipboard is closed to the page, the command is selected for the reader to copy.
+  // Copying: without access to the clipboard the command is selected for the reader to copy.
   const copy = async (button) => {
     const code = button.parentElement.querySelector('code');
     try {
@@ -39,14 +39,14 @@
     });
   }
 
-  // What a row is in regard of each choice: by an attribute of its own, or by the column of that title.
+  // Value of a row for each filter: an attribute of its own, or the column of that title.
   const titles = [...table.tHead.rows[0].cells].map((head) => head.textContent);
   const choices = all('select', form).map((select) => select.name);
   const own = (body, name) => body.dataset[name] ?? body.rows[0].cells[titles.indexOf(name)].textContent;
   const values = new Map(bodies.map((body) => [body, choices.map((name) => '=' + own(body, name))]));
 
-  // A choice begins with `=`, so that an empty name is not taken for all. What is chosen stands in the address and,
-  // on paper, above the table.
+  // A choice begins with `=`, so that an empty name is not taken for all. Choices are in the address and, on paper,
+  // above the table.
   const filter = () => {
     const wanted = [...new FormData(form)].filter(([, value]) => value);
     const texts = form.elements.text.value.toLowerCase().split(/\s+/);
@@ -69,7 +69,7 @@
     history.replaceState(null, '', wanted.length > 0 ? `#?${new URLSearchParams(wanted)}` : '#experiments');
   };
 
-  // An address names a row, which is opened, or what is chosen. What somebody typed may be neither.
+  // An address names a row, which is opened, or choices. A typed address may be neither.
   const named = () => {
     try {
       return document.getElementById(decodeURIComponent(location.hash.slice(1)));
@@ -101,7 +101,7 @@
   addEventListener('hashchange', follow);
   follow();
 
-  // Sorting: verdicts by how bad they are, z by their size, numbers by their value, what is unknown last; else by the words.
+  // Sorting: verdicts by how bad they are, z by their size, numbers by their value, unknown values last; other columns by their text.
   const severity = ['fail', 'inconclusive', 'undecided', 'underpowered', 'refused', 'pass'];
   const key = (body, column, isNumeric) => {
     const text = body.rows[0].cells[column].textContent;

@@ -6,7 +6,7 @@ use std::process::Command;
 use crate::build::here;
 use crate::ffi::run;
 
-/// Compares what a program wrote with the beginnings of its lines.
+/// Compares the output of a program with the beginnings of its lines.
 fn lines_begin(text: &str, wanted: &[&str]) {
     let lines: Vec<&str> = text.lines().collect();
     assert_eq!(lines.len(), wanted.len(), "{text}");
