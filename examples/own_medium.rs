@@ -1,4 +1,4 @@
-//! A medium of one's own, by closures: along a line, and in space.
+//! Medium that a program defines by closures: along a line, and in space.
 
 use trueflight::OfCase;
 use trueflight::case::Case;
@@ -34,7 +34,7 @@ pub fn main() {
         .expect("names that are free");
     let source = Source { name: "haze".into(), path: "haze.toml".into(), text: CASE.into() };
     let case: Case = catalogue.read(&source).unwrap_or_else(|error| panic!("{}", error.in_full()));
-    // Ratio tracking through the haze at σ̂ = 1, as one would write it; theory knows its variance.
+    // Ratio tracking through the haze at σ̂ = 1, as in a renderer; theory knows its variance.
     let tracking = |rng: &mut trueflight::rng::Stream| {
         let (mut weight, mut t) = (1.0, 0.0);
         loop {

@@ -1,13 +1,14 @@
-//! Fields as a textbook would write them.
+//! Fields of a textbook.
 //!
-//! The grid is looked up in space: eight voxels, seven linear interpolations. The noise is Perlin's own program of 2002 with a
-//! table of permutations; the library's field chooses its gradients by a hash, so that the two means differ and the work does not.
+//! The grid is looked up in space: eight voxels, seven linear interpolations. The noise is Perlin's own program of 2002
+//! with a table of permutations. The library's field chooses its gradients by a hash, so that the two means differ and
+//! the work does not.
 
 use std::sync::LazyLock;
 
 use trueflight::media::lattice::hash3;
 
-/// Eq. 21 at a point, as it is printed.
+/// Returns σ_t of Eq. 21 at a point, by the printed formula.
 #[allow(clippy::manual_midpoint)] // as it is printed
 pub fn eq21(x: f64, y: f64, z: f64) -> f64 {
     (((1.5 * (x + y + z)).cos() + 1.0) / 2.0).powi(5) * ((z / 2.0).sin() + 2.0) / 3.0
@@ -19,7 +20,7 @@ pub static VOXELS: LazyLock<Vec<f64>> = LazyLock::new(|| {
     (0..1 << 21).map(value).collect()
 });
 
-/// The interpolation of the eight voxels about a point of the box.
+/// Interpolates the eight voxels around a point of the box.
 #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // within the box
 pub fn voxels(values: &[f64], p: [f64; 3]) -> f64 {
     let u = p.map(|x| x * 12.7);
@@ -52,7 +53,7 @@ fn grad(hash: usize, x: f64, y: f64, z: f64) -> f64 {
     (if h & 1 == 0 { u } else { -u }) + (if h & 2 == 0 { v } else { -v })
 }
 
-/// Improved noise, as its author wrote it.
+/// Returns improved noise, by its author's program.
 #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // the low eight bits
 pub fn improved_noise(p: &[usize], x: f64, y: f64, z: f64) -> f64 {
     let fade = |t: f64| t * t * t * (t * (t * 6.0 - 15.0) + 10.0);

@@ -1,8 +1,8 @@
-//! Measures how many times as fast packets are as a dozen textbook loops.
+//! Speed of packets relative to a dozen textbook loops.
 //!
 //! `cargo bench --bench kernels`, or with `-- WORD` only comparisons with the word in their name. Both sides are drawn in
-//! turn in one process and timed by processor time; a ratio is taken within its round, and the median of the rounds is
-//! reported. Both means are printed beside the exact one; noise alone is another field in the textbook.
+//! turn in one process and timed by processor time. A ratio is taken within its round, and the median of the rounds is
+//! reported. Both means are printed beside the exact one; only the noise is another field in the textbook's loop.
 
 mod fields;
 mod textbook;
@@ -18,17 +18,17 @@ use trueflight::plan::Options;
 use trueflight::plan::Plan;
 use trueflight::plan::{BLOCK, Planned};
 
-/// Rounds, of which the median counts.
+/// Number of rounds; the median counts.
 const ROUNDS: usize = 7;
-/// Draws of the textbook's loop in a round.
+/// Number of draws of the textbook's loop in a round.
 const TEXTBOOK: u64 = 100_000;
-/// Blocks of packets in a round.
+/// Number of blocks of packets in a round.
 const BLOCKS: u64 = 16;
 
 /// One comparison.
 struct Contest {
     name: &'static str,
-    /// The least ratio of times on AVX-512; `None` for no target.
+    /// Smallest ratio of times that is accepted on AVX-512; `None` for no target.
     target: Option<f64>,
     problem: &'static str,
     medium: &'static str,
@@ -196,7 +196,7 @@ fn case(contest: &Contest) -> Case {
     Case::read(&source).unwrap_or_else(|error| panic!("{}", error.render(false)))
 }
 
-/// Processor seconds of a draw, and the mean.
+/// Returns the processor seconds of a draw, and the mean.
 fn of_textbook(draw: fn(&mut Pcg64) -> f64, round: u128) -> (f64, f64) {
     let mut rng = Pcg64::new(round, 1);
     let begin = ThreadTime::now();
@@ -215,7 +215,7 @@ fn of_kernel(planned: &Planned, kernel: Kernel, round: u64) -> (f64, f64) {
             let begin = ThreadTime::now();
             ready.experiment.fill_by(kernel, &mut streams, DrawBuffer::LENGTH, &mut buffer);
             seconds += begin.elapsed().as_secs_f64();
-            // Not timed: adding up is a chain of additions, which the textbook's loop hides.
+            // Not timed: the sum is a chain of dependent additions, which the textbook's loop hides.
             sum += buffer.values[0].iter().sum::<f64>();
             draws += DrawBuffer::LENGTH;
         }

@@ -1,5 +1,4 @@
-//! A dozen estimators as a textbook would write them: one draw after the other, the standard library's `ln` and `cos`, one PCG
-//! generator.
+//! A dozen estimators of a textbook: one draw after the other, the standard library's `ln` and `cos`, one PCG generator.
 //!
 //! On homogeneous media the density is hidden from the compiler, which would otherwise delete the lookups.
 

@@ -1,7 +1,7 @@
-//! A whole program of one's own: the command `trueflight` with a medium and an estimator more.
+//! A complete program: the command `trueflight` with one more medium and one more estimator.
 //!
 //! `cargo run --release --example own_binary -- run examples/own_binary/two-rays.toml` draws, judges and plots;
-//! `bench`, `list`, `explain two-rays` and the other commands know both names, too.
+//! `bench`, `list`, `explain two-rays` and the other commands take both names, too.
 
 use std::process::ExitCode;
 
@@ -14,7 +14,7 @@ use trueflight::{Catalogue, page};
 
 mod two_rays;
 
-/// The built-in pages, and two of this program.
+/// Returns the built-in pages with two of this program.
 ///
 /// # Errors
 ///

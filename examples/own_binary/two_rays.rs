@@ -1,4 +1,4 @@
-//! The average of two rays of ratio tracking.
+//! Average of two rays of ratio tracking.
 //!
 //! ```text
 //! X = (X₁ + X₂)/2,  Var X = Var X₁/2,  twice the lookups
@@ -26,7 +26,7 @@ impl Estimator<Transmittance> for TwoRays {
         let mut one = Ratio.predict(setup);
         let mut channel = one.channels.remove(0);
         channel.moments = channel.moments.map(|of_one| {
-            // The fourth central moment of a sum has pairs of squares in it.
+            // The fourth central moment of a sum contains products of two squares.
             let [m2, m3, m4] = of_one.relative;
             let relative = [m2 / 2.0, m3 / 4.0, (m4 + 3.0 * m2 * m2) / 8.0];
             Moments { relative, ..of_one }

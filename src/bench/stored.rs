@@ -144,7 +144,7 @@ impl Comparison {
         self.changes.iter().any(|change| change.is_regression)
     }
 
-    /// Returns whether nothing was compared with anything: such a comparison says nothing.
+    /// Returns whether nothing was compared.
     pub fn is_empty(&self) -> bool {
         self.compared == 0
     }

@@ -214,7 +214,7 @@ impl Case {
     }
 }
 
-/// Smallest relative differences that must be detected; `None` where the case does not say.
+/// Smallest relative differences that must be detected; `None` where the case does not give them.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Tolerance {
     /// Tolerance of the mean, relative to the truth.

@@ -35,7 +35,7 @@ pub struct Subject<'a> {
     pub most: u64,
     /// Number of the first draws that p-values see, whatever the gate decides.
     pub fixed: u64,
-    /// Differences that matter, where the case says.
+    /// Smallest differences that must be detected, as far as the case gives them.
     pub tolerance: Tolerance,
     /// True if the case declares the experiment biased.
     pub expect_biased: bool,

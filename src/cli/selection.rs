@@ -49,7 +49,7 @@ pub struct Threads {
 }
 
 impl Threads {
-    /// Calls `f` on as many threads as wished.
+    /// Calls `f` on the requested number of threads.
     pub fn install<T: Send>(
         self,
         f: impl FnOnce() -> anyhow::Result<T> + Send,
@@ -182,7 +182,7 @@ impl Selection {
         Ok(Options { alpha: self.alpha, ..options })
     }
 
-    /// Calls `f` with the plan of the cases, on as many threads as wished.
+    /// Calls `f` with the plan of the cases, on the requested number of threads.
     pub fn with_plan<T: Send>(
         &self,
         cases: &[Case],

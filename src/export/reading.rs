@@ -5,7 +5,7 @@
 //! | `transmittance` | the field as layers along the ray, or the grid itself, black, in front of light from all sides |
 //! | `furnace` | the field in a box, white, in light from all sides; the ray begins outside |
 //! | `slab` without `light` | layers between mirrors, which is an infinite slab; light from above (reflectance) or below (transmittance) |
-//! | `single-scattering` | the field in a box with a point light; the ray goes on to where it leaves the box |
+//! | `single-scattering` | the field in a box with a point light; the ray extends to its exit from the box |
 //! | `ball` | a homogeneous ball in light from all sides, or about a black sphere that shines |
 //!
 //! The case has one channel or several, at the end of the ray only. A homogeneous medium stays homogeneous, in a box or

@@ -20,7 +20,7 @@ use numeric::digits::{number, short};
 const FLIGHTS: &str = "free-flight";
 /// Largest relative deviation of a length that is constant.
 const SURE: f64 = 1e-6;
-/// Maximum number of values of a sweep that are tried as replacements of a refused one.
+/// Maximum number of values of a sweep that are tried as a suggestion in place of a refused one.
 const TRIED: usize = 8;
 
 /// Choice of an experiment of a case.

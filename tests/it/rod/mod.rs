@@ -327,7 +327,7 @@ fn a_rule_is_refused_where_it_has_no_chances() {
     assert!(refused.reason.contains("σ_t ≤ σ̂"), "{}", refused.reason);
 }
 
-/// An unknown answer of theory is not compared with draws.
+/// An answer that theory does not know is not compared with draws.
 #[test]
 fn a_truth_that_is_not_known_passes_nothing() {
     let text = "medium.constant.extinction = 100\nspan = [0, 3]\nalbedo = 0.7
