@@ -21,14 +21,14 @@ use numeric::digits::rounded;
 use numeric::pack::in_fused_code;
 use numeric::rng::Stream;
 
-/// What the settings of a page say.
+/// Settings of a page.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Page {
-    /// Which techniques.
+    /// Technique, or combination of techniques.
     pub combination: Combination,
-    /// Whether connections are tracked.
+    /// True if the transmittances of connections are tracked.
     pub is_tracked: bool,
-    /// Whether all techniques share their subpaths.
+    /// True if all techniques share their subpaths.
     pub is_shared: bool,
 }
 
@@ -49,11 +49,11 @@ impl Steps for Page {
     }
 }
 
-/// Longer rods need finer grids than theory has.
+/// Maximum optical depth of a rod: beyond it theory's grids are too coarse.
 const LONGEST: f64 = 12.0;
-/// More tentative collisions on a tracked connection have probabilities that are no doubles.
+/// Maximum `∫σ̂` of a tracked connection: beyond it probabilities underflow.
 const MOST_TRACKED: f64 = 500.0;
-/// Ratios that differ by less are one number.
+/// Maximum relative difference of two ratios that count as equal.
 const SAME: f64 = 1e-12;
 
 impl Page {
@@ -76,7 +76,7 @@ impl Page {
         })
     }
 
-    /// In words, as in `power, ratio connection`.
+    /// Settings in words, such as `power, ratio connection`.
     fn label(self) -> String {
         let first = match self.combination {
             Combination::Technique(s) => format!("s={s}, "),
@@ -139,7 +139,7 @@ impl Page {
             orders: problem.orders.clone(),
         };
         let ratio = one_ratio(setup);
-        // Elsewhere it is refused, and forced draws have no prediction.
+        // A ratio that varies is refused, and draws that are made in spite of it have no prediction.
         let tracked = ratio.filter(|_| self.is_tracked).map(Connection::Ratio);
         let connection = tracked.unwrap_or(Connection::Exact);
         let Self { combination, is_shared, .. } = self;
@@ -162,7 +162,8 @@ pub fn draw(
     )
 }
 
-/// Whether no path of so many scatterings arrives: of what it is worth nothing is left to share.
+/// Returns true if no path with `order` scatterings can reach the sensor: then the shares of its techniques are not
+/// defined.
 fn is_dark(problem: &BidirectionalRod, order: usize) -> bool {
     let is_transmitted = problem.sensor == Sensor::Transmitted;
     let never_turns = problem.forward == 1.0 && !is_transmitted;
@@ -170,7 +171,7 @@ fn is_dark(problem: &BidirectionalRod, order: usize) -> bool {
     order > 0 && (problem.albedo == 0.0 || never_turns || always_turns)
 }
 
-/// `σ_t/σ̂`, if it is the same wherever there is a medium.
+/// `σ_t/σ̂`, if it has one value wherever there is a medium.
 fn one_ratio(setup: &Setup<BidirectionalRod>) -> Option<f64> {
     let cut = setup.mesh.refined(setup.sampling.knots(), &|_, _| Vec::new());
     let places = cut.panels().flat_map(|panel| panel.t.iter().zip(panel.extinction));
@@ -184,7 +185,8 @@ fn one_ratio(setup: &Setup<BidirectionalRod>) -> Option<f64> {
     (least > 0.0 && most - least <= SAME * most).then_some(most.min(1.0))
 }
 
-/// The plumbing of a page: all that differs is how it reads which techniques, as in `pages!(FullMis)`.
+/// Implements the trait of estimators for a page that is given by how it reads its combination, as in
+/// `pages!(FullMis)`.
 macro_rules! pages {
     ($Page:ident) => {
         impl $crate::Estimator<theory::problems::BidirectionalRod> for $Page {

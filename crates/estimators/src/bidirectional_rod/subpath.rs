@@ -1,9 +1,9 @@
 //! Subpaths by delta tracking, from the light or from the sensor, and connections by ratio tracking.
 //!
-//! A flight and each tentative collision take a random number, a scattering one more, which says whether the
-//! particle is absorbed, goes straight on or turns. The last vertex of a subpath is a real collision, where
-//! nothing is decided yet. A flight goes on until the last lane has come to its next real collision; lanes that have none
-//! left wait, and their streams with them.
+//! A flight and each tentative collision take a random number. A scattering takes one more, which decides between
+//! absorption, forward and backward. The last vertex of a subpath is a real collision, where nothing is decided
+//! yet. A flight goes on until the last lane has come to its next real collision. The other lanes and their streams
+//! stand still until then.
 
 use super::walk::Path;
 use crate::Setup;
@@ -25,9 +25,9 @@ pub enum Side {
 /// Real collisions of walks.
 #[derive(Clone, Copy)]
 pub struct Subpath<L: Lane, P> {
-    /// Their distances along the ray.
+    /// Distances of the collisions along the ray.
     pub at: [L; HIGHEST_ORDER],
-    /// Whether each flight goes forward: to each collision, and out of the rod.
+    /// Lanes with a flight that goes forward: to each collision, and out of the rod.
     pub is_forward: [L::Mask; HIGHEST_ORDER + 1],
     /// `∏ (1 − σ_t/σ̂)` over the null vertices of each flight.
     pub nulls: [L; HIGHEST_ORDER + 1],
@@ -39,7 +39,7 @@ pub struct Subpath<L: Lane, P> {
     pub left: [L::Mask; HIGHEST_ORDER + 1],
 }
 
-/// What is computed for all lanes together.
+/// Functions that are evaluated for all lanes at once.
 pub trait Field<L: Lane> {
     /// σ_t at distances.
     fn extinction(&self, t: L) -> L;
@@ -48,7 +48,7 @@ pub trait Field<L: Lane> {
     fn exp(&self, x: L) -> L;
 }
 
-/// Tracking through the rod of one experiment. All of it stays where it is: copies would cost more than what is drawn.
+/// Tracking through the rod of one experiment. It is passed by reference: copies would cost more than the draws.
 pub struct Tracker<'a, L: Lane, C: BothWays<L>, F> {
     /// The rod and σ̂.
     pub setup: &'a Setup<BidirectionalRod>,
@@ -60,14 +60,14 @@ pub struct Tracker<'a, L: Lane, C: BothWays<L>, F> {
     pub lookups: L,
     /// The last subpaths from either side.
     pub subpaths: [Subpath<L, C::Place>; 2],
-    /// The path that they make.
+    /// The path that is built from them.
     pub path: Path<L>,
     /// The values of channels so far.
     pub values: [L; MOST],
 }
 
 impl<'a, L: Lane, C: BothWays<L>, F: Field<L>> Tracker<'a, L, C, F> {
-    /// Without lookups so far; `ends` are at the beginning and at the end of σ̂.
+    /// A tracker without lookups; `ends` are at the beginning and at the end of σ̂.
     #[inline(always)]
     pub fn new(setup: &'a Setup<BidirectionalRod>, zero: L, ends: [C; 2], field: F) -> Self {
         let (none, place) = (zero.below(zero), ends[0].place());
@@ -84,7 +84,7 @@ impl<'a, L: Lane, C: BothWays<L>, F: Field<L>> Tracker<'a, L, C, F> {
         Self { setup, field, ends, lookups: zero, subpaths, path, values }
     }
 
-    /// Makes walks of the lanes in `which` to so many collisions and, where that is asked for, one flight beyond.
+    /// Walks of the lanes in `which` to a number of `collisions`, and one flight beyond if `beyond` is 1.
     #[inline(always)]
     pub fn walk(
         &mut self,
@@ -122,8 +122,8 @@ impl<'a, L: Lane, C: BothWays<L>, F: Field<L>> Tracker<'a, L, C, F> {
         }
     }
 
-    /// Flies lanes to their next real collisions, or out of the rod; answers which collided, and the products over null
-    /// vertices.
+    /// Flies lanes to their next real collisions, or out of the rod. Returns the lanes that collided, and the
+    /// products over null vertices.
     #[inline(always)]
     fn fly(
         &mut self,
@@ -165,7 +165,7 @@ impl<'a, L: Lane, C: BothWays<L>, F: Field<L>> Tracker<'a, L, C, F> {
         nulls
     }
 
-    /// `σ_t/σ̂` where lanes are that are on their way.
+    /// `σ_t/σ̂` at the positions of the lanes in `flying`.
     #[inline(always)]
     fn look_up(&mut self, course: &C, flying: L::Mask) -> L {
         self.lookups.count_where(flying);

@@ -1,4 +1,4 @@
-//! One technique of bidirectional path tracing by itself.
+//! A single technique of bidirectional path tracing.
 //!
 //! Unbiased for: σ̂ ≥ σ_t, with tracked connections where `σ_t/σ̂` is one number; refused elsewhere, and for τ > 12.
 //!
@@ -23,7 +23,7 @@ use media::catalogue::Settings;
 use theory::bidirectional_rod::Combination;
 use theory::problems::bidirectional_rod::HIGHEST_ORDER;
 
-/// One technique; σ̂ is its input.
+/// A single technique; σ̂ is its input.
 #[derive(Debug, Clone, Copy)]
 pub struct Technique(Page);
 

@@ -6,9 +6,9 @@
 //! s = 0 and s = r + 2: all of it from one side, a hit of the light or of the sensor
 //! ```
 //!
-//! Independent paths have subpaths of their own. Shared ones begin with one walk from either side, until it is
-//! absorbed, leaves, or has been scattered as often as the highest order, and all techniques of all orders take
-//! their first vertices.
+//! Independent paths have subpaths of their own. Shared paths begin with one walk from either side. It ends when it
+//! is absorbed, leaves, or has been scattered as often as the highest order. All techniques of all orders take its
+//! first vertices.
 
 use super::subpath::{Field, Side, Subpath, Tracker};
 use crate::{Draw, Setup};
@@ -31,7 +31,7 @@ pub struct Path<L: Lane> {
     pub light: usize,
     /// Light, scatterings and sensor, as distances along the ray.
     pub at: [L; HIGHEST_ORDER + 2],
-    /// Whether each segment goes forward.
+    /// Lanes with a segment that goes forward, by segment.
     pub is_forward: [L::Mask; HIGHEST_ORDER + 1],
     /// `T̂ⱼ` of each segment.
     pub transmittance: [L; HIGHEST_ORDER + 1],
@@ -42,7 +42,7 @@ pub struct Path<L: Lane> {
 }
 
 impl<L: Lane> Path<L> {
-    /// Room for paths.
+    /// Memory for paths, with the albedo a.
     #[inline(always)]
     pub fn new(one: L, albedo: f64) -> Self {
         Self {
@@ -69,7 +69,7 @@ impl<L: Lane> Path<L> {
         )
     }
 
-    /// The same without a and T̂.
+    /// Factor of [`Self::quotient`] that the directions make: a and T̂ are left out.
     #[inline(always)]
     fn directions(&self, s: usize) -> L {
         quotient(
@@ -82,7 +82,7 @@ impl<L: Lane> Path<L> {
         )
     }
 
-    /// The weight of the technique that made them.
+    /// The weight of the technique that made the paths.
     #[inline(always)]
     pub fn weight(&self, combination: Combination) -> L {
         let (light, order) = (self.light, self.order);
@@ -104,24 +104,24 @@ impl<L: Lane> Path<L> {
     }
 }
 
-/// What an estimator does, some of which a known bug may replace.
+/// Steps of an estimator, which a known bug may replace.
 pub trait Steps {
-    /// Which techniques, and what they are worth beside each other.
+    /// Techniques, and their weights.
     fn combination(&self) -> Combination;
 
-    /// Whether connections are tracked.
+    /// True if connections are tracked.
     fn is_tracked(&self) -> bool;
 
-    /// Whether all techniques share their subpaths.
+    /// True if all techniques share their subpaths.
     fn is_shared(&self) -> bool;
 
-    /// What the generator does before each path: it goes on.
+    /// Prepares the generator for the next path: it continues its stream.
     #[inline(always)]
     fn begin<R: Copy>(&self, random: &mut R, beginning: &R) {
         let _ = (random, beginning);
     }
 
-    /// Where the connection of a path begins: the last vertex from the light.
+    /// Index of the vertex at which the connection of a path begins: the last vertex from the light.
     #[inline(always)]
     fn joined<L: Lane>(&self, path: &Path<L>) -> usize {
         path.light - 1
@@ -133,7 +133,7 @@ pub trait Steps {
         path.weight(self.combination()) * path.quotient(path.light)
     }
 
-    /// What all techniques are worth together.
+    /// Sum of the values of all techniques.
     #[inline(always)]
     fn together<L: Lane>(&self, each: &[L]) -> L {
         let (first, rest) = (each[0], &each[1..]);
@@ -192,7 +192,7 @@ fn through<L: Single, C: BothWays<L>>(
     Draw::free(values, tracker.lookups.double() as u32)
 }
 
-/// The lookups of one lane.
+/// Lookups and exponentials of one lane.
 struct Alone<'a>(&'a Lookups<'a>);
 
 impl<L: Lane> Field<L> for Alone<'_> {
@@ -207,7 +207,7 @@ impl<L: Lane> Field<L> for Alone<'_> {
     }
 }
 
-/// Makes a draw of each lane in `which`: a path of each technique. Answers the number of channels.
+/// Makes a draw of each lane in `which`: a path of each technique. Returns the number of channels.
 #[inline(always)]
 pub fn draw_each<L: Lane, C: BothWays<L>, R: Random<L> + Copy>(
     steps: &impl Steps,
@@ -251,7 +251,8 @@ pub fn draw_each<L: Lane, C: BothWays<L>, R: Random<L> + Copy>(
     count
 }
 
-/// Makes the subpaths of a technique `[r, s]`; that from the sensor where that from the light does not end too soon.
+/// Makes the subpaths of a technique `[r, s]`. Lanes with too short a subpath from the light make none from the
+/// sensor.
 #[inline(always)]
 fn walk_for<L: Lane, C: BothWays<L>>(
     tracker: &mut Tracker<'_, L, C, impl Field<L>>,
@@ -269,8 +270,8 @@ fn walk_for<L: Lane, C: BothWays<L>>(
     tracker.walk(Side::Camera, camera, is_whole, random);
 }
 
-/// Makes paths by a technique of the first vertices of two subpaths; answers the lanes in which it does: not where one of
-/// them has too few, a hit misses, or nothing comes through.
+/// Joins the first vertices of two subpaths by a technique. Returns the lanes with a path: both subpaths have
+/// enough vertices, a hit reaches its end, and the transmittance is not 0.
 #[inline(always)]
 fn join<L: Lane, C: BothWays<L>>(
     tracker: &mut Tracker<'_, L, C, impl Field<L>>,

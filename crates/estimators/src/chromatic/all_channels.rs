@@ -11,7 +11,7 @@ use theory::spectral::Chances;
 /// A walk that scores all channels, of a kind of walker.
 #[derive(Debug, Clone)]
 pub struct AllChannels<const KIND: u8> {
-    /// Whose walk it is.
+    /// Walker that makes the walks.
     pub walker: Walker,
 }
 
@@ -41,7 +41,7 @@ impl<P: Chromatic, const KIND: u8> Estimator<P> for AllChannels<KIND> {
         let count = setup.channels.len();
         match &self.walker {
             Walker::Mis(heroes) => P::predict_balanced(setup, &heroes.of(count)),
-            // It scores what equal heroes score by the balance heuristic, and flies as they do.
+            // Its scores are those of the balance heuristic with equal heroes, and its walks are the same.
             Walker::SpectralTracking(Chances::History) => {
                 P::predict_balanced(setup, &Heroes::Uniform.of(count))
             }

@@ -14,7 +14,7 @@ use theory::ParticleRule;
 use theory::particle::Event;
 use theory::spectral::chance::shares;
 
-/// The channels of a body, and whose walks go through it.
+/// Channels of a body, and the walker that goes through it.
 #[derive(Clone, Copy)]
 pub struct Scatterers<'a, S> {
     /// σ̂ of each channel, and probabilities of heroes.
@@ -41,11 +41,11 @@ pub struct Events<M> {
 }
 
 kept! {
-    /// Densities of walks. All of them are in memory.
+    /// Densities of walks, kept in memory.
     pub struct Densities<L> {
-        /// Relative to the heroes'.
+        /// Densities relative to those of the heroes.
         pub weights: [L; MOST_CHANNELS],
-        /// What they are to be.
+        /// Densities after the current step.
         next: [L; MOST_CHANNELS],
         /// `σ_t/σ̂` of each channel.
         ratios: [L; MOST_CHANNELS],
@@ -53,7 +53,7 @@ kept! {
 }
 
 impl<L: Lane> Densities<L> {
-    /// Those of walks that begin.
+    /// Densities of new walks: 1 in every channel.
     #[inline(always)]
     pub fn new(one: L) -> Self {
         let ones = [one; MOST_CHANNELS];
@@ -68,7 +68,7 @@ impl<L: Lane> Densities<L> {
         }
     }
 
-    /// Notes σ_t of all channels; answers the heroes' own ratios.
+    /// Stores `σ_t/σ̂` of all channels; returns the heroes' own ratios.
     #[inline(always)]
     pub fn look<S: Steps>(&mut self, among: &Scatterers<'_, S>, hero: L, found: &[L]) -> L {
         let (media, mut own) = (&among.media, hero);
@@ -84,8 +84,9 @@ impl<L: Lane> Densities<L> {
         own
     }
 
-    /// Probabilities to go straight on, to be scattered and to be absorbed where all channels walk together; or of heroes the
-    /// first two, given their own ratios and albedos.
+    /// Probabilities to go straight on, to be scattered and to be absorbed, where all channels walk together. For
+    /// heroes, given their own ratios and albedos: the probabilities to go straight on and to be scattered, and the
+    /// own ratio.
     #[inline(always)]
     pub fn chances<S: Steps>(&self, among: &Scatterers<'_, S>, [own, albedo]: [L; 2]) -> [L; 3] {
         if let Some(chances) = among.walker.together() {
@@ -100,8 +101,8 @@ impl<L: Lane> Densities<L> {
         [odds.transmit, odds.scatter, own]
     }
 
-    /// Multiplies by what events are worth; those that are scattered turn by a cosine. Densities stay relative to those of heroes
-    /// or, where all channels walk together, to the probabilities of what happened.
+    /// Multiplies by the factors of events; scattered lanes turn by `cosine`. Densities stay relative to those of
+    /// heroes or, where all channels walk together, to the probabilities of the events.
     #[inline(always)]
     pub fn weigh<S: Steps>(
         &mut self,

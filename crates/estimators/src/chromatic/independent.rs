@@ -1,4 +1,4 @@
-//! One channel a draw, by an analog walk through its own medium: the page of all bodies.
+//! Analog walks of one channel a draw, each through its own medium: the page of all bodies.
 
 use super::{By, Chromatic, WEIGHING, draw};
 use crate::setup::heroes::Heroes;
@@ -7,7 +7,7 @@ use crate::{Estimator, Inputs, Kernel, Refusal, Request, Setup, walks};
 use media::catalogue::Settings;
 use theory::Prediction;
 
-/// One channel a draw.
+/// Analog walks of one channel a draw.
 #[derive(Debug, Clone)]
 pub struct Independent {
     heroes: Heroes,

@@ -1,4 +1,4 @@
-//! Walks through a body in which every channel has a medium of its own: what furnaces and slabs share.
+//! Walks through a body in which every channel has a medium of its own: common parts of furnaces and slabs.
 //!
 //! A walk of one walker carries the densities of all channels, and scores where it ends.
 
@@ -22,8 +22,8 @@ use theory::problems::Problem;
 
 /// The steps of a walk that a known bug may replace.
 pub trait Steps: Copy {
-    /// What an event multiplies f by in a channel: the ratio `σ_t/σ̂`, the albedo, and the density of the new
-    /// direction are those of this channel.
+    /// Factor of f in a channel at an event, given `σ_t/σ̂`, the albedo, and the density of the new direction in
+    /// this channel.
     #[inline(always)]
     fn factor<L: Lane>(&self, event: Event, ratio: L, albedo: L, density: L) -> L {
         match event {
@@ -33,19 +33,19 @@ pub trait Steps: Copy {
         }
     }
 
-    /// Whether the hero's σ̂ counts in the ratios of all channels.
+    /// True if the ratios of all channels are computed with the hero's σ̂.
     #[inline(always)]
     fn has_heros_majorant(&self) -> bool {
         false
     }
 
-    /// Whether the hero's phase function counts in all channels.
+    /// True if all channels use the hero's phase function.
     #[inline(always)]
     fn has_heros_phase(&self) -> bool {
         false
     }
 
-    /// The length of a flight through a slab that goes so deep.
+    /// Length of a flight through a slab that goes to a `depth`.
     #[inline(always)]
     fn flown<L: Lane>(&self, depth: L, cosine: L) -> L {
         depth / cosine
@@ -65,11 +65,11 @@ pub struct By<'a> {
     pub walker: &'a Walker,
     /// The weighting of walks by the balance heuristic.
     pub weighing: Weighing,
-    /// Whether it scores all channels, or the hero's alone.
+    /// True if all channels are scored; false if the hero's alone is.
     pub scores_all: bool,
 }
 
-/// A body in which every channel has a medium of its own: the pages of its estimators are the same.
+/// A body in which every channel has a medium of its own; its estimators have common pages.
 pub trait Chromatic: Problem {
     /// Makes one draw.
     fn draw(
@@ -89,7 +89,7 @@ pub trait Chromatic: Problem {
         request: Request<'a>,
     ) -> Option<Request<'a>>;
 
-    /// What every walker asks of σ̂, and whether theory knows the body.
+    /// Checks that σ̂ fits a walker, and that theory covers the body.
     ///
     /// # Errors
     ///
@@ -100,16 +100,16 @@ pub trait Chromatic: Problem {
     ///
     /// # Errors
     ///
-    /// Why there are none, or how the draws are biased.
+    /// Why bounds do not exist, or how the draws are biased.
     fn second_moment_bounds(setup: &Setup<Self>, walker: &Walker) -> Result<Vec<f64>, Refusal>;
 
-    /// What theory says of one channel a draw.
+    /// Prediction for one channel a draw.
     fn predict_independent(setup: &Setup<Self>, heroes: &[f64]) -> Prediction;
 
-    /// Of all channels by the balance heuristic.
+    /// Prediction for all channels by the balance heuristic.
     fn predict_balanced(setup: &Setup<Self>, heroes: &[f64]) -> Prediction;
 
-    /// Of all channels relative to the density of one walker, given bounds on their second moments.
+    /// Prediction for all channels relative to the density of one walker, given bounds on their second moments.
     fn predict_relative(
         setup: &Setup<Self>,
         walker: &Walker,
@@ -117,7 +117,7 @@ pub trait Chromatic: Problem {
     ) -> Prediction;
 }
 
-/// How the balance heuristic weights a walk: there are no shadow rays.
+/// Weighting by the balance heuristic without shadow rays.
 pub const WEIGHING: Weighing = Weighing { has_next_event: false, ..Weighing::RIGHT };
 
 /// Makes one draw: compiled once for all walkers.

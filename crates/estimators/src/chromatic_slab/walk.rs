@@ -6,9 +6,10 @@
 //!   f_λ ← f_λ (1 − r_λ),   f_λ r_λ (1 − a_λ),   f_λ r_λ a_λ p_λ(cos θ)
 //! ```
 //!
-//! f is the density of the walk in the channel λ and is kept relative to the hero's, see [`Densities`]. In spectral tracking all
-//! channels walk together through one σ̂ with one phase function: chances `P_e` decide, and f is relative to them. The choice of the hero
-//! takes one random number, diffuse light one, a flight one, a collision one, a scattering one for θ and one for the azimuth.
+//! f is the density of the walk in the channel λ and is kept relative to the hero's, see [`Densities`]. In spectral
+//! tracking all channels walk together through one σ̂ with one phase function: probabilities `P_e` decide, and f is
+//! relative to them. The choice of the hero takes one random number, diffuse light one, a flight one, a collision
+//! one, a scattering one for θ and one for the azimuth.
 
 use std::f64::consts::TAU;
 
@@ -51,7 +52,7 @@ impl<'a, S: Steps> InSlab<'a, S> {
         for (channel, own) in setup.channels.iter().enumerate() {
             mean_free_paths[channel] = 1.0 / own.majorant;
             phases[channel] = problem.incidences[channel].phase;
-            // A walk of all channels together has the number 0.
+            // A walk of all channels together has the hero number 0.
             let together = if channel == 0 { 1.0 } else { 0.0 };
             let heroes = walker.heroes();
             probabilities[channel] =
@@ -66,7 +67,7 @@ impl<'a, S: Steps> InSlab<'a, S> {
 }
 
 kept! {
-    /// Walks through a slab. All of it is in memory.
+    /// Walks through a slab, kept in memory.
     pub struct Particle<L> {
         /// The number of the hero, its mean free path through σ̂, its σ̂ and its albedo.
         hero: L,

@@ -2,10 +2,9 @@
 //!
 //! Specification: draw j is, bit for bit, the draw that the walk's page makes from stream j mod 16.
 //!
-//! A step takes all particles through *fly*, *look up* and *collide* together (event-based tracking). A walk
-//! that ends begins anew at once, so that no lane waits, and every lane makes a number of draws that was fixed
-//! beforehand. A lane that has made them walks on until the others have; its stream stays where its last draw
-//! left it.
+//! A step takes all particles through *fly*, *look up* and *collide* together (event-based tracking). A walk that
+//! ends is replaced at once, so that no lane stands still. The number of draws of every lane is fixed beforehand. A
+//! lane that has made them walks on until the others have; its stream is reset to the end of its last draw.
 //!
 //! Source: F. B. Brown, W. R. Martin, *Monte Carlo methods for radiation transport analysis on vector
 //! computers*, Progress in Nuclear Energy 14 (1984).
@@ -21,7 +20,7 @@ use numeric::rng::{LANES, Streams, Xoshiro};
 /// The streams of a pack.
 pub type Numbers<S> = Xoshiro<u64x8<S>>;
 
-/// σ_t of so many channels for both packs.
+/// σ_t of the first `count` channels for both packs.
 #[inline(always)]
 pub fn of_channels<S: Simd>(
     simd: S,
@@ -37,7 +36,7 @@ pub fn of_channels<S: Simd>(
     }
 }
 
-/// What each lane has to do and has done.
+/// Draws that each lane has made and has to make.
 pub struct Slots {
     /// The number of each lane's next draw.
     next: [usize; WIDTH],
@@ -45,7 +44,7 @@ pub struct Slots {
     began: [u32; WIDTH],
     /// The number of this step.
     now: u32,
-    /// How many lanes have draws left.
+    /// Number of lanes with draws left.
     open: usize,
     count: usize,
 }
@@ -57,12 +56,12 @@ pub struct Slot {
     pub lane: usize,
     /// The draw's number in the buffer.
     pub draw: usize,
-    /// How many steps the walk made before this one.
+    /// Number of steps that the walk made before this one.
     pub steps: u32,
 }
 
 impl Slots {
-    /// Those of a pack among so many draws, of which the first comes from the lane whose turn it is.
+    /// Slots of a pack for a number of draws; the first draw comes from the lane `turn`.
     pub fn new(count: usize, turn: usize, pack: usize) -> Self {
         let mut next = [0; WIDTH];
         for (lane, draw) in (pack * WIDTH..).zip(&mut next) {
@@ -72,20 +71,20 @@ impl Slots {
         Self { next, began: [0; WIDTH], now: 0, open, count }
     }
 
-    /// Whether some lane has draws left.
+    /// Returns true if a lane has draws left.
     #[inline(always)]
     pub fn are_open(&self) -> bool {
         self.open > 0
     }
 
-    /// The step is over.
+    /// Ends the step.
     #[inline(always)]
     pub fn step(&mut self) {
         self.now = self.now.wrapping_add(1);
     }
 
-    /// Hands out the slots of the walks that end in this step, as bits; answers whose last ones these
-    /// are.
+    /// Passes the slots of the walks that end in this step to `write`. Returns the lanes that made their last draw.
+    /// Both are bits.
     #[inline(always)]
     pub fn fill(&mut self, mut ended: u64, mut write: impl FnMut(Slot)) -> u64 {
         let mut over = 0;
@@ -108,7 +107,7 @@ impl Slots {
     }
 }
 
-/// Leaves the streams of some lanes of a pack, as bits, where they stand now.
+/// Sets the stored streams of some lanes of a pack, as bits, to their present state.
 #[inline(always)]
 pub fn leave<S: Simd>(streams: &mut Streams, pack: usize, which: u64, now: Xoshiro<u64x8<S>>) {
     if which != 0 {

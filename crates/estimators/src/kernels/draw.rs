@@ -2,20 +2,20 @@
 
 use numeric::rng::Streams;
 
-/// One realisation.
+/// One realisation of an estimator.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Draw<V = [f64; 1]> {
     /// The value, one number per channel.
     pub value: V,
-    /// How many times σ_t was evaluated.
+    /// Number of evaluations of σ_t.
     pub lookups: u32,
-    /// By how much the draw breaks a law that holds for every single draw, relative to what the law
-    /// is about: rounding where all is well, and 0 where there is no such law.
+    /// Relative violation of an identity that every single draw satisfies: rounding where all is well, and 0 where
+    /// there is no such identity.
     pub defect: f64,
 }
 
 impl<V> Draw<V> {
-    /// A draw of an estimator without a law that holds draw by draw.
+    /// A draw of an estimator that satisfies no identity draw by draw.
     #[inline(always)]
     pub fn free(value: V, lookups: u32) -> Self {
         Self { value, lookups, defect: 0.0 }
@@ -36,11 +36,12 @@ pub struct DrawBuffer {
 }
 
 impl DrawBuffer {
-    /// How many draws of one channel a buffer holds: with what a question makes of them half a mebibyte, small
-    /// enough for most second-level caches, and so many that the lanes of a packet seldom wait for the slowest.
+    /// Number of draws of one channel in a full buffer. With the results of a check this is half a mebibyte, small
+    /// enough for most second-level caches. It is large enough that the lanes of a packet seldom wait for the
+    /// slowest one.
     pub const LENGTH: usize = 16_384;
 
-    /// The fewest, however many channels.
+    /// Minimum number of draws in a full buffer, for any number of channels.
     const LEAST: usize = Self::LENGTH / 4;
 
     /// An empty buffer for draws of the given number of channels.
@@ -48,12 +49,12 @@ impl DrawBuffer {
         Self { values: vec![Vec::new(); channels], ..Self::default() }
     }
 
-    /// How many draws of so many channels a buffer is to be filled with.
+    /// Number of draws in a full buffer, given the number of channels.
     pub fn length(channels: usize) -> usize {
         (Self::LENGTH / channels.next_power_of_two()).max(Self::LEAST)
     }
 
-    /// For draws of so many channels from now on.
+    /// Sets the number of channels of the draws.
     pub fn set_channels(&mut self, channels: usize) {
         self.values.resize_with(channels, Vec::new);
     }
@@ -77,8 +78,8 @@ impl DrawBuffer {
 }
 
 impl DrawBuffer {
-    /// Makes room for exactly so many draws of one channel, and hands out values, lookups and
-    /// defects to be written anew; `None` where a draw has no channel.
+    /// Resizes to `count` draws of one channel; returns values, lookups and defects for overwriting. `None` if
+    /// draws have no channel.
     pub fn one_channel(&mut self, count: usize) -> Option<(&mut [f64], &mut [u32], &mut [f64])> {
         self.make_room(count);
         let values = self.values.first_mut()?;
@@ -97,7 +98,7 @@ impl DrawBuffer {
         }
     }
 
-    /// Makes room for exactly so many draws, to be written anew.
+    /// Resizes to `count` draws for overwriting.
     pub fn make_room(&mut self, count: usize) {
         self.values.iter_mut().for_each(|channel| channel.resize(count, 0.0));
         self.lookups.resize(count, 0);
@@ -105,9 +106,9 @@ impl DrawBuffer {
     }
 }
 
-/// A request of draws.
+/// A request for draws.
 pub struct Request<'a> {
-    /// The streams of the block, where the draws before left them.
+    /// The streams of the block, as the last request left them.
     pub streams: &'a mut Streams,
     /// The number of draws.
     pub count: usize,

@@ -5,13 +5,13 @@
 //! | `camera` | `"exact"`, `"ratio"` (residual ratio where there is a control) or `"delta"`, through σ̂ | `"exact"` |
 //! | `shadow` | `"exact"`, `ratio = { sampling, control }` or `delta = { sampling }`, each one number | `"exact"` |
 //!
-//! The exact ones evaluate optical depths, never σ_t: no lookups. They are theory, which uses the
-//! platform's library: the last bits of draws with one may differ between machines.
+//! The exact ones evaluate optical depths, never σ_t: no lookups. They are theory, which uses the platform's
+//! library: the last bits of draws with one may differ between machines.
 //!
-//! A shadow ray is clipped to the bounds of the volume and walked from the scattering point. Where
-//! σ_t = 0 there is nothing to light, and where it misses the bounds nothing in the way: neither
-//! costs a lookup. Where delta tracking ended on the way to the point none is cast; one is where a tracked weight has
-//! become 0, whose chance depends on the rounding of σ̂ and σ_t.
+//! A shadow ray is clipped to the bounds of the volume and walked from the scattering point. It costs no lookup
+//! where σ_t = 0 at the scattering point, or where it misses the bounds. No ray is cast where delta tracking ended
+//! on the way to the point. One is cast where a tracked weight has become 0, because the probability of that
+//! depends on the rounding of σ̂ and σ_t.
 
 use crate::{Refusal, Setup};
 use media::Volume;
@@ -56,16 +56,16 @@ pub fn shadow_label(shadow: Tracking) -> String {
     }
 }
 
-/// Knowledge that exact shadow rays need.
+/// Known quantities that exact shadow rays need.
 pub fn shadow_needs(shadow: Tracking) -> Option<&'static str> {
     (shadow == Tracking::Exact).then_some("τ")
 }
 
-/// Delta tracking needs a majorant on every shadow ray, and walks along them must end.
+/// Checks delta tracking of shadow rays: it needs a majorant on every ray, and its walks must end.
 ///
 /// # Errors
 ///
-/// The bound on σ_t that it does not reach, or how many collisions there would be.
+/// The bound on σ_t that the majorant does not reach, or the expected number of collisions.
 pub fn require_shadow(setup: &Setup<SingleScattering>, shadow: Tracking) -> Result<(), Refusal> {
     if let Tracking::Ratio { sampling, .. } | Tracking::Delta { sampling } = shadow {
         let collisions = sampling * setup.mesh.support().length();

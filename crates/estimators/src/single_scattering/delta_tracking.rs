@@ -13,8 +13,7 @@
 //! | `absorption` | `"weight"`: the albedo is a factor of S; `"analog"`: it is the chance of a real collision to scatter | `"weight"` |
 //! | `shadow` | `"exact"`, `ratio = { sampling, control }` or `delta = { sampling }` | `"exact"` |
 //!
-//! The density knows nothing of the light: the variance
-//! grows as `1/D³` when the light comes near the ray.
+//! The density does not depend on the light: the variance grows as `1/D³` when the light comes near the ray.
 //!
 //! Source: E. R. Woodcock, T. Murphy, P. Hemmings, T. Longworth, *Techniques used in the GEM code
 //! for Monte Carlo neutronics calculations*, ANL-7050 (1965); Szirmay-Kalos et al. 2017, section 4.3.

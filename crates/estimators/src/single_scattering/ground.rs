@@ -14,9 +14,9 @@ pub struct Ground<'a> {
     pub setup: &'a Setup<SingleScattering>,
     /// Shadow rays.
     pub rays: &'a ShadowRays<'a>,
-    /// The field on shadow rays, as packs look it up; none for one lane.
+    /// The field on shadow rays, as packs look it up; empty for one lane.
     pub fields: &'a [Batches<'a>],
-    /// Where the medium is.
+    /// Interval of the ray inside the medium.
     pub support: Span,
     /// σ_t, if it has one value.
     pub extinction: Option<f64>,

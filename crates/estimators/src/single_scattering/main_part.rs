@@ -4,8 +4,8 @@
 //! p(s) = σ_m(s) e^{−∫₀ˢ σ_m} / (1 − e^{−τ_m}),   ∫₀ˢ σ_m = −ln(1 − u(1 − e^{−τ_m}))
 //! ```
 //!
-//! The inverse is closed because the pieces are straight. It needs `σ_m > 0` wherever `σ_t > 0`, or
-//! some of the light is never found.
+//! The inverse has a closed form because the pieces are straight. It needs `σ_m > 0` wherever `σ_t > 0`: otherwise
+//! light is missed.
 
 use crate::{Refusal, Setup};
 use media::{Control, Piecewise};
@@ -32,7 +32,7 @@ impl<'a> MainPart<'a> {
         Some(Self { pieces, support, absorbed: 1.0 - setup.control_transmittance })
     }
 
-    /// The point that a uniform number finds.
+    /// The point of a uniform number.
     #[inline(always)]
     pub fn point<L: Lane>(&self, u: L) -> L {
         let depth = -Lane::ln(u.each(1.0) - u * self.absorbed);
@@ -40,7 +40,7 @@ impl<'a> MainPart<'a> {
         self.pieces.flown(depth).or_less(u.each(self.support.to))
     }
 
-    /// Its density, 1/length.
+    /// Density of [`Self::point`], 1/length.
     #[inline(always)]
     pub fn density<L: Lane>(&self, s: L) -> L {
         let depth = self.pieces.depths(self.support.from, s);
@@ -77,7 +77,7 @@ impl<'a> MainPart<'a> {
     }
 }
 
-/// Straight pieces that are nowhere negative, and not zero throughout.
+/// Checks that the control consists of straight pieces that are nowhere negative, and not zero throughout.
 ///
 /// # Errors
 ///
@@ -103,20 +103,20 @@ pub fn require_straight(setup: &Setup<SingleScattering>) -> Result<(), Refusal> 
         return Err(Refusal::mismatch("a control σ_m > 0 somewhere", "it is zero throughout"));
     }
     if absorbed < THINNEST {
-        // What is left of 1 − e^{−τ_m} has too few digits to place points by.
+        // Below it 1 − e^{−τ_m} has too few digits to place points.
         let needs = "a control with ∫σ_m ≥ 1e-6";
         return Err(Refusal::mismatch(needs, format!("1 − exp(−∫σ_m) = {absorbed:e}")));
     }
     Ok(())
 }
 
-/// How far below 0 the corner of a line may fall, relative to the highest.
+/// Maximum depth below 0 of the corner of a line, relative to its maximum.
 const ROUNDING: f64 = 1e-12;
 
-/// The least `1 − e^{−τ_m}` whose digits place points well.
+/// Minimum `1 − e^{−τ_m}`: below it too few digits are left to place points.
 const THINNEST: f64 = 1e-6;
 
-/// Straight pieces that are positive wherever there is anything to scatter.
+/// Checks that the control consists of straight pieces that are positive wherever σ_t is.
 ///
 /// # Errors
 ///

@@ -29,48 +29,48 @@ use theory::{Heuristic, Prediction};
 /// An estimator: its technique, and its shadow rays.
 #[derive(Debug, Clone, Copy)]
 pub struct Plan {
-    /// How scattering points are found.
+    /// Choice of scattering points.
     pub technique: Technique,
-    /// How the transmittance of a shadow ray is found.
+    /// Tracking of the transmittance of a shadow ray.
     pub shadow: Tracking,
 }
 
-/// How scattering points are found.
+/// Choice of scattering points.
 #[derive(Debug, Clone, Copy)]
 pub enum Technique {
-    /// One after the other.
+    /// Points that are chosen one after the other.
     Vertices(Vertices),
     /// At all interaction points of a walk.
     Interactions,
-    /// At one of them.
+    /// One of the interaction points.
     Resampled,
-    /// At a number of points from the light, with one walk.
+    /// A number of points from the light, with one walk past all of them.
     Shared(usize),
 }
 
-/// Scattering points one after the other.
+/// Scattering points that are chosen one after the other.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Vertices {
-    /// How the transmittance from the ray's origin is found.
+    /// Tracking of the transmittance from the ray's origin.
     pub camera: CameraTracking,
-    /// Whether there is a point from the light.
+    /// True if there is a point from the light.
     pub light: bool,
-    /// Whether there is a point from the main part of the control.
+    /// True if there is a point from the main part of the control.
     pub main: bool,
-    /// Whether there is a first real collision, and what absorption does on the way there.
+    /// Treatment of absorption on the way to the first real collision; `None` without such a point.
     pub collision: Option<Absorption>,
-    /// Whether a draw has one of these points.
+    /// True if a draw has only one of these points, chosen at random.
     pub is_one: bool,
-    /// How a point from the light and a collision are weighted.
+    /// Heuristic that weights a point from the light and a collision.
     pub heuristic: Heuristic,
 }
 
-/// What absorption does to a walk.
+/// Effect of absorption on a walk.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Absorption {
-    /// It is a factor of what a real collision brings.
+    /// The albedo is a factor of the score of a real collision.
     Weight,
-    /// It ends walks.
+    /// Absorption ends walks.
     Analog,
 }
 
@@ -104,7 +104,7 @@ impl Vertices {
         heuristic: Heuristic::Balance,
     };
 
-    /// Reads `camera`, one of the words.
+    /// Reads `camera`, one of `words`.
     pub fn read(self, settings: &Settings, words: &[&'static str]) -> Option<Self> {
         let camera = match settings.word_or("camera", words, "exact")? {
             "ratio" => CameraTracking::Ratio,
@@ -205,7 +205,7 @@ impl Vertices {
         found.prediction()
     }
 
-    /// The moments of points that are chosen.
+    /// The moments of points from the light, from the main part, or from both.
     fn points(self, setup: &Setup<SingleScattering>, shadow: Tracking) -> Points {
         let main = if self.main { MainPart::of(setup) } else { None };
         let from_light = |node: &Node| setup.problem.equiangular_density_beyond(node.along);
@@ -339,8 +339,8 @@ impl Plan {
         )
     }
 
-    /// Makes the draws of a request side by side; it is handed back where the hardware is too narrow, where σ̂ has several
-    /// values, and where one draw after the other is faster.
+    /// Makes the draws of a request in packets. Returns the request where the hardware is too narrow, where σ̂ has
+    /// several values, and where one draw after the other is faster.
     fn draw_packets<'r>(
         &self,
         level: Level,
@@ -350,7 +350,8 @@ impl Plan {
     ) -> Option<Request<'r>> {
         let (volume, shadow) = (setup.problem.volume(), self.shadow);
         let is_single = setup.control.single_value().is_some();
-        // One cheap sample alone, and a main part of many pieces beside a tracked camera do not pay.
+        // Packets do not pay for one cheap sample alone, nor for a main part of many pieces beside a tracked
+        // camera.
         let is_slow = matches!(self.technique, Technique::Vertices(plan)
             if plan.is_one && shadow == Tracking::Exact && !medium.is_costly()
                 || plan.main && plan.camera != CameraTracking::Exact && !is_single);
@@ -371,7 +372,7 @@ trait Run {
     fn run(self, walk: &impl Walk) -> Self::Output;
 }
 
-/// One draw.
+/// A use that makes one draw.
 struct One<'a, 'r> {
     setup: &'a Setup<SingleScattering>,
     medium: &'a Lookups<'a>,
@@ -387,7 +388,7 @@ impl Run for One<'_, '_> {
     }
 }
 
-/// The draws of a request, side by side.
+/// A use that makes the draws of a request in packets.
 struct SideBySide<'a, 'r> {
     level: Level,
     setup: &'a Setup<SingleScattering>,
@@ -406,7 +407,7 @@ impl<'r> Run for SideBySide<'_, 'r> {
 
 /// The plan of a page of the catalogue.
 pub trait Planned: Clone + Send + Sync + 'static {
-    /// What the estimator takes, unless its settings say otherwise.
+    /// Inputs of the estimator, unless its settings say otherwise.
     const INPUTS: Inputs;
 
     /// Reads the settings.

@@ -16,8 +16,8 @@
 //!
 //! With the exact camera a `sampling` of its own is read and not used: it may stay when the camera changes.
 //!
-//! Unbiased where `σ_m > 0` wherever `σ_t > 0`; refused elsewhere. The density knows nothing of the
-//! light: the variance grows as `1/D³` when the light comes near the ray.
+//! Unbiased where `σ_m > 0` wherever `σ_t > 0`; refused elsewhere. The density does not depend on the light: the
+//! variance grows as `1/D³` when the light comes near the ray.
 //!
 //! Source: Szirmay-Kalos et al. 2017, section 4.3.
 

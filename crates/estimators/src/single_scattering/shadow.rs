@@ -1,7 +1,8 @@
 //! Shadow rays of walks to scattering points: cast, tracked and collected side by side.
 //!
-//! A lane that has come to a scattering point waits until so many of its pack have: to find where shadow rays lead costs more
-//! than a step. A lane that has found light waits likewise. Neither takes random numbers in the meantime.
+//! Aiming a shadow ray costs more than a step. A lane that has come to a scattering point therefore stands still
+//! until [`TOGETHER`] lanes of its pack have. Scores of lanes that have found light are delayed likewise. A lane
+//! takes no random numbers in the meantime.
 
 use super::ground::Ground;
 use crate::space::shadow::{Light, Shadows};
@@ -26,7 +27,7 @@ kept! {
         place: [L; 3],
         origin: [L; 3],
         shadows: Shadows<L>,
-        /// Lanes that have found light, and how much.
+        /// Lanes that have found light, and its transmittance.
         lit: L::Mask,
         light: L,
     }
@@ -49,7 +50,7 @@ impl<L: Lane> ToLight<L> {
         }
     }
 
-    /// Begins a step; answers the lanes that are on their way to the light.
+    /// Begins a step; returns the lanes on their way to the light.
     #[inline(always)]
     pub fn step(&mut self) -> L::Mask {
         self.casts = self.shadows.on;
@@ -79,8 +80,9 @@ impl<L: Lane> ToLight<L> {
         (self.inside & self.casts, self.place)
     }
 
-    /// Handles the collisions, and casts the shadow rays of the lanes in `aims` from distances s along the camera's ray. Answers
-    /// lanes that have found light and how much, as soon as `enough` of a pack have.
+    /// Handles the collisions, and casts the shadow rays of the lanes in `aims` from distances s along the camera's
+    /// ray. Returns the lanes that have found light and its transmittance, as soon as `enough` lanes of a pack
+    /// have.
     #[inline(always)]
     pub fn collide(
         &mut self,

@@ -1,4 +1,4 @@
-//! The walk through the whole ray that several points from the light share.
+//! The walk along the whole ray for several points from the light.
 //!
 //! ```text
 //! begin    points sⱼ;  T̂ = 1
@@ -26,9 +26,9 @@ kept! {
         /// Lanes that begin in the next step.
         begins: L::Mask,
         walks: L::Mask,
-        /// Lanes of these that are not on their way to the light.
+        /// Lanes among them that are not on a shadow ray.
         active: L::Mask,
-        /// Lanes with a flight whose end they have not come to.
+        /// Lanes with a flight that has not reached its end.
         pending: L::Mask,
         /// Lanes at a point, and lanes at an interaction point.
         is_point: L::Mask,
@@ -75,7 +75,7 @@ impl Shared<'_> {
         path.begins &= !begins;
     }
 
-    /// Finds the point after the next one, of equal points that of the next number.
+    /// Finds the point after the next one; of equal points, the one with the next number.
     #[inline(always)]
     fn pass<L: Lane>(&self, path: &mut Path<L>, which: L::Mask) {
         let (mut next, mut number) = (path.next.each(f64::INFINITY), path.number);
@@ -127,7 +127,7 @@ impl Walk for Shared<'_> {
 
     #[inline(always)]
     fn numbers<L: Lane>(&self, path: &mut Path<L>, random: &mut impl Random<L>) -> [L; 2] {
-        // In one place: it is long.
+        // Called in one place only: its code is long.
         if path.begins.any() {
             self.start(path, random);
         }

@@ -81,7 +81,7 @@ pub struct Vertex<L: Lane> {
     pub extinction: L,
     /// The transmittance from the ray's origin, or x.
     pub kept: L,
-    /// Lanes whose point was chosen; the others collided there.
+    /// Lanes with a chosen point; the others collided there.
     pub is_chosen: L::Mask,
     /// The transmittance of the shadow ray.
     pub light: L,
@@ -93,12 +93,12 @@ kept! {
         /// Lanes that begin a point, and lanes that set out from the ray's origin, both in the next step.
         begins: L::Mask,
         sets_out: L::Mask,
-        /// Lanes at a point whose σ_t is not known yet.
+        /// Lanes at a point where σ_t is not known yet.
         looks: L::Mask,
         /// Lanes on their way along the ray, and those of them that fly in this step.
         walks: L::Mask,
         flies: L::Mask,
-        /// Lanes whose point was chosen.
+        /// Lanes with a chosen point.
         is_chosen: L::Mask,
         /// Lanes at the second of two chosen points.
         is_second: L::Mask,
@@ -126,8 +126,8 @@ pub struct ToVertices<'a, S, const CHOSEN: bool, const COLLIDES: bool> {
 }
 
 impl<'a, S: Steps, const CHOSEN: bool, const COLLIDES: bool> ToVertices<'a, S, CHOSEN, COLLIDES> {
-    /// The number of lanes of a pack that score together, and the number that begin together. Waiting lanes do not move: at
-    /// least one of eight must not wait.
+    /// The number of lanes of a pack that score together, and the number that begin together. Lanes stand still
+    /// until then: at least one of eight must go on.
     const SCORES: u32 = if CHOSEN { 4 } else { 1 };
     const BEGIN: u32 = if CHOSEN { 2 } else { 1 };
 
@@ -185,7 +185,7 @@ impl<'a, S: Steps, const CHOSEN: bool, const COLLIDES: bool> ToVertices<'a, S, C
         path.s.set_where(looks, s);
         path.is_chosen |= looks;
         match self.ground.extinction {
-            // σ_t needs no step.
+            // σ_t is known without a step.
             Some(value) if value > 0.0 && self.is_tracked() => {
                 path.known.count_where(looks);
                 path.extinction.set_where(looks, s.each(value));
@@ -213,7 +213,7 @@ impl<'a, S: Steps, const CHOSEN: bool, const COLLIDES: bool> ToVertices<'a, S, C
         }
     }
 
-    /// Handles collisions without a point; answers which lanes scatter, and which have come to their end.
+    /// Handles collisions without a point; returns the lanes that scatter, and those that have come to their end.
     #[inline(always)]
     fn track<L: Lane>(
         &self,
@@ -238,7 +238,7 @@ impl<'a, S: Steps, const CHOSEN: bool, const COLLIDES: bool> ToVertices<'a, S, C
         [hits | (left & chosen), (ends & !hits) | (left & !chosen)]
     }
 
-    /// Handles collisions on the way to points; answers which lanes arrive, and which end.
+    /// Handles collisions on the way to points; returns the lanes that arrive, and those that end.
     #[inline(always)]
     fn approach<L: Lane>(
         &self,
@@ -275,7 +275,7 @@ impl<'a, S: Steps, const CHOSEN: bool, const COLLIDES: bool> ToVertices<'a, S, C
             #[inline(always)]
             |vertex| self.value(vertex),
         );
-        // The one point's score is the draw's, its sign included where it is 0.
+        // The draw is the score of its only point, its sign included where it is 0.
         let is_only = CHOSEN && !COLLIDES && !self.has_two_points();
         path.score.set_where(which, if is_only { score } else { path.score + score });
     }
@@ -345,7 +345,7 @@ impl<S: Steps, const CHOSEN: bool, const COLLIDES: bool> Walk
 
     #[inline(always)]
     fn numbers<L: Lane>(&self, path: &mut Path<L>, random: &mut impl Random<L>) -> [L; 2] {
-        // In one place: it is long.
+        // Called in one place only: its code is long.
         if path.begins.any() {
             self.start(path, path.begins, random);
             path.begins &= !path.begins;

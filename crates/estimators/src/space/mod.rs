@@ -1,4 +1,4 @@
-//! Walks of particles through volumes: what all problems in space share.
+//! Walks of particles through volumes: common parts of all problems in space.
 
 pub mod bank;
 pub mod draws;
@@ -26,16 +26,16 @@ pub use tally::Tally;
 pub use walk::Steps;
 pub use walker::{Splitter, Walked, Walker, draw, nothing};
 
-/// Rounding of a sum over the collisions of a walk.
+/// Relative rounding error of a sum over the collisions of a walk.
 const ROUNDING: f64 = 1e-12;
-/// More collisions than this on a straight way through a volume are a mistake in the case.
+/// Maximum expected number of collisions on a straight line through a volume; more are a mistake in the case.
 const MOST_COLLISIONS: f64 = 1e4;
 
-/// σ̂ in space, which every estimator that walks takes.
+/// σ̂ in space, the input of every estimator that walks.
 ///
 /// # Errors
 ///
-/// No σ̂ is given.
+/// The case gives no σ̂.
 pub fn majorants<P: Problem>(setup: &Setup<P>) -> Result<&Arc<Majorants>, Refusal> {
     setup.space.as_ref().ok_or_else(|| Refusal::mismatch("σ̂ in space", "none is given"))
 }
@@ -57,7 +57,7 @@ pub fn walks(scene: &Scene, majorants: &Majorants, particle: &Particle) -> Walks
     }
 }
 
-/// Whether a rule exists for a σ̂, and its walks end within reason.
+/// Checks that a rule is valid for a σ̂, and that its walks end within reason.
 ///
 /// # Errors
 ///
@@ -81,7 +81,7 @@ pub fn realisable<P: Problem>(
     Ok(())
 }
 
-/// The energy that a particle brings, 1 on average, where its spread is known or bounded.
+/// Prediction for the energy of a particle, 1 on average, where its variance is known or bounded.
 ///
 /// # Errors
 ///
@@ -98,7 +98,7 @@ pub fn energy(walks: &Walks) -> Result<Channel, Refusal> {
 
 /// [`energy`], given the bound on its variance and `∫σ̂` straight through.
 pub fn energy_channel(bound: f64, depth: f64) -> Channel {
-    // A walk that nothing ends wanders for about depth² collisions, and each rounds.
+    // A walk that nothing ends makes about depth² collisions, and each rounds.
     let rounding = ROUNDING + 4.0 * f64::EPSILON * depth * depth;
     let certain = Channel::unbiased(Known::new(1.0, rounding), Moments::certain(1.0), Tails::LIGHT);
     if bound == 0.0 {

@@ -1,4 +1,4 @@
-//! The settings of a particle: a rule, and where asked for roulette and splitting.
+//! The settings of a particle: its rule, roulette and splitting.
 
 use super::walk::Steps;
 use crate::rod;
@@ -21,7 +21,8 @@ pub enum Splitting {
 }
 
 impl Splitting {
-    /// Whether a collision splits, after `depth` splits on the way from the start and `total` in the walk as a whole.
+    /// Returns true if a collision splits, after `depth` splits on the way from the start and `total` in the walk
+    /// as a whole.
     pub fn splits(self, depth: u32, total: u32) -> bool {
         match self {
             Self::None => false,
@@ -38,12 +39,12 @@ pub struct Particle {
     pub rule: ParticleRule,
     /// w₀, the weight below which roulette is played.
     pub roulette: Option<f64>,
-    /// Which collisions split.
+    /// Choice of the collisions that split.
     pub splitting: Splitting,
 }
 
 impl Particle {
-    /// By a rule alone.
+    /// A particle with a rule, and neither roulette nor splitting.
     pub fn of(rule: ParticleRule) -> Self {
         Self { rule, roulette: None, splitting: Splitting::None }
     }
@@ -64,7 +65,7 @@ impl Particle {
         Some(Self { roulette, ..Self::of(rule) })
     }
 
-    /// Reads `depth` or `budget` too.
+    /// Reads `rule`, `roulette`, and `depth` or `budget`.
     pub fn read_splitting(settings: &Settings) -> Option<Self> {
         let particle = Self::read(settings);
         let splitting = match (settings.has("depth"), settings.has("budget")) {
@@ -79,7 +80,7 @@ impl Particle {
         Some(Self { splitting: splitting?, ..particle? })
     }
 
-    /// Its settings in words.
+    /// Settings in words.
     pub fn label(&self) -> String {
         let splitting = match self.splitting {
             Splitting::None => String::new(),

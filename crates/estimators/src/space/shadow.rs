@@ -21,7 +21,7 @@ use theory::single::Tracking;
 pub struct ShadowRays<'a> {
     /// The volume.
     pub volume: &'a Volume,
-    /// Its bounds.
+    /// Bounds of the volume.
     pub bounds: Bounds,
     /// The tracking of transmittances.
     pub tracking: Tracking,
@@ -29,14 +29,14 @@ pub struct ShadowRays<'a> {
     mean_free_path: f64,
 }
 
-/// Light as a point sees it, or eight.
+/// Light as seen from a point, or from eight.
 #[derive(Clone, Copy)]
 pub struct Light<L> {
-    /// In which direction it is looked for, a unit vector.
+    /// Direction of the light, a unit vector.
     pub direction: [L; 3],
-    /// Its share without a medium.
+    /// Share of the light without a medium.
     pub share: L,
-    /// Its distance.
+    /// Distance of the light.
     pub distance: L,
 }
 
@@ -54,12 +54,12 @@ pub struct Aim<L> {
 }
 
 impl<L: Lane> Aim<L> {
-    /// The light in a direction that was drawn so: its surface, which is passed by some and met by the others so far
-    /// away, or one without end.
+    /// Light in a drawn `direction`. A light with a surface has a `stop`: lanes that miss the surface, and its
+    /// distance for the others. Without `stop` the light is infinitely far.
     #[inline(always)]
     pub fn light(self, direction: [L; 3], stop: Option<(L::Mask, L)>) -> Light<L> {
         let Self { cosine, share, distance, .. } = self;
-        // A direction at the edge may miss by rounding: it ends at the point of the edge.
+        // A direction at the edge may miss by rounding: its ray then ends at the nearest point.
         let distance = match stop {
             Some((misses, near)) => L::select(misses, distance * cosine, near),
             None => distance.each(f64::INFINITY),
@@ -72,7 +72,7 @@ impl<L: Lane> Aim<L> {
 pub type Lit<L> = (<L as Lane>::Mask, L);
 
 kept! {
-    /// Shadow rays of walks: one each at most, from where its flight begins.
+    /// Shadow rays of walks, at most one of each, from where its flight begins.
     pub struct Shadows<L> {
         /// Lanes with a shadow ray in flight.
         pub on: L::Mask,
@@ -81,7 +81,7 @@ kept! {
         end: L,
         /// T̂ so far, where it is tracked.
         pub through: L,
-        /// The weight times what the light is worth.
+        /// The weight times the share of the light.
         worth: L,
     }
 }
@@ -96,8 +96,8 @@ impl<'a> ShadowRays<'a> {
         Self { volume, bounds, tracking, mean_free_path: 1.0 / sampling }
     }
 
-    /// The exact transmittance of stretches of rays within the volume, for the lanes in `which`; 1 for the others. `fields`
-    /// has the formula of a field for lanes, if there is one.
+    /// The exact transmittance of intervals of rays within the volume, for the lanes in `which`; 1 for the others.
+    /// `fields` has the formula of a field for lanes, if there is one.
     #[inline(always)]
     pub fn exact<L: Lane>(
         &self,
@@ -126,7 +126,7 @@ impl<'a> ShadowRays<'a> {
         L::select(which, through, one)
     }
 
-    /// Replaces the ends of stretches by their transmittances, for the lanes in `which`, as bits.
+    /// Replaces the ends of intervals by their transmittances, for the lanes in `which`, as bits.
     #[inline(never)]
     fn one_by_one(
         &self,
@@ -152,8 +152,8 @@ impl<L: Lane> Shadows<L> {
         Self { on, direction: [zero; 3], t: zero, end: zero, through: zero, worth: zero }
     }
 
-    /// Begins the rays of the lanes in `which` at places with weights, their lines within the bounds from and to. Answers what
-    /// needs no tracking and is found at once, and its transmittance.
+    /// Begins the rays of the lanes in `which` at places with weights, with intervals of their lines within the
+    /// bounds. Returns the light of lanes that need no tracking, and its transmittance.
     #[inline(always)]
     pub fn cast(
         &mut self,
@@ -186,14 +186,14 @@ impl<L: Lane> Shadows<L> {
         ((which & !is_blocked, worth), one)
     }
 
-    /// Flies an optical depth through σ̂; answers places, and the lanes that are still on their rays.
+    /// Flies an optical depth through σ̂; returns places, and the lanes that are still on their rays.
     #[inline(always)]
     pub fn fly(&mut self, rays: &ShadowRays, origin: [L; 3], depth: L) -> ([L; 3], L::Mask) {
         self.t = self.t + depth * rays.mean_free_path;
         (along(origin, self.direction, self.t), self.on & !self.end.at_most(self.t))
     }
 
-    /// Handles collisions at places, given σ_t; answers what the rays have found that have come to their ends or are
+    /// Handles collisions at places, given σ_t; returns the light of the rays that have come to their ends or are
     /// absorbed.
     #[inline(always)]
     pub fn collide(

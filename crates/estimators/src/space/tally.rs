@@ -1,4 +1,4 @@
-//! Sums over what happens to walks in space, as one formula for every lane type.
+//! Sums over the events of walks in space, as one formula for every lane type.
 
 use super::shadow::{Aim, Light, Lit, ShadowRays};
 use numeric::geometry::Point;
@@ -11,7 +11,7 @@ pub struct Collision<L: Lane> {
     pub inside: L::Mask,
     /// The place.
     pub place: [L; 3],
-    /// The weight before it.
+    /// The weight before the collision.
     pub weight: L,
     /// `r = σ_t/σ̂`.
     pub ratio: L,
@@ -39,58 +39,58 @@ pub struct Scattering<L: Lane> {
     pub which: L::Mask,
     /// The place.
     pub place: [L; 3],
-    /// The weight after it, the albedo in it.
+    /// The weight after the scattering: the albedo is in it.
     pub weight: L,
 }
 
 /// The beginning of the walks of a problem, and their values.
 pub trait Tally {
-    /// Sums and notes of a walk so far.
+    /// Sums and state of a walk so far.
     type Found<L: Lane>: Kept<L::Mask>;
 
-    /// Whether particles cast shadow rays where they are scattered.
+    /// True if particles cast shadow rays where they are scattered.
     const CASTS: bool = false;
 
-    /// Whether something else is estimated from scatterings, see [`Tally::connect`].
+    /// True if scatterings have further estimates, see [`Tally::connect`].
     const CONNECTS: bool = false;
 
-    /// Sums and notes of a walk that begins.
+    /// Sums and state of a walk that begins.
     fn nothing<L: Lane>(&self, zero: L) -> Self::Found<L>;
 
     /// The number of [`Tally::sums`].
     const SUMS: usize = 1;
 
-    /// Sums, of which the channels of a draw are some.
+    /// Sums of a walk; the channels of a draw are among them.
     fn sums<L: Lane>(found: &Self::Found<L>) -> &[L];
 
-    /// The sums that are the channels of a draw.
+    /// Indices of the sums that are the channels of a draw.
     fn channels(&self) -> &[usize] {
         &[0]
     }
 
-    /// The places where particles set out, and their directions. Their weight is 1. Only lanes in `which` may take random
-    /// numbers.
+    /// The places where particles set out, and their directions. Their weight is 1. Only lanes in `which` may take
+    /// random numbers.
     fn begin<L: Lane>(&self, one: L, which: L::Mask, random: &mut impl Random<L>) -> [[L; 3]; 2];
 
-    /// Particles fly lengths, with weights.
+    /// Adds flights of given lengths and weights.
     #[inline(always)]
     fn flown<L: Lane>(&self, found: &mut Self::Found<L>, length: L, weight: L) {
         let _ = (found, length, weight);
     }
 
-    /// Particles come to tentative collisions.
+    /// Adds tentative collisions.
     #[inline(always)]
     fn collided<L: Lane>(&self, found: &mut Self::Found<L>, at: &Collision<L>) {
         let _ = (found, at);
     }
 
-    /// Particles leave.
+    /// Adds particles that leave.
     #[inline(always)]
     fn escaped<L: Lane>(&self, found: &mut Self::Found<L>, at: &Departure<L>) {
         let _ = (found, at);
     }
 
-    /// A black ball that stops all that meets it.
+    /// A black ball that absorbs every particle that reaches it: centre and radius.
     fn core(&self) -> Option<(Point, f64)> {
         None
     }
@@ -100,23 +100,23 @@ pub trait Tally {
         None
     }
 
-    /// Whether a walk begins as if it were scattered: it casts a shadow ray, if particles do, and turns.
+    /// True if a walk begins as if it were scattered: it casts a shadow ray, if particles do, and turns.
     fn begins_turned(&self) -> bool {
         false
     }
 
-    /// The cosine with which it turns there, of a uniform number.
+    /// Cosine of the turn at the beginning, from a uniform number.
     #[inline(always)]
     fn first_cosine<L: Lane>(&self, number: L) -> L {
         number * 2.0 - 1.0
     }
 
-    /// The one direction of all shadow rays, which then take no numbers.
+    /// The one direction of all shadow rays, which then take no random numbers.
     fn parallel(&self) -> Option<Point> {
         None
     }
 
-    /// The aim of shadow rays from places, of uniform numbers.
+    /// The aim of shadow rays from places, from uniform numbers.
     #[inline(always)]
     fn aim<L: Lane>(&self, place: [L; 3], number: L) -> Aim<L> {
         let _ = number;
@@ -124,27 +124,27 @@ pub trait Tally {
         Aim { axis: place, cosine: zero, share: zero, distance: zero }
     }
 
-    /// The light that shadow rays from places are cast to, from the light aimed at.
+    /// The light of shadow rays from places, given the light that was aimed at.
     #[inline(always)]
     fn light<L: Lane>(&self, place: [L; 3], aimed: Light<L>) -> Light<L> {
         let _ = place;
         aimed
     }
 
-    /// The lanes in `which` are scattered at places, or begin there as if they were.
+    /// Adds scatterings at places of the lanes in `which`, or beginnings as if they were scattered.
     #[inline(always)]
     fn scattered<L: Lane>(&self, found: &mut Self::Found<L>, which: L::Mask, place: [L; 3]) {
         let _ = (found, which, place);
     }
 
-    /// Shadow rays find light through transmittances.
+    /// Adds light that shadow rays have found, by its transmittance.
     #[inline(always)]
     fn lit<L: Lane>(&self, found: &mut Self::Found<L>, light: Lit<L>, through: L) {
         let _ = (found, light, through);
     }
 
-    /// Casts shadow rays to a light, if there are no [`Tally::shadow_rays`]; answers lookups. Their lines are in the bounds
-    /// between `ends`.
+    /// Casts shadow rays to a light, if there are no [`Tally::shadow_rays`]; returns the number of lookups. Their
+    /// lines are in the bounds between `ends`.
     #[inline(always)]
     fn track<L: Lane>(
         &self,
@@ -157,7 +157,7 @@ pub trait Tally {
         at.weight.each(0.0)
     }
 
-    /// Estimates something else from scatterings, after their shadow rays; answers lookups.
+    /// Adds further estimates at scatterings, after their shadow rays; returns the number of lookups.
     #[inline(always)]
     fn connect<L: Lane>(
         &self,

@@ -13,11 +13,11 @@ pub trait Walked: Problem<Value: Channels> {
     /// The beginning of walks, and their values.
     type Tally<'a>: Tally;
 
-    /// Whether a rule exists here, and what it finds is known.
+    /// Checks that a rule is valid for the setup, and that the expected value is known.
     ///
     /// # Errors
     ///
-    /// What is needed, and what was found.
+    /// The requirement, and the value that violates it.
     fn domain(setup: &Setup<Self>, particle: &Particle) -> Result<(), Refusal>;
 
     /// The prediction for a draw.
@@ -30,14 +30,14 @@ pub trait Walked: Problem<Value: Channels> {
     ///
     /// # Errors
     ///
-    /// All draws, where nothing walks.
+    /// All draws, if no walk is needed.
     fn tally<'a>(
         setup: &'a Setup<Self>,
         particle: &Particle,
     ) -> Result<Self::Tally<'a>, Draw<Self::Value>>;
 }
 
-/// Makes a draw of a particle by its steps; it follows what splits off if it `SPLITS`.
+/// Makes a draw of a particle by its steps; it follows the particles that split off if it `SPLITS`.
 #[inline(always)]
 pub fn draw<P: Walked, const SPLITS: bool>(
     steps: impl Steps,
@@ -54,7 +54,7 @@ pub fn draw<P: Walked, const SPLITS: bool>(
     draws::draw::<_, _, SPLITS>(&tally, (steps, particle.splitting), world, random)
 }
 
-/// A draw without σ̂, which is refused.
+/// The draw without σ̂, which is refused.
 pub fn nothing<V: Channels>() -> Draw<V> {
     Draw::free(V::of(1, |_| f64::NAN), 0)
 }

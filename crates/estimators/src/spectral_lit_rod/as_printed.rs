@@ -1,4 +1,5 @@
-//! Spectral and next-event multiple importance sampling with errors of its source as printed: biased, here to be caught.
+//! Spectral and next-event multiple importance sampling with errors of its source as printed: biased, so that the
+//! gate must fail it.
 //!
 //! Unbiased for: never: it is here to be caught.
 //!
@@ -30,10 +31,10 @@ use media::catalogue::Settings;
 use theory::problems::SpectralLitRod;
 use theory::spectral_lit_rod::Tracker;
 
-/// What is wrong.
+/// Error of the printed algorithm.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Error {
-    /// All that follows.
+    /// All errors below.
     All,
     /// f and densities lack the transmittance of a shadow ray's last piece.
     LastPiece,
@@ -57,7 +58,7 @@ const WORDS: [(&str, Error); 5] = [
 /// The algorithm with an error.
 #[derive(Debug, Clone)]
 pub struct AsPrinted {
-    /// Which.
+    /// Error of the printed algorithm.
     pub error: Error,
 }
 

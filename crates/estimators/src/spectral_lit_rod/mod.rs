@@ -17,7 +17,7 @@ use theory::lit_rod;
 use theory::problems::SpectralLitRod;
 use theory::spectral_lit_rod::{Spectrum, Tracker};
 
-/// One hero probability and a constant σ̂ ≥ σ_t for each channel, on rods within the reach of theory.
+/// Checks that each channel has one hero probability and a constant σ̂ ≥ σ_t, and that theory covers the rod.
 fn realisable(setup: &Setup<SpectralLitRod>, heroes: &Heroes) -> Result<(), Refusal> {
     heroes.require(setup.channels.len())?;
     channels::require_constants(&setup.channels)?;
@@ -31,7 +31,7 @@ fn realisable(setup: &Setup<SpectralLitRod>, heroes: &Heroes) -> Result<(), Refu
     Ok(())
 }
 
-/// For theory.
+/// The rod as theory describes it.
 fn spectrum<'a>(
     setup: &'a Setup<SpectralLitRod>,
     heroes: &Heroes,
@@ -46,7 +46,7 @@ fn spectrum<'a>(
 #[derive(Clone, Copy)]
 struct Albedos<'a> {
     problem: &'a SpectralLitRod,
-    /// Those that are the same everywhere, if that was found out.
+    /// Albedos, if they are known to be constant along the rod.
     numbers: Option<[f64; MOST_CHANNELS]>,
 }
 
@@ -56,7 +56,7 @@ impl<'a> Albedos<'a> {
         Self { problem: &setup.problem, numbers: None }
     }
 
-    /// For many draws: finds out whether they are the same everywhere.
+    /// Albedos for many draws: stores them if they are constant.
     fn found(setup: &'a Setup<SpectralLitRod>) -> Self {
         let numbers = setup.problem.albedos().map(|albedos| {
             let mut numbers = [0.0; MOST_CHANNELS];
@@ -76,7 +76,8 @@ impl<'a> Albedos<'a> {
     }
 }
 
-/// The plumbing of a page whose [`steps::Steps`] it is: what differs are the law of the hero and what theory calls it.
+/// Implements the trait of estimators for a page that implements [`steps::Steps`], given the distribution of the
+/// hero and theory's tracker.
 macro_rules! pages {
     ($this:ident => $heroes:expr, $tracker:expr) => {
         const INPUTS: $crate::Inputs = $crate::Inputs::SAMPLING;

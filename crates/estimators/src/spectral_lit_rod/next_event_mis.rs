@@ -11,10 +11,10 @@
 //! | `hero` | the law of the hero: `"uniform"`, `"luminance"`, or a list of probabilities that sum to 1 | `"uniform"` |
 //! | `sampling` | a constant σ̂ ≥ σ_t in each channel, the same in all or not | required here or in the case |
 //!
-//! Algorithm 2 of the source put right: the transmittance of the last piece is in f and in both densities; the samples of
-//! both techniques are added, so that the sum of their densities is not averaged over both; hits are divided by the same
-//! sum, with `p_nee` from the last real scattering on and none before the first; the phase function is that of each
-//! channel. The hero is one for the whole path, shadow rays too.
+//! This is Algorithm 2 of the source, corrected. The transmittance of the last piece is in f and in both densities.
+//! The samples of both techniques are added, so that the sum of their densities is not averaged over both. Hits are
+//! divided by the same sum, with `p_nee` from the last real scattering on and `p_nee = 0` before the first. The
+//! phase function is that of each channel. The whole path has one hero, shadow rays too.
 //!
 //! With one channel it is `full-mis`. The variance is known where all channels have the same σ_t and σ̂;
 //! elsewhere it is bounded, see [`theory::spectral_lit_rod::bound`].
@@ -33,7 +33,7 @@ use theory::spectral_lit_rod::Tracker;
 /// The balance heuristic over heroes and both techniques.
 #[derive(Debug, Clone)]
 pub struct NextEventMis {
-    /// The law of the hero.
+    /// The distribution of the hero.
     pub heroes: Heroes,
 }
 

@@ -11,9 +11,9 @@
 //! | `hero` | the law of the hero: `"uniform"`, `"luminance"`, or a list of probabilities that sum to 1 | `"uniform"` |
 //! | `sampling` | a constant σ̂ ≥ σ_t in each channel, the same in all or not | required here or in the case |
 //!
-//! Algorithm 1 of the source with its exit: a flight beyond the end multiplies f and p by the transmittance through σ̂, and
-//! scores. f and p have the phase function of each channel at every scattering, which the source leaves out. What f is
-//! for a path that is absorbed or leaves at the beginning does not matter: nothing shines there.
+//! Algorithm 1 of the source with its exit: a flight beyond the end multiplies f and p by the transmittance through
+//! σ̂, and scores. f and p have the phase function of each channel at every scattering, which the source leaves
+//! out. Paths that are absorbed or leave at the beginning find no light: their f does not matter.
 //!
 //! No draw exceeds `1/w_λ`, and with equal probabilities the mean of all channels is 1 or 0. The variance is known where
 //! all channels have the same σ_t and σ̂; elsewhere it is bounded, as draws never exceed `1/w`.
@@ -32,7 +32,7 @@ use theory::spectral_lit_rod::Tracker;
 /// The balance heuristic over heroes.
 #[derive(Debug, Clone)]
 pub struct SpectralMis {
-    /// The law of the hero.
+    /// The distribution of the hero.
     pub heroes: Heroes,
 }
 

@@ -1,4 +1,4 @@
-//! Spectral tracking: one σ̂ for all channels, and chances of the next event that depend on all of them.
+//! Spectral tracking: one σ̂ for all channels, and probabilities of the next event that depend on all of them.
 //!
 //! Unbiased for: one constant σ̂ ≥ σ_t for all channels, and `forward = 1`; refused elsewhere.
 //!
@@ -12,9 +12,10 @@
 //! | `probabilities` | `"average"`, `"maximum"` or `"history"` | `"average"` |
 //! | `sampling` | one constant σ̂ ≥ σ_t for all channels | required here or in the case |
 //!
-//! For rods in which light goes on forward (`forward = 1`): what a weight becomes where light turns, and from which length
-//! on its variance is infinite, see `spectral-tracking` of a rod with `albedos`. Forward, variances are finite, and known. An absorbing channel makes them
-//! large all the same: its chance to absorb is that of all, and the weights of those that survive grow.
+//! For rods in which light goes on forward (`forward = 1`). For rods in which light turns see `spectral-tracking`
+//! of a rod with `albedos`: from some length on its variance is infinite. Forward, variances are finite and known.
+//! An absorbing channel makes them large all the same: its probability to absorb is that of all, and the weights of
+//! the paths that survive grow.
 //!
 //! Source: P. Kutz, R. Habel, Y. K. Li, J. Novák, *Spectral and Decomposition Tracking for Rendering
 //! Heterogeneous Volumes*, ACM Transactions on Graphics 36 (2017), section 5.1.
@@ -75,7 +76,7 @@ impl Estimator<SpectralLitRod> for SpectralTracking {
 }
 
 kept! {
-    /// Walks of all channels together. All of it is in memory.
+    /// Walks of all channels together, kept in memory.
     pub struct Path<L> {
         weights: [L; MOST_CHANNELS],
         /// `μ_n/μ̄`, `μ_s/μ̄` and `μ_a/μ̄` of each channel where they are.
@@ -170,7 +171,7 @@ impl Walk for Together<'_> {
 
     #[inline(always)]
     fn value<L: Lane>(&self, path: &Path<L>, left: L::Mask, channel: usize) -> L {
-        // An absorbed walk brings nothing.
+        // An absorbed walk scores nothing.
         let weight = path.weights[channel];
         L::select(left, weight, weight.each(0.0))
     }

@@ -4,22 +4,22 @@ use crate::setup::heroes::Heroes;
 use crate::walks::hero::Weighing;
 use numeric::Lane;
 
-/// The way in which a path was found.
+/// Technique by which a path was found.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Found {
-    /// By a walk that was never scattered.
+    /// A walk that was never scattered.
     Unscattered,
-    /// By a walk, after a scattering.
+    /// A walk, after a scattering.
     Hit,
-    /// By a shadow ray.
+    /// A shadow ray.
     Connected,
 }
 
 impl Found {
-    /// All ways.
+    /// All techniques.
     pub const ALL: [Self; 3] = [Self::Unscattered, Self::Hit, Self::Connected];
 
-    /// As a number.
+    /// Number of the technique: 0, 1 or 2.
     #[inline(always)]
     pub fn as_lane<L: Lane>(self, any: L) -> L {
         any.each(f64::from(self as u8))
@@ -28,36 +28,37 @@ impl Found {
 
 /// The steps of a walk that a known bug may replace.
 pub trait Steps: Sync {
-    /// Whether the densities of the next segment go on from those of the last one.
+    /// True if the densities of the next segment go on from those of the last one.
     const GOES_ON: bool = false;
 
-    /// Whether f gains the albedo at a scattering, and the densities do not.
+    /// True if f gains the albedo at a scattering, and the densities do not.
     const GAINS: bool = false;
 
-    /// Whether every shadow ray has a hero of its own.
+    /// True if every shadow ray has a hero of its own.
     const CASTS_ANEW: bool = false;
 
     /// The distribution of the hero.
     fn heroes(&self) -> &Heroes;
 
-    /// Whether shadow rays are cast.
+    /// True if shadow rays are cast.
     fn casts(&self) -> bool;
 
-    /// The weighting of a path.
+    /// Weighting of paths of a technique.
     #[inline(always)]
     fn weighing(&self, found: Found) -> Weighing {
         let has_next_event = self.casts() && found != Found::Unscattered;
         Weighing { has_next_event, ..Weighing::RIGHT }
     }
 
-    /// The channel whose phase function counts in a channel.
+    /// Index of the channel with the phase function that a channel uses.
     #[inline(always)]
     fn phase_of(&self, channel: usize, hero: usize) -> usize {
         let _ = hero;
         channel
     }
 
-    /// `σ_t/σ̂` by which the hero's collisions are decided, or, by mistake, with σ̂ of the first channel.
+    /// Ratio `σ_t/σ̂` that decides the hero's collisions: `right`, or, in a known bug, with σ̂ of the first
+    /// channel.
     #[inline(always)]
     fn decides<L: Lane>(&self, right: L, by_first: impl Fn() -> L) -> L {
         let _ = by_first;

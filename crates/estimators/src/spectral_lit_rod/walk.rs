@@ -9,18 +9,20 @@
 //! leaving forward     the path scores
 //! ```
 //!
-//! The hero is one for the whole path, shadow rays too. A flight takes two random numbers, that of a shadow ray one, a
-//! scattering one, the choice of the hero one. A lane flies as a walk or as a shadow ray: where a walk is scattered its place is
-//! kept, its shadow ray flies on from there with the weights of the path, and when it has ended the walk does.
+//! The whole path has one hero, shadow rays too. A flight takes two random numbers, that of a shadow ray one, a
+//! scattering one, the choice of the hero one. A lane flies as a walk or as a shadow ray. Where a walk is scattered
+//! its place is kept, and its shadow ray flies on from there with the weights of the path. When the shadow ray has
+//! ended, the walk continues.
 //!
 //! ```text
 //! X_λ = f_λ/Σ_h w_h (p_uni,h + p_nee,h),   f_λ = p_uni,λ = q_λ ρ_λ,  p_nee,λ = q_λ,  ρ_λ = p_λ(ω) Π (1 − r_λ)
 //! ```
 //!
-//! q is what both techniques have in common: the path up to the last real scattering, the transmittances through
-//! σ̂ and the rates of tentative collisions; ρ what hits must win by chance on the last segment, the direction and its
-//! null collisions. A hit scores what a shadow ray along the same path scores. Where the path was never scattered, and
-//! where no shadow rays are cast, `p_nee = 0`. Densities are relative to those of the hero, see [`Media::common`].
+//! q is the common factor of both techniques: the path up to the last real scattering, the transmittances through
+//! σ̂ and the rates of tentative collisions. ρ is the factor of hits alone: the density of the direction on the
+//! last segment, and the probability of its null collisions. A hit scores the same as a shadow ray along the same
+//! path. Where the path was never scattered, and where no shadow rays are cast, `p_nee = 0`. Densities are relative
+//! to those of the hero, see [`Media::common`].
 
 use super::Albedos;
 use super::steps::{Found, Steps};
@@ -69,7 +71,7 @@ impl<'a, S: Steps> ToEmitter<'a, S> {
         Self::new(steps, setup, Albedos::of(setup))
     }
 
-    /// The same for many draws.
+    /// The walk on a setup, prepared for many draws.
     pub fn prepared(steps: &'a S, setup: &'a Setup<SpectralLitRod>) -> Self {
         Self::new(steps, setup, Albedos::found(setup))
     }
@@ -112,16 +114,16 @@ pub fn draw(
 }
 
 kept! {
-    /// Walks on their way, and shadow rays. All of it is in memory.
+    /// Walks on their way, and shadow rays, kept in memory.
     pub struct Particle<L> {
         is_forward: L::Mask,
-        /// Lanes that fly as shadow rays, and of them those whose walks kept their directions.
+        /// Lanes that fly as shadow rays, and lanes among them with walks that kept their directions.
         casts: L::Mask,
         keeps: L::Mask,
-        /// Lanes that score in this step, and of them shadow rays, which then return to their vertices.
+        /// Lanes that score in this step, and shadow rays among them, which then return to their vertices.
         scores: L::Mask,
         connected: L::Mask,
-        /// The way in which the path is found if it arrives, see [`Found`].
+        /// Number of the technique if the path arrives, see [`Found`].
         found: L,
         /// The number of each hero, its mean free path, and by channel its probability to keep the direction.
         hero: L,
@@ -130,21 +132,21 @@ kept! {
         /// The beginning of the flight, and its length, forward.
         before: L,
         last: L,
-        /// The length of the path and its tentative collisions; both at the vertex of a shadow ray.
+        /// Length of the path and number of its tentative collisions; both at the vertex of a shadow ray.
         length: L,
         collisions: L,
         at_vertex: [L; 2],
-        /// What the real scatterings make of q, relative to the hero's.
+        /// Factor of q from the real scatterings, relative to the hero's.
         weights: [L; MOST_CHANNELS],
         /// `p_λ(ω)` on the last segment, and `Π (1 − r_λ)` over its null collisions.
         phases: [L; MOST_CHANNELS],
         nulls: [L; MOST_CHANNELS],
-        /// Both at the vertex of a shadow ray, if [`Steps::GOES_ON`].
+        /// Values of both at the vertex of a shadow ray, if [`Steps::GOES_ON`].
         last_phases: [L; MOST_CHANNELS],
         last_nulls: [L; MOST_CHANNELS],
-        /// What f has more than the densities, if [`Steps::GAINS`].
+        /// Quotient of f and the densities, if [`Steps::GAINS`].
         excess: [L; MOST_CHANNELS],
-        /// `σ_t/σ̂` and a of each channel where they are, and what the weights are to be.
+        /// Present `σ_t/σ̂` and a of each channel, and the weights after the current step.
         real: [L; MOST_CHANNELS],
         albedos: [L; MOST_CHANNELS],
         next: [L; MOST_CHANNELS],
@@ -354,7 +356,7 @@ impl<S: Steps> Walk for ToEmitter<'_, S> {
 }
 
 impl<S: Steps> ToEmitter<'_, S> {
-    /// What is said of the ways in which paths were found.
+    /// Value of a weighting's property for the techniques that found the paths.
     #[inline(always)]
     fn of_found<L: Lane>(&self, found: L, says: impl Fn(&Weighing) -> f64) -> L {
         let [unscattered, hit, connected] = &self.weighings;
@@ -363,7 +365,7 @@ impl<S: Steps> ToEmitter<'_, S> {
         L::select(found.below(found.each(2.0)), by_walk, found.each(says(connected)))
     }
 
-    /// Whether something is said of a way in which paths are found.
+    /// Returns true if a property holds for one of the techniques.
     #[inline(always)]
     fn has(&self, says: impl Fn(&Weighing) -> bool) -> bool {
         let [unscattered, hit, connected] = &self.weighings;
@@ -409,13 +411,13 @@ impl<S: Steps> ToEmitter<'_, S> {
             path.next[channel] = next;
             own = or_of_hero(path.hero, channel, own, next);
         }
-        // Only where a bug lets it happen is the hero's 0.
+        // The hero's density is 0 only with a known bug.
         let own = L::select(one.each(0.0).below(own), own, one);
         for channel in 0..count {
             let next = path.next[channel] / own;
             path.weights[channel].keep_where(which, next);
         }
-        // Whoever's phase functions count, the hero's own is among them.
+        // The hero's own phase function is always among those that count.
         let own = of_hero(path.hero, &path.forward[..count]);
         let keeps = random.uniform_where(which).below(own);
         if self.casts {
@@ -454,7 +456,7 @@ impl<S: Steps> ToEmitter<'_, S> {
         }
     }
 
-    /// Walks go on from where their shadow rays were cast.
+    /// Sends walks on from where their shadow rays were cast.
     #[inline(always)]
     fn go_back<L: Lane>(&self, path: &mut Particle<L>, route: &mut Route<impl BothWays<L>>) {
         let (which, keeps, [length, collisions]) = (path.connected, path.keeps, path.at_vertex);
@@ -475,7 +477,7 @@ impl<S: Steps> ToEmitter<'_, S> {
         }
     }
 
-    /// Lanes in `which` fly through the σ̂ of a hero.
+    /// Sets the lanes in `which` to the σ̂ of a hero.
     #[inline(always)]
     fn follow<L: Lane>(&self, path: &mut Particle<L>, which: L::Mask, hero: L) {
         let mean_free_path = number_of_hero(hero, &self.mean_free_paths[..self.media.count]);

@@ -15,20 +15,20 @@
 //! | `heuristic` | `"balance"`: β = 1, `"power"`: β = 2 | `"balance"` |
 //! | `subpaths` | `"independent"`: every scattering of the walk is joined to a vertex of the light of its own; `"shared"`: all of them to the same | `"independent"` |
 //!
-//! `ν = 1 − σ_t/σ̂` over the null collisions between y and the light, and between x and y; d is the distance of x and y, ρ
-//! the radius of the surface from or through which light comes, `q = Ω/4π`. All segments go through the same σ̂: walks by
-//! delta tracking (they are scattered with chance a), shadow rays and connections by ratio tracking, so that majorant
-//! transmittances cancel. Paths of one scattering have no x, but where a mean intensity is sought: the place is one. A
-//! distant light is never met: the density of a hit is 0.
+//! `ν = 1 − σ_t/σ̂` over the null collisions between y and the light, and between x and y; d is the distance of x
+//! and y, ρ the radius of the surface from or through which light comes, `q = Ω/4π`. All segments go through the
+//! same σ̂. Walks use delta tracking (they are scattered with probability a), shadow rays and connections use ratio
+//! tracking, so that majorant transmittances cancel. Paths of one scattering have no x. The exception is a mean
+//! intensity: its place is x. A distant light is never hit: the density of a hit is 0.
 //!
-//! A connection by itself is not offered: it is worth `a ρ²/(4 d²)`, whose square `∫ d² dd/d⁴` has no mean wherever
-//! both of its ends may be anywhere. Densities of directions alone would not help. Beside the density 1 of a walk, to which
-//! near vertices are no less likely than far ones, it is worth less than ½. It therefore exists only in a combination over
-//! whole paths.
+//! A connection by itself is not offered: its value is `a ρ²/(4 d²)`, and the mean square `∫ d² dd/d⁴` is infinite
+//! wherever both of its ends may be anywhere. Densities of directions alone would not help. A walk has the density
+//! 1 for near vertices as for far ones. Combined with it a connection scores less than ½. It therefore exists only
+//! in a combination over whole paths.
 //!
-//! Theory bounds the variance of independent subpaths; connections that share a vertex vary
-//! together, and so do they where the light is distant and not even: there pilot draws stand in for the variance. The
-//! number of lookups is not known.
+//! Theory bounds the variance of independent subpaths. Connections that share a vertex are correlated, and for a
+//! distant light even independent ones are: there pilot draws stand in for the variance. The number of lookups is
+//! not known.
 //!
 //! Source: E. Veach, L. Guibas, *Bidirectional Estimators for Light Transport*, Eurographics Workshop on Rendering
 //! (1994); B. Miller, I. Georgiev, W. Jarosz, *A null-scattering path integral formulation of light transport*, ACM

@@ -1,8 +1,8 @@
 //! A walk from the eye with hits, shadow rays and connections that share the paths each of them can make.
 //!
-//! A path ends with a scattering y, before it perhaps with another one x, and its last segment leads to the light. What
-//! comes before x is the same for all techniques. Relative to a walk that hits the light, they make it with the
-//! densities
+//! A path ends with a scattering y; x is the scattering before it, if there is one. Its last segment leads from y
+//! to the light. The part before x is common to all techniques. Relative to a walk that hits the light, they make
+//! the path with the densities
 //!
 //! ```text
 //! hit           1, or 0 for a distant light
@@ -11,11 +11,11 @@
 //!               of the ball, through which an environment and a distant light shine
 //! ```
 //!
-//! ν and ν' are the probabilities of the null collisions of the last segment and of that between x and y. Densities of
-//! directions leave them out (ν = 1); where transmittances are exact, `ν = T`. In the last density is
-//! `f/p = a p p G/p_e T̂`: light leaves by Lambert's law with density `cos θ/(4π²ρ²)`, phase functions are 1/4π, and
-//! `G = 1/d²`. A connection needs both x and y: a camera has no scattering before the first one, but a place whose mean
-//! intensity is sought counts as a scattering of weight 1. What was never scattered can be hit only, and its weight is 1.
+//! ν and ν' are the probabilities of the null collisions of the last segment and of that between x and y. Densities
+//! of directions leave them out (ν = 1); where transmittances are exact, `ν = T`. The last density follows from
+//! `f/p = a p p G/p_e T̂`: light leaves by Lambert's law with density `cos θ/(4π²ρ²)`, phase functions are 1/4π,
+//! and `G = 1/d²`. A connection needs both x and y. A camera has no scattering before the first one. The place of a
+//! mean intensity counts as a scattering of weight 1. An unscattered path can only hit, and its weight is 1.
 //!
 //! A vertex of the light is the first real collision y of a particle that sets out from its surface; y is connected to
 //! the scatterings x of the walk by ratio tracking.
@@ -40,14 +40,14 @@ use theory::single::Tracking;
 use theory::sphere::Techniques;
 
 kept! {
-    /// Light that walks have found, and densities of what they may find.
+    /// Light that walks have found, and densities of further techniques.
     pub struct Vertices<L> {
         light: L,
         /// q at the last scattering, or at the place of a sought mean intensity.
         share: L,
-        /// The probability of the null collisions since.
+        /// The probability of the null collisions since that scattering.
         chance: L,
-        /// That probability without the last collision, which may turn out to be real.
+        /// The probability without the last collision, which may turn out to be real.
         before: L,
         /// The density of a connection of the last scattering with the one before.
         linked: L,
@@ -63,7 +63,7 @@ kept! {
     }
 }
 
-/// A walk with techniques that share. Packs make no connections; then there is less to keep.
+/// A walk with techniques that share its vertices. Packs make no connections, and then keep fewer numbers.
 pub struct Combined<'a, B, const CONNECTS: bool> {
     seeker: Seeker<'a>,
     ground: Ground<'a>,
@@ -119,7 +119,7 @@ impl<'a, B: Steps, const CONNECTS: bool> Combined<'a, B, CONNECTS> {
     #[inline(always)]
     fn apart<L: Lane>(&self, square: L, first: [L; 3], which: L::Mask) -> L {
         let radius = emission::radius(self.sphere());
-        // Two that are one point share nothing; a number keeps it from being 0/0.
+        // Coinciding points share nothing; a positive number avoids 0/0.
         let square = square.or_more(square.each(1e-200));
         square * 4.0 / (self.tracker().albedo(first, which) * radius * radius)
     }
@@ -156,7 +156,7 @@ impl<'a, B: Steps, const CONNECTS: bool> Combined<'a, B, CONNECTS> {
         })
     }
 
-    /// Particles set out from the light in the lanes of `which`; answers lookups.
+    /// Starts particles from the light in the lanes of `which`; returns the number of lookups.
     #[inline(always)]
     fn emit<L: Lane>(
         &self,
@@ -250,7 +250,7 @@ impl<B: Steps, const CONNECTS: bool> Tally for Combined<'_, B, CONNECTS> {
         found.chance.set_where(which, self.steps.segment(found.chance));
     }
 
-    /// Light that was never scattered can be hit only.
+    /// Light that was never scattered can only be hit.
     #[inline(always)]
     fn escaped<L: Lane>(&self, found: &mut Vertices<L>, at: &Departure<L>) {
         let (met, one) = (meets_light(self.sphere(), at), at.weight.each(1.0));
@@ -309,7 +309,7 @@ impl<B: Steps, const CONNECTS: bool> Tally for Combined<'_, B, CONNECTS> {
         self.add_lit(found, light, [through, through]);
     }
 
-    /// By ratio tracking through the σ̂ of the walk.
+    /// Tracks shadow rays by ratio tracking through the σ̂ of the walk.
     #[inline(always)]
     fn track<L: Lane>(
         &self,
@@ -366,7 +366,7 @@ impl<B: Steps, const CONNECTS: bool> Tally for Combined<'_, B, CONNECTS> {
     }
 }
 
-/// Vectors of length 1 in the same directions, and whether there are any: [`Point::normalised`] side by side.
+/// Unit vectors in the same directions, and the lanes that have one: [`Point::normalised`] for lanes.
 #[inline(always)]
 fn normalised<L: Lane>([x, y, z]: [L; 3]) -> ([L; 3], L::Mask) {
     let zero = x.each(0.0);

@@ -1,4 +1,4 @@
-//! Shadow rays from scatterings to the light of a ball, and what a walk finds by itself.
+//! Shadow rays from scatterings to the light of a ball, and hits of the light by walks.
 //!
 //! ```text
 //! at a scattering of weight w, the albedo in it:   X += w Ω/4π T̂
@@ -7,8 +7,8 @@
 //! distant light     its direction, irradiance 4π, T̂ to the surface
 //! ```
 //!
-//! Where there are shadow rays, light that a walk meets after a scattering is theirs and is not counted
-//! again; met before the first one, it is. A point whose mean intensity is sought is a first scattering of
+//! Where there are shadow rays, light that a walk hits after a scattering is not counted: shadow rays count it.
+//! Light that is hit before the first scattering is counted. The point of a mean intensity is a first scattering of
 //! weight 1. A shadow ray of weight 0 is not cast, and one that leaves the ball at once costs nothing.
 
 use crate::space::shadow::Aim;
@@ -28,7 +28,7 @@ pub fn cone<L: Lane>(core: f64, distance: L) -> L {
     square / (one + (one - square).or_more(zero).root())
 }
 
-/// Upwards: a direction from which any other is found by an even cosine and an even azimuth.
+/// Upwards: the axis of directions with a uniform cosine and a uniform azimuth.
 pub const UP: Point = Point([0.0, 0.0, 1.0]);
 
 /// The vectors from places to the centre of a ball, and their lengths.
@@ -39,7 +39,7 @@ fn to_centre<L: Lane>(sphere: &Sphere, [x, y, z]: [L; 3]) -> ([L; 3], L) {
     (away, dot(away, away).root())
 }
 
-/// The aim of shadow rays from places at the light, of uniform numbers; a distant light needs none.
+/// The aim of shadow rays from places at the light, from uniform numbers; a distant light needs none.
 #[inline(always)]
 pub fn aim<L: Lane>(sphere: &Sphere, place: [L; 3], number: L) -> Aim<L> {
     let one = number.each(1.0);
@@ -61,7 +61,7 @@ pub fn aim<L: Lane>(sphere: &Sphere, place: [L; 3], number: L) -> Aim<L> {
     }
 }
 
-/// q, the share of all directions in which the light is seen from places.
+/// q, the solid angle of the light as seen from places, as a fraction of 4π.
 #[inline(always)]
 pub fn share<L: Lane>(sphere: &Sphere, place: [L; 3]) -> L {
     match sphere.light {
@@ -70,7 +70,7 @@ pub fn share<L: Lane>(sphere: &Sphere, place: [L; 3]) -> L {
     }
 }
 
-/// Lanes that leave into the light.
+/// Lanes that leave in a direction with light.
 #[inline(always)]
 pub fn meets_light<L: Lane>(sphere: &Sphere, at: &Departure<L>) -> L::Mask {
     match sphere.light {
@@ -84,7 +84,7 @@ pub fn meets_light<L: Lane>(sphere: &Sphere, at: &Departure<L>) -> L::Mask {
     }
 }
 
-/// Walks that look for the light by themselves.
+/// Walks that score when they hit the light.
 pub struct Seeker<'a> {
     /// The ball.
     pub sphere: &'a Sphere,

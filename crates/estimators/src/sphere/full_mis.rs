@@ -15,9 +15,9 @@
 //! | `shadow` | `"ratio"` tracking through the σ̂ of the walk; `"exact"`: transmittances instead of null collisions in both densities, `ρ = q T` | `"ratio"` |
 //! | `heuristic` | `"balance"` or `"power"` | `"balance"` |
 //!
-//! Majorant transmittances cancel in ρ, as walk and shadow ray have the same σ̂, a constant or local majorants. ρ begins
-//! anew at every real scattering. Roulette is left out of both densities. A distant light is never met, `p_uni = 0`: it is
-//! next-event estimation.
+//! Majorant transmittances cancel in ρ, as walk and shadow ray have the same σ̂, a constant or local majorants. ρ
+//! is reset to q at every real scattering. Roulette is left out of both densities. A distant light is never hit,
+//! `p_uni = 0`: it is next-event estimation.
 //!
 //! For `σ̂ ≥ σ_t` theory bounds the variance: a shadow ray and a hit are each worth `q/(1 + q)` at
 //! most. The number of lookups is not known.

@@ -25,18 +25,18 @@ pub use connect::Seeker;
 pub use page::Page;
 pub use sharing::Honest;
 
-/// The largest error of an exact answer, relative to it, that is worth drawing against.
+/// Maximum relative error of an exact answer that draws are compared with.
 pub const BLURRED: f64 = 1e-4;
-/// The optical depth from the surface to the centre up to which the equation is solved.
+/// Maximum optical depth from the surface to the centre for which the equation is solved.
 const DEEPEST: f64 = 30.0;
-/// A tracked transmittance may have this second moment, relative to that of an untracked one.
+/// Maximum second moment of a tracked transmittance, relative to that of an untracked one.
 const WILDEST: f64 = 1e3;
-/// Bounds on σ_t are raised by a share like this, because lookups are rounded.
+/// Relative increase of bounds on σ_t, because lookups are rounded.
 const SLACK: f64 = 1e-9;
-/// More tentative collisions than this on a shadow ray are a mistake in the case.
+/// Maximum expected number of tentative collisions on a shadow ray; more are a mistake in the case.
 const MOST_COLLISIONS: f64 = 1e4;
 
-/// The exact answer; `None` where the equation is not solved, or its answer is not known well enough.
+/// The exact answer; `None` where the equation is not solved, or the error of the answer is too large.
 fn truth(sphere: &Sphere) -> Option<Answer> {
     answer(sphere).filter(|answer| blur(answer) <= BLURRED)
 }
@@ -70,7 +70,7 @@ fn answer(sphere: &Sphere) -> Option<Answer> {
     cached(&scene, &|r2| sphere.extinction(r2))
 }
 
-/// Why there is no truth to judge by.
+/// Reason why the expected value is unknown.
 fn unknown(sphere: &Sphere) -> Refusal {
     let depth = sphere.majorant() * sphere.radius;
     if depth > DEEPEST {
@@ -88,7 +88,7 @@ fn unknown(sphere: &Sphere) -> Refusal {
     Refusal::mismatch(needs, format!("it is known to {error:.0e} only"))
 }
 
-/// Whether a rule exists here, its spread has a bound, and there is a truth to judge it by.
+/// Checks that a rule is valid, that its variance has a bound, and that the expected value is known.
 fn realisable(setup: &Setup<Sphere>, particle: &Particle) -> Result<(), Refusal> {
     let sphere = &setup.problem;
     space::realisable(setup, &sphere.scene, particle)?;
@@ -114,12 +114,12 @@ fn gain(majorant: f64, length: f64, shadow: Tracking) -> f64 {
     (length * worst).exp()
 }
 
-/// The same on any shadow ray through a ball.
+/// Bound on `E[T̂²]/T` on any shadow ray through a ball, see [`gain`].
 fn gain_in(sphere: &Sphere, shadow: Tracking) -> f64 {
     gain(sphere.majorant(), 2.0 * sphere.radius, shadow)
 }
 
-/// Whether shadow rays are unbiased and end, beside what the walk needs.
+/// Checks that shadow rays are unbiased and end, and that the walk is realisable.
 ///
 /// # Errors
 ///
@@ -148,7 +148,7 @@ fn connected(setup: &Setup<Sphere>, particle: &Particle, shadow: Tracking) -> Re
     Ok(())
 }
 
-/// No answer: what is refused is not predicted.
+/// The answer of a refused setup, which is not predicted.
 const UNKNOWN: Answer = Answer {
     value: Known { value: f64::NAN, error: f64::INFINITY },
     spreads: Spreads(
@@ -160,7 +160,7 @@ fn prediction(value: Known, square: f64) -> Prediction {
     Prediction::uncounted(Channel::bounded(value, square))
 }
 
-/// A draw is 1 with the chance that is sought, else 0.
+/// Prediction for a draw that is 1 with the probability `value`, else 0.
 fn all_or_nothing(value: Known) -> Prediction {
     let chance = value.value;
     // E[Xᵏ] is the same for every k: the moments of a product whose losses are all −ln E[X].
@@ -172,14 +172,14 @@ fn all_or_nothing(value: Known) -> Prediction {
     Prediction { law, ..Prediction::uncounted(channel) }
 }
 
-/// Techniques together, with shadow rays that are tracked somehow.
+/// Prediction for a combination of techniques, with shadow rays that are tracked somehow.
 fn predict_together(setup: &Setup<Sphere>, techniques: Techniques, shadow: Tracking) -> Prediction {
     let answer = truth(&setup.problem).unwrap_or(UNKNOWN);
     let spread = answer.spreads.of(techniques);
     prediction(answer.value, spread.square(gain_in(&setup.problem, shadow)))
 }
 
-/// The same where nobody knows the variance: that of pilot draws stands in for it.
+/// Prediction for a combination with an unknown variance: that of pilot draws stands in for it.
 fn predict_by_pilots(setup: &Setup<Sphere>) -> Prediction {
     let value = truth(&setup.problem).unwrap_or(UNKNOWN).value;
     let channel = Channel::unbiased(value, None, Tails::LIGHT);
@@ -189,7 +189,7 @@ fn predict_by_pilots(setup: &Setup<Sphere>) -> Prediction {
 impl Walked for Sphere {
     type Tally<'a> = Seeker<'a>;
 
-    /// A walk must be able to find the light by itself.
+    /// Requires a light that a walk can hit.
     fn domain(setup: &Setup<Self>, particle: &Particle) -> Result<(), Refusal> {
         if matches!(setup.problem.light, Light::Distant(_)) {
             let needs = "a light that a walk can meet";
@@ -198,8 +198,8 @@ impl Walked for Sphere {
         realisable(setup, particle)
     }
 
-    /// A walk that finds the light by itself: draws from 0 to 1, `E[X²] ≤ E[X]`; nothing but 0 and 1 where
-    /// no weight is left to it. Where nothing is absorbed and light is everywhere, every draw is 1.
+    /// Prediction for a walk that hits the light: draws from 0 to 1, `E[X²] ≤ E[X]`. Draws are 0 or 1 where the
+    /// walk has no weight. Where nothing is absorbed and light is everywhere, every draw is 1.
     fn predict(setup: &Setup<Self>, particle: &Particle) -> Prediction {
         let sphere = &setup.problem;
         if sphere.light == Light::Environment && sphere.scene.albedo.even() == Some(1.0) {

@@ -1,4 +1,4 @@
-//! Techniques that share what a walk through a ball finds, and the steps of their scores.
+//! Techniques that share the vertices of a walk through a ball, and the steps of their scores.
 
 use crate::space::shadow::Light;
 use media::Majorants;
@@ -12,13 +12,13 @@ use theory::{Heuristic, ParticleRule};
 /// Vertices of the light that a walk is connected with.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Subpaths {
-    /// Each of its scatterings with one of its own.
+    /// A vertex of its own for each scattering of the walk.
     Independent,
-    /// All of them with the same one.
+    /// One vertex for all scatterings.
     Shared,
 }
 
-/// Techniques that share what a walk finds.
+/// Techniques that share the vertices of a walk.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Sharing {
     /// The techniques and their weights.
@@ -30,8 +30,8 @@ pub struct Sharing {
 }
 
 impl Sharing {
-    /// The densities of weights and their heuristic; none for next-event estimation, where nothing else finds what was
-    /// scattered.
+    /// The densities of weights and their heuristic; `None` for next-event estimation, the only technique for
+    /// scattered light.
     pub fn weights(&self) -> Option<(Densities, Heuristic)> {
         match self.techniques {
             Techniques::NextEvent => None,
@@ -40,13 +40,14 @@ impl Sharing {
         }
     }
 
-    /// Whether densities hold the probabilities of null collisions, or transmittances.
+    /// True if densities include the probabilities of null collisions, or transmittances.
     pub fn is_full(&self) -> bool {
         self.weights().is_some_and(|(densities, _)| densities == Densities::Full)
     }
 
-    /// The tracking of shadow rays with numbers of their own: also through one σ̂ of the walk, where the probability of all
-    /// collisions of a shadow ray to be null is its tracked transmittance.
+    /// Tracking of shadow rays with random numbers of their own. The default is ratio tracking through the walk's
+    /// σ̂, if σ̂ has one value and the rule passes a collision with probability `1 − σ_t/σ̂`. The tracked
+    /// transmittance is then the probability that all collisions of the shadow ray are null.
     pub fn tracking(&self, rule: ParticleRule, majorants: &Majorants) -> Option<Tracking> {
         let is_its_own = !matches!(rule, ParticleRule::NonTerminating | ParticleRule::Adaptive);
         let of_walk = majorants.single_value().filter(|_| is_its_own);
@@ -56,26 +57,26 @@ impl Sharing {
 
 /// The steps that a known bug may replace.
 pub trait Steps: Copy {
-    /// The light of shadow rays from places, from what is right.
+    /// The light of shadow rays from places, given the right one.
     #[inline(always)]
     fn light<L: Lane>(&self, sphere: &Sphere, place: [L; 3], right: Light<L>) -> Light<L> {
         let _ = (sphere, place);
         right
     }
 
-    /// Lanes in which light that a walk meets counts beside next-event estimation, from those that are right.
+    /// Lanes in which light that a walk hits counts beside next-event estimation, given the right ones.
     #[inline(always)]
     fn counts<M: Mask>(&self, right: M) -> M {
         right
     }
 
-    /// The probability of a null collision, as densities of the walk have it.
+    /// The probability of a null collision in the densities of the walk.
     #[inline(always)]
     fn chance<L: Lane>(&self, right: L) -> L {
         right
     }
 
-    /// The probability of null collisions with which a segment begins, from that of the one before.
+    /// The initial probability of the null collisions of a segment, given that of the segment before.
     #[inline(always)]
     fn segment<L: Lane>(&self, before: L) -> L {
         before.each(1.0)
@@ -92,27 +93,27 @@ pub trait Steps: Copy {
         heuristic.weight(own, densities)
     }
 
-    /// The weight of what was never scattered.
+    /// The weight of unscattered light.
     #[inline(always)]
     fn unscattered(&self) -> f64 {
         1.0
     }
 
-    /// The score of a shadow ray of some transmittance, but for its weight.
+    /// The unweighted score of a shadow ray with a transmittance.
     #[inline(always)]
     fn lit<L: Lane>(&self, right: L, transmittance: L) -> L {
         let _ = transmittance;
         right
     }
 
-    /// The density of a connection of two scatterings of the walk, of a squared distance.
+    /// The density of a connection of two scatterings of the walk, given their squared distance.
     #[inline(always)]
     fn linked<L: Lane>(&self, right: L, square: L) -> L {
         let _ = square;
         right
     }
 
-    /// The score of a connection, but for its weight.
+    /// The unweighted score of a connection.
     #[inline(always)]
     fn connected<L: Lane>(&self, right: L, link: &Link<L>) -> L {
         let _ = link;
@@ -125,7 +126,7 @@ pub trait Steps: Copy {
         right
     }
 
-    /// The cosine with the normal of light that leaves its surface, of a uniform number: the law of Lambert.
+    /// The cosine with the normal of light that leaves its surface, from a uniform number: Lambert's law.
     #[inline(always)]
     fn cosine<L: Lane>(&self, number: L) -> L {
         number.one_minus().root()

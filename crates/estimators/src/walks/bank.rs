@@ -2,8 +2,9 @@
 //!
 //! Draw j is, bit for bit, the draw that [`super::plain`] makes from stream j mod 16.
 //!
-//! A walk that ends is replaced at once, so that no lane waits. How many draws a lane makes is fixed beforehand. A lane that
-//! has made them walks on until the others have; its stream stays where its last draw left it.
+//! A walk that ends is replaced at once, so that no lane stands still. The number of draws of a lane is fixed
+//! beforehand. A lane that has made them walks on until the others have; its stream is reset to the end of its last
+//! draw.
 
 use std::hint::black_box;
 
@@ -21,30 +22,30 @@ use numeric::rng::LANES;
 use numeric::twin::PAIR;
 use numeric::{Lane, Mask, Twin};
 
-/// Eight walks. The walk itself is no part of it: a call may take its address, and would take that of the pack. Neither is
-/// the state: an index into a list of it would keep all in memory.
+/// Eight walks. The walk itself is outside the pack: a call may take its address, and would take that of the pack.
+/// The state is outside, too: an index into a list of it would keep everything in memory.
 struct Pack<L: Lane, C> {
-    /// A distance inside the medium, where lanes look σ_t up that need it nowhere.
+    /// A distance inside the medium, for lanes that have no distance to look up.
     from: L,
     route: Route<C>,
     number: L,
     t: L,
     inside: L::Mask,
     goes_on: L::Mask,
-    /// Lookups, where walks pause.
+    /// Number of lookups of walks that pause.
     lookups: L,
 }
 
 /// σ_t of all channels for a pack.
 type Channels<S> = [f64x8<S>; MOST_CHANNELS];
 
-/// Numbers that eight draws are made of. They are no part of the pack, which a compiler keeps in registers only where nothing of it needs to
-/// be dropped.
+/// Numbers of eight finished draws. They are outside the pack: a compiler keeps the pack in registers only if none
+/// of its fields needs a drop.
 struct Rows {
     values: Vec<[f64; WIDTH]>,
     defects: [f64; WIDTH],
     lookups: [f64; WIDTH],
-    /// Those of draws that are scored later, and of walks that score often.
+    /// Numbers of draws that are scored later, and of walks that score often.
     left: Left,
     events: Events,
 }
@@ -64,7 +65,7 @@ impl<S: Simd, C: BothWays<f64x8<S>>> Pack<f64x8<S>, C> {
         }
     }
 
-    /// Flies; answers the distances at which σ_t is looked up.
+    /// Flies; returns the distances at which σ_t is looked up.
     #[inline(always)]
     fn fly<W: Walk>(
         &mut self,
@@ -82,7 +83,7 @@ impl<S: Simd, C: BothWays<f64x8<S>>> Pack<f64x8<S>, C> {
         self.t
     }
 
-    /// Collides; answers as bits which walks end.
+    /// Collides; returns the lanes with walks that end, as bits.
     #[inline(always)]
     fn collide<W: Walk>(
         &mut self,
@@ -106,7 +107,7 @@ impl<S: Simd, C: BothWays<f64x8<S>>> Pack<f64x8<S>, C> {
         (!self.goes_on).bits()
     }
 
-    /// Notes events of walks of a pack that score often.
+    /// Stores the events of a pack's walks that score often.
     #[inline(always)]
     fn score<W: Walk>(
         &self,
@@ -122,7 +123,7 @@ impl<S: Simd, C: BothWays<f64x8<S>>> Pack<f64x8<S>, C> {
         }
     }
 
-    /// Makes draws of the walks of a pack that end, as bits; answers the lanes that have made their last one.
+    /// Makes draws of the walks of a pack that end, as bits; returns the lanes that have made their last one.
     #[inline(always)]
     fn collect<W: Walk>(
         &self,
@@ -174,7 +175,7 @@ impl<S: Simd, C: BothWays<f64x8<S>>> Pack<f64x8<S>, C> {
 }
 
 impl Rows {
-    /// Room for what walks of a request leave.
+    /// Memory for the numbers that the walks of a request leave.
     #[inline(always)]
     fn new<S: Simd, W: Walk>(
         walk: &W,
@@ -199,7 +200,7 @@ impl Rows {
         }
     }
 
-    /// Writes the draws of some lanes, as bits; answers the lanes that have made their last one.
+    /// Writes the draws of some lanes, as bits; returns the lanes that have made their last one.
     #[inline(never)]
     fn write<W: Walk>(
         &self,
@@ -216,7 +217,7 @@ impl Rows {
         })
     }
 
-    /// Writes what draws are scored by later.
+    /// Writes the numbers from which draws are scored later.
     #[inline(never)]
     fn write_left<S: Simd, W: Walk>(
         &mut self,
@@ -232,7 +233,7 @@ impl Rows {
         })
     }
 
-    /// Writes of which draws the events are.
+    /// Assigns the stored events of finished walks to their draws.
     #[inline(never)]
     fn write_events<W: Walk>(
         &mut self,
@@ -256,12 +257,12 @@ impl Rows {
         if W::PAUSES {
             self.lookups[lane] as u32
         } else {
-            // The step that leaves looks nothing up.
+            // The last step of a walk that leaves makes no lookup.
             steps + (inside >> lane & 1) as u32
         }
     }
 
-    /// Gives the room for numbers back.
+    /// Returns the memory for numbers to the buffer.
     fn give_back<W: Walk>(self, buffer: &mut DrawBuffer) {
         match W::SCORES {
             Scores::AtOnce => {}
@@ -270,7 +271,7 @@ impl Rows {
         }
     }
 
-    /// Makes values of what walks left.
+    /// Computes values from the numbers that walks left.
     #[inline(always)]
     fn score<S: Simd, W: Walk>(&self, simd: S, walk: W, draws: usize, buffer: &mut DrawBuffer) {
         match W::SCORES {
@@ -289,7 +290,8 @@ impl Rows {
     }
 }
 
-/// Makes the draws of a request. Both packs take each step together: `look_up` answers for sixteen lanes, and a channel.
+/// Makes the draws of a request. Both packs take each step together: `look_up` returns σ_t of sixteen lanes in a
+/// channel.
 #[inline(always)]
 pub fn run<S: Simd, W: Walk, C: BothWays<f64x8<S>>>(
     simd: S,
@@ -305,7 +307,7 @@ pub fn run<S: Simd, W: Walk, C: BothWays<f64x8<S>>>(
         #[inline(always)]
         |lanes| lanes.awake(simd),
     );
-    // Two names, no array: what an index reaches lies in memory, and AVX2 then chooses by masked stores.
+    // Two names, no array: an index keeps an array in memory, and AVX2 then uses masked stores.
     let (mut pack, mut other) = (Pack::new(simd, course), Pack::new(simd, course));
     let (one, all) = (f64x8::splat(simd, 1.0), mask64x8::splat(simd, true));
     let mut state = walk.begin(one, all, &mut first);

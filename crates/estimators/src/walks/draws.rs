@@ -1,4 +1,4 @@
-//! The draws of a request: which driver makes them, and through which course and lookups.
+//! Choice of the driver, the course and the lookups for the draws of a request.
 
 use fearless_simd::{Level, Simd, SimdBase, f64x8};
 
@@ -11,11 +11,11 @@ use numeric::pack::{self, Task, in_fused_code};
 use numeric::rng::Stream;
 use theory::problems::{Channels, Problem};
 
-/// With more pieces of σ̂ or of the control than this, lanes that cross them hold the others up for longer than
-/// eight lookups at once gain, unless lookups are costly or σ̂ is constant.
+/// Maximum number of pieces of σ̂ or of the control for packs. With more, lanes that cross pieces delay the others
+/// by more than eight lookups at once gain, unless lookups are costly or σ̂ is constant.
 const MOST_PIECES: usize = 8;
 
-/// Whether packs are faster than one walk after the other.
+/// Returns true if packs are faster than one walk after the other.
 fn pays<W: Walk>(sampling: &Piecewise, control: &Control, medium: &Lookups) -> bool {
     if !W::IN_PIECES && sampling.even().is_none() {
         return false;
@@ -23,13 +23,14 @@ fn pays<W: Walk>(sampling: &Piecewise, control: &Control, medium: &Lookups) -> b
     if W::IS_NOWHERE || medium.is_costly() || sampling.even().is_some() {
         return true;
     }
-    // Lanes that turn from walks to shadow rays and back load other pieces of σ̂ each time.
+    // Lanes that alternate between walks and shadow rays load other pieces of σ̂ each time.
     let turns = W::PAUSES && !W::IS_FIXED;
     let controls = if let Control::Pieces(pieces) = control { pieces.count() } else { 0 };
     !turns && sampling.count() <= MOST_PIECES && controls <= MOST_PIECES
 }
 
-/// Makes the draws of a request: side by side where the kernel and the hardware allow it and that is faster, else one by one.
+/// Makes the draws of a request: in packets where the kernel and the hardware allow it and that is faster, else one
+/// by one.
 pub fn fill<P: Problem>(walk: &impl Walk, kernel: Kernel, setup: &Setup<P>, request: Request)
 where
     P::Value: Channels,
@@ -44,7 +45,7 @@ where
     );
 }
 
-/// Makes the draws of a request by packets, and what these hand back one by one.
+/// Makes the draws of a request by packets, and one by one if these return the request.
 #[inline(always)]
 pub fn by<'r, P: Problem>(
     kernel: Kernel,
@@ -83,8 +84,8 @@ pub fn one_by_one<P: Problem>(
     );
 }
 
-/// Makes the draws of a request side by side. The request is handed back where the hardware is too narrow, and where [`super::plain`]
-/// is faster.
+/// Makes the draws of a request in packets. Returns the request where the hardware is too narrow, and where
+/// [`super::plain`] is faster.
 #[inline(always)] // in the codegen unit of the caller
 pub fn packets<'r, P, W: Walk>(
     level: Level,
@@ -100,8 +101,9 @@ pub fn packets<'r, P, W: Walk>(
     pack::on_wide(level, task).err().map(|task| task.request)
 }
 
-/// The draws of a page that are those of a walk on its setup, as in `drawn!(self, setup: LitRod => Walk::of(setup))`. What is made for
-/// many draws in packets may differ: `drawn!(self, setup: LitRod => Walk::of(setup), Walk::prepared(setup))`.
+/// Implements the draws of a page by a walk on its setup, as in `drawn!(self, setup: LitRod => Walk::of(setup))`. A
+/// second walk is used for many draws in packets: `drawn!(self, setup: LitRod => Walk::of(setup),
+/// Walk::prepared(setup))`.
 macro_rules! drawn {
     ($this:ident, $setup:ident: $Problem:ty => $walk:expr) => {
         fn fill(

@@ -1,20 +1,20 @@
-//! Heroes: the channels whose σ̂ or albedo walks have.
+//! Heroes: the channels that give walks their σ̂ or albedo.
 
 use crate::setup::Setup;
 use crate::setup::heroes::Heroes;
 use media::body::MOST_CHANNELS;
 use numeric::Lane;
 
-/// The law of heroes.
+/// The distribution of heroes.
 #[derive(Clone, Copy)]
 pub struct Law {
     count: usize,
-    /// The probability of all channels before each.
+    /// The sum of the probabilities of the channels before each.
     before: [f64; MOST_CHANNELS],
 }
 
 impl Law {
-    /// That of heroes of so many channels.
+    /// Distribution of the heroes of `count` channels.
     #[inline(always)]
     pub fn new(heroes: &Heroes, count: usize) -> Self {
         let (mut before, mut sum) = ([0.0; MOST_CHANNELS], 0.0);
@@ -37,7 +37,7 @@ impl Law {
     }
 }
 
-/// Of lanes of all channels those of the heroes.
+/// Selects the heroes' lanes from the lanes of all channels.
 #[inline(always)]
 pub fn of_hero<L: Lane>(hero: L, lanes: &[L]) -> L {
     let mut own = lanes[0];
@@ -47,13 +47,14 @@ pub fn of_hero<L: Lane>(hero: L, lanes: &[L]) -> L {
     own
 }
 
-/// In lanes of all channels, one after the other, those of the heroes: the earlier, or those of this channel.
+/// One step of [`of_hero`], for increasing channels: `lanes` unless the hero comes before `channel`, else
+/// `earlier`.
 #[inline(always)]
 pub fn or_of_hero<L: Lane>(hero: L, channel: usize, earlier: L, lanes: L) -> L {
     Lane::select(hero.below(hero.each(channel as f64)), earlier, lanes)
 }
 
-/// Of numbers of all channels those of the heroes.
+/// Selects the heroes' numbers from the numbers of all channels.
 #[inline(always)]
 pub fn number_of_hero<L: Lane>(hero: L, numbers: &[f64]) -> L {
     let mut own = hero.each(numbers[0]);
@@ -63,12 +64,12 @@ pub fn number_of_hero<L: Lane>(hero: L, numbers: &[f64]) -> L {
     own
 }
 
-/// The channels of a medium as densities of heroes are made of them, relative to each other.
+/// The channels of a medium, for the relative densities of heroes.
 #[derive(Clone, Copy)]
 pub struct Media {
-    /// How many there are.
+    /// Number of channels.
     pub count: usize,
-    /// Whether all have the same σ̂: lengths and collisions then tell nothing.
+    /// True if all channels have the same σ̂: lengths and numbers of collisions then cancel.
     pub is_common: bool,
     /// σ̂.
     pub majorants: [f64; MOST_CHANNELS],
@@ -79,7 +80,7 @@ pub struct Media {
 }
 
 impl Media {
-    /// Those of a setup.
+    /// Channels of a setup, with the probabilities of heroes.
     #[inline(always)]
     pub fn new<P>(setup: &Setup<P>, probabilities: &[f64]) -> Self {
         let (none, count) = ([0.0; MOST_CHANNELS], setup.channels.len());
@@ -93,7 +94,7 @@ impl Media {
         media
     }
 
-    /// Makes `q_λ/q_h` of the weights of paths of lengths with so many tentative collisions.
+    /// Multiplies weights by `q_λ/q_h` of paths, given their lengths and numbers of tentative collisions.
     #[inline(always)]
     pub fn common<L: Lane>(&self, hero: L, [length, collisions]: [L; 2], weights: &mut [L]) {
         if self.is_common {
@@ -108,8 +109,8 @@ impl Media {
         }
     }
 
-    /// Makes scores of densities by the balance heuristic over all heroes but the last few; answers by how much their mean over
-    /// heroes is not 1.
+    /// Turns densities into scores by the balance heuristic over all heroes but the last `missing`. Returns the
+    /// deviation from 1 of their mean over heroes.
     #[inline(always)]
     pub fn balance<L: Lane>(&self, missing: usize, found: &mut [L]) -> L {
         let zero = found[0].each(0.0);
@@ -125,7 +126,7 @@ impl Media {
         (sum - 1.0).size()
     }
 
-    /// Makes scores of walks that score for their heroes alone.
+    /// Sets the scores of walks that score for their heroes alone.
     #[inline(always)]
     pub fn alone<L: Lane>(&self, hero: L, found: &mut [L]) {
         for (channel, found) in found.iter_mut().enumerate() {
@@ -135,25 +136,25 @@ impl Media {
     }
 }
 
-/// Where the transmittance of the last piece through σ̂ is.
+/// Places of the transmittance of the last piece through σ̂.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum LastPiece {
-    /// In f and in the densities.
+    /// Both f and the densities.
     Everywhere,
-    /// In neither.
+    /// Neither f nor the densities.
     Nowhere,
-    /// In f only.
+    /// Only f.
     InContribution,
 }
 
 /// The weighting of a path: right, or with a known bug.
 #[derive(Debug, Clone, Copy)]
 pub struct Weighing {
-    /// Where the transmittance of the last piece is.
+    /// Places of the transmittance of the last piece.
     pub last_piece: LastPiece,
-    /// Whether next-event estimation is among the techniques.
+    /// True if next-event estimation is among the techniques.
     pub has_next_event: bool,
-    /// Whether the null collisions of the last segment are in `p_uni`.
+    /// True if the null collisions of the last segment are in `p_uni`.
     pub has_nulls: bool,
     /// The number of the last channels that are missing among the heroes.
     pub missing: usize,
@@ -162,7 +163,7 @@ pub struct Weighing {
 }
 
 impl Weighing {
-    /// As it should be.
+    /// The right weighting.
     pub const RIGHT: Self = Self {
         last_piece: LastPiece::Everywhere,
         has_next_event: true,

@@ -1,4 +1,4 @@
-//! Numbers that walks leave, and the draws that are made of them eight at a time.
+//! Numbers that walks leave at their ends, from which draws are computed eight at a time.
 
 use fearless_simd::{Simd, SimdBase, f64x8};
 
@@ -13,19 +13,19 @@ const NONE: u32 = u32::MAX;
 /// Numbers that eight walks leave.
 pub type Groups<'a, S> = [&'a [f64x8<S>]; GROUPS];
 
-/// How many they are, and one more.
+/// Size of a record: the numbers in `groups`, and one more.
 pub fn count<S: Simd>(groups: Groups<S>) -> usize {
     1 + groups.iter().map(|group| group.len()).sum::<usize>()
 }
 
-/// Numbers of each draw or event: those of eight of them side by side, number by number.
+/// Numbers of each draw or event, in groups of eight, number by number.
 pub struct Left {
     numbers: usize,
     at: Vec<f64>,
 }
 
 impl Left {
-    /// Room for some numbers of each of some draws: none of them needs any if there are no draws.
+    /// Memory for `numbers` numbers of each of `draws` draws; empty if there are no draws.
     pub fn new(numbers: usize, draws: usize, room: &mut Vec<f64>) -> Self {
         let mut left = Self { numbers, at: Vec::new() };
         if draws > 0 {
@@ -35,7 +35,7 @@ impl Left {
         left
     }
 
-    /// The room, for others.
+    /// The memory, for reuse.
     pub fn into_room(self) -> Vec<f64> {
         self.at
     }
@@ -44,7 +44,7 @@ impl Left {
         self.at.resize(draws.next_multiple_of(WIDTH) * self.numbers, 0.0);
     }
 
-    /// Writes a number that says how a walk ended, and those that it leaves in a lane.
+    /// Writes a code for how a walk ended, and the numbers that it leaves in a lane.
     #[inline(always)]
     pub fn write<S: Simd>(&mut self, draw: usize, how: f64, groups: Groups<S>, lane: usize) {
         let mut place = draw / WIDTH * self.numbers * WIDTH + draw % WIDTH;
@@ -65,7 +65,7 @@ impl Left {
         }
     }
 
-    /// Makes the values of some draws, whose lookups are in the buffer.
+    /// Computes the values of draws; their lookups are in the buffer.
     #[inline(always)]
     pub fn score<S: Simd>(&self, simd: S, walk: &impl Walk, draws: usize, buffer: &mut DrawBuffer) {
         let zero = f64x8::splat(simd, 0.0);
@@ -81,7 +81,7 @@ impl Left {
             let lookups = f64x8::from_slice(simd, &lookups);
             let defect = walk.score(&numbers[1..], zero.below(numbers[0]), lookups, values);
             defect.store_slice(&mut buffer.defects[first..first + WIDTH]);
-            // Pictures ask for fewer channels.
+            // Pictures need fewer channels.
             for (channel, row) in buffer.values.iter_mut().enumerate() {
                 values[channel].store_slice(&mut row[first..first + WIDTH]);
             }
@@ -90,7 +90,7 @@ impl Left {
     }
 }
 
-/// Events of walks that score at any step: which draw one belongs to is known when its walk has ended.
+/// Events of walks that score at any step: the draw of an event is known when its walk has ended.
 pub struct Events {
     left: Left,
     /// The draw of each.
@@ -103,7 +103,7 @@ pub struct Events {
 }
 
 impl Events {
-    /// Room for some events with some numbers each.
+    /// Memory for `some` events with `numbers` numbers each.
     pub fn new(numbers: usize, some: usize, room: &mut Vec<f64>) -> Self {
         let (left, none) = (Left::new(numbers, some, room), Vec::new());
         let last = [[NONE; WIDTH]; 2];
@@ -112,7 +112,7 @@ impl Events {
         events
     }
 
-    /// The room for numbers, for others.
+    /// The memory for numbers, for reuse.
     pub fn into_room(self) -> Vec<f64> {
         self.left.into_room()
     }
@@ -140,7 +140,7 @@ impl Events {
         }
     }
 
-    /// The walks of some lanes of a pack, as bits, end without a draw.
+    /// Discards the events of some lanes of a pack, as bits: their walks end without a draw.
     #[inline(always)]
     pub fn forget(&mut self, pack: usize, which: u64) {
         for (lane, last) in self.last[pack].iter_mut().enumerate() {
@@ -148,7 +148,7 @@ impl Events {
         }
     }
 
-    /// The walk of a lane of a pack ends, and is a draw.
+    /// Assigns the events of a lane of a pack to a draw: its walk has ended.
     #[inline(always)]
     #[allow(clippy::cast_possible_truncation)] // fewer than 2^32
     pub fn belong(&mut self, pack: usize, lane: usize, draw: usize) {

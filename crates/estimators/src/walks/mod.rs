@@ -47,39 +47,39 @@ pub trait Walk: Copy {
     /// The state of a walk, beside its position.
     type State<L: Lane>: Kept<L::Mask>;
 
-    /// Whether a step takes a second random number, by which it is decided what happens at the collision.
+    /// True if a step takes a second random number, which decides the event at the collision.
     const DECIDES: bool = true;
 
-    /// Whether a step takes no further random numbers, a draw has one channel, and its value and defect are known before
-    /// [`Walk::collide`]: the walk runs in a [`window`].
+    /// True if a step takes no further random numbers, a draw has one channel, and its value and defect are known
+    /// before [`Walk::collide`]: the walk runs in a [`window`].
     const IS_FIXED: bool = false;
 
-    /// Whether a walk may go on after a step without a lookup, as shadow rays do that leave the medium.
+    /// True if a walk may go on after a step without a lookup, as shadow rays do that leave the medium.
     const PAUSES: bool = false;
 
-    /// Whether each walk flies through the σ̂ of a channel of its own, of which each has one value, and σ_t of
-    /// [`Walk::media`] channels is looked up.
+    /// True if each walk flies through the σ̂ of its own channel, each of one value, and σ_t of [`Walk::media`]
+    /// channels is looked up.
     const IS_CHROMATIC: bool = false;
 
-    /// Whether walks cast shadow rays in space, on which σ_t is looked up too, see [`Walk::on_shadow_rays`].
+    /// True if walks cast shadow rays in space, on which σ_t is looked up too, see [`Walk::on_shadow_rays`].
     const CASTS: bool = false;
 
-    /// Whether packs fly through a σ̂ of several values, too; else one walk after the other does.
+    /// True if packs fly through a σ̂ of several values, too; else one walk after the other does.
     const IN_PIECES: bool = true;
 
-    /// Whether [`Walk::defect`] is more than 0.
+    /// True if [`Walk::defect`] may exceed 0.
     const HAS_DEFECT: bool = false;
 
-    /// Whether the walk keeps its own position and never asks for a route.
+    /// True if the walk keeps its own position and needs no route.
     const IS_NOWHERE: bool = false;
 
-    /// When finished walks are scored.
+    /// Time at which finished walks are scored.
     const SCORES: Scores = Scores::AtOnce;
 
-    /// Whether the formula of Eq. 21 is compiled into the loop of packs, see [`media::Inlined`].
+    /// True if the formula of Eq. 21 is compiled into the loop of packs, see [`media::Inlined`].
     const INLINES_EQ21: bool = false;
 
-    /// Whether the formula of voxel grids is compiled into the loop of packs, see [`media::Inlined`].
+    /// True if the formula of voxel grids is compiled into the loop of packs, see [`media::Inlined`].
     const INLINES_GRID: bool = false;
 
     /// The state at the beginning. Only lanes in `which` may take random numbers; `one` is 1 in every lane.
@@ -107,7 +107,7 @@ pub trait Walk: Copy {
         [depth, if Self::DECIDES { random.uniform() } else { depth }]
     }
 
-    /// Flies through an optical depth; answers which lanes come to a tentative collision.
+    /// Flies through an optical depth; returns the lanes that come to a tentative collision.
     #[inline(always)]
     fn fly<L: Lane>(
         &self,
@@ -137,7 +137,7 @@ pub trait Walk: Copy {
         route.here.mean_free_path()
     }
 
-    /// Handles the collision, or that the medium was left; answers which lanes go on.
+    /// Handles the collision, or that the medium was left; returns the lanes that go on.
     fn collide<L: Lane>(
         &self,
         state: &mut Self::State<L>,
@@ -146,7 +146,7 @@ pub trait Walk: Copy {
         random: &mut impl Random<L>,
     ) -> L::Mask;
 
-    /// The number of channels whose σ_t is looked up.
+    /// Number of channels with a σ_t that is looked up.
     #[inline(always)]
     fn media(&self) -> usize {
         1
@@ -185,16 +185,16 @@ pub trait Walk: Copy {
         1
     }
 
-    /// The value of walks that have ended, in one channel. Lanes in `left` have left the medium; the others ended at a
-    /// collision. Asked for if walks are scored [`Scores::AtOnce`].
+    /// The value of walks that have ended, in one channel. Lanes in `left` have left the medium; the others ended
+    /// at a collision. Called if walks are scored [`Scores::AtOnce`].
     #[inline(always)]
     fn value<L: Lane>(&self, state: &Self::State<L>, left: L::Mask, channel: usize) -> L {
         let _ = (state, left, channel);
         unreachable!("the walk is scored later")
     }
 
-    /// The numbers that walks leave for [`Walk::score`], at most [`MOST_LEFT`] altogether: lists of the state, and numbers that
-    /// are copied to `some`, so that they themselves stay in registers.
+    /// The numbers that walks leave for [`Walk::score`], at most [`MOST_LEFT`] altogether: lists of the state, and
+    /// numbers that are copied to `some`, so that the originals stay in registers.
     #[inline(always)]
     fn leaves<'a, L: Lane>(
         &self,
@@ -212,8 +212,8 @@ pub trait Walk: Copy {
         ended
     }
 
-    /// Makes values of the numbers that walks left, and of their lookups; answers the defect. Lanes in `left` had left the
-    /// medium, if walks are scored [`Scores::Later`].
+    /// Computes values from the numbers that walks left, and from their lookups; returns the defect. Lanes in
+    /// `left` had left the medium, if walks are scored [`Scores::Later`].
     #[inline(always)]
     fn score<L: Lane>(&self, numbers: &[L], left: L::Mask, lookups: L, values: &mut [L]) -> L {
         let _ = (numbers, left, values);
@@ -228,27 +228,27 @@ pub trait Walk: Copy {
     }
 }
 
-/// When walks are scored.
+/// Times at which walks are scored.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub enum Scores {
-    /// Where they end.
+    /// At the end of each walk.
     AtOnce,
-    /// By numbers that they leave where they end, eight draws at a time: few walks end in the same step.
+    /// After the end of walks, eight draws at a time, from numbers that they leave: few walks end in the same step.
     Later,
-    /// By numbers that they leave at any step, eight times at a time. A draw is the sum.
+    /// At any step, eight scores at a time, from numbers that walks leave. A draw is their sum.
     Often,
 }
 
-/// Lists of numbers that a walk leaves.
+/// Number of lists of numbers that a walk leaves.
 pub const GROUPS: usize = 5;
-/// The most of these numbers that are copied.
+/// Maximum number of these numbers that are copied.
 pub const SOME_LEFT: usize = 5;
-/// The most numbers that a walk leaves.
+/// Maximum number of numbers that a walk leaves.
 pub const MOST_LEFT: usize = 40;
-/// The most values of a draw that is not scored at once.
+/// Maximum number of values of a draw that is not scored at once.
 pub const MOST_SCORED: usize = 16;
 
-/// A tentative collision. Lanes that came to none have any numbers.
+/// A tentative collision. Lanes without one have arbitrary numbers.
 #[derive(Clone, Copy)]
 pub struct Met<'a, L: Lane> {
     /// Lanes at a tentative collision.
