@@ -1,4 +1,4 @@
-//! Estimators, one page each: how a draw is made, and what theory says of it. Floor 4.
+//! Estimators, one page each: how a draw is made, and its prediction by theory. Floor 4.
 //!
 //! An estimator is data. What it works on (medium, σ̂, control) is prepared once in a [`Setup`];
 //! its loop is compiled once per field type and entered once per buffer of draws. Estimators of
@@ -47,7 +47,7 @@ pub use crate::kernels::{Draw, DrawBuffer, Request};
 pub use transmittance_curve::RayView;
 pub use trial::{Experiment, Kernel};
 
-/// What an estimator takes beside the medium.
+/// Inputs of an estimator beside the medium.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Inputs {
     /// A sampling extinction σ̂.
@@ -57,7 +57,7 @@ pub struct Inputs {
 }
 
 impl Inputs {
-    /// Nothing.
+    /// No input.
     pub const NONE: Self = Self { sampling: false, control: false };
     /// σ̂ only.
     pub const SAMPLING: Self = Self { sampling: true, control: false };
@@ -67,42 +67,42 @@ impl Inputs {
 
 /// A page of the catalogue of estimators of problem `P`.
 pub trait Estimator<P: Problem>: Clone + Send + Sync + 'static {
-    /// What it takes, unless its settings say otherwise.
+    /// Inputs of the estimator, unless its settings say otherwise.
     const INPUTS: Inputs;
-    /// Whether its draws know their [`Draw::defect`].
+    /// True if draws have a [`Draw::defect`].
     const HAS_INVARIANT: bool = false;
-    /// Whether σ̂ may be 0 wherever the residual is: collisions there change nothing but the cost.
+    /// True if σ̂ may be 0 wherever the residual is: collisions there affect only the cost.
     const SKIPS: bool = false;
 
-    /// The estimator itself, where it has no settings.
+    /// The estimator, if it has no settings.
     const PLAIN: Option<Self> = None;
 
-    /// Reads its own settings from `NAME = { … }`; `sampling`, `control` and `expect` are read for
-    /// it.
+    /// Reads its own settings from `NAME = { … }`; the caller reads `sampling`, `control` and `expect`.
     fn read(settings: &Settings) -> Option<Self> {
         let _ = settings;
         Self::PLAIN
     }
 
-    /// Its own settings in words, as in `non-terminating, a=0.7`; empty if it has none. Without
-    /// `albedo` the albedo is left out: it is swept.
+    /// Returns its own settings in words, such as `non-terminating, a=0.7`; empty if it has none. Without `albedo`
+    /// the albedo is left out: it is swept.
     fn label(&self, albedo: bool) -> String {
         let _ = albedo;
         String::new()
     }
 
-    /// What it takes with its own settings.
+    /// Returns its inputs with its own settings.
     fn inputs(&self) -> Inputs {
         Self::INPUTS
     }
 
-    /// The same estimator with another albedo; `None` if it has no albedo.
+    /// Returns the estimator with another albedo; `None` if it has no albedo.
     fn with_albedo(&self, albedo: f64) -> Option<Self> {
         let _ = albedo;
         None
     }
 
-    /// The estimator that it is by definition where it has no control; `None` if it is its own.
+    /// Name of the estimator that it equals by definition where it has no control; `None` if there is no such
+    /// estimator.
     fn without_control() -> Option<&'static str> {
         None
     }
@@ -112,19 +112,20 @@ pub trait Estimator<P: Problem>: Clone + Send + Sync + 'static {
         None
     }
 
-    /// Knowledge of the medium that the estimator needs beside lookups, σ̂ and control, as in `τ`; `None` for none.
+    /// Quantity of the medium that the estimator needs beside lookups, σ̂ and control, such as `τ`; `None` for
+    /// none.
     fn needs(&self) -> Option<&'static str> {
         None
     }
 
-    /// Whether it exists and is unbiased here.
+    /// Checks that the estimator exists and is unbiased on a setup.
     ///
     /// # Errors
     ///
     /// The violated inequality and where on the ray.
     fn domain(&self, setup: &Setup<P>) -> Result<(), Refusal>;
 
-    /// What theory says of a draw.
+    /// Returns the prediction for a draw.
     fn predict(&self, setup: &Setup<P>) -> Prediction;
 
     /// The ray seen from the side, for estimators of a curve.
@@ -133,7 +134,7 @@ pub trait Estimator<P: Problem>: Clone + Send + Sync + 'static {
         None
     }
 
-    /// Makes the draws of a request: the same draws, bit for bit, by any kernel and level that fuses.
+    /// Makes the draws of a request: bit for bit equal for every kernel and level that fuses.
     ///
     /// Draw j comes from stream j mod 16. [`walks::fill`] makes them of a walk, [`walks::one_by_one`] of a function.
     fn fill(&self, kernel: Kernel, setup: &Setup<P>, request: Request);
@@ -155,7 +156,7 @@ pub struct FormCatalogue {
     pub problem: String,
     /// Options that choose the form.
     pub options: &'static [ProblemOption],
-    /// Name of the form, as in `rod with light`.
+    /// Name of the form, such as `rod with light`.
     pub title: String,
     /// The estimators.
     pub list: PageList,
@@ -179,8 +180,8 @@ pub fn catalogues() -> Vec<FormCatalogue> {
     each_problem!(estimators_of)
 }
 
-/// Lists the estimators of one problem: from one line each come the module, the name in case files
-/// and the row in `trueflight list`.
+/// Lists the estimators of one problem. Each line gives the module, the name in case files and the row in
+/// `trueflight list`.
 macro_rules! estimators {
     ($Problem:ty: $($module:ident :: $Page:ident,)*) => {
         impl $crate::Estimated for $Problem {
@@ -204,7 +205,7 @@ macro_rules! estimators {
 }
 use estimators;
 
-/// The draws of a product estimator of transmittance: all that differs is the rule at a collision, as in
+/// Implements the draws of a product estimator of transmittance by its rule at a collision, as in
 /// `product_draws!(self => self.rule)`.
 macro_rules! product_draws {
     ($this:ident => $rule:expr) => {
@@ -223,8 +224,8 @@ macro_rules! product_draws {
 }
 use product_draws;
 
-/// The page of a next-flight estimator: all that differs is the [`scoring::Share`] that it scores, and what
-/// that makes of the moments, as in `scored!(NextFlight)`.
+/// Implements a next-flight estimator for a page that implements [`scoring::Share`] and theory's moments, as in
+/// `scored!(NextFlight)`.
 macro_rules! scored {
     ($Page:ident) => {
         impl $crate::Estimator<Transmittance> for $Page {

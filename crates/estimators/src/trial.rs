@@ -1,4 +1,4 @@
-//! An estimator on a problem, with its type erased: what the harness drives.
+//! An estimator on a problem, with its type erased: the interface of the harness.
 
 use fearless_simd::Level;
 
@@ -9,12 +9,12 @@ use numeric::rng::{Address, Streams};
 use theory::Prediction;
 use theory::problems::Problem;
 
-/// A way to make draws: all make the same ones.
+/// A way to make draws; all ways make the same draws.
 #[derive(Debug, Clone, Copy)]
 pub enum Kernel {
-    /// One after the other.
+    /// One draw after the other.
     Single,
-    /// Eight at a time on the hardware of this level, by estimators that can.
+    /// Eight draws at a time on the hardware of this level, for estimators that can.
     Packets(Level),
 }
 
@@ -23,7 +23,7 @@ pub trait Experiment: Send + Sync {
     /// Replaces the buffer's draws by the next `count` of the block: one virtual call a buffer.
     fn fill_by(&self, kernel: Kernel, streams: &mut Streams, count: usize, buffer: &mut DrawBuffer);
 
-    /// The same with the best that the machine has.
+    /// Replaces the buffer's draws as [`Experiment::fill_by`] does, by the best kernel of the machine.
     fn fill(&self, streams: &mut Streams, count: usize, buffer: &mut DrawBuffer) {
         self.fill_by(Kernel::Packets(Level::new()), streams, count, buffer);
     }
@@ -33,8 +33,8 @@ pub trait Experiment: Send + Sync {
         false
     }
 
-    /// The share of the ray's support, or in space of the box about the volume, on which σ̂ is 0 because
-    /// nothing is to be found there.
+    /// The share of the ray's support, or in space of the box about the volume, on which σ̂ is 0 because collisions
+    /// there would change nothing.
     fn skipped(&self) -> f64 {
         0.0
     }

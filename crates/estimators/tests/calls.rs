@@ -1,4 +1,4 @@
-//! What is drawn calls the crate's own functions, and is compiled for the machine.
+//! Draws call the crate's own functions, and are compiled for the machine.
 
 use std::path::{Path, PathBuf};
 
@@ -45,7 +45,7 @@ impl File {
     }
 }
 
-/// The platform's functions, whose last bits differ from one to the next. `sqrt`, `abs` and the
+/// The platform's functions with results that differ in their last bits between platforms. `sqrt`, `abs` and the
 /// like are exact everywhere.
 const INEXACT: &[&str] = &[
     "ln", "ln_1p", "log", "log2", "log10", "exp", "exp2", "exp_m1", "sin", "cos", "tan", "sin_cos",
@@ -53,10 +53,10 @@ const INEXACT: &[&str] = &[
     "mul_add",
 ];
 
-/// Collects calls of [`INEXACT`] methods, and of anything in `libm`, in what is drawn.
+/// Collects calls of [`INEXACT`] methods, and of anything in `libm`, in functions that draw.
 #[derive(Default)]
 struct Calls {
-    /// Whether the functions visited now run in a draw.
+    /// True while the visited functions run in a draw.
     drawing: bool,
     found: Vec<String>,
 }
@@ -137,8 +137,8 @@ fn what_is_drawn_never_calls_the_platforms_functions() {
     assert!(wrong.is_empty(), "use numeric::elementary instead:\n{}", wrong.join("\n"));
 }
 
-/// The lines before functions named `draw` whose code cannot go into what is compiled for the machine:
-/// there a fused multiplication would be a call of the mathematical library.
+/// Returns the lines before functions named `draw` that are not inlined into code for the machine: there a fused
+/// multiplication would be a call of the mathematical library.
 fn left_outside(text: &str) -> Vec<&str> {
     let lines: Vec<&str> = text.lines().map(str::trim).collect();
     let pairs = lines.windows(2).filter(|pair| {

@@ -23,13 +23,13 @@ use theory::chromatic_slab::Spectrum;
 use theory::problems::ChromaticSlab;
 use theory::problems::spectral_rod::Values;
 
-/// For theory.
+/// The slab as theory describes it.
 fn spectrum(setup: &Setup<ChromaticSlab>) -> Spectrum<'_> {
     let media = setup.channels.iter().map(|channel| (&*channel.mesh, &channel.sampling));
     Spectrum::new(&setup.problem, media.collect(), setup.laws)
 }
 
-/// Answers that theory resolves.
+/// Checks that theory resolves the energies of all channels.
 fn realisable(setup: &Setup<ChromaticSlab>) -> Result<(), Refusal> {
     let Some(channel) = spectrum(setup).blurred() else { return Ok(()) };
     let needs = "reflectances and transmittances that adding and doubling resolve (|g| ≤ 0.93, a moderate τ)";

@@ -6,9 +6,9 @@
 //! s = τ⁻¹(−ln u),  u uniform in (0, 1];  a depth beyond τ(0, S) escapes and scores S
 //! ```
 //!
-//! For τ ≤ 700; exact for every field whose optical depth is. Where that has no closed inverse, a table
-//! that is made once says where to begin, and Newton's steps on the exact depth find the root to 1e-15 of
-//! it. σ_t is no more than the slope of a step, on which the root does not depend: no lookups.
+//! For τ ≤ 700; exact for every field with an exact optical depth. Where the optical depth has no closed inverse, a
+//! table that is made once gives the starting point, and Newton's steps on the exact depth find the root to 1e-15
+//! of it. σ_t is only the slope of a step, on which the root does not depend: no lookups.
 //!
 //! The optical depth is theory, which uses the platform's library: the last bits of these draws, and
 //! of these alone, may differ between machines.

@@ -7,10 +7,10 @@ use crate::{Refusal, Setup, estimators};
 use numeric::digits::rounded;
 use theory::problems::FreeFlight;
 
-/// Beyond this optical depth, theory's quadratures do not resolve where the flights end.
+/// Maximum optical depth: beyond it theory's quadratures do not resolve where the flights end.
 const DEEPEST: f64 = 700.0;
 
-/// Whether theory can say where flights end.
+/// Checks that theory resolves where flights end.
 fn resolved(setup: &Setup<FreeFlight>) -> Result<(), Refusal> {
     let depth = setup.mesh.optical_depth().value;
     if depth <= DEEPEST {

@@ -18,9 +18,9 @@
 //! | terminating, analog | `r ≤ 2/(a + 1)`, `r ≤ 1` | has a variance of 1 at most |
 //! | weighted | every r | has a variance of (1 − a)/(1 + a) at most |
 //!
-//! Below σ_t weights may grow. Up to `r < 2/(a + 1)` theory bounds the variance, and in thin volumes
-//! beyond; elsewhere the walk is refused. Roulette has a bound for `σ̂ ≥ σ_t` only, which is w₀² for
-//! walks whose draws are 1 without it. The number of lookups is not known.
+//! Below σ_t weights may grow. Up to `r < 2/(a + 1)` theory bounds the variance, and in thin volumes beyond;
+//! elsewhere the walk is refused. Roulette has a bound for `σ̂ ≥ σ_t` only. The bound is w₀² if draws are 1 without
+//! roulette. The number of lookups is not known.
 //!
 //! Source: L. Szirmay-Kalos, I. Georgiev, M. Magdics, B. Molnár, D. Légrády, *Unbiased Light
 //! Transport Estimators for Inhomogeneous Participating Media*, Computer Graphics Forum 36 (2017),

@@ -13,10 +13,10 @@ use theory::problems::{Lambertian, Scene};
 use theory::space::content;
 use theory::{Channel, Moments, ParticleRule, Prediction, Tails};
 
-/// The largest relative error of `∫σ_t dV` that is worth drawing against.
+/// Maximum relative error of `∫σ_t dV` that draws are compared with.
 const BLURRED: f64 = 1e-3;
 
-/// Which channels an experiment has, in their order.
+/// Channels of an experiment, in their order.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 struct Channels {
     energy: bool,
@@ -31,7 +31,7 @@ impl Channels {
         };
         let scene = &setup.problem.scene;
         let walks = space::walks(scene, majorants, particle);
-        // Where a = 0 and r = 1 nothing is left of a particle: that is an end even for this rule.
+        // Where a = 0 and r = 1 a particle keeps no weight: that ends its walk even by this rule.
         let goes_on = *particle == Particle::of(ParticleRule::NonTerminating)
             && scene.albedo.range()[0] > 0.0;
         Self {
@@ -46,13 +46,13 @@ impl Channels {
     }
 }
 
-/// `∫σ_t dV`, sharp enough to be drawn against.
+/// `∫σ_t dV`, if its error is small enough.
 fn held(setup: &Setup<Lambertian>) -> Option<Known> {
     let held = setup.problem.content(|| content::content(&*setup.problem.scene.volume));
     held.filter(|known| known.error <= BLURRED * known.value && known.value > 0.0)
 }
 
-/// A channel whose spread theory does not know, with light tails.
+/// A channel of unknown variance, with light tails.
 fn piloted(name: &str, truth: Known) -> Channel {
     let certain = Channel::unbiased(truth, Moments::certain(truth.value), Tails::LIGHT);
     Channel { name: name.to_owned(), moments: None, by_pilots: true, ..certain }
@@ -107,7 +107,7 @@ impl Walked for Lambertian {
             }
         }
         if channels.is_empty() {
-            // Refused, or forced without an answer to be wrong about.
+            // The setup is refused, or its draws are made in spite of that and have no prediction.
             channels.push(space::energy_channel(f64::INFINITY, 0.0));
         }
         Prediction { channels, ..Prediction::default() }

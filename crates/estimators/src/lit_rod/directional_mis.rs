@@ -14,8 +14,8 @@
 //! | `heuristic` | `"balance"` or `"power"` | `"balance"` |
 //!
 //! Unbiased, as the weights of both techniques sum to 1 for every direction. With delta-tracked shadow rays null
-//! collisions have the same chances in both techniques, and cancel; with ratio tracking they do not, and a hit
-//! through many of them has too large a weight.
+//! collisions have the same probabilities in both techniques, and cancel. With ratio tracking they do not cancel,
+//! and a hit through many of them has too large a weight.
 //!
 //! It takes σ̂, which must be a majorant.
 //!

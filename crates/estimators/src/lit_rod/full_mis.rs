@@ -13,9 +13,9 @@
 //! | `shadow` | `"ratio"` tracking through σ̂; `"exact"`: transmittances instead of null collisions in both densities, `ρ = p(ω) T(y, L)` | `"ratio"` |
 //! | `heuristic` | `"balance"` or `"power"` | `"balance"` |
 //!
-//! Majorant transmittances and event chances that both densities have cancel in ρ: what is left are the
-//! chances 1 − r of null collisions, which unidirectional tracking must win and ratio tracking takes for granted. ρ
-//! begins anew at every real scattering. In the unscattered segment `p_nee = 0`: it scores 1.
+//! Majorant transmittances and probabilities of events that both densities contain cancel in ρ. The factors that
+//! remain are the probabilities 1 − r of null collisions: unidirectional tracking samples these events, ratio
+//! tracking does not. ρ is reset at every real scattering. In the unscattered segment `p_nee = 0`: it scores 1.
 //!
 //! It takes σ̂, which must be a majorant. As printed, Algorithm 2 of the source averages over both samples, which is
 //! right only where one of them is chosen, and Algorithm 1 does not divide hits by `p_uni + p_nee`: both are

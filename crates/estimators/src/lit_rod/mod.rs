@@ -13,16 +13,16 @@ use theory::lit_rod::{self, Heuristic, Shadow, Techniques};
 use theory::problems::{LitRod, Problem};
 use theory::{ParticleRule, Prediction};
 
-/// A problem whose light is found by hits and by shadow rays: the pages of its estimators are the same.
+/// A problem with light that is found by hits and by shadow rays; its estimators have common pages.
 pub trait Lit: Problem<Value = [f64; 1]> {
-    /// Whether a walk with techniques exists and theory reaches it.
+    /// Checks that a walk with techniques exists and that theory covers it.
     ///
     /// # Errors
     ///
-    /// Why not.
+    /// The reason why not.
     fn realisable(setup: &Setup<Self>, techniques: Techniques) -> Result<(), Refusal>;
 
-    /// What theory says of its draws.
+    /// Returns the prediction for a draw.
     fn predict(setup: &Setup<Self>, techniques: Techniques) -> Prediction;
 
     /// Makes the draws of a request: compiled once for all pages.
@@ -52,7 +52,7 @@ impl Lit for LitRod {
     }
 }
 
-/// Reads `shadow`, one of some words.
+/// Reads `shadow`, one of `words`.
 fn read_shadow(
     settings: &Settings,
     words: &[&'static str],
@@ -65,7 +65,7 @@ fn read_shadow(
     })
 }
 
-/// Settings in words, as in `ratio shadow, power heuristic`.
+/// Settings in words, such as `ratio shadow, power heuristic`.
 fn label(shadow: Shadow, heuristic: Heuristic) -> String {
     let shadow = match shadow {
         Shadow::Exact => "exact shadow",
@@ -78,7 +78,7 @@ fn label(shadow: Shadow, heuristic: Heuristic) -> String {
     }
 }
 
-/// The plumbing of a page: all that differs are its techniques, as in `lit!(self => self.techniques())`.
+/// Implements the trait of estimators for a page by its techniques, as in `lit!(self => self.techniques())`.
 macro_rules! lit {
     ($this:ident => $techniques:expr) => {
         const INPUTS: $crate::Inputs = $crate::Inputs::SAMPLING;

@@ -1,4 +1,4 @@
-//! Shadow rays along a line to a light behind it, and the weights of what they and hits find.
+//! Shadow rays along a line to a light behind it, and the weights of hits and shadow rays.
 
 use crate::walks::{Met, Route};
 use media::course::BothWays;
@@ -8,7 +8,7 @@ use theory::lit_rod::{Shadow, Techniques};
 
 /// The events of a walk to a light, each of which a known bug may replace.
 pub trait Steps: Copy {
-    /// Whether [`Steps::arrived`] asks for the last segment.
+    /// True if [`Steps::arrived`] needs the last segment.
     const KEEPS_LAST: bool = false;
 
     /// The techniques that find the light.
@@ -38,14 +38,14 @@ pub trait Steps: Copy {
         ratio * null
     }
 
-    /// ρ after a scattering, from the one before it and what is right.
+    /// ρ after a scattering, given the one before it and the right one.
     #[inline(always)]
     fn after_scattering<L: Lane>(&self, before: L, right: L) -> L {
         let _ = before;
         right
     }
 
-    /// p(ω) towards the emitter of light that comes forward or backward, and was scattered with this albedo.
+    /// p(ω) towards the emitter, given the albedo and whether the light comes forward.
     #[inline(always)]
     fn phase<L: Lane>(&self, forward: L, is_forward: L::Mask, albedo: L) -> L {
         let _ = albedo;
@@ -66,7 +66,7 @@ pub trait Steps: Copy {
         transmittance
     }
 
-    /// Whether the walk goes on from where its shadow ray was cast.
+    /// True if the walk goes on from where its shadow ray was cast.
     #[inline(always)]
     fn returns(&self) -> bool {
         true
@@ -92,8 +92,8 @@ pub struct Before<'a> {
 }
 
 impl Before<'_> {
-    /// The exact transmittance from distances to the end, along directions of these cosines. Lanes outside `which` have any
-    /// number.
+    /// The exact transmittance from distances to the end, along directions of these cosines. Lanes outside `which`
+    /// have arbitrary numbers.
     #[inline(always)]
     pub fn transmittance<L: Lane>(&self, t: L, cosine: L, which: L::Mask) -> L {
         if !which.any() {
@@ -135,7 +135,7 @@ impl<L: Lane> ShadowRays<L> {
         Self { casts: one.below(one), density: one, found: one, last: one }
     }
 
-    /// Casts those of `which` from where the walks are.
+    /// Casts shadow rays of the lanes in `which` from the positions of their walks.
     #[inline(always)]
     pub fn cast_where<S: Steps>(
         &mut self,
@@ -152,7 +152,8 @@ impl<L: Lane> ShadowRays<L> {
         self.found.set_where(which, t.each(1.0));
     }
 
-    /// Handles shadow rays at a collision or behind the medium, along directions of these cosines; answers those that end.
+    /// Handles shadow rays at a collision or behind the medium, along directions of these cosines; returns the
+    /// lanes with rays that end.
     #[inline(always)]
     pub fn track<S: Steps>(
         &mut self,

@@ -155,7 +155,7 @@ impl<S: Steps> ToEmitter<'_, S> {
         goes_on
     }
 
-    /// Handles walks at a collision or behind the medium; answers which go on.
+    /// Handles walks at a collision or behind the medium; returns the lanes that go on.
     #[inline(always)]
     fn step<L: Lane>(
         &self,

@@ -34,20 +34,20 @@ pub trait Directions: Copy {
         phase.value(cosine)
     }
 
-    /// `1/p_nee` of a chosen direction, from what is right.
+    /// `1/p_nee` of a chosen direction, given the right one.
     #[inline(always)]
     fn spread<L: Lane>(&self, right: L, cosine: L) -> L {
         let _ = cosine;
         right
     }
 
-    /// `1/p_nee` of a drawn direction, from what is right.
+    /// `1/p_nee` of a drawn direction, given the right one.
     #[inline(always)]
     fn spread_of_hit<L: Lane>(&self, right: L) -> L {
         right
     }
 
-    /// How deep a shadow ray flies in a unit of optical depth.
+    /// Depth of a shadow ray's flight in a unit of optical depth.
     #[inline(always)]
     fn slant<L: Lane>(&self, cosine: L) -> L {
         cosine
@@ -119,7 +119,7 @@ impl<S: Steps, D: Directions> Walk for ToLight<'_, S, D> {
 
     #[inline(always)]
     fn restart<L: Lane>(&self, path: &mut Path<L>, which: L::Mask, one: L, _: &mut impl Random<L>) {
-        // A scattering sets all else.
+        // A scattering sets all other fields.
         path.cosine.set_where(which, one);
         path.score.set_where(which, one.each(0.0));
     }
@@ -174,7 +174,7 @@ impl<S: Steps, D: Directions> Walk for ToLight<'_, S, D> {
 }
 
 impl<S: Steps, D: Directions> ToLight<'_, S, D> {
-    /// Walks in `scattered` choose a direction to the light, and draw one.
+    /// Chooses a direction to the light for the walks in `scattered`, and draws one.
     #[inline(always)]
     fn scatter<L: Lane>(
         &self,

@@ -15,12 +15,12 @@ use theory::{Channel, CountLaw, Moments, Prediction, Tails};
 impl Walked for MultipleScattering {
     type Tally<'a> = Gathering<'a>;
 
-    /// Its draws may be spread without bound all the same, see `furnace`.
+    /// Checks σ̂ and the rule; the variance of draws may be infinite all the same, see `furnace`.
     fn domain(setup: &Setup<Self>, particle: &Particle) -> Result<(), Refusal> {
         space::realisable(setup, &setup.problem.scene, particle)
     }
 
-    /// What is seen beside the volume, and nothing else.
+    /// Prediction of the light that is seen beside the volume; through the volume the mean is unknown.
     fn predict(setup: &Setup<Self>, _: &Particle) -> Prediction {
         let problem = &setup.problem;
         if problem.entry().is_some() {

@@ -1,4 +1,4 @@
-//! Delta tracking as nature does it: a collision is real with chance r, and then absorbs with 1 − a.
+//! Analog delta tracking: a collision is real with probability r, and then absorbs with probability 1 − a.
 //!
 //! Unbiased for: σ̂ ≥ σ_t; refused elsewhere.
 //!

@@ -14,16 +14,16 @@ use theory::rod::{self, NoVariance};
 use theory::{ParticleRule, Prediction};
 use walk::By;
 
-/// A problem whose walks collide by a rule: the pages of its estimators are the same.
+/// A problem with walks that collide by a rule; its estimators have common pages.
 pub trait ByRule: Problem {
-    /// Whether a rule exists, reaches all of the medium, and has a variance there.
+    /// Checks that a rule exists, that σ̂ covers the medium, and that the variance is finite.
     ///
     /// # Errors
     ///
-    /// Why not.
+    /// The reason why not.
     fn realisable(setup: &Setup<Self>, rule: ParticleRule) -> Result<(), Refusal>;
 
-    /// What theory says of its draws.
+    /// Returns the prediction for a draw.
     fn predict(setup: &Setup<Self>, rule: ParticleRule) -> Prediction;
 
     /// Makes the draws of a request.
@@ -77,7 +77,7 @@ impl ByRule for Rod {
     }
 }
 
-/// The page of a rule, as in `by_rule!(Adaptive)`.
+/// Implements the trait of estimators for a rule, as in `by_rule!(Adaptive)`.
 macro_rules! by_rule {
     ($Page:ident) => {
         impl<P: $crate::rod::ByRule> $crate::Estimator<P> for $Page {

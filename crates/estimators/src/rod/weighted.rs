@@ -7,15 +7,15 @@
 //! scattered with chance |r|/D and weight a sgn(r) D w, straight on with |1 − r|/D and sgn(1 − r) D w
 //! ```
 //!
-//! It takes σ̂ and no settings. Where `σ̂ ≥ σ_t` a collision is real with chance r, and then the weight is
-//! multiplied by a: absorption is by weight alone. Elsewhere chances and weights are those of weighted
-//! delta tracking (the non-terminating rule of a = 1). At a = 0 a real collision ends the walk, since
-//! nothing is left. Beyond the critical length of its second moment it is refused.
+//! It takes σ̂ and no settings. Where `σ̂ ≥ σ_t` a collision is real with probability r, and then the weight is
+//! multiplied by a: absorption is by weight alone. Elsewhere probabilities and weights are those of weighted delta
+//! tracking (the non-terminating rule of a = 1). At a = 0 a real collision ends the walk: its weight is 0. Beyond
+//! the critical length of its second moment it is refused.
 //!
-//! Source: B. Miller, I. Georgiev, W. Jarosz, *A null-scattering path integral formulation of light
-//! transport*, ACM Transactions on Graphics 38 (2019), section 5.2 (albedo as
-//! weight); the chances below σ_t: M. Galtier et al., *Integral formulation of null-collision Monte Carlo
-//! algorithms*, Journal of Quantitative Spectroscopy and Radiative Transfer 125 (2013).
+//! Source: B. Miller, I. Georgiev, W. Jarosz, *A null-scattering path integral formulation of light transport*, ACM
+//! Transactions on Graphics 38 (2019), section 5.2 (albedo as weight); the probabilities below σ_t: M. Galtier et
+//! al., *Integral formulation of null-collision Monte Carlo algorithms*, Journal of Quantitative Spectroscopy and
+//! Radiative Transfer 125 (2013).
 
 use super::by_rule;
 

@@ -1,5 +1,5 @@
-//! Delta tracking through a slab, as nature does it: a collision is real with chance r, and then
-//! absorbs with 1 − a.
+//! Analog delta tracking through a slab: a collision is real with probability r, and then absorbs with probability
+//! 1 − a.
 //!
 //! Unbiased for: σ̂ ≥ σ_t; refused elsewhere.
 //!

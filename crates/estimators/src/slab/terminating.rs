@@ -1,4 +1,4 @@
-//! The single particle model that keeps its weight, in a slab: what it cannot keep ends the walk.
+//! The single particle model with weights ±1, in a slab: a walk ends where it cannot keep its weight.
 //!
 //! Unbiased for: r ≤ 2/(a + 1); refused elsewhere.
 //!
@@ -7,9 +7,9 @@
 //! absorbed otherwise;  r = σ_t/σ̂
 //! ```
 //!
-//! It takes σ̂ and no settings. It exists for `0 ≤ r ≤ 2/(a + 1)`, where the chances add up to at most
-//! 1, and is refused elsewhere. Draws lie in {−1, 0, 1}, the negative ones only where σ̂ < σ_t. Where
-//! σ̂ ≥ σ_t it is `analog`. `X²` is 0 or 1, so that its moments are all finite.
+//! It takes σ̂ and no settings. It exists for `0 ≤ r ≤ 2/(a + 1)`, where the probabilities add up to at most 1, and
+//! is refused elsewhere. Draws lie in {−1, 0, 1}, the negative ones only where σ̂ < σ_t. Where σ̂ ≥ σ_t it is
+//! `analog`. `X²` is 0 or 1, so that its moments are all finite.
 //!
 //! Source: L. Szirmay-Kalos, I. Georgiev, M. Magdics, B. Molnár, D. Légrády, *Unbiased Light
 //! Transport Estimators for Inhomogeneous Participating Media*, Computer Graphics Forum 36 (2017),

@@ -4,7 +4,7 @@
 //!
 //! ```text
 //! fly       each walk flies to its next collision
-//! look up   one call answers for all sixteen places
+//! look up   one call for all sixteen places
 //! collide   some walks end: they make draws and are replaced at once
 //! go on     what is costly waits until several lanes need it
 //! ```
@@ -44,7 +44,7 @@ pub trait Walk {
     /// Replaces walks that have ended.
     fn restart<L: Lane>(&self, state: &mut Self::State<L>, random: &mut impl Random<L>);
 
-    /// Flies; answers places at which fields are looked up.
+    /// Flies; returns the places at which fields are looked up.
     fn fly<L: Lane>(
         &self,
         state: &mut Self::State<L>,
@@ -54,7 +54,7 @@ pub trait Walk {
     /// Lanes that need the fields at the end of a flight.
     fn inside<L: Lane>(flight: &Self::Flight<L>) -> L::Mask;
 
-    /// Collides; answers which walks end.
+    /// Collides; returns the lanes with walks that end.
     fn collide<L: Lane>(
         &self,
         state: &mut Self::State<L>,
@@ -112,7 +112,7 @@ pub struct Rows {
     pub lookups: [f64; WIDTH],
 }
 
-/// Makes the draws of a request. Both packs take each step together: `look_up` answers for sixteen places, and `write` writes
+/// Makes the draws of a request. Both packs take each step together: `look_up` returns σ_t of sixteen places, and `write` writes
 /// the draws that a pack has ended.
 #[inline(always)]
 pub fn run<S: Simd, W: Walk>(
@@ -196,7 +196,7 @@ impl Rows {
         W::lookups(pack).store_slice(&mut self.lookups);
     }
 
-    /// Writes the draws of some lanes, as bits; answers the lanes that have made their last one.
+    /// Writes the draws of some lanes, as bits; returns the lanes that have made their last one.
     #[inline(never)]
     fn write(
         &self,

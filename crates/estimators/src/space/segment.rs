@@ -125,7 +125,7 @@ impl Tracker<'_> {
         (flights, segment)
     }
 
-    /// Flies to the next tentative collision; answers `σ_t/σ̂` there.
+    /// Flies to the next tentative collision; returns `σ_t/σ̂` there.
     #[inline(always)]
     fn fly<L: Lane>(
         self,

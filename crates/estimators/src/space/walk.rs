@@ -150,7 +150,7 @@ impl<'a, T: Tally, S: Steps> InSpace<'a, T, S> {
         state.aims | state.turns | state.begins
     }
 
-    /// Counts lookups and tells the tally what happens; answers tentative collisions.
+    /// Counts lookups and adds the events to the tally; returns tentative collisions.
     #[inline(always)]
     pub fn score<L: Lane>(
         &self,
@@ -178,7 +178,7 @@ impl<'a, T: Tally, S: Steps> InSpace<'a, T, S> {
         at
     }
 
-    /// Decides what happens at collisions after flights of optical depths; answers the lanes that end.
+    /// Decides the events at collisions after flights of optical depths; returns the lanes that end.
     #[inline(always)]
     pub fn decide<L: Lane>(
         &self,

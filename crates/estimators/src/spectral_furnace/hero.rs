@@ -12,9 +12,10 @@
 //! | `hero` | the law of the hero: `"uniform"`, `"luminance"`, or a list of probabilities that sum to 1 | `"uniform"` |
 //! | `sampling` | a constant σ̂ > σ_t in each channel | required here or in the case |
 //!
-//! Unbiased where nothing happens in a channel that never happens to a hero. What the variance is theory does not know: it
-//! has a bound where σ_t has one value in each channel and `E[X²]` is multiplied by less than 1 from one scattering to the next, and what
-//! has none is refused: its variance may be infinite. What multiple importance sampling is for: see `spectral-mis`.
+//! Unbiased where every event that is possible in a channel is also possible for every hero. The variance is not
+//! known. It has a bound where σ_t has one value in each channel and `E[X²]` is multiplied by less than 1 from one
+//! scattering to the next. Elsewhere it may be infinite, and the estimator is refused: multiple importance sampling
+//! solves this, see `spectral-mis`.
 //!
 //! Source: B. Miller, I. Georgiev, W. Jarosz, *A Null-Scattering Path Integral Formulation of Light
 //! Transport*, ACM Transactions on Graphics 38 (2019), section 5.1; the bound is derived: see the theory of walks that are
@@ -23,5 +24,5 @@
 use crate::chromatic::all_channels::AllChannels;
 use crate::setup::walker::HERO;
 
-/// One hero, without multiple importance sampling.
+/// A single hero, without multiple importance sampling.
 pub type Hero = AllChannels<HERO>;

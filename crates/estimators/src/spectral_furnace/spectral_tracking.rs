@@ -1,4 +1,5 @@
-//! Spectral tracking: all channels walk together through one σ̂, by chances that depend on all of them.
+//! Spectral tracking: all channels walk together through one σ̂, with event probabilities that depend on all of
+//! them.
 //!
 //! Unbiased for: one constant σ̂ ≥ σ_t and one phase function for all channels, `average` and `maximum` as long as
 //! theory bounds the variance; refused elsewhere.
@@ -13,10 +14,10 @@
 //! | `probabilities` | `"average"`, `"maximum"` or `"history"` | `"average"` |
 //! | `sampling` | one constant σ̂ for all channels, at least the σ_t of each | required here or in the case |
 //!
-//! Unbiased there, with one phase function for all channels. What the variance is theory does not know: of fixed chances it
-//! has a bound where σ_t has one value in each channel and `E[X²]` is multiplied by less than 1 from one scattering to the next, and what
-//! has none is refused: its variance may be infinite. Chances that depend on the weights score what `spectral-mis` scores
-//! with one σ̂ and equal probabilities, and are bounded everywhere.
+//! Unbiased there, with one phase function for all channels. The variance is not known. Fixed probabilities have a
+//! bound where σ_t has one value in each channel and `E[X²]` is multiplied by less than 1 from one scattering to
+//! the next. Elsewhere it may be infinite, and the estimator is refused. Probabilities that depend on the weights
+//! score the same as `spectral-mis` with one σ̂ and equal probabilities, and are bounded everywhere.
 //!
 //! Source: P. Kutz, R. Habel, Y. K. Li, J. Novák, *Spectral and Decomposition Tracking for Rendering
 //! Heterogeneous Volumes*, ACM Transactions on Graphics 36 (2017), sections 5.1.1 and 5.1.2.

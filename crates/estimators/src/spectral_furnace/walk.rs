@@ -90,7 +90,7 @@ impl<'a, S: Steps> InFurnace<'a, S> {
         Self { problem, among, weighing, scores_all, law }
     }
 
-    /// Makes values of the numbers that walks left, and of their lookups; answers the defect.
+    /// Makes values of the numbers that walks left, and of their lookups; returns the defect.
     #[inline(always)]
     pub fn score<L: Lane>(
         &self,
@@ -131,7 +131,7 @@ impl<'a, S: Steps> InFurnace<'a, S> {
         if is_doubtful.any() { ends(bounds, rays, is_doubtful)[1] } else { near }
     }
 
-    /// The lanes in `which` turn; answers by which cosines.
+    /// Turns the lanes in `which`; returns the cosines.
     #[inline(always)]
     fn scatter<L: Lane>(
         &self,

@@ -11,9 +11,10 @@
 //! | `hero` | the law of the hero: `"uniform"`, `"luminance"`, or a list of probabilities that sum to 1 | `"uniform"` |
 //! | `sampling` | σ̂ ≥ σ_t | required here or in the case |
 //!
-//! What multiple importance sampling is for: see `spectral-mis`. Unbiased where every hero scatters, or nobody; the
-//! variance of a channel is infinite where `a_λ²/a_h` is the albedo of a rod beyond its critical length: refused from
-//! there on. A finite variance may still be out of reach of any number of draws: the fourth moment needs `a_λ⁴/a_h³`.
+//! Unbiased where the albedos of all heroes are positive, or all are 0. The variance of a channel is infinite where
+//! `a_λ²/a_h` is the albedo of a rod beyond its critical length: refused from there on. Multiple importance
+//! sampling solves this: see `spectral-mis`. A finite variance may still be out of reach of any number of draws:
+//! the fourth moment needs `a_λ⁴/a_h³`.
 //!
 //! Source: B. Miller, I. Georgiev, W. Jarosz, *A Null-Scattering Path Integral Formulation of Light
 //! Transport*, ACM Transactions on Graphics 38 (2019), section 5.1; the moments are derived: see the theory of coloured
@@ -27,7 +28,7 @@ use media::catalogue::Settings;
 use theory::Prediction;
 use theory::spectral_rod::{Spectrum, Tracker};
 
-/// One hero, without multiple importance sampling.
+/// A single hero, without multiple importance sampling.
 #[derive(Debug, Clone)]
 pub struct Hero {
     heroes: Heroes,

@@ -11,22 +11,22 @@ use theory::problems::spectral_rod::{Colours, Values};
 use theory::problems::{Problem, SpectralRod};
 use theory::spectral_rod::{Body, Rods, Spectrum, Tracker};
 
-/// A body of coloured scatterers: the pages of its estimators are the same.
+/// A body of coloured scatterers; its estimators have common pages.
 pub trait Coloured: Problem<Value = Values> {
-    /// Its albedos.
+    /// Albedos of the channels.
     fn colours(&self) -> &Colours;
 
-    /// Whether theory knows the body.
+    /// Checks that theory covers the body.
     ///
     /// # Errors
     ///
-    /// Why not.
+    /// The reason why not.
     fn require_answer(setup: &Setup<Self>) -> Result<(), Refusal>;
 
-    /// What theory knows of it.
+    /// The body as theory describes it.
     fn body(setup: &Setup<Self>) -> Box<dyn Body + '_>;
 
-    /// The place of walks.
+    /// Geometry of the walks.
     fn place(&self) -> walk::Place<'_>;
 }
 
@@ -48,12 +48,12 @@ impl Coloured for SpectralRod {
     }
 }
 
-/// What theory says of a tracker.
+/// Theory's description of a tracker.
 fn spectrum<P: Coloured>(setup: &Setup<P>, heroes: Vec<f64>, tracker: Tracker) -> Spectrum<'_> {
     Spectrum::new(P::body(setup), setup.problem.colours(), heroes, tracker)
 }
 
-/// The draws of a page: all that differs are its [`walk::Page`].
+/// Implements the draws of a page that implements [`walk::Page`].
 macro_rules! scored {
     () => {
         const INPUTS: $crate::Inputs = $crate::Inputs::SAMPLING;

@@ -1,4 +1,4 @@
-//! Spectral tracking in a rod: one chance to be scattered for all channels.
+//! Spectral tracking in a rod: one scattering probability for all channels.
 //!
 //! Unbiased for: σ̂ ≥ σ_t, as long as the variance is finite; refused elsewhere.
 //!
@@ -30,7 +30,7 @@ use theory::spectral_rod::{Spectrum, Tracker};
 /// Spectral tracking.
 #[derive(Debug, Clone)]
 pub struct SpectralTracking {
-    /// Whether by the largest shares, not by the mean.
+    /// True if `P_s` is computed from the largest shares, false if from the mean.
     pub maximum: bool,
 }
 

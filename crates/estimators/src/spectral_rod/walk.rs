@@ -1,12 +1,12 @@
-//! The analog walk through a rod or a slab, and what its number of scatterings says of all channels.
+//! The analog walk through a rod or a slab, and its scores in all channels by its number of scatterings.
 //!
 //! ```text
 //! fly forward or backward through σ̂; at a tentative collision the particle goes straight on with probability
 //! 1 − r, r = σ_t/σ̂, is scattered with a r, and absorbed otherwise; scattered, it turns round with 1 − p_f
 //! ```
 //!
-//! A flight and what happens at its end take a random number each; a scattering takes a third, the choice of a hero
-//! the first of all. A rod is a slab with two directions, of cosines 1 and −1; slabs decide as `slab` does.
+//! A flight and the event at its end take a random number each; a scattering takes a third. The choice of a hero
+//! takes the first of all. A rod is a slab with two directions, of cosines 1 and −1; slabs decide as `slab` does.
 
 use std::f64::consts::TAU;
 
@@ -31,27 +31,27 @@ use theory::ParticleRule;
 use theory::problems::slab::{Incidence, Light};
 use theory::problems::spectral_rod::{Colours, End, Values};
 
-/// The place of walks.
+/// Geometry of the walks.
 #[derive(Clone, Copy)]
 pub enum Place<'a> {
-    /// In a rod, where scattering keeps the direction with a probability.
+    /// A rod, with the probability that scattering keeps the direction.
     Rod(f64),
-    /// In a slab.
+    /// A slab, with its incident light.
     Slab(&'a Incidence),
 }
 
-/// Whose walk it is, and what it is worth in every channel.
+/// Hero of a walk, and its weights in every channel.
 pub trait Page {
-    /// The law of the hero; `None` where one walk is that of all channels, number 0.
+    /// The distribution of the hero; `None` where one walk, number 0, serves all channels.
     fn heroes(&self) -> Option<&Heroes>;
 
-    /// A hero's chance to be scattered at a real collision.
+    /// Probability that a real collision scatters a hero.
     #[inline(always)]
     fn chance(&self, albedos: &[f64], hero: usize) -> f64 {
         albedos[hero]
     }
 
-    /// What its walk is worth in every channel where it leaves after so many scatterings.
+    /// Weights of a walk in every channel where it leaves after `order` scatterings.
     fn weights(&self, albedos: &[f64], hero: usize, order: u32) -> [f64; MOST_CHANNELS];
 }
 
@@ -91,11 +91,11 @@ pub struct InBody<'a> {
     /// The number of heroes, and their probabilities to be scattered at a real collision.
     heroes: usize,
     chances: [f64; MOST_CHANNELS],
-    /// Weights by channel, order and hero: of [`TABLE`] orders, or of none.
+    /// Weights by channel, order and hero: of [`TABLE`] orders, or empty.
     table: &'a [f64],
 }
 
-/// Orders that stand in the table.
+/// Number of orders in the table.
 const TABLE: usize = 16;
 
 impl<'a> InBody<'a> {
@@ -112,7 +112,7 @@ impl<'a> InBody<'a> {
         Self { place, colours, page, law, heroes, chances, table: &[] }
     }
 
-    /// The weights of walks with an order and a hero by their number, `order · heroes + hero`.
+    /// The weights of walks by their number, `order · heroes + hero`.
     fn weights_of(&self, number: usize) -> [f64; MOST_CHANNELS] {
         let order = u32::try_from(number / self.heroes).unwrap_or(u32::MAX);
         self.page.weights(&self.colours.albedos, number % self.heroes, order)
@@ -125,7 +125,7 @@ impl<'a> InBody<'a> {
         (0..self.colours.albedos.len()).flat_map(of_channel).collect()
     }
 
-    /// Lanes at a collision that are scattered, and those that pass.
+    /// Lanes at a collision that are scattered, and lanes that go straight on.
     #[inline(always)]
     fn decide<L: Lane>(&self, met: &Met<L>, chance: L, sampling: L) -> [L::Mask; 2] {
         let Met { inside, extinction, number, .. } = *met;
@@ -297,11 +297,11 @@ pub fn packets<'r, P: Coloured>(
     walks::packets(level, &walk, setup, medium, request)
 }
 
-/// σ̂ ≥ σ_t, few collisions, one hero probability for each channel, and an answer.
+/// Checks σ̂ ≥ σ_t, few collisions, one hero probability for each channel, and that theory covers the body.
 ///
 /// # Errors
 ///
-/// What is violated.
+/// The violated requirement.
 pub fn require<P: Coloured>(setup: &Setup<P>, heroes: &Heroes) -> Result<(), Refusal> {
     heroes.require(setup.problem.colours().albedos.len())?;
     setup.require_ratio_at_most(1.0, "σ̂ ≥ σ_t everywhere")?;
@@ -309,11 +309,11 @@ pub fn require<P: Coloured>(setup: &Setup<P>, heroes: &Heroes) -> Result<(), Ref
     P::require_answer(setup)
 }
 
-/// A variance of each channel.
+/// Checks that the variance of each channel is finite, given the first one that diverges.
 ///
 /// # Errors
 ///
-/// The channel, and what its body would have to be.
+/// The channel, and the body that it needs.
 pub fn require_variance(diverges: Option<(usize, String)>) -> Result<(), Refusal> {
     diverges.map_or(Ok(()), |(channel, why)| {
         let found = format!("E[X²] of channel {} is infinite {why}", channel + 1);

@@ -13,9 +13,9 @@
 //! | `hero` | the law of the hero: `"uniform"`, `"luminance"`, or a list of probabilities that sum to 1 | `"uniform"` |
 //! | `sampling` | a constant σ̂ > σ_t in each channel, on shadow rays too where they are tracked | required here or in the case |
 //!
-//! All moments are known. The variance is infinite where the hero's σ̂ touches its σ_t and another channel's does not, or
-//! where the hero's σ_t comes down to 0 and another's does not; on a stretch of that kind the draws are biased. Both are
-//! refused. What multiple importance sampling is for: see `spectral-mis`.
+//! All moments are known. The variance is infinite where the hero's σ̂ touches its σ_t and another channel's does
+//! not. It is also infinite where the hero's σ_t comes down to 0 and another's does not. On an interval of that
+//! kind the draws are biased. Both are refused. Multiple importance sampling solves this: see `spectral-mis`.
 //!
 //! Source: B. Miller, I. Georgiev, W. Jarosz, *A null-scattering path integral formulation of light transport*,
 //! ACM Transactions on Graphics 38 (2019), section 5.1; the moments are derived: see the theory of single scattering in
@@ -23,5 +23,5 @@
 
 use crate::setup::walker::HERO;
 
-/// One hero, without multiple importance sampling.
+/// A single hero, without multiple importance sampling.
 pub type Hero = super::page::AllChannels<HERO>;

@@ -27,14 +27,14 @@ use ::theory::problems::SpectralSingleScattering;
 use ::theory::{Prediction, spectral_single_scattering as theory};
 use media::catalogue::Settings;
 
-/// One channel a draw.
+/// Delta tracking of one channel a draw.
 #[derive(Debug, Clone)]
 pub struct Independent {
-    /// The law of the channel.
+    /// The distribution of the channel.
     heroes: Heroes,
-    /// Its walk.
+    /// Walker of the channel.
     walker: Walker,
-    /// How shadow rays are tracked.
+    /// Tracking of shadow rays.
     shadow: Shadow,
 }
 

@@ -21,12 +21,12 @@ use media::Control;
 use media::catalogue::Settings;
 use numeric::digits::rounded;
 
-/// How shadow rays are tracked.
+/// Tracking of shadow rays.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Shadow {
-    /// Their transmittance is known.
+    /// Exact transmittance.
     Exact,
-    /// By ratio tracking through the σ̂ of the hero.
+    /// Ratio tracking through the σ̂ of the hero.
     Ratio,
 }
 
@@ -46,7 +46,7 @@ impl Shadow {
     }
 }
 
-/// σ̂ ≥ σ_t on every shadow ray that is tracked.
+/// Checks σ̂ ≥ σ_t on every shadow ray that is tracked.
 fn realisable(setup: &Setup<SpectralSingleScattering>, shadow: Shadow) -> Result<(), Refusal> {
     if shadow == Shadow::Exact {
         return Ok(());
@@ -77,12 +77,12 @@ fn alone(setup: &Setup<SpectralSingleScattering>, shadow: Shadow) -> Vec<Points>
     points.collect()
 }
 
-/// What theory says of draws that score all channels.
+/// Prediction for draws that score all channels.
 fn predict(setup: &Setup<SpectralSingleScattering>, walker: &Walker, shadow: Shadow) -> Prediction {
     let (alone, count) = (alone(setup, shadow), setup.channels.len());
     let walks = match walker {
         Walker::Mis(heroes) => return theory::balanced(&alone, &heroes.of(count)),
-        // It scores what equal heroes score by the balance heuristic, and flies as they do.
+        // Its scores are those of the balance heuristic with equal heroes, and its walks are the same.
         Walker::SpectralTracking(Chances::History) => {
             return theory::balanced(&alone, &Heroes::Uniform.of(count));
         }

@@ -1,5 +1,5 @@
-//! What the pages that score all channels share: a walk scatters once, and its weights are relative to the density of the
-//! walker, or of all heroes.
+//! Common parts of the pages that score all channels: a walk scatters once, and its weights are relative to the
+//! density of the walker, or of all heroes.
 
 use super::walk::{self, Right};
 use super::{Shadow, predict, realisable};
@@ -16,9 +16,9 @@ use theory::problems::SpectralSingleScattering;
 /// A walk that scores all channels, of a kind of walker.
 #[derive(Debug, Clone)]
 pub struct AllChannels<const KIND: u8> {
-    /// Whose walk it is.
+    /// Walker that makes the walks.
     pub walker: Walker,
-    /// How shadow rays are tracked.
+    /// Tracking of shadow rays.
     pub shadow: Shadow,
 }
 

@@ -1,4 +1,5 @@
-//! Spectral tracking: all channels walk together through one σ̂, by chances that depend on all of them.
+//! Spectral tracking: all channels walk together through one σ̂, with event probabilities that depend on all of
+//! them.
 //!
 //! Unbiased for: one constant σ̂ ≥ σ_t for all channels; refused elsewhere.
 //!
@@ -14,8 +15,8 @@
 //! | `shadow` | `"exact"`, or `"ratio"`: ratio tracking through the same σ̂ | `"exact"` |
 //! | `sampling` | one constant σ̂ for all channels, at least the σ_t of each, on shadow rays too where they are tracked | required here or in the case |
 //!
-//! Unbiased there. All moments are known of fixed chances; of those that depend on the weights, which score what
-//! `spectral-mis` scores with one σ̂ and equal probabilities, a mean and a bound.
+//! Unbiased there. With fixed probabilities all moments are known. With probabilities that depend on the weights a
+//! mean and a bound are known: they score the same as `spectral-mis` with one σ̂ and equal probabilities.
 //!
 //! Source: P. Kutz, R. Habel, Y. K. Li, J. Novák, *Spectral and Decomposition Tracking for Rendering
 //! Heterogeneous Volumes*, ACM Transactions on Graphics 36 (2017), sections 5.1.1 and 5.1.2.

@@ -8,11 +8,11 @@
 //! X_λ = q_λ/q p_λ(cos θ) Φ/(4π r²) T̂_λ,   q = q_h, or Σ_h w_h q_h by multiple importance sampling
 //! ```
 //!
-//! In spectral tracking all channels walk together through one σ̂: chances `P_e` decide, and q is their product.
-//! T̂ is exact, or `Π (1 − r_λ)` over the collisions of a shadow ray through the hero's σ̂, whose rates and transmittances
-//! through σ̂ then are factors of q, too. q is kept relative to the hero's, see [`Media::common`]. The first flight and
-//! decision take two random numbers each time, a flight of a shadow ray one, the choice of the hero one. Walks are scored when
-//! all have ended, exact shadow rays included.
+//! In spectral tracking all channels walk together through one σ̂: probabilities `P_e` decide, and q is their
+//! product. T̂ is exact, or `Π (1 − r_λ)` over the collisions of a shadow ray through the hero's σ̂. The rates of
+//! these collisions and the transmittances through σ̂ are then factors of q, too. q is kept relative to the hero's,
+//! see [`Media::common`]. The first flight and decision take two random numbers each time, a flight of a shadow ray
+//! one, the choice of the hero one. Walks are scored when all have ended, exact shadow rays included.
 
 use fearless_simd::Level;
 
@@ -36,18 +36,18 @@ use theory::problems::SpectralSingleScattering;
 use theory::single::Tracking;
 use theory::spectral::chance::shares;
 
-/// The number of lanes of a pack that cast their shadow rays together: to find where these lead costs more than a step.
+/// The number of lanes of a pack that cast their shadow rays together: aiming a ray costs more than a step.
 const TOGETHER: u32 = 4;
 
-/// Stands in the place of the hero of a walk that was not scattered.
+/// Number of the hero of a walk that was not scattered.
 const LOST: f64 = -1.0;
 
 /// The steps of a walk that a known bug may replace.
 pub trait Steps: Copy {
-    /// Whether collisions along the ray are counted by themselves, see [`Steps::has_shadow_density`].
+    /// True if collisions along the ray are counted separately, see [`Steps::has_shadow_density`].
     const COUNTS: bool = false;
 
-    /// Whether length and collisions of a tracked shadow ray are in the densities.
+    /// True if length and collisions of a tracked shadow ray are in the densities.
     #[inline(always)]
     fn has_shadow_density(&self) -> bool {
         true
@@ -89,11 +89,12 @@ impl Steps for Right {}
 kept! {
     /// Walks to their scattering, and shadow rays from there.
     pub struct Flight<L> {
-        /// Lanes on their way along the ray, lanes that wait to cast a shadow ray, and lanes with one in flight.
+        /// Lanes on their way along the ray, lanes that have yet to cast a shadow ray, and lanes with one in
+        /// flight.
         walks: L::Mask,
         aims: L::Mask,
         casts: L::Mask,
-        /// Lanes of these at a tentative collision.
+        /// Lanes among the last at a tentative collision.
         inside: L::Mask,
         /// The number of each hero, its mean free path through σ̂ and its albedo.
         hero: L,
@@ -104,9 +105,9 @@ kept! {
         s: L,
         /// The number of collisions along the ray, if [`Steps::COUNTS`].
         collisions: L,
-        /// q of each channel relative to the hero's, but for σ̂.
+        /// q of each channel relative to the hero's, without the factors of σ̂.
         weights: [L; MOST_CHANNELS],
-        /// The shadow ray, where it has come to, and its end.
+        /// The shadow ray, its present distance, and its end.
         origin: [L; 3],
         direction: [L; 3],
         t: L,
@@ -124,9 +125,9 @@ pub struct ToScattering<'a, S, const ALL: bool> {
     law: Option<Law>,
     media: Media,
     albedos: [f64; MOST_CHANNELS],
-    /// Whether shadow rays are tracked.
+    /// True if shadow rays are tracked.
     tracks: bool,
-    /// The fields on shadow rays, as packs look them up; none for one lane.
+    /// The fields on shadow rays, as packs look them up; empty for one lane.
     fields: &'a [Batches<'a>],
     steps: S,
 }
@@ -144,7 +145,7 @@ pub fn draw<const ALL: bool>(
     walks::draw(&walk, &setup.channels[0].sampling, medium, random)
 }
 
-/// Makes the draws of a request in packs.
+/// Makes the draws of a request in packets.
 pub fn packets<'a, const ALL: bool>(
     level: Level,
     (walker, shadow): (&Walker, Shadow),
@@ -177,7 +178,8 @@ impl<'a, S: Steps, const ALL: bool> ToScattering<'a, S, ALL> {
         Self { setup, walker, law, media, albedos, tracks, fields, steps }
     }
 
-    /// The probabilities to be scattered and to go straight on, given the hero's ratio and all.
+    /// The probabilities to be scattered and to go straight on, given the hero's ratio and the ratios of all
+    /// channels.
     #[inline(always)]
     fn chances<L: Lane>(&self, path: &Flight<L>, own: L, ratios: &[L]) -> [L; 2] {
         if ALL && let Some(chances) = self.walker.together() {
@@ -217,7 +219,7 @@ impl<'a, S: Steps, const ALL: bool> ToScattering<'a, S, ALL> {
         }
     }
 
-    /// Shadow rays from distances s, and their stretches within the bounds of the medium.
+    /// Shadow rays from distances s, and their intervals within the bounds of the medium.
     #[inline(always)]
     fn shadows<L: Lane>(&self, which: L::Mask, s: L) -> ([[L; 3]; 2], [L; 2]) {
         let lit = &self.setup.problem.channels[0];
@@ -226,7 +228,7 @@ impl<'a, S: Steps, const ALL: bool> ToScattering<'a, S, ALL> {
         ([origin, direction], [from.or_more(s.each(0.0)), distance.or_less(to)])
     }
 
-    /// Casts the shadow rays of the lanes in `which`; answers which meet the medium.
+    /// Casts the shadow rays of the lanes in `which`; returns the lanes with rays that enter the medium.
     #[inline(always)]
     fn cast<L: Lane>(&self, path: &mut Flight<L>, which: L::Mask) -> L::Mask {
         let ([origin, direction], [from, to]) = self.shadows(which, path.s);
@@ -267,7 +269,7 @@ impl<S: Steps, const ALL: bool> Walk for ToScattering<'_, S, ALL> {
     fn begin<L: Lane>(&self, one: L, all: L::Mask, random: &mut impl Random<L>) -> Flight<L> {
         let (none, zero, ones) = (all & !all, one.each(0.0), [one; MOST_CHANNELS]);
         let s = one.each(self.setup.mesh.support().from);
-        // Lanes without a shadow ray look σ_t up where this one enters.
+        // Lanes without a shadow ray look up σ_t where this one enters.
         let (origin, direction, _) = self.setup.problem.channels[0].to_light(s);
         let mut path = Flight {
             walks: none,
@@ -418,7 +420,7 @@ impl<S: Steps, const ALL: bool> Walk for ToScattering<'_, S, ALL> {
 
     #[inline(always)]
     fn on_shadow_rays<L: Lane>(&self, path: &Flight<L>) -> (L::Mask, [L; 3]) {
-        // Beyond the end there is no field to look at.
+        // Beyond the end there is no field to look up.
         let t = L::select(path.inside, path.t, path.end);
         (path.inside, along(path.origin, path.direction, t))
     }

@@ -11,9 +11,10 @@
 //! | `hero` | the law of the hero: `"uniform"`, `"luminance"`, or a list of probabilities that sum to 1 | `"uniform"` |
 //! | `sampling` | σ̂ ≥ σ_t | required here or in the case |
 //!
-//! Unbiased where every hero scatters, or nobody, but the variance of a channel is infinite where `a_λ²/a_h` is at least
-//! the albedo at which a slab so thick is critical: refused there, and within a thousandth of that depth. A finite
-//! variance may still be out of reach of any number of draws: the fourth moment needs `a_λ⁴/a_h³`.
+//! Unbiased where the albedos of all heroes are positive, or all are 0. The variance of a channel is infinite where
+//! `a_λ²/a_h` is at least the albedo at which a slab of this depth is critical: refused there, and within a
+//! thousandth of that depth. A finite variance may still be out of reach of any number of draws: the fourth moment
+//! needs `a_λ⁴/a_h³`.
 //!
 //! Source: B. Miller, I. Georgiev, W. Jarosz, *A Null-Scattering Path Integral Formulation of Light
 //! Transport*, ACM Transactions on Graphics 38 (2019), section 5.1; critical slabs: K. M. Case, P. F. Zweifel, *Linear

@@ -1,4 +1,4 @@
-//! Spectral tracking in a slab: one chance to be scattered for all channels.
+//! Spectral tracking in a slab: one scattering probability for all channels.
 //!
 //! Unbiased for: σ̂ ≥ σ_t, as long as the variance is finite; refused elsewhere.
 //!
@@ -12,9 +12,9 @@
 //! | `probabilities` | `"average"` or `"maximum"` | `"average"` |
 //! | `sampling` | σ̂ ≥ σ_t | required here or in the case |
 //!
-//! Unbiased everywhere, but the variance of a channel is infinite where `a_λ²/P_s` is at least the albedo at which a slab
-//! so thick is critical: refused there, and within a thousandth of that depth. A finite variance may still be out of
-//! reach of any number of draws: the fourth moment needs `a_λ⁴/P_s³`.
+//! Unbiased everywhere, but the variance of a channel is infinite where `a_λ²/P_s` is at least the albedo at which
+//! a slab of this depth is critical: refused there, and within a thousandth of that depth. A finite variance may
+//! still be out of reach of any number of draws: the fourth moment needs `a_λ⁴/P_s³`.
 //!
 //! Source: P. Kutz, R. Habel, Y. K. Li, J. Novák, *Spectral and Decomposition Tracking for Rendering
 //! Heterogeneous Volumes*, ACM Transactions on Graphics 36 (2017), section 5.1; critical slabs: K. M. Case, P. F.

@@ -10,8 +10,7 @@
 //! |---|---|---|
 //! | `sampling` | one constant σ̂ > 0 for all channels | required here or in the case |
 //!
-//! Nothing is chosen by chance but the places: where the densities of the channels are
-//! alike it has the least variance of all.
+//! Only the places are random: where the densities of the channels are alike it has the least variance of all.
 //!
 //! Source: J. Novák, A. Selle, W. Jarosz, *Residual Ratio Tracking for Estimating Attenuation in Participating
 //! Media*, ACM Transactions on Graphics 33 (2014), with one majorant for all channels.

@@ -13,9 +13,9 @@
 //! | `hero` | the law of the hero: `"uniform"`, `"luminance"`, or a list of probabilities that sum to 1 | `"uniform"` |
 //! | `sampling` | a constant σ̂ > 0 in each channel; at least σ_t for `"delta"` | required here or in the case |
 //!
-//! With delta tracking the variance is infinite where the hero's σ̂ touches its σ_t and another channel's does
-//! not, and the draws are biased where it does so on a stretch: both are refused. What multiple importance
-//! sampling is for: see `spectral-mis`.
+//! With delta tracking the variance is infinite where the hero's σ̂ touches its σ_t and another channel's does not,
+//! and the draws are biased where it does so on an interval: both are refused. Multiple importance sampling solves
+//! this: see `spectral-mis`.
 //!
 //! Source: B. Miller, I. Georgiev, W. Jarosz, *A Null-Scattering Path Integral Formulation of Light
 //! Transport*, ACM Transactions on Graphics 38 (2019), section 5.1.
@@ -28,7 +28,7 @@ use media::catalogue::Settings;
 use theory::problems::SpectralTransmittance;
 use theory::spectral::Tracker;
 
-/// One hero, without multiple importance sampling.
+/// A single hero, without multiple importance sampling.
 #[derive(Debug, Clone)]
 pub struct Hero {
     delta: bool,

@@ -11,7 +11,8 @@ pub mod walk;
 use crate::estimators;
 use theory::problems::SpectralTransmittance;
 
-/// The plumbing of a page: all that differs is whether all channels walk together, the law of the hero, and its tracker.
+/// Implements the trait of estimators for a page by its walk (common or of heroes), its distribution of heroes, and
+/// its tracker.
 macro_rules! trackers {
     ($this:ident => $walk:ident, $heroes:expr, $tracker:expr) => {
         const INPUTS: $crate::Inputs = $crate::Inputs::SAMPLING;

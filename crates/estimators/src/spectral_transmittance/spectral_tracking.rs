@@ -1,4 +1,4 @@
-//! Spectral tracking: one σ̂ for all channels, and a chance of null collisions that depends on all of them.
+//! Spectral tracking: one σ̂ for all channels, and a probability of null collisions that depends on all of them.
 //!
 //! Unbiased for: one constant σ̂ ≥ σ_t for all channels; refused elsewhere.
 //!
@@ -14,8 +14,8 @@
 //! | `probabilities` | `"average"`, `"maximum"` or `"history"` | `"average"` |
 //! | `sampling` | one constant σ̂ for all channels, at least the σ_t of each | required here or in the case |
 //!
-//! Unbiased there. The history-aware form scores what `spectral-mis` with delta tracking, one σ̂ and equal
-//! probabilities scores.
+//! Unbiased there. The history-aware form scores the same as `spectral-mis` with delta tracking, one σ̂ and equal
+//! probabilities.
 //!
 //! Source: P. Kutz, R. Habel, Y. K. Li, J. Novák, *Spectral and Decomposition Tracking for Rendering
 //! Heterogeneous Volumes*, ACM Transactions on Graphics 36 (2017), sections 5.1.1 and 5.1.2.
@@ -36,11 +36,11 @@ pub struct SpectralTracking {
 }
 
 impl SpectralTracking {
-    /// For theory, and for packets.
+    /// Tracker in theory's terms.
     fn tracker(&self) -> Tracker {
         match self.chances {
             Chances::Fixed(chance) => Tracker::Tracking(chance),
-            // Weights that remember are those of the balance heuristic.
+            // Probabilities that depend on the weights score as the balance heuristic does.
             Chances::History => Tracker::Mis { delta: true },
         }
     }

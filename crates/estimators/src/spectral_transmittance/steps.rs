@@ -5,10 +5,10 @@ use numeric::rng::Random;
 
 /// The steps of a walk that a known bug may replace.
 pub trait Steps: Copy {
-    /// Whether [`Steps::relative`] asks for the last collision.
+    /// True if [`Steps::relative`] needs the last collision.
     const KEEPS_LAST: bool = false;
 
-    /// The hero whose share of null collisions decides at a collision.
+    /// Number of the hero with the share of null collisions that decides at a collision.
     #[inline(always)]
     fn decides<L: Lane>(&self, hero: L, inside: L::Mask, random: &mut impl Random<L>) -> L {
         let _ = (inside, random);
@@ -22,20 +22,21 @@ pub trait Steps: Copy {
         own
     }
 
-    /// The probability of a null collision in spectral tracking, and what weights are divided by; from what is right.
+    /// The probability of a null collision in spectral tracking, and the divisor of weights, given the right ones.
     #[inline(always)]
     fn tracked<L: Lane>(&self, right: L, shares: &[L]) -> [L; 2] {
         let _ = shares;
         [right, right]
     }
 
-    /// The score of a channel by a walk for its hero alone, be that channel the hero or not.
+    /// The score of a channel by a walk for its hero alone; the channel may be the hero or another one.
     #[inline(always)]
     fn alone<L: Lane>(&self, is_hero: L::Mask, value: L, probability: f64) -> L {
         L::select(is_hero, value * (1.0 / probability), value.each(0.0))
     }
 
-    /// `q_λ/q_h`, from what is right, σ̂ of the channel and of the hero, and the way from the last collision to the end.
+    /// `q_λ/q_h`, given the right one, σ̂ of the channel and of the hero, and the distance from the last collision
+    /// to the end.
     #[inline(always)]
     fn relative<L: Lane>(&self, right: L, majorants: [L; 2], last: impl Fn() -> L) -> L {
         let _ = (majorants, last);

@@ -1,14 +1,14 @@
-//! The walk of a hero channel through a chromatic medium, and what it says of all channels.
+//! The walk of a hero channel through a chromatic medium, and its scores in all channels.
 //!
 //! ```text
 //! tᵢ a Poisson process of rate μ̄_h;  ρ_λ = Π n_λ(tᵢ)/μ̄_λ,  n_λ = μ̄_λ − σ_λ
 //! f_λ = q_λ ρ_λ,  p_h = q_h (ratio tracking) or q_h ρ_h (delta tracking),  q_λ = e^{−μ̄_λ ℓ} μ̄_λⁿ
 //! ```
 //!
-//! `f_λ` is what the null-collision path contributes to channel λ and `p_h` its density by the hero h. Delta
+//! `f_λ` is the contribution of the null-collision path to channel λ and `p_h` its density by the hero h. Delta
 //! tracking ends at a real collision of the hero. A step takes one random number for the flight and, in delta
-//! tracking, one for the collision. Spectral tracking has one σ̂ for all channels, weights `w_λ` in the place of `ρ_λ`, and
-//! null collisions by a probability that depends on all channels.
+//! tracking, one for the collision. Spectral tracking has one σ̂ for all channels, weights `w_λ` in the place of
+//! `ρ_λ`, and null collisions by a probability that depends on all channels.
 //!
 //! Source: B. Miller, I. Georgiev, W. Jarosz, *A Null-Scattering Path Integral Formulation of Light
 //! Transport*, ACM Transactions on Graphics 38 (2019), section 5.1.
@@ -28,7 +28,7 @@ use theory::problems::SpectralTransmittance;
 use theory::problems::spectral_transmittance::Values;
 use theory::spectral::{Spectrum, Tracker};
 
-/// Reads `collisions`: whether real collisions end the walk.
+/// Reads `collisions`; true if real collisions end the walk.
 pub fn read_delta(settings: &Settings) -> Option<bool> {
     settings.word_or("collisions", &["ratio", "delta"], "ratio").map(|word| word == "delta")
 }
@@ -39,7 +39,7 @@ pub fn label(delta: bool, further: &str) -> String {
     if further.is_empty() { word.into() } else { format!("{word}, {further}") }
 }
 
-/// For theory.
+/// The tracker and its medium as theory describes them.
 pub fn spectrum(
     setup: &Setup<SpectralTransmittance>,
     heroes: &Heroes,
@@ -55,7 +55,7 @@ pub fn spectrum(
 pub struct AlongRay<'a, S> {
     setup: &'a Setup<SpectralTransmittance>,
     tracker: Tracker,
-    /// Whether one walk serves all channels through their common σ̂: no hero is chosen.
+    /// True if one walk serves all channels through their common σ̂: no hero is chosen.
     is_common: bool,
     /// The distribution of heroes.
     pub law: Law,
@@ -118,7 +118,7 @@ impl<'a, S: Steps> AlongRay<'a, S> {
         one.each(self.setup.mesh.support().from)
     }
 
-    /// Whether real collisions end a walk.
+    /// Returns true if real collisions end a walk.
     #[inline(always)]
     fn is_delta(&self) -> bool {
         !matches!(
@@ -130,18 +130,18 @@ impl<'a, S: Steps> AlongRay<'a, S> {
         )
     }
 
-    /// Whether a walk flies for its hero alone.
+    /// Returns true if a walk scores its hero alone.
     #[inline(always)]
     fn is_alone(&self) -> bool {
         matches!(self.tracker, Tracker::Independent { .. } | Tracker::InTurn { .. })
     }
 
-    /// The probability that a collision is null; none where all are.
+    /// The probability that a collision is null; `None` where all collisions are.
     #[inline(always)]
     fn survival<L: Lane>(&self, hero: L, weights: &[L], shares: &[L]) -> Option<L> {
         match self.tracker {
             Tracker::Tracking(chance) => Some(chance.of_null(shares)),
-            // Weights that remember are those of the balance heuristic.
+            // Probabilities that depend on the weights score as the balance heuristic does.
             Tracker::Mis { delta: true } if self.is_common => {
                 let (mut nulls, mut all) = (hero.each(0.0), hero.each(0.0));
                 for (channel, &share) in shares.iter().enumerate() {
@@ -158,9 +158,9 @@ impl<'a, S: Steps> AlongRay<'a, S> {
     }
 }
 
-/// Walks that fly for their heroes alone.
+/// Walks that score their heroes alone.
 impl<S: Steps> AlongRay<'_, S> {
-    /// Lanes in `which` have these heroes from now on.
+    /// Sets the heroes of the lanes in `which`.
     #[inline(always)]
     fn follow<L: Lane>(&self, path: &mut Particle<L>, which: L::Mask, hero: L) {
         let count = self.media.count;
@@ -173,7 +173,7 @@ impl<S: Steps> AlongRay<'_, S> {
         }
     }
 
-    /// Handles collisions in the media of the heroes; answers which lanes go on.
+    /// Handles collisions in the media of the heroes; returns the lanes that go on.
     #[inline(always)]
     fn collide_alone<L: Lane>(
         path: &mut Particle<L>,
@@ -190,7 +190,7 @@ impl<S: Steps> AlongRay<'_, S> {
         met.inside
     }
 
-    /// Walks that have ended go on with the next channel, if there is one; answers which do.
+    /// Restarts walks that have ended with the next channel, if there is one; returns the lanes that do.
     #[inline(always)]
     fn turn<L: Lane>(
         &self,
@@ -215,7 +215,7 @@ impl<S: Steps> AlongRay<'_, S> {
 
 /// Scores of walks that have ended.
 impl<S: Steps> AlongRay<'_, S> {
-    /// Makes scores of the hero and of the weights that a walk left.
+    /// Computes scores from the hero and the weights that a walk left.
     #[inline(always)]
     fn weigh<L: Lane>(&self, numbers: &[L], lookups: L, values: &mut [L]) {
         let [hero, weights @ ..] = numbers else { return };
@@ -280,10 +280,10 @@ kept! {
         /// σ̂ of the hero, and `1/σ̂`.
         majorant: L,
         mean_free_path: L,
-        /// `ρ_λ`, or the weights of spectral tracking. Of walks for the hero alone its own is the first; of those in turn
-        /// the values of channels that are done follow.
+        /// `ρ_λ`, or the weights of spectral tracking. Walks that score their heroes alone use the first one only.
+        /// Walks in turn store the values of finished channels behind it.
         weights: [L; MOST_CHANNELS + 1],
-        /// `1 − σ_t/σ̂` of each channel where they are.
+        /// Present `1 − σ_t/σ̂` of each channel.
         shares: [L; MOST_CHANNELS],
         /// The last collision, if [`Steps::KEEPS_LAST`].
         last: L,

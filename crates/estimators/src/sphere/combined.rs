@@ -98,7 +98,7 @@ impl<'a, B: Steps, const CONNECTS: bool> Combined<'a, B, CONNECTS> {
         Tracker { scene: &self.sphere().scene, ground: &self.ground }
     }
 
-    /// Whether densities hold the probabilities of null collisions.
+    /// True if densities include the probabilities of null collisions.
     fn has_nulls(&self) -> bool {
         self.sharing.is_full() && self.sharing.shadow.is_none()
     }

@@ -77,7 +77,7 @@ impl Estimator<Transmittance> for Decomposition {
 kept! {
     /// A walk through the residual.
     pub struct Flight<L> {
-        /// Whether the next step is the control's flight, which looks nothing up.
+        /// Lanes with the control's flight as their next step, which makes no lookup.
         begins: L::Mask,
         /// The end of the control's flight.
         stop: L,
@@ -134,7 +134,7 @@ impl Walk for Residual {
         depth: L,
     ) -> L::Mask {
         let begins = flight.begins;
-        // A control of 0 stops no flight: its stop is infinite, or no number for a depth of 0.
+        // A control of 0 stops no flight: its stop is infinite, or NaN for a depth of 0.
         let stop = depth.times_plus(depth.each(1.0 / self.control), depth.each(self.begin));
         flight.stop.set_where(begins, stop);
         let inside = route.here.fly(depth);

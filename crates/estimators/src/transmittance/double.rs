@@ -28,17 +28,17 @@ use theory::{Law, Prediction};
 #[derive(Debug, Clone)]
 pub struct DoubleParticle;
 
-/// σ̂ must reach every place where the residual is not zero, and weights must stay finite.
+/// Checks that σ̂ covers every place where the residual is not zero, and that weights stay finite.
 ///
 /// # Errors
 ///
-/// The stretch that σ̂ leaves out, or how much a collision may multiply a weight by.
+/// The interval that σ̂ leaves out, or the factor by which a collision may multiply a weight.
 pub fn unbiased_where_covered(setup: &Setup<Transmittance>) -> Result<(), Refusal> {
     setup.require_coverage()?;
     setup.require_finite_weights(&Weight)
 }
 
-/// The moments on this page's head, and the whole law where r is constant.
+/// The moments on this page's head, and the distribution where r is constant.
 pub fn predict_weighted(setup: &Setup<Transmittance>) -> Prediction {
     let prediction = setup.product(&Weight).predict();
     let law = setup.constant_ratio().map(|ratio| {

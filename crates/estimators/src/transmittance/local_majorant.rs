@@ -1,4 +1,4 @@
-//! Local-majorant Woodcock tracking: a walk that starts afresh at every segment boundary.
+//! Local-majorant Woodcock tracking: a walk that starts again at every segment boundary.
 //!
 //! Unbiased for: a σ̂ ≥ σ_t that is constant in pieces; refused elsewhere.
 //!
@@ -6,10 +6,9 @@
 //! in segment j: fly with the constant σ̄ⱼ; beyond its end, go to the boundary and start again
 //! ```
 //!
-//! The exponential law forgets how far a flight has come, so the law of the draws and of the
-//! lookups is that of `woodcock` with the same piecewise-constant σ̂, which inverts the piecewise
-//! optical depth instead. Only the random numbers differ: a boundary that is crossed takes those of a step
-//! more. Segments without extinction are left out.
+//! The exponential distribution has no memory. Draws and lookups are therefore distributed as those of `woodcock`
+//! with the same piecewise-constant σ̂, which inverts the piecewise optical depth instead. Only the random numbers
+//! differ: a boundary that is crossed takes those of one more step. Segments without extinction are left out.
 //!
 //! Draws are 0 or 1. Moments and cost are those of
 //! `woodcock`.
@@ -46,7 +45,7 @@ impl Estimator<Transmittance> for LocalMajorant {
     }
 
     fn predict(&self, setup: &Setup<Transmittance>) -> Prediction {
-        // It takes more at each boundary that it crosses.
+        // It takes more random numbers at each boundary that it crosses.
         let prediction = setup.product(&Null).predict();
         zero_or_one(Prediction { random_numbers: None, ..prediction })
     }
@@ -74,24 +73,25 @@ kept! {
     }
 }
 
-/// Woodcock tracking from segment to segment. A step is a flight within a segment: no lane waits for those that cross several.
+/// Woodcock tracking from segment to segment. A step is a flight within a segment: no lane is delayed by lanes that
+/// cross several.
 #[derive(Clone, Copy)]
 struct Segments<'a> {
-    /// Beginning, end and mean free path of each.
+    /// Beginning, end and mean free path of each segment.
     rows: &'a [Row],
     /// The value of walks that pass.
     unit: f64,
 }
 
 impl<'a> Segments<'a> {
-    /// `None` where no segment has an extinction: there is nothing to collide with.
+    /// The walk on a setup; `None` where no segment has an extinction: there are no collisions.
     #[inline(always)]
     fn of(setup: &'a Setup<Transmittance>) -> Option<Self> {
         let rows = setup.sampling.stretches();
         (!rows.is_empty()).then_some(Self { rows, unit: setup.control_transmittance })
     }
 
-    /// At the beginning of a segment.
+    /// State at the beginning of a segment.
     #[inline(always)]
     fn enter<L: Lane>(&self, segment: L) -> Hop<L> {
         let [t, end, mean_free_path, ..] = segment.columns(self.rows);

@@ -1,4 +1,4 @@
-//! Next-flight estimation: at every collision, add the chance to fly straight to the end.
+//! Next-flight estimation: at every collision, add the probability to fly straight to the end.
 //!
 //! Unbiased for: every constant σ̂ > 0.
 //!

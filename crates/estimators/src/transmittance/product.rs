@@ -4,11 +4,11 @@
 //! X = T_c ∏ W(tᵢ),  tᵢ a Poisson process of rate σ̂ on the support
 //! ```
 //!
-//! It is the algorithm *Transmittance* of Szirmay-Kalos et al. 2017, section 4.2, with the rule at a collision left open.
-//! Where the rule decides by a random number, a step takes a random number for that, whether it is used or not.
+//! It is the algorithm *Transmittance* of Szirmay-Kalos et al. 2017, section 4.2, for any rule at a collision.
+//! Where the rule decides by a random number, a step takes one, whether it is used or not.
 //!
-//! Every draw keeps an invariant: at a collision the rule takes a share from the particle, and at any time the weight and
-//! what was taken from it sum to the weight at the beginning, to rounding:
+//! Every draw keeps an invariant. At a collision the rule takes a share from the particle. At any time the weight
+//! and the shares taken so far sum to the weight at the beginning, to rounding:
 //!
 //! ```text
 //! X(S) + Σᵢ X(tᵢ⁻)(1 − (1 − rᵢ)/qᵢ) = T_c
@@ -32,11 +32,11 @@ pub struct Product<'a, R> {
     begin: f64,
 }
 
-/// σ_c, which walks subtract from σ_t.
+/// σ_c, which is subtracted from σ_t.
 #[derive(Clone, Copy)]
 pub struct Subtracted<'a> {
     control: &'a Control,
-    /// Its value, where there is only one: no step has to find that out.
+    /// The value of a constant control, so that no step has to look for it.
     constant: Option<f64>,
 }
 
@@ -143,12 +143,12 @@ impl<R: Collision> Walk for Product<'_, R> {
 kept! {
     /// A particle that keeps its weight until it is killed.
     pub struct Survivor<L> {
-        /// `Σ min(r, 0)`, by which the weight should have changed.
+        /// `Σ min(r, 0)`, the change that the weight should have had.
         missing: L,
     }
 }
 
-/// The walk of a rule that leaves the weight of survivors as it is: Woodcock tracking.
+/// The walk of a rule that keeps the weight of survivors: Woodcock tracking.
 ///
 /// With `0 ≤ r ≤ 1` the probability to go on is `q = 1 − r`, and a survivor's due is `(1 − r)/q = 1`: the invariant of
 /// [`Product`] holds without being followed. A negative r, which the rule does not allow, breaks it.
@@ -188,7 +188,7 @@ impl<R: Collision> Walk for Survival<'_, R> {
         let met = rules::Met { residual, sampling: route.here.sampling(), mean_free_path };
         let goes_on = inside & !self.0.rule.kills(&met, number);
         let (zero, ratio) = (t.each(0.0), met.ratio());
-        // What is no number stays none.
+        // NaN stays NaN.
         let is_missing = goes_on & !zero.at_most(ratio);
         survivor.missing.add_where(is_missing, ratio);
         goes_on
@@ -238,13 +238,13 @@ pub fn fill<P: Problem<Value = [f64; 1]>, R: Collision>(
 }
 
 kept! {
-    /// The weight of a particle at the beginning, and what its collisions took.
+    /// The weight of a particle at the beginning, and the shares that its collisions took.
     pub struct Invariant<L> {
         /// The weight at the beginning.
         pub begin: L,
         /// The shares that collisions took.
         pub taken: L,
-        /// The sum of the sizes of all of it, by which rounding is measured.
+        /// The sum of the absolute values of all terms, the scale of rounding.
         pub scale: L,
     }
 }
@@ -256,7 +256,7 @@ impl<L: Lane> Invariant<L> {
         Self { begin: weight, taken: weight.each(0.0), scale: weight.size() }
     }
 
-    /// Notes the share that a collision takes from a particle that survives it: all but `due`, `(1 − r)/q`.
+    /// Adds the share that a collision takes from a particle that survives it: all but `due`, `(1 − r)/q`.
     #[inline(always)]
     pub fn take(&mut self, weight: L, due: L) {
         let share = weight * (weight.each(1.0) - due);
@@ -264,7 +264,7 @@ impl<L: Lane> Invariant<L> {
         self.scale = self.scale + share.size();
     }
 
-    /// Notes the share in some lanes.
+    /// Adds the share in some lanes.
     #[inline(always)]
     pub fn take_where(&mut self, which: L::Mask, weight: L, due: L) {
         let share = weight * (weight.each(1.0) - due);
@@ -279,7 +279,7 @@ impl<L: Lane> Invariant<L> {
         self.scale.set_where(which, self.begin.size());
     }
 
-    /// What is missing at the end, relative to the sizes of all; rounding in a correct walk.
+    /// Relative deviation from the invariant at the end; rounding in a correct walk.
     #[inline(always)]
     pub fn defect(&self, weight: L) -> L {
         (weight + self.taken - self.begin).size() / self.scale

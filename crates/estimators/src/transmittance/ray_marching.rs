@@ -1,4 +1,4 @@
-//! Ray marching: a Riemann sum in the exponent. Biased, and here to be caught.
+//! Ray marching: a Riemann sum in the exponent. Biased, so that the gate must fail it.
 //!
 //! Unbiased for: never: it is here to be caught.
 //!
@@ -11,8 +11,8 @@
 //! | `steps` | number of steps along the support | required |
 //! | `jitter` | one random offset for the whole ray | false |
 //!
-//! With jitter the sum is unbiased but the exponential of it is not (Jensen's inequality): the mean
-//! of X exceeds T. The bias is predicted exactly, as a quadrature over u:
+//! With jitter the sum is unbiased but its exponential is not (Jensen's inequality): the mean of X exceeds T. The
+//! bias is predicted exactly, as a quadrature over u:
 //!
 //! ```text
 //! E[X^k] = ∫₀¹ exp(−k h Σⱼ σ_t((j + u) h)) du
@@ -34,7 +34,7 @@ use numeric::{Known, Lane};
 use theory::problems::{Problem, Transmittance};
 use theory::{Channel, CountLaw, Moments, Prediction, Tails};
 
-/// Panels of the quadrature over the offset: σ_t may have kinks, so the rule is a dense one.
+/// Panels of the quadrature over the offset, many because σ_t may have kinks.
 const PANELS: usize = 256;
 
 /// Ray marching.
@@ -63,7 +63,7 @@ impl RayMarching {
         (u.each(setup.log_unit) - self.depth(setup, medium, u)).exp()
     }
 
-    /// One march.
+    /// The value of one march.
     #[inline(always)]
     fn march(&self, setup: &Setup<Transmittance>, medium: &Lookups, random: &mut Stream) -> f64 {
         let u = if self.jitter { random.uniform() } else { 0.5 };
@@ -170,7 +170,7 @@ impl Task for Marches<'_, '_> {
                 let u = if estimator.jitter { numbers.uniform() } else { half };
                 estimator.value(setup, medium, u).store_slice(row);
             }
-            // The first draw is that of the lane whose turn it is.
+            // The first draw is that of the lane `turn`.
             row.rotate_left(streams.turn);
         }
         for (pack, numbers) in packs.into_iter().enumerate() {

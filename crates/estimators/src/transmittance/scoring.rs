@@ -16,10 +16,10 @@ use numeric::{Kept, Lane, kept};
 
 /// The score of a place, as one formula for every lane type.
 pub trait Share: Copy {
-    /// Whether the flight that reaches the end scores what the place scored where it began, too.
+    /// True if the flight that reaches the end scores the share of its starting point again.
     const FLIGHT_SCORES: bool;
 
-    /// The share of v, from the optical depth of σ̄ that is left.
+    /// The share of v, given the optical depth of σ̄ that remains.
     fn of<L: Lane>(&self, left: L) -> L;
 }
 

@@ -1,4 +1,4 @@
-//! The single particle model: at a collision the transmitted particle goes on with chance q_tran.
+//! The single particle model: at a collision the transmitted particle goes on with probability q_tran.
 //!
 //! Unbiased for: 0 ≤ r ≤ 2 by the rule `terminating`, refused elsewhere; every r by the other rules.
 //!
@@ -23,7 +23,7 @@
 //! w = σ_r (2 − 1/r + (1 − r)²/(r q)) (Eqs. 18–20),  E[lookups] = ∫ σ̂ exp(−∫₀ᵗ σ̂ (1 − q)) dt
 //! ```
 //!
-//! Here scattered particles are lost, as for transmittance they must be: a draw that scatters is 0.
+//! Scattered particles are lost, as they must be for transmittance: a draw that scatters is 0.
 //!
 //! Source: L. Szirmay-Kalos, I. Georgiev, M. Magdics, B. Molnár, D. Légrády, *Unbiased Light
 //! Transport Estimators for Inhomogeneous Participating Media*, Computer Graphics Forum 36 (2017),
@@ -43,7 +43,7 @@ pub struct SingleParticle {
     rule: Single,
 }
 
-/// Whether the terminating rule is realisable: `0 ≤ r ≤ 2`.
+/// Checks that the terminating rule is realisable: `0 ≤ r ≤ 2`.
 fn terminating_exists(setup: &Setup<Transmittance>) -> Result<(), Refusal> {
     setup.require_not_negative("r ≥ 0 (q_tran = |1 − r| ≤ 1)")?;
     setup.require_ratio_at_most(2.0, "r ≤ 2 (q_tran = |1 − r| ≤ 1)")

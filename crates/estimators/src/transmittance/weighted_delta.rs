@@ -1,4 +1,4 @@
-//! Weighted delta tracking: a σ̂ that is no majorant, paid for with signed weights.
+//! Weighted delta tracking: a σ̂ that is no majorant, with signed weights.
 //!
 //! Unbiased for: every σ̂ > 0 where σ_t ≠ 0.
 //!
@@ -7,9 +7,8 @@
 //! else null, with weight sgn(1 − r)(r + |1 − r|),  r = σ_t/σ̂
 //! ```
 //!
-//! For `r ≤ 1` it is `woodcock`; beyond,
-//! weights are negative and grow as 2r − 1. It is the non-terminating `single` with albedo 1, whose
-//! code and moments it shares.
+//! For `r ≤ 1` it is `woodcock`. Beyond, weights are negative and grow as 2r − 1. It is the non-terminating
+//! `single` with albedo 1, and uses its code and moments.
 //!
 //! Source: M. Galtier et al., *Integral formulation of null-collision Monte Carlo algorithms*,
 //! Journal of Quantitative Spectroscopy and Radiative Transfer 125 (2013); L. W. G. Morgan,

@@ -6,8 +6,8 @@
 //! X = 1 if every tentative collision is null, each with probability 1 − σ_t(tᵢ)/σ̄(tᵢ); else 0
 //! ```
 //!
-//! Draws are 0 or 1. It is the terminating single particle model for
-//! `0 ≤ r ≤ 1`. Refused where σ̂ is no majorant: there the chance of a null collision is negative.
+//! Draws are 0 or 1. It is the terminating single particle model for `0 ≤ r ≤ 1`. Refused where σ̂ is no majorant:
+//! there the probability of a null collision is negative.
 //!
 //! ```text
 //! J_k = τ for every k,  Var X = T(1 − T),  E[lookups] = ∫ σ̄ T dt
@@ -27,10 +27,10 @@ use theory::{Law, Prediction};
 #[derive(Debug, Clone)]
 pub struct Woodcock;
 
-/// What estimators whose draws are 0 or 1 need.
+/// Requirement of estimators with draws of 0 or 1.
 pub const ZERO_OR_ONE: &str = "τ ≤ 300 (draws are 0 or 1, and a 1 is never seen)";
 
-/// Adds the law of a draw that is 1 with probability T, else 0.
+/// Adds the distribution of a draw that is 1 with probability T, else 0.
 pub fn zero_or_one(prediction: Prediction) -> Prediction {
     let alive = prediction.channels[0].truth.value;
     let law = Some(Law::Atoms(vec![(0.0, 1.0 - alive), (1.0, alive)]));

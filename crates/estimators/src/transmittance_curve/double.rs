@@ -36,7 +36,7 @@ use theory::{Prediction, curve};
 #[derive(Debug, Clone)]
 pub struct DoubleCurve;
 
-/// One walk: its tentative collisions `(t, σ_t(t), weight after it)`.
+/// Tentative collisions of one walk: `(t, σ_t(t), weight after it)`.
 pub fn walk(setup: &Setup<TransmittanceCurve>, medium: &Medium, rng: &mut Stream) -> Vec<[f64; 3]> {
     let mut cursor = setup.sampling.begin();
     let mut weight = 1.0;
@@ -76,8 +76,8 @@ impl Estimator<TransmittanceCurve> for DoubleCurve {
 kept! {
     /// A walk along the ray of a curve.
     ///
-    /// A collision at t changes the weight at all distances beyond it: what is kept of a distance is the weight with which
-    /// it was last ahead.
+    /// A collision at t changes the weight at all distances beyond it. Each distance keeps the weight at the last
+    /// collision before it.
     ///
     /// ```text
     /// w ← w (1 − r(t));  w_k ← w  where t < s_k;  at the end T̂(s_k) = T_c(s_k) w_k
@@ -147,7 +147,7 @@ impl Walk for Curve<'_> {
         let residual = extinction - self.control.extinction(t);
         let due = t.each(1.0) - residual * mean_free_path;
         let Weights { weight, ahead, invariant } = weights;
-        // The whole state is in memory, for `ahead` has an index.
+        // The whole state is in memory, because `ahead` is indexed.
         let (mut taken, before) = (*invariant, *weight);
         taken.take_where(inside, before, due);
         (invariant.taken, invariant.scale) = (taken.taken.sealed(), taken.scale.sealed());

@@ -129,7 +129,7 @@ fn score<L: Single, W: Walk>(
     (values, defect)
 }
 
-/// Looks σ_t up on a shadow ray, if there is one; answers the number of lookups.
+/// Looks σ_t up on a shadow ray, if there is one; returns the number of lookups.
 #[inline(always)]
 fn look_up_shadow<L: Single, W: Walk>(
     walk: &W,

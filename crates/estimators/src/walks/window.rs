@@ -80,14 +80,14 @@ impl<S: Simd, W: Walk, C: BothWays<f64x8<S>>> Pack<f64x8<S>, W, C> {
         Self { route: Route::new(course), state, inside: all, lookups: zero }
     }
 
-    /// Flies; answers the distances at which σ_t is looked up. Those of lanes that came to no collision may lie outside.
+    /// Flies; returns the distances at which σ_t is looked up. Those of lanes that came to no collision may lie outside.
     #[inline(always)]
     fn fly(&mut self, walk: &W, numbers: &Numbers<f64x8<S>>) -> f64x8<S> {
         self.inside = walk.fly(&mut self.state, &mut self.route, numbers.depth);
         walk.distance(&self.state, &self.route)
     }
 
-    /// Collides; answers as bits which walks end, and which are inside.
+    /// Collides; returns the lanes with walks that end, and those inside, as bits.
     #[inline(always)]
     fn collide(
         &mut self,
@@ -273,7 +273,7 @@ struct Draws<'a> {
 }
 
 impl Draws<'_> {
-    /// Makes draws of the walks of a pack that ended. Answers for each lane after how many of the steps it had made its last
+    /// Makes draws of the walks of a pack that ended. Returns for each lane the number of steps after which it had made its last
     /// draw, or 0.
     #[inline(never)]
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // counts
@@ -323,7 +323,7 @@ impl Draws<'_> {
     }
 }
 
-/// Makes the draws of a request. Both packs take each step together: `look_up` answers for sixteen lanes.
+/// Makes the draws of a request. Both packs take each step together: `look_up` returns σ_t of sixteen lanes.
 #[inline(always)]
 pub fn run<S: Simd, W: Walk, C: BothWays<f64x8<S>>>(
     simd: S,
