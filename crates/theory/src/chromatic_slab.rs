@@ -1,4 +1,4 @@
-//! Slabs in which every channel has a medium of its own: what theory says of draws that score all of them.
+//! Prediction for slabs in which every channel has a medium of its own, with draws that score all of them.
 //!
 //! ```text
 //! R_λ and T_λ    those of the slab of the channel λ, by adding and doubling
@@ -25,10 +25,10 @@ use crate::problems::spectral_rod::End;
 use media::Piecewise;
 use numeric::{Known, exponential_integrals};
 
-/// The largest error of an exact answer, relative to it, that is worth drawing against.
+/// Maximum relative error of an exact answer that draws are compared with.
 const BLURRED: f64 = 1e-4;
 
-/// A slab with what the walks of its channels fly through.
+/// A slab, with the mesh and σ̂ of each channel.
 pub struct Spectrum<'a> {
     problem: &'a ChromaticSlab,
     media: Vec<(&'a Mesh, &'a Piecewise)>,
@@ -45,7 +45,7 @@ impl<'a> Spectrum<'a> {
         Self { problem, media, laws }
     }
 
-    /// A channel whose answer is not known well enough to draw against it.
+    /// First channel with an answer that is not known well enough for a comparison with draws.
     pub fn blurred(&self) -> Option<usize> {
         let is_sharp = |&(end, channel): &(End, usize)| {
             let known = self.truth(end, channel);
@@ -55,7 +55,7 @@ impl<'a> Spectrum<'a> {
         self.problem.colours.seen.iter().find(|seen| !is_sharp(seen)).map(|seen| seen.1)
     }
 
-    /// What leaves a channel's slab at an end; not a number where it is unknown.
+    /// Energy that leaves a channel's slab at an end; NaN where it is unknown.
     fn truth(&self, end: End, channel: usize) -> Known {
         let (incidence, depth) =
             (&self.problem.incidences[channel], self.media[channel].0.optical_depth());
@@ -66,7 +66,7 @@ impl<'a> Spectrum<'a> {
         })
     }
 
-    /// Of one channel a draw, given the probability of each.
+    /// Prediction for one channel a draw, given the probability of each.
     pub fn independent(&self, heroes: &[f64]) -> Prediction {
         let channels: Vec<Channel> = self.channels(|truth, channel| {
             let raw = POWERS.map(|k| {
@@ -86,7 +86,7 @@ impl<'a> Spectrum<'a> {
         Prediction { channels, covariances, lookups: self.lookups(heroes), ..Prediction::default() }
     }
 
-    /// Of all channels by the balance heuristic, given the probability of each hero.
+    /// Prediction for all channels by the balance heuristic, given the probability of each hero.
     pub fn balanced(&self, heroes: &[f64]) -> Prediction {
         if heroes.len() == 1 {
             return self.independent(heroes);
@@ -97,7 +97,8 @@ impl<'a> Spectrum<'a> {
         Prediction { channels, lookups: self.lookups(heroes), ..Prediction::default() }
     }
 
-    /// Of all channels relative to the density of one walker, given bounds on `E[X²]`; lookups are known of heroes.
+    /// Prediction for all channels relative to the density of one walker, given bounds on `E[X²]`; lookups are
+    /// known for heroes.
     pub fn relative(&self, heroes: Option<&[f64]>, second_moment_bounds: &[f64]) -> Prediction {
         let channels =
             self.channels(|truth, channel| Channel::bounded(truth, second_moment_bounds[channel]));
@@ -105,11 +106,11 @@ impl<'a> Spectrum<'a> {
         Prediction { channels, lookups, ..Prediction::default() }
     }
 
-    /// A bound on `E[X²]` of a channel where draws are relative to the density of a walker, Φ given.
+    /// Bound on `E[X²]` of a channel where draws are relative to the density of a walker, Φ given.
     ///
     /// # Errors
     ///
-    /// What the second moment is multiplied by between two scatterings where that is too much.
+    /// The factor of the second moment between two scatterings, where it is too large.
     pub fn second_moment_bound(
         &self,
         walk: Proposal,
@@ -130,7 +131,7 @@ impl<'a> Spectrum<'a> {
             self.media.iter().flat_map(|(mesh, _)| mesh.panels().map(|panel| panel.span.from));
         let mesh = self.media[0].0.refined(&ends.collect::<Vec<f64>>(), &|_, _| Vec::new());
         let nothing = bound::NOTHING * rates.majorants[0];
-        // Where nothing happens nothing is lost or gained.
+        // Where there are no collisions nothing is lost or gained.
         let is_empty = |s: &SecondMomentRates| s.scattered == 0.0 && s.lost.abs() <= nothing;
         let of = |f: &dyn Fn(SecondMomentRates) -> f64| {
             let peaks = mesh.peaks(|t| Some(at(t)).filter(|s| !is_empty(s)).map_or(0.0, f));
@@ -147,13 +148,13 @@ impl<'a> Spectrum<'a> {
             Light::Collimated(cosine) => flight((-deep / cosine).exp()),
             Light::Diffuse => flight(0.0),
         };
-        // The mean of e^{−x/|μ|} over all directions is least in the middle.
+        // The mean of e^{−x/|μ|} over all directions is smallest in the middle.
         let is_isotropic = bound::are_isotropic(&problem.phases());
         let then = flight(if is_isotropic { exponential_integrals(0.5 * deep)[1] } else { 0.0 });
         bound::largest(first, then, [share, 0.0]).ok_or(share * then.collides)
     }
 
-    /// Everything that is seen, by what is said of a truth and the channel it is of.
+    /// All channels that are seen, each made from its expected value and its channel number.
     fn channels(&self, of: impl Fn(Known, usize) -> Channel) -> Vec<Channel> {
         let seen = self.problem.colours.seen.iter();
         let channel = |&(end, channel): &(End, usize)| {

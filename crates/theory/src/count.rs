@@ -1,13 +1,13 @@
-//! How many lookups a draw makes.
+//! Distribution of the number of lookups of a draw.
 
 use super::raw;
 
-/// Above this mean a law is left without probabilities.
+/// Maximum mean of a distribution for which probabilities are computed.
 pub const LARGEST_MEAN: f64 = 2000.0;
 /// Probabilities below this, relative to the largest, are left out.
 const FAINT: f64 = 1e-20;
 
-/// The law of the number of lookups of one draw.
+/// Distribution of the number of lookups of one draw.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CountLaw {
     /// `E[M]`.
@@ -16,9 +16,9 @@ pub struct CountLaw {
     pub variance: f64,
     /// A relative error bound of the mean beyond rounding.
     pub error: f64,
-    /// `μ₄/μ₂²`; 1 where the number is always the same.
+    /// `μ₄/μ₂²`; 1 where the number is constant.
     pub kurtosis: f64,
-    /// Whether the law is Poisson.
+    /// True if the distribution is Poisson.
     pub poisson: bool,
     /// `P(M = 0), P(M = 1), …` up to where the rest is below 1e-15; empty where they are unknown,
     /// not asked for, or too many because the mean exceeds 2000.
@@ -26,10 +26,10 @@ pub struct CountLaw {
 }
 
 impl CountLaw {
-    /// Relative error of a predicted mean number, where its own `error` is smaller.
+    /// Relative error of a predicted mean number, unless its own `error` is larger.
     pub const ERROR: f64 = 1e-10;
 
-    /// The same number every time.
+    /// Distribution of a constant.
     pub fn always(number: f64) -> Self {
         let mut pmf = Vec::new();
         if number.fract() == 0.0 && (0.0..=LARGEST_MEAN).contains(&number) {
@@ -38,7 +38,7 @@ impl CountLaw {
         Self { mean: number, variance: 0.0, error: 0.0, kurtosis: 1.0, poisson: false, pmf }
     }
 
-    /// Poisson with the given mean: a walk through `∫σ̂` that nothing ends early.
+    /// Poisson distribution with the given mean: a walk through `∫σ̂` that nothing ends early.
     pub fn poisson(mean: f64) -> Self {
         let mut pmf = Vec::new();
         if (0.0..=LARGEST_MEAN).contains(&mean) {
@@ -51,7 +51,7 @@ impl CountLaw {
     pub fn of_factorial_moments(factorial: [f64; 4]) -> Self {
         let [mean, pairs, ..] = factorial;
         let variance = pairs + mean - mean * mean;
-        // A number that is all but certain leaves a variance of rounding.
+        // A number that is nearly constant has a variance of rounding errors.
         if variance <= 1e-12 * mean * mean {
             return Self::always(mean);
         }

@@ -1,4 +1,4 @@
-//! One walk, many distances: moments and covariances of the double particle's `T̂(s)`.
+//! Moments and covariances of the double particle's `T̂(s)`: one walk, many distances.
 //!
 //! With `A = X(s₁)/T₁` and the independent increment `Y = (X(s₂)/T₂)/A`, both of mean 1,
 //!
@@ -7,8 +7,8 @@
 //! E[(X₁−T₁)²(X₂−T₂)²] = T₁²T₂² [m₄(A)(1 + m₂(Y)) + 2 m₃(A) m₂(Y) + m₂(A) m₂(Y)]
 //! ```
 //!
-//! Source: Szirmay-Kalos et al. 2017, section 4.2 and Figure 8; the covariance follows from
-//! Eq. 13, since increments over disjoint stretches are independent.
+//! Source: Szirmay-Kalos et al. 2017, section 4.2 and Figure 8; the covariance follows from Eq. 13, since
+//! increments over disjoint intervals are independent.
 
 use super::prediction::{Covariance, Increment};
 use super::product::{Integrals, Product};
@@ -64,7 +64,7 @@ fn increments(upto: &[Integrals], error: f64) -> Vec<Increment> {
             clock: integrals.losses[1].exp_m1(),
             variance: j2.exp() * factor.relative[0],
             kurtosis: kurtosis.unwrap_or(1.0),
-            // The step is a difference of integrals, each good to its own last digits.
+            // The step is a difference of integrals, each accurate to its own last digits.
             error: if step[1] == 0.0 { 0.0 } else { error * (size + size / step[1].abs()) },
         }
     });

@@ -10,10 +10,10 @@ use super::{Channel, CountLaw, Law, Mesh, Moments, Prediction, Tails};
 use numeric::sum::Sum;
 use numeric::{Known, Span};
 
-/// The number of equally probable classes of the flight distances: tests may join neighbours.
+/// Number of equally probable classes of the flight distances; tests may join adjacent ones.
 pub const CLASSES: usize = 1020;
 
-/// Mean depth and its moments, and the law of the distance, measured from the ray's beginning.
+/// Mean depth and its moments, and the distribution of the distance, measured from the ray's beginning.
 pub fn predict(mesh: &Mesh, lookups: CountLaw) -> Prediction {
     let ray = mesh.medium().span();
     let fine = mesh.refined(&[], &|mesh, panel| {
@@ -41,7 +41,7 @@ pub fn predict(mesh: &Mesh, lookups: CountLaw) -> Prediction {
     Prediction { law, ..Prediction::single(channel, lookups) }
 }
 
-/// `∫ T dt` over the ray, the stretches outside the support included.
+/// `∫ T dt` over the ray, the intervals outside the support included.
 fn mean_depth(mesh: &Mesh) -> f64 {
     let (ray, support) = (mesh.medium().span(), mesh.support());
     let escape = mesh.optical_depth().exp_neg().value;

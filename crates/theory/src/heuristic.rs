@@ -1,4 +1,4 @@
-//! How techniques that could have made the same path share it.
+//! Weights of techniques that could have made the same path.
 //!
 //! ```text
 //! w_i = p_i^β/Σ p_j^β,  β = 1 (balance) or 2 (power)
@@ -35,7 +35,7 @@ impl Heuristic {
         if self == Self::Power { density * density } else { density }
     }
 
-    /// `p_i/w_i` of one technique beside another one, `(p_i^β + p_j^β)/p_i^{β−1}`: what its samples are divided by.
+    /// `p_i/w_i` of one technique beside another one, `(p_i^β + p_j^β)/p_i^{β−1}`: the divisor of its samples.
     #[inline(always)]
     pub fn shared<L: Lane>(self, own: L, other: L) -> L {
         match self {
@@ -44,14 +44,14 @@ impl Heuristic {
         }
     }
 
-    /// The weight of one of several techniques, by the densities of all of them for the same path, in any unit. Its
-    /// own is positive.
+    /// The weight of one of several techniques, given the densities of all of them for the same path, in any unit.
+    /// Its own density is positive.
     #[inline(always)]
     pub fn weight<L: Lane, const N: usize>(self, own: usize, densities: [L; N]) -> L {
         let one = densities[own].each(1.0);
         let mut sum = one;
         for (technique, density) in densities.into_iter().enumerate() {
-            // A density beyond all numbers is so beside its own.
+            // An infinite density stays infinite relative to its own.
             if technique != own {
                 sum = sum + self.raised(density / densities[own]);
             }

@@ -1,4 +1,4 @@
-//! What theory says of a draw: moments, costs, laws and optima, without drawing.
+//! Predictions for draws: moments, costs, distributions and optima, without drawing.
 //!
 //! Floor 3. Nothing here holds a generator of random numbers. All integrals run over one [`Mesh`]
 //! per medium and ray, on which σ_t is looked up once and shared by every σ̂, control and rule.

@@ -1,8 +1,8 @@
-//! The whole law of the number of lookups of a product estimator.
+//! The distribution of the number of lookups of a product estimator.
 //!
-//! With `K(s) = ∫₀ˢ (σ̂(1 − q) + c)`, c the rate at which a walk also ends without a lookup, and
-//! `A(s) = ∫₀ˢ σ̂ q`, the collisions that a particle survives are a Poisson process of rate `σ̂q`
-//! beside the one that ends it:
+//! Let `K(s) = ∫₀ˢ (σ̂(1 − q) + c)`, with c the rate at which a walk also ends without a lookup, and `A(s) = ∫₀ˢ σ̂
+//! q`. The collisions that a particle survives are a Poisson process of rate `σ̂q`, independent of the one that
+//! ends it:
 //!
 //! ```text
 //! P(M = m) = e^{−K(S)} Pois(m; A(S)) + ∫ e^{−K} [σ̂(1 − q) Pois(m − 1; A) + c Pois(m; A)] dt
@@ -20,12 +20,11 @@ use numeric::sum::Sum;
 /// A panel with more survived collisions than this, or than half a standard deviation of those before,
 /// is halved: `Pois(m; A)` is then smooth on it.
 const COLLISIONS: f64 = 2.0;
-/// Walks that are rarer than this do not count.
+/// Maximum probability of walks that are left out.
 const RARE: f64 = 1e-18;
 
 impl Product<'_> {
-    /// The law of the number of lookups; `all` are the integrals over the whole of this estimator's
-    /// own mesh.
+    /// Distribution of the number of lookups; `all` are the integrals over the whole of this estimator's own mesh.
     pub fn lookups(&self, mesh: &Mesh, all: &Integrals) -> CountLaw {
         let law = all.count();
         if !(self.laws && law.pmf.is_empty() && law.mean <= LARGEST_MEAN) {
@@ -42,7 +41,7 @@ impl Product<'_> {
     }
 }
 
-/// How far the sum over panels has come.
+/// State of the sum over panels.
 #[derive(Default)]
 struct Walk {
     deaths: Sum,

@@ -1,25 +1,25 @@
-//! Answers that were worked out before: experiments that ask the same share theirs.
+//! A memo of computed answers: experiments with equal keys share them.
 
 use std::collections::HashMap;
 use std::hash::Hash;
 use std::sync::{Arc, LazyLock, Mutex, OnceLock, PoisonError};
 
-/// Answers by what they depend on.
+/// Answers by the key that they depend on.
 pub struct Memo<K, V> {
     answers: LazyLock<Mutex<HashMap<K, Arc<OnceLock<V>>>>>,
     most: usize,
 }
 
 impl<K: Eq + Hash, V: Copy> Memo<K, V> {
-    /// Without answers; more than so many are forgotten, all together.
+    /// An empty memo; when it holds `most` answers it drops them all.
     pub const fn new(most: usize) -> Self {
         Self { answers: LazyLock::new(Mutex::default), most }
     }
 
-    /// The answer, which is worked out once and only once, whoever asks.
+    /// Returns the answer; it is computed only once, also if several threads need it at the same time.
     pub fn get(&self, key: K, find: impl FnOnce() -> V) -> V {
         let slot = {
-            // A panic of someone else leaves whole slots behind.
+            // A panic in another thread leaves whole slots behind.
             let mut answers = self.answers.lock().unwrap_or_else(PoisonError::into_inner);
             if answers.len() >= self.most {
                 answers.clear();

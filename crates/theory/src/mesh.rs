@@ -5,19 +5,19 @@ use numeric::quadrature::GaussLegendre;
 use numeric::sum::Sum;
 use numeric::{Known, Span, roots};
 
-/// Nodes per panel unless the medium says that fewer do.
+/// Nodes per panel, unless the medium needs fewer.
 const NODES: usize = 16;
 /// Above this many panels a medium's own number of nodes is used.
 const MANY: usize = 2000;
 /// Legendre coefficients of the two highest orders, relative to the largest value: a panel with
 /// larger ones is halved.
 const TAIL: f64 = 1e-13;
-/// A tail below this that halving does not shrink is rounding noise; a larger one is a function
-/// that is not resolved yet, whose tail may grow for a while. Callers keep noisier functions away.
+/// Tails below this that halving does not shrink are rounding noise. A larger tail belongs to a function that is
+/// not resolved yet: it may grow for a while. Callers keep noisier functions away.
 const NOISE: f64 = 1e-9;
-/// Panels of an adaptive mesh at most: a function that wants more is noise that slipped through.
+/// Maximum number of panels of an adaptive mesh: a function that needs more contains noise.
 const MOST: usize = 50_000;
-/// Halvings of one panel at most.
+/// Maximum number of halvings of one panel.
 const HALVINGS: u32 = 40;
 
 /// The support of a medium cut into panels with Gauss–Legendre nodes, and σ_t at the nodes.
@@ -36,7 +36,7 @@ pub struct Mesh {
     extinction: Vec<f64>,
     adaptive: bool,
     error: f64,
-    /// τ by quadrature, where the medium is not asked.
+    /// τ by quadrature, where the medium has no closed form.
     depth: Option<Known>,
 }
 
@@ -51,7 +51,7 @@ pub struct Panel<'a> {
     pub extinction: &'a [f64],
 }
 
-/// What a caller integrates: functions at the nodes of a panel, which must be smooth there.
+/// Functions of a caller at the nodes of a panel, which must be smooth there.
 pub type Functions<'f> = dyn Fn(&Mesh, Panel<'_>) -> Vec<Vec<f64>> + 'f;
 
 /// The size of a function on a panel or one that holds it, and of its highest coefficients.
@@ -94,8 +94,8 @@ impl Mesh {
         Self { medium, rule, tails, panels, t, extinction, adaptive, error: 0.0, depth: None }
     }
 
-    /// Cuts the support into equal panels of 16 nodes, whatever breaks the medium has: a quick look at a
-    /// field of thousands of pieces. The error of integrals on it is not known: it is infinite.
+    /// Cuts the support into equal panels of 16 nodes, ignoring the breaks of the medium: a quick look at a field
+    /// of thousands of pieces. The error of integrals on it is not known: it is infinite.
     pub fn even(medium: Medium, panels: usize) -> Self {
         let support = medium.support();
         let at = |i: usize| support.from + support.length() * (i as f64 / panels as f64);
@@ -144,7 +144,7 @@ impl Mesh {
             extinction: Vec::with_capacity(self.t.len()),
             ..*self
         };
-        // What is small beside the whole need not be smooth to its own last digits.
+        // A function that is small relative to its maximum need not be smooth to its own last digits.
         let whole = if self.adaptive { self.whole(smooth) } else { Vec::new() };
         for panel in self.panels() {
             let first = cuts.partition_point(|&cut| cut <= panel.span.from);
@@ -199,7 +199,7 @@ impl Mesh {
             if self.adaptive { self.tails(&smooth(self, panel), parent) } else { Vec::new() };
         let rough = is_rough(&tails, parent);
         if rough && !room {
-            // What stays unresolved is an error of the integrals, and is said.
+            // A function that stays unresolved adds an error to the integrals, which is stated.
             let share = span.length() / self.support().length();
             let left = tails.iter().map(|tail| tail.size / tail.scale).fold(0.0, f64::max);
             self.error += share * left;
@@ -259,8 +259,8 @@ impl Mesh {
         sum.value()
     }
 
-    /// A relative error bound for integrals on this mesh: how far `∫σ_t` by quadrature is from the
-    /// exact optical depth, and 1e-13 for what that does not show.
+    /// A relative error bound for integrals on this mesh: the deviation of `∫σ_t` by quadrature from the exact
+    /// optical depth, and 1e-13 for errors that this does not show.
     pub fn relative_error(&self) -> f64 {
         self.error
     }
@@ -292,8 +292,8 @@ impl Mesh {
             if !self.adaptive {
                 continue;
             }
-            // The gaps between the outer nodes and the ends, short of the jumps that sit there;
-            // thousands of panels have gaps too short to matter.
+            // The gaps between the outer nodes and the ends, without the jumps at the ends; thousands of panels
+            // have gaps too short to matter.
             let edge = 1e-9 * panel.span.length();
             let (first, end) = (panel.t[0], panel.t[panel.t.len() - 1]);
             for (a, b) in [(panel.span.from + edge, first), (end, panel.span.to - edge)] {
@@ -305,13 +305,13 @@ impl Mesh {
         found
     }
 
-    /// Where `f(t, σ_t)` is largest, and how large: the best node, then a search between its
-    /// neighbours. `None` on an empty support.
+    /// Position and value of the maximum of `f(t, σ_t)`: the best node, then a search between the nodes beside it.
+    /// `None` on an empty support.
     pub fn largest(&self, f: impl Fn(f64, f64) -> f64) -> Option<(f64, f64)> {
         self.largest_in(self.support(), f)
     }
 
-    /// The same over a part of the support that begins and ends with panels.
+    /// Maximum of `f(t, σ_t)` over a part of the support that begins and ends with panels.
     pub fn largest_in(&self, span: Span, f: impl Fn(f64, f64) -> f64) -> Option<(f64, f64)> {
         let (from, to) =
             (self.t.partition_point(|&t| t < span.from), self.t.partition_point(|&t| t <= span.to));

@@ -1,10 +1,10 @@
-//! Which constant σ̂ is best.
+//! The constant σ̂ with the largest figure of merit.
 //!
 //! The figure of merit is `1/(V · (E[M] + S/n))`: the n draws of a ray share its S setup lookups.
 //! An estimator that may end early has a finite optimum, found by a one-dimensional search on log σ̂. The double
-//! particle has none: its figure of merit rises with σ̂ towards the limit `1/(T² ℓ ∫residual²)`, ℓ the length of the
-//! support. The answer is then where it reaches 90 % of the limit, with the limit. Each channel has a variance of its
-//! own, and so a best σ̂ of its own.
+//! particle has no optimum: its figure of merit rises with σ̂ towards the limit `1/(T² ℓ ∫residual²)`, ℓ the length
+//! of the support. The answer is then the σ̂ that reaches 90 % of the limit, with the limit. Each channel has a
+//! variance of its own, and so a best σ̂ of its own.
 //!
 //! Source: Szirmay-Kalos et al. 2017, section 3.4, with the cost of the walk added.
 
@@ -62,23 +62,23 @@ pub struct Optimum {
     pub kind: Kind,
 }
 
-/// How near the best `ln σ̂` is found.
+/// Tolerance of the best `ln σ̂`.
 const TOLERANCE: f64 = 1e-6;
 /// Steps of the first, coarse search over σ̂/scale from 1e-2 to 1e3.
 const COARSE: usize = 51;
-/// A figure of merit that gains less than this by a factor of ten of σ̂ is near its limit.
+/// Maximum relative gain of a figure of merit by a factor of ten of σ̂ near its limit.
 const SETTLED: f64 = 1e-3;
-/// A figure of merit that gains less than this by a coarse step up to where the estimator is refused is near its limit.
+/// Maximum relative gain by a coarse step near the limit, up to where the estimator is refused.
 const FLAT: f64 = 1e-2;
-/// Factors of ten by which σ̂ follows a rising figure of merit.
+/// Maximum number of factors of ten by which σ̂ follows a rising figure of merit.
 const DECADES: usize = 8;
 
 /// Searches, for each channel, the constant σ̂ with the largest figure of merit around `scale`, the largest
 /// residual. Empty where the estimator is refused everywhere.
 ///
-/// `predict` answers `None` where the estimator is refused; a ray has `draws_per_ray` draws. A figure of merit that still
-/// rises at the upper end is followed by factors of ten until it gains less than 0.1 %, and extrapolated to its limit. The
-/// answer is then the σ̂ that reaches 90 % of the limit.
+/// `predict` returns `None` where the estimator is refused; a ray has `draws_per_ray` draws. A figure of merit that
+/// still rises at the upper end is followed by factors of ten until it gains less than 0.1 %, and extrapolated to
+/// its limit. The answer is then the σ̂ that reaches 90 % of the limit.
 pub fn best_constants(
     scale: f64,
     draws_per_ray: u64,
@@ -143,12 +143,13 @@ fn best_log(coarse: &[f64], merit: impl Fn(f64) -> f64) -> Option<Found> {
         };
         return share_of_limit(coarse, far, limit, merit);
     }
-    // A refused neighbour (figure of merit 0) is a cliff that golden sections walk up to.
+    // A refused point beside the best one (figure of merit 0) is a cliff that golden sections walk up to.
     let around = [best - 1, best, best + 1].map(at);
     let (log, least) = roots::least(around, -largest, TOLERANCE, |log| -merit(log));
     let is_cliff = coarse[best + 1..].iter().all(|&fom| fom <= 0.0);
     if is_cliff && before > 0.0 && largest <= before * (1.0 + FLAT) {
-        // Refused for the number of collisions, not for what it is: as near to its limit as it can be drawn.
+        // Refused because of too many collisions, not of its domain: this is as near to the limit as draws can be
+        // made.
         let limit = extrapolated([at(best - 1), log], [before, -least]);
         return share_of_limit(coarse, log, limit, merit);
     }
@@ -179,8 +180,8 @@ fn share_of_limit(
     Some(Found { log: inside, merit: merit(inside), kind: Kind::ShareOfLimit { limit } })
 }
 
-/// Follows a rising figure of merit from its last two values to its limit, and answers how far; `None` where it rises
-/// without end.
+/// Follows a rising figure of merit from its last two values to its limit; returns the last `ln σ̂` and the limit;
+/// `None` where it rises without end.
 fn limit(logs: [f64; 2], merits: [f64; 2], merit: impl Fn(f64) -> f64) -> Option<(f64, f64)> {
     let [mut last, mut now] = [(logs[0], merits[0]), (logs[1], merits[1])];
     for _ in 0..DECADES {

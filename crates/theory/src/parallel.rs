@@ -1,8 +1,8 @@
-//! Answers from all threads of the pool in which one asks, in the order of the questions.
+//! Parallel maps on the thread pool of the caller, with results in the order of the inputs.
 //!
-//! Rayon's iterators are compiled anew for every closure that they are given. Here they are compiled once, for
-//! numbers and a closure behind a reference: a tenth less for the compiler to do in the whole crate. What is asked
-//! takes micro- to milliseconds, so that nobody feels the indirect call.
+//! Rayon's iterators are compiled again for every closure that they are given. Here they are compiled once, for
+//! numbers and a closure behind a reference: a tenth less for the compiler to do in the whole crate. Each call
+//! takes micro- to milliseconds, so that the indirect call costs nothing.
 
 use std::sync::{Mutex, PoisonError};
 
@@ -15,14 +15,14 @@ pub fn range<T: Send>(count: usize, f: impl Fn(usize) -> T + Sync) -> Vec<T> {
         let answer = f(index);
         *answers[index].lock().unwrap_or_else(PoisonError::into_inner) = Some(answer);
     });
-    // Every question was asked, or the panic of one has ended this function.
+    // Every index was computed, or a panic has ended this function.
     answers
         .into_iter()
         .filter_map(|slot| slot.into_inner().unwrap_or_else(PoisonError::into_inner))
         .collect()
 }
 
-/// The same for numbers that count more than memory holds elsewhere: parts, streams, blocks.
+/// `f(0)`, …, `f(count − 1)` for a count that may exceed `usize`: parts, streams, blocks.
 pub fn numbered<T: Send>(count: u64, f: impl Fn(u64) -> T + Sync) -> Vec<T> {
     let numbers: Vec<u64> = (0..count).collect();
     map(&numbers, |&number| f(number))

@@ -1,4 +1,4 @@
-//! What happens to a particle at a tentative collision: the single particle model with scattering.
+//! Events of a particle at a tentative collision: the single particle model with scattering.
 //!
 //! With `r = σ_t/σ̂` and the albedo a, the incoming weight w must leave as `a r w` into the scattered
 //! direction and as `(1 − r) w` straight on, on average. One particle at most is kept:
@@ -16,12 +16,12 @@
 //! weighted         |1 − r|/D           |r|/D,   D =  |r| + |1 − r|    every r
 //! ```
 //!
-//! Theory needs the k-th moments of what leaves, `Q_k = q_t((1 − r)/q_t)^k` straight on and
-//! `S_k = q_s(a r/q_s)^k` scattered: `Q_1 = 1 − r` and `S_1 = a r` for every rule. As one chance is what
-//! the other leaves of 1, the smaller one has few digits: moments are made of these means instead.
+//! Theory needs the k-th moments of the weights after the collision, `Q_k = q_t((1 − r)/q_t)^k` straight on and
+//! `S_k = q_s(a r/q_s)^k` scattered: `Q_1 = 1 − r` and `S_1 = a r` for every rule. The probabilities are
+//! differences from 1, so that the smaller one has few digits: moments are computed from these means instead.
 //!
-//! Where `0 ≤ r ≤ 1`, terminating is analog; the two differ in what they refuse. `weighted` is
-//! non-terminating with the chances of a = 1: the albedo is left to the weight.
+//! Where `0 ≤ r ≤ 1`, terminating is analog; the two differ in the ratios that they refuse. `weighted` is
+//! non-terminating with the probabilities of a = 1: the albedo is left to the weight.
 //!
 //! Source: L. Szirmay-Kalos, I. Georgiev, M. Magdics, B. Molnár, D. Légrády, *Unbiased Light
 //! Transport Estimators for Inhomogeneous Participating Media*, Computer Graphics Forum 36 (2017),
@@ -31,15 +31,15 @@
 
 use numeric::Lane;
 
-/// The chances at a tentative collision, and what becomes of the weight.
+/// Probabilities of the events at a tentative collision, and the factors of the weight.
 ///
-/// Unbiased where `transmit · transmit_weight = 1 − r` and `scatter · scatter_weight = a r`. What is
-/// left of the chances is absorption.
+/// Unbiased where `transmit · transmit_weight = 1 − r` and `scatter · scatter_weight = a r`. The rest of the
+/// probability is absorption.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Odds<L = f64> {
-    /// `q_t`, the chance to go straight on: the collision is null.
+    /// `q_t`, the probability to go straight on: the collision is null.
     pub transmit: L,
-    /// `q_s`, the chance to be scattered.
+    /// `q_s`, the probability to be scattered.
     pub scatter: L,
     /// `(1 − r)/q_t`, the factor of a particle that goes straight on.
     pub transmit_weight: L,
@@ -47,7 +47,7 @@ pub struct Odds<L = f64> {
     pub scatter_weight: L,
 }
 
-/// What a number drawn at a collision decides.
+/// Event at a collision.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Event {
     /// Straight on.
@@ -59,8 +59,8 @@ pub enum Event {
 }
 
 impl Odds {
-    /// `Q_k = q_t((1 − r)/q_t)^k` and `S_k = q_s(a r/q_s)^k`, the k-th moments of what goes straight on and
-    /// of what is scattered, given their means `1 − r` and `a r`.
+    /// `Q_k = q_t((1 − r)/q_t)^k` and `S_k = q_s(a r/q_s)^k`, the k-th moments of the weights of transmitted and of
+    /// scattered particles, given their means `1 − r` and `a r`.
     #[inline]
     pub fn moments(&self, [straight, scattered]: [f64; 2], k: i32) -> [f64; 2] {
         if k == 0 {
@@ -70,7 +70,7 @@ impl Odds {
         [straight * self.transmit_weight.powi(more), scattered * self.scatter_weight.powi(more)]
     }
 
-    /// The same chances and weights without their signs.
+    /// Absolute values of the probabilities and weights.
     #[must_use]
     pub fn absolute(self) -> Self {
         Self {
@@ -81,7 +81,7 @@ impl Odds {
         }
     }
 
-    /// What a uniform number decides: scattering first, as in `SimulateParticle`.
+    /// Event that a uniform number chooses: scattering first, as in `SimulateParticle`.
     #[inline(always)]
     pub fn decide(&self, number: f64) -> Event {
         if number < self.scatter {
@@ -94,23 +94,23 @@ impl Odds {
     }
 }
 
-/// How the chances are chosen.
+/// Rule that sets the probabilities.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ParticleRule {
     /// The weight keeps its size, for `0 ≤ r ≤ 2/(a + 1)` (Eq. 9).
     Terminating,
-    /// The walk ends nowhere inside the medium, for every r (Eq. 12).
+    /// The walk never ends inside the medium, for every r (Eq. 12).
     NonTerminating,
-    /// The one or the other, as `SimulateParticle` chooses.
+    /// One of the two, as `SimulateParticle` chooses.
     Adaptive,
-    /// Delta tracking: real with chance r, then absorbed with chance `1 − a`; for `0 ≤ r ≤ 1`.
+    /// Delta tracking: real with probability r, then absorbed with probability `1 − a`; for `0 ≤ r ≤ 1`.
     Analog,
     /// Delta tracking with the albedo as a weight, continued beyond `0 ≤ r ≤ 1` by weights.
     Weighted,
 }
 
 impl ParticleRule {
-    /// All of them.
+    /// All rules.
     pub const ALL: [Self; 5] =
         [Self::Terminating, Self::NonTerminating, Self::Adaptive, Self::Analog, Self::Weighted];
 
@@ -125,10 +125,10 @@ impl ParticleRule {
         }
     }
 
-    /// The odds at a collision of ratio `r = σ_t/σ̂` where the albedo is in `[0, 1]`.
+    /// Probabilities and weights at a collision of ratio `r = σ_t/σ̂` for an albedo in `[0, 1]`.
     ///
-    /// Outside the range of [`ParticleRule::limits`] they are what the formula says and no
-    /// chances: a forced walk compares a number with them as any renderer would, and is biased.
+    /// Outside the range of [`ParticleRule::limits`] they are what the formula gives and no probabilities: draws
+    /// that are made in spite of that compare a number with them as any renderer would, and are biased.
     #[inline(always)]
     pub fn odds<L: Lane>(self, ratio: L, albedo: L) -> Odds<L> {
         let one = ratio.each(1.0);
@@ -145,7 +145,7 @@ impl ParticleRule {
         }
     }
 
-    /// The smallest and the largest r for which the odds are chances.
+    /// The smallest and the largest r for which the odds are probabilities.
     pub fn limits(self, albedo: f64) -> [f64; 2] {
         match self {
             Self::Terminating => [0.0, 2.0 / (albedo + 1.0)],
@@ -156,7 +156,7 @@ impl ParticleRule {
         }
     }
 
-    /// The same as an inequality; empty for a rule that exists for every r.
+    /// The limits as an inequality; empty for a rule that exists for every r.
     pub fn needs(self) -> &'static str {
         match self {
             Self::Terminating => "0 ≤ r ≤ 2/(a + 1)",
@@ -177,7 +177,7 @@ impl ParticleRule {
 }
 
 impl<L: Lane> Odds<L> {
-    /// What numbers decide for those that a mask names: who is scattered, and who goes straight on.
+    /// Returns the lanes of `which` that are scattered, and those that go straight on, given uniform numbers.
     #[inline(always)]
     pub fn decide_each(&self, which: L::Mask, number: L) -> (L::Mask, L::Mask) {
         let scattered = which & number.below(self.scatter);
@@ -195,7 +195,7 @@ impl<L: Lane> Odds<L> {
     }
 }
 
-/// A size with the sign of another number.
+/// The absolute value of one number with the sign of another.
 #[inline(always)]
 fn signed<L: Lane>(size: L, like: L) -> L {
     L::select(like.below(like.each(0.0)), -size, size)
@@ -213,7 +213,8 @@ fn terminating<L: Lane>(ratio: L, albedo: L) -> Odds<L> {
     }
 }
 
-/// The chances of an albedo, shared out so that the walk goes on; what they leave is weight.
+/// Probabilities in proportion to `|1 − r|` and `albedo |r|`, so that the walk always goes on: the weight has their
+/// sum as a factor. Scattered weights have the further factor `left`.
 #[inline(always)]
 fn shared<L: Lane>(ratio: L, albedo: L, left: L) -> Odds<L> {
     let (zero, one) = (ratio.each(0.0), ratio.each(1.0));
@@ -221,8 +222,8 @@ fn shared<L: Lane>(ratio: L, albedo: L, left: L) -> Odds<L> {
     let (transmitted, scattered) = (rest.size(), albedo * ratio.size());
     let sum = scattered + transmitted;
     let transmit = transmitted / sum;
-    // r = 1 and a = 0: nothing is left of the particle, whatever the chances. A weight of 0 is no
-    // weight either: the walk ends.
+    // r = 1 and a = 0: the particle keeps no weight, whatever the probabilities. A weight of 0 is no weight either:
+    // the walk ends.
     let is_nothing = sum.at_most(zero);
     let is_scattered = zero.below(left) & !is_nothing;
     Odds {
@@ -292,7 +293,7 @@ mod tests {
         assert!((odds.transmit - 0.5 / 1.85).abs() < 1e-15);
         assert!((odds.transmit_weight + 1.85).abs() < 1e-15);
         assert!((odds.scatter_weight - 1.85).abs() < 1e-15);
-        // r = −0.5, a = 0.6: D = 0.3 + 1.5, and what is scattered changes sign.
+        // r = −0.5, a = 0.6: D = 0.3 + 1.5, and the scattered weight changes sign.
         let odds = ParticleRule::NonTerminating.odds(-0.5, 0.6);
         assert!((odds.scatter - 0.3 / 1.8).abs() < 1e-15);
         assert!((odds.scatter_weight + 1.8).abs() < 1e-15);
@@ -324,7 +325,7 @@ mod tests {
 
     #[test]
     fn moments_of_rare_scattering_keep_their_digits() {
-        // a|r| is 1e-12: as a chance it is what |1 − r|/D leaves of 1.
+        // a|r| is 1e-12: computed as a difference from |1 − r|/D it would have few digits.
         let (albedo, r) = (1e-12, 1.25);
         let odds = ParticleRule::NonTerminating.odds(r, albedo);
         let sum = albedo * r + (r - 1.0);

@@ -1,20 +1,20 @@
-//! All that theory says of one experiment.
+//! Predictions for one experiment.
 
 use super::{CountLaw, Moments};
 use numeric::Known;
 
-/// What theory says of an experiment before a draw is made.
+/// Prediction for an experiment, made before a draw.
 #[derive(Debug, Clone, Default)]
 pub struct Prediction {
-    /// One entry per channel of the value.
+    /// Channels of the value.
     pub channels: Vec<Channel>,
     /// The number of lookups of one draw; `None` where no closed form is known.
     pub lookups: Option<CountLaw>,
     /// Lookups of σ_t that recipes for σ̂ and σ_c make for a ray before its first draw, as at explorer points and by pilot rays.
     pub setup_lookups: u64,
-    /// `E[random numbers]` of one draw as this crate makes it; `None` where it is not worked out.
+    /// `E[random numbers]` of one draw as this crate makes it; `None` where it is not computed.
     pub random_numbers: Option<f64>,
-    /// The whole law of the draw, where it is known.
+    /// The distribution of the draw, where it is known.
     pub law: Option<Law>,
     /// The covariances of the channels, where there are several.
     pub covariances: Vec<Covariance>,
@@ -25,27 +25,26 @@ pub struct Prediction {
     pub stable_share: Option<f64>,
 }
 
-/// What theory says of one channel.
+/// Prediction for one channel.
 #[derive(Debug, Clone)]
 pub struct Channel {
     /// The name, empty where there is one channel only.
     pub name: String,
-    /// What the estimator is meant to find.
+    /// Expected value that the estimator should have.
     pub truth: Known,
-    /// What its draws are on average; equal to `truth` if it is unbiased.
+    /// Mean of the draws; equal to `truth` if the estimator is unbiased.
     pub mean: Known,
-    /// Its central moments; `None` where no closed form is known.
+    /// Central moments; `None` where no closed form is known.
     pub moments: Option<Moments>,
-    /// A bound on its variance, where that is all that is known.
+    /// Bound on the variance, where no more is known.
     pub most_variance: Option<f64>,
-    /// Whether twice the variance of pilot draws may stand in for one that theory neither knows nor
-    /// bounds: only where the tails are known to be light, as of lengths and counts of walks whose
-    /// weights never grow.
+    /// True if twice the variance of pilot draws may stand in for a variance that theory neither knows nor bounds.
+    /// This requires light tails, as of lengths and counts of walks with weights that never grow.
     pub by_pilots: bool,
-    /// How heavy its tails are.
+    /// Heaviness of the tails.
     pub tails: Tails,
-    /// What relative tolerances refer to: the truth, or, for a transmittance of optical depth
-    /// `0 < τ < 0.1`, the opacity `1 − T = −expm1(−τ)`.
+    /// Unit of relative tolerances: the expected value, or, for a transmittance of optical depth `0 < τ < 0.1`, the
+    /// opacity `1 − T = −expm1(−τ)`.
     pub unit: f64,
     /// All values are in units of `exp(−log_unit)`: 0, or τ where T itself would underflow.
     pub log_unit: f64,
@@ -55,20 +54,20 @@ pub struct Channel {
 
 /// Relative error of moments from which on theory does not resolve them: no digit is known.
 pub const UNRESOLVED: f64 = 0.5;
-/// What rounding leaves of a sum, relative to it.
+/// Relative rounding error of a sum.
 const ROUNDING: f64 = 1e-14;
-/// A relative variance up to this is rounding.
+/// Maximum relative variance that is rounding.
 pub const CERTAIN: f64 = 1e-20;
-/// Below this optical depth the opacity is what matters.
+/// Optical depth below which the opacity is the unit of tolerances.
 const THIN: f64 = 0.1;
 
-/// How many draws it takes before sample statistics mean what they say.
+/// Sample sizes that sample statistics need to be reliable.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Tails {
-    /// `n(2) = exp(D)`, D the relative entropy of the walks that carry `E[X²]` against those that
-    /// occur: with fewer draws the events that make the variance are not seen.
+    /// `n(2) = exp(D)`, D the relative entropy of the walks that carry `E[X²]` against those that occur: in fewer
+    /// draws the events that make the variance are not seen.
     pub rare_event_size: f64,
-    /// `E[X⁸]/E[X⁴]²`: the kurtosis of what the sample variance sums, where tails are heavy.
+    /// `E[X⁸]/E[X⁴]²`: the kurtosis of the terms of the sample variance, where tails are heavy.
     pub eighth_moment_ratio: f64,
 }
 
@@ -94,7 +93,7 @@ impl Channel {
         }
     }
 
-    /// The same of a draw that is never negative, of which theory has a bound on `E[X²]` and no more.
+    /// A channel of draws that are never negative, with a bound on `E[X²]` instead of moments.
     pub fn bounded(truth: Known, square: f64) -> Self {
         let least = (truth.value - truth.error).max(0.0);
         let most_variance = Some((square - least * least).max(0.0));
@@ -115,7 +114,7 @@ impl Channel {
         }
         let of_unit =
             if self.mean.error > 0.0 { 2.0 * self.mean.error / self.mean.value.abs() } else { 0.0 };
-        // Exponentials of the losses are in error by what their exponents are.
+        // Exponentials of the losses have the absolute errors of the exponents as relative errors.
         let exponents = self
             .losses
             .map_or(1.0, |[_, j2, j3, j4]| (6.0 * j2.abs() + 4.0 * j3.abs() + j4.abs()).max(1.0));
@@ -153,13 +152,13 @@ pub struct Increment {
     pub clock: f64,
     /// `E[Δ_j²]`, of one draw, relative to T².
     pub variance: f64,
-    /// `E[Δ_j⁴]/E[Δ_j²]²`; 1 where the step has no spread, infinite where it overflows.
+    /// `E[Δ_j⁴]/E[Δ_j²]²`; 1 where the step has no variance, infinite where it overflows.
     pub kurtosis: f64,
     /// A relative error bound of the variance.
     pub error: f64,
 }
 
-/// The covariance of two channels, and of what measures it.
+/// The covariance of two channels, and the variance of its estimate.
 #[derive(Debug, Clone, Copy)]
 pub struct Covariance {
     /// The two channels.
@@ -171,8 +170,8 @@ pub struct Covariance {
 }
 
 impl Covariance {
-    /// Of a channel and the next, from their means, their `E[X²]`, and `E[X Y]`, `E[X² Y]`, `E[X Y²]` and
-    /// `E[X² Y²]`.
+    /// Covariance of a channel and the next, from their means, their `E[X²]`, and `E[X Y]`, `E[X² Y]`, `E[X Y²]`
+    /// and `E[X² Y²]`.
     pub fn of_raw(
         pair: [usize; 2],
         [a, b]: [f64; 2],
@@ -189,11 +188,11 @@ impl Covariance {
     }
 }
 
-/// A law that is known as a whole.
+/// The distribution of a draw.
 #[derive(Debug, Clone)]
 pub enum Law {
-    /// The draw takes the given values with the given probabilities, which sum to 1 or to a little
-    /// less (what is left is a tail without name).
+    /// The draw takes the given values with the given probabilities, which sum to 1 or to a little less (the rest
+    /// is a tail of unknown values).
     Atoms(Vec<(f64, f64)>),
     /// The draw is a distance with the given quantiles: `bins[i]` is where the CDF reaches
     /// `(i + 1)/n` of the probability `1 − escape`; beyond the last lies the atom of the rays that
@@ -203,7 +202,7 @@ pub enum Law {
         bins: Vec<f64>,
         /// The end of the ray: the value of a draw that escapes.
         end: f64,
-        /// The position of the ray's beginning, which positions have the resolution of.
+        /// The position of the ray's beginning: it limits the resolution of positions.
         from: f64,
         /// The probability of escaping.
         escape: f64,
@@ -211,7 +210,7 @@ pub enum Law {
 }
 
 impl Prediction {
-    /// The truth alone, as for an estimator outside its domain.
+    /// The expected value alone, as for an estimator outside its domain.
     #[must_use]
     pub fn only_the_truth(self) -> Self {
         let mut channels = self.channels;
@@ -228,7 +227,7 @@ impl Prediction {
         Self { channels: vec![channel], lookups: Some(lookups), ..Self::default() }
     }
 
-    /// The same, of which the number of lookups is not known.
+    /// An experiment with one channel and an unknown number of lookups.
     pub fn uncounted(channel: Channel) -> Self {
         Self { channels: vec![channel], ..Self::default() }
     }

@@ -24,18 +24,18 @@ pub struct Product<'a> {
     pub sampling: &'a Piecewise,
     /// σ_c.
     pub control: &'a Control,
-    /// What happens at a collision.
+    /// Rule at a collision.
     pub rule: &'a dyn Rule,
     /// The rate at which the walk also ends without a lookup, 1/length: that of a control which
     /// is sampled instead of integrated.
     pub killing: f64,
-    /// Whether the whole law of the lookups is asked for; a search for optima leaves it out.
+    /// True if the distribution of the lookups is computed; a search for optima does without.
     pub laws: bool,
     /// Draws are in units of `exp(−log_unit)`.
     pub log_unit: f64,
 }
 
-/// The integrals that moments and costs are made of.
+/// Integrals from which moments and costs are computed.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Integrals {
     /// `J_k = ∫ σ̂ E[(1 − W)^k]`, k = 1 … 4.
@@ -44,14 +44,14 @@ pub struct Integrals {
     pub rarity: f64,
     /// `ln E[(X/T)^k] = ∫ σ̂ (E[W^k] − 1 + k(1 − E[W]))`, k = 4 and 8.
     pub growth: [f64; 2],
-    /// Factorial moments `E[M(M − 1)…(M − k + 1)] = k ∫ σ̂ e^{−K} A^{k−1}`, k = 1 … 4, with
-    /// `K = ∫ σ̂(1 − q)` and `A = ∫ σ̂ q` up to the collision.
+    /// Factorial moments `E[M(M − 1)…(M − k + 1)] = k ∫ σ̂ e^{−K} A^{k−1}`, k = 1 … 4. Here `K = ∫ σ̂(1 − q)` and
+    /// `A = ∫ σ̂ q` up to the collision.
     pub lookups: [f64; 4],
-    /// `∫ σ̂ e^{−K} [q < 1] dt`: how often a particle's fate is decided by a random number.
+    /// `∫ σ̂ e^{−K} [q < 1] dt`: mean number of collisions that a random number decides.
     pub decisions: f64,
     /// `∫σ̂`.
     pub flown: f64,
-    /// `e^{−K(S)}`: how many walks nothing ends.
+    /// `e^{−K(S)}`: share of walks that nothing ends.
     pub alive: f64,
     /// The length on which `w ≤ 2σ_t`.
     pub stable: f64,
@@ -76,7 +76,7 @@ impl<'a> Product<'a> {
 
     fn ratio(&self, t: f64, extinction: f64) -> f64 {
         let residual = extinction - self.control.extinction(t);
-        // Where both vanish there are no collisions, and any finite ratio will do.
+        // Where both vanish there are no collisions, and any finite ratio is valid.
         if residual == 0.0 { 0.0 } else { residual / self.sampling.value(t) }
     }
 
@@ -150,7 +150,7 @@ impl<'a> Product<'a> {
         let length = mesh.support().length();
         let stable_share = (length > 0.0).then(|| (all.stable / length).min(1.0));
         let lookups = self.lookups(&mesh, &all);
-        // One for each flight, the last one included, and one for each fate that is open.
+        // One for each flight, the last one included, and one for each collision that a random number decides.
         let walked = lookups.mean + all.alive + all.decisions;
         let random_numbers = (self.killing == 0.0).then_some(walked);
         Prediction { random_numbers, stable_share, ..Prediction::single(channel, lookups) }
@@ -158,7 +158,7 @@ impl<'a> Product<'a> {
 }
 
 impl Integrals {
-    /// How heavy the tails of a draw are.
+    /// Heaviness of the tails of a draw.
     pub fn tails(&self) -> Tails {
         let [fourth, eighth] = self.growth;
         Tails {
@@ -167,11 +167,11 @@ impl Integrals {
         }
     }
 
-    /// Mean, variance and kurtosis of the number of lookups; the probabilities only where the law
-    /// is Poisson or certain, see [`Product::lookups`].
+    /// Mean, variance and kurtosis of the number of lookups; the probabilities only where the distribution is
+    /// Poisson or certain, see [`Product::lookups`].
     pub fn count(&self) -> CountLaw {
         let mean = self.lookups[0];
-        // A walk that nothing ends early makes Poisson many lookups.
+        // A walk that nothing ends early makes a Poisson number of lookups.
         if (mean - self.flown).abs() <= 1e-13 * self.flown {
             return CountLaw::poisson(self.flown);
         }

@@ -12,22 +12,22 @@ pub const BINOMIAL: [[f64; 5]; 5] = [
     [1.0, 4.0, 6.0, 4.0, 1.0],
 ];
 
-/// Of a Poisson number of mean m.
+/// Raw moments of a Poisson number of mean m.
 pub fn poisson(m: f64) -> Raw {
     [1.0, m, m * (1.0 + m), m * (1.0 + m * (3.0 + m)), m * (1.0 + m * (7.0 + m * (6.0 + m)))]
 }
 
-/// Of the sum of two independent numbers.
+/// Raw moments of the sum of two independent numbers.
 pub fn added(a: Raw, b: Raw) -> Raw {
     std::array::from_fn(|k| (0..=k).map(|j| BINOMIAL[k][j] * a[k - j] * b[j]).sum())
 }
 
-/// From `E[N(N − 1)…(N − k + 1)]`, k = 1 … 4.
+/// Raw moments from `E[N(N − 1)…(N − k + 1)]`, k = 1 … 4.
 pub fn of_factorial([f1, f2, f3, f4]: [f64; 4]) -> Raw {
     [1.0, f1, f2 + f1, f3 + 3.0 * f2 + f1, f4 + 6.0 * f3 + 7.0 * f2 + f1]
 }
 
-/// From the cumulants of orders 1 to 4.
+/// Raw moments from the cumulants of orders 1 to 4.
 pub fn of_cumulants([k1, k2, k3, k4]: [f64; 4]) -> Raw {
     let second = k2 + k1 * k1;
     let third = k3 + 3.0 * k2 * k1 + k1.powi(3);

@@ -1,18 +1,18 @@
-//! Moments of techniques whose weights know the whole path.
+//! Moments of techniques with weights that depend on the whole path.
 //!
 //! ```text
 //! E[X_s^k] = ∫ f c_s^{(1−β)k−1} (Σⱼ cⱼ^{−β})^{−k},   c₀ = c_{r+2} = 1,   y^{−k} = ∫₀^∞ z^{k−1} e^{−zy} dz/Γ(k)
 //! ```
 //!
-//! At a fixed z the sum in the exponent is a product again: f is a chain of flights, each with a factor
-//! `exp(−z cⱼ^{−β})` of its own, which depends on the flight and on the turns at both of its ends. The
-//! integral over z is the trapezoidal rule in ln z, whose error falls as `e^{−π²/h}`.
+//! At a fixed z the sum in the exponent becomes a product: f is a chain of flights, each with its own factor
+//! `exp(−z cⱼ^{−β})`, which depends on the flight and on the turns at both of its ends. The integral over z is the
+//! trapezoidal rule in ln z, with an error that falls as `e^{−π²/h}`.
 
 use super::grid::{Grid, Operator};
 use super::{Connection, HIGHEST, Powers, Scene};
 use crate::Heuristic;
 
-/// Where the integral over ln z begins and ends.
+/// Limits of the integral over ln z.
 const RANGE: [f64; 2] = [-52.0, 3.5];
 /// Terms of a segment that are smaller than this, relative to their sum, are left out.
 const FAINT: f64 = 1e-18;
@@ -58,7 +58,7 @@ struct Segments {
 }
 
 impl Segments {
-    /// How many kernels there are: without a connection, and with each power of it.
+    /// Number of kernels: one without a connection, and one for each of its powers.
     fn count(self) -> usize {
         if self.heuristic == Heuristic::Power { HIGHEST + 1 } else { 2 }
     }
@@ -68,7 +68,7 @@ impl Segments {
         if self.heuristic == Heuristic::Power { k } else { 1 }
     }
 
-    /// `e^{−d} E[exp(−z c^{−β})]` of a segment whose ends contribute `c/T̂`; then with the factors
+    /// `e^{−d} E[exp(−z c^{−β})]` of a segment with ends that contribute `c/T̂`; then with the factors
     /// `c^{(1−β)k−1}`: `1/c` for β = 1, and `1/c²`, `1/c³`, … for β = 2.
     fn kernels(self, depth: f64, ends: f64) -> Powers {
         let (mut sums, count) = ([0.0; HIGHEST + 1], self.count());
@@ -97,9 +97,9 @@ impl Segments {
     }
 }
 
-/// For both turns: straight on, and round.
+/// Values for both turns: straight on, and round.
 type ByTurn<T> = [T; 2];
-/// By the direction in which light arrives at a scattering, backward and forward, and the turn there.
+/// Functions by the direction in which light arrives at a scattering (backward, forward) and by the turn there.
 type States = [ByTurn<Vec<f64>>; 2];
 
 const TURNS: [bool; 2] = [false, true];
@@ -111,11 +111,11 @@ struct Chain<'a> {
     grid: &'a Grid,
     /// `a ρ` of each turn.
     scattered: ByTurn<f64>,
-    /// From the light to the first scattering, by the turn there: each kernel.
+    /// Each kernel from the light to the first scattering, by the turn there.
     light: ByTurn<Vec<Vec<f64>>>,
-    /// From the last scattering to the sensor.
+    /// Each kernel from the last scattering to the sensor.
     sensor: ByTurn<Vec<Vec<f64>>>,
-    /// Between two scatterings, where a turn is at neither, one or both of them; none where no path is
+    /// Flights between two scatterings with no turn, one turn or two turns at their ends; empty where no path is
     /// scattered twice.
     flights: [Vec<Operator>; 3],
 }
@@ -131,7 +131,7 @@ impl<'a> Chain<'a> {
         });
         let mut sensor = light.clone();
         if scene.is_transmitted {
-            // Nodes mirror each other.
+            // Nodes are symmetric about the middle.
             sensor.iter_mut().flatten().for_each(|kernel| kernel.reverse());
         }
         let is_needed = *scene.orders.end() >= 2;
@@ -148,7 +148,7 @@ impl<'a> Chain<'a> {
         Self { segments, scene, grid, scattered, light, sensor, flights }
     }
 
-    /// What arrives at each scattering, from the first to the last of the highest order.
+    /// Light that arrives at each scattering, from the first to the last of the highest order.
     fn arriving(&self) -> Vec<States> {
         let mut all = vec![self.first(0)];
         for _ in 1..*self.scene.orders.end() {
@@ -165,7 +165,7 @@ impl<'a> Chain<'a> {
         all
     }
 
-    /// What reaches the sensor from a scattering, `a ρ` included, with so many more scatterings to come.
+    /// Light that reaches the sensor from a scattering, `a ρ` included, by the number of scatterings that follow.
     fn leaving(&self) -> Vec<States> {
         let mut all = vec![self.last(0)];
         for _ in 1..*self.scene.orders.end() {
@@ -175,13 +175,13 @@ impl<'a> Chain<'a> {
         all
     }
 
-    /// What arrives at the first scattering, by a kernel.
+    /// Light that arrives at the first scattering, by a kernel.
     fn first(&self, kernel: usize) -> States {
         let nothing = TURNS.map(|_| vec![0.0; self.grid.points.len()]);
         [nothing, self.light.each_ref().map(|light| light[kernel].clone())]
     }
 
-    /// What the last scattering sends to the sensor, by a kernel.
+    /// Light that reaches the sensor from the last scattering, by a kernel.
     fn last(&self, kernel: usize) -> States {
         TURNS.map(|is_forward| {
             TURNS.map(|turn| {
@@ -192,7 +192,7 @@ impl<'a> Chain<'a> {
         })
     }
 
-    /// What one scattering earlier sends on, by a kernel.
+    /// The functions of the scattering before, by a kernel.
     fn before(&self, kernel: usize, leaving: &States) -> States {
         TURNS.map(|is_forward| {
             TURNS.map(|turn| {
@@ -203,8 +203,8 @@ impl<'a> Chain<'a> {
         })
     }
 
-    /// The flights from, or to, a scattering with this turn from those with either, each with the `a ρ` of
-    /// one of the two.
+    /// The flights from, or to, a scattering with this turn from scatterings with either turn, each with the `a ρ`
+    /// of one of the two.
     fn flown<'f>(
         &self,
         [is_before, turn]: [bool; 2],
@@ -222,7 +222,7 @@ impl<'a> Chain<'a> {
         sum
     }
 
-    /// `∫` over the place where two halves of a path meet.
+    /// `∫` over the place where two halves of a path are joined.
     fn joined(&self, arriving: &States, leaving: &States) -> f64 {
         let pairs = arriving.iter().flatten().zip(leaving.iter().flatten());
         pairs.map(|(f, g)| self.grid.product(f, g)).sum()

@@ -21,7 +21,7 @@ pub struct Operator {
 }
 
 impl Grid {
-    /// With so many nodes on `[0, depth]`.
+    /// A grid of `size` nodes on `[0, depth]`.
     pub fn new(depth: f64, size: usize) -> Self {
         let rule = GaussLegendre::new(size);
         let (points, weights): (Vec<f64>, Vec<f64>) = rule.on(Span::new(0.0, depth)).unzip();
@@ -33,7 +33,7 @@ impl Grid {
                 let terms = points.iter().zip(&barycentric).map(|(x, w)| w / (v - x));
                 let terms: Vec<f64> = terms.collect();
                 let sum: f64 = terms.iter().sum();
-                // A node that meets a point, as the middle ones of all odd rules do.
+                // A node may coincide with a point, as the middle ones of all odd rules do.
                 let same = terms.iter().position(|term| term.is_infinite());
                 basis.extend(terms.iter().enumerate().map(|(j, term)| match same {
                     Some(at) => f64::from(u8::from(at == j)),
@@ -62,7 +62,7 @@ impl Grid {
         self.weights.iter().zip(f).zip(g).map(|((weight, f), g)| weight * f * g).sum()
     }
 
-    /// The flights of a kernel of the optical depth flown.
+    /// Flights with a kernel that depends on the optical depth flown.
     pub fn operator(&self, kernel: impl Fn(f64) -> f64) -> Operator {
         let [operator] = self.several(|depth| [kernel(depth)]);
         operator
@@ -87,7 +87,8 @@ impl Grid {
 }
 
 impl Operator {
-    /// At each node the integral over what lies before it, or behind it: nodes mirror each other.
+    /// The integral from each node over the part of the rod before it, or behind it: nodes are symmetric about the
+    /// middle.
     pub fn over(&self, is_before: bool, f: &[f64]) -> Vec<f64> {
         let rows = self.rows.chunks(self.size);
         let dot = |row: &[f64], f: &mut dyn Iterator<Item = &f64>| -> f64 {
@@ -103,7 +104,7 @@ impl Operator {
 /// The weights of barycentric interpolation, `1/∏ (xⱼ − xᵢ)` in units of the largest.
 fn barycentric(nodes: &[f64]) -> Vec<f64> {
     let others = |j: usize| nodes.iter().enumerate().filter(move |&(i, _)| i != j);
-    // Logarithms: the product of a hundred small differences is no double.
+    // Logarithms: the product of a hundred small differences underflows.
     let size = |j: usize| others(j).map(|(_, x)| (nodes[j] - x).abs().ln()).sum::<f64>();
     let sizes: Vec<f64> = (0..nodes.len()).map(size).collect();
     let least = sizes.iter().copied().fold(f64::INFINITY, f64::min);

@@ -1,11 +1,11 @@
-//! How many lookups a draw makes, where `σ_t/σ̂` is one number.
+//! Moments of the number of lookups of a draw, where `σ_t/σ̂` has one value.
 //!
 //! ```text
 //! G(y) = E[(1 + y)^M]:   a flight of optical depth d has e^{−d} e^{νdy}, ν = σ̂/σ_t − 1, its end 1 + y,
 //! a tracked connection e^{dy σ̂/σ_t}
 //! ```
 //!
-//! All are power series in y up to y⁴, whose coefficients are factorial moments.
+//! All are power series in y up to y⁴; their coefficients are factorial moments.
 
 use super::grid::{Grid, Operator};
 use super::{Connection, Scene};
@@ -20,7 +20,7 @@ type Field = [Vec<f64>; TERMS];
 
 const TURNS: [bool; 2] = [false, true];
 
-/// `E[M^k]`, k = 0 … 4, of the technique with so many light vertices.
+/// `E[M^k]`, k = 0 … 4, of the technique with `s` light vertices.
 pub fn of_technique(walks: &Walks, order: usize, s: usize) -> Raw {
     let series = if s == 0 || s == order + 2 {
         plus(walks.failed(order), walks.after(order, true))
@@ -76,7 +76,7 @@ fn flown(flights: &[Operator], is_before: bool, field: &Field) -> Field {
     })
 }
 
-/// Walks from one end of the rod; those from the other mirror them.
+/// Walks from one end of the rod; walks from the other end are their mirror images.
 pub struct Walks<'a> {
     scene: &'a Scene,
     grid: &'a Grid,
@@ -84,16 +84,16 @@ pub struct Walks<'a> {
     nulls: f64,
     /// `σ̂/σ_t` where connections are tracked, else 0.
     tracked: f64,
-    /// What arrives at each scattering, from the first on, flying backward and forward.
+    /// Walks that arrive at each scattering, from the first on, flying backward and forward.
     arriving: Vec<[Field; 2]>,
     /// Connections of two places.
     connections: Vec<Operator>,
-    /// A flight that ends in the rod, from each node backward and forward.
+    /// Flights that end in the rod, from each node backward and forward.
     collided: [Field; 2],
 }
 
 impl<'a> Walks<'a> {
-    /// Of up to as many scatterings as the scene has, where `σ_t/σ̂` is this number.
+    /// Walks with up to as many scatterings as the scene has, for this value of `σ_t/σ̂`.
     pub fn new(scene: &'a Scene, connection: Connection, ratio: f64, grid: &'a Grid) -> Self {
         let nulls = (1.0 - ratio) / ratio;
         let tracked = if matches!(connection, Connection::Ratio(_)) { 1.0 / ratio } else { 0.0 };
@@ -124,7 +124,7 @@ impl<'a> Walks<'a> {
         Self { scene, grid, nulls, tracked, arriving, connections, collided }
     }
 
-    /// A flight that leaves the rod over this optical depth.
+    /// Flights that leave the rod over this optical depth.
     fn escape(&self, depth: f64) -> Series {
         exponential(self.nulls * depth).map(|term| (-depth).exp() * term)
     }
@@ -134,15 +134,15 @@ impl<'a> Walks<'a> {
         std::array::from_fn(|j| (0..=j).map(|i| self.grid.product(&a[i], &b[j - i])).sum())
     }
 
-    /// Walks that have come to so many scatterings.
+    /// Walks that have made `count` scatterings.
     fn mass(&self, count: usize) -> Series {
         let Some(last) = count.checked_sub(1) else { return [1.0, 0.0, 0.0, 0.0, 0.0] };
         let [back, on] = &self.arriving[last];
         std::array::from_fn(|j| self.grid.integral(&back[j]) + self.grid.integral(&on[j]))
     }
 
-    /// Walks that end after so many scatterings: absorbed, or out of the rod. Where it is the last
-    /// flight, by one more collision, too.
+    /// Walks that end after `count` scatterings: absorbed, or out of the rod. If the flight is the last one, walks
+    /// that collide once more are included.
     fn after(&self, count: usize, is_last: bool) -> Series {
         let depth = self.scene.depth.value;
         let Some(last) = count.checked_sub(1) else {
@@ -167,12 +167,12 @@ impl<'a> Walks<'a> {
         ended
     }
 
-    /// Walks that end before they come to so many scatterings.
+    /// Walks that end before they have made `count` scatterings.
     fn failed(&self, count: usize) -> Series {
         (0..count).fold([0.0; TERMS], |sum, i| plus(sum, self.after(i, false)))
     }
 
-    /// Where walks are after so many scatterings; from the far end of the rod, where that is asked for.
+    /// Positions of walks after `count` scatterings, from the far end of the rod if `is_mirrored`.
     fn places(&self, count: usize, is_mirrored: bool) -> Field {
         let [back, on] = &self.arriving[count - 1];
         std::array::from_fn(|j| {
@@ -184,7 +184,7 @@ impl<'a> Walks<'a> {
         })
     }
 
-    /// Pairs of walks that both came so far, and their connection.
+    /// Pairs of walks with the given numbers of scatterings, and their connection.
     fn connected(&self, light: usize, camera: usize) -> Series {
         let is_mirrored = self.scene.is_transmitted;
         let sensor = if is_mirrored { self.scene.depth.value } else { 0.0 };

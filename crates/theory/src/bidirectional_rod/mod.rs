@@ -1,8 +1,8 @@
-//! Bidirectional path tracing in a rod: every technique's share of the light, and its moments.
+//! Bidirectional path tracing in a rod: the share of the light that each technique finds, and its moments.
 //!
-//! A path with r scatterings at the optical depths `u₁ … u_r` has the contribution f, and the technique that
-//! makes its first s vertices from the light and the others from the sensor the density `p_s`; lengths `d_j`
-//! are those of its segments, `j = 0 … r`, and ρ is `p_f` or `1 − p_f` at each turn:
+//! A path with r scatterings at the optical depths `u₁ … u_r` has the contribution f. The technique that makes its
+//! first s vertices from the light and the others from the sensor has the density `p_s`. The lengths `d_j` are
+//! those of the segments, `j = 0 … r`, and ρ is `p_f` or `1 − p_f` at each turn:
 //!
 //! ```text
 //! f = ∏ᵢ a ρᵢ · ∏ⱼ e^{−d_j},   c_s = f/p_s = 1 for s = 0 and s = r + 2, else
@@ -20,9 +20,9 @@
 //! depth only, as long as connections are exact or `σ_t/σ̂` is one number.
 //!
 //! Where a draw has an independent path for each technique, moments of sums follow from those of the techniques.
-//! Renderers connect every vertex of one light subpath with every vertex of one camera subpath: the contribution of
-//! a technique then has the same law, but the covariances of techniques that share vertices are not known, nor is the
-//! variance of their sum. Its square root is at most the sum of the techniques' deviations.
+//! Renderers connect every vertex of one light subpath with every vertex of one camera subpath. The contribution of
+//! a technique then has the same distribution. But the covariances of techniques that share vertices are not known,
+//! nor is the variance of their sum. Its square root is at most the sum of the techniques' standard deviations.
 //!
 //! Source: E. Veach, L. Guibas, *Optimally Combining Sampling Techniques for Monte Carlo Rendering*, SIGGRAPH
 //! 1995; B. Miller, I. Georgiev, W. Jarosz, *A Null-Scattering Path Integral Formulation of Light Transport*,
@@ -42,12 +42,12 @@ use numeric::{Known, Lane};
 
 pub use predict::predict;
 
-/// The highest power of a draw whose mean is worked out.
+/// Highest power of a draw with a known mean.
 pub const HIGHEST: usize = 8;
 /// `E[X^k]`, k = 0 … 8.
 pub type Powers = [f64; HIGHEST + 1];
 
-/// A rod as its paths see it.
+/// A rod, with the orders of its paths.
 #[derive(Debug, Clone)]
 pub struct Scene {
     /// τ.
@@ -56,7 +56,7 @@ pub struct Scene {
     pub albedo: f64,
     /// `p_f`.
     pub forward: f64,
-    /// Whether the sensor is at the end, not at the light.
+    /// True if the sensor is at the end, not at the light.
     pub is_transmitted: bool,
     /// Numbers of scatterings.
     pub orders: RangeInclusive<usize>,
@@ -74,12 +74,12 @@ impl Scene {
     }
 }
 
-/// How the transmittance of a connection is found.
+/// Estimate of the transmittance of a connection.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Connection {
     /// In closed form.
     Exact,
-    /// By ratio tracking, with this number for `σ_t/σ̂`; weights know the null vertices of all segments.
+    /// By ratio tracking, with this value of `σ_t/σ̂`; weights depend on the null vertices of all segments.
     Ratio(f64),
 }
 
@@ -153,10 +153,10 @@ pub fn quotient<L: Lane>(
     transmittance(s - 1) * light * camera
 }
 
-/// What techniques are worth beside each other.
+/// Weights of techniques beside each other.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Combination {
-    /// One with this number of light vertices, by itself.
+    /// A single technique, with this number of light vertices.
     Technique(usize),
     /// All, by multiple importance sampling with densities of directions only.
     Directional(Heuristic),
@@ -175,7 +175,7 @@ impl Combination {
         }
     }
 
-    /// The weight of a technique by the phase function at each scattering; 1 where that does not tell.
+    /// The weight of a technique, given the phase function at each scattering; 1 where the weight depends on more.
     #[inline(always)]
     pub fn weight(self, phase: &[f64], s: usize) -> f64 {
         let Self::Directional(heuristic) = self else { return 1.0 };
@@ -184,16 +184,16 @@ impl Combination {
     }
 }
 
-/// What is drawn, and how.
+/// Rules by which a draw is made.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Rules {
-    /// Which techniques.
+    /// Techniques and their weights.
     pub combination: Combination,
-    /// How their connections are made.
+    /// Estimate of the transmittance of connections.
     pub connection: Connection,
-    /// Whether all techniques share one walk from the light and one from the sensor.
+    /// True if all techniques share one walk from the light and one from the sensor.
     pub is_shared: bool,
-    /// Whether techniques are channels beside their sum.
+    /// True if techniques are channels beside their sum.
     pub has_shares: bool,
 }
 

@@ -1,4 +1,4 @@
-//! Moments of techniques whose weights depend on the directions of a path only.
+//! Moments of techniques with weights that depend on the directions of a path only.
 //!
 //! ```text
 //! E[X_s^k] = Σ_directions w_s^k ∫ f c_s^{k−1},   c_s = f/p_s = T̂_{s−1} [a ρ_{s−1}]_{s≥2} [a ρ_s]_{s≤r}
@@ -24,14 +24,15 @@ pub fn moments(scene: &Scene, rules: &Rules, order: usize, grid: &Grid) -> Vec<P
 
 /// The directions of a path that reaches the sensor.
 struct Directions {
-    /// Whether each of the r + 1 segments goes forward.
+    /// True for each of the r + 1 segments that goes forward.
     is_forward: Vec<bool>,
     /// ρ at each of the r scatterings.
     phase: Vec<f64>,
 }
 
 impl Directions {
-    /// With a turn at these scatterings; `None` where that cannot be, or does not reach the sensor.
+    /// Directions with turns at these scatterings; `None` where a turn is impossible, or the path does not reach
+    /// the sensor.
     fn of(scene: &Scene, turns: &[bool]) -> Option<Self> {
         let mut is_forward = vec![true];
         for (i, turn) in turns.iter().enumerate() {
@@ -64,7 +65,7 @@ impl<'a> Chain<'a> {
         self.grid.values(|u| self.rules.connection.power(u, k))
     }
 
-    /// The same from each node to the sensor.
+    /// `e^{−d} E[T̂^{k−1}]` from each node to the sensor.
     fn sensor(&self, k: usize) -> Vec<f64> {
         self.grid.values(|u| self.rules.connection.power(self.scene.to_sensor(u), k))
     }
@@ -72,7 +73,7 @@ impl<'a> Chain<'a> {
     fn add(&self, path: &Directions, sums: &mut [Powers]) {
         let (grid, order) = (self.grid, path.phase.len());
         let scattered = |i: usize| self.scene.albedo * path.phase[i - 1];
-        // Arriving at scattering i, and leaving it for the sensor, `a ρ` included.
+        // Functions of arriving at scattering i, and of leaving it for the sensor, `a ρ` included.
         let (mut arriving, mut leaving) =
             (vec![Vec::new(); order + 1], vec![Vec::new(); order + 1]);
         for i in 1..=order {

@@ -1,4 +1,4 @@
-//! All that theory says of a draw: of each technique, and of their sum.
+//! Prediction for a draw: of each technique, and of their sum.
 
 use super::grid::Grid;
 use super::lookups::{Walks, of_technique};
@@ -9,7 +9,7 @@ use crate::single::predict::count;
 use crate::{Channel, CountLaw, Moments, Prediction, Tails};
 use numeric::Known;
 
-/// What sums over grids lose, relative to the whole.
+/// Relative rounding error of sums over grids.
 const ROUNDING: f64 = 2e-14;
 
 /// Nodes, and the step of the integral over ln z, of two resolutions.
@@ -18,8 +18,8 @@ fn resolutions(depth: f64) -> [[f64; 2]; 2] {
     [[nodes, 0.3], [nodes + 8.0, 0.25]]
 }
 
-/// What theory says of a draw. The number of lookups is known where `σ_t/σ̂` is one number, `ratio`; without
-/// `laws`, as for lines in plots, only values are good, and no error is worked out.
+/// Prediction for a draw. The number of lookups is known where `σ_t/σ̂` has one value, `ratio`. Without `laws`, as
+/// for lines in plots, only values are valid, and no error is computed.
 pub fn predict(scene: &Scene, rules: &Rules, ratio: Option<f64>, laws: bool) -> Prediction {
     let [coarse, fine] = resolutions(scene.depth.value);
     let found = powers(scene, rules, fine);
@@ -39,7 +39,7 @@ pub fn predict(scene: &Scene, rules: &Rules, ratio: Option<f64>, laws: bool) -> 
     let mut covariances = Vec::new();
     if channels.len() > 1 {
         let variances: Vec<f64> = channels.iter().map(variance).collect();
-        // Independent paths: neighbours do not vary together.
+        // Independent paths: neighbouring channels are uncorrelated.
         let neighbours = if rules.is_shared { 0 } else { channels.len() };
         covariances.extend((1..neighbours).map(|i| Covariance {
             pair: [i - 1, i],
@@ -69,7 +69,7 @@ pub fn predict(scene: &Scene, rules: &Rules, ratio: Option<f64>, laws: bool) -> 
         channels[0].name.clear();
         covariances.clear();
     }
-    // Those of shared subpaths and of the connections between them vary together.
+    // Channels of shared subpaths and of the connections between them are correlated.
     let is_known = !rules.is_shared || rules.connection == Connection::Exact;
     let lookups = ratio.filter(|_| is_known).map(|ratio| lookups(scene, rules, ratio));
     Prediction { channels, lookups, covariances, ..Prediction::default() }
@@ -93,7 +93,8 @@ fn names(scene: &Scene, rules: &Rules) -> Vec<(usize, usize, String)> {
     orders.flat_map(of).collect()
 }
 
-/// A bound on the variance of a sum of draws, however they vary together: its deviation is at most the sum of theirs.
+/// Bound on the variance of a sum of draws with unknown correlations: its standard deviation is at most the sum of
+/// theirs.
 fn most_of_sum(resolutions: [&Vec<Powers>; 2]) -> f64 {
     let deviation = |powers: &Powers| (powers[2] - powers[1] * powers[1]).max(0.0).sqrt();
     let [fine, rough] = resolutions.map(|powers| powers.iter().map(deviation).sum::<f64>());
@@ -131,7 +132,7 @@ fn central(powers: &Powers) -> [f64; 3] {
     [m2, r3 - 3.0 * r2 + 2.0, (r4 - 4.0 * r3 + 6.0 * r2 - 3.0).max(m2 * m2)]
 }
 
-/// One channel by its raw moments at two resolutions.
+/// Prediction for one channel, from its raw moments at two resolutions.
 fn channel(depth: Known, order: usize, [fine, rough]: [&Powers; 2], is_certain: bool) -> Channel {
     let mean = fine[1];
     // d ln C/dτ is between −(r + 3) and r/τ.
@@ -156,7 +157,7 @@ fn channel(depth: Known, order: usize, [fine, rough]: [&Powers; 2], is_certain: 
     Channel::unbiased(truth, moments, tails)
 }
 
-/// The law of the lookups of all techniques together.
+/// Distribution of the lookups of all techniques together.
 fn lookups(scene: &Scene, rules: &Rules, ratio: f64) -> CountLaw {
     let of = |[nodes, _]: [f64; 2]| -> Raw {
         #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // a small whole number

@@ -1,4 +1,4 @@
-//! What one scattering brings by each technique: moments of shadow rays and of hits.
+//! Moments of the score of one scattering by each technique: shadow rays and hits.
 //!
 //! With x = Π (1 − r) over the null collisions of the last segment, a Poisson product,
 //!
@@ -31,7 +31,7 @@ use crate::Heuristic;
 use crate::rod::grid::{Grid, Step};
 use numeric::sum::Sum;
 
-/// The highest power whose mean is found.
+/// Highest power with a computed mean.
 pub const HIGHEST: usize = 8;
 
 /// Terms of q in its k-th power: to rounding for variances, 1e-11 for kurtoses, 1e-5 for tails.
@@ -61,7 +61,7 @@ pub struct Vertex {
 pub struct Connections(Vec<[Vertex; 2]>);
 
 impl Connections {
-    /// On a grid that was made for a σ̂, up to a power.
+    /// Connections on a grid that was made for a σ̂, up to a power.
     pub fn new(grid: &Grid, techniques: Techniques, highest: usize) -> Self {
         let weights = Weights::new(techniques, highest);
         let nulls = weights.nulls(grid);
@@ -72,13 +72,13 @@ impl Connections {
         Self(vertices.collect())
     }
 
-    /// In the middle of a step, of light that goes forward and backward.
+    /// Scatterings in the middle of a step, of light that goes forward and backward.
     pub fn at(&self, step: usize) -> &[Vertex; 2] {
         &self.0[step]
     }
 }
 
-/// Techniques whose moments are asked for.
+/// Techniques, and the powers for which moments are computed.
 pub struct Weights {
     techniques: Techniques,
     highest: usize,
@@ -89,7 +89,7 @@ pub struct Weights {
 }
 
 impl Weights {
-    /// Of techniques, up to a power.
+    /// Weights of techniques, up to a power.
     pub fn new(techniques: Techniques, highest: usize) -> Self {
         let (mut inverses, mut products) = (Vec::new(), highest);
         if techniques.has_nulls() {
@@ -121,12 +121,12 @@ impl Weights {
         found
     }
 
-    /// Given p(ω) ≤ 1 and `M_k`.
+    /// Moments of a scattering, given p(ω) ≤ 1 and `M_k`.
     pub fn vertex(&self, towards: f64, nulls: &[f64]) -> Vertex {
         self.vertex_by(towards, nulls, |heuristic, k| self.full(heuristic, k, towards, nulls))
     }
 
-    /// The same of any p(ω), where other means are known for weights that depend on x: `[n_k, h_k]`.
+    /// Moments of a scattering for any p(ω), where means of weights that depend on x are given: `[n_k, h_k]`.
     pub fn vertex_by(
         &self,
         towards: f64,

@@ -1,5 +1,5 @@
-//! The rod with an emitter at its end: what a camera at its beginning sees, and all that theory says of walks that
-//! look for the emitter by hits and by shadow rays.
+//! The rod with an emitter at its end: radiance at a camera at its beginning, and predictions for walks that find
+//! the emitter by hits and by shadow rays.
 //!
 //! The truth is the rod's transmittance, see [`super::rod`]. Four moments of every combination of techniques, at any
 //! σ̂(x) that is a majorant, solve two-stream equations ([`moments`]); real, null and shadow lookups too.
@@ -22,13 +22,13 @@ use crate::problems::LitRod;
 use media::Piecewise;
 use numeric::Known;
 
-/// What rounding may take from sums of Poisson moments, relative to the number.
+/// Relative rounding error of sums of Poisson moments.
 pub(super) const ROUNDING: f64 = 1e-14;
-/// The same of weights that are polynomials, see [`connections`], k = 1, 2, 3, 4 and 8: the error of `q^k` on [0, 1],
-/// times 2^k, as `1/(1 + z)^k ≥ 2⁻ᵏ` there.
+/// Relative error of the moments of weights that are polynomials, see [`connections`], k = 1, 2, 3, 4 and 8: the
+/// error of `q^k` on [0, 1], times 2^k, as `1/(1 + z)^k ≥ 2⁻ᵏ` there.
 pub(super) const OF_POLYNOMIALS: [f64; 5] = [2e-14, 4e-13, 1e-10, 3e-10, 5e-3];
 
-/// The delta-tracking walk on a rod; `None` where it has more steps than theory can do.
+/// The delta-tracking walk on a rod; `None` where it has too many steps for theory.
 pub(super) fn walk<'a>(
     mesh: &Mesh,
     problem: &'a LitRod,
@@ -38,14 +38,14 @@ pub(super) fn walk<'a>(
     walk.resolving_transmittance()
 }
 
-/// Whether theory can cut a rod into steps.
+/// Returns true if theory can cut a rod into steps.
 pub fn is_within_reach(mesh: &Mesh, problem: &LitRod, sampling: &Piecewise) -> bool {
     walk(mesh, problem, sampling).is_some()
 }
 
-/// What walks with techniques through σ̂ are predicted to do.
+/// Prediction for walks with techniques through σ̂.
 ///
-/// Without `laws`, as for lines in plots, only variances and mean lookups are good.
+/// Without `laws`, as for lines in plots, only variances and mean lookups are valid.
 pub fn predict(
     mesh: &Mesh,
     problem: &LitRod,
@@ -64,7 +64,7 @@ pub fn predict(
     }
 }
 
-/// What the camera sees, not a number where it is unknown.
+/// Radiance at the camera; NaN where it is unknown.
 pub fn answer(mesh: &Mesh, problem: &LitRod) -> Known {
     let found = truth(mesh, &problem.rod).and_then(|found| found.first().copied());
     found.unwrap_or(Known::new(f64::NAN, f64::NAN))
@@ -87,13 +87,13 @@ pub fn lookups(
 pub struct Found {
     /// `E[M(M − 1)…(M − k + 1)]` of the lookups, k = 1 … 4.
     pub lookups: [[f64; 2]; 4],
-    /// `E[X^k]` for k = 1, 2, 3, 4 and 8, infinite where it was not asked for.
+    /// `E[X^k]` for k = 1, 2, 3, 4 and 8, infinite where it is not computed.
     pub raw: [[f64; 2]; 5],
 }
 
 impl Found {
-    /// Those of walks with techniques through σ̂; `None` where theory has no answer. Without `laws` the
-    /// first two only.
+    /// Raw moments of walks with techniques through σ̂; `None` where theory has no answer. Without `laws` the first
+    /// two only.
     pub fn of(
         mesh: &Mesh,
         problem: &LitRod,
@@ -121,7 +121,7 @@ impl Found {
     }
 }
 
-/// A moment of the power at a position of `POWERS`, with the unscattered hit that scores 1.
+/// Adds the unscattered hit, which scores 1, to a moment; `power` is its index in `POWERS`.
 pub fn with_hit(
     scattered: Known,
     unscattered: Known,
@@ -134,7 +134,7 @@ pub fn with_hit(
     Known::new(value, error)
 }
 
-/// The law of lookups, from their factorial moments.
+/// Distribution of lookups, from their factorial moments.
 pub fn count(factorial: [[f64; 2]; 4]) -> CountLaw {
     let [mean, error] = factorial[0];
     let law = CountLaw::of_factorial_moments(factorial.map(|[moment, _]| moment));

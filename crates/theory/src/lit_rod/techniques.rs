@@ -1,9 +1,9 @@
-//! The two techniques that find an emitter, and how their samples are weighted.
+//! The two techniques that find an emitter, and the weights of their samples.
 //!
 //! A path ends with a real scattering at y, where light is scattered into the direction of the emitter with
-//! probability p(ω), and a last segment whose null collisions are `Π (1 − r)`, `r = σ_t/σ̂`. Unidirectional
-//! tracking chooses the direction by chance and meets no real collision; next-event estimation takes it for
-//! granted and tracks a shadow ray. The pdfs of the same path differ by
+//! probability p(ω), and a last segment. The null collisions of the segment have the factor `Π (1 − r)`, `r =
+//! σ_t/σ̂`. Unidirectional tracking samples the direction and must have no real collision on the segment.
+//! Next-event estimation sets the direction and tracks a shadow ray. The pdfs of the same path differ by
 //!
 //! ```text
 //! ρ = p_uni/p_nee = p(ω) Π (1 − r)      over the null-scattering path (full)
@@ -11,7 +11,7 @@
 //! ρ = p(ω)                              by the directions alone (directional)
 //! ```
 //!
-//! A hit scores its weight, a shadow ray of transmittance t scores `p(ω) t` times its own:
+//! A hit scores its weight, a shadow ray of transmittance t scores `p(ω) t` times its weight:
 //!
 //! | combination | weight of a hit | weight of a shadow ray |
 //! |---|---|---|
@@ -30,18 +30,18 @@
 use crate::Heuristic;
 use numeric::Lane;
 
-/// How the transmittance of a shadow ray is estimated.
+/// Estimate of the transmittance of a shadow ray.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Shadow {
     /// `exp(−τ)`, without lookups.
     Exact,
-    /// Delta tracking: 1 where it meets no real collision, else 0.
+    /// Delta tracking: 1 where there is no real collision, else 0.
     Delta,
     /// Ratio tracking: `Π (1 − r)`.
     Ratio,
 }
 
-/// Which part of a path's pdf a weight knows.
+/// Part of a path's pdf on which a weight depends.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Densities {
     /// The directions alone; null vertices are left out.
@@ -50,47 +50,47 @@ pub enum Densities {
     Full,
 }
 
-/// What becomes of the samples of both techniques.
+/// Combination of the samples of both techniques.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Combination {
     /// Hits alone.
     Unidirectional,
-    /// Shadow rays, and the hits that were never scattered.
+    /// Shadow rays, and the unscattered hits.
     NextEvent,
     /// Both, by multiple importance sampling.
     Mis(Densities, Heuristic),
 }
 
-/// How an emitter is found.
+/// Techniques that find an emitter.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Techniques {
-    /// How shadow rays are tracked, where there are any.
+    /// Tracking of shadow rays, if there are any.
     pub shadow: Option<Shadow>,
-    /// How samples are weighted.
+    /// Weights of samples.
     pub combination: Combination,
 }
 
 impl Techniques {
-    /// ρ just after a real scattering: p(ω), and the transmittance where both techniques know it.
+    /// ρ just after a real scattering: p(ω), times the transmittance where both densities include it.
     #[inline(always)]
     pub fn ratio<L: Lane>(self, phase: L, transmittance: L) -> L {
         let is_analytic = self.shadow == Some(Shadow::Exact) && self.is_full();
         if is_analytic { phase * transmittance } else { phase }
     }
 
-    /// Whether null collisions are part of ρ.
+    /// True if null collisions are part of ρ.
     #[inline(always)]
     pub fn has_nulls(self) -> bool {
         self.shadow == Some(Shadow::Ratio) && self.is_full()
     }
 
-    /// Whether hits after a scattering score.
+    /// True if hits after a scattering score.
     #[inline(always)]
     pub fn has_hits(self) -> bool {
         self.combination != Combination::NextEvent
     }
 
-    /// Whether weights know the densities of the whole path.
+    /// True if weights depend on the densities of the whole path.
     #[inline(always)]
     pub fn is_full(self) -> bool {
         matches!(self.combination, Combination::Mis(Densities::Full, _))
@@ -109,7 +109,7 @@ impl Techniques {
         }
     }
 
-    /// What a shadow ray of a transmittance scores.
+    /// Score of a shadow ray, given its transmittance.
     #[inline(always)]
     pub fn of_shadow_ray<L: Lane>(self, phase: L, transmittance: L) -> L {
         let found = phase * transmittance;

@@ -1,7 +1,7 @@
-//! The slab cut into panels, with all that theory integrates from its depths to its end.
+//! The slab cut into panels, with all integrals from its depths to its end.
 //!
-//! Panels end where σ_t and σ̂ have breaks, are resolved for the powers of 1 − r that are needed, and are as short as a
-//! [`Resolution`] asks for in the lowest direction and before a disc.
+//! Panels end where σ_t and σ̂ have breaks. They resolve the powers of 1 − r that are needed. They are as short as
+//! a [`Resolution`] requires for the lowest direction and before a disc.
 
 use crate::Mesh;
 use crate::mesh::Panel;
@@ -15,7 +15,7 @@ use super::directions::Resolution;
 /// A depth.
 #[derive(Debug, Clone, Copy)]
 pub struct Node {
-    /// How far before the end of the slab.
+    /// Distance to the end of the slab.
     pub before: f64,
     /// dz.
     pub weight: f64,
@@ -38,16 +38,16 @@ pub struct Column {
     pub nodes: Vec<Node>,
     /// Nodes in a panel.
     pub per_panel: usize,
-    /// τ of the whole, and ∫σ̂ − τ.
+    /// τ of the slab, and ∫σ̂ − τ.
     pub whole: [f64; 2],
     /// `∫ σ̂ (1 − (1 − r)^k)` from each node to the end, k = 0, 1 …
     powers: Vec<Vec<f64>>,
-    /// The same of complex powers by nodes of the contour, real and imaginary parts, by depth.
+    /// Integrals of complex powers by nodes of the contour, real and imaginary parts, by depth.
     complex: Vec<[Vec<f64>; 2]>,
 }
 
 impl Column {
-    /// Of so many powers, and those of a contour.
+    /// A column with integrals of `count` powers, and those of a contour.
     pub fn new(
         mesh: &Mesh,
         problem: &LitSlab,
@@ -131,12 +131,12 @@ impl Column {
         found
     }
 
-    /// `M_k` of a direction from a node to the end, for so many powers.
+    /// `M_k` of a direction from a node to the end, for powers up to `count`.
     pub fn products(&self, node: usize, cosine: f64, count: usize) -> Vec<f64> {
         self.powers[..=count].iter().map(|depths| (-depths[node] / cosine).exp()).collect()
     }
 
-    /// What a contour needs at a node.
+    /// Exponents of a contour at a node.
     pub fn exponents(&self, node: usize) -> Exponents<'_> {
         let [real, imaginary] = &self.complex[node];
         Exponents { real, imaginary }
@@ -159,8 +159,8 @@ impl Column {
         self.nodes[first..first + self.per_panel].iter().map(|node| node.weight).sum()
     }
 
-    /// A bound on the relative error of integrals, beyond what resolutions differ by: what is left over of σ̂ in an
-    /// exponent is a difference of numbers as large as ∫σ̂/μ.
+    /// Bound on the relative error of integrals beyond the difference of resolutions: exponents are differences of
+    /// numbers as large as ∫σ̂/μ.
     pub fn error(&self, lowest: f64) -> f64 {
         let [depth, nulls] = self.whole;
         self.mesh.relative_error() + f64::EPSILON * (depth + nulls) / lowest
@@ -176,7 +176,7 @@ fn nulls<'a>(panel: Panel<'a>, sampling: &'a Piecewise) -> impl Iterator<Item = 
     })
 }
 
-/// Where panels end.
+/// Depths where panels end.
 fn cuts(mesh: &Mesh, problem: &LitSlab, sampling: &Piecewise, resolution: &Resolution) -> Vec<f64> {
     let mut cuts = sampling.knots().to_vec();
     let lowest = problem.light.lowest();

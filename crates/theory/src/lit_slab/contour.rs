@@ -1,8 +1,8 @@
 //! Means of weights that depend on null collisions, for any ρ: integrals along a line in the complex plane.
 //!
-//! A shadow ray scores `(ρ w_nee)^k` and a hit `w_uni^k`, with ρ = q x and x = Π (1 − r) over the null collisions of a
-//! Poisson process. Powers of x have known means, `E[x^s] = exp(−∫ σ̂ (1 − (1 − r)^s))`, complex ones too, and Mellin's
-//! inversion makes weights of them, `0 < Re s < k`:
+//! A shadow ray scores `(ρ w_nee)^k` and a hit `w_uni^k`, with ρ = q x and x = Π (1 − r) over the null collisions
+//! of a Poisson process. Powers of x, complex ones too, have known means, `E[x^s] = exp(−∫ σ̂ (1 − (1 − r)^s))`.
+//! Mellin's inversion makes weights of them, `0 < Re s < k`:
 //!
 //! ```text
 //! (ρ/(1 + ρ))^k        = 1/(2πi) ∫ ρ^s Γ(s) Γ(k − s)/Γ(k) ds
@@ -10,15 +10,15 @@
 //! ρ^{2k−1}/(1 + ρ²)^k  = 1/(2πi) ∫ ρ^s Γ((2k − 1 − s)/2) Γ((1 + s)/2)/(2Γ(k)) ds
 //! ```
 //!
-//! All on the line Re s = 1/2, half a unit from the nearest poles, by the trapezoidal rule, whose error on it is
-//! e^{−π/h}; kernels fall as e^{−π|Im s|}, those of ρ² as e^{−π|Im s|/2}. With `w = ρ²/(1 + ρ²)` or ρ/(1 + ρ),
+//! All integrals run on the line Re s = 1/2, half a unit from the nearest poles, by the trapezoidal rule. Its error
+//! there is e^{−π/h}; kernels fall as e^{−π|Im s|}, those of ρ² as e^{−π|Im s|/2}. With `w = ρ²/(1 + ρ²)` or ρ/(1 +
+//! ρ),
 //!
 //! ```text
 //! E[x w^k] = T − Σ_{i=1}^k b_i/q,   b_i = E[(ρ/(1 + ρ))^i] or E[ρ^{2i−1}/(1 + ρ²)^i]
 //! ```
 //!
-//! Errors are 1e-15 √ρ. Where ρ ≤ 1 polynomials keep relative digits, too, see
-//! [`crate::lit_rod::connections`].
+//! Errors are 1e-15 √ρ. Where ρ ≤ 1 polynomials keep relative digits, too, see [`crate::lit_rod::connections`].
 //!
 //! Source: derived; the trapezoidal rule: L. N. Trefethen, J. A. C. Weideman, *The Exponentially Convergent Trapezoidal
 //! Rule*, SIAM Review 56 (2014).
@@ -28,9 +28,9 @@ use std::f64::consts::PI;
 use crate::Heuristic;
 use crate::lit_rod::connections::{HIGHEST, Powers};
 
-/// h: e^{−π/h} is 8e-20.
+/// Step h: e^{−π/h} is 8e-20.
 const STEP: f64 = 1.0 / 14.0;
-/// Im s at most, for kernels of ρ.
+/// Maximum Im s, for kernels of ρ.
 const FURTHEST: f64 = 14.0;
 
 type Complex = [f64; 2];
@@ -49,9 +49,9 @@ fn over(scale: f64, a: Complex) -> Complex {
 pub struct Contour {
     /// Im s.
     pub frequencies: Vec<f64>,
-    /// Of what shadow rays score, one row for each power.
+    /// Kernels of the scores of shadow rays, one row for each power.
     connected: Vec<Vec<Complex>>,
-    /// Of b; empty where it is the same.
+    /// Kernels of b; empty where they equal those of shadow rays.
     falling: Vec<Vec<Complex>>,
 }
 
@@ -64,7 +64,7 @@ pub struct Exponents<'a> {
 }
 
 impl Contour {
-    /// For a heuristic, up to a power.
+    /// The contour of a heuristic, up to a power.
     pub fn new(heuristic: Heuristic, highest: usize) -> Self {
         let furthest = match heuristic {
             Heuristic::Balance => FURTHEST,
@@ -168,7 +168,7 @@ fn falling(k: usize, frequency: f64) -> Complex {
 mod tests {
     use super::*;
 
-    /// Of a Poisson number of null collisions that each leave 1 − r.
+    /// Mean of a function of x for a Poisson number of null collisions, each with the factor `left` = 1 − r.
     fn poisson(mean: f64, f: impl Fn(f64) -> f64, left: f64) -> f64 {
         let (mut sum, mut chance, mut x) = (0.0, (-mean).exp(), 1.0);
         for n in 1..200 {

@@ -1,13 +1,13 @@
 //! Directions to a light from a depth of the slab, for integrals over them.
 //!
-//! With the number u that a shadow ray chooses its direction by,
+//! With the uniform number u by which a shadow ray chooses its direction,
 //!
 //! ```text
 //! E[f(chosen)] = ∫₀¹ f du,   E[f(drawn); it meets the light] = ∫₀¹ f q du,   q = p/p_nee
 //! ```
 //!
-//! Panels narrow towards where integrands have their singularities: beyond straight on, for a phase function that peaks
-//! there, `(1 − g)²/(2g)` away; at grazing directions of a cap; at the disc itself.
+//! Panels narrow towards the singularities of integrands: `(1 − g)²/(2g)` beyond straight on, for a phase function
+//! that peaks there; at grazing directions of a cap; at the disc itself.
 
 use crate::problems::LitSlab;
 use crate::problems::lit_slab::Light;
@@ -18,7 +18,7 @@ use numeric::quadrature::GaussLegendre;
 /// A direction to the light.
 #[derive(Debug, Clone, Copy)]
 pub struct Direction {
-    /// Its cosine with the normal.
+    /// Cosine with the normal.
     pub cosine: f64,
     /// q.
     pub ratio: f64,
@@ -26,22 +26,22 @@ pub struct Direction {
     pub weight: f64,
 }
 
-/// How closely directions and depths are looked at.
+/// Resolution of directions and depths.
 pub struct Resolution {
     rule: GaussLegendre,
-    /// By how much panels grow away from a singularity.
+    /// Factor by which panels grow away from a singularity.
     pub growth: f64,
-    /// Optical depth of a panel at most, in the lowest direction.
+    /// Maximum optical depth of a panel, in the lowest direction.
     pub depth: f64,
 }
 
 impl Resolution {
-    /// For answers.
+    /// Resolution of answers.
     pub fn fine() -> Self {
         Self { rule: GaussLegendre::new(16), growth: 2.0, depth: 1.0 }
     }
 
-    /// For what answers may be off.
+    /// Coarser resolution, for error bounds.
     pub fn coarse() -> Self {
         Self { rule: GaussLegendre::new(12), growth: 2.5, depth: 2.0 }
     }
@@ -54,7 +54,7 @@ impl Resolution {
         if scale > 0.0 { places.collect() } else { Vec::new() }
     }
 
-    /// Those from a point so far before the end of the slab.
+    /// Directions from a point at the distance `before` to the end of the slab.
     pub fn directions(&self, problem: &LitSlab, before: f64) -> Vec<Direction> {
         let LitSlab { phase, light, .. } = *problem;
         let at = |number: f64, weight: f64| {
@@ -84,7 +84,7 @@ impl Resolution {
     }
 }
 
-/// How far beyond straight on a phase function is singular.
+/// Distance beyond straight on of the singularity of a phase function.
 fn peak(phase: &Phase) -> Option<f64> {
     let Phase::HenyeyGreenstein(page) = phase else { return None };
     let g = page.g();

@@ -1,7 +1,8 @@
-//! How many lookups a draw makes.
+//! Moments of the number of lookups of a draw.
 //!
-//! Given the first real collision at z, null collisions before it are Poisson, ν(z) of them; what it casts and where it
-//! flies on is independent of them and of each other. A flight to the end along μ that stops at a real collision makes
+//! Given the first real collision at z, null collisions before it are Poisson with mean ν(z). Its shadow ray and
+//! its further flight are independent of them and of each other. A flight to the end along μ that stops at a real
+//! collision makes
 //!
 //! ```text
 //! E[K(K − 1)…(K − n + 1)] = n ∫ (σ̂/μ) e^{−τ(y, s)/μ} (ν(y, s)/μ)^{n−1} ds,   n = 1, 2, …
@@ -15,7 +16,7 @@ use crate::lit_rod::{Shadow, Techniques};
 use crate::problems::LitSlab;
 use crate::raw::{Raw, added, of_factorial, poisson};
 
-/// Rays beyond this optical depth are not walked on: one in 1e26.
+/// Optical depth at which rays are cut off: one in 1e26 goes farther.
 const FAR: f64 = 60.0;
 
 /// `E[M^k]`, k = 0 … 4.

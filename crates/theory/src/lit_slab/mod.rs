@@ -1,5 +1,5 @@
-//! The slab with a light behind it: what a camera sees by one scattering, and all that theory says of draws that look
-//! for the light by hits and by shadow rays.
+//! The slab with a light behind it: the radiance at a camera by one scattering, and predictions for draws that find
+//! the light by hits and by shadow rays.
 //!
 //! A draw is scattered at z with density `a σ_t e^{−τ(z)}`. Its shadow ray N and its hit F have directions of their own
 //! and are independent:
@@ -9,10 +9,10 @@
 //! E[X^k] = ∫ a σ_t e^{−τ(z)} Σ_j (k over j) E[N^j] E[F^{k−j}] dz
 //! ```
 //!
-//! `n_k` and `h_k` are those of a rod along the direction, with q in place of p(ω) and collisions 1/μ times as dense, see
-//! [`crate::lit_rod::connections`]; where q > 1 and weights depend on null collisions, see [`contour`]. Every
-//! number is found twice, on finer and on coarser panels, and their difference bounds its error. Nothing diverges: lights
-//! are a distance away, or fill a cap.
+//! `n_k` and `h_k` are those of a rod along the direction, with q in place of p(ω) and collisions 1/μ times as
+//! dense, see [`crate::lit_rod::connections`]; where q > 1 and weights depend on null collisions, see [`contour`].
+//! Every number is computed twice, on finer and on coarser panels, and their difference bounds its error. No moment
+//! is infinite: lights are a distance away, or fill a cap.
 //!
 //! Source: derived from the densities of B. Miller, I. Georgiev, W. Jarosz, *A null-scattering path integral
 //! formulation of light transport*, ACM Transactions on Graphics 38 (2019), sections 4 and 5.
@@ -37,27 +37,27 @@ use crate::problems::lit_slab::Light;
 use media::Piecewise;
 use numeric::Known;
 
-/// τ/μ at most in the lowest direction.
+/// Maximum τ/μ in the lowest direction.
 const DEEPEST: f64 = 64.0;
-/// What rounding leaves of the integrals of a contour, relative to √q.
+/// Rounding error of the integrals of a contour, relative to √q.
 const OF_CONTOUR: f64 = 1e-14;
 
-/// Techniques that may find a light: one without a size is found by shadow rays alone, of weight 1.
+/// Techniques that can find a light: one without a size is found by shadow rays alone, of weight 1.
 pub fn possible(techniques: Techniques, light: Light) -> Techniques {
     let combination =
         if light.can_be_hit() { techniques.combination } else { Combination::NextEvent };
     Techniques { combination, ..techniques }
 }
 
-/// The optical depth of the slab in the lowest direction, where it is beyond what theory resolves.
+/// The optical depth of the slab in the lowest direction, if it exceeds what theory resolves.
 pub fn slant_depth(mesh: &Mesh, problem: &LitSlab) -> Option<f64> {
     let depth = mesh.optical_depth().value / problem.light.lowest();
     (depth > DEEPEST).then_some(depth)
 }
 
-/// What draws of techniques through σ̂ are predicted to do.
+/// Prediction for draws of techniques through σ̂.
 ///
-/// Without `laws`, as for lines in plots, only variances and mean lookups are good.
+/// Without `laws`, as for lines in plots, only variances and mean lookups are valid.
 pub fn predict(
     mesh: &Mesh,
     problem: &LitSlab,
@@ -88,13 +88,13 @@ pub fn predict(
     Prediction::single(channel, fine.count(&coarse))
 }
 
-/// What the camera sees.
+/// Radiance at the camera.
 pub fn truth(mesh: &Mesh, problem: &LitSlab, sampling: &Piecewise) -> Known {
     let combination = Combination::NextEvent;
     mean(mesh, problem, sampling, Techniques { shadow: Some(Shadow::Exact), combination })
 }
 
-/// `E[X]` of techniques, the same for all that are unbiased.
+/// `E[X]` of techniques, equal for all that are unbiased.
 pub fn mean(mesh: &Mesh, problem: &LitSlab, sampling: &Piecewise, techniques: Techniques) -> Known {
     let [fine, coarse] = [Resolution::fine(), Resolution::coarse()]
         .map(|resolution| Scores::new(mesh, problem, sampling, (techniques, 1), &resolution));
@@ -109,7 +109,7 @@ struct Scores {
     lookups: Raw,
     /// The largest q.
     largest: f64,
-    /// What the mesh adds to all errors, relative.
+    /// Relative error of all numbers from the mesh.
     error: f64,
 }
 
@@ -152,7 +152,7 @@ impl Scores {
         found
     }
 
-    /// Adds what scattering at a depth brings.
+    /// Adds the contribution of scattering at a depth.
     fn add(
         &mut self,
         node: &Node,
@@ -178,7 +178,7 @@ impl Scores {
         }
     }
 
-    /// `E[X^k]`, from the same at a coarser resolution; its number among [`POWERS`] is given, too.
+    /// `E[X^k]` with an error from a coarser resolution; the index of k among [`POWERS`] is given, too.
     fn known(&self, coarse: &Self, techniques: Techniques, (k, place): (usize, usize)) -> Known {
         let (value, other) = (self.powers[k], coarse.powers[k]);
         let of_weights = if techniques.has_nulls() {
