@@ -1,7 +1,7 @@
-//! What one tentative collision does to a particle.
+//! Effect of one tentative collision on a particle.
 
-/// The law of the factor `W` at a tentative collision: the particle survives with probability
-/// `survival` and its weight is multiplied by `weight`; otherwise the walk ends with `X = 0`.
+/// Distribution of the factor `W` at a tentative collision: the particle survives with probability `survival` and
+/// its weight is multiplied by `weight`; otherwise the walk ends with `X = 0`.
 ///
 /// Unbiased where `survival · weight = 1 − r`.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -23,9 +23,9 @@ impl Outcome {
     }
 }
 
-/// A product estimator, seen at one collision.
+/// The rule of a product estimator at one collision.
 pub trait Rule: Send + Sync {
-    /// What happens at a collision with ratio `r = (σ_t − σ_c)/σ̂`.
+    /// Outcome of a collision with ratio `r = (σ_t − σ_c)/σ̂`.
     fn outcome(&self, ratio: f64) -> Outcome;
 
     /// The ratios at which [`Rule::outcome`] or one of its derivatives jumps: panels end there.

@@ -1,8 +1,8 @@
-//! What happens at a tentative collision: the rules of the particle models.
+//! Rules of the particle models at a tentative collision.
 //!
-//! With `r = (σ_t − σ_c)/σ̂` the transmitted particle keeps the factor `1 − r` on average. The
-//! double particle model applies it as a weight; the single particle model spends a part of it on
-//! the chance `q_tran` that the particle goes on.
+//! With `r = (σ_t − σ_c)/σ̂` the transmitted particle keeps the factor `1 − r` on average. The double particle
+//! model applies it as a weight. The single particle model uses a part of it as the probability `q_tran` that the
+//! particle goes on.
 //!
 //! Source: L. Szirmay-Kalos, I. Georgiev, M. Magdics, B. Molnár, D. Légrády, *Unbiased Light
 //! Transport Estimators for Inhomogeneous Participating Media*, Computer Graphics Forum 36 (2017),
@@ -11,7 +11,7 @@
 use super::{Outcome, Rule};
 use numeric::Lane;
 
-/// What a particle meets at a tentative collision.
+/// Extinctions at a tentative collision.
 #[derive(Debug, Clone, Copy)]
 pub struct Met<L> {
     /// `σ_t − σ_c`.
@@ -30,27 +30,28 @@ impl<L: Lane> Met<L> {
     }
 }
 
-/// A rule as one formula for every lane type: theory and kernels ask the same.
+/// A rule as one formula for every lane type, common to theory and kernels.
 pub trait Collision: Rule + Copy + 'static {
-    /// Whether chance decides: then every step of a walk takes a number for it.
+    /// True if a random number decides: then every step of a walk takes a number for it.
     const DECIDES: bool;
 
-    /// Whether a survivor's weight changes.
+    /// True if a survivor's weight changes.
     const WEIGHS: bool = true;
 
     /// See [`Rule::kinks`].
     fn jumps(&self) -> Vec<f64>;
 
-    /// What happens at a collision with ratio r.
+    /// Outcome of a collision with ratio r.
     fn at<L: Lane>(&self, ratio: L) -> Outcome<L>;
 
-    /// Whether a particle ends by a number in `[0, 1)`; one whose ratio is no number goes on to show it.
+    /// Returns the lanes with particles that end, given numbers in `[0, 1)`. A particle with the ratio NaN goes on,
+    /// so that the draw shows it.
     #[inline(always)]
     fn kills<L: Lane>(&self, met: &Met<L>, number: L) -> L::Mask {
         self.at(met.ratio()).survival.at_most(number)
     }
 
-    /// `(1 − r)/q`: the factor that a survivor ought to have.
+    /// `(1 − r)/q`: the factor that makes a survivor unbiased.
     #[inline(always)]
     fn due<L: Lane>(&self, ratio: L, survival: L) -> L {
         (ratio.each(1.0) - ratio) / survival
@@ -93,8 +94,8 @@ impl Collision for Weight {
 
 /// Go on with probability `1 − r` and weight 1: Woodcock tracking, for `0 ≤ r ≤ 1`.
 ///
-/// Beyond that range (a forced, biased run) the chance is cut to `[0, 1]`, as a comparison with a
-/// uniform number does in any renderer.
+/// Beyond that range (a forced, biased run) the probability is clamped to `[0, 1]`, as a comparison with a uniform
+/// number does in any renderer.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Null;
 
@@ -109,20 +110,20 @@ impl Collision for Null {
     #[inline(always)]
     fn at<L: Lane>(&self, ratio: L) -> Outcome<L> {
         let (zero, one) = (ratio.each(0.0), ratio.each(1.0));
-        // What is no number stays none.
+        // NaN stays NaN.
         let survival = zero.or_more(one.or_less(one - ratio));
         let death = zero.or_more(one.or_less(ratio));
         Outcome { survival, death, weight: one, loss: zero }
     }
 
-    /// `(1 − u) σ̂ ≤ σ_t − σ_c`, of which the left side does not wait for the lookup: as probable as `u < r`,
-    /// which pages without a control decide by.
+    /// `(1 − u) σ̂ ≤ σ_t − σ_c`: its left side is computed before the lookup. It is as probable as `u < r`, the
+    /// decision of pages without a control.
     #[inline(always)]
     fn kills<L: Lane>(&self, met: &Met<L>, number: L) -> L::Mask {
         number.times_plus(-met.sampling, met.sampling).at_most(met.residual)
     }
 
-    /// A survivor's q is `1 − r` or, where that is cut, 1: no division is needed.
+    /// A survivor's q is `1 − r` or, where that is clamped, 1: no division is needed.
     #[inline(always)]
     fn due<L: Lane>(&self, ratio: L, survival: L) -> L {
         let one = ratio.each(1.0);
@@ -130,7 +131,7 @@ impl Collision for Null {
     }
 }
 
-/// How the single particle model chooses `q_tran`.
+/// Choice of `q_tran` in the single particle model.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Single {
     /// `q = |1 − r|`, weight `sgn(1 − r)`; for `0 ≤ r ≤ 2`.
@@ -150,7 +151,7 @@ pub enum Single {
     },
 }
 
-/// Each element of an outcome where the mask says so, else of another.
+/// Selects each element of an outcome by a mask.
 #[inline(always)]
 fn select<L: Lane>(mask: L::Mask, yes: Outcome<L>, no: Outcome<L>) -> Outcome<L> {
     Outcome {
@@ -183,7 +184,7 @@ impl Single {
         let sum = scattered + transmitted;
         let below = ratio.at_most(one);
         Outcome {
-            // At r = 1 and a = 0 nothing is left of the particle, whatever q.
+            // At r = 1 and a = 0 the particle keeps no weight, whatever q.
             survival: L::select(sum.at_most(zero), zero, transmitted / sum),
             death: L::select(sum.at_most(zero), one, scattered / sum),
             weight: L::select(below, sum, -sum),
@@ -272,7 +273,7 @@ mod tests {
                     assert_eq!(Null.kills(&met(r), number), killed, "{r}, {number}");
                 }
             }
-            // Whatever rounding does, nothing survives at r = 1, and nothing ends at r = 0.
+            // In spite of rounding, nothing survives at r = 1, and nothing ends at r = 0.
             for number in [0.0, 0.1, 1.0 - 0.5 * f64::EPSILON] {
                 assert!(Null.kills(&met(1.0), number) && !Null.kills(&met(0.0), number));
             }

@@ -4,10 +4,9 @@
 //! m₊' = A m₊ − B m₋ − s₊,   m₋' = −A m₋ + B m₊ + s₋
 //! ```
 //!
-//! m₊(x) and m₋(x) are what a particle of weight 1 at x is worth if it goes forward or backward, A is
-//! the rate at which it stops being what it was, B the rate at which it turns round, and s what it
-//! earns on the way. The implicit midpoint rule makes every step a layer with reflection r, equal
-//! from both sides, transmission t and emission e:
+//! m₊(x) and m₋(x) are the expected scores of a particle of weight 1 at x that flies forward or backward. A is the
+//! rate at which it leaves its state, B the rate at which it turns round, and s the score per length. The implicit
+//! midpoint rule makes every step a layer with reflection r, equal from both sides, transmission t and emission e:
 //!
 //! ```text
 //! D = (1 + a)² − b²,  t = (1 − a² + b²)/D,  r = 2b/D,  e± = h((1 + a)s± + b s∓)/D,  a = hA/2, b = hB/2
@@ -23,7 +22,7 @@ use numeric::Span;
 
 /// The largest `h(|A_k| + B_k)`, k = 0 … 2, of a step of the coarsest grid.
 const COARSEST: f64 = 0.5;
-/// More steps than this on the coarsest grid are more than theory can do.
+/// Maximum number of steps of the coarsest grid.
 const MOST: f64 = 1e4;
 
 /// The middle of a step.
@@ -35,15 +34,15 @@ pub struct Step {
     pub width: f64,
     /// σ̂.
     pub sampling: f64,
-    /// `r (1 − a)`: what a collision absorbs of the weight.
+    /// `r (1 − a)`: the part of the weight that a collision absorbs.
     pub absorbed: f64,
     /// The part of the rod that it lies in, see [`Rod::part`].
     pub part: usize,
     /// `p_f`.
     pub forward: f64,
-    /// What happens at a collision.
+    /// Probabilities and weights at a collision.
     pub odds: Odds,
-    /// `1 − r` and `a r`, the means of what goes straight on and of what is scattered.
+    /// `1 − r` and `a r`, the mean weights of transmitted and of scattered particles.
     pub means: [f64; 2],
 }
 
@@ -54,7 +53,7 @@ impl Step {
         self.odds.moments(self.means, k)
     }
 
-    /// What a particle that collides here is worth to the k-th power, by what it is worth afterwards.
+    /// k-th moment of the score of a particle that collides here, given the moments after the collision.
     #[inline]
     pub fn after(&self, k: i32, worth: [f64; 2]) -> [f64; 2] {
         let [q, s] = self.moments(k);
@@ -62,7 +61,7 @@ impl Step {
         [q * worth[0] + s * spread[0], q * worth[1] + s * spread[1]]
     }
 
-    /// What a particle that is scattered here is worth, by what it is worth afterwards.
+    /// Moments of a particle that is scattered here, given those of both new directions.
     #[inline]
     pub fn spread(&self, [plus, minus]: [f64; 2]) -> [f64; 2] {
         let backward = 1.0 - self.forward;
@@ -75,7 +74,7 @@ impl Step {
         self.rates_of(self.moments(k))
     }
 
-    /// The same of the absolute values, which converge where the moment exists.
+    /// A and B of the absolute values, which converge where the moment exists.
     fn absolute_rates(&self, k: i32) -> [f64; 2] {
         self.rates_of(self.moments(k).map(f64::abs))
     }
@@ -93,20 +92,20 @@ pub struct Grid {
     raised: [f64; 2],
 }
 
-/// A walk through a rod, for theory.
+/// A walk through a rod, as theory describes it.
 pub struct Walk<'a> {
     /// The rod.
     pub rod: &'a Rod,
     /// σ̂; `None` for the walk of the light itself, which flies through σ_t.
     pub sampling: Option<&'a Piecewise>,
-    /// What happens at a collision.
+    /// Rule at a collision.
     pub rule: ParticleRule,
     panels: Vec<(Span, usize)>,
 }
 
 impl<'a> Walk<'a> {
-    /// Cuts the rod where a, `p_f` or σ̂ has a knot and where the rule changes; `None` where that
-    /// makes more steps than theory can do.
+    /// Cuts the rod where a, `p_f` or σ̂ has a knot and where the rule changes; `None` where that makes too many
+    /// steps.
     pub fn new(
         mesh: &Mesh,
         rod: &'a Rod,
@@ -134,7 +133,7 @@ impl<'a> Walk<'a> {
         for panel in cut.panels() {
             let steps = walk.steps_of(panel);
             sum += steps;
-            // What is no number stops here too.
+            // NaN stops here too.
             if sum.is_nan() || sum > MOST {
                 return None;
             }
@@ -157,7 +156,7 @@ impl<'a> Walk<'a> {
         (panel.span.length() * fastest / COARSEST).ceil().max(2.0)
     }
 
-    /// The same with steps that resolve a transmittance, too: at most a quarter of an optical depth.
+    /// The walk with steps that also resolve a transmittance: at most a quarter of an optical depth.
     pub fn resolving_transmittance(mut self) -> Option<Self> {
         let mut sum = 0.0;
         for (span, steps) in &mut self.panels {
@@ -178,7 +177,7 @@ impl<'a> Walk<'a> {
     fn at(&self, t: f64, extinction: f64) -> Step {
         let (albedo, forward) = (self.rod.albedo.value(t), self.rod.forward.value(t));
         let sampling = self.sampling.map_or(extinction, |sampling| sampling.value(t));
-        // Where both vanish there are no collisions, and any finite ratio will do.
+        // Where both vanish there are no collisions, and any finite ratio is valid.
         let ratio = match self.sampling {
             None => 1.0,
             Some(_) if extinction == 0.0 => 0.0,
@@ -191,7 +190,7 @@ impl<'a> Walk<'a> {
         Step { end: t, width: 0.0, sampling, absorbed, part, forward, odds, means }
     }
 
-    /// The grid whose steps are so many times shorter than the coarsest grid's.
+    /// The grid with steps `finer` times shorter than those of the coarsest grid.
     pub fn grid(&self, finer: usize) -> Grid {
         let mut steps = Vec::new();
         for &(span, count) in &self.panels {
@@ -209,7 +208,7 @@ impl<'a> Walk<'a> {
         Grid { steps, parts_per_length: 1.0 / self.rod.width(), raised: [0.0; 2] }
     }
 
-    /// How many steps the coarsest grid has.
+    /// Number of steps of the coarsest grid.
     pub fn coarsest(&self) -> usize {
         self.panels.iter().map(|panel| panel.1).sum()
     }
@@ -220,14 +219,14 @@ impl<'a> Walk<'a> {
 pub struct Importance(Vec<[f64; 2]>);
 
 impl Importance {
-    /// In the middle of a step.
+    /// Values in the middle of a step.
     #[inline]
     pub fn middle(&self, step: usize) -> [f64; 2] {
         let (from, to) = (self.0[step], self.0[step + 1]);
         [0.5 * (from[0] + to[0]), 0.5 * (from[1] + to[1])]
     }
 
-    /// Of the particle that enters.
+    /// Value of the particle that enters.
     pub fn entering(&self) -> f64 {
         self.0[0][0]
     }
@@ -237,7 +236,7 @@ impl Importance {
 struct Layer {
     through: f64,
     back: f64,
-    /// `h(1 + a)/D` and `h b/D`: what of a source leaves the way it goes, and the other way.
+    /// `h(1 + a)/D` and `h b/D`: the parts of a source that leave in its direction, and in the other one.
     emission: [f64; 2],
 }
 
@@ -252,7 +251,7 @@ impl Layer {
         }
     }
 
-    /// More of all that leaves; times 1 changes no bit.
+    /// The layer with all that leaves it multiplied by a factor; a factor of 1 changes no bit.
     fn times(self, factor: f64) -> Self {
         Self {
             through: self.through * factor,
@@ -263,11 +262,11 @@ impl Layer {
 }
 
 impl Grid {
-    /// The same walk with absolute values of all weights, in which everything that leaves a step is more
-    /// by a share per step and a share per collision of either kind.
+    /// The grid with absolute values of all weights, where the energy that leaves a step is increased by a share
+    /// per step and a share per collision of either kind.
     ///
-    /// What a number grows by, per share, is how often its paths pass a step, or collide: how much of the
-    /// rounding of every step it collects.
+    /// The relative growth of a number per share is the mean number of steps, or collisions, on its paths. This is
+    /// how many roundings of steps it collects.
     #[must_use]
     pub fn raised(&self, by: [f64; 2]) -> Self {
         let absolute = |step: &Step| Step {
@@ -285,24 +284,23 @@ impl Grid {
         &self.steps
     }
 
-    /// By what everything that leaves a step is more.
+    /// Factor by which the energy that leaves a step is increased.
     fn growth(&self, step: &Step, [a, b]: [f64; 2]) -> f64 {
         // σ̂(1 + Q + S) ≤ 2σ̂ + |A| + |B|
         let collisions = step.width * (2.0 * step.sampling + a.abs() + b.abs());
         1.0 + self.raised[0] + self.raised[1] * collisions
     }
 
-    /// One over the length of the parts in which the flux is looked at.
+    /// One over the length of the parts in which the flux is counted.
     pub fn parts_per_length(&self) -> f64 {
         self.parts_per_length
     }
 
-    /// Where the k-th moment diverges in a rod that is longer everywhere by a share: the distance that
-    /// would have to be the rod's end for it to exist. `None` where it exists.
+    /// Distance at which the k-th moment diverges in a rod that is longer everywhere by a share: the moment exists
+    /// only if the rod ends before it. `None` where it exists.
     ///
-    /// What has been passed reflects back ρ, and the next layer r: their echoes `Σ(ρr)^n` diverge
-    /// where ρr reaches 1. This is so on the grid, which finds the critical length to about a
-    /// ten-thousandth; see [`Self::margin`].
+    /// The passed part reflects ρ, and the next layer r: their echoes `Σ(ρr)^n` diverge where ρr reaches 1. This is
+    /// so on the grid, which finds the critical length to about a ten-thousandth; see [`Self::margin`].
     pub fn critical(&self, k: i32, longer: f64) -> Option<f64> {
         let mut passed = 0.0;
         for step in &self.steps {
@@ -316,15 +314,15 @@ impl Grid {
         None
     }
 
-    /// How far the k-th moment is from its divergence: the moment exists where this is positive.
+    /// Distance of the k-th moment from its divergence: the moment exists where this is positive.
     ///
     /// ```text
     /// y' = Ay − Bz,  z' = −Az + By,  (y, z) = (1, 0) at the beginning;   y/√(y² + z²) at the end
     /// ```
     ///
-    /// The moment exists where y stays positive, and is 1/y for what passes. Over a layer
-    /// `y → y (1 − ρr)/t` with ρ = z/y. It is smooth in the steps' lengths even where y is 0. `None` where y
-    /// turns more than once, or steps are too long.
+    /// The moment exists where y stays positive, and is 1/y for transmission. Over a layer `y → y (1 − ρr)/t` with
+    /// ρ = z/y. It is smooth in the steps' lengths even where y is 0. `None` where y turns more than once, or steps
+    /// are too long.
     pub fn margin(&self, k: i32) -> Option<f64> {
         let (mut passed, mut turns) = (0.0, 0);
         for step in &self.steps {
@@ -344,8 +342,8 @@ impl Grid {
         }
     }
 
-    /// Solves the equations with given rates and sources, where leaving at the beginning and at the
-    /// end is worth `ends`; `None` where the echoes diverge.
+    /// Solves the equations with given rates and sources, where leaving at the beginning and at the end scores
+    /// `ends`; `None` where the echoes diverge.
     pub fn solve(
         &self,
         rates: impl Fn(&Step) -> [f64; 2],

@@ -1,13 +1,13 @@
-//! The rod: what comes back and what gets through, and all that theory says of walks in it.
+//! The rod: reflectance and transmittance, and predictions for walks in it.
 //!
-//! Truths are closed forms where the albedo and the phase are constant, and elsewhere the mean of the
-//! light's own walk (σ̂ = σ_t, analog) by the two-stream equations. Moments of every rule at any σ̂(x)
-//! solve the same equations with other rates.
+//! Expected values are closed forms where the albedo and the phase are constant. Elsewhere they are the mean of the
+//! light's own walk (σ̂ = σ_t, analog) by the two-stream equations. Moments of every rule at any σ̂(x) solve the
+//! same equations with other rates.
 //!
-//! A moment may diverge: where the particle's weight grows faster than it leaves, the echoes between
-//! two parts of the rod add up to infinity. The length at which that begins is the moment's critical
-//! length. An experiment whose second moment diverges has no variance and is refused; where only the
-//! fourth diverges the mean is tested and the variance is not.
+//! A moment may diverge: where the weight grows faster than the particle leaves, the echoes between two parts of
+//! the rod add up to infinity. The length at which that begins is the moment's critical length. An experiment with
+//! a divergent second moment has no variance and is refused. Where only the fourth diverges the mean is tested and
+//! the variance is not.
 //!
 //! Source: derived from the rules of L. Szirmay-Kalos, I. Georgiev, M. Magdics, B. Molnár, D. Légrády,
 //! *Unbiased Light Transport Estimators for Inhomogeneous Participating Media*, Computer Graphics Forum
@@ -29,7 +29,7 @@ use crate::problems::{Problem, Rod};
 use media::Piecewise;
 use numeric::{Known, Span};
 
-/// The exact answer of every channel; `None` where the rod has more steps than theory can do.
+/// The exact answer of every channel; `None` where the rod has too many steps for theory.
 pub fn truth(mesh: &Mesh, rod: &Rod) -> Option<Vec<Known>> {
     let support = mesh.support();
     let depth = rod.medium().optical_depth(support);
@@ -51,7 +51,7 @@ pub fn truth(mesh: &Mesh, rod: &Rod) -> Option<Vec<Known>> {
         (Some([r, _]), Quantity::Reflected) => Some(r),
         (Some([_, t]), Quantity::Transmitted) => Some(t),
         (Some([r, t]), Quantity::Absorbed) => {
-            // Of a white rod rounding may leave less than nothing.
+            // In a white rod rounding may make the rest negative.
             let rest = ((1.0 - r.value) - t.value).max(0.0);
             Some(Known::new(rest, r.error + t.error + f64::EPSILON))
         }
@@ -60,7 +60,7 @@ pub fn truth(mesh: &Mesh, rod: &Rod) -> Option<Vec<Known>> {
     known.collect()
 }
 
-/// The same, not a number where it is unknown.
+/// The exact answer of every channel; NaN where it is unknown.
 fn truth_or_nan(mesh: &Mesh, rod: &Rod) -> Vec<Known> {
     truth(mesh, rod).unwrap_or_else(|| vec![Known::new(f64::NAN, f64::NAN); rod.channels.len()])
 }
@@ -69,28 +69,27 @@ fn has_closed_form(quantity: Quantity) -> bool {
     matches!(quantity, Quantity::Reflected | Quantity::Transmitted | Quantity::Absorbed)
 }
 
-/// The value of a field that has only one on a stretch.
+/// The value of a field, if it has only one on an interval.
 fn one_value(field: &Piecewise, span: Span) -> Option<f64> {
     field.on(span).single_value()
 }
 
-/// Why a walk has no variance that draws could be compared with.
+/// Reason why a walk has no variance that draws can be compared with.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum NoVariance {
-    /// The second moment diverges: the rod would have to end here.
+    /// The second moment diverges: the rod would have to end at this distance.
     Diverges(f64),
-    /// The second moment is so near to its divergence that theory knows it to this relative error only;
-    /// above 1, it may diverge.
+    /// The second moment is next to its divergence, and known to this relative error only; above 1, it may diverge.
     Blurred(f64),
-    /// The rod has more steps than theory can do.
+    /// The rod has too many steps for theory.
     TooLong,
 }
 
-/// Whether a walk has a variance that theory resolves.
+/// Checks that a walk has a variance that theory resolves.
 ///
 /// # Errors
 ///
-/// Why not.
+/// The reason why not.
 pub fn has_variance(
     mesh: &Mesh,
     rod: &Rod,
@@ -109,8 +108,8 @@ pub fn has_variance(
     }
 }
 
-/// `E[X^k]` of each channel with its error, where the moment is next to its divergence; infinite where
-/// grids do not tell.
+/// `E[X^k]` of each channel with its error, where the moment is next to its divergence; infinite where grids do not
+/// resolve it.
 fn powers(walk: &Walk<'_>, k: i32) -> Vec<[f64; 2]> {
     let channels = &walk.rod.channels;
     let numbers = moments::next_to_divergence(walk, &|grid| {
@@ -119,10 +118,10 @@ fn powers(walk: &Walk<'_>, k: i32) -> Vec<[f64; 2]> {
     numbers.unwrap_or_else(|| vec![[f64::INFINITY; 2]; channels.len()])
 }
 
-/// What the walk of a rule through σ̂ is predicted to do; the truth alone where [`has_variance`] says that
-/// it has none, and not even that where the rod is too long.
+/// Prediction for the walk of a rule through σ̂. It has the expected value alone where [`has_variance`] refuses the
+/// walk, and not even that where the rod is too long.
 ///
-/// Without `laws`, as for lines in plots, only variances and mean lookups are good.
+/// Without `laws`, as for lines in plots, only variances and mean lookups are valid.
 pub fn predict(
     mesh: &Mesh,
     rod: &Rod,
@@ -162,7 +161,7 @@ pub fn factorial_lookups(
     RawMoments::of(&walk, true).map(|found| found.lookups)
 }
 
-/// What is known of an unbiased walk whose draws lie in `[0, 1]`: truths, and `Var[X] ≤ E[X](1 − E[X])`.
+/// Prediction for an unbiased walk with draws in `[0, 1]`: expected values, and `Var[X] ≤ E[X](1 − E[X])`.
 pub fn bounded(mesh: &Mesh, rod: &Rod) -> Prediction {
     let truth = truth_or_nan(mesh, rod);
     let channels = rod.channels.iter().zip(truth).map(|(quantity, truth)| Channel {
@@ -180,7 +179,7 @@ struct RawMoments {
     raw: Vec<[[f64; 2]; POWERS.len()]>,
     /// Factorial moments of the number of lookups, with absolute errors.
     lookups: [[f64; 2]; 4],
-    /// With the energy absorbed, where that is a channel and the moments exist.
+    /// Joint moments with the absorbed energy, where that is a channel and the moments exist.
     joint: Option<Joint>,
 }
 
@@ -195,12 +194,12 @@ impl RawMoments {
         if matches!(second, Existence::Diverges(_) | Existence::Unknown) {
             return None;
         }
-        // The first exists wherever the second does; the third is of no use without the fourth.
+        // The first moment exists wherever the second does; the third is of no use without the fourth.
         let existences = [Existence::Finite, second, fourth, fourth, eighth];
         let channels = &walk.rod.channels;
         let is_finite = |i: &usize| existences[*i] == Existence::Finite;
         let powers: Vec<i32> = (0..POWERS.len()).filter(is_finite).map(|i| POWERS[i]).collect();
-        // Next to its divergence a moment has no answer on coarse grids, and takes none from others.
+        // Next to its divergence a moment has no answer on coarse grids, and is solved separately.
         let apart = |i: usize| match existences[i] {
             Existence::Near => Some(self::powers(walk, POWERS[i])),
             _ => None,
@@ -251,12 +250,12 @@ impl RawMoments {
     }
 }
 
-/// A moment with a larger relative error is not known.
+/// Maximum relative error of a moment that is used.
 const RESOLVED: f64 = 0.05;
-/// Moments in units of the truth that are smaller than this are rounding.
+/// Maximum size of moments, in units of the expected value, that are rounding.
 const FAINT: f64 = 1e-9;
 
-/// Central moments in units of the truth. Higher ones that grids do not resolve, for weights that grow too
+/// Central moments in units of the expected value. Higher ones that grids do not resolve, for weights that grow too
 /// steeply, are infinite, as where they diverge.
 pub(super) fn central(truth: Known, raw: &[[f64; 2]; POWERS.len()]) -> Moments {
     let m = truth.value;
@@ -267,7 +266,7 @@ pub(super) fn central(truth: Known, raw: &[[f64; 2]; POWERS.len()]) -> Moments {
     let fourth = (four - 4.0 * m * three + 6.0 * m * m * two - 3.0 * m.powi(4)) / m.powi(4);
     let of_truth = 4.0 * three.abs() + 12.0 * m * two + 12.0 * m.powi(3);
     let off = (e4 + 4.0 * m * e3 + 6.0 * m * m * e2 + of_truth * truth.error) / m.powi(4);
-    // By Jensen's inequality the fourth moment is not below the square of the second.
+    // By Jensen's inequality the fourth moment is at least the square of the second.
     let is_resolved = off <= (RESOLVED * fourth).max(FAINT)
         && fourth >= (1.0 - RESOLVED) * second * second - FAINT;
     if !four.is_finite() || !is_resolved {
@@ -292,8 +291,8 @@ pub(super) fn tails(raw: &[[f64; 2]; POWERS.len()]) -> Tails {
     }
 }
 
-/// The covariances of neighbouring channels. A particle leaves at one end and after one number of
-/// scatterings: the products of such channels are 0.
+/// The covariances of adjacent channels. A particle leaves at one end and after one number of scatterings: the
+/// products of such channels are 0.
 fn covariances(channels: &[Quantity], truth: &[Known], found: &RawMoments) -> Vec<Covariance> {
     let mut covariances = Vec::new();
     for (first, pair) in channels.windows(2).enumerate() {

@@ -1,8 +1,7 @@
 //! Every moment of a walk through a rod, from its two-stream equations.
 //!
-//! With `Q_k` and `S_k` of a rule (see `particle`), and `c = r(1 − a)` for the absorbed energy and
-//! `c = 1/(σ̂ width)` for the flux, the particle's worth to the k-th power solves the equations of `grid`
-//! with
+//! Let `Q_k` and `S_k` be those of a rule (see `particle`), and `c = r(1 − a)` for the absorbed energy and `c =
+//! 1/(σ̂ width)` for the flux. The k-th moment of the particle's score solves the equations of `grid` with
 //!
 //! ```text
 //! A_k = σ̂(1 − Q_k − S_k p_f),  B_k = σ̂ S_k p_b
@@ -12,56 +11,56 @@
 //! M(M − 1)…(M − n + 1), M lookups: A₀, B₀, source n σ̂ (Q, S)₀ of the one before, and n σ̂ for n = 1
 //! ```
 //!
-//! Each is the expectation over what the next collision does; terms with different powers of the
-//! weight never mix, which is why the equations close.
+//! Each is the expectation over the events at the next collision. Terms with different powers of the weight never
+//! mix: therefore the equations close.
 
 use super::grid::{Grid, Importance, Step, Walk};
 use crate::problems::Problem;
 use crate::problems::rod::Quantity;
 
-/// The powers whose means are found: those of the moments, and the eighth for their tails.
+/// Powers with computed means: those of the moments, and the eighth for their tails.
 pub const POWERS: [i32; 5] = [1, 2, 3, 4, 8];
-/// The grid on which divergence is looked for is so much finer than the coarsest.
+/// Ratio of the coarsest grid's steps to those of the grid on which divergence is searched.
 const FINER: usize = 16;
-/// So near, relative, to a critical length a grid does not tell on which side of it a rod ends.
+/// Relative distance to a critical length within which a grid does not resolve on which side of it a rod ends.
 const NEAR: f64 = 1e-3;
-/// More steps than this are not solved.
+/// Maximum number of steps that are solved.
 const MOST_STEPS: usize = 200_000;
-/// What rounding may take from all that leaves a step: six operations make the layer, eight join it.
+/// Relative rounding error of the energy that leaves a step: six operations make the layer, eight join it.
 const OF_PASSAGE: f64 = 8.0 * f64::EPSILON;
-/// What it may take per collision: `1 − Q − S p_f` cancels, and powers of weights are rounded.
+/// Rounding error per collision: `1 − Q − S p_f` cancels, and powers of weights are rounded.
 const OF_COLLISION: f64 = 16.0 * f64::EPSILON;
-/// What it may take of every path: what is earned on the way, up to eight times.
+/// Rounding error of every path: scores on the way, up to eight times.
 const OF_PATH: f64 = 128.0 * f64::EPSILON;
 /// The sum of the absolute weights of Romberg's scheme is below this.
 const OF_SCHEME: f64 = 2.0;
-/// By which share steps are raised to count the passages through them.
+/// Share by which steps are raised to count the passages through them.
 const SHARE: f64 = 1e-8;
 
 /// `E[Y^j X^k]` for j, k = 1, 2, of the absorbed energy and what leaves at one end.
 pub type Joint = [[f64; 2]; 2];
 
-/// How far a sequence of grids goes.
+/// Limits of a sequence of grids.
 #[derive(Debug, Clone, Copy)]
 pub struct Precision {
-    /// Where two estimates agree to this, no finer grid is asked.
+    /// Relative difference of two estimates at which no finer grid is solved.
     pub agreement: f64,
     /// The finest grid has steps `2^levels` times shorter than the coarsest.
     pub levels: usize,
 }
 
 impl Precision {
-    /// For truths, and predictions that draws are compared with.
+    /// Precision of expected values, and of predictions that draws are compared with.
     pub const FULL: Self = Self { agreement: 1e-12, levels: 6 };
-    /// For lines in plots and the search of optima.
+    /// Precision of lines in plots and of the search of optima.
     pub const PLOTS: Self = Self { agreement: 1e-5, levels: 3 };
 }
 
 /// A list of numbers that a grid yields: the same numbers on every grid.
 pub type Numbers<'f> = dyn Fn(&Grid) -> Option<Vec<f64>> + 'f;
 
-/// The numbers that finer and finer grids tend to, each with a bound on its absolute error; `None`
-/// where a grid has no answer.
+/// Limits of numbers on finer and finer grids, each with a bound on its absolute error; `None` where a grid has no
+/// answer.
 pub fn romberg(
     walk: &Walk<'_>,
     precision: Precision,
@@ -74,8 +73,8 @@ pub fn romberg(
     Some(pairs.map(|([value, error], rounding)| [*value, error + rounding]).collect())
 }
 
-/// The same of positive numbers that are next to where they are infinite, like 1/y next to y = 0: there
-/// they are no series in the steps' lengths, but `1/(1 + x)` is.
+/// Limits of positive numbers that are next to their divergence, like 1/y next to y = 0. There they are no series
+/// in the steps' lengths, but `1/(1 + x)` is.
 pub fn next_to_divergence(walk: &Walk<'_>, numbers: &Numbers<'_>) -> Option<Vec<[f64; 2]>> {
     let inverse = |grid: &Grid| Some(numbers(grid)?.iter().map(|x| 1.0 / (1.0 + x)).collect());
     let Limit { numbers: found, last, .. } = limit(walk, Precision::FULL, &inverse)?;
@@ -88,11 +87,11 @@ pub fn next_to_divergence(walk: &Walk<'_>, numbers: &Numbers<'_>) -> Option<Vec<
     Some(found.iter().zip(rounding).map(known).collect())
 }
 
-/// Where a sequence of grids leads.
+/// Result of a sequence of grids.
 struct Limit {
     /// The numbers, each with the difference of the last two estimates.
     numbers: Vec<[f64; 2]>,
-    /// How much finer than the coarsest grid the first and the last were.
+    /// Ratio of the coarsest grid's steps to those of the first grid, and of the last grid.
     first: usize,
     last: usize,
 }
@@ -103,7 +102,7 @@ fn limit(walk: &Walk<'_>, precision: Precision, numbers: &Numbers<'_>) -> Option
     let (mut first, mut finer) = (1, 1);
     for level in 0..=precision.levels {
         let Some(found) = numbers(&walk.grid(finer)) else {
-            // Steps that are too long may find echoes that finer ones do not.
+            // Steps that are too long may find echoes that diverge, where finer ones do not.
             before.clear();
             finer *= 2;
             first = finer;
@@ -134,21 +133,21 @@ fn limit(walk: &Walk<'_>, precision: Precision, numbers: &Numbers<'_>) -> Option
     None
 }
 
-/// Whether a moment exists.
+/// Existence of a moment.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Existence {
-    /// It does, far from where it diverges.
+    /// It exists, far from its divergence.
     Finite,
-    /// It does, but next to where it diverges: grids must tell how well it is known.
+    /// It exists, but next to its divergence: its error must be found from grids.
     Near,
-    /// It does not: the rod would have to end here, about.
+    /// It diverges: the rod would have to end at about this distance.
     Diverges(f64),
-    /// Within the error of its critical length.
+    /// It is within the error of its critical length.
     Unknown,
 }
 
 impl Existence {
-    /// Of some moments.
+    /// Existence of some moments.
     pub fn of<const N: usize>(walk: &Walk<'_>, powers: [i32; N]) -> [Self; N] {
         let fine = walk.grid(FINER);
         powers.map(|k| Self::on(walk, &fine, k))
@@ -164,7 +163,7 @@ impl Existence {
         let margin = |grid: &Grid| Some(vec![grid.margin(k)?]);
         let Some(limit) = limit(walk, Precision::FULL, &margin) else { return Self::Unknown };
         let [margin, difference] = limit.numbers[0];
-        // All that is added up is positive: roundings of ρ add up, no more.
+        // All terms are positive: roundings of ρ add up, no more.
         let steps = (walk.coarsest() * limit.last) as f64;
         let error = difference + OF_SCHEME * steps * (OF_PASSAGE + OF_COLLISION);
         if margin > error {
@@ -178,10 +177,10 @@ impl Existence {
     }
 }
 
-/// What rounding may add to the numbers of Romberg's scheme, absolute, where the finest grid has steps
-/// `finer` times shorter than a grid on which they exist.
+/// Absolute rounding error of the numbers of Romberg's scheme, where the finest grid has steps `finer` times
+/// shorter than a grid on which they exist.
 ///
-/// A step takes off a share of what leaves it, which is the same for equal steps: their roundings do not
+/// A step loses a share of the energy that leaves it, which is equal for equal steps: their roundings do not
 /// cancel. A number collects it as often as its paths pass steps; scattering makes them pass again.
 ///
 /// ```text
@@ -201,7 +200,7 @@ fn nothing(_: usize, _: &Step) -> [f64; 2] {
     [0.0; 2]
 }
 
-/// The worth of leaving at one end, to the k-th power of the weight.
+/// Expected score of leaving at one end, for the k-th power of the weight.
 fn leaving(grid: &Grid, k: i32, ends: [f64; 2]) -> Option<Importance> {
     grid.solve(|step| step.rates(k), nothing, ends)
 }
@@ -251,7 +250,7 @@ fn absorbed(step: &Step, power: i32) -> f64 {
     step.sampling * step.absorbed.powi(power)
 }
 
-/// `Y^i X^k` for i = 0 … j, `X^k` being what leaves at one end to the power k, or 1.
+/// `Y^i X^k` for i = 0 … j; `X^k` is the weight that leaves at one end to the power k, or 1.
 fn score_times(
     grid: &Grid,
     score: &Score<'_>,
@@ -265,7 +264,7 @@ fn score_times(
     }
     for power in found.len()..=j {
         if power == 0 {
-            // Importance 1 whatever happens.
+            // Importance 1 for every event.
             found.push(grid.solve(|_| [0.0; 2], nothing, [1.0; 2])?);
             continue;
         }
@@ -276,7 +275,7 @@ fn score_times(
                 let left = i32::try_from(power).unwrap_or(i32::MAX) - i;
                 let share = ways * score(step, left);
                 let order = i + k;
-                // Of weight 1 to the power 0 all is left, whatever happens to the particle.
+                // With the power 0 of the weight nothing is lost, whatever happens to the particle.
                 let middle = worth.middle(at);
                 let after = if order == 0 { middle } else { step.after(order, middle) };
                 sum = [sum[0] + share * after[0], sum[1] + share * after[1]];
@@ -291,7 +290,7 @@ fn score_times(
     Some(found)
 }
 
-/// See [`Joint`]; what leaves at the beginning is reflectance.
+/// See [`Joint`]; leaving at the beginning is reflectance.
 pub fn joint(grid: &Grid, reflected: bool) -> Option<Joint> {
     let ends = if reflected { BEGINNING } else { END };
     let mut joint = [[0.0; 2]; 2];

@@ -1,4 +1,4 @@
-//! The transmittance from the ray's origin to any point of the ray, as it is estimated.
+//! The estimated transmittance from the ray's origin to any point of the ray.
 
 use super::CameraTracking;
 use super::segment::{POWERS, Segment, counts, loss, losses, rounding, size};
@@ -7,23 +7,23 @@ use media::{Control, Piecewise};
 use numeric::quadrature::GaussLegendre;
 use numeric::{Known, Span};
 
-/// How many integrals are kept.
+/// Number of integrals that are kept.
 const COUNT: usize = 10;
-/// Where `∫σ̂` is among them.
+/// Index of `∫σ̂` among the integrals.
 const FLOWN: usize = 8;
 
-/// What a walk from the ray's origin loses up to a point: `A_k = ∫ kσ_c + σ̂(1 − w^k)`, `w = 1 − r`.
+/// Losses of a walk from the ray's origin to a point: `A_k = ∫ kσ_c + σ̂(1 − w^k)`, `w = 1 − r`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Losses {
     /// `A_k` for k = 0 … 4.
     pub signed: [f64; 5],
-    /// The same with `|w|^k`.
+    /// `A_k` with `|w|^k` in place of `w^k`.
     pub sizes: [f64; 5],
-    /// The same with `w|w|`, k = 2.
+    /// `A_2` with `w|w|` in place of `w²`.
     pub mixed: f64,
 }
 
-/// The integrals along the ray, ready to be read at any point.
+/// Integrals along the ray, for evaluation at any point.
 pub struct Camera<'a> {
     mesh: &'a Mesh,
     sampling: &'a Piecewise,
@@ -61,7 +61,7 @@ impl<'a> Camera<'a> {
         let mut cuts = sampling.knots().to_vec();
         cuts.extend(control.breaks());
         if along == CameraTracking::Ratio {
-            // Where w changes its sign, its size has a kink.
+            // Where w changes its sign, `|w|` has a kink.
             cuts.extend(mesh.roots(|t, x| sampling.value(t) - (x - control.extinction(t))));
         }
         cuts.retain(|&t| support.contains_inside(t));
@@ -161,7 +161,7 @@ impl<'a> Camera<'a> {
         }
     }
 
-    /// What a walk of weights loses up to `s`.
+    /// Losses of a walk with weights up to `s`.
     pub fn losses(&self, s: f64) -> Losses {
         let [_, b, c, d, _, size, cube, mixed, ..] = self.at(s);
         let signed = [0.0, self.depth(s).value, b, c, d];

@@ -1,7 +1,7 @@
 //! Moments of sums along one walk: a chain of linear equations, solved by running integrals.
 //!
-//! Functionals of the rest of a walk that stands at s with weight 1 obey, from the ray's end
-//! backwards, `−U' = f − A' U` with `U(end) = 0`, where f holds functionals that are already known:
+//! The rest of a walk that stands at s with weight 1 has functionals U. From the ray's end backwards they obey
+//! `−U' = f − A' U` with `U(end) = 0`, where f contains functionals that are already known:
 //!
 //! ```text
 //! U(s) = ∫_s^end f(t) exp(−(A(t) − A(s))) dt
@@ -26,11 +26,11 @@ struct Panel {
 
 /// A node of the chain.
 pub struct At {
-    /// What theory knows there.
+    /// Quantities of the point.
     pub node: Node,
     /// `A` there.
     pub losses: Losses,
-    /// σ̂ and `w = 1 − r` there; not meant where σ̂ is zero.
+    /// σ̂ and `w = 1 − r` there; without meaning where σ̂ is zero.
     pub collision: [f64; 2],
     stretch: f64,
 }
@@ -44,7 +44,7 @@ pub struct Solved {
 }
 
 impl<'a> Chain<'a> {
-    /// On the given panels of the stretched variable.
+    /// The chain on the given panels of the stretched variable.
     pub fn new(scene: &'a Scene<'a>, panels: &[Span]) -> Self {
         let losses = |x: f64| scene.camera.losses(scene.stretched(x).s);
         let panel = |&x: &Span| {
@@ -61,14 +61,14 @@ impl<'a> Chain<'a> {
         Self { scene, panels: panels.iter().map(panel).collect() }
     }
 
-    /// Whether a weight changes its sign somewhere.
+    /// Returns true if a weight changes its sign somewhere.
     pub fn is_signed(&self) -> bool {
         let mut nodes = self.panels.iter().flat_map(|panel| &panel.nodes);
         nodes.any(|at| at.collision[0] > 0.0 && at.collision[1] < 0.0)
     }
 
-    /// Solves for one functional: `loss` picks its A, and `f` is asked at each node, of which it is
-    /// told the panel and the place.
+    /// Solves for one functional: `loss` picks its A, and `f` is called for each node with its panel's index and
+    /// its index in the panel.
     pub fn solve(
         &self,
         loss: &dyn Fn(&Losses) -> f64,

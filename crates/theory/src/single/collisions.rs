@@ -4,7 +4,7 @@
 //! p(s) = c σ_t T,   X = S T̂_shadow/c
 //! ```
 //!
-//! c, the chance that a real collision scatters, is the albedo, or 1 where the albedo is a weight.
+//! c, the probability that a real collision scatters, is the albedo, or 1 where the albedo is a weight.
 
 use super::scene::Node;
 use crate::raw::{Raw, added, poisson};
@@ -14,11 +14,11 @@ use numeric::{Lane, Span};
 /// Walks through a majorant.
 #[derive(Clone, Copy)]
 pub struct Collisions<'a> {
-    /// What they walk through.
+    /// Medium of the walks.
     pub medium: &'a Medium,
     /// σ̂ ≥ σ_t.
     pub sampling: &'a Piecewise,
-    /// c, the chance that a real collision scatters.
+    /// c, the probability that a real collision scatters.
     pub scatters: f64,
 }
 
@@ -38,13 +38,13 @@ impl Collisions<'_> {
         node.extinction * self.scatters * node.transmittance
     }
 
-    /// What a scattering is worth, but for its shadow ray.
+    /// Score of a scattering without its shadow ray.
     pub fn worth(&self, node: &Node) -> f64 {
         node.source / self.scatters
     }
 
-    /// `E[N^k]` of a walk that scatters at a node, with its shadow ray, and, for each that scatters, of those that
-    /// are absorbed there.
+    /// `E[N^k]` of a walk that scatters at a node, with its shadow ray, and of the walks that are absorbed there,
+    /// per walk that scatters.
     pub fn lookups_at(&self, node: &Node) -> Raw {
         let walked = added([1.0; 5], poisson(self.nulls(node.s)));
         let scattered = added(walked, node.shadow.lookups);

@@ -1,13 +1,13 @@
-//! A point from the light and a scattering of delta tracking, which share what they find.
+//! A point from the light and a scattering of delta tracking, combined by multiple importance sampling.
 //!
 //! ```text
 //! p = D/(Δθ r²),  q = c σ_t x,   f = σ_t S x T̂_shadow
 //! X_p = f p^{β−1}/(p^β + q^β),   X_q = f q^{β−1}/(p^β + q^β)
 //! ```
 //!
-//! x is what both densities know of the way from the ray's origin: the transmittance T, or, where paths are those
-//! with all their null collisions, `Π (1 − σ_t/σ̂)` over these; there majorant transmittances cancel. The shadow ray
-//! is the same for both and cancels, too.
+//! x is the factor of the way from the ray's origin that both densities contain. It is the transmittance T, or,
+//! where paths include all their null collisions, `Π (1 − σ_t/σ̂)` over these; there majorant transmittances
+//! cancel. The shadow ray is equal for both and cancels, too.
 //!
 //! Source: E. Veach, L. Guibas, *Optimally Combining Sampling Techniques for Monte Carlo Rendering*, SIGGRAPH 1995;
 //! B. Miller, I. Georgiev, W. Jarosz, *A null-scattering path integral formulation of light transport*, ACM
@@ -20,27 +20,28 @@ use super::{Collisions, Points, Technique};
 use crate::Heuristic;
 use crate::problems::Problem;
 
-/// Panels are halved towards the end of a ray at most so often.
+/// Maximum number of halvings of panels towards the end of a ray.
 const HALVINGS: u32 = 48;
-/// Halving the way to an end where σ_t does not vanish leaves more of the density of delta tracking.
+/// Ratio of the density of delta tracking at half the distance to an end to that at the whole: above it σ_t does
+/// not vanish at the end.
 const FALLS: f64 = 0.75;
-/// A density that is so much smaller than the other one changes no weight abruptly.
+/// Ratio of two densities above which weights no longer change abruptly.
 const NEGLIGIBLE: f64 = 8.0;
 
 /// The two techniques.
 pub struct Mis<'a> {
-    /// The ray, the light, and how points from the light get their transmittances.
+    /// The ray, the light, and the transmittances of points from the light.
     pub scene: &'a Scene<'a>,
     /// Delta tracking.
     pub collisions: Collisions<'a>,
-    /// How they share.
+    /// Heuristic of the weights.
     pub heuristic: Heuristic,
-    /// Null collisions, where paths are with them.
+    /// Null collisions, where paths include them.
     pub nulls: Option<NullPaths<'a>>,
 }
 
 impl Mis<'_> {
-    /// What the point from the light brings, and what the scattering of delta tracking does.
+    /// Moments of the point from the light, and of the scattering of delta tracking.
     pub fn points(&self) -> [Points; 2] {
         match &self.nulls {
             Some(nulls) => self.by_null_paths(nulls),
@@ -115,7 +116,7 @@ impl Mis<'_> {
             weighted: Some(&by_point),
         };
         let by_collision = |node: &Node| {
-            // Of all walks through σ̂, those without a real collision.
+            // Of all walks through σ̂ only those without a real collision reach the point.
             let found = nulls.weights(Made::ByCollision, node.s, ratio(node));
             let through = |moment: f64| moment / node.transmittance;
             Weighted { powers: found.powers.map(through), errors: found.errors.map(through) }
@@ -144,8 +145,8 @@ mod tests {
     use numeric::geometry::{Point, Ray};
     use std::sync::Arc;
 
-    /// σ_t is 0 at both ends of the ray: there weights change within a hundredth of a panel, and two resolutions agree
-    /// better than either is.
+    /// σ_t is 0 at both ends of the ray. There weights change within a hundredth of a panel: the difference of two
+    /// resolutions is smaller than their errors.
     #[test]
     fn shares_of_both_techniques_add_up_within_their_error() {
         let field = Radial::new(Point([0.0, 0.0, 10.0]), 8.0, [0.6, -0.6, 0.0, 0.0]);

@@ -1,4 +1,4 @@
-//! Single scattering of a point light: the radiance, and all moments of what estimates it.
+//! Single scattering of a point light: the radiance, and all moments of its estimates.
 //!
 //! A draw that scatters at one point s, found with density p, is a product of three factors that
 //! are independent once s is known: the gain `σ_t S/p`, the transmittance from the ray's origin and
@@ -8,11 +8,11 @@
 //! E[X^k] = ∫ p (σ_t S/p)^k E[T̂(s)^k] E[T̂_shadow(s)^k] ds,   S = a p(cos θ) Φ/(4π r²)
 //! ```
 //!
-//! where the moments of a tracked transmittance are those of a Poisson product, integrals along its
-//! segment. Where two techniques share what they find by the densities of whole null-scattering paths, weights
-//! depend on the walk from the origin, too ([`mis`]). Draws that scatter at several points of one walk obey a chain of such integrals
-//! ([`chain`]). Where a part of the answer has no closed form, all of it is a quadrature in one
-//! variable, adaptive to a bound that is stated.
+//! where the moments of a tracked transmittance are those of a Poisson product, integrals along its segment. Where
+//! two techniques are weighted by the densities of whole null-scattering paths, weights depend on the walk from the
+//! origin, too ([`mis`]). Draws that scatter at several points of one walk obey a chain of such integrals
+//! ([`chain`]). Where a part of the answer has no closed form, the whole is a quadrature in one variable, adaptive
+//! to a bound that is stated.
 
 pub mod camera;
 pub mod chain;
@@ -33,7 +33,7 @@ pub use predict::{Points, Technique};
 pub use scene::{Node, Scene};
 pub use segment::{Segment, Tracking};
 
-/// How the transmittance from the ray's origin to a scattering point is found.
+/// Estimate of the transmittance from the ray's origin to a scattering point.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum CameraTracking {
     /// In closed form.

@@ -1,7 +1,7 @@
 //! Means of weights that depend on all null collisions between the ray's origin and a point.
 //!
-//! With `x = Π (1 − σ_t/σ̂)` over the collisions of a walk through a majorant σ̂ that are all null, the
-//! densities of delta tracking and of a technique that chooses points differ by `r = R x`. Asked for are
+//! Let `x = Π (1 − σ_t/σ̂)` over the collisions of a walk through a majorant σ̂ that are all null. The densities of
+//! delta tracking and of a technique that chooses points differ by `r = R x`. Computed are
 //!
 //! ```text
 //! E[x^a r^m/(1 + r^β)^k],   R > 0,   β = 1 (balance) or 2 (power)
@@ -37,7 +37,7 @@ const END: f64 = 13.0;
 const LINES: usize = 5;
 /// Moments, k = 1 … 4.
 const MOMENTS: usize = 4;
-/// What the trapezoidal rule misses, in units of the integrand next to the poles.
+/// Error of the trapezoidal rule, in units of the integrand next to the poles.
 const MISSED: f64 = 1e-17;
 /// Roundings of a term, in units of ε.
 const ROUNDINGS: f64 = 16.0;
@@ -51,7 +51,7 @@ pub struct Weighted {
     pub errors: [f64; 5],
 }
 
-/// Which of the two techniques made the path.
+/// Technique that made the path.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Made {
     /// Delta tracking: `E[x (r^β/(1 + r^β))^k]`.
@@ -61,7 +61,7 @@ pub enum Made {
 }
 
 impl Made {
-    /// a and, per k, m.
+    /// a, and m for each k.
     fn exponents(self, beta: usize) -> [usize; 2] {
         match self {
             Self::ByCollision => [1, beta],
@@ -70,20 +70,20 @@ impl Made {
     }
 }
 
-/// The integrals `∫ σ̂ (1 − (1 − σ_t/σ̂)^e)` along a ray at all exponents, ready to be read at any point.
+/// Integrals `∫ σ̂ (1 − (1 − σ_t/σ̂)^e)` along a ray at all exponents, for evaluation at any point.
 pub struct NullPaths<'a> {
     mesh: &'a Mesh,
     sampling: &'a Piecewise,
     beta: usize,
-    /// How many ω there are.
+    /// Number of ω.
     count: usize,
     rule: GaussLegendre,
     /// The relative error of the integrals.
     off: f64,
     ends: Vec<f64>,
-    /// Up to each end, line by line.
+    /// Integrals up to each end, line by line.
     sums: Vec<Vec<Complex64>>,
-    /// σ̂ and σ_t of panels on which both are one number.
+    /// σ̂ and σ_t of panels on which both are constant.
     flat: Vec<Option<[f64; 2]>>,
     /// `Γ(z) Γ(k − z)/(β Γ(k))`, by technique, line and k.
     kernels: Vec<Vec<Complex64>>,
@@ -164,7 +164,7 @@ impl<'a> NullPaths<'a> {
         (0..self.count).map(at).collect()
     }
 
-    /// Adds what is lost on a stretch of a panel.
+    /// Adds the losses on an interval of a panel.
     fn add(&self, panel: usize, span: Span, lines: std::ops::Range<usize>, sum: &mut [Complex64]) {
         let mut turn = Vec::with_capacity(self.count);
         let mut at = |weight: f64, sampling: f64, sigma: f64| {
@@ -219,7 +219,7 @@ impl<'a> NullPaths<'a> {
             return Weighted { powers, errors };
         }
         let [by, m] = made.exponents(self.beta);
-        // Where R < 1 the line is that next to the pole which is as small as the answer.
+        // Where R < 1 the line is next to the pole that is as small as the answer.
         let line = |k: usize| if ratio < 1.0 { (m * k).min(LINES - 1) - 1 } else { 0 };
         let lines = by + line(1)..by + line(MOMENTS) + 1;
         let mut means = self.losses(s, lines.clone());

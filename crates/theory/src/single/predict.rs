@@ -8,30 +8,30 @@ use crate::raw::added;
 use crate::{Channel, CountLaw, Moments, Prediction, Tails};
 use numeric::Known;
 
-/// The agreement that is asked of two resolutions, relative to the whole: of moments.
+/// Relative difference of two resolutions of moments at which panels are fine enough.
 pub const MOMENT: f64 = 1e-11;
-/// Moments with a larger relative error are not told.
+/// Maximum relative error of moments that are given.
 const BLURRED: f64 = 1e-3;
-/// Of lookups.
+/// Relative difference of two resolutions of lookups at which panels are fine enough.
 pub const LOOKUPS: f64 = 1e-12;
 
-/// How a scattering point is found and what it is worth.
+/// Density of a scattering point, and the score at the point.
 pub struct Technique<'a> {
-    /// The density of the point, 1/length; it may leave a chance that there is none.
+    /// The density of the point, 1/length; its integral may be below 1: then there may be no point.
     pub density: &'a dyn Fn(&Node) -> f64,
     /// The draw without both estimated transmittances.
     pub gain: &'a dyn Fn(&Node) -> f64,
-    /// A relative error bound of the density, and of whatever stands for it in the gain.
+    /// A relative error bound of the density, and of its substitute in the gain.
     pub blur: &'a dyn Fn(&Node) -> f64,
-    /// The delta tracking that found the point, if it did: then the transmittance from the origin is no factor
-    /// of the draw, and the lookups are its own.
+    /// The delta tracking that found the point, if it did. The transmittance from the origin is then no factor of
+    /// the draw, and the lookups are those of the tracking.
     pub found: Option<&'a Collisions<'a>>,
-    /// What stands in the place of the transmittance from the origin, where weights depend on the walk.
+    /// Substitute for the moments of the transmittance from the origin, where weights depend on the walk.
     pub weighted: Option<&'a dyn Fn(&Node) -> Weighted>,
 }
 
 impl Technique<'_> {
-    /// The moments of what the walk from the origin brings, k = 1 … 4 and 8, and bounds on their errors.
+    /// Moments of the factor from the walk from the origin, k = 1 … 4 and 8, and bounds on their errors.
     fn camera(&self, node: &Node) -> [[f64; 5]; 2] {
         if let Some(weighted) = self.weighted {
             let Weighted { powers: [_, a, b, c, d], errors: [_, e, f, g, h] } = weighted(node);
@@ -57,28 +57,28 @@ pub struct Points {
     pub error: f64,
     /// `E[X⁸]`, where it is known.
     pub eighth: Option<f64>,
-    /// `E[(N − least)^k]`, k = 0 … 4; `None` where it is not worked out.
+    /// `E[(N − least)^k]`, k = 0 … 4; `None` where it is not computed.
     pub lookups: Option<[f64; 5]>,
-    /// Lookups that every draw makes: beside them rare ones would lose their digits.
+    /// Number of lookups of every draw, kept apart: beside it rare lookups would lose their digits.
     pub least: f64,
     /// A relative error bound of the mean lookups.
     pub counted: f64,
 }
 
-/// What sums over panels lose, relative to the whole.
+/// Relative rounding error of sums over panels.
 const SUMS: f64 = 1e-14;
-/// What evaluates a density from σ_t, distances and exponentials loses, relative to itself.
+/// Relative rounding error of a density that is computed from σ_t, distances and exponentials.
 pub const DENSITY: f64 = 4.0 * f64::EPSILON;
-/// Where a moment is smaller, some of what adds up to it is no double of full length.
+/// Smallest moment: below it some of its terms lose digits by underflow.
 const LEAST: f64 = 1e-280;
 
 impl Points {
-    /// Of one technique.
+    /// Moments of one technique.
     pub fn of(scene: &Scene, technique: &Technique) -> Self {
         Self::with_cuts(scene, technique, Vec::new())
     }
 
-    /// Of one technique, by panels that end at cuts, too.
+    /// Moments of one technique, by panels that end at cuts, too.
     pub fn with_cuts(scene: &Scene, technique: &Technique, cuts: Vec<f64>) -> Self {
         let mut parts = [MOMENT; 13];
         parts[5..9].fill(LOOKUPS);
@@ -141,7 +141,7 @@ impl Points {
         }
     }
 
-    /// A draw of either technique, with chances of ½, of which what it brings counts twice.
+    /// Moments of a draw of either technique with probability ½, and with twice its score.
     #[must_use]
     pub fn either(&self, other: &Self) -> Self {
         let lookups = |one: &Self| {
@@ -167,7 +167,7 @@ impl Points {
         }
     }
 
-    /// What theory says of the draws.
+    /// Prediction for the draws.
     pub fn prediction(&self) -> Prediction {
         let [_, mean, second, third, fourth] = self.powers;
         let [r2, r3, r4] = [second / mean.powi(2), third / mean.powi(3), fourth / mean.powi(4)];
@@ -184,12 +184,12 @@ impl Points {
             relative: [m2, r3 - 3.0 * r2 + 2.0, m4.max(m2 * m2)],
             error: if least2 > 0.0 { error } else { f64::INFINITY },
         };
-        // A spread that rounding hides is not known to be none, nor one beyond the range of doubles.
+        // A variance that is smaller than rounding may not be 0, and one beyond the range of doubles not infinite.
         let is_known = moments.error < BLURRED && !m4.is_nan() && mean.abs() < f64::INFINITY;
         let is_full = self.powers.iter().all(|power| power.abs() >= LEAST);
         let moments = (is_known && is_full).then_some(moments);
         let eighth = self.eighth.map_or(f64::NAN, |eighth| eighth / (fourth * fourth));
-        // How rare the draws are that make the variance is not worked out.
+        // The rarity of the draws that make the variance is not computed.
         let tails = Tails { rare_event_size: f64::NAN, eighth_moment_ratio: eighth };
         let channels = vec![Channel::unbiased(self.truth, moments, tails)];
         let law = |raw| CountLaw { error: self.counted, ..count(self.least, raw) };
@@ -197,10 +197,10 @@ impl Points {
     }
 }
 
-/// Of a variance less than this of the second moment nothing is known.
+/// Maximum ratio of the variance to the second moment at which the variance is unknown.
 const HIDDEN: f64 = 1e-12;
 
-/// The law of a count, with the raw moments of what it is more than its least, without probabilities.
+/// Distribution of a count without probabilities, given its minimum and the raw moments of the rest.
 pub fn count(least: f64, [_, mean, second, third, fourth]: [f64; 5]) -> CountLaw {
     let square = mean * mean;
     let variance = second - square;
@@ -231,7 +231,7 @@ mod tests {
 
     #[test]
     fn two_coins_make_a_binomial_number() {
-        // X = 0 or 1 with chance ½: variance ¼; two of them: mean 1, variance ½, kurtosis 2.
+        // X = 0 or 1 with probability ½: variance ¼; two of them: mean 1, variance ½, kurtosis 2.
         let coin = points([1.0, 0.5, 0.5, 0.5, 0.5]);
         let both = coin.plus(&coin);
         assert_eq!(both.powers, [1.0, 1.0, 1.5, 2.5, 4.5]);
@@ -245,7 +245,7 @@ mod tests {
 
     #[test]
     fn either_of_two_coins_is_one_of_twice_the_worth() {
-        // 0, or 2 with chance ½: mean 1, variance 1; lookups: 1 more than a coin, or a coin.
+        // 0, or 2 with probability ½: mean 1, variance 1; lookups: 1 more than a coin, or a coin.
         let coin = points([1.0, 0.5, 0.5, 0.5, 0.5]);
         let other = Points { least: 1.0, ..coin };
         let prediction = coin.either(&other).prediction();

@@ -1,4 +1,4 @@
-//! A point of the ray with all that theory knows there, and adaptive integrals over the ray.
+//! A point of the ray with all quantities of theory there, and adaptive integrals over the ray.
 
 use super::camera::Camera;
 use super::segment::{Segment, Tracking};
@@ -8,25 +8,25 @@ use numeric::quadrature::GaussLegendre;
 use numeric::sum::Sum;
 use numeric::{Known, Span};
 
-/// The agreement that is asked of two resolutions of L, relative to the whole.
+/// Relative difference of two resolutions of L at which panels are fine enough.
 const RADIANCE: f64 = 2e-14;
-/// What sums and exponentials lose, relative to the whole.
+/// Relative rounding error of sums and exponentials.
 const ROUNDING: f64 = 2e-13;
-/// Steps into which the support is cut at least.
+/// Minimum number of steps into which the support is cut.
 pub const STEPS: usize = 24;
-/// Panels are no wider than this in the stretched variable.
+/// Maximum width of a panel in the stretched variable.
 const WIDEST: f64 = 0.5;
-/// Halvings of one panel at most.
+/// Maximum number of halvings of one panel.
 const HALVINGS: u32 = 40;
-/// Panels of one integral at most.
+/// Maximum number of panels of one integral.
 const MOST: usize = 20_000;
 
 /// A point of the ray.
 #[derive(Debug, Clone, Copy)]
 pub struct Node {
-    /// Its distance from the ray's origin.
+    /// Distance from the ray's origin.
     pub s: f64,
-    /// Its distance from the light's foot, with digits that `s` has lost next to the light.
+    /// Distance from the light's foot, with digits that `s` has lost next to the light.
     pub along: f64,
     /// σ_t there.
     pub extinction: f64,
@@ -36,15 +36,15 @@ pub struct Node {
     pub transmittance: f64,
     /// A relative error bound of `extinction · source`, and of `transmittance`.
     pub error: [f64; 2],
-    /// The transmittance from there as it is estimated.
+    /// The estimated transmittance from the ray's origin.
     pub camera: Segment,
-    /// That of the shadow ray.
+    /// The estimated transmittance of the shadow ray.
     pub shadow: Segment,
 }
 
 impl Node {
-    /// `E[(N − 1)^k]` of a draw that scatters here: beside one lookup those, unless there is nothing, of the
-    /// walk from the origin and, if that came through, of the shadow ray.
+    /// `E[(N − 1)^k]` of a draw that scatters here. Its first lookup is σ_t here. Unless σ_t is 0, the lookups of
+    /// the walk from the origin follow and, if that came through, those of the shadow ray.
     pub fn lookups(&self) -> [f64; 5] {
         if self.extinction <= 0.0 {
             return [1.0, 0.0, 0.0, 0.0, 0.0];
@@ -56,24 +56,24 @@ impl Node {
     }
 }
 
-/// A point of the ray, as the stretched variable finds it.
+/// A point of the ray, given by the stretched variable.
 #[derive(Debug, Clone, Copy)]
 pub struct Place {
-    /// Its distance from the ray's origin.
+    /// Distance from the ray's origin.
     pub s: f64,
-    /// Its distance from the light's foot.
+    /// Distance from the light's foot.
     pub along: f64,
     /// `ds/dx`.
     pub stretch: f64,
 }
 
-/// The ray, the light and how transmittances are found.
+/// The ray, the light and the tracking of transmittances.
 pub struct Scene<'a> {
-    /// What is sought.
+    /// The problem.
     pub problem: &'a SingleScattering,
     /// The transmittance from the ray's origin.
     pub camera: Camera<'a>,
-    /// How those of shadow rays are found.
+    /// Tracking of the transmittances of shadow rays.
     pub shadow: Tracking,
     /// More kinks of the integrands.
     pub cuts: Vec<f64>,
@@ -84,7 +84,7 @@ pub struct Scene<'a> {
 pub struct Integral<const N: usize> {
     /// The integrals.
     pub value: [f64; N],
-    /// Bounds on their errors: what two resolutions differ by, over all panels.
+    /// Bounds on their errors: differences of two resolutions, over all panels.
     pub error: [f64; N],
     /// The ends of the panels in the stretched variable, ascending.
     pub panels: Vec<Span>,
@@ -106,7 +106,7 @@ impl<'a> Scene<'a> {
         &self.rule
     }
 
-    /// All that is known at a distance.
+    /// Quantities at a distance.
     pub fn node(&self, Place { s, along, .. }: Place) -> Node {
         let medium = self.problem.medium();
         let depth = medium.optical_depth(Span::new(medium.support().from, s));
@@ -136,7 +136,7 @@ impl<'a> Scene<'a> {
         Place { s: self.problem.foot() + along, along, stretch: distance * x.cosh() }
     }
 
-    /// L by quadrature of exact optical depths, once for all experiments on it.
+    /// L by quadrature of exact optical depths, computed once for all experiments on it.
     pub fn radiance(&self) -> Known {
         let problem = self.problem;
         let medium = problem.medium();
@@ -150,14 +150,14 @@ impl<'a> Scene<'a> {
                 [medium.extinction(s) * source * (-(before + beyond)).exp()]
             });
             let [value] = found.value;
-            // The optical depths add their own rounding, and so do places next to the light.
+            // The optical depths add their own rounding, and so do positions next to the light.
             let depths = 2.0 * medium.optical_depth(medium.support()).error;
             let places = 0.25 * f64::EPSILON * problem.foot().abs() / problem.distance();
             Known::new(value, found.error[0] + (ROUNDING + depths + places) * value.abs())
         })
     }
 
-    /// The ends of the panels to begin with, in the stretched variable.
+    /// Initial ends of panels, in the stretched variable.
     fn ends(&self, cuts: Vec<f64>) -> Vec<f64> {
         let medium = self.problem.medium();
         let support = medium.support();
@@ -206,7 +206,7 @@ impl<'a> Scene<'a> {
         self.over(parts, cuts, &|place| f(&self.node(place)))
     }
 
-    /// The same of a function of places, with panels that end at cuts, too.
+    /// `∫ f ds` over the support for a function of places, with panels that end at cuts, too.
     pub fn over<const N: usize>(
         &self,
         parts: [f64; N],

@@ -5,7 +5,7 @@ use media::Medium;
 use numeric::quadrature::GaussLegendre;
 use numeric::{Known, Span};
 
-/// How the transmittance of a shadow ray is found.
+/// Tracking of the transmittance of a shadow ray.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Tracking {
     /// In closed form.
@@ -24,7 +24,7 @@ pub enum Tracking {
     },
 }
 
-/// The powers of a value that are asked for.
+/// Powers of a value with computed means.
 pub const POWERS: [i32; 5] = [1, 2, 3, 4, 8];
 
 /// The moments of an estimated transmittance X and of its lookups N.
@@ -40,27 +40,27 @@ pub struct Segment {
     pub through: [f64; 5],
     /// A bound on the errors of the exponents A, `E[X^k] = e^{−A}`, k to 4: the relative error of `powers`.
     pub error: f64,
-    /// A number that these exponents and what they are sums of do not exceed.
+    /// An upper bound on these exponents and on the sums of absolute values of their terms.
     pub size: f64,
 }
 
 /// Roundings of a loss, and of its sum over nodes, in units of ε times [`size`].
 const ROUNDINGS: f64 = 8.0;
 
-/// What is lost per length of the power k: `kσ_c + σ̂(1 − w^k)`, σ_c and the residual `σ_t − σ_c` given.
+/// Loss per length of the k-th power: `kσ_c + σ̂(1 − w^k)`, given σ_c and the residual `σ_t − σ_c`.
 ///
 /// ```text
 /// σ̂(1 − w^k) = (σ_t − σ_c)(1 + w + … + w^{k−1}),   w = 1 − (σ_t − σ_c)/σ̂
 /// ```
 ///
-/// The difference would leave ε σ̂ of rounding, however small the residual.
+/// The difference would have a rounding error of ε σ̂, however small the residual.
 #[inline]
 pub fn loss(k: i32, control: f64, residual: f64, weight: f64) -> f64 {
     let sum = (0..k).fold(0.0, |sum, _| sum * weight + 1.0);
     f64::from(k) * control + residual * sum
 }
 
-/// The same of all [`POWERS`], which share their sums.
+/// Losses of all [`POWERS`], with common sums.
 #[inline]
 pub fn losses(control: f64, residual: f64, weight: f64) -> [f64; POWERS.len()] {
     let (mut k, mut sum, mut found) = (0, 0.0, [0.0; POWERS.len()]);
@@ -73,7 +73,7 @@ pub fn losses(control: f64, residual: f64, weight: f64) -> [f64; POWERS.len()] {
     found
 }
 
-/// What [`loss`] sums up for k = 4, all with the same sign: at least as much as for a smaller k.
+/// Sum of the absolute values of the terms of [`loss`] for k = 4: an upper bound for smaller k, too.
 #[inline]
 pub fn size(control: f64, residual: f64, weight: f64) -> f64 {
     loss(4, control.abs(), residual.abs(), weight.abs())
@@ -84,7 +84,7 @@ pub fn rounding(size: f64) -> f64 {
     f64::EPSILON * (1.0 + ROUNDINGS * size)
 }
 
-/// `k σ̄ e^{−τ} (∫σ̄ − τ)^{k−1}`, k = 1 … 4, what the factorial moments of a number of lookups are integrals of.
+/// `k σ̄ e^{−τ} (∫σ̄ − τ)^{k−1}`, k = 1 … 4: integrands of the factorial moments of a number of lookups.
 pub fn counts(sampling: f64, depth: f64, nulls: f64) -> [f64; 4] {
     let alive = sampling * (-depth).exp();
     [1, 2, 3, 4].map(|k| f64::from(k) * alive * nulls.powi(k - 1))
@@ -101,14 +101,13 @@ impl Segment {
         Self { powers, eighth: power(8.0), lookups: none, through: none, error, size }
     }
 
-    /// A transmittance of nothing.
+    /// The transmittance 1 of a segment without a medium.
     pub fn free() -> Self {
         Self::exact(Known::new(0.0, 0.0))
     }
 
-    /// A product of Poisson factors with the given exponents, in the order of [`POWERS`], and the
-    /// given mean number of collisions. It always comes through. The exponents are off by an error, and sums
-    /// of losses of a size.
+    /// A product of Poisson factors with the given exponents, in the order of [`POWERS`], and the given mean number
+    /// of collisions. Walks always come through. `error` is that of the exponents, `size` that of sums of losses.
     pub fn product(exponents: [f64; 5], collisions: f64, [error, size]: [f64; 2]) -> Self {
         let [a, b, c, d, eighth] = exponents.map(|x| (-x).exp());
         let lookups = poisson(collisions);
@@ -116,7 +115,7 @@ impl Segment {
         Self { powers, eighth, lookups, through: lookups, error, size }
     }
 
-    /// 1 with chance `e^{−τ}`, else 0, by delta tracking through `∫σ̄ = flown`; `factorial[k − 1]` is
+    /// 1 with probability `e^{−τ}`, else 0, by delta tracking through `∫σ̄ = flown`; `factorial[k − 1]` is
     /// `E[N (N − 1) … (N − k + 1)]`.
     ///
     /// ```text
@@ -125,14 +124,14 @@ impl Segment {
     pub fn decided(depth: Known, flown: f64, factorial: [f64; 4]) -> Self {
         let chance = (-depth.value).exp();
         let lookups = raw::of_factorial(factorial);
-        // What does not end a walk is a Poisson number of null collisions.
+        // Walks that come through make a Poisson number of null collisions.
         let through = poisson(flown - depth.value).map(|moment| chance * moment);
         let powers = [1.0, chance, chance, chance, chance];
         let (error, size) = (depth.error + f64::EPSILON, depth.value);
         Self { powers, eighth: chance, lookups, through, error, size }
     }
 
-    /// Of a shadow ray.
+    /// The transmittance of a shadow ray.
     pub fn of_shadow(tracking: Tracking, medium: Option<&Medium>, rule: &GaussLegendre) -> Self {
         let Some(medium) = medium else { return Self::free() };
         let support = medium.support();
@@ -165,13 +164,13 @@ impl Segment {
     }
 }
 
-/// Halvings of the panels at most.
+/// Maximum number of halvings of the panels.
 const HALVINGS: u32 = 6;
-/// Two resolutions that agree to this are enough: halving a panel of 16 nodes divides the error by
-/// 2³², so that the finer one is then good to rounding.
+/// Relative difference of two resolutions at which panels are fine enough: halving a panel of 16 nodes divides the
+/// error by 2³², so that the finer resolution is then accurate to rounding.
 const AGREED: f64 = 1e-11;
 
-/// `∫ f(t, σ_t)` over the support of a medium, and what two resolutions differ by: Gauss panels between its
+/// `∫ f(t, σ_t)` over the support of a medium, and the difference of two resolutions: Gauss panels between its
 /// breaks, halved together until these agree.
 fn along<const N: usize>(
     medium: &Medium,
@@ -181,7 +180,7 @@ fn along<const N: usize>(
     along_all(std::slice::from_ref(medium), rule, |t, sigma| f(t, sigma[0]))
 }
 
-/// The same of several media with one support.
+/// `∫ f(t, σ_t)` for several media with one support.
 pub fn along_all<const N: usize>(
     media: &[Medium],
     rule: &GaussLegendre,
@@ -233,7 +232,7 @@ mod tests {
         let (sampling, residual) = (1e9, 1e-3);
         let weight = 1.0 - residual / sampling;
         assert!((loss(4, 0.0, residual, weight) / 4e-3 - 1.0).abs() < 1e-11);
-        // Elsewhere both are one, beyond weights of −1, too, where losses are gains.
+        // Elsewhere both are equal, beyond weights of −1, too, where losses are gains.
         for (residual, control) in [(0.3, 0.0), (1.7, 0.2), (2.9, 0.1), (-0.4, 0.5)] {
             let weight: f64 = 1.0 - residual;
             let together = losses(control, residual, weight);
@@ -249,7 +248,7 @@ mod tests {
 
     #[test]
     fn delta_tracking_of_a_homogeneous_segment() {
-        // σ = σ̄ = 1: the first collision ends every walk, so N is 1 with chance 1 − e^{−τ}.
+        // σ = σ̄ = 1: the first collision ends every walk, so N is 1 with probability 1 − e^{−τ}.
         let length: f64 = 1.5;
         let first = 1.0 - (-length).exp();
         let segment = Segment::decided(Known::exact(length), length, [first, 0.0, 0.0, 0.0]);

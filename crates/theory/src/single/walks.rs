@@ -29,8 +29,8 @@ pub const ORDERS: [[usize; 4]; 11] = [
     [4, 0, 0, 0],
 ];
 
-/// Moments on the panels and on their halves, and a relative error bound: the difference, and the rounding of
-/// what is summed, relative to sums of the same sizes, which come second.
+/// Moments on halved panels, and a relative error bound: the difference to the moments on the panels, and the
+/// rounding of the terms, relative to the sums of their absolute values. `powers` returns moments and these sums.
 fn both(
     panels: &[Span],
     rounding: f64,
@@ -44,15 +44,15 @@ fn both(
     (fine, (1..5).map(off).fold(0.0, f64::max))
 }
 
-/// What running sums over panels lose, relative to the whole.
+/// Relative rounding error of running sums over panels.
 const SUMS: f64 = 1e-13;
 
-/// What rounding does to the fourth power of what is scattered at a node, relative to itself.
+/// Relative rounding error of the fourth power of the score at a node.
 fn blur(node: &Node) -> f64 {
     4.0 * (node.error[0] + DENSITY) + node.camera.error + node.shadow.error
 }
 
-/// `h` and what follows at a collision; nothing where σ̂ is zero, since the residual is zero there.
+/// σ̂, `h` and the weight after a collision; h = 0 where σ̂ is zero, since the residual is zero there.
 fn gain(at: &At) -> [f64; 3] {
     let [sampling, weight] = at.collision;
     if sampling <= 0.0 {
@@ -61,17 +61,18 @@ fn gain(at: &At) -> [f64; 3] {
     [sampling, at.node.extinction * at.node.source / sampling, weight]
 }
 
-/// The panels that resolve `p E[(h T̂_shadow)^k] E[T̂^k]`, k = 1 … 4, p the density of what is scattered.
+/// Panels that resolve `p E[(h T̂_shadow)^k] E[T̂^k]`, k = 1 … 4, with p the density of scatterings.
 struct Scattered {
     panels: Vec<Span>,
     /// `∫ p E[N^k]`, k = 1 … 4, of the lookups, and the error of the first.
     lookups: [f64; 4],
     off: f64,
-    /// The rounding of powers, relative, of the power for which that is largest.
+    /// The largest relative rounding error of a power.
     rounding: f64,
 }
 
-/// `at` answers the powers, the lookups and the relative rounding of a power at a node.
+/// Integrates over scatterings; `at` returns the powers, the lookups and the relative rounding of a power at a
+/// node.
 fn scattered(scene: &Scene, at: impl Fn(&Node) -> ([f64; 4], [f64; 4], f64)) -> Scattered {
     let mut parts = [MOMENT; 12];
     parts[4..8].fill(LOOKUPS);
@@ -92,8 +93,8 @@ fn of_shadow(node: &Node) -> [f64; 5] {
     if node.extinction > 0.0 { node.shadow.lookups } else { Segment::free().lookups }
 }
 
-/// Scattered at collisions: `p = σ̂`, and the lookups are the cumulants of a compound Poisson number, moments
-/// of what each collision costs.
+/// Scatterings at collisions: `p = σ̂`, and the lookups are the cumulants of a compound Poisson number, moments of
+/// the lookups of each collision.
 fn scattered_at_collisions(scene: &Scene) -> Scattered {
     scattered(scene, |node: &Node| {
         let [sampling, _] = scene.camera.collision(node.s, node.extinction);
@@ -131,7 +132,7 @@ fn powers_of_sum(
     known
 }
 
-/// At every collision.
+/// Moments of draws that scatter at every collision.
 pub fn at_collisions(scene: &Scene) -> Points {
     let Scattered { panels, lookups: cumulants, off, rounding } = scattered_at_collisions(scene);
     let of = |chain: &Chain, signed: bool| {
@@ -154,7 +155,7 @@ fn power(x: f64, k: usize) -> f64 {
     x.powi(i32::try_from(k).unwrap_or(i32::MAX))
 }
 
-/// Resampled: one of the collisions casts a shadow ray for all.
+/// Moments of resampled draws: one of the collisions casts a shadow ray for all.
 ///
 /// ```text
 /// E[X^k] = E[F^{k−1} G_k],  F = Σ |wᵢ| hᵢ,  G_k = Σ hᵢ |wᵢ| sgn(wᵢ)^k E[T̂_shadow(tᵢ)^k]
@@ -200,14 +201,13 @@ pub fn resampled(scene: &Scene, shadow_is_free: bool) -> Points {
         [powers, sizes]
     };
     let (powers, error) = both(&panels, rounding, powers);
-    // Which collision casts the ray depends on all of them; without lookups of its own it does not
-    // matter.
+    // The collision that casts the ray depends on all of them; without lookups of the ray this does not matter.
     let lookups = shadow_is_free.then(|| poisson(scene.camera.collisions()));
     let truth = scene.radiance();
     Points { truth, powers, error, eighth: None, lookups, least: 0.0, counted: SUMS }
 }
 
-/// At `count` points of a density, all with the transmittance of one walk over the whole ray.
+/// Moments of draws at `count` points of a density, all with the transmittance of one walk over the whole ray.
 pub fn at_points(scene: &Scene, count: usize, density: &dyn Fn(&Node) -> f64) -> Points {
     let scored = |node: &Node, k: usize| {
         let p = density(node);
@@ -249,7 +249,7 @@ pub fn at_points(scene: &Scene, count: usize, density: &dyn Fn(&Node) -> f64) ->
         let fourth =
             n * of[6] + two * (4.0 * of[7] + 3.0 * of[8]) + 6.0 * three * of[9] + four * of[10];
         let second = n * of[1] + two * of[2];
-        // All that is summed is positive.
+        // All terms are positive.
         [[1.0, of[0], second / n.powi(2), third / n.powi(3), fourth / n.powi(4)], [0.0; 5]]
     };
     let (powers, error) = both(&found.panels, found.rounding, powers);

@@ -1,12 +1,12 @@
-//! Answers that were worked out before: experiments of one slab share theirs.
+//! Memo of answers: experiments of one slab share them.
 
 use super::{Answer, answers};
 use crate::memo::Memo;
 use crate::problems::slab::Incidence;
 use numeric::Known;
 
-/// What an answer is found by: the bits of all numbers, and the phase function in words, which tell
-/// every digit of its settings.
+/// Key of an answer: the bits of all numbers, and the label of the phase function, which contains every digit of
+/// its settings.
 #[derive(PartialEq, Eq, Hash)]
 struct Key {
     cosine: Option<u64>,
@@ -17,7 +17,7 @@ struct Key {
 
 static ANSWERS: Memo<Key, Option<Answer>> = Memo::new(4096);
 
-/// `answer`, which is worked out once and only once, whoever asks.
+/// Returns the answer; it is computed only once, also if several threads need it.
 pub fn cached(incidence: &Incidence, depth: Known, albedo: f64) -> Option<Answer> {
     let key = Key {
         cosine: incidence.light.cosine().map(f64::to_bits),

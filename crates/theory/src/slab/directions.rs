@@ -1,4 +1,4 @@
-//! Directions in a slab: a quadrature for cosines, and how light is scattered between them.
+//! Directions in a slab: a quadrature for cosines, and scattering between them.
 
 use media::phase::Phase;
 use numeric::matrix::Matrix;
@@ -6,13 +6,13 @@ use numeric::quadrature::GaussLegendre;
 
 /// Legendre moments below this, with their factor `2l + 1`, are left out.
 const FAINT: f64 = 1e-17;
-/// The most Legendre moments that are summed.
+/// Maximum number of Legendre moments.
 const MOST_MOMENTS: usize = 4000;
-/// The most: more take seconds.
+/// Maximum number of directions: more take seconds.
 const MOST: usize = 144;
 
-/// The cosines `μ = x²` of Gauss–Legendre nodes x, dense where light grazes the slab, and further
-/// cosines of incidence, from which light may come but into which none is scattered.
+/// The cosines `μ = x²` of Gauss–Legendre nodes x, dense where light grazes the slab, and further cosines of
+/// incidence, from which light may come but into which no light is scattered.
 ///
 /// ```text
 /// P±ᵢⱼ = ½ p(±μᵢ, μⱼ) wⱼ,   p(μ, μ') = Σ_l (2l + 1) χ_l P_l(μ) P_l(μ'),   Σⱼ (P⁺ᵢⱼ + P⁻ᵢⱼ) = 1
@@ -49,7 +49,8 @@ impl Directions {
             [0.5 * weights[j] * (even + odd), 0.5 * weights[j] * (even - odd)]
         };
         let rows = cosines.len();
-        // The quadrature errs by what it cannot resolve; that no light is lost is exact.
+        // The quadrature has errors where it does not resolve the phase function; conservation of energy is
+        // enforced.
         let whole: Vec<f64> = (0..rows)
             .map(|i| (0..count).map(|j| parts(i, j)).map(|[onward, back]| onward + back).sum())
             .collect();
@@ -58,20 +59,20 @@ impl Directions {
         Self { cosines, weights, onward, back }
     }
 
-    /// How many cosines the quadrature has.
+    /// Number of cosines of the quadrature.
     pub fn count(&self) -> usize {
         self.weights.len()
     }
 }
 
-/// `(2l + 1) χ_l` up to the last that counts.
+/// `(2l + 1) χ_l` up to the last that is not negligible.
 fn moments(phase: &Phase) -> Vec<f64> {
     let all: Vec<f64> = (0..MOST_MOMENTS).map(|l| (2 * l + 1) as f64 * phase.moment(l)).collect();
     let last = all.iter().rposition(|moment| moment.abs() >= FAINT).unwrap_or(0);
     all[..=last].to_vec()
 }
 
-/// `P_0(x), P_1(x), …`, so many of them.
+/// `P_0(x), P_1(x), …`: `count` Legendre polynomials.
 fn legendre(x: f64, count: usize) -> Vec<f64> {
     let mut values = vec![1.0, x];
     for l in 2..count {
@@ -84,14 +85,14 @@ fn legendre(x: f64, count: usize) -> Vec<f64> {
     values
 }
 
-/// How many cosines resolve a phase function down to moments of the given size: measured errors of
+/// Number of cosines that resolve a phase function down to moments of the given size: measured errors of
 /// reflectances fall like `g^{2n}`.
 pub fn needed(phase: &Phase, faintest: f64) -> usize {
     let last = (0..2 * MOST).rposition(|l| phase.moment(l).abs() >= faintest).unwrap_or(0);
     (last / 2 + 1).min(MOST)
 }
 
-/// Whether so many directions can be had.
+/// Returns true if [`MOST`] directions resolve a phase function.
 pub fn are_enough(phase: &Phase, faintest: f64) -> bool {
     phase.moment(2 * MOST).abs() < faintest
 }

@@ -1,8 +1,8 @@
 //! Layers of a slab: thin ones, doubled ones, and one laid upon another.
 //!
-//! With rows for the direction of incidence and columns for that of escape, energy goes from one layer
-//! to the next by matrix products. A is what is let through, the direct beam `D = e^{−τ/μ}` on its
-//! diagonal, the scattered T elsewhere; above lies 1, below lies 2:
+//! With rows for the direction of incidence and columns for that of escape, energy goes from one layer to the next
+//! by matrix products. A is the transmission: the direct beam `D = e^{−τ/μ}` on its diagonal, the scattered T
+//! elsewhere; layer 1 is above, layer 2 below:
 //!
 //! ```text
 //! M = (1 − R₂R₁)⁻¹ = 1 + R₂R₁ + (R₂R₁)² + …          light between the layers
@@ -20,27 +20,27 @@
 use super::directions::Directions;
 use numeric::matrix::Matrix;
 
-/// One homogeneous layer of a walk, by what a tentative collision does to it.
+/// One homogeneous layer of a walk, by the moments of a tentative collision.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Slice {
     /// `∫σ̂` across the layer.
     pub flown: f64,
-    /// `Q`, what goes straight on.
+    /// `Q`, the moment of transmitted particles.
     pub straight: f64,
-    /// `S`, what is scattered.
+    /// `S`, the moment of scattered particles.
     pub scattered: f64,
     /// The score of a collision.
     pub score: f64,
 }
 
 impl Slice {
-    /// What a collision takes out of the beam, `1 − Q`.
+    /// Loss of the beam at a collision, `1 − Q`.
     pub fn lost(&self) -> f64 {
         1.0 - self.straight
     }
 }
 
-/// What a layer does to light that comes from above.
+/// Response of a layer to light that comes from above.
 #[derive(Clone)]
 pub struct Layer {
     /// R: scattered back, by direction of incidence and of escape.
@@ -59,10 +59,10 @@ fn mean_decay(y: f64) -> f64 {
 }
 
 impl Layer {
-    /// A homogeneous layer by `doublings` doublings of one so thin that light scatters in it once at
-    /// most; `None` where the expected energy is infinite.
+    /// A homogeneous layer by `doublings` doublings of one so thin that light scatters in it at most once; `None`
+    /// where the expected energy is infinite.
     pub fn homogeneous(directions: &Directions, slice: &Slice, doublings: i32) -> Option<Self> {
-        // Without loss, light along the layer meets collision after collision without end.
+        // Without loss, light along the layer collides without end.
         if slice.lost() < 0.0 || (slice.lost() == 0.0 && slice.scattered > 0.0) {
             return None;
         }
@@ -71,7 +71,7 @@ impl Layer {
         for _ in 0..doublings {
             layer = layer.doubled()?;
             part *= 2.0;
-            // Afresh, so that rounding does not double with the layer.
+            // Computed again, so that rounding does not double with the layer.
             layer.direct = direct(directions, slice, part);
         }
         Some(layer)
@@ -93,7 +93,7 @@ impl Layer {
             slice.scattered * directions.back.at(i, j) * flown * inverse[i] * mean_decay(path)
         });
         let scattered = Matrix::new(rows, columns, |i, j| {
-            // The exponent that is taken out is the smaller one: nothing overflows.
+            // The smaller exponent is factored out: nothing overflows.
             let least = inverse[i].min(inverse[j]);
             let path = lost * (inverse[i] - inverse[j]).abs();
             let through = (-lost * least).exp() * mean_decay(path);
@@ -130,7 +130,7 @@ impl Layer {
         through
     }
 
-    /// Joins two layers, given `R₂R₁` and how `X = M R₂ A₁` is made from `R₁Y`, `Y = M A₂`.
+    /// Joins two layers, given `R₂R₁` and the function that makes `X = M R₂ A₁` from `R₁Y`, `Y = M A₂`.
     fn joined(
         &self,
         below: &Self,

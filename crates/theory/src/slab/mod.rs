@@ -5,10 +5,10 @@
 //! μ dI/dτ = −I + (a/2) ∫₋₁¹ p(μ, μ') I(μ') dμ',   light from above at μ₀, or spread like 2μ₀ dμ₀
 //! ```
 //!
-//! A layer so thin that light scatters in it once at most is doubled until it is the slab; layers that
-//! differ are laid upon each other. Any answer is computed four times, with fewer and fewer directions and
-//! thicker first layers, and the differences tell its error: thin slabs need grazing directions, and answers
-//! with too few of them may agree by chance.
+//! A layer so thin that light scatters in it at most once is doubled until it is the slab; layers that differ are
+//! laid upon each other. Any answer is computed four times, with fewer and fewer directions and thicker first
+//! layers, and the differences give its error. Thin slabs need grazing directions, and answers with too few of them
+//! may agree by accident.
 //!
 //! Where only `r = σ_t/σ̂` matters at a tentative collision, the k-th moments of a walk are reflectance
 //! and transmittance of another slab: `∫σ̂(1 − Q_k)` thick, of albedo `S_k/(1 − Q_k)`, which may exceed
@@ -35,7 +35,7 @@ pub use cache::cached;
 pub use pieces::{Piece, Pieces};
 pub use walk::{Existence, Walk};
 
-/// What becomes of light.
+/// Shares of light by where it goes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Shares<T> {
     /// The share that comes back.
@@ -46,14 +46,14 @@ pub struct Shares<T> {
     pub score: T,
 }
 
-/// Without error bounds.
+/// Energy without error bounds.
 pub type Energy = Shares<f64>;
 
-/// With error bounds.
+/// Energy with error bounds.
 pub type Answer = Shares<Known>;
 
 impl<T> Shares<T> {
-    /// Made one by one, given how each is taken from others.
+    /// Makes all shares, given a function of the accessor of each.
     fn each<U>(of: impl Fn(fn(&Shares<U>) -> &U) -> T) -> Self {
         Self {
             reflected: of(|shares| &shares.reflected),
@@ -71,16 +71,17 @@ impl Answer {
     };
 }
 
-/// How closely a slab is looked at.
+/// Resolution of a slab.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Resolution {
     /// Legendre moments of this size are resolved.
     pub faintest: f64,
-    /// The fewest directions.
+    /// Minimum number of directions.
     pub directions: usize,
-    /// The error that the first layer may bring in.
+    /// Maximum error from the first layer.
     pub first_layer: f64,
-    /// What five eighths of the directions differ by is so many times the error, and what half of them do.
+    /// Ratios of differences to the error: of the answer with five eighths of the directions, and of that with half
+    /// of them.
     pub gains: [f64; 2],
 }
 
@@ -88,10 +89,10 @@ impl Resolution {
     /// For exact answers: 1e-10, 1e-8 for Henyey–Greenstein of g = 0.9, and mostly far better.
     pub const FINE: Self =
         Self { faintest: 1e-11, directions: 32, first_layer: 3e-14, gains: [12.0, 400.0] };
-    /// For moments: 1e-4 and mostly far better. So few directions that grazing light in thin slabs may
-    /// gain no more by more of them than `1/n`: five eighths then differ by 8/5 − 1 times the error. Elsewhere
-    /// errors swing, those of sixteen, twelve and ten directions may be one by chance, and half of them, whose
-    /// errors are ten to a hundred times larger, tell.
+    /// For moments: 1e-4 and mostly far better. There are so few directions that errors for grazing light in thin
+    /// slabs may fall only as `1/n`: the answer with five eighths of them then differs by 8/5 − 1 times the error.
+    /// Elsewhere errors oscillate, and those of sixteen, twelve and ten directions may agree by accident. Half of
+    /// the directions have errors that are ten to a hundred times larger, and show it.
     pub const COARSE: Self =
         Self { faintest: 1e-5, directions: 16, first_layer: 1e-10, gains: [0.6, 4.0] };
     /// For moments where r varies, of which a hundred layers and more are solved, and for differences.
@@ -108,7 +109,7 @@ impl Resolution {
     }
 
     fn coarsest(self) -> Self {
-        // Of a sharp phase function the Legendre moments ask for more directions: five eighths of those, too.
+        // A sharp phase function needs more directions by its Legendre moments: five eighths of those, too.
         let faintest = self.faintest.powf(0.625);
         Self { faintest, directions: self.directions * 5 / 8, ..self.coarser() }
     }
@@ -119,31 +120,31 @@ impl Resolution {
     }
 }
 
-/// Whether two answers of different resolution tell the error of an exact one: not where both would
-/// have the most directions, as for Henyey–Greenstein of |g| > 0.935.
+/// Returns true if two answers of different resolution give the error of an exact one: not where both would have
+/// the maximum number of directions, as for Henyey–Greenstein of |g| > 0.935.
 pub fn resolves(phase: &Phase) -> bool {
     directions::are_enough(phase, Resolution::FINE.coarser().faintest)
 }
 
 /// The error of a first layer of optical depth u, doubled to τ, is about `13 τ u`.
 const FIRST_LAYER: f64 = 13.0;
-/// What fifty doublings of a hundred directions lose in rounding, relative to the energy: measured as
-/// what is missing where nothing is absorbed, twice over.
+/// Relative rounding error of fifty doublings of a hundred directions: twice the measured loss of energy without
+/// absorption.
 const ROUNDING: f64 = 2e-13;
-/// The difference to an answer with three quarters of the directions is taken so many times, those to five eighths
-/// and to half of them by what [`Resolution`] gains. Of 160 random slabs, 1e-4 to 10 thick, two exceeded the first
-/// alone, taken once, as did one of 128 others, by five times; with five eighths of thirty-two, divided by twelve, no
-/// more than 0.72 was reached.
+/// Factor of the difference to an answer with three quarters of the directions; [`Resolution::gains`] has those of
+/// five eighths and of half of them. Of 160 random slabs, 1e-4 to 10 thick, two exceeded the first difference
+/// alone, with a factor of 1, as did one of 128 others, by five times. With five eighths of thirty-two, divided by
+/// twelve, no more than 0.72 was reached.
 const SAFETY: f64 = 2.0;
-/// In thinner slabs light grazes between the directions of all answers, and differences are taken more
-/// often, by this over the depth: of 4600 answers some exceeded them, by three times, from 5e-3 down.
+/// In thinner slabs light grazes between the directions of all answers. Differences get the further factor of this
+/// over the depth: of 4600 answers some exceeded them, by three times, from 5e-3 down.
 const THIN: f64 = 1e-2;
-/// In thicker ones rounding adds up: of 1500 answers one was off by twice the sum at a depth of 77.
+/// In thicker slabs rounding adds up: of 1500 answers one deviated by twice the sum at a depth of 77.
 const THICK: f64 = 5.0;
-/// The most doublings: beyond, a share of the slab is lost in rounding.
+/// Maximum number of doublings: beyond, a share of the slab is lost in rounding.
 const MOST_DOUBLINGS: f64 = 100.0;
 
-/// What becomes of lights in a stack of layers, from above; `None` where a share is infinite.
+/// Shares of lights on a stack of layers, from above; `None` where a share is infinite.
 pub fn solve(
     phase: &Phase,
     lights: &[Light],
@@ -154,13 +155,13 @@ pub fn solve(
     let fine = at(resolution)?;
     let coarse = at(resolution.coarser())?;
     let coarsest = at(resolution.coarsest())?;
-    // So few directions may find echoes that are not there.
+    // With few directions the series may diverge by mistake.
     let half = at(resolution.half());
     let depth: f64 = slices.iter().map(|slice| slice.flown * slice.lost()).sum();
     let thick = (depth / THICK).max(1.0);
     let thin = if depth > 0.0 { (THIN / depth).max(1.0) } else { 1.0 };
     let answer = |i: usize| {
-        // What is known of the first layer and of rounding is added.
+        // Known errors of the first layer and of rounding are added.
         Answer::each(|of: fn(&Energy) -> &f64| {
             let [fine, coarse, coarsest] = [&fine[i], &coarse[i], &coarsest[i]].map(|all| *of(all));
             let half = half.as_ref().map_or(fine, |half| *of(&half[i]));
@@ -177,7 +178,7 @@ pub fn solve(
     Some((0..lights.len()).map(answer).collect())
 }
 
-/// The same at one resolution, without error bounds.
+/// Shares at one resolution, without error bounds.
 pub fn energies(
     phase: &Phase,
     lights: &[Light],
@@ -235,8 +236,8 @@ pub fn answers(phase: &Phase, lights: &[Light], depth: Known, albedo: f64) -> Op
     let slice = Slice { flown: depth.value, straight: 0.0, scattered: albedo, score: 1.0 };
     let answers = solve(phase, lights, &[slice], Resolution::FINE)?;
     let blurred = |(answer, light): (Answer, &Light)| {
-        // A layer of optical depth δ more meets light from all directions, and changes no share by more
-        // than the light that collides in it.
+        // A layer of optical depth δ more has light from all directions, and changes no share by more than the
+        // light that collides in it.
         let steepest = light.cosine().map_or(6.0, |cosine| 4.0 + 1.0 / cosine);
         Answer::each(|of: fn(&Answer) -> &Known| {
             let known = of(&answer);

@@ -1,13 +1,13 @@
-//! By how many scatterings light leaves a slab of isotropic scattering that absorbs nothing.
+//! Numbers of scatterings after which light leaves a slab of isotropic scattering that absorbs nothing.
 //!
 //! ```text
 //! C_1(u) = e^{−u/μ₀}/μ₀, or 2E₂(u) of light from all sides;   C_{r+1}(u) = ½ ∫₀^τ E₁(|u − u'|) C_r(u') du'
 //! R_r = ½ ∫ E₂(u) C_r du,   T_r = ½ ∫ E₂(τ − u) C_r du,   T_0 = e^{−τ/μ₀}, or 2E₃(τ)
 //! ```
 //!
-//! `C_r` is the density of r-th collisions. Panels shrink towards both ends, where C is like `u ln u`; between the nodes of
-//! a panel it is a polynomial, and next to the logarithm of E₁ the quadrature is finer by the fourth power. Errors
-//! are 1e-12 and a few 1e-15 for each order, which the sum over all of them tells: everything leaves.
+//! `C_r` is the density of r-th collisions. Panels shrink towards both ends, where C is like `u ln u`. Between the
+//! nodes of a panel it is a polynomial, and next to the logarithm of E₁ the quadrature is finer by the fourth
+//! power. Errors are 1e-12 and a few 1e-15 for each order. The sum over all orders shows them: everything leaves.
 //!
 //! Source: R. E. Peierls, *Critical conditions in neutron multiplication*, Mathematical Proceedings of the Cambridge
 //! Philosophical Society 35 (1939); K. M. Case, P. F. Zweifel, *Linear Transport Theory* (1967).
@@ -18,15 +18,15 @@ use numeric::quadrature::GaussLegendre;
 
 /// Nodes of a panel.
 const NODES: usize = 16;
-/// Panels are no thicker.
+/// Maximum thickness of a panel.
 const THICKEST: f64 = 0.5;
-/// Panels shrink so many times to a quarter towards both ends.
+/// Number of panels towards both ends, each a quarter of the one before.
 const SHRINKS: i32 = 12;
-/// Thicker slabs have too many orders.
+/// Maximum depth: thicker slabs have too many orders.
 const DEEPEST: f64 = 8.0;
 /// Orders of scattering that are rarer than this do not count.
 const RARE: f64 = 1e-17;
-/// The most orders of scattering.
+/// Maximum number of orders of scattering.
 const MOST: usize = 4096;
 
 /// A slab cut into panels.
@@ -36,7 +36,7 @@ struct Panels {
     cut: Vec<[f64; 2]>,
     rule: GaussLegendre,
     finer: GaussLegendre,
-    /// One over the products of a node's distances from the others.
+    /// Barycentric weights: one over the products of a node's distances from the others.
     barycentric: Vec<f64>,
 }
 

@@ -1,7 +1,7 @@
-//! A slab cut into layers on which the ratio `r = σ_t/σ̂` is one number, or nearly so.
+//! A slab cut into layers on which the ratio `r = σ_t/σ̂` is constant, or nearly so.
 //!
-//! Where r varies, layers end where the moments of collisions have kinks, as at r = 1, and the first is halved
-//! again and again towards the top: grazing light gets no deeper than μ₀ free paths, and sees r there rather
+//! Where r varies, layers end where the moments of collisions have kinks, as at r = 1. The first layer is halved
+//! repeatedly towards the top: grazing light gets no deeper than μ₀ free paths, and its r is that of the top rather
 //! than the mean of a layer.
 
 use super::layer::Slice;
@@ -12,23 +12,23 @@ use media::Piecewise;
 use numeric::Span;
 use numeric::quadrature::GaussLegendre;
 
-/// A ratio that varies by less is one number.
+/// Maximum variation of a ratio that counts as constant.
 const SAME: f64 = 1e-12;
-/// More layers than this are averaged.
+/// Maximum number of layers that are not averaged.
 const MOST_EXACT: usize = 16;
-/// Layers of the coarser cut where r varies, before the first is halved: so many, or two for each smooth panel of σ_t, but not more
-/// than the most.
+/// Number of layers of the coarser cut where r varies, before the first is halved: the minimum, or two for each
+/// smooth panel of σ_t, up to the maximum.
 const COARSE: [usize; 2] = [12, 48];
-/// More breaks than this are averaged over.
+/// Maximum number of breaks at which layers end.
 const MOST_BREAKS: usize = 24;
 /// Nodes on a smooth part of a layer.
 const NODES: usize = 6;
-/// The first layer is not thicker than light of this cosine gets, even if none grazes.
+/// Cosine of the light that limits the thickness of the first layer, even if no light grazes.
 const STEEP: f64 = 0.1;
-/// The most halvings of the first layer.
+/// Maximum number of halvings of the first layer.
 const HALVINGS: u32 = 30;
 
-/// A layer: what is flown in it, and the ratios in it with their shares, which add up to 1.
+/// A layer: its `∫σ̂`, and the ratios in it with their shares, which add up to 1.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Piece {
     /// `∫σ̂` over the layer.
@@ -43,7 +43,7 @@ impl Piece {
         Self { flown, ratios: vec![[1.0, ratio]] }
     }
 
-    /// The layer with the mean of what collisions in it do.
+    /// The layer with the mean moments of its collisions.
     pub(super) fn slice(&self, at: impl Fn(f64) -> [f64; 3]) -> Slice {
         let mut sums = [0.0; 3];
         for &[share, ratio] in &self.ratios {
@@ -55,7 +55,7 @@ impl Piece {
         Slice { flown: self.flown, straight, scattered, score }
     }
 
-    /// Whether every collision in it is null: then nothing happens to a particle.
+    /// Returns true if every collision in it is null: then no particle changes.
     pub(super) fn is_idle(&self, odds: impl Fn(f64) -> Odds) -> bool {
         self.ratios.iter().all(|&[_, ratio]| odds(ratio).transmit >= 1.0)
     }
@@ -64,15 +64,15 @@ impl Piece {
 /// The layers of a slab, the first on top.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Pieces {
-    /// r is one number in each.
+    /// r is constant in each.
     Exact(Vec<Piece>),
     /// r varies in them: a coarser cut, and one of twice as many layers.
     Graded([Vec<Piece>; 2]),
 }
 
 impl Pieces {
-    /// The layers of a medium under a sampling extinction, for a walk whose moments have kinks at some ratios
-    /// and any of the given lights.
+    /// The layers of a medium under a sampling extinction, for any of the given lights. The walk's moments have
+    /// kinks at some ratios.
     pub fn new(mesh: &Mesh, sampling: &Piecewise, kinks: &[f64], lights: &[Light]) -> Self {
         let cut = mesh.refined(sampling.knots(), &|_, _| Vec::new());
         let mut exact: Vec<Piece> = Vec::new();
@@ -80,7 +80,7 @@ impl Pieces {
         for panel in cut.panels() {
             let there: Vec<f64> = panel.t.iter().map(|&t| sampling.value(t)).collect();
             let flown = cut.integral(panel, &there);
-            // What neither collides nor scatters is not there.
+            // Intervals without collisions and without scattering are left out.
             if flown <= 0.0 {
                 continue;
             }
@@ -109,7 +109,7 @@ fn graded(cut: &Mesh, sampling: &Piecewise, kinks: &[f64], lights: &[Light]) -> 
     let passed = |&ratio: &f64| {
         cut.roots(|t, sigma| {
             let (kink, off) = (ratio * sampling.value(t), sigma - ratio * sampling.value(t));
-            // Where both are one field rounding passes nothing.
+            // Where both are one field rounding crosses no kink.
             if off.abs() <= SAME * kink { 0.0 } else { off }
         })
     };
@@ -131,7 +131,7 @@ fn graded(cut: &Mesh, sampling: &Piecewise, kinks: &[f64], lights: &[Light]) -> 
     let least = lights.iter().filter_map(|light| light.cosine()).fold(STEEP, f64::min);
     let flown = |ends: &[f64]| piece(ends[0], ends[1]).map_or(0.0, |piece| piece.flown);
     for _ in 0..HALVINGS {
-        // Light passes what has no collisions.
+        // Light passes layers without collisions.
         let Some(first) = ends.windows(2).position(|ends| flown(ends) > 0.0) else { break };
         if flown(&ends[first..]) <= least {
             break;
@@ -148,7 +148,7 @@ fn graded(cut: &Mesh, sampling: &Piecewise, kinks: &[f64], lights: &[Light]) -> 
     })
 }
 
-/// One layer by quadrature between the breaks inside it; `None` where nothing is flown.
+/// One layer by quadrature between the breaks inside it; `None` where `∫σ̂` is 0.
 fn piece(
     mesh: &Mesh,
     sampling: &Piecewise,

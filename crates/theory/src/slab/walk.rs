@@ -1,12 +1,11 @@
-//! A walk in a slab: mean, variance and cost of what it says of reflectance and transmittance.
+//! A walk in a slab: mean, variance and cost of its estimates of reflectance and transmittance.
 //!
-//! With `Q_k`, `S_k` the k-th moments of what a tentative collision leaves, `E[X^k]` is reflectance or
-//! transmittance of the slab that is `∫σ̂(1 − Q_k)` thick and has the albedo `S_k/(1 − Q_k)`, layer by
-//! layer where `r = σ_t/σ̂` changes from layer to layer. Of rules that leave no weight at a null
-//! collision, `r ≤ 1`, these are τ and `S_k` at r = 1, whatever σ_t and σ̂. Elsewhere, where r varies
-//! continuously, layers have the mean `Q_k` and `S_k`; the error is of second order in their
-//! thickness, and is extrapolated from two cuts and bounded by their difference and by what directions are
-//! missing.
+//! Let `Q_k`, `S_k` be the k-th moments of the weights after a tentative collision. Then `E[X^k]` is reflectance or
+//! transmittance of the slab that is `∫σ̂(1 − Q_k)` thick and has the albedo `S_k/(1 − Q_k)`, layer by layer where
+//! `r = σ_t/σ̂` changes from layer to layer. For rules that keep the weight at a null collision, `r ≤ 1`, these are
+//! τ and `S_k` at r = 1, whatever σ_t and σ̂. Elsewhere, where r varies continuously, layers have the mean `Q_k`
+//! and `S_k`. The error is of second order in their thickness. It is extrapolated from two cuts, and bounded by
+//! their difference and by the error of the directions.
 //!
 //! A walk leaves on one side only: `X_R X_T = 0`, which makes the covariance.
 //!
@@ -14,9 +13,9 @@
 //! Cov[X_R, X_T] = −RT,   E[(X_R − R)²(X_T − T)²] = E[X_R²]T² + E[X_T²]R² − 3R²T²
 //! ```
 //!
-//! The number M of collisions has the generating function `G(z) = E[z^M]`, which is what a slab with
-//! `zQ_0`, `zS_0` and the score `z(1 − Q_0 − S_0)` makes of one particle. Its cumulants are derivatives
-//! of `ln G(e^θ)`, taken from θ = 0, ±h, ±2h:
+//! The number M of collisions has the generating function `G(z) = E[z^M]`, the energy of a slab with `zQ_0`, `zS_0`
+//! and the score `z(1 − Q_0 − S_0)` for one particle. Its cumulants are derivatives of `ln G(e^θ)`, taken from θ =
+//! 0, ±h, ±2h:
 //!
 //! ```text
 //! Var[M] = (16(f(h) + f(−h)) − f(2h) − f(−2h) − 30 f(0))/(12h²),   f(θ) = ln G(e^θ)
@@ -38,24 +37,24 @@ use numeric::Known;
 /// The channels of a draw, in their order.
 pub const CHANNELS: [&str; 2] = ["reflectance", "transmittance"];
 
-/// The powers whose means are found: those of the moments, and the eighth for their tails.
+/// Powers with computed means: those of the moments, and the eighth for their tails.
 const POWERS: [i32; 4] = [2, 3, 4, 8];
 
-/// So near, relative, to a critical depth theory does not tell on which side of it a slab is.
+/// Relative distance to a critical depth within which theory does not resolve on which side of it a slab is.
 const NEAR: f64 = 1e-3;
 
-/// Whether moments exist.
+/// Existence of moments.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Existence {
-    /// They do.
+    /// They exist.
     Finite,
-    /// They do not.
+    /// They are infinite.
     Diverges,
-    /// The slab is next to where they diverge.
+    /// The slab is next to the critical depth.
     Unknown,
 }
 
-/// Whether what goes along a layer grows without end, by `Q_k` and `S_k`.
+/// Returns true if the moment along a layer grows without end, given `Q_k` and `S_k`.
 fn is_endless([straight, scattered, _]: [f64; 3]) -> bool {
     straight >= 1.0 && scattered > 0.0
 }
@@ -67,7 +66,7 @@ pub struct Walk {
     pub incidence: Incidence,
     /// a.
     pub albedo: f64,
-    /// What happens at a collision.
+    /// Rule at a collision.
     pub rule: ParticleRule,
     /// The layers.
     pub pieces: Pieces,
@@ -75,18 +74,18 @@ pub struct Walk {
     pub largest_ratio: f64,
     /// τ of the slab.
     pub depth: f64,
-    /// Whether tails and the law of the cost are asked for, too.
+    /// True if tails and the distribution of the cost are computed, too.
     pub laws: bool,
 }
 
 impl Walk {
-    /// What theory says, given the exact answer.
+    /// Prediction, given the exact answer.
     pub fn predict(&self, truth: &Answer) -> Prediction {
         let lights = [self.incidence.light];
         self.predict_all(&lights, std::slice::from_ref(truth)).swap_remove(0)
     }
 
-    /// The same for several lights, which share the work.
+    /// Predictions for several lights, with common computations.
     pub fn predict_all(&self, lights: &[Light], truths: &[Answer]) -> Vec<Prediction> {
         let raw = POWERS.map(|k| self.moments(k, lights, truths));
         let laws = self.lookups(lights).into_iter().chain(std::iter::repeat(None));
@@ -100,13 +99,13 @@ impl Walk {
         self.rule.odds(ratio, self.albedo)
     }
 
-    /// Whether null collisions leave the weight alone.
+    /// Returns true if null collisions keep the weight.
     fn is_tracking(&self) -> bool {
         use ParticleRule::{Analog, Terminating, Weighted};
         matches!(self.rule, Analog | Terminating | Weighted) && self.largest_ratio <= 1.0
     }
 
-    /// Whether the second moments exist: where they do not, no number of draws would settle.
+    /// Existence of the second moments: where they are infinite, no number of draws converges.
     pub fn second_moment(&self) -> Existence {
         // A weight that never grows stays at 1 at most.
         let grows = |ratio: f64| {
@@ -167,7 +166,7 @@ impl Walk {
         match &self.pieces {
             Pieces::Exact(pieces) => exact(&layers(pieces)),
             Pieces::Graded(cuts) => {
-                // A mean over a layer would hide where light along it grows without end.
+                // A mean over a layer would hide an endless growth of the moment along it.
                 let grows = |[_, ratio]: &[f64; 2]| is_endless(moments(*ratio));
                 if cuts[1].iter().flat_map(|piece| &piece.ratios).any(grows) {
                     return None;
@@ -187,7 +186,7 @@ impl Walk {
         }
     }
 
-    /// The same, infinite where they are; `None` where they are not asked for.
+    /// `E[X_R^k]` and `E[X_T^k]` in each light; infinite where they diverge, `None` where they are not needed.
     fn moments(&self, k: i32, lights: &[Light], truths: &[Answer]) -> Option<Vec<[Known; 2]>> {
         let is_graded = matches!(self.pieces, Pieces::Graded(_)) && !self.is_tracking();
         if k > 4 && (is_graded || !self.laws) {
@@ -209,7 +208,7 @@ impl Walk {
         Some(found.into_iter().zip(truths).map(both).collect())
     }
 
-    /// Whether draws lie in [0, 1]: all weights do.
+    /// Returns true if draws lie in [0, 1], as all weights do.
     fn is_share(&self) -> bool {
         let is_share = |&[_, ratio]: &[f64; 2]| {
             let odds = self.odds(ratio);
@@ -221,7 +220,7 @@ impl Walk {
         pieces.iter().flat_map(|piece| &piece.ratios).all(is_share)
     }
 
-    /// The law of the number of collisions in each light, without its probabilities; `None` where it is not
+    /// Distribution of the number of collisions in each light, without its probabilities; `None` where it is not
     /// known, or has an infinite variance.
     fn lookups(&self, lights: &[Light]) -> Vec<Option<CountLaw>> {
         let Some(scored) = self.scored() else { return Vec::new() };
@@ -232,10 +231,10 @@ impl Walk {
         lights.iter().zip(answers.into_iter().flatten()).map(law).collect()
     }
 
-    /// Layers that score every collision; `None` where the law of their number is not known.
+    /// Layers that score every collision; `None` where the distribution of their number is not known.
     fn scored(&self) -> Option<Vec<Slice>> {
         let Pieces::Exact(pieces) = &self.pieces else { return None };
-        // Along a layer of null collisions only there is no end to them.
+        // A layer of null collisions only has infinitely many of them along it.
         let odds = |ratio: f64| self.odds(ratio);
         let is_idle = pieces.is_empty() || pieces.iter().any(|piece| piece.is_idle(odds));
         (!is_idle).then(|| self.slices(pieces, 1.0, |_| 1.0))
@@ -259,7 +258,7 @@ impl Walk {
         Some((found.reflected + found.transmitted + found.score).ln())
     }
 
-    /// The law of a mean and of `ln G(e^θ)`.
+    /// Distribution of a count, given its mean and `ln G(e^θ)`.
     fn count(
         &self,
         Known { value: mean, error }: Known,
@@ -272,8 +271,8 @@ impl Walk {
     }
 }
 
-/// The law of the number of collisions of one of several walks, by their probabilities, in their first light; `None` where
-/// it is not known.
+/// Distribution of the number of collisions of one of several walks, by their probabilities, in their first light;
+/// `None` where it is not known.
 pub fn mixed_lookups(walks: &[(f64, Walk)]) -> Option<CountLaw> {
     let mut mean = Known::new(0.0, 0.0);
     for (weight, walk) in walks {
@@ -291,7 +290,7 @@ pub fn mixed_lookups(walks: &[(f64, Walk)]) -> Option<CountLaw> {
     })
 }
 
-/// What raw moments say.
+/// Prediction from raw moments.
 fn predicted(
     truth: &Answer,
     raw: [Option<[Known; 2]>; POWERS.len()],
@@ -310,8 +309,8 @@ fn predicted(
     Prediction { channels, lookups, covariances, ..Prediction::default() }
 }
 
-/// `E[X^k]` of a draw in [0, 1] and mean T, where it is known to be between T^k and T: `Tᵏ ≤ E[X^k] ≤ T`, by Jensen's
-/// inequality and by `x^k ≤ x`. What theory finds beyond is its own error.
+/// `E[X^k]` of a draw in [0, 1] with mean T, clamped to its bounds: `Tᵏ ≤ E[X^k] ≤ T`, by Jensen's inequality and
+/// by `x^k ≤ x`. A value beyond them is an error of theory.
 fn of_share(found: Known, truth: Known, k: i32) -> Known {
     let (least, most) = ((truth.value - truth.error).max(0.0).powi(k), truth.value + truth.error);
     if (least..=most).contains(&found.value) && found.error <= most {
@@ -321,18 +320,18 @@ fn of_share(found: Known, truth: Known, k: i32) -> Known {
     Known::new(value, found.error.min((value - least).max(most - value)))
 }
 
-/// What two cuts say together: the error of the finer one is a quarter of the other's, and what directions
-/// are missing is the same in both.
+/// Extrapolation from two cuts: the error of the finer one is a quarter of the other's, and the error of the
+/// directions is equal in both.
 fn extrapolated(coarse: Known, fine: f64) -> Known {
     let step = fine - coarse.value;
     Known::new(fine + step / 3.0, step.abs() + coarse.error + 1e-4 * fine.abs())
 }
 
-/// The step of θ in units of the number of collisions over which the law decays.
+/// The step of θ in units of the number of collisions over which the distribution decays.
 const STEP: f64 = 0.02;
 
-/// The second and the fourth cumulant from the cumulant-generating function; `None` where that is
-/// infinite too near to 0.
+/// The second and the fourth cumulant from the cumulant-generating function; `None` where the function is infinite
+/// too near to 0.
 fn cumulants(mean: f64, f: impl Fn(f64) -> Option<f64>) -> Option<[f64; 2]> {
     let at = |h: f64| -> Option<[f64; 2]> {
         let [far, near, here, before, back] = [2.0 * h, h, 0.0, -h, -2.0 * h].map(&f);
@@ -343,7 +342,7 @@ fn cumulants(mean: f64, f: impl Fn(f64) -> Option<f64>) -> Option<[f64; 2]> {
     let mut scale = 1.0 + mean;
     let mut found = at(STEP / scale);
     for _ in 0..4 {
-        // The decay of a long tail is variance over mean.
+        // The decay length of a long tail is variance over mean.
         let wanted = found.map_or(8.0 * scale, |[variance, _]| 1.0 + variance / mean);
         if found.is_some() && wanted <= 2.0 * scale {
             break;
@@ -370,7 +369,8 @@ fn channel(name: &str, truth: Known, raw: [Option<Known>; 4]) -> Channel {
             return Moments { scale: t, relative: [variance, higher, higher], error };
         }
         let skew = b - 3.0 * a + 2.0;
-        // Each difference rounds by its own terms: in units of a small truth the fourth moment is far above the second.
+        // Each difference has the rounding of its own terms: in units of a small mean the fourth moment is far
+        // above the second.
         let rounding = 8.0 * f64::EPSILON * (a + 1.0);
         let [variance, of_variance] = not_negative(a - 1.0, off + rounding);
         let rounding = 8.0 * f64::EPSILON * (c + 4.0 * b.abs() + 6.0 * a + 3.0);
