@@ -1,4 +1,4 @@
-//! Furnaces in several channels: what theory says of draws that score all of them.
+//! Predictions for furnaces in several channels, with draws that score all of them.
 //!
 //! ```text
 //! E[X_λ] = 1 in every medium
@@ -24,7 +24,7 @@ fn channel(count: usize, index: usize, moments: Option<Moments>, tails: Tails) -
     Channel { name, ..Channel::unbiased(Known::new(1.0, ROUNDING), moments, tails) }
 }
 
-/// Of one channel a draw, given the probability of each.
+/// Prediction for one channel a draw, given the probability of each.
 pub fn independent(heroes: &[f64]) -> Prediction {
     let count = heroes.len();
     let channels = heroes.iter().enumerate().map(|(index, weight)| {
@@ -39,13 +39,13 @@ pub fn independent(heroes: &[f64]) -> Prediction {
         let second_moment_bounds = [heroes[next - 1], heroes[next]].map(|weight| 1.0 / weight);
         Covariance::of_raw([next - 1, next], [1.0; 2], second_moment_bounds, [0.0; 4])
     });
-    // Of two channels drawn equally often the product is the same in every draw: there is nothing to test.
+    // The product of two channels that are drawn equally often is equal in every draw: there is nothing to test.
     let covariances = covariances.filter(|found| found.variance > ROUNDING);
     let (channels, covariances) = (channels.collect(), covariances.collect());
     Prediction { channels, covariances, ..Prediction::default() }
 }
 
-/// Of all channels by the balance heuristic, given the probability of each hero.
+/// Prediction for all channels by the balance heuristic, given the probability of each hero.
 pub fn balanced(heroes: &[f64]) -> Prediction {
     let count = heroes.len();
     let channels = heroes.iter().enumerate().map(|(index, weight)| {
@@ -59,7 +59,7 @@ pub fn balanced(heroes: &[f64]) -> Prediction {
     Prediction { channels: channels.collect(), ..Prediction::default() }
 }
 
-/// Of all channels relative to the density of one walker, given bounds on `E[X²]`.
+/// Prediction for all channels relative to the density of one walker, given bounds on `E[X²]`.
 pub fn relative(second_moment_bounds: &[f64]) -> Prediction {
     let count = second_moment_bounds.len();
     let channels = second_moment_bounds.iter().enumerate().map(|(index, square)| {

@@ -1,9 +1,9 @@
-//! Slabs of coloured scatterers: what adding and doubling says of albedos above 1, and orders of scattering.
+//! Slabs of coloured scatterers: adding and doubling for albedos above 1, and orders of scattering.
 //!
-//! Moments are those of [`super::spectral_rod`]. An albedo above 1 may be too large for the depth of the slab: it is
-//! critical, and the moment infinite. Of phase functions that are not isotropic, albedos above 1 are solved to 1e-4.
-//! Orders of scattering are known for isotropic scattering; of other phase functions multiple importance sampling has a
-//! mean, and a bound on the variance, as its draws never exceed 1/w.
+//! Moments are those of [`super::spectral_rod`]. An albedo above 1 may be too large for the depth of the slab: the
+//! slab is critical, and the moment infinite. With anisotropic phase functions, albedos above 1 are solved to 1e-4.
+//! Orders of scattering are known for isotropic scattering. With other phase functions multiple importance sampling
+//! has a mean, and a bound on the variance, as its draws never exceed 1/w.
 
 use super::slab::layer::Slice;
 use super::slab::{self, Pieces, Resolution, Walk};
@@ -18,14 +18,14 @@ use media::phase::isotropic::Isotropic;
 use numeric::Known;
 use numeric::digits::rounded;
 
-/// What orders of scattering are off by, relative, beyond what their sum tells.
+/// Relative error of orders of scattering beyond that which their sum shows.
 const OF_ORDERS: f64 = 2e-12;
-/// So near, relative, to a critical depth theory does not tell on which side of it a slab is.
+/// Relative distance to a critical depth within which theory does not resolve on which side of it a slab is.
 const NEAR: f64 = 1e-3;
-/// Critical albedos are found to this.
+/// Relative error of critical albedos.
 const SHARP: f64 = 1e-7;
 
-/// A slab with what its walks fly through.
+/// A slab with its mesh and σ̂.
 pub struct Slabs<'a> {
     slab: &'a SpectralSlab,
     mesh: &'a Mesh,
@@ -48,7 +48,8 @@ impl<'a> Slabs<'a> {
     }
 }
 
-/// An answer of moderate precision, `None` where it is infinite: with sharp phase functions an exact one takes seconds.
+/// An answer of moderate precision, `None` where it is infinite: with sharp phase functions an exact one takes
+/// seconds.
 fn coarse(incidence: &Incidence, depth: f64, albedo: f64) -> Option<[Known; 2]> {
     let slice = Slice { flown: depth, straight: 0.0, scattered: albedo, score: 0.0 };
     let found = slab::solve(&incidence.phase, &[incidence.light], &[slice], Resolution::COARSE)?;
@@ -59,7 +60,7 @@ fn is_isotropic(incidence: &Incidence) -> bool {
     incidence.phase == Phase::Isotropic(Isotropic)
 }
 
-/// Whether a slab of so many optical depths has a finite answer.
+/// Returns true if a slab of an optical depth has a finite answer.
 fn is_finite(incidence: &Incidence, depth: f64, albedo: f64) -> bool {
     let light = Incidence { light: Light::Diffuse, ..*incidence };
     if is_isotropic(incidence) {
@@ -69,7 +70,7 @@ fn is_finite(incidence: &Incidence, depth: f64, albedo: f64) -> bool {
     }
 }
 
-/// The albedo from which on a slab has no finite answer.
+/// Albedo from which on a slab has no finite answer.
 fn critical(incidence: &Incidence, depth: f64) -> f64 {
     let (mut low, mut high) = (1.0, 2.0);
     while is_finite(incidence, depth, high) && high < 1e6 {

@@ -19,8 +19,8 @@
 //! A_k(x) = ∫ₓ^ℓ σ̄ ρ^k g_k(y) exp(−∫ₓ^y σ̄ (1 − ρ^k)) dy
 //! ```
 //!
-//! which one sweep over the panels from the far end evaluates for k = 1 … 8: four for the moments
-//! that are tested, the eighth for how long their tests take.
+//! One sweep over the panels from the far end evaluates it for k = 1 … 8: four for the moments that are tested, the
+//! eighth for the sample size of their tests.
 //!
 //! Source: I. Georgiev, Z. Misso, T. Hachisuka, D. Nowrouzezahrai, J. Křivánek, W. Jarosz,
 //! *Integral formulations of volumetric transmittance*, ACM Transactions on Graphics 38 (2019);
@@ -30,7 +30,7 @@
 use super::mesh::Panel;
 use super::{Channel, CountLaw, Mesh, Moments, Prediction, Tails};
 
-/// Central moments with a larger relative error, lost to cancellation, are not given at all.
+/// Maximum relative error of central moments that are given; cancellation makes larger ones.
 const WORST: f64 = 0.05;
 
 /// The highest order.
@@ -67,7 +67,7 @@ pub fn predict(mesh: &Mesh, sampling: f64, source: &dyn Source) -> Prediction {
     ];
     let relative = [central[0].max(0.0), central[1], central[2].max(0.0)];
     let terms = m4.abs() + 4.0 * (m3 * m1).abs() + 6.0 * (m2 * m1 * m1).abs() + 3.0 * m1.powi(4);
-    // The mean is known: what the quadrature makes of it shows what it misses.
+    // The mean is known: the error of its quadrature estimates that of the others.
     let missed = (t * depth.value.exp() - 1.0).abs();
     let noise = (fine.relative_error() + missed + 1e-14) * terms;
     let error = noise / relative[0].powi(2).min(relative[0]).max(f64::MIN_POSITIVE);
@@ -77,7 +77,7 @@ pub fn predict(mesh: &Mesh, sampling: f64, source: &dyn Source) -> Prediction {
     let mut channel = Channel::transmittance(depth, 0.0, moments, tails);
     let flown = sampling * mesh.support().length();
     if flown == 0.0 {
-        // Nowhere to collide: every draw is the closed form.
+        // No collisions: every draw is the closed form.
         channel.moments = Some(Moments::certain(moments.scale));
     } else if error.is_nan() || error > WORST {
         channel.moments = None;
@@ -86,8 +86,8 @@ pub fn predict(mesh: &Mesh, sampling: f64, source: &dyn Source) -> Prediction {
     Prediction { random_numbers, ..Prediction::single(channel, CountLaw::poisson(flown)) }
 }
 
-/// Where the last flights are cut: v lives within a few mean free paths of the end, which may be a
-/// millionth of the support.
+/// Cuts towards the end of the support: v decays within a few mean free paths of the end, which may be a millionth
+/// of the support.
 fn cuts(mesh: &Mesh, sampling: f64) -> Vec<f64> {
     let support = mesh.support();
     let paths = std::iter::successors(Some(0.5), |paths| Some(2.0 * paths));
@@ -95,7 +95,7 @@ fn cuts(mesh: &Mesh, sampling: f64) -> Vec<f64> {
     cuts.take_while(|&cut| cut > support.from).filter(|&cut| cut < support.to).collect()
 }
 
-/// What must be smooth on a panel: v, the decay of every order, and the powers of ρ.
+/// Functions that must be smooth on a panel: v, the decay of every order, and the powers of ρ.
 fn panel_functions(mesh: &Mesh, panel: Panel<'_>, sampling: f64, end: f64) -> Vec<Vec<f64>> {
     let v = panel.t.iter().map(|t| (-sampling * (end - t)).exp()).collect();
     let mut functions = vec![v];
@@ -149,7 +149,7 @@ pub fn power(x: f64, k: usize) -> f64 {
     std::iter::repeat_n(x, k).product()
 }
 
-/// `1 − (1 − r)^k`, without the cancellation where r is small, whose noise no panel would resolve.
+/// `1 − (1 − r)^k` without cancellation where r is small: no panel would resolve its noise.
 fn lost(ratio: f64, k: usize) -> f64 {
     (0..k).fold(0.0, |sum, _| sum * (1.0 - ratio) + ratio)
 }

@@ -89,7 +89,7 @@ impl Resolution {
     /// For exact answers: 1e-10, 1e-8 for Henyey–Greenstein of g = 0.9, and mostly far better.
     pub const FINE: Self =
         Self { faintest: 1e-11, directions: 32, first_layer: 3e-14, gains: [12.0, 400.0] };
-    /// For moments: 1e-4 and mostly far better. There are so few directions that errors for grazing light in thin
+    /// For moments: 1e-4 and mostly far better. With few directions, errors for grazing light in thin
     /// slabs may fall only as `1/n`: the answer with five eighths of them then differs by 8/5 − 1 times the error.
     /// Elsewhere errors oscillate, and those of sixteen, twelve and ten directions may agree by accident. Half of
     /// the directions have errors that are ten to a hundred times larger, and show it.

@@ -1,15 +1,15 @@
-//! What a body holds: `∫σ_t dV`, by chords whose optical depths are exact.
+//! Content of a body, `∫σ_t dV`, by chords with exact optical depths.
 //!
 //! ```text
 //! ball of radius R:  ∫₀^{2π} ∫₀^{π/2} τ(R sin θ, φ) R² sin θ cos θ dθ dφ,   half a chord is R cos θ
 //! box:               ∫∫ τ(x, y) dx dy
 //! ```
 //!
-//! Chords run along z, at even steps of φ and at Gauss nodes in panels of θ, or of x and y. For fields
-//! without kinks both converge faster than any power of the number of chords; for grids and noise over a
-//! box the panels are cut where cells meet, and the rule is exact. Resolutions are doubled until two agree
-//! twice, where that cannot be chance, or the chords become too many. What the last ones differ by, and the
-//! errors of the optical depths, make the error.
+//! Chords run along z, at even steps of φ and at Gauss nodes in panels of θ, or of x and y. For fields without
+//! kinks both converge faster than any power of the number of chords. For grids and noise over a box the panels are
+//! cut where cells meet, and the rule is exact. Resolutions are doubled until two agree twice, which cannot be an
+//! accident, or the chords become too many. The differences of the last ones, and the errors of the optical depths,
+//! make the error.
 
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
@@ -19,17 +19,17 @@ use numeric::quadrature::GaussLegendre;
 use numeric::sum::Sum;
 use numeric::{Known, Span};
 
-/// Two resolutions that agree so well need no third, relative to the whole.
+/// Relative difference of two resolutions at which no third is needed.
 const AGREED: f64 = 1e-13;
-/// The most chords of one resolution.
+/// Maximum number of chords of one resolution.
 pub const MOST_CHORDS: f64 = 3e5;
-/// The most pieces that all chords of one resolution may have: those of noise are many.
+/// Maximum number of pieces that all chords of one resolution may have: those of noise are many.
 const MOST_PIECES: f64 = 6e5;
-/// One step between resolutions says nothing where there are kinks.
+/// Minimum number of steps between resolutions: a single one has no information where there are kinks.
 const LEAST_STEPS: usize = 2;
 /// Nodes of a panel of θ.
 const RINGS: usize = 8;
-/// Nodes of a panel of x or y: exact up to the seventh power, of which the fade of noise has six.
+/// Nodes of a panel of x or y: exact up to the seventh power; the fade of noise needs the sixth.
 const ROWS: usize = 4;
 
 /// `∫σ_t dV` over a volume; `None` for one without bounds.
@@ -37,19 +37,19 @@ pub fn content(volume: &Volume) -> Option<Known> {
     by_chords(volume, MOST_CHORDS)
 }
 
-/// The same with so many chords in a resolution at most.
+/// `∫σ_t dV` with a maximum number of chords in a resolution; `None` for a volume without bounds.
 pub fn by_chords(volume: &Volume, most: f64) -> Option<Known> {
     let within = volume.bounds().enclosing_box()?;
     let height = within.high.0[2] - within.low.0[2];
     let most = most.min(MOST_PIECES / (1.0 + volume.pieces(height)));
     let mut chords = Chords::new(volume, &within);
     if matches!(chords, Chords::Box(_, true)) && chords.count(2) > most {
-        // Cells finer than chords can be need no cuts.
+        // Cells that are finer than chords need no cuts.
         chords = Chords::whole(&within);
     }
     let is_exact = has_cells(volume) && matches!(chords, Chords::Box(_, true));
     let is_smooth = is_exact || !has_kinks(volume);
-    // Twice, since one may be chance; an exact rule has none.
+    // Twice, since one agreement may be an accident; an exact rule needs one.
     let needed = if is_exact { 1 } else { 2 };
     let at = |n: usize| chords.over(volume, &within, n);
     let mut n = 2;
@@ -58,7 +58,7 @@ pub fn by_chords(volume: &Volume, most: f64) -> Option<Known> {
     loop {
         let here = at(n);
         steps.push((here.value - before.value).abs());
-        // Kinks that no chord sees leave any number of resolutions alike.
+        // Kinks that no chord crosses leave any number of resolutions alike.
         let agree = |step: &f64| here.value > 0.0 && *step <= AGREED * here.value;
         let is_there =
             is_smooth && steps.len() >= needed && steps.iter().rev().take(needed).all(agree);
@@ -66,7 +66,7 @@ pub fn by_chords(volume: &Volume, most: f64) -> Option<Known> {
             let error = if is_there {
                 steps[steps.len() - 1]
             } else {
-                // Noise bends so little that caps of it do not count.
+                // Noise bends so little that caps of it are negligible.
                 let is_even = is_smooth || volume.smoothness() == Smoothness::SmoothCells;
                 let most = if is_even { 0.0 } else { volume.majorant(&within) };
                 settled(&steps, is_smooth) + most * chords.unseen(n)
@@ -78,19 +78,20 @@ pub fn by_chords(volume: &Volume, most: f64) -> Option<Known> {
     }
 }
 
-/// Whether σ_t is a polynomial in cells along the axes.
+/// Returns true if σ_t is a polynomial in cells along the axes.
 fn has_cells(volume: &Volume) -> bool {
     matches!(volume.smoothness(), Smoothness::SmoothCells | Smoothness::Cells)
 }
 
-/// Whether σ_t jumps or bends.
+/// Returns true if σ_t jumps or bends.
 fn has_kinks(volume: &Volume) -> bool {
     volume.smoothness() != Smoothness::Smooth
 }
 
-/// What a sequence of resolutions is still off, by its last steps. Where the field is smooth, the last one
-/// if it settles fast, and four times that if it settles slowly. Kinks make steps of any size, and two
-/// resolutions may be alike by chance: the largest of three steps, or of two, says more, see [`doubt`].
+/// Error of a sequence of resolutions, from its last steps. Where the field is smooth, it is the last step if the
+/// sequence settles fast, and four times that if it settles slowly. Kinks make steps of any size, and two
+/// resolutions may be alike by accident: the largest of three steps, or of two, has more information, see
+/// [`doubt`].
 fn settled(steps: &[f64], is_smooth: bool) -> f64 {
     let last = &steps[steps.len().saturating_sub(3)..];
     let shrinks = |factor: f64| {
@@ -105,14 +106,16 @@ fn settled(steps: &[f64], is_smooth: bool) -> f64 {
     }
 }
 
-/// The chance that all steps are small beside what the last resolution is off.
+/// Probability that all steps are small beside the error of the last resolution.
 const CHANCE: f64 = 3e-5;
 
-/// By how much what the last resolution is off exceeds the largest of m steps, but with the [`CHANCE`].
+/// Factor K by which the error of the last resolution may exceed the largest of m steps, except with probability
+/// [`CHANCE`].
 ///
-/// Where a plane of kinks lies among the chords is chance: what resolutions are off is as good as independent and
-/// normal, and at worst halved with them. With x for the last, in its own deviations, and yⱼ of deviation 2ʲ for
-/// those before, all steps are below |x|/K if every yⱼ is so near the one after it:
+/// The position of a plane of kinks among the chords is random. The errors of resolutions are about independent and
+/// normal, and at worst halved from one to the next. Let x be the last error in units of its standard deviation,
+/// and yⱼ the errors before, with standard deviations 2ʲ. All steps are below |x|/K if every yⱼ is that near to the
+/// one after it:
 ///
 /// ```text
 /// P = ∫ φ(x) ∏ⱼ (2|x|/K) φ(x/2ʲ)/2ʲ dx = (2/(πK²))^{m/2} E|z|^m 2^{−m(m+1)/2} q^{−(m+1)/2},
@@ -125,11 +128,11 @@ fn doubt(steps: usize) -> f64 {
     (2.0 / PI).sqrt() * (rest / CHANCE).powf(1.0 / m)
 }
 
-/// Where chords are: about the axis of a ball, or in panels of x and y.
+/// Positions of chords: about the axis of a ball, or in panels of x and y.
 enum Chords {
-    /// With its centre and its radius.
+    /// Centre and radius of a ball.
     Ball(Point, f64),
-    /// With the ends of panels, and whether these are where kinks meet the edges.
+    /// Ends of panels along x and y; true if they lie where kinks intersect the edges.
     Box([Vec<f64>; 2], bool),
 }
 
@@ -148,8 +151,8 @@ impl Chords {
         Self::Box([0, 1].map(|i| vec![within.low.0[i], within.high.0[i]]), false)
     }
 
-    /// The volume that a plane may cut off a ball without any chord meeting it: between chords there is room
-    /// for a cap of the radius ρ = 0.4 R/n and the volume πρ⁴/(4R), of which twice is taken.
+    /// The volume that a plane may cut off a ball without crossing any chord: between chords there is room for a
+    /// cap of the radius ρ = 0.4 R/n and the volume πρ⁴/(4R); twice that is returned.
     fn unseen(&self, n: usize) -> f64 {
         match self {
             Self::Ball(_, radius) => 0.04 * radius.powi(3) / (n as f64).powi(4),
@@ -157,7 +160,7 @@ impl Chords {
         }
     }
 
-    /// How many chords a resolution of n has.
+    /// Number of chords at a resolution of n.
     fn count(&self, n: usize) -> f64 {
         let square = (n * n) as f64;
         match self {
@@ -168,7 +171,7 @@ impl Chords {
         }
     }
 
-    /// `∫σ_t dV` at a resolution, and what errors of the optical depths make of it.
+    /// `∫σ_t dV` at a resolution, with the error from the optical depths.
     fn over(&self, volume: &Volume, within: &Aabb, n: usize) -> Known {
         let (mut sum, mut error) = (Sum::default(), 0.0);
         let mut add = |x: f64, y: f64, area: f64| {
@@ -183,7 +186,7 @@ impl Chords {
                     let across = radius * tilt.sin();
                     let area = width * TAU / turns as f64 * across * radius * tilt.cos();
                     for turn in 0..turns {
-                        // Half a step on, so that no chord runs through a plane of symmetry.
+                        // An offset of half a step, so that no chord runs through a plane of symmetry.
                         let angle = TAU * (turn as f64 + 0.5) / turns as f64;
                         add(x + across * angle.cos(), y + across * angle.sin(), area);
                     }
@@ -202,14 +205,14 @@ impl Chords {
     }
 }
 
-/// The ends of a box along an axis, and where edges along it meet kinks: whatever a plane cuts off a box
-/// lies about one of its corners.
+/// The ends of a box along an axis, and the places where edges along it intersect kinks: a part that a plane cuts
+/// off a box lies about one of its corners.
 fn cuts(volume: &Volume, within: &Aabb, axis: usize) -> Vec<f64> {
     let (low, high) = (within.low.0, within.high.0);
     let mut direction = Point([0.0; 3]);
     direction.0[axis] = 1.0;
     let mut ends = Vec::new();
-    // Cells are the same along all edges.
+    // Cells are equal along all edges.
     for edge in 0..if has_cells(volume) { 1 } else { 4 } {
         let mut origin = low;
         for (bit, i) in [(axis + 1) % 3, (axis + 2) % 3].into_iter().enumerate() {

@@ -1,51 +1,50 @@
-//! Walks in space: how far what a particle brings may stray from what it began with.
+//! Walks in space: bounds on the variance of the energy that a particle deposits or carries out.
 //!
-//! In a furnace the future of a particle is worth its weight w, wherever it is and wherever it goes: what
-//! it has brought, `Σ w r (1 − a)`, and what it still carries are a martingale. With `Q_k`, `S_k` of a
-//! collision, the worth of it has the variance `w² v`, and w² itself loses `w² ℓ` on average,
-//!
+//! In a furnace the expected score of a particle is its weight w, at any place and in any direction. The energy
+//! that it has scored, `Σ w r (1 − a)`, plus the weight that it carries is a martingale. With `Q_k`, `S_k` of a
+//! collision, the collision adds the variance `w² v`, and w² itself loses `w² ℓ` on average,
 //! ```text
 //! v = Q₂ + S₂ − (1 − (1 − a) r)²,   ℓ = 1 − Q₂ − S₂,   Var[X] = E[Σ w² v] ≤ sup v/ℓ     where ℓ > 0
 //! ```
 //!
-//! for `r < 2/(a + 1)`. A rule that never ends a walk has v = 0 for `σ̂ ≥ σ_t`: every draw is 1. Where ℓ ≤ 0
-//! a particle may gain weight faster than it leaves; in a thin volume it still leaves: a flight ends in a
-//! collision with chance `p = 1 − exp(−σ̂ d)` at most, d the longest way through, and
+//! for `r < 2/(a + 1)`. A rule that never ends a walk has v = 0 for `σ̂ ≥ σ_t`: every draw is 1. Where ℓ ≤ 0 a
+//! particle may gain weight faster than it leaves. In a thin volume it still leaves: a flight ends in a collision
+//! with probability `p = 1 − exp(−σ̂ d)` at most, d the longest way through, and
 //!
 //! ```text
 //! Var[X] ≤ p sup v/(1 − p sup(Q₂ + S₂))
 //! ```
 //!
-//! Roulette below w₀ adds `w₀ w − w²` each time. Where no weight grows, `U(w) = 2w − w²` is never below
-//! what is still to come, so that `Var[X] ≤ 1`; and `w₀²` where v = 0.
+//! Roulette below w₀ adds `w₀ w − w²` each time. Where no weight grows, `U(w) = 2w − w²` is an upper bound of the
+//! variance that is still to come, so that `Var[X] ≤ 1`; and `w₀²` where v = 0.
 //!
 //! Bounds are searched on a grid of r and a and raised by a hundredth. All of it is derived here.
 
 use crate::ParticleRule;
 
-/// A ratio this little above 1 is rounding of a majorant.
+/// Maximum excess of a ratio above 1 that is rounding of a majorant.
 const SLACK: f64 = 1e-8;
-/// The grid's bound is raised by this factor.
+/// Factor by which the grid's bound is raised.
 const RAISED: f64 = 1.01;
-/// A variance below this is rounding.
+/// Maximum variance that is rounding.
 const NOTHING: f64 = 1e-13;
 /// Steps of the grid in r.
 const STEPS: u32 = 2000;
 
-/// What a bound depends on.
+/// Input of a bound.
 #[derive(Debug, Clone, Copy)]
 pub struct Walks {
-    /// What happens at a collision.
+    /// Rule at a collision.
     pub rule: ParticleRule,
     /// w₀, where roulette is played.
     pub roulette: Option<f64>,
-    /// Whether the first collisions split.
+    /// True if the first collisions split.
     pub splits: bool,
-    /// A number that r exceeds nowhere.
+    /// An upper bound of r everywhere.
     pub largest_ratio: f64,
     /// The least and the largest albedo.
     pub albedo: [f64; 2],
-    /// A bound on `∫σ̂` along any way through.
+    /// A bound on `∫σ̂` along any straight line through the volume.
     pub depth: f64,
 }
 
@@ -67,25 +66,25 @@ impl Walks {
         }
     }
 
-    /// Whether no weight ever exceeds that at the start.
+    /// Returns true if no weight ever exceeds that at the start.
     pub fn never_grows(&self) -> bool {
         self.ratio() <= 1.0
     }
 
-    /// Whether the energy has a bound whatever the size of the volume: no weight grows, or none faster
-    /// than walks end.
+    /// Returns true if the energy has a bound for any size of the volume: no weight grows, or none faster than
+    /// walks end.
     pub fn is_tame(&self) -> bool {
         let limit = 2.0 / (1.0 + self.albedo[1]);
         let settles = self.rule != ParticleRule::Weighted && self.roulette.is_none();
         self.never_grows() || (settles && self.ratio() < limit * (1.0 - SLACK))
     }
 
-    /// A bound on the variance of the energy that a particle brings; `None` where none is known.
+    /// A bound on the variance of the energy of a particle; `None` where none is known.
     pub fn energy_variance(&self) -> Option<f64> {
         let extremes = self.extremes();
         if let Some(below) = self.roulette {
-            // Of one particle of weight w, at most w w₀ or w; the parts that splits leave share the
-            // weight of 1, and each adds its own and what roulette adds to it.
+            // For one particle of weight w, at most w w₀ or w. The parts that split share the weight of 1, and each
+            // adds its own variance and that of roulette.
             let bound = match (extremes.spread <= NOTHING, self.splits) {
                 (true, false) => below * below,
                 (true, true) => 2.0 * below,
@@ -158,7 +157,7 @@ mod tests {
             let never = walks(ParticleRule::NonTerminating, 1.0 + 1e-9, albedo);
             assert_eq!(never.energy_variance(), Some(0.0));
         }
-        // Nothing is absorbed: nothing is left to chance.
+        // Nothing is absorbed: nothing is random.
         assert_eq!(walks(ParticleRule::Analog, 1.0, 1.0).energy_variance(), Some(0.0));
     }
 

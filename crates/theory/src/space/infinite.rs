@@ -20,19 +20,18 @@ use numeric::quadrature::GaussLegendre;
 use numeric::sum::Sum;
 use numeric::{Known, roots};
 
-/// Beyond this y the integrand is below rounding.
+/// End of y: beyond it the integrand is below rounding.
 const FARTHEST: f64 = 22.0;
-/// The width of the panels of y, but for the first: e^{−r/ν} comes to life where ν is about r.
+/// The width of the panels of y, but for the first: e^{−r/ν} rises where ν is about r.
 const WIDTH: f64 = 0.25;
-/// Below the first width each panel is so many times wider than the one before, from the smallest on.
+/// Ratio of the widths of adjacent panels below the full width, from the smallest on.
 const GROWTH: f64 = 1.25;
 const SMALLEST: f64 = 1e-12;
-/// The least optical distance that they resolve.
+/// Minimum optical distance that the panels resolve.
 const NEAREST: f64 = 1e-8;
-/// The relative error of a sum of so many terms, of closed forms, and of `c − (1 − κ²)` in units of
-/// `1/(1 − c)`.
+/// The relative error of a sum over the panels, of closed forms, and of `c − (1 − κ²)` in units of `1/(1 − c)`.
 pub const ROUNDING: f64 = 1e-14;
-/// Below this albedo the pole is at κ = 1 to all digits, with nothing left of it.
+/// Below this albedo the pole is at κ = 1 to all digits, with a residue of 0.
 const FAINT: f64 = 0.03;
 
 /// The pole: κ, and `1 − κ²` with all its digits. For c in (0, 1).
@@ -74,7 +73,8 @@ fn share(x: f64) -> f64 {
     sum
 }
 
-/// `∫₀¹ g(ν) h(ν) dν` and what the pole adds: `discrete` answers the two factors beside `1/(c(c − 1 + κ²))`.
+/// `∫₀¹ g(ν) h(ν) dν` plus the contribution of the pole: `discrete` returns the two factors beside `1/(c(c − 1 +
+/// κ²))`.
 fn both(albedo: f64, h: impl Fn(f64) -> f64, discrete: impl Fn(f64, f64) -> [f64; 2]) -> f64 {
     let scattered = cut(albedo, h);
     let settled = if albedo < FAINT {
@@ -87,8 +87,8 @@ fn both(albedo: f64, h: impl Fn(f64) -> f64, discrete: impl Fn(f64, f64) -> [f64
     scattered + settled
 }
 
-/// With its relative error: nearer than [`NEAREST`] the panels of ν are too wide for what comes to life where ν is
-/// the distance.
+/// A value with its relative error. Nearer than [`NEAREST`] the panels of ν are too wide for a function that rises
+/// where ν is the distance.
 fn known(value: f64, rounding: f64, albedo: f64, distance: f64) -> Known {
     let error = if distance < NEAREST { 1.0 } else { rounding / (1.0 - albedo) };
     Known::new(value, error * value)
@@ -106,7 +106,7 @@ pub fn fluence(albedo: f64, distance: f64) -> Known {
     let decay = |nu: f64| (-distance / nu).exp() / (nu * nu);
     let pole = |kappa: f64, rest: f64| [2.0 * kappa * kappa * rest, (-kappa * distance).exp()];
     let value = both(albedo, decay, pole) / (4.0 * PI * distance);
-    // Exponents are rounded, and with them all that is left of them far away.
+    // Exponents are rounded: far away this is a relative error of the exponential.
     known(value, ROUNDING + 2.0 * f64::EPSILON * distance, albedo, distance)
 }
 

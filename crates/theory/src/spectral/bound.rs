@@ -1,16 +1,15 @@
 //! A bound on the second moment of walks that scatter many times, where draws are relative to the density of one walker.
 //!
-//! With A, N and S of [`Rates`], `α = A − N` and `Φ = ∫ p_λ²/p_h dω`, the second moment of what a walk is still to score
-//! has a largest value M over all places and directions, with which, where flights within the body are at most ℓ long,
-//!
+//! Take A, N and S of [`Rates`], `α = A − N` and `Φ = ∫ p_λ²/p_h dω`. The second moment of the score that is still
+//! to come has a maximum M over all places and directions. Where flights within the body are at most ℓ long,
 //! ```text
 //! M ≤ max over flights of e + (A_b + S Φ M) f,   e = e^{−αℓ},  f = (1 − e)/α
 //! M ≤ max(1, (e + A_b f)/(1 − S Φ f)),  where S Φ f < 1
 //! ```
 //!
-//! where leaving scores 1, and absorption, of the rate `A_b` in the second moment, 1 too, or nothing. Where directions after a
-//! scattering are isotropic, e is a mean over them. Where α varies, S/α and `A_b/α` stand for S and `A_b`, and `1 − e` for
-//! f. Where `S Φ f ≥ 1` the variance may be infinite, and may be not.
+//! where leaving scores 1, and absorption, of the rate `A_b` in the second moment, scores 1 too, or nothing. Where
+//! directions after a scattering are isotropic, e is a mean over them. Where α varies, S/α and `A_b/α` stand for S
+//! and `A_b`, and `1 − e` for f. Where `S Φ f ≥ 1` the variance may be infinite or finite.
 //!
 //! Source: derived; the equation of the second moment is that of J. Spanier, E. M. Gelbard, *Monte Carlo Principles and
 //! Neutron Transport Problems* (1969).
@@ -20,13 +19,13 @@ use media::phase::Phase;
 use media::phase::isotropic::Isotropic;
 use numeric::quadrature::GaussLegendre;
 
-/// So often panels of the integral over directions are halved towards straight on and straight back.
+/// Number of halvings of the panels of the integral over directions, towards straight on and straight back.
 const HALVINGS: i32 = 48;
-/// What all light of a phase function may be off by where these panels resolve it.
+/// Maximum error of a phase function's total where these panels resolve it.
 const RESOLVED: f64 = 1e-11;
-/// Second moments that change by less than this share of σ̂ do not change.
+/// Maximum change of second moments, as a share of σ̂, that is rounding.
 pub const NOTHING: f64 = 1e-12;
-/// What is made sure of beyond rounding.
+/// Margin of bounds beyond rounding.
 const SLACK: f64 = 1e-9;
 
 /// The rates of the second moment of a channel.
@@ -40,7 +39,7 @@ pub struct SecondMomentRates {
     pub absorbed: f64,
 }
 
-/// Those of a channel where all channels have these extinctions; `Φ` is given.
+/// Rates of a channel, given the extinctions of all channels and `Φ`.
 pub fn square(
     rates: &Rates,
     walk: Proposal,
@@ -58,17 +57,17 @@ pub fn square(
     }
 }
 
-/// How a flight ends: e, and f.
+/// Second moments of the ends of a flight: e, and f.
 #[derive(Debug, Clone, Copy)]
 pub struct Flight {
-    /// The second moment of what leaves.
+    /// The second moment e of leaving.
     pub leaves: f64,
-    /// What rates are multiplied by.
+    /// The factor f of rates.
     pub collides: f64,
 }
 
 impl Flight {
-    /// Of a length, where α is one number.
+    /// A flight of a length, where α is constant.
     pub fn of(lost: f64, length: f64) -> Self {
         if lost == 0.0 {
             return Self { leaves: 1.0, collides: length };
@@ -83,7 +82,7 @@ impl Flight {
     }
 }
 
-/// M of walks that begin with one flight and go on with others; `None` where none is known.
+/// M of walks that begin with one flight and go on with others; `None` where no bound is known.
 pub fn largest(first: Flight, then: Flight, [scattered, absorbed]: [f64; 2]) -> Option<f64> {
     let room = 1.0 - scattered * then.collides;
     let of_rates = [scattered, absorbed];
@@ -93,7 +92,7 @@ pub fn largest(first: Flight, then: Flight, [scattered, absorbed]: [f64; 2]) -> 
     (room > SLACK && found.is_finite()).then_some(found)
 }
 
-/// Whether directions after a scattering are isotropic in all channels.
+/// Returns true if directions after a scattering are isotropic in all channels.
 pub fn are_isotropic(phases: &[Phase]) -> bool {
     phases.iter().all(|phase| *phase == Phase::Isotropic(Isotropic))
 }
@@ -134,7 +133,7 @@ mod tests {
         (0.9, -0.5, 224.796_962_135_276_35),
     ];
 
-    /// One channel by itself scores 1, always.
+    /// A single channel scores 1 in every draw.
     #[test]
     fn a_channel_by_itself_scores_one() {
         let rates = Rates { majorants: vec![2.0], albedos: vec![0.7] };
@@ -158,7 +157,7 @@ mod tests {
         assert!(at(0.28).is_some() && at(0.29).is_none());
     }
 
-    /// By the definition where nothing cancels, and with all its digits where the medium is thin.
+    /// Compares with the definition where nothing cancels, and with all digits where the medium is thin.
     #[test]
     fn what_flights_lose_keeps_its_digits() {
         let rates = Rates { majorants: vec![1.5, 1.7], albedos: vec![0.4, 0.9] };

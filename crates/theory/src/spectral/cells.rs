@@ -2,23 +2,23 @@
 
 use super::{RARE, Spectrum};
 
-/// The most atoms of the law of MIS with delta tracking.
+/// Maximum number of atoms of the distribution of MIS with delta tracking.
 const MOST_ATOMS: usize = 300_000;
-/// Extinctions that differ by less are one constant, relative to the majorant.
+/// Maximum difference of extinctions, relative to the majorant, that count as one constant.
 const CONSTANT: f64 = 1e-13;
 
 /// The largest rate times the length of a cell, and the rates relative to the largest.
 pub type Cell = (f64, Vec<f64>);
 
 impl Spectrum {
-    /// The law of MIS with delta tracking through a medium that is constant in each cell: what survivors
-    /// score, with which probability. `None` where the medium is not, or has too many different cells.
+    /// Distribution of MIS with delta tracking through a medium that is constant in each cell: scores of survivors,
+    /// and their probabilities. `None` where the medium is not constant, or has too many different cells.
     ///
     /// ```text
     /// X_λ = p_λ/Σ_h w_h p_h,   P = Π_j l_j^{m_j}/m_j! Σ_h w_h p_h,   p_λ = e^{−μ̄_λ ℓ} Π_j n_{λj}^{m_j}
     /// ```
     ///
-    /// Cells whose n are in proportion are one.
+    /// Cells with proportional n are merged.
     pub(super) fn cells(&self) -> Option<Vec<(f64, Vec<f64>)>> {
         let (mut cells, mut node) = (Vec::<Cell>::new(), 0);
         let scale = self.majorants.iter().fold(0.0f64, |most, &x| most.max(x));
@@ -38,7 +38,7 @@ impl Spectrum {
     }
 }
 
-/// Joins a stretch with the cells in whose proportion its rates are; one whose rates are no more than `nothing` is
+/// Merges an interval with the cells that have proportional rates. An interval with rates of at most `nothing` is
 /// left out.
 pub fn join(cells: &mut Vec<Cell>, nothing: f64, length: f64, rates: &[f64]) {
     let largest = rates.iter().fold(0.0f64, |most, &n| most.max(n));
@@ -55,10 +55,12 @@ pub fn join(cells: &mut Vec<Cell>, nothing: f64, length: f64, rates: &[f64]) {
     }
 }
 
-/// The probability of every number of events in all cells, and the densities of all heroes relative to their mean.
+/// The probability of every combination of numbers of events in all cells, and the densities of all heroes relative
+/// to their mean.
 ///
-/// Numbers of events are left out where they add less than `RARE` to the probability and to `E[X⁴]/T⁴` of every channel:
-/// a draw is at most `1/w`, so that with `T = e^{−μ̄ℓ + Σ l d}` all numbers of later events together add
+/// Numbers of events are left out where they add less than `RARE` to the probability and to `E[X⁴]/T⁴` of every
+/// channel. A draw is at most `1/w`. With `T = e^{−μ̄ℓ + Σ l d}`, a number of events together with all numbers of
+/// later events adds
 ///
 /// ```text
 /// P X⁴/T⁴ ≤ l^m/m! p e^{Σ l d}/T (wT)^{−3}
@@ -84,7 +86,7 @@ pub fn balanced(cells: &[Cell], begin: Vec<f64>, heroes: &[f64]) -> Option<Vec<(
             let mut channels = (0..heroes.len()).filter(|&i| heroes[i] > 0.0);
             measure * whole > RARE || channels.any(|i| adds(i) > RARE)
         };
-        // What nobody can tell the channels apart by needs no numbers.
+        // Events that are equally probable in all channels need no numbers.
         if direction.iter().all(|&d| d == 1.0) {
             for (measure, _) in &mut paths {
                 *measure *= length.exp();

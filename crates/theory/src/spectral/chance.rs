@@ -1,4 +1,4 @@
-//! The chances of spectral tracking: what a collision is, decided once for all channels.
+//! Event probabilities of spectral tracking: a collision has one outcome for all channels.
 //!
 //! ```text
 //! P_e = mean_λ μ_e,λ/μ̄,   P_e ∝ max_λ μ_e,λ,   P_e ∝ Σ_λ w_λ μ_e,λ,   events e null, scattered, absorbed
@@ -9,7 +9,7 @@
 
 use numeric::Lane;
 
-/// How the next event of spectral tracking is chosen, whatever happened before.
+/// Choice of the next event of spectral tracking, independent of earlier events.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Chance {
     /// In transmittance: `P_n` = mean over the channels of `n/μ̄`.
@@ -43,17 +43,17 @@ impl Chance {
     }
 }
 
-/// How spectral tracking chooses what a collision is.
+/// Choice of the event at a collision of spectral tracking.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Chances {
-    /// Whatever happened before.
+    /// Probabilities that do not depend on earlier events.
     Fixed(Chance),
-    /// By the mean over the channels, weighted by what the path has brought each so far.
+    /// Means over the channels, weighted by the present weight of each.
     History,
 }
 
 impl Chances {
-    /// As case files and tables have it.
+    /// The word in case files and tables.
     pub fn label(self) -> &'static str {
         match self {
             Self::Fixed(Chance::Average) => "average",
@@ -62,8 +62,8 @@ impl Chances {
         }
     }
 
-    /// The chances of events, given `μ_e/μ̄` and the weight of each of so many channels: to go straight on, to be scattered
-    /// and to be absorbed.
+    /// Probabilities of events, given `μ_e/μ̄` and the weight of each of `count` channels: to go straight on, to be
+    /// scattered and to be absorbed.
     #[inline(always)]
     #[expect(
         clippy::needless_range_loop,

@@ -14,7 +14,7 @@
 //! spectral tracking    exp ∫ μ̄ [Π (n_λ/μ̄)^{k_λ} / P_n^{K−1} − 1]
 //! ```
 //!
-//! They hold for any fields. A walk of delta tracking, whose hero is h, lives with the probability `T_h`.
+//! They hold for any fields. A walk of delta tracking with the hero h survives with the probability `T_h`.
 //!
 //! Source: B. Miller, I. Georgiev, W. Jarosz, *A Null-Scattering Path Integral Formulation of Light
 //! Transport*, ACM Transactions on Graphics 38 (2019), section 5.1; P. Kutz, R. Habel, Y. K. Li,
@@ -34,33 +34,33 @@ use super::Mesh;
 use numeric::Known;
 use numeric::sum::Sum;
 
-/// Numbers of null collisions that are rarer than this do not count.
+/// Maximum probability of numbers of null collisions that are left out.
 const RARE: f64 = 1e-19;
 
-/// How all channels are scored by one draw.
+/// Scoring of all channels by one draw.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Tracker {
-    /// One channel by its own walk, the others 0.
+    /// Scores one channel by its own walk, the others 0.
     Independent {
-        /// Whether real collisions end the walk.
+        /// True if real collisions end the walk.
         delta: bool,
     },
-    /// All channels, each by its own walk.
+    /// Scores all channels, each by its own walk.
     InTurn {
-        /// Whether real collisions end the walk.
+        /// True if real collisions end the walk.
         delta: bool,
     },
-    /// All channels by the hero's walk, divided by its density.
+    /// Scores all channels by the hero's walk, divided by its density.
     Hero {
-        /// Whether real collisions end the walk.
+        /// True if real collisions end the walk.
         delta: bool,
     },
-    /// The same divided by the mean density of all heroes.
+    /// Scores all channels by the hero's walk, divided by the mean density of all heroes.
     Mis {
-        /// Whether real collisions end the walk.
+        /// True if real collisions end the walk.
         delta: bool,
     },
-    /// One majorant for all channels, and a chance that depends on all of them.
+    /// One majorant for all channels, and an event probability that depends on all of them.
     Tracking(Chance),
 }
 
@@ -165,7 +165,7 @@ impl Spectrum {
         let of_heroes = |exponent: &dyn Fn(usize) -> f64| -> f64 {
             (0..self.channels()).map(|hero| self.hero[hero] * exponent(hero).exp()).sum()
         };
-        // One channel by its own walk, without the factor of its choice.
+        // A single channel by its own walk, without the factor of its choice.
         let own = |channel: usize, k: f64, delta: bool| -> f64 {
             if k == 0.0 {
                 return 1.0;
@@ -223,8 +223,8 @@ impl Spectrum {
         Some(found)
     }
 
-    /// What rounding changes `E[X_λ^k]` by, relative to it: of walks that are weighted by other channels the exponents, which may
-    /// be hundreds, and null extinctions, differences of σ̂ and σ_t.
+    /// Relative rounding error of `E[X_λ^k]`: walks that are weighted by other channels have exponents, which may
+    /// be hundreds, and null extinctions, which are differences of σ̂ and σ_t.
     ///
     /// ```text
     /// ε [(k − 1) μ̄_h ℓ + k μ̄ ℓ + ∫ n^k/d^{k−1} (1 + k μ̄/n + (k − 1) b) dt],  b = μ̄_h/n_h, 1/P_n or 0
@@ -269,7 +269,7 @@ impl Spectrum {
         f64::EPSILON * exponents
     }
 
-    /// The sum over the number of collisions, for densities that depend on nothing else.
+    /// The sum over the number of collisions, for densities that depend only on that number.
     fn by_count(&self, nulls: f64, depth: f64, total: f64) -> f64 {
         let length = self.length();
         let log_density = |n: f64| {
@@ -300,7 +300,7 @@ impl Spectrum {
     }
 }
 
-/// `|x|^k`, or `x^k` where k is whole.
+/// `|x|^k`, or `x^k` where k is an integer.
 fn power(x: f64, k: f64) -> f64 {
     #[allow(clippy::cast_possible_truncation)] // at most eight
     if k == k.round() { x.powi(k as i32) } else { x.abs().powf(k) }

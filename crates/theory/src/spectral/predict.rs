@@ -1,4 +1,4 @@
-//! From mixed moments to what is tested: each channel, the luminance, and covariances of neighbours.
+//! Prediction from mixed moments: each channel, the luminance, and covariances of adjacent channels.
 
 use std::cell::RefCell;
 use std::collections::HashMap;
@@ -9,13 +9,13 @@ use crate::{Channel, Moments, Prediction, Tails};
 use numeric::Known;
 use numeric::sum::Sum;
 
-/// What rounding leaves of a moment, relative to it.
+/// Relative rounding error of a moment.
 const ROUNDING: f64 = 1e-13;
-/// Moments that are known, by their powers.
+/// Computed moments, by their powers.
 type Cache = RefCell<HashMap<Vec<u8>, Option<f64>>>;
 
 impl Spectrum {
-    /// What theory says of draws that score every channel and, by these weights, the luminance.
+    /// Prediction for draws that score every channel and, by these weights, the luminance.
     pub fn predict(&self, luminance: &[f64]) -> Prediction {
         let one = |channel: usize| {
             let mut form = vec![0.0; self.channels()];
@@ -107,8 +107,8 @@ impl Spectrum {
         Channel { name, ..Channel::unbiased(truth, moments, tails) }
     }
 
-    /// The most that a draw of MIS makes of a linear form, `max a_λ/w_λ`: a survivor scores
-    /// `Σ_λ a_λ p_λ/Σ_h w_h p_h`, others nothing, so that `E[Y²] ≤ E[Y] max a_λ/w_λ`.
+    /// Maximum of a linear form of a draw of MIS, `max a_λ/w_λ`: a survivor scores `Σ_λ a_λ p_λ/Σ_h w_h p_h`,
+    /// others nothing, so that `E[Y²] ≤ E[Y] max a_λ/w_λ`.
     fn most_score(&self, form: &[f64]) -> f64 {
         form.iter().zip(&self.hero).map(|(a, w)| a / w).fold(0.0, f64::max)
     }
@@ -178,7 +178,8 @@ mod tests {
     use numeric::Span;
     use std::sync::Arc;
 
-    /// A thin hero walks for a thick channel: the second moment is e^584, whose exponent has few digits left after the point.
+    /// A thin hero walks for a thick channel: the second moment is e^584, an exponent with few digits left after
+    /// the point.
     #[test]
     fn large_exponents_are_part_of_the_error() {
         let span = Span::new(0.0, 1.0);

@@ -1,7 +1,7 @@
-//! How powers of the weights of all channels grow along a walk that scores all of them.
+//! Growth rates of the powers of all channels' weights along a walk that scores all of them.
 //!
-//! A walk of tentative collisions of rate μ̄ in which an event e (null, scattered) of the chance `P_e` multiplies the
-//! weight of the channel λ by `μ_e,λ/(μ̄ P_e)` has, with `K = Σ k_λ`,
+//! A walk has tentative collisions of rate μ̄. An event e (null, scattered) of probability `P_e` multiplies the
+//! weight of the channel λ by `μ_e,λ/(μ̄ P_e)`. With `K = Σ k_λ`,
 //!
 //! ```text
 //! E[Π X_λ^{k_λ}] of a stretch without scattering = exp(−A ℓ + ∫ N dt),   S the rate of scatterings
@@ -10,19 +10,19 @@
 //! ratio tracking       A as above,  N = Π n_λ^{k_λ}/μ̄_h^{K−1}
 //! ```
 //!
-//! where lengths and rates of the hero's flights are in the weights, too. k = 0 counts walks.
+//! where lengths and rates of the hero's flights are in the weights, too. k = 0 gives probabilities of walks.
 //!
 //! Source: derived by Campbell's theorem, as in [`super`].
 
 use super::chance::{Chance, Chances, shares};
 use super::power;
 
-/// Who walks.
+/// Walker of a walk.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Proposal {
-    /// The hero of a number.
+    /// The hero with a channel number.
     Hero(usize),
-    /// All channels together, by fixed chances.
+    /// All channels together, by fixed event probabilities.
     Together(Chance),
 }
 
@@ -36,7 +36,7 @@ pub struct Rates {
 }
 
 impl Rates {
-    /// A, of the exponents k.
+    /// A of the exponents k.
     pub fn loss(&self, walk: Proposal, k: &[i32]) -> f64 {
         let hero = match walk {
             Proposal::Hero(hero) => hero,
@@ -47,7 +47,8 @@ impl Rates {
         all - f64::from(total - 1) * self.majorants[hero]
     }
 
-    /// `A − N` of the square of a channel, where the channels have these extinctions, with all digits where these are small:
+    /// `A − N` of the square of a channel, given the extinctions of the channels, with all digits where these are
+    /// small:
     ///
     /// ```text
     /// hero h               (2 μ̄_λ (σ_λ − σ_h) + μ̄_h σ_h − σ_λ² − (μ̄_λ − μ̄_h)²)/n_h,  σ_h for its own channel
@@ -78,10 +79,10 @@ impl Rates {
         }
     }
 
-    /// N and S, where the channels have these extinctions.
+    /// N and S, given the extinctions of the channels.
     pub fn gains(&self, walk: Proposal, k: &[i32], extinctions: &[f64]) -> [f64; 2] {
         let majorants = &self.majorants;
-        // Where σ_t is above σ̂ by rounding nothing is null.
+        // Where σ_t exceeds σ̂ by rounding no collision is null.
         let null = |channel: usize| (majorants[channel] - extinctions[channel]).max(0.0);
         let scattered = |channel: usize| extinctions[channel] * self.albedos[channel];
         let [by_null, by_scattering] = match walk {
@@ -94,7 +95,7 @@ impl Rates {
         [product(k, null, by_null), product(k, scattered, by_scattering)]
     }
 
-    /// The same of absorption, as of a scattering.
+    /// Rate of absorption, as S is of scattering.
     pub fn absorbed(&self, walk: Proposal, k: &[i32], extinctions: &[f64]) -> f64 {
         let own = |channel: usize| extinctions[channel] * (1.0 - self.albedos[channel]);
         let by = match walk {
@@ -120,7 +121,7 @@ impl Rates {
     }
 }
 
-/// `Π x_λ^{k_λ}/by^{K−1}`; 0 where nothing happens in a channel that is asked for.
+/// `Π x_λ^{k_λ}/by^{K−1}`; 0 where the event has the rate 0 in a channel with k > 0.
 fn product(k: &[i32], of: impl Fn(usize) -> f64, by: f64) -> f64 {
     let mut found = 1.0;
     for (channel, &k) in k.iter().enumerate().filter(|(_, k)| **k > 0) {

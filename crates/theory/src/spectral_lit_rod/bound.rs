@@ -1,24 +1,24 @@
-//! A bound on `E[X²]` of hits and shadow rays together over heroes, in rods whose channels differ in everything.
+//! Bound on `E[X²]` of hits and shadow rays together over heroes, in rods with different media in all channels.
 //!
-//! Let `p_h` and `q_h` be the densities of a path by the hits and by the shadow rays of the hero h, and `c_v` and `h_v`
-//! what the shadow ray of the vertex v, and the hit after it, bring the channel λ. Both are `f_λ/D`, by the balance
-//! heuristic, on the same paths:
+//! Let `p_h` and `q_h` be the densities of a path by the hits and by the shadow rays of the hero h. Let `c_v` and
+//! `h_v` be the scores of the shadow ray of the vertex v, and of the hit after it, in the channel λ. Both are
+//! `f_λ/D`, by the balance heuristic, on the same paths:
 //!
 //! ```text
 //! D = Σ_h w_h (p_h + q_h) ≥ w_λ (p_λ + q_λ)
 //! E[c_v²] + E[h_v²] = ∫ f_λ²/D ≤ V_v/w_λ,   V_v the same sum where the channel λ walks alone
 //! ```
 //!
-//! The hit without scattering is at most 1/w, and nothing else happens then. Of all other hits no more than one does.
-//! With the triangle inequality for the rest, and `u_v = √V_v`,
+//! The hit without scattering is at most 1/w, and then there is no other score. At most one of all other hits
+//! occurs. With the triangle inequality for the rest, and `u_v = √V_v`,
 //!
 //! ```text
 //! w_λ E[X²] ≤ T_λ + (max Σ_v √(u_v² − b_v²) + √Σ_v b_v²)² ≤ T_λ + (Σ_v u_v + ½ max_v u_v)²
 //! ```
 //!
-//! `V_v` is that of one scattering, carried through v scatterings before it. If `V_{v+2} ≤ s V_v` everywhere in the rod
-//! then so it is from there on, as all is positive: the rest is two geometric series. (Where light mostly turns, every
-//! other `V_v` is small.)
+//! `V_v` is that of one scattering, carried through v scatterings before it. If `V_{v+2} ≤ s V_v` everywhere in the
+//! rod, this holds from there on, as all terms are positive: the rest is two geometric series. (Where light mostly
+//! turns, every other `V_v` is small.)
 //!
 //! Source: derived.
 
@@ -31,11 +31,11 @@ use crate::problems::LitRod;
 use media::Piecewise;
 use numeric::Known;
 
-/// Grids agree to this.
+/// Agreement of grids.
 const PRECISION: Precision = Precision { agreement: 1e-5, levels: 4 };
-/// A rest that is less, relative to the sum before it, need not be any smaller.
+/// Maximum rest of the sum, relative to the terms before it.
 const ENOUGH: f64 = 1e-6;
-/// The most vertices.
+/// Maximum number of vertices.
 const MOST: usize = 4000;
 
 /// A bound on `w_λ E[X_λ²]` of one channel with its σ̂; `None` where theory has no grid for it.
@@ -87,7 +87,7 @@ fn spread(grid: &Grid, techniques: Techniques) -> Option<f64> {
     None
 }
 
-/// The largest share that one vertex's worth is of another's, in any step.
+/// Maximum ratio of one vertex's values to another's, over all steps.
 fn largest_share(grid: &Grid, worth: &Importance, other: &Importance) -> f64 {
     let mut largest = 0.0f64;
     for i in 0..grid.steps().len() {

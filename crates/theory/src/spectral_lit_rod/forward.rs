@@ -1,7 +1,7 @@
 //! Rods in which light goes on forward: every mixed moment of hits that score all channels at once.
 //!
-//! With one direction a draw is a product along the ray. Let `μ_e`, e = n, s, a, be the rates of null, scattering and
-//! absorbing collisions, `μ̄ = μ_n + μ_s + μ_a`, `P_e` the chance of an event and `K = Σ k_λ`:
+//! With one direction a draw is a product along the ray. Let `μ_e`, e = n, s, a, be the rates of null, scattering
+//! and absorbing collisions, `μ̄ = μ_n + μ_s + μ_a`, `P_e` the probability of an event and `K = Σ k_λ`:
 //!
 //! ```text
 //! spectral tracking, fixed chances    E[Π X_λ^{k_λ}] = exp ∫ μ̄ [Σ_{e = n, s} Π (μ_e,λ/μ̄)^{k_λ}/P_e^{K−1} − 1]
@@ -24,9 +24,9 @@ use crate::spectral::lookups::survived;
 use crate::{CountLaw, Mesh};
 use media::Piecewise;
 
-/// What rounding leaves of a moment, relative to it.
+/// Relative rounding error of a moment.
 const ROUNDING: f64 = 1e-13;
-/// Rates that differ by less are one constant, relative to the largest σ̂.
+/// Maximum difference of rates, relative to the largest σ̂, that count as one constant.
 const CONSTANT: f64 = 1e-13;
 
 /// A rod in which light goes on forward, on a mesh for all its channels.
@@ -168,7 +168,7 @@ impl Forward {
         }))
     }
 
-    /// All that is asked for of `E[Π X_λ^{k_λ}]`.
+    /// Selects the required moments of `E[Π X_λ^{k_λ}]`.
     fn moments(&self, of: &dyn Fn(&[i32]) -> f64) -> Moments {
         let collisions = self.majorants.iter().fold(0.0f64, |most, &x| most.max(x))
             * self.mesh.support().length();

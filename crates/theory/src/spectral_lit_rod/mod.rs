@@ -1,4 +1,4 @@
-//! Rods with an emitter at the end in several channels: what theory says of draws that score all of them.
+//! Predictions for rods with an emitter at the end in several channels, with draws that score all of them.
 //!
 //! ```text
 //! independent       E[X_λ^k] = w_λ^{1−k} E[x_λ^k],  x_λ a draw of `lit_rod` in the channel λ; E[X_λ X_μ] = 0
@@ -35,20 +35,20 @@ pub const FULL: Techniques = Techniques {
     combination: Combination::Mis(Densities::Full, Heuristic::Balance),
 };
 
-/// How the channels are scored by one draw.
+/// Scoring of the channels by one draw.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Tracker {
-    /// One channel by its own walk, the others 0.
+    /// Scores one channel by its own walk, the others 0.
     Independent {
-        /// Whether it casts shadow rays.
+        /// True if it casts shadow rays.
         casts: bool,
     },
-    /// All channels by the walk of a hero, by the balance heuristic over all heroes.
+    /// Scores all channels by the walk of a hero, by the balance heuristic over all heroes.
     Mis {
-        /// Whether it casts shadow rays.
+        /// True if it casts shadow rays.
         casts: bool,
     },
-    /// One σ̂ for all channels, and chances that depend on all of them.
+    /// One σ̂ for all channels, and event probabilities that depend on all of them.
     Tracking(Chances),
 }
 
@@ -69,7 +69,7 @@ pub struct Spectrum<'a> {
     tracker: Tracker,
 }
 
-/// What is known of the draws of all channels beside their means.
+/// Moments of the draws of all channels beside their means.
 pub struct Moments {
     /// `E[X^k]` of each channel for k = 1, 2, 3, 4 and 8, with absolute errors.
     raw: Vec<[[f64; 2]; 5]>,
@@ -95,7 +95,7 @@ impl<'a> Spectrum<'a> {
         self.heroes.len()
     }
 
-    /// What theory says of a draw. Without `laws`, as for lines in plots, only variances and mean lookups are good.
+    /// Prediction for a draw. Without `laws`, as for lines in plots, only variances and mean lookups are valid.
     pub fn predict(&self, laws: bool) -> Prediction {
         let techniques = self.tracker.techniques();
         let found: Option<Vec<Found>> = self
@@ -154,7 +154,7 @@ impl<'a> Spectrum<'a> {
                 let (mesh, sampling) = self.media[channel];
                 bound::weighted_square(mesh, &self.problem.rods[channel], sampling, FULL)?
             }
-            // A hit is f_λ/Σ w_h p_h ≤ 1/w_λ; that of history-aware tracking likewise.
+            // A hit is f_λ/Σ w_h p_h ≤ 1/w_λ, also with history-aware tracking.
             Tracker::Mis { casts: false } | Tracker::Tracking(Chances::History) => {
                 answer.value + answer.error
             }
@@ -163,7 +163,7 @@ impl<'a> Spectrum<'a> {
         Some(weighted / self.heroes[channel])
     }
 
-    /// Those of one channel a draw; of a single channel, whatever the tracker is.
+    /// Moments of one channel a draw; for a single channel, those of every tracker.
     fn independent(&self, found: &[Found]) -> Moments {
         let raw = self.heroes.iter().zip(found).map(|(weight, found)| {
             let scale = super::rod::moments::POWERS.map(|k| weight.powi(1 - k));
@@ -172,7 +172,7 @@ impl<'a> Spectrum<'a> {
         Moments { raw: raw.collect(), mixed: vec![[0.0; 4]; self.channels() - 1] }
     }
 
-    /// Where all channels have the same σ_t and σ̂.
+    /// Moments where all channels have the same σ_t and σ̂.
     fn by_orders(&self, laws: bool) -> Option<Moments> {
         let &[(mesh, sampling), ref others @ ..] = &self.media[..] else { return None };
         let nodes: Vec<f64> = mesh.panels().flat_map(|panel| panel.t.iter().copied()).collect();

@@ -1,14 +1,14 @@
 //! Channels with the same σ_t and σ̂: moments from a chain of equations by the numbers of scatterings.
 //!
-//! After i scatterings that kept the direction and j that turned it, wherever they were, the density of a path by the
+//! After i scatterings that kept the direction and j that turned it, at any places, the density of a path by the
 //! walk of the channel λ is a common factor times
 //!
 //! ```text
 //! q_λ = (a_λ p_f,λ)^i (a_λ (1 − p_f,λ))^j
 //! ```
 //!
-//! so that all heroes together walk like one, with chances that depend on i and j; it flies forward where j is even.
-//! With `p_λ` the probability of λ to go towards the emitter, at a scattering
+//! so that all heroes together walk like one, with probabilities that depend on i and j; it flies forward where j
+//! is even. With `p_λ` the probability of λ to go towards the emitter, at a scattering
 //!
 //! ```text
 //! ā = Σ w_h q_h a_h/Σ w_h q_h,   p̄ = Σ w_h q_h a_h p_h/Σ w_h q_h a_h,   c_λ = q_λ a_λ p_λ/Σ w_h q_h a_h p_h
@@ -32,16 +32,16 @@ use crate::{Mesh, ParticleRule};
 use media::Piecewise;
 use numeric::Known;
 
-/// Orders of scattering that are rarer than this do not count.
+/// Maximum probability of orders of scattering that are left out.
 const RARE: f64 = 1e-11;
-/// The most orders of scattering.
+/// Maximum number of orders of scattering.
 const MOST: usize = 160;
-/// Grids agree to this.
+/// Agreement of grids.
 const PRECISION: Precision = Precision { agreement: 1e-7, levels: 5 };
-/// Powers of a channel whose moments are found: to the eighth, or to the second alone.
+/// Powers of a channel with computed moments: to the eighth, or to the second alone.
 const POWERS_OF_ONE: [usize; 2] = [2, HIGHEST];
 
-/// A rod whose channels have the same σ_t and σ̂.
+/// A rod in which all channels have the same σ_t and σ̂.
 pub struct Orders<'a> {
     problem: &'a SpectralLitRod,
     albedos: Vec<f64>,
@@ -58,15 +58,15 @@ struct Monomial {
     powers: [usize; 2],
 }
 
-/// What of the shadow ray's powers goes with which moment of the rest.
+/// Term of a binomial: powers of the shadow ray's score, and the moment of the rest.
 struct Term {
     binomials: f64,
     powers: [usize; 2],
-    /// `None` where nothing is left.
+    /// Index of the moment of the rest; `None` where the rest has the power 0.
     rest: Option<usize>,
 }
 
-/// A number of scatterings that kept the direction, and one that turned it.
+/// Numbers of scatterings that kept the direction, and that turned it.
 struct State {
     /// ā, p̄.
     albedo: f64,
@@ -79,7 +79,7 @@ struct State {
 type Futures = Vec<Vec<f64>>;
 
 impl<'a> Orders<'a> {
-    /// Joins the parts; `None` where albedos are no numbers, or light is scattered too often.
+    /// Joins the parts; `None` where albedos are not constant, or light is scattered too often.
     pub fn new(
         problem: &'a SpectralLitRod,
         mesh: &'a Mesh,
@@ -160,7 +160,7 @@ impl<'a> Orders<'a> {
         }
     }
 
-    /// U of every monomial for who enters, on a grid.
+    /// U of every monomial for the entering particle, on a grid.
     fn entering(
         &self,
         grid: &Grid,
@@ -179,7 +179,7 @@ impl<'a> Orders<'a> {
             for turned in 0..=order {
                 let is_forward = turned.is_multiple_of(2);
                 let state = self.state(order - turned, turned);
-                // Forward goes on without a turn where it flies forward.
+                // A particle that keeps its direction turns no more often; plus is the forward direction.
                 let [plus, minus] =
                     if is_forward { [turned, turned + 1] } else { [turned + 1, turned] };
                 let (plus, minus) = (&next[plus], &next[minus]);
@@ -287,8 +287,9 @@ fn binomial(n: usize, k: usize) -> f64 {
     (0..k).fold(1.0, |product, i| product * (n - i) as f64 / (i + 1) as f64)
 }
 
-/// What a particle that flies one way is worth in the middles of all steps and where it enters, if a real collision is
-/// worth what is given: by the implicit midpoint rule, whose error is even in the steps' widths.
+/// Expected scores of a particle that flies one way, in the middles of all steps and where it enters, given the
+/// expected score after a real collision. It uses the implicit midpoint rule; its error is even in the steps'
+/// widths.
 fn solve(grid: &Grid, is_forward: bool, collided: impl Fn(usize) -> f64) -> (Vec<f64>, f64) {
     let steps = grid.steps();
     let (mut worth, mut middles) = (0.0, vec![0.0; steps.len()]);

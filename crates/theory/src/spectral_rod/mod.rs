@@ -1,4 +1,4 @@
-//! Bodies of coloured scatterers: moments of walks whose weights depend on the number of scatterings alone.
+//! Bodies of coloured scatterers: moments of walks with weights that depend on the number of scatterings alone.
 //!
 //! With `R(a)` and `T(a)` of a rod or slab of one albedo a, continued to a > 1, and `K = Σ k_λ`:
 //!
@@ -30,40 +30,40 @@ pub struct Orders {
     pub found: Vec<[f64; 2]>,
     /// A bound on their relative error.
     pub error: f64,
-    /// A bound on the absolute error of each beside that: rare ones have fewer digits, and large weights.
+    /// A bound on the absolute error of each, in addition: rare ones have fewer digits, and large weights.
     pub each: f64,
-    /// What is not known of their sum, absolute.
+    /// Absolute error of their sum.
     pub blur: f64,
 }
 
-/// What theory knows of a body of one albedo.
+/// Energies of a body of one albedo.
 pub trait Body: Send + Sync {
     /// Reflectance and transmittance, of albedos above 1, too; `None` where they are infinite.
     fn leaving(&self, albedo: f64) -> Option<[Known; 2]>;
 
-    /// The same for higher moments, which need not be known as sharply.
+    /// Reflectance and transmittance for higher moments, which may have larger errors.
     fn power(&self, albedo: f64) -> Option<[Known; 2]> {
         self.leaving(albedo)
     }
 
-    /// From where on they are infinite, in words; `None` where they are not.
+    /// The critical length or depth beyond which they are infinite, in words; `None` where they are finite.
     fn beyond(&self, albedo: f64) -> Option<String>;
 
-    /// By orders of scattering; `None` where they are not known.
+    /// Energies by orders of scattering; `None` where they are not known.
     fn orders(&self) -> Option<Orders>;
 
     /// The lookups of analog walks, mixed over weights and albedos; `None` where they are not known.
     fn lookups(&self, heroes: &[(f64, f64)]) -> Option<CountLaw>;
 }
 
-/// How all channels are scored by one walk.
+/// Scoring of all channels by one walk.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Tracker {
-    /// One channel by its own walk, the others 0.
+    /// Scores one channel by its own walk, the others 0.
     Independent,
     /// The walk of a hero, divided by its density.
     Hero,
-    /// One chance to be scattered for all channels.
+    /// One scattering probability for all channels.
     Tracking {
         /// `P_s`.
         scatter: f64,
@@ -93,14 +93,14 @@ impl<'a> Spectrum<'a> {
         Self { body, colours, hero, tracker, orders }
     }
 
-    /// What a scattering, of this chance, multiplies the k-th power of a channel's weight by on average.
+    /// Mean factor of the k-th power of a channel's weight at a scattering, given the scattering probability.
     fn albedo_of_power(&self, k: &[i32], scatter: f64) -> f64 {
         let total: i32 = k.iter().sum();
         let product: f64 = self.colours.albedos.iter().zip(k).map(|(a, &k)| a.powi(k)).product();
         if product == 0.0 { 0.0 } else { product / scatter.powi(total - 1) }
     }
 
-    /// The channel whose second moment is infinite, and from where on it is.
+    /// First channel with an infinite second moment, and the length or depth from which on it is infinite.
     pub fn diverges(&self) -> Option<(usize, String)> {
         let walkers = self.walkers();
         (0..self.colours.albedos.len()).find_map(|channel| {
@@ -111,7 +111,8 @@ impl<'a> Spectrum<'a> {
         })
     }
 
-    /// Whose walks score all channels without multiple importance sampling: probabilities, and chances to be scattered.
+    /// Walkers that score all channels without multiple importance sampling: their probabilities, and scattering
+    /// probabilities.
     fn walkers(&self) -> Vec<(f64, f64)> {
         match self.tracker {
             Tracker::Hero => {
@@ -129,7 +130,8 @@ impl<'a> Spectrum<'a> {
         k
     }
 
-    /// `E[Π X_λ^{k_λ}]` of what leaves at an end; infinite where it diverges, `None` where it is not known.
+    /// `E[Π X_λ^{k_λ}]` of the energy that leaves at an end; infinite where it diverges, `None` where it is not
+    /// known.
     fn moment(&self, end: End, k: &[i32]) -> Option<Known> {
         let side = usize::from(end == End::Transmitted);
         let total: i32 = k.iter().sum();
@@ -173,7 +175,7 @@ impl<'a> Spectrum<'a> {
         }
     }
 
-    /// What theory says of walks.
+    /// Prediction for walks.
     pub fn predict(&self) -> Prediction {
         let channels: Vec<Channel> =
             self.colours.seen.iter().map(|&(end, channel)| self.channel(end, channel)).collect();

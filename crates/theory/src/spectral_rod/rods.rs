@@ -25,11 +25,11 @@ use media::Piecewise;
 use numeric::Known;
 use numeric::digits::rounded;
 
-/// What rounding leaves of a sum over orders of scattering, relative to it.
+/// Relative rounding error of a sum over orders of scattering.
 const ROUNDING: f64 = 1e-13;
-/// Orders of scattering that are rarer than this do not count.
+/// Maximum probability of orders of scattering that are left out.
 const RARE: f64 = 1e-17;
-/// The most orders of scattering.
+/// Maximum number of orders of scattering.
 const MOST_ORDERS: usize = 8192;
 /// Relative step of an albedo, along which slopes are taken.
 const STEP: f64 = 1e-6;
@@ -37,10 +37,10 @@ const STEP: f64 = 1e-6;
 const OF_ALBEDO: f64 = 16.0;
 /// Rounding of the values on the circle |a| = 1, and of sums over it, in units of ε times the largest.
 const OF_ORDERS: f64 = 16.0;
-/// Larger albedos are not looked at.
+/// Maximum albedo.
 const LARGEST: f64 = 1e6;
 
-/// A rod with what its walks fly through.
+/// A rod with its mesh and σ̂.
 pub struct Rods<'a> {
     rod: &'a SpectralRod,
     mesh: &'a Mesh,
@@ -110,11 +110,11 @@ pub fn leaving(depth: f64, albedo: f64, forward: f64) -> Option<[f64; 2]> {
         return None;
     }
     let found = continued(depth, Complex64::from(albedo), forward).map(|x| x.re);
-    // Beyond the largest number, too.
+    // Infinite also beyond the range of doubles.
     found.iter().all(|value| value.is_finite()).then_some(found)
 }
 
-/// Bounds on the relative rounding of R and T, of an albedo that is itself good to a few roundings.
+/// Bounds on the relative rounding of R and T, for an albedo that is itself accurate to a few roundings.
 ///
 /// ```text
 /// A = (|D₁| + |D₂|)/|D₁ + D₂|,  D₁ + D₂ the denominator
@@ -139,7 +139,7 @@ fn rounding(depth: f64, albedo: f64, forward: f64) -> [f64; 2] {
     })
 }
 
-/// The optical length from which on a rod of an albedo has no finite answer; infinite where there is none.
+/// Optical length from which on a rod of an albedo has no finite answer; infinite where every length has one.
 ///
 /// ```text
 /// ω² = β² − α²:  atan2(ω, −α)/ω;  for κ² = −ω² > 0 and α < −κ:  artanh(−κ/α)/κ
@@ -184,13 +184,13 @@ impl Form {
             let [kappa, turned] = [alpha, Complex64::ZERO];
             return Self { kappa, turned, decay, below: [one, Complex64::ZERO] };
         }
-        // (1 − a)(1 − a(2p_f − 1)), which cancels less than α² − β²; Re κ ≥ 0.
+        // (1 − a)(1 − a(2p_f − 1)) cancels less than α² − β²; Re κ ≥ 0.
         let kappa = ((one - albedo) * (one - albedo * (2.0 * forward - 1.0))).sqrt();
         let decay = (-kappa * depth).exp();
-        // (1 − e^{−2κτ})/2κ with its limit τ: the difference would lose what 2κτ is less than 1.
+        // (1 − e^{−2κτ})/2κ with its limit τ: the difference would lose digits where 2κτ is small.
         let flat = kappa == Complex64::ZERO;
         let sine = if flat { depth.into() } else { exp_m1(kappa * (-2.0 * depth)) * -0.5 / kappa };
-        // (1 + e^{−2κτ})/2 + α sine, which cancels where α is near −κ: α + κ = −β²/(κ − α).
+        // (1 + e^{−2κτ})/2 + α sine cancels where α is near −κ: α + κ = −β²/(κ − α).
         let below = if alpha.re < 0.0 {
             [decay * decay, -(beta * beta * sine / (kappa - alpha))]
         } else {
@@ -214,7 +214,7 @@ fn exp_m1(z: Complex64) -> Complex64 {
     Complex64::new(z.re.exp_m1() * z.im.cos() - 2.0 * half * half, z.re.exp() * z.im.sin())
 }
 
-/// So many orders of scattering that all above are rarer in a rod of an albedo.
+/// Number of orders of scattering above which each is rarer than `rare` in a rod of an albedo.
 ///
 /// ```text
 /// T_r + R_r ≤ (T(b) + R(b)) b^{−r}  for every b up to the albedo that makes this length critical
@@ -235,13 +235,13 @@ pub fn orders_above(depth: f64, albedo: f64, forward: f64, rare: f64) -> usize {
     });
     let least = bounds.filter(|orders| *orders >= 0.0).fold(f64::INFINITY, f64::min);
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
-    // beyond the largest it stays there
+    // Beyond the largest integer it saturates.
     let least = least.ceil() as usize;
     least.saturating_add(8)
 }
 
-/// The probabilities to leave a rod without absorption after r scatterings, and a bound on the absolute error of each, that
-/// of sums over the circle; `None` where there are too many.
+/// The probabilities to leave a rod without absorption after r scatterings, and a bound on the absolute error of
+/// each, from the rounding of sums over the circle; `None` where there are too many orders.
 fn orders(depth: f64, forward: f64) -> Option<(Vec<[f64; 2]>, f64)> {
     let count = orders_above(depth, 1.0, forward, RARE);
     if count > MOST_ORDERS {

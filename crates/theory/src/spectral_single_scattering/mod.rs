@@ -1,4 +1,4 @@
-//! Single scattering in several channels: what theory says of draws that score all of them.
+//! Predictions for single scattering in several channels, with draws that score all of them.
 //!
 //! ```text
 //! independent    E[X_λ^k] = w_λ^{1−k} E[x_λ^k],  E[X_λ X_μ] = 0,  x a draw of the channel by itself
@@ -6,7 +6,7 @@
 //! relative to the density of one walker    all moments, see [`relative`]
 //! ```
 //!
-//! Lookups are those of the hero's walk, and its law is the mixture over heroes.
+//! Lookups are those of the hero's walk; their distribution is the mixture over heroes.
 
 pub mod relative;
 
@@ -25,7 +25,7 @@ pub fn lookups(alone: &[Points], heroes: &[f64]) -> Option<[f64; 5]> {
     Some(mixed)
 }
 
-/// What theory says of one channel a draw: `E[X_λ^k] = w_λ^{1−k} E[x_λ^k]`, x a draw of that channel by itself.
+/// Prediction for one channel a draw: `E[X_λ^k] = w_λ^{1−k} E[x_λ^k]`, x a draw of that channel by itself.
 pub fn independent(alone: &[Points], heroes: &[f64]) -> Prediction {
     let lookups = lookups(alone, heroes);
     let each = alone.iter().zip(heroes).map(|(points, chance)| {
@@ -46,7 +46,7 @@ pub fn independent(alone: &[Points], heroes: &[f64]) -> Prediction {
     Prediction { channels: named(channels), lookups, covariances, ..Prediction::default() }
 }
 
-/// The channels of several predictions, and the lookups, which are those of the first.
+/// The channels of several predictions, and the lookups of the first.
 fn joined(each: impl Iterator<Item = Prediction>) -> (Vec<Channel>, Option<CountLaw>) {
     let (mut channels, mut lookups) = (Vec::new(), None);
     for found in each {
@@ -56,7 +56,7 @@ fn joined(each: impl Iterator<Item = Prediction>) -> (Vec<Channel>, Option<Count
     (channels, lookups)
 }
 
-/// What theory says of all channels by the balance heuristic: means, the lookups, and a bound on the variance.
+/// Prediction for all channels by the balance heuristic: means, the lookups, and a bound on the variance.
 ///
 /// ```text
 /// p̄ = Σ_h w_h p_h ≥ w_λ p_λ,   E[X_λ²] = ∫ f_λ²/p̄ ≤ ∫ f_λ²/(w_λ p_λ) = E[x_λ²]/w_λ

@@ -6,8 +6,9 @@
 //! tracked ones, ℓ long                  exp(−A ℓ + ∫ Π n_λ^{k_λ}/μ̄_h^{K−1})
 //! ```
 //!
-//! with A, N and S of [`Rates`]: whoever walks is scattered once, and the powers of weights are Poisson products up to
-//! there. The walk's collisions are Poisson, too: before a scattering of spectral tracking `∫μ̄ P_n` of them are null.
+//! with A, N and S of [`Rates`]: every walker is scattered once, and the powers of weights are Poisson products up
+//! to there. The walk's collisions are Poisson, too: before a scattering of spectral tracking `∫μ̄ P_n` of them are
+//! null.
 //!
 //! Source: derived by Campbell's theorem from B. Miller, I. Georgiev, W. Jarosz, *A Null-Scattering Path Integral
 //! Formulation of Light Transport*, ACM Transactions on Graphics 38 (2019), section 5, and P. Kutz, R. Habel, Y. K. Li,
@@ -31,11 +32,11 @@ use media::{Control, Medium, Piecewise};
 use numeric::Span;
 use numeric::quadrature::GaussLegendre;
 
-/// Room for the moments of eight channels, `4·8 + 4·7`, and for those of lookups.
+/// Number of rows: the moments of eight channels, `4·8 + 4·7`, and those of lookups.
 const ROWS: usize = 64;
-/// Where those of lookups are.
+/// First row of the moments of lookups.
 const COUNTS: usize = 60;
-/// Roundings of an exponent, in units of ε times what it sums up.
+/// Roundings of an exponent, in units of ε times the sum of its terms' absolute values.
 const ROUNDINGS: f64 = 16.0;
 
 /// Walkers through the media of all channels.
@@ -44,14 +45,14 @@ pub struct Relative<'a> {
     meshes: Vec<&'a Mesh>,
     sampling: &'a Piecewise,
     rates: Rates,
-    /// Who walks, with which probability.
+    /// Walkers with their probabilities.
     walks: Vec<(f64, Proposal)>,
-    /// Whether shadow rays are tracked.
+    /// True if shadow rays are tracked.
     tracks: bool,
     /// The exponents of all moments; the last are 0.
     powers: Vec<Vec<i32>>,
     rule: GaussLegendre,
-    /// Where what is integrated along the ray is not smooth.
+    /// Distances at which integrands along the ray are not smooth.
     cuts: Vec<f64>,
     /// The ends of panels, and `∫ N` up to there, power by power and walk by walk.
     ends: Vec<f64>,
@@ -101,7 +102,8 @@ impl<'a> Relative<'a> {
         relative
     }
 
-    /// Where fields have kinks and, for the chances `maximum`, where another channel's event becomes the likeliest.
+    /// Distances at which fields have kinks and, for the probabilities `maximum`, at which another channel's event
+    /// becomes the likeliest.
     fn kinks(&self) -> Vec<f64> {
         let support = self.meshes[0].support();
         let ends = self.meshes.iter().flat_map(|mesh| mesh.panels().map(|panel| panel.span.from));
@@ -181,7 +183,8 @@ impl<'a> Relative<'a> {
         powers.map(|(k, gained)| gained - self.rates.loss(walk, k) * length).collect()
     }
 
-    /// What a point of the ray adds to each moment and, where all channels walk together, to those of lookups.
+    /// Contributions of a point of the ray to each moment and, where all channels walk together, to those of
+    /// lookups.
     fn row(&self, Place { s, along, .. }: Place) -> [f64; ROWS] {
         let from = self.meshes[0].support().from;
         let here = &self.extinctions(&[s])[0];
@@ -219,8 +222,8 @@ impl<'a> Relative<'a> {
         row
     }
 
-    /// What theory says of the draws; what is known of the channels by themselves has their means and, where heroes
-    /// walk, the lookups.
+    /// Prediction for the draws. `alone` has the means of the channels by themselves, `of_heroes` the lookups where
+    /// heroes walk.
     pub fn predict(&self, alone: &[Points], of_heroes: Option<[f64; 5]>) -> Prediction {
         let none = Control::None;
         let camera = Camera::new(self.meshes[0], self.sampling, &none, CameraTracking::Exact);
@@ -238,7 +241,7 @@ impl<'a> Relative<'a> {
         let lookups = of_heroes.or_else(|| self.escaped(counted));
         let channel = |(number, own): (usize, &Points)| {
             let [a, b, c, d] = [0, 1, 2, 3].map(|k| found.value[4 * number + k]);
-            // The mean is known twice.
+            // The mean is computed twice.
             let apart = (a / own.truth.value - 1.0).abs();
             let error = (0..4).map(|k| relative(4 * number + k)).fold(rounding + apart, f64::max);
             let counted = own.counted.max(rounding);
@@ -269,7 +272,7 @@ impl<'a> Relative<'a> {
     }
 }
 
-/// The exponents of so many channels: powers 1 to 4 of each, products of neighbours, and none.
+/// The exponents of `count` channels: powers 1 to 4 of each, products of adjacent channels, and zeros.
 fn powers(count: usize) -> Vec<Vec<i32>> {
     let of = |given: &[(usize, i32)]| {
         let mut k = vec![0; count];

@@ -7,13 +7,13 @@
 use super::shells::{Centre, Row, Rules, Shell, Shells, whole};
 use numeric::quadrature::GaussLegendre;
 
-/// An optical depth up to which one Gauss rule follows the exponential.
+/// Maximum optical depth over which one Gauss rule resolves the exponential.
 const SMOOTH: f64 = 2.0;
 /// Nodes beyond those that integrate the polynomial times σ_t.
 const BEYOND: usize = 5;
-/// The fewest nodes: they integrate σ_t exactly where it is cubic in `r²`.
+/// Minimum number of nodes: they integrate σ_t exactly where it is cubic in `r²`.
 const FEWEST: usize = 9;
-/// The most nodes.
+/// Maximum number of nodes.
 pub(super) const MOST: usize = 32;
 
 /// A ball with a radial extinction.
@@ -21,7 +21,7 @@ pub(super) const MOST: usize = 32;
 pub struct Ball<'a> {
     /// R.
     pub radius: f64,
-    /// What is at its centre.
+    /// Content of the centre.
     pub centre: Centre,
     /// σ_t as a function of `r²`.
     pub extinction: &'a dyn Fn(f64) -> f64,
@@ -32,11 +32,11 @@ pub struct Ball<'a> {
 pub struct Chord {
     /// The square of its distance from the centre.
     pub offset2: f64,
-    /// Where it begins.
+    /// Begin, as a distance from the foot.
     pub from: f64,
-    /// Where it ends.
+    /// End, as a distance from the foot.
     pub to: f64,
-    /// Whether it ends on the black sphere.
+    /// True if it ends on the black sphere.
     pub hits: bool,
 }
 
@@ -55,7 +55,7 @@ impl Ball<'_> {
         Chord { offset2, from, to: half.max(from), hits: false }
     }
 
-    /// Adds `weight ∫ σ_t S e^{−τ} dt` to a row, and answers `e^{−τ}` at the ray's end.
+    /// Adds `weight ∫ σ_t S e^{−τ} dt` to a row, and returns `e^{−τ}` at the ray's end.
     pub fn collect(
         &self,
         chord: &Chord,
@@ -78,7 +78,8 @@ impl Ball<'_> {
         (-depth).exp()
     }
 
-    /// One panel, in parts: hands out `r²` and `σ_t e^{−τ} dt` at the nodes, and adds to the optical depth.
+    /// Integrates one panel, in parts: passes `r²` and `σ_t e^{−τ} dt` at the nodes to `each`, and adds to the
+    /// optical depth.
     pub(super) fn panel(
         &self,
         part: &Chord,

@@ -1,4 +1,4 @@
-//! Answers that were worked out before: experiments of one ball share theirs.
+//! Memo of answers: experiments of one ball share them.
 
 use super::ball::Ball;
 use super::shells::Resolution;
@@ -6,7 +6,7 @@ use super::{Lights, Observable, Solved, Spreads, centre_of, solved};
 use crate::memo::Memo;
 use numeric::Known;
 
-/// All that an answer depends on, but for σ_t.
+/// Key of an answer, without σ_t.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Scene {
     /// R.
@@ -15,27 +15,27 @@ pub struct Scene {
     pub core: Option<f64>,
     /// a.
     pub albedo: f64,
-    /// Who shines.
+    /// Radiances of the lights.
     pub lights: Lights,
-    /// Whether the environment stands for a distant light, looked at from the centre.
+    /// True if the environment stands for a distant light, looked at from the centre.
     pub is_distant: bool,
-    /// What is sought.
+    /// Quantity that is computed.
     pub observable: Observable,
 }
 
-/// What there is to know.
+/// Solution for one observable.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Answer {
     /// The value.
     pub value: Known,
-    /// How far draws stray from it at most, the errors of the solution included.
+    /// Bounds on the second moments of draws, the errors of the solution included.
     pub spreads: Spreads,
 }
 
 static ANSWERS: Memo<Vec<u64>, Option<Answer>> = Memo::new(1024);
 
 impl Scene {
-    /// The bits of all numbers, and of σ_t at so many places that no other field shares them.
+    /// The bits of all numbers, and of σ_t at 33 places, enough to tell fields apart.
     fn key(&self, extinction: &dyn Fn(f64) -> f64) -> Vec<u64> {
         let (kind, observable) = match self.observable {
             Observable::Mean(r) => (0.0, [r, 0.0]),
@@ -68,7 +68,7 @@ impl Scene {
     }
 }
 
-/// The answer, which is worked out once and only once, whoever asks.
+/// Returns the answer; it is computed only once, also if several threads need it.
 pub fn cached(scene: &Scene, extinction: &dyn Fn(f64) -> f64) -> Option<Answer> {
     ANSWERS.get(scene.key(extinction), || scene.answer(extinction))
 }

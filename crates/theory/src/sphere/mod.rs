@@ -4,16 +4,16 @@
 //! J(r) = ½ ∫₋₁¹ I(r, ν) dν,   I(r, ν) = L e^{−τ(0, s)} + ∫₀ˢ σ_t a J e^{−τ(0, t)} dt
 //! ```
 //!
-//! J is the mean intensity, `I(r, ν)` the radiance that arrives at a point at the distance r from the
-//! centre, seen in a direction of the cosine ν with the outward one; the line of sight ends after the
-//! length s, at the surface or at a black sphere, where the radiance is L. J is a polynomial of `r²` in
-//! each of many shells ([`shells`]); the equation is met at their Gauss nodes, with the integrals along
-//! lines of sight cut at the shells' surfaces ([`ball`]) and graded over directions ([`views`]).
-//! Any answer is computed three times, with fewer nodes and a coarser grading the second and the third
-//! time, and the differences tell its error: two may agree by chance.
+//! J is the mean intensity, `I(r, ν)` the radiance that arrives at a point at the distance r from the centre, seen
+//! in a direction of the cosine ν with the outward one. The line of sight ends after the length s, at the surface
+//! or at a black sphere, where the radiance is L. J is a polynomial of `r²` in each of many shells ([`shells`]).
+//! The equation is satisfied at their Gauss nodes, with the integrals along lines of sight cut at the shells'
+//! surfaces ([`ball`]) and graded over directions ([`views`]). Any answer is computed three times, with fewer nodes
+//! and a coarser grading the second and the third time, and the differences give its error: two may agree by
+//! accident.
 //!
-//! What starts at a point in a direction of any odds alike escapes with the probability `J(r)` under an
-//! environment of radiance 1: by reciprocity. A distant light looks from the centre like an
+//! By reciprocity, a particle that starts at a point in a uniformly distributed direction escapes with the
+//! probability `J(r)` under an environment of radiance 1. Seen from the centre a distant light looks like an
 //! environment of the same fluence, from other places it does not.
 //!
 //! Source: R. Peierls, *Critical conditions in neutron multiplication*, Mathematical Proceedings of the
@@ -40,22 +40,22 @@ pub use spread::{Spread, Spreads, Techniques};
 /// The radiances at the ends of lines of sight.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Lights {
-    /// Around the ball.
+    /// Radiance of the environment of the ball.
     pub environment: f64,
-    /// Of the black sphere at the centre.
+    /// Radiance of the black sphere at the centre.
     pub core: f64,
 }
 
-/// What may be seen of the light.
+/// Observable quantity.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Observable {
     /// The mean intensity at a distance from the centre.
     Mean(f64),
     /// The radiance that arrives along a line of sight.
     Radiance {
-        /// Its distance from the centre.
+        /// Distance of the line from the centre.
         offset: f64,
-        /// Where it begins, from its foot; before the ball for −∞.
+        /// Begin of the line of sight, from its foot; −∞ for a begin outside the ball.
         from: f64,
     },
 }
@@ -70,7 +70,7 @@ pub struct Solved<'a> {
     albedo: f64,
     /// `r²` of the nodes.
     nodes: Vec<f64>,
-    /// What `aJ` at the nodes adds to `aJ` at the nodes.
+    /// Contributions of `aJ` at the nodes to `aJ` at the nodes.
     matrix: Matrix,
     /// Unscattered light at the nodes, `J₀`.
     direct: Vec<f64>,
@@ -86,7 +86,7 @@ fn product(weights: &[f64], values: &[f64]) -> f64 {
 }
 
 impl<'a> Solved<'a> {
-    /// Solves the equation; `None` where the medium is no medium: σ_t or a negative, or a above 1.
+    /// Solves the equation; `None` where the medium is invalid: σ_t or a negative, or a above 1.
     pub fn new(
         ball: &'a Ball<'a>,
         albedo: f64,
@@ -109,14 +109,13 @@ impl<'a> Solved<'a> {
         Some(solved)
     }
 
-    /// What a score g at each scattering, a function of the place given at the nodes, comes to:
-    /// `aY` of `Y = g + K aY`.
+    /// Total of scores g at each scattering, a function of the place given at the nodes: `aY` of `Y = g + K aY`.
     fn gathered(&self, score: &[f64]) -> Option<Vec<f64>> {
         let scattered: Vec<f64> = score.iter().map(|g| self.albedo * g).collect();
         self.matrix.series(&scattered).filter(|found| found.iter().all(|x| x.is_finite()))
     }
 
-    /// Adds what arrives along one line of sight to a row; answers the unscattered part.
+    /// Adds the light along one line of sight to a row; returns the unscattered part.
     fn view(&self, offset2: f64, from: f64, weight: f64, row: &mut Row) -> f64 {
         let chord = self.ball.chord(offset2, from);
         let left = self.ball.collect(&chord, &self.shells, &self.rules, weight, row);
@@ -148,13 +147,13 @@ impl<'a> Solved<'a> {
         }
     }
 
-    /// The answer to a question.
+    /// Value of an observable.
     pub fn answer(&self, observable: Observable) -> f64 {
         let (direct, weights) = self.arriving(observable);
         direct + product(&weights, &self.source)
     }
 
-    /// What bounds the squares of what techniques say together, see [`spread`].
+    /// Bounds on the second moments of techniques, see [`spread`].
     fn spreads(&self, observable: Observable, is_distant: bool) -> Option<Spreads> {
         let share = |r2: f64| match self.ball.centre {
             Centre::Black(core) => 0.5 * (1.0 - (1.0 - core * core / r2).max(0.0).sqrt()),
@@ -166,7 +165,7 @@ impl<'a> Solved<'a> {
             let at = Vertex { share: share(r2), largest, direct, all };
             let each = Techniques::ALL.into_iter();
             if is_distant {
-                // Seen from one place it is seen whole or not at all; on average as often as an even one.
+                // Seen from one place it is visible or not; on average as often as a uniform environment.
                 return each.flat_map(|_| [direct, 2.0 * (all - direct)]).collect();
             }
             each.flat_map(|techniques| techniques.scores(&at)).collect()
@@ -200,7 +199,7 @@ impl<'a> Solved<'a> {
     }
 }
 
-/// The equation, solved three times; `None` where the ball is no medium.
+/// The equation, solved three times; `None` where the medium of the ball is invalid.
 fn solved<'a>(
     ball: &'a Ball<'a>,
     albedo: f64,
@@ -212,7 +211,7 @@ fn solved<'a>(
     Some([fine?, coarse?, coarsest?])
 }
 
-/// Answers to several questions about one ball, with their errors; `None` where it is no medium.
+/// Values of several observables of one ball, with their errors; `None` where its medium is invalid.
 pub fn answers(
     ball: &Ball,
     albedo: f64,
@@ -228,7 +227,7 @@ pub fn answers(
     Some(observable.iter().map(known).collect())
 }
 
-/// Whether there is a black sphere that light may end on.
+/// A black sphere at the centre, if there is one.
 pub fn centre_of(core: Option<f64>) -> Centre {
     core.map_or(Centre::Medium, Centre::Black)
 }
@@ -281,7 +280,7 @@ mod tests {
 
     #[test]
     fn a_light_and_an_eye_may_change_places() {
-        // What enters from all sides and is absorbed by the black sphere, and what the sphere sends
+        // Light that enters from all sides and is absorbed by the black sphere, and light that the sphere sends
         // out: J of the sky at its surface against the power that leaves the ball.
         let ball =
             Ball { radius: 1.5, centre: Centre::Black(0.4), extinction: &|r2| 1.5 - 0.4 * r2 };

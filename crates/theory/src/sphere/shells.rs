@@ -1,41 +1,40 @@
 //! Shells of a ball, in each of which the mean intensity is a polynomial of `r²`.
 //!
-//! At the surface the mean intensity has a term `(R − r) ln(R − r)`, at a black sphere of radius ρ one
-//! like `√(r − ρ)`, at a point source `1/r²`. Towards such a place the shells are halved again and
-//! again, and the polynomials lose degrees as the shells lose weight. On a ray `r² = p² + t²`, p its
-//! distance from the centre and t the distance from its foot: what is smooth in `r²` is smooth along
-//! the ray, even where it passes the centre.
+//! At the surface the mean intensity has a term `(R − r) ln(R − r)`, at a black sphere of radius ρ one like `√(r −
+//! ρ)`, at a point source `1/r²`. Towards such a place the shells are halved repeatedly, and the polynomials lose
+//! degrees as the shells lose weight. On a ray `r² = p² + t²`, p its distance from the centre and t the distance
+//! from its foot: a function that is smooth in `r²` is smooth along the ray, even where the ray passes the centre.
 
 use numeric::Known;
 use numeric::quadrature::GaussLegendre;
 
-/// One shell: `from ≤ r² ≤ to`.
+/// A shell: `from ≤ r² ≤ to`.
 #[derive(Debug, Clone)]
 pub struct Shell {
     /// The square of the inner radius.
     pub from: f64,
     /// The square of the outer radius.
     pub to: f64,
-    /// How many nodes it has: Gauss nodes of `r²`.
+    /// Number of Gauss nodes of `r²`.
     pub nodes: usize,
-    /// The place of the first of them among all.
+    /// Index of the first of them among all.
     pub first: usize,
 }
 
-/// How closely a ball is looked at.
+/// Resolution of a ball.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Resolution {
     /// Nodes of a shell that is not near a place of grading.
     pub nodes: usize,
     /// Nodes between two directions at which the radiance changes its character.
     pub directions: usize,
-    /// How often shells are halved towards the surface.
+    /// Number of halvings of shells towards the surface.
     pub surface: u32,
-    /// How often they are halved towards a black sphere.
+    /// Number of halvings of shells towards a black sphere.
     pub core: u32,
-    /// How often they are halved towards a point source.
+    /// Number of halvings of shells towards a point source.
     pub centre: u32,
-    /// What two answers may agree by chance, relative to the answer: measured, several times over.
+    /// Relative error at which two answers may agree by accident: several times a measured one.
     pub chance: f64,
 }
 
@@ -43,18 +42,18 @@ impl Resolution {
     /// For reference values: about twelve digits.
     pub const FINE: Self =
         Self { nodes: 12, directions: 12, surface: 15, core: 23, centre: 30, chance: 2e-13 };
-    /// To be compared with draws: about seven digits.
+    /// For comparison with draws: about seven digits.
     pub const COARSE: Self =
         Self { nodes: 7, directions: 7, surface: 8, core: 11, centre: 20, chance: 1e-8 };
 
-    /// What an answer and those of two other resolutions say together.
+    /// Answer with the error from two other resolutions.
     pub(super) fn known(self, [fine, coarse, other]: [f64; 3]) -> Known {
         let difference = (fine - coarse).abs().max(SAFETY * (fine - other).abs());
         Known::new(fine, difference + self.chance * fine.abs())
     }
 
-    /// Around what is at the centre: shells as wide as a small black sphere follow `1/r²` badly, all three
-    /// answers alike.
+    /// Resolution around the centre: shells as wide as a small black sphere resolve `1/r²` badly, with similar
+    /// errors in all three answers.
     pub(super) fn about(self, centre: Centre, radius: f64) -> Self {
         match centre {
             Centre::Black(core) => {
@@ -64,8 +63,8 @@ impl Resolution {
         }
     }
 
-    /// What the error is told by: the answers of both others differ by more than the finest is off, but
-    /// where they agree by chance. All three seldom do.
+    /// Resolutions for error bounds: the answers of both others differ by more than the error of the finest, unless
+    /// they agree by accident. All three seldom do.
     pub(super) fn all(self) -> [Self; 3] {
         [self, self.coarser([2, 2, 3, 4]), self.coarser([1, 1, 1, 1])]
     }
@@ -82,11 +81,11 @@ impl Resolution {
     }
 }
 
-/// The difference to the answer of nearly the same fineness is taken so many times. Of 6000 answers that
-/// state less than 1e-4 none was off by more than half of that.
+/// Factor of the difference to the answer of nearly the same resolution. Of 6000 answers that state less than 1e-4
+/// none deviated by more than half of that.
 const SAFETY: f64 = 8.0;
 
-/// What is at the centre of a ball.
+/// Content of the centre of a ball.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Centre {
     /// The medium.
@@ -97,13 +96,13 @@ pub enum Centre {
     Point,
 }
 
-/// The fewest nodes of a shell.
+/// Minimum number of nodes of a shell.
 const FEWEST: usize = 4;
-/// The optical depth across a shell, at most.
+/// Maximum optical depth across a shell.
 const THICKEST: f64 = 1.0;
-/// The largest ratio of `r²` across a shell around a black sphere. Light from there falls off like `1/r²`, which
-/// a polynomial of n nodes follows to about 12⁻ⁿ; across a ratio of 2 it is 6⁻ⁿ, and the answers of five
-/// and six nodes, by which errors are told, are off by hundreds of times what the finest is.
+/// Maximum ratio of `r²` across a shell around a black sphere. Light from there falls off like `1/r²`, which a
+/// polynomial of n nodes resolves to about 12⁻ⁿ. Across a ratio of 2 it is 6⁻ⁿ: the answers of five and six nodes,
+/// which the error bounds use, are then wrong by hundreds of times the error of the finest.
 const WIDEST: f64 = 1.4;
 
 /// `2⁻ⁿ`.
@@ -119,9 +118,9 @@ pub(super) fn whole(x: f64) -> usize {
 /// The shells of a ball, from the inside out.
 #[derive(Debug, Clone)]
 pub struct Shells {
-    /// One after the other.
+    /// Shells from the inside out.
     pub shells: Vec<Shell>,
-    /// How many nodes there are in all.
+    /// Number of nodes of all shells.
     pub count: usize,
 }
 
@@ -136,7 +135,7 @@ impl Shells {
         let outer = radius * radius;
         let (inner, halvings, drop) = match centre {
             Centre::Medium => (0.0, 0, 1.0),
-            // Nodes lost with each halving: the errors of √x, 1/√x and x ln x weighed with the shell.
+            // Nodes lost with each halving: the errors of √x, 1/√x and x ln x weighted with the shell.
             Centre::Black(core) => (core * core, resolution.core, 0.5),
             Centre::Point => (0.0, resolution.centre, 0.33),
         };
@@ -170,7 +169,7 @@ impl Shells {
             let pieces = (thickest * width / THICKEST).max(steep).ceil().clamp(1.0, 256.0);
             let mut below = from;
             for piece in 1..=whole(pieces) {
-                // Equal in r: of equal optical depth.
+                // Equal steps in r, of about equal optical depth.
                 let r = from.sqrt() + width * piece as f64 / pieces;
                 let above = if piece as f64 >= pieces { to } else { r * r };
                 found.shells.push(Shell { from: below, to: above, nodes, first: found.count });
@@ -196,21 +195,21 @@ impl Shells {
 pub struct Rules(Vec<GaussLegendre>);
 
 impl Rules {
-    /// Rules of up to so many nodes.
+    /// Rules of 1 to `most` nodes.
     pub fn new(most: usize) -> Self {
         Self((1..=most.max(1)).map(GaussLegendre::new).collect())
     }
 
-    /// The rule of so many nodes, or of the most that there are.
+    /// The rule of a number of nodes, clamped to those that exist.
     pub fn of(&self, nodes: usize) -> &GaussLegendre {
         &self.0[nodes.clamp(1, self.0.len()) - 1]
     }
 }
 
-/// Places side by side.
+/// Number of places that are computed side by side.
 const SIDE: usize = 8;
 
-/// What a linear functional says of the Legendre polynomials of each shell, and by that of the values
+/// Values of a linear functional for the Legendre polynomials of each shell. They give its weights for the values
 /// at the nodes.
 ///
 /// ```text
@@ -220,12 +219,12 @@ const SIDE: usize = 8;
 pub struct Row(Vec<f64>);
 
 impl Row {
-    /// Of so many nodes.
+    /// The functional 0 on `count` nodes.
     pub fn new(count: usize) -> Self {
         Self(vec![0.0; count])
     }
 
-    /// Adds weights times the values at places of `r²` within a shell, some side by side.
+    /// Adds weights times the values at places of `r²` within a shell, [`SIDE`] of them side by side.
     #[inline]
     pub fn add(&mut self, shell: &Shell, places: &[f64], weights: &[f64]) {
         let moments = &mut self.0[shell.first..][..shell.nodes];

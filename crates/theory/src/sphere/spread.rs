@@ -1,9 +1,9 @@
-//! How far draws stray that look for light by several techniques: bounds on `E[X²]`.
+//! Bounds on `E[X²]` of walks that find light by several techniques.
 //!
-//! A walk scores at each of its vertices x, which are scatterings and the place whose mean intensity is sought: N, its
-//! shadow ray; C, its connection with a vertex of the light, if there are such; H, the hit that ends its next flight.
-//! R is all that comes later, H included, and h̄ and J what arrives at x without a scattering and in all. In
-//! units of the weight w, N, C and the walk are independent given x, hence
+//! A walk scores at each of its vertices x, which are scatterings and the place of a mean intensity. N is the score
+//! of its shadow ray; C of its connection with a vertex of the light, if there are such; H of the hit that ends its
+//! next flight. R is the score of all that comes later, H included. h̄ and J are the light that arrives at x
+//! without a scattering, and in all. In units of the weight w, N, C and the walk are independent given x, hence
 //!
 //! ```text
 //! E[X²] = unscattered + E[Σ w² (E[N²] + E[C²] + E[H²] + 2 n (J' − n) + 2 c (J' − n − c))]
@@ -19,19 +19,19 @@
 //! | full | from `h̄/(1 + q^β)` to h̄ | `m(q) h̄` at most | 0 |
 //! | bidirectional | up to h̄ | `m(q) h̄` at most, `E[C²] ≤ m(largest q) c` | up to J − h̄ |
 //!
-//! `m(q) = q/(1 + q^β)` is the most that a sample of the walk or of its shadow ray is worth beside the other one; beside
-//! connections too, by the power heuristic, it is half of `q/√(1 + q²)`. What is not known takes its worst value. For walks
-//! of weight 0 or 1 the bounds of next event and directional with `G = 1` are met. All sums are answers of Peierls'
-//! equation. A distant light is not even: `n ≤ q` there instead of h̄. It has shadow rays only, and no bound for
-//! connections.
+//! `m(q) = q/(1 + q^β)` is the maximum score of a sample of the walk or of its shadow ray in their combination.
+//! With connections and the power heuristic it is half of `q/√(1 + q²)`. Unknown quantities take their worst
+//! values. For walks of weight 0 or 1 the bounds of next event and directional with `G = 1` are equalities. All
+//! sums are answers of Peierls' equation. A distant light is not uniform: `n ≤ q` there instead of h̄. It has
+//! shadow rays only, and no bound for connections.
 
 use crate::Heuristic;
 use crate::lit_rod::Densities;
 
-/// How light is found.
+/// Techniques that find light.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Techniques {
-    /// Shadow rays, and what was never scattered.
+    /// Shadow rays, and unscattered light.
     NextEvent,
     /// Shadow rays and hits.
     Mis(Densities, Heuristic),
@@ -42,7 +42,7 @@ pub enum Techniques {
 use Heuristic::{Balance, Power};
 
 impl Techniques {
-    /// All of them.
+    /// All techniques.
     pub const ALL: [Self; 7] = [
         Self::NextEvent,
         Self::Mis(Densities::Directional, Balance),
@@ -53,7 +53,7 @@ impl Techniques {
         Self::Bidirectional(Power),
     ];
 
-    /// What a vertex adds to `E[X²]`: tracked by shadow rays, to be multiplied by G, and the rest.
+    /// Contribution of a vertex to `E[X²]`: the part of tracked shadow rays, to be multiplied by G, and the rest.
     pub(super) fn scores(self, at: &Vertex) -> [f64; 2] {
         let &Vertex { share, direct, all, .. } = at;
         let later = |n: f64| 2.0 * n * (all - n).max(0.0);
@@ -74,20 +74,20 @@ impl Techniques {
     }
 }
 
-/// What is known of a vertex.
+/// Quantities of a vertex.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Vertex {
-    /// q, the light's share of all directions.
+    /// q, the solid angle of the light as a fraction of 4π.
     pub share: f64,
     /// The largest q anywhere.
     pub largest: f64,
-    /// h̄, what arrives without a scattering.
+    /// h̄, the light that arrives without a scattering.
     pub direct: f64,
-    /// J, all that arrives.
+    /// J, all light that arrives.
     pub all: f64,
 }
 
-/// The most that one of several samples is worth.
+/// Maximum score of one of several samples.
 fn most(heuristic: Heuristic, share: f64) -> f64 {
     match heuristic {
         Balance => share / (1.0 + share),
@@ -99,7 +99,7 @@ fn most(heuristic: Heuristic, share: f64) -> f64 {
 /// `m(q) h̄ + m(largest) c + 2 n (J − n) + 2 c (J − n − c)` where it is largest, a concave function on a rectangle.
 fn connected(heuristic: Heuristic, at: &Vertex) -> f64 {
     let &Vertex { share, largest, direct, all } = at;
-    // Without a connection a shadow ray may be worth more.
+    // Without a connection a shadow ray may score more.
     let of_shadow = share / (1.0 + heuristic.raised(share));
     let of_connection = most(heuristic, largest);
     let (mut n, mut c) = (direct, 0.0);
@@ -112,30 +112,30 @@ fn connected(heuristic: Heuristic, at: &Vertex) -> f64 {
     of_shadow * direct + of_connection * c + later.max(0.0)
 }
 
-/// What bounds `E[X²]`.
+/// Parts of a bound on `E[X²]`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Spread {
-    /// What arrives without a scattering.
+    /// Unscattered light.
     pub unscattered: f64,
-    /// What shadow rays add by themselves, with untracked transmittances.
+    /// Contribution of shadow rays alone, with untracked transmittances.
     pub lit: f64,
-    /// All else.
+    /// All other contributions.
     pub rest: f64,
 }
 
 impl Spread {
-    /// The bound on `E[X²]`, given that on `E[T̂²]/T`.
+    /// The bound on `E[X²]`, given a bound on `E[T̂²]/T`.
     pub fn square(&self, gain: f64) -> f64 {
         self.unscattered + gain * self.lit + self.rest
     }
 }
 
-/// Those of all techniques.
+/// Bounds for all techniques.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Spreads(pub [Spread; Techniques::ALL.len()]);
 
 impl Spreads {
-    /// Those of three solutions together, number by number.
+    /// Joins the bounds of three solutions, number by number.
     pub(super) fn joined(three: &[Self; 3], join: impl Fn([f64; 3]) -> f64) -> Self {
         Self(std::array::from_fn(|i| {
             let number = |of: fn(&Spread) -> f64| join(three.each_ref().map(|each| of(&each.0[i])));
@@ -147,7 +147,7 @@ impl Spreads {
         }))
     }
 
-    /// Of some techniques.
+    /// Bound for some techniques.
     pub fn of(&self, techniques: Techniques) -> Spread {
         let index = Techniques::ALL.iter().position(|&each| each == techniques);
         self.0[index.unwrap_or_default()]
@@ -160,12 +160,12 @@ mod tests {
 
     #[test]
     fn a_thin_medium_under_an_even_sky_is_a_hand_value() {
-        // All that arrives does so unscattered: h̄ = J = 1 and q = 1, half by hits and half by shadow rays.
+        // All light arrives unscattered: h̄ = J = 1 and q = 1, half by hits and half by shadow rays.
         let at = Vertex { share: 1.0, largest: 1.0, direct: 1.0, all: 1.0 };
         let square = |techniques: Techniques| techniques.scores(&at).iter().sum::<f64>();
         assert!((square(Techniques::NextEvent) - 1.0).abs() < 1e-15);
         for heuristic in [Balance, Power] {
-            // X = ½ + ½ always.
+            // X = ½ + ½ in every draw.
             for densities in [Densities::Directional, Densities::Full] {
                 assert!((square(Techniques::Mis(densities, heuristic)) - 1.0).abs() < 1e-15);
             }

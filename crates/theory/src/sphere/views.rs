@@ -1,9 +1,9 @@
-//! The directions in which a point of a ball looks, each with its weight: `½∫₋₁¹ I dν`.
+//! Lines of sight from a point of a ball, each with its weight: `½∫₋₁¹ I dν`.
 //!
-//! ν is the cosine with the direction away from the centre. The radiance changes its character where
-//! the point looks along the surface, `|ν| ≲ √(R² − r²)/r`, along the edge of a black sphere, and
-//! closely past a point source; panels are graded towards these. Rays that end on a black sphere are
-//! counted by `q = √(ρ² − p²)`, in which their lengths are smooth, and rays that pass the centre by p.
+//! ν is the cosine with the direction away from the centre. The radiance changes its character where the point
+//! looks along the surface, `|ν| ≲ √(R² − r²)/r`, along the edge of a black sphere, and closely past a point
+//! source; panels are graded towards these. Rays that end on a black sphere are parametrised by `q = √(ρ² − p²)`,
+//! in which their lengths are smooth, and rays that pass the centre by p.
 
 use super::shells::{Centre, Resolution, Rules, halved};
 
@@ -12,9 +12,9 @@ use super::shells::{Centre, Resolution, Rules, halved};
 pub struct View {
     /// The square of its distance from the centre, p².
     pub offset2: f64,
-    /// Where it begins, from its foot: `rν`.
+    /// Begin, from its foot: `rν`.
     pub from: f64,
-    /// Its share of `½∫ dν`.
+    /// Share of `½∫ dν`.
     pub weight: f64,
 }
 
