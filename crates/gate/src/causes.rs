@@ -1,24 +1,24 @@
-//! Likely causes of a failure, by its pattern.
+//! Likely causes of a failure, given its pattern.
 //!
-//! A pattern is which checks failed, and on which side. The causes of a pattern are the frequent kinds of the known
-//! bugs (`trueflight self-test`) that leave it. They are likely, not certain.
+//! A pattern says which checks failed, and on which side. The causes of a pattern are the frequent kinds among the
+//! known bugs (`trueflight self-test`) with this pattern. They are likely, not certain.
 
-/// The side on which a quantity is off.
+/// The side on which a quantity deviates.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub enum Side {
-    /// It was not found to be off.
+    /// No deviation was found.
     #[default]
     Right,
     /// Too small.
     Low,
     /// Too large.
     High,
-    /// Too small in one channel, too large in another, or off without a side.
+    /// Too small in one channel, too large in another, or deviating without a side.
     Both,
 }
 
 impl Side {
-    /// Whether the quantity is off.
+    /// Returns true if the quantity deviates.
     pub fn is_off(self) -> bool {
         self != Self::Right
     }
@@ -46,7 +46,7 @@ impl Side {
 /// Part of a sweep in which an estimator fails.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub enum Place {
-    /// Everywhere, here and there, or nothing was swept.
+    /// Anywhere in the sweep, or nothing was swept.
     #[default]
     Anywhere,
     /// At the smallest swept values only.
@@ -56,7 +56,7 @@ pub enum Place {
 }
 
 impl Place {
-    /// Likely cause of a failure there, whatever fails.
+    /// Likely cause of a failure in this part, for any check that fails.
     pub fn hint(self) -> Option<&'static str> {
         match self {
             Self::Anywhere => None,
@@ -71,7 +71,7 @@ impl Place {
     }
 }
 
-/// Which checks of an experiment fail, and on which side.
+/// Checks of an experiment that fail, and the side of each.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 #[allow(clippy::struct_excessive_bools)] // one for each check that has no side
 pub struct Pattern {
@@ -167,7 +167,7 @@ pub const PAGE: &str = "docs/failures.md";
 /// A kind of bug.
 #[derive(Debug, PartialEq, Eq)]
 pub struct Cause {
-    /// Its name in the manual.
+    /// Name in the manual.
     pub name: &'static str,
     /// What is wrong with the program.
     pub text: &'static str,
@@ -177,7 +177,7 @@ pub struct Cause {
 pub struct Line {
     /// The pattern in words.
     pub pattern: &'static str,
-    /// Whether a pattern is of this line.
+    /// Returns true for patterns of this line.
     applies: fn(&Pattern) -> bool,
     /// The likely causes, the most frequent first.
     pub causes: &'static [&'static Cause],
@@ -208,8 +208,9 @@ kinds! {
     ANOTHER = "another": "the estimator is unbiased, but another one than claimed: averaged draws, another rule or other weights";
 }
 
-/// Patterns of failures and the kinds of bugs that leave them. The first line that applies to a pattern counts. Its causes are
-/// the kinds that most of the known bugs of that pattern are of; `tests/it/causes.rs` compares the table with all of them.
+/// Patterns of failures and the kinds of bugs that cause them. The first line that applies to a pattern counts. Its
+/// causes are the kinds of most known bugs with that pattern; `tests/it/causes.rs` compares the table with all of
+/// them.
 pub static TABLE: &[Line] = &[
     Line {
         pattern: "a draw is no finite number, or out of its range",
@@ -323,7 +324,7 @@ pub static TABLE: &[Line] = &[
     },
 ];
 
-/// Whether the mean, the variance or the number of lookups is off to one side.
+/// Returns true if the mean, the variance or the number of lookups deviates to one side.
 fn is_sided(pattern: &Pattern) -> bool {
     pattern.mean.is_off()
         || pattern.variance.is_off()

@@ -10,7 +10,7 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer};
 const WORDS: [(&str, f64); 3] =
     [("inf", f64::INFINITY), ("-inf", f64::NEG_INFINITY), ("nan", f64::NAN)];
 
-/// A number as it is stored.
+/// A number in its stored form.
 #[derive(Serialize, Deserialize)]
 #[serde(untagged)]
 pub enum Stored {
@@ -25,14 +25,14 @@ pub trait Numbers: Sized {
     /// The form that is stored.
     type Stored: Serialize + DeserializeOwned;
 
-    /// Converts to the form that is stored.
+    /// Converts to the stored form.
     fn stored(&self) -> Self::Stored;
 
-    /// Converts back; the error is a word that stands for no number.
+    /// Converts back; the error is an unknown word.
     ///
     /// # Errors
     ///
-    /// A word is none of the three.
+    /// A word is not one of the three.
     fn read(stored: Self::Stored) -> Result<Self, String>;
 }
 
@@ -110,7 +110,7 @@ pub fn serialize<S: Serializer, T: Numbers>(numbers: &T, to: S) -> Result<S::Ok,
 ///
 /// # Errors
 ///
-/// Something else is in their place.
+/// Data of another type.
 pub fn deserialize<'de, D: Deserializer<'de>, T: Numbers>(from: D) -> Result<T, D::Error> {
     let wrong = |found: String| {
         D::Error::invalid_value(Unexpected::Str(&found), &"numbers, `inf`, `-inf` or `nan`")

@@ -1,17 +1,17 @@
-//! A check as its author builds it: the source of the draws, and what they should be.
+//! A check while it is built: the source of the draws, and the properties that correct draws have.
 
 use super::made::{Closure, Factory, Sample};
 use super::outcome::{CheckError, CheckFault};
 use crate::session::{Claim, Lookups, ROUNDING, Session, Taken, Theory, Wanted};
 use numeric::rng::Stream;
 
-/// More values of a draw than this are not judged together: each has lost its share of α.
+/// Maximum number of values of a draw that are judged together: with more, the share of α of each is too small.
 pub const MAX_VALUES: usize = 1 << 16;
 
-/// How many draws are made at most where [`Check::draws`] does not say.
+/// Maximum number of draws, unless [`Check::draws`] sets it.
 pub const MOST: u64 = 1 << 24;
 
-/// One number for each value of a draw, or one for all: from `f64`, `[f64; K]` or `Vec<f64>`.
+/// A number for each value of a draw, or a single number for all: from `f64`, `[f64; K]` or `Vec<f64>`.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Values(pub(super) Vec<f64>);
 
@@ -33,9 +33,9 @@ impl From<Vec<f64>> for Values {
     }
 }
 
-/// A check that is being set up: a name, a source of draws, and what is known of them.
+/// A check that is being built: a name, a source of draws, and properties of correct draws.
 ///
-/// What makes no sense is told by the verdict, as a [`CheckError`].
+/// Invalid properties give a [`CheckError`] in place of the verdict.
 #[derive(Debug, Clone)]
 #[must_use = "a check draws nothing before .verdict() or .assert_pass()"]
 pub struct Check<S> {
@@ -72,8 +72,8 @@ pub fn check<T: Sample, F: FnMut(&mut Stream) -> T>(
     Check { name: name.into(), source: Closure { draw }, said: Said::default() }
 }
 
-/// A check of draws that several threads make, each by a closure of its own that the factory makes: by all
-/// processors, or as many as [`Check::threads`] says.
+/// A check of draws that several threads make, each by a closure of its own from the factory. There is one thread
+/// for each processor, or as many as [`Check::threads`] says.
 ///
 /// ```
 /// let factory = || {
@@ -99,7 +99,7 @@ pub fn claim(name: impl Into<String>) -> Check<()> {
 }
 
 impl<S> Check<S> {
-    /// Sets the theory of a draw, or the reason why nothing is known, which is then the error of the verdict.
+    /// Sets the theory of a draw, or the reason why theory is missing, which is then the error of the verdict.
     pub fn theory(mut self, theory: Result<Theory, String>) -> Self {
         self.said.theory = Some(theory);
         self
@@ -117,77 +117,77 @@ impl<S> Check<S> {
         self
     }
 
-    /// The kurtosis of a correct draw, 3 for the normal law; without a variance an upper bound of it.
+    /// The kurtosis of a correct draw, 3 for the normal distribution; without a variance an upper bound of it.
     pub fn kurtosis(mut self, kurtosis: impl Into<Values>) -> Self {
         self.said.kurtosis = Some(kurtosis.into());
         self
     }
 
-    /// Where correct draws lie; either end may be infinite. A draw outside fails.
+    /// Range of correct draws; either end may be infinite. A draw outside fails.
     pub fn range(mut self, low: f64, high: f64) -> Self {
         self.said.range = Some([low, high]);
         self
     }
 
-    /// Mean and variance of the number of lookups that a correct draw tells.
+    /// Mean and variance of the number of lookups that correct draws come with.
     pub fn lookups(mut self, mean: f64, variance: f64) -> Self {
         self.said.lookups = Some(Lookups { mean, variance: Some(variance), error: 0.0 });
         self
     }
 
-    /// What rounding may add to a draw, relative to the truth; absolute for a truth of 0. Without it 3.6e-13; for
-    /// draws in single precision some 1e-6.
+    /// Rounding error of a draw, relative to the truth; absolute for a truth of 0. The default is 3.6e-13; draws in
+    /// single precision need some 1e-6.
     pub fn rounding(mut self, rounding: f64) -> Self {
         self.said.rounding = rounding;
         self
     }
 
-    /// Of what theory says, only the mean: for an estimator of one's own that the case does not have.
+    /// Takes only the mean from theory: for an own estimator that the case does not have.
     pub fn mean_only(mut self) -> Self {
         self.said.mean_only = true;
         self
     }
 
-    /// The number of values of a draw that is pushed, where not every channel of the case is one: the luminance of a
+    /// The number of values of a pushed draw, where not every channel of the case is one: the luminance of a
     /// chromatic medium, which follows from the other channels, may be left out.
     pub fn values(mut self, values: usize) -> Self {
         self.said.values = Some(values);
         self
     }
 
-    /// ε: the bias that a pass excludes, relative to the truth (absolute for a truth of 0). Without it 1 %, or
-    /// with [`Check::draws`] what so many draws can see, at most 5 %.
+    /// ε: the bias that a pass excludes, relative to the truth (absolute for a truth of 0). The default is 1 %, or
+    /// with [`Check::draws`] the bias that this number of draws can detect, at most 5 %.
     pub fn tolerance(mut self, tolerance: f64) -> Self {
         self.said.wanted.tolerance = Some(tolerance);
         self
     }
 
-    /// The same for the variance, relative to it.
+    /// ε of the variance, relative to it.
     pub fn variance_tolerance(mut self, tolerance: f64) -> Self {
         self.said.wanted.variance_tolerance = Some(tolerance);
         self
     }
 
-    /// Judges averages of so many consecutive draws, which is for draws that depend on their neighbours; variance
-    /// and kurtosis are then those of an average, and of theory only the mean is taken.
+    /// Judges averages of `batch` consecutive draws: for draws that are correlated with the ones before. Variance
+    /// and kurtosis are then those of an average, and only the mean is taken from theory.
     pub fn batch(mut self, batch: u64) -> Self {
         self.said.wanted.batch = batch;
         self
     }
 
-    /// α: the chance that a correct estimator fails, 1e-3 without it.
+    /// α: the probability that a correct estimator fails; the default is 1e-3.
     pub fn alpha(mut self, alpha: f64) -> Self {
         self.said.wanted.alpha = alpha;
         self
     }
 
-    /// So many draws, all of them, in place of as many as the decision takes.
+    /// Makes exactly this number of draws, instead of stopping at a decision.
     pub fn draws(mut self, draws: u64) -> Self {
         self.said.wanted.most = Some(draws);
         self
     }
 
-    /// Where the random streams begin; 1 without it.
+    /// Seed of the random streams; the default is 1.
     pub fn seed(mut self, seed: u64) -> Self {
         self.said.seed = seed;
         self
@@ -214,7 +214,7 @@ impl<S> Check<S> {
     }
 }
 
-/// What is known of a draw, and what is wanted of the verdict.
+/// Properties of correct draws, and what is wanted of the verdict.
 #[derive(Debug, Clone)]
 pub(super) struct Said {
     pub(super) truth: Option<Values>,
@@ -259,23 +259,23 @@ impl Said {
         self.values.unwrap_or(known.max(1))
     }
 
-    /// The theory of the draw.
+    /// Theory of the draw, if it is given and valid.
     fn known(&self) -> Option<&Theory> {
         self.theory.as_ref().and_then(|theory| theory.as_ref().ok())
     }
 
-    /// Whether only the mean comes from theory: averages of draws have another variance and distribution.
+    /// True if only the mean comes from theory: averages of draws have another variance and distribution.
     fn is_mean_only(&self) -> bool {
         self.mean_only || self.wanted.batch > 1
     }
 
-    /// Whether theory says what lookups should be.
+    /// Returns true if theory has a claim on lookups.
     pub(super) fn knows_lookups(&self) -> bool {
         let first = self.known().and_then(|theory| theory.channels.first());
         !self.is_mean_only() && first.is_some_and(|(_, claim)| claim.lookups.is_some())
     }
 
-    /// The names of the values, where theory has any.
+    /// The names of the values, where theory has names.
     pub(super) fn names(&self, values: usize) -> Vec<String> {
         let channels = self.known().and_then(|theory| theory.channels_of(values));
         let names = channels.unwrap_or_default().iter().map(|(name, _)| name.clone());
@@ -284,18 +284,18 @@ impl Said {
 
     /// The numbers that a session takes from theory.
     pub(super) fn taken(&self, has_lookups: bool) -> Option<Taken<'_>> {
-        // Numbers of the caller's are not those that theory has the distribution of.
+        // Theory has no distribution of a number of lookups that the caller claims.
         let has_lookups = has_lookups && self.lookups.is_none() && self.knows_lookups();
         let theory = self.known()?;
         Some(Taken { theory, has_lookups, is_mean_only: self.mean_only })
     }
 
-    /// Whether a pushed draw tells its lookups.
+    /// Returns true if a pushed draw comes with its lookups.
     pub(super) fn has_lookups(&self) -> bool {
         self.lookups.is_some()
     }
 
-    /// What is claimed of each value of a draw.
+    /// Claims on each value of a draw.
     pub(super) fn claims(&self, values: usize, lookups: bool) -> Result<Vec<Claim>, CheckFault> {
         if self.lookups.is_some() && !lookups {
             return Err(CheckFault::NoLookups);

@@ -13,11 +13,11 @@ use super::pushed::{Plan, Request};
 use crate::session::Block;
 use numeric::rng::Stream;
 
-/// One draw: a value, or several, with the number of lookups of σ_t that it took or without.
+/// A draw: one value or several, with or without the number of lookups of σ_t.
 pub trait Sample: Send {
-    /// The number of its values.
+    /// The number of values.
     const VALUES: usize;
-    /// Whether it tells the number of lookups.
+    /// True if it comes with the number of lookups.
     const HAS_LOOKUPS: bool = false;
 
     /// Adds the draw to one column for each value.
@@ -81,14 +81,14 @@ pub struct Closure<F> {
     pub(super) draw: F,
 }
 
-/// A factory of such closures, one for each thread.
+/// A factory of such closures, which makes one for each thread.
 #[derive(Debug, Clone)]
 pub struct Factory<M> {
     pub(super) make: M,
     pub(super) threads: Option<usize>,
 }
 
-/// What a closure said when it panicked, and in which draw of its block.
+/// Message of a closure's panic, and its draw in the block.
 struct Panic {
     draw: u64,
     message: String,
@@ -119,7 +119,7 @@ fn block<T: Sample>(
     Ok(block)
 }
 
-/// What a panic said.
+/// Message of a panic.
 fn message(panic: &(dyn Any + Send)) -> String {
     let text = panic.downcast_ref::<&str>().map(|text| (*text).to_owned());
     let text = text.or_else(|| panic.downcast_ref::<String>().cloned());
@@ -127,7 +127,7 @@ fn message(panic: &(dyn Any + Send)) -> String {
 }
 
 impl Check<()> {
-    /// Judges the blocks of a source until the verdict is decided or there are enough.
+    /// Judges the blocks of a source until the verdict is decided or the maximum number of draws is reached.
     fn judged<T: Sample>(
         self,
         mut source: impl FnMut(Request) -> Result<Block, Panic>,
@@ -146,7 +146,7 @@ impl Check<()> {
 }
 
 impl<S> Check<S> {
-    /// The source of draws, and all else.
+    /// Splits into the source of draws and the rest of the check.
     fn parted(self) -> (S, Check<()>) {
         (self.source, Check { name: self.name, source: (), said: self.said })
     }
@@ -157,7 +157,7 @@ impl<T: Sample, F: FnMut(&mut Stream) -> T> Check<Closure<F>> {
     ///
     /// # Errors
     ///
-    /// What was said of the draws makes no sense, or the closure panics.
+    /// The properties of the draws are invalid, or the closure panics.
     pub fn verdict(self) -> Result<Outcome, CheckError> {
         let (Closure { mut draw }, check) = self.parted();
         check.judged::<T>(|request| block(request, &mut draw))
@@ -167,7 +167,7 @@ impl<T: Sample, F: FnMut(&mut Stream) -> T> Check<Closure<F>> {
     ///
     /// # Panics
     ///
-    /// The verdict is fail or inconclusive, or there is none.
+    /// The verdict is fail or inconclusive, or an error.
     #[track_caller]
     pub fn assert_pass(self) {
         assert_pass(&self.verdict());
@@ -175,7 +175,7 @@ impl<T: Sample, F: FnMut(&mut Stream) -> T> Check<Closure<F>> {
 }
 
 impl<T: Sample, F: FnMut(&mut Stream) -> T, M: Fn() -> F + Sync> Check<Factory<M>> {
-    /// So many threads; without it one for each processor. The verdict does not depend on it.
+    /// Number of threads; the default is one for each processor. The verdict does not depend on it.
     pub fn threads(mut self, threads: usize) -> Self {
         self.source.threads = Some(threads.max(1));
         self
@@ -185,7 +185,7 @@ impl<T: Sample, F: FnMut(&mut Stream) -> T, M: Fn() -> F + Sync> Check<Factory<M
     ///
     /// # Errors
     ///
-    /// What was said of the draws makes no sense, or a closure panics.
+    /// The properties of the draws are invalid, or a closure panics.
     pub fn verdict(self) -> Result<Outcome, CheckError> {
         let (Factory { make, threads }, check) = self.parted();
         let threads = threads.or_else(|| thread::available_parallelism().map(NonZero::get).ok());
@@ -214,14 +214,14 @@ impl<T: Sample, F: FnMut(&mut Stream) -> T, M: Fn() -> F + Sync> Check<Factory<M
     ///
     /// # Panics
     ///
-    /// The verdict is fail or inconclusive, or there is none.
+    /// The verdict is fail or inconclusive, or an error.
     #[track_caller]
     pub fn assert_pass(self) {
         assert_pass(&self.verdict());
     }
 }
 
-/// So many blocks a thread is ahead of the gate at most.
+/// Maximum number of blocks by which a thread is ahead of the gate.
 const AHEAD: usize = 2;
 
 /// Makes every `turn.end`-th block from `turn.start` on, until no receiver is left.

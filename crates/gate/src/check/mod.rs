@@ -1,9 +1,9 @@
 //! Is my estimator unbiased? Three lines in one's own test.
 //!
-//! [`check`] draws from a closure, [`check_with`] from one closure a thread, and [`claim`] waits for draws that are
-//! pushed. What a correct draw is like is said by numbers ([`Check::truth`], [`Check::variance`],
+//! [`check`] draws from a closure, [`check_with`] from one closure for each thread, and [`claim`] takes draws that
+//! are pushed. The properties of a correct draw are given by numbers ([`Check::truth`], [`Check::variance`],
 //! [`Check::kurtosis`], [`Check::range`]), or taken from theory for an experiment of a case (`Check::of`). Then the
-//! gate of `trueflight judge` answers: pass, fail or inconclusive, and a correct estimator fails with chance α at
+//! gate of `trueflight judge` decides: pass, fail or inconclusive. A correct estimator fails with probability α at
 //! most. [`Gate`] shares one α among several checks.
 //!
 //! ```
@@ -14,8 +14,8 @@
 //!     .assert_pass();
 //! ```
 //!
-//! Draws come in blocks of 2¹⁴, and each block has a random stream of its own, addressed by seed, name and block: a
-//! closure that uses no other source of chance makes the same draws on any number of threads. Without
+//! Draws come in blocks of 2¹⁴, and each block has a random stream of its own, addressed by seed, name and block. A
+//! closure that uses no other source of randomness makes the same draws on any number of threads. Without
 //! [`Check::draws`] they end as soon as all is decided, and after [`MOST`] draws at the latest.
 
 mod builder;
@@ -91,7 +91,7 @@ impl<'a> Gate<'a> {
         self
     }
 
-    /// One check more; its own α does not count.
+    /// Adds a check; its own α is not used.
     pub fn check(mut self, check: impl Planned + 'a) -> Self {
         self.checks.push(Box::new(check));
         self
@@ -99,13 +99,13 @@ impl<'a> Gate<'a> {
 
     /// The verdicts, in the order of the checks.
     pub fn verdicts(self) -> Vec<Result<Outcome, CheckError>> {
-        // What is no probability is told by each check, undivided.
+        // An invalid α is reported by each check, undivided.
         let is_one = self.alpha > 0.0 && self.alpha < 1.0;
         let share = if is_one { self.alpha / self.checks.len() as f64 } else { self.alpha };
         self.checks.into_iter().map(|check| check.verdict_at(share)).collect()
     }
 
-    /// Draws and judges all of them; panics unless all pass.
+    /// Draws and judges all checks; panics unless all pass.
     ///
     /// # Panics
     ///

@@ -1,4 +1,4 @@
-//! The outcome of a check, or the reason that it has no verdict.
+//! The verdict of a check, or the reason why it has no verdict.
 
 use std::error::Error;
 use std::fmt;
@@ -8,10 +8,10 @@ use crate::session::{ClaimError, Judgement};
 use crate::stats::verdict::Verdict;
 use numeric::digits::number;
 
-/// So many values are told of.
+/// Maximum number of values that are displayed.
 const TOLD: usize = 8;
 
-/// The verdict of a check, with everything that `trueflight judge` tells.
+/// The verdict of a check, with all numbers that `trueflight judge` prints.
 ///
 /// ```
 /// let outcome = trueflight_gate::check("u", |rng| rng.uniform()).truth(0.6).range(0.0, 1.0).verdict()?;
@@ -24,11 +24,11 @@ const TOLD: usize = 8;
 pub struct Outcome {
     /// The check's name.
     pub name: String,
-    /// The chance that a correct estimator fails, all values together.
+    /// The probability that a correct estimator fails, all values together.
     pub alpha: f64,
     /// The names of the values, where they are channels of a case; empty otherwise.
     pub channels: Vec<String>,
-    /// What was found of each value of a draw.
+    /// Judgement of each value of a draw.
     pub values: Vec<Judgement>,
 }
 
@@ -38,7 +38,7 @@ impl Outcome {
         Verdict::worst(self.values.iter().map(|value| value.verdict))
     }
 
-    /// Whether all values pass.
+    /// Returns true if all values pass.
     pub fn passed(&self) -> bool {
         self.verdict() == Verdict::Pass
     }
@@ -48,7 +48,7 @@ impl Outcome {
         self.channels.get(index).cloned().unwrap_or_else(|| format!("value {index}"))
     }
 
-    /// Why it does not pass, in words; empty for a plain pass.
+    /// The reason why it does not pass, in words; empty for a plain pass.
     pub fn reason(&self) -> String {
         let verdict = self.verdict();
         let alike = self.values.iter().enumerate().filter(|(_, value)| value.verdict == verdict);
@@ -81,7 +81,7 @@ impl Outcome {
     }
 }
 
-/// The lines of `trueflight judge`, under a line with the verdict.
+/// Formats the lines of `trueflight judge`, under a line with the verdict.
 impl fmt::Display for Outcome {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         let reason = self.reason();
@@ -89,7 +89,7 @@ impl fmt::Display for Outcome {
         if !reason.is_empty() {
             write!(f, ": {reason}")?;
         }
-        // Those that decide come first where there are too many to tell.
+        // With too many values to display, those that decide come first.
         let verdict = self.verdict();
         let all = || self.values.iter().enumerate();
         let mut told: Vec<(usize, &Judgement)> = all().collect();
@@ -123,15 +123,15 @@ pub struct CheckError {
 #[derive(Debug)]
 #[non_exhaustive]
 pub enum CheckFault {
-    /// Nothing says what the mean of a correct draw is.
+    /// The mean of a correct draw is not given.
     NoTruth,
     /// The claim is invalid.
     Claim(ClaimError),
     /// A draw has no values.
     NoValues,
-    /// A draw has more values, so many, than are judged together.
+    /// A draw has more values than are judged together: their number.
     TooManyValues(usize),
-    /// A property is given for another number of values than a draw has.
+    /// The property has another number of values than a draw.
     Values {
         /// The property.
         what: &'static str,
@@ -169,11 +169,11 @@ pub enum CheckFault {
         /// Largest valid number.
         max: u64,
     },
-    /// A property is given by a number, and by theory.
+    /// A property is given by a number and by theory.
     Twice(&'static str),
-    /// The number of lookups is claimed, and draws come without.
+    /// The number of lookups is claimed, but draws come without.
     NoLookups,
-    /// Draws come with lookups, and nothing is claimed of these.
+    /// Draws come with lookups, but there is no claim on them.
     NoLookupsWanted,
     /// There are more or fewer lookups than draws.
     Lookups {

@@ -1,4 +1,4 @@
-//! Draws that somebody else makes and pushes.
+//! Draws that other code makes and pushes.
 
 use super::builder::{Check, MOST};
 use super::made::assert_pass;
@@ -7,11 +7,11 @@ use crate::session::{BUFFER, Block, Session, Sink, Stop, Until, drive, room};
 use numeric::rng::{Address, Stream, name_hash};
 
 impl Check<()> {
-    /// Judges draws that are in memory; those of several values lie one draw after the other.
+    /// Judges draws in memory; draws of several values are stored one after the other.
     ///
     /// # Errors
     ///
-    /// What was said of the draws makes no sense, there are none, or the last one is not whole.
+    /// The properties of the draws are invalid, there are no draws, or the last one is incomplete.
     ///
     /// ```
     /// let halves = [0.25, 0.75].repeat(50_000); // no chance in them: each draw tells the next
@@ -25,11 +25,11 @@ impl Check<()> {
         pushed.verdict()
     }
 
-    /// Begins to judge draws that come some at a time, by [`Pushed::absorb`].
+    /// Begins to judge draws that come in parts, by [`Pushed::absorb`].
     ///
     /// # Errors
     ///
-    /// What was said of the draws makes no sense.
+    /// The properties of the draws are invalid.
     ///
     /// ```
     /// let mut pushed = trueflight_gate::claim("coin").truth(0.5).range(0.0, 1.0).open()?;
@@ -72,15 +72,15 @@ impl Check<()> {
     }
 }
 
-/// A check that waits for draws.
+/// A check that takes draws.
 pub struct Pushed {
     check: Check<()>,
     /// Number of draws, where it is known.
     length: Option<u64>,
-    /// Whether each draw comes with its lookups.
+    /// True if each draw comes with its lookups.
     has_lookups: bool,
     session: Session,
-    /// Room for draws of several values.
+    /// Memory for draws of several values.
     block: Block,
     /// Number of the next block that a source is asked for.
     next: u64,
@@ -132,14 +132,15 @@ impl Plan {
 }
 
 impl Pushed {
-    /// Asks a source for blocks of draws until the verdict is decided, or for as many as [`Check::draws`] says.
+    /// Asks a source for blocks of draws until the verdict is decided, or until the number of [`Check::draws`] is
+    /// reached.
     ///
     /// The source adds its draws, and returns whether there may be more. It may add more or fewer than it is asked for.
     /// A later call goes on with the next block.
     ///
     /// # Errors
     ///
-    /// The source's own.
+    /// The error of the source.
     ///
     /// ```
     /// use trueflight_gate::check::{CheckError, Request};
@@ -166,7 +167,7 @@ impl Pushed {
             pushed.next += 1;
             source(pushed, request)
         })?;
-        // All the draws that were asked for leave nothing out.
+        // If all requested draws came, nothing is left out.
         self.stopped = stopped.filter(|_| !is_fixed);
         Ok(())
     }
@@ -176,12 +177,12 @@ impl Pushed {
         self.session.absorb(&block.columns(), &block.lookups);
     }
 
-    /// Adds draws; those of several values lie one draw after the other. How many come in one call makes no
-    /// difference.
+    /// Adds draws; draws of several values are stored one after the other. Their distribution over calls does not
+    /// matter.
     ///
     /// # Errors
     ///
-    /// The last draw is not whole, or the check wants lookups.
+    /// The last draw is incomplete, or the check wants lookups.
     pub fn absorb(&mut self, draws: &[f64]) -> Result<(), CheckError> {
         if self.has_lookups {
             return Err(CheckFault::NoLookups.of(&self.check.name));
@@ -194,7 +195,8 @@ impl Pushed {
     ///
     /// # Errors
     ///
-    /// The last draw is not whole, there are more or fewer lookups than draws, or draws without lookups came before.
+    /// The last draw is incomplete, there are more or fewer lookups than draws, or draws without lookups came
+    /// before.
     pub fn absorb_with_lookups(
         &mut self,
         draws: &[f64],
@@ -204,7 +206,7 @@ impl Pushed {
             if self.draws() > 0 || !self.check.said.knows_lookups() {
                 return Err(CheckFault::NoLookupsWanted.of(&self.check.name));
             }
-            // Theory knows them: the first draw tells whether they come.
+            // Theory has a claim on lookups: the first draw decides whether they are judged.
             self.session = self.check.session(self.values(), true, self.length)?;
             self.has_lookups = true;
         }
@@ -215,8 +217,8 @@ impl Pushed {
         self.push(draws, lookups)
     }
 
-    /// Whether more draws may change what is said; after that many as were announced, or once all is decided, they
-    /// may not.
+    /// Returns true if more draws may change the verdict: before the announced number of draws, and until all is
+    /// decided.
     pub fn is_open(&self) -> bool {
         self.session.is_open()
     }
@@ -231,11 +233,11 @@ impl Pushed {
         self.session.draws()
     }
 
-    /// What is said of all draws.
+    /// Judges all draws.
     ///
     /// # Errors
     ///
-    /// There were none.
+    /// There were no draws.
     pub fn verdict(self) -> Result<Outcome, CheckError> {
         if self.draws() == 0 {
             return Err(CheckFault::NoDraws.of(&self.check.name));
@@ -250,13 +252,13 @@ impl Pushed {
     ///
     /// # Panics
     ///
-    /// The verdict is fail or inconclusive, or there is none.
+    /// The verdict is fail or inconclusive, or an error.
     #[track_caller]
     pub fn assert_pass(self) {
         assert_pass(&self.verdict());
     }
 
-    /// Adds draws that lie one after the other.
+    /// Adds draws that are stored one after the other.
     fn push(&mut self, draws: &[f64], lookups: &[f64]) -> Result<(), CheckError> {
         let wanted = self.values();
         if !draws.len().is_multiple_of(wanted) {

@@ -1,4 +1,4 @@
-//! Claims about the draws of one value, what is wanted of the verdict, and the quantities that follow from both.
+//! Claims about the draws of one value, settings of the verdict, and the quantities that follow from both.
 
 use std::error::Error;
 use std::fmt;
@@ -13,8 +13,7 @@ use crate::stats::gate::Design;
 use crate::stats::verdict::{BLOCK, FURTHEST};
 use numeric::digits::number;
 
-/// What rounding may add to each draw, relative to the truth, where the caller does not say: a
-/// product of a hundred factors.
+/// Default rounding error of each draw, relative to the truth: a product of a hundred factors.
 pub const ROUNDING: f64 = 16.0 * f64::EPSILON * 100.0;
 
 /// Claim on correct draws.
@@ -22,40 +21,40 @@ pub const ROUNDING: f64 = 16.0 * f64::EPSILON * 100.0;
 pub struct Claim {
     /// The mean of a correct draw.
     pub truth: f64,
-    /// A bound on the truth's own error.
+    /// A bound on the error of the truth.
     pub truth_error: f64,
-    /// u: what the tolerance of the mean is relative to. For a truth of 0 it is 1.
+    /// u: the unit of the mean's tolerance. For a truth of 0 it is 1.
     pub unit: f64,
     /// The variance of a correct draw, if it is known.
     pub variance: Option<f64>,
-    /// A relative error bound of that.
+    /// A relative error bound of the variance.
     pub variance_error: f64,
-    /// The kurtosis of a correct draw (3 for the normal law), if it is known; where the variance is
-    /// not, an upper bound of it.
+    /// The kurtosis of a correct draw (3 for the normal distribution), if it is known. Without a variance it is an
+    /// upper bound.
     pub kurtosis: Option<f64>,
-    /// Where correct draws lie, if it is known; either end may be infinite.
+    /// Range of correct draws, if it is known; either end may be infinite.
     pub range: Option<[f64; 2]>,
-    /// The number of lookups of a correct draw, if it is to be judged.
+    /// The number of lookups of a correct draw, if it is judged.
     pub lookups: Option<Lookups>,
-    /// What rounding may add to each draw, relative to the truth; absolute for a truth of 0.
+    /// Rounding error of each draw, relative to the truth; absolute for a truth of 0.
     pub rounding: f64,
-    /// The ray of free flights, where draws are their lengths.
+    /// The ray of free flights, if draws are their lengths.
     pub flights: Option<Flights>,
 }
 
-/// What is claimed of the number of lookups of a draw.
+/// Claim on the number of lookups of a draw.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Lookups {
-    /// Its mean.
+    /// The mean.
     pub mean: f64,
-    /// Its variance, if it is known.
+    /// The variance, if it is known.
     pub variance: Option<f64>,
     /// A relative error bound of both.
     pub error: f64,
 }
 
 impl Lookups {
-    /// Whether every draw takes the same number.
+    /// Returns true if every draw takes the same number.
     pub fn is_fixed(&self) -> bool {
         self.variance == Some(0.0)
     }
@@ -74,7 +73,7 @@ pub enum ClaimError {
         /// Valid numbers in words.
         wanted: &'static str,
     },
-    /// A range is empty, or the truth is not inside.
+    /// The range is empty, or the truth is outside.
     Range {
         /// Lower end.
         low: f64,
@@ -83,7 +82,7 @@ pub enum ClaimError {
         /// The truth.
         truth: f64,
     },
-    /// No draws in the range have that variance.
+    /// No distribution in the range has that variance.
     TooSpread {
         /// The variance.
         variance: f64,
@@ -94,7 +93,7 @@ pub enum ClaimError {
     },
     /// The truth is 0, and no tolerance is given.
     NoUnit,
-    /// The tolerance is below 4 times what rounding and the claim's own error may add.
+    /// The tolerance is below 4 times the rounding error and the claim's own error.
     Blurred {
         /// The quantity.
         what: &'static str,
@@ -103,7 +102,7 @@ pub enum ClaimError {
         /// δ.
         floor: f64,
     },
-    /// A tolerance of a variance is given that is not tested, for the reason in words.
+    /// A tolerance is given for a variance that is not tested, for the reason in words.
     NoVariance(&'static str),
 }
 
@@ -164,12 +163,12 @@ impl Claim {
         }
     }
 
-    /// The claim, once all its numbers make sense and go with each other.
+    /// Returns the claim after checking that its numbers are valid and consistent.
     ///
     /// # Errors
     ///
-    /// A number is not finite, or is negative where it must not be; or a range does not go with the truth or the
-    /// variance.
+    /// A number is not finite, or is negative where it must not be; or a range is inconsistent with the truth or
+    /// the variance.
     pub fn validated(self) -> Result<Self, ClaimError> {
         let check = |what, value: f64, least: f64, wanted| {
             let is_fine = value.is_finite() && value >= least;
@@ -191,7 +190,7 @@ impl Claim {
     ///
     /// # Errors
     ///
-    /// The truth is not inside, or the variance is larger than any in the range.
+    /// The truth is outside, or the variance is larger than any in the range.
     pub fn within(self, range: Option<[f64; 2]>) -> Result<Self, ClaimError> {
         let Some([low, high]) = range else { return Ok(self) };
         let (truth, variance) = (self.truth, self.variance.unwrap_or(0.0));
@@ -208,7 +207,7 @@ impl Claim {
         Ok(Self { range, ..self })
     }
 
-    /// The numbers of this claim about the mean of another: of theory only the mean is taken.
+    /// Returns this claim's numbers with the mean of another one: only the mean is taken from theory.
     #[must_use]
     pub fn about(self, theory: Self) -> Self {
         let Self { variance, kurtosis, lookups, .. } = self;
@@ -220,7 +219,7 @@ impl Claim {
         mean_floor(self.truth_error, self.rounding_of_draw(), self.unit)
     }
 
-    /// The range with what rounding may add at each end.
+    /// The range, widened by the rounding error at each end.
     pub(super) fn widened(&self) -> Option<[f64; 2]> {
         let slack = |end: f64| {
             let near = self.rounding * if end.is_finite() { end.abs() } else { 0.0 };
@@ -229,7 +228,7 @@ impl Claim {
         self.range.map(|[low, high]| [low - slack(low), high + slack(high)])
     }
 
-    /// What rounding may add to a draw.
+    /// Rounding error of a draw.
     fn rounding_of_draw(&self) -> f64 {
         self.rounding * if self.truth == 0.0 { 1.0 } else { self.truth.abs() }
     }
@@ -244,7 +243,7 @@ impl Claim {
 #[allow(clippy::cast_possible_truncation)] // 2¹⁴
 pub const BUFFER: usize = BLOCK as usize;
 
-/// What is wanted of the verdict.
+/// Settings of the verdict.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Wanted {
     /// ε of the mean, in units of u.
@@ -253,9 +252,9 @@ pub struct Wanted {
     pub variance_tolerance: Option<f64>,
     /// Probability that correct draws fail.
     pub alpha: f64,
-    /// Number of consecutive draws that are averaged before they are judged; the claim is then of averages.
+    /// Number of consecutive draws that are averaged before they are judged; the claim is then about averages.
     pub batch: u64,
-    /// Whether to stop reading as soon as all is decided.
+    /// True to stop reading as soon as all is decided.
     pub stop_early: bool,
     /// Largest number of draws that are read.
     pub most: Option<u64>,
@@ -281,17 +280,17 @@ impl Wanted {
     }
 }
 
-/// Whether α is a probability between 0 and 1.
+/// Checks that α is a probability between 0 and 1.
 pub(super) fn check_alpha(value: f64) -> Result<(), ClaimError> {
     let (what, wanted) = ("alpha", "a probability above 0 and below 1");
     let is_fine = value > 0.0 && value < 1.0;
     if is_fine { Ok(()) } else { Err(ClaimError::Number { what, value, wanted }) }
 }
 
-/// A claim with what is wanted, ready for draws.
+/// A claim with the settings of the verdict, ready for draws.
 #[derive(Debug, Clone, Copy)]
 pub struct Trial {
-    /// What is claimed of a draw.
+    /// Claim on a draw.
     pub claim: Claim,
     /// Error rate, tolerances and number of draws.
     pub wanted: Wanted,
@@ -300,11 +299,11 @@ pub struct Trial {
 }
 
 impl Trial {
-    /// Checks what is wanted before anything is read; `length` is the number of draws, if known.
+    /// Checks the settings before anything is read; `length` is the number of draws, if known.
     ///
     /// # Errors
     ///
-    /// A tolerance, a number of draws or α makes no sense for this claim.
+    /// A tolerance, a number of draws or α is invalid for this claim.
     pub fn new(claim: Claim, wanted: Wanted, length: Option<u64>) -> Result<Self, ClaimError> {
         let positive = |what, value: Option<f64>| match value {
             Some(value) if !(value > 0.0 && value.is_finite()) => {
@@ -336,7 +335,7 @@ impl Trial {
             _ => Ok(()),
         };
         blurred("mean", wanted.tolerance, claim.floor())?;
-        // Without a tolerance of the caller's, one above the cap would be chosen.
+        // Without a tolerance from the caller, one above the cap would be chosen.
         if wanted.tolerance.is_none() && claim.truth != 0.0 {
             blurred("mean", Some(MEAN_CAP), claim.floor())?;
         }
@@ -351,23 +350,23 @@ impl Trial {
         self.claim.variance.map(|variance| variance.sqrt() / self.claim.unit)
     }
 
-    /// Whether the draws have no spread, by the claim.
+    /// Returns true if the claimed variance of the draws is 0, to rounding.
     pub(super) fn is_certain(&self) -> bool {
         self.deviation().is_some_and(|deviation| FURTHEST * deviation <= self.claim.floor())
     }
 
-    /// Whether rounding hides what the spread says: the variance cannot be tested to its widest tolerance.
+    /// Returns true if rounding hides the variance: it cannot be tested even to its largest tolerance.
     pub(super) fn is_faint(&self) -> bool {
         let variance = self.claim.variance.filter(|&variance| variance > 0.0);
         variance.is_some_and(|v| self.claim.variance_floor(v) > 0.25 * VARIANCE_CAP)
     }
 
-    /// Largest deviation of a draw of a claim without spread, in units of u.
+    /// Maximum deviation of a draw where the claimed variance is 0, in units of u.
     pub(super) fn bound(&self) -> f64 {
         self.claim.floor() + FURTHEST * self.deviation().unwrap_or(0.0)
     }
 
-    /// Quantities that the claim allows to judge.
+    /// Quantities that can be judged with this claim.
     pub(super) fn quantities(&self) -> Vec<Quantity> {
         let Self { claim, wanted, .. } = self;
         let unit = if wanted.batch > 1 { "averages" } else { "draws" };
@@ -377,7 +376,7 @@ impl Trial {
             let known = claim.variance.map(|v| v / claim.unit / claim.unit);
             let known = known.map(|v| Ground::Variance(v * (1.0 + claim.variance_error)));
             let promised = claim.kurtosis.map(Ground::Kurtosis);
-            // The spread that draws show is no ground to fail.
+            // The variance of the draws themselves is no ground to fail.
             let ground = known.or(promised).or((!is_bounded).then_some(Ground::Shown));
             let in_units = |end: f64| (end - claim.truth) / claim.unit;
             let mean = Quantity::mean(ground, claim.floor()).within(wanted.tolerance);
@@ -398,7 +397,7 @@ impl Trial {
             let ground = known.or((!is_bounded).then_some(Ground::Shown));
             let quantity = Quantity::variance(ground, claim.variance_floor(variance));
             quantities.push(Quantity {
-                // A square is never negative: it may be refuted as too large without any promise.
+                // A square is never negative: the variance may be refuted as too large without any other claim.
                 range: (is_bounded || known.is_none()).then_some([-1.0, furthest - 1.0]),
                 unit,
                 ..quantity.within(wanted.variance_tolerance).of(variance, variance)
@@ -416,7 +415,7 @@ impl Trial {
         quantities
     }
 
-    /// n: the draws that the tolerances asked for need, at most those that there are.
+    /// n: the number of draws that the given tolerances need, at most those that exist.
     pub(super) fn planned(quantities: &[Quantity], length: Option<u64>) -> Option<f64> {
         let needs = |quantity: &Quantity, design: fn(f64, f64, f64) -> Design, tolerance: f64| {
             let variance = quantity.known_variance().filter(|&variance| variance > 0.0)?;

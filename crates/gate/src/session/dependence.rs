@@ -1,4 +1,4 @@
-//! What else must hold for the gate: draws that are independent, and of one mean from beginning to end.
+//! Conditions of the gate: draws that are independent, and that have one mean from beginning to end.
 
 use super::judgement::{DriftFinding, IndependenceFinding};
 use super::reading::Reading;
@@ -8,9 +8,9 @@ use crate::stats::replays::{Replay, Replays, hash};
 use crate::stats::sequences::Sequences;
 use crate::stats::verdict::Verdict;
 
-/// Whether the mean changes on the way: only where later draws plainly differ from earlier ones, and from the truth.
+/// Finds a change of the mean: only where later draws plainly differ from earlier ones, and from the truth.
 pub(super) fn drift(reading: &Reading) -> Option<DriftFinding> {
-    // Without a ground to fail the mean there is none to say when it changes.
+    // Without a ground to fail the mean, a change has no ground either.
     let mean = reading.mean.as_ref().filter(|mean| mean.has_ground())?;
     let (ln_e, batch) = (mean.ln_change, reading.trial.wanted.batch);
     let ln_e_limit = -(SIDE_SHARE * reading.trial.wanted.alpha).ln();
@@ -32,7 +32,7 @@ pub(super) fn drift(reading: &Reading) -> Option<DriftFinding> {
     Some(DriftFinding { verdict, reason, ln_e, ln_e_limit, from, off })
 }
 
-/// Why the mean fails where evidence from some draw on refutes it, and no change does.
+/// Reason why the mean fails where evidence from some draw on refutes it, but no change is found.
 pub(super) fn off_without_change(reading: &Reading, drift: &DriftFinding) -> Option<Reason> {
     let mean = reading.mean.as_ref()?;
     let (ln_e, limit) = (drift.ln_e, drift.ln_e_limit);
@@ -47,7 +47,7 @@ pub(super) fn off_without_change(reading: &Reading, drift: &DriftFinding) -> Opt
     })
 }
 
-/// Whether draws depend on each other: half of the level for neighbours, half for replays.
+/// Finds dependence of draws: half of the level is for adjacent draws, half for replays.
 pub(super) fn independence(reading: &Reading) -> IndependenceFinding {
     let ln_e_limit = (2.0 / reading.trial.wanted.alpha).ln();
     let mut found = IndependenceFinding {
@@ -55,7 +55,7 @@ pub(super) fn independence(reading: &Reading) -> IndependenceFinding {
         ln_e_limit,
         ..IndependenceFinding::default()
     };
-    // Draws that have no spread are all alike.
+    // Draws with a claimed variance of 0 are all equal.
     if reading.mean.is_none() {
         return found;
     }
@@ -77,16 +77,16 @@ pub(super) fn independence(reading: &Reading) -> IndependenceFinding {
     found
 }
 
-/// Draws that come again.
+/// A repetition of draws.
 struct Again {
     distance: u64,
     times: u64,
-    /// ln of a bound on the probability of that for independent draws.
+    /// ln of a bound on the probability of that repetition for independent draws.
     ln_p: Option<f64>,
     what: String,
 }
 
-/// Whether draws come again: three searches share their half of the level, and two behind averages.
+/// Finds a repetition of draws. Three searches share their half of the level; with averages, five do.
 fn again(reading: &Reading, ln_e_limit: f64) -> Option<Again> {
     let batch = reading.trial.wanted.batch;
     let searches: f64 = if batch == 1 { 3.0 } else { 5.0 };
@@ -117,21 +117,23 @@ fn again(reading: &Reading, ln_e_limit: f64) -> Option<Again> {
     replay.map(|found| said(found, batch, unit)).or(behind.map(|found| said(found, 1, "draws")))
 }
 
-/// Minimum number of averages that may be called alike.
+/// Minimum number of averages that may be reported as alike.
 const FEWEST: u64 = 3;
 
-/// Draws behind averages of `batch` draws each: whether all averages hold the same draws, and whether draws come again across them.
+/// Draws behind averages of `batch` draws each, to find averages that all hold the same draws, and draws that
+/// repeat across them.
 ///
-/// Draws within an average may depend on each other in any way, and each place of an average may have a distribution of
-/// its own, such as a pixel that is black in every pass. So a distance that is shorter than an average, or a multiple of
-/// its length, says nothing: equal averages betray the latter by themselves. What is left is a distance across
-/// averages that independent ones have only if values come in a fixed order of their own, and averages that all
-/// hold the same draws, which no independent ones do unless their draws have no chance in them.
+/// Draws within an average may depend on each other in any way. Each place of an average may have a distribution of
+/// its own, such as a pixel that is black in every pass. A distance that is shorter than an average, or a multiple
+/// of its length, is therefore no evidence; equal averages already show the latter. Two findings remain. One is a
+/// distance across averages, which independent averages have only if values come in a fixed order of their own. The
+/// other one is averages that all hold the same draws. Independent averages never do, unless their draws are not
+/// random.
 pub(super) struct Contents {
     batch: u64,
     replays: Replays,
     sequences: Sequences,
-    /// Draws and their hash in the average that is not complete yet.
+    /// Number and hash of the draws in the incomplete average.
     count: u64,
     hash: u64,
     first: Option<u64>,
@@ -176,13 +178,13 @@ impl Contents {
         }
     }
 
-    /// Number of averages, if all hold the same draws, and these are not all alike.
+    /// Number of averages, if all hold the same draws, and these are not all equal.
     pub(super) fn alike(&self) -> Option<u64> {
         let is_shown = self.are_alike && self.is_varied && self.averages >= FEWEST;
         is_shown.then_some(self.averages)
     }
 
-    /// Draws that come again in other averages, at another place.
+    /// Draws that repeat in other averages, at another place.
     pub(super) fn replay(&self) -> Option<Replay> {
         let found = [self.replays.found(), self.sequences.found()].into_iter().flatten();
         let across = |found: &Replay| {

@@ -1,14 +1,14 @@
-//! Findings of one quantity. No pass stands beside an obvious difference.
+//! Findings of one quantity. No quantity passes with an obvious difference.
 //!
 //! ```text
 //! z      (|ȳ| − δ)/√(s²/n), and with V for s² where it is known
-//! limit  6(1 + 3/√ν),  ν = n over the sample kurtosis: how many draws carry s²
+//! limit  6(1 + 3/√ν),  ν = n over the sample kurtosis: the number of draws that carry s²
 //! change of blocks a to b against all others:  z = (ȳ_in − ȳ_out)/√(s²(1/n_in + 1/n_out)),  ν for the smaller part
 //! ```
 //!
-//! The limit is no level: it is where counts of rare events, the most skewed draws of a given ν, come with
-//! probability 1e-9 or less (a Poisson number of mean λ that is k, ν = k: λ = 106 for k = 50, z = −7.9, limit 8.5). So
-//! nothing fails by it. It takes back passes, and it tells a change from a mean that is off from the beginning.
+//! The limit is no level. Counts of rare events, the most skewed draws of a given ν, reach it with probability 1e-9
+//! or less (a Poisson number of mean λ that is k, ν = k: λ = 106 for k = 50, z = −7.9, limit 8.5). Nothing fails by
+//! it. It revokes passes, and it distinguishes a change from a mean that deviates from the beginning.
 
 use super::ground;
 use super::judgement::ScalarFinding;
@@ -23,7 +23,7 @@ impl Scalar {
     /// The finding.
     pub(super) fn finding(&self) -> ScalarFinding {
         let (verdict, reason) = self.verdict();
-        // Bold bets may decide before ε is chosen.
+        // Large bets may decide before ε is chosen.
         let decided = (self.decision != Decision::Open).then(|| match self.quantity.tolerance {
             Some(asked) => Design::asked(self.past.mean_square(), asked, self.quantity.floor),
             None => Design::new(self.past.mean_square(), self.quantity.cap, self.quantity.floor),
@@ -52,7 +52,7 @@ impl Scalar {
         }
     }
 
-    /// Reason where the draws do not show their own spread.
+    /// Reason where the draws do not show their own variance.
     fn unknown_spread(&self) -> Reason {
         let Quantity { what, ground, tolerance, .. } = self.quantity.clone();
         let (draws, carry) = (self.past.draws(), self.past.effective_draws().floor().max(0.0));
@@ -81,7 +81,7 @@ impl Scalar {
         self.deviation(self.past.mean(), self.past.draws()).with_z(z)
     }
 
-    /// The draws that a pass is planned for; by a range alone, with the variance that the draws show.
+    /// The number of draws that a pass is planned for; with a range alone, for the variance that the draws show.
     fn planned_draws(&self, design: &Design) -> f64 {
         let Some(ground) = self.of_range.as_ref().filter(|_| self.quantity.ground.is_none()) else {
             return design.draws();
@@ -102,7 +102,7 @@ impl Scalar {
         }
     }
 
-    /// A pass; taken back where the mean of all draws is plainly off, unless that is within a tolerance asked for.
+    /// A pass; revoked where the mean of all draws plainly deviates, unless within a given tolerance.
     fn passed(&self) -> (Verdict, Option<Reason>) {
         let Some(z) = self.obvious_z() else { return (Verdict::Pass, None) };
         match self.quantity.tolerance {
@@ -120,7 +120,7 @@ impl Scalar {
     /// A failure.
     fn failed(&self) -> Reason {
         let (off, n) = self.seen;
-        // Where V is only bounded, the draws' own spread says more.
+        // Where V is only bounded, the draws' own variance is more informative.
         let known = self.quantity.known_variance().unwrap_or(self.past.variance());
         let z = off / (known / n as f64).sqrt();
         let z = if self.past.kurtosis().is_finite() { z } else { f64::NAN };
@@ -154,7 +154,7 @@ impl Scalar {
             return (Verdict::Fail, Some(self.failed()));
         }
         let Some(design) = self.design.filter(|_| is_founded) else {
-            // Draws that are all alike show no spread, but they show where they are.
+            // Draws that are all equal show no variance, but they show their value.
             let are_alike = self.past.draws() > BLOCK && self.past.kurtosis() == f64::INFINITY;
             let Quantity { must_pass, cap, .. } = self.quantity;
             if !must_pass && are_alike && self.past.mean().abs() > cap {
@@ -178,16 +178,16 @@ impl Scalar {
 
 /// Limit in standard errors where many draws carry the variance.
 const PLAIN: f64 = 6.0;
-/// Coefficient of 1/√ν in that limit.
+/// Coefficient of 1/√ν in the limit.
 const FEW: f64 = 3.0;
 
 /// Factor of the limit where evidence from some draw on refutes the claim, and that of all draws does not.
 const HINTED: f64 = 0.6;
 /// Factor of the limit for pairs of blocks.
 const PAIRS: f64 = 1.1;
-/// Maximum number of parts that changes are looked for between.
+/// Maximum number of parts between which changes are searched.
 const MAX_PARTS: usize = 512;
-/// Expected number of events of which none comes with probability e⁻²⁰.
+/// Expected number of events at which the probability of none is e⁻²⁰.
 const MISSED: f64 = 20.0;
 
 /// A change of the mean.
@@ -199,7 +199,7 @@ pub(super) struct Change {
     pub to: Option<u64>,
     /// Mean of y in that part.
     pub off: f64,
-    /// Its distance from the mean of all other draws, in standard errors.
+    /// Distance from the mean of all other draws, in standard errors.
     pub z: f64,
 }
 
@@ -209,8 +209,8 @@ fn limit(carry: f64) -> f64 {
 }
 
 impl Scalar {
-    /// Distance of the mean of y from 0 in standard errors, if it is beyond the limit; infinite for draws that are all alike, where the
-    /// range or the variance leaves no room for what was not drawn.
+    /// Distance of the mean of y from 0 in standard errors, if it is beyond the limit. It is infinite for draws
+    /// that are all equal, where the range or the variance excludes that rare draws make up for the difference.
     pub(super) fn obvious_z(&self) -> Option<f64> {
         let (n, off) = (self.past.draws() as f64, self.past.mean());
         let excess = off.abs() - self.quantity.floor;
@@ -230,13 +230,13 @@ impl Scalar {
         (shown.max(known) > limit(carry)).then_some(shown.copysign(off))
     }
 
-    /// The most significant change of the mean, if it is beyond the limit: from a block on, else between two blocks. Where the
-    /// mean of all draws does not fail and that of later ones does, less is enough.
+    /// The most significant change of the mean, if it is beyond the limit: from a block on, else between two
+    /// blocks. The limit is smaller where the mean of all draws does not fail and that of later ones does.
     pub(super) fn obvious_change(&self) -> Option<Change> {
         let (n, mean) = (self.past.draws() as f64, self.past.mean());
         let (carry, variance) = (self.past.effective_draws(), self.past.variance());
         let need = if self.has_failed() { 1.0 } else { HINTED };
-        // The excess of the blocks so far over their share, beside their number of draws; of many blocks every k-th.
+        // The excess of the blocks so far over their share, and their number of draws; of many blocks every k-th.
         let every = self.sums.len().div_ceil(MAX_PARTS).max(1);
         let (mut sum, mut path) = (0.0, vec![(0.0, 0u64)]);
         for (&(block, draws), index) in self.sums.iter().zip(1..) {
@@ -257,7 +257,7 @@ impl Scalar {
         let larger = |a: &Change, b: &Change| a.z.abs().total_cmp(&b.z.abs());
         let from_one_on = (1..end).filter_map(|a| between(a, end, need)).max_by(larger);
         from_one_on.or_else(|| {
-            // So many more pairs reach the limit a little more easily.
+            // With this number of pairs the limit is reached a little more easily.
             let pairs = (1..end).flat_map(|a| (a + 1..end).map(move |b| (a, b)));
             pairs.filter_map(|(a, b)| between(a, b, PAIRS * need)).max_by(larger)
         })

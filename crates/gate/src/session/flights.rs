@@ -1,35 +1,36 @@
-//! Free flights of another program: how one that leaves is written.
+//! Free flights of another program: conventions for a flight that leaves.
 //!
 //! ```text
 //! S, anything beyond it, +∞, −1   the flight leaves the ray: it counts as the ray's length S
-//! NaN, any other negative number  no distance: the draw fails, and the message says how to write it
+//! NaN, any other negative number  no distance: the draw fails, and the message explains the convention
 //! ```
 //!
-//! A number that rounding may have moved below S counts as S. Where no flight leaves although many should, and one
-//! other number comes in their place, as 0 or the last collision, that number is named.
+//! A number that rounding may have moved below S counts as S. If no flight leaves although many should, and another
+//! number comes in their place, such as 0 or the last collision, the message names that number.
 
 use crate::stats::ties;
 use numeric::digits::short;
 
-/// A flight that leaves, as a program may write it without another way to mark it.
+/// A flight that leaves, as written by a program that has no other mark.
 const LEFT: f64 = -1.0;
-/// Error of a distance in single precision, relative to the positions that it is the difference of: four roundings.
+/// Error of a distance in single precision, relative to the positions of which it is the difference: four
+/// roundings.
 const SINGLE: f64 = 2.4e-7;
-/// Fewer flights than this are no evidence of a wrong convention.
+/// Minimum number of flights that are evidence of a wrong convention.
 const FEWEST: f64 = 20.0;
 
-/// What is known of flights along a ray.
+/// Properties of flights along a ray.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Flights {
     /// S, the length of the ray.
     pub length: f64,
-    /// The position of its beginning, which positions have the resolution of.
+    /// The position of the ray's beginning: it limits the resolution of positions.
     pub from: f64,
     /// The probability that a flight leaves.
     pub escape: f64,
 }
 
-/// Flights of which those that leave are marked.
+/// Flights with marks on those that leave.
 pub(super) struct Marked {
     /// Marked by the length of the ray.
     pub(super) at_end: Vec<f64>,
@@ -37,18 +38,18 @@ pub(super) struct Marked {
     pub(super) beyond: Vec<f64>,
 }
 
-/// Flights on their way, with what the first block of them shows.
+/// Flights, with the findings from their first block.
 pub(super) struct Ends {
     flights: Flights,
     rounding: f64,
-    /// From here on a flight has left; found by the first block.
+    /// Distance from which on a flight has left; found from the first block.
     near: Option<f64>,
     left: u64,
     seen: u64,
-    /// Whether all of them are numbers of single precision.
+    /// True if all flights are numbers of single precision.
     pub(super) is_single: bool,
-    /// The number that comes most often among the first flights that do not leave, and its share, where it comes ten
-    /// times as often as any other.
+    /// The most frequent number among the first flights that do not leave, and its share, if it comes ten times as
+    /// often as any other.
     most_frequent: (f64, f64),
 }
 
@@ -58,7 +59,7 @@ impl Ends {
         Self { flights, rounding, near, left, seen, is_single: true, most_frequent }
     }
 
-    /// The flights with the ray's length in place of all that leave, and with infinity in their place.
+    /// The flights, once with the ray's length in place of all that leave, and once with infinity.
     pub(super) fn marked(&mut self, block: &[f64]) -> Marked {
         let Flights { length, from, .. } = self.flights;
         self.is_single &= ties::all_single_precision(block);
@@ -81,7 +82,7 @@ impl Ends {
         marked
     }
 
-    /// That flights which leave are written in a way that cannot be told from a distance.
+    /// Message if flights that leave cannot be distinguished from distances.
     pub(super) fn wrong(&self) -> Option<String> {
         let (x, share) = self.most_frequent;
         let Flights { escape, .. } = self.flights;
@@ -99,7 +100,7 @@ impl Ends {
         ))
     }
 
-    /// The ways to write a flight that leaves.
+    /// Conventions for a flight that leaves, in words.
     pub(super) fn cure(&self) -> String {
         format!(
             "write a flight that leaves as {}, the length of the ray, as a larger number, inf or -1",
@@ -144,7 +145,7 @@ mod tests {
         let marked = ends.marked(&[0.1, 0.7, 0.70001, f64::MAX, INFINITY, -1.0]);
         assert_eq!(marked.at_end, [0.1, 0.7, 0.7, 0.7, 0.7, 0.7]);
         assert_eq!(marked.beyond, [0.1, INFINITY, INFINITY, INFINITY, INFINITY, INFINITY]);
-        // What is no distance stays.
+        // A number that is no distance stays.
         assert_eq!(beyond(&mut ends, &[-0.5, -INFINITY, 0.0]), [-0.5, -INFINITY, 0.0]);
         assert!(beyond(&mut ends, &[f64::NAN])[0].is_nan());
     }
@@ -174,7 +175,7 @@ mod tests {
         let mut ends = Ends::new(FLIGHTS, 1e-12);
         ends.marked(&flights(0.7));
         assert_eq!(ends.wrong(), None);
-        // Many numbers that come often are something else.
+        // Many frequent numbers are no sign of a wrong convention.
         let mut ends = Ends::new(FLIGHTS, 1e-12);
         ends.marked(&[0.1, 0.2, 0.3].repeat(200));
         assert_eq!(ends.wrong(), None);

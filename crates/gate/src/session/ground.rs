@@ -9,11 +9,11 @@
 //! range      y lies in [a, b]                                `stats::betting`
 //! ```
 //!
-//! The bound on V fails with chance `e^{−nt²/2κ}` at most, for every law of that kurtosis (A. Maurer,
-//! *A bound on the deviation probability for sums of non-negative random variables*, JIPAM 4 (2003),
-//! article 15): α₀, a tenth of the scalar's level, pays for all e together; the evidence has the rest.
-//! No draws can show that unseen rare events do not carry the variance (Bahadur and Savage 1956), so
-//! `shown` is an assumption: draws may pass by it, and the verdict says which, but never fail.
+//! The bound on V fails with probability `e^{−nt²/2κ}` at most, for every distribution of that kurtosis (A. Maurer,
+//! *A bound on the deviation probability for sums of non-negative random variables*, JIPAM 4 (2003), article 15).
+//! α₀, a tenth of the scalar's level, covers all e together; the evidence has the rest. No draws can show that
+//! unseen rare events do not carry the variance (Bahadur and Savage 1956). Therefore `shown` is an assumption:
+//! draws may pass by it, and the verdict says so, but never fail.
 
 use super::quantity::Ground;
 use crate::stats::Powers;
@@ -22,28 +22,29 @@ use crate::stats::capital::Capital;
 use crate::stats::gate::{Design, GateSums};
 use crate::stats::verdict::BLOCK;
 
-/// The share of a scalar's level that pays for a bound on its variance.
+/// The share of a scalar's level for a bound on its variance.
 const PILOT: f64 = 0.1;
-/// How many draws must carry the variance before it counts as known.
+/// Number of draws that must carry the variance before it counts as known.
 pub(super) const EFFECTIVE: f64 = 1000.0;
 /// n/κ for the kurtosis that is then assumed.
 const ASSUMED: f64 = 200.0;
-/// How many draws must carry a variance that stakes and ε are chosen by.
+/// Number of draws that must carry a variance before stakes and ε are chosen from it.
 pub(super) const RELIABLE: f64 = 100.0;
-/// Minimum where half of all draws have passed.
+/// Minimum of that number once half of all draws have passed.
 pub(super) const FAIRLY_RELIABLE: f64 = 20.0;
-/// n ε over the distance from the truth to the further end of a range, for a pass by bets of three quarters of that.
+/// n ε over the distance from the truth to the farther end of a range, for a pass by bets of three quarters of that
+/// distance.
 const FINEST: f64 = 12.0;
-/// The widest t.
+/// Maximum t.
 const WIDEST: f64 = 0.5;
 
-/// A bound on the variance and what was bet on it.
+/// A bound on the variance, and the bets that use it.
 pub(super) struct OfVariance {
     ground: Ground,
     /// Kurtosis that the bound relies on, once there is one.
     pub(super) kurtosis: Option<f64>,
     design: Option<Design>,
-    /// Draws at the last bound, and how many bounds there were.
+    /// Number of draws at the last bound, and number of bounds.
     bounded: (u64, i32),
     pub(super) capital: Capital,
 }
@@ -58,8 +59,8 @@ impl OfVariance {
         Self { ground, kurtosis, design: None, bounded: (0, 0), capital }
     }
 
-    /// V for the next block, from the draws before it; `None` while there is none. `ln_fail` is the
-    /// scalar's ln(1/level).
+    /// V for the next block, from the draws before it; `None` before the first bound. `ln_fail` is the scalar's
+    /// ln(1/level).
     pub(super) fn variance(&mut self, past: &Powers, ln_fail: f64) -> Option<f64> {
         let Some(bound) = self.needed(past, ln_fail) else {
             return match self.ground {
@@ -102,12 +103,12 @@ impl OfVariance {
         self.capital.add(&design.gains(sums.totals(), y.len() as f64));
     }
 
-    /// What is lost of the evidence to the bound's own chance of being wrong.
+    /// ln of the share of the evidence that remains beside the bound's own probability of an error.
     pub(super) fn ln_share(&self) -> f64 {
         if matches!(self.ground, Ground::Variance(_)) { 0.0 } else { (1.0 - PILOT).ln() }
     }
 
-    /// Whether all draws together contradict what was assumed of them.
+    /// Returns true if all draws together contradict the assumption about their variance.
     pub(super) fn is_contradicted(&self, all: &Powers) -> bool {
         let assumed = self.kurtosis.unwrap_or(f64::INFINITY);
         self.ground == Ground::Shown
@@ -115,12 +116,12 @@ impl OfVariance {
     }
 }
 
-/// How many draws a bound on the variance needs: those of t = ½ at the first bound.
+/// Number of draws that a bound on the variance needs: those of t = ½ at the first bound.
 pub(super) fn draws_of_bound(kurtosis: f64, ln_fail: f64) -> f64 {
     2.0 * kurtosis * (std::f64::consts::LN_2 - PILOT.ln() + ln_fail) / (WIDEST * WIDEST)
 }
 
-/// A range and what was bet on it.
+/// A range, and the bets on it.
 pub(super) struct OfRange {
     pub(super) range: [f64; 2],
     pub(super) capital: Capital,
@@ -131,29 +132,29 @@ impl OfRange {
         Self { range, capital: Capital::shared(Bets::shares(range)) }
     }
 
-    /// The largest variance of a law of mean 0 in the range: −ab (Bhatia and Davis 2000).
+    /// Maximum variance of a distribution of mean 0 in the range: −ab (Bhatia and Davis 2000).
     pub(super) fn widest(&self) -> f64 {
         -self.range[0] * self.range[1]
     }
 
-    /// n ε of the smallest ε that bets can exclude: no draw may be worth more than the range allows.
+    /// n ε of the smallest ε that bets can exclude: the range limits the gain from a draw.
     pub(super) fn finest(&self) -> f64 {
         let reach = self.range[1].max(-self.range[0]);
         if reach.is_finite() { FINEST * reach } else { 0.0 }
     }
 
-    /// The evidence for a pass; a mean that the range makes impossible needs none.
+    /// ln of the evidence for a pass; infinite for a mean that the range makes impossible.
     pub(super) fn ln_pass(&self, tolerance: f64) -> [f64; 2] {
         let [above, below] = self.capital.ln_pass();
         let proved = |end: f64, side: f64| if end < tolerance { f64::INFINITY } else { side };
         [proved(self.range[1], above), proved(-self.range[0], below)]
     }
 
-    /// V as well as the draws show it, for the choice of stakes.
+    /// Estimate of V from the draws, for the choice of stakes.
     pub(super) fn variance(&self, past: &Powers) -> Option<f64> {
         let is_known = past.effective_draws() >= RELIABLE;
         let shown = if is_known { past.mean_square() } else { f64::INFINITY };
-        // A range that leaves next to nothing makes the boldest stakes.
+        // A very narrow range gives the largest stakes.
         Some(shown.min(self.widest()).max(f64::MIN_POSITIVE)).filter(|v| v.is_finite())
     }
 

@@ -1,4 +1,5 @@
-//! Judgements of draws: the numbers, and in words a few lines, each with a word at its left, for every console and language.
+//! Judgements of draws: the numbers, and a few lines of words, each with a label at its left, for every console and
+//! language.
 
 use std::fmt::{self, Write};
 
@@ -13,69 +14,69 @@ use numeric::digits::{count, fixed, short, signed};
 pub struct Judgement {
     /// `pass`, `fail` or `inconclusive`.
     pub verdict: Verdict,
-    /// Why, in words; empty for a plain pass. A pass with words has a mean that is off within the tolerance.
+    /// Reason in words; empty for a plain pass. A pass with words has a mean that deviates within the tolerance.
     pub reason: String,
     /// Kind of the draw that refutes the claim by itself, where there is one.
     #[cfg_attr(feature = "serde", serde(skip))]
     pub fault: Option<Fault>,
-    /// What the verdict promises, and what it does not.
+    /// Guarantees of the verdict, and their limits.
     pub guarantees: Vec<String>,
-    /// α: the chance that correct draws fail.
+    /// α: the probability that correct draws fail.
     pub alpha: f64,
-    /// β: the chance that a scalar passes although it is off by its tolerance.
+    /// β: the probability that a scalar passes although it deviates by its tolerance.
     pub beta: f64,
-    /// How many draws were read.
+    /// Number of draws that were read.
     pub draws: u64,
-    /// How many there are, where that is known.
+    /// Number of draws that exist, if it is known.
     pub length: Option<u64>,
-    /// Why reading stopped before the end, where it did.
+    /// Reason why reading stopped before the end, if it did.
     pub stopped: Option<Stop>,
-    /// How many consecutive draws are averaged before they are judged.
+    /// Number of consecutive draws that are averaged before they are judged.
     pub batch: u64,
-    /// How many of the last draws fill no average.
+    /// Number of last draws that fill no average.
     pub unfilled: u64,
-    /// What the mean should be.
+    /// Expected value of the mean.
     pub truth: f64,
-    /// What the tolerance of the mean is relative to.
+    /// Unit of the mean's tolerance.
     pub unit: f64,
     /// The mean of the draws.
     pub mean: Option<f64>,
-    /// Its standard error: from the variance claimed, else from that of the draws.
+    /// Standard error of the mean: from the claimed variance, else from that of the draws.
     pub standard_error: Option<f64>,
     /// (mean − truth) in standard errors.
     pub z: Option<f64>,
-    /// The unbiased sample variance, of averages where draws are averaged.
+    /// The unbiased sample variance, of averages if draws are averaged.
     pub variance: Option<f64>,
-    /// The variance claimed.
+    /// The claimed variance.
     pub predicted_variance: Option<f64>,
     /// s²/V.
     pub variance_ratio: Option<f64>,
-    /// The standard deviation of s²/V: from the kurtosis claimed, else from that of the draws.
+    /// The standard deviation of s²/V: from the claimed kurtosis, else from that of the draws.
     pub variance_band: Option<f64>,
     /// The sample kurtosis.
     pub kurtosis: Option<f64>,
     /// The mean number of lookups.
     pub lookups: Option<f64>,
-    /// The number claimed.
+    /// The claimed number of lookups.
     pub predicted_lookups: Option<f64>,
     /// The first draw that refutes the claim by itself, counted from 0.
     pub refuted_by: Option<u64>,
-    /// How many such draws there are.
+    /// Number of draws that refute the claim by themselves.
     pub refuting: u64,
-    /// Whether every draw is a number of single precision, and no small set of values.
+    /// True if every draw is a number of single precision, and draws do not come from a small set of values.
     pub single_precision: bool,
-    /// `log₂` of how many values the first draws seem to come from, where they come twice too often for
+    /// `log₂` of the number of values that the first draws seem to come from, if values come twice too often for
     /// all bits of a double.
     pub resolution: Option<f64>,
-    /// What the gate found of the mean, the variance and the lookups.
+    /// Findings of the gate on the mean, the variance and the lookups.
     pub findings: Vec<ScalarFinding>,
-    /// Whether the mean changes on the way.
+    /// Finding on a change of the mean.
     pub drift: Option<DriftFinding>,
-    /// Whether the draws depend on each other.
+    /// Finding on the dependence of the draws.
     pub independence: IndependenceFinding,
     /// The experiment of the case, in words.
     pub theory: Option<String>,
-    /// Tests of the distribution of the draws and of their lookups, where theory knows it.
+    /// Tests of the distributions of the draws and of their lookups, if theory has them.
     pub distribution: Vec<DistributionFinding>,
 }
 
@@ -87,56 +88,56 @@ pub struct DistributionFinding {
     pub check: String,
     /// The distribution in words.
     pub what: String,
-    /// What is said of it.
+    /// The verdict on it.
     pub verdict: Verdict,
-    /// Why.
+    /// The reason.
     #[cfg_attr(feature = "serde", serde(serialize_with = "super::reason::words"))]
     pub reason: Option<Reason>,
-    /// The p-value of the last look, or of the one that refuted it.
+    /// The p-value of the last look, or of the look that refuted it.
     pub p: f64,
     /// Number of draws at that look.
     pub draws: u64,
 }
 
-/// Why reading stopped before the end.
+/// Reason why reading stopped before the end.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
 pub enum Stop {
-    /// All was decided, and the caller wanted no more.
+    /// All was decided, and no more draws were wanted.
     Decided,
-    /// As many draws were read as the caller wanted, or as are read of a pipe.
+    /// The maximum number of draws was reached: that of the caller, or that for a pipe.
     Limit,
 }
 
-/// What the gate found of one scalar.
+/// Finding of the gate on one scalar.
 #[derive(Debug, Clone)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct ScalarFinding {
     /// `mean`, `variance` or `lookups`.
     pub check: String,
-    /// What is said of it.
+    /// The verdict on it.
     pub verdict: Verdict,
-    /// Why.
+    /// The reason.
     #[cfg_attr(feature = "serde", serde(serialize_with = "super::reason::words"))]
     pub reason: Option<Reason>,
-    /// Whether its variance was estimated from earlier draws without a promise of the caller's.
+    /// True if its variance was estimated from earlier draws, without a claim of the caller.
     pub is_estimated: bool,
     /// The largest kurtosis for which the finding holds, where one had to be assumed.
     pub assumed_kurtosis: Option<f64>,
-    /// Whether correct draws of the planned number pass.
+    /// True if correct draws of the planned number pass.
     pub is_promised: bool,
-    /// Where the gate stands; `None` where nothing could be asked of the draws.
+    /// State of the gate; `None` where the scalar could not be tested.
     pub gate: Option<GateFinding>,
 }
 
-/// Whether the mean is the same from beginning to end.
+/// Finding on a change of the mean.
 #[derive(Debug, Clone)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct DriftFinding {
-    /// What is said of it.
+    /// The verdict on it.
     pub verdict: Verdict,
-    /// Why.
+    /// The reason.
     #[cfg_attr(feature = "serde", serde(serialize_with = "super::reason::words"))]
     pub reason: Option<Reason>,
     /// ln E against draws that have the claimed mean throughout, from any later block on.
@@ -145,51 +146,51 @@ pub struct DriftFinding {
     pub ln_e_limit: f64,
     /// The draw from which on the mean differs; `None` where no change is shown.
     pub from: Option<u64>,
-    /// By how much from the truth, in units of it.
+    /// Deviation from the truth, in units of it.
     pub off: f64,
 }
 
-/// Whether draws depend on each other.
+/// Finding on the dependence of draws.
 #[derive(Debug, Clone, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct IndependenceFinding {
-    /// Why they do; `None` where nothing was found.
+    /// The reason; `None` where no dependence was found.
     #[cfg_attr(feature = "serde", serde(serialize_with = "super::reason::words"))]
     pub reason: Option<Reason>,
-    /// ln E against independent draws of one law.
+    /// ln E against independent draws of one distribution.
     pub ln_e: f64,
     /// The ln E at which draws count as dependent.
     pub ln_e_limit: f64,
-    /// How many consecutive draws are summed up where the dependence was found.
+    /// Number of consecutive draws in each sum where the dependence was found.
     pub scale: Option<u64>,
     /// The lag, in draws or sums.
     pub lag: Option<u64>,
     /// The correlation there.
     pub correlation: Option<f64>,
-    /// After how many draws the same ones come again.
+    /// Number of draws after which the same ones repeat.
     pub replay: Option<u64>,
-    /// Number of times that the same draws come in all.
+    /// Number of times that the same draws occur in all.
     pub repeats: Option<u64>,
-    /// ln of a bound on the probability that independent draws come again like that.
+    /// ln of a bound on the probability that independent draws repeat like that.
     pub replay_ln_p: Option<f64>,
-    /// From how many averaged draws on no dependence shows.
+    /// Minimum number of averaged draws from which on no dependence shows.
     pub batch: Option<u64>,
 }
 
 impl IndependenceFinding {
-    /// Whether a dependence was found.
+    /// Returns true if a dependence was found.
     pub fn is_refuted(&self) -> bool {
         self.reason.is_some()
     }
 }
 
 impl Judgement {
-    /// What was found of a scalar.
+    /// Finding on a scalar.
     pub fn finding(&self, check: &str) -> Option<&ScalarFinding> {
         self.findings.iter().find(|finding| finding.check == check)
     }
 
-    /// Which checks fail, and on which side; draws that depend on each other have no other side.
+    /// Checks that fail, and their sides; dependent draws have no other side.
     pub fn pattern(&self) -> Pattern {
         let mut pattern = Pattern::default();
         if self.independence.is_refuted() {
@@ -209,23 +210,23 @@ impl Judgement {
     }
 }
 
-/// What is wrong with a draw that refutes the claim by itself.
+/// Kind of a draw that refutes the claim by itself.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Fault {
-    /// It is not finite, or so far from the truth that the square of the distance overflows.
+    /// The draw is not finite, or so far from the truth that the square of the distance overflows.
     Number,
-    /// It is out of the promised range.
+    /// The draw is out of the claimed range.
     Range,
-    /// It is not the truth, and draws have no spread.
+    /// The draw differs from the truth, and draws have no variance.
     Spread,
-    /// It takes another number of lookups than all draws take.
+    /// The draw takes another number of lookups than all draws must.
     Lookups,
-    /// It is a negative number in place of a distance.
+    /// The draw is a negative number in place of a distance.
     Distance,
 }
 
 impl Judgement {
-    /// The lines on draws of that name: what each is about, and what it says.
+    /// The lines on draws of that name: label and text of each.
     pub fn lines(&self, name: &str) -> Vec<(&'static str, String)> {
         let mut lines = vec![("draws", draws(self, name))];
         lines.extend(self.theory.iter().map(|about| ("theory", about.clone())));
@@ -252,7 +253,7 @@ impl Judgement {
     }
 }
 
-/// The verdict, and why.
+/// Formats the verdict, and the reason.
 impl fmt::Display for Judgement {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         let (word, reason) = (self.verdict.word(), &self.reason);
@@ -283,7 +284,7 @@ fn lookups(judgement: &Judgement) -> Option<String> {
     Some(format!("{} a draw, {} expected", short(found, 8), short(claimed, 8)))
 }
 
-/// Whether the draws depend on each other.
+/// Describes the dependence of the draws.
 fn order(found: &IndependenceFinding) -> String {
     let evidence = match found.replay_ln_p {
         Some(ln_p) => format!("probability e^{ln_p:.1} or less"),

@@ -1,8 +1,8 @@
-//! Sessions: draws of one estimator on their way through the gate, from any source.
+//! Sessions: draws of one estimator that the gate judges, from any source.
 //!
-//! A [`Claim`] says what is known of a draw: its mean and, if known, its variance, kurtosis and range. A [`Session`]
-//! takes draws block by block, from a [`Source`] by [`Session::judge`], from a closure by [`drive`], or by
-//! [`Session::absorb`]. It returns a [`Judgement`] for each value of a draw.
+//! A [`Claim`] has the properties of a correct draw: its mean and, if known, its variance, kurtosis and range. A
+//! [`Session`] takes draws block by block, from a [`Source`] by [`Session::judge`], from a closure by [`drive`], or
+//! by [`Session::absorb`]. It returns a [`Judgement`] for each value of a draw.
 //!
 //! ```text
 //! quantities  mean, variance and lookups, as far as the claim says (`quantity`); drift: the mean from any later block
@@ -15,13 +15,13 @@
 //!             β = 0.01; dependence has an α of its own
 //! ```
 //!
-//! Draws are judged in blocks of 2¹⁴, in constant memory. A quantity fails only on grounds that hold (`ground`): a known
-//! variance, a range, a bound on the kurtosis. Without any of them it can pass, on an assumption that the verdict names,
-//! but not fail. All of that is for independent draws. If `stats::independence`, `stats::replays`, `stats::sequences` or
-//! `stats::runs` finds a dependence, the verdict says so, and nothing is said of the mean. No pass stands beside an
-//! obvious difference (`obvious`). Draws without spread must all be the truth to rounding. A draw that is not a finite
-//! number fails, and so does one out of the promised range, or so far from the truth that the square of the distance
-//! overflows.
+//! Draws are judged in blocks of 2¹⁴, in constant memory. A quantity fails only on grounds that hold (`ground`): a
+//! known variance, a range, a bound on the kurtosis. Without any of them it can pass, on an assumption that the
+//! verdict names, but not fail. All of that is for independent draws. If `stats::independence`, `stats::replays`,
+//! `stats::sequences` or `stats::runs` finds a dependence, the verdict names it, and the mean is not judged. No
+//! quantity passes with an obvious difference (`finding`). Draws of variance 0 must all be the truth to rounding. A
+//! draw that is not a finite number fails. So does one out of the claimed range, or so far from the truth that the
+//! square of the distance overflows.
 //!
 //! ```
 //! use trueflight_gate::session::{Claim, Trial, Wanted};
@@ -74,7 +74,7 @@ pub use verdict::{Reasons, is_by_spread, rests_on};
 use reading::Reading;
 use theory::Background;
 
-/// Draws on their way through the gate, with a reading for each value of a draw.
+/// Draws that are being judged, with a reading for each value of a draw.
 pub struct Session {
     readings: Vec<Reading>,
     /// Draws that do not fill a block yet.
@@ -87,7 +87,7 @@ impl Session {
     ///
     /// # Errors
     ///
-    /// What is wanted makes no sense for a claim.
+    /// The settings of the verdict are invalid for a claim.
     pub fn new(
         claims: &[Claim],
         wanted: Wanted,
@@ -144,7 +144,7 @@ impl Session {
         }
     }
 
-    /// The judgement of each value; `stopped` says why, where draws are left.
+    /// The judgement of each value; `stopped` is the reason if draws are left.
     pub fn outcome(mut self, stopped: Option<Stop>) -> Vec<Judgement> {
         self.judge_pending();
         self.readings.into_iter().map(|reading| reading.close(stopped)).collect()
@@ -163,7 +163,7 @@ impl Sink for Session {
         self.readings.first().map_or(0, Reading::draws) + self.pending.draws() as u64
     }
 
-    /// Whether more draws may change the verdict, were all decisions final.
+    /// Returns true if more draws may change the verdict.
     fn is_open(&self) -> bool {
         self.readings.iter().any(Reading::is_open)
     }
@@ -176,11 +176,12 @@ impl From<Trial> for Session {
     }
 }
 
-/// Puts a block to the readings of its values. Lookups go to the first.
+/// Passes a block to the readings of its values. Lookups go to the first.
 fn judge(readings: &mut [Reading], columns: &[&[f64]], lookups: &[f64]) {
     if let (Some(first), [block, ..]) = (readings.first_mut(), columns) {
         if let Some(ends) = &mut first.ends {
-            // For the tests a flight that leaves is beyond all classes; for all else it has the ray's length.
+            // For the tests a flight that leaves is beyond all classes; for everything else it has the ray's
+            // length.
             let marked = ends.marked(block);
             if let Some(tests) = &mut first.background.tests {
                 tests.absorb(&[&marked.beyond], lookups);
@@ -233,7 +234,7 @@ impl Block {
         self.lookups.extend_from_slice(lookups);
     }
 
-    /// Adds draws that lie one after the other, each with all its values.
+    /// Adds draws that are stored one after the other, each with all its values.
     pub fn push_rows(&mut self, draws: &[f64]) {
         if let [column] = &mut self.columns[..] {
             column.extend_from_slice(draws);
@@ -275,7 +276,7 @@ pub trait Sink {
     /// Number of draws so far.
     fn draws(&self) -> u64;
 
-    /// Whether more draws may change the verdict.
+    /// Returns true if more draws may change the verdict.
     fn is_open(&self) -> bool;
 }
 
@@ -284,7 +285,7 @@ pub trait Sink {
 pub struct Until {
     /// Largest number of draws.
     pub most: Option<u64>,
-    /// Whether to stop as soon as all is decided.
+    /// True to stop as soon as all is decided.
     pub is_decided: bool,
 }
 
@@ -293,12 +294,12 @@ pub(crate) fn room(left: u64) -> usize {
     usize::try_from(left).map_or(BUFFER, |left| left.min(BUFFER))
 }
 
-/// Adds blocks to a taker of draws until it needs no more. `next` adds at most the given number of draws, and returns whether
-/// there may be more. Returns why `next` was not called again.
+/// Adds blocks to a taker of draws until it needs no more. `next` adds at most the given number of draws, and
+/// returns whether there may be more. Returns the reason why `next` was not called again.
 ///
 /// # Errors
 ///
-/// Those of `next`.
+/// The errors of `next`.
 pub fn drive<K: Sink, E>(
     sink: &mut K,
     until: Until,
@@ -319,11 +320,11 @@ pub fn drive<K: Sink, E>(
 }
 
 impl Session {
-    /// Takes draws from a source until it ends, or as far as is wanted, and judges them.
+    /// Takes draws from a source until it ends, or up to the limit, and judges them.
     ///
     /// # Errors
     ///
-    /// Those of the source.
+    /// The errors of the source.
     pub fn judge<S: Source>(
         mut self,
         source: &mut S,
@@ -337,7 +338,7 @@ impl Session {
             Ok(block.draws() == draws)
         })?;
         if stopped == Some(Stop::Limit) {
-            // One draw more tells whether anything is left out.
+            // One more draw shows whether anything is left out.
             block.clear();
             source.fill(&mut block, 1)?;
             stopped = stopped.filter(|_| block.draws() > 0);
@@ -348,17 +349,17 @@ impl Session {
 }
 
 impl Trial {
-    /// Takes draws from a source as far as is wanted, and judges them.
+    /// Takes draws from a source up to the limit, and judges them.
     ///
     /// # Errors
     ///
-    /// Those of the source.
+    /// The errors of the source.
     pub fn judge<S: Source>(&self, source: &mut S) -> Result<Judgement, S::Error> {
         let mut judged = Session::from(*self).judge(source, self.wanted.until())?;
         Ok(judged.swap_remove(0))
     }
 
-    /// Judges draws that are in memory; there are no lookups with them.
+    /// Judges draws in memory, without lookups.
     pub fn judge_all(&self, mut draws: &[f64]) -> Judgement {
         let Ok(judgement) = self.judge(&mut draws);
         judgement

@@ -1,4 +1,4 @@
-//! Quantities that the gate judges: the formula of each, what is known of it, and how its tolerance is chosen.
+//! Quantities that the gate judges: formula, grounds and tolerance of each.
 //!
 //! ```text
 //! mean      y = (X − T)/u,       V = Var[X]/u²       δ = (error of T + rounding)/u              ε ≤ 5 %
@@ -6,51 +6,51 @@
 //! lookups   y = M/E[M] − 1,      V = Var[M]/E[M]²    δ = error of E[M]                          ε ≤ 2 %
 //! ```
 //!
-//! y has mean 0 when all is well. Other quantities of the same kind (a covariance, a step of a curve) differ by their
-//! name and their largest tolerance.
+//! y has mean 0 for correct draws. Other quantities of the same kind (a covariance, a step of a curve) differ by
+//! their name and their largest tolerance.
 
 use std::borrow::Cow;
 
-/// Largest tolerance of a mean that is chosen without being asked for.
+/// Largest tolerance of a mean that is chosen without a request.
 pub const MEAN_CAP: f64 = 0.05;
-/// Largest tolerance of a variance that is chosen without being asked for.
+/// Largest tolerance of a variance that is chosen without a request.
 pub const VARIANCE_CAP: f64 = 0.2;
-/// Largest tolerance of a number of lookups that is chosen without being asked for.
+/// Largest tolerance of a number of lookups that is chosen without a request.
 pub const LOOKUPS_CAP: f64 = 0.02;
-/// Tolerance of a mean where neither the caller nor a number of draws says.
+/// Tolerance of a mean where neither the caller nor a number of draws sets it.
 pub const USUAL: f64 = 0.01;
 
-/// What is known of the spread of a quantity.
+/// Known bound on the variance of a quantity.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Ground {
-    /// Its variance, or an upper bound.
+    /// The variance, or an upper bound.
     Variance(f64),
-    /// An upper bound of its kurtosis.
+    /// An upper bound of the kurtosis.
     Kurtosis(f64),
-    /// The spread that the draws show. It is no ground to fail.
+    /// The variance that the draws show. It is no ground to fail.
     Shown,
 }
 
-/// A quantity y of each draw with mean 0 when all is well.
+/// A quantity y of each draw with mean 0 for correct draws.
 #[derive(Debug, Clone)]
 pub struct Quantity {
     /// Name of the check: `mean`, `variance`, `lookups`, …
     pub check: &'static str,
     /// Name in a sentence: `the mean`.
     pub what: Cow<'static, str>,
-    /// What is known of its spread; `None` where only the range is to be relied on.
+    /// Known bound on its variance; `None` where only the range is used.
     pub ground: Option<Ground>,
     /// Range of y, if it is known.
     pub range: Option<[f64; 2]>,
-    /// ε, where the caller gives one.
+    /// ε, if the caller gives one.
     pub tolerance: Option<f64>,
-    /// ε where neither the caller nor a number of draws says.
+    /// ε where neither the caller nor a number of draws sets it.
     pub usual: f64,
-    /// Largest ε that is chosen without being asked for.
+    /// Largest ε that is chosen without a request.
     pub cap: f64,
-    /// δ: what rounding and the claim's own error may add to the mean of y.
+    /// δ: bound on the part of y's mean from rounding and the claim's own error.
     pub floor: f64,
-    /// Whether too few draws make it inconclusive, not underpowered.
+    /// True if too few draws make it inconclusive, not underpowered.
     pub must_pass: bool,
     /// Value that y = 0 stands for, in units of the quantity.
     pub expected: f64,
@@ -61,7 +61,7 @@ pub struct Quantity {
 }
 
 impl Quantity {
-    /// A quantity with a name in sentences, what is known of its spread, δ and the largest ε.
+    /// A quantity with a name in sentences, a bound on its variance, δ and the largest ε.
     pub fn new(
         what: impl Into<Cow<'static, str>>,
         ground: Option<Ground>,
@@ -100,7 +100,7 @@ impl Quantity {
         Self { check: "lookups", ..Self::new("the number of lookups", ground, floor, LOOKUPS_CAP) }
     }
 
-    /// The quantity with a tolerance of the caller's.
+    /// The quantity with a tolerance of the caller.
     #[must_use]
     pub fn within(self, tolerance: Option<f64>) -> Self {
         Self { tolerance, ..self }
@@ -112,7 +112,7 @@ impl Quantity {
         Self { expected, scale, ..self }
     }
 
-    /// Whether it may fail by what is known of its spread, and not only pass.
+    /// Returns true if its ground lets it fail, and not only pass.
     pub fn is_hard(&self) -> bool {
         self.ground != Some(Ground::Shown)
     }
@@ -126,7 +126,7 @@ impl Quantity {
     }
 }
 
-/// δ of a mean, relative to `unit`: the truth's own error and the rounding of a draw.
+/// δ of a mean, relative to `unit`: the error of the truth and the rounding of a draw.
 pub fn mean_floor(error: f64, rounding: f64, unit: f64) -> f64 {
     (error + rounding) / unit
 }
@@ -139,8 +139,8 @@ pub fn variance_floor(variance: f64, error: f64, rounding: f64) -> f64 {
 
 /// Upper bound of the variance of `(X − T)²/V − 1` for draws of kurtosis κ with moments known to a relative error.
 ///
-/// `κ = m₄/m₂²` is known three times worse than the moments, and κ − 1 worse still. A kurtosis of 1 is known to rounding
-/// only.
+/// The relative error of `κ = m₄/m₂²` is three times that of the moments, and that of κ − 1 is larger still. A
+/// kurtosis of 1 is known to rounding only.
 pub fn variance_of_squares(kurtosis: f64, error: f64) -> f64 {
     let excess = (kurtosis - 1.0).max(4.0 * f64::EPSILON);
     excess * (1.0 + error * (1.0 + 3.0 * kurtosis / excess))

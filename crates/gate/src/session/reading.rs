@@ -1,4 +1,4 @@
-//! Draws on their way through all questions, block by block.
+//! Draws of one value on their way through all checks, block by block.
 
 use super::claim::{BUFFER, Trial};
 use super::dependence::Contents;
@@ -14,9 +14,9 @@ use crate::stats::verdict::{MISS, Verdict};
 use crate::stats::{Powers, ties};
 use numeric::sum::Sum;
 
-/// The fewest draws that are judged at a time.
+/// Minimum number of draws that are judged at a time.
 const FEW: usize = 64;
-/// So many different values among the first draws are no small set.
+/// Maximum number of different values among the first draws that count as a small set.
 const VARIED: usize = 100;
 
 /// The first draw that refutes the claim by itself.
@@ -27,7 +27,7 @@ pub(super) struct Refuted {
     pub(super) value: f64,
 }
 
-/// Averages of so many consecutive numbers.
+/// Averages of `batch` consecutive numbers.
 struct Averages {
     batch: u64,
     sum: Sum,
@@ -50,7 +50,7 @@ impl Averages {
     }
 }
 
-/// Draws on their way: what makes them may hand them over block by block.
+/// Draws of one value that are being judged, block by block.
 pub(super) struct Reading {
     pub(super) trial: Trial,
     powers: Powers,
@@ -59,13 +59,13 @@ pub(super) struct Reading {
     pub(super) lookups: Option<Scalar>,
     pub(super) refuted: Option<Refuted>,
     refuting: u64,
-    /// Where draws may lie, rounding included.
+    /// Range of draws, rounding included.
     range: Option<[f64; 2]>,
     read: u64,
-    /// How many draws or averages were judged.
+    /// Number of draws or averages that were judged.
     judged: u64,
     averages: [Averages; 2],
-    /// How many draws or averages are judged at a time.
+    /// Number of draws or averages that are judged at a time.
     block: usize,
     pub(super) independence: Independence,
     pub(super) replays: Replays,
@@ -91,7 +91,7 @@ impl Reading {
         let levels = Levels::new(main_share(others) * trial.wanted.alpha, quantities.len());
         let most = trial.wanted.most.unwrap_or(u64::MAX);
         let length = trial.length.map(|length| length.min(most) / trial.wanted.batch);
-        // Few draws make small blocks, so that later ones can be judged by earlier ones.
+        // Few draws make small blocks, so that later ones can be judged from earlier ones.
         let block = length.map_or(BUFFER, |n| usize::try_from(n / 16).unwrap_or(BUFFER));
         let block = block.next_power_of_two().clamp(FEW, BUFFER);
         // A known variance is judged in the blocks of a run.
@@ -131,7 +131,7 @@ impl Reading {
         }
     }
 
-    /// How many draws there were.
+    /// Number of draws so far.
     pub(super) fn draws(&self) -> u64 {
         self.read
     }
@@ -140,7 +140,7 @@ impl Reading {
         self.mean.iter_mut().chain(&mut self.variance).chain(&mut self.lookups)
     }
 
-    /// What is wrong with a draw by itself.
+    /// Kind of the error of a draw by itself.
     fn fault(&self, x: f64) -> Option<Fault> {
         let claim = &self.trial.claim;
         let y = (x - claim.truth) / claim.unit;
@@ -189,7 +189,7 @@ impl Reading {
         self.judge(&values, &counts);
     }
 
-    /// Looks for draws that refute the claim by themselves.
+    /// Searches for draws that refute the claim by themselves.
     fn look_at_each(&mut self, block: &[f64], lookups: &[f64]) {
         if self.read == 0 {
             let mut values = block.to_vec();
@@ -201,14 +201,14 @@ impl Reading {
         let first = self.read;
         self.note(first, block, Self::fault);
         if let Some(claimed) = self.trial.claim.lookups {
-            // A law's own number may be rounded; a draw that differs by one is far beyond that.
+            // A predicted number may be rounded; a draw that differs by one is far beyond that.
             let is_other = |m: f64| claimed.is_fixed() && (m - claimed.mean).abs() > 0.5;
             let fault = |m: f64| (!m.is_finite() || is_other(m)).then_some(Fault::Lookups);
             self.note(first, lookups, |_, m| fault(m));
         }
     }
 
-    /// Notes what is wrong with numbers of which the first is draw number `first`.
+    /// Notes the errors of numbers; the first of them is draw number `first`.
     fn note(&mut self, first: u64, values: &[f64], fault: impl Fn(&Self, f64) -> Option<Fault>) {
         for (index, &value) in (first..).zip(values) {
             let Some(fault) = fault(self, value) else { continue };
@@ -219,7 +219,7 @@ impl Reading {
         }
     }
 
-    /// Puts all questions to a block of draws or averages.
+    /// Passes a block of draws or averages to all checks.
     fn judge(&mut self, block: &[f64], lookups: &[f64]) {
         let claim = &self.trial.claim;
         let batch = self.trial.wanted.batch;
@@ -235,7 +235,7 @@ impl Reading {
         for (at, (&y, &value)) in (self.judged..).zip(self.y.iter().zip(block)) {
             let Some(fault) = fault(y) else { continue };
             is_finite &= fault != Fault::Number;
-            // Of draws that are no numbers the first look tells.
+            // The first look reports draws that are not numbers.
             if fault == Fault::Spread || batch > 1 {
                 self.refuting += 1;
                 let index = at * batch;
@@ -269,7 +269,7 @@ impl Reading {
         }
     }
 
-    /// Whether more draws may change what is said, were all decisions final.
+    /// Returns true if more draws may change the verdict.
     pub(super) fn is_open(&self) -> bool {
         if self.refuted.is_some() {
             return false;
@@ -279,13 +279,13 @@ impl Reading {
         }
         let scalars = [&self.mean, &self.variance, &self.lookups].into_iter().flatten();
         let mut scalars = scalars.map(|scalar| (scalar.has_failed(), scalar.is_open()));
-        // One that has failed decides; else any that is open keeps the draws coming.
+        // A failed check decides; otherwise draws continue while any check is open.
         let [failed, open] =
             scalars.by_ref().fold([false; 2], |[failed, open], (f, o)| [failed | f, open | o]);
         !failed && open
     }
 
-    /// What is said in the end; `stopped` tells why, where draws are left.
+    /// The final judgement; `stopped` is the reason if draws are left.
     pub(super) fn close(mut self, stopped: Option<Stop>) -> Judgement {
         let rest = self.averages[0].ready.len();
         if rest > 0 {
@@ -348,7 +348,7 @@ impl Reading {
     }
 }
 
-/// 0 for numbers whose square is finite, and not a number otherwise.
+/// Returns 0 for numbers with a finite square, and NaN otherwise.
 #[inline(always)]
 pub(super) fn zero_or_nan(y: f64) -> f64 {
     y * y * 0.0

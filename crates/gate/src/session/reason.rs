@@ -12,7 +12,7 @@ use numeric::digits::{enough, percent};
 /// Name of a quantity in a sentence, as in `the mean`.
 pub type What = Cow<'static, str>;
 
-/// Reason of a verdict. `what` is the quantity that it is about.
+/// Reason of a verdict about the quantity `what`.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub enum Reason {
@@ -20,7 +20,7 @@ pub enum Reason {
     Off {
         /// The quantity.
         what: What,
-        /// Its deviation.
+        /// The deviation.
         off: Deviation,
         /// Words on the unit of the deviation; may be empty.
         remark: String,
@@ -28,27 +28,27 @@ pub enum Reason {
         ln_e: f64,
         /// ln E at which it fails.
         limit: f64,
-        /// Tolerance that was asked for, where the deviation is below it.
+        /// Given tolerance, if the deviation is below it.
         tolerance: Option<f64>,
     },
-    /// The deviation is obvious and within the tolerance that was asked for.
+    /// The deviation is obvious, but within the given tolerance.
     Tolerated {
         /// The quantity.
         what: What,
-        /// Its deviation.
+        /// The deviation.
         off: Deviation,
-        /// ε, as asked for.
+        /// ε, as given.
         tolerance: f64,
     },
-    /// The deviation is obvious, but what is known of the draws does not allow a failure.
+    /// The deviation is obvious, but the grounds do not allow a failure.
     LooksOff {
         /// The quantity.
         what: What,
-        /// Its deviation.
+        /// The deviation.
         off: Deviation,
-        /// Whether all draws are alike.
+        /// True if all draws are equal.
         are_alike: bool,
-        /// What is known of the spread; `None` for a range alone.
+        /// Known bound on the variance; `None` for a range alone.
         ground: Option<Ground>,
         /// Bias that the gate excludes, where it has decided.
         excluded: Option<f64>,
@@ -64,13 +64,13 @@ pub enum Reason {
         /// Number of draws that the tolerance needs.
         needed: f64,
     },
-    /// The draws do not show the spread that a decision needs.
+    /// The draws do not show the variance that a decision needs.
     UnknownSpread {
         /// The quantity.
         what: What,
         /// Number of draws.
         draws: u64,
-        /// Tolerance that was asked for, which is then not tested.
+        /// Given tolerance, which is then not tested.
         tolerance: Option<f64>,
         /// What is missing.
         missing: Missing,
@@ -79,21 +79,21 @@ pub enum Reason {
     TooFewPlanned {
         /// The quantity.
         what: What,
-        /// Number of draws that a pass needs; infinite where the prediction is not exact enough for any.
+        /// Number of draws that a pass needs; infinite where the prediction is not accurate enough for any.
         needed: f64,
         /// Relative error of the prediction.
         floor: f64,
     },
-    /// Nothing can be tested, whatever the draws say.
+    /// Nothing can be tested with any draws.
     Untestable {
         /// The quantity.
         what: What,
         /// The reason in words.
         why: String,
     },
-    /// The bias that was declared is shown: its relative size.
+    /// The declared bias is shown: its relative size.
     BiasShown(f64),
-    /// The draws, so many, ended before the bias that was declared was shown.
+    /// The draws ended before the declared bias was shown: their number.
     BiasNotShown(u64),
     /// A bias was declared, and the evidence for it is too small.
     SmallBias {
@@ -104,13 +104,13 @@ pub enum Reason {
         /// ln E at which it is shown.
         limit: f64,
     },
-    /// A bias was declared, and every draw is right.
+    /// A bias was declared, but every draw is right.
     NoBias,
-    /// The bias that was declared is shown in another channel.
+    /// The declared bias is shown in another channel.
     BiasedElsewhere,
     /// Draws are NaN or infinite.
     NotFinite,
-    /// The mean and single draws are off by more than rounding explains.
+    /// The mean and single draws deviate by more than rounding explains.
     MeanOff {
         /// The quantity.
         what: What,
@@ -121,7 +121,7 @@ pub enum Reason {
         /// Relative deviation that rounding explains.
         bound: f64,
     },
-    /// A draw is off by more than rounding explains.
+    /// A draw deviates by more than rounding explains.
     DrawOff {
         /// The quantity.
         what: What,
@@ -130,7 +130,7 @@ pub enum Reason {
         /// Relative deviation that rounding explains.
         bound: f64,
     },
-    /// A draw takes another number of lookups than all draws take: the largest difference.
+    /// A draw takes another number of lookups than all draws must: the largest difference.
     LookupsOff(f64),
     /// The draws ended before the number that a p-value needs.
     Cut {
@@ -158,14 +158,14 @@ pub enum Reason {
     VarianceOpen,
     /// A failure of this quantity rests on a variance that is refuted as too small.
     RestsOnVariance(What),
-    /// The squares about the truth are too large because the mean is off.
+    /// The squares about the truth are too large because the mean deviates.
     SquaresByMean {
         /// Relative excess of the mean square about the truth.
         about_truth: f64,
         /// Relative excess of the variance about the mean of the draws.
         about_mean: f64,
     },
-    /// The mean changes on the way.
+    /// The mean changes within the draws.
     Changes {
         /// First draw of the part that differs.
         from: u64,
@@ -176,7 +176,7 @@ pub enum Reason {
         /// Distance from all other draws in standard errors.
         z: f64,
     },
-    /// The draws depend on each other, in the way that the words say.
+    /// The draws depend on each other, as the words explain.
     Dependent(String),
     /// The quantity is not judged because the draws depend on each other.
     NotJudged(What),
@@ -184,26 +184,26 @@ pub enum Reason {
     Both(Box<Self>, Box<Self>),
 }
 
-/// What a spread is not known for.
+/// Evidence that is missing to know a variance.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Missing {
     /// First draws to choose a tolerance by.
     FirstDraws,
-    /// Draws enough to bound the variance by a kurtosis.
+    /// Enough draws to bound the variance by a kurtosis.
     DrawsOfKurtosis {
         /// The kurtosis that was given.
         kurtosis: f64,
         /// Number of draws that it needs.
         needed: f64,
     },
-    /// Tails as light as was assumed.
+    /// Tails that are as light as assumed.
     LightTails {
         /// Kurtosis that the draws show.
         shown: f64,
         /// Kurtosis that was assumed.
         assumed: f64,
     },
-    /// Draws that carry the spread: so many do.
+    /// Draws that carry the variance: their number.
     Carriers(f64),
 }
 
@@ -364,7 +364,7 @@ fn fine_percent(difference: f64) -> String {
     if percent.abs() >= 0.01 { format!("{percent:+.2} %") } else { format!("{percent:+.1e} %") }
 }
 
-/// Words of a reason, or none: as files have them.
+/// Words of a reason, or nothing, as files store them.
 #[cfg(feature = "serde")]
 #[allow(clippy::ref_option)] // serde asks for it
 pub(super) fn words<S: serde::Serializer>(

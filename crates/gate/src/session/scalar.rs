@@ -1,4 +1,4 @@
-//! One quantity on its way through the gate, where its spread or its tolerance may follow from earlier draws.
+//! State of one quantity in the gate; its variance or its tolerance may follow from earlier draws.
 //!
 //! ```text
 //! E      the mean of the e-values of all grounds that hold (`ground`);   fail at ln E ≥ ln(K/0.8α)
@@ -6,8 +6,8 @@
 //! E_c    the same for a change of the mean from any later block on        (`stats::capital`)
 //! ```
 //!
-//! Looks come at block ends, growing by 1.15, and where the draws end. A pass is not the end: a
-//! scalar that has passed may still fail on what comes later.
+//! Looks come at block ends, growing by 1.15, and where the draws end. A pass is not final: a scalar that has
+//! passed may still fail on later draws.
 
 use super::ground::{FAIRLY_RELIABLE, OfRange, OfVariance, RELIABLE};
 use super::quantity::{Ground, Quantity};
@@ -17,16 +17,17 @@ use crate::stats::capital::ln_mean_exp;
 use crate::stats::gate::{self, Decision, Design, Evidence};
 use crate::stats::verdict::MISS;
 
-/// How many draws a question without a promise takes where no number of draws is planned.
+/// Number of draws that a check without a planned number of draws takes, if its success is not promised.
 const UNPLANNED: f64 = 67_108_864.0;
-/// Twice as many draws as show their variance where no number of draws is planned.
+/// Stand-in for an unknown planned number of draws in the choice of ε, which is fixed after half of it at the
+/// latest.
 const UNPLANNED_PILOT: f64 = 131_072.0;
 
-/// Share of α that a question beside the main quantities has. With its draws known, a session asks for a drift and for the
-/// distribution; images ask for the whole image and for the variance beside the tiles; a run asks for distributions.
+/// Share of α of a check beside the main quantities. With its number of draws known, a session checks the drift and
+/// the distribution; images have the whole image and the variance beside the tiles; a run has distributions.
 pub const SIDE_SHARE: f64 = 0.2;
 
-/// Share of α that the main quantities have beside so many other questions.
+/// Share of α that the main quantities have beside `others` other checks.
 pub fn main_share(others: u32) -> f64 {
     1.0 - SIDE_SHARE * f64::from(others)
 }
@@ -47,27 +48,27 @@ impl Levels {
     }
 }
 
-/// A scalar on its way.
+/// State of a scalar.
 pub struct Scalar {
     pub(super) quantity: Quantity,
     pub(super) levels: Levels,
-    /// n: how many draws are planned, if anybody knows.
+    /// n: the number of planned draws, if it is known.
     pub(super) planned: Option<f64>,
     pub(super) past: Powers,
     pub(super) of_variance: Option<OfVariance>,
     pub(super) of_range: Option<OfRange>,
-    /// What is asked, as soon as V is known or bounded; its ε never becomes wider.
+    /// Parameters of the test, as soon as V is known or bounded; its ε never grows.
     pub design: Option<Design>,
-    /// Whether n draws suffice for a pass.
+    /// True if n draws suffice for a pass.
     pub(super) is_promised: bool,
-    /// The sum of y in each block, and how many draws there are at its end.
+    /// The sum of y in each block, and the number of draws at its end.
     pub(super) sums: Vec<(f64, u64)>,
     pub(super) look: u64,
     /// The decision.
     pub(super) decision: Decision,
     /// Evidence at the look of the decision, or at the last.
     pub evidence: Evidence,
-    /// Whether what may not fail would have.
+    /// True if the evidence reached the failure level, but the variance was only estimated.
     pub(super) is_doubted: bool,
     /// ln `E_c`.
     pub(super) ln_change: f64,
@@ -109,7 +110,7 @@ impl Scalar {
         let finest = by_range.map_or(0.0, OfRange::finest);
         let chosen = |n: f64| gate::tolerance_of(variance, n).max(finest / n);
         let chosen = left.map_or(self.quantity.usual, chosen).min(self.quantity.cap);
-        // The bets of a range need no narrow ε.
+        // The bets on a range need no narrow ε.
         let design = match self.quantity.tolerance {
             Some(asked) => Design::asked(variance, asked, self.quantity.floor),
             None if by_range.is_some() => Design::asked(variance, chosen, self.quantity.floor),
@@ -121,8 +122,8 @@ impl Scalar {
         self.design = Some(design);
     }
 
-    /// Fixes ε where only a range is known: by the variance of the first draws, at most that of the range. Half of
-    /// all draws may pass until the draws show their variance; an ε that was asked for need not wait.
+    /// Fixes ε where only a range is known: from the variance of the first draws, at most that of the range. This
+    /// may take half of all draws, until the draws show their variance; a given ε is fixed at once.
     fn start_by_range(&mut self) {
         let Some(ground) = self.of_range.as_ref().filter(|_| self.design.is_none()) else { return };
         let (draws, carry) = (self.past.draws() as f64, self.past.effective_draws());
@@ -134,7 +135,7 @@ impl Scalar {
         }
         let shown = if is_reliable { self.past.upper_square() } else { f64::INFINITY };
         let variance = shown.min(ground.widest());
-        // A range that leaves next to nothing narrows no tolerance.
+        // A very narrow range does not narrow the tolerance.
         let asked = self.quantity.tolerance.unwrap_or(self.quantity.cap);
         let variance = if variance > 0.0 { variance } else { 16.0 * asked * asked };
         if (draws > 0.0 || is_asked) && variance.is_finite() {
@@ -161,7 +162,7 @@ impl Scalar {
             }
             if let Some(ground) = &mut self.of_range {
                 let variance = bound.or(ground.variance(&self.past));
-                // Until ε is chosen, the widest one guides the bets against a correct mean.
+                // Until ε is chosen, the largest one guides the bets against a correct mean.
                 let is_provisional = self.design.is_none();
                 let widest = self.quantity.tolerance.unwrap_or(self.quantity.cap);
                 let tolerance = self.design.map_or(widest, |design| design.tolerance);
@@ -178,7 +179,7 @@ impl Scalar {
         }
     }
 
-    /// A look; the last one comes when the draws end.
+    /// Looks at the evidence; the last look comes when the draws end.
     pub fn decide(&mut self) {
         if self.decision == Decision::Failed || self.past.draws() == 0 {
             return;
@@ -186,7 +187,7 @@ impl Scalar {
         let (mut ln_e, mut ln_change) = (Vec::new(), Vec::new());
         let mut ln_pass: [Vec<f64>; 2] = Default::default();
         let mut soft = f64::NEG_INFINITY;
-        // A bound on V takes its share of all evidence that it joins.
+        // A bound on V takes its share of all evidence that uses it.
         let mut ln_share: f64 = 0.0;
         let tolerance = self.design.map_or(0.0, |design| design.tolerance);
         let of_variance = self.of_variance.as_ref();
@@ -225,7 +226,7 @@ impl Scalar {
         }
     }
 
-    /// Whether more draws may change what is said, were it decided once and for all.
+    /// Returns true if more draws may change the decision, which is then final.
     pub(super) fn is_open(&self) -> bool {
         let most = self.planned.unwrap_or(UNPLANNED);
         let limit = match &self.design {
@@ -239,18 +240,18 @@ impl Scalar {
         self.decision == Decision::Failed
     }
 
-    /// Whether it can fail at all.
+    /// Returns true if it can fail at all.
     pub(super) fn has_ground(&self) -> bool {
         self.of_range.is_some() || self.quantity.is_hard()
     }
 
-    /// Whether the draws do not contradict what was assumed of them.
+    /// Returns true if the draws do not contradict the assumptions about them.
     pub(super) fn is_founded(&self) -> bool {
         let ground = self.of_variance.as_ref();
         !ground.is_some_and(|ground| ground.is_contradicted(&self.past)) || self.of_range.is_some()
     }
 
-    /// Whether the mean differs by itself: were the spread what the draws show, it would fail, too.
+    /// Returns true if the mean would also fail with the variance that the draws show.
     pub(super) fn is_off_by_itself(&self) -> bool {
         let (off, n) = self.seen;
         let by_range = self.of_range.as_ref().map_or(0.0, |ground| ground.capital.ln_e());
@@ -258,7 +259,7 @@ impl Scalar {
         gate::is_off_by_itself(off, spread, n as f64, ln_fail) || by_range >= ln_fail
     }
 
-    /// The kurtosis that a judgement assumes without a promise of the caller's.
+    /// The kurtosis that a judgement assumes, without a claim of the caller.
     pub(super) fn assumed(&self) -> Option<f64> {
         if self.quantity.ground != Some(Ground::Shown) {
             return None;

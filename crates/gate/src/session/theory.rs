@@ -2,12 +2,12 @@
 //!
 //! ```text
 //! α    3/5 to the scalars, 1/5 to the drift, 1/5 to the distribution where it is tested; else 4/5 and 1/5
-//! n    all draws, where their number is known before the first; else 2¹¹, 2¹², 2¹³, … of the first draws, of which look
-//!      j = 0, 1, … has a share 1/((j + 1)(j + 2)) of the level: no n depends on what the draws are
+//! n    all draws, where their number is known before the first; else 2¹¹, 2¹², 2¹³, … of the first draws; look
+//!      j = 0, 1, … has a share 1/((j + 1)(j + 2)) of the level: no n depends on the draws
 //! p    the p-values of one look together, by Holm
 //! ```
 //!
-//! The tests themselves are those of a run; they need the library, which is why they are behind a trait here.
+//! The tests themselves are those of a run. They need the library, and are therefore behind a trait here.
 
 use std::fmt;
 use std::panic::{RefUnwindSafe, UnwindSafe};
@@ -20,14 +20,14 @@ use super::scalar::SIDE_SHARE;
 /// The channel that is a sum of those before it, by fixed weights: draws need not have it.
 const DERIVED: &str = "luminance";
 
-/// What is asked of the tests of a distribution.
+/// Input of the tests of a distribution.
 #[derive(Debug, Clone, Copy)]
 pub struct Asked {
-    /// The level that they share.
+    /// The level that the tests share.
     pub alpha: f64,
     /// Number of draws, where it is known and no decision ends them earlier.
     pub length: Option<u64>,
-    /// Whether draws come with their number of lookups.
+    /// True if draws come with their number of lookups.
     pub has_lookups: bool,
     /// The rounding of a draw, relative to its size.
     pub rounding: f64,
@@ -37,7 +37,7 @@ pub struct Asked {
 
 /// The distribution of a draw, as far as theory knows it.
 pub trait Distribution: fmt::Debug + Send + Sync + UnwindSafe + RefUnwindSafe {
-    /// Its tests, before the first draw.
+    /// The tests, before the first draw.
     ///
     /// # Errors
     ///
@@ -45,12 +45,12 @@ pub trait Distribution: fmt::Debug + Send + Sync + UnwindSafe + RefUnwindSafe {
     fn tests(&self, asked: Asked) -> Result<Box<dyn Tests>, String>;
 }
 
-/// Tests of a distribution that draws are pushed to.
+/// Tests of a distribution that take draws.
 pub trait Tests: Send + Sync + UnwindSafe + RefUnwindSafe {
-    /// Adds draws, a list for each value, and their lookups, where they have any.
+    /// Adds draws, a list for each value, and their lookups, if there are any.
     fn absorb(&mut self, columns: &[&[f64]], lookups: &[f64]);
 
-    /// The findings, and why some tests were not made.
+    /// The findings, and the reasons why some tests were not made.
     fn close(self: Box<Self>) -> Tested;
 }
 
@@ -115,14 +115,14 @@ impl Theory {
     }
 }
 
-/// Theory from which a session takes what it does not get by numbers.
+/// Theory for all properties that are not given by numbers.
 #[derive(Debug, Clone, Copy)]
 pub struct Taken<'a> {
     /// The theory.
     pub theory: &'a Theory,
-    /// Whether theory is to judge the lookups of the draws.
+    /// True if theory judges the lookups of the draws.
     pub has_lookups: bool,
-    /// Whether only the mean is taken from theory.
+    /// True if only the mean is taken from theory.
     pub is_mean_only: bool,
 }
 

@@ -1,4 +1,4 @@
-//! Quantities of one kind that are judged together once all of their draws are there, such as the tiles of an image.
+//! Quantities of one kind that are judged together after all of their draws, such as the tiles of an image.
 //!
 //! ```text
 //! draws   in blocks of 1, 1, 2, 4, 8, … units of the caller's, so that stakes on a range learn from the draws before
@@ -17,7 +17,7 @@ use crate::stats::verdict::{MISS, Verdict};
 /// Largest share of false entries of the list, on average.
 pub const LISTED: f64 = 0.05;
 
-/// Levels that nothing reaches before the end.
+/// Levels that no evidence reaches before the end.
 pub const AT_THE_END: Levels = Levels { ln_fail: f64::INFINITY, ln_pass: f64::INFINITY };
 
 impl Scalar {
@@ -50,11 +50,11 @@ fn doubling(units: usize) -> impl Iterator<Item = (usize, usize)> {
 /// Decision on one of several quantities that are judged together.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Joint {
-    /// Whether it fails.
+    /// True if it fails.
     pub is_off: bool,
-    /// Whether it passes, if it does not fail.
+    /// True if it passes; a failure comes first.
     pub has_passed: bool,
-    /// Whether it is on the list of quantities that are off.
+    /// True if it is on the list of quantities that deviate.
     pub is_listed: bool,
 }
 

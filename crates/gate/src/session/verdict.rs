@@ -1,4 +1,4 @@
-//! What is said of foreign draws, of images and of stacks of images, and in which order.
+//! Verdicts on foreign draws, on images and on stacks of images, in order of precedence.
 //!
 //! ```text
 //! a draw that refutes the claim by itself   fail, before all else
@@ -6,8 +6,9 @@
 //! variance, mean, lookups, drift            fail; inconclusive; else pass
 //! ```
 //!
-//! A variance that is refuted only because the mean is off does not fail. One that is refuted as too small is named before
-//! the mean. A mean that is off only in units of that variance does not fail: its evidence rests on what is refuted.
+//! A variance that is refuted only because the mean deviates does not fail. One that is refuted as too small is
+//! named before the mean. A mean that deviates only in units of that variance does not fail: its evidence relies on
+//! a refuted variance.
 
 use super::dependence::off_without_change;
 use super::flights::Ends;
@@ -19,16 +20,16 @@ use crate::stats::gate;
 use crate::stats::verdict::{GateFinding, Verdict};
 use numeric::digits::short;
 
-/// What was found, in sentences, by the verdict that it leads to.
+/// Findings in sentences, by the verdict that follows from them.
 #[derive(Debug, Clone, Default)]
 pub struct Reasons {
     /// A draw that refutes the claim by itself: fail.
     pub refuted: Option<String>,
-    /// A dependence, under which nothing else counts: inconclusive.
+    /// A dependence: inconclusive, and no other finding counts.
     pub dependent: Option<String>,
-    /// What fails.
+    /// Quantities that fail.
     pub failing: Vec<String>,
-    /// What is not decided.
+    /// Quantities that are not decided.
     pub open: Vec<String>,
     /// Remarks on a pass.
     pub passing: Vec<String>,
@@ -51,20 +52,21 @@ impl Reasons {
     }
 }
 
-/// Whether a mean that fails rests on a variance that is refuted as too small: were its spread what the draws show, it would
-/// not fail.
+/// Returns true if a failing mean relies on a variance that is refuted as too small: with the variance that the
+/// draws show it would not fail.
 pub fn rests_on(mean: &GateFinding, variance: &GateFinding, ln_fail: f64) -> bool {
     let spread = mean.variance * (1.0 + variance.mean) - mean.mean * mean.mean;
     variance.mean > 0.0 && !gate::is_off_by_itself(mean.mean, spread, mean.draws as f64, ln_fail)
 }
 
-/// Whether squares about many truths at once, such as those of all pixels, are too large by their spread: the relative excess
-/// about the means of the draws is half of that about the truths or more. Means that are off enlarge the latter alone.
+/// Returns true if squares about many truths at once, such as those of all pixels, are too large because of their
+/// variance. The relative excess about the means of the draws is then at least half of that about the truths.
+/// Biased means enlarge the latter alone.
 pub fn is_by_spread(about_truth: f64, about_mean: f64) -> bool {
     about_mean - 1.0 >= 0.5 * (about_truth - 1.0)
 }
 
-/// The verdict of the whole, and what it promises.
+/// The verdict of the whole, and its guarantees.
 pub(super) fn decide(reading: &Reading, judgement: &mut Judgement) {
     let off = judgement.drift.as_ref().and_then(|drift| off_without_change(reading, drift));
     let mean = judgement.findings.iter_mut().find(|found| found.check == "mean");
@@ -90,14 +92,14 @@ pub(super) fn decide(reading: &Reading, judgement: &mut Judgement) {
         dependent: is_dependent.then(|| dependent(&judgement.independence)),
         failing: of(Verdict::Fail),
         open: of(Verdict::Inconclusive),
-        // A mean that is off within the tolerance.
+        // A mean that deviates within the tolerance.
         passing: of(Verdict::Pass),
     };
     (judgement.verdict, judgement.reason) = reasons.verdict();
     judgement.guarantees = guarantees(reading, judgement);
 }
 
-/// Names a refuted variance before the mean, and acquits a mean that is off only in units of it.
+/// Names a refuted variance before the mean, and lets a mean that deviates only in units of it not fail.
 fn put_variance_first(reading: &Reading, judgement: &mut Judgement) {
     let place = |check: &str| judgement.findings.iter().position(|found| found.check == check);
     let (Some(at), Some(variance)) = (place("mean"), place("variance")) else { return };
@@ -134,7 +136,7 @@ fn put_variance_first(reading: &Reading, judgement: &mut Judgement) {
     judgement.findings.swap(at, variance);
 }
 
-/// Takes back what the gate says: it holds for independent draws only.
+/// Withdraws the findings of the gate: they hold for independent draws only.
 fn withhold(judgement: &mut Judgement) {
     let not_judged = |what: &'static str| Some(Reason::NotJudged(what.into()));
     for found in &mut judgement.findings {
@@ -168,7 +170,7 @@ fn dependent(found: &IndependenceFinding) -> String {
     format!("{reason}; the mean is not judged: {cure}")
 }
 
-/// What is wrong with a draw.
+/// Describes the error of a draw.
 fn fault(reading: &Reading, refuted: &Refuted, count: u64) -> String {
     let claim = &reading.trial.claim;
     let &Refuted { fault, index, value } = refuted;
@@ -200,7 +202,7 @@ fn fault(reading: &Reading, refuted: &Refuted, count: u64) -> String {
     if count > 1 { format!("{said}; {count} draws are like that") } else { said }
 }
 
-/// Why a tolerance of the mean is not used.
+/// Reason why a tolerance of the mean is not used.
 fn unused_tolerance(reading: &Reading) -> Option<String> {
     let asked = reading.trial.wanted.tolerance.filter(|_| reading.mean.is_none())?;
     Some(format!(
@@ -209,7 +211,7 @@ fn unused_tolerance(reading: &Reading) -> Option<String> {
     ))
 }
 
-/// What the verdict promises, and what it does not.
+/// Guarantees of the verdict, and their limits.
 fn guarantees(reading: &Reading, judgement: &Judgement) -> Vec<String> {
     let mut said = Vec::new();
     match judgement.finding("mean") {
@@ -262,7 +264,7 @@ fn guarantees(reading: &Reading, judgement: &Judgement) -> Vec<String> {
     said
 }
 
-/// Who fails with which chance.
+/// Guarantee on failures: the draws that fail at most with probability α.
 fn failing(reading: &Reading, judgement: &Judgement, mean: &ScalarFinding) -> String {
     let claim = &reading.trial.claim;
     let alpha = judgement.alpha;
@@ -298,7 +300,7 @@ fn failing(reading: &Reading, judgement: &Judgement, mean: &ScalarFinding) -> St
     format!("independent {who} fail with chance {} at most", short(alpha, 3))
 }
 
-/// What a pass of the mean promises.
+/// Guarantee of a pass of the mean.
 fn missing(judgement: &Judgement, mean: &ScalarFinding) -> Option<String> {
     let beta = judgement.beta;
     let miss = format!("a mean off by the tolerance passes with chance {beta} at most");

@@ -9,15 +9,13 @@
 //! E = Σ v e^L;  each side of the pass likewise
 //! ```
 //!
-//! A player who stakes a share of his capital on each draw gains `1 + λ(y − m)`, which is never
-//! negative and 1 on average where the mean is m. So each `e^L` is a test martingale: by Ville's
-//! inequality a correct y ever brings E to K/α with chance at most α/K, whatever its law within the
-//! range and however often one looks. V only says which stakes are worth most: it may be estimated from
-//! earlier draws and be wrong. A mixture over a grid of λ comes within a constant of the best λ in
-//! hindsight. Towards an infinite end nothing can be staked: draws that are never negative may
-//! show a mean that is too large, never one that is too small (R. R. Bahadur, L. J. Savage, *The
-//! nonexistence of certain statistical procedures in nonparametric problems*, Annals of Mathematical
-//! Statistics 27 (1956)).
+//! A bet of a share of the capital on each draw gains the factor `1 + λ(y − m)`, which is never negative and 1 on
+//! average where the mean is m. So each `e^L` is a test martingale. By Ville's inequality a correct y ever brings E
+//! to K/α with probability α/K at most, for any distribution within the range and any number of looks. V only
+//! guides the stakes: it may be estimated from earlier draws and be wrong. A mixture over a grid of λ comes within
+//! a constant of the best λ in hindsight. An infinite end allows no stake towards it: draws that are never negative
+//! may show a mean that is too large, never one that is too small (R. R. Bahadur, L. J. Savage, *The nonexistence
+//! of certain statistical procedures in nonparametric problems*, Annals of Mathematical Statistics 27 (1956)).
 //!
 //! Source: I. Waudby-Smith, A. Ramdas, *Estimating means of bounded random variables by betting*,
 //! JRSS B 86 (2024), sections 4 and 5 (the grid of stakes is their Grid-Kelly).
@@ -32,23 +30,23 @@ use numeric::pack::{self, Task, WIDTH};
 const PLANNED: [(f64, f64); 3] = [(1.0, 0.4), (4.0, 0.2), (16.0, 0.12)];
 /// The planned stake of a pass.
 const CALM: [(f64, f64); 1] = [(0.6, 0.8)];
-/// How many bold stakes share what is left.
+/// Number of large stakes that share the rest of the capital.
 const BOLD: i32 = 5;
-/// Each is a sixteenth of the one before.
+/// Ratio of a large stake to the one before.
 const STEP: f64 = 0.0625;
-/// The largest share of the capital that a draw may take.
+/// Maximum share of the capital that a draw may take.
 const BOLDEST: f64 = 0.75;
-/// Rows of draws whose factors are multiplied before a logarithm is taken.
+/// Number of rows of draws with factors that are multiplied before a logarithm is taken.
 const ROWS: usize = 16;
-/// Products beyond this, and below its inverse, are taken apart into logarithms.
+/// Products beyond this, and below its inverse, are split into logarithms.
 const LARGE: f64 = 1e250;
 
-/// What is asked of draws of a known range, fixed before they are seen.
+/// Bets on draws of a known range, fixed before the draws are seen.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Bets {
     /// The factors `offset + slope · y`: those against a correct mean, then both sides of the pass.
     factors: Vec<Factor>,
-    /// Where the sides of the pass begin.
+    /// Indices where the sides of the pass begin.
     pass: [usize; 2],
 }
 
@@ -56,18 +54,18 @@ pub struct Bets {
 struct Factor {
     slope: f64,
     offset: f64,
-    /// Its share of the capital of its side.
+    /// Share of the capital of its side.
     share: f64,
 }
 
-/// What a pass excludes, and what is known before a block.
+/// Tolerance of a pass, and the estimate of V before a block.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Aim {
     /// ε.
     pub tolerance: f64,
-    /// V, as well as it is known.
+    /// V, or its present estimate.
     pub variance: f64,
-    /// Whether ε may still change: then it guides the bets against a correct mean, and nothing is bet on a pass.
+    /// True if ε may still change: then it guides the bets against a correct mean, and there are no bets on a pass.
     pub is_provisional: bool,
 }
 
@@ -93,7 +91,7 @@ fn side(
 }
 
 impl Bets {
-    /// Bets on draws in `[low, high]` about 0; `floor` is δ. Without an aim nothing is bet on a pass.
+    /// Bets on draws in `[low, high]` about 0; `floor` is δ. Without an aim there are no bets on a pass.
     pub fn new([low, high]: [f64; 2], aim: Option<Aim>, floor: f64) -> Self {
         let mut factors: Vec<Factor> = side(1.0, floor - low, floor, &PLANNED, aim).collect();
         factors.extend(side(-1.0, high + floor, -floor, &PLANNED, aim));
@@ -121,7 +119,7 @@ impl Bets {
         Gains { against: list(&bets.factors[..above]), pass }
     }
 
-    /// What the bets gain on some draws. Each draw must lie in the range.
+    /// Gains of the bets on some draws. Each draw must lie in the range.
     pub fn gains(&self, y: &[f64]) -> Gains {
         let mut sums = vec![0.0; self.factors.len()];
         pack::on(Level::new(), Sums { factors: &self.factors, y, totals: &mut sums });
@@ -206,7 +204,7 @@ mod tests {
                     assert!(factor.offset + factor.slope * y > 0.2, "{factor:?} at {y}");
                 }
             }
-            // Against a correct mean nothing is gained at 0, and on a pass nothing at ε − δ.
+            // Against a correct mean the gain is 1 at 0, and on a pass it is 1 at ε − δ.
             let at = |factor: &Factor, y: f64| factor.offset + factor.slope * y;
             assert!(bets.factors[..16].iter().all(|factor| at(factor, 0.0) <= 1.0));
             assert!(bets.factors[16..22].iter().all(|f| (at(f, 0.15 - floor) - 1.0).abs() < 1e-12));
@@ -238,7 +236,7 @@ mod tests {
 
     #[test]
     fn rare_events_that_come_too_often_are_refuted_and_due_ones_are_not() {
-        // Bernoulli draws of chance 1e-4, in units of it.
+        // Bernoulli draws of probability 1e-4, in units of it.
         for (chance, is_failed) in [(1e-4, false), (4e-4, true)] {
             let bets = Bets::new([-1.0, 9999.0], None, 0.0);
             let mut capital = Capital::default();

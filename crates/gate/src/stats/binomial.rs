@@ -13,10 +13,10 @@ use std::f64::consts::PI;
 
 use numeric::roots;
 
-/// The interval that covers the probability of success with chance `level` or more.
+/// Interval that covers the probability of success with probability `level` or more.
 ///
-/// Without trials nothing is known, and certainty knows nothing: `(0, 1)`. More successes than trials
-/// and a level outside `[0, 1]` give NaN.
+/// Without trials, and at the level 1, it is `(0, 1)`. More successes than trials and a level outside `[0, 1]` give
+/// NaN.
 pub fn interval(successes: u64, trials: u64, level: f64) -> (f64, f64) {
     if successes > trials || !(0.0..=1.0).contains(&level) {
         return (f64::NAN, f64::NAN);
@@ -80,7 +80,7 @@ fn above(k: f64, n: f64, chance: Chance) -> f64 {
     ln_mass(k, n, chance).exp() * sum
 }
 
-/// `P(X ≤ k)`: that many successes are `n − k` failures or more.
+/// `P(X ≤ k)`: the probability of `n − k` failures or more.
 fn below(k: f64, n: f64, chance: Chance) -> f64 {
     above(n - k, n, chance.other())
 }
@@ -146,7 +146,7 @@ mod tests {
         }
     }
 
-    /// Quantiles of the beta law by the Boost library, which gives them to 1e-12 at these sizes.
+    /// Quantiles of the beta distribution by the Boost library, which gives them to 1e-12 at these sizes.
     #[test]
     fn agrees_with_the_beta_law() {
         let known = [

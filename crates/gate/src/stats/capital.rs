@@ -1,19 +1,19 @@
-//! What bets have gained so far: over all draws, and from a later block on.
+//! Capital of bets: over all draws, and from a later block on.
 //!
 //! ```text
 //! E   = Σ_j v_j e^{L_j}                                    against the claim for all draws, Σ v_j = 1
 //! E_c = Σ_j v_j Σ_s w_s e^{L_j from block s on} + what has not begun,  w_s = 1/(s(s + 1))
 //! ```
 //!
-//! Both are test martingales where the claim holds for every draw: the second spreads its capital
-//! over the blocks from which on the claim may break, so that a change is seen however long all was
-//! well before it. It costs `ln(s(s + 1))` of evidence for a change at block s.
+//! Both are test martingales where the claim holds for every draw. The second spreads its capital over the blocks
+//! from which on the claim may break, so that a change is found after any number of correct blocks. It costs
+//! `ln(s(s + 1))` of evidence for a change at block s.
 //!
-//! Source: J. Shin, A. Ramdas, A. Rinaldo, *E-detectors: a nonparametric framework for sequential
-//! change detection*, New England Journal of Statistics in Data Science 2 (2024), section 2; here with
-//! weights that add up to 1, so that the chance of a false alarm is bounded over all time.
+//! Source: J. Shin, A. Ramdas, A. Rinaldo, *E-detectors: a nonparametric framework for sequential change
+//! detection*, New England Journal of Statistics in Data Science 2 (2024), section 2; here with weights that add up
+//! to 1, so that the probability of a false alarm is bounded over all time.
 
-/// The logarithms of what each bet gained on some draws.
+/// The logarithms of the gains of each bet on some draws.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Gains {
     /// Against a correct mean.
@@ -22,10 +22,10 @@ pub struct Gains {
     pub pass: [Vec<f64>; 2],
 }
 
-/// What bets have gained; blocks are added in their order.
+/// Capital of bets; blocks are added in their order.
 #[derive(Debug, Clone, Default)]
 pub struct Capital {
-    /// The share of the capital of each bet; without any all have the same.
+    /// The share of the capital of each bet; empty for equal shares.
     shares: Gains,
     sum: Gains,
     later: Vec<Later>,
@@ -39,7 +39,7 @@ struct Later {
     ln_sum: f64,
 }
 
-/// ln of the mean of `e^x`; not a number if one of them is none.
+/// ln of the mean of `e^x`; NaN if one of them is NaN.
 pub fn ln_mean_exp(x: &[f64]) -> f64 {
     let largest = x.iter().fold(f64::NEG_INFINITY, |most, &x| most.max(x));
     if x.iter().any(|x| x.is_nan()) {
@@ -71,13 +71,13 @@ fn joined(shares: &[f64], x: &[f64]) -> f64 {
 }
 
 impl Capital {
-    /// Capital that is shared among the bets as given, `against` and each side of `pass` with a sum of 1.
+    /// Capital with these shares of the bets; `against` and each side of `pass` have the sum 1.
     pub fn shared(shares: Gains) -> Self {
         Self { shares, ..Self::default() }
     }
 
-    /// Adds the gains of the next block. The first block says how many bets there are; a side of the pass may
-    /// begin later.
+    /// Adds the gains of the next block. The first block sets the number of bets; a side of the pass may begin
+    /// later.
     pub fn add(&mut self, gains: &Gains) {
         let none = Later { ln_sum: f64::NEG_INFINITY };
         self.later.resize(gains.against.len(), none);
@@ -104,7 +104,7 @@ impl Capital {
         }
     }
 
-    /// ln of the evidence against a mean of +ε or more, and of −ε or less; −∞ where nothing was bet.
+    /// ln of the evidence against a mean of +ε or more, and of −ε or less; −∞ without bets.
     pub fn ln_pass(&self) -> [f64; 2] {
         [0, 1].map(|side| joined(&self.shares.pass[side], &self.sum.pass[side]))
     }
@@ -119,7 +119,7 @@ impl Capital {
     }
 }
 
-/// Adds up; what is not there yet has gained nothing.
+/// Adds gains to sums; missing sums are 0.
 fn join(sums: &mut Vec<f64>, gains: &[f64]) {
     sums.resize(sums.len().max(gains.len()), 0.0);
     sums.iter_mut().zip(gains).for_each(|(sum, gain)| *sum += gain);

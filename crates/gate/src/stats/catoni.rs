@@ -5,11 +5,10 @@
 //! e^{ψ(t)} ≤ 1 + t + t²/2 for every t
 //! ```
 //!
-//! ψ grows like a logarithm, so that no single draw decides, and its exponential is bounded by a
-//! parabola, so that sums of it are evidence for any law with a known variance. The sum is kept as
-//! two running products, one over `t > 0` and one over `t < 0`; their exponents are split off every
-//! 1024 draws; logarithms are taken where that overflows. The lanes are fixed, so that the width of a
-//! machine's registers changes no bit.
+//! ψ grows like a logarithm, so that no single draw decides, and its exponential is bounded by a parabola, so that
+//! sums of it are evidence for any distribution with a known variance. The sum is kept as two running products, one
+//! over `t > 0` and one over `t < 0`. Their exponents are split off every 1024 draws; logarithms are taken where
+//! that overflows. The lanes are fixed, so that the width of a machine's registers changes no bit.
 //!
 //! Source: O. Catoni, *Challenging the empirical mean and empirical variance: a deviation study*,
 //! Annales de l'Institut Henri Poincaré B 48 (2012), 1148–1185, Eq. 2.1.
@@ -26,7 +25,7 @@ const FLUSH: usize = 1024;
 const MANTISSA: u64 = 0x000f_ffff_ffff_ffff;
 const ONE: u64 = 0x3ff0_0000_0000_0000;
 const INFINITE: i64 = 0x7ff;
-/// Beyond this only the square counts, and would overflow.
+/// Beyond this only the square is significant, and it would overflow.
 const LARGE: f64 = 1e100;
 
 /// ψ itself.
@@ -61,7 +60,7 @@ struct Product {
     above: [f64; LANES],
     below: [f64; LANES],
     exponent: [i64; LANES],
-    /// The logarithm of what was too large for a product.
+    /// The logarithm of the factors that are too large for a product.
     large: f64,
 }
 
@@ -79,7 +78,7 @@ impl<const N: usize> PsiSums<N> {
         pack::on(Level::new(), Each { products: &mut self.products, y, arguments });
     }
 
-    /// Adds draws that come so many times each.
+    /// Adds draws, each with its number of occurrences.
     pub fn absorb_counted(&mut self, y: &[f64], times: &[f64], arguments: &[Argument; N]) {
         pack::on(Level::new(), Counted { products: &mut self.products, y, times, arguments });
     }
@@ -95,7 +94,7 @@ impl<const N: usize> PsiSums<N> {
     }
 }
 
-/// Draws with how often each comes, for all sums.
+/// Draws with their numbers of occurrences, for all sums.
 struct Counted<'a> {
     products: &'a mut [Product],
     y: &'a [f64],
@@ -129,7 +128,7 @@ fn terms<L: Lane>(y: L, argument: &Argument) -> L {
     let size = t.size();
     let ln = ((size * 0.5 + 1.0) * size + 1.0).ln();
     let near = L::select(t.below(t.each(0.0)), -ln, ln);
-    // What is no number, and what is too large for its square, goes the slow way.
+    // NaN, and numbers with an overflowing square, are summed one by one.
     let is_small = size.at_most(t.each(LARGE));
     L::select(is_small, near, t.map(|t| if t.abs() <= LARGE { 0.0 } else { psi(t) }))
 }
@@ -154,7 +153,7 @@ impl Task for Each<'_> {
     }
 }
 
-/// Twice what the products above and below take: one of them the factor, the other 1.
+/// Twice the factors of the products above and below: one of them the factor, the other 1.
 ///
 /// ```text
 /// 2(1 + |t| + t²/2) = (|t| + 1)² + 1
@@ -205,7 +204,7 @@ impl Product {
     }
 }
 
-/// Brings a positive number into [1, 2) and answers its (biased) exponent.
+/// Scales a positive number into [1, 2) and returns its (biased) exponent.
 #[inline(always)]
 #[allow(clippy::cast_possible_wrap)] // an exponent has eleven bits
 fn split(x: &mut f64) -> i64 {

@@ -20,7 +20,7 @@ use statrs::distribution::{Binomial, ChiSquared, ContinuousCDF, DiscreteCDF};
 
 use super::binomial::deviance;
 
-/// Degrees beyond which the expansion is used: two terms leave 1e-11 of a tail.
+/// Degrees beyond which the expansion is used: the relative error of two terms is 1e-11 of a tail.
 const MANY: f64 = 1e4;
 
 /// The Taylor coefficients of `c₀`.
@@ -65,22 +65,21 @@ fn expanded(x: f64, a: f64) -> [f64; 2] {
     let eta = root * (2.0 / a).sqrt();
     let series = |c: &[f64]| c.iter().rev().fold(0.0, |sum, c| sum * eta + c);
     let rest = (-exponent).exp() / (2.0 * PI * a).sqrt() * (series(&C_0) + series(&C_1) / a);
-    // Beyond e^{−745} nothing is left, whatever the series says so far out.
+    // Beyond e^{−745} the series is invalid, and the rest is 0.
     let rest = if exponent < 745.0 { rest } else { 0.0 };
     [0.5 * libm::erfc(root) + rest, 0.5 * libm::erfc(-root) - rest]
 }
 
-/// The fewest draws a bin must expect; smaller neighbours are merged. With fewer, Pearson's law is
-/// too small far out: a bin of 10 beside a large one is 26 times too often beyond a level of 2e-7,
-/// one of 50 still 6 times.
+/// Minimum number of expected draws of a bin; smaller adjacent bins are merged. With fewer, Pearson's distribution
+/// is too small far out: a bin of 10 beside a large one exceeds a level of 2e-7 26 times too often, one of 50 still
+/// 6 times.
 const LEAST: f64 = 500.0;
 
 /// The p-value of observed counts against the probabilities of their bins.
 ///
-/// Neighbouring bins are merged until each expects at least 500 draws, which keeps levels of 2e-7 to
-/// a factor below 2; two bins have their exact binomial law. Probabilities that sum to
-/// less than 1 leave a last bin for the rest. `None` where fewer than two bins remain, so that
-/// there is nothing to test.
+/// Adjacent bins are merged until each expects at least 500 draws, which keeps levels of 2e-7 to a factor below 2;
+/// two bins have their exact binomial distribution. Probabilities that sum to less than 1 leave a last bin for the
+/// rest. `None` where fewer than two bins remain, so that there is nothing to test.
 ///
 /// ```text
 /// χ² = Σ (O − E)²/E,  bins − 1 degrees of freedom
@@ -196,7 +195,7 @@ mod tests {
             assert!((above / law.sf(statistic) - 1.0).abs() < 1e-9, "{z}: {above}");
             assert!((below / law.cdf(statistic) - 1.0).abs() < 1e-9, "{z}: {below}");
         }
-        // Far out nothing is left, and nothing is negative.
+        // Far out the tail is 0, and never negative.
         assert_eq!(tails(4e9, 1e9), [0.0, 1.0]);
         assert_eq!(tails(1e8, 1e9), [1.0, 0.0]);
         assert_eq!(tails(0.0, 1e9), [1.0, 0.0]);

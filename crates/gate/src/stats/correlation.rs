@@ -1,6 +1,6 @@
 //! Correlations between streams of random numbers that should be independent.
 //!
-//! Values are standardised: mean 0 and variance 1 when all is well.
+//! Values are standardised: mean 0 and variance 1 for correct streams.
 
 use std::f64::consts::FRAC_1_SQRT_2;
 use std::ops::RangeInclusive;
@@ -8,8 +8,8 @@ use std::ops::RangeInclusive;
 use crate::stats::chi_square;
 use numeric::sum::Sum;
 
-/// The two-sided p-value of the sums of `streams` streams, index by index; `None` where there is
-/// no law to compare with.
+/// The two-sided p-value of the sums of `streams` streams, index by index; `None` where there is no distribution to
+/// compare with.
 ///
 /// With `S_i = Σ_b z_{b,i}` over the `B` streams and `κ` the excess kurtosis of one `z`,
 ///
@@ -18,8 +18,8 @@ use numeric::sum::Sum;
 /// Q/c ~ χ² with L/c degrees of freedom,  c = 1 + κ/(2B)
 /// ```
 ///
-/// the scaled `χ²` that has both moments. Streams that are alike make `Q` large (all the same:
-/// `E[Q] = LB`), streams that avoid each other make it small.
+/// the scaled `χ²` that has both moments. Streams that are alike make `Q` large (all equal: `E[Q] = LB`), streams
+/// that avoid each other make it small.
 ///
 /// Source: F. E. Satterthwaite, *An approximate distribution of estimates of variance components*,
 /// Biometrics Bulletin 2 (1946), 110–114. Exact for normal `z`; otherwise good down to levels of
@@ -39,9 +39,9 @@ pub fn index_sums(sums: &[f64], streams: usize, excess_kurtosis: f64) -> Option<
 pub struct Lagged {
     /// The lag `l` at which it was found.
     pub lag: i32,
-    /// `z_l` there, standard normal when all is well.
+    /// `z_l` there, standard normal for independent streams.
     pub z: f64,
-    /// Its two-sided p-value, times the number of lags.
+    /// Two-sided p-value, times the number of lags.
     pub p_value: f64,
 }
 
@@ -69,7 +69,7 @@ pub fn lagged(a: &[f64], b: &[f64], lags: RangeInclusive<i32>) -> Option<Lagged>
         tested += 1.0;
         let products: f64 = a.iter().zip(b).map(|(a, b)| a * b).sum();
         let z = products / (pairs as f64).sqrt();
-        // A value that is not a number stays, so that it is not mistaken for a small one.
+        // NaN stays, so that it is not mistaken for a small value.
         if largest.is_none_or(|(_, old)| z.is_nan() || z.abs() > old.abs()) {
             largest = Some((lag, z));
         }

@@ -1,7 +1,7 @@
 //! The gate: a sequential test of a scalar with a known variance, valid at any stopping time.
 //!
-//! A scalar y has mean 0 and variance V when all is well. Two families of test supermartingales
-//! gather evidence, `fail` against a correct y and `pass` against one whose mean is off by ε:
+//! A scalar y has mean 0 and variance V for correct draws. Two families of test supermartingales gather evidence:
+//! `fail` against a correct y, and `pass` against a y with a mean that deviates by ε:
 //!
 //! ```text
 //! λ = ε/V,  ε ≤ √V/4,  ψ Catoni's function
@@ -11,10 +11,10 @@
 //!                                            passed when both P_s ≥ ln(1/β)
 //! ```
 //!
-//! By Ville's inequality a correct y is ever failed with chance at most α/K, whatever its tails and
-//! signs, however often one looks. A y whose mean is off by ε or more is ever passed with chance at
-//! most β, provided that its true variance is at most ρV. δ bounds what rounding and the
-//! prediction's own error may add to the mean: it is charged to `fail`, and `pass` excludes ε − δ.
+//! By Ville's inequality a correct y ever fails with probability α/K at most, for any tails and signs, and any
+//! number of looks. A y with a mean that deviates by ε or more ever passes with probability β at most, provided
+//! that its true variance is at most ρV. δ bounds the part of the mean from rounding and the prediction's own
+//! error: it is charged to `fail`, and `pass` excludes ε − δ.
 //!
 //! Sources: O. Catoni, *Challenging the empirical mean and empirical variance*, AIHP B 48 (2012);
 //! H. Wang, A. Ramdas, *Catoni-style confidence sequences for heavy-tailed mean estimation*,
@@ -24,7 +24,7 @@
 use super::capital::{Gains, ln_mean_exp};
 use super::catoni::{Argument, PsiSums};
 
-/// How many sums of ψ a scalar takes.
+/// Number of sums of ψ of a scalar.
 pub const SUMS: usize = 5;
 /// The sums of one scalar.
 pub type GateSums = PsiSums<SUMS>;
@@ -33,18 +33,18 @@ pub type GateSums = PsiSums<SUMS>;
 const SLOPES: [f64; 3] = [1.0, 4.0, 16.0];
 /// κ, the share of λ at which evidence for a pass is gathered.
 const CALM: f64 = 0.6;
-/// ρ, the excess of the true variance over V under which a pass keeps its promise.
+/// ρ, the maximum ratio of the true variance to V for which the guarantee of a pass holds.
 pub const VARIANCE_MARGIN: f64 = 1.1;
-/// A pass is all but certain within `PLANNED · V/ε²` draws; planning uses it.
+/// A pass is almost certain within `PLANNED · V/ε²` draws; planning uses it.
 pub const PLANNED: f64 = 27.0;
 /// A correct scalar passes after about `TYPICAL · V/ε²` draws.
 pub const TYPICAL: f64 = 17.0;
 /// Without a decision in `HORIZON · V/ε²` draws a scalar is inconclusive.
 pub const HORIZON: f64 = 60.0;
-/// The widest ε in units of √V: wider promises gather evidence too slowly.
+/// The largest ε in units of √V: larger ones gather evidence too slowly.
 const WIDEST: f64 = 0.25;
 
-/// What is asked of a scalar, fixed before the first draw.
+/// Parameters of the test of a scalar, fixed before the first draw.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Design {
     /// V, an upper bound of the variance of a correct y.
@@ -53,7 +53,7 @@ pub struct Design {
     pub tolerance: f64,
     /// δ, the bias that a correct y may have.
     pub floor: f64,
-    /// Whether ε is as the caller asked for, however wide: λ is then that of √V/4 at most.
+    /// True if the caller gave ε, however large: λ is then at most that of √V/4.
     pub is_asked: bool,
 }
 
@@ -67,11 +67,11 @@ pub struct Evidence {
     pub ln_pass: [f64; 2],
 }
 
-/// What the evidence says.
+/// Decision by the evidence.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Decision {
-    /// Not yet enough.
+    /// Not enough evidence yet.
     Open,
     /// A correct y is refuted.
     Failed,
@@ -99,33 +99,33 @@ pub fn ln_fail(alpha: f64, count: usize) -> f64 {
     -(alpha / count.max(1) as f64).ln()
 }
 
-/// Whether a scalar fails by its own spread too, were that `spread` and not V: evidence that rests on a variance that is
-/// refuted as too small is none.
+/// Returns true if a scalar also fails with its own variance `spread` in place of V: evidence that relies on a
+/// variance that is refuted as too small does not count.
 pub fn is_off_by_itself(mean: f64, spread: f64, draws: f64, ln_fail: f64) -> bool {
     0.5 * mean * mean * draws >= ln_fail * spread
 }
 
 impl Design {
-    /// A question about a scalar of variance at most V: ε is narrowed to √V/4 where it is wider,
-    /// and widened to 4δ where it is narrower.
+    /// A test of a scalar with a variance of at most V: ε is narrowed to √V/4 where it is wider, and widened to 4δ
+    /// where it is narrower.
     pub fn new(variance: f64, tolerance: f64, floor: f64) -> Self {
         let tolerance = tolerance.min(WIDEST * variance.sqrt()).max(4.0 * floor);
         Self { variance, tolerance, floor, is_asked: false }
     }
 
-    /// A question with an ε that the caller asked for. Beyond √V/4 evidence for a pass still grows with ε, and λ no more.
+    /// A test with an ε that the caller gave. Beyond √V/4 evidence for a pass still grows with ε, but λ does not.
     pub fn asked(variance: f64, tolerance: f64, floor: f64) -> Self {
         Self { variance, tolerance: tolerance.max(4.0 * floor), floor, is_asked: true }
     }
 
-    /// This question with another V.
+    /// The test with another V.
     #[must_use]
     pub fn with_variance(&self, variance: f64) -> Self {
         let new = if self.is_asked { Self::asked } else { Self::new };
         new(variance, self.tolerance, self.floor)
     }
 
-    /// λV: ε, as far as bets go by it.
+    /// λV: ε, up to its limit for bets.
     fn stake(&self) -> f64 {
         if self.is_asked {
             self.tolerance.min(WIDEST * self.variance.sqrt()).max(4.0 * self.floor)
@@ -134,7 +134,7 @@ impl Design {
         }
     }
 
-    /// The draws that it is planned for: `27 V/ε²`; `27 V/(λVε)` where ε is wider than the bets.
+    /// The number of draws that the test is planned for: `27 V/ε²`; `27 V/(λVε)` where ε is wider than the bets.
     pub fn draws(&self) -> f64 {
         PLANNED * self.variance / (self.stake() * self.tolerance)
     }
@@ -158,8 +158,8 @@ impl Design {
         Evidence { ln_e: ln_mean_exp(&against), ln_pass: [above[0], below[0]] }
     }
 
-    /// What the sums over `draws` draws add to each L and P. Where V or ε is chosen anew before a
-    /// block, from what came before it, the gains of the blocks add up.
+    /// Gains of each L and P by the sums over `draws` draws. Where V or ε is chosen again before a block, from
+    /// earlier draws, the gains of the blocks add up.
     pub fn gains(&self, sums: [f64; SUMS], draws: f64) -> Gains {
         let price = |slope: f64, variance: f64| draws * (0.5 * slope * slope * variance).ln_1p();
         let variance = self.variance + self.floor * self.floor;
@@ -174,11 +174,11 @@ impl Design {
 }
 
 impl Evidence {
-    /// Before the first draw.
+    /// The evidence before the first draw.
     pub const NONE: Self = Self { ln_e: 0.0, ln_pass: [0.0; 2] };
 
-    /// What it says at the levels `ln(K/α)` and `ln(1/β)`. A fail comes first; evidence that is not
-    /// a number decides nothing.
+    /// The decision at the levels `ln(K/α)` and `ln(1/β)`. A failure comes first; evidence that is NaN decides
+    /// nothing.
     pub fn decision(&self, ln_fail: f64, ln_pass: f64) -> Decision {
         if self.ln_e >= ln_fail {
             Decision::Failed

@@ -1,4 +1,4 @@
-//! Whether draws depend on those shortly before them: exact signs, whatever the law.
+//! Dependence of draws on those shortly before them: exact sign tests for every distribution.
 //!
 //! ```text
 //! four draws  a = x_i − x_{i+D},  b = x_{i+l} − x_{i+l+D},  each draw in one foursome of its lag
@@ -8,11 +8,11 @@
 //! m signs, k of them positive:   e = 2^m B(k + ½, m − k + ½)/π,   E = mean of e over 48 questions
 //! ```
 //!
-//! Draws that resemble their neighbours make ab positive: an autocorrelated chain, strata in their
-//! order, draws written twice. Draws that avoid each other make it negative: shuffled strata, low
-//! discrepancies. D is about half a block and changes from block to block, so that no period hides.
-//! The signs are fair coins for every law, heavy tails and atoms included (a tie is no coin), and e is
-//! a mixture of bets on them: E may be looked at at any time.
+//! Draws that resemble adjacent draws make ab positive: an autocorrelated chain, strata in their order, draws
+//! written twice. Draws that avoid each other make it negative: shuffled strata, low discrepancies. D is about half
+//! a block and changes from block to block, so that no period hides. The signs are independent with probability ½
+//! for every distribution, heavy tails and atoms included (ties are left out), and e is a mixture of bets on them:
+//! E is valid at any number of looks.
 //!
 //! Sources: R. E. Krichevsky, V. K. Trofimov, *The performance of universal encoding*, IEEE
 //! Transactions on Information Theory 27 (1981), for the mixture; M. G. Kendall, *A new measure of rank
@@ -24,28 +24,28 @@ use numeric::pack::in_fused_code;
 
 /// The largest lag.
 pub const LAGS: usize = 16;
-/// How many scales: sums of up to 2³² draws.
+/// Number of scales: sums of up to 2³² draws.
 const SCALES: usize = 32;
-/// The lags of so many blocks are all looked at, later of every fourth.
+/// Number of first blocks in which all lags are tested; later every fourth block is.
 const ALL: u64 = 32;
-/// The fewest values of which pairs are made.
+/// Minimum number of values from which pairs are made.
 const FEWEST: usize = 8;
 
-/// What was found of draws and their neighbours.
+/// Evidence on the dependence of adjacent draws.
 #[derive(Debug, Clone)]
 pub struct Independence {
     lags: [Signs; LAGS],
-    /// Of sums of 2^(k+1) draws.
+    /// Signs of sums of 2^(k+1) draws.
     scales: [Signs; SCALES],
     /// Sums of whole blocks and of twice as many each, until there are four.
     waiting: [Vec<f64>; SCALES],
     blocks: u64,
-    /// The length of a whole block; later blocks of another length have no sums beyond them.
+    /// The length of a whole block; later blocks of another length are not summed further.
     length: usize,
     sums: Vec<f64>,
 }
 
-/// Signs of one question.
+/// Signs of one lag or scale.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Signs {
     positive: u64,
@@ -57,13 +57,13 @@ pub struct Signs {
 /// A dependence.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Dependence {
-    /// How many consecutive draws are summed up: 1 for the draws themselves.
+    /// Number of consecutive draws in each sum: 1 for the draws themselves.
     pub scale: u64,
     /// The distance, in draws or sums.
     pub lag: u64,
     /// An estimate of the correlation.
     pub correlation: f64,
-    /// ln e of this question.
+    /// ln e of this lag or scale.
     pub ln_e: f64,
 }
 
@@ -118,7 +118,7 @@ impl Default for Independence {
     }
 }
 
-/// How far the first pairs reach, and how far the second ones are from them.
+/// Length of the range of the first pairs, and distance D of the second ones from them.
 fn layout(length: usize, block: u64) -> (usize, usize) {
     let reach = length * 7 / 16;
     // A multiplicative hash: no period of the draws is that of D.
@@ -170,7 +170,7 @@ impl Independence {
         self.sums = sums;
     }
 
-    /// A sum of a whole block joins those of the blocks before.
+    /// Adds the sum of a whole block to those of the blocks before.
     fn pass_on(&mut self, scale: usize, sum: f64) {
         let Some(waiting) = self.waiting.get_mut(scale) else { return };
         waiting.push(sum);
@@ -198,14 +198,14 @@ impl Independence {
         super::capital::ln_mean_exp(&self.questions().map(|found| found.ln_e).collect::<Vec<_>>())
     }
 
-    /// The first dependence whose own evidence reaches `ln_limit`, else the strongest.
+    /// The first dependence with evidence of its own that reaches `ln_limit`, else the strongest.
     pub fn strongest(&self, ln_limit: f64) -> Option<Dependence> {
         let all = (LAGS + SCALES) as f64;
         let first = self.questions().find(|found| found.ln_e >= ln_limit + all.ln());
         first.or_else(|| self.questions().max_by(|a, b| a.ln_e.total_cmp(&b.ln_e)))
     }
 
-    /// The least number of consecutive draws whose sums show no dependence at `ln_limit`, nor do larger ones.
+    /// Minimum number of consecutive draws from which on sums show no dependence at `ln_limit`.
     pub fn free_batch(&self, ln_limit: f64) -> Option<u64> {
         let limit = ln_limit + ((LAGS + SCALES) as f64).ln();
         let is_refuted = |signs: &Signs| signs.ln_e() >= limit;
@@ -214,7 +214,7 @@ impl Independence {
         let lag = self.lags.iter().rposition(is_refuted).map_or(0, |lag| lag + 1);
         let scale = last.max(lag.next_power_of_two().ilog2() as usize);
         let signs = self.scales.get(scale)?;
-        // A scale of few signs has nothing to say.
+        // A scale of few signs has too little evidence.
         (signs.positive + signs.negative >= 40).then_some(2 << scale)
     }
 }
@@ -298,7 +298,7 @@ mod tests {
             last
         }));
         assert!(doubled.ln_e() > 100.0);
-        // Half of all neighbours are the same draw.
+        // Half of all adjacent draws are equal.
         assert!((doubled.strongest(LIMIT).expect("one").correlation - 1.0).abs() < 0.6);
     }
 

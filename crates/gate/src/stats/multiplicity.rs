@@ -12,13 +12,13 @@
 //! JRSS B 84 (2022), 822–852; V. Vovk, R. Wang, *E-values: calibration, combination and
 //! applications*, Annals of Statistics 49 (2021), 1736–1754. All hold under any dependence.
 //!
-//! E-values are given by their logarithms, −∞ and ∞ included. What is not a number is no evidence: a
-//! NaN among the p-values counts as 1, among the e-values as 0, and either still counts in `K`.
+//! E-values are given by their logarithms, −∞ and ∞ included. NaN is no evidence: a NaN among the p-values counts
+//! as 1, among the e-values as 0, and either still counts in `K`.
 
 use super::capital::ln_mean_exp;
 
-/// Which hypotheses Holm's procedure rejects at family-wise level `alpha`, out of `hypotheses` of which
-/// those without a p-value count as 1.
+/// Hypotheses that Holm's procedure rejects at family-wise level `alpha`, out of `hypotheses`; those without a
+/// p-value count as 1.
 pub fn holm(p: &[f64], hypotheses: usize, alpha: f64) -> Vec<bool> {
     let hypotheses = hypotheses.max(p.len());
     let p: Vec<f64> = p.iter().map(|&p| if p.is_nan() { 1.0 } else { p }).collect();
@@ -43,7 +43,7 @@ pub fn e_benjamini_hochberg(ln_e: &[f64], alpha: f64) -> Vec<usize> {
     order
 }
 
-/// `ln(K/α)`: what the logarithm of one e-value among `K` must reach at family-wise level `α`.
+/// `ln(K/α)`: the minimum logarithm of one e-value among `K` for a rejection at family-wise level `α`.
 pub fn e_bonferroni_threshold(hypotheses: usize, alpha: f64) -> f64 {
     (hypotheses.max(1) as f64 / alpha).ln()
 }
@@ -73,9 +73,9 @@ mod tests {
 
     #[test]
     fn holm_steps_down_and_stops() {
-        // Thresholds .0125, .0167, .025, .05: the third fails, so the fourth is never asked.
+        // Thresholds .0125, .0167, .025, .05: the third fails, so the fourth is never compared.
         assert_eq!(holm(&[0.03, 0.005, 0.04, 0.013], 4, 0.05), [false, true, false, true]);
-        // The same among eight: .00625, .00714.
+        // The same p-values among eight: .00625, .00714.
         assert_eq!(holm(&[0.03, 0.005, 0.007, 0.013], 8, 0.05), [false, true, true, false]);
         // One at exactly its threshold is rejected.
         assert_eq!(holm(&[0.05, 0.025], 2, 0.05), [true, true]);
@@ -85,7 +85,7 @@ mod tests {
 
     #[test]
     fn e_bh_lists_the_longest_run() {
-        // K/α = 40 for the largest, 20, 13.3, 10: the second alone would do with the first.
+        // K/α = 40 for the largest, 20, 13.3, 10: the second alone would suffice with the first.
         let ln_e = [1.0, 21.0, 25.0, 0.1].map(f64::ln);
         assert_eq!(e_benjamini_hochberg(&ln_e, 0.1), [2, 1]);
         assert_eq!(e_benjamini_hochberg(&[1.0, 19.0, 25.0, 0.1].map(f64::ln), 0.1), [0; 0]);

@@ -1,4 +1,4 @@
-//! Sums of powers of draws: their mean, spread and tails.
+//! Sums of powers of draws: their mean, variance and tails.
 
 use numeric::sum::Sum;
 
@@ -39,7 +39,7 @@ impl Powers {
         self.sums.iter_mut().zip(&later.sums).for_each(|(sum, later)| sum.merge(later));
     }
 
-    /// How many draws.
+    /// Number of draws.
     pub fn draws(&self) -> u64 {
         self.draws
     }
@@ -65,16 +65,16 @@ impl Powers {
         (self.raw(2) - self.raw(1) * self.raw(1)).max(0.0) * n / (n - 1.0).max(1.0)
     }
 
-    /// The sample kurtosis; infinite for draws without spread.
+    /// The sample kurtosis; infinite for draws of variance 0.
     pub fn kurtosis(&self) -> f64 {
         let [m, m2, m3, m4] = [1, 2, 3, 4].map(|k| self.raw(k));
         let variance = m2 - m * m;
         let fourth = m4 - 4.0 * m * m3 + 6.0 * m * m * m2 - 3.0 * m * m * m * m;
-        // A spread that the subtraction cannot tell from rounding is none.
+        // A variance that is not larger than the rounding of the subtraction counts as 0.
         if variance > RESOLUTION * m2 { fourth / (variance * variance) } else { f64::INFINITY }
     }
 
-    /// How many draws make the variance: n over the sample kurtosis; 0 for draws without spread.
+    /// Number of draws that make the variance: n over the sample kurtosis; 0 for draws of variance 0.
     pub fn effective_draws(&self) -> f64 {
         self.draws as f64 / self.kurtosis()
     }

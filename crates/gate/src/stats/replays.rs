@@ -1,4 +1,4 @@
-//! Whether a sequence of draws repeats an earlier one: the same seed for two passes or two threads.
+//! Sequences of draws that repeat earlier ones: the same seed for two passes or two threads.
 //!
 //! ```text
 //! keep     draws whose bits have a certain hash, ever fewer of them, so that the memory is bounded
@@ -6,20 +6,21 @@
 //! replay   c of the d are the same:  p ≤ C(t, c) ∏_{i<c−1} m/(n − i m),  m = 2, 4, 8, …, each at its share 1/(k(k + 1))
 //! ```
 //!
-//! Of independent draws of one law all orders are equally probable, so that the first two of at most m
-//! places of a value among n are d apart with probability m/n at most, whatever the law; the places of other values
-//! leave n − i m. Values that occur very often, the atoms of discrete laws, say little: see [`super::sequences`]. What
-//! is kept depends on a value alone, so that of two equal sequences the same draws are kept, however far apart they are.
+//! For independent draws of one distribution all orders are equally probable. The first two of at most m places of
+//! a value among n are therefore d apart with probability m/n at most, for any distribution; the places of other
+//! values leave n − i m. Values that occur very often, the atoms of discrete distributions, are little evidence:
+//! see [`super::sequences`]. A draw is kept depending on its value alone: in two equal sequences the same draws are
+//! kept, at any distance.
 
 use std::hash::Hasher;
 
-/// The most draws that are kept.
+/// Maximum number of draws that are kept.
 const MOST: usize = 1 << 16;
 /// Draws that are kept for comparison.
 #[derive(Debug, Clone, Default)]
 pub struct Replays {
     kept: Vec<(u64, u64)>,
-    /// How many leading bits of a hash must be 0.
+    /// Number of leading bits of a hash that must be 0.
     bits: u32,
     draws: u64,
 }
@@ -27,13 +28,13 @@ pub struct Replays {
 /// A repetition.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Replay {
-    /// How many draws later the same draws come again.
+    /// Number of draws after which the same draws repeat.
     pub distance: u64,
-    /// How many of the kept draws do.
+    /// Number of kept draws that repeat.
     pub count: u64,
-    /// Number of times that each of them comes.
+    /// Number of times that each of them occurs.
     pub times: u64,
-    /// ln of a bound on the chance of that.
+    /// ln of a bound on the probability of that.
     pub ln_p: f64,
 }
 
@@ -85,7 +86,7 @@ impl Replays {
         }
     }
 
-    /// The most surprising of the most frequent distances; `None` where no value occurs twice.
+    /// The most significant of the most frequent distances; `None` where no value occurs twice.
     pub fn found(&self) -> Option<Replay> {
         let mut kept = self.kept.clone();
         kept.sort_unstable();
@@ -129,7 +130,7 @@ impl Replays {
 /// 2h runs of multiples of some k ≥ 2:   P ≤ Σ_k (2^k − 1)^{−h} ≤ 2 · 3^{−h}  for h ≥ 2
 /// ```
 ///
-/// The bound holds for independent draws of every law. The first and the last run may be incomplete and do not
+/// The bound holds for independent draws of every distribution. The first and the last run may be incomplete and do not
 /// count.
 #[derive(Debug, Clone, Default)]
 pub struct Runs {

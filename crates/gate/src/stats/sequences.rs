@@ -1,4 +1,4 @@
-//! Repeated sequences of draws of few values, such as 0 and 1, where equal values say nothing.
+//! Repeated sequences of draws of few values, such as 0 and 1, where equal values are no evidence.
 //!
 //! ```text
 //! token     a draw, or, where one value has more than half of all draws, any other draw with the number of that
@@ -9,11 +9,11 @@
 //! E         ∏ (1 − f + f e),  f = (successes + ½)/(bets + 1)   over bets that share no token
 //! ```
 //!
-//! Of independent draws of one law all orders of the next L tokens are equally probable: they come in the order
-//! that was bet on with probability ∏m!/L! at most, whatever the law. So the mean of each e is 1 at most, E is a test
-//! martingale, and E ≥ 1/α comes with probability α at most, however often one looks (J. Ville, *Étude
-//! critique de la notion de collectif*, 1939). How windows are chosen changes the power alone: W and L follow
-//! from the values of the first block, in any order. A law that the first block shows as nearly continuous is left
+//! For independent draws of one distribution all orders of the next L tokens are equally probable. They come in the
+//! order of the bet with probability ∏m!/L! at most, for any distribution. So the mean of each e is 1 at most, E is
+//! a test martingale, and E ≥ 1/α comes with probability α at most at any number of looks (J. Ville, *Étude
+//! critique de la notion de collectif*, 1939). The choice of windows affects the power alone: W and L follow from
+//! the values of the first block, in any order. A distribution that is nearly continuous in the first block is left
 //! to [`super::replays`].
 
 use std::collections::HashMap;
@@ -28,24 +28,24 @@ const MAX_WINDOWS: usize = 1 << 15;
 const CERTAIN: f64 = 100.0;
 /// Maximum number of windows after that.
 const FEW_WINDOWS: usize = 1 << 8;
-/// Tokens that can be looked back at: more than W + L ever are.
+/// Number of last tokens that are stored: more than the largest W + L.
 const RING: usize = 256;
 /// Maximum of W, and of L.
 const LONGEST: usize = 48;
 /// Minimum of L.
 const SHORTEST_BET: usize = 12;
-/// With more bits a token, single values tell.
+/// Bits of a token above which equal single values are evidence.
 const FINE: f64 = 22.0;
 /// Odd base of the polynomial that is the hash of a window, modulo 2⁶⁴.
 const BASE: u64 = 0x9e37_79b9_7f4a_7c15;
 
-/// Draws in search of sequences that come again.
+/// Search for sequences of draws that repeat.
 #[derive(Debug, Clone, Default)]
 pub struct Sequences {
     scheme: Option<Scheme>,
     is_planned: bool,
     draws: u64,
-    /// Draws of the commonest value since the last token.
+    /// Number of draws of the most frequent value since the last token.
     gap: u64,
     tokens: u64,
     ring: Ring,
@@ -57,7 +57,7 @@ pub struct Sequences {
     successes: f64,
     ln_e: f64,
     distance: Option<u64>,
-    /// The first draw that came again, and the last.
+    /// The first repeated draw, and the last.
     reach: Option<[u64; 2]>,
 }
 
@@ -110,13 +110,14 @@ struct Bet {
     tokens: u64,
 }
 
-/// Bits by which 0 and −0 are the same.
+/// Bits of a number, equal for 0 and −0.
 fn bits_of(x: f64) -> u64 {
     (x + 0.0).to_bits()
 }
 
 impl Scheme {
-    /// Chooses the scheme by the values of a first block; `None` where values are so varied that equality of single values suffices.
+    /// Chooses the scheme by the values of a first block; `None` where values are so varied that equality of single
+    /// values suffices.
     fn new(block: &[f64]) -> Option<Self> {
         let mut values: Vec<u64> = block.iter().map(|&x| bits_of(x)).collect();
         values.sort_unstable();
@@ -130,14 +131,14 @@ impl Scheme {
             .map(|(count, _)| count * (count - 1.0))
             .sum();
         let same = if others > 1.0 { same / (others * (others - 1.0)) } else { 1.0 };
-        // Two gaps before values of probability p are alike with probability p/(2 − p).
+        // Two gaps before values of probability p are equal with probability p/(2 − p).
         let rare = others.max(1.0) / n;
         let alike = if filler.is_some() { same * rare / (2.0 - rare) } else { same };
         let bits = -alike.log2();
         if bits.is_nan() || bits > FINE {
             return None;
         }
-        // Windows of a file of 16 blocks are then alike by chance once in 16 such files.
+        // Windows of a file of 16 blocks are then equal by accident once in 16 such files.
         let wanted = 2.0 * (16.0 * n).log2() + 4.0;
         #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // a few dozen
         let window = ((wanted / bits.max(0.5)).ceil() as usize).clamp(1, LONGEST);
@@ -148,7 +149,7 @@ impl Scheme {
 }
 
 impl Sequences {
-    /// Adds draws that follow the last ones; those of the first call tell what tokens are.
+    /// Adds draws that follow the last ones; the first call defines the tokens.
     pub fn absorb(&mut self, x: &[f64]) {
         if !self.is_planned && !x.is_empty() {
             self.scheme = Scheme::new(x);
@@ -228,7 +229,7 @@ impl Sequences {
             count: 0,
         });
         *kept = Window { next, draw: window.draw, token, count: kept.count + 1 };
-        // What is certain needs few windows more, for their numbers alone.
+        // A certain repetition needs few further windows, only for its numbers.
         let most = if self.ln_e > CERTAIN { FEW_WINDOWS } else { MAX_WINDOWS };
         while self.kept.len() >= most {
             self.bits += 1;
@@ -285,7 +286,7 @@ impl Sequences {
             self.kept.values().map(|kept| kept.count).filter(|&n| n > 1).collect();
         counts.sort_unstable();
         let times = counts.get(counts.len() / 2).copied().unwrap_or(2);
-        // Where the draws come again and again without others between them, the last windows are not complete.
+        // Where the draws repeat without others between them, the last windows are incomplete.
         let whole = self.reach.map_or(0, |[first, last]| (last - first).div_ceil(distance));
         let times = if (times..=times + 1 + times / 8).contains(&whole) { whole } else { times };
         #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // a count
@@ -327,7 +328,7 @@ mod tests {
             for (period, n) in [(10_000, 20_000), (10_000, 170_000), (65_536, 131_072)] {
                 let once = draws(1, period, law);
                 let many: Vec<f64> = once.iter().copied().cycle().take(n).collect();
-                // After other draws, and with a last repetition that is not complete.
+                // After other draws, and with an incomplete last repetition.
                 let late = [draws(2, 5000, law), many[..n - 99].to_vec()].concat();
                 for list in [many, late] {
                     let found = read(&list).found().unwrap_or_else(|| panic!("{name}, {period}"));

@@ -1,22 +1,22 @@
 //! Sums of draws, block by block, and a census of draws that take few values.
 //!
-//! What is summed over a census costs as much as there are values, not as there are draws.
+//! A sum over a census costs as much as there are values, not as there are draws.
 
 use numeric::pack::in_fused_code;
 use numeric::sum::Sum;
 
-/// The sums side by side.
+/// Number of sums side by side.
 const LANES: usize = 16;
 
 /// Sums of `y` and `y²`, where `y` is a draw less a known shift, in units of a known scale.
 ///
-/// The shift is the predicted mean, so that a small spread on a large mean loses no digits. Within
-/// a block the sums are plain; blocks are merged in the order of their addresses with compensated
-/// sums, so that the result does not depend on who drew which block.
+/// The shift is the predicted mean, so that a small variance on a large mean loses no digits. Within a block the
+/// sums are plain. Blocks are merged in the order of their addresses with compensated sums, so that the result does
+/// not depend on the thread that drew a block.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Tally {
-    /// How many draws.
+    /// Number of draws.
     pub draws: u64,
     sum: Sum,
     squares: Sum,
@@ -39,8 +39,7 @@ impl Tally {
         let inverse = 1.0 / scale;
         let y = |value: f64| (value - shift) * inverse;
         let (rows, rest) = values.as_chunks::<LANES>();
-        // Many sums of each, whose additions need not wait for each other; they belong to the loop, which
-        // keeps them in registers.
+        // Many sums of each, with independent additions. They belong to the loop, which keeps them in registers.
         let [mut sums, mut squares] = in_fused_code(
             #[inline(always)]
             || {
@@ -70,7 +69,7 @@ impl Tally {
         tally
     }
 
-    /// The same of values that come so many times each.
+    /// The sums of values with their numbers of occurrences.
     pub fn counted<T: Copy + Into<f64>>(census: &Census<T>, shift: f64, scale: f64) -> Self {
         let mut tally = Self::default();
         for (&value, &times) in census.values.iter().zip(&census.times) {
@@ -111,23 +110,23 @@ impl Tally {
     }
 }
 
-/// Places of the table of values: twice as many as are let in, so that few collide.
+/// Size of the table of values: twice the maximum number of values, so that few collide.
 const PLACES: usize = 128;
-/// More values than this are not few.
+/// Maximum number of different values.
 const MOST: usize = PLACES / 2;
-/// Counts are kept fourfold, so that one need not wait for the last to be stored.
+/// Number of copies of each count, so that an addition does not depend on the store of the last one.
 const FOLD: usize = 4;
-/// Whole numbers up to this are counted in a table.
+/// Largest integer that is counted in a table.
 const LARGEST: usize = 1023;
-/// In so many draws there must be more per value than this, or counting them saves nothing.
+/// Minimum number of draws per value at which counting saves time.
 const WORTH: usize = 8;
 
-/// Values and how often each comes.
+/// Values with their numbers of occurrences.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Census<T> {
-    /// The values, each different from the others, in no order that means anything.
+    /// The values, each different from the others, in arbitrary order.
     pub values: Vec<T>,
-    /// How often each comes: whole numbers above 0.
+    /// Numbers of occurrences: integers above 0.
     pub times: Vec<f64>,
 }
 
@@ -148,7 +147,7 @@ impl<T> Census<T> {
 }
 
 impl Census<f64> {
-    /// Counts numbers, told apart by their bits; `None` where too many of them differ.
+    /// Counts numbers, distinguished by their bits; `None` where too many of them differ.
     pub fn of(draws: &[f64]) -> Option<Self> {
         let mut table = Table::EMPTY;
         let (rows, rest) = draws.as_chunks::<FOLD>();
@@ -163,8 +162,8 @@ impl Census<f64> {
     }
 }
 
-/// Values by their bits. Whether a place is taken is asked for every draw and changes rarely: it is
-/// kept apart from the counts, so that it need not wait for them to be stored.
+/// Values by their bits. The marks of occupied places are read for every draw and change rarely. They are kept
+/// apart from the counts, so that reading does not depend on a store.
 struct Table {
     bits: [u64; PLACES],
     taken: [bool; PLACES],
@@ -176,7 +175,7 @@ impl Table {
     const EMPTY: Self =
         Self { bits: [0; PLACES], taken: [false; PLACES], times: [[0; FOLD]; PLACES], used: 0 };
 
-    /// The place of a value, which a new one takes; `None` where there is no room for it.
+    /// Returns the place of a value, and occupies it for a new one; `None` where the table is full.
     #[inline(always)]
     fn find(&mut self, bits: u64) -> Option<usize> {
         // The upper bits of the product depend on all bits of the value.
@@ -197,7 +196,7 @@ impl Table {
 }
 
 impl Census<u32> {
-    /// Counts whole numbers; `None` where they are large, or too many of them differ.
+    /// Counts integers; `None` where they are large, or too many of them differ.
     pub fn of(draws: &[u32]) -> Option<Self> {
         let largest = in_fused_code(
             #[inline(always)]

@@ -1,14 +1,14 @@
-//! How finely values are resolved: ties, single precision, and bits that are never set.
+//! Resolution of values: ties, single precision, and bits that are never set.
 //!
 //! ```text
 //! n draws from m equally probable values:  E[ties] = n − m(1 − (1 − 1/m)^n) ≈ n²/(2m)
 //! OR of w words:  a bit stays 0 with probability 2^{−w}
 //! ```
 //!
-//! Source: D. E. Knuth, *The Art of Computer Programming*, volume 2, 3rd edition (1997), section
-//! 3.3.2 I (the test of collisions). A law of 53 bits gives n²/2⁵⁴ ties, one of 24 bits n²/2²⁵.
+//! Source: D. E. Knuth, *The Art of Computer Programming*, volume 2, 3rd edition (1997), section 3.3.2 I (the test
+//! of collisions). A distribution of 53 bits gives n²/2⁵⁴ ties, one of 24 bits n²/2²⁵.
 
-/// How many values equal another one before them; sorts the values.
+/// Number of values that equal one before them; sorts the values.
 ///
 /// `0` and `−0` are equal; NaN equals nothing.
 pub fn ties(values: &mut [f64]) -> usize {
@@ -16,8 +16,9 @@ pub fn ties(values: &mut [f64]) -> usize {
     values.windows(2).filter(|pair| pair[0] == pair[1]).count()
 }
 
-/// `log₂` of how many equally probable values make so many pairs, among draws that come once or twice;
-/// `None` where fewer than 5 come twice or 100 once. Sorts the values. Atoms of a law come more often.
+/// `log₂` of the number of equally probable values that would make this number of pairs, among draws that occur
+/// once or twice; `None` where fewer than 5 occur twice or 100 once. Sorts the values. Atoms of a distribution
+/// occur more often.
 pub fn resolution(values: &mut [f64]) -> Option<f64> {
     values.sort_unstable_by(f64::total_cmp);
     let count = |size: usize| {
@@ -28,7 +29,7 @@ pub fn resolution(values: &mut [f64]) -> Option<f64> {
     (twice >= 5.0 && once >= 100.0).then(|| (0.5 * draws * draws / twice).log2())
 }
 
-/// The chance of so many ties or more where `expected` are expected: a Poisson number of them.
+/// Probability of `ties` or more ties where `expected` are expected: their number is Poisson.
 #[cfg(feature = "distributions")]
 pub fn p_value(ties: usize, expected: f64) -> f64 {
     if ties == 0 {
@@ -38,7 +39,7 @@ pub fn p_value(ties: usize, expected: f64) -> f64 {
     super::chi_square::lower(2.0 * expected, 2.0 * ties as f64)
 }
 
-/// Whether every finite value is a single-precision number; false without finite values.
+/// Returns true if every finite value is a single-precision number; false without finite values.
 #[allow(clippy::cast_possible_truncation)] // what the truncation loses is the question
 pub fn all_single_precision(values: &[f64]) -> bool {
     let mut finite = values.iter().filter(|x| x.is_finite()).peekable();
@@ -69,7 +70,7 @@ mod tests {
         for bits in [18, 20, 22] {
             let steps = f64::from(1 << bits);
             let mut coarse: Vec<f64> = fine.iter().map(|u| (u * steps).floor() / steps).collect();
-            // An atom does not count.
+            // An atom is left out.
             coarse.extend([0.25; 1000]);
             let found = resolution(&mut coarse).expect("a resolution");
             assert!((found - f64::from(bits)).abs() < 0.6, "{found} for {bits}");

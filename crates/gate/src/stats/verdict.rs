@@ -1,27 +1,27 @@
-//! What a gate says, and the numbers that every gate shares.
+//! Verdicts of a gate, and the constants of every gate.
 
-/// Draws per block, always: looks happen at the ends of blocks.
+/// Number of draws in a block: looks happen at the ends of blocks.
 pub const BLOCK: u64 = 1 << 14;
 
-/// β, the chance that a check passes although the bias is as large as its tolerance.
+/// β, the probability that a check passes although the bias is as large as its tolerance.
 pub const MISS: f64 = 0.01;
 
-/// So many standard deviations no draw is away from its mean: by Chebyshev's inequality, with chance
-/// 1e-16 per draw.
+/// Maximum distance of a draw from its mean in standard deviations: by Chebyshev's inequality it is exceeded with
+/// probability 1e-16 per draw.
 pub const FURTHEST: f64 = 1e8;
 
-/// What is said of an experiment, or of one check.
+/// Verdict on an experiment, or on one check.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(rename_all = "lowercase"))]
 pub enum Verdict {
-    /// Agrees with theory, and a difference of the size that matters would have been seen.
+    /// Agrees with theory, and a difference of the size of the tolerance would have been detected.
     Pass,
-    /// Differs from theory by more than chance allows.
+    /// Differs from theory by more than random fluctuations explain.
     Fail,
     /// Not decided by the draws that were made.
     Inconclusive,
-    /// It could fail, but was never promised to pass: known before the first draw.
+    /// Too few samples to confirm it, known before the first draw; it can still fail.
     Underpowered,
     /// Not drawn: the estimator does not exist or is biased here.
     Refused,
@@ -48,7 +48,7 @@ impl Verdict {
     }
 }
 
-/// Where the gate stands with one scalar.
+/// State of the gate for one scalar.
 #[derive(Debug, Clone, Copy)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct GateFinding {
@@ -58,13 +58,13 @@ pub struct GateFinding {
     /// V: the variance of the scalar in theory; it may be infinite.
     #[cfg_attr(feature = "serde", serde(with = "crate::extended"))]
     pub variance: f64,
-    /// The observed mean of the scalar, 0 when all is well.
+    /// The observed mean of the scalar, 0 in theory.
     #[cfg_attr(feature = "serde", serde(with = "crate::extended"))]
     pub mean: f64,
-    /// How many draws were planned, 27 V/ε²; infinite where none would do.
+    /// Number of planned draws, 27 V/ε²; infinite where no number suffices.
     #[cfg_attr(feature = "serde", serde(with = "crate::extended"))]
     pub planned: f64,
-    /// How many draws it took to decide, or were made without a decision.
+    /// Number of draws until the decision, or of all draws without a decision.
     pub draws: u64,
     /// ln E, the evidence against a correct scalar.
     #[cfg_attr(feature = "serde", serde(with = "crate::extended"))]
@@ -76,10 +76,10 @@ pub struct GateFinding {
     pub ln_p: [f64; 2],
     /// The ln P at which it passes.
     pub ln_p_limit: f64,
-    /// The draws that it would need, where more than were planned; infinite where none would do.
-    /// `None` where the plan suffices.
+    /// Number of draws that the test needs, where more than were planned; infinite where no number suffices. `None`
+    /// where the plan suffices.
     #[cfg_attr(feature = "serde", serde(default, with = "crate::extended"))]
     pub needed: Option<f64>,
-    /// Whether it was decided.
+    /// True if it was decided.
     pub is_decided: bool,
 }
