@@ -22,7 +22,7 @@ impl Axes {
         Some(Self([axes.next()?, axes.next()?, axes.next()?]))
     }
 
-    /// Its name.
+    /// Returns the name.
     pub fn name(self) -> &'static str {
         let is_this = |name: &&str| Self::named(name) == Some(self);
         Self::NAMES.into_iter().find(is_this).unwrap_or_default()
@@ -61,7 +61,7 @@ impl Axes {
 mod tests {
     use super::*;
 
-    /// A sample's value tells its place: x + 10 y + 100 z, on a lattice of 4 × 3 × 2.
+    /// A sample's value encodes its place: x + 10 y + 100 z, on a lattice of 4 × 3 × 2.
     #[test]
     fn every_order_finds_the_sample_at_its_place() {
         let sizes = [4, 3, 2];

@@ -10,7 +10,7 @@ use numeric::Span;
 use numeric::digits::number;
 use numeric::geometry::{Aabb, Bounds, Point, Ray};
 
-/// A field and the stretch of line or ray on which it is asked about.
+/// A field, and the span of the line or the ray on which it is used.
 #[derive(Clone)]
 pub enum Body {
     /// `medium.NAME = { … }` on `span = [from, to]`.
@@ -19,7 +19,7 @@ pub enum Body {
         name: String,
         /// The field as a function of the distance.
         profile: Arc<Profile>,
-        /// Where it is asked about.
+        /// Span on which it is used.
         span: Span,
     },
     /// `volume.NAME = { … }` crossed by `ray = { … }`.
@@ -35,20 +35,20 @@ pub enum Body {
     Spectral {
         /// The fields' names in the catalogue, without repetition.
         name: String,
-        /// One for each channel.
+        /// The field of each channel.
         channels: Vec<Body>,
     },
 }
 
-/// The most channels.
+/// Maximum number of channels.
 pub const MOST_CHANNELS: usize = 8;
 
-/// What a problem asks of the ray through a volume; what it does not ask for may be given, and shows σ_t.
+/// Parts of the ray through a volume that a problem needs; other parts may be given, and show σ_t.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum RayNeed {
-    /// Where it begins, where it goes and how far.
+    /// Origin, direction and length.
     Whole,
-    /// Where it begins and where it goes.
+    /// Origin and direction.
     Line,
     /// Nothing.
     Nothing,
@@ -60,7 +60,7 @@ impl Body {
         Self::read_for(settings, RayNeed::Whole)
     }
 
-    /// Reads `medium` and `span`, or `volume` and what a problem needs of a `ray`.
+    /// Reads `medium` and `span`, or `volume` and the parts of a `ray` that a problem needs.
     pub fn read_for(settings: &Settings, need: RayNeed) -> Option<Self> {
         for key in ["medium", "volume"] {
             let entry = settings.entry(key);
@@ -128,7 +128,7 @@ impl Body {
         }
     }
 
-    /// The same field where another body is: along its ray. A field along a line stays where it is.
+    /// Returns the field along the ray of another body. A field along a line stays as it is.
     #[must_use]
     pub fn seen_like(&self, other: &Self) -> Self {
         match (self, other) {
@@ -148,7 +148,7 @@ impl Body {
         }
     }
 
-    /// Contents of the files of the fields, a sentence each, every sentence once.
+    /// Contents of the files of the fields, a sentence each, without repetitions.
     pub fn facts(&self) -> Vec<String> {
         let mut facts: Vec<String> = Vec::new();
         for channel in self.channels() {
@@ -227,13 +227,13 @@ fn read_channels(settings: &Settings, key: &'static str) -> Option<Body> {
     Some(Body::Spectral { name: different.join(", "), channels })
 }
 
-/// More pieces than this along one ray are a mistake in the case: they would fill the memory.
+/// Maximum number of pieces along one ray; more are a mistake in the case: they would fill the memory.
 const MOST_PIECES: f64 = 1e7;
 
-/// Lattices are addressed by integers of 32 bits.
+/// Range of lattice coordinates: they are integers of 32 bits.
 const FARTHEST: f64 = 2_147_483_648.0;
 
-/// A ray sees no more pieces than fit, and none of them farther away than a lattice has addresses.
+/// Checks that a ray has no more pieces than fit, all of them within the range of lattice coordinates.
 fn fits(settings: &Settings, volume: &Volume, ray: &Ray) -> Option<()> {
     let inside = volume.bounds().clip(ray);
     let farthest = volume.farthest(ray, inside);
@@ -246,7 +246,7 @@ fn fits(settings: &Settings, volume: &Volume, ray: &Ray) -> Option<()> {
     None
 }
 
-/// A field of the program's own is looked at along the ray; built-in ones have looked at their settings.
+/// Checks a field of the program's own along the ray; built-in fields have checked their settings.
 fn is_extinction(settings: &Settings, key: &'static str, body: Body) -> Option<Body> {
     let is_own = !CATALOGUE.pages.iter().any(|page| page.name() == body.name());
     let medium = body.medium();
@@ -293,13 +293,13 @@ fn through(bounds: Bounds) -> Option<Ray> {
     Ray::new(origin, Point([0.0, 0.0, 1.0]), high.0[2] - low.0[2])
 }
 
-/// Reads a ray, which may leave its length out where what is `within` these bounds is all that counts.
+/// Reads a ray, which may leave its length out if it is only used within bounds.
 fn read_ray(settings: &Settings, within: Option<Bounds>) -> Option<Ray> {
     let origin = settings.triple("origin");
     let direction = settings.triple("direction");
     let length = match within {
         Some(bounds) if !settings.has("length") => {
-            // No place within is farther than the corner that is farthest.
+            // No place within the bounds is farther than their farthest corner.
             let farthest = |within: Aabb| {
                 let from = Point(origin.unwrap_or_default());
                 let [low, high] = [within.low - from, within.high - from];

@@ -4,20 +4,20 @@
 //! u(t) = start + slope·t crosses a plane uⱼ = n at t = (n − startⱼ)/slopeⱼ
 //! ```
 //!
-//! An integral over any stretch is the difference of two prefix sums and the two partial cells at
-//! its ends, so that it costs a binary search and two cells whatever the length of the ray.
+//! An integral over an interval is the difference of two prefix sums and the two partial cells at its ends. It
+//! costs a binary search and two cells, for any length of the ray.
 
 use super::lattice::Track;
 use numeric::{Known, Span, roots, sum::Sum};
 
-/// The stretches of a ray between the planes of a lattice, with the integral up to each.
+/// The intervals of a ray between the planes of a lattice, with the integral up to each.
 pub struct Cells {
     ends: Vec<f64>,
     sums: Vec<f64>,
 }
 
 impl Cells {
-    /// The cells of the integer lattice on `inside`; a stretch without length is one cell.
+    /// The cells of the integer lattice on `inside`; an interval without length is one cell.
     #[allow(clippy::cast_possible_truncation)] // a lattice is addressed by 32-bit integers
     pub fn cross(track: Track, inside: Span) -> Self {
         let mut planes = Vec::new();
@@ -39,18 +39,18 @@ impl Cells {
         self.ends.len() - 1
     }
 
-    /// One cell's stretch.
+    /// Interval of a cell.
     pub fn cell(&self, index: usize) -> Span {
         Span::new(self.ends[index], self.ends[index + 1])
     }
 
-    /// The crossings inside a stretch.
+    /// The crossings inside an interval.
     pub fn crossings(&self, span: Span) -> Vec<f64> {
         self.ends.iter().copied().filter(|&t| span.contains_inside(t)).collect()
     }
 
-    /// Sums the integrals over the cells: `integral` answers for a cell's index and stretch, and
-    /// any part of that stretch.
+    /// Sums the integrals over the cells: `integral` returns the integral for a cell's index and interval, and any
+    /// part of that interval.
     #[must_use]
     pub fn summed(mut self, integral: impl Fn(usize, Span, Span) -> f64) -> Self {
         let mut sum = Sum::default();
@@ -65,7 +65,7 @@ impl Cells {
         self.ends.partition_point(|&end| end <= t).saturating_sub(1).min(self.count() - 1)
     }
 
-    /// The integral over a stretch; the error is that of the sums, not of `integral` itself.
+    /// The integral over an interval; the error is that of the sums, not of `integral` itself.
     pub fn integrate(&self, span: Span, integral: impl Fn(usize, Span, Span) -> f64) -> Known {
         let integral = |index, part| integral(index, self.cell(index), part);
         let (first, last) = (self.find(span.from), self.find(span.to));
@@ -79,8 +79,8 @@ impl Cells {
         Known::new(head + (to - from) + tail, sizes * f64::EPSILON)
     }
 
-    /// Where the integral of a non-negative field from the beginning of the stretch reaches
-    /// `depth`; `None` where the stretch ends first.
+    /// Distance at which the integral of a non-negative field from the beginning of the interval reaches `depth`;
+    /// `None` where the interval ends first.
     pub fn invert(
         &self,
         span: Span,
@@ -92,7 +92,7 @@ impl Cells {
         let solve = |index: usize, from: f64, depth: f64| {
             let to = if index == last { span.to } else { self.ends[index + 1] };
             if integral(index, Span::new(from, to)) <= depth {
-                // Only rounding can leave a cell before the last that was chosen by its sum.
+                // The sum selects the cell: only rounding can end the search in a cell before the last.
                 return (index != last).then_some(to);
             }
             Some(roots::root(from, to, |s| integral(index, Span::new(from, s)) - depth))

@@ -5,15 +5,15 @@ use numeric::{Known, Lane, Span};
 
 /// A control variate `σ_c(t)`: any field with a closed-form optical depth, or none.
 ///
-/// The transmittance factors as `T = T_c · T_residual` with `T_c = exp(−∫σ_c)`; only the residual
-/// `σ_t − σ_c`, of either sign, is left to chance.
+/// The transmittance factors as `T = T_c · T_residual` with `T_c = exp(−∫σ_c)`; only the residual `σ_t − σ_c`, of
+/// either sign, is estimated.
 #[derive(Clone)]
 pub enum Control {
     /// `σ_c = 0`.
     None,
     /// Straight pieces: constant, mean, minimum, explorers.
     Pieces(Piecewise),
-    /// Another field of the catalogue on the same ray.
+    /// A further field of the catalogue on the same ray.
     Field(Medium),
 }
 
@@ -50,7 +50,7 @@ impl Control {
         }
     }
 
-    /// The same from one distance to others.
+    /// `∫σ_c` from one distance to others.
     #[inline(always)]
     pub fn depths<L: Lane>(&self, from: f64, to: L) -> L {
         match self {
@@ -74,7 +74,7 @@ impl Control {
         }
     }
 
-    /// Whether there is no control.
+    /// Returns true if there is no control.
     pub fn is_none(&self) -> bool {
         matches!(self, Self::None)
     }

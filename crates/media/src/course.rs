@@ -7,49 +7,51 @@
 use super::{Piecewise, even};
 use numeric::{Kept, Lane, Mask};
 
-/// Where walks stand.
+/// Positions of walks.
 pub trait Course<L: Lane>: Copy {
-    /// Each flies on through an optical depth; answers which are still before the last knot.
+    /// Flies each walk through an optical depth; returns the lanes that are still before the last knot.
     fn fly(&mut self, depth: L) -> L::Mask;
 
     /// The distances reached.
     fn reached(&self) -> L;
 
-    /// `σ̂` there.
+    /// `σ̂` at these distances.
     fn sampling(&self) -> L;
 
-    /// The mean free paths `1/σ̂` there.
+    /// The mean free paths `1/σ̂` at these distances.
     fn mean_free_path(&self) -> L;
 
-    /// These begin anew.
+    /// Restarts the lanes in `which`.
     fn restart(&mut self, which: L::Mask);
 
-    /// Flies on through a σ̂ of other values, one for each lane, with these mean free paths. Only where σ̂ has one value.
+    /// Continues through a σ̂ with other values, one for each lane, given the mean free paths. Only where σ̂ has
+    /// one value.
     #[inline(always)]
     fn change(&mut self, mean_free_path: L) {
         let _ = mean_free_path;
     }
 }
 
-/// A course that walks may go back, too.
+/// A course that walks may also go back.
 pub trait BothWays<L: Lane>: Course<L> {
     /// Positions of walks, to be kept.
     type Place: Copy;
 
-    /// Where they stand.
+    /// Present positions.
     fn place(&self) -> Self::Place;
 
-    /// All stand there from now on.
+    /// Sets all positions.
     fn stand_at(&mut self, place: Self::Place);
 
-    /// Each flies on or back through an optical depth; answers which are still between the ends.
+    /// Flies each walk forward or backward through an optical depth; returns the lanes that are still between the
+    /// ends.
     fn fly_either_way(&mut self, depth: L, is_forward: L::Mask) -> L::Mask;
 
-    /// These stand where they stand on another course through the same field.
+    /// Sets the positions of the lanes in `which` to those on another course through the same field.
     fn stand_as(&mut self, which: L::Mask, other: &Self);
 }
 
-/// Through one value, but for gaps.
+/// A course through one value, with gaps.
 #[derive(Clone, Copy)]
 pub struct Even<'a, L> {
     field: &'a even::Even,
@@ -61,7 +63,7 @@ pub struct Even<'a, L> {
 }
 
 impl<'a, L: Lane> Even<'a, L> {
-    /// At the beginning of a field; any lane is given.
+    /// A course at the beginning of a field; `any` is an arbitrary lane.
     #[inline(always)]
     pub fn new(any: L, field: &'a even::Even) -> Self {
         let (begin, end) = (any.each(field.from), any.each(field.to));
@@ -69,7 +71,7 @@ impl<'a, L: Lane> Even<'a, L> {
         Self { field, begin, end, rate, path, way: begin }
     }
 
-    /// At its end.
+    /// The course at the end of the field.
     #[must_use]
     #[inline(always)]
     pub fn from_end(self) -> Self {
@@ -135,25 +137,25 @@ impl<L: Lane> BothWays<L> for Even<'_, L> {
     }
 }
 
-/// Through any pieces: each walk has its own at hand, and looks the next one up when it crosses.
+/// A course through any pieces: each walk stores its own piece, and looks up the next one when it crosses.
 #[derive(Clone, Copy)]
 pub struct Pieces<'a, L> {
     field: &'a Piecewise,
-    /// The number of the piece, and what [`Piecewise::rows`] says of it.
+    /// The number of the piece, and its row of [`Piecewise::rows`].
     piece: L,
     at_hand: [L; 5],
     t: L,
 }
 
 impl<'a, L: Lane> Pieces<'a, L> {
-    /// At the first knot; any lane is given.
+    /// A course at the first knot; `any` is an arbitrary lane.
     #[inline(always)]
     pub fn new(any: L, field: &'a Piecewise) -> Self {
         let (piece, t) = (any.each(0.0), any.each(field.knots[0]));
         Self { field, piece, at_hand: piece.columns(&field.rows), t }
     }
 
-    /// At the last knot.
+    /// The course at the last knot.
     #[must_use]
     #[inline(always)]
     pub fn from_end(self) -> Self {
@@ -169,13 +171,13 @@ impl<'a, L: Lane> Pieces<'a, L> {
         left + slope * (self.t - knot)
     }
 
-    /// Takes pieces to hand.
+    /// Stores the pieces of the lanes in `which`.
     #[inline(always)]
     fn look_up(&mut self, which: L::Mask) {
         self.at_hand.set_where(which, self.piece.columns(&self.field.rows));
     }
 
-    /// Each flies through an optical depth: on, or, where `BOTH`, either way.
+    /// Flies each walk through an optical depth: forward, or, if `BOTH`, either way.
     #[inline(always)]
     fn go<const BOTH: bool>(&mut self, mut depth: L, is_forward: L::Mask) -> L::Mask {
         let (zero, one) = (depth.each(0.0), depth.each(1.0));
@@ -193,7 +195,7 @@ impl<'a, L: Lane> Pieces<'a, L> {
                 self.t.set_where(arrives, self.t + signed(depth * 2.0 / (here + root)));
                 arrived |= arrives;
             }
-            // The others cross the edge of their piece, or leave.
+            // The other lanes cross the edge of their piece, or leave.
             let mut crosses = self.piece.below(last);
             if BOTH {
                 crosses = (is_forward & crosses) | (!is_forward & zero.below(self.piece));

@@ -5,31 +5,31 @@
 //! σ(t) = ((c₃ s + c₂) s + c₁) s + c₀,   s = t − knot of the cell
 //! ```
 //!
-//! How many planes of the integer lattice a ray has crossed is arithmetic, without a search. Near a
-//! plane rounding may count it too early or too late; then the neighbour's cubic is evaluated
-//! beside its own stretch, by a rounding of t. Planes that are crossed at once bound cells without
-//! length, which keep their places in the table.
+//! The number of planes of the integer lattice that a ray has crossed is computed without a search. Near a plane
+//! rounding may count it too early or too late. Then the cubic of the adjacent cell is evaluated beside its own
+//! interval, by a rounding of t. Planes that are crossed at once bound cells without length, which keep their
+//! places in the table.
 //!
-//! Products and sums are rounded apart on every machine. A field of non-negative samples is not
-//! negative, whatever the rounding of its cubic: 0 is the least value.
+//! Products and sums are rounded separately on every machine. A field of non-negative samples is not negative,
+//! whatever the rounding of its cubic: 0 is the minimum.
 
 use super::lattice::Track;
 use numeric::{Lane, Row, Span};
 
 /// Cubics along a ray.
 pub struct Cubics {
-    /// The ray in lattice coordinates, less ½, mirrored so that all of them grow.
+    /// The ray in lattice coordinates, less ½, mirrored so that all of them increase.
     start: [f64; 3],
     slope: [f64; 3],
     /// The planes below the beginning.
     below: f64,
-    /// The coefficients of each cell and where it begins.
+    /// The coefficients of each cell and its beginning.
     rows: Vec<Row>,
 }
 
 impl Cubics {
-    /// The cubics that `cubic` gives for the cell about a distance, in powers of the distance from
-    /// its beginning: it is asked with both.
+    /// The cubics that `cubic` returns for the cell about a distance, in powers of the distance from the cell's
+    /// beginning: both are its arguments.
     pub fn new(
         Track { start, slope }: Track,
         inside: Span,
@@ -60,14 +60,14 @@ impl Cubics {
         cubics
     }
 
-    /// The number of the cell at a distance within the stretch.
+    /// The number of the cell at a distance within the interval.
     #[inline(always)]
     fn cell<L: Lane>(&self, t: L) -> L {
         let (a, b) = (self.start, self.slope);
         cell(a[0], b[0], t) + cell(a[1], b[1], t) + (cell(a[2], b[2], t) - self.below)
     }
 
-    /// The field at a distance within the stretch.
+    /// The field at a distance within the interval.
     #[inline(always)]
     pub fn value<L: Lane>(&self, t: L) -> L {
         let [c0, c1, c2, c3, knot] = self.cell(t).columns(&self.rows);

@@ -3,18 +3,18 @@
 use super::Piecewise;
 use numeric::Lane;
 
-/// Where a walk through a [`Piecewise`] field stands.
+/// Position of a walk through a [`Piecewise`] field.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Cursor {
     /// The distance reached.
     pub t: f64,
-    /// The same without gaps, in a field that is [`Piecewise::even`].
+    /// Distance without gaps, in a field that is [`Piecewise::even`].
     way: f64,
     piece: usize,
 }
 
 impl Piecewise {
-    /// A walk from the first knot, or from where a field begins that is [`Piecewise::even`].
+    /// A walk from the first knot, or from the beginning of a field that is [`Piecewise::even`].
     #[inline]
     pub fn begin(&self) -> Cursor {
         let t = self.even.as_ref().map_or(self.knots[0], |even| even.from);
@@ -26,8 +26,8 @@ impl Piecewise {
         Cursor { t, way: t, piece: self.piece_at(t).1 }
     }
 
-    /// Flies on through an optical depth and answers the field at the new distance; `None` beyond
-    /// the last knot. Non-negative fields only.
+    /// Flies on through an optical depth and returns the field at the new distance; `None` beyond the last knot.
+    /// Non-negative fields only.
     ///
     /// ```text
     /// y₀ s + k s²/2 = u   ⇒   s = 2u / (y₀ + √(y₀² + 2ku))
@@ -42,7 +42,7 @@ impl Piecewise {
         self.fly_over(cursor, depth)
     }
 
-    /// Where flights from the beginning through optical depths end.
+    /// Ends of flights from the beginning through optical depths.
     #[inline(always)]
     pub fn flown<L: Lane>(&self, depth: L) -> L {
         if let Some(even) = &self.even {
@@ -56,7 +56,7 @@ impl Piecewise {
         })
     }
 
-    /// The same over several pieces.
+    /// Flies as [`Self::fly`] does, over several pieces.
     #[inline]
     pub(super) fn fly_over(&self, cursor: &mut Cursor, mut depth: f64) -> Option<f64> {
         while cursor.piece < self.left.len() {

@@ -63,7 +63,7 @@ fn shape<L: Lane>(half_u: L, turned_v: L) -> L {
     (fourth * fourth) * (squared * slow)
 }
 
-/// Half an angle in half turns.
+/// Factor from an angle to its half in half turns.
 const HALF_TURNS: f64 = 0.5 * FRAC_1_PI;
 
 impl Extinction for Eq21Ray {
@@ -74,7 +74,7 @@ impl Extinction for Eq21Ray {
     }
 }
 
-/// Cosine and sine of an angle: those of its multiples are products.
+/// Cosine and sine of an angle; those of its multiples are products.
 #[derive(Clone, Copy)]
 struct Turn {
     cos: f64,
@@ -89,18 +89,18 @@ impl Turn {
         Self { cos, sin }
     }
 
-    /// By the sum of both angles.
+    /// The sum of both angles.
     fn and(self, more: Self) -> Self {
         let cos = self.cos * more.cos - self.sin * more.sin;
         Self { cos, sin: self.cos * more.sin + self.sin * more.cos }
     }
 
-    /// By the difference of both angles.
+    /// The difference of both angles.
     fn less(self, other: Self) -> Self {
         self.and(Self { sin: -other.sin, ..other })
     }
 
-    /// `sin x / x`, x the angle; near 0 the sine of a difference is not sharp enough for that.
+    /// `sin x / x`, x the angle; near 0 the sine of a difference is not accurate enough.
     fn sinc(self, angle: f64) -> f64 {
         if angle.abs() < 1.0 { sinc(angle) } else { self.sin / angle }
     }

@@ -1,27 +1,27 @@
-//! Fields of one value with gaps: what a constant σ̂ becomes where a ray crosses empty space.
+//! Fields of one value with gaps: a constant σ̂ where a ray crosses empty space.
 
 use numeric::Lane;
 
-/// A walk tests each gap at each step: with more of them pieces are looked up instead.
+/// Maximum number of gaps: a walk tests each gap at each step. With more gaps pieces are looked up instead.
 const MOST_GAPS: usize = 8;
 
-/// A field that has one value wherever it is not zero. A walk through it counts only the way on which
-/// it is not zero.
+/// A field that has one value wherever it is not zero. A walk through it measures only the distance on which it is
+/// not zero.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Even {
     /// The value; zero only where the whole field is.
     pub value: f64,
-    /// Where the field begins.
+    /// Beginning of the field.
     pub from: f64,
-    /// Where it would end without its gaps.
+    /// End of the field without its gaps.
     pub to: f64,
-    /// The gaps in between: after which way, counted like `to`, and how long.
+    /// The gaps: the distance without gaps before each, measured like `to`, and its length.
     pub gaps: Vec<[f64; 2]>,
 }
 
 impl Even {
-    /// The pieces of a [`super::Piecewise`] as such a field; `None` where they have several values, or
-    /// too many gaps.
+    /// The pieces of a [`super::Piecewise`] as such a field; `None` where they have several values, or too many
+    /// gaps.
     pub fn of(knots: &[f64], left: &[f64], slope: &[f64]) -> Option<Self> {
         let is_zero = |i: usize| left[i] == 0.0 && slope[i] == 0.0;
         let Some(first) = (0..left.len()).find(|&i| !is_zero(i)) else {
@@ -39,7 +39,7 @@ impl Even {
                 return None;
             }
             let gap = (knots[i] - skipped) - even.to;
-            // What lies before this piece and is no way.
+            // The gap before this piece.
             if i > first && is_zero(i - 1) {
                 even.gaps.push([even.to, gap]);
                 skipped += gap;
@@ -49,7 +49,7 @@ impl Even {
         (even.gaps.len() <= MOST_GAPS).then_some(even)
     }
 
-    /// The distance that is reached on a way without gaps.
+    /// The position that is reached after a distance without gaps.
     #[inline(always)]
     pub fn spread<L: Lane>(&self, way: L) -> L {
         let mut t = way;

@@ -81,7 +81,7 @@ impl OpticalDepth for Bump {
         };
         let scale = self.peak * self.width * FRAC_PI_2.sqrt();
         let value = scale * (high - low);
-        // An end that is off by its rounding adds or drops a stretch of that length.
+        // A rounded end adds or removes an interval of the length of its rounding.
         let ends = [(span.from, a), (span.to, b)].map(|(s, z)| {
             let moved = 2.0 * (s.abs() + self.foot.abs()) + 4.0 * (s - self.foot).abs();
             self.peak * (-z * z).exp() * moved
@@ -147,7 +147,7 @@ impl Field for Gaussian {
     }
 }
 
-/// A blob so much narrower than its ball is not resolved by what solves for light in balls.
+/// Minimum width of a blob relative to its ball that the solver of light in balls resolves.
 const NARROWEST: f64 = 0.15;
 
 #[cfg(test)]

@@ -22,11 +22,11 @@
 //!
 //! # Which axis is x
 //!
-//! A `.npy` file is `array[z, y, x]`, of shape (nz, ny, nx), as in Mitsuba's and pbrt's grids: the last axis is x. With
-//! `axes = "xyz"` it is `array[x, y, z]`, of shape (nx, ny, nz), and so on; whether the array lies in C or in Fortran order
-//! changes nothing. All other formats say themselves which axis is x, and take no `axes`. `trueflight plan` shows the voxels
-//! along x, y and z of each grid from a file, and `trueflight inspect FILE` what else is in it. Numbers may be
-//! float16, float32, float64, integers (as they stand) or booleans, of either byte order.
+//! A `.npy` file is `array[z, y, x]`, of shape (nz, ny, nx), as in Mitsuba's and pbrt's grids: the last axis is x.
+//! With `axes = "xyz"` it is `array[x, y, z]`, of shape (nx, ny, nz), and so on, for arrays in C and in Fortran
+//! order. All other formats define which axis is x, and take no `axes`. `trueflight plan` shows the voxels along x,
+//! y and z of each grid from a file, and `trueflight inspect FILE` its other contents. Numbers may be float16,
+//! float32, float64, integers (without scaling) or booleans, of either byte order.
 //!
 //! # Formats
 //!
@@ -34,18 +34,17 @@
 //! `uniformgrid` medium and its box; pbrt's σ_t is that times `scale` and `sigma_a + sigma_s`, which is given as
 //! `extinction`. `.nvdb`: grids of the types Float, Fp4, Fp8, Fp16 and `FpN`, of `NanoVDB` 32, plain, zipped or Blosc.
 //!
-//! A `.vdb` or `.nvdb` file says itself where its voxels stand, and takes neither `bounds` nor `samples` nor `border`: the voxel
-//! (i, j, k) is a sample at matrix·(i, j, k) + shift of its transform. Beside the voxels that are not background stand
-//! samples of the background: the field falls to that at the next index (`OpenVDB`'s `BoxSampler`; its `PointSampler` with
-//! `"nearest"`), and is 0 beyond. `OpenVDB`'s background goes on for ever; that of a medium ends at this box, which
-//! `plan` says where it is not 0. A voxel has the value that is stored, whether it is active or not. The transform may turn and
-//! shear the lattice; the bounds are then the box along the axes about it.
+//! A `.vdb` or `.nvdb` file defines the positions of its voxels, and takes neither `bounds` nor `samples` nor
+//! `border`: the voxel (i, j, k) is a sample at matrix·(i, j, k) + shift of its transform. Voxels that are not
+//! background are surrounded by samples of the background: the field falls to it at the next index (`OpenVDB`'s
+//! `BoxSampler`; its `PointSampler` with `"nearest"`), and is 0 beyond. `OpenVDB`'s background has no end; that of
+//! a medium ends at this box, and `plan` reports it if it is not 0. A voxel has the stored value, active or not.
+//! The transform may rotate and shear the lattice; the bounds are then the box along the axes about it.
 //!
-//! Here p runs from 0 to 1 across the box. Between two planes of the lattice a ray sees a cubic,
-//! whose coefficients are prepared once a ray; lookups, optical depth (Simpson's rule, exact for
-//! cubics) and free flight (prefix sums and a bracketed root in one cell) use those. A cubic is the
-//! interpolation of the samples to rounding: 32 units in the last place of the largest sample, and
-//! the rounding of the place; see the test.
+//! Here p runs from 0 to 1 across the box. Between two planes of the lattice the field along a ray is a cubic. Its
+//! coefficients are prepared once a ray; lookups, optical depth (Simpson's rule, exact for cubics) and free flight
+//! (prefix sums and a bracketed root in one cell) use them. A cubic is the interpolation of the samples to
+//! rounding: 32 units in the last place of the largest sample, and the rounding of the position; see the test.
 
 use std::sync::Arc;
 
@@ -64,7 +63,7 @@ use numeric::{Known, Lane, Span};
 /// A voxel grid as a volume.
 pub struct Grid {
     voxels: Arc<Voxels>,
-    /// Number of samples along each axis, where they stand in the middle of cells.
+    /// Number of samples along each axis, if they are in the middle of cells.
     cells: Option<[usize; 3]>,
     /// Contents of the file; empty for a random grid.
     facts: Vec<String>,
@@ -93,7 +92,7 @@ impl Grid {
 /// A voxel grid along a ray.
 pub struct GridRay {
     voxels: Arc<Voxels>,
-    /// Sizes of the numbers that make the beginning and the slope on the lattice.
+    /// Sizes of the numbers that make the start and the slope on the lattice.
     terms: [[f64; 3]; 2],
     cells: Cells,
     cubics: Vec<[f64; 4]>,
@@ -146,8 +145,8 @@ impl Extinction for GridRay {
 impl OpticalDepth for GridRay {
     fn optical_depth(&self, span: Span) -> Known {
         let depth = self.cells.integrate(span, |index, cell, part| self.part(index, cell, part));
-        // Places are off by their rounding, and the field changes by less than its highest sample
-        // in a cell; where it jumps, each plane moves by the rounding of its distance.
+        // Positions are rounded, and the field changes by less than its highest sample in a cell; where it jumps,
+        // each plane moves by the rounding of its distance.
         let [start, slope] = self.terms;
         let reach = |t: f64| (0..3).map(move |j| start[j] + slope[j] * t.abs());
         let places = span.length() * reach(span.to.abs().max(span.from.abs())).sum::<f64>();

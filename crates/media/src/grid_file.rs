@@ -1,4 +1,4 @@
-//! Voxel grids in files, by the ending of their name.
+//! Voxel grids in files, by the extension of their names.
 //!
 //! ```text
 //! .vol    Mitsuba: float32, float16 or uint8 (255 is 1), of one channel or of several (files/vol.rs)
@@ -24,22 +24,22 @@ pub(super) use crate::files::wrong;
 /// The samples of a grid, x fastest.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Samples {
-    /// How many samples stand along x, y and z.
+    /// Number of samples along x, y and z.
     pub size: [usize; 3],
     /// `values[(z·ny + y)·nx + x]`.
     pub values: Vec<f64>,
-    /// The corners of the box that the file gives, whether or not they are those of a box.
+    /// The corners of the box in the file; they may not form one.
     pub bounds: Option<Aabb>,
-    /// Places of the samples, if their axes are not those of the world.
+    /// Positions of the samples, if their axes are not those of the world.
     pub turned: Option<Turned>,
     /// A remark for users of the grid; often empty.
     pub remark: String,
 }
 
-/// A lattice with axes of its own: sample i stands at origin + steps · i.
+/// A lattice with axes of its own: sample i is at origin + steps · i.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Turned {
-    /// The place of the first sample.
+    /// The position of the first sample.
     pub origin: [f64; 3],
     /// Column j is the step from a sample to the next along axis j.
     pub steps: [[f64; 3]; 3],
@@ -66,7 +66,7 @@ pub enum Format {
 }
 
 impl Format {
-    /// The format that a file's ending stands for, whether its letters are capital or not.
+    /// The format of a file's extension, in upper or lower case.
     pub fn of(path: &Path) -> Option<Self> {
         match path.extension()?.to_str()?.to_ascii_lowercase().as_str() {
             "vol" => Some(Self::Vol),
@@ -78,7 +78,7 @@ impl Format {
         }
     }
 
-    /// Its ending.
+    /// Extension.
     pub fn ending(self) -> &'static str {
         match self {
             Self::Vol => ".vol",
@@ -89,23 +89,23 @@ impl Format {
         }
     }
 
-    /// Whether the file says where each of its voxels stands.
+    /// Returns true if the file has the positions of its voxels.
     pub fn has_transform(self) -> bool {
         matches!(self, Self::Vdb | Self::Nvdb)
     }
 
-    /// Whether grids have names.
+    /// Returns true if grids have names.
     pub fn has_names(self) -> bool {
         matches!(self, Self::Vdb | Self::Nvdb | Self::Pbrt)
     }
 }
 
-/// What is read of a file.
+/// Part of a file that is read.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Choice {
-    /// The name of a grid; without it the only one.
+    /// The name of a grid; `None` for the only one.
     pub grid: Option<String>,
-    /// The channel, counted from 0; without it the only one.
+    /// The channel, counted from 0; `None` for the only one.
     pub channel: Option<usize>,
     /// The order of an array's axes.
     pub axes: Axes,
@@ -115,7 +115,7 @@ pub struct Choice {
 ///
 /// # Errors
 ///
-/// Whatever keeps the file from being a grid of finite, non-negative samples.
+/// The file is no grid of finite, non-negative samples.
 pub fn read(path: &Path, choice: &Choice) -> Result<Samples, Unreadable> {
     let Some(format) = Format::of(path) else {
         let message = "the file is none of .vol, .npy, .vdb, .nvdb and .pbrt";

@@ -1,8 +1,9 @@
-//! The fields whose formula is in the loops of some kernels.
+//! Fields with a formula that is inlined into the loops of some kernels.
 //!
-//! Kernels look a field up by one call for a batch of distances, see [`super::lookup`]. The call is felt where a
-//! lookup is cheap, a pack fills one register, and each step waits for it. `cargo bench --bench kernels` on Zen 5
-//! (AVX-512), the time of a draw over that with [`Inlined::of`] answering `None`, both programs in turn, medians of three:
+//! Kernels look a field up by one call for a batch of distances, see [`super::lookup`]. The call is significant
+//! where a lookup is cheap, a pack fills one register, and each step depends on it. `cargo bench --bench kernels`
+//! on Zen 5 (AVX-512), the time of a draw over that with [`Inlined::of`] returning `None`, both programs in turn,
+//! medians of three:
 //!
 //! | kernel | field | time |
 //! |---|---|--:|
@@ -28,7 +29,7 @@ pub enum Inlined<'a> {
 }
 
 impl<'a> Inlined<'a> {
-    /// `None` where each lookup is a call.
+    /// Returns a field with an inlined formula; `None` where each lookup is a call.
     pub fn of<F: 'static>(field: &'a F) -> Option<Self> {
         let field: &dyn Any = field;
         let eq21 = field.downcast_ref().map(Self::Eq21);

@@ -5,22 +5,22 @@
 //!                 s ← s − (τ(s) − u)/σ_t(s),  kept between sⱼ and sⱼ₊₁
 //! ```
 //!
-//! A table of 2048 equal stretches says where to begin; τ(s) is the field's own closed form, from the
-//! beginning of the ray. After a step e the next would change the depth by ½|σ'|e²: where σ_t changes by
-//! no more than twice itself over a stretch of length h, that is below σ_t e²/h, and steps end where this
-//! is below 1e-15 u. One is enough for smooth fields. What a table does not resolve takes more, as many as
-//! without one at most. Fields whose inverse is a closed form need none.
+//! A table of 2048 equal intervals gives the starting point; τ(s) is the field's own closed form, from the
+//! beginning of the ray. After a step e the next would change the depth by ½|σ'|e². Where σ_t changes by at most
+//! twice itself over an interval of length h, that is below σ_t e²/h, and steps end where this is below 1e-15 u.
+//! One step is enough for smooth fields. Features that the table does not resolve take more, at most as many as
+//! without a table. Fields with a closed inverse need no table.
 
 use super::search::Search;
 use super::{Medium, Profile};
 use numeric::{Lane, Row, Span, roots};
 
-/// Stretches of a table.
+/// Number of intervals of a table.
 const STRETCHES: u32 = 2048;
-/// What the steps leave of a depth, relative to it.
+/// Maximum relative error of a depth after the steps.
 const GRAIN: f64 = 1e-15;
 
-/// Where given optical depths of a medium are reached.
+/// Distances at which given optical depths of a medium are reached.
 pub struct Inverse {
     medium: Medium,
     table: Option<Table>,
@@ -41,12 +41,12 @@ impl Inverse {
 /// Optical depths at equal distances.
 pub(super) struct Table {
     span: Span,
-    /// At the end.
+    /// Optical depth at the end.
     whole: f64,
-    /// Finds the stretch of a depth.
+    /// Search for the interval of a depth.
     search: Search,
-    /// Of each stretch: the depth where it begins and one over what it adds; where it begins, its
-    /// length, and how much steeper than its chord the inverse is at both of its ends.
+    /// For each interval: the depth at its beginning and one over its own depth; its beginning, its length, and the
+    /// relative excess of the inverse's slope over its chord at both ends.
     stretches: Vec<Row>,
 }
 
@@ -57,7 +57,7 @@ impl Table {
         let at: Vec<f64> = (0..=STRETCHES).map(|j| span.from + span.length() * share(j)).collect();
         let mut highest = 0.0;
         let rising = |&s: &f64| {
-            // Rounding lets depths fall where the field is nearly zero.
+            // Rounding may make depths decrease where the field is nearly zero.
             highest = Lane::or_more(field.optical_depth(Span::new(span.from, s)).value, highest);
             highest
         };

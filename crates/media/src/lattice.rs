@@ -5,13 +5,13 @@
 //! quintic fade: w(t) = 6t⁵ − 15t⁴ + 10t³      cubic fade: w(t) = 3t² − 2t³
 //! ```
 //!
-//! `g(c)` is one of the 12 vectors to the edges of a cube (four of them stand twice), chosen by the
-//! low four bits of an integer hash of `c`, the finaliser of `MurmurHash3`, in place of a table of
-//! permutations. Lattice coordinates wrap at 2³².
+//! `g(c)` is one of the 12 vectors to the edges of a cube (four of them occur twice). It is chosen by the low four
+//! bits of an integer hash of `c`, the finaliser of `MurmurHash3`, in place of a table of permutations. Lattice
+//! coordinates wrap at 2³².
 //!
-//! All of it is arithmetic, so that packs need no table either: the hashes of the two ends of an edge
-//! share the halves of a 64-bit element, and a product with a gradient is a choice of two of the
-//! three distances and of their signs. Products and sums are rounded apart on every machine.
+//! All of it is arithmetic, so that packs need no table either. The hashes of the two ends of an edge share the
+//! halves of a 64-bit element, and a product with a gradient is a choice of two of the three distances and of their
+//! signs. Products and sums are rounded separately on every machine.
 //!
 //! Sources: K. Perlin, *Improving Noise*, SIGGRAPH 2002 (quintic fade, edge gradients and their
 //! order); K. Perlin, *An Image Synthesizer*, SIGGRAPH 1985 (cubic fade).
@@ -22,7 +22,7 @@ use numeric::{Lane, Span};
 /// The multipliers of the three lattice coordinates in the hash.
 const STRIDES: [u32; 3] = [0x8da6_b343, 0xd816_3841, 0xcb1a_b31f];
 
-/// How the weights of a cell's corners change across it.
+/// Variation of the weights of a cell's corners across it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Fade {
     /// `6t⁵ − 15t⁴ + 10t³`: two continuous derivatives.
@@ -64,15 +64,15 @@ pub fn hash3(x: u32, y: u32, z: u32, seed: u32) -> u32 {
     words::apart(mix(u64::from(hash)))[0]
 }
 
-/// The integer below `x`, and how far `x` is beyond it, in `[0, 1]`.
+/// The integer below `x`, and the distance of `x` from it, in `[0, 1]`.
 #[inline(always)]
 fn floor<L: Lane>(x: L) -> (L, L) {
     let below = Lane::floor(x);
     (below, x - below)
 }
 
-/// The hashes at the corners of the cell with the lowest corner `index`: of the four edges along z,
-/// from (0, 0), (1, 0), (0, 1) and (1, 1), each with its lower and its upper end.
+/// The hashes at the corners of the cell with the lowest corner `index`. The four edges along z from (0, 0),
+/// (1, 0), (0, 1) and (1, 1) have a hash for the lower and one for the upper end.
 #[inline(always)]
 fn corner_hashes<L: Lane>(index: [L; 3], seed: u32) -> [L::Words; 4] {
     let [a, b, c] = STRIDES;
@@ -84,8 +84,8 @@ fn corner_hashes<L: Lane>(index: [L; 3], seed: u32) -> [L::Words; 4] {
     [mix(x ^ near), mix(beyond ^ near), mix(x ^ far), mix(beyond ^ far)]
 }
 
-/// `g·d` at the lower (0) or upper (1) end of an edge: of the twelve sums `±x ± y`, `±x ± z` and
-/// `±y ± z` the one that the last four bits of the hash choose.
+/// `g·d` at the lower (0) or upper (1) end of an edge: the last four bits of the hash choose one of the twelve sums
+/// `±x ± y`, `±x ± z` and `±y ± z`.
 #[inline(always)]
 fn slope<L: Lane>(hashes: L::Words, end: u32, [x, y, z]: [L; 3]) -> L {
     let at = 32 * end;
@@ -129,7 +129,7 @@ pub fn noise<L: Lane>(p: [L; 3], seed: u32, fade: Fade) -> L {
     blend(slopes, [x, y, z], fade)
 }
 
-/// One cell of the lattice, whose polynomial may be evaluated up to its very faces.
+/// A cell of the lattice; its polynomial may be evaluated up to its faces.
 pub struct Cell {
     corner: [f64; 3],
     gradients: [[f64; 3]; 8],
@@ -156,7 +156,7 @@ impl Cell {
     }
 }
 
-/// The vector `g` of which [`slope`] is the product with a distance.
+/// The vector `g`: [`slope`] is its product with a distance.
 fn gradient(hashes: u64, end: u32) -> [f64; 3] {
     let along = |j: usize| std::array::from_fn(|n| f64::from(u8::from(n == j)));
     std::array::from_fn(|j| slope(hashes, end, along(j)))
@@ -165,27 +165,27 @@ fn gradient(hashes: u64, end: u32) -> [f64; 3] {
 /// A ray in the coordinates of a lattice, `start + slope·t`.
 #[derive(Debug, Clone, Copy)]
 pub struct Track {
-    /// Where it begins.
+    /// Start of the ray.
     pub start: [f64; 3],
-    /// How far it goes per unit of length.
+    /// Change per unit of length.
     pub slope: [f64; 3],
 }
 
 impl Track {
-    /// The place at a distance.
+    /// The position at a distance.
     #[inline(always)]
     pub fn at<L: Lane>(&self, t: L) -> [L; 3] {
         let (a, b) = (self.start, self.slope);
         [t * b[0] + a[0], t * b[1] + a[1], t * b[2] + a[2]]
     }
 
-    /// The same on a lattice twice as fine.
+    /// The track on a lattice twice as fine.
     #[must_use]
     pub fn doubled(self) -> Self {
         Self { start: self.start.map(|x| 2.0 * x), slope: self.slope.map(|x| 2.0 * x) }
     }
 
-    /// The largest `|start| + |slope·t|` of any axis on a stretch; not a number where one is none.
+    /// The largest `|start| + |slope·t|` of any axis on an interval; NaN if one is NaN.
     pub fn farthest(&self, inside: Span) -> f64 {
         let t = inside.from.abs().max(inside.to.abs());
         let reach = self.start.iter().zip(self.slope).map(|(a, b)| a.abs() + b.abs() * t);
@@ -262,8 +262,8 @@ mod tests {
         }
     }
 
-    /// The bound is the largest value when every corner has the gradient that suits it best: the
-    /// two longest of the three distances.
+    /// The bound is the largest value if every corner has its best gradient: the two longest of the three
+    /// distances.
     #[test]
     fn bounds_hold_over_a_cell() {
         for fade in [Fade::Quintic, Fade::Cubic] {

@@ -1,9 +1,9 @@
-//! Extinction fields, one page each, as one ray sees them and as volumes that a ray is clipped to.
+//! Extinction fields, one page each: along a ray, and as volumes that a ray is clipped to.
 //!
-//! Floor 1. A field promises as much as it can, one trait per capability, each asking for the one
-//! before it: [`Extinction`] can be looked up, [`OpticalDepth`] can also be integrated exactly,
-//! [`FreeFlight`] can also be inverted. A medium and a control variate need the second, a sampling
-//! extinction needs the third; which role a field plays is its place in a struct.
+//! Floor 1. A field has one trait for each of its capabilities, and each trait requires the one before it:
+//! [`Extinction`] can be looked up, [`OpticalDepth`] can also be integrated exactly, [`FreeFlight`] can also be
+//! inverted. A medium and a control variate need the second, a sampling extinction needs the third; the role of a
+//! field is its place in a struct.
 //!
 //! A page implements [`Field`] and is registered by its line in the list at the foot of this file.
 
@@ -68,7 +68,7 @@ pub use reader::Reader;
 
 /// A field that can be looked up: `σ_t(t)` in 1/length at distance `t` along the ray.
 pub trait Extinction: Send + Sync {
-    /// The extinction at `t`, written once for every lane type.
+    /// The extinction at `t`, as one formula for every lane type.
     fn extinction<L: Lane>(&self, t: L) -> L;
 
     /// The value, where there is only one.
@@ -76,13 +76,13 @@ pub trait Extinction: Send + Sync {
         None
     }
 
-    /// Whether a lookup costs so much that all else in a walk hardly counts.
+    /// Returns true if lookups dominate the time of a walk.
     fn is_costly(&self) -> bool {
         false
     }
 }
 
-/// A field that is looked up whatever its type.
+/// A field that is looked up, with its type erased.
 pub trait LookUp: Send + Sync {
     /// `σ_t(t)`. Not for loops of kernels, which take [`LookUp::lookups`].
     fn at(&self, t: f64) -> f64;
@@ -104,34 +104,34 @@ impl<F: Extinction + 'static> LookUp for F {
     }
 }
 
-/// A field whose integral is known.
+/// A field with a known integral.
 pub trait OpticalDepth: LookUp {
     /// `τ(a, b) = ∫ₐᵇ σ_t(t) dt` with a bound on its own error.
     fn optical_depth(&self, span: Span) -> Known;
 
-    /// The distances inside `span` where the field or one of its derivatives jumps, or that frame
-    /// a feature which quadrature would otherwise step over. In any order.
+    /// The distances inside `span` where the field or one of its derivatives jumps, or that enclose a feature which
+    /// quadrature would otherwise miss. In any order.
     fn breaks(&self, span: Span) -> Vec<f64> {
         let _ = span;
         Vec::new()
     }
 
-    /// About how many breaks there are, known without finding them.
+    /// Approximate number of breaks, without finding them.
     fn pieces(&self, span: Span) -> f64 {
         let _ = span;
         0.0
     }
 
-    /// How many Gauss nodes between two breaks integrate `σ_t` and its square to rounding; `None`
-    /// where no fixed number does and panels are halved until they agree.
+    /// Number of Gauss nodes between two breaks that integrate `σ_t` and its square to rounding; `None` if there is
+    /// no such number, and panels are halved until they agree.
     fn panel_nodes(&self) -> Option<usize> {
         None
     }
 }
 
-/// A field whose integral can be inverted.
+/// A field with an integral that can be inverted.
 pub trait FreeFlight: OpticalDepth {
-    /// Whether the inverse is found at once, without a search for a root of the optical depth.
+    /// Returns true if the inverse has a closed form, without a search for a root of the optical depth.
     fn is_direct(&self) -> bool {
         false
     }
@@ -154,10 +154,10 @@ fn free_flight_by_root<F: OpticalDepth + ?Sized>(field: &F, span: Span, depth: f
     Some(roots::rising(span.from, span.to, |s| (depth_to(s) - depth, field.at(s))))
 }
 
-/// How smooth σ_t is in space.
+/// Smoothness of σ_t in space.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Smoothness {
-    /// Without jumps or kinks, but for the bounds.
+    /// Without jumps or kinks, except at the bounds.
     Smooth,
     /// A polynomial in cells along the axes, which join smoothly.
     SmoothCells,
@@ -167,15 +167,15 @@ pub enum Smoothness {
     Layers,
 }
 
-/// A page of the catalogue: how a field is read from a case file, in 1-D and in 3-D.
+/// A page of the catalogue: the reader of a field from a case file, in 1-D and in 3-D.
 pub trait Field: Sized + Send + Sync + 'static {
-    /// What one ray sees.
+    /// The field along one ray.
     type Profile: FreeFlight + 'static;
 
-    /// Settings that σ_t is proportional to, all together: sweeps of the density and of the contrast change these.
+    /// Settings to which σ_t is proportional, all together: sweeps of the density and of the contrast change these.
     const EXTINCTIONS: &'static [&'static str];
 
-    /// Whether it has a 1-D form.
+    /// True if it has a 1-D form.
     const IN_LINE: bool = true;
 
     /// Reads the 1-D form, a function of the distance `t`, from `medium.NAME = { … }`.
@@ -189,13 +189,13 @@ pub trait Field: Sized + Send + Sync + 'static {
     /// Reads the 3-D form from `volume.NAME = { … }`.
     fn volume(settings: &Settings) -> Option<Self>;
 
-    /// Where the volume may be non-zero; a ray is clipped to it.
+    /// Bounds of the volume, to which a ray is clipped.
     fn bounds(&self) -> Bounds;
 
-    /// `σ_t(p)` for a point within the bounds, written once for every lane type.
+    /// `σ_t(p)` for a point within the bounds, as one formula for every lane type.
     fn extinction_at<L: Lane>(&self, p: [L; 3]) -> L;
 
-    /// A number that `σ_t` exceeds nowhere in the box.
+    /// An upper bound of `σ_t` in the box.
     fn majorant(&self, within: &Aabb) -> f64;
 
     /// The value within the bounds, where there is only one.
@@ -203,71 +203,71 @@ pub trait Field: Sized + Send + Sync + 'static {
         None
     }
 
-    /// How smooth it is.
+    /// Smoothness in space.
     fn smoothness(&self) -> Smoothness {
         Smoothness::Smooth
     }
 
-    /// About how many pieces a ray sees in a length at most, known without finding them.
+    /// Approximate maximum number of pieces along a ray of a length, without finding them.
     fn pieces(&self, length: f64) -> f64 {
         let _ = length;
         0.0
     }
 
-    /// The largest coordinate that a stretch of a ray reaches on the field's own lattice; 0 for fields
-    /// that have none.
+    /// The largest coordinate that an interval of a ray reaches on the field's own lattice; 0 for fields without a
+    /// lattice.
     fn farthest(&self, ray: &Ray, inside: Span) -> f64 {
         let _ = (ray, inside);
         0.0
     }
 
-    /// Whether the volume is a ball in which σ_t depends on the distance from its centre only.
+    /// Returns true if the volume is a ball in which σ_t depends on the distance from its centre only.
     fn is_radial(&self) -> bool {
         false
     }
 
-    /// Numbers of cells along x, y and z with a sample in the middle of each, and whether a lookup takes the nearest one;
-    /// `None` for other fields.
+    /// Numbers of cells along x, y and z with a sample in the middle of each; true if a lookup takes the nearest
+    /// one. `None` for other fields.
     fn cells(&self) -> Option<([usize; 3], bool)> {
         None
     }
 
-    /// Contents of the file of the field, a sentence each; nothing for other fields.
+    /// Contents of the file of the field, a sentence each; empty for other fields.
     fn facts(&self) -> Vec<String> {
         Vec::new()
     }
 
-    /// What the ray sees on the stretch `inside`, which lies within the bounds.
+    /// The field along the ray on the interval `inside`, which lies within the bounds.
     fn along(&self, ray: &Ray, inside: Span) -> Self::Profile;
 
-    /// The optical depths of stretches of rays, which lie within the bounds, where these have one formula for every
-    /// lane type: with the bits of those of [`Self::along`].
+    /// The optical depths of intervals of rays within the bounds, if these have one formula for every lane type.
+    /// Their bits are those of [`Self::along`].
     #[inline(always)]
     fn depths_along<L: Lane>(&self, rays: [[L; 3]; 2], stretch: [L; 2]) -> Option<L> {
         let _ = (rays, stretch);
         None
     }
 
-    /// The same field with only its first few octaves, for explorers; `None` if it has no octaves.
+    /// The field with only its first few octaves, for explorers; `None` if it has no octaves.
     fn coarsened(&self, octaves: usize) -> Option<Self> {
         let _ = octaves;
         None
     }
 }
 
-/// What one ray sees of some field.
+/// A field along one ray, with its type erased.
 pub type Profile = dyn FreeFlight;
 
-/// Some field in space.
+/// A field in space, with its type erased.
 pub type Volume = dyn InSpace;
 
-/// A field in space, whatever its type.
+/// A field in space, with its type erased.
 pub trait InSpace: Send + Sync {
-    /// Where it may be non-zero.
+    /// Bounds, outside of which it is zero.
     fn bounds(&self) -> Bounds;
     /// `σ_t(p)`, zero outside the bounds.
     fn extinction_at(&self, p: Point) -> f64;
-    /// The same for kernels, at points within the bounds.
+    /// Lookups for kernels, at points within the bounds.
     fn points(&self) -> Points<'_>;
     /// `σ_t` at points within the bounds for the packets of a level of hardware; with `clipped`, zero
     /// outside them.
@@ -288,7 +288,7 @@ pub trait InSpace: Send + Sync {
     fn cells(&self) -> Option<([usize; 3], bool)>;
     /// See [`Field::facts`].
     fn facts(&self) -> Vec<String>;
-    /// What the ray sees on the stretch `inside`.
+    /// The field along the ray on the interval `inside`.
     fn along(&self, ray: &Ray, inside: Span) -> Arc<Profile>;
     /// See [`Field::coarsened`].
     fn coarsened(&self, octaves: usize) -> Option<Arc<Volume>>;
@@ -352,8 +352,7 @@ impl<F: Field> InSpace for F {
     }
 }
 
-/// Lists the pages: from one line each come the name in case files, the reader and the row in
-/// `trueflight list`.
+/// Lists the pages: each line gives the name in case files, the reader and the row in `trueflight list`.
 macro_rules! media {
     ($($module:ident :: $Field:ident,)*) => {
         /// Every page, in the order of registration.

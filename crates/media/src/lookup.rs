@@ -1,9 +1,9 @@
 //! Lookups of σ_t through one indirect call for a batch of distances or points.
 //!
-//! What happens at a collision is compiled once per estimator and level of hardware, what σ_t is at a
-//! place once per field and level. A kernel writes the places of a batch, one call answers `σ_t` at all
-//! of them, and the kernel goes on: kernels and fields add up, they do not multiply. This is the
-//! *look up* of event-based tracking. A few kernels have the formula of a few fields in them: [`Inlined`].
+//! The events at a collision are compiled once per estimator and level of hardware, σ_t at a place once per field
+//! and level. A kernel writes the places of a batch, one call returns `σ_t` at all of them, and the kernel goes on:
+//! kernels and fields add up, they do not multiply. This is the *look up* of event-based tracking. A few kernels
+//! have the formula of a few fields inlined: [`Inlined`].
 //!
 //! Source: F. B. Brown, W. R. Martin, *Monte Carlo methods for radiation transport analysis on vector
 //! computers*, Progress in Nuclear Energy 14 (1984).
@@ -64,7 +64,7 @@ impl<F: Extinction, S: Simd> Batch for Compiled<'_, F, S> {
     }
 }
 
-/// Those of one place after the other, where the hardware has no wide packs.
+/// Lookups of one place after the other, for hardware without wide packs.
 struct OneByOne<'a, F>(&'a F);
 
 impl<F: Extinction> Batch for OneByOne<'_, F> {
@@ -91,7 +91,7 @@ impl<F: Extinction> Batch for OneByOne<'_, F> {
     }
 }
 
-/// A field along a ray as kernels see it: `σ_t` in 1/length at distances inside the support.
+/// A field along a ray for kernels: `σ_t` in 1/length at distances inside the support.
 pub struct Lookups<'a> {
     batch: Box<dyn Batch + 'a>,
     single_value: Option<f64>,
@@ -102,7 +102,7 @@ pub struct Lookups<'a> {
 }
 
 impl<'a> Lookups<'a> {
-    /// Those of a field on the hardware of a level.
+    /// Lookups of a field on the hardware of a level.
     pub fn new<F: Extinction + 'static>(field: &'a F, level: Level) -> Self {
         let (single_value, is_costly) = (field.single_value(), field.is_costly());
         let batch = match pack::on_wide(level, Compile(field)) {
@@ -112,7 +112,7 @@ impl<'a> Lookups<'a> {
         Self { batch, single_value, is_costly, inlined: Inlined::of(field), further: Vec::new() }
     }
 
-    /// Those of one field for each channel: of the first, and of others.
+    /// Lookups of one field for each channel: the first, and the others.
     pub fn of_channels(first: &'a Medium, further: &'a [Medium], level: Level) -> Self {
         let further = further.iter().map(|medium| medium.lookups(level)).collect();
         Self { further, ..first.lookups(level) }
@@ -135,7 +135,7 @@ impl<'a> Lookups<'a> {
         self.is_costly
     }
 
-    /// The field by its type, where some kernels have its formula in their loops.
+    /// The field by its type, if some kernels have its formula in their loops.
     #[inline(always)]
     pub fn inlined(&self) -> Option<Inlined<'a>> {
         self.inlined
@@ -206,11 +206,11 @@ impl<F: Field> AtPoint for F {
     }
 }
 
-/// A field in space as kernels see it: `σ_t` in 1/length at points within the bounds.
+/// A field in space for kernels: `σ_t` in 1/length at points within the bounds.
 pub struct Points<'a>(&'a dyn AtPoint);
 
 impl<'a> Points<'a> {
-    /// Those of a field.
+    /// Lookups of a field.
     pub fn new<F: Field>(field: &'a F) -> Self {
         Self(field)
     }
@@ -271,7 +271,7 @@ impl<F: Field, S: Simd> PointBatch for CompiledInSpace<'_, F, S> {
     }
 }
 
-/// Those of one point after the other, where the hardware has no wide packs.
+/// Lookups of one point after the other, for hardware without wide packs.
 struct PointByPoint<'a, F>(CompileInSpace<'a, F>);
 
 impl<F: Field> PointBatch for PointByPoint<'_, F> {
@@ -303,14 +303,14 @@ impl<F: Field> CompileInSpace<'_, F> {
     }
 }
 
-/// A field in space as packets of walks see it: one indirect call answers σ_t at sixteen points.
+/// A field in space for packets of walks: one indirect call returns σ_t at sixteen points.
 pub struct Batches<'a> {
     batch: Box<dyn PointBatch + 'a>,
     single_value: Option<f64>,
 }
 
 impl<'a> Batches<'a> {
-    /// Those of a field on the hardware of a level; `clipped` fields are looked up outside their bounds too,
+    /// Lookups of a field on the hardware of a level. `clipped` fields are looked up outside their bounds too,
     /// where they are 0.
     pub fn new<F: Field>(field: &'a F, level: Level, clipped: bool) -> Self {
         let bounds = clipped.then(|| field.bounds()).filter(|&b| b != Bounds::Everywhere);
@@ -331,9 +331,9 @@ impl<'a> Batches<'a> {
         }
     }
 
-    /// The optical depths of eight stretches of rays within the bounds: the coordinates of origins and of directions,
-    /// where they begin and where they end. `None` where the field has no formula for lanes, see
-    /// [`Field::depths_along`].
+    /// The optical depths of eight intervals of rays within the bounds. `rays` has the coordinates of origins and
+    /// of directions, and the begins and ends of the intervals. `None` where the field has no formula for lanes,
+    /// see [`Field::depths_along`].
     #[inline(always)]
     pub fn depths<L: Lane>(&self, rays: &[L; 8]) -> Option<L> {
         let mut rows = [[0.0; WIDTH]; 8];
@@ -347,7 +347,7 @@ impl<'a> Batches<'a> {
 
 struct CompileInSpace<'a, F> {
     field: &'a F,
-    /// Outside it σ_t is 0.
+    /// Bounds, outside of which σ_t is 0.
     bounds: Option<Bounds>,
 }
 

@@ -1,4 +1,4 @@
-//! A field along one ray: what an experiment is about.
+//! A field along one ray: the medium of an experiment.
 
 use std::sync::Arc;
 
@@ -10,14 +10,14 @@ use numeric::{Known, Lane, Span};
 
 /// A field along one ray, zero outside its support.
 ///
-/// The support is where the ray is inside the field's bounds; estimators walk there and nowhere
-/// else, so that empty space costs nothing.
+/// The support is the part of the ray inside the field's bounds; estimators walk only there, so that empty space
+/// costs nothing.
 #[derive(Clone)]
 pub struct Medium {
     profile: Arc<Profile>,
     span: Span,
     support: Span,
-    /// What the rounding of the support's ends adds to the error of an optical depth.
+    /// Errors of an optical depth from the rounding of the support's ends.
     blurs: [f64; 2],
 }
 
@@ -28,7 +28,7 @@ impl Medium {
         Self { profile, span, support, blurs: [0.0; 2] }
     }
 
-    /// The same with a support whose ends are known to some error only.
+    /// The field with the errors of its support's ends.
     pub fn clipped(profile: Arc<Profile>, span: Span, ends: [Known; 2]) -> Self {
         let medium = Self::new(profile, span, Span::new(ends[0].value, ends[1].value));
         let blurs =
@@ -55,7 +55,7 @@ impl Medium {
         &*self.profile
     }
 
-    /// `σ_t(t)`, zero outside the support. Not for loops: it finds the type anew each time.
+    /// `σ_t(t)`, zero outside the support. Not for loops: each call looks up the type.
     pub fn extinction(&self, t: f64) -> f64 {
         if t < self.support.from || t > self.support.to {
             return 0.0;
@@ -94,7 +94,7 @@ impl Medium {
         if self.support.is_empty() { None } else { self.profile.free_flight(self.support, depth) }
     }
 
-    /// The same for many depths.
+    /// The inverse, prepared for many depths.
     pub fn inverse(&self) -> Inverse {
         let needs_table = !self.support.is_empty() && !self.profile.is_direct();
         let table = needs_table.then(|| Table::of(self.profile(), self.support));
@@ -112,7 +112,7 @@ impl Medium {
     }
 }
 
-/// For loops that need not be fast.
+/// Lookups for loops that need not be fast.
 impl Extinction for Medium {
     fn extinction<L: Lane>(&self, t: L) -> L {
         t.map(|t| self.profile.at(t))

@@ -1,4 +1,4 @@
-//! Rays and spans that meet nothing of their medium, said in words: every estimator answers them rightly, and tests
+//! Messages for rays and spans that miss their medium: every estimator gives the right answer for them, and tests
 //! nothing.
 
 use super::body::RayNeed;
@@ -7,8 +7,8 @@ use numeric::digits::number;
 use numeric::digits::short;
 use numeric::geometry::{Bounds, Point, Ray};
 
-/// Doubts about a body and its ray, a sentence each, every sentence once. A problem that needs a line alone follows it as
-/// far as the volume goes.
+/// Warnings about a body and its ray, a sentence each, without repetitions. A problem that needs only a line
+/// follows it to the end of the volume.
 pub fn notes(body: &Body, need: RayNeed) -> Vec<String> {
     let mut notes: Vec<String> = Vec::new();
     for channel in body.channels() {
@@ -60,13 +60,13 @@ fn of_volume(volume: &Volume, ray: &Ray, medium: &Medium) -> Option<String> {
     })
 }
 
-/// Whether σ_t is 0 on all of a stretch that has a length.
+/// Returns true if σ_t is 0 on all of an interval of positive length.
 fn is_nothing(medium: &Medium) -> bool {
     let support = medium.support();
     !support.is_empty() && medium.optical_depth(support).value == 0.0
 }
 
-/// Bounds in words, as in "box is [0, 0, 0] to [1, 1, 1]".
+/// Bounds in words, such as "box is [0, 0, 0] to [1, 1, 1]".
 pub fn place(bounds: Bounds) -> String {
     let point = |point: Point| format!("[{}]", point.0.map(|x| short(x, 6)).join(", "));
     match bounds {

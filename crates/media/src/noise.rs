@@ -109,8 +109,7 @@ pub struct NoiseRay {
     inside: Span,
 }
 
-/// One octave along a ray. Its cells are found when an integral is first asked for: who only looks σ_t
-/// up pays nothing for them.
+/// An octave along a ray. Its cells are computed when the first integral needs them: lookups of σ_t do without.
 struct Octave {
     amplitude: f64,
     track: Track,
@@ -152,7 +151,7 @@ impl OpticalDepth for NoiseRay {
             let part = |_, cell, part| octave.part(&self.rule, cell, part);
             let integral = octave.cells(&self.rule, self.inside).integrate(span, part);
             fbm += octave.amplitude * integral.value;
-            // |∂ noise/∂pⱼ| < 3, and a coordinate is off by its rounding at most.
+            // |∂ noise/∂pⱼ| < 3, and the error of a coordinate is at most its rounding.
             let ends = [octave.track.start, octave.track.at(span.to)];
             let size: f64 = ends.as_flattened().iter().map(|x| x.abs()).sum();
             error += octave.amplitude * (integral.error + 3.0 * f64::EPSILON * size * length);
@@ -169,8 +168,8 @@ impl OpticalDepth for NoiseRay {
     }
 
     fn panel_nodes(&self) -> Option<usize> {
-        // Seventeen are exact for the square, of degree 32. Where the octaves fade, the finest,
-        // whose whole cells these panels are, counts little: see the test of the panels.
+        // Seventeen are exact for the square, of degree 32. Where the octaves fade, the finest one, with cells
+        // equal to these panels, contributes little: see the test of the panels.
         let octaves = self.spectrum.octaves as usize;
         Some(if self.spectrum.gain > 0.5 { 17 } else { (16 - 2 * octaves / 3).max(8) })
     }
@@ -272,7 +271,7 @@ impl Field for Noise {
         NoiseRay { spectrum, unit: self.unit, track, octaves: octaves.collect(), rule, inside }
     }
 
-    /// The first octaves as they are in the whole: `B` stays that of all.
+    /// The first octaves without rescaling: `B` stays that of all.
     fn coarsened(&self, octaves: usize) -> Option<Self> {
         let octaves = self.spectrum.octaves.min(u32::try_from(octaves).ok()?);
         let spectrum = Spectrum { octaves, ..self.spectrum };

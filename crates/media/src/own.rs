@@ -6,10 +6,10 @@
 //!                           nodes meets σ_t at the panel's ends; 40 times at most
 //! ```
 //!
-//! The error is what the last halving of each panel changed, an estimate and no proof. Where σ_t jumps or has a kink,
-//! [`Formula::with_breaks`] and [`Medium::from_fn_with_breaks`] say so: panels then end there. What is narrower than a
-//! 64th of the way between two breaks may be stepped over. Where σ_t is negative or not
-//! finite, τ is not a number, and a case with that field is an error. Free flights are bracketed roots of τ.
+//! The error is the change by the last halving of each panel, an estimate and no proof. Jumps and kinks of σ_t are
+//! declared by [`Formula::with_breaks`] and [`Medium::from_fn_with_breaks`]: panels then end there. Features
+//! narrower than a 64th of the distance between two breaks may be missed. Where σ_t is negative or not finite, τ is
+//! NaN, and a case with that field is an error. Free flights are bracketed roots of τ.
 
 use std::collections::VecDeque;
 use std::sync::{Arc, LazyLock};
@@ -32,7 +32,7 @@ impl<F: Fn(f64) -> f64 + Send + Sync + 'static> Formula<F> {
         Self { at, breaks: Vec::new() }
     }
 
-    /// The same with the distances where it jumps or has a kink.
+    /// The field with the distances where it jumps or has a kink.
     #[must_use]
     pub fn with_breaks(self, breaks: Vec<f64>) -> Self {
         Self { breaks, ..self }
@@ -65,24 +65,24 @@ impl<F: Fn(f64) -> f64 + Send + Sync + 'static> OpticalDepth for Formula<F> {
 
 impl<F: Fn(f64) -> f64 + Send + Sync + 'static> FreeFlight for Formula<F> {}
 
-/// So many panels are looked at before any of them is halved.
+/// Number of panels before any of them is halved.
 const PANELS: f64 = 64.0;
-/// So often a panel is halved at most.
+/// Maximum number of halvings of a panel.
 const HALVINGS: usize = 40;
-/// To this part of the sum two halves agree with the whole.
+/// Relative agreement of two halves with the whole.
 const AGREEMENT: f64 = 1e-12;
-/// So many panels are looked at, at most: what a closure's own rounding keeps apart ends there.
+/// Maximum number of panels: it ends the halving where a closure's own rounding prevents agreement.
 const LOOKED_AT: usize = 1 << 15;
-/// How near to its ends a panel is looked at.
+/// Relative distance from a panel's ends at which f is evaluated.
 const NEAR: f64 = 1e-9;
 
 static RULE: LazyLock<GaussLegendre> = LazyLock::new(|| GaussLegendre::new(16));
 
-/// The weights that make the value of the polynomial through the nodes near each end of a panel.
+/// The weights of the polynomial through the nodes near each end of a panel.
 static ENDS: LazyLock<[Vec<f64>; 2]> =
     LazyLock::new(|| [NEAR, 1.0 - NEAR].map(|x| RULE.weights_at(x)));
 
-/// ∫ f over a panel by the rule, and what a jump between its ends and its outermost nodes would hide; not a number
+/// ∫ f over a panel by the rule, and the error that a jump between its ends and its outermost nodes would hide; NaN
 /// where f is no extinction.
 fn panel(f: &impl Fn(f64) -> f64, part: Span) -> [f64; 2] {
     let values: Vec<f64> = RULE.on(part).map(|(t, _)| f(t)).collect();
@@ -98,7 +98,7 @@ fn panel(f: &impl Fn(f64) -> f64, part: Span) -> [f64; 2] {
     [sum * part.length(), hidden.sum()]
 }
 
-/// ∫ f with an estimate of its error; not a number where f is negative or not finite.
+/// ∫ f with an estimate of its error; NaN where f is negative or not finite.
 fn integral(f: impl Fn(f64) -> f64, span: Span) -> Known {
     let on = |part: Span| (part, panel(&f, part));
     let cuts = span.cut(span.even_cuts(PANELS));
@@ -108,7 +108,7 @@ fn integral(f: impl Fn(f64) -> f64, span: Span) -> Known {
         return Known::new(f64::NAN, f64::INFINITY);
     }
     let (mut value, mut error, mut looked) = (Sum::default(), Sum::default(), open.len());
-    // The widest first, so that where panels run out all are as narrow.
+    // The widest panel first, so that all are equally narrow when the maximum number is reached.
     while let Some(((part, [whole, hidden]), depth)) = open.pop_front() {
         let halves = part.halves().map(on);
         let [[first, _], [second, _]] = halves.map(|(_, found)| found);
@@ -150,13 +150,13 @@ pub struct SpaceFormula<F> {
 }
 
 impl<F: Fn([f64; 3]) -> f64 + Send + Sync + 'static> SpaceFormula<F> {
-    /// The field of a closure, and a number that it exceeds nowhere within the bounds.
+    /// The field of a closure, and an upper bound of it within the bounds.
     pub fn new(bounds: Bounds, majorant: f64, at: F) -> Self {
         Self { at: Arc::new(at), bounds, majorant }
     }
 }
 
-/// What one ray sees of such a field.
+/// A field of a closure along one ray.
 pub struct Chord<F> {
     at: Arc<F>,
     ray: Ray,
@@ -201,7 +201,7 @@ impl<F: Fn([f64; 3]) -> f64 + Send + Sync + 'static> Field for SpaceFormula<F> {
     #[inline(always)]
     fn extinction_at<L: Lane>(&self, p: [L; 3]) -> L {
         let [x, y, z] = p;
-        // Elements of all three lanes are seen side by side; y and z stay what they are.
+        // Elements of all three lanes are read side by side; y and z are not changed.
         x.replaced(|x| {
             let _ = y.replaced(|y| {
                 let _ = z.replaced(|z| {
@@ -223,8 +223,8 @@ impl<F: Fn([f64; 3]) -> f64 + Send + Sync + 'static> Field for SpaceFormula<F> {
 }
 
 impl Medium {
-    /// The field of a closure on a ray, smooth but for what [`Medium::from_fn_with_breaks`] is told: for the truth of
-    /// an estimator of one's own.
+    /// The field of a closure on a ray, smooth except at the breaks of [`Medium::from_fn_with_breaks`]: for the
+    /// expected value of an own estimator.
     ///
     /// ```
     /// use trueflight_media::Medium;
@@ -238,7 +238,7 @@ impl Medium {
         Self::from_fn_with_breaks(span, Vec::new(), at)
     }
 
-    /// The same with the distances where σ_t jumps or has a kink.
+    /// The field of a closure on a ray, with the distances where σ_t jumps or has a kink.
     pub fn from_fn_with_breaks(
         span: Span,
         breaks: Vec<f64>,
@@ -258,8 +258,8 @@ impl Addition {
 
     /// A field along a line, read from its settings: `medium.NAME = { … }`.
     ///
-    /// `extinctions` are the settings that σ_t is proportional to, all together. Sweeps of the density and of the contrast
-    /// change these, and refuse a field that has none.
+    /// `extinctions` are the settings to which σ_t is proportional, all together. Sweeps of the density and of the
+    /// contrast change these, and refuse a field that has none.
     pub fn line<F: FreeFlight + 'static>(
         page: Page,
         extinctions: &'static [&'static str],

@@ -11,7 +11,7 @@ use numeric::{Known, Lane, Row, Span, sum::Sum};
 /// σ(t) = leftᵢ + slopeᵢ (t − knotᵢ),   knotᵢ ≤ t < knotᵢ₊₁
 /// ```
 ///
-/// Outside the knots the first and the last value go on. Integral and inverse are closed forms.
+/// Outside the knots the field keeps the first and the last value. Integral and inverse are closed forms.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Piecewise {
     pub(super) knots: Vec<f64>,
@@ -26,7 +26,7 @@ pub struct Piecewise {
 }
 
 impl Piecewise {
-    /// One value on the whole span.
+    /// A constant on the whole span.
     pub fn constant(value: f64, span: Span) -> Self {
         Self::steps(&[span.from, span.to], &[value])
     }
@@ -73,7 +73,7 @@ impl Piecewise {
         Self { knots: knots.to_vec(), left, slope, depth, even, search, rows, stretches }
     }
 
-    /// The same field restricted to, or continued over, a span.
+    /// The field restricted to, or continued over, a span.
     #[must_use]
     pub fn on(&self, span: Span) -> Self {
         if span.is_empty() {
@@ -88,7 +88,7 @@ impl Piecewise {
         Self::pieces(&knots, left, slope)
     }
 
-    /// The same field, but zero on some stretches, which ascend and do not meet.
+    /// The field, set to zero on some intervals, which ascend and do not touch.
     #[must_use]
     pub fn zero_on(&self, stretches: &[Span]) -> Self {
         let (first, last) = (self.knots[0], self.knots[self.left.len()]);
@@ -106,7 +106,7 @@ impl Piecewise {
         Self::pieces(&knots, left, slope)
     }
 
-    /// The same field times a factor.
+    /// The field times a factor.
     #[must_use]
     pub fn scaled(&self, factor: f64) -> Self {
         let left = self.left.iter().map(|x| x * factor).collect();
@@ -129,18 +129,18 @@ impl Piecewise {
         (self.left.len() == 1 && self.slope[0] == 0.0).then(|| self.left[0])
     }
 
-    /// The field's one value other than zero, if it is so simple.
+    /// The field as one value with gaps, if it has only one value other than zero.
     #[inline]
     pub fn even(&self) -> Option<&Even> {
         self.even.as_ref()
     }
 
-    /// How many pieces there are.
+    /// Number of pieces.
     pub fn count(&self) -> usize {
         self.left.len()
     }
 
-    /// Whether no piece has a slope.
+    /// Returns true if no piece has a slope.
     pub fn is_steps(&self) -> bool {
         self.slope.iter().all(|&slope| slope == 0.0)
     }
@@ -169,7 +169,7 @@ impl Piecewise {
         {
             return t.each(value);
         }
-        // Beyond the knots the first and the last value go on.
+        // Beyond the knots the field keeps the first and the last value.
         let (first, end) = (t.each(self.knots[0]), t.each(self.knots[self.left.len()]));
         let t = t.or_more(first).or_less(end);
         let [knot, left, slope, ..] = self.search.piece(t).columns(&self.rows);

@@ -1,4 +1,4 @@
-//! A ball whose extinction depends on the distance from its centre.
+//! A ball with an extinction that depends on the distance from its centre.
 //!
 //! ```text
 //! σ_t(p) = Σₖ coefficients[k] xᵏ,   x = |p − centre|²/radius²,   within the ball x ≤ 1
@@ -23,7 +23,7 @@ use crate::catalogue::{Domain, Settings};
 use numeric::geometry::{Aabb, Bounds, Point, Ray};
 use numeric::{Known, Lane, Span};
 
-/// The most coefficients: those of a cubic, whose extremes are roots of a quadratic.
+/// Maximum number of coefficients: those of a cubic, which has its extremes at the roots of a quadratic.
 const MOST: usize = 4;
 
 /// A ball.
@@ -70,7 +70,7 @@ impl OpticalDepth for Chord {
     fn optical_depth(&self, span: Span) -> Known {
         let (middle, half) = (span.middle(), 0.5 * span.length());
         let sum: f64 = GAUSS.iter().map(|&(x, w)| w * self.extinction(middle + half * x)).sum();
-        // An argument that is off moves σ_t by its slope, |dσ/dx| |dx| with x ≤ 1.
+        // The error of an argument changes σ_t by its slope, |dσ/dx| |dx| with x ≤ 1.
         let [a, b, c, d] = self.coefficients.map(f64::abs);
         let moved = (span.from.abs() + span.to.abs() + 2.0 * self.foot.abs()) * self.scale;
         let off = 8.0 * (a + b + c + d) + (4.0 + 2.0 * moved) * (b + 2.0 * c + 3.0 * d);
@@ -91,7 +91,7 @@ impl Radial {
         Self { centre, radius, coefficients }
     }
 
-    /// Where σ_t has its extremes in x, the ends of a range and what is between them.
+    /// Candidates for the extremes of σ_t in x: the ends of a range and the roots of the slope inside.
     fn extremes(&self, from: f64, to: f64) -> impl Iterator<Item = f64> + use<> {
         let [_, b, c, d] = self.coefficients;
         // b + 2cx + 3dx² = 0, in the form that does not cancel, also for d = 0.
@@ -124,7 +124,7 @@ impl Field for Radial {
         let value = |x: f64| a + x * (b + x * (c + x * d));
         let lowest = field.extremes(0.0, 1.0).min_by(|&x, &y| value(x).total_cmp(&value(y)))?;
         let size: f64 = coefficients.iter().map(|x| x.abs()).sum();
-        // What a double root is off by rounding is no negative extinction.
+        // The rounding error at a double root is no negative extinction.
         if value(lowest) < -1e-14 * size {
             let found =
                 format!("σ_t is {:.4} at r = {:.4}", value(lowest), field.radius * lowest.sqrt());

@@ -1,4 +1,4 @@
-//! How a field is chosen by its name in a case file, and read.
+//! Choice of a field by its name in a case file, and its reader.
 
 use std::sync::Arc;
 
@@ -8,18 +8,18 @@ use crate::catalogue::{Additions, Settings};
 /// Reads the fields of a page from a case file.
 pub type Read<T> = Box<dyn Fn(&Settings) -> Option<Arc<T>> + Send + Sync>;
 
-/// How the fields of a page are read: as one ray sees them, in space, or both.
+/// Reader of the fields of a page: along a ray, in space, or both.
 pub struct Reader {
-    /// Settings that σ_t is proportional to, all together.
+    /// Settings to which σ_t is proportional, all together.
     pub extinctions: &'static [&'static str],
-    /// As one ray sees them.
+    /// Reads fields along a ray.
     pub line: Option<Read<Profile>>,
-    /// In space.
+    /// Reads fields in space.
     pub volume: Option<Read<Volume>>,
 }
 
 impl Reader {
-    /// That of a type.
+    /// Reader of a field's type.
     pub fn of<F: Field>() -> Self {
         let line = |settings: &Settings| F::line(settings).map(|f| Arc::new(f) as Arc<Profile>);
         let volume = |settings: &Settings| F::volume(settings).map(|f| Arc::new(f) as Arc<Volume>);
@@ -34,7 +34,7 @@ fn readers<'a>(settings: &Settings<'a>) -> (Vec<String>, Vec<&'a Reader>) {
     built_in.chain(settings.additions().of()).map(|(page, reader)| (page.name(), reader)).unzip()
 }
 
-/// Settings of the field of a name that σ_t is proportional to; none of an unknown field.
+/// Settings of a named field to which σ_t is proportional; empty for an unknown field.
 pub fn extinctions(name: &str, additions: &Additions) -> &'static [&'static str] {
     let built_in = CATALOGUE.pages.iter().zip(READERS.iter());
     let mut all = built_in.chain(additions.of());
@@ -48,7 +48,7 @@ pub(super) fn read_line(settings: &Settings) -> Option<(String, Arc<Profile>)> {
     })
 }
 
-/// Reads a field along a line that `choose` finds among the names, of which some are offered.
+/// Reads a field along a line; `choose` selects it among the names, some of which are suggested.
 pub(super) fn choose_line<'a>(
     settings: &Settings<'a>,
     choose: impl FnOnce(&Settings<'a>, &[String], &[String]) -> Option<(usize, Settings<'a>)>,
@@ -88,7 +88,7 @@ pub fn read_field(settings: &Settings, key: &'static str) -> Option<(String, Arc
     choose_volume(settings, |settings, names| settings.chosen(key, names))
 }
 
-/// Reads a field in space that `choose` finds among the names.
+/// Reads a field in space; `choose` selects it among the names.
 fn choose_volume<'a>(
     settings: &Settings<'a>,
     choose: impl FnOnce(&Settings<'a>, &[String]) -> Option<(usize, Settings<'a>)>,

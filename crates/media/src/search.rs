@@ -1,4 +1,4 @@
-//! Which of many pieces holds a distance, without a branch that depends on it.
+//! Search for the piece that holds a distance, without a branch that depends on the distance.
 //!
 //! ```text
 //! few pieces:   the number of knots that are not beyond t
@@ -11,13 +11,13 @@
 
 use numeric::Lane;
 
-/// So many pieces are counted.
+/// Maximum number of pieces that are counted.
 const FEW: usize = 16;
 
 /// A search among ascending knots.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Search {
-    /// All knots; the first and the last are not searched for.
+    /// All knots; the first and the last are not searched.
     knots: Vec<f64>,
     scale: f64,
     /// The piece that holds the beginning of each bin.
@@ -27,7 +27,7 @@ pub struct Search {
 }
 
 impl Search {
-    /// Among the pieces between two or more knots, which ascend.
+    /// A search among the pieces between two or more knots, which ascend.
     pub fn new(knots: &[f64]) -> Self {
         let (knots, pieces) = (knots.to_vec(), knots.len() - 1);
         if pieces <= FEW {
@@ -52,8 +52,8 @@ impl Search {
         ((t - self.knots[0]) * self.scale).nearest()
     }
 
-    /// The number of the piece that holds `t`, which is not outside the knots; at the last knot it
-    /// may be one more than there are.
+    /// The number of the piece that holds `t`, which is not outside the knots. At the last knot it may be the
+    /// number of pieces.
     #[inline(always)]
     pub fn piece<L: Lane>(&self, t: L) -> L {
         let (zero, one) = (t.each(0.0), t.each(1.0));

@@ -8,12 +8,12 @@ use numeric::Lane;
 pub(super) struct Turn {
     origin: [f64; 3],
     rows: [[f64; 3]; 3],
-    /// The lowest and the highest place of the lattice along each axis: beyond them the field is 0.
+    /// The lowest and the highest coordinate of the lattice along each axis: beyond them the field is 0.
     ends: [[f64; 2]; 3],
 }
 
 impl Turn {
-    /// The map to a lattice of a size.
+    /// The map to a lattice with a number of samples.
     pub(super) fn new(turned: &Turned, size: [usize; 3], interpolation: Interpolation) -> Self {
         let Turned { origin, steps } = *turned;
         let column = |j: usize| [0, 1, 2].map(|i| steps[i][j]);
@@ -53,7 +53,7 @@ impl Turn {
         [size(far).map(|x| x + shift), size(direction.map(f64::abs))]
     }
 
-    /// A value at a place of the lattice; 0 outside it.
+    /// Returns the value at a position of the lattice; 0 outside it.
     #[inline(always)]
     pub(super) fn cut<L: Lane>(&self, at: [L; 3], value: L) -> L {
         let zero = value.each(0.0);
@@ -65,7 +65,7 @@ impl Turn {
         L::select(inside, value, zero)
     }
 
-    /// Whether a place in lattice coordinates is one of the lattice.
+    /// Returns true if a position in lattice coordinates is on the lattice.
     pub(super) fn holds(&self, u: [f64; 3]) -> bool {
         (0..3).all(|j| self.ends[j][0] <= u[j] && u[j] <= self.ends[j][1])
     }

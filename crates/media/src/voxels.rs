@@ -7,8 +7,8 @@
 //!
 //! On a turned lattice u is a matrix times p − origin. The field is 0 in its bounds outside the lattice.
 //!
-//! Border samples are stored, not decided upon at each lookup: cell-centred grids that are
-//! interpolated get a layer of them on every side.
+//! Border samples are stored, so that lookups do not test for them: cell-centred grids that are interpolated get a
+//! layer of them on every side.
 
 use super::grid_file::Samples;
 use super::lattice::Track;
@@ -16,7 +16,7 @@ use super::turn::Turn;
 use numeric::Lane;
 use numeric::geometry::{Aabb, Ray};
 
-/// How a value between samples is found.
+/// Interpolation between samples.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Interpolation {
     /// Linear along x, y and z.
@@ -25,12 +25,12 @@ pub enum Interpolation {
     Nearest,
 }
 
-/// Where the samples stand in the box.
+/// Positions of the samples in the box.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Placement {
     /// On the lattice from corner to corner of the box: n − 1 cells along each axis.
     Vertices,
-    /// In the middle of n cells along each axis; beyond the outermost samples the field goes on.
+    /// In the middle of n cells along each axis; beyond the outermost samples the field is constant.
     CentresClamped,
     /// In the middle of n cells along each axis; samples beyond the box are zero.
     CentresZero,
@@ -96,22 +96,22 @@ impl Voxels {
         self.peak
     }
 
-    /// Whether a lookup takes the nearest sample.
+    /// Returns true if a lookup takes the nearest sample.
     pub fn is_nearest(&self) -> bool {
         self.interpolation == Interpolation::Nearest
     }
 
-    /// Whether the field jumps between cells.
+    /// Returns true if the field jumps between cells.
     pub fn jumps(&self) -> bool {
         self.is_nearest() || self.turn.is_some()
     }
 
-    /// Whether the axes of the lattice are not those of the world.
+    /// Returns true if the axes of the lattice are not those of the world.
     pub fn is_turned(&self) -> bool {
         self.turn.is_some()
     }
 
-    /// A point in lattice coordinates: cells lie between whole numbers.
+    /// A point in lattice coordinates: cells lie between integers.
     #[inline(always)]
     pub fn lattice<L: Lane>(&self, [x, y, z]: [L; 3]) -> [L; 3] {
         if let Some(turn) = &self.turn {
@@ -130,7 +130,7 @@ impl Voxels {
         Track { start: self.lattice(ray.origin.0), slope }
     }
 
-    /// Sizes for a ray's beginning and its slope: 2 ε of each bounds the rounding of lattice coordinates.
+    /// Sizes for a ray's start and its slope: 2 ε of each bounds the rounding of lattice coordinates.
     pub fn terms(&self, ray: &Ray) -> [[f64; 3]; 2] {
         if let Some(turn) = &self.turn {
             return turn.terms([ray.origin.0, ray.direction.0], self.shift);
@@ -139,8 +139,8 @@ impl Voxels {
         [start.map(f64::abs), slope.map(f64::abs)]
     }
 
-    /// The cell that holds a place and how far the place is into it; a place that rounding left
-    /// outside the box counts as on its face.
+    /// The cell that holds a position, and the position within it; a position that rounding left outside the box
+    /// counts as on its face.
     #[inline(always)]
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // below 2^27 and above 0
     fn place(&self, u: [f64; 3]) -> ([usize; 3], [f64; 3]) {
@@ -155,7 +155,7 @@ impl Voxels {
         (cell, rest)
     }
 
-    /// The same for lanes along one axis.
+    /// Cell and position within it for lanes along one axis.
     #[inline(always)]
     fn place_along<L: Lane>(&self, axis: usize, u: L) -> (L, L) {
         let last = self.last[axis] as f64;
@@ -164,7 +164,7 @@ impl Voxels {
         (cell, inside - cell)
     }
 
-    /// The field at a place in lattice coordinates.
+    /// The field at a position in lattice coordinates.
     #[inline(always)]
     pub fn value<L: Lane>(&self, at: [L; 3]) -> L {
         let [x, y, z] = at;
@@ -181,7 +181,7 @@ impl Voxels {
         turn.cut(at, value)
     }
 
-    /// Between the eight samples from the one at an index on.
+    /// Interpolates between the eight samples from the index `first` on.
     #[inline(always)]
     fn linear<L: Lane>(&self, first: L, [x, y, z]: [L; 3]) -> L {
         let [nx, ny, _] = self.size.map(|n| n as f64);
@@ -190,14 +190,14 @@ impl Voxels {
         between(z, near, between(y, self.row(above, x), self.row(above + nx, x)))
     }
 
-    /// Between a sample and the next along x.
+    /// Interpolates between a sample and the next along x.
     #[inline(always)]
     fn row<L: Lane>(&self, at: L, share: L) -> L {
         between(share, at.entry(&self.values), (at + 1.0).entry(&self.values))
     }
 
-    /// The field along a stretch of ray within the cell about `middle`: a polynomial in the place
-    /// `x ∈ [0, 1]` of the stretch, which begins at `start` and turns by `step` in all.
+    /// The field along an interval of a ray within the cell about `middle`: a polynomial in the relative position
+    /// `x ∈ [0, 1]`. The interval begins at `start` and has the total change `step`.
     pub fn cubic(&self, middle: [f64; 3], start: [f64; 3], step: [f64; 3]) -> [f64; 4] {
         if self.turn.as_ref().is_some_and(|turn| !turn.holds(middle)) {
             return [0.0; 4];
@@ -239,9 +239,9 @@ impl Voxels {
         })
     }
 
-    /// The largest sample that a lookup in the box can touch.
+    /// The largest sample that a lookup in the box can use.
     pub fn highest(&self, within: &Aabb) -> f64 {
-        // A billionth of a cell covers the rounding of a lookup's place.
+        // A billionth of a cell covers the rounding of a lookup's position.
         let [from, to] = self.reach(within);
         let low = self.place(from.map(|u| u - 1e-9)).0;
         let high = self.place(to.map(|u| u + 1e-9)).0;
@@ -259,7 +259,7 @@ impl Voxels {
     }
 }
 
-/// From a value to another, by a share of the way.
+/// Interpolates from one value to another by a share.
 #[inline(always)]
 fn between<L: Lane>(share: L, from: L, to: L) -> L {
     from + share * (to - from)

@@ -6,18 +6,18 @@ use std::sync::Arc;
 
 use super::Page;
 
-/// A page of a program's own: where it belongs, its text, and what reads it.
+/// A page of a program's own: its part of the catalogue, its text, and its reader.
 #[derive(Clone)]
 pub struct Addition {
     /// The part of the catalogue, as in `trueflight list`: `media`, `estimators of transmittance`.
     pub part: String,
-    /// Its name and text.
+    /// Name and text.
     pub page: Page,
     reader: Arc<dyn Any + Send + Sync>,
 }
 
 impl Addition {
-    /// A page that is read by an `R`, the type by which its part finds it.
+    /// A page that is read by an `R`, the type under which its part finds it.
     pub fn new<R: Any + Send + Sync>(part: impl Into<String>, page: Page, reader: R) -> Self {
         Self { part: part.into(), page, reader: Arc::new(reader) }
     }
@@ -33,21 +33,21 @@ impl fmt::Debug for Addition {
 #[derive(Debug, Clone, Default)]
 pub struct Additions(Vec<Addition>);
 
-/// What a case is read with that needs no pages of its own.
+/// An empty list, for cases that need no pages of the program's own.
 pub static NONE: Additions = Additions(Vec::new());
 
 impl Additions {
-    /// One page more.
+    /// Adds a page.
     pub fn add(&mut self, addition: Addition) {
         self.0.push(addition);
     }
 
-    /// All of them, in the order in which they came.
+    /// All pages, in the order in which they were added.
     pub fn all(&self) -> &[Addition] {
         &self.0
     }
 
-    /// Those that are read by an `R`, each with its page.
+    /// Pages that are read by an `R`, each with its reader.
     pub fn of<R: Any>(&self) -> impl Iterator<Item = (&Page, &R)> {
         self.0.iter().filter_map(|own| Some((&own.page, own.reader.downcast_ref::<R>()?)))
     }

@@ -128,7 +128,7 @@ impl<'a> Settings<'a> {
         Some(tables)
     }
 
-    /// A table with exactly one key, which names one of `names`: `{ gaussian = { … } }`. Answers
+    /// A table with exactly one key, which names one of `names`: `{ gaussian = { … } }`. Returns
     /// the position of the name and the table behind it.
     pub fn choice(&self, names: &[String]) -> Option<(usize, Settings<'a>)> {
         self.choice_among(names, names)

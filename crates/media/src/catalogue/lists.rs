@@ -6,11 +6,11 @@ use super::words::whole;
 use super::{Domain, Entry, Settings, Value};
 use numeric::digits::number;
 
-/// So many mistakes of one list are told one by one.
+/// Maximum number of mistakes of one list that are listed separately.
 const TOLD: usize = 5;
 
 impl Settings<'_> {
-    /// A list of numbers, at least `least` of them, that must be there.
+    /// A required list of numbers, at least `least` of them.
     pub fn numbers(&self, key: &'static str, domain: Domain, least: usize) -> Option<Vec<f64>> {
         let wanted = format!("a list of at least {least}, each {}", domain.words());
         let entry = self.required(key, &wanted)?;
@@ -23,7 +23,7 @@ impl Settings<'_> {
         })
     }
 
-    /// A point or vector `[x, y, z]` that must be there.
+    /// A required point or vector `[x, y, z]`.
     pub fn triple(&self, key: &'static str) -> Option<[f64; 3]> {
         let wanted = "a list of three finite numbers [x, y, z]";
         let entry = self.required(key, wanted)?;
@@ -39,7 +39,7 @@ impl Settings<'_> {
         }
     }
 
-    /// Three whole numbers in a range that must be there.
+    /// Three required integers in a range.
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // checked just before
     pub fn counts(&self, key: &'static str, range: RangeInclusive<u64>) -> Option<[usize; 3]> {
         let wanted = format!("a list of three, each {}", whole(&range));
@@ -52,7 +52,7 @@ impl Settings<'_> {
         None
     }
 
-    /// A list of points or vectors `[[x, y, z], …]` that must be there.
+    /// A required list of points or vectors `[[x, y, z], …]`.
     pub fn triples(&self, key: &'static str) -> Option<Vec<[f64; 3]>> {
         let wanted = "a list of triples of finite numbers [[x, y, z], …]";
         let entry = self.required(key, wanted)?;

@@ -1,9 +1,9 @@
-//! One entry of a catalogue, described by its own source file.
+//! An entry of a catalogue, described by its own source file.
 
 /// A page: a name and the source file that defines it.
 #[derive(Debug, Clone, Copy)]
 pub struct Page {
-    /// The module's name, as in `residual_ratio`.
+    /// The module's name, such as `residual_ratio`.
     pub module: &'static str,
     /// The text of the source file, or the page's text alone.
     pub source: &'static str,
@@ -12,7 +12,7 @@ pub struct Page {
 /// A named list of pages.
 #[derive(Debug, Clone, Copy)]
 pub struct PageList {
-    /// What the pages are, in the plural: `media`, `estimators`.
+    /// Kind of the pages, in the plural: `media`, `estimators`.
     pub name: &'static str,
     /// The pages, in the order of registration.
     pub pages: &'static [Page],

@@ -1,9 +1,8 @@
-//! Settings as written in a case file: a tree that knows where each value stands.
+//! Settings as written in a case file: a tree with the place of each value.
 //!
-//! A page reads its own settings from a [`Settings`] table. Every mistake is recorded with its
-//! place and reading goes on, so that one run of the tool lists them all. A page therefore reads
-//! every key first and gives up (`?`) afterwards; [`Settings::close`] then reports what was never
-//! asked for.
+//! A page reads its own settings from a [`Settings`] table. Every mistake is recorded with its place and reading
+//! goes on, so that one run of the tool lists them all. A page therefore reads every key first and gives up (`?`)
+//! afterwards; [`Settings::close`] then reports keys that were not read.
 
 use std::cell::RefCell;
 use std::ops::{Range, RangeInclusive};
@@ -19,11 +18,11 @@ use numeric::digits::number;
 #[derive(Debug)]
 pub struct Settings<'a> {
     pub(super) table: &'a [Entry],
-    /// Where the table, or the key that names it, stands.
+    /// Place of the table, or of the key that names it.
     pub span: Range<usize>,
-    /// The path of the table, as in `problem.transmittance.ray`.
+    /// The path of the table, such as `problem.transmittance.ray`.
     pub path: String,
-    /// The folder that relative file names start from.
+    /// The folder that relative file names refer to.
     pub folder: &'a Path,
     pub(super) faults: &'a RefCell<Vec<Fault>>,
     additions: &'a Additions,
@@ -40,7 +39,7 @@ impl<'a> Settings<'a> {
         Self { table: root, span: 0..0, path, folder, faults, additions, asked, form }
     }
 
-    /// The same with pages of the program's own.
+    /// Settings with pages of the program's own.
     #[must_use]
     pub fn with(self, additions: &'a Additions) -> Self {
         Self { additions, ..self }
@@ -60,17 +59,17 @@ impl<'a> Settings<'a> {
         self.table.iter().find(|entry| entry.key == key)
     }
 
-    /// What the table says.
+    /// Entries of the table.
     pub fn entries(&self) -> &'a [Entry] {
         self.table
     }
 
-    /// Whether the file has the key.
+    /// Returns true if the file has the key.
     pub fn has(&self, key: &'static str) -> bool {
         self.entry(key).is_some()
     }
 
-    /// What is read where the file has the key, and `None` inside where it has not.
+    /// The value that `read` returns if the file has the key, and `None` inside if not.
     #[allow(clippy::option_option)] // the outer `None` is a recorded mistake
     pub fn optional<T>(
         &self,
@@ -80,7 +79,7 @@ impl<'a> Settings<'a> {
         if self.has(key) { read(key).map(Some) } else { Some(None) }
     }
 
-    /// Whether the table has no keys at all.
+    /// Returns true if the table has no keys.
     pub fn is_empty(&self) -> bool {
         self.table.is_empty()
     }
@@ -129,7 +128,7 @@ impl<'a> Settings<'a> {
         entry
     }
 
-    /// A number that must be there.
+    /// A required number.
     pub fn number(&self, key: &'static str, domain: Domain) -> Option<f64> {
         let entry = self.required(key, domain.words())?;
         self.number_of(entry, domain)
@@ -150,13 +149,13 @@ impl<'a> Settings<'a> {
         }
     }
 
-    /// A whole number in a range that must be there; `1e6` counts as whole.
+    /// A required integer in a range; `1e6` is an integer.
     pub fn count(&self, key: &'static str, range: RangeInclusive<u64>) -> Option<u64> {
         let entry = self.required(key, &whole(&range))?;
         self.count_of(entry, &range)
     }
 
-    /// A whole number in a range, or `default` where the key is absent.
+    /// An integer in a range, or `default` where the key is absent.
     pub fn count_or(
         &self,
         key: &'static str,
@@ -179,7 +178,7 @@ impl<'a> Settings<'a> {
         None
     }
 
-    /// A text that must be there.
+    /// A required text.
     pub fn text(&self, key: &'static str) -> Option<String> {
         let entry = self.required(key, "a text in quotes")?;
         let Value::Text(text) = &entry.node.value else {
@@ -199,7 +198,7 @@ impl<'a> Settings<'a> {
         Some(flag)
     }
 
-    /// A table that must be there.
+    /// A required table.
     pub fn table(&self, key: &'static str) -> Option<Settings<'a>> {
         let entry = self.required(key, "a table")?;
         self.open(entry)
@@ -228,7 +227,7 @@ impl<'a> Settings<'a> {
         Settings { table, span, path, asked, form, ..*self }
     }
 
-    /// Reports every key that was never asked for.
+    /// Reports every key that was not read.
     pub fn close(&self) {
         let asked = self.asked.borrow();
         for entry in self.table.iter().filter(|entry| !asked.contains(&entry.key.as_str())) {

@@ -1,15 +1,15 @@
-//! A case file as a tree that knows where each value stands, and its mistakes.
+//! A case file as a tree with the place of each value, and its mistakes.
 
 use std::ops::Range;
 
 use serde::ser::{Serialize, SerializeMap, Serializer};
 
-/// A value and the bytes of the file that it stands in.
+/// A value and its bytes in the file.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Node {
-    /// What is written.
+    /// The value.
     pub value: Value,
-    /// Where, in bytes from the beginning of the file.
+    /// Place, in bytes from the beginning of the file.
     pub span: Range<usize>,
 }
 
@@ -26,7 +26,7 @@ pub enum Value {
     Text(String),
     /// `true` or `false`.
     Boolean(bool),
-    /// Anything else TOML knows, such as a date; nothing in a case file takes it.
+    /// Any other TOML value, such as a date; no setting takes it.
     Other(&'static str),
 }
 
@@ -43,7 +43,7 @@ impl Value {
     }
 }
 
-/// Writes what stands in the file, without places.
+/// Serializes the value without places.
 impl Serialize for Value {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         match self {
@@ -63,31 +63,31 @@ impl Serialize for Value {
     }
 }
 
-/// One `key = value`.
+/// A `key = value`.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Entry {
     /// The key.
     pub key: String,
-    /// Where the key stands.
+    /// Place of the key.
     pub key_span: Range<usize>,
-    /// Its value.
+    /// Value of the key.
     pub node: Node,
 }
 
-/// One mistake: where, what, and what would be right.
+/// A mistake: its place, the error and the correction.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Fault {
     /// The bytes of the file that are wrong.
     pub span: Range<usize>,
-    /// The path of the key, as in `problem.transmittance.ray.length`.
+    /// The path of the key, such as `problem.transmittance.ray.length`.
     pub path: String,
-    /// What is wrong.
+    /// The error.
     pub message: String,
-    /// What would be right.
+    /// The correction.
     pub help: String,
 }
 
-/// Which numbers a setting takes.
+/// Domain of a number.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Domain {
     /// Any finite number.
@@ -101,7 +101,7 @@ pub enum Domain {
 }
 
 impl Domain {
-    /// Whether the number is in it.
+    /// Returns true if the number is in the domain.
     pub fn contains(self, x: f64) -> bool {
         x.is_finite()
             && match self {

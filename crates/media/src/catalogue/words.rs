@@ -1,4 +1,4 @@
-//! How messages put things: ranges, lists of names, and the name that was probably meant.
+//! Wording of messages: ranges, lists of names, and the name that was probably meant.
 
 use std::ops::RangeInclusive;
 
@@ -13,7 +13,7 @@ pub fn quoted<S: AsRef<str>>(words: &[S]) -> String {
     words.join(", ")
 }
 
-/// "did you mean" where a known word is near, the whole list where none is.
+/// "did you mean" if there is a similar known word, else the whole list.
 pub fn suggestion(written: &str, words: &[&str], otherwise: &str) -> String {
     let near = words.iter().map(|word| (distance(written, word), word)).min();
     match near {
@@ -24,7 +24,7 @@ pub fn suggestion(written: &str, words: &[&str], otherwise: &str) -> String {
     }
 }
 
-/// Words that other programs and papers use, and the keys of case files for the same thing, the likeliest first.
+/// Words of other programs and papers, and the keys of case files for the same thing, the likeliest first.
 const SYNONYMS: [(&[&str], &[&str]); 13] = [
     (
         &["sigma", "sigma-hat", "majorant", "mu-bar", "sigma-max", "sigma-bar", "rate"],
@@ -47,7 +47,7 @@ const SYNONYMS: [(&[&str], &[&str]); 13] = [
     (&["bound", "aabb", "bbox", "bounding-box"], &["bounds"]),
 ];
 
-/// The key of a table that was probably meant: a near one, or the one that says what the word says elsewhere.
+/// The key of a table that was probably meant: a similar one, or a synonym.
 pub fn meant(written: &str, keys: &[&str], otherwise: &str) -> String {
     let plain = written.to_lowercase().replace('_', "-");
     let named = SYNONYMS.iter().filter(|(words, _)| words.contains(&plain.as_str()));
@@ -58,8 +58,8 @@ pub fn meant(written: &str, keys: &[&str], otherwise: &str) -> String {
     }
 }
 
-/// The number of letters to insert, delete or replace, or of neighbours to exchange (F. J. Damerau, *A technique for
-/// computer detection and correction of spelling errors*, 1964).
+/// The number of letters to insert, delete or replace, or of adjacent letters to exchange (F. J. Damerau, *A
+/// technique for computer detection and correction of spelling errors*, 1964).
 fn distance(a: &str, b: &str) -> usize {
     let [a, b]: [Vec<char>; 2] = [a, b].map(|text| text.chars().collect());
     let first: Vec<usize> = (0..=b.len()).collect();

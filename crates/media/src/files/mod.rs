@@ -1,7 +1,7 @@
-//! Files that are whole or not there. Floor 0.
+//! Files that are written completely or not at all. Floor 0.
 //!
-//! A file is written under a temporary name beside its place and then renamed, so that a killed run
-//! leaves no torn file and loses nothing that was written before.
+//! A file is written under a temporary name beside its place and then renamed. A killed run therefore leaves no
+//! incomplete file and loses nothing that was written before.
 
 pub mod exr;
 pub mod npy;
@@ -39,14 +39,14 @@ fn damaged<T>(message: impl Into<String>) -> Result<T, Fault> {
     wrong(message, "the file is damaged: write it anew")
 }
 
-/// A text of a file as a message can show it.
+/// A text of a file in the form of messages.
 fn shown(text: &str) -> String {
     let short: String = text.chars().take(48).collect();
     let rest = if short.len() < text.len() { "…" } else { "" };
     format!("\"{}{rest}\"", short.escape_debug())
 }
 
-/// A picture as files hold it.
+/// The pixels of a picture file.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Pixels {
     /// Columns and rows.
@@ -55,16 +55,15 @@ pub struct Pixels {
     pub channels: usize,
     /// Row after row from the top, each pixel with its channels.
     pub values: Vec<f64>,
-    /// Whether some of them were stored as halves, with 11 bits.
+    /// True if some of them were stored as halves, with 11 bits.
     pub has_halves: bool,
 }
 
-/// Writes a whole file. A link stays a link, and what is no plain file (a device, a pipe) is written
-/// into as it stands.
+/// Writes a whole file. A link stays a link. A path that is no plain file (a device, a pipe) is written directly.
 ///
 /// # Errors
 ///
-/// Where the system refuses, or the path is a folder.
+/// The system refuses, or the path is a folder.
 pub fn replace(path: &Path, bytes: &[u8]) -> io::Result<()> {
     let Some(place) = place(path)? else {
         return OpenOptions::new().write(true).open(path)?.write_all(bytes);
@@ -74,11 +73,11 @@ pub fn replace(path: &Path, bytes: &[u8]) -> io::Result<()> {
     file.persist(&place).map(drop).map_err(|error| error.error)
 }
 
-/// Whether [`replace`] can be expected to work, known before there is anything to write.
+/// Checks that [`replace`] can be expected to work, before there is anything to write.
 ///
 /// # Errors
 ///
-/// Where it cannot.
+/// It cannot work.
 pub fn writable(path: &Path) -> io::Result<()> {
     match place(path)? {
         Some(place) => temporary(&place).map(drop),
@@ -86,7 +85,7 @@ pub fn writable(path: &Path) -> io::Result<()> {
     }
 }
 
-/// Where the file is, behind links; `None` for what is no plain file.
+/// Path of the file behind links; `None` if it is no plain file.
 fn place(path: &Path) -> io::Result<Option<PathBuf>> {
     match fs::metadata(path) {
         Ok(found) if found.is_dir() => Err(io::Error::from(io::ErrorKind::IsADirectory)),
@@ -97,13 +96,13 @@ fn place(path: &Path) -> io::Result<Option<PathBuf>> {
     }
 }
 
-/// Waits until a file is on the disk, and its name. Where the system cannot say, it is not waited for.
+/// Blocks until a file and its name are on the disk. Systems without that function do not block.
 pub fn synchronise(path: &Path) {
     let _ = fs::File::open(path).and_then(|file| file.sync_all());
     synchronise_folder(path);
 }
 
-/// The same of its name alone.
+/// Blocks until the name of a file is on the disk.
 pub fn synchronise_folder(path: &Path) {
     let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
     let _ = fs::File::open(folder.unwrap_or(Path::new("."))).and_then(|folder| folder.sync_all());
@@ -113,7 +112,7 @@ pub fn synchronise_folder(path: &Path) {
 fn temporary(path: &Path) -> io::Result<tempfile::NamedTempFile> {
     let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
     let mut builder = tempfile::Builder::new();
-    // A temporary file is private to its owner unless told otherwise; results are for everyone.
+    // A temporary file is private to its owner by default; results are for everyone.
     #[cfg(unix)]
     let builder = {
         use std::os::unix::fs::PermissionsExt;

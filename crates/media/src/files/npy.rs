@@ -5,26 +5,26 @@
 //! {'descr': '<f4', 'fortran_order': False, 'shape': (2, 3, 4), }
 //! ```
 //!
-//! Only what an array of numbers needs is read: three entries, in any order, without brackets in brackets other
-//! than those of an element type that is not a number, which nobody here reads further.
+//! The reader supports the header of an array of numbers: three entries, in any order, without nested brackets
+//! other than those of an element type that is not a number, which is not parsed further.
 //!
 //! Source: `NumPy` Enhancement Proposal 1, *A simple file format for `NumPy` arrays*.
 
 use std::io::{self, ErrorKind, Read};
 
-/// What the header of an array says.
+/// Header of an array.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Header {
     /// The element type, such as `<f8`; of a type with fields the text between its brackets.
     pub kind: String,
-    /// Whether the first axis varies fastest.
+    /// True if the first axis varies fastest.
     pub fortran_order: bool,
     /// The length of each axis.
     pub shape: Vec<u64>,
 }
 
 impl Header {
-    /// How many elements there are, if their bytes can be counted, whatever axes of length 0 there are.
+    /// Number of elements, if their bytes can be counted, also with axes of length 0.
     pub fn count(&self) -> Option<u64> {
         let most = |bytes: u64, &size: &u64| bytes.checked_mul(size.max(1));
         self.shape.iter().try_fold(16, most).map(|_| self.shape.iter().product())
@@ -37,11 +37,11 @@ impl Header {
     }
 }
 
-/// The bytes of a header, magic and all; fewer where the source ends before.
+/// The bytes of a header, from the magic number on; fewer where the source ends before.
 ///
 /// # Errors
 ///
-/// Those of the source.
+/// The errors of the source.
 pub fn bytes(source: &mut impl Read) -> io::Result<Vec<u8>> {
     let mut header = Vec::new();
     source.take(10).read_to_end(&mut header)?;
@@ -58,11 +58,11 @@ pub fn bytes(source: &mut impl Read) -> io::Result<Vec<u8>> {
     Ok(header)
 }
 
-/// What the bytes of a header say.
+/// Parses the bytes of a header.
 ///
 /// # Errors
 ///
-/// Where they are no header of an array.
+/// They are no header of an array.
 pub fn parse(header: &[u8]) -> io::Result<Header> {
     let wrong = |what: &str| io::Error::new(ErrorKind::InvalidData, what);
     if header.get(..6) != Some(b"\x93NUMPY") {

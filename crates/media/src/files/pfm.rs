@@ -5,14 +5,14 @@
 //! 4 bytes a value                   little-endian where the scale is negative; rows from the BOTTOM
 //! ```
 //!
-//! The size of the scale has no agreed meaning: values are read as they stand, and −1 is written.
+//! The absolute value of the scale has no agreed meaning: values are read as they are, and −1 is written.
 //!
 //! Source: P. Debevec, *PFM Portable `FloatMap` Image Format*.
 
 use super::Pixels;
 use super::npy::Word;
 
-/// The bytes of an image of one or three channels whose rows come from the top.
+/// The bytes of an image of one or three channels; its rows are given from the top.
 pub fn write([columns, rows]: [usize; 2], channels: usize, image: &[f64]) -> Vec<u8> {
     let kind = if channels > 1 { "PF" } else { "Pf" };
     let mut bytes = format!("{kind}\n{columns} {rows}\n-1.0\n").into_bytes();
@@ -70,7 +70,7 @@ pub fn read(bytes: &[u8]) -> Result<Pixels, String> {
     Ok(Pixels { size: [columns, rows], channels, values: numbers, has_halves: false })
 }
 
-/// The next word of the header, of which no program writes longer ones than 64 bytes.
+/// The next word of the header, of at most 64 bytes: no program writes longer ones.
 fn word<'a>(bytes: &'a [u8], at: &mut usize) -> Option<&'a str> {
     let rest = bytes.get(*at..)?;
     let begin = rest.iter().take(64).position(|byte| !byte.is_ascii_whitespace())?;

@@ -29,7 +29,7 @@ pub enum Encoding {
 }
 
 impl Encoding {
-    /// Its name.
+    /// Name of the encoding.
     pub fn name(self) -> &'static str {
         match self {
             Self::Single => "float32",
@@ -56,13 +56,13 @@ pub struct Vol<'a> {
     pub size: [u64; 3],
     /// Values of a sample.
     pub channels: u64,
-    /// The corners of the box, whether or not they make one.
+    /// The corners of the box; they may not form one.
     pub corners: [[f64; 3]; 2],
     samples: &'a [u8],
 }
 
 impl<'a> Vol<'a> {
-    /// Reads the header, and checks that the samples are there.
+    /// Reads the header, and checks that all samples exist.
     ///
     /// # Errors
     ///

@@ -1,4 +1,4 @@
-//! σ̂ in space: one constant on a body, or constant in the cells of a regular grid over it.
+//! σ̂ in space: one constant on a body, or a constant in each cell of a regular grid over it.
 //!
 //! ```text
 //! cell (i, j, k) of n₁ × n₂ × n₃ cells over the box about the body:  σ̂ = factor · majorant of σ_t there
@@ -16,7 +16,7 @@ use numeric::geometry::{Aabb, Bounds, Point};
 
 pub use flights::{Flights, Ground};
 
-/// A cell's bound is raised by this factor: lookups are rounded.
+/// Factor on a cell's bound, because lookups are rounded.
 const MARGIN: f64 = 1.0 + 1e-9;
 
 /// σ̂ in space.
@@ -31,12 +31,12 @@ pub struct Majorants {
 }
 
 impl Majorants {
-    /// One σ̂ everywhere on a volume.
+    /// A constant σ̂ on a volume.
     pub fn constant(value: f64, volume: &Volume) -> Self {
         let bounds = volume.bounds();
         let highest = match bounds.enclosing_box() {
             Some(within) => volume.majorant(&within),
-            // A volume without end is looked up for its bound wherever that may be.
+            // The bound of an infinite volume is that over all space that doubles reach.
             None => volume.majorant(&EVERYWHERE),
         };
         let low = bounds.enclosing_box().map_or(Point([0.0; 3]), |within| within.low);
@@ -73,7 +73,7 @@ impl Majorants {
         self
     }
 
-    /// The body in which particles are followed.
+    /// The body in which particles are tracked.
     pub fn bounds(&self) -> &Bounds {
         &self.bounds
     }
@@ -91,12 +91,12 @@ impl Majorants {
         self.values.iter().copied().fold(0.0, f64::max)
     }
 
-    /// A number that `σ_t/σ̂` exceeds nowhere: exact for cells up to their own margin.
+    /// An upper bound of `σ_t/σ̂`: exact for cells up to their own margin.
     pub fn largest_ratio(&self) -> f64 {
         self.largest_ratio
     }
 
-    /// `∫σ̂ dV`; `None` for cells over a ball, of which its boundary cuts off parts.
+    /// `∫σ̂ dV`; `None` for cells over a ball: its boundary cuts off parts of cells.
     pub fn content(&self) -> Option<f64> {
         match (self.single_value(), self.bounds) {
             (Some(value), _) => Some(value * self.bounds.content()),
@@ -121,7 +121,7 @@ impl Majorants {
     }
 }
 
-/// All the space that doubles reach without overflow of their squares.
+/// The space that doubles reach without overflow of their squares.
 const EVERYWHERE: Aabb = Aabb { low: Point([-1e150; 3]), high: Point([1e150; 3]) };
 
 #[cfg(test)]

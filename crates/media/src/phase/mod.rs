@@ -1,4 +1,4 @@
-//! Phase functions, one page each: how light that is scattered is spread over directions. Floor 1.
+//! Phase functions, one page each: the distribution of scattered light over directions. Floor 1.
 //!
 //! Everywhere in this crate `cos θ` is that of the angle between the two directions of *travel*,
 //! before and after: `cos θ = 1` is straight on, `cos θ = −1` straight back. Light that comes from a
@@ -27,7 +27,7 @@ pub trait PhaseFunction: Sized + Copy + Send + Sync + 'static {
     /// Reads its own settings from `phase.NAME = { … }`.
     fn read(settings: &Settings) -> Option<Self>;
 
-    /// Its own settings in words, as in `g=0.7`; empty if it has none.
+    /// Settings in words, such as `g=0.7`; empty if it has none.
     fn settings(&self) -> String {
         String::new()
     }
@@ -38,26 +38,26 @@ pub trait PhaseFunction: Sized + Copy + Send + Sync + 'static {
     /// The Legendre moment `χ_l`.
     fn moment(&self, order: usize) -> f64;
 
-    /// The cosine below which a share `u` of all light is scattered, `u` from 0 to 1: with `u`
-    /// uniform, `cos θ` has its law. It never leaves −1 to 1.
+    /// The cosine below which a share `u` of all light is scattered, `u` from 0 to 1: with `u` uniform, `cos θ` has
+    /// its distribution. It never leaves −1 to 1.
     fn cosine<L: Lane>(&self, u: L) -> L;
 }
 
-/// Lists the pages: from one line each come the module, the variant of [`Phase`], the name in case
-/// files and the row in `trueflight list`.
+/// Lists the pages: each line gives the module, the variant of [`Phase`], the name in case files and the row in
+/// `trueflight list`.
 macro_rules! phases {
     ($($module:ident :: $Page:ident,)*) => {
         /// Every page, in the order of registration.
         pub const CATALOGUE: PageList =
             PageList { name: "phases", pages: &[$($crate::page!($module)),*] };
 
-        /// Some phase function of the catalogue: one small type for kernels and theory alike.
+        /// A phase function of the catalogue: one small type for kernels and theory alike.
         #[derive(Debug, Clone, Copy, PartialEq)]
         #[allow(missing_docs)] // each variant is its page
         pub enum Phase { $($Page($module::$Page)),* }
 
         impl Phase {
-            /// Reads `phase.NAME = { … }`, which must be there.
+            /// Reads the required `phase.NAME = { … }`.
             pub fn read(settings: &Settings) -> Option<Self> {
                 let names: Vec<String> =
                     CATALOGUE.pages.iter().map($crate::catalogue::Page::name).collect();
@@ -101,8 +101,8 @@ macro_rules! phases {
                 match self { $(Self::$Page(page) => page.moment(order)),* }
             }
 
-            /// The cosine below which a share `u` of all light is scattered; with `u` uniform in
-            /// [0, 1], `cos θ` has its law.
+            /// The cosine below which a share `u` of all light is scattered; with `u` uniform in [0, 1], `cos θ`
+            /// has its distribution.
             #[inline(always)]
             pub fn cosine<L: Lane>(&self, u: L) -> L {
                 match self { $(Self::$Page(page) => page.cosine(u)),* }
@@ -117,7 +117,7 @@ phases! {
     henyey_greenstein::HenyeyGreenstein,
 }
 
-/// A cosine that rounding may have carried past 1 or −1, by a few units in the last place.
+/// Clamps a cosine that rounding may have carried past 1 or −1, by a few units in the last place.
 #[inline(always)]
 fn unit<L: Lane>(cosine: L) -> L {
     cosine.or_more(cosine.each(-1.0)).or_less(cosine.each(1.0))
@@ -187,7 +187,7 @@ mod tests {
                 let cosine = phase.cosine(u);
                 assert!((-1.0..=1.0).contains(&cosine), "{}: {cosine}", phase.label());
                 let share = integral(phase, cosine, |_| 1.0);
-                // Eight roundings lie between u and its cosine: worth so much of the distribution.
+                // Eight roundings between u and its cosine: the probability that they amount to.
                 let bits = std::f64::consts::TAU * phase.value(cosine) * 8.0 * 0.5 * f64::EPSILON;
                 assert!((share - u).abs() < 2e-14 + bits, "{} at {u}: {share}", phase.label());
             }

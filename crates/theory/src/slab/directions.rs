@@ -92,7 +92,7 @@ pub fn needed(phase: &Phase, faintest: f64) -> usize {
     (last / 2 + 1).min(MOST)
 }
 
-/// Returns true if [`MOST`] directions resolve a phase function.
+/// Returns true if the maximum number of directions resolves a phase function.
 pub fn are_enough(phase: &Phase, faintest: f64) -> bool {
     phase.moment(2 * MOST).abs() < faintest
 }

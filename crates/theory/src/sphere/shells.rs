@@ -224,7 +224,7 @@ impl Row {
         Self(vec![0.0; count])
     }
 
-    /// Adds weights times the values at places of `r²` within a shell, [`SIDE`] of them side by side.
+    /// Adds weights times the values at places of `r²` within a shell, some of them side by side.
     #[inline]
     pub fn add(&mut self, shell: &Shell, places: &[f64], weights: &[f64]) {
         let moments = &mut self.0[shell.first..][..shell.nodes];

@@ -1,4 +1,4 @@
-//! The headers of `OpenEXR` files, those of kinds included that the crate `exr` refuses before it names them.
+//! The headers of `OpenEXR` files, including kinds that the crate `exr` refuses without a name.
 //!
 //! ```text
 //! magic, version and flags (2 u32): 0x200 one part of tiles, 0x800 deep, 0x1000 several parts
@@ -44,7 +44,7 @@ impl std::fmt::Display for Window {
 /// A channel of a part.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Channel {
-    /// Its name, as in `R` or `diffuse.R`.
+    /// Name, such as `R` or `diffuse.R`.
     pub name: String,
     /// `uint32`, `float16` or `float32`.
     pub kind: &'static str,
@@ -55,24 +55,24 @@ pub struct Channel {
 /// Contents of a header.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Part {
-    /// Its name; empty in a file of one part that has none.
+    /// Name; empty in a file of one part without a name.
     pub name: String,
     /// `scan lines`, `tiles`, `deep scan lines` or `deep tiles`.
     pub kind: &'static str,
     /// Compression of the pixels.
     pub compression: String,
-    /// Whether the compression is read.
+    /// True if the compression is supported.
     pub is_read: bool,
     /// The pixels that are stored.
     pub data: Window,
     /// The picture.
     pub display: Window,
-    /// Its channels, by name.
+    /// Channels, by name.
     pub channels: Vec<Channel>,
 }
 
 impl Part {
-    /// Whether its pixels have several samples each.
+    /// Returns true if pixels have several samples each.
     pub fn is_deep(&self) -> bool {
         self.kind.starts_with("deep")
     }

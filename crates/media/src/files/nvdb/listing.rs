@@ -53,11 +53,11 @@ const CLASSES: [&str; 9] = [
 /// Entry of a grid in a file.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Listed {
-    /// Its name: `density`, or `density[1]` where there are several of a name.
+    /// Name: `density`, or `density[1]` where several grids have the same name.
     pub name: String,
-    /// Its type, such as `Float`.
+    /// Type, such as `Float`.
     pub kind: String,
-    /// Its class, such as `fog volume`; empty where none is said.
+    /// Class, such as `fog volume`; empty without one.
     pub class: String,
     /// Number of active voxels.
     pub active: u64,
@@ -73,12 +73,12 @@ pub struct Listed {
 }
 
 impl Listed {
-    /// Whether [`super::read`] reads its type.
+    /// Returns true if [`super::read`] supports the type.
     pub fn is_read(&self) -> bool {
         nodes::Values::of(self.number).is_some()
     }
 
-    /// Name in a list of grids, with the type if that is not read.
+    /// Name in a list of grids, with the type if that is not supported.
     pub(super) fn shown(&self) -> String {
         let name = shown(&self.name);
         if self.is_read() { name } else { format!("{name} ({})", self.kind) }
@@ -126,7 +126,7 @@ pub fn list(file: &[u8]) -> Result<Vec<Listed>, Fault> {
     Ok(listed)
 }
 
-/// A segment's grids; where the next segment begins.
+/// Lists a segment's grids; returns the place of the next segment.
 fn segment(file: &[u8], mut at: usize, listed: &mut Vec<Listed>) -> Result<usize, Fault> {
     if !matches!(part(file, at, 8), Ok(b"NanoVDB0" | b"NanoVDB2")) {
         let place = if at == 0 { String::new() } else { format!(" at byte {at}") };
@@ -185,7 +185,7 @@ fn segment(file: &[u8], mut at: usize, listed: &mut Vec<Listed>) -> Result<usize
     Ok(at)
 }
 
-/// A grid as it lies in memory, without a header of the file.
+/// A grid as it is in memory, without a header of the file.
 fn raw(file: &[u8]) -> Result<Listed, Fault> {
     let (written, size) = (number(file, 16)?, word(file, 32)?);
     if written >> 21 != MAJOR {

@@ -2,7 +2,7 @@
 
 use super::{Fault, damaged};
 
-/// Bytes and a place among them.
+/// Bytes and a position among them.
 pub(super) struct Bytes<'a> {
     all: &'a [u8],
     at: usize,
@@ -13,22 +13,22 @@ impl<'a> Bytes<'a> {
         Self { all, at: 0 }
     }
 
-    /// How many there are in all.
+    /// Number of all bytes.
     pub(super) fn len(&self) -> usize {
         self.all.len()
     }
 
-    /// The place of the next.
+    /// The position of the next byte.
     pub(super) fn at(&self) -> usize {
         self.at
     }
 
-    /// Goes to a place.
+    /// Sets the position.
     pub(super) fn seek(&mut self, at: usize) {
         self.at = at;
     }
 
-    /// So many bytes.
+    /// Reads `count` bytes.
     pub(super) fn take(&mut self, count: usize) -> Result<&'a [u8], Fault> {
         match self.all.get(self.at..).and_then(|rest| rest.get(..count)) {
             Some(found) => {
@@ -54,7 +54,7 @@ impl<'a> Bytes<'a> {
         Ok(u32::from_le_bytes(self.array()?))
     }
 
-    /// One of eight.
+    /// An unsigned number of eight bytes.
     pub(super) fn word(&mut self) -> Result<u64, Fault> {
         Ok(u64::from_le_bytes(self.array()?))
     }
@@ -63,7 +63,7 @@ impl<'a> Bytes<'a> {
         Ok(f32::from_le_bytes(self.array()?))
     }
 
-    /// So many doubles.
+    /// Reads `N` doubles.
     pub(super) fn doubles<const N: usize>(&mut self) -> Result<[f64; N], Fault> {
         let mut doubles = [0.0; N];
         for double in &mut doubles {

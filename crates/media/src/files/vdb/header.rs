@@ -1,24 +1,24 @@
-//! The header of a file, what stands before each grid, and a grid's own beginning.
+//! The header of a file, the entry before each grid, and the beginning of a grid.
 
 use super::bytes::Bytes;
 use super::transform::Transform;
 use super::{Fault, damaged, shown, wrong};
 
-/// The versions whose layout is this one.
+/// Versions with this layout.
 const VERSIONS: std::ops::RangeInclusive<u32> = 222..=224;
 
 /// The type of a grid of floats; one of halves has a suffix.
 const FLOATS: &str = "Tree_float_5_4_3";
 const HALVES: &str = "_HalfFloat";
 
-/// What stands before each grid.
+/// Entry before each grid.
 pub(super) struct Entry {
-    /// Its name, with the number of those of one name that `OpenVDB` adds to it.
+    /// Name, with the number that `OpenVDB` adds to equal names.
     pub(super) key: String,
     pub(super) kind: String,
-    /// The key of the grid whose tree it shares, or nothing.
+    /// The key of the grid with the tree that this grid shares, or empty.
     pub(super) parent: String,
-    /// Where it begins, its blocks begin and it ends: one after the other, and after what stands before the grid.
+    /// Positions after this entry, in ascending order: the grid's beginning, its blocks' beginning and its end.
     pub(super) places: [usize; 3],
 }
 
@@ -39,12 +39,12 @@ impl Entry {
                 shown(&key)
             ));
         }
-        // None is beyond the file.
+        // No position is beyond the file.
         let places = [begin, blocks, end].map(|place| usize::try_from(place).unwrap_or(usize::MAX));
         Ok(Self { key, kind, parent, places })
     }
 
-    /// The name that a reader of the file knows it by: `density`, or `density[1]` where there are several of a name.
+    /// The name for users of the file: `density`, or `density[1]` where several grids have the same name.
     pub(super) fn name(&self) -> String {
         match self.key.split_once('\x1e') {
             Some((name, number)) => format!("{name}[{number}]"),
@@ -52,24 +52,24 @@ impl Entry {
         }
     }
 
-    /// Whether its type is that of floats.
+    /// Returns true if the type is a tree of floats.
     pub(super) fn has_floats(&self) -> bool {
         self.kind.strip_suffix(HALVES).unwrap_or(&self.kind) == FLOATS
     }
 
-    /// Whether its floats are stored as halves.
+    /// Returns true if floats are stored as halves.
     pub(super) fn has_halves(&self) -> bool {
         self.kind.ends_with(HALVES)
     }
 
-    /// Its name as a list of grids shows it, with the type where that is none of floats.
+    /// Name in a list of grids, with the type if that is not a tree of floats.
     pub(super) fn shown(&self) -> String {
         let name = shown(&self.name());
         if self.has_floats() { name } else { format!("{name} ({})", shown(&self.kind)) }
     }
 }
 
-/// The header, and what stands before each grid.
+/// The header, and the entry before each grid.
 pub(super) fn entries(bytes: &mut Bytes) -> Result<Vec<Entry>, Fault> {
     if !matches!(bytes.take(8), Ok(b" BDV\0\0\0\0")) {
         return wrong("it does not begin as OpenVDB's files do", "write it by OpenVDB");
@@ -120,11 +120,11 @@ fn metadata(
     Ok(())
 }
 
-/// A grid's own beginning: how it is packed, what its metadata say, and its transform.
+/// The beginning of a grid: packing, metadata, and transform.
 pub(super) struct Head {
     pub(super) compression: u32,
     pub(super) class: String,
-    /// How many voxels are active.
+    /// Number of active voxels.
     pub(super) voxels: Option<u64>,
     pub(super) transform: Transform,
 }

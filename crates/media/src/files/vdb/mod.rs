@@ -7,14 +7,13 @@
 //!   compression, metadata, transform, topology of the tree; then the blocks: the values of its leaves
 //! ```
 //!
-//! All numbers are little-endian; a text is its length (u32) and its bytes. Read are versions 222 to 224 (`OpenVDB` 10
-//! writes the last; this layout is that of all three), grids of the type `Tree_float_5_4_3`, their numbers as float32 or float16, packed by
-//! every scheme that the library writes: none, zip, Blosc with LZ4, with and without the mask of active values.
-//! Transforms are affine; frusta are refused.
+//! All numbers are little-endian; a text is its length (u32) and its bytes. The reader supports versions 222 to 224
+//! (`OpenVDB` 10 writes the last; this layout is common to all three) and grids of the type `Tree_float_5_4_3`.
+//! Their numbers are float32 or float16, packed by every scheme that the library writes: none, zip, Blosc with LZ4,
+//! with and without the mask of active values. Transforms are affine; frusta are refused.
 //!
-//! No count that the file announces is trusted: memory is asked for as bytes are read, and places that the file
-//! names must be those where its parts end. The crate `vdb-rs` (0.6) does trust them, panics at other versions, and
-//! needs a C compiler.
+//! No count in the file is trusted: memory is allocated as bytes are read, and positions in the file must be those
+//! where its parts end. The crate `vdb-rs` (0.6) trusts them, panics at other versions, and needs a C compiler.
 //!
 //! Source: K. Museth, *VDB: High-Resolution Sparse Volumes with Dynamic Topology*, ACM Transactions on Graphics 32
 //! (2013), for the tree; the layout is that of `openvdb/io` and `openvdb/tree` in `OpenVDB` 10.
@@ -41,30 +40,30 @@ use super::{damaged, shown, wrong};
 /// A grid of floats.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Grid {
-    /// Its name.
+    /// Name.
     pub name: String,
-    /// Its class by its metadata, such as `fog volume` or `level set`; empty where none is said.
+    /// Class from the metadata, such as `fog volume` or `level set`; empty without one.
     pub class: String,
-    /// Where its voxels stand.
+    /// Transform from indices to the world.
     pub transform: Transform,
-    /// Its voxels.
+    /// Voxels.
     pub tree: Tree,
 }
 
 /// Entry of a grid in a file, without its tree.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Listed {
-    /// Its name.
+    /// Name.
     pub name: String,
-    /// Its type, such as `Tree_float_5_4_3`.
+    /// Type, such as `Tree_float_5_4_3`.
     pub kind: String,
-    /// Its class, such as `fog volume`; empty where none is said.
+    /// Class, such as `fog volume`; empty without one.
     pub class: String,
     /// Number of active voxels, if the file states it.
     pub active: Option<u64>,
     /// Transform from indices to the world.
     pub transform: Transform,
-    /// Whether [`read`] reads its type.
+    /// True if [`read`] supports the type.
     pub is_read: bool,
 }
 
@@ -94,11 +93,11 @@ pub fn list(file: &[u8]) -> Result<Vec<Entered>, Fault> {
     Ok(listed)
 }
 
-/// Reads the grid of a name; without one, the file's only grid of floats.
+/// Reads the grid of a name; without a name, the file's only grid of floats.
 ///
 /// # Errors
 ///
-/// Whatever keeps the file from being one of the kind that is described above, with such a grid.
+/// The file is not one of the kind that is described above, or has no such grid.
 pub fn read(file: &[u8], name: Option<&str>) -> Result<Grid, Fault> {
     let mut bytes = Bytes::new(file);
     let entries = header::entries(&mut bytes)?;
@@ -132,7 +131,7 @@ const CONVERT: &str = "a grid of the type Tree_float_5_4_3 is read: OpenVDB's Fl
 
 fn grid(bytes: &mut Bytes, entry: &Entry, entries: &[Entry]) -> Result<Grid, Fault> {
     let own = Head::read(bytes, entry)?;
-    // A grid that shares its tree has a transform and no more.
+    // A grid that shares its tree has only a transform.
     let (head, owner) = if entry.parent.is_empty() {
         (None, entry)
     } else {

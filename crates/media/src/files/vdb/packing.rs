@@ -1,4 +1,4 @@
-//! The values of a node, as they are packed.
+//! The packed values of a node.
 //!
 //! ```text
 //! what is said of inactive values (1 byte)
@@ -8,7 +8,7 @@
 //!   as they are, or their length (i64) and so many bytes of zip or Blosc; a length below 1 says: as they are
 //! ```
 //!
-//! Where inactive values are not masked, all values are stored whatever the first byte says.
+//! Where inactive values are not masked, all values are stored for any first byte.
 
 use exr::prelude::f16;
 
@@ -19,7 +19,7 @@ const ZIP: u32 = 1;
 const ACTIVE_MASK: u32 = 2;
 const BLOSC: u32 = 4;
 
-/// How the values of a grid are packed.
+/// Packing of the values of a grid.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Packing {
     compression: u32,
@@ -27,12 +27,12 @@ pub(super) struct Packing {
     width: usize,
 }
 
-/// Whether a mask is on at a place.
+/// Returns true if a mask is on at an index.
 pub(in crate::files) fn is_on(mask: &[u8], place: usize) -> bool {
     mask[place / 8] >> (place % 8) & 1 == 1
 }
 
-/// How often it is on.
+/// Number of indices at which a mask is on.
 pub(in crate::files) fn count_on(mask: &[u8]) -> usize {
     mask.iter().map(|byte| byte.count_ones() as usize).sum()
 }
@@ -46,7 +46,7 @@ impl Packing {
         Ok(Self { compression, width: if has_halves { 2 } else { 4 } })
     }
 
-    /// The values of a node, of which the mask tells the active ones.
+    /// The values of a node, given the mask of the active ones.
     pub(super) fn values(
         self,
         bytes: &mut Bytes,
@@ -78,11 +78,11 @@ impl Packing {
         Ok((0..all).map(value).collect())
     }
 
-    /// So many numbers, unpacked.
+    /// Reads `count` unpacked numbers.
     fn numbers(self, bytes: &mut Bytes<'_>, count: usize) -> Result<Vec<f32>, Fault> {
         let size = self.width * count;
         let mut room = Vec::new();
-        // Of no halves there is not even the length.
+        // For zero halves even the length is missing.
         let is_nothing = self.width == 2 && count == 0;
         let stored = if self.compression & (ZIP | BLOSC) == 0 || is_nothing {
             bytes.take(size)?

@@ -16,10 +16,10 @@ use super::bytes::Bytes;
 use super::packing::{Packing, count_on, is_on};
 use super::{Fault, damaged, wrong};
 
-/// How many voxels a leaf has along each axis.
+/// Number of voxels of a leaf along each axis.
 pub const LEAF: i32 = 8;
 
-/// How many voxels may be in tiles that are so many.
+/// Maximum number of voxels in tiles, once there are more than [`MOST_TILES`] tiles.
 const MOST_VOXELS: u64 = 1 << 27;
 const MOST_TILES: usize = 1 << 12;
 
@@ -32,24 +32,24 @@ pub(in crate::files) const EDGES: [i32; 3] = [4096, 128, LEAF];
 /// A cube of one value.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Tile {
-    /// Its lowest corner.
+    /// Lowest corner.
     pub origin: [i32; 3],
     /// Voxels along each axis.
     pub edge: i32,
-    /// The value of all of them, active or not.
+    /// The value of all voxels, active or not.
     pub value: f32,
 }
 
 /// A cube of 8³ voxels.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Leaf {
-    /// Its lowest corner.
+    /// Lowest corner.
     pub origin: [i32; 3],
     /// The value of each voxel, active or not: z fastest, then y, then x.
     pub values: Vec<f32>,
 }
 
-/// All that a grid holds: what is neither tile nor leaf is background.
+/// Contents of a grid; voxels outside tiles and leaves are background.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Tree {
     /// The value elsewhere.
@@ -58,7 +58,7 @@ pub struct Tree {
     pub tiles: Vec<Tile>,
     /// Leaves.
     pub leaves: Vec<Leaf>,
-    /// How many voxels are active.
+    /// Number of active voxels.
     pub active: u64,
 }
 
@@ -102,8 +102,8 @@ impl Growing {
         Self { tree: Tree { background, tiles, leaves, active: 0 }, filled: 0 }
     }
 
-    /// Adds a tile. Tiles do not overlap. Many of them with more voxels than a medium may have are refused, for a small file
-    /// may have very many. A few are kept, so that the error of the medium can state its size.
+    /// Adds a tile. Tiles do not overlap. Many of them with more voxels than a medium may have are refused, because
+    /// a small file can contain very many. A few are kept, so that the error of the medium can state its size.
     pub(in crate::files) fn tile(&mut self, tile: Tile, is_active: bool) -> Result<(), Fault> {
         let voxels = u64::from(tile.edge.unsigned_abs()).pow(3);
         if is_active {
@@ -155,7 +155,7 @@ impl Reader<'_, '_> {
         Ok(())
     }
 
-    /// A node of `2^LOG` tiles or children along each axis, whose edge is that of the level.
+    /// A node of `2^LOG` tiles or children along each axis, with the edge of the level.
     fn node<const LOG: usize>(&mut self, level: usize, origin: [i32; 3]) -> Result<(), Fault> {
         let size = 1 << (3 * LOG);
         let children = self.bytes.take(size / 8)?;
@@ -204,7 +204,7 @@ mod tests {
 
     #[test]
     fn tiles_are_refused_while_they_take_little_memory() {
-        // 5000 tiles of 4096³ voxels at the root: more than any medium has, and more than are worth to be kept.
+        // 5000 tiles of 4096³ voxels at the root: more than any medium may have, and more than are kept.
         let mut bytes = [1_u32.to_le_bytes(), 0.0_f32.to_le_bytes()].concat();
         bytes.extend([5000_u32.to_le_bytes(), 0_u32.to_le_bytes()].concat());
         for at in 0..5000_i32 {
