@@ -7,8 +7,8 @@ use media::catalogue::{Addition, Page, Settings};
 /// Reads an estimator of problem `P` from `{ NAME = { … } }`.
 pub type EstimatorReader<P> = fn(&Settings) -> Option<Box<dyn Entry<P>>>;
 
-/// Registers an estimator of problem `P`: it is named in case files, drawn, judged, plotted and timed as the built-in
-/// ones are.
+/// Registers an estimator of problem `P`. It is named in case files, drawn, judged, plotted and timed like the
+/// built-in ones.
 ///
 /// ```
 /// use trueflight_estimators::own::estimator;

@@ -10,7 +10,7 @@ use std::fmt;
 
 use numeric::digits::{count, fixed, short};
 
-/// Most digits that tell a measured from an expected value.
+/// Maximum number of digits that distinguish a measured from an expected value.
 const MAX_DIGITS: usize = 12;
 
 /// A measured quantity beside its expected value.
@@ -86,7 +86,7 @@ fn score(z: f64) -> String {
     }
 }
 
-/// The digits in which two numbers differ by two places.
+/// Number of digits at which two numbers differ by two places.
 #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // between 3 and MAX_DIGITS
 fn distinct_digits(a: f64, b: f64) -> usize {
     let relative = (a - b).abs() / a.abs().max(b.abs());

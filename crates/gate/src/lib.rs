@@ -1,4 +1,4 @@
-//! Is my estimator unbiased? Statistics and verdicts on anybody's draws.
+//! Is my estimator unbiased? Statistics and verdicts for draws of any program.
 
 pub mod causes;
 pub mod check;

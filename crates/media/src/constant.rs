@@ -23,13 +23,13 @@ pub struct Constant {
 }
 
 impl Constant {
-    /// With `σ_t ≥ 0`, 1/length, within bounds.
+    /// A field with `σ_t ≥ 0`, 1/length, within bounds.
     pub fn new(extinction: f64, bounds: Bounds) -> Self {
         Self { extinction, bounds }
     }
 }
 
-/// A homogeneous stretch of ray.
+/// A homogeneous interval of a ray.
 pub struct Homogeneous {
     /// `σ_t ≥ 0`, 1/length.
     pub extinction: f64,

@@ -30,7 +30,7 @@ use crate::catalogue::{Domain, Settings};
 use numeric::geometry::{Aabb, Bounds, Point, Ray};
 use numeric::{Known, Lane, Span};
 
-/// Below this exponent `e^x` loses digits.
+/// Exponent below which `e^x` loses digits.
 const LEAST: f64 = -700.0;
 
 /// An exponential atmosphere as a volume.
@@ -43,19 +43,19 @@ pub struct Exponential {
 }
 
 impl Exponential {
-    /// `extinction · exp(−rate · axis·p)`, with an axis of length 1.
+    /// The field `extinction · exp(−rate · axis·p)`, with an axis of length 1.
     pub fn new(extinction: f64, rate: f64, axis: Point, bounds: Bounds) -> Self {
         Self { base: 0.0, extinction, rate, axis, bounds }
     }
 }
 
-/// An exponential stretch of ray.
+/// An exponential interval of a ray.
 ///
 /// ```text
 /// σ_t(t) = base + scale · exp(offset + slope · t)
 /// ```
 ///
-/// Scale and offset stay apart, so that a far origin of the ray cannot overflow.
+/// Scale and offset are kept apart, so that a far origin of the ray cannot overflow.
 pub struct Decay {
     base: f64,
     scale: f64,
@@ -64,7 +64,7 @@ pub struct Decay {
 }
 
 impl Decay {
-    /// `extinction · exp(−rate · t)`, with an extinction of at least 0, 1/length, and a rate, 1/length.
+    /// The field `extinction · exp(−rate · t)`, with an extinction of at least 0, 1/length, and a rate, 1/length.
     pub fn new(extinction: f64, rate: f64) -> Self {
         Self { base: 0.0, scale: extinction, offset: 0.0, slope: -rate }
     }
@@ -73,13 +73,13 @@ impl Decay {
         self.offset + self.slope * t
     }
 
-    /// Without the base.
+    /// The field without the base.
     fn value(&self, t: f64) -> f64 {
         let exponent = self.exponent(t);
         if exponent >= LEAST {
             return self.scale * exponent.exp();
         }
-        // Next to underflow e^x has few digits, which a large scale would show.
+        // Next to underflow e^x has few digits, which a large scale would expose.
         let half = (0.5 * exponent).exp();
         self.scale * half * half
     }
@@ -104,7 +104,7 @@ impl OpticalDepth for Decay {
     }
 
     fn breaks(&self, span: Span) -> Vec<f64> {
-        // Frames of the decay's own scale: equal panels would step over a steep one.
+        // Breaks at the decay's own scale: equal panels would miss a steep one.
         let frames = [1.0, 4.0, 16.0, 40.0].map(|lengths| lengths / self.slope.abs());
         let at = frames.map(|s| if self.slope > 0.0 { span.to - s } else { span.from + s });
         at.into_iter().filter(|&t| span.contains_inside(t)).collect()

@@ -1,4 +1,4 @@
-//! The settings of a grid: where its samples come from and where they stand.
+//! The settings of a grid: source and positions of its samples.
 
 use std::path::Path;
 
@@ -10,7 +10,7 @@ use crate::catalogue::{Settings, Value};
 use numeric::digits::short;
 use numeric::geometry::{Aabb, Bounds, Point};
 
-/// The format of the file, where the samples are of one.
+/// The format of the file, if the samples are from one.
 pub(super) fn format(settings: &Settings) -> Option<Format> {
     match settings.entry("file").map(|entry| &entry.node.value) {
         Some(Value::Text(name)) => Format::of(Path::new(name)),
@@ -42,7 +42,7 @@ pub(super) fn read_samples(settings: &Settings) -> Option<Samples> {
     }
 }
 
-/// What is read of the file; each setting has a say in some formats only.
+/// Part of the file that is read; each setting applies to some formats only.
 fn read_choice(settings: &Settings) -> Option<Choice> {
     let format = format(settings);
     let is_for = |key: &'static str, takes: fn(Format) -> bool, of: &str| {
@@ -74,7 +74,7 @@ pub(super) fn facts(settings: &Settings, samples: &Samples, bounds: Aabb) -> Vec
     let Some(Value::Text(name)) = settings.entry("file").map(|entry| &entry.node.value) else {
         return Vec::new();
     };
-    // A layer of background stands about the voxels of such a file.
+    // A layer of background surrounds the voxels of such a file.
     let layer = if format(settings).is_some_and(Format::has_transform) { 2 } else { 0 };
     let [x, y, z] = samples.size.map(|n| n - layer);
     let corner = |point: Point| point.0.map(|x| short(x, 6)).join(", ");
@@ -112,7 +112,7 @@ pub(super) fn random(size: [usize; 3], seed: u32) -> Samples {
     Samples { size, values, bounds: None, turned: None, remark: String::new() }
 }
 
-/// The placement of a file that says it itself.
+/// The placement in a file that has a transform of its own.
 pub(super) fn no_placement(settings: &Settings, format: Format) -> Option<Placement> {
     let given = ["bounds", "samples", "border"].into_iter().filter(|key| settings.has(key));
     let faults = given.map(|key| {
@@ -141,7 +141,7 @@ pub(super) fn read_bounds(settings: &Settings) -> Option<Aabb> {
     Some(bounds)
 }
 
-/// The box that the file gives, if it is one.
+/// The box in the file, if it is one.
 pub(super) fn own_bounds(settings: &Settings, samples: &Samples) -> Option<Aabb> {
     let proper = |bounds: &Aabb| {
         (0..3).all(|j| {

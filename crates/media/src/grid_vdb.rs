@@ -5,10 +5,11 @@
 //! box from the world's place of (low − 1) to that of (high + 1): samples stand on its faces, and those are background
 //! ```
 //!
-//! Linear interpolation between them is what `OpenVDB`'s `BoxSampler` finds, in the box: a tile is as many voxels of one
-//! value, and inactive voxels have the value that is stored for them. `OpenVDB`'s background goes on for ever; a medium has an
-//! end, and is 0 beyond the box. A mirrored axis is turned about, voxels and all. Where the transform turns or shears the
-//! lattice, rays go into index space, and the bounds are the box about the turned one.
+//! Linear interpolation between them is that of `OpenVDB`'s `BoxSampler`, inside the box. A tile counts as its
+//! voxels of one value, and inactive voxels have their stored values. `OpenVDB`'s background has no end; a medium
+//! ends at the box, and is 0 beyond. A mirrored axis is reversed together with its voxels. Where the transform
+//! rotates or shears the lattice, rays are transformed into index space, and the bounds are the box about the
+//! rotated one.
 
 use super::grid_file::{Samples, Turned, Unreadable, sizes, wrong};
 use crate::files::vdb::{Grid, LEAF, Transform, Tree};
@@ -19,7 +20,7 @@ use numeric::geometry::{Aabb, Point};
 ///
 /// # Errors
 ///
-/// Whatever keeps the grid from being one of finite, non-negative samples that have an end.
+/// The grid has other than finite, non-negative samples, or no end.
 pub fn samples(grid: &Grid) -> Result<Samples, Unreadable> {
     if grid.class == "level set" {
         let help = "make a fog volume of it, by openvdb::tools::sdfToFogVolume";
@@ -44,7 +45,7 @@ pub fn samples(grid: &Grid) -> Result<Samples, Unreadable> {
     Ok(Samples { remark, ..samples })
 }
 
-/// A value and the first voxel that has it: of a tile once, of a leaf 8³ times.
+/// Each value with the lowest corner and the edge of its voxels: once for a tile, 8³ times for a leaf.
 pub fn values(tree: &Tree) -> impl Iterator<Item = ([i64; 3], i64, f32)> {
     let tiles =
         tree.tiles.iter().map(|tile| (tile.origin.map(i64::from), tile.edge.into(), tile.value));
@@ -73,7 +74,7 @@ fn check_values(tree: &Tree) -> Result<(), Unreadable> {
     )
 }
 
-/// The lowest and the highest index along each axis that are not background.
+/// The lowest and the highest index of voxels that are not background, along each axis.
 pub fn reach(tree: &Tree) -> Option<[[i64; 3]; 2]> {
     let others = values(tree).filter(|&(_, _, value)| value != tree.background);
     let ends = others.map(|(from, edge, _)| [from, from.map(|n| n + edge - 1)]);
@@ -128,7 +129,8 @@ fn along_axes(
 ) -> Result<Aabb, Unreadable> {
     let face = |j: usize, index: i64| scale[j] * index as f64 + shift[j];
     let ends: [[f64; 2]; 3] = std::array::from_fn(|j| [face(j, low[j]), face(j, high[j])]);
-    // Where the shift swallows the scale, or either is too large, the faces are not where the voxels say.
+    // Where the scale is lost in the rounding of the shift, or either is too large, the faces are not where the
+    // voxels are.
     let is_kept = |j: usize| {
         let edge = scale[j].abs() * high[j].abs_diff(low[j]) as f64;
         let [a, b] = ends[j];
@@ -145,7 +147,7 @@ fn along_axes(
     Ok(Aabb { low: Point(ends.map(|[a, b]| a.min(b))), high: Point(ends.map(|[a, b]| a.max(b))) })
 }
 
-/// The box about samples between two indices, and where they stand.
+/// The box about samples between two indices, and the positions of the samples.
 fn turned(transform: &Transform, [low, high]: [[i64; 3]; 2]) -> Result<(Aabb, Turned), Unreadable> {
     let corner = |n: usize| {
         transform

@@ -5,7 +5,7 @@
 //! ```
 //!
 //! In 1-D `x` is the distance `t`; in 3-D it is the height `p·axis` of a plane-parallel medium.
-//! Outside the breaks the first and the last value go on.
+//! Outside the breaks the field keeps the first and the last value.
 //!
 //! | setting | meaning | unit | default |
 //! |---|---|---|---|

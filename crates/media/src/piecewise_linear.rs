@@ -5,7 +5,7 @@
 //! ```
 //!
 //! In 1-D `x` is the distance `t`; in 3-D it is the height `p·axis` of a plane-parallel medium.
-//! Outside the knots the first and the last value go on.
+//! Outside the knots the field keeps the first and the last value.
 //!
 //! | setting | meaning | unit | default |
 //! |---|---|---|---|
@@ -49,7 +49,7 @@ pub fn read_pieces(settings: &Settings, is_steps: bool) -> Option<Piecewise> {
     })
 }
 
-/// A plane-parallel volume: straight pieces along an axis, level ones if they are steps.
+/// A plane-parallel volume: straight pieces along an axis; constant ones if they are steps.
 pub struct Layers<const STEPS: bool> {
     pieces: Piecewise,
     axis: Point,
@@ -57,7 +57,7 @@ pub struct Layers<const STEPS: bool> {
 }
 
 impl<const STEPS: bool> Layers<STEPS> {
-    /// Pieces of the height along an axis of length 1.
+    /// Layers by pieces of the height along an axis of length 1.
     pub fn new(pieces: Piecewise, axis: Point, bounds: Bounds) -> Self {
         Self { pieces, axis, bounds }
     }
@@ -97,7 +97,7 @@ impl<const STEPS: bool> Field for Layers<STEPS> {
         self.pieces.on(span).corner_values().fold(0.0, f64::max)
     }
 
-    /// The pieces as the ray crosses them: heights `p·axis` become distances.
+    /// The pieces along the ray: heights `p·axis` become distances.
     fn along(&self, ray: &Ray, inside: Span) -> Piecewise {
         let (height, climb) = (ray.origin.dot(self.axis), ray.direction.dot(self.axis));
         // A ray that climbs by less than rounding over its length stays in its layer.
@@ -109,7 +109,7 @@ impl<const STEPS: bool> Field for Layers<STEPS> {
         if crossings.len() < 2 {
             return Piecewise::constant(self.pieces.value(height + climb * inside.from), inside);
         }
-        // Two lookups inside each piece fix its line without touching the jumps at its ends.
+        // Two lookups inside each piece determine its line, away from the jumps at its ends.
         let ends = crossings.windows(2).map(|piece| {
             let at = |u: f64| {
                 let t = piece[0] + u * (piece[1] - piece[0]);

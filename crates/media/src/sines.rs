@@ -126,7 +126,7 @@ impl OpticalDepth for Waves {
     }
 
     fn panel_nodes(&self) -> Option<usize> {
-        // Over half a period the square turns by 2π: 12 nodes leave less than 1e-16 of it.
+        // Over half a period the square turns by 2π: 12 nodes have an error below 1e-16 of it.
         Some(12)
     }
 }

@@ -17,9 +17,9 @@ use std::f64::consts::{FRAC_PI_2, PI};
 use numeric::quadrature::GaussLegendre;
 use numeric::sum::Sum;
 
-/// The relative error.
+/// Relative error of the result.
 pub const ERROR: f64 = 1e-14;
-/// Halvings of the panels towards either end.
+/// Number of halvings of the panels towards either end.
 const HALVINGS: i32 = 48;
 /// Nodes per panel.
 const NODES: usize = 20;

@@ -3,7 +3,7 @@
 /// The central moments of one draw, in units of its scale: `μ_k / scale^k` for k = 2, 3, 4.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Moments {
-    /// The unit: for transmittance its true value T.
+    /// The unit: the true value T for transmittance.
     pub scale: f64,
     /// `μ₂/scale²`, `μ₃/scale³`, `μ₄/scale⁴`; infinite where they overflow.
     pub relative: [f64; 3],
@@ -11,8 +11,8 @@ pub struct Moments {
     pub error: f64,
 }
 
-/// A number that is not negative and known to within `off`, and its relative error. One that is smaller than
-/// that is taken for `off` itself, which is right to 100 %: zero would promise that draws do not vary.
+/// A number that is known to be at least 0 with the error `off`, and its relative error. A number below `off` is
+/// replaced by `off`, with a relative error of 100 %: zero would mean that draws do not vary.
 pub(super) fn not_negative(value: f64, off: f64) -> [f64; 2] {
     if value.is_nan() || off.is_nan() || off == f64::INFINITY {
         return [value, f64::INFINITY];
@@ -22,7 +22,7 @@ pub(super) fn not_negative(value: f64, off: f64) -> [f64; 2] {
 }
 
 impl Moments {
-    /// A draw without spread.
+    /// A draw without variance.
     pub fn certain(scale: f64) -> Self {
         Self { scale, relative: [0.0; 3], error: 0.0 }
     }
@@ -56,13 +56,13 @@ impl Moments {
         self.scale * self.scale * self.relative[0]
     }
 
-    /// `μ₃/μ₂^{3/2}`; `None` without spread.
+    /// `μ₃/μ₂^{3/2}`; `None` without variance.
     pub fn skewness(&self) -> Option<f64> {
         let [m2, m3, _] = self.relative;
         (m2 > 0.0).then(|| if m2.is_infinite() { f64::INFINITY } else { m3 / m2.powf(1.5) })
     }
 
-    /// `μ₄/μ₂²`, 3 for the normal law; infinite where the moments overflow, `None` without spread.
+    /// `μ₄/μ₂²`, 3 for the normal distribution; infinite where the moments overflow, `None` without variance.
     pub fn kurtosis(&self) -> Option<f64> {
         let [m2, _, m4] = self.relative;
         (m2 > 0.0).then(|| if m4.is_infinite() { f64::INFINITY } else { m4 / (m2 * m2) })

@@ -4,8 +4,8 @@
 //! direction and as `(1 − r) w` straight on, on average. One particle at most is kept:
 //!
 //! ```text
-//! straight on with chance q_t and weight (1 − r) w/q_t
-//! scattered   with chance q_s and weight  a r w/q_s
+//! straight on with probability q_t and weight (1 − r) w/q_t
+//! scattered   with probability q_s and weight  a r w/q_s
 //! absorbed    otherwise
 //!
 //! rule             q_t                 q_s                            exists for

@@ -1,4 +1,4 @@
-//! Draws of sixteen lanes in step: all of them make the same technique at the same time.
+//! Draws of sixteen lanes in step: all lanes use the same technique at the same time.
 //!
 //! Draw j is, bit for bit, the draw that [`super::walk::draw`] makes from stream j mod 16.
 
@@ -17,8 +17,8 @@ use numeric::rng::{LANES, Random};
 use numeric::{Lane, Twin};
 use theory::problems::BidirectionalRod;
 
-/// Makes the draws of a request on the hardware of a level. The request is handed back where the hardware is too narrow, or σ̂
-/// has several values.
+/// Makes the draws of a request on the hardware of a level. Returns the request where the hardware is too narrow,
+/// or σ̂ has several values.
 pub fn packets<'r>(
     level: Level,
     steps: &(impl Steps + Copy),

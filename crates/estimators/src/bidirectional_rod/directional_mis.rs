@@ -12,12 +12,11 @@
 //! | `connection` | `"exact"`: `T̂ = exp(−∫σ_t)`, no lookups; `"ratio"`: tracked through σ̂ | `"exact"` |
 //! | `subpaths` | `"independent"`: each technique has two of its own; `"shared"`: one walk from the light and one from the sensor serve all techniques and orders | `"independent"` |
 //!
-//! Weights as of renderers that do not know the densities of distances: those of real scatterings and null
-//! vertices are left out. The densities that paths are divided by are the full ones, so that it is unbiased
-//! for `σ̂ ≥ σ_t` like `technique`.
+//! These are the weights of renderers that leave the densities of distances out: those of real scatterings and null
+//! vertices. Paths are divided by their full densities, so that it is unbiased for `σ̂ ≥ σ_t` like `technique`.
 //!
-//! Shared subpaths are what renderers draw. Contributions of techniques have the same moments; they vary together,
-//! and the variance of their sum is bounded: its root is at most the sum of theirs.
+//! Renderers draw shared subpaths. Contributions of techniques have the same moments, but are correlated, and the
+//! variance of their sum is bounded: its root is at most the sum of theirs.
 //!
 //! Source: Miller, Georgiev, Jarosz 2019, section 5.5 and table 1, “BPT: Directional MIS”.
 

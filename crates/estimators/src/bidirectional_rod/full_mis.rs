@@ -17,8 +17,8 @@
 //! balance heuristic all techniques score the same function of the path, `1/Σⱼ cⱼ⁻¹ ≤ 1/2`. With
 //! `"ratio"`, `σ_t/σ̂` must be one number, for theory.
 //!
-//! Shared subpaths are what renderers draw. Contributions of techniques have the same moments; they vary together,
-//! and the variance of their sum is bounded: its root is at most the sum of theirs.
+//! Renderers draw shared subpaths. Contributions of techniques have the same moments, but are correlated, and the
+//! variance of their sum is bounded: its root is at most the sum of theirs.
 //!
 //! Source: Miller, Georgiev, Jarosz 2019, sections 5.2 and 5.5, Eqs. 42–44, and table 1, “BPT: Full MIS”.
 

@@ -9,7 +9,7 @@
 //!
 //! | setting | meaning | default |
 //! |---|---|---|
-//! | `hero` | the law of the hero: `"uniform"`, `"luminance"`, or a list of probabilities that sum to 1 | `"uniform"` |
+//! | `hero` | distribution of the hero: `"uniform"`, `"luminance"`, or a list of probabilities that sum to 1 | `"uniform"` |
 //! | `sampling` | a constant σ̂ > σ_t in each channel | required here or in the case |
 //!
 //! Unbiased where every event that is possible in a channel is also possible for every hero. The variance is not

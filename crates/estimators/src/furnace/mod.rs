@@ -20,12 +20,13 @@ impl Walked for Furnace {
         space::energy(&space::walks(scene, space::majorants(setup)?, particle)).map(|_| ())
     }
 
-    /// Every draw is 1 on average.
+    /// Prediction: every draw is 1 on average.
     fn predict(setup: &Setup<Self>, particle: &Particle) -> Prediction {
         let majorants = setup.space.as_ref();
         let walks = majorants.map(|all| space::walks(&setup.problem.scene, all, particle));
         let bound = walks.and_then(|walks| walks.energy_variance());
-        // Without a bound the walk is refused, or forced: then only the truth is kept.
+        // Without a bound the walk is refused, or its draws are made in spite of that: then only the expected value
+        // is kept.
         let depth = walks.map_or(0.0, |walks| walks.depth);
         Prediction::uncounted(space::energy_channel(bound.unwrap_or(f64::INFINITY), depth))
     }
@@ -39,7 +40,7 @@ impl Walked for Furnace {
     }
 }
 
-/// The energy that a particle brings.
+/// The energy of a particle.
 pub struct Energy<'a>(&'a Furnace);
 
 impl Tally for Energy<'_> {

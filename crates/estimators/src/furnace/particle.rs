@@ -10,7 +10,7 @@
 //! | setting | meaning | default |
 //! |---|---|---|
 //! | `rule` | `terminating`, `non-terminating`, `adaptive`, `analog` or `weighted` | required |
-//! | `roulette` | w₀ in (0, 1]: a walk with a smaller weight goes on with chance abs(w)/w₀ and weight w₀ | none |
+//! | `roulette` | w₀ in (0, 1]: a walk with a smaller weight goes on with probability abs(w)/w₀ and weight w₀ | none |
 //!
 //! | rule | exists for | a draw for `σ̂ ≥ σ_t` |
 //! |---|---|---|

@@ -1,5 +1,5 @@
-//! A particle that splits in a furnace: what goes straight on and what is scattered are both followed, up
-//! to a bound; then one of them, by a rule.
+//! A particle that splits in a furnace: the transmitted and the scattered particle are both tracked, up to a bound;
+//! then one of them, by a rule.
 //!
 //! Unbiased for: r ≤ 1 by the rule `analog`, r ≤ 2/(a + 1) by `terminating`, and by the others as long as theory
 //! bounds the variance; refused elsewhere.
@@ -11,15 +11,15 @@
 //!
 //! | setting | meaning | default |
 //! |---|---|---|
-//! | `depth` | so many splits on any way from the start: 2ⁿ particles at most, n ≤ 10 | one of the two |
-//! | `budget` | so many splits in a walk: n + 1 particles at most | is required |
+//! | `depth` | maximum number of splits on any path from the start: 2ⁿ particles at most, n ≤ 10 | one of the two |
+//! | `budget` | maximum number of splits in a walk: n + 1 particles at most | is required |
 //! | `rule` | what happens then, as in `particle` | required |
 //!
-//! The double particle of the rod and the slab, in space: without a bound its number of particles grows
-//! with every collision. It is the expectation of every rule over what happens at the collision, so that
-//! splits add no variance; weights below zero are followed like all others.
+//! It is the double particle of the rod and the slab, in space: without a bound its number of particles grows with
+//! every collision. A split is the expectation of every rule over the events at the collision, so that splits add
+//! no variance. Particles of negative weight are tracked like all others.
 //!
-//! Source: L. Szirmay-Kalos et al. 2017, section 3 (the double particle model); the bound on what is
-//! followed is that of any renderer that splits.
+//! Source: L. Szirmay-Kalos et al. 2017, section 3 (the double particle model); the bound on the number of
+//! particles is that of any renderer that splits.
 
 pub use crate::space::Splitter;

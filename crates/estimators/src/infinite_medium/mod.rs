@@ -1,4 +1,4 @@
-//! Walks from a point source in a medium without end.
+//! Walks from a point source in an infinite medium.
 
 pub mod particle;
 
@@ -13,17 +13,17 @@ use theory::problems::{InfiniteMedium, Scene};
 use theory::space::infinite;
 use theory::{Channel, CountLaw, Moments, ParticleRule, Prediction, Tails};
 
-/// More collisions than this in a walk are a mistake in the case.
+/// Maximum expected number of collisions in a walk; more are a mistake in the case.
 const MOST_COLLISIONS: f64 = 1e5;
 
-/// The probability that a tentative collision ends the walk, where that is the same for all of them.
+/// The probability that a tentative collision ends the walk, if it is equal for all of them.
 fn end(setup: &Setup<InfiniteMedium>, particle: &Particle) -> Option<f64> {
     let plain = *particle == Particle::of(particle.rule);
     let odds = particle.rule.odds(ratio(setup)?, setup.problem.albedo());
     plain.then_some(1.0 - odds.transmit - odds.scatter)
 }
 
-/// `r`, one number.
+/// `r`, if it is constant.
 fn ratio(setup: &Setup<InfiniteMedium>) -> Option<f64> {
     Some(setup.problem.extinction / setup.space.as_deref()?.single_value()?)
 }
@@ -39,7 +39,7 @@ fn geometric(mean: f64, end: f64) -> Moments {
 impl Walked for InfiniteMedium {
     type Tally<'a> = Within<'a>;
 
-    /// Walks must end, and no weight may grow.
+    /// Checks that walks end and that no weight grows.
     fn domain(setup: &Setup<Self>, particle: &Particle) -> Result<(), Refusal> {
         use ParticleRule::{Analog, Terminating};
         let albedo = setup.problem.albedo();
@@ -94,12 +94,12 @@ impl Walked for InfiniteMedium {
         let square = infinite::square_at_absorption(albedo, cosine) / (sigma * sigma);
         channels.push(unknown("squared distance".to_owned(), rounded(square)));
         let collisions = unknown("collisions".to_owned(), rounded(1.0 / (1.0 - albedo)));
-        // Where every collision is real and nothing is scattered, there is one of them.
+        // Where every collision is real and nothing is scattered, there is exactly one.
         let is_certain = albedo == 0.0 && ratio(setup) == Some(1.0);
         let end =
             if is_certain { Some(1.0) } else { end(setup, particle).filter(|&end| end > 0.0) };
         let is_majorant = ratio(setup).is_some_and(|ratio| ratio <= 1.0);
-        // A real collision counts r: then all walks of equal length count the same.
+        // A real collision counts r: then the score of a walk depends only on its length.
         channels.push(match end.filter(|_| is_majorant) {
             Some(end) => {
                 let truth = collisions.truth;
@@ -131,11 +131,11 @@ impl Walked for InfiniteMedium {
     }
 }
 
-/// The sums of a draw at most.
+/// Maximum number of sums of a draw.
 const SUMS: usize = MOST_RADII + 2;
 
-/// The sums that are the channels of a draw, by its number of radii: those of the radii, the squared distance and the
-/// collisions.
+/// Indices of the sums that are the channels of a draw, by its number of radii: the radii, the squared distance and
+/// the collisions.
 const CHANNELS: [[usize; SUMS]; SUMS - 1] = {
     let mut lists = [[0; SUMS]; SUMS - 1];
     let mut count = 0;
@@ -188,7 +188,7 @@ impl Tally for Within<'_> {
         let real = at.weight * at.ratio;
         let [x, y, z] = at.place;
         let square = x * x + y * y + z * z;
-        // So many that the compiler knows their places: what an index finds lies in memory.
+        // A constant number of steps, so that the compiler resolves the indices: a variable index needs memory.
         for (number, sum) in sums.iter_mut().enumerate().take(MOST_RADII) {
             if let Some(radius) = self.0.radii.get(number) {
                 sum.add_where(at.inside & square.below(square.each(radius * radius)), real);

@@ -9,11 +9,11 @@
 //! | setting | meaning | default |
 //! |---|---|---|
 //! | `rule` | `terminating`, `non-terminating`, `adaptive`, `analog` or `weighted` | required |
-//! | `roulette` | w₀ in (0, 1]: a walk with a smaller weight goes on with chance abs(w)/w₀ and weight w₀ | required for rules that never end |
+//! | `roulette` | w₀ in (0, 1]: a walk with a smaller weight goes on with probability abs(w)/w₀ and weight w₀ | required for rules that never end |
 //!
-//! `terminating` exists for `r ≤ 2/(a + 1)`, `analog` for `σ̂ ≥ σ_t`; the others, which need roulette to end
-//! at all, are refused below σ_t, where weights grow. The lookups of the first two are geometric; so are
-//! their collisions for `σ̂ ≥ σ_t`, with all their moments known.
+//! `terminating` exists for `r ≤ 2/(a + 1)`, `analog` for `σ̂ ≥ σ_t`. The other rules end only by roulette, and are
+//! refused below σ_t, where weights grow. The lookups of the first two are geometric; so are their collisions for
+//! `σ̂ ≥ σ_t`, with all their moments known.
 //!
 //! Source: L. Szirmay-Kalos et al. 2017, section 4.1, `SimulateParticle`.
 

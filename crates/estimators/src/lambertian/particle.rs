@@ -11,11 +11,11 @@
 //! | setting | meaning | default |
 //! |---|---|---|
 //! | `rule` | `terminating`, `non-terminating`, `adaptive`, `analog` or `weighted` | required |
-//! | `roulette` | w₀ in (0, 1]: a walk with a smaller weight goes on with chance abs(w)/w₀ and weight w₀ | none |
+//! | `roulette` | w₀ in (0, 1]: a walk with a smaller weight goes on with probability abs(w)/w₀ and weight w₀ | none |
 //!
-//! Unbiased as in a furnace; it is refused where none of its channels has both a known answer and a known
-//! or a light spread. What the non-terminating rule does with a weight leaves its path alone: its number of
-//! tentative collisions, which is that of its lookups, is known for σ̂ however far below σ_t.
+//! Unbiased as in a furnace. It is refused where none of its channels has both a known mean and a known variance or
+//! light tails. The path of the non-terminating rule does not depend on the weight: its number of tentative
+//! collisions, which is that of its lookups, is known for any σ̂, also far below σ_t.
 //!
 //! Source: L. Szirmay-Kalos et al. 2017, section 4.1, `SimulateParticle`; A. Mazzolo, C. de Mulatier, A.
 //! Zoia, *Cauchy's formulas for random walks in bounded domains*, Journal of Mathematical Physics 55

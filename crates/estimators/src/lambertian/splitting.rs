@@ -1,5 +1,5 @@
-//! A particle that enters a body from all sides and splits: what goes straight on and what is scattered are
-//! both followed, up to a bound; then one of them, by a rule.
+//! A particle that enters a body from all sides and splits: the transmitted and the scattered particle are both
+//! tracked, up to a bound; then one of them, by a rule.
 //!
 //! Unbiased for: whatever it is unbiased for in a furnace; refused where no channel has a known mean and spread.
 //!
@@ -9,8 +9,8 @@
 //!
 //! | setting | meaning | default |
 //! |---|---|---|
-//! | `depth` | so many splits on any way from the start: 2ⁿ particles at most, n ≤ 10 | one of the two |
-//! | `budget` | so many splits in a walk: n + 1 particles at most | is required |
+//! | `depth` | maximum number of splits on any path from the start: 2ⁿ particles at most, n ≤ 10 | one of the two |
+//! | `budget` | maximum number of splits in a walk: n + 1 particles at most | is required |
 //! | `rule` | what happens then, as in `particle` | required |
 //!
 //! Its channels are those of `particle` without the tentative collisions.

@@ -10,8 +10,8 @@
 //! |---|---|---|
 //! | `shadow` | t̂: `"exact"` transmittance, `"delta"` or `"ratio"` tracking through σ̂ | `"ratio"` |
 //!
-//! A shadow ray finds the emitter with certainty, and p(ω) is the phase function towards it, `p_f` or `1 − p_f`. Hits
-//! after a scattering score nothing; the unscattered one is no shadow ray's, and scores 1.
+//! A shadow ray always finds the emitter; p(ω) is the phase function towards it, `p_f` or `1 − p_f`. Hits after a
+//! scattering score nothing. No shadow ray makes the unscattered hit: it scores 1.
 //!
 //! It takes σ̂, which must be a majorant. A tentative collision of a shadow ray is a lookup; delta tracking stops at a
 //! real one. Exact shadow rays cost none; they are theory, which uses the platform's library: the last bits of

@@ -13,7 +13,7 @@
 //! | `shadow` | `"ratio"` tracking through σ̂; `"exact"`: transmittances instead of null collisions in both densities, `ρ = q T` | `"ratio"` |
 //! | `heuristic` | `"balance"` or `"power"` | `"balance"` |
 //!
-//! What both densities have in common cancels in ρ. A light without a size has `p_uni = 0` and `w_nee = 1`: next-event
+//! Common factors of both densities cancel in ρ. A light without a size has `p_uni = 0` and `w_nee = 1`: next-event
 //! estimation. It takes σ̂, which must be a majorant.
 //!
 //! Source: B. Miller, I. Georgiev, W. Jarosz, *A null-scattering path integral formulation of light

@@ -6,8 +6,8 @@
 //! X = 1 if the path hits the light after one scattering, else 0;   Var[X] = L(1 − L) whatever σ̂
 //! ```
 //!
-//! It takes σ̂ and no settings. Its distribution is exact. A light without a size is met by
-//! no direction. A direction that misses the light ends the walk.
+//! It takes σ̂ and no settings. Its distribution is exact. No direction hits a light without a size. A direction
+//! that misses the light ends the walk.
 //!
 //! Source: E. R. Woodcock, T. Murphy, P. J. Hemmings, T. C. Longworth, *Techniques used in the GEM code for Monte
 //! Carlo neutronics calculations in reactors and other systems of complex geometry*, ANL-7050 (1965); B. Miller, I.

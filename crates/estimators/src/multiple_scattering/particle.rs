@@ -10,7 +10,7 @@
 //! | setting | meaning | default |
 //! |---|---|---|
 //! | `rule` | `terminating`, `non-terminating`, `adaptive`, `analog` or `weighted` | required |
-//! | `roulette` | w₀ in (0, 1]: a walk with a smaller weight goes on with chance abs(w)/w₀ and weight w₀ | none |
+//! | `roulette` | w₀ in (0, 1]: a walk with a smaller weight goes on with probability abs(w)/w₀ and weight w₀ | none |
 //!
 //! Unbiased where the rule exists: `terminating` for `r ≤ 2/(a + 1)`, `analog` for `r ≤ 1`, the others
 //! for every `r = σ_t/σ̂`. Far below σ_t the variance may be infinite: `trueflight explain furnace`.

@@ -1,5 +1,5 @@
-//! A particle that splits on its way from the camera: what goes straight on and what is scattered are both
-//! followed, up to a bound; then one of them, by a rule.
+//! A particle that splits on its way from the camera: the transmitted and the scattered particle are both tracked,
+//! up to a bound; then one of them, by a rule.
 //!
 //! Unbiased for: r ≤ 1 by the rule `analog`, r ≤ 2/(a + 1) by `terminating`, every r by the others.
 //!
@@ -10,8 +10,8 @@
 //!
 //! | setting | meaning | default |
 //! |---|---|---|
-//! | `depth` | so many splits on any way from the start: 2ⁿ particles at most, n ≤ 10 | one of the two |
-//! | `budget` | so many splits in a walk: n + 1 particles at most | is required |
+//! | `depth` | maximum number of splits on any path from the start: 2ⁿ particles at most, n ≤ 10 | one of the two |
+//! | `budget` | maximum number of splits in a walk: n + 1 particles at most | is required |
 //! | `rule` | what happens then, as in `particle` | required |
 //! | `roulette` | as in `particle` | none |
 //!

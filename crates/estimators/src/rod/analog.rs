@@ -3,7 +3,7 @@
 //! Unbiased for: σ̂ ≥ σ_t; refused elsewhere.
 //!
 //! ```text
-//! scattered with chance a r, straight on with 1 − r, absorbed with (1 − a) r;  w = 1;  r = σ_t/σ̂
+//! scattered with probability a r, straight on with 1 − r, absorbed with (1 − a) r;  w = 1;  r = σ_t/σ̂
 //! ```
 //!
 //! It takes σ̂ and no settings. Absorption is by roulette. Its distribution is exact.

@@ -3,23 +3,22 @@
 //! Unbiased for: σ̂ ≥ σ_t, for which theory bounds the variance; refused elsewhere.
 //!
 //! ```text
-//! after a collision with |w| < w₀: the walk goes on with chance |w|/w₀ and weight sgn(w) w₀, else it ends
+//! after a collision with |w| < w₀: the walk goes on with probability |w|/w₀ and weight sgn(w) w₀, else it ends
 //! ```
 //!
 //! | setting | meaning | default |
 //! |---|---|---|
 //! | `below` | w₀ in (0, 1] | 0.1 |
 //!
-//! What roulette takes it gives back, so that every mean stays what it was. Which particles play depends
-//! on the weight that they have gathered: the moment equations, which hold for weight 1 and scale, do
-//! not close. Theory therefore knows the means and a bound on the variances, and no number of lookups.
-//! For `σ̂ ≥ σ_t`, where weights never exceed 1,
+//! Roulette changes no mean: survivors get the weight that the others lose. Which particles play depends on their
+//! weight. The moment equations, which hold for weight 1 and scale, therefore do not close. The means and a bound
+//! on the variances are known, but no number of lookups. For `σ̂ ≥ σ_t`, where weights never exceed 1,
 //!
 //! ```text
 //! 0 ≤ X ≤ 1,  so that Var[X] ≤ E[X](1 − E[X])
 //! ```
 //!
-//! and means are tested with that bound. Elsewhere it is refused, as it is where the absorbed energy or the
+//! and means are tested with that bound. Elsewhere it is refused. It is also refused if the absorbed energy or the
 //! flux, which have no such bound, is a channel.
 //!
 //! Source: H. Kahn, *Use of Different Monte Carlo Sampling Techniques*, RAND P-766 (1955); the walk: that

@@ -3,7 +3,7 @@
 //! Unbiased for: r ≤ 2/(a + 1); refused elsewhere.
 //!
 //! ```text
-//! scattered with chance a r and weight w, straight on with chance |1 − r| and weight sgn(1 − r) w,
+//! scattered with probability a r and weight w, straight on with probability |1 − r| and weight sgn(1 − r) w,
 //! absorbed otherwise;  r = σ_t/σ̂
 //! ```
 //!

@@ -12,8 +12,8 @@
 //! see      w at the end where it left
 //! ```
 //!
-//! A flight and what happens at its end take a random number each; a scattering takes a third, and so does
-//! roulette. By this page [`line`] follows one particle, or sixteen side by side.
+//! A flight and the event at its end take a random number each; a scattering takes a third, and so does roulette.
+//! [`line`] follows one particle of this walk, or sixteen side by side.
 
 use crate::walks::{self, Met, Route, Walk};
 use crate::{Kernel, Request, Setup};
@@ -116,7 +116,7 @@ impl<S: Steps> Walk for InRod<'_, S> {
 }
 
 impl<S> InRod<'_, S> {
-    /// What is seen of a tentative collision, whatever comes of it.
+    /// Scores a tentative collision, before its event is decided.
     #[inline(always)]
     fn score<L: Lane>(&self, particle: &mut Particle<L>, met: &Met<L>, albedo: L) {
         let Met { inside, t, mean_free_path, .. } = *met;
@@ -138,7 +138,8 @@ pub trait Steps: Copy {
     /// The odds at collisions with the given ratio `σ_t/σ̂` and albedo.
     fn odds<L: Lane>(&self, ratio: L, albedo: L) -> Odds<L>;
 
-    /// Lanes of `scattered` that turn round, where a share goes on forward; `decided` is the number that decided the collision.
+    /// Lanes of `scattered` that turn round, given the share that goes on forward; `decided` is the number that
+    /// decided the collision.
     #[inline(always)]
     fn turns<L: Lane>(
         &self,

@@ -4,7 +4,7 @@
 //!
 //! ```text
 //! D = |r| + |1 − r|,  r = σ_t/σ̂
-//! scattered with chance |r|/D and weight a sgn(r) D w, straight on with |1 − r|/D and sgn(1 − r) D w
+//! scattered with probability |r|/D and weight a sgn(r) D w, straight on with |1 − r|/D and sgn(1 − r) D w
 //! ```
 //!
 //! It takes σ̂ and no settings. Where `σ̂ ≥ σ_t` a collision is real with probability r, and then the weight is

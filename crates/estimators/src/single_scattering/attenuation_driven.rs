@@ -13,8 +13,8 @@
 //! | `control` | σ_c | none |
 //! | `shadow` | `"exact"`, `ratio = { sampling, control }` or `delta = { sampling }`, for each point | `"exact"` |
 //!
-//! Unbiased there, by Campbell's theorem: interaction points have the density σ̂. It mimics none of
-//! the factors of the integrand, and the variance grows as `1/D³` when the light comes near the ray.
+//! Unbiased there, by Campbell's theorem: interaction points have the density σ̂. It is proportional to none of the
+//! factors of the integrand, and the variance grows as `1/D³` when the light comes near the ray.
 //!
 //! All four moments are known: those of the rest of a walk obey a chain of linear equations.
 //!

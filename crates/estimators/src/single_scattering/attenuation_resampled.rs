@@ -9,8 +9,8 @@
 //! Settings and domain are those of `attenuation-driven`. The chosen point is kept while the walk goes
 //! on (reservoir sampling), with one random number for each interaction point.
 //!
-//! The variance is never below that of `attenuation-driven`; what is saved are shadow rays. Lookups
-//! are predicted where shadow rays have none: which point is chosen depends on all of them.
+//! The variance is never below that of `attenuation-driven`; it saves shadow rays. Lookups are predicted where
+//! shadow rays have none: the choice of the point depends on all of them.
 //!
 //! Source: J. Talbot, D. Cline, P. Egbert, *Importance resampling for global illumination*,
 //! Eurographics Symposium on Rendering (2005); Szirmay-Kalos et al. 2017, section 4.3.

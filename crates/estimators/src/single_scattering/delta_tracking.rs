@@ -10,7 +10,7 @@
 //! | setting | meaning | default |
 //! |---|---|---|
 //! | `sampling` | σ̄ ≥ σ_t on the ray | required here or in the case |
-//! | `absorption` | `"weight"`: the albedo is a factor of S; `"analog"`: it is the chance of a real collision to scatter | `"weight"` |
+//! | `absorption` | `"weight"`: the albedo is a factor of S; `"analog"`: it is the probability that a real collision scatters | `"weight"` |
 //! | `shadow` | `"exact"`, `ratio = { sampling, control }` or `delta = { sampling }` | `"exact"` |
 //!
 //! The density does not depend on the light: the variance grows as `1/D³` when the light comes near the ray.

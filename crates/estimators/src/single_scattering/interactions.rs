@@ -25,7 +25,7 @@ kept! {
         flies: L::Mask,
         /// T̂.
         weight: L,
-        /// The point of the shadow ray, or that of the point that is kept.
+        /// The point of the shadow ray, or the point that is kept.
         s: L,
         /// y.
         worth: L,
@@ -115,7 +115,7 @@ impl<const RESAMPLED: bool> Walk for Interactions<'_, RESAMPLED> {
         let at = (aims, path.s);
         let (lit, light) = path.to_light.collide(&self.ground, met, at, 1, random);
         if lit.any() && RESAMPLED {
-            // The one point's score is the draw's, its sign included where it is 0.
+            // The draw is the score of its only point, its sign included where it is 0.
             path.score.set_where(lit, path.sum.with_sign_of(path.worth) * light);
             ends |= lit;
         } else if lit.any() {

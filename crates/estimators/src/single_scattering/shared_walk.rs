@@ -14,9 +14,9 @@
 //! | `control` | σ_c | none |
 //! | `shadow` | `"exact"`, `ratio = { sampling, control }` or `delta = { sampling }`, for each point | `"exact"` |
 //!
-//! Between interaction points `T̂` falls off exponentially with the control, so that one walk over
-//! the whole ray serves every point. Unbiased as each point is; the points are not independent, and
-//! the four moments take their joint law into account.
+//! Between interaction points `T̂` falls off exponentially with the control, so that one walk over the whole ray
+//! serves every point. Each point is unbiased. The points are not independent, and the four moments take their
+//! joint distribution into account.
 //!
 //! Source: Szirmay-Kalos et al. 2017, section 4.3.
 

@@ -5,20 +5,20 @@
 //! ```text
 //! p₁ = D/(Δθ r²),   p₂ = c σ_t x,   f = σ_t S x T̂_shadow
 //! both   X = Σ_{i=1,2} f(sᵢ) w_i/p_i,   w_i = p_i^β/(p₁^β + p₂^β),   0 where there is no s₂
-//! one    X = 2 f(sᵢ) w_i/p_i,   i = 1 or 2 with chances of ½
+//! one    X = 2 f(sᵢ) w_i/p_i,   i = 1 or 2 with probability ½ each
 //! ```
 //!
 //! | setting | meaning | default |
 //! |---|---|---|
 //! | `sampling` | σ̄ ≥ σ_t on the ray | required here or in the case |
 //! | `camera` | what x is: `"exact"`, the transmittance T in closed form, or `"ratio"`, `Π (1 − σ_t/σ̄)` over the null collisions of the path, by ratio tracking where the point is from the light | `"exact"` |
-//! | `absorption` | `"weight"`: c = 1; `"analog"`: the albedo c is the chance of a real collision to scatter | `"weight"` |
+//! | `absorption` | `"weight"`: c = 1; `"analog"`: the albedo c is the probability that a real collision scatters | `"weight"` |
 //! | `samples` | `"both"` techniques in a draw, or `"one"` of them | `"both"` |
 //! | `heuristic` | β: `"balance"` (1) or `"power"` (2) | `"balance"` |
 //! | `shadow` | `"exact"`, `ratio = { sampling, control }` or `delta = { sampling }` | `"exact"` |
 //!
-//! With a tracked camera the weights are those of the null-scattering path: both densities hold the same majorant
-//! transmittances, which cancel, and so do all of the shadow ray. A shadow ray is cast even where x is 0.
+//! With a tracked camera the weights are those of the null-scattering path: both densities contain the same
+//! majorant transmittances and all factors of the shadow ray, which cancel. A shadow ray is cast even where x is 0.
 //!
 //! The variance stays bounded however near the light is.
 //!

@@ -12,7 +12,8 @@
 //! | `camera` | `"exact"`, `"ratio"` (with σ̂ and, for residual ratio, a control) or `"delta"` (σ̂ ≥ σ_t) | `"exact"` |
 //! | `shadow` | `"exact"`, `ratio = { sampling, control }` or `delta = { sampling }` | `"exact"` |
 //!
-//! With the exact camera a `sampling` of its own or a `control` is read and not used: it may stay when the camera changes.
+//! With the exact camera an own `sampling` or a `control` is read and not used: it may stay when the camera
+//! changes.
 //!
 //! Unbiased wherever its transmittances are; the density is positive everywhere and cancels 1/r², so
 //! that the variance stays bounded however near the light is.

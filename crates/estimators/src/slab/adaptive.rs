@@ -7,8 +7,8 @@
 //! terminating where r ≥ 1 and a r + |1 − r| ≤ 1, that is 1 ≤ r ≤ 2/(a + 1);  else non-terminating
 //! ```
 //!
-//! It takes σ̂ and no settings, and exists where its variance is finite, see `non-terminating`. As in the
-//! rod, its variance is never below that of the non-terminating rule; what it saves are lookups.
+//! It takes σ̂ and no settings, and exists where its variance is finite, see `non-terminating`. As in the rod, its
+//! variance is never below that of the non-terminating rule; it saves lookups.
 //!
 //! Source: L. Szirmay-Kalos, I. Georgiev, M. Magdics, B. Molnár, D. Légrády, *Unbiased Light
 //! Transport Estimators for Inhomogeneous Participating Media*, Computer Graphics Forum 36 (2017),

@@ -14,10 +14,10 @@ use theory::problems::{Problem, Slab};
 use theory::slab::{self, Answer, Existence, Pieces, Walk};
 use theory::{ParticleRule, Prediction};
 
-/// The largest error of an exact answer, relative to it, that is worth drawing against.
+/// Maximum relative error of an exact answer that draws are compared with.
 const BLURRED: f64 = 1e-4;
 
-/// The walk of a rule, for theory.
+/// The walk of a rule, as theory describes it.
 fn walk_of(setup: &Setup<Slab>, rule: ParticleRule) -> Walk {
     let cut = setup.mesh.refined(setup.sampling.knots(), &|_, _| Vec::new());
     let ratio =
@@ -75,7 +75,7 @@ impl ByRule for Slab {
         Err(Refusal::mismatch("a finite variance", found))
     }
 
-    /// Without an answer its values are no numbers, and are refused as such.
+    /// Without an answer its values are NaN, and are refused as such.
     fn predict(setup: &Setup<Self>, rule: ParticleRule) -> Prediction {
         walk_of(setup, rule).predict(&truth(setup).unwrap_or(Answer::UNKNOWN))
     }

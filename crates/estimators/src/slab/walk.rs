@@ -10,8 +10,8 @@
 //! see      w at the boundary where it left
 //! ```
 //!
-//! A flight and what happens at its end take a random number each; a scattering takes one for θ and one
-//! for φ, of which an isotropic one needs the first only. Diffuse light takes one for `μ₀ = √u`.
+//! A flight and the event at its end take a random number each; a scattering takes one for θ and one for φ, but an
+//! isotropic one only the first. Diffuse light takes one for `μ₀ = √u`.
 
 use std::f64::consts::TAU;
 
@@ -105,7 +105,7 @@ impl<S: Steps> Walk for InSlab<'_, S> {
     }
 }
 
-/// The cosines with which particles enter; those that a mask names take a number for it where light is diffuse.
+/// The cosines with which particles enter. Only lanes in the mask take a random number, and only for diffuse light.
 #[inline(always)]
 pub fn entering<L: Lane>(
     light: Light,

@@ -19,10 +19,11 @@ use numeric::twin::PAIR;
 use numeric::{Fused, Plain, Single, Twin};
 use theory::problems::{Albedo, Channels, Scene};
 
-/// With more cells of σ̂ than this a walk spends its time on their planes, which packs cross no faster.
+/// Maximum number of cells of σ̂ for packs: with more, a walk spends its time on their planes, which packs cross no
+/// faster.
 const MAX_CELLS: usize = 100_000;
 
-/// Makes one draw of a particle by its steps; it follows what splits off if it `SPLITS`.
+/// Makes one draw of a particle by its steps; it follows the particles that split off if it `SPLITS`.
 #[inline(never)]
 pub fn draw<V: Channels, T: Tally, const SPLITS: bool>(
     tally: &T,
@@ -71,7 +72,7 @@ fn look_up<L: Single>(scene: &Scene, place: Option<[L; 3]>) -> [L; 2] {
     [L::of(extinction), L::of(scene.albedo.at(place))]
 }
 
-/// Makes the draws of a request by packs. The request is handed back where the hardware is too narrow, where the particle
+/// Makes the draws of a request by packs. Returns the request where the hardware is too narrow, where the particle
 /// splits, where σ̂ has many cells, and where draws have other channels.
 pub fn packets<'a, T: Tally>(
     level: Level,

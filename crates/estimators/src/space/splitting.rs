@@ -1,7 +1,7 @@
 //! The driver of one walk that splits.
 //!
-//! At a collision that splits both the scattered particle and the one that goes straight on are followed, the scattered one
-//! later. All that they find is the draw's.
+//! At a collision that splits both the scattered particle and the transmitted one are followed, the scattered one
+//! later. The draw is the sum of their scores.
 
 use super::bank::Walk;
 use super::particle::Splitting;
@@ -10,7 +10,7 @@ use super::walk::{InSpace, State, Steps};
 use numeric::Single;
 use numeric::rng::Stream;
 
-/// Makes one draw: follows a walk and what splits off it to their ends.
+/// Makes one draw: follows a walk and the particles that split off to their ends.
 #[inline(always)]
 pub fn follow<L: Single, T: Tally, S: Steps>(
     walk: &InSpace<T, S>,
@@ -21,7 +21,7 @@ pub fn follow<L: Single, T: Tally, S: Steps>(
     let mut state = walk.none(L::of(1.0));
     walk.restart(&mut state, random);
     walk.go_on(&mut state, 1, random);
-    // Scattered particles that wait, and the splits behind each.
+    // Scattered particles that are followed later, and the splits behind each.
     let mut waiting = Vec::new();
     let (mut depth, mut total) = (0, 0);
     loop {

@@ -63,7 +63,7 @@ fn follow<L: Single>(
     Draw { value, lookups: lookups.double() as u32, defect }
 }
 
-/// Makes the draws of a request by packs. The request is handed back where the hardware is too narrow.
+/// Makes the draws of a request by packs. Returns the request where the hardware is too narrow.
 pub fn packets<'a>(
     level: Level,
     by: By,
@@ -115,7 +115,7 @@ impl Task for SideBySide<'_, '_> {
     }
 }
 
-/// Notes what the walk of a lane leaves, and its lookups.
+/// Stores the numbers that the walk of a lane leaves, and its lookups.
 #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // a count
 fn leave(
     rows: &Rows,
@@ -132,7 +132,7 @@ fn leave(
     buffer.lookups[draw] = rows.lookups[lane] as u32;
 }
 
-/// Makes the values of `count` draws.
+/// Computes the values of `count` draws.
 #[inline(always)]
 fn score<S: Simd>(
     simd: S,

@@ -8,11 +8,11 @@
 //!
 //! | setting | meaning | default |
 //! |---|---|---|
-//! | `hero` | the law of the channel: `"uniform"`, `"luminance"`, or a list of probabilities that sum to 1 | `"uniform"` |
+//! | `hero` | distribution of the channel: `"uniform"`, `"luminance"`, or a list of probabilities that sum to 1 | `"uniform"` |
 //! | `sampling` | a constant σ̂ ≥ σ_t in each channel, the same in all or not | required here or in the case |
 //!
-//! Whatever becomes of the walk, it scores: in a furnace this is what colour noise costs without multiple importance
-//! sampling, and nothing else.
+//! Every walk scores, whatever its end. In a furnace the variance is therefore only the colour noise without
+//! multiple importance sampling.
 //!
 //! Source: B. Miller, I. Georgiev, W. Jarosz, *A null-scattering path integral formulation of light transport*,
 //! ACM Transactions on Graphics 38 (2019), section 6.

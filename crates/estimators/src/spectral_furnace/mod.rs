@@ -23,9 +23,9 @@ use numeric::digits::rounded;
 use numeric::geometry::Bounds;
 use numeric::rng::Stream;
 
-/// More collisions than this straight through the volume are a mistake in the case.
+/// Maximum expected number of collisions on a straight line through the volume; more are a mistake in the case.
 const MOST_COLLISIONS: f64 = 1e4;
-/// Bounds on σ_t are raised by a share like this, because lookups are rounded.
+/// Relative increase of bounds on σ_t, because lookups are rounded.
 const SLACK: f64 = 1e-9;
 
 /// The length of the longest straight line in the volume.
@@ -37,7 +37,7 @@ fn across(bounds: &Bounds) -> f64 {
     }
 }
 
-/// A constant σ̂ ≥ σ_t for each channel, everywhere in the volume.
+/// Checks that each channel has a constant σ̂ ≥ σ_t everywhere in the volume.
 fn realisable(setup: &Setup<SpectralFurnace>) -> Result<(), Refusal> {
     let across = across(&setup.problem.bounds);
     let within = setup.problem.bounds.enclosing_box();

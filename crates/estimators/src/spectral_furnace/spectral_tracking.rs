@@ -5,7 +5,7 @@
 //! theory bounds the variance; refused elsewhere.
 //!
 //! ```text
-//! at a collision an event e has the chance P_e, then w_λ ← w_λ μ_e,λ/(μ̄ P_e);   X_λ = w_λ wherever it ends
+//! at a collision an event e has the probability P_e, then w_λ ← w_λ μ_e,λ/(μ̄ P_e);   X_λ = w_λ wherever it ends
 //! average  P_e = mean_λ μ_e,λ/μ̄      maximum  P_e ∝ max_λ μ_e,λ      history  P_e ∝ Σ_λ w_λ μ_e,λ
 //! ```
 //!

@@ -9,10 +9,10 @@
 //! | setting | meaning | default |
 //! |---|---|---|
 //! | `technique` | `"full-mis"`: hits and shadow rays, weighted by null-scattering paths; `"unidirectional"`: hits alone | `"full-mis"` |
-//! | `hero` | the law of the channel: `"uniform"`, `"luminance"`, or a list of probabilities that sum to 1 | `"uniform"` |
+//! | `hero` | distribution of the channel: `"uniform"`, `"luminance"`, or a list of probabilities that sum to 1 | `"uniform"` |
 //! | `sampling` | a constant σ̂ ≥ σ_t in each channel | required here or in the case |
 //!
-//! The colours are as noisy as they can be. All moments are known.
+//! The colour noise is the largest possible. All moments are known.
 //!
 //! Source: B. Miller, I. Georgiev, W. Jarosz, *A null-scattering path integral formulation of light
 //! transport*, ACM Transactions on Graphics 38 (2019), section 6.
@@ -120,7 +120,7 @@ struct OfHero<'a, S> {
     albedos: Albedos<'a>,
 }
 
-/// The medium of heroes where they are.
+/// The present σ_t and albedo of the heroes' media.
 struct Own<L> {
     albedo: L,
     forward: L,

@@ -3,7 +3,7 @@
 //! Unbiased for: one constant σ̂ ≥ σ_t for all channels, and `forward = 1`; refused elsewhere.
 //!
 //! ```text
-//! an event e = null, scattered, absorbed of chance P_e;  w_λ ← w_λ μ_e,λ/(μ̄ P_e);  X_λ = w_λ at the emitter
+//! an event e = null, scattered, absorbed of probability P_e;  w_λ ← w_λ μ_e,λ/(μ̄ P_e);  X_λ = w_λ at the emitter
 //! average  P_e = mean μ_e/μ̄     maximum  P_e = max μ_e/Σ_e max μ_e     history  P_e = mean w μ_e/(μ̄ mean w)
 //! ```
 //!

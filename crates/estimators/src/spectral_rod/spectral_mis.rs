@@ -8,7 +8,7 @@
 //!
 //! | setting | meaning | default |
 //! |---|---|---|
-//! | `hero` | the law of the hero: `"uniform"`, `"luminance"`, or a list of probabilities that sum to 1 | `"uniform"` |
+//! | `hero` | distribution of the hero: `"uniform"`, `"luminance"`, or a list of probabilities that sum to 1 | `"uniform"` |
 //! | `sampling` | σ̂ ≥ σ_t | required here or in the case |
 //!
 //! No draw exceeds `1/w_λ`: the variance is finite however long the rod is. With equal probabilities it is that of

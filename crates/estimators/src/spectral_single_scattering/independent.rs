@@ -9,7 +9,7 @@
 //! | setting | meaning | default |
 //! |---|---|---|
 //! | `shadow` | `"exact"`, or `"ratio"`: ratio tracking through the same σ̂ | `"exact"` |
-//! | `hero` | the law of the channel: `"uniform"`, `"luminance"`, or a list of probabilities that sum to 1 | `"uniform"` |
+//! | `hero` | distribution of the channel: `"uniform"`, `"luminance"`, or a list of probabilities that sum to 1 | `"uniform"` |
 //! | `sampling` | a constant σ̂ ≥ σ_t in each channel, on shadow rays too where they are tracked | required here or in the case |
 //!
 //! All moments are known: `E[X_λ^k] = w_λ^{1−k} E[x_λ^k]`, x a draw of `delta-tracking` in that channel.

@@ -10,7 +10,7 @@
 //! | setting | meaning | default |
 //! |---|---|---|
 //! | `shadow` | `"exact"`, or `"ratio"`: ratio tracking through the hero's σ̂ | `"exact"` |
-//! | `hero` | the law of the hero: `"uniform"`, `"luminance"`, or a list of probabilities that sum to 1 | `"uniform"` |
+//! | `hero` | distribution of the hero: `"uniform"`, `"luminance"`, or a list of probabilities that sum to 1 | `"uniform"` |
 //! | `sampling` | a constant σ̂ ≥ σ_t in each channel, on shadow rays too where they are tracked | required here or in the case |
 //!
 //! The first factor never exceeds `1/w_λ`. Means and lookups are known; the variance is at most that of `independent`.

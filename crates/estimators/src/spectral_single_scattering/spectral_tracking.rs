@@ -4,7 +4,7 @@
 //! Unbiased for: one constant σ̂ ≥ σ_t for all channels; refused elsewhere.
 //!
 //! ```text
-//! at a collision an event e has the chance P_e, then w_λ ← w_λ μ_e,λ/(μ̄ P_e);   where it scatters
+//! at a collision an event e has the probability P_e, then w_λ ← w_λ μ_e,λ/(μ̄ P_e);   where it scatters
 //! X_λ = w_λ p_λ(cos θ) Φ/(4π r²) T̂_λ
 //! average  P_e = mean_λ μ_e,λ/μ̄      maximum  P_e ∝ max_λ μ_e,λ      history  P_e ∝ Σ_λ w_λ μ_e,λ
 //! ```

@@ -8,7 +8,7 @@
 //!
 //! | setting | meaning | default |
 //! |---|---|---|
-//! | `hero` | the law of the channel: `"uniform"`, or a list of probabilities that sum to 1 | `"uniform"` |
+//! | `hero` | distribution of the channel: `"uniform"`, or a list of probabilities that sum to 1 | `"uniform"` |
 //! | `sampling` | σ̂ ≥ σ_t | required here or in the case |
 //!
 //! Source: B. Miller, I. Georgiev, W. Jarosz, *A Null-Scattering Path Integral Formulation of Light

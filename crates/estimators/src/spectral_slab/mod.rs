@@ -15,7 +15,7 @@ use ::theory::spectral_rod::Body;
 use ::theory::spectral_slab::Slabs;
 use numeric::digits::rounded;
 
-/// The largest error of an exact answer, relative to it, that is worth drawing against.
+/// Maximum relative error of an exact answer that draws are compared with.
 const BLURRED: f64 = 1e-4;
 
 impl Coloured for SpectralSlab {

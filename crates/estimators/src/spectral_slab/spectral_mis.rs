@@ -8,7 +8,7 @@
 //!
 //! | setting | meaning | default |
 //! |---|---|---|
-//! | `hero` | the law of the hero: `"uniform"`, or a list of probabilities that sum to 1 | `"uniform"` |
+//! | `hero` | distribution of the hero: `"uniform"`, or a list of probabilities that sum to 1 | `"uniform"` |
 //! | `sampling` | σ̂ ≥ σ_t | required here or in the case |
 //!
 //! No draw exceeds `1/w_λ`: the variance is finite however thick the slab is. It is known for isotropic scattering, and

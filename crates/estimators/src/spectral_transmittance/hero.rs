@@ -10,7 +10,7 @@
 //! | setting | meaning | default |
 //! |---|---|---|
 //! | `collisions` | `"ratio"` or `"delta"` | `"ratio"` |
-//! | `hero` | the law of the hero: `"uniform"`, `"luminance"`, or a list of probabilities that sum to 1 | `"uniform"` |
+//! | `hero` | distribution of the hero: `"uniform"`, `"luminance"`, or a list of probabilities that sum to 1 | `"uniform"` |
 //! | `sampling` | a constant σ̂ > 0 in each channel; at least σ_t for `"delta"` | required here or in the case |
 //!
 //! With delta tracking the variance is infinite where the hero's σ̂ touches its σ_t and another channel's does not,

@@ -12,10 +12,10 @@
 //! |---|---|---|
 //! | `collisions` | `"ratio"` or `"delta"` | `"ratio"` |
 //! | `channels` | `"one"` a draw, or `"all"` in turn | `"one"` |
-//! | `hero` | the law of the channel: `"uniform"`, `"luminance"`, or a list of probabilities that sum to 1 | `"uniform"` |
+//! | `hero` | distribution of the channel: `"uniform"`, `"luminance"`, or a list of probabilities that sum to 1 | `"uniform"` |
 //! | `sampling` | a constant σ̂ > 0 in each channel; at least σ_t for `"delta"` | required here or in the case |
 //!
-//! Unbiased there. With one channel a draw the colours are as noisy as they can be.
+//! Unbiased there. With one channel a draw the colour noise is the largest possible.
 //!
 //! Source: B. Miller, I. Georgiev, W. Jarosz, *A Null-Scattering Path Integral Formulation of Light
 //! Transport*, ACM Transactions on Graphics 38 (2019), section 6.

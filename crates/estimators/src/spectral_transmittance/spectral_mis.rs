@@ -9,13 +9,13 @@
 //! | setting | meaning | default |
 //! |---|---|---|
 //! | `collisions` | `"ratio"` or `"delta"` | `"ratio"` |
-//! | `hero` | the law of the hero: `"uniform"`, `"luminance"`, or a list of probabilities that sum to 1 | `"uniform"` |
+//! | `hero` | distribution of the hero: `"uniform"`, `"luminance"`, or a list of probabilities that sum to 1 | `"uniform"` |
 //! | `sampling` | a constant σ̂ > 0 in each channel, the same in all or not; at least σ_t for `"delta"` | required here or in the case |
 //!
-//! Unbiased there; with delta tracking no draw exceeds `1/w_λ`, and with equal probabilities the mean of all
-//! channels is 1 or 0: colour noise is all that is gained. With ratio tracking the density of a path depends on
-//! the number of its collisions only. The variance of delta tracking is known in media that are constant in each
-//! cell; elsewhere it is bounded, as draws never exceed `1/w`.
+//! Unbiased there. With delta tracking no draw exceeds `1/w_λ`, and with equal probabilities the mean of all
+//! channels is 1 or 0: only the colour noise is reduced. With ratio tracking the density of a path depends on the
+//! number of its collisions only. The variance of delta tracking is known in media that are constant in each cell;
+//! elsewhere it is bounded, as draws never exceed `1/w`.
 //!
 //! Source: B. Miller, I. Georgiev, W. Jarosz, *A Null-Scattering Path Integral Formulation of Light
 //! Transport*, ACM Transactions on Graphics 38 (2019), section 5.1.

@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! at a scattering of weight w, the albedo in it:   X += w Ω/4π T̂
-//! environment       a direction of any odds alike, Ω = 4π, T̂ to the surface
+//! environment       a uniform direction, Ω = 4π, T̂ to the surface
 //! black sphere      a direction in its cone, Ω = 2π(1 − √(1 − ρ²/r²)), T̂ to where it meets the sphere
 //! distant light     its direction, irradiance 4π, T̂ to the surface
 //! ```

@@ -14,8 +14,8 @@
 //! | `shadow` | `"exact"`, `ratio = { sampling, control }` or `delta = { sampling }`, each one number | `"exact"` |
 //! | `heuristic` | `"balance"` or `"power"` | `"balance"` |
 //!
-//! An environment fills all directions, q = 1: both samples count half. A distant light is never met and `w_nee = 1`: it
-//! is next-event estimation.
+//! An environment fills all directions, q = 1: both samples have the weight ½. A distant light is never hit and
+//! `w_nee = 1`: it is next-event estimation.
 //!
 //! Unbiased wherever `next-event` is. Theory bounds the variance, sharply for the rule `analog` with delta-tracked shadow
 //! rays. The number of lookups is not known.

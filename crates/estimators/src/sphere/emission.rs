@@ -1,4 +1,4 @@
-//! Particles that set out from the light of a ball.
+//! Particles that start at the light of a ball.
 //!
 //! ```text
 //! black sphere     from a point of its surface, any as likely, outwards
@@ -6,9 +6,10 @@
 //! distant light    against its direction, through any point of the ball's disc
 //! ```
 //!
-//! Directions obey Lambert's law about the normal, with density `cos θ/π` per steradian. The density of the first two is
-//! `cos θ/(4π²ρ²)` per steradian and area, `1/(4π²ρ²)` per steradian and area across: the same for every ray that
-//! leaves a surface of radius ρ. That of a distant light of irradiance 4π is `1/(πρ²)`, worth as much.
+//! Directions obey Lambert's law about the normal, with density `cos θ/π` per steradian. The density of the first
+//! two is `cos θ/(4π²ρ²)` per steradian and area, `1/(4π²ρ²)` per steradian and area across: equal for every ray
+//! that leaves a surface of radius ρ. That of a distant light of irradiance 4π is `1/(πρ²)`, which gives the same
+//! score.
 
 use super::connect::UP;
 use numeric::Lane;
@@ -38,8 +39,8 @@ fn lambert<L: Lane>(
     turned_lanes(axis, cosine, random.uniform_where(which))
 }
 
-/// Places of particles at the light's surface and their directions, for the lanes in `which`; the cosine with the normal is
-/// made of a uniform number.
+/// Positions of particles at the light's surface and their directions, for the lanes in `which`; the cosine with
+/// the normal is computed from a uniform number.
 #[inline(always)]
 pub fn rays<L: Lane>(
     sphere: &Sphere,
@@ -48,7 +49,7 @@ pub fn rays<L: Lane>(
     random: &mut impl Random<L>,
 ) -> [[L; 3]; 2] {
     let (normal, direction) = match sphere.light {
-        // A point of the disc is the foot of one of the sphere: by Lambert's law any of them is as likely.
+        // A point of the disc is the foot of one of the sphere: by Lambert's law all of them are equally probable.
         Light::Distant(towards) => {
             (lambert(towards.each(one), cosine, which, random), (towards * -1.0).each(one))
         }

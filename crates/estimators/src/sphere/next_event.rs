@@ -14,11 +14,10 @@
 //! Shadow rays are delta tracked, ratio tracked, residual-ratio tracked (`control`), or taken from exact
 //! optical depths. They are clipped to the ball and to the light.
 //!
-//! Unbiased for every σ̂ of walk and shadow rays, but for a delta-tracked shadow, which needs a majorant.
-//! Needed is `σ̂ ≥ σ_t` of the walk, and a σ̂ and σ_c of shadow rays that are not far from σ_t: then theory
-//! bounds the variance, sharply where weights and tracked transmittances are 0 or 1. The number of
-//! lookups is not known. The exact shadow uses the platform's library: the last bits of draws with one may
-//! differ between machines.
+//! Unbiased for every σ̂ of walk and shadow rays, except that a delta-tracked shadow needs a majorant. Required are
+//! `σ̂ ≥ σ_t` of the walk, and a σ̂ and σ_c of shadow rays that are not far from σ_t: then theory bounds the
+//! variance, sharply where weights and tracked transmittances are 0 or 1. The number of lookups is not known. The
+//! exact shadow uses the platform's library: the last bits of draws with one may differ between machines.
 //!
 //! Source: B. Miller, I. Georgiev, W. Jarosz, *A null-scattering path integral formulation of light
 //! transport*, ACM Transactions on Graphics 38 (2019), section 5.3; J. Novák, A. Selle, W. Jarosz,

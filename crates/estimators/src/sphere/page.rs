@@ -25,12 +25,12 @@ use theory::{Heuristic, Prediction};
 pub struct Page {
     /// The particle.
     pub particle: Particle,
-    /// The techniques that share.
+    /// The techniques that share the vertices of a walk.
     pub sharing: Sharing,
 }
 
 impl Page {
-    /// In words, as in `analog, ratio shadow, power`.
+    /// Settings in words, such as `analog, ratio shadow, power`.
     fn label(&self) -> String {
         let Sharing { shadow, subpaths, .. } = self.sharing;
         let mut words = match subpaths {
@@ -57,7 +57,7 @@ impl Page {
             None if is_distant => Techniques::NextEvent,
             _ => techniques,
         };
-        // Ratio tracking through a majorant is no wilder than delta tracking.
+        // The second moment of ratio tracking through a majorant does not exceed that of delta tracking.
         let shadow = shadow.unwrap_or(Tracking::Exact);
         predict_together(setup, techniques, shadow)
     }
@@ -76,8 +76,8 @@ impl Page {
         draws::draw::<_, _, false>(&combined, (particle, Splitting::None), world, random)
     }
 
-    /// Makes draws by packets: not of connections, and of null-scattering paths where shadow rays have a tracking with
-    /// numbers of their own.
+    /// Makes draws by packets. Not for connections, and not for null-scattering paths where shadow rays have a
+    /// tracking with random numbers of their own.
     fn draw_packets<'a>(
         &self,
         level: Level,
@@ -106,13 +106,13 @@ impl Page {
     }
 }
 
-/// [`next_event`].
+/// Kind of [`next_event`].
 pub const NEXT_EVENT: u8 = 0;
-/// [`directional_mis`].
+/// Kind of [`directional_mis`].
 pub const DIRECTIONAL: u8 = 1;
-/// [`full_mis`].
+/// Kind of [`full_mis`].
 pub const FULL: u8 = 2;
-/// [`bidirectional`].
+/// Kind of [`bidirectional`].
 pub const BIDIRECTIONAL: u8 = 3;
 
 /// An estimator with shadow rays, of a kind.

@@ -9,7 +9,7 @@
 //! | setting | meaning | default |
 //! |---|---|---|
 //! | `rule` | `terminating`, `non-terminating`, `adaptive`, `analog` or `weighted` | required |
-//! | `roulette` | w₀ in (0, 1]: a walk with a smaller weight goes on with chance abs(w)/w₀ and weight w₀ | none |
+//! | `roulette` | w₀ in (0, 1]: a walk with a smaller weight goes on with probability abs(w)/w₀ and weight w₀ | none |
 //!
 //! An environment is hit where the particle leaves the ball, a black sphere where the particle reaches it. A
 //! distant light is never hit, and is refused. Unbiased for every σ̂. Required is `σ̂ ≥ σ_t`, for which a draw lies

@@ -6,8 +6,8 @@
 //! X = exp(−τ),  Var X = 0,  no lookups
 //! ```
 //!
-//! Exact wherever the medium's optical depth is; every field of the catalogue has one. It is the
-//! end of the scale on which the others stand: zero variance at no cost.
+//! Exact wherever the medium's optical depth is; every field of the catalogue has one. It is the end of the scale
+//! of estimators: zero variance at no cost.
 //!
 //! Source: J. Novák, I. Georgiev, J. Hanika, W. Jarosz, *Monte Carlo Methods for Volumetric Light
 //! Transport Simulation*, Computer Graphics Forum 37 (2018), section 4.1.

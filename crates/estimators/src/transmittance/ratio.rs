@@ -1,4 +1,4 @@
-//! Ratio tracking: keep, at each tentative collision, the share that is null.
+//! Ratio tracking: multiply, at each tentative collision, by the share of null collisions.
 //!
 //! Unbiased for: every σ̂ > 0 where σ_t ≠ 0.
 //!

@@ -1,4 +1,4 @@
-//! Residual ratio tracking: ratio tracking of what a constant control leaves over.
+//! Residual ratio tracking: ratio tracking of the residual beside a constant control.
 //!
 //! Unbiased for: every σ̂ > 0 where the residual is not 0.
 //!

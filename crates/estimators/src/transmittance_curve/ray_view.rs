@@ -1,4 +1,4 @@
-//! A ray seen from the side: what Figures 5 and 8 of Szirmay-Kalos et al. 2017 show.
+//! A ray seen from the side: the curves of Figures 5 and 8 of Szirmay-Kalos et al. 2017.
 
 use super::double::walk;
 use crate::Setup;
@@ -8,9 +8,9 @@ use theory::Moments;
 use theory::problems::{Problem, TransmittanceCurve};
 use theory::rules::Weight;
 
-/// Distances at which the ray is shown.
+/// Number of distances at which the ray is shown.
 const POINTS: usize = 400;
-/// Sample walks that are shown.
+/// Number of sample walks that are shown.
 const WALKS: u64 = 6;
 
 /// The functions of a ray and a few walks along it.

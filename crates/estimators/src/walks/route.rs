@@ -12,13 +12,13 @@ pub struct Route<C> {
 }
 
 impl<C: Copy> Route<C> {
-    /// At the beginning of a course.
+    /// Positions at the beginning of a course.
     #[inline(always)]
     pub fn new(course: C) -> Self {
         Self { here: course, vertex: course }
     }
 
-    /// Lanes in `which` note where they are as their vertex.
+    /// Stores the positions of the lanes in `which` as their vertices.
     #[inline(always)]
     pub fn mark_where<L: Lane>(&mut self, which: L::Mask)
     where
@@ -27,7 +27,7 @@ impl<C: Copy> Route<C> {
         self.vertex.stand_as(which, &self.here);
     }
 
-    /// Lanes in `which` return to their vertex.
+    /// Returns the lanes in `which` to their vertices.
     #[inline(always)]
     pub fn return_where<L: Lane>(&mut self, which: L::Mask)
     where
@@ -37,7 +37,7 @@ impl<C: Copy> Route<C> {
     }
 }
 
-/// The course of walks that keep their own position and never ask for this one.
+/// The course of walks that keep their own positions and use no other.
 #[derive(Clone, Copy)]
 pub struct Nowhere;
 

@@ -3,7 +3,7 @@
 use super::builder::{Check, MAX_VALUES};
 use super::outcome::{CheckError, CheckFault};
 
-/// Property of a check that numbers set, as the method of the same name does.
+/// Property of a check that is set by numbers, as the method of the same name does.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Property {
     /// [`Check::truth`]: one number, or one for each value of a draw.
@@ -30,7 +30,7 @@ pub enum Property {
     Batch,
     /// [`Check::values`].
     Values,
-    /// [`Check::mean_only`]: 1, or 0 for all that theory says.
+    /// [`Check::mean_only`]: 1, or 0 for all of theory.
     MeanOnly,
 }
 
@@ -77,7 +77,7 @@ impl Property {
     }
 }
 
-/// Largest whole number below which all whole numbers are doubles: 2⁵³.
+/// Largest integer below which all integers are doubles: 2⁵³.
 const MAX_WHOLE: u64 = 1 << 53;
 
 impl<S> Check<S> {
@@ -85,8 +85,8 @@ impl<S> Check<S> {
     ///
     /// # Errors
     ///
-    /// The property takes another number of numbers, or a number is not whole where it must be. The verdict validates the
-    /// rest.
+    /// The property takes another number of numbers, or a number is not an integer where it must be. The verdict
+    /// validates the rest.
     ///
     /// ```
     /// use trueflight_gate::check::Property;
@@ -150,7 +150,7 @@ impl Given<'_> {
         self.exactly("1 number").map(|[number]| number)
     }
 
-    /// Returns one whole number within bounds.
+    /// Returns one integer within bounds.
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // whole, and within bounds
     fn whole(&self, min: u64, max: u64) -> Result<u64, CheckFault> {
         let (what, value) = (self.what, self.one()?);

@@ -73,7 +73,7 @@ impl Trail {
     }
 }
 
-/// Sums of one block on their way.
+/// Sums of one block while draws are added.
 #[derive(Default)]
 pub struct BlockSums {
     psi: Box<GateSums>,
@@ -112,7 +112,7 @@ impl Quantity {
         let design = Design::new(variance, self.tolerance.unwrap_or(budget), self.floor);
         let widest = self.tolerance.unwrap_or(self.cap);
         let needs = |tolerance| gate::draws_of(variance, tolerance);
-        // A tolerance below the prediction's own error is never reached.
+        // A tolerance below the prediction's own error cannot be reached.
         let blurred = design.tolerance > widest * (1.0 + 1e-9) && 4.0 * self.floor > widest;
         let underpowered = if blurred {
             Some(f64::INFINITY)
@@ -167,13 +167,13 @@ impl Planned {
         }
     }
 
-    /// Why the plan is too short for a pass; `None` where it is not.
+    /// Reason why the plan is too short for a pass; `None` if it is long enough.
     pub fn too_short(&self) -> Option<Reason> {
         let (what, floor) = (self.quantity.what.clone(), self.design.floor);
         self.underpowered.map(|needed| Reason::TooFewPlanned { what, needed, floor })
     }
 
-    /// The verdict; `too_weak` is that on a quantity without a promise, `remark` is added to a deviation.
+    /// The verdict; `too_weak` is the verdict on a quantity that need not pass, `remark` is added to a deviation.
     pub fn verdict(
         &self,
         trail: &Trail,
@@ -206,7 +206,7 @@ impl Planned {
         }
     }
 
-    /// The verdict on a bias that is declared and must be shown; `was_cut` where the planned draws were not made.
+    /// The verdict on a bias that is declared and must be shown; `was_cut` if not all planned draws were made.
     pub fn verdict_on_bias(
         &self,
         trail: &Trail,

@@ -26,10 +26,10 @@ use super::gate::PLANNED;
 const SLOPES: [f64; 3] = [1.0, 4.0, 16.0];
 /// The stakes d on an estimate that is too low.
 const STAKES: [f64; 5] = [0.0, 0.1, 0.2, 0.4, 0.8];
-/// The ratio of neighbouring values of V, and the largest V in units of V̂.
+/// The ratio of adjacent values of V, and the largest V in units of V̂.
 const STEP: f64 = 1.1;
 const LARGEST: f64 = 1e4;
-/// An estimate that may be too low by this share bounds nothing.
+/// Maximum share by which an estimate may be too low and still bound the variance.
 const WIDEST: f64 = 0.9;
 
 /// An estimate of a variance.
@@ -42,7 +42,7 @@ pub struct Estimate {
 }
 
 impl Estimate {
-    /// Returns ln E of the draws `y`; correct draws have means that are off by `floor` at most.
+    /// Returns ln E of the draws `y`; the means of correct draws deviate by `floor` at most.
     pub fn ln_e(self, y: &[f64], floor: f64) -> f64 {
         let mut gathered = Gathered::new(self, y.len() as f64);
         gathered.absorb(y);
@@ -57,11 +57,11 @@ impl Estimate {
     }
 }
 
-/// Evidence that is gathered from draws bit by bit.
+/// Evidence that is gathered from parts of the draws.
 #[derive(Debug, Clone)]
 pub struct Gathered {
     estimate: Estimate,
-    /// n: how many draws there will be.
+    /// n: the number of all draws.
     draws: f64,
     /// λ.
     slope: f64,
@@ -69,7 +69,7 @@ pub struct Gathered {
 }
 
 impl Gathered {
-    /// No evidence yet, of `draws` draws that will come.
+    /// Evidence without draws yet; `draws` will come.
     pub fn new(estimate: Estimate, draws: f64) -> Self {
         let slope = (PLANNED / draws).sqrt().min(0.25) / estimate.variance.sqrt();
         Self { estimate, draws, slope, sums: PsiSums::default() }
@@ -80,7 +80,7 @@ impl Gathered {
         self.sums.absorb(y, &SLOPES.map(|m| Argument { slope: m * self.slope, shift: 0.0 }));
     }
 
-    /// Returns ln E of all draws; correct draws have means that are off by `floor` at most.
+    /// Returns ln E of all draws; the means of correct draws deviate by `floor` at most.
     pub fn ln_e(&self, floor: f64) -> f64 {
         let Estimate { variance, error } = self.estimate;
         let sums = self.sums.totals();

@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! four draws  a = x_i − x_{i+D},  b = x_{i+l} − x_{i+l+D},  each draw in one foursome of its lag
-//! of independent draws of one law ab is as often positive as negative (exchange x_i and x_{i+D})
+//! of independent draws of one distribution ab is as often positive as negative (exchange x_i and x_{i+D})
 //! lags        l = 1 … 16
 //! scales      the same of sums of 2, 4, 8, … consecutive draws and their neighbours
 //! m signs, k of them positive:   e = 2^m B(k + ½, m − k + ½)/π,   E = mean of e over 48 questions

@@ -19,7 +19,7 @@ pub fn upper_tail(z: f64) -> f64 {
     0.5 * libm::erfc(z * FRAC_1_SQRT_2)
 }
 
-/// Enough terms of either series at `x = 1`, where both are slowest.
+/// Number of terms that suffice for either series at `x = 1`, where both converge slowest.
 const TERMS: i32 = 8;
 
 /// Tail of the largest excursion of Brownian motion, `P(max_{0≤t≤1} |W(t)| > x)`; 1 for `x ≤ 0`.

@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! token     a draw, or, where one value has more than half of all draws, any other draw with the number of that
-//!           value's draws before it: tokens of independent draws of one law are independent and of one law
+//!           value's draws before it: tokens of independent draws of one distribution are again such
 //! window    W consecutive tokens; those of a certain hash are kept, ever fewer, so that the memory is bounded
 //! bet       a window that was seen before comes again: its next L tokens are those of before
 //! e         L!/∏m!  if they are, m how often each comes among them;  else 0

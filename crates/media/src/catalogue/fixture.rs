@@ -1,4 +1,4 @@
-//! Tables written by hand, for the unit tests of what reads them.
+//! Tables in code, for the unit tests of readers.
 
 use std::cell::RefCell;
 use std::path::Path;
@@ -25,7 +25,7 @@ pub fn list(numbers: &[f64]) -> Value {
     Value::Array(numbers.iter().map(node).collect())
 }
 
-/// What is read from settings, and the messages of all mistakes.
+/// The value that is read from settings, and the messages of all mistakes.
 pub fn read<T, const N: usize>(
     settings: [(&str, Value); N],
     read: impl FnOnce(&Settings) -> T,

@@ -42,7 +42,7 @@ impl Number {
         self.width
     }
 
-    /// The numbers in whole words of bytes. Integers beyond 2⁵³ are rounded.
+    /// The numbers in complete words of bytes. Integers beyond 2⁵³ are rounded.
     pub fn all(self, bytes: &[u8]) -> Vec<f64> {
         bytes.chunks_exact(self.width).map(|word| self.one(word)).collect()
     }

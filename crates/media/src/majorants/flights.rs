@@ -4,9 +4,9 @@
 //! σ̂ is one constant, or constant in each cell of a grid:  a flight of optical depth u ends where ∫σ̂ = u
 //! ```
 //!
-//! A flight goes from plane to plane and spends `σ̂ · length` of its optical depth in each cell; in a cell where σ̂ is 0 it
-//! spends nothing. Lanes cross the planes between cells together; those that have come to their collisions wait for the
-//! others.
+//! A flight goes from plane to plane and uses up `σ̂ · length` of its optical depth in each cell, nothing in a cell
+//! where σ̂ is 0. Lanes cross the planes between cells together; lanes that have come to their collisions stand
+//! still until the others have.
 //!
 //! Source: the traversal is that of J. Amanatides, A. Woo, *A Fast Voxel Traversal Algorithm for Ray Tracing*,
 //! Eurographics 1987.
@@ -16,7 +16,7 @@ use numeric::geometry::Point;
 use numeric::geometry::exit::{along, ends, meets};
 use numeric::{Lane, Mask, kept};
 
-/// σ̂ and what bounds flights through it.
+/// σ̂, and the bounds of flights through it.
 pub struct Ground<'a> {
     majorants: &'a Majorants,
     /// σ̂, where it is one constant.
@@ -27,7 +27,7 @@ pub struct Ground<'a> {
     low: [f64; 3],
     width: [f64; 3],
     values: &'a [f64],
-    /// A black ball that stops all that meets it.
+    /// A black ball that absorbs every particle that reaches it.
     core: Option<(Point, f64)>,
 }
 
@@ -36,7 +36,7 @@ pub struct Ground<'a> {
 pub struct Reach<L: Lane> {
     /// The distances at which their lines enter and leave the body.
     pub ends: [L; 2],
-    /// Rays that pass the black ball, and where the others meet it.
+    /// Rays that pass the black ball, and the distances at which the others reach it.
     pub stop: Option<(L::Mask, L)>,
 }
 
@@ -69,17 +69,17 @@ impl<'a> Ground<'a> {
 }
 
 kept! {
-    /// Particles, each on its way in one direction.
+    /// Particles, each flying in one direction.
     pub struct Flights<L> {
-        /// Their beginnings.
+        /// Origins of the flights.
         pub origin: [L; 3],
         /// Unit vectors.
         pub direction: [L; 3],
         /// The distances flown.
         pub t: L,
-        /// The distances at which they leave the body.
+        /// Distances at which the rays leave the body.
         end: L,
-        /// The distances of the black ball; infinite where they do not meet it.
+        /// Distances of the black ball; infinite where the rays miss it.
         stop: L,
         cell: [L; 3],
         planes: [L; 3],
@@ -99,7 +99,7 @@ pub struct Flown<L: Lane> {
     pub length: L,
 }
 
-/// The one of three numbers that belongs to an axis: the first or the second, as masks say, else the third.
+/// Selects the number of an axis out of three: the first or the second by masks, else the third.
 #[inline(always)]
 fn of_axis<L: Lane>([first, second]: [L::Mask; 2], [x, y, z]: [L; 3]) -> L {
     L::select(first, x, L::select(second, y, z))
@@ -121,7 +121,7 @@ impl<L: Lane> Flights<L> {
         }
     }
 
-    /// The lanes in `which` begin, from the origins and in the directions that are set.
+    /// Begins the flights of the lanes in `which`, from their origins in their directions.
     #[inline(always)]
     pub fn enter(&mut self, ground: &Ground, which: L::Mask, reach: &Reach<L>) {
         let Reach { ends: [_, end], stop } = *reach;
@@ -136,7 +136,7 @@ impl<L: Lane> Flights<L> {
         }
     }
 
-    /// The cells of the lanes in `which` and the distances to the planes ahead; for the others as they were.
+    /// The cells of the lanes in `which` and the distances to the planes ahead; unchanged for the others.
     #[inline(always)]
     fn cells_entered(mut self, ground: &Ground, which: L::Mask) -> ([L; 3], [L; 3]) {
         self.t.outlined_if_narrow(
@@ -161,8 +161,8 @@ impl<L: Lane> Flights<L> {
         )
     }
 
-    /// The lanes in `which` fly an optical depth through σ̂; the places of the others mean nothing. σ̂ in a cell is
-    /// `through` of its σ̂ and of that of the cell in which the flight begins.
+    /// Flies the lanes in `which` an optical depth through σ̂; the places of the others are arbitrary. σ̂ in a cell
+    /// is `through` of its σ̂ and of that of the cell in which the flight begins.
     #[inline(always)]
     pub fn fly(
         &mut self,
@@ -197,7 +197,7 @@ impl<L: Lane> Flights<L> {
         Flown { inside, sampling, place, length }
     }
 
-    /// Through one cell after the other, to where the optical depths end or the body does.
+    /// Flies through one cell after the other, until the optical depth is used up or the body ends.
     #[inline(always)]
     fn across_cells(
         mut self,

@@ -1,4 +1,4 @@
-//! Henyey–Greenstein scattering: one number says how much goes forward.
+//! Henyey–Greenstein scattering, with the mean cosine as its parameter.
 //!
 //! ```text
 //! p(cos θ) = (1 − g²) / (4π (1 + g² − 2g cos θ)^{3/2}),   χ_l = g^l
@@ -14,10 +14,10 @@
 //! cos θ = (u (1 + g)² (1 − g(1 − u)) − (1 − u)(1 − g)² (1 + g u)) / (1 − g + 2g u)²
 //! ```
 //!
-//! which is the usual formula `(1 + g² − ((1 − g²)/(1 − g + 2g u))²)/(2g)` with g divided out: it is
-//! good for every g, 0 too. The two terms are `(1 + cos θ)/2` and `(1 − cos θ)/2`, so that no digits
-//! are lost where g is near 1. The sign of `cos θ` is that of directions of travel; where papers
-//! write `+2g cos θ`, their angle is measured to where the light came from.
+//! which is the usual formula `(1 + g² − ((1 − g²)/(1 − g + 2g u))²)/(2g)` with g divided out: it is valid for
+//! every g, 0 too. The two terms are `(1 + cos θ)/2` and `(1 − cos θ)/2`, so that no digits are lost where g is
+//! near 1. The sign of `cos θ` is that of directions of travel; where papers write `+2g cos θ`, their angle is
+//! measured to the direction from which the light came.
 //!
 //! Source: L. G. Henyey, J. L. Greenstein, *Diffuse radiation in the Galaxy*, Astrophysical Journal
 //! 93, 70–83 (1941), equation 2.
@@ -36,7 +36,7 @@ pub struct HenyeyGreenstein {
 }
 
 impl HenyeyGreenstein {
-    /// With mean cosine `g`; `None` unless `−1 < g < 1`.
+    /// The phase function of mean cosine `g`; `None` unless `−1 < g < 1`.
     pub fn new(g: f64) -> Option<Self> {
         (g.abs() < 1.0).then_some(Self { g })
     }

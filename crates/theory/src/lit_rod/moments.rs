@@ -1,8 +1,8 @@
 //! Moments of a walk towards an emitter, and of its lookups, from two-stream equations.
 //!
-//! Let `U_k(x, ±)` be the mean of (what all future scatterings bring)^k of a particle that flies forward or
-//! backward, and F the same for one that has just been scattered, with its next hit. N, the shadow ray, and F are
-//! independent:
+//! Let `U_k(x, ±)` be the k-th moment of the score of all future scatterings of a particle that flies forward or
+//! backward. F is the score of a particle that has just been scattered, with its next hit, and N the score of the
+//! shadow ray. Both are independent:
 //!
 //! ```text
 //! E[F^k]         = p (h_k + U_k⁺) + (1 − p) U_k⁻,          p the probability to go on forward
@@ -12,10 +12,10 @@
 //! E[X^k] = e^{−τ} + U_k⁺(0)
 //! ```
 //!
-//! The unscattered hit scores 1. `n_k` and `h_k` are those of [`super::connections`]. Nothing diverges: weights are
-//! bounded, and scattering never multiplies particles.
+//! The unscattered hit scores 1. `n_k` and `h_k` are those of [`super::connections`]. No moment is infinite:
+//! weights are bounded, and scattering never multiplies particles.
 //!
-//! Lookups: a tentative collision is one, and where it scatters, so are those of the shadow ray, K of them.
+//! Lookups: each tentative collision is one. Where it scatters, the K lookups of the shadow ray are added.
 //!
 //! ```text
 //! exact: K = 0;   ratio: K is Poisson, E[K(K − 1)…] = Λ^k, Λ = ∫σ̂ from y to the emitter
@@ -72,7 +72,7 @@ pub fn binomials(k: usize) -> [f64; HIGHEST + 1] {
     row
 }
 
-/// Factorial moments of what a shadow ray looks up, k = 0 … 4, in the middle of each step.
+/// Factorial moments of the number of lookups of a shadow ray, k = 0 … 4, in the middle of each step.
 fn shadow_lookups(grid: &Grid, shadow: Option<Shadow>) -> Option<Vec<[f64; 5]>> {
     let steps = grid.steps();
     let mut found = vec![[1.0, 0.0, 0.0, 0.0, 0.0]; steps.len()];
@@ -92,7 +92,7 @@ fn shadow_lookups(grid: &Grid, shadow: Option<Shadow>) -> Option<Vec<[f64; 5]>> 
             for k in 1..=4_u8 {
                 let source = |i: usize, step: &Step| {
                     let rate = f64::from(k) * step.sampling;
-                    // The first collision counts whatever it is.
+                    // The first collision counts, real or null.
                     let after = |last: &Importance| step.means[0] * last.middle(i)[0];
                     [rate * before.as_ref().map_or(1.0, after), 0.0]
                 };
@@ -115,7 +115,7 @@ pub fn lookups(grid: &Grid, techniques: Techniques) -> Option<[f64; 4]> {
     for n in 1..=4_usize {
         let source = |i: usize, step: &Step| {
             let worth = |m: usize| if m == 0 { [1.0; 2] } else { futures[m - 1].middle(i) };
-            // With K lookups of a shadow ray and m' of what follows, from one shadow lookup on.
+            // With K lookups of a shadow ray and m' lookups afterwards, from one shadow lookup on.
             let scattered = |m: usize, from: usize| {
                 let mut sum = [0.0; 2];
                 for j in from..=m {

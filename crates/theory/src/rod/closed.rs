@@ -5,7 +5,7 @@
 //! R = βs/(1 + E + αs),  T = 2e^{−κτ}/(1 + E + αs);   a = 1:  R = βτ/(1 + βτ), T = 1/(1 + βτ)
 //! ```
 //!
-//! Only the optical depth matters. At a = 1 the formulas have their limit s = 2τ.
+//! They depend on the optical depth only. At a = 1 the formulas have their limit s = 2τ.
 
 use numeric::Known;
 
@@ -21,7 +21,7 @@ pub fn leaving(depth: Known, albedo: f64, forward: f64) -> [Known; 2] {
     let s = if kappa > 0.0 { -(-x).exp_m1() / kappa } else { 2.0 * tau };
     let below = 1.0 + (-x).exp() + lost * s;
     let values = [turned * s / below, 2.0 * (-kappa * tau).exp() / below];
-    // dR/dτ ≤ β and −dT/dτ ≤ 1 − a p_f, 1 at most; what follows τ are a few roundings, and those of κτ.
+    // dR/dτ ≤ β and −dT/dτ ≤ 1 − a p_f, 1 at most; after τ there are a few roundings, and those of κτ.
     let rounding = (8.0 + kappa * tau) * f64::EPSILON;
     let slopes = [turned, lost];
     std::array::from_fn(|i| {

@@ -1,4 +1,4 @@
-//! The radiance of a ray by a quadrature that is quick rather than exact to the last digit.
+//! The radiance of a ray by a fast quadrature that does not aim at the last digit.
 
 use crate::problems::{Problem, SingleScattering};
 use numeric::quadrature::GaussLegendre;
@@ -7,9 +7,8 @@ use numeric::{Known, Span};
 /// Nodes of a panel.
 const NODES: usize = 16;
 
-/// L by panels that are even in the angle seen from the light, in which `1/r²` is constant; the optical
-/// depths are exact. The error is what half as many panels differ by: nearly always far more than
-/// what is left, but no bound.
+/// L by panels of equal angle as seen from the light, in which `1/r²` is constant; the optical depths are exact.
+/// The error is the difference to half as many panels: nearly always far larger than the true error, but no bound.
 pub fn radiance(problem: &SingleScattering, panels: usize) -> Known {
     if problem.medium().support().is_empty() {
         return Known::exact(0.0);

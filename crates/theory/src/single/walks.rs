@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! at every collision   X = Σᵢ wᵢ hᵢ T̂_shadow,  h = σ_t S/σ̂,  wᵢ = T_c(tᵢ) ∏_{j<i} (1 − rⱼ)
-//! resampled            X = (Σᵢ |wᵢ| hᵢ) sgn(w_J) T̂_shadow(t_J),  J chosen with chance ∝ |w_J| h_J
+//! resampled            X = (Σᵢ |wᵢ| hᵢ) sgn(w_J) T̂_shadow(t_J),  J chosen with probability ∝ |w_J| h_J
 //! at n points of a density p    X = (1/n) Σⱼ T̂(sⱼ) σ_t S/p T̂_shadow,  one T̂ for all
 //! ```
 

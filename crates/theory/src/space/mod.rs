@@ -1,4 +1,4 @@
-//! Walks in space: bounds on what they bring, and the exact answers that there are.
+//! Walks in space: bounds on the variance of their scores, and exact answers where they exist.
 
 pub mod content;
 pub mod energy;

@@ -1,11 +1,11 @@
-//! The lookups of a draw, mixed over heroes.
+//! Distribution of the lookups of a draw, mixed over heroes.
 
 use super::{Spectrum, Tracker};
 use crate::{CountLaw, Mesh, raw};
 use numeric::sum::Sum;
 
 impl Spectrum {
-    /// The lookups of a draw, mixed over heroes.
+    /// Distribution of the lookups of a draw, mixed over heroes.
     pub(super) fn lookups(&self) -> CountLaw {
         let flown = |channel: usize| self.majorants[channel] * self.length();
         let own = |channel: usize, delta: bool| {

@@ -4,7 +4,7 @@
 //! and absorbing collisions, `μ̄ = μ_n + μ_s + μ_a`, `P_e` the probability of an event and `K = Σ k_λ`:
 //!
 //! ```text
-//! spectral tracking, fixed chances    E[Π X_λ^{k_λ}] = exp ∫ μ̄ [Σ_{e = n, s} Π (μ_e,λ/μ̄)^{k_λ}/P_e^{K−1} − 1]
+//! spectral tracking, fixed P_e        E[Π X_λ^{k_λ}] = exp ∫ μ̄ [Σ_{e = n, s} Π (μ_e,λ/μ̄)^{k_λ}/P_e^{K−1} − 1]
 //! spectral MIS                        a sum over the numbers of null and of scattering collisions in each cell of a
 //!                                     rod that is constant in each, see [`crate::spectral`]
 //! history-aware spectral tracking     the same as spectral MIS with one μ̄ for all channels

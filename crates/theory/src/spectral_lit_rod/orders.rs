@@ -12,7 +12,7 @@
 //!
 //! ```text
 //! ā = Σ w_h q_h a_h/Σ w_h q_h,   p̄ = Σ w_h q_h a_h p_h/Σ w_h q_h a_h,   c_λ = q_λ a_λ p_λ/Σ w_h q_h a_h p_h
-//! a shadow ray scores c_λ G, a hit c_λ H, with the laws of G and H of one channel with p̄, see `lit_rod`
+//! a shadow ray scores c_λ G, a hit c_λ H, with G and H distributed as in one channel with p̄, see `lit_rod`
 //! U_k'(x) = ±(σ U_k − σ ā E[Π (c_λ G + F_λ)^{k_λ}]),   U_k the mean of Π (what all future scatterings bring)^{k_λ}
 //! E[Π F_λ^{k_λ}] = p̄ (Π c_λ^{k_λ} E[H^K] + U_k of the next state forward) + (1 − p̄) U_k of the next backward
 //! ```

@@ -6,7 +6,7 @@
 //! E[Π X_λ^{k_λ}; transmitted]
 //! independent        w_h^{1−K} T(a_h), all of k on the channel h, else 0
 //! hero               Σ_h w_h T(Π a_λ^{k_λ} / a_h^{K−1})
-//! spectral tracking  T(Π a_λ^{k_λ} / P_s^{K−1}),  P_s the chance to be scattered
+//! spectral tracking  T(Π a_λ^{k_λ} / P_s^{K−1}),  P_s the scattering probability
 //! spectral MIS       Σ_r T_r D_r Π (a_λ^r/D_r)^{k_λ},  D_r = Σ_h w_h a_h^r
 //! ```
 //!

@@ -4,9 +4,9 @@
 //! J₀(r) = P e^{−τ(0, r)}/(4πr)²,   Jₙ = K a Jₙ₋₁,   radiance of order n: ∫ σ_t a Jₙ₋₁ e^{−τ} dt
 //! ```
 //!
-//! K is the operator of [`super`]. `J₀` is a function, integrated as such: no polynomial follows
-//! `1/r²` to the centre. `J₁`, which goes like `1/r`, and all others are polynomials of `r²` in shells
-//! that are halved towards the centre.
+//! K is the operator of [`super`]. `J₀` is integrated as a function: no polynomial approximates `1/r²` up to the
+//! centre. `J₁`, which goes like `1/r`, and all others are polynomials of `r²` in shells that are halved towards
+//! the centre.
 
 use std::f64::consts::PI;
 
@@ -15,8 +15,8 @@ use super::shells::{Centre, Resolution, Row, Rules};
 use super::{Lights, Solved, product};
 use numeric::Known;
 
-/// The radiance of light that was scattered once, twice, … and at all along each line of sight that
-/// passes the centre at a distance.
+/// The radiance of light that was scattered once, twice, …, and in all, along each line of sight that passes the
+/// centre at a distance.
 fn radiances(
     ball: &Ball,
     albedo: f64,
@@ -46,7 +46,7 @@ fn radiances(
     Some(offsets.iter().map(of).collect())
 }
 
-/// `∫ σ_t J₀ e^{−τ} dt` along a line of sight that does not meet the centre, for a source of power 1.
+/// `∫ σ_t J₀ e^{−τ} dt` along a line of sight that does not pass through the centre, for a source of power 1.
 pub(super) fn unscattered(
     ball: &Ball,
     chord: &Chord,
@@ -54,7 +54,7 @@ pub(super) fn unscattered(
     rules: &Rules,
 ) -> f64 {
     let offset = chord.offset2.sqrt();
-    // Panels follow the distance from the centre.
+    // Panels are chosen by the distance from the centre.
     let mut edges = vec![0.0];
     let mut edge = 0.5 * offset;
     while edge < 2.0 * ball.radius {
@@ -82,9 +82,9 @@ pub(super) fn unscattered(
     sum
 }
 
-/// For each line of sight, by its distance from the centre, which is not 0: the radiance that a point
-/// source of power 1 at the centre sends along it after one scattering, after two, …, and in all, with
-/// their errors. `None` where the ball is no medium, or is not a medium up to its centre.
+/// The radiance of a point source of power 1 at the centre along lines of sight: after one scattering, after two,
+/// …, and in all, with their errors. `distances` of the lines from the centre are above 0. `None` where the ball's
+/// medium is invalid, or does not extend to its centre.
 pub fn orders(
     ball: &Ball,
     albedo: f64,
@@ -100,7 +100,7 @@ pub fn orders(
     let all = [fine?, coarse?, coarsest?];
     let known = |ray: usize, order: usize| {
         let found = resolution.known(all.each_ref().map(|a| a[ray][order]));
-        // Next to the source all three may be off alike: measured.
+        // Next to the source all three may have similar errors: measured.
         let near = (ball.radius / offsets[ray]).powi(2);
         Known::new(found.value, found.error + resolution.chance * near * found.value.abs())
     };

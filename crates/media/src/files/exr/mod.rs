@@ -1,12 +1,12 @@
-//! `OpenEXR` pictures: read by the crate `exr`, scan lines or tiles, of every compression that it knows (none, RLE, ZIPS, ZIP,
-//! PIZ, PXR24, B44 and B44A); written plainly.
+//! `OpenEXR` pictures. They are read by the crate `exr`: scan lines or tiles, of every compression that it supports
+//! (none, RLE, ZIPS, ZIP, PIZ, PXR24, B44 and B44A). They are written without compression.
 //!
 //! ```text
 //! magic, version 2; attributes: name, type, length and value; 0
 //! where each line begins (u64); each line: its number from the top and its length (2 i32), then its channels by name
 //! ```
 //!
-//! The crate's writer takes the compiler 3.5 s of a core, for these lines.
+//! The crate's writer would cost 3.5 s of compile time, more than these lines are worth.
 //!
 //! Source: *`OpenEXR` File Layout*, Academy Software Foundation.
 
@@ -21,7 +21,7 @@ use exr::prelude::{SampleType, Vec2, f16};
 use super::Pixels;
 pub use header::{Channel, Part, Window, parts};
 
-/// The most values of a picture: 2 GiB in memory.
+/// Maximum number of values of a picture: 2 GiB in memory.
 const MOST: usize = 1 << 28;
 
 /// The bytes of a picture of one layer and of several images of it, each with a prefix to the names of its channels:
@@ -52,7 +52,7 @@ pub fn write(
         return Err(format!("{columns} × {rows} pixels are more than an EXR holds"));
     };
     let window = [0, 0, last_column, last_row].map(i32::to_le_bytes).concat();
-    // Each name, float32, four bytes that say nothing of float32, and a value for each column and row.
+    // Each name, float32, four bytes without meaning for float32, and a value for each column and row.
     let described = |(name, _, _): &(String, usize, &[f64])| {
         [name.as_bytes(), &[0, 2, 0, 0, 0, 0, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0]].concat()
     };
@@ -76,7 +76,7 @@ pub fn write(
         bytes.extend(value);
     }
     bytes.push(0);
-    // Where each line begins, which is eight bytes and its values long.
+    // The begin of each line, which is eight bytes and its values long.
     let line = 8 + 4 * list.len() * columns;
     let first = bytes.len() + 8 * rows;
     bytes.extend((0..rows).flat_map(|row| ((first + row * line) as u64).to_le_bytes()));
@@ -95,7 +95,7 @@ pub fn write(
 ///
 /// # Errors
 ///
-/// What is wrong with it.
+/// The file is damaged, or of an unsupported kind.
 pub fn read(bytes: Vec<u8>) -> Result<Pixels, String> {
     refuse(&parts(&bytes)?)?;
     let wrong = |error: exr::error::Error| error.to_string();
@@ -117,7 +117,7 @@ pub fn read(bytes: Vec<u8>) -> Result<Pixels, String> {
     let is_kept = |layer: usize, level: Vec2<usize>| layer == 0 && level == Vec2(0, 0);
     let chunks = reader.filter_chunks(false, |_, _, block| is_kept(block.layer, block.level));
     let mut chunks = chunks.map_err(wrong)?;
-    // What no chunk fills stays no number.
+    // Pixels without a chunk stay NaN.
     let mut values = vec![f64::NAN; rows * columns * channels];
     while let Some(chunk) = chunks.next() {
         let block =
@@ -141,7 +141,8 @@ pub fn read(bytes: Vec<u8>) -> Result<Pixels, String> {
     Ok(Pixels { size: [columns, rows], channels, values, has_halves })
 }
 
-/// Refuses what the crate does not read, by its name. The crate reads no file that has a deep part, whichever part is wanted.
+/// Refuses what the crate does not read, with its name. The crate reads no file that has a deep part, even if
+/// another part is wanted.
 fn refuse(parts: &[Part]) -> Result<(), String> {
     let named = |part: &Part| match parts.len() {
         1 => String::new(),

@@ -1,4 +1,4 @@
-//! `NanoVDB`'s files: grids of `OpenVDB` as they lie in memory.
+//! `NanoVDB`'s files: grids of `OpenVDB` in their memory layout.
 //!
 //! ```text
 //! a segment   magic "NanoVDB0" or "NanoVDB2" (8 bytes), version (u32), number of grids and codec (2 u16)
@@ -9,11 +9,12 @@
 //! codec       0 none; 1 length (u64) and zlib; 2 length (u64) and Blosc, for each 2³⁰ bytes
 //! ```
 //!
-//! All numbers are little-endian. Versions 32.x are read, which have one layout, and grids of the types Float, Fp4, Fp8, Fp16
-//! and `FpN`. A file that begins with `NanoVDB1` is one grid as it lies in memory. Other types are named in the error.
+//! All numbers are little-endian. Supported are versions 32.x, which have one layout, and grids of the types Float,
+//! Fp4, Fp8, Fp16 and `FpN`. A file that begins with `NanoVDB1` is one grid in its memory layout. Other types are
+//! named in the error.
 //!
-//! No crate reads these files. No place that the file names is trusted: each part is taken from the bytes that are
-//! there, and no more nodes are visited than fit into them.
+//! No crate reads these files. No position in the file is trusted: each part is taken from existing bytes, and no
+//! more nodes are visited than fit into them.
 //!
 //! Source: K. Museth, *`NanoVDB`: A GPU-Friendly and Portable VDB Data Structure For Real-Time Rendering And Simulation*,
 //! SIGGRAPH Talks 2021; the layout is that of `NanoVDB.h`, `PNanoVDB.h` and `io/IO.h`, versions 32.4 and 32.9.
@@ -29,7 +30,7 @@ pub use listing::{Listed, list};
 /// Bytes before the tree.
 const GRID: usize = 672;
 
-/// The bytes from a place on.
+/// The bytes from a position on.
 fn part(bytes: &[u8], from: usize, count: usize) -> Result<&[u8], Fault> {
     match bytes.get(from..).and_then(|rest| rest.get(..count)) {
         Some(found) => Ok(found),
@@ -37,7 +38,7 @@ fn part(bytes: &[u8], from: usize, count: usize) -> Result<&[u8], Fault> {
     }
 }
 
-/// An array of bytes at a place.
+/// An array of bytes at a position.
 fn array<const N: usize>(bytes: &[u8], from: usize) -> Result<[u8; N], Fault> {
     let mut array = [0; N];
     array.copy_from_slice(part(bytes, from, N)?);
@@ -54,11 +55,11 @@ fn word(bytes: &[u8], from: usize) -> Result<u64, Fault> {
 
 const CONVERT: &str = "grids of the types Float, Fp4, Fp8, Fp16 and FpN are read: write one of them by nanovdb_convert";
 
-/// Reads the grid of a name; without one, the file's only grid of floats.
+/// Reads the grid of a name; without a name, the file's only grid of floats.
 ///
 /// # Errors
 ///
-/// Whatever keeps the file from being one of the kind that is described above, with such a grid.
+/// The file is not one of the kind that is described above, or has no such grid.
 pub fn read(file: &[u8], name: Option<&str>) -> Result<Grid, Fault> {
     let grids = list(file)?;
     let all = || grids.iter().map(Listed::shown).take(20).collect::<Vec<_>>().join(", ");

@@ -50,7 +50,7 @@ const LEAF_HEAD: usize = 96;
 const ROOT_HEAD: usize = 64;
 const ROOT_TILE: usize = 32;
 
-/// An inner level: the binary logarithm of places along an axis, and where its table begins.
+/// An inner level: the binary logarithm of places along an axis, and the beginning of its table.
 struct Level {
     log: usize,
     table: usize,
@@ -79,7 +79,7 @@ pub(super) fn read(bytes: &[u8], values: Values) -> Result<Tree, Fault> {
     Ok(reader.tree.tree)
 }
 
-/// The place at a distance from another.
+/// The position at a distance from another.
 fn from(place: usize, distance: i64) -> Result<usize, Fault> {
     let found = i64::try_from(place).ok().and_then(|place| place.checked_add(distance));
     match found.and_then(|found| usize::try_from(found).ok()) {
@@ -161,7 +161,7 @@ impl Reader<'_> {
         Ok(())
     }
 
-    /// Counts the bytes of a node: a damaged file may name one for ever.
+    /// Counts the bytes of a node: in a damaged file a node may be visited without end.
     fn visit(&mut self, size: usize) -> Result<(), Fault> {
         self.visited = self.visited.saturating_add(size);
         if self.visited > self.bytes.len() {

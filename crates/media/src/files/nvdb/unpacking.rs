@@ -8,7 +8,7 @@ use super::{Fault, damaged, part, word};
 /// Bytes of a piece that Blosc packs.
 const PIECE: usize = 1 << 30;
 
-/// The most that LZ4 makes of a byte.
+/// Maximum number of bytes that LZ4 makes of one byte.
 const MOST: usize = 256;
 
 /// Unpacks a grid to its size in memory.

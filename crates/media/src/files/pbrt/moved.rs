@@ -1,6 +1,6 @@
-//! The transform that the directives before a medium make.
+//! The transform by the directives before a medium.
 
-/// A scale and a translation: p → scale·p + shift; or the directive that turns the axes.
+/// A scale and a translation: p → scale·p + shift; or the name of the directive that rotates the axes.
 #[derive(Debug, Clone)]
 pub(super) struct Moved {
     pub(super) scale: [f64; 3],
@@ -24,7 +24,7 @@ impl Moved {
     }
 }
 
-/// The samples with some axes turned about.
+/// The samples, mirrored along some axes.
 pub(super) fn mirrored(density: Vec<f64>, [nx, ny, nz]: [u64; 3], about: [bool; 3]) -> Vec<f64> {
     if about == [false; 3] {
         return density;

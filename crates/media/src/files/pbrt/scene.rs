@@ -17,7 +17,7 @@ pub struct Grid {
     pub density: Vec<f64>,
 }
 
-/// A medium as it is written.
+/// A medium as written in the file.
 #[derive(Default)]
 struct Medium {
     name: String,
@@ -35,7 +35,7 @@ const ADVICE: &str = "give one, as in MakeNamedMedium \"smoke\" \"string type\" 
 /// A medium by its name.
 pub type Named = (String, Result<Grid, Fault>);
 
-/// The media of a scene file that are grids, with what is wrong with one.
+/// The media of a scene file that are grids, or the errors in them.
 ///
 /// # Errors
 ///
@@ -54,11 +54,11 @@ pub fn grids(text: &str) -> Result<Vec<Named>, Fault> {
     Ok(media.into_iter().map(|medium| (medium.name.clone(), medium.grid())).collect())
 }
 
-/// Reads the medium of a name; without one, the file's only grid.
+/// Reads the medium of a name; without a name, the file's only grid.
 ///
 /// # Errors
 ///
-/// Whatever keeps the file from having such a medium.
+/// The file has no such medium.
 pub fn read(text: &str, name: Option<&str>) -> Result<Grid, Fault> {
     let mut media = grids(text)?;
     let list = |media: &[Named]| {
@@ -195,7 +195,7 @@ impl Medium {
         let place = format!("medium {} in line {}", shown(&self.name), self.line);
         match self.kind.as_str() {
             "uniformgrid" | "heterogeneous" => {}
-            // Both kinds of file leave the type out where another file has it.
+            // Files of either kind leave the type out if another file has it.
             "" if self.density.is_some() => {}
             "nanovdb" => {
                 let file = shown(&self.file);
@@ -262,7 +262,7 @@ impl Medium {
             [0, 1, 2].map(|j| ends(j)[0].max(ends(j)[1])),
         ];
         let size = [x, y, z];
-        // p0 and p1 are corners in any order, but the samples begin at the lowest; a mirror turns them about.
+        // p0 and p1 are corners in any order, but the samples begin at the lowest; a mirror reverses them.
         let density = mirrored(density, size, scale.map(|x| x < 0.0));
         Ok(Grid { name: self.name, size, corners, density })
     }

@@ -28,7 +28,7 @@ impl<'a> Words<'a> {
         Self { rest: text, line: 1, peeked: None }
     }
 
-    /// The next word, which stays the next; `None` at the end.
+    /// Returns the next word without consuming it; `None` at the end.
     pub(super) fn peek(&mut self) -> Result<Option<Word<'a>>, Fault> {
         if self.peeked.is_none() {
             self.peeked = self.read()?;
@@ -36,7 +36,7 @@ impl<'a> Words<'a> {
         Ok(self.peeked)
     }
 
-    /// The next word; `None` at the end.
+    /// Returns the next word; `None` at the end.
     pub(super) fn next(&mut self) -> Result<Option<Word<'a>>, Fault> {
         match self.peeked.take() {
             Some(word) => Ok(Some(word)),

@@ -12,11 +12,11 @@
 use super::bytes::Bytes;
 use super::{Fault, damaged, wrong};
 
-/// The fewest bytes of a stream that a block is split into, and the most streams.
+/// Minimum number of bytes of a stream into which a block is split, and maximum number of streams.
 const LEAST_STREAM: usize = 128;
 const MOST_STREAMS: usize = 16;
 
-/// Unpacks a frame into as many bytes as it must hold.
+/// Unpacks a frame into exactly the length of `into`.
 pub(in crate::files) fn unpack(frame: &[u8], into: &mut [u8]) -> Result<(), Fault> {
     let mut head = Bytes::new(frame);
     let [version, _, flags, width] = head.number()?.to_le_bytes();
@@ -79,7 +79,7 @@ fn unpack_streams(source: &mut Bytes, streams: usize, into: &mut [u8]) -> Result
     Ok(())
 }
 
-/// First bytes, second bytes and so on, put together to numbers; what is no whole number stands at the end.
+/// Joins first bytes, second bytes and so on to numbers; bytes of an incomplete number are at the end.
 fn unshuffle(from: &[u8], width: usize, into: &mut [u8]) {
     let count = from.len() / width;
     for (place, byte) in from[..count * width].iter().enumerate() {

@@ -1,15 +1,15 @@
-//! From the coordinates of voxels to those of the world.
+//! Transform from the coordinates of voxels to those of the world.
 //!
 //! ```text
 //! world = matrix · index + shift
 //! ```
 //!
-//! Frusta, in which straight rays are bent, are not read.
+//! Frusta, in which straight rays are bent, are not supported.
 
 use super::bytes::Bytes;
 use super::{Fault, damaged, shown, wrong};
 
-/// Columns that are nearer to one plane than this span no lattice that doubles can tell apart.
+/// Minimum relative volume of a voxel: flatter lattices are degenerate in double precision.
 const FLATTEST: f64 = 1e-9;
 
 /// An affine map from indices to the world.
@@ -36,7 +36,7 @@ impl Transform {
         is_plain.then(|| [0, 1, 2].map(|j| self.matrix[j][j]))
     }
 
-    /// World coordinates of a place in index space.
+    /// World coordinates of a position in index space.
     pub fn world(&self, index: [f64; 3]) -> [f64; 3] {
         let row = |i: usize| (0..3).map(|j| self.matrix[i][j] * index[j]).sum::<f64>();
         [0, 1, 2].map(|i| row(i) + self.shift[i])
@@ -105,7 +105,7 @@ fn norm([x, y, z]: [f64; 3]) -> f64 {
     (x * x + y * y + z * z).sqrt()
 }
 
-/// A scale, and what is known by it: the size of a voxel, and three kinds of inverses.
+/// A scale, and the derived data in the file: the size of a voxel, and three kinds of inverses.
 fn scale(bytes: &mut Bytes) -> Result<[f64; 3], Fault> {
     let scale: [f64; 3] = bytes.doubles()?;
     let size: [f64; 3] = bytes.doubles()?;
