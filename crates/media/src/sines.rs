@@ -14,8 +14,8 @@
 //! | `phases` | one for each wave | rad | zeros |
 //! | `bounds` | 3-D only: `sphere = { centre, radius }` or `box = { low, high }` | length | all of space |
 //!
-//! Lookups use `1 ± sin x = 2 sin²(x/2 ± π/4)`, which rounding cannot make negative. Arguments stay
-//! below 1e9 rad. The optical depth is a closed form about the middle of the stretch,
+//! Lookups use `1 ± sin x = 2 sin²(x/2 ± π/4)`, which rounding cannot make negative. Arguments stay below 1e9 rad.
+//! The optical depth is a closed form about the middle of the interval,
 //!
 //! ```text
 //! ∫ sin(φ + ωs) ds = L sin(φ_middle) · sinc(ωL/2)

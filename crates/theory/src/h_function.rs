@@ -42,7 +42,7 @@ pub fn h_function(albedo: f64, cosine: f64) -> f64 {
 
 /// The integrand at an angle φ from 0.
 fn near_zero(albedo: f64, cosine: f64, phi: f64) -> f64 {
-    // 1 − a φ cot φ = (1 − a) + a(1 − φ cot φ), of which the last cancels for small φ.
+    // 1 − a φ cot φ = (1 − a) + a(1 − φ cot φ); the last difference cancels for small φ.
     let square = phi * phi;
     let bent = if phi < 0.1 {
         let terms = [1.0 / 3.0, 1.0 / 45.0, 2.0 / 945.0, 1.0 / 4725.0, 2.0 / 93555.0];

@@ -1,8 +1,8 @@
 //! The distribution of the number of lookups of a product estimator.
 //!
-//! Let `K(s) = ∫₀ˢ (σ̂(1 − q) + c)`, with c the rate at which a walk also ends without a lookup, and `A(s) = ∫₀ˢ σ̂
-//! q`. The collisions that a particle survives are a Poisson process of rate `σ̂q`, independent of the one that
-//! ends it:
+//! Let `K(s) = ∫₀ˢ (σ̂(1 − q) + c)`, with c the rate at which a walk also ends without a lookup, and
+//! `A(s) = ∫₀ˢ σ̂ q`. The collisions that a particle survives are a Poisson process of rate `σ̂q`, independent of
+//! the one that ends it:
 //!
 //! ```text
 //! P(M = m) = e^{−K(S)} Pois(m; A(S)) + ∫ e^{−K} [σ̂(1 − q) Pois(m − 1; A) + c Pois(m; A)] dt

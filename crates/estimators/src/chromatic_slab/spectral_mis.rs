@@ -11,8 +11,8 @@
 //! | `hero` | distribution of the hero: `"uniform"`, `"luminance"`, or a list of probabilities that sum to 1 | `"uniform"` |
 //! | `sampling` | a constant σ̂ ≥ σ_t in each channel, the same in all or not | required here or in the case |
 //!
-//! `Σ_λ w_λ X_λ = 1` holds for every walk that leaves and is checked. No draw exceeds `1/w_λ`, so that `E[X²] ≤
-//! E[X]/w_λ`; the variance itself is not known.
+//! `Σ_λ w_λ X_λ = 1` holds for every walk that leaves and is checked. No draw exceeds `1/w_λ`, so that
+//! `E[X²] ≤ E[X]/w_λ`; the variance itself is not known.
 //!
 //! Source: B. Miller, I. Georgiev, W. Jarosz, *A null-scattering path integral formulation of light transport*,
 //! ACM Transactions on Graphics 38 (2019), section 5.1, Algorithm 1.

@@ -6,7 +6,7 @@ use media::{Medium, OpticalDepth, Piecewise};
 use numeric::{Lane, Mask, Span, kept};
 use theory::lit_rod::{Shadow, Techniques};
 
-/// The events of a walk to a light, each of which a known bug may replace.
+/// The events of a walk to a light; a known bug may replace each of them.
 pub trait Steps: Copy {
     /// True if [`Steps::arrived`] needs the last segment.
     const KEEPS_LAST: bool = false;

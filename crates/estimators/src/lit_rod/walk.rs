@@ -5,7 +5,7 @@
 //! fly      forward or backward through σ̂; a shadow ray forward
 //! collide  r = σ_t/σ̂
 //!   a walk        null, 1 − r       ρ ← ρ (1 − r), where null collisions are part of ρ
-//!                 scattered, a r    p = p(ω) towards the emitter;  ρ ← p;  a shadow ray is cast, and the walk waits
+//!                 scattered, a r    p = p(ω) towards the emitter;  ρ ← p;  a shadow ray is cast before the walk continues
 //!                 absorbed          the end
 //!                 beyond the end    the weight of a hit is added, 1 if it was never scattered
 //!   a shadow ray  t̂ ← t̂ (1 − r), or ended with probability r
@@ -27,7 +27,7 @@ use theory::lit_rod::Shadow;
 use theory::problems::{LitRod, Problem, Rod};
 
 kept! {
-    /// A walk in flight, or waiting for its shadow ray.
+    /// A walk in flight, or behind its shadow ray.
     pub struct Path<L> {
         is_forward: L::Mask,
         unscattered: L::Mask,
@@ -38,7 +38,7 @@ kept! {
     }
 }
 
-/// The scattering at the places of walks.
+/// The scattering properties at positions of walks.
 pub trait Scatterers<L: Lane> {
     /// a.
     fn albedo(&self, t: L) -> L;
@@ -99,7 +99,7 @@ impl<S: Steps> Walk for ToEmitter<'_, S> {
 
     #[inline(always)]
     fn restart<L: Lane>(&self, path: &mut Path<L>, which: L::Mask, one: L, _: &mut impl Random<L>) {
-        // A scattering sets all else.
+        // A scattering sets all other fields.
         path.is_forward |= which;
         path.unscattered |= which;
         path.score.set_where(which, one.each(0.0));
@@ -185,7 +185,7 @@ impl<S: Steps> ToEmitter<'_, S> {
         scattered | null
     }
 
-    /// Walks in `scattered` cast a shadow ray, and turn.
+    /// Casts the shadow rays of the walks in `scattered`, and turns these.
     #[inline(always)]
     fn scatter<L: Lane>(
         &self,

@@ -26,7 +26,7 @@ use theory::ParticleRule;
 use theory::lit_rod::Shadow;
 use theory::problems::{LitSlab, Problem};
 
-/// Densities of directions, each of which a known bug may replace; the steps along them are those of rods.
+/// Densities of directions; a known bug may replace each of them. The steps along directions are those of rods.
 pub trait Directions: Copy {
     /// The phase function of a chosen direction.
     #[inline(always)]
@@ -61,11 +61,11 @@ pub struct Right;
 impl Directions for Right {}
 
 kept! {
-    /// A walk in flight, or waiting for its shadow ray.
+    /// A walk in flight, or behind its shadow ray.
     pub struct Path<L> {
         /// Lanes that fly to a hit.
         seeks: L::Mask,
-        /// Lanes with a drawn direction that meets the light.
+        /// Lanes with a drawn direction that hits the light.
         meets: L::Mask,
         /// The cosine of the flight.
         cosine: L,

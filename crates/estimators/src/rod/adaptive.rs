@@ -11,8 +11,8 @@
 //!
 //! According to the paper it is never worse than either rule alone. Its variance is never below that of the
 //! non-terminating rule: where it terminates, its second moments `S₂ = a r` and `Q₂ = |1 − r|` are those of the
-//! other over `D ≤ 1`. It saves lookups, only where σ̂ is below σ_t, and none at a = 1. `trueflight run
-//! rod/three-rules-a0.7` shows variance, lookups and figure of merit of the three.
+//! other over `D ≤ 1`. It saves lookups, only where σ̂ is below σ_t, and none at a = 1.
+//! `trueflight run rod/three-rules-a0.7` shows variance, lookups and figure of merit of the three.
 //!
 //! The pseudo-code has `a r` where a negative r would need `a|r|`; this page has `a|r|`.
 //!

@@ -86,7 +86,7 @@ pub fn require_shadow(setup: &Setup<SingleScattering>, shadow: Tracking) -> Resu
     ))
 }
 
-/// The transmittance of a stretch of a ray within the bounds of a volume, in closed form.
+/// The transmittance of an interval of a ray within the bounds of a volume, in closed form.
 pub fn exact(volume: &Volume, ray: &Ray, inside: Span) -> f64 {
     Lane::exp(-volume.along(ray, inside).optical_depth(inside).value)
 }

@@ -18,7 +18,7 @@ pub const TOGETHER: u32 = 4;
 kept! {
     /// The way of each lane from a scattering point to the light.
     pub struct ToLight<L> {
-        /// Lanes that wait to cast a shadow ray.
+        /// Lanes that have yet to cast a shadow ray.
         aims: L::Mask,
         /// Lanes with a shadow ray in flight at the beginning of the step.
         casts: L::Mask,

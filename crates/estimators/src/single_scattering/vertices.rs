@@ -45,7 +45,7 @@ pub trait Steps: Copy {
         right
     }
 
-    /// Lanes of real collisions that end their walk, of which some scatter.
+    /// Lanes of real collisions that end their walk; some of them scatter.
     #[inline(always)]
     fn ends<L: Lane>(&self, real: L::Mask, scattered: L::Mask) -> L::Mask {
         let _ = scattered;
@@ -102,7 +102,7 @@ kept! {
         is_chosen: L::Mask,
         /// Lanes at the second of two chosen points.
         is_second: L::Mask,
-        /// Lanes that wait to begin their next point or draw.
+        /// Lanes that have yet to begin their next point or draw.
         done: L::Mask,
         s: L,
         extinction: L,

@@ -6,10 +6,10 @@
 //! fly       each walk flies to its next collision
 //! look up   one call for all sixteen places
 //! collide   some walks end: they make draws and are replaced at once
-//! go on     what is costly waits until several lanes need it
+//! go on     expensive events are delayed until several lanes need them
 //! ```
 //!
-//! A step has no branches: what happens to a walk is a mask, and streams that a step asks for no number stay where they are.
+//! A step has no branches: the events of walks are masks, and streams without a requested number do not move.
 //!
 //! Source: F. B. Brown, W. R. Martin, *Monte Carlo methods for radiation transport analysis on vector computers*, Progress in
 //! Nuclear Energy 14 (1984).
@@ -63,7 +63,7 @@ pub trait Walk {
         random: &mut impl Random<L>,
     ) -> L::Mask;
 
-    /// Does what is costly, if `together` lanes wait for it.
+    /// Handles expensive events, once at least `together` lanes need them.
     #[inline(always)]
     fn go_on<L: Lane>(
         &self,
@@ -103,10 +103,10 @@ pub fn one<L: Single, W: Walk>(
     }
 }
 
-/// The numbers that eight walks leave. They are no part of the pack, which a compiler keeps in registers only where nothing of
-/// it is reached by an index.
+/// The numbers that eight walks leave. They are outside the pack: a compiler keeps the pack in registers only if no
+/// index reaches it.
 pub struct Rows {
-    /// Number by number.
+    /// Rows, number by number.
     pub numbers: Vec<[f64; WIDTH]>,
     /// Lookups.
     pub lookups: [f64; WIDTH],
@@ -127,7 +127,7 @@ pub fn run<S: Simd, W: Walk>(
     let (turn, one) = (streams.turn, f64x8::splat(simd, 1.0));
     let [first, second] = streams.packs();
     let (mut slots, mut other_slots) = (Slots::new(count, turn, 0), Slots::new(count, turn, 1));
-    // Two names, no array: what an index reaches lies in memory, and AVX2 then chooses by masked stores.
+    // Two names, no array: an index keeps an array in memory, and AVX2 then uses masked stores.
     let (mut pack, mut first) = begin(walk, one, first.awake(simd));
     let (mut other, mut second) = begin(walk, one, second.awake(simd));
     let mut rows = Rows { numbers: vec![[0.0; WIDTH]; walk.count()], lookups: [0.0; WIDTH] };
@@ -156,7 +156,7 @@ pub fn run<S: Simd, W: Walk>(
     streams.turn = (turn + count) % LANES;
 }
 
-/// Eight walks that begin, and their streams: values, no references, which would keep both in memory.
+/// Begins eight walks and their streams. It returns values, because references would keep both in memory.
 #[inline(always)]
 fn begin<S: Simd, W: Walk>(
     walk: &W,

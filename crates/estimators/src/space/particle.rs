@@ -14,7 +14,7 @@ use theory::particle::Odds;
 pub enum Splitting {
     /// Never: one particle at most.
     None,
-    /// Up to n times on any way from the start: 2ⁿ particles at most.
+    /// Up to n times on any path from the start: 2ⁿ particles at most.
     Depth(u32),
     /// Up to n times in a walk: n + 1 particles at most.
     Budget(u32),

@@ -5,8 +5,8 @@
 //! by delta tracking, to a real collision:  each collision is real with probability σ_t/σ̂, else null
 //! ```
 //!
-//! The null collisions of a path have the same places by either; their densities differ by the probabilities to be null, which
-//! only delta tracking has to draw. A flight takes a random number, a decision another one.
+//! The null collisions of a path have the same places by either method. Their densities differ by the probabilities
+//! to be null: only delta tracking samples these events. A flight takes a random number, a decision another one.
 
 use media::majorants::flights::{Flights, Flown, Ground};
 use numeric::geometry::Point;

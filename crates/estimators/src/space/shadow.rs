@@ -68,7 +68,7 @@ impl<L: Lane> Aim<L> {
     }
 }
 
-/// Lanes with light that shadow rays have found, and how much.
+/// Lanes with light that shadow rays have found, and its transmittance.
 pub type Lit<L> = (<L as Lane>::Mask, L);
 
 kept! {

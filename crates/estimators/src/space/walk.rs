@@ -1,22 +1,22 @@
 //! The walk of a particle through a volume: `SimulateParticle`.
 //!
 //! ```text
-//! begin    where the tally says;  w = 1
+//! begin    at the place of the tally;  w = 1
 //! fly      through an optical depth −ln u of σ̂;  beyond the bounds the particle has left
-//! collide  r = σ_t/σ̂;  as the odds of the rule and u say:
-//!            scattered     w ← w · a r/q_s;  it waits to turn by an angle θ at an azimuth φ
+//! collide  r = σ_t/σ̂;  by the odds of the rule and u:
+//!            scattered     w ← w · a r/q_s;  it turns later by an angle θ at an azimuth φ
 //!            straight on   w ← w · (1 − r)/q_t
 //!            absorbed      the end
 //!          roulette, where it is played: small |w| ← w₀ with probability |w|/w₀, else the end
 //! set out  where shadow rays are cast, one is cast from each scattering first; then it turns, and flies on
 //! ```
 //!
-//! A flight takes a random number, a collision one where more than one event is possible, a scattering one for θ and one for
-//! φ, roulette one. Cells without σ̂, and all that lies outside the bounds, cost nothing. What a walk is worth, a [`Tally`] says;
-//! each of its [`Steps`] may be that of a known bug.
+//! A flight takes a random number, a collision one where more than one event is possible, a scattering one for θ
+//! and one for φ, roulette one. Cells without σ̂, and all that lies outside the bounds, cost nothing. A [`Tally`]
+//! scores the walk; each of its [`Steps`] may be that of a known bug.
 //!
-//! Shadow rays and new directions cost more than a step. Lanes wait for them until several of a pack need one; meanwhile, the
-//! others go on.
+//! Shadow rays and new directions cost more than a step. A lane that needs one stands still until several lanes of
+//! a pack do; meanwhile, the others go on.
 
 use super::bank::Walk;
 use super::shadow::{ShadowRays, Shadows};
@@ -31,7 +31,7 @@ use numeric::{Kept, Lane, Mask, kept};
 use theory::particle::Odds;
 use theory::problems::Scene;
 
-/// The steps of a walk, each of which a known bug may replace.
+/// The steps of a walk; a known bug may replace each of them.
 pub trait Steps: Copy {
     /// The odds at collisions of the given ratio `σ_t/σ̂` and albedo.
     fn odds<L: Lane>(&self, ratio: L, albedo: L) -> Odds<L>;
@@ -58,7 +58,7 @@ pub trait Steps: Copy {
         random.uniform_where(which)
     }
 
-    /// The cosine of the scattering angle, of a uniform number.
+    /// The cosine of the scattering angle, from a uniform number.
     #[inline(always)]
     fn deflection<L: Lane>(&self, phase: &Phase, number: L) -> L {
         phase.cosine(number)
@@ -70,7 +70,7 @@ pub trait Steps: Copy {
         direction
     }
 
-    /// The cosine with which a walk begins, from a uniform number and what is right.
+    /// The cosine with which a walk begins, from a uniform number, given the right one.
     #[inline(always)]
     fn first_cosine<L: Lane>(&self, right: L, number: L) -> L {
         let _ = number;
@@ -90,12 +90,12 @@ kept! {
     }
 }
 
-/// Walks on their way.
+/// State of walks.
 #[derive(Clone, Copy)]
 pub struct State<L: Lane, F> {
     /// The particles.
     pub path: Path<L>,
-    /// Their sums and notes.
+    /// Sums and state of their tallies.
     pub found: F,
     /// Lookups so far.
     pub lookups: L,
@@ -105,11 +105,11 @@ pub struct State<L: Lane, F> {
     scattered: L::Mask,
     /// Lanes with a shadow ray that came to its end in this step.
     lit: L::Mask,
-    /// Lanes that wait to cast a shadow ray.
+    /// Lanes that have yet to cast a shadow ray.
     aims: L::Mask,
-    /// Lanes that wait to turn and to set out.
+    /// Lanes that have yet to turn and to set out.
     turns: L::Mask,
-    /// Lanes that wait to set out as they are.
+    /// Lanes that have yet to set out in their present directions.
     begins: L::Mask,
 }
 
@@ -121,7 +121,7 @@ pub struct Flight<L: Lane> {
     pub depth: L,
 }
 
-/// Particles in a scene, their steps, and what they find.
+/// Particles in a scene, their steps, and their tally.
 pub struct InSpace<'a, T, S> {
     tally: &'a T,
     steps: S,
@@ -133,7 +133,7 @@ pub struct InSpace<'a, T, S> {
 }
 
 impl<'a, T: Tally, S: Steps> InSpace<'a, T, S> {
-    /// The walk through a scene and its σ̂; packs give the fields that they look up.
+    /// The walk through a scene and its σ̂; packs provide the fields that they look up.
     pub fn new(
         tally: &'a T,
         steps: S,
@@ -144,7 +144,7 @@ impl<'a, T: Tally, S: Steps> InSpace<'a, T, S> {
         Self { tally, steps, scene, ground, shadow_rays: tally.shadow_rays(), fields }
     }
 
-    /// Lanes that wait for others to set out with.
+    /// Lanes that stand still until they set out together.
     #[inline(always)]
     fn waits<L: Lane>(state: &State<L, T::Found<L>>) -> L::Mask {
         state.aims | state.turns | state.begins
@@ -190,7 +190,7 @@ impl<'a, T: Tally, S: Steps> InSpace<'a, T, S> {
         let Collision { inside, place, weight, ratio, albedo } = *at;
         let (zero, one, walks) = (weight.each(0.0), weight.each(1.0), state.ended);
         let odds = self.steps.odds(ratio, albedo);
-        // Only where more than one event is possible is a number taken.
+        // A number is taken only where more than one event is possible.
         let surely_on = odds.scatter.at_most(zero) & one.at_most(odds.transmit);
         let surely_scattered = !surely_on & one.at_most(odds.scatter);
         let by_chance = inside & !surely_on & !surely_scattered;
@@ -206,7 +206,7 @@ impl<'a, T: Tally, S: Steps> InSpace<'a, T, S> {
         state.ended
     }
 
-    /// Goes both ways at collisions: the scattered particles go on, and those that go straight on are handed back.
+    /// Splits particles at collisions: the scattered ones continue in `state`, the transmitted ones are returned.
     #[inline(always)]
     pub fn split<L: Lane>(&self, state: &mut State<L, T::Found<L>>, at: &Collision<L>) -> Path<L> {
         let straight = Path { weight: at.weight * at.ratio.one_minus(), ..state.path };
@@ -216,7 +216,7 @@ impl<'a, T: Tally, S: Steps> InSpace<'a, T, S> {
         straight
     }
 
-    /// The lanes in `scattered` are scattered at places.
+    /// Scatters the lanes in `scattered` at places.
     #[inline(always)]
     fn scatter<L: Lane>(state: &mut State<L, T::Found<L>>, scattered: L::Mask, place: [L; 3]) {
         state.scattered = scattered;
@@ -224,7 +224,7 @@ impl<'a, T: Tally, S: Steps> InSpace<'a, T, S> {
         state.path.flights.origin.set_where(scattered, place);
     }
 
-    /// The lanes that wait set out.
+    /// Lets the delayed lanes set out.
     #[inline(always)]
     fn set_out<L: Lane>(&self, state: &mut State<L, T::Found<L>>, random: &mut impl Random<L>) {
         let (zero, origin) = (state.path.weight.each(0.0), state.path.flights.origin);
@@ -260,15 +260,15 @@ impl<'a, T: Tally, S: Steps> InSpace<'a, T, S> {
                 let tracked = self.tally.track(&mut state.found, &at, (&light, reach.ends), random);
                 state.lookups = state.lookups + tracked;
             }
-            // Lanes whose ray needed no tracking turn next.
+            // Lanes with a ray that needed no tracking turn next.
             state.turns = casts & !state.shadows.on;
         }
         state.path.flights.direction.set_where(turns, direction);
         state.path.flights.enter(&self.ground, sets_out, &reach);
     }
 
-    /// New directions of the lanes in `which`, of uniform numbers: those of shadow rays in the lanes that cast one, those of
-    /// walks in the others.
+    /// New directions of the lanes in `which`, from uniform numbers: directions of shadow rays for lanes that cast
+    /// one, directions of walks for the others.
     #[inline(always)]
     fn turned<L: Lane>(
         &self,
@@ -387,8 +387,8 @@ impl<T: Tally, S: Steps> Walk for InSpace<'_, T, S> {
         self.decide(state, &at, flight.depth, random)
     }
 
-    /// Lanes that were scattered cast shadow rays, or turn; these and those that begin set out, as soon as there are enough
-    /// of them.
+    /// Casts shadow rays of lanes that were scattered, or turns them; these lanes and those that begin set out, as
+    /// soon as there are enough of them.
     #[inline(always)]
     fn go_on<L: Lane>(
         &self,

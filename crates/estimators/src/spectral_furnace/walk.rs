@@ -27,10 +27,12 @@ use numeric::rng::Random;
 use numeric::{Lane, Mask};
 use theory::problems::SpectralFurnace;
 
-/// The numbers that a walk leaves beside its weights: its hero, its length, that of its last flight.
+/// Number of numbers that a walk leaves beside its weights: its hero, its length, and the length of its last
+/// flight.
 const REST: usize = 3;
 
-/// So near to the boundary of a ball, in radii, doubles may not tell on which side a grazing flight ends.
+/// Distance to the boundary of a ball, in radii, within which rounding may place the end of a grazing flight on the
+/// wrong side.
 const DOUBTFUL: f64 = 1e-6;
 
 /// The walk into a furnace.
@@ -43,7 +45,7 @@ pub struct InFurnace<'a, S> {
     law: Option<Law>,
 }
 
-/// Walks on their way. All of it is in memory.
+/// Walks on their way, kept in memory.
 #[derive(Clone, Copy)]
 pub struct Path<L: Lane> {
     place: [L; 3],
@@ -90,7 +92,7 @@ impl<'a, S: Steps> InFurnace<'a, S> {
         Self { problem, among, weighing, scores_all, law }
     }
 
-    /// Makes values of the numbers that walks left, and of their lookups; returns the defect.
+    /// Computes values from the numbers that walks left, and from their lookups; returns the defect.
     #[inline(always)]
     pub fn score<L: Lane>(
         &self,
@@ -118,7 +120,7 @@ impl<'a, S: Steps> InFurnace<'a, S> {
 
     /// The distances to the boundary, where a flight ends beyond it or may do so.
     ///
-    /// Where a ray grazes a ball the distance is worked out in many digits: only where it is needed.
+    /// Where a ray grazes a ball the distance is computed with more digits, only where it is needed.
     #[inline(always)]
     fn end_beyond<L: Lane>(&self, path: &Path<L>, flight: L) -> L {
         let (all, bounds) = (flight.at_most(flight), &self.problem.bounds);

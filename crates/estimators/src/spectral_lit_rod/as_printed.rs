@@ -17,7 +17,7 @@
 //! | `sampling` | a constant σ̂ ≥ σ_t in each channel | required here or in the case |
 //!
 //! Otherwise it is `next-event-mis`, with the exit that Algorithm 1 lacks. A case that lists it declares
-//! `expect = "biased"`, and the record tells how large the bias of each channel is.
+//! `expect = "biased"`, and the record contains the bias of each channel.
 //!
 //! Source: B. Miller, I. Georgiev, W. Jarosz, *A null-scattering path integral formulation of light
 //! transport*, ACM Transactions on Graphics 38 (2019), Algorithms 1 and 2.

@@ -19,8 +19,8 @@
 //! is reset to q at every real scattering. Roulette is left out of both densities. A distant light is never hit,
 //! `p_uni = 0`: it is next-event estimation.
 //!
-//! For `σ̂ ≥ σ_t` theory bounds the variance: a shadow ray and a hit are each worth `q/(1 + q)` at
-//! most. The number of lookups is not known.
+//! For `σ̂ ≥ σ_t` theory bounds the variance: a shadow ray and a hit each score `q/(1 + q)` at most. The number of
+//! lookups is not known.
 //!
 //! Source: B. Miller, I. Georgiev, W. Jarosz, *A null-scattering path integral formulation of light transport*, ACM
 //! Transactions on Graphics 38 (2019), section 5.3, Algorithms 1 and 2, Eq. 42. The bound is derived in

@@ -320,7 +320,7 @@ pub fn run<S: Simd, W: Walk, C: BothWays<f64x8<S>>>(
     let media = if W::IS_CHROMATIC { walk.media() } else { 0 };
     let own = &walk;
     while slots.are_open() || other_slots.are_open() {
-        // LLVM copies a loop for each of its constant conditions, of which these walks have many.
+        // LLVM copies a loop for each of its constant conditions, and these walks have many.
         let is_branched =
             const { W::CASTS || W::IS_CHROMATIC && !matches!(W::SCORES, Scores::AtOnce) };
         let walk = if is_branched { black_box(own) } else { own };

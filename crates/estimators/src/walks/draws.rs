@@ -102,8 +102,8 @@ pub fn packets<'r, P, W: Walk>(
 }
 
 /// Implements the draws of a page by a walk on its setup, as in `drawn!(self, setup: LitRod => Walk::of(setup))`. A
-/// second walk is used for many draws in packets: `drawn!(self, setup: LitRod => Walk::of(setup),
-/// Walk::prepared(setup))`.
+/// second walk is used for many draws in packets:
+/// `drawn!(self, setup: LitRod => Walk::of(setup), Walk::prepared(setup))`.
 macro_rules! drawn {
     ($this:ident, $setup:ident: $Problem:ty => $walk:expr) => {
         fn fill(

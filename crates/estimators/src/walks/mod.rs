@@ -9,8 +9,8 @@
 //! value
 //! ```
 //!
-//! A [`Walk`] says what happens in each of these steps, for any [`Lane`]. Three drivers run it. They make the same
-//! draws, bit for bit:
+//! A [`Walk`] defines each of these steps, for any [`Lane`]. Three drivers run it. They make the same draws, bit
+//! for bit:
 //!
 //! | driver | walks side by side | for |
 //! |---|--:|---|

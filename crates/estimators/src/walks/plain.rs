@@ -26,7 +26,7 @@ pub fn draw<V: Channels>(
     }
 }
 
-/// Makes one draw in any lane of one number.
+/// Makes one draw in any lane type of a single walk.
 #[inline(always)]
 pub fn through<L: Single, W: Walk, V: Channels>(
     walk: &W,

@@ -2,16 +2,16 @@
 //!
 //! Draw j is, bit for bit, the draw that [`super::plain`] makes from stream j mod 16.
 //!
-//! Steps have no branches: each stores a row with the values that walks have if they end here, and a bit for
-//! each lane in which the walk does end here. After 64 steps these bits are searched, and every walk that ended becomes the next
-//! draw of its lane. A walk that ends is replaced at once, so that no lane waits.
+//! Steps have no branches: each stores a row with the values that walks have if they end here, and a bit for each
+//! lane in which the walk does end here. After 64 steps these bits are searched, and every walk that ended becomes
+//! the next draw of its lane. A walk that ends is replaced at once, so that no lane stands still.
 //!
-//! How many draws a lane makes is fixed beforehand: to stop when enough draws are done would prefer short walks, which is a
-//! bias. A lane that has made its draws walks on until the others have; its stream is then set back to where its last draw
-//! left it.
+//! The number of draws of a lane is fixed beforehand. To stop when enough draws are done would prefer short walks,
+//! which is a bias. A lane that has made its draws walks on until the others have; its stream is then reset to the
+//! end of its last draw.
 //!
-//! A block has two packs of streams, and their steps alternate: a step waits for the one before it, and the step of the
-//! other pack fills that time.
+//! A block has two packs of streams, and their steps alternate: a step depends on the one before it, and the step
+//! of the other pack fills that latency.
 
 use fearless_simd::{Simd, SimdBase, SimdMask, f64x8, mask64x8, u8x64, u64x8};
 
@@ -22,7 +22,7 @@ use numeric::pack::WIDTH;
 use numeric::rng::{LANES, PACKS, Random, Stream, Xoshiro};
 use numeric::{Lane, Mask, Twin};
 
-/// Steps between two searches for walks that ended; what a lane did in them fits into a word.
+/// Number of steps between two searches for walks that ended; the bits of a lane in them fit into a word.
 const STEPS: usize = 64;
 
 /// The value of each lane, and its defect or, where walks pause, its lookups.
@@ -39,7 +39,7 @@ struct Numbers<L> {
     decision: L,
 }
 
-/// Walks with a fixed number of random numbers a step take no others.
+/// Walks with a fixed number of random numbers a step take no further ones.
 impl<L: Lane> Random<L> for Numbers<L> {
     #[inline(always)]
     fn uniform(&mut self) -> L {
@@ -62,12 +62,12 @@ impl<L: Lane> Random<L> for Numbers<L> {
     }
 }
 
-/// Eight walks. The walk itself is no part of it: a call may take its address, and would take that of the pack.
+/// Eight walks. The walk itself is outside the pack: a call may take its address, and would take that of the pack.
 struct Pack<L: Lane, W: Walk, C> {
     route: Route<C>,
     state: W::State<L>,
     inside: L::Mask,
-    /// Lookups, where walks pause.
+    /// Number of lookups of walks that pause.
     lookups: L,
 }
 
@@ -80,7 +80,8 @@ impl<S: Simd, W: Walk, C: BothWays<f64x8<S>>> Pack<f64x8<S>, W, C> {
         Self { route: Route::new(course), state, inside: all, lookups: zero }
     }
 
-    /// Flies; returns the distances at which σ_t is looked up. Those of lanes that came to no collision may lie outside.
+    /// Flies; returns the distances at which σ_t is looked up. Distances of lanes without a collision may lie
+    /// outside the medium.
     #[inline(always)]
     fn fly(&mut self, walk: &W, numbers: &Numbers<f64x8<S>>) -> f64x8<S> {
         self.inside = walk.fly(&mut self.state, &mut self.route, numbers.depth);
@@ -122,7 +123,7 @@ impl<S: Simd, W: Walk, C: BothWays<f64x8<S>>> Pack<f64x8<S>, W, C> {
 /// The random numbers of [`STEPS`] steps.
 struct Ahead<S: Simd> {
     logarithms: [f64x8<S>; STEPS],
-    /// Not found for walks without [`Walk::DECIDES`].
+    /// Not filled for walks without [`Walk::DECIDES`].
     decisions: [f64x8<S>; STEPS],
 }
 
@@ -143,8 +144,8 @@ impl<S: Simd> Ahead<S> {
     }
 }
 
-/// [`STEPS`] steps of a pack. Walks and streams are no part of it: beside arrays with an index a compiler would
-/// not keep them in registers.
+/// [`STEPS`] steps of a pack. Walks and streams are outside: beside arrays with an index a compiler would not keep
+/// them in registers.
 struct Window<S: Simd> {
     ahead: Ahead<S>,
     rows: [Row; STEPS],
@@ -179,7 +180,8 @@ impl<S: Simd> Window<S> {
             return Numbers { depth, decision: depth };
         }
         let now = Numbers { depth, decision: self.ahead.decisions[step] };
-        // A step waits for the one before it. The numbers of the next window wait for nothing and fill the time.
+        // A step depends on the one before it. The numbers of the next window depend on nothing and fill the
+        // latency.
         self.ahead.find(step, streams, true);
         now
     }
@@ -219,13 +221,13 @@ impl<S: Simd> Window<S> {
         }
         self.before = next;
         if !W::DECIDES {
-            // In a loop of their own: then all that a step needs stays in registers.
+            // In a separate loop, so that all values of a step stay in registers.
             self.ahead.find_all(streams, false);
         }
     }
 }
 
-/// The steps in which a lane ended a walk, and those in which it looked σ_t up, as bits.
+/// The steps in which a lane ended a walk, and the steps in which it looked σ_t up, as bits.
 #[derive(Clone, Copy, Default)]
 struct Steps {
     ended: u64,
@@ -245,7 +247,7 @@ fn by_lanes<S: Simd>(simd: S, ended: &[u8; STEPS], inside: &[u8; STEPS]) -> [Ste
     steps
 }
 
-/// The draws that a lane has made, and when its walk began.
+/// The number of draws that a lane has made, and the begin of its walk.
 #[derive(Clone, Copy, Default)]
 struct Quota {
     /// The number of its next draw.
@@ -285,14 +287,14 @@ impl Draws<'_> {
     ) -> [usize; WIDTH] {
         let mut over = [0; WIDTH];
         let Account { quotas, open, first } = &mut self.accounts[pack];
-        // All of one length, which the loop then knows.
+        // All slices get one length, which the compiler can use in the loop.
         let count = self.values.len().min(self.lookups.len()).min(self.defects.len());
         let (values, lookups) = (&mut self.values[..count], &mut self.lookups[..count]);
         let defects = &mut self.defects[..count];
         for (lane, (quota, steps)) in quotas.iter_mut().zip(steps).enumerate() {
             let Quota { mut draw, mut began } = *quota;
             let mut ended = steps.ended;
-            // A lane that has made its draws walks on for nothing.
+            // A lane that has made its draws walks on without effect.
             while ended != 0 && draw < count {
                 let step = ended.trailing_zeros() & (STEPS as u32 - 1);
                 ended &= ended - 1;

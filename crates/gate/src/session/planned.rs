@@ -30,7 +30,7 @@ pub struct Planned {
     pub design: Design,
     /// Number of draws that the tolerance is planned for.
     pub draws: f64,
-    /// Number of draws that the largest tolerance worth a promise needs.
+    /// Number of draws that the largest admissible tolerance needs.
     pub least: f64,
     /// Number of draws that a pass needs, where more than are planned.
     pub underpowered: Option<f64>,

@@ -140,7 +140,7 @@ mod tests {
         capital.add(&gains(2.0));
         assert!((capital.ln_e() - 3f64.cosh().ln()).abs() < 1e-14);
         assert_eq!(capital.ln_pass(), [f64::NEG_INFINITY, 2.0]);
-        // One beginning so far, of weight 1/2; the other half waits.
+        // One beginning so far, of weight 1/2; the other half is not bet yet.
         assert!((capital.ln_change() - (0.5 * 2f64.cosh() + 0.5).ln()).abs() < 1e-14);
         capital.add(&gains(-1.0));
         let sums = |s: f64| 0.5 * s.exp() + (-1f64).copysign(s).exp() / 6.0;

@@ -8,11 +8,11 @@
 //! E         min over V of M(V)(1 + L(V))/2
 //! ```
 //!
-//! `L` is an e-value for draws of variance `V`, by Catoni's bound. `M` is one for an estimate of `V`: for
-//! Y ≥ 0, `E exp(−aY) ≤ 1 − aV + a²E[Y²]/2`, whatever the distribution. Their product is an e-value at the true `V`
-//! if `y` and `Y` are independent, and the minimum over all `V` is not larger than that. So E holds for every
-//! distribution of the draws; the one assumption is `r`, a bound on the kurtosis κ of a draw: pairs of draws,
-//! Y = (x − x')²/2, have r = (κ + 3)/2 over the number of pairs.
+//! `L` is an e-value for draws of variance `V`, by Catoni's bound. `M` is one for an estimate of `V`: for Y ≥ 0,
+//! `E exp(−aY) ≤ 1 − aV + a²E[Y²]/2`, for any distribution. Their product is an e-value at the true `V` if `y` and
+//! `Y` are independent, and the minimum over all `V` is not larger than that. So E holds for every distribution of
+//! the draws; the one assumption is `r`, a bound on the kurtosis κ of a draw: pairs of draws, Y = (x − x')²/2, have
+//! r = (κ + 3)/2 over the number of pairs.
 //!
 //! Sources: O. Catoni, *Challenging the empirical mean and empirical variance*, AIHP B 48 (2012); A. Maurer, *A
 //! bound on the deviation probability for sums of non-negative random variables*, JIPAM 4 (2003), article 15;

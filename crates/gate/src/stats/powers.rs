@@ -2,7 +2,7 @@
 
 use numeric::sum::Sum;
 
-/// Independent partial sums, so that additions need not wait for each other.
+/// Number of independent partial sums, so that additions do not depend on each other.
 const LANES: usize = 8;
 /// Below this share of `E[y²]` the difference `E[y²] − E[y]²` is rounding.
 const RESOLUTION: f64 = 1e-13;

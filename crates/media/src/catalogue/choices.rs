@@ -1,7 +1,7 @@
 //! Settings that choose among names: words, and tables that name a page.
 //!
-//! A name without settings may be written alone or with an empty table, wherever it stands:
-//! `shadow = "exact"` and `shadow.exact = {}` say the same.
+//! A name without settings may be written alone or with an empty table, at any place: `shadow = "exact"` and
+//! `shadow.exact = {}` are equivalent.
 
 use std::ops::Range;
 
@@ -17,7 +17,7 @@ pub(super) enum Form<'a> {
     Name(&'a str),
     /// The empty table of a page that was written by its name alone.
     Named,
-    /// The empty table of a page that has a value in its place: which of the mistakes says so.
+    /// The empty table of a page that has a value in its place: index of the mistake that reports it.
     Value(usize),
 }
 
@@ -26,14 +26,14 @@ pub(super) enum Form<'a> {
 pub type Explain<'a> = &'a dyn Fn(&str) -> Option<[String; 2]>;
 
 impl<'a> Settings<'a> {
-    /// One of some words that must be there.
+    /// A required word, one of `words`.
     pub fn word(&self, key: &'static str, words: &[&'static str]) -> Option<&'static str> {
         let wanted = format!("one of {}", quoted(words));
         let entry = self.required(key, &wanted)?;
         self.word_of(entry, words, &wanted)
     }
 
-    /// One of some words, or `default` where the key is absent.
+    /// One of `words`, or `default` where the key is absent.
     pub fn word_or(
         &self,
         key: &'static str,
@@ -70,7 +70,7 @@ impl<'a> Settings<'a> {
         Some(word)
     }
 
-    /// A table that names a page, or the page's name alone; it must be there.
+    /// A required table that names a page, or the page's name alone.
     pub fn naming(&self, key: &'static str, wanted: &str) -> Option<Settings<'a>> {
         let entry = self.required(key, wanted)?;
         self.open_naming(entry, wanted)
@@ -102,7 +102,7 @@ impl<'a> Settings<'a> {
         settings
     }
 
-    /// The tables of a list that must be there, each of which names a page; the name may stand alone.
+    /// The tables of a required list; each names a page, and the name may stand alone.
     pub fn tables(&self, key: &'static str) -> Option<Vec<Settings<'a>>> {
         const WANTED: &str = "a list of names and tables, as in [\"ratio\", { ratio = { … } }]";
         let entry = self.required(key, WANTED)?;
@@ -197,13 +197,12 @@ impl<'a> Settings<'a> {
         Some((index, self.written(form, entry.node.span.clone(), path)))
     }
 
-    /// A table that must be there and chooses one of several names, as in `phase.isotropic = {}`, or
-    /// the name alone.
+    /// A required table that chooses one of several names, as in `phase.isotropic = {}`, or the name alone.
     pub fn chosen(&self, key: &'static str, names: &[String]) -> Option<(usize, Settings<'a>)> {
         self.chosen_among(key, names, names)
     }
 
-    /// A choice that must be there; hints list only the names that are `offered`.
+    /// A required choice; hints list only the names that are `offered`.
     pub fn chosen_among(
         &self,
         key: &'static str,
@@ -213,7 +212,7 @@ impl<'a> Settings<'a> {
         self.naming(key, &format!("one of {}", quoted(offered)))?.choice_among(names, offered)
     }
 
-    /// A choice that must be there, in which some other names are explained.
+    /// A required choice, in which some other names are explained.
     pub fn chosen_explained(
         &self,
         key: &'static str,

@@ -1,8 +1,8 @@
 //! The two techniques that find an emitter, and the weights of their samples.
 //!
 //! A path ends with a real scattering at y, where light is scattered into the direction of the emitter with
-//! probability p(ω), and a last segment. The null collisions of the segment have the factor `Π (1 − r)`, `r =
-//! σ_t/σ̂`. Unidirectional tracking samples the direction and must have no real collision on the segment.
+//! probability p(ω), and a last segment. The null collisions of the segment have the factor `Π (1 − r)`,
+//! `r = σ_t/σ̂`. Unidirectional tracking samples the direction and must have no real collision on the segment.
 //! Next-event estimation sets the direction and tracks a shadow ray. The pdfs of the same path differ by
 //!
 //! ```text

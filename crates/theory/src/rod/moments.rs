@@ -1,7 +1,7 @@
 //! Every moment of a walk through a rod, from its two-stream equations.
 //!
-//! Let `Q_k` and `S_k` be those of a rule (see `particle`), and `c = r(1 − a)` for the absorbed energy and `c =
-//! 1/(σ̂ width)` for the flux. The k-th moment of the particle's score solves the equations of `grid` with
+//! Let `Q_k` and `S_k` be those of a rule (see `particle`), and `c = r(1 − a)` for the absorbed energy and
+//! `c = 1/(σ̂ width)` for the flux. The k-th moment of the particle's score solves the equations of `grid` with
 //!
 //! ```text
 //! A_k = σ̂(1 − Q_k − S_k p_f),  B_k = σ̂ S_k p_b
@@ -275,7 +275,7 @@ fn score_times(
                 let left = i32::try_from(power).unwrap_or(i32::MAX) - i;
                 let share = ways * score(step, left);
                 let order = i + k;
-                // With the power 0 of the weight nothing is lost, whatever happens to the particle.
+                // With the power 0 of the weight nothing is lost at any event.
                 let middle = worth.middle(at);
                 let after = if order == 0 { middle } else { step.after(order, middle) };
                 sum = [sum[0] + share * after[0], sum[1] + share * after[1]];

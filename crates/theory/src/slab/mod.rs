@@ -95,7 +95,7 @@ impl Resolution {
     /// the directions have errors that are ten to a hundred times larger, and show it.
     pub const COARSE: Self =
         Self { faintest: 1e-5, directions: 16, first_layer: 1e-10, gains: [0.6, 4.0] };
-    /// For moments where r varies, of which a hundred layers and more are solved, and for differences.
+    /// For moments where r varies, which need a hundred layers and more, and for differences.
     pub const LAYERED: Self =
         Self { faintest: 1e-4, directions: 12, first_layer: 1e-7, gains: [0.6, 4.0] };
 

@@ -73,8 +73,8 @@ fn share(x: f64) -> f64 {
     sum
 }
 
-/// `∫₀¹ g(ν) h(ν) dν` plus the contribution of the pole: `discrete` returns the two factors beside `1/(c(c − 1 +
-/// κ²))`.
+/// `∫₀¹ g(ν) h(ν) dν` plus the contribution of the pole: `discrete` returns the two factors beside
+/// `1/(c(c − 1 + κ²))`.
 fn both(albedo: f64, h: impl Fn(f64) -> f64, discrete: impl Fn(f64, f64) -> [f64; 2]) -> f64 {
     let scattered = cut(albedo, h);
     let settled = if albedo < FAINT {

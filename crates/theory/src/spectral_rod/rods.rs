@@ -121,8 +121,8 @@ pub fn leaving(depth: f64, albedo: f64, forward: f64) -> Option<[f64; 2]> {
 /// ε (8 + 4|κ|τ + 2|1 − a|τ min(τ, 1/|κ|)) A + 16 ε ∂ ln L/∂ ln a
 /// ```
 ///
-/// The first part is that of terms and of κ², where `1 − a(2p_f − 1)` is off by ε. R and T are power series in a without
-/// negative coefficients: `(L(a + δa)/L(a) − 1)/δ` is no less than the slope.
+/// The first part is the rounding of the terms and of κ², where `1 − a(2p_f − 1)` has the error ε. R and T are
+/// power series in a without negative coefficients: `(L(a + δa)/L(a) − 1)/δ` is no less than the slope.
 fn rounding(depth: f64, albedo: f64, forward: f64) -> [f64; 2] {
     let here = Form::new(depth, Complex64::from(albedo), forward);
     let kappa = here.kappa.norm();

@@ -35,7 +35,7 @@ pub struct Answer {
 static ANSWERS: Memo<Vec<u64>, Option<Answer>> = Memo::new(1024);
 
 impl Scene {
-    /// The bits of all numbers, and of σ_t at 33 places, enough to tell fields apart.
+    /// The bits of all numbers, and of σ_t at 33 places, enough to distinguish fields.
     fn key(&self, extinction: &dyn Fn(f64) -> f64) -> Vec<u64> {
         let (kind, observable) = match self.observable {
             Observable::Mean(r) => (0.0, [r, 0.0]),

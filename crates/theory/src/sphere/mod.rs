@@ -270,7 +270,7 @@ mod tests {
 
     #[test]
     fn an_absorber_attenuates_and_nothing_else() {
-        // From the centre all ways out are one radius long.
+        // From the centre all lines of sight are one radius long.
         let ball = Ball { radius: 2.0, centre: Centre::Medium, extinction: &|_| 0.7 };
         let solved = Solved::new(&ball, 0.0, SKY, Resolution::COARSE).expect("a medium");
         assert!((solved.answer(Observable::Mean(0.0)) - (-1.4f64).exp()).abs() < 1e-13);

@@ -1,9 +1,10 @@
-//! Shells of a ball, in each of which the mean intensity is a polynomial of `r²`.
+//! Shells of a ball; in each of them the mean intensity is a polynomial of `r²`.
 //!
-//! At the surface the mean intensity has a term `(R − r) ln(R − r)`, at a black sphere of radius ρ one like `√(r −
-//! ρ)`, at a point source `1/r²`. Towards such a place the shells are halved repeatedly, and the polynomials lose
-//! degrees as the shells lose weight. On a ray `r² = p² + t²`, p its distance from the centre and t the distance
-//! from its foot: a function that is smooth in `r²` is smooth along the ray, even where the ray passes the centre.
+//! At the surface the mean intensity has a term `(R − r) ln(R − r)`, at a black sphere of radius ρ one like
+//! `√(r − ρ)`, at a point source `1/r²`. Towards such a place the shells are halved repeatedly, and the polynomials
+//! lose degrees as the shells lose weight. On a ray `r² = p² + t²`, p its distance from the centre and t the
+//! distance from its foot: a function that is smooth in `r²` is smooth along the ray, even where the ray passes the
+//! centre.
 
 use numeric::Known;
 use numeric::quadrature::GaussLegendre;
