@@ -5,7 +5,7 @@
 //! fly      forward or backward through σ̂; a shadow ray forward
 //! collide  r = σ_t/σ̂
 //!   a walk        null, 1 − r       ρ ← ρ (1 − r), where null collisions are part of ρ
-//!                 scattered, a r    p = p(ω) towards the emitter;  ρ ← p;  a shadow ray is cast before the walk continues
+//!                 scattered, a r    p = p(ω) towards the emitter;  ρ ← p;  a shadow ray is cast, then the walk goes on
 //!                 absorbed          the end
 //!                 beyond the end    the weight of a hit is added, 1 if it was never scattered
 //!   a shadow ray  t̂ ← t̂ (1 − r), or ended with probability r
@@ -27,7 +27,7 @@ use theory::lit_rod::Shadow;
 use theory::problems::{LitRod, Problem, Rod};
 
 kept! {
-    /// A walk in flight, or behind its shadow ray.
+    /// A walk in flight, or paused for its shadow ray.
     pub struct Path<L> {
         is_forward: L::Mask,
         unscattered: L::Mask,

@@ -61,7 +61,7 @@ pub struct Right;
 impl Directions for Right {}
 
 kept! {
-    /// A walk in flight, or behind its shadow ray.
+    /// A walk in flight, or paused for its shadow ray.
     pub struct Path<L> {
         /// Lanes that fly to a hit.
         seeks: L::Mask,

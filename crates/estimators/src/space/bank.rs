@@ -112,8 +112,8 @@ pub struct Rows {
     pub lookups: [f64; WIDTH],
 }
 
-/// Makes the draws of a request. Both packs take each step together: `look_up` returns σ_t of sixteen places, and `write` writes
-/// the draws that a pack has ended.
+/// Makes the draws of a request. Both packs take each step together: `look_up` returns σ_t of sixteen places, and
+/// `write` writes the draws of finished walks of a pack.
 #[inline(always)]
 pub fn run<S: Simd, W: Walk>(
     simd: S,

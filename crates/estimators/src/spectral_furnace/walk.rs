@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! the hero h flies −ln u/σ̂_h;  beyond the bounds the walk has left
-//! at a tentative collision, r = σ_t/σ̂ of each channel, a null, an absorption or a scattering by the hero's probabilities:
+//! a tentative collision, r = σ_t/σ̂ of each channel, is null, absorbing or scattering by the hero's probabilities:
 //!   f_λ ← f_λ (1 − r_λ),   f_λ r_λ (1 − a_λ),   f_λ r_λ a_λ p_λ(cos θ)
 //! ```
 //!

@@ -3,8 +3,8 @@
 //! Unbiased for: σ̂ ≥ σ_t; refused elsewhere.
 //!
 //! ```text
-//! ρ = p_uni/p_nee = q ν,   q = Ω/4π the light's share of all directions, ν the probability that the tentative collisions of
-//!     the last segment are null: Π (1 − σ_t/σ̂) by the rules analog, terminating and weighted
+//! ρ = p_uni/p_nee = q ν,   q = Ω/4π the light's share of all directions, ν the probability that the last
+//!     segment has only null collisions: Π (1 − σ_t/σ̂) by the rules analog, terminating and weighted
 //! X = [light met before the first scattering] + Σ w q T̂ w_nee(ρ) + [hit] w w_uni(ρ),   T̂ = Π (1 − σ_t/σ̂)
 //! balance: w_uni = ρ/(1 + ρ);  power: w_uni = ρ²/(1 + ρ²);  w_nee = 1 − w_uni
 //! ```

@@ -275,8 +275,8 @@ struct Draws<'a> {
 }
 
 impl Draws<'_> {
-    /// Makes draws of the walks of a pack that ended. Returns for each lane the number of steps after which it had made its last
-    /// draw, or 0.
+    /// Makes draws of the walks of a pack that ended. Returns for each lane the number of steps up to the end of its last
+    /// draw, or 0 if that draw does not end here.
     #[inline(never)]
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // counts
     fn collect<W: Walk>(
