@@ -129,7 +129,7 @@ fn plan<'a>(
     plan
 }
 
-/// The draws alone.
+/// Makes the draws alone.
 fn kernels(plan: &Plan) {
     for (_, planned) in plan.experiments() {
         let Ok(ready) = &planned.outcome else { continue };
@@ -140,7 +140,7 @@ fn kernels(plan: &Plan) {
     }
 }
 
-/// The draws of a block alone.
+/// Makes the draws of a block alone.
 fn bare(planned: &Planned, block: u64, buffer: &mut DrawBuffer) {
     let Ok(ready) = &planned.outcome else { return };
     let mut streams = planned.streams(block);

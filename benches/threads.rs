@@ -104,7 +104,7 @@ fn median(mut values: Vec<f64>) -> f64 {
     values[values.len() / 2]
 }
 
-/// Multiply-adds that depend on no memory and on no other thread.
+/// Makes multiply-adds that depend on no memory and on no other thread.
 fn registers(_: usize, count: u64) {
     let mut values = [1.0, 1.1, 1.2, 1.3, 1.4, 1.5, 1.6, 1.7];
     for _ in 0..count {

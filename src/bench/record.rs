@@ -63,7 +63,7 @@ pub struct BenchCase {
 }
 
 impl BenchCase {
-    /// The first row of each experiment.
+    /// Returns the first row of each experiment.
     pub fn experiments(&self) -> impl Iterator<Item = &BenchRow> {
         self.rows.iter().filter(|row| row.is_first)
     }
@@ -154,7 +154,7 @@ pub struct Times {
 }
 
 impl BenchRow {
-    /// The constant sampling extinction, 1/length; `None` where σ̂ varies or is not used.
+    /// Returns the constant sampling extinction, 1/length; `None` where σ̂ varies or is not used.
     pub fn sampling(&self) -> Option<f64> {
         self.id.sampling.constant.map(|value| value.0)
     }
@@ -209,7 +209,7 @@ impl Spread {
 /// The relative standard errors to which times are given.
 pub const ERRORS: [f64; 3] = [1e-2, 1e-3, 1e-4];
 
-/// The time until the standard error is `error` of the truth: `V/(ε²T²)` draws.
+/// Returns the time until the standard error is `error` of the truth: `V/(ε²T²)` draws.
 pub fn time_to(error: f64, variance: f64, truth: f64, seconds_per_draw: f64) -> f64 {
     let deviation = variance.sqrt() / (error * truth);
     deviation * deviation * seconds_per_draw

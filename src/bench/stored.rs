@@ -49,7 +49,7 @@ pub struct Timed {
 }
 
 impl Stored {
-    /// The times of a bench, to be stored.
+    /// Returns the times of a bench, to be stored.
     pub fn of(bench: &Bench) -> Self {
         let timed = |case: &BenchCase, row: &BenchRow| {
             let times = row.times.as_ref()?;
@@ -74,7 +74,7 @@ impl Stored {
         }
     }
 
-    /// The file of a stored bench.
+    /// Returns the file of a stored bench.
     ///
     /// # Errors
     ///
@@ -167,7 +167,7 @@ pub fn compare(name: &str, stored: &Stored, now: &Stored, tolerance: f64) -> Com
     }
 }
 
-/// A change beyond both sides' rounds and the tolerance.
+/// Returns a change beyond both sides' rounds and the tolerance.
 fn change(stored: &Timed, now: &Timed, tolerance: f64) -> Option<Change> {
     let (before, after) = (stored.ns_per_draw, now.ns_per_draw);
     let ratio = after.median / before.median;

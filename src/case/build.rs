@@ -97,10 +97,10 @@ pub struct Parts<'a> {
 
 /// Problem with the estimators of a case; estimators are numbered in the order of the case.
 pub trait AnyProblem: Send + Sync {
-    /// The problem, of its own type.
+    /// Returns the problem, of its own type.
     fn problem(&self) -> &dyn Any;
 
-    /// The field of each channel along the ray.
+    /// Returns the field of each channel along the ray.
     fn media(&self) -> &[Medium];
 
     /// Returns the distance that each channel of a draw belongs to.

@@ -123,7 +123,7 @@ impl ParsedEstimator {
         EstimatorName { name: name.to_owned(), settings }
     }
 
-    /// The estimator with its settings; without `albedo` the albedo is left out.
+    /// Returns the estimator with its settings; without `albedo` the albedo is left out.
     pub fn label(&self, albedo: bool) -> EstimatorName {
         self.label_of(&self.name, albedo)
     }

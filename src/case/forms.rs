@@ -57,7 +57,7 @@ pub fn explain_estimator(problem: &str, own: &[ProblemOption], name: &str) -> Op
     (!forms.is_empty()).then(|| [message, cures.join("; or ")])
 }
 
-/// Requirement of a form on a case, in words.
+/// Returns the requirement of a form on a case, in words.
 fn needed(options: &[ProblemOption]) -> String {
     use ProblemOption::{Albedos, Light, Media};
     match options {
@@ -68,7 +68,8 @@ fn needed(options: &[ProblemOption]) -> String {
     }
 }
 
-/// Name of the form that a problem's settings ask for, as in `rod with light`; `None` where no form has all options.
+/// Returns the name of the form that a problem's settings ask for, as in `rod with light`; `None` where no form has all
+/// options.
 pub fn title(problem: &str, settings: &[Entry]) -> Option<String> {
     let faults = RefCell::default();
     let settings = Settings::new(settings, Path::new(""), &faults);

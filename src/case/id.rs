@@ -106,7 +106,8 @@ impl Display for Number {
 }
 
 impl ExperimentId {
-    /// Label of the estimator in tables: its name, its settings, and its number if an earlier estimator has the same.
+    /// Returns the label of the estimator in tables: its name, its settings, and its number if an earlier estimator has
+    /// the same.
     pub fn label(&self) -> String {
         match self.namesake {
             ..=1 => self.estimator.to_string(),
@@ -114,12 +115,12 @@ impl ExperimentId {
         }
     }
 
-    /// The point of the sweep; `None` outside the sweep.
+    /// Returns the point of the sweep; `None` outside the sweep.
     pub fn variation(&self) -> Variation {
         self.swept.map(|SweepPoint { what, value }| (what, value.0))
     }
 
-    /// The swept value; `None` outside the sweep.
+    /// Returns the swept value; `None` outside the sweep.
     pub fn swept_value(&self) -> Option<f64> {
         self.variation().map(|(_, value)| value)
     }

@@ -190,7 +190,7 @@ impl Case {
         }
     }
 
-    /// Identity of an experiment.
+    /// Returns the identity of an experiment.
     pub fn id(&self, estimator: usize, variation: Variation) -> ExperimentId {
         self.at(variation).unwrap_or_else(|_| self.as_written(variation)).id(estimator)
     }

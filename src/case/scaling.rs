@@ -286,7 +286,7 @@ fn share(node: &Node) -> Scope<'static> {
     }
 }
 
-/// The settings of the estimators.
+/// Returns the settings of the estimators.
 fn of_estimators(problem: &mut [Entry]) -> impl Iterator<Item = &mut Entry> {
     let listed = problem.iter_mut().filter(|entry| entry.key == "estimators");
     let tables = listed.flat_map(|entry| match &mut entry.node.value {

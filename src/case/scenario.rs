@@ -49,17 +49,17 @@ impl Scenario {
         Some(Self { body, problem, meshes: OnceLock::new(), estimators, ray: kind.ray })
     }
 
-    /// The field as the case gives it.
+    /// Returns the field as the case gives it.
     pub fn body(&self) -> &Body {
         &self.body
     }
 
-    /// The problem, if it is a `P`.
+    /// Returns the problem, if it is a `P`.
     pub fn problem<P: 'static>(&self) -> Option<&P> {
         self.problem.problem().downcast_ref()
     }
 
-    /// The field of each channel along the ray.
+    /// Returns the field of each channel along the ray.
     pub fn media(&self) -> &[Medium] {
         self.problem.media()
     }
@@ -69,7 +69,7 @@ impl Scenario {
         self.problem.distances()
     }
 
-    /// Number of estimators.
+    /// Returns the number of estimators.
     pub fn estimators(&self) -> usize {
         self.estimators.list.len()
     }
@@ -79,7 +79,7 @@ impl Scenario {
         misses::notes(&self.body, self.ray)
     }
 
-    /// The field's name in the catalogue.
+    /// Returns the field's name in the catalogue.
     pub fn medium(&self) -> &str {
         self.body.name()
     }
@@ -217,7 +217,7 @@ impl<'a> At<'a> {
         Self { case, scenario, swept }
     }
 
-    /// The medium and the estimators.
+    /// Returns the medium and the estimators.
     pub fn scenario(&self) -> &Scenario {
         match &self.scenario {
             Held::Listed(scenario) => scenario,
@@ -273,7 +273,7 @@ impl<'a> At<'a> {
         self.scenario().estimators.list[estimator].alias().filter(|_| is_plain)
     }
 
-    /// Knowledge of the medium that an experiment needs beside lookups, as in `τ, max |σ_t − σ_c|`.
+    /// Returns the knowledge of the medium that an experiment needs beside lookups, as in `τ, max |σ_t − σ_c|`.
     pub fn needs(&self, estimator: usize) -> String {
         let (scenario, variation) = (self.scenario(), self.variation());
         let parsed = &scenario.estimators.list[estimator];

@@ -53,7 +53,7 @@ impl Spec {
         Ok(Self { source, root, faults: faults.into_inner(), additions })
     }
 
-    /// The text that it was parsed from.
+    /// Returns the text that it was parsed from.
     pub fn source(&self) -> &Source {
         &self.source
     }
@@ -95,7 +95,7 @@ impl Spec {
         &self.root
     }
 
-    /// The name of a case's problem, and its settings; `None` without one.
+    /// Returns the name of a case's problem, and its settings; `None` without one.
     pub fn problem(&self) -> Option<(&str, &[Entry])> {
         let Value::Table(problems) = &entry(&self.root, "problem")?.node.value else { return None };
         let Entry { key, node, .. } = problems.first()?;
@@ -103,7 +103,7 @@ impl Spec {
         Some((key, settings))
     }
 
-    /// The settings of a case's problem, to be changed; `None` without one.
+    /// Returns the settings of a case's problem, to be changed; `None` without one.
     pub(super) fn problem_mut(&mut self) -> Option<&mut Vec<Entry>> {
         let problem = self.root.iter_mut().find(|entry| entry.key == "problem")?;
         let Value::Table(problems) = &mut problem.node.value else { return None };
@@ -139,7 +139,7 @@ impl Spec {
     }
 }
 
-/// The entry of a key in a table.
+/// Returns the entry of a key in a table.
 pub(super) fn entry<'a>(table: &'a [Entry], key: &str) -> Option<&'a Entry> {
     table.iter().find(|entry| entry.key == key)
 }
@@ -160,12 +160,12 @@ pub struct BuiltIn {
 }
 
 impl BuiltIn {
-    /// All files, in order.
+    /// Returns all files, in order.
     pub fn all(self) -> Vec<Source> {
         self.files.iter().map(|file| self.source(file)).collect()
     }
 
-    /// The file of a name.
+    /// Returns the file of a name.
     pub fn find(self, name: &str) -> Option<Source> {
         self.files.iter().find(|file| file.0 == name).map(|file| self.source(file))
     }
@@ -238,12 +238,12 @@ pub enum CaseError {
 }
 
 impl CaseError {
-    /// Number of mistakes.
+    /// Returns the number of mistakes.
     pub fn mistakes(&self) -> usize {
         if let Self::Faulty { faults, .. } = self { faults.len() } else { 1 }
     }
 
-    /// The error, and below it the lines of the file it is about, where there are any; without colours.
+    /// Returns the error, and below it the lines of the file it is about, where there are any; without colours.
     pub fn in_full(&self) -> String {
         match self {
             Self::Faulty { .. } => format!("{self}\n\n{}", self.render(false)),
@@ -251,7 +251,7 @@ impl CaseError {
         }
     }
 
-    /// The error with the lines of the file it is about, a caret under each mistake.
+    /// Returns the error with the lines of the file it is about, a caret under each mistake.
     pub fn render(&self, colour: bool) -> String {
         let Self::Faulty { source_text, faults } = self else {
             return format!("error: {self}");
@@ -323,7 +323,7 @@ impl Source {
         entries(table.get_ref())
     }
 
-    /// The error that lists these mistakes, in the order of the file.
+    /// Returns the error that lists these mistakes, in the order of the file.
     fn faulty(&self, mut faults: Vec<Fault>) -> CaseError {
         faults.sort_by_key(|fault| fault.span.start);
         CaseError::Faulty { source_text: self.clone(), faults }

@@ -103,12 +103,12 @@ pub fn calibration() -> Vec<Source> {
     CALIBRATION.all()
 }
 
-/// Every built-in case, in the order of the suite.
+/// Returns every built-in case, in the order of the suite.
 pub fn suite() -> Vec<Source> {
     CASES.all()
 }
 
-/// The built-in case of a name.
+/// Returns the built-in case of a name.
 pub fn find(name: &str) -> Option<Source> {
     CASES.find(name).or_else(|| CALIBRATION.find(name))
 }
@@ -209,7 +209,8 @@ impl Wanted<'_> {
         self.names(own, &[key]) || matches!(&own.node.value, Value::Table(table) if below(table))
     }
 
-    /// The case's text with a title of its own, without the comments at its head, and with one estimator if one is given.
+    /// Returns the case's text with a title of its own, without the comments at its head, and with one estimator if one
+    /// is given.
     fn reduced(&self, source: &Source, root: &[Entry], only: Option<(&Node, &Node)>) -> String {
         let text = &source.text;
         let kind = if self.part == "problems" { "problem" } else { self.part };

@@ -78,17 +78,17 @@ pub struct SweepAxis {
 }
 
 impl What {
-    /// The key in case files.
+    /// Returns the key in case files.
     pub fn key(self) -> &'static str {
         self.kind().1
     }
 
-    /// The axis title with symbol and unit.
+    /// Returns the axis title with symbol and unit.
     pub fn axis(self) -> &'static str {
         self.kind().2
     }
 
-    /// All quantities, in the order of the manual.
+    /// Returns all quantities, in the order of the manual.
     pub fn all() -> impl Iterator<Item = Self> {
         KINDS.iter().map(|kind| kind.0)
     }

@@ -13,7 +13,7 @@ use numeric::sum::Sum;
 
 /// A test of a whole distribution by sums over the first draws.
 pub trait Law: Send + Sync + UnwindSafe + RefUnwindSafe {
-    /// Number of sums.
+    /// Returns the number of sums.
     fn size(&self) -> usize;
 
     /// Adds the draws of a buffer to the sums of the block; the first of them is the block's draw number `first`.

@@ -59,7 +59,7 @@ pub enum What {
 }
 
 impl What {
-    /// Name of the part: the first word of the first column of its rows.
+    /// Returns the name of the part: the first word of the first column of its rows.
     pub fn name(self) -> String {
         self.to_possible_value().map(|value| value.get_name().to_owned()).unwrap_or_default()
     }

@@ -152,7 +152,7 @@ impl<'p> Drawing<'p> {
         self.at < self.planned.fixed
     }
 
-    /// Number of draws that the next buffer takes; 0 at the end.
+    /// Returns the number of draws that the next buffer takes; 0 at the end.
     #[allow(clippy::cast_possible_truncation)] // at most a buffer's length
     fn count(&self) -> usize {
         let until = if self.is_fixed() { self.end.min(self.planned.fixed) } else { self.end };

@@ -20,7 +20,7 @@ pub(crate) struct Common {
 }
 
 impl Common {
-    /// Error of a callback that uses its own check.
+    /// Returns the error of a callback that uses its own check.
     fn drawing(&self) -> Error {
         let what =
             "the check is drawing; a callback must not use it, call when tf_check_run has returned";

@@ -182,7 +182,7 @@ impl Session {
         &self.text
     }
 
-    /// Reason of a verdict other than pass, or the error.
+    /// Returns the reason of a verdict other than pass, or the error.
     pub(crate) fn reason(&self) -> &CString {
         &self.reason
     }

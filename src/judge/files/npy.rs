@@ -65,7 +65,7 @@ mod tests {
     use super::*;
     use crate::judge::{Block, Source};
 
-    /// A header as `numpy.save` writes it.
+    /// Returns a header as `numpy.save` writes it.
     fn whole_header(kind: &str, order: &str, shape: &str) -> Vec<u8> {
         let text = format!("{{'descr': {kind}, 'fortran_order': {order}, 'shape': {shape}, }}\n");
         let length = u16::try_from(text.len()).expect("short");

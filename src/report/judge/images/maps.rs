@@ -58,7 +58,7 @@ impl<'a> Maps<'a> {
         Self { judgement, scale, size: [size.columns, size.rows].map(|n| n as f64 * scale) }
     }
 
-    /// Right end of the gap behind the last map.
+    /// Returns the right end of the gap behind the last map.
     pub fn end(&self) -> f64 {
         GAP + self.judgement.size.channels as f64 * (self.size[0] + GAP)
     }
