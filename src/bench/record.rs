@@ -161,12 +161,12 @@ impl BenchRow {
 }
 
 impl Times {
-    /// Seconds of a number of draws.
+    /// Returns the seconds of a number of draws.
     pub fn seconds(&self, draws: u64) -> f64 {
         draws as f64 * self.ns_per_draw.median * 1e-9
     }
 
-    /// Seconds of a number of draws of the plain loop.
+    /// Returns the seconds of a number of draws of the plain loop.
     pub fn plain_seconds(&self, draws: u64) -> f64 {
         draws as f64 * self.plain_ns_per_draw.median * 1e-9
     }

@@ -195,7 +195,7 @@ impl Case {
         self.at(variation).unwrap_or_else(|_| self.as_written(variation)).id(estimator)
     }
 
-    /// Address of the random numbers of an experiment.
+    /// Returns the address of the random numbers of an experiment.
     pub fn address(&self, seed: u64, estimator: usize, variation: Variation) -> Address {
         let at = self.at(variation).unwrap_or_else(|_| self.as_written(variation));
         at.id(estimator).address(seed, at.alias(estimator).as_ref())

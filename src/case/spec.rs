@@ -90,7 +90,7 @@ impl Spec {
         (found, faults.into_inner())
     }
 
-    /// Entries of the file's top level.
+    /// Returns the entries of the file's top level.
     pub fn entries(&self) -> &[Entry] {
         &self.root
     }

@@ -177,7 +177,7 @@ impl Session {
         Ok(())
     }
 
-    /// Lines of the verdict, or the error.
+    /// Returns the lines of the verdict, or the error.
     pub(crate) fn text(&self) -> &CString {
         &self.text
     }

@@ -56,7 +56,7 @@ impl Header {
         Self { version, program, is_fused, words: words.to_owned(), share, cases }
     }
 
-    /// Keys of the experiments, in the order of the plan.
+    /// Returns the keys of the experiments, in the order of the plan.
     pub fn keys(&self) -> Vec<u64> {
         self.cases.iter().flat_map(|case| case.experiments.iter().copied()).collect()
     }
