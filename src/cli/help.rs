@@ -61,7 +61,7 @@ const PAGES: [(&str, &[&str], &str, &str); 16] = [
             "trueflight predict case.toml --optimum",
         ],
         DONE,
-        "docs/theory.md",
+        "docs/variance.md",
     ),
     (
         "bench",
