@@ -1,4 +1,4 @@
-//! A dozen estimators of a textbook: one draw after the other, the standard library's `ln` and `cos`, one PCG generator.
+//! A dozen textbook estimators: one draw after the other, the standard library's `ln` and `cos`, one PCG generator.
 //!
 //! On homogeneous media the density is hidden from the compiler, which would otherwise delete the lookups.
 
@@ -222,7 +222,7 @@ pub fn ball_analog(rng: &mut Pcg64) -> f64 {
     }
 }
 
-/// Light of a point source that is scattered once into a ray: delta tracking to a collision, ratio tracking to the light.
+/// Light of a point source, scattered once into a ray: delta tracking to a collision, ratio tracking to the light.
 pub fn single_scattering(rng: &mut Pcg64) -> f64 {
     let (majorant, extinction, length) = (black_box(1.0), black_box(0.8), black_box(6.0));
     let (light, albedo) = ([0.5, 2.5], 0.9);

@@ -101,7 +101,7 @@
   addEventListener('hashchange', follow);
   follow();
 
-  // Sorting: verdicts by how bad they are, z by their size, numbers by their value, unknown values last; other columns by their text.
+  // Sorting: verdicts by severity, z by size, numbers by value, unknown values last; other columns by text.
   const severity = ['fail', 'inconclusive', 'undecided', 'underpowered', 'refused', 'pass'];
   const key = (body, column, isNumeric) => {
     const text = body.rows[0].cells[column].textContent;

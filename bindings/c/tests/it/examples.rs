@@ -62,9 +62,9 @@ fn costs_are_measured() {
     };
     let rows: Vec<_> = text.lines().skip(2).map(numbers).collect();
     assert_eq!(rows.len(), 2, "{text}");
-    // The goal is 10 ns on a machine that takes 60 for the usual draw. It is tested on the uniform draw. For the usual draw
-    // the difference includes a loss of the processor: without a call it overlaps one draw with the next. That is 26 of
-    // 78 ns on one machine, and below 10 on another, by the same program.
+    // The goal is 10 ns on a machine that takes 60 for the usual draw. It is tested on the uniform draw. For the usual
+    // draw the difference includes a loss of the processor: without a call it overlaps one draw with the next. That is
+    // 26 of 78 ns on one machine, and below 10 on another, by the same program.
     let most = rows[1][0] / 6.0;
     let cheap = rows[0][1].max(rows[0][2]);
     assert!(cheap < most, "{text}");
