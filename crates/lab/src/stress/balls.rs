@@ -161,20 +161,10 @@ impl Even {
         let half = ((self.radius - offset) * (self.radius + offset)).sqrt();
         let rule = GaussLegendre::new(12);
         // J bends like x ln x at the surface.
-        let mut ends = vec![0.0];
-        let mut left = half;
-        while left > 1e-7 * half || ends.len() < 4 {
-            left *= 0.5;
-            ends.push(half - left.min(half - ends[ends.len() - 1]));
-            let from = ends[ends.len() - 2];
-            let last = ends[ends.len() - 1];
-            if last - from > 1.0 {
-                ends.pop();
-                ends.push(from + 1.0);
-                left = half - (from + 1.0);
-            }
-        }
-        ends.push(half);
+        let near = (0..24).map(|i| half * (1.0 - 0.5f64.powi(i)));
+        let steps = (1..).map(f64::from).take_while(|&step| step < half);
+        let mut ends: Vec<f64> = near.chain(steps).chain([half]).collect();
+        ends.sort_by(f64::total_cmp);
         let mut sum = (-(Wide::from(half).scaled(1))).exp();
         for (t, weight) in Span::between(&ends).flat_map(|panel| rule.on(panel)) {
             let mean = self.mean((offset * offset + t * t).sqrt().min(self.radius));

@@ -34,7 +34,7 @@ const FIELDS: [(&str, &str); 6] = [
 ];
 
 /// A field of one of the kinds.
-fn line(kind: usize) -> proptest::strategy::SBoxedStrategy<Line> {
+pub(super) fn line(kind: usize) -> proptest::strategy::SBoxedStrategy<Line> {
     let knotted = |more: usize| {
         let values = (1..=30_usize).prop_flat_map(move |count| {
             let value =

@@ -1,7 +1,7 @@
 //! Free flights: the distance at which an optical depth is reached.
 
-use super::depths::knots;
-use super::fields::{Field, Line};
+use super::depths::{knots, line};
+use super::fields::Line;
 use super::prelude::*;
 
 /// All rows.
@@ -21,7 +21,7 @@ pub fn rows(run: Run) -> Vec<Row> {
 parameters! {
     /// A field, and the share of its depth that is flown.
     Flight {
-        line: Line = line(),
+        line: Line = (0..6_usize).prop_flat_map(line),
         share: f64 = sized(-12.0, 0.0),
     }
     /// Straight pieces.
@@ -36,32 +36,6 @@ parameters! {
         widths: [f64; 3] = [sized(-3.0, 3.0), sized(-9.0, 9.0), sized(-3.0, 3.0)],
         share: f64 = between(0.0, 1.0),
     }
-}
-
-fn line() -> impl Strategy<Value = Line> {
-    let place = (sized(-9.0, 4.0), sized(-6.0, 6.0), between(-2.0, 2.0), sign());
-    let shape = (0..4, sized(-6.0, 2.6), between(-0.2, 1.2), sized(-3.0, 1.0), sized(-1.0, 3.0));
-    (place, shape, between(0.0, 6.2)).prop_map(
-        |(place, (kind, rate, centre, width, waves), phase)| {
-            let (sigma, length, begin, sign) = place;
-            let (from, rate) = (begin * length, sign * rate / length);
-            let field = match kind {
-                0 => Field::Constant { extinction: sigma },
-                1 => {
-                    let extinction = sigma * (rate * from).max(-600.0).exp().min(1e200);
-                    Field::Exponential { extinction, rate }
-                }
-                2 => {
-                    let (centre, width) = (from + centre * length, width * length);
-                    Field::Gaussian { peak: sigma, centre, width }
-                }
-                _ => {
-                    Field::Sines { base: sigma, waves: vec![[sign * sigma, waves / length, phase]] }
-                }
-            };
-            Line { field, from, to: from + length }
-        },
-    )
 }
 
 /// Any 1-D field, with and without a table: the depth of the distance is the depth that was asked for.

@@ -2,10 +2,10 @@
 //! trapezoidal rule in 32 digits.
 //!
 //! A rule with even steps of t converges like `e^{−2πd/h}`, d the distance of the nearest singularity from
-//! the real axis. Case's integral in `ν = tanh y`, `y = ln(1 + e^t)`, and that of H in `x = e^t`,
+//! the real axis. Case's integral in `ν = tanh y`, `y = ln(1 + e^t)`, and that of H in `φ = ½π/(1 + e^{−t})`,
 //!
 //! ```text
-//! ln H(μ) = −(μ/π) ∫₀^∞ ln(1 − a artan(x)/x) dx/(1 + μ²x²)
+//! ln H(μ) = −(μ/π) ∫ ln(1 − aφ cot φ) dφ/(cos²φ + μ² sin²φ)
 //! ```
 //!
 //! have theirs at π/2: h = 1/6 leaves 1e-26.
@@ -167,42 +167,48 @@ fn totals(&(albedo, cosine): &(f64, f64), seen: &mut Seen) {
     seen.stated(0, Known::new(found, infinite::ROUNDING * found), exact);
 }
 
-/// x, its arc tangent over x, and `dx`.
-fn angles() -> Vec<[Wide; 3]> {
-    let steps = -50 * STEPS..=50 * STEPS;
+/// A place `x = tan φ` of the integral of H.
+struct Angle {
+    sine: Wide,
+    cosine: Wide,
+    /// `dφ`.
+    weight: Wide,
+    /// `1 − φ cot φ = 1 − artan(x)/x`.
+    bent: Wide,
+}
+
+fn angles() -> Vec<Angle> {
     let angle = |i: i32| {
-        let x = (n(f64::from(i)) / f64::from(STEPS)).exp();
-        // What the double leaves: tan of the difference, which is the difference.
-        let near = n(x.high.atan());
+        let w = (n(f64::from(i)) / f64::from(STEPS)).exp();
+        let quarter = Wide::PI.scaled(-1);
+        // φ or π/2 − φ, whichever is smaller.
+        let near = quarter / (1.0 + if i < 0 { 1.0 / w } else { w });
         let [sine, cosine] = near.sin_cos();
-        let arc = near + (x * cosine - sine) / (cosine + x * sine);
-        let ratio = if x.high < 1e-8 { 1.0 - x * x / 3.0 } else { arc / x };
-        [x, ratio, x / f64::from(STEPS)]
+        let (phi, sine, cosine) =
+            if i < 0 { (near, sine, cosine) } else { (quarter - near, cosine, sine) };
+        let weight = quarter * w / (1.0 + w).powi(2) / f64::from(STEPS);
+        let square = phi * phi;
+        // The difference has no digits left where φ is small.
+        let bent = if phi.high < 1e-6 {
+            square / 3.0 * (1.0 + square / 15.0)
+        } else {
+            (sine - phi * cosine) / sine
+        };
+        Angle { sine, cosine, weight, bent }
     };
-    steps.map(angle).collect()
+    (-50 * STEPS..=50 * STEPS).map(angle).collect()
 }
 
-/// `1 − artan(x)/x`, which cancels where x is small.
-fn bent(&[x, ratio, _]: &[Wide; 3]) -> Wide {
-    if x.high >= 0.02 {
-        return 1.0 - ratio;
-    }
-    let terms = (1..12).rev().map(|k| {
-        let term = 1.0 / n(f64::from(2 * k + 1));
-        if k % 2 == 1 { term } else { -term }
-    });
-    terms.fold(Wide::default(), |sum, term| sum * (x * x) + term) * (x * x)
-}
-
-fn half_space(parameters: &Cosines, angles: &[[Wide; 3]], seen: &mut Seen) {
+fn half_space(parameters: &Cosines, angles: &[Angle], seen: &mut Seen) {
     let Cosines { albedo, cosines } = parameters;
-    let log = |angle| ((1.0 - n(*albedo)) + *albedo * bent(angle)).ln();
+    let log = |angle: &Angle| ((1.0 - n(*albedo)) + *albedo * angle.bent).ln();
     let logs: Vec<Wide> = angles.iter().map(log).collect();
     for &cosine in cosines {
         let mu = n(cosine);
-        let terms = angles.iter().zip(&logs);
-        let integral: Wide =
-            terms.map(|(&[x, _, dx], &log)| log * dx / (1.0 + (mu * x).powi(2))).sum();
+        let term = |(angle, &log): (&Angle, &Wide)| {
+            log * angle.weight / (angle.cosine.powi(2) + (mu * angle.sine).powi(2))
+        };
+        let integral: Wide = angles.iter().zip(&logs).map(term).sum();
         seen.at(format_args!("μ = {cosine:e}"));
         seen.relative(0, h_function(*albedo, cosine), (-(mu * integral / Wide::PI)).exp());
     }

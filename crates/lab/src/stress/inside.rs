@@ -1,16 +1,16 @@
-//! Inside rods: orders of scattering, the flux, and the energy absorbed, from power series in 32 digits.
+//! Inside rods: orders of scattering, the flux, and the energy absorbed, by nodes in 32 digits.
 //!
-//! The worth of a particle obeys the equations of `line`:
+//! Importances obey the equations of `nodes`:
 //!
 //! ```text
 //! order n to the power k:   A = σ̂(1 − Q_k), B = 0,  s from order n − 1
 //! Y^k, Y = Σ c w:           A = σ̂(1 − Q_k − S_k p_f), B = σ̂ S_k p_b,  s from Y, …, Y^{k−1}
 //! ```
 
-use super::line::{Both, Line, NOTHING, after};
+use super::equations::{binomial, power};
+use super::nodes::{Both, Line, Solution, after};
 use super::prelude::*;
 use super::rods::{moments_of, rod_with, rule};
-use super::series::{add, binomial, constant, power};
 use theory::particle::ParticleRule;
 use theory::problems::rod::{self, HIGHEST_ORDER, MOST_PARTS, Quantity};
 use theory::rod as rods;
@@ -60,6 +60,10 @@ impl Case {
     fn channels(&self) -> Vec<Quantity> {
         rod::channels(self.parts, true, Some(self.highest_order))
     }
+
+    fn albedo(&self, stretch: usize) -> f64 {
+        self.albedo[stretch * self.albedo.len() / STRETCHES]
+    }
 }
 
 fn truths(case: &Case, seen: &mut Seen) {
@@ -87,22 +91,16 @@ fn moments((case, ratio, kind): &(Case, f64, usize), seen: &mut Seen) {
         let Some(row) = row_of(channel) else { continue };
         seen.at(channel.name());
         // A moment that diverges says so, as `rods` checks.
-        let known = found.channels[i].moments.filter(|moments| moments.relative[0].is_finite());
-        let known = known.map(|known| (known, exact.powers(channel)));
-        let Some((known, raw)) = known.filter(|(_, raw)| raw[0].high >= 1e-70) else {
-            seen.skip(row);
-            seen.skip(row + 3);
-            continue;
-        };
-        // In units of the mean as it is told, which may have few digits.
-        let [second, fourth] = central(raw, Wide::from(known.scale));
-        seen.central(row, known.relative[0], known.error, second);
-        seen.central(row + 3, known.relative[2], known.error, fourth);
+        let raw = exact.powers(channel);
+        let known = found.channels[i].moments.filter(|_| raw[0].high >= 1e-70);
+        seen.resolved([row, row + 3], known, &raw);
     }
 }
 
 /// Twelfths hold halves, thirds and quarters.
 const STRETCHES: usize = 12;
+/// Nothing.
+const NOTHING: Both = [Wide { high: 0.0, low: 0.0 }; 2];
 
 /// Light that leaves by order at the end and at the beginning, and scores, to the powers 1 … 4.
 struct Exact<'a> {
@@ -111,6 +109,8 @@ struct Exact<'a> {
     /// `σ_t/σ̂`.
     ratio: Wide,
     line: Line,
+    /// Number of the stretch of every node.
+    stretches: Vec<usize>,
     /// Q and S of the stretches to the powers 0 … 4.
     odds: Vec<[[Wide; 2]; 5]>,
     /// Highest power.
@@ -122,18 +122,20 @@ impl<'a> Exact<'a> {
     fn new(case: &'a Case, rule: ParticleRule, sampling: f64, powers: usize) -> Self {
         let ratio = Wide::from(case.depth) / sampling;
         let of = |albedo: f64| [0, 1, 2, 3, 4].map(|k| moments_of(rule, ratio, albedo, k));
-        let albedo = |stretch: usize| case.albedo[stretch * case.albedo.len() / STRETCHES];
-        let odds: Vec<_> = (0..STRETCHES).map(|stretch| of(albedo(stretch))).collect();
-        let fastest = |odds: &[[Wide; 2]; 5]| {
-            odds.iter().fold(0.0, |most: f64, &[q, s]| {
+        let odds: Vec<_> = (0..STRETCHES).map(|stretch| of(case.albedo(stretch))).collect();
+        let fastest = |stretch: usize| {
+            odds[stretch].iter().fold(0.0, |most: f64, &[q, s]| {
                 let straight = 1.0 - q - s * case.forward;
                 let straight = (1.0 - q).high.abs().max(straight.high.abs());
                 most.max(sampling * (straight + s.high.abs()))
             })
         };
-        let line = Line::new(&odds.iter().map(fastest).collect::<Vec<_>>());
+        let ends: Vec<Wide> =
+            (0..=STRETCHES).map(|i| Wide::from(i as f64) / STRETCHES as f64).collect();
+        let line = Line::new(&ends, fastest);
+        let stretches = line.values(|stretch, _| stretch);
         let (sampling, orders) = (Wide::from(sampling), Default::default());
-        let mut found = Self { case, sampling, ratio, line, odds, powers, orders };
+        let mut found = Self { case, sampling, ratio, line, stretches, odds, powers, orders };
         found.orders = [0, 1].map(|end| (1..=powers).map(|k| found.by_order(k, end)).collect());
         found
     }
@@ -151,10 +153,7 @@ impl<'a> Exact<'a> {
                     if is_inside { score } else { Wide::default() }
                 })
             }
-            _ => self.scores(&|stretch| {
-                let albedo = self.case.albedo[stretch * self.case.albedo.len() / STRETCHES];
-                self.ratio * (1.0 - Wide::from(albedo))
-            }),
+            _ => self.scores(&|stretch| self.ratio * (1.0 - Wide::from(self.case.albedo(stretch)))),
         }
     }
 
@@ -172,50 +171,42 @@ impl<'a> Exact<'a> {
     fn by_order(&self, k: usize, end: usize) -> Vec<Wide> {
         let rates =
             |stretch: usize| [self.sampling * (1.0 - self.odds[stretch][k][0]), Wide::default()];
-        let mut ends = [Wide::default(); 2];
+        let mut ends = NOTHING;
         ends[1 - end] = Wide::ONE;
-        let mut worth = self.line.solve(&rates, &|_| NOTHING, ends);
-        let mut orders = vec![worth[0][0][0]];
+        let mut order = self.line.both_ways(rates, |_| NOTHING, ends);
+        let mut orders = vec![order.begin[0]];
         let forward = Wide::from(self.case.forward);
         for _ in 0..self.case.highest_order {
-            let before = worth;
             let source = |i: usize| {
-                let scattered = self.sampling * self.odds[self.line.0[i].stretch][k][1];
-                after([scattered * forward, scattered * (1.0 - forward)], &before[i])
+                let scattered = self.sampling * self.odds[self.stretches[i]][k][1];
+                after([scattered * forward, scattered * (1.0 - forward)], order.at[i])
             };
-            worth = self.line.solve(&rates, &source, [Wide::default(); 2]);
-            orders.push(worth[0][0][0]);
+            order = self.line.both_ways(rates, source, NOTHING);
+            orders.push(order.begin[0]);
         }
         orders
     }
 
     /// `E[Y^j]` of a score c.
     fn scores(&self, score: &dyn Fn(usize) -> Wide) -> [Wide; 4] {
-        let mut found: Vec<Vec<Both>> = Vec::new();
-        let mut powers = [Wide::default(); 4];
+        let mut known: Vec<Solution<Both>> = Vec::new();
         for j in 1..=self.powers {
             let rates = |stretch: usize| {
                 let [onward, turned] = self.odds(stretch, j);
                 [self.sampling * (1.0 - onward), self.sampling * turned]
             };
-            let source = |at: usize| {
-                let stretch = self.line.0[at].stretch;
-                let c = score(stretch);
-                if c.high == 0.0 {
-                    return NOTHING;
+            let source = |i: usize| {
+                let (stretch, c) = (self.stretches[i], score(self.stretches[i]));
+                let mut sum = [power(c, j); 2];
+                for lower in 1..j {
+                    let later = after(self.odds(stretch, lower), known[lower - 1].at[i]);
+                    let factor = binomial(j, lower) * power(c, j - lower);
+                    sum = [0, 1].map(|way| sum[way] + factor * later[way]);
                 }
-                let mut sum: Both = [constant(self.sampling * power(c, j)); 2];
-                for i in 1..j {
-                    let factor = self.sampling * (binomial(j, i) * power(c, j - i));
-                    let later = after(self.odds(stretch, i), &found[i - 1][at]);
-                    sum.iter_mut().zip(&later).for_each(|(sum, later)| add(sum, factor, later));
-                }
-                sum
+                sum.map(|sum| self.sampling * sum)
             };
-            let worth = self.line.solve(&rates, &source, [Wide::default(); 2]);
-            powers[j - 1] = worth[0][0][0];
-            found.push(worth);
+            known.push(self.line.both_ways(rates, source, NOTHING));
         }
-        powers
+        std::array::from_fn(|k| known.get(k).map_or(Wide::default(), |power| power.begin[0]))
     }
 }

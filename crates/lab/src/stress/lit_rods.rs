@@ -1,8 +1,8 @@
-//! Rods with an emitter at the end, and bidirectional paths: moments from power series in 32 digits.
+//! Rods with an emitter at the end, and bidirectional paths: moments by nodes in 32 digits.
 //!
 //! Real collisions alone change a walk; the moments of a shadow ray's score s are exponentials of the way that is
 //! left, or a quotient of them. A hit that follows a scattering directly is part of its score, with the probability
-//! T and the weight h. With the equations of `line`, D the direction before and ρ its phase function towards the emitter:
+//! T and the weight h. With the equations of `nodes`, D the direction before and ρ its phase function towards the emitter:
 //!
 //! ```text
 //! A = σ(1 − a p_f), B = σ a p_b,
@@ -11,10 +11,10 @@
 //!     count aρ to the power k, every other once
 //! ```
 
+use super::equations::{binomial, power};
 use super::fields::homogeneous;
-use super::line::{Both, Line, NOTHING, Series, after};
+use super::nodes::{Both, Line, Solution, after};
 use super::prelude::*;
-use super::series::{add, binomial, constant, exponential, inverse, power, product};
 use theory::bidirectional_rod::{self, Connection, Rules, Scene};
 use theory::lit_rod::{self, Combination, Densities, Heuristic, Shadow, Techniques};
 use theory::problems::LitRod;
@@ -70,14 +70,12 @@ fn lit(case: &Lit, seen: &mut Seen) -> Option<()> {
     let rod = LitRod::new(medium.clone(), &everywhere(albedo), &everywhere(forward));
     let (mesh, flown) = (Mesh::new(medium.clone()), everywhere(depth / ratio));
     let techniques = Techniques { shadow: Some(shadow), combination };
-    let found = lit_rod::predict(&mesh, &rod, &flown, techniques, true).channels[0].moments?;
+    let found = lit_rod::predict(&mesh, &rod, &flown, techniques, true).channels[0].moments;
     let raw = moments(case, shadow);
     if raw[0].high < 1e-70 {
         return None;
     }
-    let [second, fourth] = central(raw, Wide::from(found.scale));
-    seen.central(0, found.relative[0], found.error, second);
-    seen.central(1, found.relative[2], found.error, fourth);
+    seen.resolved([0, 1], found, &raw);
     Some(())
 }
 
@@ -91,82 +89,67 @@ fn moments(case: &Lit, shadow: Shadow) -> [Wide; 4] {
         Shadow::Delta => depth * f64::from(u8::from(k > 0)),
         Shadow::Ratio => depth / case.ratio * (1.0 - power(null, k)),
     });
-    let line = Line::new(&[2.0 * losses[4].high.max(depth.high)]);
-    let scattered = albedo * depth;
+    let line = Line::new(&[0.0, 1.0].map(Wide::from), |_| 2.0 * losses[4].high.max(depth.high));
+    let (scattered, ways) = (albedo * depth, [forward, 1.0 - forward]);
     let rates = [depth - scattered * forward, scattered * (1.0 - forward)];
-    let zero = [Wide::default(); 2];
-    let mut found: Vec<Vec<Both>> = Vec::new();
+    let scores = line.values(|_, x| {
+        // e^{−loss} of the way that is left.
+        let left = losses.map(|loss| (-(loss * (1.0 - x))).exp());
+        ways.map(|phase| Scores::new(case.combination, phase, left))
+    });
+    let mut found: Vec<Solution<Both>> = Vec::new();
     for k in 1..=4 {
-        let source = |at: usize| -> Both {
-            let step = line.0[at];
-            // e^{−loss} of the way that is left.
-            let left = |loss: Wide| -> Series {
-                exponential((-(loss * (1.0 - step.from))).exp(), loss * step.width)
+        let scored = |i: usize, way: usize| {
+            let (phase, scores) = (ways[way], &scores[i][way]);
+            let hit = |j: usize| binomial(k, j) * scores.with_hit(k, j);
+            let later = |j: usize| {
+                let [later, _] = after([phase, 1.0 - phase], found[j - 1].at[i]);
+                binomial(k, j) * scores.of_ray[k - j] * later
             };
-            let alive = left(depth);
-            [forward, 1.0 - forward].map(|phase| {
-                let scores = Scores::new(case.combination, phase, &losses.map(left));
-                let mut sum = constant(Wide::default());
-                let lone = scores.with_hit(k, 0);
-                add(&mut sum, scattered, &lone);
-                for i in 1..=k {
-                    let hit = product(&scores.with_hit(k, i), &alive);
-                    add(&mut sum, scattered * phase * binomial(k, i), &hit);
-                }
-                for i in 1..k {
-                    let later: Both = after([phase, 1.0 - phase], &found[i - 1][at]);
-                    let later = product(&scores.of_ray[k - i], &later[0]);
-                    add(&mut sum, scattered * binomial(k, i), &later);
-                }
-                sum
-            })
+            let hits: Wide = (1..=k).map(hit).sum();
+            let later: Wide = (1..k).map(later).sum();
+            scattered * (scores.of_ray[k] + phase * scores.alive * hits + later)
         };
-        found.push(line.solve(&|_| rates, &source, zero));
+        found.push(line.both_ways(|_| rates, |i| [0, 1].map(|way| scored(i, way)), NOTHING));
     }
     let unscattered = (-depth).exp();
-    std::array::from_fn(|k| unscattered + found[k][0][0][0])
+    std::array::from_fn(|k| unscattered + found[k].begin[0])
 }
 
-/// Scores of a scattering in a step.
+/// Nothing.
+const NOTHING: Both = [Wide { high: 0.0, low: 0.0 }; 2];
+
+/// Scores of a scattering.
 struct Scores {
+    /// Probability that a flight reaches the emitter.
+    alive: Wide,
     /// `E[s^k]`, k = 0 … 4.
-    of_ray: [Series; 5],
+    of_ray: [Wide; 5],
     /// h, of a hit.
-    hit: Series,
+    hit: Wide,
 }
 
 impl Scores {
     /// Given the phase function towards the emitter, and `E[T̂^k]`.
-    fn new(combination: Combination, phase: Wide, transmittance: &[Series; 5]) -> Self {
-        let one = constant(Wide::ONE);
-        let scaled = |series: &Series, factor: Wide| series.map(|x| x * factor);
+    fn new(combination: Combination, phase: Wide, transmittance: [Wide; 5]) -> Self {
+        let alive = transmittance[1];
+        let of_ray =
+            |weight: Wide| std::array::from_fn(|k| transmittance[k] * power(phase * weight, k));
         let Combination::Mis(densities, heuristic) = combination else {
-            let of_ray = std::array::from_fn(|k| scaled(&transmittance[k], power(phase, k)));
-            return Self { of_ray, hit: constant(Wide::default()) };
+            return Self { alive, of_ray: of_ray(Wide::ONE), hit: Wide::default() };
         };
-        let found = scaled(&transmittance[1], phase);
-        let ratio = if densities == Densities::Full { found } else { constant(phase) };
+        let ratio = if densities == Densities::Full { phase * alive } else { phase };
         let raised = match heuristic {
             Heuristic::Balance => ratio,
-            Heuristic::Power => product(&ratio, &ratio),
+            Heuristic::Power => ratio * ratio,
         };
-        let mut sum = one;
-        add(&mut sum, Wide::ONE, &raised);
-        let weight = inverse(&sum);
-        let hit = product(&raised, &weight);
-        let mut powers = vec![one];
-        for k in 0..4 {
-            powers.push(product(&powers[k], &weight));
-        }
-        let of_ray = std::array::from_fn(|k| {
-            scaled(&product(&transmittance[k], &powers[k]), power(phase, k))
-        });
-        Self { of_ray, hit }
+        let weight = 1.0 / (1.0 + raised);
+        Self { alive, of_ray: of_ray(weight), hit: raised * weight }
     }
 
     /// `E[s^{k−i}] h^i`.
-    fn with_hit(&self, k: usize, i: usize) -> Series {
-        (0..i).fold(self.of_ray[k - i], |series, _| product(&series, &self.hit))
+    fn with_hit(&self, k: usize, i: usize) -> Wide {
+        self.of_ray[k - i] * power(self.hit, i)
     }
 }
 
@@ -188,14 +171,9 @@ fn bidirectional(case: &Bidirectional, seen: &mut Seen) -> Option<()> {
     seen.at(format_args!("order {order}, s = {s}"));
     seen.stated(0, channel.truth, raw[0]);
     let moments = channel.moments?;
-    let [second, fourth] = central(raw, Wide::from(moments.scale));
-    if second.high.abs() < 1e-20 {
-        seen.skip(1);
-        seen.skip(2);
-        return Some(());
-    }
-    seen.central(1, moments.relative[0], moments.error, second);
-    seen.central(2, moments.relative[2], moments.error, fourth);
+    // Of draws that hardly vary there are no digits.
+    let [second, _] = central(raw, Wide::from(moments.scale));
+    seen.resolved([1, 2], (second.high.abs() >= 1e-20).then_some(moments), &raw);
     Some(())
 }
 
@@ -212,18 +190,19 @@ fn of_paths(case: &Bidirectional, (order, s): (usize, usize), k: usize) -> Wide 
             depth + depth * null / ratio * (1.0 - power(null, k - 1))
         }
     };
-    let line = Line::new(&[(0..=order).map(|j| loss(j).high).fold(0.0, f64::max)]);
-    let mut ends = [Wide::default(); 2];
+    let line = Line::new(&[0.0, 1.0].map(Wide::from), |_| {
+        (0..=order).map(|j| loss(j).high).fold(0.0, f64::max)
+    });
+    let mut ends = NOTHING;
     ends[usize::from(case.is_transmitted)] = Wide::ONE;
     let rates = |j: usize| [loss(j), Wide::default()];
-    let mut worth = line.solve(&|_| rates(order), &|_| NOTHING, ends);
+    let mut worth = line.both_ways(|_| rates(order), |_| NOTHING, ends);
     for j in (0..order).rev() {
         // The scattering between the segments j and j + 1.
         let counts = if !is_one && (j + 2 == s || j + 1 == s) { k } else { 1 };
         let [onward, turned] = [forward, 1.0 - forward].map(|p| depth * power(albedo * p, counts));
-        let before = worth;
-        let source = |at: usize| after([onward, turned], &before[at]);
-        worth = line.solve(&|_| rates(j), &source, [Wide::default(); 2]);
+        let source = |i: usize| after([onward, turned], worth.at[i]);
+        worth = line.both_ways(|_| rates(j), source, NOTHING);
     }
-    worth[0][0][0]
+    worth.begin[0]
 }

@@ -6,9 +6,9 @@
 //! a cap, unidirectional:   X is 0 or 1
 //! ```
 
+use super::equations::power;
 use super::fields::homogeneous;
 use super::prelude::*;
-use super::series::power;
 use super::slabs::henyey_greenstein;
 use media::phase::Phase;
 use theory::lit_rod::{Combination, Densities, Heuristic, Shadow, Techniques};
@@ -54,7 +54,7 @@ impl Slab {
 }
 
 /// `E[X^k]` of shadow rays to a beam.
-fn beam(slab: &Slab, seen: &mut Seen) -> Option<()> {
+fn beam(slab: &Slab, seen: &mut Seen) {
     let cosine = slab.cosine.max(slab.depth / 60.0);
     let (mesh, problem, flown) = slab.problem(Light::Distant(cosine));
     let techniques = Techniques { shadow: Some(slab.shadow), combination: Combination::NextEvent };
@@ -73,11 +73,7 @@ fn beam(slab: &Slab, seen: &mut Seen) -> Option<()> {
         power(towards, k) * slab.albedo * depth * (-depth).exp() * between
     });
     seen.stated(0, found.channels[0].truth, raw[0]);
-    let moments = found.channels[0].moments?;
-    let [second, fourth] = central(raw, Wide::from(moments.scale));
-    seen.central(1, moments.relative[0], moments.error, second);
-    seen.central(2, moments.relative[2], moments.error, fourth);
-    Some(())
+    seen.resolved([1, 2], found.channels[0].moments, &raw);
 }
 
 fn value(phase: &Phase, cosine: f64) -> f64 {

@@ -3,8 +3,8 @@
 //! Every quantity that a verdict rests on is computed where it is hardest, up to many thousand times, and compared
 //! with arithmetic of 32 digits ([`Wide`](numeric::Wide)), with exact integers, or with another method at a
 //! higher resolution. A page of this folder holds one kind of quantity: lines of the table ([`table`]), each with its
-//! rows ([`row`]), a strategy for the parameters (`parameters`), a trial and an oracle. Oracles share power series and
-//! linear equations (`series`, `line`, `chains`) with each other, and nothing with what they check.
+//! rows ([`row`]), a strategy for the parameters (`parameters`), a trial and an oracle. Oracles share
+//! linear equations and their solution by nodes (`equations`, `nodes`) with each other, and nothing with what they check.
 //!
 //! ```text
 //! relative          |found − exact|/|exact|
@@ -19,11 +19,11 @@
 //! | optical depths in 3-D | [`depths`] | quadrature of lookups |
 //! | ends of chords, their optical depth | [`geometry`] | 32 digits |
 //! | transmittance, moments of products | [`moments`] | 32 digits |
-//! | moments of next-flight and MIS | [`collided`] | power series, 32 digits |
+//! | moments of next-flight and MIS | [`collided`] | nodes, 32 digits |
 //! | mean free flight, lookups, curves | [`costs`] | closed forms, 32 digits |
 //! | rods: truths, moments, lookups | [`rods`] | closed forms, 32 digits |
-//! | rods: orders, flux, absorption; moments | [`inside`] | power series, 32 digits |
-//! | rods with an emitter, bidirectional paths: moments | [`lit_rods`] | power series, 32 digits |
+//! | rods: orders, flux, absorption; moments | [`inside`] | nodes, 32 digits |
+//! | rods with an emitter, bidirectional paths: moments | [`lit_rods`] | nodes, 32 digits |
 //! | slabs: R, T, collisions | [`slabs`] | twice the resolution; ordinates, 32 digits |
 //! | walks in slabs: moments, lookups | [`walks`] | ordinates, 32 digits; more directions; Peierls' equation |
 //! | slabs with a light behind them | [`lit_slabs`] | closed forms, 32 digits; other techniques |
@@ -32,7 +32,7 @@
 //! | Case's formula, squared distances, H-function | [`mod@infinite`] | trapezoidal rule, 32 digits |
 //! | `∫σ_t dV` | [`contents`] | quadrature of lookups |
 //! | single scattering: radiance | [`scattering`] | 32 digits; panels of distance |
-//! | single scattering: moments, lookups | [`scattered`], [`gathered`] | power series, 32 digits; panels of distance |
+//! | single scattering: moments, lookups | [`scattered`] | nodes, 32 digits |
 //!
 //! Not among them: optical depths where chords are cut by the eye, as in pictures. In a furnace the answer is 1.
 //!
@@ -44,24 +44,23 @@
 
 pub mod accumulators;
 pub mod balls;
-mod chains;
 pub mod collided;
 pub mod contents;
 pub mod costs;
 pub mod depths;
 pub mod elementary;
+mod equations;
 mod fields;
 pub mod flights;
-pub mod gathered;
 pub mod generator;
 pub mod geometry;
 pub mod infinite;
 pub mod inside;
-mod line;
 pub mod lit_rods;
 pub mod lit_slabs;
 pub mod moments;
 pub mod narrow;
+mod nodes;
 mod ordinates;
 mod parameters;
 mod peierls;
@@ -69,7 +68,6 @@ pub mod rods;
 pub mod row;
 pub mod scattered;
 pub mod scattering;
-mod series;
 mod shared_walk;
 pub mod slabs;
 pub mod spectral;
@@ -143,7 +141,6 @@ pages! {
     contents,
     scattering,
     scattered,
-    gathered,
     costs,
     lit_rods,
     lit_slabs,

@@ -16,8 +16,8 @@
 //!
 //! Source: S. Chandrasekhar, *Radiative Transfer* (Oxford University Press, 1950), chapters 2, 3 and 7.
 
+use super::equations::solved;
 use super::prelude::*;
-use super::series::solved;
 use theory::problems::slab::Light;
 
 /// Directions and the solutions in them.

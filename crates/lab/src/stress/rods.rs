@@ -227,12 +227,9 @@ fn walks(walked: &Walked, seen: &mut Seen) {
             continue;
         }
         seen.at(&channel.name);
-        let [variance, fourth] = central(raw, raw[0]);
-        let second = moments.relative[0];
-        seen.stated(0, Known::new(second, second.abs() * moments.error), variance);
         // A moment that grids do not resolve says so: there are no digits to compare.
-        let found = if critical(rates[3]) > 1.002 { moments.relative[2] } else { f64::INFINITY };
-        seen.central(1, found, moments.error, fourth);
+        let finite = if critical(rates[3]) > 1.002 { 4 } else { 3 };
+        seen.resolved([0, 1], Some(moments), &raw[..finite]);
     }
 }
 

@@ -1,25 +1,22 @@
-//! Single scattering: moments and lookups of what estimates it, in homogeneous media.
+//! Single scattering: moments and lookups of its estimators, see `techniques`, in homogeneous media and in fields.
 //!
-//! All are chains of linear equations, see `chains`, with `c = aΦ/(16π²)`, rates `A_k` of the transmittance
-//! from the ray's origin to the power k, and `B_k` of that of the shadow ray.
-//!
-//! ```text
-//! at a point of density p       E[X^k] = ∫ p (σ_t c/(p r²))^k e^{−A_k s − B_k r} ds
-//! at every collision            −U_k' = Σⱼ (k over j) σ̂ (σ_t c/(σ̂ r²))ʲ e^{−Bⱼ r} w^{k−j} U_{k−j} − A_k U_k
-//! resampled                     E[F^{k−1} G_k], see `theory::single::walks`
-//! at n points, one walk         E[A₁^{n₁} A₂^{n₂} …], likewise
-//! ```
+//! Theory halves panels of the stretched variable `arsinh((s − foot)/D)`. Panels of s here grow away from the
+//! light and from both ends of the ray.
 
+use std::array::from_fn;
+
+use super::equations::power;
 use super::prelude::*;
 use super::rods::lookups;
-use super::scattering::lit;
-use super::techniques::{Case, Wanted};
+use super::scattering::{Lit, lit, lit_field, panels};
+use super::techniques::{Estimator, Place, Ray, Technique};
 use theory::problems::Problem;
-use theory::single::predict::DENSITY;
-use theory::single::{Camera, CameraTracking, Node, Scene, Tracking};
+use theory::single::{CameraTracking, Tracking};
 
 /// Techniques that take turns where rays are deep.
 const TECHNIQUES: usize = 6;
+/// Panels of s, at least.
+const STEPS: u32 = 40;
 
 /// All rows.
 pub fn rows(run: Run) -> Vec<Row> {
@@ -27,22 +24,26 @@ pub fn rows(run: Run) -> Vec<Row> {
                  light 1e-6 … 10 ℓ away";
     let both = || (shallow(), Choices::any());
     let mut rows = run.fill([8, 96], kinds(range), both, |(setting, choices), seen| {
-        trial(setting, choices, &|_| true, seen)
+        homogeneous(setting, choices, &|_| true, seen)
     });
     let range = "homogeneous, 3 shadows, residuals, σ_t ℓ = 10 … 1e3, σ̂/σ_t = 0.3 … 1e3, \
                  light 1e-4 … 100 mean free paths away";
-    // A chain through many mean free paths takes seconds for all techniques.
+    // A ray of many mean free paths takes seconds for all techniques.
     let both = || (deep(), Choices::any());
     rows.extend(run.fill([8, 96], kinds(range), both, |(setting, choices), seen| {
-        trial(setting, choices, &|technique| technique == choices.technique, seen)
+        homogeneous(setting, choices, &|technique| technique == choices.technique, seen)
     }));
+    let range = "four fields, controls, light 1e-3 … 10 away, g to 0.8, σ̂ = 0.6 … 5 of the largest; panels of s";
+    let of_fields = ["variance", "fourth moment"]
+        .map(|what| Row::stated(format!("single scattering in fields, {what}"), range));
+    rows.extend(run.fill([8, 144], of_fields, InField::any, in_field));
     rows
 }
 
 /// Rows of techniques that scatter at one point, and at many of a walk.
 fn kinds(range: &str) -> [Row; 6] {
     let whats = ["variance", "fourth moment", "lookups"];
-    std::array::from_fn(|i| {
+    from_fn(|i| {
         let kind = ["at one point", "of walks"][i / 3];
         Row::stated(format!("single scattering {kind}, {}", whats[i % 3]), range)
     })
@@ -99,6 +100,15 @@ parameters! {
         alongs: [usize; 2] = [0..6_usize, 0..6_usize],
         technique: usize = 0..TECHNIQUES,
     }
+    /// A scene in a field, and how it is estimated; σ̂ and the control are in units of the largest σ_t.
+    InField {
+        lit: Lit = lit_field(),
+        scale: f64 = sized(-0.2, 0.7),
+        shadow_scale: f64 = sized(-0.2, 0.7),
+        kind: usize = 0..12_usize,
+        held: f64 = prop_oneof![Just(0.0), between(0.0, 0.8)],
+        count: usize = 1..=8_usize,
+    }
 }
 
 /// A control in one of two.
@@ -106,7 +116,7 @@ fn residual() -> impl Strategy<Value = f64> {
     prop_oneof![Just(0.0), between(0.0, 1.2)]
 }
 
-fn trial(
+fn homogeneous(
     setting: &Setting,
     choices: &Choices,
     is_wanted: &dyn Fn(usize) -> bool,
@@ -114,7 +124,7 @@ fn trial(
 ) -> Option<()> {
     let &Setting { sigma, length, distance, foot, ratio } = setting;
     let &Choices { albedo, control, shadow, count, alongs: chosen, .. } = choices;
-    let (sampling, control) = (sigma * ratio, sigma * control);
+    let walk = [sigma * ratio, sigma * control];
     let tracking = match shadow {
         Tracking::Exact => Tracking::Exact,
         Tracking::Ratio { sampling, control } => {
@@ -123,64 +133,137 @@ fn trial(
         Tracking::Delta { sampling } => Tracking::Delta { sampling: sigma * sampling },
     };
     let problem = lit(sigma, distance, foot, length, albedo)?;
-    let mut case = Case::new(&problem, (sigma, length), [sampling, control], tracking);
-    let mesh = Mesh::new(problem.medium().clone());
-    let flown = Piecewise::constant(sampling, mesh.support());
-    let main = match control {
-        0.0 => Control::None,
-        control => Control::Pieces(Piecewise::constant(control, mesh.support())),
-    };
-    let scene = |along| {
-        // Delta tracking has no control.
-        let control = if along == CameraTracking::Ratio { &main } else { &Control::None };
-        Scene::new(&problem, Camera::new(&mesh, &flown, control, along), tracking, Vec::new())
-    };
-    let walk = scene(CameraTracking::Ratio);
-    let mut wanted = Vec::new();
-    if is_wanted(0) {
-        wanted.push(case.at_collisions(&walk));
-    }
-    if is_wanted(1) {
-        wanted.push(case.resampled(&walk, tracking));
-    }
-    if is_wanted(2) {
-        wanted.push(case.at_points(&walk, &problem, count));
-    }
+    let estimator = Estimator { problem: &problem, walk, tracking, count };
     let mut alongs = vec![CameraTracking::Exact, CameraTracking::Ratio];
-    if sampling >= sigma {
+    if ratio >= 1.0 {
         alongs.push(CameraTracking::Delta);
-        if is_wanted(3) {
-            wanted.push(case.found(&scene(CameraTracking::Exact)));
-        }
     }
     let [by_angle, by_depth] = chosen.map(|number| alongs[number % alongs.len()]);
-    if is_wanted(4) {
-        let density = |node: &Node| problem.equiangular_density_beyond(node.along);
-        let from = ("by angle", &scene(by_angle), by_angle);
-        wanted.push(case.at_point(from, [&density, &|_| DENSITY], (-2, Wide::default())));
-    }
-    if is_wanted(5) {
-        // Points are found in closed form: no deeper than −ln 2⁻⁵³ = 37.
-        let rate = sampling.min(30.0 / length);
-        let found = -(-rate * length).exp_m1();
-        let density = |node: &Node| rate * (-rate * node.s).exp() / found;
-        let blur = |node: &Node| DENSITY + f64::EPSILON * rate * node.s;
-        let from = ("by depth", &scene(by_depth), by_depth);
-        wanted.push(case.at_point(from, [&density, &blur], (0, Wide::from(rate))));
-    }
-    let values = case.chain.solve();
-    for Wanted { name, is_walk, found, moments, lookups: exact } in wanted {
-        seen.at(name);
-        let row = 3 * usize::from(is_walk);
-        let prediction = found.prediction();
+    let all: [Technique; TECHNIQUES] = [
+        Technique::AtCollisions,
+        Technique::Resampled,
+        Technique::SharedWalk,
+        Technique::Delta,
+        Technique::ByAngle(by_angle),
+        Technique::ByDepth(by_depth),
+    ];
+    let ray = even(&estimator, sigma);
+    for (number, technique) in all.into_iter().enumerate().filter(|&(i, _)| is_wanted(i)) {
+        if technique == Technique::Delta && ratio < 1.0 {
+            continue;
+        }
+        let found = estimator.found(technique).prediction();
+        let (raw, exact) = ray.exact(technique);
+        let row = if number < 3 { 3 } else { 0 };
+        seen.at(format_args!("{technique:?}"));
         // A spread that rounding hides is not told.
-        seen.moments(row, prediction.channels[0].moments, |scale| {
-            central(moments(&values), Wide::from(scale))
-        });
-        match prediction.lookups.zip(exact) {
-            Some((law, exact)) => seen.stated(row + 2, lookups(&law), exact(&values)),
+        seen.moments([row, row + 1], found.channels[0].moments, &raw);
+        match found.lookups.zip(exact) {
+            Some((law, exact)) => seen.stated(row + 2, lookups(&law), exact),
             None => seen.skip(row + 2),
         }
     }
     Some(())
+}
+
+/// A ray through a homogeneous medium.
+fn even<'a>(estimator: &'a Estimator, sigma: f64) -> Ray<'a> {
+    let problem = estimator.problem;
+    let (distance, foot) = (Wide::from(problem.distance()), problem.foot());
+    let albedo = Wide::from(problem.albedo()) / (Wide::PI * Wide::PI).scaled(4);
+    let losses = losses(sigma, estimator.tracking);
+    let extinction = Wide::from(sigma);
+    let place = |s: Wide| {
+        let square = distance * distance + (s - foot).powi(2);
+        let r = square.sqrt();
+        let cast = match estimator.tracking {
+            Tracking::Exact => Wide::default(),
+            Tracking::Ratio { sampling, .. } => sampling * r,
+            Tracking::Delta { sampling } => sampling * -(-(sigma * r)).exp_m1() / sigma,
+        };
+        let shadow = losses.map(|loss| (-(loss * r)).exp());
+        let scattered = albedo * extinction / square;
+        Place { extinction, scattered, shadow, cast: Some(cast) }
+    };
+    let [sampling, control] = estimator.walk;
+    let weight = 1.0 - (sigma - control) / sampling;
+    let rate = |k: i32| {
+        let left = weight.abs().powi(k);
+        let left = (1.0 - left).abs().max(if weight < 0.0 { 1.0 + left } else { 0.0 });
+        f64::from(k) * control.max(sigma) + sampling * left
+    };
+    // Points by depth thin out, too.
+    let along = (1..5).map(rate).fold(0.0, f64::max)
+        + sampling.min(30.0 / problem.medium().support().length());
+    let aside = losses.iter().map(|loss| loss.high.abs()).fold(0.0, f64::max);
+    Ray::new(estimator, &panels(problem, 1), along + aside, &place)
+}
+
+/// Losses of a shadow ray per length for the powers 0 … 4.
+fn losses(sigma: f64, tracking: Tracking) -> [Wide; 5] {
+    from_fn(|k| match tracking {
+        Tracking::Exact => Wide::from(sigma) * k as f64,
+        Tracking::Ratio { sampling, control } => {
+            let weight = 1.0 - (Wide::from(sigma) - control) / sampling;
+            k as f64 * Wide::from(control) + sampling * (1.0 - power(weight, k))
+        }
+        Tracking::Delta { .. } => Wide::from(if k == 0 { 0.0 } else { sigma }),
+    })
+}
+
+fn in_field(choices: &InField, seen: &mut Seen) -> Option<()> {
+    let &InField { ref lit, scale, shadow_scale, kind, held, count } = choices;
+    let problem = lit.problem().filter(|problem| !problem.medium().support().is_empty())?;
+    let medium = problem.medium();
+    let largest = Mesh::new(medium.clone()).largest(|_, sigma| sigma);
+    let largest = largest.map_or(1.0, |(_, largest)| largest);
+    let most = problem.shadow_majorant();
+    let tracking = match kind % 3 {
+        0 => Tracking::Exact,
+        1 => Tracking::Ratio { sampling: shadow_scale * most, control: 0.0 },
+        _ => Tracking::Delta { sampling: shadow_scale.max(1.0) * most },
+    };
+    let technique = match kind / 3 {
+        0 => Technique::ByAngle(CameraTracking::Exact),
+        1 => Technique::ByAngle(CameraTracking::Ratio),
+        2 => Technique::AtCollisions,
+        _ => Technique::SharedWalk,
+    };
+    let walk = [scale * largest, held * largest];
+    let estimator = Estimator { problem: &problem, walk, tracking, count };
+    let rule = GaussLegendre::new(16);
+    let place = |s: Wide| {
+        let s = s.value();
+        let extinction = Wide::from(medium.extinction(s));
+        let shadow = problem.shadow_medium(s);
+        let shadow = shadow.map_or([1.0; 5], |medium| self::shadow(&medium, tracking, &rule));
+        let scattered = extinction * problem.source(s);
+        Place { extinction, scattered, shadow: shadow.map(Wide::from), cast: None }
+    };
+    let ray = Ray::new(&estimator, &panels(&problem, STEPS), 0.0, &place);
+    let (raw, _) = ray.exact(technique);
+    seen.at(format_args!("{technique:?}, {tracking:?}"));
+    let found = estimator.found(technique).prediction().channels[0].moments;
+    seen.moments([0, 1], found, &raw);
+    Some(())
+}
+
+/// `e^{−B}` for k = 0 … 4.
+fn shadow(medium: &Medium, tracking: Tracking, rule: &GaussLegendre) -> [f64; 5] {
+    let support = medium.support();
+    let depth = medium.optical_depth(support).value;
+    let mut ends = medium.breaks();
+    ends.retain(|&t| support.contains_inside(t));
+    ends.extend([support.from, support.middle(), support.to]);
+    ends.sort_by(f64::total_cmp);
+    let lost = |sampling: f64, k: i32| -> f64 {
+        let rate = |t: f64| sampling * (1.0 - (1.0 - medium.extinction(t) / sampling).powi(k));
+        ends.windows(2).map(|ends| rule.integrate(ends[0], ends[1], rate)).sum()
+    };
+    [0, 1, 2, 3, 4].map(|k| match tracking {
+        _ if k == 0 => 1.0,
+        Tracking::Ratio { sampling, .. } if k > 1 => (-lost(sampling, k)).exp(),
+        Tracking::Exact => (-f64::from(k) * depth).exp(),
+        _ => (-depth).exp(),
+    })
 }

@@ -9,7 +9,7 @@
 
 use std::f64::consts::TAU;
 
-use super::chains::arsinh;
+use super::equations::arsinh;
 use super::fields::Space;
 use super::prelude::*;
 use crate::stress::slabs::henyey_greenstein;

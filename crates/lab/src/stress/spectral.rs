@@ -6,11 +6,11 @@
 //!     albedo a, above 1, too; tracking at P_s:  L(a_λ^k/P_s^{k−1});  independent:  w^{1−k} L(a_λ)
 //! ```
 
+use super::equations::power;
 use super::fields::homogeneous;
 use super::ordinates::Ordinates;
 use super::prelude::*;
 use super::rods::{critical, leaving, light};
-use super::series::power;
 use media::phase::{Phase, isotropic::Isotropic};
 use theory::problems::slab::{Incidence, Light};
 use theory::problems::spectral_rod::{Colours, End};

@@ -209,23 +209,35 @@ impl Seen {
         self.see(row, exact.relative_error(found));
     }
 
-    /// Adds a variance and a fourth moment in two neighbouring rows; skipped where theory has none.
-    pub fn moments(
+    /// Adds variance and fourth moment to two rows, given raw moments up to the first infinite one; skipped where
+    /// theory has none.
+    pub fn moments(&mut self, rows: [usize; 2], found: Option<Moments>, raw: &[Wide]) {
+        self.compare(rows, found, raw, |seen, row| seen.see(row, f64::INFINITY));
+    }
+
+    /// Adds variance and fourth moment likewise where theory resolves them: one of both infinite is skipped.
+    pub fn resolved(&mut self, rows: [usize; 2], found: Option<Moments>, raw: &[Wide]) {
+        self.compare(rows, found, raw, Self::skip);
+    }
+
+    fn compare(
         &mut self,
-        row: usize,
+        rows: [usize; 2],
         found: Option<Moments>,
-        central: impl FnOnce(f64) -> [Wide; 2],
+        raw: &[Wide],
+        differ: impl Fn(&mut Self, usize),
     ) {
         let Some(Moments { scale, relative, error }) = found else {
-            self.skip(row);
-            return self.skip(row + 1);
+            return rows.into_iter().for_each(|row| self.skip(row));
         };
-        for (row, (found, exact)) in
-            (row..).zip([relative[0], relative[2]].into_iter().zip(central(scale)))
-        {
-            // Beyond the range of doubles for both.
-            let is_beyond = found == f64::INFINITY && !exact.high.is_finite();
-            self.see(row, if is_beyond { 0.0 } else { exact.relative_error(found) / error });
+        let raw = std::array::from_fn(|k| raw.get(k).copied().unwrap_or(Wide::from(f64::NAN)));
+        let exact = central(raw, Wide::from(scale));
+        for ((row, found), exact) in rows.into_iter().zip([relative[0], relative[2]]).zip(exact) {
+            match (found == f64::INFINITY, exact.high.is_finite()) {
+                (false, true) => self.stated(row, Known::new(found, found.abs() * error), exact),
+                (true, false) => self.see(row, 0.0),
+                _ => differ(self, row),
+            }
         }
     }
 

@@ -1,28 +1,210 @@
-//! Techniques of single scattering in a homogeneous medium, as theory has them and as chains, see `scattered`.
+//! Techniques of single scattering: as theory has them, and by nodes along the ray in 32 digits, see `nodes`.
+//!
+//! Rates `A_k` are those of the transmittance from the ray's origin to the power k, `e^{−B_k}` is that of the
+//! shadow ray, and S what is scattered towards the origin without it.
+//!
+//! ```text
+//! at a point of density p       E[X^k] = ∫ p (σ_t S/p)^k e^{−∫A_k − B_k} ds
+//! at every collision            U_k' = A_k U_k − Σⱼ (k over j) σ̂ (σ_t S/σ̂)ʲ e^{−Bⱼ} w^{k−j} U_{k−j}
+//! resampled                     E[F^{k−1} G_k], see `theory::single::walks`
+//! at n points, one walk         E[A₁^{n₁} A₂^{n₂} …], likewise, A_m = ∫ p (T̂ σ_t S/p)^m E[T̂_shadow^m] ds
+//! ```
 
-use super::chains::{Chain, Term};
+use super::equations::{binomial, power};
+use super::nodes::{Line, Solution};
 use super::prelude::*;
-use super::series::{binomial, power};
 use super::shared_walk::{ORDERS, degree, of_mean};
 use theory::problems::{Problem, SingleScattering};
-use theory::single::{CameraTracking, Collisions, Node, Points, Scene, Technique, Tracking, walks};
+use theory::single::predict::DENSITY;
+use theory::single::{
+    self, Camera, CameraTracking, Collisions, Node, Points, Scene, Tracking, walks,
+};
 
-fn wide<const N: usize>(numbers: [f64; N]) -> [Wide; N] {
-    numbers.map(Wide::from)
+/// How a ray is sampled.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Technique {
+    /// At every collision of a walk.
+    AtCollisions,
+    /// At one of all collisions of a walk.
+    Resampled,
+    /// At points that share a walk.
+    SharedWalk,
+    /// Where delta tracking ends.
+    Delta,
+    /// At a point by angle.
+    ByAngle(CameraTracking),
+    /// At a point whose density falls with the distance.
+    ByDepth(CameraTracking),
 }
 
-/// A homogeneous medium with its σ̂ and its control, in 32 digits.
-#[derive(Clone, Copy)]
-struct Sampled {
+/// Estimator of a scene, up to its technique.
+pub struct Estimator<'a> {
+    /// Light, ray and medium.
+    pub problem: &'a SingleScattering,
+    /// σ̂ and σ_c along the ray.
+    pub walk: [f64; 2],
+    /// Transmittance of shadow rays.
+    pub tracking: Tracking,
+    /// Points that share a walk.
+    pub count: usize,
+}
+
+impl Estimator<'_> {
+    /// Rate of points by depth, which are found in closed form: no deeper than −ln 2⁻⁵³ = 37.
+    fn rate(&self) -> f64 {
+        self.walk[0].min(30.0 / self.problem.medium().support().length())
+    }
+
+    /// Returns what theory finds.
+    pub fn found(&self, technique: Technique) -> Points {
+        let (problem, [sampling, control]) = (self.problem, self.walk);
+        let medium = problem.medium();
+        let (mesh, support) = (Mesh::new(medium.clone()), medium.support());
+        let flown = Piecewise::constant(sampling, support);
+        let along = match technique {
+            Technique::ByAngle(along) | Technique::ByDepth(along) => along,
+            Technique::Delta => CameraTracking::Exact,
+            _ => CameraTracking::Ratio,
+        };
+        let control = if along == CameraTracking::Ratio && control != 0.0 {
+            Control::Pieces(Piecewise::constant(control, support))
+        } else {
+            Control::None
+        };
+        let camera = Camera::new(&mesh, &flown, &control, along);
+        let scene = &Scene::new(problem, camera, self.tracking, Vec::new());
+        let of = |density: &dyn Fn(&Node) -> f64, blur: &dyn Fn(&Node) -> f64| {
+            let gain = |node: &Node| node.extinction * node.source / density(node);
+            let (found, weighted) = (None, None);
+            Points::of(scene, &single::Technique { density, gain: &gain, blur, found, weighted })
+        };
+        let by_angle = |node: &Node| problem.equiangular_density_beyond(node.along);
+        match technique {
+            Technique::AtCollisions => walks::at_collisions(scene),
+            Technique::Resampled => walks::resampled(scene, self.tracking == Tracking::Exact),
+            Technique::SharedWalk => walks::at_points(scene, self.count, &by_angle),
+            Technique::ByAngle(_) => of(&by_angle, &|_| DENSITY),
+            Technique::ByDepth(_) => {
+                let rate = self.rate();
+                let found = -(-rate * support.length()).exp_m1();
+                let density = |node: &Node| rate * (-rate * node.s).exp() / found;
+                of(&density, &|node| DENSITY + f64::EPSILON * rate * node.s)
+            }
+            Technique::Delta => {
+                let collisions = Collisions { medium, sampling: &flown, scatters: 1.0 };
+                let technique = single::Technique {
+                    density: &|node| collisions.density(node),
+                    gain: &|node| collisions.worth(node),
+                    blur: &|node| node.error[1],
+                    found: Some(&collisions),
+                    weighted: None,
+                };
+                Points::of(scene, &technique)
+            }
+        }
+    }
+}
+
+/// A place of a ray.
+pub struct Place {
+    /// σ_t.
+    pub extinction: Wide,
+    /// `σ_t S`.
+    pub scattered: Wide,
+    /// `e^{−B}` for the powers 0 … 4.
+    pub shadow: [Wide; 5],
+    /// Mean lookups of the shadow ray; unknown in fields.
+    pub cast: Option<Wide>,
+}
+
+/// A node of a ray.
+struct At {
+    place: Place,
+    /// Density of points by angle.
+    by_angle: Wide,
+    /// Factor of a weight at a collision.
+    weight: Wide,
+    /// Score of a collision without its shadow ray.
+    gain: Wide,
+}
+
+/// A ray by nodes.
+pub struct Ray<'a> {
+    estimator: &'a Estimator<'a>,
+    line: Line,
+    at: Vec<At>,
     sampling: Wide,
     control: Wide,
-    weight: Wide,
 }
 
-impl Sampled {
-    fn new(sigma: f64, sampling: f64, control: f64) -> Self {
-        let [sigma, sampling, control] = wide([sigma, sampling, control]);
-        Self { sampling, control, weight: 1.0 - (sigma - control) / sampling }
+/// `E[X], …, E[X⁴]`, and the mean lookups if they are known.
+pub type Exact = ([Wide; 4], Option<Wide>);
+
+impl<'a> Ray<'a> {
+    /// Cuts a ray at ends and further, for a largest rate of what is lost along it.
+    pub fn new(
+        estimator: &'a Estimator,
+        ends: &[f64],
+        rate: f64,
+        place: &dyn Fn(Wide) -> Place,
+    ) -> Self {
+        let ends: Vec<Wide> = ends.iter().copied().map(Wide::from).collect();
+        let line = Line::new(&ends, |_| rate);
+        let distance = Wide::from(estimator.problem.distance());
+        let foot = estimator.problem.foot();
+        let by_angle = line.values(|_, s| 1.0 / (distance * distance + (s - foot).powi(2)));
+        let whole = line.one_way(|_| Wide::default(), |i| by_angle[i]).begin;
+        let [sampling, control] = estimator.walk.map(Wide::from);
+        let at = |(place, by_angle): (Place, Wide)| At {
+            by_angle: by_angle / whole,
+            weight: 1.0 - (place.extinction - control) / sampling,
+            gain: place.scattered / sampling,
+            place,
+        };
+        let at = line.values(|_, s| place(s)).into_iter().zip(by_angle).map(at).collect();
+        Self { estimator, line, at, sampling, control }
+    }
+
+    /// Moments and lookups of a technique.
+    pub fn exact(&self, technique: Technique) -> Exact {
+        match technique {
+            Technique::AtCollisions => self.at_collisions(),
+            Technique::Resampled => self.resampled(),
+            Technique::SharedWalk => self.shared_walk(),
+            Technique::Delta => self.delta(),
+            Technique::ByAngle(along) => {
+                self.at_point(along, &self.at.iter().map(|at| at.by_angle).collect::<Vec<_>>())
+            }
+            Technique::ByDepth(along) => {
+                let rate = Wide::from(self.estimator.rate());
+                let all = -(-rate * self.length()).exp_m1();
+                self.at_point(along, &self.line.values(|_, s| rate * (-(rate * s)).exp() / all))
+            }
+        }
+    }
+
+    fn length(&self) -> Wide {
+        Wide::from(self.estimator.problem.medium().support().length())
+    }
+
+    /// `U' = a U − g`, given a node and its number.
+    fn solve(
+        &self,
+        rate: impl Fn(&At) -> Wide,
+        source: impl Fn(&At, usize) -> Wide,
+    ) -> Solution<Wide> {
+        self.line.one_way(|i| rate(&self.at[i]), |i| source(&self.at[i], i))
+    }
+
+    /// `∫ p e^{−∫a} ds` of shadow rays' lookups.
+    fn cast(
+        &self,
+        rate: impl Fn(&At) -> Wide,
+        density: impl Fn(&At, usize) -> Wide,
+    ) -> Option<Wide> {
+        let is_known = self.at.iter().all(|at| at.place.cast.is_some());
+        let cast = |at: &At, i| density(at, i) * at.place.cast.unwrap_or_default();
+        is_known.then(|| self.solve(rate, cast).begin)
     }
 
     /// `kσ_c + σ̂(1 − x)`, x what is left of a weight to the power k.
@@ -30,293 +212,123 @@ impl Sampled {
         k as f64 * self.control + self.sampling * (1.0 - left)
     }
 
-    fn signed(&self, k: usize) -> Wide {
-        self.loss(k, power(self.weight, k))
-    }
-}
-
-/// One scene, and the chain that it becomes.
-pub struct Case {
-    sigma: Wide,
-    /// `σ_t c`.
-    scattered: Wide,
-    walk: Sampled,
-    /// B for the powers 0 … 4.
-    shadow: [Wide; 5],
-    /// The mean lookups of a shadow ray: factors, powers of r and exponents of `e^{−br}`.
-    cast: Vec<(Wide, i32, Wide)>,
-    length: Wide,
-    /// Equations of all techniques.
-    pub chain: Chain,
-}
-
-/// Raw moments, from the solved chain.
-pub type Moments = dyn Fn(&[Wide]) -> [Wide; 4];
-/// Mean lookups, from the solved chain.
-pub type Lookups = dyn Fn(&[Wide]) -> Wide;
-
-/// What is to be compared: exact raw moments and lookups, from the solved chain.
-pub struct Wanted {
-    /// In tables.
-    pub name: &'static str,
-    /// Whether it is a walk that scatters at many points.
-    pub is_walk: bool,
-    /// As theory finds it.
-    pub found: Points,
-    /// `E[X], …, E[X⁴]`.
-    pub moments: Box<Moments>,
-    /// The mean lookups.
-    pub lookups: Option<Box<Lookups>>,
-}
-
-fn shadow_losses(sigma: f64, tracking: Tracking) -> [Wide; 5] {
-    std::array::from_fn(|k| match tracking {
-        Tracking::Exact => Wide::from(sigma) * k as f64,
-        Tracking::Ratio { sampling, control } => Sampled::new(sigma, sampling, control).signed(k),
-        Tracking::Delta { .. } => Wide::from(if k == 0 { 0.0 } else { sigma }),
-    })
-}
-
-/// `σ̂ r`, or of delta tracking `(σ̂/σ_t)(1 − e^{−σ_t r})`.
-fn cast(sigma: f64, tracking: Tracking) -> Vec<(Wide, i32, Wide)> {
-    let nothing = Wide::default();
-    match tracking {
-        Tracking::Exact => Vec::new(),
-        Tracking::Ratio { sampling, .. } => vec![(Wide::from(sampling), 1, nothing)],
-        Tracking::Delta { sampling } => {
-            let ratio = Wide::from(sampling) / sigma;
-            vec![(ratio, 0, nothing), (-ratio, 0, Wide::from(sigma))]
-        }
-    }
-}
-
-impl Case {
-    /// A scene of a length, with σ̂ and a control along the ray, and shadow rays.
-    pub fn new(
-        problem: &SingleScattering,
-        (sigma, length): (f64, f64),
-        [sampling, control]: [f64; 2],
-        tracking: Tracking,
-    ) -> Self {
-        let scale = Wide::from(problem.albedo()) / (Wide::PI * Wide::PI).scaled(4);
-        Self {
-            sigma: Wide::from(sigma),
-            scattered: scale * Wide::from(sigma),
-            walk: Sampled::new(sigma, sampling, control),
-            shadow: shadow_losses(sigma, tracking),
-            cast: cast(sigma, tracking),
-            length: Wide::from(length),
-            chain: Chain::new(problem.distance(), problem.foot(), length),
-        }
+    /// Loss of weights that keep their signs.
+    fn signed(&self, at: &At, k: usize) -> Wide {
+        self.loss(k, power(at.weight, k))
     }
 
-    fn term(&mut self, factor: Wide, (power, loss): (i32, Wide), of: Option<usize>) -> Term {
-        Term { factor, kernel: self.chain.kernel(power, loss), of }
+    /// `σ̂ℓ`.
+    fn flown(&self) -> Wide {
+        self.sampling * self.length()
     }
 
-    fn add(&mut self, rate: Wide, factor: Wide, kernel: (i32, Wide), of: Option<usize>) -> usize {
-        let term = self.term(factor, kernel, of);
-        self.chain.add(rate, vec![term])
-    }
-
-    /// The mean lookups of shadow rays from points of density `f rⁿ e^{−as}`.
-    fn shadows(&mut self, rate: Wide, factor: Wide, power: i32) -> usize {
-        let cast = self.cast.clone();
-        let term = |(share, more, loss)| self.term(factor * share, (power + more, loss), None);
-        let terms = cast.into_iter().map(term).collect();
-        self.chain.add(rate, terms)
-    }
-
-    /// At every collision.
-    pub fn at_collisions(&mut self, scene: &Scene) -> Wanted {
-        let Sampled { sampling, weight, .. } = self.walk;
-        let gain = self.scattered / sampling;
-        let mut known: Vec<usize> = Vec::new();
+    fn at_collisions(&self) -> Exact {
+        let mut known: Vec<Solution<Wide>> = Vec::new();
         for k in 1..5 {
-            let terms = (1..=k).map(|j| {
-                let factor = binomial(k, j) * power(weight, k - j) * power(gain, j);
-                let lower = (j < k).then(|| known[k - j - 1]);
-                let kernel = (-2 * i32::try_from(j).unwrap_or(0), self.shadow[j]);
-                self.term(sampling * factor, kernel, lower)
-            });
-            let terms = terms.collect();
-            known.push(self.chain.add(self.walk.signed(k), terms));
+            let source = |at: &At, i: usize| {
+                let term = |j: usize| {
+                    let kept = power(at.weight, k - j) * before(&known, k - j, i);
+                    binomial(k, j) * power(at.gain, j) * at.place.shadow[j] * kept
+                };
+                self.sampling * (1..=k).map(term).sum::<Wide>()
+            };
+            known.push(self.solve(|at| self.signed(at, k), source));
         }
-        let cast = self.shadows(Wide::default(), sampling, 0);
-        let flown = sampling * self.length;
-        Wanted {
-            name: "at collisions",
-            is_walk: true,
-            found: walks::at_collisions(scene),
-            moments: Box::new(move |at| std::array::from_fn(|k| at[known[k]])),
-            lookups: Some(Box::new(move |at| flown + at[cast])),
-        }
+        let cast = self.cast(|_| Wide::default(), |_, _| self.sampling);
+        (std::array::from_fn(|k| known[k].begin), cast.map(|cast| self.flown() + cast))
     }
 
-    /// At one of all collisions.
-    pub fn resampled(&mut self, scene: &Scene, tracking: Tracking) -> Wanted {
-        let Sampled { sampling, weight, .. } = self.walk;
-        let (gain, size) = (self.scattered / sampling, weight.abs());
-        let nothing = Wide::default();
-        let ways =
-            |j: usize, n: usize| sampling * binomial(j, n) * power(size, j - n) * power(gain, n);
-        let of_power = |n: usize| -2 * i32::try_from(n).unwrap_or(0);
-        let mut f: Vec<usize> = Vec::new();
+    fn resampled(&self) -> Exact {
+        // n of j collisions score.
+        let ways = |at: &At, j: usize, n: usize| {
+            let kept = power(at.weight.abs(), j - n);
+            self.sampling * binomial(j, n) * kept * power(at.gain, n)
+        };
+        let mut f: Vec<Solution<Wide>> = Vec::new();
         for j in 1..4 {
-            let terms = (1..=j).map(|n| {
-                let lower = (n < j).then(|| f[j - n - 1]);
-                self.term(ways(j, n), (of_power(n), nothing), lower)
-            });
-            let terms = terms.collect();
-            f.push(self.chain.add(self.walk.loss(j, power(size, j)), terms));
+            let source = |at: &At, i| (1..=j).map(|n| ways(at, j, n) * before(&f, j - n, i)).sum();
+            f.push(self.solve(|at| self.loss(j, power(at.weight.abs(), j)), source));
         }
-        let mut last = Vec::new();
-        for k in 1..5 {
-            let sign = if k % 2 == 1 { weight } else { size };
-            let mut g: Vec<usize> = Vec::new();
+        let moment = |k: usize| {
+            let sign = |at: &At| if k % 2 == 1 { at.weight } else { at.weight.abs() };
+            let mut g: Vec<Solution<Wide>> = Vec::new();
             for j in 0..k {
-                let mut terms = Vec::new();
-                for n in 0..=j {
-                    let own = (of_power(n + 1), self.shadow[k]);
-                    let lower = (n < j).then(|| f[j - n - 1]);
-                    terms.push(self.term(ways(j, n) * gain, own, lower));
-                    if n > 0 {
-                        let later = (of_power(n), nothing);
-                        terms.push(self.term(ways(j, n) * sign, later, Some(g[j - n])));
-                    }
-                }
-                g.push(self.chain.add(self.walk.loss(j + 1, power(size, j) * sign), terms));
+                let source = |at: &At, i: usize| {
+                    let own = |n| ways(at, j, n) * before(&f, j - n, i);
+                    let later = |n: usize| ways(at, j, n) * g[j - n].at[i];
+                    let own = at.gain * at.place.shadow[k] * (0..=j).map(own).sum::<Wide>();
+                    own + sign(at) * (1..=j).map(later).sum::<Wide>()
+                };
+                let left = |at: &At| power(at.weight.abs(), j) * sign(at);
+                g.push(self.solve(|at| self.loss(j + 1, left(at)), source));
             }
-            last.push(g[k - 1]);
-        }
-        let flown = sampling * self.length;
-        let is_free = tracking == Tracking::Exact;
-        let lookups: Box<Lookups> = Box::new(move |_| flown);
-        Wanted {
-            name: "resampled",
-            is_walk: true,
-            found: walks::resampled(scene, is_free),
-            moments: Box::new(move |at| std::array::from_fn(|k| at[last[k]])),
-            lookups: is_free.then_some(lookups),
-        }
+            g[k - 1].begin
+        };
+        let is_free = self.estimator.tracking == Tracking::Exact;
+        ([1, 2, 3, 4].map(moment), is_free.then(|| self.flown()))
     }
 
-    /// At points that share a walk.
-    pub fn at_points(&mut self, scene: &Scene, problem: &SingleScattering, count: usize) -> Wanted {
-        let density = |node: &Node| problem.equiangular_density_beyond(node.along);
-        let found = walks::at_points(scene, count, &density);
-        let mut known: Vec<usize> = Vec::new();
+    fn shared_walk(&self) -> Exact {
+        let mut known: Vec<Solution<Wide>> = Vec::new();
         for order in ORDERS {
-            let degree = degree(&order);
-            let terms = (1..5).filter(|&m| order[m - 1] > 0).map(|m| {
-                let mut lower = order;
-                lower[m - 1] -= 1;
-                let rest = ORDERS.iter().position(|order| *order == lower).map(|i| known[i]);
-                self.term(Wide::from(order[m - 1] as f64), (-2, self.shadow[m]), rest)
-            });
-            let terms = terms.collect();
-            known.push(self.chain.add(self.walk.signed(degree), terms));
+            let source = |at: &At, i: usize| {
+                let term = |m: usize| {
+                    let mut lower = order;
+                    lower[m - 1] -= 1;
+                    let rest = ORDERS.iter().position(|order| *order == lower);
+                    let rest = rest.map_or(Wide::ONE, |rest| known[rest].at[i]);
+                    order[m - 1] as f64 * scored(&at.place, at.by_angle, m) * rest
+                };
+                (1..5).filter(|&m| order[m - 1] > 0).map(term).sum()
+            };
+            known.push(self.solve(|at| self.signed(at, degree(&order)), source));
         }
-        let (none, scattered) = (Wide::default(), self.scattered);
-        let norm = self.add(none, Wide::ONE, (-2, none), None);
-        let cast = self.shadows(none, Wide::ONE, -2);
-        let flown = self.walk.sampling * self.length;
-        let n = count as f64;
-        let moments = move |at: &[Wide]| {
-            of_mean(count, |i| {
-                let order = &ORDERS[i];
-                let (k, points) = (degree(order), order.iter().sum::<usize>());
-                at[known[i]] * power(scattered, k) * power(at[norm], k - points)
-            })
-        };
-        Wanted {
-            name: "shared walk",
-            is_walk: true,
-            found,
-            moments: Box::new(moments),
-            lookups: Some(Box::new(move |at| flown + n * (1.0 + at[cast] / at[norm]))),
-        }
+        let count = self.estimator.count;
+        let cast = self.cast(|_| Wide::default(), |at, _| at.by_angle);
+        let lookups = cast.map(|cast| self.flown() + count as f64 * (1.0 + cast));
+        (of_mean(count, |order| known[order].begin), lookups)
     }
 
-    /// Of delta tracking.
-    pub fn found(&mut self, scene: &Scene) -> Wanted {
-        let sigma = self.sigma;
-        let sampling = self.walk.sampling;
-        let medium = scene.problem.medium();
-        let flown = Piecewise::constant(sampling.value(), medium.support());
-        let collisions = Collisions { medium, sampling: &flown, scatters: 1.0 };
-        let technique = Technique {
-            density: &|node| collisions.density(node),
-            gain: &|node| collisions.worth(node),
-            blur: &|node| node.error[1],
-            found: Some(&collisions),
-            weighted: None,
+    fn delta(&self) -> Exact {
+        let rate = |at: &At| at.place.extinction;
+        let moment = |k| {
+            let source = |at: &At, _| scored(&at.place, at.place.extinction, k);
+            self.solve(rate, source).begin
         };
-        let gain = self.scattered / sigma;
-        let known = [1, 2, 3, 4].map(|k| {
-            let kernel = (-2 * i32::try_from(k).unwrap_or(0), self.shadow[k]);
-            self.add(sigma, sigma * power(gain, k), kernel, None)
-        });
-        let cast = self.shadows(sigma, sigma, 0);
-        let walked = -(-sigma * self.length).exp_m1() * sampling / sigma;
-        Wanted {
-            name: "delta tracking",
-            is_walk: false,
-            found: Points::of(scene, &technique),
-            moments: Box::new(move |at| known.map(|index| at[index])),
-            lookups: Some(Box::new(move |at| walked + at[cast])),
-        }
+        let walked = self.solve(rate, |_, _| self.sampling).begin;
+        let cast = self.cast(rate, |at, _| at.place.extinction);
+        ([1, 2, 3, 4].map(moment), cast.map(|cast| walked + cast))
     }
 
-    /// At a point of the density `rⁿ e^{−as}` over its integral, which `density` holds.
-    pub fn at_point(
-        &mut self,
-        (name, scene, along): (&'static str, &Scene, CameraTracking),
-        [density, blur]: [&dyn Fn(&Node) -> f64; 2],
-        (n, a): (i32, Wide),
-    ) -> Wanted {
-        let gain = |node: &Node| node.extinction * node.source / density(node);
-        let found = Points::of(
-            scene,
-            &Technique { density, gain: &gain, blur, found: None, weighted: None },
-        );
-        let none = Wide::default();
-        let before = |k: usize, case: &Self| match along {
-            CameraTracking::Exact => case.sigma * k as f64,
-            CameraTracking::Ratio => case.walk.signed(k),
-            CameraTracking::Delta => case.sigma,
+    fn at_point(&self, along: CameraTracking, density: &[Wide]) -> Exact {
+        let moment = |k: usize| {
+            let rate = |at: &At| match along {
+                CameraTracking::Exact => k as f64 * at.place.extinction,
+                CameraTracking::Ratio => self.signed(at, k),
+                CameraTracking::Delta => at.place.extinction,
+            };
+            self.solve(rate, |at, i| scored(&at.place, density[i], k)).begin
         };
-        let scattered = self.scattered;
-        let norm = self.add(a, Wide::ONE, (n, none), None);
-        let known = [1, 2, 3, 4].map(|k: usize| {
-            let whole = i32::try_from(k).unwrap_or(0);
-            let rate = before(k, self) + a - k as f64 * a;
-            let kernel = (n - whole * (2 + n), self.shadow[k]);
-            self.add(rate, power(scattered, k), kernel, None)
-        });
-        // σ̂ s, or of delta tracking (σ̂/σ_t)(1 − e^{−σ_t s}); what comes through casts a shadow ray.
-        let through = if along == CameraTracking::Delta { self.sigma } else { none };
-        let walked = (along == CameraTracking::Ratio)
-            .then(|| self.add(a, self.walk.sampling, (0, none), Some(norm)));
-        let left = self.add(a + through, Wide::ONE, (n, none), None);
-        let cast = self.shadows(a + through, Wide::ONE, n);
-        let ratio = self.walk.sampling / self.sigma;
-        Wanted {
-            name,
-            is_walk: false,
-            found,
-            moments: Box::new(move |at| {
-                let mut scale = Wide::ONE;
-                known.map(|index| {
-                    let moment = at[index] * scale;
-                    scale = scale * at[norm];
-                    moment
-                })
-            }),
-            lookups: Some(Box::new(move |at| {
-                let walked = walked.map_or(ratio * (at[norm] - at[left]), |walked| at[walked]);
-                1.0 + (walked + at[cast]) / at[norm]
-            })),
-        }
+        // A walk to the point collides on its way; one that is lost casts no shadow ray.
+        let [sampling, is_lost] = match along {
+            CameraTracking::Exact => [0.0, 0.0],
+            CameraTracking::Ratio => [1.0, 0.0],
+            CameraTracking::Delta => [1.0, 1.0],
+        };
+        let rate = |at: &At| is_lost * at.place.extinction;
+        let beyond = self.solve(|_| Wide::default(), |_, i| density[i]);
+        let walked = self.solve(rate, |_, i| sampling * self.sampling * beyond.at[i]).begin;
+        let cast = self.cast(rate, |_, i| density[i]);
+        ([1, 2, 3, 4].map(moment), cast.map(|cast| 1.0 + walked + cast))
     }
+}
+
+/// `U_j` of a node; `U_0 = 1`.
+fn before(known: &[Solution<Wide>], j: usize, node: usize) -> Wide {
+    if j == 0 { Wide::ONE } else { known[j - 1].at[node] }
+}
+
+/// `p (σ_t S/p)^k e^{−B_k}`.
+fn scored(place: &Place, density: Wide, k: usize) -> Wide {
+    density * power(place.scattered / density, k) * place.shadow[k]
 }

@@ -17,7 +17,6 @@ use super::prelude::*;
 use super::rods::{lookups, moments_of};
 use super::slabs::{LIGHTS, henyey_greenstein, lights, phase};
 use media::phase::{Phase, isotropic::Isotropic};
-use theory::Moments;
 use theory::particle::ParticleRule;
 use theory::problems::slab::{Incidence, Light};
 use theory::slab::layer::Slice;
@@ -101,24 +100,6 @@ parameters! {
     }
 }
 
-/// One channel; `raw` has no more moments than are finite. Those that both find infinite agree; next to
-/// where they become so either may be right.
-fn see(seen: &mut Seen, found: Option<Moments>, raw: &[Wide]) {
-    let Some(Moments { scale, relative, error }) = found else {
-        seen.skip(0);
-        return seen.skip(1);
-    };
-    let four = std::array::from_fn(|k| raw.get(k).copied().unwrap_or(Wide::from(f64::NAN)));
-    let exact = central(four, Wide::from(scale));
-    for (row, needed, found) in [(0, 2, relative[0]), (1, 4, relative[2])] {
-        match (raw.len() >= needed, found.is_finite()) {
-            (true, true) => seen.central(row, found, error, exact[row]),
-            (false, false) => seen.see(row, 0.0),
-            _ => seen.skip(row),
-        }
-    }
-}
-
 fn albedo() -> impl Strategy<Value = f64> {
     let white = sized(-12.0, -1.0).prop_map(|less| 1.0 - less);
     prop_oneof![1 => white, 1 => sized(-2.0, -0.5), 4 => between(0.05, 1.0)]
@@ -173,7 +154,8 @@ fn compare(seen: &mut Seen, walk: &Walk, lights: &[Light], exact: &Exact) {
         for (channel, side) in found.channels.iter().zip(0..).filter(|_| !is_faint) {
             let raw: Vec<Wide> = exact.leaving.iter().map(|all| all[i][side]).collect();
             seen.at(format_args!("{}, {light:?}", channel.name));
-            see(seen, channel.moments, &raw);
+            // Next to where moments become infinite either may be right.
+            seen.resolved([0, 1], channel.moments, &raw);
         }
     }
 }

@@ -1,57 +1,15 @@
-//! Power series in 32 digits, and linear equations, from which references are made.
+//! Linear equations, powers and binomial coefficients of oracles.
 
 use std::iter::Sum;
 use std::ops::{Div, Mul, Sub};
 
 use numeric::Wide;
 
-/// `Σ aₙ tⁿ`, cut off.
-pub(super) type Series<const N: usize> = [Wide; N];
-
-/// Returns a constant.
-pub(super) fn constant<const N: usize>(value: Wide) -> Series<N> {
-    let mut series = [Wide::default(); N];
-    series[0] = value;
-    series
-}
-
-/// Returns `value · e^{rate·t}`.
-pub(super) fn exponential<const N: usize>(value: Wide, rate: Wide) -> Series<N> {
-    let mut series = constant(value);
-    for n in 1..N {
-        series[n] = series[n - 1] * rate / n as f64;
-    }
-    series
-}
-
-/// Returns a product.
-pub(super) fn product<const N: usize>(a: &Series<N>, b: &Series<N>) -> Series<N> {
-    std::array::from_fn(|n| coefficient(a, b, n))
-}
-
-/// Returns `1/a`.
-pub(super) fn inverse<const N: usize>(a: &Series<N>) -> Series<N> {
-    let mut series = constant(1.0 / a[0]);
-    for n in 1..N {
-        let known: Wide = (0..n).map(|i| series[i] * a[n - i]).sum();
-        series[n] = -known / a[0];
-    }
-    series
-}
-
-/// Adds a multiple of a series to another.
-pub(super) fn add<const N: usize>(sum: &mut Series<N>, factor: Wide, series: &Series<N>) {
-    sum.iter_mut().zip(series).for_each(|(sum, &a)| *sum += factor * a);
-}
-
-/// Returns `Σ aₙ tⁿ`.
-pub(super) fn value(series: &[Wide], t: Wide) -> Wide {
-    series.iter().rev().fold(Wide::default(), |sum, &a| sum * t + a)
-}
-
-/// Returns the n-th coefficient of a product.
-pub(super) fn coefficient(a: &[Wide], b: &[Wide], n: usize) -> Wide {
-    (0..=n).map(|i| a[i] * b[n - i]).sum()
+/// Returns arsinh, with the relative precision of its argument.
+pub(super) fn arsinh(x: Wide) -> Wide {
+    let size = x.abs();
+    let near = (size + size * size / (1.0 + (1.0 + size * size).sqrt())).ln_1p();
+    if x.high < 0.0 { -near } else { near }
 }
 
 /// Returns `xᵏ`.

@@ -1,0 +1,225 @@
+//! Linear equations along a line, by their values at Gauss' nodes of panels in 32 digits.
+//!
+//! A function is its values at the nodes: products, quotients and exponentials are taken node by node. Integrals are
+//! those of the polynomial through the nodes of a panel.
+//!
+//! ```text
+//! one way      U' = a U − g:    U(s) = ∫ₛ g e^{−∫ₛ a} dt + U(end) e^{−∫ₛ a}
+//! both ways    m₊' = A m₊ − B m₋ − s₊,  m₋' = B m₊ − A m₋ + s₋:   m(t) = e^{Mt} (m(0) − ∫₀ᵗ e^{−Mt'} (s₊, −s₋) dt'),
+//!              M² = κ² = A² − B²,  e^{Mt} = cosh κt + M sinh(κt)/κ
+//! ```
+
+use std::sync::LazyLock;
+
+use numeric::Wide;
+use numeric::quadrature::GaussLegendre;
+
+/// Nodes of a panel.
+const NODES: usize = 20;
+/// Largest product of a panel's width and rate: polynomials of degree 19 leave 1e-24 of `e^{±2x}`.
+const STEEPEST: f64 = 2.0;
+
+/// Gauss' rule on `[0, 1]` with its running integrals.
+struct Rule {
+    nodes: [Wide; NODES],
+    weights: [Wide; NODES],
+    running: [[Wide; NODES]; NODES],
+}
+
+static RULE: LazyLock<Rule> = LazyLock::new(Rule::new);
+
+/// Legendre polynomials of the degrees 0 … N.
+fn legendre(x: Wide) -> [Wide; NODES + 1] {
+    let mut p = [Wide::ONE; NODES + 1];
+    p[1] = x;
+    for k in 1..NODES {
+        let n = k as f64;
+        p[k + 1] = ((2.0 * n + 1.0) * x * p[k] - n * p[k - 1]) / (n + 1.0);
+    }
+    p
+}
+
+impl Rule {
+    /// Newton's method from the nodes in doubles; `∫ Pₖ = (Pₖ₊₁ − Pₖ₋₁)/(2k + 1)`.
+    fn new() -> Self {
+        let slope =
+            |x: Wide, p: &[Wide]| NODES as f64 * (x * p[NODES] - p[NODES - 1]) / (x * x - 1.0);
+        let rule = GaussLegendre::new(NODES);
+        let nodes: [Wide; NODES] = std::array::from_fn(|i| {
+            (0..3).fold(Wide::from(2.0 * rule.nodes[i] - 1.0), |x, _| {
+                let p = legendre(x);
+                x - p[NODES] / slope(x, &p)
+            })
+        });
+        let values = nodes.map(legendre);
+        let weights = std::array::from_fn(|i| {
+            let slope = slope(nodes[i], &values[i]);
+            1.0 / ((1.0 - nodes[i] * nodes[i]) * slope * slope)
+        });
+        let running = |i: usize, j: usize| {
+            let of_degree = |k: usize| values[j][k] * (values[i][k + 1] - values[i][k - 1]);
+            let sum: Wide = (1..NODES).map(of_degree).sum();
+            (weights[j] * (1.0 + nodes[i] + sum)).scaled(-1)
+        };
+        let running = std::array::from_fn(|i| std::array::from_fn(|j| running(i, j)));
+        Self { nodes: nodes.map(|x| (1.0 + x).scaled(-1)), weights, running }
+    }
+}
+
+/// `Σ wⱼ fⱼ`.
+fn sum(weights: &[Wide; NODES], values: &[Wide]) -> Wide {
+    weights.iter().zip(values).map(|(&weight, &value)| weight * value).sum()
+}
+
+/// A part of a line.
+#[derive(Debug, Clone, Copy)]
+struct Panel {
+    stretch: usize,
+    from: Wide,
+    width: Wide,
+}
+
+/// A line in panels.
+pub(super) struct Line(Vec<Panel>);
+
+/// Values at the nodes of a line, in order, and at its beginning.
+pub(super) struct Solution<T> {
+    /// Values at the nodes.
+    pub at: Vec<T>,
+    /// Value at the beginning.
+    pub begin: T,
+}
+
+impl Line {
+    /// Cuts the stretches between ends into panels, given the largest rate in each.
+    pub fn new(ends: &[Wide], rate: impl Fn(usize) -> f64) -> Self {
+        let cut = |(stretch, pair): (usize, &[Wide])| {
+            let length = pair[1] - pair[0];
+            let count = (rate(stretch) * length.high / STEEPEST).ceil().max(1.0);
+            let (from, width) = (pair[0], length / count);
+            let panels = (0..).map(f64::from).take_while(move |&i| i < count);
+            panels.map(move |i| Panel { stretch, from: from + width * i, width })
+        };
+        Self(ends.windows(2).enumerate().flat_map(cut).collect())
+    }
+
+    /// Returns the value of a function of the stretch and the place at every node.
+    pub fn values<T>(&self, f: impl Fn(usize, Wide) -> T) -> Vec<T> {
+        let place = |panel: &Panel, x: Wide| f(panel.stretch, panel.from + panel.width * x);
+        self.0.iter().flat_map(|panel| RULE.nodes.map(|x| place(panel, x))).collect()
+    }
+
+    /// Solves one equation with `U(end) = 0`, given a and g by the number of the node.
+    pub fn one_way(
+        &self,
+        rate: impl Fn(usize) -> Wide,
+        source: impl Fn(usize) -> Wide,
+    ) -> Solution<Wide> {
+        let mut at = vec![Wide::default(); self.0.len() * NODES];
+        let mut begin = Wide::default();
+        for ((number, panel), at) in self.0.iter().enumerate().zip(at.chunks_mut(NODES)).rev() {
+            let width = panel.width;
+            let rates: [Wide; NODES] = std::array::from_fn(|i| rate(number * NODES + i));
+            let left = RULE.running.map(|weights| (-(width * sum(&weights, &rates))).exp());
+            let left_at_end = (-(width * sum(&RULE.weights, &rates))).exp();
+            let gained: [Wide; NODES] =
+                std::array::from_fn(|i| left[i] * source(number * NODES + i));
+            let all = width * sum(&RULE.weights, &gained) + begin * left_at_end;
+            for (i, value) in at.iter_mut().enumerate() {
+                *value = (all - width * sum(&RULE.running[i], &gained)) / left[i];
+            }
+            begin = all;
+        }
+        Solution { at, begin }
+    }
+
+    /// Solves two equations with `m₋(0)` and `m₊(end)` given, A and B by the stretch, s± by the number of the node.
+    /// The value at the beginning is `m₊`.
+    pub fn both_ways(
+        &self,
+        rates: impl Fn(usize) -> [Wide; 2],
+        source: impl Fn(usize) -> [Wide; 2],
+        [first, last]: [Wide; 2],
+    ) -> Solution<Both> {
+        let flows: Vec<[Flow; NODES + 1]> = (self.0.iter())
+            .map(|panel| {
+                let node = |i: usize| if i < NODES { RULE.nodes[i] } else { Wide::ONE };
+                std::array::from_fn(|i| Flow::new(rates(panel.stretch), panel.width * node(i)))
+            })
+            .collect();
+        // ∫ e^{−Mt} (s₊, −s₋) dt to all nodes and to the end of each panel.
+        let lost: Vec<[Both; NODES + 1]> = (self.0.iter().zip(&flows).enumerate())
+            .map(|(number, (panel, flows))| {
+                let lost: [Both; NODES] = std::array::from_fn(|i| {
+                    let [plus, minus] = source(number * NODES + i);
+                    flows[i].back([plus, -minus])
+                });
+                let way = [0, 1].map(|way| lost.map(|lost| lost[way]));
+                std::array::from_fn(|i| {
+                    let weights = if i < NODES { &RULE.running[i] } else { &RULE.weights };
+                    way.map(|lost| panel.width * sum(weights, &lost))
+                })
+            })
+            .collect();
+        // m₊ = ρ m₋ + η at the beginning of each panel.
+        let mut beyond = vec![[Wide::default(), last]];
+        for (flows, lost) in flows.iter().zip(&lost).rev() {
+            let [rho, eta] = beyond[beyond.len() - 1];
+            let left = |both: Both| {
+                let [plus, minus] = flows[NODES].on(both);
+                plus - rho * minus
+            };
+            let scale = left([Wide::ONE, Wide::default()]);
+            let turned = -left([Wide::default(), Wide::ONE]) / scale;
+            beyond.push([turned, (eta + left(lost[NODES])) / scale]);
+        }
+        let mut minus = first;
+        let mut at = Vec::with_capacity(self.0.len() * NODES);
+        let mut begin = None;
+        for ((flows, lost), &[rho, eta]) in flows.iter().zip(&lost).zip(beyond.iter().rev()) {
+            let from = [rho * minus + eta, minus];
+            begin.get_or_insert(from);
+            let value = |i: usize| flows[i].on([from[0] - lost[i][0], from[1] - lost[i][1]]);
+            at.extend((0..NODES).map(value));
+            minus = value(NODES)[1];
+        }
+        Solution { at, begin: begin.unwrap_or([last, first]) }
+    }
+}
+
+/// Values of a particle that goes forward, and of one that goes backward.
+pub(super) type Both = [Wide; 2];
+
+/// `e^{Mt}`: `cosh κt`, and `A sinh(κt)/κ` and `B sinh(κt)/κ`.
+#[derive(Clone, Copy)]
+struct Flow([Wide; 3]);
+
+impl Flow {
+    fn new([a, b]: [Wide; 2], t: Wide) -> Self {
+        let square = (a - b) * (a + b) * t * t;
+        let (mut even, mut odd, mut term) = (Wide::ONE, Wide::ONE, Wide::ONE);
+        for n in 1..=14 {
+            let n = f64::from(2 * n);
+            term = term * square / (n * (n - 1.0));
+            even += term;
+            odd += term / (n + 1.0);
+        }
+        Self([even, a * t * odd, b * t * odd])
+    }
+
+    fn on(self, [plus, minus]: Both) -> Both {
+        let Self([even, a, b]) = self;
+        [(even + a) * plus - b * minus, b * plus + (even - a) * minus]
+    }
+
+    /// `e^{−Mt}`.
+    fn back(self, both: Both) -> Both {
+        let Self([even, a, b]) = self;
+        Self([even, -a, -b]).on(both)
+    }
+}
+
+/// Values after a collision that leads onward or turns, with these factors.
+pub(super) fn after([onward, turned]: [Wide; 2], [plus, minus]: Both) -> Both {
+    [onward * plus + turned * minus, onward * minus + turned * plus]
+}
