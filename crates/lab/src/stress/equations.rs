@@ -5,13 +5,6 @@ use std::ops::{Div, Mul, Sub};
 
 use numeric::Wide;
 
-/// Returns arsinh, with the relative precision of its argument.
-pub(super) fn arsinh(x: Wide) -> Wide {
-    let size = x.abs();
-    let near = (size + size * size / (1.0 + (1.0 + size * size).sqrt())).ln_1p();
-    if x.high < 0.0 { -near } else { near }
-}
-
 /// Returns `xᵏ`.
 pub(super) fn power(x: Wide, k: usize) -> Wide {
     (0..k).fold(Wide::ONE, |power, _| power * x)

@@ -31,7 +31,7 @@
 //! | light in balls | [`balls`] | ordinates, 32 digits; white light; a finer solution |
 //! | Case's formula, squared distances, H-function | [`mod@infinite`] | trapezoidal rule, 32 digits |
 //! | `∫σ_t dV` | [`contents`] | quadrature of lookups |
-//! | single scattering: radiance | [`scattering`] | 32 digits; panels of distance |
+//! | single scattering: radiance | [`scattering`] | nodes, 32 digits |
 //! | single scattering: moments, lookups | [`scattered`] | nodes, 32 digits |
 //!
 //! Not among them: optical depths where chords are cut by the eye, as in pictures. In a furnace the answer is 1.
@@ -64,6 +64,7 @@ mod nodes;
 mod ordinates;
 mod parameters;
 mod peierls;
+mod rays;
 pub mod rods;
 pub mod row;
 pub mod scattered;

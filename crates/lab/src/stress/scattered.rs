@@ -1,22 +1,15 @@
 //! Single scattering: moments and lookups of its estimators, see `techniques`, in homogeneous media and in fields.
-//!
-//! Theory halves panels of the stretched variable `arsinh((s − foot)/D)`. Panels of s here grow away from the
-//! light and from both ends of the ray.
 
-use std::array::from_fn;
-
-use super::equations::power;
 use super::prelude::*;
+use super::rays::{even, varying};
 use super::rods::lookups;
-use super::scattering::{Lit, lit, lit_field, panels};
-use super::techniques::{Estimator, Place, Ray, Technique};
+use super::scattering::{Lit, lit, lit_field};
+use super::techniques::{Estimator, Technique};
 use theory::problems::Problem;
 use theory::single::{CameraTracking, Tracking};
 
 /// Techniques that take turns where rays are deep.
 const TECHNIQUES: usize = 6;
-/// Panels of s, at least.
-const STEPS: u32 = 40;
 
 /// All rows.
 pub fn rows(run: Run) -> Vec<Row> {
@@ -43,7 +36,7 @@ pub fn rows(run: Run) -> Vec<Row> {
 /// Rows of techniques that scatter at one point, and at many of a walk.
 fn kinds(range: &str) -> [Row; 6] {
     let whats = ["variance", "fourth moment", "lookups"];
-    from_fn(|i| {
+    std::array::from_fn(|i| {
         let kind = ["at one point", "of walks"][i / 3];
         Row::stated(format!("single scattering {kind}, {}", whats[i % 3]), range)
     })
@@ -147,7 +140,7 @@ fn homogeneous(
         Technique::ByAngle(by_angle),
         Technique::ByDepth(by_depth),
     ];
-    let ray = even(&estimator, sigma);
+    let ray = even(&estimator, sigma, 4);
     for (number, technique) in all.into_iter().enumerate().filter(|&(i, _)| is_wanted(i)) {
         if technique == Technique::Delta && ratio < 1.0 {
             continue;
@@ -164,51 +157,6 @@ fn homogeneous(
         }
     }
     Some(())
-}
-
-/// A ray through a homogeneous medium.
-fn even<'a>(estimator: &'a Estimator, sigma: f64) -> Ray<'a> {
-    let problem = estimator.problem;
-    let (distance, foot) = (Wide::from(problem.distance()), problem.foot());
-    let albedo = Wide::from(problem.albedo()) / (Wide::PI * Wide::PI).scaled(4);
-    let losses = losses(sigma, estimator.tracking);
-    let extinction = Wide::from(sigma);
-    let place = |s: Wide| {
-        let square = distance * distance + (s - foot).powi(2);
-        let r = square.sqrt();
-        let cast = match estimator.tracking {
-            Tracking::Exact => Wide::default(),
-            Tracking::Ratio { sampling, .. } => sampling * r,
-            Tracking::Delta { sampling } => sampling * -(-(sigma * r)).exp_m1() / sigma,
-        };
-        let shadow = losses.map(|loss| (-(loss * r)).exp());
-        let scattered = albedo * extinction / square;
-        Place { extinction, scattered, shadow, cast: Some(cast) }
-    };
-    let [sampling, control] = estimator.walk;
-    let weight = 1.0 - (sigma - control) / sampling;
-    let rate = |k: i32| {
-        let left = weight.abs().powi(k);
-        let left = (1.0 - left).abs().max(if weight < 0.0 { 1.0 + left } else { 0.0 });
-        f64::from(k) * control.max(sigma) + sampling * left
-    };
-    // Points by depth thin out, too.
-    let along = (1..5).map(rate).fold(0.0, f64::max)
-        + sampling.min(30.0 / problem.medium().support().length());
-    let aside = losses.iter().map(|loss| loss.high.abs()).fold(0.0, f64::max);
-    Ray::new(estimator, &panels(problem, 1), along + aside, &place)
-}
-
-/// Losses of a shadow ray per length for the powers 0 … 4.
-fn losses(sigma: f64, tracking: Tracking) -> [Wide; 5] {
-    from_fn(|k| match tracking {
-        Tracking::Exact => Wide::from(sigma) * k as f64,
-        Tracking::Ratio { sampling, control } => {
-            let weight = 1.0 - (Wide::from(sigma) - control) / sampling;
-            k as f64 * Wide::from(control) + sampling * (1.0 - power(weight, k))
-        }
-        Tracking::Delta { .. } => Wide::from(if k == 0 { 0.0 } else { sigma }),
-    })
 }
 
 fn in_field(choices: &InField, seen: &mut Seen) -> Option<()> {
@@ -231,39 +179,9 @@ fn in_field(choices: &InField, seen: &mut Seen) -> Option<()> {
     };
     let walk = [scale * largest, held * largest];
     let estimator = Estimator { problem: &problem, walk, tracking, count };
-    let rule = GaussLegendre::new(16);
-    let place = |s: Wide| {
-        let s = s.value();
-        let extinction = Wide::from(medium.extinction(s));
-        let shadow = problem.shadow_medium(s);
-        let shadow = shadow.map_or([1.0; 5], |medium| self::shadow(&medium, tracking, &rule));
-        let scattered = extinction * problem.source(s);
-        Place { extinction, scattered, shadow: shadow.map(Wide::from), cast: None }
-    };
-    let ray = Ray::new(&estimator, &panels(&problem, STEPS), 0.0, &place);
-    let (raw, _) = ray.exact(technique);
+    let (raw, _) = varying(&estimator).exact(technique);
     seen.at(format_args!("{technique:?}, {tracking:?}"));
     let found = estimator.found(technique).prediction().channels[0].moments;
     seen.moments([0, 1], found, &raw);
     Some(())
-}
-
-/// `e^{−B}` for k = 0 … 4.
-fn shadow(medium: &Medium, tracking: Tracking, rule: &GaussLegendre) -> [f64; 5] {
-    let support = medium.support();
-    let depth = medium.optical_depth(support).value;
-    let mut ends = medium.breaks();
-    ends.retain(|&t| support.contains_inside(t));
-    ends.extend([support.from, support.middle(), support.to]);
-    ends.sort_by(f64::total_cmp);
-    let lost = |sampling: f64, k: i32| -> f64 {
-        let rate = |t: f64| sampling * (1.0 - (1.0 - medium.extinction(t) / sampling).powi(k));
-        ends.windows(2).map(|ends| rule.integrate(ends[0], ends[1], rate)).sum()
-    };
-    [0, 1, 2, 3, 4].map(|k| match tracking {
-        _ if k == 0 => 1.0,
-        Tracking::Ratio { sampling, .. } if k > 1 => (-lost(sampling, k)).exp(),
-        Tracking::Exact => (-f64::from(k) * depth).exp(),
-        _ => (-depth).exp(),
-    })
 }

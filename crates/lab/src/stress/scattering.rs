@@ -1,22 +1,15 @@
-//! Single scattering of a point light: the radiance against other quadratures.
-//!
-//! ```text
-//! homogeneous, s = foot + D sinh x:  L = a σ_t Φ/(16π² D) ∫ exp(−σ_t (foot + D eˣ)) dx/cosh x
-//! ```
-//!
-//! Both distances are one exponential, and nothing cancels. Elsewhere panels of s double away from the light,
-//! where theory halves panels of x.
+//! Single scattering of a point light: the radiance against nodes of the ray, see `rays`.
 
 use std::f64::consts::TAU;
 
-use super::equations::arsinh;
 use super::fields::Space;
 use super::prelude::*;
+use super::rays::{even, varying};
+use super::techniques::Estimator;
 use crate::stress::slabs::henyey_greenstein;
 use media::phase::Phase;
 use media::phase::isotropic::Isotropic;
 use numeric::geometry::{Point, Ray};
-use numeric::sum::Sum;
 use theory::Heuristic;
 use theory::problems::single_scattering::Lamp;
 use theory::problems::{Problem, SingleScattering};
@@ -31,8 +24,8 @@ pub fn rows(run: Run) -> Vec<Row> {
     let row = Row::stated("single scattering, fields", range);
     rows.extend(run.fill([4, 1008], [row], lit_field, |field, seen| {
         let problem = field.problem()?;
-        let found = radiance(&problem);
-        seen.see(0, (found.value - graded(&problem)).abs() / found.error);
+        let (found, exact) = (radiance(&problem), varying(&alone(&problem, 1.0)).radiance());
+        seen.see(0, off(found.value, exact) / found.error);
         Some(())
     }));
     let range =
@@ -91,6 +84,11 @@ fn radiance(problem: &SingleScattering) -> Known {
     Scene::new(problem, camera, Tracking::Exact, Vec::new()).radiance()
 }
 
+/// An estimator without lookups of shadow rays.
+fn alone(problem: &SingleScattering, sampling: f64) -> Estimator<'_> {
+    Estimator { problem, walk: [sampling, 0.0], tracking: Tracking::Exact, count: 1 }
+}
+
 /// A light of power 1 beside a ray through a homogeneous medium that scatters evenly.
 pub(super) fn lit(
     sigma: f64,
@@ -111,24 +109,8 @@ fn homogeneous(
     seen: &mut Seen,
 ) -> Option<()> {
     let (sigma, foot) = (depth / length, foot * length);
-    let found = radiance(&lit(sigma, distance, foot, length, albedo)?);
-    let [sigma, distance, foot] = [sigma, distance, foot].map(Wide::from);
-    let ends = [0.0, length].map(|s| arsinh((s - foot) / distance));
-    let width = ends[1] - ends[0];
-    let grown = sigma * distance * (ends[1].exp() - ends[0].exp());
-    let panels = (3.0 * width.high + grown.high / 6.0).ceil().max(1.0);
-    let (rule, step) = (GaussLegendre::new(20), width / panels);
-    let (mut integral, mut panel) = (Wide::default(), 0.0);
-    while panel < panels {
-        for (&node, &weight) in rule.nodes.iter().zip(&rule.weights) {
-            let grown = (ends[0] + step * (Wide::from(panel) + node)).exp();
-            let twice = grown + 1.0 / grown;
-            let left = (-(sigma * (foot + distance * grown))).exp();
-            integral += left.scaled(1) / twice * step * weight;
-        }
-        panel += 1.0;
-    }
-    let exact = integral * (albedo * sigma / (Wide::PI * Wide::PI * distance).scaled(4));
+    let problem = lit(sigma, distance, foot, length, albedo)?;
+    let (found, exact) = (radiance(&problem), even(&alone(&problem, sigma), sigma, 1).radiance());
     if exact.high < 1e-290 {
         return None;
     }
@@ -174,45 +156,4 @@ impl Lit {
         let lamp = Lamp { position: ray.at(26.0 * along) + aside * away, power: 1.0 };
         SingleScattering::new(field.volume(), ray, lamp, 0.7, phase).ok()
     }
-}
-
-/// Ends of a number of panels of s and more, which grow away from the light's foot and from both ends.
-pub(super) fn panels(problem: &SingleScattering, steps: u32) -> Vec<f64> {
-    let (support, foot) = (problem.medium().support(), problem.foot());
-    let mut ends = problem.medium().breaks();
-    let step = support.length() / f64::from(steps);
-    ends.extend((0..=steps).map(|i| support.from + step * f64::from(i)));
-    let mut away = 0.25 * problem.distance();
-    while away < support.length() {
-        ends.extend([foot - away, foot + away]);
-        away *= 1.5;
-    }
-    // A light just outside sees the ends of the support at a glance: roots of the distance from them.
-    let mut near = step;
-    while near > 1e-13 * support.length() {
-        near *= 0.5;
-        ends.extend([support.from + near, support.to - near]);
-    }
-    ends.push(foot);
-    ends.retain(|&s| support.contains_inside(s));
-    ends.extend([support.from, support.to]);
-    ends.sort_by(f64::total_cmp);
-    ends.dedup();
-    ends
-}
-
-fn graded(problem: &SingleScattering) -> f64 {
-    let (medium, rule) = (problem.medium(), GaussLegendre::new(16));
-    let support = medium.support();
-    let gathered = |s: f64| {
-        let before = medium.optical_depth(Span::new(support.from, s)).value;
-        let beyond = problem.shadow_medium(s);
-        let beyond = beyond.map_or(0.0, |m| m.optical_depth(m.support()).value);
-        medium.extinction(s) * problem.source(s) * (-(before + beyond)).exp()
-    };
-    let mut sum = Sum::default();
-    for pair in panels(problem, 320).windows(2) {
-        sum.add(rule.integrate(pair[0], pair[1], gathered));
-    }
-    sum.value()
 }

@@ -20,7 +20,7 @@ use theory::single::{
     self, Camera, CameraTracking, Collisions, Node, Points, Scene, Tracking, walks,
 };
 
-/// How a ray is sampled.
+/// Technique that samples points of a ray.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Technique {
     /// At every collision of a walk.
@@ -29,15 +29,15 @@ pub enum Technique {
     Resampled,
     /// At points that share a walk.
     SharedWalk,
-    /// Where delta tracking ends.
+    /// At the end of delta tracking.
     Delta,
     /// At a point by angle.
     ByAngle(CameraTracking),
-    /// At a point whose density falls with the distance.
+    /// At a point, with a density that falls exponentially with the distance.
     ByDepth(CameraTracking),
 }
 
-/// Estimator of a scene, up to its technique.
+/// Estimator of a scene without its technique.
 pub struct Estimator<'a> {
     /// Light, ray and medium.
     pub problem: &'a SingleScattering,
@@ -163,6 +163,12 @@ impl<'a> Ray<'a> {
         };
         let at = line.values(|_, s| place(s)).into_iter().zip(by_angle).map(at).collect();
         Self { estimator, line, at, sampling, control }
+    }
+
+    /// The radiance.
+    pub fn radiance(&self) -> Wide {
+        let source = |at: &At, _| scored(&at.place, Wide::ONE, 1);
+        self.solve(|at| at.place.extinction, source).begin
     }
 
     /// Moments and lookups of a technique.
