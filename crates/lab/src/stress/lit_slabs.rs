@@ -10,7 +10,6 @@ use super::equations::power;
 use super::fields::homogeneous;
 use super::prelude::*;
 use super::slabs::henyey_greenstein;
-use media::phase::Phase;
 use theory::lit_rod::{Combination, Densities, Heuristic, Shadow, Techniques};
 use theory::lit_slab;
 use theory::problems::LitSlab;
@@ -60,7 +59,7 @@ fn beam(slab: &Slab, seen: &mut Seen) {
     let techniques = Techniques { shadow: Some(slab.shadow), combination: Combination::NextEvent };
     let found = lit_slab::predict(&mesh, &problem, &flown, techniques, true);
     let (depth, null) = (Wide::from(slab.depth), 1.0 - Wide::from(slab.ratio));
-    let towards = Wide::from(value(&problem.phase, cosine));
+    let towards = Wide::from(problem.phase.value(cosine));
     let raw = [1, 2, 3, 4].map(|k: usize| {
         let lost = match slab.shadow {
             Shadow::Exact => depth * k as f64,
@@ -74,10 +73,6 @@ fn beam(slab: &Slab, seen: &mut Seen) {
     });
     seen.stated(0, found.channels[0].truth, raw[0]);
     seen.resolved([1, 2], found.channels[0].moments, &raw);
-}
-
-fn value(phase: &Phase, cosine: f64) -> f64 {
-    phase.value(cosine)
 }
 
 /// Hits and shadow rays, weighted, have the mean of shadow rays alone.

@@ -154,9 +154,6 @@ parameters! {
         ratio: f64 = sized(-1.0, 0.5),
         kind: usize = 0..3_usize,
     }
-}
-
-parameters! {
     /// Walks of growing weights in a rod that is a share shorter than critical to their variance.
     NearCritical {
         forward: f64 = share(),

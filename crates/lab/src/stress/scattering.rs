@@ -25,7 +25,7 @@ pub fn rows(run: Run) -> Vec<Row> {
     rows.extend(run.fill([4, 1008], [row], lit_field, |field, seen| {
         let problem = field.problem()?;
         let (found, exact) = (radiance(&problem), varying(&alone(&problem, 1.0)).radiance());
-        seen.see(0, off(found.value, exact) / found.error);
+        seen.stated(0, found, exact);
         Some(())
     }));
     let range =
@@ -44,9 +44,6 @@ parameters! {
         distance: f64 = sized(-6.0, 1.0),
         foot: f64 = between(-0.3, 1.3),
     }
-}
-
-parameters! {
     /// Points by angle and delta tracking in a field; σ̂ is in units of the largest σ_t.
     Shared {
         lit: Lit = lit_field(),

@@ -173,7 +173,7 @@ fn walk(
 }
 
 /// The layers of a walk's k-th moments.
-fn slices(cut: &[Piece], walk: &Walk, k: u32, score: f64) -> Vec<Slice> {
+fn slices(cut: &[Piece], walk: &Walk, k: u32) -> Vec<Slice> {
     let slice = |piece: &Piece| {
         let [mut straight, mut scattered] = [0.0; 2];
         for &[share, ratio] in &piece.ratios {
@@ -182,7 +182,7 @@ fn slices(cut: &[Piece], walk: &Walk, k: u32, score: f64) -> Vec<Slice> {
             straight += share * q;
             scattered += share * s;
         }
-        Slice { flown: piece.flown, straight, scattered, score }
+        Slice { flown: piece.flown, straight, scattered, score: 1.0 }
     };
     cut.iter().map(slice).collect()
 }
@@ -232,7 +232,7 @@ fn finer(parameters: &Layers, seen: &mut Seen) {
     let thin = depth / ratios.len() as f64;
     let cut: Vec<Piece> = ratios.iter().map(|&r| Piece::of(thin / r, r)).collect();
     let walk = walk(phase, (albedo, rule), Pieces::Exact(cut.clone()), most, depth);
-    let of_power = |k: u32| slab::energies(&phase, lights, &slices(&cut, &walk, k, 1.0), FINER);
+    let of_power = |k: u32| slab::energies(&phase, lights, &slices(&cut, &walk, k), FINER);
     let leaving = |energy: &Energy| [energy.reflected, energy.transmitted].map(Wide::from);
     let score = |energy: &Energy| Wide::from(energy.score);
     let exact = Exact {
@@ -263,7 +263,7 @@ fn ramps(parameters: &Ramp, seen: &mut Seen) {
     let of_power = |k: u32| -> Option<Leaving> {
         let [coarse, fine] = cuts
             .each_ref()
-            .map(|cut| slab::energies(&phase, lights, &slices(cut, &walk, k, 0.0), LAYERED));
+            .map(|cut| slab::energies(&phase, lights, &slices(cut, &walk, k), LAYERED));
         let both = |(coarse, fine): (Energy, Energy)| {
             let sides =
                 [[coarse.reflected, fine.reflected], [coarse.transmitted, fine.transmitted]];
