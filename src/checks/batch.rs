@@ -7,7 +7,7 @@ use std::cell::OnceCell;
 
 use estimators::DrawBuffer;
 use gate::stats::{Census, Tally};
-use numeric::pack::in_fused_code;
+use numeric::fused::in_fused_code;
 
 /// Number of draws that are observed at once.
 const PART: usize = 1024;

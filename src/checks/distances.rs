@@ -14,7 +14,7 @@ use ::theory::{self, Prediction};
 use estimators::DrawBuffer;
 use gate::stats::chi_square;
 use numeric::digits::short;
-use numeric::pack::in_fused_code;
+use numeric::fused::in_fused_code;
 
 /// Number of bins.
 const BINS: usize = 20;

@@ -50,8 +50,8 @@ use std::sync::{Arc, LazyLock};
 use fearless_simd::Level;
 
 use crate::catalogue::{PageList, Settings};
+use numeric::fused::in_fused_code;
 use numeric::geometry::{Aabb, Bounds, Point, Ray};
-use numeric::pack::in_fused_code;
 use numeric::{Known, Lane, Span, roots};
 
 pub use body::Body;

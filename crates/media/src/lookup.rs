@@ -11,8 +11,9 @@
 use fearless_simd::{Level, Simd, SimdBase, f64x8};
 
 use super::{Extinction, Field, Inlined, Medium};
+use numeric::fused::in_fused_code;
 use numeric::geometry::{Bounds, Point};
-use numeric::pack::{self, Task, WIDTH, in_fused_code};
+use numeric::pack::{self, Task, WIDTH};
 use numeric::twin::PAIR;
 use numeric::{Lane, Twin};
 

@@ -215,7 +215,7 @@ pub fn atan(x: f64) -> f64 {
     16.0 * x * series
 }
 
-#[cfg(test)]
+#[cfg(all(test, feature = "packs"))]
 mod tests {
     use fearless_simd::{Level, Simd, SimdBase, f64x8};
 

@@ -1,7 +1,7 @@
 //! The number type that formulas are written in.
 //!
 //! A field of a medium is one formula, generic over a lane type: `f64`, or a pack of eight doubles
-//! ([`super::pack`]) that is treated element by element, or two packs ([`super::twin`]). Control flow (loops, early exits) stays
+//! (`pack`) that is treated element by element, or two packs (`twin`). Control flow (loops, early exits) stays
 //! outside; within a formula a choice is a [`Lane::select`].
 //!
 //! Where the machine multiplies and adds in one rounding, lanes do, and `f64` rounds as packs do:
@@ -9,15 +9,15 @@
 //! twice, in both.
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
-use std::sync::LazyLock;
-
-use fearless_simd::Level;
 
 use super::elementary;
+use super::fused::fuses;
 use super::mask::Mask;
-use super::pack;
 use super::single::{self, Fused, Plain};
 use super::words::Words32;
+
+/// Number of elements of a pack.
+pub const WIDTH: usize = 8;
 
 /// A row of a table: one line of the processor's cache.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
@@ -82,7 +82,7 @@ pub trait Lane:
         )
     }
 
-    /// Computes in a function of its own where the lane is a pack, and in place elsewhere, see [`pack::outlined`].
+    /// Computes in a function of its own where the lane is a pack, and in place elsewhere, see `pack::outlined`.
     #[inline(always)]
     fn outlined<R>(self, compute: impl FnOnce() -> R) -> R {
         compute()
@@ -292,22 +292,13 @@ pub trait Lane:
     }
 }
 
-/// Whether this machine's packs multiply and add in one rounding.
-static FUSED: LazyLock<bool> = LazyLock::new(|| pack::fuses(Level::new()));
-
-/// Whether this machine's packs, and so its scalars, multiply and add in one rounding.
-#[inline(always)]
-pub fn fuses() -> bool {
-    *FUSED
-}
-
 /// Elementary functions in the machine's own rounding.
 macro_rules! rounded {
     ($($function:ident)*) => {
         $(
             #[inline(always)]
             fn $function(self) -> Self {
-                if *FUSED {
+                if fuses() {
                     elementary::$function(Fused(self)).0
                 } else {
                     // Few machines do this: one copy is enough.
@@ -362,7 +353,7 @@ impl Lane for f64 {
 
     #[inline(always)]
     fn times_plus(self, factor: Self, term: Self) -> Self {
-        if *FUSED { self.mul_add(factor, term) } else { self * factor + term }
+        if fuses() { self.mul_add(factor, term) } else { self * factor + term }
     }
 
     #[inline(always)]

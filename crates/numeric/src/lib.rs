@@ -6,17 +6,20 @@ pub mod digits;
 pub mod double_double;
 pub mod elementary;
 pub mod exponential_integral;
+pub mod fused;
 pub mod geometry;
 pub mod known;
 pub mod lane;
 pub mod mask;
 pub mod matrix;
+#[cfg(feature = "packs")]
 pub mod pack;
 pub mod quadrature;
 pub mod rng;
 pub mod roots;
 pub mod single;
 pub mod sum;
+#[cfg(feature = "packs")]
 pub mod twin;
 pub mod words;
 
@@ -26,5 +29,6 @@ pub use known::{Known, Span};
 pub use lane::{Lane, Row};
 pub use mask::{Kept, Mask};
 pub use single::{Fused, Narrow, Plain, Single};
+#[cfg(feature = "packs")]
 pub use twin::Twin;
 pub use words::Words32;

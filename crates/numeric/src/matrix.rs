@@ -1,6 +1,6 @@
 //! Small dense matrices.
 
-use super::pack::in_fused_code;
+use super::fused::in_fused_code;
 
 /// A matrix, row by row.
 #[derive(Debug, Clone, PartialEq)]

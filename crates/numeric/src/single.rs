@@ -2,7 +2,7 @@
 //!
 //! [`Plain`] rounds a product and its sum apart, as packs do on machines without a fused
 //! multiply-add; [`Fused`] rounds them once. Within code that is compiled for such a machine
-//! ([`super::pack::in_fused_code`]) that is one instruction, elsewhere a call of the mathematical
+//! ([`super::fused::in_fused_code`]) that is one instruction, elsewhere a call of the mathematical
 //! library: slower, the same bits.
 //!
 //! [`Narrow`] is what a renderer on a graphics card computes with. Every sum, product, quotient and root is

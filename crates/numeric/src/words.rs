@@ -5,8 +5,6 @@
 
 use std::ops::BitXor;
 
-use fearless_simd::{Bytes, ExtractToken, Simd, SimdBase, u32x16, u64x8};
-
 /// Two 32-bit words, or a pack of such pairs that is treated element by element.
 pub trait Words32: Copy + BitXor<Output = Self> {
     /// The same two words, the lower one first, in every element of another such lane.
@@ -58,33 +56,5 @@ impl Words32 for u64 {
     fn folded(self, bits: u32) -> Self {
         let [a, b] = apart(self);
         joined([a ^ a >> bits, b ^ b >> bits])
-    }
-}
-
-#[inline(always)]
-fn words<S: Simd>(elements: u64x8<S>) -> u32x16<S> {
-    elements.bitcast()
-}
-
-impl<S: Simd> Words32 for u64x8<S> {
-    #[inline(always)]
-    fn each(self, words: [u32; 2]) -> Self {
-        SimdBase::splat(self.token(), joined(words))
-    }
-
-    #[inline(always)]
-    fn plus(self, other: Self) -> Self {
-        (words(self) + words(other)).bitcast()
-    }
-
-    #[inline(always)]
-    fn times(self, factor: u32) -> Self {
-        (words(self) * factor).bitcast()
-    }
-
-    #[inline(always)]
-    fn folded(self, bits: u32) -> Self {
-        let words = words(self);
-        (words ^ (words >> bits)).bitcast()
     }
 }

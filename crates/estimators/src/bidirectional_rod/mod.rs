@@ -18,7 +18,7 @@ use ::theory::problems::bidirectional_rod::{Sensor, Values};
 use media::Lookups;
 use media::catalogue::Settings;
 use numeric::digits::rounded;
-use numeric::pack::in_fused_code;
+use numeric::fused::in_fused_code;
 use numeric::rng::Stream;
 
 /// Settings of a page.

@@ -14,7 +14,7 @@ use super::subpath::{Field, Side, Subpath, Tracker};
 use crate::{Draw, Setup};
 use media::course::{BothWays, Even, Pieces};
 use media::{Extinction, Lookups};
-use numeric::lane::fuses;
+use numeric::fused::fuses;
 use numeric::rng::{Random, Stream};
 use numeric::twin::PAIR;
 use numeric::{Fused, Lane, Mask, Plain, Single, Span};

@@ -14,7 +14,7 @@ use crate::walks::hero::Weighing;
 use crate::{Draw, Refusal, Setup};
 use media::Lookups;
 use numeric::Lane;
-use numeric::pack::in_fused_code;
+use numeric::fused::in_fused_code;
 use numeric::rng::Stream;
 use theory::Prediction;
 use theory::particle::Event;

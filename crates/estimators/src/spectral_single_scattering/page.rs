@@ -7,7 +7,7 @@ use crate::setup::walker::Walker;
 use crate::{Draw, Estimator, Inputs, Kernel, Refusal, Request, Setup, walks};
 use media::Lookups;
 use media::catalogue::Settings;
-use numeric::pack::in_fused_code;
+use numeric::fused::in_fused_code;
 use numeric::rng::Stream;
 use theory::Prediction;
 use theory::problems::ChannelValues as Values;

@@ -7,7 +7,8 @@ use crate::{Draw, Kernel, Request, Setup};
 use media::course::{BothWays, Even, Pieces};
 use media::{Control, Inlined, Lookups, Piecewise};
 use numeric::Twin;
-use numeric::pack::{self, Task, in_fused_code};
+use numeric::fused::in_fused_code;
+use numeric::pack::{self, Task};
 use numeric::rng::Stream;
 use theory::problems::{Channels, Problem};
 

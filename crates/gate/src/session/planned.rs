@@ -15,7 +15,7 @@ use super::scalar::Levels;
 use crate::deviation::Deviation;
 use crate::stats::gate::{self, Decision, Design, Evidence, GateSums, HORIZON, PLANNED, SUMS};
 use crate::stats::verdict::{GateFinding, Verdict};
-use numeric::pack::in_fused_code;
+use numeric::fused::in_fused_code;
 use numeric::sum::{Sum, sum_in_lanes, sum_of_pairs};
 
 /// Sums of a block: those of ψ, and that of y.

@@ -20,11 +20,9 @@
 //! Source: I. Waudby-Smith, A. Ramdas, *Estimating means of bounded random variables by betting*,
 //! JRSS B 86 (2024), sections 4 and 5 (the grid of stakes is their Grid-Kelly).
 
-use fearless_simd::{Level, Simd, SimdBase, f64x8};
-
 use super::capital::Gains;
-use numeric::Lane;
-use numeric::pack::{self, Task, WIDTH};
+use numeric::Single;
+use numeric::fused::{self, Loop};
 
 /// Planned stakes against a correct mean in units of ε/V, each with its share of the capital of a side.
 const PLANNED: [(f64, f64); 3] = [(1.0, 0.4), (4.0, 0.2), (16.0, 0.12)];
@@ -36,6 +34,8 @@ const BOLD: i32 = 5;
 const STEP: f64 = 0.0625;
 /// Maximum share of the capital that a draw may take.
 const BOLDEST: f64 = 0.75;
+/// Number of products side by side, which need not wait for each other.
+const LANES: usize = 8;
 /// Number of rows of draws with factors that are multiplied before a logarithm is taken.
 const ROWS: usize = 16;
 /// Products beyond this, and below its inverse, are split into logarithms.
@@ -122,7 +122,7 @@ impl Bets {
     /// Gains of the bets on some draws. Each draw must lie in the range.
     pub fn gains(&self, y: &[f64]) -> Gains {
         let mut sums = vec![0.0; self.factors.len()];
-        pack::on(Level::new(), Sums { factors: &self.factors, y, totals: &mut sums });
+        fused::run(Sums { factors: &self.factors, y, totals: &mut sums });
         let below = sums.split_off(self.pass[1]);
         let above = sums.split_off(self.pass[0]);
         Gains { against: sums, pass: [above, below] }
@@ -136,31 +136,39 @@ struct Sums<'a> {
     totals: &'a mut [f64],
 }
 
-impl Task for Sums<'_> {
+impl Loop for Sums<'_> {
     type Output = ();
 
     #[inline(always)]
-    fn run<S: Simd>(self, simd: S) {
-        for chunk in self.y.chunks(ROWS * WIDTH) {
-            let (rows, rest) = chunk.as_chunks::<WIDTH>();
-            for (sum, factor) in self.totals.iter_mut().zip(self.factors) {
-                let (slope, offset) =
-                    (f64x8::splat(simd, factor.slope), f64x8::splat(simd, factor.offset));
-                let mut product = f64x8::splat(simd, 1.0);
+    fn run<L: Single>(self) {
+        // Products of all factors side by side: a compiler vectorizes the loop over their logarithms.
+        let mut products = vec![[0.0; LANES]; self.factors.len()];
+        let mut logarithms = products.clone();
+        for chunk in self.y.chunks(ROWS * LANES) {
+            let (rows, rest) = chunk.as_chunks::<LANES>();
+            for (product, factor) in products.iter_mut().zip(self.factors) {
+                let (slope, offset) = (L::of(factor.slope), L::of(factor.offset));
+                let mut lanes = [1.0; LANES];
                 for row in rows {
-                    product *= f64x8::from_slice(simd, row).times_plus(slope, offset);
+                    for lane in 0..LANES {
+                        lanes[lane] *= L::of(row[lane]).times_plus(slope, offset).double();
+                    }
                 }
-                let mut lanes = [0.0; WIDTH];
-                product.store_slice(&mut lanes);
-                let is_tame = lanes.iter().all(|&p| p < LARGE && p > 1.0 / LARGE);
+                *product = lanes;
+            }
+            let all = logarithms.as_flattened_mut().iter_mut();
+            for (ln, &product) in all.zip(products.as_flattened()) {
+                *ln = L::of(product).ln().double();
+            }
+            for (number, factor) in self.factors.iter().enumerate() {
                 let ln = |y: &f64| (factor.offset + factor.slope * y).ln();
-                *sum += if is_tame {
-                    product.ln().store_slice(&mut lanes);
-                    lanes.iter().sum::<f64>()
+                let is_tame = products[number].iter().all(|&p| p < LARGE && p > 1.0 / LARGE);
+                self.totals[number] += if is_tame {
+                    logarithms[number].iter().sum::<f64>()
                 } else {
                     rows.as_flattened().iter().map(ln).sum()
                 };
-                *sum += rest.iter().map(ln).sum::<f64>();
+                self.totals[number] += rest.iter().map(ln).sum::<f64>();
             }
         }
     }

@@ -13,10 +13,8 @@
 //! Source: O. Catoni, *Challenging the empirical mean and empirical variance: a deviation study*,
 //! Annales de l'Institut Henri Poincaré B 48 (2012), 1148–1185, Eq. 2.1.
 
-use fearless_simd::{Level, Simd, SimdBase, f64x8};
-
-use numeric::Lane;
-use numeric::pack::{self, Task, WIDTH};
+use numeric::Single;
+use numeric::fused::{self, Loop};
 
 const LANES: usize = 8;
 /// Draws between two splits of the exponents: a hundred and twenty-eight factors to a lane, which overflow only
@@ -75,12 +73,12 @@ impl<const N: usize> Default for PsiSums<N> {
 impl<const N: usize> PsiSums<N> {
     /// Adds draws.
     pub fn absorb(&mut self, y: &[f64], arguments: &[Argument; N]) {
-        pack::on(Level::new(), Each { products: &mut self.products, y, arguments });
+        fused::run(Each { products: &mut self.products, y, arguments });
     }
 
     /// Adds draws, each with its number of occurrences.
     pub fn absorb_counted(&mut self, y: &[f64], times: &[f64], arguments: &[Argument; N]) {
-        pack::on(Level::new(), Counted { products: &mut self.products, y, times, arguments });
+        fused::run(Counted { products: &mut self.products, y, times, arguments });
     }
 
     /// The sums.
@@ -102,52 +100,76 @@ struct Counted<'a> {
     arguments: &'a [Argument],
 }
 
-impl Task for Counted<'_> {
+impl Loop for Counted<'_> {
     type Output = ();
 
     #[inline(always)]
-    fn run<S: Simd>(self, simd: S) {
-        let (packs, rest) = self.y.as_chunks::<WIDTH>();
-        let (times, last_times) = self.times.as_chunks::<WIDTH>();
+    fn run<L: Single>(self) {
+        let (rows, rest) = self.y.as_chunks::<LANES>();
+        let (times, last_times) = self.times.as_chunks::<LANES>();
         for (product, argument) in self.products.iter_mut().zip(self.arguments) {
-            let mut sum = f64x8::splat(simd, 0.0);
-            for (y, times) in packs.iter().zip(times) {
-                sum += f64x8::from_slice(simd, times) * terms(f64x8::from_slice(simd, y), argument);
+            let mut sums = [0.0; LANES];
+            for (row, times) in rows.iter().zip(times) {
+                let terms = terms::<L, LANES>(row, argument);
+                for lane in 0..LANES {
+                    sums[lane] += times[lane] * terms[lane];
+                }
             }
-            let lanes: f64 = sum.as_slice().iter().sum();
+            let lanes: f64 = sums.iter().sum();
             let rest = rest.iter().zip(last_times);
-            product.large += lanes + rest.map(|(&y, n)| n * terms(y, argument)).sum::<f64>();
+            product.large +=
+                lanes + rest.map(|(&y, n)| n * terms::<L, 1>(&[y], argument)[0]).sum::<f64>();
         }
     }
 }
 
 /// `ψ(a y + b)` by this crate's own logarithm.
 #[inline(always)]
-fn terms<L: Lane>(y: L, argument: &Argument) -> L {
-    let t = y * argument.slope + argument.shift;
-    let size = t.size();
-    let ln = ((size * 0.5 + 1.0) * size + 1.0).ln();
-    let near = L::select(t.below(t.each(0.0)), -ln, ln);
+fn terms<L: Single, const N: usize>(y: &[f64; N], argument: &Argument) -> [f64; N] {
+    let (mut terms, mut are_small) = ([0.0; N], true);
+    for lane in 0..N {
+        let t = L::of(y[lane]) * argument.slope + argument.shift;
+        let size = t.size();
+        let ln = ((size * 0.5 + 1.0) * size + 1.0).ln();
+        terms[lane] = L::select(t.below(L::of(0.0)), -ln, ln).double();
+        are_small &= size.at_most(L::of(LARGE));
+    }
     // NaN, and numbers with an overflowing square, are summed one by one.
-    let is_small = size.at_most(t.each(LARGE));
-    L::select(is_small, near, t.map(|t| if t.abs() <= LARGE { 0.0 } else { psi(t) }))
+    if !are_small {
+        for lane in 0..N {
+            let t = y[lane] * argument.slope + argument.shift;
+            terms[lane] = if t.abs() <= LARGE { terms[lane] } else { psi(t) };
+        }
+    }
+    terms
 }
 
 /// Draws one by one, for all sums.
-struct Each<'a> {
-    products: &'a mut [Product],
+struct Each<'a, const N: usize> {
+    products: &'a mut [Product; N],
     y: &'a [f64],
-    arguments: &'a [Argument],
+    arguments: &'a [Argument; N],
 }
 
-impl Task for Each<'_> {
+impl<const N: usize> Loop for Each<'_, N> {
     type Output = ();
 
     #[inline(always)]
-    fn run<S: Simd>(self, simd: S) {
+    fn run<L: Single>(self) {
         for chunk in self.y.chunks(FLUSH) {
-            for (product, argument) in self.products.iter_mut().zip(self.arguments) {
-                product.absorb(simd, chunk, argument);
+            // All products in memory before exponents are split off: then a compiler keeps the lanes of each in one register.
+            let mut next = *self.products;
+            for (next, argument) in next.iter_mut().zip(self.arguments) {
+                next.multiply::<L>(chunk, argument);
+            }
+            for (number, next) in next.iter_mut().enumerate() {
+                let (product, argument) = (&mut self.products[number], &self.arguments[number]);
+                if next.split() {
+                    *product = *next;
+                } else {
+                    let terms = chunk.iter().map(|y| psi(argument.slope * y + argument.shift));
+                    product.large += terms.sum::<f64>();
+                }
             }
         }
     }
@@ -161,46 +183,45 @@ impl Task for Each<'_> {
 ///
 /// Each product is too large by 2 per draw, which cancels between them.
 #[inline(always)]
-fn factors<L: Lane>(y: L, argument: &Argument) -> (L, L) {
-    let t = y.times_plus(y.each(argument.slope), y.each(argument.shift));
+fn factors<L: Single>(y: f64, argument: &Argument) -> (f64, f64) {
+    let t = L::of(y).times_plus(L::of(argument.slope), L::of(argument.shift));
     let root = t.size() + 1.0;
-    let factor = root.times_plus(root, y.each(1.0));
-    let (two, is_below) = (y.each(2.0), t.below(y.each(0.0)));
-    (L::select(is_below, two, factor), L::select(is_below, factor, two))
+    let factor = root.times_plus(root, L::of(1.0)).double();
+    if t.below(L::of(0.0)) { (2.0, factor) } else { (factor, 2.0) }
 }
 
 impl Product {
+    /// Multiplies by the factors of draws.
     #[inline(always)]
-    fn absorb<S: Simd>(&mut self, simd: S, chunk: &[f64], argument: &Argument) {
-        let load = |lanes: &[f64; LANES]| f64x8::from_slice(simd, lanes);
-        let (mut ups, mut downs) = (load(&self.above), load(&self.below));
-        let (rows, rest) = chunk.as_chunks::<LANES>();
+    fn multiply<L: Single>(&mut self, y: &[f64], argument: &Argument) {
+        let (rows, rest) = y.as_chunks::<LANES>();
+        // Copies for the loop, which keeps them in registers.
+        let (mut above, mut below) = (self.above, self.below);
         for row in rows {
-            let (up, down) = factors(load(row), argument);
-            ups *= up;
-            downs *= down;
+            for lane in 0..LANES {
+                let (up, down) = factors::<L>(row[lane], argument);
+                above[lane] *= up;
+                below[lane] *= down;
+            }
         }
-        let (mut above, mut below) = ([0.0; LANES], [0.0; LANES]);
-        ups.store_slice(&mut above);
-        downs.store_slice(&mut below);
+        (self.above, self.below) = (above, below);
         for (lane, &y) in rest.iter().enumerate() {
-            let (up, down) = factors(y, argument);
-            above[lane] *= up;
-            below[lane] *= down;
+            let (up, down) = factors::<L>(y, argument);
+            self.above[lane] *= up;
+            self.below[lane] *= down;
         }
+    }
+
+    /// Splits the exponents off; `false` where a product has overflowed.
+    #[inline(always)]
+    fn split(&mut self) -> bool {
         let mut largest = 0;
-        let mut exponent = self.exponent;
         for lane in 0..LANES {
-            let (a, b) = (split(&mut above[lane]), split(&mut below[lane]));
-            exponent[lane] += a - b;
+            let (a, b) = (split(&mut self.above[lane]), split(&mut self.below[lane]));
+            self.exponent[lane] += a - b;
             largest = largest.max(a).max(b);
         }
-        if largest < INFINITE {
-            (self.above, self.below, self.exponent) = (above, below, exponent);
-        } else {
-            let terms = chunk.iter().map(|y| psi(argument.slope * y + argument.shift));
-            self.large += terms.sum::<f64>();
-        }
+        largest < INFINITE
     }
 }
 

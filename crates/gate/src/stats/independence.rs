@@ -20,7 +20,7 @@
 
 use std::array::from_fn;
 
-use numeric::pack::in_fused_code;
+use numeric::fused::in_fused_code;
 
 /// The largest lag.
 pub const LAGS: usize = 16;

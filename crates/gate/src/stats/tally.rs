@@ -2,7 +2,7 @@
 //!
 //! A sum over a census costs as much as there are values, not as there are draws.
 
-use numeric::pack::in_fused_code;
+use numeric::fused::in_fused_code;
 use numeric::sum::Sum;
 
 /// Number of sums side by side.
@@ -136,13 +136,12 @@ impl<T> Census<T> {
         self.values.iter().zip(&self.times).map(|(value, times)| times * f(value)).sum()
     }
 
-    fn with(mut self, value: T, times: [u32; FOLD]) -> Self {
+    fn add(&mut self, value: T, times: &[u32; FOLD]) {
         let times: u32 = times.iter().sum();
         if times > 0 {
             self.values.push(value);
             self.times.push(f64::from(times));
         }
-        self
     }
 }
 
@@ -157,8 +156,11 @@ impl Census<f64> {
                 table.times[place][fold] += 1;
             }
         }
-        let both = table.bits.into_iter().zip(table.times);
-        Some(both.fold(Self::default(), |all, (bits, n)| all.with(f64::from_bits(bits), n)))
+        let mut census = Self::default();
+        for (&bits, times) in table.bits.iter().zip(&table.times) {
+            census.add(f64::from_bits(bits), times);
+        }
+        Some(census)
     }
 }
 
@@ -212,7 +214,11 @@ impl Census<u32> {
                 times[n as usize][fold] += 1;
             }
         }
-        Some((0..).zip(times).fold(Self::default(), |all, (n, times)| all.with(n, times)))
+        let mut census = Self::default();
+        for (n, times) in (0..).zip(&times) {
+            census.add(n, times);
+        }
+        Some(census)
     }
 }
 

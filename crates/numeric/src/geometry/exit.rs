@@ -9,18 +9,13 @@
 
 use std::ops::RangeInclusive;
 
-use fearless_simd::f64x8;
-
 use super::{Aabb, Bounds, Point, Ray, grazing};
-use crate::lane::fuses;
-use crate::pack::WIDTH;
+use crate::fused::fuses;
+use crate::lane::WIDTH;
 use crate::{Kept, Lane, Mask};
 
 /// Radii of which no square overflows or underflows, nor what is left of one after 32 digits.
 const SIZES: RangeInclusive<f64> = 1e-60..=1e60;
-
-/// Three coordinates of eight points or directions.
-pub type Points<S> = [f64x8<S>; 3];
 
 /// The scalar products of vectors side by side.
 #[inline(always)]

@@ -9,13 +9,12 @@
 
 pub mod xoshiro;
 
-use fearless_simd::{Simd, f64x8, mask64x8, u64x8};
-use rand::Rng;
+use rand_core::Rng;
 use rand_pcg::Pcg64;
 
-use crate::{Lane, Single, pack::WIDTH};
+use crate::{Lane, Single, lane::WIDTH};
 
-pub use xoshiro::{Lanes, Xoshiro};
+pub use xoshiro::Xoshiro;
 
 /// The generator of one stream of draws: xoshiro256+.
 pub type Stream = Xoshiro<u64>;
@@ -56,28 +55,6 @@ impl<L: Single> Random<L> for Stream {
     #[inline(always)]
     fn ln_uniform_where(&mut self, which: bool) -> L {
         if which { Random::ln_uniform(self) } else { L::of(0.0) }
-    }
-}
-
-impl<S: Simd> Random<f64x8<S>> for Xoshiro<u64x8<S>> {
-    #[inline(always)]
-    fn uniform(&mut self) -> f64x8<S> {
-        Xoshiro::uniform(self)
-    }
-
-    #[inline(always)]
-    fn ln_uniform(&mut self) -> f64x8<S> {
-        Xoshiro::ln_uniform(self)
-    }
-
-    #[inline(always)]
-    fn uniform_where(&mut self, which: mask64x8<S>) -> f64x8<S> {
-        Xoshiro::uniform_where(self, which)
-    }
-
-    #[inline(always)]
-    fn ln_uniform_where(&mut self, which: mask64x8<S>) -> f64x8<S> {
-        Xoshiro::ln_uniform_where(self, which)
     }
 }
 
@@ -161,12 +138,6 @@ impl Streams {
         let lane = self.turn;
         self.turn = (lane + 1) % LANES;
         &mut self.lanes[lane]
-    }
-
-    /// The streams, pack by pack.
-    pub fn packs(&self) -> [Lanes; PACKS] {
-        let (packs, _) = self.lanes.as_chunks();
-        std::array::from_fn(|pack| Lanes::of(&packs[pack]))
     }
 
     /// The next word of each lane in turn, for those who look at the streams themselves.

@@ -6,7 +6,7 @@ use super::trail::Trail;
 use super::{DRAWS, Point, Trial};
 use crate::stress::narrow::dice::Dice;
 use numeric::Narrow as F32;
-use numeric::pack::in_fused_code;
+use numeric::fused::in_fused_code;
 
 /// Walks at most.
 const MOST: f64 = 1e5;

@@ -4,6 +4,9 @@
 //! of AVX2, four of SSE2. So the same draws come out of every machine that fuses multiplication and
 //! addition, and what is drawn never depends on the width.
 
+mod streams;
+mod words;
+
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use fearless_simd::{
@@ -16,8 +19,8 @@ use super::single::{ROOT_HALF, ROUNDER};
 use super::words::apart;
 use super::{Lane, Row};
 
-/// The elements of a pack.
-pub const WIDTH: usize = 8;
+pub use super::lane::WIDTH;
+pub use streams::Lanes;
 
 /// Whether the packs of a level multiply and add in one rounding.
 #[inline(always)]
@@ -127,16 +130,6 @@ fn vectorized<S: Simd, T: Task>(simd: S, task: T) -> T::Output {
         #[inline(always)]
         || task.run(simd),
     )
-}
-
-/// Runs scalar code in which a fused multiply-add is one instruction, where the machine has it.
-#[inline(always)]
-pub fn in_fused_code<R>(f: impl FnOnce() -> R) -> R {
-    #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
-    if let Some(simd) = Level::new().as_avx2() {
-        return simd.vectorize(f);
-    }
-    f()
 }
 
 /// Computes in a function of its own: what is computed from is moved into the closure, so that the loop around it keeps its

@@ -1,0 +1,123 @@
+//! Loops over doubles, compiled for machines that multiply and add in one rounding.
+//!
+//! On x86 a compiler may use what every such processor has, which is SSE2. So loops are compiled for wider registers as well,
+//! and the processor is asked once which code it can run. Code for other architectures needs no such choice. Sums have a
+//! fixed number of lanes, so that the width of the registers changes no bit.
+//!
+//! `pack` chooses code by the same rules. It is more than a loop needs whose formula the compiler can vectorize by itself.
+
+use super::single::{Fused, Plain, Single};
+
+/// Types that prove that the processor has some instructions: the question and the compiled code come from one list.
+#[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+macro_rules! instructions {
+    ($($(#[$about:meta])* $Set:ident { $($feature:tt)* })*) => {
+        $(
+            $(#[$about])*
+            #[derive(Clone, Copy)]
+            struct $Set(());
+
+            impl $Set {
+                /// Asks the processor, the first time.
+                #[inline(always)]
+                fn find() -> Option<Self> {
+                    static FOUND: std::sync::LazyLock<Option<$Set>> = std::sync::LazyLock::new(|| {
+                        let has_all = $(std::arch::is_x86_feature_detected!($feature))&&*;
+                        has_all.then_some($Set(()))
+                    });
+                    *FOUND
+                }
+
+                /// Computes in code for these instructions; what is called there is `#[inline(always)]`.
+                #[inline(always)]
+                fn run<R>(self, compute: impl FnOnce() -> R) -> R {
+                    #[inline]
+                    #[target_feature($(enable = $feature),*)]
+                    fn compiled<R>(compute: impl FnOnce() -> R) -> R {
+                        compute()
+                    }
+                    // SAFETY: the call is safe on processors that have all of the list, and `find`, which makes the only values
+                    // of this type, has asked for the same list.
+                    #[allow(unsafe_code)] // the one way from code for every processor to code for some
+                    unsafe {
+                        compiled(compute)
+                    }
+                }
+            }
+        )*
+    };
+}
+
+#[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+instructions! {
+    /// x86-64-v3.
+    Avx2 {
+        "avx2" "bmi1" "bmi2" "cmpxchg16b" "f16c" "fma" "fxsr" "lzcnt" "movbe" "popcnt" "xsave"
+    }
+    /// x86-64-v4 on processors of 2019 and later, which wide registers do not slow down.
+    Avx512 {
+        "avx2" "bmi1" "bmi2" "cmpxchg16b" "f16c" "fma" "fxsr" "lzcnt" "movbe" "popcnt" "xsave"
+        "avx512bw" "avx512cd" "avx512dq" "avx512f" "avx512vbmi2" "avx512vl"
+    }
+}
+
+/// Whether this machine's packs, and so its scalars, multiply and add in one rounding.
+#[inline(always)]
+pub fn fuses() -> bool {
+    #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+    return Avx2::find().is_some();
+    #[cfg(not(any(target_arch = "x86", target_arch = "x86_64")))]
+    return cfg!(all(target_arch = "aarch64", target_feature = "neon"));
+}
+
+/// Runs scalar code in which a fused multiply-add is one instruction, where the machine has it.
+#[inline(always)]
+pub fn in_fused_code<R>(compute: impl FnOnce() -> R) -> R {
+    #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+    if let Some(avx2) = Avx2::find() {
+        return avx2.run(compute);
+    }
+    compute()
+}
+
+/// A loop over doubles that is compiled for each rounding and each width of registers.
+pub trait Loop {
+    /// Result of the loop.
+    type Output;
+
+    /// Runs the loop; all that it calls is `#[inline(always)]`, or else it would be compiled for the least machine.
+    fn run<L: Single>(self) -> Self::Output;
+}
+
+/// Runs a loop in the rounding of [`super::Lane`] for `f64`, by the widest code that the machine has.
+#[inline(always)]
+pub fn run<T: Loop>(task: T) -> T::Output {
+    #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+    if let Some(avx512) = Avx512::find() {
+        return avx512.run(
+            #[inline(always)]
+            || task.run::<Fused>(),
+        );
+    }
+    if !fuses() {
+        return task.run::<Plain>();
+    }
+    in_fused_code(
+        #[inline(always)]
+        || task.run::<Fused>(),
+    )
+}
+
+#[cfg(all(test, feature = "packs"))]
+mod tests {
+    use fearless_simd::Level;
+
+    use super::*;
+
+    #[test]
+    fn loops_and_packs_choose_the_same_code() {
+        assert_eq!(fuses(), crate::pack::fuses(Level::new()));
+        #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+        assert_eq!(Avx512::find().is_some(), Level::new().as_avx512().is_some());
+    }
+}
