@@ -164,7 +164,7 @@ fn of_mutants<'a>() -> Vec<Column<&'a Caught>> {
         "mutant" = |mutant| mutant.name;
         "bug" = |mutant| mutant.bug;
         "case" = |mutant| mutant.case;
-        "estimator" = |mutant| mutant.estimator;
+        "estimator" = |mutant| &mutant.estimator;
         "check" = |mutant| mutant.check;
         "draws" = |mutant| mutant.draws;
         "failed" = |mutant| mutant.failed.join(" ");

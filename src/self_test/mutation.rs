@@ -136,7 +136,9 @@ impl Bench {
         let fixed = plan.experiments().map(|(_, planned)| planned.fixed).max().unwrap_or(0);
         let draws = run::draw(plan, &|_| {});
         let judged = evaluate::run(plan, &draws).into_iter();
-        Judged { fixed, findings: judged.flat_map(|one| one.findings).collect() }
+        let planned = plan.experiments().next();
+        let estimator = planned.map_or_else(String::new, |(_, one)| one.id.estimator.to_string());
+        Judged { estimator, fixed, findings: judged.flat_map(|one| one.findings).collect() }
     }
 
     fn passes(&self, target: &Target) -> bool {
@@ -195,8 +197,11 @@ impl Bench {
     }
 }
 
-/// Findings on one experiment, and the number of draws for its distributions.
+/// Findings on one experiment.
 struct Judged {
+    /// The estimator's name.
+    estimator: String,
+    /// The number of draws for its distributions.
     fixed: u64,
     findings: Vec<Finding>,
 }
@@ -235,7 +240,8 @@ fn caught(
             (None, None) => fixed,
         })
         .min();
-    let Target { case, estimator, .. } = *target;
+    let estimator = judged.map_or_else(String::new, |judged| judged.estimator.clone());
+    let case = target.case;
     Caught { name, bug, case, estimator, check, draws, failed, twin_passes }
 }
 

@@ -108,6 +108,30 @@ pub fn run<T: Loop>(task: T) -> T::Output {
     )
 }
 
+/// Runs a computation that no wider registers speed up in the rounding of [`super::Lane`] for `f64`.
+#[inline(always)]
+pub fn in_own_rounding<T: Loop>(task: T) -> T::Output {
+    #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+    if let Some(avx2) = Avx2::find() {
+        return avx2.run(
+            #[inline(always)]
+            || task.run::<Fused>(),
+        );
+    }
+    #[cfg(not(any(target_arch = "x86", target_arch = "x86_64")))]
+    if fuses() {
+        return task.run::<Fused>();
+    }
+    plainly(task)
+}
+
+/// Runs a computation on one of the few machines that round twice, in no part of the code around it.
+#[cold]
+#[inline(never)]
+fn plainly<T: Loop>(task: T) -> T::Output {
+    task.run::<Plain>()
+}
+
 #[cfg(all(test, feature = "packs"))]
 mod tests {
     use fearless_simd::Level;

@@ -18,7 +18,6 @@ use ::theory::problems::bidirectional_rod::{Sensor, Values};
 use media::Lookups;
 use media::catalogue::Settings;
 use numeric::digits::rounded;
-use numeric::fused::in_fused_code;
 use numeric::rng::Stream;
 
 /// Settings of a page.
@@ -156,10 +155,7 @@ pub fn draw(
     medium: &Lookups,
     rng: &mut Stream,
 ) -> Draw<Values> {
-    in_fused_code(
-        #[inline(always)]
-        || walk::draw(page, setup, medium, rng),
-    )
+    walk::draw(page, setup, medium, rng)
 }
 
 /// Returns true if no path with `order` scatterings can reach the sensor: then the shares of its techniques are not

@@ -14,10 +14,10 @@ use super::subpath::{Field, Side, Subpath, Tracker};
 use crate::{Draw, Setup};
 use media::course::{BothWays, Even, Pieces};
 use media::{Extinction, Lookups};
-use numeric::fused::fuses;
+use numeric::fused::{Loop, in_own_rounding};
 use numeric::rng::{Random, Stream};
 use numeric::twin::PAIR;
-use numeric::{Fused, Lane, Mask, Plain, Single, Span};
+use numeric::{Lane, Mask, Single, Span};
 use theory::bidirectional_rod::{Combination, quotient};
 use theory::problems::bidirectional_rod::{HIGHEST_ORDER, MOST, Sensor, Values};
 use theory::problems::{BidirectionalRod, Problem};
@@ -153,27 +153,30 @@ pub fn draw(
     medium: &Lookups,
     random: &mut Stream,
 ) -> Draw<Values> {
-    if fuses() {
-        one::<Fused>(steps, setup, medium, random)
-    } else {
-        one::<Plain>(steps, setup, medium, random)
-    }
+    in_own_rounding(One { steps, setup, medium, random })
 }
 
-#[inline(always)]
-fn one<L: Single>(
-    steps: &impl Steps,
-    setup: &Setup<BidirectionalRod>,
-    medium: &Lookups,
-    random: &mut Stream,
-) -> Draw<Values> {
-    let (zero, alone) = (L::of(0.0), Alone(medium));
-    if let Some(even) = setup.sampling.even() {
-        let begin = Even::new(zero, even);
-        through(steps, Tracker::new(setup, zero, [begin, begin.from_end()], alone), random)
-    } else {
-        let begin = Pieces::new(zero, &setup.sampling);
-        through(steps, Tracker::new(setup, zero, [begin, begin.from_end()], alone), random)
+struct One<'a, S> {
+    steps: &'a S,
+    setup: &'a Setup<BidirectionalRod>,
+    medium: &'a Lookups<'a>,
+    random: &'a mut Stream,
+}
+
+impl<S: Steps> Loop for One<'_, S> {
+    type Output = Draw<Values>;
+
+    #[inline(always)]
+    fn run<L: Single>(self) -> Draw<Values> {
+        let Self { steps, setup, medium, random } = self;
+        let (zero, alone) = (L::of(0.0), Alone(medium));
+        if let Some(even) = setup.sampling.even() {
+            let begin = Even::new(zero, even);
+            through(steps, Tracker::new(setup, zero, [begin, begin.from_end()], alone), random)
+        } else {
+            let begin = Pieces::new(zero, &setup.sampling);
+            through(steps, Tracker::new(setup, zero, [begin, begin.from_end()], alone), random)
+        }
     }
 }
 

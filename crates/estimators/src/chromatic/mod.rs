@@ -14,7 +14,6 @@ use crate::walks::hero::Weighing;
 use crate::{Draw, Refusal, Setup};
 use media::Lookups;
 use numeric::Lane;
-use numeric::fused::in_fused_code;
 use numeric::rng::Stream;
 use theory::Prediction;
 use theory::particle::Event;
@@ -129,8 +128,5 @@ pub fn draw<P: Chromatic>(
     medium: &Lookups,
     random: &mut Stream,
 ) -> Draw<P::Value> {
-    in_fused_code(
-        #[inline(always)]
-        || P::draw(Right, By { walker, weighing: WEIGHING, scores_all }, setup, medium, random),
-    )
+    P::draw(Right, By { walker, weighing: WEIGHING, scores_all }, setup, medium, random)
 }

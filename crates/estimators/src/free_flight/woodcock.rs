@@ -55,14 +55,16 @@ kept! {
     }
 }
 
+/// The walk of Woodcock tracking to the first real collision.
 #[derive(Clone, Copy)]
-struct Flights {
+pub struct Flights {
     ray: Span,
 }
 
 impl Flights {
+    /// The walk on a setup.
     #[inline(always)]
-    fn new(setup: &Setup<FreeFlight>) -> Self {
+    pub fn new(setup: &Setup<FreeFlight>) -> Self {
         Self { ray: setup.problem.medium().span() }
     }
 }

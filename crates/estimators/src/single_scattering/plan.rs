@@ -15,7 +15,6 @@ use crate::walks::{self, Walk};
 use crate::{Draw, Estimator, Inputs, Kernel, Refusal, Request, Setup};
 use media::catalogue::Settings;
 use media::{Control, Lookups};
-use numeric::fused::in_fused_code;
 use numeric::geometry::Bounds;
 use numeric::rng::Stream;
 use theory::problems::{Problem, SingleScattering};
@@ -333,10 +332,7 @@ impl Plan {
         let volume = setup.problem.volume();
         let rays = ShadowRays::new(volume, volume.bounds(), self.shadow);
         let ground = Ground::new(setup, medium, &rays, &[]);
-        in_fused_code(
-            #[inline(always)]
-            || self.run(ground, One { setup, medium, random }),
-        )
+        self.run(ground, One { setup, medium, random })
     }
 
     /// Makes the draws of a request in packets. Returns the request where the hardware is too narrow, where σ̂ has

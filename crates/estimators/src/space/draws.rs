@@ -1,5 +1,7 @@
 //! Draws of walks in space: by packs, or one by one.
 
+use std::marker::PhantomData;
+
 use fearless_simd::{Level, Simd};
 
 use super::bank::{self, Rows};
@@ -11,13 +13,12 @@ use crate::kernels::Request;
 use crate::kernels::bank::Slot;
 use crate::{Draw, DrawBuffer};
 use media::{Batches, Majorants};
-use numeric::fused::fuses;
-use numeric::fused::in_fused_code;
+use numeric::fused::{Loop, in_own_rounding};
 use numeric::geometry::Point;
 use numeric::pack::{self, Task};
 use numeric::rng::Stream;
 use numeric::twin::PAIR;
-use numeric::{Fused, Plain, Single, Twin};
+use numeric::{Single, Twin};
 use theory::problems::{Albedo, Channels, Scene};
 
 /// Maximum number of cells of σ̂ for packs: with more, a walk spends its time on their planes, which packs cross no
@@ -32,36 +33,43 @@ pub fn draw<V: Channels, T: Tally, const SPLITS: bool>(
     world: (&Scene, &Majorants),
     random: &mut Stream,
 ) -> Draw<V> {
-    in_fused_code(
-        #[inline(always)]
-        || {
-            let walk = InSpace::new(tally, steps, world, None);
-            if fuses() {
-                follow::<Fused, V, T, SPLITS>(&walk, (tally, splitting), world.0, random)
-            } else {
-                follow::<Plain, V, T, SPLITS>(&walk, (tally, splitting), world.0, random)
-            }
-        },
-    )
+    let walk = InSpace::new(tally, steps, world, None);
+    in_own_rounding(One::<V, T, _, SPLITS> {
+        walk,
+        tally,
+        splitting,
+        scene: world.0,
+        random,
+        values: PhantomData,
+    })
 }
 
-#[inline(always)]
-fn follow<L: Single, V: Channels, T: Tally, const SPLITS: bool>(
-    walk: &InSpace<T, impl Steps>,
-    (tally, splitting): (&T, Splitting),
-    scene: &Scene,
-    random: &mut Stream,
-) -> Draw<V> {
-    let look_up = |place: Option<[L; 3]>| look_up(scene, place);
-    let state = if SPLITS {
-        splitting::follow(walk, splitting, look_up, random)
-    } else {
-        bank::one(walk, look_up, random)
-    };
-    let (sums, channels) = (T::sums(&state.found), tally.channels());
-    let value = |channel: usize| sums[channels[channel]].double();
-    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // a count
-    Draw::free(V::of(channels.len(), value), state.lookups.double() as u32)
+struct One<'a, V, T, S, const SPLITS: bool> {
+    walk: InSpace<'a, T, S>,
+    tally: &'a T,
+    splitting: Splitting,
+    scene: &'a Scene,
+    random: &'a mut Stream,
+    values: PhantomData<V>,
+}
+
+impl<V: Channels, T: Tally, S: Steps, const SPLITS: bool> Loop for One<'_, V, T, S, SPLITS> {
+    type Output = Draw<V>;
+
+    #[inline(always)]
+    fn run<L: Single>(self) -> Draw<V> {
+        let Self { walk, tally, splitting, scene, random, .. } = self;
+        let look_up = |place: Option<[L; 3]>| look_up(scene, place);
+        let state = if SPLITS {
+            splitting::follow(&walk, splitting, look_up, random)
+        } else {
+            bank::one(&walk, look_up, random)
+        };
+        let (sums, channels) = (T::sums(&state.found), tally.channels());
+        let value = |channel: usize| sums[channels[channel]].double();
+        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // a count
+        Draw::free(V::of(channels.len(), value), state.lookups.double() as u32)
+    }
 }
 
 /// σ_t and the albedo at a place, if they are needed.

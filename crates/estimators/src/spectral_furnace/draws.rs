@@ -12,12 +12,12 @@ use crate::space::bank::{self, Rows, Walk};
 use crate::{Draw, DrawBuffer, Setup};
 use media::Batches;
 use media::body::MOST_CHANNELS;
-use numeric::fused::fuses;
+use numeric::fused::{Loop, in_own_rounding};
 use numeric::geometry::Point;
 use numeric::pack::{self, Task, WIDTH};
 use numeric::rng::Stream;
 use numeric::twin::PAIR;
-use numeric::{Fused, Lane, Plain, Single, Twin};
+use numeric::{Lane, Single, Twin};
 use theory::problems::ChannelValues as Values;
 use theory::problems::{Channels, SpectralFurnace};
 
@@ -29,38 +29,40 @@ pub fn draw(
     setup: &Setup<SpectralFurnace>,
     random: &mut Stream,
 ) -> Draw<Values> {
-    let walk = InFurnace::new(steps, by, setup);
-    if fuses() {
-        follow::<Fused>(&walk, &setup.problem, random)
-    } else {
-        follow::<Plain>(&walk, &setup.problem, random)
-    }
+    in_own_rounding(One { walk: InFurnace::new(steps, by, setup), problem: &setup.problem, random })
 }
 
-#[inline(always)]
-fn follow<L: Single>(
-    walk: &InFurnace<impl Steps>,
-    problem: &SpectralFurnace,
-    random: &mut Stream,
-) -> Draw<Values> {
-    let zero = L::of(0.0);
-    let look_up = |place: Option<[L; 3]>| {
-        let mut found = [zero; MOST_CHANNELS];
-        if let Some([x, y, z]) = place {
-            let place = Point([x.double(), y.double(), z.double()]);
-            for (channel, medium) in problem.channels.iter().enumerate() {
-                found[channel] = L::of(medium.volume.points().extinction(place));
+struct One<'a, S> {
+    walk: InFurnace<'a, S>,
+    problem: &'a SpectralFurnace,
+    random: &'a mut Stream,
+}
+
+impl<S: Steps> Loop for One<'_, S> {
+    type Output = Draw<Values>;
+
+    #[inline(always)]
+    fn run<L: Single>(self) -> Draw<Values> {
+        let Self { walk, problem, random } = self;
+        let zero = L::of(0.0);
+        let look_up = |place: Option<[L; 3]>| {
+            let mut found = [zero; MOST_CHANNELS];
+            if let Some([x, y, z]) = place {
+                let place = Point([x.double(), y.double(), z.double()]);
+                for (channel, medium) in problem.channels.iter().enumerate() {
+                    found[channel] = L::of(medium.volume.points().extinction(place));
+                }
             }
-        }
-        found
-    };
-    let path = bank::one(walk, look_up, random);
-    let mut values = [zero; MOST_CHANNELS];
-    let lookups = path.lookups;
-    let defect = walk.score(|number| path.number(number), lookups, &mut values).double();
-    let value = Values::of(problem.channels.len(), |channel| values[channel].double());
-    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // a count
-    Draw { value, lookups: lookups.double() as u32, defect }
+            found
+        };
+        let path = bank::one(&walk, look_up, random);
+        let mut values = [zero; MOST_CHANNELS];
+        let lookups = path.lookups;
+        let defect = walk.score(|number| path.number(number), lookups, &mut values).double();
+        let value = Values::of(problem.channels.len(), |channel| values[channel].double());
+        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // a count
+        Draw { value, lookups: lookups.double() as u32, defect }
+    }
 }
 
 /// Makes the draws of a request by packs. Returns the request where the hardware is too narrow.

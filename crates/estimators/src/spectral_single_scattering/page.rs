@@ -7,7 +7,6 @@ use crate::setup::walker::Walker;
 use crate::{Draw, Estimator, Inputs, Kernel, Refusal, Request, Setup, walks};
 use media::Lookups;
 use media::catalogue::Settings;
-use numeric::fused::in_fused_code;
 use numeric::rng::Stream;
 use theory::Prediction;
 use theory::problems::ChannelValues as Values;
@@ -69,8 +68,5 @@ fn draw(
     medium: &Lookups,
     rng: &mut Stream,
 ) -> Draw<Values> {
-    in_fused_code(
-        #[inline(always)]
-        || walk::draw::<true>(Right, by, setup, medium, rng),
-    )
+    walk::draw::<true>(Right, by, setup, medium, rng)
 }

@@ -76,7 +76,7 @@ kept! {
 /// Woodcock tracking from segment to segment. A step is a flight within a segment: no lane is delayed by lanes that
 /// cross several.
 #[derive(Clone, Copy)]
-struct Segments<'a> {
+pub struct Segments<'a> {
     /// Beginning, end and mean free path of each segment.
     rows: &'a [Row],
     /// The value of walks that pass.
@@ -86,7 +86,7 @@ struct Segments<'a> {
 impl<'a> Segments<'a> {
     /// The walk on a setup; `None` where no segment has an extinction: there are no collisions.
     #[inline(always)]
-    fn of(setup: &'a Setup<Transmittance>) -> Option<Self> {
+    pub fn of(setup: &'a Setup<Transmittance>) -> Option<Self> {
         let rows = setup.sampling.stretches();
         (!rows.is_empty()).then_some(Self { rows, unit: setup.control_transmittance })
     }

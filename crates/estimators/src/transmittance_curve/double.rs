@@ -89,8 +89,9 @@ kept! {
     }
 }
 
+/// The walk of a curve.
 #[derive(Clone, Copy)]
-struct Curve<'a> {
+pub struct Curve<'a> {
     control: Subtracted<'a>,
     distances: &'a [f64],
     /// T_c at the distances.
@@ -98,8 +99,9 @@ struct Curve<'a> {
 }
 
 impl<'a> Curve<'a> {
+    /// The walk on a setup.
     #[inline(always)]
-    fn new(setup: &'a Setup<TransmittanceCurve>) -> Self {
+    pub fn new(setup: &'a Setup<TransmittanceCurve>) -> Self {
         let distances = setup.problem.ascending();
         let control = Subtracted::new(&setup.control);
         Self { control, distances, units: &setup.control_curve }

@@ -2,14 +2,14 @@
 
 use fearless_simd::{Level, Simd, SimdBase, f64x8};
 
-use super::{Nowhere, Walk, bank, draw, window};
+use super::{Nowhere, Walk, bank, plain, window};
 use crate::{Draw, Kernel, Request, Setup};
 use media::course::{BothWays, Even, Pieces};
 use media::{Control, Inlined, Lookups, Piecewise};
-use numeric::Twin;
-use numeric::fused::in_fused_code;
+use numeric::fused::{Loop, in_fused_code, in_own_rounding};
 use numeric::pack::{self, Task};
 use numeric::rng::Stream;
+use numeric::{Single, Twin};
 use theory::problems::{Channels, Problem};
 
 /// Maximum number of pieces of σ̂ or of the control for packs. With more, lanes that cross pieces delay the others
@@ -36,14 +36,53 @@ pub fn fill<P: Problem>(walk: &impl Walk, kernel: Kernel, setup: &Setup<P>, requ
 where
     P::Value: Channels,
 {
-    by(
-        kernel,
-        setup,
-        request,
-        |level, medium, request| packets(level, walk, setup, medium, request),
-        #[inline(always)]
-        |medium, random| draw(walk, &setup.sampling, medium, random),
-    );
+    let left = match kernel {
+        Kernel::Single => Some(request),
+        Kernel::Packets(level) => {
+            packets(level, walk, setup, &setup.problem.lookups(level), request)
+        }
+    };
+    if let Some(request) = left {
+        in_turn(walk, setup, request);
+    }
+}
+
+/// Makes the draws of a request one walk after the other.
+pub fn in_turn<P: Problem>(walk: &impl Walk, setup: &Setup<P>, request: Request)
+where
+    P::Value: Channels,
+{
+    let medium = &setup.problem.lookups(Level::new());
+    in_own_rounding(InTurn { walk, setup, medium, request });
+}
+
+struct InTurn<'a, 'r, W, P> {
+    walk: &'a W,
+    setup: &'a Setup<P>,
+    medium: &'a Lookups<'a>,
+    request: Request<'r>,
+}
+
+impl<W: Walk, P: Problem> Loop for InTurn<'_, '_, W, P>
+where
+    P::Value: Channels,
+{
+    type Output = ();
+
+    #[inline(always)]
+    fn run<L: Single>(self) {
+        let Request { streams, count, buffer } = self.request;
+        buffer.clear();
+        for _ in 0..count {
+            let (sampling, random) = (&self.setup.sampling, streams.of_next_draw());
+            buffer.push(&plain::through::<L, W, P::Value>(
+                self.walk,
+                sampling,
+                self.medium,
+                random,
+            ));
+        }
+    }
 }
 
 /// Makes the draws of a request by packets, and one by one if these return the request.

@@ -38,7 +38,7 @@ use numeric::rng::Random;
 use numeric::{Kept, Lane};
 
 pub(crate) use draws::drawn;
-pub use draws::{by, fill, one_by_one, packets};
+pub use draws::{by, fill, in_turn, one_by_one, packets};
 pub use plain::draw;
 pub use route::{Nowhere, Route};
 

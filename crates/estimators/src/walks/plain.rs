@@ -1,14 +1,16 @@
 //! The driver of one walk, with one lookup at a time.
 
+use std::marker::PhantomData;
+
 use super::{MOST_LEFT, MOST_SCORED, Met, Nowhere, Route, SOME_LEFT, Scores, Walk};
 use crate::kernels::Draw;
 use media::body::MOST_CHANNELS;
 use media::course::{BothWays, Even, Pieces};
 use media::{Extinction, Lookups, Piecewise};
-use numeric::fused::fuses;
+use numeric::Single;
+use numeric::fused::{Loop, in_own_rounding};
 use numeric::geometry::Point;
 use numeric::rng::{Random, Stream};
-use numeric::{Fused, Plain, Single};
 use theory::problems::Channels;
 
 /// Makes one draw.
@@ -19,10 +21,23 @@ pub fn draw<V: Channels>(
     medium: &Lookups,
     random: &mut Stream,
 ) -> Draw<V> {
-    if fuses() {
-        through::<Fused, _, V>(walk, sampling, medium, random)
-    } else {
-        through::<Plain, _, V>(walk, sampling, medium, random)
+    in_own_rounding(One { walk, sampling, medium, random, values: PhantomData })
+}
+
+struct One<'a, W, V> {
+    walk: &'a W,
+    sampling: &'a Piecewise,
+    medium: &'a Lookups<'a>,
+    random: &'a mut Stream,
+    values: PhantomData<V>,
+}
+
+impl<W: Walk, V: Channels> Loop for One<'_, W, V> {
+    type Output = Draw<V>;
+
+    #[inline(always)]
+    fn run<L: Single>(self) -> Draw<V> {
+        through::<L, W, V>(self.walk, self.sampling, self.medium, self.random)
     }
 }
 

@@ -4,43 +4,26 @@
 //! X = Σ_s w_s c_s,   c_s = f/p_s = T̂_{s−1} [a ρ_{s−1}]_{s≥2} [a ρ_s]_{s≤r},   w_s = c_s⁻¹/Σⱼ cⱼ⁻¹
 //! ```
 
-use super::target::{
-    BIDIRECTIONAL_DIRECTIONAL, BIDIRECTIONAL_FULL, BIDIRECTIONAL_TECHNIQUE, BIDIRECTIONAL_TRACKED,
-};
-use super::{About, Mutant, with};
+use super::{Line, Mutant, Target, family, on, with};
+use estimators::bidirectional_rod::Page;
 use estimators::bidirectional_rod::walk::{self, Path, Steps};
-use estimators::bidirectional_rod::{Page, draw};
 use numeric::Lane;
 use theory::Heuristic;
 use theory::bidirectional_rod::{Combination, quotient};
 use theory::problems::BidirectionalRod;
 
-/// The family.
-#[rustfmt::skip] // one mutant, one entry
-pub fn mutants() -> Vec<Mutant<BidirectionalRod>> {
-    let of = |name, bug, target, check, page: Page, wrong| {
-        Mutant::new(About { name, bug, target, check }, with(Wrong { page, bug: wrong }, walk::draw), with(page, draw))
-    };
-    let full = Page { combination: Combination::Full(Heuristic::Balance), is_tracked: false, is_shared: false };
-    let tracked = Page { is_tracked: true, ..full };
-    let directional = Page { combination: Combination::Directional(Heuristic::Balance), ..full };
-    let technique = Page { combination: Combination::Technique(2), ..full };
-    vec![
-        of("bidirectional-vertex-count", "the density of a technique counts one camera vertex too many: a ρ_s is left out", BIDIRECTIONAL_TECHNIQUE, "mean", technique, Bug::VertexCount),
-        of("bidirectional-connection-reversed", "the phase function at the camera's end takes the connection the wrong way round (Eq. 43)", BIDIRECTIONAL_TECHNIQUE, "mean", technique, Bug::Reversed),
-        of("bidirectional-wrong-segment", "the connection is tracked from the light's last vertex but one (middle factor of Eq. 44)", BIDIRECTIONAL_TECHNIQUE, "mean", technique, Bug::WrongSegment),
-        of("bidirectional-hits-without-density", "weights take the densities of the hits, s = 0 and s = r + 2, for zero, and hits score all the same", BIDIRECTIONAL_FULL, "mean", full, Bug::HitsWithoutDensity),
-        of("bidirectional-technique-twice", "one technique is counted twice in the sum", BIDIRECTIONAL_FULL, "mean", full, Bug::Twice),
-        of("bidirectional-averaged", "techniques are averaged instead of added", BIDIRECTIONAL_FULL, "mean", full, Bug::Averaged),
-        of("bidirectional-same-numbers", "all techniques of a draw begin with the same random numbers", BIDIRECTIONAL_FULL, "covariance", full, Bug::SameNumbers),
-        of("bidirectional-nulls-in-one-density", "null vertices are in the density of a path's own technique only", BIDIRECTIONAL_TRACKED, "mean", tracked, Bug::NullsInOne),
-        of("bidirectional-tracked-twice", "the tracked transmittance of a connection multiplies its worth twice", BIDIRECTIONAL_TRACKED, "mean", tracked, Bug::TrackedTwice),
-        of("bidirectional-directional-density", "paths are divided by their directional densities, too: the transmittance of a connection cancels", BIDIRECTIONAL_DIRECTIONAL, "mean", directional, Bug::DirectionalDensity),
-    ]
-}
+/// Both orders of a rod by all techniques, exact connections.
+const FULL: Target = on("rod/bidirectional-known-bugs", 0);
+/// Ratio-tracked connections.
+const TRACKED: Target = on("rod/bidirectional-known-bugs", 1);
+/// Directional weights.
+const DIRECTIONAL: Target = on("rod/bidirectional-known-bugs", 2);
+/// One technique: a connection between two scatterings.
+const TECHNIQUE: Target = on("rod/bidirectional-known-bugs", 3);
 
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Bug {
+    None,
     VertexCount,
     Reversed,
     WrongSegment,
@@ -51,6 +34,34 @@ enum Bug {
     NullsInOne,
     TrackedTwice,
     DirectionalDensity,
+}
+
+#[rustfmt::skip] // one mutant, one entry
+const LINES: &[Line<Bug>] = &[
+    ("bidirectional-vertex-count", "the density of a technique counts one camera vertex too many: a ρ_s is left out", TECHNIQUE, "mean", Bug::VertexCount),
+    ("bidirectional-connection-reversed", "the phase function at the camera's end takes the connection the wrong way round (Eq. 43)", TECHNIQUE, "mean", Bug::Reversed),
+    ("bidirectional-wrong-segment", "the connection is tracked from the light's last vertex but one (middle factor of Eq. 44)", TECHNIQUE, "mean", Bug::WrongSegment),
+    ("bidirectional-hits-without-density", "weights take the densities of the hits, s = 0 and s = r + 2, for zero, and hits score all the same", FULL, "mean", Bug::HitsWithoutDensity),
+    ("bidirectional-technique-twice", "one technique is counted twice in the sum", FULL, "mean", Bug::Twice),
+    ("bidirectional-averaged", "techniques are averaged instead of added", FULL, "mean", Bug::Averaged),
+    ("bidirectional-same-numbers", "all techniques of a draw begin with the same random numbers", FULL, "covariance", Bug::SameNumbers),
+    ("bidirectional-nulls-in-one-density", "null vertices are in the density of a path's own technique only", TRACKED, "mean", Bug::NullsInOne),
+    ("bidirectional-tracked-twice", "the tracked transmittance of a connection multiplies its worth twice", TRACKED, "mean", Bug::TrackedTwice),
+    ("bidirectional-directional-density", "paths are divided by their directional densities, too: the transmittance of a connection cancels", DIRECTIONAL, "mean", Bug::DirectionalDensity),
+];
+
+/// The family.
+pub fn mutants() -> Vec<Mutant<BidirectionalRod>> {
+    let draws = |target, &bug: &Bug| {
+        let combination = match target {
+            TECHNIQUE => Combination::Technique(2),
+            DIRECTIONAL => Combination::Directional(Heuristic::Balance),
+            _ => Combination::Full(Heuristic::Balance),
+        };
+        let page = Page { combination, is_tracked: target == TRACKED, is_shared: false };
+        with(Wrong { page, bug }, walk::draw)
+    };
+    family(LINES, &Bug::None, draws)
 }
 
 /// An estimator with one bug.

@@ -10,7 +10,7 @@ pub struct Caught {
     /// The case.
     pub case: &'static str,
     /// The estimator in whose place it is drawn.
-    pub estimator: &'static str,
+    pub estimator: String,
     /// The check that must catch it.
     pub check: &'static str,
     /// The draws that the check took; `None` if it did not catch the bug.

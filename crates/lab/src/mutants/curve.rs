@@ -8,113 +8,74 @@
 //! a control that is right at the end only. One walk for each distance has the right means and
 //! variances, and no covariances.
 
-use super::target::{CURVE, CURVE_CONTROL};
-use super::{About, Mutant, with};
-use estimators::transmittance::product::Invariant;
-use estimators::{Draw, Setup};
-use media::{Extinction, Lookups};
-use numeric::rng::{Stream, exponential};
-use numeric::{Lane, Span};
+use super::line::{Slip, Wrong};
+use super::{Line, Mutant, Target, family, on, with};
+use estimators::transmittance_curve::double::Curve;
+use estimators::{Draw, Setup, walks};
+use media::Lookups;
+use numeric::rng::Stream;
 use theory::problems::TransmittanceCurve;
-use theory::problems::transmittance::{CurveValues, MAX_DISTANCES};
+use theory::problems::transmittance::CurveValues;
+
+/// Without a control.
+const PLAIN: Target = on("transmittance/curve-known-bugs", 0);
+/// With a control that has its knots inside.
+const CONTROL: Target = on("transmittance/curve-known-bugs", 1);
+
+/// A bug in a step, in `T_c(s)`, or in the number of walks.
+#[derive(Clone, Copy, PartialEq)]
+enum Bug {
+    Step(Slip),
+    WholeControl,
+    FreshWalks,
+}
+
+#[rustfmt::skip] // one mutant, one entry
+const LINES: &[Line<Bug>] = &[
+    ("curve-reversed", "σ_t(S − t) is looked up for σ_t(t)", PLAIN, "curve", Bug::Step(Slip::Reversed)),
+    ("curve-collision-too-early", "the first collision beyond a distance counts before it", PLAIN, "mean", Bug::Step(Slip::OfLastCollision)),
+    ("curve-shifted", "every value is that of the distance before, and the first is 1", PLAIN, "mean", Bug::Step(Slip::Shifted)),
+    ("curve-control-whole", "T_c is that of the whole ray at every distance", CONTROL, "mean", Bug::WholeControl),
+    ("curve-control-to-collision", "between collisions the curve is flat: T_c is taken at the last collision before s", CONTROL, "mean", Bug::Step(Slip::ControlToCollision)),
+    ("curve-log2", "log2 for ln in the flight", CONTROL, "lookups", Bug::Step(Slip::Deeper(std::f64::consts::LOG2_E))),
+    ("curve-of-fresh-walks", "every distance has a walk of its own", PLAIN, "covariance", Bug::FreshWalks),
+];
 
 /// The family.
-#[rustfmt::skip] // one mutant, one entry
 pub fn mutants() -> Vec<Mutant<TransmittanceCurve>> {
-    let by = |slip| with(slip, |&slip, setup, medium, rng| curve(slip, setup, medium, rng));
-    let of = |name, bug, target, check, slip| Mutant::new(About { name, bug, target, check }, by(slip), by(Slip::None));
-    let fresh = About { name: "curve-of-fresh-walks", bug: "every distance has a walk of its own", target: CURVE, check: "covariance" };
-    vec![
-        of("curve-reversed", "σ_t(S − t) is looked up for σ_t(t)", CURVE, "curve", Slip::Reversed),
-        of("curve-collision-too-early", "the first collision beyond a distance counts before it", CURVE, "mean", Slip::TooEarly),
-        of("curve-shifted", "every value is that of the distance before, and the first is 1", CURVE, "mean", Slip::Shifted),
-        of("curve-control-whole", "T_c is that of the whole ray at every distance", CURVE_CONTROL, "mean", Slip::WholeControl),
-        of("curve-control-to-collision", "between collisions the curve is flat: T_c is taken at the last collision before s", CURVE_CONTROL, "mean", Slip::ControlToCollision),
-        of("curve-log2", "log2 for ln in the flight", CURVE_CONTROL, "lookups", Slip::Log2),
-        Mutant::new(fresh, with((), |(), setup, medium, random| fresh_walks(setup, medium, random)), by(Slip::None)),
-    ]
+    let mutants = family(LINES, &Bug::Step(Slip::None), |_, &bug| with(bug, draw));
+    let each = mutants.into_iter().zip(LINES).map(|(mutant, line)| match line.4 {
+        Bug::WholeControl => Mutant {
+            prepare: |setup| {
+                let whole = setup.control.optical_depth(setup.mesh.support()).value;
+                setup.control_curve.fill((-whole).exp());
+            },
+            ..mutant
+        },
+        // The walk itself has the decay of the control.
+        Bug::Step(Slip::ControlToCollision) => {
+            Mutant { prepare: |setup| setup.control_curve.fill(1.0), ..mutant }
+        }
+        _ => mutant,
+    });
+    each.collect()
 }
 
-/// What goes wrong.
-#[derive(Clone, Copy, PartialEq)]
-enum Slip {
-    None,
-    Reversed,
-    TooEarly,
-    Shifted,
-    WholeControl,
-    ControlToCollision,
-    Log2,
-}
-
-/// The double particle model's curve, see `estimators/transmittance_curve/double.rs`.
-fn curve(
-    slip: Slip,
+/// A curve of one walk, or of a walk for each distance, with the lookups of one.
+fn draw(
+    bug: &Bug,
     setup: &Setup<TransmittanceCurve>,
     medium: &Lookups,
-    rng: &mut Stream,
+    random: &mut Stream,
 ) -> Draw<CurveValues> {
-    let support = setup.mesh.support();
-    let distances = setup.problem.ascending();
-    let mut values = CurveValues { at: [0.0; MAX_DISTANCES], count: distances.len() };
-    let mut next = 0;
-    let mut pass = |until: f64, last: f64, weight: f64| {
-        while next < distances.len() && distances[next] <= until {
-            let to = match slip {
-                Slip::WholeControl => support.to,
-                Slip::ControlToCollision => last,
-                _ => distances[next],
-            };
-            let upto = Span::new(support.from, to).intersect(support);
-            let depth = setup.control.optical_depth(upto).value;
-            values.at[next] = weight * Lane::exp(-depth);
-            next += 1;
+    let slip = if let Bug::Step(slip) = *bug { slip } else { Slip::None };
+    let walk = Wrong::new(Curve::new(setup), slip, setup);
+    let mut draw: Draw<CurveValues> = walks::draw(&walk, &setup.sampling, medium, random);
+    if *bug == Bug::FreshWalks {
+        for k in 0..draw.value.count - 1 {
+            let fresh: Draw<CurveValues> = walks::draw(&walk, &setup.sampling, medium, random);
+            draw.value.at[k] = fresh.value.at[k];
         }
-    };
-    let mut cursor = setup.sampling.begin();
-    let mut weight = 1.0;
-    let mut invariant = Invariant::open(weight);
-    let mut lookups = 0;
-    loop {
-        let last = cursor.t;
-        let scale = if slip == Slip::Log2 { std::f64::consts::LOG2_E } else { 1.0 };
-        let depth = exponential(rng) * scale;
-        let Some(sampling) = setup.sampling.fly(&mut cursor, depth) else {
-            pass(f64::INFINITY, last, weight);
-            break;
-        };
-        if slip != Slip::TooEarly {
-            pass(cursor.t, last, weight);
-        }
-        let reversed = support.from + (support.to - cursor.t);
-        let at = if slip == Slip::Reversed { reversed } else { cursor.t };
-        let residual = medium.extinction(at) - setup.control.extinction(cursor.t);
-        let due = 1.0 - residual * (1.0 / sampling);
-        invariant.take(weight, due);
-        weight *= due;
-        lookups += 1;
-        if slip == Slip::TooEarly {
-            pass(cursor.t, last, weight);
-        }
-    }
-    if slip == Slip::Shifted {
-        values.at.rotate_right(1);
-        values.at[0] = 1.0;
-    }
-    Draw { value: values, lookups, defect: invariant.defect(weight) }
-}
-
-/// K walks for K distances, with the lookups of the last.
-fn fresh_walks(
-    setup: &Setup<TransmittanceCurve>,
-    medium: &Lookups,
-    rng: &mut Stream,
-) -> Draw<CurveValues> {
-    let walk = |rng: &mut Stream| curve(Slip::None, setup, medium, rng);
-    let mut draw = walk(rng);
-    for k in 0..draw.value.count - 1 {
-        let fresh = walk(rng);
-        draw.value.at[k] = fresh.value.at[k];
     }
     draw
 }

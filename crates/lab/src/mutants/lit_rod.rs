@@ -7,17 +7,26 @@
 //! Several are errors of Algorithms 1 and 2 of B. Miller, I. Georgiev, W. Jarosz, *A null-scattering path integral
 //! formulation of light transport*, ACM Transactions on Graphics 38 (2019), as printed, or ways to read them.
 
-use super::target::{LIT_DIRECTIONAL, LIT_FULL, LIT_NEXT_EVENT, LIT_NEXT_EVENT_DELTA};
-use super::{About, Mutant, Target, filled};
+use super::{Line, Mutant, Target, family, filled, on};
 use estimators::lit_rod::shadow::Steps;
-use estimators::lit_rod::walk::fill;
+use estimators::lit_rod::walk::ToEmitter;
+use estimators::walks;
 use numeric::Lane;
 use theory::lit_rod::{Combination, Densities, Heuristic, Shadow, Techniques};
 use theory::problems::LitRod;
 
+/// Extinction that rises to the emitter, `p_f = 0.4`, `σ̂ = 1.25`; next event by delta tracking.
+const NEXT_EVENT_DELTA: Target = on("rod/lit-rising", 2);
+/// Next event by ratio tracking.
+const NEXT_EVENT: Target = on("rod/lit-rising", 3);
+/// Directional weights, delta tracking.
+const DIRECTIONAL: Target = on("rod/lit-rising", 4);
+/// All densities, ratio tracking.
+const FULL: Target = on("rod/lit-rising", 6);
+
 /// The bugs, each in one step of a walk.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) enum Bug {
+pub enum Bug {
     None,
     LastSegment,
     Averaged,
@@ -35,9 +44,55 @@ pub(super) enum Bug {
     Squared,
 }
 
+#[rustfmt::skip] // one mutant, one entry
+const LINES: &[Line<Bug>] = &[
+    ("lit-rod-last-segment", "Algorithm 2, line 9: the last segment's transmittance is in the densities, and not in f", FULL, "mean", Bug::LastSegment),
+    ("lit-rod-averaged", "the samples of both techniques are added, and divided by their number", FULL, "mean", Bug::Averaged),
+    ("lit-rod-hit-alone", "Algorithm 1 in the combination: hits are not divided by p_uni + p_nee", FULL, "mean", Bug::HitAlone),
+    ("lit-rod-nulls-in-one", "null collisions are left out of the density of shadow rays only", FULL, "mean", Bug::NullsInOne),
+    ("lit-rod-nulls-missing", "null collisions are left out of the density of hits only", FULL, "mean", Bug::NullsMissing),
+    ("lit-rod-not-reset", "p_nee is not reset at a real scattering: ρ is a product over the path", FULL, "mean", Bug::NotReset),
+    ("lit-rod-unscattered-weighted", "the unscattered hit is weighted as if a shadow ray could find it", FULL, "mean", Bug::UnscatteredWeighted),
+    ("lit-rod-shadow-twice", "the transmittance of a shadow ray is a weight twice", NEXT_EVENT, "mean", Bug::ShadowTwice),
+    ("lit-rod-found-twice", "what shadow rays find is hit, too", NEXT_EVENT, "mean", Bug::HitAlone),
+    ("lit-rod-albedo-twice", "the albedo is the chance of a scattering and a weight of its shadow ray", NEXT_EVENT, "mean", Bug::AlbedoTwice),
+    ("lit-rod-carried-along", "the walk goes on where its shadow ray ended", NEXT_EVENT, "mean", Bug::CarriedAlong),
+    ("lit-rod-through-scattering", "scattering lets a shadow ray through: only absorption stops it", NEXT_EVENT_DELTA, "mean", Bug::ThroughScattering),
+    ("lit-rod-isotropic", "shadow rays take both directions to be alike", NEXT_EVENT_DELTA, "mean", Bug::Isotropic),
+    ("lit-rod-reversed", "the phase function of a shadow ray is that of the reversed direction", DIRECTIONAL, "mean", Bug::Reversed),
+    ("lit-rod-squared-weights", "the power heuristic squares weights that sum to 1", DIRECTIONAL, "mean", Bug::Squared),
+];
+
+/// The family.
+pub fn mutants() -> Vec<Mutant<LitRod>> {
+    let draws = |target, &bug: &Bug| {
+        let techniques = match target {
+            NEXT_EVENT_DELTA => next_event(Shadow::Delta),
+            NEXT_EVENT => next_event(Shadow::Ratio),
+            DIRECTIONAL => balanced(Shadow::Delta, Densities::Directional),
+            _ => balanced(Shadow::Ratio, Densities::Full),
+        };
+        filled(move |setup, request| {
+            walks::in_turn(&ToEmitter::of(setup, Wrong(techniques, bug)), setup, request);
+        })
+    };
+    family(LINES, &Bug::None, draws)
+}
+
+/// Shadow rays alone.
+pub fn next_event(shadow: Shadow) -> Techniques {
+    Techniques { shadow: Some(shadow), combination: Combination::NextEvent }
+}
+
+/// Shadow rays and hits by the balance heuristic.
+pub fn balanced(shadow: Shadow, densities: Densities) -> Techniques {
+    let combination = Combination::Mis(densities, Heuristic::Balance);
+    Techniques { shadow: Some(shadow), combination }
+}
+
 /// The steps of techniques with a bug.
 #[derive(Clone, Copy)]
-pub(super) struct Wrong(pub(super) Techniques, pub(super) Bug);
+pub struct Wrong(pub Techniques, pub Bug);
 
 impl Steps for Wrong {
     const KEEPS_LAST: bool = true;
@@ -110,38 +165,4 @@ impl Steps for Wrong {
     fn returns(&self) -> bool {
         self.1 != Bug::CarriedAlong
     }
-}
-
-/// The family.
-#[rustfmt::skip] // one mutant, one entry
-pub fn mutants() -> Vec<Mutant<LitRod>> {
-    let mutant = |name, bug, target: Target, techniques, wrong| {
-        let about = About { name, bug, target, check: "mean" };
-        Mutant::new(about, filled(Wrong(techniques, wrong), fill), filled(Wrong(techniques, Bug::None), fill))
-    };
-    let balanced = |shadow, densities| {
-        let combination = Combination::Mis(densities, Heuristic::Balance);
-        Techniques { shadow: Some(shadow), combination }
-    };
-    let alone = |shadow| Techniques { shadow: Some(shadow), combination: Combination::NextEvent };
-    let full = balanced(Shadow::Ratio, Densities::Full);
-    let directional = balanced(Shadow::Delta, Densities::Directional);
-    let (ratio, delta) = (alone(Shadow::Ratio), alone(Shadow::Delta));
-    vec![
-        mutant("lit-rod-last-segment", "Algorithm 2, line 9: the last segment's transmittance is in the densities, and not in f", LIT_FULL, full, Bug::LastSegment),
-        mutant("lit-rod-averaged", "the samples of both techniques are added, and divided by their number", LIT_FULL, full, Bug::Averaged),
-        mutant("lit-rod-hit-alone", "Algorithm 1 in the combination: hits are not divided by p_uni + p_nee", LIT_FULL, full, Bug::HitAlone),
-        mutant("lit-rod-nulls-in-one", "null collisions are left out of the density of shadow rays only", LIT_FULL, full, Bug::NullsInOne),
-        mutant("lit-rod-nulls-missing", "null collisions are left out of the density of hits only", LIT_FULL, full, Bug::NullsMissing),
-        mutant("lit-rod-not-reset", "p_nee is not reset at a real scattering: ρ is a product over the path", LIT_FULL, full, Bug::NotReset),
-        mutant("lit-rod-unscattered-weighted", "the unscattered hit is weighted as if a shadow ray could find it", LIT_FULL, full, Bug::UnscatteredWeighted),
-        mutant("lit-rod-shadow-twice", "the transmittance of a shadow ray is a weight twice", LIT_NEXT_EVENT, ratio, Bug::ShadowTwice),
-        mutant("lit-rod-found-twice", "what shadow rays find is hit, too", LIT_NEXT_EVENT, ratio, Bug::HitAlone),
-        mutant("lit-rod-albedo-twice", "the albedo is the chance of a scattering and a weight of its shadow ray", LIT_NEXT_EVENT, ratio, Bug::AlbedoTwice),
-        mutant("lit-rod-carried-along", "the walk goes on where its shadow ray ended", LIT_NEXT_EVENT, ratio, Bug::CarriedAlong),
-        mutant("lit-rod-through-scattering", "scattering lets a shadow ray through: only absorption stops it", LIT_NEXT_EVENT_DELTA, delta, Bug::ThroughScattering),
-        mutant("lit-rod-isotropic", "shadow rays take both directions to be alike", LIT_NEXT_EVENT_DELTA, delta, Bug::Isotropic),
-        mutant("lit-rod-reversed", "the phase function of a shadow ray is that of the reversed direction", LIT_DIRECTIONAL, directional, Bug::Reversed),
-        mutant("lit-rod-squared-weights", "the power heuristic squares weights that sum to 1", LIT_DIRECTIONAL, directional, Bug::Squared),
-    ]
 }

@@ -4,24 +4,66 @@
 //! X = q t̂ w_nee(ρ) + [hit] w_uni(ρ),   q = p(μ)/p_nee,   p_nee = D²/(A μ³) for a disc,   ρ = q Π (1 − r)
 //! ```
 
-use super::lit_rod::{self, Wrong};
-use super::target::{LIT_SLAB_DIRECTIONAL, LIT_SLAB_DISTANT, LIT_SLAB_FULL, LIT_SLAB_NEXT_EVENT};
-use super::{About, Mutant, Target, filled};
-use estimators::lit_slab::walk::{Directions, Right, fill};
+use super::lit_rod::{self, balanced, next_event};
+use super::{Line, Mutant, Target, family, filled, on};
+use estimators::lit_slab::walk::{Directions, Right, ToLight};
+use estimators::walks;
 use media::phase::Phase;
 use numeric::Lane;
-use theory::lit_rod::{Combination, Densities, Heuristic, Shadow, Techniques};
+use theory::lit_rod::{Densities, Shadow};
 use theory::problems::LitSlab;
 
-/// The bugs in densities of directions.
+/// A wide disc close behind a slab of rising extinction, g = 0.6, `σ̂ = 1.5`; next event by ratio tracking.
+const NEXT_EVENT: Target = on("slab/lit-known-bugs", 3);
+/// Directional weights, delta tracking.
+const DIRECTIONAL: Target = on("slab/lit-known-bugs", 4);
+/// All densities, ratio tracking.
+const FULL: Target = on("slab/lit-known-bugs", 6);
+/// A beam behind the same slab.
+const DISTANT: Target = on("slab/lit-distant", 3);
+
+/// The bugs: in a step of a rod's walk, in the techniques, and in densities of directions.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Bug {
     None,
+    Step(lit_rod::Bug),
+    BeamWeighted,
     CosineMissing,
     Upright,
     Reversed,
     AreasMixed,
     PhaseAlone,
+}
+
+#[rustfmt::skip] // one mutant, one entry
+const LINES: &[Line<Bug>] = &[
+    ("lit-slab-cosine-missing", "the cosine at the disc is left out of p_nee: D²/(A μ²)", NEXT_EVENT, "mean", Bug::CosineMissing),
+    ("lit-slab-upright", "shadow rays fly as deep as if they went straight down", NEXT_EVENT, "mean", Bug::Upright),
+    ("lit-slab-reversed", "the phase function of a shadow ray is that of the reversed direction", NEXT_EVENT, "mean", Bug::Reversed),
+    ("lit-slab-shadow-twice", "the transmittance of a shadow ray is a weight twice", NEXT_EVENT, "mean", Bug::Step(lit_rod::Bug::ShadowTwice)),
+    ("lit-slab-areas-mixed", "a hit compares p(μ) per steradian with a density per area of the disc", DIRECTIONAL, "mean", Bug::AreasMixed),
+    ("lit-slab-phase-alone", "a hit is weighted as if p_nee were 1, as in a rod", DIRECTIONAL, "mean", Bug::PhaseAlone),
+    ("lit-slab-hit-alone", "hits are not divided by p_uni + p_nee", FULL, "mean", Bug::Step(lit_rod::Bug::HitAlone)),
+    ("lit-slab-nulls-missing", "null collisions are left out of the density of hits only", FULL, "mean", Bug::Step(lit_rod::Bug::NullsMissing)),
+    ("lit-slab-last-segment", "the last segment's transmittance is in the densities, and not in f", FULL, "mean", Bug::Step(lit_rod::Bug::LastSegment)),
+    ("lit-slab-beam-weighted", "a shadow ray to a beam is weighted as if it could be hit", DISTANT, "mean", Bug::BeamWeighted),
+];
+
+/// The family.
+pub fn mutants() -> Vec<Mutant<LitSlab>> {
+    let draws = |target, &bug: &Bug| {
+        let techniques = match (target, bug) {
+            (DIRECTIONAL, _) => balanced(Shadow::Delta, Densities::Directional),
+            (FULL, _) | (_, Bug::BeamWeighted) => balanced(Shadow::Ratio, Densities::Full),
+            _ => next_event(Shadow::Ratio),
+        };
+        let step = if let Bug::Step(step) = bug { step } else { lit_rod::Bug::None };
+        filled(move |setup, request| {
+            let steps = lit_rod::Wrong(techniques, step);
+            walks::in_turn(&ToLight::of(setup, steps, bug), setup, request);
+        })
+    };
+    family(LINES, &Bug::None, draws)
 }
 
 impl Directions for Bug {
@@ -48,35 +90,4 @@ impl Directions for Bug {
     fn slant<L: Lane>(&self, cosine: L) -> L {
         if *self == Self::Upright { cosine.each(1.0) } else { Right.slant(cosine) }
     }
-}
-
-/// The family.
-#[rustfmt::skip] // one mutant, one entry
-pub fn mutants() -> Vec<Mutant<LitSlab>> {
-    use lit_rod::Bug as Step;
-    let twin = |walk: (Wrong, Bug)| filled(walk, fill);
-    let mutant = |name, bug, target: Target, honest: Techniques, wrong: (Wrong, Bug)| {
-        Mutant::new(About { name, bug, target, check: "mean" }, twin(wrong), twin((Wrong(honest, Step::None), Bug::None)))
-    };
-    let direction = |name, bug, target, honest, wrong| mutant(name, bug, target, honest, (Wrong(honest, Step::None), wrong));
-    let step = |name, bug, target, honest, wrong| mutant(name, bug, target, honest, (Wrong(honest, wrong), Bug::None));
-    let balanced = |shadow, densities| {
-        let combination = Combination::Mis(densities, Heuristic::Balance);
-        Techniques { shadow: Some(shadow), combination }
-    };
-    let full = balanced(Shadow::Ratio, Densities::Full);
-    let directional = balanced(Shadow::Delta, Densities::Directional);
-    let alone = Techniques { shadow: Some(Shadow::Ratio), combination: Combination::NextEvent };
-    vec![
-        direction("lit-slab-cosine-missing", "the cosine at the disc is left out of p_nee: D²/(A μ²)", LIT_SLAB_NEXT_EVENT, alone, Bug::CosineMissing),
-        direction("lit-slab-upright", "shadow rays fly as deep as if they went straight down", LIT_SLAB_NEXT_EVENT, alone, Bug::Upright),
-        direction("lit-slab-reversed", "the phase function of a shadow ray is that of the reversed direction", LIT_SLAB_NEXT_EVENT, alone, Bug::Reversed),
-        step("lit-slab-shadow-twice", "the transmittance of a shadow ray is a weight twice", LIT_SLAB_NEXT_EVENT, alone, Step::ShadowTwice),
-        direction("lit-slab-areas-mixed", "a hit compares p(μ) per steradian with a density per area of the disc", LIT_SLAB_DIRECTIONAL, directional, Bug::AreasMixed),
-        direction("lit-slab-phase-alone", "a hit is weighted as if p_nee were 1, as in a rod", LIT_SLAB_DIRECTIONAL, directional, Bug::PhaseAlone),
-        step("lit-slab-hit-alone", "hits are not divided by p_uni + p_nee", LIT_SLAB_FULL, full, Step::HitAlone),
-        step("lit-slab-nulls-missing", "null collisions are left out of the density of hits only", LIT_SLAB_FULL, full, Step::NullsMissing),
-        step("lit-slab-last-segment", "the last segment's transmittance is in the densities, and not in f", LIT_SLAB_FULL, full, Step::LastSegment),
-        mutant("lit-slab-beam-weighted", "a shadow ray to a beam is weighted as if it could be hit", LIT_SLAB_DISTANT, alone, (Wrong(full, Step::None), Bug::None)),
-    ]
 }

@@ -1,65 +1,67 @@
-//! Known bugs: a twin of an estimator with one mistake in it, for a gate that must not let it pass.
+//! Known bugs: an estimator with one mistake in it, for a gate that must not let it pass.
 //!
 //! A test that has never failed proves little. A mutant names one experiment of the built-in suite
-//! and the check that must catch it there; `trueflight self-test` draws it in the honest
-//! estimator's place, against the honest estimator's prediction.
+//! and the check that must catch it there; `trueflight self-test` draws it in the place
+//! of the correct estimator, against its prediction.
 //!
-//! A mutant's walk is [`walk`] with one [`Fault`]: the steps of a correct walk are [`RIGHT`], and a
-//! fault replaces one of them. Without a fault the walk is the estimator's
-//! own, bit for bit; that *honest twin* shows that nothing but the bug was changed. One file holds
-//! one family of bugs; a mutant is one entry in its family's list. Wrong [`streams`] are a family
-//! of their own: there the estimators are right and their random numbers are not.
+//! A mutant is a walk of the estimators with other steps, other random numbers, or another setup. Without its bug
+//! the walk makes the estimator's own draws, bit for bit; that *twin* shows that nothing but the bug was
+//! changed. One file holds one family of bugs, and a mutant is one line of its family's table. Bugs along a ray are
+//! in [`line`], which is put between a walk and its driver. Wrong [`streams`] are a family of their own: there the
+//! estimators are right and their random numbers are not.
 //!
 //! The bugs are those that renderers and transport codes have had, and those that a formula of this
-//! crate invites.
+//! project invites.
 
-pub mod bidirectional_rod;
+mod bidirectional_rod;
 mod caught;
-pub mod chromatic_slab;
-pub mod control;
-pub mod curve;
-pub mod decisions;
-pub mod fault;
-pub mod flight;
-pub mod free_flight;
-pub mod lit_rod;
-pub mod lit_slab;
-pub mod lookups;
-pub mod null_paths;
-pub mod precision;
-pub mod rod;
-pub mod rules;
-pub mod scores;
-pub mod single_scattering;
-pub mod slab;
-pub mod space;
-pub mod spectral;
-pub mod spectral_furnace;
-pub mod spectral_lit_rod;
-pub mod spectral_rod;
-pub mod spectral_single_scattering;
-pub mod sphere;
-pub mod sphere_paths;
+mod chromatic;
+mod curve;
+mod free_flight;
+mod line;
+mod lit_rod;
+mod lit_slab;
+mod particle;
+mod product;
+mod rule;
+mod scores;
+mod single_scattering;
+mod spectral;
+mod spectral_lit_rod;
+mod spectral_rod;
+mod spectral_single_scattering;
+mod sphere;
 pub mod streams;
-pub mod target;
-pub mod tracking;
-pub mod trial;
-pub mod walk;
-pub mod weights;
+mod tracking;
+mod trial;
 
 use std::any::Any;
 use std::sync::Arc;
 
-use estimators::{Draw, Experiment, Kernel, Request, Setup, walks};
+use estimators::{Draw, Experiment, Request, Setup, walks};
 use media::Lookups;
 use numeric::rng::Stream;
 use theory::problems::Problem;
 
 pub use caught::Caught;
-pub use fault::{Fault, RIGHT};
 pub use streams::StreamMutant;
-pub use target::Target;
-pub use trial::{Draws, Trial};
+use trial::{Draws, Trial};
+
+/// One experiment of a case of the built-in suite.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Target {
+    /// The case.
+    pub case: &'static str,
+    /// Which estimator of the case, from 0.
+    pub index: usize,
+    /// Point of the sweep, in cases that have one.
+    pub swept: Option<f64>,
+}
+
+/// An estimator of a case without a sweep.
+const fn on(case: &'static str, index: usize) -> Target {
+    Target { case, index, swept: None }
+}
 
 /// Description of a mutant, without its draws.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -74,73 +76,74 @@ pub struct About {
     pub check: &'static str,
 }
 
+/// A mutant in the table of its family: name, bug in one sentence, target, check, and the bug itself.
+type Line<B> = (&'static str, &'static str, Target, &'static str, B);
+
 /// A known bug in an estimator of problem `P`.
-pub struct Mutant<P: Problem> {
-    /// Description.
-    pub about: About,
+struct Mutant<P: Problem> {
+    about: About,
     faulty: Arc<Draws<P>>,
     honest: Arc<Draws<P>>,
-    fault: Fault,
+    /// Makes the setup wrong.
+    prepare: fn(&mut Setup<P>),
+    /// Whether every 1024 draws begin with the same random numbers.
+    replays: bool,
 }
 
 impl<P: Problem> Mutant<P> {
-    /// Joins a bug and the same draws without it.
-    pub fn new(
-        about: About,
-        faulty: impl Fn(Kernel, &Setup<P>, Request) + Send + Sync + 'static,
-        honest: impl Fn(Kernel, &Setup<P>, Request) + Send + Sync + 'static,
-    ) -> Self {
-        Self { about, faulty: Arc::new(faulty), honest: Arc::new(honest), fault: RIGHT }
-    }
-
-    /// Applies a fault to the setup and the generator of the mutant.
-    #[must_use]
-    pub fn on_faulty_setup(self, fault: Fault) -> Self {
-        Self { fault, ..self }
-    }
-
     /// The experiment of a walk on a prepared `Setup<P>`; `None` for the setup of another problem.
-    fn drawn(&self, walk: Walk, setup: Box<dyn Any>) -> Option<Box<dyn Experiment>> {
-        let setup = *setup.downcast::<Setup<P>>().ok()?;
-        Some(match walk {
-            Walk::Faulty => self.experiment(setup),
-            Walk::Twin => self.twin(setup),
-        })
-    }
-
-    /// The experiment with the bug.
-    pub fn experiment(&self, setup: Setup<P>) -> Box<dyn Experiment> {
-        let (setup, replays) = (self.fault.prepared(setup), self.fault.replays);
-        Box::new(Trial { draws: self.faulty.clone(), setup, replays })
-    }
-
-    /// The honest twin: the same code without the bug.
-    pub fn twin(&self, setup: Setup<P>) -> Box<dyn Experiment> {
-        Box::new(Trial { draws: self.honest.clone(), setup, replays: false })
+    fn experiment(&self, walk: Walk, setup: Box<dyn Any>) -> Option<Box<dyn Experiment>> {
+        let mut setup = *setup.downcast::<Setup<P>>().ok()?;
+        let trial = match walk {
+            Walk::Faulty => {
+                (self.prepare)(&mut setup);
+                Trial { draws: self.faulty.clone(), setup, replays: self.replays }
+            }
+            Walk::Twin => Trial { draws: self.honest.clone(), setup, replays: false },
+        };
+        Some(Box::new(trial))
     }
 }
 
-/// Draws one by one, by a way to make one, right or wrong.
-fn with<P: Problem, B: Send + Sync + 'static>(
-    bug: B,
-    draw: impl Fn(&B, &Setup<P>, &Lookups, &mut Stream) -> Draw<P::Value> + Send + Sync + 'static,
-) -> impl Fn(Kernel, &Setup<P>, Request) + Send + Sync + 'static {
-    move |_, setup, request| {
+/// Mutants of a table. A bug and its twin, which has `right` for the bug, are draws of the same code.
+fn family<P: Problem, B, D>(
+    lines: &[Line<B>],
+    right: &B,
+    draws: impl Fn(Target, &B) -> D,
+) -> Vec<Mutant<P>>
+where
+    D: Fn(&Setup<P>, Request) + Send + Sync + 'static,
+{
+    let mutant = |(name, bug, target, check, wrong): &Line<B>| Mutant {
+        about: About { name, bug, target: *target, check },
+        faulty: Arc::new(draws(*target, wrong)) as Arc<Draws<P>>,
+        honest: Arc::new(draws(*target, right)),
+        prepare: |_| {},
+        replays: false,
+    };
+    lines.iter().map(mutant).collect()
+}
+
+/// Draws of requests by a function that makes them all.
+fn filled<P: Problem>(
+    fill: impl Fn(&Setup<P>, Request) + Send + Sync + 'static,
+) -> impl Fn(&Setup<P>, Request) + Send + Sync + 'static {
+    fill
+}
+
+/// Draws of requests by a function that makes one, with steps that are right or wrong.
+fn with<P: Problem, S: Send + Sync + 'static>(
+    steps: S,
+    draw: impl Fn(&S, &Setup<P>, &Lookups, &mut Stream) -> Draw<P::Value> + Send + Sync + 'static,
+) -> impl Fn(&Setup<P>, Request) + Send + Sync + 'static {
+    move |setup, request| {
         walks::one_by_one(
             setup,
             request,
             #[inline(always)]
-            |medium, random| draw(&bug, setup, medium, random),
+            |medium, random| draw(&steps, setup, medium, random),
         );
     }
-}
-
-/// Draws of a walk whose steps are right or wrong, by any kernel.
-fn filled<P: Problem, B: Copy + Send + Sync + 'static>(
-    steps: B,
-    fill: impl Fn(B, Kernel, &Setup<P>, Request) + Send + Sync + 'static,
-) -> impl Fn(Kernel, &Setup<P>, Request) + Send + Sync + 'static {
-    move |kernel, setup, request| fill(steps, kernel, setup, request)
 }
 
 /// One of a mutant's two walks.
@@ -169,7 +172,7 @@ macro_rules! families {
             setup: Box<dyn Any>,
         ) -> Option<Box<dyn Experiment>> {
             $(if let Some(mutant) = $family.into_iter().find(|own| own.about.name == name) {
-                return mutant.drawn(walk, setup);
+                return mutant.experiment(walk, setup);
             })*
             None
         }
@@ -177,36 +180,27 @@ macro_rules! families {
 }
 
 families! {
-    control::mutants(),
-    lookups::mutants(),
-    flight::mutants(),
-    weights::mutants(),
-    rules::mutants(),
-    decisions::mutants(),
+    product::mutants(),
     scores::mutants(),
     tracking::mutants(),
-    precision::mutants(),
     free_flight::mutants(),
-    precision::flights(),
     curve::mutants(),
     spectral::mutants(),
-    rod::mutants(),
-    spectral_rod::mutants(),
+    particle::in_rod(),
+    spectral_rod::in_rod(),
     lit_rod::mutants(),
     lit_slab::mutants(),
     spectral_lit_rod::mutants(),
-    slab::mutants(),
+    particle::in_slab(),
     spectral_rod::in_slab(),
-    chromatic_slab::mutants(),
+    chromatic::in_slab(),
     single_scattering::mutants(),
-    null_paths::mutants(),
     spectral_single_scattering::mutants(),
-    space::in_furnace(),
-    spectral_furnace::mutants(),
-    space::under_light(),
-    space::in_infinite_medium(),
+    particle::in_furnace(),
+    chromatic::in_furnace(),
+    particle::under_light(),
+    particle::in_infinite_medium(),
     sphere::mutants(),
-    sphere_paths::mutants(),
     bidirectional_rod::mutants(),
 }
 

@@ -8,10 +8,14 @@
 //! Each chance to fly straight to the end counts once. A mean of two walks has the right mean and
 //! half the variance; ray marching has next to no variance, and a bias.
 
-use super::fault::{Fault, RIGHT};
-use super::target::{BELOW, DENSE, MIS, NEXT_FLIGHT};
-use super::walk::draw_product;
-use super::{About, Mutant, with};
+use super::line::{Slip, Wrong};
+use super::product::{BELOW, DENSE, known};
+use super::{Line, Mutant, Target, family, with};
+use estimators::transmittance::next_flight::NextFlight;
+use estimators::transmittance::product::Product;
+use estimators::transmittance::scoring::{Scoring, Share};
+use estimators::transmittance::unidirectional_mis::UnidirectionalMis;
+use estimators::walks::{self, Walk};
 use estimators::{Draw, Setup};
 use media::{Extinction, Lookups};
 use numeric::Lane;
@@ -19,74 +23,104 @@ use numeric::rng::{Stream, unit};
 use theory::problems::Transmittance;
 use theory::rules::Weight;
 
-const RATIO: (Weight, Fault) = (Weight, RIGHT);
+/// `σ̂ = 1`.
+const NEXT_FLIGHT: Target = known(13);
+/// `σ̂ = 1`.
+const MIS: Target = known(14);
+
+#[derive(Clone, Copy)]
+enum Bug {
+    None,
+    Step(Slip),
+    WithoutFlight,
+    Unweighted,
+    Marching,
+    Averaged,
+}
+
+#[rustfmt::skip] // one mutant, one entry
+const LINES: &[Line<Bug>] = &[
+    ("next-flight-without-first", "the chance to fly from the beginning straight to the end is left out", NEXT_FLIGHT, "mean", Bug::Step(Slip::WithoutFirst)),
+    ("next-flight-counted-twice", "a walk that reaches the end adds its weight to what it has already scored", NEXT_FLIGHT, "mean", Bug::Step(Slip::AddsWeight)),
+    ("mis-without-flight", "a flight that reaches the end does not score its own share", MIS, "mean", Bug::WithoutFlight),
+    ("mis-unweighted", "next flight and flight count in full, unweighted", MIS, "mean", Bug::Unweighted),
+    ("ray-marching", "three steps of ray marching with a random offset, passed off as fair", DENSE, "mean", Bug::Marching),
+    ("two-walks-averaged", "the mean of two walks is one draw", BELOW, "variance", Bug::Averaged),
+];
 
 /// The family.
-#[rustfmt::skip] // one mutant, one entry
 pub fn mutants() -> Vec<Mutant<Transmittance>> {
-    let next_flight = Scores { share: |v| v, first: true, end: |_, _| 0.0 };
-    let mis = Scores { share: |v| v / (1.0 + v), first: true, end: |_, last| last };
-    let of = |name, bug, target, right: Scores, wrong: Scores| {
-        Mutant::new(About { name, bug, target, check: "mean" }, with(wrong, scored), with(right, scored))
-    };
-    let right = || with(RATIO, draw_product);
-    let marching = About { name: "ray-marching", bug: "three steps of ray marching with a random offset, passed off as fair", target: DENSE, check: "mean" };
-    let mean = About { name: "two-walks-averaged", bug: "the mean of two walks is one draw", target: BELOW, check: "variance" };
-    vec![
-        of("next-flight-without-first", "the chance to fly from the beginning straight to the end is left out", NEXT_FLIGHT, next_flight, Scores { first: false, ..next_flight }),
-        of("next-flight-counted-twice", "a walk that reaches the end adds its weight to what it has already scored", NEXT_FLIGHT, next_flight, Scores { end: |weight, _| weight, ..next_flight }),
-        of("mis-without-flight", "a flight that reaches the end does not score its own share", MIS, mis, Scores { end: |_, _| 0.0, ..mis }),
-        of("mis-unweighted", "next flight and flight count in full, unweighted", MIS, mis, Scores { share: |v| v, ..mis }),
-        Mutant::new(marching, with((), |(), setup, medium, random| ray_marching(setup, medium, random)), right()),
-        Mutant::new(mean, with((), |(), setup, medium, random| averaged(setup, medium, random)), right()),
-    ]
+    family(LINES, &Bug::None, |target, &bug| with((target, bug), draw))
 }
 
-/// What walks score on their way, see `estimators/transmittance/next_flight.rs` and `unidirectional_mis.rs`.
-#[derive(Clone, Copy)]
-struct Scores {
-    /// The share of v that counts where a flight begins.
-    share: fn(f64) -> f64,
-    /// Whether the first flight counts.
-    first: bool,
-    /// What a walk that reaches the end adds, from its weight and its last score.
-    end: fn(f64, f64) -> f64,
-}
-
-fn scored(
-    scores: &Scores,
+fn draw(
+    &(target, bug): &(Target, Bug),
     setup: &Setup<Transmittance>,
     medium: &Lookups,
-    rng: &mut Stream,
+    random: &mut Stream,
 ) -> Draw {
-    let end = setup.mesh.support().to;
-    let mut cursor = setup.sampling.begin();
-    let (mut weight, mut lookups) = (1.0, 0);
-    let share = |sampling: f64, t: f64| (scores.share)(Lane::exp(-sampling * (end - t)));
-    let mut last = share(setup.sampling.value(cursor.t), cursor.t);
-    let mut score = if scores.first { last } else { 0.0 };
-    while let Some(sampling) = setup.sampling.fly(&mut cursor, -rng.ln_uniform()) {
-        weight *= 1.0 - medium.extinction(cursor.t) * (1.0 / sampling);
-        lookups += 1;
-        last = weight * share(sampling, cursor.t);
-        score += last;
+    match (target, bug) {
+        (_, Bug::Marching) => ray_marching(setup, medium, random),
+        (_, Bug::WithoutFlight) => {
+            one(Scoring::new(WithoutFlight, setup), bug, setup, medium, random)
+        }
+        (_, Bug::Unweighted) => one(Scoring::new(Unweighted, setup), bug, setup, medium, random),
+        (NEXT_FLIGHT, _) => one(Scoring::new(NextFlight, setup), bug, setup, medium, random),
+        (MIS, _) => one(Scoring::new(UnidirectionalMis, setup), bug, setup, medium, random),
+        _ => {
+            let first = one(Product::new(&Weight, setup), bug, setup, medium, random);
+            if !matches!(bug, Bug::Averaged) {
+                return first;
+            }
+            let second = one(Product::new(&Weight, setup), bug, setup, medium, random);
+            Draw { value: [0.5 * (first.value[0] + second.value[0])], ..first }
+        }
     }
-    Draw::free([score + (scores.end)(weight, last)], lookups)
+}
+
+fn one(
+    walk: impl Walk,
+    bug: Bug,
+    setup: &Setup<Transmittance>,
+    medium: &Lookups,
+    random: &mut Stream,
+) -> Draw {
+    let slip = if let Bug::Step(slip) = bug { slip } else { Slip::None };
+    walks::draw(&Wrong::new(walk, slip, setup), &setup.sampling, medium, random)
 }
 
 /// `X = exp(−h Σⱼ σ_t((j + u) h))`.
-fn ray_marching(setup: &Setup<Transmittance>, medium: &Lookups, rng: &mut Stream) -> Draw {
+fn ray_marching(setup: &Setup<Transmittance>, medium: &Lookups, random: &mut Stream) -> Draw {
     let support = setup.mesh.support();
     let step = support.length() / 3.0;
-    let offset = unit(rng);
+    let offset = unit(random);
     let at = |j: u32| support.from + (f64::from(j) + offset) * step;
     let depth = step * (0..3).map(|j| medium.extinction(at(j))).sum::<f64>();
     Draw::free([Lane::exp(-depth)], 3)
 }
 
-/// `X = (X₁ + X₂)/2`, with the lookups of one.
-fn averaged(setup: &Setup<Transmittance>, medium: &Lookups, rng: &mut Stream) -> Draw {
-    let one = draw_product(&RATIO, setup, medium, rng);
-    let two = draw_product(&RATIO, setup, medium, rng);
-    Draw { value: [0.5 * (one.value[0] + two.value[0])], ..one }
+/// Shares of unidirectional MIS that a flight does not score.
+#[derive(Clone, Copy)]
+struct WithoutFlight;
+
+impl Share for WithoutFlight {
+    const FLIGHT_SCORES: bool = false;
+
+    #[inline(always)]
+    fn of<L: Lane>(&self, left: L) -> L {
+        UnidirectionalMis.of(left)
+    }
+}
+
+/// Shares of next flights that a flight scores, too.
+#[derive(Clone, Copy)]
+struct Unweighted;
+
+impl Share for Unweighted {
+    const FLIGHT_SCORES: bool = true;
+
+    #[inline(always)]
+    fn of<L: Lane>(&self, left: L) -> L {
+        NextFlight.of(left)
+    }
 }

@@ -1,39 +1,31 @@
-//! Mistakes of single scattering, by source-driven points.
+//! Mistakes of single scattering, by points from the light and by delta tracking.
 //!
 //! ```text
-//! X = T̂ σ_t a p(cos θ) Φ/(4π r²) T̂_shadow / p(s),   p(s) = D/(Δθ r²),   shadow rays clipped
+//! points from the light     X = T̂ σ_t a p(cos θ) Φ/(4π r²) T̂_shadow / p(s),   p(s) = D/(Δθ r²),   shadow rays clipped
+//! with delta tracking, too  X = Σ f(sᵢ) w_i/p_i,   q = a σ_t Π (1 − σ_t/σ̂),   w_i = p_i^β/(p^β + q^β)
 //! ```
 
-use super::target::{SINGLE_EXACT, SINGLE_RATIO, SINGLE_SHADOW};
-use super::{About, Mutant, with};
-use estimators::single_scattering::plan::Vertices;
-use estimators::single_scattering::vertices::{Steps, Vertex};
-use numeric::{Lane, elementary};
+use super::{Line, Mutant, Target, family, on, with};
+use estimators::Setup;
+use estimators::single_scattering::plan::{Absorption, Vertices};
+use estimators::single_scattering::vertices::{Right, Steps, Vertex};
+use numeric::{Lane, Span, elementary};
+use theory::Heuristic;
 use theory::problems::{Problem, SingleScattering};
 use theory::single::{CameraTracking, Tracking};
 
-/// The family.
-#[rustfmt::skip] // one mutant, one entry
-pub fn mutants() -> Vec<Mutant<SingleScattering>> {
-    let by = |camera, shadow| (Vertices { camera, ..Vertices::FROM_LIGHT }, shadow);
-    let exact = by(CameraTracking::Exact, Tracking::Exact);
-    let ratio = by(CameraTracking::Ratio, Tracking::Exact);
-    let tracked = by(CameraTracking::Exact, Tracking::Ratio { sampling: 1.5, control: 0.0 });
-    let of = |name, text, target, (vertices, shadow): (Vertices, Tracking), bug| {
-        let about = About { name, bug: text, target, check: "mean" };
-        let draws = |bug| with(bug, move |&bug, setup, medium, rng| vertices.draw((Wrong { bug, problem: &setup.problem }, shadow), setup, medium, rng));
-        Mutant::new(about, draws(bug), draws(Bug::None))
-    };
-    vec![
-        of("single-shadow-not-clipped", "the shadow ray goes on through the field beyond the bounds of the volume", SINGLE_EXACT, exact, Bug::Unclipped),
-        of("single-cosine-reversed", "the cosine in the phase function has the wrong sign", SINGLE_EXACT, exact, Bug::Reversed),
-        of("single-pdf-per-angle", "the density is per angle, 1/Δθ, and the integrand per distance", SINGLE_EXACT, exact, Bug::PerAngle),
-        of("single-pdf-per-solid-angle", "1/r² is counted twice: in the source and as if the density were per solid angle", SINGLE_EXACT, exact, Bug::PerSolidAngle),
-        of("single-albedo-twice", "the albedo is applied in the source and once more in the draw", SINGLE_EXACT, exact, Bug::AlbedoTwice),
-        of("single-number-twice", "the walk begins again with the random number that found the point", SINGLE_RATIO, ratio, Bug::NumberTwice),
-        of("single-shadow-from-light-only", "the shadow ray's transmittance is left out", SINGLE_SHADOW, tracked, Bug::Unshadowed),
-    ]
-}
+/// A homogeneous ball, light outside, exact transmittances.
+const EXACT: Target = on("single-scattering/known-bugs", 0);
+/// A ratio-tracked camera.
+const RATIO: Target = on("single-scattering/known-bugs", 1);
+/// Ratio-tracked shadow rays, as in all that follow.
+const SHADOW: Target = on("single-scattering/known-bugs", 2);
+/// Equiangular points and delta tracking by null-scattering paths, `σ̂ = 1.2`.
+const NULL_PATHS: Target = on("single-scattering/known-bugs", 3);
+/// One of both.
+const ONE_SAMPLE: Target = on("single-scattering/known-bugs", 4);
+/// Both, by the power heuristic.
+const POWER: Target = on("single-scattering/known-bugs", 5);
 
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Bug {
@@ -45,19 +37,85 @@ enum Bug {
     AlbedoTwice,
     NumberTwice,
     Unshadowed,
+    NullsLeftOut,
+    ByTransmittance,
+    NothingScattered,
+    WrongEnd,
+    Averaged,
+    ShadowTwice,
+    AbsorbedGoOn,
+    ScatteringIsNull,
+    SquaredWeights,
 }
 
-/// Steps of source-driven scattering, of which a bug makes one wrong.
+#[rustfmt::skip] // one mutant, one entry
+const LINES: &[Line<Bug>] = &[
+    ("single-shadow-not-clipped", "the shadow ray goes on through the field beyond the bounds of the volume", EXACT, "mean", Bug::Unclipped),
+    ("single-cosine-reversed", "the cosine in the phase function has the wrong sign", EXACT, "mean", Bug::Reversed),
+    ("single-pdf-per-angle", "the density is per angle, 1/Δθ, and the integrand per distance", EXACT, "mean", Bug::PerAngle),
+    ("single-pdf-per-solid-angle", "1/r² is counted twice: in the source and as if the density were per solid angle", EXACT, "mean", Bug::PerSolidAngle),
+    ("single-albedo-twice", "the albedo is applied in the source and once more in the draw", EXACT, "mean", Bug::AlbedoTwice),
+    ("single-number-twice", "the walk begins again with the random number that found the point", RATIO, "mean", Bug::NumberTwice),
+    ("single-shadow-from-light-only", "the shadow ray's transmittance is left out", SHADOW, "mean", Bug::Unshadowed),
+    ("null-paths-nulls-left-out", "the density of delta tracking leaves out its null collisions where it was sampled", NULL_PATHS, "mean", Bug::NullsLeftOut),
+    ("null-paths-by-transmittance", "weights take transmittances for null collisions: unbiased, but another estimator", NULL_PATHS, "variance", Bug::ByTransmittance),
+    ("null-paths-nothing-scattered", "a point from the light is worth what it is without σ_t there: no event was sampled", NULL_PATHS, "mean", Bug::NothingScattered),
+    ("null-paths-wrong-end", "the angles of the ray's ends are measured from the wrong one", NULL_PATHS, "mean", Bug::WrongEnd),
+    ("null-paths-averaged", "both techniques are sampled and added, and their average is taken", NULL_PATHS, "mean", Bug::Averaged),
+    ("null-paths-shadow-twice", "the shadow ray's transmittance is a weight twice", NULL_PATHS, "mean", Bug::ShadowTwice),
+    ("null-paths-albedo-twice", "the albedo is the chance to scatter and a factor of what is scattered", NULL_PATHS, "mean", Bug::AlbedoTwice),
+    ("null-paths-absorbed-go-on", "a walk that is absorbed goes on as after a null collision", NULL_PATHS, "mean", Bug::AbsorbedGoOn),
+    ("null-paths-scattering-is-null", "the scattering multiplies its own 1 − σ_t/σ̂ to those of the null collisions", NULL_PATHS, "mean", Bug::ScatteringIsNull),
+    ("null-paths-one-not-doubled", "one technique is chosen and not divided by its chance", ONE_SAMPLE, "mean", Bug::Averaged),
+    ("null-paths-squared-weights", "the power heuristic squares weights that sum to 1", POWER, "mean", Bug::SquaredWeights),
+];
+
+/// The family.
+pub fn mutants() -> Vec<Mutant<SingleScattering>> {
+    let draws = |target, &bug: &Bug| {
+        with((plan(target), bug), |&((plan, shadow), bug), setup, medium, random| {
+            plan.draw((Wrong { bug, setup }, shadow), setup, medium, random)
+        })
+    };
+    family(LINES, &Bug::None, draws)
+}
+
+/// The points of a target, and its shadow rays.
+fn plan(target: Target) -> (Vertices, Tracking) {
+    let tracked = Tracking::Ratio { sampling: 1.5, control: 0.0 };
+    let exact = Vertices { camera: CameraTracking::Exact, ..Vertices::FROM_LIGHT };
+    let ratio = Vertices { camera: CameraTracking::Ratio, ..Vertices::FROM_LIGHT };
+    let both = Vertices { collision: Some(Absorption::Analog), ..ratio };
+    match target {
+        EXACT => (exact, Tracking::Exact),
+        RATIO => (ratio, Tracking::Exact),
+        SHADOW => (exact, tracked),
+        ONE_SAMPLE => (Vertices { is_one: true, ..both }, tracked),
+        POWER => (Vertices { heuristic: Heuristic::Power, ..both }, tracked),
+        _ => (both, tracked),
+    }
+}
+
+/// Steps, of which a bug makes one wrong.
 #[derive(Clone, Copy)]
 struct Wrong<'a> {
     bug: Bug,
-    problem: &'a SingleScattering,
+    setup: &'a Setup<SingleScattering>,
 }
 
 impl Steps for Wrong<'_> {
     #[inline(always)]
+    fn point<L: Lane>(&self, problem: &SingleScattering, number: L) -> L {
+        if self.bug == Bug::WrongEnd {
+            let angles = problem.angles();
+            return problem.at_angle(-(number * angles.length() + angles.from));
+        }
+        Right.point(problem, number)
+    }
+
+    #[inline(always)]
     fn depth<L: Lane>(&self, right: L, here: L, s: L) -> L {
-        let problem = self.problem;
+        let problem = &*self.setup.problem;
         let (angles, begin) = (problem.angles(), problem.medium().support().from);
         if self.bug != Bug::NumberTwice {
             return right;
@@ -72,12 +130,19 @@ impl Steps for Wrong<'_> {
     }
 
     #[inline(always)]
+    fn ends<L: Lane>(&self, real: L::Mask, scattered: L::Mask) -> L::Mask {
+        if self.bug == Bug::AbsorbedGoOn { scattered } else { real }
+    }
+
+    #[inline(always)]
     fn light<L: Lane>(&self, right: L, s: L) -> L {
         match self.bug {
+            Bug::ShadowTwice => right * right,
             Bug::Unshadowed => right.each(1.0),
             Bug::Unclipped => s.map(|s| {
-                self.problem.shadow(s).map_or(1.0, |(ray, _)| {
-                    let whole = self.problem.volume().along(&ray, ray.span());
+                let problem = &self.setup.problem;
+                problem.shadow(s).map_or(1.0, |(ray, _)| {
+                    let whole = problem.volume().along(&ray, ray.span());
                     Lane::exp(-whole.optical_depth(ray.span()).value)
                 })
             }),
@@ -87,15 +152,41 @@ impl Steps for Wrong<'_> {
 
     #[inline(always)]
     fn score<L: Lane>(&self, vertex: Vertex<L>, score: impl Fn(Vertex<L>) -> L) -> L {
-        let (problem, s, right) = (self.problem, vertex.s, score(vertex));
+        let Vertex { s, extinction, kept, is_chosen, .. } = vertex;
+        let (problem, one, right) = (&*self.setup.problem, s.each(1.0), score(vertex));
         let density = problem.equiangular_density(s);
-        let width = problem.angles().length();
+        let of_collisions =
+            |other: L| score(Vertex { kept: L::select(is_chosen, kept, other), ..vertex });
         match self.bug {
             Bug::Reversed => right * (problem.scattered(s, -problem.cosine(s)) / problem.source(s)),
-            Bug::PerAngle => right * density * width,
+            Bug::PerAngle => right * density * problem.angles().length(),
             // r² is D/(Δθ p).
-            Bug::PerSolidAngle => right * density * width / s.each(problem.distance()),
+            Bug::PerSolidAngle => {
+                right * density * problem.angles().length() / s.each(problem.distance())
+            }
             Bug::AlbedoTwice => right * problem.albedo(),
+            Bug::NullsLeftOut => of_collisions(one),
+            Bug::ScatteringIsNull => {
+                let sampling = self.setup.sampling.single_value().unwrap_or(f64::NAN);
+                of_collisions(kept * (extinction / s.each(sampling)).one_minus())
+            }
+            Bug::ByTransmittance => {
+                let from = problem.medium().support().from;
+                let known =
+                    s.map(|s| Lane::exp(-problem.medium().optical_depth(Span::new(from, s)).value));
+                // The densities take it; a point from the light is worth what was tracked.
+                let worth = L::select(is_chosen, kept / known, one);
+                score(Vertex { kept: known, ..vertex }) * worth
+            }
+            Bug::NothingScattered => right / L::select(is_chosen, extinction, one),
+            Bug::Averaged => right * 0.5,
+            Bug::SquaredWeights => {
+                let collision = extinction * problem.albedo() * kept;
+                let own = L::select(is_chosen, density, collision);
+                let other = L::select(is_chosen, collision, density);
+                let sum = own + other;
+                right * Heuristic::Power.shared(own, other) * own / (sum * sum)
+            }
             _ => right,
         }
     }

@@ -1,52 +1,196 @@
-//! Mistakes of next-event estimation in a ball.
+//! Mistakes of hits, shadow rays and connections in a ball, and of their combinations.
 //!
 //! ```text
-//! X = [light met before the first scattering] + Σ w Ω/4π T̂,   w with the albedo in it, T̂ up to the light
+//! next event alone  X = [light met before the first scattering] + Σ w Ω/4π T̂,   w with the albedo in it, T̂ up to the light
+//! combined          X = Σ f/p w,   w = p/Σ p,   p = 1, 1/(q Π ν), 4 d²/(a ρ² Π ν) of a hit, a shadow ray, a connection
 //! ```
 
-use super::target::{SPHERE_LAMP, SPHERE_LAMP_EXACT, SPHERE_SKY};
-use super::{About, Mutant, with};
+use super::{Line, Mutant, Target, family, on, with};
 use estimators::space::Particle;
 use estimators::space::shadow::Light;
-use estimators::sphere::Page;
-use estimators::sphere::sharing::{Sharing, Steps};
+use estimators::sphere::sharing::{Link, Sharing, Steps, Subpaths};
+use estimators::sphere::{Honest, Page};
 use numeric::{Lane, Mask};
-use theory::ParticleRule;
+use theory::lit_rod::Densities;
 use theory::problems::{Sphere, ball};
 use theory::single::Tracking;
 use theory::sphere::Techniques;
+use theory::{Heuristic, ParticleRule};
 
-/// The family.
-#[rustfmt::skip] // one mutant, one entry
-pub fn mutants() -> Vec<Mutant<Sphere>> {
-    let ratio = Tracking::Ratio { sampling: 2.0, control: 0.0 };
-    let by = |bug, shadow| {
-        let sharing = Sharing { techniques: Techniques::NextEvent, shadow: Some(shadow), subpaths: None };
-        let page = Page { particle: Particle::of(ParticleRule::Weighted), sharing };
-        with((bug, page), |(bug, page), setup, _, rng| page.draw_for(*bug, setup, rng))
-    };
-    let of = |name, text, target, shadow, bug: Bug| {
-        Mutant::new(About { name, bug: text, target, check: "mean" }, by(bug, shadow), by(Bug::None, shadow))
-    };
-    vec![
-        of("sphere-shadow-not-clipped", "the shadow ray goes on through the light to the far side", SPHERE_LAMP_EXACT, Tracking::Exact, Bug::Through),
-        of("sphere-light-twice", "light that the walk meets counts beside the shadow rays", SPHERE_SKY, ratio, Bug::Twice),
-        of("sphere-pdf-per-area", "the visible area of the light stands for its solid angle", SPHERE_LAMP, ratio, Bug::PerArea),
-        of("sphere-albedo-missing", "a shadow ray has the weight from before the scattering", SPHERE_LAMP, ratio, Bug::WithoutAlbedo),
-    ]
-}
+/// A weighted walk, ratio-tracked shadow rays to a black light sphere.
+const NEXT_EVENT: Target = on("ball/known-bugs", 0);
+/// Exact shadow rays.
+const NEXT_EVENT_EXACT: Target = on("ball/known-bugs", 1);
+/// In an environment.
+const NEXT_EVENT_SKY: Target = on("ball/environment", 0);
+/// A black light sphere in a ball that thins out, by directions.
+const DIRECTIONAL: Target = on("ball/known-bugs-paths", 0);
+/// Null-scattering paths.
+const FULL: Target = on("ball/known-bugs-paths", 1);
+/// Null-scattering paths, by the power heuristic.
+const POWER: Target = on("ball/known-bugs-paths", 2);
+/// With connections.
+const BIDIRECTIONAL: Target = on("ball/known-bugs-paths", 3);
+/// In an environment, by null-scattering paths.
+const FULL_SKY: Target = on("ball/techniques", 3);
+/// With connections.
+const BIDIRECTIONAL_SKY: Target = on("ball/techniques", 6);
 
-/// What goes wrong in the connections of a weighted walk.
-#[derive(Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 enum Bug {
     None,
     Through,
     Twice,
     PerArea,
     WithoutAlbedo,
+    HitsAlone,
+    PhaseAlone,
+    ShadowTwice,
+    Averaged,
+    NullsInOne,
+    NullsOfAll,
+    Unscattered,
+    TwoHeuristics,
+    WithoutDistance,
+    AlbedoMissing,
+    TrackedTwice,
+    ThroughLight,
+    EvenEmission,
+    Added,
+    GeometryInOne,
+}
+
+#[rustfmt::skip] // one mutant, one entry
+const LINES: &[Line<Bug>] = &[
+    ("sphere-shadow-not-clipped", "the shadow ray goes on through the light to the far side", NEXT_EVENT_EXACT, "mean", Bug::Through),
+    ("sphere-light-twice", "light that the walk meets counts beside the shadow rays", NEXT_EVENT_SKY, "mean", Bug::Twice),
+    ("sphere-pdf-per-area", "the visible area of the light stands for its solid angle", NEXT_EVENT, "mean", Bug::PerArea),
+    ("sphere-albedo-missing", "a shadow ray has the weight from before the scattering", NEXT_EVENT, "mean", Bug::WithoutAlbedo),
+    ("sphere-mis-hits-alone", "hits are not divided by p_uni + p_nee", DIRECTIONAL, "mean", Bug::HitsAlone),
+    ("sphere-mis-phase-alone", "a hit is weighted as if p_nee were 1 per steradian", DIRECTIONAL, "mean", Bug::PhaseAlone),
+    ("sphere-mis-shadow-twice", "the transmittance of a shadow ray is a weight twice", FULL, "mean", Bug::ShadowTwice),
+    ("sphere-mis-averaged", "samples of both techniques are weighted, added, and divided by their number", FULL, "mean", Bug::Averaged),
+    ("sphere-mis-nulls-in-one", "null collisions are left out of the density of hits only", FULL_SKY, "mean", Bug::NullsInOne),
+    ("sphere-mis-nulls-of-all", "ρ does not begin anew at a scattering: null collisions of all segments are in it", FULL_SKY, "mean", Bug::NullsOfAll),
+    ("sphere-mis-unscattered", "light that was never scattered is weighted as if shadow rays could find it", FULL_SKY, "mean", Bug::Unscattered),
+    ("sphere-mis-two-heuristics", "hits are weighted by the balance heuristic, shadow rays by the power heuristic", POWER, "mean", Bug::TwoHeuristics),
+    ("sphere-connection-without-distance", "1/d² is left out of a connection", BIDIRECTIONAL, "mean", Bug::WithoutDistance),
+    ("sphere-connection-albedo-missing", "a connection leaves out the albedo at the vertex of the light", BIDIRECTIONAL, "mean", Bug::AlbedoMissing),
+    ("sphere-connection-tracked-twice", "the tracked transmittance of a connection multiplies its worth twice", BIDIRECTIONAL, "mean", Bug::TrackedTwice),
+    ("sphere-connection-through-light", "connections go through the black sphere", BIDIRECTIONAL, "mean", Bug::ThroughLight),
+    ("sphere-connection-even-emission", "light leaves its surface in all directions alike, without the law of Lambert", BIDIRECTIONAL_SKY, "mean", Bug::EvenEmission),
+    ("sphere-connection-added", "weights of hits and shadow rays do not know of connections, which are added", BIDIRECTIONAL_SKY, "mean", Bug::Added),
+    ("sphere-connection-geometry-in-one", "d² is left out of the density of connections for the paths that others made", BIDIRECTIONAL_SKY, "mean", Bug::GeometryInOne),
+    ("sphere-connection-nulls-missing", "null collisions are left out of the densities of what walks, from the eye and from the light", BIDIRECTIONAL_SKY, "mean", Bug::NullsInOne),
+];
+
+/// The family.
+pub fn mutants() -> Vec<Mutant<Sphere>> {
+    let draws = |target, &bug: &Bug| {
+        with((page(target), bug), |(page, bug), setup, _, random| {
+            page.draw_for(*bug, setup, random)
+        })
+    };
+    family(LINES, &Bug::None, draws)
+}
+
+/// The estimator of a target.
+fn page(target: Target) -> Page {
+    let of = |rule, techniques, shadow, subpaths| Page {
+        particle: Particle::of(rule),
+        sharing: Sharing { techniques, shadow, subpaths },
+    };
+    let weighted = |shadow| of(ParticleRule::Weighted, Techniques::NextEvent, Some(shadow), None);
+    let analog = |densities, heuristic, shadow| {
+        of(ParticleRule::Analog, Techniques::Mis(densities, heuristic), shadow, None)
+    };
+    match target {
+        NEXT_EVENT_EXACT => weighted(Tracking::Exact),
+        NEXT_EVENT | NEXT_EVENT_SKY => weighted(Tracking::Ratio { sampling: 2.0, control: 0.0 }),
+        DIRECTIONAL => {
+            let shadow = Tracking::Delta { sampling: 2.5 };
+            analog(Densities::Directional, Heuristic::Balance, Some(shadow))
+        }
+        POWER => analog(Densities::Full, Heuristic::Power, None),
+        FULL | FULL_SKY => analog(Densities::Full, Heuristic::Balance, None),
+        _ => {
+            let techniques = Techniques::Bidirectional(Heuristic::Balance);
+            of(ParticleRule::Analog, techniques, None, Some(Subpaths::Independent))
+        }
+    }
 }
 
 impl Steps for Bug {
+    #[inline(always)]
+    fn chance<L: Lane>(&self, right: L) -> L {
+        if *self == Self::NullsInOne { right.each(1.0) } else { right }
+    }
+
+    #[inline(always)]
+    fn segment<L: Lane>(&self, before: L) -> L {
+        if *self == Self::NullsOfAll { before } else { before.each(1.0) }
+    }
+
+    #[inline(always)]
+    fn weight<L: Lane, const N: usize>(
+        &self,
+        heuristic: Heuristic,
+        own: usize,
+        mut densities: [L; N],
+    ) -> L {
+        let one = densities[own].each(1.0);
+        let right = heuristic.weight(own, densities);
+        match self {
+            Self::HitsAlone if own == 0 => one,
+            Self::PhaseAlone if own == 0 => {
+                densities[1] = one.each(4.0 * std::f64::consts::PI);
+                heuristic.weight(0, densities)
+            }
+            Self::Averaged => right * 0.5,
+            Self::TwoHeuristics if own == 0 => Heuristic::Balance.weight(0, densities),
+            Self::Added if own < 2 => {
+                densities.iter_mut().skip(2).for_each(|connection| *connection = one.each(0.0));
+                heuristic.weight(own, densities)
+            }
+            _ => right,
+        }
+    }
+
+    #[inline(always)]
+    fn unscattered(&self) -> f64 {
+        if *self == Self::Unscattered { 0.5 } else { 1.0 }
+    }
+
+    #[inline(always)]
+    fn lit<L: Lane>(&self, right: L, transmittance: L) -> L {
+        if *self == Self::ShadowTwice { right * transmittance } else { right }
+    }
+
+    #[inline(always)]
+    fn linked<L: Lane>(&self, right: L, square: L) -> L {
+        if *self == Self::GeometryInOne { right / square } else { right }
+    }
+
+    #[inline(always)]
+    fn connected<L: Lane>(&self, right: L, link: &Link<L>) -> L {
+        match self {
+            Self::WithoutDistance => right * link.distance * link.distance,
+            Self::AlbedoMissing => right / link.albedo,
+            Self::TrackedTwice => right * link.transmittance,
+            _ => right,
+        }
+    }
+
+    #[inline(always)]
+    fn is_hidden<M: Mask>(&self, right: M) -> M {
+        if *self == Self::ThroughLight { right & !right } else { right }
+    }
+
+    #[inline(always)]
+    fn cosine<L: Lane>(&self, number: L) -> L {
+        if *self == Self::EvenEmission { number.one_minus() } else { Honest.cosine(number) }
+    }
+
     #[inline(always)]
     fn light<L: Lane>(&self, sphere: &Sphere, place: [L; 3], right: Light<L>) -> Light<L> {
         let one = right.share.each(1.0);

@@ -7,11 +7,11 @@
 //! The mean stays right, and so does every single block: what is wrong is the spread of the blocks'
 //! means among each other, and so every standard error.
 
-use super::target::{self, Target};
+use super::{Target, product};
 use numeric::rng::{Address, LANES, Streams};
 
 /// The experiment on which they are shown.
-pub const TARGET: Target = target::LINEAR;
+pub const TARGET: Target = product::LINEAR;
 
 /// A known bug in what leads from addresses to random numbers.
 #[derive(Debug, Clone, Copy)]

@@ -5,65 +5,52 @@
 //! local majorant  beyond a segment's end, go back to the boundary and start again
 //! ```
 
-use super::target::{DECOMPOSITION, LOCAL_MAJORANT};
-use super::{About, Mutant, filled, with};
+use super::line::{Slip, Wrong};
+use super::product::known;
+use super::{Line, Mutant, Target, family, filled};
 use estimators::transmittance::decomposition::Residual;
-use estimators::{Draw, Kernel, Request, Setup, walks};
-use media::{Extinction, Lookups};
-use numeric::rng::Stream;
-use numeric::{Lane, Row};
+use estimators::transmittance::local_majorant::Segments;
+use estimators::walks;
 use theory::problems::Transmittance;
 
-/// The family.
+/// `σ_c = 0.3`, `σ̂ = 0.9`.
+const DECOMPOSITION: Target = known(11);
+/// Three segments.
+const LOCAL_MAJORANT: Target = known(12);
+
+#[derive(Clone, Copy, PartialEq)]
+enum Bug {
+    None,
+    Whole,
+    Passes,
+    Overshoots,
+}
+
 #[rustfmt::skip] // one mutant, one entry
+const LINES: &[Line<Bug>] = &[
+    ("decomposition-whole", "the chance of a real collision is σ_t/σ̂, not (σ_t − σ_c)/σ̂", DECOMPOSITION, "mean", Bug::Whole),
+    ("decomposition-passes", "a draw without a residual collision is 1, wherever the control's flight ended", DECOMPOSITION, "atoms", Bug::Passes),
+    ("local-majorant-overshoot", "a flight beyond a segment's end goes on from where it came to, not from the boundary", LOCAL_MAJORANT, "mean", Bug::Overshoots),
+];
+
+/// The family.
 pub fn mutants() -> Vec<Mutant<Transmittance>> {
-    let right: fn(Residual) -> Residual = |right| right;
-    let of = |name, bug, check, wrong: fn(Residual) -> Residual| {
-        Mutant::new(About { name, bug, target: DECOMPOSITION, check }, filled(wrong, decomposition), filled(right, decomposition))
+    let draws = |target, &bug: &Bug| {
+        filled(move |setup, request| {
+            if target == LOCAL_MAJORANT {
+                let slip = if bug == Bug::Overshoots { Slip::Overshoots } else { Slip::None };
+                let segments = Segments::of(setup).expect("a σ̂ above 0");
+                walks::in_turn(&Wrong::new(segments, slip, setup), setup, request);
+                return;
+            }
+            let mut walk = Residual::new(setup);
+            match bug {
+                Bug::Whole => walk.subtracted = 0.0,
+                Bug::Passes => walk.end = f64::NEG_INFINITY,
+                _ => {}
+            }
+            walks::in_turn(&walk, setup, request);
+        })
     };
-    let local = |overshoots| with(overshoots, |&overshoots, setup, medium, rng| local_majorant(overshoots, setup, medium, rng));
-    let overshoot = About { name: "local-majorant-overshoot", bug: "a flight beyond a segment's end goes on from where it came to, not from the boundary", target: LOCAL_MAJORANT, check: "mean" };
-    vec![
-        of("decomposition-whole", "the chance of a real collision is σ_t/σ̂, not (σ_t − σ_c)/σ̂", "mean", |right| Residual { subtracted: 0.0, ..right }),
-        of("decomposition-passes", "a draw without a residual collision is 1, wherever the control's flight ended", "atoms", |right| Residual { end: f64::NEG_INFINITY, ..right }),
-        Mutant::new(overshoot, local(true), local(false)),
-    ]
-}
-
-/// Decomposition tracking, with a walk made wrong.
-fn decomposition(
-    wrong: fn(Residual) -> Residual,
-    kernel: Kernel,
-    setup: &Setup<Transmittance>,
-    request: Request,
-) {
-    walks::fill(&wrong(Residual::new(setup)), kernel, setup, request);
-}
-
-/// Local majorants, see `estimators/transmittance/local_majorant.rs`; who overshoots does not go back to the
-/// boundary.
-fn local_majorant(
-    overshoots: bool,
-    setup: &Setup<Transmittance>,
-    medium: &Lookups,
-    rng: &mut Stream,
-) -> Draw {
-    let mut lookups = 0;
-    let mut came_to = setup.mesh.support().from;
-    for &Row([begin, end, path, ..]) in setup.sampling.stretches() {
-        let mut t = if overshoots { came_to.max(begin) } else { begin };
-        while t < end {
-            let (depth, number) = (-rng.ln_uniform(), rng.uniform());
-            t = depth.times_plus(path, t);
-            if !t.below(end) {
-                break;
-            }
-            lookups += 1;
-            if number < medium.extinction(t) * path {
-                return Draw::free([0.0], lookups);
-            }
-        }
-        came_to = t;
-    }
-    Draw::free([1.0], lookups)
+    family(LINES, &Bug::None, draws)
 }

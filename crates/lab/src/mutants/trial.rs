@@ -10,28 +10,20 @@ use theory::problems::Problem;
 const PERIOD: usize = 1024;
 
 /// Makes the draws of a request, rightly or wrongly.
-pub type Draws<P> = dyn Fn(Kernel, &Setup<P>, Request) + Send + Sync;
+pub type Draws<P> = dyn Fn(&Setup<P>, Request) + Send + Sync;
 
 /// Draws on a setup.
 pub struct Trial<P: Problem> {
-    /// How they are made.
     pub draws: Arc<Draws<P>>,
-    /// What they are made on.
     pub setup: Setup<P>,
     /// Whether every 1024 draws begin with the same random numbers, which is wrong.
     pub replays: bool,
 }
 
 impl<P: Problem> Experiment for Trial<P> {
-    fn fill_by(
-        &self,
-        kernel: Kernel,
-        streams: &mut Streams,
-        count: usize,
-        buffer: &mut DrawBuffer,
-    ) {
+    fn fill_by(&self, _: Kernel, streams: &mut Streams, count: usize, buffer: &mut DrawBuffer) {
         let made = if self.replays { count.min(PERIOD) } else { count };
-        (self.draws)(kernel, &self.setup, Request { streams, count: made, buffer });
+        (self.draws)(&self.setup, Request { streams, count: made, buffer });
         buffer.repeat(count);
     }
 }

@@ -1,0 +1,135 @@
+//! Wrong ways to walk through a furnace or a slab in which every channel has a medium of its own.
+//!
+//! ```text
+//! X_λ = f_λ/Σ_h w_h f_h;  an event multiplies f_λ by 1 − r_λ, r_λ (1 − a_λ) or r_λ a_λ p_λ(cos θ),  r_λ = σ_t/σ̂;
+//! a flight of the length s by e^{−σ̂_λ s}
+//! ```
+//!
+//! Most of them keep `Σ w_λ X_λ = 1` in a furnace: only the channels apart tell. Walks that are absorbed in a slab score
+//! nothing, and show no bug.
+
+use super::{Line, Mutant, Target, family, on, with};
+use estimators::chromatic::{By, Chromatic, Right, Steps, WEIGHING};
+use estimators::setup::heroes::Heroes;
+use estimators::setup::walker::Walker;
+use estimators::walks::hero::{LastPiece, Weighing};
+use numeric::Lane;
+use theory::particle::Event;
+use theory::problems::{ChromaticSlab, SpectralFurnace};
+use theory::spectral::{Chance, Chances};
+
+/// Three channels of different σ_t, σ̂, albedo and phase function.
+const FURNACE: Target = on("furnace/spectral-known-bugs", 1);
+/// All channels together.
+const FURNACE_TRACKING: Target = on("furnace/spectral-like-colours", 4);
+/// Three channels of different σ_t, σ̂, albedo and phase function, light from aslant.
+const SLAB: Target = on("slab/chromatic-three-colours", 1);
+/// All channels together.
+const SLAB_TRACKING: Target = on("slab/chromatic-like-colours", 3);
+
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Bug {
+    None,
+    NullsLeftOut,
+    OtherMajorant,
+    PhaseOfHero,
+    AlbedoMissing,
+    AbsorbedWhole,
+    Dropped,
+    ExitMissing,
+    Upright,
+}
+
+#[rustfmt::skip] // one mutant, one entry
+const IN_FURNACE: &[Line<Bug>] = &[
+    ("spectral-furnace-nulls-left-out", "null collisions are left out of all densities", FURNACE, "mean", Bug::NullsLeftOut),
+    ("spectral-furnace-other-majorant", "the ratio of every channel is taken with the hero's σ̂", FURNACE, "mean", Bug::OtherMajorant),
+    ("spectral-furnace-phase-of-hero", "every channel has the phase function of the hero", FURNACE, "mean", Bug::PhaseOfHero),
+    ("spectral-furnace-albedo-missing", "a scattering multiplies f by r p(cos θ), without the albedo", FURNACE, "mean", Bug::AlbedoMissing),
+    ("spectral-furnace-absorbed-whole", "an absorption multiplies f by r, not by r (1 − a)", FURNACE, "mean", Bug::AbsorbedWhole),
+    ("spectral-furnace-dropped", "the last channel is missing from the denominator", FURNACE, "mean", Bug::Dropped),
+    ("spectral-furnace-exit-missing", "the transmittance of the last flight is missing from all densities", FURNACE, "mean", Bug::ExitMissing),
+    ("spectral-furnace-tracking-nulls-left-out", "spectral tracking divides by the chance of a null collision and multiplies by nothing", FURNACE_TRACKING, "mean", Bug::NullsLeftOut),
+    ("spectral-furnace-tracking-albedo-missing", "spectral tracking multiplies by r p(cos θ), without the albedo, where it scatters", FURNACE_TRACKING, "mean", Bug::AlbedoMissing),
+];
+
+#[rustfmt::skip] // one mutant, one entry
+const IN_SLAB: &[Line<Bug>] = &[
+    ("chromatic-slab-nulls-left-out", "null collisions are left out of all densities", SLAB, "mean", Bug::NullsLeftOut),
+    ("chromatic-slab-other-majorant", "the ratio of every channel is taken with the hero's σ̂", SLAB, "mean", Bug::OtherMajorant),
+    ("chromatic-slab-phase-of-hero", "every channel has the phase function of the hero", SLAB, "mean", Bug::PhaseOfHero),
+    ("chromatic-slab-albedo-missing", "a scattering multiplies f by r p(cos θ), without the albedo", SLAB, "mean", Bug::AlbedoMissing),
+    ("chromatic-slab-dropped", "the last channel is missing from the denominator", SLAB, "mean", Bug::Dropped),
+    ("chromatic-slab-exit-missing", "the transmittance of the last flight is missing from all densities", SLAB, "mean", Bug::ExitMissing),
+    ("chromatic-slab-upright", "the transmittance of a flight is that of its depth, not of its length", SLAB, "mean", Bug::Upright),
+    ("chromatic-slab-tracking-nulls-left-out", "spectral tracking divides by the chance of a null collision and multiplies by nothing", SLAB_TRACKING, "mean", Bug::NullsLeftOut),
+    ("chromatic-slab-tracking-albedo-missing", "spectral tracking multiplies by r p(cos θ), without the albedo, where it scatters", SLAB_TRACKING, "mean", Bug::AlbedoMissing),
+];
+
+/// In a furnace.
+pub fn in_furnace() -> Vec<Mutant<SpectralFurnace>> {
+    mutants(IN_FURNACE)
+}
+
+/// In a slab.
+pub fn in_slab() -> Vec<Mutant<ChromaticSlab>> {
+    mutants(IN_SLAB)
+}
+
+fn mutants<P: Chromatic>(lines: &[Line<Bug>]) -> Vec<Mutant<P>> {
+    let draws = |target, &bug: &Bug| {
+        let walker = match target {
+            FURNACE_TRACKING => Walker::SpectralTracking(Chances::Fixed(Chance::Maximum)),
+            SLAB_TRACKING => Walker::SpectralTracking(Chances::Fixed(Chance::Average)),
+            _ => Walker::Mis(Heroes::Uniform),
+        };
+        with(Wrong { bug, walker }, |wrong, setup, medium, random| {
+            P::draw(wrong, wrong.by(), setup, medium, random)
+        })
+    };
+    family(lines, &Bug::None, draws)
+}
+
+/// The steps of a walk, of which a bug makes one wrong.
+struct Wrong {
+    bug: Bug,
+    walker: Walker,
+}
+
+impl Wrong {
+    fn by(&self) -> By<'_> {
+        let weighing = match self.bug {
+            Bug::Dropped => Weighing { missing: 1, ..WEIGHING },
+            Bug::ExitMissing => Weighing { last_piece: LastPiece::Nowhere, ..WEIGHING },
+            _ => WEIGHING,
+        };
+        By { walker: &self.walker, weighing, scores_all: true }
+    }
+}
+
+impl Steps for &Wrong {
+    #[inline(always)]
+    fn factor<L: Lane>(&self, event: Event, ratio: L, albedo: L, density: L) -> L {
+        match (self.bug, event) {
+            (Bug::NullsLeftOut, Event::Transmitted) => ratio.each(1.0),
+            (Bug::AlbedoMissing, Event::Scattered) => ratio * density,
+            (Bug::AbsorbedWhole, Event::Absorbed) => ratio,
+            _ => Right.factor(event, ratio, albedo, density),
+        }
+    }
+
+    #[inline(always)]
+    fn has_heros_majorant(&self) -> bool {
+        self.bug == Bug::OtherMajorant
+    }
+
+    #[inline(always)]
+    fn has_heros_phase(&self) -> bool {
+        self.bug == Bug::PhaseOfHero
+    }
+
+    #[inline(always)]
+    fn flown<L: Lane>(&self, depth: L, cosine: L) -> L {
+        if self.bug == Bug::Upright { depth.size() } else { depth / cosine }
+    }
+}

@@ -1,0 +1,328 @@
+//! Wrong walks of particles through rods, slabs and space.
+//!
+//! ```text
+//! everywhere         scattered with chance q_s and weight a r w/q_s, straight on with q_t and (1 − r) w/q_t
+//! rod                a scattered particle goes on in its direction with probability p_f
+//! slab               a flight of optical depth u goes u|μ| deep; a particle that is scattered by an angle θ at an azimuth φ
+//!                    goes on with μ' = μ cos θ + √(1 − μ²) sin θ cos φ;  diffuse light has the law 2μ₀ dμ₀
+//! furnace            Σ w r (1 − a) + w where it leaves = 1 on average, and in every draw where a rule never ends a walk
+//! infinite medium    E[x²] at absorption = 2/(σ_t² (1 − a)(1 − a g)) tells how a particle turns, the collisions how it ends
+//! lambertian         light from all sides: every law of a start but Lambert's changes lengths and counts
+//! ```
+
+use super::{Line, Mutant, Target, family, filled, on, with};
+use estimators::rod::walk::{self as rod, By, InRod};
+use estimators::slab::walk::{self as slab, InSlab};
+use estimators::space::{self, Particle, Walked};
+use estimators::walks;
+use media::phase::Phase;
+use numeric::Lane;
+use numeric::geometry::Point;
+use numeric::rng::Random;
+use theory::Odds;
+use theory::ParticleRule::{self, Adaptive, Analog, NonTerminating, Terminating, Weighted};
+use theory::problems::{Furnace, InfiniteMedium, Lambertian, Rod, Slab};
+
+/// `σ̂ = 1.6`, `a` from 0.9 to 0.5 and `p_f` from 0.8 to 0.3 along the rod.
+const ROD_TERMINATING: Target = on("rod/known-bugs", 0);
+const ROD_ANALOG: Target = on("rod/known-bugs", 1);
+const ROD_WEIGHTED: Target = on("rod/known-bugs", 2);
+/// `σ̂ = 0.9`, below σ_t at both ends.
+const ROD_NON_TERMINATING: Target = on("rod/known-bugs", 3);
+const ROD_ADAPTIVE: Target = on("rod/known-bugs", 4);
+/// `σ̂ = 2.4`, `a = 0.6`, roulette below 1/2.
+const ROD_ROULETTE: Target = on("rod/roulette", 0);
+/// Henyey–Greenstein, g = 0.6, light at μ₀ = 0.6, `σ̂ = 1.2`.
+const SLAB_ANALOG: Target = on("slab/known-bugs", 0);
+const SLAB_WEIGHTED: Target = on("slab/known-bugs", 1);
+/// `σ̂ = 0.9`, below σ_t at both ends.
+const SLAB_NON_TERMINATING: Target = on("slab/known-bugs", 2);
+const SLAB_ADAPTIVE: Target = on("slab/known-bugs", 3);
+/// Diffuse light, a σ̂ in steps.
+const SLAB_DIFFUSE: Target = on("slab/known-bugs-diffuse", 0);
+/// A thin ball, a = 0.9, `r = 1.15`.
+const FURNACE_BELOW: Target = on("furnace/known-bugs", 0);
+/// `σ̂ = 1.2`.
+const FURNACE_NON_TERMINATING: Target = on("furnace/known-bugs", 1);
+/// Roulette below 0.8.
+const FURNACE_ROULETTE: Target = on("furnace/known-bugs", 2);
+const FURNACE_ANALOG: Target = on("furnace/known-bugs", 3);
+/// Henyey–Greenstein, g = 0.6, a = 0.7.
+const INFINITE_ANALOG: Target = on("infinite-medium/known-bugs", 0);
+/// Roulette below 0.5.
+const INFINITE_WEIGHTED: Target = on("infinite-medium/known-bugs", 1);
+/// Eq. 21, a = 1, `σ̂ = 1`.
+const LAMBERTIAN: Target = on("lambertian/known-bugs", 0);
+/// A dense half and a thin one, a cell each.
+const LAMBERTIAN_CELLS: Target = on("lambertian/known-bugs-cells", 0);
+
+#[derive(Clone, Copy, PartialEq)]
+enum Bug {
+    None,
+    Rule(ParticleRule),
+    AlbedoTwice,
+    AnalogAndWeighted,
+    AlbedoStraightOn,
+    SignLost,
+    Undivided,
+    OneNumber,
+    Backward,
+    Uncompensated,
+    Unslanted,
+    SlantInverted,
+    EvenLight,
+    NumberTwice,
+    AboutZ,
+    StaleMajorant,
+}
+
+#[rustfmt::skip] // one mutant, one entry
+const IN_ROD: &[Line<Bug>] = &[
+    ("rod-albedo-twice", "the albedo is a chance and a weight", ROD_TERMINATING, "mean", Bug::AlbedoTwice),
+    ("rod-albedo-in-transmission", "what goes straight on is multiplied by the albedo too", ROD_WEIGHTED, "mean", Bug::AlbedoStraightOn),
+    ("rod-terminating-beyond", "the terminating rule where r > 2/(a + 1)", ROD_ADAPTIVE, "mean", Bug::Rule(Terminating)),
+    ("rod-sign-lost", "the weight of what goes straight on keeps its sign where r > 1", ROD_NON_TERMINATING, "mean", Bug::SignLost),
+    ("rod-undivided", "what is scattered is not divided by its chance", ROD_NON_TERMINATING, "mean", Bug::Undivided),
+    ("rod-one-number", "the number that decided the collision decides the direction too", ROD_ANALOG, "mean", Bug::OneNumber),
+    ("rod-forward-for-backward", "forward and backward are mixed up", ROD_ANALOG, "mean", Bug::Backward),
+    ("rod-analog-for-weighted", "absorption by roulette and by weight at once", ROD_WEIGHTED, "mean", Bug::AnalogAndWeighted),
+    ("rod-roulette-uncompensated", "what survives roulette keeps its weight", ROD_ROULETTE, "mean", Bug::Uncompensated),
+];
+
+#[rustfmt::skip] // one mutant, one entry
+const IN_SLAB: &[Line<Bug>] = &[
+    ("slab-cosine-sign", "the cosine of Henyey and Greenstein has the wrong sign: forward is backward", SLAB_ANALOG, "mean", Bug::Backward),
+    ("slab-albedo-twice", "the albedo is a chance and a weight", SLAB_NON_TERMINATING, "mean", Bug::AlbedoTwice),
+    ("slab-albedo-by-roulette-and-weight", "absorption by roulette and by weight at once", SLAB_WEIGHTED, "mean", Bug::AnalogAndWeighted),
+    ("slab-slant-forgotten", "a slanted flight goes as deep as one straight down", SLAB_ANALOG, "lookups", Bug::Unslanted),
+    ("slab-slant-inverted", "a flight goes u/|μ| deep", SLAB_WEIGHTED, "mean", Bug::SlantInverted),
+    ("slab-even-light", "diffuse light has the law dμ₀, without the cosine", SLAB_DIFFUSE, "mean", Bug::EvenLight),
+    ("slab-terminating-beyond", "the terminating rule where r > 2/(a + 1)", SLAB_ADAPTIVE, "mean", Bug::Rule(Terminating)),
+];
+
+#[rustfmt::skip] // one mutant, one entry
+const IN_FURNACE: &[Line<Bug>] = &[
+    ("furnace-albedo-twice", "the albedo is a chance and a weight", FURNACE_NON_TERMINATING, "mean", Bug::AlbedoTwice),
+    ("furnace-roulette-uncompensated", "who survives roulette keeps the old weight", FURNACE_ROULETTE, "mean", Bug::Uncompensated),
+    ("furnace-terminating-beyond", "the terminating rule where r > 2/(a + 1)", FURNACE_BELOW, "mean", Bug::Rule(Terminating)),
+    ("furnace-number-twice", "one random number for the flight and for what follows it", FURNACE_ANALOG, "mean", Bug::NumberTwice),
+];
+
+#[rustfmt::skip] // one mutant, one entry
+const IN_INFINITE_MEDIUM: &[Line<Bug>] = &[
+    ("infinite-cosine-sign", "the cosine of Henyey and Greenstein has the wrong sign: forward is backward", INFINITE_ANALOG, "mean", Bug::Backward),
+    ("infinite-turned-about-z", "a particle turns about the z axis, not about its direction", INFINITE_ANALOG, "mean", Bug::AboutZ),
+    ("infinite-albedo-twice", "absorption by weight and by roulette at once", INFINITE_WEIGHTED, "mean", Bug::AlbedoTwice),
+    ("infinite-roulette-uncompensated", "who survives roulette keeps the old weight", INFINITE_WEIGHTED, "mean", Bug::Uncompensated),
+];
+
+#[rustfmt::skip] // one mutant, one entry
+const UNDER_LIGHT: &[Line<Bug>] = &[
+    ("lambertian-even-light", "the cosine with the normal is even, without the law of Lambert", LAMBERTIAN, "mean", Bug::EvenLight),
+    ("lambertian-stale-majorant", "a flight goes on with the majorant of the cell it began in", LAMBERTIAN_CELLS, "mean", Bug::StaleMajorant),
+];
+
+/// In a rod.
+pub fn in_rod() -> Vec<Mutant<Rod>> {
+    family(IN_ROD, &Bug::None, |target, &bug| {
+        let Particle { rule, roulette, .. } = particle(target, bug);
+        let steps = Wrong(By { rule, roulette }, bug);
+        filled(move |setup, request| {
+            walks::in_turn(&InRod { rod: &setup.problem, steps }, setup, request);
+        })
+    })
+}
+
+/// In a slab.
+pub fn in_slab() -> Vec<Mutant<Slab>> {
+    family(IN_SLAB, &Bug::None, |target, &bug| {
+        let steps = Wrong(particle(target, bug).rule, bug);
+        filled(move |setup, request| {
+            walks::in_turn(&InSlab::of(&setup.problem, steps), setup, request);
+        })
+    })
+}
+
+/// In a furnace.
+pub fn in_furnace() -> Vec<Mutant<Furnace>> {
+    in_space(IN_FURNACE)
+}
+
+/// In the infinite medium.
+pub fn in_infinite_medium() -> Vec<Mutant<InfiniteMedium>> {
+    in_space(IN_INFINITE_MEDIUM)
+}
+
+/// Under light from all sides.
+pub fn under_light() -> Vec<Mutant<Lambertian>> {
+    in_space(UNDER_LIGHT)
+}
+
+fn in_space<P: Walked>(lines: &[Line<Bug>]) -> Vec<Mutant<P>> {
+    family(lines, &Bug::None, |target, &bug| {
+        with(Wrong(particle(target, bug), bug), |steps, setup, _, random| {
+            space::draw::<P, false>(*steps, &steps.0, setup, random)
+        })
+    })
+}
+
+/// The particle of a target, or that of a bug.
+fn particle(target: Target, bug: Bug) -> Particle {
+    let played = |rule, below| Particle { roulette: Some(below), ..Particle::of(rule) };
+    match (target, bug) {
+        (_, Bug::Rule(rule)) => Particle::of(rule),
+        (_, Bug::AnalogAndWeighted)
+        | (ROD_ANALOG | SLAB_ANALOG | FURNACE_ANALOG | INFINITE_ANALOG | LAMBERTIAN_CELLS, _) => {
+            Particle::of(Analog)
+        }
+        (ROD_TERMINATING, _) => Particle::of(Terminating),
+        (ROD_WEIGHTED | SLAB_WEIGHTED, _) => Particle::of(Weighted),
+        (ROD_ADAPTIVE | SLAB_ADAPTIVE, _) => Particle::of(Adaptive),
+        (ROD_ROULETTE, _) => played(NonTerminating, 0.5),
+        (FURNACE_ROULETTE, _) => played(NonTerminating, 0.8),
+        (INFINITE_WEIGHTED, _) => played(Weighted, 0.5),
+        _ => Particle::of(NonTerminating),
+    }
+}
+
+/// Steps, of which a bug makes one wrong.
+#[derive(Clone, Copy)]
+struct Wrong<S>(S, Bug);
+
+impl<S> Wrong<S> {
+    #[inline(always)]
+    fn odds<L: Lane>(&self, right: Odds<L>, albedo: L) -> Odds<L> {
+        let Odds { scatter, scatter_weight, transmit_weight, .. } = right;
+        match self.1 {
+            Bug::AlbedoTwice | Bug::AnalogAndWeighted => {
+                Odds { scatter_weight: albedo * scatter_weight, ..right }
+            }
+            Bug::AlbedoStraightOn => Odds { transmit_weight: albedo * transmit_weight, ..right },
+            Bug::SignLost => Odds { transmit_weight: transmit_weight.size(), ..right },
+            Bug::Undivided => Odds { scatter_weight: scatter * scatter_weight, ..right },
+            _ => right,
+        }
+    }
+
+    /// The weight of survivors of roulette.
+    #[inline(always)]
+    fn played<L: Lane>(&self, before: L, after: L) -> L {
+        if self.1 == Bug::Uncompensated { before } else { after }
+    }
+
+    #[inline(always)]
+    fn deflection<L: Lane>(&self, right: L) -> L {
+        if self.1 == Bug::Backward { -right } else { right }
+    }
+}
+
+impl rod::Steps for Wrong<By> {
+    #[inline(always)]
+    fn odds<L: Lane>(&self, ratio: L, albedo: L) -> Odds<L> {
+        self.odds(rod::Steps::odds(&self.0, ratio, albedo), albedo)
+    }
+
+    #[inline(always)]
+    fn turns<L: Lane>(
+        &self,
+        scattered: L::Mask,
+        forward: L,
+        decided: L,
+        random: &mut impl Random<L>,
+    ) -> L::Mask {
+        match self.1 {
+            Bug::OneNumber => scattered & forward.at_most(decided),
+            Bug::Backward => scattered & random.uniform_where(scattered).below(forward),
+            _ => rod::Steps::turns(&self.0, scattered, forward, decided, random),
+        }
+    }
+
+    #[inline(always)]
+    fn survive<L: Lane>(
+        &self,
+        goes_on: L::Mask,
+        weight: &mut L,
+        random: &mut impl Random<L>,
+    ) -> L::Mask {
+        let before = *weight;
+        let survives = rod::Steps::survive(&self.0, goes_on, weight, random);
+        *weight = self.played(before, *weight);
+        survives
+    }
+}
+
+impl slab::Steps for Wrong<ParticleRule> {
+    #[inline(always)]
+    fn odds<L: Lane>(&self, ratio: L, albedo: L) -> Odds<L> {
+        self.odds(slab::Steps::odds(&self.0, ratio, albedo), albedo)
+    }
+
+    #[inline(always)]
+    fn descent<L: Lane>(&self, length: L, cosine: L) -> L {
+        match self.1 {
+            Bug::Unslanted => length,
+            Bug::SlantInverted => length / cosine.size(),
+            _ => slab::Steps::descent(&self.0, length, cosine),
+        }
+    }
+
+    #[inline(always)]
+    fn deflection<L: Lane>(&self, phase: &Phase, number: L) -> L {
+        self.deflection(slab::Steps::deflection(&self.0, phase, number))
+    }
+
+    #[inline(always)]
+    fn diffuse<L: Lane>(&self, number: L) -> L {
+        let right = slab::Steps::diffuse(&self.0, number);
+        if self.1 == Bug::EvenLight { number.one_minus() } else { right }
+    }
+}
+
+impl space::Steps for Wrong<Particle> {
+    #[inline(always)]
+    fn odds<L: Lane>(&self, ratio: L, albedo: L) -> Odds<L> {
+        self.odds(space::Steps::odds(&self.0, ratio, albedo), albedo)
+    }
+
+    #[inline(always)]
+    fn survive<L: Lane>(
+        &self,
+        goes_on: L::Mask,
+        weight: &mut L,
+        random: &mut impl Random<L>,
+    ) -> L::Mask {
+        let before = *weight;
+        let survives = space::Steps::survive(&self.0, goes_on, weight, random);
+        *weight = self.played(before, *weight);
+        survives
+    }
+
+    #[inline(always)]
+    fn through<L: Lane>(&self, here: L, begun: L) -> L {
+        if self.1 == Bug::StaleMajorant { begun } else { here }
+    }
+
+    #[inline(always)]
+    fn number<L: Lane>(&self, which: L::Mask, depth: L, random: &mut impl Random<L>) -> L {
+        if self.1 == Bug::NumberTwice {
+            return Lane::exp(-depth);
+        }
+        space::Steps::number(&self.0, which, depth, random)
+    }
+
+    #[inline(always)]
+    fn deflection<L: Lane>(&self, phase: &Phase, number: L) -> L {
+        self.deflection(space::Steps::deflection(&self.0, phase, number))
+    }
+
+    #[inline(always)]
+    fn axis<L: Lane>(&self, direction: [L; 3]) -> [L; 3] {
+        let up = Point([0.0, 0.0, 1.0]).each(direction[0]);
+        if self.1 == Bug::AboutZ { up } else { direction }
+    }
+
+    #[inline(always)]
+    fn first_cosine<L: Lane>(&self, right: L, number: L) -> L {
+        if self.1 == Bug::EvenLight { number.one_minus() } else { right }
+    }
+}

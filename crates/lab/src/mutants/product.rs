@@ -1,0 +1,242 @@
+//! Wrong product estimators of the transmittance.
+//!
+//! ```text
+//! X = T_c ∏ W(tᵢ),  W = 1 − r where nothing is decided,  r = (σ_t(tᵢ) − σ_c(tᵢ))/σ̂(tᵢ),  T_c = exp(−∫₀^S σ_c)
+//! tᵢ a Poisson process of rate σ̂, by ∫ σ̂ from tᵢ₋₁ to tᵢ = −ln(1 − uᵢ);  the walk ends where tᵢ ≥ S, without a lookup
+//! decision i by vᵢ;  all uᵢ and vᵢ independent
+//! ```
+//!
+//! **Controls.** `T_c` belongs to the whole ray, beyond the last collision too, and holds the integral of the σ_c of the
+//! lookups: the bias is the mismatch of the two integrals in the exponent.
+//!
+//! **Lookups.** At another place of the flight the residual is no longer weighted by its own length of the ray. A reversed
+//! medium has the same optical depth, and so the same transmittance; walks that end early end at other places.
+//!
+//! **Flights.** Lookups are Poisson with mean ∫σ̂, and the mean of a draw is right only if the σ̂ that was flown with is the σ̂
+//! that is divided by.
+//!
+//! **Decisions.** Every number by itself is right, and so is every flight and every decision; together they are not.
+//!
+//! **Precision.** Lost bits are far below any standard error, but break the invariant of a walk.
+
+use super::line::{self, Slip, single};
+use super::rule::{self, ALBEDO, Mistake, Rule, literal, surviving, weighing};
+use super::{Line, Mutant, Target, family, filled, on};
+use estimators::transmittance::product::Product;
+use estimators::{Request, Setup, walks};
+use media::{Control, Piecewise};
+use numeric::{Lane, Span};
+use theory::problems::{Problem, Transmittance};
+use theory::rules::{Collision, Single, Weight};
+
+/// `σ̂ = 1.2`, a majorant.
+const WOODCOCK: Target = known(0);
+/// `σ̂ = 0.6`, `0.67 ≤ r ≤ 1.83`.
+pub const BELOW: Target = known(1);
+/// `σ̂ = 30`: 90 lookups a draw, a relative standard deviation of a quarter.
+pub const DENSE: Target = known(2);
+/// A linear σ̂.
+pub const LINEAR: Target = known(3);
+/// A piecewise-constant σ̂.
+const STEPS: Target = known(4);
+/// A control through five points, `σ̂ = 0.5`.
+const EXPLORERS: Target = known(5);
+/// `σ_c = 0.9`, `σ̂ = 1`, `−0.5 ≤ r ≤ 0.2`.
+const NEGATIVE: Target = known(6);
+/// `σ̂ = 0.6`, `0.67 ≤ r ≤ 1.83`.
+const TERMINATING: Target = known(7);
+/// `σ_c = 0.55`, `σ̂ = 0.22`, `−0.7 ≤ r ≤ 2.5`.
+const CLAMPED: Target = known(8);
+/// `a = 0.7`, `σ̂ = 0.6`, `0.67 ≤ r ≤ 1.83`.
+const NON_TERMINATING: Target = known(9);
+/// `a = 0.7`, `σ_c = 0.55`, `σ̂ = 0.4`, `−0.4 ≤ r ≤ 1.4`.
+const ADAPTIVE: Target = known(10);
+/// An optical depth of 110, nearly all of it in the control.
+const DEEP: Target = on("transmittance/deep", 0);
+/// `r = 1` and `r = 0` exactly, albedo 0.
+const RATIO_ONE: Target = Target { swept: Some(0.0), ..on("transmittance/ratio-exactly-one", 0) };
+
+/// An experiment of the case that was made for known bugs: an asymmetric medium, dense at both ends, and estimators for every
+/// regime of r.
+pub const fn known(index: usize) -> Target {
+    on("transmittance/known-bugs", index)
+}
+
+/// A bug in a walk, in its rule, in its setup or in its random numbers.
+pub enum Bug<P> {
+    Step(Slip),
+    Rule(Mistake),
+    Setup(fn(&mut Setup<P>)),
+    /// Every 1024 draws of a block begin with the same random numbers.
+    Replays,
+}
+
+impl<P> Bug<P> {
+    /// The wrong step, if the bug is one.
+    pub fn slip(&self) -> Slip {
+        if let Self::Step(slip) = self { *slip } else { Slip::None }
+    }
+}
+
+#[rustfmt::skip] // one mutant, one entry
+const LINES: &[Line<Bug<Transmittance>>] = &[
+    ("control-forgotten", "T_c is left out of the draw", NEGATIVE, "mean", Bug::Setup(|setup| setup.control_transmittance = 1.0)),
+    ("control-to-last-collision", "the control is integrated up to the last collision only", NEGATIVE, "mean", Bug::Step(Slip::ControlToLast)),
+    ("control-riemann", "∫σ_c is a sum of eight left values", EXPLORERS, "mean", Bug::Setup(riemann)),
+    ("control-wrong-sign", "the residual is σ_t + σ_c", NEGATIVE, "mean", Bug::Setup(wrong_sign)),
+    ("control-in-front-only", "T_c multiplies the draw, but the lookups do not subtract σ_c", NEGATIVE, "mean", Bug::Setup(|setup| setup.control = Control::None)),
+    ("control-twice", "T_c is multiplied in twice", NEGATIVE, "mean", Bug::Step(Slip::ControlTwice)),
+    ("control-nearest", "σ_c is that of the nearest knot in the lookups and linear in the integral", EXPLORERS, "variance", Bug::Setup(nearest)),
+    ("control-of-last-collision", "σ_c is looked up at the collision before", EXPLORERS, "mean", Bug::Step(Slip::OfLastCollision)),
+    ("control-underflow", "T_c is computed in single precision and underflows", DEEP, "mean", Bug::Setup(underflow)),
+    ("lookup-at-previous", "σ_t is looked up where the flight began", BELOW, "mean", Bug::Step(Slip::AtPrevious)),
+    ("lookup-at-midpoint", "σ_t is looked up at the flight's midpoint", WOODCOCK, "mean", Bug::Step(Slip::AtMidpoint)),
+    ("lookup-reversed", "σ_t(S − t) is looked up for σ_t(t)", TERMINATING, "lookups", Bug::Step(Slip::Reversed)),
+    ("lookup-on-raster", "positions are rounded down to sixteenths of the ray before the lookup", DENSE, "mean", Bug::Step(Slip::OnRaster)),
+    ("lookup-of-another-channel", "the chance of a real collision is that of another colour channel, 0.8 σ_t", WOODCOCK, "mean", Bug::Step(Slip::OfAnotherChannel)),
+    ("flight-log2", "log2 for ln in the flight", BELOW, "lookups", Bug::Step(Slip::Deeper(std::f64::consts::LOG2_E))),
+    ("flight-sampling-off", "σ̂ is off by a thousandth in the flight", DENSE, "lookups", Bug::Step(Slip::Deeper(1.0 / 1.001))),
+    ("weight-sampling-off", "σ̂ is off by a thousandth in the weight", DENSE, "mean", Bug::Rule(|_, r| Weight.at(r / 1.001))),
+    ("flight-hole", "σ̂ is zero on a tenth of the ray", WOODCOCK, "mean", Bug::Setup(hole)),
+    ("flight-linear-as-constant", "a linear σ̂ is flown as if it stayed what it is at the flight's beginning", LINEAR, "lookups", Bug::Step(Slip::AsConstant)),
+    ("flight-over-boundary", "a flight crosses a boundary with the σ̂ before it", STEPS, "mean", Bug::Step(Slip::AsConstant)),
+    ("flight-replayed", "from half the ray on, the generator repeats the draw's first numbers", BELOW, "mean", Bug::Step(Slip::Replayed)),
+    ("buffers-replayed", "every 1024 draws of a block begin with the same random numbers", LINEAR, "dispersion", Bug::Replays),
+    ("flight-short-ray", "the walk begins and ends a hundredth of the ray inside", DENSE, "lookups", Bug::Setup(short_ray)),
+    ("end-weighted", "a flight beyond the end is clamped to the end and weighted", BELOW, "mean", Bug::Step(Slip::EndWeighted)),
+    ("first-skipped", "the first collision leaves the weight as it is", BELOW, "mean", Bug::Step(Slip::FirstSkipped)),
+    ("lookup-before-end-test", "σ_t is looked up before the end is tested: one lookup too many", BELOW, "lookups", Bug::Step(Slip::LateEnd)),
+    ("cap-16", "a walk stops after 16 lookups and returns its weight", DENSE, "mean", Bug::Step(Slip::Cap(16.0, true))),
+    ("cap-100", "a walk stops after 100 lookups and returns its weight", DENSE, "counts", Bug::Step(Slip::Cap(100.0, true))),
+    ("cap-4", "a walk stops after 4 lookups and counts as through", WOODCOCK, "mean", Bug::Step(Slip::Cap(4.0, true))),
+    ("weight-absolute", "|1 − r| for 1 − r", BELOW, "mean", Bug::Rule(|right, r| weighing(right, (1.0 - r).abs()))),
+    ("weight-clamped", "max(0, 1 − r) for 1 − r", BELOW, "mean", Bug::Rule(|right, r| weighing(right, (1.0 - r).max(0.0)))),
+    ("weight-exponential", "exp(−r) for 1 − r", BELOW, "mean", Bug::Rule(|right, r| weighing(right, Lane::exp(-r)))),
+    ("weight-albedo", "the transmitted weight is multiplied by the albedo 0.9 at every collision", BELOW, "mean", Bug::Rule(|right, r| weighing(right, 0.9 * (1.0 - r)))),
+    ("weight-logarithm", "ln(1 − r) is summed up, which is not a number for r > 1", BELOW, "numeric", Bug::Rule(|right, r| weighing(right, (1.0 - r).ln().exp()))),
+    ("draw-clamped", "max(0, X) for X", BELOW, "mean", Bug::Step(Slip::Clamped)),
+    ("residual-clamped", "max(0, σ_t − σ_c) for σ_t − σ_c", NEGATIVE, "mean", Bug::Rule(|_, r| Weight.at(r.max(0.0)))),
+    ("residual-absolute", "|σ_t − σ_c| for σ_t − σ_c", NEGATIVE, "mean", Bug::Rule(|_, r| Weight.at(r.abs()))),
+    ("weight-global-majorant", "flown with the local σ̂, divided by the largest", STEPS, "mean", Bug::Step(Slip::GlobalMajorant)),
+    ("last-factor-missing", "the draw is the weight before the last collision", BELOW, "mean", Bug::Step(Slip::LastMissing)),
+    ("roulette-uncompensated", "below a weight of 0.1 Russian roulette ends half of the walks and leaves the others as they are", DENSE, "lookups", Bug::Step(Slip::Roulette)),
+    ("cut-off", "below a weight of 0.1 the walk ends as 0", DENSE, "lookups", Bug::Step(Slip::CutOff)),
+    ("majorant-too-low", "a majorant of 0.6 times its size; what exceeds it is clamped", WOODCOCK, "mean", Bug::Setup(too_low)),
+    ("real-for-null", "real and null collisions are mixed up", WOODCOCK, "mean", Bug::Rule(|right, _| surviving(right, 1.0 - right.survival))),
+    ("terminating-beyond-two", "the terminating rule where |1 − r| > 1", CLAMPED, "mean", Bug::Rule(|_, r| Single::Terminating.at(r))),
+    ("chance-without-absolute", "1 − r for |1 − r| as a chance", TERMINATING, "mean", Bug::Rule(|right, r| weighing(surviving(right, (1.0 - r).clamp(0.0, 1.0)), 1.0))),
+    ("sign-lost", "the survivor of a collision with r > 1 keeps its sign", TERMINATING, "mean", Bug::Rule(|right, _| weighing(right, right.weight.abs()))),
+    ("sign-lost-non-terminating", "weight D for −D where r > 1", NON_TERMINATING, "mean", Bug::Rule(|right, _| weighing(right, right.weight.abs()))),
+    ("inverse-chance-missing", "the survivor's weight is not divided by q", NON_TERMINATING, "mean", Bug::Rule(|right, r| weighing(right, 1.0 - r))),
+    ("inverse-chance-twice", "the survivor's weight is divided by q twice", NON_TERMINATING, "variance", Bug::Rule(|right, _| weighing(right, right.weight / right.survival))),
+    ("albedo-in-weight", "the transmitted weight is multiplied by the albedo", NON_TERMINATING, "mean", Bug::Rule(|right, _| weighing(right, ALBEDO * right.weight))),
+    ("adaptive-literal", "D = a r + |1 − r| without the absolute value of r, as the pseudo-code has it", ADAPTIVE, "mean", Bug::Rule(literal)),
+    ("zero-over-zero", "q = 0/0 at r = 1 and albedo 0: no comparison ends the walk", RATIO_ONE, "lookups", Bug::Rule(|right, r| surviving(right, (1.0 - r).abs() / (1.0 - r).abs()))),
+    ("number-shared", "one random number for the distance and for the decision", WOODCOCK, "mean", Bug::Step(Slip::Shared)),
+    ("number-shared-reversed", "the distance from u, the decision from 1 − u", WOODCOCK, "mean", Bug::Step(Slip::SharedReversed)),
+    ("number-stale", "the decision takes the number of the flight before", WOODCOCK, "mean", Bug::Step(Slip::Stale)),
+    ("number-of-first-decision", "one number for all decisions of a walk", TERMINATING, "variance", Bug::Step(Slip::OneForAll)),
+    ("weight-f32", "the factors of a weight are kept in single precision", DENSE, "invariant", Bug::Rule(|right, r| weighing(right, single(1.0 - r)))),
+];
+
+/// The family.
+pub fn mutants() -> Vec<Mutant<Transmittance>> {
+    let draws = |target, bug: &Bug<_>| {
+        let (rule, slip) = (rule(target), bug.slip());
+        let mistake = if let Bug::Rule(mistake) = *bug { Some(mistake) } else { None };
+        filled(move |setup, request| match rule {
+            Rule::Weight => fill::<false>((rule, mistake), slip, setup, request),
+            _ => fill::<true>((rule, mistake), slip, setup, request),
+        })
+    };
+    on_setups(family(LINES, &Bug::Step(Slip::None), draws), LINES)
+}
+
+/// Mutants with bugs in their setups and in their random numbers.
+pub fn on_setups<P: Problem>(mutants: Vec<Mutant<P>>, lines: &[Line<Bug<P>>]) -> Vec<Mutant<P>> {
+    let each = mutants.into_iter().zip(lines).map(|(mutant, line)| match line.4 {
+        Bug::Setup(prepare) => Mutant { prepare, ..mutant },
+        Bug::Replays => Mutant { replays: true, ..mutant },
+        _ => mutant,
+    });
+    each.collect()
+}
+
+/// The rule of a target.
+fn rule(target: Target) -> Rule {
+    match target {
+        WOODCOCK => Rule::Null,
+        TERMINATING => Rule::Single(Single::Terminating),
+        CLAMPED => Rule::Single(Single::Clamped),
+        NON_TERMINATING => Rule::Single(Single::NonTerminating { albedo: ALBEDO }),
+        ADAPTIVE => Rule::Single(Single::Adaptive { albedo: ALBEDO }),
+        RATIO_ONE => Rule::Single(Single::NonTerminating { albedo: 0.0 }),
+        _ => Rule::Weight,
+    }
+}
+
+fn fill<const DECIDES: bool>(
+    (rule, mistake): (Rule, Option<Mistake>),
+    slip: Slip,
+    setup: &Setup<Transmittance>,
+    request: Request,
+) {
+    let rule = rule::Wrong::<DECIDES>(rule, mistake);
+    let walk = line::Wrong::new(Product::new(&rule, setup), slip, setup);
+    walks::in_turn(&walk, setup, request);
+}
+
+/// `T_c = exp(−h Σ σ_c(jh))`.
+fn riemann(setup: &mut Setup<Transmittance>) {
+    let support = setup.mesh.support();
+    let step = support.length() / 8.0;
+    let left = |j: u32| setup.control.extinction(support.from + f64::from(j) * step);
+    let depth = step * (0..8).map(left).sum::<f64>();
+    setup.control_transmittance = Lane::exp(-depth);
+}
+
+/// `−σ_c` for σ_c in the lookups.
+fn wrong_sign(setup: &mut Setup<Transmittance>) {
+    if let Control::Pieces(control) = &mut setup.control {
+        *control = control.scaled(-1.0);
+    }
+}
+
+/// Steps between the middles of the knots: by the trapezoidal rule their integral is that of the lines, so that the mean
+/// stays and the variance does not.
+fn nearest(setup: &mut Setup<Transmittance>) {
+    let Control::Pieces(lines) = &setup.control else { return };
+    let knots = lines.knots();
+    let middles = Span::between(knots).map(Span::middle);
+    let breaks: Vec<f64> =
+        knots[..1].iter().copied().chain(middles).chain(knots.last().copied()).collect();
+    let values: Vec<f64> = knots.iter().map(|&knot| lines.value(knot)).collect();
+    setup.control = Control::Pieces(Piecewise::steps(&breaks, &values));
+}
+
+/// `T_c` through a number of 32 bits: 0 beyond an optical depth of 104, and already without its last bits beyond 87.
+#[allow(clippy::cast_possible_truncation)] // the bug
+fn underflow(setup: &mut Setup<Transmittance>) {
+    setup.control_transmittance = f64::from(setup.control_transmittance as f32);
+}
+
+/// `σ̂ = 0` from 0.4 to 0.5 of the ray.
+pub fn hole<P>(setup: &mut Setup<P>) {
+    let support = setup.mesh.support();
+    let value = setup.sampling.value(support.from);
+    let at = |share: f64| support.from + share * support.length();
+    let breaks = [support.from, at(0.4), at(0.5), support.to];
+    setup.sampling = Piecewise::steps(&breaks, &[value, 0.0, value]);
+}
+
+/// σ̂ on the inner 98 % of the support.
+pub fn short_ray<P>(setup: &mut Setup<P>) {
+    let support = setup.mesh.support();
+    let inset = 0.01 * support.length();
+    setup.sampling = setup.sampling.on(Span::new(support.from + inset, support.to - inset));
+}
+
+/// σ̂ times 0.6.
+pub fn too_low<P>(setup: &mut Setup<P>) {
+    setup.sampling = setup.sampling.scaled(0.6);
+}
