@@ -5,20 +5,17 @@ use std::any::Any;
 use std::sync::Arc;
 
 use crate::case::estimator::{Defaults, Estimators};
-use estimators::recipes::sampling;
+use estimators::setup::{FAINTEST, Parts};
 use estimators::trial::Entry;
-use estimators::{Estimated, Experiment, RayView, Refusal, Setup};
+use estimators::{Estimated, Experiment, Fields, RayView, Refusal, Setup};
 use media::body::RayNeed;
 use media::catalogue::Settings;
-use media::{Body, Control, Medium, Piecewise};
-use numeric::digits::rounded;
+use media::{Body, Medium};
 use numeric::rng::Address;
+use theory::Prediction;
 use theory::problems::options::chosen;
 use theory::problems::{self, ProblemOption, each_problem};
-use theory::{Mesh, Prediction};
 
-/// Smallest transmittance of which the ratio of a draw to the truth is still a double.
-const FAINTEST: f64 = 1e-300;
 /// Largest expected number of lookups of a draw; more are a mistake in the case.
 const MAX_LOOKUPS: f64 = 1e6;
 
@@ -75,27 +72,7 @@ fn build<P: Estimated>(
     Some((Box::new(Typed { problem: problem?, entries }), estimators))
 }
 
-/// Input of an estimator beside its problem.
-pub struct Parts<'a> {
-    /// The medium, cut into panels.
-    pub mesh: &'a Arc<Mesh>,
-    /// σ̂ along the ray.
-    pub sampling: Option<Piecewise>,
-    /// Medium and σ̂ of each channel but the first.
-    pub further: Vec<(Arc<Mesh>, Option<Piecewise>)>,
-    /// σ_c.
-    pub control: Control,
-    /// Constant σ̂, 1/length, in place of the recipe's.
-    pub constant: Option<f64>,
-    /// Recipe of σ̂ in space.
-    pub recipe: Option<&'a dyn sampling::Recipe>,
-    /// Factor on that σ̂.
-    pub factor: f64,
-    /// Swept albedo, in place of the one in the case.
-    pub albedo: Option<f64>,
-}
-
-/// Problem with the estimators of a case; estimators are numbered in the order of the case.
+/// A problem with the estimators of a case; estimators are numbered in the order of the case.
 pub trait AnyProblem: Send + Sync {
     /// Returns the problem, of its own type.
     fn problem(&self) -> &dyn Any;
@@ -109,8 +86,8 @@ pub trait AnyProblem: Send + Sync {
     /// Returns whether an estimator, or the problem itself, depends on an albedo.
     fn has_albedo(&self, estimator: usize) -> bool;
 
-    /// Returns the control of an experiment, if medium, σ̂ and control fit together.
-    fn fitting_control(&self, estimator: usize, parts: Parts) -> Result<Control, Refusal>;
+    /// Requires parts that fit together.
+    fn fit(&self, estimator: usize, parts: Parts) -> Result<(), Refusal>;
 
     /// Prepares an experiment with its prediction; a `forced` one is drawn outside its domain, too.
     fn prepare(&self, estimator: usize, parts: Parts, forced: bool) -> Result<Ready, Refusal>;
@@ -133,18 +110,14 @@ struct Typed<P> {
 
 impl<P: Estimated> Typed<P> {
     fn joined(&self, estimator: usize, parts: Parts) -> Result<Setup<P>, Refusal> {
-        let Parts { mesh, sampling, further, control, constant, recipe, factor, albedo } = parts;
-        let varied = albedo.and_then(|albedo| self.problem.with_albedo(albedo));
-        let problem = varied.map_or_else(|| self.problem.clone(), Arc::new);
         let entry = &self.entries[estimator];
-        let setup = Setup::new(problem, mesh.clone(), sampling, control);
-        let setup = if entry.skips() { setup.skipping() } else { setup };
-        let setup = if P::SPECTRAL { setup.spectral(further) } else { setup };
-        let setup = setup.in_space(constant, recipe, factor)?;
+        let mut setup = Setup::new(&self.problem, parts)?;
+        if entry.skips() {
+            setup.fields = setup.fields.skipping();
+        }
         // Without collisions a draw does not begin with the weight T_c.
         if entry.inputs().sampling {
-            let Setup { control, log_unit, control_transmittance, .. } = &setup;
-            require_weights(control, mesh, *log_unit, *control_transmittance)?;
+            setup.fields.require_weights()?;
         }
         Ok(setup)
     }
@@ -180,8 +153,8 @@ impl<P: Estimated> AnyProblem for Typed<P> {
         entry.with_albedo(0.5).is_some() || self.problem.with_albedo(0.5).is_some()
     }
 
-    fn fitting_control(&self, estimator: usize, parts: Parts) -> Result<Control, Refusal> {
-        self.joined(estimator, parts).map(|setup| setup.control)
+    fn fit(&self, estimator: usize, parts: Parts) -> Result<(), Refusal> {
+        self.joined(estimator, parts).map(drop)
     }
 
     fn prepare(&self, estimator: usize, parts: Parts, forced: bool) -> Result<Ready, Refusal> {
@@ -200,7 +173,7 @@ impl<P: Estimated> AnyProblem for Typed<P> {
 
     fn predict(&self, estimator: usize, parts: Parts) -> Option<Prediction> {
         let albedo = parts.albedo;
-        let setup = Setup { laws: false, ..self.joined(estimator, parts).ok()? };
+        let setup = Setup { distributions: false, ..self.joined(estimator, parts).ok()? };
         self.with_entry(estimator, albedo, |entry| {
             entry.domain(&setup).ok()?;
             Some(entry.predict(&setup))
@@ -215,27 +188,6 @@ impl<P: Estimated> AnyProblem for Typed<P> {
     fn setup(&self, estimator: usize, parts: Parts) -> Result<Box<dyn Any>, Refusal> {
         Ok(Box::new(self.joined(estimator, parts)?))
     }
-}
-
-/// Refuses a control if its weights `T_c`, in units of `exp(−log_unit)`, leave the range of doubles.
-fn require_weights(
-    control: &Control,
-    mesh: &Mesh,
-    log_unit: f64,
-    controlled: f64,
-) -> Result<(), Refusal> {
-    if (FAINTEST..=1.0 / FAINTEST).contains(&controlled) {
-        return Ok(());
-    }
-    if log_unit == 0.0 {
-        let needs = "a control with T_c between 1e-300 and 1e300";
-        return Err(Refusal::mismatch(needs, format!("T_c = {controlled:e}")));
-    }
-    let needs = "draws between 1e-300 and 1e300 times T";
-    let control = control.optical_depth(mesh.support()).value;
-    let [whole, control] = [log_unit, control].map(rounded);
-    let found = format!("τ = {whole}, of which the control takes {control}");
-    Err(Refusal::mismatch(needs, found))
 }
 
 /// Refuses an experiment if its answer leaves the range of doubles, or if its draws would take too many lookups.

@@ -28,10 +28,12 @@
 //!
 //! Short forms: a number for `medium`, `volume`, `sampling` or `control` is the page `constant`, as in `sampling = 2`. A name
 //! that needs no settings stands alone or with an empty table, wherever a name is chosen: `control = "mean"`,
-//! `phase = "isotropic"`, `estimators = ["ratio", "woodcock"]`.
+//! `phase = "isotropic"`, `estimators = ["ratio", "woodcock"]`. A list of one channel (`medium`, `volume`, `albedos`, `phases`,
+//! `sampling`, `forward`) is its one entry, unless an estimator of several channels is listed.
 
 pub(crate) mod build;
 pub mod catalogue;
+mod channels;
 pub(crate) mod estimator;
 pub(crate) mod forms;
 pub mod id;

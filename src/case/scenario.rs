@@ -7,15 +7,16 @@ use std::sync::{Arc, OnceLock};
 use serde::{Deserialize, Serialize};
 
 use crate::case::Case;
-use crate::case::build::{AnyProblem, Parts, ProblemKind, Ready, refuse_what_cannot_be_computed};
+use crate::case::build::{AnyProblem, ProblemKind, Ready, refuse_what_cannot_be_computed};
 use crate::case::estimator::{Defaults, Estimators};
 use crate::case::id::{EstimatorName, ExperimentId, Number, SamplingName, SweepPoint};
 use crate::case::sweep::{Variation, What};
 use estimators::recipes::{controls, sampling};
+use estimators::setup::Parts;
 use estimators::{RayView, Refusal, Site};
 use media::body::RayNeed;
 use media::catalogue::Settings;
-use media::{Body, Control, Medium, Piecewise, misses};
+use media::{Body, Control, Medium, Piecewise, Volume, misses};
 use numeric::rng::Address;
 use theory::{Mesh, Prediction};
 
@@ -165,35 +166,32 @@ impl Scenario {
             Some((What::SamplingScale, factor)) => (None, factor),
             _ => (None, 1.0),
         };
-        let constant =
-            constant.filter(|_| self.estimators.list[estimator].features.inputs.sampling);
-        let recipe = self.estimators.sampling_of(&self.estimators.list[estimator]);
+        let parsed = &self.estimators.list[estimator];
+        let recipe = self.estimators.sampling_of(parsed);
+        let constant = constant.filter(|_| parsed.features.inputs.sampling);
+        let constant = constant.map(|value| sampling::constant::Constant { value });
         let mut lookups = explored;
-        let mut sampling_of = |channel: usize, site: &Site| {
-            let (sampling, learned) = match (constant, recipe) {
-                (Some(value), _) => (Piecewise::constant(value, mesh.support()), 0),
-                (None, Some(recipe)) => {
-                    let own = recipe.channels().get(channel).map_or(recipe, |own| &**own);
-                    own.prepare_counted(site, &control)?
-                }
-                (None, None) => return Ok(None),
+        let channels = self.meshes().iter().zip(self.body.channels()).enumerate();
+        let channels = channels.map(|(channel, (mesh, body))| {
+            let own = recipe.map(|recipe| sampling::of_channel(recipe, channel));
+            let Some(recipe) = constant.as_ref().map(|own| own as _).or(own) else {
+                return Ok((mesh.clone(), None));
             };
+            let site = Site { body, mesh, address };
+            let (sampling, learned) = recipe.prepare_counted(&site, &control)?;
             lookups += learned;
-            Ok(Some(sampling.scaled(factor)))
-        };
-        let sampling = sampling_of(0, &site)?;
-        let channels = self.meshes().iter().zip(self.body.channels()).enumerate().skip(1);
-        let further = channels
-            .map(|(channel, (mesh, body))| {
-                Ok((mesh.clone(), sampling_of(channel, &Site { body, mesh, address })?))
-            })
-            .collect::<Result<_, Refusal>>()?;
+            Ok((mesh.clone(), Some(sampling.scaled(factor))))
+        });
+        let channels = channels.collect::<Result<_, Refusal>>()?;
+        let space = Box::new(move |volume: &Volume| {
+            let recipe = constant.as_ref().map(|own| own as _).or(recipe);
+            Ok(Arc::new(sampling::in_space(recipe, volume)?.scaled(factor)))
+        });
         let albedo = match variation {
             Some((What::Albedo, albedo)) => Some(albedo),
             _ => None,
         };
-        let parts = Parts { mesh, sampling, further, control, constant, recipe, factor, albedo };
-        Ok((parts, lookups))
+        Ok((Parts { channels, control, space, albedo }, lookups))
     }
 }
 
@@ -331,16 +329,12 @@ impl<'a> At<'a> {
         let scenario = self.scenario();
         let parts = scenario.parts(estimator, self.variation(), None, address).ok();
         let parts = parts.map(|(parts, _)| parts);
-        let sampling = parts.as_ref().map(|parts| {
-            let further = parts.further.iter().map(|(_, sampling)| sampling.as_ref());
-            std::iter::once(parts.sampling.as_ref()).chain(further).collect::<Vec<_>>()
-        });
-        let control = parts.as_ref().map(|parts| &parts.control);
+        let parts = parts.as_ref();
         let media = scenario.media().iter().enumerate();
         let fields = media.map(|(channel, medium)| Fields {
             medium,
-            control,
-            sampling: sampling.as_ref().and_then(|all| *all.get(channel)?),
+            control: parts.map(|parts| &parts.control),
+            sampling: parts.and_then(|parts| parts.channels[channel].1.as_ref()),
         });
         fields.filter_map(|fields| fields.course(at)).map(Course::finite).collect()
     }
@@ -348,10 +342,13 @@ impl<'a> At<'a> {
     /// Returns the largest `|σ_t − σ_c|` on the ray, 1/length: the natural scale of σ̂ for an estimator.
     pub fn natural_scale(&self, estimator: usize) -> f64 {
         let scenario = self.scenario();
-        let parts = scenario.parts(estimator, self.variation(), None, NOWHERE);
-        let control =
-            parts.and_then(|(parts, _)| scenario.problem.fitting_control(estimator, parts));
-        let Ok(control) = control else { return 0.0 };
+        let Ok((parts, _)) = scenario.parts(estimator, self.variation(), None, NOWHERE) else {
+            return 0.0;
+        };
+        let control = parts.control.clone();
+        if scenario.problem.fit(estimator, parts).is_err() {
+            return 0.0;
+        }
         let largest = scenario.mesh().largest(|t, sigma| (sigma - control.extinction(t)).abs());
         largest.map_or(0.0, |(_, size)| size)
     }

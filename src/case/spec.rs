@@ -16,6 +16,7 @@ use annotate_snippets::{AnnotationKind, Level, Renderer, Snippet};
 use serde::{Serialize, Serializer};
 use toml::de::{DeTable, DeValue};
 
+use crate::case::channels::read_single_channels;
 use crate::case::shorthand::spell_out;
 use media::catalogue::{Additions, Entry, Fault, Node, Settings, Value};
 
@@ -49,6 +50,7 @@ impl Spec {
             return Err(source.faulty(faults.into_inner()));
         }
         spell_out(&mut root, &faults);
+        read_single_channels(&mut root, additions);
         let (source, additions) = (source.clone(), additions.clone());
         Ok(Self { source, root, faults: faults.into_inner(), additions })
     }

@@ -1,15 +1,16 @@
 //! One pixel of one estimator: its expected properties, and its draws.
 
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 use super::budget::{Colour, Forecast, PixelDraws};
 use super::subject::{AnyRay, RayOf, SubjectKind};
 use super::view::View;
-use crate::case::build::Parts;
 use crate::case::estimator::{Estimators, ParsedEstimator};
 use crate::case::id::EstimatorName;
+use estimators::recipes::sampling;
+use estimators::setup::{Parts, Space};
 use estimators::{DrawBuffer, Experiment, Kernel, Refusal, Site};
-use media::{Body, Control, Majorants, Medium};
+use media::{Body, Control, Medium, Volume};
 use numeric::Known;
 use numeric::rng::Address;
 use theory::Mesh;
@@ -47,9 +48,9 @@ pub struct Listed<'a> {
     pub label: Label,
     /// Budget of lookups per pixel.
     pub lookups: u64,
-    /// σ̂ in space, for draws that leave the ray, which all pixels share.
-    pub space: Option<Arc<Majorants>>,
-    /// Addresses of its random numbers, apart from the pixel: those of pilots, and those of the image.
+    /// σ̂ in space, for draws that leave the ray: the same for all pixels, and made for the first.
+    pub space: OnceLock<Result<Space, Refusal>>,
+    /// Addresses of its random numbers, but for the pixel: those of pilots, and those of the image.
     pub addresses: [Address; 2],
 }
 
@@ -101,45 +102,37 @@ impl<'a> Pixel<'a> {
     fn parts<'b>(
         &'b self,
         estimators: &'b Estimators,
-        parsed: &'b ParsedEstimator,
+        listed: &'b Listed,
     ) -> Result<Parts<'b>, Refusal> {
-        let mesh = &self.meshes[0];
-        let recipe = estimators.sampling_of(parsed);
-        let (sampling, control) = if self.kind.along_ray {
-            let site = Site { body: &self.bodies[0], mesh, address: NOWHERE };
-            let recipe_of_control = estimators.control_of(parsed);
-            let control = match &self.leader {
-                Some((body, mesh)) if recipe_of_control.lookups() > 0 => {
-                    match recipe_of_control.prepare(&Site { body, mesh, ..site })? {
+        let recipe = estimators.sampling_of(listed.parsed);
+        let along_ray = recipe.filter(|_| self.kind.along_ray);
+        let control = if self.kind.along_ray {
+            let site = Site { body: &self.bodies[0], mesh: &self.meshes[0], address: NOWHERE };
+            let recipe = estimators.control_of(listed.parsed);
+            match &self.leader {
+                Some((body, mesh)) if recipe.lookups() > 0 => {
+                    match recipe.prepare(&Site { body, mesh, ..site })? {
                         Control::Pieces(pieces) => Control::Pieces(pieces.on(mesh.support())),
                         other => other,
                     }
                 }
-                _ => recipe_of_control.prepare(&site)?,
-            };
-            (recipe.map(|recipe| recipe.prepare(&site, &control)).transpose()?, control)
+                _ => recipe.prepare(&site)?,
+            }
         } else {
-            (None, Control::None)
+            Control::None
         };
-        let channels = self.meshes.iter().zip(&self.bodies).enumerate().skip(1);
-        let further = channels.map(|(channel, (mesh, body))| {
-            let recipe =
-                recipe.map(|recipe| recipe.channels().get(channel).map_or(recipe, |own| &**own));
+        let channels = self.meshes.iter().zip(&self.bodies).enumerate();
+        let channels = channels.map(|(channel, (mesh, body))| {
             let site = Site { body, mesh, address: NOWHERE };
-            let sampling = recipe.map(|recipe| recipe.prepare(&site, &control)).transpose()?;
-            Ok((mesh.clone(), sampling))
+            let own = along_ray.map(|recipe| sampling::of_channel(recipe, channel));
+            Ok((mesh.clone(), own.map(|own| own.prepare(&site, &control)).transpose()?))
         });
-        let further = further.collect::<Result<_, Refusal>>()?;
-        Ok(Parts {
-            mesh,
-            sampling,
-            further,
-            control,
-            constant: None,
-            recipe,
-            factor: 1.0,
-            albedo: None,
-        })
+        let channels = channels.collect::<Result<_, Refusal>>()?;
+        let space = Box::new(move |volume: &Volume| {
+            let made = || sampling::in_space(recipe, volume).map(Arc::new);
+            listed.space.get_or_init(made).clone()
+        });
+        Ok(Parts { channels, control, space, albedo: None })
     }
 
     /// Returns the expected cost and spread of a draw at the covered pixel of a number.
@@ -151,9 +144,9 @@ impl<'a> Pixel<'a> {
     ) -> Result<Forecast, String> {
         let [column, row] = [self.index % self.view.size[0], self.index / self.view.size[0]];
         let refused = |refusal: Refusal| format!("pixel ({column}, {row}) {refusal}");
-        let parts = self.parts(estimators, listed.parsed).map_err(refused)?;
+        let parts = self.parts(estimators, listed).map_err(refused)?;
         let ask = [!listed.parsed.expect_biased, self.kind.is_predicted];
-        let prepared = self.ray.prepare(listed.index, parts, listed.space.as_ref(), ask);
+        let prepared = self.ray.prepare(listed.index, parts, ask);
         let (prediction, experiment) = prepared.map_err(refused)?;
         let leads = self.leader.is_none();
         let known = prediction.and_then(|found| Some((found.lookups?.mean, found.channels)));
@@ -186,9 +179,8 @@ impl<'a> Pixel<'a> {
         listed: &Listed,
         draws: u64,
     ) -> Option<PixelDraws> {
-        let parts = self.parts(estimators, listed.parsed).ok()?;
-        let space = listed.space.as_ref();
-        let prepared = self.ray.prepare(listed.index, parts, space, [false; 2]);
+        let parts = self.parts(estimators, listed).ok()?;
+        let prepared = self.ray.prepare(listed.index, parts, [false; 2]);
         let address = Address { block: number as u64, ..listed.addresses[1] };
         Some(self.drawn(&*prepared.ok()?.1, draws, address))
     }

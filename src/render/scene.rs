@@ -1,6 +1,6 @@
 //! Volume, camera, estimators and reference of a picture: both passes over all pixels.
 
-use std::sync::Arc;
+use std::sync::OnceLock;
 
 use super::budget::{PixelDraws, PixelValues, Plan};
 use super::pixel::{Label, Listed, Pixel};
@@ -120,9 +120,7 @@ impl Scene {
                 let experiment = name_hash(&format!("picture|{}|{words}|{what}", request.name));
                 Address { seed: request.seed, experiment, block: 0, lane: 0 }
             };
-            let recipe = self.estimators.sampling_of(parsed).filter(|_| !self.kind.along_ray);
-            let space =
-                recipe.and_then(|recipe| recipe.in_space(&*self.view.volumes[0])).map(Arc::new);
+            let space = OnceLock::new();
             let addresses = ["pilot", "draws"].map(address);
             listed.push(Listed { parsed, index, label, lookups, space, addresses });
         }

@@ -5,18 +5,18 @@ use std::sync::Arc;
 use super::budget::MOST_CHANNELS;
 use super::scene::Reference;
 use super::view::View;
-use crate::case::build::Parts;
 use crate::case::estimator::{Defaults, Estimators};
+use estimators::setup::Parts;
 use estimators::trial::Entry;
-use estimators::{Estimated, Experiment, Refusal, Setup};
-use media::catalogue::{Domain, Settings};
+use estimators::{Estimated, Experiment, Fields, Refusal, Setup};
+use media::catalogue::Settings;
 use media::phase::Phase;
-use media::{Body, Majorants, Medium, Volume};
+use media::{Body, Medium, Volume};
 use numeric::geometry::Ray;
 use numeric::{Known, Lane};
 use theory::problems::options::chosen;
 use theory::problems::scene::read_albedo;
-use theory::problems::single_scattering::{Lamp, OnTheLine};
+use theory::problems::single_scattering::{Lit, OnTheLine};
 use theory::problems::{
     Albedo, MultipleScattering, Problem, ProblemOption, Scene, SingleScattering, Sky,
     SpectralTransmittance, Transmittance,
@@ -173,7 +173,6 @@ pub trait AnyRay {
         &self,
         estimator: usize,
         parts: Parts,
-        space: Option<&Arc<Majorants>>,
         ask: [bool; 2],
     ) -> Result<(Option<Prediction>, Box<dyn Experiment>), Refusal>;
 }
@@ -200,20 +199,13 @@ impl<P: Subject> AnyRay for OneRay<P> {
         &self,
         estimator: usize,
         parts: Parts,
-        space: Option<&Arc<Majorants>>,
         [is_checked, is_predicted]: [bool; 2],
     ) -> Result<(Option<Prediction>, Box<dyn Experiment>), Refusal> {
         let entry = &self.entries[estimator];
-        let Parts { mesh, sampling, further, control, recipe, .. } = parts;
-        let setup = Setup::new(self.problem.clone(), mesh.clone(), sampling, control);
-        let setup = if P::SPECTRAL { setup.spectral(further) } else { setup };
-        let setup = match space {
-            _ if P::ALONG_RAY && entry.skips() => setup.skipping(),
-            _ if P::ALONG_RAY => setup,
-            Some(space) => Setup { space: Some(space.clone()), ..setup },
-            None => setup.in_space(None, recipe, 1.0)?,
-        };
-        let setup = Setup { laws: !P::ALONG_RAY, ..setup };
+        let mut setup = Setup { distributions: false, ..Setup::new(&self.problem, parts)? };
+        if entry.skips() {
+            setup.fields = setup.fields.skipping();
+        }
         if is_checked {
             entry.domain(&setup)?;
         }
@@ -296,13 +288,6 @@ fn transmittance_by_quadrature(medium: &Medium, panels: usize) -> Known {
     Known::new(fine, (fine - transmittance(panels)).abs())
 }
 
-/// Light, and the scattering of the medium.
-pub struct Lit {
-    lamp: Lamp,
-    albedo: f64,
-    phase: Phase,
-}
-
 impl Subject for SingleScattering {
     type Shared = Lit;
 
@@ -311,15 +296,7 @@ impl Subject for SingleScattering {
     const IS_PREDICTED: bool = false;
 
     fn read_shared(settings: &Settings, _: Option<&View>) -> Option<Lit> {
-        let lamp = Lamp::read(settings);
-        let albedo = settings.number("albedo", Domain::Unit);
-        let phase = Phase::read(settings);
-        let (lamp, albedo, phase) = (lamp?, albedo?, phase?);
-        if albedo <= 0.0 {
-            settings.fault("albedo", "nothing is scattered", "the albedo is above 0");
-            return None;
-        }
-        Some(Lit { lamp, albedo, phase })
+        Lit::read(settings)
     }
 
     fn allows(shared: &Lit, ray: &Ray) -> Result<(), [String; 2]> {

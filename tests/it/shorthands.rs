@@ -1,7 +1,12 @@
 //! Names and numbers in the place of tables: both spellings are the same case. Messages about near misses are in
 //! `tests/wrong/`.
 
-use super::common::{case, judged, options, predicted};
+use std::path::PathBuf;
+
+use trueflight::case::{Source, Spec};
+use trueflight::media::catalogue::Additions;
+
+use super::common::{case, case_file, judged, options, predicted, shipped_texts};
 
 /// Returns the draws and findings of a case, without its name: bit for bit.
 fn results(text: &str) -> String {
@@ -133,4 +138,82 @@ fn channels_may_be_listed_by_numbers() {
     let truths: Vec<f64> = grey.filter_map(|row| row.truth).collect();
     assert!(!truths.is_empty());
     assert!(truths.iter().all(|truth| (truth / (-0.75 * 2.0_f64).exp() - 1.0).abs() < 1e-12));
+}
+
+/// Settings of one channel, and of a list of channels.
+const LISTS: [[&str; 2]; 6] = [
+    ["medium", "medium"],
+    ["volume", "volume"],
+    ["albedo", "albedos"],
+    ["phase", "phases"],
+    ["sampling", "sampling"],
+    ["forward", "forward"],
+];
+
+/// A case with a list of one for each setting of a channel.
+fn listed(text: &str) -> String {
+    fn list(settings: &mut toml::Table, lists: &[[&str; 2]]) {
+        for [one, several] in lists {
+            if let Some(value) = settings.remove(*one) {
+                settings.insert((*several).to_owned(), vec![value].into());
+            }
+        }
+    }
+    let mut root: toml::Table = text.parse().expect("TOML");
+    let problems = root["problem"].as_table_mut().expect("a problem");
+    for settings in problems.iter_mut().filter_map(|(_, settings)| settings.as_table_mut()) {
+        list(settings, &LISTS);
+        let estimators = settings["estimators"].as_array_mut().into_iter().flatten();
+        for named in estimators.filter_map(toml::Value::as_table_mut) {
+            for own in named.iter_mut().filter_map(|(_, own)| own.as_table_mut()) {
+                list(own, &LISTS[4..5]);
+            }
+        }
+    }
+    toml::to_string(&root).expect("TOML")
+}
+
+/// The settings that are read of a case.
+fn settings(text: &str) -> toml::Table {
+    let (name, text) = ("test".to_owned(), text.to_owned());
+    let source = Source { name, path: PathBuf::new(), text };
+    let spec = Spec::parse(&source, &Additions::default()).expect("TOML");
+    toml::to_string(&spec).expect("TOML").parse().expect("TOML")
+}
+
+#[test]
+fn a_list_of_one_channel_is_the_channel_in_all_shipped_cases() {
+    let mut count = 0;
+    for text in shipped_texts() {
+        let own = settings(&text);
+        let problem = own["problem"].as_table().and_then(|problems| problems.values().next());
+        let problem = problem.and_then(toml::Value::as_table).expect("a problem");
+        let has_channels = ["medium", "volume"]
+            .iter()
+            .any(|key| problem.get(*key).is_some_and(toml::Value::is_array));
+        if !has_channels && !problem.contains_key("albedos") {
+            assert_eq!(settings(&listed(&text)), own, "{text}");
+            count += 1;
+        }
+    }
+    assert!(count > 50, "only {count} cases");
+}
+
+/// Names, predictions, draws and verdicts of experiments.
+#[test]
+fn experiments_with_a_list_of_one_channel_are_those_without() {
+    for name in [
+        "transmittance/eq21-control",
+        "transmittance/curve-eq21-figure-8",
+        "rod/three-rules-a0.7",
+        "rod/lit-homogeneous",
+        "rod/bidirectional-transmitted",
+        "slab/three-rules",
+        "slab/lit-distant",
+        "single-scattering/homogeneous",
+        "furnace/albedos",
+    ] {
+        let text = std::fs::read_to_string(case_file(name)).expect("a case");
+        assert_eq!(results(&listed(&text)), results(&text), "{name}");
+    }
 }

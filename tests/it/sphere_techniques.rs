@@ -161,7 +161,7 @@ fn sphere(scene: [&str; 3]) -> (Sphere, Majorants) {
     let settings = Settings::new(&root, Path::new("tests/data"), &faults);
     let sphere = Sphere::read(Body::read(&settings).as_ref(), &settings);
     let sphere = sphere.unwrap_or_else(|| panic!("{:?}", faults.borrow()));
-    let majorants = Majorants::constant(2.5, sphere.volume().expect("a volume"));
+    let majorants = Majorants::constant(2.5, &*sphere.scene.volume);
     (sphere, majorants)
 }
 

@@ -38,10 +38,10 @@ use crate::recipes::controls;
 use media::catalogue::{PageList, Settings};
 use numeric::rng::Address;
 use theory::Prediction;
-use theory::problems::{Named, Problem, ProblemOption, each_problem};
+use theory::problems::{Named, ProblemOption, each_problem};
 
 pub use crate::recipes::{Refusal, Site};
-pub use crate::setup::Setup;
+pub use crate::setup::{Fields, Setup};
 
 pub use crate::kernels::{Draw, DrawBuffer, Request};
 pub use transmittance_curve::RayView;
@@ -66,7 +66,7 @@ impl Inputs {
 }
 
 /// A page of the catalogue of estimators of problem `P`.
-pub trait Estimator<P: Problem>: Clone + Send + Sync + 'static {
+pub trait Estimator<P: Estimated>: Clone + Send + Sync + 'static {
     /// Inputs of the estimator, unless its settings say otherwise.
     const INPUTS: Inputs;
     /// True if draws have a [`Draw::defect`].
@@ -142,6 +142,9 @@ pub trait Estimator<P: Problem>: Clone + Send + Sync + 'static {
 
 /// A problem with a catalogue of estimators.
 pub trait Estimated: Named {
+    /// Fields that the estimators work on.
+    type Fields: Fields<Self>;
+
     /// The estimators of this problem.
     const CATALOGUE: PageList;
 
@@ -183,8 +186,10 @@ pub fn catalogues() -> Vec<FormCatalogue> {
 /// Lists the estimators of one problem. Each line gives the module, the name in case files and the row in
 /// `trueflight list`.
 macro_rules! estimators {
-    ($Problem:ty: $($module:ident :: $Page:ident,)*) => {
+    ($Problem:ident on $Fields:ident: $($module:ident :: $Page:ident,)*) => {
         impl $crate::Estimated for $Problem {
+            type Fields = $crate::setup::$Fields;
+
             const CATALOGUE: media::catalogue::PageList = media::catalogue::PageList {
                 name: "estimators",
                 pages: &[$(media::page!($module)),*],
@@ -233,14 +238,16 @@ macro_rules! scored {
             const PLAIN: Option<Self> = Some(Self);
 
             fn domain(&self, setup: &Setup<Transmittance>) -> Result<(), $crate::Refusal> {
-                setup.require_plain_unit("τ ≤ 300 (its draws are sums of terms of every size)")?;
-                setup.require_constant_sampling()?;
-                setup.require_finite_weights(&theory::rules::Weight)
+                setup
+                    .fields
+                    .require_plain_unit("τ ≤ 300 (its draws are sums of terms of every size)")?;
+                setup.residual().require_constant_sampling()?;
+                setup.fields.require_finite_weights(&theory::rules::Weight)
             }
 
             fn predict(&self, setup: &Setup<Transmittance>) -> theory::Prediction {
-                let sampling = setup.sampling.single_value().unwrap_or(0.0);
-                theory::volterra::predict(&setup.mesh, sampling, self)
+                let sampling = setup.fields.sampling.single_value().unwrap_or(0.0);
+                theory::volterra::predict(&setup.fields.mesh, sampling, self)
             }
 
             fn fill(

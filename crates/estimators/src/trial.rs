@@ -2,12 +2,11 @@
 
 use fearless_simd::Level;
 
-use super::{DrawBuffer, Estimator, Inputs, RayView, Refusal, Setup};
+use super::{DrawBuffer, Estimated, Estimator, Fields, Inputs, RayView, Refusal, Setup};
 use crate::kernels::Request;
 use crate::recipes::controls;
 use numeric::rng::{Address, Streams};
 use theory::Prediction;
-use theory::problems::Problem;
 
 /// A way to make draws; all ways make the same draws.
 #[derive(Debug, Clone, Copy)]
@@ -41,7 +40,7 @@ pub trait Experiment: Send + Sync {
 }
 
 /// An estimator as written in a case, with its type erased.
-pub trait Entry<P: Problem>: Send + Sync {
+pub trait Entry<P: Estimated>: Send + Sync {
     /// See [`Estimator::inputs`].
     fn inputs(&self) -> Inputs;
     /// See [`Estimator::INPUTS`].
@@ -72,7 +71,7 @@ pub trait Entry<P: Problem>: Send + Sync {
     fn experiment(&self, setup: Setup<P>) -> Box<dyn Experiment>;
 }
 
-impl<P: Problem, E: Estimator<P>> Entry<P> for E {
+impl<P: Estimated, E: Estimator<P>> Entry<P> for E {
     fn inputs(&self) -> Inputs {
         Estimator::inputs(self)
     }
@@ -122,12 +121,12 @@ impl<P: Problem, E: Estimator<P>> Entry<P> for E {
     }
 }
 
-struct Trial<P, E> {
+struct Trial<P: Estimated, E> {
     estimator: E,
     setup: Setup<P>,
 }
 
-impl<P: Problem, E: Estimator<P>> Experiment for Trial<P, E> {
+impl<P: Estimated, E: Estimator<P>> Experiment for Trial<P, E> {
     fn fill_by(
         &self,
         kernel: Kernel,
@@ -143,6 +142,6 @@ impl<P: Problem, E: Estimator<P>> Experiment for Trial<P, E> {
     }
 
     fn skipped(&self) -> f64 {
-        self.setup.skipped
+        self.setup.fields.skipped()
     }
 }

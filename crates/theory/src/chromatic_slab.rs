@@ -20,8 +20,8 @@ use super::spectral::bound::{self, Flight, SecondMomentRates};
 use super::spectral::rates::{Proposal, Rates};
 use super::{Channel, CountLaw, Mesh, ParticleRule, Prediction};
 use crate::problems::ChromaticSlab;
+use crate::problems::channels::End;
 use crate::problems::slab::Light;
-use crate::problems::spectral_rod::End;
 use media::Piecewise;
 use numeric::{Known, exponential_integrals};
 

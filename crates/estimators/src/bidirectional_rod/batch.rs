@@ -26,7 +26,7 @@ pub fn packets<'r>(
     medium: &Lookups,
     request: Request<'r>,
 ) -> Option<Request<'r>> {
-    if setup.sampling.even().is_none() {
+    if setup.fields.sampling.even().is_none() {
         return Some(request);
     }
     let task = Draws { steps: *steps, setup, medium, request };
@@ -46,7 +46,7 @@ impl<P: Steps + Copy> Task for Draws<'_, '_, P> {
     #[inline(always)]
     fn run<S: Simd>(self, simd: S) {
         let Self { steps, setup, medium, request: Request { streams, count, buffer } } = self;
-        let Some(sampling) = setup.sampling.even() else { return };
+        let Some(sampling) = setup.fields.sampling.even() else { return };
         buffer.make_room(count);
         buffer.defects.fill(0.0);
         let zero = Twin::splat(simd, 0.0);

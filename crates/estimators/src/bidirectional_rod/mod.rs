@@ -94,9 +94,9 @@ impl Page {
     }
 
     fn domain(self, setup: &Setup<BidirectionalRod>) -> Result<(), Refusal> {
-        setup.require_ratio_at_most(1.0, "σ̂ ≥ σ_t everywhere")?;
-        setup.require_few_collisions("∫σ̂ ≤ 1e6")?;
-        let depth = setup.mesh.optical_depth().value;
+        setup.residual().require_ratio_at_most(1.0, "σ̂ ≥ σ_t everywhere")?;
+        setup.residual().require_few_collisions("∫σ̂ ≤ 1e6")?;
+        let depth = setup.fields.mesh.optical_depth().value;
         if depth > LONGEST {
             let found = format!("τ = {}", rounded(depth));
             return Err(Refusal::mismatch("τ ≤ 12, as far as theory goes", found));
@@ -131,7 +131,7 @@ impl Page {
     fn predict(self, setup: &Setup<BidirectionalRod>) -> Prediction {
         let problem = &setup.problem;
         let scene = Scene {
-            depth: setup.mesh.optical_depth(),
+            depth: setup.fields.mesh.optical_depth(),
             albedo: problem.albedo,
             forward: problem.forward,
             is_transmitted: problem.sensor == Sensor::Transmitted,
@@ -143,7 +143,7 @@ impl Page {
         let connection = tracked.unwrap_or(Connection::Exact);
         let Self { combination, is_shared, .. } = self;
         let rules = Rules { combination, connection, is_shared, has_shares: problem.has_shares };
-        bidirectional_rod::predict(&scene, &rules, ratio, setup.laws)
+        bidirectional_rod::predict(&scene, &rules, ratio, setup.distributions)
     }
 }
 
@@ -169,10 +169,10 @@ fn is_dark(problem: &BidirectionalRod, order: usize) -> bool {
 
 /// `σ_t/σ̂`, if it has one value wherever there is a medium.
 fn one_ratio(setup: &Setup<BidirectionalRod>) -> Option<f64> {
-    let cut = setup.mesh.refined(setup.sampling.knots(), &|_, _| Vec::new());
+    let cut = setup.fields.mesh.refined(setup.fields.sampling.knots(), &|_, _| Vec::new());
     let places = cut.panels().flat_map(|panel| panel.t.iter().zip(panel.extinction));
     let ratios = places.filter_map(|(&t, sigma)| {
-        let sampling = setup.sampling.value(t);
+        let sampling = setup.fields.sampling.value(t);
         (sampling > 0.0).then_some(sigma / sampling)
     });
     let [least, most] = ratios.fold([f64::INFINITY, 0.0], |[least, most], ratio: f64| {
@@ -237,7 +237,7 @@ macro_rules! pages {
 use pages;
 
 estimators! {
-    BidirectionalRod:
+    BidirectionalRod on Line:
     technique::Technique,
     directional_mis::DirectionalMis,
     full_mis::FullMis,

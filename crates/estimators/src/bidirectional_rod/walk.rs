@@ -170,11 +170,11 @@ impl<S: Steps> Loop for One<'_, S> {
     fn run<L: Single>(self) -> Draw<Values> {
         let Self { steps, setup, medium, random } = self;
         let (zero, alone) = (L::of(0.0), Alone(medium));
-        if let Some(even) = setup.sampling.even() {
+        if let Some(even) = setup.fields.sampling.even() {
             let begin = Even::new(zero, even);
             through(steps, Tracker::new(setup, zero, [begin, begin.from_end()], alone), random)
         } else {
-            let begin = Pieces::new(zero, &setup.sampling);
+            let begin = Pieces::new(zero, &setup.fields.sampling);
             through(steps, Tracker::new(setup, zero, [begin, begin.from_end()], alone), random)
         }
     }
@@ -323,7 +323,7 @@ fn gather<L: Lane, P>(
     [light, camera]: [&Subpath<L, P>; 2],
     path: &mut Path<L>,
 ) {
-    let (problem, support) = (&*setup.problem, setup.mesh.support());
+    let (problem, support) = (&*setup.problem, setup.fields.mesh.support());
     let (order, s, one) = (path.order, path.light, path.at[0].each(1.0));
     let (all, is_transmitted) = (one.at_most(one), problem.sensor == Sensor::Transmitted);
     let from_light = s.saturating_sub(1).min(order);

@@ -2,22 +2,21 @@
 //!
 //! A walk of one walker carries the densities of all channels, and scores where it ends.
 
-pub mod all_channels;
 pub mod densities;
-pub mod independent;
+pub mod page;
 
 use fearless_simd::Level;
 
 use crate::kernels::Request;
+use crate::setup::Channels;
 use crate::setup::walker::Walker;
 use crate::walks::hero::Weighing;
-use crate::{Draw, Refusal, Setup};
+use crate::{Draw, Estimated, Refusal, Setup};
 use media::Lookups;
 use numeric::Lane;
 use numeric::rng::Stream;
 use theory::Prediction;
 use theory::particle::Event;
-use theory::problems::Problem;
 
 /// The steps of a walk that a known bug may replace.
 pub trait Steps: Copy {
@@ -68,8 +67,15 @@ pub struct By<'a> {
     pub scores_all: bool,
 }
 
-/// A body in which every channel has a medium of its own; its estimators have common pages.
-pub trait Chromatic: Problem {
+impl<'a> By<'a> {
+    /// A walker with the right weighting.
+    pub fn new(walker: &'a Walker, scores_all: bool) -> Self {
+        Self { walker, weighing: WEIGHING, scores_all }
+    }
+}
+
+/// A body in which every channel has a medium of its own; its estimators have one [`page`].
+pub trait Chromatic: Estimated<Fields = Channels> {
     /// Makes one draw.
     fn draw(
         steps: impl Steps,
@@ -122,11 +128,10 @@ pub const WEIGHING: Weighing = Weighing { has_next_event: false, ..Weighing::RIG
 /// Makes one draw: compiled once for all walkers.
 #[inline(never)]
 pub fn draw<P: Chromatic>(
-    walker: &Walker,
-    scores_all: bool,
+    by: By,
     setup: &Setup<P>,
     medium: &Lookups,
     random: &mut Stream,
 ) -> Draw<P::Value> {
-    P::draw(Right, By { walker, weighing: WEIGHING, scores_all }, setup, medium, random)
+    P::draw(Right, by, setup, medium, random)
 }

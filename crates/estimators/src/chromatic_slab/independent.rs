@@ -16,4 +16,8 @@
 //! Source: B. Miller, I. Georgiev, W. Jarosz, *A null-scattering path integral formulation of light transport*,
 //! ACM Transactions on Graphics 38 (2019), section 6.
 
-pub use crate::chromatic::independent::Independent;
+use crate::chromatic::page::Page;
+use crate::setup::walker::INDEPENDENT;
+
+/// One channel a draw.
+pub type Independent = Page<INDEPENDENT>;

@@ -21,19 +21,19 @@ use numeric::rng::Stream;
 use theory::Prediction;
 use theory::chromatic_slab::Spectrum;
 use theory::problems::ChromaticSlab;
-use theory::problems::spectral_rod::Values;
+use theory::problems::channels::ColourValues as Values;
 
 /// The slab as theory describes it.
 fn spectrum(setup: &Setup<ChromaticSlab>) -> Spectrum<'_> {
-    let media = setup.channels.iter().map(|channel| (&*channel.mesh, &channel.sampling));
-    Spectrum::new(&setup.problem, media.collect(), setup.laws)
+    let media = setup.fields.iter().map(|channel| (&*channel.mesh, &channel.sampling));
+    Spectrum::new(&setup.problem, media.collect(), setup.distributions)
 }
 
 /// Checks that theory resolves the energies of all channels.
 fn realisable(setup: &Setup<ChromaticSlab>) -> Result<(), Refusal> {
     let Some(channel) = spectrum(setup).blurred() else { return Ok(()) };
     let needs = "reflectances and transmittances that adding and doubling resolve (|g| ≤ 0.93, a moderate τ)";
-    let depth = rounded(setup.channels[channel].mesh.optical_depth().value);
+    let depth = rounded(setup.fields[channel].mesh.optical_depth().value);
     let phase = setup.problem.incidences[channel].phase.label();
     let found = format!("τ = {depth}, phase {phase} in channel {}", channel + 1);
     Err(Refusal::mismatch(needs, found))
@@ -49,7 +49,7 @@ impl Chromatic for ChromaticSlab {
         random: &mut Stream,
     ) -> Draw<Values> {
         let walk = InSlab::new(steps, by, setup);
-        walks::draw(&walk, &setup.channels[0].sampling, medium, random)
+        walks::draw(&walk, setup.residual().sampling, medium, random)
     }
 
     fn packets<'a>(
@@ -63,15 +63,15 @@ impl Chromatic for ChromaticSlab {
     }
 
     fn require(setup: &Setup<Self>, walker: &Walker) -> Result<(), Refusal> {
-        walker.require(&setup.channels)?;
-        channels::require_majorants(&setup.channels)?;
+        walker.require(&setup.fields)?;
+        channels::require_majorants(&setup.fields)?;
         walker.require_phases(&setup.problem.phases())?;
         realisable(setup)
     }
 
     fn second_moment_bounds(setup: &Setup<Self>, walker: &Walker) -> Result<Vec<f64>, Refusal> {
         if let Walker::Hero(_) = walker {
-            channels::require_room(&setup.channels, true)?;
+            channels::require_room(&setup.fields, true)?;
         }
         let spectrum = spectrum(setup);
         walker.second_moment_bounds(&setup.problem.phases(), |walk, channel, phi| {
@@ -92,13 +92,13 @@ impl Chromatic for ChromaticSlab {
         walker: &Walker,
         second_moment_bounds: &[f64],
     ) -> Prediction {
-        let heroes = walker.heroes().map(|heroes| heroes.of(setup.channels.len()));
+        let heroes = walker.heroes().map(|heroes| heroes.of(setup.fields.len()));
         spectrum(setup).relative(heroes.as_deref(), second_moment_bounds)
     }
 }
 
 estimators! {
-    ChromaticSlab:
+    ChromaticSlab on Channels:
     independent::Independent,
     hero::Hero,
     spectral_tracking::SpectralTracking,

@@ -23,15 +23,16 @@ use crate::walks::{GROUPS, Met, Route, SOME_LEFT, Scores, Walk};
 use media::body::MOST_CHANNELS;
 use media::course::BothWays;
 use numeric::rng::Random;
-use numeric::{Lane, Mask, kept};
+use numeric::{Lane, Mask, Span, kept};
 use theory::ParticleRule;
 use theory::problems::ChromaticSlab;
-use theory::problems::spectral_rod::End;
+use theory::problems::channels::End;
 
 /// The walk through a slab.
 #[derive(Clone, Copy)]
 pub struct InSlab<'a, S> {
     setup: &'a Setup<ChromaticSlab>,
+    support: Span,
     among: Scatterers<'a, S>,
     weighing: Weighing,
     scores_all: bool,
@@ -45,11 +46,11 @@ impl<'a, S: Steps> InSlab<'a, S> {
     /// The walk by steps on a setup.
     #[inline(always)]
     pub fn new(steps: S, by: By<'a>, setup: &'a Setup<ChromaticSlab>) -> Self {
-        let (problem, count) = (&*setup.problem, setup.channels.len());
+        let (problem, count) = (&*setup.problem, setup.fields.len());
         let By { walker, weighing, scores_all } = by;
         let [mut mean_free_paths, mut probabilities] = [[0.0; MOST_CHANNELS]; 2];
         let mut phases = [problem.incidences[0].phase; MOST_CHANNELS];
-        for (channel, own) in setup.channels.iter().enumerate() {
+        for (channel, own) in setup.fields.iter().enumerate() {
             mean_free_paths[channel] = 1.0 / own.majorant;
             phases[channel] = problem.incidences[channel].phase;
             // A walk of all channels together has the hero number 0.
@@ -62,7 +63,8 @@ impl<'a, S: Steps> InSlab<'a, S> {
         let albedos = &problem.colours.albedos;
         let law = walker.heroes().map(|heroes| Law::new(heroes, count));
         let among = Scatterers { media, albedos, phases, walker, steps };
-        Self { setup, among, weighing, scores_all, law, mean_free_paths }
+        let support = setup.residual().mesh.support();
+        Self { setup, support, among, weighing, scores_all, law, mean_free_paths }
     }
 }
 
@@ -167,7 +169,7 @@ impl<S: Steps> Walk for InSlab<'_, S> {
         random: &mut impl Random<L>,
     ) -> L::Mask {
         let (Met { inside, extinctions, .. }, cosine, hero) = (*met, path.cosine, path.hero);
-        let (zero, one, support) = (hero.each(0.0), hero.each(1.0), self.setup.mesh.support());
+        let (zero, one, support) = (hero.each(0.0), hero.each(1.0), self.support);
         let face = L::select(zero.below(cosine), one.each(support.to), one.each(support.from));
         let deep = L::select(inside, path.depth / path.majorant, face - path.before);
         path.last = self.among.steps.flown(deep, cosine);

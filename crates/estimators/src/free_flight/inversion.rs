@@ -37,7 +37,7 @@ impl Estimator<FreeFlight> for Inversion {
     }
 
     fn predict(&self, setup: &Setup<FreeFlight>) -> Prediction {
-        flight::predict(&setup.mesh, CountLaw::always(0.0))
+        flight::predict(&setup.fields.mesh, CountLaw::always(0.0))
     }
 
     #[inline(always)]

@@ -12,7 +12,7 @@ const DEEPEST: f64 = 700.0;
 
 /// Checks that theory resolves where flights end.
 fn resolved(setup: &Setup<FreeFlight>) -> Result<(), Refusal> {
-    let depth = setup.mesh.optical_depth().value;
+    let depth = setup.fields.mesh.optical_depth().value;
     if depth <= DEEPEST {
         return Ok(());
     }
@@ -20,7 +20,7 @@ fn resolved(setup: &Setup<FreeFlight>) -> Result<(), Refusal> {
 }
 
 estimators! {
-    FreeFlight:
+    FreeFlight on ControlledLine:
     inversion::Inversion,
     woodcock::Woodcock,
 }

@@ -31,7 +31,7 @@ impl Estimator<FreeFlight> for Woodcock {
     const SKIPS: bool = true;
 
     fn domain(&self, setup: &Setup<FreeFlight>) -> Result<(), Refusal> {
-        setup.require_ratio_at_most(1.0, "σ̂ ≥ σ_t everywhere")?;
+        setup.residual().require_ratio_at_most(1.0, "σ̂ ≥ σ_t everywhere")?;
         super::resolved(setup)
     }
 
@@ -39,7 +39,7 @@ impl Estimator<FreeFlight> for Woodcock {
         let product = setup.product(&Null);
         let mesh = product.mesh(&[]);
         let all = product.integrals(&mesh, &[mesh.support().to])[0];
-        flight::predict(&setup.mesh, product.lookups(&mesh, &all))
+        flight::predict(&setup.fields.mesh, product.lookups(&mesh, &all))
     }
 
     fn fill(&self, kernel: Kernel, setup: &Setup<FreeFlight>, request: Request) {

@@ -15,20 +15,17 @@ impl Walked for Furnace {
     type Tally<'a> = Energy<'a>;
 
     fn domain(setup: &Setup<Self>, particle: &Particle) -> Result<(), Refusal> {
-        let scene = &setup.problem.scene;
-        space::realisable(setup, scene, particle)?;
-        space::energy(&space::walks(scene, space::majorants(setup)?, particle)).map(|_| ())
+        space::realisable(setup, particle)?;
+        space::energy(&space::walks(&setup.problem.scene, &setup.fields, particle)).map(|_| ())
     }
 
     /// Prediction: every draw is 1 on average.
     fn predict(setup: &Setup<Self>, particle: &Particle) -> Prediction {
-        let majorants = setup.space.as_ref();
-        let walks = majorants.map(|all| space::walks(&setup.problem.scene, all, particle));
-        let bound = walks.and_then(|walks| walks.energy_variance());
+        let walks = space::walks(&setup.problem.scene, &setup.fields, particle);
         // Without a bound the walk is refused, or its draws are made in spite of that: then only the expected value
         // is kept.
-        let depth = walks.map_or(0.0, |walks| walks.depth);
-        Prediction::uncounted(space::energy_channel(bound.unwrap_or(f64::INFINITY), depth))
+        let bound = walks.energy_variance().unwrap_or(f64::INFINITY);
+        Prediction::uncounted(space::energy_channel(bound, walks.depth))
     }
 
     fn scene(&self) -> &Scene {
@@ -73,7 +70,7 @@ impl Tally for Energy<'_> {
 }
 
 estimators! {
-    Furnace:
+    Furnace on Space:
     particle::Walker,
     splitting::Splitter,
 }

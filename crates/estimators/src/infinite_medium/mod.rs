@@ -25,7 +25,7 @@ fn end(setup: &Setup<InfiniteMedium>, particle: &Particle) -> Option<f64> {
 
 /// `r`, if it is constant.
 fn ratio(setup: &Setup<InfiniteMedium>) -> Option<f64> {
-    Some(setup.problem.extinction / setup.space.as_deref()?.single_value()?)
+    Some(setup.problem.extinction / setup.fields.single_value()?)
 }
 
 /// Moments of a multiple of the number of collisions up to one that ends the walk, with probability p each:
@@ -47,7 +47,7 @@ impl Walked for InfiniteMedium {
             return Err(Refusal::mismatch("an albedo below 1", "nothing is ever absorbed"));
         }
         let Some(ratio) = ratio(setup) else {
-            return Err(Refusal::mismatch("a constant σ̂", "none is given"));
+            return Err(Refusal::mismatch("a constant σ̂", "it varies"));
         };
         if 1.0 / ((1.0 - albedo) * ratio) > MOST_COLLISIONS {
             let needs = "at most 1e5 tentative collisions a walk";
@@ -200,6 +200,6 @@ impl Tally for Within<'_> {
 }
 
 estimators! {
-    InfiniteMedium:
+    InfiniteMedium on Space:
     particle::Walker,
 }

@@ -22,7 +22,7 @@ impl<V> Draw<V> {
     }
 }
 
-/// A buffer of draws: one array per channel, one for the lookups, one for the defects.
+/// A buffer of draws, with one array for each of their numbers.
 #[derive(Debug, Clone, Default)]
 pub struct DrawBuffer {
     /// `values[channel][draw]`.
@@ -31,8 +31,8 @@ pub struct DrawBuffer {
     pub lookups: Vec<u32>,
     /// `defects[draw]`, see [`Draw::defect`].
     pub defects: Vec<f64>,
-    /// Room for the numbers that draws are made of when all are known.
-    pub(crate) left: Vec<f64>,
+    /// Storage of the outcomes of finished walks, which are scored together; kept from request to request.
+    pub(crate) outcomes: Vec<f64>,
 }
 
 impl DrawBuffer {
@@ -42,7 +42,7 @@ impl DrawBuffer {
     pub const LENGTH: usize = 16_384;
 
     /// Minimum number of draws in a full buffer, for any number of channels.
-    const LEAST: usize = Self::LENGTH / 4;
+    const MIN_LENGTH: usize = Self::LENGTH / 4;
 
     /// An empty buffer for draws of the given number of channels.
     pub fn new(channels: usize) -> Self {
@@ -51,7 +51,7 @@ impl DrawBuffer {
 
     /// Number of draws in a full buffer, given the number of channels.
     pub fn length(channels: usize) -> usize {
-        (Self::LENGTH / channels.next_power_of_two()).max(Self::LEAST)
+        (Self::LENGTH / channels.next_power_of_two()).max(Self::MIN_LENGTH)
     }
 
     /// Sets the number of channels of the draws.
@@ -75,9 +75,7 @@ impl DrawBuffer {
         self.lookups.push(draw.lookups);
         self.defects.push(draw.defect);
     }
-}
 
-impl DrawBuffer {
     /// Resizes to `count` draws of one channel; returns values, lookups and defects for overwriting. `None` if
     /// draws have no channel.
     pub fn one_channel(&mut self, count: usize) -> Option<(&mut [f64], &mut [u32], &mut [f64])> {

@@ -26,10 +26,7 @@ struct Channels {
 
 impl Channels {
     fn of(setup: &Setup<Lambertian>, particle: &Particle) -> Self {
-        let Some(majorants) = setup.space.as_deref() else {
-            return Self { energy: false, white: false, tentative: false };
-        };
-        let scene = &setup.problem.scene;
+        let (scene, majorants) = (&setup.problem.scene, &*setup.fields);
         let walks = space::walks(scene, majorants, particle);
         // Where a = 0 and r = 1 a particle keeps no weight: that ends its walk even by this rule.
         let goes_on = *particle == Particle::of(ParticleRule::NonTerminating)
@@ -62,8 +59,7 @@ impl Walked for Lambertian {
     type Tally<'a> = Entering<'a>;
 
     fn domain(setup: &Setup<Self>, particle: &Particle) -> Result<(), Refusal> {
-        let scene = &setup.problem.scene;
-        space::realisable(setup, scene, particle)?;
+        space::realisable(setup, particle)?;
         let has = Channels::of(setup, particle);
         if has.white && held(setup).is_none() {
             let needs = "a volume whose ∫σ_t dV is known to 1e-3";
@@ -75,36 +71,33 @@ impl Walked for Lambertian {
         if has.any() {
             return Ok(());
         }
-        space::energy(&space::walks(scene, space::majorants(setup)?, particle)).map(|_| ())
+        space::energy(&space::walks(&setup.problem.scene, &setup.fields, particle)).map(|_| ())
     }
 
     fn predict(setup: &Setup<Self>, particle: &Particle) -> Prediction {
         let (problem, has) = (&setup.problem, Channels::of(setup, particle));
         let mut channels = Vec::new();
-        if let Some(majorants) = setup.space.as_deref() {
-            let walks = space::walks(&problem.scene, majorants, particle);
-            let bound = walks.energy_variance().filter(|_| has.energy);
-            let named = |bound| Channel {
-                name: "energy".to_owned(),
-                ..space::energy_channel(bound, walks.depth)
-            };
-            channels.extend(bound.map(named));
-            let over = problem.four_over_surface();
-            let times = |known: Known| {
-                Known::new(
-                    over * known.value,
-                    over * known.error + 4.0 * f64::EPSILON * over * known.value,
-                )
-            };
-            if has.white {
-                let unknown = Known::new(f64::NAN, f64::NAN);
-                channels
-                    .push(piloted("path length", times(Known::exact(problem.bounds().content()))));
-                channels.push(piloted("collisions", times(held(setup).unwrap_or(unknown))));
-            }
-            if let Some(content) = majorants.content().filter(|_| has.tentative) {
-                channels.push(piloted("tentative collisions", times(Known::exact(content))));
-            }
+        let walks = space::walks(&problem.scene, &setup.fields, particle);
+        let bound = walks.energy_variance().filter(|_| has.energy);
+        let named = |bound| Channel {
+            name: "energy".to_owned(),
+            ..space::energy_channel(bound, walks.depth)
+        };
+        channels.extend(bound.map(named));
+        let over = problem.four_over_surface();
+        let times = |known: Known| {
+            Known::new(
+                over * known.value,
+                over * known.error + 4.0 * f64::EPSILON * over * known.value,
+            )
+        };
+        if has.white {
+            let unknown = Known::new(f64::NAN, f64::NAN);
+            channels.push(piloted("path length", times(Known::exact(problem.bounds().content()))));
+            channels.push(piloted("collisions", times(held(setup).unwrap_or(unknown))));
+        }
+        if let Some(content) = setup.fields.content().filter(|_| has.tentative) {
+            channels.push(piloted("tentative collisions", times(Known::exact(content))));
         }
         if channels.is_empty() {
             // The setup is refused, or its draws are made in spite of that and have no prediction.
@@ -204,7 +197,7 @@ impl Tally for Entering<'_> {
 }
 
 estimators! {
-    Lambertian:
+    Lambertian on Space:
     particle::Walker,
     splitting::Splitter,
 }

@@ -7,14 +7,14 @@ pub mod shadow;
 pub mod unidirectional;
 pub mod walk;
 
-use crate::{Kernel, Refusal, Request, Setup, estimators};
+use crate::{Estimated, Kernel, Refusal, Request, Setup, estimators};
 use media::catalogue::Settings;
 use theory::lit_rod::{self, Heuristic, Shadow, Techniques};
-use theory::problems::{LitRod, Problem};
+use theory::problems::LitRod;
 use theory::{ParticleRule, Prediction};
 
 /// A problem with light that is found by hits and by shadow rays; its estimators have common pages.
-pub trait Lit: Problem<Value = [f64; 1]> {
+pub trait Lit: Estimated<Value = [f64; 1]> {
     /// Checks that a walk with techniques exists and that theory covers it.
     ///
     /// # Errors
@@ -32,10 +32,10 @@ pub trait Lit: Problem<Value = [f64; 1]> {
 impl Lit for LitRod {
     fn realisable(setup: &Setup<Self>, _: Techniques) -> Result<(), Refusal> {
         let (rule, albedo) = (ParticleRule::Analog, &setup.problem.rod.albedo);
-        setup.require_few_collisions("∫σ̂ ≤ 1e6")?;
+        setup.residual().require_few_collisions("∫σ̂ ≤ 1e6")?;
         let limit = |t: f64| rule.limits(albedo.value(t))[1];
-        setup.require_ratio_within(albedo.knots(), limit, rule.needs())?;
-        if lit_rod::is_within_reach(&setup.mesh, &setup.problem, &setup.sampling) {
+        setup.residual().require_ratio_within(albedo.knots(), limit, rule.needs())?;
+        if lit_rod::is_within_reach(&setup.fields.mesh, &setup.problem, &setup.fields.sampling) {
             return Ok(());
         }
         let needs = "a rod that theory can cut into 1e4 steps";
@@ -43,8 +43,9 @@ impl Lit for LitRod {
     }
 
     fn predict(setup: &Setup<Self>, techniques: Techniques) -> Prediction {
-        let (mesh, problem, sampling) = (&setup.mesh, &setup.problem, &setup.sampling);
-        lit_rod::predict(mesh, problem, sampling, techniques, setup.laws)
+        let (mesh, problem, sampling) =
+            (&setup.fields.mesh, &setup.problem, &setup.fields.sampling);
+        lit_rod::predict(mesh, problem, sampling, techniques, setup.distributions)
     }
 
     fn fill(techniques: Techniques, kernel: Kernel, setup: &Setup<Self>, request: Request) {
@@ -112,7 +113,7 @@ macro_rules! lit {
 use lit;
 
 estimators! {
-    LitRod:
+    LitRod on Line:
     unidirectional::Unidirectional,
     next_event::NextEvent,
     directional_mis::DirectionalMis,

@@ -77,7 +77,7 @@ impl<'a, S: Steps> ToEmitter<'a, S> {
     /// The walk on a setup.
     #[inline(always)]
     pub fn of(setup: &'a Setup<LitRod>, steps: S) -> Self {
-        Self::new(&setup.problem.rod, &setup.sampling, setup.mesh.support().to, steps)
+        Self::new(&setup.problem.rod, &setup.fields.sampling, setup.fields.mesh.support().to, steps)
     }
 }
 

@@ -23,16 +23,17 @@ impl Lit for LitSlab {
                 "no direction that is drawn meets this one: unidirectional tracking finds nothing";
             return Err(Refusal::mismatch("a light with a size", found));
         }
-        setup.require_few_collisions("∫σ̂ ≤ 1e6")?;
-        setup.require_ratio_at_most(rule.limits(problem.albedo)[1], rule.needs())?;
-        lit_slab::slant_depth(&setup.mesh, problem).map_or(Ok(()), |depth| {
+        setup.residual().require_few_collisions("∫σ̂ ≤ 1e6")?;
+        setup.residual().require_ratio_at_most(rule.limits(problem.albedo)[1], rule.needs())?;
+        lit_slab::slant_depth(&setup.fields.mesh, problem).map_or(Ok(()), |depth| {
             Err(Refusal::mismatch("τ/μ ≤ 64 in the lowest direction", format!("τ/μ = {depth:e}")))
         })
     }
 
     fn predict(setup: &Setup<Self>, techniques: Techniques) -> Prediction {
-        let (mesh, problem, sampling) = (&setup.mesh, &setup.problem, &setup.sampling);
-        lit_slab::predict(mesh, problem, sampling, techniques, setup.laws)
+        let (mesh, problem, sampling) =
+            (&setup.fields.mesh, &setup.problem, &setup.fields.sampling);
+        lit_slab::predict(mesh, problem, sampling, techniques, setup.distributions)
     }
 
     fn fill(techniques: Techniques, kernel: Kernel, setup: &Setup<Self>, request: Request) {
@@ -42,7 +43,7 @@ impl Lit for LitSlab {
 }
 
 estimators! {
-    LitSlab:
+    LitSlab on Line:
     unidirectional::Unidirectional,
     next_event::NextEvent,
     directional_mis::DirectionalMis,

@@ -91,7 +91,8 @@ impl<'a, S: Steps, D: Directions> ToLight<'a, S, D> {
     /// The walk on a setup.
     #[inline(always)]
     pub fn of(setup: &'a Setup<LitSlab>, steps: S, directions: D) -> Self {
-        let (slab, sampling, end) = (&*setup.problem, &setup.sampling, setup.mesh.support().to);
+        let (slab, sampling, end) =
+            (&*setup.problem, &setup.fields.sampling, setup.fields.mesh.support().to);
         Self { slab, before: Before { medium: slab.medium(), sampling, end }, steps, directions }
     }
 }

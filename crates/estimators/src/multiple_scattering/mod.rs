@@ -17,7 +17,7 @@ impl Walked for MultipleScattering {
 
     /// Checks σ̂ and the rule; the variance of draws may be infinite all the same, see `furnace`.
     fn domain(setup: &Setup<Self>, particle: &Particle) -> Result<(), Refusal> {
-        space::realisable(setup, &setup.problem.scene, particle)
+        space::realisable(setup, particle)
     }
 
     /// Prediction of the light that is seen beside the volume; through the volume the mean is unknown.
@@ -80,7 +80,7 @@ impl Tally for Gathering<'_> {
 }
 
 estimators! {
-    MultipleScattering:
+    MultipleScattering on Space:
     particle::Walker,
     splitting::Splitter,
 }

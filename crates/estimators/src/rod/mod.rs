@@ -8,14 +8,14 @@ pub mod terminating;
 pub mod walk;
 pub mod weighted;
 
-use crate::{Kernel, Refusal, Request, Setup, estimators};
-use theory::problems::{Problem, Rod};
+use crate::{Estimated, Kernel, Refusal, Request, Setup, estimators};
+use theory::problems::Rod;
 use theory::rod::{self, NoVariance};
 use theory::{ParticleRule, Prediction};
 use walk::By;
 
 /// A problem with walks that collide by a rule; its estimators have common pages.
-pub trait ByRule: Problem {
+pub trait ByRule: Estimated {
     /// Checks that a rule exists, that σ̂ covers the medium, and that the variance is finite.
     ///
     /// # Errors
@@ -32,20 +32,22 @@ pub trait ByRule: Problem {
 
 impl ByRule for Rod {
     fn realisable(setup: &Setup<Self>, rule: ParticleRule) -> Result<(), Refusal> {
-        setup.require_coverage()?;
-        setup.require_few_collisions("∫σ̂ ≤ 1e6")?;
+        setup.residual().require_coverage()?;
+        setup.residual().require_few_collisions("∫σ̂ ≤ 1e6")?;
         if !rule.needs().is_empty() {
             let albedo = &setup.problem.albedo;
             let limit = |t: f64| rule.limits(albedo.value(t))[1];
-            setup.require_ratio_within(albedo.knots(), limit, rule.needs())?;
+            setup.residual().require_ratio_within(albedo.knots(), limit, rule.needs())?;
         }
-        if setup.problem.parts > 0 && setup.sampling.corner_values().any(|value| value <= 0.0) {
+        if setup.problem.parts > 0
+            && setup.fields.sampling.corner_values().any(|value| value <= 0.0)
+        {
             let needs = "σ̂ > 0 on the whole rod to see its flux";
             return Err(Refusal::mismatch(needs, "σ̂ = 0 somewhere"));
         }
-        let mesh = &setup.mesh;
+        let mesh = &setup.fields.mesh;
         let needs = "a finite variance";
-        match rod::has_variance(mesh, &setup.problem, &setup.sampling, rule) {
+        match rod::has_variance(mesh, &setup.problem, &setup.fields.sampling, rule) {
             Ok(()) => Ok(()),
             Err(NoVariance::Diverges(at)) => Err(Refusal::Inequality {
                 needs,
@@ -69,7 +71,13 @@ impl ByRule for Rod {
     }
 
     fn predict(setup: &Setup<Self>, rule: ParticleRule) -> Prediction {
-        rod::predict(&setup.mesh, &setup.problem, &setup.sampling, rule, setup.laws)
+        rod::predict(
+            &setup.fields.mesh,
+            &setup.problem,
+            &setup.fields.sampling,
+            rule,
+            setup.distributions,
+        )
     }
 
     fn fill(rule: ParticleRule, kernel: Kernel, setup: &Setup<Self>, request: Request) {
@@ -106,7 +114,7 @@ macro_rules! by_rule {
 use by_rule;
 
 estimators! {
-    Rod:
+    Rod on Line:
     terminating::Terminating,
     non_terminating::NonTerminating,
     adaptive::Adaptive,

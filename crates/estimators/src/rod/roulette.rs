@@ -71,13 +71,13 @@ impl Estimator<Rod> for Roulette {
                 "what is scored on the way has no bound",
             ));
         }
-        setup.require_few_collisions("∫σ̂ ≤ 1e6")?;
-        setup.require_ratio_at_most(1.0, "σ̂ ≥ σ_t everywhere")?;
+        setup.residual().require_few_collisions("∫σ̂ ≤ 1e6")?;
+        setup.residual().require_ratio_at_most(1.0, "σ̂ ≥ σ_t everywhere")?;
         Rod::realisable(setup, ParticleRule::NonTerminating)
     }
 
     fn predict(&self, setup: &Setup<Rod>) -> Prediction {
-        rod::bounded(&setup.mesh, &setup.problem)
+        rod::bounded(&setup.fields.mesh, &setup.problem)
     }
 
     fn fill(&self, kernel: Kernel, setup: &Setup<Rod>, request: Request) {

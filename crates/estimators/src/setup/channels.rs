@@ -1,36 +1,83 @@
-//! What σ̂ must be where several channels (wavelengths) are scored by one walk.
+//! Fields of several channels (wavelengths) that one walk scores, and what σ̂ must be there.
 
-use super::{Refusal, SpectralChannel};
-use numeric::digits::rounded;
+use std::sync::Arc;
 
-/// A share of null collisions below this is none, and a share beside that of another channel.
+use super::{ChannelPart, Fields, Line, OnRay, Parts, Refusal, Residual};
+use media::{Control, Piecewise};
+use numeric::Lane;
+use numeric::digits::{number, rounded};
+use theory::Mesh;
+
+/// A share of null collisions below this is rounding, and so is one relative to that of another channel.
 const TOUCHES: f64 = 1e-9;
 
-/// A constant σ̂ > 0 in each channel, and so few collisions that walks end.
-///
-/// # Errors
-///
-/// What σ̂ is instead, and of which channel.
-pub fn require_constants(channels: &[SpectralChannel]) -> Result<(), Refusal> {
-    for (number, channel) in (1..).zip(channels) {
-        if channel.majorant <= 0.0 {
-            let found = format!("that of channel {number} varies along the ray");
-            return Err(Refusal::mismatch("a constant σ̂ > 0 in each channel", found));
-        }
-        if channel.collisions.is_nan() || channel.collisions > 1e6 {
-            let found = format!("∫σ̂ = {:e} in channel {number}", channel.collisions);
-            return Err(Refusal::mismatch("∫σ̂ ≤ 1e6 in each channel", found));
-        }
-    }
-    Ok(())
+/// Largest expected number of collisions on a ray.
+const MAX_COLLISIONS: f64 = 1e6;
+
+/// Medium and σ̂ of a channel (wavelength).
+#[derive(Clone)]
+pub struct ChannelFields {
+    /// Medium, cut into panels.
+    pub mesh: Arc<Mesh>,
+    /// σ̂ on the support: one constant.
+    pub sampling: Piecewise,
+    /// σ̂, 1/length; zero for estimators that take none.
+    pub majorant: f64,
+    /// `ln σ̂`.
+    pub ln_majorant: f64,
+    /// `∫σ̂`.
+    pub collisions: f64,
 }
 
-/// The same σ̂ in all channels.
+impl ChannelFields {
+    /// Joins the parts of the channel of a number; σ̂ is restricted to the support.
+    ///
+    /// # Errors
+    ///
+    /// A σ̂ that is not one constant above 0, or with which walks are too long.
+    fn new(channel: usize, part: ChannelPart) -> Result<Self, Refusal> {
+        let takes_none = part.1.is_none();
+        let Line { mesh, sampling } = Line::new(part);
+        let refused = |found| Err(Refusal::mismatch("a constant σ̂ > 0 in each channel", found));
+        let Some(majorant) = sampling.single_value() else {
+            return refused(format!("that of channel {channel} varies along the ray"));
+        };
+        if majorant <= 0.0 && !takes_none {
+            return refused(format!("σ̂ = {} in channel {channel}", number(majorant)));
+        }
+        let collisions = majorant * mesh.support().length();
+        if collisions.is_nan() || collisions > MAX_COLLISIONS {
+            let found = format!("∫σ̂ = {collisions:e} in channel {channel}");
+            return Err(Refusal::mismatch("∫σ̂ ≤ 1e6 in each channel", found));
+        }
+        Ok(Self { mesh, sampling, majorant, ln_majorant: Lane::ln(majorant), collisions })
+    }
+}
+
+/// Medium and σ̂ of each channel, of which there is at least one.
+pub type Channels = Vec<ChannelFields>;
+
+impl<P> Fields<P> for Channels {
+    fn new(_: &P, parts: Parts) -> Result<Self, Refusal> {
+        let channels = (1..).zip(parts.channels);
+        channels.map(|(channel, part)| ChannelFields::new(channel, part)).collect()
+    }
+}
+
+impl OnRay for Channels {
+    #[inline(always)]
+    fn residual(&self) -> Residual<'_> {
+        let ChannelFields { mesh, sampling, .. } = &self[0];
+        Residual { mesh, sampling, control: &Control::None }
+    }
+}
+
+/// Requires one σ̂ for all channels.
 ///
 /// # Errors
 ///
 /// Two that differ.
-pub fn require_common(channels: &[SpectralChannel]) -> Result<(), Refusal> {
+pub fn require_common(channels: &[ChannelFields]) -> Result<(), Refusal> {
     let first = channels[0].majorant;
     let other = channels.iter().find(|channel| channel.majorant != first);
     other.map_or(Ok(()), |other| {
@@ -39,12 +86,12 @@ pub fn require_common(channels: &[SpectralChannel]) -> Result<(), Refusal> {
     })
 }
 
-/// `σ̂ ≥ σ_t` in each channel.
+/// Requires `σ̂ ≥ σ_t` in each channel.
 ///
 /// # Errors
 ///
 /// The channel, and where it is violated most.
-pub fn require_majorants(channels: &[SpectralChannel]) -> Result<(), Refusal> {
+pub fn require_majorants(channels: &[ChannelFields]) -> Result<(), Refusal> {
     for (number, channel) in (1..).zip(channels) {
         let worst = channel.mesh.largest(|_, sigma| sigma);
         if let Some((at, sigma)) = worst.filter(|&(_, s)| s > channel.majorant * (1.0 + 1e-12)) {
@@ -59,20 +106,19 @@ pub fn require_majorants(channels: &[SpectralChannel]) -> Result<(), Refusal> {
     Ok(())
 }
 
-/// No hero lacks what happens in another channel: its σ̂ touches its σ_t nowhere where that of another channel does not,
-/// and, where walks scatter, its σ_t is 0 nowhere where that of another is not.
+/// Requires of every hero the events of all channels: its σ̂ touches its σ_t only where that of each other channel does,
+/// and, where walks scatter, its σ_t is 0 only where that of each other channel is.
 ///
 /// # Errors
 ///
 /// The channel and the place, and whether the draws are biased or their variance is infinite.
-pub fn require_room(channels: &[SpectralChannel], scatters: bool) -> Result<(), Refusal> {
-    let real = |own: &SpectralChannel, t: f64| own.mesh.medium().extinction(t) / own.majorant;
-    let null = |own: &SpectralChannel, t: f64| 1.0 - real(own, t);
+pub fn require_room(channels: &[ChannelFields], scatters: bool) -> Result<(), Refusal> {
+    let real = |own: &ChannelFields, t: f64| own.mesh.medium().extinction(t) / own.majorant;
+    let null = |own: &ChannelFields, t: f64| 1.0 - real(own, t);
     for (number, hero) in channels.iter().enumerate() {
         let majorant = rounded(hero.majorant);
         let room = Room {
             share: &null,
-            // They are differences: what is left of them is rounding.
             none: TOUCHES,
             needs: "σ̂ > σ_t of the hero wherever another channel has null collisions",
             stretch: format!("σ̂ = σ_t = {majorant}"),
@@ -93,27 +139,27 @@ pub fn require_room(channels: &[SpectralChannel], scatters: bool) -> Result<(), 
     Ok(())
 }
 
-/// What a hero must have wherever another channel has it.
+/// Event that a hero must have wherever another channel has it.
 struct Room<'a> {
-    /// Its share of collisions at a distance.
-    share: &'a dyn Fn(&SpectralChannel, f64) -> f64,
-    /// A share up to this is none.
+    /// Share of the event among a channel's collisions at a distance.
+    share: &'a dyn Fn(&ChannelFields, f64) -> f64,
+    /// Largest share that counts as 0.
     none: f64,
     needs: &'static str,
-    /// What is said where it is missing on a stretch, and at a distance.
+    /// Words for a hero that lacks it on a stretch, and at a distance.
     stretch: String,
     touch: String,
 }
 
 impl Room<'_> {
-    /// The hero's share over that of the channel that has most beside it; 1 where no other has any.
-    fn beside(&self, channels: &[SpectralChannel], number: usize, t: f64) -> f64 {
-        let share = |channel: &SpectralChannel| (self.share)(channel, t);
+    /// Ratio of the hero's share to the largest share of all channels; 1 where all are 0.
+    fn beside(&self, channels: &[ChannelFields], number: usize, t: f64) -> f64 {
+        let share = |channel: &ChannelFields| (self.share)(channel, t);
         let most = channels.iter().map(share).fold(0.0, f64::max);
         if most > self.none { share(&channels[number]) / most } else { 1.0 }
     }
 
-    fn require(&self, channels: &[SpectralChannel], number: usize) -> Result<(), Refusal> {
+    fn require(&self, channels: &[ChannelFields], number: usize) -> Result<(), Refusal> {
         let (hero, Self { share, none, needs, stretch, touch }) = (&channels[number], self);
         let cuts: Vec<f64> =
             channels.iter().flat_map(|c| c.mesh.panels().map(|panel| panel.span.from)).collect();

@@ -1,14 +1,14 @@
-//! The law of the hero channel, whose walk scores all channels of a chromatic medium.
+//! Distribution of the hero channel, whose walk scores all channels of a chromatic medium.
 
 use super::Refusal;
 use media::catalogue::{Domain, Settings, Value};
 use numeric::digits::rounded;
-use theory::problems::spectral_transmittance::luminance;
+use theory::problems::transmittance::luminance;
 
-/// How far the sum of probabilities may be from 1.
+/// Largest error of the sum of probabilities.
 const SUM: f64 = 1e-9;
 
-/// The law of the hero channel.
+/// Distribution of the hero channel.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Heroes {
     /// Every channel with the same probability.
@@ -37,7 +37,7 @@ impl Heroes {
         Some(Self::Given(given))
     }
 
-    /// In words, as in `hero .2, .8`; empty where every channel has the same probability.
+    /// Its setting in words, as in `hero .2 .8`; empty where every channel has the same probability.
     pub fn label(&self) -> String {
         match self {
             Self::Uniform => String::new(),
@@ -49,7 +49,7 @@ impl Heroes {
         }
     }
 
-    /// The probability of one of so many channels; 0 of those that a list is too short for.
+    /// Probability of one of `count` channels; 0 of those that a list is too short for.
     #[inline(always)]
     pub fn probability(&self, count: usize, channel: usize) -> f64 {
         match self {
@@ -59,12 +59,12 @@ impl Heroes {
         }
     }
 
-    /// Those of so many channels.
+    /// Probabilities of `count` channels.
     pub fn of(&self, count: usize) -> Vec<f64> {
         (0..count).map(|channel| self.probability(count, channel)).collect()
     }
 
-    /// The hero among so many channels that a uniform number chooses.
+    /// The hero among `count` channels that a uniform number chooses.
     #[inline(always)]
     pub fn choose(&self, count: usize, number: f64) -> usize {
         let (mut hero, mut sum) = (0, self.probability(count, 0));
@@ -75,11 +75,11 @@ impl Heroes {
         hero
     }
 
-    /// One probability for each of so many channels.
+    /// Requires one probability for each of `count` channels.
     ///
     /// # Errors
     ///
-    /// How many there are.
+    /// Another number of probabilities.
     pub fn require(&self, count: usize) -> Result<(), Refusal> {
         match self {
             Self::Given(given) if given.len() != count => {

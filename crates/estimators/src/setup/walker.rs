@@ -1,9 +1,9 @@
-//! Whose walk scores all channels, and what its densities are divided by.
+//! Walkers, whose walks score all channels, and the densities that their draws are divided by.
 
 use super::Refusal;
 use super::channels::{require_common, require_room};
 use super::heroes::Heroes;
-use super::{SpectralChannel, channels};
+use super::{ChannelFields, channels};
 use media::catalogue::Settings;
 use media::phase::Phase;
 use numeric::digits::rounded;
@@ -13,18 +13,18 @@ use theory::spectral::bound::phi;
 use theory::spectral::chance::{Chance, Chances, shares};
 use theory::spectral::rates::Proposal;
 
-/// Whose walk scores all channels.
+/// The walk that scores all channels.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Walker {
-    /// That of a hero, divided by its density alone.
+    /// Walk of a hero, divided by its density alone.
     Hero(Heroes),
-    /// That of a hero, divided by the mean density of all heroes: multiple importance sampling.
+    /// Walk of a hero, divided by the mean density of all heroes: multiple importance sampling.
     Mis(Heroes),
-    /// One of all channels, divided by the chances of what happened to it: spectral tracking.
+    /// One walk of all channels, divided by the probabilities of its events: spectral tracking.
     SpectralTracking(Chances),
 }
 
-/// The chances of what a tentative collision is.
+/// Probabilities of the events of a tentative collision.
 #[derive(Debug, Clone, Copy)]
 pub struct EventChances {
     scattered: f64,
@@ -33,7 +33,7 @@ pub struct EventChances {
 }
 
 impl EventChances {
-    /// What a uniform number decides.
+    /// The event that a uniform number chooses.
     #[inline(always)]
     pub fn decide(self, number: f64) -> Event {
         if number < self.scattered {
@@ -45,7 +45,7 @@ impl EventChances {
         }
     }
 
-    /// The chance of an event.
+    /// Probability of an event.
     #[inline(always)]
     pub fn of(self, event: Event) -> f64 {
         match event {
@@ -56,14 +56,16 @@ impl EventChances {
     }
 }
 
-/// [`Walker::Hero`], as the kind of a page.
-pub const HERO: u8 = 0;
-/// [`Walker::Mis`].
-pub const MIS: u8 = 1;
-/// [`Walker::SpectralTracking`].
-pub const SPECTRAL_TRACKING: u8 = 2;
+/// Kind of estimators that score one channel a draw, by the walk of a hero.
+pub const INDEPENDENT: u8 = 0;
+/// Kind of estimators by [`Walker::Hero`].
+pub const HERO: u8 = 1;
+/// Kind of estimators by [`Walker::Mis`].
+pub const MIS: u8 = 2;
+/// Kind of estimators by [`Walker::SpectralTracking`].
+pub const SPECTRAL_TRACKING: u8 = 3;
 
-/// Reads `probabilities`: how spectral tracking chooses what a collision is.
+/// Reads `probabilities`, by which spectral tracking chooses events.
 pub fn read_chances(settings: &Settings) -> Option<Chances> {
     let words = ["average", "maximum", "history"];
     Some(match settings.word_or("probabilities", &words, "average")? {
@@ -74,11 +76,11 @@ pub fn read_chances(settings: &Settings) -> Option<Chances> {
 }
 
 impl Walker {
-    /// Reads what a page of a kind takes: `hero`, or `probabilities`.
+    /// Reads the settings of an estimator of a kind: `hero`, or `probabilities`.
     pub fn read(kind: u8, settings: &Settings) -> Option<Self> {
         if kind != SPECTRAL_TRACKING {
             let heroes = Heroes::read(settings)?;
-            return Some(if kind == HERO { Self::Hero(heroes) } else { Self::Mis(heroes) });
+            return Some(if kind == MIS { Self::Mis(heroes) } else { Self::Hero(heroes) });
         }
         Some(Self::SpectralTracking(read_chances(settings)?))
     }
@@ -91,7 +93,7 @@ impl Walker {
         }
     }
 
-    /// The law of the hero; `None` where one walk is that of all channels, with the number 0.
+    /// Distribution of the hero; `None` where one walk serves all channels, with the number 0.
     #[inline(always)]
     pub fn heroes(&self) -> Option<&Heroes> {
         match self {
@@ -100,7 +102,7 @@ impl Walker {
         }
     }
 
-    /// The probabilities of heroes; of walks of all channels together that of the first is 1.
+    /// Probabilities of heroes; 1 of the first where all channels walk together.
     pub fn probabilities(&self, count: usize) -> Vec<f64> {
         match self.heroes() {
             Some(heroes) => heroes.of(count),
@@ -108,13 +110,13 @@ impl Walker {
         }
     }
 
-    /// Who walks: a hero that a uniform number chooses, or number 0 without one.
+    /// Number of the hero that a uniform number chooses; 0 without heroes.
     #[inline(always)]
     pub fn choose(&self, count: usize, number: impl FnOnce() -> f64) -> usize {
         self.heroes().map_or(0, |heroes| heroes.choose(count, number()))
     }
 
-    /// The chances of what a collision is, given `σ_t/σ̂`, the albedo and the weight of each channel.
+    /// Probabilities of the events of a collision, given `σ_t/σ̂`, the albedo and the weight of each channel.
     #[inline(always)]
     pub fn chances(
         &self,
@@ -137,7 +139,7 @@ impl Walker {
         EventChances { scattered, null, absorbed }
     }
 
-    /// How walks of all channels together choose what a collision is.
+    /// Choice of events where all channels walk together.
     #[inline(always)]
     pub fn together(&self) -> Option<Chances> {
         match self {
@@ -146,25 +148,24 @@ impl Walker {
         }
     }
 
-    /// A constant σ̂ in each channel, and what the walker needs of them: a probability for each, or one σ̂ for all.
+    /// Requires a hero probability for each channel, or one σ̂ for all.
     ///
     /// # Errors
     ///
     /// What is violated, and where.
-    pub fn require(&self, of: &[SpectralChannel]) -> Result<(), Refusal> {
-        channels::require_constants(of)?;
+    pub fn require(&self, of: &[ChannelFields]) -> Result<(), Refusal> {
         match self {
             Self::Hero(heroes) | Self::Mis(heroes) => heroes.require(of.len()),
             Self::SpectralTracking(_) => require_common(of),
         }
     }
 
-    /// The same, `σ̂ ≥ σ_t` on the ray, and heroes by themselves with room for what happens in other channels.
+    /// Requires also `σ̂ ≥ σ_t` on the ray, and of heroes without weights the events of all channels.
     ///
     /// # Errors
     ///
     /// What is violated, and where.
-    pub fn require_on_ray(&self, of: &[SpectralChannel]) -> Result<(), Refusal> {
+    pub fn require_on_ray(&self, of: &[ChannelFields]) -> Result<(), Refusal> {
         self.require(of)?;
         channels::require_majorants(of)?;
         match self {
@@ -173,7 +174,7 @@ impl Walker {
         }
     }
 
-    /// One phase function for all channels where they walk together: a walk has one direction.
+    /// Requires one phase function for all channels where they walk together: a walk has one direction.
     ///
     /// # Errors
     ///

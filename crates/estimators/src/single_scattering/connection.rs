@@ -68,7 +68,7 @@ pub fn shadow_needs(shadow: Tracking) -> Option<&'static str> {
 /// The bound on σ_t that the majorant does not reach, or the expected number of collisions.
 pub fn require_shadow(setup: &Setup<SingleScattering>, shadow: Tracking) -> Result<(), Refusal> {
     if let Tracking::Ratio { sampling, .. } | Tracking::Delta { sampling } = shadow {
-        let collisions = sampling * setup.mesh.support().length();
+        let collisions = sampling * setup.fields.mesh.support().length();
         if collisions.is_nan() || collisions > 1e6 {
             let needs = "a shadow's σ̂ of at most 1e6 collisions on the ray's length";
             return Err(Refusal::mismatch(needs, format!("there would be {collisions:e}")));

@@ -35,8 +35,8 @@ impl<'a> Ground<'a> {
     ) -> Self {
         let (support, extinction) = (setup.problem.medium().support(), medium.single_value());
         let kept = || {
-            let (extinction, control) = (extinction?, setup.control.single_value()?);
-            Some(1.0 - (extinction - control) / setup.sampling.even()?.value)
+            let (extinction, control) = (extinction?, setup.fields.control.single_value()?);
+            Some(1.0 - (extinction - control) / setup.fields.sampling.even()?.value)
         };
         Self { setup, rays, fields, support, extinction, kept: kept() }
     }
@@ -63,7 +63,7 @@ impl<'a> Ground<'a> {
     /// The transmittance of the control from the ray's origin to distances.
     #[inline(always)]
     pub fn controlled<L: Lane>(&self, to: L) -> L {
-        match &self.setup.control {
+        match &self.setup.fields.control {
             Control::None => to.each(1.0),
             control => (-control.depths(self.support.from, to)).exp(),
         }
@@ -75,7 +75,7 @@ impl<'a> Ground<'a> {
         if let Some(kept) = self.kept {
             return t.each(kept);
         }
-        let control = self.setup.control.extinction(t);
+        let control = self.setup.fields.control.extinction(t);
         ((extinction - control) / here.sampling()).one_minus()
     }
 }

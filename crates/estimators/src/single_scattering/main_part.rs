@@ -7,6 +7,7 @@
 //! The inverse has a closed form because the pieces are straight. It needs `σ_m > 0` wherever `σ_t > 0`: otherwise
 //! light is missed.
 
+use crate::setup::Residual;
 use crate::{Refusal, Setup};
 use media::{Control, Piecewise};
 use numeric::digits::rounded;
@@ -27,9 +28,9 @@ impl<'a> MainPart<'a> {
     /// The control of a setup; `None` if that has no straight pieces.
     #[inline(always)]
     pub fn of(setup: &'a Setup<SingleScattering>) -> Option<Self> {
-        let Control::Pieces(pieces) = &setup.control else { return None };
+        let Control::Pieces(pieces) = &setup.fields.control else { return None };
         let support = setup.problem.medium().support();
-        Some(Self { pieces, support, absorbed: 1.0 - setup.control_transmittance })
+        Some(Self { pieces, support, absorbed: 1.0 - setup.fields.control_transmittance() })
     }
 
     /// The point of a uniform number.
@@ -84,8 +85,9 @@ impl<'a> MainPart<'a> {
 /// What the control is instead.
 pub fn require_straight(setup: &Setup<SingleScattering>) -> Result<(), Refusal> {
     let needs = "a control of straight pieces, as `explorers`, `mean` or `constant`";
-    let Control::Pieces(pieces) = &setup.control else {
-        let found = if setup.control.is_none() { "there is none" } else { "it is another field" };
+    let Control::Pieces(pieces) = &setup.fields.control else {
+        let found =
+            if setup.fields.control.is_none() { "there is none" } else { "it is another field" };
         return Err(Refusal::mismatch(needs, found));
     };
     let (lowest, highest) = pieces
@@ -98,8 +100,8 @@ pub fn require_straight(setup: &Setup<SingleScattering>) -> Result<(), Refusal> 
             format!("it falls to {}", rounded(lowest)),
         ));
     }
-    let absorbed = 1.0 - setup.control_transmittance;
-    if setup.control.optical_depth(setup.mesh.support()).value == 0.0 {
+    let absorbed = 1.0 - setup.fields.control_transmittance();
+    if setup.fields.control.optical_depth(setup.fields.mesh.support()).value == 0.0 {
         return Err(Refusal::mismatch("a control σ_m > 0 somewhere", "it is zero throughout"));
     }
     if absorbed < THINNEST {
@@ -123,9 +125,9 @@ const THINNEST: f64 = 1e-6;
 /// What the control is instead, or where it is zero.
 pub fn require(setup: &Setup<SingleScattering>) -> Result<(), Refusal> {
     require_straight(setup)?;
-    let Control::Pieces(pieces) = &setup.control else { return Ok(()) };
-    let as_sampling =
-        Setup::new(setup.problem.clone(), setup.mesh.clone(), Some(pieces.clone()), Control::None);
+    let Control::Pieces(pieces) = &setup.fields.control else { return Ok(()) };
+    let sampling = &pieces.on(setup.fields.mesh.support());
+    let as_sampling = Residual { sampling, control: &Control::None, ..setup.residual() };
     as_sampling.require_coverage().map_err(|refusal| match refusal {
         Refusal::Inequality { at, .. } => Refusal::Inequality {
             needs: "a control σ_m > 0 wherever σ_t > 0",

@@ -21,7 +21,7 @@ use crate::estimators;
 use theory::problems::SingleScattering;
 
 estimators! {
-    SingleScattering:
+    SingleScattering on ControlledLine:
     attenuation_driven::AttenuationDriven,
     attenuation_resampled::AttenuationResampled,
     shared_walk::SharedWalk,

@@ -10,6 +10,7 @@ use super::interactions::Interactions;
 use super::main_part::{self, MainPart};
 use super::shared::Shared;
 use super::vertices::{Right, Steps, ToVertices};
+use crate::setup::Residual;
 use crate::space::shadow::ShadowRays;
 use crate::walks::{self, Walk};
 use crate::{Draw, Estimator, Inputs, Kernel, Refusal, Request, Setup};
@@ -88,7 +89,7 @@ impl Absorption {
 
     fn collisions(self, setup: &Setup<SingleScattering>) -> Collisions<'_> {
         let scatters = self.scatters(setup.problem.albedo());
-        Collisions { medium: setup.problem.medium(), sampling: &setup.sampling, scatters }
+        Collisions { medium: setup.problem.medium(), sampling: &setup.fields.sampling, scatters }
     }
 }
 
@@ -155,9 +156,9 @@ impl Vertices {
             _ => {}
         }
         if self.collision.is_some() || self.camera == CameraTracking::Delta {
-            setup.require_ratio_at_most(1.0, "σ̂ ≥ σ_t everywhere")
+            setup.residual().require_ratio_at_most(1.0, "σ̂ ≥ σ_t everywhere")
         } else if self.camera == CameraTracking::Ratio {
-            setup.require_coverage()
+            setup.residual().require_coverage()
         } else {
             Ok(())
         }
@@ -196,8 +197,8 @@ impl Vertices {
             return at_collisions(setup, absorption, shadow).prediction();
         }
         let nulls = (self.camera == CameraTracking::Ratio)
-            .then(|| NullPaths::new(&setup.mesh, &setup.sampling, self.heuristic));
-        let scene = &scene(setup, (self.camera, shadow), setup.sampling.knots().to_vec());
+            .then(|| NullPaths::new(&setup.fields.mesh, &setup.fields.sampling, self.heuristic));
+        let scene = &scene(setup, (self.camera, shadow), setup.fields.sampling.knots().to_vec());
         let (collisions, heuristic) = (absorption.collisions(setup), self.heuristic);
         let [first, second] = Mis { scene, collisions, heuristic, nulls }.points();
         let found = if self.is_one { first.either(&second) } else { first.plus(&second) };
@@ -213,7 +214,7 @@ impl Vertices {
             let light = if self.light { from_light(node) } else { 0.0 };
             light + from_main(node)
         };
-        let cuts = if self.main { setup.control.breaks() } else { Vec::new() };
+        let cuts = if self.main { setup.fields.control.breaks() } else { Vec::new() };
         let scene = scene(setup, (self.camera, shadow), cuts);
         let of = |density: &dyn Fn(&Node) -> f64| {
             let technique = theory::single::Technique {
@@ -247,7 +248,7 @@ pub fn at_collisions(
         found: Some(&collisions),
         weighted: None,
     };
-    let knots = setup.sampling.knots().to_vec();
+    let knots = setup.fields.sampling.knots().to_vec();
     Points::of(&scene(setup, (CameraTracking::Exact, shadow), knots), &technique)
 }
 
@@ -257,7 +258,8 @@ fn scene(
     (camera, shadow): (CameraTracking, Tracking),
     cuts: Vec<f64>,
 ) -> Scene<'_> {
-    let camera = Camera::new(&setup.mesh, &setup.sampling, &setup.control, camera);
+    let camera =
+        Camera::new(&setup.fields.mesh, &setup.fields.sampling, &setup.fields.control, camera);
     Scene::new(&setup.problem, camera, shadow, cuts)
 }
 
@@ -286,14 +288,13 @@ impl Plan {
     fn domain(&self, setup: &Setup<SingleScattering>) -> Result<(), Refusal> {
         match &self.technique {
             Technique::Vertices(vertices) => vertices.domain(setup)?,
-            Technique::Shared(_) => setup.require_coverage()?,
+            Technique::Shared(_) => setup.residual().require_coverage()?,
             // σ̂ must reach wherever the residual is not zero, and wherever there is anything to scatter.
             Technique::Interactions | Technique::Resampled => {
-                setup.require_coverage()?;
-                if !setup.control.is_none() {
-                    let sampling = Some(setup.sampling.clone());
-                    let (problem, mesh) = (setup.problem.clone(), setup.mesh.clone());
-                    Setup::new(problem, mesh, sampling, Control::None).require_coverage()?;
+                setup.residual().require_coverage()?;
+                if !setup.fields.control.is_none() {
+                    let scattering = Residual { control: &Control::None, ..setup.residual() };
+                    scattering.require_coverage()?;
                 }
             }
         }
@@ -345,7 +346,7 @@ impl Plan {
         request: Request<'r>,
     ) -> Option<Request<'r>> {
         let (volume, shadow) = (setup.problem.volume(), self.shadow);
-        let is_single = setup.control.single_value().is_some();
+        let is_single = setup.fields.control.single_value().is_some();
         // Packets do not pay for one cheap sample alone, nor for a main part of many pieces beside a tracked
         // camera.
         let is_slow = matches!(self.technique, Technique::Vertices(plan)
@@ -380,7 +381,7 @@ impl Run for One<'_, '_> {
 
     #[inline(always)]
     fn run(self, walk: &impl Walk) -> Draw {
-        walks::draw(walk, &self.setup.sampling, self.medium, self.random)
+        walks::draw(walk, &self.setup.fields.sampling, self.medium, self.random)
     }
 }
 

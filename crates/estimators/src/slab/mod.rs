@@ -19,19 +19,20 @@ const BLURRED: f64 = 1e-4;
 
 /// The walk of a rule, as theory describes it.
 fn walk_of(setup: &Setup<Slab>, rule: ParticleRule) -> Walk {
-    let cut = setup.mesh.refined(setup.sampling.knots(), &|_, _| Vec::new());
-    let ratio =
-        |t: f64, sigma: f64| if sigma == 0.0 { 0.0 } else { sigma / setup.sampling.value(t) };
+    let cut = setup.fields.mesh.refined(setup.fields.sampling.knots(), &|_, _| Vec::new());
+    let ratio = |t: f64, sigma: f64| {
+        if sigma == 0.0 { 0.0 } else { sigma / setup.fields.sampling.value(t) }
+    };
     let incidence = setup.problem.incidence;
     let kinks = rule.kinks(setup.problem.albedo);
     Walk {
         incidence,
         albedo: setup.problem.albedo,
         rule,
-        pieces: Pieces::new(&setup.mesh, &setup.sampling, &kinks, &[incidence.light]),
+        pieces: Pieces::new(&setup.fields.mesh, &setup.fields.sampling, &kinks, &[incidence.light]),
         largest_ratio: cut.largest(ratio).map_or(0.0, |(_, ratio)| ratio),
-        depth: setup.mesh.optical_depth().value,
-        laws: setup.laws,
+        depth: setup.fields.mesh.optical_depth().value,
+        laws: setup.distributions,
     }
 }
 
@@ -41,24 +42,24 @@ fn truth(setup: &Setup<Slab>) -> Option<Answer> {
     if !slab::resolves(&slab.incidence.phase) {
         return None;
     }
-    let answer = slab::cached(&slab.incidence, setup.mesh.optical_depth(), slab.albedo)?;
+    let answer = slab::cached(&slab.incidence, setup.fields.mesh.optical_depth(), slab.albedo)?;
     let is_sharp = |known: &numeric::Known| known.error <= BLURRED * known.value;
     [answer.reflected, answer.transmitted].iter().all(is_sharp).then_some(answer)
 }
 
 impl ByRule for Slab {
     fn realisable(setup: &Setup<Self>, rule: ParticleRule) -> Result<(), Refusal> {
-        setup.require_coverage()?;
-        setup.require_few_collisions("∫σ̂ ≤ 1e6")?;
+        setup.residual().require_coverage()?;
+        setup.residual().require_few_collisions("∫σ̂ ≤ 1e6")?;
         if !rule.needs().is_empty() {
             let limit = rule.limits(setup.problem.albedo)[1];
-            setup.require_ratio_at_most(limit, rule.needs())?;
+            setup.residual().require_ratio_at_most(limit, rule.needs())?;
         }
         if truth(setup).is_none() {
             let needs = "a reflectance and a transmittance above 0 that adding and doubling resolve \
                          (a > 0, |g| ≤ 0.93, a moderate τ)";
             let slab = &setup.problem;
-            let depth = slab.medium().optical_depth(setup.mesh.support()).value;
+            let depth = slab.medium().optical_depth(setup.fields.mesh.support()).value;
             let (albedo, phase) = (slab.albedo, slab.incidence.phase.label());
             let found = format!("a = {albedo}, τ = {}, phase {phase}", rounded(depth));
             return Err(Refusal::mismatch(needs, found));
@@ -86,7 +87,7 @@ impl ByRule for Slab {
 }
 
 estimators! {
-    Slab:
+    Slab on Line:
     terminating::Terminating,
     non_terminating::NonTerminating,
     adaptive::Adaptive,

@@ -10,13 +10,11 @@ pub mod tally;
 pub mod walk;
 mod walker;
 
-use std::sync::Arc;
-
 use super::{Refusal, Setup};
 use media::Majorants;
 use numeric::Known;
 use numeric::geometry::Bounds;
-use theory::problems::{Problem, Scene};
+use theory::problems::Scene;
 use theory::space::Walks;
 use theory::{Channel, Moments, Tails};
 
@@ -24,21 +22,12 @@ pub use numeric::geometry::exit;
 pub use particle::{Particle, Splitting};
 pub use tally::Tally;
 pub use walk::Steps;
-pub use walker::{Splitter, Walked, Walker, draw, nothing};
+pub use walker::{Splitter, Walked, Walker, draw};
 
 /// Relative rounding error of a sum over the collisions of a walk.
 const ROUNDING: f64 = 1e-12;
 /// Maximum expected number of collisions on a straight line through a volume; more are a mistake in the case.
 const MOST_COLLISIONS: f64 = 1e4;
-
-/// σ̂ in space, the input of every estimator that walks.
-///
-/// # Errors
-///
-/// The case gives no σ̂.
-pub fn majorants<P: Problem>(setup: &Setup<P>) -> Result<&Arc<Majorants>, Refusal> {
-    setup.space.as_ref().ok_or_else(|| Refusal::mismatch("σ̂ in space", "none is given"))
-}
 
 /// The arguments of bounds on the walks of a particle.
 pub fn walks(scene: &Scene, majorants: &Majorants, particle: &Particle) -> Walks {
@@ -62,12 +51,8 @@ pub fn walks(scene: &Scene, majorants: &Majorants, particle: &Particle) -> Walks
 /// # Errors
 ///
 /// The violated inequality.
-pub fn realisable<P: Problem>(
-    setup: &Setup<P>,
-    scene: &Scene,
-    particle: &Particle,
-) -> Result<(), Refusal> {
-    let walks = walks(scene, majorants(setup)?, particle);
+pub fn realisable<P: Walked>(setup: &Setup<P>, particle: &Particle) -> Result<(), Refusal> {
+    let walks = walks(setup.problem.scene(), &setup.fields, particle);
     if walks.depth > MOST_COLLISIONS {
         let needs = "∫σ̂ ≤ 1e4 straight through the volume";
         return Err(Refusal::mismatch(needs, format!("it may be {:e}", walks.depth)));

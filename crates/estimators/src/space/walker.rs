@@ -2,14 +2,15 @@
 
 use super::walk::Steps;
 use super::{Particle, Tally, draws};
-use crate::{Draw, Estimator, Inputs, Kernel, Refusal, Request, Setup, walks};
+use crate::setup::Space;
+use crate::{Draw, Estimated, Estimator, Inputs, Kernel, Refusal, Request, Setup, walks};
 use media::catalogue::Settings;
 use numeric::rng::Stream;
 use theory::Prediction;
-use theory::problems::{Channels, Problem, Scene};
+use theory::problems::{Channels, Scene};
 
 /// A problem with particles that walk in space as its estimators.
-pub trait Walked: Problem<Value: Channels> {
+pub trait Walked: Estimated<Fields = Space, Value: Channels> {
     /// The beginning of walks, and their values.
     type Tally<'a>: Tally;
 
@@ -45,18 +46,12 @@ pub fn draw<P: Walked, const SPLITS: bool>(
     setup: &Setup<P>,
     random: &mut Stream,
 ) -> Draw<P::Value> {
-    let (tally, majorants) = match (P::tally(setup, particle), setup.space.as_deref()) {
-        (Err(draw), _) => return draw,
-        (Ok(_), None) => return nothing(),
-        (Ok(tally), Some(majorants)) => (tally, majorants),
+    let tally = match P::tally(setup, particle) {
+        Ok(tally) => tally,
+        Err(draw) => return draw,
     };
-    let world = (setup.problem.scene(), majorants);
+    let world = (setup.problem.scene(), &*setup.fields);
     draws::draw::<_, _, SPLITS>(&tally, (steps, particle.splitting), world, random)
-}
-
-/// The draw without σ̂, which is refused.
-pub fn nothing<V: Channels>() -> Draw<V> {
-    Draw::free(V::of(1, |_| f64::NAN), 0)
 }
 
 /// A particle that walks; σ̂ in space is its input. With `SPLITS` it splits.
@@ -92,12 +87,9 @@ impl<P: Walked, const SPLITS: bool> Estimator<P> for Walker<SPLITS> {
             setup,
             request,
             |level, _, request| {
-                let (Some(majorants), Ok(tally)) =
-                    (setup.space.as_deref(), P::tally(setup, &self.0))
-                else {
-                    return Some(request);
-                };
-                draws::packets(level, &tally, &self.0, (setup.problem.scene(), majorants), request)
+                let Ok(tally) = P::tally(setup, &self.0) else { return Some(request) };
+                let world = (setup.problem.scene(), &*setup.fields);
+                draws::packets(level, &tally, &self.0, world, request)
             },
             #[inline(always)]
             |_, random| draw::<P, SPLITS>(self.0, &self.0, setup, random),

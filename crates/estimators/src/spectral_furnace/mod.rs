@@ -41,7 +41,7 @@ fn across(bounds: &Bounds) -> f64 {
 fn realisable(setup: &Setup<SpectralFurnace>) -> Result<(), Refusal> {
     let across = across(&setup.problem.bounds);
     let within = setup.problem.bounds.enclosing_box();
-    let channels = setup.channels.iter().zip(&setup.problem.channels);
+    let channels = setup.fields.iter().zip(&setup.problem.channels);
     for (number, (channel, medium)) in (1..).zip(channels) {
         let most = within.map_or(f64::INFINITY, |within| medium.volume.majorant(&within));
         if most > channel.majorant * (1.0 + SLACK) {
@@ -81,7 +81,7 @@ impl Chromatic for SpectralFurnace {
     }
 
     fn require(setup: &Setup<Self>, walker: &Walker) -> Result<(), Refusal> {
-        walker.require(&setup.channels)?;
+        walker.require(&setup.fields)?;
         let phases: Vec<_> = setup.problem.channels.iter().map(|channel| channel.phase).collect();
         walker.require_phases(&phases)?;
         realisable(setup)
@@ -94,7 +94,7 @@ impl Chromatic for SpectralFurnace {
             let needs = "one σ_t in each channel: of fields, theory does not bound the variance";
             return Err(Refusal::mismatch(needs, "σ_t varies"));
         };
-        let majorants = setup.channels.iter().map(|channel| channel.majorant).collect();
+        let majorants = setup.fields.iter().map(|channel| channel.majorant).collect();
         let rates = Rates { majorants, albedos: problem.albedos.clone() };
         let phases: Vec<_> = problem.channels.iter().map(|channel| channel.phase).collect();
         let across = across(&problem.bounds);
@@ -128,7 +128,7 @@ impl Chromatic for SpectralFurnace {
 }
 
 estimators! {
-    SpectralFurnace:
+    SpectralFurnace on Channels:
     independent::Independent,
     hero::Hero,
     spectral_tracking::SpectralTracking,

@@ -17,8 +17,8 @@
 //! Source: B. Miller, I. Georgiev, W. Jarosz, *A null-scattering path integral formulation of light transport*,
 //! ACM Transactions on Graphics 38 (2019), section 5.1, Algorithm 1.
 
-use crate::chromatic::all_channels::AllChannels;
+use crate::chromatic::page::Page;
 use crate::setup::walker::MIS;
 
 /// The balance heuristic over heroes.
-pub type SpectralMis = AllChannels<MIS>;
+pub type SpectralMis = Page<MIS>;

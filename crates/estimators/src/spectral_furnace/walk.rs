@@ -80,7 +80,7 @@ impl<'a, S: Steps> InFurnace<'a, S> {
     /// The walk by steps on a setup.
     #[inline(always)]
     pub fn new(steps: S, by: By<'a>, setup: &'a Setup<SpectralFurnace>) -> Self {
-        let (problem, count) = (&*setup.problem, setup.channels.len());
+        let (problem, count) = (&*setup.problem, setup.fields.len());
         let By { walker, weighing, scores_all } = by;
         let media = Media::new(setup, &walker.probabilities(count));
         let mut phases = [problem.channels[0].phase; MOST_CHANNELS];

@@ -47,13 +47,13 @@ impl Independent {
         setup: &'a Setup<SpectralLitRod>,
         albedos: Albedos<'a>,
     ) -> OfHero<'a, Techniques> {
-        let (count, first) = (setup.channels.len(), &setup.channels[0]);
+        let (count, first) = (setup.fields.len(), &setup.fields[0]);
         let [mut mean_free_paths, mut probabilities] = [[0.0; MOST_CHANNELS]; 2];
-        for (channel, own) in setup.channels.iter().enumerate() {
+        for (channel, own) in setup.fields.iter().enumerate() {
             mean_free_paths[channel] = 1.0 / own.majorant;
             probabilities[channel] = self.heroes.probability(count, channel);
         }
-        let (rod, end) = (&setup.problem.rods[0].rod, setup.mesh.support().to);
+        let (rod, end) = (&setup.problem.rods[0].rod, first.mesh.support().to);
         let techniques = if self.is_full { FULL } else { HITS };
         OfHero {
             walk: ToEmitter::new(rod, &first.sampling, end, techniques),
@@ -88,7 +88,7 @@ impl Estimator<SpectralLitRod> for Independent {
 
     fn predict(&self, setup: &Setup<SpectralLitRod>) -> Prediction {
         let tracker = Tracker::Independent { casts: self.is_full };
-        spectrum(setup, &self.heroes, tracker).predict(setup.laws)
+        spectrum(setup, &self.heroes, tracker).predict(setup.distributions)
     }
 
     drawn!(self, setup: SpectralLitRod =>

@@ -3,6 +3,7 @@
 pub mod as_printed;
 pub mod independent;
 pub mod next_event_mis;
+pub mod page;
 pub mod spectral_mis;
 pub mod spectral_tracking;
 pub mod steps;
@@ -19,10 +20,9 @@ use theory::spectral_lit_rod::{Spectrum, Tracker};
 
 /// Checks that each channel has one hero probability and a constant σ̂ ≥ σ_t, and that theory covers the rod.
 fn realisable(setup: &Setup<SpectralLitRod>, heroes: &Heroes) -> Result<(), Refusal> {
-    heroes.require(setup.channels.len())?;
-    channels::require_constants(&setup.channels)?;
-    channels::require_majorants(&setup.channels)?;
-    for (number, (channel, rod)) in (1..).zip(setup.channels.iter().zip(&setup.problem.rods)) {
+    heroes.require(setup.fields.len())?;
+    channels::require_majorants(&setup.fields)?;
+    for (number, (channel, rod)) in (1..).zip(setup.fields.iter().zip(&setup.problem.rods)) {
         if !lit_rod::is_within_reach(&channel.mesh, rod, &channel.sampling) {
             let found = format!("σ̂ or σ_t of channel {number} is too large on it");
             return Err(Refusal::mismatch("a rod that theory can cut into 1e4 steps", found));
@@ -37,8 +37,8 @@ fn spectrum<'a>(
     heroes: &Heroes,
     tracker: Tracker,
 ) -> Spectrum<'a> {
-    let media = setup.channels.iter().map(|channel| (&*channel.mesh, &channel.sampling));
-    let heroes = heroes.of(setup.channels.len());
+    let media = setup.fields.iter().map(|channel| (&*channel.mesh, &channel.sampling));
+    let heroes = heroes.of(setup.fields.len());
     Spectrum::new(&setup.problem, media.collect(), heroes, tracker)
 }
 
@@ -95,7 +95,7 @@ macro_rules! pages {
         ) -> theory::Prediction {
             let tracker = $tracker;
             let spectrum = $crate::spectral_lit_rod::spectrum(setup, &$heroes, tracker);
-            spectrum.predict(setup.laws)
+            spectrum.predict(setup.distributions)
         }
 
         $crate::walks::drawn!($this, setup: SpectralLitRod =>
@@ -107,7 +107,7 @@ macro_rules! pages {
 use pages;
 
 estimators! {
-    SpectralLitRod:
+    SpectralLitRod on Channels:
     independent::Independent,
     spectral_mis::SpectralMis,
     spectral_tracking::SpectralTracking,

@@ -22,41 +22,7 @@
 //! Source: B. Miller, I. Georgiev, W. Jarosz, *A null-scattering path integral formulation of light
 //! transport*, ACM Transactions on Graphics 38 (2019), sections 5.3 and 5.4, Algorithms 1 and 2.
 
-use super::pages;
-use super::steps::Steps;
-use crate::Estimator;
-use crate::setup::heroes::Heroes;
-use media::catalogue::Settings;
-use theory::problems::SpectralLitRod;
-use theory::spectral_lit_rod::Tracker;
+use super::page::Page;
 
 /// The balance heuristic over heroes and both techniques.
-#[derive(Debug, Clone)]
-pub struct NextEventMis {
-    /// The distribution of the hero.
-    pub heroes: Heroes,
-}
-
-impl Steps for NextEventMis {
-    #[inline(always)]
-    fn heroes(&self) -> &Heroes {
-        &self.heroes
-    }
-
-    #[inline(always)]
-    fn casts(&self) -> bool {
-        true
-    }
-}
-
-impl Estimator<SpectralLitRod> for NextEventMis {
-    fn read(settings: &Settings) -> Option<Self> {
-        Some(Self { heroes: Heroes::read(settings)? })
-    }
-
-    fn label(&self, _: bool) -> String {
-        self.heroes.label()
-    }
-
-    pages!(self => self.heroes, Tracker::Mis { casts: true });
-}
+pub type NextEventMis = Page<true>;

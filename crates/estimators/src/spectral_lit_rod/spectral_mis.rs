@@ -21,41 +21,7 @@
 //! Source: B. Miller, I. Georgiev, W. Jarosz, *A null-scattering path integral formulation of light
 //! transport*, ACM Transactions on Graphics 38 (2019), sections 5.3 and 5.4, Algorithm 1.
 
-use super::pages;
-use super::steps::Steps;
-use crate::Estimator;
-use crate::setup::heroes::Heroes;
-use media::catalogue::Settings;
-use theory::problems::SpectralLitRod;
-use theory::spectral_lit_rod::Tracker;
+use super::page::Page;
 
 /// The balance heuristic over heroes.
-#[derive(Debug, Clone)]
-pub struct SpectralMis {
-    /// The distribution of the hero.
-    pub heroes: Heroes,
-}
-
-impl Steps for SpectralMis {
-    #[inline(always)]
-    fn heroes(&self) -> &Heroes {
-        &self.heroes
-    }
-
-    #[inline(always)]
-    fn casts(&self) -> bool {
-        false
-    }
-}
-
-impl Estimator<SpectralLitRod> for SpectralMis {
-    fn read(settings: &Settings) -> Option<Self> {
-        Some(Self { heroes: Heroes::read(settings)? })
-    }
-
-    fn label(&self, _: bool) -> String {
-        self.heroes.label()
-    }
-
-    pages!(self => self.heroes, Tracker::Mis { casts: false });
-}
+pub type SpectralMis = Page<false>;

@@ -55,7 +55,7 @@ impl Estimator<SpectralLitRod> for SpectralTracking {
 
     fn domain(&self, setup: &Setup<SpectralLitRod>) -> Result<(), Refusal> {
         realisable(setup, &Heroes::Uniform)?;
-        channels::require_common(&setup.channels)?;
+        channels::require_common(&setup.fields)?;
         let turns = |(_, forward): &(usize, &f64)| **forward < 1.0;
         let turns = (1..).zip(&setup.problem.forward).find(turns);
         turns.map_or(Ok(()), |(channel, forward)| {
@@ -66,7 +66,7 @@ impl Estimator<SpectralLitRod> for SpectralTracking {
 
     fn predict(&self, setup: &Setup<SpectralLitRod>) -> Prediction {
         let tracker = Tracker::Tracking(self.chances);
-        spectrum(setup, &Heroes::Uniform, tracker).predict(setup.laws)
+        spectrum(setup, &Heroes::Uniform, tracker).predict(setup.distributions)
     }
 
     drawn!(self, setup: SpectralLitRod =>
@@ -98,7 +98,7 @@ struct Together<'a> {
 impl<'a> Together<'a> {
     #[inline(always)]
     fn new(chances: Chances, setup: &Setup<SpectralLitRod>, albedos: Albedos<'a>) -> Self {
-        let (majorant, count) = (setup.channels[0].majorant, setup.channels.len());
+        let (majorant, count) = (setup.fields[0].majorant, setup.fields.len());
         Self { chances, majorant, albedos, count }
     }
 }

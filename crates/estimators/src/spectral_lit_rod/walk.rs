@@ -43,7 +43,8 @@ type Channels = [f64; MOST_CHANNELS];
 
 /// The walk of a hero to the emitter.
 pub struct ToEmitter<'a, S> {
-    setup: &'a Setup<SpectralLitRod>,
+    /// End of the rod.
+    end: f64,
     steps: &'a S,
     media: Media,
     law: Law,
@@ -78,10 +79,10 @@ impl<'a, S: Steps> ToEmitter<'a, S> {
 
     #[inline(always)]
     fn new(steps: &'a S, setup: &'a Setup<SpectralLitRod>, albedos: Albedos<'a>) -> Self {
-        let (heroes, count) = (steps.heroes(), setup.channels.len());
+        let (heroes, count) = (steps.heroes(), setup.fields.len());
         let [mut mean_free_paths, mut probabilities] = [[0.0; MOST_CHANNELS]; 2];
         let mut forward = [[0.0; MOST_CHANNELS]; MOST_CHANNELS];
-        for (channel, own) in setup.channels.iter().enumerate() {
+        for (channel, own) in setup.fields.iter().enumerate() {
             mean_free_paths[channel] = 1.0 / own.majorant;
             probabilities[channel] = heroes.probability(count, channel);
             for (hero, forward) in forward[channel][..count].iter_mut().enumerate() {
@@ -89,7 +90,7 @@ impl<'a, S: Steps> ToEmitter<'a, S> {
             }
         }
         Self {
-            setup,
+            end: setup.residual().mesh.support().to,
             steps,
             media: Media::new(setup, &probabilities),
             law: Law::new(heroes, count),
@@ -110,7 +111,7 @@ pub fn draw(
     medium: &Lookups,
     random: &mut Stream,
 ) -> Draw<Values> {
-    walks::draw(&ToEmitter::of(steps, setup), &setup.sampling, medium, random)
+    walks::draw(&ToEmitter::of(steps, setup), setup.residual().sampling, medium, random)
 }
 
 kept! {
@@ -253,7 +254,7 @@ impl<S: Steps> Walk for ToEmitter<'_, S> {
         let (Met { inside, t, extinctions, .. }, count) = (*met, self.media.count);
         let (one, casts) = (t.each(1.0), path.casts);
         let number = random.uniform_where(!casts);
-        let end = one.each(self.setup.mesh.support().to);
+        let end = one.each(self.end);
         path.last = L::select(inside, t, end) - path.before;
         path.length = path.length + path.last.size();
         path.collisions = path.collisions + L::select(inside, one, one.each(0.0));

@@ -2,17 +2,19 @@
 
 pub mod hero;
 pub mod independent;
+pub mod page;
 pub mod spectral_mis;
 pub mod spectral_tracking;
 pub mod walk;
 
-use crate::{Refusal, Setup, estimators};
-use theory::problems::spectral_rod::{Colours, Values};
-use theory::problems::{Problem, SpectralRod};
-use theory::spectral_rod::{Body, Rods, Spectrum, Tracker};
+use crate::setup::Line;
+use crate::{Estimated, Refusal, Setup, estimators};
+use theory::problems::SpectralRod;
+use theory::problems::channels::{ColourValues as Values, Colours};
+use theory::spectral_rod::{Body, Rods};
 
-/// A body of coloured scatterers; its estimators have common pages.
-pub trait Coloured: Problem<Value = Values> {
+/// A body of coloured scatterers; its estimators have one [`page`].
+pub trait Coloured: Estimated<Value = Values, Fields = Line> {
     /// Albedos of the channels.
     fn colours(&self) -> &Colours;
 
@@ -40,7 +42,7 @@ impl Coloured for SpectralRod {
     }
 
     fn body(setup: &Setup<Self>) -> Box<dyn Body + '_> {
-        Box::new(Rods::new(&setup.problem, &setup.mesh, &setup.sampling))
+        Box::new(Rods::new(&setup.problem, &setup.fields.mesh, &setup.fields.sampling))
     }
 
     fn place(&self) -> walk::Place<'_> {
@@ -48,34 +50,8 @@ impl Coloured for SpectralRod {
     }
 }
 
-/// Theory's description of a tracker.
-fn spectrum<P: Coloured>(setup: &Setup<P>, heroes: Vec<f64>, tracker: Tracker) -> Spectrum<'_> {
-    Spectrum::new(P::body(setup), setup.problem.colours(), heroes, tracker)
-}
-
-/// Implements the draws of a page that implements [`walk::Page`].
-macro_rules! scored {
-    () => {
-        const INPUTS: $crate::Inputs = $crate::Inputs::SAMPLING;
-
-        fn fill(&self, kernel: $crate::Kernel, setup: &$crate::Setup<P>, request: $crate::Request) {
-            $crate::walks::by(
-                kernel,
-                setup,
-                request,
-                |level, medium, request| {
-                    $crate::spectral_rod::walk::packets(level, self, setup, medium, request)
-                },
-                #[inline(always)]
-                |medium, rng| $crate::spectral_rod::walk::draw(self, setup, medium, rng),
-            );
-        }
-    };
-}
-use scored;
-
 estimators! {
-    SpectralRod:
+    SpectralRod on Line:
     independent::Independent,
     hero::Hero,
     spectral_tracking::SpectralTracking,

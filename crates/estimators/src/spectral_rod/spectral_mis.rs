@@ -17,59 +17,8 @@
 //! Source: B. Miller, I. Georgiev, W. Jarosz, *A Null-Scattering Path Integral Formulation of Light
 //! Transport*, ACM Transactions on Graphics 38 (2019), section 5.1.
 
-use super::{Coloured, scored, spectrum, walk};
-use crate::setup::heroes::Heroes;
-use crate::{Estimator, Refusal, Setup};
-use media::body::MOST_CHANNELS;
-use media::catalogue::Settings;
-use theory::Prediction;
-use theory::spectral_rod::Tracker;
+use super::page::Page;
+use crate::setup::walker::MIS;
 
 /// The balance heuristic over heroes.
-#[derive(Debug, Clone)]
-pub struct SpectralMis {
-    /// The distribution of the hero.
-    pub heroes: Heroes,
-}
-
-impl walk::Page for SpectralMis {
-    #[inline(always)]
-    fn heroes(&self) -> Option<&Heroes> {
-        Some(&self.heroes)
-    }
-
-    #[inline(always)]
-    fn weights(&self, albedos: &[f64], hero: usize, order: u32) -> [f64; MOST_CHANNELS] {
-        let count = albedos.len();
-        let mut weights = walk::relative(albedos, hero, order);
-        let mut density = 0.0;
-        for (channel, weight) in weights[..count].iter().enumerate() {
-            density += self.heroes.probability(count, channel) * weight;
-        }
-        for weight in &mut weights[..count] {
-            *weight /= density;
-        }
-        weights
-    }
-}
-
-impl<P: Coloured> Estimator<P> for SpectralMis {
-    scored!();
-
-    fn read(settings: &Settings) -> Option<Self> {
-        Some(Self { heroes: Heroes::read(settings)? })
-    }
-
-    fn label(&self, _: bool) -> String {
-        self.heroes.label()
-    }
-
-    fn domain(&self, setup: &Setup<P>) -> Result<(), Refusal> {
-        walk::require(setup, &self.heroes)
-    }
-
-    fn predict(&self, setup: &Setup<P>) -> Prediction {
-        let heroes = self.heroes.of(setup.problem.colours().albedos.len());
-        spectrum(setup, heroes, Tracker::Mis).predict()
-    }
-}
+pub type SpectralMis = Page<MIS>;

@@ -28,8 +28,8 @@ use numeric::pack::WIDTH;
 use numeric::rng::{Random, Stream};
 use numeric::{Lane, Mask, kept};
 use theory::ParticleRule;
+use theory::problems::channels::{ColourValues as Values, Colours, End};
 use theory::problems::slab::{Incidence, Light};
-use theory::problems::spectral_rod::{Colours, End, Values};
 
 /// Geometry of the walks.
 #[derive(Clone, Copy)]
@@ -55,13 +55,14 @@ pub trait Page {
     fn weights(&self, albedos: &[f64], hero: usize, order: u32) -> [f64; MOST_CHANNELS];
 }
 
-/// `(a_λ/a_h)^r`: the density of each channel's walk after r scatterings, relative to the hero's.
+/// `(a_λ/P)^r`: the density of each channel's walk after r scatterings, relative to a walk that is scattered with a
+/// probability P.
 #[inline(always)]
-pub fn relative(albedos: &[f64], hero: usize, order: u32) -> [f64; MOST_CHANNELS] {
+pub fn relative_to(albedos: &[f64], probability: f64, order: u32) -> [f64; MOST_CHANNELS] {
     let mut weights = [1.0; MOST_CHANNELS];
     for _ in 0..order {
         for (weight, albedo) in weights.iter_mut().zip(albedos) {
-            *weight *= albedo / albedos[hero];
+            *weight *= albedo / probability;
         }
     }
     weights
@@ -280,7 +281,7 @@ pub fn draw<P: Coloured>(
     medium: &Lookups,
     random: &mut Stream,
 ) -> Draw<Values> {
-    walks::draw(&InBody::new(page, setup), &setup.sampling, medium, random)
+    walks::draw(&InBody::new(page, setup), &setup.fields.sampling, medium, random)
 }
 
 /// Makes the draws in packets.
@@ -304,12 +305,28 @@ pub fn packets<'r, P: Coloured>(
 /// The violated requirement.
 pub fn require<P: Coloured>(setup: &Setup<P>, heroes: &Heroes) -> Result<(), Refusal> {
     heroes.require(setup.problem.colours().albedos.len())?;
-    setup.require_ratio_at_most(1.0, "σ̂ ≥ σ_t everywhere")?;
-    setup.require_few_collisions("∫σ̂ ≤ 1e6")?;
+    setup.residual().require_ratio_at_most(1.0, "σ̂ ≥ σ_t everywhere")?;
+    setup.residual().require_few_collisions("∫σ̂ ≤ 1e6")?;
     P::require_answer(setup)
 }
 
-/// Checks that the variance of each channel is finite, given the first one that diverges.
+/// Requires heroes that scatter, or none that does.
+///
+/// # Errors
+///
+/// A hero that is not scattered where another channel is.
+pub fn require_scattering(albedos: &[f64], heroes: &Heroes) -> Result<(), Refusal> {
+    let scatters = albedos.iter().any(|&albedo| albedo > 0.0);
+    let lost = (0..albedos.len()).find(|&hero| {
+        scatters && albedos[hero] == 0.0 && heroes.probability(albedos.len(), hero) > 0.0
+    });
+    lost.map_or(Ok(()), |hero| {
+        let found = format!("the albedo of channel {} is 0, which biases the others", hero + 1);
+        Err(Refusal::mismatch("heroes that scatter where another channel does", found))
+    })
+}
+
+/// Requires a finite variance of each channel.
 ///
 /// # Errors
 ///

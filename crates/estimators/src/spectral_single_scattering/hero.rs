@@ -21,7 +21,8 @@
 //! ACM Transactions on Graphics 38 (2019), section 5.1; the moments are derived: see the theory of single scattering in
 //! several channels.
 
+use super::page::Page;
 use crate::setup::walker::HERO;
 
 /// A single hero, without multiple importance sampling.
-pub type Hero = super::page::AllChannels<HERO>;
+pub type Hero = Page<HERO>;

@@ -7,6 +7,7 @@ pub mod spectral_mis;
 pub mod spectral_tracking;
 pub mod walk;
 
+use crate::setup::ControlledLine;
 use crate::setup::heroes::Heroes;
 use crate::setup::walker::Walker;
 use crate::single_scattering::plan::{Absorption, at_collisions};
@@ -51,7 +52,7 @@ fn realisable(setup: &Setup<SpectralSingleScattering>, shadow: Shadow) -> Result
     if shadow == Shadow::Exact {
         return Ok(());
     }
-    for (number, (channel, lit)) in (1..).zip(setup.channels.iter().zip(&setup.problem.channels)) {
+    for (number, (channel, lit)) in (1..).zip(setup.fields.iter().zip(&setup.problem.channels)) {
         let bound = lit.shadow_majorant();
         if channel.majorant < bound * (1.0 - 1e-12) {
             let [majorant, bound] = [channel.majorant, bound].map(rounded);
@@ -64,22 +65,33 @@ fn realisable(setup: &Setup<SpectralSingleScattering>, shadow: Shadow) -> Result
 
 /// The moments of analog tracking of each channel by itself.
 fn alone(setup: &Setup<SpectralSingleScattering>, shadow: Shadow) -> Vec<Points> {
-    let each = setup.channels.iter().zip(&setup.problem.channels);
+    let each = setup.fields.iter().zip(&setup.problem.channels);
     let points = each.map(|(channel, problem)| {
         let shadow = match shadow {
             Shadow::Exact => Tracking::Exact,
             Shadow::Ratio => Tracking::Ratio { sampling: channel.majorant, control: 0.0 },
         };
-        let (mesh, sampling) = (channel.mesh.clone(), Some(channel.sampling.clone()));
-        let own = Setup::new(problem.clone(), mesh, sampling, Control::None);
+        let part = (channel.mesh.clone(), Some(channel.sampling.clone()));
+        let fields = ControlledLine::new(&**problem, part, Control::None);
+        let own = Setup { problem: problem.clone(), fields, distributions: false };
         at_collisions(&own, Absorption::Analog, shadow)
     });
     points.collect()
 }
 
-/// Prediction for draws that score all channels.
+/// Prediction of draws that score one channel.
+fn predict_independent(
+    setup: &Setup<SpectralSingleScattering>,
+    walker: &Walker,
+    shadow: Shadow,
+) -> Prediction {
+    let heroes = walker.heroes().unwrap_or(&Heroes::Uniform);
+    theory::independent(&alone(setup, shadow), &heroes.of(setup.fields.len()))
+}
+
+/// Prediction of draws that score all channels.
 fn predict(setup: &Setup<SpectralSingleScattering>, walker: &Walker, shadow: Shadow) -> Prediction {
-    let (alone, count) = (alone(setup, shadow), setup.channels.len());
+    let (alone, count) = (alone(setup, shadow), setup.fields.len());
     let walks = match walker {
         Walker::Mis(heroes) => return theory::balanced(&alone, &heroes.of(count)),
         // Its scores are those of the balance heuristic with equal heroes, and its walks are the same.
@@ -94,14 +106,14 @@ fn predict(setup: &Setup<SpectralSingleScattering>, walker: &Walker, shadow: Sha
         }
     };
     let of_heroes = walker.heroes().and_then(|heroes| theory::lookups(&alone, &heroes.of(count)));
-    let media = setup.channels.iter().map(|channel| (&*channel.mesh, channel.majorant)).collect();
+    let media = setup.fields.iter().map(|channel| (&*channel.mesh, channel.majorant)).collect();
     let tracks = shadow == Shadow::Ratio;
-    Relative::new(&setup.problem.channels, media, &setup.sampling, walks, tracks)
+    Relative::new(&setup.problem.channels, media, setup.residual().sampling, walks, tracks)
         .predict(&alone, of_heroes)
 }
 
 estimators! {
-    SpectralSingleScattering:
+    SpectralSingleScattering on Channels:
     independent::Independent,
     hero::Hero,
     spectral_tracking::SpectralTracking,

@@ -2,8 +2,9 @@
 //! density of the walker, or of all heroes.
 
 use super::walk::{self, Right};
-use super::{Shadow, predict, realisable};
-use crate::setup::walker::Walker;
+use super::{Shadow, predict, predict_independent, realisable};
+use crate::setup::channels;
+use crate::setup::walker::{INDEPENDENT, Walker};
 use crate::{Draw, Estimator, Inputs, Kernel, Refusal, Request, Setup, walks};
 use media::Lookups;
 use media::catalogue::Settings;
@@ -12,16 +13,15 @@ use theory::Prediction;
 use theory::problems::ChannelValues as Values;
 use theory::problems::SpectralSingleScattering;
 
-/// A walk that scores all channels, of a kind of walker.
+/// An estimator of a kind.
 #[derive(Debug, Clone)]
-pub struct AllChannels<const KIND: u8> {
-    /// Walker that makes the walks.
-    pub walker: Walker,
+pub struct Page<const KIND: u8> {
+    walker: Walker,
     /// Tracking of shadow rays.
-    pub shadow: Shadow,
+    shadow: Shadow,
 }
 
-impl<const KIND: u8> Estimator<SpectralSingleScattering> for AllChannels<KIND> {
+impl<const KIND: u8> Estimator<SpectralSingleScattering> for Page<KIND> {
     const INPUTS: Inputs = Inputs::SAMPLING;
 
     fn read(settings: &Settings) -> Option<Self> {
@@ -38,35 +38,55 @@ impl<const KIND: u8> Estimator<SpectralSingleScattering> for AllChannels<KIND> {
     }
 
     fn domain(&self, setup: &Setup<SpectralSingleScattering>) -> Result<(), Refusal> {
-        self.walker.require_on_ray(&setup.channels)?;
+        if KIND == INDEPENDENT {
+            self.walker.require(&setup.fields)?;
+            channels::require_majorants(&setup.fields)?;
+        } else {
+            self.walker.require_on_ray(&setup.fields)?;
+        }
         realisable(setup, self.shadow)
     }
 
     fn predict(&self, setup: &Setup<SpectralSingleScattering>) -> Prediction {
-        predict(setup, &self.walker, self.shadow)
+        if KIND == INDEPENDENT {
+            predict_independent(setup, &self.walker, self.shadow)
+        } else {
+            predict(setup, &self.walker, self.shadow)
+        }
     }
 
     fn fill(&self, kernel: Kernel, setup: &Setup<SpectralSingleScattering>, request: Request) {
+        let by = (&self.walker, self.shadow);
         walks::by(
             kernel,
             setup,
             request,
             |level, medium, request| {
-                walk::packets::<true>(level, (&self.walker, self.shadow), setup, medium, request)
+                if KIND == INDEPENDENT {
+                    walk::packets::<false>(level, by, setup, medium, request)
+                } else {
+                    walk::packets::<true>(level, by, setup, medium, request)
+                }
             },
             #[inline(always)]
-            |medium, rng| draw((&self.walker, self.shadow), setup, medium, rng),
+            |medium, random| {
+                if KIND == INDEPENDENT {
+                    draw::<false>(by, setup, medium, random)
+                } else {
+                    draw::<true>(by, setup, medium, random)
+                }
+            },
         );
     }
 }
 
 /// Makes one draw: compiled once for all walkers.
 #[inline(never)]
-fn draw(
+fn draw<const ALL: bool>(
     by: (&Walker, Shadow),
     setup: &Setup<SpectralSingleScattering>,
     medium: &Lookups,
-    rng: &mut Stream,
+    random: &mut Stream,
 ) -> Draw<Values> {
-    walk::draw::<true>(Right, by, setup, medium, rng)
+    walk::draw::<ALL>(Right, by, setup, medium, random)
 }

@@ -142,7 +142,7 @@ pub fn draw<const ALL: bool>(
     random: &mut Stream,
 ) -> Draw<Values> {
     let walk = ToScattering::<_, ALL>::new(setup, (walker, shadow), &[], steps);
-    walks::draw(&walk, &setup.channels[0].sampling, medium, random)
+    walks::draw(&walk, setup.residual().sampling, medium, random)
 }
 
 /// Makes the draws of a request in packets.
@@ -167,7 +167,7 @@ impl<'a, S: Steps, const ALL: bool> ToScattering<'a, S, ALL> {
         fields: &'a [Batches<'a>],
         steps: S,
     ) -> Self {
-        let (count, mut albedos) = (setup.channels.len(), [0.0; MOST_CHANNELS]);
+        let (count, mut albedos) = (setup.fields.len(), [0.0; MOST_CHANNELS]);
         albedos[..count].copy_from_slice(&setup.problem.albedos);
         let law = walker.heroes().map(
             #[inline(always)]
@@ -268,7 +268,7 @@ impl<S: Steps, const ALL: bool> Walk for ToScattering<'_, S, ALL> {
     #[inline(always)]
     fn begin<L: Lane>(&self, one: L, all: L::Mask, random: &mut impl Random<L>) -> Flight<L> {
         let (none, zero, ones) = (all & !all, one.each(0.0), [one; MOST_CHANNELS]);
-        let s = one.each(self.setup.mesh.support().from);
+        let s = one.each(self.setup.residual().mesh.support().from);
         // Lanes without a shadow ray look up σ_t where this one enters.
         let (origin, direction, _) = self.setup.problem.channels[0].to_light(s);
         let mut path = Flight {

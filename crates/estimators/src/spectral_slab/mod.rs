@@ -9,7 +9,7 @@ use super::spectral_rod::Coloured;
 use super::spectral_rod::walk::Place;
 use crate::{Refusal, Setup, estimators};
 use ::theory::problems::SpectralSlab;
-use ::theory::problems::spectral_rod::{Colours, End};
+use ::theory::problems::channels::{Colours, End};
 use ::theory::slab as theory;
 use ::theory::spectral_rod::Body;
 use ::theory::spectral_slab::Slabs;
@@ -35,13 +35,13 @@ impl Coloured for SpectralSlab {
             return Ok(());
         }
         let needs = "reflectances and transmittances that adding and doubling resolve (|g| ≤ 0.93, a moderate τ)";
-        let depth = rounded(setup.mesh.optical_depth().value);
+        let depth = rounded(setup.fields.mesh.optical_depth().value);
         Err(Refusal::mismatch(needs, format!("τ = {depth}, phase {}", phase.label())))
     }
 
     fn body(setup: &Setup<Self>) -> Box<dyn Body + '_> {
-        let fields = (&*setup.mesh, &setup.sampling);
-        Box::new(Slabs::new(&setup.problem, fields, setup.laws))
+        let fields = (&*setup.fields.mesh, &setup.fields.sampling);
+        Box::new(Slabs::new(&setup.problem, fields, setup.distributions))
     }
 
     fn place(&self) -> Place<'_> {
@@ -50,7 +50,7 @@ impl Coloured for SpectralSlab {
 }
 
 estimators! {
-    SpectralSlab:
+    SpectralSlab on Line:
     independent::Independent,
     hero::Hero,
     spectral_tracking::SpectralTracking,

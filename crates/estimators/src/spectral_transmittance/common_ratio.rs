@@ -15,27 +15,7 @@
 //! Source: J. Novák, A. Selle, W. Jarosz, *Residual Ratio Tracking for Estimating Attenuation in Participating
 //! Media*, ACM Transactions on Graphics 33 (2014), with one majorant for all channels.
 
-use super::trackers;
-use crate::setup::channels;
-use crate::setup::heroes::Heroes;
-use crate::{Estimator, Refusal, Setup};
-use media::catalogue::Settings;
-use theory::problems::SpectralTransmittance;
-use theory::spectral::Tracker;
+use super::page::{COMMON_RATIO, Page};
 
 /// The ratio tracker of all channels.
-#[derive(Debug, Clone)]
-pub struct CommonRatio;
-
-impl Estimator<SpectralTransmittance> for CommonRatio {
-    fn read(_: &Settings) -> Option<Self> {
-        Some(Self)
-    }
-
-    fn domain(&self, setup: &Setup<SpectralTransmittance>) -> Result<(), Refusal> {
-        channels::require_constants(&setup.channels)?;
-        channels::require_common(&setup.channels)
-    }
-
-    trackers!(self => common, &Heroes::Uniform, Tracker::Hero { delta: false });
-}
+pub type CommonRatio = Page<COMMON_RATIO>;

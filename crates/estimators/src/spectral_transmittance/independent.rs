@@ -20,47 +20,8 @@
 //! Source: B. Miller, I. Georgiev, W. Jarosz, *A Null-Scattering Path Integral Formulation of Light
 //! Transport*, ACM Transactions on Graphics 38 (2019), section 6.
 
-use super::{trackers, walk};
-use crate::setup::channels;
-use crate::setup::heroes::Heroes;
-use crate::{Estimator, Refusal, Setup};
-use media::catalogue::Settings;
-use theory::problems::SpectralTransmittance;
-use theory::spectral::Tracker;
+use super::page::Page;
+use crate::setup::walker::INDEPENDENT;
 
 /// Independent tracking.
-#[derive(Debug, Clone)]
-pub struct Independent {
-    delta: bool,
-    in_turn: bool,
-    heroes: Heroes,
-}
-
-impl Independent {
-    fn tracker(&self) -> Tracker {
-        let delta = self.delta;
-        if self.in_turn { Tracker::InTurn { delta } } else { Tracker::Independent { delta } }
-    }
-}
-
-impl Estimator<SpectralTransmittance> for Independent {
-    fn read(settings: &Settings) -> Option<Self> {
-        let delta = walk::read_delta(settings);
-        let channels = settings.word_or("channels", &["one", "all"], "one");
-        let heroes = Heroes::read(settings);
-        Some(Self { delta: delta?, in_turn: channels? == "all", heroes: heroes? })
-    }
-
-    fn label(&self, _: bool) -> String {
-        let in_turn = "all channels in turn".to_owned();
-        walk::label(self.delta, &if self.in_turn { in_turn } else { self.heroes.label() })
-    }
-
-    fn domain(&self, setup: &Setup<SpectralTransmittance>) -> Result<(), Refusal> {
-        self.heroes.require(setup.channels.len())?;
-        channels::require_constants(&setup.channels)?;
-        if self.delta { channels::require_majorants(&setup.channels) } else { Ok(()) }
-    }
-
-    trackers!(self => new, &self.heroes, self.tracker());
-}
+pub type Independent = Page<INDEPENDENT>;

@@ -20,36 +20,8 @@
 //! Source: B. Miller, I. Georgiev, W. Jarosz, *A Null-Scattering Path Integral Formulation of Light
 //! Transport*, ACM Transactions on Graphics 38 (2019), section 5.1.
 
-use super::{trackers, walk};
-use crate::setup::channels;
-use crate::setup::heroes::Heroes;
-use crate::{Estimator, Refusal, Setup};
-use media::catalogue::Settings;
-use theory::problems::SpectralTransmittance;
-use theory::spectral::Tracker;
+use super::page::Page;
+use crate::setup::walker::MIS;
 
 /// The balance heuristic over heroes.
-#[derive(Debug, Clone)]
-pub struct SpectralMis {
-    delta: bool,
-    heroes: Heroes,
-}
-
-impl Estimator<SpectralTransmittance> for SpectralMis {
-    fn read(settings: &Settings) -> Option<Self> {
-        let (delta, heroes) = (walk::read_delta(settings), Heroes::read(settings));
-        Some(Self { delta: delta?, heroes: heroes? })
-    }
-
-    fn label(&self, _: bool) -> String {
-        walk::label(self.delta, &self.heroes.label())
-    }
-
-    fn domain(&self, setup: &Setup<SpectralTransmittance>) -> Result<(), Refusal> {
-        self.heroes.require(setup.channels.len())?;
-        channels::require_constants(&setup.channels)?;
-        if self.delta { channels::require_majorants(&setup.channels) } else { Ok(()) }
-    }
-
-    trackers!(self => new, &self.heroes, Tracker::Mis { delta: self.delta });
-}
+pub type SpectralMis = Page<MIS>;

@@ -20,46 +20,8 @@
 //! Source: P. Kutz, R. Habel, Y. K. Li, J. Novák, *Spectral and Decomposition Tracking for Rendering
 //! Heterogeneous Volumes*, ACM Transactions on Graphics 36 (2017), sections 5.1.1 and 5.1.2.
 
-use super::trackers;
-use crate::setup::channels;
-use crate::setup::heroes::Heroes;
-use crate::setup::walker::read_chances;
-use crate::{Estimator, Refusal, Setup};
-use media::catalogue::Settings;
-use theory::problems::SpectralTransmittance;
-use theory::spectral::{Chances, Tracker};
+use super::page::Page;
+use crate::setup::walker::SPECTRAL_TRACKING;
 
 /// Spectral tracking.
-#[derive(Debug, Clone)]
-pub struct SpectralTracking {
-    chances: Chances,
-}
-
-impl SpectralTracking {
-    /// Tracker in theory's terms.
-    fn tracker(&self) -> Tracker {
-        match self.chances {
-            Chances::Fixed(chance) => Tracker::Tracking(chance),
-            // Probabilities that depend on the weights score as the balance heuristic does.
-            Chances::History => Tracker::Mis { delta: true },
-        }
-    }
-}
-
-impl Estimator<SpectralTransmittance> for SpectralTracking {
-    fn read(settings: &Settings) -> Option<Self> {
-        Some(Self { chances: read_chances(settings)? })
-    }
-
-    fn label(&self, _: bool) -> String {
-        self.chances.label().into()
-    }
-
-    fn domain(&self, setup: &Setup<SpectralTransmittance>) -> Result<(), Refusal> {
-        channels::require_constants(&setup.channels)?;
-        channels::require_common(&setup.channels)?;
-        channels::require_majorants(&setup.channels)
-    }
-
-    trackers!(self => common, &Heroes::Uniform, self.tracker());
-}
+pub type SpectralTracking = Page<SPECTRAL_TRACKING>;

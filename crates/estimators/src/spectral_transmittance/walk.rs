@@ -20,40 +20,29 @@ use crate::walks::{self, GROUPS, Met, Route, SOME_LEFT, Scores, Walk};
 use crate::{Draw, Setup};
 use media::Lookups;
 use media::body::MOST_CHANNELS;
-use media::catalogue::Settings;
 use media::course::BothWays;
 use numeric::rng::{Random, Stream};
-use numeric::{Lane, kept};
+use numeric::{Lane, Span, kept};
 use theory::problems::SpectralTransmittance;
-use theory::problems::spectral_transmittance::Values;
+use theory::problems::transmittance::SpectralValues as Values;
 use theory::spectral::{Spectrum, Tracker};
 
-/// Reads `collisions`; true if real collisions end the walk.
-pub fn read_delta(settings: &Settings) -> Option<bool> {
-    settings.word_or("collisions", &["ratio", "delta"], "ratio").map(|word| word == "delta")
-}
-
-/// An estimator's settings in words.
-pub fn label(delta: bool, further: &str) -> String {
-    let word = if delta { "delta" } else { "ratio" };
-    if further.is_empty() { word.into() } else { format!("{word}, {further}") }
-}
-
-/// The tracker and its medium as theory describes them.
+/// The spectrum of a setup, for predictions.
 pub fn spectrum(
     setup: &Setup<SpectralTransmittance>,
     heroes: &Heroes,
     tracker: Tracker,
 ) -> Spectrum {
-    let meshes: Vec<_> = setup.channels.iter().map(|channel| &*channel.mesh).collect();
-    let majorants = setup.channels.iter().map(|channel| channel.majorant).collect();
-    Spectrum::new(&meshes, majorants, heroes.of(setup.channels.len()), tracker)
+    let meshes: Vec<_> = setup.fields.iter().map(|channel| &*channel.mesh).collect();
+    let majorants = setup.fields.iter().map(|channel| channel.majorant).collect();
+    Spectrum::new(&meshes, majorants, heroes.of(setup.fields.len()), tracker)
 }
 
 /// The walk that scores by a tracker.
 #[derive(Clone, Copy)]
 pub struct AlongRay<'a, S> {
     setup: &'a Setup<SpectralTransmittance>,
+    support: Span,
     tracker: Tracker,
     /// True if one walk serves all channels through their common σ̂: no hero is chosen.
     is_common: bool,
@@ -76,16 +65,17 @@ impl<'a, S: Steps> AlongRay<'a, S> {
         tracker: Tracker,
         steps: S,
     ) -> Self {
-        let count = setup.channels.len();
+        let count = setup.fields.len();
         let [mut mean_free_paths, mut collisions] = [[0.0; MOST_CHANNELS]; 2];
         let mut probabilities = [0.0; MOST_CHANNELS];
-        for (channel, own) in setup.channels.iter().enumerate() {
+        for (channel, own) in setup.fields.iter().enumerate() {
             mean_free_paths[channel] = 1.0 / own.majorant;
             collisions[channel] = own.collisions;
             probabilities[channel] = heroes.probability(count, channel);
         }
         Self {
             setup,
+            support: setup.residual().mesh.support(),
             tracker,
             is_common: false,
             law: Law::new(heroes, count),
@@ -110,24 +100,12 @@ impl<'a, S: Steps> AlongRay<'a, S> {
     /// Makes one draw.
     #[inline(always)]
     pub fn draw(&self, medium: &Lookups, random: &mut Stream) -> Draw<Values> {
-        walks::draw(self, &self.setup.sampling, medium, random)
+        walks::draw(self, self.setup.residual().sampling, medium, random)
     }
 
     #[inline(always)]
     fn from<L: Lane>(&self, one: L) -> L {
-        one.each(self.setup.mesh.support().from)
-    }
-
-    /// Returns true if real collisions end a walk.
-    #[inline(always)]
-    fn is_delta(&self) -> bool {
-        !matches!(
-            self.tracker,
-            Tracker::Independent { delta: false }
-                | Tracker::InTurn { delta: false }
-                | Tracker::Hero { delta: false }
-                | Tracker::Mis { delta: false }
-        )
+        one.each(self.support.from)
     }
 
     /// Returns true if a walk scores its hero alone.
@@ -221,7 +199,7 @@ impl<S: Steps> AlongRay<'_, S> {
         let [hero, weights @ ..] = numbers else { return };
         let count = self.media.count;
         let (hero, one) = (*hero, hero.each(1.0));
-        let last = || one.each(self.setup.mesh.support().to) - weights[count];
+        let last = || one.each(self.support.to) - weights[count];
         match self.tracker {
             Tracker::Independent { delta } => {
                 let value = if delta { one } else { weights[0] };
@@ -351,7 +329,7 @@ impl<S: Steps> Walk for AlongRay<'_, S> {
             return goes_on;
         }
         let (Met { inside, t, extinctions, .. }, count) = (*met, self.media.count);
-        let number = if self.is_delta() { random.uniform() } else { t };
+        let number = if self.tracker.is_delta() { random.uniform() } else { t };
         let one = t.each(1.0);
         let (hero, majorants) = (path.hero, &self.media.majorants[..count]);
         let heros = || number_of_hero(hero, majorants);

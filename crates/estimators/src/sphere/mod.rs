@@ -91,8 +91,8 @@ fn unknown(sphere: &Sphere) -> Refusal {
 /// Checks that a rule is valid, that its variance has a bound, and that the expected value is known.
 fn realisable(setup: &Setup<Sphere>, particle: &Particle) -> Result<(), Refusal> {
     let sphere = &setup.problem;
-    space::realisable(setup, &sphere.scene, particle)?;
-    let walks = space::walks(&sphere.scene, space::majorants(setup)?, particle);
+    space::realisable(setup, particle)?;
+    let walks = space::walks(&sphere.scene, &setup.fields, particle);
     if !walks.never_grows() {
         let needs = "σ̂ ≥ σ_t, so that theory bounds the variance";
         let found = format!("σ_t may reach {:.6} times σ̂", walks.ratio());
@@ -224,7 +224,7 @@ impl Walked for Sphere {
 }
 
 estimators! {
-    Sphere:
+    Sphere on Space:
     particle::Walker,
     next_event::NextEvent,
     directional_mis::DirectionalMis,

@@ -9,7 +9,7 @@ use super::{
     predict_together, realisable,
 };
 use crate::single_scattering::connection;
-use crate::space::{self, Particle, Splitting, draws};
+use crate::space::{Particle, Splitting, draws};
 use crate::{Draw, Estimator, Inputs, Kernel, Refusal, Request, Setup, walks};
 use media::Majorants;
 use media::catalogue::Settings;
@@ -86,12 +86,11 @@ impl Page {
     ) -> Option<Request<'a>> {
         let Self { particle, sharing } = *self;
         let is_exact = sharing.is_full() && sharing.shadow.is_some();
-        let majorants = setup.space.as_deref().filter(|_| sharing.subpaths.is_none() && !is_exact);
-        let Some(majorants) =
-            majorants.filter(|majorants| sharing.tracking(particle.rule, majorants).is_some())
-        else {
+        let majorants = &*setup.fields;
+        let is_tracked = sharing.tracking(particle.rule, majorants).is_some();
+        if sharing.subpaths.is_some() || is_exact || !is_tracked {
             return Some(request);
-        };
+        }
         let (sphere, steps) = (&*setup.problem, (sharing, Honest));
         let combined = Combined::<_, false>::new((sphere, majorants), particle.rule, steps);
         draws::packets(level, &combined, &particle, (&sphere.scene, majorants), request)
@@ -99,10 +98,7 @@ impl Page {
 
     /// Makes a draw of an experiment by steps.
     pub fn draw_for(&self, steps: impl Steps, setup: &Setup<Sphere>, random: &mut Stream) -> Draw {
-        match setup.space.as_deref() {
-            Some(majorants) => self.draw(steps, (&setup.problem, majorants), random),
-            None => space::nothing(),
-        }
+        self.draw(steps, (&setup.problem, &setup.fields), random)
     }
 }
 

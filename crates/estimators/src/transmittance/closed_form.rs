@@ -13,7 +13,8 @@
 //! Transport Simulation*, Computer Graphics Forum 37 (2018), section 4.1.
 
 use crate::{Draw, Estimator, Inputs, Kernel, Refusal, Request, Setup, walks};
-use theory::prediction::transmittance;
+use numeric::Lane;
+use theory::prediction;
 use theory::problems::Transmittance;
 use theory::{Channel, CountLaw, Law, Moments, Prediction, Tails};
 
@@ -23,10 +24,10 @@ pub struct ClosedForm;
 
 /// The prediction of an estimator that always gives the exact answer.
 pub fn exact(setup: &Setup<Transmittance>, lookups: usize) -> Prediction {
-    let depth = setup.mesh.optical_depth();
-    let value = transmittance(depth, setup.log_unit).value;
+    let depth = setup.fields.mesh.optical_depth();
+    let value = prediction::transmittance(depth, setup.fields.log_unit).value;
     let moments = Moments::certain(value);
-    let channel = Channel::transmittance(depth, setup.log_unit, moments, Tails::LIGHT);
+    let channel = Channel::transmittance(depth, setup.fields.log_unit, moments, Tails::LIGHT);
     let law = Some(Law::Atoms(vec![(value, 1.0)]));
     let random_numbers = Some(0.0);
     Prediction {
@@ -53,11 +54,14 @@ impl Estimator<Transmittance> for ClosedForm {
     }
 
     fn fill(&self, _: Kernel, setup: &Setup<Transmittance>, request: Request) {
+        let depth = setup.fields.mesh.optical_depth().value;
+        // It enters draws: this crate's exponential, the same on every machine.
+        let transmittance = Lane::exp(setup.fields.log_unit - depth);
         walks::one_by_one(
             setup,
             request,
             #[inline(always)]
-            |_, _| Draw::free([setup.transmittance], 0),
+            |_, _| Draw::free([transmittance], 0),
         );
     }
 }

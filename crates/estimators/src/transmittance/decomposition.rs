@@ -34,7 +34,7 @@ use theory::rules::Null;
 pub struct Decomposition;
 
 fn constant_control(setup: &Setup<Transmittance>) -> Option<f64> {
-    match &setup.control {
+    match &setup.fields.control {
         Control::None => Some(0.0),
         Control::Pieces(pieces) => pieces.single_value(),
         Control::Field(_) => None,
@@ -50,7 +50,7 @@ impl Estimator<Transmittance> for Decomposition {
     }
 
     fn domain(&self, setup: &Setup<Transmittance>) -> Result<(), Refusal> {
-        setup.require_plain_unit(ZERO_OR_ONE)?;
+        setup.fields.require_plain_unit(ZERO_OR_ONE)?;
         let needs = "a constant control";
         match constant_control(setup) {
             None => return Err(Refusal::mismatch(needs, "the control varies")),
@@ -59,8 +59,8 @@ impl Estimator<Transmittance> for Decomposition {
             }
             Some(_) => {}
         }
-        setup.require_not_negative("σ_c ≤ σ_t everywhere")?;
-        setup.require_ratio_at_most(1.0, "σ̂ ≥ σ_t − σ_c everywhere")
+        setup.residual().require_not_negative("σ_c ≤ σ_t everywhere")?;
+        setup.residual().require_ratio_at_most(1.0, "σ̂ ≥ σ_t − σ_c everywhere")
     }
 
     fn predict(&self, setup: &Setup<Transmittance>) -> Prediction {
@@ -103,14 +103,14 @@ impl Residual {
     /// The walk on a setup.
     #[inline(always)]
     pub fn new(setup: &Setup<Transmittance>) -> Self {
-        let support = setup.mesh.support();
-        let control = setup.control.extinction(support.from);
+        let support = setup.fields.mesh.support();
+        let control = setup.fields.control.extinction(support.from);
         Self {
             control,
             subtracted: control,
             begin: support.from,
             end: support.to,
-            unit: Lane::exp(setup.log_unit),
+            unit: Lane::exp(setup.fields.log_unit),
         }
     }
 }

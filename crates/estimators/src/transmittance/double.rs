@@ -34,16 +34,16 @@ pub struct DoubleParticle;
 ///
 /// The interval that σ̂ leaves out, or the factor by which a collision may multiply a weight.
 pub fn unbiased_where_covered(setup: &Setup<Transmittance>) -> Result<(), Refusal> {
-    setup.require_coverage()?;
-    setup.require_finite_weights(&Weight)
+    setup.residual().require_coverage()?;
+    setup.fields.require_finite_weights(&Weight)
 }
 
 /// The moments on this page's head, and the distribution where r is constant.
 pub fn predict_weighted(setup: &Setup<Transmittance>) -> Prediction {
     let prediction = setup.product(&Weight).predict();
-    let law = setup.constant_ratio().map(|ratio| {
+    let law = setup.residual().constant_ratio().map(|ratio| {
         let mean = prediction.lookups.as_ref().map_or(0.0, |lookups| lookups.mean);
-        Law::Atoms(powers(setup.control_transmittance, 1.0 - ratio, mean))
+        Law::Atoms(powers(setup.fields.control_transmittance(), 1.0 - ratio, mean))
     });
     Prediction { law, ..prediction }
 }

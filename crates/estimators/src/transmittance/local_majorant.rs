@@ -37,11 +37,11 @@ impl Estimator<Transmittance> for LocalMajorant {
     const SKIPS: bool = true;
 
     fn domain(&self, setup: &Setup<Transmittance>) -> Result<(), Refusal> {
-        setup.require_plain_unit(ZERO_OR_ONE)?;
-        if !setup.sampling.is_steps() {
+        setup.fields.require_plain_unit(ZERO_OR_ONE)?;
+        if !setup.fields.sampling.is_steps() {
             return Err(Refusal::mismatch("a piecewise-constant σ̂", "σ̂ has a slope"));
         }
-        setup.require_ratio_at_most(1.0, "σ̄ ≥ σ_t in every segment")
+        setup.residual().require_ratio_at_most(1.0, "σ̄ ≥ σ_t in every segment")
     }
 
     fn predict(&self, setup: &Setup<Transmittance>) -> Prediction {
@@ -57,7 +57,7 @@ impl Estimator<Transmittance> for LocalMajorant {
                 setup,
                 request,
                 #[inline(always)]
-                |_, _| Draw::free([setup.control_transmittance], 0),
+                |_, _| Draw::free([setup.fields.control_transmittance()], 0),
             ),
         }
     }
@@ -87,8 +87,8 @@ impl<'a> Segments<'a> {
     /// The walk on a setup; `None` where no segment has an extinction: there are no collisions.
     #[inline(always)]
     pub fn of(setup: &'a Setup<Transmittance>) -> Option<Self> {
-        let rows = setup.sampling.stretches();
-        (!rows.is_empty()).then_some(Self { rows, unit: setup.control_transmittance })
+        let rows = setup.fields.sampling.stretches();
+        (!rows.is_empty()).then_some(Self { rows, unit: setup.fields.control_transmittance() })
     }
 
     /// State at the beginning of a segment.

@@ -20,7 +20,7 @@ use crate::estimators;
 use theory::problems::Transmittance;
 
 estimators! {
-    Transmittance:
+    Transmittance on ControlledLine:
     closed_form::ClosedForm,
     regular::Regular,
     woodcock::Woodcock,

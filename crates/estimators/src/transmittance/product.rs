@@ -20,7 +20,7 @@ use media::course::BothWays;
 use media::{Control, Lookups};
 use numeric::rng::{Random, Stream};
 use numeric::{Lane, kept};
-use theory::problems::Problem;
+use theory::problems::Transmittance;
 use theory::rules::{self, Collision};
 
 /// The walk of a product estimator.
@@ -69,9 +69,9 @@ impl<R> Copy for Product<'_, R> {}
 impl<'a, R> Product<'a, R> {
     /// The walk on a setup.
     #[inline(always)]
-    pub fn new<P>(rule: &'a R, setup: &'a Setup<P>) -> Self {
-        let control = Subtracted::new(&setup.control);
-        Self { rule, control, begin: setup.control_transmittance }
+    pub fn new(rule: &'a R, setup: &'a Setup<Transmittance>) -> Self {
+        let control = Subtracted::new(&setup.fields.control);
+        Self { rule, control, begin: setup.fields.control_transmittance() }
     }
 }
 
@@ -208,24 +208,24 @@ impl<R: Collision> Walk for Survival<'_, R> {
 
 /// Makes one draw.
 #[inline(always)]
-pub fn draw<P, R: Collision>(
-    setup: &Setup<P>,
+pub fn draw<R: Collision>(
+    setup: &Setup<Transmittance>,
     rule: &R,
     medium: &Lookups,
     random: &mut Stream,
 ) -> Draw {
     let walk = Product::new(rule, setup);
     if R::WEIGHS {
-        walks::draw(&walk, &setup.sampling, medium, random)
+        walks::draw(&walk, &setup.fields.sampling, medium, random)
     } else {
-        walks::draw(&Survival(walk), &setup.sampling, medium, random)
+        walks::draw(&Survival(walk), &setup.fields.sampling, medium, random)
     }
 }
 
 /// Makes the draws of a request.
-pub fn fill<P: Problem<Value = [f64; 1]>, R: Collision>(
+pub fn fill<R: Collision>(
     kernel: Kernel,
-    setup: &Setup<P>,
+    setup: &Setup<Transmittance>,
     rule: &R,
     request: Request,
 ) {

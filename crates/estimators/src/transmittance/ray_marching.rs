@@ -48,7 +48,7 @@ impl RayMarching {
     /// `h Σⱼ σ_t((j + u) h)`.
     #[inline(always)]
     fn depth<M: Extinction, L: Lane>(&self, setup: &Setup<Transmittance>, medium: &M, u: L) -> L {
-        let support = setup.mesh.support();
+        let support = setup.fields.mesh.support();
         let step = support.length() / f64::from(self.steps);
         let mut sum = u.each(0.0);
         for j in 0..self.steps {
@@ -60,7 +60,7 @@ impl RayMarching {
     /// The values of draws with the given offsets.
     #[inline(always)]
     fn value<M: Extinction, L: Lane>(&self, setup: &Setup<Transmittance>, medium: &M, u: L) -> L {
-        (u.each(setup.log_unit) - self.depth(setup, medium, u)).exp()
+        (u.each(setup.fields.log_unit) - self.depth(setup, medium, u)).exp()
     }
 
     /// The value of one march.
@@ -90,8 +90,8 @@ impl Estimator<Transmittance> for RayMarching {
     }
 
     fn predict(&self, setup: &Setup<Transmittance>) -> Prediction {
-        let medium = setup.mesh.medium();
-        let value = |u: f64| (setup.log_unit - self.depth(setup, medium, u)).exp();
+        let medium = setup.fields.mesh.medium();
+        let value = |u: f64| (setup.fields.log_unit - self.depth(setup, medium, u)).exp();
         let (mean, moments) = if self.jitter {
             let rule = GaussLegendre::new(4);
             let width = 1.0 / PANELS as f64;
@@ -112,8 +112,8 @@ impl Estimator<Transmittance> for RayMarching {
         let channel = Channel {
             mean: Known::new(mean, 1e-9 * mean),
             ..Channel::transmittance(
-                setup.mesh.optical_depth(),
-                setup.log_unit,
+                setup.fields.mesh.optical_depth(),
+                setup.fields.log_unit,
                 moments,
                 Tails::LIGHT,
             )

@@ -29,7 +29,7 @@ impl Estimator<Transmittance> for Regular {
     const PLAIN: Option<Self> = Some(Self);
 
     fn domain(&self, setup: &Setup<Transmittance>) -> Result<(), Refusal> {
-        let varying = setup.mesh.panels().find(|panel| {
+        let varying = setup.fields.mesh.panels().find(|panel| {
             let first = panel.extinction[0];
             panel.extinction.iter().any(|x| (x - first).abs() > 1e-12 * first.abs())
         });
@@ -44,7 +44,7 @@ impl Estimator<Transmittance> for Regular {
     }
 
     fn predict(&self, setup: &Setup<Transmittance>) -> Prediction {
-        exact(setup, setup.mesh.panels().len())
+        exact(setup, setup.fields.mesh.panels().len())
     }
 
     #[inline(always)]
@@ -62,12 +62,12 @@ impl Estimator<Transmittance> for Regular {
 #[inline(always)]
 fn tracked(setup: &Setup<Transmittance>, medium: &Lookups) -> Draw {
     let mut weight = 1.0;
-    let mut left = setup.log_unit;
+    let mut left = setup.fields.log_unit;
     let mut lookups = 0;
-    for panel in setup.mesh.panels() {
+    for panel in setup.fields.mesh.panels() {
         let extinction = medium.extinction(panel.span.middle());
         lookups += 1;
-        if setup.log_unit == 0.0 {
+        if setup.fields.log_unit == 0.0 {
             weight *= Lane::exp(-extinction * panel.span.length());
         } else {
             // The product would underflow: its logarithm is taken from that of the unit.

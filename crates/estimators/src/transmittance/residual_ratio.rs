@@ -43,7 +43,7 @@ impl Estimator<Transmittance> for ResidualRatio {
     }
 
     fn domain(&self, setup: &Setup<Transmittance>) -> Result<(), Refusal> {
-        let constant = match &setup.control {
+        let constant = match &setup.fields.control {
             Control::None => true,
             Control::Pieces(pieces) => pieces.single_value().is_some(),
             Control::Field(_) => false,

@@ -13,6 +13,7 @@ use crate::walks::{Met, Route, Walk};
 use media::course::BothWays;
 use numeric::rng::Random;
 use numeric::{Kept, Lane, kept};
+use theory::problems::Transmittance;
 
 /// The score of a place, as one formula for every lane type.
 pub trait Share: Copy {
@@ -72,13 +73,13 @@ pub struct Scoring<H> {
 impl<H: Share> Scoring<H> {
     /// The walk on a setup.
     #[inline(always)]
-    pub fn new<P>(share: H, setup: &Setup<P>) -> Self {
-        let begin = setup.sampling.begin().t;
+    pub fn new(share: H, setup: &Setup<Transmittance>) -> Self {
+        let begin = setup.fields.sampling.begin().t;
         Self {
             share,
-            unit: setup.control_transmittance,
-            ends: [begin, setup.mesh.support().to],
-            sampling: setup.sampling.value(begin),
+            unit: setup.fields.control_transmittance(),
+            ends: [begin, setup.fields.mesh.support().to],
+            sampling: setup.fields.sampling.value(begin),
         }
     }
 

@@ -45,8 +45,8 @@ pub struct SingleParticle {
 
 /// Checks that the terminating rule is realisable: `0 ≤ r ≤ 2`.
 fn terminating_exists(setup: &Setup<Transmittance>) -> Result<(), Refusal> {
-    setup.require_not_negative("r ≥ 0 (q_tran = |1 − r| ≤ 1)")?;
-    setup.require_ratio_at_most(2.0, "r ≤ 2 (q_tran = |1 − r| ≤ 1)")
+    setup.residual().require_not_negative("r ≥ 0 (q_tran = |1 − r| ≤ 1)")?;
+    setup.residual().require_ratio_at_most(2.0, "r ≤ 2 (q_tran = |1 − r| ≤ 1)")
 }
 
 impl Estimator<Transmittance> for SingleParticle {
@@ -93,8 +93,8 @@ impl Estimator<Transmittance> for SingleParticle {
     }
 
     fn domain(&self, setup: &Setup<Transmittance>) -> Result<(), Refusal> {
-        setup.require_coverage()?;
-        setup.require_finite_weights(&self.rule)?;
+        setup.residual().require_coverage()?;
+        setup.fields.require_finite_weights(&self.rule)?;
         if self.rule == Single::Terminating { terminating_exists(setup) } else { Ok(()) }
     }
 

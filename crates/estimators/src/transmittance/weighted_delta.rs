@@ -31,8 +31,8 @@ impl Estimator<Transmittance> for WeightedDelta {
     const PLAIN: Option<Self> = Some(Self);
 
     fn domain(&self, setup: &Setup<Transmittance>) -> Result<(), Refusal> {
-        setup.require_coverage()?;
-        setup.require_finite_weights(&RULE)
+        setup.residual().require_coverage()?;
+        setup.fields.require_finite_weights(&RULE)
     }
 
     fn predict(&self, setup: &Setup<Transmittance>) -> Prediction {

@@ -42,8 +42,8 @@ impl Estimator<Transmittance> for Woodcock {
     const PLAIN: Option<Self> = Some(Self);
 
     fn domain(&self, setup: &Setup<Transmittance>) -> Result<(), Refusal> {
-        setup.require_plain_unit(ZERO_OR_ONE)?;
-        setup.require_ratio_at_most(1.0, "σ̂ ≥ σ_t everywhere")
+        setup.fields.require_plain_unit(ZERO_OR_ONE)?;
+        setup.residual().require_ratio_at_most(1.0, "σ̂ ≥ σ_t everywhere")
     }
 
     fn predict(&self, setup: &Setup<Transmittance>) -> Prediction {

@@ -38,12 +38,12 @@ pub struct DoubleCurve;
 
 /// Tentative collisions of one walk: `(t, σ_t(t), weight after it)`.
 pub fn walk(setup: &Setup<TransmittanceCurve>, medium: &Medium, rng: &mut Stream) -> Vec<[f64; 3]> {
-    let mut cursor = setup.sampling.begin();
+    let mut cursor = setup.fields.sampling.begin();
     let mut weight = 1.0;
     let mut collisions = Vec::new();
-    while let Some(sampling) = setup.sampling.fly(&mut cursor, exponential(rng)) {
+    while let Some(sampling) = setup.fields.sampling.fly(&mut cursor, exponential(rng)) {
         let extinction = medium.extinction(cursor.t);
-        weight *= 1.0 - (extinction - setup.control.extinction(cursor.t)) / sampling;
+        weight *= 1.0 - (extinction - setup.fields.control.extinction(cursor.t)) / sampling;
         collisions.push([cursor.t, extinction, weight]);
     }
     collisions
@@ -56,8 +56,8 @@ impl Estimator<TransmittanceCurve> for DoubleCurve {
     const HAS_INVARIANT: bool = true;
 
     fn domain(&self, setup: &Setup<TransmittanceCurve>) -> Result<(), Refusal> {
-        setup.require_coverage()?;
-        setup.require_finite_weights(&Weight)
+        setup.residual().require_coverage()?;
+        setup.fields.require_finite_weights(&Weight)
     }
 
     fn predict(&self, setup: &Setup<TransmittanceCurve>) -> Prediction {
@@ -103,8 +103,8 @@ impl<'a> Curve<'a> {
     #[inline(always)]
     pub fn new(setup: &'a Setup<TransmittanceCurve>) -> Self {
         let distances = setup.problem.ascending();
-        let control = Subtracted::new(&setup.control);
-        Self { control, distances, units: &setup.control_curve }
+        let control = Subtracted::new(&setup.fields.control);
+        Self { control, distances, units: &setup.fields.control_curve }
     }
 }
 

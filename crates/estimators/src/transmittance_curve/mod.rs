@@ -9,6 +9,6 @@ use theory::problems::TransmittanceCurve;
 pub use ray_view::RayView;
 
 estimators! {
-    TransmittanceCurve:
+    TransmittanceCurve on ControlledLine:
     double::DoubleCurve,
 }

@@ -37,7 +37,7 @@ pub struct RayView {
 /// Draws the view; walks take their random numbers from the blocks of `address`.
 pub fn ray_view(setup: &Setup<TransmittanceCurve>, address: Address) -> RayView {
     let medium = setup.problem.medium();
-    let (span, support) = (medium.span(), setup.mesh.support());
+    let (span, support) = (medium.span(), setup.fields.mesh.support());
     if span.is_empty() {
         return RayView::default();
     }
@@ -49,7 +49,7 @@ pub fn ray_view(setup: &Setup<TransmittanceCurve>, address: Address) -> RayView 
     };
     let control_depth = |t: f64| {
         let upto = Span::new(support.from, t).intersect(support);
-        setup.control.optical_depth(upto).value
+        setup.fields.control.optical_depth(upto).value
     };
     let transmittance: Vec<f64> =
         t.iter().map(|&t| (-medium.optical_depth(Span::new(span.from, t)).value).exp()).collect();
@@ -77,8 +77,8 @@ pub fn ray_view(setup: &Setup<TransmittanceCurve>, address: Address) -> RayView 
     };
     RayView {
         extinction: shown(&|t| medium.extinction(t)),
-        control: shown(&|t| setup.control.extinction(t)),
-        sampling: shown(&|t| setup.sampling.value(t)),
+        control: shown(&|t| setup.fields.control.extinction(t)),
+        sampling: shown(&|t| setup.fields.sampling.value(t)),
         transmittance,
         deviation,
         collisions: walks[0].iter().map(|[t, extinction, _]| [*t, *extinction]).collect(),

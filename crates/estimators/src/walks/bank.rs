@@ -10,7 +10,7 @@ use std::hint::black_box;
 
 use fearless_simd::{Simd, SimdBase, SimdMask, f64x8, mask64x8};
 
-use super::left::{self, Events, Groups, Left};
+use super::outcomes::{self, Events, Groups, Outcomes};
 use super::{Met, Route, SOME_LEFT, Scores, Walk};
 use crate::kernels::DrawBuffer;
 use crate::kernels::Request;
@@ -45,8 +45,8 @@ struct Rows {
     values: Vec<[f64; WIDTH]>,
     defects: [f64; WIDTH],
     lookups: [f64; WIDTH],
-    /// Numbers of draws that are scored later, and of walks that score often.
-    left: Left,
+    /// Outcomes of draws that are scored later, and of walks that score often.
+    outcomes: Outcomes,
     events: Events,
 }
 
@@ -151,7 +151,7 @@ impl<S: Simd, C: BothWays<f64x8<S>>> Pack<f64x8<S>, C> {
             Scores::Later => {
                 let mut some = [self.from; SOME_LEFT];
                 let groups = walk.leaves(state, &mut some);
-                rows.write_left::<S, W>([ended, inside], groups, slots, buffer)
+                rows.write_outcomes::<S, W>([ended, inside], groups, slots, buffer)
             }
             Scores::Often => rows.write_events::<W>(pack, [ended, inside], slots, buffer),
         }
@@ -183,8 +183,8 @@ impl Rows {
         one: f64x8<S>,
         (draws, buffer): (usize, &mut DrawBuffer),
     ) -> Self {
-        let numbers = left::count(walk.leaves(state, &mut [one; SOME_LEFT]));
-        Self::with_room::<W>(walk, numbers, draws, &mut buffer.left)
+        let numbers = outcomes::count(walk.leaves(state, &mut [one; SOME_LEFT]));
+        Self::with_room::<W>(walk, numbers, draws, &mut buffer.outcomes)
     }
 
     #[inline(never)]
@@ -195,7 +195,7 @@ impl Rows {
             values: vec![none; of(Scores::AtOnce, walk.channels())],
             defects: none,
             lookups: none,
-            left: Left::new(numbers, of(Scores::Later, draws), room),
+            outcomes: Outcomes::new(numbers, of(Scores::Later, draws), room),
             events: Events::new(numbers, of(Scores::Often, draws), room),
         }
     }
@@ -219,7 +219,7 @@ impl Rows {
 
     /// Writes the numbers from which draws are scored later.
     #[inline(never)]
-    fn write_left<S: Simd, W: Walk>(
+    fn write_outcomes<S: Simd, W: Walk>(
         &mut self,
         [ended, inside]: [u64; 2],
         groups: Groups<S>,
@@ -228,7 +228,7 @@ impl Rows {
     ) -> u64 {
         slots.fill(ended, |slot| {
             let left = if inside >> slot.lane & 1 == 1 { 0.0 } else { 1.0 };
-            self.left.write(slot.draw, left, groups, slot.lane);
+            self.outcomes.write(slot.draw, left, groups, slot.lane);
             buffer.lookups[slot.draw] = self.lookups::<W>(inside, slot);
         })
     }
@@ -266,8 +266,8 @@ impl Rows {
     fn give_back<W: Walk>(self, buffer: &mut DrawBuffer) {
         match W::SCORES {
             Scores::AtOnce => {}
-            Scores::Later => buffer.left = self.left.into_room(),
-            Scores::Often => buffer.left = self.events.into_room(),
+            Scores::Later => buffer.outcomes = self.outcomes.into_room(),
+            Scores::Often => buffer.outcomes = self.events.into_room(),
         }
     }
 
@@ -279,7 +279,7 @@ impl Rows {
             Scores::Later => pack::outlined(
                 simd,
                 #[inline(always)]
-                move || self.left.score(simd, &walk, draws, buffer),
+                move || self.outcomes.score(simd, &walk, draws, buffer),
             ),
             Scores::Often => pack::outlined(
                 simd,

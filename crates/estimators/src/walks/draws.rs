@@ -3,14 +3,15 @@
 use fearless_simd::{Level, Simd, SimdBase, f64x8};
 
 use super::{Nowhere, Walk, bank, plain, window};
-use crate::{Draw, Kernel, Request, Setup};
+use crate::setup::{OnRay, Residual};
+use crate::{Draw, Estimated, Kernel, Request, Setup};
 use media::course::{BothWays, Even, Pieces};
 use media::{Control, Inlined, Lookups, Piecewise};
 use numeric::fused::{Loop, in_fused_code, in_own_rounding};
 use numeric::pack::{self, Task};
 use numeric::rng::Stream;
 use numeric::{Single, Twin};
-use theory::problems::{Channels, Problem};
+use theory::problems::Channels;
 
 /// Maximum number of pieces of σ̂ or of the control for packs. With more, lanes that cross pieces delay the others
 /// by more than eight lookups at once gain, unless lookups are costly or σ̂ is constant.
@@ -32,8 +33,12 @@ fn pays<W: Walk>(sampling: &Piecewise, control: &Control, medium: &Lookups) -> b
 
 /// Makes the draws of a request: in packets where the kernel and the hardware allow it and that is faster, else one
 /// by one.
-pub fn fill<P: Problem>(walk: &impl Walk, kernel: Kernel, setup: &Setup<P>, request: Request)
-where
+pub fn fill<P: Estimated<Fields: OnRay>>(
+    walk: &impl Walk,
+    kernel: Kernel,
+    setup: &Setup<P>,
+    request: Request,
+) where
     P::Value: Channels,
 {
     let left = match kernel {
@@ -48,7 +53,7 @@ where
 }
 
 /// Makes the draws of a request one walk after the other.
-pub fn in_turn<P: Problem>(walk: &impl Walk, setup: &Setup<P>, request: Request)
+pub fn in_turn<P: Estimated<Fields: OnRay>>(walk: &impl Walk, setup: &Setup<P>, request: Request)
 where
     P::Value: Channels,
 {
@@ -56,14 +61,14 @@ where
     in_own_rounding(InTurn { walk, setup, medium, request });
 }
 
-struct InTurn<'a, 'r, W, P> {
+struct InTurn<'a, 'r, W, P: Estimated> {
     walk: &'a W,
     setup: &'a Setup<P>,
     medium: &'a Lookups<'a>,
     request: Request<'r>,
 }
 
-impl<W: Walk, P: Problem> Loop for InTurn<'_, '_, W, P>
+impl<W: Walk, P: Estimated<Fields: OnRay>> Loop for InTurn<'_, '_, W, P>
 where
     P::Value: Channels,
 {
@@ -74,7 +79,7 @@ where
         let Request { streams, count, buffer } = self.request;
         buffer.clear();
         for _ in 0..count {
-            let (sampling, random) = (&self.setup.sampling, streams.of_next_draw());
+            let (sampling, random) = (self.setup.residual().sampling, streams.of_next_draw());
             buffer.push(&plain::through::<L, W, P::Value>(
                 self.walk,
                 sampling,
@@ -87,7 +92,7 @@ where
 
 /// Makes the draws of a request by packets, and one by one if these return the request.
 #[inline(always)]
-pub fn by<'r, P: Problem>(
+pub fn by<'r, P: Estimated>(
     kernel: Kernel,
     setup: &Setup<P>,
     request: Request<'r>,
@@ -105,7 +110,7 @@ pub fn by<'r, P: Problem>(
 
 /// Makes the draws of a request one after the other by a function, which `#[inline(always)]` compiles for machines that fuse.
 #[inline(always)]
-pub fn one_by_one<P: Problem>(
+pub fn one_by_one<P: Estimated>(
     setup: &Setup<P>,
     request: Request,
     draw: impl Fn(&Lookups, &mut Stream) -> Draw<P::Value>,
@@ -127,17 +132,18 @@ pub fn one_by_one<P: Problem>(
 /// Makes the draws of a request in packets. Returns the request where the hardware is too narrow, and where
 /// [`super::plain`] is faster.
 #[inline(always)] // in the codegen unit of the caller
-pub fn packets<'r, P, W: Walk>(
+pub fn packets<'r, P: Estimated<Fields: OnRay>, W: Walk>(
     level: Level,
     walk: &W,
     setup: &Setup<P>,
     medium: &Lookups,
     request: Request<'r>,
 ) -> Option<Request<'r>> {
-    if !pays::<W>(&setup.sampling, &setup.control, medium) {
+    let Residual { sampling, control, .. } = setup.residual();
+    if !pays::<W>(sampling, control, medium) {
         return Some(request);
     }
-    let task = SideBySide { walk, sampling: &setup.sampling, medium, request };
+    let task = SideBySide { walk, sampling, medium, request };
     pack::on_wide(level, task).err().map(|task| task.request)
 }
 

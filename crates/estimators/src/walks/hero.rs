@@ -1,7 +1,8 @@
 //! Heroes: the channels that give walks their σ̂ or albedo.
 
-use crate::setup::Setup;
+use crate::Estimated;
 use crate::setup::heroes::Heroes;
+use crate::setup::{Channels, Setup};
 use media::body::MOST_CHANNELS;
 use numeric::Lane;
 
@@ -82,11 +83,11 @@ pub struct Media {
 impl Media {
     /// Channels of a setup, with the probabilities of heroes.
     #[inline(always)]
-    pub fn new<P>(setup: &Setup<P>, probabilities: &[f64]) -> Self {
-        let (none, count) = ([0.0; MOST_CHANNELS], setup.channels.len());
-        let is_common = setup.channels.iter().all(|c| c.majorant == setup.channels[0].majorant);
+    pub fn new<P: Estimated<Fields = Channels>>(setup: &Setup<P>, probabilities: &[f64]) -> Self {
+        let (none, count) = ([0.0; MOST_CHANNELS], setup.fields.len());
+        let is_common = setup.fields.iter().all(|c| c.majorant == setup.fields[0].majorant);
         let mut media = Self { count, is_common, majorants: none, logarithms: none, chances: none };
-        for (channel, own) in setup.channels.iter().enumerate() {
+        for (channel, own) in setup.fields.iter().enumerate() {
             media.majorants[channel] = own.majorant;
             media.logarithms[channel] = own.ln_majorant;
             media.chances[channel] = probabilities[channel];

@@ -26,7 +26,7 @@
 pub mod bank;
 pub mod draws;
 pub mod hero;
-mod left;
+mod outcomes;
 pub mod plain;
 mod route;
 pub mod window;
@@ -193,7 +193,7 @@ pub trait Walk: Copy {
         unreachable!("the walk is scored later")
     }
 
-    /// The numbers that walks leave for [`Walk::score`], at most [`MOST_LEFT`] altogether: lists of the state, and
+    /// The numbers that walks leave for [`Walk::score`], at most [`MAX_OUTCOME`] altogether: lists of the state, and
     /// numbers that are copied to `some`, so that the originals stay in registers.
     #[inline(always)]
     fn leaves<'a, L: Lane>(
@@ -243,10 +243,10 @@ pub enum Scores {
 pub const GROUPS: usize = 5;
 /// Maximum number of these numbers that are copied.
 pub const SOME_LEFT: usize = 5;
-/// Maximum number of numbers that a walk leaves.
-pub const MOST_LEFT: usize = 40;
+/// Maximum number of numbers of an outcome.
+pub const MAX_OUTCOME: usize = 40;
 /// Maximum number of values of a draw that is not scored at once.
-pub const MOST_SCORED: usize = 16;
+pub const MAX_SCORED: usize = 16;
 
 /// A tentative collision. Lanes without one have arbitrary numbers.
 #[derive(Clone, Copy)]

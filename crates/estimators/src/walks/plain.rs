@@ -2,7 +2,7 @@
 
 use std::marker::PhantomData;
 
-use super::{MOST_LEFT, MOST_SCORED, Met, Nowhere, Route, SOME_LEFT, Scores, Walk};
+use super::{MAX_OUTCOME, MAX_SCORED, Met, Nowhere, Route, SOME_LEFT, Scores, Walk};
 use crate::kernels::Draw;
 use media::body::MOST_CHANNELS;
 use media::course::{BothWays, Even, Pieces};
@@ -71,7 +71,7 @@ fn follow<L: Single, W: Walk, V: Channels>(
     let mut route = Route::new(course);
     let (mut lookups, mut extinctions) = (0, [zero; MOST_CHANNELS]);
     let extinctions = &mut extinctions[..walk.media()];
-    let mut sums = [zero; MOST_SCORED];
+    let mut sums = [zero; MAX_SCORED];
     let left = loop {
         let [depth, number] = walk.numbers(&mut state, random);
         if W::IS_CHROMATIC {
@@ -133,8 +133,8 @@ fn score<L: Single, W: Walk>(
     state: &W::State<L>,
     left: bool,
     lookups: L,
-) -> ([L; MOST_SCORED], L) {
-    let (mut numbers, mut values) = ([lookups; MOST_LEFT], [lookups; MOST_SCORED]);
+) -> ([L; MAX_SCORED], L) {
+    let (mut numbers, mut values) = ([lookups; MAX_OUTCOME], [lookups; MAX_SCORED]);
     let (mut count, mut some) = (0, [lookups; SOME_LEFT]);
     for &number in walk.leaves(state, &mut some).into_iter().flatten() {
         numbers[count] = number;

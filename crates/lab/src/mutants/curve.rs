@@ -46,16 +46,17 @@ pub fn mutants() -> Vec<Mutant<TransmittanceCurve>> {
     let mutants = family(LINES, &Bug::Step(Slip::None), |_, &bug| with(bug, draw));
     let each = mutants.into_iter().zip(LINES).map(|(mutant, line)| match line.4 {
         Bug::WholeControl => Mutant {
-            prepare: |setup| {
-                let whole = setup.control.optical_depth(setup.mesh.support()).value;
-                setup.control_curve.fill((-whole).exp());
+            prepare: |setup: &mut Setup<TransmittanceCurve>| {
+                let whole = setup.fields.control.optical_depth(setup.fields.mesh.support()).value;
+                setup.fields.control_curve.fill((-whole).exp());
             },
             ..mutant
         },
         // The walk itself has the decay of the control.
-        Bug::Step(Slip::ControlToCollision) => {
-            Mutant { prepare: |setup| setup.control_curve.fill(1.0), ..mutant }
-        }
+        Bug::Step(Slip::ControlToCollision) => Mutant {
+            prepare: |setup: &mut Setup<TransmittanceCurve>| setup.fields.control_curve.fill(1.0),
+            ..mutant
+        },
         _ => mutant,
     });
     each.collect()
@@ -70,10 +71,11 @@ fn draw(
 ) -> Draw<CurveValues> {
     let slip = if let Bug::Step(slip) = *bug { slip } else { Slip::None };
     let walk = Wrong::new(Curve::new(setup), slip, setup);
-    let mut draw: Draw<CurveValues> = walks::draw(&walk, &setup.sampling, medium, random);
+    let mut draw: Draw<CurveValues> = walks::draw(&walk, &setup.fields.sampling, medium, random);
     if *bug == Bug::FreshWalks {
         for k in 0..draw.value.count - 1 {
-            let fresh: Draw<CurveValues> = walks::draw(&walk, &setup.sampling, medium, random);
+            let fresh: Draw<CurveValues> =
+                walks::draw(&walk, &setup.fields.sampling, medium, random);
             draw.value.at[k] = fresh.value.at[k];
         }
     }

@@ -12,13 +12,13 @@
 //! changes: that walk is the control. Changes of σ_t that has been looked up, and of the last value, break the invariant of a
 //! product estimator, and count as its defect.
 
-use estimators::Setup;
+use estimators::setup::ControlledLine;
 use estimators::walks::{Met, Route, Walk};
+use estimators::{Estimated, Setup};
 use media::course::BothWays;
 use media::{Control, Piecewise};
 use numeric::rng::Random;
 use numeric::{Kept, Lane, Span, kept};
-use theory::problems::Problem;
 
 /// Flights that are kept to be repeated.
 const KEPT_FLIGHTS: usize = 16;
@@ -172,9 +172,20 @@ pub struct Wrong<'a, W> {
 
 impl<'a, W: Walk> Wrong<'a, W> {
     /// A walk on its setup.
-    pub fn new<P: Problem>(walk: W, slip: Slip, setup: &'a Setup<P>) -> Self {
-        let (ray, support) = (setup.problem.medium().span(), setup.mesh.support());
-        Self { walk, slip, ray, support, sampling: &setup.sampling, control: &setup.control }
+    pub fn new<P: Estimated<Fields = ControlledLine>>(
+        walk: W,
+        slip: Slip,
+        setup: &'a Setup<P>,
+    ) -> Self {
+        let (ray, support) = (setup.problem.medium().span(), setup.fields.mesh.support());
+        Self {
+            walk,
+            slip,
+            ray,
+            support,
+            sampling: &setup.fields.sampling,
+            control: &setup.fields.control,
+        }
     }
 
     /// `∫σ_c` between distances.

@@ -38,10 +38,9 @@ mod trial;
 use std::any::Any;
 use std::sync::Arc;
 
-use estimators::{Draw, Experiment, Request, Setup, walks};
+use estimators::{Draw, Estimated, Experiment, Request, Setup, walks};
 use media::Lookups;
 use numeric::rng::Stream;
-use theory::problems::Problem;
 
 pub use caught::Caught;
 pub use streams::StreamMutant;
@@ -80,7 +79,7 @@ pub struct About {
 type Line<B> = (&'static str, &'static str, Target, &'static str, B);
 
 /// A known bug in an estimator of problem `P`.
-struct Mutant<P: Problem> {
+struct Mutant<P: Estimated> {
     about: About,
     faulty: Arc<Draws<P>>,
     honest: Arc<Draws<P>>,
@@ -90,7 +89,7 @@ struct Mutant<P: Problem> {
     replays: bool,
 }
 
-impl<P: Problem> Mutant<P> {
+impl<P: Estimated> Mutant<P> {
     /// The experiment of a walk on a prepared `Setup<P>`; `None` for the setup of another problem.
     fn experiment(&self, walk: Walk, setup: Box<dyn Any>) -> Option<Box<dyn Experiment>> {
         let mut setup = *setup.downcast::<Setup<P>>().ok()?;
@@ -106,7 +105,7 @@ impl<P: Problem> Mutant<P> {
 }
 
 /// Mutants of a table. A bug and its twin, which has `right` for the bug, are draws of the same code.
-fn family<P: Problem, B, D>(
+fn family<P: Estimated, B, D>(
     lines: &[Line<B>],
     right: &B,
     draws: impl Fn(Target, &B) -> D,
@@ -125,14 +124,14 @@ where
 }
 
 /// Draws of requests by a function that makes them all.
-fn filled<P: Problem>(
+fn filled<P: Estimated>(
     fill: impl Fn(&Setup<P>, Request) + Send + Sync + 'static,
 ) -> impl Fn(&Setup<P>, Request) + Send + Sync + 'static {
     fill
 }
 
 /// Draws of requests by a function that makes one, with steps that are right or wrong.
-fn with<P: Problem, S: Send + Sync + 'static>(
+fn with<P: Estimated, S: Send + Sync + 'static>(
     steps: S,
     draw: impl Fn(&S, &Setup<P>, &Lookups, &mut Stream) -> Draw<P::Value> + Send + Sync + 'static,
 ) -> impl Fn(&Setup<P>, Request) + Send + Sync + 'static {

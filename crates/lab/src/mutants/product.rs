@@ -22,11 +22,12 @@
 use super::line::{self, Slip, single};
 use super::rule::{self, ALBEDO, Mistake, Rule, literal, surviving, weighing};
 use super::{Line, Mutant, Target, family, filled, on};
+use estimators::setup::ControlledLine;
 use estimators::transmittance::product::Product;
-use estimators::{Request, Setup, walks};
+use estimators::{Estimated, Request, Setup, walks};
 use media::{Control, Piecewise};
 use numeric::{Lane, Span};
-use theory::problems::{Problem, Transmittance};
+use theory::problems::Transmittance;
 use theory::rules::{Collision, Single, Weight};
 
 /// `σ̂ = 1.2`, a majorant.
@@ -63,7 +64,7 @@ pub const fn known(index: usize) -> Target {
 }
 
 /// A bug in a walk, in its rule, in its setup or in its random numbers.
-pub enum Bug<P> {
+pub enum Bug<P: Estimated> {
     Step(Slip),
     Rule(Mistake),
     Setup(fn(&mut Setup<P>)),
@@ -71,7 +72,7 @@ pub enum Bug<P> {
     Replays,
 }
 
-impl<P> Bug<P> {
+impl<P: Estimated> Bug<P> {
     /// The wrong step, if the bug is one.
     pub fn slip(&self) -> Slip {
         if let Self::Step(slip) = self { *slip } else { Slip::None }
@@ -80,11 +81,11 @@ impl<P> Bug<P> {
 
 #[rustfmt::skip] // one mutant, one entry
 const LINES: &[Line<Bug<Transmittance>>] = &[
-    ("control-forgotten", "T_c is left out of the draw", NEGATIVE, "mean", Bug::Setup(|setup| setup.control_transmittance = 1.0)),
+    ("control-forgotten", "T_c is left out of the draw", NEGATIVE, "mean", Bug::Setup(|setup| setup.fields.control_curve = vec![1.0])),
     ("control-to-last-collision", "the control is integrated up to the last collision only", NEGATIVE, "mean", Bug::Step(Slip::ControlToLast)),
     ("control-riemann", "∫σ_c is a sum of eight left values", EXPLORERS, "mean", Bug::Setup(riemann)),
     ("control-wrong-sign", "the residual is σ_t + σ_c", NEGATIVE, "mean", Bug::Setup(wrong_sign)),
-    ("control-in-front-only", "T_c multiplies the draw, but the lookups do not subtract σ_c", NEGATIVE, "mean", Bug::Setup(|setup| setup.control = Control::None)),
+    ("control-in-front-only", "T_c multiplies the draw, but the lookups do not subtract σ_c", NEGATIVE, "mean", Bug::Setup(|setup| setup.fields.control = Control::None)),
     ("control-twice", "T_c is multiplied in twice", NEGATIVE, "mean", Bug::Step(Slip::ControlTwice)),
     ("control-nearest", "σ_c is that of the nearest knot in the lookups and linear in the integral", EXPLORERS, "variance", Bug::Setup(nearest)),
     ("control-of-last-collision", "σ_c is looked up at the collision before", EXPLORERS, "mean", Bug::Step(Slip::OfLastCollision)),
@@ -153,7 +154,7 @@ pub fn mutants() -> Vec<Mutant<Transmittance>> {
 }
 
 /// Mutants with bugs in their setups and in their random numbers.
-pub fn on_setups<P: Problem>(mutants: Vec<Mutant<P>>, lines: &[Line<Bug<P>>]) -> Vec<Mutant<P>> {
+pub fn on_setups<P: Estimated>(mutants: Vec<Mutant<P>>, lines: &[Line<Bug<P>>]) -> Vec<Mutant<P>> {
     let each = mutants.into_iter().zip(lines).map(|(mutant, line)| match line.4 {
         Bug::Setup(prepare) => Mutant { prepare, ..mutant },
         Bug::Replays => Mutant { replays: true, ..mutant },
@@ -188,16 +189,16 @@ fn fill<const DECIDES: bool>(
 
 /// `T_c = exp(−h Σ σ_c(jh))`.
 fn riemann(setup: &mut Setup<Transmittance>) {
-    let support = setup.mesh.support();
+    let support = setup.fields.mesh.support();
     let step = support.length() / 8.0;
-    let left = |j: u32| setup.control.extinction(support.from + f64::from(j) * step);
+    let left = |j: u32| setup.fields.control.extinction(support.from + f64::from(j) * step);
     let depth = step * (0..8).map(left).sum::<f64>();
-    setup.control_transmittance = Lane::exp(-depth);
+    setup.fields.control_curve = vec![Lane::exp(-depth)];
 }
 
 /// `−σ_c` for σ_c in the lookups.
 fn wrong_sign(setup: &mut Setup<Transmittance>) {
-    if let Control::Pieces(control) = &mut setup.control {
+    if let Control::Pieces(control) = &mut setup.fields.control {
         *control = control.scaled(-1.0);
     }
 }
@@ -205,38 +206,39 @@ fn wrong_sign(setup: &mut Setup<Transmittance>) {
 /// Steps between the middles of the knots: by the trapezoidal rule their integral is that of the lines, so that the mean
 /// stays and the variance does not.
 fn nearest(setup: &mut Setup<Transmittance>) {
-    let Control::Pieces(lines) = &setup.control else { return };
+    let Control::Pieces(lines) = &setup.fields.control else { return };
     let knots = lines.knots();
     let middles = Span::between(knots).map(Span::middle);
     let breaks: Vec<f64> =
         knots[..1].iter().copied().chain(middles).chain(knots.last().copied()).collect();
     let values: Vec<f64> = knots.iter().map(|&knot| lines.value(knot)).collect();
-    setup.control = Control::Pieces(Piecewise::steps(&breaks, &values));
+    setup.fields.control = Control::Pieces(Piecewise::steps(&breaks, &values));
 }
 
 /// `T_c` through a number of 32 bits: 0 beyond an optical depth of 104, and already without its last bits beyond 87.
 #[allow(clippy::cast_possible_truncation)] // the bug
 fn underflow(setup: &mut Setup<Transmittance>) {
-    setup.control_transmittance = f64::from(setup.control_transmittance as f32);
+    setup.fields.control_curve = vec![f64::from(setup.fields.control_transmittance() as f32)];
 }
 
 /// `σ̂ = 0` from 0.4 to 0.5 of the ray.
-pub fn hole<P>(setup: &mut Setup<P>) {
-    let support = setup.mesh.support();
-    let value = setup.sampling.value(support.from);
+pub fn hole<P: Estimated<Fields = ControlledLine>>(setup: &mut Setup<P>) {
+    let support = setup.fields.mesh.support();
+    let value = setup.fields.sampling.value(support.from);
     let at = |share: f64| support.from + share * support.length();
     let breaks = [support.from, at(0.4), at(0.5), support.to];
-    setup.sampling = Piecewise::steps(&breaks, &[value, 0.0, value]);
+    setup.fields.sampling = Piecewise::steps(&breaks, &[value, 0.0, value]);
 }
 
 /// σ̂ on the inner 98 % of the support.
-pub fn short_ray<P>(setup: &mut Setup<P>) {
-    let support = setup.mesh.support();
+pub fn short_ray<P: Estimated<Fields = ControlledLine>>(setup: &mut Setup<P>) {
+    let support = setup.fields.mesh.support();
     let inset = 0.01 * support.length();
-    setup.sampling = setup.sampling.on(Span::new(support.from + inset, support.to - inset));
+    setup.fields.sampling =
+        setup.fields.sampling.on(Span::new(support.from + inset, support.to - inset));
 }
 
 /// σ̂ times 0.6.
-pub fn too_low<P>(setup: &mut Setup<P>) {
-    setup.sampling = setup.sampling.scaled(0.6);
+pub fn too_low<P: Estimated<Fields = ControlledLine>>(setup: &mut Setup<P>) {
+    setup.fields.sampling = setup.fields.sampling.scaled(0.6);
 }

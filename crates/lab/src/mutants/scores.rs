@@ -86,12 +86,12 @@ fn one(
     random: &mut Stream,
 ) -> Draw {
     let slip = if let Bug::Step(slip) = bug { slip } else { Slip::None };
-    walks::draw(&Wrong::new(walk, slip, setup), &setup.sampling, medium, random)
+    walks::draw(&Wrong::new(walk, slip, setup), &setup.fields.sampling, medium, random)
 }
 
 /// `X = exp(−h Σⱼ σ_t((j + u) h))`.
 fn ray_marching(setup: &Setup<Transmittance>, medium: &Lookups, random: &mut Stream) -> Draw {
-    let support = setup.mesh.support();
+    let support = setup.fields.mesh.support();
     let step = support.length() / 3.0;
     let offset = unit(random);
     let at = |j: u32| support.from + (f64::from(j) + offset) * step;

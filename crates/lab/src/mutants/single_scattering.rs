@@ -167,7 +167,7 @@ impl Steps for Wrong<'_> {
             Bug::AlbedoTwice => right * problem.albedo(),
             Bug::NullsLeftOut => of_collisions(one),
             Bug::ScatteringIsNull => {
-                let sampling = self.setup.sampling.single_value().unwrap_or(f64::NAN);
+                let sampling = self.setup.fields.sampling.single_value().unwrap_or(f64::NAN);
                 of_collisions(kept * (extinction / s.each(sampling)).one_minus())
             }
             Bug::ByTransmittance => {

@@ -9,6 +9,7 @@
 //! are misread.
 
 use super::{Line, Mutant, Target, family, on, with};
+use estimators::Setup;
 use estimators::setup::heroes::Heroes;
 use estimators::spectral_transmittance::steps::{Right, Steps};
 use estimators::spectral_transmittance::walk::AlongRay;
@@ -65,21 +66,24 @@ const LINES: &[Line<Bug>] = &[
 /// The family.
 pub fn mutants() -> Vec<Mutant<SpectralTransmittance>> {
     let draws = |target, &bug: &Bug| {
-        with((target, bug), |&(target, bug), setup, medium, random| {
-            let count = setup.channels.len();
-            let tracker = match target {
-                INDEPENDENT => Tracker::Independent { delta: true },
-                MAXIMUM => Tracker::Tracking(Chance::Maximum),
-                _ => Tracker::Mis { delta: target != MIS_RATIO },
-            };
-            let is_common = [MAXIMUM, HISTORY].contains(&target);
-            let make = if is_common { AlongRay::common } else { AlongRay::new };
-            let mut walk = make(setup, &Heroes::Uniform, tracker, Wrong { bug, count });
-            if bug == Bug::ByLuminance {
-                walk.law = Law::new(&Heroes::Luminance, count);
-            }
-            walk.draw(medium, random)
-        })
+        with(
+            (target, bug),
+            |&(target, bug), setup: &Setup<SpectralTransmittance>, medium, random| {
+                let count = setup.fields.len();
+                let tracker = match target {
+                    INDEPENDENT => Tracker::Independent { delta: true },
+                    MAXIMUM => Tracker::Tracking(Chance::Maximum),
+                    _ => Tracker::Mis { delta: target != MIS_RATIO },
+                };
+                let is_common = [MAXIMUM, HISTORY].contains(&target);
+                let make = if is_common { AlongRay::common } else { AlongRay::new };
+                let mut walk = make(setup, &Heroes::Uniform, tracker, Wrong { bug, count });
+                if bug == Bug::ByLuminance {
+                    walk.law = Law::new(&Heroes::Luminance, count);
+                }
+                walk.draw(medium, random)
+            },
+        )
     };
     family(LINES, &Bug::None, draws)
 }

@@ -3,7 +3,7 @@
 use super::{Line, Mutant, Target, family, on, with};
 use estimators::setup::heroes::Heroes;
 use estimators::spectral_rod::Coloured;
-use estimators::spectral_rod::walk::{Page, draw, relative};
+use estimators::spectral_rod::walk::{Page, draw, relative_to};
 use media::body::MOST_CHANNELS;
 use theory::problems::{SpectralRod, SpectralSlab};
 
@@ -84,20 +84,14 @@ impl Page for Wrong {
             Bug::Largest => albedos.iter().fold(0.0f64, |most, &a| most.max(a)),
             _ => mean(albedos),
         };
-        let mut weights = [1.0; MOST_CHANNELS];
-        for _ in 0..order {
-            for (weight, albedo) in weights.iter_mut().zip(albedos) {
-                *weight *= albedo / divisor;
-            }
-        }
-        weights
+        relative_to(albedos, divisor, order)
     }
 }
 
 impl Wrong {
     fn balanced(&self, albedos: &[f64], hero: usize, order: u32) -> [f64; MOST_CHANNELS] {
         let count = albedos.len();
-        let mut weights = relative(albedos, hero, order);
+        let mut weights = relative_to(albedos, albedos[hero], order);
         let mut density = 0.0;
         for (channel, weight) in weights[..count].iter().enumerate() {
             if self.bug != Bug::Dropped || channel + 1 < count {

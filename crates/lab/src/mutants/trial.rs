@@ -2,9 +2,8 @@
 
 use std::sync::Arc;
 
-use estimators::{DrawBuffer, Experiment, Kernel, Request, Setup};
+use estimators::{DrawBuffer, Estimated, Experiment, Kernel, Request, Setup};
 use numeric::rng::Streams;
-use theory::problems::Problem;
 
 /// The draws between two beginnings of a generator that starts again.
 const PERIOD: usize = 1024;
@@ -13,14 +12,14 @@ const PERIOD: usize = 1024;
 pub type Draws<P> = dyn Fn(&Setup<P>, Request) + Send + Sync;
 
 /// Draws on a setup.
-pub struct Trial<P: Problem> {
+pub struct Trial<P: Estimated> {
     pub draws: Arc<Draws<P>>,
     pub setup: Setup<P>,
     /// Whether every 1024 draws begin with the same random numbers, which is wrong.
     pub replays: bool,
 }
 
-impl<P: Problem> Experiment for Trial<P> {
+impl<P: Estimated> Experiment for Trial<P> {
     fn fill_by(&self, _: Kernel, streams: &mut Streams, count: usize, buffer: &mut DrawBuffer) {
         let made = if self.replays { count.min(PERIOD) } else { count };
         (self.draws)(&self.setup, Request { streams, count: made, buffer });

@@ -41,7 +41,7 @@ use media::body::RayNeed;
 use media::catalogue::{Domain, Settings};
 use media::phase::Phase;
 use media::phase::isotropic::Isotropic;
-use media::{Body, Medium, Volume};
+use media::{Body, Medium};
 use numeric::geometry::{Bounds, Point, Ray};
 
 /// Light of a ball.
@@ -278,10 +278,6 @@ impl Problem for MultipleScattering {
 
     fn media(&self) -> &[Medium] {
         slice::from_ref(&self.medium)
-    }
-
-    fn volume(&self) -> Option<&Volume> {
-        Some(&*self.scene.volume)
     }
 }
 

@@ -2,6 +2,8 @@
 
 use std::sync::Arc;
 
+use super::Values;
+use super::scene::in_space;
 use media::body::MOST_CHANNELS;
 use media::catalogue::{Domain, Settings};
 use media::phase::Phase;
@@ -16,6 +18,38 @@ pub struct Channel {
     pub albedo: f64,
     /// Phase function.
     pub phase: Phase,
+}
+
+/// The values of one draw of a coloured rod or slab: what leaves at each end, in each channel.
+pub type ColourValues = Values<{ 2 * MOST_CHANNELS }>;
+
+/// End at which a particle leaves.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum End {
+    /// At the beginning.
+    Reflected,
+    /// At the end.
+    Transmitted,
+}
+
+/// One albedo for each channel, and the values of a draw.
+#[derive(Debug, Clone)]
+pub struct Colours {
+    /// The albedo of each channel.
+    pub albedos: Vec<f64>,
+    /// The end and the channel of each value of a draw.
+    pub seen: Vec<(End, usize)>,
+}
+
+impl Colours {
+    /// Albedos in `[0, 1]` of a body that may send light back, or never does.
+    pub fn new(albedos: Vec<f64>, may_come_back: bool) -> Self {
+        let all = 0..albedos.len();
+        let comes_back = |&channel: &usize| albedos[channel] > 0.0 && may_come_back;
+        let reflected = all.clone().filter(comes_back).map(|channel| (End::Reflected, channel));
+        let seen = reflected.chain(all.map(|channel| (End::Transmitted, channel))).collect();
+        Self { albedos, seen }
+    }
 }
 
 /// The field of each channel along the ray.
@@ -67,12 +101,8 @@ pub(super) fn read_channels(body: Option<&Body>, settings: &Settings) -> Option<
     let (albedos, phases) = read_scatterers(body, settings)?;
     let mut channels = Vec::new();
     for ((body, albedo), phase) in body?.channels().iter().zip(albedos).zip(phases) {
-        let Body::Volume { volume, .. } = body else {
-            let help = "write `volume` instead of `medium`";
-            settings.fault("medium", "particles walk through a field in space", help);
-            return None;
-        };
-        channels.push(Channel { volume: volume.clone(), albedo, phase });
+        let volume = in_space(body, settings)?.clone();
+        channels.push(Channel { volume, albedo, phase });
     }
     let bounds = channels[0].volume.bounds();
     if channels.iter().any(|channel| channel.volume.bounds() != bounds) {

@@ -32,8 +32,9 @@
 //! Null-Scattering Path Integral Formulation of Light Transport*, ACM Transactions on Graphics 38 (2019), section 5.1.
 
 use super::channels::{Channel, media, read_channels};
+use super::scene::require_bounds;
 use super::{ChannelValues, Problem, ProblemOption, Scene};
-use media::body::{MOST_CHANNELS, RayNeed};
+use media::body::RayNeed;
 use media::catalogue::Settings;
 use media::{Body, Medium, misses};
 use numeric::geometry::{Bounds, Point, Ray};
@@ -92,14 +93,6 @@ pub struct SpectralFurnace {
     media: Vec<Medium>,
 }
 
-impl SpectralFurnace {
-    /// Values of a draw.
-    #[inline(always)]
-    pub fn scored(&self, at: [f64; MOST_CHANNELS]) -> ChannelValues {
-        ChannelValues { at, count: self.channels.len() }
-    }
-}
-
 impl Problem for SpectralFurnace {
     type Value = ChannelValues;
 
@@ -109,11 +102,8 @@ impl Problem for SpectralFurnace {
         let channels = read_channels(body, settings)?;
         let Body::Volume { ray, .. } = &body?.channels()[0] else { return None };
         let bounds = channels[0].volume.bounds();
-        if bounds.enclosing_box().is_none() {
-            let help = "give each channel the same `bounds.sphere` or `bounds.box`";
-            settings.fault("volume", "particles would never leave a volume without bounds", help);
-            return None;
-        }
+        let help = "give each channel the same `bounds.sphere` or `bounds.box`";
+        require_bounds(settings, bounds, help)?;
         let entry = read_entry(settings, bounds, ray)?;
         let (direction, media) = (ray.direction, media(body?));
         let albedos = channels.iter().map(|channel| channel.albedo).collect();

@@ -71,14 +71,7 @@ impl Lambertian {
         *self.content.get_or_init(find)
     }
 
-    /// The place on the boundary that two numbers find, evenly, and the normal there that points inward.
-    #[inline(always)]
-    pub fn on_boundary(&self, u: f64, v: f64) -> (Point, Point) {
-        let [place, inward] = self.boundary_lanes([u, v]);
-        (Point(place), Point(inward))
-    }
-
-    /// Points on the boundary and inward normals for packs of numbers.
+    /// The point on the boundary that two uniform numbers choose, evenly, and the inward normal there.
     #[inline(always)]
     pub fn boundary_lanes<L: Lane>(&self, [u, v]: [L; 2]) -> [[L; 3]; 2] {
         let (zero, one) = (u.each(0.0), u.each(1.0));
@@ -155,11 +148,17 @@ mod tests {
         Lambertian { scene, medium: body.medium(), content: OnceLock::new() }
     }
 
+    /// The place on the boundary that two numbers find, and the inward normal there.
+    fn boundary(body: &Lambertian, u: f64, v: f64) -> (Point, Point) {
+        let [place, inward] = body.boundary_lanes([u, v]);
+        (Point(place), Point(inward))
+    }
+
     #[test]
     fn places_lie_on_the_sphere_and_look_inward() {
         let sphere = under_light(Arc::new(Eq21));
         for (u, v) in [(0.0, 0.3), (0.4, 0.9), (0.999, 0.0)] {
-            let (place, inward) = sphere.on_boundary(u, v);
+            let (place, inward) = boundary(&sphere, u, v);
             assert!(((place - Point([0.0, 0.0, 10.0])).norm() - 10.0).abs() < 1e-13);
             assert!((place + inward * 10.0 - Point([0.0, 0.0, 10.0])).norm() < 1e-13);
         }
@@ -174,12 +173,12 @@ mod tests {
         let cuboid =
             under_light(Arc::new(media::constant::Constant::new(1.0, Bounds::Box(within))));
         // Areas 6, 3, 2 twice: of 11 parts u takes six for x, three for y, two for z.
-        let (place, inward) = cuboid.on_boundary(1.0 / 11.0, 0.5);
+        let (place, inward) = boundary(&cuboid, 1.0 / 11.0, 0.5);
         assert_eq!((inward, place.0[0]), (Point([1.0, 0.0, 0.0]), 0.0));
         assert!((place.0[1] - 2.0 / 3.0).abs() < 1e-14 && place.0[2] == 1.5);
-        assert_eq!(cuboid.on_boundary(4.0 / 11.0, 0.5).1, Point([-1.0, 0.0, 0.0]));
-        assert_eq!(cuboid.on_boundary(6.5 / 11.0, 0.5).1, Point([0.0, 1.0, 0.0]));
-        assert_eq!(cuboid.on_boundary(8.5 / 11.0, 0.5).1, Point([0.0, -1.0, 0.0]));
-        assert_eq!(cuboid.on_boundary(10.5 / 11.0, 0.5).1, Point([0.0, 0.0, -1.0]));
+        assert_eq!(boundary(&cuboid, 4.0 / 11.0, 0.5).1, Point([-1.0, 0.0, 0.0]));
+        assert_eq!(boundary(&cuboid, 6.5 / 11.0, 0.5).1, Point([0.0, 1.0, 0.0]));
+        assert_eq!(boundary(&cuboid, 8.5 / 11.0, 0.5).1, Point([0.0, -1.0, 0.0]));
+        assert_eq!(boundary(&cuboid, 10.5 / 11.0, 0.5).1, Point([0.0, 0.0, -1.0]));
     }
 }

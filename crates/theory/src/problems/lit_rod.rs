@@ -3,7 +3,6 @@
 use super::channels::agree;
 use super::rod::{Quantity, Rod, read_scattering, shares};
 use super::{ChannelValues, Problem, ProblemOption, number as read_number};
-use media::body::MOST_CHANNELS;
 use media::catalogue::{Domain, Settings, Value};
 use media::{Body, Medium, Piecewise};
 use numeric::Lane;
@@ -100,12 +99,6 @@ impl SpectralLitRod {
     #[inline(always)]
     pub fn albedo<L: Lane>(&self, channel: usize, t: L) -> L {
         self.rods[channel].rod.albedo.value(t)
-    }
-
-    /// Values of a draw.
-    #[inline(always)]
-    pub fn values(&self, at: [f64; MOST_CHANNELS]) -> ChannelValues {
-        ChannelValues { at, count: self.rods.len() }
     }
 }
 

@@ -3,7 +3,6 @@
 pub mod ball;
 pub mod bidirectional_rod;
 pub mod channels;
-pub mod coloured_slab;
 pub mod free_flight;
 pub mod furnace;
 pub mod infinite_medium;
@@ -16,19 +15,16 @@ pub mod scene;
 pub mod single_scattering;
 pub mod sky;
 pub mod slab;
-pub mod spectral_rod;
-pub mod spectral_transmittance;
 pub mod transmittance;
 
 use fearless_simd::Level;
 
 use media::body::{MOST_CHANNELS, RayNeed};
 use media::catalogue::{Domain, PageList, Settings, Value};
-use media::{Body, Lookups, Medium, Volume};
+use media::{Body, Lookups, Medium};
 
 pub use ball::{MultipleScattering, Sphere};
 pub use bidirectional_rod::BidirectionalRod;
-pub use coloured_slab::{ChromaticSlab, SpectralSlab};
 pub use free_flight::FreeFlight;
 pub use furnace::{Furnace, SpectralFurnace};
 pub use infinite_medium::InfiniteMedium;
@@ -36,14 +32,12 @@ pub use lambertian::Lambertian;
 pub use lit_rod::{LitRod, SpectralLitRod};
 pub use lit_slab::LitSlab;
 pub use options::ProblemOption;
-pub use rod::Rod;
+pub use rod::{Rod, SpectralRod};
 pub use scene::{Albedo, Scene};
 pub use single_scattering::{SingleScattering, SpectralSingleScattering};
 pub use sky::Sky;
-pub use slab::Slab;
-pub use spectral_rod::SpectralRod;
-pub use spectral_transmittance::SpectralTransmittance;
-pub use transmittance::{Transmittance, TransmittanceCurve};
+pub use slab::{ChromaticSlab, Slab, SpectralSlab};
+pub use transmittance::{SpectralTransmittance, Transmittance, TransmittanceCurve};
 
 /// Hands every problem with its forms to another macro, in the order of the catalogue. A form is the type of the draws
 /// that a case's options ask for; the first has no options. From the line of a problem come its page and its name in
@@ -127,11 +121,6 @@ pub trait Problem: Send + Sync + Sized + 'static {
         Lookups::of_channels(self.medium(), &self.media()[1..], level)
     }
 
-    /// The field in space that particles walk through, for problems that take σ̂ in space.
-    fn volume(&self) -> Option<&Volume> {
-        None
-    }
-
     /// A copy in a medium of another albedo; `None` if the answer does not depend on it.
     fn with_albedo(&self, albedo: f64) -> Option<Self> {
         let _ = albedo;
@@ -156,10 +145,6 @@ macro_rules! in_space {
     () => {
         fn media(&self) -> &[Medium] {
             std::slice::from_ref(&self.medium)
-        }
-
-        fn volume(&self) -> Option<&media::Volume> {
-            Some(&*self.scene.volume)
         }
 
         fn with_albedo(&self, albedo: f64) -> Option<Self> {

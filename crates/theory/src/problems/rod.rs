@@ -63,7 +63,8 @@
 
 use std::slice;
 
-use super::{Problem, default_albedo, number};
+use super::channels::{ColourValues, Colours, read_albedos};
+use super::{Problem, ProblemOption, default_albedo, number};
 use media::catalogue::{Domain, Node, Settings, Value};
 use media::piecewise_linear::read_pieces;
 use media::{Body, Medium, Piecewise};
@@ -207,6 +208,39 @@ impl Problem for Rod {
         let albedo = Piecewise::constant(albedo, self.medium.span());
         let (medium, channels) = (self.medium.clone(), self.channels.clone());
         Some(Self::new(medium, &albedo, &self.forward, channels))
+    }
+}
+
+/// A rod with one albedo for each channel.
+#[derive(Clone)]
+pub struct SpectralRod {
+    medium: Medium,
+    /// The albedos.
+    pub colours: Colours,
+    /// `p_f`.
+    pub forward: f64,
+}
+
+impl SpectralRod {
+    /// A rod with albedos and a probability to scatter forward, all in `[0, 1]`.
+    pub fn new(medium: Medium, albedos: Vec<f64>, forward: f64) -> Self {
+        Self { medium, colours: Colours::new(albedos, forward < 1.0), forward }
+    }
+}
+
+impl Problem for SpectralRod {
+    type Value = ColourValues;
+
+    const OPTIONS: &'static [ProblemOption] = &[ProblemOption::Albedos];
+
+    fn read(body: Option<&Body>, settings: &Settings) -> Option<Self> {
+        let albedos = read_albedos(settings);
+        let forward = number(settings, "forward", Some(0.5));
+        Some(Self::new(body?.medium(), albedos?, forward?))
+    }
+
+    fn media(&self) -> &[Medium] {
+        slice::from_ref(&self.medium)
     }
 }
 

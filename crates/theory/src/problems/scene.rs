@@ -6,7 +6,7 @@ use super::{default_albedo, number};
 use media::catalogue::{Settings, Value};
 use media::phase::Phase;
 use media::{Body, Volume, reader};
-use numeric::geometry::Point;
+use numeric::geometry::{Bounds, Point};
 
 /// The albedo a of a medium.
 #[derive(Clone)]
@@ -59,27 +59,15 @@ impl Scene {
     /// Reads `albedo` and `phase` beside a volume, which must have bounds.
     pub fn bounded(body: Option<&Body>, settings: &Settings) -> Option<Self> {
         let scene = Self::read(body, settings)?;
-        if scene.volume.bounds().enclosing_box().is_none() {
-            let help =
-                "give it `bounds.sphere = { centre, radius }` or `bounds.box = { low, high }`";
-            settings.fault("volume", "particles would never leave a volume without bounds", help);
-            return None;
-        }
+        let help = "give it `bounds.sphere = { centre, radius }` or `bounds.box = { low, high }`";
+        require_bounds(settings, scene.volume.bounds(), help)?;
         Some(scene)
     }
 
     /// Reads `albedo` and `phase` beside any volume.
     pub fn read(body: Option<&Body>, settings: &Settings) -> Option<Self> {
         let phase = Phase::read(settings);
-        let volume = match body {
-            Some(Body::Volume { volume, .. }) => Some(volume.clone()),
-            Some(Body::Line { .. } | Body::Spectral { .. }) => {
-                let help = "write `volume` instead of `medium`";
-                settings.fault("medium", "particles walk through a field in space", help);
-                None
-            }
-            None => None,
-        };
+        let volume = body.and_then(|body| in_space(body, settings)).cloned();
         let albedo = read_albedo(settings, volume.as_deref());
         Some(Self { volume: volume?, albedo: albedo?, phase: phase? })
     }
@@ -89,6 +77,29 @@ impl Scene {
     pub fn with_albedo(&self, albedo: f64) -> Self {
         Self { albedo: Albedo::Even(albedo), ..self.clone() }
     }
+}
+
+/// The field of a body in space; `None` after a mistake.
+pub(super) fn in_space<'a>(body: &'a Body, settings: &Settings) -> Option<&'a Arc<Volume>> {
+    if let Body::Volume { volume, .. } = body {
+        return Some(volume);
+    }
+    let help = "write `volume` instead of `medium`";
+    settings.fault("medium", "particles walk through a field in space", help);
+    None
+}
+
+/// Requires a volume that particles can leave.
+pub(super) fn require_bounds(
+    settings: &Settings,
+    bounds: Bounds,
+    help: &'static str,
+) -> Option<()> {
+    if bounds.enclosing_box().is_none() {
+        settings.fault("volume", "particles would never leave a volume without bounds", help);
+        return None;
+    }
+    Some(())
 }
 
 /// Reads `albedo`, a number or a field in space.

@@ -40,7 +40,6 @@ use std::sync::{Arc, OnceLock};
 
 use super::channels::{Channel, read_channels};
 use super::{ChannelValues, Problem, ProblemOption};
-use media::body::MOST_CHANNELS;
 use media::catalogue::{Domain, Settings};
 use media::phase::Phase;
 use media::{Body, Medium, Volume};
@@ -287,6 +286,32 @@ impl SingleScattering {
     }
 }
 
+/// A light, and how the medium scatters it.
+#[derive(Debug, Clone, Copy)]
+pub struct Lit {
+    /// Light.
+    pub lamp: Lamp,
+    /// a, above 0.
+    pub albedo: f64,
+    /// Phase function.
+    pub phase: Phase,
+}
+
+impl Lit {
+    /// Reads `light`, `albedo` and `phase`.
+    pub fn read(settings: &Settings) -> Option<Self> {
+        let lamp = Lamp::read(settings);
+        let albedo = settings.number("albedo", Domain::Unit);
+        let phase = Phase::read(settings);
+        let (lamp, albedo, phase) = (lamp?, albedo?, phase?);
+        if albedo <= 0.0 {
+            settings.fault("albedo", "nothing is scattered", "the albedo is above 0");
+            return None;
+        }
+        Some(Self { lamp, albedo, phase })
+    }
+}
+
 impl Lamp {
     /// Reads `light = { position, power }`.
     pub fn read(settings: &Settings) -> Option<Self> {
@@ -314,20 +339,14 @@ impl Problem for SingleScattering {
     type Value = [f64; 1];
 
     fn read(body: Option<&Body>, settings: &Settings) -> Option<Self> {
-        let light = Lamp::read(settings);
-        let albedo = settings.number("albedo", Domain::Unit);
-        let phase = Phase::read(settings);
+        let lit = Lit::read(settings);
         let Body::Volume { volume, ray, .. } = body? else {
             let help = "write `volume` instead of `medium`, and give a `ray`";
             settings.fault("medium", "a light needs a field in space", help);
             return None;
         };
-        let (light, albedo, phase) = (light?, albedo?, phase?);
-        if albedo <= 0.0 {
-            settings.fault("albedo", "nothing is scattered", "the albedo is above 0");
-            return None;
-        }
-        off_the_line(settings, Self::new(volume.clone(), *ray, light, albedo, phase))
+        let Lit { lamp, albedo, phase } = lit?;
+        off_the_line(settings, Self::new(volume.clone(), *ray, lamp, albedo, phase))
     }
 
     fn media(&self) -> &[Medium] {
@@ -351,14 +370,6 @@ pub struct SpectralSingleScattering {
     /// Their albedos.
     pub albedos: Vec<f64>,
     media: Vec<Medium>,
-}
-
-impl SpectralSingleScattering {
-    /// Values of a draw.
-    #[inline(always)]
-    pub fn values(&self, at: [f64; MOST_CHANNELS]) -> ChannelValues {
-        ChannelValues { at, count: self.channels.len() }
-    }
 }
 
 impl Problem for SpectralSingleScattering {

@@ -33,7 +33,9 @@
 
 use std::slice;
 
+use super::channels::media;
 use super::{Problem, ProblemOption, Values};
+use media::body::MOST_CHANNELS;
 use media::catalogue::Settings;
 use media::{Body, Medium};
 
@@ -108,5 +110,45 @@ impl Problem for TransmittanceCurve {
 
     fn distances(&self) -> Vec<f64> {
         self.distances.clone()
+    }
+}
+
+/// The values of one draw in several channels: their transmittances, and the luminance.
+pub type SpectralValues = Values<{ MOST_CHANNELS + 1 }>;
+
+/// The transmittance of a chromatic medium.
+pub struct SpectralTransmittance {
+    media: Vec<Medium>,
+    /// The weights of the channels in the luminance; none where there is one channel.
+    pub luminance: Vec<f64>,
+}
+
+impl SpectralTransmittance {
+    /// Through the media of the channels, of which there is at least one.
+    pub fn new(media: Vec<Medium>) -> Self {
+        let count = if media.len() > 1 { media.len() } else { 0 };
+        let luminance = (0..count).map(|channel| luminance(count, channel)).collect();
+        Self { media, luminance }
+    }
+}
+
+/// The weight of one of N channels in the luminance.
+#[inline(always)]
+pub fn luminance(channels: usize, channel: usize) -> f64 {
+    const BT709: [f64; 3] = [0.2126, 0.7152, 0.0722];
+    if channels == BT709.len() { BT709[channel] } else { 1.0 / channels as f64 }
+}
+
+impl Problem for SpectralTransmittance {
+    type Value = SpectralValues;
+
+    const OPTIONS: &'static [ProblemOption] = &[ProblemOption::Media];
+
+    fn read(body: Option<&Body>, _: &Settings) -> Option<Self> {
+        Some(Self::new(media(body?)))
+    }
+
+    fn media(&self) -> &[Medium] {
+        &self.media
     }
 }

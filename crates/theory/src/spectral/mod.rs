@@ -64,6 +64,20 @@ pub enum Tracker {
     Tracking(Chance),
 }
 
+impl Tracker {
+    /// Whether real collisions end a walk.
+    #[inline(always)]
+    pub fn is_delta(self) -> bool {
+        match self {
+            Self::Independent { delta }
+            | Self::InTurn { delta }
+            | Self::Hero { delta }
+            | Self::Mis { delta } => delta,
+            Self::Tracking(_) => true,
+        }
+    }
+}
+
 /// A chromatic medium with its majorants on one mesh.
 pub struct Spectrum {
     mesh: Mesh,

@@ -21,7 +21,7 @@ pub use self::rods::{Rods, critical, leaving};
 
 use super::prediction::Covariance;
 use super::{Channel, CountLaw, Moments, Prediction, Tails};
-use crate::problems::spectral_rod::{Colours, End};
+use crate::problems::channels::{Colours, End};
 use numeric::Known;
 
 /// Probabilities to leave after r scatterings that never absorb.

@@ -41,7 +41,7 @@ impl Recipe for Constant {
         Ok(Piecewise::constant(self.value, site.mesh.support()))
     }
 
-    fn in_space(&self, volume: &Volume) -> Option<Majorants> {
-        Some(Majorants::constant(self.value, volume))
+    fn in_space(&self, volume: &Volume) -> Result<Majorants, Refusal> {
+        Ok(Majorants::constant(self.value, volume))
     }
 }

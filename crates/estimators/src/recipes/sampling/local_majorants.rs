@@ -13,7 +13,7 @@
 //! Source: Y. Yue et al., *Unbiased, adaptive stochastic sampling for rendering inhomogeneous
 //! participating media*, ACM Transactions on Graphics 29 (2010).
 
-use super::Recipe;
+use super::{Recipe, along_ray_only};
 use crate::recipes::{Refusal, Site};
 use media::catalogue::Settings;
 use media::{Body, Control, Majorants, Piecewise, Volume};
@@ -106,10 +106,11 @@ impl Recipe for LocalMajorants {
         }
     }
 
-    fn in_space(&self, volume: &Volume) -> Option<Majorants> {
+    fn in_space(&self, volume: &Volume) -> Result<Majorants, Refusal> {
         match self {
-            Self::Segments(_) => None,
-            Self::Grid(cells) => Majorants::grid(*cells, 1.0, volume),
+            Self::Segments(_) => Err(along_ray_only(&self.label())),
+            Self::Grid(cells) => Majorants::grid(*cells, 1.0, volume)
+                .ok_or_else(|| Refusal::mismatch("bounds for its grid", "a volume without bounds")),
         }
     }
 }

@@ -51,11 +51,35 @@ pub trait Recipe: Send + Sync {
         None
     }
 
-    /// Makes σ̂ on a volume, for particles that leave the ray; `None` for a recipe that only knows rays.
-    fn in_space(&self, volume: &Volume) -> Option<Majorants> {
+    /// Makes σ̂ in a volume, for particles that leave the ray.
+    ///
+    /// # Errors
+    ///
+    /// The recipe makes it along rays only.
+    fn in_space(&self, volume: &Volume) -> Result<Majorants, Refusal> {
         let _ = volume;
-        None
+        Err(along_ray_only(&self.label()))
     }
+}
+
+/// The recipe of a channel: its own, or that of all channels.
+pub fn of_channel(recipe: &dyn Recipe, channel: usize) -> &dyn Recipe {
+    recipe.channels().get(channel).map_or(recipe, |own| &**own)
+}
+
+/// Makes σ̂ in a volume by a recipe; zero for estimators that take none.
+///
+/// # Errors
+///
+/// The recipe makes it along rays only.
+pub fn in_space(recipe: Option<&dyn Recipe>, volume: &Volume) -> Result<Majorants, Refusal> {
+    recipe.map_or_else(|| Ok(Majorants::constant(0.0, volume)), |recipe| recipe.in_space(volume))
+}
+
+/// The refusal of a recipe that makes σ̂ along rays only.
+fn along_ray_only(label: &str) -> Refusal {
+    let needs = "σ̂ in space: `constant`, or `local-majorants` with a `grid`";
+    Refusal::mismatch(needs, format!("σ̂ is given along the ray ({label})"))
 }
 
 recipes! {

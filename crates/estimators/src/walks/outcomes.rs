@@ -2,7 +2,7 @@
 
 use fearless_simd::{Simd, SimdBase, f64x8};
 
-use super::{GROUPS, MOST_LEFT, MOST_SCORED, Walk};
+use super::{GROUPS, MAX_OUTCOME, MAX_SCORED, Walk};
 use crate::kernels::DrawBuffer;
 use numeric::Lane;
 use numeric::pack::WIDTH;
@@ -10,7 +10,7 @@ use numeric::pack::WIDTH;
 /// No event, or no draw.
 const NONE: u32 = u32::MAX;
 
-/// Numbers that eight walks leave.
+/// Lists of numbers, side by side, that are the outcome of eight walks.
 pub type Groups<'a, S> = [&'a [f64x8<S>]; GROUPS];
 
 /// Size of a record: the numbers in `groups`, and one more.
@@ -18,21 +18,21 @@ pub fn count<S: Simd>(groups: Groups<S>) -> usize {
     1 + groups.iter().map(|group| group.len()).sum::<usize>()
 }
 
-/// Numbers of each draw or event, in groups of eight, number by number.
-pub struct Left {
+/// Outcomes of draws or events, in groups of eight, number by number.
+pub struct Outcomes {
     numbers: usize,
     at: Vec<f64>,
 }
 
-impl Left {
+impl Outcomes {
     /// Memory for `numbers` numbers of each of `draws` draws; empty if there are no draws.
     pub fn new(numbers: usize, draws: usize, room: &mut Vec<f64>) -> Self {
-        let mut left = Self { numbers, at: Vec::new() };
+        let mut outcomes = Self { numbers, at: Vec::new() };
         if draws > 0 {
-            left.at = std::mem::take(room);
-            left.make_room(draws);
+            outcomes.at = std::mem::take(room);
+            outcomes.make_room(draws);
         }
-        left
+        outcomes
     }
 
     /// The memory, for reuse.
@@ -69,7 +69,7 @@ impl Left {
     #[inline(always)]
     pub fn score<S: Simd>(&self, simd: S, walk: &impl Walk, draws: usize, buffer: &mut DrawBuffer) {
         let zero = f64x8::splat(simd, 0.0);
-        let (mut numbers, mut values) = ([zero; MOST_LEFT + 1], [zero; MOST_SCORED]);
+        let (mut numbers, mut values) = ([zero; MAX_OUTCOME + 1], [zero; MAX_SCORED]);
         let (numbers, values) = (&mut numbers[..self.numbers], &mut values[..walk.channels()]);
         buffer.make_room(draws.next_multiple_of(WIDTH));
         for first in (0..draws).step_by(WIDTH) {
@@ -92,7 +92,7 @@ impl Left {
 
 /// Events of walks that score at any step: the draw of an event is known when its walk has ended.
 pub struct Events {
-    left: Left,
+    outcomes: Outcomes,
     /// The draw of each.
     draws: Vec<u32>,
     /// The event of the same walk before each.
@@ -105,20 +105,20 @@ pub struct Events {
 impl Events {
     /// Memory for `some` events with `numbers` numbers each.
     pub fn new(numbers: usize, some: usize, room: &mut Vec<f64>) -> Self {
-        let (left, none) = (Left::new(numbers, some, room), Vec::new());
+        let (outcomes, none) = (Outcomes::new(numbers, some, room), Vec::new());
         let last = [[NONE; WIDTH]; 2];
-        let mut events = Self { left, draws: none.clone(), before: none, last, count: 0 };
+        let mut events = Self { outcomes, draws: none.clone(), before: none, last, count: 0 };
         events.make_room(some.next_multiple_of(WIDTH));
         events
     }
 
     /// The memory for numbers, for reuse.
     pub fn into_room(self) -> Vec<f64> {
-        self.left.into_room()
+        self.outcomes.into_room()
     }
 
     fn make_room(&mut self, events: usize) {
-        self.left.make_room(events);
+        self.outcomes.make_room(events);
         self.draws.resize(events, NONE);
         self.before.resize(events, NONE);
     }
@@ -133,7 +133,7 @@ impl Events {
         while which != 0 {
             let lane = (which.trailing_zeros() & 7) as usize;
             which &= which - 1;
-            self.left.write(self.count, 1.0, groups, lane);
+            self.outcomes.write(self.count, 1.0, groups, lane);
             self.before[self.count] = self.last[pack][lane];
             self.last[pack][lane] = self.count as u32;
             self.count += 1;
@@ -163,13 +163,14 @@ impl Events {
     #[inline(always)]
     pub fn score<S: Simd>(&self, simd: S, walk: &impl Walk, buffer: &mut DrawBuffer) {
         let zero = f64x8::splat(simd, 0.0);
-        let (mut numbers, mut values) = ([zero; MOST_LEFT + 1], [zero; MOST_SCORED]);
-        let (numbers, values) = (&mut numbers[..self.left.numbers], &mut values[..walk.channels()]);
+        let (mut numbers, mut values) = ([zero; MAX_OUTCOME + 1], [zero; MAX_SCORED]);
+        let (numbers, values) =
+            (&mut numbers[..self.outcomes.numbers], &mut values[..walk.channels()]);
         for channel in &mut buffer.values {
             channel.fill(0.0);
         }
         for first in (0..self.count).step_by(WIDTH) {
-            self.left.read(simd, first, numbers);
+            self.outcomes.read(simd, first, numbers);
             walk.score(&numbers[1..], zero.at_most(zero), zero, values);
             add(values, &self.draws[first..first + WIDTH], buffer);
         }

@@ -1,0 +1,40 @@
+//! The page of the balance heuristic over heroes, of hits alone or of hits and shadow rays.
+
+use super::pages;
+use super::steps::Steps;
+use crate::Estimator;
+use crate::setup::heroes::Heroes;
+use media::catalogue::Settings;
+use theory::problems::SpectralLitRod;
+use theory::spectral_lit_rod::Tracker;
+
+/// The balance heuristic over heroes; with `CASTS` walks cast shadow rays.
+#[derive(Debug, Clone)]
+pub struct Page<const CASTS: bool> {
+    /// Distribution of the hero.
+    pub heroes: Heroes,
+}
+
+impl<const CASTS: bool> Steps for Page<CASTS> {
+    #[inline(always)]
+    fn heroes(&self) -> &Heroes {
+        &self.heroes
+    }
+
+    #[inline(always)]
+    fn casts(&self) -> bool {
+        CASTS
+    }
+}
+
+impl<const CASTS: bool> Estimator<SpectralLitRod> for Page<CASTS> {
+    fn read(settings: &Settings) -> Option<Self> {
+        Some(Self { heroes: Heroes::read(settings)? })
+    }
+
+    fn label(&self, _: bool) -> String {
+        self.heroes.label()
+    }
+
+    pages!(self => self.heroes, Tracker::Mis { casts: CASTS });
+}

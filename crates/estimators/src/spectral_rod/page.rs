@@ -1,0 +1,152 @@
+//! The page of all estimators of coloured scatterers: their settings, weights, domain, prediction and draws.
+
+use super::{Coloured, walk};
+use crate::setup::heroes::Heroes;
+use crate::setup::walker::{HERO, INDEPENDENT, MIS, SPECTRAL_TRACKING};
+use crate::{Estimator, Inputs, Kernel, Refusal, Request, Setup, walks};
+use media::body::MOST_CHANNELS;
+use media::catalogue::Settings;
+use theory::Prediction;
+use theory::spectral_rod::{Spectrum, Tracker};
+
+/// Walk of a hero, or of all channels together by one probability to be scattered.
+#[derive(Debug, Clone)]
+pub enum Walker {
+    /// The hero, by its distribution.
+    Hero(Heroes),
+    /// All channels: by the largest albedo and the largest share of absorption, or by the mean albedo.
+    Together {
+        /// Whether by the largest.
+        maximum: bool,
+    },
+}
+
+/// An estimator of a kind.
+#[derive(Debug, Clone)]
+pub struct Page<const KIND: u8>(pub Walker);
+
+/// `P_s`, the probability to be scattered of all channels together.
+#[inline(always)]
+fn scatter(albedos: &[f64], maximum: bool) -> f64 {
+    if maximum {
+        let most = albedos.iter().fold(0.0f64, |most, &a| most.max(a));
+        let least = albedos.iter().fold(1.0f64, |least, &a| least.min(a));
+        most / (most + (1.0 - least))
+    } else {
+        albedos.iter().sum::<f64>() / albedos.len() as f64
+    }
+}
+
+impl<const KIND: u8> walk::Page for Page<KIND> {
+    #[inline(always)]
+    fn heroes(&self) -> Option<&Heroes> {
+        if let Walker::Hero(heroes) = &self.0 { Some(heroes) } else { None }
+    }
+
+    #[inline(always)]
+    fn chance(&self, albedos: &[f64], hero: usize) -> f64 {
+        match self.0 {
+            Walker::Hero(_) => albedos[hero],
+            Walker::Together { maximum } => scatter(albedos, maximum),
+        }
+    }
+
+    #[inline(always)]
+    fn weights(&self, albedos: &[f64], hero: usize, order: u32) -> [f64; MOST_CHANNELS] {
+        let count = albedos.len();
+        let heroes = match &self.0 {
+            Walker::Hero(heroes) => heroes,
+            Walker::Together { maximum } => {
+                return walk::relative_to(albedos, scatter(albedos, *maximum), order);
+            }
+        };
+        if KIND == INDEPENDENT {
+            let mut weights = [0.0; MOST_CHANNELS];
+            weights[hero] = 1.0 / heroes.probability(count, hero);
+            return weights;
+        }
+        let mut weights = walk::relative_to(albedos, albedos[hero], order);
+        if KIND == MIS {
+            let mut density = 0.0;
+            for (channel, weight) in weights[..count].iter().enumerate() {
+                density += heroes.probability(count, channel) * weight;
+            }
+            for weight in &mut weights[..count] {
+                *weight /= density;
+            }
+        }
+        weights
+    }
+}
+
+impl<const KIND: u8> Page<KIND> {
+    /// The distribution of the hero: of all channels together theory takes equal heroes.
+    fn distribution(&self) -> &Heroes {
+        if let Walker::Hero(heroes) = &self.0 { heroes } else { &Heroes::Uniform }
+    }
+
+    /// The spectrum of a setup, for predictions.
+    fn spectrum<'a, P: Coloured>(&self, setup: &'a Setup<P>) -> Spectrum<'a> {
+        let colours = setup.problem.colours();
+        let tracker = match self.0 {
+            Walker::Together { maximum } => {
+                Tracker::Tracking { scatter: scatter(&colours.albedos, maximum) }
+            }
+            Walker::Hero(_) if KIND == INDEPENDENT => Tracker::Independent,
+            Walker::Hero(_) if KIND == HERO => Tracker::Hero,
+            Walker::Hero(_) => Tracker::Mis,
+        };
+        Spectrum::new(
+            P::body(setup),
+            colours,
+            self.distribution().of(colours.albedos.len()),
+            tracker,
+        )
+    }
+}
+
+impl<P: Coloured, const KIND: u8> Estimator<P> for Page<KIND> {
+    const INPUTS: Inputs = Inputs::SAMPLING;
+
+    fn read(settings: &Settings) -> Option<Self> {
+        if KIND != SPECTRAL_TRACKING {
+            return Some(Self(Walker::Hero(Heroes::read(settings)?)));
+        }
+        let word = settings.word_or("probabilities", &["average", "maximum"], "average")?;
+        Some(Self(Walker::Together { maximum: word == "maximum" }))
+    }
+
+    fn label(&self, _: bool) -> String {
+        match &self.0 {
+            Walker::Hero(heroes) => heroes.label(),
+            Walker::Together { maximum: true } => "maximum".into(),
+            Walker::Together { maximum: false } => "average".into(),
+        }
+    }
+
+    fn domain(&self, setup: &Setup<P>) -> Result<(), Refusal> {
+        walk::require(setup, self.distribution())?;
+        if KIND == HERO {
+            walk::require_scattering(&setup.problem.colours().albedos, self.distribution())?;
+        }
+        if KIND == HERO || KIND == SPECTRAL_TRACKING {
+            walk::require_variance(self.spectrum(setup).diverges())?;
+        }
+        Ok(())
+    }
+
+    fn predict(&self, setup: &Setup<P>) -> Prediction {
+        self.spectrum(setup).predict()
+    }
+
+    fn fill(&self, kernel: Kernel, setup: &Setup<P>, request: Request) {
+        walks::by(
+            kernel,
+            setup,
+            request,
+            |level, medium, request| walk::packets(level, self, setup, medium, request),
+            #[inline(always)]
+            |medium, random| walk::draw(self, setup, medium, random),
+        );
+    }
+}
