@@ -83,6 +83,19 @@ fn critical(incidence: &Incidence, depth: f64) -> f64 {
     high
 }
 
+/// Reason why a moment of an albedo is not finite, or not known to be: a predicate in words.
+fn reason(albedo: f64, critical: f64) -> String {
+    let [at, here] = [critical, albedo].map(rounded);
+    if albedo >= critical {
+        format!("is infinite from the albedo {at} on, and it asks for {here}")
+    } else {
+        format!(
+            "asks for the albedo {here}, which is too near to {at}, from where on it is infinite, to tell on which side it \
+             is"
+        )
+    }
+}
+
 static CRITICAL: Memo<(String, u64), f64> = Memo::new(256);
 
 impl Body for Slabs<'_> {
@@ -109,11 +122,7 @@ impl Body for Slabs<'_> {
         }
         let key = (incidence.phase.label(), depth.to_bits());
         let critical = CRITICAL.get(key, || critical(incidence, depth));
-        Some(format!(
-            "from the albedo {} on, and it asks for {}",
-            rounded(critical),
-            rounded(albedo)
-        ))
+        Some(reason(albedo, critical))
     }
 
     fn orders(&self) -> Option<Orders> {
@@ -139,5 +148,21 @@ impl Body for Slabs<'_> {
         };
         let walks: Vec<(f64, Walk)> = heroes.iter().map(walk).collect();
         slab::walk::mixed_lookups(&walks)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn below_the_critical_albedo_nothing_is_said_to_be_infinite() {
+        let near = reason(1.276_974, 1.277_102);
+        assert!(
+            near.starts_with("asks for the albedo 1.276974, which is too near to 1.277102"),
+            "{near}"
+        );
+        let beyond = reason(1.277_103, 1.277_102);
+        assert_eq!(beyond, "is infinite from the albedo 1.277102 on, and it asks for 1.277103");
     }
 }

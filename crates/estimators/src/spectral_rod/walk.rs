@@ -333,7 +333,7 @@ pub fn require_scattering(albedos: &[f64], heroes: &Heroes) -> Result<(), Refusa
 /// The channel, and the body that it needs.
 pub fn require_variance(diverges: Option<(usize, String)>) -> Result<(), Refusal> {
     diverges.map_or(Ok(()), |(channel, why)| {
-        let found = format!("E[X²] of channel {} is infinite {why}", channel + 1);
+        let found = format!("E[X²] of channel {} {why}", channel + 1);
         Err(Refusal::mismatch("a finite variance", found))
     })
 }

@@ -46,7 +46,8 @@ pub trait Body: Send + Sync {
         self.leaving(albedo)
     }
 
-    /// The critical length or depth beyond which they are infinite, in words; `None` where they are finite.
+    /// Reason in words, a predicate as in "is infinite from …", if they are infinite or too near to that to tell;
+    /// `None` where they are finite.
     fn beyond(&self, albedo: f64) -> Option<String>;
 
     /// Energies by orders of scattering; `None` where they are not known.
@@ -100,7 +101,7 @@ impl<'a> Spectrum<'a> {
         if product == 0.0 { 0.0 } else { product / scatter.powi(total - 1) }
     }
 
-    /// First channel with an infinite second moment, and the length or depth from which on it is infinite.
+    /// First channel with a second moment that is infinite, or too near to that to tell, and the reason in words.
     pub fn diverges(&self) -> Option<(usize, String)> {
         let walkers = self.walkers();
         (0..self.colours.albedos.len()).find_map(|channel| {
