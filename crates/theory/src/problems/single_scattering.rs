@@ -28,6 +28,8 @@
 //! A light on the line of the ray is refused: where it lies on the ray, L is infinite.
 //!
 //! The answer is a quadrature over s to 12 digits; the optical depths of both stretches are exact.
+//! Along rays through more than 256 pieces, as in noise of many octaves, shadow rays are interpolated. The error is
+//! then estimated from two resolutions, about 1e-5 of the answer.
 //!
 //! Sources: L. Szirmay-Kalos, I. Georgiev, M. Magdics, B. Molnár, D. Légrády, *Unbiased Light
 //! Transport Estimators for Inhomogeneous Participating Media*, Computer Graphics Forum 36 (2017),

@@ -9,6 +9,7 @@
 
 use super::camera::Losses;
 use super::scene::{Node, Scene};
+use super::shadows::Among;
 use numeric::Span;
 
 /// The nodes of all panels.
@@ -44,13 +45,13 @@ pub struct Solved {
 }
 
 impl<'a> Chain<'a> {
-    /// The chain on the given panels of the stretched variable.
-    pub fn new(scene: &'a Scene<'a>, panels: &[Span]) -> Self {
+    /// The chain on the given panels of the stretched variable, by all or half of the interpolated shadow rays.
+    pub fn new(scene: &'a Scene<'a>, panels: &[Span], among: Among) -> Self {
         let losses = |x: f64| scene.camera.losses(scene.stretched(x).s);
         let panel = |&x: &Span| {
             let node = |&at: &f64| {
                 let place = scene.stretched(x.from + at * x.length());
-                let node = scene.node(place);
+                let node = scene.node_among(place, among);
                 let collision = scene.camera.collision(place.s, node.extinction);
                 let losses = scene.camera.losses(place.s);
                 At { node, losses, collision, stretch: place.stretch }

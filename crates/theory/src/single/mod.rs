@@ -12,7 +12,8 @@
 //! two techniques are weighted by the densities of whole null-scattering paths, weights depend on the walk from the
 //! origin, too ([`mis`]). Draws that scatter at several points of one walk obey a chain of such integrals
 //! ([`chain`]). Where a part of the answer has no closed form, the whole is a quadrature in one variable, adaptive
-//! to a bound that is stated.
+//! to a bound that is stated. In media of many pieces shadow rays are interpolated, and the error is estimated
+//! ([`shadows`]).
 
 pub mod camera;
 pub mod chain;
@@ -23,6 +24,7 @@ pub mod predict;
 pub mod quick;
 pub mod scene;
 pub mod segment;
+pub mod shadows;
 pub mod walks;
 
 pub use camera::Camera;

@@ -2,6 +2,7 @@
 
 use super::camera::Camera;
 use super::segment::{Segment, Tracking};
+use super::shadows::{Among, MANY, Shadows};
 use crate::problems::{Problem, SingleScattering};
 use crate::raw::added;
 use numeric::quadrature::GaussLegendre;
@@ -78,6 +79,8 @@ pub struct Scene<'a> {
     /// More kinks of the integrands.
     pub cuts: Vec<f64>,
     rule: GaussLegendre,
+    /// Shadow rays, where they are interpolated.
+    pub(super) shadows: Option<Shadows>,
 }
 
 /// An integral of several functions, each with a bound on its error, and the panels that it took.
@@ -98,7 +101,32 @@ impl<'a> Scene<'a> {
         shadow: Tracking,
         cuts: Vec<f64>,
     ) -> Self {
-        Self { problem, camera, shadow, cuts, rule: GaussLegendre::new(16) }
+        let rule = GaussLegendre::new(16);
+        let mut scene = Self { problem, camera, shadow, cuts, rule, shadows: None };
+        scene.shadows = scene.interpolated(shadow);
+        scene
+    }
+
+    /// Shadow rays that are interpolated, in a medium of many pieces.
+    fn interpolated(&self, tracking: Tracking) -> Option<Shadows> {
+        let medium = self.problem.medium();
+        let (support, pieces) = (medium.support(), medium.breaks().len());
+        if support.is_empty() || pieces <= MANY {
+            return None;
+        }
+        let [from, to] = [support.from, support.to].map(|s| self.unstretched(s));
+        let follow = |x: f64| self.followed(self.stretched(x), tracking);
+        Shadows::new(Span::new(from, to), pieces, follow)
+    }
+
+    /// The shadow ray from a place.
+    pub(super) fn followed(&self, Place { s, along, .. }: Place, tracking: Tracking) -> Segment {
+        let cast = self.problem.shadow_medium(s);
+        let mut shadow = Segment::of_shadow(tracking, cast.as_ref(), &self.rule);
+        // The shadow ray begins at s, which is rounded.
+        let place = f64::EPSILON * (s.abs() + self.problem.foot().abs());
+        shadow.error += shadow.size * place / along.hypot(self.problem.distance());
+        shadow
     }
 
     /// The Gauss rule of a panel.
@@ -106,15 +134,20 @@ impl<'a> Scene<'a> {
         &self.rule
     }
 
-    /// Quantities at a distance.
-    pub fn node(&self, Place { s, along, .. }: Place) -> Node {
+    /// Quantities at a place.
+    pub fn node(&self, place: Place) -> Node {
+        self.node_among(place, Among::All)
+    }
+
+    /// Quantities at a place, by all or half of the interpolated shadow rays.
+    pub fn node_among(&self, place: Place, among: Among) -> Node {
+        let Place { s, along, .. } = place;
         let medium = self.problem.medium();
         let depth = medium.optical_depth(Span::new(medium.support().from, s));
-        let cast = self.problem.shadow_medium(s);
-        let mut shadow = Segment::of_shadow(self.shadow, cast.as_ref(), &self.rule);
-        // The shadow ray begins at s, which is rounded.
-        let place = f64::EPSILON * (s.abs() + self.problem.foot().abs());
-        shadow.error += shadow.size * place / along.hypot(self.problem.distance());
+        let shadow = match &self.shadows {
+            Some(shadows) => shadows.at(self.unstretched_by(along), among),
+            None => self.followed(place, self.shadow),
+        };
         let [source, rounding] = self.problem.source_beyond(along);
         Node {
             s,
@@ -136,19 +169,38 @@ impl<'a> Scene<'a> {
         Place { s: self.problem.foot() + along, along, stretch: distance * x.cosh() }
     }
 
+    pub(super) fn unstretched(&self, s: f64) -> f64 {
+        self.unstretched_by(s - self.problem.foot())
+    }
+
+    fn unstretched_by(&self, along: f64) -> f64 {
+        (along / self.problem.distance()).asinh()
+    }
+
     /// L by quadrature of exact optical depths, computed once for all experiments on it.
     pub fn radiance(&self) -> Known {
         let problem = self.problem;
         let medium = problem.medium();
         let from = medium.support().from;
         problem.radiance(|| {
-            let found = self.over([RADIANCE], Vec::new(), &|Place { s, along, .. }| {
+            let shadows = self.interpolated(Tracking::Exact);
+            let gathered = |Place { s, along, .. }: Place, among: Among| {
                 let before = medium.optical_depth(Span::new(from, s)).value;
-                let beyond = problem.shadow_medium(s);
-                let beyond = beyond.map_or(0.0, |m| m.optical_depth(m.support()).value);
+                let beyond = match &shadows {
+                    Some(shadows) => -shadows.at(self.unstretched_by(along), among).powers[1].ln(),
+                    None => {
+                        let cast = problem.shadow_medium(s);
+                        cast.map_or(0.0, |m| m.optical_depth(m.support()).value)
+                    }
+                };
                 let source = problem.source_beyond(along)[0];
                 [medium.extinction(s) * source * (-(before + beyond)).exp()]
-            });
+            };
+            let among = shadows.as_ref().map_or(Vec::new(), |shadows| self.places(shadows));
+            let mut found = self.over([RADIANCE], among, &|place| gathered(place, Among::All));
+            if shadows.is_some() {
+                self.compare(&mut found, &|place| gathered(place, Among::Half));
+            }
             let [value] = found.value;
             // The optical depths add their own rounding, and so do positions next to the light.
             let depths = 2.0 * medium.optical_depth(medium.support()).error;
@@ -166,8 +218,7 @@ impl<'a> Scene<'a> {
         s.extend((1..STEPS).map(|i| support.from + support.length() * i as f64 / STEPS as f64));
         s.retain(|&s| support.contains_inside(s));
         s.extend([support.from, support.to]);
-        let unstretch = |s: f64| ((s - self.problem.foot()) / self.problem.distance()).asinh();
-        let mut x: Vec<f64> = s.into_iter().map(unstretch).collect();
+        let mut x: Vec<f64> = s.into_iter().map(|s| self.unstretched(s)).collect();
         x.sort_by(f64::total_cmp);
         let mut ends = vec![x[0]];
         for pair in x.windows(2).filter(|pair| pair[1] > pair[0]) {
@@ -203,7 +254,28 @@ impl<'a> Scene<'a> {
     ) -> Integral<N> {
         cuts.extend(&self.cuts);
         cuts.extend(self.camera.cuts());
-        self.over(parts, cuts, &|place| f(&self.node(place)))
+        cuts.extend(self.shadows.iter().flat_map(|shadows| self.places(shadows)));
+        let mut found = self.over(parts, cuts, &|place| f(&self.node(place)));
+        if self.shadows.is_some() {
+            self.compare(&mut found, &|place| f(&self.node_among(place, Among::Half)));
+        }
+        found
+    }
+
+    /// The places of shadow rays that are interpolated.
+    fn places(&self, shadows: &Shadows) -> Vec<f64> {
+        shadows.places().map(|x| self.stretched(x).s).collect()
+    }
+
+    /// Adds the difference to the integral by half of the shadow rays to the errors.
+    fn compare<const N: usize>(&self, found: &mut Integral<N>, f: &dyn Fn(Place) -> [f64; N]) {
+        let mut sums = [Sum::default(); N];
+        for &x in &found.panels {
+            sums.iter_mut().zip(self.panel(x, f)).for_each(|(sum, value)| sum.add(value));
+        }
+        for ((error, value), sum) in found.error.iter_mut().zip(found.value).zip(sums) {
+            *error += (value - sum.value()).abs();
+        }
     }
 
     /// `∫ f ds` over the support for a function of places, with panels that end at cuts, too.

@@ -11,6 +11,7 @@ use super::chain::{At, Chain, Solved, halved};
 use super::predict::{DENSITY, LOOKUPS, MOMENT, Points};
 use super::scene::{Node, Scene};
 use super::segment::Segment;
+use super::shadows::Among;
 use crate::raw::{self, BINOMIAL, added, poisson};
 use numeric::Span;
 
@@ -32,11 +33,13 @@ pub const ORDERS: [[usize; 4]; 11] = [
 /// Moments on halved panels, and a relative error bound: the difference to the moments on the panels, and the
 /// rounding of the terms, relative to the sums of their absolute values. `powers` returns moments and these sums.
 fn both(
+    scene: &Scene,
     panels: &[Span],
     rounding: f64,
-    powers: impl Fn(&[Span]) -> [[f64; 5]; 2],
+    powers: impl Fn(&Chain) -> [[f64; 5]; 2],
 ) -> ([f64; 5], f64) {
-    let ([coarse, _], [fine, sizes]) = (powers(panels), powers(&halved(panels)));
+    let [coarse, _] = powers(&Chain::new(scene, panels, Among::Half));
+    let [fine, sizes] = powers(&Chain::new(scene, &halved(panels), Among::All));
     let off = |k: usize| {
         let rounded = (SUMS + rounding) * sizes[k].abs().max(fine[k].abs());
         ((fine[k] - coarse[k]).abs() + rounded) / fine[k].abs()
@@ -140,12 +143,11 @@ pub fn at_collisions(scene: &Scene) -> Points {
         let known = powers_of_sum(chain, 4, signed, &scored);
         std::array::from_fn(|k| if k == 0 { 1.0 } else { known[k - 1].begin })
     };
-    let powers = |panels: &[Span]| {
-        let chain = Chain::new(scene, panels);
-        let sizes = if chain.is_signed() { of(&chain, false) } else { [0.0; 5] };
-        [of(&chain, true), sizes]
+    let powers = |chain: &Chain| {
+        let sizes = if chain.is_signed() { of(chain, false) } else { [0.0; 5] };
+        [of(chain, true), sizes]
     };
-    let (powers, error) = both(&panels, rounding, powers);
+    let (powers, error) = both(scene, &panels, rounding, powers);
     let (truth, lookups) = (scene.radiance(), Some(raw::of_cumulants(cumulants)));
     let counted = SUMS + off / cumulants[0];
     Points { truth, powers, error, eighth: None, lookups, least: 0.0, counted }
@@ -162,9 +164,8 @@ fn power(x: f64, k: usize) -> f64 {
 /// ```
 pub fn resampled(scene: &Scene, shadow_is_free: bool) -> Points {
     let Scattered { panels, rounding, .. } = scattered_at_collisions(scene);
-    let powers = |panels: &[Span]| {
-        let chain = Chain::new(scene, panels);
-        let f = powers_of_sum(&chain, 3, false, &|_, h, j| power(h, j));
+    let powers = |chain: &Chain| {
+        let f = powers_of_sum(chain, 3, false, &|_, h, j| power(h, j));
         let last = |k: usize, odd: bool| {
             let mut g: Vec<Solved> = Vec::new();
             for j in 0..k {
@@ -200,7 +201,7 @@ pub fn resampled(scene: &Scene, shadow_is_free: bool) -> Points {
         }
         [powers, sizes]
     };
-    let (powers, error) = both(&panels, rounding, powers);
+    let (powers, error) = both(scene, &panels, rounding, powers);
     // The collision that casts the ray depends on all of them; without lookups of the ray this does not matter.
     let lookups = shadow_is_free.then(|| poisson(scene.camera.collisions()));
     let truth = scene.radiance();
@@ -220,8 +221,7 @@ pub fn at_points(scene: &Scene, count: usize, density: &dyn Fn(&Node) -> f64) ->
         let lookups = from_first.map(|k| density(node) * shadow[k]);
         (powers, lookups, blur(node) + 4.0 * DENSITY)
     });
-    let powers = |panels: &[Span]| {
-        let chain = Chain::new(scene, panels);
+    let powers = |chain: &Chain| {
         // E[A₁^{n₁} A₂^{n₂} …] with A_m = ∫ p (T̂ σ_t S/p)^m E[T̂_shadow^m] ds, by total degree.
         let mut known: Vec<([usize; 4], Solved)> = Vec::new();
         for order in ORDERS {
@@ -252,7 +252,7 @@ pub fn at_points(scene: &Scene, count: usize, density: &dyn Fn(&Node) -> f64) ->
         // All terms are positive.
         [[1.0, of[0], second / n.powi(2), third / n.powi(3), fourth / n.powi(4)], [0.0; 5]]
     };
-    let (powers, error) = both(&found.panels, found.rounding, powers);
+    let (powers, error) = both(scene, &found.panels, found.rounding, powers);
     let [first, ..] = found.lookups;
     let each = std::array::from_fn(|k| if k == 0 { 1.0 } else { found.lookups[k - 1] });
     let walk = poisson(scene.camera.collisions());
