@@ -46,6 +46,9 @@ pub struct ExperimentRecord {
     pub lookups_deviation: Option<f64>,
     /// The predicted variance of the number of lookups of one draw.
     pub lookups_variance: Option<f64>,
+    /// Bound on the relative error of the predicted mean number of lookups.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub lookups_error: Option<f64>,
     /// Predicted probabilities `P(0), P(1), …` of the number of lookups of one draw; empty if unknown or longer than 100.
     pub lookups_pmf: Vec<f64>,
     /// The share of the ray on which `w ≤ 2σ_t`, the stability condition, holds.
@@ -144,6 +147,9 @@ pub struct ChannelRecord {
     /// Bound on the relative error of the predicted variance and, if that is known, of the fourth moment; `None`
     /// without a bound.
     pub moments_error: Option<f64>,
+    /// Predicted covariance of one draw with the next channel; `None` for the last channel, or if it is unknown.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub covariance: Option<f64>,
     /// `n(2)`: fewer draws do not contain the events that make the variance.
     pub rare_event_size: Option<f64>,
     /// `E[X⁸]/E[X⁴]²`, the weight of the tails of the sample variance.

@@ -7,7 +7,7 @@ use crate::record::{ChannelRecord, Course, ExperimentRecord, Score, Verdict};
 use estimators::Refusal;
 use gate::stats::Tally;
 use theory::prediction::CERTAIN;
-use theory::{Channel, Prediction};
+use theory::{Channel, CountLaw, Prediction};
 
 /// Maximum number of probabilities in the record; a longer list is left out.
 const LONGEST_LAW: usize = 100;
@@ -33,6 +33,11 @@ pub fn predicted(case: &PlannedCase, planned: &Planned) -> ExperimentRecord {
     let prediction = &ready.prediction;
     let law = prediction.lookups.as_ref();
     let cost = prediction.cost(planned.draws_per_ray);
+    let mut channels: Vec<ChannelRecord> =
+        prediction.channels.iter().map(|channel| of_channel(channel, cost)).collect();
+    for covariance in prediction.covariances.iter().filter(|c| c.pair[1] == c.pair[0] + 1) {
+        channels[covariance.pair[0]].covariance = finite(Some(covariance.value));
+    }
     let pmf = law.filter(|law| law.pmf.len() <= LONGEST_LAW).map(|law| law.pmf.clone());
     ExperimentRecord {
         same_as: planned.same_as.clone(),
@@ -41,8 +46,9 @@ pub fn predicted(case: &PlannedCase, planned: &Planned) -> ExperimentRecord {
         setup_lookups: Some(prediction.setup_lookups),
         stable_share: prediction.stable_share,
         lookups_variance: law.map(|law| law.variance),
+        lookups_error: finite(law.map(|law| law.error.max(CountLaw::ERROR))),
         lookups_pmf: pmf.unwrap_or_default(),
-        channels: prediction.channels.iter().map(|channel| of_channel(channel, cost)).collect(),
+        channels,
         ..blank
     }
 }

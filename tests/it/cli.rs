@@ -200,6 +200,25 @@ fn results_are_written_where_they_are_wanted() {
     assert_eq!(temporary.count(), 0);
 }
 
+/// A particle leaves a slab on one side only: `Cov[X_R, X_T] = −RT`.
+#[test]
+fn predictions_hold_covariances_of_neighbouring_channels() {
+    let slab = "title = \"slab\"\n[problem.slab]\nmedium.constant.extinction = 1\nspan = [0, 2]\nalbedo = 0.9\n\
+                phase.isotropic = {}\nincidence.diffuse = {}\nsampling.constant.value = 1\n\
+                estimators = [\"analog\", \"weighted\"]\n";
+    let place = Place::new(&[("case.toml", slab)]);
+    let json = place.run("predict case.toml --format json");
+    let rows: Vec<serde_json::Map<String, serde_json::Value>> =
+        serde_json::from_slice(&json.stdout).expect("JSON and nothing else");
+    for pair in rows.chunks(2) {
+        let number = |row: usize, column: &str| pair[row][column].as_f64().expect("a number");
+        let product = number(0, "truth") * number(1, "truth");
+        assert!((number(0, "covariance") / product + 1.0).abs() < 1e-12, "{pair:?}");
+        assert_eq!(pair[1]["covariance"], serde_json::Value::Null);
+        assert!(number(0, "lookups_error") < 1e-3, "{pair:?}");
+    }
+}
+
 #[test]
 fn csv_and_json_hold_the_columns_and_nothing_else() {
     let place = Place::new(&[("case.toml", GOOD)]);
@@ -216,6 +235,7 @@ fn csv_and_json_hold_the_columns_and_nothing_else() {
             assert!(rows[0].contains_key(column), "{command}: no {column}");
         }
         assert!(rows[0]["moments_error"].is_number(), "{command}");
+        assert!(rows[0]["lookups_error"].is_number(), "{command}");
         assert_eq!(rows[0]["best_fom"].is_number(), command.ends_with("optimum"), "{command}");
         // Unknown numbers are empty, never zero.
         if !command.starts_with("run") {

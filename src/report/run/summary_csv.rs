@@ -96,6 +96,8 @@ pub fn columns<'a>() -> Vec<Column<Line<'a>>> {
         "needs" = |line| &line.experiment.needs;
         "best_kind" = |line| line.best_kind();
         "best_limit" = |line| line.best_limit();
+        "lookups_error" = |line| line.experiment.lookups_error;
+        "covariance" = |line| line.covariance;
     }
 }
 

@@ -66,6 +66,8 @@ const MOMENTS: &[Spec] = &[
     ("m error", true, 0, |row| digits(row.moments_error, 2)),
     ("lookups", true, 0, |row| digits(row.experiment.predicted_lookups, 4)),
     ("± σ", true, 0, |row| digits(row.experiment.lookups_variance.map(f64::sqrt), 4)),
+    ("N error", true, 0, |row| digits(row.experiment.lookups_error, 2)),
+    ("Cov next", true, 0, |row| digits(row.covariance, 4)),
     ("n(2)", true, 0, |row| digits(row.rare_event_size, 3)),
     ("setup", true, 0, SETUP.3),
     ("best σ\u{302}", true, 0, best_sampling),
