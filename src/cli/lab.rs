@@ -1,5 +1,6 @@
 //! `trueflight stress` and `trueflight self-test`: the limits of doubles, and the test of the gate itself.
 
+use std::any::Any;
 use std::path::PathBuf;
 use std::time::Instant;
 
@@ -13,6 +14,7 @@ use crate::report::{self_test, stress as page};
 use crate::self_test::{SelfTest, calibration, mutation};
 use crate::stress::{self, Effort, PAGES, Run};
 use lab::streams;
+use theory::Prediction;
 
 /// Arguments of `stress`.
 #[derive(Debug, Args)]
@@ -36,7 +38,7 @@ pub(super) fn stress(arguments: &Stress, console: &Console) -> anyhow::Result<u8
     // Single precision comes after the pages.
     let bar = output::progress("stressing", "parts", PAGES.len() as u64 + 1, console);
     let run = Run { effort, seed: arguments.seed.seed };
-    let found = arguments.threads.install(|| Ok(stress::all(run, stated, &|_| bar.inc(1))))?;
+    let found = arguments.threads.install(|| Ok(stress::all(run, prepared, &|_| bar.inc(1))))?;
     bar.finish_and_clear();
     let written = output::write(&page::artifacts(&found)?, &arguments.out);
     if !console.quiet {
@@ -49,17 +51,14 @@ pub(super) fn stress(arguments: &Stress, console: &Console) -> anyhow::Result<u8
     Ok(u8::from(!found.holds()))
 }
 
-/// Returns truth and relative variance that theory states of a channel of a case with one estimator.
-pub fn stated(text: &str, channel: &str) -> Option<(f64, Option<f64>)> {
+/// Returns the setup of a case with one estimator, and the prediction for it; `None` where it is refused.
+pub fn prepared(text: &str) -> Option<(Box<dyn Any>, Prediction)> {
     /// Address of pilot draws, where theory has no variance.
     const NOWHERE: Address = Address { seed: 0, experiment: 0, block: 0, lane: 0 };
     let source = Source { name: "stress".into(), path: "stress.toml".into(), text: text.into() };
     let case = Case::read(&source).ok()?;
-    let ready = case.at(None).and_then(|at| at.prepare(0, NOWHERE)).ok()?;
-    let found = ready.prediction.channels.iter().find(|found| found.name == channel)?;
-    let truth = found.truth.value;
-    let variance = found.moments.map(|moments| moments.variance() / (truth * truth));
-    Some((truth, variance.filter(|variance| variance.is_finite())))
+    let at = case.at(None).ok()?;
+    Some((at.setup(0, NOWHERE).ok()?, at.predict(0, None, NOWHERE)?))
 }
 
 /// Number of independent runs of the long calibration.

@@ -327,13 +327,23 @@ impl Plan {
         }
     }
 
+    /// Runs the walk of the plan on a setup, one walk after the other.
+    #[inline(always)]
+    pub fn run_on<R: Run>(
+        &self,
+        setup: &Setup<SingleScattering>,
+        medium: &Lookups,
+        run: R,
+    ) -> R::Output {
+        let volume = setup.problem.volume();
+        let rays = ShadowRays::new(volume, volume.bounds(), self.shadow);
+        self.run(Ground::new(setup, medium, &rays, &[]), run)
+    }
+
     /// Makes one draw: compiled once for all pages.
     #[inline(never)]
     fn draw(&self, setup: &Setup<SingleScattering>, medium: &Lookups, random: &mut Stream) -> Draw {
-        let volume = setup.problem.volume();
-        let rays = ShadowRays::new(volume, volume.bounds(), self.shadow);
-        let ground = Ground::new(setup, medium, &rays, &[]);
-        self.run(ground, One { setup, medium, random })
+        self.run_on(setup, medium, One { setup, medium, random })
     }
 
     /// Makes the draws of a request in packets. Returns the request where the hardware is too narrow, where σ̂ has
@@ -363,9 +373,11 @@ impl Plan {
 }
 
 /// A use of a walk.
-trait Run {
+pub trait Run {
+    /// What it makes of the walk.
     type Output;
 
+    /// Uses the walk.
     fn run(self, walk: &impl Walk) -> Self::Output;
 }
 

@@ -20,7 +20,7 @@ use crate::DrawBuffer;
 use crate::kernels::Request;
 use crate::kernels::bank::{Numbers, Slot, Slots, leave};
 use numeric::pack::WIDTH;
-use numeric::rng::{LANES, Random, Stream};
+use numeric::rng::{LANES, Random};
 use numeric::twin::PAIR;
 use numeric::{Lane, Mask, Single};
 
@@ -89,7 +89,7 @@ pub trait Walk {
 pub fn one<L: Single, W: Walk>(
     walk: &W,
     look_up: impl Fn(Option<[L; 3]>) -> W::Met<L>,
-    random: &mut Stream,
+    random: &mut impl Random<L>,
 ) -> W::State<L> {
     let mut state = walk.none(L::of(1.0));
     walk.restart(&mut state, random);

@@ -16,7 +16,7 @@ use media::{Batches, Majorants};
 use numeric::fused::{Loop, in_own_rounding};
 use numeric::geometry::Point;
 use numeric::pack::{self, Task};
-use numeric::rng::Stream;
+use numeric::rng::{Random, Stream};
 use numeric::twin::PAIR;
 use numeric::{Single, Twin};
 use theory::problems::{Albedo, Channels, Scene};
@@ -60,16 +60,27 @@ impl<V: Channels, T: Tally, S: Steps, const SPLITS: bool> Loop for One<'_, V, T,
     fn run<L: Single>(self) -> Draw<V> {
         let Self { walk, tally, splitting, scene, random, .. } = self;
         let look_up = |place: Option<[L; 3]>| look_up(scene, place);
-        let state = if SPLITS {
-            splitting::follow(&walk, splitting, look_up, random)
-        } else {
-            bank::one(&walk, look_up, random)
-        };
-        let (sums, channels) = (T::sums(&state.found), tally.channels());
-        let value = |channel: usize| sums[channels[channel]].double();
-        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // a count
-        Draw::free(V::of(channels.len(), value), state.lookups.double() as u32)
+        follow::<L, V, T, SPLITS>(&walk, (tally, splitting), look_up, random)
     }
+}
+
+/// Makes one draw in any lane of one number, given σ_t and the albedo at a place, if they are needed.
+#[inline(always)]
+pub fn follow<L: Single, V: Channels, T: Tally, const SPLITS: bool>(
+    walk: &InSpace<T, impl Steps>,
+    (tally, splitting): (&T, Splitting),
+    look_up: impl Fn(Option<[L; 3]>) -> [L; 2],
+    random: &mut impl Random<L>,
+) -> Draw<V> {
+    let state = if SPLITS {
+        splitting::follow(walk, splitting, look_up, random)
+    } else {
+        bank::one(walk, look_up, random)
+    };
+    let (sums, channels) = (T::sums(&state.found), tally.channels());
+    let value = |channel: usize| sums[channels[channel]].double();
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // a count
+    Draw::free(V::of(channels.len(), value), state.lookups.double() as u32)
 }
 
 /// σ_t and the albedo at a place, if they are needed.

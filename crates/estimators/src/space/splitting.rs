@@ -8,7 +8,7 @@ use super::particle::Splitting;
 use super::tally::Tally;
 use super::walk::{InSpace, State, Steps};
 use numeric::Single;
-use numeric::rng::Stream;
+use numeric::rng::Random;
 
 /// Makes one draw: follows a walk and the particles that split off to their ends.
 #[inline(always)]
@@ -16,7 +16,7 @@ pub fn follow<L: Single, T: Tally, S: Steps>(
     walk: &InSpace<T, S>,
     splitting: Splitting,
     look_up: impl Fn(Option<[L; 3]>) -> [L; 2],
-    random: &mut Stream,
+    random: &mut impl Random<L>,
 ) -> State<L, T::Found<L>> {
     let mut state = walk.none(L::of(1.0));
     walk.restart(&mut state, random);

@@ -152,7 +152,7 @@ kept! {
 ///
 /// With `0 ≤ r ≤ 1` the probability to go on is `q = 1 − r`, and a survivor's due is `(1 − r)/q = 1`: the invariant of
 /// [`Product`] holds without being followed. A negative r, which the rule does not allow, breaks it.
-pub struct Survival<'a, R>(Product<'a, R>);
+pub struct Survival<'a, R>(pub Product<'a, R>);
 
 impl<R> Clone for Survival<'_, R> {
     #[inline(always)]

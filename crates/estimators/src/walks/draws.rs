@@ -6,7 +6,7 @@ use super::{Nowhere, Walk, bank, plain, window};
 use crate::setup::{OnRay, Residual};
 use crate::{Draw, Estimated, Kernel, Request, Setup};
 use media::course::{BothWays, Even, Pieces};
-use media::{Control, Inlined, Lookups, Piecewise};
+use media::{Control, Extinction, Inlined, Lookups, Piecewise};
 use numeric::fused::{Loop, in_fused_code, in_own_rounding};
 use numeric::pack::{self, Task};
 use numeric::rng::Stream;
@@ -83,7 +83,8 @@ where
             buffer.push(&plain::through::<L, W, P::Value>(
                 self.walk,
                 sampling,
-                self.medium,
+                #[inline(always)]
+                |channel, t| self.medium.channel(channel).extinction(t),
                 random,
             ));
         }

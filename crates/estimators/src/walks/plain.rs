@@ -37,24 +37,31 @@ impl<W: Walk, V: Channels> Loop for One<'_, W, V> {
 
     #[inline(always)]
     fn run<L: Single>(self) -> Draw<V> {
-        through::<L, W, V>(self.walk, self.sampling, self.medium, self.random)
+        let Self { walk, sampling, medium, random, .. } = self;
+        through::<L, W, V>(
+            walk,
+            sampling,
+            #[inline(always)]
+            |channel, t| medium.channel(channel).extinction(t),
+            random,
+        )
     }
 }
 
-/// Makes one draw in any lane type of a single walk.
+/// Makes one draw in any lane type of a single walk, given σ_t of a channel at a distance.
 #[inline(always)]
 pub fn through<L: Single, W: Walk, V: Channels>(
     walk: &W,
     sampling: &Piecewise,
-    medium: &Lookups,
+    look_up: impl Fn(usize, L) -> L,
     random: &mut impl Random<L>,
 ) -> Draw<V> {
     if W::IS_NOWHERE {
-        return follow(walk, Nowhere, medium, random);
+        return follow(walk, Nowhere, look_up, random);
     }
     match sampling.even() {
-        Some(even) => follow(walk, Even::new(L::of(0.0), even), medium, random),
-        None => follow(walk, Pieces::new(L::of(0.0), sampling), medium, random),
+        Some(even) => follow(walk, Even::new(L::of(0.0), even), look_up, random),
+        None => follow(walk, Pieces::new(L::of(0.0), sampling), look_up, random),
     }
 }
 
@@ -63,7 +70,7 @@ pub fn through<L: Single, W: Walk, V: Channels>(
 fn follow<L: Single, W: Walk, V: Channels>(
     walk: &W,
     course: impl BothWays<L>,
-    medium: &Lookups,
+    look_up: impl Fn(usize, L) -> L,
     random: &mut impl Random<L>,
 ) -> Draw<V> {
     let (zero, one) = (L::of(0.0), L::of(1.0));
@@ -88,7 +95,7 @@ fn follow<L: Single, W: Walk, V: Channels>(
             t = walk.distance(&state, &route);
             mean_free_path = walk.mean_free_path(&state, &route);
             for (channel, found) in extinctions.iter_mut().enumerate() {
-                *found = medium.channel(channel).extinction(t);
+                *found = look_up(channel, t);
             }
         } else if !W::PAUSES {
             break true;

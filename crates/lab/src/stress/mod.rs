@@ -148,8 +148,8 @@ pages! {
     spectral,
 }
 
-/// Runs the stress test, given the theory of cases; `done` receives the name of each page that is finished.
-pub fn all(run: Run, stated: narrow::Stated, done: &(dyn Fn(&str) + Sync)) -> Stress {
+/// Runs the stress test, given the setups of cases; `done` receives the name of each page that is finished.
+pub fn all(run: Run, prepare: narrow::Prepare, done: &(dyn Fn(&str) + Sync)) -> Stress {
     let begin = std::time::Instant::now();
     // At once: the last trials of a page alone would leave threads idle.
     let (rows, narrow) = rayon::join(
@@ -161,7 +161,7 @@ pub fn all(run: Run, stated: narrow::Stated, done: &(dyn Fn(&str) + Sync)) -> St
             })
         },
         || {
-            let narrow = narrow::measure(run, stated);
+            let narrow = narrow::measure(run, prepare);
             done("narrow");
             narrow
         },

@@ -1,44 +1,38 @@
 //! Single precision against double: where does a renderer's rounding outgrow its noise?
 //!
-//! The same walk is made twice from the same random words, in doubles of 53 and in
-//! [`Narrow`](numeric::Narrow) numbers of 24 bits, through a medium of three waves. The difference of
-//! the two means is the bias that single precision adds; with common random numbers a few thousand walks
-//! find it. Decisions are averaged in each precision, exactly as it decides: those that end a walk along a
-//! ray in `compare`; of walks that scatter, those at boundaries. Which way the latter go at a collision is
-//! decided once for both and weighted by its likelihood (`trail`). So walks that end find the bias as well.
+//! The estimators' own walks are made twice from the same random words, with lanes of 53 bits and of 24
+//! ([`Narrow`](numeric::Narrow)). The difference of the two means is the bias that single precision adds. With common random
+//! numbers and common decisions (`trail`) a few thousand walks find it.
 //!
 //! ```text
-//! σ_t(t) = (τ/ℓ)(1 + 0.8 sin(6π(t − t₀)/ℓ)),  t = t₀ … t₀ + ℓ;  a ball of diameter ℓ in `space`
 //! bias   |mean of X₂₄ − X₅₃|/E[X]     noise  √(V/n)/E[X] of n = 1e8 draws
-//! u₂₄    the upper 24 bits of the word: 1 − k/2²⁴, as renderers make it
+//! u₂₄    the upper 24 bits of a word, as renderers make it: k/2²⁴
 //! ```
 //!
-//! V and the mean are what theory says of a case of the same words. Where it knows no V (roulette, walks in
-//! space) that of the doubles' own draws takes its place, and where it has no answer their mean.
+//! E[X] and V are theory's. Where theory knows no V (roulette, walks in space) that of the doubles takes its place.
 //!
-//! The lattice of u₂₄ alone shortens flights by `ln(2πN)/(2N) = 5.5e-7`, N = 2²⁴: estimators of small
-//! variance notice it first.
+//! The lattice of u₂₄ alone shortens flights by `ln(2πN)/(2N) = 5.5e-7`, N = 2²⁴: estimators of small variance are the first
+//! to be biased by it.
 
-pub mod compare;
-pub mod dice;
-pub mod layers;
-mod place;
-pub mod precision;
 pub mod scene;
-mod single_scattering;
-mod space;
 pub mod trail;
-pub mod transmittance;
+pub mod walks;
 
-use self::compare::{Compare, Spread, Theory};
+use std::any::Any;
+
 use self::scene::Scene;
+use self::walks::{Entry, Subject};
 use super::{Measure, Row, Run};
-use theory::parallel;
+use theory::{Channel, Prediction, parallel};
 
-/// The draws whose statistical error the bias is compared with.
+/// The number of draws whose statistical error the bias is compared with.
 pub const DRAWS: f64 = 1e8;
+/// Most walks of a point.
+const MAX_WALKS: f64 = 1e6;
+/// Fewest walks of a point: the first ones tell how many random words others will take.
+const MIN_WALKS: u64 = 25;
 
-/// What is varied.
+/// A quantity that is varied.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Along {
     /// Collisions on the ray: ∫σ̂ at τ = 2.
@@ -50,7 +44,7 @@ pub enum Along {
 }
 
 impl Along {
-    /// All of them.
+    /// All quantities.
     pub const ALL: [Self; 3] = [Self::Steps, Self::Depth, Self::Origin];
 
     /// The word in tables.
@@ -71,157 +65,143 @@ impl Along {
         }
     }
 
-    /// The scenes along it.
+    /// The scene at a value.
     fn scene(self, x: f64) -> Scene {
         match self {
-            Self::Steps => Scene::new(2.0, x, 0.0),
-            Self::Depth => Scene::new(x, 20.0 * 1.8 * x, 0.0),
-            Self::Origin => Scene::new(2.0, 40.0, x),
+            Self::Steps => Scene { depth: 2.0, collisions: x, from: 0.0 },
+            Self::Depth => Scene { depth: x, collisions: 20.0 * 1.8 * x, from: 0.0 },
+            Self::Origin => Scene { depth: 2.0, collisions: 40.0, from: x },
         }
     }
 }
 
-/// The values of each quantity.
-pub type Values = [&'static [f64]; 3];
-
-/// Those of estimators whose walks are short.
-const FINE: Values = [
+/// Values of each quantity.
+const VALUES: [&[f64]; 3] = [
     &[10.0, 30.0, 100.0, 300.0, 1e3, 3e3, 1e4, 3e4, 1e5, 3e5, 1e6],
     &[0.01, 0.1, 0.3, 1.0, 3.0, 10.0, 20.0, 40.0, 60.0, 80.0, 100.0],
     &[1.0, 10.0, 1e2, 3e2, 1e3, 3e3, 1e4, 3e4, 1e5, 3e5, 1e6],
 ];
-/// Those of rays that light is scattered to.
-const RAYS: Values = [
-    &[10.0, 30.0, 100.0, 300.0, 1e3, 3e3, 1e4, 3e4, 1e5],
-    COARSE[1],
-    &[1.0, 10.0, 1e2, 3e2, 1e3, 3e3, 1e4, 1e5, 1e6],
-];
-/// Those of walks that scatter.
-const COARSE: Values = [
-    &[10.0, 30.0, 100.0, 300.0, 1e3, 3e3, 1e4],
-    &[0.1, 0.3, 1.0, 3.0, 10.0, 30.0, 100.0],
-    &[1.0, 10.0, 1e2, 1e3, 1e4, 1e5, 1e6],
-];
-/// The same in balls, whose light theory knows up to here.
-const BALLS: Values = [COARSE[0], &[0.1, 0.3, 1.0, 3.0, 10.0, 30.0], COARSE[2]];
-/// Those of the short form.
-const QUICK: Values = [&[10.0, 1e3], &[1.0, 100.0], &[10.0, 1e5]];
-/// The same in balls.
-const QUICK_BALLS: Values = [&[10.0, 1e3], &[1.0, 10.0], &[10.0, 1e5]];
-
-/// Where, from which seed and for how many collisions both precisions are compared.
-#[derive(Debug, Clone, Copy)]
-pub struct Trial {
-    /// Where.
-    pub scene: Scene,
-    /// The seed of its walks.
-    pub seed: u64,
-    /// How many collisions it may cost.
-    pub budget: f64,
-}
-
-/// An estimator in the list of its family, and what is varied.
-pub type Entry = (&'static str, &'static dyn Compare, &'static [Along]);
-
-/// All that can be varied.
-const EVERY: &[Along] = &Along::ALL;
-/// Without σ̂ there are no collisions.
-const NO_STEPS: &[Along] = &[Along::Depth, Along::Origin];
-/// Without an end there is no depth.
-const NO_DEPTH: &[Along] = &[Along::Steps, Along::Origin];
+/// Values of the short form.
+const QUICK: [&[f64]; 3] = [&[10.0, 1e3], &[1.0, 10.0], &[10.0, 1e5]];
 
 /// Estimators of one kind of problem.
 pub struct Family {
     title: &'static str,
     /// Its estimators.
     pub entries: &'static [Entry],
-    /// In the short form and the full one.
-    values: [Values; 2],
-    /// How many collisions a point may cost, likewise.
+    /// The largest values of each quantity.
+    limits: [f64; 3],
+    /// Random words that the doubles of a point may take in the short form, and in the full one.
     budget: [f64; 2],
 }
 
 const fn family(
     title: &'static str,
     entries: &'static [Entry],
-    values: [Values; 2],
+    [collisions, depth]: [f64; 2],
     budget: [f64; 2],
 ) -> Family {
-    Family { title, entries, values, budget }
+    Family { title, entries, limits: [collisions, depth, f64::INFINITY], budget }
 }
 
-const SHORT: [f64; 2] = [3e4, 3e5];
-const LONG: [f64; 2] = [2e4, 3e5];
-
-/// All families.
+/// All families. Theory knows the light in balls up to τ = 30.
 pub const FAMILIES: &[Family] = &[
-    family("Transmittance by weights and chances", transmittance::PRODUCTS, [QUICK, FINE], SHORT),
-    family("Transmittance otherwise, free flight", transmittance::OTHERS, [QUICK, FINE], SHORT),
-    family("Rod", layers::RODS, [QUICK, COARSE], LONG),
-    family("Slab", layers::SLABS, [QUICK, COARSE], LONG),
-    family("Single scattering", single_scattering::ALL, [QUICK, RAYS], SHORT),
-    family("Space", space::ALL, [QUICK_BALLS, BALLS], LONG),
+    family("Transmittance by weights and decisions", walks::PRODUCTS, [1e6, 100.0], [3e4, 3e5]),
+    family("Transmittance otherwise, free flight", walks::OTHERS, [1e6, 100.0], [3e4, 3e5]),
+    family("Rod", walks::RODS, [1e4, 100.0], [2e4, 3e6]),
+    family("Slab", walks::SLABS, [1e4, 100.0], [2e4, 3e6]),
+    family("Single scattering", walks::POINTS, [1e5, 100.0], [3e4, 3e5]),
+    family("Space", walks::SPACE, [1e4, 30.0], [2e4, 3e6]),
 ];
 
-/// Truth and relative variance that theory states of a channel of a case with one estimator, the only channel where
-/// it has no name. Cases are read by the program only.
-pub type Stated = fn(text: &str, channel: &str) -> Option<(f64, Option<f64>)>;
-
-/// What theory says of a channel of a case.
-fn stated(scene: &Scene, text: &str, channel: &str) -> Theory {
-    let nothing = Theory { truth: None, variance: None, spread: Spread::Seen };
-    (scene.stated)(text, channel).map_or(nothing, |(truth, variance)| Theory {
-        truth: Some(truth),
-        variance,
-        ..nothing
-    })
-}
+/// The `Setup<P>` of a case with one estimator, and the prediction for it. Cases are read by the program only.
+pub type Prepare = fn(text: &str) -> Option<(Box<dyn Any>, Prediction)>;
 
 /// Both precisions at one point of a curve.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Point {
-    /// The value of what is varied.
+    /// The value of the quantity that is varied.
     pub x: f64,
-    /// How many walks.
+    /// Number of walks.
     pub walks: f64,
     /// The relative bias of single precision.
     pub bias: f64,
     /// Its standard error.
     pub error: f64,
-    /// The relative standard error of 1e8 draws.
+    /// The relative standard error of 1e8 draws; NaN where it is unknown, or so few walks do not see it.
     pub noise: f64,
-    /// The doubles' own mean against the truth, in standard errors; not for a biased estimator.
+    /// The doubles' own mean against the truth, in standard errors.
     pub z: Option<f64>,
 }
 
 impl Point {
-    /// Whether the bias is certainly larger than the noise.
+    /// The bias is certainly larger than the noise.
     pub fn exceeds(&self) -> bool {
         self.bias.abs() - 3.0 * self.error > self.noise
     }
 
-    /// Whether the bias is certainly smaller than the noise; with neither, the walks were too few.
+    /// The bias is certainly smaller than the noise. With neither, the walks were too few.
     pub fn holds(&self) -> bool {
         self.error > 0.0 && self.bias.abs() + 3.0 * self.error <= self.noise
     }
 }
 
+/// Compares both precisions in a scene by walks of a seed that take so many random words; `None` where theory refuses the case.
+#[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // at most MAX_WALKS
+pub fn compare(
+    entry: &Entry,
+    (scene, prepare): (&Scene, Prepare),
+    (seed, budget): (u64, f64),
+) -> Option<Point> {
+    let (setup, prediction) = prepare(&scene.case(entry.asked, entry.written))?;
+    let wanted = entry.asked[3];
+    let is_wanted = |channel: &Channel| wanted.is_empty() || channel.name == wanted;
+    let channel = prediction.channels.iter().position(is_wanted)?;
+    let subject = Subject { scene, setup: &*setup, channel, is_kept: entry.is_kept };
+    let Channel { truth, moments, .. } = &prediction.channels[channel];
+    // Sums of the doubles and of the differences, and of their squares.
+    let (mut sums, mut words) = ([[0.0; 2]; 2], 0.0);
+    let (mut walk, mut walks) = (0, MIN_WALKS);
+    while walk < walks {
+        let ([double, single], taken) = entry.draws.pair(subject, seed, walk)?;
+        for (sums, x) in sums.iter_mut().zip([double, single - double]) {
+            let x = x / truth.value;
+            *sums = [sums[0] + x, sums[1] + x * x];
+        }
+        (walk, words) = (walk + 1, words + taken);
+        if walk == MIN_WALKS {
+            walks = (budget / words * walk as f64).clamp(walk as f64, MAX_WALKS) as u64;
+        }
+    }
+    let walks = walks as f64;
+    let [[mean, spread], [bias, error]] = sums.map(|[sum, square]| {
+        let mean = sum / walks;
+        [mean, ((square / walks - mean * mean).max(0.0) / (walks - 1.0)).sqrt()]
+    });
+    let known = moments.map(|moments| moments.variance() / (truth.value * truth.value));
+    let known = known.filter(|variance| variance.is_finite());
+    let variance = known.unwrap_or(spread * spread * walks);
+    let is_seen = entry.is_kept || walks >= MIN_WALKS as f64 * variance.max(1.0);
+    let noise = if is_seen { (variance / DRAWS).sqrt() } else { f64::NAN };
+    let z = (is_seen && variance > 0.0).then_some((mean - 1.0) / (variance / walks).sqrt());
+    Some(Point { x: f64::NAN, walks, bias, error, noise, z })
+}
+
 /// One estimator along one quantity.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Curve {
-    /// What it is drawn together with.
+    /// The family in which it is drawn.
     pub family: &'static str,
     /// The estimator.
     pub estimator: &'static str,
-    /// What is varied.
+    /// The quantity that is varied.
     pub along: Along,
-    /// The points, ascending; none where there is nothing to vary.
+    /// The points, ascending; none where there is nothing to vary, or theory refuses all.
     pub points: Vec<Point>,
 }
 
 impl Curve {
-    /// The first value at which the bias exceeds the noise, there and up to the end of the curve or
-    /// not; `None` where it nowhere does.
+    /// The first value at which the bias exceeds the noise; `None` where it nowhere does.
     pub fn fails_from(&self) -> Option<f64> {
         self.points.iter().find(|point| point.exceeds()).map(|point| point.x)
     }
@@ -232,7 +212,7 @@ impl Curve {
     }
 }
 
-/// Where single precision fails.
+/// The comparison of single precision with doubles.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Narrow {
     /// Every estimator along every quantity: family by family, quantity by quantity.
@@ -244,15 +224,12 @@ impl Narrow {
     pub fn rows(&self) -> Vec<Row> {
         let estimators: usize = FAMILIES.iter().map(|family| family.entries.len()).sum();
         let range = format!("{estimators} estimators, all points of the plot");
-        let name = "mean of doubles beside f32";
-        let row = Row::new(name, range, Measure::Deviations, 6.0);
+        let row = Row::new("mean of doubles beside f32", range, Measure::Deviations, 6.0);
         let mut tally = row.tally();
-        for curve in &self.curves {
-            for point in &curve.points {
-                let place =
-                    || format!("{}, {} = {:e}", curve.estimator, curve.along.word(), point.x);
+        for Curve { estimator, along, points, .. } in &self.curves {
+            for point in points {
                 if let Some(z) = point.z {
-                    tally.see(z.abs(), place);
+                    tally.see(z.abs(), || format!("{estimator}, {} = {:e}", along.word(), point.x));
                 }
             }
         }
@@ -261,31 +238,26 @@ impl Narrow {
 }
 
 /// Measures all curves.
-pub fn measure(Run { effort, seed }: Run, stated: Stated) -> Narrow {
-    let of = |values: &[&'static [f64]; 2]| effort.of(values[0], values[1]);
+pub fn measure(Run { effort, seed }: Run, prepare: Prepare) -> Narrow {
     let mut curves = Vec::new();
-    for &Family { title, entries, values: [quick, full], budget: [least, most] } in FAMILIES {
-        for (i, along) in Along::ALL.into_iter().enumerate() {
-            for &(estimator, compare, varied) in entries {
-                let values = if varied.contains(&along) { of(&[quick[i], full[i]]) } else { &[] };
-                let curve = Curve { family: title, estimator, along, points: Vec::new() };
-                curves.push((curve, values, compare, effort.of(least, most)));
-            }
+    for Family { title, entries, limits, budget } in FAMILIES {
+        for (along, limit) in Along::ALL.into_iter().zip(limits) {
+            curves.extend(entries.iter().map(|entry| (*title, along, entry, *limit, budget)));
         }
     }
-    let points = parallel::map(&curves, |(curve, values, compare, budget)| {
-        parallel::map(values, |&x| {
-            let budget = *budget;
-            let found = compare.compare(Trial {
-                scene: Scene { stated, ..curve.along.scene(x) },
-                seed,
-                budget,
-            });
-            Point { x, ..found }
-        })
+    let curves = parallel::map(&curves, |&(family, along, entry, limit, budget)| {
+        let [quick, full] = [QUICK, VALUES].map(|values| values[along as usize]);
+        let mut values = effort.of(quick, full).to_vec();
+        values.retain(|&x| x <= limit && entry.varied.contains(&along));
+        let points = parallel::map(&values, |&x| {
+            let scene = along.scene(x);
+            let budget = effort.of(budget[0], budget[1]);
+            Some(Point { x, ..compare(entry, (&scene, prepare), (seed, budget))? })
+        });
+        let points = points.into_iter().flatten().collect();
+        Curve { family, estimator: entry.name, along, points }
     });
-    let measured = curves.into_iter().zip(points);
-    Narrow { curves: measured.map(|((curve, ..), points)| Curve { points, ..curve }).collect() }
+    Narrow { curves }
 }
 
 #[cfg(test)]

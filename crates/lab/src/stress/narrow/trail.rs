@@ -1,176 +1,350 @@
-//! One way through all decisions for both precisions.
+//! Decisions of a walk in double precision, repeated in single precision.
 //!
-//! A walk that scatters decides where it goes. Two walks that decide apart part for good, and their
-//! difference says nothing: single precision therefore takes the decisions that the doubles took, and
-//! its draw is weighted by how much more or less likely they are in it,
-//!
-//! ```text
-//! X₂₄ · ∏ P₂₄(decision)/P₅₃(decision),   P₂₄(u < q) = ⌈2²⁴ q⌉/2²⁴
-//! ```
-//!
-//! whose mean is exactly that of walks that decide in single precision. Boundaries are not decided at
-//! all: what leaves is scored with its chance, and what stays goes on with the rest,
+//! Walks that decide apart part for good, and their difference tells little. Single precision therefore repeats the
+//! decisions of the doubles, and its draw is weighted by their likelihood:
 //!
 //! ```text
-//! X = Σ value · P(leave) ∏ P(stay),   P₂₄(stay) the share of all 2²⁴ numbers that end inside
+//! X₂₄ · ∏ P₂₄(decision)/Q(decision),   P₂₄(u < y) = ⌈2²⁴ y⌉/2²⁴
+//! Q   probability by which doubles decide: P₅₃, or 1 where walks are kept from their end and weighted by P₅₃ themselves
 //! ```
 //!
-//! until roulette, with the doubles' chances in both precisions, ends it. All these chances are doubles:
-//! what is single is what a renderer would compute.
+//! The mean is exactly that of walks that decide in single precision. A [`Traced`] number is a lane for the walks of the
+//! estimators. It remembers that it is `a u + b` of a uniform number u, and a comparison with such a number is a decision.
+//! Leaving the medium is no decision. Where rounding makes walks part there, single precision decides alone from then on.
 
-use super::precision::Precision;
-use crate::stress::narrow::dice::Dice;
-use theory::particle::{Event, Odds};
+use std::cell::RefCell;
+use std::ops::{Add, Div, Mul, Neg, Sub};
 
-/// The decisions of a walk, made by doubles or repeated.
-pub struct Trail {
-    dice: Dice,
-    /// Which of a few events, and its chance in doubles.
-    made: Vec<(u8, f64)>,
-    /// The next to repeat; `None` where they are made.
-    next: Option<usize>,
+use numeric::rng::{Random, Stream};
+use numeric::{Fused, Lane, Narrow, Row, Single};
+
+/// Double or single precision.
+pub trait Precision: Single {
+    /// 2ⁿ: uniform numbers are the upper n bits of a word, as renderers make them.
+    const LATTICE: f64;
+}
+
+impl Precision for Fused {
+    const LATTICE: f64 = 9_007_199_254_740_992.0;
+}
+
+impl Precision for Narrow {
+    const LATTICE: f64 = 16_777_216.0;
+}
+
+/// A decision: whether the uniform number of a word is below something.
+#[derive(Debug, Clone, Copy)]
+struct Decision {
+    word: u32,
+    is_below: bool,
+    /// Q.
+    probability: f64,
+}
+
+#[derive(Debug)]
+struct State {
+    stream: Stream,
+    /// Number of words that were taken.
+    words: u32,
+    made: Vec<Decision>,
+    /// The next decision that is made or repeated.
+    next: usize,
     likelihood: f64,
-    is_by_chance: bool,
+    /// The last word that was decided upon, and the probabilities to be below the bounds that decisions set.
+    bounds: (u32, [f64; 2]),
 }
 
-/// What becomes of a flight.
-pub struct Flown<P> {
-    /// The weight of what leaves.
-    pub gone: f64,
-    /// Where what stays lands; `None` if nothing is followed.
-    pub at: Option<P>,
+/// The random numbers and decisions of a walk.
+#[derive(Debug)]
+pub struct Trail {
+    state: RefCell<State>,
+    is_kept: bool,
 }
-
-/// Below this weight roulette is played.
-const FOLLOWED: f64 = 1e-3;
 
 impl Trail {
-    /// To be decided.
-    pub fn new(dice: Dice) -> Self {
-        Self { dice, made: Vec::new(), next: None, likelihood: 1.0, is_by_chance: false }
+    /// The trail of a walk that decides by chance, or is kept from its end: comparisons that end it are false.
+    pub fn new(stream: Stream, is_kept: bool) -> Self {
+        let (made, bounds) = (Vec::new(), (0, [0.0, 1.0]));
+        let state = State { stream, words: 0, made, next: 0, likelihood: 1.0, bounds };
+        Self { state: RefCell::new(state), is_kept }
     }
 
-    /// To be decided, boundaries too, as estimators do.
-    pub fn by_chance(dice: Dice) -> Self {
-        Self { is_by_chance: true, ..Self::new(dice) }
-    }
-
-    /// The same decisions once more, with the same random numbers.
+    /// The trail of a walk that repeats the decisions, with the words of the same stream.
     #[must_use]
-    pub fn again(self, dice: Dice) -> Self {
-        Self { dice, next: Some(0), likelihood: 1.0, ..self }
+    pub fn again(self, stream: Stream) -> Self {
+        let (fresh, made) = (Self::new(stream, self.is_kept), self.state.into_inner().made);
+        fresh.state.borrow_mut().made = made;
+        fresh
     }
 
-    /// How many decisions were made.
-    pub fn length(&self) -> f64 {
-        self.made.len() as f64
-    }
-
-    /// The weight of what is followed, beside that of the walk itself.
-    #[inline(always)]
+    /// The factor of the draw.
     pub fn likelihood(&self) -> f64 {
-        self.likelihood
+        self.state.borrow().likelihood
     }
 
-    /// Follows what was left behind with a weight.
-    pub fn resume(&mut self, likelihood: f64) {
-        self.likelihood = likelihood;
+    /// Number of random words that the walk took.
+    pub fn words(&self) -> f64 {
+        f64::from(self.state.borrow().words)
     }
 
-    /// Random numbers for what may take more of them in one precision than in the other.
-    #[must_use]
-    pub fn apart(&mut self) -> Self {
-        Self::new(Dice::new(self.dice.word(), "narrow-apart", 0))
+    /// The next uniform number of a precision, and the number of its word.
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // a power of two
+    fn uniform<N: Precision>(&self) -> (f64, u32) {
+        let state = &mut *self.state.borrow_mut();
+        state.words += 1;
+        let lattice = N::LATTICE as u64;
+        let upper = state.stream.word() >> (64 - lattice.trailing_zeros());
+        (upper as f64 / N::LATTICE, state.words)
     }
 
-    /// A uniform number.
-    #[inline(always)]
-    pub fn uniform<P: Precision>(&mut self) -> P {
-        P::uniform(self.dice.word())
-    }
-
-    /// One of a few events with these chances.
-    #[inline(always)]
-    fn choose<const N: usize>(&mut self, chances: [f64; N]) -> u8 {
-        let u = f64::uniform(self.dice.word());
-        let Some(next) = &mut self.next else {
-            let (mut event, mut below) = (0, chances[0]);
-            while event + 1 < N && u >= below {
-                event += 1;
-                below += chances[event];
-            }
-            // Rounding of the sum may leave the last event a number, but not a chance.
-            while event > 0 && chances[event] <= 0.0 {
-                event -= 1;
-            }
-            #[allow(clippy::cast_possible_truncation)] // three at most
-            let event_as_byte = event as u8;
-            self.made.push((event_as_byte, chances[event]));
-            return event_as_byte;
-        };
-        let (event, chance) = self.made[*next];
+    /// Decides whether the uniform number of a word is below something, which it is with a probability. A comparison asks for
+    /// that or for the contrary, and is true of the number or not. Answers the comparison.
+    fn decide(&self, word: u32, below: f64, asks_below: bool, is_true: bool) -> bool {
+        let State { made, next, likelihood, bounds, .. } = &mut *self.state.borrow_mut();
+        let [low, high] = if bounds.0 == word { bounds.1 } else { [0.0, 1.0] };
+        let share = ((below - low) / (high - low)).clamp(0.0, 1.0);
+        let own = |is_below: bool| if is_below { share } else { 1.0 - share };
+        if made.get(*next).is_none_or(|decision| decision.word != word) {
+            let is_below = (is_true && !self.is_kept) == asks_below;
+            let probability = if self.is_kept { 1.0 } else { own(is_below) };
+            made.truncate(*next);
+            made.push(Decision { word, is_below, probability });
+        }
+        let Decision { is_below, probability, .. } = made[*next];
         *next += 1;
-        self.likelihood *= chances[usize::from(event)] / chance;
-        event
-    }
-
-    /// Whether something of this chance happens: `u < q`.
-    #[inline(always)]
-    pub fn happens<P: Precision>(&mut self, q: P) -> bool {
-        let chance = q.chance();
-        self.choose([chance, 1.0 - chance]) == 0
-    }
-
-    /// What happens at a tentative collision, as [`Odds::decide`] does.
-    #[inline(always)]
-    pub fn decide<P: Precision>(&mut self, odds: &Odds<P>) -> Event {
-        let (scattered, on) = (odds.scatter.chance(), (odds.scatter + odds.transmit).chance());
-        match self.choose([scattered, (on - scattered).max(0.0), 1.0 - on]) {
-            0 => Event::Scattered,
-            1 => Event::Transmitted,
-            _ => Event::Absorbed,
+        // By rounding, a number may be where the probability is 0.
+        if probability > 0.0 {
+            *likelihood *= own(is_below) / probability;
         }
+        *bounds = (word, if is_below { [low, below.min(high)] } else { [below.max(low), high] });
+        is_below == asks_below
+    }
+}
+
+/// `scale · u + shift`, of the uniform number u of a word.
+#[derive(Debug, Clone, Copy)]
+struct Drawn<'a> {
+    trail: &'a Trail,
+    word: u32,
+    scale: f64,
+    shift: f64,
+}
+
+/// A number of a walk that follows a trail.
+#[derive(Debug, Clone, Copy)]
+pub struct Traced<'a, N> {
+    number: N,
+    drawn: Option<Drawn<'a>>,
+}
+
+impl<N: Precision> Traced<'_, N> {
+    #[inline(always)]
+    fn plain(number: N) -> Self {
+        Self { number, drawn: None }
     }
 
-    /// A flight of mean optical depth 1 of a weight, `reach` from the boundary. What is inside for a depth
-    /// is inside for all that are less.
+    /// This number times a factor plus a term.
     #[inline(always)]
-    pub fn fly<P: Precision>(
-        &mut self,
-        (weight, reach): (P, P),
-        land: impl Fn(P) -> P,
-        inside: impl Fn(P) -> bool,
-    ) -> Flown<P> {
-        let flown = |u: P| land(-(u.each(1.0) - u).ln());
-        let chance = P::chance_to_stay(reach.double(), |u| inside(flown(u)));
-        let (gone, kept) = (self.likelihood * (1.0 - chance), self.likelihood * chance);
-        let share = f64::uniform(self.dice.word());
-        let at = flown(P::share(share, chance));
-        if self.is_by_chance {
-            let stays = self.choose([chance, 1.0 - chance]) == 0;
-            return Flown { gone: if stays { 0.0 } else { 1.0 }, at: stays.then_some(at) };
-        }
-        self.likelihood = kept;
-        let is_followed = self.is_followed(weight.double().abs() * kept);
-        Flown { gone, at: is_followed.then_some(at) }
+    fn on_line(self, factor: f64, term: f64, number: N) -> Self {
+        let Some(drawn) = self.drawn else { return Self::plain(number) };
+        let (scale, shift) = (drawn.scale * factor, drawn.shift * factor + term);
+        Self { number, drawn: Some(Drawn { scale, shift, ..drawn }) }
     }
 
-    /// Roulette by the weight in doubles.
+    /// Whether this number is less than another, or not more, given what numbers say.
     #[inline(always)]
-    fn is_followed(&mut self, weight: f64) -> bool {
-        let u = f64::uniform(self.dice.word());
-        let (event, chance) = if let Some(next) = &mut self.next {
-            *next += 1;
-            self.made[*next - 1]
-        } else {
-            let chance = (weight / FOLLOWED).min(1.0);
-            let made = (u8::from(u >= chance), chance);
-            self.made.push(made);
-            made
+    fn is_less(self, other: Self, is_true: bool) -> bool {
+        let (drawn, bound, is_smaller) = match (self.drawn, other.drawn) {
+            (Some(drawn), _) => (drawn, other.number, true),
+            (_, Some(drawn)) => (drawn, self.number, false),
+            _ => return is_true,
         };
-        if event == 0 {
-            self.likelihood /= chance;
+        let threshold = (bound.double() - drawn.shift) / drawn.scale;
+        let below = ((threshold * N::LATTICE).ceil() / N::LATTICE).clamp(0.0, 1.0);
+        let asks_below = is_smaller == (drawn.scale > 0.0);
+        drawn.trail.decide(drawn.word, below, asks_below, is_true)
+    }
+}
+
+impl<'a, N: Precision> Random<Traced<'a, N>> for &'a Trail {
+    fn uniform(&mut self) -> Traced<'a, N> {
+        let (u, word) = Trail::uniform::<N>(self);
+        let drawn = Drawn { trail: self, word, scale: 1.0, shift: 0.0 };
+        Traced { number: N::of(u), drawn: Some(drawn) }
+    }
+
+    fn ln_uniform(&mut self) -> Traced<'a, N> {
+        // `1 − u` is exact.
+        Traced::plain(N::of(1.0 - Trail::uniform::<N>(self).0).ln())
+    }
+
+    fn uniform_where(&mut self, which: bool) -> Traced<'a, N> {
+        if which { Random::uniform(self) } else { Traced::of(0.0) }
+    }
+
+    fn ln_uniform_where(&mut self, which: bool) -> Traced<'a, N> {
+        if which { Random::<Traced<N>>::ln_uniform(self) } else { Traced::of(0.0) }
+    }
+}
+
+/// Operations as the number has them. Their results are no uniform numbers.
+macro_rules! as_number {
+    ($($Trait:ident::$method:ident($Other:ty): |$a:ident, $b:ident| $result:expr;)*) => {
+        $(impl<N: Precision> $Trait<$Other> for Traced<'_, N> {
+            type Output = Self;
+            #[inline(always)]
+            fn $method(self, $b: $Other) -> Self {
+                let $a = self;
+                $result
+            }
+        })*
+    };
+    ($($method:ident($($other:ident)?))*) => {
+        $(#[inline(always)]
+        fn $method(self $(, $other: Self)?) -> Self {
+            Self::plain(self.number.$method($($other.number)?))
+        })*
+    };
+}
+
+as_number! {
+    Add::add(Self): |a, b| Self::plain(a.number + b.number);
+    Sub::sub(Self): |a, b| Self::plain(a.number - b.number);
+    Mul::mul(Self): |a, b| a.on_line(b.double(), 0.0, a.number * b.number);
+    Div::div(Self): |a, b| Self::plain(a.number / b.number);
+    Add::add(f64): |a, b| Self::plain(a.number + b);
+    Sub::sub(f64): |a, b| Self::plain(a.number - b);
+    Mul::mul(f64): |a, b| a.on_line(b, 0.0, a.number * b);
+}
+
+impl<N: Precision> Neg for Traced<'_, N> {
+    type Output = Self;
+    #[inline(always)]
+    fn neg(self) -> Self {
+        Self::plain(-self.number)
+    }
+}
+
+impl<N: Precision> Single for Traced<'_, N> {
+    #[inline(always)]
+    fn of(x: f64) -> Self {
+        Self::plain(N::of(x))
+    }
+
+    #[inline(always)]
+    fn double(self) -> f64 {
+        self.number.double()
+    }
+}
+
+impl<N: Precision> Lane for Traced<'_, N> {
+    type Mask = bool;
+    type Words = N::Words;
+
+    as_number! {
+        root() size() nearest() power_of_two() alternate(k) ln() exp() cos() sin() cos_pi_size()
+    }
+
+    #[inline(always)]
+    fn each(self, value: f64) -> Self {
+        Self::of(value)
+    }
+
+    #[inline(always)]
+    fn replaced(self, replace: impl FnMut(&mut [f64])) -> Self {
+        Self::plain(self.number.replaced(replace))
+    }
+
+    #[inline(always)]
+    fn times_plus(self, factor: Self, term: Self) -> Self {
+        let number = self.number.times_plus(factor.number, term.number);
+        self.on_line(factor.double(), term.double(), number)
+    }
+
+    #[inline(always)]
+    fn below(self, other: Self) -> bool {
+        self.is_less(other, self.number.below(other.number))
+    }
+
+    #[inline(always)]
+    fn at_most(self, other: Self) -> bool {
+        self.is_less(other, self.number.at_most(other.number))
+    }
+
+    #[inline(always)]
+    fn select(mask: bool, yes: Self, no: Self) -> Self {
+        if mask { yes } else { no }
+    }
+
+    #[inline(always)]
+    fn split(self) -> (Self, Self) {
+        let (m, k) = self.number.split();
+        (Self::plain(m), Self::plain(k))
+    }
+
+    #[inline(always)]
+    fn words(self) -> N::Words {
+        self.number.words()
+    }
+
+    #[inline(always)]
+    fn where_bits(words: N::Words, bits: u64, wanted: u64, yes: Self, no: Self) -> Self {
+        Self::plain(N::where_bits(words, bits, wanted, yes.number, no.number))
+    }
+
+    #[inline(always)]
+    fn negated_where(self, words: N::Words, bit: u32) -> Self {
+        Self::plain(self.number.negated_where(words, bit))
+    }
+
+    #[inline(always)]
+    fn entry(self, list: &[f64]) -> Self {
+        Self::plain(self.number.entry(list))
+    }
+
+    #[inline(always)]
+    fn columns(self, table: &[Row]) -> [Self; 5] {
+        self.number.columns(table).map(Self::plain)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use numeric::rng::Address;
+
+    /// Decides among three events by one number, then by another one; far from 0, single precision takes 0.3 for 0.3125.
+    fn walk<N: Precision>(mut trail: &Trail) -> [bool; 2] {
+        let share = Traced::<N>::of(1e6 + 0.3) - 1e6;
+        let (u, scale): (Traced<N>, _) = (Random::uniform(&mut trail), Traced::of(7.0));
+        let (is_first, is_second) = (u.below(share), u.below(share + share));
+        let v: Traced<N> = Random::uniform(&mut trail);
+        let is_real = v.times_plus(-scale, scale).at_most(share * scale);
+        [is_second && !is_first, is_real]
+    }
+
+    #[test]
+    fn repeated_decisions_have_the_mean_of_walks_that_make_their_own() {
+        let walks = 200_000;
+        let (mut own, mut repeated, mut kept) = ([0.0; 2], 0.0, 0.0);
+        for block in 0..walks {
+            let stream = Address { seed: 1, experiment: 2, block, lane: 0 }.stream();
+            let score = |ends: [bool; 2]| f64::from(u8::from(ends == [true, true]));
+            let trail = Trail::new(stream, false);
+            own[0] += score(walk::<Fused>(&trail));
+            assert_eq!((trail.likelihood(), trail.words()), (1.0, 2.0));
+            let trail = trail.again(stream);
+            repeated += score(walk::<Narrow>(&trail)) * trail.likelihood();
+            own[1] += score(walk::<Narrow>(&Trail::new(stream, false)));
+            let trail = Trail::new(stream, true);
+            assert_eq!(walk::<Narrow>(&trail), [false, false]);
+            kept += trail.likelihood();
         }
-        event == 0
+        // Four standard errors: √(0.1/200 000).
+        let is_near = |sum: f64, mean: f64| (sum / walks as f64 - mean).abs() < 3e-3;
+        assert!(is_near(own[0], 0.3 * 0.3), "{own:?}");
+        assert!(is_near(own[1], 0.3125 * 0.3125) && is_near(repeated, 0.3125 * 0.3125));
+        assert!((repeated - own[0]) / walks as f64 > 6e-3, "{own:?} {repeated}");
+        assert!((kept / walks as f64 - (1.0 - 0.625) * (1.0 - 0.3125)).abs() < 1e-6, "{kept}");
     }
 }

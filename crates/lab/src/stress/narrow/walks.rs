@@ -1,0 +1,372 @@
+//! Estimators that are compared: the case of each, and the walk that its page makes of a setup.
+//!
+//! Where `σ̂ ≥ σ_t`, as here, `terminating` is `analog` and `adaptive` is `non-terminating`, to the bit. A furnace with the
+//! non-terminating rule is left out: each draw is 1, without noise.
+
+use std::any::Any;
+use std::marker::PhantomData;
+
+use super::Along::{self, Depth, Origin, Steps};
+use super::scene::{BALL, LIT, RAY, Scene};
+use super::trail::{Precision, Traced, Trail};
+use estimators::free_flight::woodcock::Flights;
+use estimators::rod::walk::{By, InRod};
+use estimators::single_scattering::plan::{Absorption, Plan, Run, Technique, Vertices};
+use estimators::slab::walk::InSlab;
+use estimators::space::walk::InSpace;
+use estimators::space::{Particle, Splitting, Tally, Walked, draws};
+use estimators::sphere::Honest;
+use estimators::sphere::combined::Combined;
+use estimators::sphere::sharing::Sharing;
+use estimators::transmittance::decomposition::Residual;
+use estimators::transmittance::local_majorant::Segments;
+use estimators::transmittance::next_flight::NextFlight;
+use estimators::transmittance::product::{Product, Survival};
+use estimators::transmittance::scoring::{Scoring, Share};
+use estimators::transmittance::unidirectional_mis::UnidirectionalMis;
+use estimators::transmittance_curve::double::Curve;
+use estimators::walks::{Walk, plain};
+use estimators::{Draw, Setup};
+use fearless_simd::Level;
+use media::Majorants;
+use numeric::fused::in_fused_code;
+use numeric::rng::{Address, name_hash};
+use numeric::{Fused, Narrow, Single as _};
+use theory::ParticleRule::{self, Analog, NonTerminating, Weighted};
+use theory::problems::{
+    self, Channels, FreeFlight, Furnace, InfiniteMedium, Lambertian, Problem, Rod,
+    SingleScattering, Slab, Sphere, Transmittance, TransmittanceCurve,
+};
+use theory::rules::{Collision, Null, Single, Weight};
+use theory::single::{CameraTracking, Tracking};
+use theory::sphere::Techniques;
+
+/// A scene with the setup of an estimator.
+#[derive(Clone, Copy)]
+pub struct Subject<'a> {
+    /// The scene.
+    pub scene: &'a Scene,
+    /// A `Setup<P>`.
+    pub setup: &'a dyn Any,
+    /// The channel that is compared.
+    pub channel: usize,
+    /// Whether walks are kept from their end, see [`Trail`].
+    pub is_kept: bool,
+}
+
+/// An estimator in any precision.
+trait Draws: Sync {
+    /// The draw of a trail, but for its likelihood; `None` where the setup is another problem's.
+    fn draw<N: Precision>(&self, of: Subject, trail: &Trail) -> Option<f64>;
+}
+
+/// An estimator in both precisions.
+pub trait InBoth: Sync {
+    /// The draws of a walk of a seed, and the number of random words of the first; `None` where the setup is another problem's.
+    fn pair(&self, of: Subject, seed: u64, walk: u64) -> Option<([f64; 2], f64)>;
+}
+
+impl<D: Draws> InBoth for D {
+    fn pair(&self, of: Subject, seed: u64, walk: u64) -> Option<([f64; 2], f64)> {
+        let experiment = name_hash("stress|narrow");
+        let stream = Address { seed, experiment, block: walk, lane: 0 }.stream();
+        let trail = Trail::new(stream, of.is_kept);
+        let double = weighted::<_, Fused>(self, of, &trail)?;
+        let words = trail.words();
+        let single = weighted::<_, Narrow>(self, of, &trail.again(stream))?;
+        Some(([double, single], words))
+    }
+}
+
+/// A draw with its likelihood: compiled once for each precision.
+#[inline(never)]
+fn weighted<D: Draws, N: Precision>(draws: &D, of: Subject, trail: &Trail) -> Option<f64> {
+    let draw = in_fused_code(
+        #[inline(always)]
+        || draws.draw::<N>(of, trail),
+    );
+    draw.map(|draw| draw * trail.likelihood())
+}
+
+/// Makes a draw by a walk along the ray.
+#[inline(always)]
+fn along<'t, N: Precision, P: Problem<Value: Channels>>(
+    walk: &impl Walk,
+    setup: &Setup<P>,
+    Subject { scene, channel, .. }: Subject,
+    mut trail: &'t Trail,
+) -> Option<f64> {
+    let look_up = |_, t: Traced<'t, N>| scene.on_ray(t);
+    let draw: Draw<P::Value> = plain::through(walk, &setup.sampling, look_up, &mut trail);
+    draw.value.as_ref().get(channel).copied()
+}
+
+/// Makes a draw by a particle in space.
+#[inline(always)]
+fn in_space<'t, N: Precision, V: Channels + AsRef<[f64]>, const SPLITS: bool>(
+    (tally, particle): (&impl Tally, Particle),
+    world: (&problems::Scene, &Majorants),
+    Subject { scene, channel, .. }: Subject,
+    mut trail: &'t Trail,
+) -> Option<f64> {
+    let (everywhere, albedo) = (world.0.volume.single_value(), world.0.albedo.even()?);
+    let look_up = |place: Option<[Traced<'t, N>; 3]>| {
+        let in_ball = |place| everywhere.map_or_else(|| scene.in_ball(place), Traced::of);
+        [place.map_or(Traced::of(0.0), in_ball), Traced::of(albedo)]
+    };
+    let walk = InSpace::new(tally, particle, world, None);
+    let parts = (tally, particle.splitting);
+    let draw = draws::follow::<_, V, _, SPLITS>(&walk, parts, look_up, &mut trail);
+    draw.value.as_ref().get(channel).copied()
+}
+
+/// Estimators along the ray, and the walks that they make of a setup.
+macro_rules! on_ray {
+    ($([$($generic:tt)*] $Type:ty, $Problem:ty: |$this:pat_param, $setup:ident| $walk:expr;)*) => {
+        $(impl<$($generic)*> Draws for $Type {
+            #[inline(always)]
+            fn draw<N: Precision>(&self, of: Subject, trail: &Trail) -> Option<f64> {
+                let ($this, $setup) = (self, of.setup.downcast_ref::<Setup<$Problem>>()?);
+                along::<N, _>(&$walk, $setup, of, trail)
+            }
+        })*
+    };
+}
+
+struct Weighs<R>(R);
+struct Woodcock;
+struct Decomposed;
+struct Local;
+struct Scored<H>(H);
+struct OnCurve;
+struct Distance;
+struct InLayers(ParticleRule);
+
+on_ray! {
+    [R: Collision + Sync] Weighs<R>, Transmittance: |Self(rule), setup| Product::new(rule, setup);
+    [] Woodcock, Transmittance: |_, setup| Survival(Product::new(&Null, setup));
+    [] Decomposed, Transmittance: |_, setup| Residual::new(setup);
+    [] Local, Transmittance: |_, setup| Segments::of(setup)?;
+    [H: Share + Sync] Scored<H>, Transmittance: |Self(share), setup| Scoring::new(*share, setup);
+    [] OnCurve, TransmittanceCurve: |_, setup| Curve::new(setup);
+    [] Distance, FreeFlight: |_, setup| Flights::new(setup);
+    [] By, Rod: |steps, setup| InRod { rod: &setup.problem, steps: *steps };
+    [] InLayers, Slab: |Self(rule), setup| InSlab::of(&setup.problem, *rule);
+}
+
+/// Single scattering by the plan for a scene.
+struct Planned(fn(&Scene) -> Plan);
+
+struct One<'a, N>(&'a Setup<SingleScattering>, Subject<'a>, &'a Trail, PhantomData<N>);
+
+impl<N: Precision> Run for One<'_, N> {
+    type Output = Option<f64>;
+
+    #[inline(always)]
+    fn run(self, walk: &impl Walk) -> Option<f64> {
+        along::<N, _>(walk, self.0, self.1, self.2)
+    }
+}
+
+impl Draws for Planned {
+    #[inline(always)]
+    fn draw<N: Precision>(&self, of: Subject, trail: &Trail) -> Option<f64> {
+        let setup = of.setup.downcast_ref::<Setup<SingleScattering>>()?;
+        let medium = setup.problem.lookups(Level::new());
+        self.0(of.scene).run_on(setup, &medium, One::<N>(setup, of, trail, PhantomData))
+    }
+}
+
+/// A particle that walks through the scene of a problem.
+struct Walks<P, const SPLITS: bool = false>(Particle, PhantomData<fn(P)>);
+
+impl<P: Walked, const SPLITS: bool> Draws for Walks<P, SPLITS> {
+    #[inline(always)]
+    fn draw<N: Precision>(&self, of: Subject, trail: &Trail) -> Option<f64> {
+        let setup = of.setup.downcast_ref::<Setup<P>>()?;
+        let (tally, majorants) = (P::tally(setup, &self.0).ok()?, setup.space.as_deref()?);
+        let world = (setup.problem.scene(), majorants);
+        in_space::<N, P::Value, SPLITS>((&tally, self.0), world, of, trail)
+    }
+}
+
+/// Next-event estimation in a ball, with the tracking of shadow rays through a scene.
+struct Connects(ParticleRule, fn(&Scene) -> Tracking);
+
+impl Draws for Connects {
+    #[inline(always)]
+    fn draw<N: Precision>(&self, of: Subject, trail: &Trail) -> Option<f64> {
+        let setup = of.setup.downcast_ref::<Setup<Sphere>>()?;
+        let (sphere, majorants) = (&*setup.problem, setup.space.as_deref()?);
+        let shadow = Some(self.1(of.scene));
+        let sharing = Sharing { techniques: Techniques::NextEvent, shadow, subpaths: None };
+        let tally = Combined::<_, false>::new((sphere, majorants), self.0, (sharing, Honest));
+        let world = (&sphere.scene, majorants);
+        in_space::<N, [f64; 1], false>((&tally, particle(self.0)), world, of, trail)
+    }
+}
+
+const fn particle(rule: ParticleRule) -> Particle {
+    Particle { rule, roulette: None, splitting: Splitting::None }
+}
+
+const fn walks<P>(rule: ParticleRule) -> Walks<P> {
+    Walks(particle(rule), PhantomData)
+}
+
+const fn rod(rule: ParticleRule) -> By {
+    By { rule, roulette: None }
+}
+
+const fn plan(technique: Technique) -> Plan {
+    Plan { technique, shadow: Tracking::Exact }
+}
+
+const fn points(camera: CameraTracking, shadow: Tracking) -> Plan {
+    Plan { technique: Technique::Vertices(Vertices { camera, ..Vertices::FROM_LIGHT }), shadow }
+}
+
+const fn collides(light: bool) -> Plan {
+    let collision = Some(Absorption::Weight);
+    plan(Technique::Vertices(Vertices { light, collision, ..Vertices::FROM_LIGHT }))
+}
+
+const fn from_main(light: bool) -> Plan {
+    plan(Technique::Vertices(Vertices { light, main: true, ..Vertices::FROM_LIGHT }))
+}
+
+const fn ratio(scene: &Scene) -> Tracking {
+    Tracking::Ratio { sampling: scene.collisions, control: 0.0 }
+}
+
+const fn delta(scene: &Scene) -> Tracking {
+    Tracking::Delta { sampling: scene.collisions }
+}
+
+/// Problem, medium, further settings and channel that are asked about.
+type Asked = [&'static str; 4];
+
+/// An estimator in the list of its family.
+pub struct Entry {
+    /// Its name.
+    pub name: &'static str,
+    /// Quantities that are varied.
+    pub varied: &'static [Along],
+    /// The problem.
+    pub asked: Asked,
+    /// The estimator as a case has it.
+    pub written: &'static str,
+    /// Whether walks decide nothing, or only whether they end with nothing; they are kept from that.
+    pub is_kept: bool,
+    /// Its draws.
+    pub draws: &'static dyn InBoth,
+}
+
+const fn entry(
+    (name, varied, asked): (&'static str, &'static [Along], Asked),
+    written: &'static str,
+    is_kept: bool,
+    draws: &'static dyn InBoth,
+) -> Entry {
+    Entry { name, varied, asked, written, is_kept, draws }
+}
+
+const EVERY: &[Along] = &Along::ALL;
+const NO_STEPS: &[Along] = &[Depth, Origin];
+
+const TRANSMITTANCE: Asked = ["transmittance", RAY, "", ""];
+const CURVE: Asked = ["transmittance", RAY, "distances = 2", ""];
+const FLIGHT: Asked = ["free-flight", RAY, "", ""];
+const ROD: Asked = ["rod", RAY, "albedo = 0.8\nforward = 0.7", "reflectance"];
+const SLAB: Asked = ["slab", RAY, SLANTED, "reflectance"];
+const SLANTED: &str =
+    "albedo = 0.8\nphase.henyey-greenstein.g = 0.5\nincidence.collimated.cosine = 0.6";
+const SINGLE: Asked = ["single-scattering", LIT, "", ""];
+const FURNACE: Asked = ["furnace", BALL, "albedo = 0.8\nphase.henyey-greenstein.g = 0.5", ""];
+const WHITE: Asked =
+    ["lambertian", BALL, "albedo = 1\nphase.henyey-greenstein.g = 0.5", "path length"];
+const SKY: Asked = ["ball", BALL, "albedo = 0.8\nphase.isotropic = {}\nlight.environment = {}", ""];
+const INFINITE: Asked = [
+    "infinite-medium",
+    "ray = { origin = [0, 0, 0], direction = [0, 0, 1], length = 1 }\n\
+     volume.constant.extinction = DEPTH",
+    "albedo = 0.8\nphase.henyey-greenstein.g = 0.5",
+    "squared distance",
+];
+
+const fn at_end(asked: Asked) -> Asked {
+    let [problem, medium, settings, _] = asked;
+    [problem, medium, settings, "transmittance"]
+}
+
+/// Transmittance by weights and decisions at collisions.
+#[rustfmt::skip] // one estimator, one line
+pub const PRODUCTS: &[Entry] = &[
+    entry(("ratio", EVERY, TRANSMITTANCE), "ratio = { SAMPLING }", true, &Weighs(Weight)),
+    entry(("residual-ratio", EVERY, TRANSMITTANCE), "residual-ratio = { control.constant = { value = DEPTH }, SAMPLING }", true, &Weighs(Weight)),
+    entry(("woodcock", EVERY, TRANSMITTANCE), "woodcock = { SAMPLING }", true, &Woodcock),
+    entry(("decomposition", EVERY, TRANSMITTANCE), "decomposition = { control.constant = { value = LEAST }, SAMPLING }", true, &Decomposed),
+    entry(("single (terminating)", EVERY, TRANSMITTANCE), "single = { rule = \"terminating\", SAMPLING }", true, &Weighs(Single::Terminating)),
+    entry(("single (non-terminating, a = 0.7)", EVERY, TRANSMITTANCE), "single = { rule = \"non-terminating\", albedo = 0.7, SAMPLING }", true, &Weighs(Single::NonTerminating { albedo: 0.7 })),
+    entry(("single (adaptive, a = 0.7)", EVERY, TRANSMITTANCE), "single = { rule = \"adaptive\", albedo = 0.7, SAMPLING }", true, &Weighs(Single::Adaptive { albedo: 0.7 })),
+    entry(("single (clamped)", EVERY, TRANSMITTANCE), "single = { rule = \"clamped\", SAMPLING }", true, &Weighs(Single::Clamped)),
+    entry(("weighted-delta", EVERY, TRANSMITTANCE), "weighted-delta = { SAMPLING }", true, &Weighs(Single::NonTerminating { albedo: 1.0 })),
+];
+
+/// Transmittance by other ways, half way along a curve, and distances of free flights.
+#[rustfmt::skip]
+pub const OTHERS: &[Entry] = &[
+    entry(("ratio, local majorants", NO_STEPS, TRANSMITTANCE), "ratio = { CELLS }", true, &Weighs(Weight)),
+    entry(("woodcock, local majorants", NO_STEPS, TRANSMITTANCE), "local-majorant = { CELLS }", true, &Local),
+    entry(("curve, half way", EVERY, CURVE), "double = { SAMPLING }", true, &OnCurve),
+    entry(("woodcock, distance", EVERY, FLIGHT), "woodcock = { SAMPLING }", false, &Distance),
+    entry(("next-flight", EVERY, TRANSMITTANCE), "next-flight = { SAMPLING }", true, &Scored(NextFlight)),
+    entry(("unidirectional-mis", EVERY, TRANSMITTANCE), "unidirectional-mis = { SAMPLING }", true, &Scored(UnidirectionalMis)),
+];
+
+/// Rods.
+#[rustfmt::skip]
+pub const RODS: &[Entry] = &[
+    entry(("rod, analog", EVERY, ROD), "analog = { SAMPLING }", false, &rod(Analog)),
+    entry(("rod, weighted", EVERY, ROD), "weighted = { SAMPLING }", false, &rod(Weighted)),
+    entry(("rod, non-terminating", EVERY, ROD), "non-terminating = { SAMPLING }", false, &rod(NonTerminating)),
+    entry(("rod, roulette", EVERY, ROD), "roulette = { below = 0.1, SAMPLING }", false, &By { rule: NonTerminating, roulette: Some(0.1) }),
+    entry(("rod, analog, transmitted", EVERY, at_end(ROD)), "analog = { SAMPLING }", false, &rod(Analog)),
+];
+
+/// Slabs that scatter forward, under light from the side.
+#[rustfmt::skip]
+pub const SLABS: &[Entry] = &[
+    entry(("slab, analog", EVERY, SLAB), "analog = { SAMPLING }", false, &InLayers(Analog)),
+    entry(("slab, weighted", EVERY, SLAB), "weighted = { SAMPLING }", false, &InLayers(Weighted)),
+    entry(("slab, non-terminating", EVERY, SLAB), "non-terminating = { SAMPLING }", false, &InLayers(NonTerminating)),
+    entry(("slab, analog, transmitted", EVERY, at_end(SLAB)), "analog = { SAMPLING }", false, &InLayers(Analog)),
+];
+
+/// Single scattering.
+#[rustfmt::skip]
+pub const POINTS: &[Entry] = &[
+    entry(("source-driven", NO_STEPS, SINGLE), "source-driven = {}", false, &Planned(|_| points(CameraTracking::Exact, Tracking::Exact))),
+    entry(("source-driven, ratio", EVERY, SINGLE), "source-driven = { camera = \"ratio\", shadow.ratio = { sampling = COLLISIONS }, SAMPLING }", false, &Planned(|scene| points(CameraTracking::Ratio, ratio(scene)))),
+    entry(("source-driven, delta", EVERY, SINGLE), "source-driven = { camera = \"delta\", shadow.delta = { sampling = COLLISIONS }, SAMPLING }", true, &Planned(|scene| points(CameraTracking::Delta, delta(scene)))),
+    entry(("scattering-driven", NO_STEPS, SINGLE), "scattering-driven = { control.constant = { value = DEPTH } }", false, &Planned(|_| from_main(false))),
+    entry(("delta-tracking", EVERY, SINGLE), "delta-tracking = { SAMPLING }", false, &Planned(|_| collides(false))),
+    entry(("attenuation-driven", EVERY, SINGLE), "attenuation-driven = { SAMPLING }", false, &Planned(|_| plan(Technique::Interactions))),
+    entry(("attenuation-resampled", EVERY, SINGLE), "attenuation-resampled = { SAMPLING }", false, &Planned(|_| plan(Technique::Resampled))),
+    entry(("shared-walk", EVERY, SINGLE), "shared-walk = { points = 4, SAMPLING }", false, &Planned(|_| plan(Technique::Shared(4)))),
+    entry(("source-scattering-mis", NO_STEPS, SINGLE), "source-scattering-mis = { control.constant = { value = DEPTH } }", false, &Planned(|_| from_main(true))),
+    entry(("source-delta-mis", EVERY, SINGLE), "source-delta-mis = { SAMPLING }", false, &Planned(|_| collides(true))),
+];
+
+/// Balls, and an infinite medium, whose source stands at the origin.
+#[rustfmt::skip]
+pub const SPACE: &[Entry] = &[
+    entry(("furnace, analog", EVERY, FURNACE), "particle = { rule = \"analog\", SAMPLING }", false, &walks::<Furnace>(Analog)),
+    entry(("furnace, weighted", EVERY, FURNACE), "particle = { rule = \"weighted\", SAMPLING }", false, &walks::<Furnace>(Weighted)),
+    entry(("furnace, splitting", EVERY, FURNACE), "splitting = { depth = 3, rule = \"analog\", SAMPLING }", false, &Walks::<Furnace, true>(Particle { splitting: Splitting::Depth(3), ..particle(Analog) }, PhantomData)),
+    entry(("lambertian, analog", EVERY, WHITE), "particle = { rule = \"analog\", SAMPLING }", false, &walks::<Lambertian>(Analog)),
+    entry(("infinite medium, analog", &[Steps], INFINITE), "particle = { rule = \"analog\", SAMPLING }", false, &walks::<InfiniteMedium>(Analog)),
+    entry(("sphere, particle", EVERY, SKY), "particle = { rule = \"analog\", SAMPLING }", false, &walks::<Sphere>(Analog)),
+    entry(("sphere, next-event, ratio", EVERY, SKY), "next-event = { rule = \"weighted\", shadow.ratio = { sampling = COLLISIONS }, SAMPLING }", false, &Connects(Weighted, ratio)),
+    entry(("sphere, next-event, delta", EVERY, SKY), "next-event = { rule = \"analog\", shadow.delta = { sampling = COLLISIONS }, SAMPLING }", false, &Connects(Analog, delta)),
+];
