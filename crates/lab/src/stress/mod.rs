@@ -74,7 +74,6 @@ pub mod slabs;
 pub mod spectral;
 pub mod table;
 pub mod tails;
-mod tally;
 mod techniques;
 pub mod walks;
 

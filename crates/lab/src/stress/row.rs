@@ -1,7 +1,5 @@
 //! A row of the table: the worst error of many trials of one quantity, and its bound.
 
-use super::tally::Tally;
-
 /// Unit of an error.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Measure {
@@ -37,20 +35,22 @@ pub struct Row {
     pub quantity: String,
     /// Range of the parameters.
     pub range: String,
+    /// Unit of the error.
+    pub measure: Measure,
+    /// Bound of the error.
+    pub bound: f64,
     /// Number of trials.
     pub trials: u64,
+    /// Largest error, or number of wrong answers; NaN once an error was NaN.
+    pub worst: f64,
+    /// Number of the trial of the largest error, or of the first wrong answer.
+    pub trial: u32,
+    /// Parameters of that trial.
+    pub place: String,
     /// Number of trials without anything to compare: refused, out of range, unknown.
     pub skipped: u64,
     /// Parameters of the first of those.
     pub first_skipped: String,
-    /// Unit of the error.
-    pub measure: Measure,
-    /// Largest error; NaN once one was NaN.
-    pub worst: f64,
-    /// Bound of the error.
-    pub bound: f64,
-    /// Parameters of the largest error.
-    pub place: String,
 }
 
 impl Row {
@@ -61,10 +61,18 @@ impl Row {
         measure: Measure,
         bound: f64,
     ) -> Self {
-        let (quantity, range) = (quantity.into(), range.into());
-        let (place, first_skipped) = Default::default();
-        let (trials, skipped, worst) = (0, 0, 0.0);
-        Self { quantity, range, trials, skipped, first_skipped, measure, worst, bound, place }
+        Self {
+            quantity: quantity.into(),
+            range: range.into(),
+            measure,
+            bound,
+            trials: 0,
+            worst: 0.0,
+            trial: 0,
+            place: String::new(),
+            skipped: 0,
+            first_skipped: String::new(),
+        }
     }
 
     /// A row in units of the stated error.
@@ -87,17 +95,46 @@ impl Row {
         Self::new(quantity, range, Measure::Count, 0.0)
     }
 
-    /// A tally for the trials of this row.
-    pub(super) fn tally<P>(&self) -> Tally<P> {
-        Tally::new(self.measure == Measure::Count)
+    /// Adds an error of a trial.
+    pub(super) fn see(&mut self, error: f64, trial: u32, place: impl FnOnce() -> String) {
+        self.add(1, error, || (trial, place()));
     }
 
-    /// This row with the trials of a tally.
-    pub(super) fn with<P>(&self, tally: &Tally<P>, shown: impl Fn(&P) -> String) -> Self {
-        let [place, first_skipped] = [&tally.place, &tally.first_skipped]
-            .map(|place| place.as_ref().map_or_else(String::new, &shown));
-        let &Tally { trials, skipped, worst, .. } = tally;
-        Self { trials, skipped, first_skipped, worst, place, ..self.clone() }
+    /// Adds a trial without anything to compare.
+    pub(super) fn skip(&mut self, place: impl FnOnce() -> String) {
+        if self.skipped == 0 {
+            self.first_skipped = place();
+        }
+        self.skipped += 1;
+    }
+
+    /// Adds later trials of this row.
+    pub(super) fn merge(&mut self, later: Self) {
+        if self.skipped == 0 {
+            self.first_skipped = later.first_skipped;
+        }
+        self.skipped += later.skipped;
+        self.add(later.trials, later.worst, || (later.trial, later.place));
+    }
+
+    /// Adds trials with their largest error, or with their number of wrong answers.
+    fn add(&mut self, trials: u64, worst: f64, place: impl FnOnce() -> (u32, String)) {
+        let is_count = self.measure == Measure::Count;
+        let is_worse = if is_count {
+            self.worst == 0.0 && worst > 0.0
+        } else {
+            let is_larger = self.trials == 0 || worst > self.worst || worst.is_nan();
+            trials > 0 && is_larger && !self.worst.is_nan()
+        };
+        if is_worse {
+            (self.trial, self.place) = place();
+        }
+        if is_count {
+            self.worst += worst;
+        } else if is_worse {
+            self.worst = worst;
+        }
+        self.trials += trials;
     }
 
     /// The worst error is within the bound; NaN is not.
@@ -113,5 +150,31 @@ impl Row {
     /// More trials were skipped than compared: such a row says nothing of its range.
     pub fn is_mostly_skipped(&self) -> bool {
         self.skipped > self.trials
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn row(measure: Measure, errors: &[f64]) -> Row {
+        let mut row = Row::new("q", "r", measure, 0.0);
+        errors.iter().zip(0..).for_each(|(&error, trial)| row.see(error, trial, String::new));
+        row
+    }
+
+    #[test]
+    fn the_worst_error_is_kept_and_nan_is_the_worst() {
+        let mut all = row(Measure::Absolute, &[1e-12, 1e-10, 1e-11]);
+        assert_eq!((all.worst, all.trial, all.trials), (1e-10, 1, 3));
+        all.merge(row(Measure::Absolute, &[f64::NAN, 1.0]));
+        assert!(all.worst.is_nan() && all.trial == 0 && all.trials == 5);
+    }
+
+    #[test]
+    fn wrong_answers_are_counted_and_the_first_is_kept() {
+        let mut all = row(Measure::Count, &[0.0, 0.0, 1.0]);
+        all.merge(row(Measure::Count, &[1.0, 1.0]));
+        assert_eq!((all.worst, all.trial), (3.0, 2));
     }
 }

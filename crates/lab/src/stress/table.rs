@@ -12,7 +12,6 @@ use proptest::strategy::{Strategy, ValueTree};
 use proptest::test_runner::{Config, RngAlgorithm, TestRng, TestRunner};
 
 use super::row::Row;
-use super::tally::Tally;
 use numeric::rng::name_hash;
 use numeric::{Known, Wide};
 use theory::Moments;
@@ -53,90 +52,52 @@ const MAX_SHRINKS: u32 = 400;
 
 impl Run {
     /// Fills rows with a number of trials, quick and full. A trial that returns `None` is skipped in all rows.
-    pub fn fill<S: Strategy, O: Outcome>(
+    pub fn fill<S: Strategy, O: Into<Option<()>>>(
         self,
         trials: [u32; 2],
         rows: impl Into<Vec<Row>>,
         parameters: impl Fn() -> S + Sync,
         trial: impl Fn(&S::Value, &mut Seen) -> O + Sync,
     ) -> Vec<Row> {
-        let rows: Vec<Row> = rows.into();
-        let name = name_hash(&format!("stress|{}|{}", rows[0].quantity, rows[0].range));
+        let empty: Vec<Row> = rows.into();
+        let name = name_hash(&format!("stress|{}|{}", empty[0].quantity, empty[0].range));
         let tree = |number: u32| {
             let words = [self.seed, name, number.into(), 0].map(u64::to_le_bytes);
             let rng = TestRng::from_seed(RngAlgorithm::ChaCha, &words.concat());
             parameters().new_tree(&mut TestRunner::new_with_rng(Config::default(), rng)).ok()
         };
-        let seen =
-            || Seen { place: Place::default(), tallies: rows.iter().map(Row::tally).collect() };
-        let try_out = |number: u32, parameters: &S::Value, seen: &mut Seen| {
-            seen.place = Place { trial: number, label: String::new() };
-            if trial(parameters, seen).skips() {
-                (0..rows.len()).for_each(|row| seen.skip(row));
+        let try_out = |number: u32, parameters: &S::Value, rows: &mut [Row]| {
+            let mut seen = Seen { trial: number, label: String::new(), parameters, rows };
+            if trial(parameters, &mut seen).into().is_none() {
+                (0..seen.rows.len()).for_each(|row| seen.skip(row));
             }
         };
         let count = self.effort.of(trials[0], trials[1]);
         let task = |first: usize| {
-            let mut seen = seen();
+            let mut rows = empty.clone();
             for number in (0..count).skip(first).step_by(TASKS) {
                 if let Some(tree) = tree(number) {
-                    try_out(number, &tree.current(), &mut seen);
+                    try_out(number, &tree.current(), &mut rows);
                 }
             }
-            seen.tallies
+            rows
         };
-        let mut found = seen().tallies;
+        let mut found = empty.clone();
         for later in parallel::range(TASKS, task) {
-            found.iter_mut().zip(later).for_each(|(tally, later)| tally.merge(later));
+            found.iter_mut().zip(later).for_each(|(row, later)| row.merge(later));
         }
-        let shown = |Place { trial, label }: &Place| {
-            let parameters = tree(*trial).map(|tree| tree.current());
-            let parameters = parameters.map_or_else(String::new, |shown| format!("{shown:?}"));
-            if label.is_empty() { parameters } else { format!("{label}, {parameters}") }
-        };
-        let row = |(index, (row, tally)): (usize, (&Row, &Tally<Place>))| {
-            let row = row.with(tally, shown);
-            let first = tally.place.as_ref().filter(|_| !row.is_within());
-            let Some((number, tree)) = first.and_then(|at| Some((at.trial, tree(at.trial)?)))
-            else {
-                return row;
-            };
+        for (index, row) in found.iter_mut().enumerate().filter(|(_, row)| !row.is_within()) {
             let is_broken = |parameters: &S::Value| {
-                let mut seen = seen();
-                try_out(number, parameters, &mut seen);
-                !row.with(&seen.tallies[index], |_| String::new()).is_within()
+                let mut rows = empty.clone();
+                try_out(row.trial, parameters, &mut rows);
+                !rows[index].is_within()
             };
-            let shortest = shrunk(tree, is_broken);
-            Row { place: format!("{}; shortened: {shortest:?}", row.place), ..row }
-        };
-        rows.iter().zip(&found).enumerate().map(row).collect()
+            if let Some(shortest) = tree(row.trial).map(|tree| shrunk(tree, is_broken)) {
+                row.place = format!("{}; shortened: {shortest:?}", row.place);
+            }
+        }
+        found
     }
-}
-
-/// Answer of a trial: nothing, or `None` where there was nothing to compare.
-pub trait Outcome {
-    /// Returns whether the trial is skipped in all rows.
-    fn skips(self) -> bool;
-}
-
-impl Outcome for () {
-    fn skips(self) -> bool {
-        false
-    }
-}
-
-impl Outcome for Option<()> {
-    fn skips(self) -> bool {
-        self.is_none()
-    }
-}
-
-/// A trial, and which of its values.
-#[derive(Debug, Clone, Default)]
-struct Place {
-    trial: u32,
-    /// Name of the value, if a trial has several.
-    label: String,
 }
 
 /// Returns the shortest parameters found that break a bound, too.
@@ -158,21 +119,25 @@ fn shrunk<T: ValueTree>(mut tree: T, is_broken: impl Fn(&T::Value) -> bool) -> T
     shortest
 }
 
-/// Errors that the trials of a line have shown.
-pub struct Seen {
-    place: Place,
-    tallies: Vec<Tally<Place>>,
+/// Rows that a trial adds its errors to.
+pub struct Seen<'a> {
+    trial: u32,
+    /// Name of the value, if a trial has several.
+    label: String,
+    parameters: &'a dyn Debug,
+    rows: &'a mut [Row],
 }
 
-impl Seen {
+impl Seen<'_> {
     /// Says which of several values of a trial comes next.
     pub fn at(&mut self, label: impl Display) {
-        self.place.label = label.to_string();
+        self.label = format!("{label}, ");
     }
 
     /// Adds an error, in the measure of the row.
     pub fn see(&mut self, row: usize, error: f64) {
-        self.tallies[row].see(error, || self.place.clone());
+        let Self { trial, label, parameters, rows } = self;
+        rows[row].see(error, *trial, || format!("{label}{parameters:?}"));
     }
 
     /// Adds an answer that is right or wrong.
@@ -190,7 +155,8 @@ impl Seen {
 
     /// Adds a trial without anything to compare.
     pub fn skip(&mut self, row: usize) {
-        self.tallies[row].skip(|| self.place.clone());
+        let Self { label, parameters, rows, .. } = self;
+        rows[row].skip(|| format!("{label}{parameters:?}"));
     }
 
     /// Adds a value with its stated error; a value that rounds to the truth has none.
