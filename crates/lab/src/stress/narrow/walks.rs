@@ -11,6 +11,7 @@ use super::scene::{BALL, LIT, RAY, Scene};
 use super::trail::{Precision, Traced, Trail};
 use estimators::free_flight::woodcock::Flights;
 use estimators::rod::walk::{By, InRod};
+use estimators::setup::OnRay;
 use estimators::single_scattering::plan::{Absorption, Plan, Run, Technique, Vertices};
 use estimators::slab::walk::InSlab;
 use estimators::space::walk::InSpace;
@@ -26,7 +27,7 @@ use estimators::transmittance::scoring::{Scoring, Share};
 use estimators::transmittance::unidirectional_mis::UnidirectionalMis;
 use estimators::transmittance_curve::double::Curve;
 use estimators::walks::{Walk, plain};
-use estimators::{Draw, Setup};
+use estimators::{Draw, Estimated, Setup};
 use fearless_simd::Level;
 use media::Majorants;
 use numeric::fused::in_fused_code;
@@ -90,14 +91,14 @@ fn weighted<D: Draws, N: Precision>(draws: &D, of: Subject, trail: &Trail) -> Op
 
 /// Makes a draw by a walk along the ray.
 #[inline(always)]
-fn along<'t, N: Precision, P: Problem<Value: Channels>>(
+fn along<'t, N: Precision, P: Estimated<Value: Channels, Fields: OnRay>>(
     walk: &impl Walk,
     setup: &Setup<P>,
     Subject { scene, channel, .. }: Subject,
     mut trail: &'t Trail,
 ) -> Option<f64> {
     let look_up = |_, t: Traced<'t, N>| scene.on_ray(t);
-    let draw: Draw<P::Value> = plain::through(walk, &setup.sampling, look_up, &mut trail);
+    let draw: Draw<P::Value> = plain::through(walk, setup.residual().sampling, look_up, &mut trail);
     draw.value.as_ref().get(channel).copied()
 }
 
@@ -184,7 +185,7 @@ impl<P: Walked, const SPLITS: bool> Draws for Walks<P, SPLITS> {
     #[inline(always)]
     fn draw<N: Precision>(&self, of: Subject, trail: &Trail) -> Option<f64> {
         let setup = of.setup.downcast_ref::<Setup<P>>()?;
-        let (tally, majorants) = (P::tally(setup, &self.0).ok()?, setup.space.as_deref()?);
+        let (tally, majorants) = (P::tally(setup, &self.0).ok()?, &*setup.fields);
         let world = (setup.problem.scene(), majorants);
         in_space::<N, P::Value, SPLITS>((&tally, self.0), world, of, trail)
     }
@@ -197,7 +198,7 @@ impl Draws for Connects {
     #[inline(always)]
     fn draw<N: Precision>(&self, of: Subject, trail: &Trail) -> Option<f64> {
         let setup = of.setup.downcast_ref::<Setup<Sphere>>()?;
-        let (sphere, majorants) = (&*setup.problem, setup.space.as_deref()?);
+        let (sphere, majorants) = (&*setup.problem, &*setup.fields);
         let shadow = Some(self.1(of.scene));
         let sharing = Sharing { techniques: Techniques::NextEvent, shadow, subpaths: None };
         let tally = Combined::<_, false>::new((sphere, majorants), self.0, (sharing, Honest));
