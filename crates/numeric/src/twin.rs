@@ -161,6 +161,17 @@ impl<L: Lane> Lane for Twin<L> {
     }
 
     #[inline(always)]
+    fn store(self, row: &mut [f64]) {
+        self.0.store(row);
+        self.1.store(&mut row[WIDTH..]);
+    }
+
+    #[inline(always)]
+    fn load(self, row: &[f64]) -> Self {
+        Self(self.0.load(row), self.1.load(&row[WIDTH..]))
+    }
+
+    #[inline(always)]
     fn polynomial<const N: usize>(self, c: &[f64; N]) -> Self {
         elementary::horner(self, c)
     }

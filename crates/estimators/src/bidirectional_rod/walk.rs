@@ -369,42 +369,30 @@ fn attenuate<L: Lane>(
     (path, field): (&mut Path<L>, &impl Field<L>),
     which: L::Mask,
 ) {
+    let is_connected = path.light >= 1 && path.light <= path.order + 1;
     if matches!(steps.combination(), Combination::Full(_)) {
-        for j in 0..=path.order {
-            path.transmittance[j] =
-                field.exp(minus_depths(problem, [path.at[j], path.at[j + 1]], which));
+        for j in (0..=path.order).filter(|j| !is_connected || j + 1 != path.light) {
+            let ends = [path.at[j], path.at[j + 1]];
+            path.transmittance[j] = field.exp(minus_depths(problem, ends, which));
         }
     }
-    if path.light >= 1 && path.light <= path.order + 1 {
-        let (from, to) = (path.at[steps.joined(path)], path.at[path.light]);
-        path.transmittance[path.light - 1] = field.exp(minus_depths(problem, [from, to], which));
+    if is_connected {
+        let ends = [path.at[steps.joined(path)], path.at[path.light]];
+        path.transmittance[path.light - 1] = field.exp(minus_depths(problem, ends, which));
     }
 }
 
-/// Minus the optical depths between distances, of the lanes in `which`.
+/// Minus the optical depths between distances, of the lanes in `which`; 0 in the others.
 #[inline(always)]
 fn minus_depths<L: Lane>(problem: &BidirectionalRod, [a, b]: [L; 2], which: L::Mask) -> L {
-    let (bits, mut ends, mut lane) = (which.bits(), [0.0; PAIR], 0);
-    let _ = a.or_more(b).replaced(
-        #[inline(always)]
-        |elements| {
-            for element in elements {
-                ends[lane] = *element;
-                lane += 1;
-            }
-        },
-    );
-    lane = 0;
-    a.or_less(b).replaced(
-        #[inline(always)]
-        |elements| {
-            for from in elements {
-                let is_asked = bits >> lane & 1 == 1;
-                let span = Span::new(*from, ends[lane]);
-                let depth = || problem.medium().optical_depth(span).value;
-                *from = if is_asked { -depth() } else { 0.0 };
-                lane += 1;
-            }
-        },
-    )
+    let (mut from, mut to, mut found) = ([0.0; PAIR], [0.0; PAIR], [0.0; PAIR]);
+    a.or_less(b).store(&mut from);
+    a.or_more(b).store(&mut to);
+    let mut bits = which.bits();
+    while bits != 0 {
+        let lane = bits.trailing_zeros() as usize % PAIR;
+        bits &= bits - 1;
+        found[lane] = -problem.medium().optical_depth(Span::new(from[lane], to[lane])).value;
+    }
+    a.load(&found)
 }
