@@ -28,13 +28,13 @@ const NOT_UNIFORM: f64 = 1e-6;
 /// A rate against a promise.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Rate {
-    /// What is counted.
+    /// Event that is counted.
     pub what: String,
-    /// Number of times it happened.
+    /// Number of trials with the event.
     pub count: u64,
-    /// Out of how many.
+    /// Number of trials.
     pub trials: u64,
-    /// How often it may happen.
+    /// Largest rate that the promise allows.
     pub promise: f64,
     /// The limits of the rate at 99 %.
     pub limits: [f64; 2],
@@ -89,7 +89,7 @@ impl Calibration {
     }
 }
 
-/// What is counted over runs.
+/// Counts over runs.
 #[derive(Debug, Clone, Default)]
 pub struct Counts {
     runs: u64,
@@ -161,7 +161,7 @@ impl Counts {
         }
     }
 
-    /// Compares the counts with the promises, for runs of so many scalars and p-values.
+    /// Compares the counts with the promises, given the numbers of scalars and p-values of a run.
     pub fn close(
         self,
         scalars: usize,

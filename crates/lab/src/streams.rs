@@ -1,15 +1,14 @@
-//! Correct draws of hard laws, judged as foreign draws are: does any of them fail?
+//! Correct draws of difficult distributions, judged like draws of another program: does any of them fail?
 //!
 //! ```text
-//! laws    Bernoulli(1e-2 … 1e-6), log-normal (σ = 1, 2, 3), a spike of chance 1e-5 on a constant and
-//!         on noise of width 1e-4, a constant with a spread of 1e-9, Pareto draws less 1 (index 2.2
-//!         and 4.5), a signed product ∏(1 − 3tᵢ) over a Poisson number of uniform tᵢ, exponential
-//! claims  the truth; and the variance; and the kurtosis; the truth and a range
+//! distributions  Bernoulli(1e-2 … 1e-6), log-normal (σ = 1, 2, 3), a spike of probability 1e-5 on a constant and
+//!                on noise of width 1e-4, a constant with a spread of 1e-9, Pareto draws less 1 (index 2.2 and 4.5),
+//!                a signed product ∏(1 − 3tᵢ) over a Poisson number of uniform tᵢ, exponential, uniform
+//! claims         truth; truth and variance; truth, variance and kurtosis; truth and range
 //! ```
 //!
-//! Truth, variance and kurtosis are exact. Where a law has no finite kurtosis, or no range, that claim
-//! is left out. Every stream has 4e5 draws and an address of its own, and is judged at α = 1e-3 for
-//! each of the claims.
+//! Truth, variance and kurtosis are exact. A claim is left out where the distribution has no finite kurtosis, or no
+//! range. Every stream has 4e5 draws and its own address, and is judged at α = 1e-3 for each of the claims.
 
 use gate::session::{Claim, ROUNDING, Trial, Wanted};
 use gate::stats::binomial;
@@ -19,35 +18,35 @@ use rand::RngExt;
 use rand_distr::{Distribution, Poisson, StandardNormal};
 use theory::parallel;
 
-/// How many draws a stream has.
+/// Number of draws of a stream.
 const DRAWS: usize = 400_000;
-/// The chance that a correct stream fails.
+/// Probability that a correct stream fails.
 pub const ALPHA: f64 = 1e-3;
 /// The confidence at which a promise counts as broken.
 const CERTAIN: f64 = 1.0 - 1e-6;
 /// The range of draws that are never negative.
 const POSITIVE: [f64; 2] = [0.0, f64::INFINITY];
-/// How large a spike is.
+/// Height of a spike.
 const SPIKE: f64 = 1e5;
-/// Its chance.
+/// Probability of a spike.
 const RARE: f64 = 1e-5;
-/// How wide the noise below spikes is.
+/// Width of the noise below spikes.
 const NOISE: f64 = 1e-4;
-/// How wide the nearly constant law is.
+/// Width of the nearly constant distribution.
 const NARROW: f64 = 1e-9;
-/// Λ of the signed product.
+/// Mean number of factors of the signed product, Λ.
 const MEAN_FACTORS: f64 = 1.5;
 
-/// A law of draws with what is known of it.
+/// Distribution of draws with known moments.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Law {
-    /// 1 with this chance, else 0.
+    /// 1 with this probability, else 0.
     Bernoulli(f64),
     /// `e^{σz}`, z normal.
     LogNormal(f64),
-    /// 1, and with chance 1e-5 1e5 more.
+    /// 1, and 1e5 more with probability 1e-5.
     Spike,
-    /// The same with a uniform noise of width 1e-4.
+    /// [`Law::Spike`] with a uniform noise of width 1e-4.
     NoisySpike,
     /// Uniform on an interval of length 1e-9 about 1.
     Narrow,
@@ -57,11 +56,11 @@ pub enum Law {
     Signed,
     /// `e^{−x}`.
     Exponential,
-    /// On [0, 1].
+    /// Uniform on [0, 1].
     Uniform,
 }
 
-/// Every law.
+/// Every distribution.
 pub const LAWS: [Law; 15] = [
     Law::Bernoulli(1e-2),
     Law::Bernoulli(1e-3),
@@ -80,14 +79,14 @@ pub const LAWS: [Law; 15] = [
     Law::Exponential,
 ];
 
-/// What is claimed of the draws.
+/// Quantities that are claimed of the draws.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Claims {
     /// The truth alone.
     Truth,
-    /// And the variance.
+    /// The truth and the variance.
     Variance,
-    /// And the variance and the kurtosis.
+    /// The truth, the variance and the kurtosis.
     Kurtosis,
     /// The truth and a range.
     Range,
@@ -179,7 +178,7 @@ impl Law {
         }
     }
 
-    /// What is claimed; `None` where the law has nothing of it.
+    /// Returns the values that are claimed; `None` where the distribution has no such value.
     pub fn claim(self, claims: Claims) -> Option<Claim> {
         let (truth, variance, kurtosis, range) = self.moments();
         let given = Claim { rounding: ROUNDING, ..Claim::of_truth(truth) };
@@ -233,7 +232,7 @@ impl Law {
 }
 
 impl StreamVerdicts {
-    /// Whether the promise that a correct stream fails with chance α at most is not refuted.
+    /// Returns true if the counts do not refute that a correct stream fails with probability at most α.
     pub fn is_kept(&self) -> bool {
         binomial::interval(self.failed, self.streams, CERTAIN).0 <= ALPHA
     }
@@ -242,23 +241,23 @@ impl StreamVerdicts {
 /// Counts of verdicts on the streams of one distribution with one claim.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct StreamVerdicts {
-    /// The law.
+    /// The distribution.
     pub law: String,
     /// The claim.
     pub known: String,
-    /// How many streams were judged.
+    /// Number of streams that were judged.
     pub streams: u64,
-    /// How many passed, failed, and were inconclusive.
+    /// Number of streams that passed.
     pub passed: u64,
-    /// See there.
+    /// Number of streams that failed.
     pub failed: u64,
-    /// See there.
+    /// Number of streams with an inconclusive verdict.
     pub inconclusive: u64,
-    /// What the first that failed said.
+    /// Reason of the first failure; empty without one.
     pub reason: String,
 }
 
-/// Judges so many streams of every law with every claim; `step` is told of each stream.
+/// Judges a number of streams of every distribution with every claim; `step` is called after each stream.
 pub fn all(streams: u64, step: &(dyn Fn(u64) + Sync)) -> Vec<StreamVerdicts> {
     LAWS.iter().flat_map(|&law| of_law(law, streams, step)).collect()
 }

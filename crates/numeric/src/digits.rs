@@ -93,8 +93,8 @@ pub fn number(x: f64) -> String {
     if scientific.len() < plain.len() { scientific } else { plain }
 }
 
-/// The same to six places, for numbers that were computed; six digits and an exponent for those that
-/// six places would hide or pad.
+/// A computed number to six decimals; with six digits and an exponent where six decimals would hide digits or pad
+/// them with zeros.
 pub fn rounded(x: f64) -> String {
     let size = x.abs();
     let is_plain = x == 0.0 || (1e-3..1e9).contains(&size) || !x.is_finite();

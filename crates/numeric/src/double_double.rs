@@ -23,7 +23,7 @@ use super::Lane;
 pub struct Wide<L = f64> {
     /// The number, rounded to a double.
     pub high: L,
-    /// What that rounding took away.
+    /// Rounding error of `high`: the number less `high`.
     pub low: L,
 }
 
@@ -35,7 +35,7 @@ pub fn two_sum<L: Lane>(a: L, b: L) -> Wide<L> {
     Wide { high, low: (a - (high - moved)) + (b - moved) }
 }
 
-/// The same for `|a| ≥ |b|` or `a = 0`.
+/// The sum of two doubles with `|a| ≥ |b|` or `a = 0` and its rounding error, exactly.
 #[inline(always)]
 fn quick_two_sum<L: Lane>(a: L, b: L) -> Wide<L> {
     let high = a + b;

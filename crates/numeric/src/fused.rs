@@ -1,14 +1,15 @@
 //! Loops over doubles, compiled for machines that multiply and add in one rounding.
 //!
-//! On x86 a compiler may use what every such processor has, which is SSE2. So loops are compiled for wider registers as well,
-//! and the processor is asked once which code it can run. Code for other architectures needs no such choice. Sums have a
-//! fixed number of lanes, so that the width of the registers changes no bit.
+//! On x86 a compiler by default uses SSE2 alone, which every such processor has. Loops are therefore compiled for
+//! wider registers as well, and the processor is queried once for the code that it can run. Code for other
+//! architectures needs no such choice. Sums have a fixed number of lanes, so that the width of the registers changes
+//! no bit.
 //!
-//! `pack` chooses code by the same rules. It is more than a loop needs whose formula the compiler can vectorize by itself.
+//! `pack` chooses code by the same rules. Loops that the compiler vectorizes by itself do not need packs.
 
 use super::single::{Fused, Plain, Single};
 
-/// Types that prove that the processor has some instructions: the question and the compiled code come from one list.
+/// Types that prove that the processor has some instructions. One list makes both the query and the compiled code.
 #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
 macro_rules! instructions {
     ($($(#[$about:meta])* $Set:ident { $($feature:tt)* })*) => {
@@ -18,7 +19,7 @@ macro_rules! instructions {
             struct $Set(());
 
             impl $Set {
-                /// Asks the processor, the first time.
+                /// Returns the proof; queries the processor on the first call.
                 #[inline(always)]
                 fn find() -> Option<Self> {
                     static FOUND: std::sync::LazyLock<Option<$Set>> = std::sync::LazyLock::new(|| {
@@ -28,7 +29,7 @@ macro_rules! instructions {
                     *FOUND
                 }
 
-                /// Computes in code for these instructions; what is called there is `#[inline(always)]`.
+                /// Computes in code for these instructions; every function called there is `#[inline(always)]`.
                 #[inline(always)]
                 fn run<R>(self, compute: impl FnOnce() -> R) -> R {
                     #[inline]
@@ -61,7 +62,7 @@ instructions! {
     }
 }
 
-/// Whether this machine's packs, and so its scalars, multiply and add in one rounding.
+/// Returns true if packs of this machine, and so its scalars, multiply and add in one rounding.
 #[inline(always)]
 pub fn fuses() -> bool {
     #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
@@ -85,7 +86,7 @@ pub trait Loop {
     /// Result of the loop.
     type Output;
 
-    /// Runs the loop; all that it calls is `#[inline(always)]`, or else it would be compiled for the least machine.
+    /// Runs the loop. All that it calls is `#[inline(always)]`: other code would be compiled for the baseline.
     fn run<L: Single>(self) -> Self::Output;
 }
 
@@ -108,7 +109,7 @@ pub fn run<T: Loop>(task: T) -> T::Output {
     )
 }
 
-/// Runs a computation that no wider registers speed up in the rounding of [`super::Lane`] for `f64`.
+/// Runs a computation in the rounding of [`super::Lane`] for `f64`, if wider registers would not speed it up.
 #[inline(always)]
 pub fn in_own_rounding<T: Loop>(task: T) -> T::Output {
     #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
@@ -125,7 +126,7 @@ pub fn in_own_rounding<T: Loop>(task: T) -> T::Output {
     plainly(task)
 }
 
-/// Runs a computation on one of the few machines that round twice, in no part of the code around it.
+/// Runs a computation on one of the few machines that round twice, out of line.
 #[cold]
 #[inline(never)]
 fn plainly<T: Loop>(task: T) -> T::Output {

@@ -14,7 +14,7 @@ pub struct Known {
 }
 
 impl Known {
-    /// A value whose only error is its own rounding to a double.
+    /// A value with no error but its own rounding to a double.
     pub fn exact(value: f64) -> Self {
         Self { value, error: f64::EPSILON * value.abs() }
     }
@@ -43,9 +43,9 @@ impl std::ops::Add for Known {
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Span {
-    /// Where the stretch begins.
+    /// Beginning of the stretch.
     pub from: f64,
-    /// Where it ends.
+    /// End of the stretch.
     pub to: f64,
 }
 
@@ -70,7 +70,7 @@ impl Span {
         self.length() <= 0.0
     }
 
-    /// The stretches between neighbours of an ascending list.
+    /// The stretches between consecutive numbers of an ascending list.
     pub fn between(ends: &[f64]) -> impl ExactSizeIterator<Item = Self> + DoubleEndedIterator + '_ {
         ends.windows(2).map(|pair| Self::new(pair[0], pair[1]))
     }
@@ -84,7 +84,7 @@ impl Span {
         places
     }
 
-    /// The places that cut it into so many equal parts, a whole number, its ends left out.
+    /// The places that cut the stretch into `parts` equal parts, a whole number, without its ends.
     pub fn even_cuts(self, parts: f64) -> Vec<f64> {
         let numbers = std::iter::successors(Some(1.0), |n| Some(n + 1.0));
         let at = |n: f64| self.from + self.length() * (n / parts);

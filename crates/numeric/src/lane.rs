@@ -38,18 +38,18 @@ pub trait Lane:
     + Sub<f64, Output = Self>
     + Mul<f64, Output = Self>
 {
-    /// What a comparison says of each element.
+    /// Result of a comparison: true or false for each element.
     type Mask: Mask;
 
     /// Two 32-bit words in each element.
     type Words: Words32;
 
-    /// The same value in every element of another such lane.
+    /// Returns a lane of this kind with a value in every element.
     #[must_use]
     fn each(self, value: f64) -> Self;
 
-    /// The elements in order, replaced by a function: for what is looked up by one call, or has no formula
-    /// for lanes.
+    /// Replaces the elements, in order, by one call of a function: for lookups, and for functions without a formula for
+    /// lanes.
     #[must_use]
     fn replaced(self, replace: impl FnMut(&mut [f64])) -> Self;
 
@@ -98,7 +98,7 @@ pub trait Lane:
     #[must_use]
     fn times_plus(self, factor: Self, term: Self) -> Self;
 
-    /// The same, rounded once on every machine by doubles, and by packs where the machine can.
+    /// `self · factor + term`, rounded once: in doubles on every machine, in packs where the machine can.
     #[must_use]
     #[inline(always)]
     fn fused(self, factor: Self, term: Self) -> Self {
@@ -142,11 +142,11 @@ pub trait Lane:
         *self = Self::select(which, other, *self);
     }
 
-    /// The same number, of which the compiler does not know that it is the same.
+    /// Returns the number, and hides from the compiler that it is unchanged.
     ///
-    /// A choice between a new number and the one in memory that it replaces becomes a masked store. On AVX2 that takes five
-    /// times as long as a choice and a whole store, and what is read soon after waits twice as long (Zen 4: 1.7 against .35 ns,
-    /// 7.8 against 3.9). What is sealed before it is stored is stored as a whole.
+    /// Otherwise a choice between a new number and the one in memory that it replaces becomes a masked store. On AVX2
+    /// that takes five times as long as a choice and a whole store (Zen 4: 1.7 against 0.35 ns), and a read soon
+    /// after takes twice as long (7.8 against 3.9 ns). A number that is sealed before the store is stored as a whole.
     #[must_use]
     #[inline(always)]
     fn sealed(self) -> Self {
@@ -234,22 +234,22 @@ pub trait Lane:
     #[must_use]
     fn negated_where(self, words: Self::Words, bit: u32) -> Self;
 
-    /// The entries of a list whose numbers the elements are: integers from 0 to `2^32`; the last
-    /// entry beyond the last.
+    /// Returns the entries of a list at the indices in the elements, integers from 0 to `2^32`; the last entry for
+    /// indices beyond it.
     #[must_use]
     fn entry(self, list: &[f64]) -> Self;
 
-    /// The first five columns of the rows of a table with these numbers, likewise.
+    /// Returns the first five columns of the rows of a table at these indices; the last row for indices beyond it.
     fn columns(self, table: &[Row]) -> [Self; 5];
 
-    /// The larger; `other` where one is no number.
+    /// Maximum; `other` if one of the two is NaN.
     #[must_use]
     #[inline(always)]
     fn or_more(self, other: Self) -> Self {
         Self::select(other.below(self), self, other)
     }
 
-    /// The smaller; `other` where one is no number.
+    /// Minimum; `other` if one of the two is NaN.
     #[must_use]
     #[inline(always)]
     fn or_less(self, other: Self) -> Self {
@@ -314,7 +314,7 @@ macro_rules! rounded {
     };
 }
 
-/// What no rounding touches, as [`Plain`] does it.
+/// Operations without rounding, as of [`Plain`].
 macro_rules! as_plain {
     ($($of:ident($($other:ident)?);)*) => {
         $(

@@ -1,6 +1,6 @@
 //! Numbers: lanes and their elementary functions, exact sums, quadrature, roots.
 //!
-//! Floor 0. Nothing here has heard of light, media or statistics.
+//! Floor 0. Nothing here depends on light, media or statistics.
 
 pub mod digits;
 pub mod double_double;

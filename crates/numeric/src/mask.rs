@@ -1,10 +1,10 @@
-//! What comparisons of lanes say, and what is replaced where they say so.
+//! Masks: results of comparisons of lanes, and values of which a mask replaces elements.
 
 use std::ops::{BitAnd, BitAndAssign, BitOr, BitOrAssign, BitXor, BitXorAssign, Not};
 
 use super::Lane;
 
-/// What a comparison says of each element of a lane.
+/// Result of a comparison of lanes: true or false for each element.
 pub trait Mask:
     Copy
     + BitAnd<Output = Self>
@@ -15,20 +15,20 @@ pub trait Mask:
     + BitOrAssign
     + BitXorAssign
 {
-    /// Whether it names an element.
+    /// Returns true if an element is true.
     fn any(self) -> bool;
 
-    /// Whether it may name one. A scalar knows, and skips what is not asked for; a pack says yes without looking:
-    /// of eight walks some will be, and what is done for the others changes nothing.
+    /// Returns true if an element may be true. A scalar tests it, to skip work. A pack returns true without a test: of
+    /// eight walks, some usually need the work, and it changes nothing in the others.
     fn maybe(self) -> bool;
 
-    /// Whether it names so many elements of a pack that what is done for them together pays; a scalar never waits.
+    /// Returns true if at least `of_pack` elements of a pack are true, so that common work pays; a scalar never waits.
     fn are_enough(self, of_pack: u32) -> bool;
 
-    /// Which elements it names, as bits.
+    /// Returns the elements as bits, the first one lowest.
     fn bits(self) -> u64;
 
-    /// Takes another's place where a mask says so.
+    /// Replaces the elements where a mask is true by those of another.
     fn set_where(&mut self, which: Self, other: Self);
 }
 
@@ -61,9 +61,9 @@ impl Mask for bool {
     }
 }
 
-/// What is kept of each element, and can be replaced where a mask says so: lists of lanes, structs of lanes and masks.
+/// Values with elements that a mask can replace: lists of lanes, and structs of lanes and masks.
 pub trait Kept<M>: Copy {
-    /// Takes another's place where the mask says so.
+    /// Replaces the elements where the mask is true by those of another.
     fn set_where(&mut self, which: M, other: Self);
 }
 
@@ -76,7 +76,7 @@ impl<L: Lane, const N: usize> Kept<L::Mask> for [L; N] {
     }
 }
 
-/// A struct of what is kept, as in `kept! { /// A particle. pub struct Particle<L> { weight: L } }`.
+/// A struct of kept values, as in `kept! { /// A particle. pub struct Particle<L> { weight: L } }`.
 #[macro_export]
 macro_rules! kept {
     (

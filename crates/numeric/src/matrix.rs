@@ -17,12 +17,12 @@ impl Matrix {
         Self { columns, entries: places.map(|(row, column)| entry(row, column)).collect() }
     }
 
-    /// How many rows there are.
+    /// Number of rows.
     pub fn rows(&self) -> usize {
         self.entries.len() / self.columns
     }
 
-    /// How many columns there are.
+    /// Number of columns.
     pub fn columns(&self) -> usize {
         self.columns
     }

@@ -45,7 +45,7 @@ impl GaussLegendre {
         Self { nodes, weights, running }
     }
 
-    /// What each node's value counts for in the polynomial through all of them, at `x` in `[0, 1]`.
+    /// Weights of the values at the nodes in the polynomial through all of them, at `x` in `[0, 1]`.
     pub fn weights_at(&self, x: f64) -> Vec<f64> {
         (0..self.nodes.len()).map(|j| lagrange(&self.nodes, j, x)).collect()
     }

@@ -39,13 +39,13 @@ pub fn root(mut low: f64, mut high: f64, mut f: impl FnMut(f64) -> f64) -> f64 {
 }
 
 /// The root of a function that rises from below zero at `low` to above zero at `high`, by Newton's
-/// steps kept within the bracket; `f` answers the value and the slope.
+/// steps kept within the bracket; `f` returns the value and the slope.
 pub fn rising(low: f64, high: f64, f: impl FnMut(f64) -> (f64, f64)) -> f64 {
     rising_from(0.5 * (low + high), [low, high], |_, _| false, f)
 }
 
-/// The same from a first guess within the bracket, until a step is lost in rounding, or is one after
-/// which no other is needed: `is_last` is asked with the step and the slope.
+/// The root of a rising function, as by [`rising`], from a first guess within the bracket. Stops after a step that is
+/// lost in rounding, or if `is_last` is true of the step and the slope.
 pub fn rising_from(
     mut x: f64,
     [mut low, mut high]: [f64; 2],
@@ -73,8 +73,8 @@ pub fn rising_from(
     x
 }
 
-/// Where a function with one minimum on `[low, high]` is smallest, by golden sections until the
-/// bracket is `tolerance` wide.
+/// The place of the only minimum of a function on `[low, high]`, by golden sections until the bracket is `tolerance`
+/// wide.
 ///
 /// Source: J. Kiefer, *Sequential minimax search for a maximum*, Proc. AMS 4 (1953), 502–506.
 pub fn minimum(mut low: f64, mut high: f64, tolerance: f64, mut f: impl FnMut(f64) -> f64) -> f64 {
@@ -96,8 +96,8 @@ pub fn minimum(mut low: f64, mut high: f64, tolerance: f64, mut f: impl FnMut(f6
     0.5 * (low + high)
 }
 
-/// Where a function is smallest between two places about a third, and its value there: by parabolas where
-/// they help and golden sections where not, to `tolerance`. What it answers was asked for: next to a cliff it is
+/// The place of the minimum of a function between two places about a third, to `tolerance`, and the minimum: by
+/// parabolas where they help, else by golden sections. `f` was evaluated at the returned place: next to a jump it is
 /// on the side of the smaller values.
 ///
 /// Source: R. P. Brent, *Algorithms for Minimization Without Derivatives* (Prentice-Hall, 1973), chapter 5.

@@ -22,11 +22,11 @@ pub const ROUNDER: f64 = 6_755_399_441_055_744.0;
 /// The bits of √½: subtracting them moves the cut between exponents there.
 pub const ROOT_HALF: u64 = 0x3fe6_a09e_667f_3bcd;
 
-/// A double whose products and sums are rounded apart.
+/// A double with separate roundings of product and sum.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Plain(pub f64);
 
-/// A double whose products and sums are rounded once.
+/// A double with fused multiply-add: one rounding of product and sum.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Fused(pub f64);
 

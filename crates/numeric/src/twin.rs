@@ -23,7 +23,7 @@ pub struct Twin<L>(pub L, pub L);
 pub const PAIR: usize = 2 * WIDTH;
 
 impl<S: Simd> Twin<f64x8<S>> {
-    /// The same value in every element.
+    /// A value in every element.
     #[inline(always)]
     pub fn splat(simd: S, value: f64) -> Self {
         Self(f64x8::splat(simd, value), f64x8::splat(simd, value))

@@ -7,7 +7,7 @@ use std::ops::BitXor;
 
 /// Two 32-bit words, or a pack of such pairs that is treated element by element.
 pub trait Words32: Copy + BitXor<Output = Self> {
-    /// The same two words, the lower one first, in every element of another such lane.
+    /// Returns a lane of this kind with two words, the lower one first, in every element.
     #[must_use]
     fn each(self, words: [u32; 2]) -> Self;
     /// The sums.

@@ -8,37 +8,37 @@ use numeric::digits::rounded;
 use numeric::rng::Address;
 use theory::Mesh;
 
-/// What a recipe sees when it prepares a sampling extinction or a control.
+/// Input of a recipe for a sampling extinction or a control.
 #[derive(Clone, Copy)]
 pub struct Site<'a> {
     /// The field as the case gives it.
     pub body: &'a Body,
     /// The medium, cut into panels.
     pub mesh: &'a Mesh,
-    /// Where pilot rays find their random numbers.
+    /// Address of the random numbers of pilot rays.
     pub address: Address,
 }
 
-/// Why an estimator is not run.
+/// Reason why an estimator is not run.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum Refusal {
     /// An inequality that the estimator needs does not hold.
     #[error("needs {needs}, but {found} at t = {}", rounded(*at))]
     Inequality {
-        /// What must hold everywhere.
+        /// Inequality that must hold everywhere, in words.
         needs: &'static str,
-        /// What was found instead.
+        /// Values that violate it, in words.
         found: String,
-        /// Where on the ray.
+        /// Distance along the ray at which they were found.
         at: f64,
     },
     /// The estimator does not fit what it was given.
     #[error("needs {needs}, but {found}")]
     Mismatch {
-        /// What it takes.
+        /// Input that the estimator takes, in words.
         needs: &'static str,
-        /// What it was given.
+        /// Input that it was given, in words.
         found: String,
     },
 }

@@ -1,4 +1,4 @@
-//! Fields of several channels (wavelengths) that one walk scores, and what σ̂ must be there.
+//! Fields of several channels (wavelengths) that one walk scores, and the requirements on their σ̂.
 
 use std::sync::Arc;
 
@@ -8,7 +8,7 @@ use numeric::Lane;
 use numeric::digits::{number, rounded};
 use theory::Mesh;
 
-/// A share of null collisions below this is rounding, and so is one relative to that of another channel.
+/// Largest share that is rounding: of null collisions, or relative to the largest share of all channels.
 const TOUCHES: f64 = 1e-9;
 
 /// Largest expected number of collisions on a ray.
@@ -30,11 +30,11 @@ pub struct ChannelFields {
 }
 
 impl ChannelFields {
-    /// Joins the parts of the channel of a number; σ̂ is restricted to the support.
+    /// Joins the parts of a channel, counted from 1; σ̂ is restricted to the support.
     ///
     /// # Errors
     ///
-    /// A σ̂ that is not one constant above 0, or with which walks are too long.
+    /// σ̂ is not one constant above 0, or walks with it are too long.
     fn new(channel: usize, part: ChannelPart) -> Result<Self, Refusal> {
         let takes_none = part.1.is_none();
         let Line { mesh, sampling } = Line::new(part);
@@ -54,7 +54,7 @@ impl ChannelFields {
     }
 }
 
-/// Medium and σ̂ of each channel, of which there is at least one.
+/// Medium and σ̂ of each channel; at least one channel.
 pub type Channels = Vec<ChannelFields>;
 
 impl<P> Fields<P> for Channels {
@@ -76,7 +76,7 @@ impl OnRay for Channels {
 ///
 /// # Errors
 ///
-/// Two that differ.
+/// Two σ̂ that differ.
 pub fn require_common(channels: &[ChannelFields]) -> Result<(), Refusal> {
     let first = channels[0].majorant;
     let other = channels.iter().find(|channel| channel.majorant != first);
@@ -90,7 +90,7 @@ pub fn require_common(channels: &[ChannelFields]) -> Result<(), Refusal> {
 ///
 /// # Errors
 ///
-/// The channel, and where it is violated most.
+/// The channel, and the distance of the largest violation.
 pub fn require_majorants(channels: &[ChannelFields]) -> Result<(), Refusal> {
     for (number, channel) in (1..).zip(channels) {
         let worst = channel.mesh.largest(|_, sigma| sigma);
@@ -106,8 +106,8 @@ pub fn require_majorants(channels: &[ChannelFields]) -> Result<(), Refusal> {
     Ok(())
 }
 
-/// Requires of every hero the events of all channels: its σ̂ touches its σ_t only where that of each other channel does,
-/// and, where walks scatter, its σ_t is 0 only where that of each other channel is.
+/// Requires that every hero has the events of all channels. Its σ̂ may equal its σ_t only where σ̂ = σ_t in every other
+/// channel. If walks scatter, its σ_t may be 0 only where σ_t = 0 in every other channel.
 ///
 /// # Errors
 ///

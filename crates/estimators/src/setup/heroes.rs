@@ -1,4 +1,4 @@
-//! Distribution of the hero channel, whose walk scores all channels of a chromatic medium.
+//! Distribution of the hero channel. The walk of the hero scores all channels of a chromatic medium.
 
 use super::Refusal;
 use media::catalogue::{Domain, Settings, Value};
@@ -13,9 +13,9 @@ const SUM: f64 = 1e-9;
 pub enum Heroes {
     /// Every channel with the same probability.
     Uniform,
-    /// By the weights of the luminance.
+    /// The weights of the luminance as probabilities.
     Luminance,
-    /// As given.
+    /// One given probability for each channel.
     Given(Vec<f64>),
 }
 
@@ -37,7 +37,7 @@ impl Heroes {
         Some(Self::Given(given))
     }
 
-    /// Its setting in words, as in `hero .2 .8`; empty where every channel has the same probability.
+    /// Label of the setting, as in `hero .2 .8`; empty where every channel has the same probability.
     pub fn label(&self) -> String {
         match self {
             Self::Uniform => String::new(),
@@ -64,7 +64,7 @@ impl Heroes {
         (0..count).map(|channel| self.probability(count, channel)).collect()
     }
 
-    /// The hero among `count` channels that a uniform number chooses.
+    /// Returns the hero among `count` channels that a uniform number chooses.
     #[inline(always)]
     pub fn choose(&self, count: usize, number: f64) -> usize {
         let (mut hero, mut sum) = (0, self.probability(count, 0));
@@ -79,7 +79,7 @@ impl Heroes {
     ///
     /// # Errors
     ///
-    /// Another number of probabilities.
+    /// The list has another number of probabilities.
     pub fn require(&self, count: usize) -> Result<(), Refusal> {
         match self {
             Self::Given(given) if given.len() != count => {

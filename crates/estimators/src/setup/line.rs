@@ -12,17 +12,17 @@ use theory::{Mesh, Rule, product::Product};
 
 /// Logarithm of the largest weight that a draw may reach: a little below the largest double.
 const LARGEST_WEIGHT: f64 = 700.0;
-/// Walks that are rarer than `e^` this are never drawn: one in 1e21.
+/// Negative logarithm of the smallest probability of a walk that may be drawn: 1e-21.
 const NEVER: f64 = 48.4;
 
 /// Fields with a σ̂ along a ray.
 pub trait OnRay {
-    /// σ_t, σ̂ and σ_c; of several channels those of the first.
+    /// Returns σ_t, σ̂ and σ_c; of several channels, those of the first.
     fn residual(&self) -> Residual<'_>;
 }
 
 impl<P: Estimated<Fields: OnRay>> Setup<P> {
-    /// σ_t, σ̂ and σ_c along the ray; of several channels those of the first.
+    /// Returns σ_t, σ̂ and σ_c along the ray; of several channels, those of the first.
     pub fn residual(&self) -> Residual<'_> {
         self.fields.residual()
     }
@@ -80,7 +80,7 @@ impl ControlledLine {
         let Line { mesh, sampling } = Line::new(part);
         let support = mesh.support();
         let log_unit = problem.log_unit(mesh.optical_depth().value);
-        // It enters draws: this crate's exponential, the same on every machine.
+        // Draws contain it: the exponential of lanes is the same on every machine.
         let upto = |&distance: &f64| {
             let span = Span::new(support.from, distance).intersect(support);
             Lane::exp(log_unit - control.optical_depth(span).value)
@@ -95,7 +95,7 @@ impl ControlledLine {
         self.control_curve[self.control_curve.len() - 1]
     }
 
-    /// Requires a transmittance that is not in units of its own, see [`Problem::log_unit`].
+    /// Requires draws in units of 1, not of `exp(−log_unit)`, see [`Problem::log_unit`].
     ///
     /// # Errors
     ///
@@ -133,7 +133,7 @@ impl ControlledLine {
         while rarity(many) < NEVER {
             (few, many) = (many, 2.0 * many);
         }
-        // To a thousandth is near enough, and beyond 2⁵³ numbers no longer differ by one.
+        // A relative accuracy of 1e-3 is enough, and beyond 2⁵³ doubles do not differ by one.
         while many - few > (1e-3 * many).max(1.0) {
             let middle = 0.5 * (few + many);
             if rarity(middle) < NEVER { few = middle } else { many = middle }

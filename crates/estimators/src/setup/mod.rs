@@ -1,4 +1,4 @@
-//! Medium, σ̂ and control that an estimator works on, prepared once per experiment, and what it may require of them.
+//! Medium, σ̂ and control of an estimator, prepared once per experiment, and the requirements on them.
 //! Floor 4.
 
 pub mod channels;
@@ -52,7 +52,7 @@ pub type ChannelPart = (Arc<Mesh>, Option<Piecewise>);
 /// Function that makes σ̂ in a volume, for particles that leave the ray.
 pub type SpaceSampling<'a> = Box<dyn FnOnce(&Volume) -> Result<Space, Refusal> + 'a>;
 
-/// Parts of which the fields of a setup are made.
+/// Parts from which the fields of a setup are made.
 pub struct Parts<'a> {
     /// Medium and σ̂ of each channel along the ray; at least one.
     pub channels: Vec<ChannelPart>,
@@ -79,8 +79,8 @@ pub trait Fields<P>: Sized + Send + Sync + 'static {
         self
     }
 
-    /// Share of the ray's support, or in space of the box about the volume, on which σ̂ is 0 because nothing is to be found
-    /// there.
+    /// Share of the ray's support on which σ̂ is 0 because the residual is; in space, share of the box about the
+    /// volume.
     fn skipped(&self) -> f64 {
         0.0
     }

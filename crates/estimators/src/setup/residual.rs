@@ -28,11 +28,11 @@ pub struct Residual<'a> {
 }
 
 impl Residual<'_> {
-    /// Requires a ray with so few collisions that their numbers fit a table, and that walks end.
+    /// Requires at most 10⁶ expected collisions on the ray: their counts must fit a table, and walks must end.
     ///
     /// # Errors
     ///
-    /// Λ.
+    /// The expected number of collisions, ∫σ̂.
     pub fn require_few_collisions(self, needs: &'static str) -> Result<(), Refusal> {
         let collisions = self.sampling.whole_depth();
         if collisions <= MAX_COLLISIONS {
@@ -51,7 +51,7 @@ impl Residual<'_> {
         if self.control.is_none() { "σ_t" } else { "σ_t − σ_c" }
     }
 
-    /// Requires σ̂ > 0 wherever the residual is not zero: elsewhere collisions are missed for good.
+    /// Requires σ̂ > 0 wherever the residual is not zero: a walk has no collisions where σ̂ = 0.
     ///
     /// # Errors
     ///
@@ -79,8 +79,8 @@ impl Residual<'_> {
         }
     }
 
-    /// A knot at which σ̂ falls to zero while the residual does not: collisions are then so rare
-    /// beside what they must carry that the variance is infinite.
+    /// Returns a knot at which σ̂ falls to zero and the residual does not, with the size of the residual. Collisions
+    /// next to it are so rare that their weights have an infinite variance.
     fn touched_zero(self) -> Option<(f64, f64)> {
         let medium = self.mesh.medium();
         let support = self.mesh.support();
@@ -88,7 +88,7 @@ impl Residual<'_> {
         self.sampling.knots().windows(2).find_map(|ends| {
             let middle = 0.5 * (ends[0] + ends[1]);
             let inset = 1e-9 * (ends[1] - ends[0]);
-            // Where the residual vanishes with σ̂ their ratio stays what it is in the middle.
+            // Where the residual falls to zero with σ̂, their ratio stays near that in the middle.
             let usual = |t: f64| size(middle).max(size(t)) / self.sampling.value(middle);
             let blows_up = |t: &f64| size(*t) / self.sampling.value(*t) > 1e6 * usual(*t);
             let corners = [ends[0] + inset, ends[1] - inset];
@@ -101,7 +101,7 @@ impl Residual<'_> {
     ///
     /// # Errors
     ///
-    /// Where it is violated most.
+    /// The distance of the largest violation.
     pub fn require_not_negative(self, needs: &'static str) -> Result<(), Refusal> {
         if self.control.is_none() {
             return Ok(());
@@ -123,7 +123,7 @@ impl Residual<'_> {
     ///
     /// # Errors
     ///
-    /// Where it is violated most.
+    /// The distance of the largest violation.
     pub fn require_ratio_at_most(self, limit: f64, needs: &'static str) -> Result<(), Refusal> {
         self.require_ratio_within(&[], |_| limit, needs)
     }
@@ -132,7 +132,7 @@ impl Residual<'_> {
     ///
     /// # Errors
     ///
-    /// Where it is violated most.
+    /// The distance of the largest violation.
     pub fn require_ratio_within(
         self,
         knots: &[f64],
@@ -176,8 +176,8 @@ impl Residual<'_> {
         }
     }
 
-    /// Stretches on which medium and control are 0: at both ends of the support, and gaps that are long enough to be worth
-    /// a piece of σ̂. Where medium and control are the same throughout it is the whole support.
+    /// Returns the stretches on which medium and control are 0: at both ends of the support, and gaps that are long
+    /// enough to be worth a piece of σ̂. If medium and control are equal everywhere, it is the whole support.
     pub fn gaps(self) -> Vec<Span> {
         let support = self.mesh.support();
         let is_worth = |stretch: &Span| {
@@ -210,7 +210,7 @@ impl Residual<'_> {
         if is_same {
             stretches = vec![self.mesh.support()];
         }
-        // What hides between the nodes shows in the integral.
+        // A residual between the nodes shows in the integral.
         stretches.retain(|&stretch| {
             let medium = self.mesh.medium().optical_depth(stretch);
             let control = self.control.optical_depth(stretch);

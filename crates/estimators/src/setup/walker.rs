@@ -1,4 +1,4 @@
-//! Walkers, whose walks score all channels, and the densities that their draws are divided by.
+//! Walkers that score all channels, and the densities by which their draws are divided.
 
 use super::Refusal;
 use super::channels::{require_common, require_room};
@@ -85,7 +85,7 @@ impl Walker {
         Some(Self::SpectralTracking(read_chances(settings)?))
     }
 
-    /// Its settings in words.
+    /// Label of the settings.
     pub fn label(&self) -> String {
         match self {
             Self::Hero(heroes) | Self::Mis(heroes) => heroes.label(),
@@ -93,7 +93,7 @@ impl Walker {
         }
     }
 
-    /// Distribution of the hero; `None` where one walk serves all channels, with the number 0.
+    /// Distribution of the hero; `None` where all channels walk together.
     #[inline(always)]
     pub fn heroes(&self) -> Option<&Heroes> {
         match self {
@@ -102,7 +102,7 @@ impl Walker {
         }
     }
 
-    /// Probabilities of heroes; 1 of the first where all channels walk together.
+    /// Probabilities of heroes; where all channels walk together, 1 for the first.
     pub fn probabilities(&self, count: usize) -> Vec<f64> {
         match self.heroes() {
             Some(heroes) => heroes.of(count),
@@ -152,7 +152,7 @@ impl Walker {
     ///
     /// # Errors
     ///
-    /// What is violated, and where.
+    /// The requirement that is violated, and its place.
     pub fn require(&self, of: &[ChannelFields]) -> Result<(), Refusal> {
         match self {
             Self::Hero(heroes) | Self::Mis(heroes) => heroes.require(of.len()),
@@ -160,11 +160,11 @@ impl Walker {
         }
     }
 
-    /// Requires also `σ̂ ≥ σ_t` on the ray, and of heroes without weights the events of all channels.
+    /// Requires also `σ̂ ≥ σ_t` on the ray. The hero of [`Self::Hero`] must also have the events of all channels.
     ///
     /// # Errors
     ///
-    /// What is violated, and where.
+    /// The requirement that is violated, and its place.
     pub fn require_on_ray(&self, of: &[ChannelFields]) -> Result<(), Refusal> {
         self.require(of)?;
         channels::require_majorants(of)?;
@@ -178,7 +178,7 @@ impl Walker {
     ///
     /// # Errors
     ///
-    /// Two that differ.
+    /// Two phase functions that differ.
     pub fn require_phases(&self, phases: &[Phase]) -> Result<(), Refusal> {
         let other = phases.iter().find(|phase| **phase != phases[0]);
         match (self, other) {
@@ -190,12 +190,12 @@ impl Walker {
         }
     }
 
-    /// Bounds on `E[X²]` of all channels, given one for a walk, a channel and its Φ, or what the second moment is
-    /// multiplied by between two scatterings where that is too much.
+    /// Bounds on `E[X²]` of all channels. `of` returns the bound of a walk for a channel and its Φ. Its error is
+    /// the factor, 1 or more, by which the second moment grows from one scattering to the next.
     ///
     /// # Errors
     ///
-    /// The walk and the channel of which there is none.
+    /// The walk and the channel that have no bound.
     pub fn second_moment_bounds(
         &self,
         phases: &[Phase],
@@ -209,7 +209,7 @@ impl Walker {
             Self::SpectralTracking(Chances::Fixed(chance)) => {
                 vec![(1.0, Proposal::Together(*chance))]
             }
-            // Nobody asks: it is bounded as multiple importance sampling is.
+            // Not needed: these walks are bounded as multiple importance sampling is.
             Self::SpectralTracking(Chances::History) => {
                 return Ok(vec![f64::INFINITY; phases.len()]);
             }

@@ -374,7 +374,7 @@ impl Plan {
 
 /// A use of a walk.
 pub trait Run {
-    /// What it makes of the walk.
+    /// Result of the use.
     type Output;
 
     /// Uses the walk.

@@ -1,16 +1,16 @@
-//! A walk along a ray with one wrong step, whatever the walk.
+//! Any walk along a ray, with one wrong step.
 //!
 //! ```text
-//! numbers    the optical depth of a flight, and the number that decides at its end
-//! fly        through σ̂
-//! distance   σ_t is looked up there
-//! collide    by σ_t, at a distance; some walks end
-//! value      of a finished walk
+//! numbers    draws the optical depth of a flight, and the random number of the decision at its end
+//! fly        flies through σ̂
+//! distance   returns the distance at which σ_t is looked up
+//! collide    changes the walk by σ_t at a distance; some walks end
+//! value      returns the score of a finished walk
 //! ```
 //!
-//! [`Wrong`] is between a driver and a walk of the estimators, and one [`Slip`] changes what passes. Without a slip nothing
-//! changes: that walk is the control. Changes of σ_t that has been looked up, and of the last value, break the invariant of a
-//! product estimator, and count as its defect.
+//! [`Wrong`] wraps a walk of the estimators: it forwards each step to the walk, and one [`Slip`] changes one of them.
+//! `Slip::None` changes nothing: that walk is the control. Changes of a σ_t after its lookup, and of the final value,
+//! break the invariant of a product estimator, and count as its defect.
 
 use estimators::setup::ControlledLine;
 use estimators::walks::{Met, Route, Walk};
@@ -25,7 +25,7 @@ const KEPT_FLIGHTS: usize = 16;
 /// Walks of a smaller weight are ended, wrongly.
 const FAINT: f64 = 0.1;
 
-/// A wrong step; what is not said here is said where it is shown.
+/// A wrong step. The tables of known bugs describe the variants that have no comment here.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Slip {
     None,
@@ -46,7 +46,7 @@ pub enum Slip {
     Reversed,
     OnRaster,
     OfAnotherChannel,
-    /// Functions of the place of the collision take that of the collision before it.
+    /// Functions of the distance of a collision take the distance of the collision before it.
     OfLastCollision,
     ControlToCollision,
     GlobalMajorant,
@@ -76,7 +76,7 @@ pub fn single(x: f64) -> f64 {
 }
 
 kept! {
-    /// Notes on a walk.
+    /// State that slips need beside that of the walk.
     pub struct Notes<L> {
         /// The beginning of the flight.
         from: L,
@@ -88,7 +88,7 @@ kept! {
         /// Flights to be repeated, and their number.
         flights: [L; KEPT_FLIGHTS],
         waiting: L,
-        /// The distance that flights came to, beyond the end of a segment, too.
+        /// The distance that flights reached, even beyond the end of a segment.
         came_to: L,
         /// Value of the walk at its beginning.
         first: L,
@@ -121,7 +121,7 @@ impl<L: Lane> Notes<L> {
         }
     }
 
-    /// A flight of the first half, or one of those again.
+    /// Keeps the depth of a flight in the first half of the ray, and replaces one in the second half by a kept one.
     #[inline(always)]
     fn replayed(&mut self, depth: L, middle: f64) -> L {
         let is_first = self.from.at_most(depth.each(middle));
@@ -141,7 +141,7 @@ impl<L: Lane> Notes<L> {
     }
 }
 
-/// The state of a walk, that before its last collision, and notes.
+/// State of a walk, its state before the last collision, and notes.
 #[derive(Clone, Copy)]
 pub struct Memory<L: Lane, T> {
     walk: T,
@@ -171,7 +171,7 @@ pub struct Wrong<'a, W> {
 }
 
 impl<'a, W: Walk> Wrong<'a, W> {
-    /// A walk on its setup.
+    /// Wraps a walk on its setup.
     pub fn new<P: Estimated<Fields = ControlledLine>>(
         walk: W,
         slip: Slip,
@@ -195,7 +195,7 @@ impl<'a, W: Walk> Wrong<'a, W> {
         self.control.depths(begin, to) - self.control.depths(begin, from)
     }
 
-    /// The optical depth to where a flight of `depth` comes through the σ̂ of its beginning.
+    /// Optical depth of the place that a flight of `depth` would reach if σ̂ stayed as at its beginning.
     #[inline(always)]
     fn as_constant<L: Lane>(&self, from: L, depth: L) -> L {
         let knots = self.sampling.knots();
@@ -204,7 +204,7 @@ impl<'a, W: Walk> Wrong<'a, W> {
         L::select(to.below(to.each(knots[knots.len() - 1])), through, to.each(f64::INFINITY))
     }
 
-    /// The end of the segment of a distance.
+    /// End of the segment of σ̂ that contains a distance.
     fn end_of_segment(&self, t: f64) -> f64 {
         let mut ends = self.sampling.stretches().iter().map(|row| row.0[1]);
         ends.find(|&end| t < end).unwrap_or(t)

@@ -5,10 +5,10 @@
 //! of the correct estimator, against its prediction.
 //!
 //! A mutant is a walk of the estimators with other steps, other random numbers, or another setup. Without its bug
-//! the walk makes the estimator's own draws, bit for bit; that *twin* shows that nothing but the bug was
+//! the walk makes the estimator's own draws, bit for bit. That control, its *twin*, shows that only the bug was
 //! changed. One file holds one family of bugs, and a mutant is one line of its family's table. Bugs along a ray are
-//! in [`line`], which is put between a walk and its driver. Wrong [`streams`] are a family of their own: there the
-//! estimators are right and their random numbers are not.
+//! in [`line`], a wrapper of walks. Wrong [`streams`] are a family of their own: correct estimators with wrong random
+//! numbers.
 //!
 //! The bugs are those that renderers and transport codes have had, and those that a formula of this
 //! project invites.
@@ -51,7 +51,7 @@ use trial::{Draws, Trial};
 pub struct Target {
     /// The case.
     pub case: &'static str,
-    /// Which estimator of the case, from 0.
+    /// Index of the estimator in the case, from 0.
     pub index: usize,
     /// Point of the sweep, in cases that have one.
     pub swept: Option<f64>,
@@ -83,7 +83,7 @@ struct Mutant<P: Estimated> {
     about: About,
     faulty: Arc<Draws<P>>,
     honest: Arc<Draws<P>>,
-    /// Makes the setup wrong.
+    /// Changes the setup to a wrong one.
     prepare: fn(&mut Setup<P>),
     /// Whether every 1024 draws begin with the same random numbers.
     replays: bool,
@@ -104,7 +104,7 @@ impl<P: Estimated> Mutant<P> {
     }
 }
 
-/// Mutants of a table. A bug and its twin, which has `right` for the bug, are draws of the same code.
+/// Mutants of a table. A bug and its control, with `right` in place of the bug, run the same code.
 fn family<P: Estimated, B, D>(
     lines: &[Line<B>],
     right: &B,
@@ -123,14 +123,14 @@ where
     lines.iter().map(mutant).collect()
 }
 
-/// Draws of requests by a function that makes them all.
+/// Fixes the type of a function that makes all draws of a request.
 fn filled<P: Estimated>(
     fill: impl Fn(&Setup<P>, Request) + Send + Sync + 'static,
 ) -> impl Fn(&Setup<P>, Request) + Send + Sync + 'static {
     fill
 }
 
-/// Draws of requests by a function that makes one, with steps that are right or wrong.
+/// Makes the draws of requests one by one, by a function with right or wrong steps.
 fn with<P: Estimated, S: Send + Sync + 'static>(
     steps: S,
     draw: impl Fn(&S, &Setup<P>, &Lookups, &mut Stream) -> Draw<P::Value> + Send + Sync + 'static,
@@ -148,9 +148,9 @@ fn with<P: Estimated, S: Send + Sync + 'static>(
 /// One of a mutant's two walks.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Walk {
-    /// The one with the bug.
+    /// The walk with the bug.
     Faulty,
-    /// The code without the bug.
+    /// The control: the code without the bug.
     Twin,
 }
 

@@ -17,7 +17,7 @@ use theory::rules::{Collision, Met, Null, Single, Weight};
 /// The albedo of the experiments.
 pub const ALBEDO: f64 = 0.7;
 
-/// A right rule.
+/// A correct rule.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Rule {
     Weight,
@@ -36,7 +36,7 @@ impl Rule {
     }
 }
 
-/// A wrong survival and weight, from what is right and r.
+/// Function from the correct outcome and r to a wrong survival and weight.
 pub type Mistake = fn(Outcome, f64) -> Outcome;
 
 /// A rule, perhaps with a mistake; it `DECIDES` by a random number if the rule does.
@@ -67,7 +67,7 @@ impl<const DECIDES: bool> Collision for Wrong<DECIDES> {
         }
     }
 
-    /// The factor that is due is right.
+    /// Returns the correct factor: a mistake is in the outcome only.
     #[inline(always)]
     fn due<L: Lane>(&self, ratio: L, survival: L) -> L {
         match self.0 {
@@ -77,17 +77,17 @@ impl<const DECIDES: bool> Collision for Wrong<DECIDES> {
     }
 }
 
-/// A wrong weight.
+/// Returns an outcome with a wrong weight.
 pub fn weighing(right: Outcome, weight: f64) -> Outcome {
     Outcome { weight, ..right }
 }
 
-/// A wrong survival.
+/// Returns an outcome with a wrong probability of survival.
 pub fn surviving(right: Outcome, survival: f64) -> Outcome {
     Outcome { survival, ..right }
 }
 
-/// `q = (1 − r)/D > 1` and weight D for `r < 0`: a survivor for certain, with too small a weight.
+/// `q = (1 − r)/D > 1` and weight D for `r < 0`: it survives for certain, with too small a weight.
 pub fn literal(right: Outcome, ratio: f64) -> Outcome {
     let sum = ALBEDO * ratio + (1.0 - ratio);
     if ratio >= 0.0 { right } else { weighing(surviving(right, (1.0 - ratio) / sum), sum) }

@@ -5,8 +5,8 @@
 //! unidirectional MIS  X = Σᵢ wᵢ u(tᵢ) + w_N u(t_N),  u = v/(1 + v)
 //! ```
 //!
-//! Each chance to fly straight to the end counts once. A mean of two walks has the right mean and
-//! half the variance; ray marching has next to no variance, and a bias.
+//! The flight straight to the end counts once from the beginning, and once from each collision. A mean of two walks has
+//! the right mean and half the variance; ray marching has next to no variance, and a bias.
 
 use super::line::{Slip, Wrong};
 use super::product::{BELOW, DENSE, known};

@@ -8,7 +8,7 @@ use numeric::rng::Streams;
 /// The draws between two beginnings of a generator that starts again.
 const PERIOD: usize = 1024;
 
-/// Makes the draws of a request, rightly or wrongly.
+/// Function that makes the draws of a request, with or without a bug.
 pub type Draws<P> = dyn Fn(&Setup<P>, Request) + Send + Sync;
 
 /// Draws on a setup.

@@ -1,10 +1,11 @@
 //! Numbers under stress: where doubles run out of digits, and by how much.
 //!
-//! Every quantity that a verdict rests on is computed where it is hardest, up to many thousand times, and compared
-//! with arithmetic of 32 digits ([`Wide`](numeric::Wide)), with exact integers, or with another method at a
-//! higher resolution. A page of this folder holds one kind of quantity: lines of the table ([`table`]), each with its
-//! rows ([`row`]), a strategy for the parameters (`parameters`), a trial and an oracle. Oracles share
-//! linear equations and their solution by nodes (`equations`, `nodes`) with each other, and nothing with what they check.
+//! Verdicts depend on computed quantities. The test computes each of them where it is hardest, up to many thousand
+//! times. The oracle is arithmetic of 32 digits ([`Wide`](numeric::Wide)), exact integers, or another method at a
+//! higher resolution. A page of this folder tests one kind of quantity. It consists of lines of the table
+//! ([`table`]). A line has rows ([`row`]), a strategy for the parameters (`parameters`), a trial and an oracle.
+//! Oracles share linear equations and their solution by nodes (`equations`, `nodes`) with each other, and nothing
+//! with the code that they check.
 //!
 //! ```text
 //! relative          |found − exact|/|exact|
@@ -34,7 +35,8 @@
 //! | single scattering: radiance | [`scattering`] | nodes, 32 digits |
 //! | single scattering: moments, lookups | [`scattered`] | nodes, 32 digits |
 //!
-//! Not among them: optical depths where chords are cut by the eye, as in pictures. In a furnace the answer is 1.
+//! Not tested: optical depths of chords that begin inside the volume, as at the eye of a picture. In a furnace the
+//! answer is 1.
 //!
 //! Random parameters depend on the seed and the line only: a run finds the same numbers on every machine that rounds
 //! alike, whatever its threads.
@@ -77,7 +79,7 @@ pub mod tails;
 mod techniques;
 pub mod walks;
 
-/// What most pages use.
+/// Imports of most pages.
 mod prelude {
     pub(super) use super::parameters::{Number, any_of, between, parameters, share, sign, sized};
     pub(super) use super::row::{Measure, Row};
@@ -107,13 +109,13 @@ pub struct Stress {
 }
 
 impl Stress {
-    /// Every bound holds.
+    /// Returns true if every bound holds.
     pub fn holds(&self) -> bool {
         self.rows.iter().all(Row::holds)
     }
 }
 
-/// Lists the pages: from one line each come the module and its turn.
+/// Lists the pages, in the order of their rows.
 macro_rules! pages {
     ($($module:ident,)*) => {
         /// Every page with the function that fills its rows.

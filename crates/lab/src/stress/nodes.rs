@@ -1,7 +1,7 @@
-//! Linear equations along a line, by their values at Gauss' nodes of panels in 32 digits.
+//! Linear differential equations along a line, solved at the Gauss nodes of panels in 32 digits.
 //!
-//! A function is its values at the nodes: products, quotients and exponentials are taken node by node. Integrals are
-//! those of the polynomial through the nodes of a panel.
+//! A function is stored as its values at the nodes: products, quotients and exponentials are taken node by node.
+//! Integrals are those of the polynomial through the nodes of a panel.
 //!
 //! ```text
 //! one way      U' = a U − g:    U(s) = ∫ₛ g e^{−∫ₛ a} dt + U(end) e^{−∫ₛ a}
@@ -40,7 +40,7 @@ fn legendre(x: Wide) -> [Wide; NODES + 1] {
 }
 
 impl Rule {
-    /// Newton's method from the nodes in doubles; `∫ Pₖ = (Pₖ₊₁ − Pₖ₋₁)/(2k + 1)`.
+    /// Finds the nodes by Newton's method from those in doubles; `∫ Pₖ = (Pₖ₊₁ − Pₖ₋₁)/(2k + 1)`.
     fn new() -> Self {
         let slope =
             |x: Wide, p: &[Wide]| NODES as f64 * (x * p[NODES] - p[NODES - 1]) / (x * x - 1.0);
@@ -190,7 +190,7 @@ impl Line {
 /// Values of a particle that goes forward, and of one that goes backward.
 pub(super) type Both = [Wide; 2];
 
-/// `e^{Mt}`: `cosh κt`, and `A sinh(κt)/κ` and `B sinh(κt)/κ`.
+/// The matrix `e^{Mt}` by three numbers: `cosh κt`, `A sinh(κt)/κ` and `B sinh(κt)/κ`.
 #[derive(Clone, Copy)]
 struct Flow([Wide; 3]);
 

@@ -10,9 +10,8 @@
 //! R(μ₀) = ∫ J(t) e^{−t/μ₀} dt/μ₀,   T(μ₀) = e^{−τ/μ₀} + ∫ J(t) e^{−(τ−t)/μ₀} dt/μ₀
 //! ```
 //!
-//! Light from all sides (I = 1) answers for a ray from μ₀, because paths can be turned round. The roots
-//! lie between `1/μ` of neighbours and are bisected in 32 digits, in which the linear equations are
-//! solved, too.
+//! By reciprocity, light from all sides (I = 1) gives R and T of a ray from μ₀. Each root lies between the `1/μ` of two
+//! consecutive ordinates and is found by bisection. Roots and linear equations are computed in 32 digits.
 //!
 //! Source: S. Chandrasekhar, *Radiative Transfer* (Oxford University Press, 1950), chapters 2, 3 and 7.
 

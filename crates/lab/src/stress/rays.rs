@@ -1,7 +1,7 @@
 //! Rays of single scattering by nodes, through homogeneous media and through fields.
 //!
-//! Theory halves panels of the stretched variable `arsinh((s − foot)/D)`. Panels of s here grow away from the
-//! light and from both ends of the ray.
+//! Theory bisects panels of the stretched variable `arsinh((s − foot)/D)`. This oracle is independent of that: its
+//! panels of s grow away from the light and from both ends of the ray.
 
 use std::array::from_fn;
 
@@ -11,7 +11,7 @@ use super::techniques::{Estimator, Place, Ray};
 use theory::problems::{Problem, SingleScattering};
 use theory::single::Tracking;
 
-/// Panels of s in a field, at least.
+/// Smallest number of panels of s in a field.
 const STEPS: u32 = 40;
 
 /// Returns a ray through a homogeneous medium, for moments up to a power.
@@ -48,7 +48,7 @@ pub(super) fn even<'a>(estimator: &'a Estimator, sigma: f64, highest: u8) -> Ray
     Ray::new(estimator, &panels(problem, 1), along + aside, &place)
 }
 
-/// Losses of a shadow ray per length for the powers 0 … 4.
+/// Returns the rate, 1/length, at which the k-th moment of a shadow ray's transmittance decays, k = 0 … 4.
 fn losses(sigma: f64, tracking: Tracking) -> [Wide; 5] {
     from_fn(|k| match tracking {
         Tracking::Exact => Wide::from(sigma) * k as f64,
@@ -74,7 +74,7 @@ pub(super) fn varying<'a>(estimator: &'a Estimator) -> Ray<'a> {
     Ray::new(estimator, &panels(problem, STEPS), 0.0, &place)
 }
 
-/// `e^{−B}` for k = 0 … 4.
+/// Returns the k-th moment of a shadow ray's transmittance, k = 0 … 4.
 fn shadow(medium: &Medium, tracking: Tracking, rule: &GaussLegendre) -> [f64; 5] {
     let support = medium.support();
     let depth = medium.optical_depth(support).value;
@@ -94,7 +94,7 @@ fn shadow(medium: &Medium, tracking: Tracking, rule: &GaussLegendre) -> [f64; 5]
     })
 }
 
-/// Ends of a number of panels of s and more, which grow away from the light's foot and from both ends.
+/// Returns the ends of panels of s: `steps` equal ones, cut further towards the light's foot and both ends.
 fn panels(problem: &SingleScattering, steps: u32) -> Vec<f64> {
     let (support, foot) = (problem.medium().support(), problem.foot());
     let mut ends = problem.medium().breaks();

@@ -16,7 +16,7 @@ pub enum Measure {
 }
 
 impl Measure {
-    /// Returns the words in tables.
+    /// Returns the name in tables.
     pub fn words(self) -> &'static str {
         match self {
             Self::Relative => "relative",
@@ -90,7 +90,7 @@ impl Row {
         Self::new(quantity, range, Measure::Relative, bound)
     }
 
-    /// A row of which no answer may be wrong.
+    /// A row that allows no wrong answer.
     pub fn wrong(quantity: impl Into<String>, range: impl Into<String>) -> Self {
         Self::new(quantity, range, Measure::Count, 0.0)
     }
@@ -137,17 +137,17 @@ impl Row {
         self.trials += trials;
     }
 
-    /// The worst error is within the bound; NaN is not.
+    /// Returns true if the worst error is within the bound; NaN is not.
     pub fn is_within(&self) -> bool {
         self.worst <= self.bound
     }
 
-    /// The bound holds. A row without trials does not hold, nor one that was mostly skipped.
+    /// Returns true if the bound holds. A row without trials does not hold, nor one that was mostly skipped.
     pub fn holds(&self) -> bool {
         self.trials > 0 && !self.is_mostly_skipped() && self.is_within()
     }
 
-    /// More trials were skipped than compared: such a row says nothing of its range.
+    /// Returns true if more trials were skipped than compared: such a row does not test its range.
     pub fn is_mostly_skipped(&self) -> bool {
         self.skipped > self.trials
     }

@@ -1,9 +1,9 @@
 //! Walks in slabs: moments and lookups against discrete ordinates, thinner layers and Peierls' equation.
 //!
-//! The k-th moments of a walk are what leaves another slab, whose albedo may exceed 1. Where r is one number
-//! and light is scattered evenly, discrete ordinates in 32 digits know it, and whether it is finite, see
-//! `ordinates`; where r varies, Peierls' equation, see `peierls`. Other phase functions, in layers of other r
-//! and where r varies, are solved again with half as many directions again and a thinner first layer.
+//! The k-th moments of a walk are the light that leaves another slab. Its albedo may exceed 1. For a constant r and
+//! isotropic scattering, discrete ordinates in 32 digits compute this light, and whether it is finite (`ordinates`).
+//! For a varying r it is Peierls' equation (`peierls`). With other phase functions, in layers of different r or with
+//! a varying r, the library solves again with 1.5 times as many directions and a thinner first layer.
 //!
 //! ```text
 //! E[X^k]:  ∫σ̂(1 − Q_k) thick, of the albedo S_k/(1 − Q_k)
@@ -24,7 +24,7 @@ use theory::slab::{self, Answer, Energy, Existence, Piece, Pieces, Resolution, W
 
 /// Directions of the ordinates.
 const ORDINATES: usize = 48;
-/// An albedo so near to 1 is taken so far below it: at 1 two solutions are one.
+/// Distance from 1 below which an albedo is replaced by 1 less this distance: at 1 two solutions coincide.
 const WHITE: f64 = 1e-14;
 /// Half as many directions again as moments take, and a first layer of a hundredth.
 const FINER: Resolution =

@@ -35,7 +35,7 @@ impl Aabb {
     }
 }
 
-/// Where a volume may be non-zero.
+/// Region outside which a volume is zero.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Bounds {
     /// All of space.
@@ -159,8 +159,7 @@ fn clip_sphere(centre: Point, radius: f64, ray: &Ray) -> Span {
     Span::new(foot - half, foot + half).intersect(ray.span())
 }
 
-/// The same for far origins and grazing rays, of which doubles lose the chord: in 32 digits, and
-/// rounded once.
+/// The chord of a ray with a far origin, or of a grazing ray, in 32 digits and rounded once. Doubles lose it.
 fn clip_sphere_exactly(centre: Point, radius: f64, ray: &Ray) -> Span {
     let distances = (0..3).map(|i| (centre.0[i] - ray.origin.0[i]).abs());
     let largest = distances.fold(radius, f64::max);

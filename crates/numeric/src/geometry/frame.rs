@@ -18,7 +18,7 @@ pub fn across(direction: Point) -> [Point; 2] {
     across_lanes(direction.0).map(Point)
 }
 
-/// The same for directions side by side. A z of −0 counts as one of 0.
+/// Two unit vectors across each direction of a lane, as in [`across`]. A z of −0 counts as 0.
 #[inline(always)]
 fn across_lanes<L: Lane>([x, y, z]: [L; 3]) -> [[L; 3]; 2] {
     let one = z.each(1.0);
@@ -34,7 +34,7 @@ pub fn turned(direction: Point, cosine: f64, turns: f64) -> Point {
     Point(turned_lanes(direction.0, cosine, turns))
 }
 
-/// The same for directions side by side.
+/// The turned direction for each direction of a lane, as in [`turned`].
 #[inline(always)]
 pub fn turned_lanes<L: Lane>(direction: [L; 3], cosine: L, turns: L) -> [L; 3] {
     let (angle, one) = (turns * std::f64::consts::TAU, cosine.each(1.0));

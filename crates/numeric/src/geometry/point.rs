@@ -15,7 +15,7 @@ impl Point {
         self.0[0] * other.0[0] + self.0[1] * other.0[1] + self.0[2] * other.0[2]
     }
 
-    /// The same point in every element of a lane.
+    /// Returns the point in every element of a lane.
     #[inline(always)]
     pub fn each<L: Lane>(self, like: L) -> [L; 3] {
         let Self([x, y, z]) = self;

@@ -6,7 +6,7 @@ use crate::Span;
 /// `p(t) = origin + t·direction`, `t ∈ [0, length]`, `|direction| = 1`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Ray {
-    /// Where `t = 0`.
+    /// Point at `t = 0`.
     pub origin: Point,
     /// Unit vector.
     pub direction: Point,
@@ -27,7 +27,8 @@ impl Ray {
         self.origin + self.direction * t
     }
 
-    /// Where the ray's line is nearest to a point, from the ray's origin, and the way from there to the point.
+    /// Returns the distance t of the point on the ray's line that is nearest to a point, and the vector from there to
+    /// it.
     pub fn nearest_to(&self, point: Point) -> (f64, Point) {
         let to_point = point - self.origin;
         let foot = to_point.dot(self.direction);

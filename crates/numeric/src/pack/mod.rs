@@ -66,11 +66,11 @@ pub fn levels() -> Vec<Level> {
 
 /// A computation that is compiled once for each level of vector hardware.
 pub trait Task {
-    /// What it answers.
+    /// Result of the task.
     type Output;
 
-    /// The computation; all that it calls in loops is `#[inline(always)]`, or else it would be
-    /// compiled for the least machine.
+    /// Runs the computation. All that it calls in loops is `#[inline(always)]`: other code would be compiled for the
+    /// baseline of the architecture.
     fn run<S: Simd>(self, simd: S) -> Self::Output;
 }
 
@@ -91,7 +91,7 @@ pub fn on<T: Task>(level: Level, task: T) -> T::Output {
     }
 }
 
-/// The same for tasks that only pay on wide hardware, AVX2 or more; a task is handed back elsewhere.
+/// Runs a task that pays only on wide hardware, AVX2 or more; returns the task on other hardware.
 ///
 /// # Errors
 ///
@@ -106,7 +106,7 @@ pub fn on_wide<T: Task>(level: Level, task: T) -> Result<T::Output, T> {
     }
 }
 
-/// The same for tasks that only pay on wide hardware.
+/// Runs a task that pays only on wide hardware.
 ///
 /// # Errors
 ///

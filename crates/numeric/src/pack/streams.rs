@@ -60,8 +60,8 @@ impl Lanes {
 }
 
 impl<S: Simd> Xoshiro<u64x8<S>> {
-    /// Uniform in `[0, 1)` from the streams that a mask names: the others stay where they are, and
-    /// their numbers mean nothing.
+    /// Numbers uniform in `[0, 1)` from the streams that a mask selects. The states of the others do not change, and
+    /// their numbers have no meaning.
     #[inline(always)]
     pub fn uniform_where(&mut self, mask: mask64x8<S>) -> f64x8<S> {
         let [a, b, c, d] = self.state;
@@ -71,7 +71,7 @@ impl<S: Simd> Xoshiro<u64x8<S>> {
         number
     }
 
-    /// The same of [`Self::ln_uniform`].
+    /// Numbers of [`Self::ln_uniform`] from the streams that a mask selects, as in [`Self::uniform_where`].
     #[inline(always)]
     pub fn ln_uniform_where(&mut self, mask: mask64x8<S>) -> f64x8<S> {
         // `1 − u` is exact, as it is in `positive_uniform`.
@@ -79,7 +79,7 @@ impl<S: Simd> Xoshiro<u64x8<S>> {
         (number.each(1.0) - number).ln()
     }
 
-    /// Where the streams stand.
+    /// States of the streams, in memory.
     #[inline(always)]
     pub fn at_rest(self) -> Lanes {
         // One by one: a reference to the state would keep it out of the registers.

@@ -27,11 +27,11 @@ pub trait Random<L: Lane> {
     /// `ln u` with `u` uniform in `(0, 1]`: minus an exponential with mean 1.
     fn ln_uniform(&mut self) -> L;
 
-    /// Uniform numbers for those that a mask names; the streams of the others stay where they are, and their numbers
-    /// mean nothing.
+    /// Uniform numbers for the elements that a mask selects. The streams of the others do not change, and their numbers
+    /// have no meaning.
     fn uniform_where(&mut self, which: L::Mask) -> L;
 
-    /// The same of [`Self::ln_uniform`].
+    /// Numbers of [`Self::ln_uniform`] for the elements that a mask selects, as in [`Self::uniform_where`].
     fn ln_uniform_where(&mut self, which: L::Mask) -> L;
 }
 
@@ -65,7 +65,7 @@ pub const PACKS: usize = 2;
 /// The streams of a block.
 pub const LANES: usize = PACKS * WIDTH;
 
-/// Where a stream is found.
+/// Address of a stream.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Address {
     /// The run's seed.
@@ -122,7 +122,7 @@ impl Address {
     }
 }
 
-/// The streams of a block and whose turn it is.
+/// The streams of a block, and the lane of the next draw.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Streams {
     /// The streams, each where its last draw left it.
@@ -140,7 +140,7 @@ impl Streams {
         &mut self.lanes[lane]
     }
 
-    /// The next word of each lane in turn, for those who look at the streams themselves.
+    /// The next word of each lane in turn, for tests of the streams themselves.
     pub fn words(mut self) -> impl Iterator<Item = u64> {
         std::iter::from_fn(move || Some(self.of_next_draw().word()))
     }

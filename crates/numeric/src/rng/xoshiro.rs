@@ -67,7 +67,7 @@ impl<W: Words> Xoshiro<W> {
         Self { state }
     }
 
-    /// Where it stands: [`Self::at`] goes on from there.
+    /// State of the generator; [`Self::at`] continues from it.
     #[inline(always)]
     pub fn state(&self) -> [W; 4] {
         self.state

@@ -22,11 +22,11 @@
 //! The mean intensity in an environment is the probability to escape from that point, in any direction:
 //! `sought = "mean-intensity"` with `light.environment` asks for escape probabilities.
 //!
-//! A distant light is not radially symmetric; seen from the centre it is what an environment of the same
-//! fluence is, and elsewhere theory has no answer: it takes `sought = "mean-intensity"` and a ray that
-//! begins at the centre. A point light is refused: at a scattering next to it next-event estimation brings
-//! `1/r²`, whose square has no mean in space once light is scattered twice. Its single scattering has a
-//! problem of its own, `single-scattering`.
+//! A distant light is not radially symmetric. At the centre it has the effect of an environment of the same
+//! fluence; elsewhere theory has no answer. It needs `sought = "mean-intensity"` and a ray that begins at
+//! the centre. A point light is refused: next-event estimation scores `1/r²` at a scattering at distance r
+//! from it, and the square of that score has no finite mean once light is scattered twice. Its single
+//! scattering has a problem of its own, `single-scattering`.
 //!
 //! The answer comes from Peierls' integral equation, to five digits and mostly more; its error is stated. Pictures ask
 //! for multiple scattering in any volume under any sky, and draw their references: `picture.multiple-scattering`.

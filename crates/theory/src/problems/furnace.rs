@@ -19,11 +19,11 @@
 //! and `phases = [{ NAME = { … } }, …]` list one for each channel in place of `albedo` and `phase`; `sampling` is a constant σ̂
 //! for all channels, or a list with one for each. One lookup answers σ_t of all channels.
 //!
-//! With a = 1 it is the white furnace; with any other a, constant or not, Kirchhoff's law makes it one: what
-//! leaves and what is absorbed are together all the light that there was. It holds for every medium, phase
-//! function, σ̂ and rule, so that every medium has a test of its walks, and a renderer's bug in weights
-//! cannot hide in a medium whose picture nobody knows. How much leaves and how much is absorbed is not
-//! known; their sum is. Walks that score all channels at once have an exact answer in every medium, too.
+//! With a = 1 it is the white furnace. With any other a, constant or not, Kirchhoff's law makes it one: the light
+//! that leaves and the light that is absorbed are together all the light that there was. Each part is unknown; their
+//! sum is known. It holds for every medium, phase function, σ̂ and rule. So every medium has a test of its walks, and
+//! a renderer's bug in weights cannot hide in a medium without a known picture. Walks that score all channels at once
+//! have an exact answer in every medium, too.
 //!
 //! Directions do not matter for L, see `trueflight explain lambertian` for those.
 //!

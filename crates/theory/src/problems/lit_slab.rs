@@ -13,7 +13,7 @@ use numeric::Lane;
 /// Light behind the slab.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Light {
-    /// All directions whose cosine with the normal is at least this.
+    /// All directions with at least this cosine with the normal.
     Cap(f64),
     /// A disc about the ray.
     Disc {
@@ -107,7 +107,7 @@ pub struct LitSlab {
 }
 
 impl LitSlab {
-    /// A slab whose depth is the distance along a medium, with an albedo in `(0, 1]`.
+    /// A slab with an albedo in `(0, 1]`; the distance along a medium is its depth.
     pub fn new(medium: Medium, albedo: f64, phase: Phase, light: Light) -> Self {
         Self { medium, albedo, phase, light }
     }

@@ -39,11 +39,11 @@
 //! estimation has the pdf 1 for its direction, and unidirectional tracking the phase function, `p_f` or `1 − p_f`.
 //!
 //! **Channels.** With one extinction for all of them, `R_λ = Σ_r a_λ^r R_r` and `T_λ = Σ_r a_λ^r T_r`, r the number of
-//! scatterings: all moments depend on the optical length alone and are closed forms. With a medium for each, moments are
-//! exact where one channel is drawn at a time, where all channels have the same σ_t and σ̂ and albedos are numbers, and
-//! of hits where light goes on forward through what is constant in each cell; elsewhere variances of draws that score
-//! all channels at once are bounded. Means, variances and the covariances of neighbouring channels are tested. One lookup
-//! answers σ_t of all channels.
+//! scatterings: all moments depend on the optical length alone and are closed forms. With a medium for each channel,
+//! moments are exact where one channel is drawn at a time, and where all channels have the same σ_t and σ̂ and albedos
+//! are numbers. Moments of hits are also exact if light only scatters forward and each cell is constant. Elsewhere
+//! variances of draws that score all channels at once are bounded. Means, variances and the covariances of consecutive
+//! channels are tested. One lookup answers σ_t of all channels.
 //!
 //! **Sensor.** A path of r scatterings has r + 2 vertices, light and sensor included, and can be made in r + 3 ways: its
 //! first s vertices from the light, s = 0 … r + 2, the others from the sensor. Channels are what each technique
@@ -51,9 +51,9 @@
 //! has one technique only, and no shares. A record therefore holds shares and second moments by technique.
 //!
 //! The answer is exact. Where a and `p_f` are constant it is a closed form that depends on the optical
-//! depth only; elsewhere, and by order, two coupled equations are solved to a stated error. An
-//! experiment with a channel whose answer is 0 is refused: `absorbed` where `a = 1`, `reflectance` where
-//! `a = 0` or `p_f = 1`, with a sensor an odd number of scatterings forward where `p_f = 0`.
+//! depth only; elsewhere, and by order, two coupled equations are solved to a stated error. An experiment
+//! with a channel of answer 0 is refused: `absorbed` where `a = 1`, `reflectance` where `a = 0` or
+//! `p_f = 1`, with a sensor an odd number of scatterings forward where `p_f = 0`.
 //!
 //! Sources: the two-stream equations of a rod, as in R. Bellman, R. Kalaba, G. M. Wing, *Invariant
 //! Imbedding and Mathematical Physics*, Journal of Mathematical Physics 1 (1960); emitter, sensor and several media: B.
@@ -117,7 +117,7 @@ pub struct Rod {
     pub forward: Piecewise,
     /// Quantities of the channels of a draw; the last two are always reflectance and transmittance.
     pub channels: Vec<Quantity>,
-    /// Number of parts of the rod whose flux is a channel: 0 or all of them.
+    /// Number of parts of the rod that have their flux as a channel: 0 or all of them.
     pub parts: usize,
 }
 

@@ -205,7 +205,7 @@ impl SingleScattering {
         self.light.angles
     }
 
-    /// The density over distance of points whose angles are uniform: `D/(Δθ r²)`, 1/length.
+    /// The density over distance of points with uniform angles: `D/(Δθ r²)`, 1/length.
     #[inline(always)]
     pub fn equiangular_density<L: Lane>(&self, s: L) -> L {
         self.equiangular_density_beyond(s - self.light.foot)

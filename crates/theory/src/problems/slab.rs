@@ -102,7 +102,7 @@ pub struct Slab {
 }
 
 impl Slab {
-    /// A slab whose depth is the distance along a medium, with an albedo in `[0, 1]`.
+    /// A slab with an albedo in `[0, 1]`; the distance along a medium is its depth.
     pub fn new(medium: Medium, albedo: f64, incidence: Incidence) -> Self {
         Self { medium, albedo, incidence }
     }
@@ -138,7 +138,7 @@ pub struct SpectralSlab {
 }
 
 impl SpectralSlab {
-    /// A slab whose depth is the distance along a medium, with albedos in `[0, 1]`.
+    /// A slab with albedos in `[0, 1]`; the distance along a medium is its depth.
     pub fn new(medium: Medium, albedos: Vec<f64>, incidence: Incidence) -> Self {
         Self { medium, colours: Colours::new(albedos, true), incidence }
     }

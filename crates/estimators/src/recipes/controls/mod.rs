@@ -10,25 +10,25 @@ pub mod none;
 use super::{Refusal, Site, recipes};
 use media::Control;
 
-/// How a control is made for a medium.
+/// A recipe for a control: it makes σ_c for a medium.
 pub trait Recipe: Send + Sync {
-    /// In words, as in `constant 0.3`; empty for none.
+    /// Label in words, as in `constant 0.3`; empty for no control.
     fn label(&self) -> String;
 
     /// Makes σ_c on the support of the medium.
     ///
     /// # Errors
     ///
-    /// What the recipe needs and does not find.
+    /// A requirement of the recipe that the medium does not fulfil.
     fn prepare(&self, site: &Site) -> Result<Control, Refusal>;
 
-    /// The same recipe with another number of points; `None` if it has no points.
+    /// Returns the recipe with another number of points; `None` if it has no points.
     fn with_points(&self, points: usize) -> Option<Box<dyn Recipe>> {
         let _ = points;
         None
     }
 
-    /// How many lookups of σ_t a renderer spends on it for each ray.
+    /// Number of lookups of σ_t that a renderer spends on the control for each ray.
     fn lookups(&self) -> usize {
         0
     }
@@ -38,7 +38,7 @@ pub trait Recipe: Send + Sync {
         None
     }
 
-    /// Where the control was fitted: `(t, σ_c)`.
+    /// Points to which the control was fitted: `(t, σ_c)`.
     fn points(&self, site: &Site) -> Vec<[f64; 2]> {
         let _ = site;
         Vec::new()

@@ -10,9 +10,9 @@ pub mod spectral;
 use super::{Refusal, Site, recipes};
 use media::{Control, Majorants, Piecewise, Volume};
 
-/// How a sampling extinction is made for a medium and a control.
+/// A recipe for a sampling extinction: it makes σ̂ for a medium and a control.
 pub trait Recipe: Send + Sync {
-    /// In words, as in `constant 0.4`.
+    /// Label in words, as in `constant 0.4`.
     fn label(&self) -> String;
 
     /// The value, if it is one constant whatever the medium.

@@ -7,8 +7,8 @@
 //! | `start` | σ̂ of the first pilot ray | 1/length | 10 / length of the support |
 //!
 //! Each pilot ray walks with the σ̂ learned from those before it and looks σ_t up where it collides.
-//! The result is never assumed to be a majorant: estimators that need one are refused where it is
-//! none. Pilot rays have their own random numbers, and what they learned is part of the plan. Their lookups are counted as
+//! The result is never assumed to be a majorant: where it is too small, estimators that need a majorant are refused.
+//! Pilot rays have their own random numbers, and their result is part of the plan. Their lookups are counted as
 //! setup lookups of the ray.
 //!
 //! Source: Szirmay-Kalos et al. 2017, section 4.3 ("we set it to the maximum obtained during casting
@@ -20,10 +20,10 @@ use media::catalogue::{Domain, Settings};
 use media::{Body, Control, Piecewise};
 use numeric::rng::{Address, exponential};
 
-/// A pilot ray with more collisions than this is a mistake in the case.
+/// Largest expected number of collisions of a pilot ray; more are a mistake in the case.
 const MOST_COLLISIONS: f64 = 1e6;
 
-/// What pilot rays teach.
+/// Recipe for a constant σ̂ from the lookups of pilot rays.
 #[derive(Debug, Clone, Copy)]
 pub struct Pilot {
     rays: u64,

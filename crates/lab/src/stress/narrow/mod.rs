@@ -9,10 +9,11 @@
 //! u₂₄    the upper 24 bits of a word, as renderers make it: k/2²⁴
 //! ```
 //!
-//! E[X] and V are theory's. Where theory knows no V (roulette, walks in space) that of the doubles takes its place.
+//! E[X] and V are predicted by theory. Where theory has no V (roulette, walks in space), the walks in doubles
+//! estimate it.
 //!
-//! The lattice of u₂₄ alone shortens flights by `ln(2πN)/(2N) = 5.5e-7`, N = 2²⁴: estimators of small variance are the first
-//! to be biased by it.
+//! The lattice of u₂₄ alone shortens flights by `ln(2πN)/(2N) = 5.5e-7`, N = 2²⁴. The bias exceeds the noise first for
+//! estimators of small variance.
 
 pub mod scene;
 pub mod trail;
@@ -25,11 +26,11 @@ use self::walks::{Entry, Subject};
 use super::{Measure, Row, Run};
 use theory::{Channel, Prediction, parallel};
 
-/// The number of draws whose statistical error the bias is compared with.
+/// Number of draws n in the noise that the bias is compared with.
 pub const DRAWS: f64 = 1e8;
-/// Most walks of a point.
+/// Largest number of walks of a point.
 const MAX_WALKS: f64 = 1e6;
-/// Fewest walks of a point: the first ones tell how many random words others will take.
+/// Smallest number of walks of a point. Their mean number of random words decides how many more fit the budget.
 const MIN_WALKS: u64 = 25;
 
 /// A quantity that is varied.
@@ -104,7 +105,7 @@ const fn family(
     Family { title, entries, limits: [collisions, depth, f64::INFINITY], budget }
 }
 
-/// All families. Theory knows the light in balls up to τ = 30.
+/// All families. Theory predicts the light in balls up to τ = 30.
 pub const FAMILIES: &[Family] = &[
     family("Transmittance by weights and decisions", walks::PRODUCTS, [1e6, 100.0], [3e4, 3e5]),
     family("Transmittance otherwise, free flight", walks::OTHERS, [1e6, 100.0], [3e4, 3e5]),
@@ -128,25 +129,27 @@ pub struct Point {
     pub bias: f64,
     /// Its standard error.
     pub error: f64,
-    /// The relative standard error of 1e8 draws; NaN where it is unknown, or so few walks do not see it.
+    /// The relative standard error of 1e8 draws; NaN where it is unknown, or the walks are too few to estimate it.
     pub noise: f64,
-    /// The doubles' own mean against the truth, in standard errors.
+    /// Deviation of the mean of the doubles from the truth, in standard errors.
     pub z: Option<f64>,
 }
 
 impl Point {
-    /// The bias is certainly larger than the noise.
+    /// Returns true if the bias exceeds the noise by more than 3 of its standard errors.
     pub fn exceeds(&self) -> bool {
         self.bias.abs() - 3.0 * self.error > self.noise
     }
 
-    /// The bias is certainly smaller than the noise. With neither, the walks were too few.
+    /// Returns true if the bias is below the noise by at least 3 of its standard errors. If neither holds, the walks
+    /// were too few.
     pub fn holds(&self) -> bool {
         self.error > 0.0 && self.bias.abs() + 3.0 * self.error <= self.noise
     }
 }
 
-/// Compares both precisions in a scene by walks of a seed that take so many random words; `None` where theory refuses the case.
+/// Compares both precisions in a scene, by walks from a seed with a budget of random words. Returns `None` where theory
+/// refuses the case.
 #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // at most MAX_WALKS
 pub fn compare(
     entry: &Entry,
@@ -159,7 +162,7 @@ pub fn compare(
     let channel = prediction.channels.iter().position(is_wanted)?;
     let subject = Subject { scene, setup: &*setup, channel, is_kept: entry.is_kept };
     let Channel { truth, moments, .. } = &prediction.channels[channel];
-    // Sums of the doubles and of the differences, and of their squares.
+    // Σx and Σx² of the doubles, and of the differences.
     let (mut sums, mut words) = ([[0.0; 2]; 2], 0.0);
     let (mut walk, mut walks) = (0, MIN_WALKS);
     while walk < walks {
@@ -196,12 +199,12 @@ pub struct Curve {
     pub estimator: &'static str,
     /// The quantity that is varied.
     pub along: Along,
-    /// The points, ascending; none where there is nothing to vary, or theory refuses all.
+    /// The points, ascending; empty where the quantity is not varied, or theory refuses all cases.
     pub points: Vec<Point>,
 }
 
 impl Curve {
-    /// The first value at which the bias exceeds the noise; `None` where it nowhere does.
+    /// The first value at which the bias exceeds the noise; `None` if it exceeds it nowhere.
     pub fn fails_from(&self) -> Option<f64> {
         self.points.iter().find(|point| point.exceeds()).map(|point| point.x)
     }
@@ -220,7 +223,7 @@ pub struct Narrow {
 }
 
 impl Narrow {
-    /// The comparison is sound where the doubles find the truth.
+    /// One row: the comparison is valid if the means of the doubles agree with the truth.
     pub fn rows(&self) -> Vec<Row> {
         let estimators: usize = FAMILIES.iter().map(|family| family.entries.len()).sum();
         let range = format!("{estimators} estimators, all points of the plot");

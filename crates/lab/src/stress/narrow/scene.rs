@@ -1,23 +1,24 @@
-//! Media of the comparison, and the cases that theory is asked about.
+//! Media of the comparison, and the cases that theory predicts.
 //!
 //! ```text
 //! σ_t(t) = τ (1 + 0.8 sin(6π(t − t₀))),  t = t₀ … t₀ + 1
 //! σ_t(p) = τ (1.8 − 3.6 x + 2 x²),  x = |p − c|²/R²,  R = ½,  c = (t₀, t₀, t₀)
 //! ```
 //!
-//! τ is the optical depth of the ray, and of the ball along a diameter; t₀ is a whole number. Walks look σ_t up in their own
-//! precision. What pages compute in doubles for themselves stays double: σ_t and transmittances on shadow rays to a point light.
+//! τ is the optical depth of the ray, and of the ball along a diameter; t₀ is a whole number. Walks look σ_t up in
+//! their own precision. On shadow rays to a point light the estimators compute σ_t and transmittances in doubles, for
+//! both precisions.
 
 use numeric::Lane;
 
-/// The ray.
+/// Settings of the ray in 1-D. Words in capitals become numbers, see [`Scene::case`].
 pub const RAY: &str = "span = [FROM, TO]\nmedium.sines = { base = DEPTH, amplitudes = [WAVE], \
     frequencies = [18.84955592153876], phases = [0] }";
-/// The same ray in space, with a point light beside it.
+/// Settings of this ray in space, with a point light beside it.
 pub const LIT: &str = "ray = { origin = [0, 0, FROM], direction = [0, 0, 1], length = 1 }\n\
     volume.sines = { base = DEPTH, amplitudes = [WAVE], vectors = [[0, 0, 18.84955592153876]], phases = [0] }\n\
     light.position = [0.3, 0, FOOT]\nalbedo = 0.8\nphase.henyey-greenstein.g = 0.5";
-/// The ball, and a ray into it.
+/// Settings of the ball, and of a ray into it.
 pub const BALL: &str = "ray = { origin = [ASIDE, FROM, BEFORE], direction = [0, 0, 1], length = 2 }\n\
     volume.radial = { centre = [FROM, FROM, FROM], radius = 0.5, coefficients = [SHAPE] }";
 

@@ -1,16 +1,17 @@
 //! Decisions of a walk in double precision, repeated in single precision.
 //!
-//! Walks that decide apart part for good, and their difference tells little. Single precision therefore repeats the
-//! decisions of the doubles, and its draw is weighted by their likelihood:
+//! Two walks that decide differently separate for good, and their difference carries little information. Single
+//! precision therefore repeats the decisions of the doubles, and its draw is weighted by their likelihood:
 //!
 //! ```text
 //! X₂₄ · ∏ P₂₄(decision)/Q(decision),   P₂₄(u < y) = ⌈2²⁴ y⌉/2²⁴
 //! Q   probability by which doubles decide: P₅₃, or 1 where walks are kept from their end and weighted by P₅₃ themselves
 //! ```
 //!
-//! The mean is exactly that of walks that decide in single precision. A [`Traced`] number is a lane for the walks of the
-//! estimators. It remembers that it is `a u + b` of a uniform number u, and a comparison with such a number is a decision.
-//! Leaving the medium is no decision. Where rounding makes walks part there, single precision decides alone from then on.
+//! The mean is exactly that of walks that decide in single precision. A [`Traced`] number is a lane for the walks of
+//! the estimators. It stores that it is `a u + b` of a uniform number u, and a comparison with such a number is a
+//! decision. Leaving the medium is no decision. If rounding separates two walks there, single precision makes its own
+//! decisions from then on.
 
 use std::cell::RefCell;
 use std::ops::{Add, Div, Mul, Neg, Sub};
@@ -32,7 +33,7 @@ impl Precision for Narrow {
     const LATTICE: f64 = 16_777_216.0;
 }
 
-/// A decision: whether the uniform number of a word is below something.
+/// A decision: whether the uniform number of a word is below a bound.
 #[derive(Debug, Clone, Copy)]
 struct Decision {
     word: u32,
@@ -50,7 +51,7 @@ struct State {
     /// The next decision that is made or repeated.
     next: usize,
     likelihood: f64,
-    /// The last word that was decided upon, and the probabilities to be below the bounds that decisions set.
+    /// Number of the last word with a decision, and the interval to which its decisions restrict its uniform number.
     bounds: (u32, [f64; 2]),
 }
 
@@ -62,7 +63,7 @@ pub struct Trail {
 }
 
 impl Trail {
-    /// The trail of a walk that decides by chance, or is kept from its end: comparisons that end it are false.
+    /// Trail of a walk. It decides by random numbers; if `is_kept`, its comparisons, which would end it, are false.
     pub fn new(stream: Stream, is_kept: bool) -> Self {
         let (made, bounds) = (Vec::new(), (0, [0.0, 1.0]));
         let state = State { stream, words: 0, made, next: 0, likelihood: 1.0, bounds };
@@ -77,7 +78,7 @@ impl Trail {
         fresh
     }
 
-    /// The factor of the draw.
+    /// Factor of the draw: the product of `P(decision)/Q(decision)`.
     pub fn likelihood(&self) -> f64 {
         self.state.borrow().likelihood
     }
@@ -97,8 +98,9 @@ impl Trail {
         (upper as f64 / N::LATTICE, state.words)
     }
 
-    /// Decides whether the uniform number of a word is below something, which it is with a probability. A comparison asks for
-    /// that or for the contrary, and is true of the number or not. Answers the comparison.
+    /// Decides whether the uniform number of a word is below a bound, which has the probability `below`. The
+    /// comparison is true if it is (`asks_below`), or if it is not; `is_true` is its result for the number that was
+    /// drawn. Returns the result of the comparison.
     fn decide(&self, word: u32, below: f64, asks_below: bool, is_true: bool) -> bool {
         let State { made, next, likelihood, bounds, .. } = &mut *self.state.borrow_mut();
         let [low, high] = if bounds.0 == word { bounds.1 } else { [0.0, 1.0] };
@@ -151,7 +153,7 @@ impl<N: Precision> Traced<'_, N> {
         Self { number, drawn: Some(Drawn { scale, shift, ..drawn }) }
     }
 
-    /// Whether this number is less than another, or not more, given what numbers say.
+    /// Returns the result of a comparison with a larger number; `is_true` is the result for the plain numbers.
     #[inline(always)]
     fn is_less(self, other: Self, is_true: bool) -> bool {
         let (drawn, bound, is_smaller) = match (self.drawn, other.drawn) {
@@ -187,7 +189,7 @@ impl<'a, N: Precision> Random<Traced<'a, N>> for &'a Trail {
     }
 }
 
-/// Operations as the number has them. Their results are no uniform numbers.
+/// Operations of the number. Only products stay linear in a uniform number.
 macro_rules! as_number {
     ($($Trait:ident::$method:ident($Other:ty): |$a:ident, $b:ident| $result:expr;)*) => {
         $(impl<N: Precision> $Trait<$Other> for Traced<'_, N> {

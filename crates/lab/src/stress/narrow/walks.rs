@@ -1,4 +1,4 @@
-//! Estimators that are compared: the case of each, and the walk that its page makes of a setup.
+//! Estimators that are compared: the case of each, and the walk that it makes from a setup.
 //!
 //! Where `σ̂ ≥ σ_t`, as here, `terminating` is `analog` and `adaptive` is `non-terminating`, to the bit. A furnace with the
 //! non-terminating rule is left out: each draw is 1, without noise.
@@ -57,13 +57,14 @@ pub struct Subject<'a> {
 
 /// An estimator in any precision.
 trait Draws: Sync {
-    /// The draw of a trail, but for its likelihood; `None` where the setup is another problem's.
+    /// Draw of a trail, without its likelihood; `None` if the setup is that of another problem.
     fn draw<N: Precision>(&self, of: Subject, trail: &Trail) -> Option<f64>;
 }
 
 /// An estimator in both precisions.
 pub trait InBoth: Sync {
-    /// The draws of a walk of a seed, and the number of random words of the first; `None` where the setup is another problem's.
+    /// Draws of a walk from a seed, in doubles and in single precision, and the number of random words of the first.
+    /// Returns `None` if the setup is that of another problem.
     fn pair(&self, of: Subject, seed: u64, walk: u64) -> Option<([f64; 2], f64)>;
 }
 
@@ -121,7 +122,7 @@ fn in_space<'t, N: Precision, V: Channels + AsRef<[f64]>, const SPLITS: bool>(
     draw.value.as_ref().get(channel).copied()
 }
 
-/// Estimators along the ray, and the walks that they make of a setup.
+/// Estimators along the ray, and the walks that they make from a setup.
 macro_rules! on_ray {
     ($([$($generic:tt)*] $Type:ty, $Problem:ty: |$this:pat_param, $setup:ident| $walk:expr;)*) => {
         $(impl<$($generic)*> Draws for $Type {
@@ -244,7 +245,7 @@ const fn delta(scene: &Scene) -> Tracking {
     Tracking::Delta { sampling: scene.collisions }
 }
 
-/// Problem, medium, further settings and channel that are asked about.
+/// Problem, medium, further settings and channel of a case; an empty channel is the first.
 type Asked = [&'static str; 4];
 
 /// An estimator in the list of its family.
@@ -257,7 +258,8 @@ pub struct Entry {
     pub asked: Asked,
     /// The estimator as a case has it.
     pub written: &'static str,
-    /// Whether walks decide nothing, or only whether they end with nothing; they are kept from that.
+    /// Whether the only decisions of a walk, if any, end it with the score 0; it is then kept from its end, see
+    /// [`Trail`].
     pub is_kept: bool,
     /// Its draws.
     pub draws: &'static dyn InBoth,
@@ -359,7 +361,7 @@ pub const POINTS: &[Entry] = &[
     entry(("source-delta-mis", EVERY, SINGLE), "source-delta-mis = { SAMPLING }", false, &Planned(|_| collides(true))),
 ];
 
-/// Balls, and an infinite medium, whose source stands at the origin.
+/// Balls, and an infinite medium with a source at the origin.
 #[rustfmt::skip]
 pub const SPACE: &[Entry] = &[
     entry(("furnace, analog", EVERY, FURNACE), "particle = { rule = \"analog\", SAMPLING }", false, &walks::<Furnace>(Analog)),
