@@ -38,7 +38,7 @@ pub struct Rate {
     pub promise: f64,
     /// The limits of the rate at 99 %.
     pub limits: [f64; 2],
-    /// Whether the promise is not refuted.
+    /// True if the counts do not refute the promise.
     pub is_kept: bool,
 }
 
@@ -80,7 +80,7 @@ pub struct Calibration {
 }
 
 impl Calibration {
-    /// Whether no promise is refuted.
+    /// Returns true if no promise is refuted.
     pub fn holds(&self) -> bool {
         let shares = self.uniformity.iter().flat_map(|check| &check.below);
         let are_uniform =
@@ -108,9 +108,9 @@ pub struct Checked {
     pub check: String,
     /// Its verdict.
     pub verdict: Verdict,
-    /// Whether it is a scalar, judged by the gate.
+    /// True if the check is a scalar, judged by the gate.
     pub is_scalar: bool,
-    /// Whether the draws sufficed for a pass.
+    /// True if the draws sufficed for a pass.
     pub is_powered: bool,
     /// Its p-value, of checks that have one.
     pub p: Option<f64>,

@@ -5,7 +5,7 @@ pub fn exact(x: f64) -> String {
     number(x)
 }
 
-/// At most `digits` significant digits, with an exponent where plain notation would hide or pad
+/// A number with at most `digits` significant digits, with an exponent where plain notation would hide or pad
 /// them.
 pub fn short(x: f64, digits: usize) -> String {
     let text = fixed(x, digits);
@@ -15,7 +15,7 @@ pub fn short(x: f64, digits: usize) -> String {
     }
 }
 
-/// Exactly `digits` significant digits, for columns; otherwise as [`short`].
+/// A number with exactly `digits` significant digits, for columns; otherwise as [`short`].
 pub fn fixed(x: f64, digits: usize) -> String {
     if x == 0.0 || !x.is_finite() {
         return format!("{x}");

@@ -188,7 +188,7 @@ pub trait Lane:
         self.set_where(which, *self * factor);
     }
 
-    /// Its size with the sign of another; that of zero is `+`.
+    /// The positive number `self` with the sign of another; the sign of zero is `+`.
     #[must_use]
     #[inline(always)]
     fn with_sign_of(self, other: Self) -> Self {

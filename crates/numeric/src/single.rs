@@ -51,10 +51,10 @@ pub fn place(number: f64, length: usize) -> usize {
 
 /// A lane of one number.
 pub trait Single: Lane<Mask = bool> {
-    /// A double, rounded to what the lane holds.
+    /// Rounds a double to the precision of the lane.
     fn of(x: f64) -> Self;
 
-    /// As a double.
+    /// Returns the number as a double.
     fn double(self) -> f64;
 }
 

@@ -29,13 +29,13 @@ impl<S: Simd> Twin<f64x8<S>> {
         Self(f64x8::splat(simd, value), f64x8::splat(simd, value))
     }
 
-    /// From a row.
+    /// Loads the elements from a row.
     #[inline(always)]
     pub fn from_slice(simd: S, row: &[f64; PAIR]) -> Self {
         Self(f64x8::from_slice(simd, &row[..WIDTH]), f64x8::from_slice(simd, &row[WIDTH..]))
     }
 
-    /// To a row.
+    /// Stores the elements in a row.
     #[inline(always)]
     pub fn store_slice(&self, row: &mut [f64; PAIR]) {
         self.0.store_slice(&mut row[..WIDTH]);
@@ -44,7 +44,7 @@ impl<S: Simd> Twin<f64x8<S>> {
 }
 
 impl<S: Simd> Twin<mask64x8<S>> {
-    /// As bits.
+    /// Returns the elements as bits, the first one lowest.
     #[inline(always)]
     pub fn to_bitmask(self) -> u64 {
         self.0.to_bitmask() | self.1.to_bitmask() << WIDTH

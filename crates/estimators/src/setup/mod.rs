@@ -28,7 +28,7 @@ pub struct Setup<P: Estimated> {
     pub problem: Arc<P>,
     /// Medium, σ̂ and control, as far as the problem has them.
     pub fields: P::Fields,
-    /// Whether predictions hold whole distributions; a search for optima leaves them out.
+    /// True if predictions hold whole distributions; a search for optima leaves them out.
     pub distributions: bool,
 }
 

@@ -17,7 +17,7 @@ pub struct Caught {
     pub draws: Option<u64>,
     /// All checks that failed.
     pub failed: Vec<String>,
-    /// Whether the control passed: the code without the bug.
+    /// True if the control passed: the code without the bug.
     pub twin_passes: bool,
 }
 

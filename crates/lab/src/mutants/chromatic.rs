@@ -66,12 +66,12 @@ const IN_SLAB: &[Line<Bug>] = &[
     ("chromatic-slab-tracking-albedo-missing", "spectral tracking multiplies by r p(cos θ), without the albedo, where it scatters", SLAB_TRACKING, "mean", Bug::AlbedoMissing),
 ];
 
-/// In a furnace.
+/// Mutants in a furnace.
 pub fn in_furnace() -> Vec<Mutant<SpectralFurnace>> {
     mutants(IN_FURNACE)
 }
 
-/// In a slab.
+/// Mutants in a slab.
 pub fn in_slab() -> Vec<Mutant<ChromaticSlab>> {
     mutants(IN_SLAB)
 }

@@ -85,7 +85,7 @@ struct Mutant<P: Estimated> {
     honest: Arc<Draws<P>>,
     /// Changes the setup to a wrong one.
     prepare: fn(&mut Setup<P>),
-    /// Whether every 1024 draws begin with the same random numbers.
+    /// True if every 1024 draws begin with the same random numbers.
     replays: bool,
 }
 

@@ -122,7 +122,7 @@ const UNDER_LIGHT: &[Line<Bug>] = &[
     ("lambertian-stale-majorant", "a flight goes on with the majorant of the cell it began in", LAMBERTIAN_CELLS, "mean", Bug::StaleMajorant),
 ];
 
-/// In a rod.
+/// Mutants in a rod.
 pub fn in_rod() -> Vec<Mutant<Rod>> {
     family(IN_ROD, &Bug::None, |target, &bug| {
         let Particle { rule, roulette, .. } = particle(target, bug);
@@ -133,7 +133,7 @@ pub fn in_rod() -> Vec<Mutant<Rod>> {
     })
 }
 
-/// In a slab.
+/// Mutants in a slab.
 pub fn in_slab() -> Vec<Mutant<Slab>> {
     family(IN_SLAB, &Bug::None, |target, &bug| {
         let steps = Wrong(particle(target, bug).rule, bug);
@@ -143,17 +143,17 @@ pub fn in_slab() -> Vec<Mutant<Slab>> {
     })
 }
 
-/// In a furnace.
+/// Mutants in a furnace.
 pub fn in_furnace() -> Vec<Mutant<Furnace>> {
     in_space(IN_FURNACE)
 }
 
-/// In the infinite medium.
+/// Mutants in the infinite medium.
 pub fn in_infinite_medium() -> Vec<Mutant<InfiniteMedium>> {
     in_space(IN_INFINITE_MEDIUM)
 }
 
-/// Under light from all sides.
+/// Mutants under light from all sides.
 pub fn under_light() -> Vec<Mutant<Lambertian>> {
     in_space(UNDER_LIGHT)
 }

@@ -43,12 +43,12 @@ const IN_SLAB: &[Line<Bug>] = &[
     ("spectral-slab-largest-albedo", "weights are divided by the largest albedo, not by the chance", SLAB_TRACKING, "mean", Bug::Largest),
 ];
 
-/// In a rod.
+/// Mutants in a rod.
 pub fn in_rod() -> Vec<Mutant<SpectralRod>> {
     mutants(IN_ROD)
 }
 
-/// In a slab.
+/// Mutants in a slab.
 pub fn in_slab() -> Vec<Mutant<SpectralSlab>> {
     mutants(IN_SLAB)
 }

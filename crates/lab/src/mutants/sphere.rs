@@ -19,9 +19,9 @@ use theory::{Heuristic, ParticleRule};
 
 /// A weighted walk, ratio-tracked shadow rays to a black light sphere.
 const NEXT_EVENT: Target = on("ball/known-bugs", 0);
-/// Exact shadow rays.
+/// A weighted walk, exact shadow rays to a black light sphere.
 const NEXT_EVENT_EXACT: Target = on("ball/known-bugs", 1);
-/// In an environment.
+/// Next-event estimation in an environment.
 const NEXT_EVENT_SKY: Target = on("ball/environment", 0);
 /// A black light sphere in a ball that thins out, by directions.
 const DIRECTIONAL: Target = on("ball/known-bugs-paths", 0);
@@ -29,11 +29,11 @@ const DIRECTIONAL: Target = on("ball/known-bugs-paths", 0);
 const FULL: Target = on("ball/known-bugs-paths", 1);
 /// Null-scattering paths, by the power heuristic.
 const POWER: Target = on("ball/known-bugs-paths", 2);
-/// With connections.
+/// Bidirectional paths, with connections.
 const BIDIRECTIONAL: Target = on("ball/known-bugs-paths", 3);
-/// In an environment, by null-scattering paths.
+/// Null-scattering paths in an environment.
 const FULL_SKY: Target = on("ball/techniques", 3);
-/// With connections.
+/// Bidirectional paths in an environment, with connections.
 const BIDIRECTIONAL_SKY: Target = on("ball/techniques", 6);
 
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -15,7 +15,7 @@ pub type Draws<P> = dyn Fn(&Setup<P>, Request) + Send + Sync;
 pub struct Trial<P: Estimated> {
     pub draws: Arc<Draws<P>>,
     pub setup: Setup<P>,
-    /// Whether every 1024 draws begin with the same random numbers, which is wrong.
+    /// True if every 1024 draws begin with the same random numbers, which is wrong.
     pub replays: bool,
 }
 

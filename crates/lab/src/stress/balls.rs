@@ -82,7 +82,7 @@ fn radial() -> impl Strategy<Value = Radial> {
 }
 
 impl Radial {
-    /// At the square of a distance from the centre.
+    /// Returns σ_t at the square of a distance from the centre.
     fn extinction(self, r2: f64) -> f64 {
         match self {
             Self::Polynomial { size, b, c } => size * (1.0 + r2 * (b + r2 * c)),

@@ -58,7 +58,7 @@ pub fn rows(run: Run) -> Vec<Row> {
 /// Rounding of the quadrature, relative.
 const ROUNDING: f64 = 2e-15;
 
-/// In units of the stated error and the rounding of the quadrature, but for half a unit in the last place.
+/// Adds an error in units of the stated error and the rounding of the quadrature, less half a unit in the last place.
 fn see(volume: &Volume, exact: Wide, chords: f64, seen: &mut Seen) -> Option<()> {
     let found = content::by_chords(volume, chords)?;
     if exact.high <= 1e-290 {

@@ -106,7 +106,7 @@ fn waves() -> impl Strategy<Value = [[f64; 3]; 2]> {
     [slow, [between(-0.4, 0.4), sized(-1.0, 5.0), between(-6.3, 0.0)]]
 }
 
-/// Places from one on, so far apart.
+/// Places from one on, with these widths between them.
 pub(super) fn knots(from: f64, widths: &[f64]) -> Vec<f64> {
     let mut knots = vec![from];
     knots.extend(widths.iter().scan(from, |at, width| {

@@ -99,7 +99,7 @@ fn moments((case, ratio, kind): &(Case, f64, usize), seen: &mut Seen) {
 
 /// Twelfths hold halves, thirds and quarters.
 const STRETCHES: usize = 12;
-/// Nothing.
+/// Values of 0, in both directions.
 const NOTHING: Both = [Wide { high: 0.0, low: 0.0 }; 2];
 
 /// Light that leaves by order at the end and at the beginning, and scores, to the powers 1 … 4.

@@ -116,7 +116,7 @@ fn moments(case: &Lit, shadow: Shadow) -> [Wide; 4] {
     std::array::from_fn(|k| unscattered + found[k].begin[0])
 }
 
-/// Nothing.
+/// Values of 0, in both directions.
 const NOTHING: Both = [Wide { high: 0.0, low: 0.0 }; 2];
 
 /// Scores of a scattering.

@@ -2,7 +2,7 @@
 //!
 //! The equations of N directions have solutions that fall and grow like `e^{±kt}`, one to each root k of a
 //! secular equation: depth enters exactly, and nothing is added or doubled. Beyond an albedo of 1, as of
-//! moments of walks, the slowest of them swings.
+//! moments of walks, the slowest of them oscillates in depth.
 //!
 //! ```text
 //! a Σ wᵢ/(1 − k²μᵢ²) = 1,   J(t) = Σⱼ αⱼ e^{−kⱼt} + βⱼ e^{−kⱼ(τ−t)},   I = 1 above, I = 0 below
@@ -29,7 +29,7 @@ pub struct Ordinates {
     parts: Vec<[Wide; 4]>,
 }
 
-/// The solution that swings.
+/// The solution that oscillates in depth, for an albedo above 1.
 struct Swing {
     /// ν.
     rate: Wide,
@@ -84,12 +84,12 @@ impl Ordinates {
         Some(Self { depth, cosines, weights, swing, parts })
     }
 
-    /// Whether more than one particle follows each, unless the slab is thin.
+    /// Returns true if the albedo exceeds 1: one solution oscillates in depth.
     pub fn swings(&self) -> bool {
         self.swing.is_some()
     }
 
-    /// Whether J is positive: it is not where more than one particle follows each.
+    /// Returns true if J is positive everywhere. If the albedo exceeds 1 it may not be, unless the slab is thin.
     pub fn is_positive(&self) -> bool {
         const PLACES: u32 = 64;
         (0..=PLACES).all(|i| {

@@ -261,7 +261,7 @@ fn near_critical(case: &NearCritical, seen: &mut Seen) -> Option<()> {
 mod tests {
     use super::*;
 
-    /// Its E[X⁴] is `e^{107}` times T⁴: grids of two hundred steps gave a negative fourth moment, and an error
+    /// E[X⁴] is `e^{107}` times T⁴: grids of two hundred steps gave a negative fourth moment, and an error
     /// that left it out.
     #[test]
     fn a_moment_that_grids_do_not_resolve_is_unknown() {

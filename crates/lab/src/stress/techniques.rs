@@ -1,7 +1,8 @@
-//! Techniques of single scattering: as theory has them, and by nodes along the ray in 32 digits, see `nodes`.
+//! Techniques of single scattering: predicted by theory, and by nodes along the ray in 32 digits, see `nodes`.
 //!
-//! Rates `A_k` are those of the transmittance from the ray's origin to the power k, `e^{−B_k}` is that of the
-//! shadow ray, and S what is scattered towards the origin without it.
+//! `A_k` is the rate of decay of the k-th moment of the transmittance from the ray's origin, `e^{−B_k}` the k-th
+//! moment of that of the shadow ray. S is the light that is scattered towards the origin, without these
+//! transmittances.
 //!
 //! ```text
 //! at a point of density p       E[X^k] = ∫ p (σ_t S/p)^k e^{−∫A_k − B_k} ds
@@ -23,17 +24,17 @@ use theory::single::{
 /// Technique that samples points of a ray.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Technique {
-    /// At every collision of a walk.
+    /// Scores at every collision of a walk.
     AtCollisions,
-    /// At one of all collisions of a walk.
+    /// Score at one of all collisions of a walk.
     Resampled,
-    /// At points that share a walk.
+    /// Scores at points that share a walk.
     SharedWalk,
-    /// At the end of delta tracking.
+    /// Score at the end of delta tracking.
     Delta,
-    /// At a point by angle.
+    /// Score at a point sampled by angle.
     ByAngle(CameraTracking),
-    /// At a point, with a density that falls exponentially with the distance.
+    /// Score at a point sampled with a density that falls exponentially with the distance.
     ByDepth(CameraTracking),
 }
 
@@ -55,7 +56,7 @@ impl Estimator<'_> {
         self.walk[0].min(30.0 / self.problem.medium().support().length())
     }
 
-    /// Returns what theory finds.
+    /// Returns the prediction of theory.
     pub fn found(&self, technique: Technique) -> Points {
         let (problem, [sampling, control]) = (self.problem, self.walk);
         let medium = problem.medium();

@@ -52,7 +52,7 @@ pub enum Bounds {
 }
 
 impl Bounds {
-    /// The stretch of the ray that is inside: empty for a ray that misses or only grazes, from 0
+    /// Stretch of the ray that is inside: empty for a ray that misses or only grazes, from 0
     /// for one that starts inside.
     pub fn clip(&self, ray: &Ray) -> Span {
         match self {
@@ -62,7 +62,7 @@ impl Bounds {
         }
     }
 
-    /// Its ends with bounds on their errors, which are nothing where the ray itself begins or ends.
+    /// Ends of the stretch of the ray inside, with bounds on their errors: 0 where the ray itself begins or ends.
     pub fn ends(&self, ray: &Ray) -> [Known; 2] {
         let inside = self.clip(ray);
         let roundings = match self {
@@ -78,7 +78,7 @@ impl Bounds {
         })
     }
 
-    /// Whether the point is inside or on the boundary.
+    /// Returns true if the point is inside or on the boundary.
     pub fn contains(&self, p: Point) -> bool {
         match self {
             Self::Everywhere => true,
@@ -87,7 +87,7 @@ impl Bounds {
         }
     }
 
-    /// Which points side by side are in the body.
+    /// Mask of the points in a lane that are in the body.
     #[inline(always)]
     pub fn contain<L: Lane>(&self, p: [L; 3]) -> L::Mask {
         let zero = p[0].each(0.0);
@@ -141,7 +141,7 @@ impl Bounds {
     }
 }
 
-/// Whether plain doubles find the ends of a chord to 64 roundings of the radius: the origin is near
+/// Returns true if plain doubles find the ends of a chord to 64 roundings of the radius: the origin is near
 /// and the ray does not graze.
 fn is_plain(centre: Point, radius: f64, ray: &Ray, offset: f64) -> bool {
     offset < 0.9 * radius && (centre - ray.origin).norm() < 4.0 * radius && radius > 1e-100

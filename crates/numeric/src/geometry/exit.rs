@@ -32,7 +32,7 @@ pub fn along<L: Lane>([a, b, c]: [L; 3], [x, y, z]: [L; 3], t: L) -> [L; 3] {
 /// Distances at which the lines of rays that begin in a body enter and leave it, for the lanes in `which`: from no later
 /// than their beginnings, to infinity where there is no boundary. A ray that only grazes leaves no later than it enters.
 ///
-/// On AVX2 it is a function of its own.
+/// On AVX2 it is not inlined.
 #[inline(always)]
 pub fn ends<L: Lane>(bounds: &Bounds, rays: [[L; 3]; 2], which: L::Mask) -> [L; 2] {
     let like = rays[0][0];

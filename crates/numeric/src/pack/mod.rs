@@ -22,7 +22,7 @@ use super::{Lane, Row};
 pub use super::lane::WIDTH;
 pub use streams::Lanes;
 
-/// Whether the packs of a level multiply and add in one rounding.
+/// Returns true if the packs of a level multiply and add in one rounding.
 #[inline(always)]
 pub fn fuses(level: Level) -> bool {
     #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
@@ -36,7 +36,7 @@ pub fn fuses(level: Level) -> bool {
     }
 }
 
-/// Whether a level converts 64-bit integers by one instruction.
+/// Returns true if a level converts 64-bit integers by one instruction.
 #[inline(always)]
 pub fn converts<S: Simd>(simd: S) -> bool {
     #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
@@ -143,7 +143,7 @@ pub fn outlined<S: Simd, R>(simd: S, compute: impl FnOnce() -> R) -> R {
     simd.vectorize(compute)
 }
 
-/// Whether a pack fits into one register.
+/// Returns true if a pack fits into one register.
 pub const fn is_one_register<S: Simd>() -> bool {
     size_of::<S::f64s>() >= size_of::<f64x8<S>>()
 }

@@ -46,7 +46,7 @@ impl Lanes {
         std::array::from_fn(|lane| Xoshiro::at(self.0.map(|words| words[lane])))
     }
 
-    /// In the hardware's registers.
+    /// Loads the streams into vector registers.
     #[inline(always)]
     pub fn awake<S: Simd>(&self, simd: S) -> Xoshiro<u64x8<S>> {
         let [a, b, c, d] = &self.0;

@@ -61,7 +61,7 @@ pub struct Xoshiro<W> {
 }
 
 impl<W: Words> Xoshiro<W> {
-    /// At a state, which must not be zero.
+    /// Generator at a state, which must not be zero.
     #[inline(always)]
     pub fn at(state: [W; 4]) -> Self {
         Self { state }

@@ -47,11 +47,11 @@ use numeric::geometry::{Bounds, Point, Ray};
 /// Light of a ball.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Light {
-    /// From all sides.
+    /// Light from all sides.
     Environment,
-    /// From a black sphere of the given radius at the centre.
+    /// Light from a black sphere of the given radius at the centre.
     BlackSphere(f64),
-    /// From this direction: a unit vector towards the light.
+    /// Light from one direction: a unit vector towards the light.
     Distant(Point),
 }
 

@@ -18,9 +18,9 @@ pub type Values = super::Values<MOST>;
 /// Place of the sensor.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Sensor {
-    /// At the end.
+    /// Sensor at the end.
     Transmitted,
-    /// At the beginning.
+    /// Sensor at the beginning.
     Reflected,
 }
 
@@ -35,7 +35,7 @@ pub struct BidirectionalRod {
     pub sensor: Sensor,
     /// Numbers of scatterings, up to [`HIGHEST_ORDER`].
     pub orders: RangeInclusive<usize>,
-    /// Whether the contribution of each technique is a channel beside their sum.
+    /// True if the contribution of each technique is a channel beside their sum.
     pub has_shares: bool,
 }
 

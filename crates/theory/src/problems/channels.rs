@@ -26,9 +26,9 @@ pub type ColourValues = Values<{ 2 * MOST_CHANNELS }>;
 /// End at which a particle leaves.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum End {
-    /// At the beginning.
+    /// The beginning.
     Reflected,
-    /// At the end.
+    /// The end.
     Transmitted,
 }
 

@@ -82,7 +82,7 @@ fn read_entry(settings: &Settings, bounds: Bounds, ray: &Ray) -> Option<Point> {
 pub struct SpectralFurnace {
     /// The medium of each channel.
     pub channels: Vec<Channel>,
-    /// Their albedos.
+    /// Albedos of the channels.
     pub albedos: Vec<f64>,
     /// Bounds of all channels.
     pub bounds: Bounds,

@@ -24,12 +24,12 @@ pub enum Light {
     },
     /// A beam of irradiance 1, by its cosine with the normal.
     Distant(f64),
-    /// A point of intensity 1 on the ray, so far behind the slab.
+    /// A point of intensity 1 on the ray, at this distance behind the slab.
     Point(f64),
 }
 
 impl Light {
-    /// Whether a direction that is chosen by the phase function may meet it.
+    /// Returns true if a direction that is chosen by the phase function may meet it.
     pub fn can_be_hit(self) -> bool {
         matches!(self, Self::Cap(_) | Self::Disc { .. })
     }
@@ -43,8 +43,8 @@ impl Light {
         }
     }
 
-    /// A direction to it, chosen with a number in `[0, 1)`, from a point so far before the end of the slab: its cosine,
-    /// and `1/p_nee`, sr; for a light that cannot be hit, what its radiance is in units of.
+    /// A direction to it, chosen with a number in `[0, 1)`, from a point at a distance `before` the end of the slab:
+    /// its cosine, and `1/p_nee`, sr; for a light that cannot be hit, the unit of its radiance.
     #[inline(always)]
     pub fn chosen<L: Lane>(self, number: L, before: L) -> [L; 2] {
         let one = number.each(1.0);
@@ -65,7 +65,7 @@ impl Light {
         }
     }
 
-    /// `1/p_nee` of a direction that meets it; nothing is drawn that meets a light without a size.
+    /// `1/p_nee` of a direction that meets the light; 0 for a light without a size, which no direction meets.
     #[inline(always)]
     pub fn spread<L: Lane>(self, cosine: L, before: L) -> L {
         match self {
@@ -78,7 +78,7 @@ impl Light {
         }
     }
 
-    /// Whether a direction meets it.
+    /// Returns true if a direction meets it.
     #[inline(always)]
     pub fn is_met<L: Lane>(self, cosine: L, before: L) -> L::Mask {
         let zero = cosine.each(0.0);

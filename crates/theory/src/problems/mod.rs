@@ -102,7 +102,7 @@ pub trait Problem: Send + Sync + Sized + 'static {
     const OPTIONS: &'static [ProblemOption] = &[];
     /// Requirement on the ray through a volume.
     const RAY: RayNeed = RayNeed::Whole;
-    /// Whether each channel (wavelength) has a medium of its own.
+    /// True if each channel (wavelength) has a medium of its own.
     const SPECTRAL: bool = options::has_media(Self::OPTIONS);
 
     /// Reads what the problem needs beside the field, which is absent after a mistake.
@@ -116,7 +116,7 @@ pub trait Problem: Send + Sync + Sized + 'static {
         &self.media()[0]
     }
 
-    /// Their lookups, for kernels on the hardware of a level.
+    /// Lookups of all fields, for kernels on the hardware of a level.
     fn lookups(&self, level: Level) -> Lookups<'_> {
         Lookups::of_channels(self.medium(), &self.media()[1..], level)
     }

@@ -71,7 +71,7 @@ pub struct Lamp {
     pub power: f64,
 }
 
-/// The light is so near to the line of a ray: on the ray L is infinite.
+/// Error: the light is too near to the line of the ray, at this distance. On the ray L is infinite.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct OnTheLine(pub f64);
 
@@ -211,15 +211,15 @@ impl SingleScattering {
         self.equiangular_density_beyond(s - self.light.foot)
     }
 
-    /// The density at the point that is this far beyond the foot: next to the light `s` has lost the digits of its
-    /// distance from there.
+    /// The equiangular density at a distance beyond the foot, 1/length: next to the light `s` does not hold the
+    /// digits of this distance.
     #[inline(always)]
     pub fn equiangular_density_beyond<L: Lane>(&self, along: L) -> L {
         along.each(self.light.distance) / (self.square_beyond(along) * self.light.width)
     }
 
-    /// `a p(cos θ) Φ/(4π r²)` at the point so far beyond the foot, as [`source`](Self::source), and by how much
-    /// rounding may change it, relative to itself.
+    /// `a p(cos θ) Φ/(4π r²)` at a distance beyond the foot, as [`source`](Self::source), and the relative error of
+    /// rounding.
     ///
     /// ```text
     /// ε (4 + |d ln p/d cos θ|)
@@ -369,7 +369,7 @@ fn off_the_line<T>(settings: &Settings, found: Result<T, OnTheLine>) -> Option<T
 pub struct SpectralSingleScattering {
     /// Each channel by itself.
     pub channels: Vec<Arc<SingleScattering>>,
-    /// Their albedos.
+    /// Albedos of the channels.
     pub albedos: Vec<f64>,
     media: Vec<Medium>,
 }

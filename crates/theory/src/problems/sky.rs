@@ -18,13 +18,13 @@ pub enum Sky {
         /// Radiance.
         radiance: f64,
     },
-    /// From the ground over the horizon to the zenith, and a soft sun.
+    /// Gradient from the ground over the horizon to the zenith, and a soft sun.
     Gradient {
-        /// Straight below, at the horizon, and straight above.
+        /// Radiance straight below.
         ground: f64,
-        /// At the horizon.
+        /// Radiance at the horizon.
         horizon: f64,
-        /// Straight above.
+        /// Radiance straight above.
         zenith: f64,
         /// Upwards.
         up: Point,

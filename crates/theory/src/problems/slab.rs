@@ -67,7 +67,7 @@ use numeric::digits::number;
 /// Direction of the light that enters the slab.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Light {
-    /// From one direction, by its cosine `μ₀` with the normal of the slab, in `(0, 1]`.
+    /// Light from one direction, by its cosine `μ₀` with the normal of the slab, in `(0, 1]`.
     Collimated(f64),
     /// Evenly from all sides, the Lambertian law `2μ₀ dμ₀`.
     Diffuse,

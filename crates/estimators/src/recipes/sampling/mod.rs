@@ -15,12 +15,12 @@ pub trait Recipe: Send + Sync {
     /// Label in words, as in `constant 0.4`.
     fn label(&self) -> String;
 
-    /// The value, if it is one constant whatever the medium.
+    /// The value, if it is one constant for every medium.
     fn constant(&self) -> Option<f64> {
         None
     }
 
-    /// Whether it looks σ_t up to learn from it, at places that random numbers choose.
+    /// Returns true if σ̂ depends on lookups of σ_t at random places.
     fn learns(&self) -> bool {
         false
     }
@@ -34,14 +34,14 @@ pub trait Recipe: Send + Sync {
     ///
     /// # Errors
     ///
-    /// What the recipe needs and does not find.
+    /// A requirement of the recipe that the medium does not fulfil.
     fn prepare(&self, site: &Site, control: &Control) -> Result<Piecewise, Refusal>;
 
     /// Makes σ̂, and counts the lookups of σ_t that it took.
     ///
     /// # Errors
     ///
-    /// What the recipe needs and does not find.
+    /// A requirement of the recipe that the medium does not fulfil.
     fn prepare_counted(&self, site: &Site, control: &Control) -> Result<(Piecewise, u64), Refusal> {
         self.prepare(site, control).map(|sampling| (sampling, 0))
     }

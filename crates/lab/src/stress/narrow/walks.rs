@@ -51,7 +51,7 @@ pub struct Subject<'a> {
     pub setup: &'a dyn Any,
     /// The channel that is compared.
     pub channel: usize,
-    /// Whether walks are kept from their end, see [`Trail`].
+    /// True if walks are kept from their end, see [`Trail`].
     pub is_kept: bool,
 }
 
@@ -258,7 +258,7 @@ pub struct Entry {
     pub asked: Asked,
     /// The estimator as a case has it.
     pub written: &'static str,
-    /// Whether the only decisions of a walk, if any, end it with the score 0; it is then kept from its end, see
+    /// True if the only decisions of a walk, if any, end it with the score 0; it is then kept from its end, see
     /// [`Trail`].
     pub is_kept: bool,
     /// Its draws.
