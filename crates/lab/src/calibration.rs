@@ -8,8 +8,8 @@
 //! ```
 //!
 //! Rates come with their Clopper–Pearson limits at 99 %. A promise is broken when the lower limit
-//! is above it; at 99 % each, one of a hundred kept promises looks broken, so the verdict asks for
-//! 1 − 1e-6.
+//! is above it. At 99 % each, one of a hundred kept promises would look broken, so the verdict uses limits
+//! at 1 − 1e-6.
 
 use std::collections::BTreeMap;
 
@@ -106,13 +106,13 @@ pub struct Counts {
 pub struct Checked {
     /// The check.
     pub check: String,
-    /// Its verdict.
+    /// Verdict of the check.
     pub verdict: Verdict,
     /// True if the check is a scalar, judged by the gate.
     pub is_scalar: bool,
     /// True if the draws sufficed for a pass.
     pub is_powered: bool,
-    /// Its p-value, of checks that have one.
+    /// P-value of the check; `None` for checks without one.
     pub p: Option<f64>,
 }
 

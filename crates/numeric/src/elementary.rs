@@ -183,7 +183,7 @@ pub fn sin<L: Lane>(x: L) -> L {
     (f * z).times_plus(z.polynomial(&SIN), f).alternate(k)
 }
 
-/// `|cos πx|` for `|x| < 2^51` half turns: the reduction is exact, and the sign is not asked for.
+/// `|cos πx|` for `|x| < 2^51` half turns: the reduction is exact, and the sign is not needed.
 ///
 /// ```text
 /// f = x − round(x), |f| ≤ ½;  |cos πx| = 1 + f² p(f²)

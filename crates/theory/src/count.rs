@@ -21,7 +21,7 @@ pub struct CountLaw {
     /// True if the distribution is Poisson.
     pub poisson: bool,
     /// `P(M = 0), P(M = 1), …` up to where the rest is below 1e-15; empty where they are unknown,
-    /// not asked for, or too many because the mean exceeds 2000.
+    /// not requested, or too many because the mean exceeds 2000.
     pub pmf: Vec<f64>,
 }
 

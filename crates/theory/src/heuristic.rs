@@ -45,7 +45,7 @@ impl Heuristic {
     }
 
     /// The weight of one of several techniques, given the densities of all of them for the same path, in any unit.
-    /// Its own density is positive.
+    /// The density of technique `own` is positive.
     #[inline(always)]
     pub fn weight<L: Lane, const N: usize>(self, own: usize, densities: [L; N]) -> L {
         let one = densities[own].each(1.0);

@@ -32,11 +32,11 @@ pub struct Scatterers<'a, S> {
 /// Results of a step: lanes that are scattered, that pass a null collision, and that collided at all.
 #[derive(Clone, Copy)]
 pub struct Events<M> {
-    /// Scattered.
+    /// Lanes that are scattered.
     pub scattered: M,
-    /// At a null collision.
+    /// Lanes at a null collision.
     pub null: M,
-    /// At a collision; those that did neither are absorbed.
+    /// Lanes at any collision; those that are not in the other two are absorbed.
     pub collided: M,
 }
 

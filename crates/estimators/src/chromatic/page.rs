@@ -13,10 +13,10 @@ use theory::spectral::Chances;
 pub struct Page<const KIND: u8>(Walker);
 
 impl<const KIND: u8> Page<KIND> {
-    /// Whether draws score all channels, or the hero's alone.
+    /// True if draws score all channels, false if they score the hero's alone.
     const SCORES_ALL: bool = KIND != INDEPENDENT;
 
-    /// Whether draws are relative to the density of one walker, so that their second moments need a bound.
+    /// True if draws are relative to the density of one walker, so that their second moments need a bound.
     fn is_relative(&self) -> bool {
         let is_fixed =
             matches!(self.0, Walker::Hero(_) | Walker::SpectralTracking(Chances::Fixed(_)));

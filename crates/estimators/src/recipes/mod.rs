@@ -59,15 +59,14 @@ macro_rules! recipes {
             pages: &[$(media::page!($module)),*],
         };
 
-        /// Settings of the recipe of a name that its field is proportional to; none of an unknown recipe.
+        /// Settings of a named recipe that its field is proportional to; empty for an unknown recipe.
         pub fn extinctions(name: &str) -> &'static [&'static str] {
             let all: &[&'static [&'static str]] = &[$($module::$Page::EXTINCTIONS),*];
             let place = CATALOGUE.pages.iter().position(|page| page.name() == name);
             place.map_or(&[], |place| all[place])
         }
 
-        /// Reads `NAME = { … }`. Without a body, because that was wrong, what depends on it is not
-        /// asked.
+        /// Reads `NAME = { … }`. The body is `None` after a mistake in it: checks that depend on it are skipped.
         pub fn read(
             settings: &media::catalogue::Settings,
             body: Option<&media::Body>,

@@ -40,7 +40,7 @@ pub struct Plan {
 pub enum Technique {
     /// Points that are chosen one after the other.
     Vertices(Vertices),
-    /// At all interaction points of a walk.
+    /// All interaction points of a walk.
     Interactions,
     /// One of the interaction points.
     Resampled,

@@ -16,7 +16,7 @@ pub enum Walker {
     Hero(Heroes),
     /// All channels: by the largest albedo and the largest share of absorption, or by the mean albedo.
     Together {
-        /// Whether by the largest.
+        /// True for the largest albedo, false for the mean albedo.
         maximum: bool,
     },
 }

@@ -20,7 +20,7 @@ pub struct Page<const KIND: u8> {
     tracker: Tracker,
     /// Distribution of the hero; `None` where all channels walk together through one σ̂.
     heroes: Option<Heroes>,
-    /// Its settings in words.
+    /// Label of the settings.
     label: String,
 }
 

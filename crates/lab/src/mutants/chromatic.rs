@@ -5,8 +5,8 @@
 //! a flight of the length s by e^{−σ̂_λ s}
 //! ```
 //!
-//! Most of them keep `Σ w_λ X_λ = 1` in a furnace: only the channels apart tell. Walks that are absorbed in a slab score
-//! nothing, and show no bug.
+//! Most of them keep `Σ w_λ X_λ = 1` in a furnace: they show only in single channels. Walks that are absorbed in a slab
+//! score nothing, and show no bug.
 
 use super::{Line, Mutant, Target, family, on, with};
 use estimators::chromatic::{By, Chromatic, Right, Steps, WEIGHING};

@@ -17,9 +17,9 @@ use numeric::rng::Stream;
 use theory::problems::TransmittanceCurve;
 use theory::problems::transmittance::CurveValues;
 
-/// Without a control.
+/// A curve without a control.
 const PLAIN: Target = on("transmittance/curve-known-bugs", 0);
-/// With a control that has its knots inside.
+/// A curve with a control that has knots on the ray.
 const CONTROL: Target = on("transmittance/curve-known-bugs", 1);
 
 /// A bug in a step, in `T_c(s)`, or in the number of walks.

@@ -1,13 +1,14 @@
 //! Wrong walks of particles through rods, slabs and space.
 //!
 //! ```text
-//! everywhere         scattered with chance q_s and weight a r w/q_s, straight on with q_t and (1 − r) w/q_t
+//! everywhere         scattered with probability q_s and weight a r w/q_s, straight on with q_t and (1 − r) w/q_t
 //! rod                a scattered particle goes on in its direction with probability p_f
 //! slab               a flight of optical depth u goes u|μ| deep; a particle that is scattered by an angle θ at an azimuth φ
-//!                    goes on with μ' = μ cos θ + √(1 − μ²) sin θ cos φ;  diffuse light has the law 2μ₀ dμ₀
-//! furnace            Σ w r (1 − a) + w where it leaves = 1 on average, and in every draw where a rule never ends a walk
-//! infinite medium    E[x²] at absorption = 2/(σ_t² (1 − a)(1 − a g)) tells how a particle turns, the collisions how it ends
-//! lambertian         light from all sides: every law of a start but Lambert's changes lengths and counts
+//!                    goes on with μ' = μ cos θ + √(1 − μ²) sin θ cos φ;  diffuse light has the density 2μ₀
+//! furnace            Σ w r (1 − a) + w where it leaves = 1 on average, and in every draw where a rule never ends a
+//! walk infinite medium    E[x²] at absorption = 2/(σ_t² (1 − a)(1 − a g)) depends on scattering angles, collisions
+//! on how a walk ends lambertian         light from all sides: every distribution of starts but Lambert's changes
+//! lengths and counts
 //! ```
 
 use super::{Line, Mutant, Target, family, filled, on, with};

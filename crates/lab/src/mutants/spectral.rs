@@ -23,11 +23,11 @@ use theory::spectral::{Chance, Tracker};
 const INDEPENDENT: Target = on("transmittance/spectral-layers", 0);
 /// All channels by one walk, `σ̂ = 1.6, 1.1, 1.9`.
 const MIS_RATIO: Target = on("transmittance/spectral-layers", 4);
-/// By delta tracking.
+/// All channels by delta tracking.
 const MIS_DELTA: Target = on("transmittance/spectral-layers", 5);
-/// `σ̂ = 1.9` for all channels.
+/// Spectral tracking, `σ̂ = 1.9` for all channels, by the largest probabilities.
 const MAXIMUM: Target = on("transmittance/spectral-layers", 9);
-/// `σ̂ = 1.9` for all channels.
+/// Spectral tracking, `σ̂ = 1.9` for all channels, by the history.
 const HISTORY: Target = on("transmittance/spectral-layers", 10);
 
 #[derive(Clone, Copy, PartialEq)]

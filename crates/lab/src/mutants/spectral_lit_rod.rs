@@ -6,7 +6,7 @@
 //!
 //! Several are errors of Algorithms 1 and 2 of B. Miller, I. Georgiev, W. Jarosz, *A null-scattering path integral
 //! formulation of light transport*, ACM Transactions on Graphics 38 (2019), as printed, or ways to read them. A run of
-//! `cases/rod/spectral-lit-as-printed.toml` tells how large the bias of the printed ones is.
+//! `cases/rod/spectral-lit-as-printed.toml` shows the bias of the printed ones.
 
 use super::trial::Draws;
 use super::{Line, Mutant, Target, family, on, with};
@@ -20,7 +20,7 @@ use theory::problems::SpectralLitRod;
 
 /// Three channels of different σ_t, σ̂, albedo and `p_f`, a σ̂ that touches its σ_t, hits alone.
 const HITS: Target = on("rod/spectral-lit-three-colours", 1);
-/// By hits and shadow rays.
+/// Three channels as of `HITS`, by hits and shadow rays.
 const FULL: Target = on("rod/spectral-lit-three-colours", 2);
 
 #[derive(Debug, Clone, Copy, PartialEq)]

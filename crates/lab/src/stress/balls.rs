@@ -41,15 +41,15 @@ pub fn rows(run: Run) -> Vec<Row> {
 }
 
 parameters! {
-    /// A homogeneous ball, and where it is asked.
+    /// A homogeneous ball, with the places and offsets of rays at which it is tested.
     Asked {
         depth: f64 = sized(-2.0, 1.3),
         albedo: f64 = share(),
         places: Vec<f64> = vec(place(), ASKED),
         offsets: [f64; 4] = [(); 4].map(|()| place()),
     }
-    /// A ball of radius 1, the part of its radius that is black if any, and where it is asked: places, and rays
-    /// with an offset from the centre that begin inside if a share says so.
+    /// A ball of radius 1, with the radius of a black core if any, and the places and rays at which it is tested. A
+    /// ray has an offset from the centre, and begins inside if it has a share.
     Scene {
         field: Radial = radial(),
         core: Option<f64> = prop_oneof![

@@ -38,7 +38,7 @@ parameters! {
     }
 }
 
-/// Any 1-D field, with and without a table: the depth of the distance is the depth that was asked for.
+/// Tests that the optical depth of the sampled distance is the given depth, in any 1-D field, with and without a table.
 fn inverse(Flight { line, share }: &Flight, seen: &mut Seen) -> Option<()> {
     let (medium, from) = (line.medium(), line.from);
     let whole = medium.optical_depth(medium.span());

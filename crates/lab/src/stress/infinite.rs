@@ -88,7 +88,7 @@ fn within(x: Wide) -> Wide {
     sum
 }
 
-/// κ and `1 − κ²`; nothing is left of the pole where it is not asked for.
+/// Returns κ and `1 − κ²`; `None` where the contribution of the pole is negligible.
 fn pole(albedo: f64) -> Option<[Wide; 2]> {
     if albedo < 0.01 {
         return None;

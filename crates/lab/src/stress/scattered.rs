@@ -65,7 +65,7 @@ fn shallow() -> impl Strategy<Value = Setting> {
     )
 }
 
-/// With a light that is not too many mean free paths away.
+/// Settings with a light that is not too many mean free paths away.
 fn deep() -> impl Strategy<Value = Setting> {
     let ratio = prop_oneof![1 => sized(1.0, 3.0), 3 => sized(-0.5, 1.0)];
     let light = (sized(-4.0, 2.0), sized(-2.0, 2.0), sign());

@@ -224,8 +224,8 @@ fn anderson_darling(&x: &f64, seen: &mut Seen) {
     seen.relative(0, anderson_darling::upper_tail(x), exact);
 }
 
-/// `P(A² ≤ x)` as Anderson and Darling give it (Journal of the American Statistical Association 49,
-/// 1954, equation 10), in 32 digits; the trapezoidal rule knows such integrals to all digits.
+/// `P(A² ≤ x)` by the formula of Anderson and Darling (Journal of the American Statistical Association 49,
+/// 1954, equation 10), in 32 digits; the trapezoidal rule is exact for such integrals to all digits.
 ///
 /// ```text
 /// (√(2π)/x) Σ_j (−½ over j)(4j + 1) e^{−c} ∫₀^∞ exp(x/(8(w² + 1)) − c w²) dw,  c = (4j + 1)²π²/(8x)

@@ -208,7 +208,7 @@ impl<S: Simd> Mask for mask64x8<S> {
     }
 }
 
-/// 0, which a compiler does not know: other crates could write it.
+/// 0, hidden from the compiler: other crates could write it.
 pub static ZERO: AtomicU64 = AtomicU64::new(0);
 
 impl<S: Simd> Lane for f64x8<S> {

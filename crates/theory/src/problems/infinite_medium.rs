@@ -16,8 +16,8 @@
 //! | `sweep` | one of `sampling`, `sampling-scale`, `albedo`, `density`, `albedo-scale` | none |
 //! | `estimators` | what is tested | required |
 //!
-//! Here a walk has nothing but flights, directions and the end of it: wrong frames of direction show in the
-//! squared distance, which knows the phase function's mean cosine g, and in nothing else as clearly. A walk
+//! Here a walk consists of flights, directions and its end only. The squared distance depends on the phase
+//! function's mean cosine g: wrong frames of direction show there more clearly than anywhere else. A walk
 //! that never ends is refused; it needs a rule that terminates, or roulette.
 //!
 //! Source: K. M. Case, P. F. Zweifel, *Linear Transport Theory* (Addison–Wesley, 1967), section 2.5.

@@ -26,9 +26,9 @@
 //! | `path length`, `collisions` | a = 1 everywhere and `σ̂ ≥ σ_t` |
 //! | `tentative collisions` | the rule `non-terminating` alone, a > 0, any σ̂ that is constant or, in a box, local |
 //!
-//! `∫σ_t dV` is a cubature over chords of exact optical depths, with a stated error. How far counts and
-//! lengths of a walk scatter about their mean theory does not know; their tails are light, and they are
-//! judged by twice the variance of pilot draws.
+//! `∫σ_t dV` is a cubature over chords of exact optical depths, with a stated error. Theory has no variance
+//! of the counts and lengths of a walk. Their tails are light, and they are judged by twice the variance of
+//! pilot draws.
 //!
 //! Source: A. Mazzolo, C. de Mulatier, A. Zoia, *Cauchy's formulas for random walks in bounded domains*,
 //! Journal of Mathematical Physics 55, 083308 (2014); S. Blanco, R. Fournier, *An invariance property of
@@ -66,7 +66,7 @@ impl Lambertian {
         self.bounds().surface().map_or(0.0, |surface| 4.0 / surface)
     }
 
-    /// `∫σ_t dV`, found when it is first asked for.
+    /// `∫σ_t dV`, computed at its first use.
     pub fn content(&self, find: impl FnOnce() -> Option<Known>) -> Option<Known> {
         *self.content.get_or_init(find)
     }
@@ -115,7 +115,7 @@ impl Lambertian {
 }
 
 impl Problem for Lambertian {
-    /// The channels that theory knows, see `estimators/lambertian`.
+    /// The channels that theory predicts, see `estimators/lambertian`.
     type Value = Values;
     const RAY: RayNeed = RayNeed::Nothing;
 

@@ -168,7 +168,7 @@ impl Rod {
     }
 }
 
-/// The channels that a case asks for.
+/// The channels that a case requests.
 pub fn channels(parts: usize, absorbed: bool, orders: Option<usize>) -> Vec<Quantity> {
     let mut channels: Vec<Quantity> = (0..parts).map(Quantity::Flux).collect();
     if let Some(highest) = orders {

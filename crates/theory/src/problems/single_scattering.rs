@@ -128,7 +128,7 @@ impl SingleScattering {
         &*self.volume
     }
 
-    /// L, found when it is first asked for.
+    /// L, computed at its first use.
     pub fn radiance(&self, find: impl FnOnce() -> Known) -> Known {
         *self.radiance.get_or_init(find)
     }

@@ -24,8 +24,8 @@
 //! anatomy, as in Figures 5 and 8 of Szirmay-Kalos et al. 2017.
 //!
 //! Beyond `τ = 300` the square of T is no longer a double: draws, truth and moments are then in units
-//! of `e^{−τ}`, and T itself is never formed. The answer is exact because every field of the catalogue knows its
-//! optical depth.
+//! of `e^{−τ}`, and T itself is never formed. The answer is exact because every field of the catalogue has an
+//! exact optical depth.
 //!
 //! Sources: L. Szirmay-Kalos et al., *Unbiased Light Transport Estimators for Inhomogeneous Participating Media*,
 //! Computer Graphics Forum 36 (2017); B. Miller, I. Georgiev, W. Jarosz, *A Null-Scattering Path Integral Formulation of

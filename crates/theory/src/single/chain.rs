@@ -38,9 +38,9 @@ pub struct At {
 
 /// A functional at every node, panel by panel, and at the beginning of the ray.
 pub struct Solved {
-    /// At the nodes.
+    /// Values at the nodes, by panel.
     pub at: Vec<Vec<f64>>,
-    /// At the beginning.
+    /// Value at the beginning.
     pub begin: f64,
 }
 

@@ -95,7 +95,7 @@ pub struct Resolution {
 }
 
 impl Resolution {
-    /// For exact answers: 1e-10, 1e-8 for Henyey–Greenstein of g = 0.9, and mostly far better.
+    /// Resolution of exact answers: 1e-10, 1e-8 for Henyey–Greenstein of g = 0.9, and mostly far better.
     pub const FINE: Self = Self {
         faintest: 1e-11,
         directions: 32,
@@ -103,13 +103,13 @@ impl Resolution {
         gains: [12.0, 400.0],
         peaked: 144,
     };
-    /// For moments: 1e-4 and mostly far better. With few directions, errors for grazing light in thin
+    /// Resolution of moments: 1e-4 and mostly far better. With few directions, errors for grazing light in thin
     /// slabs may fall only as `1/n`: the answer with five eighths of them then differs by 8/5 − 1 times the error.
     /// Elsewhere errors oscillate, and those of sixteen, twelve and ten directions may agree by accident. Half of
     /// the directions have errors that are ten to a hundred times larger, and show it.
     pub const COARSE: Self =
         Self { faintest: 1e-5, directions: 16, first_layer: 1e-10, gains: SLOW, peaked: 96 };
-    /// For moments where r varies, which need a hundred layers and more, and for differences.
+    /// Resolution of moments where r varies, which need a hundred layers and more, and of differences.
     pub const LAYERED: Self =
         Self { faintest: 1e-4, directions: 12, first_layer: 1e-7, gains: SLOW, peaked: 72 };
 
@@ -177,10 +177,11 @@ const ROUNDING: f64 = 2e-13;
 /// alone, with a factor of 1, as did one of 128 others, by five times. With five eighths of thirty-two, divided by
 /// twelve, no more than 0.72 was reached.
 const SAFETY: f64 = 2.0;
-/// In thinner slabs light grazes between the directions of all answers. Differences get the further factor of this
-/// over the depth: of 4600 answers some exceeded them, by three times, from 5e-3 down.
+/// Depth of a thin slab: in thinner ones light grazes between the directions of all answers. Differences get the
+/// further factor of this over the depth: of 4600 answers some exceeded them, by three times, from 5e-3 down.
 const THIN: f64 = 1e-2;
-/// In thicker slabs rounding adds up: of 1500 answers one deviated by twice the sum at a depth of 77.
+/// Depth of a thick slab: in thicker ones rounding adds up: of 1500 answers one deviated by twice the sum at a depth
+/// of 77.
 const THICK: f64 = 5.0;
 /// Values of [`Resolution::gains`] for errors that fall only as `1/n`.
 const SLOW: [f64; 2] = [0.6, 4.0];

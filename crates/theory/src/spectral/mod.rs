@@ -65,7 +65,7 @@ pub enum Tracker {
 }
 
 impl Tracker {
-    /// Whether real collisions end a walk.
+    /// Returns true if real collisions end a walk.
     #[inline(always)]
     pub fn is_delta(self) -> bool {
         match self {

@@ -40,10 +40,10 @@ pub struct Resolution {
 }
 
 impl Resolution {
-    /// For reference values: about twelve digits.
+    /// Resolution of reference values: about twelve digits.
     pub const FINE: Self =
         Self { nodes: 12, directions: 12, surface: 15, core: 23, centre: 30, chance: 2e-13 };
-    /// For comparison with draws: about seven digits.
+    /// Resolution for comparison with draws: about seven digits.
     pub const COARSE: Self =
         Self { nodes: 7, directions: 7, surface: 8, core: 11, centre: 20, chance: 1e-8 };
 
