@@ -186,12 +186,11 @@ impl<'a> Scene<'a> {
             let shadows = self.interpolated(Tracking::Exact);
             let gathered = |Place { s, along, .. }: Place, among: Among| {
                 let before = medium.optical_depth(Span::new(from, s)).value;
-                let beyond = match &shadows {
-                    Some(shadows) => -shadows.at(self.unstretched_by(along), among).powers[1].ln(),
-                    None => {
-                        let cast = problem.shadow_medium(s);
-                        cast.map_or(0.0, |m| m.optical_depth(m.support()).value)
-                    }
+                let beyond = if let Some(shadows) = &shadows {
+                    -shadows.at(self.unstretched_by(along), among).powers[1].ln()
+                } else {
+                    let cast = problem.shadow_medium(s);
+                    cast.map_or(0.0, |m| m.optical_depth(m.support()).value)
                 };
                 let source = problem.source_beyond(along)[0];
                 [medium.extinction(s) * source * (-(before + beyond)).exp()]
