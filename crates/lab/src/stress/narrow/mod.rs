@@ -9,7 +9,7 @@
 //! u₂₄    the upper 24 bits of a word, as renderers make it: k/2²⁴
 //! ```
 //!
-//! E[X] and V are predicted by theory. Where theory has no V (roulette, walks in space), the walks in doubles
+//! `E[X]` and V are predicted by theory. Where theory has no V (roulette, walks in space), the walks in doubles
 //! estimate it.
 //!
 //! The lattice of u₂₄ alone shortens flights by `ln(2πN)/(2N) = 5.5e-7`, N = 2²⁴. The bias exceeds the noise first for
