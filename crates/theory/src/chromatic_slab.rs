@@ -27,8 +27,6 @@ use numeric::{Known, exponential_integrals};
 
 /// Maximum relative error of an exact answer that draws are compared with.
 const BLURRED: f64 = 1e-4;
-/// The smallest exact answer: below, the fourth power of a draw's mean is no double of full length.
-const FAINT: f64 = 1e-70;
 
 /// A slab, with the mesh and σ̂ of each channel.
 pub struct Spectrum<'a> {
@@ -52,7 +50,7 @@ impl<'a> Spectrum<'a> {
         let is_sharp = |&(end, channel): &(End, usize)| {
             let known = self.truth(end, channel);
             let is_resolved = slab::resolves(&self.problem.incidences[channel].phase);
-            is_resolved && known.value >= FAINT && known.error <= BLURRED * known.value
+            is_resolved && known.error <= BLURRED * known.value
         };
         self.problem.colours.seen.iter().find(|seen| !is_sharp(seen)).map(|seen| seen.1)
     }

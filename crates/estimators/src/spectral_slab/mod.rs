@@ -17,8 +17,6 @@ use numeric::digits::rounded;
 
 /// Maximum relative error of an exact answer that draws are compared with.
 const BLURRED: f64 = 1e-4;
-/// The smallest exact answer: below, the fourth power of a draw's mean is no double of full length.
-const FAINT: f64 = 1e-70;
 
 impl Coloured for SpectralSlab {
     fn colours(&self) -> &Colours {
@@ -31,12 +29,12 @@ impl Coloured for SpectralSlab {
         let is_sharp = |&(end, channel): &(End, usize)| {
             let found = body.leaving(colours.albedos[channel]);
             let known = found.map(|found| found[usize::from(end == End::Transmitted)]);
-            known.is_some_and(|known| known.value >= FAINT && known.error <= BLURRED * known.value)
+            known.is_some_and(|known| known.error <= BLURRED * known.value)
         };
         if theory::resolves(phase) && colours.seen.iter().all(is_sharp) {
             return Ok(());
         }
-        let needs = "reflectances and transmittances that adding and doubling resolve to 1e-4 (above 1e-70, g ≥ −0.93)";
+        let needs = "reflectances and transmittances that adding and doubling resolve (|g| ≤ 0.93, a moderate τ)";
         let depth = rounded(setup.fields.mesh.optical_depth().value);
         Err(Refusal::mismatch(needs, format!("τ = {depth}, phase {}", phase.label())))
     }

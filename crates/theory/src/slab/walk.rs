@@ -135,9 +135,8 @@ impl Walk {
         let thinner: Vec<Slice> = pieces.iter().map(thinner).collect();
         let lights = [self.incidence.light];
         match energies(&self.incidence.phase, &lights, &thinner, resolution) {
-            // With the peak cut off, light along a layer may grow that the whole phase function turns away.
-            None if !resolution.cuts(&self.incidence.phase) => Existence::Diverges,
-            _ => Existence::Unknown,
+            Some(_) => Existence::Unknown,
+            None => Existence::Diverges,
         }
     }
 
