@@ -91,7 +91,7 @@ fn has_kinks(volume: &Volume) -> bool {
 /// Error of a sequence of resolutions, from its last steps. Where the field is smooth, it is the last step if the
 /// sequence settles fast, and four times that if it settles slowly. Kinks make steps of any size, and two
 /// resolutions may be alike by accident: the largest of three steps, or of two, has more information, see
-/// [`doubt`].
+/// [`safety_factor`].
 fn settled(steps: &[f64], is_smooth: bool) -> f64 {
     let last = &steps[steps.len().saturating_sub(3)..];
     let shrinks = |factor: f64| {
@@ -102,15 +102,15 @@ fn settled(steps: &[f64], is_smooth: bool) -> f64 {
     } else if shrinks(4.0) {
         4.0 * last[2]
     } else {
-        doubt(last.len()) * last.iter().copied().fold(0.0, f64::max)
+        safety_factor(last.len()) * last.iter().copied().fold(0.0, f64::max)
     }
 }
 
 /// Probability that all steps are small beside the error of the last resolution.
-const CHANCE: f64 = 3e-5;
+const MISS_PROBABILITY: f64 = 3e-5;
 
 /// Factor K by which the error of the last resolution may exceed the largest of m steps, except with probability
-/// [`CHANCE`].
+/// [`MISS_PROBABILITY`].
 ///
 /// The position of a plane of kinks among the chords is random. The errors of resolutions are about independent and
 /// normal, and at worst halved from one to the next. Let x be the last error in units of its standard deviation,
@@ -121,11 +121,11 @@ const CHANCE: f64 = 3e-5;
 /// P = ∫ φ(x) ∏ⱼ (2|x|/K) φ(x/2ʲ)/2ʲ dx = (2/(πK²))^{m/2} E|z|^m 2^{−m(m+1)/2} q^{−(m+1)/2},
 /// q = 1 + 1/4 + … + 4^{−m},  E|z|² = 1, E|z|³ = √(8/π)
 /// ```
-fn doubt(steps: usize) -> f64 {
+fn safety_factor(steps: usize) -> f64 {
     let (m, moment, q) =
         if steps < 3 { (2.0, 1.0, 1.3125_f64) } else { (3.0, (8.0 / PI).sqrt(), 1.328_125) };
     let rest = moment / (2f64.powf(0.5 * m * (m + 1.0)) * q.powf(0.5 * (m + 1.0)));
-    (2.0 / PI).sqrt() * (rest / CHANCE).powf(1.0 / m)
+    (2.0 / PI).sqrt() * (rest / MISS_PROBABILITY).powf(1.0 / m)
 }
 
 /// Positions of chords: about the axis of a ball, or in panels of x and y.
@@ -262,10 +262,10 @@ mod tests {
     use media::eq21::Eq21;
 
     #[test]
-    fn steps_are_doubted_as_much_as_chance_asks() {
+    fn the_safety_factor_has_the_probability_that_is_asked_for() {
         // The integral over x, by even steps, with the factor that it was solved for.
         for (m, about) in [(2, 42.0), (3, 6.2)] {
-            let factor = doubt(m);
+            let factor = safety_factor(m);
             assert!((factor / about - 1.0).abs() < 0.01, "{factor}");
             let density = |x: f64| (-0.5 * x * x).exp() / TAU.sqrt();
             let mut chance = 0.0;
@@ -277,7 +277,7 @@ mod tests {
                 };
                 chance += 2.0 * 4e-3 * density(x) * (1..=m).map(near).product::<f64>();
             }
-            assert!((chance / CHANCE - 1.0).abs() < 1e-6, "{chance:e}");
+            assert!((chance / MISS_PROBABILITY - 1.0).abs() < 1e-6, "{chance:e}");
         }
     }
 
