@@ -30,7 +30,7 @@ fn every_page_that_a_case_may_use_has_a_case_to_copy_that_is_planned() {
             ["media", "phases", "sampling", "controls", "estimators", "problems"].contains(&kind);
         let Some(text) = suite::example(&row.part, &row.name) else {
             if is_used && !row.part.contains("pictures") {
-                wrong.push(format!("{place}: no case"));
+                wrong.push(format!("{place}: list a case that has it in src/case/suite.rs"));
             }
             continue;
         };

@@ -74,7 +74,9 @@ fn tables_have_the_names_of_the_catalogue() {
     none(
         &known
             .difference(&shown)
-            .map(|(part, name)| format!("no row of {name} ({part})"))
+            .map(|(part, name)| {
+                format!("{name} ({part}): add a row below its `<!-- list … -->` in docs/")
+            })
             .collect::<Vec<_>>(),
     );
     let strange = shown.difference(&known);
