@@ -149,8 +149,9 @@ fn nice_step(rough: f64) -> f64 {
 }
 
 fn log_label(digit: u8, exponent: i32, powers: bool) -> String {
-    if !powers {
-        return short(f64::from(digit) * 10_f64.powi(exponent), 3);
+    if !powers || (0..=1).contains(&exponent) {
+        let places = usize::try_from(-exponent).unwrap_or(0);
+        return format!("{:.places$}", f64::from(digit) * 10_f64.powi(exponent));
     }
     let power = format!("10{}", raised(exponent));
     if digit == 1 { power } else { format!("{digit}·{power}") }
@@ -189,6 +190,8 @@ mod tests {
     fn a_decade_has_readable_ticks() {
         assert_eq!(labels(&axis(true, 0.4, 4.0)), ["0.5", "1", "2"]);
         assert_eq!(labels(&axis(true, 0.9, 2.1)), ["1.0", "1.2", "1.4", "1.6", "1.8", "2.0"]);
+        assert_eq!(labels(&axis(true, 0.2, 1e4)), ["1", "10", "100", "1000", "10000"]);
+        assert_eq!(labels(&axis(true, 1e-3, 1.0)), ["0.001", "0.01", "0.1", "1"]);
         assert_eq!(labels(&axis(true, 1e-6, 2e-3)), ["10⁻⁶", "10⁻⁵", "10⁻⁴", "10⁻³"]);
         assert_eq!(labels(&axis(false, -4.4, 4.4)), ["−4", "−2", "0", "2", "4"]);
         assert_eq!(labels(&axis(false, 0.0, 1e-7))[1], "2·10⁻⁸");

@@ -11,7 +11,7 @@ pub const FAMILY: &str = "DejaVu Sans, sans-serif";
 const BYTES: &[u8] = include_bytes!("dejavu-sans.ttf");
 
 /// Distance of the letters' baseline below the middle of a line, in ems: half the height of an `x`.
-const BASELINE: f64 = 0.27;
+pub const BASELINE: f64 = 0.27;
 
 /// Typeface that measures and rasterises.
 pub struct Typeface(FontRef<'static>);

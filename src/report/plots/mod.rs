@@ -13,6 +13,7 @@ pub mod panel;
 pub mod series;
 pub mod sheet;
 pub mod style;
+pub mod svg;
 pub mod z_panel;
 
 use crate::report::{Artifact, ReportError, case_path};
@@ -26,13 +27,15 @@ pub use sheet::Sheet;
 ///
 /// # Errors
 ///
-/// A backend fails.
+/// The raster backend fails.
 pub fn artifacts(case: &str, ending: &str, sheet: &Sheet) -> Result<Vec<Artifact>, ReportError> {
     let wrong = |message| ReportError::Draw { figure: format!("{case} {ending}"), message };
-    let svg = paint::svg(sheet).map_err(wrong)?;
     let png = paint::png(sheet).map_err(wrong)?;
     Ok(vec![
-        Artifact { path: case_path(case, &format!("{ending}svg")), bytes: svg.into_bytes() },
+        Artifact {
+            path: case_path(case, &format!("{ending}svg")),
+            bytes: svg::document(sheet).into_bytes(),
+        },
         Artifact { path: case_path(case, &format!("{ending}png")), bytes: png },
     ])
 }

@@ -54,6 +54,23 @@ pub struct Image {
     pub pixels: Vec<[u8; 3]>,
 }
 
+impl Image {
+    /// Returns the corners of every pixel, from the upper left one clockwise, and its colour.
+    pub fn cells(&self) -> impl Iterator<Item = ([Spot; 4], RGBAColor)> {
+        let rows = self.pixels.len() / self.columns.max(1);
+        let corner = move |column: usize, row: usize| {
+            let share = [column as f64 / self.columns as f64, row as f64 / rows as f64];
+            [0, 1].map(|i| self.at[i] + self.size[i] * share[i])
+        };
+        self.pixels.iter().enumerate().map(move |(i, &[red, green, blue])| {
+            let (column, row) = (i % self.columns, i / self.columns);
+            let places = [(0, 0), (1, 0), (1, 1), (0, 1)];
+            let corners = places.map(|(right, down)| corner(column + right, row + down));
+            (corners, RGBAColor(red, green, blue, 1.0))
+        })
+    }
+}
+
 /// Line of text, centred in height on its place.
 #[derive(Debug, Clone)]
 pub struct Label {

@@ -3,6 +3,7 @@
 //! the place of the efficiency, its reciprocal.
 
 mod graph;
+mod names;
 
 use crate::record::{CaseRecord, Record, Sweep};
 use crate::report::plots::figure::{Figure, Foot, LEFT};
@@ -111,6 +112,9 @@ pub fn figure(case: &CaseRecord, sweep: &Sweep, seed: u64) -> Result<Sheet, Repo
     let Figure { face, sheet, .. } = &mut figure;
     for (i, graph) in graphs.iter().enumerate() {
         graph.draw(sheet, &series);
+        if i == 0 {
+            graph.write_names(face, sheet, &series);
+        }
         if i == 2 && !of_medium {
             graph::draw_optima(face, sheet, &graph.panel, &series);
         }
@@ -123,7 +127,7 @@ pub fn figure(case: &CaseRecord, sweep: &Sweep, seed: u64) -> Result<Sheet, Repo
 fn setup_note(case: &CaseRecord) -> String {
     let draws = count(case.draws_per_ray.unwrap_or(1));
     format!(
-        "(c): S setup lookups, made once for each ray, are shared by its draws, n = {draws} (draws_per_ray of the case)"
+        "(c): S lookups before the first draw of a ray are shared by its n = {draws} draws (`draws_per_ray` of the case)"
     )
 }
 
@@ -142,7 +146,9 @@ fn left_out(case: &CaseRecord, series: &[Series]) -> Option<String> {
 }
 
 fn subtitle(case: &CaseRecord, seed: u64) -> String {
-    let mut parts = vec![case.name.clone(), case.problem.clone(), case.medium.clone()];
+    // The folder of a case is its problem.
+    let mut parts = vec![case.name.clone()];
+    parts.extend((!case.medium.is_empty()).then(|| format!("medium {}", case.medium)));
     let truths: Vec<f64> = case.rows().filter_map(|row| row.truth).collect();
     if let [first, rest @ ..] = &truths[..]
         && rest.iter().all(|truth| truth == first)
@@ -155,7 +161,6 @@ fn subtitle(case: &CaseRecord, seed: u64) -> String {
         parts.push(format!("{}{to} draws", count(least)));
         parts.push(format!("seed {seed}"));
     }
-    parts.retain(|part| !part.is_empty());
     parts.join("  ·  ")
 }
 
@@ -172,7 +177,7 @@ fn x_axis(sweep: &Sweep, series: &[Series]) -> Axis {
     // Estimators that are not swept have places of their own at the right edge.
     let fixed = series.iter().filter(|one| one.is_fixed()).count() as f64;
     let shown = swept.chain(curves).filter(|&x| !sweep.log || x > 0.0);
-    let axis = Axis::around(sweep.axis.clone(), sweep.log, 0.04, shown);
+    let axis = Axis::around(sweep.axis.clone(), sweep.log, 0.06, shown);
     axis.extended(fixed * graph::PLACE / PANEL[0])
 }
 

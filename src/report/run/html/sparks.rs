@@ -4,7 +4,7 @@
 use maud::{Markup, html};
 
 use crate::record::{Course, Finding};
-use crate::report::html::drawing;
+use crate::report::plots::svg;
 use numeric::digits::{count, short};
 
 /// Size of a plot in its own units.
@@ -38,7 +38,7 @@ impl View {
         let known = points.iter().filter(|point| point.iter().all(|v| v.is_finite()));
         // Whole numbers within the plot.
         #[expect(clippy::cast_possible_truncation)]
-        drawing::way(known.map(|point| self.place(*point).map(|v| v as i64)))
+        svg::way(known.map(|point| self.place(*point).map(|v| v as i64)))
     }
 
     fn height(&self, y: f64) -> f64 {

@@ -10,6 +10,7 @@ use crate::report::plots::overlap::{self, Class, Line, classes, side_by_side};
 use crate::report::plots::series::Series;
 use crate::report::plots::style::{Marker, PAPER, ink};
 use crate::report::plots::{Panel, Sheet};
+use crate::report::run::sweep_plot::names::{self, Course};
 use numeric::digits::short;
 use plotters::style::Color;
 
@@ -108,6 +109,26 @@ impl Graph {
             panel.point(sheet, *spot, style.marker, 4.6, style.colour);
         }
         panel.frame(sheet, self.head);
+    }
+
+    /// Writes the names of curves that are apart beside them.
+    pub fn write_names(&self, face: &Typeface, sheet: &mut Sheet, series: &[Series]) {
+        let courses = series.iter().enumerate().map(|(index, one)| {
+            let of_line: Vec<(f64, f64)> = match &self.lines[index] {
+                Line::Points(points) => points.clone(),
+                Line::Level(y) => [self.panel.x.low, self.panel.x.high].map(|x| (x, *y)).into(),
+                Line::None => Vec::new(),
+            };
+            let of_line = of_line.iter().filter_map(|&(x, y)| self.panel.spot(x, y));
+            let own = self.points.iter().filter(|point| point.series == index);
+            let mut spots: Vec<_> = of_line.chain(own.map(|point| point.spot)).collect();
+            spots.retain(|&spot| self.panel.holds(spot));
+            spots.sort_by(|a, b| a[0].total_cmp(&b[0]));
+            Course { name: one.label.clone(), colour: one.style.colour, spots }
+        });
+        let Panel { left, top, right, bottom, .. } = self.panel;
+        let courses: Vec<Course> = courses.collect();
+        names::draw(face, sheet, [left, top, right, bottom], &courses);
     }
 
     /// Returns the letter of the panel.
