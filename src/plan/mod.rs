@@ -171,26 +171,20 @@ impl<'a> Plan<'a> {
         Self { options: options.clone(), cases, levels }
     }
 
-    /// Returns the plan of one experiment at the levels of another plan; `None` if the case has no such experiment.
-    pub fn of_one(
-        case: &'a Case,
-        options: &Options,
-        estimator: usize,
-        swept: Option<f64>,
-        levels: Levels,
-    ) -> Option<Self> {
-        let variation = match (&case.sweep, swept) {
-            (Some(axis), Some(value)) => Some((axis.what, value)),
-            (_, None) => None,
-            (None, Some(_)) => return None,
-        };
-        if estimator >= case.scenario.estimators() {
-            return None;
-        }
-        let mut planned = plan_experiment(case, options, (estimator, variation));
-        planned.ask(case, options);
-        let cases = vec![PlannedCase { case, experiments: vec![planned] }];
-        Some(Self { options: options.clone(), cases, levels })
+    /// Splits into plans of one experiment each, at the same levels. All are drawn, those that are the same as others, too.
+    pub fn singly(self) -> impl Iterator<Item = Self> {
+        let Self { options, cases, levels } = self;
+        let all = cases.into_iter().flat_map(|PlannedCase { case, experiments }| {
+            experiments.into_iter().map(move |planned| (case, planned))
+        });
+        all.map(move |(case, planned)| {
+            let experiments = vec![Planned { number: 0, same_as: None, ..planned }];
+            Self {
+                options: options.clone(),
+                cases: vec![PlannedCase { case, experiments }],
+                levels,
+            }
+        })
     }
 
     /// Changes the seed of the random numbers; pilots stay as they are.

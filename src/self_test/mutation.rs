@@ -1,20 +1,18 @@
 //! Every known bug against the built-in suite: its check must catch it, and must not catch its correct control.
 //!
-//! The levels are those of the whole suite, and the draws those of its default budget. A control that makes the same
-//! draws as the estimator, bit for bit, shares the estimator's verdict, which is judged once for all mutants of an
-//! experiment.
-
-use std::collections::HashMap;
+//! The levels are those of the whole suite, and the draws those of its default budget. The suite is planned once. All
+//! bugs of an experiment are drawn in its place one after another, against the same prediction. A control that makes the
+//! same draws as the estimator, bit for bit, shares the estimator's verdict.
 
 use crate::case::{Case, CaseError, suite};
 use crate::draw::run;
-use crate::plan::levels::Levels;
 use crate::plan::options::{Amount, Options};
 use crate::plan::{BLOCK, Plan, Planned};
 use crate::record::{Finding, Verdict, evaluate};
 use estimators::{DrawBuffer, Experiment, Refusal};
 use gate::causes::Pattern;
 use lab::mutants::{self, About, Caught, StreamMutant, Target, streams};
+use numeric::rng::Address;
 use theory::parallel;
 
 pub use lab::mutants::Walk;
@@ -34,22 +32,12 @@ pub fn all(seed: u64) -> Result<Vec<Caught>, CaseError> {
 ///
 /// A built-in case cannot be read.
 pub fn of(seed: u64, is_wanted: &dyn Fn(&str) -> bool) -> Result<Vec<Caught>, CaseError> {
-    let bench = Bench::new(Options { seed, ..Options::default() })?;
-    let (abouts, of_streams) = wanted(is_wanted);
-    let mut targets: HashMap<(&str, usize), Target> = HashMap::new();
-    for target in abouts.iter().map(|about| about.target).chain([streams::TARGET]) {
-        targets.insert((target.case, target.index), target);
-    }
-    let targets: Vec<_> = targets.into_iter().collect();
-    let honest = parallel::map(&targets, |(key, target)| (*key, bench.passes(target)));
-    let honest: HashMap<(&str, usize), bool> = honest.into_iter().collect();
-    let passes = |target: &Target| honest.get(&(target.case, target.index)).copied();
-    let mut caught = parallel::map(&abouts, |about| {
-        bench.estimator(about, passes(&about.target).unwrap_or(false))
-    });
-    let twin = passes(&streams::TARGET).unwrap_or(false);
-    caught.extend(parallel::map(&of_streams, |mutant| bench.streams(mutant, twin)));
-    Ok(caught)
+    on_stands(&Options { seed, ..Options::default() }, is_wanted, |stand, known| {
+        let twin_passes = stand.has_twin(known) && stand.passes();
+        let About { name, bug, target, check } = known.about();
+        let judged = stand.faulty(known, Some(check));
+        caught([name, bug, check], &target, judged.as_ref(), twin_passes)
+    })
 }
 
 /// Returns the failing checks of each mutant of some names if nothing stops the drawing early, in the order of
@@ -63,34 +51,11 @@ pub fn patterns(
     draws: u64,
     is_wanted: &dyn Fn(&str) -> bool,
 ) -> Result<Vec<(&'static str, Pattern)>, CaseError> {
-    let draws = Amount::Exactly(draws);
-    let bench = Bench::new(Options { seed, draws, ..Options::default() })?;
-    let (abouts, of_streams) = wanted(is_wanted);
-    let mut found = parallel::map(&abouts, |about| {
-        (about.name, bench.faulty(about, None).map(|judged| judged.pattern()).unwrap_or_default())
-    });
-    found.extend(parallel::map(&of_streams, |mutant| {
-        (mutant.name, bench.with_streams(mutant, None).map(|j| j.pattern()).unwrap_or_default())
-    }));
-    Ok(found)
-}
-
-/// Returns the mutants of some names, those of estimators and those of streams.
-fn wanted(is_wanted: &dyn Fn(&str) -> bool) -> (Vec<About>, Vec<&'static StreamMutant>) {
-    let abouts = mutants::all().into_iter().filter(|about| is_wanted(about.name));
-    let of_streams = streams::MUTANTS.iter().filter(|mutant| is_wanted(mutant.name));
-    (abouts.collect(), of_streams.collect())
-}
-
-/// Finds a mutant's experiment in a plan that has its case.
-pub fn find<'p>(target: &Target, plan: &'p Plan) -> Option<(&'p Case, &'p Planned)> {
-    let fits = |planned: &Planned| {
-        planned.estimator == target.index && planned.id.swept_value() == target.swept
-    };
-    let mut experiments = plan.experiments();
-    experiments
-        .find(|(case, planned)| case.case.name == target.case && fits(planned))
-        .map(|(case, planned)| (case.case, planned))
+    let options = Options { seed, draws: Amount::Exactly(draws), ..Options::default() };
+    on_stands(&options, is_wanted, |stand, known| {
+        let judged = stand.faulty(known, None);
+        (known.about().name, judged.map(|judged| judged.pattern()).unwrap_or_default())
+    })
 }
 
 /// Returns a mutant's experiment, prepared as the plan prepared the correct one; `None` if the case's problem has no
@@ -109,91 +74,144 @@ pub fn experiment(
     }
 }
 
-/// Built-in suite, on which mutants are drawn one experiment at a time.
-struct Bench {
-    cases: Vec<Case>,
-    options: Options,
-    levels: Levels,
+/// A known bug: in an estimator, or in the streams of its random numbers.
+#[derive(Clone, Copy)]
+enum Known {
+    Estimator(About),
+    Streams(&'static StreamMutant),
 }
 
-impl Bench {
-    /// Reads the suite, and shares the error rate among its checks.
-    fn new(options: Options) -> Result<Self, CaseError> {
-        let cases: Vec<Case> = suite::suite().iter().map(Case::read).collect::<Result<_, _>>()?;
-        let levels = Plan::new(&cases, &options).levels;
-        Ok(Self { cases, options, levels })
+impl Known {
+    fn about(&self) -> About {
+        match *self {
+            Self::Estimator(about) => about,
+            Self::Streams(mutant) => mutant.about(),
+        }
+    }
+}
+
+/// Calls `draw` for each mutant of some names, on its stand; the results are in the order of [`mutants::all`], those of
+/// streams at the end.
+fn on_stands<T: Send>(
+    options: &Options,
+    is_wanted: &dyn Fn(&str) -> bool,
+    draw: impl Fn(&mut Stand, &Known) -> T + Sync,
+) -> Result<Vec<T>, CaseError> {
+    let cases: Vec<Case> = suite::suite().iter().map(Case::read).collect::<Result<_, _>>()?;
+    let of_estimators = mutants::all().into_iter().map(Known::Estimator);
+    let known = of_estimators.chain(streams::MUTANTS.iter().map(Known::Streams));
+    let known = known.filter(|known| is_wanted(known.about().name));
+    let mut plans: Vec<Plan> = Plan::new(&cases, options).singly().collect();
+    let mut groups: Vec<Group<T>> = Vec::new();
+    for numbered in known.enumerate() {
+        let target = numbered.1.about().target;
+        if let Some(group) = groups.iter_mut().find(|group| group.stand.target == target) {
+            group.bugs.push(numbered);
+            continue;
+        }
+        let plan = plans.iter().position(|plan| is_at(plan, &target)).map(|at| plans.remove(at));
+        let stand = Stand { target, plan, passes: None };
+        groups.push(Group { stand, bugs: vec![numbered], found: Vec::new() });
+    }
+    parallel::change(&mut groups, |Group { stand, bugs, found }| {
+        found.extend(bugs.iter().map(|(number, known)| (*number, draw(stand, known))));
+    });
+    let mut found: Vec<(usize, T)> = groups.into_iter().flat_map(|group| group.found).collect();
+    found.sort_by_key(|(number, _)| *number);
+    Ok(found.into_iter().map(|(_, found)| found).collect())
+}
+
+/// The bugs of one stand with their numbers, and their results.
+struct Group<'a, T> {
+    stand: Stand<'a>,
+    bugs: Vec<(usize, Known)>,
+    found: Vec<(usize, T)>,
+}
+
+/// Returns whether a plan of one experiment is that of a target.
+fn is_at(plan: &Plan, target: &Target) -> bool {
+    plan.experiments().any(|(case, planned)| {
+        case.case.name == target.case
+            && planned.estimator == target.index
+            && planned.id.swept_value() == target.swept
+    })
+}
+
+/// An experiment of the suite, in the place of which known bugs are drawn.
+struct Stand<'a> {
+    target: Target,
+    /// Its plan at the levels of the suite; `None` if the suite has no such experiment.
+    plan: Option<Plan<'a>>,
+    /// True if the correct estimator passes; `None` if it has not been drawn.
+    passes: Option<bool>,
+}
+
+impl<'a> Stand<'a> {
+    fn parts(&mut self) -> Option<(&'a Case, &mut Planned)> {
+        let case = self.plan.as_mut()?.cases.first_mut()?;
+        Some((case.case, case.experiments.first_mut()?))
     }
 
-    /// Returns the plan of one experiment, at the levels of the suite.
-    fn plan(&self, target: &Target, until_failed: Option<&str>) -> Option<Plan<'_>> {
-        let case = self.cases.iter().find(|case| case.name == target.case)?;
-        let until_failed = until_failed.map(str::to_owned);
-        let options = Options { until_failed, ..self.options.clone() };
-        Plan::of_one(case, &options, target.index, target.swept, self.levels)
-    }
-
-    fn judged(plan: &Plan) -> Judged {
-        let fixed = plan.experiments().map(|(_, planned)| planned.fixed).max().unwrap_or(0);
+    /// Draws and judges what the plan has at present.
+    fn judged(&mut self, until_failed: Option<&str>) -> Option<Judged> {
+        let plan = self.plan.as_mut()?;
+        plan.options.until_failed = until_failed.map(str::to_owned);
         let draws = run::draw(plan, &|_| {});
         let judged = evaluate::run(plan, &draws).into_iter();
-        let planned = plan.experiments().next();
-        let estimator = planned.map_or_else(String::new, |(_, one)| one.id.estimator.to_string());
-        Judged { estimator, fixed, findings: judged.flat_map(|one| one.findings).collect() }
+        let findings = judged.flat_map(|one| one.findings).collect();
+        let planned = self.parts()?.1;
+        Some(Judged { estimator: planned.id.estimator.to_string(), fixed: planned.fixed, findings })
     }
 
-    fn passes(&self, target: &Target) -> bool {
-        let Some(plan) = self.plan(target, None) else { return false };
-        let judged = Self::judged(&plan);
-        judged
-            .findings
-            .iter()
-            .all(|finding| matches!(finding.verdict, Verdict::Pass | Verdict::Underpowered))
-    }
-
-    /// Returns the plan of a mutant's experiment, and the mutant or its control.
-    fn walk(
-        &self,
-        about: &About,
-        walk: Walk,
-        until_failed: Option<&str>,
-    ) -> Option<(Plan<'_>, Box<dyn Experiment>)> {
-        let plan = self.plan(&about.target, until_failed)?;
-        let case = plan.cases.first()?;
-        let (case, planned) = (case.case, case.experiments.first()?);
-        let drawn = experiment(about, walk, case, planned, self.options.seed)?;
-        Some((plan, drawn.ok()?))
-    }
-
-    /// Judges the draws of a mutant.
-    fn faulty(&self, about: &About, until_failed: Option<&str>) -> Option<Judged> {
-        let (mut plan, faulty) = self.walk(about, Walk::Faulty, until_failed)?;
-        let planned = plan.cases.first_mut()?.experiments.first_mut()?;
-        planned.outcome.as_mut().ok()?.experiment = faulty;
-        Some(Self::judged(&plan))
-    }
-
-    fn estimator(&self, about: &About, honest_passes: bool) -> Caught {
-        let is_twin = self.walk(about, Walk::Twin, None).is_some_and(|(plan, twin)| {
-            plan.cases[0].experiments.first().is_some_and(|planned| same(planned, twin.as_ref()))
-        });
-        let judged = self.faulty(about, Some(about.check));
-        let About { name, bug, target, check } = *about;
-        caught([name, bug, check], &target, judged.as_ref(), is_twin && honest_passes)
-    }
-
-    /// Judges the draws of wrong streams.
-    fn with_streams(&self, mutant: &StreamMutant, until_failed: Option<&str>) -> Option<Judged> {
-        let mut plan = self.plan(&streams::TARGET, until_failed)?;
-        for planned in plan.cases.iter_mut().flat_map(|case| &mut case.experiments) {
-            planned.find_streams = mutant.streams;
+    /// Returns whether the correct estimator passes.
+    fn passes(&mut self) -> bool {
+        if let Some(passes) = self.passes {
+            return passes;
         }
-        Some(Self::judged(&plan))
+        let is_passed =
+            |finding: &Finding| matches!(finding.verdict, Verdict::Pass | Verdict::Underpowered);
+        let passes = self.judged(None).is_some_and(|judged| judged.findings.iter().all(is_passed));
+        *self.passes.insert(passes)
     }
 
-    fn streams(&self, mutant: &StreamMutant, twin_passes: bool) -> Caught {
-        let judged = self.with_streams(mutant, Some(mutant.check));
-        let words = [mutant.name, mutant.bug, mutant.check];
-        caught(words, &streams::TARGET, judged.as_ref(), twin_passes)
+    /// Makes a walk of a mutant of an estimator.
+    fn walk(&mut self, about: &About, walk: Walk) -> Option<Box<dyn Experiment>> {
+        let seed = self.plan.as_ref()?.options.seed;
+        let (case, planned) = self.parts()?;
+        experiment(about, walk, case, planned, seed)?.ok()
+    }
+
+    /// Returns whether the control of a bug makes the estimator's own draws. Wrong streams are drawn by the estimator.
+    fn has_twin(&mut self, known: &Known) -> bool {
+        let Known::Estimator(about) = known else { return true };
+        let twin = self.walk(about, Walk::Twin);
+        let parts = self.parts().zip(twin);
+        parts.is_some_and(|((_, planned), twin)| same(planned, twin.as_ref()))
+    }
+
+    /// Judges the draws of a bug.
+    fn faulty(&mut self, known: &Known, until_failed: Option<&str>) -> Option<Judged> {
+        match known {
+            Known::Estimator(about) => {
+                let faulty = self.walk(about, Walk::Faulty)?;
+                let honest = self.replace(faulty)?;
+                let judged = self.judged(until_failed);
+                self.replace(honest)?;
+                judged
+            }
+            Known::Streams(mutant) => {
+                self.parts()?.1.find_streams = mutant.streams;
+                let judged = self.judged(until_failed);
+                self.parts()?.1.find_streams = Address::streams;
+                judged
+            }
+        }
+    }
+
+    /// Replaces the experiment that is drawn; returns the one before.
+    fn replace(&mut self, experiment: Box<dyn Experiment>) -> Option<Box<dyn Experiment>> {
+        let ready = self.parts()?.1.outcome.as_mut().ok()?;
+        Some(std::mem::replace(&mut ready.experiment, experiment))
     }
 }
 

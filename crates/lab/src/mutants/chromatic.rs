@@ -8,7 +8,7 @@
 //! Most of them keep `Σ w_λ X_λ = 1` in a furnace: they show only in single channels. Walks that are absorbed in a slab
 //! score nothing, and show no bug.
 
-use super::{Line, Mutant, Target, family, on, with};
+use super::{Line, Mutant, On, family, on, one_by_one};
 use estimators::chromatic::{By, Chromatic, Right, Steps, WEIGHING};
 use estimators::setup::heroes::Heroes;
 use estimators::setup::walker::Walker;
@@ -18,14 +18,21 @@ use theory::particle::Event;
 use theory::problems::{ChromaticSlab, SpectralFurnace};
 use theory::spectral::{Chance, Chances};
 
+/// Function that makes a walker.
+type Make = fn() -> Walker;
+
 /// Three channels of different σ_t, σ̂, albedo and phase function.
-const FURNACE: Target = on("furnace/spectral-known-bugs", 1);
+const FURNACE: On<Make> = on("furnace/spectral-known-bugs", 1, || Walker::Mis(Heroes::Uniform));
 /// All channels together.
-const FURNACE_TRACKING: Target = on("furnace/spectral-like-colours", 4);
+const FURNACE_TRACKING: On<Make> = on("furnace/spectral-like-colours", 4, || {
+    Walker::SpectralTracking(Chances::Fixed(Chance::Maximum))
+});
 /// Three channels of different σ_t, σ̂, albedo and phase function, light from aslant.
-const SLAB: Target = on("slab/chromatic-three-colours", 1);
+const SLAB: On<Make> = on("slab/chromatic-three-colours", 1, || Walker::Mis(Heroes::Uniform));
 /// All channels together.
-const SLAB_TRACKING: Target = on("slab/chromatic-like-colours", 3);
+const SLAB_TRACKING: On<Make> = on("slab/chromatic-like-colours", 3, || {
+    Walker::SpectralTracking(Chances::Fixed(Chance::Average))
+});
 
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Bug {
@@ -41,7 +48,7 @@ enum Bug {
 }
 
 #[rustfmt::skip] // one mutant, one entry
-const IN_FURNACE: &[Line<Bug>] = &[
+const IN_FURNACE: &[Line<Make, Bug>] = &[
     ("spectral-furnace-nulls-left-out", "null collisions are left out of all densities", FURNACE, "mean", Bug::NullsLeftOut),
     ("spectral-furnace-other-majorant", "the ratio of every channel is taken with the hero's σ̂", FURNACE, "mean", Bug::OtherMajorant),
     ("spectral-furnace-phase-of-hero", "every channel has the phase function of the hero", FURNACE, "mean", Bug::PhaseOfHero),
@@ -54,7 +61,7 @@ const IN_FURNACE: &[Line<Bug>] = &[
 ];
 
 #[rustfmt::skip] // one mutant, one entry
-const IN_SLAB: &[Line<Bug>] = &[
+const IN_SLAB: &[Line<Make, Bug>] = &[
     ("chromatic-slab-nulls-left-out", "null collisions are left out of all densities", SLAB, "mean", Bug::NullsLeftOut),
     ("chromatic-slab-other-majorant", "the ratio of every channel is taken with the hero's σ̂", SLAB, "mean", Bug::OtherMajorant),
     ("chromatic-slab-phase-of-hero", "every channel has the phase function of the hero", SLAB, "mean", Bug::PhaseOfHero),
@@ -76,18 +83,11 @@ pub fn in_slab() -> Vec<Mutant<ChromaticSlab>> {
     mutants(IN_SLAB)
 }
 
-fn mutants<P: Chromatic>(lines: &[Line<Bug>]) -> Vec<Mutant<P>> {
-    let draws = |target, &bug: &Bug| {
-        let walker = match target {
-            FURNACE_TRACKING => Walker::SpectralTracking(Chances::Fixed(Chance::Maximum)),
-            SLAB_TRACKING => Walker::SpectralTracking(Chances::Fixed(Chance::Average)),
-            _ => Walker::Mis(Heroes::Uniform),
-        };
-        with(Wrong { bug, walker }, |wrong, setup, medium, random| {
-            P::draw(wrong, wrong.by(), setup, medium, random)
-        })
-    };
-    family(lines, &Bug::None, draws)
+fn mutants<P: Chromatic>(lines: &[Line<Make, Bug>]) -> Vec<Mutant<P>> {
+    family(lines, &Bug::None, |make, &bug| {
+        let wrong = Wrong { bug, walker: make() };
+        one_by_one(move |setup, medium, random| P::draw(&wrong, wrong.by(), setup, medium, random))
+    })
 }
 
 /// The steps of a walk, of which a bug makes one wrong.
@@ -108,7 +108,6 @@ impl Wrong {
 }
 
 impl Steps for &Wrong {
-    #[inline(always)]
     fn factor<L: Lane>(&self, event: Event, ratio: L, albedo: L, density: L) -> L {
         match (self.bug, event) {
             (Bug::NullsLeftOut, Event::Transmitted) => ratio.each(1.0),
@@ -118,17 +117,14 @@ impl Steps for &Wrong {
         }
     }
 
-    #[inline(always)]
     fn has_heros_majorant(&self) -> bool {
         self.bug == Bug::OtherMajorant
     }
 
-    #[inline(always)]
     fn has_heros_phase(&self) -> bool {
         self.bug == Bug::PhaseOfHero
     }
 
-    #[inline(always)]
     fn flown<L: Lane>(&self, depth: L, cosine: L) -> L {
         if self.bug == Bug::Upright { depth.size() } else { depth / cosine }
     }

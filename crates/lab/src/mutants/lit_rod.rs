@@ -7,7 +7,7 @@
 //! Several are errors of Algorithms 1 and 2 of B. Miller, I. Georgiev, W. Jarosz, *A null-scattering path integral
 //! formulation of light transport*, ACM Transactions on Graphics 38 (2019), as printed, or ways to read them.
 
-use super::{Line, Mutant, Target, family, filled, on};
+use super::{Line, Mutant, On, family, filled, on};
 use estimators::lit_rod::shadow::Steps;
 use estimators::lit_rod::walk::ToEmitter;
 use estimators::walks;
@@ -16,13 +16,14 @@ use theory::lit_rod::{Combination, Densities, Heuristic, Shadow, Techniques};
 use theory::problems::LitRod;
 
 /// Extinction that rises to the emitter, `p_f = 0.4`, `σ̂ = 1.25`; next event by delta tracking.
-const NEXT_EVENT_DELTA: Target = on("rod/lit-rising", 2);
+const NEXT_EVENT_DELTA: On<Techniques> = on("rod/lit-rising", 2, next_event(Shadow::Delta));
 /// Next event by ratio tracking.
-const NEXT_EVENT: Target = on("rod/lit-rising", 3);
+const NEXT_EVENT: On<Techniques> = on("rod/lit-rising", 3, next_event(Shadow::Ratio));
 /// Directional weights, delta tracking.
-const DIRECTIONAL: Target = on("rod/lit-rising", 4);
+const DIRECTIONAL: On<Techniques> =
+    on("rod/lit-rising", 4, balanced(Shadow::Delta, Densities::Directional));
 /// All densities, ratio tracking.
-const FULL: Target = on("rod/lit-rising", 6);
+const FULL: On<Techniques> = on("rod/lit-rising", 6, balanced(Shadow::Ratio, Densities::Full));
 
 /// The bugs, each in one step of a walk.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -45,7 +46,7 @@ pub enum Bug {
 }
 
 #[rustfmt::skip] // one mutant, one entry
-const LINES: &[Line<Bug>] = &[
+const LINES: &[Line<Techniques, Bug>] = &[
     ("lit-rod-last-segment", "Algorithm 2, line 9: the last segment's transmittance is in the densities, and not in f", FULL, "mean", Bug::LastSegment),
     ("lit-rod-averaged", "the samples of both techniques are added, and divided by their number", FULL, "mean", Bug::Averaged),
     ("lit-rod-hit-alone", "Algorithm 1 in the combination: hits are not divided by p_uni + p_nee", FULL, "mean", Bug::HitAlone),
@@ -65,27 +66,20 @@ const LINES: &[Line<Bug>] = &[
 
 /// The family.
 pub fn mutants() -> Vec<Mutant<LitRod>> {
-    let draws = |target, &bug: &Bug| {
-        let techniques = match target {
-            NEXT_EVENT_DELTA => next_event(Shadow::Delta),
-            NEXT_EVENT => next_event(Shadow::Ratio),
-            DIRECTIONAL => balanced(Shadow::Delta, Densities::Directional),
-            _ => balanced(Shadow::Ratio, Densities::Full),
-        };
+    family(LINES, &Bug::None, |&techniques, &bug| {
         filled(move |setup, request| {
             walks::in_turn(&ToEmitter::of(setup, Wrong(techniques, bug)), setup, request);
         })
-    };
-    family(LINES, &Bug::None, draws)
+    })
 }
 
 /// Shadow rays alone.
-pub fn next_event(shadow: Shadow) -> Techniques {
+pub const fn next_event(shadow: Shadow) -> Techniques {
     Techniques { shadow: Some(shadow), combination: Combination::NextEvent }
 }
 
 /// Shadow rays and hits by the balance heuristic.
-pub fn balanced(shadow: Shadow, densities: Densities) -> Techniques {
+pub const fn balanced(shadow: Shadow, densities: Densities) -> Techniques {
     let combination = Combination::Mis(densities, Heuristic::Balance);
     Techniques { shadow: Some(shadow), combination }
 }
@@ -97,17 +91,14 @@ pub struct Wrong(pub Techniques, pub Bug);
 impl Steps for Wrong {
     const KEEPS_LAST: bool = true;
 
-    #[inline(always)]
     fn techniques(&self) -> Techniques {
         self.0
     }
 
-    #[inline(always)]
     fn unscattered<L: Lane>(&self, one: L) -> L {
         if self.1 == Bug::UnscatteredWeighted { self.0.of_hit(one) } else { one }
     }
 
-    #[inline(always)]
     fn hit<L: Lane>(&self, ratio: L) -> L {
         let right = self.0.of_hit(ratio);
         match self.1 {
@@ -118,7 +109,6 @@ impl Steps for Wrong {
         }
     }
 
-    #[inline(always)]
     fn connected<L: Lane>(&self, density: L, transmittance: L) -> L {
         let right = self.0.of_shadow_ray(density, transmittance);
         match self.1 {
@@ -130,17 +120,14 @@ impl Steps for Wrong {
         }
     }
 
-    #[inline(always)]
     fn after_null<L: Lane>(&self, ratio: L, null: L) -> L {
         if self.1 == Bug::NullsMissing { ratio } else { self.0.after_null(ratio, null) }
     }
 
-    #[inline(always)]
     fn after_scattering<L: Lane>(&self, before: L, right: L) -> L {
         if self.1 == Bug::NotReset { right * before } else { right }
     }
 
-    #[inline(always)]
     fn phase<L: Lane>(&self, forward: L, is_forward: L::Mask, albedo: L) -> L {
         let right = self.0.phase(forward, is_forward, albedo);
         match self.1 {
@@ -151,17 +138,14 @@ impl Steps for Wrong {
         }
     }
 
-    #[inline(always)]
     fn stops<L: Lane>(&self, ratio: L, albedo: L) -> L {
         if self.1 == Bug::ThroughScattering { ratio * albedo.one_minus() } else { ratio }
     }
 
-    #[inline(always)]
     fn arrived<L: Lane>(&self, transmittance: L, last: impl Fn() -> L) -> L {
         if self.1 == Bug::LastSegment { transmittance * last().exp() } else { transmittance }
     }
 
-    #[inline(always)]
     fn returns(&self) -> bool {
         self.1 != Bug::CarriedAlong
     }

@@ -5,22 +5,23 @@
 //! ```
 
 use super::lit_rod::{self, balanced, next_event};
-use super::{Line, Mutant, Target, family, filled, on};
+use super::{Line, Mutant, On, family, filled, on};
 use estimators::lit_slab::walk::{Directions, Right, ToLight};
 use estimators::walks;
 use media::phase::Phase;
 use numeric::Lane;
-use theory::lit_rod::{Densities, Shadow};
+use theory::lit_rod::{Densities, Shadow, Techniques};
 use theory::problems::LitSlab;
 
 /// A wide disc close behind a slab of rising extinction, g = 0.6, `σ̂ = 1.5`; next event by ratio tracking.
-const NEXT_EVENT: Target = on("slab/lit-known-bugs", 3);
+const NEXT_EVENT: On<Techniques> = on("slab/lit-known-bugs", 3, next_event(Shadow::Ratio));
 /// Directional weights, delta tracking.
-const DIRECTIONAL: Target = on("slab/lit-known-bugs", 4);
+const DIRECTIONAL: On<Techniques> =
+    on("slab/lit-known-bugs", 4, balanced(Shadow::Delta, Densities::Directional));
 /// All densities, ratio tracking.
-const FULL: Target = on("slab/lit-known-bugs", 6);
+const FULL: On<Techniques> = on("slab/lit-known-bugs", 6, balanced(Shadow::Ratio, Densities::Full));
 /// A beam behind the same slab.
-const DISTANT: Target = on("slab/lit-distant", 3);
+const DISTANT: On<Techniques> = on("slab/lit-distant", 3, next_event(Shadow::Ratio));
 
 /// The bugs: in a step of a rod's walk, in the techniques, and in densities of directions.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -36,7 +37,7 @@ enum Bug {
 }
 
 #[rustfmt::skip] // one mutant, one entry
-const LINES: &[Line<Bug>] = &[
+const LINES: &[Line<Techniques, Bug>] = &[
     ("lit-slab-cosine-missing", "the cosine at the disc is left out of p_nee: D²/(A μ²)", NEXT_EVENT, "mean", Bug::CosineMissing),
     ("lit-slab-upright", "shadow rays fly as deep as if they went straight down", NEXT_EVENT, "mean", Bug::Upright),
     ("lit-slab-reversed", "the phase function of a shadow ray is that of the reversed direction", NEXT_EVENT, "mean", Bug::Reversed),
@@ -51,33 +52,28 @@ const LINES: &[Line<Bug>] = &[
 
 /// The family.
 pub fn mutants() -> Vec<Mutant<LitSlab>> {
-    let draws = |target, &bug: &Bug| {
-        let techniques = match (target, bug) {
-            (DIRECTIONAL, _) => balanced(Shadow::Delta, Densities::Directional),
-            (FULL, _) | (_, Bug::BeamWeighted) => balanced(Shadow::Ratio, Densities::Full),
-            _ => next_event(Shadow::Ratio),
+    family(LINES, &Bug::None, |&right, &bug| {
+        let techniques = match bug {
+            Bug::BeamWeighted => balanced(Shadow::Ratio, Densities::Full),
+            _ => right,
         };
         let step = if let Bug::Step(step) = bug { step } else { lit_rod::Bug::None };
         filled(move |setup, request| {
             let steps = lit_rod::Wrong(techniques, step);
             walks::in_turn(&ToLight::of(setup, steps, bug), setup, request);
         })
-    };
-    family(LINES, &Bug::None, draws)
+    })
 }
 
 impl Directions for Bug {
-    #[inline(always)]
     fn scattered<L: Lane>(&self, phase: &Phase, cosine: L) -> L {
         phase.value(if *self == Self::Reversed { -cosine } else { cosine })
     }
 
-    #[inline(always)]
     fn spread<L: Lane>(&self, right: L, cosine: L) -> L {
         if *self == Self::CosineMissing { right / cosine } else { right }
     }
 
-    #[inline(always)]
     fn spread_of_hit<L: Lane>(&self, right: L) -> L {
         match self {
             Self::AreasMixed => right.each(std::f64::consts::PI * 1.44),
@@ -86,7 +82,6 @@ impl Directions for Bug {
         }
     }
 
-    #[inline(always)]
     fn slant<L: Lane>(&self, cosine: L) -> L {
         if *self == Self::Upright { cosine.each(1.0) } else { Right.slant(cosine) }
     }

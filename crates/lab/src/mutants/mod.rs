@@ -6,15 +6,15 @@
 //!
 //! A mutant is a walk of the estimators with other steps, other random numbers, or another setup. Without its bug
 //! the walk makes the estimator's own draws, bit for bit. That control, its *twin*, shows that only the bug was
-//! changed. One file holds one family of bugs, and a mutant is one line of its family's table. Bugs along a ray are
-//! in [`line`], a wrapper of walks. Wrong [`streams`] are a family of their own: correct estimators with wrong random
+//! changed. One file holds one family of bugs, and a mutant is one line of its family's table: its name, the bug in a
+//! sentence, where the bug is caught and by which check, and the wrong code. Bugs along a ray are changes of a number
+//! in the loop of one walk ([`line`]). Wrong [`streams`] are a family of their own: correct estimators with wrong random
 //! numbers.
 //!
 //! The bugs are those that renderers and transport codes have had, and those that a formula of this
 //! project invites.
 
 mod bidirectional_rod;
-mod caught;
 mod chromatic;
 mod curve;
 mod free_flight;
@@ -32,19 +32,16 @@ mod spectral_rod;
 mod spectral_single_scattering;
 mod sphere;
 pub mod streams;
-mod tracking;
-mod trial;
 
 use std::any::Any;
 use std::sync::Arc;
 
-use estimators::{Draw, Estimated, Experiment, Request, Setup, walks};
+use estimators::{Draw, DrawBuffer, Estimated, Experiment, Kernel, Request, Setup, walks};
 use media::Lookups;
-use numeric::rng::Stream;
+use media::catalogue::Page;
+use numeric::rng::{Stream, Streams};
 
-pub use caught::Caught;
 pub use streams::StreamMutant;
-use trial::{Draws, Trial};
 
 /// One experiment of a case of the built-in suite.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -55,11 +52,6 @@ pub struct Target {
     pub index: usize,
     /// Point of the sweep, in cases that have one.
     pub swept: Option<f64>,
-}
-
-/// An estimator of a case without a sweep.
-const fn on(case: &'static str, index: usize) -> Target {
-    Target { case, index, swept: None }
 }
 
 /// Description of a mutant, without its draws.
@@ -75,8 +67,58 @@ pub struct About {
     pub check: &'static str,
 }
 
+/// Result of drawing one mutant in the place of its estimator.
+#[derive(Debug, Clone)]
+pub struct Caught {
+    /// Name of the mutant.
+    pub name: &'static str,
+    /// The bug in one sentence.
+    pub bug: &'static str,
+    /// The case.
+    pub case: &'static str,
+    /// The estimator that the mutant replaces.
+    pub estimator: String,
+    /// The check that must catch it.
+    pub check: &'static str,
+    /// The draws that the check took; `None` if it did not catch the bug.
+    pub draws: Option<u64>,
+    /// All checks that failed.
+    pub failed: Vec<String>,
+    /// True if the control passed: the code without the bug.
+    pub twin_passes: bool,
+}
+
+impl Caught {
+    /// Returns true if the bug was caught and its control passed.
+    pub fn is_right(&self) -> bool {
+        self.draws.is_some() && self.twin_passes
+    }
+}
+
+/// An experiment of the built-in suite, with the settings of the estimator that is drawn there.
+#[derive(Clone, Copy)]
+struct On<E> {
+    target: Target,
+    estimator: E,
+}
+
+/// An estimator of a case without a sweep.
+const fn on<E: Copy>(case: &'static str, index: usize, estimator: E) -> On<E> {
+    On { target: Target { case, index, swept: None }, estimator }
+}
+
+impl<E: Copy> On<E> {
+    /// The point of a sweep.
+    const fn swept(self, value: f64) -> Self {
+        On { target: Target { swept: Some(value), ..self.target }, ..self }
+    }
+}
+
 /// A mutant in the table of its family: name, bug in one sentence, target, check, and the bug itself.
-type Line<B> = (&'static str, &'static str, Target, &'static str, B);
+type Line<E, B> = (&'static str, &'static str, On<E>, &'static str, B);
+
+/// Function that makes the draws of a request, with or without a bug.
+type Draws<P> = dyn Fn(&Setup<P>, Request) + Send + Sync;
 
 /// A known bug in an estimator of problem `P`.
 struct Mutant<P: Estimated> {
@@ -85,40 +127,46 @@ struct Mutant<P: Estimated> {
     honest: Arc<Draws<P>>,
     /// Changes the setup to a wrong one.
     prepare: fn(&mut Setup<P>),
-    /// True if every 1024 draws begin with the same random numbers.
-    replays: bool,
 }
 
 impl<P: Estimated> Mutant<P> {
     /// The experiment of a walk on a prepared `Setup<P>`; `None` for the setup of another problem.
     fn experiment(&self, walk: Walk, setup: Box<dyn Any>) -> Option<Box<dyn Experiment>> {
         let mut setup = *setup.downcast::<Setup<P>>().ok()?;
-        let trial = match walk {
-            Walk::Faulty => {
-                (self.prepare)(&mut setup);
-                Trial { draws: self.faulty.clone(), setup, replays: self.replays }
-            }
-            Walk::Twin => Trial { draws: self.honest.clone(), setup, replays: false },
-        };
-        Some(Box::new(trial))
+        if walk == Walk::Twin {
+            return Some(Box::new(Trial { draws: self.honest.clone(), setup }));
+        }
+        (self.prepare)(&mut setup);
+        Some(Box::new(Trial { draws: self.faulty.clone(), setup }))
+    }
+}
+
+/// Draws on a setup.
+struct Trial<P: Estimated> {
+    draws: Arc<Draws<P>>,
+    setup: Setup<P>,
+}
+
+impl<P: Estimated> Experiment for Trial<P> {
+    fn fill_by(&self, _: Kernel, streams: &mut Streams, count: usize, buffer: &mut DrawBuffer) {
+        (self.draws)(&self.setup, Request { streams, count, buffer });
     }
 }
 
 /// Mutants of a table. A bug and its control, with `right` in place of the bug, run the same code.
-fn family<P: Estimated, B, D>(
-    lines: &[Line<B>],
+fn family<P: Estimated, E, B, D>(
+    lines: &[Line<E, B>],
     right: &B,
-    draws: impl Fn(Target, &B) -> D,
+    draws: impl Fn(&E, &B) -> D,
 ) -> Vec<Mutant<P>>
 where
     D: Fn(&Setup<P>, Request) + Send + Sync + 'static,
 {
-    let mutant = |(name, bug, target, check, wrong): &Line<B>| Mutant {
-        about: About { name, bug, target: *target, check },
-        faulty: Arc::new(draws(*target, wrong)) as Arc<Draws<P>>,
-        honest: Arc::new(draws(*target, right)),
+    let mutant = |(name, bug, on, check, wrong): &Line<E, B>| Mutant {
+        about: About { name, bug, target: on.target, check },
+        faulty: Arc::new(draws(&on.estimator, wrong)) as Arc<Draws<P>>,
+        honest: Arc::new(draws(&on.estimator, right)),
         prepare: |_| {},
-        replays: false,
     };
     lines.iter().map(mutant).collect()
 }
@@ -130,17 +178,16 @@ fn filled<P: Estimated>(
     fill
 }
 
-/// Makes the draws of requests one by one, by a function with right or wrong steps.
-fn with<P: Estimated, S: Send + Sync + 'static>(
-    steps: S,
-    draw: impl Fn(&S, &Setup<P>, &Lookups, &mut Stream) -> Draw<P::Value> + Send + Sync + 'static,
+/// Makes the draws of requests one by one.
+fn one_by_one<P: Estimated>(
+    draw: impl Fn(&Setup<P>, &Lookups, &mut Stream) -> Draw<P::Value> + Send + Sync + 'static,
 ) -> impl Fn(&Setup<P>, Request) + Send + Sync + 'static {
     move |setup, request| {
         walks::one_by_one(
             setup,
             request,
             #[inline(always)]
-            |medium, random| draw(&steps, setup, medium, random),
+            |medium, random| draw(setup, medium, random),
         );
     }
 }
@@ -155,12 +202,19 @@ pub enum Walk {
 }
 
 macro_rules! families {
-    ($($family:expr,)*) => {
+    ($($module:ident::$mutants:ident,)*) => {
+        /// Every family: its page, and its mutants. Wrong streams come last.
+        pub fn families() -> Vec<(Page, Vec<About>)> {
+            let about = |mutant: &StreamMutant| mutant.about();
+            vec![
+                $((media::page!($module), abouts($module::$mutants())),)*
+                (media::page!(streams), streams::MUTANTS.iter().map(about).collect()),
+            ]
+        }
+
         /// Every mutant of every problem, without the wrong streams.
         pub fn all() -> Vec<About> {
-            let mut all = Vec::new();
-            $(all.extend($family.into_iter().map(|mutant| mutant.about));)*
-            all
+            [$(abouts($module::$mutants())),*].concat()
         }
 
         /// Makes the experiment of a mutant on the prepared `Setup<P>` of its problem; `None` if no mutant has that
@@ -170,7 +224,7 @@ macro_rules! families {
             walk: Walk,
             setup: Box<dyn Any>,
         ) -> Option<Box<dyn Experiment>> {
-            $(if let Some(mutant) = $family.into_iter().find(|own| own.about.name == name) {
+            $(if let Some(mutant) = $module::$mutants().iter().find(|own| own.about.name == name) {
                 return mutant.experiment(walk, setup);
             })*
             None
@@ -178,36 +232,38 @@ macro_rules! families {
     };
 }
 
+fn abouts<P: Estimated>(mutants: Vec<Mutant<P>>) -> Vec<About> {
+    mutants.into_iter().map(|mutant| mutant.about).collect()
+}
+
 families! {
-    product::mutants(),
-    scores::mutants(),
-    tracking::mutants(),
-    free_flight::mutants(),
-    curve::mutants(),
-    spectral::mutants(),
-    particle::in_rod(),
-    spectral_rod::in_rod(),
-    lit_rod::mutants(),
-    lit_slab::mutants(),
-    spectral_lit_rod::mutants(),
-    particle::in_slab(),
-    spectral_rod::in_slab(),
-    chromatic::in_slab(),
-    single_scattering::mutants(),
-    spectral_single_scattering::mutants(),
-    particle::in_furnace(),
-    chromatic::in_furnace(),
-    particle::under_light(),
-    particle::in_infinite_medium(),
-    sphere::mutants(),
-    bidirectional_rod::mutants(),
+    product::mutants,
+    scores::mutants,
+    free_flight::mutants,
+    curve::mutants,
+    spectral::mutants,
+    particle::in_rod,
+    spectral_rod::in_rod,
+    lit_rod::mutants,
+    lit_slab::mutants,
+    spectral_lit_rod::mutants,
+    particle::in_slab,
+    spectral_rod::in_slab,
+    chromatic::in_slab,
+    single_scattering::mutants,
+    spectral_single_scattering::mutants,
+    particle::in_furnace,
+    chromatic::in_furnace,
+    particle::under_light,
+    particle::in_infinite_medium,
+    sphere::mutants,
+    bidirectional_rod::mutants,
 }
 
 /// Returns the names of the checks that some mutant must be caught by.
 pub fn named_checks() -> Vec<&'static str> {
-    let estimators = all().into_iter().map(|about| about.check);
-    let mut names: Vec<_> =
-        estimators.chain(streams::MUTANTS.iter().map(|mutant| mutant.check)).collect();
+    let abouts = families().into_iter().flat_map(|(_, abouts)| abouts);
+    let mut names: Vec<_> = abouts.map(|about| about.check).collect();
     names.sort_unstable();
     names.dedup();
     names

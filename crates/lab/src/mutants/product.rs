@@ -18,49 +18,68 @@
 //! **Decisions.** Every number by itself is right, and so is every flight and every decision; together they are not.
 //!
 //! **Precision.** Lost bits are far below any standard error, but break the invariant of a walk.
+//!
+//! | known bugs | reported or printed in |
+//! |---|---|
+//! | `lookup-of-another-channel` | Mitsuba 3, issue 1387: two thirds of the correct brightness |
+//! | `majorant-too-low` | pbrt-v4, issue 33; Mitsuba 3, pull request 1959 |
+//! | `weight-albedo`, `albedo-in-weight` | VisRTX, pull request 298: the albedo multiplies transmittance |
+//! | `adaptive-literal` | Szirmay-Kalos et al. 2017, the pseudo-code of `SimulateParticle` |
+//! | `control-underflow`, `weight-f32` | single precision, as most renderers compute transmittance |
+//! | `cap-4`, `cap-16`, `cap-100` | caps of steps against endless walks |
 
-use super::line::{self, Slip, single};
-use super::rule::{self, ALBEDO, Mistake, Rule, literal, surviving, weighing};
-use super::{Line, Mutant, Target, family, filled, on};
+use super::line::{self, End, Notes, RIGHT, Slip, single};
+use super::rule::{ALBEDO, Mistake, Wrong, literal, surviving, weighing};
+use super::{Draws, Line, Mutant, On, family, on, one_by_one};
 use estimators::setup::ControlledLine;
 use estimators::transmittance::product::Product;
-use estimators::{Estimated, Request, Setup, walks};
+use estimators::{Estimated, Request, Setup};
 use media::{Control, Piecewise};
 use numeric::{Lane, Span};
 use theory::problems::Transmittance;
-use theory::rules::{Collision, Single, Weight};
+use theory::rules::{Collision, Null, Single, Weight};
 
 /// `σ̂ = 1.2`, a majorant.
-const WOODCOCK: Target = known(0);
+const WOODCOCK: On<Rule> = known(0, Rule::Null);
 /// `σ̂ = 0.6`, `0.67 ≤ r ≤ 1.83`.
-pub const BELOW: Target = known(1);
+const BELOW: On<Rule> = known(1, Rule::Weight);
 /// `σ̂ = 30`: 90 lookups a draw, a relative standard deviation of a quarter.
-pub const DENSE: Target = known(2);
+const DENSE: On<Rule> = known(2, Rule::Weight);
 /// A linear σ̂.
-pub const LINEAR: Target = known(3);
+pub const LINEAR: On<Rule> = known(3, Rule::Weight);
 /// A piecewise-constant σ̂.
-const STEPS: Target = known(4);
+const STEPS: On<Rule> = known(4, Rule::Weight);
 /// A control through five points, `σ̂ = 0.5`.
-const EXPLORERS: Target = known(5);
+const EXPLORERS: On<Rule> = known(5, Rule::Weight);
 /// `σ_c = 0.9`, `σ̂ = 1`, `−0.5 ≤ r ≤ 0.2`.
-const NEGATIVE: Target = known(6);
+const NEGATIVE: On<Rule> = known(6, Rule::Weight);
 /// `σ̂ = 0.6`, `0.67 ≤ r ≤ 1.83`.
-const TERMINATING: Target = known(7);
+const TERMINATING: On<Rule> = known(7, Rule::Single(Single::Terminating));
 /// `σ_c = 0.55`, `σ̂ = 0.22`, `−0.7 ≤ r ≤ 2.5`.
-const CLAMPED: Target = known(8);
-/// `a = 0.7`, `σ̂ = 0.6`, `0.67 ≤ r ≤ 1.83`.
-const NON_TERMINATING: Target = known(9);
-/// `a = 0.7`, `σ_c = 0.55`, `σ̂ = 0.4`, `−0.4 ≤ r ≤ 1.4`.
-const ADAPTIVE: Target = known(10);
+const CLAMPED: On<Rule> = known(8, Rule::Single(Single::Clamped));
+/// `σ̂ = 0.6`, `0.67 ≤ r ≤ 1.83`.
+const NON_TERMINATING: On<Rule> = known(9, Rule::Single(Single::NonTerminating { albedo: ALBEDO }));
+/// `σ_c = 0.55`, `σ̂ = 0.4`, `−0.4 ≤ r ≤ 1.4`.
+const ADAPTIVE: On<Rule> = known(10, Rule::Single(Single::Adaptive { albedo: ALBEDO }));
 /// An optical depth of 110, nearly all of it in the control.
-const DEEP: Target = on("transmittance/deep", 0);
-/// `r = 1` and `r = 0` exactly, albedo 0.
-const RATIO_ONE: Target = Target { swept: Some(0.0), ..on("transmittance/ratio-exactly-one", 0) };
+const DEEP: On<Rule> = on("transmittance/deep", 0, Rule::Weight);
+/// `r = 1` and `r = 0` exactly.
+const RATIO_ONE: On<Rule> =
+    on("transmittance/ratio-exactly-one", 0, Rule::Single(Single::NonTerminating { albedo: 0.0 }))
+        .swept(0.0);
 
 /// An experiment of the case that was made for known bugs: an asymmetric medium, dense at both ends, and estimators for every
 /// regime of r.
-pub const fn known(index: usize) -> Target {
-    on("transmittance/known-bugs", index)
+pub const fn known<E: Copy>(index: usize, estimator: E) -> On<E> {
+    on("transmittance/known-bugs", index, estimator)
+}
+
+/// The correct rule at a collision.
+#[derive(Clone, Copy)]
+pub enum Rule {
+    Weight,
+    Null,
+    Single(Single),
 }
 
 /// A bug in a walk, in its rule, in its setup or in its random numbers.
@@ -75,53 +94,56 @@ pub enum Bug<P: Estimated> {
 impl<P: Estimated> Bug<P> {
     /// The wrong step, if the bug is one.
     pub fn slip(&self) -> Slip {
-        if let Self::Step(slip) = self { *slip } else { Slip::None }
+        if let Self::Step(slip) = self { *slip } else { RIGHT }
     }
 }
 
+/// Draws between two beginnings of a generator that begins again.
+const PERIOD: usize = 1024;
+
 #[rustfmt::skip] // one mutant, one entry
-const LINES: &[Line<Bug<Transmittance>>] = &[
+const LINES: &[Line<Rule, Bug<Transmittance>>] = &[
     ("control-forgotten", "T_c is left out of the draw", NEGATIVE, "mean", Bug::Setup(|setup| setup.fields.control_curve = vec![1.0])),
-    ("control-to-last-collision", "the control is integrated up to the last collision only", NEGATIVE, "mean", Bug::Step(Slip::ControlToLast)),
+    ("control-to-last-collision", "the control is integrated up to the last collision only", NEGATIVE, "mean", Bug::Step(Slip { score: Some(|walk, x| x * Lane::exp(walk.control_depth(walk.from, walk.support.to))), ..RIGHT })),
     ("control-riemann", "∫σ_c is a sum of eight left values", EXPLORERS, "mean", Bug::Setup(riemann)),
     ("control-wrong-sign", "the residual is σ_t + σ_c", NEGATIVE, "mean", Bug::Setup(wrong_sign)),
     ("control-in-front-only", "T_c multiplies the draw, but the lookups do not subtract σ_c", NEGATIVE, "mean", Bug::Setup(|setup| setup.fields.control = Control::None)),
-    ("control-twice", "T_c is multiplied in twice", NEGATIVE, "mean", Bug::Step(Slip::ControlTwice)),
+    ("control-twice", "T_c is multiplied in twice", NEGATIVE, "mean", Bug::Step(Slip { score: Some(|walk, x| x * Lane::exp(-walk.control_depth(walk.support.from, walk.support.to))), ..RIGHT })),
     ("control-nearest", "σ_c is that of the nearest knot in the lookups and linear in the integral", EXPLORERS, "variance", Bug::Setup(nearest)),
-    ("control-of-last-collision", "σ_c is looked up at the collision before", EXPLORERS, "mean", Bug::Step(Slip::OfLastCollision)),
+    ("control-of-last-collision", "σ_c is looked up at the collision before", EXPLORERS, "mean", Bug::Step(line::OF_LAST_COLLISION)),
     ("control-underflow", "T_c is computed in single precision and underflows", DEEP, "mean", Bug::Setup(underflow)),
-    ("lookup-at-previous", "σ_t is looked up where the flight began", BELOW, "mean", Bug::Step(Slip::AtPrevious)),
-    ("lookup-at-midpoint", "σ_t is looked up at the flight's midpoint", WOODCOCK, "mean", Bug::Step(Slip::AtMidpoint)),
-    ("lookup-reversed", "σ_t(S − t) is looked up for σ_t(t)", TERMINATING, "lookups", Bug::Step(Slip::Reversed)),
-    ("lookup-on-raster", "positions are rounded down to sixteenths of the ray before the lookup", DENSE, "mean", Bug::Step(Slip::OnRaster)),
-    ("lookup-of-another-channel", "the chance of a real collision is that of another colour channel, 0.8 σ_t", WOODCOCK, "mean", Bug::Step(Slip::OfAnotherChannel)),
-    ("flight-log2", "log2 for ln in the flight", BELOW, "lookups", Bug::Step(Slip::Deeper(std::f64::consts::LOG2_E))),
-    ("flight-sampling-off", "σ̂ is off by a thousandth in the flight", DENSE, "lookups", Bug::Step(Slip::Deeper(1.0 / 1.001))),
+    ("lookup-at-previous", "σ_t is looked up where the flight began", BELOW, "mean", Bug::Step(line::AT_PREVIOUS)),
+    ("lookup-at-midpoint", "σ_t is looked up at the flight's midpoint", WOODCOCK, "mean", Bug::Step(line::AT_MIDPOINT)),
+    ("lookup-reversed", "σ_t(S − t) is looked up for σ_t(t)", TERMINATING, "lookups", Bug::Step(line::REVERSED)),
+    ("lookup-on-raster", "positions are rounded down to sixteenths of the ray before the lookup", DENSE, "mean", Bug::Step(Slip { lookup: Some(on_raster), ..RIGHT })),
+    ("lookup-of-another-channel", "the chance of a real collision is that of another colour channel, 0.8 σ_t", WOODCOCK, "mean", Bug::Step(line::OF_ANOTHER_CHANNEL)),
+    ("flight-log2", "log2 for ln in the flight", BELOW, "lookups", Bug::Step(line::LOG2)),
+    ("flight-sampling-off", "σ̂ is off by a thousandth in the flight", DENSE, "lookups", Bug::Step(Slip { depth: Some(|_, depth| depth * (1.0 / 1.001)), ..RIGHT })),
     ("weight-sampling-off", "σ̂ is off by a thousandth in the weight", DENSE, "mean", Bug::Rule(|_, r| Weight.at(r / 1.001))),
     ("flight-hole", "σ̂ is zero on a tenth of the ray", WOODCOCK, "mean", Bug::Setup(hole)),
-    ("flight-linear-as-constant", "a linear σ̂ is flown as if it stayed what it is at the flight's beginning", LINEAR, "lookups", Bug::Step(Slip::AsConstant)),
-    ("flight-over-boundary", "a flight crosses a boundary with the σ̂ before it", STEPS, "mean", Bug::Step(Slip::AsConstant)),
-    ("flight-replayed", "from half the ray on, the generator repeats the draw's first numbers", BELOW, "mean", Bug::Step(Slip::Replayed)),
+    ("flight-linear-as-constant", "a linear σ̂ is flown as if it stayed what it is at the flight's beginning", LINEAR, "lookups", Bug::Step(line::AS_CONSTANT)),
+    ("flight-over-boundary", "a flight crosses a boundary with the σ̂ before it", STEPS, "mean", Bug::Step(line::AS_CONSTANT)),
+    ("flight-replayed", "from half the ray on, the generator repeats the draw's first numbers", BELOW, "mean", Bug::Step(Slip { depth: Some(replayed), ..RIGHT })),
     ("buffers-replayed", "every 1024 draws of a block begin with the same random numbers", LINEAR, "dispersion", Bug::Replays),
     ("flight-short-ray", "the walk begins and ends a hundredth of the ray inside", DENSE, "lookups", Bug::Setup(short_ray)),
-    ("end-weighted", "a flight beyond the end is clamped to the end and weighted", BELOW, "mean", Bug::Step(Slip::EndWeighted)),
-    ("first-skipped", "the first collision leaves the weight as it is", BELOW, "mean", Bug::Step(Slip::FirstSkipped)),
-    ("lookup-before-end-test", "σ_t is looked up before the end is tested: one lookup too many", BELOW, "lookups", Bug::Step(Slip::LateEnd)),
-    ("cap-16", "a walk stops after 16 lookups and returns its weight", DENSE, "mean", Bug::Step(Slip::Cap(16.0, true))),
-    ("cap-100", "a walk stops after 100 lookups and returns its weight", DENSE, "counts", Bug::Step(Slip::Cap(100.0, true))),
-    ("cap-4", "a walk stops after 4 lookups and counts as through", WOODCOCK, "mean", Bug::Step(Slip::Cap(4.0, true))),
+    ("end-weighted", "a flight beyond the end is clamped to the end and weighted", BELOW, "mean", Bug::Step(Slip { collides_at_end: true, place: Some(|walk, t| if walk.is_beyond { walk.support.to } else { t }), ..RIGHT })),
+    ("first-skipped", "the first collision leaves the weight as it is", BELOW, "mean", Bug::Step(line::FIRST_SKIPPED)),
+    ("lookup-before-end-test", "σ_t is looked up before the end is tested: one lookup too many", BELOW, "lookups", Bug::Step(line::LATE_END)),
+    ("cap-16", "a walk stops after 16 lookups and returns its weight", DENSE, "mean", Bug::Step(Slip { ends: |walk, _| (walk.collisions >= 16).then_some(End::Passed), ..RIGHT })),
+    ("cap-100", "a walk stops after 100 lookups and returns its weight", DENSE, "counts", Bug::Step(Slip { ends: |walk, _| (walk.collisions >= 100).then_some(End::Passed), ..RIGHT })),
+    ("cap-4", "a walk stops after 4 lookups and counts as through", WOODCOCK, "mean", Bug::Step(Slip { ends: |walk, _| (walk.collisions >= 4).then_some(End::Passed), ..RIGHT })),
     ("weight-absolute", "|1 − r| for 1 − r", BELOW, "mean", Bug::Rule(|right, r| weighing(right, (1.0 - r).abs()))),
     ("weight-clamped", "max(0, 1 − r) for 1 − r", BELOW, "mean", Bug::Rule(|right, r| weighing(right, (1.0 - r).max(0.0)))),
     ("weight-exponential", "exp(−r) for 1 − r", BELOW, "mean", Bug::Rule(|right, r| weighing(right, Lane::exp(-r)))),
     ("weight-albedo", "the transmitted weight is multiplied by the albedo 0.9 at every collision", BELOW, "mean", Bug::Rule(|right, r| weighing(right, 0.9 * (1.0 - r)))),
     ("weight-logarithm", "ln(1 − r) is summed up, which is not a number for r > 1", BELOW, "numeric", Bug::Rule(|right, r| weighing(right, (1.0 - r).ln().exp()))),
-    ("draw-clamped", "max(0, X) for X", BELOW, "mean", Bug::Step(Slip::Clamped)),
+    ("draw-clamped", "max(0, X) for X", BELOW, "mean", Bug::Step(Slip { score: Some(|_, x| x.max(0.0)), ..RIGHT })),
     ("residual-clamped", "max(0, σ_t − σ_c) for σ_t − σ_c", NEGATIVE, "mean", Bug::Rule(|_, r| Weight.at(r.max(0.0)))),
     ("residual-absolute", "|σ_t − σ_c| for σ_t − σ_c", NEGATIVE, "mean", Bug::Rule(|_, r| Weight.at(r.abs()))),
-    ("weight-global-majorant", "flown with the local σ̂, divided by the largest", STEPS, "mean", Bug::Step(Slip::GlobalMajorant)),
-    ("last-factor-missing", "the draw is the weight before the last collision", BELOW, "mean", Bug::Step(Slip::LastMissing)),
-    ("roulette-uncompensated", "below a weight of 0.1 Russian roulette ends half of the walks and leaves the others as they are", DENSE, "lookups", Bug::Step(Slip::Roulette)),
-    ("cut-off", "below a weight of 0.1 the walk ends as 0", DENSE, "lookups", Bug::Step(Slip::CutOff)),
+    ("weight-global-majorant", "flown with the local σ̂, divided by the largest", STEPS, "mean", Bug::Step(Slip { used: Some(|walk, found| found / (walk.mean_free_path * walk.sampling.corner_values().fold(0.0, f64::max))), ..RIGHT })),
+    ("last-factor-missing", "the draw is the weight before the last collision", BELOW, "mean", Bug::Step(Slip { score: Some(|walk, _| walk.before), ..RIGHT })),
+    ("roulette-uncompensated", "below a weight of 0.1 Russian roulette ends half of the walks and leaves the others as they are", DENSE, "lookups", Bug::Step(Slip { ends: |walk, uniform| (walk.weight.abs() < 0.1 && uniform() < 0.5).then_some(End::Lost), ..RIGHT })),
+    ("cut-off", "below a weight of 0.1 the walk ends as 0", DENSE, "lookups", Bug::Step(Slip { ends: |walk, _| (walk.weight.abs() < 0.1).then_some(End::Lost), ..RIGHT })),
     ("majorant-too-low", "a majorant of 0.6 times its size; what exceeds it is clamped", WOODCOCK, "mean", Bug::Setup(too_low)),
     ("real-for-null", "real and null collisions are mixed up", WOODCOCK, "mean", Bug::Rule(|right, _| surviving(right, 1.0 - right.survival))),
     ("terminating-beyond-two", "the terminating rule where |1 − r| > 1", CLAMPED, "mean", Bug::Rule(|_, r| Single::Terminating.at(r))),
@@ -133,58 +155,65 @@ const LINES: &[Line<Bug<Transmittance>>] = &[
     ("albedo-in-weight", "the transmitted weight is multiplied by the albedo", NON_TERMINATING, "mean", Bug::Rule(|right, _| weighing(right, ALBEDO * right.weight))),
     ("adaptive-literal", "D = a r + |1 − r| without the absolute value of r, as the pseudo-code has it", ADAPTIVE, "mean", Bug::Rule(literal)),
     ("zero-over-zero", "q = 0/0 at r = 1 and albedo 0: no comparison ends the walk", RATIO_ONE, "lookups", Bug::Rule(|right, r| surviving(right, (1.0 - r).abs() / (1.0 - r).abs()))),
-    ("number-shared", "one random number for the distance and for the decision", WOODCOCK, "mean", Bug::Step(Slip::Shared)),
-    ("number-shared-reversed", "the distance from u, the decision from 1 − u", WOODCOCK, "mean", Bug::Step(Slip::SharedReversed)),
-    ("number-stale", "the decision takes the number of the flight before", WOODCOCK, "mean", Bug::Step(Slip::Stale)),
-    ("number-of-first-decision", "one number for all decisions of a walk", TERMINATING, "variance", Bug::Step(Slip::OneForAll)),
+    ("number-shared", "one random number for the distance and for the decision", WOODCOCK, "mean", Bug::Step(line::SHARED)),
+    ("number-shared-reversed", "the distance from u, the decision from 1 − u", WOODCOCK, "mean", Bug::Step(Slip { number: Some(|walk, _| walk.uniform().one_minus()), ..RIGHT })),
+    ("number-stale", "the decision takes the number of the flight before", WOODCOCK, "mean", Bug::Step(line::STALE)),
+    ("number-of-first-decision", "one number for all decisions of a walk", TERMINATING, "variance", Bug::Step(line::ONE_FOR_ALL)),
     ("weight-f32", "the factors of a weight are kept in single precision", DENSE, "invariant", Bug::Rule(|right, r| weighing(right, single(1.0 - r)))),
 ];
 
 /// The family.
 pub fn mutants() -> Vec<Mutant<Transmittance>> {
-    let draws = |target, bug: &Bug<_>| {
-        let (rule, slip) = (rule(target), bug.slip());
-        let mistake = if let Bug::Rule(mistake) = *bug { Some(mistake) } else { None };
-        filled(move |setup, request| match rule {
-            Rule::Weight => fill::<false>((rule, mistake), slip, setup, request),
-            _ => fill::<true>((rule, mistake), slip, setup, request),
-        })
+    let draws = |rule: &Rule, bug: &Bug<_>| match *rule {
+        Rule::Weight => by_rule(Weight, bug),
+        Rule::Null => by_rule(Null, bug),
+        Rule::Single(rule) => by_rule(rule, bug),
     };
-    on_setups(family(LINES, &Bug::Step(Slip::None), draws), LINES)
+    on_setups(family(LINES, &Bug::Step(RIGHT), draws), LINES)
 }
 
-/// Mutants with bugs in their setups and in their random numbers.
-pub fn on_setups<P: Estimated>(mutants: Vec<Mutant<P>>, lines: &[Line<Bug<P>>]) -> Vec<Mutant<P>> {
+/// Mutants with bugs in their setups.
+pub fn on_setups<P: Estimated, E>(
+    mutants: Vec<Mutant<P>>,
+    lines: &[Line<E, Bug<P>>],
+) -> Vec<Mutant<P>> {
     let each = mutants.into_iter().zip(lines).map(|(mutant, line)| match line.4 {
         Bug::Setup(prepare) => Mutant { prepare, ..mutant },
-        Bug::Replays => Mutant { replays: true, ..mutant },
         _ => mutant,
     });
     each.collect()
 }
 
-/// The rule of a target.
-fn rule(target: Target) -> Rule {
-    match target {
-        WOODCOCK => Rule::Null,
-        TERMINATING => Rule::Single(Single::Terminating),
-        CLAMPED => Rule::Single(Single::Clamped),
-        NON_TERMINATING => Rule::Single(Single::NonTerminating { albedo: ALBEDO }),
-        ADAPTIVE => Rule::Single(Single::Adaptive { albedo: ALBEDO }),
-        RATIO_ONE => Rule::Single(Single::NonTerminating { albedo: 0.0 }),
-        _ => Rule::Weight,
+fn by_rule<R: Collision>(rule: R, bug: &Bug<Transmittance>) -> Box<Draws<Transmittance>> {
+    let mistake = if let Bug::Rule(mistake) = *bug { Some(mistake) } else { None };
+    let (rule, slip) = (Wrong { rule, mistake }, bug.slip());
+    let draws = one_by_one(move |setup, medium, random| {
+        line::draw(Product::new(&rule, setup), &slip, setup, medium, random)
+    });
+    if !matches!(bug, Bug::Replays) {
+        return Box::new(draws);
     }
+    Box::new(move |setup, Request { streams, count, buffer }| {
+        draws(setup, Request { streams, count: count.min(PERIOD), buffer });
+        buffer.repeat(count);
+    })
 }
 
-fn fill<const DECIDES: bool>(
-    (rule, mistake): (Rule, Option<Mistake>),
-    slip: Slip,
-    setup: &Setup<Transmittance>,
-    request: Request,
-) {
-    let rule = rule::Wrong::<DECIDES>(rule, mistake);
-    let walk = line::Wrong::new(Product::new(&rule, setup), slip, setup);
-    walks::in_turn(&walk, setup, request);
+/// Keeps the flights of the first half of the ray, at most 16, and repeats them in the second half.
+fn replayed(walk: &mut Notes, depth: f64) -> f64 {
+    if walk.from > walk.support.middle() {
+        return if walk.kept.is_empty() { depth } else { walk.kept.remove(0) };
+    }
+    if walk.kept.len() < 16 {
+        walk.kept.push(depth);
+    }
+    depth
+}
+
+/// The beginning of a sixteenth of the ray.
+fn on_raster(walk: &mut Notes, t: f64) -> f64 {
+    let cell = walk.support.length() / 16.0;
+    walk.support.from + ((t - walk.support.from) / cell).floor() * cell
 }
 
 /// `T_c = exp(−h Σ σ_c(jh))`.

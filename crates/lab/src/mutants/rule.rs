@@ -12,39 +12,25 @@
 
 use numeric::Lane;
 use theory::Outcome;
-use theory::rules::{Collision, Met, Null, Single, Weight};
+use theory::rules::{Collision, Met};
 
 /// The albedo of the experiments.
 pub const ALBEDO: f64 = 0.7;
 
-/// A correct rule.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Rule {
-    Weight,
-    Null,
-    Single(Single),
-}
-
-impl Rule {
-    #[inline(always)]
-    fn at<L: Lane>(&self, ratio: L) -> Outcome<L> {
-        match self {
-            Self::Weight => Weight.at(ratio),
-            Self::Null => Null.at(ratio),
-            Self::Single(single) => single.at(ratio),
-        }
-    }
-}
-
 /// Function from the correct outcome and r to a wrong survival and weight.
 pub type Mistake = fn(Outcome, f64) -> Outcome;
 
-/// A rule, perhaps with a mistake; it `DECIDES` by a random number if the rule does.
+/// A rule, perhaps with a mistake. What a survivor is due stays right.
 #[derive(Debug, Clone, Copy)]
-pub struct Wrong<const DECIDES: bool>(pub Rule, pub Option<Mistake>);
+pub struct Wrong<R> {
+    /// The correct rule.
+    pub rule: R,
+    /// The mistake.
+    pub mistake: Option<Mistake>,
+}
 
-impl<const DECIDES: bool> Collision for Wrong<DECIDES> {
-    const DECIDES: bool = DECIDES;
+impl<R: Collision> Collision for Wrong<R> {
+    const DECIDES: bool = R::DECIDES;
 
     fn jumps(&self) -> Vec<f64> {
         Vec::new()
@@ -52,28 +38,24 @@ impl<const DECIDES: bool> Collision for Wrong<DECIDES> {
 
     #[inline(always)]
     fn at<L: Lane>(&self, ratio: L) -> Outcome<L> {
-        let right = self.0.at(ratio);
-        let Some(mistake) = self.1 else { return right };
-        let wrong = |ratio: f64| mistake(self.0.at(ratio), ratio);
+        let right = self.rule.at(ratio);
+        let Some(mistake) = self.mistake else { return right };
+        let wrong = |ratio: f64| mistake(self.rule.at(ratio), ratio);
         let survival = ratio.map(|ratio| wrong(ratio).survival);
         Outcome { survival, weight: ratio.map(|ratio| wrong(ratio).weight), ..right }
     }
 
     #[inline(always)]
     fn kills<L: Lane>(&self, met: &Met<L>, number: L) -> L::Mask {
-        match self {
-            Self(Rule::Null, None) => Null.kills(met, number),
-            _ => self.at(met.ratio()).survival.at_most(number),
+        if self.mistake.is_none() {
+            return self.rule.kills(met, number);
         }
+        self.at(met.ratio()).survival.at_most(number)
     }
 
-    /// Returns the correct factor: a mistake is in the outcome only.
     #[inline(always)]
     fn due<L: Lane>(&self, ratio: L, survival: L) -> L {
-        match self.0 {
-            Rule::Weight => ratio.one_minus(),
-            _ => ratio.one_minus() / survival,
-        }
+        self.rule.due(ratio, survival)
     }
 }
 

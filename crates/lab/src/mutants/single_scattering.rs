@@ -4,8 +4,10 @@
 //! points from the light     X = T̂ σ_t a p(cos θ) Φ/(4π r²) T̂_shadow / p(s),   p(s) = D/(Δθ r²),   shadow rays clipped
 //! with delta tracking, too  X = Σ f(sᵢ) w_i/p_i,   q = a σ_t Π (1 − σ_t/σ̂),   w_i = p_i^β/(p^β + q^β)
 //! ```
+//!
+//! Such mistakes made single scattering too bright in pbrt-v3 (issue 69).
 
-use super::{Line, Mutant, Target, family, on, with};
+use super::{Line, Mutant, On, family, on, one_by_one};
 use estimators::Setup;
 use estimators::single_scattering::plan::{Absorption, Vertices};
 use estimators::single_scattering::vertices::{Right, Steps, Vertex};
@@ -14,18 +16,31 @@ use theory::Heuristic;
 use theory::problems::{Problem, SingleScattering};
 use theory::single::{CameraTracking, Tracking};
 
+/// The points of an estimator, and its shadow rays.
+type Plan = (Vertices, Tracking);
+
 /// A homogeneous ball, light outside, exact transmittances.
-const EXACT: Target = on("single-scattering/known-bugs", 0);
+const EXACT: On<Plan> = on("single-scattering/known-bugs", 0, (EXACTLY, Tracking::Exact));
 /// A ratio-tracked camera.
-const RATIO: Target = on("single-scattering/known-bugs", 1);
+const RATIO: On<Plan> = on("single-scattering/known-bugs", 1, (TRACKED, Tracking::Exact));
 /// Ratio-tracked shadow rays, as in all that follow.
-const SHADOW: Target = on("single-scattering/known-bugs", 2);
+const SHADOW: On<Plan> = on("single-scattering/known-bugs", 2, (EXACTLY, SHADOW_RAYS));
 /// Equiangular points and delta tracking by null-scattering paths, `σ̂ = 1.2`.
-const NULL_PATHS: Target = on("single-scattering/known-bugs", 3);
+const NULL_PATHS: On<Plan> = on("single-scattering/known-bugs", 3, (BOTH, SHADOW_RAYS));
 /// One of both.
-const ONE_SAMPLE: Target = on("single-scattering/known-bugs", 4);
+const ONE_SAMPLE: On<Plan> =
+    on("single-scattering/known-bugs", 4, (Vertices { is_one: true, ..BOTH }, SHADOW_RAYS));
 /// Both, by the power heuristic.
-const POWER: Target = on("single-scattering/known-bugs", 5);
+const POWER: On<Plan> = on(
+    "single-scattering/known-bugs",
+    5,
+    (Vertices { heuristic: Heuristic::Power, ..BOTH }, SHADOW_RAYS),
+);
+
+const SHADOW_RAYS: Tracking = Tracking::Ratio { sampling: 1.5, control: 0.0 };
+const EXACTLY: Vertices = Vertices { camera: CameraTracking::Exact, ..Vertices::FROM_LIGHT };
+const TRACKED: Vertices = Vertices { camera: CameraTracking::Ratio, ..Vertices::FROM_LIGHT };
+const BOTH: Vertices = Vertices { collision: Some(Absorption::Analog), ..TRACKED };
 
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Bug {
@@ -49,7 +64,7 @@ enum Bug {
 }
 
 #[rustfmt::skip] // one mutant, one entry
-const LINES: &[Line<Bug>] = &[
+const LINES: &[Line<Plan, Bug>] = &[
     ("single-shadow-not-clipped", "the shadow ray goes on through the field beyond the bounds of the volume", EXACT, "mean", Bug::Unclipped),
     ("single-cosine-reversed", "the cosine in the phase function has the wrong sign", EXACT, "mean", Bug::Reversed),
     ("single-pdf-per-angle", "the density is per angle, 1/Δθ, and the integrand per distance", EXACT, "mean", Bug::PerAngle),
@@ -72,28 +87,11 @@ const LINES: &[Line<Bug>] = &[
 
 /// The family.
 pub fn mutants() -> Vec<Mutant<SingleScattering>> {
-    let draws = |target, &bug: &Bug| {
-        with((plan(target), bug), |&((plan, shadow), bug), setup, medium, random| {
+    family(LINES, &Bug::None, |&(plan, shadow), &bug| {
+        one_by_one(move |setup, medium, random| {
             plan.draw((Wrong { bug, setup }, shadow), setup, medium, random)
         })
-    };
-    family(LINES, &Bug::None, draws)
-}
-
-/// The points of a target, and its shadow rays.
-fn plan(target: Target) -> (Vertices, Tracking) {
-    let tracked = Tracking::Ratio { sampling: 1.5, control: 0.0 };
-    let exact = Vertices { camera: CameraTracking::Exact, ..Vertices::FROM_LIGHT };
-    let ratio = Vertices { camera: CameraTracking::Ratio, ..Vertices::FROM_LIGHT };
-    let both = Vertices { collision: Some(Absorption::Analog), ..ratio };
-    match target {
-        EXACT => (exact, Tracking::Exact),
-        RATIO => (ratio, Tracking::Exact),
-        SHADOW => (exact, tracked),
-        ONE_SAMPLE => (Vertices { is_one: true, ..both }, tracked),
-        POWER => (Vertices { heuristic: Heuristic::Power, ..both }, tracked),
-        _ => (both, tracked),
-    }
+    })
 }
 
 /// Steps, of which a bug makes one wrong.
@@ -104,7 +102,6 @@ struct Wrong<'a> {
 }
 
 impl Steps for Wrong<'_> {
-    #[inline(always)]
     fn point<L: Lane>(&self, problem: &SingleScattering, number: L) -> L {
         if self.bug == Bug::WrongEnd {
             let angles = problem.angles();
@@ -113,7 +110,6 @@ impl Steps for Wrong<'_> {
         Right.point(problem, number)
     }
 
-    #[inline(always)]
     fn depth<L: Lane>(&self, right: L, here: L, s: L) -> L {
         let problem = &*self.setup.problem;
         let (angles, begin) = (problem.angles(), problem.medium().support().from);
@@ -129,12 +125,10 @@ impl Steps for Wrong<'_> {
         L::select(here.equals(begin), again, right)
     }
 
-    #[inline(always)]
     fn ends<L: Lane>(&self, real: L::Mask, scattered: L::Mask) -> L::Mask {
         if self.bug == Bug::AbsorbedGoOn { scattered } else { real }
     }
 
-    #[inline(always)]
     fn light<L: Lane>(&self, right: L, s: L) -> L {
         match self.bug {
             Bug::ShadowTwice => right * right,
@@ -150,7 +144,6 @@ impl Steps for Wrong<'_> {
         }
     }
 
-    #[inline(always)]
     fn score<L: Lane>(&self, vertex: Vertex<L>, score: impl Fn(Vertex<L>) -> L) -> L {
         let Vertex { s, extinction, kept, is_chosen, .. } = vertex;
         let (problem, one, right) = (&*self.setup.problem, s.each(1.0), score(vertex));

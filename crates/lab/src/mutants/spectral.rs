@@ -7,8 +7,10 @@
 //! Source of what goes wrong: the algorithms of B. Miller, I. Georgiev, W. Jarosz, *A Null-Scattering Path
 //! Integral Formulation of Light Transport*, ACM Transactions on Graphics 38 (2019), as printed and as they
 //! are misread.
+//!
+//! `spectral-own-density`, a wrong density for each channel, is issue 323 of Mitsuba 2.
 
-use super::{Line, Mutant, Target, family, on, with};
+use super::{Line, Mutant, On, family, on, one_by_one};
 use estimators::Setup;
 use estimators::setup::heroes::Heroes;
 use estimators::spectral_transmittance::steps::{Right, Steps};
@@ -19,16 +21,24 @@ use numeric::rng::Random;
 use theory::problems::SpectralTransmittance;
 use theory::spectral::{Chance, Tracker};
 
+/// A tracker; true if all channels have one σ̂.
+type Plan = (Tracker, bool);
+
 /// Three layers in three channels, one channel a draw.
-const INDEPENDENT: Target = on("transmittance/spectral-layers", 0);
+const INDEPENDENT: On<Plan> =
+    on("transmittance/spectral-layers", 0, (Tracker::Independent { delta: true }, false));
 /// All channels by one walk, `σ̂ = 1.6, 1.1, 1.9`.
-const MIS_RATIO: Target = on("transmittance/spectral-layers", 4);
+const MIS_RATIO: On<Plan> =
+    on("transmittance/spectral-layers", 4, (Tracker::Mis { delta: false }, false));
 /// All channels by delta tracking.
-const MIS_DELTA: Target = on("transmittance/spectral-layers", 5);
+const MIS_DELTA: On<Plan> =
+    on("transmittance/spectral-layers", 5, (Tracker::Mis { delta: true }, false));
 /// Spectral tracking, `σ̂ = 1.9` for all channels, by the largest probabilities.
-const MAXIMUM: Target = on("transmittance/spectral-layers", 9);
+const MAXIMUM: On<Plan> =
+    on("transmittance/spectral-layers", 9, (Tracker::Tracking(Chance::Maximum), true));
 /// Spectral tracking, `σ̂ = 1.9` for all channels, by the history.
-const HISTORY: Target = on("transmittance/spectral-layers", 10);
+const HISTORY: On<Plan> =
+    on("transmittance/spectral-layers", 10, (Tracker::Mis { delta: true }, true));
 
 #[derive(Clone, Copy, PartialEq)]
 enum Bug {
@@ -48,7 +58,7 @@ enum Bug {
 }
 
 #[rustfmt::skip] // one mutant, one entry
-const LINES: &[Line<Bug>] = &[
+const LINES: &[Line<Plan, Bug>] = &[
     ("spectral-choice-free", "the one channel that is drawn is not divided by its probability", INDEPENDENT, "mean", Bug::ChoiceFree),
     ("spectral-grey", "what the hero finds is scored for all channels", INDEPENDENT, "mean", Bug::Grey),
     ("spectral-channel-dropped", "the last channel is missing from the denominator", MIS_RATIO, "mean", Bug::Dropped),
@@ -65,27 +75,17 @@ const LINES: &[Line<Bug>] = &[
 
 /// The family.
 pub fn mutants() -> Vec<Mutant<SpectralTransmittance>> {
-    let draws = |target, &bug: &Bug| {
-        with(
-            (target, bug),
-            |&(target, bug), setup: &Setup<SpectralTransmittance>, medium, random| {
-                let count = setup.fields.len();
-                let tracker = match target {
-                    INDEPENDENT => Tracker::Independent { delta: true },
-                    MAXIMUM => Tracker::Tracking(Chance::Maximum),
-                    _ => Tracker::Mis { delta: target != MIS_RATIO },
-                };
-                let is_common = [MAXIMUM, HISTORY].contains(&target);
-                let make = if is_common { AlongRay::common } else { AlongRay::new };
-                let mut walk = make(setup, &Heroes::Uniform, tracker, Wrong { bug, count });
-                if bug == Bug::ByLuminance {
-                    walk.law = Law::new(&Heroes::Luminance, count);
-                }
-                walk.draw(medium, random)
-            },
-        )
-    };
-    family(LINES, &Bug::None, draws)
+    family(LINES, &Bug::None, |&(tracker, is_common), &bug| {
+        one_by_one(move |setup: &Setup<SpectralTransmittance>, medium, random| {
+            let count = setup.fields.len();
+            let make = if is_common { AlongRay::common } else { AlongRay::new };
+            let mut walk = make(setup, &Heroes::Uniform, tracker, Wrong { bug, count });
+            if bug == Bug::ByLuminance {
+                walk.law = Law::new(&Heroes::Luminance, count);
+            }
+            walk.draw(medium, random)
+        })
+    })
 }
 
 /// The steps of a walk, of which a bug makes one wrong.
@@ -99,7 +99,6 @@ struct Wrong {
 impl Steps for Wrong {
     const KEEPS_LAST: bool = true;
 
-    #[inline(always)]
     fn decides<L: Lane>(&self, hero: L, inside: L::Mask, random: &mut impl Random<L>) -> L {
         if self.bug != Bug::Anew {
             return hero;
@@ -107,12 +106,10 @@ impl Steps for Wrong {
         Law::new(&Heroes::Uniform, self.count).choose(random.uniform_where(inside))
     }
 
-    #[inline(always)]
     fn majorant<L: Lane>(&self, own: L, heros: impl Fn() -> L) -> L {
         if self.bug == Bug::HerosMajorant { heros() } else { own }
     }
 
-    #[inline(always)]
     fn tracked<L: Lane>(&self, right: L, shares: &[L]) -> [L; 2] {
         match self.bug {
             Bug::Raw => {
@@ -125,7 +122,6 @@ impl Steps for Wrong {
         }
     }
 
-    #[inline(always)]
     fn alone<L: Lane>(&self, is_hero: L::Mask, value: L, probability: f64) -> L {
         match self.bug {
             Bug::Grey => value,
@@ -134,17 +130,14 @@ impl Steps for Wrong {
         }
     }
 
-    #[inline(always)]
     fn density<L: Lane>(&self, delta: bool, contribution: L, relative: L) -> L {
         Right.density(delta && self.bug != Bug::NullsInContributionOnly, contribution, relative)
     }
 
-    #[inline(always)]
     fn share(&self, probability: f64, is_last: bool) -> f64 {
         if self.bug == Bug::Dropped && is_last { 0.0 } else { probability }
     }
 
-    #[inline(always)]
     fn divisor<L: Lane>(&self, mean: L, own: L) -> L {
         match self.bug {
             Bug::TwiceAsMany => mean * 0.5,
@@ -153,7 +146,6 @@ impl Steps for Wrong {
         }
     }
 
-    #[inline(always)]
     fn relative<L: Lane>(&self, right: L, [own, heros]: [L; 2], last: impl Fn() -> L) -> L {
         if self.bug == Bug::LastStretch { right * ((own - heros) * last()).exp() } else { right }
     }

@@ -8,8 +8,7 @@
 //! formulation of light transport*, ACM Transactions on Graphics 38 (2019), as printed, or ways to read them. A run of
 //! `cases/rod/spectral-lit-as-printed.toml` shows the bias of the printed ones.
 
-use super::trial::Draws;
-use super::{Line, Mutant, Target, family, on, with};
+use super::{Draws, Line, Mutant, On, family, on, one_by_one};
 use estimators::setup::heroes::Heroes;
 use estimators::spectral_lit_rod::as_printed::{AsPrinted, Error};
 use estimators::spectral_lit_rod::steps::{Found, Steps};
@@ -18,10 +17,13 @@ use estimators::walks::hero::{LastPiece, Weighing};
 use numeric::Lane;
 use theory::problems::SpectralLitRod;
 
+/// True if shadow rays are cast.
+type Casts = bool;
+
 /// Three channels of different σ_t, σ̂, albedo and `p_f`, a σ̂ that touches its σ_t, hits alone.
-const HITS: Target = on("rod/spectral-lit-three-colours", 1);
+const HITS: On<Casts> = on("rod/spectral-lit-three-colours", 1, false);
 /// Three channels as of `HITS`, by hits and shadow rays.
-const FULL: Target = on("rod/spectral-lit-three-colours", 2);
+const FULL: On<Casts> = on("rod/spectral-lit-three-colours", 2, true);
 
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Bug {
@@ -39,7 +41,7 @@ enum Bug {
 }
 
 #[rustfmt::skip] // one mutant, one entry
-const LINES: &[Line<Bug>] = &[
+const LINES: &[Line<Casts, Bug>] = &[
     ("spectral-lit-last-piece", "Algorithm 2, line 9: f and both densities lack the transmittance of the last piece", FULL, "mean", Bug::Printed(Error::LastPiece)),
     ("spectral-lit-averaged", "Algorithm 2, line 9: the densities are averaged over 2N techniques, and both samples are added", FULL, "mean", Bug::Printed(Error::Average)),
     ("spectral-lit-hits-alone", "Algorithm 1 beside shadow rays: hits are divided by p_uni, not by p_uni + p_nee", FULL, "mean", Bug::Printed(Error::HitsAlone)),
@@ -58,17 +60,17 @@ const LINES: &[Line<Bug>] = &[
 
 /// The family.
 pub fn mutants() -> Vec<Mutant<SpectralLitRod>> {
-    let draws = |target, &bug: &Bug| -> Box<Draws<SpectralLitRod>> {
-        let casts = target == FULL;
-        match bug {
-            Bug::Printed(error) => Box::new(with(AsPrinted { error }, draw)),
-            Bug::NotReset => Box::new(with(Wrong::<true, false, false> { casts, bug }, draw)),
-            Bug::AlbedoTwice => Box::new(with(Wrong::<false, true, false> { casts, bug }, draw)),
-            Bug::HeroAnew => Box::new(with(Wrong::<false, false, true> { casts, bug }, draw)),
-            _ => Box::new(with(Wrong::<false, false, false> { casts, bug }, draw)),
-        }
-    };
-    family(LINES, &Bug::None, draws)
+    family(LINES, &Bug::None, |&casts, &bug| match bug {
+        Bug::Printed(error) => by(AsPrinted { error }),
+        Bug::NotReset => by(Wrong::<true, false, false> { casts, bug }),
+        Bug::AlbedoTwice => by(Wrong::<false, true, false> { casts, bug }),
+        Bug::HeroAnew => by(Wrong::<false, false, true> { casts, bug }),
+        _ => by(Wrong::<false, false, false> { casts, bug }),
+    })
+}
+
+fn by(steps: impl Steps + Send + 'static) -> Box<Draws<SpectralLitRod>> {
+    Box::new(one_by_one(move |setup, medium, random| draw(&steps, setup, medium, random)))
 }
 
 /// The steps of a walk with a bug.

@@ -1,20 +1,27 @@
 //! Wrong walks through rods and slabs of coloured scatterers.
 
-use super::{Line, Mutant, Target, family, on, with};
+use super::{Line, Mutant, On, family, on, one_by_one};
 use estimators::setup::heroes::Heroes;
 use estimators::spectral_rod::Coloured;
 use estimators::spectral_rod::walk::{Page, draw, relative_to};
 use media::body::MOST_CHANNELS;
 use theory::problems::{SpectralRod, SpectralSlab};
 
+/// The balance heuristic, or spectral tracking by the mean albedo.
+#[derive(Clone, Copy, PartialEq)]
+enum Walker {
+    Mis,
+    Tracking,
+}
+
 /// Albedos .99, .5 and .1, `p_f = .75`, an optical length of 2.
-const ROD_MIS: Target = on("rod/spectral-three-albedos", 1);
+const ROD_MIS: On<Walker> = on("rod/spectral-three-albedos", 1, Walker::Mis);
 /// A thin rod of albedos .6, .5 and .4, spectral tracking by the mean albedo.
-const ROD_TRACKING: Target = on("rod/spectral-near-albedos", 1);
+const ROD_TRACKING: On<Walker> = on("rod/spectral-near-albedos", 1, Walker::Tracking);
 /// A slab of albedos .9, .5 and .2, σ̂ above σ_t.
-const SLAB_MIS: Target = on("slab/spectral-known-bugs", 3);
+const SLAB_MIS: On<Walker> = on("slab/spectral-known-bugs", 3, Walker::Mis);
 /// Spectral tracking by the mean albedo.
-const SLAB_TRACKING: Target = on("slab/spectral-known-bugs", 1);
+const SLAB_TRACKING: On<Walker> = on("slab/spectral-known-bugs", 1, Walker::Tracking);
 
 #[derive(Clone, Copy, PartialEq)]
 enum Bug {
@@ -27,7 +34,7 @@ enum Bug {
 }
 
 #[rustfmt::skip] // one mutant, one entry
-const IN_ROD: &[Line<Bug>] = &[
+const IN_ROD: &[Line<Walker, Bug>] = &[
     ("spectral-rod-dropped", "the last channel is missing from the denominator", ROD_MIS, "mean", Bug::Dropped),
     ("spectral-rod-albedo-twice", "the hero's albedo is a chance and stays in the weight", ROD_MIS, "mean", Bug::AlbedoTwice),
     ("spectral-rod-hero-anew", "every scattering has the density of a hero of its own: the mean albedo", ROD_MIS, "mean", Bug::Anew),
@@ -36,7 +43,7 @@ const IN_ROD: &[Line<Bug>] = &[
 ];
 
 #[rustfmt::skip] // one mutant, one entry
-const IN_SLAB: &[Line<Bug>] = &[
+const IN_SLAB: &[Line<Walker, Bug>] = &[
     ("spectral-slab-dropped", "the last channel is missing from the denominator", SLAB_MIS, "mean", Bug::Dropped),
     ("spectral-slab-hero-anew", "every scattering has the density of a hero of its own: the mean albedo", SLAB_MIS, "mean", Bug::Anew),
     ("spectral-slab-chance-kept", "the weight is not divided by the chance to be scattered", SLAB_TRACKING, "mean", Bug::ChanceKept),
@@ -53,11 +60,11 @@ pub fn in_slab() -> Vec<Mutant<SpectralSlab>> {
     mutants(IN_SLAB)
 }
 
-fn mutants<P: Coloured>(lines: &[Line<Bug>]) -> Vec<Mutant<P>> {
-    let draws = |target, &bug: &Bug| {
-        with(Wrong { bug, tracks: [ROD_TRACKING, SLAB_TRACKING].contains(&target) }, draw)
-    };
-    family(lines, &Bug::None, draws)
+fn mutants<P: Coloured>(lines: &[Line<Walker, Bug>]) -> Vec<Mutant<P>> {
+    family(lines, &Bug::None, |&walker, &bug| {
+        let wrong = Wrong { bug, tracks: walker == Walker::Tracking };
+        one_by_one(move |setup, medium, random| draw(&wrong, setup, medium, random))
+    })
 }
 
 /// Spectral tracking by the mean albedo, or the balance heuristic, with a bug.

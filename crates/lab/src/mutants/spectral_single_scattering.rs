@@ -4,7 +4,7 @@
 //! X_λ = q_λ/Σ_h w_h q_h · p_λ(cos θ) Φ/(4π r²) T̂_λ
 //! ```
 
-use super::{Line, Mutant, Target, family, on, with};
+use super::{Line, Mutant, On, family, on, one_by_one};
 use estimators::setup::heroes::Heroes;
 use estimators::setup::walker::Walker;
 use estimators::spectral_single_scattering::Shadow;
@@ -13,14 +13,25 @@ use numeric::Lane;
 use theory::problems::SpectralSingleScattering;
 use theory::spectral::{Chance, Chances};
 
+/// Function that makes a walker, and shadow rays.
+type Make = fn() -> (Walker, Shadow);
+
 /// A point light, all channels by one walk, exact shadow rays.
-const EXACT: Target = on("single-scattering/spectral-known-bugs", 2);
+const EXACT: On<Make> = on("single-scattering/spectral-known-bugs", 2, || {
+    (Walker::Mis(Heroes::Uniform), Shadow::Exact)
+});
 /// Tracked shadow rays.
-const RATIO: Target = on("single-scattering/spectral-known-bugs", 3);
+const RATIO: On<Make> = on("single-scattering/spectral-known-bugs", 3, || {
+    (Walker::Mis(Heroes::Uniform), Shadow::Ratio)
+});
 /// The walk of a hero without multiple importance sampling, tracked shadow rays.
-const HERO: Target = on("single-scattering/spectral-without-mis", 1);
+const HERO: On<Make> = on("single-scattering/spectral-without-mis", 1, || {
+    (Walker::Hero(Heroes::Given(vec![0.3, 0.3, 0.4])), Shadow::Ratio)
+});
 /// All channels together, exact shadow rays.
-const TRACKING: Target = on("single-scattering/spectral-without-mis", 2);
+const TRACKING: On<Make> = on("single-scattering/spectral-without-mis", 2, || {
+    (Walker::SpectralTracking(Chances::Fixed(Chance::Average)), Shadow::Exact)
+});
 
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Bug {
@@ -33,7 +44,7 @@ enum Bug {
 }
 
 #[rustfmt::skip] // one mutant, one entry
-const LINES: &[Line<Bug>] = &[
+const LINES: &[Line<Make, Bug>] = &[
     ("spectral-single-nulls-left-out", "null collisions before the scattering are left out of all densities", EXACT, "mean", Bug::NullsLeftOut),
     ("spectral-single-albedo-missing", "the densities lack the albedo", EXACT, "mean", Bug::AlbedoMissing),
     ("spectral-single-dropped", "the last channel is missing from the denominator", EXACT, "mean", Bug::Dropped),
@@ -47,18 +58,12 @@ const LINES: &[Line<Bug>] = &[
 
 /// The family.
 pub fn mutants() -> Vec<Mutant<SpectralSingleScattering>> {
-    let draws = |target, &bug: &Bug| {
-        let (walker, shadow) = match target {
-            EXACT => (Walker::Mis(Heroes::Uniform), Shadow::Exact),
-            TRACKING => (Walker::SpectralTracking(Chances::Fixed(Chance::Average)), Shadow::Exact),
-            HERO => (Walker::Hero(Heroes::Given(vec![0.3, 0.3, 0.4])), Shadow::Ratio),
-            _ => (Walker::Mis(Heroes::Uniform), Shadow::Ratio),
-        };
-        with(walker, move |walker, setup, medium, random| {
-            draw::<true>(Wrong(bug), (walker, shadow), setup, medium, random)
+    family(LINES, &Bug::None, |make, &bug| {
+        let (walker, shadow) = make();
+        one_by_one(move |setup, medium, random| {
+            draw::<true>(Wrong(bug), (&walker, shadow), setup, medium, random)
         })
-    };
-    family(LINES, &Bug::None, draws)
+    })
 }
 
 /// The steps of a walk, of which a bug makes one wrong.
@@ -68,27 +73,22 @@ struct Wrong(Bug);
 impl Steps for Wrong {
     const COUNTS: bool = true;
 
-    #[inline(always)]
     fn passed<L: Lane>(&self, ratio: L) -> L {
         if self.0 == Bug::NullsLeftOut { ratio.each(1.0) } else { ratio.one_minus() }
     }
 
-    #[inline(always)]
     fn scattered<L: Lane>(&self, ratio: L, albedo: f64) -> L {
         if self.0 == Bug::AlbedoMissing { ratio } else { ratio * albedo }
     }
 
-    #[inline(always)]
     fn through<L: Lane>(&self, own: L, heros: impl Fn() -> L) -> L {
         if self.0 == Bug::ShadowOfHero { heros() } else { own }
     }
 
-    #[inline(always)]
     fn has_shadow_density(&self) -> bool {
         self.0 != Bug::ShadowNotDense
     }
 
-    #[inline(always)]
     fn share(&self, probability: f64, is_last: bool) -> f64 {
         if is_last && self.0 == Bug::Dropped { 0.0 } else { probability }
     }

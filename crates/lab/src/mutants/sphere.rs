@@ -5,9 +5,9 @@
 //! combined          X = Σ f/p w,   w = p/Σ p,   p = 1, 1/(q Π ν), 4 d²/(a ρ² Π ν) of a hit, a shadow ray, a connection
 //! ```
 
-use super::{Line, Mutant, Target, family, on, with};
-use estimators::space::Particle;
+use super::{Line, Mutant, On, family, on, one_by_one};
 use estimators::space::shadow::Light;
+use estimators::space::{Particle, Splitting};
 use estimators::sphere::sharing::{Link, Sharing, Steps, Subpaths};
 use estimators::sphere::{Honest, Page};
 use numeric::{Lane, Mask};
@@ -18,23 +18,53 @@ use theory::sphere::Techniques;
 use theory::{Heuristic, ParticleRule};
 
 /// A weighted walk, ratio-tracked shadow rays to a black light sphere.
-const NEXT_EVENT: Target = on("ball/known-bugs", 0);
+const NEXT_EVENT: On<Page> = on("ball/known-bugs", 0, next_event(RATIO));
 /// A weighted walk, exact shadow rays to a black light sphere.
-const NEXT_EVENT_EXACT: Target = on("ball/known-bugs", 1);
+const NEXT_EVENT_EXACT: On<Page> = on("ball/known-bugs", 1, next_event(Tracking::Exact));
 /// Next-event estimation in an environment.
-const NEXT_EVENT_SKY: Target = on("ball/environment", 0);
+const NEXT_EVENT_SKY: On<Page> = on("ball/environment", 0, next_event(RATIO));
 /// A black light sphere in a ball that thins out, by directions.
-const DIRECTIONAL: Target = on("ball/known-bugs-paths", 0);
+const DIRECTIONAL: On<Page> = on("ball/known-bugs-paths", 0, {
+    let techniques = Techniques::Mis(Densities::Directional, Heuristic::Balance);
+    page(ParticleRule::Analog, techniques, Some(Tracking::Delta { sampling: 2.5 }), None)
+});
 /// Null-scattering paths.
-const FULL: Target = on("ball/known-bugs-paths", 1);
+const FULL: On<Page> = on("ball/known-bugs-paths", 1, full(Heuristic::Balance));
 /// Null-scattering paths, by the power heuristic.
-const POWER: Target = on("ball/known-bugs-paths", 2);
+const POWER: On<Page> = on("ball/known-bugs-paths", 2, full(Heuristic::Power));
 /// Bidirectional paths, with connections.
-const BIDIRECTIONAL: Target = on("ball/known-bugs-paths", 3);
+const BIDIRECTIONAL: On<Page> = on("ball/known-bugs-paths", 3, CONNECTED);
 /// Null-scattering paths in an environment.
-const FULL_SKY: Target = on("ball/techniques", 3);
+const FULL_SKY: On<Page> = on("ball/techniques", 3, full(Heuristic::Balance));
 /// Bidirectional paths in an environment, with connections.
-const BIDIRECTIONAL_SKY: Target = on("ball/techniques", 6);
+const BIDIRECTIONAL_SKY: On<Page> = on("ball/techniques", 6, CONNECTED);
+
+const RATIO: Tracking = Tracking::Ratio { sampling: 2.0, control: 0.0 };
+
+const CONNECTED: Page = page(
+    ParticleRule::Analog,
+    Techniques::Bidirectional(Heuristic::Balance),
+    None,
+    Some(Subpaths::Independent),
+);
+
+const fn page(
+    rule: ParticleRule,
+    techniques: Techniques,
+    shadow: Option<Tracking>,
+    subpaths: Option<Subpaths>,
+) -> Page {
+    let particle = Particle { rule, roulette: None, splitting: Splitting::None };
+    Page { particle, sharing: Sharing { techniques, shadow, subpaths } }
+}
+
+const fn next_event(shadow: Tracking) -> Page {
+    page(ParticleRule::Weighted, Techniques::NextEvent, Some(shadow), None)
+}
+
+const fn full(heuristic: Heuristic) -> Page {
+    page(ParticleRule::Analog, Techniques::Mis(Densities::Full, heuristic), None, None)
+}
 
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Bug {
@@ -61,7 +91,7 @@ enum Bug {
 }
 
 #[rustfmt::skip] // one mutant, one entry
-const LINES: &[Line<Bug>] = &[
+const LINES: &[Line<Page, Bug>] = &[
     ("sphere-shadow-not-clipped", "the shadow ray goes on through the light to the far side", NEXT_EVENT_EXACT, "mean", Bug::Through),
     ("sphere-light-twice", "light that the walk meets counts beside the shadow rays", NEXT_EVENT_SKY, "mean", Bug::Twice),
     ("sphere-pdf-per-area", "the visible area of the light stands for its solid angle", NEXT_EVENT, "mean", Bug::PerArea),
@@ -86,52 +116,20 @@ const LINES: &[Line<Bug>] = &[
 
 /// The family.
 pub fn mutants() -> Vec<Mutant<Sphere>> {
-    let draws = |target, &bug: &Bug| {
-        with((page(target), bug), |(page, bug), setup, _, random| {
-            page.draw_for(*bug, setup, random)
-        })
-    };
-    family(LINES, &Bug::None, draws)
-}
-
-/// The estimator of a target.
-fn page(target: Target) -> Page {
-    let of = |rule, techniques, shadow, subpaths| Page {
-        particle: Particle::of(rule),
-        sharing: Sharing { techniques, shadow, subpaths },
-    };
-    let weighted = |shadow| of(ParticleRule::Weighted, Techniques::NextEvent, Some(shadow), None);
-    let analog = |densities, heuristic, shadow| {
-        of(ParticleRule::Analog, Techniques::Mis(densities, heuristic), shadow, None)
-    };
-    match target {
-        NEXT_EVENT_EXACT => weighted(Tracking::Exact),
-        NEXT_EVENT | NEXT_EVENT_SKY => weighted(Tracking::Ratio { sampling: 2.0, control: 0.0 }),
-        DIRECTIONAL => {
-            let shadow = Tracking::Delta { sampling: 2.5 };
-            analog(Densities::Directional, Heuristic::Balance, Some(shadow))
-        }
-        POWER => analog(Densities::Full, Heuristic::Power, None),
-        FULL | FULL_SKY => analog(Densities::Full, Heuristic::Balance, None),
-        _ => {
-            let techniques = Techniques::Bidirectional(Heuristic::Balance);
-            of(ParticleRule::Analog, techniques, None, Some(Subpaths::Independent))
-        }
-    }
+    family(LINES, &Bug::None, |&page, &bug| {
+        one_by_one(move |setup, _, random| page.draw_for(bug, setup, random))
+    })
 }
 
 impl Steps for Bug {
-    #[inline(always)]
     fn chance<L: Lane>(&self, right: L) -> L {
         if *self == Self::NullsInOne { right.each(1.0) } else { right }
     }
 
-    #[inline(always)]
     fn segment<L: Lane>(&self, before: L) -> L {
         if *self == Self::NullsOfAll { before } else { before.each(1.0) }
     }
 
-    #[inline(always)]
     fn weight<L: Lane, const N: usize>(
         &self,
         heuristic: Heuristic,
@@ -156,22 +154,18 @@ impl Steps for Bug {
         }
     }
 
-    #[inline(always)]
     fn unscattered(&self) -> f64 {
         if *self == Self::Unscattered { 0.5 } else { 1.0 }
     }
 
-    #[inline(always)]
     fn lit<L: Lane>(&self, right: L, transmittance: L) -> L {
         if *self == Self::ShadowTwice { right * transmittance } else { right }
     }
 
-    #[inline(always)]
     fn linked<L: Lane>(&self, right: L, square: L) -> L {
         if *self == Self::GeometryInOne { right / square } else { right }
     }
 
-    #[inline(always)]
     fn connected<L: Lane>(&self, right: L, link: &Link<L>) -> L {
         match self {
             Self::WithoutDistance => right * link.distance * link.distance,
@@ -181,17 +175,14 @@ impl Steps for Bug {
         }
     }
 
-    #[inline(always)]
     fn is_hidden<M: Mask>(&self, right: M) -> M {
         if *self == Self::ThroughLight { right & !right } else { right }
     }
 
-    #[inline(always)]
     fn cosine<L: Lane>(&self, number: L) -> L {
         if *self == Self::EvenEmission { number.one_minus() } else { Honest.cosine(number) }
     }
 
-    #[inline(always)]
     fn light<L: Lane>(&self, sphere: &Sphere, place: [L; 3], right: Light<L>) -> Light<L> {
         let one = right.share.each(1.0);
         match (self, sphere.light) {
@@ -210,7 +201,6 @@ impl Steps for Bug {
         }
     }
 
-    #[inline(always)]
     fn counts<M: Mask>(&self, right: M) -> M {
         if *self == Self::Twice { right | !right } else { right }
     }

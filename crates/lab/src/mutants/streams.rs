@@ -7,11 +7,11 @@
 //! The mean stays right, and so does every single block: what is wrong is the spread of the blocks'
 //! means among each other, and so every standard error.
 
-use super::{Target, product};
+use super::{About, Target, product};
 use numeric::rng::{Address, LANES, Streams};
 
 /// The experiment on which they are shown.
-pub const TARGET: Target = product::LINEAR;
+pub const TARGET: Target = product::LINEAR.target;
 
 /// A known bug in what leads from addresses to random numbers.
 #[derive(Debug, Clone, Copy)]
@@ -24,6 +24,13 @@ pub struct StreamMutant {
     pub check: &'static str,
     /// The streams of a block; [`Address::streams`] is right.
     pub streams: fn(Address) -> Streams,
+}
+
+impl StreamMutant {
+    /// The description.
+    pub fn about(&self) -> About {
+        About { name: self.name, bug: self.bug, target: TARGET, check: self.check }
+    }
 }
 
 /// The family.
