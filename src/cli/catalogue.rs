@@ -11,6 +11,7 @@ use clap::{Args, ValueEnum};
 use super::Console;
 use super::help::Names;
 use super::output::{self, Format};
+use crate::case::Case;
 use crate::case::catalogue::{Catalogue, built_in};
 use crate::case::forms::explain_problem;
 use crate::case::suite;
@@ -18,13 +19,14 @@ use crate::render::{self, Picture};
 use crate::report::page;
 use crate::{checks, phase, report};
 use estimators::recipes::{controls, sampling};
+use lab::mutants::{self, About};
 use media::catalogue::{Page, PageList, suggestion};
 use theory::problems;
 
 /// Arguments of `list`.
 #[derive(Debug, Args)]
 pub struct List {
-    /// One part of the catalogue; without it, all of it
+    /// One part of the catalogue; without it, all but the known bugs
     #[arg(value_parser = Kind)]
     what: Option<What>,
     /// Form of the rows on stdout
@@ -56,6 +58,8 @@ pub enum What {
     Cases,
     #[value(alias = "picture")]
     Pictures,
+    #[value(aliases = ["known-bug", "mutants", "mutant"])]
+    KnownBugs,
 }
 
 impl What {
@@ -161,7 +165,35 @@ fn rows(what: Option<What>, catalogue: &Catalogue) -> Vec<Row> {
             rows.push(Row { part: "pictures".into(), name: source.name, summary: title });
         }
     }
+    if what.as_deref() == Some("known-bugs") {
+        rows.extend(known_bugs().map(|(About { name, bug, .. }, _)| Row {
+            part: "known-bugs".into(),
+            name: name.into(),
+            summary: bug.into(),
+        }));
+    }
     rows
+}
+
+/// Returns the known bugs with the pages of their families.
+fn known_bugs() -> impl Iterator<Item = (About, Page)> {
+    let families = mutants::families().into_iter();
+    families.flat_map(|(page, abouts)| abouts.into_iter().map(move |about| (about, page)))
+}
+
+/// Returns the text about a known bug: what the code does, where it is caught, and the page of its family.
+fn known_bug(about: &About, page: &Page) -> String {
+    let About { bug, target, check, .. } = about;
+    let case = suite::find(target.case).and_then(|source| Case::read(&source).ok());
+    let estimator = case.map(|case| case.id(target.index, None).estimator.to_string());
+    let place =
+        format!("`{}` of the built-in case `{}`", estimator.unwrap_or_default(), target.case);
+    let page = page.text();
+    format!(
+        "Wrong code: {bug}.\n\n`trueflight self-test` draws it in the place of {place}, and requires that the check \
+         `{check}` fails it.\n\n{}",
+        page.trim_end()
+    )
 }
 
 fn table(rows: &[Row], console: &Console) -> String {
@@ -192,7 +224,7 @@ fn csv(rows: &[Row]) -> anyhow::Result<String> {
 /// Arguments of `explain`.
 #[derive(Debug, Args)]
 pub struct Explain {
-    /// A name that `trueflight list` shows, such as ratio, eq21 or pilot, or a part of the list, such as media
+    /// A name that `trueflight list` shows, such as ratio, eq21 or pilot, a known bug, or a part of the list, such as media
     #[arg(required = true, value_parser = Names::Pages, hide_possible_values = true)]
     name: Vec<String>,
 }
@@ -244,6 +276,8 @@ fn explained(name: &str, catalogue: &Catalogue) -> Vec<(String, String)> {
     for (part, source) in files {
         found.extend(source.map(|source| (part.to_owned(), fenced(&source.text))));
     }
+    let bugs = known_bugs().filter(|(about, _)| about.name == name);
+    found.extend(bugs.map(|(about, page)| ("known-bugs".to_owned(), known_bug(&about, &page))));
     found
 }
 
@@ -259,7 +293,8 @@ fn unknown(written: &str, name: &str, catalogue: &Catalogue) -> anyhow::Error {
     let sources = suite::suite().into_iter().chain(render::gallery()).map(|source| source.name);
     let kinds = What::value_variants().iter().map(|what| what.name());
     let pages = pages(catalogue).into_iter().map(|(_, page)| page.name());
-    let mut names: Vec<String> = pages.chain(kinds).chain(sources).collect();
+    let bugs = known_bugs().map(|(about, _)| about.name.to_owned());
+    let mut names: Vec<String> = pages.chain(kinds).chain(sources).chain(bugs).collect();
     names.sort();
     names.dedup();
     let names: Vec<&str> = names.iter().map(String::as_str).collect();
