@@ -135,55 +135,93 @@ impl Line {
 
     /// Solves two equations with `m₋(0)` and `m₊(end)` given, A and B by the stretch, s± by the number of the node.
     /// The value at the beginning is `m₊`.
+    ///
+    /// From the end back, each panel gets the `m₊` that what lies beyond it returns for a given `m₋`. From the beginning
+    /// on, each panel then gets its values.
     pub fn both_ways(
         &self,
         rates: impl Fn(usize) -> [Wide; 2],
         source: impl Fn(usize) -> [Wide; 2],
         [first, last]: [Wide; 2],
     ) -> Solution<Both> {
-        let flows: Vec<[Flow; NODES + 1]> = (self.0.iter())
-            .map(|panel| {
-                let node = |i: usize| if i < NODES { RULE.nodes[i] } else { Wide::ONE };
-                std::array::from_fn(|i| Flow::new(rates(panel.stretch), panel.width * node(i)))
-            })
-            .collect();
-        // ∫ e^{−Mt} (s₊, −s₋) dt to all nodes and to the end of each panel.
-        let lost: Vec<[Both; NODES + 1]> = (self.0.iter().zip(&flows).enumerate())
-            .map(|(number, (panel, flows))| {
-                let lost: [Both; NODES] = std::array::from_fn(|i| {
-                    let [plus, minus] = source(number * NODES + i);
-                    flows[i].back([plus, -minus])
-                });
-                let way = [0, 1].map(|way| lost.map(|lost| lost[way]));
-                std::array::from_fn(|i| {
-                    let weights = if i < NODES { &RULE.running[i] } else { &RULE.weights };
-                    way.map(|lost| panel.width * sum(weights, &lost))
-                })
-            })
-            .collect();
-        // m₊ = ρ m₋ + η at the beginning of each panel.
-        let mut beyond = vec![[Wide::default(), last]];
-        for (flows, lost) in flows.iter().zip(&lost).rev() {
-            let [rho, eta] = beyond[beyond.len() - 1];
-            let left = |both: Both| {
-                let [plus, minus] = flows[NODES].on(both);
-                plus - rho * minus
-            };
-            let scale = left([Wide::ONE, Wide::default()]);
-            let turned = -left([Wide::default(), Wide::ONE]) / scale;
-            beyond.push([turned, (eta + left(lost[NODES])) / scale]);
-        }
+        let panels = self.0.iter().enumerate();
+        let panels = panels.map(|(number, panel)| {
+            Passage::new(rates(panel.stretch), panel.width, |node| source(number * NODES + node))
+        });
+        let panels: Vec<Passage> = panels.collect();
+        let end = Beyond { returned: Wide::default(), emitted: last };
+        let beyond = panels.iter().rev().scan(end, |beyond, panel| {
+            *beyond = beyond.before(panel);
+            Some(*beyond)
+        });
+        let beyond: Vec<Beyond> = beyond.collect();
         let mut minus = first;
         let mut at = Vec::with_capacity(self.0.len() * NODES);
         let mut begin = None;
-        for ((flows, lost), &[rho, eta]) in flows.iter().zip(&lost).zip(beyond.iter().rev()) {
-            let from = [rho * minus + eta, minus];
-            begin.get_or_insert(from);
-            let value = |i: usize| flows[i].on([from[0] - lost[i][0], from[1] - lost[i][1]]);
-            at.extend((0..NODES).map(value));
-            minus = value(NODES)[1];
+        for (panel, beyond) in panels.iter().zip(beyond.iter().rev()) {
+            let here = [beyond.returned * minus + beyond.emitted, minus];
+            begin.get_or_insert(here);
+            at.extend((0..NODES).map(|node| panel.value(node, here)));
+            minus = panel.value(NODES, here)[1];
         }
         Solution { at, begin: begin.unwrap_or([last, first]) }
+    }
+}
+
+/// A panel between its beginning and its nodes; number `NODES` is its end.
+struct Passage {
+    /// `e^{Mt}`.
+    flows: [Flow; NODES + 1],
+    /// `∫₀ᵗ e^{−Mt'} (s₊, −s₋) dt'`.
+    lost: [Both; NODES + 1],
+}
+
+impl Passage {
+    /// A panel with its A and B, its width, and its s± by the number of the node.
+    fn new(rates: [Wide; 2], width: Wide, source: impl Fn(usize) -> [Wide; 2]) -> Self {
+        let place = |node: usize| if node < NODES { RULE.nodes[node] } else { Wide::ONE };
+        let flows = std::array::from_fn(|node| Flow::new(rates, width * place(node)));
+        let rate: [Both; NODES] = std::array::from_fn(|node| {
+            let [plus, minus] = source(node);
+            Flow::back(flows[node], [plus, -minus])
+        });
+        let ways = [0, 1].map(|way| rate.map(|rate| rate[way]));
+        let lost = std::array::from_fn(|node| {
+            let weights = if node < NODES { &RULE.running[node] } else { &RULE.weights };
+            ways.map(|rate| width * sum(weights, &rate))
+        });
+        Self { flows, lost }
+    }
+
+    /// The values at a node, given those at the beginning.
+    fn value(&self, node: usize, begin: Both) -> Both {
+        let lost = self.lost[node];
+        self.flows[node].on([begin[0] - lost[0], begin[1] - lost[1]])
+    }
+}
+
+/// What lies beyond a place: `m₊ = returned · m₋ + emitted` there.
+#[derive(Clone, Copy)]
+struct Beyond {
+    returned: Wide,
+    emitted: Wide,
+}
+
+impl Beyond {
+    /// What lies beyond the beginning of a panel, given what lies beyond its end.
+    ///
+    /// `m₊ − returned · m₋ = emitted` at the end is linear in the values at the beginning.
+    fn before(self, panel: &Passage) -> Self {
+        let at_end = |begin: Both| {
+            let [plus, minus] = panel.flows[NODES].on(begin);
+            plus - self.returned * minus
+        };
+        let of_plus = at_end([Wide::ONE, Wide::default()]);
+        let of_minus = at_end([Wide::default(), Wide::ONE]);
+        Self {
+            returned: -of_minus / of_plus,
+            emitted: (self.emitted + at_end(panel.lost[NODES])) / of_plus,
+        }
     }
 }
 

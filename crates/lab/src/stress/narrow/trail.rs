@@ -8,12 +8,16 @@
 //! Q   probability by which doubles decide: P₅₃, or 1 where walks are kept from their end and weighted by P₅₃ themselves
 //! ```
 //!
-//! The mean is exactly that of walks that decide in single precision. A [`Traced`] number is a lane for the walks of
-//! the estimators. It stores that it is `a u + b` of a uniform number u, and a comparison with such a number is a
-//! decision. Leaving the medium is no decision. If rounding separates two walks there, single precision makes its own
-//! decisions from then on.
+//! The mean is exactly that of walks that decide in single precision.
+//!
+//! A walk in doubles runs on a new [`Trail`], which writes its decisions down. A walk in single precision runs on the
+//! trail [`again`](Trail::again), with the decisions as its script. A [`Traced`] number is a lane for the walks of the
+//! estimators. It stores that it is `a u + b` of a uniform number u, and a comparison with such a number is a decision:
+//! the side of a bound on which u is. Leaving the medium is no decision. If rounding separates two walks there, the next
+//! decision is about another word than in the script, and single precision makes its own decisions from then on.
 
 use std::cell::RefCell;
+use std::collections::VecDeque;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
 use numeric::rng::{Random, Stream};
@@ -33,11 +37,27 @@ impl Precision for Narrow {
     const LATTICE: f64 = 16_777_216.0;
 }
 
-/// A decision: whether the uniform number of a word is below a bound.
+/// A side of a bound on which a uniform number is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Side {
+    Below,
+    Above,
+}
+
+impl Side {
+    fn other(self) -> Self {
+        match self {
+            Self::Below => Self::Above,
+            Self::Above => Self::Below,
+        }
+    }
+}
+
+/// A decision: the side of a bound that the uniform number of a word counts to be on.
 #[derive(Debug, Clone, Copy)]
 struct Decision {
     word: u32,
-    is_below: bool,
+    side: Side,
     /// Q.
     probability: f64,
 }
@@ -45,81 +65,87 @@ struct Decision {
 #[derive(Debug)]
 struct State {
     stream: Stream,
+    /// True if comparisons, which would end the walk, are false.
+    is_kept: bool,
     /// Number of words that were taken.
     words: u32,
-    made: Vec<Decision>,
-    /// The next decision that is made or repeated.
-    next: usize,
+    /// Decisions of an earlier walk that are still to be repeated; none once the walks have separated.
+    script: VecDeque<Decision>,
+    /// Decisions of this walk.
+    made: VecDeque<Decision>,
     likelihood: f64,
     /// Number of the last word with a decision, and the interval to which its decisions restrict its uniform number.
-    bounds: (u32, [f64; 2]),
+    interval: (u32, [f64; 2]),
 }
 
 /// The random numbers and decisions of a walk.
 #[derive(Debug)]
-pub struct Trail {
-    state: RefCell<State>,
-    is_kept: bool,
-}
+pub struct Trail(RefCell<State>);
 
 impl Trail {
     /// Trail of a walk. It decides by random numbers; if `is_kept`, its comparisons, which would end it, are false.
     pub fn new(stream: Stream, is_kept: bool) -> Self {
-        let (made, bounds) = (Vec::new(), (0, [0.0, 1.0]));
-        let state = State { stream, words: 0, made, next: 0, likelihood: 1.0, bounds };
-        Self { state: RefCell::new(state), is_kept }
+        let (script, made, interval) = (VecDeque::new(), VecDeque::new(), (0, [0.0, 1.0]));
+        let likelihood = 1.0;
+        Self(RefCell::new(State { stream, is_kept, words: 0, script, made, likelihood, interval }))
     }
 
     /// The trail of a walk that repeats the decisions, with the words of the same stream.
     #[must_use]
     pub fn again(self, stream: Stream) -> Self {
-        let (fresh, made) = (Self::new(stream, self.is_kept), self.state.into_inner().made);
-        fresh.state.borrow_mut().made = made;
+        let State { is_kept, made, .. } = self.0.into_inner();
+        let fresh = Self::new(stream, is_kept);
+        fresh.0.borrow_mut().script = made;
         fresh
     }
 
     /// Factor of the draw: the product of `P(decision)/Q(decision)`.
     pub fn likelihood(&self) -> f64 {
-        self.state.borrow().likelihood
+        self.0.borrow().likelihood
     }
 
     /// Number of random words that the walk took.
     pub fn words(&self) -> f64 {
-        f64::from(self.state.borrow().words)
+        f64::from(self.0.borrow().words)
     }
 
     /// The next uniform number of a precision, and the number of its word.
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // a power of two
     fn uniform<N: Precision>(&self) -> (f64, u32) {
-        let state = &mut *self.state.borrow_mut();
+        let state = &mut *self.0.borrow_mut();
         state.words += 1;
         let lattice = N::LATTICE as u64;
         let upper = state.stream.word() >> (64 - lattice.trailing_zeros());
         (upper as f64 / N::LATTICE, state.words)
     }
+}
 
-    /// Decides whether the uniform number of a word is below a bound, which has the probability `below`. The
-    /// comparison is true if it is (`asks_below`), or if it is not; `is_true` is its result for the number that was
-    /// drawn. Returns the result of the comparison.
-    fn decide(&self, word: u32, below: f64, asks_below: bool, is_true: bool) -> bool {
-        let State { made, next, likelihood, bounds, .. } = &mut *self.state.borrow_mut();
-        let [low, high] = if bounds.0 == word { bounds.1 } else { [0.0, 1.0] };
-        let share = ((below - low) / (high - low)).clamp(0.0, 1.0);
-        let own = |is_below: bool| if is_below { share } else { 1.0 - share };
-        if made.get(*next).is_none_or(|decision| decision.word != word) {
-            let is_below = (is_true && !self.is_kept) == asks_below;
-            let probability = if self.is_kept { 1.0 } else { own(is_below) };
-            made.truncate(*next);
-            made.push(Decision { word, is_below, probability });
-        }
-        let Decision { is_below, probability, .. } = made[*next];
-        *next += 1;
+impl State {
+    /// Decides on which side of a bound the uniform number of a word counts to be: as the script has it, else on the
+    /// side of the number that was `drawn`, or, in a walk that is kept, on the `surviving` side. The number is below
+    /// the bound with the probability `bound`.
+    fn decide(&mut self, word: u32, bound: f64, drawn: Side, surviving: Side) -> Side {
+        let [low, high] = if self.interval.0 == word { self.interval.1 } else { [0.0, 1.0] };
+        let below = ((bound - low) / (high - low)).clamp(0.0, 1.0);
+        let own = |side| if side == Side::Below { below } else { 1.0 - below };
+        let decision = match self.script.pop_front() {
+            Some(earlier) if earlier.word == word => earlier,
+            _ => {
+                self.script.clear();
+                let side = if self.is_kept { surviving } else { drawn };
+                Decision { word, side, probability: if self.is_kept { 1.0 } else { own(side) } }
+            }
+        };
+        self.made.push_back(decision);
+        let Decision { side, probability, .. } = decision;
         // By rounding, a number may be where the probability is 0.
         if probability > 0.0 {
-            *likelihood *= own(is_below) / probability;
+            self.likelihood *= own(side) / probability;
         }
-        *bounds = (word, if is_below { [low, below.min(high)] } else { [below.max(low), high] });
-        is_below == asks_below
+        let rest =
+            if side == Side::Below { [low, bound.min(high)] } else { [bound.max(low), high] };
+        self.interval = (word, rest);
+        side
     }
 }
 
@@ -153,18 +179,22 @@ impl<N: Precision> Traced<'_, N> {
         Self { number, drawn: Some(Drawn { scale, shift, ..drawn }) }
     }
 
-    /// Returns the result of a comparison with a larger number; `is_true` is the result for the plain numbers.
+    /// Returns the result of a comparison `self < other`, which is `plainly` for the plain numbers. With a drawn number
+    /// it is a decision.
     #[inline(always)]
-    fn is_less(self, other: Self, is_true: bool) -> bool {
+    fn is_less(self, other: Self, plainly: bool) -> bool {
         let (drawn, bound, is_smaller) = match (self.drawn, other.drawn) {
             (Some(drawn), _) => (drawn, other.number, true),
             (_, Some(drawn)) => (drawn, self.number, false),
-            _ => return is_true,
+            _ => return plainly,
         };
-        let threshold = (bound.double() - drawn.shift) / drawn.scale;
-        let below = ((threshold * N::LATTICE).ceil() / N::LATTICE).clamp(0.0, 1.0);
-        let asks_below = is_smaller == (drawn.scale > 0.0);
-        drawn.trail.decide(drawn.word, below, asks_below, is_true)
+        let bound = (bound.double() - drawn.shift) / drawn.scale;
+        let bound = ((bound * N::LATTICE).ceil() / N::LATTICE).clamp(0.0, 1.0);
+        // The side of the uniform number on which the comparison is true.
+        let less = if is_smaller == (drawn.scale > 0.0) { Side::Below } else { Side::Above };
+        let side = if plainly { less } else { less.other() };
+        let state = &mut *drawn.trail.0.borrow_mut();
+        state.decide(drawn.word, bound, side, less.other()) == less
     }
 }
 
