@@ -181,11 +181,3 @@ fn github_gets_annotations_and_a_summary() {
     // Elsewhere neither is written.
     assert!(!said(&check(&place, 1, "cases")).contains("::error"));
 }
-
-#[test]
-fn the_workflow_in_the_manual_is_the_one_in_the_examples() {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
-    let read = |name: &str| std::fs::read_to_string(root.join(name)).expect("a file");
-    let (page, workflow) = (read("docs/ci.md"), read("examples/github-workflow.yml"));
-    assert!(page.contains(&format!("```yaml\n{workflow}```\n")), "they differ");
-}

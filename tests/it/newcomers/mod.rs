@@ -4,6 +4,7 @@ mod causes;
 mod console;
 mod decides;
 mod examples;
+mod tutorials;
 
 /// Returns the commands behind a word in a text, without the program's name.
 fn commands(text: &str, word: &str) -> Vec<String> {

@@ -28,8 +28,8 @@ fn files(below: &str) -> Vec<PathBuf> {
             std::fs::read_dir(&folder).expect("a folder").map(|entry| entry.expect("an entry"))
         {
             let (path, name) = (entry.path(), entry.file_name().to_string_lossy().into_owned());
-            let is_built =
-                ["target", "out", "node_modules", "__pycache__", "corpus"].contains(&name.as_str());
+            let is_built = ["target", "book", "out", "node_modules", "__pycache__", "corpus"]
+                .contains(&name.as_str());
             if path.is_dir() && !is_built && (!name.starts_with('.') || name == ".ci") {
                 folders.push(path);
             } else if path.is_file() {

@@ -1,7 +1,7 @@
 //! README and manual: every link has a target, every page is in the table of contents, every case file shown can be
 //! read, and every command shown is valid.
 
-use super::{manual, read, root, trueflight};
+use super::{files, manual, read, root, trueflight};
 use crate::common::{none, source};
 use trueflight::case::Case;
 
@@ -12,6 +12,18 @@ fn blocks<'a>(text: &'a str, language: &str) -> Vec<&'a str> {
     from_fence.filter_map(|rest| rest.split("```").next()).collect()
 }
 
+/// Returns the anchors of the headings of a page, as GitHub and mdBook name them.
+fn anchors(page: &std::path::Path) -> impl Iterator<Item = String> {
+    let text = std::fs::read_to_string(page).unwrap_or_default();
+    let headings: Vec<String> =
+        text.lines().filter(|line| line.starts_with('#')).map(str::to_owned).collect();
+    headings.into_iter().map(|line| {
+        let words = line.trim_start_matches('#').trim().to_lowercase();
+        let kept = words.chars().filter(|c| c.is_alphanumeric() || " -_".contains(*c));
+        kept.map(|c| if c == ' ' { '-' } else { c }).collect()
+    })
+}
+
 #[test]
 fn every_link_leads_somewhere() {
     let mut wrong = Vec::new();
@@ -19,9 +31,13 @@ fn every_link_leads_somewhere() {
         let folder = root().join(&page);
         let folder = folder.parent().expect("a folder");
         for target in text.split("](").skip(1).filter_map(|rest| rest.split(')').next()) {
-            let file = target.split('#').next().unwrap_or_default();
-            let is_here = !file.is_empty() && !file.contains("://") && !file.contains(' ');
-            if is_here && !folder.join(file).exists() {
+            let (file, anchor) = target.split_once('#').unwrap_or((target, ""));
+            if file.contains("://") || target.contains(' ') {
+                continue;
+            }
+            let path = if file.is_empty() { root().join(&page) } else { folder.join(file) };
+            let is_page = !anchor.is_empty() && file.ends_with(".md") || file.is_empty();
+            if !path.exists() || is_page && !anchors(&path).any(|name| name == anchor) {
                 wrong.push(format!("{page}: {target}"));
             }
         }
@@ -41,7 +57,7 @@ fn every_page_is_in_the_table_of_contents() {
 
 #[test]
 fn the_first_pages_are_short() {
-    for (page, most) in [("README.md", 250), ("ARCHITECTURE.md", 120)] {
+    for (page, most) in [("README.md", 200), ("ARCHITECTURE.md", 120)] {
         let lines = read(page).lines().count();
         assert!(lines <= most, "{page} has {lines} lines, of at most {most}");
     }
@@ -84,4 +100,45 @@ fn every_command_shown_is_one() {
     }
     none(&wrong);
     assert!(parsed >= 15, "only {parsed} commands are shown");
+}
+
+/// Every workflow is shown whole on a page, takes actions by their commits and machines by their versions, and its commands
+/// are valid.
+#[test]
+fn workflows_are_shown_pinned_and_valid() {
+    let (mut wrong, mut parsed) = (Vec::new(), 0);
+    let pages = manual();
+    for path in files("examples/workflows") {
+        let (name, text) = (path.to_string_lossy().into_owned(), read(&path.to_string_lossy()));
+        let shown = format!("```yaml\n{text}```\n");
+        if !pages.iter().any(|(_, page)| page.contains(&shown)) {
+            wrong.push(format!("{name}: no page shows it"));
+        }
+        for line in text.lines() {
+            let action = line.split_once("uses: ").and_then(|(_, action)| action.split_once('@'));
+            let commit = action.map(|(_, version)| version.split(' ').next().unwrap_or_default());
+            let is_commit =
+                |text: &str| text.len() == 40 && text.bytes().all(|c| c.is_ascii_hexdigit());
+            if commit.is_some_and(|commit| !is_commit(commit)) || line.contains("-latest") {
+                wrong.push(format!("{name}: {}", line.trim()));
+            }
+        }
+        // Folded lines of a command are one.
+        let joined = text.replace(">\n", "").lines().map(str::trim).collect::<Vec<_>>().join("\n");
+        let joined = joined.replace("\n--", " --").replace("\npasses/", " passes/");
+        for line in joined.lines() {
+            let Some((_, command)) = line.split_once("/trueflight ") else { continue };
+            let command =
+                command.replace("${{ matrix.part }}", "1").replace("$(date +%Y%m%d)", "1");
+            let output =
+                trueflight(&command.split_whitespace().chain(["--help"]).collect::<Vec<_>>());
+            parsed += 1;
+            if !output.status.success() {
+                let error = String::from_utf8_lossy(&output.stderr).into_owned();
+                wrong.push(format!("{name}: {command}: {error}"));
+            }
+        }
+    }
+    none(&wrong);
+    assert!(parsed >= 6, "only {parsed} commands are in workflows");
 }
