@@ -17,7 +17,7 @@ use crate::error::Failure;
 /// the case's own, with its values.
 #[derive(Debug, Clone, FromPyObject)]
 #[pyo3(from_item_all)]
-pub struct Asked {
+pub struct CaseRequest {
     kind: String,
     text: String,
     sweep: Option<(String, Vec<f64>)>,
@@ -29,7 +29,7 @@ pub fn built_in() -> Vec<String> {
     suite::suite().into_iter().map(|source| source.name).collect()
 }
 
-impl Asked {
+impl CaseRequest {
     /// Reads the cases.
     pub fn read(&self) -> Result<Vec<Case>, Failure> {
         if self.kind == "named" && self.sweep.is_none() {

@@ -19,18 +19,18 @@ const PIECE: usize = 8 * BUFFER;
 /// Claim as `trueflight.check` passes it.
 #[derive(Debug, Clone, FromPyObject)]
 #[pyo3(from_item_all)]
-pub struct Asked {
+pub struct ClaimRequest {
     name: String,
     /// Numbers of each property that is set.
     properties: BTreeMap<String, Vec<f64>>,
     seed: u64,
-    case: Option<cases::Asked>,
+    case: Option<cases::CaseRequest>,
     estimator: String,
     sampling: Option<f64>,
     nearest: bool,
 }
 
-impl Asked {
+impl ClaimRequest {
     /// Returns the check by numbers.
     fn check(&self) -> Result<Check<()>, Failure> {
         let mut check = trueflight::claim(&self.name).seed(self.seed);
@@ -44,7 +44,11 @@ impl Asked {
     }
 
     /// Adds theory to a check.
-    fn with_theory(&self, check: Check<()>, case: &cases::Asked) -> Result<Check<()>, Failure> {
+    fn with_theory(
+        &self,
+        check: Check<()>,
+        case: &cases::CaseRequest,
+    ) -> Result<Check<()>, Failure> {
         let case = case.read_one()?;
         let (estimator, swept, nearest) = (self.estimator.as_str(), self.sampling, self.nearest);
         let choice = Choice { estimator, swept, nearest, seed: self.seed, channel: None };
@@ -140,7 +144,7 @@ fn absorb(
 #[pyfunction]
 pub fn judge(
     py: Python<'_>,
-    asked: Asked,
+    asked: ClaimRequest,
     arrays: &Bound<'_, PyAny>,
 ) -> PyResult<(&'static str, String, String, String)> {
     let (mut pushed, mut arrays) = (asked.open(py)?, arrays.try_iter()?);

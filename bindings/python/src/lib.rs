@@ -33,7 +33,7 @@ mod _trueflight {
 
     /// Largest number of draws that are made by default.
     #[pymodule_export]
-    const MOST: u64 = trueflight::check::MOST;
+    const MAX_DRAWS: u64 = trueflight::check::MAX_DRAWS;
 
     #[pymodule_init]
     fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {

@@ -15,13 +15,13 @@ use trueflight::record::build;
 use trueflight::report::run::summary_csv;
 
 use crate::background::{Progress, work};
-use crate::cases::Asked;
+use crate::cases::CaseRequest;
 use crate::error::Failure;
 
 /// Options of a plan and of its drawing.
 #[derive(Debug, Clone, FromPyObject)]
 #[pyo3(from_item_all)]
-struct Wanted {
+struct RunRequest {
     draws: Option<u64>,
     seed: u64,
     alpha: f64,
@@ -29,7 +29,7 @@ struct Wanted {
     threads: usize,
 }
 
-impl Wanted {
+impl RunRequest {
     fn options(&self) -> Result<Options, Failure> {
         let wrong = |error| {
             let cure = "a filter is a pattern such as \"*eq21*:single\"";
@@ -61,11 +61,11 @@ impl Wanted {
 #[pyfunction]
 pub fn predict(
     py: Python<'_>,
-    cases: Asked,
+    cases: CaseRequest,
     wanted: &Bound<'_, PyAny>,
     optimum: bool,
 ) -> PyResult<String> {
-    let wanted: Wanted = wanted.extract()?;
+    let wanted: RunRequest = wanted.extract()?;
     let predicted = if optimum { build::predicted_with_optima } else { build::predicted };
     work(py, wanted.threads, None, move |_| {
         let cases = cases.read()?;
@@ -81,11 +81,11 @@ pub fn predict(
 #[pyfunction]
 pub fn run(
     py: Python<'_>,
-    cases: Asked,
+    cases: CaseRequest,
     wanted: &Bound<'_, PyAny>,
     tell: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<String> {
-    let wanted: Wanted = wanted.extract()?;
+    let wanted: RunRequest = wanted.extract()?;
     work(py, wanted.threads, tell, move |progress| {
         let cases = cases.read()?;
         let plan = wanted.plan(&cases)?;

@@ -1,14 +1,25 @@
 """Tests Monte Carlo estimators of light and radiation transport against exact theory.
 
-``check`` judges draws: an array, an iterator, or a callable that makes them. ``predict``, ``run`` and ``sweep`` tell what
-theory says of a case, and draw it. What they find goes with a stated error rate: a correct estimator fails with chance
-alpha at most. The fixture ``unbiased`` brings the same to pytest.
+What to call:
+
+    check(draws, truth=0.37)         is an estimator unbiased? Draws are an array, an iterator, or a function that makes them
+    predict(case)                    mean, variance, cost and figure of merit of each estimator of a case, without a draw
+    run(case)                        draws each estimator of a case and judges it
+    sweep(case, sampling=[1, 2])     either, along values of one quantity
+    cases()                          names of the built-in cases
+
+``check`` returns a ``Verdict``: true if the draws pass, with ``mean``, ``z``, ``reason`` and ``assert_pass()``. The others return
+dicts of columns, which pandas and Polars take. In pytest the fixture ``unbiased`` takes the arguments of ``check``. A correct
+estimator fails with probability ``alpha`` at most, by default 0.001. Invalid arguments raise ``Error``, a ``ValueError`` that
+names the cure.
 
 >>> import numpy as np
 >>> import trueflight as tf
 >>> flights = lambda n, rng: (rng.exponential(size=n) > 1.0).astype(float)
 >>> tf.check(flights, truth=np.exp(-1.0), range=(0.0, 1.0)).passed
 True
+
+The manual's page is docs/python.md in the repository.
 """
 
 from ._cases import cases, predict, run, sweep

@@ -64,8 +64,11 @@ def run(
     ``draws`` are planned for each experiment, 2 to 1e12 (by default the number of the case, or 4e6); the gate may stop earlier,
     or go on. ``alpha`` is the probability that any of them fails although all are correct. Results do not depend on
     ``threads``. ``progress`` is a callable of the draws made and those planned, or ``True`` for a line on stderr. Ctrl-C ends
-    the drawing within a tenth of a second. The other arguments are those of ``predict``, whose columns ``mean``, ``z_mean``,
-    ``verdict``, … are then filled.
+    the drawing within a tenth of a second. The other arguments are those of ``predict``.
+
+    Returns the columns of ``predict``, with ``mean``, ``z_mean``, ``verdict``, … filled; ``seconds`` are of one processor.
+
+    Raises ``trueflight.Error``, ``CaseNotFound`` and ``KeyboardInterrupt`` as ``predict`` does. A failing verdict is no error.
     """
     wanted = _wanted(draws, seed, alpha, filter, threads)
     return _drawn(as_case(case), wanted, progress)
@@ -87,6 +90,9 @@ def sweep(
     The quantity is one of ``sampling`` and ``control`` (1/length), ``sampling_scale``, ``density``, ``albedo_scale`` (factors),
     ``albedo``, ``points``, ``contrast``, as in ``sweep(case, sampling=[0.5, 1.0, 2.0])``. Without ``draws`` it only
     predicts; with them it draws as ``run`` does.
+
+    Returns the columns of ``predict``. Raises ``trueflight.Error`` if no estimator of the case depends on the quantity, or if a
+    value is impossible, and otherwise as ``predict`` does.
     """
     if len(values) != 1 or not set(values) <= set(_SWEEPS):
         found = ", ".join(values) or "nothing"
@@ -188,7 +194,7 @@ def _drawn(asked: dict[str, Any], wanted: dict[str, Any], progress: Progress) ->
     line = _Line()
     try:
         found = _columns(_trueflight.run(asked, wanted, line))
-        line.tell(f"drew {line.done:.3g} draws")
+        line.show(f"drew {line.done:.3g} draws")
         return found
     finally:
         line.end()
@@ -206,9 +212,9 @@ class _Line:
 
     def __call__(self, done: int, planned: int) -> None:
         self.done = done
-        self.tell(f"drawing: {min(100 * done // planned, 99)} % of {planned:.3g} draws")
+        self.show(f"drawing: {min(100 * done // planned, 99)} % of {planned:.3g} draws")
 
-    def tell(self, text: str) -> None:
+    def show(self, text: str) -> None:
         """Writes over the last text."""
         print("\r" + text.ljust(self._width), end="", file=sys.stderr, flush=True)
         self._width = len(text)

@@ -1,4 +1,4 @@
-"""Is my estimator unbiased?"""
+"""Checks of draws: is an estimator unbiased?"""
 
 import itertools
 import os
@@ -51,7 +51,7 @@ def check(
     seed: int = 1,
     name: str | None = None,
 ) -> Verdict:
-    """Judges draws: are mean and variance what they should be? A correct estimator fails with probability ``alpha``
+    """Judges draws: are mean, variance and distribution what they should be? A correct estimator fails with probability ``alpha``
     at most.
 
     ``source`` is one of
@@ -99,9 +99,10 @@ def check(
     ``alpha``, ``draws``, ``seed``, ``name``
         Error rate; total number of draws; seed of the random numbers of callables; name in the verdict.
 
+    Returns a ``Verdict``, true if it is a pass. A draw that is NaN or infinite is not an error but a fail.
+
     Raises ``trueflight.Error`` (a ``ValueError``) for invalid arguments, ``DrawsError`` (also a ``TypeError``) for draws that
-    are not real numbers, ``CaseNotFound`` (also a ``FileNotFoundError``). Exceptions of a callable come through. A draw
-    that is NaN or infinite is not an error but a fail.
+    are not real numbers, ``CaseNotFound`` (also a ``FileNotFoundError``). Exceptions of a callable come through.
 
     >>> import numpy as np
     >>> halves = np.random.default_rng(1).random(1_000_000) < 0.5

@@ -13,7 +13,7 @@ import numpy as np
 
 from ._arrays import Array, dimensions, local, pieces, small_format, taken
 from ._errors import Error
-from ._trueflight import BLOCK, MOST
+from ._trueflight import BLOCK, MAX_DRAWS
 
 Shape = tuple[int, ...]
 
@@ -70,7 +70,7 @@ def from_callable(name: str, make: Callable[..., Any], draws: int | None, seed: 
     """Returns the draws of a callable, some at a time; its exceptions pass through."""
     rng = np.random.default_rng([seed, zlib.crc32(name.encode())])
     arguments = (rng,) if _takes_rng(make) else ()
-    left = MOST if draws is None else draws
+    left = MAX_DRAWS if draws is None else draws
     while left > 0:
         count = min(left, AT_ONCE)
         yield from from_array(name, make(count, *arguments), count=count)[0]
@@ -79,7 +79,7 @@ def from_callable(name: str, make: Callable[..., Any], draws: int | None, seed: 
 
 def from_iterator(name: str, source: Iterable[Any], draws: int | None) -> Iterator[Chunk]:
     """Returns the draws of an iterator that yields draws one by one, or arrays of them; at most ``draws`` of them."""
-    left = MOST if draws is None else draws
+    left = MAX_DRAWS if draws is None else draws
     iterator = iter(source)
     for first in iterator:
         rest: Iterable[Any] = itertools.chain([first], iterator)

@@ -3,7 +3,7 @@ from typing import Any, Literal
 
 BLOCK: int
 """Number of draws that are judged at a time."""
-MOST: int
+MAX_DRAWS: int
 """Largest number of draws that are made by default."""
 __version__: str
 

@@ -7,16 +7,17 @@ from typing import Any, Literal
 import numpy as np
 import numpy.typing as npt
 
-Number = float | None | npt.NDArray[np.float64]
+from . import _figure
 
-_COLOURS = {"pass": "#1a7f37", "fail": "#cf222e", "inconclusive": "#9a6700"}
+Number = float | None | npt.NDArray[np.float64]
 
 
 class Verdict:
     """The verdict of a check, with its numbers; true if it is a pass.
 
     A number is a float if a draw is one value, ``None`` if it is unknown. If a draw has k values it is an array of float64,
-    shape (k,), with NaN for unknown numbers. ``str(verdict)`` has all lines of ``trueflight judge``.
+    shape (k,), with NaN for unknown numbers. Means have the unit of the draws, variances its square. ``str(verdict)`` has all
+    lines of ``trueflight judge``. A notebook shows it as a figure, deviations beside the bias that a pass excludes, and a table.
     """
 
     name: str
@@ -126,11 +127,12 @@ class Verdict:
 
     def _repr_html_(self) -> str:
         head, *lines = self._text.split("\n")
-        colour = _COLOURS[self.verdict]
+        colour = _figure.COLOURS[self.verdict]
+        figure = _figure.svg(_figure.rows(self.values, self.channels), bool(self.values[0]["truth"]))
         rows = ""
         for line in lines:
             word, _, text = line.strip().partition(" ")
             cells = f"<th style='text-align:left'>{html.escape(word)}</th>"
             rows += f"<tr>{cells}<td style='text-align:left'>{html.escape(text.strip())}</td></tr>"
         bold = f"<b style='color:{colour}'>{html.escape(head)}</b>"
-        return f"<div>{bold}<table>{rows}</table></div>"
+        return f"<div>{bold}<br>{figure}<table>{rows}</table></div>"
