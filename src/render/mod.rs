@@ -3,6 +3,7 @@
 //! | key | meaning | default |
 //! |---|---|---|
 //! | `title` | one line above the picture | required |
+//! | `caption` | what to see in it, in a few sentences below the title | none |
 //! | `picture.NAME` | the subject: `transmittance` (before the sky; in colour where `volume` is a list of three), `single-scattering` (of a point light) or `multiple-scattering` (of the sky) | required |
 //!
 //! Within `[picture.NAME]`:
@@ -67,6 +68,8 @@ pub struct Picture {
     pub name: String,
     /// One line above it.
     pub title: String,
+    /// Sentences below the title that say what to see; may be empty.
+    pub caption: String,
     /// The problem's name in the catalogue.
     pub problem: String,
     scene: Scene,
@@ -89,6 +92,7 @@ impl Picture {
             return None;
         }
         let title = root.text("title");
+        let caption = if root.has("caption") { root.text("caption") } else { Some(String::new()) };
         let mut names = SUBJECTS.each_ref().map(|kind| kind.name.to_owned()).to_vec();
         names.dedup();
         let explain = |name: &str| explain_problem("picture", name);
@@ -100,7 +104,7 @@ impl Picture {
         });
         root.close();
         let (problem, scene) = scene?;
-        Some(Self { name: source.name.clone(), title: title?, problem, scene })
+        Some(Self { name: source.name.clone(), title: title?, caption: caption?, problem, scene })
     }
 
     /// Reads a picture file, or a built-in picture.
@@ -123,7 +127,8 @@ impl Picture {
     /// Renders the picture with a seed; `progress` is called after every row, twice.
     pub fn render(&self, seed: u64, progress: &(dyn Fn() + Sync)) -> PictureRecord {
         let rendered = self.scene.render(&Request { seed, name: &self.name, progress });
-        PictureRecord::new([&self.name, &self.title, &self.problem], &self.scene.view, rendered)
+        let words = [&self.name, &self.title, &self.caption, &self.problem];
+        PictureRecord::new(words, &self.scene.view, rendered)
     }
 }
 

@@ -20,9 +20,9 @@ const PANELS: usize = 16;
 /// Distance of the pixels that make pilot draws, in columns and in rows.
 const PILOTS_EVERY: usize = 2;
 /// Smallest number of pilot draws in a picture: their mean is the cost of a draw to a few hundredths.
-const LEAST_PILOTS: u64 = 2048;
+const MIN_PILOTS: u64 = 2048;
 /// Number of draws below which they are made one by one.
-const FEW: u64 = 32;
+const MIN_PACKET_DRAWS: u64 = 32;
 
 /// Address without pilot rays: pictures take no recipes that learn.
 const NOWHERE: Address = Address { seed: 0, experiment: 0, block: 0, lane: 0 };
@@ -164,7 +164,7 @@ impl<'a> Pixel<'a> {
         let is_pilot = [column, row].iter().all(|at| at % PILOTS_EVERY == 0);
         let address = Address { block: number as u64, ..listed.addresses[0] };
         let pixels: usize = self.view.size.iter().map(|size| size.div_ceil(PILOTS_EVERY)).product();
-        let draws = LEAST_PILOTS.div_ceil(pixels as u64);
+        let draws = MIN_PILOTS.div_ceil(pixels as u64);
         let lookups = is_pilot.then(|| self.drawn(&*experiment, draws, address).lookups);
         let pilots = lookups.unwrap_or(0);
         let lookups = lookups.map(|lookups| lookups as f64 / draws as f64);
@@ -192,8 +192,11 @@ impl<'a> Pixel<'a> {
         let (sum, squares) = (Colour::default(), Colour::default());
         let mut pixel = PixelDraws { draws, sum, squares, lookups: 0 };
         // Both kernels make the same draws: packs of eight need many draws to be filled.
-        let kernel =
-            if draws < FEW { Kernel::Single } else { Kernel::Packets(fearless_simd::Level::new()) };
+        let kernel = if draws < MIN_PACKET_DRAWS {
+            Kernel::Single
+        } else {
+            Kernel::Packets(fearless_simd::Level::new())
+        };
         let mut left = draws;
         while left > 0 {
             let count = left.min(DrawBuffer::LENGTH as u64);

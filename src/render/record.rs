@@ -14,6 +14,8 @@ pub struct PictureRecord {
     pub name: String,
     /// One line above it.
     pub title: String,
+    /// Sentences below the title that say what to see; may be empty.
+    pub caption: String,
     /// The problem's name.
     pub problem: String,
     /// The field.
@@ -91,7 +93,8 @@ pub struct Exposure {
 
 impl PictureRecord {
     /// Compares the images of a rendering with its reference.
-    pub(super) fn new([name, title, problem]: [&str; 3], view: &View, rendered: Rendered) -> Self {
+    pub(super) fn new(words: [&String; 4], view: &View, rendered: Rendered) -> Self {
+        let [name, title, caption, problem] = words.map(String::clone);
         let Rendered { budget, channels, covered, reference, images } = rendered;
         let exposures: Vec<ExposureRecord> = images
             .into_iter()
@@ -124,9 +127,10 @@ impl PictureRecord {
         let image = image(view, channels, &covered, &exposed.values);
         let errors = roots(view, channels, &covered, &exposed.square_errors);
         Self {
-            name: name.to_owned(),
-            title: title.to_owned(),
-            problem: problem.to_owned(),
+            name,
+            title,
+            caption,
+            problem,
             medium: view.medium.clone(),
             size: view.size,
             channels,

@@ -113,9 +113,9 @@ impl Scene {
         let images = self.estimators.list.iter().map(|parsed| (parsed, self.lookups, "image"));
         for (index, (parsed, lookups, kind)) in images.chain(reference).enumerate() {
             let label = self.label(parsed);
-            let twins = listed.iter().filter(|other| other.label == label).count();
+            let namesakes = listed.iter().filter(|other| other.label == label).count();
             let Label { estimator, sampling, control } = &label;
-            let words = format!("{estimator}|{sampling}|{control}|{twins}|{kind}");
+            let words = format!("{estimator}|{sampling}|{control}|{namesakes}|{kind}");
             let address = |what: &str| {
                 let experiment = name_hash(&format!("picture|{}|{words}|{what}", request.name));
                 Address { seed: request.seed, experiment, block: 0, lane: 0 }

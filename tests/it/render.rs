@@ -258,6 +258,23 @@ fn float_maps_hold_the_image_from_the_lowest_row() {
 }
 
 #[test]
+fn a_caption_stands_below_the_title_and_every_picture_has_one() {
+    let plain = rendered(&ball(16, 40.0), 1);
+    let text = ball(16, 40.0).replace("title = ", "caption = \"A ball, seen twice.\"\ntitle = ");
+    let with = rendered(&text, 1);
+    assert_eq!((plain.caption.as_str(), with.caption.as_str()), ("", "A ball, seen twice."));
+    assert_eq!(plain.reference.image, with.reference.image);
+    let height = |record: &PictureRecord| {
+        let png = report::artifacts(record).expect("files").swap_remove(0).bytes;
+        u32::from_be_bytes(png[20..24].try_into().expect("four bytes"))
+    };
+    assert!(height(&with) > height(&plain));
+    for built_in in render::gallery() {
+        assert!(built_in.text.contains("\ncaption = \""), "{}", built_in.name);
+    }
+}
+
+#[test]
 fn every_mistake_is_listed_with_its_place_and_cure() {
     let text = "title = \"broken\"
         [picture.transmittance]

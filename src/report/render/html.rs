@@ -67,7 +67,7 @@ pub fn text(pictures: &[(PictureRecord, Vec<u8>)]) -> String {
             h2 #sheets { "Pictures" }
             @for (picture, sheet) in pictures {
                 figure {
-                    figcaption { b { (picture.name) } " " (picture.title) }
+                    figcaption { b { (picture.name) } " " (picture.title) br; (picture.caption) }
                     img.sheet alt={ "The reference of " (picture.name)
                                     " and the image of each estimator, each with its error in false colour" }
                         src={ "data:image/png;base64," (STANDARD.encode(sheet)) };

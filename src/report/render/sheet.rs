@@ -15,6 +15,8 @@ const FILE_PIXEL: f64 = 2.0 / 3.0;
 const GAP: f64 = 20.0;
 /// Maximum number of images in a row, the reference among them.
 const MOST: usize = 6;
+/// Maximum number of lines of the caption.
+const MAX_CAPTION_LINES: usize = 4;
 /// Size of letters, and distance of lines.
 const LETTER: f64 = 10.5;
 const LINE: f64 = 15.0;
@@ -54,14 +56,18 @@ fn compose(record: &PictureRecord, face: &Typeface) -> Sheet {
     let below = record.exposures.iter().map(|exposure| words(face, exposure, room).len());
     let lines = below.fold(4, usize::max);
     let band = even(2.0 * size[1] + 14.0 + lines as f64 * LINE + GAP);
-    let head = 64.0;
     let width = GAP + across as f64 * step;
+    let caption = wrapped(face, &record.caption, width - 2.0 * GAP, MAX_CAPTION_LINES);
+    let head = even(64.0 + LINE * caption.len() as f64);
     let mut sheet = Sheet::new(width, head + bands as f64 * band);
     let full = width - 2.0 * GAP;
     let title = fit(face, &record.title, 16.0, full);
     sheet.text([GAP, 22.0], title, 16.0, DARK, Align::Start);
     let facts = fit(face, &facts(record), LETTER, full);
     sheet.text([GAP, 44.0], facts, LETTER, GREY, Align::Start);
+    for (i, line) in caption.into_iter().enumerate() {
+        sheet.text([GAP, 61.0 + LINE * i as f64], line, LETTER, DARK, Align::Start);
+    }
     for number in 0..count {
         let (row, column) = (number / across, number % across);
         let (left, top) = (GAP + column as f64 * step, head + row as f64 * band);
