@@ -19,10 +19,25 @@
 //!     .assert_pass();
 //! ```
 //!
-//! [`check`](fn@check) draws from the closure until all questions are decided, compares mean, variance and lookups with
+//! [`check`](fn@check) draws from the closure until all is decided, compares mean, variance and lookups with
 //! theory's prediction of this experiment, and panics with the reason unless they agree. A correct estimator fails with
-//! probability 0.001 at most. Without a case, [`Check::truth`], [`Check::variance`] and [`Check::range`] state what is
-//! known. [`claim`] judges draws that come from elsewhere, [`Gate`] shares one error rate among several checks.
+//! probability 0.001 at most.
+//!
+//! | I want to | item |
+//! |---|---|
+//! | test my estimator, and know its exact mean | [`check`](fn@check) with [`Check::truth`], [`Check::range`], [`Check::variance`] |
+//! | compare it with one of the cases | [`OfCase::of`] |
+//! | test it on all processors | [`check_with`] |
+//! | judge draws that I have already | [`claim`], then [`gate::check::Pushed::absorb`] |
+//! | share one error rate among several checks | [`Gate`] |
+//! | judge images of a renderer | [`judge::images`] |
+//! | predict mean, variance and cost of an estimator | [`plan::Plan`], then [`record::build`] |
+//! | draw and judge a case | [`case::Case::read`], [`plan::Plan::new`], [`draw::run`], [`record::build::judged`] |
+//! | write tables, plots and the page of a run | [`report`] |
+//! | look σ_t or an optical depth up | [`media`] |
+//! | add a medium or an estimator, for cases, too | [`Catalogue`], [`media::own`], [`estimators::own`] |
+//! | give my program all commands | [`cli::main`] |
+//! | find the reason of a failure | [`gate::causes`] |
 //!
 //! Trueflight makes millions of draws of null-collision Monte Carlo estimators of transmittance, free flight and
 //! scattering in heterogeneous media. It compares every mean, variance, cost and distribution with exact theory, and
@@ -77,4 +92,6 @@ mod manual {
     struct Library;
     #[doc = include_str!("../docs/extending.md")]
     struct Extending;
+    #[doc = include_str!("../docs/first-bug.md")]
+    struct FirstBug;
 }

@@ -6,7 +6,7 @@
 
 use super::batch::{Batch, each_value};
 use super::check::{Question, Subject};
-use super::law::Law;
+use super::distribution::DistributionTest;
 use gate::stats::chi_square;
 use theory::{self, Prediction};
 
@@ -58,7 +58,7 @@ impl Values {
     }
 }
 
-impl Law for Values {
+impl DistributionTest for Values {
     fn size(&self) -> usize {
         self.value.len() + 1
     }
@@ -97,7 +97,10 @@ impl Law for Values {
 ///
 /// The reason why there is no test although theory knows the values: rounding hides which one a draw is. `Ok(None)` if
 /// theory knows no values.
-pub fn of(prediction: &Prediction, same: f64) -> Result<Option<impl Law + use<>>, String> {
+pub fn of(
+    prediction: &Prediction,
+    same: f64,
+) -> Result<Option<impl DistributionTest + use<>>, String> {
     let Some(theory::Law::Atoms(atoms)) = &prediction.law else { return Ok(None) };
     let values = Values::of(atoms.clone(), same);
     if values.is_blurred() {
@@ -111,7 +114,7 @@ pub fn questions(subject: &Subject) -> Vec<Question> {
     let Some(theory::Law::Atoms(atoms)) = &subject.prediction.law else { return Vec::new() };
     let values = Values::of(atoms.clone(), SAME);
     let bins = chi_square::testable_bins(&values.probability, subject.fixed as f64);
-    Question::law("the shares of the values", (bins >= 2).then_some(values))
+    Question::distribution("the shares of the values", (bins >= 2).then_some(values))
 }
 
 #[cfg(test)]

@@ -89,7 +89,11 @@ impl<'a> Batch<'a> {
     /// Adds the number of draws in each class of the experiment's distances, counted once for all checks.
     pub fn add_distances(&self, count: impl Fn(&DrawBuffer) -> Vec<f64>, sums: &mut [f64]) {
         let counts = self.distances.get_or_init(|| count(self.draws));
-        debug_assert_eq!(sums.len(), counts.len(), "an experiment has one law of distances");
+        debug_assert_eq!(
+            sums.len(),
+            counts.len(),
+            "an experiment has one distribution of distances"
+        );
         sums.iter_mut().zip(counts).for_each(|(sum, count)| *sum += count);
     }
 

@@ -9,13 +9,13 @@
 //! ```
 //!
 //! Numbers and totals are plain data, so that files and other machines can hold them. Their meaning depends on the kind
-//! of check: a quantity for the gate ([`super::scalar`]), a p-value ([`super::law`]), a bound on every draw
-//! ([`super::always`]), an inspection of the streams ([`super::law::Inspection`]).
+//! of check: a quantity for the gate ([`super::scalar`]), a p-value ([`super::distribution`]), a bound on every draw
+//! ([`super::always`]), an inspection of the streams ([`super::distribution::Inspection`]).
 
 use serde::{Deserialize, Serialize};
 
 use super::batch::Batch;
-use super::law::{Inspected, Law};
+use super::distribution::{DistributionTest, Inspected};
 use super::scalar::Scalar;
 use crate::case::Tolerance;
 use ::gate::deviation::Deviation;
@@ -89,8 +89,8 @@ impl Question {
     }
 
     /// Returns a question about a distribution; none if there is no test.
-    pub fn law(what: &str, law: Option<impl Law + 'static>) -> Vec<Self> {
-        law.into_iter().map(|law| Self::whole(what, law)).collect()
+    pub fn distribution(what: &str, of: Option<impl DistributionTest + 'static>) -> Vec<Self> {
+        of.into_iter().map(|one| Self::whole(what, one)).collect()
     }
 
     /// Returns a question about one channel.

@@ -9,7 +9,7 @@
 
 use super::batch::{Batch, each_value};
 use super::check::{Question, Subject};
-use super::law::Law;
+use super::distribution::DistributionTest;
 use gate::stats::chi_square;
 use theory::Prediction;
 
@@ -17,7 +17,7 @@ struct Classes {
     probability: Vec<f64>,
 }
 
-impl Law for Classes {
+impl DistributionTest for Classes {
     fn size(&self) -> usize {
         self.probability.len() + 1
     }
@@ -34,7 +34,7 @@ impl Law for Classes {
 }
 
 /// Returns the test; `None` if theory does not know the distribution of the number of lookups.
-pub fn of(prediction: &Prediction) -> Option<impl Law + use<>> {
+pub fn of(prediction: &Prediction) -> Option<impl DistributionTest + use<>> {
     classes(prediction)
 }
 
@@ -47,5 +47,5 @@ fn classes(prediction: &Prediction) -> Option<Classes> {
 pub fn questions(subject: &Subject) -> Vec<Question> {
     let classes = classes(subject.prediction);
     let bins = |law: &Classes| chi_square::testable_bins(&law.probability, subject.fixed as f64);
-    Question::law("the law of the lookups", classes.filter(|law| bins(law) >= 2))
+    Question::distribution("the distribution of the lookups", classes.filter(|law| bins(law) >= 2))
 }

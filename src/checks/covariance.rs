@@ -11,7 +11,7 @@ use std::panic::AssertUnwindSafe;
 
 use super::batch::{Batch, Observe};
 use super::check::{Check, Question, Subject, Untestable};
-use super::law::Law;
+use super::distribution::DistributionTest;
 use super::mean::is_faint;
 use super::scalar::{Scalar, variance};
 use crate::case::Tolerance;
@@ -31,7 +31,7 @@ const ERROR: f64 = 1e-10;
 /// beforehand. `P(E ≥ 1/p) ≤ p` by Markov's inequality.
 struct ByGate(AssertUnwindSafe<Scalar>);
 
-impl Law for ByGate {
+impl DistributionTest for ByGate {
     fn size(&self) -> usize {
         GateSums::default().totals().len()
     }
@@ -50,7 +50,11 @@ impl Law for ByGate {
 }
 
 /// Returns the tests of the covariances of consecutive channels among the first `values`, each with its name in words.
-pub fn of(prediction: &Prediction, draws: u64, values: usize) -> Vec<(String, impl Law + use<>)> {
+pub fn of(
+    prediction: &Prediction,
+    draws: u64,
+    values: usize,
+) -> Vec<(String, impl DistributionTest + use<>)> {
     let subject = Subject {
         prediction,
         draws,

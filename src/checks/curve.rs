@@ -13,7 +13,7 @@
 
 use super::batch::{Batch, Observe};
 use super::check::{Question, Subject, rounding_of};
-use super::law::Law;
+use super::distribution::DistributionTest;
 use super::scalar::{Scalar, variance};
 use estimators::DrawBuffer;
 use gate::session::Quantity;
@@ -55,7 +55,7 @@ impl Increments {
     }
 }
 
-impl Law for Increments {
+impl DistributionTest for Increments {
     fn size(&self) -> usize {
         self.scale.len()
     }
@@ -102,7 +102,11 @@ pub fn needed(prediction: &Prediction) -> Option<f64> {
 
 /// Returns the test of the steps for at least `draws` draws with a relative rounding error of `rounding`; `None` where
 /// theory has no steps that are larger than rounding.
-pub fn of(prediction: &Prediction, draws: u64, rounding: f64) -> Option<impl Law + use<>> {
+pub fn of(
+    prediction: &Prediction,
+    draws: u64,
+    rounding: f64,
+) -> Option<impl DistributionTest + use<>> {
     Increments::of(prediction, draws, rounding)
 }
 
@@ -119,8 +123,8 @@ pub fn questions(subject: &Subject) -> Vec<Question> {
     }
     let is_long = needed(subject.prediction).is_some_and(|least| subject.fixed as f64 >= least);
     if is_long {
-        let law = of(subject.prediction, subject.fixed, rounding_of(subject));
-        return Question::law("the curve along one walk", law);
+        let increments = of(subject.prediction, subject.fixed, rounding_of(subject));
+        return Question::distribution("the curve along one walk", increments);
     }
     let scale = scale(subject.prediction);
     let has_spread = |increment: &Increment| {

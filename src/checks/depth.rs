@@ -14,13 +14,13 @@
 use super::batch::Batch;
 use super::check::{Question, Subject};
 use super::distances::Classes;
-use super::law::Law;
+use super::distribution::DistributionTest;
 use gate::stats::anderson_darling;
 use theory::Prediction;
 
 struct Empirical(Classes);
 
-impl Law for Empirical {
+impl DistributionTest for Empirical {
     fn size(&self) -> usize {
         self.0.len() + 1
     }
@@ -35,11 +35,11 @@ impl Law for Empirical {
 }
 
 /// Returns the test; `None` if theory does not know the distribution of the distances.
-pub fn of(prediction: &Prediction) -> Option<impl Law + use<>> {
+pub fn of(prediction: &Prediction) -> Option<impl DistributionTest + use<>> {
     Classes::of(prediction).map(Empirical)
 }
 
 /// Returns the questions of this check.
 pub fn questions(subject: &Subject) -> Vec<Question> {
-    Question::law("the tails of the distances", of(subject.prediction))
+    Question::distribution("the tails of the distances", of(subject.prediction))
 }

@@ -10,7 +10,7 @@
 
 use super::batch::Batch;
 use super::check::{Question, Subject, last_channel};
-use super::law::Law;
+use super::distribution::DistributionTest;
 use crate::checks::normality;
 use crate::plan::BLOCK;
 use gate::stats::chi_square;
@@ -26,7 +26,7 @@ struct BlockMeans {
     least: f64,
 }
 
-impl Law for BlockMeans {
+impl DistributionTest for BlockMeans {
     fn size(&self) -> usize {
         2
     }
@@ -61,6 +61,6 @@ pub fn questions(subject: &Subject) -> Vec<Question> {
     let needed = normality::needed(kurtosis, channel.tails.rare_event_size);
     let enough = BLOCK as f64 >= needed && subject.fixed / BLOCK >= FEWEST;
     let (mean, scale) = (channel.mean.value, 1.0 / moments.variance().sqrt());
-    let law = BlockMeans { mean, scale, least: needed };
-    Question::law("the spread of the blocks' means", enough.then_some(law))
+    let means = BlockMeans { mean, scale, least: needed };
+    Question::distribution("the spread of the blocks' means", enough.then_some(means))
 }

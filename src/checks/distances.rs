@@ -9,7 +9,7 @@
 
 use super::batch::Batch;
 use super::check::{Question, Subject};
-use super::law::Law;
+use super::distribution::DistributionTest;
 use ::theory::{self, Prediction};
 use estimators::DrawBuffer;
 use gate::stats::chi_square;
@@ -140,7 +140,7 @@ struct Bins {
     size: usize,
 }
 
-impl Law for Bins {
+impl DistributionTest for Bins {
     fn size(&self) -> usize {
         self.classes.len() + 1
     }
@@ -173,7 +173,7 @@ impl Law for Bins {
 }
 
 /// Returns the test of the bins; `None` if theory does not know the distribution of the distances.
-pub fn of(prediction: &Prediction) -> Option<impl Law + use<>> {
+pub fn of(prediction: &Prediction) -> Option<impl DistributionTest + use<>> {
     let classes = Classes::of(prediction)?;
     let size = (classes.len() / BINS).max(1);
     Some(Bins { classes, size })
@@ -181,7 +181,7 @@ pub fn of(prediction: &Prediction) -> Option<impl Law + use<>> {
 
 /// Returns the questions of this check.
 pub fn questions(subject: &Subject) -> Vec<Question> {
-    Question::law("the law of the distances", of(subject.prediction))
+    Question::distribution("the distribution of the distances", of(subject.prediction))
 }
 
 #[cfg(test)]

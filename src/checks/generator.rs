@@ -12,7 +12,7 @@
 //! are compared with each other as blocks are.
 
 use super::check::{Question, Subject};
-use super::law::{Inspected, Inspection};
+use super::distribution::{Inspected, Inspection};
 use gate::stats::{correlation, ties};
 
 /// Number of blocks with streams that are compared.

@@ -2,8 +2,8 @@
 //!
 //! A check turns the prediction of an experiment into questions before the first draw: the levels are then shared among
 //! all questions of the run. Each question has an answer, a [`check::Check`]. Quantities for the gate ([`scalar`]) may
-//! stop the drawing; distributions ([`law`]) have a p-value on a number of draws fixed beforehand; a bound ([`always`])
-//! must hold for every draw; and an inspection ([`law::Inspection`]) looks at the streams of random numbers themselves.
+//! stop the drawing; distributions ([`distribution`]) have a p-value on a number of draws fixed beforehand; a bound ([`always`])
+//! must hold for every draw; and an inspection ([`distribution::Inspection`]) looks at the streams of random numbers themselves.
 //!
 //! From bottom to top: [`batch`], [`check`], the kinds, the pages.
 
@@ -17,9 +17,9 @@ pub mod curve;
 pub mod depth;
 pub mod dispersion;
 pub mod distances;
+pub mod distribution;
 pub mod generator;
 pub mod invariant;
-pub mod law;
 pub mod lookups;
 pub mod mean;
 pub mod normality;
@@ -33,7 +33,7 @@ use media::catalogue::PageList;
 
 pub use batch::Observe;
 pub use check::{Check, Pilot, Question, Subject, rounding};
-pub use law::{Inspected, Law};
+pub use distribution::{DistributionTest, Inspected};
 pub use scalar::Scalar;
 
 /// Page of the catalogue of checks.

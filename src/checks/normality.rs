@@ -13,9 +13,9 @@ const HEAVY: f64 = 0.01;
 /// Number of draws, in units of the rare-event size, that is enough to contain the variance's events.
 const SEEN: f64 = 10.0;
 /// Largest relative standard error of a variance.
-const BLUNT: f64 = 0.1;
+const MAX_VARIANCE_ERROR: f64 = 0.1;
 /// Smallest `(κ − 1) n` for which a variance is random enough to have a normal z.
-const LEAST: f64 = 100.0;
+const MIN_EXCESS: f64 = 100.0;
 
 /// Heaviness of the tails of draws; `None` where it is unknown.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -50,7 +50,7 @@ impl Tails {
         let known = self.eighth_moment_ratio.zip(self.rare_event_size);
         let is_near = known.is_some_and(|(eighth, rare)| n >= needed(eighth, rare));
         let is_sharp = self.kurtosis.is_some_and(|kurtosis| {
-            variance_error(kurtosis, n) <= BLUNT && (kurtosis - 1.0) * n >= LEAST
+            variance_error(kurtosis, n) <= MAX_VARIANCE_ERROR && (kurtosis - 1.0) * n >= MIN_EXCESS
         });
         is_near && is_sharp
     }
@@ -69,7 +69,7 @@ mod tests {
         };
         let n = 1e4;
         let both = |tails: Tails| [tails.has_normal_mean(n), tails.has_normal_variance(n)];
-        assert_eq!(both(tails(3.0, 105.0 / 9.0, 3.0)), [true, true], "a normal law");
+        assert_eq!(both(tails(3.0, 105.0 / 9.0, 3.0)), [true, true], "a normal distribution");
         assert_eq!(both(tails(3.0, 101.0, 3.0)), [true, false]);
         assert_eq!(both(tails(99.0, 99.0, 3.0)), [true, true]);
         // (κ − 1)/n = 1.02e-2: a relative standard error above a tenth.

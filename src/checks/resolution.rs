@@ -12,7 +12,7 @@
 //! collisions of one block, drawn once more.
 
 use super::check::{Question, Subject};
-use super::law::{Inspected, Inspection};
+use super::distribution::{Inspected, Inspection};
 use crate::plan::BLOCK;
 use gate::stats::ties;
 use theory::{Law, Prediction};

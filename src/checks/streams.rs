@@ -12,7 +12,7 @@
 
 use super::batch::Batch;
 use super::check::{Question, Subject, last_channel};
-use super::law::Law;
+use super::distribution::DistributionTest;
 use crate::plan::BLOCK;
 use gate::stats::correlation;
 
@@ -31,7 +31,7 @@ struct IndexSums {
     kurtosis: f64,
 }
 
-impl Law for IndexSums {
+impl DistributionTest for IndexSums {
     fn size(&self) -> usize {
         FIRST + 1
     }
@@ -70,6 +70,6 @@ pub fn questions(subject: &Subject) -> Vec<Question> {
     let by_one = eighth / (6.0 * FIRST as f64 * (blocks as f64).powi(3));
     let enough = enough && by_one <= MOST_BY_ONE;
     let (mean, scale) = (channel.mean.value, 1.0 / moments.variance().sqrt());
-    let law = IndexSums { mean, scale, kurtosis };
-    Question::law("the sums across streams", enough.then_some(law))
+    let sums = IndexSums { mean, scale, kurtosis };
+    Question::distribution("the sums across streams", enough.then_some(sums))
 }

@@ -65,7 +65,7 @@ pub fn prepared(text: &str) -> Option<(Box<dyn Any>, Prediction)> {
 const LONG: u64 = 10_000;
 
 /// Number of streams of each distribution in the long form.
-const MANY: u64 = 1000;
+const LONG_STREAMS: u64 = 1000;
 
 /// Arguments of `self-test`.
 #[derive(Debug, Args)]
@@ -94,7 +94,7 @@ pub(super) fn self_test(arguments: &SelfTestArguments, console: &Console) -> any
         output::writable(out)?;
     }
     let runs = if arguments.long { LONG } else { arguments.runs };
-    let many = if arguments.long { MANY } else { arguments.streams };
+    let many = if arguments.long { LONG_STREAMS } else { arguments.streams };
     let begin = Instant::now();
     let found = arguments.threads.install(|| {
         let bar = output::progress("calibrating", "runs", runs, console);

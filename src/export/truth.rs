@@ -103,14 +103,14 @@ pub struct Question {
     /// Effect of single precision on a sample, relative to the mean.
     pub rounding: f64,
     /// Distribution for integrators that find lights by scattering only.
-    pub without_emitter_sampling: Option<Law>,
+    pub without_emitter_sampling: Option<Sample>,
     /// Distribution for integrators that cast shadow rays.
-    pub with_emitter_sampling: Option<Law>,
+    pub with_emitter_sampling: Option<Sample>,
 }
 
 /// Known properties of the distribution of one sample.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
-pub struct Law {
+pub struct Sample {
     /// Lower bound of all samples.
     pub low: Option<f64>,
     /// Upper bound of all samples.
@@ -139,16 +139,16 @@ pub fn of(scene: &Scene, prediction: &Prediction) -> Truth {
     let diagonal = (scene.bounds().high - scene.bounds().low).norm();
     let rounding = ROUNDINGS * f64::from(f32::EPSILON) * (1.0 + scene.peak() * diagonal);
     let question = |(view, number): (&View, Option<usize>), channel: &theory::Channel| {
-        let [without, with] = laws(scene, view.light);
+        let [without, with] = samples(scene, view.light);
         let known = channel.moments.filter(|moments| moments.variance().is_finite());
-        let fill = |law: Law| Law {
-            variance: law.variance.or(known.map(|moments| moments.variance())),
-            variance_error: law.variance_error.or(known.and_then(|_| channel.moments_error())),
+        let fill = |sample: Sample| Sample {
+            variance: sample.variance.or(known.map(|moments| moments.variance())),
+            variance_error: sample.variance_error.or(known.and_then(|_| channel.moments_error())),
             kurtosis: known.and_then(|moments| moments.kurtosis()).filter(|k| k.is_finite()),
-            ..law
+            ..sample
         };
-        let is_of = |law: Option<(Law, bool)>| {
-            law.map(|(law, is_known)| if is_known { fill(law) } else { law })
+        let is_of = |sample: Option<(Sample, bool)>| {
+            sample.map(|(sample, is_known)| if is_known { fill(sample) } else { sample })
         };
         Question {
             name: if number.is_some() { channel.name.clone() } else { view.name.to_owned() },
@@ -212,9 +212,9 @@ fn channel_of<'a>(
 ///
 /// Without shadow rays a sample is `aⁿ` or 0. With them and weights that add up to at most 1, every scattering
 /// contributes at most `aⁿ`: `Σ aⁿ = 1/(1 − a)`.
-fn laws(scene: &Scene, light: Light) -> [Option<(Law, bool)>; 2] {
-    let within = |high: Option<f64>| Law { low: Some(0.0), high, ..Law::default() };
-    let sure = Law { variance: Some(0.0), variance_error: Some(0.0), ..Law::default() };
+fn samples(scene: &Scene, light: Light) -> [Option<(Sample, bool)>; 2] {
+    let within = |high: Option<f64>| Sample { low: Some(0.0), high, ..Sample::default() };
+    let sure = Sample { variance: Some(0.0), variance_error: Some(0.0), ..Sample::default() };
     let albedo = scene.channels[0].albedo;
     let sum = (albedo < 1.0).then(|| 1.0 / (1.0 - albedo));
     if scene.target == Target::Pbrt {

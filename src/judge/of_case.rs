@@ -235,8 +235,12 @@ fn find(case: &Case, name: &str) -> Result<(usize, String), ChoiceError> {
         (0..case.scenario.estimators()).map(|e| case.id(e, None).estimator).collect();
     // Namesakes are numbered, as in tables.
     let label = |e: usize| {
-        let twins = plain[..e].iter().filter(|&other| *other == plain[e]).count();
-        if twins > 0 { format!("{} #{}", plain[e], twins + 1) } else { plain[e].to_string() }
+        let namesakes = plain[..e].iter().filter(|&other| *other == plain[e]).count();
+        if namesakes > 0 {
+            format!("{} #{}", plain[e], namesakes + 1)
+        } else {
+            plain[e].to_string()
+        }
     };
     let labels: Vec<String> = (0..plain.len()).map(label).collect();
     let catalogue = |e: &usize| plain[*e].name == name;

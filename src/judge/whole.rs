@@ -20,7 +20,7 @@ use std::sync::Arc;
 use super::{Asked, Distribution, DistributionFinding, Reason, Tested, Tests};
 use crate::checks::batch::Batch;
 use crate::checks::resolution::{self, Resolution};
-use crate::checks::{self, Law};
+use crate::checks::{self, DistributionTest};
 use estimators::DrawBuffer;
 use gate::stats::verdict::{BLOCK, Verdict};
 use gate::stats::{multiplicity, ties};
@@ -34,8 +34,8 @@ const SINGLE_PRODUCT: f64 = 1e-5;
 /// Error of a distance in single precision, relative to its position.
 const SINGLE_POSITION: f64 = 1.2e-7;
 /// Number of draws that covariances are tested for, and the largest, if the length is not known.
-const USUAL: u64 = 1 << 18;
-const MOST: u64 = 1 << 24;
+const COVARIANCE_DRAWS: u64 = 1 << 18;
+const MAX_DRAWS: u64 = 1 << 24;
 /// Largest shift of a class's share by rounding, in standard errors.
 const HARMLESS: f64 = 0.05;
 
@@ -57,7 +57,7 @@ impl Distribution for Known {
         Ok(Box::new(Whole {
             prediction: Arc::clone(&self.0),
             asked,
-            laws: None,
+            tests: None,
             fine: Fineness::of(&self.0),
             ties: Found::default(),
             untested: Vec::new(),
@@ -73,7 +73,7 @@ impl Distribution for Known {
 struct Test {
     check: &'static str,
     what: Cow<'static, str>,
-    law: Box<dyn Law>,
+    distribution: Box<dyn DistributionTest>,
     sums: Vec<f64>,
     /// Smallest and largest number of draws for which the test is valid.
     between: [f64; 2],
@@ -84,11 +84,18 @@ impl Test {
     fn new(
         check: &'static str,
         what: impl Into<Cow<'static, str>>,
-        law: impl Law + 'static,
+        distribution: impl DistributionTest + 'static,
         between: [f64; 2],
     ) -> Self {
-        let (sums, found) = (vec![0.0; law.size()], Found::default());
-        Self { check, what: what.into(), law: Box::new(law), sums, between, found }
+        let (sums, found) = (vec![0.0; distribution.size()], Found::default());
+        Self {
+            check,
+            what: what.into(),
+            distribution: Box::new(distribution),
+            sums,
+            between,
+            found,
+        }
     }
 }
 
@@ -105,7 +112,7 @@ struct Whole {
     prediction: Arc<Prediction>,
     asked: Asked,
     /// Tests, made with the first draws, which show their precision.
-    laws: Option<Vec<Test>>,
+    tests: Option<Vec<Test>>,
     fine: Option<Fineness>,
     /// Result of the test of ties.
     ties: Found,
@@ -120,9 +127,9 @@ struct Whole {
 impl Tests for Whole {
     fn absorb(&mut self, columns: &[&[f64]], lookups: &[f64]) {
         let Some(values) = columns.first() else { return };
-        if self.laws.is_none() && !values.is_empty() {
+        if self.tests.is_none() && !values.is_empty() {
             let is_single = columns.iter().all(|column| ties::all_single_precision(column));
-            self.laws = Some(self.prepared(is_single));
+            self.tests = Some(self.prepared(is_single));
         }
         let mut at = 0;
         while at < values.len() && self.seen < self.next {
@@ -138,18 +145,18 @@ impl Tests for Whole {
     }
 
     fn close(mut self: Box<Self>) -> Tested {
-        let laws = self.laws.take().unwrap_or_default();
+        let tests = self.tests.take().unwrap_or_default();
         let ties = std::mem::take(&mut self.ties);
         let fine = self.fine.take().map(|_| ("resolution", Cow::Borrowed(RESOLUTION), ties));
         let n = self.seen as f64;
-        let (rounded, laws): (Vec<_>, Vec<_>) =
-            laws.into_iter().partition(|law| law.found.p.is_none() && n > law.between[1]);
+        let (rounded, tests): (Vec<_>, Vec<_>) =
+            tests.into_iter().partition(|test| test.found.p.is_none() && n > test.between[1]);
         if !rounded.is_empty() {
-            let what: Vec<Cow<str>> = rounded.into_iter().map(|law| law.what).collect();
+            let what: Vec<Cow<str>> = rounded.into_iter().map(|test| test.what).collect();
             let why = "rounding of the draws moves as many of them as chance does";
             self.untested.push(format!("{} not tested: {why}", listed(&what)));
         }
-        let all = laws.into_iter().map(|law| (law.check, law.what, law.found)).chain(fine);
+        let all = tests.into_iter().map(|test| (test.check, test.what, test.found)).chain(fine);
         let (mut findings, mut few) = (Vec::new(), Vec::new());
         for (check, what, Found { p, is_refuted, details }) in all {
             let Some((p, draws)) = p else {
@@ -198,20 +205,20 @@ impl Whole {
         let Asked { rounding, has_lookups, length, values, .. } = self.asked;
         let mut tests = Vec::new();
         let always = [0.0, f64::INFINITY];
-        if let Some(law) = checks::counts::of(&prediction).filter(|_| has_lookups) {
-            tests.push(Test::new("counts", "the distribution of the lookups", law, always));
+        if let Some(counts) = checks::counts::of(&prediction).filter(|_| has_lookups) {
+            tests.push(Test::new("counts", "the distribution of the lookups", counts, always));
         }
-        let draws = length.unwrap_or(USUAL);
-        for (what, law) in checks::covariance::of(&prediction, draws, values) {
-            tests.push(Test::new("covariance", what, law, always));
+        let draws = length.unwrap_or(COVARIANCE_DRAWS);
+        for (what, covariance) in checks::covariance::of(&prediction, draws, values) {
+            tests.push(Test::new("covariance", what, covariance, always));
         }
         if values != prediction.channels.len() {
             return tests;
         }
         let product = if is_single { SINGLE_PRODUCT } else { 0.0 }.max(rounding);
         match checks::atoms::of(&prediction, product.max(checks::atoms::SAME)) {
-            Ok(Some(law)) => {
-                tests.push(Test::new("atoms", "the distribution of the values", law, always));
+            Ok(Some(atoms)) => {
+                tests.push(Test::new("atoms", "the distribution of the values", atoms, always));
             }
             Ok(None) => {}
             Err(why) => {
@@ -221,19 +228,20 @@ impl Whole {
         }
         let position = if is_single { SINGLE_POSITION } else { 0.0 }.max(rounding);
         let between = [0.0, most_draws(&prediction, position)];
-        if let Some(law) = checks::distances::of(&prediction) {
+        if let Some(classes) = checks::distances::of(&prediction) {
             let what = "the distribution of the distances";
-            tests.push(Test::new("distances", what, law, between));
+            tests.push(Test::new("distances", what, classes, between));
         }
-        if let Some(law) = checks::depth::of(&prediction) {
+        if let Some(tails) = checks::depth::of(&prediction) {
             let what = "the distribution of the distances near both ends";
-            tests.push(Test::new("depth", what, law, between));
+            tests.push(Test::new("depth", what, tails, between));
         }
         if let Some(least) = checks::curve::needed(&prediction) {
-            let most = length.unwrap_or(MOST);
-            let law = checks::curve::of(&prediction, most, product.max(16.0 * f64::EPSILON));
+            let most = length.unwrap_or(MAX_DRAWS);
+            let curve = checks::curve::of(&prediction, most, product.max(16.0 * f64::EPSILON));
             let what = "the distribution along the curve";
-            tests.extend(law.map(|law| Test::new("curve", what, law, [least, f64::INFINITY])));
+            tests
+                .extend(curve.map(|steps| Test::new("curve", what, steps, [least, f64::INFINITY])));
         }
         match &mut self.fine {
             Some(fine) if rounding <= COARSE => fine.is_single = is_single,
@@ -244,7 +252,7 @@ impl Whole {
 
     /// Adds some of the draws.
     fn add(&mut self, columns: &[&[f64]], lookups: &[f64], range: std::ops::Range<usize>) {
-        let Self { buffer, laws, fine, .. } = self;
+        let Self { buffer, tests, fine, .. } = self;
         for (to, column) in buffer.values.iter_mut().zip(columns) {
             to.clear();
             to.extend_from_slice(&column[range.clone()]);
@@ -257,8 +265,8 @@ impl Whole {
             fine.absorb(&column[range]);
         }
         let draws = Batch::new(buffer);
-        for test in laws.iter_mut().flatten() {
-            test.law.add(&draws, 0, &mut test.sums);
+        for test in tests.iter_mut().flatten() {
+            test.distribution.add(&draws, 0, &mut test.sums);
         }
     }
 
@@ -270,13 +278,13 @@ impl Whole {
             Some(_) => 1.0,
             None => 1.0 / (f64::from(self.looks + 1) * f64::from(self.looks + 2)),
         };
-        let laws = self.laws.iter_mut().flatten();
+        let tests = self.tests.iter_mut().flatten();
         let mut all: Vec<(Option<f64>, &mut Found)> = Vec::new();
-        for test in laws {
+        for test in tests {
             let [least, most] = test.between;
-            let p = test.law.p_value(&test.sums, n).filter(|_| least <= n && n <= most);
+            let p = test.distribution.p_value(&test.sums, n).filter(|_| least <= n && n <= most);
             if p.is_some() && !test.found.is_refuted {
-                test.found.details = test.law.details(&test.sums, n);
+                test.found.details = test.distribution.details(&test.sums, n);
             }
             all.push((p, &mut test.found));
         }

@@ -9,7 +9,7 @@ use gate::stats::normal;
 use gate::stats::verdict::{MISS, Verdict};
 
 /// Share of the error rate for tests of whole distributions.
-const LAW_SHARE: f64 = 0.2;
+const DISTRIBUTION_SHARE: f64 = 0.2;
 
 /// Levels that the run's questions share, fixed before the first draw.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -17,7 +17,7 @@ pub struct Levels {
     /// Number of scalars that go through the gate.
     pub scalars: usize,
     /// Number of p-values.
-    pub laws: usize,
+    pub distributions: usize,
     /// Number of declared biases, which have an α of their own.
     pub biased: usize,
     /// A scalar fails at `ln E ≥ ln(K/(0.8 α))`.
@@ -27,23 +27,23 @@ pub struct Levels {
     /// A scalar passes at `ln P± ≥ ln(1/β)`.
     pub ln_pass: f64,
     /// Error rate that the p-values share, by Holm.
-    pub law_alpha: f64,
+    pub distribution_alpha: f64,
     /// The z-score that the gate's level corresponds to, for plots.
     pub z: f64,
 }
 
 impl Levels {
     /// Returns the levels at which these numbers of scalars, distributions and declared biases share α.
-    pub fn new(alpha: f64, [scalars, laws, biased]: [usize; 3]) -> Self {
-        let share = alpha * (1.0 - LAW_SHARE) / scalars.max(1) as f64;
+    pub fn new(alpha: f64, [scalars, distributions, biased]: [usize; 3]) -> Self {
+        let share = alpha * (1.0 - DISTRIBUTION_SHARE) / scalars.max(1) as f64;
         Self {
             scalars,
-            laws,
+            distributions,
             biased,
-            ln_fail: ln_fail(alpha * (1.0 - LAW_SHARE), scalars),
+            ln_fail: ln_fail(alpha * (1.0 - DISTRIBUTION_SHARE), scalars),
             ln_biased: ln_fail(alpha, biased),
             ln_pass: -MISS.ln(),
-            law_alpha: alpha * LAW_SHARE,
+            distribution_alpha: alpha * DISTRIBUTION_SHARE,
             z: normal::two_sided(share),
         }
     }

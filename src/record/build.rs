@@ -131,7 +131,7 @@ fn record(plan: &Plan, cases: Vec<CaseRecord>) -> Record {
     let levels = &plan.levels;
     let gate = Gate {
         scalars: levels.scalars,
-        laws: levels.laws,
+        laws: levels.distributions,
         biased: levels.biased,
         beta: MISS,
         ln_e_limit: levels.ln_fail,

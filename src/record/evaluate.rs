@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! gate   failed ⇒ fail, passed ⇒ pass, open ⇒ underpowered if that was known, else inconclusive
-//! law    p-values of the whole run together, by Holm; none where the draws were cut short
+//! distribution  p-values of the whole run together, by Holm; none where the draws were cut short
 //! bound  broken by any draw ⇒ fail
 //! ```
 //!
@@ -33,7 +33,10 @@ pub struct Judged<'d> {
 pub fn run<'d>(plan: &Plan, draws: &'d Draws) -> Vec<Judged<'d>> {
     let mut judged =
         parallel::map(&draws.experiments, |of| Judged { of, findings: findings(plan, of) });
-    judge_laws(plan, &mut judged.iter_mut().flat_map(|one| &mut one.findings).collect::<Vec<_>>());
+    judge_distributions(
+        plan,
+        &mut judged.iter_mut().flat_map(|one| &mut one.findings).collect::<Vec<_>>(),
+    );
     judged
 }
 
@@ -120,11 +123,12 @@ fn finding(
 }
 
 /// Judges the p-values of a run together.
-fn judge_laws(plan: &Plan, findings: &mut [&mut Finding]) {
+fn judge_distributions(plan: &Plan, findings: &mut [&mut Finding]) {
     let p: Vec<f64> = findings.iter().filter_map(|finding| finding.p).collect();
-    let rejected = multiplicity::holm(&p, plan.levels.laws, plan.levels.law_alpha);
-    let laws = findings.iter_mut().filter(|finding| finding.p.is_some());
-    for (finding, rejected) in laws.zip(rejected) {
+    let rejected =
+        multiplicity::holm(&p, plan.levels.distributions, plan.levels.distribution_alpha);
+    let tested = findings.iter_mut().filter(|finding| finding.p.is_some());
+    for (finding, rejected) in tested.zip(rejected) {
         // A p-value of NaN comes from draws that are not finite.
         if rejected || finding.p.is_some_and(f64::is_nan) {
             finding.verdict = Verdict::Fail;

@@ -286,7 +286,7 @@ pub struct Digits(usize);
 
 impl Digits {
     /// Number of digits that is enough for most cases.
-    const FEW: usize = 4;
+    const USUAL: usize = 4;
     /// Number of digits that distinguishes any two numbers.
     const ALL: usize = 17;
 
@@ -304,7 +304,7 @@ impl Digits {
             let texts: Vec<String> = values.iter().map(|&value| short(value, *digits)).collect();
             texts.windows(2).all(|pair| pair[0] != pair[1])
         };
-        Self((Self::FEW..Self::ALL).find(is_enough).unwrap_or(Self::ALL))
+        Self((Self::USUAL..Self::ALL).find(is_enough).unwrap_or(Self::ALL))
     }
 
     /// Returns the text of a value.

@@ -25,12 +25,12 @@ pub fn calibrate(runs: u64, progress: &(dyn Fn(u64) + Sync)) -> Result<Calibrati
     let counted: Vec<Counts> = parallel::numbered(runs.div_ceil(CHUNK), |chunk| {
         let seeds = 1 + chunk * CHUNK..1 + ((chunk + 1) * CHUNK).min(runs);
         let mut counts = Counts::default();
-        let mut fair = Plan::new(&cases, &options);
+        let mut correct = Plan::new(&cases, &options);
         let mut biased = Plan::new(&cases, &options);
         // Half of the chunks are biased upwards, half downwards.
         shift(&mut biased, if chunk % 2 == 0 { 1.0 } else { -1.0 });
         for seed in seeds {
-            let (draws, checked) = draw(&mut fair, seed);
+            let (draws, checked) = draw(&mut correct, seed);
             counts.add_fair(draws, checked);
             let (draws, checked) = draw(&mut biased, seed);
             counts.add_biased(draws, checked);
@@ -42,7 +42,7 @@ pub fn calibrate(runs: u64, progress: &(dyn Fn(u64) + Sync)) -> Result<Calibrati
     for counts in counted {
         total.merge(counts);
     }
-    Ok(total.close(levels.scalars, levels.laws, checks::is_uniform))
+    Ok(total.close(levels.scalars, levels.distributions, checks::is_uniform))
 }
 
 /// Draws a plan from another seed.

@@ -50,7 +50,7 @@ pub struct Arguments {
     /// Both stacks of --against have the same distribution in each pixel, not only the same mean: the exact test alone
     /// decides, and the variances must agree, too
     #[arg(long, requires = "against", conflicts_with = "case")]
-    same_law: bool,
+    same_distribution: bool,
     /// Judge tiles of N × N pixels; 1 for single pixels [default: the smallest power of 2 with 2048 values of all
     /// passes, 8192 where the variance comes from passes]
     #[arg(long, value_name = "N", requires = "images")]
@@ -77,8 +77,8 @@ pub fn main(arguments: &super::Arguments, console: &Console) -> anyhow::Result<u
         bail!("images are not read of a pipe; give files");
     }
     // If a required option conflicts with another given option, clap does not enforce the requirement.
-    if images.same_law && images.against.is_empty() {
-        bail!("--same-law says something of two stacks; give the second by --against");
+    if images.same_distribution && images.against.is_empty() {
+        bail!("--same-distribution compares two stacks; give the second by --against");
     }
     if images.truth_passes.is_some() && images.truth_image.is_none() {
         bail!("--truth-passes says where a truth image is from; give it by --truth-image");
@@ -137,7 +137,8 @@ fn judged(arguments: &super::Arguments, wanted: &Wanted) -> anyhow::Result<Judge
     if !against.is_empty() {
         let stack = read(&arguments.files)?;
         let reference = read(&against)?;
-        let terms = Terms { is_same_law: images.same_law, rounding: arguments.rounding };
+        let terms =
+            Terms { is_same_distribution: images.same_distribution, rounding: arguments.rounding };
         return Ok(compare(&stack, &reference, terms, wanted)?);
     }
     let level = |value: Option<f64>, image: &Option<PathBuf>| match (value, image) {

@@ -169,7 +169,7 @@ impl Table {
                     return ForeignError::LongLine {
                         file: self.file.clone(),
                         line,
-                        longest: LONGEST,
+                        longest: MAX_LINE,
                     };
                 }
                 ErrorKind::Io(cause) => cause,
@@ -240,9 +240,9 @@ fn text(field: &[u8]) -> String {
 /// Number of bytes that are read at a time.
 const CHUNK: usize = 1 << 17;
 /// Longest line: a table of draws has few numbers per line.
-const LONGEST: u64 = 1 << 16;
+const MAX_LINE: u64 = 1 << 16;
 /// Maximum number of bytes between two records, quoted lines, comments and empty lines included.
-const MOST: u64 = 1 << 24;
+const MAX_GAP: u64 = 1 << 24;
 
 /// Keeps the last bytes it passed on, so that the number of a wrong line can be counted. The csv crate counts the line
 /// before instead, after empty lines or Windows' line ends.
@@ -277,7 +277,7 @@ impl Lines {
 
 impl std::io::Read for Lines {
     fn read(&mut self, buffer: &mut [u8]) -> std::io::Result<usize> {
-        if self.since > LONGEST || self.taken > MOST {
+        if self.since > MAX_LINE || self.taken > MAX_GAP {
             return Err(std::io::ErrorKind::FileTooLarge.into());
         }
         let count = self.bytes.read(buffer)?;

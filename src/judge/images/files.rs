@@ -220,7 +220,7 @@ fn lengths(array: &Header) -> Option<Vec<usize>> {
 const HEAD: u64 = 1 << 16;
 
 /// Maximum number of pixels of a frame: a small file may announce any display window.
-const MOST: usize = 1 << 27;
+const MAX_PIXELS: usize = 1 << 27;
 
 /// Frame in which pixels are placed; none if files are compared as they are stored.
 ///
@@ -254,14 +254,14 @@ impl Frame {
                 .size()
                 .iter()
                 .try_fold(1, |n: usize, &m| n.checked_mul(m))
-                .is_some_and(|n| n <= MOST) =>
+                .is_some_and(|n| n <= MAX_PIXELS) =>
             {
                 Ok(Self(Some(*display)))
             }
             None => Err(ImageError::Faulty {
                 file: first.display().to_string(),
                 what: "an image beside the others",
-                cause: format!("its display window {display} has more than {MOST} pixels"),
+                cause: format!("its display window {display} has more than {MAX_PIXELS} pixels"),
                 cure: "write all with one data window",
             }),
             Some((path, [data, other])) => Err(ImageError::Faulty {

@@ -162,7 +162,7 @@ pub struct Comparison {
     /// Smallest p-value of all tiles and the whole together, for equal distributions.
     pub p: f64,
     /// True if the caller claims equal distributions in each pixel.
-    pub is_same_law: bool,
+    pub is_same_distribution: bool,
     /// Variance of the test over that of the reference, over all pixels; `None` if neither varies.
     pub spread: Option<f64>,
     /// p-value of that ratio for equal distributions.

@@ -59,7 +59,7 @@ use gate::stats::gate::{Evidence, VARIANCE_MARGIN};
 use theory::parallel;
 
 /// Smallest level for tests of dependence, for which random orders of passes are drawn.
-const LEAST: f64 = 1e-4;
+const MIN_DEPENDENCE_ALPHA: f64 = 1e-4;
 /// Number of values, over all passes, in the smallest tiles, unless their size is given: then all tiles can pass.
 const VALUES: usize = 2048;
 /// Number of such values if the passes must show a variance, too.
@@ -241,7 +241,7 @@ fn refuted(stack: &Stack, is_right: impl Fn(usize, f64) -> bool) -> (Option<Refu
 
 /// Returns `ln(3/α_d)`.
 fn limit(alpha: f64) -> f64 {
-    (3.0 / alpha.max(LEAST)).ln()
+    (3.0 / alpha.max(MIN_DEPENDENCE_ALPHA)).ln()
 }
 
 fn neighbours_of(stack: &Stack, alpha: f64) -> Dependence {

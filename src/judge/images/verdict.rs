@@ -38,7 +38,7 @@ pub(super) fn decide_against(judgement: &mut Judgement, comparison: &Comparison,
         )
     });
     let mut failing = Vec::new();
-    if comparison.is_same_law && comparison.spread_p <= SIDE_SHARE * judgement.alpha {
+    if comparison.is_same_distribution && comparison.spread_p <= SIDE_SHARE * judgement.alpha {
         let times = |x| format!("{} times as wide", short(x, 4));
         let spread = comparison.spread.map_or("differently".to_owned(), times);
         let p = short(comparison.spread_p, 2);
@@ -299,12 +299,12 @@ fn guarantees(judgement: &Judgement, claim: &Claim) -> Vec<String> {
     };
     if has_grounds {
         said.push(format!(
-            "independent passes{pixels}{whose} fail with chance {} at most, all tiles and channels together",
+            "independent passes{pixels}{whose} fail with probability {} at most, all tiles and channels together",
             judgement.alpha
         ));
         let condition = if has_variance { " if the variance is right" } else { "" };
         said.push(format!(
-            "a picture, or a tile, that is off by its tolerance passes with chance {} at most{condition}",
+            "a picture, or a tile, that is off by its tolerance passes with probability {} at most{condition}",
             judgement.beta
         ));
     } else {
@@ -346,19 +346,19 @@ fn open_against(judgement: &Judgement, comparison: &Comparison, differing: usize
         let p = short(comparison.p, 2);
         let (why, cure) = if judgement.neighbours.is_refuted() {
             (
-                "pixels depend on each other, so that nothing follows for means of different laws",
+                "pixels depend on each other, so that nothing follows for means of different distributions",
                 "judge averages of blocks wider than the filter by --average N",
             )
         } else {
             (
-                "with the kurtosis of these values it may be the shape of the law and not its mean",
+                "with the kurtosis of these values it may be the shape of the distribution and not its mean",
                 "render more passes",
             )
         };
         let all = judgement.tiles.len() + judgement.whole.len();
         open.push(format!(
-            "the stacks have different laws in {differing} of {all} tiles and wholes (p = {p}), but {why}; {cure}, or claim by \
-             --same-law that both renderers have one law in each pixel"
+            "the stacks have different distributions in {differing} of {all} tiles and wholes (p = {p}), but {why}; {cure}, or claim by \
+             --same-distribution that both renderers have one distribution in each pixel"
         ));
     }
     if comparison.method == "none" {
@@ -375,10 +375,10 @@ fn guarantees_against(judgement: &Judgement, comparison: &Comparison) -> Vec<Str
     let alpha = judgement.alpha;
     let pixels = if comparison.method == "signs" { ", and pixels are independent," } else { "" };
     let mut said = vec![format!(
-        "if both stacks have one law in every pixel{pixels} they fail with chance {alpha} at most: exact, for any law and \
+        "if both stacks have one distribution in every pixel{pixels} they fail with probability {alpha} at most: exact, for any distribution and \
          number of passes"
     )];
-    if !comparison.is_same_law {
+    if !comparison.is_same_distribution {
         let kurtosis = comparison
             .kurtosis
             .map_or(String::new(), |k| format!(" ({} as measured)", short(k, 3)));
@@ -388,7 +388,7 @@ fn guarantees_against(judgement: &Judgement, comparison: &Comparison) -> Vec<Str
         ));
     }
     said.push(format!(
-        "a picture, or a tile, that is off by its tolerance passes with chance {} at most: nominal, by averages that are near \
+        "a picture, or a tile, that is off by its tolerance passes with probability {} at most: nominal, by averages that are near \
          normal",
         judgement.beta
     ));

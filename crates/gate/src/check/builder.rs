@@ -9,7 +9,7 @@ use numeric::rng::Stream;
 pub const MAX_VALUES: usize = 1 << 16;
 
 /// Maximum number of draws, unless [`Check::draws`] sets it.
-pub const MOST: u64 = 1 << 24;
+pub const MAX_DRAWS: u64 = 1 << 24;
 
 /// A number for each value of a draw, or a single number for all: from `f64`, `[f64; K]` or `Vec<f64>`.
 #[derive(Debug, Clone, PartialEq)]

@@ -16,7 +16,7 @@
 //!
 //! Draws come in blocks of 2¹⁴, and each block has a random stream of its own, addressed by seed, name and block. A
 //! closure that uses no other source of randomness makes the same draws on any number of threads. Without
-//! [`Check::draws`] they end as soon as all is decided, and after [`MOST`] draws at the latest.
+//! [`Check::draws`] they end as soon as all is decided, and after [`MAX_DRAWS`] draws at the latest.
 
 mod builder;
 mod made;
@@ -24,7 +24,7 @@ mod outcome;
 mod property;
 mod pushed;
 
-pub use builder::{Check, MAX_VALUES, MOST, Values, check, check_with, claim};
+pub use builder::{Check, MAX_DRAWS, MAX_VALUES, Values, check, check_with, claim};
 pub use made::{Closure, Factory, Sample};
 pub use outcome::{CheckError, CheckFault, Outcome};
 pub use property::Property;

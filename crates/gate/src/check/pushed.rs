@@ -1,6 +1,6 @@
 //! Draws that other code makes and pushes.
 
-use super::builder::{Check, MOST};
+use super::builder::{Check, MAX_DRAWS};
 use super::made::assert_pass;
 use super::outcome::{CheckError, CheckFault, Outcome};
 use crate::session::{BUFFER, Block, Session, Sink, Stop, Until, drive, room};
@@ -68,7 +68,7 @@ impl Check<()> {
     /// Numbers that address the blocks of draws.
     fn plan(&self) -> Plan {
         let (seed, experiment) = (self.said.seed, name_hash(&self.name));
-        Plan { seed, experiment, most: self.said.wanted.most.unwrap_or(MOST) }
+        Plan { seed, experiment, most: self.said.wanted.most.unwrap_or(MAX_DRAWS) }
     }
 }
 

@@ -123,10 +123,10 @@ fn put_variance_first(reading: &Reading, judgement: &mut Judgement) {
         judgement.findings.swap(at, variance);
         return;
     }
-    let accused = &mut judgement.findings[at];
-    if accused.verdict == Verdict::Fail {
-        accused.verdict = Verdict::Inconclusive;
-        accused.reason = Some(Reason::RestsOnVariance("the mean".into()));
+    let suspect = &mut judgement.findings[at];
+    if suspect.verdict == Verdict::Fail {
+        suspect.verdict = Verdict::Inconclusive;
+        suspect.reason = Some(Reason::RestsOnVariance("the mean".into()));
     }
     if let Some(drift) = judgement.drift.as_mut().filter(|drift| drift.verdict == Verdict::Fail) {
         drift.verdict = Verdict::Inconclusive;
@@ -288,7 +288,7 @@ fn failing(reading: &Reading, judgement: &Judgement, mean: &ScalarFinding) -> St
             );
             return match mean.assumed_kurtosis {
                 Some(most) if mean.verdict == Verdict::Pass => format!(
-                    "{nothing}; a mean off by the tolerance passes with chance {} at most if the \
+                    "{nothing}; a mean off by the tolerance passes with probability {} at most if the \
                      kurtosis is {most:.0} at most (they show {shown}); the variance is not tested",
                     judgement.beta
                 ),
@@ -297,13 +297,13 @@ fn failing(reading: &Reading, judgement: &Judgement, mean: &ScalarFinding) -> St
         }
         _ => correct,
     };
-    format!("independent {who} fail with chance {} at most", short(alpha, 3))
+    format!("independent {who} fail with probability {} at most", short(alpha, 3))
 }
 
 /// Guarantee of a pass of the mean.
 fn missing(judgement: &Judgement, mean: &ScalarFinding) -> Option<String> {
     let beta = judgement.beta;
-    let miss = format!("a mean off by the tolerance passes with chance {beta} at most");
+    let miss = format!("a mean off by the tolerance passes with probability {beta} at most");
     match judgement.finding("variance") {
         None if mean.is_estimated => None,
         None if judgement.predicted_variance.is_some() => {

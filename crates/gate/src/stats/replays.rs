@@ -15,7 +15,7 @@
 use std::hash::Hasher;
 
 /// Maximum number of draws that are kept.
-const MOST: usize = 1 << 16;
+const MAX_ENTRIES: usize = 1 << 16;
 /// Draws that are kept for comparison.
 #[derive(Debug, Clone, Default)]
 pub struct Replays {
@@ -76,7 +76,7 @@ impl Replays {
             // Zero is the commonest atom, and its hash would be kept for ever.
             if *x != 0.0 && hash(bits).leading_zeros() >= self.bits {
                 self.kept.push((bits, self.draws));
-                if self.kept.len() >= MOST {
+                if self.kept.len() >= MAX_ENTRIES {
                     self.bits += 1;
                     let least = self.bits;
                     self.kept.retain(|(bits, _)| hash(*bits).leading_zeros() >= least);

@@ -113,7 +113,7 @@ impl Tally {
 /// Size of the table of values: twice the maximum number of values, so that few collide.
 const PLACES: usize = 128;
 /// Maximum number of different values.
-const MOST: usize = PLACES / 2;
+const MAX_FILLED: usize = PLACES / 2;
 /// Number of copies of each count, so that an addition does not depend on the store of the last one.
 const FOLD: usize = 4;
 /// Largest integer that is counted in a table.
@@ -190,7 +190,7 @@ impl Table {
                 self.used += 1;
                 self.taken[place] = true;
                 self.bits[place] = bits;
-                return (self.used <= MOST).then_some(place);
+                return (self.used <= MAX_FILLED).then_some(place);
             }
             place = (place + 1) % PLACES;
         }

@@ -3,7 +3,7 @@
 //! Two tests of each tile, and of the whole, with different hypotheses:
 //!
 //! ```text
-//! same law    the passes of both stacks have one distribution in every pixel: an exact level α
+//! same        the passes of both stacks have one distribution in every pixel: an exact level α
 //!             `stats::permutation` of passes, all tiles and the whole at one level; pixels may depend on each other
 //!             `stats::normal` signs of differences where the passes are too few for that; independent pixels
 //! same mean   distributions may differ (a better sampler, more samples a pass), means may not:
@@ -13,7 +13,7 @@
 //!
 //! A tile fails if both tests reject. If the distributions are equal, the probability of that is at most α, for any
 //! distribution. If only the means are equal, the level is nominal, for two reasons. V̂ and x̄ − ȳ come from the same
-//! passes; and rare values that neither stack drew may carry the mean (Bahadur and Savage 1956). With `is_same_law` the
+//! passes; and rare values that neither stack drew may carry the mean (Bahadur and Savage 1956). With `is_same_distribution` the
 //! first test alone decides, and equal variances are tested, too.
 //!
 //! Source of the problem: A. Jung, J. Hanika, C. Dachsbacher, *Detecting Bias in Monte Carlo Renderers using Welch's
@@ -34,14 +34,14 @@ use gate::stats::verdict::Verdict;
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Terms {
     /// True if both have the same distribution in each pixel, not only the same mean.
-    pub is_same_law: bool,
+    pub is_same_distribution: bool,
     /// Bound on the rounding error of a value relative to its mean; at least that of the files.
     pub rounding: f64,
 }
 
 impl Default for Terms {
     fn default() -> Self {
-        Self { is_same_law: false, rounding: ROUNDING }
+        Self { is_same_distribution: false, rounding: ROUNDING }
     }
 }
 
@@ -104,7 +104,7 @@ pub fn compare(
         method: "none",
         permutations: 0,
         p: 1.0,
-        is_same_law: terms.is_same_law,
+        is_same_distribution: terms.is_same_distribution,
         spread: None,
         spread_p: 1.0,
         kurtosis: None,
@@ -136,7 +136,7 @@ fn test(
     comparison.kurtosis = (q > 0.0).then(|| variance::kurtosis(q));
     comparison.spread = evidence.spread();
     let rows = stacks.map(|stack| stack.passes);
-    let level = if comparison.is_same_law { main_share(1) * alpha } else { alpha };
+    let level = if comparison.is_same_distribution { main_share(1) * alpha } else { alpha };
     let (mut all, adjusted) = if distinct(rows[0], rows[1]) >= 2.0 / level {
         let (values, prior) = evidence.rows(&parts);
         let found = Groups::new(values, rows, &prior).compare(level, 1);
@@ -156,7 +156,7 @@ fn test(
         (all, adjusted)
     };
     comparison.p = adjusted.iter().copied().fold(1.0, f64::min);
-    let differing = decide(&mut all, &adjusted, level, alpha, comparison.is_same_law);
+    let differing = decide(&mut all, &adjusted, level, alpha, comparison.is_same_distribution);
     let whole = all.split_off(count);
     judgement.take(all, whole);
     differing
@@ -203,15 +203,16 @@ fn decide(
     adjusted: &[f64],
     level: f64,
     alpha: f64,
-    is_same_law: bool,
+    is_same_distribution: bool,
 ) -> usize {
     let evidence: Vec<_> = tiles.iter().map(Tile::evidence).collect();
     let joint = decide_together(&evidence, alpha);
     let mut differing = 0;
     for ((tile, &adjusted), joint) in tiles.iter_mut().zip(adjusted).zip(joint) {
         let is_different = adjusted <= level;
-        differing += usize::from(is_different && !joint.is_off && !is_same_law);
-        tile.verdict = match (is_different, joint.is_off || is_same_law, joint.has_passed) {
+        differing += usize::from(is_different && !joint.is_off && !is_same_distribution);
+        tile.verdict = match (is_different, joint.is_off || is_same_distribution, joint.has_passed)
+        {
             (true, true, _) => Verdict::Fail,
             (false, _, true) => Verdict::Pass,
             _ => Verdict::Inconclusive,

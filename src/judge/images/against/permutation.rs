@@ -27,8 +27,8 @@ const ENOUGH: u64 = 20;
 /// Number of parts of a round of deals.
 const PARTS: u64 = 16;
 /// Minimum and maximum number of deals.
-const FEWEST: u64 = 1000;
-const MOST: u64 = 200_000;
+const MIN_DEALS: u64 = 1000;
+const MAX_DEALS: u64 = 200_000;
 
 /// Rows of two groups, with one column per question.
 #[derive(Debug)]
@@ -118,8 +118,8 @@ impl Groups {
         // A deal adds up in another order, with other rounding.
         let limits: Vec<f64> = t.iter().map(|t| t.abs() * (1.0 - 1e-9)).collect();
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // at most 200,000
-        let wanted = ((ENOUGH as f64 / alpha).ceil().min(MOST as f64) as u64).max(FEWEST);
-        let each = FEWEST.div_ceil(PARTS);
+        let wanted = ((ENOUGH as f64 / alpha).ceil().min(MAX_DEALS as f64) as u64).max(MIN_DEALS);
+        let each = MIN_DEALS.div_ceil(PARTS);
         let (mut above, mut largest) = (vec![0_u64; t.len()], vec![0_u64; t.len()]);
         let mut deals = 0;
         let top = order.last().copied();

@@ -61,7 +61,7 @@ fn against_line(found: &Comparison) -> String {
         } else {
             String::new()
         };
-        let word = if found.is_same_law { "" } else { "; reported only" };
+        let word = if found.is_same_distribution { "" } else { "; reported only" };
         format!("; variance {} times that of the reference{p}{word}", fixed(ratio, 4))
     });
     format!(

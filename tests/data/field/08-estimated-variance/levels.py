@@ -29,7 +29,7 @@ for k in laws:
             for name,a in dict(image=['--truth-image','t.npy','--variance-image','v.npy','--variance-passes',str(q)],
                  stack=['--truth-image','t.npy','--variance-stack','z.npy'],
                  truth=['--truth-image','m.npy','--truth-passes',str(q),'--variance-image','v.npy','--variance-passes',str(q)],
-                 against=['--against','z.npy'], same=['--against','z.npy','--same-law']).items():
+                 against=['--against','z.npy'], same=['--against','z.npy','--same-distribution']).items():
                 rc,j=run(*a,'x.npy'); e=c.setdefault(name,[0,0,0]); e[{0:0,1:1,3:2}[rc]]+=1
                 if rc==1: print('FAIL',k,n,q,name,j['reason'][:200],flush=True)
         print(k,n,q,'pass/fail/inc',c,flush=True)

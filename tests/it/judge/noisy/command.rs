@@ -24,7 +24,7 @@ fn the_command_takes_estimated_variances_and_references() {
     place.expect(2, &format!("{known} --variance-passes 64 {passes}"), &["--variance-image"]);
     place.expect(2, &format!("{estimated} --variance-passes 1 {passes}"), &["--variance-passes"]);
     place.expect(2, &format!("{estimated} --truth-passes 0 {passes}"), &["--truth-passes"]);
-    place.expect(2, &format!("--images --same-law --truth 1 {passes}"), &["--against"]);
+    place.expect(2, &format!("--images --same-distribution --truth 1 {passes}"), &["--against"]);
     place.expect(
         2,
         &format!("--images --against {passes} --truth 1 {passes}"),
@@ -62,8 +62,8 @@ fn averages_of_blocks_wider_than_a_filter_are_judged_as_pixels() {
         ("other.npy", &blended(3, 1.0)),
     ]);
     let against = "--images --against other.npy --tile";
-    place.expect(3, &format!("{against} 16 bad.npy"), &["different laws", "--average N"]);
-    place.expect(1, &format!("{against} 16 --same-law bad.npy"), &["rows 32 to 63"]);
+    place.expect(3, &format!("{against} 16 bad.npy"), &["different distributions", "--average N"]);
+    place.expect(1, &format!("{against} 16 --same-distribution bad.npy"), &["rows 32 to 63"]);
     // Tiles of 4 × 4 blocks of 8 × 8 pixels; 0.3 √(32 · 1024/2) = 38 standard errors.
     place.expect(
         1,

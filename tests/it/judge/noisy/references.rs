@@ -22,11 +22,11 @@ fn correct_stacks_keep_the_level_against_a_reference() {
             for seed in 0..8 {
                 let (stack, reference) = (honest(seed, n, one), honest(20_000 + seed, m, other));
                 let wanted = Wanted { alpha: 0.05, ..Wanted::default() };
-                for is_same_law in [false, true] {
-                    let terms = Terms { is_same_law, ..Terms::default() };
+                for is_same_distribution in [false, true] {
+                    let terms = Terms { is_same_distribution, ..Terms::default() };
                     let found = compare(&stack, &reference, terms, &wanted).expect("a judgement");
-                    if found.verdict == Verdict::Fail && (one == other || !is_same_law) {
-                        failed.push((one, other, n, m, is_same_law, found.reason));
+                    if found.verdict == Verdict::Fail && (one == other || !is_same_distribution) {
+                        failed.push((one, other, n, m, is_same_distribution, found.reason));
                     }
                 }
             }
@@ -51,14 +51,14 @@ fn wrong_renderers_are_found_against_a_reference() {
         assert_eq!(found.comparison.expect("one").method, expected);
         assert!(found.reason.contains("rows 8 to 15, columns 8 to 15"), "{}", found.reason);
     }
-    // A mean of a fourth of the samples has four times the variance: no fault, except with --same-law.
+    // A mean of a fourth of the samples has four times the variance: no fault, except with --same-distribution.
     let (many, one) = (honest(3, 24, Law::FourFireflies(1.0)), honest(4, 24, Law::Fireflies(1.0)));
     let found = compare(&one, &many, Terms::default(), &wanted).expect("a judgement");
     assert_ne!(found.verdict, Verdict::Fail, "{}", found.reason);
     // 4, with a relative error of √(κ/n), κ about 450, n = 24 · 576.
     let ratio = found.comparison.and_then(|found| found.spread).expect("a ratio");
     assert!((2.6..5.5).contains(&ratio), "{ratio}");
-    let terms = Terms { is_same_law: true, ..Terms::default() };
+    let terms = Terms { is_same_distribution: true, ..Terms::default() };
     let found = compare(&one, &many, terms, &wanted).expect("a judgement");
     assert_eq!(found.verdict, Verdict::Fail);
     assert!(found.reason.contains("the variance is off"), "{}", found.reason);

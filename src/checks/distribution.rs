@@ -12,7 +12,7 @@ use numeric::rng::Streams;
 use numeric::sum::Sum;
 
 /// A test of a whole distribution by sums over the first draws.
-pub trait Law: Send + Sync + UnwindSafe + RefUnwindSafe {
+pub trait DistributionTest: Send + Sync + UnwindSafe + RefUnwindSafe {
     /// Returns the number of sums.
     fn size(&self) -> usize;
 
@@ -34,7 +34,7 @@ pub trait Law: Send + Sync + UnwindSafe + RefUnwindSafe {
     }
 }
 
-impl<L: Law> Check for L {
+impl<L: DistributionTest> Check for L {
     fn share(&self) -> Share {
         Share::PValues
     }
@@ -44,7 +44,7 @@ impl<L: Law> Check for L {
     }
 
     fn observe(&self) -> Box<dyn Observer + '_> {
-        Box::new(Sums { law: self, sums: vec![0.0; self.size()] })
+        Box::new(Sums { of: self, sums: vec![0.0; self.size()] })
     }
 
     fn finish(&self, total: &Total, context: &Context) -> Found {
@@ -63,15 +63,15 @@ impl<L: Law> Check for L {
 }
 
 /// Sums of a block.
-struct Sums<'a, L: Law> {
-    law: &'a L,
+struct Sums<'a, L: DistributionTest> {
+    of: &'a L,
     sums: Vec<f64>,
 }
 
-impl<L: Law> Observer for Sums<'_, L> {
+impl<L: DistributionTest> Observer for Sums<'_, L> {
     fn absorb(&mut self, draws: &Batch, place: Place, _: &mut Vec<f64>) {
         if place.is_fixed {
-            self.law.add(draws, place.first, &mut self.sums);
+            self.of.add(draws, place.first, &mut self.sums);
         }
     }
 
@@ -80,7 +80,7 @@ impl<L: Law> Observer for Sums<'_, L> {
             // No fixed draw: no sums.
             return Vec::new();
         }
-        self.law.close(fixed, &mut self.sums);
+        self.of.close(fixed, &mut self.sums);
         self.sums
     }
 }
