@@ -133,7 +133,7 @@ def test_progress_is_told(capsys):
 def test_more_draws_than_planned_are_not_above_100_percent(capsys):
     line = _Line()
     line(11_100, 5_000)
-    line.tell("drew")
+    line.show("drew")
     line.end()
     assert capsys.readouterr().err == "\rdrawing: 99 % of 5e+03 draws\r" + "drew".ljust(28) + "\n"
 
