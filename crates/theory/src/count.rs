@@ -60,6 +60,24 @@ impl CountLaw {
         let kurtosis = (fourth / (variance * variance)).max(1.0);
         Self { mean, variance, error: 0.0, kurtosis, poisson: false, pmf: Vec::new() }
     }
+
+    /// Mean, variance and kurtosis from factorial moments with absolute errors.
+    pub fn of_known(factorial: [[f64; 2]; 4]) -> Self {
+        let [mean, error] = factorial[0];
+        let law = Self::of_factorial_moments(factorial.map(|[moment, _]| moment));
+        Self { error: if mean > 0.0 { error / mean } else { 0.0 }, ..law }
+    }
+
+    /// Lookups of the walk of a hero, mixed over heroes with these probabilities.
+    pub fn mixed(heroes: impl IntoIterator<Item = (f64, [[f64; 2]; 4])>) -> Self {
+        let mut mixed = [[0.0; 2]; 4];
+        for (weight, factorial) in heroes {
+            for (sum, [value, error]) in mixed.iter_mut().zip(factorial) {
+                *sum = [sum[0] + weight * value, sum[1] + weight * error];
+            }
+        }
+        Self::of_known(mixed)
+    }
 }
 
 /// The Poisson probabilities that are not negligible, by recurrence from the mode outwards.

@@ -12,6 +12,11 @@ pub const BINOMIAL: [[f64; 5]; 5] = [
     [1.0, 4.0, 6.0, 4.0, 1.0],
 ];
 
+/// `n over k`.
+pub fn binomial(n: usize, k: usize) -> f64 {
+    (1..=k).fold(1.0, |product, i| product * (n + 1 - i) as f64 / i as f64)
+}
+
 /// Raw moments of a Poisson number of mean m.
 pub fn poisson(m: f64) -> Raw {
     [1.0, m, m * (1.0 + m), m * (1.0 + m * (3.0 + m)), m * (1.0 + m * (7.0 + m * (6.0 + m)))]

@@ -14,13 +14,14 @@ use super::prediction::Covariance;
 use super::rod::moments::POWERS;
 use super::rod::{central, tails};
 use super::{Channel, Moments, Prediction, Tails};
+use crate::problems::channels::channel_name;
 use numeric::Known;
 
 /// Rounding of a walk's weights.
 const ROUNDING: f64 = 1e-12;
 
 fn channel(count: usize, index: usize, moments: Option<Moments>, tails: Tails) -> Channel {
-    let name = if count == 1 { String::new() } else { format!("channel {}", index + 1) };
+    let name = channel_name(index, count);
     Channel { name, ..Channel::unbiased(Known::new(1.0, ROUNDING), moments, tails) }
 }
 

@@ -4,7 +4,7 @@ use super::grid::Grid;
 use super::lookups::{Walks, of_technique};
 use super::{Combination, Connection, HIGHEST, Powers, Rules, Scene, powers};
 use crate::prediction::Covariance;
-use crate::raw::{Raw, added};
+use crate::raw::{Raw, added, binomial};
 use crate::single::predict::count;
 use crate::{Channel, CountLaw, Moments, Prediction, Tails};
 use numeric::Known;
@@ -111,14 +111,8 @@ fn summed(all: &[Powers]) -> Powers {
     sum[0] = 1.0;
     for powers in all {
         sum = std::array::from_fn(|k| {
-            let mut binomial = 1.0;
-            let mut total = 0.0;
-            for j in 0..=k {
-                let power = if j == 0 { 1.0 } else { powers[j] };
-                total += binomial * power * sum[k - j];
-                binomial *= (k - j) as f64 / (j + 1) as f64;
-            }
-            total
+            let power = |j: usize| if j == 0 { 1.0 } else { powers[j] };
+            (0..=k).map(|j| binomial(k, j) * power(j) * sum[k - j]).sum()
         });
     }
     sum

@@ -59,7 +59,7 @@ pub fn predict(
     let tails = found.as_ref().map_or(Tails::LIGHT, |found| tails(&found.raw));
     Prediction {
         channels: vec![Channel::unbiased(answer, central, tails)],
-        lookups: found.map(|found| count(found.lookups)),
+        lookups: found.map(|found| CountLaw::of_known(found.lookups)),
         ..Prediction::default()
     }
 }
@@ -132,11 +132,4 @@ pub fn with_hit(
     let of_weights = if techniques.has_nulls() { OF_POLYNOMIALS[power] } else { 0.0 };
     let error = scattered.error + unscattered.error + (ROUNDING + of_weights) * value;
     Known::new(value, error)
-}
-
-/// Distribution of lookups, from their factorial moments.
-pub fn count(factorial: [[f64; 2]; 4]) -> CountLaw {
-    let [mean, error] = factorial[0];
-    let law = CountLaw::of_factorial_moments(factorial.map(|[moment, _]| moment));
-    CountLaw { error: if mean > 0.0 { error / mean } else { 0.0 }, ..law }
 }

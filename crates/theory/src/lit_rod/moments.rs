@@ -22,9 +22,9 @@
 //! delta: h_k' = σ h_k − k σ̂ ((1 − r) h_{k−1} + r δ_{k1}),  h_0 = 1: its collisions, the real one too
 //! ```
 
-use super::connections::{Connections, HIGHEST, Vertex, scattering};
+use super::connections::{Connections, Vertex, scattering};
 use super::techniques::{Shadow, Techniques};
-use crate::raw::BINOMIAL;
+use crate::raw::{BINOMIAL, binomial};
 use crate::rod::grid::{Grid, Importance, Step};
 
 /// `U_k⁺(0)`, k = 1 … highest.
@@ -33,11 +33,11 @@ pub fn scattered(grid: &Grid, techniques: Techniques, highest: usize) -> Option<
     let mut futures: Vec<Importance> = Vec::new();
     let mut found = Vec::new();
     for k in 1..=highest {
-        let ways = binomials(k);
         let source = |i: usize, step: &Step| {
             let of = |vertex: &Vertex| {
                 let mut sum = vertex.towards * vertex.hit[k];
-                for (j, way) in ways.iter().enumerate().take(k + 1).skip(1) {
+                for j in 1..=k {
+                    let way = binomial(k, j);
                     sum += way * vertex.connected[j] * future(vertex, &futures, k - j, i);
                 }
                 scattering(step) * sum
@@ -58,18 +58,6 @@ fn future(vertex: &Vertex, futures: &[Importance], m: usize, step: usize) -> f64
     }
     let [plus, minus] = futures[m - 1].middle(step);
     vertex.towards * (vertex.hit[m] + plus) + (1.0 - vertex.towards) * minus
-}
-
-/// `k over j` for j = 0 … k.
-pub fn binomials(k: usize) -> [f64; HIGHEST + 1] {
-    let mut row = [0.0; HIGHEST + 1];
-    row[0] = 1.0;
-    for n in 1..=k {
-        for j in (1..=n).rev() {
-            row[j] += row[j - 1];
-        }
-    }
-    row
 }
 
 /// Factorial moments of the number of lookups of a shadow ray, k = 0 … 4, in the middle of each step.

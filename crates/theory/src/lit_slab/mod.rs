@@ -26,9 +26,8 @@ use self::column::{Column, Node};
 use self::contour::Contour;
 use self::directions::{Direction, Resolution};
 use super::lit_rod::connections::{HIGHEST, Powers, Vertex, Weights};
-use super::lit_rod::moments::binomials;
 use super::lit_rod::{Combination, OF_POLYNOMIALS, ROUNDING, Shadow, Techniques};
-use super::raw::Raw;
+use super::raw::{Raw, binomial};
 use super::rod::moments::POWERS;
 use super::rod::{central, tails};
 use super::{Channel, CountLaw, Mesh, Prediction, Tails};
@@ -172,8 +171,7 @@ impl Scores {
         (cast[0], hit[0]) = (1.0, 1.0);
         let reached = node.weight * albedo * node.extinction * (-node.depth).exp();
         for k in 1..=highest {
-            let ways = binomials(k);
-            let both: f64 = (0..=k).map(|j| ways[j] * cast[j] * hit[k - j]).sum();
+            let both: f64 = (0..=k).map(|j| binomial(k, j) * cast[j] * hit[k - j]).sum();
             self.powers[k] += reached * both;
         }
     }

@@ -32,6 +32,19 @@ pub enum End {
     Transmitted,
 }
 
+impl End {
+    /// Name of what leaves there in a channel.
+    pub fn name(self, channel: usize) -> String {
+        let side = if self == Self::Reflected { "reflectance" } else { "transmittance" };
+        format!("{side}, channel {}", channel + 1)
+    }
+}
+
+/// Name of one of several channels, empty where there is one only.
+pub fn channel_name(index: usize, count: usize) -> String {
+    if count == 1 { String::new() } else { format!("channel {}", index + 1) }
+}
+
 /// One albedo for each channel, and the values of a draw.
 #[derive(Debug, Clone)]
 pub struct Colours {

@@ -141,7 +141,7 @@ pub fn predict(
     let channels = rod.channels.iter().zip(&truth).enumerate().map(channel);
     Prediction {
         channels: channels.collect(),
-        lookups: found.as_ref().map(RawMoments::lookups),
+        lookups: found.as_ref().map(|found| CountLaw::of_known(found.lookups)),
         covariances: found
             .as_ref()
             .map_or_else(Vec::new, |found| covariances(&rod.channels, &truth, found)),
@@ -241,12 +241,6 @@ impl RawMoments {
         let blur = |&[value, error]: &[f64; 2]| if value > 0.0 { error / value } else { error };
         let worst = |most: f64, blur: f64| if blur <= most { most } else { blur };
         found.iter().map(blur).fold(0.0, worst)
-    }
-
-    fn lookups(&self) -> CountLaw {
-        let [mean, error] = self.lookups[0];
-        let law = CountLaw::of_factorial_moments(self.lookups.map(|[moment, _]| moment));
-        CountLaw { error: if mean > 0.0 { error / mean } else { 0.0 }, ..law }
     }
 }
 

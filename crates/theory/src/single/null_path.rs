@@ -24,6 +24,8 @@ use std::f64::consts::PI;
 
 use num_complex::Complex64;
 
+use super::shadows::PANELS;
+use crate::mesh::Panel;
 use crate::{Heuristic, Mesh};
 use media::Piecewise;
 use numeric::Span;
@@ -136,15 +138,34 @@ impl<'a> NullPaths<'a> {
             vec![row(slow, |x| x.re), row(slow, im), row(fast, im), row(last, |x| x.re)]
         });
         self.off = fine.relative_error();
-        for panel in fine.panels() {
-            let (first, sigma) = (sampling.value(panel.t[0]), panel.extinction[0]);
-            let mut nodes = panel.t.iter().zip(panel.extinction);
+        let panels: Vec<Panel<'_>> = fine.panels().collect();
+        // In media of many pieces several panels share an entry.
+        let is_many = mesh.medium().breaks().len() > PANELS;
+        let together = if is_many { panels.len().div_ceil(PANELS) } else { 1 };
+        let mut missed = 0.0f64;
+        for group in panels.chunks(together) {
+            let (first, sigma) = (sampling.value(group[0].t[0]), group[0].extinction[0]);
+            let mut nodes = group.iter().flat_map(|panel| panel.t.iter().zip(panel.extinction));
             let is_flat = nodes.all(|(&t, &x)| sampling.value(t) == first && x == sigma);
             self.flat.push(is_flat.then_some([first, sigma]));
-            let mut sum = self.sums[self.sums.len() - 1].clone();
-            self.add(self.flat.len() - 1, panel.span, 0..LINES, &mut sum);
-            self.ends.push(panel.span.to);
+            let (entry, before) = (self.flat.len() - 1, &self.sums[self.sums.len() - 1]);
+            let mut sum = before.clone();
+            for panel in group {
+                self.add(entry, panel.span, 0..LINES, &mut sum);
+            }
+            let span = Span::new(group[0].span.from, group[group.len() - 1].span.to);
+            if group.len() > 1 {
+                let mut at_once = before.clone();
+                self.add(entry, span, 0..LINES, &mut at_once);
+                let apart = at_once.iter().zip(&sum).map(|(a, b)| (a - b).norm());
+                missed = apart.fold(missed, f64::max);
+            }
+            self.ends.push(span.to);
             self.sums.push(sum);
+        }
+        let whole = self.sums[self.sums.len() - 1].iter().map(|x| x.norm()).fold(0.0, f64::max);
+        if missed > 0.0 {
+            self.off += missed / whole;
         }
     }
 

@@ -2,7 +2,7 @@
 
 use super::camera::Camera;
 use super::segment::{Segment, Tracking};
-use super::shadows::{Among, MANY, Shadows};
+use super::shadows::{Among, MANY, Shadows, thinned};
 use crate::problems::{Problem, SingleScattering};
 use crate::raw::added;
 use numeric::quadrature::GaussLegendre;
@@ -19,6 +19,8 @@ pub const STEPS: usize = 24;
 const WIDEST: f64 = 0.5;
 /// Maximum number of halvings of one panel.
 const HALVINGS: u32 = 40;
+/// Relative difference at which panels that hold several pieces of the medium are fine enough.
+const UNRESOLVED: f64 = 1e-6;
 /// Maximum number of panels of one integral.
 const MOST: usize = 20_000;
 
@@ -79,6 +81,8 @@ pub struct Scene<'a> {
     /// More kinks of the integrands.
     pub cuts: Vec<f64>,
     rule: GaussLegendre,
+    /// True if panels hold several pieces of the medium.
+    is_thinned: bool,
     /// Shadow rays, where they are interpolated.
     pub(super) shadows: Option<Shadows>,
 }
@@ -87,7 +91,8 @@ pub struct Scene<'a> {
 pub struct Integral<const N: usize> {
     /// The integrals.
     pub value: [f64; N],
-    /// Bounds on their errors: differences of two resolutions, over all panels.
+    /// Bounds on their errors: differences of two resolutions, over all panels. Where panels hold several pieces of the
+    /// medium, estimates: the sum of differences, and twice the root of the sum of their squares.
     pub error: [f64; N],
     /// The ends of the panels in the stretched variable, ascending.
     pub panels: Vec<Span>,
@@ -102,7 +107,8 @@ impl<'a> Scene<'a> {
         cuts: Vec<f64>,
     ) -> Self {
         let rule = GaussLegendre::new(16);
-        let mut scene = Self { problem, camera, shadow, cuts, rule, shadows: None };
+        let (_, is_thinned) = thinned(problem.medium().breaks());
+        let mut scene = Self { problem, camera, shadow, cuts, rule, is_thinned, shadows: None };
         scene.shadows = scene.interpolated(shadow);
         scene
     }
@@ -212,7 +218,7 @@ impl<'a> Scene<'a> {
     fn ends(&self, cuts: Vec<f64>) -> Vec<f64> {
         let medium = self.problem.medium();
         let support = medium.support();
-        let mut s: Vec<f64> = medium.breaks();
+        let (mut s, _) = thinned(medium.breaks());
         s.extend(cuts);
         s.extend((1..STEPS).map(|i| support.from + support.length() * i as f64 / STEPS as f64));
         s.retain(|&s| support.contains_inside(s));
@@ -293,13 +299,15 @@ impl<'a> Scene<'a> {
         let scale: [f64; N] =
             std::array::from_fn(|i| open.iter().map(|(_, value, _)| value[i].abs()).sum());
         open.reverse();
-        let (mut sums, mut error) = ([Sum::default(); N], [0.0; N]);
+        let [mut sums, mut signed] = [[Sum::default(); N]; 2];
+        let [mut error, mut squares] = [[0.0; N]; 2];
+        let least = if self.is_thinned { UNRESOLVED } else { 0.0 };
         let mut panels = Vec::new();
         while let Some((x, coarse, halvings)) = open.pop() {
             let halves = x.halves();
             let [left, right] = halves.map(|x| self.panel(x, f));
             let apart: [f64; N] = std::array::from_fn(|i| (left[i] + right[i] - coarse[i]).abs());
-            let rough = (0..N).any(|i| apart[i] > parts[i] * scale[i]);
+            let rough = (0..N).any(|i| apart[i] > parts[i].max(least) * scale[i]);
             let room =
                 halvings > 0 && panels.len() + open.len() < MOST && x.contains_inside(x.middle());
             if rough && room {
@@ -311,8 +319,15 @@ impl<'a> Scene<'a> {
                 sums[i].add(left[i]);
                 sums[i].add(right[i]);
                 error[i] += apart[i];
+                signed[i].add(left[i] + right[i] - coarse[i]);
+                squares[i] += apart[i] * apart[i];
             }
             panels.extend(halves);
+        }
+        if self.is_thinned {
+            // Differences have random signs.
+            let of = |i: usize| signed[i].value().abs() + 2.0 * f64::sqrt(squares[i]);
+            error = std::array::from_fn(of);
         }
         Integral { value: sums.map(|sum| sum.value()), error, panels }
     }

@@ -1,5 +1,6 @@
 //! An estimated transmittance of one segment: moments of its value and of its lookups.
 
+use super::shadows::thinned;
 use crate::raw::{self, poisson};
 use media::Medium;
 use numeric::quadrature::GaussLegendre;
@@ -153,11 +154,16 @@ impl Segment {
                 Self::product(exponents, sampling * support.length(), error)
             }
             Tracking::Delta { sampling } => {
-                let (factorial, _) = along(medium, rule, |t, _| {
-                    let depth = medium.optical_depth(Span::new(support.from, t)).value;
-                    let nulls = sampling * (t - support.from) - depth;
-                    counts(sampling, depth, nulls)
-                });
+                let factorial = if medium.breaks().len() > FEW {
+                    counted(medium, rule, sampling)
+                } else {
+                    let (factorial, _) = along(medium, rule, |t, _| {
+                        let depth = medium.optical_depth(Span::new(support.from, t)).value;
+                        let nulls = sampling * (t - support.from) - depth;
+                        counts(sampling, depth, nulls)
+                    });
+                    factorial
+                };
                 Self::decided(depth, sampling * support.length(), factorial)
             }
         }
@@ -169,6 +175,30 @@ const HALVINGS: u32 = 6;
 /// Relative difference of two resolutions at which panels are fine enough: halving a panel of 16 nodes divides the
 /// error by 2³², so that the finer resolution is then accurate to rounding.
 const AGREED: f64 = 1e-11;
+
+/// Maximum number of pieces along a ray with closed optical depths at all nodes.
+const FEW: usize = 32;
+
+/// Factorial moments of delta tracking along a ray of many pieces, with optical depths by running integrals.
+fn counted(medium: &Medium, rule: &GaussLegendre, sampling: f64) -> [f64; 4] {
+    let support = medium.support();
+    let (ends, _) = thinned(support.cut(medium.breaks()));
+    let (mut found, mut before) = ([0.0; 4], 0.0);
+    for span in Span::between(&ends).flat_map(Span::halves) {
+        let t = rule.nodes_on(span);
+        let sigma = medium.extinctions(&t);
+        let dot = |row: &[f64]| row.iter().zip(&sigma).map(|(w, x)| w * x).sum::<f64>();
+        for (i, t) in t.iter().enumerate() {
+            let depth = before + span.length() * dot(&rule.running[i]);
+            let nulls = sampling * (t - support.from) - depth;
+            let weight = span.length() * rule.weights[i];
+            let here = counts(sampling, depth, nulls);
+            found.iter_mut().zip(here).for_each(|(sum, x)| *sum += weight * x);
+        }
+        before += span.length() * dot(&rule.weights);
+    }
+    found
+}
 
 /// `∫ f(t, σ_t)` over the support of a medium, and the difference of two resolutions: Gauss panels between its
 /// breaks, halved together until these agree.
@@ -187,7 +217,7 @@ pub fn along_all<const N: usize>(
     f: impl Fn(f64, &[f64]) -> [f64; N],
 ) -> ([f64; N], [f64; N]) {
     let support = media[0].support();
-    let ends = support.cut(media.iter().flat_map(Medium::breaks).collect());
+    let (ends, is_thinned) = thinned(support.cut(media.iter().flat_map(Medium::breaks).collect()));
     let at = |parts: u32| {
         let mut sum = [0.0; N];
         let mut nodes = Vec::with_capacity(rule.nodes.len());
@@ -211,7 +241,7 @@ pub fn along_all<const N: usize>(
     };
     let mut coarse = at(1);
     let mut apart = [0.0; N];
-    for halving in 1..=HALVINGS {
+    for halving in 1..=if is_thinned { 1 } else { HALVINGS } {
         let fine = at(1 << halving);
         apart = std::array::from_fn(|i| (coarse[i] - fine[i]).abs());
         coarse = fine;

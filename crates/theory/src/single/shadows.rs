@@ -19,12 +19,27 @@ use numeric::Span;
 
 /// Maximum number of pieces along a ray without interpolation.
 pub const MANY: usize = 256;
+/// Maximum number of panels between the pieces of a ray.
+pub const PANELS: usize = 1024;
 /// Number of pieces along all shadow rays together, about.
 const WORK: usize = 600_000;
 /// Minimum and maximum number of pairs of shadow rays.
 const PAIRS: [usize; 2] = [48, 256];
 /// Number of interpolated values of a [`Segment`].
 const COUNT: usize = 16;
+
+/// Ends of the panels of a ray in a medium of many pieces: every n-th of the pieces' ends, so that at most [`PANELS`]
+/// remain, and true if some were left out.
+///
+/// Panels then hold pieces that their nodes do not resolve. These are the smallest ones, which average out.
+pub fn thinned(ends: Vec<f64>) -> (Vec<f64>, bool) {
+    let stride = ends.len().div_ceil(PANELS);
+    if stride < 2 {
+        return (ends, false);
+    }
+    let last = ends.last().copied();
+    (ends.into_iter().step_by(stride).chain(last).collect(), true)
+}
 
 /// Shadow rays at even steps along a ray.
 pub struct Shadows {
@@ -110,6 +125,7 @@ mod tests {
     use crate::Mesh;
     use crate::problems::single_scattering::Lamp;
     use crate::problems::{Problem, SingleScattering};
+    use crate::single::scene::Place;
     use crate::single::{Camera, CameraTracking, Node, Scene, Tracking};
     use media::noise::Noise;
     use media::phase::{Phase, isotropic::Isotropic};
@@ -178,6 +194,31 @@ mod tests {
         let off = (radiance.value - quick.value).abs();
         assert!(radiance.error < 1e-4 * radiance.value, "{radiance:?}");
         assert!(off <= 3.0 * quick.error + radiance.error, "{radiance:?}, {quick:?}");
+    }
+
+    /// The other method has a panel for each piece. Eight octaves have 570 pieces; the limit is 1024.
+    #[test]
+    fn pieces_that_are_not_resolved_average_out_within_the_error() {
+        let problem = in_noise(11);
+        let mesh = Mesh::new(problem.medium().clone());
+        let medium = problem.medium();
+        let (ends, is_thinned) = thinned(medium.support().cut(medium.breaks()));
+        assert!(is_thinned && ends.len() <= PANELS + 1, "{}", ends.len());
+        let (sampling, control) = (Piecewise::constant(1.2, mesh.support()), Control::None);
+        let camera = Camera::new(&mesh, &sampling, &control, CameraTracking::Exact);
+        let scene = Scene::new(&problem, camera, Tracking::Exact, Vec::new());
+        let scattered = |node: &Node| [node.extinction * node.transmittance * node.source];
+        let found = scene.integrate([1e-9], Vec::new(), &scattered);
+        let piece = |ends: &[f64]| {
+            let rule = scene.rule();
+            rule.integrate(ends[0], ends[1], |s| {
+                let along = s - problem.foot();
+                scattered(&scene.node(Place { s, along, stretch: 1.0 }))[0]
+            })
+        };
+        let exact: f64 = medium.support().cut(medium.breaks()).windows(2).map(piece).sum();
+        let off = (found.value[0] - exact).abs();
+        assert!(off <= found.error[0] && found.error[0] < 1e-4 * exact, "{off:e}, {exact:e}");
     }
 
     #[test]

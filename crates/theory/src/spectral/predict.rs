@@ -5,6 +5,7 @@ use std::collections::HashMap;
 
 use super::Spectrum;
 use crate::prediction::Covariance;
+use crate::problems::channels::channel_name;
 use crate::{Channel, Moments, Prediction, Tails};
 use numeric::Known;
 use numeric::sum::Sum;
@@ -91,13 +92,8 @@ impl Spectrum {
             None => Tails::LIGHT,
         };
         let truth = Known::new(value, error);
-        let name = if !is_one {
-            "luminance".to_owned()
-        } else if self.channels() == 1 {
-            String::new()
-        } else {
-            format!("channel {}", index + 1)
-        };
+        let name =
+            if is_one { channel_name(index, self.channels()) } else { "luminance".to_owned() };
         if moments.is_none() {
             return Channel {
                 name,

@@ -24,6 +24,7 @@ use super::rod::{central, tails};
 use super::spectral::Chances;
 use super::{Channel, CountLaw, Mesh, Prediction, Tails};
 use crate::problems::SpectralLitRod;
+use crate::problems::channels::channel_name;
 use media::Piecewise;
 use numeric::Known;
 
@@ -109,7 +110,11 @@ impl<'a> Spectrum<'a> {
             (Tracker::Tracking(chances), Some(forward)) => forward.lookups(chances),
             _ => None,
         };
-        let lookups = lookups.or_else(|| found.as_ref().map(|found| self.lookups(found)));
+        let of_heroes = |found: &Vec<Found>| {
+            let factorial = found.iter().map(|found| found.lookups);
+            CountLaw::mixed(self.heroes.iter().copied().zip(factorial))
+        };
+        let lookups = lookups.or_else(|| found.as_ref().map(of_heroes));
         let moments = match (self.tracker, &forward) {
             (Tracker::Tracking(chances), forward) => {
                 forward.as_ref().and_then(|forward| forward.tracking(chances))
@@ -125,8 +130,7 @@ impl<'a> Spectrum<'a> {
             answers.map(|((mesh, _), rod)| lit_rod::answer(mesh, rod)).collect();
         let channel = |(index, &answer): (usize, &Known)| {
             let raw = moments.as_ref().map(|moments| &moments.raw[index]);
-            let one = self.channels() == 1;
-            let name = if one { String::new() } else { format!("channel {}", index + 1) };
+            let name = channel_name(index, self.channels());
             let tails = raw.map_or(Tails::LIGHT, tails);
             let central = raw.map(|raw| central(answer, raw));
             let is_unknown = raw.is_none() && laws;
@@ -187,16 +191,5 @@ impl<'a> Spectrum<'a> {
         }
         let orders = Orders::new(self.problem, mesh, &self.heroes, self.tracker.techniques())?;
         orders.moments(sampling, laws)
-    }
-
-    /// The lookups of the heroes' walks.
-    fn lookups(&self, found: &[Found]) -> CountLaw {
-        let mut mixed = [[0.0; 2]; 4];
-        for (weight, found) in self.heroes.iter().zip(found) {
-            for (sum, [value, error]) in mixed.iter_mut().zip(found.lookups) {
-                *sum = [sum[0] + weight * value, sum[1] + weight * error];
-            }
-        }
-        lit_rod::count(mixed)
     }
 }

@@ -28,6 +28,7 @@ use super::super::rod::moments::{POWERS, Precision, romberg};
 use super::super::spectral_rod::rods;
 use super::{Moments, PAIRS};
 use crate::problems::SpectralLitRod;
+use crate::raw::binomial;
 use crate::{Mesh, ParticleRule};
 use media::Piecewise;
 use numeric::Known;
@@ -280,11 +281,6 @@ fn monomials(channels: usize, highest: usize) -> (Vec<Monomial>, Vec<Vec<Term>>)
     };
     let terms = found.iter().map(terms_of).collect();
     (found, terms)
-}
-
-/// `n over k`.
-fn binomial(n: usize, k: usize) -> f64 {
-    (0..k).fold(1.0, |product, i| product * (n - i) as f64 / (i + 1) as f64)
 }
 
 /// Expected scores of a particle that flies one way, in the middles of all steps and where it enters, given the

@@ -234,8 +234,7 @@ impl<'a> Spectrum<'a> {
             },
             _ => Tails::LIGHT,
         };
-        let side = if end == End::Reflected { "reflectance" } else { "transmittance" };
-        let name = format!("{side}, channel {}", channel + 1);
+        let name = end.name(channel);
         if moments.is_none() {
             // A draw of MIS is a^r/Σ w_h a_h^r ≤ 1/w or 0, hence E[X²] ≤ E[X]/w.
             let square = (truth.value + truth.error) / self.hero[channel];

@@ -95,15 +95,8 @@ impl Body for Rods<'_> {
             let rod = Rod::new(medium, &albedo, &forward, channels(0, false, None));
             rod::factorial_lookups(self.mesh, &rod, self.sampling, ParticleRule::Analog)
         };
-        let mut mixed = [[0.0; 2]; 4];
-        for &(weight, albedo) in heroes {
-            for (sum, [value, error]) in mixed.iter_mut().zip(of(albedo)?) {
-                *sum = [sum[0] + weight * value, sum[1] + weight * error];
-            }
-        }
-        let [mean, error] = mixed[0];
-        let law = CountLaw::of_factorial_moments(mixed.map(|[value, _]| value));
-        Some(CountLaw { error: if mean > 0.0 { error / mean } else { 0.0 }, ..law })
+        let each = heroes.iter().map(|&(weight, albedo)| Some((weight, of(albedo)?)));
+        Some(CountLaw::mixed(each.collect::<Option<Vec<_>>>()?))
     }
 }
 

@@ -13,6 +13,7 @@ pub mod relative;
 use super::prediction::Covariance;
 use super::single::Points;
 use super::{Channel, CountLaw, Prediction};
+use crate::problems::channels::channel_name;
 
 /// The lookups of the walk of a hero, mixed over heroes.
 pub fn lookups(alone: &[Points], heroes: &[f64]) -> Option<[f64; 5]> {
@@ -75,10 +76,9 @@ pub fn balanced(alone: &[Points], heroes: &[f64]) -> Prediction {
 }
 
 fn named(mut channels: Vec<Channel>) -> Vec<Channel> {
-    if channels.len() > 1 {
-        for (number, channel) in (1..).zip(&mut channels) {
-            channel.name = format!("channel {number}");
-        }
+    let count = channels.len();
+    for (index, channel) in channels.iter_mut().enumerate() {
+        channel.name = channel_name(index, count);
     }
     channels
 }
