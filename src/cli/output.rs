@@ -3,7 +3,7 @@
 use std::fmt;
 use std::io::{ErrorKind, IsTerminal, Write};
 use std::path::{Path, PathBuf};
-use std::time::Duration;
+use std::time::{Duration, SystemTime};
 
 use anyhow::Context;
 use clap::ValueEnum;
@@ -12,6 +12,7 @@ use indicatif::{HumanDuration, ProgressBar, ProgressDrawTarget, ProgressState, P
 use super::{Console, USAGE};
 use crate::case::CaseError;
 use crate::record::Record;
+use crate::record::repeat::quoted;
 use crate::report::layout::Pen;
 use crate::report::run::console::{self, View};
 use crate::report::run::summary_csv;
@@ -166,6 +167,31 @@ pub fn program() -> String {
     stem.map_or("trueflight".into(), |stem| stem.to_string_lossy().into_owned())
 }
 
+/// Returns the command line, quoted for a shell.
+pub fn command_line() -> String {
+    let words = std::env::args_os().skip(1).map(|word| quoted(&word.to_string_lossy()));
+    [program()].into_iter().chain(words).collect::<Vec<_>>().join(" ")
+}
+
+/// Returns date and time, as in `2026-11-27 11:27 UTC`.
+pub fn date() -> String {
+    let now = SystemTime::now().duration_since(SystemTime::UNIX_EPOCH).unwrap_or_default();
+    date_of(now.as_secs())
+}
+
+/// Returns the date of a number of seconds since 1970 (H. Hinnant, "chrono-compatible low-level date algorithms", 2013).
+fn date_of(seconds: u64) -> String {
+    let (days, minutes) = (seconds / 86_400 + 719_468, seconds % 86_400 / 60);
+    let (era, of_era) = (days / 146_097, days % 146_097);
+    let year = (of_era - of_era / 1460 + of_era / 36_524 - of_era / 146_096) / 365;
+    let of_year = of_era - (365 * year + year / 4 - year / 100);
+    let month = (5 * of_year + 2) / 153;
+    let day = of_year - (153 * month + 2) / 5 + 1;
+    let month = if month < 10 { month + 3 } else { month - 9 };
+    let year = year + 400 * era + u64::from(month <= 2);
+    format!("{year}-{month:02}-{day:02} {:02}:{:02} UTC", minutes / 60, minutes % 60)
+}
+
 /// Writes a warning to stderr.
 pub fn warn(text: &str) {
     tell("warning", text);
@@ -233,4 +259,21 @@ fn width() -> usize {
     let terminal = terminal_size::terminal_size().map(|(width, _)| usize::from(width.0));
     let wished = std::env::var("COLUMNS").ok().and_then(|columns| columns.parse().ok());
     terminal.or(wished).unwrap_or(120)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::date_of;
+
+    #[test]
+    fn dates_are_those_of_the_calendar() {
+        for (seconds, date) in [
+            (0, "1970-01-01 00:00 UTC"),
+            (951_782_399, "2000-02-28 23:59 UTC"),
+            (951_782_400, "2000-02-29 00:00 UTC"),
+            (4_107_542_400, "2100-03-01 00:00 UTC"),
+        ] {
+            assert_eq!(date_of(seconds), date);
+        }
+    }
 }

@@ -19,6 +19,7 @@ use crate::draw::store::{Header, Key, Log, Store};
 use crate::plan::{Options, Plan, options::DRAWS};
 use crate::record::baseline::fingerprint;
 use crate::record::build;
+use crate::report::run::console as screen;
 
 /// Defaults by which commands differ.
 #[derive(Debug, Clone, Copy)]
@@ -261,6 +262,9 @@ pub fn judge(
                 store.reuse(path, is_fresh).with_context(wrong)?;
             }
             let counts = store.reusable(plan);
+            if reports.is_table() && !console.quiet {
+                output::print(&screen::opening(plan))?;
+            }
             let begin = Instant::now();
             let bar = output::progress_until("drawing", "draws", 0, plan.options.seconds, console);
             // Draws of an earlier run are not part of the speed of this one.
@@ -271,6 +275,8 @@ pub fn judge(
             });
             bar.finish_and_clear();
             let mut record = build::judged(plan, &draws, begin.elapsed().as_secs_f64());
+            record.timing.date = output::date();
+            record.timing.command = output::command_line();
             let not_finished = || format!("not finished; {cure} goes on with what is kept");
             store.error().map_or(Ok(()), Err).with_context(not_finished)?;
             let finishing = finished.as_ref().map_or(Ok(()), |path| store.finish(path, &draws));
@@ -302,10 +308,12 @@ pub fn judge(
                  draws were reused (--fresh makes them anew)\n{told}"
             );
         }
-        told = format!("{files} files in {}\n{told}{}", out.display(), output::report_in(out));
+        told = format!("{files} files in {}\n{told}", out.display());
     }
     if reports.is_table() && !console.quiet {
-        errors.keep(output::print(&told));
+        let meaning = screen::meaning(&record, output::pen(console));
+        let page = out.as_ref().filter(|_| files.is_some()).map(|out| output::report_in(out));
+        errors.keep(output::print(&format!("{told}{meaning}{}", page.unwrap_or_default())));
     }
     reports.annotate(&record, &mut errors);
     let code = close(&record, reports.inconclusive, &errors);

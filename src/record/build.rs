@@ -126,7 +126,7 @@ fn record(plan: &Plan, cases: Vec<CaseRecord>) -> Record {
     let timing = Timing {
         threads: rayon::current_num_threads(),
         level: pack::word(Level::new()),
-        seconds: 0.0,
+        ..Timing::default()
     };
     let levels = &plan.levels;
     let gate = Gate {

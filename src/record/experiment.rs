@@ -213,6 +213,12 @@ pub struct Finding {
 }
 
 impl Finding {
+    /// Returns ln E of the gate; evidence beyond all numbers is infinite.
+    pub fn evidence(&self) -> Option<f64> {
+        let ln_e = self.gate?.ln_e;
+        Some(if ln_e.is_finite() { ln_e } else { f64::INFINITY })
+    }
+
     /// Returns whether it concerns a channel, or the experiment as a whole.
     pub fn is_about(&self, channel: &str) -> bool {
         self.channel.is_empty() || self.channel == channel

@@ -15,7 +15,8 @@ pub mod build;
 pub mod curves;
 pub mod evaluate;
 mod experiment;
-mod repeat;
+pub(crate) mod repeat;
+pub mod scores;
 mod theory;
 pub mod version1;
 
@@ -154,6 +155,12 @@ pub struct Timing {
     pub level: String,
     /// Wall-clock seconds of the whole run.
     pub seconds: f64,
+    /// Date and time of its end, as in `2026-11-27 11:27 UTC`; empty in records without it.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub date: String,
+    /// Command line of the run; empty in records without it.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub command: String,
 }
 
 impl Results {
@@ -261,6 +268,22 @@ impl<'a> Row<'a> {
     pub fn why(&self) -> String {
         let reason = &self.values.reason;
         if reason.is_empty() { self.case.notes.join("; ") } else { reason.clone() }
+    }
+
+    /// Returns whether a z-score is to be read as normal.
+    pub fn is_normal(&self, score: Score) -> bool {
+        !self.values.not_normal.contains(&score)
+    }
+
+    /// Returns the measured variance over the predicted one.
+    pub fn variance_ratio(&self) -> Option<f64> {
+        let predicted = self.values.predicted_variance.filter(|&predicted| predicted > 0.0)?;
+        Some(self.values.variance? / predicted)
+    }
+
+    /// Returns the largest ln E of its checks.
+    pub fn largest_ln_e(&self) -> Option<f64> {
+        self.findings().filter_map(Finding::evidence).reduce(f64::max)
     }
 
     /// Returns the nanoseconds of processor time for one lookup of `σ_t`; `None` without lookups.

@@ -13,7 +13,7 @@ const MAX_DRAWS: f64 = 1e12;
 const HALVING: f64 = 4.0;
 
 /// Quotes any word for a shell.
-fn quoted(word: &str) -> String {
+pub(crate) fn quoted(word: &str) -> String {
     let plain = |c: char| c.is_ascii_alphanumeric() || "_./:@%+=-".contains(c);
     if !word.is_empty() && word.chars().all(plain) {
         return word.to_owned();

@@ -1,14 +1,15 @@
 //! Reports: pure functions from results to the text on the screen and the bytes of files.
 //!
 //! Reports are stored by input: each folder has the screen, the tables, the page and the plots of one kind of results.
-//! [`run`] is about a [`Record`](crate::record::Record). Shared are [`columns`], [`layout`], [`page`], [`mod@html`] and [`plots`].
+//! [`run`] is about a [`Record`](crate::record::Record). Shared are [`fields`], [`layout`], [`page`], [`mod@html`] and [`plots`].
 //! A report does no arithmetic beyond formatting.
 
 pub mod bench;
-pub mod columns;
+pub mod fields;
 pub mod html;
 pub mod judge;
 pub mod layout;
+pub mod manual;
 pub mod page;
 pub mod plots;
 pub mod render;

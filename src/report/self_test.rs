@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use crate::report::columns::{self, Column, columns};
+use crate::report::fields::{self, fields};
 use crate::report::layout::{Field, Grid, Paint, Pen};
 use crate::report::{Artifact, ReportError};
 use crate::self_test::SelfTest;
@@ -131,44 +131,44 @@ fn place(mutant: &Caught) -> String {
     format!("{}: {}", mutant.case, mutant.estimator)
 }
 
-/// Returns the columns of promised rates.
-fn of_rates<'a>() -> Vec<Column<&'a Rate>> {
-    columns! {
-        "what" = |rate| &rate.what;
-        "count" = |rate| rate.count;
-        "trials" = |rate| rate.trials;
-        "low_99" = |rate| rate.limits[0];
-        "high_99" = |rate| rate.limits[1];
-        "promise" = |rate| rate.promise;
-        "kept" = |rate| rate.is_kept;
+/// Returns the fields of promised rates.
+pub fn of_rates<'a>() -> Vec<fields::Field<&'a Rate>> {
+    fields! {
+        "what": "Kind of error" = |rate| &rate.what;
+        "count": "Number of errors" = |rate| rate.count;
+        "trials": "Number of trials" = |rate| rate.trials;
+        "low_99": "Lower end of the 99 % interval of the rate" = |rate| rate.limits[0];
+        "high_99": "Upper end" = |rate| rate.limits[1];
+        "promise": "Promised bound on the rate" = |rate| rate.promise;
+        "kept": "Whether the interval allows the promise" = |rate| rate.is_kept;
     }
 }
 
-/// Returns the columns of foreign streams.
-fn of_streams<'a>() -> Vec<Column<&'a StreamVerdicts>> {
-    columns! {
-        "law" = |verdicts| &verdicts.law;
-        "known" = |verdicts| &verdicts.known;
-        "streams" = |verdicts| verdicts.streams;
-        "pass" = |verdicts| verdicts.passed;
-        "fail" = |verdicts| verdicts.failed;
-        "inconclusive" = |verdicts| verdicts.inconclusive;
-        "promise" = |_verdicts| ALPHA;
-        "kept" = |verdicts| verdicts.is_kept();
+/// Returns the fields of foreign streams.
+pub fn of_streams<'a>() -> Vec<fields::Field<&'a StreamVerdicts>> {
+    fields! {
+        "law": "Distribution of the draws" = |verdicts| &verdicts.law;
+        "known": "What the check is told of it" = |verdicts| &verdicts.known;
+        "streams": "Number of streams" = |verdicts| verdicts.streams;
+        "pass": "Number that pass" = |verdicts| verdicts.passed;
+        "fail": "Number that fail" = |verdicts| verdicts.failed;
+        "inconclusive": "Number that are inconclusive" = |verdicts| verdicts.inconclusive;
+        "promise": "Promised bound on the rate" = |_verdicts| ALPHA;
+        "kept": "Whether the interval allows the promise" = |verdicts| verdicts.is_kept();
     }
 }
 
-/// Returns the columns of mutants.
-fn of_mutants<'a>() -> Vec<Column<&'a Caught>> {
-    columns! {
-        "mutant" = |mutant| mutant.name;
-        "bug" = |mutant| mutant.bug;
-        "case" = |mutant| mutant.case;
-        "estimator" = |mutant| &mutant.estimator;
-        "check" = |mutant| mutant.check;
-        "draws" = |mutant| mutant.draws;
-        "failed" = |mutant| mutant.failed.join(" ");
-        "twin_passes" = |mutant| mutant.twin_passes;
+/// Returns the fields of mutants.
+pub fn of_mutants<'a>() -> Vec<fields::Field<&'a Caught>> {
+    fields! {
+        "mutant": "Name of the known bug" = |mutant| mutant.name;
+        "bug": "Description of the bug" = |mutant| mutant.bug;
+        "case": "Case that it is put into" = |mutant| mutant.case;
+        "estimator": "Estimator that has it" = |mutant| &mutant.estimator;
+        "check": "Check that must catch it" = |mutant| mutant.check;
+        "draws": "Number of draws until it was caught; empty if it escaped" = |mutant| mutant.draws;
+        "failed": "All checks that fail" = |mutant| mutant.failed.join(" ");
+        "twin_passes": "Whether the correct estimator passes with the same draws" = |mutant| mutant.twin_passes;
     }
 }
 
@@ -179,8 +179,8 @@ fn of_mutants<'a>() -> Vec<Column<&'a Caught>> {
 /// The encoder fails.
 pub fn artifacts(found: &SelfTest) -> Result<Vec<Artifact>, ReportError> {
     Ok(vec![
-        columns::artifact("self-test/calibration.csv", &of_rates(), rates(&found.calibration))?,
-        columns::artifact("self-test/foreign-streams.csv", &of_streams(), &found.streams)?,
-        columns::artifact("self-test/mutants.csv", &of_mutants(), &found.mutants)?,
+        fields::artifact("self-test/calibration.csv", &of_rates(), rates(&found.calibration))?,
+        fields::artifact("self-test/foreign-streams.csv", &of_streams(), &found.streams)?,
+        fields::artifact("self-test/mutants.csv", &of_mutants(), &found.mutants)?,
     ])
 }

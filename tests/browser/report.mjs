@@ -1,8 +1,8 @@
 // The page of a run in a real browser: `CHROMIUM=PATH node report.mjs REPORT.html [SCREENSHOTS]`.
 //
 // At three widths in both themes: nothing is fetched, the console is silent, nothing is wider than the window, and
-// axe-core finds nothing. Filters, sorting, addresses, rows and copying do what they say, by keyboard, too, and
-// without JavaScript all is readable.
+// axe-core finds nothing. The map, values of plots, filters, sorting, addresses, rows and copying do what they say, by
+// keyboard, too, and without JavaScript all is readable.
 
 import assert from 'node:assert/strict';
 import { mkdirSync } from 'node:fs';
@@ -59,9 +59,9 @@ const looks = async () => {
       }
     };
     await inThemes('first');
-    await page.locator('details.case').first().locator('summary').click();
+    await page.locator('details.case > summary').first().click();
     const rows = [rowOf(page, 0), page.locator('#table > tbody:has(table)').first()];
-    for (const row of rows) await row.locator('summary').click();
+    for (const row of rows) await row.locator('th > details').evaluate((one) => { one.open = true; });
     const [wide, window] =
       await page.evaluate(() => [document.documentElement.scrollWidth, document.documentElement.clientWidth]);
     assert.ok(wide <= window, `${wide} pixels in a window of ${window}`);
@@ -74,8 +74,7 @@ const looks = async () => {
 // What the last row is in regard of a choice, and how many rows are.
 const chosen = (name) => {
   const bodies = [...document.querySelectorAll('#table > tbody')];
-  const columns = { problem: 2, medium: 3 };
-  const own = (body) => body.dataset[name] ?? body.rows[0].cells[columns[name]].textContent;
+  const own = (body) => body.dataset[name] ?? document.getElementById(`case-${body.dataset.case}`).dataset[name];
   const value = own(bodies.at(-1));
   return { value, some: bodies.filter((body) => own(body) === value).length };
 };
@@ -102,8 +101,8 @@ const filters = async () => {
 // z is sorted by its size.
 const sorting = async () => {
   const { page, close } = await open();
-  const head = page.locator('#table > thead th', { hasText: 'z of mean' });
-  const sizes = () => page.$$eval('#table > tbody > tr:first-child > td:nth-child(6)', (cells) => cells
+  const head = page.locator('#table > thead th', { hasText: /^z$/ });
+  const sizes = () => page.$$eval('#table > tbody > tr:first-child > td:nth-child(5)', (cells) => cells
     .map((cell) => Math.abs(Number(cell.textContent.replace(/[()]/g, '')))).filter((size) => !Number.isNaN(size)));
   const before = await sizes();
   await head.locator('button').click();
@@ -136,6 +135,59 @@ const addresses = async () => {
   await close();
 };
 
+// The bubble with an explanation or a value.
+const bubble = (page) => page.locator('.tip');
+
+// A cell of the map names its experiment and opens its row; the map is one stop of the tabulator.
+const map = async () => {
+  const { page, close } = await open();
+  const cells = page.locator('.map a.cell');
+  const ids = await cells.evaluateAll((all) => all.map((cell) => decodeURIComponent(cell.hash.slice(1))));
+  assert.ok(ids.length > 0);
+  assert.ok(await page.evaluate((ids) => ids.every((id) => document.getElementById(id)?.matches('tbody')), ids));
+  assert.equal(await page.locator('.map a.cell[tabindex="0"]').count(), 1);
+  await page.keyboard.press('Tab');
+  await cells.first().focus();
+  await page.keyboard.press('ArrowRight');
+  const said = await page.evaluate(() => document.activeElement.dataset.tip);
+  assert.equal(await page.evaluate(() => document.activeElement.getAttribute('aria-label')), said);
+  assert.equal(await bubble(page).textContent(), said);
+  await page.keyboard.press('Escape');
+  assert.ok(!await bubble(page).isVisible());
+  await cells.last().click();
+  await page.locator(`[id="${ids.at(-1)}"] > .more`).waitFor();
+  await close();
+};
+
+// Points of plots have values, under the pointer and by the arrow keys; headings and verdicts have explanations.
+const values = async () => {
+  const { page, close } = await open();
+  const histogram = page.locator('.pictures > section svg.plot');
+  const [at, text] = await histogram.evaluate((svg) => {
+    const [, x, y, text] = svg.dataset.tips.split('\n').at(8).match(/^(\S+) (\S+) (.*)$/);
+    const { x: left, y: top } = new DOMPoint(Number(x), Number(y)).matrixTransform(svg.getScreenCTM());
+    return [[left, top], text];
+  });
+  await page.mouse.move(at[0] + 2, at[1] + 2);
+  assert.equal(await bubble(page).textContent(), text);
+  await page.mouse.move(2, 2);
+  assert.ok(!await bubble(page).isVisible());
+  const plot = page.locator('details.case:has(.plot)').first();
+  await plot.locator(':scope > summary').click();
+  await plot.locator('.wide').first().focus();
+  const said = [];
+  for (const key of ['ArrowRight', 'ArrowRight', 'ArrowLeft']) {
+    await page.keyboard.press(key);
+    said.push(await bubble(page).textContent());
+  }
+  assert.ok(said[0].length > 0 && said[0] !== said[1] && said[0] === said[2], said.join('; '));
+  for (const one of ['#table > thead th:nth-child(5) button', '.counts li']) {
+    await page.locator(one).first().hover();
+    assert.ok((await bubble(page).textContent()).length > 20 && await bubble(page).isVisible());
+  }
+  await close();
+};
+
 const keyboard = async () => {
   const { page, close } = await open();
   await page.keyboard.press('Tab');
@@ -145,11 +197,12 @@ const keyboard = async () => {
   const row = page.locator('#table > tbody:has(.copy)').first();
   const more = row.locator('.more');
   assert.ok(!await more.isVisible());
-  await row.locator('summary').focus();
+  await row.locator('th > details > summary').focus();
   await page.keyboard.press('Enter');
   assert.ok(await more.isVisible());
-  await page.keyboard.press('Tab');
-  assert.equal(await page.evaluate(() => document.activeElement.textContent), 'Copy');
+  const focused = () => page.evaluate(() => document.activeElement.textContent);
+  for (let stop = 0; stop < 12 && await focused() !== 'Copy'; stop += 1) await page.keyboard.press('Tab');
+  assert.equal(await focused(), 'Copy');
   await page.keyboard.press('Enter');
   await more.locator('button', { hasText: /Copied|Selected/ }).waitFor();
   await close();
@@ -159,11 +212,12 @@ const withoutScript = async () => {
   const { page, close } = await open({ javaScriptEnabled: false });
   assert.ok(!await page.isVisible('#filters') && !await page.locator('.copy').first().isVisible());
   const plotted = page.locator('details.case:has(.plot)').first();
-  await plotted.locator('summary').click();
+  await plotted.locator(':scope > summary').click();
   const box = await plotted.locator('.plot').first().boundingBox();
   assert.ok(box.width > 300 && box.height > 100, 'a plot has a size');
-  await rowOf(page, 0).locator('summary').click();
+  await rowOf(page, 0).locator('th > details > summary').click();
   assert.ok(await rowOf(page, 0).locator('.more').isVisible());
+  assert.ok(await page.isVisible('#legend') && await page.locator('.map a.cell[title]').count() > 0);
   await close();
 };
 
@@ -175,7 +229,7 @@ const print = async () => {
 };
 
 if (folder) mkdirSync(folder, { recursive: true });
-for (const part of [looks, filters, sorting, addresses, keyboard, withoutScript, print]) {
+for (const part of [looks, map, values, filters, sorting, addresses, keyboard, withoutScript, print]) {
   const begin = Date.now();
   await part();
   console.log(`${part.name}: ${((Date.now() - begin) / 1000).toFixed(1)} s`);

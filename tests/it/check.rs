@@ -53,7 +53,7 @@ fn all_pass_is_0_and_quiet_about_it() {
     let place = place_of(GOOD);
     let output = check(&place, 0, &format!("cases {FILES} --color always"));
     let text = said(&output);
-    assert_says(&text, &["case  2 pass, ", " draws", "visible bias", "share α = 0.001", "seed 1"]);
+    assert_says(&text, &["case  2 pass · ", " draws", "visible bias", "share α = 0.001", "seed 1"]);
     assert!(!text.contains("woodcock"), "a row that passes is shown:\n{text}");
     reports(&place);
     assert!(!place.path().join("results").exists());

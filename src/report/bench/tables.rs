@@ -5,15 +5,18 @@
 //! `_least` and `_most` are the minimum and the maximum of the rounds.
 
 use crate::bench::record::{Bench, BenchCase, BenchRow, CurvePoint, Spread, Times};
-use crate::report::columns::{self, Cell, Column, columns};
+use crate::report::fields::{self, Cell, Field, fields};
 use crate::report::{Artifact, ReportError};
 
 /// Row with its case and bench.
 #[derive(Debug, Clone, Copy)]
-struct Joined<'a> {
-    bench: &'a Bench,
-    case: &'a BenchCase,
-    row: &'a BenchRow,
+pub struct Joined<'a> {
+    /// Bench.
+    pub bench: &'a Bench,
+    /// Case.
+    pub case: &'a BenchCase,
+    /// Row.
+    pub row: &'a BenchRow,
 }
 
 impl Joined<'_> {
@@ -31,56 +34,56 @@ impl Joined<'_> {
     }
 }
 
-/// Returns the columns, in the order of the files.
-fn columns<'a>() -> Vec<Column<Joined<'a>>> {
-    columns! {
-        "case" = |joined| &joined.case.name;
-        "problem" = |joined| &joined.case.problem;
-        "medium" = |joined| &joined.case.medium;
-        "estimator" = |joined| joined.row.id.label();
-        "sampling" = |joined| joined.row.sampling();
-        "control" = |joined| &joined.row.id.control;
-        "channel" = |joined| &joined.row.channel;
-        "swept" = |joined| joined.row.id.swept_value();
-        "sampling_kind" = |joined| &joined.row.id.sampling.kind;
-        "seed" = |joined| Some(joined.bench.seed);
-        "rounds" = |joined| u64::from(joined.bench.rounds);
-        "draws" = |joined| joined.row.draws;
-        "mean" = |joined| joined.row.mean;
-        "truth" = |joined| joined.row.truth;
-        "variance" = |joined| joined.row.variance;
-        "predicted_variance" = |joined| joined.row.predicted_variance;
-        "lookups_per_draw" = |joined| joined.row.lookups_per_draw;
-        "predicted_lookups" = |joined| joined.row.predicted_lookups;
-        "fom" = |joined| joined.row.fom;
-        "threads" = |joined| joined.bench.conditions.threads;
-        "clock" = |joined| joined.bench.conditions.clock.word();
-        "ns_per_draw" = |joined| joined.spread(|times| Some(times.ns_per_draw), |s| s.median);
-        "ns_per_draw_least" = |joined| joined.spread(|times| Some(times.ns_per_draw), |s| s.least);
-        "ns_per_draw_most" = |joined| joined.spread(|times| Some(times.ns_per_draw), |s| s.most);
-        "draws_per_second" = |joined| joined.timed(|times| Some(times.draws_per_second));
-        "ns_per_lookup" = |joined| joined.timed(|times| times.ns_per_lookup);
-        "plain_ns_per_draw" = |joined| joined.spread(|times| Some(times.plain_ns_per_draw), |s| s.median);
-        "plain_ns_per_draw_least" = |joined| joined.spread(|times| Some(times.plain_ns_per_draw), |s| s.least);
-        "plain_ns_per_draw_most" = |joined| joined.spread(|times| Some(times.plain_ns_per_draw), |s| s.most);
-        "speedup" = |joined| joined.spread(|times| Some(times.speedup), |s| s.median);
-        "speedup_least" = |joined| joined.spread(|times| Some(times.speedup), |s| s.least);
-        "speedup_most" = |joined| joined.spread(|times| Some(times.speedup), |s| s.most);
-        "scaling" = |joined| joined.spread(|times| times.scaling, |s| s.median);
-        "scaling_least" = |joined| joined.spread(|times| times.scaling, |s| s.least);
-        "scaling_most" = |joined| joined.spread(|times| times.scaling, |s| s.most);
-        "seconds_to_1e-2" = |joined| joined.timed(|times| Some(times.seconds_to?[0]));
-        "seconds_to_1e-3" = |joined| joined.timed(|times| Some(times.seconds_to?[1]));
-        "seconds_to_1e-4" = |joined| joined.timed(|times| Some(times.seconds_to?[2]));
-        "efficiency" = |joined| joined.timed(|times| times.efficiency);
-        "reason" = |joined| &joined.row.reason;
-        "ttuv" = |joined| joined.timed(Times::ttuv);
-        "setup_lookups" = |joined| joined.row.setup_lookups;
-        "needs" = |joined| &joined.row.needs;
+/// Returns the fields, in the order of the files.
+pub fn of_rows<'a>() -> Vec<Field<Joined<'a>>> {
+    fields! {
+        "case": "Case: the name of its file" = |joined| &joined.case.name;
+        "problem": "Kind of problem" = |joined| &joined.case.problem;
+        "medium": "Medium" = |joined| &joined.case.medium;
+        "estimator": "Estimator with its settings" = |joined| joined.row.id.label();
+        "sampling" ["σ̂", "1/length", Short(4)]: "Sampling extinction σ̂, if it is a constant" = |joined| joined.row.sampling();
+        "control": "Control extinction" = |joined| &joined.row.id.control;
+        "channel": "Which value of a draw; empty if a draw is one value" = |joined| &joined.row.channel;
+        "swept" ["swept", "", Short(4)]: "Value of the swept quantity" = |joined| joined.row.id.swept_value();
+        "sampling_kind" ["kind of σ̂", "", Plain]: "Kind of σ̂, as constant or local majorants" = |joined| &joined.row.id.sampling.kind;
+        "seed": "Seed of all random numbers" = |joined| Some(joined.bench.seed);
+        "rounds": "Number of rounds; times are medians of them" = |joined| u64::from(joined.bench.rounds);
+        "draws": "Number of draws of a round" = |joined| joined.row.draws;
+        "mean": "Mean of the draws" = |joined| joined.row.mean;
+        "truth": "Exact answer" = |joined| joined.row.truth;
+        "variance": "Variance of one draw, measured" = |joined| joined.row.variance;
+        "predicted_variance": "Variance of one draw in theory" = |joined| joined.row.predicted_variance;
+        "lookups_per_draw": "Mean number of lookups of a draw" = |joined| joined.row.lookups_per_draw;
+        "predicted_lookups": "Expected number of lookups of a draw" = |joined| joined.row.predicted_lookups;
+        "fom" ["1/VN", "", Short(3)]: "Figure of merit 1/(variance × lookups)" = |joined| joined.row.fom;
+        "threads": "Number of threads" = |joined| joined.bench.conditions.threads;
+        "clock": "Clock of the times: processor or wall" = |joined| joined.bench.conditions.clock.word();
+        "ns_per_draw" ["ns/draw", "ns", Short(3)]: "Time of a draw in nanoseconds, the median of the rounds" = |joined| joined.spread(|times| Some(times.ns_per_draw), |s| s.median);
+        "ns_per_draw_least" ["least", "ns", Short(3)]: "Its minimum" = |joined| joined.spread(|times| Some(times.ns_per_draw), |s| s.least);
+        "ns_per_draw_most" ["most", "ns", Short(3)]: "Its maximum" = |joined| joined.spread(|times| Some(times.ns_per_draw), |s| s.most);
+        "draws_per_second": "Draws of a second on one thread" = |joined| joined.timed(|times| Some(times.draws_per_second));
+        "ns_per_lookup" ["ns/lookup", "ns", Short(3)]: "Time of a lookup in nanoseconds" = |joined| joined.timed(|times| times.ns_per_lookup);
+        "plain_ns_per_draw": "Time of a draw of the plain scalar loop over the same draws" = |joined| joined.spread(|times| Some(times.plain_ns_per_draw), |s| s.median);
+        "plain_ns_per_draw_least": "Its minimum" = |joined| joined.spread(|times| Some(times.plain_ns_per_draw), |s| s.least);
+        "plain_ns_per_draw_most": "Its maximum" = |joined| joined.spread(|times| Some(times.plain_ns_per_draw), |s| s.most);
+        "speedup" ["speedup", "", Short(3)]: "Time of the plain loop over that of the estimator" = |joined| joined.spread(|times| Some(times.speedup), |s| s.median);
+        "speedup_least": "Its minimum" = |joined| joined.spread(|times| Some(times.speedup), |s| s.least);
+        "speedup_most": "Its maximum" = |joined| joined.spread(|times| Some(times.speedup), |s| s.most);
+        "scaling" ["scaling", "", Short(3)]: "Speed on all threads over that on one" = |joined| joined.spread(|times| times.scaling, |s| s.median);
+        "scaling_least": "Its minimum" = |joined| joined.spread(|times| times.scaling, |s| s.least);
+        "scaling_most": "Its maximum" = |joined| joined.spread(|times| times.scaling, |s| s.most);
+        "seconds_to_1e-2": "Seconds to a relative error of 1e-2" = |joined| joined.timed(|times| Some(times.seconds_to?[0]));
+        "seconds_to_1e-3" ["s to 1e-3", "s", Short(3)]: "Seconds to a relative error of 1e-3" = |joined| joined.timed(|times| Some(times.seconds_to?[1]));
+        "seconds_to_1e-4": "Seconds to a relative error of 1e-4" = |joined| joined.timed(|times| Some(times.seconds_to?[2]));
+        "efficiency" ["1/Vt", "", Short(3)]: "1/(variance × time)" = |joined| joined.timed(|times| times.efficiency);
+        "reason" ["note", "", Plain]: "Reason why it was not timed" = |joined| &joined.row.reason;
+        "ttuv": "Time to unit variance: variance × time" = |joined| joined.timed(Times::ttuv);
+        "setup_lookups": "Lookups of a ray before its first draw" = |joined| joined.row.setup_lookups;
+        "needs": "Knowledge of the medium beside lookups" = |joined| &joined.row.needs;
     }
 }
 
-fn joined(bench: &Bench) -> impl Iterator<Item = Joined<'_>> {
+pub(super) fn joined(bench: &Bench) -> impl Iterator<Item = Joined<'_>> {
     let cases = bench.cases.iter();
     cases.flat_map(move |case| case.rows.iter().map(move |row| Joined { bench, case, row }))
 }
@@ -91,7 +94,7 @@ fn joined(bench: &Bench) -> impl Iterator<Item = Joined<'_>> {
 ///
 /// The encoder fails.
 pub fn csv(bench: &Bench) -> Result<String, ReportError> {
-    columns::csv("the bench", &columns(), joined(bench))
+    fields::csv("the bench", &of_rows(), joined(bench))
 }
 
 /// Returns the rows as a JSON array of objects, one per line; unknown is `null`.
@@ -100,33 +103,33 @@ pub fn csv(bench: &Bench) -> Result<String, ReportError> {
 ///
 /// The encoder fails.
 pub fn json(bench: &Bench) -> Result<String, ReportError> {
-    columns::json(&columns(), joined(bench))
+    fields::json(&of_rows(), joined(bench))
 }
 
 /// Point of a curve with its price.
-struct Priced<'a> {
+pub struct Priced<'a> {
     row: &'a BenchRow,
     times: &'a Times,
     point: &'a CurvePoint,
 }
 
-/// Returns the columns of `CASE.error.csv`.
-fn error_columns<'a>() -> Vec<Column<Priced<'a>>> {
-    columns! {
-        "estimator" = |of| of.row.id.label();
-        "sampling" = |of| of.row.sampling().map_or_else(|| Cell::from(&of.row.id.sampling.kind), Cell::from);
-        "control" = |of| &of.row.id.control;
-        "channel" = |of| &of.row.channel;
-        "swept" = |of| of.row.id.swept_value();
-        "draws" = |of| of.point.draws;
-        "lookups" = |of| of.point.lookups;
-        "seconds" = |of| of.times.seconds(of.point.draws);
-        "plain_seconds" = |of| of.times.plain_seconds(of.point.draws);
-        "error" = |of| of.point.error;
-        "relative_error" = |of| of.point.relative;
-        "relative_error_least" = |of| of.point.least;
-        "relative_error_most" = |of| of.point.most;
-        "predicted_relative_error" = |of| of.point.predicted;
+/// Returns the fields of `CASE.error.csv`.
+pub fn of_errors<'a>() -> Vec<Field<Priced<'a>>> {
+    fields! {
+        "estimator": "Estimator with its settings" = |of| of.row.id.label();
+        "sampling": "Sampling extinction σ̂, if it is a constant" = |of| of.row.sampling().map_or_else(|| Cell::from(&of.row.id.sampling.kind), Cell::from);
+        "control": "Control extinction" = |of| &of.row.id.control;
+        "channel": "Which value of a draw; empty if a draw is one value" = |of| &of.row.channel;
+        "swept": "Value of the swept quantity" = |of| of.row.id.swept_value();
+        "draws": "Number of draws of a round" = |of| of.point.draws;
+        "lookups": "Number of lookups of the draws" = |of| of.point.lookups;
+        "seconds": "Time of the draws" = |of| of.times.seconds(of.point.draws);
+        "plain_seconds": "Time of the plain loop over them" = |of| of.times.plain_seconds(of.point.draws);
+        "error": "Measured error of the mean" = |of| of.point.error;
+        "relative_error": "Its size relative to the truth" = |of| of.point.relative;
+        "relative_error_least": "Smallest relative error of the repetitions" = |of| of.point.least;
+        "relative_error_most": "Largest relative error of the repetitions" = |of| of.point.most;
+        "predicted_relative_error": "Relative error in theory" = |of| of.point.predicted;
     }
 }
 
@@ -135,5 +138,5 @@ pub(super) fn errors(case: &BenchCase) -> Result<Artifact, ReportError> {
     let timed = case.rows.iter().filter_map(|row| Some((row, row.times.as_ref()?)));
     let points = timed
         .flat_map(|(row, times)| row.curve.iter().map(move |point| Priced { row, times, point }));
-    columns::artifact(&format!("{}.error.csv", case.name), &error_columns(), points)
+    fields::artifact(&format!("{}.error.csv", case.name), &of_errors(), points)
 }

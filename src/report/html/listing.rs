@@ -1,51 +1,32 @@
 //! Plain table that the page's script can filter and sort: of a bench, of a stress test.
 
 use super::words;
+use crate::report::fields::Field;
 use maud::{Markup, html};
 use std::collections::BTreeSet;
 
-/// Column: its title and its cells.
-pub struct Column<T> {
-    /// The title.
-    pub title: &'static str,
-    /// Content of its cells.
-    pub cell: Cell<T>,
-}
-
-/// Content of a cell, by its row.
-pub enum Cell<T> {
-    /// Text.
-    Text(fn(&T) -> String),
-    /// Number in three digits.
-    Number(fn(&T) -> Option<f64>),
-}
-
-/// Returns the table; `class` is that of a row's first cell, `data` has the values that filters select by.
+/// Returns the table. The first column has a heading, and of each row a style class and a text; `data` has the values that
+/// filters select by.
 pub fn table<T>(
-    columns: &[Column<T>],
+    head: &str,
+    first: fn(&T) -> (&'static str, String),
+    fields: &[&Field<T>],
     rows: &[T],
-    class: fn(&T) -> &'static str,
     data: fn(&T) -> String,
 ) -> Markup {
+    let class = |field: &Field<T>| field.is_numeric(rows).then_some("number");
     html! {
         div.wide tabindex="0" role="group" aria-labelledby="experiments" {
             table #table {
-                thead { tr { @for Column { title, cell } in columns {
-                    th scope="col" class=[matches!(cell, Cell::Number(_)).then_some("number")] { (title) }
-                } } }
+                thead { tr {
+                    th scope="col" { (head) }
+                    @for field in fields { th scope="col" class=[class(field)] title=(field.tip()) { (field.head) } }
+                } }
                 @for row in rows {
+                    @let (word, text) = first(row);
                     tbody data-group=(data(row)) { tr {
-                        @for (place, Column { cell, .. }) in columns.iter().enumerate() {
-                            @match cell {
-                                Cell::Text(text) if place == 0 => {
-                                    th scope="row" class={ "verdict " (class(row)) } { (text(row)) }
-                                }
-                                Cell::Text(text) => td { (text(row)) }
-                                Cell::Number(number) => td.number {
-                                    (words::number(number(row), 3))
-                                }
-                            }
-                        }
+                        th scope="row" class={ "verdict " (word) } { (text) }
+                        @for field in fields { td class=[class(field)] { (words::field(field, row)) } }
                     } }
                 }
             }

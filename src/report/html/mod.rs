@@ -51,11 +51,11 @@ pub fn causes(lines: &[String]) -> Markup {
     }
 }
 
-/// Returns a command to copy, after a word that describes it: the page's script adds a button that copies it.
+/// Returns a command to copy, after a word that describes it, if there is one: the page's script adds a button that copies it.
 pub fn command(command: Option<(&str, &str)>) -> Markup {
     html! {
         @if let Some((word, command)) = command.filter(|command| !command.1.is_empty()) {
-            p.command { (word) ": " code { (command) } }
+            p.command { @if !word.is_empty() { (word) ": " } code { (command) } }
         }
     }
 }

@@ -1,7 +1,11 @@
 //! Numbers and verdicts as text of the page.
 
-use crate::record::{Row, Score, Verdict};
-use numeric::digits::{short, signed};
+use maud::{Markup, html};
+
+use crate::record::{Row, Verdict};
+use crate::report::fields::Field;
+use crate::report::run::totals::VERDICTS;
+use numeric::digits::short;
 
 /// Text for unknown or unbounded numbers.
 pub const UNKNOWN: &str = "–";
@@ -24,13 +28,9 @@ pub fn count(value: Option<u64>) -> String {
     value.map_or_else(|| UNKNOWN.to_owned(), numeric::digits::count)
 }
 
-/// Returns a z-score, in parentheses if it is not to be read as normal.
-pub fn z(row: &Row, score: Score, z: Option<f64>) -> String {
-    match z.filter(|z| z.is_finite()) {
-        None => UNKNOWN.to_owned(),
-        Some(z) if row.not_normal.contains(&score) => format!("({})", signed(z)),
-        Some(z) => signed(z),
-    }
+/// Returns a field of a row.
+pub fn field<T>(field: &Field<T>, row: &T) -> String {
+    Some(field.text(row)).filter(|text| !text.is_empty()).unwrap_or_else(|| UNKNOWN.to_owned())
 }
 
 /// Returns whether both ends of a range are finite.
@@ -38,31 +38,33 @@ pub fn is_known(range: &[f64; 2]) -> bool {
     range.iter().all(|end| end.is_finite())
 }
 
-/// Returns evidence for sorting: infinite evidence is above all other.
-pub fn ordered(ln_e: f64) -> f64 {
-    if ln_e.is_finite() { ln_e } else { f64::INFINITY }
-}
-
 /// Returns evidence in words.
 pub fn evidence(ln_e: f64) -> String {
     if ln_e.is_finite() { short(ln_e, 4) } else { "∞".to_owned() }
 }
 
+/// Returns the word of a verdict, which is its style class, too.
+pub fn word(verdict: Option<Verdict>) -> &'static str {
+    verdict.map_or("undecided", Verdict::word)
+}
+
 /// Returns a verdict: its mark and its word. Its colour comes from the surrounding element.
 pub fn verdict(verdict: Option<Verdict>) -> String {
-    verdict.map_or_else(
-        || "· undecided".to_owned(),
-        |verdict| format!("{} {}", mark(verdict), verdict.word()),
-    )
+    format!("{} {}", mark(verdict), word(verdict))
 }
 
 /// Returns a mark that distinguishes verdicts without colours.
-fn mark(verdict: Verdict) -> &'static str {
-    match verdict {
-        Verdict::Pass => "✓",
-        Verdict::Fail => "✗",
-        Verdict::Inconclusive => "?",
-        Verdict::Underpowered => "~",
-        Verdict::Refused => "⊘",
-    }
+pub fn mark(verdict: Option<Verdict>) -> &'static str {
+    let known = VERDICTS.iter().find(|known| Some(known.verdict) == verdict);
+    known.map_or("·", |known| known.mark)
+}
+
+/// Returns the rank of a verdict, the most serious first.
+pub fn severity(verdict: Option<Verdict>) -> usize {
+    VERDICTS.iter().position(|known| Some(known.verdict) == verdict).unwrap_or(VERDICTS.len())
+}
+
+/// Returns the number of things that are not shown.
+pub fn more(all: usize, shown: usize) -> Markup {
+    html! { @if all > shown { p { "and " (all - shown) " more, in the table below." } } }
 }

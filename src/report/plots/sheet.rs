@@ -99,6 +99,15 @@ pub enum Align {
     End,
 }
 
+/// Value that a page shows where the pointer or the keyboard is.
+#[derive(Debug, Clone)]
+pub struct Tip {
+    /// Place.
+    pub at: Spot,
+    /// Value in words.
+    pub text: String,
+}
+
 /// Drawing.
 #[derive(Debug, Clone)]
 pub struct Sheet {
@@ -108,12 +117,19 @@ pub struct Sheet {
     pub height: f64,
     /// Shapes, from the back to the front.
     pub shapes: Vec<Shape>,
+    /// Values of its points, for pages.
+    pub tips: Vec<Tip>,
 }
 
 impl Sheet {
     /// Returns an empty sheet.
     pub fn new(width: f64, height: f64) -> Self {
-        Self { width, height, shapes: Vec::new() }
+        Self { width, height, shapes: Vec::new(), tips: Vec::new() }
+    }
+
+    /// Adds the value of a point.
+    pub fn tip(&mut self, at: Spot, text: String) {
+        self.tips.push(Tip { at, text });
     }
 
     /// Draws a line through points; fewer than two draw nothing.

@@ -72,6 +72,7 @@ pub fn shapes(sheet: &Sheet) -> Markup {
             Shape::Image(image) => {
                 image.cells().for_each(|(corners, colour)| add(Look::Fill(colour), &corners));
             }
+            Shape::Text(label) if label.text.is_empty() => {}
             Shape::Text(label) => texts.push(text(label)),
         }
     }
@@ -155,7 +156,8 @@ fn part(RGBAColor(.., alpha): RGBAColor) -> Option<String> {
     (alpha < 1.0).then(|| format!("{alpha:.2}"))
 }
 
-fn unit(length: f64) -> i64 {
+/// Returns a length in whole units.
+pub fn unit(length: f64) -> i64 {
     // NaN becomes the corner; figures clip to their panels long before.
     #[expect(clippy::cast_possible_truncation)]
     let whole = (length * UNITS).round().clamp(-FARTHEST, FARTHEST) as i64;

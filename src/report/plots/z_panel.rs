@@ -8,7 +8,7 @@ use crate::report::plots::legend::{self, Key};
 use crate::report::plots::series::Series;
 use crate::report::plots::style::{GREY, Marker, PAPER, ink};
 use crate::report::plots::{Axis, Panel, Sheet};
-use numeric::digits::short;
+use numeric::digits::{short, signed};
 
 /// Limit of |z| within which 95 % of the scores of a correct estimator lie.
 const USUAL: f64 = 1.96;
@@ -83,7 +83,7 @@ fn points(sheet: &mut Sheet, panel: &Panel, series: &[Series]) -> bool {
     let (mut slot, mut edge) = (0.0, panel.right - 9.0);
     for one in series {
         let fixed = one.is_fixed();
-        for (marker, _, kind, score) in SCORES {
+        for (marker, word, kind, score) in SCORES {
             let shift = (slot - (slots - 1.0) / 2.0) * step;
             slot += if fixed { 0.0 } else { 1.0 };
             for row in &one.rows {
@@ -96,6 +96,7 @@ fn points(sheet: &mut Sheet, panel: &Panel, series: &[Series]) -> bool {
                 let Some(y) = panel.down(z.clamp(-1e9, 1e9)) else { continue };
                 let at = [x.clamp(panel.left + 4.0, panel.right - 4.0), y];
                 if panel.holds(at) {
+                    sheet.tip(at, format!("{}: z of the {word} {}", row.name(), signed(z)));
                     panel.point(sheet, at, marker, 3.6, one.style.colour);
                     if row.not_normal.contains(&kind) {
                         panel.point(sheet, at, marker, 0.8, PAPER);

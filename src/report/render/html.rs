@@ -6,39 +6,30 @@ use maud::html;
 
 use crate::render::PictureRecord;
 use crate::render::record::{Exposure, ExposureRecord};
+use crate::report::fields::{Field, fields};
 use crate::report::html as page;
-use crate::report::html::listing::{self, Cell, Column, table};
+use crate::report::html::listing::{self, table};
 
 /// Image with its picture.
 type Joined<'a> = (&'a PictureRecord, &'a ExposureRecord);
 
-/// Makes a column for a figure of an image.
-macro_rules! exposed {
-    ($title:literal, $figure:expr) => {
-        Column {
-            title: $title,
-            cell: Cell::Number(|(_, exposure)| {
-                let figure: fn(&Exposure) -> Option<f64> = $figure;
-                exposure.outcome.as_ref().ok().and_then(figure)
-            }),
-        }
-    };
-}
-
-fn columns<'a>() -> [Column<Joined<'a>>; 11] {
-    [
-        Column { title: "picture", cell: Cell::Text(|(picture, _)| picture.name.clone()) },
-        Column { title: "estimator", cell: Cell::Text(|(_, one)| one.estimator.to_string()) },
-        Column { title: "σ\u{302}", cell: Cell::Text(|(_, one)| one.sampling.clone()) },
-        Column { title: "control", cell: Cell::Text(|(_, one)| one.control.clone()) },
-        exposed!("RMSE", |found| Some(found.rmse)),
-        exposed!("in theory", |found| found.predicted_rmse),
-        exposed!("mean error", |found| Some(found.bias)),
-        exposed!("lookups/pixel", |found| Some(found.lookups)),
-        exposed!("draws/pixel", |found| Some(found.draws)),
-        exposed!("1/(MSE · lookups)", |found| found.figure_of_merit),
-        Column { title: "refused", cell: Cell::Text(|(_, one)| reason(one).to_owned()) },
-    ]
+/// Returns the columns of the page, beside the picture.
+fn columns<'a>() -> Vec<Field<Joined<'a>>> {
+    fn of(exposure: &ExposureRecord, figure: fn(&Exposure) -> Option<f64>) -> Option<f64> {
+        exposure.outcome.as_ref().ok().and_then(figure)
+    }
+    fields! {
+        "estimator": "Estimator with its settings" = |(_, one)| one.estimator.to_string();
+        "sampling" ["σ̂", "", Plain]: "Sampling extinction σ̂" = |(_, one)| &one.sampling;
+        "control": "Control extinction" = |(_, one)| &one.control;
+        "rmse" ["RMSE", "", Short(3)]: "Root mean squared difference from the reference" = |(_, one)| of(one, |found| Some(found.rmse));
+        "predicted_rmse" ["in theory", "", Short(3)]: "The same in theory" = |(_, one)| of(one, |found| found.predicted_rmse);
+        "mean_error" ["mean error", "", Short(3)]: "Mean difference from the reference" = |(_, one)| of(one, |found| Some(found.bias));
+        "lookups_per_pixel" ["lookups/pixel", "", Short(3)]: "Lookups of σ_t for a pixel" = |(_, one)| of(one, |found| Some(found.lookups));
+        "draws_per_pixel" ["draws/pixel", "", Short(3)]: "Draws of a pixel" = |(_, one)| of(one, |found| Some(found.draws));
+        "figure_of_merit" ["1/(MSE · lookups)", "", Short(3)]: "Figure of merit: larger is better" = |(_, one)| of(one, |found| found.figure_of_merit);
+        "reason" ["refused", "", Plain]: "Reason why there is no image" = |(_, one)| reason(one);
+    }
 }
 
 fn reason(exposure: &ExposureRecord) -> &str {
@@ -51,6 +42,7 @@ pub fn text(pictures: &[(PictureRecord, Vec<u8>)]) -> String {
         .iter()
         .flat_map(|(picture, _)| picture.exposures.iter().map(move |exposure| (picture, exposure)))
         .collect();
+    let fields = columns();
     let line = format!("{} pictures, {} images", pictures.len(), rows.len());
     let choices = [("group", pictures.iter().map(|(picture, _)| picture.name.clone()).collect())];
     let body = html! {
@@ -61,7 +53,7 @@ pub fn text(pictures: &[(PictureRecord, Vec<u8>)]) -> String {
         section aria-labelledby="experiments" {
             h2 #experiments { "Errors" }
             (listing::form(&choices, rows.len()))
-            (table(&columns(), &rows, |_| "", |(picture, _)| picture.name.clone()))
+            (table("picture", |(picture, _)| ("", picture.name.clone()), &fields.iter().collect::<Vec<_>>(), &rows, |(picture, _)| picture.name.clone()))
         }
         section aria-labelledby="sheets" {
             h2 #sheets { "Pictures" }

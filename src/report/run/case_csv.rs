@@ -4,8 +4,9 @@
 //! machine.
 
 use crate::record::{Anatomy, CaseRecord, Record, Row, Sweep};
-use crate::report::columns::table;
-use crate::report::run::summary_csv::{Line, TIMED, columns};
+use crate::report::fields::table;
+use crate::report::run::fields::{TIMED, of_files};
+use crate::report::run::summary_csv::Line;
 use crate::report::{Artifact, ReportError, case_path};
 use numeric::digits::exact;
 
@@ -37,7 +38,7 @@ pub fn render(record: &Record) -> Result<Vec<Artifact>, ReportError> {
 type Bar = (&'static str, fn(&Row) -> Option<f64>);
 
 fn case_rows(case: &CaseRecord, seed: u64) -> Result<String, ReportError> {
-    let mut untimed = columns();
+    let mut untimed = of_files();
     untimed.retain(|column| !TIMED.contains(&column.name));
     let bars: [Bar; 2] = [
         ("variance_deviation", |row| row.variance_deviation),

@@ -9,10 +9,12 @@ pub mod views;
 
 use std::fmt::Write;
 
+use crate::plan::{Options, Plan};
 use crate::record::{CaseRecord, Digits, Record, Row, Verdict};
 use crate::report::layout::{self, Field, Grid, Paint, end_elided};
+use crate::report::run::summary_csv::Line;
 use crate::report::run::totals;
-use numeric::digits::{count, short};
+use numeric::digits::{count, fixed, range, short};
 
 /// Subject of the table.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -44,11 +46,43 @@ pub fn table(record: &Record, view: View, pen: layout::Pen) -> String {
     let mut text = String::new();
     let mut marks = false;
     for case in &record.results.cases {
-        marks |= block(&mut text, pen, case, view);
+        marks |= block(&mut text, pen, case, (record.results.seed, view));
         text.push('\n');
     }
     legend(&mut text, pen, marks);
     closing::write(&mut text, pen, record, view);
+    text
+}
+
+/// Returns the first line of a run: what is drawn, and at which level.
+pub fn opening(plan: &Plan) -> String {
+    let Options { seed, alpha, .. } = plan.options;
+    let cases = match &plan.cases[..] {
+        [one] => one.case.name.clone(),
+        cases => format!("{} cases", cases.len()),
+    };
+    let drawn = plan.experiments().filter(|(_, planned)| planned.outcome.is_ok());
+    let most = drawn.map(|(_, planned)| planned.draws).max().unwrap_or(0);
+    let experiments = plan.experiments().count();
+    let noun = if experiments == 1 { "experiment" } else { "experiments" };
+    format!(
+        "{cases}: {experiments} {noun}, at most {} each, seed {seed}, α = {}\n",
+        draws(most),
+        short(alpha, 3)
+    )
+}
+
+/// Returns the last words of a run: its verdict, and what that means.
+pub fn meaning(record: &Record, pen: layout::Pen) -> String {
+    let verdict = totals::verdict(record);
+    let paint = match verdict.class {
+        "pass" => Paint::Green,
+        "fail" => Paint::Red,
+        _ => Paint::Yellow,
+    };
+    let mut text = String::new();
+    pen.say(&mut text, paint, &verdict.words());
+    pen.say(&mut text, Paint::Plain, &verdict.meaning(record));
     text
 }
 
@@ -58,7 +92,7 @@ pub fn brief(record: &Record, pen: layout::Pen) -> String {
     for case in &record.results.cases {
         let quiet = |row: &Row| !matches!(row.verdict, Some(Verdict::Pass) | None);
         let rows: Vec<Row> = case.rows().filter(quiet).collect();
-        let line = format!("{}  {}, {} draws", case.name, totals::words(case), totals::draws(case));
+        let line = format!("{}  {}", case.name, outcome(case).join(" · "));
         if rows.is_empty() {
             let _ = writeln!(text, "{}", end_elided(&line, pen.width));
             notes(&mut text, pen, case);
@@ -66,7 +100,8 @@ pub fn brief(record: &Record, pen: layout::Pen) -> String {
         }
         let _ = writeln!(text, "{}", pen.paint(Paint::Bold, &end_elided(&line, pen.width)));
         notes(&mut text, pen, case);
-        marks |= grid(&mut text, pen, &Block { case, rows, labels: Digits::of(case) }, View::Run);
+        let (seed, labels) = (record.results.seed, Digits::of(case));
+        marks |= grid(&mut text, pen, &Block { case, rows, labels, seed }, View::Run);
     }
     text.push('\n');
     legend(&mut text, pen, marks);
@@ -79,6 +114,7 @@ struct Block<'a> {
     case: &'a CaseRecord,
     rows: Vec<Row<'a>>,
     labels: Digits,
+    seed: u64,
 }
 
 /// Adds the meaning of parentheses, if there are any.
@@ -89,9 +125,14 @@ fn legend(text: &mut String, pen: layout::Pen, marks: bool) {
 }
 
 /// Writes a case; returns whether a z is marked.
-fn block(text: &mut String, pen: layout::Pen, case: &CaseRecord, view: View) -> bool {
+fn block(
+    text: &mut String,
+    pen: layout::Pen,
+    case: &CaseRecord,
+    (seed, view): (u64, View),
+) -> bool {
     pen.heading(text, &case.name, &case.title);
-    let shown = Block { case, rows: case.rows().collect(), labels: Digits::of(case) };
+    let shown = Block { case, rows: case.rows().collect(), labels: Digits::of(case), seed };
     pen.say(text, Paint::Dim, &facts(&shown, view).join(" · "));
     if view == View::Plan {
         case.facts.iter().for_each(|fact| pen.note(text, fact, ("", Paint::Plain)));
@@ -102,8 +143,9 @@ fn block(text: &mut String, pen: layout::Pen, case: &CaseRecord, view: View) -> 
 
 /// Writes the rows with their reasons; returns whether a z is marked.
 fn grid(text: &mut String, pen: layout::Pen, block: &Block, view: View) -> bool {
-    let Block { case, rows, labels } = block;
-    let (names, rest) = (views::names(case, rows, *labels), views::columns(rows, view));
+    let Block { case, rows, labels, seed } = block;
+    let lines: Vec<Line> = rows.iter().map(|&row| Line { row, seed: *seed }).collect();
+    let (names, rest) = (views::names(case, rows, *labels), views::columns(&lines, view));
     if view == View::Moments {
         // All columns were asked for: those that do not fit stand in further tables below.
         for grid in layout::blocks(names, rest, pen.width) {
@@ -161,8 +203,26 @@ fn facts(block: &Block, view: View) -> Vec<String> {
     if rows.iter().any(|row| row.experiment.setup_lookups.is_some_and(|lookups| lookups > 0)) {
         facts.push(format!("FoM: setup over {} per ray", draws(case.draws_per_ray.unwrap_or(1))));
     }
+    if view == View::Run {
+        facts.extend(reach(case));
+    }
     facts.retain(|fact| !fact.is_empty());
     facts
+}
+
+/// Returns verdicts, draws and reach of a case.
+fn outcome(case: &CaseRecord) -> Vec<String> {
+    let mut parts = vec![totals::words(case), format!("{} draws", totals::draws(case))];
+    parts.extend(reach(case));
+    parts
+}
+
+/// Returns the bias of a mean that the case could have detected, and its pace of decisions.
+fn reach(case: &CaseRecord) -> Vec<String> {
+    let bias = case.visible_bias.map(|bias| format!("visible bias {}", range(bias)));
+    let pace = case.pace.filter(|_| bias.is_some());
+    let pace = pace.map(|pace| format!("time to verdict {}", fixed(pace, 3)));
+    bias.into_iter().chain(pace).collect()
 }
 
 fn draws(number: u64) -> String {
@@ -171,9 +231,12 @@ fn draws(number: u64) -> String {
 
 /// Adds the reasons without a place in the table, each once, with its rows.
 fn footnotes(text: &mut String, pen: layout::Pen, block: &Block, view: View, room: usize) {
-    let Block { case, rows, labels } = block;
+    let Block { case, rows, labels, .. } = block;
     let mut notes: Vec<Vec<&Row>> = Vec::new();
-    for row in rows.iter().filter(|row| layout::width(&row.reason) > room) {
+    // Failures follow below the tables.
+    let is_told = |row: &&Row| view == View::Run && row.verdict == Some(Verdict::Fail);
+    let without = |row: &&Row| layout::width(&row.reason) > room && !is_told(row);
+    for row in rows.iter().filter(without) {
         let same = |rows: &&mut Vec<&Row>| {
             rows[0].reason == row.reason && rows[0].experiment.label == row.experiment.label
         };

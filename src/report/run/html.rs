@@ -1,13 +1,16 @@
 //! `report.html`: the whole record as one page that needs no network and no other file.
 //!
-//! First come the verdict and the most important findings, then the changes since a stored run, the cases with their
-//! plots, and a table of all experiments with details that open. Only filters and sorting need JavaScript. All text of
-//! a record goes through the template's escapes, so that a title cannot contain markup.
+//! First come the verdict and pictures of all experiments, then what does not pass, the changes since a stored run, the
+//! cases with their plots, and a table of all experiments with details that open. Only filters, sorting and the values of
+//! plots need JavaScript. All text of a record goes through the template's escapes, so that a title cannot contain markup.
 
 mod cases;
 mod details;
 mod experiments;
+mod failing;
 mod first;
+mod map;
+mod scores;
 mod sparks;
 
 use maud::html;
@@ -15,7 +18,8 @@ use maud::html;
 use crate::record::{CaseRecord, Record};
 use crate::report::html as page;
 use crate::report::html::drawing::{self, Plot, plot};
-use crate::report::run::{anatomy_plot, sweep_plot};
+use crate::report::run::fields;
+use crate::report::run::{anatomy_plot, sweep_plot, totals};
 use crate::report::{Artifact, ReportError};
 
 /// Returns the record as a page.
@@ -34,13 +38,20 @@ pub fn render(record: &Record) -> Result<Vec<Artifact>, ReportError> {
 /// A plot cannot be drawn.
 pub fn text(record: &Record) -> Result<String, ReportError> {
     let plots = plots(record)?;
-    let title = format!("Trueflight: {}", first::verdict(record).words());
+    let title = format!("Trueflight: {}", totals::verdict(record).words());
+    let shown = details::Shown {
+        seed: record.results.seed,
+        plots: &plots,
+        fields: fields::of_files().into_iter().chain(fields::of_screens()).collect(),
+    };
     let body = html! {
         (drawing::definitions(&plots))
         (first::section(record))
         @if let Some(comparison) = &record.comparison { (cases::changes(comparison)) }
         (cases::section(record, &plots))
-        (experiments::section(record, &plots))
+        (experiments::section(record, &shown))
+        (experiments::legend(record, &shown))
+        (first::facts(record))
     };
     Ok(page::document(&title, &body))
 }

@@ -30,10 +30,10 @@ pub fn text(record: &Record) -> String {
     }
     notes(&mut text, &record.results.cases);
     cases(&mut text, &record.results.cases);
-    if !record.results.gate.triage.is_empty() {
+    let suspects = totals::suspects(record);
+    if !suspects.is_empty() {
         text.push_str("Look here first (e-BH): ");
-        let suspects: Vec<String> =
-            record.results.gate.triage.iter().take(MOST).map(totals::suspect).collect();
+        let suspects: Vec<String> = suspects.into_iter().take(MOST).map(totals::suspect).collect();
         let _ = writeln!(
             text,
             "{}\n",

@@ -7,6 +7,7 @@ pub mod checks_csv;
 pub mod console;
 pub mod diff;
 pub mod failures;
+pub mod fields;
 pub mod html;
 pub mod junit;
 pub mod markdown;

@@ -3,24 +3,15 @@
 use maud::html;
 
 use crate::report::ReportError;
+use crate::report::fields::named;
 use crate::report::html as page;
 use crate::report::html::drawing::{definitions, plot};
-use crate::report::html::listing::{self, Cell, Column, table};
+use crate::report::html::listing::{self, table};
 use crate::stress::{Row, Stress};
 use numeric::digits::time;
 
-fn columns<'a>() -> [Column<&'a Row>; 8] {
-    [
-        Column { title: "holds", cell: Cell::Text(|row| word(row).to_owned()) },
-        Column { title: "quantity", cell: Cell::Text(|row| row.quantity.clone()) },
-        Column { title: "range", cell: Cell::Text(|row| row.range.clone()) },
-        Column { title: "worst", cell: Cell::Number(|row| Some(row.worst)) },
-        Column { title: "bound", cell: Cell::Number(|row| Some(row.bound)) },
-        Column { title: "in", cell: Cell::Text(|row| row.measure.words().to_owned()) },
-        Column { title: "trials", cell: Cell::Number(|row| Some(row.trials as f64)) },
-        Column { title: "where", cell: Cell::Text(|row| row.place.clone()) },
-    ]
-}
+/// Columns of the page, beside the result.
+const COLUMNS: [&str; 7] = ["quantity", "range", "worst", "bound", "measure", "trials", "where"];
 
 /// Returns the stress test as a page of HTML.
 ///
@@ -29,6 +20,7 @@ fn columns<'a>() -> [Column<&'a Row>; 8] {
 /// A plot cannot be drawn.
 pub fn text(found: &Stress) -> Result<String, ReportError> {
     let rows: Vec<&Row> = found.rows.iter().collect();
+    let fields = super::of_rows();
     let broken = rows.iter().filter(|row| !row.holds()).count();
     let (class, line) = match broken {
         0 => ("pass", format!("pass: all {} bounds hold", rows.len())),
@@ -48,7 +40,7 @@ pub fn text(found: &Stress) -> Result<String, ReportError> {
         section aria-labelledby="experiments" {
             h2 #experiments { "Bounds" }
             (listing::form(&choices, rows.len()))
-            (table(&columns(), &rows, |row| if row.holds() { "pass" } else { "fail" }, |row| word(row).to_owned()))
+            (table("holds", |row| (if row.holds() { "pass" } else { "fail" }, word(row).to_owned()), &COLUMNS.map(|name| named(&fields, name)), &rows, |row| word(row).to_owned()))
         }
         section aria-labelledby="narrow" {
             h2 #narrow { "Single precision" }

@@ -7,7 +7,7 @@ use std::fmt::Write;
 
 use serde_json::json;
 
-use crate::report::columns::table as csv;
+use crate::report::fields::{self, fields};
 use crate::report::layout::{Column, Field, Grid, Paint, Pen, wrapped};
 use crate::report::plots;
 use crate::report::{Artifact, ReportError};
@@ -154,55 +154,46 @@ fn json(found: &Stress) -> Result<String, ReportError> {
     Ok(serde_json::to_string_pretty(&document)? + "\n")
 }
 
+/// Returns the fields of bounds.
+pub fn of_rows<'a>() -> Vec<fields::Field<&'a Row>> {
+    fields! {
+        "quantity": "Quantity that is computed" = |row| &row.quantity;
+        "range": "Range of its arguments" = |row| &row.range;
+        "trials": "Number of arguments that were compared" = |row| row.trials;
+        "skipped": "Number that were left out, for no reference is exact there" = |row| row.skipped;
+        "measure" ["in", "", Plain]: "Measure of the error" = |row| row.measure.words();
+        "worst" ["worst", "", Short(3)]: "Largest error" = |row| row.worst;
+        "bound" ["bound", "", Short(3)]: "Promised bound" = |row| row.bound;
+        "where": "Argument of the largest error" = |row| &row.place;
+        "holds": "Whether the bound holds" = |row| row.holds();
+    }
+}
+
+/// Returns the fields of points of single precision.
+pub fn of_points<'a>() -> Vec<fields::Field<(&'a Curve, &'a Point)>> {
+    fields! {
+        "family": "Family of estimators" = |(curve, _)| curve.family;
+        "estimator": "Estimator" = |(curve, _)| curve.estimator;
+        "along": "Quantity that is varied" = |(curve, _)| curve.along.word();
+        "x": "Its value" = |(_, point)| point.x;
+        "walks": "Number of walks" = |(_, point)| point.walks;
+        "bias": "Bias of single precision, relative to the mean" = |(_, point)| point.bias;
+        "bias_error": "Its standard error" = |(_, point)| point.error;
+        "noise_1e8": "Relative standard error of 1e8 draws" = |(_, point)| point.noise;
+        "exceeds": "Whether the bias exceeds the noise" = |(_, point)| point.exceeds();
+    }
+}
+
 /// Returns the tables as CSV and JSON and the plot of single precision, all below `stress/`.
 ///
 /// # Errors
 ///
 /// An encoder or the painter fails.
 pub fn artifacts(found: &Stress) -> Result<Vec<Artifact>, ReportError> {
-    let rows = found.rows.iter().map(|row| {
-        vec![
-            row.quantity.clone(),
-            row.range.clone(),
-            row.trials.to_string(),
-            row.skipped.to_string(),
-            row.measure.words().to_owned(),
-            exact(row.worst),
-            exact(row.bound),
-            row.place.clone(),
-            row.holds().to_string(),
-        ]
-    });
-    let header =
-        ["quantity", "range", "trials", "skipped", "measure", "worst", "bound", "where", "holds"];
-    let stress = csv("the stress test", header, rows)?;
-    let points = found.narrow.curves.iter().flat_map(|curve| {
-        curve.points.iter().map(|point| {
-            vec![
-                curve.family.to_owned(),
-                curve.estimator.to_owned(),
-                curve.along.word().to_owned(),
-                exact(point.x),
-                exact(point.walks),
-                exact(point.bias),
-                exact(point.error),
-                exact(point.noise),
-                point.exceeds().to_string(),
-            ]
-        })
-    });
-    let header = [
-        "family",
-        "estimator",
-        "along",
-        "x",
-        "walks",
-        "bias",
-        "bias_error",
-        "noise_1e8",
-        "exceeds",
-    ];
-    let narrow = csv("single precision", header, points)?;
+    let stress = fields::csv("the stress test", &of_rows(), &found.rows)?;
+    let curves = found.narrow.curves.iter();
+    let points = curves.flat_map(|curve| curve.points.iter().map(move |point| (curve, point)));
+    let narrow = fields::csv("single precision", &of_points(), points)?;
     let artifact = |name: &str, text: String| Artifact {
         path: format!("{FOLDER}/{name}").into(),
         bytes: text.into_bytes(),

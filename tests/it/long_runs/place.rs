@@ -188,9 +188,8 @@ fn without_times(name: &str, text: &str) -> String {
     let mut reader = csv::ReaderBuilder::new().has_headers(false).from_reader(text.as_bytes());
     let rows: Vec<csv::StringRecord> = reader.records().map(|row| row.expect("a row")).collect();
     let is_timed = |column: usize| {
-        rows.first().is_some_and(|head| {
-            trueflight::report::run::summary_csv::TIMED.contains(&&head[column])
-        })
+        rows.first()
+            .is_some_and(|head| trueflight::report::run::fields::TIMED.contains(&&head[column]))
     };
     let kept = |row: &csv::StringRecord| -> Vec<String> {
         (0..row.len()).filter(|&i| !is_timed(i)).map(|i| row[i].to_owned()).collect()

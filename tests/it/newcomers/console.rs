@@ -31,13 +31,23 @@ fn biased() -> String {
 fn a_run_shows_what_does_not_pass_and_ends_with_its_page() {
     let place = Place::new(&[("good.toml", GOOD), ("bad.toml", &biased())]);
     let said = place.says(0, "run good.toml --draws 400000 --out here");
-    assert!(said.starts_with("good  2 pass, "), "{said}");
+    let first =
+        "good: 2 experiments, at most 400000 draws each, seed 1, α = 0.001\ngood  2 pass · ";
+    assert!(said.starts_with(first), "{said}");
+    let meaning =
+        "pass: nothing of 2 fails or is inconclusive\nEvery mean that passes is right to ";
+    assert!(said.contains(meaning), "{said}");
     assert!(!said.contains("woodcock"), "{said}");
     let page = place.path().join("here/report.html");
     assert!(page.exists());
     assert_eq!(said.lines().last(), Some("report: here/report.html"));
     let said = place.says(1, "run bad.toml --draws 400000 --out there");
-    assert!(said.contains("ray-marching") && said.contains("bad  1 pass, 1 fail"), "{said}");
+    assert!(
+        said.contains("ray-marching")
+            && said.contains("bad  1 pass, 1 fail · ")
+            && said.contains("fail: 1 of 2 fail\n"),
+        "{said}"
+    );
     assert!(!said.lines().any(|line| line.starts_with("ratio")), "{said}");
     assert_eq!(said.lines().last(), Some("report: there/report.html"));
 }

@@ -208,17 +208,6 @@ fn the_number_of_known_bugs_is_that_of_the_results() {
     }
 }
 
-/// The page of columns has each column of `summary.csv` once, in the order of the file.
-#[test]
-fn the_columns_are_those_of_the_table() {
-    let page = read("docs/columns.md");
-    let (_, table) = page.split_once("<!-- columns of summary.csv -->\n").expect("a table");
-    let lines = table.lines().take_while(|line| line.starts_with('|')).skip(2);
-    let shown: Vec<String> = lines.flat_map(|line| code(&cells(line)[0])).collect();
-    let output = stdout(&["predict", "transmittance/exponential", "--format", "csv"]);
-    assert_eq!(shown, output.lines().next().expect("a header").split(',').collect::<Vec<_>>());
-}
-
 #[test]
 fn the_first_page_of_the_manual_has_all_pages() {
     let links = |text: &str| -> Vec<String> {

@@ -8,7 +8,7 @@ pub mod z_map;
 use crate::judge::images::Judgement;
 use crate::judge::images::judgement::Tile;
 use crate::record::Verdict;
-use crate::report::columns::table;
+use crate::report::fields::table;
 use crate::report::{Artifact, ReportError};
 use numeric::digits::exact;
 

@@ -1,15 +1,15 @@
-//! Summary below the cases: the bias that each could have detected, suspects, failures with the commands that repeat
-//! them, the counts, and the run's error control.
+//! Summary below the cases: suspects, failures with the commands that repeat them, the counts, and the run's error
+//! control.
 
 use super::views::{NEEDS, SETUP};
 use super::{View, views};
 use crate::record::baseline::Comparison;
 use crate::record::{Best, CaseRecord, Record, Row, Verdict};
-use crate::report::layout::{Grid, Paint, Pen, wrapped};
+use crate::report::layout::{Paint, Pen, wrapped};
 use crate::report::run::diff;
 use crate::report::run::failures::{self, failing};
 use crate::report::run::totals;
-use numeric::digits::{fixed, range, short};
+use numeric::digits::short;
 use std::fmt::Write;
 
 /// Maximum number of suspects that are listed; more are counted.
@@ -18,7 +18,6 @@ const SUSPECTS: usize = 5;
 /// Adds the closing summary to a text.
 pub fn write(text: &mut String, pen: Pen, record: &Record, view: View) {
     if view == View::Run {
-        visible(text, pen, record);
         suspects(text, pen, record);
         failures(text, pen, record);
     }
@@ -56,29 +55,8 @@ fn changed(text: &mut String, pen: Pen, comparison: &Comparison) {
     }
 }
 
-/// Adds for each case the smallest bias that it could have detected, and its pace of decisions.
-fn visible(text: &mut String, pen: Pen, record: &Record) {
-    let cases = record.results.cases.iter().filter(|case| case.visible_bias.is_some());
-    let cases: Vec<&CaseRecord> = cases.collect();
-    if cases.is_empty() {
-        return;
-    }
-    let mut grid = Grid::of(
-        &cases,
-        &[
-            ("case", false, 0, |case| case.name.clone()),
-            ("visible bias", true, 0, |case| case.visible_bias.map(range).unwrap_or_default()),
-            ("time to verdict", true, 0, |case| {
-                case.pace.map(|pace| fixed(pace, 3)).unwrap_or_default()
-            }),
-        ],
-    );
-    grid.fit(pen.width);
-    let _ = writeln!(text, "{}\n", grid.render(pen).trim_end());
-}
-
 fn suspects(text: &mut String, pen: Pen, record: &Record) {
-    let triage = &record.results.gate.triage;
+    let triage = totals::suspects(record);
     if triage.is_empty() {
         return;
     }
@@ -201,10 +179,10 @@ pub fn costs(text: &mut String, pen: Pen, rows: &[Row], is_shown: &dyn Fn(&str) 
             say(row, &row.channel, best);
         }
         let setup = row.experiment.setup_lookups.unwrap_or(0);
-        if setup > 0 && !is_shown(SETUP.0) {
+        if setup > 0 && !is_shown(SETUP) {
             say(row, "", format!("{setup} setup lookups"));
         }
-        if !row.experiment.needs.is_empty() && !is_shown(NEEDS.0) {
+        if !row.experiment.needs.is_empty() && !is_shown(NEEDS) {
             say(row, "", format!("needs {}", row.experiment.needs));
         }
     }

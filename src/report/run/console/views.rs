@@ -1,89 +1,75 @@
 //! Columns of each view of the table, and their content.
 
-use crate::record::{Best, CaseRecord, Digits, Row, Score, Verdict};
+use crate::record::{CaseRecord, Digits, Row, Verdict};
+use crate::report::fields::named;
 use crate::report::layout::{Column, Field, Paint};
 use crate::report::run::console::View;
-use numeric::digits::{count, enough, fixed, percent, short, signed};
+use crate::report::run::fields;
+use crate::report::run::summary_csv::Line;
 
-/// Column of rows: heading, whether it is aligned to the right, rank, and text.
-pub type Spec = (&'static str, bool, u8, fn(&Row) -> String);
+/// Fields of a view by name, each with its rank: columns of the highest rank leave a narrow console first.
+type Ranked = &'static [(&'static str, u8)];
 
-const DRAWS: Spec = ("draws", true, 10, |row| row.experiment.draws.map(count).unwrap_or_default());
-/// Number of draws that the gate took; the columns beside it are of the fixed draws.
-const DRAWN: Spec = ("drawn", true, 3, |row| row.experiment.drawn.map(count).unwrap_or_default());
-const TRUTH: Spec = ("truth", true, 11, |row| digits(row.truth, 6));
+const RUN: Ranked = &[
+    ("mean", 6),
+    ("z_mean", 1),
+    ("variance_ratio", 5),
+    ("z_variance", 2),
+    ("lookups_per_draw", 7),
+    ("z_lookups", 4),
+    ("predicted_kurtosis", 9),
+    ("fom", 8),
+    ("log10_ltuv", 10),
+    (SETUP, 8),
+    (NEEDS, 9),
+];
 
-/// Lookups before the first draw of a ray; empty if no row of a case has any.
-pub const SETUP: Spec = ("setup", true, 3, |row| {
-    row.experiment.setup_lookups.filter(|&lookups| lookups > 0).map(count).unwrap_or_default()
-});
-/// Knowledge that estimators need beside lookups, as in `τ`.
-pub const NEEDS: Spec = ("needs", false, 5, |row| row.experiment.needs.clone());
+const PREDICT: Ranked = &[
+    ("predicted_variance", 1),
+    ("predicted_skewness", 9),
+    ("predicted_kurtosis", 5),
+    ("predicted_lookups", 2),
+    (SETUP, 3),
+    ("predicted_fom", 2),
+    ("predicted_log10_ltuv", 10),
+    ("stable_share", 6),
+    ("rare_event_size", 8),
+    ("best_sampling_marked", 3),
+    ("best_fom_marked", 4),
+    (NEEDS, 5),
+];
 
-/// Headings of z.
+const MOMENTS: Ranked = &[
+    ("loss_1", 0),
+    ("loss_2", 0),
+    ("loss_3", 0),
+    ("loss_4", 0),
+    ("relative_m2", 0),
+    ("relative_m3", 0),
+    ("relative_m4", 0),
+    ("moments_error", 0),
+    ("predicted_lookups", 0),
+    ("lookups_spread", 0),
+    ("lookups_error", 0),
+    ("covariance", 0),
+    ("rare_event_size", 0),
+    (SETUP, 0),
+    ("best_sampling_marked", 0),
+    ("best_fom_marked", 0),
+    ("best_kind", 0),
+    ("best_limit", 0),
+    (NEEDS, 0),
+];
+
+const PLAN: Ranked =
+    &[("needed", 1), ("predicted_lookups", 2), (SETUP, 3), (NEEDS, 5), ("skipped", 3)];
+
+/// Field of the lookups before the first draw of a ray.
+pub const SETUP: &str = "setup";
+/// Field of what estimators need beside lookups.
+pub const NEEDS: &str = "needs";
+/// Headings of z-scores.
 pub const SCORES: [&str; 3] = ["z", "z_V", "z_N"];
-
-/// log₁₀ of variance · lookups, for problems with channels.
-const LTUV: &str = "lg LTUV";
-
-const RUN: &[Spec] = &[
-    ("mean", true, 6, |row| digits(row.mean, 6)),
-    ("z", true, 1, |row| score(row, Score::Mean, row.z_mean)),
-    ("s²/V", true, 5, ratio),
-    ("z_V", true, 2, |row| score(row, Score::Variance, row.z_variance)),
-    ("lookups", true, 7, |row| digits(row.experiment.lookups_per_draw, 4)),
-    ("z_N", true, 4, |row| score(row, Score::Lookups, row.experiment.z_lookups)),
-    ("κ", true, 9, |row| digits(row.predicted_kurtosis, 3)),
-    ("FoM", true, 8, |row| digits(row.fom, 4)),
-    (LTUV, true, 10, |row| of_channel(row, row.log10_ltuv())),
-    ("setup", true, 8, SETUP.3),
-    ("needs", false, 9, NEEDS.3),
-];
-
-const PREDICT: &[Spec] = &[
-    ("variance", true, 1, |row| digits(row.predicted_variance, 4)),
-    ("skewness", true, 9, |row| digits(row.predicted_skewness, 3)),
-    ("κ", true, 5, |row| digits(row.predicted_kurtosis, 3)),
-    ("lookups", true, 2, |row| digits(row.experiment.predicted_lookups, 4)),
-    SETUP,
-    ("FoM", true, 2, |row| digits(row.predicted_fom, 4)),
-    (LTUV, true, 10, |row| of_channel(row, row.predicted_log10_ltuv())),
-    ("stable", true, 6, |row| row.experiment.stable_share.map(percent).unwrap_or_default()),
-    ("n(2)", true, 8, |row| digits(row.rare_event_size, 3)),
-    ("best σ\u{302}", true, 3, best_sampling),
-    ("best FoM", true, 4, best_fom),
-    NEEDS,
-];
-
-const MOMENTS: &[Spec] = &[
-    ("J₁", true, 0, |row| loss(row, 1)),
-    ("J₂", true, 0, |row| loss(row, 2)),
-    ("J₃", true, 0, |row| loss(row, 3)),
-    ("J₄", true, 0, |row| loss(row, 4)),
-    ("m₂", true, 0, |row| digits(row.relative_moments[0], 4)),
-    ("m₃", true, 0, |row| digits(row.relative_moments[1], 4)),
-    ("m₄", true, 0, |row| digits(row.relative_moments[2], 4)),
-    ("m error", true, 0, |row| digits(row.moments_error, 2)),
-    ("lookups", true, 0, |row| digits(row.experiment.predicted_lookups, 4)),
-    ("± σ", true, 0, |row| digits(row.experiment.lookups_variance.map(f64::sqrt), 4)),
-    ("N error", true, 0, |row| digits(row.experiment.lookups_error, 2)),
-    ("Cov next", true, 0, |row| digits(row.covariance, 4)),
-    ("n(2)", true, 0, |row| digits(row.rare_event_size, 3)),
-    ("setup", true, 0, SETUP.3),
-    ("best σ\u{302}", true, 0, best_sampling),
-    ("best FoM", true, 0, best_fom),
-    ("best is", false, 0, |row| row.best_kind().to_owned()),
-    ("limit", true, 0, |row| digits(row.best_limit(), 4)),
-    ("needs", false, 0, NEEDS.3),
-];
-
-const PLAN: &[Spec] = &[
-    ("needed", true, 1, |row| row.needed_draws.map(enough).unwrap_or_default()),
-    ("lookups", true, 2, |row| digits(row.experiment.predicted_lookups, 4)),
-    SETUP,
-    NEEDS,
-    ("skipped", true, 3, |row| row.experiment.skipped.map(percent).unwrap_or_default()),
-];
 
 /// Returns the columns that name the rows of a case, empty ones included.
 pub fn names(case: &CaseRecord, rows: &[Row], labels: Digits) -> Vec<Column> {
@@ -106,26 +92,30 @@ pub fn names(case: &CaseRecord, rows: &[Row], labels: Digits) -> Vec<Column> {
 }
 
 /// Returns the columns about the results of the rows, empty ones included.
-pub fn columns(rows: &[Row], view: View) -> Vec<Column> {
-    let mut specs: Vec<Spec> = Vec::new();
+pub fn columns(lines: &[Line], view: View) -> Vec<Column> {
+    let rows: Vec<Row> = lines.iter().map(|line| line.row).collect();
+    let mut shown: Vec<(&str, u8)> = Vec::new();
     // A number of draws that all rows share stands above the table.
-    if !view.is_theory() && shared(rows, |row| row.experiment.draws).is_none() {
-        specs.push(if view == View::Plan { (DRAWS.0, DRAWS.1, 2, DRAWS.3) } else { DRAWS });
+    if !view.is_theory() && shared(&rows, |row| row.experiment.draws).is_none() {
+        shown.push(("draws", if view == View::Plan { 2 } else { 10 }));
     }
-    if view == View::Run && shared(rows, |row| row.experiment.drawn).is_none() {
-        specs.push(DRAWN);
+    if view == View::Run && shared(&rows, |row| row.experiment.drawn).is_none() {
+        shown.push(("drawn", 3));
     }
-    if view != View::Plan && shared(rows, |row| row.truth).is_none() {
-        specs.push(TRUTH);
+    if view != View::Plan && shared(&rows, |row| row.truth).is_none() {
+        shown.push(("truth", 11));
     }
-    specs.extend(match view {
+    shown.extend(match view {
         View::Run => RUN,
         View::Predict => PREDICT,
         View::Moments => MOMENTS,
         View::Plan => PLAN,
     });
-    let column = |(head, right, rank, text): Spec| Column::of(rows, (head, right, rank), text);
-    let mut columns: Vec<Column> = specs.into_iter().map(column).collect();
+    let fields: Vec<_> = fields::of_files().into_iter().chain(fields::of_screens()).collect();
+    let has_channels = rows.iter().any(|row| !row.channel.is_empty());
+    shown.retain(|(name, _)| has_channels || !name.ends_with("ltuv"));
+    let column = |(name, rank)| named(&fields, name).column(lines, rank);
+    let mut columns: Vec<Column> = shown.into_iter().map(column).collect();
     let head = if view == View::Run { "verdict" } else { "status" };
     let fields = rows.iter().map(|row| status(row, view)).collect();
     columns.push(Column { head, right: false, rank: 0, fields });
@@ -205,54 +195,5 @@ pub fn paint(verdict: Verdict) -> Paint {
         Verdict::Fail => Paint::Red,
         Verdict::Inconclusive => Paint::Yellow,
         Verdict::Underpowered | Verdict::Refused => Paint::Dim,
-    }
-}
-
-/// Returns `J_k`.
-fn loss(row: &Row, k: usize) -> String {
-    digits(row.losses.map(|losses| losses[k - 1]), 4)
-}
-
-fn digits(value: Option<f64>, digits: usize) -> String {
-    value.map(|value| fixed(value, digits)).unwrap_or_default()
-}
-
-/// Returns text about the best σ̂; empty if it was not searched.
-fn best(row: &Row, text: fn(&Best) -> String) -> String {
-    row.best.as_ref().map(text).unwrap_or_default()
-}
-
-/// Returns the best σ̂, marked if it is a share of a limit.
-fn best_sampling(row: &Row) -> String {
-    best(row, |best| {
-        let mark = if best.limit.is_some() { " (90 %)" } else { "" };
-        format!("{}{mark}", short(best.sampling, 4))
-    })
-}
-
-/// Returns the figure of merit at the best σ̂, which is infinite without a variance.
-fn best_fom(row: &Row) -> String {
-    best(row, |best| best.fom.map_or("∞".to_owned(), |fom| fixed(fom, 4)))
-}
-
-/// Returns a number with two decimals, for problems with several channels only.
-fn of_channel(row: &Row, value: Option<f64>) -> String {
-    let value = value.filter(|_| !row.channel.is_empty());
-    value.map(signed).unwrap_or_default()
-}
-
-/// Returns a z, in parentheses if it is not to be read as normal.
-pub fn score(row: &Row, score: Score, z: Option<f64>) -> String {
-    let text = z.map(signed).unwrap_or_default();
-    if row.not_normal.contains(&score) { format!("({text})") } else { text }
-}
-
-/// Returns the measured variance over the predicted one.
-fn ratio(row: &Row) -> String {
-    match (row.variance, row.predicted_variance) {
-        (Some(measured), Some(predicted)) if predicted > 0.0 => {
-            format!("{:.3}", measured / predicted)
-        }
-        _ => String::new(),
     }
 }

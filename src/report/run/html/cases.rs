@@ -17,8 +17,8 @@ pub fn section(record: &Record, plots: &[Vec<Plot>]) -> Markup {
         section aria-labelledby="cases" {
             h2 #cases { "Cases" }
             p.quiet { "Each opens to its title, what it could have seen, and its plots." }
-            div.cases { @for (case, plots) in cases.iter().zip(plots) {
-                details.case {
+            div.cases { @for (place, (case, plots)) in cases.iter().zip(plots).enumerate() {
+                details.case #{ "case-" (place) } data-problem=(case.problem) data-medium=(case.medium) {
                     summary { b { (case.name) } " " span.quiet { (totals::words(case)) } }
                     p { (case.title) }
                     @for note in &case.notes { p { b { "Note: " } (note) } }
@@ -53,9 +53,9 @@ pub fn changes(comparison: &Comparison) -> Markup {
             h2 #changes { "Since baseline " (comparison.name) }
             @if !(changes.is_empty() && drifts.is_empty()) {
                 div.wide tabindex="0" role="group" aria-labelledby="changes" {
-                    table {
+                    table.changes {
                         thead { tr {
-                            @for head in ["change", "experiment", "quantity", "before", "now", "ratio", "interval", "repeat"] {
+                            @for head in ["change", "experiment", "quantity", "before", "now", "ratio, with its interval", "repeat"] {
                                 th scope="col" { (head) }
                             }
                         } }
@@ -78,8 +78,8 @@ fn drift(drift: &Drift) -> Markup {
         td { span.verdict.fail { "✗ fails over all runs" } }
         th scope="row" { (id) }
         td { (check) }
-        td colspan="4" { "ln E = " (words::evidence(*ln_e)) " ≥ " (short(*limit, 3)) }
-        td { (page::command(Some(("repeat", command)))) }
+        td colspan="3" { "ln E = " (words::evidence(*ln_e)) " ≥ " (short(*limit, 3)) }
+        td { (page::command(Some(("", command)))) }
     } }
 }
 
@@ -105,13 +105,29 @@ fn change(change: &Change) -> Markup {
         td { (name) }
         td.number { (value(change.before)) }
         td.number { (value(change.now)) }
-        td.number { (number(change.ratio, 4)) }
-        td.number {
+        td class={ "change " (class) } {
+            (number(change.ratio, 4)) ", "
             @match change.interval {
                 Some([low, high]) => { "[" (number(low, 4)) ", " (number(high, 4)) "]" }
-                None => { "unknown" }
+                None => { "interval unknown" }
+            }
+            (beside_one(change))
+        }
+        td { @if change.is_regression { (page::command(Some(("", &change.command)))) } }
+    } }
+}
+
+/// Returns a picture of a ratio with its interval beside 1, on a logarithmic axis from a quarter to 4.
+fn beside_one(change: &Change) -> Markup {
+    let place = |ratio: f64| (90.0 + 45.0 * ratio.log2().clamp(-2.0, 2.0)).round();
+    let [low, high] = change.interval.unwrap_or([change.ratio; 2]).map(place);
+    let at = place(change.ratio);
+    html! {
+        @if [low, high, at].iter().all(|x| x.is_finite()) {
+            svg viewBox="0 0 180 20" aria-hidden="true" {
+                path.mark d="M90 0V20M0 10H180" {}
+                path d={ "M" (low) " 10H" (high) "M" (at) " 4V16" } {}
             }
         }
-        td { @if change.is_regression { (page::command(Some(("repeat", &change.command)))) } }
-    } }
+    }
 }

@@ -1,31 +1,77 @@
-//! Details of an experiment, which open below it: plots, all numbers, checks and the command that repeats it.
+//! Details of an experiment, which open below it: its numbers, the path of the evidence, its plots, and how to repeat it.
 
 use maud::{Markup, html};
 
 use super::sparks;
 use crate::record::{Finding, Row, Score, Verdict};
+use crate::report::fields::{Cell, Field, Print, named};
 use crate::report::html as page;
 use crate::report::html::drawing::Plot;
 use crate::report::html::words;
 use crate::report::run::failures;
+use crate::report::run::summary_csv::Line as Joined;
+use gate::deviation::signed_percent;
 
-/// Returns everything that is known of a row.
-pub fn of(row: &Row, plots: &[Plot]) -> Markup {
-    let case = row.case;
+/// Content of the page that all rows share.
+pub struct Shown<'a> {
+    /// Seed of the run.
+    pub seed: u64,
+    /// Plots of each case.
+    pub plots: &'a [Vec<Plot>],
+    /// Fields of rows.
+    pub fields: Vec<Field<Joined<'a>>>,
+}
+
+impl<'a> Shown<'a> {
+    /// Returns a row with the seed of the run.
+    pub fn line(&self, row: Row<'a>) -> Joined<'a> {
+        Joined { row, seed: self.seed }
+    }
+}
+
+/// Fields that are listed below the numbers.
+const FACTS: [&str; 13] = [
+    "draws",
+    "p_law",
+    "predicted_skewness",
+    "predicted_kurtosis",
+    "setup_lookups",
+    "needs",
+    "best_sampling",
+    "best_kind",
+    "best_fom",
+    "best_limit",
+    "same_as",
+    "log_unit",
+    "seconds",
+];
+
+/// Returns everything that is known of a row of the case with this number.
+pub fn of<'a>(row: &Row<'a>, shown: &Shown<'a>, place: usize) -> Markup {
+    let findings: Vec<&Finding> = row.findings().collect();
     html! {
         @if !row.reason.is_empty() { p.reason { (row.reason) } }
-        @if !row.decide.is_empty() { (page::command(Some(("decide", &row.decide)))) }
-        (page::command(Some(("repeat", &row.experiment.command))))
         (page::causes(&failures::causes(row)))
-        p { a href={ "#" (words::anchor(row)) } { "Address of this row" } }
-        @if row.verdict != Some(Verdict::Refused) { (numbers(row)) (sparks::evidence(&row.findings().collect::<Vec<_>>())) }
-        dl.facts {
-            div { dt { "Problem and medium" } dd { (case.problem) ", " (case.medium) } }
-            @for (name, value) in facts(row) { div { dt { (name) } dd { (value) } } }
+        @if row.verdict != Some(Verdict::Refused) { (numbers(row)) }
+        div.both {
+            @if row.verdict != Some(Verdict::Refused) { (sparks::evidence(&findings)) }
+            @for course in &row.experiment.courses { (sparks::course(course)) }
+            dl.facts { @for (field, text) in facts(row, shown) { div { dt { (field.head) } dd { (text) } } } }
         }
-        @for course in &row.experiment.courses { (sparks::course(course)) }
-        @for plot in plots { (plot.show()) }
+        p.quiet { (row.case.problem) ", " (row.case.medium) ": " a href={ "#case-" (place) } { "the case" } ", "
+            a href={ "#" (words::anchor(row)) } { "address of this row" } }
+        @if !row.decide.is_empty() { (page::command(Some(("decide", &row.decide)))) }
+        (page::command(Some(("how to repeat", &row.experiment.command))))
+        @for plot in &shown.plots[place] { (plot.show()) }
     }
+}
+
+/// Returns further fields that are known, with their texts.
+fn facts<'f, 'a>(row: &Row<'a>, shown: &'f Shown<'a>) -> Vec<(&'f Field<Joined<'a>>, String)> {
+    let line = shown.line(*row);
+    let all = FACTS.iter().map(|name| named(&shown.fields, name));
+    let known = all.map(|field| (field, field.text(&line)));
+    known.filter(|(_, text)| !text.is_empty() && text != "0").collect()
 }
 
 /// Line of the table of numbers.
@@ -38,9 +84,29 @@ struct Line<'a> {
     finding: Option<&'a Finding>,
 }
 
+impl Line<'_> {
+    /// Returns the measured value minus that of theory in percent; empty if one is unknown.
+    fn difference(&self) -> String {
+        let ratio =
+            self.measured.zip(self.theory).map(|(measured, theory)| measured / theory - 1.0);
+        ratio.filter(|ratio| ratio.is_finite()).map(signed_percent).unwrap_or_default()
+    }
+}
+
 /// Titles of that table.
-const TITLES: [&str; 10] =
-    ["", "measured", "± 1 σ", "theory", "z or p", "says", "ln E", "ln P of +ε, −ε", "draws", "why"];
+const TITLES: [&str; 11] = [
+    "",
+    "measured",
+    "± 1 σ",
+    "theory",
+    "difference",
+    "z or p",
+    "verdict",
+    "ln E",
+    "ln P of +ε, −ε",
+    "draws",
+    "why",
+];
 
 /// Returns the measured and the predicted numbers, with the findings of the checks: findings of the gate and those that
 /// do not pass line by line, the others in one.
@@ -68,13 +134,13 @@ fn numbers(row: &Row) -> Markup {
                 tbody {
                     @for line in &lines { (numbers_of(line)) }
                     @for finding in told { tr {
-                        th colspan="4" { (name(finding)) @if finding.expects_bias { " (bias declared)" } }
+                        th colspan="5" { (name(finding)) @if finding.expects_bias { " (bias declared)" } }
                         td { (finding.p.map_or_else(String::new, p)) }
                         (says(finding))
                     } }
                     @if !plain.is_empty() { tr {
                         th { "others" }
-                        td.words colspan="4" { (plain.into_iter().map(passing).collect::<Vec<_>>().join(", ")) }
+                        td.words colspan="5" { (plain.into_iter().map(passing).collect::<Vec<_>>().join(", ")) }
                         td.verdict.pass { (words::verdict(Some(Verdict::Pass))) }
                     } }
                 }
@@ -88,7 +154,8 @@ fn lines<'a>(row: &Row<'a>) -> Vec<Line<'a>> {
     let found = |check: &str| {
         row.findings().find(|finding| finding.check == check && !finding.expects_bias)
     };
-    let z = |score: Score, z: Option<f64>| words::z(row, score, z);
+    let z =
+        |score: Score, z: Option<f64>| Print::Signed.text(&Cell::Score(z, row.is_normal(score)));
     let has_setup = row.experiment.setup_lookups.is_some_and(|lookups| lookups > 0);
     let lines = [
         Line {
@@ -137,6 +204,7 @@ fn numbers_of(line: &Line) -> Markup {
         td { (words::number(line.measured, 7)) }
         td { (words::number(line.deviation, 3)) }
         td { (words::number(line.theory, 7)) }
+        td { (line.difference()) }
         td { (line.z) }
         @if let Some(finding) = line.finding { (says(finding)) }
     } }
@@ -174,56 +242,4 @@ fn passing(finding: &Finding) -> String {
 
 fn p(p: f64) -> String {
     format!("p {}", words::number(Some(p), 3))
-}
-
-/// Returns other facts, by name; unknown ones are left out.
-fn facts(row: &Row) -> Vec<(&'static str, String)> {
-    let number = |value: Option<f64>| words::number(value, 5);
-    let sampling = if row.experiment.sampling().is_some() {
-        number(row.experiment.sampling())
-    } else {
-        row.experiment.id.sampling.kind.clone()
-    };
-    let mut facts = vec![
-        ("σ\u{302}", sampling),
-        ("Control", row.experiment.id.control.clone()),
-        (
-            "Swept value",
-            number(
-                row.experiment
-                    .swept()
-                    .filter(|_| row.experiment.swept() != row.experiment.sampling()),
-            ),
-        ),
-        ("ε", words::number(row.detectable_bias, 3)),
-        ("Draws of the statistics", words::count(row.experiment.draws)),
-        ("Draws to the verdict", words::count(row.experiment.drawn)),
-        ("p of the law", number(row.experiment.p_law)),
-        ("Skewness in theory", number(row.predicted_skewness)),
-        ("Kurtosis in theory", number(row.predicted_kurtosis)),
-        (
-            "Setup lookups of a ray",
-            words::count(row.experiment.setup_lookups.filter(|&count| count > 0)),
-        ),
-        ("n, draws of a ray", words::count(row.case.draws_per_ray.filter(|&n| n > 1))),
-        ("Needs", row.experiment.needs.clone()),
-        ("Best σ\u{302}", number(row.best_sampling())),
-        ("Best σ\u{302} is", row.best_kind().to_owned()),
-        ("Best figure of merit", number(row.best_fom())),
-        ("Limit of the figure of merit", number(row.best_limit())),
-        ("Stream", row.experiment.stream.map_or_else(String::new, |stream| stream.to_string())),
-        ("Drawn as", row.experiment.same_as()),
-        ("All values in units of exp(−u), u", number(row.log_unit)),
-        ("Processor time [s]", words::number(row.experiment.spent.seconds, 3)),
-        (
-            "Draws",
-            if row.experiment.spent.is_reused {
-                "of an earlier run".to_owned()
-            } else {
-                String::new()
-            },
-        ),
-    ];
-    facts.retain(|(_, value)| !value.is_empty() && value != words::UNKNOWN);
-    facts
 }

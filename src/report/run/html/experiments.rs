@@ -1,92 +1,99 @@
-//! Table of all experiments, a row for each channel. Rows are hidden and moved by the page's script.
+//! Table of all experiments, a row for each channel, and its legend. Rows are hidden and moved by the page's script.
 
 use maud::{Markup, html};
 
-use super::{details, sparks};
-use crate::record::{Record, Row, Score};
-use crate::report::html::drawing::Plot;
+use super::details::{self, Shown};
+use super::sparks;
+use crate::record::{Record, Row};
+use crate::report::fields::named;
 use crate::report::html::listing::{self, Choice};
 use crate::report::html::words;
-use crate::report::run::totals;
+use crate::report::run::totals::{NOT_NORMAL, VERDICTS};
 
-/// Columns: title, and alignment of the cells. The page's style leaves some out on narrow screens.
-const COLUMNS: [(&str, Option<&str>); 11] = [
-    ("verdict", None),
-    ("experiment", None),
-    ("problem", None),
-    ("medium", None),
-    ("mean", Some("number")),
-    ("z of mean", Some("number")),
-    ("z of variance", Some("number")),
-    ("z of lookups", Some("number")),
-    ("largest ln E", Some("number")),
-    ("ε", Some("number")),
-    ("draws to verdict", Some("number")),
+/// Fields beside the verdict and the experiment. The page's style leaves some out on narrow screens.
+const COLUMNS: [&str; 8] = [
+    "mean",
+    "truth",
+    "z_mean",
+    "z_variance",
+    "z_lookups",
+    "largest_ln_e",
+    "detectable_bias",
+    "drawn",
 ];
 
+/// Meanings of the first two columns.
+const VERDICT: &str = "Worst result of all checks of the experiment. Sorted by severity.";
+const EXPERIMENT: &str = "Case, estimator, sampling extinction σ̂, control, swept value, channel";
+
 /// Returns the table with its filters.
-pub fn section(record: &Record, plots: &[Vec<Plot>]) -> Markup {
-    let cases = record.results.cases.iter().zip(plots);
-    let rows: Vec<(Row, &[Plot])> = cases
-        .flat_map(|(case, plots)| case.rows().map(move |row| (row, plots.as_slice())))
+pub fn section<'a>(record: &'a Record, shown: &Shown<'a>) -> Markup {
+    let rows: Vec<(usize, Row)> = record
+        .results
+        .cases
+        .iter()
+        .enumerate()
+        .flat_map(|(place, case)| case.rows().map(move |row| (place, row)))
         .collect();
-    let gate = &record.results.gate;
-    let limit = |limit| words::number(Some(limit), 3);
+    let columns: Vec<_> = COLUMNS.map(|name| named(&shown.fields, name)).into();
     html! {
         section aria-labelledby="experiments" {
             h2 #experiments { "Experiments" }
             (sparks::ground())
             (listing::form(&choices(&rows), rows.len()))
             table #table.experiments {
-                caption.quiet { "A row opens by a click; z is sorted by its size. A check fails at ln E ≥ " (limit(gate.ln_e_limit))
-                                " and passes where both ln P ≥ " (limit(gate.ln_p_limit)) ". " (words::UNKNOWN) " is unknown or without bound. "
-                                (totals::NOT_NORMAL) "." }
-                thead { tr { @for (title, class) in COLUMNS { th scope="col" class=[class] { (title) } } } }
-                @for (row, plots) in &rows { (body(row, plots)) }
-            }
-        }
-    }
-}
-
-/// Returns an experiment: its line, and the line that opens.
-fn body(row: &Row, plots: &[Plot]) -> Markup {
-    let case = row.case;
-    let word = row.verdict.map_or("undecided", |verdict| verdict.word());
-    html! {
-        tbody #(words::anchor(row)) data-verdict=(word) data-estimator=(row.experiment.id.estimator.name) {
-            tr {
-                td class={ "verdict " (word) } { (words::verdict(row.verdict)) }
-                th scope="row" {
-                    details { summary { span.quiet { (case.name) } " " (row.name()) } }
+                thead { tr {
+                    th scope="col" title=(VERDICT) { "verdict" }
+                    th scope="col" title=(EXPERIMENT) { "experiment" }
+                    @for field in &columns { th.number scope="col" title=(field.tip()) { (field.head) } }
+                } }
+                @for (place, row) in &rows {
+                    tbody #(words::anchor(row)) data-verdict=(words::word(row.verdict)) data-case=(place) data-estimator=(row.experiment.id.estimator.name) {
+                        tr {
+                            td class={ "verdict " (words::word(row.verdict)) } { (words::verdict(row.verdict)) }
+                            th scope="row" { details { summary { span.quiet { (row.case.name) } " " (row.name()) } } }
+                            @for field in &columns { td { (words::field(field, &shown.line(*row))) } }
+                        }
+                        tr.more { td colspan=(COLUMNS.len() + 2) { (details::of(row, shown, *place)) } }
+                    }
                 }
-                td { (case.problem) }
-                td { (case.medium) }
-                td { (words::number(row.mean, 5)) }
-                td { (words::z(row, Score::Mean, row.z_mean)) }
-                td { (words::z(row, Score::Variance, row.z_variance)) }
-                td { (words::z(row, Score::Lookups, row.experiment.z_lookups)) }
-                td { (largest(row)) }
-                td { (words::number(row.detectable_bias, 3)) }
-                td { (words::count(row.experiment.drawn)) }
             }
-            tr.more { td colspan=(COLUMNS.len()) { (details::of(row, plots)) } }
         }
     }
 }
 
-/// Returns the largest ln E of its checks.
-fn largest(row: &Row) -> String {
-    let gates = row.findings().filter_map(|finding| finding.gate);
-    let largest = gates.map(|gate| words::ordered(gate.ln_e)).reduce(f64::max);
-    largest.map_or_else(|| words::UNKNOWN.to_owned(), words::evidence)
+/// Returns the meanings of all verdicts and columns.
+pub fn legend(record: &Record, shown: &Shown) -> Markup {
+    let gate = &record.results.gate;
+    let limit = |limit| words::number(Some(limit), 3);
+    html! {
+        section aria-labelledby="legend" {
+            h2 #legend { "Legend" }
+            dl.legend {
+                @for known in VERDICTS {
+                    dt class={ "verdict " (known.verdict.word()) } { (words::verdict(Some(known.verdict))) }
+                    dd { (known.meaning) }
+                }
+                @for name in COLUMNS {
+                    @let field = named(&shown.fields, name);
+                    dt { (field.head) } dd { (field.tip()) }
+                }
+                dt { "(z)" } dd { (NOT_NORMAL.trim_start_matches("(z): ")) }
+                dt { (words::UNKNOWN) } dd { "unknown, or without bound" }
+                dt { "ln E, ln P" }
+                dd { "evidence: a check fails at ln E ≥ " (limit(gate.ln_e_limit)) ", and passes where both ln P ≥ " (limit(gate.ln_p_limit)) }
+            }
+            p.quiet { "More is in the manual: docs/verdicts.md, docs/columns.md (all columns of the files), docs/failures.md, and "
+                code { "trueflight explain NAME" } " for each estimator, medium and check." }
+        }
+    }
 }
 
 /// Returns the filters of the table, besides text.
-fn choices(rows: &[(Row, &[Plot])]) -> Vec<Choice> {
-    let verdict = |row: &Row| row.verdict.map_or("undecided", |verdict| verdict.word()).to_owned();
-    let values = |of: &dyn Fn(&Row) -> String| rows.iter().map(|(row, _)| of(row)).collect();
+fn choices(rows: &[(usize, Row)]) -> Vec<Choice> {
+    let values = |of: &dyn Fn(&Row) -> String| rows.iter().map(|(_, row)| of(row)).collect();
     vec![
-        ("verdict", values(&verdict)),
+        ("verdict", values(&|row| words::word(row.verdict).to_owned())),
         ("problem", values(&|row| row.case.problem.clone())),
         ("medium", values(&|row| row.case.medium.clone())),
         ("estimator", values(&|row| row.experiment.id.estimator.name.clone())),

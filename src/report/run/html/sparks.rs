@@ -77,7 +77,8 @@ pub fn evidence(findings: &[&Finding]) -> Markup {
     }
     let view = View { x: [first, last].map(f64::log10), ..EVIDENCE };
     let caption = format!("ln E from look to look, {} to {} draws: ", draws(first), draws(last));
-    figure("ln E from look to look", &caption, &html! { use href="#ground" {} }, &lines, &view)
+    let marks = html! { use href="#ground" {} };
+    figure("ln E from look to look", &caption, &marks, &lines, (&view, "draws"))
 }
 
 /// Returns a plot of σ_t, control and σ̂ along the ray of a refused experiment.
@@ -107,13 +108,21 @@ pub fn course(course: &Course) -> Markup {
         path.mark d={ "M0 " (view.height(0.0)) "H400" } {}
         @if let Some(at) = course.at { path.limit d={ "M" (view.place([at, 0.0])[0]) " 0V120" } {} }
     };
-    figure(&label, &caption, &marks, &lines, &view)
+    figure(&label, &caption, &marks, &lines, (&view, "t"))
 }
 
-fn figure(label: &str, caption: &str, marks: &Markup, lines: &[Line], view: &View) -> Markup {
+fn figure(
+    label: &str,
+    caption: &str,
+    marks: &Markup,
+    lines: &[Line],
+    (view, along): (&View, &str),
+) -> Markup {
+    let ends = [view.x, view.y].concat().into_iter().map(|end| short(end, 4));
+    let range = ends.chain([along.to_owned()]).collect::<Vec<_>>().join(" ");
     html! {
         figure.spark {
-            svg viewBox="0 0 400 120" role="img" aria-label=(label) {
+            svg viewBox="0 0 400 120" role="img" aria-label=(label) data-view=(range) {
                 (marks)
                 @for (place, line) in lines.iter().enumerate() {
                     path class={ "l" (place % 4) } d=(view.path(&line.points)) {}

@@ -43,6 +43,7 @@ struct Point {
     series: usize,
     spot: [f64; 2],
     bar: Option<[f64; 3]>,
+    tip: String,
 }
 
 /// Panel with its drawing.
@@ -93,7 +94,8 @@ impl Graph {
                 }
             }
         }
-        for Point { series: of, spot, bar } in &self.points {
+        for Point { series: of, spot, bar, tip } in &self.points {
+            sheet.tip(*spot, tip.clone());
             let style = series[*of].style;
             // A bar within its marker cannot be seen.
             let is_seen = |bar: &&[f64; 3]| {
@@ -190,12 +192,21 @@ fn points(panel: &Panel, quantity: &Quantity, series: &[Series]) -> Vec<Point> {
             if row.experiment.swept().is_none() {
                 edge -= PLACE;
             }
-            let bar = (quantity.deviation)(row);
-            let bar = bar.map(|deviation| [value - deviation, value, value + deviation]);
-            points.push(Point { series: index, spot, bar });
+            let deviation = (quantity.deviation)(row);
+            let tip = tip(row, quantity, [Some(value), deviation, (quantity.predicted)(row)]);
+            let bar = deviation.map(|deviation| [value - deviation, value, value + deviation]);
+            points.push(Point { series: index, spot, bar, tip });
         }
     }
     points
+}
+
+/// Returns the name and the value of a point, with its standard error and its value in theory.
+fn tip(row: &Row, quantity: &Quantity, values: [Option<f64>; 3]) -> String {
+    let [value, deviation, theory] = values.map(|value| value.map(|value| short(value, 4)));
+    let deviation = deviation.map_or(String::new(), |deviation| format!(" ± {deviation}"));
+    let theory = theory.map_or(String::new(), |theory| format!(", theory {theory}"));
+    format!("{}: {} {}{deviation}{theory}", row.name(), quantity.title, value.unwrap_or_default())
 }
 
 /// Returns the smallest horizontal distance between points that do not lie above each other.

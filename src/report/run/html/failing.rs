@@ -1,0 +1,152 @@
+//! Cards of checks that fail or are inconclusive, one for each check of an estimator, with the measured values over those
+//! of theory.
+
+use maud::{Markup, html};
+use plotters::style::RGBAColor;
+
+use crate::record::{Record, Row, Verdict};
+use crate::report::html as page;
+use crate::report::html::drawing;
+use crate::report::html::words;
+use crate::report::plots::style::{GREY, Marker, ink};
+use crate::report::plots::{Axis, Panel, Sheet};
+use crate::report::run::failures::{self, Failure, failing};
+use gate::deviation::signed_percent;
+use numeric::digits::short;
+
+/// Maximum number of cards; the table has all failures.
+const MOST: usize = 12;
+
+/// Failures of one check of an estimator of a case.
+struct Group<'a>(Vec<Failure<'a>>);
+
+/// Returns the cards of a verdict.
+pub fn section(record: &Record, verdict: Verdict, title: &str) -> Markup {
+    let groups = groups(failing(record, verdict));
+    html! {
+        @if !groups.is_empty() {
+            section.failing aria-labelledby=(verdict.word()) {
+                h2 #(verdict.word()) { (title) }
+                div.cards { @for group in groups.iter().take(MOST) { (card(group)) } }
+                (words::more(groups.len(), MOST))
+            }
+        }
+    }
+}
+
+fn groups(failures: Vec<Failure<'_>>) -> Vec<Group<'_>> {
+    let mut groups: Vec<Group> = Vec::new();
+    for failure in failures {
+        match groups.iter_mut().find(|group| key(&group.0[0]) == key(&failure)) {
+            Some(group) => group.0.push(failure),
+            None => groups.push(Group(vec![failure])),
+        }
+    }
+    groups
+}
+
+/// Returns what the failures of a group share: case, estimator, check.
+fn key<'a>(one: &Failure<'a>) -> [&'a str; 3] {
+    [&one.row.case.name, &one.row.experiment.label, one.check()]
+}
+
+fn card(Group(failures): &Group) -> Markup {
+    let first = &failures[0];
+    let (row, check) = (first.row, first.check());
+    let others = failures.len() - 1;
+    html! {
+        article {
+            h3 {
+                span.quiet { (row.case.name) } " "
+                a href={ "#" (words::anchor(&row)) } { (first.experiment()) }
+            }
+            p {
+                @if !check.is_empty() { b { (check) } ": " }
+                (first.reason()) " (" (first.place()) ")"
+                @if others > 0 { span.quiet { ", and " (others) " more of this estimator" } }
+            }
+            @if let Some(sheet) = figure(first) { (drawing::inline(&sheet, &label(first))) }
+            (page::command(row.next_command()))
+            (page::causes(&failures::causes(&row)))
+        }
+    }
+}
+
+fn label(failure: &Failure) -> String {
+    format!("{}, {}: measured over theory", failure.row.case.name, failure.experiment())
+}
+
+/// Quantity of a plot: its name, measured value, standard error and value in theory.
+type Quantity = (&'static str, fn(&Row) -> [Option<f64>; 3]);
+
+fn quantity(check: &str) -> Quantity {
+    match check {
+        "variance" => {
+            ("variance", |row| [row.variance, row.variance_deviation, row.predicted_variance])
+        }
+        "lookups" => ("lookups per draw", |row| {
+            let one = row.experiment;
+            [one.lookups_per_draw, one.lookups_deviation, one.predicted_lookups]
+        }),
+        _ => ("mean", |row| [row.mean, row.standard_error, row.truth]),
+    }
+}
+
+const PASS: RGBAColor = ink(0x17, 0x80, 0x4A);
+const FAIL: RGBAColor = ink(0xB3, 0x12, 0x1D);
+
+/// Returns the plot: along the sweep the points of the estimator, else all experiments of the case side by side. `None`
+/// without at least one measured value.
+fn figure(failure: &Failure) -> Option<Sheet> {
+    let row = failure.row;
+    let (name, values) = quantity(failure.check());
+    let along = row.experiment.swept().and(row.case.sweep.as_ref());
+    let is_shown = |other: &Row| {
+        let is_own = other.experiment.listed == row.experiment.listed;
+        other.channel == row.channel && (is_own || along.is_none())
+    };
+    let mut points: Vec<(f64, Row, [f64; 2])> = Vec::new();
+    for (place, other) in row.case.rows().filter(is_shown).enumerate() {
+        let [Some(measured), deviation, Some(theory)] = values(&other) else { continue };
+        let x = if along.is_some() { other.experiment.swept() } else { Some((place + 1) as f64) };
+        let point = [measured / theory, 2.0 * deviation.unwrap_or(0.0) / theory.abs()];
+        if let Some(x) = x.filter(|_| point.iter().all(|v| v.is_finite())) {
+            points.push((x, other, point));
+        }
+    }
+    if points.is_empty() {
+        return None;
+    }
+    let ends = points.iter().flat_map(|(_, _, [ratio, bar])| [ratio - bar, ratio + bar]);
+    let y = Axis::around("measured / theory", false, 0.1, ends.chain([1.0]));
+    let (title, log) =
+        along.map_or(("experiments of the case", false), |s| (s.axis.as_str(), s.log));
+    let x = Axis::around(title, log, 0.06, points.iter().map(|point| point.0));
+    let mut sheet = Sheet::new(580.0, 250.0);
+    let panel = Panel { left: 92.0, top: 28.0, right: 566.0, bottom: 196.0, x, y };
+    panel.grid(&mut sheet);
+    panel.line(&mut sheet, [panel.x.low, panel.x.high].map(|x| (x, 1.0)), (&[], 1.6, GREY));
+    for (x, other, [ratio, bar]) in points {
+        let Some(spot) = panel.spot(x, ratio) else { continue };
+        let (marker, colour) = match other.verdict {
+            Some(Verdict::Fail) => (Marker::Cross, FAIL),
+            Some(Verdict::Pass) => (Marker::Disc, PASS),
+            _ => (Marker::Diamond, GREY),
+        };
+        panel.bar(&mut sheet, spot[0], [ratio - bar, ratio, ratio + bar], (4.5, 1.4, colour));
+        panel.point(&mut sheet, spot, marker, 5.0, colour);
+        sheet.tip(spot, tip(&other, name, values(&other), ratio));
+    }
+    panel.frame(&mut sheet, &format!("{name}: measured over theory, bars of two standard errors"));
+    Some(sheet)
+}
+
+fn tip(row: &Row, name: &str, values: [Option<f64>; 3], ratio: f64) -> String {
+    let [measured, deviation, theory] =
+        [(0, 6), (1, 2), (2, 6)].map(|(i, digits): (usize, usize)| {
+            values[i].map_or_else(|| words::UNKNOWN.to_owned(), |value| short(value, digits))
+        });
+    let off = signed_percent(ratio - 1.0);
+    let word = words::word(row.verdict);
+    format!("{}: {word}; {name} {measured} ± {deviation}, theory {theory} ({off})", row.name())
+}
