@@ -74,7 +74,7 @@ pub mod self_test;
 
 pub use ::{estimators, gate, lab, media, numeric, theory};
 pub use case::Catalogue;
-pub use estimators::{kernels, recipes, setup};
+pub use estimators::{recipes, setup};
 pub use gate::stats;
 pub use gate::{Check, Gate, check, check_with, claim};
 pub use judge::OfCase;

@@ -92,6 +92,9 @@ pub trait AnyProblem: Send + Sync {
     /// Prepares an experiment with its prediction; a `forced` one is drawn outside its domain, too.
     fn prepare(&self, estimator: usize, parts: Parts, forced: bool) -> Result<Ready, Refusal>;
 
+    /// Prepares the draws of an experiment, which may be outside its domain.
+    fn experiment(&self, estimator: usize, parts: Parts) -> Result<Box<dyn Experiment>, Refusal>;
+
     /// Predicts an experiment, without distributions; `None` if it is refused.
     fn predict(&self, estimator: usize, parts: Parts) -> Option<Prediction>;
 
@@ -169,6 +172,12 @@ impl<P: Estimated> AnyProblem for Typed<P> {
             };
             Ok(Ready { experiment: entry.experiment(setup), prediction })
         })
+    }
+
+    fn experiment(&self, estimator: usize, parts: Parts) -> Result<Box<dyn Experiment>, Refusal> {
+        let albedo = parts.albedo;
+        let setup = self.joined(estimator, parts)?;
+        Ok(self.with_entry(estimator, albedo, |entry| entry.experiment(setup)))
     }
 
     fn predict(&self, estimator: usize, parts: Parts) -> Option<Prediction> {

@@ -13,7 +13,7 @@ use crate::case::id::{EstimatorName, ExperimentId, Number, SamplingName, SweepPo
 use crate::case::sweep::{Variation, What};
 use estimators::recipes::{controls, sampling};
 use estimators::setup::Parts;
-use estimators::{RayView, Refusal, Site};
+use estimators::{Experiment, RayView, Refusal, Site};
 use media::body::RayNeed;
 use media::catalogue::Settings;
 use media::{Body, Control, Medium, Piecewise, Volume, misses};
@@ -298,6 +298,21 @@ impl<'a> At<'a> {
         let mut ready = scenario.problem.prepare(estimator, parts, parsed.expect_biased)?;
         ready.prediction.setup_lookups = setup_lookups;
         refuse_what_cannot_be_computed(ready)
+    }
+
+    /// Prepares the draws of an experiment alone, which may be outside its domain: it has no prediction.
+    ///
+    /// # Errors
+    ///
+    /// Why it cannot be drawn.
+    pub fn experiment(
+        &self,
+        estimator: usize,
+        address: Address,
+    ) -> Result<Box<dyn Experiment>, Refusal> {
+        let scenario = self.scenario();
+        let (parts, _) = scenario.parts(estimator, self.variation(), None, address)?;
+        scenario.problem.experiment(estimator, parts)
     }
 
     /// Predicts an experiment, with σ̂ = `what_if` if that is given; `None` if it is refused.

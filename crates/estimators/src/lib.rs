@@ -7,10 +7,10 @@
 pub mod bidirectional_rod;
 pub mod chromatic;
 pub mod chromatic_slab;
+pub mod draw;
 pub mod free_flight;
 pub mod furnace;
 pub mod infinite_medium;
-pub mod kernels;
 pub mod lambertian;
 pub mod lit_rod;
 pub mod lit_slab;
@@ -43,7 +43,7 @@ use theory::problems::{Named, ProblemOption, each_problem};
 pub use crate::recipes::{Refusal, Site};
 pub use crate::setup::{Fields, Setup};
 
-pub use crate::kernels::{Draw, DrawBuffer, Request};
+pub use crate::draw::{Draw, DrawBuffer, Request};
 pub use transmittance_curve::RayView;
 pub use trial::{Experiment, Kernel};
 

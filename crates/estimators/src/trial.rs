@@ -3,7 +3,7 @@
 use fearless_simd::Level;
 
 use super::{DrawBuffer, Estimated, Estimator, Fields, Inputs, RayView, Refusal, Setup};
-use crate::kernels::Request;
+use crate::Request;
 use crate::recipes::controls;
 use numeric::rng::{Address, Streams};
 use theory::Prediction;

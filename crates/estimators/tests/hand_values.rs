@@ -10,7 +10,6 @@ use numeric::rng::{LANES, PACKS};
 use theory::ParticleRule;
 use theory::problems::Rod;
 use theory::problems::rod::channels;
-use trueflight_estimators::kernels::bank::Slots;
 use trueflight_estimators::rod::walk::{By, InRod, Particle};
 use trueflight_estimators::slab::walk::turned;
 use trueflight_estimators::sphere::connect::cone;
@@ -19,6 +18,7 @@ use trueflight_estimators::transmittance::{
     next_flight::NextFlight, unidirectional_mis::UnidirectionalMis,
 };
 use trueflight_estimators::walks::Walk;
+use trueflight_estimators::walks::slots::Slots;
 
 #[test]
 fn every_draw_has_one_slot_and_lanes_take_turns() {

@@ -76,22 +76,25 @@ impl<L: Lane, const N: usize> Kept<L::Mask> for [L; N] {
     }
 }
 
-/// A struct of kept values, as in `kept! { /// A particle. pub struct Particle<L> { weight: L } }`.
+/// A struct of kept values, as in `kept! { /// A particle. pub struct Particle<L> { weight: L } }`. It may have a field
+/// of another type of kept values, its second parameter.
 #[macro_export]
 macro_rules! kept {
     (
         $(#[$about:meta])*
-        $visible:vis struct $Name:ident<$L:ident> {
+        $visible:vis struct $Name:ident<$L:ident $(, $F:ident)?> {
             $($(#[$says:meta])* $shown:vis $field:ident: $Type:ty,)*
         }
     ) => {
         $(#[$about])*
         #[derive(Clone, Copy)]
-        $visible struct $Name<$L: $crate::Lane> {
+        $visible struct $Name<$L: $crate::Lane $(, $F)?> {
             $($(#[$says])* $shown $field: $Type,)*
         }
 
-        impl<$L: $crate::Lane> $crate::Kept<$L::Mask> for $Name<$L> {
+        impl<$L: $crate::Lane $(, $F: $crate::Kept<$L::Mask>)?> $crate::Kept<$L::Mask>
+            for $Name<$L $(, $F)?>
+        {
             #[inline(always)]
             fn set_where(&mut self, which: $L::Mask, other: Self) {
                 #[allow(unused_imports)]

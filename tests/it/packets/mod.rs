@@ -2,32 +2,38 @@
 //!
 //! The comparison is made on every level of vector hardware of this machine with fused multiply-add: values, lookups,
 //! defects, and the final states of the streams. Without fused multiply-add the same kernels round differently and are
-//! judged like any estimator.
+//! judged like any estimator. Draws need no prediction, so that all combinations take seconds.
 
-mod fields;
 mod rays;
 mod single_scattering;
 mod space;
 
-use crate::common::{none, options};
+use crate::common::none;
 use fearless_simd::Level;
 use trueflight::case::Case;
-use trueflight::estimators::{DrawBuffer, Kernel};
+use trueflight::estimators::{DrawBuffer, Experiment, Kernel};
 use trueflight::numeric::pack::fuses;
-use trueflight::plan::Plan;
-use trueflight::plan::Planned;
+use trueflight::rng::Address;
 
 /// Numbers of draws of consecutive requests, not multiples of any number of lanes.
 const REQUESTS: [usize; 6] = [1, 3, 8, 100, 257, 5];
 
+/// More channels than a draw has.
+const MANY: usize = 64;
+
+/// Returns the number of channels of an experiment's draws.
+fn channels(experiment: &dyn Experiment, address: Address) -> usize {
+    let mut buffer = DrawBuffer::new(MANY);
+    experiment.fill_by(Kernel::Single, &mut address.streams(), 1, &mut buffer);
+    buffer.values.iter().filter(|channel| !channel.is_empty()).count()
+}
+
 /// Returns all draws of an experiment, as bits, and its final streams.
-fn drawn(planned: &Planned, kernel: Kernel) -> Vec<u64> {
-    let ready = planned.outcome.as_ref().expect("it is not refused");
-    let mut buffer = DrawBuffer::new(ready.prediction.channels.len());
-    let mut streams = planned.streams(3);
-    let mut bits = Vec::new();
+fn drawn(experiment: &dyn Experiment, kernel: Kernel, address: Address) -> Vec<u64> {
+    let mut buffer = DrawBuffer::new(channels(experiment, address));
+    let (mut streams, mut bits) = (address.streams(), Vec::new());
     for count in REQUESTS {
-        ready.experiment.fill_by(kernel, &mut streams, count, &mut buffer);
+        experiment.fill_by(kernel, &mut streams, count, &mut buffer);
         assert_eq!(buffer.lookups.len(), count);
         for channel in &buffer.values {
             bits.extend(channel.iter().map(|value| value.to_bits()));
@@ -41,7 +47,7 @@ fn drawn(planned: &Planned, kernel: Kernel) -> Vec<u64> {
 }
 
 /// Returns every level with fused multiply-add, from the best down.
-pub fn fusing_levels() -> Vec<Level> {
+fn fusing_levels() -> Vec<Level> {
     let mut levels = vec![Level::new()];
     #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
     levels.extend(Level::new().as_avx2().map(Level::Avx2));
@@ -49,26 +55,28 @@ pub fn fusing_levels() -> Vec<Level> {
     levels
 }
 
-/// Compares all experiments of cases on all levels; returns the number of comparisons.
-pub fn compare(cases: &[Case]) -> usize {
-    let plan = Plan::new(cases, &options(1, 1_000));
-    let (mut wrong, mut compared) = (Vec::new(), 0);
-    for (_, planned) in plan.experiments() {
-        if planned.outcome.is_err() {
-            continue;
-        }
-        let single = drawn(planned, Kernel::Single);
-        for level in fusing_levels() {
-            compared += 1;
-            let packets = drawn(planned, Kernel::Packets(level));
-            let differing = single.iter().zip(&packets).position(|(a, b)| a != b);
-            if differing.is_some() || single.len() != packets.len() {
-                let place = format!("{}, {level:?}", planned.id);
-                wrong.push(format!("{place}: {differing:?}"));
+/// Compares every estimator of cases, at the first point of a sweep, on all levels. At least `least` comparisons must
+/// be made.
+pub fn compare(cases: &[Case], least: usize) {
+    let (levels, mut wrong, mut compared) = (fusing_levels(), Vec::new(), 0);
+    for case in cases {
+        let swept = case.sweep.as_ref().map(|axis| (axis.what, axis.values[0]));
+        for estimator in 0..case.scenario.estimators() {
+            let variation = swept.filter(|&(what, _)| case.scenario.depends_on(estimator, what));
+            let address = case.address(1, estimator, variation);
+            let at = case.at(variation).expect("a point of the sweep");
+            let Ok(experiment) = at.experiment(estimator, address) else { continue };
+            let single = drawn(&*experiment, Kernel::Single, address);
+            for &level in &levels {
+                compared += 1;
+                let packets = drawn(&*experiment, Kernel::Packets(level), address);
+                let differing = single.iter().zip(&packets).position(|(a, b)| a != b);
+                if differing.is_some() || single.len() != packets.len() {
+                    wrong.push(format!("{}, {level:?}: {differing:?}", at.id(estimator)));
+                }
             }
         }
     }
-    println!("{compared} compared");
     none(&wrong);
-    compared
+    assert!(levels.is_empty() || compared > least, "only {compared} compared");
 }

@@ -1,12 +1,8 @@
-//! Packets of single scattering equal single draws, to the bit.
-//!
-//! Values, lookups, and the final states of the streams are compared, for every technique with every camera, shadow ray
-//! and control: in the long form in bodies of all kinds and in every shipped case, in the short one in a quarter of the
-//! bodies.
+//! Packets of single scattering equal single draws, to the bit: every technique with every camera, shadow ray and
+//! control, in bodies of all kinds.
 
-use super::{compare, fusing_levels};
-use crate::common::{case, shipped_in};
-use trueflight::case::Case;
+use super::compare;
+use crate::common::case;
 
 const VOLUMES: [&str; 8] = [
     "constant = { extinction = 0.8 }",
@@ -63,19 +59,16 @@ const TECHNIQUES: [&str; 28] = [
     "delta-tracking = { sampling.piecewise-constant = { breaks = [0, 2, 9], values = [1, 1.5] },",
 ];
 
-/// Returns a case for every `step`-th body with a light.
-fn cases(step: usize) -> Vec<Case> {
+#[test]
+fn packets_are_the_scalar_draws_in_bodies_of_all_kinds() {
     let mut cases = Vec::new();
     let lit = VOLUMES.iter().flat_map(|volume| LIGHTS.map(|light| (volume, light)));
-    for (number, (volume, light)) in lit.enumerate().step_by(step) {
+    for (number, (volume, light)) in lit.enumerate() {
         // Each technique in each body, with two of the shadow rays.
-        let estimators: Vec<String> = TECHNIQUES
-            .iter()
-            .enumerate()
-            .map(|(technique, text)| {
-                format!("{{ {text} shadow.{} }} }}", SHADOWS[(number + technique) % SHADOWS.len()])
-            })
-            .collect();
+        let with_shadow = |(technique, text): (usize, &&str)| {
+            format!("{{ {text} shadow.{} }} }}", SHADOWS[(number + technique) % SHADOWS.len()])
+        };
+        let estimators: Vec<String> = TECHNIQUES.iter().enumerate().map(with_shadow).collect();
         let text = format!(
             "title = \"packets\"
             [problem.single-scattering]
@@ -91,20 +84,5 @@ fn cases(step: usize) -> Vec<Case> {
         );
         cases.push(case(&format!("{volume}, {light}"), &text));
     }
-    cases
-}
-
-#[test]
-fn packets_are_the_scalar_draws_at_every_level_that_fuses() {
-    // Every fifth of sixteen: each light, phase function and shadow ray is among them.
-    let compared = compare(&cases(5));
-    assert!(fusing_levels().is_empty() || compared > 200, "only {compared} compared");
-}
-
-#[test]
-#[ignore = "long: every technique in bodies of all kinds, 45 s of two cores"]
-fn packets_are_the_scalar_draws_in_bodies_of_all_kinds() {
-    let shipped = shipped_in(&["single-scattering"]);
-    let compared = compare(&cases(1)) + compare(&shipped);
-    assert!(fusing_levels().is_empty() || compared > 500, "only {compared} compared");
+    compare(&cases, 800);
 }

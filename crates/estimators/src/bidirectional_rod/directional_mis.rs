@@ -20,19 +20,7 @@
 //!
 //! Source: Miller, Georgiev, Jarosz 2019, section 5.5 and table 1, “BPT: Directional MIS”.
 
-use super::{Page, pages};
-use media::catalogue::Settings;
-use theory::Heuristic;
-use theory::bidirectional_rod::Combination;
+use super::{DIRECTIONAL, Estimate};
 
 /// Directional weights; σ̂ is its input.
-#[derive(Debug, Clone, Copy)]
-pub struct DirectionalMis(Page);
-
-impl DirectionalMis {
-    fn combination(settings: &Settings) -> Option<Combination> {
-        Heuristic::read(settings).map(Combination::Directional)
-    }
-}
-
-pages!(DirectionalMis);
+pub type DirectionalMis = Estimate<DIRECTIONAL>;

@@ -22,19 +22,7 @@
 //!
 //! Source: Miller, Georgiev, Jarosz 2019, sections 5.2 and 5.5, Eqs. 42–44, and table 1, “BPT: Full MIS”.
 
-use super::{Page, pages};
-use media::catalogue::Settings;
-use theory::Heuristic;
-use theory::bidirectional_rod::Combination;
+use super::{Estimate, FULL};
 
 /// Weights by whole paths; σ̂ is its input.
-#[derive(Debug, Clone, Copy)]
-pub struct FullMis(Page);
-
-impl FullMis {
-    fn combination(settings: &Settings) -> Option<Combination> {
-        Heuristic::read(settings).map(Combination::Full)
-    }
-}
-
-pages!(FullMis);
+pub type FullMis = Estimate<FULL>;

@@ -7,18 +7,15 @@ pub mod subpath;
 pub mod technique;
 pub mod walk;
 
-pub use self::batch::packets;
 use self::walk::Steps;
-use crate::{Draw, Refusal, Setup, estimators};
+use crate::{Estimator, Inputs, Kernel, Refusal, Request, Setup, estimators, walks};
 use ::theory::Heuristic;
 use ::theory::Prediction;
 use ::theory::bidirectional_rod::{self, Combination, Connection, Rules, Scene};
 use ::theory::problems::BidirectionalRod;
-use ::theory::problems::bidirectional_rod::{Sensor, Values};
-use media::Lookups;
+use ::theory::problems::bidirectional_rod::Sensor;
 use media::catalogue::Settings;
 use numeric::digits::rounded;
-use numeric::rng::Stream;
 
 /// Settings of a page.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -55,45 +52,59 @@ const MOST_TRACKED: f64 = 500.0;
 /// Maximum relative difference of two ratios that count as equal.
 const SAME: f64 = 1e-12;
 
-impl Page {
-    fn read(
-        settings: &Settings,
-        combination: impl Fn(&Settings) -> Option<Combination>,
-    ) -> Option<Self> {
-        let combination = combination(settings);
+/// Kind of [`technique`].
+pub const TECHNIQUE: u8 = 0;
+/// Kind of [`directional_mis`].
+pub const DIRECTIONAL: u8 = 1;
+/// Kind of [`full_mis`].
+pub const FULL: u8 = 2;
+
+/// An estimator of a kind; σ̂ is its input.
+#[derive(Debug, Clone, Copy)]
+pub struct Estimate<const KIND: u8>(Page);
+
+impl<const KIND: u8> Estimator<BidirectionalRod> for Estimate<KIND> {
+    const INPUTS: Inputs = Inputs::SAMPLING;
+
+    fn read(settings: &Settings) -> Option<Self> {
+        let combination = match KIND {
+            TECHNIQUE => technique::combination(settings),
+            DIRECTIONAL => Heuristic::read(settings).map(Combination::Directional),
+            _ => Heuristic::read(settings).map(Combination::Full),
+        };
         let connection = settings.word_or("connection", &["exact", "ratio"], "exact");
-        let is_alone = matches!(combination, Some(Combination::Technique(_)));
-        let subpaths = if is_alone {
+        let subpaths = if KIND == TECHNIQUE {
             Some("independent")
         } else {
             settings.word_or("subpaths", &["independent", "shared"], "independent")
         };
-        Some(Self {
+        Some(Self(Page {
             combination: combination?,
             is_tracked: connection? == "ratio",
             is_shared: subpaths? == "shared",
-        })
+        }))
     }
 
     /// Settings in words, such as `power, ratio connection`.
-    fn label(self) -> String {
-        let first = match self.combination {
+    fn label(&self, _: bool) -> String {
+        let Page { combination, is_tracked, is_shared } = self.0;
+        let first = match combination {
             Combination::Technique(s) => format!("s={s}, "),
             Combination::Directional(Heuristic::Power) | Combination::Full(Heuristic::Power) => {
                 "power, ".into()
             }
             _ => String::new(),
         };
-        let connection = if self.is_tracked { "ratio" } else { "exact" };
-        let subpaths = if self.is_shared { ", shared subpaths" } else { "" };
+        let connection = if is_tracked { "ratio" } else { "exact" };
+        let subpaths = if is_shared { ", shared subpaths" } else { "" };
         format!("{first}{connection} connection{subpaths}")
     }
 
-    fn needs(self) -> Option<&'static str> {
-        (!self.is_tracked).then_some("τ")
+    fn needs(&self) -> Option<&'static str> {
+        (!self.0.is_tracked).then_some("τ")
     }
 
-    fn domain(self, setup: &Setup<BidirectionalRod>) -> Result<(), Refusal> {
+    fn domain(&self, setup: &Setup<BidirectionalRod>) -> Result<(), Refusal> {
         setup.residual().require_ratio_at_most(1.0, "σ̂ ≥ σ_t everywhere")?;
         setup.residual().require_few_collisions("∫σ̂ ≤ 1e6")?;
         let depth = setup.fields.mesh.optical_depth().value;
@@ -101,7 +112,7 @@ impl Page {
             let found = format!("τ = {}", rounded(depth));
             return Err(Refusal::mismatch("τ ≤ 12, as far as theory goes", found));
         }
-        if self.is_tracked {
+        if self.0.is_tracked {
             let needs = "one number σ_t/σ̂ where connections are tracked, and ∫σ̂ ≤ 500";
             match one_ratio(setup) {
                 None => return Err(Refusal::mismatch(needs, "σ_t/σ̂ varies along the rod")),
@@ -118,7 +129,7 @@ impl Page {
             let found = format!("a = {albedo}, p_f = {forward} leave none to r = {order}");
             return Err(Refusal::mismatch("light in every order of scattering", found));
         }
-        match self.combination {
+        match self.0.combination {
             Combination::Technique(s) if s > orders.start() + 2 => {
                 let needs = "at most r + 2 light vertices, r the lowest order";
                 let found = format!("s = {s} and r = {}", orders.start());
@@ -128,7 +139,7 @@ impl Page {
         }
     }
 
-    fn predict(self, setup: &Setup<BidirectionalRod>) -> Prediction {
+    fn predict(&self, setup: &Setup<BidirectionalRod>) -> Prediction {
         let problem = &setup.problem;
         let scene = Scene {
             depth: setup.fields.mesh.optical_depth(),
@@ -139,23 +150,28 @@ impl Page {
         };
         let ratio = one_ratio(setup);
         // A ratio that varies is refused, and draws that are made in spite of it have no prediction.
-        let tracked = ratio.filter(|_| self.is_tracked).map(Connection::Ratio);
+        let tracked = ratio.filter(|_| self.0.is_tracked).map(Connection::Ratio);
         let connection = tracked.unwrap_or(Connection::Exact);
-        let Self { combination, is_shared, .. } = self;
+        let Page { combination, is_shared, .. } = self.0;
         let rules = Rules { combination, connection, is_shared, has_shares: problem.has_shares };
         bidirectional_rod::predict(&scene, &rules, ratio, setup.distributions)
     }
+
+    fn fill(&self, kernel: Kernel, setup: &Setup<BidirectionalRod>, request: Request) {
+        fill(self.0, kernel, setup, request);
+    }
 }
 
-/// Makes one draw: compiled once for all pages.
-#[inline(never)]
-pub fn draw(
-    page: &Page,
-    setup: &Setup<BidirectionalRod>,
-    medium: &Lookups,
-    rng: &mut Stream,
-) -> Draw<Values> {
-    walk::draw(page, setup, medium, rng)
+/// Makes the draws of a request: compiled once for all pages.
+fn fill(steps: Page, kernel: Kernel, setup: &Setup<BidirectionalRod>, request: Request) {
+    walks::by(
+        kernel,
+        setup,
+        request,
+        |level, medium, request| batch::packets(level, &steps, setup, medium, request),
+        #[inline(always)]
+        |medium, random| walk::draw(&steps, setup, medium, random),
+    );
 }
 
 /// Returns true if no path with `order` scatterings can reach the sensor: then the shares of its techniques are not
@@ -180,61 +196,6 @@ fn one_ratio(setup: &Setup<BidirectionalRod>) -> Option<f64> {
     });
     (least > 0.0 && most - least <= SAME * most).then_some(most.min(1.0))
 }
-
-/// Implements the trait of estimators for a page that is given by how it reads its combination, as in
-/// `pages!(FullMis)`.
-macro_rules! pages {
-    ($Page:ident) => {
-        impl $crate::Estimator<theory::problems::BidirectionalRod> for $Page {
-            const INPUTS: $crate::Inputs = $crate::Inputs::SAMPLING;
-
-            fn read(settings: &media::catalogue::Settings) -> Option<Self> {
-                Page::read(settings, Self::combination).map(Self)
-            }
-
-            fn label(&self, _: bool) -> String {
-                self.0.label()
-            }
-
-            fn needs(&self) -> Option<&'static str> {
-                self.0.needs()
-            }
-
-            fn domain(
-                &self,
-                setup: &$crate::Setup<theory::problems::BidirectionalRod>,
-            ) -> Result<(), $crate::Refusal> {
-                self.0.domain(setup)
-            }
-
-            fn predict(
-                &self,
-                setup: &$crate::Setup<theory::problems::BidirectionalRod>,
-            ) -> theory::Prediction {
-                self.0.predict(setup)
-            }
-
-            fn fill(
-                &self,
-                kernel: $crate::Kernel,
-                setup: &$crate::Setup<theory::problems::BidirectionalRod>,
-                request: $crate::Request,
-            ) {
-                $crate::walks::by(
-                    kernel,
-                    setup,
-                    request,
-                    |level, medium, request| {
-                        $crate::bidirectional_rod::packets(level, &self.0, setup, medium, request)
-                    },
-                    #[inline(always)]
-                    |medium, rng| $crate::bidirectional_rod::draw(&self.0, setup, medium, rng),
-                );
-            }
-        }
-    };
-}
-use pages;
 
 estimators! {
     BidirectionalRod on Line:

@@ -18,21 +18,17 @@
 //! Source: E. Lafortune, Y. Willems, *Rendering Participating Media with Bidirectional Path Tracing*, Eurographics
 //! Workshop on Rendering 1996; Miller, Georgiev, Jarosz 2019, Eq. 44.
 
-use super::{Page, pages};
+use super::{Estimate, TECHNIQUE};
 use media::catalogue::Settings;
 use theory::bidirectional_rod::Combination;
 use theory::problems::bidirectional_rod::HIGHEST_ORDER;
 
 /// A single technique; σ̂ is its input.
-#[derive(Debug, Clone, Copy)]
-pub struct Technique(Page);
+pub type Technique = Estimate<TECHNIQUE>;
 
-impl Technique {
-    fn combination(settings: &Settings) -> Option<Combination> {
-        let s = settings.count("light-vertices", 0..=HIGHEST_ORDER as u64 + 2)?;
-        #[allow(clippy::cast_possible_truncation)] // at most seven
-        Some(Combination::Technique(s as usize))
-    }
+/// Reads `light-vertices`.
+pub(super) fn combination(settings: &Settings) -> Option<Combination> {
+    let s = settings.count("light-vertices", 0..=HIGHEST_ORDER as u64 + 2)?;
+    #[allow(clippy::cast_possible_truncation)] // at most seven
+    Some(Combination::Technique(s as usize))
 }
-
-pages!(Technique);

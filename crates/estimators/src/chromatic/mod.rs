@@ -7,16 +7,16 @@ pub mod page;
 
 use fearless_simd::Level;
 
-use crate::kernels::Request;
 use crate::setup::Channels;
 use crate::setup::walker::Walker;
 use crate::walks::hero::Weighing;
-use crate::{Draw, Estimated, Refusal, Setup};
-use media::Lookups;
+use crate::walks::{self, Walk};
+use crate::{Draw, Estimated, Kernel, Refusal, Request, Setup};
+use media::{Batches, Lookups};
 use numeric::Lane;
 use numeric::rng::Stream;
-use theory::Prediction;
 use theory::particle::Event;
+use theory::{Prediction, problems};
 
 /// The steps of a walk that a known bug may replace.
 pub trait Steps: Copy {
@@ -75,24 +75,33 @@ impl<'a> By<'a> {
 }
 
 /// A body in which every channel has a medium of its own; its estimators have one [`page`].
-pub trait Chromatic: Estimated<Fields = Channels> {
+pub trait Chromatic: Estimated<Fields = Channels, Value: problems::Channels> {
+    /// The walk by steps; packs provide their [`Chromatic::fields`].
+    fn walk<'a>(
+        steps: impl Steps,
+        by: By<'a>,
+        setup: &'a Setup<Self>,
+        fields: &'a [Batches<'a>],
+    ) -> impl Walk;
+
+    /// The fields in space that packs look up.
+    fn fields(setup: &Setup<Self>, level: Level) -> Vec<Batches<'_>> {
+        let _ = (setup, level);
+        Vec::new()
+    }
+
     /// Makes one draw.
+    #[inline(always)]
     fn draw(
         steps: impl Steps,
         by: By,
         setup: &Setup<Self>,
         medium: &Lookups,
         random: &mut Stream,
-    ) -> Draw<Self::Value>;
-
-    /// Makes the draws in packets.
-    fn packets<'a>(
-        level: Level,
-        by: By,
-        setup: &Setup<Self>,
-        medium: &Lookups,
-        request: Request<'a>,
-    ) -> Option<Request<'a>>;
+    ) -> Draw<Self::Value> {
+        let walk = Self::walk(steps, by, setup, &[]);
+        walks::draw(&walk, setup.residual().sampling, medium, random)
+    }
 
     /// Checks that σ̂ fits a walker, and that theory covers the body.
     ///
@@ -125,13 +134,17 @@ pub trait Chromatic: Estimated<Fields = Channels> {
 /// Weighting by the balance heuristic without shadow rays.
 pub const WEIGHING: Weighing = Weighing { has_next_event: false, ..Weighing::RIGHT };
 
-/// Makes one draw: compiled once for all walkers.
-#[inline(never)]
-pub fn draw<P: Chromatic>(
-    by: By,
-    setup: &Setup<P>,
-    medium: &Lookups,
-    random: &mut Stream,
-) -> Draw<P::Value> {
-    P::draw(Right, by, setup, medium, random)
+/// Makes the draws of a request: compiled once for all walkers.
+pub fn fill<P: Chromatic>(by: By, kernel: Kernel, setup: &Setup<P>, request: Request) {
+    walks::by(
+        kernel,
+        setup,
+        request,
+        |level, medium, request| {
+            let fields = P::fields(setup, level);
+            walks::packets(level, &P::walk(Right, by, setup, &fields), setup, medium, request)
+        },
+        #[inline(always)]
+        |medium, random| P::draw(Right, by, setup, medium, random),
+    );
 }

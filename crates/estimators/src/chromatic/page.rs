@@ -1,9 +1,9 @@
 //! The page of all walkers in all bodies: their settings, domain, prediction and draws.
 
-use super::{By, Chromatic, draw};
+use super::{By, Chromatic, fill};
 use crate::setup::heroes::Heroes;
 use crate::setup::walker::{INDEPENDENT, MIS, Walker};
-use crate::{Estimator, Inputs, Kernel, Refusal, Request, Setup, walks};
+use crate::{Estimator, Inputs, Kernel, Refusal, Request, Setup};
 use media::catalogue::Settings;
 use theory::Prediction;
 use theory::spectral::Chances;
@@ -61,14 +61,6 @@ impl<P: Chromatic, const KIND: u8> Estimator<P> for Page<KIND> {
     }
 
     fn fill(&self, kernel: Kernel, setup: &Setup<P>, request: Request) {
-        let by = By::new(&self.0, Self::SCORES_ALL);
-        walks::by(
-            kernel,
-            setup,
-            request,
-            |level, medium, request| P::packets(level, by, setup, medium, request),
-            #[inline(always)]
-            |medium, random| draw(by, setup, medium, random),
-        );
+        fill(By::new(&self.0, Self::SCORES_ALL), kernel, setup, request);
     }
 }

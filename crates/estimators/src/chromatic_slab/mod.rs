@@ -6,22 +6,17 @@ pub mod spectral_mis;
 pub mod spectral_tracking;
 pub mod walk;
 
-use fearless_simd::Level;
-
 use self::walk::InSlab;
-use super::chromatic::{By, Chromatic, Right, Steps};
-use crate::kernels::Request;
+use super::chromatic::{By, Chromatic, Steps};
 use crate::setup::channels;
 use crate::setup::walker::Walker;
-use crate::walks;
-use crate::{Draw, Refusal, Setup, estimators};
-use media::Lookups;
+use crate::walks::Walk;
+use crate::{Refusal, Setup, estimators};
+use media::Batches;
 use numeric::digits::rounded;
-use numeric::rng::Stream;
 use theory::Prediction;
 use theory::chromatic_slab::Spectrum;
 use theory::problems::ChromaticSlab;
-use theory::problems::channels::ColourValues as Values;
 
 /// The slab as theory describes it.
 fn spectrum(setup: &Setup<ChromaticSlab>) -> Spectrum<'_> {
@@ -41,25 +36,13 @@ fn realisable(setup: &Setup<ChromaticSlab>) -> Result<(), Refusal> {
 
 impl Chromatic for ChromaticSlab {
     #[inline(always)]
-    fn draw(
+    fn walk<'a>(
         steps: impl Steps,
-        by: By,
-        setup: &Setup<Self>,
-        medium: &Lookups,
-        random: &mut Stream,
-    ) -> Draw<Values> {
-        let walk = InSlab::new(steps, by, setup);
-        walks::draw(&walk, setup.residual().sampling, medium, random)
-    }
-
-    fn packets<'a>(
-        level: Level,
-        by: By,
-        setup: &Setup<Self>,
-        medium: &Lookups,
-        request: Request<'a>,
-    ) -> Option<Request<'a>> {
-        walks::packets(level, &InSlab::new(Right, by, setup), setup, medium, request)
+        by: By<'a>,
+        setup: &'a Setup<Self>,
+        _: &'a [Batches<'a>],
+    ) -> impl Walk {
+        InSlab::new(steps, by, setup)
     }
 
     fn require(setup: &Setup<Self>, walker: &Walker) -> Result<(), Refusal> {

@@ -49,8 +49,8 @@ impl Tally for Energy<'_> {
     }
 
     #[inline(always)]
-    fn sums<L: Lane>(found: &[L; 1]) -> &[L] {
-        found
+    fn value<L: Lane>(&self, [energy]: &[L; 1], _: usize) -> L {
+        *energy
     }
 
     #[inline(always)]

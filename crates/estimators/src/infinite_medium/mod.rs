@@ -134,30 +134,11 @@ impl Walked for InfiniteMedium {
 /// Maximum number of sums of a draw.
 const SUMS: usize = MOST_RADII + 2;
 
-/// Indices of the sums that are the channels of a draw, by its number of radii: the radii, the squared distance and
-/// the collisions.
-const CHANNELS: [[usize; SUMS]; SUMS - 1] = {
-    let mut lists = [[0; SUMS]; SUMS - 1];
-    let mut count = 0;
-    while count <= MOST_RADII {
-        let mut channel = 0;
-        while channel < count + 2 {
-            lists[count][channel] =
-                if channel < count { channel } else { MOST_RADII + channel - count };
-            channel += 1;
-        }
-        count += 1;
-    }
-    lists
-};
-
 /// Collisions within each radius, then the squared distance and the collisions.
 pub struct Within<'a>(&'a InfiniteMedium);
 
 impl Tally for Within<'_> {
     type Found<L: Lane> = [L; SUMS];
-
-    const SUMS: usize = SUMS;
 
     #[inline(always)]
     fn nothing<L: Lane>(&self, zero: L) -> [L; SUMS] {
@@ -165,13 +146,14 @@ impl Tally for Within<'_> {
     }
 
     #[inline(always)]
-    fn sums<L: Lane>(found: &[L; SUMS]) -> &[L] {
-        found
+    fn channels(&self) -> usize {
+        self.0.radii.len() + 2
     }
 
-    fn channels(&self) -> &[usize] {
-        let count = self.0.radii.len();
-        &CHANNELS[count][..count + 2]
+    #[inline(always)]
+    fn value<L: Lane>(&self, sums: &[L; SUMS], channel: usize) -> L {
+        let radii = self.0.radii.len();
+        L::one_of(sums, if channel < radii { channel } else { MOST_RADII + channel - radii })
     }
 
     #[inline(always)]

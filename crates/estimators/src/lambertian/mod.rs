@@ -141,20 +141,19 @@ impl<'a> Entering<'a> {
 impl Tally for Entering<'_> {
     type Found<L: Lane> = [L; 4];
 
-    const SUMS: usize = 4;
-
     #[inline(always)]
     fn nothing<L: Lane>(&self, zero: L) -> [L; 4] {
         [zero; 4]
     }
 
     #[inline(always)]
-    fn sums<L: Lane>(found: &[L; 4]) -> &[L] {
-        found
+    fn channels(&self) -> usize {
+        self.count
     }
 
-    fn channels(&self) -> &[usize] {
-        &self.channels[..self.count]
+    #[inline(always)]
+    fn value<L: Lane>(&self, sums: &[L; 4], channel: usize) -> L {
+        L::one_of(sums, self.channels[channel])
     }
 
     #[inline(always)]

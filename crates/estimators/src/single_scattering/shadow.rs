@@ -97,7 +97,7 @@ impl<L: Lane> ToLight<L> {
         let mut found = (none, one);
         if rays.tracking != Tracking::Exact && self.casts.maybe() {
             let at = (self.place, self.inside & self.casts);
-            found = self.shadows.collide(rays, random, at, met.on_shadow[0]);
+            found = self.shadows.collide(rays, random, at, met.in_space[0]);
         }
         self.aims |= aims;
         if self.aims.are_enough(TOGETHER) {

@@ -94,8 +94,7 @@ impl Shared<'_> {
 impl Walk for Shared<'_> {
     type State<L: Lane> = Path<L>;
 
-    const PAUSES: bool = true;
-    const CASTS: bool = true;
+    const IN_SPACE: bool = true;
     const IN_PIECES: bool = false;
 
     #[inline(always)]
@@ -194,17 +193,17 @@ impl Walk for Shared<'_> {
     }
 
     #[inline(always)]
-    fn on_shadow_rays<L: Lane>(&self, path: &Path<L>) -> (L::Mask, [L; 3]) {
+    fn in_space<L: Lane>(&self, path: &Path<L>) -> (L::Mask, [L; 3]) {
         path.to_light.collisions()
     }
 
     #[inline(always)]
-    fn shadow_fields(&self) -> &[Batches<'_>] {
+    fn fields(&self) -> &[Batches<'_>] {
         self.ground.fields
     }
 
     #[inline(always)]
-    fn shadow_extinction(&self, _: usize, place: Point) -> f64 {
+    fn field(&self, _: usize, place: Point) -> f64 {
         self.ground.rays.volume.extinction_at(place)
     }
 

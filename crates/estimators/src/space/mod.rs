@@ -1,11 +1,11 @@
 //! Walks of particles through volumes: common parts of all problems in space.
 
-pub mod bank;
 pub mod draws;
 pub mod particle;
 pub mod segment;
 pub mod shadow;
 mod splitting;
+mod steps;
 pub mod tally;
 pub mod walk;
 mod walker;
@@ -20,8 +20,8 @@ use theory::{Channel, Moments, Tails};
 
 pub use numeric::geometry::exit;
 pub use particle::{Particle, Splitting};
+pub use steps::Steps;
 pub use tally::Tally;
-pub use walk::Steps;
 pub use walker::{Splitter, Walked, Walker, draw};
 
 /// Relative rounding error of a sum over the collisions of a walk.

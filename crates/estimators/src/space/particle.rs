@@ -1,6 +1,6 @@
 //! The settings of a particle: its rule, roulette and splitting.
 
-use super::walk::Steps;
+use super::steps::Steps;
 use crate::rod;
 use crate::rod::walk::Steps as _;
 use media::catalogue::{Domain, Settings};

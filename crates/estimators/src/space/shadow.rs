@@ -18,6 +18,7 @@ use numeric::{Kept, Lane, Mask, Span, kept};
 use theory::single::Tracking;
 
 /// Settings of shadow rays: through a volume, from within its bounds.
+#[derive(Clone, Copy)]
 pub struct ShadowRays<'a> {
     /// The volume.
     pub volume: &'a Volume,

@@ -3,37 +3,42 @@
 //! At a collision that splits both the scattered particle and the transmitted one are followed, the scattered one
 //! later. The draw is the sum of their scores.
 
-use super::bank::Walk;
 use super::particle::Splitting;
+use super::steps::Steps;
 use super::tally::Tally;
-use super::walk::{InSpace, State, Steps};
+use super::walk::InSpace;
+use crate::Draw;
+use crate::walks::Walk;
+use crate::walks::plain::{look_up_in_space, scored};
 use numeric::Single;
 use numeric::rng::Random;
+use theory::problems::Channels;
 
 /// Makes one draw: follows a walk and the particles that split off to their ends.
 #[inline(always)]
-pub fn follow<L: Single, T: Tally, S: Steps>(
+pub fn follow<L: Single, V: Channels, T: Tally, S: Steps>(
     walk: &InSpace<T, S>,
     splitting: Splitting,
-    look_up: impl Fn(Option<[L; 3]>) -> [L; 2],
+    look_up: impl Fn(usize, [L; 3]) -> L,
     random: &mut impl Random<L>,
-) -> State<L, T::Found<L>> {
-    let mut state = walk.none(L::of(1.0));
-    walk.restart(&mut state, random);
-    walk.go_on(&mut state, 1, random);
+) -> Draw<V> {
+    let mut state = walk.begin(L::of(1.0), true, random);
     // Scattered particles that are followed later, and the splits behind each.
     let mut waiting = Vec::new();
-    let (mut depth, mut total) = (0, 0);
+    let (mut depth, mut total, mut lookups) = (0, 0, 0);
     loop {
-        let (flight, place) = walk.fly(&mut state, random);
-        let met = look_up(<InSpace<T, S>>::inside(&flight).then_some(place));
-        let at = walk.score(&mut state, &flight, met, random);
+        let [flight, _] = walk.numbers(&mut state, random);
+        walk.advance(&mut state, flight);
+        let mut fields = [L::of(0.0); 2];
+        let fields = &mut fields[..walk.media()];
+        lookups += look_up_in_space(walk, &state, &look_up, fields);
+        let at = walk.score(&mut state, fields, random);
         if at.inside && splitting.splits(depth, total) {
             (depth, total) = (depth + 1, total + 1);
             let straight = walk.split(&mut state, &at);
             let goes_on = !straight.weight.equals(0.0);
             if !state.path.weight.equals(0.0) {
-                walk.go_on(&mut state, 1, random);
+                walk.go_on(&mut state, random);
                 if goes_on {
                     waiting.push((state.path, depth));
                     state.path = straight;
@@ -44,11 +49,11 @@ pub fn follow<L: Single, T: Tally, S: Steps>(
             if goes_on {
                 continue;
             }
-        } else if !walk.decide(&mut state, &at, flight.depth, random) {
-            walk.go_on(&mut state, 1, random);
+        } else if !walk.decide(&mut state, &at, flight, random) {
             continue;
         }
-        let Some(next) = waiting.pop() else { return state };
+        let Some(next) = waiting.pop() else { return scored(walk, &state, false, lookups) };
         (state.path, depth) = next;
+        state.ended = false;
     }
 }

@@ -57,16 +57,13 @@ pub trait Tally {
     /// Sums and state of a walk that begins.
     fn nothing<L: Lane>(&self, zero: L) -> Self::Found<L>;
 
-    /// The number of [`Tally::sums`].
-    const SUMS: usize = 1;
-
-    /// Sums of a walk; the channels of a draw are among them.
-    fn sums<L: Lane>(found: &Self::Found<L>) -> &[L];
-
-    /// Indices of the sums that are the channels of a draw.
-    fn channels(&self) -> &[usize] {
-        &[0]
+    /// The number of channels of a draw.
+    fn channels(&self) -> usize {
+        1
     }
+
+    /// The value of walks in a channel.
+    fn value<L: Lane>(&self, found: &Self::Found<L>, channel: usize) -> L;
 
     /// The places where particles set out, and their directions. Their weight is 1. Only lanes in `which` may take
     /// random numbers.

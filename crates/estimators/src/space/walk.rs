@@ -18,65 +18,18 @@
 //! Shadow rays and new directions cost more than a step. A lane that needs one stands still until several lanes of
 //! a pack do; meanwhile, the others go on.
 
-use super::bank::Walk;
 use super::shadow::{ShadowRays, Shadows};
+use super::steps::Steps;
 use super::tally::{Collision, Departure, Scattering, Tally};
-use media::majorants::flights::{Flights, Flown, Ground};
-use media::phase::Phase;
+use crate::walks::{Met, Route, Walk};
+use media::course::BothWays;
+use media::majorants::flights::{Flights, Ground};
 use media::{Batches, Majorants};
+use numeric::geometry::Point;
 use numeric::geometry::frame::turned_lanes;
-use numeric::pack::WIDTH;
 use numeric::rng::Random;
 use numeric::{Kept, Lane, Mask, kept};
-use theory::particle::Odds;
 use theory::problems::Scene;
-
-/// The steps of a walk; a known bug may replace each of them.
-pub trait Steps: Copy {
-    /// The odds at collisions of the given ratio `σ_t/σ̂` and albedo.
-    fn odds<L: Lane>(&self, ratio: L, albedo: L) -> Odds<L>;
-
-    /// Lanes of `goes_on` that survive roulette, with their weights.
-    fn survive<L: Lane>(
-        &self,
-        goes_on: L::Mask,
-        weight: &mut L,
-        random: &mut impl Random<L>,
-    ) -> L::Mask;
-
-    /// σ̂ of a flight in a cell, from σ̂ of the cell and of that in which the flight begins.
-    #[inline(always)]
-    fn through<L: Lane>(&self, here: L, begun: L) -> L {
-        let _ = begun;
-        here
-    }
-
-    /// The uniform number that decides a collision, for the lanes in `which`; `depth` is the optical depth of the flight.
-    #[inline(always)]
-    fn number<L: Lane>(&self, which: L::Mask, depth: L, random: &mut impl Random<L>) -> L {
-        let _ = depth;
-        random.uniform_where(which)
-    }
-
-    /// The cosine of the scattering angle, from a uniform number.
-    #[inline(always)]
-    fn deflection<L: Lane>(&self, phase: &Phase, number: L) -> L {
-        phase.cosine(number)
-    }
-
-    /// The axis about which a particle of a direction turns.
-    #[inline(always)]
-    fn axis<L: Lane>(&self, direction: [L; 3]) -> [L; 3] {
-        direction
-    }
-
-    /// The cosine with which a walk begins, from a uniform number, given the right one.
-    #[inline(always)]
-    fn first_cosine<L: Lane>(&self, right: L, number: L) -> L {
-        let _ = number;
-        right
-    }
-}
 
 kept! {
     /// Particles.
@@ -90,36 +43,37 @@ kept! {
     }
 }
 
-/// State of walks.
-#[derive(Clone, Copy)]
-pub struct State<L: Lane, F> {
-    /// The particles.
-    pub path: Path<L>,
-    /// Sums and state of their tallies.
-    pub found: F,
-    /// Lookups so far.
-    pub lookups: L,
-    shadows: Shadows<L>,
-    ended: L::Mask,
-    /// Lanes that were scattered in this step.
-    scattered: L::Mask,
-    /// Lanes with a shadow ray that came to its end in this step.
-    lit: L::Mask,
-    /// Lanes that have yet to cast a shadow ray.
-    aims: L::Mask,
-    /// Lanes that have yet to turn and to set out.
-    turns: L::Mask,
-    /// Lanes that have yet to set out in their present directions.
-    begins: L::Mask,
+kept! {
+    /// State of walks.
+    pub struct State<L, F> {
+        /// The particles.
+        pub path: Path<L>,
+        /// Sums and state of their tallies.
+        pub found: F,
+        /// Lookups that needed no step.
+        known: L,
+        shadows: Shadows<L>,
+        /// Lanes at a tentative collision of a walk or of a shadow ray, the places, and σ̂ of the walks there.
+        inside: L::Mask,
+        place: [L; 3],
+        sampling: L,
+        /// Lanes with a walk that ended in this step.
+        pub(super) ended: L::Mask,
+        /// Lanes that were scattered in this step.
+        scattered: L::Mask,
+        /// Lanes with a shadow ray that came to its end in this step.
+        lit: L::Mask,
+        /// Lanes that have yet to cast a shadow ray.
+        aims: L::Mask,
+        /// Lanes that have yet to turn and to set out.
+        turns: L::Mask,
+        /// Lanes that have yet to set out in their present directions.
+        begins: L::Mask,
+    }
 }
 
-/// Flights of walks and of their shadow rays.
-#[derive(Clone, Copy)]
-pub struct Flight<L: Lane> {
-    flown: Flown<L>,
-    /// The optical depth.
-    pub depth: L,
-}
+/// Lanes of a pack that set out together.
+const TOGETHER: u32 = 3;
 
 /// Particles in a scene, their steps, and their tally.
 pub struct InSpace<'a, T, S> {
@@ -128,9 +82,19 @@ pub struct InSpace<'a, T, S> {
     scene: &'a Scene,
     ground: Ground<'a>,
     shadow_rays: Option<ShadowRays<'a>>,
-    /// σ_t for packs.
-    fields: Option<&'a Batches<'a>>,
+    /// a, where it is the same everywhere.
+    albedo: Option<f64>,
+    /// σ_t for packs, and a where it varies.
+    fields: &'a [Batches<'a>],
 }
+
+impl<T, S: Copy> Clone for InSpace<'_, T, S> {
+    fn clone(&self) -> Self {
+        *self
+    }
+}
+
+impl<T, S: Copy> Copy for InSpace<'_, T, S> {}
 
 impl<'a, T: Tally, S: Steps> InSpace<'a, T, S> {
     /// The walk through a scene and its σ̂; packs provide the fields that they look up.
@@ -138,10 +102,10 @@ impl<'a, T: Tally, S: Steps> InSpace<'a, T, S> {
         tally: &'a T,
         steps: S,
         (scene, majorants): (&'a Scene, &'a Majorants),
-        fields: Option<&'a Batches<'a>>,
+        fields: &'a [Batches<'a>],
     ) -> Self {
-        let ground = Ground::new(majorants, tally.core());
-        Self { tally, steps, scene, ground, shadow_rays: tally.shadow_rays(), fields }
+        let (ground, albedo) = (Ground::new(majorants, tally.core()), scene.albedo.even());
+        Self { tally, steps, scene, ground, shadow_rays: tally.shadow_rays(), albedo, fields }
     }
 
     /// Lanes that stand still until they set out together.
@@ -150,17 +114,44 @@ impl<'a, T: Tally, S: Steps> InSpace<'a, T, S> {
         state.aims | state.turns | state.begins
     }
 
-    /// Counts lookups and adds the events to the tally; returns tentative collisions.
+    /// Flies; returns the lanes at a tentative collision.
+    #[inline(always)]
+    pub fn advance<L: Lane>(&self, state: &mut State<L, T::Found<L>>, depth: L) -> L::Mask {
+        let (waits, origin) = (Self::waits(state), state.path.flights.origin);
+        let walks = if T::CASTS { !waits & !state.shadows.on } else { !waits };
+        let steps = &self.steps;
+        let flown = state.path.flights.fly(
+            &self.ground,
+            walks,
+            depth,
+            #[inline(always)]
+            move |here, begun| steps.through(here, begun),
+        );
+        (state.inside, state.place, state.sampling) = (flown.inside, origin, flown.sampling);
+        state.place.set_where(walks, flown.place);
+        self.tally.flown(&mut state.found, flown.length, state.path.weight);
+        if let (true, Some(rays)) = (T::CASTS, &self.shadow_rays) {
+            let (reached, inside) = state.shadows.fly(rays, origin, depth);
+            state.place.set_where(state.shadows.on, reached);
+            state.inside |= inside;
+        }
+        state.inside
+    }
+
+    /// Adds the events to the tally, given the fields at the places; returns tentative collisions.
     #[inline(always)]
     pub fn score<L: Lane>(
         &self,
         state: &mut State<L, T::Found<L>>,
-        flight: &Flight<L>,
-        [extinction, albedo]: [L; 2],
+        fields: &[L],
         random: &mut impl Random<L>,
     ) -> Collision<L> {
-        let Flown { inside, sampling, place, .. } = flight.flown;
-        state.lookups.count_where(inside);
+        let State { inside, place, sampling, .. } = *state;
+        let extinction = fields[0];
+        let albedo = match self.albedo {
+            Some(albedo) => extinction.each(albedo),
+            None => fields[1],
+        };
         let casts = state.shadows.on;
         if let (true, Some(rays)) = (T::CASTS, &self.shadow_rays) {
             let light = state.shadows.collide(rays, random, (place, casts & inside), extinction);
@@ -212,7 +203,7 @@ impl<'a, T: Tally, S: Steps> InSpace<'a, T, S> {
         let straight = Path { weight: at.weight * at.ratio.one_minus(), ..state.path };
         state.path.weight = at.weight * at.albedo * at.ratio;
         state.ended = !at.inside;
-        Self::scatter(state, at.inside, at.place);
+        Self::scatter(state, at.inside & !state.path.weight.equals(0.0), at.place);
         straight
     }
 
@@ -235,7 +226,7 @@ impl<'a, T: Tally, S: Steps> InSpace<'a, T, S> {
         if T::CONNECTS {
             let weight = state.path.weight;
             let at = Scattering { which: turns & !weight.equals(0.0), place: origin, weight };
-            state.lookups = state.lookups + self.tally.connect(&mut state.found, &at, random);
+            state.known = state.known + self.tally.connect(&mut state.found, &at, random);
         }
         let parallel = if T::CASTS { self.tally.parallel() } else { None };
         let draws = if parallel.is_some() { turns } else { turns | casts };
@@ -252,19 +243,55 @@ impl<'a, T: Tally, S: Steps> InSpace<'a, T, S> {
             let light = self.tally.aim(origin, number).light(direction, reach.stop);
             let (light, weight) = (self.tally.light(origin, light), state.path.weight);
             if let Some(rays) = &self.shadow_rays {
-                let (rays, from) = ((rays, self.fields), (origin, weight));
+                let (rays, from) = ((rays, self.fields.first()), (origin, weight));
                 let (found, through) = state.shadows.cast(rays, casts, &light, from, reach.ends);
                 self.tally.lit(&mut state.found, found, through);
             } else {
                 let at = Scattering { which: casts, place: origin, weight };
                 let tracked = self.tally.track(&mut state.found, &at, (&light, reach.ends), random);
-                state.lookups = state.lookups + tracked;
+                state.known = state.known + tracked;
             }
             // Lanes with a ray that needed no tracking turn next.
             state.turns = casts & !state.shadows.on;
         }
         state.path.flights.direction.set_where(turns, direction);
         state.path.flights.enter(&self.ground, sets_out, &reach);
+    }
+
+    /// Begins the walks that replace those that ended.
+    #[inline(always)]
+    fn begin_again<L: Lane>(&self, state: &mut State<L, T::Found<L>>, random: &mut impl Random<L>) {
+        let (ended, one) = (state.ended, state.path.weight.each(1.0));
+        let [origin, direction] = self.tally.begin(one, ended, random);
+        state.path.flights.origin.set_where(ended, origin);
+        state.path.flights.direction.set_where(ended, direction);
+        state.path.weight.set_where(ended, one);
+        state.path.unscattered |= ended;
+        state.found.set_where(ended, self.tally.nothing(one.each(0.0)));
+        state.known.set_where(ended, one.each(0.0));
+    }
+
+    /// Casts shadow rays of lanes that were scattered, or turns them; these lanes and those that begin set out, as
+    /// soon as there are enough of them.
+    #[inline(always)]
+    pub fn go_on<L: Lane>(&self, state: &mut State<L, T::Found<L>>, random: &mut impl Random<L>) {
+        let (weight, origin) = (state.path.weight, state.path.flights.origin);
+        let sets_out = state.scattered | state.ended;
+        let turns = if self.tally.begins_turned() { sets_out } else { state.scattered };
+        state.begins |= sets_out & !turns;
+        if T::CASTS {
+            self.tally.scattered(&mut state.found, turns, origin);
+            let is_nothing = weight.equals(0.0);
+            state.aims |= turns & !is_nothing;
+            state.turns |= (turns & is_nothing) | state.lit;
+        } else {
+            state.turns |= turns;
+        }
+        let none = turns & !turns;
+        (state.ended, state.scattered, state.lit) = (none, none, none);
+        if Self::waits(state).are_enough(TOGETHER) {
+            self.set_out(state, random);
+        }
     }
 
     /// New directions of the lanes in `which`, from uniform numbers: directions of shadow rays for lanes that cast
@@ -307,19 +334,23 @@ impl<'a, T: Tally, S: Steps> InSpace<'a, T, S> {
 
 impl<T: Tally, S: Steps> Walk for InSpace<'_, T, S> {
     type State<L: Lane> = State<L, T::Found<L>>;
-    type Flight<L: Lane> = Flight<L>;
-    type Met<L: Lane> = [L; 2];
 
-    const TOGETHER: u32 = 3;
+    const ON_RAY: bool = false;
+    const IN_SPACE: bool = true;
+    const IS_NOWHERE: bool = true;
 
+    /// Walks that have all ended: the first step replaces them.
     #[inline(always)]
-    fn none<L: Lane>(&self, one: L) -> Self::State<L> {
-        let (zero, all, none) = (one.each(0.0), one.at_most(one), one.below(one));
+    fn begin<L: Lane>(&self, one: L, all: L::Mask, _: &mut impl Random<L>) -> Self::State<L> {
+        let (zero, none) = (one.each(0.0), !all);
         State {
             path: Path { flights: Flights::new(zero), weight: one, unscattered: all },
             found: self.tally.nothing(zero),
-            lookups: zero,
+            known: zero,
             shadows: Shadows::new(zero),
+            inside: none,
+            place: [zero; 3],
+            sampling: one,
             ended: all,
             scattered: none,
             lit: none,
@@ -329,103 +360,77 @@ impl<T: Tally, S: Steps> Walk for InSpace<'_, T, S> {
         }
     }
 
+    /// The next step begins the walks.
     #[inline(always)]
-    fn restart<L: Lane>(&self, state: &mut Self::State<L>, random: &mut impl Random<L>) {
-        let (ended, one) = (state.ended, state.path.weight.each(1.0));
-        let [origin, direction] = self.tally.begin(one, ended, random);
-        state.path.flights.origin.set_where(ended, origin);
-        state.path.flights.direction.set_where(ended, direction);
-        state.path.weight.set_where(ended, one);
-        state.path.unscattered |= ended;
-        state.found.set_where(ended, self.tally.nothing(one.each(0.0)));
-        state.lookups.set_where(ended, one.each(0.0));
+    fn restart<L: Lane>(&self, _: &mut Self::State<L>, _: L::Mask, _: L, _: &mut impl Random<L>) {}
+
+    #[inline(always)]
+    fn numbers<L: Lane>(&self, state: &mut Self::State<L>, random: &mut impl Random<L>) -> [L; 2] {
+        if state.ended.any() {
+            self.begin_again(state, random);
+        }
+        self.go_on(state, random);
+        [-random.ln_uniform_where(!Self::waits(state)); 2]
     }
 
     #[inline(always)]
     fn fly<L: Lane>(
         &self,
         state: &mut Self::State<L>,
-        random: &mut impl Random<L>,
-    ) -> (Flight<L>, [L; 3]) {
-        let (waits, origin) = (Self::waits(state), state.path.flights.origin);
-        let depth = -random.ln_uniform_where(!waits);
-        let walks = if T::CASTS { !waits & !state.shadows.on } else { !waits };
-        let steps = &self.steps;
-        let mut flown = state.path.flights.fly(
-            &self.ground,
-            walks,
-            depth,
-            #[inline(always)]
-            move |here, begun| steps.through(here, begun),
-        );
-        let mut place = origin;
-        place.set_where(walks, flown.place);
-        self.tally.flown(&mut state.found, flown.length, state.path.weight);
-        if let (true, Some(rays)) = (T::CASTS, &self.shadow_rays) {
-            let (reached, inside) = state.shadows.fly(rays, origin, depth);
-            place.set_where(state.shadows.on, reached);
-            flown.inside |= inside;
-        }
-        flown.place = place;
-        (Flight { flown, depth }, place)
-    }
-
-    #[inline(always)]
-    fn inside<L: Lane>(flight: &Flight<L>) -> L::Mask {
-        flight.flown.inside
+        _: &mut Route<impl BothWays<L>>,
+        depth: L,
+    ) -> L::Mask {
+        self.advance(state, depth)
     }
 
     #[inline(always)]
     fn collide<L: Lane>(
         &self,
         state: &mut Self::State<L>,
-        flight: &Flight<L>,
-        met: [L; 2],
+        _: &mut Route<impl BothWays<L>>,
+        met: &Met<L>,
         random: &mut impl Random<L>,
     ) -> L::Mask {
-        let at = self.score(state, flight, met, random);
-        self.decide(state, &at, flight.depth, random)
+        let at = self.score(state, met.in_space, random);
+        !self.decide(state, &at, met.number, random)
     }
 
-    /// Casts shadow rays of lanes that were scattered, or turns them; these lanes and those that begin set out, as
-    /// soon as there are enough of them.
     #[inline(always)]
-    fn go_on<L: Lane>(
-        &self,
-        state: &mut Self::State<L>,
-        together: u32,
-        random: &mut impl Random<L>,
-    ) {
-        let (weight, origin) = (state.path.weight, state.path.flights.origin);
-        let sets_out = state.scattered | state.ended;
-        let turns = if self.tally.begins_turned() { sets_out } else { state.scattered };
-        state.begins |= sets_out & !turns;
-        if T::CASTS {
-            self.tally.scattered(&mut state.found, turns, origin);
-            let is_nothing = weight.equals(0.0);
-            state.aims |= turns & !is_nothing;
-            state.turns |= (turns & is_nothing) | state.lit;
+    fn media(&self) -> usize {
+        if self.albedo.is_some() { 1 } else { 2 }
+    }
+
+    #[inline(always)]
+    fn in_space<L: Lane>(&self, state: &Self::State<L>) -> (L::Mask, [L; 3]) {
+        (state.inside, state.place)
+    }
+
+    #[inline(always)]
+    fn fields(&self) -> &[Batches<'_>] {
+        self.fields
+    }
+
+    #[inline(always)]
+    fn field(&self, number: usize, place: Point) -> f64 {
+        if number == 0 {
+            self.scene.volume.points().extinction(place)
         } else {
-            state.turns |= turns;
-        }
-        if Self::waits(state).bits().count_ones() >= together {
-            self.set_out(state, random);
-        }
-    }
-
-    fn count(&self) -> usize {
-        T::SUMS
-    }
-
-    #[inline(always)]
-    fn store<L: Lane>(&self, state: &Self::State<L>, rows: &mut [[f64; WIDTH]]) {
-        for (number, sum) in T::sums(&state.found).iter().enumerate() {
-            sum.store(&mut rows[number]);
+            self.scene.albedo.at(place)
         }
     }
 
     #[inline(always)]
-    fn lookups<L: Lane>(state: &Self::State<L>) -> L {
-        state.lookups
+    fn lookups<L: Lane>(&self, state: &Self::State<L>, counted: L) -> L {
+        counted + state.known
+    }
+
+    #[inline(always)]
+    fn channels(&self) -> usize {
+        self.tally.channels()
+    }
+
+    #[inline(always)]
+    fn value<L: Lane>(&self, state: &Self::State<L>, _: L::Mask, channel: usize) -> L {
+        self.tally.value(&state.found, channel)
     }
 }

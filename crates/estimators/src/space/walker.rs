@@ -1,6 +1,6 @@
 //! The estimators of problems in space: particles that walk by a rule, and particles that split.
 
-use super::walk::Steps;
+use super::steps::Steps;
 use super::{Particle, Tally, draws};
 use crate::setup::Space;
 use crate::{Draw, Estimated, Estimator, Inputs, Kernel, Refusal, Request, Setup, walks};

@@ -1,6 +1,5 @@
 //! Walks into a furnace in several channels, all of them by one draw.
 
-mod draws;
 pub mod hero;
 pub mod independent;
 pub mod spectral_mis;
@@ -9,19 +8,18 @@ pub mod walk;
 
 use fearless_simd::Level;
 
+use self::walk::InFurnace;
 use super::chromatic::{By, Chromatic, Steps};
-use crate::kernels::Request;
 use crate::setup::walker::Walker;
-use crate::{Draw, Refusal, Setup, estimators};
-use ::theory::problems::ChannelValues as Values;
+use crate::walks::Walk;
+use crate::{Refusal, Setup, estimators};
 use ::theory::problems::SpectralFurnace;
 use ::theory::spectral::bound::{self, Flight};
 use ::theory::spectral::rates::Rates;
 use ::theory::{Prediction, spectral_furnace as theory};
-use media::Lookups;
+use media::Batches;
 use numeric::digits::rounded;
 use numeric::geometry::Bounds;
-use numeric::rng::Stream;
 
 /// Maximum expected number of collisions on a straight line through the volume; more are a mistake in the case.
 const MOST_COLLISIONS: f64 = 1e4;
@@ -60,24 +58,17 @@ fn realisable(setup: &Setup<SpectralFurnace>) -> Result<(), Refusal> {
 
 impl Chromatic for SpectralFurnace {
     #[inline(always)]
-    fn draw(
+    fn walk<'a>(
         steps: impl Steps,
-        by: By,
-        setup: &Setup<Self>,
-        _: &Lookups,
-        random: &mut Stream,
-    ) -> Draw<Values> {
-        draws::draw(steps, by, setup, random)
+        by: By<'a>,
+        setup: &'a Setup<Self>,
+        fields: &'a [Batches<'a>],
+    ) -> impl Walk {
+        InFurnace::new(steps, by, setup, fields)
     }
 
-    fn packets<'a>(
-        level: Level,
-        by: By,
-        setup: &Setup<Self>,
-        _: &Lookups,
-        request: Request<'a>,
-    ) -> Option<Request<'a>> {
-        draws::packets(level, by, setup, request)
+    fn fields(setup: &Setup<Self>, level: Level) -> Vec<Batches<'_>> {
+        setup.problem.channels.iter().map(|own| own.volume.batches(level, false)).collect()
     }
 
     fn require(setup: &Setup<Self>, walker: &Walker) -> Result<(), Refusal> {

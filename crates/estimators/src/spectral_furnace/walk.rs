@@ -15,27 +15,24 @@ use crate::Setup;
 use crate::chromatic::densities::{Densities, Events, Scatterers};
 use crate::chromatic::{By, Steps};
 use crate::setup::walker::Walker;
-use crate::space::bank::Walk;
-use crate::walks::hero::{LastPiece, Weighing};
-use crate::walks::hero::{Law, Media, number_of_hero};
+use crate::walks::hero::{LastPiece, Law, Media, Weighing, number_of_hero};
+use crate::walks::{GROUPS, Met, Route, SOME_LEFT, Scores, Walk};
+use media::Batches;
 use media::body::MOST_CHANNELS;
-use numeric::geometry::Bounds;
+use media::course::BothWays;
 use numeric::geometry::exit::{along, ends, ends_in_place};
 use numeric::geometry::frame::turned_lanes;
-use numeric::pack::WIDTH;
+use numeric::geometry::{Bounds, Point};
 use numeric::rng::Random;
-use numeric::{Lane, Mask};
+use numeric::{Lane, Mask, kept};
 use theory::problems::SpectralFurnace;
-
-/// Number of numbers that a walk leaves beside its weights: its hero, its length, and the length of its last
-/// flight.
-const REST: usize = 3;
 
 /// Distance to the boundary of a ball, in radii, within which rounding may place the end of a grazing flight on the
 /// wrong side.
 const DOUBTFUL: f64 = 1e-6;
 
 /// The walk into a furnace.
+#[derive(Clone, Copy)]
 pub struct InFurnace<'a, S> {
     problem: &'a SpectralFurnace,
     among: Scatterers<'a, S>,
@@ -43,43 +40,36 @@ pub struct InFurnace<'a, S> {
     scores_all: bool,
     /// The distribution of the hero, if one is chosen.
     law: Option<Law>,
+    /// σ_t of each channel for packs.
+    fields: &'a [Batches<'a>],
 }
 
-/// Walks on their way, kept in memory.
-#[derive(Clone, Copy)]
-pub struct Path<L: Lane> {
-    place: [L; 3],
-    direction: [L; 3],
-    ended: L::Mask,
-    /// The number of the hero, its σ̂ and its albedo.
-    hero: L,
-    majorant: L,
-    albedo: L,
-    /// The length of the path, and of its last flight.
-    length: L,
-    last: L,
-    /// Lookups.
-    pub lookups: L,
-    densities: Densities<L>,
-}
-
-impl<L: Lane> Path<L> {
-    /// A number that a walk leaves.
-    #[inline(always)]
-    pub fn number(&self, number: usize) -> L {
-        match number {
-            0 => self.hero,
-            1 => self.length,
-            2 => self.last,
-            _ => self.densities.weights[number - REST],
-        }
+kept! {
+    /// Walks on their way, kept in memory.
+    pub struct Path<L> {
+        place: [L; 3],
+        direction: [L; 3],
+        inside: L::Mask,
+        /// The number of the hero, its σ̂ and its albedo.
+        hero: L,
+        majorant: L,
+        albedo: L,
+        /// The length of the path, and of its last flight.
+        length: L,
+        last: L,
+        densities: Densities<L>,
     }
 }
 
 impl<'a, S: Steps> InFurnace<'a, S> {
     /// The walk by steps on a setup.
     #[inline(always)]
-    pub fn new(steps: S, by: By<'a>, setup: &'a Setup<SpectralFurnace>) -> Self {
+    pub fn new(
+        steps: S,
+        by: By<'a>,
+        setup: &'a Setup<SpectralFurnace>,
+        fields: &'a [Batches<'a>],
+    ) -> Self {
         let (problem, count) = (&*setup.problem, setup.fields.len());
         let By { walker, weighing, scores_all } = by;
         let media = Media::new(setup, &walker.probabilities(count));
@@ -89,33 +79,7 @@ impl<'a, S: Steps> InFurnace<'a, S> {
         }
         let law = walker.heroes().map(|heroes| Law::new(heroes, count));
         let among = Scatterers { media, albedos: &problem.albedos, phases, walker, steps };
-        Self { problem, among, weighing, scores_all, law }
-    }
-
-    /// Computes values from the numbers that walks left, and from their lookups; returns the defect.
-    #[inline(always)]
-    pub fn score<L: Lane>(
-        &self,
-        numbers: impl Fn(usize) -> L,
-        lookups: L,
-        values: &mut [L; MOST_CHANNELS],
-    ) -> L {
-        let media = &self.among.media;
-        let (hero, mut length) = (numbers(0), numbers(1));
-        let found = &mut values[..media.count];
-        if !self.scores_all {
-            media.alone(hero, found);
-            return lookups.each(0.0);
-        }
-        for (channel, found) in found.iter_mut().enumerate() {
-            *found = numbers(REST + channel);
-        }
-        let is_weighted = matches!(self.among.walker, Walker::Mis(_));
-        if is_weighted && self.weighing.last_piece != LastPiece::Everywhere {
-            length = length - numbers(2);
-        }
-        media.common(hero, [length, lookups], found);
-        if is_weighted { media.balance(self.weighing.missing, found) } else { lookups.each(0.0) }
+        Self { problem, among, weighing, scores_all, law, fields }
     }
 
     /// The distances to the boundary, where a flight ends beyond it or may do so.
@@ -159,30 +123,41 @@ impl<'a, S: Steps> InFurnace<'a, S> {
 
 impl<S: Steps> Walk for InFurnace<'_, S> {
     type State<L: Lane> = Path<L>;
-    type Flight<L: Lane> = L::Mask;
-    type Met<L: Lane> = [L; MOST_CHANNELS];
+
+    const ON_RAY: bool = false;
+    const IN_SPACE: bool = true;
+    const PAUSES: bool = false;
+    const IS_CHROMATIC: bool = true;
+    const IS_NOWHERE: bool = true;
+    const SCORES: Scores = Scores::Later;
 
     #[inline(always)]
-    fn none<L: Lane>(&self, one: L) -> Path<L> {
+    fn begin<L: Lane>(&self, one: L, all: L::Mask, random: &mut impl Random<L>) -> Path<L> {
         let zero = one.each(0.0);
-        Path {
+        let mut path = Path {
             place: [zero; 3],
             direction: [zero; 3],
-            ended: one.at_most(one),
+            inside: all,
             hero: zero,
             majorant: one,
             albedo: zero,
             length: zero,
             last: zero,
-            lookups: zero,
             densities: Densities::new(one),
-        }
+        };
+        self.restart(&mut path, all, one, random);
+        path
     }
 
     #[inline(always)]
-    fn restart<L: Lane>(&self, path: &mut Path<L>, random: &mut impl Random<L>) {
-        let (Scatterers { media, albedos, .. }, which) = (&self.among, path.ended);
-        let zero = path.length.each(0.0);
+    fn restart<L: Lane>(
+        &self,
+        path: &mut Path<L>,
+        which: L::Mask,
+        one: L,
+        random: &mut impl Random<L>,
+    ) {
+        let (Scatterers { media, albedos, .. }, zero) = (&self.among, one.each(0.0));
         let hero = match &self.law {
             Some(law) => law.choose(random.uniform_where(which)),
             None => zero,
@@ -196,39 +171,42 @@ impl<S: Steps> Walk for InFurnace<'_, S> {
             path.direction[axis].keep_where(which, direction[axis]);
         }
         path.length.keep_where(which, zero);
-        path.lookups.keep_where(which, zero);
         if self.scores_all {
-            path.densities.restart(media.count, which, zero.each(1.0));
+            path.densities.restart(media.count, which, one);
         }
     }
 
     #[inline(always)]
-    fn fly<L: Lane>(&self, path: &mut Path<L>, random: &mut impl Random<L>) -> (L::Mask, [L; 3]) {
-        let flight = -random.ln_uniform() / path.majorant;
-        let end = self.end_beyond(path, flight);
-        let inside = !end.at_most(flight);
-        path.last = L::select(inside, flight, end.or_more(end.each(0.0)));
-        path.length = path.length + path.last;
-        path.place = along(path.place, path.direction, path.last);
-        (inside, path.place)
+    fn numbers<L: Lane>(&self, _: &mut Path<L>, random: &mut impl Random<L>) -> [L; 2] {
+        [-random.ln_uniform(); 2]
     }
 
     #[inline(always)]
-    fn inside<L: Lane>(inside: &L::Mask) -> L::Mask {
-        *inside
+    fn fly<L: Lane>(
+        &self,
+        path: &mut Path<L>,
+        _: &mut Route<impl BothWays<L>>,
+        depth: L,
+    ) -> L::Mask {
+        let flight = depth / path.majorant;
+        let end = self.end_beyond(path, flight);
+        path.inside = !end.at_most(flight);
+        path.last = L::select(path.inside, flight, end.or_more(end.each(0.0)));
+        path.length = path.length + path.last;
+        path.place = along(path.place, path.direction, path.last);
+        path.inside
     }
 
     #[inline(always)]
     fn collide<L: Lane>(
         &self,
         path: &mut Path<L>,
-        inside: &L::Mask,
-        found: [L; MOST_CHANNELS],
+        _: &mut Route<impl BothWays<L>>,
+        met: &Met<L>,
         random: &mut impl Random<L>,
     ) -> L::Mask {
-        let (inside, one, hero) = (*inside, path.length.each(1.0), path.hero);
-        path.lookups.keep_where(inside, path.lookups + 1.0);
-        let own = path.densities.look(&self.among, hero, &found);
+        let (inside, one, hero) = (met.inside, path.length.each(1.0), path.hero);
+        let own = path.densities.look(&self.among, hero, met.in_space);
         let chances = path.densities.chances(&self.among, [own, path.albedo]);
         let [passes, scatters, _] = chances;
         let number = random.uniform_where(inside);
@@ -242,23 +220,61 @@ impl<S: Steps> Walk for InFurnace<'_, S> {
             let events = Events { scattered, null, collided: inside };
             path.densities.weigh(&self.among, hero, (events, chances), cosine);
         }
-        path.ended = !(scattered | null);
-        path.ended
-    }
-
-    fn count(&self) -> usize {
-        REST + if self.scores_all { self.among.media.count } else { 0 }
+        scattered | null
     }
 
     #[inline(always)]
-    fn store<L: Lane>(&self, path: &Path<L>, rows: &mut [[f64; WIDTH]]) {
-        for (number, row) in rows.iter_mut().enumerate() {
-            path.number(number).store(row);
+    fn media(&self) -> usize {
+        self.among.media.count
+    }
+
+    #[inline(always)]
+    fn in_space<L: Lane>(&self, path: &Path<L>) -> (L::Mask, [L; 3]) {
+        (path.inside, path.place)
+    }
+
+    #[inline(always)]
+    fn fields(&self) -> &[Batches<'_>] {
+        self.fields
+    }
+
+    #[inline(always)]
+    fn field(&self, channel: usize, place: Point) -> f64 {
+        self.problem.channels[channel].volume.points().extinction(place)
+    }
+
+    #[inline(always)]
+    fn channels(&self) -> usize {
+        self.among.media.count
+    }
+
+    #[inline(always)]
+    fn leaves<'a, L: Lane>(
+        &self,
+        path: &'a Path<L>,
+        some: &'a mut [L; SOME_LEFT],
+    ) -> [&'a [L]; GROUPS] {
+        (some[0], some[1], some[2]) = (path.hero, path.length, path.last);
+        let count = if self.scores_all { self.media() } else { 0 };
+        [&some[..3], &path.densities.weights[..count], &[], &[], &[]]
+    }
+
+    #[inline(always)]
+    fn score<L: Lane>(&self, numbers: &[L], _: L::Mask, lookups: L, values: &mut [L]) -> L {
+        let (media, zero) = (&self.among.media, lookups.each(0.0));
+        let [hero, mut length, last] = [numbers[0], numbers[1], numbers[2]];
+        if !self.scores_all {
+            media.alone(hero, values);
+            return zero;
         }
-    }
-
-    #[inline(always)]
-    fn lookups<L: Lane>(path: &Path<L>) -> L {
-        path.lookups
+        for (channel, value) in values.iter_mut().enumerate() {
+            *value = numbers[3 + channel];
+        }
+        let is_weighted = matches!(self.among.walker, Walker::Mis(_));
+        if is_weighted && self.weighing.last_piece != LastPiece::Everywhere {
+            length = length - last;
+        }
+        media.common(hero, [length, lookups], values);
+        if is_weighted { media.balance(self.weighing.missing, values) } else { zero }
     }
 }

@@ -3,7 +3,7 @@
 use super::{Coloured, walk};
 use crate::setup::heroes::Heroes;
 use crate::setup::walker::{HERO, INDEPENDENT, MIS, SPECTRAL_TRACKING};
-use crate::{Estimator, Inputs, Kernel, Refusal, Request, Setup, walks};
+use crate::{Estimator, Inputs, Kernel, Refusal, Request, Setup};
 use media::body::MOST_CHANNELS;
 use media::catalogue::Settings;
 use theory::Prediction;
@@ -140,13 +140,6 @@ impl<P: Coloured, const KIND: u8> Estimator<P> for Page<KIND> {
     }
 
     fn fill(&self, kernel: Kernel, setup: &Setup<P>, request: Request) {
-        walks::by(
-            kernel,
-            setup,
-            request,
-            |level, medium, request| walk::packets(level, self, setup, medium, request),
-            #[inline(always)]
-            |medium, random| walk::draw(self, setup, medium, random),
-        );
+        walk::fill(self, kernel, setup, request);
     }
 }

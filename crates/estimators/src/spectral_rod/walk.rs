@@ -10,15 +10,12 @@
 
 use std::f64::consts::TAU;
 
-use fearless_simd::Level;
-
 use super::Coloured;
-use crate::kernels::Request;
 use crate::setup::heroes::Heroes;
 use crate::slab::walk::{entering, turned};
 use crate::walks::hero::{Law, number_of_hero};
 use crate::walks::{self, GROUPS, Met, Route, SOME_LEFT, Scores, Walk};
-use crate::{Draw, Refusal, Setup};
+use crate::{Draw, Kernel, Refusal, Request, Setup};
 use media::Lookups;
 use media::body::MOST_CHANNELS;
 use media::course::BothWays;
@@ -284,18 +281,11 @@ pub fn draw<P: Coloured>(
     walks::draw(&InBody::new(page, setup), &setup.fields.sampling, medium, random)
 }
 
-/// Makes the draws in packets.
-pub fn packets<'r, P: Coloured>(
-    level: Level,
-    page: &dyn Page,
-    setup: &Setup<P>,
-    medium: &Lookups,
-    request: Request<'r>,
-) -> Option<Request<'r>> {
+/// Makes the draws of a request.
+pub fn fill<P: Coloured>(page: &dyn Page, kernel: Kernel, setup: &Setup<P>, request: Request) {
     let walk = InBody::new(page, setup);
     let table = walk.tabulated();
-    let walk = InBody { table: &table, ..walk };
-    walks::packets(level, &walk, setup, medium, request)
+    walks::fill(&InBody { table: &table, ..walk }, kernel, setup, request);
 }
 
 /// Checks σ̂ ≥ σ_t, few collisions, one hero probability for each channel, and that theory covers the body.

@@ -1,16 +1,13 @@
 //! Common parts of the pages that score all channels: a walk scatters once, and its weights are relative to the
 //! density of the walker, or of all heroes.
 
-use super::walk::{self, Right};
+use super::walk;
 use super::{Shadow, predict, predict_independent, realisable};
 use crate::setup::channels;
 use crate::setup::walker::{INDEPENDENT, Walker};
-use crate::{Draw, Estimator, Inputs, Kernel, Refusal, Request, Setup, walks};
-use media::Lookups;
+use crate::{Estimator, Inputs, Kernel, Refusal, Request, Setup};
 use media::catalogue::Settings;
-use numeric::rng::Stream;
 use theory::Prediction;
-use theory::problems::ChannelValues as Values;
 use theory::problems::SpectralSingleScattering;
 
 /// An estimator of a kind.
@@ -57,36 +54,10 @@ impl<const KIND: u8> Estimator<SpectralSingleScattering> for Page<KIND> {
 
     fn fill(&self, kernel: Kernel, setup: &Setup<SpectralSingleScattering>, request: Request) {
         let by = (&self.walker, self.shadow);
-        walks::by(
-            kernel,
-            setup,
-            request,
-            |level, medium, request| {
-                if KIND == INDEPENDENT {
-                    walk::packets::<false>(level, by, setup, medium, request)
-                } else {
-                    walk::packets::<true>(level, by, setup, medium, request)
-                }
-            },
-            #[inline(always)]
-            |medium, random| {
-                if KIND == INDEPENDENT {
-                    draw::<false>(by, setup, medium, random)
-                } else {
-                    draw::<true>(by, setup, medium, random)
-                }
-            },
-        );
+        if KIND == INDEPENDENT {
+            walk::fill::<false>(by, kernel, setup, request);
+        } else {
+            walk::fill::<true>(by, kernel, setup, request);
+        }
     }
-}
-
-/// Makes one draw: compiled once for all walkers.
-#[inline(never)]
-fn draw<const ALL: bool>(
-    by: (&Walker, Shadow),
-    setup: &Setup<SpectralSingleScattering>,
-    medium: &Lookups,
-    random: &mut Stream,
-) -> Draw<Values> {
-    walk::draw::<ALL>(Right, by, setup, medium, random)
 }

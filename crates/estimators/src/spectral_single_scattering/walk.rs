@@ -14,16 +14,13 @@
 //! see [`Media::common`]. The first flight and decision take two random numbers each time, a flight of a shadow ray
 //! one, the choice of the hero one. Walks are scored when all have ended, exact shadow rays included.
 
-use fearless_simd::Level;
-
 use super::Shadow;
-use crate::kernels::Request;
 use crate::setup::walker::Walker;
 use crate::space::exit::{along, ends};
 use crate::space::shadow::ShadowRays;
 use crate::walks::hero::{Law, Media, number_of_hero, of_hero, or_of_hero};
 use crate::walks::{self, GROUPS, Met, Route, SOME_LEFT, Scores, Walk};
-use crate::{Draw, Setup};
+use crate::{Draw, Kernel, Request, Setup};
 use media::body::MOST_CHANNELS;
 use media::course::BothWays;
 use media::{Batches, Lookups};
@@ -145,18 +142,27 @@ pub fn draw<const ALL: bool>(
     walks::draw(&walk, setup.residual().sampling, medium, random)
 }
 
-/// Makes the draws of a request in packets.
-pub fn packets<'a, const ALL: bool>(
-    level: Level,
-    (walker, shadow): (&Walker, Shadow),
+/// Makes the draws of a request: compiled once for all walkers.
+pub fn fill<const ALL: bool>(
+    by: (&Walker, Shadow),
+    kernel: Kernel,
     setup: &Setup<SpectralSingleScattering>,
-    medium: &Lookups,
-    request: Request<'a>,
-) -> Option<Request<'a>> {
-    let channels = setup.problem.channels.iter();
-    let fields: Vec<_> = channels.map(|channel| channel.volume().batches(level, false)).collect();
-    let walk = ToScattering::<_, ALL>::new(setup, (walker, shadow), &fields, Right);
-    walks::packets(level, &walk, setup, medium, request)
+    request: Request,
+) {
+    walks::by(
+        kernel,
+        setup,
+        request,
+        |level, medium, request| {
+            let channels = setup.problem.channels.iter();
+            let fields: Vec<_> =
+                channels.map(|channel| channel.volume().batches(level, false)).collect();
+            let walk = ToScattering::<_, ALL>::new(setup, by, &fields, Right);
+            walks::packets(level, &walk, setup, medium, request)
+        },
+        #[inline(always)]
+        |medium, random| draw::<ALL>(Right, by, setup, medium, random),
+    );
 }
 
 impl<'a, S: Steps, const ALL: bool> ToScattering<'a, S, ALL> {
@@ -261,8 +267,7 @@ impl<S: Steps, const ALL: bool> Walk for ToScattering<'_, S, ALL> {
     type State<L: Lane> = Flight<L>;
 
     const IS_CHROMATIC: bool = true;
-    const PAUSES: bool = true;
-    const CASTS: bool = true;
+    const IN_SPACE: bool = true;
     const SCORES: Scores = Scores::Later;
 
     #[inline(always)]
@@ -394,7 +399,7 @@ impl<S: Steps, const ALL: bool> Walk for ToScattering<'_, S, ALL> {
             return !(ends | is_scattered);
         }
         if casts.any() {
-            for (channel, &extinction) in met.on_shadow.iter().enumerate() {
+            for (channel, &extinction) in met.in_space.iter().enumerate() {
                 let ratio = extinction / one.each(self.media.majorants[channel]);
                 let through = path.through[channel] * ratio.one_minus();
                 path.through[channel].keep_where(path.inside, through);
@@ -419,19 +424,19 @@ impl<S: Steps, const ALL: bool> Walk for ToScattering<'_, S, ALL> {
     }
 
     #[inline(always)]
-    fn on_shadow_rays<L: Lane>(&self, path: &Flight<L>) -> (L::Mask, [L; 3]) {
+    fn in_space<L: Lane>(&self, path: &Flight<L>) -> (L::Mask, [L; 3]) {
         // Beyond the end there is no field to look up.
         let t = L::select(path.inside, path.t, path.end);
         (path.inside, along(path.origin, path.direction, t))
     }
 
     #[inline(always)]
-    fn shadow_fields(&self) -> &[Batches<'_>] {
+    fn fields(&self) -> &[Batches<'_>] {
         self.fields
     }
 
     #[inline(always)]
-    fn shadow_extinction(&self, channel: usize, place: Point) -> f64 {
+    fn field(&self, channel: usize, place: Point) -> f64 {
         self.setup.problem.channels[channel].volume().points().extinction(place)
     }
 

@@ -203,8 +203,8 @@ impl<B: Steps, const CONNECTS: bool> Tally for Combined<'_, B, CONNECTS> {
     }
 
     #[inline(always)]
-    fn sums<L: Lane>(found: &Vertices<L>) -> &[L] {
-        std::slice::from_ref(&found.light)
+    fn value<L: Lane>(&self, found: &Vertices<L>, _: usize) -> L {
+        found.light
     }
 
     #[inline(always)]

@@ -99,8 +99,8 @@ impl Tally for Seeker<'_> {
     }
 
     #[inline(always)]
-    fn sums<L: Lane>(found: &[L; 1]) -> &[L] {
-        found
+    fn value<L: Lane>(&self, [light]: &[L; 1], _: usize) -> L {
+        *light
     }
 
     /// Walks in all directions turn from this one.

@@ -30,38 +30,6 @@ pub struct Page {
 }
 
 impl Page {
-    /// Settings in words, such as `analog, ratio shadow, power`.
-    fn label(&self) -> String {
-        let Sharing { shadow, subpaths, .. } = self.sharing;
-        let mut words = match subpaths {
-            Some(Subpaths::Independent) => vec!["independent subpaths".into()],
-            Some(Subpaths::Shared) => vec!["shared subpaths".into()],
-            None => {
-                let shadow = shadow.map_or("ratio shadow".into(), connection::shadow_label);
-                vec![self.particle.label(), shadow]
-            }
-        };
-        if self.sharing.weights().is_some_and(|(_, heuristic)| heuristic == Heuristic::Power) {
-            words.push("power".into());
-        }
-        words.join(", ")
-    }
-
-    /// The prediction for a draw.
-    fn predict(&self, setup: &Setup<Sphere>) -> Prediction {
-        let Sharing { techniques, shadow, subpaths } = self.sharing;
-        let is_distant = matches!(setup.problem.light, Light::Distant(_));
-        let techniques = match subpaths {
-            Some(Subpaths::Shared) => return predict_by_pilots(setup),
-            Some(Subpaths::Independent) if is_distant => return predict_by_pilots(setup),
-            None if is_distant => Techniques::NextEvent,
-            _ => techniques,
-        };
-        // The second moment of ratio tracking through a majorant does not exceed that of delta tracking.
-        let shadow = shadow.unwrap_or(Tracking::Exact);
-        predict_together(setup, techniques, shadow)
-    }
-
     /// Makes a draw through σ̂ by steps.
     pub fn draw(
         &self,
@@ -74,6 +42,11 @@ impl Page {
             Combined::<_, true>::new((sphere, majorants), particle.rule, (sharing, steps));
         let world = (&sphere.scene, majorants);
         draws::draw::<_, _, false>(&combined, (particle, Splitting::None), world, random)
+    }
+
+    /// Makes a draw of an experiment by steps.
+    pub fn draw_for(&self, steps: impl Steps, setup: &Setup<Sphere>, random: &mut Stream) -> Draw {
+        self.draw(steps, (&setup.problem, &setup.fields), random)
     }
 
     /// Makes draws by packets. Not for connections, and not for null-scattering paths where shadow rays have a
@@ -94,11 +67,6 @@ impl Page {
         let (sphere, steps) = (&*setup.problem, (sharing, Honest));
         let combined = Combined::<_, false>::new((sphere, majorants), particle.rule, steps);
         draws::packets(level, &combined, &particle, (&sphere.scene, majorants), request)
-    }
-
-    /// Makes a draw of an experiment by steps.
-    pub fn draw_for(&self, steps: impl Steps, setup: &Setup<Sphere>, random: &mut Stream) -> Draw {
-        self.draw(steps, (&setup.problem, &setup.fields), random)
     }
 }
 
@@ -128,8 +96,21 @@ impl<const KIND: u8> Estimator<Sphere> for Connected<KIND> {
         page.map(Self)
     }
 
+    /// Settings in words, such as `analog, ratio shadow, power`.
     fn label(&self, _: bool) -> String {
-        self.0.label()
+        let Sharing { shadow, subpaths, .. } = self.0.sharing;
+        let mut words = match subpaths {
+            Some(Subpaths::Independent) => vec!["independent subpaths".into()],
+            Some(Subpaths::Shared) => vec!["shared subpaths".into()],
+            None => {
+                let shadow = shadow.map_or("ratio shadow".into(), connection::shadow_label);
+                vec![self.0.particle.label(), shadow]
+            }
+        };
+        if self.0.sharing.weights().is_some_and(|(_, heuristic)| heuristic == Heuristic::Power) {
+            words.push("power".into());
+        }
+        words.join(", ")
     }
 
     fn needs(&self) -> Option<&'static str> {
@@ -144,7 +125,17 @@ impl<const KIND: u8> Estimator<Sphere> for Connected<KIND> {
     }
 
     fn predict(&self, setup: &Setup<Sphere>) -> Prediction {
-        self.0.predict(setup)
+        let Sharing { techniques, shadow, subpaths } = self.0.sharing;
+        let is_distant = matches!(setup.problem.light, Light::Distant(_));
+        let techniques = match subpaths {
+            Some(Subpaths::Shared) => return predict_by_pilots(setup),
+            Some(Subpaths::Independent) if is_distant => return predict_by_pilots(setup),
+            None if is_distant => Techniques::NextEvent,
+            _ => techniques,
+        };
+        // The second moment of ratio tracking through a majorant does not exceed that of delta tracking.
+        let shadow = shadow.unwrap_or(Tracking::Exact);
+        predict_together(setup, techniques, shadow)
     }
 
     fn fill(&self, kernel: Kernel, setup: &Setup<Sphere>, request: Request) {

@@ -23,7 +23,7 @@
 
 use fearless_simd::{Simd, SimdBase, f64x8};
 
-use crate::kernels::bank;
+use crate::walks::slots;
 use crate::{Draw, Estimator, Inputs, Kernel, Refusal, Request, Setup, walks};
 use media::catalogue::Settings;
 use media::{Extinction, Lookups};
@@ -174,7 +174,7 @@ impl Task for Marches<'_, '_> {
             row.rotate_left(streams.turn);
         }
         for (pack, numbers) in packs.into_iter().enumerate() {
-            bank::leave(streams, pack, u64::MAX, numbers);
+            slots::leave(streams, pack, u64::MAX, numbers);
         }
         for value in rest {
             *value = estimator.march(setup, medium, streams.of_next_draw());

@@ -1,6 +1,7 @@
 //! The driver of packs that take as many random numbers as they need: a particle bank.
 //!
-//! Draw j is, bit for bit, the draw that [`super::plain`] makes from stream j mod 16.
+//! Draw j is, bit for bit, the draw that [`super::plain`] makes from stream j mod 16. A step takes all walks together
+//! through their flights, lookups and collisions: event-based tracking.
 //!
 //! A walk that ends is replaced at once, so that no lane stands still. The number of draws of a lane is fixed
 //! beforehand. A lane that has made them walks on until the others have; its stream is reset to the end of its last
@@ -11,10 +12,9 @@ use std::hint::black_box;
 use fearless_simd::{Simd, SimdBase, SimdMask, f64x8, mask64x8};
 
 use super::outcomes::{self, Events, Groups, Outcomes};
+use super::slots::{Numbers, Slot, Slots, leave};
 use super::{Met, Route, SOME_LEFT, Scores, Walk};
-use crate::kernels::DrawBuffer;
-use crate::kernels::Request;
-use crate::kernels::bank::{Numbers, Slot, Slots, leave};
+use crate::{DrawBuffer, Request};
 use media::body::MOST_CHANNELS;
 use media::course::BothWays;
 use numeric::pack::{self, WIDTH};
@@ -52,10 +52,10 @@ struct Rows {
 
 impl<S: Simd, C: BothWays<f64x8<S>>> Pack<f64x8<S>, C> {
     #[inline(always)]
-    fn new(simd: S, course: C) -> Self {
+    fn new<W: Walk>(simd: S, course: C) -> Self {
         let (zero, all) = (f64x8::splat(simd, 0.0), mask64x8::splat(simd, true));
         Self {
-            from: course.reached(),
+            from: if W::ON_RAY { course.reached() } else { zero },
             route: Route::new(course),
             number: zero,
             t: zero,
@@ -75,11 +75,13 @@ impl<S: Simd, C: BothWays<f64x8<S>>> Pack<f64x8<S>, C> {
     ) -> f64x8<S> {
         let [depth, number] = walk.numbers(state, random);
         self.number = number;
-        if W::IS_CHROMATIC {
+        if W::ON_RAY && W::IS_CHROMATIC {
             self.route.here.change(walk.mean_free_path(state, &self.route));
         }
         self.inside = walk.fly(state, &mut self.route, depth);
-        self.t = Lane::select(self.inside, walk.distance(state, &self.route), self.from);
+        if W::ON_RAY {
+            self.t = Lane::select(self.inside, walk.distance(state, &self.route), self.from);
+        }
         self.t
     }
 
@@ -90,16 +92,16 @@ impl<S: Simd, C: BothWays<f64x8<S>>> Pack<f64x8<S>, C> {
         walk: &W,
         state: &mut W::State<f64x8<S>>,
         extinction: f64x8<S>,
-        [extinctions, on_shadow]: [&[f64x8<S>]; 2],
+        [extinctions, in_space]: [&[f64x8<S>]; 2],
         random: &mut Numbers<S>,
     ) -> u64 {
         let Self { inside, t, number, .. } = *self;
-        let mean_free_path = walk.mean_free_path(state, &self.route);
-        let met = Met { inside, t, mean_free_path, extinction, extinctions, on_shadow, number };
+        let mean_free_path = if W::ON_RAY { walk.mean_free_path(state, &self.route) } else { t };
+        let met = Met { inside, t, mean_free_path, extinction, extinctions, in_space, number };
         if W::PAUSES {
             let mut counted = inside;
-            if W::CASTS {
-                counted |= walk.on_shadow_rays(state).0;
+            if W::IN_SPACE {
+                counted |= walk.in_space(state).0;
             }
             self.lookups.count_where(counted);
         }
@@ -308,7 +310,7 @@ pub fn run<S: Simd, W: Walk, C: BothWays<f64x8<S>>>(
         |lanes| lanes.awake(simd),
     );
     // Two names, no array: an index keeps an array in memory, and AVX2 then uses masked stores.
-    let (mut pack, mut other) = (Pack::new(simd, course), Pack::new(simd, course));
+    let (mut pack, mut other) = (Pack::new::<W>(simd, course), Pack::new::<W>(simd, course));
     let (one, all) = (f64x8::splat(simd, 1.0), mask64x8::splat(simd, true));
     let mut state = walk.begin(one, all, &mut first);
     let mut other_state = walk.begin(one, all, &mut second);
@@ -316,33 +318,34 @@ pub fn run<S: Simd, W: Walk, C: BothWays<f64x8<S>>>(
     let (mut slots, mut other_slots) = (Slots::new(count, turn, 0), Slots::new(count, turn, 1));
     let none: Channels<S> = [f64x8::splat(simd, 0.0); MOST_CHANNELS];
     let (mut channels, mut other_channels) = (none, none);
-    let mut on_shadow = [none; 2];
+    let mut in_space = [none; 2];
     let media = if W::IS_CHROMATIC { walk.media() } else { 0 };
+    let there = if W::IS_CHROMATIC { media } else { MOST_CHANNELS };
     let own = &walk;
     while slots.are_open() || other_slots.are_open() {
         // LLVM copies a loop for each of its constant conditions, and these walks have many.
         let is_branched =
-            const { W::CASTS || W::IS_CHROMATIC && !matches!(W::SCORES, Scores::AtOnce) };
+            const { W::IN_SPACE || W::IS_CHROMATIC && !matches!(W::SCORES, Scores::AtOnce) };
         let walk = if is_branched { black_box(own) } else { own };
         let t = Twin(
             pack.fly(walk, &mut state, &mut first),
             other.fly(walk, &mut other_state, &mut second),
         );
         let mut found = Twin(none[0], none[0]);
-        if W::IS_CHROMATIC {
+        if W::ON_RAY && W::IS_CHROMATIC {
             for channel in 0..media {
                 let Twin(here, there) = look_up(channel, t);
                 (channels[channel], other_channels[channel]) = (here, there);
             }
-        } else {
+        } else if W::ON_RAY {
             found = look_up(0, t);
         }
-        if W::CASTS {
-            look_up_shadows(simd, walk, [&state, &other_state], &mut on_shadow);
+        if W::IN_SPACE {
+            look_up_in_space(simd, walk, [&state, &other_state], &mut in_space);
         }
-        let others = [&channels[..media], &on_shadow[0]];
+        let others = [&channels[..media], &in_space[0][..there]];
         let ended = pack.collide(walk, &mut state, found.0, others, &mut first);
-        let others = [&other_channels[..media], &on_shadow[1]];
+        let others = [&other_channels[..media], &in_space[1][..there]];
         let other_ended = other.collide(walk, &mut other_state, found.1, others, &mut second);
         if W::SCORES == Scores::Often {
             pack.score(walk, &state, 0, &mut rows.events);
@@ -368,16 +371,16 @@ pub fn run<S: Simd, W: Walk, C: BothWays<f64x8<S>>>(
     streams.turn = (turn + count) % LANES;
 }
 
-/// Looks σ_t up on the shadow rays of both packs, if there are any.
+/// Looks fields up in space for both packs, if a lane has a collision there.
 #[inline(always)]
-fn look_up_shadows<S: Simd, W: Walk>(
+fn look_up_in_space<S: Simd, W: Walk>(
     simd: S,
     walk: &W,
     [here, there]: [&W::State<f64x8<S>>; 2],
     [found, other]: &mut [[f64x8<S>; MOST_CHANNELS]; 2],
 ) {
     let ((inside, place), (other_inside, other_place)) =
-        (walk.on_shadow_rays(here), walk.on_shadow_rays(there));
+        (walk.in_space(here), walk.in_space(there));
     if !(inside | other_inside).any_true() {
         return;
     }
@@ -385,13 +388,16 @@ fn look_up_shadows<S: Simd, W: Walk>(
     for (axis, row) in places.iter_mut().enumerate() {
         Twin(place[axis], other_place[axis]).store_slice(row);
     }
-    if !W::IS_CHROMATIC {
-        // No index: the loop keeps one pack in registers.
-        let fields = walk.shadow_fields();
-        Twin(found[0], other[0]) = fields[0].pair(simd, &places);
+    let fields = walk.fields();
+    if W::IS_CHROMATIC {
+        for (number, field) in fields.iter().enumerate() {
+            Twin(found[number], other[number]) = field.pair(simd, &places);
+        }
         return;
     }
-    for (channel, field) in walk.shadow_fields().iter().enumerate() {
-        Twin(found[channel], other[channel]) = field.pair(simd, &places);
+    // No index: the loop keeps one pack in registers.
+    Twin(found[0], other[0]) = fields[0].pair(simd, &places);
+    if let Some(second) = fields.get(1) {
+        Twin(found[1], other[1]) = second.pair(simd, &places);
     }
 }

@@ -148,6 +148,16 @@ pub fn packets<'r, P: Estimated<Fields: OnRay>, W: Walk>(
     pack::on_wide(level, task).err().map(|task| task.request)
 }
 
+/// Makes the draws of a request in packets of walks with all their lookups in space. Returns the request where the
+/// hardware is too narrow.
+pub fn packets_in_space<'r>(
+    level: Level,
+    walk: &impl Walk,
+    request: Request<'r>,
+) -> Option<Request<'r>> {
+    pack::on_wide(level, InSpace { walk, request }).err().map(|task| task.request)
+}
+
 /// Implements the draws of a page by a walk on its setup, as in `drawn!(self, setup: LitRod => Walk::of(setup))`. A
 /// second walk is used for many draws in packets:
 /// `drawn!(self, setup: LitRod => Walk::of(setup), Walk::prepared(setup))`.
@@ -254,6 +264,27 @@ impl<W: Walk> Task for SideBySide<'_, '_, W> {
             }
             _ => outlined(simd, *walk, course, medium, request),
         }
+    }
+}
+
+struct InSpace<'a, 'r, W> {
+    walk: &'a W,
+    request: Request<'r>,
+}
+
+impl<W: Walk> Task for InSpace<'_, '_, W> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<S: Simd>(self, simd: S) {
+        bank::run(
+            simd,
+            *self.walk,
+            Nowhere,
+            #[inline(always)]
+            |_, t| t,
+            self.request,
+        );
     }
 }
 

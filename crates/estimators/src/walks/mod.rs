@@ -18,7 +18,10 @@
 //! | [`window`] | 16 | walks whose steps all take the same random numbers: no step has a branch |
 //! | [`bank`] | 16 | all other walks |
 //!
-//! A walk in several channels flies through the σ̂ of one of them, its [`hero`].
+//! Fields are looked up along the ray, in space, or in both places: a shadow ray leaves the ray of the camera.
+//! Expensive events may wait. A walk stores the lanes that need one, and handles it when
+//! [`are_enough`](numeric::Mask::are_enough) of a pack do; the other lanes go on. A walk may be scored at its end or
+//! later, see [`Scores`]. A walk in several channels flies through the σ̂ of one of them, its [`hero`].
 //!
 //! Source: F. B. Brown, W. R. Martin, *Monte Carlo methods for radiation transport analysis on vector
 //! computers*, Progress in Nuclear Energy 14 (1984), for [`window`] and [`bank`].
@@ -29,6 +32,7 @@ pub mod hero;
 mod outcomes;
 pub mod plain;
 mod route;
+pub mod slots;
 pub mod window;
 
 use media::Batches;
@@ -38,7 +42,7 @@ use numeric::rng::Random;
 use numeric::{Kept, Lane};
 
 pub(crate) use draws::drawn;
-pub use draws::{by, fill, in_turn, one_by_one, packets};
+pub use draws::{by, fill, in_turn, one_by_one, packets, packets_in_space};
 pub use plain::draw;
 pub use route::{Nowhere, Route};
 
@@ -54,15 +58,19 @@ pub trait Walk: Copy {
     /// before [`Walk::collide`]: the walk runs in a [`window`].
     const IS_FIXED: bool = false;
 
-    /// True if a walk may go on after a step without a lookup, as shadow rays do that leave the medium.
-    const PAUSES: bool = false;
+    /// True if fields are looked up at distances along the ray, see [`Walk::distance`].
+    const ON_RAY: bool = true;
+
+    /// True if fields are looked up at places in space, see [`Walk::in_space`].
+    const IN_SPACE: bool = false;
+
+    /// True if a walk may go on after a step without a lookup, as shadow rays do that leave the medium. Walks with
+    /// lookups in space always may.
+    const PAUSES: bool = Self::IN_SPACE;
 
     /// True if each walk flies through the σ̂ of its own channel, each of one value, and σ_t of [`Walk::media`]
     /// channels is looked up.
     const IS_CHROMATIC: bool = false;
-
-    /// True if walks cast shadow rays in space, on which σ_t is looked up too, see [`Walk::on_shadow_rays`].
-    const CASTS: bool = false;
 
     /// True if packs fly through a σ̂ of several values, too; else one walk after the other does.
     const IN_PIECES: bool = true;
@@ -146,33 +154,33 @@ pub trait Walk: Copy {
         random: &mut impl Random<L>,
     ) -> L::Mask;
 
-    /// Number of channels with a σ_t that is looked up.
+    /// Number of fields that are looked up at a place: σ_t of each channel, in space perhaps the albedo.
     #[inline(always)]
     fn media(&self) -> usize {
         1
     }
 
-    /// Lanes at a tentative collision on their shadow rays, and the places of all lanes there.
+    /// Lanes at a tentative collision in space, and the places of all lanes there.
     #[inline(always)]
-    fn on_shadow_rays<L: Lane>(&self, state: &Self::State<L>) -> (L::Mask, [L; 3]) {
+    fn in_space<L: Lane>(&self, state: &Self::State<L>) -> (L::Mask, [L; 3]) {
         let _ = state;
-        unreachable!("the walk casts no shadow rays")
+        unreachable!("the walk has no lookups in space")
     }
 
-    /// The fields on shadow rays as packs look them up, one a channel.
+    /// The fields in space as packs look them up; at most two, if the walk is not [`Walk::IS_CHROMATIC`].
     #[inline(always)]
-    fn shadow_fields(&self) -> &[Batches<'_>] {
+    fn fields(&self) -> &[Batches<'_>] {
         &[]
     }
 
-    /// σ_t of a channel at a place on a shadow ray.
+    /// The value of a field in space at a place.
     #[inline(always)]
-    fn shadow_extinction(&self, channel: usize, place: Point) -> f64 {
-        let _ = (channel, place);
+    fn field(&self, number: usize, place: Point) -> f64 {
+        let _ = (number, place);
         0.0
     }
 
-    /// The number of lookups of walks that cast shadow rays, given those that the driver counted.
+    /// The number of lookups of walks that pause, given those that the driver counted.
     #[inline(always)]
     fn lookups<L: Lane>(&self, state: &Self::State<L>, counted: L) -> L {
         let _ = state;
@@ -261,8 +269,8 @@ pub struct Met<'a, L: Lane> {
     pub extinction: L,
     /// `σ_t` of each channel, if it is.
     pub extinctions: &'a [L],
-    /// `σ_t` on the shadow rays, one a channel, if the walk [`Walk::CASTS`].
-    pub on_shadow: &'a [L],
+    /// Fields at the places of [`Walk::in_space`].
+    pub in_space: &'a [L],
     /// Uniform in `[0, 1)`, if the walk [`Walk::DECIDES`].
     pub number: L,
 }

@@ -3,7 +3,7 @@
 use fearless_simd::{Simd, SimdBase, f64x8};
 
 use super::{GROUPS, MAX_OUTCOME, MAX_SCORED, Walk};
-use crate::kernels::DrawBuffer;
+use crate::DrawBuffer;
 use numeric::Lane;
 use numeric::pack::WIDTH;
 

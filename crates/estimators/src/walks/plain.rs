@@ -3,7 +3,7 @@
 use std::marker::PhantomData;
 
 use super::{MAX_OUTCOME, MAX_SCORED, Met, Nowhere, Route, SOME_LEFT, Scores, Walk};
-use crate::kernels::Draw;
+use crate::Draw;
 use media::body::MOST_CHANNELS;
 use media::course::{BothWays, Even, Pieces};
 use media::{Extinction, Lookups, Piecewise};
@@ -53,24 +53,41 @@ impl<W: Walk, V: Channels> Loop for One<'_, W, V> {
 pub fn through<L: Single, W: Walk, V: Channels>(
     walk: &W,
     sampling: &Piecewise,
-    look_up: impl Fn(usize, L) -> L,
+    on_ray: impl Fn(usize, L) -> L,
     random: &mut impl Random<L>,
 ) -> Draw<V> {
+    let in_space = in_doubles(walk);
     if W::IS_NOWHERE {
-        return follow(walk, Nowhere, look_up, random);
+        return follow(walk, Nowhere, (on_ray, in_space), random);
     }
     match sampling.even() {
-        Some(even) => follow(walk, Even::new(L::of(0.0), even), look_up, random),
-        None => follow(walk, Pieces::new(L::of(0.0), sampling), look_up, random),
+        Some(even) => follow(walk, Even::new(L::of(0.0), even), (on_ray, in_space), random),
+        None => follow(walk, Pieces::new(L::of(0.0), sampling), (on_ray, in_space), random),
     }
 }
 
+/// Makes one draw of a walk with all its lookups in space, given the value of a field at a place.
 #[inline(always)]
-#[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // counts
+pub fn in_space<L: Single, V: Channels>(
+    walk: &impl Walk,
+    look_up: impl Fn(usize, [L; 3]) -> L,
+    random: &mut impl Random<L>,
+) -> Draw<V> {
+    follow(walk, Nowhere, (|_, t| t, look_up), random)
+}
+
+/// The values of a walk's own fields in space.
+#[inline(always)]
+pub fn in_doubles<L: Single>(walk: &impl Walk) -> impl Fn(usize, [L; 3]) -> L {
+    #[inline(always)]
+    |number, [x, y, z]| L::of(walk.field(number, Point([x.double(), y.double(), z.double()])))
+}
+
+#[inline(always)]
 fn follow<L: Single, W: Walk, V: Channels>(
     walk: &W,
     course: impl BothWays<L>,
-    look_up: impl Fn(usize, L) -> L,
+    (on_ray, in_space): (impl Fn(usize, L) -> L, impl Fn(usize, [L; 3]) -> L),
     random: &mut impl Random<L>,
 ) -> Draw<V> {
     let (zero, one) = (L::of(0.0), L::of(1.0));
@@ -81,28 +98,30 @@ fn follow<L: Single, W: Walk, V: Channels>(
     let mut sums = [zero; MAX_SCORED];
     let left = loop {
         let [depth, number] = walk.numbers(&mut state, random);
-        if W::IS_CHROMATIC {
+        if W::ON_RAY && W::IS_CHROMATIC {
             route.here.change(walk.mean_free_path(&state, &route));
         }
         let inside = walk.fly(&mut state, &mut route, depth);
-        let mut on_shadow = [zero; MOST_CHANNELS];
-        if W::CASTS {
-            lookups += look_up_shadow(walk, &state, &mut on_shadow);
+        let mut there = [zero; MOST_CHANNELS];
+        let there = &mut there[..walk.media()];
+        if W::IN_SPACE {
+            lookups += look_up_in_space(walk, &state, &in_space, there);
         }
         let (mut t, mut mean_free_path) = (zero, zero);
-        if inside {
+        if W::ON_RAY && inside {
             lookups += 1;
             t = walk.distance(&state, &route);
             mean_free_path = walk.mean_free_path(&state, &route);
             for (channel, found) in extinctions.iter_mut().enumerate() {
-                *found = look_up(channel, t);
+                *found = on_ray(channel, t);
             }
-        } else if !W::PAUSES {
+        }
+        if !inside && !W::PAUSES {
             break true;
         }
         let extinction = extinctions[0];
-        let (extinctions, on_shadow) = (&*extinctions, &on_shadow[..]);
-        let met = Met { inside, t, mean_free_path, extinction, extinctions, on_shadow, number };
+        let (extinctions, in_space) = (&*extinctions, &*there);
+        let met = Met { inside, t, mean_free_path, extinction, extinctions, in_space, number };
         let goes_on = walk.collide(&mut state, &mut route, &met, random);
         if W::SCORES == Scores::Often && walk.scores(&state, !goes_on) {
             let (found, _) = score(walk, &state, true, zero);
@@ -114,23 +133,42 @@ fn follow<L: Single, W: Walk, V: Channels>(
             break !inside;
         }
     };
-    if W::CASTS {
-        lookups = walk.lookups(&state, L::of(f64::from(lookups))).double() as u32;
-    }
-    let count = walk.channels();
     match W::SCORES {
-        Scores::AtOnce => {
-            let value = |channel| walk.value(&state, left, channel).double();
-            let defect = if W::HAS_DEFECT { walk.defect(&state, zero).double() } else { 0.0 };
-            Draw { value: V::of(count, value), lookups, defect }
-        }
+        Scores::AtOnce => scored(walk, &state, left, lookups),
         Scores::Later => {
+            let lookups = counted(walk, &state, lookups);
             let (found, defect) = score(walk, &state, left, L::of(f64::from(lookups)));
-            let value = V::of(count, |channel| found[channel].double());
+            let value = V::of(walk.channels(), |channel| found[channel].double());
             Draw { value, lookups, defect: defect.double() }
         }
-        Scores::Often => Draw::free(V::of(count, |channel| sums[channel].double()), lookups),
+        Scores::Often => {
+            let lookups = counted(walk, &state, lookups);
+            Draw::free(V::of(walk.channels(), |channel| sums[channel].double()), lookups)
+        }
     }
+}
+
+/// The draw of a walk that has ended and is scored at once.
+#[inline(always)]
+pub fn scored<L: Single, W: Walk, V: Channels>(
+    walk: &W,
+    state: &W::State<L>,
+    left: bool,
+    lookups: u32,
+) -> Draw<V> {
+    let value = V::of(walk.channels(), |channel| walk.value(state, left, channel).double());
+    let defect = if W::HAS_DEFECT { walk.defect(state, L::of(0.0)).double() } else { 0.0 };
+    Draw { value, lookups: counted(walk, state, lookups), defect }
+}
+
+/// The number of lookups of a walk, given those that its driver counted.
+#[inline(always)]
+#[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // a count
+fn counted<L: Single, W: Walk>(walk: &W, state: &W::State<L>, lookups: u32) -> u32 {
+    if !W::PAUSES {
+        return lookups;
+    }
+    walk.lookups(state, L::of(f64::from(lookups))).double() as u32
 }
 
 /// The score of the numbers that a walk leaves, and its defect.
@@ -151,19 +189,18 @@ fn score<L: Single, W: Walk>(
     (values, defect)
 }
 
-/// Looks σ_t up on a shadow ray, if there is one; returns the number of lookups.
+/// Looks fields up in space, if the walk has a collision there; returns the number of lookups.
 #[inline(always)]
-fn look_up_shadow<L: Single, W: Walk>(
+pub fn look_up_in_space<L: Single, W: Walk>(
     walk: &W,
     state: &W::State<L>,
-    found: &mut [L; MOST_CHANNELS],
+    look_up: &impl Fn(usize, [L; 3]) -> L,
+    found: &mut [L],
 ) -> u32 {
-    let (inside, place) = walk.on_shadow_rays(state);
+    let (inside, place) = walk.in_space(state);
     if inside {
-        for (channel, found) in found[..walk.media()].iter_mut().enumerate() {
-            let [x, y, z] = place;
-            let place = Point([x.double(), y.double(), z.double()]);
-            *found = L::of(walk.shadow_extinction(channel, place));
+        for (number, found) in found.iter_mut().enumerate() {
+            *found = look_up(number, place);
         }
     }
     u32::from(inside)

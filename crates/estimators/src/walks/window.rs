@@ -16,7 +16,7 @@
 use fearless_simd::{Simd, SimdBase, SimdMask, f64x8, mask64x8, u8x64, u64x8};
 
 use super::{Met, Route, Walk};
-use crate::kernels::Request;
+use crate::Request;
 use media::course::BothWays;
 use numeric::pack::WIDTH;
 use numeric::rng::{LANES, PACKS, Random, Stream, Xoshiro};
@@ -104,8 +104,8 @@ impl<S: Simd, W: Walk, C: BothWays<f64x8<S>>> Pack<f64x8<S>, W, C> {
         }
         let mean_free_path = walk.mean_free_path(&self.state, &self.route);
         let number = numbers.decision;
-        let (extinctions, on_shadow): (&[f64x8<S>], &[f64x8<S>]) = (&[], &[]);
-        let met = Met { inside, t, mean_free_path, extinction, extinctions, on_shadow, number };
+        let (extinctions, in_space): (&[f64x8<S>], &[f64x8<S>]) = (&[], &[]);
+        let met = Met { inside, t, mean_free_path, extinction, extinctions, in_space, number };
         if W::PAUSES {
             self.lookups.count_where(inside);
         }

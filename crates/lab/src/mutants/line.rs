@@ -194,8 +194,8 @@ impl<W: Walk, P: Estimated<Fields = ControlledLine, Value: Channels>> One<'_, W,
             } else if !W::PAUSES {
                 break None;
             }
-            let (extinctions, on_shadow) = (&[extinction][..], &[][..]);
-            let met = Met { inside, t, mean_free_path, extinction, extinctions, on_shadow, number };
+            let (extinctions, in_space) = (&[extinction][..], &[][..]);
+            let met = Met { inside, t, mean_free_path, extinction, extinctions, in_space, number };
             let goes_on = walk.collide(&mut state, &mut route, &met, random);
             if inside {
                 notes.weight *= (extinction * mean_free_path).double().one_minus();

@@ -17,6 +17,7 @@ use numeric::geometry::exit::{along, ends, meets};
 use numeric::{Lane, Mask, kept};
 
 /// σ̂, and the bounds of flights through it.
+#[derive(Clone, Copy)]
 pub struct Ground<'a> {
     majorants: &'a Majorants,
     /// σ̂, where it is one constant.

@@ -111,14 +111,13 @@ fn in_space<'t, N: Precision, V: Channels + AsRef<[f64]>, const SPLITS: bool>(
     Subject { scene, channel, .. }: Subject,
     mut trail: &'t Trail,
 ) -> Option<f64> {
-    let (everywhere, albedo) = (world.0.volume.single_value(), world.0.albedo.even()?);
-    let look_up = |place: Option<[Traced<'t, N>; 3]>| {
-        let in_ball = |place| everywhere.map_or_else(|| scene.in_ball(place), Traced::of);
-        [place.map_or(Traced::of(0.0), in_ball), Traced::of(albedo)]
-    };
-    let walk = InSpace::new(tally, particle, world, None);
-    let parts = (tally, particle.splitting);
-    let draw = draws::follow::<_, V, _, SPLITS>(&walk, parts, look_up, &mut trail);
+    // σ_t alone is looked up.
+    let _ = world.0.albedo.even()?;
+    let everywhere = world.0.volume.single_value();
+    let look_up =
+        |_, place: [Traced<'t, N>; 3]| everywhere.map_or_else(|| scene.in_ball(place), Traced::of);
+    let walk = InSpace::new(tally, particle, world, &[]);
+    let draw = draws::follow::<_, V, _, SPLITS>(&walk, particle.splitting, look_up, &mut trail);
     draw.value.as_ref().get(channel).copied()
 }
 

@@ -1,40 +1,12 @@
-//! Slots of particle banks: two packs of eight walks that take as many random numbers as they need.
-//!
-//! Specification: draw j is, bit for bit, the draw that the walk's page makes from stream j mod 16.
-//!
-//! A step takes all particles through *fly*, *look up* and *collide* together (event-based tracking). A walk that
-//! ends is replaced at once, so that no lane stands still. The number of draws of every lane is fixed beforehand. A
-//! lane that has made them walks on until the others have; its stream is reset to the end of its last draw.
-//!
-//! Source: F. B. Brown, W. R. Martin, *Monte Carlo methods for radiation transport analysis on vector
-//! computers*, Progress in Nuclear Energy 14 (1984).
+//! Draws that lanes have to make, and the streams that they leave.
 
-use fearless_simd::{Simd, f64x8, u64x8};
+use fearless_simd::{Simd, u64x8};
 
-use media::Lookups;
-use media::body::MOST_CHANNELS;
-use numeric::Twin;
 use numeric::pack::WIDTH;
 use numeric::rng::{LANES, Streams, Xoshiro};
 
 /// The streams of a pack.
 pub type Numbers<S> = Xoshiro<u64x8<S>>;
-
-/// σ_t of the first `count` channels for both packs.
-#[inline(always)]
-pub fn of_channels<S: Simd>(
-    simd: S,
-    medium: &Lookups,
-    count: usize,
-    t: Twin<f64x8<S>>,
-    found: &mut [[f64x8<S>; MOST_CHANNELS]; 2],
-) {
-    let [first, second] = found;
-    for (channel, first) in first[..count].iter_mut().enumerate() {
-        let Twin(here, there) = medium.channel(channel).pair(simd, t);
-        (*first, second[channel]) = (here, there);
-    }
-}
 
 /// Draws that each lane has made and has to make.
 pub struct Slots {
