@@ -36,8 +36,10 @@ fn every_link_leads_somewhere() {
                 continue;
             }
             let path = if file.is_empty() { root().join(&page) } else { folder.join(file) };
-            let is_page = !anchor.is_empty() && file.ends_with(".md") || file.is_empty();
-            if !path.exists() || is_page && !anchors(&path).any(|name| name == anchor) {
+            let has_anchors = path.extension().is_some_and(|end| end == "md");
+            let is_there =
+                anchor.is_empty() || !has_anchors || anchors(&path).any(|name| name == anchor);
+            if !path.exists() || !is_there {
                 wrong.push(format!("{page}: {target}"));
             }
         }
