@@ -31,8 +31,9 @@ pub fn table(found: &SelfTest, pen: Pen) -> String {
 
 fn promises(text: &mut String, pen: Pen, calibration: &Calibration) {
     let Calibration { runs, scalars, laws, draws, .. } = calibration;
-    let title =
-        format!("calibration: {runs} independent runs of {scalars} scalars and {laws} laws");
+    let title = format!(
+        "calibration: {runs} independent runs of {scalars} scalars and {laws} distributions"
+    );
     let _ = writeln!(text, "{} · {} draws", pen.paint(Paint::Bold, &title), count(*draws));
     let rates: Vec<&Rate> = rates(calibration).collect();
     let mut grid = Grid::of(
@@ -68,7 +69,7 @@ fn streams(text: &mut String, pen: Pen, streams: &[StreamVerdicts]) {
     let failed: u64 = streams.iter().map(|verdicts| verdicts.failed).sum();
     let judged: u64 = streams.iter().map(|verdicts| verdicts.streams).sum();
     let title = format!(
-        "foreign draws: {failed} of {judged} verdicts on correct streams of hard laws fail"
+        "foreign draws: {failed} of {judged} verdicts on correct streams of difficult distributions fail"
     );
     let _ = writeln!(text, "{}", pen.paint(Paint::Bold, &title));
     let mut grid = Grid::of(

@@ -97,7 +97,9 @@ pub fn control(record: &Record) -> Vec<String> {
     if gate.scalars + gate.laws > 0 {
         let (scalars, laws) = (gate.scalars, gate.laws);
         let (alpha, beta) = (short(results.alpha, 3), short(gate.beta, 3));
-        facts.push(format!("{scalars} scalars and {laws} laws share α = {alpha}, β = {beta}"));
+        facts.push(format!(
+            "{scalars} scalars and {laws} distributions share α = {alpha}, β = {beta}"
+        ));
     }
     if let Some(margin) = gate.smallest_margin {
         let (largest, limit) = (short(gate.ln_e_limit - margin, 3), short(gate.ln_e_limit, 3));

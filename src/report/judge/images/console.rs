@@ -65,7 +65,7 @@ fn against_line(found: &Comparison) -> String {
         format!("; variance {} times that of the reference{p}{word}", fixed(ratio, 4))
     });
     format!(
-        "{} passes of the reference; equal laws: p = {} ({method}){spread}",
+        "{} passes of the reference; equal distributions: p = {} ({method}){spread}",
         found.passes,
         short(found.p, 3)
     )
