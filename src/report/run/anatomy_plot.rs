@@ -13,6 +13,7 @@ use crate::report::plots::legend::{self, Entry};
 use crate::report::plots::style::{COLOURS, DARK, GREY, Marker};
 use crate::report::plots::{self, Axis, Panel, Sheet};
 use crate::report::{Artifact, ReportError};
+use numeric::digits::short;
 
 const RIGHT: f64 = 940.0;
 const LEGEND: f64 = 968.0;
@@ -91,6 +92,8 @@ fn medium(sheet: &mut Sheet, anatomy: &Anatomy) -> Vec<Entry> {
             }
             if let Some(spot) = panel.spot(t, value) {
                 panel.point(sheet, spot, marker, size, colour);
+                let [t, value] = [t, value].map(|value| short(value, 4));
+                sheet.tip(spot, format!("{name} at t = {t}: {value} per length"));
             }
         }
         entries.push(Entry { label: name.to_owned(), line: None, marker: Some(marker), colour });
@@ -122,6 +125,8 @@ fn transmittance(sheet: &mut Sheet, anatomy: &Anatomy) -> Vec<Entry> {
             panel.bar(sheet, spot[0], ends, (cap, width, red));
         }
         panel.point(sheet, spot, Marker::Disc, 4.6, red);
+        let [t, mean, error] = [point.t, point.mean, point.standard_error].map(|x| short(x, 4));
+        sheet.tip(spot, format!("mean of draws at t = {t}: {mean} ± {error}"));
     }
     panel.frame(sheet, "(b) The transmittance and its estimates");
     let entry = |label: &str, line, marker, colour| {
