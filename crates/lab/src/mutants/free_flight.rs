@@ -33,7 +33,7 @@ const LINES: &[Line<(), Bug<FreeFlight>>] = &[
     ("free-flight-hole", "σ̂ is zero on a tenth of the ray", FLIGHT, "depth", Bug::Setup(hole)),
     ("free-flight-short-ray", "the walk begins and ends a hundredth of the ray inside", FLIGHT, "mean", Bug::Setup(short_ray)),
     ("free-flight-first-skipped", "the first collision is never real", FLIGHT, "distances", Bug::Step(line::FIRST_SKIPPED)),
-    ("free-flight-cap-4", "the fourth collision is always real", FLIGHT, "mean", Bug::Step(Slip { ends: |walk, _| (walk.collisions >= 4).then_some(End::Collided), ..RIGHT })),
+    ("free-flight-cap-4", "the fourth collision is always real", FLIGHT, "mean", Bug::Step(Slip { ends: Some(|walk, _| (walk.collisions >= 4).then_some(End::Collided)), ..RIGHT })),
     ("free-flight-lookup-before-end-test", "σ_t is looked up before the end is tested: one lookup too many", FLIGHT, "lookups", Bug::Step(line::LATE_END)),
     ("free-flight-number-shared", "one random number for the distance and for the decision", FLIGHT, "distances", Bug::Step(line::SHARED)),
     ("free-flight-number-stale", "the decision takes the number of the flight before", FLIGHT, "lookups", Bug::Step(line::STALE)),
@@ -63,7 +63,7 @@ fn position_single(walk: &Notes, right: f64) -> f64 {
     if walk.has_left { right } else { single(right + from) - single(from) }
 }
 
-/// Uniform numbers that are cut to so many bits.
+/// Uniform numbers that are cut to a number of bits.
 const fn bits<const BITS: i32>() -> Slip {
     fn cut<const BITS: i32>(u: f64) -> f64 {
         let scale = f64::exp2(f64::from(BITS));

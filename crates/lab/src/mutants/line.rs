@@ -31,6 +31,10 @@ use theory::problems::Channels;
 /// Function of the walk so far and of the correct number, which returns a wrong one; `None` for the correct one.
 pub type Change = Option<fn(&mut Notes, f64) -> f64>;
 
+/// Function of the walk so far and of further uniform numbers, which returns the end of a walk that should go on, if it
+/// ends.
+pub type Ends = fn(&Notes, &mut dyn FnMut() -> f64) -> Option<End>;
+
 /// A wrong step.
 #[derive(Clone, Copy)]
 pub struct Slip {
@@ -48,8 +52,8 @@ pub struct Slip {
     pub used: Change,
     /// The distance of the collision, in functions of the distance.
     pub place: Change,
-    /// The end of a walk that should go on, if it ends; given further uniform numbers.
-    pub ends: fn(&Notes, &mut dyn FnMut() -> f64) -> Option<End>,
+    /// The end.
+    pub ends: Option<Ends>,
     /// The score.
     pub score: Option<fn(&Notes, f64) -> f64>,
 }
@@ -74,7 +78,7 @@ pub const RIGHT: Slip = Slip {
     found: None,
     used: None,
     place: None,
-    ends: |_, _| None,
+    ends: None,
     score: None,
 };
 
@@ -166,12 +170,14 @@ impl<W: Walk, P: Estimated<Fields = ControlledLine, Value: Channels>> One<'_, W,
         let notes = &mut Notes::new(setup, walk.value(&state, true, 0).double());
         let (mut lookups, mut broken) = (0, 0.0);
         let end = loop {
-            let [depth, number] = walk.numbers(&mut state, random).map(L::double);
-            notes.depth = depth;
-            notes.t = walk.distance(&state, &route).double();
-            notes.mean_free_path = walk.mean_free_path(&state, &route).double();
-            let depth = L::of(notes.changed(slip.depth, depth));
-            let number = L::of(notes.changed(slip.number, number));
+            let [depth, number] = walk.numbers(&mut state, random);
+            notes.depth = depth.double();
+            if slip.depth.is_some() {
+                notes.t = walk.distance(&state, &route).double();
+                notes.mean_free_path = walk.mean_free_path(&state, &route).double();
+            }
+            let depth = L::of(notes.changed(slip.depth, depth.double()));
+            let number = L::of(notes.changed(slip.number, number.double()));
             let mut inside = walk.fly(&mut state, &mut route, depth);
             if slip.collides_at_end {
                 (inside, notes.is_beyond) = (!notes.is_beyond, notes.is_beyond || !inside);
@@ -190,7 +196,9 @@ impl<W: Walk, P: Estimated<Fields = ControlledLine, Value: Channels>> One<'_, W,
                 broken += (used - found).abs() * notes.mean_free_path;
                 extinction = L::of(used);
                 t = L::of(notes.changed(slip.place, notes.t));
-                notes.before = walk.value(&state, true, 0).double();
+                if slip.score.is_some() {
+                    notes.before = walk.value(&state, true, 0).double();
+                }
             } else if !W::PAUSES {
                 break None;
             }
@@ -205,9 +213,11 @@ impl<W: Walk, P: Estimated<Fields = ControlledLine, Value: Channels>> One<'_, W,
             if !goes_on {
                 break inside.then_some(End::Collided);
             }
-            let end = (slip.ends)(notes, &mut || Random::<L>::uniform(random).double());
-            if end.is_some() {
-                break end;
+            if let Some(ends) = slip.ends {
+                let end = ends(notes, &mut || Random::<L>::uniform(random).double());
+                if end.is_some() {
+                    break end;
+                }
             }
         };
         notes.has_left = end.is_none();

@@ -130,6 +130,7 @@ impl Steps for Bug {
         if *self == Self::NullsOfAll { before } else { before.each(1.0) }
     }
 
+    #[inline(always)] // the step that is made most often
     fn weight<L: Lane, const N: usize>(
         &self,
         heuristic: Heuristic,

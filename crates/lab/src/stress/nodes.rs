@@ -136,8 +136,8 @@ impl Line {
     /// Solves two equations with `m₋(0)` and `m₊(end)` given, A and B by the stretch, s± by the number of the node.
     /// The value at the beginning is `m₊`.
     ///
-    /// From the end back, each panel gets the `m₊` that what lies beyond it returns for a given `m₋`. From the beginning
-    /// on, each panel then gets its values.
+    /// First, from the end back: how `m₊` depends on `m₋` at the beginning of each panel ([`Beyond`]). Then, from the
+    /// beginning on: the values in each panel.
     pub fn both_ways(
         &self,
         rates: impl Fn(usize) -> [Wide; 2],
@@ -200,7 +200,7 @@ impl Passage {
     }
 }
 
-/// What lies beyond a place: `m₊ = returned · m₋ + emitted` there.
+/// The line beyond a place: `m₊ = returned · m₋ + emitted` there.
 #[derive(Clone, Copy)]
 struct Beyond {
     returned: Wide,
@@ -208,7 +208,7 @@ struct Beyond {
 }
 
 impl Beyond {
-    /// What lies beyond the beginning of a panel, given what lies beyond its end.
+    /// The line beyond the beginning of a panel, given the line beyond its end.
     ///
     /// `m₊ − returned · m₋ = emitted` at the end is linear in the values at the beginning.
     fn before(self, panel: &Passage) -> Self {
