@@ -59,6 +59,7 @@
 //! - Nothing is clamped, skipped or defaulted silently. Unknown is `None`, never `0`.
 //! - A check that cannot fail is a defect.
 
+pub mod advise;
 pub mod bench;
 pub mod case;
 pub mod checks;

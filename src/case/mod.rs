@@ -125,10 +125,19 @@ impl Case {
     ///
     /// Every mistake in the file.
     pub fn of(spec: &Spec) -> Result<Self, CaseError> {
-        spec.read(|root| Self::from_root(spec, root))
+        spec.read(|root| Self::from_root(spec, root, None))
     }
 
-    fn from_root(spec: &Spec, root: &Settings) -> Option<Self> {
+    /// Reads a case that was parsed, with this field in place of its own.
+    ///
+    /// # Errors
+    ///
+    /// Every mistake in the file.
+    pub fn of_body(spec: &Spec, body: &Body) -> Result<Self, CaseError> {
+        spec.read(|root| Self::from_root(spec, root, Some(body)))
+    }
+
+    fn from_root(spec: &Spec, root: &Settings, body: Option<&Body>) -> Option<Self> {
         if let (Some(picture), false) = (root.entry("picture"), root.has("problem")) {
             let help = "render it with `trueflight render`; a case has `[problem.NAME]`";
             root.fault_at(
@@ -140,7 +149,7 @@ impl Case {
             return None;
         }
         let title = root.text("title");
-        let problem = read_problem(root);
+        let problem = read_problem(root, body);
         let varied = problem.as_ref().and_then(|problem| problem.varied(spec, root));
         let tolerance = read_tolerance(root);
         let draws = if root.has("draws") {
@@ -241,14 +250,23 @@ struct Problem {
     sweep: Option<SweepAxis>,
 }
 
-/// Reads `expect` and `problem`, and no other key.
-fn read_problem(root: &Settings) -> Option<Problem> {
+/// Reads `expect` and `problem`, and no other key. A known field takes the place of the case's own.
+fn read_problem(root: &Settings, known: Option<&Body>) -> Option<Problem> {
     let expect_biased = read_expect(root);
     let names: Vec<String> = problems::CATALOGUE.pages.iter().map(Page::name).collect();
     let explain = |name: &str| forms::explain_problem("problem", name);
     let (index, settings) = root.chosen_explained("problem", &names, &explain)?;
     let kind = build::kind(index, &settings)?;
-    let body = Body::read_for(&settings, kind.ray);
+    let body = match known {
+        Some(body) => {
+            // Marks the keys as read.
+            for key in ["medium", "volume", "span", "ray"] {
+                settings.entry(key);
+            }
+            Some(body.clone())
+        }
+        None => Body::read_for(&settings, kind.ray),
+    };
     let body = body.filter(|body| kind.spectral || has_one_channel(&settings, body));
     let sweep = read_sweep(&settings);
     let swept = sweep.as_ref().and_then(|sweep| sweep.as_ref()).map(|axis| axis.what);
@@ -303,7 +321,7 @@ fn read_varied(
     value: f64,
 ) -> Result<Scenario, Vec<Fault>> {
     let spec = spec.at(what, value).map_err(|fault| vec![fault])?;
-    let (read, faults) = spec.attempt(read_problem);
+    let (read, faults) = spec.attempt(|root| read_problem(root, None));
     let scenario = read.map(|read| read.scenario).ok_or(faults)?;
     let media = [written.media(), scenario.media()];
     if !scaling::is_proportional(written.medium(), media, what, value) {

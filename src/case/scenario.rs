@@ -328,6 +328,12 @@ impl<'a> At<'a> {
         Some(Prediction { setup_lookups, ..prediction })
     }
 
+    /// Returns the control of an experiment; `None` where it cannot be made.
+    pub fn control(&self, estimator: usize, pilots: Address) -> Option<Control> {
+        let parts = self.scenario().parts(estimator, self.variation(), None, pilots);
+        parts.ok().map(|(parts, _)| parts.control)
+    }
+
     /// Returns the ray seen from the side and the places where the control was fitted, for estimators of a curve.
     pub fn ray_view(&self, estimator: usize, address: Address) -> Option<(RayView, Vec<[f64; 2]>)> {
         let (scenario, variation) = (self.scenario(), self.variation());

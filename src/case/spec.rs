@@ -113,6 +113,16 @@ impl Spec {
         Some(settings)
     }
 
+    /// Returns the spec with changed settings of its problem.
+    #[must_use]
+    pub fn with_problem(&self, change: impl FnOnce(&mut Vec<Entry>)) -> Self {
+        let mut changed = self.clone();
+        if let Some(settings) = changed.problem_mut() {
+            change(settings);
+        }
+        changed
+    }
+
     /// Writes the case again with a sweep in place of its own.
     ///
     /// # Errors
@@ -128,11 +138,10 @@ impl Spec {
         let values = values.iter().map(|&value| node(Value::Number(value))).collect();
         let values = Value::Table(vec![entry("values", Value::Array(values))]);
         let sweep = entry("sweep", Value::Table(vec![entry(what, values)]));
-        let mut changed = self.clone();
-        if let Some(settings) = changed.problem_mut() {
+        let changed = self.with_problem(|settings| {
             settings.retain(|entry| entry.key != "sweep");
             settings.push(sweep);
-        }
+        });
         let text = toml::to_string(&changed).map_err(|cause| CaseError::Unwritable {
             name: self.source.name.clone(),
             cause: Box::new(cause),

@@ -17,7 +17,7 @@ use crate::case::forms::explain_problem;
 use crate::case::suite;
 use crate::render::{self, Picture};
 use crate::report::page;
-use crate::{checks, phase, report};
+use crate::{advise, checks, phase, report};
 use estimators::recipes::{controls, sampling};
 use lab::mutants::{self, About};
 use media::catalogue::{Page, PageList, suggestion};
@@ -119,6 +119,7 @@ pub fn pages(catalogue: &Catalogue) -> Vec<(String, Page)> {
         ("reports".to_owned(), report::run::CATALOGUE),
         ("files".to_owned(), crate::case::CATALOGUE),
         ("files".to_owned(), render::CATALOGUE),
+        ("files".to_owned(), advise::CATALOGUE),
     ]);
     let additions = catalogue.additions().all();
     let with_own = |(part, list): (String, PageList)| {

@@ -26,7 +26,7 @@ const DONE: &str = "  0  done
   2  wrong usage, a mistake in a file, or a failure to read or write";
 
 /// End of a help page: command, examples, exit codes, page of the manual.
-const PAGES: [(&str, &[&str], &str, &str); 16] = [
+const PAGES: [(&str, &[&str], &str, &str); 17] = [
     (
         "run",
         &[
@@ -62,6 +62,16 @@ const PAGES: [(&str, &[&str], &str, &str); 16] = [
         ],
         DONE,
         "docs/variance.md",
+    ),
+    (
+        "advise",
+        &[
+            "trueflight advise transmittance/eq21-overview",
+            "trueflight advise case.toml --error 0.1% --cost lookup=2us",
+            "trueflight advise cloud.toml --rays 64 --budget 1e6",
+        ],
+        DONE,
+        "docs/advise.md",
     ),
     (
         "bench",

@@ -11,6 +11,7 @@
 //! | 2 | usage, a bad case file, input or output |
 //! | 3 | nothing fails, but something is inconclusive; `--inconclusive fail` makes it 1, `pass` 0 |
 
+mod advise;
 mod baseline;
 mod bench;
 mod catalogue;
@@ -74,6 +75,8 @@ enum Command {
     Check(run::Asked),
     /// Theory only, no draws: moments, costs, the best σ̂, refusals
     Predict(predict::Predict),
+    /// Which estimator, which σ̂, and what they cost: all estimators with their best settings, ranked by time to an error
+    Advise(advise::Arguments),
     /// Run time against error: ns per draw, time to an error, and speedup over a plain loop
     Bench(bench::Arguments),
     /// The plan of a run: its experiments, and those that are refused with reasons
@@ -153,6 +156,7 @@ fn carry_out(catalogue: &Catalogue, join: Option<Join>, cli: &Cli) -> anyhow::Re
         Command::Merge(arguments) => merge::merge(arguments, catalogue, console),
         Command::Check(arguments) => run::check(arguments, catalogue, console),
         Command::Predict(arguments) => predict::predict(arguments, catalogue, console),
+        Command::Advise(arguments) => advise::main(arguments, catalogue, console),
         Command::Bench(arguments) => bench::main(arguments, catalogue, console),
         Command::Plan(arguments) => predict::plan(arguments, catalogue, console),
         Command::Render(arguments) => render::main(arguments, catalogue, console),

@@ -43,7 +43,7 @@ mod pixel;
 pub mod record;
 mod scene;
 mod subject;
-mod view;
+pub(crate) mod view;
 
 use std::path::Path;
 

@@ -50,7 +50,8 @@ impl Camera {
         Some(Self { position, forward, right: right * (half * width / height), up, size })
     }
 
-    fn read(settings: &Settings, size: Option<[usize; 2]>) -> Option<Self> {
+    /// Reads `camera`.
+    pub fn read(settings: &Settings, size: Option<[usize; 2]>) -> Option<Self> {
         let camera = settings.table("camera")?;
         let (position, target) = (camera.triple("position"), camera.triple("target"));
         let up = camera.triple_or("up", [0.0, 1.0, 0.0]);
@@ -68,6 +69,11 @@ impl Camera {
             settings.fault("camera", "this camera has no direction", help);
         }
         found
+    }
+
+    /// Returns the beginning of all rays.
+    pub fn position(&self) -> Point {
+        self.position
     }
 
     /// Returns the direction of the ray through the middle of a pixel.
@@ -188,7 +194,7 @@ fn read_colours(settings: &Settings) -> Option<(String, Vec<Arc<Volume>>)> {
 }
 
 /// Returns slightly more than the distance of the furthest corner.
-fn furthest(about: &Aabb, from: Point) -> f64 {
+pub fn furthest(about: &Aabb, from: Point) -> f64 {
     let reach: [f64; 3] = std::array::from_fn(|i| {
         (about.low.0[i] - from.0[i]).abs().max((about.high.0[i] - from.0[i]).abs())
     });

@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use crate::report::fields::markdown;
 use crate::report::run::totals::{NOT_NORMAL, VERDICTS};
-use crate::report::{bench, run, self_test, stress};
+use crate::report::{advise, bench, run, self_test, stress};
 
 /// Returns the page as Markdown.
 pub fn columns() -> String {
@@ -26,6 +26,7 @@ pub fn columns() -> String {
     add("On consoles and pages only", markdown(&run::fields::of_screens()));
     add("Findings of checks: `checks.csv`", markdown(&run::checks_csv::of_findings()));
     add("Times: `bench.csv`, `bench --format csv|json`", markdown(&bench::tables::of_rows()));
+    add("Advice: `advise.csv`, `advise --format csv|json`", markdown(&advise::of_rows()));
     add("Error against time: `CASE.error.csv`", markdown(&bench::tables::of_errors()));
     add("Promised rates: `self-test/calibration.csv`", markdown(&self_test::of_rates()));
     add("Foreign streams: `self-test/foreign-streams.csv`", markdown(&self_test::of_streams()));

@@ -4,6 +4,7 @@
 //! [`run`] is about a [`Record`](crate::record::Record). Shared are [`fields`], [`layout`], [`page`], [`mod@html`] and [`plots`].
 //! A report does no arithmetic beyond formatting.
 
+pub mod advise;
 pub mod bench;
 pub mod fields;
 pub mod html;

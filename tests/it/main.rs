@@ -1,5 +1,6 @@
 //! The integration tests: one binary, a module a topic.
 
+mod advise;
 mod baseline;
 mod bench;
 mod bidirectional_rod;

@@ -35,7 +35,7 @@ impl CaseRequest {
         if self.kind == "named" && self.sweep.is_none() {
             return Ok(Catalogue::builtin().named(&self.text)?);
         }
-        let spec = Spec::parse(&self.source()?, &additions::NONE)?;
+        let spec = self.spec()?;
         let Some((key, values)) = &self.sweep else { return Ok(vec![Case::of(&spec)?]) };
         let case = Case::of(&spec.with_sweep(key, values)?)?;
         if case.sweep.as_ref().is_some_and(|axis| !depends(&case, axis.what)) {
@@ -55,6 +55,11 @@ impl CaseRequest {
                 Err(Failure::Wrong(format!("{text} is several cases; choose one of: {names}")))
             }
         }
+    }
+
+    /// Parses the case as it is written, without its sweep.
+    pub fn spec(&self) -> Result<Spec, Failure> {
+        Ok(Spec::parse(&self.source()?, &additions::NONE)?)
     }
 
     fn source(&self) -> Result<Source, Failure> {

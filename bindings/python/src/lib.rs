@@ -9,6 +9,7 @@
 //! error       errors as exceptions
 //! ```
 
+mod advice;
 mod background;
 mod cases;
 mod error;
@@ -20,6 +21,8 @@ mod rows;
 mod _trueflight {
     use pyo3::prelude::*;
 
+    #[pymodule_export]
+    use crate::advice::advise;
     #[pymodule_export]
     use crate::cases::built_in;
     #[pymodule_export]

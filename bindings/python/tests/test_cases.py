@@ -181,3 +181,13 @@ def test_other_threads_of_python_run_while_cases_are_drawn():
     stop.set()
     thread.join()
     assert counted[0] > max(10.0, 20.0 * seconds), f"{counted[0]} turns in {seconds:.2f} s"
+
+
+def test_advice_in_columns():
+    found = tf.advise(CASE, cost="draw=50ns,lookup=1us")
+    assert found["unit"][0] == "s" and found["rank"][0] == 1 and found["group"][0] == "ranked"
+    assert found["lines"][0].splitlines()[-1].startswith("estimators = [{ ")
+    lookups = tf.advise(CASE, budget=1e5)
+    assert lookups["unit"][0] == "lookups" and (lookups["cost"] == 1e5).all()
+    with pytest.raises(tf.Error, match="cost: it takes times such as"):
+        tf.advise(CASE, cost="2us")

@@ -22,7 +22,7 @@ True
 The manual's page is docs/python.md in the repository.
 """
 
-from ._cases import cases, predict, run, sweep
+from ._cases import advise, cases, predict, run, sweep
 from ._check import check
 from ._errors import CaseNotFound, DrawsError, Error, Inconclusive
 from ._trueflight import __version__
@@ -35,6 +35,7 @@ __all__ = [
     "Inconclusive",
     "Verdict",
     "__version__",
+    "advise",
     "cases",
     "check",
     "predict",

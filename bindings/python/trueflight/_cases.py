@@ -19,8 +19,8 @@ Columns = dict[str, Any]
 Progress = bool | Callable[[int, int], object]
 
 _WORDS = ("case", "problem", "medium", "estimator", "control", "channel", "verdict", "reason", "sampling_kind")
-_TEXTS = frozenset((*_WORDS, "kernel", "same_as", "reused", "not_normal", "needs", "best_kind"))
-_COUNTS = frozenset(("seed", "draws", "drawn", "sharing", "setup_lookups", "draws_per_ray"))
+_TEXTS = frozenset((*_WORDS, "kernel", "same_as", "reused", "not_normal", "needs", "best_kind", "group", "is_tie", "kind", "unit", "lines"))
+_COUNTS = frozenset(("seed", "draws", "drawn", "sharing", "setup_lookups", "draws_per_ray", "rank", "rays"))
 _SWEEPS = ("sampling", "sampling_scale", "albedo", "control", "points", "density", "albedo_scale", "contrast")
 
 
@@ -47,6 +47,40 @@ def predict(
     """
     wanted = _wanted(None, seed, 1e-3, filter, threads)
     return _columns(_trueflight.predict(as_case(case), wanted, bool(optimum)))
+
+
+def advise(
+    case: Case,
+    *,
+    error: float | str = 0.01,
+    budget: float | str | None = None,
+    cost: str | None = None,
+    calibrate: bool = False,
+    majorant: float = 1.0,
+    rays: int | None = None,
+    seed: int = 1,
+    threads: int | None = None,
+) -> Columns:
+    """Ranks all estimators of a case, each with its best settings, by the predicted time to an error.
+
+    The goal is a relative standard ``error``, as ``0.01`` or ``"1%"``, or the least error within a ``budget``, a number of
+    lookups or a time such as ``"30s"``. ``cost`` gives the costs of your own code, as ``"draw=50ns,lookup=2us"``; by default they
+    are measured on this machine and kept, and ``calibrate`` measures them anew. ``majorant`` is the factor by which your
+    majorants exceed the maximum. ``rays`` random rays with ``seed`` take the place of the case's own.
+
+    Returns a dict of columns, the best row first, named as those of ``advise.csv``; ``lines`` go into a case.
+    """
+    sought = {
+        "error": str(error),
+        "budget": None if budget is None else str(budget),
+        "cost": cost,
+        "calibrate": bool(calibrate),
+        "majorant": str(majorant),
+        "rays": None if rays is None else whole("rays", rays, 1, 4096),
+        "seed": whole("seed", seed, 0, 2**64 - 1),
+        "threads": 0 if threads is None else whole("threads", threads, 1, 1024),
+    }
+    return _columns(_trueflight.advise(as_case(case), sought))
 
 
 def run(

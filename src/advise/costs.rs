@@ -1,0 +1,187 @@
+//! Costs of draws: seconds of a draw and of a lookup, measured on this machine or given for code of the user's own.
+//!
+//! ```text
+//! cost of a draw = draw + lookup · (E[lookups] + setup lookups/draws per ray)
+//! ```
+//!
+//! `draw` and `lookup` of a candidate are measured in the medium itself, with draws at two σ̂, by processor time. They
+//! are kept in a file for each medium and machine, and measured anew on demand.
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+use cpu_time::ThreadTime;
+use fearless_simd::Level;
+use serde::{Deserialize, Serialize};
+
+use crate::bench::record::Spread;
+use crate::case::sweep::Variation;
+use crate::case::{Case, Spec};
+use estimators::DrawBuffer;
+use media::files;
+use numeric::pack;
+use numeric::rng::name_hash;
+
+/// Rounds of a measurement, of which the median counts.
+const ROUNDS: u64 = 5;
+/// Shortest time of a round, seconds.
+const SHORTEST: f64 = 1e-4;
+/// Draws at a time: the kernels fill their lanes.
+const DRAWS: usize = 2048;
+/// Ratio of the lookups at two σ̂ above which they tell a lookup from a draw.
+const APART: f64 = 1.3;
+
+/// Costs of draws.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Costs {
+    /// A lookup costs 1, all else nothing.
+    Lookups,
+    /// Equal costs for all candidates, in seconds.
+    Given {
+        /// Fixed cost of a draw.
+        draw: f64,
+        /// Cost of a lookup.
+        lookup: f64,
+    },
+    /// Measured on this machine.
+    Measured {
+        /// Folder in which they are kept; `None`: they are not kept.
+        folder: Option<PathBuf>,
+        /// True if they are measured again.
+        anew: bool,
+    },
+}
+
+impl Costs {
+    /// Returns costs that are measured, unless the user's cache folder has them.
+    pub fn of_this_machine(anew: bool) -> Self {
+        let folder = |name: &str| {
+            std::env::var_os(name).map(PathBuf::from).filter(|path| path.is_absolute())
+        };
+        let home = || Some(folder("HOME")?.join(".cache"));
+        let cache = folder("XDG_CACHE_HOME").or_else(|| folder("LOCALAPPDATA")).or_else(home);
+        Self::Measured { folder: cache.map(|cache| cache.join("trueflight")), anew }
+    }
+
+    /// Returns the unit: `s` or `lookups`.
+    pub fn unit(&self) -> &'static str {
+        if *self == Self::Lookups { "lookups" } else { "s" }
+    }
+}
+
+/// Cost of the draws of a candidate.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Price {
+    /// Fixed cost of a draw.
+    pub draw: f64,
+    /// Cost of a lookup.
+    pub lookup: f64,
+    /// Relative error: half the range of the rounds; 0 for given costs.
+    pub error: f64,
+}
+
+/// Measured prices of the candidates of a medium, and the file in which they are kept.
+pub struct Prices {
+    known: BTreeMap<String, Price>,
+    path: Option<PathBuf>,
+    given: Option<Price>,
+}
+
+impl Prices {
+    /// Reads the prices of a medium, as far as they are kept.
+    pub fn open(costs: &Costs, spec: &Spec) -> Self {
+        let given = |draw, lookup| {
+            let given = Some(Price { draw, lookup, error: 0.0 });
+            Self { known: BTreeMap::new(), path: None, given }
+        };
+        let (folder, anew) = match costs {
+            Costs::Lookups => return given(0.0, 1.0),
+            &Costs::Given { draw, lookup } => return given(draw, lookup),
+            Costs::Measured { folder, anew } => (folder, *anew),
+        };
+        let path = folder.as_deref().map(|folder| file(folder, spec));
+        let read = path.as_deref().filter(|_| !anew).and_then(|path| std::fs::read(path).ok());
+        // A file that cannot be read is written anew.
+        let known = read.and_then(|bytes| serde_json::from_slice(&bytes).ok()).unwrap_or_default();
+        Self { known, path, given: None }
+    }
+
+    /// Returns the price of a candidate, measured at two places if it is not known; `None` where it cannot be drawn.
+    pub fn of(&mut self, key: &str, case: &Case, at: (usize, [Variation; 2])) -> Option<Price> {
+        if let Some(price) = self.given.or_else(|| self.known.get(key).copied()) {
+            return Some(price);
+        }
+        let price = measured(case, at)?;
+        self.known.insert(key.to_owned(), price);
+        Some(price)
+    }
+
+    /// Keeps the prices. A folder that cannot be written to only costs the time of the next measurement.
+    pub fn keep(&self) {
+        let Some(path) = &self.path else { return };
+        let made = path.parent().is_some_and(|folder| std::fs::create_dir_all(folder).is_ok());
+        if let (true, Ok(bytes)) = (made, serde_json::to_vec(&self.known)) {
+            let _ = files::replace(path, &bytes);
+        }
+    }
+}
+
+/// Returns the file of a medium on this machine.
+fn file(folder: &Path, spec: &Spec) -> PathBuf {
+    let medium = spec.with_problem(|settings| {
+        settings
+            .retain(|entry| matches!(&*entry.key, "medium" | "volume" | "span" | "ray" | "rays"));
+    });
+    let text = toml::to_string(&medium).unwrap_or_default();
+    let text = text.lines().filter(|line| !line.starts_with("title")).collect::<String>();
+    let level = pack::word(Level::new());
+    let name = format!("{}|{level}|{text}", env!("CARGO_PKG_VERSION"));
+    folder.join(format!("{:016x}.json", name_hash(&name)))
+}
+
+/// Time of a draw at one σ̂.
+struct Timing {
+    /// Seconds of a draw.
+    seconds: f64,
+    /// Distance of the fastest round from the median, relative.
+    error: f64,
+    /// Lookups of a draw in theory.
+    lookups: f64,
+}
+
+/// Measures a candidate at two places.
+fn measured(case: &Case, (estimator, places): (usize, [Variation; 2])) -> Option<Price> {
+    let timings = places.into_iter().filter_map(|place| timed(case, estimator, place));
+    let timings: Vec<Timing> = timings.collect();
+    let error = timings.iter().fold(0.0, |error: f64, timing| error.max(timing.error));
+    let few = timings.first()?;
+    let lookup = match &timings[1..] {
+        [many] if many.lookups > APART * few.lookups => {
+            let slope = (many.seconds - few.seconds) / (many.lookups - few.lookups);
+            slope.clamp(0.0, few.seconds / few.lookups)
+        }
+        _ if few.lookups > 0.0 => few.seconds / few.lookups,
+        _ => 0.0,
+    };
+    Some(Price { draw: few.seconds - lookup * few.lookups, lookup, error })
+}
+
+fn timed(case: &Case, estimator: usize, place: Variation) -> Option<Timing> {
+    let ready = case.at(place).ok()?.prepare(estimator, case.pilots(1, estimator)).ok()?;
+    let lookups = ready.prediction.lookups.as_ref()?.mean;
+    let mut buffer = DrawBuffer::new(ready.prediction.channels.len());
+    let mut streams = case.address(1, estimator, place).streams();
+    let mut fill = |times: u32| {
+        let begin = ThreadTime::now();
+        (0..times).for_each(|_| ready.experiment.fill(&mut streams, DRAWS, &mut buffer));
+        begin.elapsed().as_secs_f64() / (f64::from(times) * DRAWS as f64)
+    };
+    // The first buffer maps memory.
+    fill(1);
+    let seconds = fill(1).max(1e-12);
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // from 1 to 1024
+    let times = (SHORTEST / (seconds * DRAWS as f64)).ceil().clamp(1.0, 1024.0) as u32;
+    let rounds = Spread::of((0..ROUNDS).map(|_| fill(times)))?;
+    let error = 1.0 - rounds.least / rounds.median;
+    Some(Timing { seconds: rounds.median, error, lookups })
+}

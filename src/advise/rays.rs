@@ -1,0 +1,181 @@
+//! Rays through a volume: those of a case, random ones, or those of a camera.
+//!
+//! ```text
+//! rays = { random = 64 }                                      uniform isotropic lines that hit the volume
+//! rays = { random = 64, camera = { position, target, … } }    pixels of a camera, as in a picture
+//! rays = [{ origin, direction, length }, …]                   these; without `length`, through the whole volume
+//! ```
+
+use std::f64::consts::TAU;
+
+use crate::case::{Case, CaseError, Spec};
+use crate::render::view::{Camera, furthest};
+use media::catalogue::{Domain, Entry, Node, Page, Settings, Value};
+use media::{Body, Volume};
+use numeric::geometry::{Aabb, Point, Ray};
+use numeric::rng::{Address, Stream, name_hash};
+use theory::problems;
+
+/// Largest number of rays.
+pub const MAX_RAYS: u64 = 4096;
+/// Pixels of a camera in each direction, of which rays are chosen.
+const PIXELS: [usize; 2] = [512, 512];
+/// Number of lines that are tried for each ray.
+const TRIES: u64 = 1000;
+
+/// Reads a case and its rays; `count` random rays take the place of the case's own.
+///
+/// # Errors
+///
+/// Mistakes in the case.
+pub fn read(spec: &Spec, count: Option<u64>, seed: u64) -> Result<(Case, Vec<Body>), CaseError> {
+    let settings = spec.problem().map_or(&[][..], |(_, settings)| settings);
+    if count.is_none() && !settings.iter().any(|entry| entry.key == "rays") {
+        let case = Case::of(spec)?;
+        let rays = vec![case.scenario.body().clone()];
+        return Ok((case, rays));
+    }
+    let base = spec.with_problem(|settings| {
+        settings.retain(|entry| entry.key != "rays");
+        if !settings.iter().any(|entry| entry.key == "ray" || entry.key == "span") {
+            settings.push(any_ray());
+        }
+    });
+    let case = Case::of(&base)?;
+    let body = case.scenario.body();
+    let rays = spec.read(|root| {
+        let names: Vec<String> = problems::CATALOGUE.pages.iter().map(Page::name).collect();
+        let (_, problem) = root.chosen("problem", &names)?;
+        let Body::Volume { volume, .. } = &body.channels()[0] else {
+            problem.fault(
+                "rays",
+                "rays cross volumes, and this is a field on a line",
+                "leave them out",
+            );
+            return None;
+        };
+        if let Some(count) = count {
+            return random(&problem, &**volume, count, seed);
+        }
+        let is_list =
+            problem.entry("rays").is_some_and(|e| matches!(e.node.value, Value::Array(_)));
+        if is_list { listed(&problem, &**volume) } else { chosen(&problem, &**volume, seed) }
+    })?;
+    let rays = rays.into_iter().map(|ray| along(body, ray)).collect();
+    Ok((case, rays))
+}
+
+/// Returns the field of a body along another ray.
+fn along(body: &Body, ray: Ray) -> Body {
+    match body {
+        Body::Line { .. } => body.clone(),
+        Body::Volume { name, volume, .. } => {
+            Body::Volume { name: name.clone(), volume: volume.clone(), ray }
+        }
+        Body::Spectral { name, channels } => {
+            let channels = channels.iter().map(|channel| along(channel, ray)).collect();
+            Body::Spectral { name: name.clone(), channels }
+        }
+    }
+}
+
+/// Returns the entry of a ray that stands for others until these are known.
+fn any_ray() -> Entry {
+    let node = |value| Node { value, span: 0..0 };
+    let entry = |key: &str, value| Entry { key: key.to_owned(), key_span: 0..0, node: node(value) };
+    let point = |z: f64| Value::Array([0.0, 0.0, z].map(|x| node(Value::Number(x))).to_vec());
+    let parts = vec![
+        entry("origin", point(0.0)),
+        entry("direction", point(1.0)),
+        entry("length", Value::Number(1.0)),
+    ];
+    entry("ray", Value::Table(parts))
+}
+
+/// Returns the box around a volume; a volume that fills all of space is a mistake.
+fn enclosing(problem: &Settings, volume: &Volume) -> Option<Aabb> {
+    let about = volume.bounds().enclosing_box();
+    if about.is_none() {
+        let help = "give the volume `bounds`, or one `ray` with its length";
+        problem.fault("volume", "rays through a volume that fills all of space do not end", help);
+    }
+    about
+}
+
+/// Reads a list of rays.
+fn listed(problem: &Settings, volume: &Volume) -> Option<Vec<Ray>> {
+    let about = enclosing(problem, volume)?;
+    let read = |ray: &Settings| {
+        let (origin, direction) = (ray.triple("origin"), ray.triple("direction"));
+        let whole = furthest(&about, Point(origin.unwrap_or_default()));
+        let length = ray.number_or("length", Domain::Positive, whole);
+        ray.close();
+        let ray_read = Ray::new(Point(origin?), Point(direction?), length?);
+        if ray_read.is_none_or(|ray| volume.bounds().clip(&ray).is_empty()) {
+            let help = "give a direction into the volume, and a length that reaches it";
+            ray.fault_at(ray.span.clone(), "", "this ray misses the volume", help);
+            return None;
+        }
+        ray_read
+    };
+    let rays: Vec<Option<Ray>> = problem.tables("rays")?.iter().map(read).collect();
+    if rays.is_empty() {
+        problem.fault("rays", "no ray is listed", "list one, or give `rays = { random = 64 }`");
+        return None;
+    }
+    rays.into_iter().collect()
+}
+
+/// Reads `random` and perhaps a `camera`.
+fn chosen(problem: &Settings, volume: &Volume, seed: u64) -> Option<Vec<Ray>> {
+    let rays = problem.table("rays")?;
+    let count = rays.count("random", 1..=MAX_RAYS);
+    let camera = rays.optional("camera", |_| Camera::read(&rays, Some(PIXELS)));
+    rays.close();
+    let Some(camera) = camera? else { return random(problem, volume, count?, seed) };
+    let length = furthest(&enclosing(problem, volume)?, camera.position());
+    let ray = |stream: &mut Stream| {
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // below the size
+        let [column, row] = PIXELS.map(|n| (stream.uniform() * n as f64) as usize);
+        Ray::new(camera.position(), camera.direction(column, row)?, length)
+    };
+    tried(problem, volume, (count?, seed), ray)
+}
+
+/// Returns random lines through a volume, uniform and isotropic.
+fn random(problem: &Settings, volume: &Volume, count: u64, seed: u64) -> Option<Vec<Ray>> {
+    let Aabb { low, high } = enclosing(problem, volume)?;
+    let (centre, radius) = ((low + high) * 0.5, 0.5 * (high - low).norm());
+    let line = |stream: &mut Stream| {
+        let (z, turn) = (2.0 * stream.uniform() - 1.0, TAU * stream.uniform());
+        let across = (1.0 - z * z).sqrt();
+        let direction = Point([across * turn.cos(), across * turn.sin(), z]);
+        // Two unit vectors across the direction.
+        let [u, v] = [
+            Point([-turn.sin(), turn.cos(), 0.0]),
+            Point([z * turn.cos(), z * turn.sin(), -across]),
+        ];
+        let (distance, angle) = (radius * stream.uniform().sqrt(), TAU * stream.uniform());
+        let foot = centre + u * (distance * angle.cos()) + v * (distance * angle.sin());
+        Ray::new(foot - direction * radius, direction, 2.0 * radius)
+    };
+    tried(problem, volume, (count, seed), line)
+}
+
+/// Returns rays that hit a volume, of those that a function makes.
+fn tried(
+    problem: &Settings,
+    volume: &Volume,
+    (count, seed): (u64, u64),
+    make: impl Fn(&mut Stream) -> Option<Ray>,
+) -> Option<Vec<Ray>> {
+    let address = Address { seed, experiment: name_hash("rays of advice"), block: 0, lane: 0 };
+    let tries = (0..count * TRIES).map(|block| make(&mut Address { block, ..address }.stream()));
+    let hits = tries.flatten().filter(|ray| !volume.bounds().clip(ray).is_empty());
+    let rays: Vec<Ray> = hits.take(usize::try_from(count).unwrap_or(usize::MAX)).collect();
+    if rays.len() as u64 == count {
+        return Some(rays);
+    }
+    problem.fault("rays", "too few of the rays hit the volume", "aim the camera at the volume");
+    None
+}

@@ -1,0 +1,69 @@
+//! `report.html` of an advice: the ranking, the figure, and the lines for a case.
+
+use maud::html;
+
+use super::console;
+use crate::advise::Advice;
+use crate::report::ReportError;
+use crate::report::fields::named;
+use crate::report::html as page;
+use crate::report::html::drawing::{definitions, plot};
+use crate::report::html::listing::{self, table};
+
+/// Columns of the page, beside the rank.
+const COLUMNS: [&str; 16] = [
+    "group",
+    "estimator",
+    "sampling",
+    "sampling_factor",
+    "sampling_kind",
+    "control",
+    "cost",
+    "error",
+    "relative_deviation",
+    "lookups_per_draw",
+    "margin_below",
+    "margin_above",
+    "least_sampling",
+    "kurtosis",
+    "trusted_draws",
+    "needs",
+];
+
+/// Returns the advice as a page of HTML.
+///
+/// # Errors
+///
+/// The figure cannot be drawn.
+pub fn text(advice: &Advice) -> Result<String, ReportError> {
+    let (rows, fields) = (super::joined(advice).collect::<Vec<_>>(), super::of_rows());
+    let best = advice.best();
+    let line = best.map_or("nothing can be advised".to_owned(), |row| {
+        format!("{} with σ\u{302} {}", row.estimator, console::sampling(row))
+    });
+    let label =
+        "cost against the sampling extinction, and the best sampling extinction along the ray";
+    let plots = [vec![plot("costs".to_owned(), label.to_owned(), &super::plot::figure(advice)?)]];
+    let group = |of: &super::Joined| of.row.group.word().to_owned();
+    let choices = [("group", rows.iter().map(group).collect())];
+    let body = html! {
+        (definitions(&plots))
+        header.run.pass {
+            p.tool { "Trueflight " (env!("CARGO_PKG_VERSION")) ", advice for " (advice.case) }
+            h1 { (line) }
+            p { (console::facts(advice)) }
+            @if let Some(row) = best { pre { (row.lines) } }
+            @for note in console::notes(advice) { p { (note) } }
+        }
+        section aria-labelledby="experiments" {
+            h2 #experiments { "Estimators with their best settings" }
+            (listing::form(&choices, rows.len()))
+            (table("rank", |of| ("", console::rank(of.row)), &COLUMNS.map(|name| named(&fields, name)), &rows, group))
+        }
+        section aria-labelledby="figure" {
+            h2 #figure { "Cost against σ\u{302}" }
+            (plots[0][0].show())
+        }
+    };
+    Ok(page::document(&format!("Trueflight: {line}"), &body))
+}

@@ -1,0 +1,97 @@
+//! Advice as a table on the screen and as files.
+//!
+//! ```text
+//! advise.csv          one row per estimator with its best settings
+//! report.html         everything as a page
+//! advise.svg, .png    cost against σ̂, and the best σ̂ along the ray
+//! ```
+
+pub mod console;
+pub mod html;
+pub mod plot;
+
+use crate::advise::{Advice, Row};
+use crate::report::fields::{self, Field, fields};
+use crate::report::{Artifact, ReportError, plots};
+
+/// Row with the advice that it belongs to.
+#[derive(Debug, Clone, Copy)]
+pub struct Joined<'a> {
+    /// Advice.
+    pub advice: &'a Advice,
+    /// Row.
+    pub row: &'a Row,
+}
+
+/// Returns the fields, in the order of the files.
+pub fn of_rows<'a>() -> Vec<Field<Joined<'a>>> {
+    fields! {
+        "case": "Case: the name of its file" = |of| &of.advice.case;
+        "problem": "Kind of problem" = |of| &of.advice.problem;
+        "medium": "Medium" = |of| &of.advice.medium;
+        "rays": "Number of rays" = |of| of.advice.rays;
+        "group": "Rows that are ranked together: ranked, bounded by theory, or informed of τ" = |of| of.row.group.word();
+        "rank": "Rank in the group" = |of| of.row.rank;
+        "is_tie" ["tie", "", Plain]: "True if another row is within the error of the costs" = |of| of.row.is_tie;
+        "estimator": "Estimator with its settings" = |of| &of.row.estimator;
+        "sampling" ["σ̂", "1/length", Short(4)]: "Best sampling extinction σ̂, if it is a constant" = |of| of.row.constant;
+        "sampling_kind" ["kind of σ̂", "", Plain]: "Kind of σ̂, as constant or local majorants" = |of| &of.row.sampling;
+        "sampling_factor" ["factor", "", Short(4)]: "Best factor on a σ̂ that is not constant" = |of| of.row.factor;
+        "control": "Control extinction" = |of| &of.row.control;
+        "kind": "Kind of the best σ̂: optimum, or near a limit" = |of| of.row.kind.words();
+        "unit": "Unit of costs: s or lookups" = |of| of.advice.unit();
+        "cost" ["cost", "s or lookups", Short(3)]: "Cost to the error, or the budget; over several rays, of each" = |of| of.row.time;
+        "cost_least": "Cost to the error, or the error, of the ray with the least" = |of| of.row.times[0];
+        "cost_most": "Cost to the error, or the error, of the ray with the most" = |of| of.row.times[1];
+        "error" ["error", "", Short(3)]: "Relative standard error at that cost" = |of| of.row.error;
+        "draws" ["draws", "", Short(2)]: "Draws at that cost" = |of| of.row.draws;
+        "cost_per_draw": "Cost of a draw with its share of the setup" = |of| of.row.cost;
+        "cost_error": "Relative error of the costs" = |of| of.row.cost_error;
+        "relative_deviation" ["s.d./T", "", Short(3)]: "Standard deviation of a draw over the transmittance" = |of| of.row.deviation;
+        "lookups_per_draw" ["lookups", "", Short(3)]: "Expected number of lookups of a draw" = |of| of.row.lookups;
+        "setup_lookups" ["setup", "", Short(3)]: "Lookups of a ray before its first draw" = |of| of.row.setup_lookups;
+        "margin_below" ["doubles below", "", Short(3)]: "Factor on σ̂ below which the cost doubles; 0 for none" = |of| of.row.margins.map(|margins| margins[0]);
+        "margin_above" ["doubles above", "", Short(3)]: "Factor on σ̂ above which the cost doubles" = |of| of.row.margins.map(|margins| margins[1]);
+        "least_sampling" ["least σ̂", "", Short(3)]: "Least σ̂, or factor, for which the estimator exists with a finite variance; 0 for any" = |of| of.row.least;
+        "kurtosis" ["kurtosis", "", Short(3)]: "Largest kurtosis of a draw on a ray" = |of| of.row.kurtosis;
+        "trusted_draws" ["draws until trusted", "", Short(2)]: "Draws until the sample variance has a standard error of 10 %" = |of| of.row.trusted;
+        "needs": "Knowledge of the medium that is needed beside lookups" = |of| &of.row.needs;
+        "lines": "Lines for a case" = |of| &of.row.lines;
+    }
+}
+
+fn joined(advice: &Advice) -> impl Iterator<Item = Joined<'_>> {
+    advice.rows.iter().map(move |row| Joined { advice, row })
+}
+
+/// Returns the rows as CSV, with a first line of names.
+///
+/// # Errors
+///
+/// The encoder fails.
+pub fn csv(advice: &Advice) -> Result<String, ReportError> {
+    fields::csv("the advice", &of_rows(), joined(advice))
+}
+
+/// Returns the rows as a JSON array of objects, one per line; unknown is `null`.
+///
+/// # Errors
+///
+/// The encoder fails.
+pub fn json(advice: &Advice) -> Result<String, ReportError> {
+    fields::json(&of_rows(), joined(advice))
+}
+
+/// Returns every file of an advice.
+///
+/// # Errors
+///
+/// An encoder or the painter fails.
+pub fn render(advice: &Advice) -> Result<Vec<Artifact>, ReportError> {
+    let mut files = vec![
+        Artifact::text("advise.csv", csv(advice)?),
+        Artifact::text("report.html", html::text(advice)?),
+    ];
+    files.extend(plots::artifacts("advise", "", &plot::figure(advice)?)?);
+    Ok(files)
+}

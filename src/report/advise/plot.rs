@@ -1,0 +1,102 @@
+//! `advise.svg` and `advise.png`: time to the error against σ̂, and σ̂ along the ray.
+
+use crate::advise::{Advice, Row, Target};
+use crate::report::ReportError;
+use crate::report::plots::figure::{Figure, Foot, LEFT};
+use crate::report::plots::legend::Entry;
+use crate::report::plots::style::{COLOURS, DARK, Style};
+use crate::report::plots::{Axis, Panel, Sheet};
+use numeric::digits::short;
+
+const WIDTH: f64 = 1200.0;
+const TOP: f64 = 104.0;
+const PANEL: [f64; 2] = [490.0, 400.0];
+const PITCH: f64 = 600.0;
+/// Number of estimators that are shown.
+const SHOWN: usize = 5;
+/// Range of the costs that are shown, relative to the least.
+const RANGE: f64 = 100.0;
+
+/// Returns the figure.
+///
+/// # Errors
+///
+/// There is no typeface.
+pub fn figure(advice: &Advice) -> Result<Sheet, ReportError> {
+    let rows: Vec<&Row> =
+        advice.rows.iter().filter(|row| !row.curve.is_empty()).take(SHOWN).collect();
+    let mut entries: Vec<Entry> = rows.iter().enumerate().map(|(i, row)| entry(row, i)).collect();
+    let profile = advice.profiles.first();
+    if let Some(profile) = profile {
+        let line = |label: &str, colour| Entry {
+            label: label.to_owned(),
+            line: Some((&[], 2.0)),
+            marker: None,
+            colour,
+        };
+        entries.push(line("(b) |σₜ − σ_c|", DARK));
+        entries.push(line(&format!("(b) best σ\u{302}(t), {}", profile.estimator), COLOURS[1]));
+    }
+    let notes = vec![
+        "Markers: the best σ\u{302} of each estimator. A line ends where the estimator is refused."
+            .to_owned(),
+    ];
+    let foot = Foot { top: TOP + PANEL[1] + 84.0, entries: &entries, notes: &notes };
+    let facts = format!("{}  ·  {}  ·  {} ray(s)", advice.case, advice.medium, advice.rays);
+    let mut figure = Figure::with_foot(&advice.case, WIDTH, [&advice.title, &facts], &foot)?;
+    costs(&mut figure.sheet, advice, &rows);
+    if profile.is_some() {
+        along(&mut figure.sheet, advice);
+    }
+    Ok(figure.close(&foot))
+}
+
+fn entry(row: &Row, index: usize) -> Entry {
+    let Style { colour, dash, marker } = Style::of(index);
+    let control = if row.control.is_empty() { String::new() } else { format!(", {}", row.control) };
+    let best = row.constant.map(|x| format!(", σ\u{302} = {}", short(x, 4))).unwrap_or_default();
+    let label = format!("{}{control}{best}", row.estimator);
+    Entry { label, line: Some((dash, 2.0)), marker: Some(marker), colour }
+}
+
+/// Draws the costs against σ̂.
+fn costs(sheet: &mut Sheet, advice: &Advice, rows: &[&Row]) {
+    let points = || rows.iter().flat_map(|row| row.curve.iter().copied());
+    let least = points().map(|[_, y]| y).fold(f64::INFINITY, f64::min);
+    let shown = || points().filter(|[_, y]| *y <= RANGE * least);
+    let title = match (advice.target, advice.unit()) {
+        (Target::Error(error), unit) => format!("cost to {} [{unit}]", short(error, 3)),
+        (Target::Budget(_), _) => "relative error".to_owned(),
+    };
+    let x = Axis::around("σ\u{302} [1/length]", true, 0.04, shown().map(|[x, _]| x));
+    let y = Axis::around(title, true, 0.04, shown().map(|[_, y]| y));
+    let panel =
+        Panel { left: LEFT, top: TOP, right: LEFT + PANEL[0], bottom: TOP + PANEL[1], x, y };
+    panel.grid(sheet);
+    for (index, row) in rows.iter().enumerate() {
+        let Style { colour, dash, marker } = Style::of(index);
+        panel.line(sheet, row.curve.iter().map(|&[x, y]| (x, y)), (dash, 2.0, colour));
+        let goal = if let Target::Error(_) = advice.target { row.time } else { row.error };
+        if let Some(spot) = row.constant.and_then(|x| panel.spot(x, goal)) {
+            panel.point(sheet, spot, marker, 6.0, colour);
+        }
+    }
+    panel.frame(sheet, "(a) Cost against a constant σ\u{302}");
+}
+
+/// Draws the first profile along the ray.
+fn along(sheet: &mut Sheet, advice: &Advice) {
+    let Some(profile) = advice.profiles.first() else { return };
+    let steps = || profile.breaks.windows(2).zip(&profile.values);
+    let sampling: Vec<(f64, f64)> = steps().flat_map(|(t, &y)| [(t[0], y), (t[1], y)]).collect();
+    let residual = profile.residual.iter().map(|&[t, y]| (t, y));
+    let x = Axis::around("t [length]", false, 0.02, profile.breaks.iter().copied());
+    let heights = sampling.iter().map(|point| point.1).chain(residual.clone().map(|point| point.1));
+    let y = Axis::around("extinction [1/length]", false, 0.04, heights.chain([0.0]));
+    let left = LEFT + PITCH;
+    let panel = Panel { left, top: TOP, right: left + PANEL[0], bottom: TOP + PANEL[1], x, y };
+    panel.grid(sheet);
+    panel.line(sheet, residual, (&[], 1.6, DARK));
+    panel.line(sheet, sampling, (&[], 2.0, COLOURS[1]));
+    panel.frame(sheet, "(b) The best σ\u{302} along the ray");
+}
