@@ -1,9 +1,20 @@
 //! Slabs in which every channel has a medium of its own: against slabs of one channel and of coloured scatterers,
 //! against draws, and refusals.
 
-use trueflight::record::Verdict;
+use serde::Deserialize;
 
-use crate::common::{case, channels, none, not_passing, predicted, rows};
+use trueflight::media::Piecewise;
+use trueflight::phase::Phase;
+use trueflight::phase::isotropic::Isotropic;
+use trueflight::problems::ChromaticSlab;
+use trueflight::problems::slab::{Incidence, Light};
+use trueflight::record::Verdict;
+use trueflight::theory::Mesh;
+use trueflight::theory::chromatic_slab::Spectrum;
+use trueflight::theory::spectral::Chance;
+use trueflight::theory::spectral::rates::Proposal;
+
+use crate::common::{case, channels, medium, none, not_passing, predicted, rows};
 use crate::packets::compare;
 
 const THREE_COLOURS: &str = include_str!("../../cases/slab/chromatic-three-colours.toml");
@@ -93,6 +104,68 @@ fn bounds_of_walks_relative_to_one_walker_are_above_their_variances() {
             near(drawn.variance, known.predicted_variance, 0.03);
         }
     }
+}
+
+/// Homogeneous isotropic channels on `[0, length]`: second moments of draws relative to one walker, and their bound.
+#[derive(Deserialize)]
+struct Bounded {
+    walker: String,
+    by: String,
+    sigma: Vec<f64>,
+    albedo: Vec<f64>,
+    majorant: Vec<f64>,
+    length: f64,
+    cosine: Option<f64>,
+    bound: Vec<f64>,
+    reflected: Vec<f64>,
+    transmitted: Vec<f64>,
+}
+
+impl Bounded {
+    fn walk(&self) -> Proposal {
+        match (self.walker.as_str(), self.by.as_str()) {
+            ("hero", channel) => Proposal::Hero(channel.parse().expect("a channel")),
+            ("tracking", "average") => Proposal::Together(Chance::Average),
+            ("tracking", "maximum") => Proposal::Together(Chance::Maximum),
+            other => panic!("{other:?}"),
+        }
+    }
+}
+
+#[test]
+fn bounds_are_those_of_the_references_and_above_the_second_moments() {
+    let references: Vec<Bounded> =
+        serde_json::from_str(include_str!("../data/chromatic-slab.json")).expect("the references");
+    assert_eq!(references.len(), 10);
+    let mut closest = 0.0f64;
+    for reference in references {
+        let constant = |sigma| {
+            format!("medium.constant.extinction = {sigma}\nspan = [0, {}]", reference.length)
+        };
+        let media: Vec<_> = reference.sigma.iter().map(|sigma| medium(&constant(sigma))).collect();
+        let light = reference.cosine.map_or(Light::Diffuse, Light::Collimated);
+        let incidence = Incidence { light, phase: Phase::Isotropic(Isotropic) };
+        let majorants = reference.majorant.iter();
+        let flown: Vec<_> = majorants.map(|&m| Piecewise::constant(m, media[0].span())).collect();
+        let problem = ChromaticSlab::new(
+            media.clone(),
+            reference.albedo.clone(),
+            vec![incidence; media.len()],
+        );
+        let meshes: Vec<Mesh> = media.into_iter().map(Mesh::new).collect();
+        let spectrum = Spectrum::new(&problem, meshes.iter().zip(&flown).collect(), false);
+        for (channel, &bound) in reference.bound.iter().enumerate() {
+            let found = spectrum.second_moment_bound(reference.walk(), channel, 1.0);
+            let found = found.expect("a bound");
+            let context = format!("{} {}, channel {channel}", reference.walker, reference.by);
+            assert!((found / bound - 1.0).abs() < 1e-8, "{context}: {found} for {bound}");
+            // A walk leaves once.
+            let exact = reference.reflected[channel] + reference.transmitted[channel];
+            assert!(exact <= found, "{context}: {exact} above {found}");
+            closest = closest.max(exact / found);
+        }
+    }
+    assert!(closest > 0.99, "{closest}");
 }
 
 /// The rest of an atmosphere of e^{−40} scatters a negligible share: its rounding is no reason to refuse.

@@ -23,9 +23,12 @@ struct Reference {
     a: f64,
     g: f64,
     thickness: f64,
+    /// Thickness and σ_t of a second layer.
+    below: Option<[f64; 2]>,
     majorant: f64,
     light: Shape,
     value: f64,
+    kurtosis: Option<f64>,
     error: f64,
 }
 
@@ -57,7 +60,15 @@ impl Reference {
     }
 
     fn medium(&self) -> String {
-        format!("medium.constant.extinction = {}\nspan = [0, {}]", self.sigma, self.thickness)
+        let Self { sigma, thickness, .. } = self;
+        let Some([more, below]) = self.below else {
+            return format!("medium.constant.extinction = {sigma}\nspan = [0, {thickness}]");
+        };
+        let end = thickness + more;
+        format!(
+            "medium.piecewise-constant = {{ breaks = [0, {thickness}, {end}], values = [{sigma}, {below}] }}
+            span = [0, {end}]"
+        )
     }
 
     fn predict(&self) -> Prediction {
@@ -87,12 +98,20 @@ fn predict(
 #[test]
 fn means_and_variances_are_those_of_the_references() {
     let all = references();
-    assert_eq!(all.len(), 24);
+    assert_eq!(all.len(), 43);
     let mut wrong = Vec::new();
     for reference in &all {
         let asked = (reference.what.as_str(), reference.value, reference.error);
-        let found = lit::differs(asked, &reference.predict(), 1e-10);
+        let prediction = reference.predict();
+        let found = lit::differs(asked, &prediction, 1e-10);
         wrong.extend(found.map(|found| format!("{}, {found}", reference.case)));
+        let Some(expected) = reference.kurtosis else { continue };
+        let moments = prediction.channels[0].moments.expect("known");
+        let kurtosis = moments.kurtosis().expect("a variance");
+        if (kurtosis / expected - 1.0).abs() > 1e-9 {
+            let what = format!("{}, {}", reference.case, reference.what);
+            wrong.push(format!("{what}: a kurtosis of {kurtosis} for {expected}"));
+        }
     }
     none(&wrong);
 }
@@ -210,7 +229,7 @@ fn many_draws_agree_with_the_predictions() {
 fn draws_agree(draws: u64) {
     let all = references();
     let means: Vec<&Reference> = all.iter().filter(|reference| reference.what == "mean").collect();
-    assert_eq!(means.len(), 3);
+    assert_eq!(means.len(), 5);
     for reference in means {
         let text = format!(
             "title = \"t\"\n[problem.slab]\n{}\nalbedo = {}\nphase.henyey-greenstein = {{ g = {} }}

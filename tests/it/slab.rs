@@ -352,3 +352,45 @@ fn next_to_the_critical_extinction_a_slab_is_not_said_to_diverge() {
     assert_eq!(of(diverges), Existence::Unknown);
     assert_eq!(of(0.99 * diverges), Existence::Diverges);
 }
+
+/// Distribution of the collisions of a walk through layers of isotropic scattering.
+#[derive(Deserialize)]
+struct Lookups {
+    rule: String,
+    a: f64,
+    /// `∫σ̂` and σ_t/σ̂ of each, the first on top.
+    layers: Vec<[f64; 2]>,
+    cosine: Option<f64>,
+    mean: f64,
+    variance: f64,
+    kurtosis: f64,
+}
+
+#[test]
+fn variances_and_kurtoses_of_lookups_are_those_of_the_references() {
+    let references: Vec<Lookups> =
+        serde_json::from_str(include_str!("../data/slab-lookups.json")).expect("the references");
+    assert_eq!(references.len(), 21);
+    for Lookups { rule, a, layers, cosine, mean, variance, kurtosis } in references {
+        let rule = ParticleRule::ALL.into_iter().find(|page| page.name() == rule).expect("a rule");
+        let light = cosine.map_or(Light::Diffuse, Light::Collimated);
+        let depth: f64 = layers.iter().map(|[flown, ratio]| flown * ratio).sum();
+        let walk = Walk {
+            incidence: Incidence { light, phase: Phase::Isotropic(Isotropic) },
+            albedo: a,
+            rule,
+            depth,
+            largest_ratio: layers.iter().map(|layer| layer[1]).fold(0.0, f64::max),
+            pieces: Pieces::Exact(layers.iter().map(|&[flown, r]| Piece::of(flown, r)).collect()),
+            laws: true,
+        };
+        let truth = cached(&walk.incidence, Known::exact(depth), a).expect("finite");
+        let law = walk.predict(&truth).lookups.expect("r is constant in each layer");
+        let context = format!("{rule:?}, a = {a}, {layers:?}, {light:?}");
+        assert!((law.mean / mean - 1.0).abs() <= law.error, "{context}: {} {mean}", law.mean);
+        let off = law.variance / variance - 1.0;
+        assert!(off.abs() < 3e-5, "{context}: {} for {variance}", law.variance);
+        let off = law.kurtosis / kurtosis - 1.0;
+        assert!(off.abs() < 1e-2, "{context}: {} for {kurtosis}", law.kurtosis);
+    }
+}

@@ -25,9 +25,6 @@ use crate::problems::slab::Light;
 use media::Piecewise;
 use numeric::{Known, exponential_integrals};
 
-/// Maximum relative error of an exact answer that draws are compared with.
-const BLURRED: f64 = 1e-4;
-
 /// A slab, with the mesh and σ̂ of each channel.
 pub struct Spectrum<'a> {
     problem: &'a ChromaticSlab,
@@ -48,9 +45,8 @@ impl<'a> Spectrum<'a> {
     /// First channel with an answer that is not known well enough for a comparison with draws.
     pub fn blurred(&self) -> Option<usize> {
         let is_sharp = |&(end, channel): &(End, usize)| {
-            let known = self.truth(end, channel);
             let is_resolved = slab::resolves(&self.problem.incidences[channel].phase);
-            is_resolved && known.error <= BLURRED * known.value
+            is_resolved && slab::is_sharp(self.truth(end, channel))
         };
         self.problem.colours.seen.iter().find(|seen| !is_sharp(seen)).map(|seen| seen.1)
     }

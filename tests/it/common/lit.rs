@@ -8,15 +8,19 @@ use trueflight::theory::lit_rod::{Combination, Densities, Heuristic, Shadow, Tec
 /// Returns the techniques of a reference value.
 pub fn techniques(what: &str) -> Techniques {
     use Combination::{Mis, NextEvent, Unidirectional};
-    let balanced = |densities| Mis(densities, Heuristic::Balance);
+    let (what, heuristic) = match what.strip_suffix("-power") {
+        Some(what) => (what, Heuristic::Power),
+        None => (what, Heuristic::Balance),
+    };
+    let weighted = |densities| Mis(densities, heuristic);
     let (shadow, combination) = match what {
         "uni" | "mean" => (None, Unidirectional),
         "nee-ratio" => (Some(Shadow::Ratio), NextEvent),
         "nee-delta" => (Some(Shadow::Delta), NextEvent),
         "nee-analytic" => (Some(Shadow::Exact), NextEvent),
-        "mis-directional" => (Some(Shadow::Delta), balanced(Densities::Directional)),
-        "mis-analytic" => (Some(Shadow::Exact), balanced(Densities::Full)),
-        "mis-full" => (Some(Shadow::Ratio), balanced(Densities::Full)),
+        "mis-directional" => (Some(Shadow::Delta), weighted(Densities::Directional)),
+        "mis-analytic" => (Some(Shadow::Exact), weighted(Densities::Full)),
+        "mis-full" => (Some(Shadow::Ratio), weighted(Densities::Full)),
         other => panic!("{other}"),
     };
     Techniques { shadow, combination }

@@ -27,7 +27,7 @@ fn spectrum(setup: &Setup<ChromaticSlab>) -> Spectrum<'_> {
 /// Checks that theory resolves the energies of all channels.
 fn realisable(setup: &Setup<ChromaticSlab>) -> Result<(), Refusal> {
     let Some(channel) = spectrum(setup).blurred() else { return Ok(()) };
-    let needs = "reflectances and transmittances that adding and doubling resolve (|g| ≤ 0.93, a moderate τ)";
+    let needs = "reflectances and transmittances that adding and doubling resolve to 1e-4 (above 1e-70, g ≥ −0.93)";
     let depth = rounded(setup.fields[channel].mesh.optical_depth().value);
     let phase = setup.problem.incidences[channel].phase.label();
     let found = format!("τ = {depth}, phase {phase} in channel {}", channel + 1);

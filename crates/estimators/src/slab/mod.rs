@@ -14,9 +14,6 @@ use theory::problems::{Problem, Slab};
 use theory::slab::{self, Answer, Existence, Pieces, Walk};
 use theory::{ParticleRule, Prediction};
 
-/// Maximum relative error of an exact answer that draws are compared with.
-const BLURRED: f64 = 1e-4;
-
 /// The walk of a rule, as theory describes it.
 fn walk_of(setup: &Setup<Slab>, rule: ParticleRule) -> Walk {
     let cut = setup.fields.mesh.refined(setup.fields.sampling.knots(), &|_, _| Vec::new());
@@ -43,8 +40,8 @@ fn truth(setup: &Setup<Slab>) -> Option<Answer> {
         return None;
     }
     let answer = slab::cached(&slab.incidence, setup.fields.mesh.optical_depth(), slab.albedo)?;
-    let is_sharp = |known: &numeric::Known| known.error <= BLURRED * known.value;
-    [answer.reflected, answer.transmitted].iter().all(is_sharp).then_some(answer)
+    let is_known = [answer.reflected, answer.transmitted].into_iter().all(slab::is_sharp);
+    is_known.then_some(answer)
 }
 
 impl ByRule for Slab {
@@ -56,8 +53,8 @@ impl ByRule for Slab {
             setup.residual().require_ratio_at_most(limit, rule.needs())?;
         }
         if truth(setup).is_none() {
-            let needs = "a reflectance and a transmittance above 0 that adding and doubling resolve \
-                         (a > 0, |g| ≤ 0.93, a moderate τ)";
+            let needs = "a reflectance and a transmittance above 1e-70 that adding and doubling resolve \
+                         to 1e-4 (a > 0, g ≥ −0.93)";
             let slab = &setup.problem;
             let depth = slab.medium().optical_depth(setup.fields.mesh.support()).value;
             let (albedo, phase) = (slab.albedo, slab.incidence.phase.label());

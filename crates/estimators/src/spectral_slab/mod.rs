@@ -15,9 +15,6 @@ use ::theory::spectral_rod::Body;
 use ::theory::spectral_slab::Slabs;
 use numeric::digits::rounded;
 
-/// Maximum relative error of an exact answer that draws are compared with.
-const BLURRED: f64 = 1e-4;
-
 impl Coloured for SpectralSlab {
     fn colours(&self) -> &Colours {
         &self.colours
@@ -28,13 +25,12 @@ impl Coloured for SpectralSlab {
         let body = Self::body(setup);
         let is_sharp = |&(end, channel): &(End, usize)| {
             let found = body.leaving(colours.albedos[channel]);
-            let known = found.map(|found| found[usize::from(end == End::Transmitted)]);
-            known.is_some_and(|known| known.error <= BLURRED * known.value)
+            found.is_some_and(|found| theory::is_sharp(found[usize::from(end == End::Transmitted)]))
         };
         if theory::resolves(phase) && colours.seen.iter().all(is_sharp) {
             return Ok(());
         }
-        let needs = "reflectances and transmittances that adding and doubling resolve (|g| ≤ 0.93, a moderate τ)";
+        let needs = "reflectances and transmittances that adding and doubling resolve to 1e-4 (above 1e-70, g ≥ −0.93)";
         let depth = rounded(setup.fields.mesh.optical_depth().value);
         Err(Refusal::mismatch(needs, format!("τ = {depth}, phase {}", phase.label())))
     }

@@ -1,5 +1,5 @@
 //! Slabs: adding and doubling against itself with more directions, and against discrete ordinates, see
-//! `ordinates`.
+//! `ordinates`, up to the critical albedo.
 
 use super::ordinates::Ordinates;
 use super::prelude::*;
@@ -11,6 +11,10 @@ use theory::slab::{self, Answer, Energy, Resolution, layer::Slice};
 
 /// Directions of the ordinates.
 const ORDINATES: usize = 72;
+/// Bisections of the critical albedo.
+const BISECTIONS: u32 = 40;
+/// Relative distance to the critical albedo beyond which a slab is on a known side of it.
+const NEAR: f64 = 2e-3;
 /// Lights on one slab.
 pub(super) const LIGHTS: usize = 8;
 
@@ -23,6 +27,16 @@ pub fn rows(run: Run) -> Vec<Row> {
     let range = "isotropic, τ = 1e-2 … 100, μ₀ = 1e-4 … 1; discrete ordinates, 32 digits";
     let row = Row::stated("slab, another method", range);
     rows.extend(run.fill([4, 64], [row], || Slab::any(sized(-2.0, 2.0)), even));
+    let range =
+        "g = 0.935 … 0.98, peak cut off, τ = 1e-2 … 30, μ₀ = 1e-4 … 1; twice the directions";
+    let row = Row::stated("slab, peaked phase function", range);
+    let slab = || (Slab::any(sized(-2.0, 1.48)), between(0.935, 0.98).prop_map(henyey_greenstein));
+    rows.extend(run.fill([1, 6], [row], slab, |(slab, phase), seen| finer(slab, *phase, seen)));
+    let range = "isotropic, albedo 1e-7 … 0.5 below the critical one, τ = 1e-2 … 10; discrete ordinates, 32 digits";
+    let found = ["slab next to criticality", "moments next to criticality"];
+    let mut of_critical = found.map(|found| Row::stated(found, range)).to_vec();
+    of_critical.push(Row::wrong("infinite slabs, wrong", range));
+    rows.extend(run.fill([4, 64], of_critical, Critical::any, critical));
     rows
 }
 
@@ -31,6 +45,16 @@ parameters! {
     Slab(range: Number) {
         depth: f64 = range,
         albedo: f64 = share(),
+        lights: Vec<Light> = lights(),
+    }
+}
+
+parameters! {
+    /// A slab next to its critical albedo, below or above.
+    Critical {
+        depth: f64 = sized(-2.0, 1.0),
+        distance: f64 = sized(-7.0, -0.3),
+        is_beyond: bool = proptest::bool::weighted(0.2),
         lights: Vec<Light> = lights(),
     }
 }
@@ -71,8 +95,14 @@ pub(super) fn henyey_greenstein(asymmetry: f64) -> Phase {
 
 /// Adding and doubling with more directions and a thinner first layer.
 fn finer(slab: &Slab, phase: Phase, seen: &mut Seen) -> Option<()> {
-    let resolution =
-        Resolution { faintest: 1e-14, directions: 72, first_layer: 1e-14, ..Resolution::FINE };
+    let fine = Resolution::FINE;
+    let resolution = if fine.cuts(&phase) {
+        Resolution { peaked: 2 * fine.peaked, first_layer: 1e-12, ..fine }
+    } else {
+        // The library has the maximum number of directions from |g| = 0.91 on.
+        let directions = if phase.moment(1).abs() > 0.88 { 240 } else { 72 };
+        Resolution { faintest: 1e-14, directions, first_layer: 1e-14, peaked: 0, ..fine }
+    };
     let Slab { depth, albedo, lights } = slab;
     let slice = Slice { flown: *depth, straight: 0.0, scattered: *albedo, score: 1.0 };
     let found = slab::answers(&phase, lights, Known::exact(*depth), *albedo);
@@ -86,7 +116,7 @@ fn finer(slab: &Slab, phase: Phase, seen: &mut Seen) -> Option<()> {
 /// Isotropic scattering by discrete ordinates.
 fn even(slab: &Slab, seen: &mut Seen) -> Option<()> {
     let Slab { depth, albedo, lights } = slab;
-    // At a = 0 and a = 1 two solutions are one: a grain beside it, 1e-20, nobody sees.
+    // At a = 0 and a = 1 two solutions are one: a grain beside it, 1e-20, changes no digit of shares that are not 0.
     let near = match *albedo {
         0.0 => Wide::from(1e-20),
         1.0 => 1.0 - Wide::from(1e-20),
@@ -97,7 +127,13 @@ fn even(slab: &Slab, seen: &mut Seen) -> Option<()> {
     let found = seen.found(0, found)?;
     let exact = Ordinates::new(Wide::from(*depth), near, ORDINATES)?;
     let all = |(light, found): (&Light, &Answer)| {
-        let [r, t] = exact.energy(*light);
+        let [r, t] = match *light {
+            Light::Collimated(cosine) if *albedo == 0.0 => {
+                [Wide::default(), (-(Wide::from(*depth) / cosine)).exp()]
+            }
+            Light::Diffuse if *albedo == 0.0 => [Wide::default(), exact.energy(*light)[1]],
+            _ => exact.energy(*light),
+        };
         let lost = 1.0 - near;
         // Collisions are what is absorbed over 1 − a, of which a white slab leaves no digits.
         let score = (1.0 - r - t) / lost;
@@ -105,5 +141,47 @@ fn even(slab: &Slab, seen: &mut Seen) -> Option<()> {
     };
     let exact = lights.iter().zip(&found).map(all).collect();
     slab.compare(found, exact, seen);
+    Some(())
+}
+
+/// Isotropic scattering next to the critical albedo, by discrete ordinates.
+fn critical(slab: &Critical, seen: &mut Seen) -> Option<()> {
+    let &Critical { depth, distance, is_beyond, ref lights } = slab;
+    let phase = Phase::Isotropic(Isotropic);
+    let slice = |scattered| Slice { flown: depth, straight: 0.0, scattered, score: 1.0 };
+    let resolution = Resolution { first_layer: 1e-10, ..Resolution::FINE };
+    let is_finite =
+        |albedo| slab::energies(&phase, &[Light::Diffuse], &[slice(albedo)], resolution).is_some();
+    let (mut low, mut high) = (1.0, 2.0);
+    while is_finite(high) {
+        (low, high) = (high, 2.0 * high);
+    }
+    for _ in 0..BISECTIONS {
+        let middle = 0.5 * (low + high);
+        if is_finite(middle) { low = middle } else { high = middle }
+    }
+    let albedo = low * if is_beyond { 1.0 + distance } else { 1.0 - distance };
+    let exact = Ordinates::new(Wide::from(depth), Wide::from(albedo), ORDINATES)
+        .filter(Ordinates::is_positive);
+    let fine = slab::answers(&phase, lights, Known::exact(depth), albedo);
+    let moments = slab::solve(&phase, lights, &[slice(albedo)], Resolution::COARSE);
+    if distance > NEAR {
+        for found in [&fine, &moments] {
+            seen.wrong(2, found.is_some() != exact.is_some());
+        }
+    }
+    for (row, found) in [fine, moments].into_iter().enumerate() {
+        let Some((found, exact)) = found.zip(exact.as_ref()) else {
+            seen.skip(row);
+            continue;
+        };
+        for (found, light) in found.into_iter().zip(lights) {
+            seen.at(format_args!("{light:?}"));
+            let exact = exact.energy(*light);
+            for (found, exact) in [found.reflected, found.transmitted].into_iter().zip(exact) {
+                seen.stated(row, found, exact);
+            }
+        }
+    }
     Some(())
 }

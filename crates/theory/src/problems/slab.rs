@@ -32,7 +32,8 @@
 //!
 //! The answer depends on the optical depth of the slab, a, the phase function and the incidence only,
 //! and is worked out by adding and doubling with a stated error: better than 1e-10 for isotropic and
-//! Rayleigh scattering, than 1e-8 for Henyey–Greenstein's up to g = 0.9. Of `albedos` in one medium all moments
+//! Rayleigh scattering, than 1e-8 for Henyey–Greenstein's up to g = 0.9. Beyond 0.93 the forward peak is cut off (δ-M),
+//! with a stated error, too; g below −0.93 is refused. Of `albedos` in one medium all moments
 //! depend on that alone, too, whatever the fields σ_t and σ̂ are: `R_λ = Σ_r a_λ^r R_r` and `T_λ = Σ_r a_λ^r T_r`, r the number
 //! of scatterings.
 //!

@@ -29,14 +29,21 @@ pub struct Directions {
 }
 
 impl Directions {
-    /// A quadrature of `count` cosines, and further cosines of incidence.
-    pub fn new(phase: &Phase, count: usize, further: &[f64]) -> Self {
+    /// A quadrature of `count` cosines, and further cosines of incidence. The share `peak` of the phase function, which
+    /// goes straight on, is cut off.
+    pub fn new(phase: &Phase, count: usize, further: &[f64], peak: f64) -> Self {
         let rule = GaussLegendre::new(count);
         let mut cosines: Vec<f64> = rule.nodes.iter().map(|x| x * x).collect();
         let weights: Vec<f64> =
             rule.nodes.iter().zip(&rule.weights).map(|(x, weight)| 2.0 * x * weight).collect();
         cosines.extend(further);
-        let moments = moments(phase);
+        let mut moments = moments(phase);
+        if peak > 0.0 {
+            moments.truncate(2 * count);
+            for (l, moment) in moments.iter_mut().enumerate() {
+                *moment = (*moment - (2 * l + 1) as f64 * peak) / (1.0 - peak);
+            }
+        }
         let legendre: Vec<Vec<f64>> =
             cosines.iter().map(|&cosine| legendre(cosine, moments.len())).collect();
         // Even and odd orders apart: the sum of both is p(μ, μ'), the difference p(−μ, μ').
@@ -92,9 +99,9 @@ pub fn needed(phase: &Phase, faintest: f64) -> usize {
     (last / 2 + 1).min(MOST)
 }
 
-/// Returns true if the maximum number of directions resolves a phase function.
-pub fn are_enough(phase: &Phase, faintest: f64) -> bool {
-    phase.moment(2 * MOST).abs() < faintest
+/// Returns true if `count` directions, and no more than the maximum, resolve a phase function.
+pub fn are_enough(phase: &Phase, faintest: f64, count: usize) -> bool {
+    phase.moment(2 * count.min(MOST)).abs() < faintest
 }
 
 #[cfg(test)]
@@ -104,7 +111,7 @@ mod tests {
 
     #[test]
     fn isotropic_light_is_spread_by_the_weights_alone() {
-        let directions = Directions::new(&Phase::Isotropic(Isotropic), 12, &[0.3]);
+        let directions = Directions::new(&Phase::Isotropic(Isotropic), 12, &[0.3], 0.0);
         for i in 0..13 {
             for j in 0..12 {
                 let half = 0.5 * directions.weights[j];
@@ -119,7 +126,7 @@ mod tests {
         // Light along the axis keeps g of its cosine: Σ (P⁺ − P⁻)μ = g.
         let phase = HenyeyGreenstein::new(0.6).expect("in range");
         assert_eq!(phase.moment(1), 0.6);
-        let directions = Directions::new(&Phase::HenyeyGreenstein(phase), 40, &[1.0]);
+        let directions = Directions::new(&Phase::HenyeyGreenstein(phase), 40, &[1.0], 0.0);
         let kept: f64 = (0..40)
             .map(|j| {
                 let net = directions.onward.at(40, j) - directions.back.at(40, j);
@@ -135,6 +142,7 @@ mod tests {
         assert_eq!(needed(&Phase::Isotropic(Isotropic), 1e-12), 1);
         assert!(needed(&of(0.75), 1e-12) < needed(&of(0.9), 1e-12));
         assert_eq!(needed(&of(0.999), 1e-12), MOST);
-        assert!(are_enough(&of(0.9), 1e-12) && !are_enough(&of(-0.95), 1e-12));
+        assert!(are_enough(&of(0.9), 1e-12, MOST) && !are_enough(&of(-0.95), 1e-12, MOST));
+        assert!(!are_enough(&of(0.9), 1e-12, 100));
     }
 }

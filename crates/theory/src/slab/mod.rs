@@ -10,18 +10,25 @@
 //! layers, and the differences give its error. Thin slabs need grazing directions, and answers with too few of them
 //! may agree by accident.
 //!
+//! If the maximum number of directions does not resolve a phase function, its forward peak is cut off (δ-M). With n
+//! directions the share `f = χ_{2n}` goes straight on, and the rest has the moments `(χ_l − f)/(1 − f)`. Each of
+//! the four answers has its own f.
+//!
 //! Where only `r = σ_t/σ̂` matters at a tentative collision, the k-th moments of a walk are reflectance
 //! and transmittance of another slab: `∫σ̂(1 − Q_k)` thick, of albedo `S_k/(1 − Q_k)`, which may exceed
 //! 1, see [`crate::particle`]. It may also be too thick for that albedo: then the moment is
 //! infinite.
 //!
-//! Source: H. C. van de Hulst, *Multiple Light Scattering* (Academic Press, 1980), chapters 4 and 9.
+//! Source: H. C. van de Hulst, *Multiple Light Scattering* (Academic Press, 1980), chapters 4 and 9; δ-M: W. J.
+//! Wiscombe, *The Delta-M Method*, Journal of the Atmospheric Sciences 34, 1408–1422 (1977).
 
 pub mod cache;
 pub mod directions;
 pub mod layer;
 pub mod orders;
 pub mod pieces;
+#[cfg(test)]
+mod tests;
 pub mod walk;
 
 use crate::problems::slab::Light;
@@ -83,27 +90,36 @@ pub struct Resolution {
     /// Ratios of differences to the error: of the answer with five eighths of the directions, and of that with half
     /// of them.
     pub gains: [f64; 2],
+    /// Number of directions for phase functions that this number does not resolve: their forward peak is cut off. 0 if no
+    /// peak is.
+    pub peaked: usize,
 }
 
 impl Resolution {
     /// Resolution of exact answers: 1e-10, 1e-8 for Henyey–Greenstein of g = 0.9, and mostly far better.
-    pub const FINE: Self =
-        Self { faintest: 1e-11, directions: 32, first_layer: 3e-14, gains: [12.0, 400.0] };
+    pub const FINE: Self = Self {
+        faintest: 1e-11,
+        directions: 32,
+        first_layer: 3e-14,
+        gains: [12.0, 400.0],
+        peaked: 144,
+    };
     /// Resolution of moments: 1e-4 and mostly far better. With few directions, errors for grazing light in thin
     /// slabs may fall only as `1/n`: the answer with five eighths of them then differs by 8/5 − 1 times the error.
     /// Elsewhere errors oscillate, and those of sixteen, twelve and ten directions may agree by accident. Half of
     /// the directions have errors that are ten to a hundred times larger, and show it.
     pub const COARSE: Self =
-        Self { faintest: 1e-5, directions: 16, first_layer: 1e-10, gains: [0.6, 4.0] };
+        Self { faintest: 1e-5, directions: 16, first_layer: 1e-10, gains: SLOW, peaked: 96 };
     /// Resolution of moments where r varies, which need a hundred layers and more, and for differences.
     pub const LAYERED: Self =
-        Self { faintest: 1e-4, directions: 12, first_layer: 1e-7, gains: [0.6, 4.0] };
+        Self { faintest: 1e-4, directions: 12, first_layer: 1e-7, gains: SLOW, peaked: 72 };
 
     fn coarser(self) -> Self {
         Self {
             faintest: self.faintest.powf(0.75),
             directions: self.directions * 3 / 4,
             first_layer: 4.0 * self.first_layer,
+            peaked: self.peaked * 3 / 4,
             ..self
         }
     }
@@ -111,19 +127,56 @@ impl Resolution {
     fn coarsest(self) -> Self {
         // A sharp phase function needs more directions by its Legendre moments: five eighths of those, too.
         let faintest = self.faintest.powf(0.625);
-        Self { faintest, directions: self.directions * 5 / 8, ..self.coarser() }
+        let [directions, peaked] = [self.directions, self.peaked].map(|count| count * 5 / 8);
+        Self { faintest, directions, peaked, ..self.coarser() }
     }
 
     fn half(self) -> Self {
         let faintest = self.faintest.sqrt();
-        Self { faintest, directions: self.directions / 2, ..self.coarser() }
+        let [directions, peaked] = [self.directions, self.peaked].map(|count| count / 2);
+        Self { faintest, directions, peaked, ..self.coarser() }
+    }
+
+    /// Resolution for a phase function: `peaked` is 0 unless its forward peak is cut off.
+    fn of(self, phase: &Phase) -> Self {
+        let is_whole = self.peaked == 0;
+        if is_whole || directions::are_enough(phase, self.coarser().faintest, self.peaked) {
+            Self { peaked: 0, ..self }
+        } else {
+            Self { gains: PEAKED, ..self }
+        }
+    }
+
+    /// Returns true if the peak of a phase function is cut off.
+    pub fn cuts(self, phase: &Phase) -> bool {
+        self.of(phase).peaked > 0
+    }
+
+    /// Returns the number of directions, and the share of the phase function that goes straight on.
+    fn directions(&self, phase: &Phase) -> (usize, f64) {
+        if self.peaked > 0 {
+            return (self.peaked, phase.moment(2 * self.peaked));
+        }
+        (directions::needed(phase, self.faintest).max(self.directions), 0.0)
     }
 }
 
-/// Returns true if two answers of different resolution give the error of an exact one: not where both would have
-/// the maximum number of directions, as for Henyey–Greenstein of |g| > 0.935.
+/// Maximum relative error of an exact answer that draws are compared with.
+const BLURRED: f64 = 1e-4;
+/// The smallest exact answer: below, the fourth power of a draw's mean is no double of full length.
+const FAINT: f64 = 1e-70;
+
+/// Returns true if an answer is known well enough for a comparison with draws.
+pub fn is_sharp(known: Known) -> bool {
+    known.value >= FAINT && known.error <= BLURRED * known.value
+}
+
+/// Returns true if answers of different resolutions give the error of an exact one: by more and more directions, or
+/// with a forward peak cut off. A backward peak is resolved for Henyey–Greenstein of g ≥ −0.935.
 pub fn resolves(phase: &Phase) -> bool {
-    directions::are_enough(phase, Resolution::FINE.coarser().faintest)
+    let Resolution { peaked, .. } = Resolution::FINE;
+    let is_forward = phase.moment(2 * peaked + 1) > 0.0;
+    is_forward || directions::are_enough(phase, Resolution::FINE.coarser().faintest, peaked)
 }
 
 /// The error of a first layer of optical depth u, doubled to τ, is about `13 τ u`.
@@ -142,6 +195,15 @@ const THIN: f64 = 1e-2;
 /// Depth of a thick slab: in thicker ones rounding adds up: of 1500 answers one deviated by twice the sum at a depth
 /// of 77.
 const THICK: f64 = 5.0;
+/// Values of [`Resolution::gains`] for errors that fall only as `1/n`.
+const SLOW: [f64; 2] = [0.6, 4.0];
+/// Values of [`Resolution::gains`] where a forward peak is cut off. In slabs of g = 0.9 at 48 directions the
+/// differences to 30 and to 24 directions are at least 20 and 160 times the error.
+const PEAKED: [f64; 2] = [6.0, 40.0];
+/// Bisections of the depth at which half of the directions give the answer of all of them.
+const BISECTIONS: u32 = 24;
+/// Maximum error of an optical depth, relative to a share, for which a bound that holds for all slabs is good enough.
+const OF_DEPTH: f64 = 1e-9;
 /// Maximum number of doublings: beyond, a share of the slab is lost in rounding.
 const MOST_DOUBLINGS: f64 = 100.0;
 
@@ -152,31 +214,75 @@ pub fn solve(
     slices: &[Slice],
     resolution: Resolution,
 ) -> Option<Vec<Answer>> {
-    let at = |resolution| energies(phase, lights, slices, resolution);
+    let resolution = resolution.of(phase);
+    let at = |resolution| energies_at(phase, lights, slices, resolution);
     let fine = at(resolution)?;
     let coarse = at(resolution.coarser())?;
     let coarsest = at(resolution.coarsest())?;
     // With few directions the series may diverge by mistake.
     let half = at(resolution.half());
+    let thicker = match half {
+        Some(_) => None,
+        None => Some(thicker(phase, lights, slices, resolution, &fine)),
+    };
     let depth: f64 = slices.iter().map(|slice| slice.flown * slice.lost()).sum();
     let thick = (depth / THICK).max(1.0);
     let thin = if depth > 0.0 { (THIN / depth).max(1.0) } else { 1.0 };
     let answer = |i: usize| {
-        // Known errors of the first layer and of rounding are added.
+        // Known errors are added: of the first layer, of rounding, and of doubles that have fewer digits.
         Answer::each(|of: fn(&Energy) -> &f64| {
             let [fine, coarse, coarsest] = [&fine[i], &coarse[i], &coarsest[i]].map(|all| *of(all));
-            let half = half.as_ref().map_or(fine, |half| *of(&half[i]));
             let [of_coarsest, of_half] = resolution.gains;
+            let of_half = match (&half, &thicker) {
+                (Some(half), _) => (fine - of(&half[i])).abs() / of_half,
+                (None, Some(Some(thicker))) => (fine - of(&thicker[i])).abs(),
+                _ => f64::INFINITY,
+            };
             let differences = (SAFETY * (fine - coarse).abs())
                 .max((fine - coarsest).abs() / of_coarsest)
-                .max((fine - half).abs() / of_half);
-            Known::new(
-                fine,
-                thin * differences + thick * (resolution.first_layer + ROUNDING) * fine.abs(),
-            )
+                .max(of_half);
+            let known = thick * (resolution.first_layer + ROUNDING) * fine.abs();
+            Known::new(fine, thin * differences + known + f64::MIN_POSITIVE)
         })
     };
     Some((0..lights.len()).map(answer).collect())
+}
+
+/// Shares of a slab that is thicker by the error of its critical depth; `None` where they are infinite.
+///
+/// For slabs in which the series diverges with half of the directions only. Next to a critical depth the error of an
+/// answer is that of the depth:
+///
+/// ```text
+/// 1 − δ       depth, relative to the slab's, at which half of the directions give the reflectance `fine`
+/// 1 + δ/gain  depth of the slab that is solved, relative to the slab's
+/// ```
+fn thicker(
+    phase: &Phase,
+    lights: &[Light],
+    slices: &[Slice],
+    resolution: Resolution,
+    fine: &[Energy],
+) -> Option<Vec<Energy>> {
+    let at = |resolution, depth: f64| {
+        let slices: Vec<Slice> =
+            slices.iter().map(|slice| Slice { flown: depth * slice.flown, ..*slice }).collect();
+        energies_at(phase, lights, &slices, resolution)
+    };
+    let half = resolution.half();
+    let is_below = |depth: f64| {
+        let found = at(half, depth);
+        found.is_some_and(|found| found.iter().zip(fine).all(|(x, y)| x.reflected <= y.reflected))
+    };
+    let (mut low, mut high) = (0.5, 1.0);
+    if !is_below(low) {
+        return None;
+    }
+    for _ in 0..BISECTIONS {
+        let middle = 0.5 * (low + high);
+        if is_below(middle) { low = middle } else { high = middle }
+    }
+    at(resolution, 1.0 + (1.0 - low) / resolution.gains[1])
 }
 
 /// Shares at one resolution, without error bounds.
@@ -186,10 +292,43 @@ pub fn energies(
     slices: &[Slice],
     resolution: Resolution,
 ) -> Option<Vec<Energy>> {
-    let count = directions::needed(phase, resolution.faintest).max(resolution.directions);
+    energies_at(phase, lights, slices, resolution.of(phase))
+}
+
+/// Shares at a resolution that was made for the phase function.
+fn energies_at(
+    phase: &Phase,
+    lights: &[Light],
+    slices: &[Slice],
+    resolution: Resolution,
+) -> Option<Vec<Energy>> {
+    let found = layers(phase, lights, slices, resolution)?;
+    Some(found.into_iter().map(|(energy, _)| energy).collect())
+}
+
+/// Shares for each light, and the light that would collide in a thin layer below, per optical depth of that layer.
+fn layers(
+    phase: &Phase,
+    lights: &[Light],
+    slices: &[Slice],
+    resolution: Resolution,
+) -> Option<Vec<(Energy, f64)>> {
+    let (count, peak) = resolution.directions(phase);
     let further: Vec<f64> = lights.iter().filter_map(|light| light.cosine()).collect();
-    let directions = Directions::new(phase, count, &further);
-    let layer = stack(&directions, slices, resolution.first_layer)?;
+    let directions = Directions::new(phase, count, &further, peak);
+    // The peak goes straight on.
+    let cut = |slice: &Slice| Slice {
+        straight: slice.straight + peak * slice.scattered,
+        scattered: (1.0 - peak) * slice.scattered,
+        ..*slice
+    };
+    let slices: Vec<Slice> = slices.iter().map(cut).collect();
+    let layer = stack(&directions, &slices, resolution.first_layer)?;
+    let leaving = |i: usize| {
+        let row = layer.scattered.row(i).iter().zip(&directions.cosines);
+        row.map(|(scattered, cosine)| scattered / cosine).sum::<f64>()
+            + layer.direct[i] / directions.cosines[i]
+    };
     let mut row = count;
     let mut found = Vec::with_capacity(lights.len());
     for light in lights {
@@ -205,10 +344,11 @@ pub fn energies(
             transmitted: share(&|i| layer.scattered.row(i).iter().sum::<f64>() + layer.direct[i]),
             score: share(&|i| layer.score[i]),
         };
+        let colliding = share(&leaving);
         row += usize::from(light.cosine().is_some());
-        found.push(energy);
+        found.push((energy, colliding));
     }
-    let is_finite = |energy: &Energy| {
+    let is_finite = |(energy, _): &(Energy, f64)| {
         [energy.reflected, energy.transmitted, energy.score].iter().all(|x| x.is_finite())
     };
     found.iter().all(is_finite).then_some(found)
@@ -236,14 +376,23 @@ fn stack(directions: &Directions, slices: &[Slice], error: f64) -> Option<Layer>
 pub fn answers(phase: &Phase, lights: &[Light], depth: Known, albedo: f64) -> Option<Vec<Answer>> {
     let slice = Slice { flown: depth.value, straight: 0.0, scattered: albedo, score: 1.0 };
     let answers = solve(phase, lights, &[slice], Resolution::FINE)?;
-    let blurred = |(answer, light): (Answer, &Light)| {
+    let resolution = Resolution { first_layer: 1e-6, ..Resolution::FINE };
+    let is_faint = |answer: &Answer| {
+        [answer.reflected, answer.transmitted].iter().any(|x| depth.error > OF_DEPTH * x.value)
+    };
+    let colliding = (albedo <= 1.0 && answers.iter().any(is_faint))
+        .then(|| layers(phase, lights, &[slice], resolution.half().of(phase)))
+        .flatten();
+    let blurred = |(i, (answer, light)): (usize, (Answer, &Light))| {
         // A layer of optical depth δ more has light from all directions, and changes no share by more than the
         // light that collides in it.
         let steepest = light.cosine().map_or(6.0, |cosine| 4.0 + 1.0 / cosine);
-        Answer::each(|of: fn(&Answer) -> &Known| {
-            let known = of(&answer);
-            Known::new(known.value, known.error + steepest * depth.error)
-        })
+        // Below the slab that is the light that leaves there; half of the directions give it within a factor of 2.
+        let below = colliding.as_ref().map_or(steepest, |found| 2.0 * found[i].1);
+        let with = |known: Known, slope| Known::new(known.value, known.error + slope * depth.error);
+        let [reflected, transmitted] =
+            [answer.reflected, answer.transmitted].map(|known| with(known, steepest.min(below)));
+        Answer { reflected, transmitted, score: with(answer.score, steepest) }
     };
-    Some(answers.into_iter().zip(lights).map(blurred).collect())
+    Some(answers.into_iter().zip(lights).enumerate().map(blurred).collect())
 }

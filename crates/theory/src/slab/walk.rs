@@ -135,8 +135,9 @@ impl Walk {
         let thinner: Vec<Slice> = pieces.iter().map(thinner).collect();
         let lights = [self.incidence.light];
         match energies(&self.incidence.phase, &lights, &thinner, resolution) {
-            Some(_) => Existence::Unknown,
-            None => Existence::Diverges,
+            // With the peak cut off, light along a layer may grow that the whole phase function turns away.
+            None if !resolution.cuts(&self.incidence.phase) => Existence::Diverges,
+            _ => Existence::Unknown,
         }
     }
 
