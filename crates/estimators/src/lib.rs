@@ -118,7 +118,8 @@ pub trait Estimator<P: Estimated>: Clone + Send + Sync + 'static {
         None
     }
 
-    /// Checks that the estimator exists and is unbiased on a setup.
+    /// Checks that the estimator exists and is unbiased on a setup, mostly by the `require_…` functions of
+    /// `setup.residual()` and `setup.fields`.
     ///
     /// # Errors
     ///

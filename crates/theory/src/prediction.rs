@@ -36,7 +36,7 @@ pub struct Channel {
     pub mean: Known,
     /// Central moments; `None` where no closed form is known.
     pub moments: Option<Moments>,
-    /// Bound on the variance, where no more is known.
+    /// Bound on the variance, where no more is known. Without moments, a bound or pilot draws the mean is not tested.
     pub most_variance: Option<f64>,
     /// True if twice the variance of pilot draws may stand in for a variance that theory neither knows nor bounds.
     /// This requires light tails, as of lengths and counts of walks with weights that never grow.

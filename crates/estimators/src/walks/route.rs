@@ -3,7 +3,8 @@
 use media::course::{BothWays, Course};
 use numeric::Lane;
 
-/// The positions of walks, and vertices to which they may return.
+/// The positions of walks, and vertices to which they may return. A vertex is the beginning of the course until another
+/// is marked.
 #[derive(Clone, Copy)]
 pub struct Route<C> {
     /// The positions.
