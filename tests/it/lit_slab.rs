@@ -215,7 +215,7 @@ fn all_combinations_have_one_mean() {
 
 #[test]
 fn draws_agree_with_the_predictions() {
-    draws_agree(400_000);
+    draws_agree(500_000);
 }
 
 #[test]

@@ -2,10 +2,10 @@
 
 use pyo3::prelude::*;
 use trueflight::advise::{Costs, Request, advise as advised, options};
-use trueflight::report::advise;
+use trueflight::report::advise::json;
 
 use crate::background::work;
-use crate::cases::Asked;
+use crate::cases::CaseRequest;
 use crate::error::Failure;
 
 /// Options of an advice; goals and costs are texts as on the command line.
@@ -42,10 +42,10 @@ impl Sought {
 ///
 /// An invalid case or option.
 #[pyfunction]
-pub fn advise(py: Python<'_>, case: Asked, sought: &Bound<'_, PyAny>) -> PyResult<String> {
+pub fn advise(py: Python<'_>, case: CaseRequest, sought: &Bound<'_, PyAny>) -> PyResult<String> {
     let sought: Sought = sought.extract()?;
     work(py, sought.threads, None, move |_| {
         let found = advised(&case.spec()?, &sought.request()?)?;
-        advise::json(&found).map_err(|error| Failure::Wrong(error.to_string()))
+        json(&found).map_err(|error| Failure::Wrong(error.to_string()))
     })
 }

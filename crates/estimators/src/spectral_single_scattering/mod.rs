@@ -5,6 +5,7 @@ pub mod independent;
 pub mod page;
 pub mod spectral_mis;
 pub mod spectral_tracking;
+pub mod steps;
 pub mod walk;
 
 use crate::setup::ControlledLine;

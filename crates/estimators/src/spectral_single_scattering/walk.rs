@@ -15,6 +15,7 @@
 //! one, the choice of the hero one. Walks are scored when all have ended, exact shadow rays included.
 
 use super::Shadow;
+use super::steps::{Right, Steps};
 use crate::setup::walker::Walker;
 use crate::space::exit::{along, ends};
 use crate::space::shadow::ShadowRays;
@@ -38,50 +39,6 @@ const TOGETHER: u32 = 4;
 
 /// Number of the hero of a walk that was not scattered.
 const LOST: f64 = -1.0;
-
-/// The steps of a walk that a known bug may replace.
-pub trait Steps: Copy {
-    /// True if collisions along the ray are counted separately, see [`Steps::has_shadow_density`].
-    const COUNTS: bool = false;
-
-    /// True if length and collisions of a tracked shadow ray are in the densities.
-    #[inline(always)]
-    fn has_shadow_density(&self) -> bool {
-        true
-    }
-
-    /// The factor of q at a null collision on the way to the scattering.
-    #[inline(always)]
-    fn passed<L: Lane>(&self, ratio: L) -> L {
-        ratio.one_minus()
-    }
-
-    /// The factor of q at a scattering.
-    #[inline(always)]
-    fn scattered<L: Lane>(&self, ratio: L, albedo: f64) -> L {
-        ratio * albedo
-    }
-
-    /// The transmittance of a channel's shadow ray, given that of the hero's.
-    #[inline(always)]
-    fn through<L: Lane>(&self, own: L, heros: impl Fn() -> L) -> L {
-        let _ = heros;
-        own
-    }
-
-    /// The probability of a hero in the mean density.
-    #[inline(always)]
-    fn share(&self, probability: f64, is_last: bool) -> f64 {
-        let _ = is_last;
-        probability
-    }
-}
-
-/// The right steps.
-#[derive(Clone, Copy)]
-pub struct Right;
-
-impl Steps for Right {}
 
 kept! {
     /// Walks to their scattering, and shadow rays from there.
