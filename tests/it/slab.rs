@@ -358,7 +358,7 @@ fn next_to_the_critical_extinction_a_slab_is_not_said_to_diverge() {
 struct Lookups {
     rule: String,
     a: f64,
-    /// `∫σ̂` and σ_t/σ̂ of each, the first on top.
+    /// `∫σ̂` and `σ_t/σ̂` of each, the first on top.
     layers: Vec<[f64; 2]>,
     cosine: Option<f64>,
     mean: f64,
