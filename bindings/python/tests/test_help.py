@@ -24,7 +24,7 @@ def public():
 def test_help_starts_with_what_is_called():
     first = pydoc.plain(pydoc.render_doc(tf)).split("\n")[:14]
     called = [name for name in public() if inspect.isfunction(getattr(tf, name))]
-    assert called == ["cases", "check", "predict", "run", "sweep"]
+    assert called == ["advise", "cases", "check", "predict", "run", "sweep"]
     for name in called:
         assert any(line.strip().startswith(f"{name}(") for line in first), name
 

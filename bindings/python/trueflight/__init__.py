@@ -6,6 +6,7 @@ What to call:
     predict(case)                    mean, variance, cost and figure of merit of each estimator of a case, without a draw
     run(case)                        draws each estimator of a case and judges it
     sweep(case, sampling=[1, 2])     either, along values of one quantity
+    advise(case)                     which estimator, which σ̂: all of a problem ranked by predicted time to an error
     cases()                          names of the built-in cases
 
 ``check`` returns a ``Verdict``: true if the draws pass, with ``mean``, ``z``, ``reason`` and ``assert_pass()``. The others return

@@ -87,7 +87,10 @@ fn distribution(record: &Record) -> Markup {
         @if !all.is_empty() {
             section aria-labelledby="scores" {
                 h2 #scores { "Differences from theory" }
-                p.quiet { "Bars: all z-scores. Curve: the normal distribution of correct estimators. Grey: where 99 of 100 bars end; red bars do not." }
+                p.quiet {
+                    "Bars: all z-scores. Curve: the normal distribution of correct estimators. Grey: where 99 of 100 bars would end "
+                    "if scores were independent. Those of one experiment are not, so a red bar near 0 is no failure."
+                }
                 (drawing::inline(&scores::figure(&all), "Histograms of the z-scores of means, variances and lookups with the normal curve"))
             }
         }
