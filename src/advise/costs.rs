@@ -5,7 +5,7 @@
 //! ```
 //!
 //! `draw` and `lookup` of a candidate are measured in the medium itself, with draws at two σ̂, by processor time. They
-//! are kept in a file for each medium and machine, and measured anew on demand.
+//! are kept in a file for each medium and machine, and measured again on demand.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};

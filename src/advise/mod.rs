@@ -14,8 +14,8 @@
 //!
 //! | key | meaning | default |
 //! |---|---|---|
-//! | `rays = { random }` | so many lines through the volume, uniform and isotropic | |
-//! | `rays = { random, camera }` | rays of so many pixels of a `camera`, as in a picture | |
+//! | `rays = { random }` | this number of lines through the volume, uniform and isotropic | |
+//! | `rays = { random, camera }` | rays of this number of pixels of a `camera`, as in a picture | |
 //! | `rays = [{ origin, direction, length }, …]` | these | `length`: through the whole volume |
 //!
 //! `docs/advise.md` explains the table and derives the best σ̂ along a ray.

@@ -10,8 +10,8 @@
 //! less (Cauchy and Schwarz).
 //!
 //! The single particle may end, so that σ̂ at t also changes the cost of everything behind t. With `R(t)` the lookups
-//! behind t, σ̂(t) is the smallest of `E j(σ̂) + b/cost (σ̂ e^{−K} − d(σ̂) R)`, `E = e^J/(e^J − 1)`,
-//! `j = σ̂ E[(1 − W)²]`, `d = σ̂(1 − q)` (Pontryagin's principle). Steps are improved one by one until nothing is gained.
+//! behind t, the best σ̂(t) minimises `E j(σ̂) + b/cost (σ̂ e^{−K} − d(σ̂) R)` (Pontryagin's principle). Here
+//! `E = e^J/(e^J − 1)`, `j = σ̂ E[(1 − W)²]` and `d = σ̂(1 − q)`. Steps are improved one by one until nothing is gained.
 
 use super::Profile;
 use super::candidates::Collisions;

@@ -212,8 +212,8 @@ impl Study {
         Some(Best { candidate, setting: Some((what, x)), goal, kind })
     }
 
-    /// Returns a setting that is allowed on all rays, not only on the probes, with its score; `None` if there is none
-    /// up to twice the setting.
+    /// Returns a setting that is allowed on all rays, not only on the probes, with its score; `None` if no setting up to
+    /// twice the given one is allowed.
     pub fn on_all(&self, best: &Best) -> Option<(Best, Score)> {
         let rays: Vec<usize> = (0..self.cases.len()).collect();
         let tries = if best.setting.is_some() { RAISES } else { 1 };
