@@ -95,6 +95,55 @@ fn every_reference_value_is_met() {
     none(&wrong);
 }
 
+/// Lookups of a single technique in a rod where `σ̂/σ_t` is `ratio`.
+#[derive(Debug, Deserialize)]
+struct Lookups {
+    depth: f64,
+    albedo: f64,
+    forward: f64,
+    ratio: f64,
+    sensor: String,
+    order: usize,
+    s: usize,
+    connection: String,
+    mean: f64,
+    variance: f64,
+    kurtosis: f64,
+}
+
+#[test]
+fn lookups_of_single_techniques_are_those_of_the_references() {
+    let references: Vec<Lookups> =
+        serde_json::from_str(include_str!("../data/bidirectional-lookups.json"))
+            .expect("the references");
+    assert_eq!(references.len(), 72);
+    for reference in references {
+        let scene = Scene {
+            depth: Known::exact(reference.depth),
+            albedo: reference.albedo,
+            forward: reference.forward,
+            is_transmitted: reference.sensor == "T",
+            orders: reference.order..=reference.order,
+        };
+        let share = 1.0 / reference.ratio;
+        let connection = match reference.connection.as_str() {
+            "ratio" => Connection::Ratio(share),
+            _ => Connection::Exact,
+        };
+        let combination = Combination::Technique(reference.s);
+        let rules = Rules { combination, connection, is_shared: false, has_shares: true };
+        let found = predict(&scene, &rules, Some(share), true).lookups.expect("one ratio");
+        let pairs = [
+            (found.mean, reference.mean),
+            (found.variance, reference.variance),
+            (found.kurtosis, reference.kurtosis),
+        ];
+        for (found, expected) in pairs {
+            assert!((found - expected).abs() <= 1e-9 * expected.max(1.0), "{found}: {reference:?}");
+        }
+    }
+}
+
 #[test]
 fn stated_errors_hold() {
     // Two resolutions of the same integrals, and numbers from elsewhere, agree within the stated errors.

@@ -2,6 +2,7 @@
 
 use std::sync::LazyLock;
 
+use serde::Deserialize;
 use trueflight::record::{Row, Verdict};
 
 use crate::common::{case, predicted, rows};
@@ -80,6 +81,51 @@ fn walks_relative_to_one_walker_agree_with_theory() {
     let lookups =
         |estimator: &str| second(&rows, estimator).experiment.predicted_lookups.expect("known");
     assert!(lookups("spectral-tracking (exact shadow, maximum)") < lookups("hero (exact shadow)"));
+}
+
+/// Moments of all channels by one estimator of [`WITHOUT`], see `tests/data/README.md`.
+#[derive(Deserialize)]
+struct Moments {
+    estimator: String,
+    mean: Vec<f64>,
+    variance: Vec<f64>,
+    third: Vec<f64>,
+    fourth: Vec<f64>,
+    covariance: Vec<f64>,
+    lookups: f64,
+    lookups_variance: f64,
+}
+
+#[test]
+fn moments_relative_to_one_walker_are_those_of_the_references() {
+    let references: Vec<Moments> =
+        serde_json::from_str(include_str!("../data/spectral-single-scattering.json"))
+            .expect("the references");
+    assert_eq!(references.len(), 5);
+    let rows = predicted(WITHOUT);
+    for reference in references {
+        let own = rows.iter().filter(|row| row.experiment.label == reference.estimator);
+        assert_eq!(own.clone().count(), 3, "{}", reference.estimator);
+        for (channel, row) in own.enumerate() {
+            let [_, third, fourth] = row.relative_moments;
+            let mut pairs = vec![
+                (row.truth, reference.mean[channel]),
+                (row.predicted_variance, reference.variance[channel]),
+                (third, reference.third[channel]),
+                (fourth, reference.fourth[channel]),
+                (row.experiment.predicted_lookups, reference.lookups),
+                (row.experiment.lookups_variance, reference.lookups_variance),
+            ];
+            if let Some(&covariance) = reference.covariance.get(channel) {
+                pairs.push((row.covariance, covariance));
+            }
+            for (i, (found, expected)) in pairs.into_iter().enumerate() {
+                let found = found.expect("known");
+                let off = (found / expected - 1.0).abs();
+                assert!(off < 1e-9, "{}, {channel}, {i}: {found}", reference.estimator);
+            }
+        }
+    }
 }
 
 /// If one channel walks alone, all estimators are delta tracking.
