@@ -1,5 +1,6 @@
 //! Results of an experiment: its identity, its channels, and the findings of the checks.
 
+use numeric::Grade;
 use serde::{Deserialize, Serialize};
 
 use crate::plan::ExperimentId;
@@ -147,6 +148,9 @@ pub struct ChannelRecord {
     /// Bound on the relative error of the predicted variance and, if that is known, of the fourth moment; `None`
     /// without a bound.
     pub moments_error: Option<f64>,
+    /// Ground of `truth_error` and `moments_error`; `None` if the truth is unknown.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub error_grade: Option<Grade>,
     /// Predicted covariance of one draw with the next channel; `None` for the last channel, or if it is unknown.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub covariance: Option<f64>,

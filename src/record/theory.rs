@@ -69,6 +69,7 @@ fn of_channel(channel: &Channel, cost: Option<f64>) -> ChannelRecord {
         relative_moments: moments
             .map_or([None; 3], |moments| moments.relative.map(|m| finite(Some(m)))),
         moments_error: finite(channel.moments_error()),
+        error_grade: channel.error_grade(),
         rare_event_size: finite(moments.map(|_| channel.tails.rare_event_size)),
         eighth_moment_ratio: finite(moments.map(|_| channel.tails.eighth_moment_ratio)),
         log_unit: Some(channel.log_unit).filter(|&unit| unit != 0.0),

@@ -95,7 +95,7 @@ impl<'a> Pixel<'a> {
     /// Returns the exact answer in each channel, or that of a quadrature with `panels` panels.
     pub fn answer(&self, panels: Option<usize>) -> Option<Vec<Known>> {
         let found = panels.map_or_else(|| self.ray.exact(), |n| self.ray.by_quadrature(n))?;
-        let seen = |known: Known| Known::new(known.value * self.sky, known.error * self.sky);
+        let seen = |known: Known| known * self.sky;
         Some(found.into_iter().map(seen).collect())
     }
 

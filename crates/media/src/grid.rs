@@ -153,7 +153,7 @@ impl OpticalDepth for GridRay {
         let jumps =
             if self.voxels.jumps() { self.cells.count() as f64 * span.to.abs() } else { 0.0 };
         let rounding = 4.0 * depth.value + self.voxels.peak() * (2.0 * places + jumps);
-        Known::new(depth.value, depth.error + f64::EPSILON * rounding)
+        depth.blurred(f64::EPSILON * rounding)
     }
 
     fn breaks(&self, span: Span) -> Vec<f64> {

@@ -84,8 +84,7 @@ impl Medium {
         if inside.is_empty() {
             return Known::new(0.0, 0.0);
         }
-        let depth = self.profile.optical_depth(inside);
-        Known::new(depth.value, depth.error + (begins + ends))
+        self.profile.optical_depth(inside).blurred(begins + ends)
     }
 
     /// The distance where the optical depth from the beginning of the support reaches `depth`;

@@ -55,7 +55,7 @@ impl<F: Fn(f64) -> f64 + Send + Sync + 'static> OpticalDepth for Formula<F> {
             total[0].add(depth.value);
             total[1].add(depth.error);
         }
-        Known::new(total[0].value(), total[1].value())
+        Known::estimated(total[0].value(), total[1].value())
     }
 
     fn breaks(&self, span: Span) -> Vec<f64> {
@@ -105,7 +105,7 @@ fn integral(f: impl Fn(f64) -> f64, span: Span) -> Known {
     let mut open: VecDeque<_> = Span::between(&cuts).map(|part| (on(part), 0)).collect();
     let size = open.iter().map(|((_, [sum, _]), _)| sum.abs()).sum::<f64>();
     if !size.is_finite() {
-        return Known::new(f64::NAN, f64::INFINITY);
+        return Known::estimated(f64::NAN, f64::INFINITY);
     }
     let (mut value, mut error, mut looked) = (Sum::default(), Sum::default(), open.len());
     // The widest panel first, so that all are equally narrow when the maximum number is reached.
@@ -114,7 +114,7 @@ fn integral(f: impl Fn(f64) -> f64, span: Span) -> Known {
         let [[first, _], [second, _]] = halves.map(|(_, found)| found);
         let change = (first + second - whole).abs() + hidden;
         if !change.is_finite() {
-            return Known::new(f64::NAN, f64::INFINITY);
+            return Known::estimated(f64::NAN, f64::INFINITY);
         }
         looked += 2;
         let share = size.max(value.value()) * AGREEMENT * (part.length() / span.length());
@@ -127,7 +127,7 @@ fn integral(f: impl Fn(f64) -> f64, span: Span) -> Known {
         }
     }
     let value = value.value();
-    Known::new(value, error.value() + 64.0 * f64::EPSILON * value.abs())
+    Known::estimated(value, error.value() + 64.0 * f64::EPSILON * value.abs())
 }
 
 /// A field in space that a closure gives: `σ_t(x, y, z)`, 1/length, finite and ≥ 0, within bounds.

@@ -25,7 +25,7 @@ pub mod words;
 
 pub use double_double::Wide;
 pub use exponential_integral::exponential_integrals;
-pub use known::{Known, Span};
+pub use known::{Grade, Known, Span};
 pub use lane::{Lane, Row};
 pub use mask::{Kept, Mask};
 pub use single::{Fused, Narrow, Plain, Single};

@@ -56,7 +56,7 @@ impl<'a> Spectrum<'a> {
         let (incidence, depth) =
             (&self.problem.incidences[channel], self.media[channel].0.optical_depth());
         let answer = slab::cached(incidence, depth, self.problem.colours.albedos[channel]);
-        answer.map_or(Known::new(f64::NAN, f64::INFINITY), |answer| match end {
+        answer.map_or(Known::estimated(f64::NAN, f64::INFINITY), |answer| match end {
             End::Reflected => answer.reflected,
             End::Transmitted => answer.transmitted,
         })

@@ -30,6 +30,7 @@ pub fn predict(product: &Product<'_>, distances: &[f64]) -> Prediction {
             let depth = mesh.medium().optical_depth(Span::new(start, s));
             let (scale, error) = (depth.exp_neg().value, mesh.relative_error());
             let moments = Moments::of_product(scale, integrals.losses, error);
+            let moments = moments.graded(integrals.grade());
             Channel {
                 name: format!("T({s})"),
                 losses: Some(integrals.losses),

@@ -34,8 +34,8 @@ pub fn predict(mesh: &Mesh, lookups: CountLaw) -> Prediction {
     });
     // A distance is a difference of positions, and these have the resolution of the ray's end.
     let grain = f64::EPSILON * ray.to.abs().max(ray.from.abs());
-    let truth = Known::new(mean, mean * (mesh.relative_error() + 1e-14) + grain);
-    let moments = Moments { scale: mean, relative, error: mesh.relative_error() + 1e-13 };
+    let truth = Known::estimated(mean, mean * (mesh.relative_error() + 1e-14) + grain);
+    let moments = Moments::estimated(mean, relative, mesh.relative_error() + 1e-13);
     let channel = Channel::unbiased(truth, moments, Tails::LIGHT);
     let law = distances(mesh, ray, escape.value);
     Prediction { law, ..Prediction::single(channel, lookups) }

@@ -104,7 +104,7 @@ impl Mesh {
         let mut mesh = Self { panels, error: f64::INFINITY, ..bare };
         mesh.t = mesh.panels.iter().flat_map(|&panel| mesh.nodes(panel)).collect();
         mesh.extinction = mesh.medium.extinctions(&mesh.t);
-        mesh.depth = Some(Known::new(mesh.integrate(|_, sigma| sigma), f64::INFINITY));
+        mesh.depth = Some(Known::estimated(mesh.integrate(|_, sigma| sigma), f64::INFINITY));
         mesh
     }
 

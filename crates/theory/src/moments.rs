@@ -1,5 +1,7 @@
 //! Central moments without cancellation.
 
+use numeric::Grade;
+
 /// The central moments of one draw, in units of its scale: `μ_k / scale^k` for k = 2, 3, 4.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Moments {
@@ -9,6 +11,8 @@ pub struct Moments {
     pub relative: [f64; 3],
     /// A relative error bound of `relative`.
     pub error: f64,
+    /// Ground of `error`.
+    pub grade: Grade,
 }
 
 /// A number that is known to be at least 0 with the error `off`, and its relative error. A number below `off` is
@@ -24,7 +28,18 @@ pub(super) fn not_negative(value: f64, off: f64) -> [f64; 2] {
 impl Moments {
     /// A draw without variance.
     pub fn certain(scale: f64) -> Self {
-        Self { scale, relative: [0.0; 3], error: 0.0 }
+        Self { scale, relative: [0.0; 3], error: 0.0, grade: Grade::Proven }
+    }
+
+    /// Moments with an estimate of their relative error.
+    pub fn estimated(scale: f64, relative: [f64; 3], error: f64) -> Self {
+        Self { scale, relative, error, grade: Grade::Estimated }
+    }
+
+    /// Moments with the given ground of their error.
+    #[must_use]
+    pub fn graded(self, grade: Grade) -> Self {
+        Self { grade, ..self }
     }
 
     /// The moments of a product estimator from its loss integrals.
@@ -39,7 +54,7 @@ impl Moments {
     /// ```
     ///
     /// Used where |J₂| and |J₃| are below 1/4, where the powers of `u` are small and nothing
-    /// cancels; beyond, the exponentials are subtracted directly. `losses[k − 1]` is J_k.
+    /// cancels; beyond, the exponentials are subtracted directly. `losses[k − 1]` is J_k, with an estimated `error`.
     pub fn of_product(scale: f64, losses: [f64; 4], error: f64) -> Self {
         let [_, j2, j3, j4] = losses;
         let [m2, m3, m4] = if j2.abs() < 0.25 && j3.abs() < 0.25 {
@@ -48,7 +63,7 @@ impl Moments {
             far_from_one(j2, j3, j4)
         };
         let sensitivity = 6.0 * j2.abs() + 4.0 * j3.abs() + j4.abs();
-        Self { scale, relative: [m2, m3, m4.max(m2 * m2)], error: error * sensitivity.max(1.0) }
+        Self::estimated(scale, [m2, m3, m4.max(m2 * m2)], error * sensitivity.max(1.0))
     }
 
     /// `Var[X]`.

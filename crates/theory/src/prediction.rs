@@ -1,7 +1,7 @@
 //! Predictions for one experiment.
 
 use super::{CountLaw, Moments};
-use numeric::Known;
+use numeric::{Grade, Known};
 
 /// Prediction for an experiment, made before a draw.
 #[derive(Debug, Clone, Default)]
@@ -121,6 +121,12 @@ impl Channel {
         Some(moments.error + of_unit + ROUNDING * exponents)
     }
 
+    /// Ground of the errors of the mean and, where they are known, of the moments; `None` for an unknown mean.
+    pub fn error_grade(&self) -> Option<Grade> {
+        let of_moments = self.moments.map_or(Grade::Proven, |moments| moments.grade);
+        (!self.mean.value.is_nan()).then(|| self.mean.grade.min(of_moments))
+    }
+
     /// An unbiased transmittance of the given optical depth, in units of `exp(−log_unit)`.
     pub fn transmittance(depth: Known, log_unit: f64, moments: Moments, tails: Tails) -> Self {
         let truth = transmittance(depth, log_unit);
@@ -132,7 +138,7 @@ impl Channel {
 
 /// `T e^{log_unit} = exp(log_unit − τ)`.
 pub fn transmittance(depth: Known, log_unit: f64) -> Known {
-    Known::new(depth.value - log_unit, depth.error).exp_neg()
+    Known { value: depth.value - log_unit, ..depth }.exp_neg()
 }
 
 /// One step of a walk along a curve, from one distance to the next.

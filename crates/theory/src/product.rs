@@ -13,6 +13,7 @@ use super::mesh::Panel;
 use super::prediction::transmittance;
 use super::{Channel, CountLaw, Mesh, Moments, Outcome, Prediction, Rule, Tails};
 use media::{Control, Piecewise};
+use numeric::Grade;
 use numeric::sum::Sum;
 
 /// A product estimator on a ray: everything its moments depend on.
@@ -55,6 +56,8 @@ pub struct Integrals {
     pub alive: f64,
     /// The length on which `w ≤ 2σ_t`.
     pub stable: f64,
+    /// True if every loss is constant in each panel: then sums over panels are exact.
+    pub is_stepwise: bool,
 }
 
 /// σ̂ and the outcome at the nodes of one panel.
@@ -145,6 +148,7 @@ impl<'a> Product<'a> {
         let depth = mesh.optical_depth();
         let scale = transmittance(depth, self.log_unit).value;
         let moments = Moments::of_product(scale, all.losses, mesh.relative_error());
+        let moments = moments.graded(all.grade());
         let channel = Channel::transmittance(depth, self.log_unit, moments, all.tails());
         let channel = Channel { losses: Some(all.losses), ..channel };
         let length = mesh.support().length();
@@ -158,6 +162,11 @@ impl<'a> Product<'a> {
 }
 
 impl Integrals {
+    /// Ground of the error of the losses.
+    pub fn grade(&self) -> Grade {
+        if self.is_stepwise { Grade::Proven } else { Grade::Estimated }
+    }
+
     /// Heaviness of the tails of a draw.
     pub fn tails(&self) -> Tails {
         let [fourth, eighth] = self.growth;
@@ -191,6 +200,8 @@ struct Totals {
     deaths: Sum,
     survivals: Sum,
     stable: Sum,
+    /// True if a loss is not constant in a panel.
+    varies: bool,
 }
 
 impl Totals {
@@ -199,7 +210,9 @@ impl Totals {
             nodes.sampling.iter().zip(&nodes.outcome).map(|(s, o)| s * f(o)).collect()
         };
         for (k, sum) in (1..).zip(&mut self.losses) {
-            sum.add(mesh.integral(panel, &over(&|o| o.mean_loss(k))));
+            let rates = over(&|o| o.mean_loss(k));
+            self.varies |= rates.iter().any(|rate| *rate != rates[0]);
+            sum.add(mesh.integral(panel, &rates));
             sum.add(killing * panel.span.length());
         }
         self.rarity.add(mesh.integral(panel, &over(&rarity)));
@@ -244,6 +257,7 @@ impl Totals {
             flown: self.flown.value(),
             alive: (-self.deaths.value()).exp(),
             stable: self.stable.value(),
+            is_stepwise: !self.varies,
         }
     }
 }

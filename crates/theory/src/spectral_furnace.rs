@@ -15,7 +15,7 @@ use super::rod::moments::POWERS;
 use super::rod::{central, tails};
 use super::{Channel, Moments, Prediction, Tails};
 use crate::problems::channels::channel_name;
-use numeric::Known;
+use numeric::{Grade, Known};
 
 /// Rounding of a walk's weights.
 const ROUNDING: f64 = 1e-12;
@@ -33,7 +33,7 @@ pub fn independent(heroes: &[f64]) -> Prediction {
             return channel(count, index, Some(Moments::certain(1.0)), Tails::LIGHT);
         }
         let raw = POWERS.map(|k| [weight.powi(1 - k), 0.0]);
-        let moments = central(Known::exact(1.0), &raw);
+        let moments = central(Known::exact(1.0), &raw).graded(Grade::Proven);
         channel(count, index, Some(moments), tails(&raw))
     });
     let covariances = (1..count).map(|next| {

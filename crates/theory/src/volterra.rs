@@ -71,7 +71,7 @@ pub fn predict(mesh: &Mesh, sampling: f64, source: &dyn Source) -> Prediction {
     let missed = (t * depth.value.exp() - 1.0).abs();
     let noise = (fine.relative_error() + missed + 1e-14) * terms;
     let error = noise / relative[0].powi(2).min(relative[0]).max(f64::MIN_POSITIVE);
-    let moments = Moments { scale: depth.exp_neg().value, relative, error };
+    let moments = Moments::estimated(depth.exp_neg().value, relative, error);
     let kurtosis = moments.kurtosis().unwrap_or(1.0);
     let tails = Tails { rare_event_size: kurtosis, eighth_moment_ratio: m8 / (m4 * m4) };
     let mut channel = Channel::transmittance(depth, 0.0, moments, tails);

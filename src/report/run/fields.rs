@@ -4,6 +4,7 @@
 use crate::record::{Score, Verdict};
 use crate::report::fields::{Field, fields};
 use crate::report::run::summary_csv::Line;
+use numeric::Grade;
 use numeric::digits::short;
 
 /// Fields that differ from run to run, which files of results alone leave out.
@@ -88,6 +89,8 @@ pub fn of_files<'a>() -> Vec<Field<Line<'a>>> {
         "best_limit" ["limit", "", Fixed(4)]: "Limit of the figure of merit, if it rises with σ̂ to one" = |line| line.best_limit();
         "lookups_error" ["N error", "", Fixed(2)]: "Bound on the relative error of the expected lookups" = |line| line.experiment.lookups_error;
         "covariance" ["Cov next", "of the case, squared", Fixed(4)]: "Covariance of one draw with the next channel in theory" = |line| line.covariance;
+        "error_grade" ["errors are", "", Plain]: "Ground of `truth_error` and `moments_error`: proven, or estimated from resolutions"
+            = |line| line.error_grade.map(Grade::word);
     }
 }
 

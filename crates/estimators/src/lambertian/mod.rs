@@ -86,15 +86,12 @@ impl Walked for Lambertian {
         channels.extend(bound.map(named));
         let over = problem.four_over_surface();
         let times = |known: Known| {
-            Known::new(
-                over * known.value,
-                over * known.error + 4.0 * f64::EPSILON * over * known.value,
-            )
+            let scaled = known * over;
+            scaled.blurred(4.0 * f64::EPSILON * scaled.value)
         };
         if has.white {
-            let unknown = Known::new(f64::NAN, f64::NAN);
             channels.push(piloted("path length", times(Known::exact(problem.bounds().content()))));
-            channels.push(piloted("collisions", times(held(setup).unwrap_or(unknown))));
+            channels.push(piloted("collisions", times(held(setup).unwrap_or(Known::UNKNOWN))));
         }
         if let Some(content) = setup.fields.content().filter(|_| has.tentative) {
             channels.push(piloted("tentative collisions", times(Known::exact(content))));

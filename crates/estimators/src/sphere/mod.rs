@@ -150,7 +150,7 @@ fn connected(setup: &Setup<Sphere>, particle: &Particle, shadow: Tracking) -> Re
 
 /// The answer of a refused setup, which is not predicted.
 const UNKNOWN: Answer = Answer {
-    value: Known { value: f64::NAN, error: f64::INFINITY },
+    value: Known::estimated(f64::NAN, f64::INFINITY),
     spreads: Spreads(
         [Spread { unscattered: f64::NAN, lit: f64::NAN, rest: f64::NAN }; Techniques::ALL.len()],
     ),
@@ -165,7 +165,7 @@ fn all_or_nothing(value: Known) -> Prediction {
     let chance = value.value;
     // E[Xᵏ] is the same for every k: the moments of a product whose losses are all −ln E[X].
     let error = 4.0 * value.error / (chance * (1.0 - chance));
-    let moments = Moments::of_product(chance, [-chance.ln(); 4], error);
+    let moments = Moments::of_product(chance, [-chance.ln(); 4], error).graded(value.grade);
     let tails = Tails { rare_event_size: 1.0 / chance, eighth_moment_ratio: 1.0 / chance };
     let channel = Channel::unbiased(value, moments, tails);
     let law = Some(Law::Atoms(vec![(0.0, 1.0 - chance), (1.0, chance)]));

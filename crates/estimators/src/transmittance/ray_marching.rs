@@ -104,13 +104,13 @@ impl Estimator<Transmittance> for RayMarching {
             };
             let mean = over_offset(&|x| x);
             let relative = [2, 3, 4].map(|k| over_offset(&|x| ((x - mean) / mean).powi(k)));
-            (mean, Moments { scale: mean, relative, error: 1e-6 })
+            (mean, Moments::estimated(mean, relative, 1e-6))
         } else {
             let mean = value(0.5);
             (mean, Moments::certain(mean))
         };
         let channel = Channel {
-            mean: Known::new(mean, 1e-9 * mean),
+            mean: Known::estimated(mean, 1e-9 * mean),
             ..Channel::transmittance(
                 setup.fields.mesh.optical_depth(),
                 setup.fields.log_unit,

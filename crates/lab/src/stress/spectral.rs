@@ -95,7 +95,7 @@ fn heroes(shares: impl Iterator<Item = f64> + Clone) -> Vec<f64> {
 
 /// Variance and fourth moment of a channel, from raw moments; none of them where one is infinite.
 fn see(seen: &mut Seen, channel: &Channel, raw: [Option<Wide>; 4]) {
-    let Some(Moments { scale, relative, error }) = channel.moments else {
+    let Some(Moments { scale, relative, error, .. }) = channel.moments else {
         seen.skip(0);
         return seen.skip(1);
     };

@@ -193,7 +193,7 @@ impl Seen<'_> {
         raw: &[Wide],
         differ: impl Fn(&mut Self, usize),
     ) {
-        let Some(Moments { scale, relative, error }) = found else {
+        let Some(Moments { scale, relative, error, .. }) = found else {
             return rows.into_iter().for_each(|row| self.skip(row));
         };
         let raw = std::array::from_fn(|k| raw.get(k).copied().unwrap_or(Wide::from(f64::NAN)));

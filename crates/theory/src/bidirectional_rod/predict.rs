@@ -134,7 +134,7 @@ fn channel(depth: Known, order: usize, [fine, rough]: [&Powers; 2], is_certain: 
         depth.error * (order as f64 + 3.0) * (1.0 + 1.0 / depth.value.max(f64::MIN_POSITIVE));
     let by_depth = if depth.error > 0.0 { by_depth } else { 0.0 };
     let error = (mean - rough[1]).abs() + mean * (ROUNDING + by_depth);
-    let truth = Known::new(mean, error);
+    let truth = Known::estimated(mean, error);
     let [found, other] = [central(fine), central(rough)];
     if is_certain || found[0] == 0.0 {
         return Channel::unbiased(truth, Moments::certain(mean), Tails::LIGHT);
@@ -143,7 +143,7 @@ fn channel(depth: Known, order: usize, [fine, rough]: [&Powers; 2], is_certain: 
     let rounding = ROUNDING + 4.0 * by_depth;
     let error = ((found[0] - other[0]).abs() + rounding * two) / found[0];
     let of_fourth = ((found[2] - other[2]).abs() + rounding * 10.0 * four) / found[2];
-    let moments = Moments { scale: mean, relative: found, error: error.max(of_fourth) };
+    let moments = Moments::estimated(mean, found, error.max(of_fourth));
     let tails = Tails {
         rare_event_size: fine[4] / (fine[2] * fine[2]),
         eighth_moment_ratio: fine[8] / (fine[4] * fine[4]),

@@ -67,7 +67,7 @@ pub fn predict(
 /// Radiance at the camera; NaN where it is unknown.
 pub fn answer(mesh: &Mesh, problem: &LitRod) -> Known {
     let found = truth(mesh, &problem.rod).and_then(|found| found.first().copied());
-    found.unwrap_or(Known::new(f64::NAN, f64::NAN))
+    found.unwrap_or(Known::UNKNOWN)
 }
 
 /// The mean numbers of real collisions, of null collisions and of shadow lookups of a draw.
@@ -80,7 +80,7 @@ pub fn lookups(
     let numbers = romberg(&walk(mesh, problem, sampling)?, Precision::FULL, &|grid| {
         Some(moments::lookups_apart(grid, techniques)?.to_vec())
     })?;
-    Some(std::array::from_fn(|i| Known::new(numbers[i][0], numbers[i][1])))
+    Some(std::array::from_fn(|i| Known::estimated(numbers[i][0], numbers[i][1])))
 }
 
 /// Raw moments of a draw and of its lookups, with absolute errors.
@@ -113,7 +113,7 @@ impl Found {
         let unscattered = mesh.optical_depth().exp_neg();
         let raw = std::array::from_fn(|i| {
             let k = super::rod::moments::POWERS[i].unsigned_abs() as usize;
-            let moment = scattered.get(k - 1).map(|&[value, error]| Known::new(value, error));
+            let moment = scattered.get(k - 1).map(|&[value, error]| Known::estimated(value, error));
             let known = moment.map(|moment| with_hit(moment, unscattered, i, techniques));
             known.map_or([f64::INFINITY; 2], |known| [known.value, known.error])
         });
@@ -128,8 +128,7 @@ pub fn with_hit(
     power: usize,
     techniques: Techniques,
 ) -> Known {
-    let value = unscattered.value + scattered.value;
     let of_weights = if techniques.has_nulls() { OF_POLYNOMIALS[power] } else { 0.0 };
-    let error = scattered.error + unscattered.error + (ROUNDING + of_weights) * value;
-    Known::new(value, error)
+    let sum = scattered + unscattered;
+    sum.blurred((ROUNDING + of_weights) * sum.value)
 }

@@ -65,8 +65,7 @@ pub fn predict(
     laws: bool,
 ) -> Prediction {
     if slant_depth(mesh, problem).is_some() {
-        let unknown = Known::new(f64::NAN, f64::NAN);
-        let channels = vec![Channel::unbiased(unknown, None, Tails::LIGHT)];
+        let channels = vec![Channel::unbiased(Known::UNKNOWN, None, Tails::LIGHT)];
         return Prediction { channels, ..Prediction::default() };
     }
     let truth = truth(mesh, problem, sampling);
@@ -79,7 +78,7 @@ pub fn predict(
         if k > highest {
             return [f64::INFINITY; 2];
         }
-        let Known { value, error } = fine.known(&coarse, techniques, (k, i));
+        let Known { value, error, .. } = fine.known(&coarse, techniques, (k, i));
         [value, error]
     });
     let moments = central(truth, &raw);
@@ -185,7 +184,7 @@ impl Scores {
             0.0
         };
         let off = ROUNDING + self.error + of_weights;
-        Known::new(value, (value - other).abs() + off * value)
+        Known::estimated(value, (value - other).abs() + off * value)
     }
 
     fn count(&self, coarse: &Self) -> CountLaw {

@@ -25,7 +25,8 @@ pub fn leaving(depth: Known, albedo: f64, forward: f64) -> [Known; 2] {
     let rounding = (8.0 + kappa * tau) * f64::EPSILON;
     let slopes = [turned, lost];
     std::array::from_fn(|i| {
-        Known::new(values[i], slopes[i] * depth.error.min(1.0) + rounding * values[i])
+        let error = slopes[i] * depth.error.min(1.0) + rounding * values[i];
+        Known { value: values[i], error, ..depth }
     })
 }
 

@@ -53,16 +53,16 @@ pub fn truth(mesh: &Mesh, rod: &Rod) -> Option<Vec<Known>> {
         (Some([r, t]), Quantity::Absorbed) => {
             // In a white rod rounding may make the rest negative.
             let rest = ((1.0 - r.value) - t.value).max(0.0);
-            Some(Known::new(rest, r.error + t.error + f64::EPSILON))
+            Some(Known { value: rest, error: r.error + t.error + f64::EPSILON, ..r })
         }
-        _ => solved.next().map(|[value, error]| Known::new(value, error)),
+        _ => solved.next().map(|[value, error]| Known::estimated(value, error)),
     });
     known.collect()
 }
 
 /// The exact answer of every channel; NaN where it is unknown.
 fn truth_or_nan(mesh: &Mesh, rod: &Rod) -> Vec<Known> {
-    truth(mesh, rod).unwrap_or_else(|| vec![Known::new(f64::NAN, f64::NAN); rod.channels.len()])
+    truth(mesh, rod).unwrap_or_else(|| vec![Known::UNKNOWN; rod.channels.len()])
 }
 
 fn has_closed_form(quantity: Quantity) -> bool {
@@ -264,10 +264,10 @@ pub(super) fn central(truth: Known, raw: &[[f64; 2]; POWERS.len()]) -> Moments {
     let is_resolved = off <= (RESOLVED * fourth).max(FAINT)
         && fourth >= (1.0 - RESOLVED) * second * second - FAINT;
     if !four.is_finite() || !is_resolved {
-        return Moments { scale: m, relative: [second, f64::INFINITY, f64::INFINITY], error };
+        return Moments::estimated(m, [second, f64::INFINITY, f64::INFINITY], error);
     }
     let [fourth, of_fourth] = not_negative(fourth.max(second * second), off);
-    Moments { scale: m, relative: [second, third, fourth], error: error.max(of_fourth) }
+    Moments::estimated(m, [second, third, fourth], error.max(of_fourth))
 }
 
 /// The rare-event size is that of `D ≤ ln(E[X⁴]/E[X²]²)`, by Jensen's inequality.

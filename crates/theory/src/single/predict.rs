@@ -179,11 +179,9 @@ impl Points {
         let [least2, least4] = [m2 - off2, (m4 - off4).max((m2 - off2).powi(2))];
         let error =
             if r4 == f64::INFINITY { off2 / least2 } else { (off2 / least2).max(off4 / least4) };
-        let moments = Moments {
-            scale: mean,
-            relative: [m2, r3 - 3.0 * r2 + 2.0, m4.max(m2 * m2)],
-            error: if least2 > 0.0 { error } else { f64::INFINITY },
-        };
+        let error = if least2 > 0.0 { error } else { f64::INFINITY };
+        let relative = [m2, r3 - 3.0 * r2 + 2.0, m4.max(m2 * m2)];
+        let moments = Moments::estimated(mean, relative, error);
         // A variance that is smaller than rounding may not be 0, and one beyond the range of doubles not infinite.
         let is_known = moments.error < BLURRED && !m4.is_nan() && mean.abs() < f64::INFINITY;
         let is_full = self.powers.iter().all(|power| power.abs() >= LEAST);

@@ -210,7 +210,7 @@ impl<'a> Scene<'a> {
             // The optical depths add their own rounding, and so do positions next to the light.
             let depths = 2.0 * medium.optical_depth(medium.support()).error;
             let places = 0.25 * f64::EPSILON * problem.foot().abs() / problem.distance();
-            Known::new(value, found.error[0] + (ROUNDING + depths + places) * value.abs())
+            Known::estimated(value, found.error[0] + (ROUNDING + depths + places) * value.abs())
         })
     }
 

@@ -73,7 +73,7 @@ impl<T> Shares<T> {
 impl Answer {
     /// No answer.
     pub const UNKNOWN: Self = {
-        let nothing = Known { value: f64::NAN, error: f64::INFINITY };
+        let nothing = Known::estimated(f64::NAN, f64::INFINITY);
         Self { reflected: nothing, transmitted: nothing, score: nothing }
     };
 }
@@ -242,7 +242,7 @@ pub fn solve(
                 .max((fine - coarsest).abs() / of_coarsest)
                 .max(of_half);
             let known = thick * (resolution.first_layer + ROUNDING) * fine.abs();
-            Known::new(fine, thin * differences + known + f64::MIN_POSITIVE)
+            Known::estimated(fine, thin * differences + known + f64::MIN_POSITIVE)
         })
     };
     Some((0..lights.len()).map(answer).collect())
@@ -389,7 +389,7 @@ pub fn answers(phase: &Phase, lights: &[Light], depth: Known, albedo: f64) -> Op
         let steepest = light.cosine().map_or(6.0, |cosine| 4.0 + 1.0 / cosine);
         // Below the slab that is the light that leaves there; half of the directions give it within a factor of 2.
         let below = colliding.as_ref().map_or(steepest, |found| 2.0 * found[i].1);
-        let with = |known: Known, slope| Known::new(known.value, known.error + slope * depth.error);
+        let with = |known: Known, slope| known.blurred(slope * depth.error);
         let [reflected, transmitted] =
             [answer.reflected, answer.transmitted].map(|known| with(known, steepest.min(below)));
         Answer { reflected, transmitted, score: with(answer.score, steepest) }

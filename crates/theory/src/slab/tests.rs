@@ -41,7 +41,7 @@ fn next_to_criticality_the_error_covers_what_directions_are_missing() {
             let exact = at(albedo, precise);
             for (i, answer) in found.iter().enumerate() {
                 let exact = exact.as_ref().map_or(f64::INFINITY, |exact| exact[i].reflected);
-                let Known { value, error } = answer.reflected;
+                let Known { value, error, .. } = answer.reflected;
                 let context = format!("{depth}, 1 - 2^-{exponent}: {value} ± {error}, {exact}");
                 assert!((value - exact).abs() <= error, "{context}");
                 assert!(exponent > 6 || error < 0.1 * value, "{context}");

@@ -197,7 +197,7 @@ impl Walk {
             // Draws are 0 or 1.
             return Some(truths.iter().map(|truth| [truth.reflected, truth.transmitted]).collect());
         }
-        let infinite = Known::new(f64::INFINITY, f64::INFINITY);
+        let infinite = Known::INFINITE;
         let found = self.powers(k, lights).unwrap_or_else(|| vec![[infinite; 2]; lights.len()]);
         if !self.is_share() {
             return Some(found);
@@ -262,7 +262,7 @@ impl Walk {
     /// Distribution of a count, given its mean and `ln G(e^θ)`.
     fn count(
         &self,
-        Known { value: mean, error }: Known,
+        Known { value: mean, error, .. }: Known,
         f: impl Fn(f64) -> Option<f64>,
     ) -> Option<CountLaw> {
         let [variance, fourth] = if self.laws { cumulants(mean, f)? } else { [mean, 0.0] };
@@ -279,7 +279,7 @@ pub fn mixed_lookups(walks: &[(f64, Walk)]) -> Option<CountLaw> {
     for (weight, walk) in walks {
         let (phase, lights) = (&walk.incidence.phase, [walk.incidence.light]);
         let score = solve(phase, &lights, &walk.scored()?, Resolution::COARSE)?[0].score;
-        mean = mean + Known::new(weight * score.value, weight * score.error);
+        mean = mean + score * *weight;
     }
     let (_, first) = walks.first()?;
     first.count(mean, |theta| {
@@ -318,14 +318,14 @@ fn of_share(found: Known, truth: Known, k: i32) -> Known {
         return found;
     }
     let value = found.value.max(least).min(most);
-    Known::new(value, found.error.min((value - least).max(most - value)))
+    Known { value, error: found.error.min((value - least).max(most - value)), ..found }
 }
 
 /// Extrapolation from two cuts: the error of the finer one is a quarter of the other's, and the error of the
 /// directions is equal in both.
 fn extrapolated(coarse: Known, fine: f64) -> Known {
     let step = fine - coarse.value;
-    Known::new(fine + step / 3.0, step.abs() + coarse.error + 1e-4 * fine.abs())
+    Known::estimated(fine + step / 3.0, step.abs() + coarse.error + 1e-4 * fine.abs())
 }
 
 /// The step of θ in units of the number of collisions over which the distribution decays.
@@ -357,7 +357,8 @@ fn cumulants(mean: f64, f: impl Fn(f64) -> Option<f64>) -> Option<[f64; 2]> {
 /// A channel with its central moments from `E[X²]`, `E[X³]`, `E[X⁴]` and `E[X⁸]`.
 fn channel(name: &str, truth: Known, raw: [Option<Known>; 4]) -> Channel {
     let t = truth.value;
-    let unit = |k: i32, known: Known| Known::new(known.value / t.powi(k), known.error / t.powi(k));
+    let unit =
+        |k: i32, known: Known| Known::estimated(known.value / t.powi(k), known.error / t.powi(k));
     let [second, third, fourth, eighth] = raw;
     let moments = second.zip(third).zip(fourth).map(|((second, third), fourth)| {
         let (second, third, fourth) = (unit(2, second), unit(3, third), unit(4, fourth));
@@ -367,7 +368,7 @@ fn channel(name: &str, truth: Known, raw: [Option<Known>; 4]) -> Channel {
         if c.is_infinite() || b.is_infinite() {
             let [variance, error] = not_negative(a - 1.0, off);
             let higher = f64::INFINITY;
-            return Moments { scale: t, relative: [variance, higher, higher], error };
+            return Moments::estimated(t, [variance, higher, higher], error);
         }
         let skew = b - 3.0 * a + 2.0;
         // Each difference has the rounding of its own terms: in units of a small mean the fourth moment is far
@@ -380,9 +381,9 @@ fn channel(name: &str, truth: Known, raw: [Option<Known>; 4]) -> Channel {
         let [peak, of_peak] = not_negative(peak, off);
         if of_peak >= UNRESOLVED {
             let relative = [variance, f64::INFINITY, f64::INFINITY];
-            return Moments { scale: t, relative, error: of_variance };
+            return Moments::estimated(t, relative, of_variance);
         }
-        Moments { scale: t, relative: [variance, skew, peak], error: of_variance.max(of_peak) }
+        Moments::estimated(t, [variance, skew, peak], of_variance.max(of_peak))
     });
     let tails = match (moments, fourth, eighth) {
         (Some(moments), Some(fourth), Some(eighth)) => {

@@ -72,7 +72,7 @@ pub fn by_chords(volume: &Volume, most: f64) -> Option<Known> {
                 settled(&steps, is_smooth) + most * chords.unseen(n)
             };
             let rounding = here.error + 8.0 * f64::EPSILON * here.value;
-            return Some(Known::new(here.value, error + rounding));
+            return Some(Known::estimated(here.value, error + rounding));
         }
         (n, before) = (2 * n, here);
     }
@@ -201,7 +201,7 @@ impl Chords {
                 }
             }
         }
-        Known::new(sum.value(), error)
+        Known::estimated(sum.value(), error)
     }
 }
 

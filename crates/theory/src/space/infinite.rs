@@ -91,7 +91,7 @@ fn both(albedo: f64, h: impl Fn(f64) -> f64, discrete: impl Fn(f64, f64) -> [f64
 /// where ν is the distance.
 fn known(value: f64, rounding: f64, albedo: f64, distance: f64) -> Known {
     let error = if distance < NEAREST { 1.0 } else { rounding / (1.0 - albedo) };
-    Known::new(value, error * value)
+    Known::estimated(value, error * value)
 }
 
 /// The expected number of collisions within an optical distance of the source, for an albedo in `[0, 1)`.

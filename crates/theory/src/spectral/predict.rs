@@ -58,8 +58,8 @@ impl Spectrum {
         expected: &dyn Fn(&[&Vec<f64>]) -> Option<f64>,
     ) -> Channel {
         let truths: Vec<Known> = self.depths.iter().map(|depth| depth.exp_neg()).collect();
-        let value = form.iter().zip(&truths).map(|(a, truth)| a * truth.value).sum();
-        let error = form.iter().zip(&truths).map(|(a, truth)| a * truth.error).sum();
+        let truth: Known = form.iter().zip(&truths).map(|(a, truth)| *truth * *a).sum();
+        let value = truth.value;
         let raw = |order: i32| {
             Some(expected(&vec![form; order.unsigned_abs() as usize])? / f64::powi(value, order))
         };
@@ -77,7 +77,7 @@ impl Spectrum {
             let of = |size: f64, moment: f64| if moment > 0.0 { size / moment } else { 0.0 };
             let of_fourth = of((fourth + 4.0 * third + 6.0 * second) * relative(4.0), m4);
             let error = of(second * relative(2.0), m2).max(of_fourth);
-            Some(Moments { scale: value, relative: [m2, m3, m4], error })
+            Some(Moments::estimated(value, [m2, m3, m4], error))
         })();
         let is_one = index < self.channels();
         let tails = match moments {
@@ -91,13 +91,12 @@ impl Spectrum {
             ),
             None => Tails::LIGHT,
         };
-        let truth = Known::new(value, error);
         let name =
             if is_one { channel_name(index, self.channels()) } else { "luminance".to_owned() };
         if moments.is_none() {
             return Channel {
                 name,
-                ..Channel::bounded(truth, self.most_score(form) * (value + error))
+                ..Channel::bounded(truth, self.most_score(form) * (value + truth.error))
             };
         }
         Channel { name, ..Channel::unbiased(truth, moments, tails) }

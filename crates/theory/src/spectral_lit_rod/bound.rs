@@ -49,7 +49,7 @@ pub fn weighted_square(
         Some(vec![spread(grid, techniques)?])
     })?;
     let [spread, error] = scattered[0];
-    let Known { value, error: of_depth } = mesh.optical_depth().exp_neg();
+    let Known { value, error: of_depth, .. } = mesh.optical_depth().exp_neg();
     Some(value + of_depth + (spread + error).powi(2))
 }
 

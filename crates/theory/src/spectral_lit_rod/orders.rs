@@ -111,7 +111,7 @@ impl<'a> Orders<'a> {
         let of = |monomial: Monomial, power: usize| {
             let at = monomials.iter().position(|known| *known == monomial)?;
             let [value, error] = numbers[at];
-            let scattered = Known::new(value, error + RARE * value);
+            let scattered = Known::estimated(value, error + RARE * value);
             Some(with_hit(scattered, unscattered, power, self.techniques))
         };
         let channels = 0..self.heroes.len();

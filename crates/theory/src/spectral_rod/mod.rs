@@ -142,20 +142,15 @@ impl<'a> Spectrum<'a> {
                 Some(channel.map_or(Known::new(0.0, 0.0), |channel| {
                     let weight = self.hero[channel].powi(1 - total);
                     let found = self.body.leaving(self.colours.albedos[channel]);
-                    found.map_or(Known::new(0.0, 0.0), |found| {
-                        Known::new(weight * found[side].value, weight * found[side].error)
-                    })
+                    found.map_or(Known::new(0.0, 0.0), |found| found[side] * weight)
                 }))
             }
             Tracker::Hero | Tracker::Tracking { .. } => {
-                let infinite = Known::new(f64::INFINITY, f64::INFINITY);
                 let each = self.walkers().into_iter().map(|(weight, scatter)| {
-                    let albedo = self.albedo_of_power(k, scatter);
-                    let found = self.body.power(albedo).map_or(infinite, |found| found[side]);
-                    [weight * found.value, weight * found.error]
+                    let found = self.body.power(self.albedo_of_power(k, scatter));
+                    found.map_or(Known::INFINITE, |found| found[side]) * weight
                 });
-                let [value, error] = each.fold([0.0; 2], |[a, b], [c, d]| [a + c, b + d]);
-                Some(Known::new(value, error))
+                Some(each.sum())
             }
             Tracker::Mis => {
                 let orders = self.orders.as_ref()?;
@@ -171,7 +166,7 @@ impl<'a> Spectrum<'a> {
                     }
                     powers.iter_mut().zip(&self.colours.albedos).for_each(|(power, a)| *power *= a);
                 }
-                Some(Known::new(sum, orders.error * sum + off))
+                Some(Known::estimated(sum, orders.error * sum + off))
             }
         }
     }
@@ -192,14 +187,14 @@ impl<'a> Spectrum<'a> {
     }
 
     fn channel(&self, end: End, channel: usize) -> Channel {
-        let unknown = [Known::new(f64::NAN, f64::NAN); 2];
-        let values = self.body.leaving(self.colours.albedos[channel]).unwrap_or(unknown);
+        let values = self.body.leaving(self.colours.albedos[channel]);
+        let values = values.unwrap_or([Known::UNKNOWN; 2]);
         let truth = values[usize::from(end == End::Transmitted)];
         let blur = truth.error / truth.value;
         let raw = |k: i32| {
-            let Known { value, error } = self.moment(end, &self.only(channel, k))?;
             let unit = truth.value.powi(k);
-            Some(Known::new(value / unit, error / unit))
+            let Known { value, error, grade } = self.moment(end, &self.only(channel, k))?;
+            Some(Known { value: value / unit, error: error / unit, grade })
         };
         let moments = (|| {
             let [second, third, fourth] = [raw(2)?, raw(3)?, raw(4)?];
@@ -220,7 +215,8 @@ impl<'a> Spectrum<'a> {
                 0.0
             };
             let error = of(off, m2).max(of_fourth);
-            Some(Moments { scale: truth.value, relative: [m2, m3, m4], error })
+            let moments = Moments::estimated(truth.value, [m2, m3, m4], error);
+            Some(moments.graded(fourth.grade.min(truth.grade)))
         })();
         let raw = |k: i32| raw(k).map(|known| known.value);
         let tails = match (raw(2), raw(4), raw(8)) {

@@ -69,7 +69,8 @@ impl Body for Rods<'_> {
             let first = slopes[i] * self.depth.error + rounding[i] * value;
             // R and T have a simple pole at the critical length: a relative error x becomes x/(1 − x).
             let rest = 1.0 - if value > 0.0 { first / value } else { 0.0 };
-            Known::new(value, if rest > 0.0 { first / rest } else { f64::INFINITY })
+            let error = if rest > 0.0 { first / rest } else { f64::INFINITY };
+            Known { value, error, ..self.depth }
         }))
     }
 

@@ -61,7 +61,7 @@ impl Scene {
         let of = |solved: &Solved| solved.spreads(self.observable, self.is_distant);
         let [fine, coarse, coarsest] = solved.each_ref().map(of);
         let above = |numbers| {
-            let Known { value, error } = resolution.known(numbers);
+            let Known { value, error, .. } = resolution.known(numbers);
             value + error
         };
         Some(Answer { value, spreads: Spreads::joined(&[fine?, coarse?, coarsest?], above) })

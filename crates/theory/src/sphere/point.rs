@@ -102,7 +102,7 @@ pub fn orders(
         let found = resolution.known(all.each_ref().map(|a| a[ray][order]));
         // Next to the source all three may have similar errors: measured.
         let near = (ball.radius / offsets[ray]).powi(2);
-        Known::new(found.value, found.error + resolution.chance * near * found.value.abs())
+        found.blurred(resolution.chance * near * found.value.abs())
     };
     let of_ray = |ray: usize| (0..all[0][ray].len()).map(|order| known(ray, order)).collect();
     Some((0..offsets.len()).map(of_ray).collect())

@@ -50,7 +50,7 @@ impl Resolution {
     /// Answer with the error from two other resolutions.
     pub(super) fn known(self, [fine, coarse, other]: [f64; 3]) -> Known {
         let difference = (fine - coarse).abs().max(SAFETY * (fine - other).abs());
-        Known::new(fine, difference + self.chance * fine.abs())
+        Known::estimated(fine, difference + self.chance * fine.abs())
     }
 
     /// Resolution around the centre: shells as wide as a small black sphere resolve `1/r²` badly, with similar

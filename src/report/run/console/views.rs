@@ -48,6 +48,7 @@ const MOMENTS: Ranked = &[
     ("relative_m3", 0),
     ("relative_m4", 0),
     ("moments_error", 0),
+    ("error_grade", 0),
     ("predicted_lookups", 0),
     ("lookups_spread", 0),
     ("lookups_error", 0),
