@@ -25,8 +25,8 @@ pub struct BaselineArguments {
     /// Folder of the baselines
     #[arg(long, value_name = "DIR", default_value = "baselines")]
     baselines: PathBuf,
-    /// Increase of the processor time per draw that is no regression, as a share; `inf` for any. Given, it is an error
-    /// that no time can be compared [default: 0.25]
+    /// Increase of the processor time per draw that is no regression, as a share; `inf` for any. With this option it is an
+    /// error if no time can be compared [default: 0.25]
     #[arg(long, value_name = "R", value_parser = numbers::share)]
     #[arg(allow_hyphen_values = true)]
     time_tolerance: Option<f64>,

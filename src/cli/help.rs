@@ -16,9 +16,15 @@ const VERDICT: &str = "  0  everything passes
   2  wrong usage, a mistake in a case file, or a failure to read or write
   3  nothing fails, but something is inconclusive (--inconclusive changes it)";
 
+/// Exit codes of `judge`.
+const JUDGED: &str = "  0  the draws pass
+  1  the draws fail
+  2  wrong usage, a mistake in a file, or a failure to read or write
+  3  the draws do not decide it (--inconclusive changes the exit code)";
+
 /// Exit codes of commands that test the program itself.
-const TEST: &str = "  0  every bound holds
-  1  a bound is broken
+const TEST: &str = "  0  every bound holds, and every known bug is caught
+  1  a bound is broken, or a known bug is not caught
   2  wrong usage, or a failure to write";
 
 /// Exit codes of other commands.
@@ -121,7 +127,7 @@ const PAGES: [(&str, &[&str], &str, &str); 17] = [
             "trueflight judge draws.csv --case transmittance/eq21-overview --estimator ratio",
             "trueflight judge passes.npy --images --truth-image truth.exr",
         ],
-        VERDICT,
+        JUDGED,
         "docs/judge.md, docs/renderers.md",
     ),
     (

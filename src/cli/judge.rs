@@ -65,7 +65,7 @@ pub struct Arguments {
     #[arg(long, default_value_t = 1, value_name = "N", value_parser = numbers::seed, allow_negative_numbers = true, requires = "case")]
     seed: u64,
     /// Judge averages of N consecutive draws: for stratified or quasi-random draws, or passes of a
-    /// renderer. --variance and --kurtosis are then those of averages; of a --case the truth is taken
+    /// renderer. --variance and --kurtosis are then those of averages; --case then gives only the truth
     #[arg(long, default_value_t = 1, value_name = "N")]
     #[arg(value_parser = numbers::whole::<u64>(1..=1 << 40), allow_negative_numbers = true)]
     batch: u64,
@@ -105,7 +105,7 @@ pub struct Arguments {
     /// Largest number of draws to read [default: all of a file, 67108864 of a pipe]
     #[arg(long, value_name = "N", value_parser = numbers::draws, allow_hyphen_values = true)]
     draws: Option<u64>,
-    /// Verdict that an inconclusive one counts as [default: exit code 3]
+    /// Meaning of an inconclusive verdict for the exit code [default: exit code 3]
     #[arg(long, value_enum, value_name = "AS")]
     inconclusive: Option<Inconclusive>,
     /// Write a JUnit report

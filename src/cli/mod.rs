@@ -67,39 +67,39 @@ pub struct Console {
 
 #[derive(Debug, Subcommand)]
 enum Command {
-    /// Draw, judge, and write tables and plots: the main command
+    /// Draw estimators, judge them, and write tables, plots and a page: the main command
     Run(run::Arguments),
-    /// Judge a run that many machines drew: the parts of `run --shard`
+    /// Judge a run that several machines drew in parts, by `run --shard`
     Merge(merge::Merge),
-    /// The gate for a CI: as run, tuned to decide, with JUnit, Markdown and GitHub annotations
+    /// Judge estimators in CI: stop as soon as all is decided; JUnit, Markdown and GitHub annotations
     Check(run::Asked),
-    /// Theory only, no draws: moments, costs, the best σ̂, refusals
+    /// Print what theory expects, without draws: moments, costs, the best σ̂, refusals
     Predict(predict::Predict),
-    /// Which estimator, which σ̂, and what they cost: all estimators with their best settings, ranked by time to an error
+    /// Rank all estimators of a case, each with its best σ̂ and control, by the time to an error
     Advise(advise::Arguments),
-    /// Run time against error: ns per draw, time to an error, and speedup over a plain loop
+    /// Time estimators: ns per draw, time to an error, speedup over a plain loop
     Bench(bench::Arguments),
-    /// The plan of a run: its experiments, and those that are refused with reasons
+    /// Print what a run would draw, and which experiments are refused and why
     Plan(predict::Plan),
-    /// Pictures: estimators side by side at an equal number of lookups, with their errors
+    /// Draw pictures of estimators side by side at an equal number of lookups, with their errors
     Render(render::Arguments),
-    /// The page report.html of a stored run, for a browser
+    /// Write the page report.html of a stored run
     Report(merge::Report),
-    /// Does the gate keep its promises, and does it catch known bugs?
+    /// Test the gate itself: its rates of errors, and whether it catches known bugs
     SelfTest(lab::SelfTestArguments),
-    /// Numerical stability: every quantity where it is hardest, against 32 digits
+    /// Compare all numerical routines with 32-digit references at extreme parameters
     Stress(lab::Stress),
-    /// The catalogue: media, estimators, problems, checks, cases and more
+    /// List media, estimators, problems, checks, cases and more
     List(catalogue::List),
-    /// The manual page of a medium, an estimator, a check, …
+    /// Print the manual page of a medium, an estimator, a check, …
     Explain(catalogue::Explain),
     /// List the grids, images and draws in files, with their sizes, boxes and ranges
     Inspect(inspect::Arguments),
-    /// Judge the draws of another renderer, from a file or a pipe
+    /// Judge draws or images of another program, from files or a pipe
     Judge(Box<judge::Arguments>),
-    /// A case as a scene of Mitsuba 3 or pbrt-v4, with the expected values of its pixels
+    /// Write a case as a scene of Mitsuba 3 or pbrt-v4, with the expected values of its pixels
     Export(export::Arguments),
-    /// Shell completions
+    /// Print completions for a shell
     Completions(help::Arguments),
 }
 

@@ -28,7 +28,7 @@ pub struct Reports {
     /// Form of the rows on stdout; csv and json have all of them
     #[arg(long, value_enum, default_value_t)]
     pub format: Format,
-    /// Verdict that an inconclusive experiment counts as [default: exit code 3]
+    /// Meaning of an inconclusive experiment for the exit code [default: exit code 3]
     #[arg(long, value_enum, value_name = "AS")]
     pub inconclusive: Option<Inconclusive>,
     /// Write a JUnit report

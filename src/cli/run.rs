@@ -73,7 +73,7 @@ pub struct Kept {
         "cases", "filter", "seed", "draws", "alpha", "out", "fixed_draws", "fresh", "strict", "blocks_per_look", "shard",
     ])]
     resume: Option<PathBuf>,
-    /// Draw a share of all blocks, such as part 3 of 16, and judge nothing: that does `trueflight merge`
+    /// Draw a share of all blocks, such as part 3 of 16, without a verdict: `trueflight merge` judges
     #[arg(long, value_name = "K/N", conflicts_with_all = ["budget", "save_baseline", "baseline"])]
     shard: Option<Share>,
 }
