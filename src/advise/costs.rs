@@ -25,7 +25,7 @@ use numeric::rng::name_hash;
 /// Rounds of a measurement, of which the median counts.
 const ROUNDS: u64 = 5;
 /// Shortest time of a round, seconds.
-const SHORTEST: f64 = 1e-4;
+const MIN_SECONDS: f64 = 1e-4;
 /// Draws at a time: the kernels fill their lanes.
 const DRAWS: usize = 2048;
 /// Ratio of the lookups at two σ̂ above which they tell a lookup from a draw.
@@ -180,7 +180,7 @@ fn timed(case: &Case, estimator: usize, place: Variation) -> Option<Timing> {
     fill(1);
     let seconds = fill(1).max(1e-12);
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // from 1 to 1024
-    let times = (SHORTEST / (seconds * DRAWS as f64)).ceil().clamp(1.0, 1024.0) as u32;
+    let times = (MIN_SECONDS / (seconds * DRAWS as f64)).ceil().clamp(1.0, 1024.0) as u32;
     let rounds = Spread::of((0..ROUNDS).map(|_| fill(times)))?;
     let error = 1.0 - rounds.least / rounds.median;
     Some(Timing { seconds: rounds.median, error, lookups })

@@ -29,7 +29,7 @@ pub const STEPS: usize = 64;
 /// Places in each step at which the residual is looked up.
 pub const PLACES: usize = 32;
 /// Least σ̂ of a step, relative to the step with the largest: a residual may hide between the places.
-const LEAST: f64 = 1e-3;
+const MIN_SHARE: f64 = 1e-3;
 /// Maximum number of passes over the steps.
 const PASSES: usize = 60;
 /// Number of places on each side of a step's σ̂, in quarters of `ln σ̂`, among which its minimum is sought.
@@ -124,7 +124,7 @@ impl Steps {
     fn of_weights(&self) -> Option<Vec<f64>> {
         let square = |step: &Vec<f64>| step.iter().map(|x| x * x).sum::<f64>() / step.len() as f64;
         let roots: Vec<f64> = self.residual.iter().map(|step| square(step).sqrt()).collect();
-        let least = LEAST * roots.iter().copied().fold(0.0, f64::max);
+        let least = MIN_SHARE * roots.iter().copied().fold(0.0, f64::max);
         let roots: Vec<f64> = roots.into_iter().map(|root| root.max(least)).collect();
         let (kappa, ..) = search::best(1.0, &|kappa| {
             let sampling: Vec<f64> = roots.iter().map(|root| kappa * root).collect();
@@ -135,7 +135,7 @@ impl Steps {
 
     /// Improves the steps one by one.
     fn of_particle(&self, rule: &Single, start: f64) -> Vec<f64> {
-        let least = LEAST * start;
+        let least = MIN_SHARE * start;
         let mut sampling = vec![start; self.residual.len()];
         let mut last = self.work(rule, &sampling);
         for _ in 0..PASSES {

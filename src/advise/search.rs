@@ -15,7 +15,7 @@ const SETTLED: f64 = 1e-3;
 /// Maximum number of factors of ten by which x follows a V·cost that still falls.
 const DECADES: u32 = 7;
 /// Largest factor of a margin: it stands for any larger one.
-pub const WIDEST: f64 = 1024.0;
+pub const MAX_FACTOR: f64 = 1024.0;
 /// Significant digits of an advised σ̂.
 const DIGITS: f64 = 4.0;
 
@@ -137,10 +137,10 @@ pub fn margins(x: f64, value: f64, f: &dyn Fn(f64) -> f64) -> [f64; 2] {
     let [low, high] = [-1.0, 1.0].map(|sign: f64| {
         let step = sign * 0.5 * 2f64.ln();
         let mut log = step;
-        while log.abs() < WIDEST.ln() && !doubles(log.exp()) {
+        while log.abs() < MAX_FACTOR.ln() && !doubles(log.exp()) {
             log *= 1.5;
         }
-        if log.abs() >= WIDEST.ln() {
+        if log.abs() >= MAX_FACTOR.ln() {
             return if sign < 0.0 { 0.0 } else { f64::INFINITY };
         }
         let inside = if log == step { 0.0 } else { log / 1.5 };
@@ -152,7 +152,7 @@ pub fn margins(x: f64, value: f64, f: &dyn Fn(f64) -> f64) -> [f64; 2] {
 /// The least x, down to x/1024, for which `exists` is true; 0 where it is true for all.
 pub fn least(x: f64, exists: &dyn Fn(f64) -> bool) -> f64 {
     let mut log = 0.0;
-    while log > -WIDEST.ln() {
+    while log > -MAX_FACTOR.ln() {
         let next = log - 2f64.ln();
         if !exists(x * next.exp()) {
             let edge = bisect(next, log, |log| !exists(x * log.exp()));

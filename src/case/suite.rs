@@ -128,7 +128,7 @@ const OTHER_PROBLEM: usize = 200;
 /// A problem has its shortest case. An estimator, a medium, a phase function, a recipe for σ̂ or a control has the
 /// shortest case in which it stands, with one estimator. Cases without a sweep, and of transmittance, go first.
 pub fn example(part: &str, name: &str) -> Option<String> {
-    let page = Wanted { part, name };
+    let page = Target { part, name };
     let sources = [suite(), SHOWN.all()].concat();
     let candidates = sources.iter().flat_map(|source| page.candidates(source));
     let (_, text) = candidates.min()?;
@@ -136,12 +136,12 @@ pub fn example(part: &str, name: &str) -> Option<String> {
 }
 
 /// Page that an example is made for.
-struct Wanted<'a> {
+struct Target<'a> {
     part: &'a str,
     name: &'a str,
 }
 
-impl Wanted<'_> {
+impl Target<'_> {
     /// Returns every way to reduce a case to an example, with its length and penalties.
     fn candidates(&self, source: &Source) -> Vec<(usize, String)> {
         let Ok(spec) = Spec::parse(source, &additions::NONE) else { return Vec::new() };

@@ -17,7 +17,7 @@ use gate::stats::chi_square;
 use numeric::sum::sum_in_lanes;
 
 /// Smallest number of blocks for a test.
-const FEWEST: u64 = 4;
+const MIN_BLOCKS: u64 = 4;
 
 struct BlockMeans {
     mean: f64,
@@ -59,7 +59,7 @@ pub fn questions(subject: &Subject) -> Vec<Question> {
     let Some((channel, moments)) = last_channel(subject) else { return Vec::new() };
     let kurtosis = moments.kurtosis().unwrap_or(f64::INFINITY);
     let needed = normality::needed(kurtosis, channel.tails.rare_event_size);
-    let enough = BLOCK as f64 >= needed && subject.fixed / BLOCK >= FEWEST;
+    let enough = BLOCK as f64 >= needed && subject.fixed / BLOCK >= MIN_BLOCKS;
     let (mean, scale) = (channel.mean.value, 1.0 / moments.variance().sqrt());
     let means = BlockMeans { mean, scale, least: needed };
     Question::distribution("the spread of the blocks' means", enough.then_some(means))

@@ -18,7 +18,7 @@ use gate::stats::ties;
 use theory::{Law, Prediction};
 
 /// Smallest number of collisions that is evidence of their resolution.
-pub const FEWEST: usize = 100;
+pub const MIN_COLLISIONS: usize = 100;
 
 /// Returns the questions of this check.
 pub fn questions(subject: &Subject) -> Vec<Question> {
@@ -73,7 +73,7 @@ fn grain(bins: &[f64], end: f64, from: f64) -> f64 {
 fn p_value(inspected: &Inspected, resolution: &Resolution) -> f64 {
     let mut collisions = inspected.first_draws(BLOCK);
     resolution.collisions(&mut collisions);
-    if collisions.len() < FEWEST {
+    if collisions.len() < MIN_COLLISIONS {
         return 1.0;
     }
     let expected = resolution.expected(collisions.len() as f64, 53, f64::EPSILON);

@@ -19,11 +19,11 @@ use gate::stats::correlation;
 /// L.
 const FIRST: usize = 1024;
 /// Smallest number of blocks for a test.
-const FEWEST: u64 = 4;
+const MIN_BLOCKS: u64 = 4;
 /// Largest `(κ − 3)/B` for which the sums are nearly normal.
-const MOST_EXCESS: f64 = 0.5;
+const MAX_EXCESS: f64 = 0.5;
 /// Largest `E[z⁸]/(6 L B³)`: beyond it, a single draw may decide.
-const MOST_BY_ONE: f64 = 0.01;
+const MAX_BY_ONE: f64 = 0.01;
 
 struct IndexSums {
     mean: f64,
@@ -65,10 +65,10 @@ pub fn questions(subject: &Subject) -> Vec<Question> {
     let Some((channel, moments)) = last_channel(subject) else { return Vec::new() };
     let kurtosis = moments.kurtosis().unwrap_or(f64::INFINITY);
     let blocks = subject.fixed / BLOCK;
-    let enough = blocks >= FEWEST && (kurtosis - 3.0) <= MOST_EXCESS * blocks as f64;
+    let enough = blocks >= MIN_BLOCKS && (kurtosis - 3.0) <= MAX_EXCESS * blocks as f64;
     let eighth = channel.tails.eighth_moment_ratio * kurtosis * kurtosis;
     let by_one = eighth / (6.0 * FIRST as f64 * (blocks as f64).powi(3));
-    let enough = enough && by_one <= MOST_BY_ONE;
+    let enough = enough && by_one <= MAX_BY_ONE;
     let (mean, scale) = (channel.mean.value, 1.0 / moments.variance().sqrt());
     let sums = IndexSums { mean, scale, kurtosis };
     Question::distribution("the sums across streams", enough.then_some(sums))

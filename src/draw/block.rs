@@ -216,7 +216,7 @@ pub struct Drawn {
 
 /// Progress of an experiment: everything that further draws and decisions depend on.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
-pub struct Standing {
+pub struct Progress {
     /// Draws so far.
     pub drawn: Drawn,
     /// Number of merged blocks.
@@ -227,7 +227,7 @@ pub struct Standing {
     pub is_done: bool,
 }
 
-impl Standing {
+impl Progress {
     /// Returns the progress before the first block.
     pub fn new(planned: &Planned) -> Self {
         Self { drawn: Drawn::new(planned), look: 1, ..Self::default() }

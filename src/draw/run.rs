@@ -17,7 +17,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Instant;
 
 use crate::checks::check::Look;
-use crate::draw::block::{Block, Drawn, DrawnExperiment, Draws, Standing};
+use crate::draw::block::{Block, Drawn, DrawnExperiment, Draws, Progress};
 use crate::draw::share::{self, BlockName, Drawing, Share};
 use crate::draw::store::Store;
 use crate::plan::{BLOCK, Plan, Planned};
@@ -65,7 +65,7 @@ pub fn draw_with<'p>(plan: &'p Plan, store: &Store, listen: &Listener) -> Draws<
     let mut running = BTreeMap::new();
     for one in experiments.iter_mut().filter(|one| one.planned.is_drawn()) {
         let planned = one.planned;
-        let at = store.standing(planned).unwrap_or_else(|| Standing::new(planned));
+        let at = store.progress(planned).unwrap_or_else(|| Progress::new(planned));
         if at.drawn.is_reused {
             one.drawn = at.drawn;
         } else {
@@ -267,7 +267,7 @@ struct Running<'p> {
     /// Number of draws that are merged as one block.
     step: u64,
     /// Merged blocks and decisions so far.
-    at: Standing,
+    at: Progress,
     /// Blocks drawn ahead of the next look.
     ahead: VecDeque<Block>,
 }

@@ -393,7 +393,7 @@ impl Fineness {
     fn p_value(&self) -> Option<(f64, String)> {
         let mut collisions = self.first.clone();
         self.resolution.collisions(&mut collisions);
-        if collisions.len() < resolution::FEWEST {
+        if collisions.len() < resolution::MIN_COLLISIONS {
             return None;
         }
         let spacing = if self.is_single { SINGLE } else { f64::EPSILON };

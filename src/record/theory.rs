@@ -10,7 +10,7 @@ use theory::prediction::CERTAIN;
 use theory::{Channel, CountLaw, Prediction};
 
 /// Maximum number of probabilities in the record; a longer list is left out.
-const LONGEST_LAW: usize = 100;
+const MAX_DISTRIBUTION: usize = 100;
 
 /// Returns an experiment of a case with the predictions of each channel, or with the reason of its refusal.
 pub fn predicted(case: &PlannedCase, planned: &Planned) -> ExperimentRecord {
@@ -38,7 +38,7 @@ pub fn predicted(case: &PlannedCase, planned: &Planned) -> ExperimentRecord {
     for covariance in prediction.covariances.iter().filter(|c| c.pair[1] == c.pair[0] + 1) {
         channels[covariance.pair[0]].covariance = finite(Some(covariance.value));
     }
-    let pmf = law.filter(|law| law.pmf.len() <= LONGEST_LAW).map(|law| law.pmf.clone());
+    let pmf = law.filter(|law| law.pmf.len() <= MAX_DISTRIBUTION).map(|law| law.pmf.clone());
     ExperimentRecord {
         same_as: planned.same_as.clone(),
         skipped: Some(ready.experiment.skipped()).filter(|&share| share > 0.0),

@@ -3,13 +3,13 @@
 use numeric::digits::{number, rounded};
 
 /// Maximum number of channels of a pixel: red, green and blue.
-pub const MOST_CHANNELS: usize = 3;
+pub const MAX_CHANNELS: usize = 3;
 
 /// Number for each channel of a pixel; a grey one uses the first only.
-pub type Colour = [f64; MOST_CHANNELS];
+pub type Colour = [f64; MAX_CHANNELS];
 
 /// Largest number of draws at a pixel; more are a mistake in the picture.
-const MOST_DRAWS: f64 = 1e7;
+const MAX_DRAWS: f64 = 1e7;
 
 /// Expected properties of a draw at a pixel.
 #[derive(Debug, Clone)]
@@ -104,7 +104,7 @@ impl Plan {
             let least = number((expected + control).ceil());
             return Err(format!("a draw takes {least} lookups at a pixel, and there are {budget}"));
         }
-        if draws > MOST_DRAWS {
+        if draws > MAX_DRAWS {
             let (expected, draws) = (rounded(expected), rounded(draws));
             return Err(format!(
                 "a draw takes {expected} lookups: {draws} draws a pixel are too many"

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::budget::MOST_CHANNELS;
+use super::budget::MAX_CHANNELS;
 use super::scene::Reference;
 use super::view::View;
 use crate::case::estimator::{Defaults, Estimators};
@@ -121,7 +121,7 @@ impl SubjectKind {
             shows_sky: P::SHOWS_SKY,
             along_ray: P::ALONG_RAY,
             is_predicted: P::IS_PREDICTED,
-            channels: if P::SPECTRAL { MOST_CHANNELS } else { 1 },
+            channels: if P::SPECTRAL { MAX_CHANNELS } else { 1 },
             read: read::<P>,
         }
     }

@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 use std::sync::Arc;
 
-use super::budget::MOST_CHANNELS;
+use super::budget::MAX_CHANNELS;
 use media::catalogue::{Domain, Settings};
 use media::reader::{read_volume, read_volumes};
 use media::{Body, Volume};
@@ -12,7 +12,7 @@ use numeric::geometry::{Aabb, Point, Ray};
 use theory::problems::Sky;
 
 /// Maximum number of pixels along a side; more are a mistake.
-const LARGEST: u64 = 4096;
+const MAX_SIDE: u64 = 4096;
 
 /// Pinhole camera: one ray through the middle of each pixel.
 ///
@@ -178,7 +178,7 @@ fn read_one(settings: &Settings) -> Option<(String, Vec<Arc<Volume>>)> {
 
 fn read_colours(settings: &Settings) -> Option<(String, Vec<Arc<Volume>>)> {
     let fields = read_volumes(settings)?;
-    if fields.len() != MOST_CHANNELS {
+    if fields.len() != MAX_CHANNELS {
         let found = format!("`volume` lists {} channels", fields.len());
         settings.fault("volume", found, "a coloured picture takes three: red, green and blue");
         return None;
@@ -204,10 +204,10 @@ pub fn furthest(about: &Aabb, from: Point) -> f64 {
 fn read_size(settings: &Settings) -> Option<[usize; 2]> {
     let wanted = "columns and rows, as in [128, 128]";
     let list = settings.numbers("size", Domain::Positive, 2)?;
-    let is_size = |&x: &f64| x.fract() == 0.0 && x <= LARGEST as f64;
+    let is_size = |&x: &f64| x.fract() == 0.0 && x <= MAX_SIDE as f64;
     if list.len() != 2 || !list.iter().all(is_size) {
         let found = format!("`size` is {list:?}");
-        settings.fault("size", found, format!("it takes {wanted}, {LARGEST} at most"));
+        settings.fault("size", found, format!("it takes {wanted}, {MAX_SIDE} at most"));
         return None;
     }
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // checked just before

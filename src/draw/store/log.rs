@@ -32,7 +32,7 @@ pub enum Key {
     /// Block of an experiment, and its number.
     Block(u64, u64),
     /// Sums of an experiment.
-    Standing(u64),
+    Progress(u64),
     /// End of a finished share, with its number of blocks.
     End,
 }

@@ -14,7 +14,7 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 pub use self::header::Header;
 pub use self::log::{Key, Log, entry, lock};
-use crate::draw::block::{Block, Draws, Standing};
+use crate::draw::block::{Block, Draws, Progress};
 use crate::draw::run::{Listener, Step};
 use crate::draw::share::{BlockName, Drawing, Threads, Workers};
 use crate::plan::{Plan, Planned};
@@ -115,7 +115,7 @@ impl Store {
             for one in draws.experiments.iter().filter(|one| is_reusable(one.planned)) {
                 let Some(key) = self.key(one.planned.number) else { continue };
                 let drawn = one.drawn.clone();
-                finished.insert(key, Standing { drawn, is_done: true, ..Standing::default() });
+                finished.insert(key, Progress { drawn, is_done: true, ..Progress::default() });
             }
         }
         let old = self.finished.as_ref().map_or(Vec::new(), Log::keys);
@@ -123,14 +123,14 @@ impl Store {
             && old.len() + finished.len() <= MAX_FINISHED
         {
             for key in old {
-                if let Key::Standing(experiment) = key
+                if let Key::Progress(experiment) = key
                     && !finished.contains_key(&experiment)
                 {
-                    finished.extend(log.get(key)?.map(|standing| (experiment, standing)));
+                    finished.extend(log.get(key)?.map(|progress| (experiment, progress)));
                 }
             }
         }
-        let sums = finished.iter().map(|(&one, standing)| entry(Key::Standing(one), standing));
+        let sums = finished.iter().map(|(&one, progress)| entry(Key::Progress(one), progress));
         let entries = std::iter::once(entry(Key::Header, &self.header)).chain(sums);
         Log::write(path, entries).map(drop)
     }
@@ -147,26 +147,26 @@ impl Store {
 
     /// Returns the sums of an experiment, interrupted or finished. An experiment that an interrupted run has begun is
     /// continued, even if another run has finished it.
-    pub fn standing(&self, planned: &Planned) -> Option<Standing> {
+    pub fn progress(&self, planned: &Planned) -> Option<Progress> {
         let key = self.key(planned.number)?;
-        let get = |log: &Log| self.noted(log.get(Key::Standing(key))).flatten();
+        let get = |log: &Log| self.noted(log.get(Key::Progress(key))).flatten();
         let own = self.logs.iter().find_map(get);
         if own.is_some() || self.logs.iter().any(|log| log.blocks(Some(key)) > 0) {
             return own;
         }
         let log = self.finished.as_ref().filter(|_| !self.is_fresh && is_reusable(planned))?;
-        let mut standing: Standing = log.get(Key::Standing(key)).ok().flatten()?;
-        standing.drawn.is_reused = true;
-        Some(standing)
+        let mut progress: Progress = log.get(Key::Progress(key)).ok().flatten()?;
+        progress.drawn.is_reused = true;
+        Some(progress)
     }
 
     /// Returns how many experiments of a plan need not be drawn, and how many can be.
     pub fn reusable(&self, plan: &Plan) -> [usize; 2] {
         let ready =
             plan.experiments().map(|(_, planned)| planned).filter(|one| one.outcome.is_ok());
-        let standings = ready.map(|planned| self.standing(planned));
-        standings.fold([0, 0], |[reused, all], standing| {
-            [reused + usize::from(standing.is_some_and(|one| one.drawn.is_reused)), all + 1]
+        let all = ready.map(|planned| self.progress(planned));
+        all.fold([0, 0], |[reused, all], progress| {
+            [reused + usize::from(progress.is_some_and(|one| one.drawn.is_reused)), all + 1]
         })
     }
 
@@ -195,20 +195,20 @@ impl Store {
     }
 
     /// Rewrites a long log of a run: sums take the place of the blocks that they count.
-    pub fn shorten<'a>(&self, standings: impl Iterator<Item = (u32, &'a Standing)>) {
+    pub fn shorten<'a>(&self, experiments: impl Iterator<Item = (u32, &'a Progress)>) {
         let Some(log) = self.journal_log().filter(|log| log.is_long(MIN_REWRITE, REWRITE_RATIO))
         else {
             return;
         };
-        let standings: BTreeMap<u64, &Standing> =
-            standings.filter_map(|(number, one)| Some((self.key(number)?, one))).collect();
+        let kept: BTreeMap<u64, &Progress> =
+            experiments.filter_map(|(number, one)| Some((self.key(number)?, one))).collect();
         let waits = |key| match key {
             Key::Block(one, block) => {
-                standings.get(&one).is_none_or(|one| !one.is_done && block >= one.blocks)
+                kept.get(&one).is_none_or(|one| !one.is_done && block >= one.blocks)
             }
             _ => false,
         };
-        let sums = standings.iter().map(|(&one, standing)| entry(Key::Standing(one), standing));
+        let sums = kept.iter().map(|(&one, progress)| entry(Key::Progress(one), progress));
         self.noted(log.rewrite(sums, waits));
     }
 

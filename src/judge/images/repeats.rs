@@ -155,7 +155,7 @@ fn ln_choose(n: f64, k: f64) -> f64 {
 }
 
 /// Smallest number of compared values.
-const FEWEST: usize = 32;
+const MIN_VALUES: usize = 32;
 /// ln of the probability below which passes count as shared.
 const LN_SHARED: f64 = -23.0;
 
@@ -174,7 +174,7 @@ pub(super) fn is_own_truth(stack: &Stack, pixels: &Pixels) -> bool {
         }
         compared += 1;
     }
-    compared >= FEWEST
+    compared >= MIN_VALUES
 }
 
 /// Returns whether the variance is that of the passes.
@@ -186,7 +186,7 @@ pub(super) fn is_own_variance(stack: &Stack, pixels: &Pixels) -> bool {
     let is_equal = |scale: f64| {
         let varying = own.values.iter().zip(claimed).filter(|(own, _)| **own > 0.0);
         let is_near = |own: f64, claimed: f64| (own * scale - claimed).abs() <= 2e-3 * claimed;
-        varying.clone().count() >= FEWEST && varying.clone().all(|(own, v)| is_near(*own, *v))
+        varying.clone().count() >= MIN_VALUES && varying.clone().all(|(own, v)| is_near(*own, *v))
     };
     is_equal(1.0) || is_equal((n - 1.0) / n)
 }

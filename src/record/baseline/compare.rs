@@ -364,7 +364,7 @@ fn time_change(entry: &Entry, [before, now]: [f64; 2], tolerance: f64) -> Option
 }
 
 /// Shortest time, in seconds, that is compared; shorter ones are noise.
-const SHORTEST: f64 = 0.1;
+const MIN_SECONDS: f64 = 0.1;
 /// Value with its standard error, relative to it.
 type Relative = (f64, f64);
 
@@ -392,7 +392,7 @@ impl Entry {
     }
 
     fn nanoseconds(&self) -> Option<f64> {
-        let seconds = self.seconds.filter(|&seconds| seconds >= SHORTEST)?;
+        let seconds = self.seconds.filter(|&seconds| seconds >= MIN_SECONDS)?;
         Some(1e9 * seconds / self.drawn as f64)
     }
 }
