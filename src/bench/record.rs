@@ -8,6 +8,7 @@ use serde::{Deserialize, Serialize};
 use super::clock::Clock;
 use super::stored::Comparison;
 use crate::case::id::ExperimentId;
+use crate::record::Digits;
 
 /// A finished bench.
 #[derive(Debug, Clone)]
@@ -63,6 +64,11 @@ pub struct BenchCase {
 }
 
 impl BenchCase {
+    /// Returns the digits that distinguish σ̂ and swept values.
+    pub fn digits(&self) -> Digits {
+        Digits::new(self.rows.iter().flat_map(|row| [row.sampling(), row.id.swept_value()]))
+    }
+
     /// Returns the first row of each experiment.
     pub fn experiments(&self) -> impl Iterator<Item = &BenchRow> {
         self.rows.iter().filter(|row| row.is_first)

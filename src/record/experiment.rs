@@ -177,6 +177,18 @@ pub enum Score {
 }
 
 impl Score {
+    /// All scores.
+    pub const ALL: [Self; 3] = [Self::Mean, Self::Variance, Self::Lookups];
+
+    /// Returns the name of the quantity.
+    pub fn quantity(self) -> &'static str {
+        match self {
+            Self::Mean => "mean",
+            Self::Variance => "variance",
+            Self::Lookups => "lookups",
+        }
+    }
+
     /// Returns the name of its column in files.
     pub fn word(self) -> &'static str {
         match self {

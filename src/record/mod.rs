@@ -236,6 +236,19 @@ impl Deref for Row<'_> {
     }
 }
 
+/// Quantity as measured and in theory.
+#[derive(Debug, Clone, Copy)]
+pub struct Compared {
+    /// Measured value.
+    pub measured: Option<f64>,
+    /// Standard error of the measured value.
+    pub deviation: Option<f64>,
+    /// Value in theory.
+    pub theory: Option<f64>,
+    /// Difference in predicted standard errors.
+    pub z: Option<f64>,
+}
+
 impl<'a> Row<'a> {
     /// Returns whether it is the first of its experiment.
     pub fn is_first(&self) -> bool {
@@ -268,6 +281,24 @@ impl<'a> Row<'a> {
     pub fn why(&self) -> String {
         let reason = &self.values.reason;
         if reason.is_empty() { self.case.notes.join("; ") } else { reason.clone() }
+    }
+
+    /// Returns the values of a quantity.
+    pub fn compared(&self, score: Score) -> Compared {
+        let (row, experiment) = (self.values, self.experiment);
+        let [measured, deviation, theory, z] = match score {
+            Score::Mean => [row.mean, row.standard_error, row.truth, row.z_mean],
+            Score::Variance => {
+                [row.variance, row.variance_deviation, row.predicted_variance, row.z_variance]
+            }
+            Score::Lookups => [
+                experiment.lookups_per_draw,
+                experiment.lookups_deviation,
+                experiment.predicted_lookups,
+                experiment.z_lookups,
+            ],
+        };
+        Compared { measured, deviation, theory, z }
     }
 
     /// Returns whether a z-score is to be read as normal.

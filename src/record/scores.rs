@@ -48,8 +48,11 @@ impl Bin {
 /// Returns the scores of means, variances and lookups. Scores that are not to be read as normal, of declared biases, and of
 /// draws that count for another experiment, are left out, and so is a quantity without scores.
 pub fn scores(results: &Results) -> Vec<Scores> {
-    let all = [Score::Mean, Score::Variance, Score::Lookups];
-    all.into_iter().map(|score| Scores::of(results, score)).filter(|one| one.all > 0).collect()
+    Score::ALL
+        .into_iter()
+        .map(|score| Scores::of(results, score))
+        .filter(|one| one.all > 0)
+        .collect()
 }
 
 impl Scores {
@@ -76,11 +79,8 @@ fn band(trials: u64, p: f64) -> [u64; 2] {
 
 /// Returns a finite score of a row that is to be read as normal.
 fn value(row: &Row, score: Score) -> Option<f64> {
-    let is_own = row.experiment.same_as.is_none() && !row.findings().any(|one| one.expects_bias);
-    let z = match score {
-        Score::Mean => row.z_mean,
-        Score::Variance => row.z_variance,
-        Score::Lookups => row.experiment.z_lookups.filter(|_| row.is_first()),
-    };
-    z.filter(|z| z.is_finite() && is_own && !row.not_normal.contains(&score))
+    let is_own = row.experiment.same_as.is_none()
+        && !row.findings().any(|one| one.expects_bias)
+        && (score != Score::Lookups || row.is_first());
+    row.compared(score).z.filter(|z| z.is_finite() && is_own && row.is_normal(score))
 }

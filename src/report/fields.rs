@@ -4,9 +4,9 @@ use std::fmt::Write;
 
 use serde::ser::{Serialize, Serializer};
 
-use crate::report::layout::Column;
+use crate::report::layout::{Column, Grid};
 use crate::report::{Artifact, ReportError};
-use numeric::digits::{count, enough, exact, fixed, percent, short, signed};
+use numeric::digits::{count, enough, exact, fixed, percent, short, signed, time};
 
 /// Content of one field.
 #[derive(Debug, Clone, PartialEq)]
@@ -80,6 +80,8 @@ cells! {
 pub enum Print {
     /// Words, and counts in full below a million.
     Plain,
+    /// Words made of numbers, which are aligned like numbers.
+    Right,
     /// At most this number of significant digits.
     Short(usize),
     /// This number of significant digits.
@@ -92,6 +94,8 @@ pub enum Print {
     Percent,
     /// Two digits, rounded up.
     Enough,
+    /// Three digits of a time in s, in the unit that suits it.
+    Time,
 }
 
 impl Print {
@@ -110,13 +114,14 @@ impl Print {
         match self {
             _ if x.is_nan() => String::new(),
             _ if x.is_infinite() => (if x > 0.0 { "∞" } else { "-∞" }).to_owned(),
-            Self::Plain => exact(x),
+            Self::Plain | Self::Right => exact(x),
             Self::Short(digits) => short(x, digits),
             Self::Fixed(digits) => fixed(x, digits),
             Self::Places(places) => format!("{x:.places$}"),
             Self::Signed => signed(x),
             Self::Percent => percent(x),
             Self::Enough => enough(x),
+            Self::Time => time(x),
         }
     }
 }
@@ -163,9 +168,66 @@ impl<T> Field<T> {
     }
 }
 
-/// Returns the field of this name; of an unknown name the first one.
-pub fn named<'f, T>(fields: &'f [Field<T>], name: &str) -> &'f Field<T> {
-    fields.iter().find(|field| field.name == name).unwrap_or(&fields[0])
+/// Type of rows with its fields.
+pub trait Table: Sized {
+    /// Names of all fields, in the order of [`Table::fields`].
+    const NAMES: &'static [&'static str];
+
+    /// Number of fields of files; further fields are on screens and pages only.
+    const FILES: usize;
+
+    /// Returns all fields.
+    fn fields() -> Vec<Field<Self>>;
+
+    /// Returns the fields of files, in their order.
+    fn of_files() -> Vec<Field<Self>> {
+        let mut fields = Self::fields();
+        fields.truncate(Self::FILES);
+        fields
+    }
+}
+
+/// Returns the places of fields in their table. It is for constants: an unknown name is an error of the compiler.
+pub(in crate::report) const fn places<T: Table, const N: usize>(names: [&str; N]) -> [usize; N] {
+    let mut places = [0; N];
+    let mut i = 0;
+    while i < N {
+        while !is_same(names[i], T::NAMES[places[i]]) {
+            places[i] += 1;
+        }
+        i += 1;
+    }
+    places
+}
+
+/// Returns the places of fields in their table, each with its rank on a narrow console, where the highest rank leaves first.
+pub(in crate::report) const fn ranked<T: Table, const N: usize>(
+    columns: [(&str, u8); N],
+) -> [(usize, u8); N] {
+    let mut ranked = [(0, 0); N];
+    let mut i = 0;
+    while i < N {
+        let [place] = places::<T, 1>([columns[i].0]);
+        ranked[i] = (place, columns[i].1);
+        i += 1;
+    }
+    ranked
+}
+
+const fn is_same(a: &str, b: &str) -> bool {
+    let (a, b) = (a.as_bytes(), b.as_bytes());
+    let mut i = 0;
+    while i < a.len() && i < b.len() && a[i] == b[i] {
+        i += 1;
+    }
+    a.len() == b.len() && i == a.len()
+}
+
+/// Returns the table of rows for a console, with these columns.
+pub fn grid<T: Table>(rows: &[T], columns: &[(usize, u8)]) -> Grid {
+    let fields = T::fields();
+    let column = |&(place, rank): &(usize, u8)| fields[place].column(rows, rank);
+    Grid { columns: columns.iter().map(column).collect() }
 }
 
 /// Lists fields, as in `"seed": "Seed of the run" = |row| row.seed;`, or with heading, unit and form, as in
@@ -173,7 +235,9 @@ pub fn named<'f, T>(fields: &'f [Field<T>], name: &str) -> &'f Field<T> {
 macro_rules! fields {
     ($($name:literal $([$head:literal, $unit:literal, $print:expr])?: $meaning:literal = |$row:pat_param| $cell:expr;)*) => {{
         #[allow(unused_imports)]
-        use $crate::report::fields::Print::{Enough, Fixed, Percent, Places, Plain, Short, Signed};
+        use $crate::report::fields::Print::{
+            Enough, Fixed, Percent, Places, Plain, Right, Short, Signed, Time,
+        };
         vec![$($crate::report::fields::fields!(
             @one $name [$($head, $unit, $print)?], $meaning, |$row| $cell
         )),*]
@@ -194,46 +258,73 @@ macro_rules! fields {
 }
 pub(in crate::report) use fields;
 
+/// Makes a type of rows a [`Table`] of fields: those of files, then those of screens and pages only.
+macro_rules! table {
+    (impl $(<$life:lifetime>)? for $row:ty {
+        $($name:literal $([$($form:tt)*])?: $meaning:literal = |$arg:pat_param| $cell:expr;)*
+    } $(screens {
+        $($other:literal $([$($shape:tt)*])?: $sense:literal = |$one:pat_param| $content:expr;)*
+    })?) => {
+        impl $(<$life>)? $crate::report::fields::Table for $row {
+            const NAMES: &'static [&'static str] = &[$($name,)* $($($other,)*)?];
+            const FILES: usize = [$($name),*].len();
+
+            fn fields() -> Vec<$crate::report::fields::Field<Self>> {
+                $crate::report::fields::fields! {
+                    $($name $([$($form)*])?: $meaning = |$arg| $cell;)*
+                    $($($other $([$($shape)*])?: $sense = |$one| $content;)*)?
+                }
+            }
+        }
+    };
+}
+pub(in crate::report) use table;
+
 /// Returns rows as CSV, with a first line of names; `name` is the file in an error.
-///
-/// # Errors
-///
-/// The encoder fails.
 pub fn csv<T>(
     name: &str,
     fields: &[Field<T>],
     rows: impl IntoIterator<Item = T>,
 ) -> Result<String, ReportError> {
-    let line = |row: T| fields.iter().map(|field| (field.cell)(&row).csv()).collect::<Vec<_>>();
-    table(name, fields.iter().map(|field| field.name), rows.into_iter().map(line))
+    let wrong = |source| ReportError::Csv { name: name.to_owned(), source };
+    let mut writer = csv::Writer::from_writer(Vec::new());
+    writer.write_record(fields.iter().map(|field| field.name)).map_err(wrong)?;
+    for row in rows {
+        let cells = fields.iter().map(|field| (field.cell)(&row).csv());
+        writer.write_record(cells).map_err(wrong)?;
+    }
+    let bytes = writer.into_inner().map_err(|error| wrong(error.into_error().into()))?;
+    Ok(String::from_utf8_lossy(&bytes).into_owned())
+}
+
+/// Row as an object of JSON.
+pub struct Object<'a, T> {
+    /// Fields.
+    pub fields: &'a [Field<T>],
+    /// Row.
+    pub row: T,
+}
+
+impl<T> Serialize for Object<'_, T> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer
+            .collect_map(self.fields.iter().map(|field| (field.name, (field.cell)(&self.row))))
+    }
 }
 
 /// Returns rows as a JSON array of objects, one per line. Unknown is `null`, and so is an infinite number, which JSON
 /// cannot write.
-///
-/// # Errors
-///
-/// The encoder fails.
 pub fn json<T>(
     fields: &[Field<T>],
     rows: impl IntoIterator<Item = T>,
 ) -> Result<String, ReportError> {
-    let object = |row: T| {
-        let mut bytes = Vec::new();
-        let cells = fields.iter().map(|field| (field.name, (field.cell)(&row)));
-        serde_json::Serializer::new(&mut bytes).collect_map(cells)?;
-        Ok::<_, serde_json::Error>(String::from_utf8_lossy(&bytes).into_owned())
-    };
-    let objects: Result<Vec<_>, _> = rows.into_iter().map(object).collect();
+    let objects = rows.into_iter().map(|row| serde_json::to_string(&Object { fields, row }));
+    let objects: Result<Vec<_>, _> = objects.collect();
     let objects = objects?.join(",\n");
     Ok(if objects.is_empty() { "[]\n".to_owned() } else { format!("[\n{objects}\n]\n") })
 }
 
 /// Returns a file of rows as CSV.
-///
-/// # Errors
-///
-/// The encoder fails.
 pub fn artifact<T>(
     path: &str,
     fields: &[Field<T>],
@@ -251,25 +342,4 @@ pub fn markdown<T>(fields: &[Field<T>]) -> String {
         let _ = writeln!(text, "| `{name}` | {head} | {unit} | {meaning} |");
     }
     text
-}
-
-/// Returns the CSV text of a header and lines; `name` is the file in an error.
-pub(in crate::report) fn table<H, L, F>(
-    name: &str,
-    header: H,
-    lines: L,
-) -> Result<String, ReportError>
-where
-    H: IntoIterator<Item = &'static str>,
-    L: IntoIterator<Item = F>,
-    F: IntoIterator<Item = String>,
-{
-    let wrong = |source| ReportError::Csv { name: name.to_owned(), source };
-    let mut writer = csv::Writer::from_writer(Vec::new());
-    writer.write_record(header).map_err(wrong)?;
-    for line in lines {
-        writer.write_record(line).map_err(wrong)?;
-    }
-    let bytes = writer.into_inner().map_err(|error| wrong(error.into_error().into()))?;
-    Ok(String::from_utf8_lossy(&bytes).into_owned())
 }

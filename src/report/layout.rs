@@ -7,8 +7,8 @@ use unicode_width::{UnicodeWidthChar, UnicodeWidthStr};
 /// Gap between two columns.
 const GAP: &str = "  ";
 /// Width to which names are cut before columns are dropped; they get shorter only when all columns are dropped.
-const COMFORTABLE: usize = 24;
-const SHORTEST: usize = 10;
+const USUAL_NAME: usize = 24;
+const MIN_NAME: usize = 10;
 
 /// Width and colours of the screen.
 #[derive(Debug, Clone, Copy)]
@@ -106,9 +106,6 @@ impl Field {
     }
 }
 
-/// Column of rows: heading, whether it has numbers, rank, and text.
-pub type Spec<T> = (&'static str, bool, u8, fn(&T) -> String);
-
 /// Column of a table.
 #[derive(Debug, Clone)]
 pub struct Column {
@@ -154,13 +151,6 @@ pub struct Grid {
 }
 
 impl Grid {
-    /// Makes a table of rows.
-    pub fn of<T>(rows: &[T], specs: &[Spec<T>]) -> Self {
-        let column =
-            |&(head, right, rank, text): &Spec<T>| Column::of(rows, (head, right, rank), text);
-        Self { columns: specs.iter().map(column).collect() }
-    }
-
     /// Returns the width of its lines.
     pub fn width(&self) -> usize {
         let gaps = GAP.len() * self.columns.len().saturating_sub(1);
@@ -170,13 +160,13 @@ impl Grid {
     /// Makes it fit: shortens names somewhat, then drops columns, then shortens names further.
     pub fn fit(&mut self, width: usize) {
         self.columns.retain(|column| column.fields.iter().any(|field| !field.text.is_empty()));
-        self.shorten(width, COMFORTABLE);
+        self.shorten(width, USUAL_NAME);
         while self.width() > width {
             let ranks = self.columns.iter().map(|column| column.rank);
             let Some(highest) = ranks.max().filter(|&rank| rank > 0) else { break };
             self.columns.retain(|column| column.rank != highest);
         }
-        self.shorten(width, SHORTEST);
+        self.shorten(width, MIN_NAME);
         self.columns.iter_mut().for_each(Column::fill);
     }
 

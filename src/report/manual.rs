@@ -2,9 +2,16 @@
 
 use std::fmt::Write;
 
-use crate::report::fields::markdown;
+use crate::judge::images::judgement::Tile;
+use crate::report::fields::{Table, markdown};
+use crate::report::run::summary_csv::Line;
 use crate::report::run::totals::{NOT_NORMAL, VERDICTS};
-use crate::report::{advise, bench, run, self_test, stress};
+use crate::report::run::{case_csv, checks_csv};
+use crate::report::{self, advise, bench, render};
+use lab::calibration::Rate;
+use lab::mutants::Caught;
+use lab::streams::StreamVerdicts;
+use lab::stress;
 
 /// Returns the page as Markdown.
 pub fn columns() -> String {
@@ -19,19 +26,25 @@ pub fn columns() -> String {
     let mut add = |title: &str, table: String| {
         let _ = write!(text, "\n## {title}\n\n{table}");
     };
-    add(
-        "Rows of a run: `summary.csv`, `CASE.csv`, `--format csv|json`",
-        markdown(&run::fields::of_files()),
-    );
-    add("On consoles and pages only", markdown(&run::fields::of_screens()));
-    add("Findings of checks: `checks.csv`", markdown(&run::checks_csv::of_findings()));
-    add("Times: `bench.csv`, `bench --format csv|json`", markdown(&bench::tables::of_rows()));
-    add("Advice: `advise.csv`, `advise --format csv|json`", markdown(&advise::of_rows()));
-    add("Error against time: `CASE.error.csv`", markdown(&bench::tables::of_errors()));
-    add("Promised rates: `self-test/calibration.csv`", markdown(&self_test::of_rates()));
-    add("Foreign streams: `self-test/foreign-streams.csv`", markdown(&self_test::of_streams()));
-    add("Known bugs: `self-test/mutants.csv`", markdown(&self_test::of_mutants()));
-    add("Bounds: `stress/stress.csv`", markdown(&stress::of_rows()));
-    add("Single precision: `stress/single-precision.csv`", markdown(&stress::of_points()));
+    add("Rows of a run: `summary.csv`, `CASE.csv`, `--format csv|json`", of_files::<Line>());
+    add("On consoles and pages only", markdown(&Line::fields()[Line::FILES..]));
+    add("Error bars: `CASE.csv` only", markdown(&case_csv::deviations()));
+    add("Predicted curves of a sweep: `CASE.theory.csv`", of_files::<case_csv::Predicted>());
+    add("The ray of a case: `CASE.anatomy.csv`", of_files::<case_csv::Place>());
+    add("Findings of checks: `checks.csv`", of_files::<checks_csv::FindingRow>());
+    add("Times: `bench.csv`, `bench --format csv|json`", of_files::<bench::tables::Joined>());
+    add("Error against time: `CASE.error.csv`", of_files::<bench::tables::Priced>());
+    add("Advice: `advise.csv`, `advise --format csv|json`", of_files::<advise::Joined>());
+    add("Tiles of images: `tiles.csv` of `judge --images`", of_files::<&Tile>());
+    add("Images: `gallery.csv` of `render`", of_files::<render::Joined>());
+    add("Promised rates: `self-test/calibration.csv`", of_files::<&Rate>());
+    add("Foreign streams: `self-test/foreign-streams.csv`", of_files::<&StreamVerdicts>());
+    add("Known bugs: `self-test/mutants.csv`", of_files::<&Caught>());
+    add("Bounds: `stress/stress.csv`", of_files::<&stress::Row>());
+    add("Single precision: `stress/single-precision.csv`", of_files::<report::stress::Measured>());
     text + "\nA z in parentheses: " + NOT_NORMAL.trim_start_matches("(z): ") + ".\n"
+}
+
+fn of_files<T: Table>() -> String {
+    markdown(&T::of_files())
 }

@@ -4,6 +4,8 @@
 //! [`run`] is about a [`Record`](crate::record::Record). Shared are [`fields`], [`layout`], [`page`], [`mod@html`] and [`plots`].
 //! A report does no arithmetic beyond formatting.
 
+#![allow(clippy::missing_errors_doc)] // [`ReportError`] tells all of them
+
 pub mod advise;
 pub mod bench;
 pub mod fields;

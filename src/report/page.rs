@@ -11,7 +11,7 @@ const CODE: usize = 4;
 /// Number of spaces between the columns of a table.
 const GAP: usize = 2;
 /// Smallest width of a column with wrapped words.
-const NARROWEST: usize = 8;
+const MIN_WIDTH: usize = 8;
 
 /// Letters without a space between them, in runs of one paint.
 type Word = Vec<(Paint, String)>;
@@ -205,7 +205,7 @@ fn widths(rows: &[Vec<Vec<Word>>], room: usize) -> Vec<usize> {
     let room = room.saturating_sub(GAP * columns.saturating_sub(1));
     while widths.iter().sum::<usize>() > room {
         match widths.iter_mut().max() {
-            Some(widest) if *widest > NARROWEST => *widest -= 1,
+            Some(widest) if *widest > MIN_WIDTH => *widest -= 1,
             _ => break,
         }
     }

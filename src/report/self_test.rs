@@ -2,8 +2,8 @@
 
 use std::fmt::Write;
 
-use crate::report::fields::{self, fields};
-use crate::report::layout::{Field, Grid, Paint, Pen};
+use crate::report::fields::{self, Table, grid, ranked, table};
+use crate::report::layout::{Field, Paint, Pen};
 use crate::report::{Artifact, ReportError};
 use crate::self_test::SelfTest;
 use lab::calibration::{Calibration, Rate};
@@ -13,6 +13,26 @@ use numeric::digits::{count, short};
 
 /// Words for a promise.
 const KEPT: [&str; 2] = ["kept", "BROKEN"];
+
+/// Columns of the screen, each with its rank.
+const RATES: [(usize, u8); 7] = ranked::<&Rate, _>([
+    ("what", 0),
+    ("count", 0),
+    ("trials", 0),
+    ("rate", 0),
+    ("low_99", 0),
+    ("high_99", 0),
+    ("promise", 0),
+]);
+const STREAMS: [(usize, u8); 5] = ranked::<&StreamVerdicts, _>([
+    ("law", 0),
+    ("known", 0),
+    ("pass", 0),
+    ("fail", 0),
+    ("inconclusive", 0),
+]);
+const MUTANTS: [(usize, u8); 5] =
+    ranked::<&Caught, _>([("mutant", 0), ("place", 1), ("check", 0), ("draws", 0), ("others", 2)]);
 
 /// Returns the tables for the screen.
 pub fn table(found: &SelfTest, pen: Pen) -> String {
@@ -36,18 +56,7 @@ fn promises(text: &mut String, pen: Pen, calibration: &Calibration) {
     );
     let _ = writeln!(text, "{} · {} draws", pen.paint(Paint::Bold, &title), count(*draws));
     let rates: Vec<&Rate> = rates(calibration).collect();
-    let mut grid = Grid::of(
-        &rates,
-        &[
-            ("what", false, 0, |rate| rate.what.clone()),
-            ("count", true, 0, |rate| rate.count.to_string()),
-            ("of", true, 0, |rate| rate.trials.to_string()),
-            ("rate", true, 0, |rate| short(share(rate), 2)),
-            ("at least", true, 0, |rate| short(rate.limits[0], 2)),
-            ("at most (99 %)", true, 0, |rate| short(rate.limits[1], 2)),
-            ("promised", true, 0, |rate| short(rate.promise, 2)),
-        ],
-    );
+    let mut grid = grid(&rates, &RATES);
     let kept = rates.iter().map(|rate| Field::judged(rate.is_kept, KEPT));
     grid.push("", kept.collect());
     grid.fit(pen.width);
@@ -72,16 +81,8 @@ fn streams(text: &mut String, pen: Pen, streams: &[StreamVerdicts]) {
         "foreign draws: {failed} of {judged} verdicts on correct streams of difficult distributions fail"
     );
     let _ = writeln!(text, "{}", pen.paint(Paint::Bold, &title));
-    let mut grid = Grid::of(
-        streams,
-        &[
-            ("law", false, 0, |verdicts| verdicts.law.clone()),
-            ("known", false, 0, |verdicts| verdicts.known.clone()),
-            ("pass", true, 0, |verdicts| verdicts.passed.to_string()),
-            ("fail", true, 0, |verdicts| verdicts.failed.to_string()),
-            ("inconclusive", true, 0, |verdicts| verdicts.inconclusive.to_string()),
-        ],
-    );
+    let rows: Vec<&StreamVerdicts> = streams.iter().collect();
+    let mut grid = grid(&rows, &STREAMS);
     let kept = streams.iter().map(|verdicts| Field::judged(verdicts.is_kept(), KEPT));
     grid.push("", kept.collect());
     grid.fit(pen.width);
@@ -102,20 +103,8 @@ fn mutants(text: &mut String, pen: Pen, mutants: &[Caught]) {
     let caught = mutants.iter().filter(|mutant| mutant.is_right()).count();
     let title = format!("mutants: {caught} of {} caught, each honest twin passes", mutants.len());
     let _ = writeln!(text, "{}", pen.paint(Paint::Bold, &title));
-    let others = |mutant: &Caught| {
-        let others = mutant.failed.iter().filter(|name| *name != mutant.check);
-        others.map(String::as_str).collect::<Vec<_>>().join(", ")
-    };
-    let mut grid = Grid::of(
-        mutants,
-        &[
-            ("mutant", false, 0, |mutant| mutant.name.to_owned()),
-            ("on", false, 1, place),
-            ("caught by", false, 0, |mutant| mutant.check.to_owned()),
-            ("draws", true, 0, |mutant| mutant.draws.map(count).unwrap_or_default()),
-            ("also by", false, 2, others),
-        ],
-    );
+    let rows: Vec<&Caught> = mutants.iter().collect();
+    let mut grid = grid(&rows, &MUTANTS);
     for (field, mutant) in grid.columns[3].fields.iter_mut().zip(mutants) {
         match mutant.draws {
             Some(_) if mutant.twin_passes => {}
@@ -127,27 +116,28 @@ fn mutants(text: &mut String, pen: Pen, mutants: &[Caught]) {
     let _ = writeln!(text, "{}", grid.render(pen));
 }
 
-/// Returns the place of a mutant: `rod/known-bugs: analog`.
-fn place(mutant: &Caught) -> String {
-    format!("{}: {}", mutant.case, mutant.estimator)
+/// Returns the checks that fail beside the one that must.
+fn others(mutant: &Caught) -> String {
+    let others = mutant.failed.iter().filter(|name| *name != mutant.check);
+    others.map(String::as_str).collect::<Vec<_>>().join(", ")
 }
 
-/// Returns the fields of promised rates.
-pub fn of_rates<'a>() -> Vec<fields::Field<&'a Rate>> {
-    fields! {
+table! {
+    impl<'a> for &'a Rate {
         "what": "Kind of error" = |rate| &rate.what;
         "count": "Number of errors" = |rate| rate.count;
-        "trials": "Number of trials" = |rate| rate.trials;
-        "low_99": "Lower end of the 99 % interval of the rate" = |rate| rate.limits[0];
-        "high_99": "Upper end" = |rate| rate.limits[1];
-        "promise": "Promised bound on the rate" = |rate| rate.promise;
+        "trials" ["of", "", Plain]: "Number of trials" = |rate| rate.trials;
+        "low_99" ["at least", "", Short(2)]: "Lower end of the 99 % interval of the rate" = |rate| rate.limits[0];
+        "high_99" ["at most (99 %)", "", Short(2)]: "Upper end" = |rate| rate.limits[1];
+        "promise" ["promised", "", Short(2)]: "Promised bound on the rate" = |rate| rate.promise;
         "kept": "Whether the interval allows the promise" = |rate| rate.is_kept;
+    } screens {
+        "rate" ["rate", "", Short(2)]: "Number of errors over the number of trials" = |rate| share(rate);
     }
 }
 
-/// Returns the fields of foreign streams.
-pub fn of_streams<'a>() -> Vec<fields::Field<&'a StreamVerdicts>> {
-    fields! {
+table! {
+    impl<'a> for &'a StreamVerdicts {
         "law": "Distribution of the draws" = |verdicts| &verdicts.law;
         "known": "What the check is told of it" = |verdicts| &verdicts.known;
         "streams": "Number of streams" = |verdicts| verdicts.streams;
@@ -159,29 +149,35 @@ pub fn of_streams<'a>() -> Vec<fields::Field<&'a StreamVerdicts>> {
     }
 }
 
-/// Returns the fields of mutants.
-pub fn of_mutants<'a>() -> Vec<fields::Field<&'a Caught>> {
-    fields! {
+table! {
+    impl<'a> for &'a Caught {
         "mutant": "Name of the known bug" = |mutant| mutant.name;
         "bug": "Description of the bug" = |mutant| mutant.bug;
         "case": "Case that it is put into" = |mutant| mutant.case;
         "estimator": "Estimator that has it" = |mutant| &mutant.estimator;
-        "check": "Check that must catch it" = |mutant| mutant.check;
+        "check" ["caught by", "", Plain]: "Check that must catch it" = |mutant| mutant.check;
         "draws": "Number of draws until it was caught; empty if it escaped" = |mutant| mutant.draws;
         "failed": "All checks that fail" = |mutant| mutant.failed.join(" ");
         "twin_passes": "Whether the correct estimator passes with the same draws" = |mutant| mutant.twin_passes;
+    } screens {
+        "place" ["on", "", Plain]: "Case and estimator, as in `rod/known-bugs: analog`" = |mutant| format!("{}: {}", mutant.case, mutant.estimator);
+        "others" ["also by", "", Plain]: "Other checks that fail" = |mutant| others(mutant);
     }
 }
 
 /// Returns the tables as CSV files.
-///
-/// # Errors
-///
-/// The encoder fails.
 pub fn artifacts(found: &SelfTest) -> Result<Vec<Artifact>, ReportError> {
     Ok(vec![
-        fields::artifact("self-test/calibration.csv", &of_rates(), rates(&found.calibration))?,
-        fields::artifact("self-test/foreign-streams.csv", &of_streams(), &found.streams)?,
-        fields::artifact("self-test/mutants.csv", &of_mutants(), &found.mutants)?,
+        fields::artifact(
+            "self-test/calibration.csv",
+            &<&Rate>::of_files(),
+            rates(&found.calibration),
+        )?,
+        fields::artifact(
+            "self-test/foreign-streams.csv",
+            &<&StreamVerdicts>::fields(),
+            &found.streams,
+        )?,
+        fields::artifact("self-test/mutants.csv", &<&Caught>::of_files(), &found.mutants)?,
     ])
 }

@@ -2,32 +2,31 @@
 
 use std::fmt::Write;
 
-use crate::advise::search::WIDEST;
+use super::Joined;
+use crate::advise::search::MAX_FACTOR;
 use crate::advise::{Advice, Group, Row, Target};
-use crate::report::layout::{Grid, Paint, Pen, Spec, end_elided};
+use crate::report::fields::{grid, ranked};
+use crate::report::layout::{Paint, Pen, end_elided};
 use numeric::digits::{fixed, percent, short, time};
 
-const COLUMNS: &[Spec<Row>] = &[
-    ("", true, 0, rank),
-    ("estimator", false, 0, |row| row.estimator.clone()),
-    ("σ\u{302}", true, 1, sampling),
-    ("control", false, 5, |row| row.control.clone()),
-    ("s.d./T", true, 3, |row| fixed(row.deviation, 3)),
-    ("lookups", true, 4, |row| fixed(row.lookups, 3)),
-    ("setup", true, 7, |row| {
-        if row.setup_lookups > 0.0 { short(row.setup_lookups, 3) } else { String::new() }
-    }),
-    ("draws", true, 8, |row| short(row.draws, 2)),
-    ("σ\u{302} ×", true, 2, |row| row.margins.map(margins).unwrap_or_default()),
-    ("least σ\u{302}", true, 6, |row| row.least.map(|least| short(least, 3)).unwrap_or_default()),
-    ("kurtosis", true, 7, |row| {
-        row.kurtosis.map(|kurtosis| short(kurtosis, 3)).unwrap_or_default()
-    }),
-    ("needs", false, 2, |row| row.needs.clone()),
-];
+/// Columns, each with its rank, before and after the goal.
+const FIRST: [(usize, u8); 3] =
+    ranked::<Joined, _>([("rank_marked", 0), ("estimator", 0), ("sampling_marked", 1)]);
+const LAST: [(usize, u8); 9] = ranked::<Joined, _>([
+    ("control", 5),
+    ("relative_deviation", 3),
+    ("lookups_per_draw", 4),
+    ("setup", 7),
+    ("draws", 8),
+    ("margins", 2),
+    ("least_sampling", 6),
+    ("kurtosis", 7),
+    ("needs", 2),
+]);
 
-/// Place of the column of the goal.
-const GOAL: usize = 3;
+/// Columns of the goal: a time, another cost, or an error.
+const GOALS: [(usize, u8); 3] =
+    ranked::<Joined, _>([("time", 0), ("cost", 0), ("error_percent", 0)]);
 
 /// Returns the rank, with a mark of a tie.
 pub fn rank(row: &Row) -> String {
@@ -44,9 +43,9 @@ pub fn sampling(row: &Row) -> String {
 }
 
 /// Returns the range of factors on σ̂ within which the cost stays below its double.
-fn margins([low, high]: [f64; 2]) -> String {
+pub fn margins([low, high]: [f64; 2]) -> String {
     let low = if low > 0.0 { fixed(low, 2) } else { "0".to_owned() };
-    let high = if high < WIDEST { fixed(high, 2) } else { "∞".to_owned() };
+    let high = if high < MAX_FACTOR { fixed(high, 2) } else { "∞".to_owned() };
     format!("{low}–{high}")
 }
 
@@ -69,7 +68,7 @@ pub fn table(advice: &Advice, pen: Pen) -> String {
     pen.heading(&mut text, &advice.case, &advice.title);
     let _ = writeln!(text, "{}", pen.paint(Paint::Dim, &end_elided(&facts(advice), pen.width)));
     for group in [Group::Ranked, Group::Bounded, Group::Informed] {
-        let rows: Vec<Row> = advice.rows.iter().filter(|row| row.group == group).cloned().collect();
+        let rows: Vec<Joined> = super::joined(advice).filter(|of| of.row.group == group).collect();
         if rows.is_empty() {
             continue;
         }
@@ -81,13 +80,13 @@ pub fn table(advice: &Advice, pen: Pen) -> String {
         if !words.is_empty() {
             let _ = writeln!(text, "{}", pen.paint(Paint::Dim, words));
         }
-        let spec: Spec<Row> = match (advice.target, advice.unit()) {
-            (Target::Error(_), "s") => ("time", true, 0, |row| time(row.time)),
-            (Target::Error(_), _) => ("cost", true, 0, |row| short(row.time, 3)),
-            (Target::Budget(_), _) => ("error", true, 0, |row| percent(row.error)),
+        let [time, cost, error] = GOALS;
+        let goal = match (advice.target, advice.unit()) {
+            (Target::Error(_), "s") => time,
+            (Target::Error(_), _) => cost,
+            (Target::Budget(_), _) => error,
         };
-        let mut grid = Grid::of(&rows, COLUMNS);
-        grid.columns.splice(GOAL..GOAL, Grid::of(&rows, &[spec]).columns);
+        let mut grid = grid(&rows, &[&FIRST[..], &[goal], &LAST].concat());
         grid.fit(pen.width);
         text.push_str(&grid.render(pen));
     }

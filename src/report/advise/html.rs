@@ -2,16 +2,16 @@
 
 use maud::html;
 
-use super::console;
+use super::{Joined, console};
 use crate::advise::Advice;
 use crate::report::ReportError;
-use crate::report::fields::named;
+use crate::report::fields::places;
 use crate::report::html as page;
 use crate::report::html::drawing::{definitions, plot};
 use crate::report::html::listing::{self, table};
 
 /// Columns of the page, beside the rank.
-const COLUMNS: [&str; 16] = [
+const COLUMNS: [usize; 16] = places::<Joined, _>([
     "group",
     "estimator",
     "sampling",
@@ -28,15 +28,11 @@ const COLUMNS: [&str; 16] = [
     "kurtosis",
     "trusted_draws",
     "needs",
-];
+]);
 
 /// Returns the advice as a page of HTML.
-///
-/// # Errors
-///
-/// The figure cannot be drawn.
 pub fn text(advice: &Advice) -> Result<String, ReportError> {
-    let (rows, fields) = (super::joined(advice).collect::<Vec<_>>(), super::of_rows());
+    let rows: Vec<Joined> = super::joined(advice).collect();
     let best = advice.best();
     let line = best.map_or("nothing can be advised".to_owned(), |row| {
         format!("{} with σ\u{302} {}", row.estimator, console::sampling(row))
@@ -44,7 +40,7 @@ pub fn text(advice: &Advice) -> Result<String, ReportError> {
     let label =
         "cost against the sampling extinction, and the best sampling extinction along the ray";
     let plots = [vec![plot("costs".to_owned(), label.to_owned(), &super::plot::figure(advice)?)]];
-    let group = |of: &super::Joined| of.row.group.word().to_owned();
+    let group = |of: &Joined| of.row.group.word().to_owned();
     let choices = [("group", rows.iter().map(group).collect())];
     let body = html! {
         (definitions(&plots))
@@ -58,7 +54,7 @@ pub fn text(advice: &Advice) -> Result<String, ReportError> {
         section aria-labelledby="experiments" {
             h2 #experiments { "Estimators with their best settings" }
             (listing::form(&choices, rows.len()))
-            (table("rank", |of| ("", console::rank(of.row)), &COLUMNS.map(|name| named(&fields, name)), &rows, group))
+            (table("rank", |of| ("", console::rank(of.row)), &COLUMNS, &rows, group))
         }
         section aria-labelledby="figure" {
             h2 #figure { "Cost against σ\u{302}" }

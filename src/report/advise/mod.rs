@@ -11,7 +11,7 @@ pub mod html;
 pub mod plot;
 
 use crate::advise::{Advice, Row};
-use crate::report::fields::{self, Field, fields};
+use crate::report::fields::{self, Table, table};
 use crate::report::{Artifact, ReportError, plots};
 
 /// Row with the advice that it belongs to.
@@ -23,9 +23,8 @@ pub struct Joined<'a> {
     pub row: &'a Row,
 }
 
-/// Returns the fields, in the order of the files.
-pub fn of_rows<'a>() -> Vec<Field<Joined<'a>>> {
-    fields! {
+table! {
+    impl<'a> for Joined<'a> {
         "case": "Case: the name of its file" = |of| &of.advice.case;
         "problem": "Kind of problem" = |of| &of.advice.problem;
         "medium": "Medium" = |of| &of.advice.medium;
@@ -47,8 +46,8 @@ pub fn of_rows<'a>() -> Vec<Field<Joined<'a>>> {
         "draws" ["draws", "", Short(2)]: "Draws at that cost" = |of| of.row.draws;
         "cost_per_draw": "Cost of a draw with its share of the setup" = |of| of.row.cost;
         "cost_error": "Relative error of the costs" = |of| of.row.cost_error;
-        "relative_deviation" ["s.d./T", "", Short(3)]: "Standard deviation of a draw over the transmittance" = |of| of.row.deviation;
-        "lookups_per_draw" ["lookups", "", Short(3)]: "Expected number of lookups of a draw" = |of| of.row.lookups;
+        "relative_deviation" ["s.d./T", "", Fixed(3)]: "Standard deviation of a draw over the transmittance" = |of| of.row.deviation;
+        "lookups_per_draw" ["lookups", "", Fixed(3)]: "Expected number of lookups of a draw" = |of| of.row.lookups;
         "setup_lookups" ["setup", "", Short(3)]: "Lookups of a ray before its first draw" = |of| of.row.setup_lookups;
         "margin_below" ["doubles below", "", Short(3)]: "Factor on σ̂ below which the cost doubles; 0 for none" = |of| of.row.margins.map(|margins| margins[0]);
         "margin_above" ["doubles above", "", Short(3)]: "Factor on σ̂ above which the cost doubles" = |of| of.row.margins.map(|margins| margins[1]);
@@ -57,6 +56,13 @@ pub fn of_rows<'a>() -> Vec<Field<Joined<'a>>> {
         "trusted_draws" ["draws until trusted", "", Short(2)]: "Draws until the sample variance has a standard error of 10 %" = |of| of.row.trusted;
         "needs": "Knowledge of the medium that is needed beside lookups" = |of| &of.row.needs;
         "lines": "Lines for a case" = |of| &of.row.lines;
+    } screens {
+        "rank_marked" ["", "", Right]: "Rank in the group, marked where rows are a tie" = |of| console::rank(of.row);
+        "sampling_marked" ["σ̂", "1/length", Right]: "Best σ̂, or the factor on one that is not constant" = |of| console::sampling(of.row);
+        "time" ["time", "s", Time]: "Time to the error" = |of| of.row.time;
+        "error_percent" ["error", "", Percent]: "Relative standard error within the budget" = |of| of.row.error;
+        "setup" ["setup", "", Short(3)]: "Lookups of a ray before its first draw, if there are any" = |of| Some(of.row.setup_lookups).filter(|&lookups| lookups > 0.0);
+        "margins" ["σ̂ ×", "", Right]: "Factors on σ̂ between which the cost stays below its double" = |of| of.row.margins.map_or_else(String::new, console::margins);
     }
 }
 
@@ -65,28 +71,16 @@ fn joined(advice: &Advice) -> impl Iterator<Item = Joined<'_>> {
 }
 
 /// Returns the rows as CSV, with a first line of names.
-///
-/// # Errors
-///
-/// The encoder fails.
 pub fn csv(advice: &Advice) -> Result<String, ReportError> {
-    fields::csv("the advice", &of_rows(), joined(advice))
+    fields::csv("the advice", &Joined::of_files(), joined(advice))
 }
 
 /// Returns the rows as a JSON array of objects, one per line; unknown is `null`.
-///
-/// # Errors
-///
-/// The encoder fails.
 pub fn json(advice: &Advice) -> Result<String, ReportError> {
-    fields::json(&of_rows(), joined(advice))
+    fields::json(&Joined::of_files(), joined(advice))
 }
 
 /// Returns every file of an advice.
-///
-/// # Errors
-///
-/// An encoder or the painter fails.
 pub fn render(advice: &Advice) -> Result<Vec<Artifact>, ReportError> {
     let mut files = vec![
         Artifact::text("advise.csv", csv(advice)?),

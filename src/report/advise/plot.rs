@@ -18,10 +18,6 @@ const SHOWN: usize = 5;
 const RANGE: f64 = 100.0;
 
 /// Returns the figure.
-///
-/// # Errors
-///
-/// There is no typeface.
 pub fn figure(advice: &Advice) -> Result<Sheet, ReportError> {
     let rows: Vec<&Row> =
         advice.rows.iter().filter(|row| !row.curve.is_empty()).take(SHOWN).collect();

@@ -3,17 +3,18 @@
 use maud::{Markup, html};
 
 use super as files;
+use super::tables::Joined;
 use crate::bench::record::Bench;
 use crate::bench::stored::Comparison;
 use crate::report::ReportError;
-use crate::report::fields::named;
+use crate::report::fields::places;
 use crate::report::html as page;
 use crate::report::html::drawing::{Plot, definitions, plot};
 use crate::report::html::listing::{self, table};
 use numeric::digits::{count, fixed, time};
 
 /// Columns of the page, beside the case.
-const COLUMNS: [&str; 16] = [
+const COLUMNS: [usize; 16] = places::<Joined, _>([
     "estimator",
     "sampling",
     "sampling_kind",
@@ -30,16 +31,11 @@ const COLUMNS: [&str; 16] = [
     "speedup",
     "scaling",
     "reason",
-];
+]);
 
 /// Returns the bench as a page of HTML.
-///
-/// # Errors
-///
-/// A plot cannot be drawn.
 pub fn text(bench: &Bench) -> Result<String, ReportError> {
     let rows: Vec<_> = files::tables::joined(bench).collect();
-    let fields = files::tables::of_rows();
     let plots = files::plotted(bench).enumerate().map(|(place, case)| {
         let label = format!("{}: measured error against time and against lookups", case.name);
         Ok(vec![plot(format!("error-{place}"), label, &files::plot::figure(bench, case)?)])
@@ -64,7 +60,7 @@ pub fn text(bench: &Bench) -> Result<String, ReportError> {
         section aria-labelledby="experiments" {
             h2 #experiments { "Experiments" }
             (listing::form(&choices, rows.len()))
-            (table("case", |one| ("", one.case.name.clone()), &COLUMNS.map(|name| named(&fields, name)), &rows, |one| one.case.name.clone()))
+            (table("case", |one| ("", one.case.name.clone()), &COLUMNS, &rows, |one| one.case.name.clone()))
         }
         section aria-labelledby="errors" {
             h2 #errors { "Error against time and lookups" }

@@ -17,10 +17,6 @@ use crate::bench::record::{Bench, BenchCase};
 use crate::report::{Artifact, ReportError};
 
 /// Returns every file of a bench.
-///
-/// # Errors
-///
-/// An encoder or the painter fails.
 pub fn render(bench: &Bench) -> Result<Vec<Artifact>, ReportError> {
     let mut artifacts = vec![
         Artifact::text("bench.csv", tables::csv(bench)?),

@@ -7,7 +7,7 @@ use plotters::style::{Color, RGBAColor};
 
 use crate::bench::record::{Bench, BenchCase, BenchRow, CurvePoint, Times};
 use crate::record::Digits;
-use crate::report::plots::figure::{Figure, Foot, LEFT};
+use crate::report::plots::figure::{Figure, Foot, LEFT, subject};
 use crate::report::plots::legend::Entry;
 use crate::report::plots::series::{marks, numbered};
 use crate::report::plots::style::Style;
@@ -41,7 +41,7 @@ pub(in crate::report) fn figure(bench: &Bench, case: &BenchCase) -> Result<Sheet
     let shown = case.rows.iter().filter(|row| row.is_shown);
     let shown: Vec<_> =
         shown.filter_map(|row| row.times.as_ref().map(|times| (row, times))).collect();
-    let labels = super::console::labels(case);
+    let labels = case.digits();
     let labels = numbered(shown.iter().map(|(row, _)| label(row, labels)).collect());
     let series: Vec<Series> = shown
         .into_iter()
@@ -63,9 +63,8 @@ pub(in crate::report) fn figure(bench: &Bench, case: &BenchCase) -> Result<Sheet
 fn subtitle(bench: &Bench, case: &BenchCase) -> String {
     let (rounds, threads) = (bench.rounds, bench.conditions.threads);
     let draws = format!("{rounds} rounds of {} draws", count(bench.draws));
-    let words = [case.name.clone(), case.problem.clone(), case.medium.clone(), draws];
-    let facts = [format!("threads: {threads}"), bench.conditions.level.clone()];
-    words.into_iter().chain(facts).collect::<Vec<_>>().join("  ·  ")
+    let (subject, threads) = (subject(&case.name, &case.medium), format!("threads: {threads}"));
+    [subject, draws, threads, bench.conditions.level.clone()].join("  ·  ")
 }
 
 /// Returns the words for a row: its estimator, σ̂, control and channel, and what it needs.
@@ -164,15 +163,14 @@ fn in_lookups(sheet: &mut Sheet, series: &[Series]) {
 /// Returns the meaning of the marks, and the facts that the plot cannot show, in words.
 fn notes(case: &BenchCase) -> Vec<String> {
     let mut notes = vec![
-        "Points: root mean square over the rounds, bars: the least and the most of them, with an arrow where \
-         that is farther down. Lines: √(V/n), of slope −1/2, V the variance in theory or, without one, the sample's."
+        "Points: root mean square over the rounds. Bars: minimum and maximum, with an arrow where it is farther down. \
+         Lines: √(V/n), of slope −1/2; V is the variance in theory, or else that of the draws."
             .to_owned(),
     ];
     let left_out = case.rows.iter().any(|row| !row.curve.is_empty() && !row.is_shown);
     if left_out {
         notes.push(
-            "Of a sweep the point with the largest figure of merit is shown, of a curve the last \
-             distance."
+            "Shown are the point of a sweep with the largest figure of merit, and the last distance of a curve."
                 .to_owned(),
         );
     }

@@ -5,8 +5,9 @@
 //! `_least` and `_most` are the minimum and the maximum of the rounds.
 
 use crate::bench::record::{Bench, BenchCase, BenchRow, CurvePoint, Spread, Times};
-use crate::report::fields::{self, Cell, Field, fields};
+use crate::report::fields::{self, Cell, Table, table};
 use crate::report::{Artifact, ReportError};
+use numeric::digits::fixed;
 
 /// Row with its case and bench.
 #[derive(Debug, Clone, Copy)]
@@ -32,11 +33,22 @@ impl Joined<'_> {
     ) -> Option<f64> {
         self.timed(|times| of(times).map(figure))
     }
+
+    /// Returns the minimum and the maximum of the rounds.
+    fn range(&self, of: fn(&Times) -> Option<Spread>) -> String {
+        let spread = self.row.times.as_ref().and_then(of);
+        spread
+            .map_or_else(String::new, |of| format!("{}–{}", fixed(of.least, 3), fixed(of.most, 3)))
+    }
+
+    /// Returns a sampling extinction or a swept value in the digits of its case.
+    fn digits(&self, value: Option<f64>) -> Option<String> {
+        value.map(|value| self.case.digits().text(value))
+    }
 }
 
-/// Returns the fields, in the order of the files.
-pub fn of_rows<'a>() -> Vec<Field<Joined<'a>>> {
-    fields! {
+table! {
+    impl<'a> for Joined<'a> {
         "case": "Case: the name of its file" = |joined| &joined.case.name;
         "problem": "Kind of problem" = |joined| &joined.case.problem;
         "medium": "Medium" = |joined| &joined.case.medium;
@@ -55,31 +67,36 @@ pub fn of_rows<'a>() -> Vec<Field<Joined<'a>>> {
         "predicted_variance": "Variance of one draw in theory" = |joined| joined.row.predicted_variance;
         "lookups_per_draw": "Mean number of lookups of a draw" = |joined| joined.row.lookups_per_draw;
         "predicted_lookups": "Expected number of lookups of a draw" = |joined| joined.row.predicted_lookups;
-        "fom" ["1/VN", "", Short(3)]: "Figure of merit 1/(variance × lookups)" = |joined| joined.row.fom;
+        "fom" ["1/VN", "", Fixed(3)]: "Figure of merit 1/(variance × lookups)" = |joined| joined.row.fom;
         "threads": "Number of threads" = |joined| joined.bench.conditions.threads;
         "clock": "Clock of the times: processor or wall" = |joined| joined.bench.conditions.clock.word();
-        "ns_per_draw" ["ns/draw", "ns", Short(3)]: "Time of a draw in nanoseconds, the median of the rounds" = |joined| joined.spread(|times| Some(times.ns_per_draw), |s| s.median);
-        "ns_per_draw_least" ["least", "ns", Short(3)]: "Its minimum" = |joined| joined.spread(|times| Some(times.ns_per_draw), |s| s.least);
-        "ns_per_draw_most" ["most", "ns", Short(3)]: "Its maximum" = |joined| joined.spread(|times| Some(times.ns_per_draw), |s| s.most);
-        "draws_per_second": "Draws of a second on one thread" = |joined| joined.timed(|times| Some(times.draws_per_second));
-        "ns_per_lookup" ["ns/lookup", "ns", Short(3)]: "Time of a lookup in nanoseconds" = |joined| joined.timed(|times| times.ns_per_lookup);
+        "ns_per_draw" ["ns/draw", "ns", Fixed(3)]: "Time of a draw in nanoseconds, the median of the rounds" = |joined| joined.spread(|times| Some(times.ns_per_draw), |s| s.median);
+        "ns_per_draw_least" ["least", "ns", Fixed(3)]: "Its minimum" = |joined| joined.spread(|times| Some(times.ns_per_draw), |s| s.least);
+        "ns_per_draw_most" ["most", "ns", Fixed(3)]: "Its maximum" = |joined| joined.spread(|times| Some(times.ns_per_draw), |s| s.most);
+        "draws_per_second" ["draws/s", "1/s", Fixed(3)]: "Draws of a second on one thread" = |joined| joined.timed(|times| Some(times.draws_per_second));
+        "ns_per_lookup" ["ns/lookup", "ns", Fixed(3)]: "Time of a lookup in nanoseconds" = |joined| joined.timed(|times| times.ns_per_lookup);
         "plain_ns_per_draw": "Time of a draw of the plain scalar loop over the same draws" = |joined| joined.spread(|times| Some(times.plain_ns_per_draw), |s| s.median);
         "plain_ns_per_draw_least": "Its minimum" = |joined| joined.spread(|times| Some(times.plain_ns_per_draw), |s| s.least);
         "plain_ns_per_draw_most": "Its maximum" = |joined| joined.spread(|times| Some(times.plain_ns_per_draw), |s| s.most);
-        "speedup" ["speedup", "", Short(3)]: "Time of the plain loop over that of the estimator" = |joined| joined.spread(|times| Some(times.speedup), |s| s.median);
+        "speedup" ["speedup", "", Fixed(3)]: "Time of the plain loop over that of the estimator" = |joined| joined.spread(|times| Some(times.speedup), |s| s.median);
         "speedup_least": "Its minimum" = |joined| joined.spread(|times| Some(times.speedup), |s| s.least);
         "speedup_most": "Its maximum" = |joined| joined.spread(|times| Some(times.speedup), |s| s.most);
-        "scaling" ["scaling", "", Short(3)]: "Speed on all threads over that on one" = |joined| joined.spread(|times| times.scaling, |s| s.median);
+        "scaling" ["scaling", "", Fixed(3)]: "Speed on all threads over that on one" = |joined| joined.spread(|times| times.scaling, |s| s.median);
         "scaling_least": "Its minimum" = |joined| joined.spread(|times| times.scaling, |s| s.least);
         "scaling_most": "Its maximum" = |joined| joined.spread(|times| times.scaling, |s| s.most);
-        "seconds_to_1e-2": "Seconds to a relative error of 1e-2" = |joined| joined.timed(|times| Some(times.seconds_to?[0]));
-        "seconds_to_1e-3" ["s to 1e-3", "s", Short(3)]: "Seconds to a relative error of 1e-3" = |joined| joined.timed(|times| Some(times.seconds_to?[1]));
-        "seconds_to_1e-4": "Seconds to a relative error of 1e-4" = |joined| joined.timed(|times| Some(times.seconds_to?[2]));
-        "efficiency" ["1/Vt", "", Short(3)]: "1/(variance × time)" = |joined| joined.timed(|times| times.efficiency);
+        "seconds_to_1e-2" ["to 1e-2", "s", Time]: "Seconds to a relative error of 1e-2" = |joined| joined.timed(|times| Some(times.seconds_to?[0]));
+        "seconds_to_1e-3" ["to 1e-3", "s", Time]: "Seconds to a relative error of 1e-3" = |joined| joined.timed(|times| Some(times.seconds_to?[1]));
+        "seconds_to_1e-4" ["to 1e-4", "s", Time]: "Seconds to a relative error of 1e-4" = |joined| joined.timed(|times| Some(times.seconds_to?[2]));
+        "efficiency" ["1/Vt", "", Fixed(3)]: "1/(variance × time)" = |joined| joined.timed(|times| times.efficiency);
         "reason" ["note", "", Plain]: "Reason why it was not timed" = |joined| &joined.row.reason;
-        "ttuv": "Time to unit variance: variance × time" = |joined| joined.timed(Times::ttuv);
+        "ttuv" ["Vt", "s", Time]: "Time to unit variance: variance × time" = |joined| joined.timed(Times::ttuv);
         "setup_lookups": "Lookups of a ray before its first draw" = |joined| joined.row.setup_lookups;
         "needs": "Knowledge of the medium beside lookups" = |joined| &joined.row.needs;
+    } screens {
+        "sampling_marked" ["σ̂", "1/length", Right]: "σ̂, or its kind; a constant with the digits that distinguish it in its case"
+            = |joined| joined.digits(joined.row.sampling()).unwrap_or_else(|| joined.row.id.sampling.kind.clone());
+        "ns_per_draw_range" ["least–most", "ns", Right]: "Minimum and maximum of the time of a draw" = |joined| joined.range(|times| Some(times.ns_per_draw));
+        "speedup_range" ["least–most", "", Right]: "Minimum and maximum of the speedup" = |joined| joined.range(|times| Some(times.speedup));
     }
 }
 
@@ -89,21 +106,13 @@ pub(super) fn joined(bench: &Bench) -> impl Iterator<Item = Joined<'_>> {
 }
 
 /// Returns the rows as CSV, with a first line of names.
-///
-/// # Errors
-///
-/// The encoder fails.
 pub fn csv(bench: &Bench) -> Result<String, ReportError> {
-    fields::csv("the bench", &of_rows(), joined(bench))
+    fields::csv("the bench", &Joined::of_files(), joined(bench))
 }
 
 /// Returns the rows as a JSON array of objects, one per line; unknown is `null`.
-///
-/// # Errors
-///
-/// The encoder fails.
 pub fn json(bench: &Bench) -> Result<String, ReportError> {
-    fields::json(&of_rows(), joined(bench))
+    fields::json(&Joined::of_files(), joined(bench))
 }
 
 /// Point of a curve with its price.
@@ -113,9 +122,8 @@ pub struct Priced<'a> {
     point: &'a CurvePoint,
 }
 
-/// Returns the fields of `CASE.error.csv`.
-pub fn of_errors<'a>() -> Vec<Field<Priced<'a>>> {
-    fields! {
+table! {
+    impl<'a> for Priced<'a> {
         "estimator": "Estimator with its settings" = |of| of.row.id.label();
         "sampling": "Sampling extinction σ̂, if it is a constant" = |of| of.row.sampling().map_or_else(|| Cell::from(&of.row.id.sampling.kind), Cell::from);
         "control": "Control extinction" = |of| &of.row.id.control;
@@ -138,5 +146,5 @@ pub(super) fn errors(case: &BenchCase) -> Result<Artifact, ReportError> {
     let timed = case.rows.iter().filter_map(|row| Some((row, row.times.as_ref()?)));
     let points = timed
         .flat_map(|(row, times)| row.curve.iter().map(move |point| Priced { row, times, point }));
-    fields::artifact(&format!("{}.error.csv", case.name), &of_errors(), points)
+    fields::artifact(&format!("{}.error.csv", case.name), &Priced::fields(), points)
 }

@@ -1,32 +1,34 @@
 //! Plain table that the page's script can filter and sort: of a bench, of a stress test.
 
 use super::words;
-use crate::report::fields::Field;
+use crate::report::fields::{Field, Table};
 use maud::{Markup, html};
 use std::collections::BTreeSet;
 
-/// Returns the table. The first column has a heading, and of each row a style class and a text; `data` has the values that
+/// Returns the table of rows with these columns, by their places. The first column has a heading, and of each row a style class and a text; `data` has the values that
 /// filters select by.
-pub fn table<T>(
+pub fn table<T: Table>(
     head: &str,
     first: fn(&T) -> (&'static str, String),
-    fields: &[&Field<T>],
+    columns: &[usize],
     rows: &[T],
     data: fn(&T) -> String,
 ) -> Markup {
+    let all = T::fields();
+    let fields: Vec<_> = columns.iter().map(|&place| &all[place]).collect();
     let class = |field: &Field<T>| field.is_numeric(rows).then_some("number");
     html! {
         div.wide tabindex="0" role="group" aria-labelledby="experiments" {
             table #table {
                 thead { tr {
                     th scope="col" { (head) }
-                    @for field in fields { th scope="col" class=[class(field)] title=(field.tip()) { (field.head) } }
+                    @for field in &fields { th scope="col" class=[class(field)] title=(field.tip()) { (field.head) } }
                 } }
                 @for row in rows {
                     @let (word, text) = first(row);
                     tbody data-group=(data(row)) { tr {
                         th scope="row" class={ "verdict " (word) } { (text) }
-                        @for field in fields { td class=[class(field)] { (words::field(field, row)) } }
+                        @for field in &fields { td class=[class(field)] { (words::field(field, row)) } }
                     } }
                 }
             }

@@ -8,7 +8,7 @@ use quick_junit::{NonSuccessKind, Report, TestCase, TestCaseStatus, TestSuite};
 use crate::judge::{Judgement, images};
 use crate::record::Verdict;
 use crate::report::ReportError;
-use crate::report::run::junit::Inconclusive;
+use crate::report::run::junit::{Inconclusive, encoded, status_of};
 use numeric::digits::exact;
 
 /// Verdict on a file or a stack of images.
@@ -33,15 +33,10 @@ impl Told {
             ("predicted variance", judgement.predicted_variance),
         ];
         let known = numbers.iter().filter_map(|(what, x)| Some(format!("{what} {}", exact((*x)?))));
-        Self {
-            name: name.to_owned(),
-            verdict: judgement.verdict,
-            reason: judgement.reason.clone(),
-            lines: known
-                .chain(judgement.guarantees.iter().cloned())
-                .chain(judgement.pattern().lines())
-                .collect(),
-        }
+        let lines =
+            known.chain(judgement.guarantees.iter().cloned()).chain(judgement.pattern().lines());
+        let (verdict, reason) = (judgement.verdict, judgement.reason.clone());
+        Self { name: name.to_owned(), verdict, reason, lines: lines.collect() }
     }
 
     /// Returns the verdict on images of this name.
@@ -53,25 +48,18 @@ impl Told {
             ("failing tiles", counts.fail),
             ("listed tiles", counts.listed),
         ];
-        let numbers = numbers.iter().map(|(what, count)| format!("{what} {count}"));
-        Self {
-            name: name.to_owned(),
-            verdict: judgement.verdict,
-            reason: judgement.reason.clone(),
-            lines: numbers
-                .chain(judgement.guarantees.iter().cloned())
-                .chain(judgement.pattern().lines())
-                .collect(),
-        }
+        let lines = numbers
+            .iter()
+            .map(|(what, count)| format!("{what} {count}"))
+            .chain(judgement.guarantees.iter().cloned())
+            .chain(judgement.pattern().lines());
+        let (verdict, reason) = (judgement.verdict, judgement.reason.clone());
+        Self { name: name.to_owned(), verdict, reason, lines: lines.collect() }
     }
 }
 
 /// Returns the verdicts, at the level `alpha` together; `unread` are files that could not be read, each with the
 /// reason.
-///
-/// # Errors
-///
-/// The encoder fails.
 pub fn text(
     told: &[Told],
     unread: &[(String, String)],
@@ -92,27 +80,12 @@ pub fn text(
         suite.add_test_case(test);
     }
     report.add_test_suite(suite);
-    // The schema has no count of skipped tests at the root; the suite has it.
-    let skipped = format!(" skipped=\"{}\"", report.skipped);
-    Ok(report.to_string()?.replacen(&skipped, "", 1))
+    encoded(&report)
 }
 
 fn test(told: &Told, inconclusive: Inconclusive) -> TestCase {
-    let mut status = match (told.verdict, inconclusive) {
-        (Verdict::Pass, _) => TestCaseStatus::success(),
-        (Verdict::Fail, _) | (_, Inconclusive::Failure) => {
-            TestCaseStatus::non_success(NonSuccessKind::Failure)
-        }
-        (_, Inconclusive::Error) => TestCaseStatus::non_success(NonSuccessKind::Error),
-        (_, Inconclusive::Skipped) => TestCaseStatus::skipped(),
-    };
-    if told.verdict != Verdict::Pass {
-        status.set_type(told.verdict.word());
-        status.set_message(&*told.reason);
-    }
-    if matches!(told.verdict, Verdict::Fail | Verdict::Inconclusive) {
-        status.set_description(told.lines.join("\n"));
-    }
+    let details = || told.lines.join("\n");
+    let status = status_of(told.verdict, &told.reason, inconclusive, details);
     let mut test = TestCase::new(&*told.name, status);
     if told.verdict == Verdict::Pass && !told.reason.is_empty() {
         test.set_system_out(format!("pass: {}", told.reason));

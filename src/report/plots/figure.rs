@@ -34,10 +34,6 @@ pub struct Foot<'a> {
 
 impl Figure {
     /// Makes a sheet of that size with a title and smaller text below it.
-    ///
-    /// # Errors
-    ///
-    /// There is no typeface.
     pub fn new(
         name: &str,
         [width, height]: [f64; 2],
@@ -52,10 +48,6 @@ impl Figure {
     }
 
     /// Makes a sheet of that width with a title, with the height that legend and notes need.
-    ///
-    /// # Errors
-    ///
-    /// There is no typeface.
     pub fn with_foot(
         name: &str,
         width: f64,
@@ -94,11 +86,12 @@ impl Foot<'_> {
     }
 }
 
+/// Returns the name of a case, with its medium if the name does not have it. The folder of a case is its problem.
+pub fn subject(name: &str, medium: &str) -> String {
+    if name.contains(medium) { name.to_owned() } else { format!("{name}  ·  medium {medium}") }
+}
+
 /// Returns the typeface of a figure.
-///
-/// # Errors
-///
-/// It cannot be read.
 pub fn typeface(figure: &str) -> Result<Typeface, ReportError> {
     Typeface::load().map_err(|error| ReportError::Draw {
         figure: figure.to_owned(),

@@ -11,7 +11,7 @@ pub const LINE: f64 = 22.0;
 const SAMPLE: f64 = 44.0;
 const SIZE: f64 = 13.5;
 const GAP: f64 = 26.0;
-const MOST_COLUMNS: usize = 8;
+const MAX_COLUMNS: usize = 8;
 
 /// Entry of a legend.
 #[derive(Debug, Clone)]
@@ -54,7 +54,7 @@ fn layout(face: &Typeface, entries: &[Entry], width: f64) -> (usize, Vec<[f64; 2
     };
     let is_enough = |lines: &usize| {
         let columns = columns(*lines);
-        columns.len() <= MOST_COLUMNS
+        columns.len() <= MAX_COLUMNS
             && columns.iter().map(|column| column[1]).sum::<f64>() <= width + GAP
     };
     let all = entries.len().max(1);

@@ -24,10 +24,6 @@ pub use sheet::Sheet;
 
 /// Returns the figure of a case in both formats, as `CASE.svg` and `CASE.png` for the ending `""`, or
 /// `CASE.anatomy.svg` and so on for the ending `"anatomy."`.
-///
-/// # Errors
-///
-/// The raster backend fails.
 pub fn artifacts(case: &str, ending: &str, sheet: &Sheet) -> Result<Vec<Artifact>, ReportError> {
     let wrong = |message| ReportError::Draw { figure: format!("{case} {ending}"), message };
     let png = paint::png(sheet).map_err(wrong)?;

@@ -9,23 +9,15 @@ use crate::report::plots::sheet::{Align, Image, Label, Shape, Sheet, Spot, strok
 /// Units of a pixel: a figure is drawn at three times the size and each 2 × 2 block averaged, which smooths edges.
 const UNITS: f64 = 3.0;
 /// Largest distance of a coordinate from the sheet's corner, in units.
-const FARTHEST: f64 = 1e6;
+const MAX_COORDINATE: f64 = 1e6;
 
 /// Returns the sheet as the bytes of a PNG file.
-///
-/// # Errors
-///
-/// The backend or the encoder fails, with its reason in words.
 pub fn png(sheet: &Sheet) -> Result<Vec<u8>, String> {
     let (rgb, size) = pixels_of(sheet)?;
     encode(&rgb, size, None).map_err(in_words)
 }
 
 /// Returns red, green and blue of the sheet's pixels row by row, with width and height.
-///
-/// # Errors
-///
-/// The backend fails, with its reason in words.
 pub fn pixels_of(sheet: &Sheet) -> Result<(Vec<u8>, (u32, u32)), String> {
     let face = Typeface::load().map_err(in_words)?;
     let [width, height] = [sheet.width, sheet.height].map(even);
@@ -121,10 +113,6 @@ fn halved(fine: &[u8], width: usize) -> Vec<u8> {
 }
 
 /// Returns the bytes of a PNG file: red, green and blue of each pixel, or its index in a palette.
-///
-/// # Errors
-///
-/// The encoder fails.
 pub fn encode(
     data: &[u8],
     (width, height): (u32, u32),
@@ -155,7 +143,7 @@ fn whole(at: Spot) -> (i32, i32) {
     // Stops far outside of any sheet: figures clip to their panels long before, and the backend's differences of
     // coordinates still fit its integers.
     #[expect(clippy::cast_possible_truncation)]
-    let round = |x: f64| (x * UNITS).round().clamp(-FARTHEST, FARTHEST) as i32;
+    let round = |x: f64| (x * UNITS).round().clamp(-MAX_COORDINATE, MAX_COORDINATE) as i32;
     (round(at[0]), round(at[1]))
 }
 

@@ -1,6 +1,6 @@
 //! Series of a sweep: the rows and the curve that belong together.
 
-use crate::record::{CaseRecord, Curve, CurvePoint, Digits, Row, Sweep, Verdict};
+use crate::record::{CaseRecord, Compared, Curve, CurvePoint, Digits, Row, Sweep, Verdict};
 use crate::report::plots::legend::Entry;
 use crate::report::plots::style::Style;
 use numeric::digits::count;
@@ -28,14 +28,14 @@ impl Series<'_> {
     pub fn theory(
         &self,
         of_point: fn(&CurvePoint) -> f64,
-        of_row: fn(&Row) -> Option<f64>,
+        of_row: fn(&Row) -> Compared,
     ) -> Vec<(f64, f64)> {
         match self.curve.filter(|curve| !curve.points.is_empty()) {
             Some(curve) => curve.points.iter().map(|point| (point.x, of_point(point))).collect(),
             None => self
                 .rows
                 .iter()
-                .filter_map(|row| Some((row.experiment.swept()?, of_row(row)?)))
+                .filter_map(|row| Some((row.experiment.swept()?, of_row(row).theory?)))
                 .collect(),
         }
     }
@@ -172,7 +172,7 @@ fn keep_last_channels(groups: &mut Vec<Group>) {
 }
 
 /// Returns labels of the series, no two alike: the estimator, its control, its σ̂ if others of its name have another,
-/// and the channel.
+/// and the channel if there are several.
 fn labels(groups: &[Group], digits: Digits) -> Vec<String> {
     let estimator = |group: &Group| match (group.rows.first(), group.curve) {
         (Some(row), _) => row.experiment.label.clone(),
@@ -181,15 +181,24 @@ fn labels(groups: &[Group], digits: Digits) -> Vec<String> {
     };
     let names: Vec<[String; 2]> =
         groups.iter().map(|group| [estimator(group), sampling(group, digits)]).collect();
+    let one = only_channel(groups.iter().map(|group| group.channel)).is_some();
     let mut labels: Vec<String> = Vec::new();
     for (group, [estimator, sampling]) in groups.iter().zip(&names) {
         let is_shared = names.iter().any(|other| other[0] == *estimator && other[1] != *sampling);
         let sampling = if is_shared { sampling.clone() } else { String::new() };
-        let parts = [estimator.clone(), control(group), sampling, group.channel.to_owned()];
+        let channel = if one { String::new() } else { group.channel.to_owned() };
+        let parts = [estimator.clone(), control(group), sampling, channel];
         let label = parts.into_iter().filter(|part| !part.is_empty()).collect::<Vec<_>>();
         labels.push(label.join(", "));
     }
     numbered(labels)
+}
+
+/// Returns the one channel of those that have a name.
+pub fn only_channel<'a>(channels: impl Iterator<Item = &'a str>) -> Option<&'a str> {
+    let mut named = channels.filter(|channel| !channel.is_empty());
+    let first = named.next()?;
+    named.all(|channel| channel == first).then_some(first)
 }
 
 /// Returns texts, numbered if an earlier one is equal.
@@ -304,10 +313,10 @@ mod tests {
         are(&labels_of(&case(vec![with(0, "a", 8), with(1, "b", 5)])), &[("a, 8", 1), ("b, 5", 1)]);
         // Two experiments of one name are two series, each with its last channel.
         let twins = case(vec![with(0, "a", 8), with(1, "a", 8)]);
-        are(&labels_of(&twins), &[("a, 8", 1), ("a, 8 #2", 1)]);
+        are(&labels_of(&twins), &[("a", 1), ("a #2", 1)]);
         // A refused experiment joins others of its estimator.
         let crowd = case(vec![one(0, "a", "", Some(2.0)), with(0, "a", 13)]);
-        are(&labels_of(&crowd), &[("a, 13", 2)]);
+        are(&labels_of(&crowd), &[("a", 2)]);
     }
 
     #[test]

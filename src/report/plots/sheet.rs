@@ -137,6 +137,13 @@ impl Sheet {
         self.dashed(points, &[], width, colour);
     }
 
+    /// Draws the outline of a rectangle.
+    pub fn frame(&mut self, [left, top]: Spot, [width, height]: Spot, colour: RGBAColor) {
+        let (right, low) = (left + width, top + height);
+        let corners = vec![[left, top], [right, top], [right, low], [left, low], [left, top]];
+        self.path(corners, 1.0, colour);
+    }
+
     /// Fills a polygon.
     pub fn area(&mut self, points: Vec<Spot>, colour: RGBAColor) {
         if points.len() > 2 {

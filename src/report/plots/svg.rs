@@ -12,7 +12,7 @@ use crate::report::plots::sheet::{Align, Label, Shape, Sheet, Spot};
 /// Number of units of a pixel.
 const UNITS: f64 = 10.0;
 /// Largest distance of a coordinate from the sheet's corner, in units.
-const FARTHEST: f64 = 1e6;
+const MAX_COORDINATE: f64 = 1e6;
 
 /// Style of a path.
 #[derive(Clone, PartialEq)]
@@ -160,7 +160,7 @@ fn part(RGBAColor(.., alpha): RGBAColor) -> Option<String> {
 pub fn unit(length: f64) -> i64 {
     // NaN becomes the corner; figures clip to their panels long before.
     #[expect(clippy::cast_possible_truncation)]
-    let whole = (length * UNITS).round().clamp(-FARTHEST, FARTHEST) as i64;
+    let whole = (length * UNITS).round().clamp(-MAX_COORDINATE, MAX_COORDINATE) as i64;
     whole
 }
 

@@ -2,7 +2,7 @@
 
 use plotters::style::RGBAColor;
 
-use crate::record::{Row, Score, Sweep};
+use crate::record::{Score, Sweep};
 use crate::report::plots::font::Typeface;
 use crate::report::plots::legend::{self, Key};
 use crate::report::plots::series::Series;
@@ -15,13 +15,11 @@ const USUAL: f64 = 1.96;
 const BAND: RGBAColor = ink(0xEE, 0xF3, 0xF7);
 const LIMIT: RGBAColor = ink(0xB0, 0x30, 0x30);
 
-/// Score: its marker, its word, its kind, its value.
-type Shown = (Marker, &'static str, Score, fn(&Row) -> Option<f64>);
-
-const SCORES: [Shown; 3] = [
-    (Marker::Disc, "mean", Score::Mean, |row| row.z_mean),
-    (Marker::Square, "variance", Score::Variance, |row| row.z_variance),
-    (Marker::Diamond, "lookups", Score::Lookups, |row| row.experiment.z_lookups),
+/// Scores, each with its marker.
+const SCORES: [(Score, Marker); 3] = [
+    (Score::Mean, Marker::Disc),
+    (Score::Variance, Marker::Square),
+    (Score::Lookups, Marker::Diamond),
 ];
 
 /// Draws the scores of the series into a panel, and chooses its vertical axis.
@@ -32,7 +30,8 @@ pub fn draw(
     series: &[Series],
     sweep: &Sweep,
 ) {
-    let scores = series.iter().flat_map(|one| &one.rows).flat_map(|row| SCORES.map(|s| s.3(row)));
+    let rows = series.iter().flat_map(|one| &one.rows);
+    let scores = rows.flat_map(|row| Score::ALL.map(|score| row.compared(score).z));
     let largest = scores.flatten().map(f64::abs).filter(|z| z.is_finite()).fold(0.0, f64::max);
     // Far outliers of a failed check would flatten all other scores: they become arrows at the edge.
     let usual = 1.3 * sweep.z_limit.unwrap_or(3.0).max(USUAL);
@@ -49,7 +48,7 @@ pub fn draw(
     let beyond = points(sheet, &panel, series);
     panel.frame(sheet, "(d) Agreement with theory");
     let key = |marker, words| Key { marker, is_hollow: false, words };
-    let mut keys: Vec<Key> = SCORES.map(|(marker, name, ..)| key(marker, name)).into();
+    let mut keys: Vec<Key> = SCORES.map(|(score, marker)| key(marker, score.quantity())).into();
     if beyond {
         keys.push(key(Marker::Up, "beyond"));
     }
@@ -83,7 +82,7 @@ fn points(sheet: &mut Sheet, panel: &Panel, series: &[Series]) -> bool {
     let (mut slot, mut edge) = (0.0, panel.right - 9.0);
     for one in series {
         let fixed = one.is_fixed();
-        for (marker, word, kind, score) in SCORES {
+        for (score, marker) in SCORES {
             let shift = (slot - (slots - 1.0) / 2.0) * step;
             slot += if fixed { 0.0 } else { 1.0 };
             for row in &one.rows {
@@ -91,14 +90,15 @@ fn points(sheet: &mut Sheet, panel: &Panel, series: &[Series]) -> bool {
                 let place = row.experiment.swept().map_or(Some(edge), |swept| {
                     Some(panel.across(swept)?.clamp(least, most) + shift)
                 });
-                let (Some(x), Some(z)) = (place, score(row)) else { continue };
+                let (Some(x), Some(z)) = (place, row.compared(score).z) else { continue };
                 // An infinite score has no place on the axis, and counts as beyond it.
                 let Some(y) = panel.down(z.clamp(-1e9, 1e9)) else { continue };
                 let at = [x.clamp(panel.left + 4.0, panel.right - 4.0), y];
                 if panel.holds(at) {
-                    sheet.tip(at, format!("{}: z of the {word} {}", row.name(), signed(z)));
+                    let what = score.quantity();
+                    sheet.tip(at, format!("{}: z of the {what} {}", row.name(), signed(z)));
                     panel.point(sheet, at, marker, 3.6, one.style.colour);
-                    if row.not_normal.contains(&kind) {
+                    if !row.is_normal(score) {
                         panel.point(sheet, at, marker, 0.8, PAPER);
                     }
                     continue;

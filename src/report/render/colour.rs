@@ -1,5 +1,8 @@
 //! Numbers as colours.
 
+use crate::report::plots::sheet::{Align, Sheet, Spot};
+use crate::report::plots::style::{DARK, GREY, ink};
+
 /// `RdBu` of C. Brewer, *`ColorBrewer`* (2003), from blue over white to red: distinct without red or green, too.
 const DIVERGING: [[f64; 3]; 9] = [
     [33.0, 102.0, 172.0],
@@ -41,6 +44,31 @@ fn each(channels: &[f64], shown: impl Fn(f64) -> u8) -> [u8; 3] {
     match *channels {
         [red, green, blue] => [red, green, blue].map(shown),
         _ => [shown(channels.first().copied().unwrap_or_default()); 3],
+    }
+}
+
+/// Draws a bar of the colours of differences, from 1 at its upper end to −1, with words at shares of its height.
+pub fn bar(
+    sheet: &mut Sheet,
+    [left, high]: Spot,
+    height: f64,
+    (channels, marks): (usize, &[(f64, &str)]),
+) {
+    const SIZE: f64 = 18.0;
+    let right = left + SIZE;
+    let steps = 49_u32;
+    for step in 0..steps {
+        let at = |i: u32| high + height * (1.0 - f64::from(i) / f64::from(steps));
+        let shown = 2.0 * f64::from(step) / f64::from(steps - 1) - 1.0;
+        let [r, g, b] = difference(&[shown; 3][..channels]);
+        let (y, end) = (at(step), at(step + 1));
+        sheet.area(vec![[left, y], [right, y], [right, end], [left, end]], ink(r, g, b));
+    }
+    sheet.frame([left, high], [SIZE, height], GREY);
+    for &(share, text) in marks {
+        let y = high + share * height;
+        sheet.path(vec![[right, y], [right + 5.0, y]], 1.0, GREY);
+        sheet.text([right + 9.0, y], text, 10.5, DARK, Align::Start);
     }
 }
 

@@ -8,10 +8,9 @@ pub mod sheet;
 
 use std::path::PathBuf;
 
-use serde::Serialize;
-
 use crate::render::PictureRecord;
 use crate::render::record::{Exposure, ExposureRecord};
+use crate::report::fields::{self, Table, table};
 use crate::report::{Artifact, ReportError};
 use media::files::{exr, pfm};
 
@@ -20,10 +19,6 @@ const ERROR: &str = "standard_error.";
 
 /// Returns the files of a picture: `NAME.png`, and `NAME/` with the reference and the image of each estimator, as PFM
 /// and as EXR. The EXR has the standard error of each value in channels of its own.
-///
-/// # Errors
-///
-/// The sheet cannot be painted, or an image cannot be encoded.
 pub fn artifacts(record: &PictureRecord) -> Result<Vec<Artifact>, ReportError> {
     let wrong = |message| ReportError::Draw { figure: record.name.clone(), message };
     let png = sheet::png(record).map_err(wrong)?;
@@ -74,74 +69,62 @@ pub fn short(x: f64) -> String {
     format!("{x:.decimals$}")
 }
 
-/// Row of the table: one image.
-#[derive(Serialize)]
-struct Row<'a> {
-    picture: &'a str,
-    problem: &'a str,
-    medium: &'a str,
-    estimator: String,
-    sampling: &'a str,
-    control: &'a str,
-    columns: usize,
-    rows: usize,
-    covered_pixels: usize,
-    empty_pixels: usize,
-    budget: u64,
-    draws_per_pixel: Option<f64>,
-    lookups_per_pixel: Option<f64>,
-    pilot_lookups_per_pixel: Option<f64>,
-    rmse: Option<f64>,
-    predicted_rmse: Option<f64>,
-    mean_error: Option<f64>,
-    figure_of_merit: Option<f64>,
-    reference: &'a str,
-    reference_error: f64,
-    reason: &'a str,
+/// Image with its picture.
+#[derive(Debug, Clone, Copy)]
+pub struct Joined<'a> {
+    /// Picture.
+    pub picture: &'a PictureRecord,
+    /// Image.
+    pub exposure: &'a ExposureRecord,
+}
+
+impl Joined<'_> {
+    fn found<T>(&self, figure: fn(&Exposure) -> T) -> Option<T> {
+        self.exposure.outcome.as_ref().ok().map(figure)
+    }
+}
+
+table! {
+    impl<'a> for Joined<'a> {
+        "picture": "Name of the picture" = |of| &of.picture.name;
+        "problem": "Kind of problem" = |of| &of.picture.problem;
+        "medium": "Medium" = |of| &of.picture.medium;
+        "estimator": "Estimator with its settings" = |of| of.exposure.estimator.to_string();
+        "sampling" ["σ̂", "", Plain]: "Sampling extinction σ̂, in words" = |of| &of.exposure.sampling;
+        "control": "Control extinction" = |of| &of.exposure.control;
+        "columns": "Width of the picture in pixels" = |of| of.picture.size[0];
+        "rows": "Height of the picture in pixels" = |of| of.picture.size[1];
+        "covered_pixels": "Number of pixels that the volume covers" = |of| of.picture.covered;
+        "empty_pixels": "Number of pixels that take no lookup" = |of| of.picture.empty;
+        "budget": "Lookups of a covered pixel" = |of| of.picture.budget;
+        "draws_per_pixel" ["draws/pixel", "", Short(3)]: "Draws of a pixel" = |of| of.found(|found| found.draws);
+        "lookups_per_pixel" ["lookups/pixel", "", Short(3)]: "Lookups of σ_t for a pixel" = |of| of.found(|found| found.lookups);
+        "pilot_lookups_per_pixel": "Lookups of pilot rays for a pixel" = |of| of.found(|found| found.pilots);
+        "rmse" ["RMSE", "", Short(3)]: "Root mean squared difference from the reference" = |of| of.found(|found| found.rmse);
+        "predicted_rmse" ["in theory", "", Short(3)]: "Root mean squared difference in theory" = |of| of.found(|found| found.predicted_rmse).flatten();
+        "mean_error" ["mean error", "", Short(3)]: "Mean difference from the reference" = |of| of.found(|found| found.bias);
+        "figure_of_merit" ["1/(MSE · lookups)", "", Short(3)]: "Figure of merit: larger is better" = |of| of.found(|found| found.figure_of_merit).flatten();
+        "reference": "Source of the reference" = |of| &of.picture.reference.how;
+        "reference_error": "Root mean squared error of the reference" = |of| of.picture.reference.error;
+        "reason" ["refused", "", Plain]: "Reason why there is no image" = |of| of.exposure.outcome.as_ref().err().map_or("", String::as_str);
+    }
+}
+
+/// Returns the images of pictures.
+pub fn joined<'a>(
+    pictures: impl IntoIterator<Item = &'a PictureRecord>,
+) -> impl Iterator<Item = Joined<'a>> {
+    let images = |picture: &'a PictureRecord| {
+        picture.exposures.iter().map(move |exposure| Joined { picture, exposure })
+    };
+    pictures.into_iter().flat_map(images)
 }
 
 /// Returns `gallery.csv`: one row for every image, without times.
-///
-/// # Errors
-///
-/// The encoder fails.
 pub fn csv<'a>(
-    records: impl IntoIterator<Item = &'a PictureRecord>,
+    pictures: impl IntoIterator<Item = &'a PictureRecord>,
 ) -> Result<String, ReportError> {
-    let wrong = |source| ReportError::Csv { name: "gallery.csv".into(), source };
-    let mut writer = csv::Writer::from_writer(Vec::new());
-    for record in records {
-        for exposure in &record.exposures {
-            let found = exposure.outcome.as_ref();
-            let of = |f: fn(&Exposure) -> f64| found.ok().map(f);
-            let row = Row {
-                picture: &record.name,
-                problem: &record.problem,
-                medium: &record.medium,
-                estimator: exposure.estimator.to_string(),
-                sampling: &exposure.sampling,
-                control: &exposure.control,
-                columns: record.size[0],
-                rows: record.size[1],
-                covered_pixels: record.covered,
-                empty_pixels: record.empty,
-                budget: record.budget,
-                draws_per_pixel: of(|e| e.draws),
-                lookups_per_pixel: of(|e| e.lookups),
-                pilot_lookups_per_pixel: of(|e| e.pilots),
-                rmse: of(|e| e.rmse),
-                predicted_rmse: found.ok().and_then(|e| e.predicted_rmse),
-                mean_error: of(|e| e.bias),
-                figure_of_merit: found.ok().and_then(|e| e.figure_of_merit),
-                reference: &record.reference.how,
-                reference_error: record.reference.error,
-                reason: found.err().map_or("", String::as_str),
-            };
-            writer.serialize(row).map_err(wrong)?;
-        }
-    }
-    let bytes = writer.into_inner().map_err(|error| wrong(error.into_error().into()))?;
-    Ok(String::from_utf8_lossy(&bytes).into_owned())
+    fields::csv("gallery.csv", &Joined::fields(), joined(pictures))
 }
 
 #[cfg(test)]

@@ -5,21 +5,17 @@ use std::collections::BTreeMap;
 use crate::report::plots::paint;
 
 /// Maximum number of colours of a palette.
-const MOST: usize = 256;
+const MAX_COLOURS: usize = 256;
 
 /// Returns the bytes of a PNG file. Greys are rounded to every second one; if there are still more than 256 colours,
 /// the file has no palette.
-///
-/// # Errors
-///
-/// The encoder fails.
 pub fn encode(rgb: &[u8], size: (u32, u32)) -> Result<Vec<u8>, png::EncodingError> {
     let coarse: Vec<[u8; 3]> =
         rgb.as_chunks::<3>().0.iter().map(|&colour| rounded(colour)).collect();
     let mut palette: BTreeMap<[u8; 3], usize> = BTreeMap::new();
     for &colour in &coarse {
         palette.entry(colour).or_insert(0);
-        if palette.len() > MOST {
+        if palette.len() > MAX_COLOURS {
             return paint::encode(rgb, size, None);
         }
     }

@@ -4,7 +4,7 @@
 use super::{colour, given, palette, short};
 use crate::render::PictureRecord;
 use crate::render::record::{Exposure, ExposureRecord};
-use crate::report::plots::font::{Typeface, fit};
+use crate::report::plots::font::{self, Typeface, fit};
 use crate::report::plots::paint;
 use crate::report::plots::sheet::{Align, Image, Sheet};
 use crate::report::plots::style::{DARK, FAINT, GREY};
@@ -14,7 +14,7 @@ const FILE_PIXEL: f64 = 2.0 / 3.0;
 /// Distance of images from each other and from the rim.
 const GAP: f64 = 20.0;
 /// Maximum number of images in a row, the reference among them.
-const MOST: usize = 6;
+const MAX_IMAGES: usize = 6;
 /// Maximum number of lines of the caption.
 const MAX_CAPTION_LINES: usize = 4;
 /// Size of letters, and distance of lines.
@@ -22,10 +22,6 @@ const LETTER: f64 = 10.5;
 const LINE: f64 = 15.0;
 
 /// Returns the sheet as a PNG file.
-///
-/// # Errors
-///
-/// The painter fails, with its reason in words.
 pub fn png(record: &PictureRecord) -> Result<Vec<u8>, String> {
     let face = Typeface::load().map_err(|error| error.to_string())?;
     let sheet = compose(record, &face);
@@ -43,7 +39,7 @@ struct Column {
 fn compose(record: &PictureRecord, face: &Typeface) -> Sheet {
     let count = record.exposures.len() + 1;
     // The smallest number of rows, of equal length.
-    let bands = count.div_ceil(MOST);
+    let bands = count.div_ceil(MAX_IMAGES);
     let across = count.div_ceil(bands);
     let [columns, rows] = record.size;
     // Small pictures are shown twice as large.
@@ -57,16 +53,17 @@ fn compose(record: &PictureRecord, face: &Typeface) -> Sheet {
     let lines = below.fold(4, usize::max);
     let band = even(2.0 * size[1] + 14.0 + lines as f64 * LINE + GAP);
     let width = GAP + across as f64 * step;
-    let caption = wrapped(face, &record.caption, width - 2.0 * GAP, MAX_CAPTION_LINES);
-    let head = even(64.0 + LINE * caption.len() as f64);
-    let mut sheet = Sheet::new(width, head + bands as f64 * band);
     let full = width - 2.0 * GAP;
+    let facts = wrapped(face, &facts(record), full, 2);
+    let caption = wrapped(face, &record.caption, full, MAX_CAPTION_LINES);
+    let head = even(49.0 + LINE * (facts.len() + caption.len()) as f64);
+    let mut sheet = Sheet::new(width, head + bands as f64 * band);
     let title = fit(face, &record.title, 16.0, full);
     sheet.text([GAP, 22.0], title, 16.0, DARK, Align::Start);
-    let facts = fit(face, &facts(record), LETTER, full);
-    sheet.text([GAP, 44.0], facts, LETTER, GREY, Align::Start);
-    for (i, line) in caption.into_iter().enumerate() {
-        sheet.text([GAP, 61.0 + LINE * i as f64], line, LETTER, DARK, Align::Start);
+    let lines = facts.into_iter().map(|line| (line, GREY));
+    let lines = lines.chain(caption.into_iter().map(|line| (line, DARK)));
+    for (i, (line, colour)) in lines.enumerate() {
+        sheet.text([GAP, 46.0 + LINE * i as f64], line, LETTER, colour, Align::Start);
     }
     for number in 0..count {
         let (row, column) = (number / across, number % across);
@@ -85,7 +82,7 @@ fn compose(record: &PictureRecord, face: &Typeface) -> Sheet {
 fn facts(record: &PictureRecord) -> String {
     let [columns, rows] = record.size;
     format!(
-        "{} in {}, {columns} × {rows}; {} lookups for each of {} pixels that the volume covers; \
+        "{} in {}, {columns} × {rows} pixels; {} lookups for each of {} pixels that the volume covers; \
          {} empty pixels cost no lookup and no random number",
         record.problem, record.medium, record.budget, record.covered, record.empty
     )
@@ -99,7 +96,7 @@ fn reference(
     room: f64,
 ) {
     let Column { left, top, size } = *place;
-    sheet.image(picture(record, &record.reference.image, [left, top], size));
+    show(sheet, picture(record, &record.reference.image, [left, top], size));
     legend(sheet, record, place);
     let mut lines = wrapped(face, &format!("reference: {}", record.reference.how), room, 3);
     let found = &record.reference;
@@ -114,31 +111,13 @@ fn reference(
 fn legend(sheet: &mut Sheet, record: &PictureRecord, place: &Column) {
     let Column { left, top, size } = *place;
     let top = top + size[1] + 8.0;
-    let (high, low) = (top + 30.0, top + size[1] - 30.0);
-    let bar = [left + 20.0, left + 38.0];
-    let steps = 49_u32;
-    for step in 0..steps {
-        let at = |i: u32| low + (high - low) * f64::from(i) / f64::from(steps);
-        let shown = 2.0 * f64::from(step) / f64::from(steps - 1) - 1.0;
-        let [r, g, b] = colour::difference(&[shown; 3][..record.channels]);
-        let (y, end) = (at(step), at(step + 1));
-        let corners = vec![[bar[0], y], [bar[1], y], [bar[1], end], [bar[0], end]];
-        sheet.area(corners, crate::report::plots::style::ink(r, g, b));
-    }
-    let frame = [[bar[0], high], [bar[1], high], [bar[1], low], [bar[0], low], [bar[0], high]];
-    sheet.path(frame.to_vec(), 1.0, GREY);
-    let strongest = record.strongest;
-    let marks = [
-        (high, format!("≥ {}", number(strongest))),
-        (0.5 * (high + low), "0".into()),
-        (low, format!("≤ −{}", number(strongest))),
-    ];
-    for (y, text) in marks {
-        sheet.path(vec![[bar[1], y], [bar[1] + 5.0, y]], 1.0, GREY);
-        sheet.text([bar[1] + 9.0, y], text, LETTER, DARK, Align::Start);
-    }
+    let (high, low) = (top + 26.0, top + size[1] - size[1].min(120.0) / 8.0);
+    let strongest = number(record.strongest);
+    let [most, least] = [format!("≥ {strongest}"), format!("≤ −{strongest}")];
+    let marks = [(0.0, &*most), (0.5, "0"), (1.0, &*least)];
+    colour::bar(sheet, [left + 20.0, high], low - high, (record.channels, &marks));
     let words = if record.channels > 1 { "by channel" } else { "image − reference" };
-    sheet.text([left + 0.5 * size[0], top + 10.0], words, LETTER, DARK, Align::Middle);
+    sheet.text([left, top + 8.0], words, LETTER, DARK, Align::Start);
 }
 
 /// Returns a round number.
@@ -157,13 +136,13 @@ fn exposure(
     let Column { left, top, size } = *place;
     match &exposure.outcome {
         Ok(found) => {
-            sheet.image(picture(record, &found.image, [left, top], size));
+            show(sheet, picture(record, &found.image, [left, top], size));
             let below = [left, top + size[1] + 8.0];
-            sheet.image(difference(record, &found.image, below, size));
+            show(sheet, difference(record, &found.image, below, size));
         }
         Err(reason) => {
-            frame(sheet, left, top, size);
-            frame(sheet, left, top + size[1] + 8.0, size);
+            sheet.frame([left, top], size, FAINT);
+            sheet.frame([left, top + size[1] + 8.0], size, FAINT);
             for (i, line) in wrapped(face, &format!("refused: {reason}"), size[0] - 16.0, 7)
                 .into_iter()
                 .enumerate()
@@ -208,10 +187,11 @@ fn write(sheet: &mut Sheet, place: &Column, lines: &[String]) {
     }
 }
 
-fn frame(sheet: &mut Sheet, left: f64, top: f64, size: [f64; 2]) {
-    let (right, low) = (left + size[0], top + size[1]);
-    let corners = [[left, top], [right, top], [right, low], [left, low], [left, top]];
-    sheet.path(corners.to_vec(), 1.0, FAINT);
+/// Draws an image in a frame, without which a white one cannot be seen.
+fn show(sheet: &mut Sheet, image: Image) {
+    let (at, size) = (image.at, image.size);
+    sheet.image(image);
+    sheet.frame(at, size, FAINT);
 }
 
 fn picture(record: &PictureRecord, image: &[f64], at: [f64; 2], size: [f64; 2]) -> Image {
@@ -229,21 +209,12 @@ fn difference(record: &PictureRecord, image: &[f64], at: [f64; 2], size: [f64; 2
 
 /// Returns a text in lines of a width; the last one is cut if the text is too long.
 fn wrapped(face: &Typeface, text: &str, width: f64, most: usize) -> Vec<String> {
-    let mut lines: Vec<String> = Vec::new();
-    for word in text.split(' ').filter(|word| !word.is_empty()) {
-        match lines.last_mut() {
-            Some(line) if face.width(&format!("{line} {word}"), LETTER) <= width => {
-                line.push(' ');
-                line.push_str(word);
-            }
-            _ => lines.push(word.to_owned()),
-        }
-    }
+    let mut lines = font::wrapped(face, text, LETTER, width);
     if lines.len() > most {
         let rest = lines.split_off(most - 1).join(" ");
-        lines.push(rest);
+        lines.push(fit(face, &rest, LETTER, width));
     }
-    lines.into_iter().map(|line| fit(face, &line, LETTER, width)).collect()
+    lines
 }
 
 #[cfg(test)]

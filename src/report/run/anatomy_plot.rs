@@ -8,7 +8,7 @@
 use plotters::style::{Color, RGBAColor};
 
 use crate::record::{Anatomy, CaseRecord, Record};
-use crate::report::plots::figure::{Figure, LEFT};
+use crate::report::plots::figure::{Figure, LEFT, subject};
 use crate::report::plots::legend::{self, Entry};
 use crate::report::plots::style::{COLOURS, DARK, GREY, Marker};
 use crate::report::plots::{self, Axis, Panel, Sheet};
@@ -19,10 +19,6 @@ const RIGHT: f64 = 940.0;
 const LEGEND: f64 = 968.0;
 
 /// Returns two panels for each case with a curve.
-///
-/// # Errors
-///
-/// An encoder or the painter fails.
 pub fn render(record: &Record) -> Result<Vec<Artifact>, ReportError> {
     let mut artifacts = Vec::new();
     for case in &record.results.cases {
@@ -35,13 +31,9 @@ pub fn render(record: &Record) -> Result<Vec<Artifact>, ReportError> {
 }
 
 /// Returns the figure of a case with a curve.
-///
-/// # Errors
-///
-/// There is no typeface.
 pub fn figure(case: &CaseRecord, anatomy: &Anatomy) -> Result<Sheet, ReportError> {
     let label = anatomy.experiment.label();
-    let words = [&case.name, &case.medium, &label].map(String::as_str).join("  ·  ");
+    let words = [subject(&case.name, &case.medium), label].join("  ·  ");
     let size = [1200.0, 900.0];
     let Figure { face, mut sheet, .. } =
         Figure::new(&case.name, size, 1090.0, [&case.title, &words])?;
@@ -82,7 +74,7 @@ fn medium(sheet: &mut Sheet, anatomy: &Anatomy) -> Vec<Entry> {
         entries.insert(0, Entry { label, line, marker: None, colour });
     }
     let dots = [
-        ("explorer", &anatomy.explorers, Marker::Diamond, 5.0, COLOURS[0]),
+        ("explorer point", &anatomy.explorers, Marker::Diamond, 5.0, COLOURS[0]),
         ("tentative collision", &anatomy.collisions, Marker::Disc, 4.2, COLOURS[3]),
     ];
     for (name, dots, marker, size, colour) in dots.into_iter().filter(|dots| !dots.1.is_empty()) {
@@ -98,7 +90,7 @@ fn medium(sheet: &mut Sheet, anatomy: &Anatomy) -> Vec<Entry> {
         }
         entries.push(Entry { label: name.to_owned(), line: None, marker: Some(marker), colour });
     }
-    panel.frame(sheet, "(a) The medium and what is flown through");
+    panel.frame(sheet, "(a) The medium, and the collisions of one flight");
     entries
 }
 
@@ -135,8 +127,8 @@ fn transmittance(sheet: &mut Sheet, anatomy: &Anatomy) -> Vec<Entry> {
     };
     let solid = |width| Some((&[] as &[f64], width));
     let mut entries = vec![
-        entry("T(t) exact", solid(2.4), None, DARK),
-        entry("± 1 deviation", solid(12.0), None, blue.mix(0.22)),
+        entry("exact T(t)", solid(2.4), None, DARK),
+        entry("± 1 deviation in theory", solid(12.0), None, blue.mix(0.22)),
     ];
     if !anatomy.walks.is_empty() {
         entries.push(entry("single draws", solid(1.0), None, COLOURS[2].mix(0.75)));
@@ -144,7 +136,7 @@ fn transmittance(sheet: &mut Sheet, anatomy: &Anatomy) -> Vec<Entry> {
     if !anatomy.measured.is_empty() {
         entries.push(entry("mean of draws", None, Some(Marker::Disc), red));
         entries.push(entry("± 1 standard error", solid(2.8), None, red));
-        entries.push(entry("± 1 measured deviation", solid(1.2), None, red));
+        entries.push(entry("± 1 deviation measured", solid(1.2), None, red));
     }
     entries
 }

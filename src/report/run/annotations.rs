@@ -11,7 +11,7 @@ use crate::report::run::diff;
 use crate::report::run::failures::{self, Failure, failing};
 
 /// Number of annotations of a kind that GitHub shows.
-const MOST: usize = 10;
+const MAX_ANNOTATIONS: usize = 10;
 
 /// Returns the commands, one per line; empty if there is nothing to report.
 pub fn text(record: &Record) -> String {
@@ -30,7 +30,7 @@ pub fn text(record: &Record) -> String {
 /// Returns the commands that GitHub shows of one kind.
 fn at_most(command: &str, annotations: Vec<String>) -> Vec<String> {
     let all = annotations.len();
-    let shown = if all > MOST { MOST - 1 } else { all };
+    let shown = if all > MAX_ANNOTATIONS { MAX_ANNOTATIONS - 1 } else { all };
     let mut lines: Vec<String> =
         annotations.into_iter().take(shown).map(|said| format!("::{command} {said}")).collect();
     if shown < all {

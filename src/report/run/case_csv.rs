@@ -3,18 +3,13 @@
 //! They have results only, without timing, so that the files are the same to the byte for any number of threads on any
 //! machine.
 
-use crate::record::{Anatomy, CaseRecord, Record, Row, Sweep};
-use crate::report::fields::table;
-use crate::report::run::fields::{TIMED, of_files};
+use crate::record::{Anatomy, CaseRecord, Curve, CurvePoint, Record, Sweep};
+use crate::report::fields::{self, Field, Table, fields, places, table};
+use crate::report::run::fields::TIMED;
 use crate::report::run::summary_csv::Line;
 use crate::report::{Artifact, ReportError, case_path};
-use numeric::digits::exact;
 
 /// Returns the rows, the predicted curves and the profiles of each case.
-///
-/// # Errors
-///
-/// An encoder or the painter fails.
 pub fn render(record: &Record) -> Result<Vec<Artifact>, ReportError> {
     let mut artifacts = Vec::new();
     for case in &record.results.cases {
@@ -34,53 +29,79 @@ pub fn render(record: &Record) -> Result<Vec<Artifact>, ReportError> {
     Ok(artifacts)
 }
 
-/// Column of deviations, for error bars.
-type Bar = (&'static str, fn(&Row) -> Option<f64>);
-
 fn case_rows(case: &CaseRecord, seed: u64) -> Result<String, ReportError> {
-    let mut untimed = of_files();
-    untimed.retain(|column| !TIMED.contains(&column.name));
-    let bars: [Bar; 2] = [
-        ("variance_deviation", |row| row.variance_deviation),
-        ("lookups_deviation", |row| row.experiment.lookups_deviation),
-    ];
-    let header = untimed.iter().map(|column| column.name).chain(bars.map(|(name, _)| name));
-    let lines = case.rows().map(|row| {
-        let line = Line { row, seed };
-        let fields = untimed.iter().map(move |column| (column.cell)(&line).csv());
-        fields.chain(bars.map(|(_, value)| value(&row).map(exact).unwrap_or_default()))
-    });
-    table(&case.name, header, lines)
+    const OF_TIMES: [usize; 3] = places::<Line, _>(TIMED);
+    let all = Line::of_files().into_iter().enumerate();
+    let untimed = all.filter(|(place, _)| !OF_TIMES.contains(place));
+    let mut fields: Vec<_> = untimed.map(|(_, field)| field).collect();
+    fields.extend(deviations());
+    fields::csv(&case.name, &fields, case.rows().map(|row| Line { row, seed }))
+}
+
+/// Returns the fields of error bars, which only these files have.
+pub fn deviations<'a>() -> Vec<Field<Line<'a>>> {
+    fields! {
+        "variance_deviation": "Standard error of the measured variance" = |line| line.variance_deviation;
+        "lookups_deviation": "Standard error of the mean number of lookups" = |line| line.experiment.lookups_deviation;
+    }
+}
+
+/// Point of a predicted curve.
+pub struct Predicted<'a> {
+    curve: &'a Curve,
+    point: &'a CurvePoint,
+}
+
+table! {
+    impl<'a> for Predicted<'a> {
+        "estimator": "Estimator with its settings" = |of| &of.curve.estimator;
+        "control": "Control extinction" = |of| &of.curve.control;
+        "channel": "Which value of a draw; the column is missing if a draw is one value" = |of| &of.curve.channel;
+        "x": "Value of the swept quantity" = |of| of.point.x;
+        "variance": "Variance of one draw" = |of| of.point.variance;
+        "lookups": "Expected number of lookups of a draw" = |of| of.point.lookups;
+        "fom": "Figure of merit 1/(variance × lookups)" = |of| of.point.fom;
+        "setup_lookups": "Lookups of a ray before its first draw" = |of| of.point.setup_lookups;
+    }
 }
 
 fn theory(case: &CaseRecord, sweep: &Sweep) -> Result<String, ReportError> {
-    // Problems with one channel have no name for it.
-    let is_named = sweep.curves.iter().any(|curve| !curve.channel.is_empty());
-    let words = ["estimator", "control", "channel"];
-    let words = &words[..if is_named { 3 } else { 2 }];
-    let header = words.iter().copied().chain(["x", "variance", "lookups", "fom", "setup_lookups"]);
-    let lines = sweep.curves.iter().flat_map(|curve| {
-        curve.points.iter().map(|point| {
-            let texts = [curve.estimator.clone(), curve.control.clone(), curve.channel.clone()];
-            let numbers = [point.x, point.variance, point.lookups, point.fom].map(exact);
-            let setup = point.setup_lookups.to_string();
-            texts.into_iter().take(words.len()).chain(numbers).chain([setup])
-        })
-    });
-    table(&case.name, header, lines)
+    let mut fields = Predicted::fields();
+    if sweep.curves.iter().all(|curve| curve.channel.is_empty()) {
+        let [channel] = const { places::<Predicted, _>(["channel"]) };
+        fields.remove(channel);
+    }
+    let curves = sweep.curves.iter();
+    let points =
+        curves.flat_map(|curve| curve.points.iter().map(|point| Predicted { curve, point }));
+    fields::csv(&case.name, &fields, points)
+}
+
+/// Point of the ray of a case.
+pub struct Place<'a> {
+    anatomy: &'a Anatomy,
+    number: usize,
+}
+
+impl Place<'_> {
+    fn of(&self, values: fn(&Anatomy) -> &[f64]) -> Option<f64> {
+        values(self.anatomy).get(self.number).copied()
+    }
+}
+
+table! {
+    impl<'a> for Place<'a> {
+        "t": "Distance along the ray" = |place| place.of(|ray| &ray.t);
+        "extinction": "Extinction σ_t" = |place| place.of(|ray| &ray.extinction);
+        "control": "Control extinction σ_c; empty without one" = |place| place.of(|ray| &ray.control);
+        "residual": "σ_t − σ_c" = |place| place.of(|ray| &ray.residual);
+        "sampling": "Sampling extinction σ̂" = |place| place.of(|ray| &ray.sampling);
+        "transmittance": "Transmittance T(t)" = |place| place.of(|ray| &ray.transmittance);
+        "deviation": "Standard deviation of a draw of T(t); empty if unknown" = |place| place.of(|ray| &ray.deviation);
+    }
 }
 
 fn profiles(case: &CaseRecord, anatomy: &Anatomy) -> Result<String, ReportError> {
-    let columns: [(&str, &[f64]); 7] = [
-        ("t", &anatomy.t),
-        ("extinction", &anatomy.extinction),
-        ("control", &anatomy.control),
-        ("residual", &anatomy.residual),
-        ("sampling", &anatomy.sampling),
-        ("transmittance", &anatomy.transmittance),
-        ("deviation", &anatomy.deviation),
-    ];
-    let lines = (0..anatomy.t.len())
-        .map(|i| columns.map(|(_, values)| values.get(i).copied().map(exact).unwrap_or_default()));
-    table(&case.name, columns.map(|(name, _)| name), lines)
+    let places = (0..anatomy.t.len()).map(|number| Place { anatomy, number });
+    fields::csv(&case.name, &Place::fields(), places)
 }

@@ -3,61 +3,56 @@
 //! Findings about an experiment as a whole are listed once, with its first channel.
 
 use crate::record::{Finding, GateFinding, Record, Row};
-use crate::report::fields::{self, Field, fields};
+use crate::report::fields::{self, Table, table};
 use crate::report::{Artifact, ReportError};
 
 /// Finding with its row.
-pub struct Answer<'a> {
+pub struct FindingRow<'a> {
     of: Row<'a>,
     found: &'a Finding,
 }
 
-impl Answer<'_> {
+impl FindingRow<'_> {
     fn gate<T>(&self, number: fn(GateFinding) -> T) -> Option<T> {
         self.found.gate.map(number)
     }
 }
 
-/// Returns the fields of the file.
-pub fn of_findings<'a>() -> Vec<Field<Answer<'a>>> {
-    fields! {
-        "case": "Case: the name of its file" = |answer| &answer.of.case.name;
-        "estimator": "Estimator with its settings" = |answer| &answer.of.experiment.label;
-        "sampling": "Sampling extinction σ̂, if it is a constant" = |answer| answer.of.experiment.sampling();
-        "sampling_kind": "Kind of σ̂, as constant or local majorants" = |answer| &answer.of.experiment.id.sampling.kind;
-        "control": "Control extinction" = |answer| &answer.of.experiment.id.control;
-        "swept": "Value of the swept quantity" = |answer| answer.of.experiment.swept();
-        "check": "Name of the check, as in `trueflight list checks`" = |answer| &answer.found.check;
-        "what": "Quantity" = |answer| &answer.found.what;
-        "channel": "Which value of a draw; empty for the experiment as a whole" = |answer| &answer.found.channel;
-        "verdict": "Result of the check" = |answer| answer.found.verdict.word();
-        "reason": "Reason of the verdict; empty for a plain pass" = |answer| &answer.found.reason;
-        "tolerance": "Tolerance ε of the gate, relative" = |answer| answer.gate(|gate| gate.tolerance);
-        "variance_of_y": "Variance V of the gate, relative" = |answer| answer.gate(|gate| gate.variance);
-        "planned": "Number of planned draws, 27 V/ε²" = |answer| answer.gate(|gate| gate.planned);
-        "draws": "Number of draws until the decision" = |answer| answer.gate(|gate| gate.draws);
-        "needed": "Number of draws that it would take, if more than planned" = |answer| answer.gate(|gate| gate.needed).flatten();
-        "mean_of_y": "Observed relative difference from theory" = |answer| answer.gate(|gate| gate.mean);
-        "ln_e": "Evidence against a correct estimator: it fails at the limit" = |answer| answer.gate(|gate| gate.ln_e);
-        "ln_e_limit": "Limit of ln E" = |answer| answer.gate(|gate| gate.ln_e_limit);
-        "ln_p_above": "Evidence against a bias of +ε" = |answer| answer.gate(|gate| gate.ln_p[0]);
-        "ln_p_below": "Evidence against a bias of −ε" = |answer| answer.gate(|gate| gate.ln_p[1]);
-        "ln_p_limit": "Limit of both ln P, at which it passes" = |answer| answer.gate(|gate| gate.ln_p_limit);
-        "z": "Difference from theory in standard errors, over the fixed draws" = |answer| answer.found.z;
-        "p": "p-value of a test of a whole distribution" = |answer| answer.found.p;
-        "block": "Block after which it was decided, or with the violation" = |answer| answer.found.block;
+table! {
+    impl<'a> for FindingRow<'a> {
+        "case": "Case: the name of its file" = |row| &row.of.case.name;
+        "estimator": "Estimator with its settings" = |row| &row.of.experiment.label;
+        "sampling": "Sampling extinction σ̂, if it is a constant" = |row| row.of.experiment.sampling();
+        "sampling_kind": "Kind of σ̂, as constant or local majorants" = |row| &row.of.experiment.id.sampling.kind;
+        "control": "Control extinction" = |row| &row.of.experiment.id.control;
+        "swept": "Value of the swept quantity" = |row| row.of.experiment.swept();
+        "check": "Name of the check, as in `trueflight list checks`" = |row| &row.found.check;
+        "what": "Quantity" = |row| &row.found.what;
+        "channel": "Which value of a draw; empty for the experiment as a whole" = |row| &row.found.channel;
+        "verdict": "Result of the check" = |row| row.found.verdict.word();
+        "reason": "Reason of the verdict; empty for a plain pass" = |row| &row.found.reason;
+        "tolerance": "Tolerance ε of the gate, relative" = |row| row.gate(|gate| gate.tolerance);
+        "variance_of_y": "Variance V of the gate, relative" = |row| row.gate(|gate| gate.variance);
+        "planned": "Number of planned draws, 27 V/ε²" = |row| row.gate(|gate| gate.planned);
+        "draws": "Number of draws until the decision" = |row| row.gate(|gate| gate.draws);
+        "needed": "Number of draws that it would take, if more than planned" = |row| row.gate(|gate| gate.needed).flatten();
+        "mean_of_y": "Observed relative difference from theory" = |row| row.gate(|gate| gate.mean);
+        "ln_e": "Evidence against a correct estimator: it fails at the limit" = |row| row.gate(|gate| gate.ln_e);
+        "ln_e_limit": "Limit of ln E" = |row| row.gate(|gate| gate.ln_e_limit);
+        "ln_p_above": "Evidence against a bias of +ε" = |row| row.gate(|gate| gate.ln_p[0]);
+        "ln_p_below": "Evidence against a bias of −ε" = |row| row.gate(|gate| gate.ln_p[1]);
+        "ln_p_limit": "Limit of both ln P, at which it passes" = |row| row.gate(|gate| gate.ln_p_limit);
+        "z": "Difference from theory in standard errors, over the fixed draws" = |row| row.found.z;
+        "p": "p-value of a test of a whole distribution" = |row| row.found.p;
+        "block": "Block after which it was decided, or with the violation" = |row| row.found.block;
     }
 }
 
 /// Returns one row per finding.
-///
-/// # Errors
-///
-/// An encoder or the painter fails.
 pub fn render(record: &Record) -> Result<Vec<Artifact>, ReportError> {
-    let answers = record
+    let findings = record
         .results
         .rows()
-        .flat_map(|of| of.own_findings().map(move |found| Answer { of, found }));
-    Ok(vec![fields::artifact("checks.csv", &of_findings(), answers)?])
+        .flat_map(|of| of.own_findings().map(move |found| FindingRow { of, found }));
+    Ok(vec![fields::artifact("checks.csv", &FindingRow::fields(), findings)?])
 }

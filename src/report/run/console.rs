@@ -37,7 +37,7 @@ impl View {
 }
 
 /// Smallest useful width of a column of reasons.
-const NARROWEST: usize = 20;
+const MIN_WIDTH: usize = 20;
 /// Width of the screen from which on reasons may stand in the table.
 const WIDE: usize = 120;
 
@@ -159,7 +159,7 @@ fn grid(text: &mut String, pen: layout::Pen, block: &Block, view: View) -> bool 
     grid.fit(pen.width);
     let rest = pen.width.saturating_sub(grid.width() + 2);
     let longest = rows.iter().map(|row| layout::width(&row.reason)).max().unwrap_or(0);
-    let beside = pen.width >= WIDE && rest >= NARROWEST && longest > 0;
+    let beside = pen.width >= WIDE && rest >= MIN_WIDTH && longest > 0;
     if beside {
         let cells = rows.iter().map(|row| Field::plain(end_elided(&row.reason, rest)));
         grid.push("reason", cells.collect());

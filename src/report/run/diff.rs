@@ -28,7 +28,7 @@ impl Difference<'_> {
 }
 
 /// Maximum length of lists of experiments in words; `record.json` has them whole.
-const MOST: usize = 8;
+const MAX_LISTED: usize = 8;
 
 /// Returns the experiments that were left out, by the reason.
 fn left_out(comparison: &Comparison) -> Vec<(&'static str, &[ChannelId])> {
@@ -68,9 +68,9 @@ pub(in crate::report) fn ending(nothing: Option<String>, has_changes: bool) -> O
 
 /// Returns a list of experiments, cut if it is long.
 pub(in crate::report) fn listed(why: &str, ids: &[impl Display]) -> String {
-    let shown: Vec<String> = ids.iter().take(MOST).map(ToString::to_string).collect();
+    let shown: Vec<String> = ids.iter().take(MAX_LISTED).map(ToString::to_string).collect();
     let shown = shown.join(", ");
-    let more = match ids.len().saturating_sub(MOST) {
+    let more = match ids.len().saturating_sub(MAX_LISTED) {
         0 => String::new(),
         more => format!(" and {more} more"),
     };
@@ -139,23 +139,33 @@ fn drift(drift: &Drift) -> Difference<'_> {
     Difference { is_worse: true, experiment: id.to_string(), what, command }
 }
 
-fn change(change: &Change, tolerance: Option<f64>) -> Difference<'_> {
-    let (what, unit) = match change.quantity {
-        Quantity::Variance => ("variance", ""),
-        Quantity::Lookups => ("lookups per draw", ""),
-        Quantity::Time => ("processor time per draw", " ns"),
-    };
-    let value = |Measured { value, error }: Measured| {
+/// Returns a quantity in words.
+pub fn name(quantity: Quantity) -> &'static str {
+    match quantity {
+        Quantity::Variance => "variance",
+        Quantity::Lookups => "lookups per draw",
+        Quantity::Time => "processor time per draw",
+    }
+}
+
+/// Returns the values before and now, with their errors.
+pub fn values(change: &Change) -> [String; 2] {
+    let unit = if change.quantity == Quantity::Time { " ns" } else { "" };
+    [change.before, change.now].map(|Measured { value, error }| {
         let error = error.map_or(String::new(), |error| format!(" ± {}", short(error, 2)));
         format!("{}{error}{unit}", fixed(value, 5))
-    };
+    })
+}
+
+fn change(change: &Change, tolerance: Option<f64>) -> Difference<'_> {
+    let what = name(change.quantity);
     let interval = if let Some([low, high]) = change.interval {
         format!("in [{}, {}]", fixed(low, 4), fixed(high, 4))
     } else {
         let tolerance = tolerance.map_or("∞".to_owned(), |tolerance| short(tolerance, 3));
         format!("beyond the tolerance of {tolerance}, its error unknown")
     };
-    let (before, now) = (value(change.before), value(change.now));
+    let [before, now] = values(change);
     let ratio = fixed(change.ratio, 4);
     Difference {
         is_worse: change.is_regression,

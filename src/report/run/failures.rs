@@ -106,16 +106,18 @@ impl<'a> Failure<'a> {
         let finding = self.finding;
         add("block", finding.and_then(|f| f.block).map(|block| block.to_string().into()));
         add("draws of the statistics", row.experiment.draws.map(|draws| draws.to_string().into()));
-        add("mean", row.mean.map(number));
-        add("standard error", row.standard_error.map(number));
-        add("truth", row.truth.map(number));
-        add("z of the mean", row.z_mean.map(|z| told(Score::Mean, z)));
-        add("variance", row.variance.map(number));
-        add("predicted variance", row.predicted_variance.map(number));
-        add("z of the variance", row.z_variance.map(|z| told(Score::Variance, z)));
-        add("lookups", row.experiment.lookups_per_draw.map(number));
-        add("predicted lookups", row.experiment.predicted_lookups.map(number));
-        add("z of the lookups", row.experiment.z_lookups.map(|z| told(Score::Lookups, z)));
+        for (score, theory, z) in [
+            (Score::Mean, "truth", "z of the mean"),
+            (Score::Variance, "predicted variance", "z of the variance"),
+            (Score::Lookups, "predicted lookups", "z of the lookups"),
+        ] {
+            let values = row.compared(score);
+            add(score.quantity(), values.measured.map(number));
+            let deviation = values.deviation.filter(|_| score == Score::Mean);
+            add("standard error", deviation.map(number));
+            add(theory, values.theory.map(number));
+            add(z, values.z.map(|z| told(score, z)));
+        }
         add("p", finding.and_then(|f| f.p).map(number));
         if let Some(gate) = finding.and_then(|finding| finding.gate) {
             let [above, below] = gate.ln_p.map(|p| short(p, 4));
@@ -142,7 +144,7 @@ fn limited(value: &str, word: &str, limit: f64) -> Cow<'static, str> {
 }
 
 /// Smallest number of swept values for which an end is distinguished.
-const FEWEST: usize = 3;
+const MIN_POINTS: usize = 3;
 
 /// Returns the likely causes of a failing row, line by line; empty for a row that does not fail.
 pub fn causes(row: &Row) -> Vec<String> {
@@ -185,7 +187,7 @@ fn place(row: &Row) -> Place {
     along.sort_by(|a, b| a.0.total_cmp(&b.0));
     // Failing values must be contiguous: exactly one change along the sweep.
     let changes = along.windows(2).filter(|pair| pair[0].1 != pair[1].1).count();
-    match (along.len() >= FEWEST && changes == 1, along.first()) {
+    match (along.len() >= MIN_POINTS && changes == 1, along.first()) {
         (true, Some((_, true))) => Place::LowEnd,
         (true, Some((_, false))) => Place::HighEnd,
         _ => Place::Anywhere,

@@ -2,7 +2,7 @@
 //! console, of the page and of the manual.
 
 use crate::record::{Score, Verdict};
-use crate::report::fields::{Field, fields};
+use crate::report::fields::table;
 use crate::report::run::summary_csv::Line;
 use numeric::Grade;
 use numeric::digits::short;
@@ -10,9 +10,8 @@ use numeric::digits::short;
 /// Fields that differ from run to run, which files of results alone leave out.
 pub const TIMED: [&str; 3] = ["seconds", "ns_per_lookup", "reused"];
 
-/// Returns the fields, in the order of the files.
-pub fn of_files<'a>() -> Vec<Field<Line<'a>>> {
-    fields! {
+table! {
+    impl<'a> for Line<'a> {
         "case": "Case: the name of its file" = |line| &line.case.name;
         "problem": "Kind of problem, as transmittance or rod" = |line| &line.case.problem;
         "medium": "Medium, as in `trueflight list media`" = |line| &line.case.medium;
@@ -91,12 +90,7 @@ pub fn of_files<'a>() -> Vec<Field<Line<'a>>> {
         "covariance" ["Cov next", "of the case, squared", Fixed(4)]: "Covariance of one draw with the next channel in theory" = |line| line.covariance;
         "error_grade" ["errors are", "", Plain]: "Ground of `truth_error` and `moments_error`: proven, or estimated from resolutions"
             = |line| line.error_grade.map(Grade::word);
-    }
-}
-
-/// Returns fields that screens have and files do not.
-pub fn of_screens<'a>() -> Vec<Field<Line<'a>>> {
-    fields! {
+    } screens {
         "variance_ratio" ["s²/V", "", Places(3)]: "Measured variance over that of theory" = |line| line.variance_ratio();
         "lookups_spread" ["± σ", "", Fixed(4)]: "Standard deviation of the number of lookups in theory"
             = |line| line.experiment.lookups_variance.map(f64::sqrt);

@@ -16,34 +16,23 @@ mod sparks;
 use maud::html;
 
 use crate::record::{CaseRecord, Record};
+use crate::report::fields::Table;
 use crate::report::html as page;
 use crate::report::html::drawing::{self, Plot, plot};
-use crate::report::run::fields;
+use crate::report::run::summary_csv::Line;
 use crate::report::run::{anatomy_plot, sweep_plot, totals};
 use crate::report::{Artifact, ReportError};
 
 /// Returns the record as a page.
-///
-/// # Errors
-///
-/// A plot cannot be drawn.
 pub fn render(record: &Record) -> Result<Vec<Artifact>, ReportError> {
     Ok(vec![Artifact::text("report.html", text(record)?)])
 }
 
 /// Returns the record as a page of HTML.
-///
-/// # Errors
-///
-/// A plot cannot be drawn.
 pub fn text(record: &Record) -> Result<String, ReportError> {
     let plots = plots(record)?;
     let title = format!("Trueflight: {}", totals::verdict(record).words());
-    let shown = details::Shown {
-        seed: record.results.seed,
-        plots: &plots,
-        fields: fields::of_files().into_iter().chain(fields::of_screens()).collect(),
-    };
+    let shown = details::Shown { seed: record.results.seed, plots: &plots, fields: Line::fields() };
     let body = html! {
         (drawing::definitions(&plots))
         (first::section(record))
@@ -57,10 +46,6 @@ pub fn text(record: &Record) -> Result<String, ReportError> {
 }
 
 /// Returns the plots of every case, in the cases' order.
-///
-/// # Errors
-///
-/// The painter fails.
 fn plots(record: &Record) -> Result<Vec<Vec<Plot>>, ReportError> {
     let cases = record.results.cases.iter().enumerate();
     cases.map(|(place, case)| of_case(place, case, record.results.seed)).collect()

@@ -29,10 +29,6 @@ pub enum Inconclusive {
 }
 
 /// Returns the record as JUnit XML.
-///
-/// # Errors
-///
-/// The encoder fails.
 pub fn text(record: &Record, inconclusive: Inconclusive) -> Result<String, ReportError> {
     let mut report = quick_junit::Report::new("trueflight");
     report.set_time(duration(record.timing.seconds));
@@ -42,9 +38,7 @@ pub fn text(record: &Record, inconclusive: Inconclusive) -> Result<String, Repor
     if let Some(comparison) = &record.comparison {
         report.add_test_suite(changed(comparison));
     }
-    // The schema has no count of skipped tests at the root; the suites have theirs.
-    let skipped = format!(" skipped=\"{}\"", report.skipped);
-    Ok(report.to_string()?.replacen(&skipped, "", 1))
+    encoded(&report)
 }
 
 fn suite(record: &Record, case: &CaseRecord, inconclusive: Inconclusive) -> TestSuite {
@@ -99,10 +93,22 @@ fn changed(comparison: &Comparison) -> TestSuite {
 }
 
 fn status(row: Row, seed: u64, inconclusive: Inconclusive) -> TestCaseStatus {
-    let Some(verdict) = row.verdict.filter(|&verdict| verdict != Verdict::Pass) else {
-        return TestCaseStatus::success();
+    let details = || {
+        let details = failures::of_row(row, seed);
+        details.iter().map(Failure::details).collect::<Vec<_>>().join("\n")
     };
+    status_of(row.verdict.unwrap_or(Verdict::Pass), &row.reason, inconclusive, details)
+}
+
+/// Returns the status of a verdict with its reason; a fail or an inconclusive verdict has details.
+pub fn status_of(
+    verdict: Verdict,
+    reason: &str,
+    inconclusive: Inconclusive,
+    details: impl FnOnce() -> String,
+) -> TestCaseStatus {
     let mut status = match (verdict, inconclusive) {
+        (Verdict::Pass, _) => return TestCaseStatus::success(),
         (Verdict::Fail, _) | (Verdict::Inconclusive, Inconclusive::Failure) => {
             TestCaseStatus::non_success(NonSuccessKind::Failure)
         }
@@ -112,13 +118,17 @@ fn status(row: Row, seed: u64, inconclusive: Inconclusive) -> TestCaseStatus {
         _ => TestCaseStatus::skipped(),
     };
     status.set_type(verdict.word());
-    status.set_message(&*row.reason);
+    status.set_message(reason);
     if matches!(verdict, Verdict::Fail | Verdict::Inconclusive) {
-        let details: Vec<String> =
-            failures::of_row(row, seed).iter().map(Failure::details).collect();
-        status.set_description(details.join("\n"));
+        status.set_description(details());
     }
     status
+}
+
+/// Returns the report as text. The schema has no count of skipped tests at the root; the suites have theirs.
+pub fn encoded(report: &quick_junit::Report) -> Result<String, ReportError> {
+    let skipped = format!(" skipped=\"{}\"", report.skipped);
+    Ok(report.to_string()?.replacen(&skipped, "", 1))
 }
 
 fn duration(seconds: f64) -> Duration {

@@ -11,7 +11,7 @@ use crate::report::run::totals;
 use numeric::digits::range;
 
 /// Maximum number of rows; more are counted, since a job's summary is limited to a mebibyte.
-const MOST: usize = 50;
+const MAX_LINES: usize = 50;
 
 /// Returns the record as a page of Markdown.
 pub fn text(record: &Record) -> String {
@@ -33,7 +33,8 @@ pub fn text(record: &Record) -> String {
     let suspects = totals::suspects(record);
     if !suspects.is_empty() {
         text.push_str("Look here first (e-BH): ");
-        let suspects: Vec<String> = suspects.into_iter().take(MOST).map(totals::suspect).collect();
+        let suspects: Vec<String> =
+            suspects.into_iter().take(MAX_LINES).map(totals::suspect).collect();
         let _ = writeln!(
             text,
             "{}\n",
@@ -51,7 +52,7 @@ fn section(text: &mut String, title: &str, failures: &[Failure]) {
     }
     let _ = writeln!(text, "### {title}\n\n| case | experiment | check | where | why |");
     text.push_str("|---|---|---|---|---|\n");
-    for failure in failures.iter().take(MOST) {
+    for failure in failures.iter().take(MAX_LINES) {
         let cells = [
             failure.row.case.name.clone(),
             failure.experiment(),
@@ -63,7 +64,7 @@ fn section(text: &mut String, title: &str, failures: &[Failure]) {
     }
     more(text, failures.len());
     let mut told: Vec<Vec<String>> = Vec::new();
-    for failure in failures.iter().take(MOST) {
+    for failure in failures.iter().take(MAX_LINES) {
         let lines = failures::causes(&failure.row);
         if lines.is_empty() || told.contains(&lines) {
             continue;
@@ -78,7 +79,7 @@ fn section(text: &mut String, title: &str, failures: &[Failure]) {
         told.push(lines);
     }
     let mut commands: Vec<(&str, &str)> = Vec::new();
-    for failure in failures.iter().take(MOST) {
+    for failure in failures.iter().take(MAX_LINES) {
         let next = failure.row.next_command();
         commands.extend(next.filter(|next| !commands.contains(next)));
     }
@@ -96,7 +97,7 @@ fn section(text: &mut String, title: &str, failures: &[Failure]) {
 fn changed(text: &mut String, comparison: &Comparison) {
     let _ = writeln!(text, "### Since baseline {}\n", escaped(&comparison.name));
     let all = diff::all(comparison);
-    for change in all.iter().take(MOST) {
+    for change in all.iter().take(MAX_LINES) {
         let word = if change.is_worse { "**regression**" } else { "improvement" };
         let _ = writeln!(text, "- {word} {}", escaped(&change.line()));
     }
@@ -109,7 +110,7 @@ fn changed(text: &mut String, comparison: &Comparison) {
 }
 
 fn more(text: &mut String, all: usize) {
-    if let Some(left) = all.checked_sub(MOST).filter(|&left| left > 0) {
+    if let Some(left) = all.checked_sub(MAX_LINES).filter(|&left| left > 0) {
         let _ = writeln!(text, "\nand {left} more.");
     }
 }
@@ -122,7 +123,7 @@ fn notes(text: &mut String, cases: &[CaseRecord]) {
         return;
     }
     text.push_str("### Notes\n\n");
-    for (case, note) in all.iter().take(MOST) {
+    for (case, note) in all.iter().take(MAX_LINES) {
         let _ = writeln!(text, "- {}: {}", escaped(&case.name), escaped(note));
     }
     more(text, all.len());

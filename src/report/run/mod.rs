@@ -24,10 +24,6 @@ use media::catalogue::PageList;
 pub type Report = fn(&Record) -> Result<Vec<Artifact>, ReportError>;
 
 /// Renders every report that a run writes.
-///
-/// # Errors
-///
-/// The first error of any report.
 pub fn render(record: &Record) -> Result<Vec<Artifact>, ReportError> {
     let rendered: Result<Vec<_>, _> = REPORTS.iter().map(|render| render(record)).collect();
     Ok(rendered?.into_iter().flatten().collect())

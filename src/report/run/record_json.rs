@@ -16,10 +16,6 @@ use crate::record::{Record, Results, SCHEMA, Spent, Timing, version1};
 use crate::report::{Artifact, ReportError};
 
 /// Returns the record as one JSON object.
-///
-/// # Errors
-///
-/// An encoder or the painter fails.
 pub fn render(record: &Record) -> Result<Vec<Artifact>, ReportError> {
     Ok(vec![Artifact::text("record.json", text(record)?)])
 }
@@ -49,10 +45,6 @@ struct Time {
 }
 
 /// Returns the record as JSON.
-///
-/// # Errors
-///
-/// The encoder fails.
 pub fn text(record: &Record) -> Result<String, ReportError> {
     let Record { results, timing, comparison } = record;
     let experiments = results.cases.iter().flat_map(|case| &case.experiments);

@@ -6,8 +6,7 @@
 use std::ops::Deref;
 
 use crate::record::{Record, Row};
-use crate::report::fields::{self, Field, fields};
-use crate::report::run::fields::of_files;
+use crate::report::fields::{self, Field, Table, fields};
 use crate::report::{Artifact, ReportError};
 
 /// Row of a record with the seed of the run; it dereferences to the row.
@@ -34,33 +33,21 @@ pub fn lines(record: &Record) -> impl Iterator<Item = Line<'_>> {
 }
 
 /// Returns the rows of a record as CSV, with a first line of names.
-///
-/// # Errors
-///
-/// The encoder fails.
 pub fn csv(record: &Record) -> Result<String, ReportError> {
-    fields::csv("the rows", &of_files(), lines(record))
+    fields::csv("the rows", &Line::of_files(), lines(record))
 }
 
 /// Returns the rows of a record as a JSON array of objects, one per line. The names are the columns of the CSV, and
 /// `lookups_pmf`, an array that is empty if it is unknown or long.
-///
-/// # Errors
-///
-/// The encoder fails.
 pub fn json(record: &Record) -> Result<String, ReportError> {
     let lists: Vec<Field<Line>> = fields! {
         "lookups_pmf": "Probabilities of 0, 1, … lookups" = |line| &line.experiment.lookups_pmf;
     };
-    let all: Vec<_> = of_files().into_iter().chain(lists).collect();
+    let all: Vec<_> = Line::of_files().into_iter().chain(lists).collect();
     fields::json(&all, lines(record))
 }
 
 /// Returns the file with one row for each experiment and channel.
-///
-/// # Errors
-///
-/// The encoder fails.
 pub fn render(record: &Record) -> Result<Vec<Artifact>, ReportError> {
     Ok(vec![Artifact::text("summary.csv", csv(record)?)])
 }

@@ -5,9 +5,9 @@
 mod graph;
 mod names;
 
-use crate::record::{CaseRecord, Record, Sweep};
-use crate::report::plots::figure::{Figure, Foot, LEFT};
-use crate::report::plots::series::{self, Series, collect};
+use crate::record::{CaseRecord, Compared, Record, Score, Sweep};
+use crate::report::plots::figure::{Figure, Foot, LEFT, subject};
+use crate::report::plots::series::{self, Series, collect, only_channel};
 use crate::report::plots::{self, Axis, Panel, Sheet, z_panel};
 use crate::report::{Artifact, ReportError};
 use graph::{Graph, Quantity};
@@ -19,10 +19,6 @@ const PANEL: [f64; 2] = [490.0, 290.0];
 const PITCH: [f64; 2] = [600.0, 374.0];
 
 /// Returns four panels for each case with a sweep.
-///
-/// # Errors
-///
-/// An encoder or the painter fails.
 pub fn render(record: &Record) -> Result<Vec<Artifact>, ReportError> {
     let mut artifacts = Vec::new();
     for case in &record.results.cases {
@@ -38,44 +34,37 @@ const VARIANCE_AND_COST: [Quantity; 2] = [
     Quantity {
         head: "(a) Variance of one draw",
         title: "variance V",
-        measured: |row| row.variance,
-        deviation: |row| row.variance_deviation,
-        predicted: |row| row.predicted_variance,
+        values: |row| row.compared(Score::Variance),
         theory: |point| point.variance,
     },
     Quantity {
         head: "(b) Cost",
         title: "lookups per draw N",
-        measured: |row| row.experiment.lookups_per_draw,
-        deviation: |row| row.experiment.lookups_deviation,
-        predicted: |row| row.experiment.predicted_lookups,
+        values: |row| row.compared(Score::Lookups),
         theory: |point| point.lookups,
     },
 ];
 
+/// Returns values without deviations.
+const fn plain(measured: Option<f64>, theory: Option<f64>) -> Compared {
+    Compared { measured, deviation: None, theory, z: None }
+}
+
 const EFFICIENCY: Quantity = Quantity {
     head: "(c) Efficiency",
     title: "figure of merit 1/(V·N)",
-    measured: |row| row.fom,
-    deviation: |_| None,
-    predicted: |row| row.predicted_fom,
+    values: |row| plain(row.fom, row.predicted_fom),
     theory: |point| point.fom,
 };
 
 const LOOKUPS_TO_UNIT_VARIANCE: Quantity = Quantity {
     head: "(c) Lookups to unit variance",
     title: "LTUV = V·N",
-    measured: |row| row.fom.map(f64::recip),
-    deviation: |_| None,
-    predicted: |row| row.predicted_fom.map(f64::recip),
+    values: |row| plain(row.fom.map(f64::recip), row.predicted_fom.map(f64::recip)),
     theory: |point| point.fom.recip(),
 };
 
 /// Returns the figure of a case with a sweep.
-///
-/// # Errors
-///
-/// There is no typeface.
 pub fn figure(case: &CaseRecord, sweep: &Sweep, seed: u64) -> Result<Sheet, ReportError> {
     let series = collect(case, sweep);
     let x = x_axis(sweep, &series);
@@ -104,7 +93,7 @@ pub fn figure(case: &CaseRecord, sweep: &Sweep, seed: u64) -> Result<Sheet, Repo
     }
     notes.extend(graph::notes(&graphs, &series));
     notes.extend(series::notes(&series));
-    notes.extend(left_out(case, &series));
+    notes.extend(channels(case, &series));
     let foot = Foot { top: TOP + 2.0 * PITCH[1], entries: &entries, notes: &notes };
     let titles = [&*case.title, &subtitle(case, seed)];
     let mut figure = Figure::with_foot(&case.name, WIDTH, titles, &foot)?;
@@ -125,14 +114,16 @@ pub fn figure(case: &CaseRecord, sweep: &Sweep, seed: u64) -> Result<Sheet, Repo
 
 /// Returns the meaning of S and n.
 fn setup_note(case: &CaseRecord) -> String {
-    let draws = count(case.draws_per_ray.unwrap_or(1));
+    let draws = case.draws_per_ray.unwrap_or(1);
+    let noun = if draws == 1 { "draw" } else { "draws" };
     format!(
-        "(c): S lookups before the first draw of a ray are shared by its n = {draws} draws (`draws_per_ray` of the case)"
+        "(c): S lookups before the first draw of a ray, shared by its n = {} {noun} (draws_per_ray of the case)",
+        count(draws)
     )
 }
 
-/// Returns a sentence about the channels that a crowded plot leaves out.
-fn left_out(case: &CaseRecord, series: &[Series]) -> Option<String> {
+/// Returns sentences about the one channel of all curves, and about those that a crowded plot leaves out.
+fn channels(case: &CaseRecord, series: &[Series]) -> Option<String> {
     let shown: Vec<&str> =
         series.iter().flat_map(|one| &one.rows).map(|row| row.values.channel.as_str()).collect();
     let mut missing: Vec<&str> = Vec::new();
@@ -142,13 +133,15 @@ fn left_out(case: &CaseRecord, series: &[Series]) -> Option<String> {
         }
     }
     let missing = missing.join("; ");
-    (!missing.is_empty()).then(|| format!("In the CSV only, for lack of room: {missing}"))
+    let one = only_channel(shown.into_iter()).map(|channel| format!("All curves: {channel}"));
+    let csv =
+        (!missing.is_empty()).then(|| format!("In the CSV only, for lack of room: {missing}"));
+    let said: Vec<String> = one.into_iter().chain(csv).collect();
+    (!said.is_empty()).then(|| said.join(". "))
 }
 
 fn subtitle(case: &CaseRecord, seed: u64) -> String {
-    // The folder of a case is its problem.
-    let mut parts = vec![case.name.clone()];
-    parts.extend((!case.medium.is_empty()).then(|| format!("medium {}", case.medium)));
+    let mut parts = vec![subject(&case.name, &case.medium)];
     let truths: Vec<f64> = case.rows().filter_map(|row| row.truth).collect();
     if let [first, rest @ ..] = &truths[..]
         && rest.iter().all(|truth| truth == first)
@@ -187,12 +180,12 @@ fn y_axis(quantity: &Quantity, series: &[Series]) -> Axis {
     let rows = || series.iter().flat_map(|one| &one.rows);
     let positive = |value: &f64| *value > 0.0 && value.is_finite();
     let mut shown: Vec<f64> =
-        rows().filter_map(|row| (quantity.measured)(row)).filter(positive).collect();
+        rows().filter_map(|row| (quantity.values)(row).measured).filter(positive).collect();
     let mut theory: Vec<f64> = series
         .iter()
-        .flat_map(|one| one.theory(quantity.theory, quantity.predicted))
+        .flat_map(|one| one.theory(quantity.theory, quantity.values))
         .map(|(_, y)| y)
-        .chain(rows().filter_map(|row| (quantity.predicted)(row)))
+        .chain(rows().filter_map(|row| (quantity.values)(row).theory))
         .filter(positive)
         .collect();
     theory.sort_by(f64::total_cmp);

@@ -3,7 +3,7 @@
 use maud::html;
 
 use crate::report::ReportError;
-use crate::report::fields::named;
+use crate::report::fields::places;
 use crate::report::html as page;
 use crate::report::html::drawing::{definitions, plot};
 use crate::report::html::listing::{self, table};
@@ -11,16 +11,12 @@ use crate::stress::{Row, Stress};
 use numeric::digits::time;
 
 /// Columns of the page, beside the result.
-const COLUMNS: [&str; 7] = ["quantity", "range", "worst", "bound", "measure", "trials", "where"];
+const COLUMNS: [usize; 7] =
+    places::<&Row, _>(["quantity", "range", "worst", "bound", "measure", "trials", "where"]);
 
 /// Returns the stress test as a page of HTML.
-///
-/// # Errors
-///
-/// A plot cannot be drawn.
 pub fn text(found: &Stress) -> Result<String, ReportError> {
     let rows: Vec<&Row> = found.rows.iter().collect();
-    let fields = super::of_rows();
     let broken = rows.iter().filter(|row| !row.holds()).count();
     let (class, line) = match broken {
         0 => ("pass", format!("pass: all {} bounds hold", rows.len())),
@@ -40,7 +36,7 @@ pub fn text(found: &Stress) -> Result<String, ReportError> {
         section aria-labelledby="experiments" {
             h2 #experiments { "Bounds" }
             (listing::form(&choices, rows.len()))
-            (table("holds", |row| (if row.holds() { "pass" } else { "fail" }, word(row).to_owned()), &COLUMNS.map(|name| named(&fields, name)), &rows, |row| word(row).to_owned()))
+            (table("holds", |row| (if row.holds() { "pass" } else { "fail" }, word(row).to_owned()), &COLUMNS, &rows, |row| word(row).to_owned()))
         }
         section aria-labelledby="narrow" {
             h2 #narrow { "Single precision" }

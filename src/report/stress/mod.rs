@@ -7,51 +7,35 @@ use std::fmt::Write;
 
 use serde_json::json;
 
-use crate::report::fields::{self, fields};
+use crate::report::fields::{self, Object, Table, grid, places, ranked, table};
 use crate::report::layout::{Column, Field, Grid, Paint, Pen, wrapped};
 use crate::report::plots;
 use crate::report::{Artifact, ReportError};
 use crate::stress::narrow::{Along, Curve, DRAWS, Point};
 use crate::stress::{Row, Stress};
-use numeric::digits::{count, exact, short};
+use numeric::digits::{exact, short};
 
 /// Folder below the results.
 const FOLDER: &str = "stress";
 
+/// Columns of the screen beside the result, each with its rank.
+const COLUMNS: [(usize, u8); 7] = ranked::<&Row, _>([
+    ("quantity", 0),
+    ("range", 2),
+    ("trials", 1),
+    ("left_out", 1),
+    ("worst", 0),
+    ("bound", 0),
+    ("measure", 0),
+]);
+
 /// Returns the tables for the screen.
 pub fn table(found: &Stress, pen: Pen) -> String {
     let mut text = String::new();
-    let rows = &found.rows;
-    let column = |head, right, rank, field: &dyn Fn(&Row) -> String| Column {
-        head,
-        right,
-        rank,
-        fields: rows.iter().map(|row| Field::plain(field(row))).collect(),
-    };
-    let holds = |row: &Row| {
-        let (word, paint) = if row.holds() { ("yes", Paint::Green) } else { ("NO", Paint::Red) };
-        Field { text: word.to_owned(), paint }
-    };
-    let mut grid = Grid {
-        columns: vec![
-            column("quantity", false, 0, &|row| row.quantity.clone()),
-            column("range", false, 2, &|row| row.range.clone()),
-            column("trials", true, 1, &|row| count(row.trials)),
-            column("skipped", true, 1, &|row| match row.skipped {
-                0 => String::new(),
-                skipped => count(skipped),
-            }),
-            column("worst", true, 0, &|row| short(row.worst, 2)),
-            column("bound", true, 0, &|row| short(row.bound, 2)),
-            column("in", false, 0, &|row| row.measure.words().to_owned()),
-            Column {
-                head: "holds",
-                right: false,
-                rank: 0,
-                fields: rows.iter().map(holds).collect(),
-            },
-        ],
-    };
+    let rows: Vec<&Row> = found.rows.iter().collect();
+    let mut grid = grid(&rows, &COLUMNS);
+    let holds = rows.iter().map(|row| Field::judged(row.holds(), ["yes", "NO"]));
+    grid.push("holds", holds.collect());
     grid.fit(pen.width);
     text.push_str(&grid.render(pen));
     for row in rows.iter().filter(|row| !row.holds()) {
@@ -113,65 +97,55 @@ fn single_precision(text: &mut String, pen: Pen, curves: &[Curve]) {
 
 /// Returns the tables as JSON; numbers that are not finite are null.
 fn json(found: &Stress) -> Result<String, ReportError> {
-    let row = |row: &Row| {
-        json!({
-            "quantity": row.quantity,
-            "range": row.range,
-            "trials": row.trials,
-            "skipped": row.skipped,
-            "measure": row.measure.words(),
-            "worst": row.worst,
-            "bound": row.bound,
-            "place": row.place,
-            "holds": row.holds(),
-        })
-    };
-    let point = |point: &Point| {
-        json!({
-            "x": point.x,
-            "walks": point.walks,
-            "bias": point.bias,
-            "error": point.error,
-            "noise": point.noise,
-            "exceeds": point.exceeds(),
-        })
-    };
-    let curve = |curve: &Curve| {
+    let (fields, of_points) = (<&Row>::of_files(), Measured::fields());
+    let curves = found.narrow.curves.iter().map(|curve| {
+        let point = |row| Object { fields: &of_points[OF_CURVES..], row };
         json!({
             "family": curve.family,
             "estimator": curve.estimator,
             "along": curve.along.word(),
             "fails_from": curve.fails_from(),
-            "points": curve.points.iter().map(point).collect::<Vec<_>>(),
+            "points": points(curve).map(point).collect::<Vec<_>>(),
         })
-    };
+    });
+    let rows = found.rows.iter().map(|row| Object { fields: &fields, row });
     let document = json!({
         "schema": 1,
         "holds": found.holds(),
-        "rows": found.rows.iter().map(row).collect::<Vec<_>>(),
-        "single_precision": found.narrow.curves.iter().map(curve).collect::<Vec<_>>(),
+        "rows": rows.collect::<Vec<_>>(),
+        "single_precision": curves.collect::<Vec<_>>(),
     });
     Ok(serde_json::to_string_pretty(&document)? + "\n")
 }
 
-/// Returns the fields of bounds.
-pub fn of_rows<'a>() -> Vec<fields::Field<&'a Row>> {
-    fields! {
+table! {
+    impl<'a> for &'a Row {
         "quantity": "Quantity that is computed" = |row| &row.quantity;
         "range": "Range of its arguments" = |row| &row.range;
         "trials": "Number of arguments that were compared" = |row| row.trials;
         "skipped": "Number that were left out, for no reference is exact there" = |row| row.skipped;
         "measure" ["in", "", Plain]: "Measure of the error" = |row| row.measure.words();
-        "worst" ["worst", "", Short(3)]: "Largest error" = |row| row.worst;
-        "bound" ["bound", "", Short(3)]: "Promised bound" = |row| row.bound;
+        "worst" ["worst", "", Short(2)]: "Largest error" = |row| row.worst;
+        "bound" ["bound", "", Short(2)]: "Promised bound" = |row| row.bound;
         "where": "Argument of the largest error" = |row| &row.place;
         "holds": "Whether the bound holds" = |row| row.holds();
+    } screens {
+        "left_out" ["skipped", "", Plain]: "Number of arguments that were left out, if there are any" = |row| Some(row.skipped).filter(|&skipped| skipped > 0);
     }
 }
 
-/// Returns the fields of points of single precision.
-pub fn of_points<'a>() -> Vec<fields::Field<(&'a Curve, &'a Point)>> {
-    fields! {
+/// Point of a curve of single precision.
+pub type Measured<'a> = (&'a Curve, &'a Point);
+
+fn points(curve: &Curve) -> impl Iterator<Item = Measured<'_>> {
+    curve.points.iter().map(move |point| (curve, point))
+}
+
+/// Number of fields of a point that all points of its curve share.
+const OF_CURVES: usize = places::<Measured, _>(["x"])[0];
+
+table! {
+    impl<'a> for Measured<'a> {
         "family": "Family of estimators" = |(curve, _)| curve.family;
         "estimator": "Estimator" = |(curve, _)| curve.estimator;
         "along": "Quantity that is varied" = |(curve, _)| curve.along.word();
@@ -185,24 +159,14 @@ pub fn of_points<'a>() -> Vec<fields::Field<(&'a Curve, &'a Point)>> {
 }
 
 /// Returns the tables as CSV and JSON and the plot of single precision, all below `stress/`.
-///
-/// # Errors
-///
-/// An encoder or the painter fails.
 pub fn artifacts(found: &Stress) -> Result<Vec<Artifact>, ReportError> {
-    let stress = fields::csv("the stress test", &of_rows(), &found.rows)?;
-    let curves = found.narrow.curves.iter();
-    let points = curves.flat_map(|curve| curve.points.iter().map(move |point| (curve, point)));
-    let narrow = fields::csv("single precision", &of_points(), points)?;
-    let artifact = |name: &str, text: String| Artifact {
-        path: format!("{FOLDER}/{name}").into(),
-        bytes: text.into_bytes(),
-    };
+    let points = found.narrow.curves.iter().flat_map(points);
+    let path = |name: &str| format!("{FOLDER}/{name}");
     let mut all = vec![
-        artifact("stress.csv", stress),
-        artifact("stress.json", json(found)?),
-        artifact("single-precision.csv", narrow),
-        artifact("report.html", html::text(found)?),
+        fields::artifact(&path("stress.csv"), &<&Row>::of_files(), &found.rows)?,
+        Artifact::text(path("stress.json"), json(found)?),
+        fields::artifact(&path("single-precision.csv"), &Measured::fields(), points)?,
+        Artifact::text(path("report.html"), html::text(found)?),
     ];
     let sheet = plot::figure(&found.narrow.curves)?;
     all.extend(plots::artifacts(&format!("{FOLDER}/single-precision"), "", &sheet)?);

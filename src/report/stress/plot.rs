@@ -4,7 +4,8 @@
 use plotters::style::Color;
 
 use crate::report::ReportError;
-use crate::report::plots::font::{Typeface, fit};
+use crate::report::plots::figure::typeface;
+use crate::report::plots::font::fit;
 use crate::report::plots::legend::{self, Entry, LINE};
 use crate::report::plots::sheet::Align;
 use crate::report::plots::style::{DARK, GREY, Style};
@@ -21,15 +22,8 @@ const BELOW: f64 = 76.0;
 const FLOOR: f64 = 1e-3;
 
 /// Draws bias over noise along every quantity: above 1 single precision is wrong.
-///
-/// # Errors
-///
-/// There is no typeface.
 pub fn figure(curves: &[Curve]) -> Result<Sheet, ReportError> {
-    let face = Typeface::load().map_err(|error| ReportError::Draw {
-        figure: "single precision".to_owned(),
-        message: error.to_string(),
-    })?;
+    let face = typeface("single precision")?;
     let mut families: Vec<&str> = curves.iter().map(|curve| curve.family).collect();
     families.dedup();
     let panels = Along::ALL.map(|along| first_to_fail(curves, &families, along));

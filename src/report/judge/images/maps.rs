@@ -12,7 +12,7 @@ use crate::report::plots::style::{DARK, GREY};
 use crate::report::render::palette;
 
 /// Length of the longer side of a map on the sheet.
-pub const LONGEST: f64 = 480.0;
+pub const MAX_SIDE: f64 = 480.0;
 /// Distance of maps from each other and from the rim.
 pub const GAP: f64 = 24.0;
 /// Top of the maps.
@@ -21,10 +21,6 @@ pub const HEAD: f64 = 92.0;
 const FRAMES: usize = 400;
 
 /// Encodes a sheet as a PNG file.
-///
-/// # Errors
-///
-/// The font or the painter fails, with its reason in words.
 pub fn png(compose: impl FnOnce(&Typeface) -> Sheet) -> Result<Vec<u8>, String> {
     let face = Typeface::load().map_err(|error| error.to_string())?;
     let (rgb, size) = paint::pixels_of(&compose(&face))?;
@@ -54,7 +50,7 @@ impl<'a> Maps<'a> {
     /// Returns the places for a stack.
     pub fn new(judgement: &'a Judgement) -> Self {
         let size = judgement.size;
-        let scale = LONGEST / size.rows.max(size.columns) as f64;
+        let scale = MAX_SIDE / size.rows.max(size.columns) as f64;
         Self { judgement, scale, size: [size.columns, size.rows].map(|n| n as f64 * scale) }
     }
 
@@ -90,13 +86,13 @@ impl<'a> Maps<'a> {
                 sheet.text(middle, format!("channel {channel}"), 11.5, DARK, Align::Middle);
             }
             sheet.image(self.map(channel, [left, HEAD], dots));
-            border(sheet, [left, HEAD], self.size, GREY);
+            sheet.frame([left, HEAD], self.size, GREY);
             let fails = |tile: &&Tile| tile.channel == channel && tile.verdict == Verdict::Fail;
             for tile in self.judgement.tiles.iter().filter(fails).take(FRAMES) {
                 let at =
                     [left + tile.column as f64 * self.scale, HEAD + tile.row as f64 * self.scale];
                 let size = [tile.width, tile.height].map(|n| n as f64 * self.scale);
-                border(sheet, at, size, frame);
+                sheet.frame(at, size, frame);
             }
         }
     }
@@ -133,12 +129,6 @@ pub fn smallest(judgement: &Judgement) -> impl Iterator<Item = &Tile> {
 pub fn dot(judgement: &Judgement) -> usize {
     let longest = judgement.size.rows.max(judgement.size.columns) as f64;
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // a quotient of lengths
-    let dot = (longest / LONGEST).ceil() as usize;
+    let dot = (longest / MAX_SIDE).ceil() as usize;
     dot.max(1)
-}
-
-/// Draws the outline of a rectangle.
-pub fn border(sheet: &mut Sheet, [left, top]: Spot, [width, height]: Spot, ink: RGBAColor) {
-    let (right, low) = (left + width, top + height);
-    sheet.path(vec![[left, top], [right, top], [right, low], [left, low], [left, top]], 1.0, ink);
 }

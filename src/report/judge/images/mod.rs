@@ -8,20 +8,15 @@ pub mod z_map;
 use crate::judge::images::Judgement;
 use crate::judge::images::judgement::Tile;
 use crate::record::Verdict;
-use crate::report::fields::table;
+use crate::report::fields::{self, Table, table};
 use crate::report::{Artifact, ReportError};
-use numeric::digits::exact;
 
 /// Returns `judgement.json`, and `tiles.csv`, `z-map.png` and `p-values.png` if tiles were judged.
-///
-/// # Errors
-///
-/// An encoder or the painter fails.
 pub fn artifacts(judgement: &Judgement, name: &str) -> Result<Vec<Artifact>, ReportError> {
     let json = serde_json::to_string_pretty(judgement)? + "\n";
     let mut files = vec![Artifact::text("judgement.json", json)];
     if !judgement.tiles.is_empty() {
-        files.push(Artifact::text("tiles.csv", tiles(judgement)?));
+        files.push(fields::artifact("tiles.csv", &<&Tile>::fields(), &judgement.tiles)?);
         for (figure, png) in [
             ("z-map", z_map::png as fn(&Judgement, &str) -> Result<Vec<u8>, String>),
             ("p-values", p_values::png),
@@ -34,57 +29,25 @@ pub fn artifacts(judgement: &Judgement, name: &str) -> Result<Vec<Artifact>, Rep
     Ok(files)
 }
 
-const HEADER: [&str; 18] = [
-    "size",
-    "row",
-    "column",
-    "height",
-    "width",
-    "channel",
-    "truth",
-    "mean",
-    "standard_error",
-    "z",
-    "p",
-    "ln_e",
-    "ln_p_above",
-    "ln_p_below",
-    "tolerance",
-    "verdict",
-    "fails_by_holm",
-    "listed_by_e_bh",
-];
-
-/// Returns `tiles.csv`: every tile in each channel, with its verdict.
-///
-/// # Errors
-///
-/// The encoder fails.
-fn tiles(judgement: &Judgement) -> Result<String, ReportError> {
-    table("tiles", HEADER, judgement.tiles.iter().map(row))
-}
-
-fn row(tile: &Tile) -> [String; 18] {
-    let optional = |x: Option<f64>| x.map(exact).unwrap_or_default();
-    let is_failing = tile.verdict == Verdict::Fail;
-    [
-        tile.size.to_string(),
-        tile.row.to_string(),
-        tile.column.to_string(),
-        tile.height.to_string(),
-        tile.width.to_string(),
-        tile.channel.to_string(),
-        exact(tile.truth),
-        exact(tile.mean),
-        exact(tile.standard_error),
-        optional(tile.z),
-        optional(tile.p),
-        exact(tile.ln_e),
-        exact(tile.ln_p[0]),
-        exact(tile.ln_p[1]),
-        optional(tile.tolerance),
-        tile.verdict.word().to_owned(),
-        is_failing.to_string(),
-        tile.is_listed.to_string(),
-    ]
+table! {
+    impl<'a> for &'a Tile {
+        "size": "Size of tiles of its kind in pixels" = |tile| tile.size;
+        "row": "Row of its first pixel, from 0" = |tile| tile.row;
+        "column": "Column of its first pixel, from 0" = |tile| tile.column;
+        "height": "Height in pixels" = |tile| tile.height;
+        "width": "Width in pixels" = |tile| tile.width;
+        "channel": "Number of the channel, from 0" = |tile| tile.channel;
+        "truth": "Mean of the truth, or of the reference" = |tile| tile.truth;
+        "mean": "Mean of the passes" = |tile| tile.mean;
+        "standard_error": "Standard error of the mean" = |tile| tile.standard_error;
+        "z": "Difference from the truth in standard errors" = |tile| tile.z;
+        "p": "p-value of the tile" = |tile| tile.p;
+        "ln_e": "Evidence against the truth: it fails at the limit" = |tile| tile.ln_e;
+        "ln_p_above": "Evidence against a bias of +ε" = |tile| tile.ln_p[0];
+        "ln_p_below": "Evidence against a bias of −ε" = |tile| tile.ln_p[1];
+        "tolerance": "Tolerance ε, relative to the mean of the picture" = |tile| tile.tolerance;
+        "verdict": "Result" = |tile| tile.verdict.word();
+        "fails_by_holm": "Whether it fails, at the error rate of all tiles together" = |tile| tile.verdict == Verdict::Fail;
+        "listed_by_e_bh": "Whether the list of suspects (e-BH) has it" = |tile| tile.is_listed;
+    }
 }

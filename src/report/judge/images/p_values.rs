@@ -4,7 +4,7 @@
 //! t-test*, Journal of Computer Graphics Techniques 9 (2020). For two stacks the p-values are those of permutations,
 //! which are exact for equal distributions; otherwise those of z by the normal distribution.
 
-use super::maps::{Dots, GAP, HEAD, Maps, border, png as encoded, smallest};
+use super::maps::{Dots, GAP, HEAD, Maps, png as encoded, smallest};
 use crate::judge::images::Judgement;
 use crate::judge::images::judgement::Tile;
 use crate::report::plots::font::{Typeface, fit};
@@ -25,10 +25,6 @@ const RED: [u8; 3] = [0xB2, 0x18, 0x2B];
 const NONE: [u8; 3] = [0xF3, 0xE8, 0xC8];
 
 /// Returns the pictures as one PNG file; `name` is that of the images.
-///
-/// # Errors
-///
-/// The painter fails, with its reason in words.
 pub fn png(judgement: &Judgement, name: &str) -> Result<Vec<u8>, String> {
     encoded(|face| compose(judgement, name, face))
 }
@@ -94,7 +90,7 @@ fn histogram(sheet: &mut Sheet, judgement: &Judgement, face: &Typeface, left: f6
         sheet.area(corners, COLOURS[0]);
     }
     sheet.path(vec![[x(0.0), y(expected)], [x(1.0), y(expected)]], 1.5, COLOURS[1]);
-    border(sheet, [x0, HEAD], [width, HEIGHT], GREY);
+    sheet.frame([x0, HEAD], [width, HEIGHT], GREY);
     for (share, text) in [(0.0, "0"), (0.25, "0.25"), (0.5, "0.5"), (0.75, "0.75"), (1.0, "1")] {
         sheet.text([x(share), low + 12.0], text, 10.5, DARK, Align::Middle);
     }

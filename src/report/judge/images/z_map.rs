@@ -1,23 +1,19 @@
 //! `z-map.png`: bias of each tile in standard errors, in every channel.
 
-use super::maps::{Dots, GAP, HEAD, Maps, border, dot, png as encoded};
+use super::maps::{Dots, GAP, HEAD, Maps, dot, png as encoded};
 use crate::judge::images::Judgement;
 use crate::judge::images::judgement::Tile;
 use crate::report::plots::font::Typeface;
-use crate::report::plots::sheet::{Align, Sheet};
-use crate::report::plots::style::{DARK, GREY, ink};
+use crate::report::plots::sheet::Sheet;
+use crate::report::plots::style::DARK;
 use crate::report::render::colour;
 
 /// Number of standard errors at which colours end, to either side.
-const STRONGEST: f64 = 5.0;
+const MAX_Z: f64 = 5.0;
 /// Width of the bar of colours with its numbers.
 const BAR: f64 = 76.0;
 
 /// Returns the map as a PNG file; `name` is that of the images.
-///
-/// # Errors
-///
-/// The painter fails, with its reason in words.
 pub fn png(judgement: &Judgement, name: &str) -> Result<Vec<u8>, String> {
     encoded(|face| compose(judgement, name, face))
 }
@@ -34,9 +30,10 @@ fn compose(judgement: &Judgement, name: &str, face: &Typeface) -> Sheet {
         let z = tile.z.unwrap_or(f64::INFINITY.copysign(tile.mean - tile.truth));
         if z.abs() > shown.abs() { z } else { shown }
     };
-    let colour = |z: f64| colour::difference(&[z / STRONGEST]);
+    let colour = |z: f64| colour::difference(&[z / MAX_Z]);
     maps.draw(&mut sheet, DARK, &Dots { none: 0.0, join, colour });
-    bar(&mut sheet, maps.end(), height);
+    let marks = [(0.0, "z ≥ 5"), (0.25, "2.5"), (0.5, "0"), (0.75, "−2.5"), (1.0, "z ≤ −5")];
+    colour::bar(&mut sheet, [maps.end(), HEAD], height, (1, &marks));
     sheet
 }
 
@@ -53,24 +50,4 @@ fn facts(judgement: &Judgement) -> String {
          sizes fail{dots}",
         judgement.passes, counts.fail, counts.tiles
     )
-}
-
-/// Draws the bar with the meaning of the colours.
-fn bar(sheet: &mut Sheet, left: f64, height: f64) {
-    let (high, low, steps) = (HEAD, HEAD + height, 49_u32);
-    for step in 0..steps {
-        let at = |i: u32| low + (high - low) * f64::from(i) / f64::from(steps);
-        let [r, g, b] = colour::difference(&[2.0 * f64::from(step) / f64::from(steps - 1) - 1.0]);
-        let (y, end) = (at(step), at(step + 1));
-        let corners = vec![[left, y], [left + 18.0, y], [left + 18.0, end], [left, end]];
-        sheet.area(corners, ink(r, g, b));
-    }
-    border(sheet, [left, high], [18.0, low - high], GREY);
-    for (share, text) in
-        [(0.0, "z ≥ 5"), (0.25, "2.5"), (0.5, "0"), (0.75, "−2.5"), (1.0, "z ≤ −5")]
-    {
-        let y = high + share * (low - high);
-        sheet.path(vec![[left + 18.0, y], [left + 23.0, y]], 1.0, GREY);
-        sheet.text([left + 27.0, y], text, 10.5, DARK, Align::Start);
-    }
 }

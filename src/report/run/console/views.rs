@@ -1,16 +1,15 @@
 //! Columns of each view of the table, and their content.
 
 use crate::record::{CaseRecord, Digits, Row, Verdict};
-use crate::report::fields::named;
+use crate::report::fields::{Table, grid, ranked};
 use crate::report::layout::{Column, Field, Paint};
 use crate::report::run::console::View;
-use crate::report::run::fields;
 use crate::report::run::summary_csv::Line;
 
-/// Fields of a view by name, each with its rank: columns of the highest rank leave a narrow console first.
-type Ranked = &'static [(&'static str, u8)];
+/// Places of the fields of a view, each with its rank: columns of the highest rank leave a narrow console first.
+type Ranked = (usize, u8);
 
-const RUN: Ranked = &[
+const RUN: &[Ranked] = &ranked::<Line, _>([
     ("mean", 6),
     ("z_mean", 1),
     ("variance_ratio", 5),
@@ -22,9 +21,9 @@ const RUN: Ranked = &[
     ("log10_ltuv", 10),
     (SETUP, 8),
     (NEEDS, 9),
-];
+]);
 
-const PREDICT: Ranked = &[
+const PREDICT: &[Ranked] = &ranked::<Line, _>([
     ("predicted_variance", 1),
     ("predicted_skewness", 9),
     ("predicted_kurtosis", 5),
@@ -37,9 +36,9 @@ const PREDICT: Ranked = &[
     ("best_sampling_marked", 3),
     ("best_fom_marked", 4),
     (NEEDS, 5),
-];
+]);
 
-const MOMENTS: Ranked = &[
+const MOMENTS: &[Ranked] = &ranked::<Line, _>([
     ("loss_1", 0),
     ("loss_2", 0),
     ("loss_3", 0),
@@ -60,10 +59,19 @@ const MOMENTS: Ranked = &[
     ("best_kind", 0),
     ("best_limit", 0),
     (NEEDS, 0),
-];
+]);
 
-const PLAN: Ranked =
-    &[("needed", 1), ("predicted_lookups", 2), (SETUP, 3), (NEEDS, 5), ("skipped", 3)];
+/// Columns that stand above the table if all rows share their value: draws of a plan and of a run, drawn, truth.
+const SHARED: [Ranked; 4] =
+    ranked::<Line, _>([("draws", 2), ("draws", 10), ("drawn", 3), ("truth", 11)]);
+
+const PLAN: &[Ranked] = &ranked::<Line, _>([
+    ("needed", 1),
+    ("predicted_lookups", 2),
+    (SETUP, 3),
+    (NEEDS, 5),
+    ("skipped", 3),
+]);
 
 /// Field of the lookups before the first draw of a ray.
 pub const SETUP: &str = "setup";
@@ -95,16 +103,16 @@ pub fn names(case: &CaseRecord, rows: &[Row], labels: Digits) -> Vec<Column> {
 /// Returns the columns about the results of the rows, empty ones included.
 pub fn columns(lines: &[Line], view: View) -> Vec<Column> {
     let rows: Vec<Row> = lines.iter().map(|line| line.row).collect();
-    let mut shown: Vec<(&str, u8)> = Vec::new();
-    // A number of draws that all rows share stands above the table.
+    let [of_plan, of_run, drawn, truth] = SHARED;
+    let mut shown: Vec<Ranked> = Vec::new();
     if !view.is_theory() && shared(&rows, |row| row.experiment.draws).is_none() {
-        shown.push(("draws", if view == View::Plan { 2 } else { 10 }));
+        shown.push(if view == View::Plan { of_plan } else { of_run });
     }
     if view == View::Run && shared(&rows, |row| row.experiment.drawn).is_none() {
-        shown.push(("drawn", 3));
+        shown.push(drawn);
     }
     if view != View::Plan && shared(&rows, |row| row.truth).is_none() {
-        shown.push(("truth", 11));
+        shown.push(truth);
     }
     shown.extend(match view {
         View::Run => RUN,
@@ -112,11 +120,9 @@ pub fn columns(lines: &[Line], view: View) -> Vec<Column> {
         View::Moments => MOMENTS,
         View::Plan => PLAN,
     });
-    let fields: Vec<_> = fields::of_files().into_iter().chain(fields::of_screens()).collect();
     let has_channels = rows.iter().any(|row| !row.channel.is_empty());
-    shown.retain(|(name, _)| has_channels || !name.ends_with("ltuv"));
-    let column = |(name, rank)| named(&fields, name).column(lines, rank);
-    let mut columns: Vec<Column> = shown.into_iter().map(column).collect();
+    shown.retain(|(place, _)| has_channels || !Line::NAMES[*place].ends_with("ltuv"));
+    let mut columns = grid(lines, &shown).columns;
     let head = if view == View::Run { "verdict" } else { "status" };
     let fields = rows.iter().map(|row| status(row, view)).collect();
     columns.push(Column { head, right: false, rank: 0, fields });

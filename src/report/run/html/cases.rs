@@ -1,6 +1,6 @@
 //! Cases: verdicts, visible bias, plots; and the changes since a stored run.
 
-use crate::record::baseline::{Change, Comparison, Drift, Measured, Quantity};
+use crate::record::baseline::{Change, Comparison, Drift};
 use crate::record::{CaseRecord, Record};
 use crate::report::html as page;
 use crate::report::html::drawing::Plot;
@@ -84,27 +84,19 @@ fn drift(drift: &Drift) -> Markup {
 }
 
 fn change(change: &Change) -> Markup {
-    let (name, unit) = match change.quantity {
-        Quantity::Variance => ("variance", ""),
-        Quantity::Lookups => ("lookups per draw", ""),
-        Quantity::Time => ("time per draw", " ns"),
-    };
+    let [before, now] = diff::values(change);
     let (class, word) = if change.is_regression { ("fail", "worse") } else { ("pass", "better") };
     let number = |value: f64, digits| {
         if value.is_finite() { fixed(value, digits) } else { words::UNKNOWN.to_owned() }
     };
     // A ratio that was infinite may be missing in a record that was read.
     let arrow = if change.ratio < 1.0 { "↓" } else { "↑" };
-    let value = |Measured { value, error }: Measured| {
-        let error = error.map_or(String::new(), |error| format!(" ± {}", short(error, 2)));
-        format!("{}{error}{unit}", number(value, 5))
-    };
     html! { tr {
         td { span class={ "verdict " (class) } { (arrow) " " (word) } }
         th scope="row" { (change.id) }
-        td { (name) }
-        td.number { (value(change.before)) }
-        td.number { (value(change.now)) }
+        td { (diff::name(change.quantity)) }
+        td.number { (before) }
+        td.number { (now) }
         td class={ "change " (class) } {
             (number(change.ratio, 4)) ", "
             @match change.interval {

@@ -3,8 +3,8 @@
 use maud::{Markup, html};
 
 use super::sparks;
-use crate::record::{Finding, Row, Score, Verdict};
-use crate::report::fields::{Cell, Field, Print, named};
+use crate::record::{Compared, Finding, Row, Score, Verdict};
+use crate::report::fields::{Cell, Field, Print, places};
 use crate::report::html as page;
 use crate::report::html::drawing::Plot;
 use crate::report::html::words;
@@ -30,7 +30,7 @@ impl<'a> Shown<'a> {
 }
 
 /// Fields that are listed below the numbers.
-const FACTS: [&str; 13] = [
+const FACTS: [usize; 13] = places::<Joined, _>([
     "draws",
     "p_law",
     "predicted_skewness",
@@ -44,7 +44,7 @@ const FACTS: [&str; 13] = [
     "same_as",
     "log_unit",
     "seconds",
-];
+]);
 
 /// Returns everything that is known of a row of the case with this number.
 pub fn of<'a>(row: &Row<'a>, shown: &Shown<'a>, place: usize) -> Markup {
@@ -69,7 +69,7 @@ pub fn of<'a>(row: &Row<'a>, shown: &Shown<'a>, place: usize) -> Markup {
 /// Returns further fields that are known, with their texts.
 fn facts<'f, 'a>(row: &Row<'a>, shown: &'f Shown<'a>) -> Vec<(&'f Field<Joined<'a>>, String)> {
     let line = shown.line(*row);
-    let all = FACTS.iter().map(|name| named(&shown.fields, name));
+    let all = FACTS.iter().map(|&place| &shown.fields[place]);
     let known = all.map(|field| (field, field.text(&line)));
     known.filter(|(_, text)| !text.is_empty() && text != "0").collect()
 }
@@ -77,9 +77,7 @@ fn facts<'f, 'a>(row: &Row<'a>, shown: &'f Shown<'a>) -> Vec<(&'f Field<Joined<'
 /// Line of the table of numbers.
 struct Line<'a> {
     name: &'static str,
-    measured: Option<f64>,
-    deviation: Option<f64>,
-    theory: Option<f64>,
+    values: Compared,
     z: String,
     finding: Option<&'a Finding>,
 }
@@ -87,8 +85,8 @@ struct Line<'a> {
 impl Line<'_> {
     /// Returns the measured value minus that of theory in percent; empty if one is unknown.
     fn difference(&self) -> String {
-        let ratio =
-            self.measured.zip(self.theory).map(|(measured, theory)| measured / theory - 1.0);
+        let Compared { measured, theory, .. } = self.values;
+        let ratio = measured.zip(theory).map(|(measured, theory)| measured / theory - 1.0);
         ratio.filter(|ratio| ratio.is_finite()).map(signed_percent).unwrap_or_default()
     }
 }
@@ -151,59 +149,41 @@ fn numbers(row: &Row) -> Markup {
 
 /// Returns mean, variance and lookups, which every experiment has, and the figure of merit, as far as they are known.
 fn lines<'a>(row: &Row<'a>) -> Vec<Line<'a>> {
-    let found = |check: &str| {
-        row.findings().find(|finding| finding.check == check && !finding.expects_bias)
+    let found = |score: Score| {
+        row.findings().find(|one| one.check == score.quantity() && !one.expects_bias)
     };
-    let z =
-        |score: Score, z: Option<f64>| Print::Signed.text(&Cell::Score(z, row.is_normal(score)));
+    let of_score = |score| {
+        let values = row.compared(score);
+        let name = match score {
+            Score::Mean => "mean",
+            Score::Variance => "variance V",
+            Score::Lookups => "lookups per draw",
+        };
+        let z = Print::Signed.text(&Cell::Score(values.z, row.is_normal(score)));
+        Line { name, values, z, finding: found(score) }
+    };
     let has_setup = row.experiment.setup_lookups.is_some_and(|lookups| lookups > 0);
-    let lines = [
-        Line {
-            name: "mean",
-            measured: row.mean,
-            deviation: row.standard_error,
-            theory: row.truth,
-            z: z(Score::Mean, row.z_mean),
-            finding: found("mean"),
-        },
-        Line {
-            name: "variance V",
-            measured: row.variance,
-            deviation: row.variance_deviation,
-            theory: row.predicted_variance,
-            z: z(Score::Variance, row.z_variance),
-            finding: found("variance"),
-        },
-        Line {
-            name: "lookups per draw",
-            measured: row.experiment.lookups_per_draw,
-            deviation: row.experiment.lookups_deviation,
-            theory: row.experiment.predicted_lookups,
-            z: z(Score::Lookups, row.experiment.z_lookups),
-            finding: found("lookups"),
-        },
-        Line {
-            name: if has_setup { "1/(V · (lookups + setup/n))" } else { "1/(V · lookups)" },
-            measured: row.fom,
-            deviation: None,
-            theory: row.predicted_fom,
-            z: String::new(),
-            finding: None,
-        },
-    ];
+    let (measured, theory) = (row.fom, row.predicted_fom);
+    let merit = Line {
+        name: if has_setup { "1/(V · (lookups + setup/n))" } else { "1/(V · lookups)" },
+        values: Compared { measured, deviation: None, theory, z: None },
+        z: String::new(),
+        finding: None,
+    };
+    let lines = Score::ALL.into_iter().map(of_score).chain([merit]);
     let is_known = |line: &Line| {
-        let numbers = [line.measured, line.theory];
+        let numbers = [line.values.measured, line.values.theory];
         line.finding.is_some() || numbers.into_iter().flatten().any(f64::is_finite)
     };
-    lines.into_iter().filter(is_known).collect()
+    lines.filter(is_known).collect()
 }
 
 fn numbers_of(line: &Line) -> Markup {
     html! { tr {
         th { (line.name) }
-        td { (words::number(line.measured, 7)) }
-        td { (words::number(line.deviation, 3)) }
-        td { (words::number(line.theory, 7)) }
+        td { (words::number(line.values.measured, 7)) }
+        td { (words::number(line.values.deviation, 3)) }
+        td { (words::number(line.values.theory, 7)) }
         td { (line.difference()) }
         td { (line.z) }
         @if let Some(finding) = line.finding { (says(finding)) }

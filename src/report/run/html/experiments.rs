@@ -5,13 +5,14 @@ use maud::{Markup, html};
 use super::details::{self, Shown};
 use super::sparks;
 use crate::record::{Record, Row};
-use crate::report::fields::named;
+use crate::report::fields::places;
 use crate::report::html::listing::{self, Choice};
 use crate::report::html::words;
+use crate::report::run::summary_csv::Line;
 use crate::report::run::totals::{NOT_NORMAL, VERDICTS};
 
 /// Fields beside the verdict and the experiment. The page's style leaves some out on narrow screens.
-const COLUMNS: [&str; 8] = [
+const COLUMNS: [usize; 8] = places::<Line, _>([
     "mean",
     "truth",
     "z_mean",
@@ -20,7 +21,7 @@ const COLUMNS: [&str; 8] = [
     "largest_ln_e",
     "detectable_bias",
     "drawn",
-];
+]);
 
 /// Meanings of the first two columns.
 const VERDICT: &str = "Worst result of all checks of the experiment. Sorted by severity.";
@@ -35,7 +36,7 @@ pub fn section<'a>(record: &'a Record, shown: &Shown<'a>) -> Markup {
         .enumerate()
         .flat_map(|(place, case)| case.rows().map(move |row| (place, row)))
         .collect();
-    let columns: Vec<_> = COLUMNS.map(|name| named(&shown.fields, name)).into();
+    let columns: Vec<_> = COLUMNS.map(|place| &shown.fields[place]).into();
     html! {
         section aria-labelledby="experiments" {
             h2 #experiments { "Experiments" }
@@ -74,8 +75,8 @@ pub fn legend(record: &Record, shown: &Shown) -> Markup {
                     dt class={ "verdict " (known.verdict.word()) } { (words::verdict(Some(known.verdict))) }
                     dd { (known.meaning) }
                 }
-                @for name in COLUMNS {
-                    @let field = named(&shown.fields, name);
+                @for place in COLUMNS {
+                    @let field = &shown.fields[place];
                     dt { (field.head) } dd { (field.tip()) }
                 }
                 dt { "(z)" } dd { (NOT_NORMAL.trim_start_matches("(z): ")) }

@@ -4,7 +4,7 @@
 use maud::{Markup, html};
 use plotters::style::RGBAColor;
 
-use crate::record::{Record, Row, Verdict};
+use crate::record::{Compared, Record, Row, Score, Verdict};
 use crate::report::html as page;
 use crate::report::html::drawing;
 use crate::report::html::words;
@@ -12,10 +12,9 @@ use crate::report::plots::style::{GREY, Marker, ink};
 use crate::report::plots::{Axis, Panel, Sheet};
 use crate::report::run::failures::{self, Failure, failing};
 use gate::deviation::signed_percent;
-use numeric::digits::short;
 
 /// Maximum number of cards; the table has all failures.
-const MOST: usize = 12;
+const MAX_CARDS: usize = 12;
 
 /// Failures of one check of an estimator of a case.
 struct Group<'a>(Vec<Failure<'a>>);
@@ -27,8 +26,8 @@ pub fn section(record: &Record, verdict: Verdict, title: &str) -> Markup {
         @if !groups.is_empty() {
             section.failing aria-labelledby=(verdict.word()) {
                 h2 #(verdict.word()) { (title) }
-                div.cards { @for group in groups.iter().take(MOST) { (card(group)) } }
-                (words::more(groups.len(), MOST))
+                div.cards { @for group in groups.iter().take(MAX_CARDS) { (card(group)) } }
+                (words::more(groups.len(), MAX_CARDS))
             }
         }
     }
@@ -76,20 +75,9 @@ fn label(failure: &Failure) -> String {
     format!("{}, {}: measured over theory", failure.row.case.name, failure.experiment())
 }
 
-/// Quantity of a plot: its name, measured value, standard error and value in theory.
-type Quantity = (&'static str, fn(&Row) -> [Option<f64>; 3]);
-
-fn quantity(check: &str) -> Quantity {
-    match check {
-        "variance" => {
-            ("variance", |row| [row.variance, row.variance_deviation, row.predicted_variance])
-        }
-        "lookups" => ("lookups per draw", |row| {
-            let one = row.experiment;
-            [one.lookups_per_draw, one.lookups_deviation, one.predicted_lookups]
-        }),
-        _ => ("mean", |row| [row.mean, row.standard_error, row.truth]),
-    }
+/// Returns the quantity of a plot.
+fn quantity(check: &str) -> Score {
+    Score::ALL.into_iter().find(|score| score.quantity() == check).unwrap_or(Score::Mean)
 }
 
 const PASS: RGBAColor = ink(0x17, 0x80, 0x4A);
@@ -99,7 +87,8 @@ const FAIL: RGBAColor = ink(0xB3, 0x12, 0x1D);
 /// without at least one measured value.
 fn figure(failure: &Failure) -> Option<Sheet> {
     let row = failure.row;
-    let (name, values) = quantity(failure.check());
+    let score = quantity(failure.check());
+    let name = score.quantity();
     let along = row.experiment.swept().and(row.case.sweep.as_ref());
     let is_shown = |other: &Row| {
         let is_own = other.experiment.listed == row.experiment.listed;
@@ -107,7 +96,11 @@ fn figure(failure: &Failure) -> Option<Sheet> {
     };
     let mut points: Vec<(f64, Row, [f64; 2])> = Vec::new();
     for (place, other) in row.case.rows().filter(is_shown).enumerate() {
-        let [Some(measured), deviation, Some(theory)] = values(&other) else { continue };
+        let Compared { measured: Some(measured), deviation, theory: Some(theory), .. } =
+            other.compared(score)
+        else {
+            continue;
+        };
         let x = if along.is_some() { other.experiment.swept() } else { Some((place + 1) as f64) };
         let point = [measured / theory, 2.0 * deviation.unwrap_or(0.0) / theory.abs()];
         if let Some(x) = x.filter(|_| point.iter().all(|v| v.is_finite())) {
@@ -135,18 +128,17 @@ fn figure(failure: &Failure) -> Option<Sheet> {
         };
         panel.bar(&mut sheet, spot[0], [ratio - bar, ratio, ratio + bar], (4.5, 1.4, colour));
         panel.point(&mut sheet, spot, marker, 5.0, colour);
-        sheet.tip(spot, tip(&other, name, values(&other), ratio));
+        sheet.tip(spot, tip(&other, score, ratio));
     }
     panel.frame(&mut sheet, &format!("{name}: measured over theory, bars of two standard errors"));
     Some(sheet)
 }
 
-fn tip(row: &Row, name: &str, values: [Option<f64>; 3], ratio: f64) -> String {
+fn tip(row: &Row, score: Score, ratio: f64) -> String {
+    let Compared { measured, deviation, theory, .. } = row.compared(score);
     let [measured, deviation, theory] =
-        [(0, 6), (1, 2), (2, 6)].map(|(i, digits): (usize, usize)| {
-            values[i].map_or_else(|| words::UNKNOWN.to_owned(), |value| short(value, digits))
-        });
-    let off = signed_percent(ratio - 1.0);
-    let word = words::word(row.verdict);
+        [(measured, 6), (deviation, 2), (theory, 6)].map(|(x, digits)| words::number(x, digits));
+    let (off, word, name) =
+        (signed_percent(ratio - 1.0), words::word(row.verdict), score.quantity());
     format!("{}: {word}; {name} {measured} ± {deviation}, theory {theory} ({off})", row.name())
 }

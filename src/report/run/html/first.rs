@@ -13,7 +13,7 @@ use crate::report::run::totals::{self, VERDICTS};
 use numeric::digits::{percent, range, short, time};
 
 /// Maximum number of suspects and of notes.
-const MOST: usize = 20;
+const MAX_LISTED: usize = 20;
 
 /// Returns the first screen.
 pub fn section(record: &Record) -> Markup {
@@ -158,8 +158,8 @@ fn suspects(record: &Record) -> Markup {
         @if !triage.is_empty() {
             section aria-labelledby="suspects" {
                 h2 #suspects { "Look here first (e-BH)" }
-                ol { @for suspect in triage.iter().take(MOST) { li { (totals::suspect(suspect)) } } }
-                (words::more(triage.len(), MOST))
+                ol { @for suspect in triage.iter().take(MAX_LISTED) { li { (totals::suspect(suspect)) } } }
+                (words::more(triage.len(), MAX_LISTED))
             }
         }
     }
@@ -174,8 +174,8 @@ fn notes(record: &Record) -> Markup {
         @if !all.is_empty() {
             section aria-labelledby="notes" {
                 h2 #notes { "Notes" }
-                ul { @for (case, note) in all.iter().take(MOST) { li { (case.name) ": " (note) } } }
-                (words::more(all.len(), MOST))
+                ul { @for (case, note) in all.iter().take(MAX_LISTED) { li { (case.name) ": " (note) } } }
+                (words::more(all.len(), MAX_LISTED))
             }
         }
     }

@@ -12,7 +12,7 @@ use numeric::digits::short;
 const SIZE: [f64; 2] = [560.0, 132.0];
 const LEFT: f64 = 46.0;
 const TOP: f64 = 30.0;
-const PITCH: f64 = SIZE[1] + 44.0;
+const PITCH: f64 = SIZE[1] + 54.0;
 const BAR: RGBAColor = ink(0x56, 0x9B, 0xC8);
 const FAR: RGBAColor = ink(0xB3, 0x12, 0x1D);
 
@@ -27,12 +27,8 @@ pub fn figure(all: &[Scores]) -> Sheet {
 }
 
 /// Returns the quantity of a score, in the plural.
-fn name(score: Score) -> &'static str {
-    match score {
-        Score::Mean => "means",
-        Score::Variance => "variances",
-        Score::Lookups => "lookups",
-    }
+fn name(score: Score) -> String {
+    format!("{}s", score.quantity().trim_end_matches('s'))
 }
 
 fn panel(sheet: &mut Sheet, top: f64, scores: &Scores, is_last: bool) {

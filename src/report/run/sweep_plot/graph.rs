@@ -3,7 +3,7 @@
 //! of its limit.
 
 use crate::record::Best;
-use crate::record::{CurvePoint, Row};
+use crate::record::{Compared, CurvePoint, Row};
 use crate::report::plots::font::Typeface;
 use crate::report::plots::legend::{self, Key};
 use crate::report::plots::overlap::{self, Class, Line, classes, side_by_side};
@@ -21,19 +21,15 @@ const HIDDEN: f64 = 3.5;
 /// Distance of points below which they hide each other.
 const APART: f64 = 8.0;
 
-/// Quantity of a panel: as measured, with its deviation, and in theory for rows and curves.
+/// Quantity of a panel, of rows and of curves.
 #[derive(Clone, Copy)]
 pub struct Quantity {
     /// Heading; its second character is the letter of the panel.
     pub head: &'static str,
     /// Title of the axis.
     pub title: &'static str,
-    /// Measured value.
-    pub measured: fn(&Row) -> Option<f64>,
-    /// Standard deviation of the measured value.
-    pub deviation: fn(&Row) -> Option<f64>,
-    /// Predicted value.
-    pub predicted: fn(&Row) -> Option<f64>,
+    /// Values of a row.
+    pub values: fn(&Row) -> Compared,
     /// Value on the predicted line.
     pub theory: fn(&CurvePoint) -> f64,
 }
@@ -167,13 +163,16 @@ pub fn notes(graphs: &[Graph], series: &[Series]) -> Vec<String> {
 
 /// Returns the predicted line within the panel: along the sweep, or a constant for an estimator that is not swept.
 fn line(one: &Series, quantity: &Quantity, panel: &Panel) -> Line {
-    let points = one.theory(quantity.theory, quantity.predicted);
+    let points = one.theory(quantity.theory, quantity.values);
     if !points.is_empty() {
         let has_place = points.iter().any(|&(x, y)| panel.spot(x, y).is_some());
         return if has_place { Line::Points(points) } else { Line::None };
     }
     let mut fixed = one.rows.iter().filter(|row| row.experiment.swept().is_none());
-    let level = fixed.find_map(|row| (quantity.predicted)(row).or((quantity.measured)(row)));
+    let level = fixed.find_map(|row| {
+        let Compared { measured, theory, .. } = (quantity.values)(row);
+        theory.or(measured)
+    });
     level.filter(|&y| panel.down(y).is_some()).map_or(Line::None, Line::Level)
 }
 
@@ -184,17 +183,17 @@ fn points(panel: &Panel, quantity: &Quantity, series: &[Series]) -> Vec<Point> {
     for (index, one) in series.iter().enumerate() {
         for row in &one.rows {
             let x = row.experiment.swept().map_or(Some(edge), |swept| panel.across(swept));
-            let measured = (quantity.measured)(row);
-            let place = measured.and_then(|value| Some((value, [x?, panel.down(value)?])));
+            let values = (quantity.values)(row);
+            let place = values.measured.and_then(|value| Some((value, [x?, panel.down(value)?])));
             let Some((value, spot)) = place.filter(|(_, spot)| panel.holds(*spot)) else {
                 continue;
             };
             if row.experiment.swept().is_none() {
                 edge -= PLACE;
             }
-            let deviation = (quantity.deviation)(row);
-            let tip = tip(row, quantity, [Some(value), deviation, (quantity.predicted)(row)]);
-            let bar = deviation.map(|deviation| [value - deviation, value, value + deviation]);
+            let tip = tip(row, quantity, values);
+            let bar =
+                values.deviation.map(|deviation| [value - deviation, value, value + deviation]);
             points.push(Point { series: index, spot, bar, tip });
         }
     }
@@ -202,8 +201,10 @@ fn points(panel: &Panel, quantity: &Quantity, series: &[Series]) -> Vec<Point> {
 }
 
 /// Returns the name and the value of a point, with its standard error and its value in theory.
-fn tip(row: &Row, quantity: &Quantity, values: [Option<f64>; 3]) -> String {
-    let [value, deviation, theory] = values.map(|value| value.map(|value| short(value, 4)));
+fn tip(row: &Row, quantity: &Quantity, values: Compared) -> String {
+    let Compared { measured, deviation, theory, .. } = values;
+    let [value, deviation, theory] =
+        [measured, deviation, theory].map(|value| value.map(|value| short(value, 4)));
     let deviation = deviation.map_or(String::new(), |deviation| format!(" ± {deviation}"));
     let theory = theory.map_or(String::new(), |theory| format!(", theory {theory}"));
     format!("{}: {} {}{deviation}{theory}", row.name(), quantity.title, value.unwrap_or_default())

@@ -16,7 +16,7 @@ const CLEAR: f64 = 9.0;
 /// Distance of places that are tried, and of points of a curve that a name keeps clear of.
 const STEP: f64 = 4.0;
 /// Largest part of the width of a panel that a name may take.
-const WIDEST: f64 = 0.45;
+const MAX_SHARE: f64 = 0.45;
 
 /// Curve on the sheet.
 pub struct Course {
@@ -37,7 +37,7 @@ pub fn draw(face: &Typeface, sheet: &mut Sheet, panel: Frame, courses: &[Course]
     let mut taken: Vec<Frame> = Vec::new();
     for (own, course) in courses.iter().enumerate() {
         let width = face.width(&course.name, SIZE);
-        if width > WIDEST * (panel[2] - panel[0]) {
+        if width > MAX_SHARE * (panel[2] - panel[0]) {
             continue;
         }
         let free = |frame: &Frame| {
