@@ -70,6 +70,22 @@ impl GaussLegendre {
     }
 }
 
+/// Legendre polynomials `P_0(x), P_1(x), …`.
+///
+/// ```text
+/// (m + 1) P_{m+1} = (2m + 1) x P_m − m P_{m−1}
+/// ```
+pub fn legendre(x: f64) -> impl Iterator<Item = f64> {
+    polynomials(x).map(|[_, value, _]| value)
+}
+
+/// `P_{m−1}(x)`, `P_m(x)` and m, from m = 0.
+fn polynomials(x: f64) -> impl Iterator<Item = [f64; 3]> {
+    std::iter::successors(Some([0.0, 1.0, 0.0]), move |&[previous, value, m]| {
+        Some([value, ((2.0 * m + 1.0) * x * value - m * previous) / (m + 1.0), m + 1.0])
+    })
+}
+
 /// Newton's iteration on the Legendre polynomial `P_n` from Tricomi's starting value, mapped to
 /// `[0, 1]`; `i = 0` is the largest node.
 fn node_and_weight(n: usize, i: usize) -> (f64, f64) {
@@ -77,11 +93,7 @@ fn node_and_weight(n: usize, i: usize) -> (f64, f64) {
     let mut x = (std::f64::consts::PI * (i as f64 + 0.75) / (order + 0.5)).cos();
     let mut slope = 1.0;
     for _ in 0..100 {
-        let (mut previous, mut value) = (1.0, x);
-        for k in 2..=n {
-            let k = k as f64;
-            (previous, value) = (value, ((2.0 * k - 1.0) * x * value - (k - 1.0) * previous) / k);
-        }
+        let [previous, value, _] = polynomials(x).nth(n).unwrap_or_default();
         slope = order * (x * value - previous) / (x * x - 1.0);
         let step = value / slope;
         x -= step;

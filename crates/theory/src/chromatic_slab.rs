@@ -12,13 +12,11 @@
 //! Source: derived from B. Miller, I. Georgiev, W. Jarosz, *A Null-Scattering Path Integral Formulation of Light
 //! Transport*, ACM Transactions on Graphics 38 (2019), section 5.1.
 
-use super::prediction::Covariance;
-use super::rod::moments::POWERS;
-use super::rod::{central, tails};
+use super::raw::{POWERS, RESOLVED, RawMoments};
 use super::slab::{self, Pieces, Walk};
 use super::spectral::bound::{self, Flight, SecondMomentRates};
 use super::spectral::rates::{Proposal, Rates};
-use super::{Channel, CountLaw, Mesh, ParticleRule, Prediction};
+use super::{Channel, CountLaw, Mesh, ParticleRule, Prediction, colours};
 use crate::problems::ChromaticSlab;
 use crate::problems::channels::End;
 use crate::problems::slab::Light;
@@ -64,21 +62,13 @@ impl<'a> Spectrum<'a> {
 
     /// Prediction for one channel a draw, given the probability of each.
     pub fn independent(&self, heroes: &[f64]) -> Prediction {
-        let channels: Vec<Channel> = self.channels(|truth, channel| {
-            let raw = POWERS.map(|k| {
-                let weight = heroes[channel].powi(1 - k);
-                [weight * truth.value, weight * truth.error]
-            });
-            Channel::unbiased(truth, central(truth, &raw), tails(&raw))
+        let mut moments = Vec::new();
+        let channels = self.channels(|truth, channel| {
+            let raw = colours::independent(&RawMoments(POWERS.map(|_| truth)), heroes[channel]);
+            moments.push([truth.value, raw.second().value]);
+            raw.channel(truth, RESOLVED)
         });
-        let seen = &self.problem.colours.seen;
-        let covariance = |next: usize| {
-            let means = [next - 1, next].map(|i| channels[i].truth.value);
-            let second_moment_bounds =
-                [next - 1, next].map(|i| channels[i].truth.value / heroes[seen[i].1]);
-            Covariance::of_raw([next - 1, next], means, second_moment_bounds, [0.0; 4])
-        };
-        let covariances = (1..channels.len()).map(covariance).collect();
+        let covariances = colours::exclusive(&moments);
         Prediction { channels, covariances, lookups: self.lookups(heroes), ..Prediction::default() }
     }
 
@@ -87,9 +77,7 @@ impl<'a> Spectrum<'a> {
         if heroes.len() == 1 {
             return self.independent(heroes);
         }
-        let channels = self.channels(|truth, channel| {
-            Channel::bounded(truth, (truth.value + truth.error) / heroes[channel])
-        });
+        let channels = self.channels(|truth, channel| colours::bounded(truth, heroes[channel]));
         Prediction { channels, lookups: self.lookups(heroes), ..Prediction::default() }
     }
 
@@ -151,12 +139,11 @@ impl<'a> Spectrum<'a> {
     }
 
     /// All channels that are seen, each made from its expected value and its channel number.
-    fn channels(&self, of: impl Fn(Known, usize) -> Channel) -> Vec<Channel> {
+    fn channels(&self, mut of: impl FnMut(Known, usize) -> Channel) -> Vec<Channel> {
         let seen = self.problem.colours.seen.iter();
-        let channel = |&(end, channel): &(End, usize)| {
-            let side = if end == End::Reflected { "reflectance" } else { "transmittance" };
-            let name = format!("{side}, channel {}", channel + 1);
-            Channel { name, ..of(self.truth(end, channel), channel) }
+        let channel = |&(end, channel): &(End, usize)| Channel {
+            name: end.name(channel),
+            ..of(self.truth(end, channel), channel)
         };
         seen.map(channel).collect()
     }

@@ -1,11 +1,14 @@
 //! Distribution of the number of lookups of a draw.
 
-use super::raw;
+use super::raw::{self, Raw};
+use numeric::Known;
 
 /// Maximum mean of a distribution for which probabilities are computed.
 pub const LARGEST_MEAN: f64 = 2000.0;
 /// Probabilities below this, relative to the largest, are left out.
 const FAINT: f64 = 1e-20;
+/// Maximum ratio of the variance to the second moment at which the variance is rounding.
+const HIDDEN: f64 = 1e-12;
 
 /// Distribution of the number of lookups of one draw.
 #[derive(Debug, Clone, PartialEq)]
@@ -48,35 +51,23 @@ impl CountLaw {
     }
 
     /// Mean, variance and kurtosis from `E[M(M − 1)…(M − k + 1)]`, k = 1 … 4; no probabilities.
-    pub fn of_factorial_moments(factorial: [f64; 4]) -> Self {
-        let [mean, pairs, ..] = factorial;
-        let variance = pairs + mean - mean * mean;
+    pub fn of_factorial(factorial: [Known; 4]) -> Self {
+        let [mean, ..] = factorial;
+        let error = if mean.value > 0.0 { mean.error / mean.value } else { 0.0 };
+        Self::of_raw(0.0, raw::of_factorial(factorial.map(|known| known.value)), error)
+    }
+
+    /// Mean, variance and kurtosis from the smallest number and the raw moments of the rest, with the relative error
+    /// of the mean; no probabilities.
+    pub fn of_raw(least: f64, [_, mean, square, cube, fourth]: Raw, error: f64) -> Self {
+        let variance = square - mean * mean;
         // A number that is nearly constant has a variance of rounding errors.
-        if variance <= 1e-12 * mean * mean {
-            return Self::always(mean);
+        if variance <= HIDDEN * square {
+            return Self { error, ..Self::always(least + mean) };
         }
-        let [_, _, square, cube, fourth] = raw::of_factorial(factorial);
         let fourth = fourth - 4.0 * mean * cube + 6.0 * mean * mean * square - 3.0 * mean.powi(4);
         let kurtosis = (fourth / (variance * variance)).max(1.0);
-        Self { mean, variance, error: 0.0, kurtosis, poisson: false, pmf: Vec::new() }
-    }
-
-    /// Mean, variance and kurtosis from factorial moments with absolute errors.
-    pub fn of_known(factorial: [[f64; 2]; 4]) -> Self {
-        let [mean, error] = factorial[0];
-        let law = Self::of_factorial_moments(factorial.map(|[moment, _]| moment));
-        Self { error: if mean > 0.0 { error / mean } else { 0.0 }, ..law }
-    }
-
-    /// Lookups of the walk of a hero, mixed over heroes with these probabilities.
-    pub fn mixed(heroes: impl IntoIterator<Item = (f64, [[f64; 2]; 4])>) -> Self {
-        let mut mixed = [[0.0; 2]; 4];
-        for (weight, factorial) in heroes {
-            for (sum, [value, error]) in mixed.iter_mut().zip(factorial) {
-                *sum = [sum[0] + weight * value, sum[1] + weight * error];
-            }
-        }
-        Self::of_known(mixed)
+        Self { mean: least + mean, variance, error, kurtosis, poisson: false, pmf: Vec::new() }
     }
 }
 
@@ -152,5 +143,13 @@ mod tests {
             let total: f64 = (0..2000).map(|n| poisson(n, mean)).sum();
             assert!((total - 1.0).abs() < 1e-12, "{mean}: {total}");
         }
+    }
+
+    #[test]
+    fn rare_lookups_keep_their_digits() {
+        // 3 and, once in a thousand millions, one more.
+        let law = CountLaw::of_raw(3.0, [1.0, 1e-9, 1e-9, 1e-9, 1e-9], 0.0);
+        assert_eq!(law.mean, 3.000_000_001);
+        assert!((law.variance / 1e-9 - 1.0).abs() < 2e-9 && law.kurtosis > 0.9e9);
     }
 }

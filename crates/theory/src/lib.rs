@@ -5,6 +5,7 @@
 
 pub mod bidirectional_rod;
 pub mod chromatic_slab;
+pub mod colours;
 pub mod count;
 pub mod curve;
 pub mod flight;

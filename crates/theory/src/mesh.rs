@@ -1,7 +1,7 @@
 //! A ray cut into panels on which everything is smooth.
 
 use media::Medium;
-use numeric::quadrature::GaussLegendre;
+use numeric::quadrature::{GaussLegendre, legendre};
 use numeric::sum::Sum;
 use numeric::{Known, Span, roots};
 
@@ -363,18 +363,7 @@ impl Mesh {
 
 /// The weights that turn node values into the Legendre coefficient of the given order on `[0, 1]`.
 fn legendre_row(rule: &GaussLegendre, order: usize) -> Vec<f64> {
-    let polynomial = |x: f64| {
-        let x = 2.0 * x - 1.0;
-        let (mut previous, mut value) = (1.0, x);
-        if order == 0 {
-            return 1.0;
-        }
-        for k in 2..=order {
-            let k = k as f64;
-            (previous, value) = (value, ((2.0 * k - 1.0) * x * value - (k - 1.0) * previous) / k);
-        }
-        value
-    };
+    let polynomial = |x: f64| legendre(2.0 * x - 1.0).nth(order).unwrap_or(f64::NAN);
     let scale = 2.0 * order as f64 + 1.0;
     rule.nodes.iter().zip(&rule.weights).map(|(&x, &w)| scale * w * polynomial(x)).collect()
 }

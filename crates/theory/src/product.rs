@@ -11,6 +11,7 @@
 
 use super::mesh::Panel;
 use super::prediction::transmittance;
+use super::raw::of_factorial;
 use super::{Channel, CountLaw, Mesh, Moments, Outcome, Prediction, Rule, Tails};
 use media::{Control, Piecewise};
 use numeric::Grade;
@@ -184,7 +185,7 @@ impl Integrals {
         if (mean - self.flown).abs() <= 1e-13 * self.flown {
             return CountLaw::poisson(self.flown);
         }
-        CountLaw::of_factorial_moments(self.lookups)
+        CountLaw::of_raw(0.0, of_factorial(self.lookups), 0.0)
     }
 }
 

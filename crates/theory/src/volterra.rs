@@ -28,7 +28,9 @@
 //! model for deep-penetration Monte Carlo calculations*, Nuclear Science and Engineering 65 (1978).
 
 use super::mesh::Panel;
+use super::raw::RawMoments;
 use super::{Channel, CountLaw, Mesh, Moments, Prediction, Tails};
+use numeric::Known;
 
 /// Maximum relative error of central moments that are given; cancellation makes larger ones.
 const WORST: f64 = 0.05;
@@ -56,30 +58,22 @@ pub fn predict(mesh: &Mesh, sampling: f64, source: &dyn Source) -> Prediction {
     let raw: [f64; ORDERS] = std::array::from_fn(|k| source.moment(k + 1, v, &after) + after[k]);
     let depth = mesh.optical_depth();
     let t = raw[0];
-    // Central moments by subtraction: these estimators are not used where the relative spread
-    // vanishes, and the loss of digits is stated in `error`.
-    let unit: [f64; ORDERS] = std::array::from_fn(|k| raw[k] / power(t, k + 1));
-    let [m1, m2, m3, m4, _, _, _, m8] = unit;
-    let central = [
-        m2 - m1 * m1,
-        m3 - 3.0 * m2 * m1 + 2.0 * m1.powi(3),
-        m4 - 4.0 * m3 * m1 + 6.0 * m2 * m1 * m1 - 3.0 * m1.powi(4),
-    ];
-    let relative = [central[0].max(0.0), central[1], central[2].max(0.0)];
-    let terms = m4.abs() + 4.0 * (m3 * m1).abs() + 6.0 * (m2 * m1 * m1).abs() + 3.0 * m1.powi(4);
     // The mean is known: the error of its quadrature estimates that of the others.
     let missed = (t * depth.value.exp() - 1.0).abs();
-    let noise = (fine.relative_error() + missed + 1e-14) * terms;
-    let error = noise / relative[0].powi(2).min(relative[0]).max(f64::MIN_POSITIVE);
-    let moments = Moments::estimated(depth.exp_neg().value, relative, error);
-    let kurtosis = moments.kurtosis().unwrap_or(1.0);
-    let tails = Tails { rare_event_size: kurtosis, eighth_moment_ratio: m8 / (m4 * m4) };
+    let relative_error = fine.relative_error() + missed + 1e-14;
+    let [m1, m2, m3, m4, .., m8] = raw;
+    let raw = RawMoments::estimated([1.0, m1, m2, m3, m4], m8, relative_error);
+    // Central moments by subtraction: these estimators are not used where the relative spread
+    // vanishes, and the loss of digits is part of the error.
+    let central = raw.central(Known::estimated(t, relative_error * t), WORST);
+    let moments = Moments { scale: depth.exp_neg().value, ..central };
+    let tails = Tails { rare_event_size: moments.kurtosis().unwrap_or(1.0), ..raw.tails(WORST) };
     let mut channel = Channel::transmittance(depth, 0.0, moments, tails);
     let flown = sampling * mesh.support().length();
     if flown == 0.0 {
         // No collisions: every draw is the closed form.
         channel.moments = Some(Moments::certain(moments.scale));
-    } else if error.is_nan() || error > WORST {
+    } else if !(moments.error <= WORST && moments.relative[2].is_finite()) {
         channel.moments = None;
     }
     let random_numbers = Some(flown + 1.0);
@@ -152,9 +146,4 @@ pub fn power(x: f64, k: usize) -> f64 {
 /// `1 − (1 − r)^k` without cancellation where r is small: no panel would resolve its noise.
 fn lost(ratio: f64, k: usize) -> f64 {
     (0..k).fold(0.0, |sum, _| sum * (1.0 - ratio) + ratio)
-}
-
-/// `C(k, j)`.
-pub fn binomial(k: usize, j: usize) -> f64 {
-    (1..=j).map(|i| (k + 1 - i) as f64 / i as f64).product()
 }

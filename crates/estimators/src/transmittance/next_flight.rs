@@ -23,7 +23,8 @@ use super::scoring::Share;
 use crate::{Setup, scored};
 use numeric::Lane;
 use theory::problems::Transmittance;
-use theory::volterra::{ORDERS, Source, binomial, power};
+use theory::raw::binomial;
+use theory::volterra::{ORDERS, Source, power};
 
 /// The next-flight estimator; a constant σ̂ is its only input.
 #[derive(Debug, Clone, Copy)]

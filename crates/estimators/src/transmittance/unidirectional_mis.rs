@@ -21,7 +21,8 @@ use super::scoring::Share;
 use crate::{Setup, scored};
 use numeric::Lane;
 use theory::problems::Transmittance;
-use theory::volterra::{ORDERS, Source, binomial, power};
+use theory::raw::binomial;
+use theory::volterra::{ORDERS, Source, power};
 
 /// The unidirectional-MIS estimator; a constant σ̂ is its only input.
 #[derive(Debug, Clone, Copy)]

@@ -3,9 +3,8 @@
 use super::grid::Grid;
 use super::lookups::{Walks, of_technique};
 use super::{Combination, Connection, HIGHEST, Powers, Rules, Scene, powers};
-use crate::prediction::Covariance;
-use crate::raw::{Raw, added, binomial};
-use crate::single::predict::count;
+use crate::prediction::{Covariance, UNRESOLVED};
+use crate::raw::{POWERS, Raw, RawMoments, added};
 use crate::{Channel, CountLaw, Moments, Prediction, Tails};
 use numeric::Known;
 
@@ -110,20 +109,11 @@ fn summed(all: &[Powers]) -> Powers {
     let mut sum = [0.0; HIGHEST + 1];
     sum[0] = 1.0;
     for powers in all {
-        sum = std::array::from_fn(|k| {
-            let power = |j: usize| if j == 0 { 1.0 } else { powers[j] };
-            (0..=k).map(|j| binomial(k, j) * power(j) * sum[k - j]).sum()
-        });
+        let mut powers = *powers;
+        powers[0] = 1.0;
+        sum = added(sum, powers);
     }
     sum
-}
-
-/// `μ₂/m²`, `μ₃/m³`, `μ₄/m⁴`.
-fn central(powers: &Powers) -> [f64; 3] {
-    let m = powers[1];
-    let [r2, r3, r4] = [powers[2] / m.powi(2), powers[3] / m.powi(3), powers[4] / m.powi(4)];
-    let m2 = r2 - 1.0;
-    [m2, r3 - 3.0 * r2 + 2.0, (r4 - 4.0 * r3 + 6.0 * r2 - 3.0).max(m2 * m2)]
 }
 
 /// Prediction for one channel, from its raw moments at two resolutions.
@@ -135,20 +125,19 @@ fn channel(depth: Known, order: usize, [fine, rough]: [&Powers; 2], is_certain: 
     let by_depth = if depth.error > 0.0 { by_depth } else { 0.0 };
     let error = (mean - rough[1]).abs() + mean * (ROUNDING + by_depth);
     let truth = Known::estimated(mean, error);
-    let [found, other] = [central(fine), central(rough)];
-    if is_certain || found[0] == 0.0 {
+    if is_certain || fine[2] / mean.powi(2) == 1.0 {
         return Channel::unbiased(truth, Moments::certain(mean), Tails::LIGHT);
     }
-    let [two, four] = [fine[2] / mean.powi(2), fine[4] / mean.powi(4)];
-    let rounding = ROUNDING + 4.0 * by_depth;
-    let error = ((found[0] - other[0]).abs() + rounding * two) / found[0];
-    let of_fourth = ((found[2] - other[2]).abs() + rounding * 10.0 * four) / found[2];
-    let moments = Moments::estimated(mean, found, error.max(of_fourth));
-    let tails = Tails {
-        rare_event_size: fine[4] / (fine[2] * fine[2]),
-        eighth_moment_ratio: fine[8] / (fine[4] * fine[4]),
-    };
-    Channel::unbiased(truth, moments, tails)
+    // Both resolutions in units of their own means: an error of all powers alike moves no relative moment.
+    let relative_error = ROUNDING + 4.0 * by_depth;
+    let raw = RawMoments(POWERS.map(|k| {
+        let of = |powers: &Powers| powers[k.unsigned_abs() as usize] / powers[1].powi(k);
+        let [unit, other] = [of(fine), of(rough)];
+        let error = (unit - other).abs() + relative_error * unit;
+        Known::estimated(fine[k.unsigned_abs() as usize], error * mean.powi(k))
+    }));
+    let moments = raw.central(Known::estimated(mean, 0.0), UNRESOLVED);
+    Channel::unbiased(truth, moments, raw.tails(UNRESOLVED))
 }
 
 /// Distribution of the lookups of all techniques together.
@@ -172,5 +161,5 @@ fn lookups(scene: &Scene, rules: &Rules, ratio: f64) -> CountLaw {
     };
     let [coarse, fine] = resolutions(scene.depth.value).map(of);
     let error = if fine[1] > 0.0 { ((fine[1] - coarse[1]) / fine[1]).abs() } else { 0.0 };
-    CountLaw { error, ..count(0.0, fine) }
+    CountLaw::of_raw(0.0, fine, error)
 }

@@ -14,9 +14,10 @@ pub mod techniques;
 use self::connections::HIGHEST;
 pub use self::techniques::{Combination, Densities, Shadow, Techniques};
 pub use super::Heuristic;
+use super::raw::{POWERS, RESOLVED, RawMoments};
 use super::rod::grid::Walk;
 use super::rod::moments::{Precision, romberg};
-use super::rod::{central, tails, truth};
+use super::rod::truth;
 use super::{Channel, CountLaw, Mesh, ParticleRule, Prediction, Tails};
 use crate::problems::LitRod;
 use media::Piecewise;
@@ -55,12 +56,11 @@ pub fn predict(
 ) -> Prediction {
     let answer = answer(mesh, problem);
     let found = Found::of(mesh, problem, sampling, techniques, laws);
-    let central = found.as_ref().map(|found| central(answer, &found.raw));
-    let tails = found.as_ref().map_or(Tails::LIGHT, |found| tails(&found.raw));
-    Prediction {
-        channels: vec![Channel::unbiased(answer, central, tails)],
-        lookups: found.map(|found| CountLaw::of_known(found.lookups)),
-        ..Prediction::default()
+    match found {
+        None => Prediction::uncounted(Channel::unbiased(answer, None, Tails::LIGHT)),
+        Some(Found { lookups, raw }) => {
+            Prediction::single(raw.channel(answer, RESOLVED), CountLaw::of_factorial(lookups))
+        }
     }
 }
 
@@ -83,12 +83,12 @@ pub fn lookups(
     Some(std::array::from_fn(|i| Known::estimated(numbers[i][0], numbers[i][1])))
 }
 
-/// Raw moments of a draw and of its lookups, with absolute errors.
+/// Raw moments of a draw and of its lookups.
 pub struct Found {
     /// `E[M(M − 1)…(M − k + 1)]` of the lookups, k = 1 … 4.
-    pub lookups: [[f64; 2]; 4],
-    /// `E[X^k]` for k = 1, 2, 3, 4 and 8, infinite where it is not computed.
-    pub raw: [[f64; 2]; 5],
+    pub lookups: [Known; 4],
+    /// Raw moments of the draw.
+    pub raw: RawMoments,
 }
 
 impl Found {
@@ -109,15 +109,15 @@ impl Found {
             numbers.extend(moments::scattered(grid, techniques, highest)?);
             Some(numbers)
         })?;
-        let (lookups, scattered) = numbers.split_at(4);
+        let known = |&[value, error]: &[f64; 2]| Known::estimated(value, error);
+        let scattered = &numbers[4..];
         let unscattered = mesh.optical_depth().exp_neg();
         let raw = std::array::from_fn(|i| {
-            let k = super::rod::moments::POWERS[i].unsigned_abs() as usize;
-            let moment = scattered.get(k - 1).map(|&[value, error]| Known::estimated(value, error));
-            let known = moment.map(|moment| with_hit(moment, unscattered, i, techniques));
-            known.map_or([f64::INFINITY; 2], |known| [known.value, known.error])
+            let k = POWERS[i].unsigned_abs() as usize;
+            let moment = scattered.get(k - 1).map(known);
+            moment.map_or(Known::INFINITE, |moment| with_hit(moment, unscattered, i, techniques))
         });
-        Some(Self { lookups: std::array::from_fn(|k| lookups[k]), raw })
+        Some(Self { lookups: std::array::from_fn(|k| known(&numbers[k])), raw: RawMoments(raw) })
     }
 }
 

@@ -24,7 +24,7 @@
 
 use super::connections::{Connections, Vertex, scattering};
 use super::techniques::{Shadow, Techniques};
-use crate::raw::{BINOMIAL, binomial};
+use crate::raw::binomial;
 use crate::rod::grid::{Grid, Importance, Step};
 
 /// `U_k⁺(0)`, k = 1 … highest.
@@ -107,7 +107,7 @@ pub fn lookups(grid: &Grid, techniques: Techniques) -> Option<[f64; 4]> {
             let scattered = |m: usize, from: usize| {
                 let mut sum = [0.0; 2];
                 for j in from..=m {
-                    let share = BINOMIAL[m][j] * of_shadow[i][j];
+                    let share = binomial(m, j) * of_shadow[i][j];
                     let spread = step.spread(worth(m - j));
                     sum = [sum[0] + share * spread[0], sum[1] + share * spread[1]];
                 }

@@ -27,9 +27,7 @@ use self::contour::Contour;
 use self::directions::{Direction, Resolution};
 use super::lit_rod::connections::{HIGHEST, Powers, Vertex, Weights};
 use super::lit_rod::{Combination, OF_POLYNOMIALS, ROUNDING, Shadow, Techniques};
-use super::raw::{Raw, binomial};
-use super::rod::moments::POWERS;
-use super::rod::{central, tails};
+use super::raw::{POWERS, RESOLVED, Raw, RawMoments, binomial};
 use super::{Channel, CountLaw, Mesh, Prediction, Tails};
 use crate::problems::LitSlab;
 use crate::problems::lit_slab::Light;
@@ -73,17 +71,11 @@ pub fn predict(
     let highest = if laws { HIGHEST } else { 2 };
     let [fine, coarse] = [Resolution::fine(), Resolution::coarse()]
         .map(|resolution| Scores::new(mesh, problem, sampling, (techniques, highest), &resolution));
-    let raw: [[f64; 2]; 5] = std::array::from_fn(|i| {
+    let raw = RawMoments(std::array::from_fn(|i| {
         let k = POWERS[i].unsigned_abs() as usize;
-        if k > highest {
-            return [f64::INFINITY; 2];
-        }
-        let Known { value, error, .. } = fine.known(&coarse, techniques, (k, i));
-        [value, error]
-    });
-    let moments = central(truth, &raw);
-    let channel = Channel::unbiased(truth, moments, tails(&raw));
-    Prediction::single(channel, fine.count(&coarse))
+        if k > highest { Known::INFINITE } else { fine.known(&coarse, techniques, (k, i)) }
+    }));
+    Prediction::single(raw.channel(truth, RESOLVED), fine.count(&coarse))
 }
 
 /// Radiance at the camera.
@@ -188,12 +180,9 @@ impl Scores {
     }
 
     fn count(&self, coarse: &Self) -> CountLaw {
-        let [_, m1, m2, m3, m4] = self.lookups;
-        let (pairs, triples) = (m2 - m1, m3 - 3.0 * m2 + 2.0 * m1);
-        let fourfold = m4 - 6.0 * m3 + 11.0 * m2 - 6.0 * m1;
-        let law = CountLaw::of_factorial_moments([m1, pairs, triples, fourfold]);
-        let error = (coarse.lookups[1] - m1).abs() / m1 + ROUNDING + self.error;
-        CountLaw { error, ..law }
+        let [_, mean, ..] = self.lookups;
+        let error = (coarse.lookups[1] - mean).abs() / mean + ROUNDING + self.error;
+        CountLaw::of_raw(0.0, self.lookups, error)
     }
 }
 

@@ -20,10 +20,11 @@ pub mod grid;
 pub mod moments;
 
 use self::grid::Walk;
-use self::moments::{Existence, Joint, POWERS, Precision};
+use self::moments::{Existence, Joint, Precision};
 use super::particle::ParticleRule;
 use super::prediction::Covariance;
-use super::{Channel, CountLaw, Mesh, Moments, Prediction, Tails, moments::not_negative};
+use super::raw::{POWERS, RESOLVED, RawMoments};
+use super::{Channel, CountLaw, Mesh, Prediction, Tails};
 use crate::problems::rod::Quantity;
 use crate::problems::{Problem, Rod};
 use media::Piecewise;
@@ -55,7 +56,7 @@ pub fn truth(mesh: &Mesh, rod: &Rod) -> Option<Vec<Known>> {
             let rest = ((1.0 - r.value) - t.value).max(0.0);
             Some(Known { value: rest, error: r.error + t.error + f64::EPSILON, ..r })
         }
-        _ => solved.next().map(|[value, error]| Known::estimated(value, error)),
+        _ => solved.next().map(known),
     });
     known.collect()
 }
@@ -101,7 +102,7 @@ pub fn has_variance(
         Existence::Finite => Ok(()),
         Existence::Diverges(at) => Err(NoVariance::Diverges(at)),
         Existence::Unknown => Err(NoVariance::Blurred(f64::INFINITY)),
-        Existence::Near => match RawMoments::blur(&powers(&walk, 2)) {
+        Existence::Near => match blur(&powers(&walk, 2)) {
             blur if blur <= RESOLVED => Ok(()),
             blur => Err(NoVariance::Blurred(blur)),
         },
@@ -110,12 +111,13 @@ pub fn has_variance(
 
 /// `E[X^k]` of each channel with its error, where the moment is next to its divergence; infinite where grids do not
 /// resolve it.
-fn powers(walk: &Walk<'_>, k: i32) -> Vec<[f64; 2]> {
+fn powers(walk: &Walk<'_>, k: i32) -> Vec<Known> {
     let channels = &walk.rod.channels;
     let numbers = moments::next_to_divergence(walk, &|grid| {
         channels.iter().map(|&quantity| moments::power(grid, quantity, k)).collect()
     });
-    numbers.unwrap_or_else(|| vec![[f64::INFINITY; 2]; channels.len()])
+    let known = |numbers: Vec<[f64; 2]>| numbers.into_iter().map(known).collect();
+    numbers.map_or_else(|| vec![Known::INFINITE; channels.len()], known)
 }
 
 /// Prediction for the walk of a rule through σ̂. It has the expected value alone where [`has_variance`] refuses the
@@ -130,18 +132,18 @@ pub fn predict(
     laws: bool,
 ) -> Prediction {
     let truth = truth_or_nan(mesh, rod);
-    let found =
-        Walk::new(mesh, rod, Some(sampling), rule).and_then(|walk| RawMoments::of(&walk, laws));
+    let found = Walk::new(mesh, rod, Some(sampling), rule).and_then(|walk| Solved::of(&walk, laws));
     let channel = |(index, (quantity, &truth)): (usize, (&Quantity, &Known))| {
-        let raw = found.as_ref().map(|found| &found.raw[index]);
-        let moments = raw.map(|raw| central(truth, raw));
-        let tails = raw.map_or(Tails::LIGHT, tails);
-        Channel { name: quantity.name(), ..Channel::unbiased(truth, moments, tails) }
+        let channel = match &found {
+            Some(found) => found.raw[index].channel(truth, RESOLVED),
+            None => Channel::unbiased(truth, None, Tails::LIGHT),
+        };
+        Channel { name: quantity.name(), ..channel }
     };
     let channels = rod.channels.iter().zip(&truth).enumerate().map(channel);
     Prediction {
         channels: channels.collect(),
-        lookups: found.as_ref().map(|found| CountLaw::of_known(found.lookups)),
+        lookups: found.as_ref().map(|found| CountLaw::of_factorial(found.lookups)),
         covariances: found
             .as_ref()
             .map_or_else(Vec::new, |found| covariances(&rod.channels, &truth, found)),
@@ -156,9 +158,9 @@ pub fn factorial_lookups(
     rod: &Rod,
     sampling: &Piecewise,
     rule: ParticleRule,
-) -> Option<[[f64; 2]; 4]> {
+) -> Option<[Known; 4]> {
     let walk = Walk::new(mesh, rod, Some(sampling), rule)?;
-    RawMoments::of(&walk, true).map(|found| found.lookups)
+    Solved::of(&walk, true).map(|found| found.lookups)
 }
 
 /// Prediction for an unbiased walk with draws in `[0, 1]`: expected values, and `Var[X] ≤ E[X](1 − E[X])`.
@@ -172,18 +174,17 @@ pub fn bounded(mesh: &Mesh, rod: &Rod) -> Prediction {
     Prediction { channels: channels.collect(), ..Prediction::default() }
 }
 
-/// Raw moments of all channels.
-struct RawMoments {
-    /// `E[X^k]` of each channel for the powers of [`POWERS`], with an absolute error; infinite where
-    /// it diverges.
-    raw: Vec<[[f64; 2]; POWERS.len()]>,
-    /// Factorial moments of the number of lookups, with absolute errors.
-    lookups: [[f64; 2]; 4],
+/// Moments of all channels and of the lookups.
+struct Solved {
+    /// Raw moments of each channel.
+    raw: Vec<RawMoments>,
+    /// Factorial moments of the number of lookups.
+    lookups: [Known; 4],
     /// Joint moments with the absorbed energy, where that is a channel and the moments exist.
     joint: Option<Joint>,
 }
 
-impl RawMoments {
+impl Solved {
     fn of(walk: &Walk<'_>, laws: bool) -> Option<Self> {
         let precision = if laws { Precision::FULL } else { Precision::PLOTS };
         let [second, fourth, eighth] = if laws {
@@ -205,7 +206,7 @@ impl RawMoments {
             _ => None,
         };
         let apart: [_; POWERS.len()] = std::array::from_fn(apart);
-        if !apart[1].as_ref().is_none_or(|found| Self::blur(found) <= RESOLVED) {
+        if !apart[1].as_ref().is_none_or(|found| blur(found) <= RESOLVED) {
             return None;
         }
         let is_joint = is_finite(&3) && channels.contains(&Quantity::Absorbed);
@@ -221,77 +222,41 @@ impl RawMoments {
             }
             Some(numbers)
         })?;
-        let mut numbers = numbers.into_iter();
-        let mut next = || numbers.next().unwrap_or([f64::INFINITY; 2]);
+        let mut numbers = numbers.into_iter().map(known);
+        let mut next = || numbers.next().unwrap_or(Known::INFINITE);
         let lookups = std::array::from_fn(|_| next());
         let mut of_channel = |channel: usize| {
-            std::array::from_fn(|i| match &apart[i] {
+            RawMoments(std::array::from_fn(|i| match &apart[i] {
                 Some(found) => found[channel],
                 None if is_finite(&i) => next(),
-                None => [f64::INFINITY; 2],
-            })
+                None => Known::INFINITE,
+            }))
         };
         let raw = (0..channels.len()).map(&mut of_channel).collect();
-        let joint = is_joint.then(|| std::array::from_fn(|_| std::array::from_fn(|_| next()[0])));
+        let joint =
+            is_joint.then(|| std::array::from_fn(|_| std::array::from_fn(|_| next().value)));
         Some(Self { raw, lookups, joint })
     }
-
-    /// The largest relative error of some moments.
-    fn blur(found: &[[f64; 2]]) -> f64 {
-        let blur = |&[value, error]: &[f64; 2]| if value > 0.0 { error / value } else { error };
-        let worst = |most: f64, blur: f64| if blur <= most { most } else { blur };
-        found.iter().map(blur).fold(0.0, worst)
-    }
 }
 
-/// Maximum relative error of a moment that is used.
-const RESOLVED: f64 = 0.05;
-/// Maximum size of moments, in units of the expected value, that are rounding.
-const FAINT: f64 = 1e-9;
-
-/// Central moments in units of the expected value. Higher ones that grids do not resolve, for weights that grow too
-/// steeply, are infinite, as where they diverge.
-pub(super) fn central(truth: Known, raw: &[[f64; 2]; POWERS.len()]) -> Moments {
-    let m = truth.value;
-    let [_, [two, e2], [three, e3], [four, e4], _] = *raw;
-    let off = (e2 + 2.0 * m * truth.error) / (m * m);
-    let [second, error] = not_negative((two - m * m) / (m * m), off);
-    let third = (three - 3.0 * m * two + 2.0 * m.powi(3)) / m.powi(3);
-    let fourth = (four - 4.0 * m * three + 6.0 * m * m * two - 3.0 * m.powi(4)) / m.powi(4);
-    let of_truth = 4.0 * three.abs() + 12.0 * m * two + 12.0 * m.powi(3);
-    let off = (e4 + 4.0 * m * e3 + 6.0 * m * m * e2 + of_truth * truth.error) / m.powi(4);
-    // By Jensen's inequality the fourth moment is at least the square of the second.
-    let is_resolved = off <= (RESOLVED * fourth).max(FAINT)
-        && fourth >= (1.0 - RESOLVED) * second * second - FAINT;
-    if !four.is_finite() || !is_resolved {
-        return Moments::estimated(m, [second, f64::INFINITY, f64::INFINITY], error);
-    }
-    let [fourth, of_fourth] = not_negative(fourth.max(second * second), off);
-    Moments::estimated(m, [second, third, fourth], error.max(of_fourth))
+/// A number of Romberg's scheme with its difference.
+fn known([value, error]: [f64; 2]) -> Known {
+    Known::estimated(value, error)
 }
 
-/// The rare-event size is that of `D ≤ ln(E[X⁴]/E[X²]²)`, by Jensen's inequality.
-pub(super) fn tails(raw: &[[f64; 2]; POWERS.len()]) -> Tails {
-    let [_, [two, _], _, fourth, eighth] = *raw;
-    let or_infinite = |[moment, error]: [f64; 2], least: f64| {
-        let is_resolved = error <= RESOLVED * moment && moment >= (1.0 - RESOLVED) * least;
-        if is_resolved { moment } else { f64::INFINITY }
-    };
-    let four = or_infinite(fourth, two * two);
-    let eight = or_infinite(eighth, four * four);
-    Tails {
-        rare_event_size: four / (two * two),
-        eighth_moment_ratio: if eight.is_finite() { eight / (four * four) } else { f64::INFINITY },
-    }
+/// The largest relative error of some moments.
+fn blur(found: &[Known]) -> f64 {
+    let worst = |most: f64, blur: f64| if blur <= most { most } else { blur };
+    found.iter().map(|known| known.relative_error()).fold(0.0, worst)
 }
 
 /// The covariances of adjacent channels. A particle leaves at one end and after one number of scatterings: the
 /// products of such channels are 0.
-fn covariances(channels: &[Quantity], truth: &[Known], found: &RawMoments) -> Vec<Covariance> {
+fn covariances(channels: &[Quantity], truth: &[Known], found: &Solved) -> Vec<Covariance> {
     let mut covariances = Vec::new();
     for (first, pair) in channels.windows(2).enumerate() {
         let means = [truth[first].value, truth[first + 1].value];
-        let squares = [found.raw[first][1][0], found.raw[first + 1][1][0]];
+        let squares = [first, first + 1].map(|channel| found.raw[channel].second().value);
         let joint = match (pair, found.joint) {
             ([Quantity::Absorbed, _], Some(joint)) => joint,
             ([Quantity::Absorbed, _], None)

@@ -18,8 +18,6 @@ use super::grid::{Grid, Importance, Step, Walk};
 use crate::problems::Problem;
 use crate::problems::rod::Quantity;
 
-/// Powers with computed means: those of the moments, and the eighth for their tails.
-pub const POWERS: [i32; 5] = [1, 2, 3, 4, 8];
 /// Ratio of the coarsest grid's steps to those of the grid on which divergence is searched.
 const FINER: usize = 16;
 /// Relative distance to a critical length within which a grid does not resolve on which side of it a rod ends.

@@ -4,8 +4,8 @@ use super::Collisions;
 use super::null_path::Weighted;
 use super::scene::{Node, Scene};
 use super::segment::POWERS;
-use crate::raw::added;
-use crate::{Channel, CountLaw, Moments, Prediction, Tails};
+use crate::raw::{Raw, RawMoments, added};
+use crate::{Channel, CountLaw, Prediction, Tails};
 use numeric::Known;
 
 /// Relative difference of two resolutions of moments at which panels are fine enough.
@@ -52,13 +52,13 @@ pub struct Points {
     /// The radiance by quadrature.
     pub truth: Known,
     /// `E[X^k]`, k = 0 … 4.
-    pub powers: [f64; 5],
+    pub powers: Raw,
     /// Relative error bounds of the powers.
     pub error: f64,
     /// `E[X⁸]`, where it is known.
     pub eighth: Option<f64>,
     /// `E[(N − least)^k]`, k = 0 … 4; `None` where it is not computed.
-    pub lookups: Option<[f64; 5]>,
+    pub lookups: Option<Raw>,
     /// Number of lookups of every draw, kept apart: beside it rare lookups would lose their digits.
     pub least: f64,
     /// A relative error bound of the mean lookups.
@@ -169,46 +169,21 @@ impl Points {
 
     /// Prediction for the draws.
     pub fn prediction(&self) -> Prediction {
-        let [_, mean, second, third, fourth] = self.powers;
-        let [r2, r3, r4] = [second / mean.powi(2), third / mean.powi(3), fourth / mean.powi(4)];
-        let m2 = r2 - 1.0;
-        let m4 = r4 - 4.0 * r3 + 6.0 * r2 - 3.0;
-        // Errors of the raw moments, and of the powers of the mean, where they nearly cancel: m₄ ≥ m₂².
-        let [off2, off4] =
-            [3.0 * r2, 5.0 * r4 + 24.0 * r3.abs() + 24.0 * r2].map(|size| self.error * size);
-        let [least2, least4] = [m2 - off2, (m4 - off4).max((m2 - off2).powi(2))];
-        let error =
-            if r4 == f64::INFINITY { off2 / least2 } else { (off2 / least2).max(off4 / least4) };
-        let error = if least2 > 0.0 { error } else { f64::INFINITY };
-        let relative = [m2, r3 - 3.0 * r2 + 2.0, m4.max(m2 * m2)];
-        let moments = Moments::estimated(mean, relative, error);
+        let [_, mean, .., fourth] = self.powers;
+        let raw = RawMoments::estimated(self.powers, self.eighth.unwrap_or(f64::NAN), self.error);
+        let moments = raw.central(Known::estimated(mean, self.error * mean.abs()), BLURRED);
         // A variance that is smaller than rounding may not be 0, and one beyond the range of doubles not infinite.
-        let is_known = moments.error < BLURRED && !m4.is_nan() && mean.abs() < f64::INFINITY;
+        let is_resolved = moments.relative[2].is_finite() || fourth == f64::INFINITY;
+        let is_known = moments.error < BLURRED && is_resolved && mean.abs() < f64::INFINITY;
         let is_full = self.powers.iter().all(|power| power.abs() >= LEAST);
         let moments = (is_known && is_full).then_some(moments);
         let eighth = self.eighth.map_or(f64::NAN, |eighth| eighth / (fourth * fourth));
         // The rarity of the draws that make the variance is not computed.
         let tails = Tails { rare_event_size: f64::NAN, eighth_moment_ratio: eighth };
         let channels = vec![Channel::unbiased(self.truth, moments, tails)];
-        let law = |raw| CountLaw { error: self.counted, ..count(self.least, raw) };
+        let law = |raw| CountLaw::of_raw(self.least, raw, self.counted);
         Prediction { channels, lookups: self.lookups.map(law), ..Prediction::default() }
     }
-}
-
-/// Maximum ratio of the variance to the second moment at which the variance is unknown.
-const HIDDEN: f64 = 1e-12;
-
-/// Distribution of a count without probabilities, given its minimum and the raw moments of the rest.
-pub fn count(least: f64, [_, mean, second, third, fourth]: [f64; 5]) -> CountLaw {
-    let square = mean * mean;
-    let variance = second - square;
-    if variance <= HIDDEN * second {
-        return CountLaw::always(least + mean);
-    }
-    let central = fourth - 4.0 * third * mean + 6.0 * second * square - 3.0 * square * square;
-    let kurtosis = central / (variance * variance);
-    let mean = least + mean;
-    CountLaw { mean, variance, kurtosis, error: 0.0, poisson: false, pmf: Vec::new() }
 }
 
 #[cfg(test)]
@@ -260,13 +235,5 @@ mod tests {
         // 1 ± 1e-5: the variance, 1e-10, is known to three digits, m₄ = 1e-20 to none.
         let narrow = points([1.0, 1.0, 1.0 + 1e-10, 1.0 + 3e-10, 1.0 + 6e-10]);
         assert!(narrow.prediction().channels[0].moments.is_none());
-    }
-
-    #[test]
-    fn rare_lookups_keep_their_digits() {
-        // 3 and, once in a thousand millions, one more.
-        let law = count(3.0, [1.0, 1e-9, 1e-9, 1e-9, 1e-9]);
-        assert_eq!(law.mean, 3.000_000_001);
-        assert!((law.variance / 1e-9 - 1.0).abs() < 2e-9 && law.kurtosis > 0.9e9);
     }
 }

@@ -12,7 +12,7 @@ use super::predict::{DENSITY, LOOKUPS, MOMENT, Points};
 use super::scene::{Node, Scene};
 use super::segment::Segment;
 use super::shadows::Among;
-use crate::raw::{self, BINOMIAL, added, poisson};
+use crate::raw::{self, added, binomial, poisson};
 use numeric::Span;
 
 /// The orders `n₁ … n₄` of the moments of a shared walk, from the fewest points to the most.
@@ -120,14 +120,14 @@ fn powers_of_sum(
     scored: &dyn Fn(&At, f64, usize) -> f64,
 ) -> Vec<Solved> {
     let mut known: Vec<Solved> = Vec::new();
-    for (k, binomial) in BINOMIAL.iter().enumerate().take(most + 1).skip(1) {
+    for k in 1..=most {
         let loss = |losses: &Losses| if signed { losses.signed[k] } else { losses.sizes[k] };
         let solved = chain.solve(&loss, &|at, p, i| {
             let [sampling, h, weight] = gain(at);
             let weight = if signed { weight } else { weight.abs() };
             let lower = |n: usize| if n == 0 { 1.0 } else { known[n - 1].at[p][i] };
             let term =
-                |j: usize| binomial[j] * scored(at, h, j) * power(weight, k - j) * lower(k - j);
+                |j: usize| binomial(k, j) * scored(at, h, j) * power(weight, k - j) * lower(k - j);
             sampling * (1..=k).map(term).sum::<f64>()
         });
         known.push(solved);
@@ -183,7 +183,7 @@ pub fn resampled(scene: &Scene, shadow_is_free: bool) -> Points {
                     let term = |n: usize| {
                         let scored = h * shadow * lower(j - n);
                         let later = if n == 0 { 0.0 } else { last * g[j - n].at[p][i] };
-                        BINOMIAL[j][n] * power(h, n) * power(size, j - n) * (scored + later)
+                        binomial(j, n) * power(h, n) * power(size, j - n) * (scored + later)
                     };
                     sampling * (0..=j).map(term).sum::<f64>()
                 });

@@ -2,7 +2,7 @@
 
 use media::phase::Phase;
 use numeric::matrix::Matrix;
-use numeric::quadrature::GaussLegendre;
+use numeric::quadrature::{GaussLegendre, legendre};
 
 /// Legendre moments below this, with their factor `2l + 1`, are left out.
 const FAINT: f64 = 1e-17;
@@ -45,7 +45,7 @@ impl Directions {
             }
         }
         let legendre: Vec<Vec<f64>> =
-            cosines.iter().map(|&cosine| legendre(cosine, moments.len())).collect();
+            cosines.iter().map(|&x| legendre(x).take(moments.len()).collect()).collect();
         // Even and odd orders apart: the sum of both is p(μ, μ'), the difference p(−μ, μ').
         let parts = |i: usize, j: usize| {
             let (mut even, mut odd) = (0.0, 0.0);
@@ -77,19 +77,6 @@ fn moments(phase: &Phase) -> Vec<f64> {
     let all: Vec<f64> = (0..MOST_MOMENTS).map(|l| (2 * l + 1) as f64 * phase.moment(l)).collect();
     let last = all.iter().rposition(|moment| moment.abs() >= FAINT).unwrap_or(0);
     all[..=last].to_vec()
-}
-
-/// `P_0(x), P_1(x), …`: `count` Legendre polynomials.
-fn legendre(x: f64, count: usize) -> Vec<f64> {
-    let mut values = vec![1.0, x];
-    for l in 2..count {
-        let order = l as f64;
-        values.push(
-            ((2.0 * order - 1.0) * x * values[l - 1] - (order - 1.0) * values[l - 2]) / order,
-        );
-    }
-    values.truncate(count);
-    values
 }
 
 /// Number of cosines that resolve a phase function down to moments of the given size: measured errors of

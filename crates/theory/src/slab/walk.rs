@@ -27,18 +27,15 @@
 use super::layer::Slice;
 use super::pieces::{Piece, Pieces};
 use super::{Answer, Energy, Light, Resolution, energies, solve};
-use crate::moments::not_negative;
 use crate::particle::{Odds, ParticleRule};
 use crate::prediction::{Covariance, UNRESOLVED};
 use crate::problems::slab::Incidence;
-use crate::{Channel, CountLaw, Moments, Prediction, Tails};
+use crate::raw::{POWERS, RawMoments};
+use crate::{Channel, CountLaw, Prediction, Tails, colours};
 use numeric::Known;
 
 /// The channels of a draw, in their order.
 pub const CHANNELS: [&str; 2] = ["reflectance", "transmittance"];
-
-/// Powers with computed means: those of the moments, and the eighth for their tails.
-const POWERS: [i32; 4] = [2, 3, 4, 8];
 
 /// Relative distance to a critical depth within which theory does not resolve on which side of it a slab is.
 const NEAR: f64 = 1e-3;
@@ -90,7 +87,8 @@ impl Walk {
         let raw = POWERS.map(|k| self.moments(k, lights, truths));
         let laws = self.lookups(lights).into_iter().chain(std::iter::repeat(None));
         let of = |((i, truth), law): ((usize, &Answer), Option<CountLaw>)| {
-            predicted(truth, raw.each_ref().map(|all| all.as_ref().map(|all| all[i])), law)
+            let of_side = |side: usize| RawMoments(raw.each_ref().map(|all| all[i][side]));
+            self.predicted(truth, [0, 1].map(of_side), law)
         };
         truths.iter().enumerate().zip(laws).map(of).collect()
     }
@@ -187,26 +185,31 @@ impl Walk {
         }
     }
 
-    /// `E[X_R^k]` and `E[X_T^k]` in each light; infinite where they diverge, `None` where they are not needed.
-    fn moments(&self, k: i32, lights: &[Light], truths: &[Answer]) -> Option<Vec<[Known; 2]>> {
-        let is_graded = matches!(self.pieces, Pieces::Graded(_)) && !self.is_tracking();
-        if k > 4 && (is_graded || !self.laws) {
-            return None;
+    /// Returns true if the eighth moments are computed.
+    fn has_tails(&self) -> bool {
+        self.laws && (matches!(self.pieces, Pieces::Exact(_)) || self.is_tracking())
+    }
+
+    /// `E[X_R^k]` and `E[X_T^k]` in each light; infinite where they diverge, or are not needed.
+    fn moments(&self, k: i32, lights: &[Light], truths: &[Answer]) -> Vec<[Known; 2]> {
+        let infinite = || vec![[Known::INFINITE; 2]; lights.len()];
+        if k > 4 && !self.has_tails() {
+            return infinite();
         }
-        if self.is_tracking() && self.odds(1.0).scatter_weight == 1.0 {
-            // Draws are 0 or 1.
-            return Some(truths.iter().map(|truth| [truth.reflected, truth.transmitted]).collect());
+        // Draws of an analog walk are 0 or 1.
+        let is_bernoulli = self.is_tracking() && self.odds(1.0).scatter_weight == 1.0;
+        if k == 1 || is_bernoulli {
+            return truths.iter().map(|truth| [truth.reflected, truth.transmitted]).collect();
         }
-        let infinite = Known::INFINITE;
-        let found = self.powers(k, lights).unwrap_or_else(|| vec![[infinite; 2]; lights.len()]);
+        let found = self.powers(k, lights).unwrap_or_else(infinite);
         if !self.is_share() {
-            return Some(found);
+            return found;
         }
         let both = |(found, truth): ([Known; 2], &Answer)| {
             let [reflected, transmitted] = found;
             [of_share(reflected, truth.reflected, k), of_share(transmitted, truth.transmitted, k)]
         };
-        Some(found.into_iter().zip(truths).map(both).collect())
+        found.into_iter().zip(truths).map(both).collect()
     }
 
     /// Returns true if draws lie in [0, 1], as all weights do.
@@ -219,6 +222,29 @@ impl Walk {
             Pieces::Exact(pieces) | Pieces::Graded([_, pieces]) => pieces,
         };
         pieces.iter().flat_map(|piece| &piece.ratios).all(is_share)
+    }
+
+    /// Prediction from the raw moments of both channels.
+    fn predicted(
+        &self,
+        truth: &Answer,
+        raw: [RawMoments; 2],
+        lookups: Option<CountLaw>,
+    ) -> Prediction {
+        let truths = [truth.reflected, truth.transmitted];
+        let channels = [0, 1].map(|i| {
+            let channel = raw[i].channel(truths[i], UNRESOLVED);
+            let rare_event_size = match channel.moments {
+                Some(moments) if self.has_tails() => moments.kurtosis().unwrap_or(1.0),
+                _ => f64::INFINITY,
+            };
+            let tails = Tails { rare_event_size, ..channel.tails };
+            Channel { name: CHANNELS[i].to_owned(), tails, ..channel }
+        });
+        let moments = [0, 1].map(|i| [truths[i].value, raw[i].second().value]);
+        let mut covariances = colours::exclusive(&moments);
+        covariances.retain(|covariance: &Covariance| covariance.variance.is_finite());
+        Prediction { channels: channels.into(), lookups, covariances, ..Prediction::default() }
     }
 
     /// Distribution of the number of collisions in each light, without its probabilities; `None` where it is not
@@ -291,25 +317,6 @@ pub fn mixed_lookups(walks: &[(f64, Walk)]) -> Option<CountLaw> {
     })
 }
 
-/// Prediction from raw moments.
-fn predicted(
-    truth: &Answer,
-    raw: [Option<[Known; 2]>; POWERS.len()],
-    lookups: Option<CountLaw>,
-) -> Prediction {
-    let truths = [truth.reflected, truth.transmitted];
-    let channels: Vec<Channel> = (0..2)
-        .map(|i| channel(CHANNELS[i], truths[i], raw.map(|both| both.map(|both| both[i]))))
-        .collect();
-    let [r, t] = truths.map(|known| known.value);
-    let covariances = raw[0].map(|[second_r, second_t]| {
-        let both = second_r.value * t * t + second_t.value * r * r - 3.0 * r * r * t * t;
-        Covariance { pair: [0, 1], value: -r * t, variance: both - (r * t).powi(2) }
-    });
-    let covariances = covariances.into_iter().filter(|c| c.variance.is_finite()).collect();
-    Prediction { channels, lookups, covariances, ..Prediction::default() }
-}
-
 /// `E[X^k]` of a draw in [0, 1] with mean T, clamped to its bounds: `Tᵏ ≤ E[X^k] ≤ T`, by Jensen's inequality and
 /// by `x^k ≤ x`. A value beyond them is an error of theory.
 fn of_share(found: Known, truth: Known, k: i32) -> Known {
@@ -352,48 +359,4 @@ fn cumulants(mean: f64, f: impl Fn(f64) -> Option<f64>) -> Option<[f64; 2]> {
         found = at(STEP / scale);
     }
     found.filter(|[variance, fourth]| *variance > 0.0 && fourth.is_finite())
-}
-
-/// A channel with its central moments from `E[X²]`, `E[X³]`, `E[X⁴]` and `E[X⁸]`.
-fn channel(name: &str, truth: Known, raw: [Option<Known>; 4]) -> Channel {
-    let t = truth.value;
-    let unit =
-        |k: i32, known: Known| Known::estimated(known.value / t.powi(k), known.error / t.powi(k));
-    let [second, third, fourth, eighth] = raw;
-    let moments = second.zip(third).zip(fourth).map(|((second, third), fourth)| {
-        let (second, third, fourth) = (unit(2, second), unit(3, third), unit(4, fourth));
-        let blur = truth.error / t;
-        let [a, b, c] = [second, third, fourth].map(|known| known.value);
-        let off = second.error + 2.0 * blur * a;
-        if c.is_infinite() || b.is_infinite() {
-            let [variance, error] = not_negative(a - 1.0, off);
-            let higher = f64::INFINITY;
-            return Moments::estimated(t, [variance, higher, higher], error);
-        }
-        let skew = b - 3.0 * a + 2.0;
-        // Each difference has the rounding of its own terms: in units of a small mean the fourth moment is far
-        // above the second.
-        let rounding = 8.0 * f64::EPSILON * (a + 1.0);
-        let [variance, of_variance] = not_negative(a - 1.0, off + rounding);
-        let rounding = 8.0 * f64::EPSILON * (c + 4.0 * b.abs() + 6.0 * a + 3.0);
-        let off = fourth.error + 4.0 * third.error + 6.0 * second.error + 4.0 * blur * c + rounding;
-        let peak = (c - 4.0 * b + 6.0 * a - 3.0).max(variance * variance);
-        let [peak, of_peak] = not_negative(peak, off);
-        if of_peak >= UNRESOLVED {
-            let relative = [variance, f64::INFINITY, f64::INFINITY];
-            return Moments::estimated(t, relative, of_variance);
-        }
-        Moments::estimated(t, [variance, skew, peak], of_variance.max(of_peak))
-    });
-    let tails = match (moments, fourth, eighth) {
-        (Some(moments), Some(fourth), Some(eighth)) => {
-            let ratio = eighth.value / (fourth.value * fourth.value);
-            Tails {
-                rare_event_size: moments.kurtosis().unwrap_or(1.0),
-                eighth_moment_ratio: if ratio.is_nan() { f64::INFINITY } else { ratio },
-            }
-        }
-        _ => Tails { rare_event_size: f64::INFINITY, eighth_moment_ratio: f64::INFINITY },
-    };
-    Channel { name: name.to_owned(), ..Channel::unbiased(truth, moments, tails) }
 }

@@ -1,7 +1,7 @@
 //! Distribution of the lookups of a draw, mixed over heroes.
 
 use super::{Spectrum, Tracker};
-use crate::{CountLaw, Mesh, raw};
+use crate::{CountLaw, Mesh, colours, raw};
 use numeric::sum::Sum;
 
 impl Spectrum {
@@ -22,13 +22,9 @@ impl Spectrum {
                 if !delta && is_same {
                     return CountLaw::poisson(flown(0));
                 }
-                let mut mixed = [0.0; 4];
-                for (channel, weight) in self.hero.iter().enumerate() {
-                    for (sum, moment) in mixed.iter_mut().zip(own(channel, delta)) {
-                        *sum += weight * moment;
-                    }
-                }
-                mixed
+                let heroes = self.hero.iter().enumerate();
+                let each = heroes.map(|(channel, &weight)| (weight, own(channel, delta)));
+                colours::mixed(each).unwrap_or_default()
             }
             Tracker::InTurn { delta: false } => {
                 return CountLaw::poisson((0..self.channels()).map(flown).sum());
@@ -44,8 +40,7 @@ impl Spectrum {
                 })
             }
         };
-        let law = CountLaw::of_factorial_moments(factorial);
-        CountLaw { error: self.mesh.relative_error(), ..law }
+        CountLaw::of_raw(0.0, raw::of_factorial(factorial), self.mesh.relative_error())
     }
 
     fn survived(&self, rate: f64, survival: impl Fn(&[f64]) -> f64) -> [f64; 4] {

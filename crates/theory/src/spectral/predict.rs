@@ -5,7 +5,9 @@ use std::collections::HashMap;
 
 use super::Spectrum;
 use crate::prediction::Covariance;
+use crate::prediction::UNRESOLVED;
 use crate::problems::channels::channel_name;
+use crate::raw::RawMoments;
 use crate::{Channel, Moments, Prediction, Tails};
 use numeric::Known;
 use numeric::sum::Sum;
@@ -37,14 +39,9 @@ impl Spectrum {
             let xy = expected(&[x, y])?;
             let (xxy, xyy) = (expected(&[x, x, y])?, expected(&[x, y, y])?);
             let (xx, yy) = (expected(&[x, x])?, expected(&[y, y])?);
-            let square = expected(&[x, x, y, y])? - 2.0 * t * xxy - 2.0 * s * xyy
-                + t * t * xx
-                + s * s * yy
-                + 4.0 * s * t * xy
-                - 3.0 * s * s * t * t;
-            let value = xy - s * t;
-            let variance = (square - value * value).max(0.0);
-            Some(Covariance { pair: [i, i + 1], value, variance })
+            let mixed = [xy, xxy, xyy, expected(&[x, x, y, y])?];
+            let found = Covariance::of_raw([i, i + 1], [s, t], [xx, yy], mixed);
+            Some(Covariance { variance: found.variance.max(0.0), ..found })
         };
         let covariances = (0..forms.len() - 1).filter_map(covariance).collect();
         let lookups = Some(self.lookups());
@@ -60,25 +57,27 @@ impl Spectrum {
         let truths: Vec<Known> = self.depths.iter().map(|depth| depth.exp_neg()).collect();
         let truth: Known = form.iter().zip(&truths).map(|(a, truth)| *truth * *a).sum();
         let value = truth.value;
-        let raw = |order: i32| {
-            Some(expected(&vec![form; order.unsigned_abs() as usize])? / f64::powi(value, order))
+        let relative_error = |k: f64| {
+            let scored = (0..self.channels()).filter(|&channel| form[channel] != 0.0);
+            let rounding = scored.map(|channel| self.rounding(channel, k)).fold(0.0, f64::max);
+            let by_depth = self.mesh.relative_error() * self.most_collisions().max(1.0);
+            ROUNDING + by_depth + rounding
         };
-        let moments = (|| {
-            let [second, third, fourth] = [raw(2)?, raw(3)?, raw(4)?];
-            let m2 = (second - 1.0).max(0.0);
-            let m3 = third - 3.0 * second + 2.0;
-            let m4 = (fourth - 4.0 * third + 6.0 * second - 3.0).max(m2 * m2);
-            let relative = |k: f64| {
-                let scored = (0..self.channels()).filter(|&channel| form[channel] != 0.0);
-                let rounding = scored.map(|channel| self.rounding(channel, k)).fold(0.0, f64::max);
-                let by_depth = self.mesh.relative_error() * self.most_collisions().max(1.0);
-                ROUNDING + by_depth + rounding
-            };
-            let of = |size: f64, moment: f64| if moment > 0.0 { size / moment } else { 0.0 };
-            let of_fourth = of((fourth + 4.0 * third + 6.0 * second) * relative(4.0), m4);
-            let error = of(second * relative(2.0), m2).max(of_fourth);
-            Some(Moments::estimated(value, [m2, m3, m4], error))
-        })();
+        let raw = |order: usize| {
+            let moment = expected(&vec![form; order])?;
+            let error = relative_error(if order == 2 { 2.0 } else { 4.0 });
+            Some(Known::estimated(moment, error * moment.abs()))
+        };
+        // The truth by itself has another error than the moments in its units.
+        let mean = Known::estimated(value, 0.0);
+        let moments = raw(2).zip(raw(3)).zip(raw(4)).map(|((second, third), fourth)| {
+            let raw = RawMoments([mean, second, third, fourth, Known::UNKNOWN]);
+            if raw.is_certain(value) {
+                Moments::certain(value)
+            } else {
+                raw.central(mean, UNRESOLVED)
+            }
+        });
         let is_one = index < self.channels();
         let tails = match moments {
             Some(_) if is_one => self.tails(index),

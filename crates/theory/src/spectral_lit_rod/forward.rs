@@ -17,12 +17,13 @@
 
 use super::{Moments, PAIRS};
 use crate::problems::SpectralLitRod;
-use crate::rod::moments::POWERS;
+use crate::raw::{POWERS, RawMoments, of_factorial};
 use crate::spectral::Chances;
 use crate::spectral::cells::{balanced, join};
 use crate::spectral::lookups::survived;
 use crate::{CountLaw, Mesh};
 use media::Piecewise;
+use numeric::Known;
 
 /// Relative rounding error of a moment.
 const ROUNDING: f64 = 1e-13;
@@ -175,12 +176,12 @@ impl Forward {
         let relative = ROUNDING + self.mesh.relative_error() * collisions.max(1.0);
         let none = vec![0; self.heroes.len()];
         let raw = (0..self.heroes.len()).map(|channel| {
-            POWERS.map(|k| {
+            RawMoments(POWERS.map(|k| {
                 let mut powers = none.clone();
                 powers[channel] = k;
                 let value = of(&powers);
-                [value, f64::from(k) * relative * value]
-            })
+                Known::estimated(value, f64::from(k) * relative * value)
+            }))
         });
         let mixed = (1..self.heroes.len()).map(|channel| {
             PAIRS.map(|[first, second]| {
@@ -205,7 +206,6 @@ impl Forward {
             return None;
         }
         let factorial = survived(&self.mesh, self.majorants[0], survival);
-        let law = CountLaw::of_factorial_moments(factorial);
-        Some(CountLaw { error: self.mesh.relative_error(), ..law })
+        Some(CountLaw::of_raw(0.0, of_factorial(factorial), self.mesh.relative_error()))
     }
 }

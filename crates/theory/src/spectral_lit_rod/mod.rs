@@ -20,11 +20,10 @@ use self::forward::Forward;
 use self::orders::Orders;
 use super::lit_rod::{self, Combination, Densities, Found, Heuristic, Shadow, Techniques};
 use super::prediction::Covariance;
-use super::rod::{central, tails};
+use super::raw::{RESOLVED, RawMoments};
 use super::spectral::Chances;
-use super::{Channel, CountLaw, Mesh, Prediction, Tails};
+use super::{Channel, CountLaw, Mesh, Prediction, Tails, colours};
 use crate::problems::SpectralLitRod;
-use crate::problems::channels::channel_name;
 use media::Piecewise;
 use numeric::Known;
 
@@ -72,8 +71,8 @@ pub struct Spectrum<'a> {
 
 /// Moments of the draws of all channels beside their means.
 pub struct Moments {
-    /// `E[X^k]` of each channel for k = 1, 2, 3, 4 and 8, with absolute errors.
-    raw: Vec<[[f64; 2]; 5]>,
+    /// Raw moments of each channel.
+    raw: Vec<RawMoments>,
     /// [`PAIRS`] of each channel and the next.
     mixed: Vec<[f64; 4]>,
 }
@@ -112,9 +111,10 @@ impl<'a> Spectrum<'a> {
         };
         let of_heroes = |found: &Vec<Found>| {
             let factorial = found.iter().map(|found| found.lookups);
-            CountLaw::mixed(self.heroes.iter().copied().zip(factorial))
+            let mixed = colours::mixed(self.heroes.iter().copied().zip(factorial));
+            mixed.map(CountLaw::of_factorial)
         };
-        let lookups = lookups.or_else(|| found.as_ref().map(of_heroes));
+        let lookups = lookups.or_else(|| found.as_ref().and_then(of_heroes));
         let moments = match (self.tracker, &forward) {
             (Tracker::Tracking(chances), forward) => {
                 forward.as_ref().and_then(|forward| forward.tracking(chances))
@@ -128,23 +128,19 @@ impl<'a> Spectrum<'a> {
         let answers = self.media.iter().zip(&self.problem.rods);
         let answers: Vec<Known> =
             answers.map(|((mesh, _), rod)| lit_rod::answer(mesh, rod)).collect();
-        let channel = |(index, &answer): (usize, &Known)| {
-            let raw = moments.as_ref().map(|moments| &moments.raw[index]);
-            let name = channel_name(index, self.channels());
-            let tails = raw.map_or(Tails::LIGHT, tails);
-            let central = raw.map(|raw| central(answer, raw));
-            let is_unknown = raw.is_none() && laws;
-            match is_unknown.then(|| self.most_square(index, answer)).flatten() {
-                Some(square) => Channel { name, ..Channel::bounded(answer, square) },
-                None => Channel { name, ..Channel::unbiased(answer, central, tails) },
-            }
+        let channel = |(index, &answer): (usize, &Known)| match &moments {
+            Some(moments) => moments.raw[index].channel(answer, RESOLVED),
+            None => match self.most_square(index, answer).filter(|_| laws) {
+                Some(square) => Channel::bounded(answer, square),
+                None => Channel::unbiased(answer, None, Tails::LIGHT),
+            },
         };
-        let channels = answers.iter().enumerate().map(channel).collect();
+        let channels = colours::named(answers.iter().enumerate().map(channel).collect());
         let mut covariances = Vec::new();
         if let Some(moments) = moments.filter(|_| laws) {
             for (index, mixed) in moments.mixed.iter().enumerate() {
                 let means = [answers[index].value, answers[index + 1].value];
-                let squares = [index, index + 1].map(|channel| moments.raw[channel][1][0]);
+                let squares = [index, index + 1].map(|channel| moments.raw[channel].second().value);
                 covariances.push(Covariance::of_raw([index, index + 1], means, squares, *mixed));
             }
         }
@@ -169,10 +165,8 @@ impl<'a> Spectrum<'a> {
 
     /// Moments of one channel a draw; for a single channel, those of every tracker.
     fn independent(&self, found: &[Found]) -> Moments {
-        let raw = self.heroes.iter().zip(found).map(|(weight, found)| {
-            let scale = super::rod::moments::POWERS.map(|k| weight.powi(1 - k));
-            std::array::from_fn(|i| found.raw[i].map(|number| scale[i] * number))
-        });
+        let raw = self.heroes.iter().zip(found);
+        let raw = raw.map(|(&weight, found)| colours::independent(&found.raw, weight));
         Moments { raw: raw.collect(), mixed: vec![[0.0; 4]; self.channels() - 1] }
     }
 

@@ -24,11 +24,11 @@
 use super::super::lit_rod::connections::{HIGHEST, Vertex, Weights};
 use super::super::lit_rod::{Techniques, with_hit};
 use super::super::rod::grid::{Grid, Walk};
-use super::super::rod::moments::{POWERS, Precision, romberg};
+use super::super::rod::moments::{Precision, romberg};
 use super::super::spectral_rod::rods;
 use super::{Moments, PAIRS};
 use crate::problems::SpectralLitRod;
-use crate::raw::binomial;
+use crate::raw::{POWERS, RawMoments, binomial};
 use crate::{Mesh, ParticleRule};
 use media::Piecewise;
 use numeric::Known;
@@ -116,11 +116,10 @@ impl<'a> Orders<'a> {
         };
         let channels = 0..self.heroes.len();
         let raw = channels.clone().map(|channel| {
-            std::array::from_fn(|i| {
+            RawMoments(std::array::from_fn(|i| {
                 let k = POWERS[i].unsigned_abs() as usize;
-                let found = of(Monomial::of_one(channel, k), i);
-                found.map_or([f64::INFINITY; 2], |known| [known.value, known.error])
-            })
+                of(Monomial::of_one(channel, k), i).unwrap_or(Known::INFINITE)
+            }))
         });
         let mixed = channels.skip(1).map(|channel| {
             PAIRS.map(|powers| {

@@ -20,7 +20,9 @@ pub mod rods;
 pub use self::rods::{Rods, critical, leaving};
 
 use super::prediction::Covariance;
-use super::{Channel, CountLaw, Moments, Prediction, Tails};
+use super::prediction::UNRESOLVED;
+use super::raw::RawMoments;
+use super::{Channel, CountLaw, Moments, Prediction, colours};
 use crate::problems::channels::{Colours, End};
 use numeric::Known;
 
@@ -190,53 +192,19 @@ impl<'a> Spectrum<'a> {
         let values = self.body.leaving(self.colours.albedos[channel]);
         let values = values.unwrap_or([Known::UNKNOWN; 2]);
         let truth = values[usize::from(end == End::Transmitted)];
-        let blur = truth.error / truth.value;
-        let raw = |k: i32| {
-            let unit = truth.value.powi(k);
-            let Known { value, error, grade } = self.moment(end, &self.only(channel, k))?;
-            Some(Known { value: value / unit, error: error / unit, grade })
+        let raw = RawMoments::of(|k| match k {
+            1 => Some(truth),
+            _ => self.moment(end, &self.only(channel, k)),
+        });
+        let found = match raw {
+            Some(raw) if raw.is_certain(truth.value) => {
+                Channel::unbiased(truth, Moments::certain(truth.value), raw.tails(UNRESOLVED))
+            }
+            Some(raw) => raw.channel(truth, UNRESOLVED),
+            // A draw of MIS is a^r/Σ w_h a_h^r ≤ 1/w or 0.
+            None => colours::bounded(truth, self.hero[channel]),
         };
-        let moments = (|| {
-            let [second, third, fourth] = [raw(2)?, raw(3)?, raw(4)?];
-            let [a, b, c] = [second, third, fourth].map(|known| known.value);
-            let m2 = (a - 1.0).max(0.0);
-            let (m3, m4) = if c.is_finite() {
-                let m4 = c - 4.0 * b + 6.0 * a - 3.0;
-                (b - 3.0 * a + 2.0, m4.max(m2 * m2))
-            } else {
-                (f64::INFINITY, f64::INFINITY)
-            };
-            let of = |off: f64, moment: f64| if moment > 0.0 { off / moment } else { 0.0 };
-            let off = second.error + 2.0 * blur * a;
-            let of_fourth = if c.is_finite() {
-                let off = fourth.error + 4.0 * third.error + 6.0 * second.error + 4.0 * blur * c;
-                of(off, m4)
-            } else {
-                0.0
-            };
-            let error = of(off, m2).max(of_fourth);
-            let moments = Moments::estimated(truth.value, [m2, m3, m4], error);
-            Some(moments.graded(fourth.grade.min(truth.grade)))
-        })();
-        let raw = |k: i32| raw(k).map(|known| known.value);
-        let tails = match (raw(2), raw(4), raw(8)) {
-            (Some(second), Some(fourth), Some(eighth)) => Tails {
-                rare_event_size: fourth / (second * second),
-                eighth_moment_ratio: if eighth.is_finite() {
-                    eighth / (fourth * fourth)
-                } else {
-                    f64::INFINITY
-                },
-            },
-            _ => Tails::LIGHT,
-        };
-        let name = end.name(channel);
-        if moments.is_none() {
-            // A draw of MIS is a^r/Σ w_h a_h^r ≤ 1/w or 0, hence E[X²] ≤ E[X]/w.
-            let square = (truth.value + truth.error) / self.hero[channel];
-            return Channel { name, ..Channel::bounded(truth, square) };
-        }
-        Channel { name, ..Channel::unbiased(truth, moments, tails) }
+        Channel { name: end.name(channel), ..found }
     }
 
     fn covariance(

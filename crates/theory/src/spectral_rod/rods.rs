@@ -20,7 +20,7 @@ use super::{Body, Orders};
 use crate::particle::ParticleRule;
 use crate::problems::rod::channels;
 use crate::problems::{Problem, Rod, SpectralRod};
-use crate::{CountLaw, Mesh, rod};
+use crate::{CountLaw, Mesh, colours, rod};
 use media::Piecewise;
 use numeric::Known;
 use numeric::digits::rounded;
@@ -97,7 +97,7 @@ impl Body for Rods<'_> {
             rod::factorial_lookups(self.mesh, &rod, self.sampling, ParticleRule::Analog)
         };
         let each = heroes.iter().map(|&(weight, albedo)| Some((weight, of(albedo)?)));
-        Some(CountLaw::mixed(each.collect::<Option<Vec<_>>>()?))
+        colours::mixed(each.collect::<Option<Vec<_>>>()?).map(CountLaw::of_factorial)
     }
 }
 

@@ -10,20 +10,15 @@
 
 pub mod relative;
 
-use super::prediction::Covariance;
+use super::colours::{self, named};
+use super::raw::Raw;
 use super::single::Points;
 use super::{Channel, CountLaw, Prediction};
-use crate::problems::channels::channel_name;
 
 /// The lookups of the walk of a hero, mixed over heroes.
-pub fn lookups(alone: &[Points], heroes: &[f64]) -> Option<[f64; 5]> {
-    let mut mixed = [0.0; 5];
-    for (points, chance) in alone.iter().zip(heroes) {
-        for (sum, number) in mixed.iter_mut().zip(points.lookups?) {
-            *sum += chance * number;
-        }
-    }
-    Some(mixed)
+pub fn lookups(alone: &[Points], heroes: &[f64]) -> Option<Raw> {
+    let each = alone.iter().zip(heroes).map(|(points, chance)| Some((*chance, points.lookups?)));
+    colours::mixed(each.collect::<Option<Vec<_>>>()?)
 }
 
 /// Prediction for one channel a draw: `E[X_λ^k] = w_λ^{1−k} E[x_λ^k]`, x a draw of that channel by itself.
@@ -37,12 +32,9 @@ pub fn independent(alone: &[Points], heroes: &[f64]) -> Prediction {
         }
         (scaled.powers, scaled.prediction())
     });
-    let (powers, predictions): (Vec<[f64; 5]>, Vec<Prediction>) = each.unzip();
-    let covariance = |next: usize| {
-        let of = |k: usize| [powers[next - 1][k], powers[next][k]];
-        Covariance::of_raw([next - 1, next], of(1), of(2), [0.0; 4])
-    };
-    let covariances = (1..powers.len()).map(covariance).collect();
+    let (powers, predictions): (Vec<Raw>, Vec<Prediction>) = each.unzip();
+    let moments: Vec<[f64; 2]> = powers.iter().map(|powers| [powers[1], powers[2]]).collect();
+    let covariances = colours::exclusive(&moments);
     let (channels, lookups) = joined(predictions.into_iter());
     Prediction { channels: named(channels), lookups, covariances, ..Prediction::default() }
 }
@@ -73,12 +65,4 @@ pub fn balanced(alone: &[Points], heroes: &[f64]) -> Prediction {
     };
     let channels = named(alone.iter().zip(heroes).map(channel).collect());
     Prediction { channels, lookups: of_first, ..Prediction::default() }
-}
-
-fn named(mut channels: Vec<Channel>) -> Vec<Channel> {
-    let count = channels.len();
-    for (index, channel) in channels.iter_mut().enumerate() {
-        channel.name = channel_name(index, count);
-    }
-    channels
 }

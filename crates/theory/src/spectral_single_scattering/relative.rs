@@ -17,10 +17,11 @@
 
 use std::sync::Arc;
 
-use super::{joined, named};
+use super::joined;
+use crate::colours::named;
 use crate::prediction::Covariance;
 use crate::problems::SingleScattering;
-use crate::raw::{added, poisson};
+use crate::raw::{Raw, added, poisson};
 use crate::single::predict::{LOOKUPS, MOMENT};
 use crate::single::scene::Place;
 use crate::single::segment::along_all;
@@ -224,7 +225,7 @@ impl<'a> Relative<'a> {
 
     /// Prediction for the draws. `alone` has the means of the channels by themselves, `of_heroes` the lookups where
     /// heroes walk.
-    pub fn predict(&self, alone: &[Points], of_heroes: Option<[f64; 5]>) -> Prediction {
+    pub fn predict(&self, alone: &[Points], of_heroes: Option<Raw>) -> Prediction {
         let none = Control::None;
         let camera = Camera::new(self.meshes[0], self.sampling, &none, CameraTracking::Exact);
         let scene = Scene::new(&self.channels[0], camera, Tracking::Exact, Vec::new());

@@ -7,7 +7,7 @@
 //! centre.
 
 use numeric::Known;
-use numeric::quadrature::GaussLegendre;
+use numeric::quadrature::{GaussLegendre, legendre};
 
 /// A shell: `from ≤ r² ≤ to`.
 #[derive(Debug, Clone)]
@@ -256,13 +256,8 @@ impl Row {
             let rule = rules.of(shell.nodes);
             for (&node, &w) in rule.nodes.iter().zip(&rule.weights) {
                 let x = 2.0 * node - 1.0;
-                let (mut previous, mut value, mut sum) = (0.0, 1.0, 0.0);
-                for (m, moment) in moments.iter().enumerate() {
-                    let m = m as f64;
-                    sum += (2.0 * m + 1.0) * value * moment;
-                    (previous, value) =
-                        (value, ((2.0 * m + 1.0) * x * value - m * previous) / (m + 1.0));
-                }
+                let terms = moments.iter().zip(legendre(x)).enumerate();
+                let sum: f64 = terms.map(|(m, (a, p))| (2.0 * m as f64 + 1.0) * p * a).sum();
                 weights.push(w * sum);
             }
         }
