@@ -15,6 +15,10 @@ use numeric::Known;
 
 /// `E[N^k]`, k = 0 … 4.
 pub type Raw = [f64; 5];
+/// Highest power of a draw with a computed mean.
+pub const HIGHEST: usize = 8;
+/// `E[X^k]`, k = 0 … 8.
+pub type Powers = [f64; HIGHEST + 1];
 
 /// `n over k`.
 pub fn binomial(n: usize, k: usize) -> f64 {

@@ -9,8 +9,9 @@
 //! trapezoidal rule in ln z, with an error that falls as `e^{−π²/h}`.
 
 use super::grid::{Grid, Operator};
-use super::{Connection, HIGHEST, Powers, Scene};
+use super::{Connection, Scene};
 use crate::Heuristic;
+use crate::raw::{HIGHEST, Powers};
 
 /// Limits of the integral over ln z.
 const RANGE: [f64; 2] = [-52.0, 3.5];

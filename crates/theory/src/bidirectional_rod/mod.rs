@@ -38,14 +38,10 @@ use std::ops::RangeInclusive;
 
 use self::grid::Grid;
 use crate::Heuristic;
+use crate::raw::Powers;
 use numeric::{Known, Lane};
 
 pub use predict::predict;
-
-/// Highest power of a draw with a known mean.
-pub const HIGHEST: usize = 8;
-/// `E[X^k]`, k = 0 … 8.
-pub type Powers = [f64; HIGHEST + 1];
 
 /// A rod, with the orders of its paths.
 #[derive(Debug, Clone)]

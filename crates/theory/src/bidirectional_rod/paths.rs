@@ -7,7 +7,8 @@
 //! For given directions f is a chain of flights along the rod, with a factor `a ρ` at each scattering.
 
 use super::grid::{Grid, Operator};
-use super::{HIGHEST, Powers, Rules, Scene};
+use super::{Rules, Scene};
+use crate::raw::{HIGHEST, Powers};
 
 /// `E[X_s^k]`, k = 1 … 8, of the techniques s = 0 … r + 2 of one order.
 pub fn moments(scene: &Scene, rules: &Rules, order: usize, grid: &Grid) -> Vec<Powers> {

@@ -2,9 +2,9 @@
 
 use super::grid::Grid;
 use super::lookups::{Walks, of_technique};
-use super::{Combination, Connection, HIGHEST, Powers, Rules, Scene, powers};
+use super::{Combination, Connection, Rules, Scene, powers};
 use crate::prediction::{Covariance, UNRESOLVED};
-use crate::raw::{POWERS, Raw, RawMoments, added};
+use crate::raw::{HIGHEST, POWERS, Powers, Raw, RawMoments, added};
 use crate::{Channel, CountLaw, Moments, Prediction, Tails};
 use numeric::Known;
 

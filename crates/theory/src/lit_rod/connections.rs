@@ -28,11 +28,9 @@
 
 use super::techniques::{Combination, Densities, Shadow, Techniques};
 use crate::Heuristic;
+use crate::raw::{HIGHEST, Powers};
 use crate::rod::grid::{Grid, Step};
 use numeric::sum::Sum;
-
-/// Highest power with a computed mean.
-pub const HIGHEST: usize = 8;
 
 /// Terms of q in its k-th power: to rounding for variances, 1e-11 for kurtoses, 1e-5 for tails.
 fn terms(k: usize) -> usize {
@@ -42,9 +40,6 @@ fn terms(k: usize) -> usize {
         _ => 8,
     }
 }
-
-/// Moments of orders 0 to [`HIGHEST`].
-pub type Powers = [f64; HIGHEST + 1];
 
 /// A scattering of light that comes from one direction.
 #[derive(Debug, Clone, Copy)]

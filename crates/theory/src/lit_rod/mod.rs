@@ -11,10 +11,9 @@ pub mod connections;
 pub mod moments;
 pub mod techniques;
 
-use self::connections::HIGHEST;
 pub use self::techniques::{Combination, Densities, Shadow, Techniques};
 pub use super::Heuristic;
-use super::raw::{POWERS, RESOLVED, RawMoments};
+use super::raw::{HIGHEST, POWERS, RESOLVED, RawMoments};
 use super::rod::grid::Walk;
 use super::rod::moments::{Precision, romberg};
 use super::rod::truth;

@@ -26,7 +26,7 @@
 use std::f64::consts::PI;
 
 use crate::Heuristic;
-use crate::lit_rod::connections::{HIGHEST, Powers};
+use crate::raw::{HIGHEST, Powers};
 
 /// Step h: e^{−π/h} is 8e-20.
 const STEP: f64 = 1.0 / 14.0;

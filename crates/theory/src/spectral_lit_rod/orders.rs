@@ -21,14 +21,14 @@
 //!
 //! Source: derived.
 
-use super::super::lit_rod::connections::{HIGHEST, Vertex, Weights};
+use super::super::lit_rod::connections::{Vertex, Weights};
 use super::super::lit_rod::{Techniques, with_hit};
 use super::super::rod::grid::{Grid, Walk};
 use super::super::rod::moments::{Precision, romberg};
 use super::super::spectral_rod::rods;
 use super::{Moments, PAIRS};
 use crate::problems::SpectralLitRod;
-use crate::raw::{POWERS, RawMoments, binomial};
+use crate::raw::{HIGHEST, POWERS, RawMoments, binomial};
 use crate::{Mesh, ParticleRule};
 use media::Piecewise;
 use numeric::Known;
