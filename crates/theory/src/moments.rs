@@ -42,6 +42,15 @@ impl Moments {
         Self { grade, ..self }
     }
 
+    /// Moments with an error that has the relative differences to another resolution added.
+    #[must_use]
+    pub fn compared(self, other: &Self) -> Self {
+        let difference =
+            |i: usize| ((self.relative[i] - other.relative[i]) / self.relative[i]).abs();
+        // NaN where both fourth moments are infinite.
+        Self::estimated(self.scale, self.relative, self.error + difference(0).max(difference(2)))
+    }
+
     /// The moments of a product estimator from its loss integrals.
     ///
     /// ```text

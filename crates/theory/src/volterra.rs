@@ -66,16 +66,18 @@ pub fn predict(mesh: &Mesh, sampling: f64, source: &dyn Source) -> Prediction {
     // Central moments by subtraction: these estimators are not used where the relative spread
     // vanishes, and the loss of digits is part of the error.
     let central = raw.central(Known::estimated(t, relative_error * t), WORST);
-    let moments = Moments { scale: depth.exp_neg().value, ..central };
-    let tails = Tails { rare_event_size: moments.kurtosis().unwrap_or(1.0), ..raw.tails(WORST) };
-    let mut channel = Channel::transmittance(depth, 0.0, moments, tails);
+    let is_known = central.error <= WORST && central.relative[2].is_finite();
     let flown = sampling * mesh.support().length();
-    if flown == 0.0 {
+    let (moments, tails) = if flown == 0.0 {
         // No collisions: every draw is the closed form.
-        channel.moments = Some(Moments::certain(moments.scale));
-    } else if !(moments.error <= WORST && moments.relative[2].is_finite()) {
-        channel.moments = None;
-    }
+        (Moments::certain(t), Tails::LIGHT)
+    } else {
+        let rare_event_size = central.kurtosis().unwrap_or(1.0);
+        (central, Tails { rare_event_size, ..raw.tails(WORST) })
+    };
+    let moments = Moments { scale: depth.exp_neg().value, ..moments };
+    let mut channel = Channel::transmittance(depth, 0.0, moments, tails);
+    channel.moments = channel.moments.filter(|_| is_known || flown == 0.0);
     let random_numbers = Some(flown + 1.0);
     Prediction { random_numbers, ..Prediction::single(channel, CountLaw::poisson(flown)) }
 }

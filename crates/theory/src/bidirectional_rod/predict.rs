@@ -4,7 +4,7 @@ use super::grid::Grid;
 use super::lookups::{Walks, of_technique};
 use super::{Combination, Connection, Rules, Scene, powers};
 use crate::prediction::{Covariance, UNRESOLVED};
-use crate::raw::{HIGHEST, POWERS, Powers, Raw, RawMoments, added};
+use crate::raw::{HIGHEST, Powers, Raw, RawMoments, added};
 use crate::{Channel, CountLaw, Moments, Prediction, Tails};
 use numeric::Known;
 
@@ -128,16 +128,15 @@ fn channel(depth: Known, order: usize, [fine, rough]: [&Powers; 2], is_certain: 
     if is_certain || fine[2] / mean.powi(2) == 1.0 {
         return Channel::unbiased(truth, Moments::certain(mean), Tails::LIGHT);
     }
-    // Both resolutions in units of their own means: an error of all powers alike moves no relative moment.
     let relative_error = ROUNDING + 4.0 * by_depth;
-    let raw = RawMoments(POWERS.map(|k| {
-        let of = |powers: &Powers| powers[k.unsigned_abs() as usize] / powers[1].powi(k);
-        let [unit, other] = [of(fine), of(rough)];
-        let error = (unit - other).abs() + relative_error * unit;
-        Known::estimated(fine[k.unsigned_abs() as usize], error * mean.powi(k))
-    }));
-    let moments = raw.central(Known::estimated(mean, 0.0), UNRESOLVED);
-    Channel::unbiased(truth, moments, raw.tails(UNRESOLVED))
+    let raw = |&[none, a, b, c, d, .., eighth]: &Powers| {
+        RawMoments::estimated([none, a, b, c, d], eighth, relative_error)
+    };
+    // Each resolution in units of its own mean: an error of all powers alike moves no relative moment.
+    let central =
+        |powers: &Powers| raw(powers).central(Known::estimated(powers[1], 0.0), UNRESOLVED);
+    let moments = central(fine).compared(&central(rough));
+    Channel::unbiased(truth, moments, raw(fine).tails(UNRESOLVED))
 }
 
 /// Distribution of the lookups of all techniques together.
