@@ -136,6 +136,8 @@ enum Input {
     Npy,
     /// Little-endian float64, nothing else
     F64,
+    /// Little-endian float32, nothing else
+    F32,
 }
 
 /// Form of the verdict.
@@ -287,13 +289,20 @@ impl Arguments {
             Some(Input::Csv) => Some(plain),
             Some(Input::Npy) => Some(Format::Npy),
             Some(Input::F64) => Some(Format::Raw),
+            Some(Input::F32) => Some(Format::RawSingle),
             None if is_pipe => None,
             None => Format::of_path(file),
         };
         let place = if is_pipe { "a pipe".to_owned() } else { file.display().to_string() };
-        let format = format.with_context(|| {
-            format!("the name of {place} does not tell its format; add --input csv, npy or f64")
-        })?;
+        let format =
+            format.with_context(|| match file.extension().and_then(|end| end.to_str()) {
+                Some("toml") if !is_pipe => {
+                    format!("{place} is a case; give it by --case, and then a file of draws")
+                }
+                _ => format!(
+                    "the name of {place} does not tell its format; add --input csv, npy, f64 or f32"
+                ),
+            })?;
         let lookups = self.lookups.as_deref().and_then(|text| text.parse::<Column>().ok());
         match (format, lookups) {
             (Format::Csv { .. }, lookups) => Ok(Format::Csv { column: None, lookups }),

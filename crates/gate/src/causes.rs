@@ -93,6 +93,8 @@ pub struct Pattern {
     pub dependence: bool,
     /// Draws or positions that lack bits.
     pub resolution: bool,
+    /// All draws are 0 or 1, which says nothing about weights; false where that is not known.
+    pub binary: bool,
     /// Part of the sweep.
     pub place: Place,
 }
@@ -140,6 +142,7 @@ impl Pattern {
             (self.number, "a draw is no finite number or out of its range"),
             (self.dependence, "draws depend on each other"),
             (self.resolution, "draws lack bits"),
+            (self.binary, "draws are 0 or 1"),
         ];
         said.extend(others.iter().filter(|other| other.0).map(|other| other.1.to_owned()));
         match self.place {
@@ -255,7 +258,7 @@ pub static TABLE: &[Line] = &[
     Line {
         pattern: "lookups are high, the mean is low",
         applies: |p| (p.lookups, p.mean) == (Side::High, Side::Low),
-        causes: &[&FLIGHT, &NUMBERS, &WEIGHT],
+        causes: &[&FLIGHT, &NUMBERS, &WEIGHT, &LOOKUP],
     },
     Line {
         pattern: "lookups are low, the mean is high",
@@ -271,6 +274,11 @@ pub static TABLE: &[Line] = &[
         pattern: "lookups are off in another way, with the mean or the variance",
         applies: |p| p.lookups.is_off(),
         causes: &[&NUMBERS, &DIRECTIONS, &CHANNELS, &FLIGHT],
+    },
+    Line {
+        pattern: "draws are 0 or 1, the share of 1 is off",
+        applies: |p| p.binary && (p.mean.is_off() || p.distribution),
+        causes: &[&PROBABILITY, &LOOKUP, &FLIGHT, &ENDING],
     },
     Line {
         pattern: "the variance is off, the mean is right",

@@ -93,8 +93,8 @@ pub fn draws(path: &Path) -> anyhow::Result<Vec<Item>> {
     let file = path.display().to_string();
     let Some(Format::Csv { lookups, .. }) = Format::of_path(path) else {
         let format = Format::of_path(path).unwrap_or(Format::Raw);
+        let kind = format!("float{}, little-endian", if format == Format::Raw { 64 } else { 32 });
         let item = column(Draws::open(path, format)?, &file)?;
-        let kind = "float64, little-endian".to_owned();
         return Ok(vec![Item { format: "raw draws".to_owned(), kind, ..item }]);
     };
     let names = names(path)?;

@@ -19,7 +19,7 @@ use numeric::digits::{count, short};
 /// Arguments of `inspect`.
 #[derive(Debug, Args)]
 pub struct Arguments {
-    /// Volumes (vol, npy, vdb, nvdb, pbrt), images (exr, pfm, npy) and draws (npy, csv, txt, f64, bin, raw)
+    /// Volumes (vol, npy, vdb, nvdb, pbrt), images (exr, pfm, npy) and draws (npy, csv, txt, f64, f32, bin, raw)
     #[arg(value_name = "FILE", required = true)]
     files: Vec<PathBuf>,
     /// Format of the grids, images and columns that are printed
@@ -59,7 +59,7 @@ fn inspected(path: &Path) -> anyhow::Result<Vec<Item>> {
             Some(format) => volumes::items(format, &std::fs::read(path)?),
             None if draws_files::Format::of_path(path).is_some() => return images::draws(path),
             None => bail!(
-                "its ending is none that is read: vol, npy, vdb, nvdb, pbrt, exr, pfm, csv, txt, f64, bin, raw; rename \
+                "its ending is none that is read: vol, npy, vdb, nvdb, pbrt, exr, pfm, csv, txt, f64, f32, bin, raw; rename \
                  or convert it"
             ),
         },

@@ -120,11 +120,10 @@ pub fn main(arguments: &super::Arguments, console: &Console) -> anyhow::Result<u
 /// Reads and judges.
 fn judged(arguments: &super::Arguments, wanted: &Wanted) -> anyhow::Result<Judgement> {
     let images = &arguments.images;
-    let [against, variance_stack] =
-        [&images.against, &images.variance_stack].map(|paths| passes(paths));
-    let (against, variance_stack) = (against?, variance_stack?);
+    let judged_files = passes(&arguments.files)?;
+    let (against, variance_stack) = (passes(&images.against)?, passes(&images.variance_stack)?);
     let beside = [&images.truth_image, &images.variance_image].into_iter().flatten();
-    let all = arguments.files.iter().chain(&against).chain(&variance_stack).chain(beside);
+    let all = judged_files.iter().chain(&against).chain(&variance_stack).chain(beside);
     let frame = files::Frame::of(&all.collect::<Vec<_>>())?;
     let block = images.average.and_then(|block| NonZeroUsize::new(block as usize));
     let read = |paths: &[PathBuf]| -> anyhow::Result<Stack> {
@@ -135,7 +134,7 @@ fn judged(arguments: &super::Arguments, wanted: &Wanted) -> anyhow::Result<Judge
         })
     };
     if !against.is_empty() {
-        let stack = read(&arguments.files)?;
+        let stack = read(&judged_files)?;
         let reference = read(&against)?;
         let terms =
             Terms { is_same_distribution: images.same_distribution, rounding: arguments.rounding };
@@ -166,7 +165,7 @@ fn judged(arguments: &super::Arguments, wanted: &Wanted) -> anyhow::Result<Judge
         range: arguments.range,
         rounding: arguments.rounding,
     };
-    Ok(judge(&read(&arguments.files)?, &claim, wanted)?)
+    Ok(judge(&read(&judged_files)?, &claim, wanted)?)
 }
 
 /// Returns the files of a stack; those of a folder in the order of their names.

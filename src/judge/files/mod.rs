@@ -4,6 +4,7 @@
 //! csv, txt       one number a line, or columns of a table separated by commas
 //! npy            float32 or float64 of either byte order, of shape (draws) or (draws, values)
 //! f64, bin, raw  little-endian float64, nothing else; several values of a draw follow each other
+//! f32            the same in float32
 //! ```
 //!
 //! NaN and ∞ are read as they are: the gate judges them. A file that is not a list of numbers is a [`ForeignError`];
@@ -23,6 +24,7 @@ use std::str::FromStr;
 pub use layout::Layout;
 
 use super::{BUFFER, Block, Source};
+use media::files::npy::Word;
 
 /// Format of numbers.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -39,6 +41,8 @@ pub enum Format {
     Npy,
     /// Little-endian float64.
     Raw,
+    /// Little-endian float32.
+    RawSingle,
 }
 
 /// A column of a table.
@@ -76,6 +80,7 @@ impl Format {
             "csv" | "txt" => Some(Self::Csv { column: None, lookups: None }),
             "npy" => Some(Self::Npy),
             "f64" | "bin" | "raw" => Some(Self::Raw),
+            "f32" => Some(Self::RawSingle),
             _ => None,
         }
     }
@@ -167,7 +172,13 @@ impl Draws {
                 Reader::Csv(Box::new(table))
             }
             Format::Npy => Reader::Rows(npy::open(bytes, name, length, layout)?.into()),
-            Format::Raw => Reader::Rows(raw::open(bytes, name, length, layout)?.into()),
+            Format::Raw | Format::RawSingle => {
+                let word = match format {
+                    Format::Raw => Word::LittleDouble,
+                    _ => Word::LittleSingle,
+                };
+                Reader::Rows(raw::open(bytes, name, length, layout, word)?.into())
+            }
         };
         Ok(Self { source })
     }
@@ -232,10 +243,13 @@ pub enum ForeignError {
     Overlong { file: String, expected: u64 },
     /// The file ends within a number.
     #[error(
-        "{file}: {rest} byte(s) are left after {whole} draws of 8 bytes; \
-         write little-endian float64 and nothing else"
+        "{file}: {rest} byte(s) are left after {whole} draws of {width} bytes; \
+         write little-endian float64 and nothing else, or float32 and say so by --input f32"
     )]
-    PartialDraw { file: String, whole: u64, rest: usize },
+    PartialDraw { file: String, whole: u64, rest: usize, width: usize },
+    /// Numbers of 4 bytes where 8 are expected.
+    #[error("{file}: its bytes are float32, not float64; give --input f32, or name the file .f32")]
+    LooksSingle { file: String },
     /// There is no NPY header.
     #[error("{file}: not an npy file ({cause}); write it by numpy.save")]
     NotNpy { file: String, cause: io::Error },
@@ -268,7 +282,7 @@ pub enum ForeignError {
     NoShape { file: String, channels: String },
     /// Column of lookups in a format without columns.
     #[error(
-        "{file}: raw float64 has no columns; write npy of shape (draws, values) or csv, or leave --column out"
+        "{file}: raw numbers have no columns; write npy of shape (draws, values) or csv, or leave --column out"
     )]
     NoColumns { file: String },
     /// The last draw lacks values.

@@ -24,12 +24,13 @@ pub(super) struct Words {
     end: usize,
 }
 
-/// Opens little-endian float64 without a header; `length` counts the bytes of the file.
+/// Opens little-endian numbers without a header; `length` counts the bytes of the file.
 pub(super) fn open(
     bytes: Bytes,
     file: &str,
     length: Option<u64>,
     layout: &Layout,
+    word: Word,
 ) -> Result<Rows, ForeignError> {
     if layout.column.is_some() {
         return Err(ForeignError::NoColumns { file: file.to_owned() });
@@ -40,22 +41,53 @@ pub(super) fn open(
     }
     // Draws of several values lie one after the other.
     let width = if layout.takes_all() { layout.channels.len() } else { 1 };
+    let size = word.width() as u64;
     if let Some(length) = length
-        && length % 8 != 0
+        && length % size != 0
     {
-        let rest = usize::try_from(length % 8).unwrap_or_default();
-        return Err(ForeignError::PartialDraw { file: file.to_owned(), whole: length / 8, rest });
+        let rest = usize::try_from(length % size).unwrap_or_default();
+        let (whole, width) = (length / size, word.width());
+        return Err(ForeignError::PartialDraw { file: file.to_owned(), whole, rest, width });
     }
-    let mut words = Words::new(bytes, file, Word::LittleDouble, None);
+    let mut words = Words::new(bytes, file, word, None);
     // The first bytes show whether there are any, in a pipe too.
     if words.fill()? == 0 {
         return Err(ForeignError::Empty { file: file.to_owned() });
     }
-    words.length = length.map(|bytes| bytes / 8);
+    if word == Word::LittleDouble && looks_single(&words.chunk[..words.end]) {
+        return Err(ForeignError::LooksSingle { file: file.to_owned() });
+    }
+    words.length = length.map(|bytes| bytes / size);
     if let Some(numbers) = words.length.filter(|numbers| numbers % width as u64 != 0) {
         return Err(ForeignError::PartialRow { file: file.to_owned(), numbers, values: width });
     }
     Ok(Rows::new(words, width, (0..width).collect(), false))
+}
+
+/// Minimum number of words of 8 bytes that show whether they are pairs of words of 4 bytes.
+const MIN_WORDS: usize = 64;
+
+/// Returns true if bytes look like float32.
+///
+/// The low half of a float64 holds the last bits of its mantissa. Read as float32 these have any exponent, or are
+/// 0 and few other values if the number has few bits. Halves of usual size, many different ones or 1 among them,
+/// are numbers of their own.
+fn looks_single(bytes: &[u8]) -> bool {
+    let (words, _) = bytes.as_chunks::<8>();
+    let is_usual = |half: f32| half == 0.0 || (1e-12..=1e12).contains(&half.abs());
+    let halves = words.iter().map(|&[a, b, c, d, e, f, g, h]| {
+        [f32::from_le_bytes([a, b, c, d]), f32::from_le_bytes([e, f, g, h])]
+    });
+    let mut seen = std::collections::BTreeSet::new();
+    for [low, high] in halves {
+        if !is_usual(low) || !is_usual(high) {
+            return false;
+        }
+        if seen.len() <= MIN_WORDS {
+            seen.insert(low.to_bits());
+        }
+    }
+    words.len() >= MIN_WORDS && (seen.len() > MIN_WORDS / 4 || seen.contains(&1.0_f32.to_bits()))
 }
 
 impl Words {
@@ -138,7 +170,8 @@ impl Words {
                 Err(ForeignError::Overlong { file: file(), expected })
             }
             None if rest > 0 => {
-                Err(ForeignError::PartialDraw { file: file(), whole: self.given, rest })
+                let width = self.word.width();
+                Err(ForeignError::PartialDraw { file: file(), whole: self.given, rest, width })
             }
             _ => Ok(()),
         }
@@ -274,6 +307,38 @@ mod tests {
         let draws = Draws::from_reader(pipe, "stdin", Format::Raw).expect("draws");
         assert_eq!(draws.known_length(), None);
         assert_eq!(all(draws).expect("draws"), values);
+    }
+
+    #[test]
+    fn single_precision_is_told_from_double() {
+        let values: Vec<f32> = (0..500_u16).map(|i| f32::from(i).sqrt() / 30.0).collect();
+        let singles =
+            |values: &[f32]| -> Vec<u8> { values.iter().flat_map(|x| x.to_le_bytes()).collect() };
+        let zeros_and_ones: Vec<f32> = (0..500_u16).map(|i| f32::from(i % 3 / 2)).collect();
+        for values in [&values, &zeros_and_ones] {
+            let file = file(&singles(values));
+            let refused = Draws::open(file.path(), Format::Raw);
+            assert!(matches!(refused, Err(ForeignError::LooksSingle { .. })));
+            let read = all(Draws::open(file.path(), Format::RawSingle).expect("draws"));
+            assert!(read.expect("draws").iter().zip(values).all(|(x, y)| *x == f64::from(*y)));
+        }
+        // Doubles of all bits, of 24 bits, of few values and of single precision.
+        let generator = |bits: u32| {
+            let mut state = 1_u64;
+            move || {
+                state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
+                (state >> 11 >> (53 - bits)) as f64 / f64::from(bits).exp2()
+            }
+        };
+        for bits in [53, 32, 24, 1] {
+            let mut next = generator(bits);
+            let doubles: Vec<f64> = (0..500).map(|_| next()).collect();
+            for doubles in [doubles.clone(), doubles.iter().map(|x| f64::from(*x as f32)).collect()]
+            {
+                let file = file(&bytes(&doubles));
+                assert!(Draws::open(file.path(), Format::Raw).is_ok(), "{bits} bits");
+            }
+        }
     }
 
     #[test]

@@ -102,19 +102,32 @@ fn means_off(judgement: &Judgement, worst: Option<&Tile>) -> Vec<String> {
 /// Returns the reasons by which means are undecided.
 fn means_open(judgement: &Judgement) -> Vec<String> {
     let undecided = |tile: &&Tile| tile.verdict != Verdict::Pass;
-    let whole = |whole| format!("the picture may be off {}; render more passes", bias(whole));
+    let whole = |whole: &Tile| {
+        format!("the picture may be off {}; render more passes{}", bias(whole), constant(whole))
+    };
     let whole = judgement.whole.iter().find(undecided).map(whole);
     let count = judgement.tiles.iter().filter(undecided).count();
     let tile = judgement.tiles.iter().find(undecided).map(|tile| {
         format!(
             "{count} of {} tiles may be off, the first, {}, {}; render more passes, or give a larger --tile or a wider \
-             --tolerance",
+             --tolerance{}",
             judgement.counts.tiles,
             place(judgement, tile),
-            bias(tile)
+            bias(tile),
+            constant(tile)
         )
     });
     whole.into_iter().chain(tile).collect()
+}
+
+/// Returns the cure for values without a measured spread, of which passes prove nothing however many.
+fn constant(tile: &Tile) -> &'static str {
+    match tile.tolerance {
+        None | Some(0.0) => {
+            "; if values never vary, as in an analog furnace, say so by --variance 0"
+        }
+        Some(_) => "",
+    }
 }
 
 /// Widest ε, in units of the picture's mean, of a pass without remark.

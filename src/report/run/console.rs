@@ -62,12 +62,15 @@ pub fn opening(plan: &Plan) -> String {
         cases => format!("{} cases", cases.len()),
     };
     let drawn = plan.experiments().filter(|(_, planned)| planned.outcome.is_ok());
-    let most = drawn.map(|(_, planned)| planned.draws).max().unwrap_or(0);
+    let [most, horizon] = drawn.fold([0; 2], |[most, horizon], (_, planned)| {
+        [most.max(planned.draws), horizon.max(planned.horizon)]
+    });
     let experiments = plan.experiments().count();
     let noun = if experiments == 1 { "experiment" } else { "experiments" };
     format!(
-        "{cases}: {experiments} {noun}, at most {} each, seed {seed}, α = {}\n",
+        "{cases}: {experiments} {noun}, {} each planned and at most {}, seed {seed}, α = {}\n",
         draws(most),
+        count(horizon),
         short(alpha, 3)
     )
 }

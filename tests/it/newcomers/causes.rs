@@ -120,7 +120,8 @@ fn the_manual_has_the_table() {
         let [bugs, found] = counts[line.pattern];
         let named: Vec<String> =
             line.causes.iter().map(|cause| format!("[{0}](#{0})", cause.name)).collect();
-        let row = format!("| {} | {} | {found} of {bugs} |", line.pattern, named.join(", "));
+        let share = if bugs == 0 { "–".to_owned() } else { format!("{found} of {bugs}") };
+        let row = format!("| {} | {} | {share} |", line.pattern, named.join(", "));
         assert!(page.contains(&row), "not in the page:\n{row}");
     }
     for cause in CAUSES {

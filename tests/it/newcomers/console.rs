@@ -31,8 +31,7 @@ fn biased() -> String {
 fn a_run_shows_what_does_not_pass_and_ends_with_its_page() {
     let place = Place::new(&[("good.toml", GOOD), ("bad.toml", &biased())]);
     let said = place.says(0, "run good.toml --draws 400000 --out here");
-    let first =
-        "good: 2 experiments, at most 400000 draws each, seed 1, α = 0.001\ngood  2 pass · ";
+    let first = "good: 2 experiments, 400000 draws each planned and at most 888889, seed 1, α = 0.001\ngood  2 pass · ";
     assert!(said.starts_with(first), "{said}");
     let meaning =
         "pass: nothing of 2 fails or is inconclusive\nEvery mean that passes is right to ";

@@ -200,13 +200,24 @@ impl Judgement {
         for finding in self.findings.iter().filter(|found| found.verdict == Verdict::Fail) {
             pattern.note(&finding.check, finding.gate.map(|gate| gate.mean));
         }
+        for found in self.distribution.iter().filter(|found| found.verdict == Verdict::Fail) {
+            pattern.note(&found.check, None);
+        }
         match self.fault {
             Some(Fault::Number | Fault::Range) => pattern.number = true,
             Some(Fault::Lookups) => pattern.lookups = Side::Both,
             Some(Fault::Spread | Fault::Distance) => pattern.mean = Side::Both,
             None => {}
         }
+        pattern.binary = self.batch == 1 && self.has_binary_moments();
         pattern
+    }
+
+    /// Returns true if mean and variance are those of draws of 0 and 1 only: `E[X²] = E[X]` up to rounding.
+    fn has_binary_moments(&self) -> bool {
+        let (Some(mean), Some(variance)) = (self.mean, self.variance) else { return false };
+        let share = 1.0 - 1.0 / self.draws.max(1) as f64;
+        (variance * share - mean * (1.0 - mean)).abs() <= 1e-9 * mean.abs()
     }
 }
 
@@ -237,7 +248,7 @@ impl Judgement {
         if let Some(drift) = &self.drift {
             let (word, found, limit) = (drift.verdict.word(), drift.ln_e, drift.ln_e_limit);
             let shown = match drift.verdict {
-                Verdict::Pass if found >= limit => ", but later draws are like earlier ones",
+                Verdict::Pass if found >= limit => ", but all draws are off, from the first on",
                 _ => "",
             };
             let text =
