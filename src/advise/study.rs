@@ -272,7 +272,7 @@ fn relative_variance(channel: &Channel) -> Option<f64> {
     match channel.moments {
         Some(moments) if moments.relative[0] <= CERTAIN => Some(0.0),
         Some(_) => Some(channel.resolved_moments()?.variance() / (truth * truth)),
-        None => Some(channel.most_variance? / (truth * truth)),
+        None => Some(channel.variance_bound? / (truth * truth)),
     }
 }
 

@@ -101,7 +101,9 @@ pub fn of(
     prediction: &Prediction,
     same: f64,
 ) -> Result<Option<impl DistributionTest + use<>>, String> {
-    let Some(theory::Law::Atoms(atoms)) = &prediction.law else { return Ok(None) };
+    let Some(theory::Distribution::Atoms(atoms)) = &prediction.distribution else {
+        return Ok(None);
+    };
     let values = Values::of(atoms.clone(), same);
     if values.is_blurred() {
         return Err(format!("values of a draw are closer to each other than {same:.1e}, relative"));
@@ -111,7 +113,9 @@ pub fn of(
 
 /// Returns the questions of this check.
 pub fn questions(subject: &Subject) -> Vec<Question> {
-    let Some(theory::Law::Atoms(atoms)) = &subject.prediction.law else { return Vec::new() };
+    let Some(theory::Distribution::Atoms(atoms)) = &subject.prediction.distribution else {
+        return Vec::new();
+    };
     let values = Values::of(atoms.clone(), SAME);
     let bins = chi_square::testable_bins(&values.probability, subject.fixed as f64);
     Question::distribution("the shares of the values", (bins >= 2).then_some(values))

@@ -55,7 +55,9 @@ pub struct Classes {
 impl Classes {
     /// Returns the classes of the predicted distribution.
     pub fn of(prediction: &Prediction) -> Option<Self> {
-        let Some(theory::Law::Distances { bins, end, escape, .. }) = &prediction.law else {
+        let Some(theory::Distribution::Distances { bins, end, escape, .. }) =
+            &prediction.distribution
+        else {
             return None;
         };
         Some(Self::new(bins.clone(), *end, *escape))

@@ -71,17 +71,17 @@ fn answer(subject: &Subject, index: usize, channel: &Channel) -> Box<dyn Check> 
         };
         return Box::new(Always::new(largest, floor + furthest));
     }
-    let may_be_piloted = subject.expect_biased || channel.by_pilots;
+    let may_be_piloted = subject.expect_biased || channel.pilot_variance_allowed;
     let pilot = subject.pilots.map(|pilots| pilots[index]).filter(|_| may_be_piloted);
-    if channel.by_pilots && pilot.is_some_and(|pilot| pilot.size < SETTLED) {
+    if channel.pilot_variance_allowed && pilot.is_some_and(|pilot| pilot.size < SETTLED) {
         return untestable("a few of the pilot draws make all of their variance".into());
     }
     let doubled = pilot.map(|pilot| 2.0 * pilot.variance);
     // The bound holds for the correct estimator: a biased one has a spread of its own.
     let assumed = if subject.expect_biased {
-        doubled.or(channel.most_variance)
+        doubled.or(channel.variance_bound)
     } else {
-        channel.most_variance.or(doubled)
+        channel.variance_bound.or(doubled)
     };
     let (known, error) = match (channel.moments, assumed) {
         (Some(moments), _) => {

@@ -15,7 +15,7 @@ use super::check::{Question, Subject};
 use super::distribution::{Inspected, Inspection};
 use crate::plan::BLOCK;
 use gate::stats::ties;
-use theory::{Law, Prediction};
+use theory::{Distribution, Prediction};
 
 /// Smallest number of collisions that is evidence of their resolution.
 pub const MIN_COLLISIONS: usize = 100;
@@ -39,7 +39,9 @@ pub struct Resolution {
 impl Resolution {
     /// Describes the ties of an experiment; `None` if it has no distances.
     pub fn of(prediction: &Prediction) -> Option<Self> {
-        let Some(Law::Distances { bins, end, from, .. }) = &prediction.law else { return None };
+        let Some(Distribution::Distances { bins, end, from, .. }) = &prediction.distribution else {
+            return None;
+        };
         Some(Self { end: *end, grain: grain(bins, *end, *from) })
     }
 

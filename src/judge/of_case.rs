@@ -12,7 +12,7 @@ use crate::case::catalogue::Catalogue;
 use crate::case::id::EstimatorName;
 use crate::case::sweep::{SweepAxis, Variation, What};
 use crate::checks;
-use ::theory::{CountLaw, Law, Prediction};
+use ::theory::{CountLaw, Distribution, Prediction};
 use gate::Check;
 use numeric::digits::{number, short};
 
@@ -190,8 +190,8 @@ impl<S> OfCase for Check<S> {
 /// Returns a claim for each channel.
 fn claims(case: &Case, prediction: &Prediction, rounding: f64) -> Vec<(String, Claim)> {
     let lookups = prediction.lookups.as_ref();
-    let flights = match prediction.law {
-        Some(Law::Distances { end, from, escape, .. }) => {
+    let flights = match prediction.distribution {
+        Some(Distribution::Distances { end, from, escape, .. }) => {
             Some(Flights { length: end, from, escape })
         }
         // Without a medium all flights leave the ray.

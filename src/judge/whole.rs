@@ -45,8 +45,8 @@ pub(super) struct Known(pub Arc<Prediction>);
 
 impl Distribution for Known {
     fn tests(&self, asked: Asked) -> Result<Box<dyn Tests>, String> {
-        let Prediction { law, increments, channels, .. } = &*self.0;
-        let has_values = law.is_some() || !increments.is_empty();
+        let Prediction { distribution, increments, channels, .. } = &*self.0;
+        let has_values = distribution.is_some() || !increments.is_empty();
         let is_known =
             (has_values && asked.values == channels.len()) || has_covariances(&self.0, asked);
         let has_counts = asked.has_lookups && checks::counts::of(&self.0).is_some();
@@ -320,12 +320,12 @@ fn has_covariances(prediction: &Prediction, asked: Asked) -> bool {
 
 /// Returns a sentence about the part of the values' distribution that theory does not know.
 fn unknown(prediction: &Prediction, asked: Asked) -> Option<String> {
-    let Prediction { law, increments, channels, .. } = prediction;
+    let Prediction { distribution, increments, channels, .. } = prediction;
     if asked.values != channels.len() && !increments.is_empty() {
         let why = "it takes all channels of a draw";
         return Some(format!("the distribution along the curve is not tested: {why}"));
     }
-    if law.is_some() || !increments.is_empty() {
+    if distribution.is_some() || !increments.is_empty() {
         return None;
     }
     let has_moments = channels.iter().any(|channel| channel.moments.is_some());
@@ -341,7 +341,7 @@ fn unknown(prediction: &Prediction, asked: Asked) -> Option<String> {
 /// positions. Rounding moves no end of a class by more than a twentieth of its standard error. Infinite if theory has
 /// no distances.
 fn most_draws(prediction: &Prediction, rounding: f64) -> f64 {
-    let Some(theory::Law::Distances { bins, from, .. }) = &prediction.law else {
+    let Some(theory::Distribution::Distances { bins, from, .. }) = &prediction.distribution else {
         return f64::INFINITY;
     };
     let classes = (bins.len() + 1) as f64;

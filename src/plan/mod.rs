@@ -268,8 +268,8 @@ impl Planned {
         let most = self.draws;
         let channels = || ready.prediction.channels.iter();
         let forced = self.expect_biased && channels().any(|channel| channel.moments.is_none());
-        let pilots =
-            (forced || channels().any(|channel| channel.by_pilots)).then(|| self.pilots(ready));
+        let pilots = (forced || channels().any(|channel| channel.pilot_variance_allowed))
+            .then(|| self.pilots(ready));
         let mut subject = Subject {
             prediction: &ready.prediction,
             draws: most,

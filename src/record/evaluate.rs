@@ -148,7 +148,8 @@ fn qualify_means(plan: &Plan, planned: &Planned, findings: &mut [Finding]) {
     let variances = findings.iter().filter(|f| f.check == "variance" && f.verdict != Verdict::Pass);
     let variances: Vec<Finding> = variances.cloned().collect();
     let channels = planned.outcome.as_ref().map_or(&[][..], |ready| &ready.prediction.channels);
-    let is_piloted = |name: &str| channels.iter().any(|c| c.by_pilots && c.name == name);
+    let is_piloted =
+        |name: &str| channels.iter().any(|c| c.pilot_variance_allowed && c.name == name);
     for mean in findings.iter_mut().filter(|finding| finding.check == "mean") {
         let variance = variances.iter().find(|variance| variance.channel == mean.channel);
         let (verdict, reason) = match (mean.verdict, variance.filter(|_| !mean.expects_bias)) {

@@ -226,7 +226,7 @@ fn variances_are_below_their_bounds() {
             let exact = variances(&channels(&known, estimator));
             for (channel, exact) in ready.prediction.channels.iter().zip(exact) {
                 assert!(channel.moments.is_none());
-                let bound = channel.most_variance.expect("a bound");
+                let bound = channel.variance_bound.expect("a bound");
                 // Many vertices, and the combination of heroes, make the bound loose.
                 assert!(exact <= bound && bound <= 20.0 * exact, "{estimator}: {exact} {bound}");
             }

@@ -218,7 +218,7 @@ fn bounds_on_variances_hold_and_are_sharp_for_walks_of_weight_one() {
                 .experiments()
                 .map(|(_, planned)| {
                     let ready = planned.outcome.as_ref().unwrap_or_else(|r| panic!("{r}"));
-                    ready.prediction.channels[0].most_variance.expect("a bound")
+                    ready.prediction.channels[0].variance_bound.expect("a bound")
                 })
                 .collect();
             let record = judged(&case, &options(1, 400_000));

@@ -137,8 +137,8 @@ fn all_combinations_meet_the_exact_answer_closely() {
 fn bounds_on_variances_hold() {
     let mut bounded = 0;
     for (scene, row, channel) in DRAWN.iter() {
-        let Some(most) = channel.most_variance else {
-            assert!(channel.by_pilots && row.experiment.label.contains("shared"));
+        let Some(most) = channel.variance_bound else {
+            assert!(channel.pilot_variance_allowed && row.experiment.label.contains("shared"));
             continue;
         };
         bounded += 1;

@@ -62,7 +62,7 @@ fn increments(upto: &[Integrals], error: f64) -> Vec<Increment> {
         let kurtosis = factor.kurtosis().map(|kurtosis| (4.0 * (j2 - j3) + j4).exp() * kurtosis);
         let size: f64 = integrals.losses[1].abs();
         Increment {
-            clock: integrals.losses[1].exp_m1(),
+            quadratic_variation: integrals.losses[1].exp_m1(),
             variance: j2.exp() * factor.relative[0],
             kurtosis: kurtosis.unwrap_or(1.0),
             // The step is a difference of integrals, each accurate to its own last digits.

@@ -6,7 +6,7 @@
 //! ```
 
 use super::mesh::Panel;
-use super::{Channel, CountLaw, Law, Mesh, Moments, Prediction, Tails};
+use super::{Channel, CountLaw, Distribution, Mesh, Moments, Prediction, Tails};
 use numeric::sum::Sum;
 use numeric::{Known, Span};
 
@@ -37,8 +37,8 @@ pub fn predict(mesh: &Mesh, lookups: CountLaw) -> Prediction {
     let truth = Known::estimated(mean, mean * (mesh.relative_error() + 1e-14) + grain);
     let moments = Moments::estimated(mean, relative, mesh.relative_error() + 1e-13);
     let channel = Channel::unbiased(truth, moments, Tails::LIGHT);
-    let law = distances(mesh, ray, escape.value);
-    Prediction { law, ..Prediction::single(channel, lookups) }
+    let distribution = distances(mesh, ray, escape.value);
+    Prediction { distribution, ..Prediction::single(channel, lookups) }
 }
 
 /// `∫ T dt` over the ray, the intervals outside the support included.
@@ -67,7 +67,7 @@ fn over_panels(mesh: &Mesh, f: impl Fn(Panel<'_>, &[f64]) -> Vec<f64>) -> f64 {
 }
 
 /// The quantiles of the distance at equal probabilities.
-fn distances(mesh: &Mesh, ray: Span, escape: f64) -> Option<Law> {
+fn distances(mesh: &Mesh, ray: Span, escape: f64) -> Option<Distribution> {
     if escape >= 1.0 {
         return None;
     }
@@ -78,5 +78,5 @@ fn distances(mesh: &Mesh, ray: Span, escape: f64) -> Option<Law> {
             mesh.medium().free_flight(depth).map(|t| t - ray.from)
         })
         .collect();
-    Some(Law::Distances { bins: bins?, end: ray.length(), from: ray.from, escape })
+    Some(Distribution::Distances { bins: bins?, end: ray.length(), from: ray.from, escape })
 }

@@ -44,5 +44,5 @@ pub use heuristic::Heuristic;
 pub use mesh::Mesh;
 pub use moments::Moments;
 pub use particle::{Odds, ParticleRule};
-pub use prediction::{Channel, Increment, Law, Prediction, Tails};
+pub use prediction::{Channel, Distribution, Increment, Prediction, Tails};
 pub use rule::{Outcome, Rule};

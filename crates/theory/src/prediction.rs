@@ -15,7 +15,7 @@ pub struct Prediction {
     /// `E[random numbers]` of one draw as this crate makes it; `None` where it is not computed.
     pub random_numbers: Option<f64>,
     /// The distribution of the draw, where it is known.
-    pub law: Option<Law>,
+    pub distribution: Option<Distribution>,
     /// The covariances of the channels, where there are several.
     pub covariances: Vec<Covariance>,
     /// The steps of one walk from each distance of a curve to the next.
@@ -37,10 +37,10 @@ pub struct Channel {
     /// Central moments; `None` where no closed form is known.
     pub moments: Option<Moments>,
     /// Bound on the variance, where no more is known. Without moments, a bound or pilot draws the mean is not tested.
-    pub most_variance: Option<f64>,
+    pub variance_bound: Option<f64>,
     /// True if twice the variance of pilot draws may stand in for a variance that theory neither knows nor bounds.
     /// This requires light tails, as of lengths and counts of walks with weights that never grow.
-    pub by_pilots: bool,
+    pub pilot_variance_allowed: bool,
     /// Heaviness of the tails.
     pub tails: Tails,
     /// Unit of relative tolerances: the expected value, or, for a transmittance of optical depth `0 < τ < 0.1`, the
@@ -84,8 +84,8 @@ impl Channel {
             truth,
             mean: truth,
             moments: moments.into(),
-            most_variance: None,
-            by_pilots: false,
+            variance_bound: None,
+            pilot_variance_allowed: false,
             tails,
             unit: truth.value,
             log_unit: 0.0,
@@ -96,8 +96,8 @@ impl Channel {
     /// A channel of draws that are never negative, with a bound on `E[X²]` instead of moments.
     pub fn bounded(truth: Known, square: f64) -> Self {
         let least = (truth.value - truth.error).max(0.0);
-        let most_variance = Some((square - least * least).max(0.0));
-        Self { most_variance, ..Self::unbiased(truth, None, Tails::LIGHT) }
+        let variance_bound = Some((square - least * least).max(0.0));
+        Self { variance_bound, ..Self::unbiased(truth, None, Tails::LIGHT) }
     }
 
     /// The moments, where theory resolves them: with a smaller relative error than [`UNRESOLVED`].
@@ -145,7 +145,7 @@ pub fn transmittance(depth: Known, log_unit: f64) -> Known {
 ///
 /// With `A = X(s_{j−1})/T_{j−1}` and the independent factor `Y` of the step, both of mean 1, the
 /// step is `Δ = A(Y − 1)`: a martingale difference, uncorrelated with all others. It runs on the
-/// clock `g(s) = expm1(J₂(s))`:
+/// quadratic variation `g(s) = expm1(J₂(s))`:
 ///
 /// ```text
 /// Δ_j = X_j/T_j − X_{j−1}/T_{j−1},  X₀/T₀ = 1,  E[Δ_j] = 0
@@ -154,8 +154,8 @@ pub fn transmittance(depth: Known, log_unit: f64) -> Known {
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Increment {
-    /// `g(s_j)`, the clock at the step's end.
-    pub clock: f64,
+    /// `g(s_j)`, the quadratic variation at the step's end.
+    pub quadratic_variation: f64,
     /// `E[Δ_j²]`, of one draw, relative to T².
     pub variance: f64,
     /// `E[Δ_j⁴]/E[Δ_j²]²`; 1 where the step has no variance, infinite where it overflows.
@@ -196,7 +196,7 @@ impl Covariance {
 
 /// The distribution of a draw.
 #[derive(Debug, Clone)]
-pub enum Law {
+pub enum Distribution {
     /// The draw takes the given values with the given probabilities, which sum to 1 or to a little less (the rest
     /// is a tail of unknown values).
     Atoms(Vec<(f64, f64)>),
@@ -222,7 +222,7 @@ impl Prediction {
         let mut channels = self.channels;
         for channel in &mut channels {
             channel.moments = None;
-            channel.most_variance = None;
+            channel.variance_bound = None;
         }
         let Self { stable_share, setup_lookups, .. } = self;
         Self { channels, setup_lookups, stable_share, ..Self::default() }

@@ -45,7 +45,7 @@ pub fn independent(heroes: &[f64]) -> Prediction {
 /// Prediction for all channels by the balance heuristic, given the probability of each hero.
 pub fn balanced(heroes: &[f64]) -> Prediction {
     let channels = heroes.iter().map(|weight| match 1.0 / weight - 1.0 {
-        most if most > 0.0 => Channel { most_variance: Some(most), ..channel(None) },
+        most if most > 0.0 => Channel { variance_bound: Some(most), ..channel(None) },
         _ => channel(Moments::certain(1.0)),
     });
     Prediction { channels: colours::named(channels.collect()), ..Prediction::default() }
@@ -54,7 +54,7 @@ pub fn balanced(heroes: &[f64]) -> Prediction {
 /// Prediction for all channels relative to the density of one walker, given bounds on `E[X²]`.
 pub fn relative(second_moment_bounds: &[f64]) -> Prediction {
     let bounded = |square: &f64| Channel {
-        most_variance: Some((square - 1.0).max(ROUNDING)),
+        variance_bound: Some((square - 1.0).max(ROUNDING)),
         ..channel(None)
     };
     let channels = second_moment_bounds.iter().map(bounded).collect();

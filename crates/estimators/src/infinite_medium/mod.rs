@@ -79,7 +79,7 @@ impl Walked for InfiniteMedium {
         let (sigma, albedo) = (problem.extinction, problem.albedo());
         let unknown = |name: String, truth: Known| {
             let certain = Channel::unbiased(truth, Moments::certain(truth.value), Tails::LIGHT);
-            Channel { name, moments: None, by_pilots: true, ..certain }
+            Channel { name, moments: None, pilot_variance_allowed: true, ..certain }
         };
         let rounded = |value: f64| Known::new(value, infinite::ROUNDING * value.abs());
         let mut channels: Vec<Channel> = problem
@@ -105,7 +105,7 @@ impl Walked for InfiniteMedium {
                 let truth = collisions.truth;
                 Channel {
                     moments: Some(geometric(truth.value, end)),
-                    by_pilots: false,
+                    pilot_variance_allowed: false,
                     ..collisions
                 }
             }

@@ -52,7 +52,7 @@ fn held(setup: &Setup<Lambertian>) -> Option<Known> {
 /// A channel of unknown variance, with light tails.
 fn piloted(name: &str, truth: Known) -> Channel {
     let certain = Channel::unbiased(truth, Moments::certain(truth.value), Tails::LIGHT);
-    Channel { name: name.to_owned(), moments: None, by_pilots: true, ..certain }
+    Channel { name: name.to_owned(), moments: None, pilot_variance_allowed: true, ..certain }
 }
 
 impl Walked for Lambertian {

@@ -89,5 +89,5 @@ pub fn energy_channel(bound: f64, depth: f64) -> Channel {
     if bound == 0.0 {
         return certain;
     }
-    Channel { moments: None, most_variance: Some(bound), ..certain }
+    Channel { moments: None, variance_bound: Some(bound), ..certain }
 }

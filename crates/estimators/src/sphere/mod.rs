@@ -19,7 +19,7 @@ use theory::problems::Sphere;
 use theory::problems::ball::{Light, Sought};
 use theory::single::Tracking;
 use theory::sphere::{Answer, Lights, Observable, Scene, Spread, Spreads, Techniques, cached};
-use theory::{Channel, Law, Moments, ParticleRule, Prediction, Tails, problems};
+use theory::{Channel, Distribution, Moments, ParticleRule, Prediction, Tails, problems};
 
 pub use connect::Seeker;
 pub use page::Page;
@@ -168,8 +168,8 @@ fn all_or_nothing(value: Known) -> Prediction {
     let moments = Moments::of_product(chance, [-chance.ln(); 4], error).graded(value.grade);
     let tails = Tails { rare_event_size: 1.0 / chance, eighth_moment_ratio: 1.0 / chance };
     let channel = Channel::unbiased(value, moments, tails);
-    let law = Some(Law::Atoms(vec![(0.0, 1.0 - chance), (1.0, chance)]));
-    Prediction { law, ..Prediction::uncounted(channel) }
+    let distribution = Some(Distribution::Atoms(vec![(0.0, 1.0 - chance), (1.0, chance)]));
+    Prediction { distribution, ..Prediction::uncounted(channel) }
 }
 
 /// Prediction for a combination of techniques, with shadow rays that are tracked somehow.
@@ -183,7 +183,7 @@ fn predict_together(setup: &Setup<Sphere>, techniques: Techniques, shadow: Track
 fn predict_by_pilots(setup: &Setup<Sphere>) -> Prediction {
     let value = truth(&setup.problem).unwrap_or(UNKNOWN).value;
     let channel = Channel::unbiased(value, None, Tails::LIGHT);
-    Prediction::uncounted(Channel { by_pilots: true, ..channel })
+    Prediction::uncounted(Channel { pilot_variance_allowed: true, ..channel })
 }
 
 impl Walked for Sphere {

@@ -16,7 +16,7 @@ use crate::{Draw, Estimator, Inputs, Kernel, Refusal, Request, Setup, walks};
 use numeric::Lane;
 use theory::prediction;
 use theory::problems::Transmittance;
-use theory::{Channel, CountLaw, Law, Moments, Prediction, Tails};
+use theory::{Channel, CountLaw, Distribution, Moments, Prediction, Tails};
 
 /// Closed-form tracking; it has no settings.
 #[derive(Debug, Clone)]
@@ -28,11 +28,11 @@ pub fn exact(setup: &Setup<Transmittance>, lookups: usize) -> Prediction {
     let value = prediction::transmittance(depth, setup.fields.log_unit).value;
     let moments = Moments::certain(value);
     let channel = Channel::transmittance(depth, setup.fields.log_unit, moments, Tails::LIGHT);
-    let law = Some(Law::Atoms(vec![(value, 1.0)]));
+    let distribution = Some(Distribution::Atoms(vec![(value, 1.0)]));
     let random_numbers = Some(0.0);
     Prediction {
         random_numbers,
-        law,
+        distribution,
         ..Prediction::single(channel, CountLaw::always(lookups as f64))
     }
 }

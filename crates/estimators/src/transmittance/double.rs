@@ -22,7 +22,7 @@ use crate::{Estimator, Inputs, Refusal, Setup, product_draws};
 use theory::count::poisson;
 use theory::problems::Transmittance;
 use theory::rules::Weight;
-use theory::{Law, Prediction};
+use theory::{Distribution, Prediction};
 
 /// The double particle model; σ̂ and any control are its inputs.
 #[derive(Debug, Clone)]
@@ -41,11 +41,11 @@ pub fn unbiased_where_covered(setup: &Setup<Transmittance>) -> Result<(), Refusa
 /// The moments on this page's head, and the distribution where r is constant.
 pub fn predict_weighted(setup: &Setup<Transmittance>) -> Prediction {
     let prediction = setup.product(&Weight).predict();
-    let law = setup.residual().constant_ratio().map(|ratio| {
+    let distribution = setup.residual().constant_ratio().map(|ratio| {
         let mean = prediction.lookups.as_ref().map_or(0.0, |lookups| lookups.mean);
-        Law::Atoms(powers(setup.fields.control_transmittance(), 1.0 - ratio, mean))
+        Distribution::Atoms(powers(setup.fields.control_transmittance(), 1.0 - ratio, mean))
     });
-    Prediction { law, ..prediction }
+    Prediction { distribution, ..prediction }
 }
 
 /// `T_c f^n` with its Poisson probability, for n up to where the tail is below 1e-12.

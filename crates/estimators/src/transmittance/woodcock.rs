@@ -21,7 +21,7 @@
 use crate::{Estimator, Inputs, Refusal, Setup, product_draws};
 use theory::problems::Transmittance;
 use theory::rules::Null;
-use theory::{Law, Prediction};
+use theory::{Distribution, Prediction};
 
 /// Woodcock tracking; σ̂ is its only input.
 #[derive(Debug, Clone)]
@@ -33,8 +33,8 @@ pub const ZERO_OR_ONE: &str = "τ ≤ 300 (draws are 0 or 1, and a 1 is never se
 /// Adds the distribution of a draw that is 1 with probability T, else 0.
 pub fn zero_or_one(prediction: Prediction) -> Prediction {
     let alive = prediction.channels[0].truth.value;
-    let law = Some(Law::Atoms(vec![(0.0, 1.0 - alive), (1.0, alive)]));
-    Prediction { law, ..prediction }
+    let distribution = Some(Distribution::Atoms(vec![(0.0, 1.0 - alive), (1.0, alive)]));
+    Prediction { distribution, ..prediction }
 }
 
 impl Estimator<Transmittance> for Woodcock {

@@ -60,8 +60,8 @@ pub fn predict(scene: &Scene, rules: &Rules, ratio: Option<f64>, laws: bool) -> 
             covariances.push(Covariance { pair: [last, last + 1], value, variance });
         }
         let moments = sum.moments.filter(|_| !rules.is_shared);
-        let most_variance = rules.is_shared.then(|| most_of_sum([&found, &rough]));
-        channels.push(Channel { name: "sum".into(), moments, most_variance, ..sum });
+        let variance_bound = rules.is_shared.then(|| most_of_sum([&found, &rough]));
+        channels.push(Channel { name: "sum".into(), moments, variance_bound, ..sum });
     }
     if !rules.has_shares && channels.len() > 1 {
         channels.drain(..channels.len() - 1);

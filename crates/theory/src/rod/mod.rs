@@ -168,7 +168,7 @@ pub fn bounded(mesh: &Mesh, rod: &Rod) -> Prediction {
     let truth = truth_or_nan(mesh, rod);
     let channels = rod.channels.iter().zip(truth).map(|(quantity, truth)| Channel {
         name: quantity.name(),
-        most_variance: Some(truth.value * (1.0 - truth.value)),
+        variance_bound: Some(truth.value * (1.0 - truth.value)),
         ..Channel::unbiased(truth, None, Tails::LIGHT)
     });
     Prediction { channels: channels.collect(), ..Prediction::default() }
