@@ -1,12 +1,14 @@
-//! Medium that a program defines by closures: along a line, and in space.
+//! Media that a program defines: of one coordinate by four functions, and in space by a closure.
 
 use trueflight::OfCase;
 use trueflight::case::Case;
 use trueflight::case::Source;
-use trueflight::catalogue::{Addition, Page, Settings};
+use trueflight::catalogue::{Addition, Domain, Page, Settings};
 use trueflight::geometry::{Aabb, Bounds, Point};
 use trueflight::judge::Choice;
-use trueflight::media::own::{Formula, SpaceFormula};
+use trueflight::media::Stratified;
+use trueflight::media::own::SpaceFormula;
+use trueflight::numeric::{Known, Lane, Span};
 use trueflight::{Catalogue, check};
 
 const CASE: &str = r#"
@@ -18,18 +20,40 @@ estimators = [{ woodcock = {} }, { ratio = {} }, { regular = {} }]
 sampling.constant.value = 1.0
 "#;
 
+/// Haze that thins out: σ_t(x) = 1/(1 + (x/scale)²).
+#[derive(Clone)]
+pub struct Haze {
+    scale: f64,
+}
+
+impl Stratified for Haze {
+    fn read(settings: &Settings) -> Option<Self> {
+        settings.number("scale", Domain::Positive).map(|scale| Self { scale })
+    }
+
+    fn value<L: Lane>(&self, x: L) -> L {
+        let u = x * (1.0 / self.scale);
+        x.each(1.0) / (u * u + 1.0)
+    }
+
+    fn integral(&self, x: Span) -> Known {
+        let [from, to] = [x.from, x.to].map(|x| (x / self.scale).atan());
+        Known::new(self.scale * (to - from), self.scale * 1e-15)
+    }
+
+    fn highest(&self, x: Span) -> f64 {
+        self.value(0.0_f64.max(x.from).min(x.to)) * (1.0 + 1e-12)
+    }
+}
+
 /// Checks an estimator in a medium that Trueflight does not have.
 pub fn main() {
     let haze = Page { module: "haze", source: "Haze that thins out: σ_t = 1/(1 + (t/scale)²)." };
-    let read = |settings: &Settings| {
-        let scale = settings.number("scale", trueflight::catalogue::Domain::Positive)?;
-        Some(Formula::new(move |t: f64| 1.0 / (1.0 + (t / scale).powi(2))))
-    };
     let cube = Page { module: "cube", source: "A cube that is densest in one corner." };
     let unit = Bounds::Box(Aabb { low: Point([0.0; 3]), high: Point([1.0; 3]) });
     let corner = move |_: &Settings| Some(SpaceFormula::new(unit, 3.0, |[x, y, z]| x + y + z));
     let catalogue = Catalogue::builtin()
-        .with(Addition::line(haze, &[], read))
+        .with(Addition::layered::<Haze>(haze))
         .and_then(|catalogue| catalogue.with(Addition::volume(cube, &[], corner)))
         .expect("names that are free");
     let source = Source { name: "haze".into(), path: "haze.toml".into(), text: CASE.into() };

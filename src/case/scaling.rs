@@ -1,11 +1,11 @@
 //! Sweeps of the medium: the numbers of a spec are changed, and the case is read again from the changed spec.
 //!
-//! Every page names the settings that its field is proportional to, all together ([`Field::EXTINCTIONS`]). A factor or
+//! Every page names the settings that its field is proportional to, all together ([`Stratified::EXTINCTIONS`]). A factor or
 //! a blend of these settings is therefore exact, and theory has the same knowledge of a swept field as of a written
 //! one. Numbers are rounded to 15 digits. A field that a program adds is compared with the field that the sweep should
 //! have made.
 //!
-//! [`Field::EXTINCTIONS`]: media::Field::EXTINCTIONS
+//! [`Stratified::EXTINCTIONS`]: media::Stratified::EXTINCTIONS
 
 use crate::case::spec::Spec;
 use crate::case::sweep::What;

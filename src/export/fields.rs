@@ -115,7 +115,8 @@ impl Reader<'_> {
             let cure = "give it `bounds.box = { low, high }`";
             return Err(("its medium fills all of space".into(), cure));
         };
-        let values: Option<Vec<f64>> = volumes.iter().map(|volume| volume.single_value()).collect();
+        let values: Option<Vec<f64>> =
+            volumes.iter().map(|volume| volume.facts().single_value).collect();
         if let Some(values) = values {
             let fields = values.into_iter().map(|value| Field::Even(single(value))).collect();
             let shape = match bounds {
@@ -155,7 +156,7 @@ impl Reader<'_> {
     /// lookups take the nearest sample. `None` if a channel has another grid, or none.
     pub fn own_grids(&self, body: &Body) -> Result<Option<OwnGrid>, Unsuitable> {
         let grid = |body: &Body| match body {
-            Body::Volume { volume, .. } => volume.cells(),
+            Body::Volume { volume, .. } => volume.facts().cells,
             Body::Line { .. } | Body::Spectral { .. } => None,
         };
         let grids = self.chosen(body.channels().iter().map(grid).collect())?;

@@ -114,7 +114,7 @@ fn case_record(
         draws_per_ray: Some(case.draws_per_ray),
         experiments,
         sweep: curves::axis(case),
-        facts: case.scenario.body().facts(),
+        facts: case.scenario.body().contents(),
         notes: case.scenario.notes(),
         ..CaseRecord::default()
     };

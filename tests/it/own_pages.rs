@@ -73,11 +73,13 @@ fn what_an_own_medium_hides_is_found() {
     let bumpy = |t: f64| 0.5 + 0.5 * (3.0 * t).sin() + f64::from(t > 1.0);
     let line = move |_: &Settings| Some(Formula::new(bumpy).with_breaks(vec![1.0]));
     let corner = Page { module: "corner", source: "A corner." };
+    let layers = Page { module: "layers", source: "Layers of haze." };
     let bounds = Bounds::Box(Aabb { low: Point([0.0; 3]), high: Point([1.0; 3]) });
     let space = move |_: &Settings| Some(SpaceFormula::new(bounds, 3.0, |[x, y, z]| x + y * z));
     let catalogue = Catalogue::builtin()
         .with(Addition::line(haze, &[], line))
         .and_then(|catalogue| catalogue.with(Addition::volume(corner, &[], space)))
+        .and_then(|catalogue| catalogue.with(Addition::layered::<own_medium::Haze>(layers)))
         .expect("names that are free");
     let text = |problem: &str| format!("title = \"own\"\n{problem}");
     let line = text(
@@ -94,6 +96,13 @@ fn what_an_own_medium_hides_is_found() {
         sampling.constant.value = 2.0
         estimators = [{ woodcock = {} }, { ratio = {} }, { closed-form = {} }]",
     );
+    let layers = text(
+        r"[problem.transmittance]
+        volume.layers = { scale = 0.8, axis = [1, 0, 1] }
+        ray = { origin = [1, 0, 0], direction = [-2, 1, -1], length = 3 }
+        sampling.constant.value = 1.0
+        estimators = [{ woodcock = {} }, { ratio = {} }, { closed-form = {} }]",
+    );
     let ball = text(
         r#"[problem.furnace]
         volume.corner = {}
@@ -103,7 +112,7 @@ fn what_an_own_medium_hides_is_found() {
         sampling.constant.value = 3.0
         estimators = [{ particle = { rule = "weighted" } }]"#,
     );
-    for (name, text) in [("line", line), ("space", space), ("ball", ball)] {
+    for (name, text) in [("line", line), ("space", space), ("layers", layers), ("ball", ball)] {
         let case = catalogue.read(&source(name, &text));
         let case = case.unwrap_or_else(|error| panic!("{}", error.in_full()));
         let record = judged(&[case], &options(3, 1_000_000));

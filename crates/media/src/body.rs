@@ -41,7 +41,7 @@ pub enum Body {
 }
 
 /// Maximum number of channels.
-pub const MOST_CHANNELS: usize = 8;
+pub const MAX_CHANNELS: usize = 8;
 
 /// Parts of the ray through a volume that a problem needs; other parts may be given, and show σ_t.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -73,7 +73,7 @@ impl Body {
                 let field = read_line(settings);
                 let span = read_span(settings);
                 let ((name, profile), span) = (field?, span?);
-                let pieces = profile.pieces(span);
+                let pieces = profile.facts().pieces_per_length * span.length();
                 not_too_many(settings, "medium", pieces)?;
                 is_extinction(settings, "medium", Self::Line { name, profile, span })
             }
@@ -108,7 +108,11 @@ impl Body {
         match self {
             Self::Line { span, .. } => {
                 let (name, profile) = read_line(settings)?;
-                not_too_many(settings, "medium", profile.pieces(*span))?;
+                not_too_many(
+                    settings,
+                    "medium",
+                    profile.facts().pieces_per_length * span.length(),
+                )?;
                 Some(Self::Line { name, profile, span: *span })
             }
             Self::Volume { ray, .. } => {
@@ -149,18 +153,18 @@ impl Body {
     }
 
     /// Contents of the files of the fields, a sentence each, without repetitions.
-    pub fn facts(&self) -> Vec<String> {
-        let mut facts: Vec<String> = Vec::new();
+    pub fn contents(&self) -> Vec<String> {
+        let mut contents: Vec<String> = Vec::new();
         for channel in self.channels() {
             if let Self::Volume { volume, .. } = channel {
-                for fact in volume.facts() {
-                    if !facts.contains(&fact) {
-                        facts.push(fact);
+                for fact in volume.facts().contents {
+                    if !contents.contains(fact) {
+                        contents.push(fact.clone());
                     }
                 }
             }
         }
-        facts
+        contents
     }
 
     /// The field along its line or ray, clipped to its bounds; that of the first channel.
@@ -187,9 +191,9 @@ fn read_channels(settings: &Settings, key: &'static str) -> Option<Body> {
         (None, Some(settings.table("ray").and_then(|ray| read_ray(&ray, None))))
     };
     let fields = fields?;
-    if !(1..=MOST_CHANNELS).contains(&fields.len()) {
+    if !(1..=MAX_CHANNELS).contains(&fields.len()) {
         let message = format!("`{key}` lists {} channels", fields.len());
-        settings.fault(key, message, format!("it takes 1 to {MOST_CHANNELS}"));
+        settings.fault(key, message, format!("it takes 1 to {MAX_CHANNELS}"));
         return None;
     }
     let mut channels = Vec::new();
@@ -197,7 +201,7 @@ fn read_channels(settings: &Settings, key: &'static str) -> Option<Body> {
         channels.push(if let Some(span) = span {
             choose_line(table, Settings::choice_among).zip(span).and_then(
                 |((name, profile), span)| {
-                    not_too_many(table, "", profile.pieces(span))?;
+                    not_too_many(table, "", profile.facts().pieces_per_length * span.length())?;
                     Some(Body::Line { name, profile, span })
                 },
             )
@@ -228,17 +232,21 @@ fn read_channels(settings: &Settings, key: &'static str) -> Option<Body> {
 }
 
 /// Maximum number of pieces along one ray; more are a mistake in the case: they would fill the memory.
-const MOST_PIECES: f64 = 1e7;
+const MAX_PIECES: f64 = 1e7;
 
 /// Range of lattice coordinates: they are integers of 32 bits.
-const FARTHEST: f64 = 2_147_483_648.0;
+const MAX_COORDINATE: f64 = 2_147_483_648.0;
 
 /// Checks that a ray has no more pieces than fit, all of them within the range of lattice coordinates.
 fn fits(settings: &Settings, volume: &Volume, ray: &Ray) -> Option<()> {
     let inside = volume.bounds().clip(ray);
-    let farthest = volume.farthest(ray, inside);
-    if farthest < FARTHEST {
-        return not_too_many(settings, "volume", volume.pieces(inside.length()));
+    let farthest = volume.max_lattice_coordinate(ray, inside);
+    if farthest < MAX_COORDINATE {
+        return not_too_many(
+            settings,
+            "volume",
+            volume.facts().pieces_per_length * inside.length(),
+        );
     }
     let found =
         format!("the ray reaches {farthest:.1e} cells from the field's origin, and 2^31 is most");
@@ -259,10 +267,10 @@ fn is_extinction(settings: &Settings, key: &'static str, body: Body) -> Option<B
 }
 
 fn not_too_many(settings: &Settings, key: &'static str, pieces: f64) -> Option<()> {
-    if pieces <= MOST_PIECES {
+    if pieces <= MAX_PIECES {
         return Some(());
     }
-    let found = format!("about {pieces:.1e} pieces along the ray, more than {MOST_PIECES:.0e}");
+    let found = format!("about {pieces:.1e} pieces along the ray, more than {MAX_PIECES:.0e}");
     settings.fault(key, found, "make it shorter, or its features larger");
     None
 }

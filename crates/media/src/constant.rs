@@ -11,97 +11,64 @@
 //!
 //! Optical depth and free flight are closed forms.
 
-use super::{Extinction, Field, FreeFlight, OpticalDepth, body};
+use super::layered::{Heights, Layered, Stratified};
+use super::{Facts, Reader};
 use crate::catalogue::{Domain, Settings};
-use numeric::geometry::{Aabb, Bounds, Ray};
+use numeric::geometry::{Bounds, Point};
 use numeric::{Known, Lane, Span};
 
-/// A homogeneous volume.
+/// A homogeneous field.
+#[derive(Clone)]
 pub struct Constant {
-    extinction: f64,
-    bounds: Bounds,
-}
-
-impl Constant {
-    /// A field with `σ_t ≥ 0`, 1/length, within bounds.
-    pub fn new(extinction: f64, bounds: Bounds) -> Self {
-        Self { extinction, bounds }
-    }
-}
-
-/// A homogeneous interval of a ray.
-pub struct Homogeneous {
     /// `σ_t ≥ 0`, 1/length.
     pub extinction: f64,
 }
 
-impl Extinction for Homogeneous {
-    #[inline(always)]
-    fn extinction<L: Lane>(&self, t: L) -> L {
-        t.each(self.extinction)
-    }
+/// Reads the page.
+pub fn reader() -> Reader {
+    Reader::layered::<Constant>()
+}
 
-    fn single_value(&self) -> Option<f64> {
-        Some(self.extinction)
+impl Constant {
+    /// A homogeneous volume with `σ_t ≥ 0`, 1/length.
+    pub fn within(extinction: f64, bounds: Bounds) -> Layered<Self> {
+        Layered::new(Self { extinction }, Point([0.0, 0.0, 1.0]), bounds)
     }
 }
 
-impl OpticalDepth for Homogeneous {
-    fn optical_depth(&self, span: Span) -> Known {
-        Known::exact(self.extinction * span.length())
-    }
-}
-
-impl FreeFlight for Homogeneous {
-    fn is_direct(&self) -> bool {
-        true
-    }
-
-    fn free_flight(&self, span: Span, depth: f64) -> Option<f64> {
-        let s = span.from + depth / self.extinction;
-        (s < span.to).then_some(s)
-    }
-}
-
-impl Field for Constant {
-    type Profile = Homogeneous;
-
+impl Stratified for Constant {
     const EXTINCTIONS: &'static [&'static str] = &["extinction"];
 
-    fn line(settings: &Settings) -> Option<Homogeneous> {
-        let extinction = settings.number("extinction", Domain::NonNegative)?;
-        Some(Homogeneous { extinction })
-    }
+    const HAS_AXIS: bool = false;
 
-    fn volume(settings: &Settings) -> Option<Self> {
-        let extinction = settings.number("extinction", Domain::NonNegative);
-        let bounds = body::read_bounds(settings);
-        Some(Self { extinction: extinction?, bounds: bounds? })
-    }
-
-    fn bounds(&self) -> Bounds {
-        self.bounds
+    fn read(settings: &Settings) -> Option<Self> {
+        settings.number("extinction", Domain::NonNegative).map(|extinction| Self { extinction })
     }
 
     #[inline(always)]
-    fn extinction_at<L: Lane>(&self, [x, ..]: [L; 3]) -> L {
+    fn value<L: Lane>(&self, x: L) -> L {
         x.each(self.extinction)
     }
 
-    fn majorant(&self, _: &Aabb) -> f64 {
+    fn integral(&self, x: Span) -> Known {
+        Known::exact(self.extinction * x.length())
+    }
+
+    fn highest(&self, _: Span) -> f64 {
         self.extinction
     }
 
-    fn single_value(&self) -> Option<f64> {
-        Some(self.extinction)
+    fn inverse(&self, x: Span, depth: f64) -> Option<f64> {
+        let s = x.from + depth / self.extinction;
+        (s < x.to).then_some(s)
     }
 
-    fn along(&self, _: &Ray, _: Span) -> Homogeneous {
-        Homogeneous { extinction: self.extinction }
+    fn facts(&self) -> Facts<'_> {
+        Facts { single_value: Some(self.extinction), has_inverse: true, ..Facts::default() }
     }
 
-    fn is_radial(&self) -> bool {
-        matches!(self.bounds, Bounds::Sphere { .. })
+    fn along(&self, _: &Heights, _: Span) -> Option<Self> {
+        Some(self.clone())
     }
 }
 
@@ -111,15 +78,11 @@ mod tests {
 
     #[test]
     fn flight_inverts_depth() {
-        let field = Homogeneous { extinction: 0.5 };
-        assert_eq!(field.optical_depth(Span::new(1.0, 5.0)).value, 2.0);
-        assert_eq!(field.free_flight(Span::new(1.0, 5.0), 1.0), Some(3.0));
-        assert_eq!(field.free_flight(Span::new(1.0, 5.0), 2.5), None);
-    }
-
-    #[test]
-    fn vacuum_is_never_hit() {
-        let field = Homogeneous { extinction: 0.0 };
-        assert_eq!(field.free_flight(Span::new(0.0, 1.0), 1e-9), None);
+        let field = Constant { extinction: 0.5 };
+        assert_eq!(field.integral(Span::new(1.0, 5.0)).value, 2.0);
+        assert_eq!(field.inverse(Span::new(1.0, 5.0), 1.0), Some(3.0));
+        assert_eq!(field.inverse(Span::new(1.0, 5.0), 2.5), None);
+        let vacuum = Constant { extinction: 0.0 };
+        assert_eq!(vacuum.inverse(Span::new(0.0, 1.0), 1e-9), None);
     }
 }

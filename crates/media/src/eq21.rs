@@ -25,10 +25,10 @@
 //! 2017, Eq. 21.
 
 use std::f64::consts::{FRAC_1_PI, FRAC_PI_2};
+use std::sync::Arc;
 
 use super::sines::{highest_sine, sinc};
-use super::{Extinction, Field, FreeFlight, OpticalDepth};
-use crate::catalogue::Settings;
+use super::{Extinction, Facts, Field, OpticalDepth, Profile, Reader};
 use numeric::geometry::{Aabb, Bounds, Point, Ray};
 use numeric::{Known, Lane, Span, sum::Sum};
 
@@ -71,6 +71,10 @@ impl Extinction for Eq21Ray {
     fn extinction<L: Lane>(&self, t: L) -> L {
         let (u, v) = (self.half_u, self.turned_v);
         shape(t.times_plus(t.each(u.1), t.each(u.0)), t.times_plus(t.each(v.1), t.each(v.0)))
+    }
+
+    fn facts(&self) -> Facts<'_> {
+        Facts { panel_nodes: Some(16), ..Facts::default() }
     }
 }
 
@@ -135,31 +139,20 @@ impl OpticalDepth for Eq21Ray {
         // Half a unit of length turns the fastest term of σ_t², cos 10u, by 13 radians at most.
         span.even_cuts((2.0 * span.length()).ceil())
     }
-
-    fn panel_nodes(&self) -> Option<usize> {
-        Some(16)
-    }
 }
 
-impl FreeFlight for Eq21Ray {}
+/// Reads the page.
+pub fn reader() -> Reader {
+    Reader::new(&[]).volume(|_| Some(Eq21))
+}
 
 impl Field for Eq21 {
-    type Profile = Eq21Ray;
-
-    const EXTINCTIONS: &'static [&'static str] = &[];
-
-    const IN_LINE: bool = false;
-
-    fn volume(_: &Settings) -> Option<Self> {
-        Some(Self)
-    }
-
     fn bounds(&self) -> Bounds {
         Bounds::Sphere { centre: Point([0.0, 0.0, 10.0]), radius: 10.0 }
     }
 
     #[inline(always)]
-    fn extinction_at<L: Lane>(&self, p: [L; 3]) -> L {
+    fn value<L: Lane>(&self, p: [L; 3]) -> L {
         shape(U.along(p) * HALF_TURNS, V.along(p) * HALF_TURNS - 0.25)
     }
 
@@ -171,12 +164,12 @@ impl Field for Eq21 {
         (highest + 1e-13).min(1.0)
     }
 
-    fn along(&self, ray: &Ray, _: Span) -> Eq21Ray {
+    fn along(&self, ray: &Ray, _: Span) -> Arc<Profile> {
         let (u, v) =
             ((ray.origin.dot(U), ray.direction.dot(U)), (ray.origin.dot(V), ray.direction.dot(V)));
         let half_u = (u.0 * HALF_TURNS, u.1 * HALF_TURNS);
         let turned_v = (v.0 * HALF_TURNS - 0.25, v.1 * HALF_TURNS);
-        Eq21Ray { u, v, half_u, turned_v }
+        Arc::new(Eq21Ray { u, v, half_u, turned_v })
     }
 }
 
@@ -194,10 +187,10 @@ mod tests {
     #[test]
     fn the_origin_is_a_hand_value() {
         // cos 0 = 1 and sin 0 = 0 leave 2/3.
-        assert!((Eq21.extinction_at([0.0; 3]) - 2.0 / 3.0).abs() < 1e-15);
+        assert!((Eq21.value([0.0; 3]) - 2.0 / 3.0).abs() < 1e-15);
         let (x, z) = (0.4f64, 3.0f64);
         let direct = (0.5 * ((1.5 * (x + z)).cos() + 1.0)).powi(5) * ((0.5 * z).sin() + 2.0) / 3.0;
-        assert!((Eq21.extinction_at([x, 0.0, z]) - direct).abs() < 1e-15);
+        assert!((Eq21.value([x, 0.0, z]) - direct).abs() < 1e-15);
     }
 
     #[test]
@@ -218,11 +211,11 @@ mod tests {
     fn panels_integrate_the_square() {
         let ray = Ray::new(Point([0.0; 3]), Point([0.0, 0.0, 1.0]), 20.0).expect("a direction");
         let field = Eq21.along(&ray, ray.span());
-        let rule = GaussLegendre::new(field.panel_nodes().unwrap_or_default());
+        let rule = GaussLegendre::new(field.facts().panel_nodes.unwrap_or_default());
         let mut ends = vec![0.0];
         ends.extend(field.breaks(ray.span()));
         ends.push(20.0);
-        let panel = |e: &[f64]| rule.integrate(e[0], e[1], |t| field.extinction(t).powi(2));
+        let panel = |e: &[f64]| rule.integrate(e[0], e[1], |t| field.at(t).powi(2));
         let square: f64 = ends.windows(2).map(panel).sum();
         // 30-digit arithmetic.
         assert!((square - 1.960_752_650_443_700_7).abs() < 4e-15);
@@ -233,6 +226,6 @@ mod tests {
         // u/1.5 from 1.5 to 2.7 holds the trough at 2.09 and no crest.
         let within = Aabb { low: Point([0.0, 0.0, 1.5]), high: Point([0.0, 0.0, 2.7]) };
         let highest = Eq21.majorant(&within);
-        assert!(highest < 0.02 && highest >= Eq21.extinction_at([0.0, 0.0, 1.5]));
+        assert!(highest < 0.02 && highest >= Eq21.value([0.0, 0.0, 1.5]));
     }
 }

@@ -25,8 +25,9 @@
 //! rounding of each erf and the rounding of its argument; the free flight is a bracketed root.
 
 use std::f64::consts::{FRAC_1_SQRT_2, FRAC_PI_2};
+use std::sync::Arc;
 
-use super::{Extinction, Field, FreeFlight, OpticalDepth, body};
+use super::{Extinction, Facts, Field, OpticalDepth, Profile, Reader, body};
 use crate::catalogue::{Domain, Settings};
 use numeric::geometry::{Aabb, Bounds, Point, Ray};
 use numeric::{Known, Lane, Span};
@@ -37,6 +38,26 @@ pub struct Gaussian {
     centre: Point,
     width: f64,
     bounds: Bounds,
+}
+
+/// Reads the page.
+pub fn reader() -> Reader {
+    Reader::new(&["peak"]).line(read_line).volume(read_volume)
+}
+
+fn read_line(settings: &Settings) -> Option<Bump> {
+    let peak = settings.number("peak", Domain::NonNegative);
+    let foot = settings.number("centre", Domain::Finite);
+    let width = settings.number("width", Domain::Positive);
+    Some(Bump { peak: peak?, foot: foot?, width: width? })
+}
+
+fn read_volume(settings: &Settings) -> Option<Gaussian> {
+    let peak = settings.number("peak", Domain::NonNegative);
+    let centre = settings.triple("centre").map(Point);
+    let width = settings.number("width", Domain::Positive);
+    let bounds = body::read_bounds(settings);
+    Some(Gaussian { peak: peak?, centre: centre?, width: width?, bounds: bounds? })
 }
 
 impl Gaussian {
@@ -98,57 +119,37 @@ impl OpticalDepth for Bump {
     }
 }
 
-impl FreeFlight for Bump {}
-
 impl Field for Gaussian {
-    type Profile = Bump;
-
-    const EXTINCTIONS: &'static [&'static str] = &["peak"];
-
-    fn line(settings: &Settings) -> Option<Bump> {
-        let peak = settings.number("peak", Domain::NonNegative);
-        let foot = settings.number("centre", Domain::Finite);
-        let width = settings.number("width", Domain::Positive);
-        Some(Bump { peak: peak?, foot: foot?, width: width? })
-    }
-
-    fn volume(settings: &Settings) -> Option<Self> {
-        let peak = settings.number("peak", Domain::NonNegative);
-        let centre = settings.triple("centre").map(Point);
-        let width = settings.number("width", Domain::Positive);
-        let bounds = body::read_bounds(settings);
-        Some(Self { peak: peak?, centre: centre?, width: width?, bounds: bounds? })
-    }
-
     fn bounds(&self) -> Bounds {
         self.bounds
     }
 
     #[inline(always)]
-    fn extinction_at<L: Lane>(&self, p: [L; 3]) -> L {
+    fn value<L: Lane>(&self, p: [L; 3]) -> L {
         (self.centre.square_to(p, 1.0 / self.width) * -0.5).exp() * self.peak
     }
 
     fn majorant(&self, within: &Aabb) -> f64 {
         // The exponent of a lookup is rounded, too.
-        self.extinction_at(within.nearest(self.centre).0) * (1.0 + 1e-12)
+        self.value(within.nearest(self.centre).0) * (1.0 + 1e-12)
     }
 
-    fn along(&self, ray: &Ray, _: Span) -> Bump {
+    fn along(&self, ray: &Ray, _: Span) -> Arc<Profile> {
         let (foot, offset) = ray.nearest_to(self.centre);
         let offset = offset * (1.0 / self.width);
         let peak = self.peak * (-0.5 * offset.dot(offset)).exp();
-        Bump { peak, foot, width: self.width }
+        Arc::new(Bump { peak, foot, width: self.width })
     }
 
-    fn is_radial(&self) -> bool {
-        matches!(self.bounds, Bounds::Sphere { centre, radius }
-            if centre == self.centre && self.width >= NARROWEST * radius)
+    fn facts(&self) -> Facts<'_> {
+        let is_radial = matches!(self.bounds, Bounds::Sphere { centre, radius }
+            if centre == self.centre && self.width >= MIN_WIDTH * radius);
+        Facts { is_radial, ..Facts::default() }
     }
 }
 
 /// Minimum width of a blob relative to its ball that the solver of light in balls resolves.
-const NARROWEST: f64 = 0.15;
+const MIN_WIDTH: f64 = 0.15;
 
 #[cfg(test)]
 mod tests {

@@ -52,10 +52,10 @@ use super::cells::Cells;
 use super::cubics::Cubics;
 use super::grid_file::Format;
 use super::grid_settings::{
-    facts, format, no_placement, own_bounds, random, read_bounds, read_placement, read_samples,
+    contents, format, no_placement, own_bounds, random, read_bounds, read_placement, read_samples,
 };
 use super::voxels::{Interpolation, Placement, Voxels};
-use super::{Extinction, Field, FreeFlight, OpticalDepth, Smoothness};
+use super::{Extinction, Facts, Field, OpticalDepth, Profile, Reader, Smoothness};
 use crate::catalogue::{Domain, Settings};
 use numeric::geometry::{Aabb, Bounds, Ray};
 use numeric::{Known, Lane, Span};
@@ -66,7 +66,7 @@ pub struct Grid {
     /// Number of samples along each axis, if they are in the middle of cells.
     cells: Option<[usize; 3]>,
     /// Contents of the file; empty for a random grid.
-    facts: Vec<String>,
+    contents: Vec<String>,
 }
 
 impl Grid {
@@ -83,9 +83,14 @@ impl Grid {
         Self::placed(voxels, size, placement, Vec::new())
     }
 
-    fn placed(voxels: Voxels, size: [usize; 3], placement: Placement, facts: Vec<String>) -> Self {
+    fn placed(
+        voxels: Voxels,
+        size: [usize; 3],
+        placement: Placement,
+        contents: Vec<String>,
+    ) -> Self {
         let cells = (placement != Placement::Vertices).then_some(size);
-        Self { voxels: Arc::new(voxels), cells, facts }
+        Self { voxels: Arc::new(voxels), cells, contents }
     }
 }
 
@@ -140,6 +145,11 @@ impl Extinction for GridRay {
     fn extinction<L: Lane>(&self, t: L) -> L {
         self.lookups.value(t)
     }
+
+    fn facts(&self) -> Facts<'_> {
+        // The square of a cubic has degree 6.
+        Facts { panel_nodes: Some(4), has_inverse: true, ..Facts::default() }
+    }
 }
 
 impl OpticalDepth for GridRay {
@@ -160,72 +170,54 @@ impl OpticalDepth for GridRay {
         self.cells.crossings(span)
     }
 
-    fn panel_nodes(&self) -> Option<usize> {
-        // The square of a cubic has degree 6.
-        Some(4)
-    }
-}
-
-impl FreeFlight for GridRay {
-    fn is_direct(&self) -> bool {
-        true
-    }
-
     fn free_flight(&self, span: Span, depth: f64) -> Option<f64> {
         self.cells.invert(span, depth, |index, cell, part| self.part(index, cell, part))
     }
 }
 
+/// Reads the page.
+pub fn reader() -> Reader {
+    Reader::new(&["extinction"]).volume(read_volume)
+}
+
+fn read_volume(settings: &Settings) -> Option<Grid> {
+    let samples = read_samples(settings);
+    let interpolation = settings.word_or("interpolation", &["trilinear", "nearest"], "trilinear");
+    let format = format(settings);
+    let has_transform = format.is_some_and(Format::has_transform);
+    let placement = match format {
+        Some(format) if has_transform => no_placement(settings, format),
+        _ => read_placement(settings, format),
+    };
+    let factor = settings.number_or("extinction", Domain::NonNegative, 1.0);
+    let bounds = (!has_transform && settings.has("bounds")).then(|| read_bounds(settings));
+    let (samples, placement, factor) = (samples?, placement?, factor?);
+    let interpolation = match interpolation? {
+        "nearest" => Interpolation::Nearest,
+        _ => Interpolation::Trilinear,
+    };
+    let bounds = match bounds {
+        Some(given) => given?,
+        None => own_bounds(settings, &samples)?,
+    };
+    if placement == Placement::Vertices && samples.size.iter().any(|&n| n < 2) {
+        let [x, y, z] = samples.size;
+        let message = format!("{x} × {y} × {z} samples do not reach from corner to corner");
+        settings.fault("samples", message, "give two or more along each axis, or \"centres\"");
+        return None;
+    }
+    let contents = contents(settings, &samples, bounds);
+    let voxels = Voxels::new(&samples, factor, bounds, interpolation, placement);
+    Some(Grid::placed(voxels, samples.size, placement, contents))
+}
+
 impl Field for Grid {
-    type Profile = GridRay;
-
-    const EXTINCTIONS: &'static [&'static str] = &["extinction"];
-
-    const IN_LINE: bool = false;
-
-    fn volume(settings: &Settings) -> Option<Self> {
-        let samples = read_samples(settings);
-        let interpolation =
-            settings.word_or("interpolation", &["trilinear", "nearest"], "trilinear");
-        let format = format(settings);
-        let has_transform = format.is_some_and(Format::has_transform);
-        let placement = match format {
-            Some(format) if has_transform => no_placement(settings, format),
-            _ => read_placement(settings, format),
-        };
-        let factor = settings.number_or("extinction", Domain::NonNegative, 1.0);
-        let bounds = (!has_transform && settings.has("bounds")).then(|| read_bounds(settings));
-        let (samples, placement, factor) = (samples?, placement?, factor?);
-        let interpolation = match interpolation? {
-            "nearest" => Interpolation::Nearest,
-            _ => Interpolation::Trilinear,
-        };
-        let bounds = match bounds {
-            Some(given) => given?,
-            None => own_bounds(settings, &samples)?,
-        };
-        if placement == Placement::Vertices && samples.size.iter().any(|&n| n < 2) {
-            let [x, y, z] = samples.size;
-            let message = format!("{x} × {y} × {z} samples do not reach from corner to corner");
-            settings.fault("samples", message, "give two or more along each axis, or \"centres\"");
-            return None;
-        }
-        let facts = facts(settings, &samples, bounds);
-        let voxels = Voxels::new(&samples, factor, bounds, interpolation, placement);
-        Some(Self::placed(voxels, samples.size, placement, facts))
-    }
-
-    fn cells(&self) -> Option<([usize; 3], bool)> {
-        self.cells.map(|size| (size, self.voxels.is_nearest()))
-    }
-
-    fn facts(&self) -> Vec<String> {
-        self.facts.clone()
-    }
-
-    fn smoothness(&self) -> Smoothness {
+    fn facts(&self) -> Facts<'_> {
         // Cells whose faces are not along the axes are no better than layers.
-        if self.voxels.is_turned() { Smoothness::Layers } else { Smoothness::Cells }
+        let is_turned = self.voxels.is_turned();
+        let smoothness = if is_turned { Smoothness::Layers } else { Smoothness::Cells };
+        let cells = self.cells.map(|size| (size, self.voxels.is_nearest()));
+        Facts { smoothness, cells, contents: &self.contents, ..Facts::default() }
     }
 
     fn bounds(&self) -> Bounds {
@@ -233,7 +225,7 @@ impl Field for Grid {
     }
 
     #[inline(always)]
-    fn extinction_at<L: Lane>(&self, p: [L; 3]) -> L {
+    fn value<L: Lane>(&self, p: [L; 3]) -> L {
         self.voxels.value(self.voxels.lattice(p))
     }
 
@@ -242,12 +234,12 @@ impl Field for Grid {
         self.voxels.highest(within) * (1.0 + 64.0 * f64::EPSILON)
     }
 
-    fn farthest(&self, ray: &Ray, inside: Span) -> f64 {
-        self.voxels.track(ray).farthest(inside)
+    fn max_lattice_coordinate(&self, ray: &Ray, inside: Span) -> f64 {
+        self.voxels.track(ray).max_coordinate(inside)
     }
 
-    fn along(&self, ray: &Ray, inside: Span) -> GridRay {
-        GridRay::new(self.voxels.clone(), ray, inside)
+    fn along(&self, ray: &Ray, inside: Span) -> Arc<Profile> {
+        Arc::new(GridRay::new(self.voxels.clone(), ray, inside))
     }
 }
 
@@ -271,7 +263,7 @@ mod tests {
         let cube = Aabb { low: Point([0.0; 3]), high: Point([4.0; 3]) };
         let (linear, vertices) = (Interpolation::Trilinear, Placement::Vertices);
         let voxels = Voxels::new(&samples, 1.0, cube, linear, vertices);
-        Grid { voxels: Arc::new(voxels), cells: None, facts: Vec::new() }
+        Grid { voxels: Arc::new(voxels), cells: None, contents: Vec::new() }
     }
 
     fn depth(field: &Grid, origin: [f64; 3], direction: [f64; 3]) -> Known {

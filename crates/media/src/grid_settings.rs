@@ -70,7 +70,7 @@ fn read_choice(settings: &Settings) -> Option<Choice> {
 }
 
 /// Contents of the file as sentences: voxels along each axis and the box.
-pub(super) fn facts(settings: &Settings, samples: &Samples, bounds: Aabb) -> Vec<String> {
+pub(super) fn contents(settings: &Settings, samples: &Samples, bounds: Aabb) -> Vec<String> {
     let Some(Value::Text(name)) = settings.entry("file").map(|entry| &entry.node.value) else {
         return Vec::new();
     };
@@ -80,12 +80,12 @@ pub(super) fn facts(settings: &Settings, samples: &Samples, bounds: Aabb) -> Vec
     let corner = |point: Point| point.0.map(|x| short(x, 6)).join(", ");
     let (low, high) = (corner(bounds.low), corner(bounds.high));
     let about = if samples.turned.is_some() { "turned, in the box" } else { "box" };
-    let mut facts =
+    let mut contents =
         vec![format!("grid {name}: {x} × {y} × {z} voxels (x, y, z), {about} [{low}] to [{high}]")];
     if !samples.remark.is_empty() {
-        facts.push(format!("grid {name}: {}", samples.remark));
+        contents.push(format!("grid {name}: {}", samples.remark));
     }
-    facts
+    contents
 }
 
 #[allow(clippy::cast_possible_truncation)] // read within 32 bits

@@ -186,7 +186,7 @@ impl Track {
     }
 
     /// The largest `|start| + |slope·t|` of any axis on an interval; NaN if one is NaN.
-    pub fn farthest(&self, inside: Span) -> f64 {
+    pub fn max_coordinate(&self, inside: Span) -> f64 {
         let t = inside.from.abs().max(inside.to.abs());
         let reach = self.start.iter().zip(self.slope).map(|(a, b)| a.abs() + b.abs() * t);
         reach.fold(0.0, |most, x| if x.is_nan() || x > most { x } else { most })

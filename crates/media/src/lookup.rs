@@ -8,93 +8,203 @@
 //! Source: F. B. Brown, W. R. Martin, *Monte Carlo methods for radiation transport analysis on vector
 //! computers*, Progress in Nuclear Energy 14 (1984).
 
+use std::marker::PhantomData;
+
 use fearless_simd::{Level, Simd, SimdBase, f64x8};
 
-use super::{Extinction, Field, Inlined, Medium};
+use super::{Extinction, Facts, Field, Inlined, Medium};
 use numeric::fused::in_fused_code;
-use numeric::geometry::{Bounds, Point};
+use numeric::geometry::Bounds;
 use numeric::pack::{self, Task, WIDTH};
 use numeric::twin::PAIR;
 use numeric::{Lane, Twin};
 
-/// The lookups of one field on the hardware of one level.
-trait Batch: Send + Sync {
-    /// `σ_t` at one distance.
-    fn one(&self, t: f64) -> f64;
+/// A field at places of N coordinates, as one formula for every lane type.
+trait Formula<const N: usize>: Send + Sync {
+    /// `σ_t` at a place.
+    fn at<L: Lane>(&self, place: [L; N]) -> L;
 
-    /// Replaces the distances of two packs by `σ_t`, with the bits of [`Batch::one`].
-    fn pair(&self, t: &mut [f64; PAIR]);
-
-    /// Replaces any multiple of eight distances by `σ_t`, with the bits of [`Batch::one`].
-    fn all(&self, t: &mut [f64]);
+    /// See [`Field::depths_along`].
+    #[inline(always)]
+    fn depths<L: Lane>(&self, _: [[L; 3]; 2], _: [L; 2]) -> Option<L> {
+        None
+    }
 }
 
-struct Compiled<'a, F, S> {
-    field: &'a F,
+/// A field at distances along a ray.
+struct Along<'a, F>(&'a F);
+
+impl<F: Extinction> Formula<1> for Along<'_, F> {
+    #[inline(always)]
+    fn at<L: Lane>(&self, [t]: [L; 1]) -> L {
+        self.0.extinction(t)
+    }
+}
+
+/// A field at points; with bounds, it is 0 outside them.
+struct Within<'a, F>(&'a F, Option<Bounds>);
+
+impl<F: Field> Formula<3> for Within<'_, F> {
+    #[inline(always)]
+    fn at<L: Lane>(&self, p: [L; 3]) -> L {
+        let found = self.0.value(p);
+        match &self.1 {
+            Some(bounds) => Lane::select(bounds.contain(p), found, found.each(0.0)),
+            None => found,
+        }
+    }
+
+    #[inline(always)]
+    fn depths<L: Lane>(&self, rays: [[L; 3]; 2], interval: [L; 2]) -> Option<L> {
+        self.0.depths_along(rays, interval)
+    }
+}
+
+/// The lookups of one field on the hardware of one level. All have the bits of [`Batch::one`].
+trait Batch<const N: usize>: Send + Sync {
+    /// `σ_t` at one place.
+    fn one(&self, place: [f64; N]) -> f64;
+
+    /// `σ_t` at the places of two packs.
+    fn pair(&self, places: &[[f64; PAIR]; N]) -> [f64; PAIR];
+
+    /// `σ_t` at the places of one pack.
+    fn pack(&self, places: &[[f64; WIDTH]; N]) -> [f64; WIDTH];
+
+    /// See [`Batches::depths`].
+    fn depths(&self, rays: &[[f64; WIDTH]; 8]) -> Option<[f64; WIDTH]>;
+}
+
+/// Lookups compiled for wide packs.
+struct Compiled<F, S> {
+    formula: F,
     simd: S,
 }
 
-impl<F: Extinction, S: Simd> Batch for Compiled<'_, F, S> {
-    fn one(&self, t: f64) -> f64 {
+impl<const N: usize, F: Formula<N>, S: Simd> Batch<N> for Compiled<F, S> {
+    fn one(&self, place: [f64; N]) -> f64 {
         self.simd.vectorize(
             #[inline(always)]
-            || self.field.extinction(t),
+            || self.formula.at(place),
         )
     }
 
-    fn pair(&self, t: &mut [f64; PAIR]) {
+    fn pair(&self, places: &[[f64; PAIR]; N]) -> [f64; PAIR] {
         self.simd.vectorize(
             #[inline(always)]
             || {
                 // Not as twins: draws along the ray have the bits of scalars.
-                let Twin(first, second) = Twin::from_slice(self.simd, t);
-                Twin(self.field.extinction(first), self.field.extinction(second)).store_slice(t);
+                let zero = f64x8::splat(self.simd, 0.0);
+                let (mut first, mut second) = ([zero; N], [zero; N]);
+                for axis in 0..N {
+                    Twin(first[axis], second[axis]) = Twin::from_slice(self.simd, &places[axis]);
+                }
+                let mut found = [0.0; PAIR];
+                Twin(self.formula.at(first), self.formula.at(second)).store_slice(&mut found);
+                found
             },
-        );
+        )
     }
 
-    fn all(&self, t: &mut [f64]) {
+    fn pack(&self, places: &[[f64; WIDTH]; N]) -> [f64; WIDTH] {
         self.simd.vectorize(
             #[inline(always)]
             || {
-                for pack in t.as_chunks_mut::<WIDTH>().0 {
-                    self.field.extinction(f64x8::from_slice(self.simd, pack)).store_slice(pack);
+                let mut lanes = [f64x8::splat(self.simd, 0.0); N];
+                for axis in 0..N {
+                    lanes[axis] = f64x8::from_slice(self.simd, &places[axis]);
                 }
+                let mut found = [0.0; WIDTH];
+                self.formula.at(lanes).store_slice(&mut found);
+                found
             },
-        );
+        )
+    }
+
+    fn depths(&self, rays: &[[f64; WIDTH]; 8]) -> Option<[f64; WIDTH]> {
+        self.simd.vectorize(
+            #[inline(always)]
+            || {
+                let mut lanes = [f64x8::splat(self.simd, 0.0); 8];
+                for (number, row) in rays.iter().enumerate() {
+                    lanes[number] = f64x8::from_slice(self.simd, row);
+                }
+                let [a, b, c, x, y, z, from, to] = lanes;
+                let depths = self.formula.depths([[a, b, c], [x, y, z]], [from, to])?;
+                let mut found = [0.0; WIDTH];
+                depths.store_slice(&mut found);
+                Some(found)
+            },
+        )
     }
 }
 
 /// Lookups of one place after the other, for hardware without wide packs.
-struct OneByOne<'a, F>(&'a F);
+struct OneByOne<F>(F);
 
-impl<F: Extinction> Batch for OneByOne<'_, F> {
-    fn one(&self, t: f64) -> f64 {
-        in_fused_code(
-            #[inline(always)]
-            || self.0.extinction(t),
-        )
-    }
-
-    fn pair(&self, t: &mut [f64; PAIR]) {
-        self.all(t);
-    }
-
-    fn all(&self, t: &mut [f64]) {
+impl<F> OneByOne<F> {
+    fn each<const N: usize, const M: usize>(&self, places: &[[f64; M]; N]) -> [f64; M]
+    where
+        F: Formula<N>,
+    {
         in_fused_code(
             #[inline(always)]
             || {
-                for t in t {
-                    *t = self.0.extinction(*t);
+                let mut found = [0.0; M];
+                for lane in 0..M {
+                    found[lane] = self.0.at(places.map(|row| row[lane]));
                 }
+                found
             },
-        );
+        )
+    }
+}
+
+impl<const N: usize, F: Formula<N>> Batch<N> for OneByOne<F> {
+    fn one(&self, place: [f64; N]) -> f64 {
+        in_fused_code(
+            #[inline(always)]
+            || self.0.at(place),
+        )
+    }
+
+    fn pair(&self, places: &[[f64; PAIR]; N]) -> [f64; PAIR] {
+        self.each(places)
+    }
+
+    fn pack(&self, places: &[[f64; WIDTH]; N]) -> [f64; WIDTH] {
+        self.each(places)
+    }
+
+    fn depths(&self, _: &[[f64; WIDTH]; 8]) -> Option<[f64; WIDTH]> {
+        None
+    }
+}
+
+/// Compiles the lookups of a formula for the hardware of a level.
+fn compiled<'a, const N: usize>(
+    formula: impl Formula<N> + 'a,
+    level: Level,
+) -> Box<dyn Batch<N> + 'a> {
+    match pack::on_wide(level, Compile::<N, _>(formula, PhantomData)) {
+        Ok(batch) => batch,
+        Err(Compile(formula, _)) => Box::new(OneByOne(formula)),
+    }
+}
+
+struct Compile<'a, const N: usize, F>(F, PhantomData<&'a ()>);
+
+impl<'a, const N: usize, F: Formula<N> + 'a> Task for Compile<'a, N, F> {
+    type Output = Box<dyn Batch<N> + 'a>;
+
+    fn run<S: Simd>(self, simd: S) -> Self::Output {
+        Box::new(Compiled { formula: self.0, simd })
     }
 }
 
 /// A field along a ray for kernels: `σ_t` in 1/length at distances inside the support.
 pub struct Lookups<'a> {
-    batch: Box<dyn Batch + 'a>,
+    batch: Box<dyn Batch<1> + 'a>,
     single_value: Option<f64>,
     is_costly: bool,
     inlined: Option<Inlined<'a>>,
@@ -105,12 +215,9 @@ pub struct Lookups<'a> {
 impl<'a> Lookups<'a> {
     /// Lookups of a field on the hardware of a level.
     pub fn new<F: Extinction + 'static>(field: &'a F, level: Level) -> Self {
-        let (single_value, is_costly) = (field.single_value(), field.is_costly());
-        let batch = match pack::on_wide(level, Compile(field)) {
-            Ok(batch) => batch,
-            Err(Compile(field)) => Box::new(OneByOne(field)),
-        };
-        Self { batch, single_value, is_costly, inlined: Inlined::of(field), further: Vec::new() }
+        let Facts { single_value, is_costly, .. } = field.facts();
+        let (batch, inlined) = (compiled(Along(field), level), Inlined::of(field));
+        Self { batch, single_value, is_costly, inlined, further: Vec::new() }
     }
 
     /// Lookups of one field for each channel: the first, and the others.
@@ -131,7 +238,7 @@ impl<'a> Lookups<'a> {
         self.single_value
     }
 
-    /// See [`Extinction::is_costly`].
+    /// See [`Facts::is_costly`].
     pub fn is_costly(&self) -> bool {
         self.is_costly
     }
@@ -148,20 +255,19 @@ impl<'a> Lookups<'a> {
         if let Some(value) = self.single_value {
             return Twin::splat(simd, value);
         }
-        let mut row = [0.0; PAIR];
-        t.store_slice(&mut row);
-        self.batch.pair(&mut row);
-        Twin::from_slice(simd, &row)
+        let mut row = [[0.0; PAIR]];
+        t.store_slice(&mut row[0]);
+        Twin::from_slice(simd, &self.batch.pair(&row))
     }
 
     /// Replaces distances by `σ_t`, with the bits that each has by itself.
     pub fn replace(&self, t: &mut [f64]) {
         let (pairs, rest) = t.as_chunks_mut();
         for pair in pairs {
-            self.batch.pair(pair);
+            *pair = self.batch.pair(&[*pair]);
         }
         for t in rest {
-            *t = self.batch.one(*t);
+            *t = self.batch.one([*t]);
         }
     }
 }
@@ -173,140 +279,18 @@ impl Extinction for Lookups<'_> {
             Some(value) => t.each(value),
             None => t.replaced(
                 #[inline(always)]
-                |t| match t {
-                    [t] => *t = self.batch.one(*t),
-                    _ => self.batch.all(t),
+                |t| match t.as_chunks_mut() {
+                    ([pack], []) => *pack = self.batch.pack(&[*pack]),
+                    _ => t.iter_mut().for_each(|t| *t = self.batch.one([*t])),
                 },
             ),
         }
     }
 }
 
-struct Compile<'a, F>(&'a F);
-
-impl<'a, F: Extinction> Task for Compile<'a, F> {
-    type Output = Box<dyn Batch + 'a>;
-
-    fn run<S: Simd>(self, simd: S) -> Self::Output {
-        Box::new(Compiled { field: self.0, simd })
-    }
-}
-
-/// The lookups of one field in space.
-trait AtPoint: Send + Sync {
-    /// `σ_t` at a point within the bounds.
-    fn one(&self, p: Point) -> f64;
-}
-
-impl<F: Field> AtPoint for F {
-    fn one(&self, p: Point) -> f64 {
-        in_fused_code(
-            #[inline(always)]
-            || self.extinction_at(p.0),
-        )
-    }
-}
-
-/// A field in space for kernels: `σ_t` in 1/length at points within the bounds.
-pub struct Points<'a>(&'a dyn AtPoint);
-
-impl<'a> Points<'a> {
-    /// Lookups of a field.
-    pub fn new<F: Field>(field: &'a F) -> Self {
-        Self(field)
-    }
-
-    /// `σ_t` at a point.
-    #[inline(always)]
-    pub fn extinction(&self, p: Point) -> f64 {
-        self.0.one(p)
-    }
-}
-
-/// The lookups of one field in space on the hardware of one level.
-trait PointBatch: Send + Sync {
-    /// `σ_t` at the points of two packs, with the bits that each has by itself.
-    fn pair(&self, points: &[[f64; PAIR]; 3]) -> [f64; PAIR];
-
-    /// See [`Batches::depths`].
-    fn depths(&self, rays: &[[f64; WIDTH]; 8]) -> Option<[f64; WIDTH]>;
-}
-
-struct CompiledInSpace<'a, F, S> {
-    field: CompileInSpace<'a, F>,
-    simd: S,
-}
-
-impl<F: Field, S: Simd> PointBatch for CompiledInSpace<'_, F, S> {
-    fn pair(&self, points: &[[f64; PAIR]; 3]) -> [f64; PAIR] {
-        self.simd.vectorize(
-            #[inline(always)]
-            || {
-                let [x, y, z] = points;
-                let Twin(a, b) = Twin::from_slice(self.simd, x);
-                let Twin(c, d) = Twin::from_slice(self.simd, y);
-                let Twin(e, f) = Twin::from_slice(self.simd, z);
-                let mut found = [0.0; PAIR];
-                Twin(self.field.look_up([a, c, e]), self.field.look_up([b, d, f]))
-                    .store_slice(&mut found);
-                found
-            },
-        )
-    }
-
-    fn depths(&self, rays: &[[f64; WIDTH]; 8]) -> Option<[f64; WIDTH]> {
-        self.simd.vectorize(
-            #[inline(always)]
-            || {
-                let mut lanes = [f64x8::splat(self.simd, 0.0); 8];
-                for (number, row) in rays.iter().enumerate() {
-                    lanes[number] = f64x8::from_slice(self.simd, row);
-                }
-                let [a, b, c, x, y, z, from, to] = lanes;
-                let depths = self.field.field.depths_along([[a, b, c], [x, y, z]], [from, to])?;
-                let mut found = [0.0; WIDTH];
-                depths.store_slice(&mut found);
-                Some(found)
-            },
-        )
-    }
-}
-
-/// Lookups of one point after the other, for hardware without wide packs.
-struct PointByPoint<'a, F>(CompileInSpace<'a, F>);
-
-impl<F: Field> PointBatch for PointByPoint<'_, F> {
-    fn pair(&self, points: &[[f64; PAIR]; 3]) -> [f64; PAIR] {
-        let mut found = [0.0; PAIR];
-        for (number, found) in found.iter_mut().enumerate() {
-            let [x, y, z] = points;
-            *found = in_fused_code(
-                #[inline(always)]
-                || self.0.look_up([x[number], y[number], z[number]]),
-            );
-        }
-        found
-    }
-
-    fn depths(&self, _: &[[f64; WIDTH]; 8]) -> Option<[f64; WIDTH]> {
-        None
-    }
-}
-
-impl<F: Field> CompileInSpace<'_, F> {
-    #[inline(always)]
-    fn look_up<L: Lane>(&self, points: [L; 3]) -> L {
-        let found = self.field.extinction_at(points);
-        match &self.bounds {
-            Some(bounds) => Lane::select(bounds.contain(points), found, found.each(0.0)),
-            None => found,
-        }
-    }
-}
-
 /// A field in space for packets of walks: one indirect call returns σ_t at sixteen points.
 pub struct Batches<'a> {
-    batch: Box<dyn PointBatch + 'a>,
+    batch: Box<dyn Batch<3> + 'a>,
     single_value: Option<f64>,
 }
 
@@ -315,12 +299,8 @@ impl<'a> Batches<'a> {
     /// where they are 0.
     pub fn new<F: Field>(field: &'a F, level: Level, clipped: bool) -> Self {
         let bounds = clipped.then(|| field.bounds()).filter(|&b| b != Bounds::Everywhere);
-        let single_value = field.single_value().filter(|_| bounds.is_none());
-        let batch = match pack::on_wide(level, CompileInSpace { field, bounds }) {
-            Ok(batch) => batch,
-            Err(field) => Box::new(PointByPoint(field)),
-        };
-        Self { batch, single_value }
+        let single_value = field.facts().single_value.filter(|_| bounds.is_none());
+        Self { batch: compiled(Within(field, bounds), level), single_value }
     }
 
     /// `σ_t` at the points of two packs.
@@ -343,19 +323,5 @@ impl<'a> Batches<'a> {
         }
         let depths = self.batch.depths(&rows)?;
         Some(rays[0].load(&depths))
-    }
-}
-
-struct CompileInSpace<'a, F> {
-    field: &'a F,
-    /// Bounds, outside of which σ_t is 0.
-    bounds: Option<Bounds>,
-}
-
-impl<'a, F: Field> Task for CompileInSpace<'a, F> {
-    type Output = Box<dyn PointBatch + 'a>;
-
-    fn run<S: Simd>(self, simd: S) -> Self::Output {
-        Box::new(CompiledInSpace { field: self, simd })
     }
 }

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use fearless_simd::Level;
 
-use super::inverse::Table;
+use super::sampling::Table;
 use super::{Extinction, Inverse, Lookups, Profile};
 use numeric::{Known, Lane, Span};
 
@@ -95,7 +95,7 @@ impl Medium {
 
     /// The inverse, prepared for many depths.
     pub fn inverse(&self) -> Inverse {
-        let needs_table = !self.support.is_empty() && !self.profile.is_direct();
+        let needs_table = !self.support.is_empty() && !self.profile.facts().has_inverse;
         let table = needs_table.then(|| Table::of(self.profile(), self.support));
         Inverse::new(self.clone(), table)
     }
@@ -105,9 +105,9 @@ impl Medium {
         self.profile.breaks(self.support)
     }
 
-    /// See [`super::OpticalDepth::panel_nodes`].
+    /// See [`super::Facts::panel_nodes`].
     pub fn panel_nodes(&self) -> Option<usize> {
-        self.profile.panel_nodes()
+        self.profile.facts().panel_nodes
     }
 }
 

@@ -32,11 +32,11 @@
 //!
 //! Sources: K. Perlin, *Improving Noise*, SIGGRAPH 2002; the integral by cells is this crate's.
 
-use std::sync::OnceLock;
+use std::sync::{Arc, OnceLock};
 
 use super::cells::Cells;
 use super::lattice::{self, Cell, Fade, Track};
-use super::{Extinction, Field, FreeFlight, OpticalDepth, Smoothness, body};
+use super::{Extinction, Facts, Field, OpticalDepth, Profile, Reader, Smoothness, Volume, body};
 use crate::catalogue::{Domain, Settings};
 use numeric::geometry::{Aabb, Bounds, Ray};
 use numeric::{Known, Lane, Span, quadrature::GaussLegendre};
@@ -133,8 +133,12 @@ impl Octave {
 }
 
 impl Extinction for NoiseRay {
-    fn is_costly(&self) -> bool {
-        true
+    fn facts(&self) -> Facts<'_> {
+        // Seventeen nodes are exact for the square, of degree 32. Where the octaves fade, the finest one, with cells
+        // equal to these panels, contributes little: see the test of the panels.
+        let octaves = self.spectrum.octaves as usize;
+        let nodes = if self.spectrum.gain > 0.5 { 17 } else { (16 - 2 * octaves / 3).max(8) };
+        Facts { is_costly: true, panel_nodes: Some(nodes), ..Facts::default() }
     }
 
     #[inline(always)]
@@ -166,16 +170,7 @@ impl OpticalDepth for NoiseRay {
         let cells = |finest: &Octave| finest.cells(&self.rule, self.inside).crossings(span);
         self.octaves.last().map(cells).unwrap_or_default()
     }
-
-    fn panel_nodes(&self) -> Option<usize> {
-        // Seventeen are exact for the square, of degree 32. Where the octaves fade, the finest one, with cells
-        // equal to these panels, contributes little: see the test of the panels.
-        let octaves = self.spectrum.octaves as usize;
-        Some(if self.spectrum.gain > 0.5 { 17 } else { (16 - 2 * octaves / 3).max(8) })
-    }
 }
-
-impl FreeFlight for NoiseRay {}
 
 /// A ray on the lattice of a frequency.
 fn track(ray: &Ray, frequency: f64) -> Track {
@@ -197,66 +192,8 @@ impl Noise {
     fn new(spectrum: Spectrum, bounds: Bounds) -> Self {
         Self { unit: spectrum.unit(), spectrum, bounds }
     }
-}
 
-impl Field for Noise {
-    type Profile = NoiseRay;
-
-    const EXTINCTIONS: &'static [&'static str] = &["extinction"];
-
-    const IN_LINE: bool = false;
-
-    #[allow(clippy::cast_possible_truncation)] // both counts are read within their ranges
-    fn volume(settings: &Settings) -> Option<Self> {
-        let extinction = settings.number("extinction", Domain::Positive);
-        let frequency = settings.number_or("frequency", Domain::Positive, 1.0);
-        let octaves = settings.count_or("octaves", 1..=16, 12);
-        let gain = settings.number_or("gain", Domain::Unit, 0.5);
-        let seed = settings.count_or("seed", 0..=u64::from(u32::MAX), 0);
-        let fade = settings.word_or("fade", &["quintic", "cubic"], "quintic");
-        let bounds = body::read_bounds(settings);
-        let spectrum = Spectrum {
-            extinction: extinction?,
-            frequency: frequency?,
-            octaves: octaves? as u32,
-            gain: gain?,
-            seed: seed? as u32,
-            fade: if fade? == "quintic" { Fade::Quintic } else { Fade::Cubic },
-        };
-        Some(Self::new(spectrum, bounds?))
-    }
-
-    fn smoothness(&self) -> Smoothness {
-        Smoothness::SmoothCells
-    }
-
-    fn bounds(&self) -> Bounds {
-        self.bounds
-    }
-
-    fn pieces(&self, length: f64) -> f64 {
-        let Spectrum { frequency, octaves, .. } = self.spectrum;
-        // Planes in three directions, √3 of them per cell's length; the finest octave has half of all.
-        3f64.sqrt() * length * frequency * f64::from(1u32 << octaves)
-    }
-
-    fn farthest(&self, ray: &Ray, inside: Span) -> f64 {
-        let finest = self.spectrum.frequency * f64::from(1u32 << (self.spectrum.octaves - 1));
-        track(ray, finest).farthest(inside)
-    }
-
-    #[inline(always)]
-    fn extinction_at<L: Lane>(&self, p: [L; 3]) -> L {
-        let [x, y, z] = p;
-        let frequency = self.spectrum.frequency;
-        self.spectrum.value([x * frequency, y * frequency, z * frequency], self.unit)
-    }
-
-    fn majorant(&self, _: &Aabb) -> f64 {
-        self.spectrum.extinction
-    }
-
-    fn along(&self, ray: &Ray, inside: Span) -> NoiseRay {
+    fn on_ray(&self, ray: &Ray, inside: Span) -> NoiseRay {
         let spectrum = self.spectrum;
         let rule = GaussLegendre::new(9);
         let track = track(ray, spectrum.frequency);
@@ -270,12 +207,70 @@ impl Field for Noise {
         });
         NoiseRay { spectrum, unit: self.unit, track, octaves: octaves.collect(), rule, inside }
     }
+}
+
+/// Reads the page.
+pub fn reader() -> Reader {
+    Reader::new(&["extinction"]).volume(read_volume)
+}
+
+#[allow(clippy::cast_possible_truncation)] // both counts are read within their ranges
+fn read_volume(settings: &Settings) -> Option<Noise> {
+    let extinction = settings.number("extinction", Domain::Positive);
+    let frequency = settings.number_or("frequency", Domain::Positive, 1.0);
+    let octaves = settings.count_or("octaves", 1..=16, 12);
+    let gain = settings.number_or("gain", Domain::Unit, 0.5);
+    let seed = settings.count_or("seed", 0..=u64::from(u32::MAX), 0);
+    let fade = settings.word_or("fade", &["quintic", "cubic"], "quintic");
+    let bounds = body::read_bounds(settings);
+    let spectrum = Spectrum {
+        extinction: extinction?,
+        frequency: frequency?,
+        octaves: octaves? as u32,
+        gain: gain?,
+        seed: seed? as u32,
+        fade: if fade? == "quintic" { Fade::Quintic } else { Fade::Cubic },
+    };
+    Some(Noise::new(spectrum, bounds?))
+}
+
+impl Field for Noise {
+    fn bounds(&self) -> Bounds {
+        self.bounds
+    }
+
+    fn facts(&self) -> Facts<'_> {
+        let Spectrum { frequency, octaves, .. } = self.spectrum;
+        // Planes in three directions, √3 of them per cell's length; the finest octave has half of all.
+        let pieces_per_length = 3f64.sqrt() * frequency * f64::from(1u32 << octaves);
+        Facts { smoothness: Smoothness::SmoothCells, pieces_per_length, ..Facts::default() }
+    }
+
+    fn max_lattice_coordinate(&self, ray: &Ray, inside: Span) -> f64 {
+        let finest = self.spectrum.frequency * f64::from(1u32 << (self.spectrum.octaves - 1));
+        track(ray, finest).max_coordinate(inside)
+    }
+
+    #[inline(always)]
+    fn value<L: Lane>(&self, p: [L; 3]) -> L {
+        let [x, y, z] = p;
+        let frequency = self.spectrum.frequency;
+        self.spectrum.value([x * frequency, y * frequency, z * frequency], self.unit)
+    }
+
+    fn majorant(&self, _: &Aabb) -> f64 {
+        self.spectrum.extinction
+    }
+
+    fn along(&self, ray: &Ray, inside: Span) -> Arc<Profile> {
+        Arc::new(self.on_ray(ray, inside))
+    }
 
     /// The first octaves without rescaling: `B` stays that of all.
-    fn coarsened(&self, octaves: usize) -> Option<Self> {
+    fn coarsened(&self, octaves: usize) -> Option<Arc<Volume>> {
         let octaves = self.spectrum.octaves.min(u32::try_from(octaves).ok()?);
         let spectrum = Spectrum { octaves, ..self.spectrum };
-        Some(Self { spectrum, unit: self.unit, bounds: self.bounds })
+        Some(Arc::new(Self { spectrum, unit: self.unit, bounds: self.bounds }))
     }
 }
 
@@ -292,7 +287,7 @@ mod tests {
         let field = Noise::new(spectrum(octaves, fade), Bounds::Everywhere);
         let (origin, direction) = (Point([0.3, 0.7, -0.45]), Point([0.6, 0.5, 0.37]));
         let ray = Ray::new(origin, direction, length).expect("a direction");
-        field.along(&ray, ray.span())
+        field.on_ray(&ray, ray.span())
     }
 
     #[test]
@@ -321,7 +316,7 @@ mod tests {
     #[test]
     fn a_lattice_point_has_the_mean() {
         let field = Noise::new(spectrum(12, Fade::Cubic), Bounds::Everywhere);
-        assert_eq!(field.extinction_at([3.0, -4.0, 0.0]), 0.5);
+        assert_eq!(field.value([3.0, -4.0, 0.0]), 0.5);
     }
 
     #[test]
@@ -339,7 +334,7 @@ mod tests {
                     |e: &[f64]| rule.integrate(e[0], e[1], |t| field.extinction(t).powi(power));
                 ends.windows(2).map(panel).sum()
             };
-            let nodes = field.panel_nodes().unwrap_or_default();
+            let nodes = Extinction::facts(&field).panel_nodes.unwrap_or_default();
             for power in [1, 2] {
                 let (value, exact) = (integral(nodes, power), integral(17, power));
                 assert!((value - exact).abs() < 1e-13 * exact, "{octaves}: {value} {exact}");

@@ -14,7 +14,7 @@
 use std::collections::VecDeque;
 use std::sync::{Arc, LazyLock};
 
-use super::{Extinction, Field, FreeFlight, Medium, OpticalDepth, Profile, Reader, Volume};
+use super::{Extinction, Field, Medium, OpticalDepth, Profile, Reader, Stratified};
 use crate::catalogue::{Addition, Page, Settings};
 use numeric::geometry::{Aabb, Bounds, Ray};
 use numeric::quadrature::GaussLegendre;
@@ -62,8 +62,6 @@ impl<F: Fn(f64) -> f64 + Send + Sync + 'static> OpticalDepth for Formula<F> {
         self.breaks.iter().copied().filter(|&t| span.contains_inside(t)).collect()
     }
 }
-
-impl<F: Fn(f64) -> f64 + Send + Sync + 'static> FreeFlight for Formula<F> {}
 
 /// Number of panels before any of them is halved.
 const PANELS: f64 = 64.0;
@@ -181,25 +179,13 @@ impl<F: Fn([f64; 3]) -> f64 + Send + Sync + 'static> OpticalDepth for Chord<F> {
     }
 }
 
-impl<F: Fn([f64; 3]) -> f64 + Send + Sync + 'static> FreeFlight for Chord<F> {}
-
 impl<F: Fn([f64; 3]) -> f64 + Send + Sync + 'static> Field for SpaceFormula<F> {
-    type Profile = Chord<F>;
-
-    const EXTINCTIONS: &'static [&'static str] = &[];
-
-    const IN_LINE: bool = false;
-
-    fn volume(_: &Settings) -> Option<Self> {
-        None
-    }
-
     fn bounds(&self) -> Bounds {
         self.bounds
     }
 
     #[inline(always)]
-    fn extinction_at<L: Lane>(&self, p: [L; 3]) -> L {
+    fn value<L: Lane>(&self, p: [L; 3]) -> L {
         let [x, y, z] = p;
         // Elements of all three lanes are read side by side; y and z are not changed.
         x.replaced(|x| {
@@ -217,8 +203,8 @@ impl<F: Fn([f64; 3]) -> f64 + Send + Sync + 'static> Field for SpaceFormula<F> {
         self.majorant
     }
 
-    fn along(&self, ray: &Ray, _: Span) -> Chord<F> {
-        Chord { at: self.at.clone(), ray: *ray }
+    fn along(&self, ray: &Ray, _: Span) -> Arc<Profile> {
+        Arc::new(Chord { at: self.at.clone(), ray: *ray })
     }
 }
 
@@ -251,22 +237,21 @@ impl Medium {
 const PART: &str = "media";
 
 impl Addition {
-    /// A type that implements [`Field`], in 1-D and in 3-D as far as it has these forms.
-    pub fn field<F: Field>(page: Page) -> Self {
-        Self::new(PART, page, Reader::of::<F>())
+    /// A field of one coordinate: `medium.NAME = { … }` along a line, `volume.NAME = { … }` as layers in space.
+    pub fn layered<P: Stratified>(page: Page) -> Self {
+        Self::new(PART, page, Reader::layered::<P>())
     }
 
     /// A field along a line, read from its settings: `medium.NAME = { … }`.
     ///
     /// `extinctions` are the settings to which σ_t is proportional, all together. Sweeps of the density and of the
     /// contrast change these, and refuse a field that has none.
-    pub fn line<F: FreeFlight + 'static>(
+    pub fn line<F: OpticalDepth + 'static>(
         page: Page,
         extinctions: &'static [&'static str],
         read: impl Fn(&Settings) -> Option<F> + Send + Sync + 'static,
     ) -> Self {
-        let read = move |settings: &Settings| read(settings).map(|f| Arc::new(f) as Arc<Profile>);
-        Self::new(PART, page, Reader { extinctions, line: Some(Box::new(read)), volume: None })
+        Self::new(PART, page, Reader::new(extinctions).line(read))
     }
 
     /// A field in space, read from its settings: `volume.NAME = { … }`; see [`Addition::line`] for `extinctions`.
@@ -275,7 +260,6 @@ impl Addition {
         extinctions: &'static [&'static str],
         read: impl Fn(&Settings) -> Option<F> + Send + Sync + 'static,
     ) -> Self {
-        let read = move |settings: &Settings| read(settings).map(|f| Arc::new(f) as Arc<Volume>);
-        Self::new(PART, page, Reader { extinctions, line: None, volume: Some(Box::new(read)) })
+        Self::new(PART, page, Reader::new(extinctions).volume(read))
     }
 }

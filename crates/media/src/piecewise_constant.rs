@@ -16,7 +16,10 @@
 //!
 //! Optical depth and free flight are closed forms.
 
-use super::piecewise_linear::Layers;
+use super::Reader;
+use super::piecewise_linear::Pieces;
 
-/// A plane-parallel volume of homogeneous layers: one value between every two breaks.
-pub type PiecewiseConstant = Layers<true>;
+/// Reads the page: one value between every two breaks.
+pub fn reader() -> Reader {
+    Reader::layered::<Pieces<true>>()
+}

@@ -16,13 +16,19 @@
 //!
 //! Optical depth and free flight are closed forms.
 
-use super::{Field, Piecewise, Smoothness, body};
+use super::layered::{Heights, Stratified};
+use super::{Extinction, Facts, OpticalDepth, Piecewise, Reader, Smoothness};
 use crate::catalogue::{Domain, Settings};
-use numeric::geometry::{Aabb, Bounds, Point, Ray};
-use numeric::{Lane, Span};
+use numeric::{Known, Lane, Span};
 
-/// A plane-parallel volume of linearly varying layers: one value at every knot.
-pub type PiecewiseLinear = Layers<false>;
+/// Straight pieces, constant ones if they are steps.
+#[derive(Clone)]
+pub struct Pieces<const STEPS: bool>(pub Piecewise);
+
+/// Reads the page: one value at every knot.
+pub fn reader() -> Reader {
+    Reader::layered::<Pieces<false>>()
+}
 
 /// Reads `values` between every two `breaks`, or at every one of `knots`.
 pub fn read_pieces(settings: &Settings, is_steps: bool) -> Option<Piecewise> {
@@ -49,106 +55,89 @@ pub fn read_pieces(settings: &Settings, is_steps: bool) -> Option<Piecewise> {
     })
 }
 
-/// A plane-parallel volume: straight pieces along an axis; constant ones if they are steps.
-pub struct Layers<const STEPS: bool> {
-    pieces: Piecewise,
-    axis: Point,
-    bounds: Bounds,
-}
-
-impl<const STEPS: bool> Layers<STEPS> {
-    /// Layers by pieces of the height along an axis of length 1.
-    pub fn new(pieces: Piecewise, axis: Point, bounds: Bounds) -> Self {
-        Self { pieces, axis, bounds }
-    }
-}
-
-impl<const STEPS: bool> Field for Layers<STEPS> {
-    type Profile = Piecewise;
-
+impl<const STEPS: bool> Stratified for Pieces<STEPS> {
     const EXTINCTIONS: &'static [&'static str] = &["values"];
 
-    fn line(settings: &Settings) -> Option<Piecewise> {
-        read_pieces(settings, STEPS)
-    }
-
-    fn volume(settings: &Settings) -> Option<Self> {
-        let pieces = read_pieces(settings, STEPS);
-        let axis = body::read_axis(settings);
-        let bounds = body::read_bounds(settings);
-        Some(Self { pieces: pieces?, axis: axis?, bounds: bounds? })
-    }
-
-    fn smoothness(&self) -> Smoothness {
-        Smoothness::Layers
-    }
-
-    fn bounds(&self) -> Bounds {
-        self.bounds
+    fn read(settings: &Settings) -> Option<Self> {
+        read_pieces(settings, STEPS).map(Self)
     }
 
     #[inline(always)]
-    fn extinction_at<L: Lane>(&self, p: [L; 3]) -> L {
-        self.pieces.value(self.axis.along(p))
+    fn value<L: Lane>(&self, x: L) -> L {
+        self.0.value(x)
     }
 
-    fn majorant(&self, within: &Aabb) -> f64 {
-        let span = within.reach(self.axis);
-        self.pieces.on(span).corner_values().fold(0.0, f64::max)
+    fn integral(&self, x: Span) -> Known {
+        self.0.optical_depth(x)
     }
 
-    /// The pieces along the ray: heights `p·axis` become distances.
-    fn along(&self, ray: &Ray, inside: Span) -> Piecewise {
-        let (height, climb) = (ray.origin.dot(self.axis), ray.direction.dot(self.axis));
-        // A ray that climbs by less than rounding over its length stays in its layer.
-        if (climb * ray.length).abs() <= f64::EPSILON * height.abs().max(f64::MIN_POSITIVE) {
-            return Piecewise::constant(self.pieces.value(height), inside);
+    fn highest(&self, x: Span) -> f64 {
+        self.0.on(x).corner_values().fold(0.0, f64::max)
+    }
+
+    fn inverse(&self, x: Span, depth: f64) -> Option<f64> {
+        self.0.free_flight(x, depth)
+    }
+
+    fn features(&self, x: Span) -> Vec<f64> {
+        self.0.breaks(x)
+    }
+
+    fn facts(&self) -> Facts<'_> {
+        Facts { smoothness: Smoothness::Layers, ..Extinction::facts(&self.0) }
+    }
+
+    /// Heights become distances.
+    fn along(&self, heights: &Heights, inside: Span) -> Option<Self> {
+        let constant = |x: f64| Some(Self(Piecewise::constant(self.0.value(x), inside)));
+        if heights.is_level() {
+            return constant(heights.start);
         }
-        let crossings = self.pieces.knots().iter().map(|knot| (knot - height) / climb);
+        let Heights { start, slope, .. } = *heights;
+        let crossings = self.0.knots().iter().map(|knot| (knot - start) / slope);
         let crossings = inside.cut(crossings.collect());
         if crossings.len() < 2 {
-            return Piecewise::constant(self.pieces.value(height + climb * inside.from), inside);
+            return constant(start + slope * inside.from);
         }
         // Two lookups inside each piece determine its line, away from the jumps at its ends.
         let ends = crossings.windows(2).map(|piece| {
             let at = |u: f64| {
                 let t = piece[0] + u * (piece[1] - piece[0]);
-                self.pieces.value(height + climb * t)
+                self.0.value(start + slope * t)
             };
             let (a, b) = (at(0.25), at(0.75));
             (1.5 * a - 0.5 * b, 1.5 * b - 0.5 * a)
         });
-        Piecewise::joined(&crossings, ends)
+        Some(Self(Piecewise::joined(&crossings, ends)))
     }
 }
 
 #[cfg(test)]
 mod tests {
+    use super::super::{Field, Layered};
     use super::*;
+    use numeric::geometry::{Bounds, Point, Ray};
 
-    fn upright(pieces: Piecewise) -> Layers<false> {
-        let (axis, bounds) = (Point([0.0, 0.0, 1.0]), Bounds::Everywhere);
-        Layers { pieces, axis, bounds }
+    /// The optical depth along a ray through layers across the z axis.
+    fn seen(pieces: Piecewise, [origin, direction]: [[f64; 3]; 2], length: f64) -> f64 {
+        let layers =
+            Layered::new(Pieces::<false>(pieces), Point([0.0, 0.0, 1.0]), Bounds::Everywhere);
+        let ray = Ray::new(Point(origin), Point(direction), length).expect("a direction");
+        layers.along(&ray, ray.span()).optical_depth(ray.span()).value
     }
-    use crate::OpticalDepth;
 
     #[test]
     fn an_oblique_ray_sees_the_layers_stretched() {
         let pieces = Piecewise::lines(&[0.0, 1.0, 2.5, 4.0], &[0.2, 1.5, 0.4, 0.9]);
         let depth = pieces.optical_depth(Span::new(0.3, 3.7)).value;
-        let layers = upright(pieces);
-        let (origin, direction) = (Point([5.0, 1.0, 3.7]), Point([0.6, 0.0, -0.8]));
-        let ray = Ray::new(origin, direction, 3.4 / 0.8).expect("a direction");
-        let seen = layers.along(&ray, ray.span()).optical_depth(ray.span()).value;
+        let seen = seen(pieces, [[5.0, 1.0, 3.7], [0.6, 0.0, -0.8]], 3.4 / 0.8);
         assert!((seen - depth / 0.8).abs() < 1e-14);
     }
 
     #[test]
     fn a_level_ray_stays_in_its_layer() {
         let pieces = Piecewise::steps(&[0.0, 1.0, 2.0], &[0.5, 3.0]);
-        let layers = upright(pieces);
-        let ray = Ray::new(Point([0.0, 0.0, 0.5]), Point([1.0, 0.0, 0.0]), 2.0).expect("direction");
-        let seen = layers.along(&ray, ray.span()).optical_depth(ray.span()).value;
+        let seen = seen(pieces, [[0.0, 0.0, 0.5], [1.0, 0.0, 0.0]], 2.0);
         assert!((seen - 1.0).abs() < 1e-15);
     }
 }

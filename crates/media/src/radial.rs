@@ -18,19 +18,21 @@
 //! integrate exactly. D comes from the residual vector, never from a difference of squares. Rounding
 //! carries x past 1 at the surface; a σ_t below 0 by that is 0. The free flight is a bracketed root.
 
-use super::{Extinction, Field, FreeFlight, OpticalDepth};
+use std::sync::Arc;
+
+use super::{Extinction, Facts, Field, OpticalDepth, Profile, Reader};
 use crate::catalogue::{Domain, Settings};
 use numeric::geometry::{Aabb, Bounds, Point, Ray};
 use numeric::{Known, Lane, Span};
 
 /// Maximum number of coefficients: those of a cubic, which has its extremes at the roots of a quadratic.
-const MOST: usize = 4;
+const MAX_COEFFICIENTS: usize = 4;
 
 /// A ball.
 pub struct Radial {
     centre: Point,
     radius: f64,
-    coefficients: [f64; MOST],
+    coefficients: [f64; MAX_COEFFICIENTS],
 }
 
 /// A ball along a ray.
@@ -40,11 +42,11 @@ pub struct Chord {
     scale: f64,
     /// D²/radius².
     offset: f64,
-    coefficients: [f64; MOST],
+    coefficients: [f64; MAX_COEFFICIENTS],
 }
 
 #[inline(always)]
-fn polynomial<L: Lane>([a, b, c, d]: [f64; MOST], x: L) -> L {
+fn polynomial<L: Lane>([a, b, c, d]: [f64; MAX_COEFFICIENTS], x: L) -> L {
     let inner = x.times_plus(x.each(d), x.each(c));
     x.times_plus(x.times_plus(inner, x.each(b)), x.each(a)).or_more(x.each(0.0))
 }
@@ -64,6 +66,11 @@ impl Extinction for Chord {
         let v = (t - self.foot) * self.scale;
         polynomial(self.coefficients, v.times_plus(v, v.each(self.offset)))
     }
+
+    fn facts(&self) -> Facts<'_> {
+        // The square has the degree twelve.
+        Facts { panel_nodes: Some(7), ..Facts::default() }
+    }
 }
 
 impl OpticalDepth for Chord {
@@ -76,18 +83,11 @@ impl OpticalDepth for Chord {
         let off = 8.0 * (a + b + c + d) + (4.0 + 2.0 * moved) * (b + 2.0 * c + 3.0 * d);
         Known::new(half * sum, f64::EPSILON * span.length() * off)
     }
-
-    fn panel_nodes(&self) -> Option<usize> {
-        // The square has the degree twelve.
-        Some(7)
-    }
 }
-
-impl FreeFlight for Chord {}
 
 impl Radial {
     /// `Σ cₖ (r/radius)^{2k}`, which is nowhere negative in the ball.
-    pub fn new(centre: Point, radius: f64, coefficients: [f64; MOST]) -> Self {
+    pub fn new(centre: Point, radius: f64, coefficients: [f64; MAX_COEFFICIENTS]) -> Self {
         Self { centre, radius, coefficients }
     }
 
@@ -101,45 +101,44 @@ impl Radial {
     }
 }
 
-impl Field for Radial {
-    type Profile = Chord;
+/// Reads the page.
+pub fn reader() -> Reader {
+    Reader::new(&["coefficients"]).volume(read_volume)
+}
 
-    const EXTINCTIONS: &'static [&'static str] = &["coefficients"];
-
-    const IN_LINE: bool = false;
-
-    fn volume(settings: &Settings) -> Option<Self> {
-        let centre = settings.triple("centre").map(Point);
-        let radius = settings.number("radius", Domain::Positive);
-        let listed = settings.numbers("coefficients", Domain::Finite, 1)?;
-        if listed.len() > MOST {
-            let found = format!("{} coefficients", listed.len());
-            settings.fault("coefficients", found, "there are four at most");
-            return None;
-        }
-        let mut coefficients = [0.0; MOST];
-        coefficients[..listed.len()].copy_from_slice(&listed);
-        let field = Self { centre: centre?, radius: radius?, coefficients };
-        let [a, b, c, d] = coefficients;
-        let value = |x: f64| a + x * (b + x * (c + x * d));
-        let lowest = field.extremes(0.0, 1.0).min_by(|&x, &y| value(x).total_cmp(&value(y)))?;
-        let size: f64 = coefficients.iter().map(|x| x.abs()).sum();
-        // The rounding error at a double root is no negative extinction.
-        if value(lowest) < -1e-14 * size {
-            let found =
-                format!("σ_t is {:.4} at r = {:.4}", value(lowest), field.radius * lowest.sqrt());
-            settings.fault("coefficients", found, "an extinction is nowhere negative");
-            return None;
-        }
-        Some(field)
+fn read_volume(settings: &Settings) -> Option<Radial> {
+    let centre = settings.triple("centre").map(Point);
+    let radius = settings.number("radius", Domain::Positive);
+    let listed = settings.numbers("coefficients", Domain::Finite, 1)?;
+    if listed.len() > MAX_COEFFICIENTS {
+        let found = format!("{} coefficients", listed.len());
+        settings.fault("coefficients", found, "there are four at most");
+        return None;
     }
+    let mut coefficients = [0.0; MAX_COEFFICIENTS];
+    coefficients[..listed.len()].copy_from_slice(&listed);
+    let field = Radial { centre: centre?, radius: radius?, coefficients };
+    let [a, b, c, d] = coefficients;
+    let value = |x: f64| a + x * (b + x * (c + x * d));
+    let lowest = field.extremes(0.0, 1.0).min_by(|&x, &y| value(x).total_cmp(&value(y)))?;
+    let size: f64 = coefficients.iter().map(|x| x.abs()).sum();
+    // The rounding error at a double root is no negative extinction.
+    if value(lowest) < -1e-14 * size {
+        let found =
+            format!("σ_t is {:.4} at r = {:.4}", value(lowest), field.radius * lowest.sqrt());
+        settings.fault("coefficients", found, "an extinction is nowhere negative");
+        return None;
+    }
+    Some(field)
+}
 
+impl Field for Radial {
     fn bounds(&self) -> Bounds {
         Bounds::Sphere { centre: self.centre, radius: self.radius }
     }
 
     #[inline(always)]
-    fn extinction_at<L: Lane>(&self, p: [L; 3]) -> L {
+    fn value<L: Lane>(&self, p: [L; 3]) -> L {
         polynomial(self.coefficients, self.centre.square_to(p, 1.0 / self.radius))
     }
 
@@ -159,11 +158,12 @@ impl Field for Radial {
         highest + 1e-13 * self.coefficients.iter().map(|x| x.abs()).sum::<f64>()
     }
 
-    fn along(&self, ray: &Ray, _: Span) -> Chord {
+    fn along(&self, ray: &Ray, _: Span) -> Arc<Profile> {
         let (foot, offset) = ray.nearest_to(self.centre);
         let scale = 1.0 / self.radius;
         let offset = offset * scale;
-        Chord { foot, scale, offset: offset.dot(offset), coefficients: self.coefficients }
+        let (offset, coefficients) = (offset.dot(offset), self.coefficients);
+        Arc::new(Chord { foot, scale, offset, coefficients })
     }
 
     #[inline(always)]
@@ -189,8 +189,8 @@ impl Field for Radial {
         Some(half * sum)
     }
 
-    fn is_radial(&self) -> bool {
-        true
+    fn facts(&self) -> Facts<'_> {
+        Facts { is_radial: true, ..Facts::default() }
     }
 }
 
@@ -200,7 +200,7 @@ mod tests {
     use crate::catalogue::Value;
     use crate::catalogue::fixture::{list, read};
 
-    fn ball(coefficients: [f64; MOST]) -> Radial {
+    fn ball(coefficients: [f64; MAX_COEFFICIENTS]) -> Radial {
         Radial { centre: Point([1.0, 0.0, 2.0]), radius: 1.5, coefficients }
     }
 
@@ -219,7 +219,7 @@ mod tests {
         let chord = depth(&field, [1.0, 0.75, 0.0]);
         assert!((chord.value - 8.0 * half.powi(3) / 6.75).abs() < 1e-14);
         assert!(chord.error < 1e-13);
-        assert!((field.extinction_at([1.0, 0.0, 2.75]) - 1.5).abs() < 1e-15);
+        assert!((field.value([1.0, 0.0, 2.75]) - 1.5).abs() < 1e-15);
     }
 
     #[test]
@@ -256,7 +256,7 @@ mod tests {
                 ("radius", Value::Number(radius)),
                 ("coefficients", list(coefficients)),
             ];
-            read(settings, |settings| Radial::volume(settings).is_some())
+            read(settings, |settings| read_volume(settings).is_some())
         };
         let fine = read(1.5, &[2.0, -2.0]);
         assert_eq!(fine, (true, vec![]));

@@ -2,29 +2,48 @@
 
 use std::sync::Arc;
 
-use super::{CATALOGUE, Field, Profile, READERS, Volume};
+use super::{CATALOGUE, Field, Layered, OpticalDepth, Profile, READERS, Stratified, Volume};
 use crate::catalogue::{Additions, Settings};
 
 /// Reads the fields of a page from a case file.
-pub type Read<T> = Box<dyn Fn(&Settings) -> Option<Arc<T>> + Send + Sync>;
+type Read<T> = Box<dyn Fn(&Settings) -> Option<Arc<T>> + Send + Sync>;
 
 /// Reader of the fields of a page: along a ray, in space, or both.
 pub struct Reader {
-    /// Settings to which σ_t is proportional, all together.
-    pub extinctions: &'static [&'static str],
-    /// Reads fields along a ray.
-    pub line: Option<Read<Profile>>,
-    /// Reads fields in space.
-    pub volume: Option<Read<Volume>>,
+    extinctions: &'static [&'static str],
+    line: Option<Read<Profile>>,
+    volume: Option<Read<Volume>>,
 }
 
 impl Reader {
-    /// Reader of a field's type.
-    pub fn of<F: Field>() -> Self {
-        let line = |settings: &Settings| F::line(settings).map(|f| Arc::new(f) as Arc<Profile>);
-        let volume = |settings: &Settings| F::volume(settings).map(|f| Arc::new(f) as Arc<Volume>);
-        let line = F::IN_LINE.then(|| Box::new(line) as Read<Profile>);
-        Self { extinctions: F::EXTINCTIONS, line, volume: Some(Box::new(volume)) }
+    /// Reader without fields yet; `extinctions` are the settings to which σ_t is proportional, all together.
+    pub fn new(extinctions: &'static [&'static str]) -> Self {
+        Self { extinctions, line: None, volume: None }
+    }
+
+    /// Reader of a field of one coordinate: along a line, and as layers in space.
+    pub fn layered<P: Stratified>() -> Self {
+        Self::new(P::EXTINCTIONS).line(P::read).volume(Layered::<P>::read)
+    }
+
+    /// Adds the form along a line, `medium.NAME = { … }`.
+    #[must_use]
+    pub fn line<F: OpticalDepth + 'static>(
+        self,
+        read: impl Fn(&Settings) -> Option<F> + Send + Sync + 'static,
+    ) -> Self {
+        let read = move |settings: &Settings| read(settings).map(|f| Arc::new(f) as Arc<Profile>);
+        Self { line: Some(Box::new(read)), ..self }
+    }
+
+    /// Adds the form in space, `volume.NAME = { … }`.
+    #[must_use]
+    pub fn volume<F: Field>(
+        self,
+        read: impl Fn(&Settings) -> Option<F> + Send + Sync + 'static,
+    ) -> Self {
+        let read = move |settings: &Settings| read(settings).map(|f| Arc::new(f) as Arc<Volume>);
+        Self { volume: Some(Box::new(read)), ..self }
     }
 }
 

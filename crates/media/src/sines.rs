@@ -25,8 +25,9 @@
 //! Quadrature takes a panel for each half period of the fastest wave.
 
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, PI, TAU};
+use std::sync::Arc;
 
-use super::{Extinction, Field, FreeFlight, OpticalDepth, body};
+use super::{Extinction, Facts, Field, OpticalDepth, Profile, Reader, body};
 use crate::catalogue::{Domain, Settings};
 use numeric::geometry::{Aabb, Bounds, Point, Ray};
 use numeric::{Known, Lane, Span};
@@ -79,6 +80,11 @@ impl Waves {
         let trough = base - parts.iter().map(|wave| wave.amplitude.abs()).sum::<f64>();
         Self { base, trough, parts }
     }
+
+    /// Half periods of the fastest wave on a length.
+    fn half_periods(&self, length: f64) -> f64 {
+        self.parts.iter().fold(0.0f64, |f, wave| f.max(wave.frequency.abs())) * length / PI
+    }
 }
 
 impl Extinction for Waves {
@@ -90,6 +96,12 @@ impl Extinction for Waves {
             sum = sum + wave.raised(t);
         }
         sum
+    }
+
+    fn facts(&self) -> Facts<'_> {
+        // Over half a period the square turns by 2π: 12 nodes have an error below 1e-16 of it.
+        let pieces_per_length = self.half_periods(1.0);
+        Facts { panel_nodes: Some(12), pieces_per_length, ..Facts::default() }
     }
 }
 
@@ -116,22 +128,15 @@ impl OpticalDepth for Waves {
         Known::new(length * mean, length * error * f64::EPSILON)
     }
 
-    fn pieces(&self, span: Span) -> f64 {
-        let fastest = self.parts.iter().fold(0.0f64, |f, wave| f.max(wave.frequency.abs()));
-        (fastest * span.length() / PI).ceil()
-    }
-
     fn breaks(&self, span: Span) -> Vec<f64> {
-        span.even_cuts(self.pieces(span))
-    }
-
-    fn panel_nodes(&self) -> Option<usize> {
-        // Over half a period the square turns by 2π: 12 nodes have an error below 1e-16 of it.
-        Some(12)
+        span.even_cuts(self.half_periods(span.length()).ceil())
     }
 }
 
-impl FreeFlight for Waves {}
+/// Reads the page.
+pub fn reader() -> Reader {
+    Reader::new(&["base", "amplitudes"]).line(read_line).volume(read_volume)
+}
 
 /// Reads `base`, `amplitudes` and `phases`, and checks the number of waves.
 fn read(settings: &Settings, waves: Option<usize>) -> Option<(f64, Vec<f64>, Vec<f64>)> {
@@ -155,41 +160,36 @@ fn read(settings: &Settings, waves: Option<usize>) -> Option<(f64, Vec<f64>, Vec
     Some((base, amplitudes, phases))
 }
 
+fn read_line(settings: &Settings) -> Option<Waves> {
+    let frequencies = settings.numbers("frequencies", Domain::Finite, 1);
+    let (base, amplitudes, phases) = read(settings, frequencies.as_ref().map(Vec::len))?;
+    let waves = amplitudes.into_iter().zip(frequencies?).zip(phases);
+    let waves = waves.map(|((amplitude, frequency), phase)| Wave { amplitude, frequency, phase });
+    Some(Waves::new(base, waves.collect()))
+}
+
+fn read_volume(settings: &Settings) -> Option<Sines> {
+    let vectors = settings.triples("vectors");
+    let read = read(settings, vectors.as_ref().map(Vec::len));
+    let bounds = body::read_bounds(settings)?;
+    let (base, amplitudes, phases) = read?;
+    let waves = amplitudes.into_iter().zip(vectors?).zip(phases);
+    let waves = waves.map(|((amplitude, vector), phase)| (amplitude, Point(vector), phase));
+    Some(Sines { base, waves: waves.collect(), bounds })
+}
+
 impl Field for Sines {
-    type Profile = Waves;
-
-    const EXTINCTIONS: &'static [&'static str] = &["base", "amplitudes"];
-
-    fn line(settings: &Settings) -> Option<Waves> {
-        let frequencies = settings.numbers("frequencies", Domain::Finite, 1);
-        let (base, amplitudes, phases) = read(settings, frequencies.as_ref().map(Vec::len))?;
-        let waves = amplitudes.into_iter().zip(frequencies?).zip(phases);
-        let waves =
-            waves.map(|((amplitude, frequency), phase)| Wave { amplitude, frequency, phase });
-        Some(Waves::new(base, waves.collect()))
-    }
-
-    fn volume(settings: &Settings) -> Option<Self> {
-        let vectors = settings.triples("vectors");
-        let read = read(settings, vectors.as_ref().map(Vec::len));
-        let bounds = body::read_bounds(settings)?;
-        let (base, amplitudes, phases) = read?;
-        let waves = amplitudes.into_iter().zip(vectors?).zip(phases);
-        let waves = waves.map(|((amplitude, vector), phase)| (amplitude, Point(vector), phase));
-        Some(Self { base, waves: waves.collect(), bounds })
-    }
-
     fn bounds(&self) -> Bounds {
         self.bounds
     }
 
-    fn pieces(&self, length: f64) -> f64 {
+    fn facts(&self) -> Facts<'_> {
         let fastest = self.waves.iter().map(|wave| wave.1.dot(wave.1).sqrt()).fold(0.0, f64::max);
-        (fastest * length / PI).ceil()
+        Facts { pieces_per_length: fastest / PI, ..Facts::default() }
     }
 
     #[inline(always)]
-    fn extinction_at<L: Lane>(&self, p: [L; 3]) -> L {
+    fn value<L: Lane>(&self, p: [L; 3]) -> L {
         let swing: f64 = self.waves.iter().map(|(amplitude, ..)| amplitude.abs()).sum();
         // A loop and not a fold: a closure would be compiled for the least machine.
         let mut sum = p[0].each(self.base - swing);
@@ -209,13 +209,13 @@ impl Field for Sines {
         highest + 1e-12 * self.base
     }
 
-    fn along(&self, ray: &Ray, _: Span) -> Waves {
+    fn along(&self, ray: &Ray, _: Span) -> Arc<Profile> {
         let waves = self.waves.iter().map(|&(amplitude, vector, phase)| Wave {
             amplitude,
             frequency: vector.dot(ray.direction),
             phase: phase + vector.dot(ray.origin),
         });
-        Waves::new(self.base, waves.collect())
+        Arc::new(Waves::new(self.base, waves.collect()))
     }
 }
 

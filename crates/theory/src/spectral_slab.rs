@@ -158,7 +158,7 @@ impl Body for Slabs<'_> {
 mod tests {
     use super::*;
     use media::Medium;
-    use media::constant::Homogeneous;
+    use media::constant::Constant;
     use media::phase::henyey_greenstein::HenyeyGreenstein;
     use numeric::Span;
     use std::sync::Arc;
@@ -170,7 +170,7 @@ mod tests {
         for phase in [Phase::Isotropic(Isotropic), peaked] {
             let incidence = Incidence { light: Light::Collimated(0.6), phase };
             let span = Span::new(0.0, 1.7);
-            let medium = Medium::new(Arc::new(Homogeneous { extinction: 1.0 }), span, span);
+            let medium = Medium::new(Arc::new(Constant { extinction: 1.0 }), span, span);
             let problem = SpectralSlab::new(medium.clone(), vec![0.5], incidence);
             let (mesh, sampling) = (Mesh::new(medium), Piecewise::constant(1.0, span));
             let slabs = Slabs::new(&problem, (&mesh, &sampling), false);

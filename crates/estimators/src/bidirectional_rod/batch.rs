@@ -12,7 +12,7 @@ use crate::setup::Setup;
 use crate::walks::slots::{Numbers, leave};
 use crate::{DrawBuffer, Request};
 use media::Lookups;
-use media::course::Even;
+use media::sampling::FlightWithGaps;
 use numeric::pack::{self, Task, WIDTH};
 use numeric::rng::{LANES, Random};
 use numeric::{Lane, Twin};
@@ -27,7 +27,7 @@ pub fn packets<'r>(
     medium: &Lookups,
     request: Request<'r>,
 ) -> Option<Request<'r>> {
-    if setup.fields.sampling.even().is_none() {
+    if setup.fields.sampling.with_gaps().is_none() {
         return Some(request);
     }
     let task = Draws { steps: *steps, setup, medium, request };
@@ -47,11 +47,11 @@ impl<P: Steps + Copy> Task for Draws<'_, '_, P> {
     #[inline(always)]
     fn run<S: Simd>(self, simd: S) {
         let Self { steps, setup, medium, request: Request { streams, count, buffer } } = self;
-        let Some(sampling) = setup.fields.sampling.even() else { return };
+        let Some(sampling) = setup.fields.sampling.with_gaps() else { return };
         buffer.make_room(count);
         buffer.defects.fill(0.0);
         let zero = Twin::splat(simd, 0.0);
-        let begin = Even::new(zero, sampling);
+        let begin = FlightWithGaps::new(zero, sampling);
         let ends = [begin, begin.from_end()];
         let [first, second] = streams.packs();
         let mut random = Both(first.awake(simd), second.awake(simd));

@@ -7,7 +7,7 @@
 
 use super::walk::Path;
 use crate::Setup;
-use media::course::BothWays;
+use media::sampling::BothWays;
 use numeric::rng::Random;
 use numeric::{Lane, Mask};
 use theory::problems::BidirectionalRod;
@@ -154,7 +154,7 @@ impl<'a, L: Lane, C: BothWays<L>, F: Field<L>> Tracker<'a, L, C, F> {
         random: &mut impl Random<L>,
     ) -> L {
         let (mut nulls, mut course) = (to.each(1.0), self.ends[0]);
-        course.stand_at(from);
+        course.return_to(from);
         while flying.any() {
             flying &= step(&mut course, flying, is_forward, random);
             let t = course.reached();

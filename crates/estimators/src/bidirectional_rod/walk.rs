@@ -12,7 +12,7 @@
 
 use super::subpath::{Field, Side, Subpath, Tracker};
 use crate::{Draw, Setup};
-use media::course::{BothWays, Even, Pieces};
+use media::sampling::{BothWays, FlightOverPieces, FlightWithGaps};
 use media::{Extinction, Lookups};
 use numeric::fused::{Loop, in_own_rounding};
 use numeric::rng::{Random, Stream};
@@ -170,11 +170,11 @@ impl<S: Steps> Loop for One<'_, S> {
     fn run<L: Single>(self) -> Draw<Values> {
         let Self { steps, setup, medium, random } = self;
         let (zero, alone) = (L::of(0.0), Alone(medium));
-        if let Some(even) = setup.fields.sampling.even() {
-            let begin = Even::new(zero, even);
+        if let Some(even) = setup.fields.sampling.with_gaps() {
+            let begin = FlightWithGaps::new(zero, even);
             through(steps, Tracker::new(setup, zero, [begin, begin.from_end()], alone), random)
         } else {
-            let begin = Pieces::new(zero, &setup.fields.sampling);
+            let begin = FlightOverPieces::new(zero, &setup.fields.sampling);
             through(steps, Tracker::new(setup, zero, [begin, begin.from_end()], alone), random)
         }
     }

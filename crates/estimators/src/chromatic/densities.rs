@@ -7,7 +7,7 @@
 use super::Steps;
 use crate::setup::walker::Walker;
 use crate::walks::hero::{Media, number_of_hero, of_hero, or_of_hero};
-use media::body::MOST_CHANNELS;
+use media::body::MAX_CHANNELS;
 use media::phase::Phase;
 use numeric::{Lane, kept};
 use theory::ParticleRule;
@@ -22,7 +22,7 @@ pub struct Scatterers<'a, S> {
     /// a of each channel.
     pub albedos: &'a [f64],
     /// The phase function of each channel.
-    pub phases: [Phase; MOST_CHANNELS],
+    pub phases: [Phase; MAX_CHANNELS],
     /// The walker.
     pub walker: &'a Walker,
     /// The steps, which a known bug may replace.
@@ -44,11 +44,11 @@ kept! {
     /// Densities of walks, kept in memory.
     pub struct Densities<L> {
         /// Densities relative to those of the heroes.
-        pub weights: [L; MOST_CHANNELS],
+        pub weights: [L; MAX_CHANNELS],
         /// Densities after the current step.
-        next: [L; MOST_CHANNELS],
+        next: [L; MAX_CHANNELS],
         /// `σ_t/σ̂` of each channel.
-        ratios: [L; MOST_CHANNELS],
+        ratios: [L; MAX_CHANNELS],
     }
 }
 
@@ -56,7 +56,7 @@ impl<L: Lane> Densities<L> {
     /// Densities of new walks: 1 in every channel.
     #[inline(always)]
     pub fn new(one: L) -> Self {
-        let ones = [one; MOST_CHANNELS];
+        let ones = [one; MAX_CHANNELS];
         Self { weights: ones, next: ones, ratios: ones }
     }
 
@@ -115,7 +115,7 @@ impl<L: Lane> Densities<L> {
         let (count, one, mut own) = (media.count, hero.each(1.0), hero);
         let mut heros_density = one;
         if steps.has_heros_phase() {
-            let mut densities = [one; MOST_CHANNELS];
+            let mut densities = [one; MAX_CHANNELS];
             for channel in 0..count {
                 densities[channel] = phases[channel].value(cosine);
             }

@@ -20,8 +20,8 @@ use crate::setup::walker::Walker;
 use crate::slab::walk::{entering, turned};
 use crate::walks::hero::{LastPiece, Law, Media, Weighing, number_of_hero};
 use crate::walks::{GROUPS, Met, Route, SOME_LEFT, Scores, Walk};
-use media::body::MOST_CHANNELS;
-use media::course::BothWays;
+use media::body::MAX_CHANNELS;
+use media::sampling::BothWays;
 use numeric::rng::Random;
 use numeric::{Lane, Mask, Span, kept};
 use theory::ParticleRule;
@@ -39,7 +39,7 @@ pub struct InSlab<'a, S> {
     /// The distribution of the hero, if one is chosen.
     law: Option<Law>,
     /// `1/σ̂` of each channel.
-    mean_free_paths: [f64; MOST_CHANNELS],
+    mean_free_paths: [f64; MAX_CHANNELS],
 }
 
 impl<'a, S: Steps> InSlab<'a, S> {
@@ -48,8 +48,8 @@ impl<'a, S: Steps> InSlab<'a, S> {
     pub fn new(steps: S, by: By<'a>, setup: &'a Setup<ChromaticSlab>) -> Self {
         let (problem, count) = (&*setup.problem, setup.fields.len());
         let By { walker, weighing, scores_all } = by;
-        let [mut mean_free_paths, mut probabilities] = [[0.0; MOST_CHANNELS]; 2];
-        let mut phases = [problem.incidences[0].phase; MOST_CHANNELS];
+        let [mut mean_free_paths, mut probabilities] = [[0.0; MAX_CHANNELS]; 2];
+        let mut phases = [problem.incidences[0].phase; MAX_CHANNELS];
         for (channel, own) in setup.fields.iter().enumerate() {
             mean_free_paths[channel] = 1.0 / own.majorant;
             phases[channel] = problem.incidences[channel].phase;
@@ -218,7 +218,7 @@ impl<S: Steps> Walk for InSlab<'_, S> {
     fn score<L: Lane>(&self, numbers: &[L], left: L::Mask, lookups: L, values: &mut [L]) -> L {
         let (media, zero) = (&self.among.media, lookups.each(0.0));
         let [hero, cosine, mut length, last] = [numbers[0], numbers[1], numbers[2], numbers[3]];
-        let (mut found, mut defect) = ([zero; MOST_CHANNELS], zero);
+        let (mut found, mut defect) = ([zero; MAX_CHANNELS], zero);
         let found = &mut found[..media.count];
         if self.scores_all {
             for (channel, found) in found.iter_mut().enumerate() {

@@ -14,7 +14,7 @@
 
 use crate::walks::{self, Met, Route, Walk};
 use crate::{Estimator, Inputs, Kernel, Refusal, Request, Setup};
-use media::course::BothWays;
+use media::sampling::BothWays;
 use numeric::rng::Random;
 use numeric::{Lane, Span, kept};
 use theory::problems::{FreeFlight, Problem};

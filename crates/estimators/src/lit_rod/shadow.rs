@@ -1,7 +1,7 @@
 //! Shadow rays along a line to a light behind it, and the weights of hits and shadow rays.
 
 use crate::walks::{Met, Route};
-use media::course::BothWays;
+use media::sampling::BothWays;
 use media::{Medium, OpticalDepth, Piecewise};
 use numeric::{Lane, Mask, Span, kept};
 use theory::lit_rod::{Shadow, Techniques};

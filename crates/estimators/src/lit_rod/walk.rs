@@ -19,7 +19,7 @@ use super::shadow::{Before, ShadowRays, Steps};
 use crate::walks::{self, Met, Route, Walk};
 use crate::{Kernel, Request, Setup};
 use media::Piecewise;
-use media::course::BothWays;
+use media::sampling::BothWays;
 use numeric::rng::Random;
 use numeric::{Lane, Mask, kept};
 use theory::ParticleRule;

@@ -18,8 +18,8 @@
 use crate::lit_rod::shadow::{Before, ShadowRays, Steps};
 use crate::walks::{self, Met, Route, Walk};
 use crate::{Kernel, Request, Setup};
-use media::course::BothWays;
 use media::phase::Phase;
+use media::sampling::BothWays;
 use numeric::rng::Random;
 use numeric::{Lane, Mask, kept};
 use theory::ParticleRule;

@@ -17,7 +17,7 @@
 
 use crate::walks::{self, Met, Route, Walk};
 use crate::{Kernel, Request, Setup};
-use media::course::BothWays;
+use media::sampling::BothWays;
 use numeric::rng::Random;
 use numeric::{Lane, Mask, kept};
 use theory::ParticleRule;

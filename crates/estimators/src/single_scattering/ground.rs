@@ -2,7 +2,7 @@
 
 use crate::Setup;
 use crate::space::shadow::ShadowRays;
-use media::course::Course;
+use media::sampling::PackedFlight;
 use media::{Batches, Control, Lookups};
 use numeric::{Lane, Mask, Span};
 use theory::problems::{Problem, SingleScattering};
@@ -36,7 +36,7 @@ impl<'a> Ground<'a> {
         let (support, extinction) = (setup.problem.medium().support(), medium.single_value());
         let kept = || {
             let (extinction, control) = (extinction?, setup.fields.control.single_value()?);
-            Some(1.0 - (extinction - control) / setup.fields.sampling.even()?.value)
+            Some(1.0 - (extinction - control) / setup.fields.sampling.with_gaps()?.value)
         };
         Self { setup, rays, fields, support, extinction, kept: kept() }
     }
@@ -71,7 +71,7 @@ impl<'a> Ground<'a> {
 
     /// `1 − (σ_t − σ_c)/σ̂` at a tentative collision.
     #[inline(always)]
-    pub fn kept<L: Lane>(&self, here: &impl Course<L>, t: L, extinction: L) -> L {
+    pub fn kept<L: Lane>(&self, here: &impl PackedFlight<L>, t: L, extinction: L) -> L {
         if let Some(kept) = self.kept {
             return t.each(kept);
         }

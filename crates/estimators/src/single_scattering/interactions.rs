@@ -13,7 +13,7 @@ use super::ground::Ground;
 use super::shadow::ToLight;
 use crate::walks::{Met, Route, Walk};
 use media::Batches;
-use media::course::{BothWays, Course};
+use media::sampling::{BothWays, PackedFlight};
 use numeric::geometry::Point;
 use numeric::rng::Random;
 use numeric::{Lane, Mask, kept};
@@ -150,7 +150,7 @@ impl<const RESAMPLED: bool> Interactions<'_, RESAMPLED> {
     fn choose<L: Lane>(
         &self,
         path: &mut Path<L>,
-        here: &impl Course<L>,
+        here: &impl PackedFlight<L>,
         met: &Met<L>,
         random: &mut impl Random<L>,
     ) -> L::Mask {

@@ -12,7 +12,7 @@ use super::shadow::ToLight;
 use super::vertices::{Right, Steps};
 use crate::walks::{Met, Route, Walk};
 use media::Batches;
-use media::course::BothWays;
+use media::sampling::BothWays;
 use numeric::geometry::Point;
 use numeric::rng::Random;
 use numeric::{Lane, Mask, kept};

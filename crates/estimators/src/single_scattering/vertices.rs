@@ -22,7 +22,7 @@ use super::plan::{Absorption, Vertices};
 use super::shadow::{TOGETHER, ToLight};
 use crate::walks::{Met, Route, Walk};
 use media::Batches;
-use media::course::BothWays;
+use media::sampling::BothWays;
 use numeric::geometry::Point;
 use numeric::rng::Random;
 use numeric::{Lane, Mask, kept};

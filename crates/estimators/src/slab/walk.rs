@@ -17,9 +17,9 @@ use std::f64::consts::TAU;
 
 use crate::walks::{self, Met, Route, Walk};
 use crate::{Kernel, Request, Setup};
-use media::course::BothWays;
 use media::phase::Phase;
 use media::phase::isotropic::Isotropic;
+use media::sampling::BothWays;
 use numeric::rng::Random;
 use numeric::{Lane, Mask, kept};
 use theory::particle::{Odds, ParticleRule};

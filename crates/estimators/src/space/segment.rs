@@ -8,7 +8,7 @@
 //! The null collisions of a path have the same places by either method. Their densities differ by the probabilities
 //! to be null: only delta tracking samples these events. A flight takes a random number, a decision another one.
 
-use media::majorants::flights::{Flights, Flown, Ground};
+use media::sampling::{Flights, Flown, Ground};
 use numeric::geometry::Point;
 use numeric::geometry::exit::rows;
 use numeric::rng::Random;
@@ -141,8 +141,8 @@ impl Tracker<'_> {
             #[inline(always)]
             |here, _| here,
         );
-        let field = self.scene.volume.points();
-        let extinction = each(flown.place, flown.inside, |place| field.extinction(place));
+        let field = &*self.scene.volume;
+        let extinction = each(flown.place, flown.inside, |place| field.extinction_within(place));
         (flown, extinction / flown.sampling)
     }
 }

@@ -111,7 +111,7 @@ impl<'a> ShadowRays<'a> {
         if !which.any() {
             return one;
         }
-        if let Some(value) = self.volume.single_value() {
+        if let Some(value) = self.volume.facts().single_value {
             return L::select(which, (-((to - from) * value)).exp(), one);
         }
         let ([a, b, c], [x, y, z]) = (origin, direction);

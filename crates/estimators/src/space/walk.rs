@@ -22,8 +22,8 @@ use super::shadow::{ShadowRays, Shadows};
 use super::steps::Steps;
 use super::tally::{Collision, Departure, Scattering, Tally};
 use crate::walks::{Met, Route, Walk};
-use media::course::BothWays;
-use media::majorants::flights::{Flights, Ground};
+use media::sampling::BothWays;
+use media::sampling::{Flights, Ground};
 use media::{Batches, Majorants};
 use numeric::geometry::Point;
 use numeric::geometry::frame::turned_lanes;
@@ -413,7 +413,7 @@ impl<T: Tally, S: Steps> Walk for InSpace<'_, T, S> {
     #[inline(always)]
     fn field(&self, number: usize, place: Point) -> f64 {
         if number == 0 {
-            self.scene.volume.points().extinction(place)
+            self.scene.volume.extinction_within(place)
         } else {
             self.scene.albedo.at(place)
         }

@@ -80,7 +80,7 @@ impl Chromatic for SpectralFurnace {
 
     fn second_moment_bounds(setup: &Setup<Self>, walker: &Walker) -> Result<Vec<f64>, Refusal> {
         let problem = &setup.problem;
-        let values = problem.channels.iter().map(|channel| channel.volume.single_value());
+        let values = problem.channels.iter().map(|channel| channel.volume.facts().single_value);
         let Some(extinctions) = values.collect::<Option<Vec<f64>>>() else {
             let needs = "one σ_t in each channel: of fields, theory does not bound the variance";
             return Err(Refusal::mismatch(needs, "σ_t varies"));

@@ -18,8 +18,8 @@ use crate::setup::walker::Walker;
 use crate::walks::hero::{LastPiece, Law, Media, Weighing, number_of_hero};
 use crate::walks::{GROUPS, Met, Route, SOME_LEFT, Scores, Walk};
 use media::Batches;
-use media::body::MOST_CHANNELS;
-use media::course::BothWays;
+use media::body::MAX_CHANNELS;
+use media::sampling::BothWays;
 use numeric::geometry::exit::{along, ends, ends_in_place};
 use numeric::geometry::frame::turned_lanes;
 use numeric::geometry::{Bounds, Point};
@@ -73,7 +73,7 @@ impl<'a, S: Steps> InFurnace<'a, S> {
         let (problem, count) = (&*setup.problem, setup.fields.len());
         let By { walker, weighing, scores_all } = by;
         let media = Media::new(setup, &walker.probabilities(count));
-        let mut phases = [problem.channels[0].phase; MOST_CHANNELS];
+        let mut phases = [problem.channels[0].phase; MAX_CHANNELS];
         for (channel, own) in problem.channels.iter().enumerate() {
             phases[channel] = own.phase;
         }
@@ -240,7 +240,7 @@ impl<S: Steps> Walk for InFurnace<'_, S> {
 
     #[inline(always)]
     fn field(&self, channel: usize, place: Point) -> f64 {
-        self.problem.channels[channel].volume.points().extinction(place)
+        self.problem.channels[channel].volume.extinction_within(place)
     }
 
     #[inline(always)]

@@ -23,9 +23,9 @@ use crate::setup::heroes::Heroes;
 use crate::walks::hero::{Law, number_of_hero, of_hero, or_of_hero};
 use crate::walks::{Met, Route, Walk, drawn};
 use crate::{Estimator, Inputs, Refusal, Setup};
-use media::body::MOST_CHANNELS;
+use media::body::MAX_CHANNELS;
 use media::catalogue::Settings;
-use media::course::BothWays;
+use media::sampling::BothWays;
 use numeric::rng::Random;
 use numeric::{Lane, kept};
 use theory::Prediction;
@@ -48,7 +48,7 @@ impl Independent {
         albedos: Albedos<'a>,
     ) -> OfHero<'a, Techniques> {
         let (count, first) = (setup.fields.len(), &setup.fields[0]);
-        let [mut mean_free_paths, mut probabilities] = [[0.0; MOST_CHANNELS]; 2];
+        let [mut mean_free_paths, mut probabilities] = [[0.0; MAX_CHANNELS]; 2];
         for (channel, own) in setup.fields.iter().enumerate() {
             mean_free_paths[channel] = 1.0 / own.majorant;
             probabilities[channel] = self.heroes.probability(count, channel);
@@ -114,8 +114,8 @@ struct OfHero<'a, S> {
     walk: ToEmitter<'a, S>,
     law: Law,
     count: usize,
-    mean_free_paths: [f64; MOST_CHANNELS],
-    probabilities: [f64; MOST_CHANNELS],
+    mean_free_paths: [f64; MAX_CHANNELS],
+    probabilities: [f64; MAX_CHANNELS],
     forward: &'a [f64],
     albedos: Albedos<'a>,
 }

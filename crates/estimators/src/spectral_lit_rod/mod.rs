@@ -12,7 +12,7 @@ pub mod walk;
 use crate::setup::channels;
 use crate::setup::heroes::Heroes;
 use crate::{Refusal, Setup, estimators};
-use media::body::MOST_CHANNELS;
+use media::body::MAX_CHANNELS;
 use numeric::Lane;
 use theory::lit_rod;
 use theory::problems::SpectralLitRod;
@@ -47,7 +47,7 @@ fn spectrum<'a>(
 struct Albedos<'a> {
     problem: &'a SpectralLitRod,
     /// Albedos, if they are known to be constant along the rod.
-    numbers: Option<[f64; MOST_CHANNELS]>,
+    numbers: Option<[f64; MAX_CHANNELS]>,
 }
 
 impl<'a> Albedos<'a> {
@@ -59,7 +59,7 @@ impl<'a> Albedos<'a> {
     /// Albedos for many draws: stores them if they are constant.
     fn found(setup: &'a Setup<SpectralLitRod>) -> Self {
         let numbers = setup.problem.albedos().map(|albedos| {
-            let mut numbers = [0.0; MOST_CHANNELS];
+            let mut numbers = [0.0; MAX_CHANNELS];
             numbers[..albedos.len()].copy_from_slice(&albedos);
             numbers
         });

@@ -26,9 +26,9 @@ use crate::setup::heroes::Heroes;
 use crate::setup::walker::read_chances;
 use crate::walks::{Met, Route, Walk, drawn};
 use crate::{Estimator, Inputs, Refusal, Setup};
-use media::body::MOST_CHANNELS;
+use media::body::MAX_CHANNELS;
 use media::catalogue::Settings;
-use media::course::BothWays;
+use media::sampling::BothWays;
 use numeric::rng::Random;
 use numeric::{Lane, kept};
 use theory::Prediction;
@@ -78,11 +78,11 @@ impl Estimator<SpectralLitRod> for SpectralTracking {
 kept! {
     /// Walks of all channels together, kept in memory.
     pub struct Path<L> {
-        weights: [L; MOST_CHANNELS],
+        weights: [L; MAX_CHANNELS],
         /// `μ_n/μ̄`, `μ_s/μ̄` and `μ_a/μ̄` of each channel where they are.
-        nulls: [L; MOST_CHANNELS],
-        scattered: [L; MOST_CHANNELS],
-        absorbed: [L; MOST_CHANNELS],
+        nulls: [L; MAX_CHANNELS],
+        scattered: [L; MAX_CHANNELS],
+        absorbed: [L; MAX_CHANNELS],
     }
 }
 
@@ -110,7 +110,7 @@ impl Walk for Together<'_> {
 
     #[inline(always)]
     fn begin<L: Lane>(&self, one: L, _: L::Mask, _: &mut impl Random<L>) -> Path<L> {
-        let ones = [one; MOST_CHANNELS];
+        let ones = [one; MAX_CHANNELS];
         Path { weights: ones, nulls: ones, scattered: ones, absorbed: ones }
     }
 

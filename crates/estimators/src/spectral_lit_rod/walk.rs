@@ -30,8 +30,8 @@ use crate::walks::hero::{LastPiece, Law, Media, Weighing, number_of_hero, of_her
 use crate::walks::{self, GROUPS, Met, Route, SOME_LEFT, Scores, Walk};
 use crate::{Draw, Setup};
 use media::Lookups;
-use media::body::MOST_CHANNELS;
-use media::course::BothWays;
+use media::body::MAX_CHANNELS;
+use media::sampling::BothWays;
 use numeric::rng::{Random, Stream};
 use numeric::{Lane, Mask, kept};
 use theory::ParticleRule;
@@ -39,7 +39,7 @@ use theory::problems::ChannelValues as Values;
 use theory::problems::SpectralLitRod;
 
 /// Numbers of all channels.
-type Channels = [f64; MOST_CHANNELS];
+type Channels = [f64; MAX_CHANNELS];
 
 /// The walk of a hero to the emitter.
 pub struct ToEmitter<'a, S> {
@@ -51,7 +51,7 @@ pub struct ToEmitter<'a, S> {
     mean_free_paths: Channels,
     albedos: Albedos<'a>,
     /// The probability to keep the direction by channel and hero.
-    forward: [Channels; MOST_CHANNELS],
+    forward: [Channels; MAX_CHANNELS],
     /// Weightings of paths: see [`Found`].
     weighings: [Weighing; 3],
     casts: bool,
@@ -80,8 +80,8 @@ impl<'a, S: Steps> ToEmitter<'a, S> {
     #[inline(always)]
     fn new(steps: &'a S, setup: &'a Setup<SpectralLitRod>, albedos: Albedos<'a>) -> Self {
         let (heroes, count) = (steps.heroes(), setup.fields.len());
-        let [mut mean_free_paths, mut probabilities] = [[0.0; MOST_CHANNELS]; 2];
-        let mut forward = [[0.0; MOST_CHANNELS]; MOST_CHANNELS];
+        let [mut mean_free_paths, mut probabilities] = [[0.0; MAX_CHANNELS]; 2];
+        let mut forward = [[0.0; MAX_CHANNELS]; MAX_CHANNELS];
         for (channel, own) in setup.fields.iter().enumerate() {
             mean_free_paths[channel] = 1.0 / own.majorant;
             probabilities[channel] = heroes.probability(count, channel);
@@ -129,7 +129,7 @@ kept! {
         /// The number of each hero, its mean free path, and by channel its probability to keep the direction.
         hero: L,
         mean_free_path: L,
-        forward: [L; MOST_CHANNELS],
+        forward: [L; MAX_CHANNELS],
         /// The beginning of the flight, and its length, forward.
         before: L,
         last: L,
@@ -138,19 +138,19 @@ kept! {
         collisions: L,
         at_vertex: [L; 2],
         /// Factor of q from the real scatterings, relative to the hero's.
-        weights: [L; MOST_CHANNELS],
+        weights: [L; MAX_CHANNELS],
         /// `p_λ(ω)` on the last segment, and `Π (1 − r_λ)` over its null collisions.
-        phases: [L; MOST_CHANNELS],
-        nulls: [L; MOST_CHANNELS],
+        phases: [L; MAX_CHANNELS],
+        nulls: [L; MAX_CHANNELS],
         /// Values of both at the vertex of a shadow ray, if [`Steps::GOES_ON`].
-        last_phases: [L; MOST_CHANNELS],
-        last_nulls: [L; MOST_CHANNELS],
+        last_phases: [L; MAX_CHANNELS],
+        last_nulls: [L; MAX_CHANNELS],
         /// Quotient of f and the densities, if [`Steps::GAINS`].
-        excess: [L; MOST_CHANNELS],
+        excess: [L; MAX_CHANNELS],
         /// Present `σ_t/σ̂` and a of each channel, and the weights after the current step.
-        real: [L; MOST_CHANNELS],
-        albedos: [L; MOST_CHANNELS],
-        next: [L; MOST_CHANNELS],
+        real: [L; MAX_CHANNELS],
+        albedos: [L; MAX_CHANNELS],
+        next: [L; MAX_CHANNELS],
     }
 }
 
@@ -164,7 +164,7 @@ impl<S: Steps> Walk for ToEmitter<'_, S> {
 
     #[inline(always)]
     fn begin<L: Lane>(&self, one: L, which: L::Mask, random: &mut impl Random<L>) -> Particle<L> {
-        let (zero, all, ones) = (one.each(0.0), one.at_most(one), [one; MOST_CHANNELS]);
+        let (zero, all, ones) = (one.each(0.0), one.at_most(one), [one; MAX_CHANNELS]);
         let mut path = Particle {
             is_forward: all,
             casts: !all,

@@ -4,7 +4,7 @@ use super::{Coloured, walk};
 use crate::setup::heroes::Heroes;
 use crate::setup::walker::{HERO, INDEPENDENT, MIS, SPECTRAL_TRACKING};
 use crate::{Estimator, Inputs, Kernel, Refusal, Request, Setup};
-use media::body::MOST_CHANNELS;
+use media::body::MAX_CHANNELS;
 use media::catalogue::Settings;
 use theory::Prediction;
 use theory::spectral_rod::{Spectrum, Tracker};
@@ -52,7 +52,7 @@ impl<const KIND: u8> walk::Page for Page<KIND> {
     }
 
     #[inline(always)]
-    fn weights(&self, albedos: &[f64], hero: usize, order: u32) -> [f64; MOST_CHANNELS] {
+    fn weights(&self, albedos: &[f64], hero: usize, order: u32) -> [f64; MAX_CHANNELS] {
         let count = albedos.len();
         let heroes = match &self.0 {
             Walker::Hero(heroes) => heroes,
@@ -61,7 +61,7 @@ impl<const KIND: u8> walk::Page for Page<KIND> {
             }
         };
         if KIND == INDEPENDENT {
-            let mut weights = [0.0; MOST_CHANNELS];
+            let mut weights = [0.0; MAX_CHANNELS];
             weights[hero] = 1.0 / heroes.probability(count, hero);
             return weights;
         }

@@ -17,10 +17,10 @@ use crate::walks::hero::{Law, number_of_hero};
 use crate::walks::{self, GROUPS, Met, Route, SOME_LEFT, Scores, Walk};
 use crate::{Draw, Kernel, Refusal, Request, Setup};
 use media::Lookups;
-use media::body::MOST_CHANNELS;
-use media::course::BothWays;
+use media::body::MAX_CHANNELS;
 use media::phase::Phase;
 use media::phase::isotropic::Isotropic;
+use media::sampling::BothWays;
 use numeric::pack::WIDTH;
 use numeric::rng::{Random, Stream};
 use numeric::{Lane, Mask, kept};
@@ -49,14 +49,14 @@ pub trait Page {
     }
 
     /// Weights of a walk in every channel where it leaves after `order` scatterings.
-    fn weights(&self, albedos: &[f64], hero: usize, order: u32) -> [f64; MOST_CHANNELS];
+    fn weights(&self, albedos: &[f64], hero: usize, order: u32) -> [f64; MAX_CHANNELS];
 }
 
 /// `(a_λ/P)^r`: the density of each channel's walk after r scatterings, relative to a walk that is scattered with a
 /// probability P.
 #[inline(always)]
-pub fn relative_to(albedos: &[f64], probability: f64, order: u32) -> [f64; MOST_CHANNELS] {
-    let mut weights = [1.0; MOST_CHANNELS];
+pub fn relative_to(albedos: &[f64], probability: f64, order: u32) -> [f64; MAX_CHANNELS] {
+    let mut weights = [1.0; MAX_CHANNELS];
     for _ in 0..order {
         for (weight, albedo) in weights.iter_mut().zip(albedos) {
             *weight *= albedo / probability;
@@ -88,7 +88,7 @@ pub struct InBody<'a> {
     law: Option<Law>,
     /// The number of heroes, and their probabilities to be scattered at a real collision.
     heroes: usize,
-    chances: [f64; MOST_CHANNELS],
+    chances: [f64; MAX_CHANNELS],
     /// Weights by channel, order and hero: of [`TABLE`] orders, or empty.
     table: &'a [f64],
 }
@@ -103,7 +103,7 @@ impl<'a> InBody<'a> {
         let albedos = &colours.albedos;
         let law = page.heroes().map(|heroes| Law::new(heroes, albedos.len()));
         let heroes = if law.is_some() { albedos.len() } else { 1 };
-        let mut chances = [0.0; MOST_CHANNELS];
+        let mut chances = [0.0; MAX_CHANNELS];
         for (hero, chance) in chances[..heroes].iter_mut().enumerate() {
             *chance = page.chance(albedos, hero);
         }
@@ -111,7 +111,7 @@ impl<'a> InBody<'a> {
     }
 
     /// The weights of walks by their number, `order · heroes + hero`.
-    fn weights_of(&self, number: usize) -> [f64; MOST_CHANNELS] {
+    fn weights_of(&self, number: usize) -> [f64; MAX_CHANNELS] {
         let order = u32::try_from(number / self.heroes).unwrap_or(u32::MAX);
         self.page.weights(&self.colours.albedos, number % self.heroes, order)
     }
@@ -157,8 +157,8 @@ impl<'a> InBody<'a> {
 
     /// Values of walks in all channels.
     #[inline(always)]
-    fn weights<L: Lane>(&self, hero: L, order: L) -> [L; MOST_CHANNELS] {
-        let mut weights = [hero; MOST_CHANNELS];
+    fn weights<L: Lane>(&self, hero: L, order: L) -> [L; MAX_CHANNELS] {
+        let mut weights = [hero; MAX_CHANNELS];
         let mut number = order * self.heroes as f64 + hero;
         let size = TABLE * self.heroes;
         let is_known = order.below(order.each(TABLE as f64));
@@ -168,7 +168,7 @@ impl<'a> InBody<'a> {
             }
             return weights;
         }
-        let mut lanes = [[0.0; MOST_CHANNELS]; WIDTH];
+        let mut lanes = [[0.0; MAX_CHANNELS]; WIDTH];
         let mut note = |numbers: &mut [f64]| {
             for (lane, number) in numbers.iter().enumerate() {
                 lanes[lane] = self.weights_of(whole(*number));

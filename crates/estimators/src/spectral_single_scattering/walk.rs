@@ -22,8 +22,8 @@ use crate::space::shadow::ShadowRays;
 use crate::walks::hero::{Law, Media, number_of_hero, of_hero, or_of_hero};
 use crate::walks::{self, GROUPS, Met, Route, SOME_LEFT, Scores, Walk};
 use crate::{Draw, Kernel, Request, Setup};
-use media::body::MOST_CHANNELS;
-use media::course::BothWays;
+use media::body::MAX_CHANNELS;
+use media::sampling::BothWays;
 use media::{Batches, Lookups};
 use numeric::geometry::Point;
 use numeric::rng::{Random, Stream};
@@ -60,14 +60,14 @@ kept! {
         /// The number of collisions along the ray, if [`Steps::COUNTS`].
         collisions: L,
         /// q of each channel relative to the hero's, without the factors of σ̂.
-        weights: [L; MOST_CHANNELS],
+        weights: [L; MAX_CHANNELS],
         /// The shadow ray, its present distance, and its end.
         origin: [L; 3],
         direction: [L; 3],
         t: L,
         end: L,
         /// `Π (1 − r_λ)` along it.
-        through: [L; MOST_CHANNELS],
+        through: [L; MAX_CHANNELS],
     }
 }
 
@@ -78,7 +78,7 @@ pub struct ToScattering<'a, S, const ALL: bool> {
     walker: &'a Walker,
     law: Option<Law>,
     media: Media,
-    albedos: [f64; MOST_CHANNELS],
+    albedos: [f64; MAX_CHANNELS],
     /// True if shadow rays are tracked.
     tracks: bool,
     /// The fields on shadow rays, as packs look them up; empty for one lane.
@@ -130,7 +130,7 @@ impl<'a, S: Steps, const ALL: bool> ToScattering<'a, S, ALL> {
         fields: &'a [Batches<'a>],
         steps: S,
     ) -> Self {
-        let (count, mut albedos) = (setup.fields.len(), [0.0; MOST_CHANNELS]);
+        let (count, mut albedos) = (setup.fields.len(), [0.0; MAX_CHANNELS]);
         albedos[..count].copy_from_slice(&setup.problem.albedos);
         let law = walker.heroes().map(
             #[inline(always)]
@@ -229,7 +229,7 @@ impl<S: Steps, const ALL: bool> Walk for ToScattering<'_, S, ALL> {
 
     #[inline(always)]
     fn begin<L: Lane>(&self, one: L, all: L::Mask, random: &mut impl Random<L>) -> Flight<L> {
-        let (none, zero, ones) = (all & !all, one.each(0.0), [one; MOST_CHANNELS]);
+        let (none, zero, ones) = (all & !all, one.each(0.0), [one; MAX_CHANNELS]);
         let s = one.each(self.setup.residual().mesh.support().from);
         // Lanes without a shadow ray look up σ_t where this one enters.
         let (origin, direction, _) = self.setup.problem.channels[0].to_light(s);
@@ -335,7 +335,7 @@ impl<S: Steps, const ALL: bool> Walk for ToScattering<'_, S, ALL> {
         let mut ends = walks & !inside;
         let mut is_scattered = walks & !walks;
         if walks.maybe() {
-            let (mut ratios, mut own) = ([one; MOST_CHANNELS], one);
+            let (mut ratios, mut own) = ([one; MAX_CHANNELS], one);
             let ratios = &mut ratios[..met.extinctions.len()];
             for (channel, ratio) in ratios.iter_mut().enumerate() {
                 *ratio = met.extinctions[channel] / one.each(self.media.majorants[channel]);
@@ -394,7 +394,7 @@ impl<S: Steps, const ALL: bool> Walk for ToScattering<'_, S, ALL> {
 
     #[inline(always)]
     fn field(&self, channel: usize, place: Point) -> f64 {
-        self.setup.problem.channels[channel].volume().points().extinction(place)
+        self.setup.problem.channels[channel].volume().extinction_within(place)
     }
 
     #[inline(always)]
@@ -421,7 +421,7 @@ impl<S: Steps, const ALL: bool> Walk for ToScattering<'_, S, ALL> {
         let (hero, length, s, zero) = (*hero, *length, *s, lookups.each(0.0));
         let collisions = if self.steps.has_shadow_density() { lookups } else { *collisions };
         let (is_lit, count) = (zero.at_most(hero), self.media.count);
-        let mut through = [lookups; MOST_CHANNELS];
+        let mut through = [lookups; MAX_CHANNELS];
         let through = &mut through[..count];
         if self.tracks {
             through.copy_from_slice(&rest[rest.len() - count..]);

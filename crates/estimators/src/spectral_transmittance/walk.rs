@@ -19,8 +19,8 @@ use crate::walks::hero::{Law, Media, number_of_hero, of_hero};
 use crate::walks::{self, GROUPS, Met, Route, SOME_LEFT, Scores, Walk};
 use crate::{Draw, Setup};
 use media::Lookups;
-use media::body::MOST_CHANNELS;
-use media::course::BothWays;
+use media::body::MAX_CHANNELS;
+use media::sampling::BothWays;
 use numeric::rng::{Random, Stream};
 use numeric::{Lane, Span, kept};
 use theory::problems::SpectralTransmittance;
@@ -50,9 +50,9 @@ pub struct AlongRay<'a, S> {
     pub law: Law,
     media: Media,
     /// `1/σ̂` of each channel.
-    mean_free_paths: [f64; MOST_CHANNELS],
+    mean_free_paths: [f64; MAX_CHANNELS],
     /// `∫σ̂` of each channel.
-    collisions: [f64; MOST_CHANNELS],
+    collisions: [f64; MAX_CHANNELS],
     steps: S,
 }
 
@@ -66,8 +66,8 @@ impl<'a, S: Steps> AlongRay<'a, S> {
         steps: S,
     ) -> Self {
         let count = setup.fields.len();
-        let [mut mean_free_paths, mut collisions] = [[0.0; MOST_CHANNELS]; 2];
-        let mut probabilities = [0.0; MOST_CHANNELS];
+        let [mut mean_free_paths, mut collisions] = [[0.0; MAX_CHANNELS]; 2];
+        let mut probabilities = [0.0; MAX_CHANNELS];
         for (channel, own) in setup.fields.iter().enumerate() {
             mean_free_paths[channel] = 1.0 / own.majorant;
             collisions[channel] = own.collisions;
@@ -215,7 +215,7 @@ impl<S: Steps> AlongRay<'_, S> {
                 }
             }
             Tracker::Mis { delta } if !self.is_common => {
-                let (mut mean, mut densities) = (one.each(0.0), [one; MOST_CHANNELS]);
+                let (mut mean, mut densities) = (one.each(0.0), [one; MAX_CHANNELS]);
                 for (channel, own) in values.iter_mut().enumerate() {
                     let relative = self.relative(channel, hero, lookups, last);
                     *own = relative * weights[channel];
@@ -260,9 +260,9 @@ kept! {
         mean_free_path: L,
         /// `ρ_λ`, or the weights of spectral tracking. Walks that score their heroes alone use the first one only.
         /// Walks in turn store the values of finished channels behind it.
-        weights: [L; MOST_CHANNELS + 1],
+        weights: [L; MAX_CHANNELS + 1],
         /// Present `1 − σ_t/σ̂` of each channel.
-        shares: [L; MOST_CHANNELS],
+        shares: [L; MAX_CHANNELS],
         /// The last collision, if [`Steps::KEEPS_LAST`].
         last: L,
     }
@@ -280,7 +280,7 @@ impl<S: Steps> Walk for AlongRay<'_, S> {
     fn begin<L: Lane>(&self, one: L, which: L::Mask, random: &mut impl Random<L>) -> Particle<L> {
         let (hero, majorant) = (one.each(0.0), one.each(self.media.majorants[0]));
         let (mean_free_path, last) = (one.each(self.mean_free_paths[0]), self.from(one));
-        let (weights, shares) = ([one; MOST_CHANNELS + 1], [one; MOST_CHANNELS]);
+        let (weights, shares) = ([one; MAX_CHANNELS + 1], [one; MAX_CHANNELS]);
         let mut path = Particle { hero, majorant, mean_free_path, weights, shares, last };
         self.restart(&mut path, which, one, random);
         path

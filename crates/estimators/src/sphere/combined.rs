@@ -28,7 +28,7 @@ use crate::space::segment::Tracker;
 use crate::space::shadow::{Aim, Light, Lit, ShadowRays};
 use crate::space::tally::{Collision, Departure, Scattering, Tally};
 use media::Majorants;
-use media::majorants::Ground;
+use media::sampling::Ground;
 use numeric::geometry::exit::{self, dot, rows};
 use numeric::geometry::{Bounds, Point, Ray};
 use numeric::rng::Random;

@@ -22,7 +22,7 @@ use crate::recipes::controls;
 use crate::walks::{self, Met, Route, Walk};
 use crate::{Estimator, Inputs, Kernel, Refusal, Request, Setup};
 use media::Control;
-use media::course::BothWays;
+use media::sampling::BothWays;
 use numeric::rng::Random;
 use numeric::{Lane, kept};
 use theory::Prediction;

@@ -20,7 +20,7 @@
 use super::woodcock::{ZERO_OR_ONE, zero_or_one};
 use crate::walks::{self, Met, Route, Walk};
 use crate::{Draw, Estimator, Inputs, Kernel, Refusal, Request, Setup};
-use media::course::BothWays;
+use media::sampling::BothWays;
 use numeric::rng::Random;
 use numeric::{Kept, Lane, Row, kept};
 use theory::Prediction;

@@ -16,7 +16,7 @@
 
 use crate::walks::{self, Met, Route, Walk};
 use crate::{Draw, Kernel, Request, Setup};
-use media::course::BothWays;
+use media::sampling::BothWays;
 use media::{Control, Lookups};
 use numeric::rng::{Random, Stream};
 use numeric::{Lane, kept};

@@ -10,7 +10,7 @@
 
 use crate::Setup;
 use crate::walks::{Met, Route, Walk};
-use media::course::BothWays;
+use media::sampling::BothWays;
 use numeric::rng::Random;
 use numeric::{Kept, Lane, kept};
 use theory::problems::Transmittance;

@@ -24,7 +24,7 @@ use crate::transmittance::product::{Invariant, Subtracted};
 use crate::walks::{self, Met, Route, Walk};
 use crate::{Estimator, Inputs, Kernel, Refusal, Request, Setup};
 use media::Medium;
-use media::course::BothWays;
+use media::sampling::BothWays;
 use numeric::rng::{Address, Random, Stream, exponential};
 use numeric::{Lane, kept};
 use theory::problems::TransmittanceCurve;

@@ -15,8 +15,8 @@ use super::outcomes::{self, Events, Groups, Outcomes};
 use super::slots::{Numbers, Slot, Slots, leave};
 use super::{Met, Route, SOME_LEFT, Scores, Walk};
 use crate::{DrawBuffer, Request};
-use media::body::MOST_CHANNELS;
-use media::course::BothWays;
+use media::body::MAX_CHANNELS;
+use media::sampling::BothWays;
 use numeric::pack::{self, WIDTH};
 use numeric::rng::LANES;
 use numeric::twin::PAIR;
@@ -37,7 +37,7 @@ struct Pack<L: Lane, C> {
 }
 
 /// σ_t of all channels for a pack.
-type Channels<S> = [f64x8<S>; MOST_CHANNELS];
+type Channels<S> = [f64x8<S>; MAX_CHANNELS];
 
 /// Numbers of eight finished draws. They are outside the pack: a compiler keeps the pack in registers only if none
 /// of its fields needs a drop.
@@ -316,11 +316,11 @@ pub fn run<S: Simd, W: Walk, C: BothWays<f64x8<S>>>(
     let mut other_state = walk.begin(one, all, &mut second);
     let mut rows = Rows::new::<S, W>(&walk, &state, one, (count, &mut *buffer));
     let (mut slots, mut other_slots) = (Slots::new(count, turn, 0), Slots::new(count, turn, 1));
-    let none: Channels<S> = [f64x8::splat(simd, 0.0); MOST_CHANNELS];
+    let none: Channels<S> = [f64x8::splat(simd, 0.0); MAX_CHANNELS];
     let (mut channels, mut other_channels) = (none, none);
     let mut in_space = [none; 2];
     let media = if W::IS_CHROMATIC { walk.media() } else { 0 };
-    let there = if W::IS_CHROMATIC { media } else { MOST_CHANNELS };
+    let there = if W::IS_CHROMATIC { media } else { MAX_CHANNELS };
     let own = &walk;
     while slots.are_open() || other_slots.are_open() {
         // LLVM copies a loop for each of its constant conditions, and these walks have many.
@@ -377,7 +377,7 @@ fn look_up_in_space<S: Simd, W: Walk>(
     simd: S,
     walk: &W,
     [here, there]: [&W::State<f64x8<S>>; 2],
-    [found, other]: &mut [[f64x8<S>; MOST_CHANNELS]; 2],
+    [found, other]: &mut [[f64x8<S>; MAX_CHANNELS]; 2],
 ) {
     let ((inside, place), (other_inside, other_place)) =
         (walk.in_space(here), walk.in_space(there));

@@ -5,7 +5,7 @@ use fearless_simd::{Level, Simd, SimdBase, f64x8};
 use super::{Nowhere, Walk, bank, plain, window};
 use crate::setup::{OnRay, Residual};
 use crate::{Draw, Estimated, Kernel, Request, Setup};
-use media::course::{BothWays, Even, Pieces};
+use media::sampling::{BothWays, FlightOverPieces, FlightWithGaps};
 use media::{Control, Extinction, Inlined, Lookups, Piecewise};
 use numeric::fused::{Loop, in_fused_code, in_own_rounding};
 use numeric::pack::{self, Task};
@@ -19,10 +19,10 @@ const MOST_PIECES: usize = 8;
 
 /// Returns true if packs are faster than one walk after the other.
 fn pays<W: Walk>(sampling: &Piecewise, control: &Control, medium: &Lookups) -> bool {
-    if !W::IN_PIECES && sampling.even().is_none() {
+    if !W::IN_PIECES && sampling.with_gaps().is_none() {
         return false;
     }
-    if W::IS_NOWHERE || medium.is_costly() || sampling.even().is_some() {
+    if W::IS_NOWHERE || medium.is_costly() || sampling.with_gaps().is_some() {
         return true;
     }
     // Lanes that alternate between walks and shadow rays load other pieces of σ̂ each time.
@@ -207,13 +207,13 @@ impl<W: Walk> Task for SideBySide<'_, '_, W> {
             return outlined(simd, *walk, Nowhere, medium, request);
         }
         let zero = f64x8::splat(simd, 0.0);
-        let Some(even) = sampling.even() else {
+        let Some(even) = sampling.with_gaps() else {
             if const { W::IN_PIECES && !W::IS_CHROMATIC } {
-                outlined(simd, *walk, Pieces::new(zero, sampling), medium, request);
+                outlined(simd, *walk, FlightOverPieces::new(zero, sampling), medium, request);
             }
             return;
         };
-        let course = Even::new(zero, even);
+        let course = FlightWithGaps::new(zero, even);
         if const { !W::IN_PIECES } {
             // Alone in this function.
             return bank::run(

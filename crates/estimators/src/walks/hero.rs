@@ -3,7 +3,7 @@
 use crate::Estimated;
 use crate::setup::heroes::Heroes;
 use crate::setup::{Channels, Setup};
-use media::body::MOST_CHANNELS;
+use media::body::MAX_CHANNELS;
 use numeric::Lane;
 
 /// The distribution of heroes.
@@ -11,14 +11,14 @@ use numeric::Lane;
 pub struct Law {
     count: usize,
     /// The sum of the probabilities of the channels before each.
-    before: [f64; MOST_CHANNELS],
+    before: [f64; MAX_CHANNELS],
 }
 
 impl Law {
     /// Distribution of the heroes of `count` channels.
     #[inline(always)]
     pub fn new(heroes: &Heroes, count: usize) -> Self {
-        let (mut before, mut sum) = ([0.0; MOST_CHANNELS], 0.0);
+        let (mut before, mut sum) = ([0.0; MAX_CHANNELS], 0.0);
         for (channel, before) in before[..count].iter_mut().enumerate() {
             *before = sum;
             sum += heroes.probability(count, channel);
@@ -73,18 +73,18 @@ pub struct Media {
     /// True if all channels have the same σ̂: lengths and numbers of collisions then cancel.
     pub is_common: bool,
     /// σ̂.
-    pub majorants: [f64; MOST_CHANNELS],
+    pub majorants: [f64; MAX_CHANNELS],
     /// `ln σ̂`.
-    pub logarithms: [f64; MOST_CHANNELS],
+    pub logarithms: [f64; MAX_CHANNELS],
     /// The probabilities of heroes.
-    pub chances: [f64; MOST_CHANNELS],
+    pub chances: [f64; MAX_CHANNELS],
 }
 
 impl Media {
     /// Channels of a setup, with the probabilities of heroes.
     #[inline(always)]
     pub fn new<P: Estimated<Fields = Channels>>(setup: &Setup<P>, probabilities: &[f64]) -> Self {
-        let (none, count) = ([0.0; MOST_CHANNELS], setup.fields.len());
+        let (none, count) = ([0.0; MAX_CHANNELS], setup.fields.len());
         let is_common = setup.fields.iter().all(|c| c.majorant == setup.fields[0].majorant);
         let mut media = Self { count, is_common, majorants: none, logarithms: none, chances: none };
         for (channel, own) in setup.fields.iter().enumerate() {

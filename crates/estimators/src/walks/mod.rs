@@ -36,7 +36,7 @@ pub mod slots;
 pub mod window;
 
 use media::Batches;
-use media::course::BothWays;
+use media::sampling::BothWays;
 use numeric::geometry::Point;
 use numeric::rng::Random;
 use numeric::{Kept, Lane};

@@ -4,8 +4,8 @@ use std::marker::PhantomData;
 
 use super::{MAX_OUTCOME, MAX_SCORED, Met, Nowhere, Route, SOME_LEFT, Scores, Walk};
 use crate::Draw;
-use media::body::MOST_CHANNELS;
-use media::course::{BothWays, Even, Pieces};
+use media::body::MAX_CHANNELS;
+use media::sampling::{BothWays, FlightOverPieces, FlightWithGaps};
 use media::{Extinction, Lookups, Piecewise};
 use numeric::Single;
 use numeric::fused::{Loop, in_own_rounding};
@@ -60,9 +60,13 @@ pub fn through<L: Single, W: Walk, V: Channels>(
     if W::IS_NOWHERE {
         return follow(walk, Nowhere, (on_ray, in_space), random);
     }
-    match sampling.even() {
-        Some(even) => follow(walk, Even::new(L::of(0.0), even), (on_ray, in_space), random),
-        None => follow(walk, Pieces::new(L::of(0.0), sampling), (on_ray, in_space), random),
+    match sampling.with_gaps() {
+        Some(even) => {
+            follow(walk, FlightWithGaps::new(L::of(0.0), even), (on_ray, in_space), random)
+        }
+        None => {
+            follow(walk, FlightOverPieces::new(L::of(0.0), sampling), (on_ray, in_space), random)
+        }
     }
 }
 
@@ -93,7 +97,7 @@ fn follow<L: Single, W: Walk, V: Channels>(
     let (zero, one) = (L::of(0.0), L::of(1.0));
     let mut state = walk.begin(one, true, random);
     let mut route = Route::new(course);
-    let (mut lookups, mut extinctions) = (0, [zero; MOST_CHANNELS]);
+    let (mut lookups, mut extinctions) = (0, [zero; MAX_CHANNELS]);
     let extinctions = &mut extinctions[..walk.media()];
     let mut sums = [zero; MAX_SCORED];
     let left = loop {
@@ -102,7 +106,7 @@ fn follow<L: Single, W: Walk, V: Channels>(
             route.here.change(walk.mean_free_path(&state, &route));
         }
         let inside = walk.fly(&mut state, &mut route, depth);
-        let mut there = [zero; MOST_CHANNELS];
+        let mut there = [zero; MAX_CHANNELS];
         let there = &mut there[..walk.media()];
         if W::IN_SPACE {
             lookups += look_up_in_space(walk, &state, &in_space, there);

@@ -1,6 +1,6 @@
 //! Positions of walks on their course through σ̂.
 
-use media::course::{BothWays, Course};
+use media::sampling::{BothWays, PackedFlight};
 use numeric::Lane;
 
 /// The positions of walks, and vertices to which they may return. A vertex is the beginning of the course until another
@@ -25,7 +25,7 @@ impl<C: Copy> Route<C> {
     where
         C: BothWays<L>,
     {
-        self.vertex.stand_as(which, &self.here);
+        self.vertex.copy_where(which, &self.here);
     }
 
     /// Returns the lanes in `which` to their vertices.
@@ -34,7 +34,7 @@ impl<C: Copy> Route<C> {
     where
         C: BothWays<L>,
     {
-        self.here.stand_as(which, &self.vertex);
+        self.here.copy_where(which, &self.vertex);
     }
 }
 
@@ -42,7 +42,7 @@ impl<C: Copy> Route<C> {
 #[derive(Clone, Copy)]
 pub struct Nowhere;
 
-impl<L: Lane> Course<L> for Nowhere {
+impl<L: Lane> PackedFlight<L> for Nowhere {
     #[inline(always)]
     fn fly(&mut self, depth: L) -> L::Mask {
         depth.below(depth)
@@ -74,7 +74,7 @@ impl<L: Lane> BothWays<L> for Nowhere {
     fn place(&self) {}
 
     #[inline(always)]
-    fn stand_at(&mut self, (): ()) {}
+    fn return_to(&mut self, (): ()) {}
 
     #[inline(always)]
     fn fly_either_way(&mut self, depth: L, _: L::Mask) -> L::Mask {
@@ -82,5 +82,5 @@ impl<L: Lane> BothWays<L> for Nowhere {
     }
 
     #[inline(always)]
-    fn stand_as(&mut self, _: L::Mask, _: &Self) {}
+    fn copy_where(&mut self, _: L::Mask, _: &Self) {}
 }

@@ -17,7 +17,7 @@ use fearless_simd::{Simd, SimdBase, SimdMask, f64x8, mask64x8, u8x64, u64x8};
 
 use super::{Met, Route, Walk};
 use crate::Request;
-use media::course::BothWays;
+use media::sampling::BothWays;
 use numeric::pack::WIDTH;
 use numeric::rng::{LANES, PACKS, Random, Stream, Xoshiro};
 use numeric::{Lane, Mask, Twin};

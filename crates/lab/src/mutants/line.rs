@@ -21,7 +21,7 @@
 use estimators::setup::ControlledLine;
 use estimators::walks::{Met, Route, Walk};
 use estimators::{Draw, Estimated, Setup};
-use media::course::{BothWays, Even, Pieces};
+use media::sampling::{BothWays, FlightOverPieces, FlightWithGaps};
 use media::{Control, Extinction, Lookups, Piecewise};
 use numeric::fused::{Loop, in_own_rounding};
 use numeric::rng::{Random, Stream};
@@ -153,9 +153,9 @@ impl<W: Walk, P: Estimated<Fields = ControlledLine, Value: Channels>> Loop for O
     #[inline(always)]
     fn run<L: Single>(self) -> Draw<P::Value> {
         let sampling = &self.setup.fields.sampling;
-        match sampling.even() {
-            Some(even) => self.along(Even::new(L::of(0.0), even)),
-            None => self.along(Pieces::new(L::of(0.0), sampling)),
+        match sampling.with_gaps() {
+            Some(even) => self.along(FlightWithGaps::new(L::of(0.0), even)),
+            None => self.along(FlightOverPieces::new(L::of(0.0), sampling)),
         }
     }
 }

@@ -4,7 +4,7 @@ use super::{Line, Mutant, On, family, on, one_by_one};
 use estimators::setup::heroes::Heroes;
 use estimators::spectral_rod::Coloured;
 use estimators::spectral_rod::walk::{Page, draw, relative_to};
-use media::body::MOST_CHANNELS;
+use media::body::MAX_CHANNELS;
 use theory::problems::{SpectralRod, SpectralSlab};
 
 /// The balance heuristic, or spectral tracking by the mean albedo.
@@ -82,7 +82,7 @@ impl Page for Wrong {
         if self.tracks { mean(albedos) } else { albedos[hero] }
     }
 
-    fn weights(&self, albedos: &[f64], hero: usize, order: u32) -> [f64; MOST_CHANNELS] {
+    fn weights(&self, albedos: &[f64], hero: usize, order: u32) -> [f64; MAX_CHANNELS] {
         if !self.tracks {
             return self.balanced(albedos, hero, order);
         }
@@ -96,7 +96,7 @@ impl Page for Wrong {
 }
 
 impl Wrong {
-    fn balanced(&self, albedos: &[f64], hero: usize, order: u32) -> [f64; MOST_CHANNELS] {
+    fn balanced(&self, albedos: &[f64], hero: usize, order: u32) -> [f64; MAX_CHANNELS] {
         let count = albedos.len();
         let mut weights = relative_to(albedos, albedos[hero], order);
         let mut density = 0.0;

@@ -10,13 +10,14 @@ use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
 
 use super::prelude::*;
+use media::Layered;
 use media::Volume;
 use media::constant::Constant;
 use media::exponential::Exponential;
 use media::gaussian::Gaussian;
 use media::grid::Grid;
 use media::noise::Noise;
-use media::piecewise_linear::Layers;
+use media::piecewise_linear::Pieces;
 use media::radial::Radial;
 use media::sines::Sines;
 use media::voxels::{Interpolation, Placement};
@@ -227,10 +228,10 @@ impl Filling {
     fn volume(self, body: Body, size: f64) -> Arc<Volume> {
         let (bounds, centre, unit) = (body.bounds(), body.centre(), body.reach());
         match self {
-            Self::Constant => Arc::new(Constant::new(size, bounds)),
+            Self::Constant => Arc::new(Constant::within(size, bounds)),
             Self::Exponential(rate, axis) => {
                 let axis = Point(axis).normalised().unwrap_or(Point([0.0, 0.0, 1.0]));
-                Arc::new(Exponential::new(size, rate / unit, axis, bounds))
+                Arc::new(Layered::new(Exponential::new(size, rate / unit), axis, bounds))
             }
             Self::Sines(share, phase, k) => {
                 let wave = (share * size, Point(k) * (1.0 / unit), phase);
@@ -286,9 +287,9 @@ fn layers(stack: &Stack, chords: f64, seen: &mut Seen) -> Option<()> {
     let exact = nodes.map(|(h, weight)| area(h) * (pieces.value(h) * weight)).sum();
     let bounds = body.bounds();
     let volume: Arc<Volume> = if steps {
-        Arc::new(Layers::<true>::new(pieces.clone(), axis, bounds))
+        Arc::new(Layered::new(Pieces::<true>(pieces.clone()), axis, bounds))
     } else {
-        Arc::new(Layers::<false>::new(pieces.clone(), axis, bounds))
+        Arc::new(Layered::new(Pieces::<false>(pieces.clone()), axis, bounds))
     };
     see(&*volume, exact, chords, seen)
 }

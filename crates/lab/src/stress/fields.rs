@@ -5,16 +5,16 @@ use std::sync::Arc;
 use super::prelude::*;
 use super::tails::normal_between;
 use media::body::Body;
-use media::constant::{Constant, Homogeneous};
+use media::constant::Constant;
 use media::eq21::Eq21;
-use media::exponential::{Decay, Exponential};
+use media::exponential::Exponential;
 use media::gaussian::{Bump, Gaussian};
 use media::grid::Grid;
 use media::noise::Noise;
 use media::radial::Radial;
 use media::sines::{Wave, Waves};
 use media::voxels::{Interpolation, Placement};
-use media::{Profile, Volume};
+use media::{Layered, Profile, Volume};
 use numeric::geometry::{Aabb, Bounds, Point, Ray};
 
 /// A field on a stretch of a line.
@@ -58,10 +58,12 @@ pub(super) enum Field {
 impl Line {
     pub fn medium(&self) -> Medium {
         let profile: Arc<Profile> = match &self.field {
-            &Field::Constant { extinction } => Arc::new(Homogeneous { extinction }),
+            &Field::Constant { extinction } => Arc::new(Constant { extinction }),
             Field::Steps { breaks, values } => Arc::new(Piecewise::steps(breaks, values)),
             Field::Lines { knots, values } => Arc::new(Piecewise::lines(knots, values)),
-            &Field::Exponential { extinction, rate } => Arc::new(Decay::new(extinction, rate)),
+            &Field::Exponential { extinction, rate } => {
+                Arc::new(Exponential::new(extinction, rate))
+            }
             &Field::Gaussian { peak, centre, width } => Arc::new(Bump::new(peak, centre, width)),
             Field::Sines { base, waves } => {
                 let wave = |&[amplitude, frequency, phase]: &[f64; 3]| Wave {
@@ -150,7 +152,9 @@ impl Space {
         let middle = Point([0.0, 0.0, 10.0]);
         let ball = |radius| Bounds::Sphere { centre: middle, radius };
         match self {
-            Self::Constant(extinction) => Arc::new(Constant::new(extinction, Bounds::Everywhere)),
+            Self::Constant(extinction) => {
+                Arc::new(Constant::within(extinction, Bounds::Everywhere))
+            }
             Self::Eq21 => Arc::new(Eq21),
             Self::Noise(extinction, frequency, octaves, radius) => {
                 let bounds = radius.map_or(Bounds::Everywhere, ball);
@@ -165,7 +169,8 @@ impl Space {
                 Arc::new(Gaussian::new(peak, Point([1.0, 0.0, 9.0]), width, ball(radius)))
             }
             Self::Exponential(rate, radius) => {
-                Arc::new(Exponential::new(1.0, rate, Point([0.0, 0.0, 1.0]), ball(radius)))
+                let field = Exponential::new(1.0, rate);
+                Arc::new(Layered::new(field, Point([0.0, 0.0, 1.0]), ball(radius)))
             }
             Self::Radial => Arc::new(Radial::new(middle, 8.0, [0.6, -0.6, 0.0, 0.0])),
         }

@@ -123,7 +123,7 @@ fn miss((sign, depth, scene): &(f64, f64, Scene), seen: &mut Seen) -> Option<()>
 /// The optical depth of such a chord: the error of its ends is part of the stated one.
 fn optical_depth((depth, scene): &(f64, Scene), seen: &mut Seen) -> Option<()> {
     let chord = scene.chord(*depth)?;
-    let medium = crossed(Arc::new(Constant::new(1.0, chord.ball)), chord.ray);
+    let medium = crossed(Arc::new(Constant::within(1.0, chord.ball)), chord.ray);
     let [from, to] = chord.exact()?;
     let found = medium.optical_depth(medium.span());
     let rounding = 0.5 * f64::EPSILON * found.value;

@@ -198,7 +198,7 @@ impl Problem for Sphere {
         let Bounds::Sphere { centre, radius } = scene.volume.bounds() else {
             return not_radial(settings);
         };
-        if !scene.volume.is_radial() {
+        if !scene.volume.facts().is_radial {
             return not_radial(settings);
         }
         let sought = if sought == words[0] { Sought::Radiance } else { Sought::MeanIntensity };

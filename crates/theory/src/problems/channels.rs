@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use super::Values;
 use super::scene::in_space;
-use media::body::MOST_CHANNELS;
+use media::body::MAX_CHANNELS;
 use media::catalogue::{Domain, Settings};
 use media::phase::Phase;
 use media::{Body, Medium, Volume};
@@ -21,7 +21,7 @@ pub struct Channel {
 }
 
 /// The values of one draw of a coloured rod or slab: what leaves at each end, in each channel.
-pub type ColourValues = Values<{ 2 * MOST_CHANNELS }>;
+pub type ColourValues = Values<{ 2 * MAX_CHANNELS }>;
 
 /// End at which a particle leaves.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -73,9 +73,9 @@ pub(super) fn media(body: &Body) -> Vec<Medium> {
 /// Reads `albedos`, 1 to 8 numbers.
 pub(super) fn read_albedos(settings: &Settings) -> Option<Vec<f64>> {
     let albedos = settings.numbers("albedos", Domain::Unit, 1)?;
-    if albedos.len() > MOST_CHANNELS {
+    if albedos.len() > MAX_CHANNELS {
         let message = format!("`albedos` lists {} channels", albedos.len());
-        settings.fault("albedos", message, format!("it takes 1 to {MOST_CHANNELS}"));
+        settings.fault("albedos", message, format!("it takes 1 to {MAX_CHANNELS}"));
         return None;
     }
     Some(albedos)

@@ -62,8 +62,8 @@ impl Problem for InfiniteMedium {
         let scene = Scene::read(body, settings);
         let radii = settings.optional("radii", |key| settings.numbers(key, Domain::Positive, 1));
         let (scene, radii) = (scene?, radii?.unwrap_or_default());
-        let is_homogeneous =
-            scene.volume.single_value().is_some() && scene.volume.bounds() == Bounds::Everywhere;
+        let is_homogeneous = scene.volume.facts().single_value.is_some()
+            && scene.volume.bounds() == Bounds::Everywhere;
         let extinction = scene.volume.extinction_at(Point([0.0; 3]));
         if !is_homogeneous || extinction <= 0.0 {
             let help = "it takes `volume.constant = { extinction }` above 0, without bounds";

@@ -171,7 +171,7 @@ mod tests {
     fn each_face_of_a_box_gets_its_share() {
         let within = Aabb { low: Point([0.0; 3]), high: Point([1.0, 2.0, 3.0]) };
         let cuboid =
-            under_light(Arc::new(media::constant::Constant::new(1.0, Bounds::Box(within))));
+            under_light(Arc::new(media::constant::Constant::within(1.0, Bounds::Box(within))));
         // Areas 6, 3, 2 twice: of 11 parts u takes six for x, three for y, two for z.
         let (place, inward) = boundary(&cuboid, 1.0 / 11.0, 0.5);
         assert_eq!((inward, place.0[0]), (Point([1.0, 0.0, 0.0]), 0.0));

@@ -19,7 +19,7 @@ pub mod transmittance;
 
 use fearless_simd::Level;
 
-use media::body::{MOST_CHANNELS, RayNeed};
+use media::body::{MAX_CHANNELS, RayNeed};
 use media::catalogue::{Domain, PageList, Settings, Value};
 use media::{Body, Lookups, Medium};
 
@@ -164,7 +164,7 @@ pub struct Values<const N: usize> {
 }
 
 /// The values of one draw, one for each channel (wavelength).
-pub type ChannelValues = Values<MOST_CHANNELS>;
+pub type ChannelValues = Values<MAX_CHANNELS>;
 
 /// Numbers, one per channel.
 pub trait Channels {

@@ -411,7 +411,7 @@ mod tests {
     use numeric::geometry::Bounds;
 
     fn lit(phase: Phase, [distance, foot]: [f64; 2]) -> SingleScattering {
-        let field = Constant::new(1.0, Bounds::Everywhere);
+        let field = Constant::within(1.0, Bounds::Everywhere);
         let ray = Ray::new(Point([0.0; 3]), Point([0.0, 0.0, 1.0]), 1.0).expect("a direction");
         let lamp = Lamp { position: Point([distance, 0.0, foot]), power: 1.0 };
         SingleScattering::new(Arc::new(field), ray, lamp, 1.0, phase).expect("off the line")

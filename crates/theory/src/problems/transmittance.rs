@@ -35,7 +35,7 @@ use std::slice;
 
 use super::channels::media;
 use super::{Problem, ProblemOption, Values};
-use media::body::MOST_CHANNELS;
+use media::body::MAX_CHANNELS;
 use media::catalogue::Settings;
 use media::{Body, Medium};
 
@@ -114,7 +114,7 @@ impl Problem for TransmittanceCurve {
 }
 
 /// The values of one draw in several channels: their transmittances, and the luminance.
-pub type SpectralValues = Values<{ MOST_CHANNELS + 1 }>;
+pub type SpectralValues = Values<{ MAX_CHANNELS + 1 }>;
 
 /// The transmittance of a chromatic medium.
 pub struct SpectralTransmittance {

@@ -41,7 +41,7 @@ pub fn content(volume: &Volume) -> Option<Known> {
 pub fn by_chords(volume: &Volume, most: f64) -> Option<Known> {
     let within = volume.bounds().enclosing_box()?;
     let height = within.high.0[2] - within.low.0[2];
-    let most = most.min(MOST_PIECES / (1.0 + volume.pieces(height)));
+    let most = most.min(MOST_PIECES / (1.0 + volume.facts().pieces_per_length * height));
     let mut chords = Chords::new(volume, &within);
     if matches!(chords, Chords::Box(_, true)) && chords.count(2) > most {
         // Cells that are finer than chords need no cuts.
@@ -67,7 +67,7 @@ pub fn by_chords(volume: &Volume, most: f64) -> Option<Known> {
                 steps[steps.len() - 1]
             } else {
                 // Noise bends so little that caps of it are negligible.
-                let is_even = is_smooth || volume.smoothness() == Smoothness::SmoothCells;
+                let is_even = is_smooth || volume.facts().smoothness == Smoothness::SmoothCells;
                 let most = if is_even { 0.0 } else { volume.majorant(&within) };
                 settled(&steps, is_smooth) + most * chords.unseen(n)
             };
@@ -80,12 +80,12 @@ pub fn by_chords(volume: &Volume, most: f64) -> Option<Known> {
 
 /// Returns true if σ_t is a polynomial in cells along the axes.
 fn has_cells(volume: &Volume) -> bool {
-    matches!(volume.smoothness(), Smoothness::SmoothCells | Smoothness::Cells)
+    matches!(volume.facts().smoothness, Smoothness::SmoothCells | Smoothness::Cells)
 }
 
 /// Returns true if σ_t jumps or bends.
 fn has_kinks(volume: &Volume) -> bool {
-    volume.smoothness() != Smoothness::Smooth
+    volume.facts().smoothness != Smoothness::Smooth
 }
 
 /// Error of a sequence of resolutions, from its last steps. Where the field is smooth, it is the last step if the

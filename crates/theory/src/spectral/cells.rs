@@ -121,7 +121,7 @@ mod tests {
     use super::*;
     use crate::Mesh;
     use media::Medium;
-    use media::constant::Homogeneous;
+    use media::constant::Constant;
     use numeric::Span;
     use std::sync::Arc;
 
@@ -137,7 +137,7 @@ mod tests {
         let span = Span::new(0.0, 1.0);
         let depths: [f64; 2] = [0.01, 8.0];
         let meshes = depths.map(|extinction| {
-            Mesh::new(Medium::new(Arc::new(Homogeneous { extinction }), span, span))
+            Mesh::new(Medium::new(Arc::new(Constant { extinction }), span, span))
         });
         let majorants = vec![0.01 * 3.0, 8.0 * 1.02];
         let tracker = Tracker::Mis { delta: true };

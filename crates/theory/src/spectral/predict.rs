@@ -168,7 +168,7 @@ mod tests {
     use super::*;
     use crate::Mesh;
     use media::Medium;
-    use media::constant::Homogeneous;
+    use media::constant::Constant;
     use numeric::Span;
     use std::sync::Arc;
 
@@ -179,7 +179,7 @@ mod tests {
         let span = Span::new(0.0, 1.0);
         let (depths, above, shares) = ([0.0003, 0.0734], [0.153, 2.2329], [0.3, 1.0]);
         let meshes = depths.map(|extinction| {
-            Mesh::new(Medium::new(Arc::new(Homogeneous { extinction }), span, span))
+            Mesh::new(Medium::new(Arc::new(Constant { extinction }), span, span))
         });
         let majorants = (0..2).map(|i| depths[i] * (1.0 + above[i])).collect();
         let heroes = shares.map(|share| share / 1.3).to_vec();

@@ -113,7 +113,7 @@ fn in_space<'t, N: Precision, V: Channels + AsRef<[f64]>, const SPLITS: bool>(
 ) -> Option<f64> {
     // σ_t alone is looked up.
     let _ = world.0.albedo.even()?;
-    let everywhere = world.0.volume.single_value();
+    let everywhere = world.0.volume.facts().single_value;
     let look_up =
         |_, place: [Traced<'t, N>; 3]| everywhere.map_or_else(|| scene.in_ball(place), Traced::of);
     let walk = InSpace::new(tally, particle, world, &[]);

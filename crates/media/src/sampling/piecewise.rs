@@ -1,8 +1,8 @@
 //! Straight pieces: the shape of every sampling extinction and of most controls.
 
-use super::even::Even;
+use super::ConstantWithGaps;
 use super::search::Search;
-use super::{Extinction, FreeFlight, OpticalDepth};
+use crate::{Extinction, Facts, OpticalDepth};
 use numeric::{Known, Lane, Row, Span, sum::Sum};
 
 /// A field made of straight pieces, which need not meet at the knots.
@@ -18,7 +18,7 @@ pub struct Piecewise {
     pub(super) left: Vec<f64>,
     pub(super) slope: Vec<f64>,
     pub(super) depth: Vec<f64>,
-    pub(super) even: Option<Even>,
+    pub(super) gaps: Option<ConstantWithGaps>,
     search: Search,
     /// Knot, left and slope of each piece, for lookups, and for flights its end and the value there.
     pub(super) rows: Vec<Row>,
@@ -65,12 +65,12 @@ impl Piecewise {
             Row([knot, left[i], slope[i], end, right, 0.0, 0.0, 0.0])
         };
         let rows = knots[..left.len()].iter().enumerate().map(row).collect();
-        let even = Even::of(knots, &left, &slope);
+        let gaps = ConstantWithGaps::new(knots, &left, &slope);
         let stretch =
             |i: usize| Row([knots[i], knots[i + 1], 1.0 / left[i], 0.0, 0.0, 0.0, 0.0, 0.0]);
         let stretches = (0..left.len()).filter(|&i| left[i] > 0.0).map(stretch).collect();
         let search = Search::new(knots);
-        Self { knots: knots.to_vec(), left, slope, depth, even, search, rows, stretches }
+        Self { knots: knots.to_vec(), left, slope, depth, gaps, search, rows, stretches }
     }
 
     /// The field restricted to, or continued over, a span.
@@ -131,8 +131,8 @@ impl Piecewise {
 
     /// The field as one value with gaps, if it has only one value other than zero.
     #[inline]
-    pub fn even(&self) -> Option<&Even> {
-        self.even.as_ref()
+    pub fn with_gaps(&self) -> Option<&ConstantWithGaps> {
+        self.gaps.as_ref()
     }
 
     /// Number of pieces.
@@ -228,6 +228,10 @@ impl Extinction for Piecewise {
     fn extinction<L: Lane>(&self, t: L) -> L {
         self.value(t)
     }
+
+    fn facts(&self) -> Facts<'_> {
+        Facts { panel_nodes: Some(3), has_inverse: true, ..Facts::default() }
+    }
 }
 
 impl OpticalDepth for Piecewise {
@@ -238,16 +242,6 @@ impl OpticalDepth for Piecewise {
 
     fn breaks(&self, span: Span) -> Vec<f64> {
         self.knots.iter().copied().filter(|&t| span.contains_inside(t)).collect()
-    }
-
-    fn panel_nodes(&self) -> Option<usize> {
-        Some(3)
-    }
-}
-
-impl FreeFlight for Piecewise {
-    fn is_direct(&self) -> bool {
-        true
     }
 
     fn free_flight(&self, span: Span, depth: f64) -> Option<f64> {
@@ -315,7 +309,7 @@ mod tests {
     fn a_gap_leaves_the_rest_as_it_is() {
         let (whole, gap) = (lines(), Span::new(0.7, 2.7));
         let field = whole.zero_on(&[gap]);
-        assert!(field.even().is_none());
+        assert!(field.with_gaps().is_none());
         for step in 0..40 {
             let t = 0.1 * f64::from(step) + 0.05;
             let expected = if gap.contains_inside(t) { 0.0 } else { whole.value(t) };

@@ -8,16 +8,16 @@ use numeric::Lane;
 pub struct Cursor {
     /// The distance reached.
     pub t: f64,
-    /// Distance without gaps, in a field that is [`Piecewise::even`].
+    /// Distance without gaps, in a field that is [`Piecewise::with_gaps`].
     way: f64,
     piece: usize,
 }
 
 impl Piecewise {
-    /// A walk from the first knot, or from the beginning of a field that is [`Piecewise::even`].
+    /// A walk from the first knot, or from the beginning of a field that is [`Piecewise::with_gaps`].
     #[inline]
     pub fn begin(&self) -> Cursor {
-        let t = self.even.as_ref().map_or(self.knots[0], |even| even.from);
+        let t = self.gaps.as_ref().map_or(self.knots[0], |gaps| gaps.from);
         Cursor { t, way: t, piece: 0 }
     }
 
@@ -34,10 +34,10 @@ impl Piecewise {
     /// ```
     #[inline(always)]
     pub fn fly(&self, cursor: &mut Cursor, depth: f64) -> Option<f64> {
-        if let Some(even) = &self.even {
-            cursor.way = Lane::times_plus(depth, 1.0 / even.value, cursor.way);
-            cursor.t = even.spread(cursor.way);
-            return (cursor.way < even.to).then_some(even.value);
+        if let Some(gaps) = &self.gaps {
+            cursor.way = Lane::times_plus(depth, 1.0 / gaps.value, cursor.way);
+            cursor.t = gaps.spread(cursor.way);
+            return (cursor.way < gaps.to).then_some(gaps.value);
         }
         self.fly_over(cursor, depth)
     }
@@ -45,9 +45,9 @@ impl Piecewise {
     /// Ends of flights from the beginning through optical depths.
     #[inline(always)]
     pub fn flown<L: Lane>(&self, depth: L) -> L {
-        if let Some(even) = &self.even {
-            return even
-                .spread(depth.times_plus(depth.each(1.0 / even.value), depth.each(even.from)));
+        if let Some(gaps) = &self.gaps {
+            return gaps
+                .spread(depth.times_plus(depth.each(1.0 / gaps.value), depth.each(gaps.from)));
         }
         depth.map(|depth| {
             let mut cursor = self.begin();
@@ -78,17 +78,17 @@ impl Piecewise {
 
 #[cfg(test)]
 mod tests {
-    use super::super::OpticalDepth;
-    use super::super::even::Even;
+    use super::super::ConstantWithGaps;
     use super::*;
+    use crate::OpticalDepth;
     use numeric::Span;
 
     #[test]
-    fn a_flight_begins_where_an_even_field_does() {
+    fn a_flight_begins_where_a_field_with_gaps_does() {
         let field = Piecewise::constant(2.0, Span::new(0.0, 5.0));
         let field = field.zero_on(&[Span::new(0.0, 1.0), Span::new(4.0, 5.0)]);
-        let even = Even { value: 2.0, from: 1.0, to: 4.0, gaps: Vec::new() };
-        assert_eq!(field.even(), Some(&even));
+        let expected = ConstantWithGaps { value: 2.0, from: 1.0, to: 4.0, gaps: Vec::new() };
+        assert_eq!(field.with_gaps(), Some(&expected));
         assert_eq!((field.value(0.5), field.value(1.0), field.value(4.5)), (0.0, 2.0, 0.0));
         let mut cursor = field.begin();
         assert_eq!((field.fly(&mut cursor, 1.0), cursor.t), (Some(2.0), 1.5));
@@ -102,7 +102,10 @@ mod tests {
         let values = [0.0, 3.0, 3.0, 0.0, 0.0, 3.0, 0.0, 3.0, 0.0];
         let field = Piecewise::steps(&[0.0, 1.0, 1.5, 2.0, 3.0, 4.0, 6.0, 7.0, 8.0, 9.0], &values);
         let gaps = vec![[2.0, 2.0], [4.0, 1.0]];
-        assert_eq!(field.even(), Some(&Even { value: 3.0, from: 1.0, to: 5.0, gaps }));
+        assert_eq!(
+            field.with_gaps(),
+            Some(&ConstantWithGaps { value: 3.0, from: 1.0, to: 5.0, gaps })
+        );
         for step in 1..120 {
             let depth = 0.1 * f64::from(step) + 0.01;
             let mut cursor = field.begin();

@@ -4,11 +4,11 @@
 //! y₀ s + k s²/2 = u   ⇒   s = 2u / (y₀ + √(y₀² + 2ku))
 //! ```
 
-use super::{Piecewise, even};
+use super::{ConstantWithGaps, Piecewise};
 use numeric::{Kept, Lane, Mask};
 
 /// Positions of walks.
-pub trait Course<L: Lane>: Copy {
+pub trait PackedFlight<L: Lane>: Copy {
     /// Flies each walk through an optical depth; returns the lanes that are still before the last knot.
     fn fly(&mut self, depth: L) -> L::Mask;
 
@@ -32,8 +32,8 @@ pub trait Course<L: Lane>: Copy {
     }
 }
 
-/// A course that walks may also go back.
-pub trait BothWays<L: Lane>: Course<L> {
+/// Flights that may also go back.
+pub trait BothWays<L: Lane>: PackedFlight<L> {
     /// Positions of walks, to be kept.
     type Place: Copy;
 
@@ -41,20 +41,20 @@ pub trait BothWays<L: Lane>: Course<L> {
     fn place(&self) -> Self::Place;
 
     /// Sets all positions.
-    fn stand_at(&mut self, place: Self::Place);
+    fn return_to(&mut self, place: Self::Place);
 
     /// Flies each walk forward or backward through an optical depth; returns the lanes that are still between the
     /// ends.
     fn fly_either_way(&mut self, depth: L, is_forward: L::Mask) -> L::Mask;
 
-    /// Sets the positions of the lanes in `which` to those on another course through the same field.
-    fn stand_as(&mut self, which: L::Mask, other: &Self);
+    /// Sets the positions of the lanes in `which` to those of other flights through the same field.
+    fn copy_where(&mut self, which: L::Mask, other: &Self);
 }
 
-/// A course through one value, with gaps.
+/// Flights through one value, with gaps.
 #[derive(Clone, Copy)]
-pub struct Even<'a, L> {
-    field: &'a even::Even,
+pub struct FlightWithGaps<'a, L> {
+    field: &'a ConstantWithGaps,
     begin: L,
     end: L,
     rate: L,
@@ -62,16 +62,16 @@ pub struct Even<'a, L> {
     way: L,
 }
 
-impl<'a, L: Lane> Even<'a, L> {
-    /// A course at the beginning of a field; `any` is an arbitrary lane.
+impl<'a, L: Lane> FlightWithGaps<'a, L> {
+    /// Flights from the beginning of a field; `any` is an arbitrary lane.
     #[inline(always)]
-    pub fn new(any: L, field: &'a even::Even) -> Self {
+    pub fn new(any: L, field: &'a ConstantWithGaps) -> Self {
         let (begin, end) = (any.each(field.from), any.each(field.to));
         let (rate, path) = (any.each(field.value), any.each(1.0 / field.value));
         Self { field, begin, end, rate, path, way: begin }
     }
 
-    /// The course at the end of the field.
+    /// Flights from the end of the field.
     #[must_use]
     #[inline(always)]
     pub fn from_end(self) -> Self {
@@ -79,7 +79,7 @@ impl<'a, L: Lane> Even<'a, L> {
     }
 }
 
-impl<L: Lane> Course<L> for Even<'_, L> {
+impl<L: Lane> PackedFlight<L> for FlightWithGaps<'_, L> {
     #[inline(always)]
     fn fly(&mut self, depth: L) -> L::Mask {
         self.way = depth.times_plus(self.path, self.way);
@@ -112,7 +112,7 @@ impl<L: Lane> Course<L> for Even<'_, L> {
     }
 }
 
-impl<L: Lane> BothWays<L> for Even<'_, L> {
+impl<L: Lane> BothWays<L> for FlightWithGaps<'_, L> {
     type Place = L;
 
     #[inline(always)]
@@ -121,7 +121,7 @@ impl<L: Lane> BothWays<L> for Even<'_, L> {
     }
 
     #[inline(always)]
-    fn stand_at(&mut self, way: L) {
+    fn return_to(&mut self, way: L) {
         self.way = way;
     }
 
@@ -132,14 +132,14 @@ impl<L: Lane> BothWays<L> for Even<'_, L> {
     }
 
     #[inline(always)]
-    fn stand_as(&mut self, which: L::Mask, other: &Self) {
+    fn copy_where(&mut self, which: L::Mask, other: &Self) {
         self.way.set_where(which, other.way);
     }
 }
 
-/// A course through any pieces: each walk stores its own piece, and looks up the next one when it crosses.
+/// Flights through any pieces: each walk stores its own piece, and looks up the next one when it crosses.
 #[derive(Clone, Copy)]
-pub struct Pieces<'a, L> {
+pub struct FlightOverPieces<'a, L> {
     field: &'a Piecewise,
     /// The number of the piece, and its row of [`Piecewise::rows`].
     piece: L,
@@ -147,15 +147,15 @@ pub struct Pieces<'a, L> {
     t: L,
 }
 
-impl<'a, L: Lane> Pieces<'a, L> {
-    /// A course at the first knot; `any` is an arbitrary lane.
+impl<'a, L: Lane> FlightOverPieces<'a, L> {
+    /// Flights from the first knot; `any` is an arbitrary lane.
     #[inline(always)]
     pub fn new(any: L, field: &'a Piecewise) -> Self {
         let (piece, t) = (any.each(0.0), any.each(field.knots[0]));
         Self { field, piece, at_hand: piece.columns(&field.rows), t }
     }
 
-    /// The course at the last knot.
+    /// Flights from the last knot.
     #[must_use]
     #[inline(always)]
     pub fn from_end(self) -> Self {
@@ -212,7 +212,7 @@ impl<'a, L: Lane> Pieces<'a, L> {
     }
 }
 
-impl<L: Lane> Course<L> for Pieces<'_, L> {
+impl<L: Lane> PackedFlight<L> for FlightOverPieces<'_, L> {
     #[inline(always)]
     fn fly(&mut self, depth: L) -> L::Mask {
         self.go::<false>(depth, depth.at_most(depth))
@@ -244,7 +244,7 @@ impl<L: Lane> Course<L> for Pieces<'_, L> {
     }
 }
 
-impl<L: Lane> BothWays<L> for Pieces<'_, L> {
+impl<L: Lane> BothWays<L> for FlightOverPieces<'_, L> {
     type Place = Self;
 
     #[inline(always)]
@@ -253,7 +253,7 @@ impl<L: Lane> BothWays<L> for Pieces<'_, L> {
     }
 
     #[inline(always)]
-    fn stand_at(&mut self, place: Self) {
+    fn return_to(&mut self, place: Self) {
         *self = place;
     }
 
@@ -263,7 +263,7 @@ impl<L: Lane> BothWays<L> for Pieces<'_, L> {
     }
 
     #[inline(always)]
-    fn stand_as(&mut self, which: L::Mask, other: &Self) {
+    fn copy_where(&mut self, which: L::Mask, other: &Self) {
         if which.any() {
             self.piece.set_where(which, other.piece);
             self.at_hand.set_where(which, other.at_hand);
@@ -277,8 +277,8 @@ mod tests {
     use super::*;
     use numeric::Span;
 
-    fn courses(field: &Piecewise) -> [Pieces<'_, f64>; 2] {
-        let begin = Pieces::new(0.0, field);
+    fn flights(field: &Piecewise) -> [FlightOverPieces<'_, f64>; 2] {
+        let begin = FlightOverPieces::new(0.0, field);
         [begin, begin.from_end()]
     }
 
@@ -293,17 +293,17 @@ mod tests {
         for field in &fields {
             for step in 1..17 {
                 let (there, back) = (0.1 * f64::from(step), 0.07 * f64::from(step));
-                let [mut course, mut direct] = [courses(field)[0]; 2];
-                assert!(course.fly(there) && course.fly_either_way(back, false));
+                let [mut flight, mut direct] = [flights(field)[0]; 2];
+                assert!(flight.fly(there) && flight.fly_either_way(back, false));
                 assert!(direct.fly(there - back));
-                assert!((course.reached() - direct.reached()).abs() < 1e-14, "{field:?} at {step}");
-                assert!((course.sampling() - direct.sampling()).abs() < 1e-14);
-                if let Some(even) = field.even() {
-                    let mut along = Even::new(0.0, even);
+                assert!((flight.reached() - direct.reached()).abs() < 1e-14, "{field:?} at {step}");
+                assert!((flight.sampling() - direct.sampling()).abs() < 1e-14);
+                if let Some(gaps) = field.with_gaps() {
+                    let mut along = FlightWithGaps::new(0.0, gaps);
                     assert!(along.fly(there) && along.fly_either_way(back, false));
-                    assert!((along.reached() - course.reached()).abs() < 1e-14);
+                    assert!((along.reached() - flight.reached()).abs() < 1e-14);
                 }
-                assert!(!course.fly_either_way(there, false), "beyond the first knot");
+                assert!(!flight.fly_either_way(there, false), "beyond the first knot");
             }
         }
     }
@@ -313,16 +313,16 @@ mod tests {
         let field = Piecewise::lines(&[0.0, 1.0, 2.5, 4.0], &[0.2, 1.5, 0.4, 0.9]);
         let whole = 0.85 + 0.75 * 1.9 + 0.75 * 1.3;
         for share in [0.1, 0.4, 0.9] {
-            let [mut begin, mut end] = courses(&field);
+            let [mut begin, mut end] = flights(&field);
             let place = begin.place();
             assert!(begin.fly(share * whole) && end.fly_either_way((1.0 - share) * whole, false));
             assert!((begin.reached() - end.reached()).abs() < 1e-14);
-            begin.stand_at(place);
+            begin.return_to(place);
             assert_eq!(begin.reached(), 0.0);
         }
         let constant = Piecewise::constant(2.0, Span::new(1.0, 4.0));
-        let even = constant.even().expect("one value");
-        let mut end = Even::new(0.0, even).from_end();
+        let gaps = constant.with_gaps().expect("one value");
+        let mut end = FlightWithGaps::new(0.0, gaps).from_end();
         assert!(end.fly_either_way(1.0, false));
         assert_eq!(end.reached(), 3.5);
         end.change(0.25);

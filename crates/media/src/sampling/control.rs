@@ -1,6 +1,7 @@
 //! The part of a medium that is integrated exactly.
 
-use super::{Extinction, Medium, Piecewise};
+use super::Piecewise;
+use crate::{Extinction, Medium, OpticalDepth};
 use numeric::{Known, Lane, Span};
 
 /// A control variate `σ_c(t)`: any field with a closed-form optical depth, or none.
@@ -45,7 +46,7 @@ impl Control {
     pub fn optical_depth(&self, span: Span) -> Known {
         match self {
             Self::None => Known::new(0.0, 0.0),
-            Self::Pieces(pieces) => super::OpticalDepth::optical_depth(pieces, span),
+            Self::Pieces(pieces) => pieces.optical_depth(span),
             Self::Field(field) => field.optical_depth(span),
         }
     }

@@ -12,7 +12,7 @@
 //! without a table. Fields with a closed inverse need no table.
 
 use super::search::Search;
-use super::{Medium, Profile};
+use crate::{Medium, Profile};
 use numeric::{Lane, Row, Span, roots};
 
 /// Number of intervals of a table.
@@ -27,7 +27,7 @@ pub struct Inverse {
 }
 
 impl Inverse {
-    pub(super) fn new(medium: Medium, table: Option<Table>) -> Self {
+    pub(crate) fn new(medium: Medium, table: Option<Table>) -> Self {
         Self { medium, table }
     }
 
@@ -39,7 +39,7 @@ impl Inverse {
 }
 
 /// Optical depths at equal distances.
-pub(super) struct Table {
+pub(crate) struct Table {
     span: Span,
     /// Optical depth at the end.
     whole: f64,
@@ -52,7 +52,7 @@ pub(super) struct Table {
 
 impl Table {
     /// The table of a field on a span that is not empty.
-    pub(super) fn of(field: &Profile, span: Span) -> Self {
+    pub(crate) fn of(field: &Profile, span: Span) -> Self {
         let share = |j: u32| f64::from(j) / f64::from(STRETCHES);
         let at: Vec<f64> = (0..=STRETCHES).map(|j| span.from + span.length() * share(j)).collect();
         let mut highest = 0.0;

@@ -11,10 +11,8 @@
 
 pub mod flights;
 
-use super::Volume;
+use crate::Volume;
 use numeric::geometry::{Aabb, Bounds, Point};
-
-pub use flights::{Flights, Ground};
 
 /// Factor on a cell's bound, because lookups are rounded.
 const MARGIN: f64 = 1.0 + 1e-9;
@@ -126,6 +124,7 @@ const EVERYWHERE: Aabb = Aabb { low: Point([-1e150; 3]), high: Point([1e150; 3])
 
 #[cfg(test)]
 mod tests {
+    use super::flights::{Flights, Ground};
     use super::*;
     use crate::eq21::Eq21;
     use numeric::geometry::Ray;
