@@ -3,7 +3,7 @@
 use trueflight::OfCase;
 use trueflight::case::Case;
 use trueflight::case::Source;
-use trueflight::catalogue::{Addition, Domain, Page, Settings};
+use trueflight::catalogue::{Domain, OwnPage, Page, Settings};
 use trueflight::geometry::{Aabb, Bounds, Point};
 use trueflight::judge::Choice;
 use trueflight::media::Stratified;
@@ -53,8 +53,8 @@ pub fn main() {
     let unit = Bounds::Box(Aabb { low: Point([0.0; 3]), high: Point([1.0; 3]) });
     let corner = move |_: &Settings| Some(SpaceFormula::new(unit, 3.0, |[x, y, z]| x + y + z));
     let catalogue = Catalogue::builtin()
-        .with(Addition::layered::<Haze>(haze))
-        .and_then(|catalogue| catalogue.with(Addition::volume(cube, &[], corner)))
+        .with(OwnPage::layered::<Haze>(haze))
+        .and_then(|catalogue| catalogue.with(OwnPage::volume(cube, &[], corner)))
         .expect("names that are free");
     let source = Source { name: "haze".into(), path: "haze.toml".into(), text: CASE.into() };
     let case: Case = catalogue.read(&source).unwrap_or_else(|error| panic!("{}", error.in_full()));

@@ -6,7 +6,7 @@
 use std::process::ExitCode;
 
 use trueflight::case::catalogue::NameTaken;
-use trueflight::catalogue::{Addition, Page, Settings};
+use trueflight::catalogue::{OwnPage, Page, Settings};
 use trueflight::estimators::own::estimator;
 use trueflight::media::own::Formula;
 use trueflight::problems::Transmittance;
@@ -23,7 +23,7 @@ pub fn catalogue() -> Result<Catalogue, NameTaken> {
     let haze = Page { module: "haze", source: "Haze that thins out: σ_t = 1/(1 + t²)." };
     let read = |_: &Settings| Some(Formula::new(|t: f64| 1.0 / (1.0 + t * t)));
     let two_rays = estimator::<Transmittance, two_rays::TwoRays>(page!(two_rays));
-    Catalogue::builtin().with(Addition::line(haze, &[], read))?.with(two_rays)
+    Catalogue::builtin().with(OwnPage::line(haze, &[], read))?.with(two_rays)
 }
 
 fn main() -> ExitCode {

@@ -10,18 +10,18 @@ use crate::case::spec::{CaseError, Source};
 use crate::case::{Case, suite};
 use estimators::{self, Estimated};
 use media;
-use media::catalogue::{Addition, Additions, PageList, suggestion};
+use media::catalogue::{OwnPage, OwnPages, PageList, suggestion};
 use theory::problems::{MultipleScattering, Named};
 
 /// Built-in pages together with those that a program adds.
 ///
 /// ```
-/// use trueflight::catalogue::{Addition, Page};
+/// use trueflight::catalogue::{OwnPage, Page};
 /// use trueflight::case::Source;
 /// use trueflight::{Catalogue, media::own::Formula};
 ///
 /// let page = Page { module: "haze", source: "Haze that thins out with the height." };
-/// let haze = Addition::line(page, &[], |_| Some(Formula::new(|t: f64| 1.0 / (1.0 + t * t))));
+/// let haze = OwnPage::line(page, &[], |_| Some(Formula::new(|t: f64| 1.0 / (1.0 + t * t))));
 /// let catalogue = Catalogue::builtin().with(haze)?;
 /// let case = catalogue.read(&Source {
 ///     name: "mine".into(),
@@ -40,7 +40,7 @@ use theory::problems::{MultipleScattering, Named};
 /// ```
 #[derive(Debug, Clone, Default)]
 pub struct Catalogue {
-    additions: Additions,
+    own_pages: OwnPages,
 }
 
 /// Error of a page that has the name of another one.
@@ -64,21 +64,21 @@ impl Catalogue {
     /// # Errors
     ///
     /// A page of the same part has its name.
-    pub fn with(mut self, addition: Addition) -> Result<Self, NameTaken> {
-        let (name, part) = (addition.page.name(), addition.part.clone());
+    pub fn with(mut self, own_page: OwnPage) -> Result<Self, NameTaken> {
+        let (name, part) = (own_page.page.name(), own_page.part.clone());
         let built_in = built_in().into_iter().filter(|(other, _)| *other == part);
         let mut taken = built_in.flat_map(|(_, list)| list.pages).map(media::catalogue::Page::name);
-        let own = self.additions.all().iter().filter(|other| other.part == part);
+        let own = self.own_pages.all().iter().filter(|other| other.part == part);
         if taken.any(|other| other == name) || own.map(|o| o.page.name()).any(|o| o == name) {
             return Err(NameTaken { name, part });
         }
-        self.additions.add(addition);
+        self.own_pages.add(own_page);
         Ok(self)
     }
 
     /// Returns the pages that the program added.
-    pub fn additions(&self) -> &Additions {
-        &self.additions
+    pub fn own_pages(&self) -> &OwnPages {
+        &self.own_pages
     }
 
     /// Reads a case.
@@ -87,7 +87,7 @@ impl Catalogue {
     ///
     /// Every mistake in the file.
     pub fn read(&self, source: &Source) -> Result<Case, CaseError> {
-        Case::read_with(source, &self.additions)
+        Case::read_with(source, &self.own_pages)
     }
 
     /// Reads all cases that a user's argument stands for: a case file, a folder of them, or a built-in case.

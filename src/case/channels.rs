@@ -11,7 +11,7 @@
 use std::mem;
 
 use estimators::FormCatalogue;
-use media::catalogue::{Additions, Entry, Node, Value};
+use media::catalogue::{Entry, Node, OwnPages, Value};
 use theory::problems::ProblemOption;
 
 /// Keys that list something for each channel, and the key of one channel.
@@ -25,12 +25,12 @@ const LISTS: [(&str, &str); 6] = [
 ];
 
 /// Reads lists of one channel as their entries, in all problems and pictures of a file.
-pub fn read_single_channels(root: &mut [Entry], additions: &Additions) {
+pub fn read_single_channels(root: &mut [Entry], own_pages: &OwnPages) {
     for top in root.iter_mut().filter(|entry| matches!(&*entry.key, "problem" | "picture")) {
         let Value::Table(problems) = &mut top.node.value else { continue };
         for Entry { key, node, .. } in problems {
             let Value::Table(settings) = &mut node.value else { continue };
-            if has_one_channel(settings) && !needs_channels(key, settings, additions) {
+            if has_one_channel(settings) && !needs_channels(key, settings, own_pages) {
                 read_entries(settings);
             }
         }
@@ -49,7 +49,7 @@ fn has_one_channel(settings: &[Entry]) -> bool {
 }
 
 /// Returns true if an estimator is listed that only the forms of a problem in several channels have.
-fn needs_channels(problem: &str, settings: &[Entry], additions: &Additions) -> bool {
+fn needs_channels(problem: &str, settings: &[Entry], own_pages: &OwnPages) -> bool {
     let forms = estimators::catalogues().into_iter().filter(|form| form.problem == problem);
     let (several, one): (Vec<_>, Vec<_>) = forms.partition(|form| {
         let options = form.options;
@@ -57,7 +57,7 @@ fn needs_channels(problem: &str, settings: &[Entry], additions: &Additions) -> b
     });
     let has = |form: &FormCatalogue, name: &str| {
         let part = format!("estimators of {}", form.title);
-        let own = additions.all().iter().filter(|own| own.part == part).map(|own| &own.page);
+        let own = own_pages.all().iter().filter(|own| own.part == part).map(|own| &own.page);
         form.list.pages.iter().chain(own).any(|page| page.name() == name)
     };
     let mut names = settings.iter().filter(|entry| entry.key == "estimators").flat_map(names);

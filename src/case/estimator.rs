@@ -189,7 +189,7 @@ pub fn read<P: Estimated>(
     body: Option<&Body>,
     defaults: Defaults,
 ) -> Option<(ParsedEstimator, Box<dyn Entry<P>>)> {
-    let own = || table.additions().of::<EstimatorReader<P>>();
+    let own = || table.own_pages().of::<EstimatorReader<P>>();
     let pages = P::CATALOGUE.pages.iter().chain(own().map(|(page, _)| page));
     let names: Vec<String> = pages.map(Page::name).collect();
     let problem = P::MODULE.replace('_', "-");

@@ -63,7 +63,7 @@ use crate::case::scenario::Held;
 use crate::case::sweep::{SweepAxis, Variation, What};
 use estimators::Refusal;
 use media::Body;
-use media::catalogue::additions::{self, Additions};
+use media::catalogue::own_pages::{self, OwnPages};
 use media::catalogue::{Domain, Fault, Page, PageList, Settings, Value};
 use numeric::digits::number;
 use numeric::rng::{Address, name_hash};
@@ -107,7 +107,7 @@ impl Case {
     ///
     /// Every mistake in the file.
     pub fn read(source: &Source) -> Result<Self, CaseError> {
-        Self::read_with(source, &additions::NONE)
+        Self::read_with(source, &own_pages::NONE)
     }
 
     /// Reads a case with pages that the program adds.
@@ -115,8 +115,8 @@ impl Case {
     /// # Errors
     ///
     /// Every mistake in the file.
-    pub fn read_with(source: &Source, additions: &Additions) -> Result<Self, CaseError> {
-        Self::of(&Spec::parse(source, additions)?)
+    pub fn read_with(source: &Source, own_pages: &OwnPages) -> Result<Self, CaseError> {
+        Self::of(&Spec::parse(source, own_pages)?)
     }
 
     /// Reads a case that was parsed.

@@ -10,7 +10,7 @@
 use crate::case::spec::Spec;
 use crate::case::sweep::What;
 use estimators::recipes::{controls, sampling};
-use media::catalogue::{Additions, Entry, Fault, Node, Value};
+use media::catalogue::{Entry, Fault, Node, OwnPages, Value};
 use media::{CATALOGUE, Medium, reader};
 use numeric::digits::number;
 
@@ -31,7 +31,7 @@ impl Spec {
     /// The sweep does not apply to the case.
     pub fn at(&self, what: What, value: f64) -> Result<Self, Fault> {
         let mut spec = self.clone();
-        let scaling = Scaling { additions: self.additions() };
+        let scaling = Scaling { own_pages: self.own_pages() };
         let settings = spec.problem_mut().map_or(&mut [][..], Vec::as_mut_slice);
         match what {
             What::Density => scaling.density(settings, value)?,
@@ -88,7 +88,7 @@ enum Scope<'a> {
 
 /// Changes the settings of a problem.
 struct Scaling<'a> {
-    additions: &'a Additions,
+    own_pages: &'a OwnPages,
 }
 
 impl Scaling<'_> {
@@ -184,7 +184,7 @@ impl Scaling<'_> {
     fn within(&self, scope: Scope, key: &str) -> Scope<'static> {
         match scope {
             Scope::Numbers => Scope::Numbers,
-            Scope::Field => Scope::Settings(reader::extinctions(key, self.additions)),
+            Scope::Field => Scope::Settings(reader::extinctions(key, self.own_pages)),
             Scope::Sampling => Scope::Settings(sampling::extinctions(key)),
             Scope::Control => Scope::Settings(controls::extinctions(key)),
             Scope::Settings(names) if names.contains(&key) => Scope::Numbers,

@@ -18,7 +18,7 @@ use toml::de::{DeTable, DeValue};
 
 use crate::case::channels::read_single_channels;
 use crate::case::shorthand::spell_out;
-use media::catalogue::{Additions, Entry, Fault, Node, Settings, Value};
+use media::catalogue::{Entry, Fault, Node, OwnPages, Settings, Value};
 
 /// Parsed case or picture.
 #[derive(Debug, Clone)]
@@ -27,7 +27,7 @@ pub struct Spec {
     root: Vec<Entry>,
     /// Mistakes in short forms.
     faults: Vec<Fault>,
-    additions: Additions,
+    own_pages: OwnPages,
 }
 
 impl Serialize for Spec {
@@ -42,7 +42,7 @@ impl Spec {
     /// # Errors
     ///
     /// The text is not TOML.
-    pub fn parse(source: &Source, additions: &Additions) -> Result<Self, CaseError> {
+    pub fn parse(source: &Source, own_pages: &OwnPages) -> Result<Self, CaseError> {
         let faults = RefCell::default();
         let mut root = source.parse(&faults);
         if !faults.borrow().is_empty() {
@@ -50,9 +50,9 @@ impl Spec {
             return Err(source.faulty(faults.into_inner()));
         }
         spell_out(&mut root, &faults);
-        read_single_channels(&mut root, additions);
-        let (source, additions) = (source.clone(), additions.clone());
-        Ok(Self { source, root, faults: faults.into_inner(), additions })
+        read_single_channels(&mut root, own_pages);
+        let (source, own_pages) = (source.clone(), own_pages.clone());
+        Ok(Self { source, root, faults: faults.into_inner(), own_pages })
     }
 
     /// Returns the text that it was parsed from.
@@ -61,8 +61,8 @@ impl Spec {
     }
 
     /// Returns the pages that the program adds.
-    pub fn additions(&self) -> &Additions {
-        &self.additions
+    pub fn own_pages(&self) -> &OwnPages {
+        &self.own_pages
     }
 
     /// Reads the spec; `read` records mistakes and returns `None` after one.
@@ -86,7 +86,7 @@ impl Spec {
     ) -> (Option<T>, Vec<Fault>) {
         let faults = RefCell::default();
         let folder = self.source.path.parent().unwrap_or(Path::new(""));
-        let settings = Settings::new(&self.root, folder, &faults).with(&self.additions);
+        let settings = Settings::new(&self.root, folder, &faults).with(&self.own_pages);
         let found = read(&settings);
         drop(settings);
         (found, faults.into_inner())
@@ -146,7 +146,7 @@ impl Spec {
             name: self.source.name.clone(),
             cause: Box::new(cause),
         })?;
-        Self::parse(&Source { text, ..self.source.clone() }, &self.additions)
+        Self::parse(&Source { text, ..self.source.clone() }, &self.own_pages)
     }
 }
 

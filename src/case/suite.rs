@@ -3,7 +3,7 @@
 
 use crate::case::forms::title;
 use crate::case::spec::{BuiltIn, Source, Spec, entry};
-use media::catalogue::{Entry, Node, Value, additions};
+use media::catalogue::{Entry, Node, Value, own_pages};
 
 /// Lists built-in cases by their path below `cases/`, without `.toml`; `in "tests/"` means `tests/cases/`.
 macro_rules! cases {
@@ -144,7 +144,7 @@ struct Target<'a> {
 impl Target<'_> {
     /// Returns every way to reduce a case to an example, with its length and penalties.
     fn candidates(&self, source: &Source) -> Vec<(usize, String)> {
-        let Ok(spec) = Spec::parse(source, &additions::NONE) else { return Vec::new() };
+        let Ok(spec) = Spec::parse(source, &own_pages::NONE) else { return Vec::new() };
         let Some((problem, body)) = spec.problem() else { return Vec::new() };
         let title = title(problem, body).unwrap_or_default();
         let root = spec.entries();

@@ -53,7 +53,7 @@ pub fn main(arguments: &Arguments, catalogue: &Catalogue, console: &Console) -> 
     arguments.out.iter().try_for_each(|out| output::writable(out))?;
     let source = catalogue::source(&arguments.case);
     let request = arguments.request();
-    let found = match source.and_then(|source| Spec::parse(&source, catalogue.additions())) {
+    let found = match source.and_then(|source| Spec::parse(&source, catalogue.own_pages())) {
         Ok(spec) => arguments.threads.install(|| Ok(advise(&spec, &request)))?,
         Err(error) => Err(error),
     };

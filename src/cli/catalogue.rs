@@ -121,9 +121,9 @@ pub fn pages(catalogue: &Catalogue) -> Vec<(String, Page)> {
         ("files".to_owned(), render::CATALOGUE),
         ("files".to_owned(), advise::CATALOGUE),
     ]);
-    let additions = catalogue.additions().all();
+    let own_pages = catalogue.own_pages().all();
     let with_own = |(part, list): (String, PageList)| {
-        let own = additions.iter().filter(|own| own.part == part).map(|own| own.page);
+        let own = own_pages.iter().filter(|own| own.part == part).map(|own| own.page);
         let pages = list.pages.iter().copied().chain(own);
         pages.map(|page| (part.clone(), page)).collect::<Vec<_>>()
     };
@@ -160,7 +160,7 @@ fn rows(what: Option<What>, catalogue: &Catalogue) -> Vec<Row> {
     }
     if wanted("pictures") {
         for source in render::gallery() {
-            let title = Picture::read(&source, catalogue.additions())
+            let title = Picture::read(&source, catalogue.own_pages())
                 .map(|picture| picture.title)
                 .unwrap_or_default();
             rows.push(Row { part: "pictures".into(), name: source.name, summary: title });

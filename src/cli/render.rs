@@ -12,7 +12,7 @@ use super::{Console, output};
 use crate::case::{CaseError, Catalogue};
 use crate::render::{self, Picture, PictureRecord};
 use crate::report::{self, Artifact};
-use media::catalogue::Additions;
+use media::catalogue::OwnPages;
 
 /// Arguments of `render`.
 #[derive(Debug, Args)]
@@ -31,7 +31,7 @@ pub struct Arguments {
 
 /// Renders, writes, prints.
 pub fn main(arguments: &Arguments, catalogue: &Catalogue, console: &Console) -> anyhow::Result<u8> {
-    let pictures = read(&arguments.pictures, catalogue.additions(), console)?;
+    let pictures = read(&arguments.pictures, catalogue.own_pages(), console)?;
     let out = arguments.out.join("gallery");
     // A folder that cannot be written to is reported before the rendering, not after it.
     output::writable(&out)?;
@@ -66,7 +66,7 @@ pub fn main(arguments: &Arguments, catalogue: &Catalogue, console: &Console) -> 
     Ok(0)
 }
 
-fn read(names: &[String], own: &Additions, console: &Console) -> anyhow::Result<Vec<Picture>> {
+fn read(names: &[String], own: &OwnPages, console: &Console) -> anyhow::Result<Vec<Picture>> {
     let read: Vec<Result<Picture, CaseError>> = if names.is_empty() {
         render::gallery().iter().map(|source| Picture::read(source, own)).collect()
     } else {

@@ -52,7 +52,7 @@ use self::subject::SUBJECTS;
 use crate::case::forms::explain_problem;
 use crate::case::spec::BuiltIn;
 use crate::case::{CaseError, Source, Spec};
-use media::catalogue::{Additions, Page, PageList, Settings};
+use media::catalogue::{OwnPages, Page, PageList, Settings};
 
 pub use record::PictureRecord;
 
@@ -81,8 +81,8 @@ impl Picture {
     /// # Errors
     ///
     /// Every mistake in the file.
-    pub fn read(source: &Source, additions: &Additions) -> Result<Self, CaseError> {
-        Spec::parse(source, additions)?.read(|root| Self::from_root(source, root))
+    pub fn read(source: &Source, own_pages: &OwnPages) -> Result<Self, CaseError> {
+        Spec::parse(source, own_pages)?.read(|root| Self::from_root(source, root))
     }
 
     fn from_root(source: &Source, root: &Settings) -> Option<Self> {
@@ -112,10 +112,10 @@ impl Picture {
     /// # Errors
     ///
     /// The file cannot be read, or has mistakes, all of which are listed.
-    pub fn open(name: &str, additions: &Additions) -> Result<Self, CaseError> {
+    pub fn open(name: &str, own_pages: &OwnPages) -> Result<Self, CaseError> {
         match find(name) {
-            Some(source) if !Path::new(name).exists() => Self::read(&source, additions),
-            _ => Self::read(&Source::read(Path::new(name))?, additions),
+            Some(source) if !Path::new(name).exists() => Self::read(&source, own_pages),
+            _ => Self::read(&Source::read(Path::new(name))?, own_pages),
         }
     }
 

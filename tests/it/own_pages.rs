@@ -5,7 +5,7 @@ use std::path::Path;
 
 use trueflight::case::Case;
 use trueflight::case::sweep::{Variation, What};
-use trueflight::catalogue::{Addition, Domain, Page, Settings};
+use trueflight::catalogue::{Domain, OwnPage, Page, Settings};
 use trueflight::estimators::multiple_scattering::particle::Walker;
 use trueflight::estimators::own::estimator;
 use trueflight::geometry::{Aabb, Bounds, Point};
@@ -77,9 +77,9 @@ fn what_an_own_medium_hides_is_found() {
     let bounds = Bounds::Box(Aabb { low: Point([0.0; 3]), high: Point([1.0; 3]) });
     let space = move |_: &Settings| Some(SpaceFormula::new(bounds, 3.0, |[x, y, z]| x + y * z));
     let catalogue = Catalogue::builtin()
-        .with(Addition::line(haze, &[], line))
-        .and_then(|catalogue| catalogue.with(Addition::volume(corner, &[], space)))
-        .and_then(|catalogue| catalogue.with(Addition::layered::<own_medium::Haze>(layers)))
+        .with(OwnPage::line(haze, &[], line))
+        .and_then(|catalogue| catalogue.with(OwnPage::volume(corner, &[], space)))
+        .and_then(|catalogue| catalogue.with(OwnPage::layered::<own_medium::Haze>(layers)))
         .expect("names that are free");
     let text = |problem: &str| format!("title = \"own\"\n{problem}");
     let line = text(
@@ -170,7 +170,7 @@ fn depths_of_closures_keep_what_they_say() {
 #[test]
 fn names_are_taken_once() {
     let page = |module| Page { module, source: "Mine." };
-    let add = |page| Addition::line(page, &[], |_| Some(Formula::new(|_| 1.0)));
+    let add = |page| OwnPage::line(page, &[], |_| Some(Formula::new(|_| 1.0)));
     let taken = Catalogue::builtin().with(add(page("constant"))).expect_err("a name taken");
     assert_eq!(
         taken.to_string(),
@@ -187,7 +187,7 @@ fn names_are_taken_once() {
 fn closures_that_are_no_extinction_are_errors_with_their_place() {
     let read = |at: fn(f64) -> f64| {
         let page = Page { module: "bad", source: "Bad." };
-        let bad = Addition::line(page, &[], move |_| Some(Formula::new(at)));
+        let bad = OwnPage::line(page, &[], move |_| Some(Formula::new(at)));
         let catalogue = Catalogue::builtin().with(bad).expect("a free name");
         let text = r#"
             title = "bad"
@@ -235,7 +235,7 @@ fn veiled(
         let strength = settings.number("strength", Domain::Positive)?;
         Some(Formula::new(move |t| at(strength, t)))
     };
-    let catalogue = Catalogue::builtin().with(Addition::line(page, extinctions, read));
+    let catalogue = Catalogue::builtin().with(OwnPage::line(page, extinctions, read));
     let catalogue = catalogue.expect("a free name");
     catalogue.read(&source("veil", text)).map_err(|error| error.in_full())
 }

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use trueflight::case::Source;
-use trueflight::catalogue::additions::NONE;
+use trueflight::catalogue::own_pages::NONE;
 use trueflight::render::record::{Exposure, PictureRecord};
 use trueflight::render::{self, Picture};
 use trueflight::report::render as report;

@@ -1,7 +1,7 @@
 //! Sweeps of the medium: at every value a case equals one with its numbers written out.
 
 use trueflight::catalogue::Page;
-use trueflight::catalogue::additions;
+use trueflight::catalogue::own_pages;
 use trueflight::media;
 use trueflight::plan::Plan;
 use trueflight::recipes::{controls, sampling};
@@ -192,7 +192,7 @@ type Extinctions<'a> = &'a dyn Fn(&str) -> &'static [&'static str];
 
 #[test]
 fn every_extinction_of_a_page_is_one_that_sweeps_scale() {
-    let fields = |name: &str| media::reader::extinctions(name, &additions::NONE);
+    let fields = |name: &str| media::reader::extinctions(name, &own_pages::NONE);
     let catalogues: [(_, Extinctions); 3] = [
         (media::CATALOGUE, &fields),
         (sampling::CATALOGUE, &sampling::extinctions),

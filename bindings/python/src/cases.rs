@@ -9,7 +9,7 @@ use trueflight::case::Source;
 use trueflight::case::Spec;
 use trueflight::case::suite;
 use trueflight::case::sweep::What;
-use trueflight::catalogue::additions;
+use trueflight::catalogue::own_pages;
 
 use crate::error::Failure;
 
@@ -59,7 +59,7 @@ impl CaseRequest {
 
     /// Parses the case as it is written, without its sweep.
     pub fn spec(&self) -> Result<Spec, Failure> {
-        Ok(Spec::parse(&self.source()?, &additions::NONE)?)
+        Ok(Spec::parse(&self.source()?, &own_pages::NONE)?)
     }
 
     fn source(&self) -> Result<Source, Failure> {

@@ -2,7 +2,7 @@
 
 use super::trial::Entry;
 use super::{Estimated, Estimator};
-use media::catalogue::{Addition, Page, Settings};
+use media::catalogue::{OwnPage, Page, Settings};
 
 /// Reads an estimator of problem `P` from `{ NAME = { … } }`.
 pub type EstimatorReader<P> = fn(&Settings) -> Option<Box<dyn Entry<P>>>;
@@ -21,8 +21,8 @@ pub type EstimatorReader<P> = fn(&Settings) -> Option<Box<dyn Entry<P>>>;
 /// let mine = estimator::<Transmittance, Ratio>(page); // estimators = [{ my-ratio = {} }]
 /// assert_eq!(mine.part, "estimators of transmittance");
 /// ```
-pub fn estimator<P: Estimated, E: Estimator<P>>(page: Page) -> Addition {
+pub fn estimator<P: Estimated, E: Estimator<P>>(page: Page) -> OwnPage {
     let read: EstimatorReader<P> =
         |settings| E::read(settings).map(|page| Box::new(page) as Box<dyn Entry<P>>);
-    Addition::new(format!("estimators of {}", P::title()), page, read)
+    OwnPage::new(format!("estimators of {}", P::title()), page, read)
 }

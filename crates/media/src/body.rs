@@ -72,26 +72,18 @@ impl Body {
             (true, false) => {
                 let field = read_line(settings);
                 let span = read_span(settings);
-                let ((name, profile), span) = (field?, span?);
-                let pieces = profile.facts().pieces_per_length * span.length();
-                not_too_many(settings, "medium", pieces)?;
-                is_extinction(settings, "medium", Self::Line { name, profile, span })
+                is_extinction(settings, "medium", Self::line(settings, "medium", field?, span?)?)
             }
             (false, true) => {
                 let field = read_volume(settings);
-                let (name, volume, ray) = if need == RayNeed::Nothing && !settings.has("ray") {
-                    let (name, volume) = field?;
-                    let ray = through(volume.bounds())?;
-                    (name, volume, ray)
+                let bounds = field.as_ref().map_or(Bounds::Everywhere, |(_, f)| f.bounds());
+                let ray = if need == RayNeed::Nothing && !settings.has("ray") {
+                    through(bounds)
                 } else {
-                    let length = (need != RayNeed::Whole)
-                        .then(|| field.as_ref().map_or(Bounds::Everywhere, |(_, f)| f.bounds()));
-                    let ray = settings.table("ray").and_then(|ray| read_ray(&ray, length));
-                    let ((name, volume), ray) = (field?, ray?);
-                    (name, volume, ray)
+                    let within = (need != RayNeed::Whole).then_some(bounds);
+                    settings.table("ray").and_then(|ray| read_ray(&ray, within))
                 };
-                fits(settings, &*volume, &ray)?;
-                is_extinction(settings, "volume", Self::Volume { name, volume, ray })
+                is_extinction(settings, "volume", Self::crossed(settings, field?, ray?)?)
             }
             (both, _) => {
                 let found = if both { "both `medium` and `volume`" } else { "no field is given" };
@@ -106,22 +98,41 @@ impl Body {
     /// Reads another field for the same line or ray: a control variate.
     pub fn read_beside(&self, settings: &Settings) -> Option<Self> {
         match self {
-            Self::Line { span, .. } => {
-                let (name, profile) = read_line(settings)?;
-                not_too_many(
-                    settings,
-                    "medium",
-                    profile.facts().pieces_per_length * span.length(),
-                )?;
-                Some(Self::Line { name, profile, span: *span })
-            }
-            Self::Volume { ray, .. } => {
-                let (name, volume) = read_volume(settings)?;
-                fits(settings, &*volume, ray)?;
-                Some(Self::Volume { name, volume, ray: *ray })
-            }
+            Self::Line { span, .. } => Self::line(settings, "medium", read_line(settings)?, *span),
+            Self::Volume { ray, .. } => Self::crossed(settings, read_volume(settings)?, *ray),
             Self::Spectral { channels, .. } => channels[0].read_beside(settings),
         }
+    }
+
+    /// A field on a span without too many pieces.
+    fn line(
+        settings: &Settings,
+        key: &'static str,
+        (name, profile): (String, Arc<Profile>),
+        span: Span,
+    ) -> Option<Self> {
+        not_too_many(settings, key, profile.facts().pieces_per_length * span.length())?;
+        Some(Self::Line { name, profile, span })
+    }
+
+    /// A field crossed by a ray that has no more pieces than fit, all of them within the range of lattice coordinates.
+    fn crossed(
+        settings: &Settings,
+        (name, volume): (String, Arc<Volume>),
+        ray: Ray,
+    ) -> Option<Self> {
+        let inside = volume.bounds().clip(&ray);
+        let farthest = volume.max_lattice_coordinate(&ray, inside);
+        if farthest < MAX_COORDINATE {
+            let pieces = volume.facts().pieces_per_length * inside.length();
+            not_too_many(settings, "volume", pieces)?;
+            return Some(Self::Volume { name, volume, ray });
+        }
+        let found = format!(
+            "the ray reaches {farthest:.1e} cells from the field's origin, and 2^31 is most"
+        );
+        settings.fault("volume", found, "bring the ray's origin nearer, or make the cells larger");
+        None
     }
 
     /// The field of each channel: one, unless it is spectral.
@@ -199,17 +210,11 @@ fn read_channels(settings: &Settings, key: &'static str) -> Option<Body> {
     let mut channels = Vec::new();
     for table in &fields {
         channels.push(if let Some(span) = span {
-            choose_line(table, Settings::choice_among).zip(span).and_then(
-                |((name, profile), span)| {
-                    not_too_many(table, "", profile.facts().pieces_per_length * span.length())?;
-                    Some(Body::Line { name, profile, span })
-                },
-            )
+            let field = choose_line(table, Settings::choice_among);
+            field.zip(span).and_then(|(field, span)| Body::line(table, "", field, span))
         } else {
-            read_listed(table).zip(ray.flatten()).and_then(|((name, volume), ray)| {
-                fits(table, &*volume, &ray)?;
-                Some(Body::Volume { name, volume, ray })
-            })
+            let field = read_listed(table);
+            field.zip(ray.flatten()).and_then(|(field, ray)| Body::crossed(table, field, ray))
         });
     }
     let channels: Vec<Body> = channels.into_iter().collect::<Option<_>>()?;
@@ -236,23 +241,6 @@ const MAX_PIECES: f64 = 1e7;
 
 /// Range of lattice coordinates: they are integers of 32 bits.
 const MAX_COORDINATE: f64 = 2_147_483_648.0;
-
-/// Checks that a ray has no more pieces than fit, all of them within the range of lattice coordinates.
-fn fits(settings: &Settings, volume: &Volume, ray: &Ray) -> Option<()> {
-    let inside = volume.bounds().clip(ray);
-    let farthest = volume.max_lattice_coordinate(ray, inside);
-    if farthest < MAX_COORDINATE {
-        return not_too_many(
-            settings,
-            "volume",
-            volume.facts().pieces_per_length * inside.length(),
-        );
-    }
-    let found =
-        format!("the ray reaches {farthest:.1e} cells from the field's origin, and 2^31 is most");
-    settings.fault("volume", found, "bring the ray's origin nearer, or make the cells larger");
-    None
-}
 
 /// Checks a field of the program's own along the ray; built-in fields have checked their settings.
 fn is_extinction(settings: &Settings, key: &'static str, body: Body) -> Option<Body> {

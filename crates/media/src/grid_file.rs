@@ -48,7 +48,7 @@ pub struct Turned {
 pub use crate::files::Fault as Unreadable;
 
 /// The largest number of samples, 1 GiB of doubles.
-pub const MOST_SAMPLES: u64 = 1 << 27;
+pub const MAX_SAMPLES: u64 = 1 << 27;
 
 /// A format of grids.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -150,12 +150,12 @@ pub fn read(path: &Path, choice: &Choice) -> Result<Samples, Unreadable> {
 pub(super) fn sizes(size: [u64; 3]) -> Result<[usize; 3], Unreadable> {
     let [x, y, z] = size;
     let count = size.iter().try_fold(1u64, |product, &n| product.checked_mul(n));
-    let fits = count.is_some_and(|count| (1..=MOST_SAMPLES).contains(&count));
+    let fits = count.is_some_and(|count| (1..=MAX_SAMPLES).contains(&count));
     match size.map(usize::try_from) {
         [Ok(x), Ok(y), Ok(z)] if fits => Ok([x, y, z]),
         _ => wrong(
             format!("the file holds {x} × {y} × {z} samples"),
-            format!("a grid has from 1 to {MOST_SAMPLES} samples"),
+            format!("a grid has from 1 to {MAX_SAMPLES} samples"),
         ),
     }
 }
@@ -210,7 +210,7 @@ fn read_npy(mut bytes: &[u8], axes: Axes) -> Result<Samples, Unreadable> {
         let shape = header.written_shape();
         return wrong(
             format!("the array has the shape {shape}"),
-            format!("a grid has from 1 to {MOST_SAMPLES} samples"),
+            format!("a grid has from 1 to {MAX_SAMPLES} samples"),
         );
     };
     let Some(number) = Number::named(&header.kind) else {

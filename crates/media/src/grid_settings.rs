@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use super::axes::Axes;
-use super::grid_file::{self, Choice, Format, MOST_SAMPLES, Samples};
+use super::grid_file::{self, Choice, Format, MAX_SAMPLES, Samples};
 use super::voxels::Placement;
 use super::{body, lattice};
 use crate::catalogue::{Settings, Value};
@@ -94,8 +94,8 @@ fn read_random(settings: &Settings) -> Option<Samples> {
     let seed = settings.count_or("seed", 0..=u64::from(u32::MAX), 0);
     settings.close();
     let (size, seed) = (size?, seed? as u32);
-    if size.iter().product::<usize>() as u64 > MOST_SAMPLES {
-        let help = format!("a grid has at most {MOST_SAMPLES} samples");
+    if size.iter().product::<usize>() as u64 > MAX_SAMPLES {
+        let help = format!("a grid has at most {MAX_SAMPLES} samples");
         settings.fault("size", "the grid is too large", help);
         return None;
     }

@@ -96,8 +96,8 @@ impl<const N: usize, F: Formula<N>, S: Simd> Batch<N> for Compiled<F, S> {
                 // Not as twins: draws along the ray have the bits of scalars.
                 let zero = f64x8::splat(self.simd, 0.0);
                 let (mut first, mut second) = ([zero; N], [zero; N]);
-                for axis in 0..N {
-                    Twin(first[axis], second[axis]) = Twin::from_slice(self.simd, &places[axis]);
+                for (axis, row) in places.iter().enumerate() {
+                    Twin(first[axis], second[axis]) = Twin::from_slice(self.simd, row);
                 }
                 let mut found = [0.0; PAIR];
                 Twin(self.formula.at(first), self.formula.at(second)).store_slice(&mut found);
@@ -111,8 +111,8 @@ impl<const N: usize, F: Formula<N>, S: Simd> Batch<N> for Compiled<F, S> {
             #[inline(always)]
             || {
                 let mut lanes = [f64x8::splat(self.simd, 0.0); N];
-                for axis in 0..N {
-                    lanes[axis] = f64x8::from_slice(self.simd, &places[axis]);
+                for (axis, row) in places.iter().enumerate() {
+                    lanes[axis] = f64x8::from_slice(self.simd, row);
                 }
                 let mut found = [0.0; WIDTH];
                 self.formula.at(lanes).store_slice(&mut found);
@@ -151,8 +151,8 @@ impl<F> OneByOne<F> {
             #[inline(always)]
             || {
                 let mut found = [0.0; M];
-                for lane in 0..M {
-                    found[lane] = self.0.at(places.map(|row| row[lane]));
+                for (lane, found) in found.iter_mut().enumerate() {
+                    *found = self.0.at(places.map(|row| row[lane]));
                 }
                 found
             },

@@ -15,7 +15,7 @@ use std::collections::VecDeque;
 use std::sync::{Arc, LazyLock};
 
 use super::{Extinction, Field, Medium, OpticalDepth, Profile, Reader, Stratified};
-use crate::catalogue::{Addition, Page, Settings};
+use crate::catalogue::{OwnPage, Page, Settings};
 use numeric::geometry::{Aabb, Bounds, Ray};
 use numeric::quadrature::GaussLegendre;
 use numeric::{Known, Lane, Span, sum::Sum};
@@ -131,14 +131,14 @@ fn integral(f: impl Fn(f64) -> f64, span: Span) -> Known {
 /// A field in space that a closure gives: `σ_t(x, y, z)`, 1/length, finite and ≥ 0, within bounds.
 ///
 /// ```
-/// use trueflight_media::catalogue::{Addition, Page, Settings};
+/// use trueflight_media::catalogue::{OwnPage, Page, Settings};
 /// use trueflight_media::own::SpaceFormula;
 /// use numeric::geometry::{Aabb, Bounds, Point};
 ///
 /// let page = Page { module: "corner", source: "A cube that is densest in one corner." };
 /// let cube = Bounds::Box(Aabb { low: Point([0.0; 3]), high: Point([1.0; 3]) });
 /// let read = move |_: &Settings| Some(SpaceFormula::new(cube, 3.0, |[x, y, z]| x + y + z));
-/// let corner = Addition::volume(page, &[], read); // volume.corner = {}
+/// let corner = OwnPage::volume(page, &[], read); // volume.corner = {}
 /// assert_eq!(corner.part, "media");
 /// ```
 pub struct SpaceFormula<F> {
@@ -151,31 +151,6 @@ impl<F: Fn([f64; 3]) -> f64 + Send + Sync + 'static> SpaceFormula<F> {
     /// The field of a closure, and an upper bound of it within the bounds.
     pub fn new(bounds: Bounds, majorant: f64, at: F) -> Self {
         Self { at: Arc::new(at), bounds, majorant }
-    }
-}
-
-/// A field of a closure along one ray.
-pub struct Chord<F> {
-    at: Arc<F>,
-    ray: Ray,
-}
-
-impl<F: Fn([f64; 3]) -> f64 + Send + Sync + 'static> Chord<F> {
-    fn value(&self, t: f64) -> f64 {
-        (self.at)(self.ray.at(t).0)
-    }
-}
-
-impl<F: Fn([f64; 3]) -> f64 + Send + Sync + 'static> Extinction for Chord<F> {
-    #[inline(always)]
-    fn extinction<L: Lane>(&self, t: L) -> L {
-        t.map(|t| self.value(t))
-    }
-}
-
-impl<F: Fn([f64; 3]) -> f64 + Send + Sync + 'static> OpticalDepth for Chord<F> {
-    fn optical_depth(&self, span: Span) -> Known {
-        integral(|t| self.value(t), span)
     }
 }
 
@@ -204,7 +179,8 @@ impl<F: Fn([f64; 3]) -> f64 + Send + Sync + 'static> Field for SpaceFormula<F> {
     }
 
     fn along(&self, ray: &Ray, _: Span) -> Arc<Profile> {
-        Arc::new(Chord { at: self.at.clone(), ray: *ray })
+        let (at, ray) = (self.at.clone(), *ray);
+        Arc::new(Formula::new(move |t| at(ray.at(t).0)))
     }
 }
 
@@ -236,7 +212,7 @@ impl Medium {
 
 const PART: &str = "media";
 
-impl Addition {
+impl OwnPage {
     /// A field of one coordinate: `medium.NAME = { … }` along a line, `volume.NAME = { … }` as layers in space.
     pub fn layered<P: Stratified>(page: Page) -> Self {
         Self::new(PART, page, Reader::layered::<P>())
@@ -254,7 +230,7 @@ impl Addition {
         Self::new(PART, page, Reader::new(extinctions).line(read))
     }
 
-    /// A field in space, read from its settings: `volume.NAME = { … }`; see [`Addition::line`] for `extinctions`.
+    /// A field in space, read from its settings: `volume.NAME = { … }`; see [`OwnPage::line`] for `extinctions`.
     pub fn volume<F: Field>(
         page: Page,
         extinctions: &'static [&'static str],

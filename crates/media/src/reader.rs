@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::{CATALOGUE, Field, Layered, OpticalDepth, Profile, READERS, Stratified, Volume};
-use crate::catalogue::{Additions, Settings};
+use crate::catalogue::{OwnPages, Settings};
 
 /// Reads the fields of a page from a case file.
 type Read<T> = Box<dyn Fn(&Settings) -> Option<Arc<T>> + Send + Sync>;
@@ -50,13 +50,13 @@ impl Reader {
 /// The pages of media, those of the program's own last, each with its name.
 fn readers<'a>(settings: &Settings<'a>) -> (Vec<String>, Vec<&'a Reader>) {
     let built_in = CATALOGUE.pages.iter().zip(READERS.iter());
-    built_in.chain(settings.additions().of()).map(|(page, reader)| (page.name(), reader)).unzip()
+    built_in.chain(settings.own_pages().of()).map(|(page, reader)| (page.name(), reader)).unzip()
 }
 
 /// Settings of a named field to which σ_t is proportional; empty for an unknown field.
-pub fn extinctions(name: &str, additions: &Additions) -> &'static [&'static str] {
+pub fn extinctions(name: &str, own_pages: &OwnPages) -> &'static [&'static str] {
     let built_in = CATALOGUE.pages.iter().zip(READERS.iter());
-    let mut all = built_in.chain(additions.of());
+    let mut all = built_in.chain(own_pages.of());
     all.find(|(page, _)| page.name() == name).map_or(&[], |(_, reader)| reader.extinctions)
 }
 

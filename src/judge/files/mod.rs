@@ -24,7 +24,7 @@ use std::str::FromStr;
 pub use layout::Layout;
 
 use super::{BUFFER, Block, Source};
-use media::files::npy::Word;
+use media::files::number::Number;
 
 /// Format of numbers.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -174,8 +174,8 @@ impl Draws {
             Format::Npy => Reader::Rows(npy::open(bytes, name, length, layout)?.into()),
             Format::Raw | Format::RawSingle => {
                 let word = match format {
-                    Format::Raw => Word::LittleDouble,
-                    _ => Word::LittleSingle,
+                    Format::Raw => Number::of_width(8, false),
+                    _ => Number::of_width(4, false),
                 };
                 Reader::Rows(raw::open(bytes, name, length, layout, word)?.into())
             }

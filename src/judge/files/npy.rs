@@ -2,7 +2,8 @@
 
 use super::raw::{Rows, Words};
 use super::{Bytes, ForeignError, Layout};
-use media::files::npy::{self, Word};
+use media::files::npy;
+use media::files::number::Number;
 
 /// Opens an array; `length` counts the bytes of the file.
 pub(super) fn open(
@@ -19,7 +20,7 @@ pub(super) fn open(
         .map_err(|cause| ForeignError::NotNpy { file: file.to_owned(), cause })?;
     let shape = || ForeignError::Shape { file: file.to_owned(), shape: array.written_shape() };
     let expected = array.count().ok_or_else(shape)?;
-    let word = Word::named(&array.kind).ok_or_else(|| ForeignError::ElementType {
+    let word = Number::float(&array.kind).ok_or_else(|| ForeignError::ElementType {
         file: file.to_owned(),
         found: array.kind.clone(),
     })?;

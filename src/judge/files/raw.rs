@@ -1,7 +1,7 @@
 //! Numbers of a fixed width, one after the other or in rows with some columns that are read.
 
 use super::{Bytes, ForeignError, Layout};
-use media::files::npy::Word;
+use media::files::number::Number;
 
 /// Number of bytes that are read at a time: they stay in the second-level cache until converted.
 const CHUNK: usize = 1 << 17;
@@ -10,7 +10,7 @@ const CHUNK: usize = 1 << 17;
 pub(super) struct Words {
     bytes: Bytes,
     file: String,
-    word: Word,
+    word: Number,
     /// Number of words that a header announces; the stream ends there.
     announced: Option<u64>,
     /// Number of words, if it is known.
@@ -30,7 +30,7 @@ pub(super) fn open(
     file: &str,
     length: Option<u64>,
     layout: &Layout,
-    word: Word,
+    word: Number,
 ) -> Result<Rows, ForeignError> {
     if layout.column.is_some() {
         return Err(ForeignError::NoColumns { file: file.to_owned() });
@@ -54,7 +54,7 @@ pub(super) fn open(
     if words.fill()? == 0 {
         return Err(ForeignError::Empty { file: file.to_owned() });
     }
-    if word == Word::LittleDouble && looks_single(&words.chunk[..words.end]) {
+    if word == Number::of_width(8, false) && looks_single(&words.chunk[..words.end]) {
         return Err(ForeignError::LooksSingle { file: file.to_owned() });
     }
     words.length = length.map(|bytes| bytes / size);
@@ -91,7 +91,7 @@ fn looks_single(bytes: &[u8]) -> bool {
 }
 
 impl Words {
-    pub(super) fn new(bytes: Bytes, file: &str, word: Word, announced: Option<u64>) -> Self {
+    pub(super) fn new(bytes: Bytes, file: &str, word: Number, announced: Option<u64>) -> Self {
         Self {
             bytes,
             file: file.to_owned(),

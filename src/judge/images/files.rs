@@ -17,7 +17,8 @@ use std::path::Path;
 use super::claim::ImageError;
 use super::picture::{Picture, Size, Stack};
 use media::files::exr::{self, Window};
-use media::files::npy::{self, Header, Word};
+use media::files::npy::{self, Header};
+use media::files::number::Number;
 use media::files::{Pixels, pfm};
 
 /// Relative rounding error of numbers of 24 bits.
@@ -183,7 +184,7 @@ impl Array {
         let header = npy::bytes(&mut source).map_err(unreadable)?;
         let array = npy::parse(&header)
             .map_err(|cause| faulty(cause.to_string(), "write it by numpy.save"))?;
-        let word = Word::named(&array.kind).ok_or_else(|| {
+        let word = Number::float(&array.kind).ok_or_else(|| {
             faulty(format!("its numbers are {}", array.kind), "save it as float64 or float32")
         })?;
         let shape =

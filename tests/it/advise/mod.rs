@@ -11,7 +11,7 @@ use crate::common::{case, differs, failing, none, rows, source};
 use trueflight::advise::search::Kind;
 use trueflight::advise::{Advice, Costs, Group, Request, Row, Target, advise};
 use trueflight::case::Spec;
-use trueflight::catalogue::additions;
+use trueflight::catalogue::own_pages;
 
 const LINE: &str = "title = \"a line\"\n[problem.transmittance]\nmedium.constant.extinction = 0.5\nspan = [0, 4]\n";
 pub(super) const SINES: &str = "title = \"waves\"\n[problem.transmittance]\n\
@@ -21,7 +21,7 @@ const GRID: &str = "title = \"a grid\"\n[problem.transmittance]\nvolume.grid = {
 pub(super) const ANY: &str = "estimators = [\"ratio\"]\nsampling = 1\n";
 
 pub(super) fn asked(text: &str, request: &Request) -> Advice {
-    let spec = Spec::parse(&source("advised", text), &additions::NONE).expect("TOML");
+    let spec = Spec::parse(&source("advised", text), &own_pages::NONE).expect("TOML");
     advise(&spec, request).unwrap_or_else(|error| panic!("{}", error.render(false)))
 }
 
@@ -170,7 +170,7 @@ fn rays_are_random_listed_or_those_of_a_camera() {
 #[test]
 fn wrong_rays_and_options_are_mistakes_with_a_cure() {
     let wrong = |text: &str| {
-        let spec = Spec::parse(&source("wrong", text), &additions::NONE).expect("TOML");
+        let spec = Spec::parse(&source("wrong", text), &own_pages::NONE).expect("TOML");
         let error = advise(&spec, &request(Costs::Lookups)).expect_err("a mistake");
         error.render(false)
     };

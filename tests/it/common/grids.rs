@@ -4,7 +4,7 @@
 
 use std::io::Write;
 
-use trueflight::media::grid_file::{Choice, MOST_SAMPLES, Samples, Unreadable, read};
+use trueflight::media::grid_file::{Choice, MAX_SAMPLES, Samples, Unreadable, read};
 
 /// Reads bytes as a grid of the given ending; asserts that any result is a grid.
 pub fn reads_or_refuses(ending: &str, bytes: &[u8]) -> Option<Samples> {
@@ -14,7 +14,7 @@ pub fn reads_or_refuses(ending: &str, bytes: &[u8]) -> Option<Samples> {
     match read(file.path(), &Choice::default()) {
         Ok(samples) => {
             let count = samples.size.iter().product::<usize>();
-            assert!(count > 0 && count as u64 <= MOST_SAMPLES);
+            assert!(count > 0 && count as u64 <= MAX_SAMPLES);
             assert_eq!(samples.values.len(), count);
             assert!(samples.values.iter().all(|x| x.is_finite() && *x >= 0.0));
             Some(samples)

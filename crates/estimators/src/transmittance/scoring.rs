@@ -74,7 +74,7 @@ impl<H: Share> Scoring<H> {
     /// The walk on a setup.
     #[inline(always)]
     pub fn new(share: H, setup: &Setup<Transmittance>) -> Self {
-        let begin = setup.fields.sampling.begin().t;
+        let begin = setup.fields.sampling.begin().t();
         Self {
             share,
             unit: setup.fields.control_transmittance(),

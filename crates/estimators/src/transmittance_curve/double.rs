@@ -41,10 +41,11 @@ pub fn walk(setup: &Setup<TransmittanceCurve>, medium: &Medium, rng: &mut Stream
     let mut cursor = setup.fields.sampling.begin();
     let mut weight = 1.0;
     let mut collisions = Vec::new();
-    while let Some(sampling) = setup.fields.sampling.fly(&mut cursor, exponential(rng)) {
-        let extinction = medium.extinction(cursor.t);
-        weight *= 1.0 - (extinction - setup.fields.control.extinction(cursor.t)) / sampling;
-        collisions.push([cursor.t, extinction, weight]);
+    while let Some(sampling) = cursor.fly(exponential(rng)) {
+        let t = cursor.t();
+        let extinction = medium.extinction(t);
+        weight *= 1.0 - (extinction - setup.fields.control.extinction(t)) / sampling;
+        collisions.push([t, extinction, weight]);
     }
     collisions
 }

@@ -80,9 +80,9 @@ fn pieces(Pieces { from, widths_and_values, share }: &Pieces, seen: &mut Seen) -
     let whole = depth_to(f64::INFINITY).value();
     let depth = whole * share;
     let mut cursor = field.begin();
-    let value = field.fly(&mut cursor, depth)?;
-    let grain = 2.0 * f64::EPSILON * cursor.t.abs().max(1.0) * value;
-    seen.see(0, off(depth, depth_to(cursor.t)) / (1e-12 * whole + grain));
+    let value = cursor.fly(depth)?;
+    let grain = 2.0 * f64::EPSILON * cursor.t().abs().max(1.0) * value;
+    seen.see(0, off(depth, depth_to(cursor.t())) / (1e-12 * whole + grain));
     Some(())
 }
 
@@ -94,9 +94,9 @@ fn empty(Gap { value, widths, share }: &Gap, seen: &mut Seen) -> Option<()> {
     }
     let field = Piecewise::steps(&knots, &[*value, 0.0, *value]);
     let mut cursor = field.begin();
-    let there = field.fly(&mut cursor, value * (widths[0] + widths[2]) * share)?;
+    let there = cursor.fly(value * (widths[0] + widths[2]) * share)?;
     // A flight may end on the edge itself, where rounding puts it.
     let inside = Span::new(knots[1] * (1.0 + 1e-15), knots[2] * (1.0 - 1e-15));
-    seen.wrong(0, inside.contains_inside(cursor.t) || there != *value);
+    seen.wrong(0, inside.contains_inside(cursor.t()) || there != *value);
     Some(())
 }

@@ -69,7 +69,7 @@ fn distances(&Flight { power, word }: &Flight, seen: &mut Seen) -> Option<()> {
     let field = Piecewise::constant(sampling, Span::new(0.0, 40.0 / sampling));
     let uniform = before(word).positive_uniform();
     let mut cursor = field.begin();
-    field.fly(&mut cursor, -before(word).ln_uniform()).filter(|_| uniform < 1.0)?;
-    seen.relative(0, cursor.t, -Wide::from(uniform).ln() / Wide::from(sampling));
+    cursor.fly(-before(word).ln_uniform()).filter(|_| uniform < 1.0)?;
+    seen.relative(0, cursor.t(), -Wide::from(uniform).ln() / Wide::from(sampling));
     Some(())
 }

@@ -4,16 +4,16 @@
 //! page is one source file. Its name in case files is the file's name with hyphens, and its text
 //! in `list` and `explain` is the file's own documentation, so that neither can go stale.
 
-pub mod additions;
 mod choices;
 pub mod fixture;
 mod lists;
+pub mod own_pages;
 pub mod page;
 pub mod settings;
 pub mod tree;
 mod words;
 
-pub use additions::{Addition, Additions};
+pub use own_pages::{OwnPage, OwnPages};
 pub use page::{Page, PageList};
 pub use settings::Settings;
 pub use tree::{Domain, Entry, Fault, Node, Value};

@@ -8,8 +8,8 @@ use std::cell::RefCell;
 use std::ops::{Range, RangeInclusive};
 use std::path::Path;
 
-use super::additions::{self, Additions};
 use super::choices::Form;
+use super::own_pages::{self, OwnPages};
 use super::words::{meant, quoted, whole};
 use super::{Domain, Entry, Fault, Value};
 use numeric::digits::number;
@@ -25,7 +25,7 @@ pub struct Settings<'a> {
     /// The folder that relative file names refer to.
     pub folder: &'a Path,
     pub(super) faults: &'a RefCell<Vec<Fault>>,
-    additions: &'a Additions,
+    own_pages: &'a OwnPages,
     asked: RefCell<Vec<&'static str>>,
     pub(super) form: Form<'a>,
 }
@@ -34,20 +34,20 @@ impl<'a> Settings<'a> {
     /// Reads the top-level table of a file in `folder`; mistakes go to `faults`.
     pub fn new(root: &'a [Entry], folder: &'a Path, faults: &'a RefCell<Vec<Fault>>) -> Self {
         let (asked, form) = (RefCell::default(), Form::Table);
-        let additions = &additions::NONE;
+        let own_pages = &own_pages::NONE;
         let path = String::new();
-        Self { table: root, span: 0..0, path, folder, faults, additions, asked, form }
+        Self { table: root, span: 0..0, path, folder, faults, own_pages, asked, form }
     }
 
     /// Settings with pages of the program's own.
     #[must_use]
-    pub fn with(self, additions: &'a Additions) -> Self {
-        Self { additions, ..self }
+    pub fn with(self, own_pages: &'a OwnPages) -> Self {
+        Self { own_pages, ..self }
     }
 
     /// The pages of the program's own.
-    pub fn additions(&self) -> &'a Additions {
-        self.additions
+    pub fn own_pages(&self) -> &'a OwnPages {
+        self.own_pages
     }
 
     /// The entry of a key, if the file has it.

@@ -81,9 +81,9 @@ fn distance(a: &str, b: &str) -> usize {
 
 /// The beginning of a text that is too long for a message.
 pub fn brief(text: &str) -> String {
-    const MOST: usize = 60;
+    const MAX_LETTERS: usize = 60;
     let mut letters = text.chars();
-    let beginning: String = letters.by_ref().take(MOST).collect();
+    let beginning: String = letters.by_ref().take(MAX_LETTERS).collect();
     if letters.next().is_some() { beginning + "…" } else { beginning }
 }
 

@@ -34,6 +34,28 @@ pub fn wrong<T>(message: impl Into<String>, help: impl Into<String>) -> Result<T
     Err(Fault { message: message.into(), help: help.into() })
 }
 
+/// The grid of a name; without a name, the only grid of a file that is read. `about` returns a grid's name, whether it is
+/// read, and its name in lists.
+fn chosen<'a, T>(
+    grids: &'a [T],
+    name: Option<&str>,
+    about: impl Fn(&T) -> (String, bool, String),
+    convert: &str,
+) -> Result<&'a T, Fault> {
+    let all = || grids.iter().map(|grid| about(grid).2).take(20).collect::<Vec<_>>().join(", ");
+    if let Some(name) = name {
+        let found = grids.iter().find(|grid| about(grid).0 == name);
+        let message = || format!("it has no grid {}, but {}", shown(name), all());
+        let missing = || wrong(message(), "choose one of its grids of floats");
+        return found.map_or_else(missing, Ok);
+    }
+    match grids.iter().filter(|grid| about(grid).1).collect::<Vec<_>>()[..] {
+        [] => wrong(format!("it has no grid of floats, but {}", all()), convert),
+        [only] => Ok(only),
+        _ => wrong(format!("it has several grids: {}", all()), "choose one: `grid = \"…\"`"),
+    }
+}
+
 /// A fault of a damaged file.
 fn damaged<T>(message: impl Into<String>) -> Result<T, Fault> {
     wrong(message, "the file is damaged: write it anew")

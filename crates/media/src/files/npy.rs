@@ -134,56 +134,6 @@ fn sizes(text: &str) -> Option<Vec<u64>> {
     axes.map(|size| size.trim().parse().ok()).collect()
 }
 
-/// A number's width and byte order.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Word {
-    /// float64, low byte first.
-    LittleDouble,
-    /// float64, high byte first.
-    BigDouble,
-    /// float32, low byte first.
-    LittleSingle,
-    /// float32, high byte first.
-    BigSingle,
-}
-
-impl Word {
-    /// The word that a header's element type names, if it is a float of 4 or 8 bytes.
-    pub fn named(kind: &str) -> Option<Self> {
-        match kind {
-            "<f8" => Some(Self::LittleDouble),
-            ">f8" => Some(Self::BigDouble),
-            "<f4" => Some(Self::LittleSingle),
-            ">f4" => Some(Self::BigSingle),
-            _ => None,
-        }
-    }
-
-    /// Bytes.
-    pub fn width(self) -> usize {
-        match self {
-            Self::LittleDouble | Self::BigDouble => 8,
-            Self::LittleSingle | Self::BigSingle => 4,
-        }
-    }
-
-    /// Appends the numbers in whole words of bytes.
-    pub fn convert(self, bytes: &[u8], numbers: &mut Vec<f64>) {
-        let doubles = bytes.as_chunks::<8>().0.iter();
-        let singles = bytes.as_chunks::<4>().0.iter();
-        match self {
-            Self::LittleDouble => numbers.extend(doubles.map(|&word| f64::from_le_bytes(word))),
-            Self::BigDouble => numbers.extend(doubles.map(|&word| f64::from_be_bytes(word))),
-            Self::LittleSingle => {
-                numbers.extend(singles.map(|&word| f64::from(f32::from_le_bytes(word))));
-            }
-            Self::BigSingle => {
-                numbers.extend(singles.map(|&word| f64::from(f32::from_be_bytes(word))));
-            }
-        }
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -37,6 +37,16 @@ impl Number {
         }
     }
 
+    /// The number of an element type that is a float of 4 or 8 bytes.
+    pub fn float(name: &str) -> Option<Self> {
+        Self::named(name).filter(|number| number.kind == Kind::Float && number.width > 2)
+    }
+
+    /// A float of a width, with its low or its high byte first.
+    pub const fn of_width(width: usize, is_big: bool) -> Self {
+        Self { kind: Kind::Float, width, is_big }
+    }
+
     /// Bytes.
     pub fn width(self) -> usize {
         self.width
@@ -44,7 +54,28 @@ impl Number {
 
     /// The numbers in complete words of bytes. Integers beyond 2⁵³ are rounded.
     pub fn all(self, bytes: &[u8]) -> Vec<f64> {
-        bytes.chunks_exact(self.width).map(|word| self.one(word)).collect()
+        let mut numbers = Vec::with_capacity(bytes.len() / self.width);
+        self.convert(bytes, &mut numbers);
+        numbers
+    }
+
+    /// Appends the numbers in complete words of bytes.
+    pub fn convert(self, bytes: &[u8], numbers: &mut Vec<f64>) {
+        let doubles = bytes.as_chunks().0.iter();
+        let singles = bytes.as_chunks().0.iter();
+        match (self.kind, self.width, self.is_big) {
+            (Kind::Float, 8, false) => {
+                numbers.extend(doubles.map(|&word| f64::from_le_bytes(word)))
+            }
+            (Kind::Float, 8, true) => numbers.extend(doubles.map(|&word| f64::from_be_bytes(word))),
+            (Kind::Float, 4, false) => {
+                numbers.extend(singles.map(|&word| f64::from(f32::from_le_bytes(word))));
+            }
+            (Kind::Float, 4, true) => {
+                numbers.extend(singles.map(|&word| f64::from(f32::from_be_bytes(word))));
+            }
+            _ => numbers.extend(bytes.chunks_exact(self.width).map(|word| self.one(word))),
+        }
     }
 
     fn one(self, word: &[u8]) -> f64 {
@@ -55,13 +86,11 @@ impl Number {
             bits = bits << 8 | u64::from(byte);
         }
         let unused = 64 - 8 * u32::try_from(self.width).unwrap_or(8);
-        #[expect(clippy::cast_possible_truncation)] // the bits of the width
-        match (self.kind, self.width) {
-            (Kind::Float, 2) => f16::from_bits(bits as u16).to_f64(),
-            (Kind::Float, 4) => f64::from(f32::from_bits(bits as u32)),
-            (Kind::Float, _) => f64::from_bits(bits),
-            (Kind::Signed, _) => ((bits << unused).cast_signed() >> unused) as f64,
-            (Kind::Unsigned, _) => bits as f64,
+        #[expect(clippy::cast_possible_truncation)] // wider floats are converted before
+        match self.kind {
+            Kind::Float => f16::from_bits(bits as u16).to_f64(),
+            Kind::Signed => ((bits << unused).cast_signed() >> unused) as f64,
+            Kind::Unsigned => bits as f64,
         }
     }
 }

@@ -1,45 +1,45 @@
-//! Walks through straight pieces by closed forms.
+//! Walks of one lane through σ̂.
 
-use super::Piecewise;
+use super::{FlightOverPieces, FlightWithGaps, PackedFlight, Piecewise};
 use numeric::Lane;
 
-/// Position of a walk through a [`Piecewise`] field.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Cursor {
+/// Position of a walk through a [`Piecewise`] field that is not negative.
+#[derive(Clone, Copy)]
+pub enum Cursor<'a> {
+    /// In a field of one value with gaps.
+    WithGaps(FlightWithGaps<'a, f64>),
+    /// In any other.
+    OverPieces(FlightOverPieces<'a, f64>),
+}
+
+impl Cursor<'_> {
     /// The distance reached.
-    pub t: f64,
-    /// Distance without gaps, in a field that is [`Piecewise::with_gaps`].
-    way: f64,
-    piece: usize,
+    #[inline]
+    pub fn t(&self) -> f64 {
+        match self {
+            Self::WithGaps(flight) => flight.reached(),
+            Self::OverPieces(flight) => flight.reached(),
+        }
+    }
+
+    /// Flies on through an optical depth and returns the field at the new distance; `None` beyond the last knot.
+    #[inline(always)]
+    pub fn fly(&mut self, depth: f64) -> Option<f64> {
+        match self {
+            Self::WithGaps(flight) => flight.fly(depth).then(|| flight.sampling()),
+            Self::OverPieces(flight) => flight.fly(depth).then(|| flight.sampling()),
+        }
+    }
 }
 
 impl Piecewise {
     /// A walk from the first knot, or from the beginning of a field that is [`Piecewise::with_gaps`].
     #[inline]
-    pub fn begin(&self) -> Cursor {
-        let t = self.gaps.as_ref().map_or(self.knots[0], |gaps| gaps.from);
-        Cursor { t, way: t, piece: 0 }
-    }
-
-    /// A walk over the pieces from any distance between the first and the last knot.
-    pub(super) fn begin_at(&self, t: f64) -> Cursor {
-        Cursor { t, way: t, piece: self.piece_at(t).1 }
-    }
-
-    /// Flies on through an optical depth and returns the field at the new distance; `None` beyond the last knot.
-    /// Non-negative fields only.
-    ///
-    /// ```text
-    /// y₀ s + k s²/2 = u   ⇒   s = 2u / (y₀ + √(y₀² + 2ku))
-    /// ```
-    #[inline(always)]
-    pub fn fly(&self, cursor: &mut Cursor, depth: f64) -> Option<f64> {
-        if let Some(gaps) = &self.gaps {
-            cursor.way = Lane::times_plus(depth, 1.0 / gaps.value, cursor.way);
-            cursor.t = gaps.spread(cursor.way);
-            return (cursor.way < gaps.to).then_some(gaps.value);
+    pub fn begin(&self) -> Cursor<'_> {
+        match &self.gaps {
+            Some(gaps) => Cursor::WithGaps(FlightWithGaps::new(0.0, gaps)),
+            None => Cursor::OverPieces(FlightOverPieces::new(0.0, self)),
         }
-        self.fly_over(cursor, depth)
     }
 
     /// Ends of flights from the beginning through optical depths.
@@ -50,29 +50,9 @@ impl Piecewise {
                 .spread(depth.times_plus(depth.each(1.0 / gaps.value), depth.each(gaps.from)));
         }
         depth.map(|depth| {
-            let mut cursor = self.begin();
-            self.fly_over(&mut cursor, depth);
-            cursor.t
+            let mut flight = FlightOverPieces::new(0.0, self);
+            if flight.fly(depth) { flight.reached() } else { self.knots[self.left.len()] }
         })
-    }
-
-    /// Flies as [`Self::fly`] does, over several pieces.
-    #[inline]
-    pub(super) fn fly_over(&self, cursor: &mut Cursor, mut depth: f64) -> Option<f64> {
-        while cursor.piece < self.left.len() {
-            let (end, slope) = (self.knots[cursor.piece + 1], self.slope[cursor.piece]);
-            let here = self.line(cursor.piece, cursor.t);
-            let left = (end - cursor.t) * 0.5 * (here + self.line(cursor.piece, end));
-            if depth < left {
-                let root = Lane::or_more(here * here + 2.0 * slope * depth, 0.0).sqrt();
-                cursor.t += 2.0 * depth / (here + root);
-                return Some(self.line(cursor.piece, cursor.t));
-            }
-            depth -= left;
-            cursor.t = end;
-            cursor.piece += 1;
-        }
-        None
     }
 }
 
@@ -91,10 +71,10 @@ mod tests {
         assert_eq!(field.with_gaps(), Some(&expected));
         assert_eq!((field.value(0.5), field.value(1.0), field.value(4.5)), (0.0, 2.0, 0.0));
         let mut cursor = field.begin();
-        assert_eq!((field.fly(&mut cursor, 1.0), cursor.t), (Some(2.0), 1.5));
-        assert_eq!(field.fly(&mut cursor, 5.1), None);
+        assert_eq!((cursor.fly(1.0), cursor.t()), (Some(2.0), 1.5));
+        assert_eq!(cursor.fly(5.1), None);
         let nothing = field.zero_on(&[Span::new(0.0, 5.0)]);
-        assert_eq!(nothing.fly(&mut nothing.begin(), 1e-9), None);
+        assert_eq!(nothing.begin().fly(1e-9), None);
     }
 
     #[test]
@@ -109,8 +89,8 @@ mod tests {
         for step in 1..120 {
             let depth = 0.1 * f64::from(step) + 0.01;
             let mut cursor = field.begin();
-            let flown = field.fly(&mut cursor, depth).map(|_| cursor.t);
-            let over = field.fly_over(&mut field.begin(), depth).is_some();
+            let flown = cursor.fly(depth).map(|_| cursor.t());
+            let over = FlightOverPieces::new(0.0, &field).fly(depth);
             assert_eq!(flown.is_some(), over);
             if let Some(t) = flown {
                 let back = field.optical_depth(Span::new(0.0, t)).value;

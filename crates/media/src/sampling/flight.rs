@@ -159,9 +159,14 @@ impl<'a, L: Lane> FlightOverPieces<'a, L> {
     #[must_use]
     #[inline(always)]
     pub fn from_end(self) -> Self {
-        let last = self.field.left.len() - 1;
-        let (piece, t) = (self.t.each(last as f64), self.t.each(self.field.knots[last + 1]));
-        Self { piece, at_hand: piece.columns(&self.field.rows), t, ..self }
+        self.from(self.field.knots[self.field.left.len()])
+    }
+
+    /// Flights from a distance between the first and the last knot.
+    #[must_use]
+    pub(super) fn from(self, t: f64) -> Self {
+        let piece = self.t.each(self.field.piece_at(t).1 as f64);
+        Self { piece, at_hand: piece.columns(&self.field.rows), t: self.t.each(t), ..self }
     }
 
     /// σ̂ at the distances reached.

@@ -1,7 +1,7 @@
 //! Straight pieces: the shape of every sampling extinction and of most controls.
 
-use super::ConstantWithGaps;
 use super::search::Search;
+use super::{ConstantWithGaps, FlightOverPieces, PackedFlight};
 use crate::{Extinction, Facts, OpticalDepth};
 use numeric::{Known, Lane, Row, Span, sum::Sum};
 
@@ -248,9 +248,9 @@ impl OpticalDepth for Piecewise {
         if span.from < self.knots[0] || span.to > self.knots[self.left.len()] {
             return self.on(span).free_flight(span, depth);
         }
-        let mut cursor = self.begin_at(span.from);
-        self.fly_over(&mut cursor, depth)?;
-        (cursor.t < span.to).then_some(cursor.t)
+        let mut flight = FlightOverPieces::new(0.0, self).from(span.from);
+        let is_inside = flight.fly(depth) && flight.reached() < span.to;
+        is_inside.then(|| flight.reached())
     }
 }
 

@@ -74,8 +74,8 @@ impl Recipe for Pilot {
             }
             let flown = Piecewise::constant(sampling, support);
             let mut cursor = flown.begin();
-            while flown.fly(&mut cursor, exponential(&mut rng)).is_some() {
-                let residual = medium.extinction(cursor.t) - control.extinction(cursor.t);
+            while cursor.fly(exponential(&mut rng)).is_some() {
+                let residual = medium.extinction(cursor.t()) - control.extinction(cursor.t());
                 largest = largest.max(residual.abs());
                 lookups += 1;
             }

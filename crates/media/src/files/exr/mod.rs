@@ -22,7 +22,7 @@ use super::Pixels;
 pub use header::{Channel, Part, Window, parts};
 
 /// Maximum number of values of a picture: 2 GiB in memory.
-const MOST: usize = 1 << 28;
+const MAX_VALUES: usize = 1 << 28;
 
 /// The bytes of a picture of one layer and of several images of it, each with a prefix to the names of its channels:
 /// `Y`, or `R`, `G` and `B`, as float32, in scan lines that are not compressed.
@@ -111,8 +111,8 @@ pub fn read(bytes: Vec<u8>) -> Result<Pixels, String> {
     let Vec2(columns, rows) = header.layer_size;
     let channels = kept.len();
     // A small file may announce any size.
-    if rows.saturating_mul(columns).saturating_mul(channels) > MOST {
-        return Err(format!("{rows} × {columns} pixels are more than {MOST} values"));
+    if rows.saturating_mul(columns).saturating_mul(channels) > MAX_VALUES {
+        return Err(format!("{rows} × {columns} pixels are more than {MAX_VALUES} values"));
     }
     let is_kept = |layer: usize, level: Vec2<usize>| layer == 0 && level == Vec2(0, 0);
     let chunks = reader.filter_chunks(false, |_, _, block| is_kept(block.layer, block.level));

@@ -24,7 +24,7 @@ mod nodes;
 mod unpacking;
 
 use super::vdb::{Grid, Transform};
-use super::{Fault, damaged, shown, wrong};
+use super::{Fault, chosen, damaged, shown, wrong};
 pub use listing::{Listed, list};
 
 /// Bytes before the tree.
@@ -62,24 +62,8 @@ const CONVERT: &str = "grids of the types Float, Fp4, Fp8, Fp16 and FpN are read
 /// The file is not one of the kind that is described above, or has no such grid.
 pub fn read(file: &[u8], name: Option<&str>) -> Result<Grid, Fault> {
     let grids = list(file)?;
-    let all = || grids.iter().map(Listed::shown).take(20).collect::<Vec<_>>().join(", ");
-    let found = match name {
-        Some(name) => grids.iter().find(|grid| grid.name == name),
-        None => match grids.iter().filter(|grid| grid.is_read()).collect::<Vec<_>>()[..] {
-            [] => return wrong(format!("it has no grid of floats, but {}", all()), CONVERT),
-            [only] => Some(only),
-            _ => {
-                return wrong(
-                    format!("it has several grids: {}", all()),
-                    "choose one: `grid = \"…\"`",
-                );
-            }
-        },
-    };
-    let Some(found) = found else {
-        let message = format!("it has no grid {}, but {}", shown(name.unwrap_or_default()), all());
-        return wrong(message, "choose one of its grids of floats");
-    };
+    let about = |grid: &Listed| (grid.name.clone(), grid.is_read(), grid.shown());
+    let found = chosen(&grids, name, about, CONVERT)?;
     let Some(values) = nodes::Values::of(found.number) else {
         let message = format!("its grid {} has the type {}", shown(&found.name), found.kind);
         return wrong(message, CONVERT);

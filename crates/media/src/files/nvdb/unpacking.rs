@@ -9,7 +9,7 @@ use super::{Fault, damaged, part, word};
 const PIECE: usize = 1 << 30;
 
 /// Maximum number of bytes that LZ4 makes of one byte.
-const MOST: usize = 256;
+const MAX_EXPANSION: usize = 256;
 
 /// Unpacks a grid to its size in memory.
 pub(super) fn unpacked<'a>(
@@ -27,7 +27,7 @@ pub(super) fn unpacked<'a>(
             }
         }
         "Blosc" => {
-            if size / MOST > stored.len() {
+            if size / MAX_EXPANSION > stored.len() {
                 return damaged(format!(
                     "{size} bytes of a grid are announced, and {} are stored",
                     stored.len()

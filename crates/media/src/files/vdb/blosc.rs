@@ -14,7 +14,7 @@ use super::{Fault, damaged, wrong};
 
 /// Minimum number of bytes of a stream into which a block is split, and maximum number of streams.
 const LEAST_STREAM: usize = 128;
-const MOST_STREAMS: usize = 16;
+const MAX_STREAMS: usize = 16;
 
 /// Unpacks a frame into exactly the length of `into`.
 pub(in crate::files) fn unpack(frame: &[u8], into: &mut [u8]) -> Result<(), Fault> {
@@ -44,7 +44,7 @@ pub(in crate::files) fn unpack(frame: &[u8], into: &mut [u8]) -> Result<(), Faul
         let begin = head.number()? as usize;
         let is_split = flags & 16 == 0
             && part.len() == block
-            && width <= MOST_STREAMS
+            && width <= MAX_STREAMS
             && block / width >= LEAST_STREAM;
         let streams = if is_split { width } else { 1 };
         let mut source = Bytes::new(frame);

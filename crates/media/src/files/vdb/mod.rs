@@ -35,7 +35,7 @@ pub(in crate::files) use tree::{EDGES, Growing};
 pub use tree::{LEAF, Leaf, Tile, Tree};
 
 pub use super::Fault;
-use super::{damaged, shown, wrong};
+use super::{chosen, damaged, shown, wrong};
 
 /// A grid of floats.
 #[derive(Debug, Clone, PartialEq)]
@@ -101,24 +101,8 @@ pub fn list(file: &[u8]) -> Result<Vec<Entered>, Fault> {
 pub fn read(file: &[u8], name: Option<&str>) -> Result<Grid, Fault> {
     let mut bytes = Bytes::new(file);
     let entries = header::entries(&mut bytes)?;
-    let list = || entries.iter().map(Entry::shown).take(20).collect::<Vec<_>>().join(", ");
-    let entry = match name {
-        Some(name) => entries.iter().find(|entry| entry.name() == name),
-        None => match entries.iter().filter(|entry| entry.has_floats()).collect::<Vec<_>>()[..] {
-            [] => return wrong(format!("it has no grid of floats, but {}", list()), CONVERT),
-            [only] => Some(only),
-            _ => {
-                return wrong(
-                    format!("it has several grids: {}", list()),
-                    "choose one: `grid = \"…\"`",
-                );
-            }
-        },
-    };
-    let Some(entry) = entry else {
-        let message = format!("it has no grid {}, but {}", shown(name.unwrap_or_default()), list());
-        return wrong(message, "choose one of its grids of floats");
-    };
+    let about = |entry: &Entry| (entry.name(), entry.has_floats(), entry.shown());
+    let entry = chosen(&entries, name, about, CONVERT)?;
     if !entry.has_floats() {
         let message =
             format!("its grid {} has the type {}", shown(&entry.name()), shown(&entry.kind));

@@ -19,9 +19,9 @@ use super::{Fault, damaged, wrong};
 /// Number of voxels of a leaf along each axis.
 pub const LEAF: i32 = 8;
 
-/// Maximum number of voxels in tiles, once there are more than [`MOST_TILES`] tiles.
-const MOST_VOXELS: u64 = 1 << 27;
-const MOST_TILES: usize = 1 << 12;
+/// Maximum number of voxels in tiles, once there are more than [`MAX_TILES`] tiles.
+const MAX_VOXELS: u64 = 1 << 27;
+const MAX_TILES: usize = 1 << 12;
 
 /// Bytes of a leaf's mask.
 const MASK: usize = 64;
@@ -111,8 +111,8 @@ impl Growing {
         }
         if tile.value != self.tree.background {
             self.filled = self.filled.saturating_add(voxels);
-            if self.filled > MOST_VOXELS && self.tree.tiles.len() > MOST_TILES {
-                let message = format!("its tiles fill more than {MOST_VOXELS} voxels");
+            if self.filled > MAX_VOXELS && self.tree.tiles.len() > MAX_TILES {
+                let message = format!("its tiles fill more than {MAX_VOXELS} voxels");
                 return wrong(
                     message,
                     "sample it more coarsely, or cut it to the part that is needed",

@@ -8,7 +8,7 @@ use super::Page;
 
 /// A page of a program's own: its part of the catalogue, its text, and its reader.
 #[derive(Clone)]
-pub struct Addition {
+pub struct OwnPage {
     /// The part of the catalogue, as in `trueflight list`: `media`, `estimators of transmittance`.
     pub part: String,
     /// Name and text.
@@ -16,14 +16,14 @@ pub struct Addition {
     reader: Arc<dyn Any + Send + Sync>,
 }
 
-impl Addition {
+impl OwnPage {
     /// A page that is read by an `R`, the type under which its part finds it.
     pub fn new<R: Any + Send + Sync>(part: impl Into<String>, page: Page, reader: R) -> Self {
         Self { part: part.into(), page, reader: Arc::new(reader) }
     }
 }
 
-impl fmt::Debug for Addition {
+impl fmt::Debug for OwnPage {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         write!(f, "{} ({})", self.page.name(), self.part)
     }
@@ -31,19 +31,19 @@ impl fmt::Debug for Addition {
 
 /// The pages of a program's own.
 #[derive(Debug, Clone, Default)]
-pub struct Additions(Vec<Addition>);
+pub struct OwnPages(Vec<OwnPage>);
 
 /// An empty list, for cases that need no pages of the program's own.
-pub static NONE: Additions = Additions(Vec::new());
+pub static NONE: OwnPages = OwnPages(Vec::new());
 
-impl Additions {
+impl OwnPages {
     /// Adds a page.
-    pub fn add(&mut self, addition: Addition) {
+    pub fn add(&mut self, addition: OwnPage) {
         self.0.push(addition);
     }
 
     /// All pages, in the order in which they were added.
-    pub fn all(&self) -> &[Addition] {
+    pub fn all(&self) -> &[OwnPage] {
         &self.0
     }
 
