@@ -65,7 +65,7 @@ impl Number {
         let singles = bytes.as_chunks().0.iter();
         match (self.kind, self.width, self.is_big) {
             (Kind::Float, 8, false) => {
-                numbers.extend(doubles.map(|&word| f64::from_le_bytes(word)))
+                numbers.extend(doubles.map(|&word| f64::from_le_bytes(word)));
             }
             (Kind::Float, 8, true) => numbers.extend(doubles.map(|&word| f64::from_be_bytes(word))),
             (Kind::Float, 4, false) => {
