@@ -106,8 +106,8 @@ pub fn lookups(grid: &Grid, techniques: Techniques) -> Option<[f64; 4]> {
             // With K lookups of a shadow ray and m' lookups afterwards, from one shadow lookup on.
             let scattered = |m: usize, from: usize| {
                 let mut sum = [0.0; 2];
-                for j in from..=m {
-                    let share = binomial(m, j) * of_shadow[i][j];
+                for (j, moment) in of_shadow[i].iter().enumerate().take(m + 1).skip(from) {
+                    let share = binomial(m, j) * moment;
                     let spread = step.spread(worth(m - j));
                     sum = [sum[0] + share * spread[0], sum[1] + share * spread[1]];
                 }
