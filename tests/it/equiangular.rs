@@ -11,7 +11,7 @@ use trueflight::catalogue::Settings;
 use trueflight::media::{Body, Control, Piecewise};
 use trueflight::problems::{Problem, SingleScattering};
 use trueflight::record::Row;
-use trueflight::theory::single::null_path::Made;
+use trueflight::theory::contour::Made;
 use trueflight::theory::single::{
     Camera, CameraTracking, Collisions, Mis, NullPaths, Scene, Tracking,
 };

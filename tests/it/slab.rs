@@ -3,13 +3,13 @@
 
 use serde::Deserialize;
 
+use trueflight::lab::h_function::h_function;
 use trueflight::numeric::Known;
 use trueflight::phase::Phase;
 use trueflight::phase::henyey_greenstein::HenyeyGreenstein;
 use trueflight::phase::isotropic::Isotropic;
 use trueflight::phase::rayleigh::Rayleigh;
 use trueflight::problems::slab::{Incidence, Light};
-use trueflight::theory::h_function::h_function;
 use trueflight::theory::particle::ParticleRule;
 use trueflight::theory::slab::layer::Slice;
 use trueflight::theory::slab::{Existence, Piece, Pieces, Resolution, Walk, cached, solve};

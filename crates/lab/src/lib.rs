@@ -2,6 +2,7 @@
 //! its verdicts are counted against, and numbers under stress.
 
 pub mod calibration;
+pub mod h_function;
 pub mod mutants;
 pub mod streams;
 pub mod stress;

@@ -2,6 +2,7 @@
 //!
 //! Floor 0. Nothing here depends on light, media or statistics.
 
+pub mod cumulative;
 pub mod digits;
 pub mod double_double;
 pub mod elementary;
@@ -23,6 +24,7 @@ pub mod sum;
 pub mod twin;
 pub mod words;
 
+pub use cumulative::Cumulative;
 pub use double_double::Wide;
 pub use exponential_integral::exponential_integrals;
 pub use known::{Grade, Known, Span};

@@ -113,7 +113,7 @@ impl<'a> Spectrum<'a> {
         };
         let ends =
             self.media.iter().flat_map(|(mesh, _)| mesh.panels().map(|panel| panel.span.from));
-        let mesh = self.media[0].0.refined(&ends.collect::<Vec<f64>>(), &|_, _| Vec::new());
+        let mesh = self.media[0].0.cut(&ends.collect::<Vec<f64>>());
         let nothing = bound::NOTHING * rates.majorants[0];
         // Where there are no collisions nothing is lost or gained.
         let is_empty = |s: &SecondMomentRates| s.scattered == 0.0 && s.lost.abs() <= nothing;

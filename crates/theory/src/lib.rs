@@ -6,10 +6,10 @@
 pub mod bidirectional_rod;
 pub mod chromatic_slab;
 pub mod colours;
+pub mod contour;
 pub mod count;
 pub mod curve;
 pub mod flight;
-pub mod h_function;
 pub mod heuristic;
 pub mod lit_rod;
 pub mod lit_slab;

@@ -167,6 +167,41 @@ impl Mesh {
         fine
     }
 
+    /// A mesh that also ends panels at `cuts`.
+    #[must_use]
+    pub fn cut(&self, cuts: &[f64]) -> Self {
+        self.refined(cuts, &|_, _| Vec::new())
+    }
+
+    /// Places inside the support where panels end: `cuts`, and where a function `kink(t, σ_t)` changes its sign.
+    pub fn cuts<K: Fn(f64, f64) -> f64>(
+        &self,
+        mut cuts: Vec<f64>,
+        kinks: impl IntoIterator<Item = K>,
+    ) -> Vec<f64> {
+        let cut = self.cut(&cuts);
+        cuts.extend(kinks.into_iter().flat_map(|kink| cut.roots(kink)));
+        cuts.retain(|&t| self.support().contains_inside(t));
+        cuts
+    }
+
+    /// Places where panels for several channels end: `cuts`, the ends of the panels of each, and where rates of two
+    /// channels at a distance cross.
+    pub fn joint_cuts<const N: usize>(
+        meshes: &[&Self],
+        mut cuts: Vec<f64>,
+        rates: impl Fn(usize, f64) -> [f64; N],
+    ) -> Vec<f64> {
+        cuts.extend(meshes.iter().flat_map(|mesh| mesh.panels().map(|panel| panel.span.from)));
+        let pairs = (0..meshes.len()).flat_map(|i| (0..i).map(move |j| [i, j]));
+        let crossed = pairs.flat_map(|[i, j]| (0..N).map(move |event| [i, j, event]));
+        let apart = crossed.map(|[i, j, event]| {
+            let rates = &rates;
+            move |t: f64, _: f64| rates(i, t)[event] - rates(j, t)[event]
+        });
+        meshes[0].cuts(cuts, apart)
+    }
+
     /// The largest value of each function over all panels.
     fn whole(&self, smooth: &Functions<'_>) -> Vec<Tail> {
         let mut whole: Vec<Tail> = Vec::new();

@@ -97,14 +97,12 @@ impl<'a> Product<'a> {
         let mut cuts = further_cuts.to_vec();
         cuts.extend(self.sampling.knots());
         cuts.extend(self.control.breaks());
-        let cut = self.mesh.refined(&cuts, &|_, _| Vec::new());
-        let mut kinks = Vec::new();
-        for level in self.rule.kinks() {
-            kinks.extend(cut.roots(|t, sigma| {
+        let kinks = self.rule.kinks().into_iter().map(|level| {
+            move |t: f64, sigma: f64| {
                 sigma - self.control.extinction(t) - level * self.sampling.value(t)
-            }));
-        }
-        cut.refined(&kinks, &|mesh, panel| {
+            }
+        });
+        self.mesh.refined(&self.mesh.cuts(cuts, kinks), &|mesh, panel| {
             let nodes = self.nodes(panel);
             let pairs = || nodes.sampling.iter().zip(&nodes.outcome);
             let deaths: Vec<f64> = pairs().map(|(s, o)| self.killing + s * o.death).collect();

@@ -10,22 +10,19 @@ use numeric::Lane;
 use numeric::rng::Random;
 use theory::Prediction;
 use theory::problems::{Furnace, Scene};
+use theory::space::predict;
 
 impl Walked for Furnace {
     type Tally<'a> = Energy<'a>;
 
     fn domain(setup: &Setup<Self>, particle: &Particle) -> Result<(), Refusal> {
         space::realisable(setup, particle)?;
-        space::energy(&space::walks(&setup.problem.scene, &setup.fields, particle)).map(|_| ())
+        space::bounded(&space::walks(&setup.problem.scene, &setup.fields, particle))
     }
 
     /// Prediction: every draw is 1 on average.
     fn predict(setup: &Setup<Self>, particle: &Particle) -> Prediction {
-        let walks = space::walks(&setup.problem.scene, &setup.fields, particle);
-        // Without a bound the walk is refused, or its draws are made in spite of that: then only the expected value
-        // is kept.
-        let bound = walks.energy_variance().unwrap_or(f64::INFINITY);
-        Prediction::uncounted(space::energy_channel(bound, walks.depth))
+        predict::furnace(&space::walks(&setup.problem.scene, &setup.fields, particle))
     }
 
     fn scene(&self) -> &Scene {

@@ -5,13 +5,13 @@ pub mod particle;
 use crate::space::tally::Collision;
 use crate::space::{Particle, Tally, Walked};
 use crate::{Draw, Refusal, Setup, estimators};
+use numeric::Lane;
 use numeric::geometry::Point;
 use numeric::rng::Random;
-use numeric::{Grade, Known, Lane};
 use theory::problems::infinite_medium::{MOST_RADII, Values};
 use theory::problems::{InfiniteMedium, Scene};
-use theory::space::infinite;
-use theory::{Channel, CountLaw, Moments, ParticleRule, Prediction, Tails};
+use theory::space::predict;
+use theory::{ParticleRule, Prediction};
 
 /// Maximum expected number of collisions in a walk; more are a mistake in the case.
 const MOST_COLLISIONS: f64 = 1e5;
@@ -26,14 +26,6 @@ fn end(setup: &Setup<InfiniteMedium>, particle: &Particle) -> Option<f64> {
 /// `r`, if it is constant.
 fn ratio(setup: &Setup<InfiniteMedium>) -> Option<f64> {
     Some(setup.problem.extinction / setup.fields.single_value()?)
-}
-
-/// Moments of a multiple of the number of collisions up to one that ends the walk, with probability p each:
-/// mean 1/p, variance (1 − p)/p², skewness (2 − p)/√(1 − p), kurtosis 9 + p²/(1 − p).
-fn geometric(mean: f64, end: f64) -> Moments {
-    let rest = 1.0 - end;
-    let relative = [rest, (2.0 - end) * rest, (9.0 * rest + end * end) * rest];
-    Moments { scale: mean, relative, error: 1e-14, grade: Grade::Proven }
 }
 
 impl Walked for InfiniteMedium {
@@ -75,51 +67,7 @@ impl Walked for InfiniteMedium {
     }
 
     fn predict(setup: &Setup<Self>, particle: &Particle) -> Prediction {
-        let problem = &setup.problem;
-        let (sigma, albedo) = (problem.extinction, problem.albedo());
-        let unknown = |name: String, truth: Known| {
-            let certain = Channel::unbiased(truth, Moments::certain(truth.value), Tails::LIGHT);
-            Channel { name, moments: None, pilot_variance_allowed: true, ..certain }
-        };
-        let rounded = |value: f64| Known::new(value, infinite::ROUNDING * value.abs());
-        let mut channels: Vec<Channel> = problem
-            .radii
-            .iter()
-            .map(|&radius| {
-                let truth = infinite::collisions_within(albedo, sigma * radius);
-                unknown(format!("collisions within {radius}"), truth)
-            })
-            .collect();
-        let cosine = problem.scene.phase.moment(1);
-        let square = infinite::square_at_absorption(albedo, cosine) / (sigma * sigma);
-        channels.push(unknown("squared distance".to_owned(), rounded(square)));
-        let collisions = unknown("collisions".to_owned(), rounded(1.0 / (1.0 - albedo)));
-        // Where every collision is real and nothing is scattered, there is exactly one.
-        let is_certain = albedo == 0.0 && ratio(setup) == Some(1.0);
-        let end =
-            if is_certain { Some(1.0) } else { end(setup, particle).filter(|&end| end > 0.0) };
-        let is_majorant = ratio(setup).is_some_and(|ratio| ratio <= 1.0);
-        // A real collision counts r: then the score of a walk depends only on its length.
-        channels.push(match end.filter(|_| is_majorant) {
-            Some(end) => {
-                let truth = collisions.truth;
-                Channel {
-                    moments: Some(geometric(truth.value, end)),
-                    pilot_variance_allowed: false,
-                    ..collisions
-                }
-            }
-            None => collisions,
-        });
-        let lookups = end.map(|end| {
-            let moments = geometric(1.0 / end, end);
-            let (variance, kurtosis) = (moments.variance(), moments.kurtosis().unwrap_or(1.0));
-            let pmf = Vec::new();
-            CountLaw { mean: 1.0 / end, variance, error: 1e-14, kurtosis, poisson: false, pmf }
-        });
-        let lookups =
-            lookups.map(|law| if law.variance > 0.0 { law } else { CountLaw::always(1.0) });
-        Prediction { channels, lookups, ..Prediction::default() }
+        predict::infinite(&setup.problem, end(setup, particle), ratio(setup))
     }
 
     fn scene(&self) -> &Scene {

@@ -6,53 +6,27 @@ pub mod splitting;
 use crate::space::tally::{Collision, Departure};
 use crate::space::{self, Particle, Tally, Walked};
 use crate::{Draw, Refusal, Setup, estimators};
+use numeric::Lane;
 use numeric::rng::Random;
-use numeric::{Known, Lane};
 use theory::problems::lambertian::Values;
 use theory::problems::{Lambertian, Scene};
-use theory::space::content;
-use theory::{Channel, Moments, ParticleRule, Prediction, Tails};
+use theory::space::Walks;
+use theory::space::predict::{self, Channels};
+use theory::{ParticleRule, Prediction};
 
-/// Maximum relative error of `∫σ_t dV` that draws are compared with.
-const BLURRED: f64 = 1e-3;
-
-/// Channels of an experiment, in their order.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-struct Channels {
-    energy: bool,
-    white: bool,
-    tentative: bool,
-}
-
-impl Channels {
-    fn of(setup: &Setup<Lambertian>, particle: &Particle) -> Self {
-        let (scene, majorants) = (&setup.problem.scene, &*setup.fields);
-        let walks = space::walks(scene, majorants, particle);
-        // Where a = 0 and r = 1 a particle keeps no weight: that ends its walk even by this rule.
-        let goes_on = *particle == Particle::of(ParticleRule::NonTerminating)
-            && scene.albedo.range()[0] > 0.0;
-        Self {
-            energy: walks.is_tame(),
-            white: scene.albedo.even() == Some(1.0) && walks.never_grows(),
-            tentative: goes_on && majorants.content().is_some(),
-        }
-    }
-
-    fn any(self) -> bool {
-        self.energy || self.white || self.tentative
-    }
-}
-
-/// `∫σ_t dV`, if its error is small enough.
-fn held(setup: &Setup<Lambertian>) -> Option<Known> {
-    let held = setup.problem.content(|| content::content(&*setup.problem.scene.volume));
-    held.filter(|known| known.error <= BLURRED * known.value && known.value > 0.0)
-}
-
-/// A channel of unknown variance, with light tails.
-fn piloted(name: &str, truth: Known) -> Channel {
-    let certain = Channel::unbiased(truth, Moments::certain(truth.value), Tails::LIGHT);
-    Channel { name: name.to_owned(), moments: None, pilot_variance_allowed: true, ..certain }
+/// Bounds on the walks of an experiment, and its channels.
+fn channels(setup: &Setup<Lambertian>, particle: &Particle) -> (Walks, Channels) {
+    let (scene, majorants) = (&setup.problem.scene, &*setup.fields);
+    let walks = space::walks(scene, majorants, particle);
+    // Where a = 0 and r = 1 a particle keeps no weight: that ends its walk even by this rule.
+    let goes_on =
+        *particle == Particle::of(ParticleRule::NonTerminating) && scene.albedo.range()[0] > 0.0;
+    let channels = Channels {
+        energy: walks.is_tame(),
+        white: scene.albedo.even() == Some(1.0) && walks.never_grows(),
+        tentative: goes_on && majorants.content().is_some(),
+    };
+    (walks, channels)
 }
 
 impl Walked for Lambertian {
@@ -60,47 +34,18 @@ impl Walked for Lambertian {
 
     fn domain(setup: &Setup<Self>, particle: &Particle) -> Result<(), Refusal> {
         space::realisable(setup, particle)?;
-        let has = Channels::of(setup, particle);
-        if has.white && held(setup).is_none() {
+        let (walks, has) = channels(setup, particle);
+        if has.white && predict::held(&setup.problem).is_none() {
             let needs = "a volume whose ∫σ_t dV is known to 1e-3";
-            return Err(Refusal::mismatch(
-                needs,
-                "cubature over its chords does not settle, or it is empty",
-            ));
+            let found = "cubature over its chords does not settle, or it is empty";
+            return Err(Refusal::mismatch(needs, found));
         }
-        if has.any() {
-            return Ok(());
-        }
-        space::energy(&space::walks(&setup.problem.scene, &setup.fields, particle)).map(|_| ())
+        if has.any() { Ok(()) } else { space::bounded(&walks) }
     }
 
     fn predict(setup: &Setup<Self>, particle: &Particle) -> Prediction {
-        let (problem, has) = (&setup.problem, Channels::of(setup, particle));
-        let mut channels = Vec::new();
-        let walks = space::walks(&problem.scene, &setup.fields, particle);
-        let bound = walks.energy_variance().filter(|_| has.energy);
-        let named = |bound| Channel {
-            name: "energy".to_owned(),
-            ..space::energy_channel(bound, walks.depth)
-        };
-        channels.extend(bound.map(named));
-        let over = problem.four_over_surface();
-        let times = |known: Known| {
-            let scaled = known * over;
-            scaled.blurred(4.0 * f64::EPSILON * scaled.value)
-        };
-        if has.white {
-            channels.push(piloted("path length", times(Known::exact(problem.bounds().content()))));
-            channels.push(piloted("collisions", times(held(setup).unwrap_or(Known::UNKNOWN))));
-        }
-        if let Some(content) = setup.fields.content().filter(|_| has.tentative) {
-            channels.push(piloted("tentative collisions", times(Known::exact(content))));
-        }
-        if channels.is_empty() {
-            // The setup is refused, or its draws are made in spite of that and have no prediction.
-            channels.push(space::energy_channel(f64::INFINITY, 0.0));
-        }
-        Prediction { channels, ..Prediction::default() }
+        let (walks, has) = channels(setup, particle);
+        predict::lambertian(&setup.problem, &walks, has, setup.fields.content())
     }
 
     fn scene(&self) -> &Scene {
@@ -111,7 +56,7 @@ impl Walked for Lambertian {
         setup: &'a Setup<Self>,
         particle: &Particle,
     ) -> Result<Entering<'a>, Draw<Values>> {
-        Ok(Entering::new(&setup.problem, Channels::of(setup, particle)))
+        Ok(Entering::new(&setup.problem, channels(setup, particle).1))
     }
 }
 

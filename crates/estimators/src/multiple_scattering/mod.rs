@@ -6,11 +6,12 @@ pub mod splitting;
 use crate::space::tally::Departure;
 use crate::space::{self, Particle, Tally, Walked};
 use crate::{Draw, Refusal, Setup, estimators};
+use numeric::Lane;
 use numeric::geometry::Point;
 use numeric::rng::Random;
-use numeric::{Known, Lane};
+use theory::Prediction;
 use theory::problems::{MultipleScattering, Scene, Sky};
-use theory::{Channel, CountLaw, Moments, Prediction, Tails};
+use theory::space::predict;
 
 impl Walked for MultipleScattering {
     type Tally<'a> = Gathering<'a>;
@@ -22,16 +23,7 @@ impl Walked for MultipleScattering {
 
     /// Prediction of the light that is seen beside the volume; through the volume the mean is unknown.
     fn predict(setup: &Setup<Self>, _: &Particle) -> Prediction {
-        let problem = &setup.problem;
-        if problem.entry().is_some() {
-            let unknown = Known::new(0.0, f64::INFINITY);
-            let certain = Channel::unbiased(unknown, Moments::certain(0.0), Tails::LIGHT);
-            let channel = Channel { moments: None, ..certain };
-            return Prediction::uncounted(channel);
-        }
-        let seen = problem.background();
-        let channel = Channel::unbiased(Known::exact(seen), Moments::certain(seen), Tails::LIGHT);
-        Prediction::single(channel, CountLaw::always(0.0))
+        predict::sky(&setup.problem)
     }
 
     fn scene(&self) -> &Scene {

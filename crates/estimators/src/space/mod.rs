@@ -12,11 +12,9 @@ mod walker;
 
 use super::{Refusal, Setup};
 use media::Majorants;
-use numeric::Known;
 use numeric::geometry::Bounds;
 use theory::problems::Scene;
 use theory::space::Walks;
-use theory::{Channel, Moments, Tails};
 
 pub use numeric::geometry::exit;
 pub use particle::{Particle, Splitting};
@@ -24,8 +22,6 @@ pub use steps::Steps;
 pub use tally::Tally;
 pub use walker::{Splitter, Walked, Walker, draw};
 
-/// Relative rounding error of a sum over the collisions of a walk.
-const ROUNDING: f64 = 1e-12;
 /// Maximum expected number of collisions on a straight line through a volume; more are a mistake in the case.
 const MOST_COLLISIONS: f64 = 1e4;
 
@@ -66,28 +62,17 @@ pub fn realisable<P: Walked>(setup: &Setup<P>, particle: &Particle) -> Result<()
     Ok(())
 }
 
-/// Prediction for the energy of a particle, 1 on average, where its variance is known or bounded.
+/// Checks that the variance of the energy of a particle has a bound.
 ///
 /// # Errors
 ///
 /// Why no bound is known, and what would help.
-pub fn energy(walks: &Walks) -> Result<Channel, Refusal> {
-    let Some(bound) = walks.energy_variance() else {
-        let needs = "a variance that theory bounds: r < 2/(a + 1), or r ≤ 1 with roulette";
-        let found =
-            format!("σ_t may reach {:.6} times σ̂; raise σ̂, or take local majorants", walks.ratio());
-        return Err(Refusal::mismatch(needs, found));
-    };
-    Ok(energy_channel(bound, walks.depth))
-}
-
-/// [`energy`], given the bound on its variance and `∫σ̂` straight through.
-pub fn energy_channel(bound: f64, depth: f64) -> Channel {
-    // A walk that nothing ends makes about depth² collisions, and each rounds.
-    let rounding = ROUNDING + 4.0 * f64::EPSILON * depth * depth;
-    let certain = Channel::unbiased(Known::new(1.0, rounding), Moments::certain(1.0), Tails::LIGHT);
-    if bound == 0.0 {
-        return certain;
+pub fn bounded(walks: &Walks) -> Result<(), Refusal> {
+    if walks.energy_variance().is_some() {
+        return Ok(());
     }
-    Channel { moments: None, variance_bound: Some(bound), ..certain }
+    let needs = "a variance that theory bounds: r < 2/(a + 1), or r ≤ 1 with roulette";
+    let found =
+        format!("σ_t may reach {:.6} times σ̂; raise σ̂, or take local majorants", walks.ratio());
+    Err(Refusal::mismatch(needs, found))
 }

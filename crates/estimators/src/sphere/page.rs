@@ -4,10 +4,7 @@ use fearless_simd::Level;
 
 use super::combined::Combined;
 use super::sharing::{Honest, Sharing, Steps, Subpaths};
-use super::{
-    bidirectional, connected, directional_mis, full_mis, next_event, predict_by_pilots,
-    predict_together, realisable,
-};
+use super::{bidirectional, connected, directional_mis, full_mis, next_event, realisable};
 use crate::single_scattering::connection;
 use crate::space::{Particle, Splitting, draws};
 use crate::{Draw, Estimator, Inputs, Kernel, Refusal, Request, Setup, walks};
@@ -17,7 +14,7 @@ use numeric::rng::Stream;
 use theory::problems::Sphere;
 use theory::problems::ball::Light;
 use theory::single::Tracking;
-use theory::sphere::Techniques;
+use theory::sphere::{Techniques, predict};
 use theory::{Heuristic, Prediction};
 
 /// The settings of an estimator.
@@ -128,14 +125,14 @@ impl<const KIND: u8> Estimator<Sphere> for Connected<KIND> {
         let Sharing { techniques, shadow, subpaths } = self.0.sharing;
         let is_distant = matches!(setup.problem.light, Light::Distant(_));
         let techniques = match subpaths {
-            Some(Subpaths::Shared) => return predict_by_pilots(setup),
-            Some(Subpaths::Independent) if is_distant => return predict_by_pilots(setup),
+            Some(Subpaths::Shared) => return predict::by_pilots(&setup.problem),
+            Some(Subpaths::Independent) if is_distant => return predict::by_pilots(&setup.problem),
             None if is_distant => Techniques::NextEvent,
             _ => techniques,
         };
         // The second moment of ratio tracking through a majorant does not exceed that of delta tracking.
         let shadow = shadow.unwrap_or(Tracking::Exact);
-        predict_together(setup, techniques, shadow)
+        predict::together(&setup.problem, techniques, shadow)
     }
 
     fn fill(&self, kernel: Kernel, setup: &Setup<Sphere>, request: Request) {

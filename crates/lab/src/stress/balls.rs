@@ -13,8 +13,8 @@
 
 use super::ordinates::{directions, roots, solved_pivoted};
 use super::prelude::*;
-use estimators::sphere::BLURRED;
 use theory::sphere::ball::Ball;
+use theory::sphere::predict::BLURRED;
 use theory::sphere::shells::{Centre, Resolution};
 use theory::sphere::{Lights, Observable, answers};
 

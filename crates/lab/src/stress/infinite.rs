@@ -11,7 +11,7 @@
 //! have theirs at π/2: h = 1/6 leaves 1e-26.
 
 use super::prelude::*;
-use theory::h_function::{self, h_function};
+use crate::h_function::{self, h_function};
 use theory::space::infinite;
 
 /// Steps of t per unit.

@@ -24,9 +24,9 @@ use numeric::Known;
 
 /// Relative rounding error of sums of Poisson moments.
 pub(super) const ROUNDING: f64 = 1e-14;
-/// Relative error of the moments of weights that are polynomials, see [`connections`], k = 1, 2, 3, 4 and 8: the
-/// error of `q^k` on [0, 1], times 2^k, as `1/(1 + z)^k ≥ 2⁻ᵏ` there.
-pub(super) const OF_POLYNOMIALS: [f64; 5] = [2e-14, 4e-13, 1e-10, 3e-10, 5e-3];
+/// Relative error of the moments of weights that depend on null collisions, k = 1, 2, 3, 4 and 8, see
+/// [`crate::contour`].
+const OF_WEIGHTS: [f64; 5] = [1e-14, 1e-13, 5e-13, 3e-12, 4e-12];
 
 /// The delta-tracking walk on a rod; `None` where it has too many steps for theory.
 pub(super) fn walk<'a>(
@@ -127,7 +127,7 @@ pub fn with_hit(
     power: usize,
     techniques: Techniques,
 ) -> Known {
-    let of_weights = if techniques.has_nulls() { OF_POLYNOMIALS[power] } else { 0.0 };
+    let of_weights = if techniques.has_nulls() { OF_WEIGHTS[power] } else { 0.0 };
     let sum = scattered + unscattered;
     sum.blurred((ROUNDING + of_weights) * sum.value)
 }

@@ -9,11 +9,11 @@ use crate::problems::lit_slab::Light;
 use crate::problems::{LitSlab, Problem};
 use media::Piecewise;
 
-use super::contour::{Contour, Exponents};
 use super::directions::Resolution;
+use crate::contour::Contour;
 
 /// A depth.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 pub struct Node {
     /// Distance to the end of the slab.
     pub before: f64,
@@ -27,8 +27,8 @@ pub struct Node {
     pub depth: f64,
     /// The mean number of null collisions from the beginning, `∫σ̂ − τ`.
     pub nulls: f64,
-    /// The number of its panel.
-    pub panel: usize,
+    /// `∫ σ̂ (1 − (1 − r)^s)` to the end, for every s of a contour.
+    pub beyond: Vec<f64>,
 }
 
 /// The slab.
@@ -40,31 +40,26 @@ pub struct Column {
     pub per_panel: usize,
     /// τ of the slab, and ∫σ̂ − τ.
     pub whole: [f64; 2],
-    /// `∫ σ̂ (1 − (1 − r)^k)` from each node to the end, k = 0, 1 …
-    powers: Vec<Vec<f64>>,
-    /// Integrals of complex powers by nodes of the contour, real and imaginary parts, by depth.
-    complex: Vec<[Vec<f64>; 2]>,
 }
 
 impl Column {
-    /// A column with integrals of `count` powers, and those of a contour.
+    /// A column with the integrals of a contour.
     pub fn new(
         mesh: &Mesh,
         problem: &LitSlab,
         sampling: &Piecewise,
-        (powers, contour): (usize, Option<&Contour>),
+        contour: &Contour,
         resolution: &Resolution,
     ) -> Self {
-        let has_contour = contour.is_some();
         let cut = mesh.refined(&cuts(mesh, problem, sampling, resolution), &|_, panel| {
             let left: Vec<f64> = nulls(panel, sampling).map(|[null, _]| null).collect();
             let roots = left.iter().map(|null| null.sqrt()).collect();
-            if has_contour { vec![left, roots] } else { vec![left] }
+            if contour.has_lines() { vec![left, roots] } else { vec![left] }
         });
         let end = problem.end();
         let [mut depth, mut missed] = [0.0; 2];
         let mut nodes = Vec::new();
-        for (number, panel) in cut.panels().enumerate() {
+        for panel in cut.panels() {
             let values: Vec<[f64; 2]> = nulls(panel, sampling).collect();
             let flown: Vec<f64> = values.iter().map(|&[null, sampling]| null * sampling).collect();
             let (real, missing) =
@@ -77,69 +72,42 @@ impl Column {
                     sampling: values[i][1],
                     depth: depth + real[i],
                     nulls: missed + missing[i],
-                    panel: number,
+                    beyond: Vec::new(),
                 });
             }
             depth += cut.integral(panel, panel.extinction);
             missed += cut.integral(panel, &flown);
         }
         let per_panel = cut.weights().len();
-        let (whole, complex) = ([depth, missed], Vec::new());
-        let mut column = Self { mesh: cut, nodes, per_panel, whole, powers: Vec::new(), complex };
-        column.powers = (0..=powers)
-            .map(|k| {
-                let k = i32::try_from(k).unwrap_or(i32::MAX);
-                column.to_the_end(sampling, |null| 1.0 - null.powi(k))
-            })
-            .collect();
-        if let Some(contour) = contour {
-            let along = |&frequency: &f64| {
-                // 1 − (1 − r)^s, s = 1/2 + i Im s.
-                let part = |null: f64, offset: f64, part: fn(f64) -> f64| {
-                    let turned = if null > 0.0 { part(frequency * null.ln()) } else { 0.0 };
-                    offset - null.sqrt() * turned
-                };
-                [
-                    column.to_the_end(sampling, |null| part(null, 1.0, f64::cos)),
-                    column.to_the_end(sampling, |null| part(null, 0.0, f64::sin)),
-                ]
-            };
-            let rows: Vec<[Vec<f64>; 2]> = contour.frequencies.iter().map(along).collect();
-            let at = |node: usize| {
-                [0, 1].map(|part| rows.iter().map(|row| row[part][node]).collect::<Vec<f64>>())
-            };
-            column.complex = (0..column.nodes.len()).map(at).collect();
-        }
+        let mut column = Self { mesh: cut, nodes, per_panel, whole: [depth, missed] };
+        column.integrate(contour);
         column
     }
 
-    /// `∫ σ̂ f(1 − r)` from each node to the end.
-    fn to_the_end(&self, sampling: &Piecewise, f: impl Fn(f64) -> f64) -> Vec<f64> {
-        let mut found = vec![0.0; self.nodes.len()];
-        let mut beyond = 0.0;
-        let panels = found.chunks_mut(self.per_panel).rev().zip(self.mesh.panels().rev());
-        for (row, panel) in panels {
-            let values: Vec<f64> =
-                nulls(panel, sampling).map(|[null, sampling]| sampling * f(null)).collect();
-            let whole = self.mesh.integral(panel, &values);
-            let running = self.mesh.running(panel, &values);
-            for (found, before) in row.iter_mut().zip(running) {
-                *found = beyond + whole - before;
+    /// Integrates from each node to the end.
+    fn integrate(&mut self, contour: &Contour) {
+        let mut beyond = vec![0.0; contour.width()];
+        let mut rows = vec![beyond.clone(); self.per_panel];
+        let add = |sum: &mut [f64], row: &[f64], weight: f64| {
+            sum.iter_mut().zip(row).for_each(|(sum, x)| *sum += weight * x);
+        };
+        for first in (0..self.nodes.len()).step_by(self.per_panel).rev() {
+            let panel = first..first + self.per_panel;
+            for (row, node) in rows.iter_mut().zip(&self.nodes[panel.clone()]) {
+                contour.losses(null(node.extinction, node.sampling), row);
+                row.iter_mut().for_each(|loss| *loss *= node.sampling);
             }
-            beyond += whole;
+            for node in panel.clone() {
+                let mut sum = beyond.clone();
+                for (weight, row) in self.rest_of_panel(node).into_iter().zip(&rows) {
+                    add(&mut sum, row, weight);
+                }
+                self.nodes[node].beyond = sum;
+            }
+            for (node, row) in self.nodes[panel].iter().zip(&rows) {
+                add(&mut beyond, row, node.weight);
+            }
         }
-        found
-    }
-
-    /// `M_k` of a direction from a node to the end, for powers up to `count`.
-    pub fn products(&self, node: usize, cosine: f64, count: usize) -> Vec<f64> {
-        self.powers[..=count].iter().map(|depths| (-depths[node] / cosine).exp()).collect()
-    }
-
-    /// Exponents of a contour at a node.
-    pub fn exponents(&self, node: usize) -> Exponents<'_> {
-        let [real, imaginary] = &self.complex[node];
-        Exponents { real, imaginary }
     }
 
     /// The weights of `∫` from a node to the end of its panel, for the nodes of the panel.
@@ -167,12 +135,17 @@ impl Column {
     }
 }
 
-/// `1 − r` and σ̂ at the nodes of a panel; where σ̂ = 0, so is σ_t.
+/// `1 − r`; where σ̂ = 0, so is σ_t.
+fn null(extinction: f64, sampling: f64) -> f64 {
+    let real = if sampling > 0.0 { extinction / sampling } else { 1.0 };
+    (1.0 - real).max(0.0)
+}
+
+/// `1 − r` and σ̂ at the nodes of a panel.
 fn nulls<'a>(panel: Panel<'a>, sampling: &'a Piecewise) -> impl Iterator<Item = [f64; 2]> + 'a {
     panel.t.iter().zip(panel.extinction).map(move |(&t, &extinction)| {
         let sampling = sampling.value(t);
-        let real = if sampling > 0.0 { extinction / sampling } else { 1.0 };
-        [(1.0 - real).max(0.0), sampling]
+        [null(extinction, sampling), sampling]
     })
 }
 

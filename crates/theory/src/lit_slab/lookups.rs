@@ -70,7 +70,7 @@ fn add(sum: &mut Raw, weight: f64, moments: Raw) {
 
 /// `E[K^k]` of a flight from a node to the end that stops at a real collision.
 fn stopping(column: &Column, from: usize, direction: &Direction) -> Raw {
-    let (here, cosine) = (column.nodes[from], direction.cosine);
+    let (here, cosine) = (&column.nodes[from], direction.cosine);
     let first = from - from % column.per_panel;
     let own = column.rest_of_panel(from);
     let mut factorial = [0.0; 4];

@@ -10,7 +10,7 @@
 //! ```
 //!
 //! `n_k` and `h_k` are those of a rod along the direction, with q in place of p(ω) and collisions 1/μ times as
-//! dense, see [`crate::lit_rod::connections`]; where q > 1 and weights depend on null collisions, see [`contour`].
+//! dense, see [`crate::lit_rod::connections`].
 //! Every number is computed twice, on finer and on coarser panels, and their difference bounds its error. No moment
 //! is infinite: lights are a distance away, or fill a cap.
 //!
@@ -18,15 +18,14 @@
 //! formulation of light transport*, ACM Transactions on Graphics 38 (2019), sections 4 and 5.
 
 pub mod column;
-pub mod contour;
 pub mod directions;
 mod lookups;
 
 use self::column::{Column, Node};
-use self::contour::Contour;
 use self::directions::{Direction, Resolution};
+use super::contour::ROUNDINGS;
 use super::lit_rod::connections::{Vertex, Weights};
-use super::lit_rod::{Combination, OF_POLYNOMIALS, ROUNDING, Shadow, Techniques};
+use super::lit_rod::{Combination, ROUNDING, Shadow, Techniques};
 use super::raw::{HIGHEST, POWERS, Powers, RESOLVED, Raw, RawMoments, binomial};
 use super::{Channel, CountLaw, Mesh, Prediction, Tails};
 use crate::problems::LitSlab;
@@ -36,8 +35,6 @@ use numeric::Known;
 
 /// Maximum τ/μ in the lowest direction.
 const DEEPEST: f64 = 64.0;
-/// Rounding error of the integrals of a contour, relative to √q.
-const OF_CONTOUR: f64 = 1e-14;
 
 /// Techniques that can find a light: one without a size is found by shadow rays alone, of weight 1.
 pub fn possible(techniques: Techniques, light: Light) -> Techniques {
@@ -73,7 +70,7 @@ pub fn predict(
         .map(|resolution| Scores::new(mesh, problem, sampling, (techniques, highest), &resolution));
     let raw = RawMoments(std::array::from_fn(|i| {
         let k = POWERS[i].unsigned_abs() as usize;
-        if k > highest { Known::INFINITE } else { fine.known(&coarse, techniques, (k, i)) }
+        if k > highest { Known::INFINITE } else { fine.known(&coarse, k) }
     }));
     Prediction::single(raw.channel(truth, RESOLVED), fine.count(&coarse))
 }
@@ -88,17 +85,17 @@ pub fn truth(mesh: &Mesh, problem: &LitSlab, sampling: &Piecewise) -> Known {
 pub fn mean(mesh: &Mesh, problem: &LitSlab, sampling: &Piecewise, techniques: Techniques) -> Known {
     let [fine, coarse] = [Resolution::fine(), Resolution::coarse()]
         .map(|resolution| Scores::new(mesh, problem, sampling, (techniques, 1), &resolution));
-    fine.known(&coarse, techniques, (1, 0))
+    fine.known(&coarse, 1)
 }
 
 /// Numbers at one resolution.
 struct Scores {
     /// `E[X^k]`.
     powers: Powers,
+    /// Bounds on the errors of `E[X^k]` from weights.
+    errors: Powers,
     /// `E[M^k]`.
     lookups: Raw,
-    /// The largest q.
-    largest: f64,
     /// Relative error of all numbers from the mesh.
     error: f64,
 }
@@ -111,33 +108,24 @@ impl Scores {
         (techniques, highest): (Techniques, usize),
         resolution: &Resolution,
     ) -> Self {
-        let weights = Weights::new(techniques, highest);
-        let contour = match techniques.combination {
-            Combination::Mis(_, heuristic) if techniques.has_nulls() => {
-                Some(Contour::new(heuristic, highest))
-            }
-            _ => None,
-        };
-        let powers = (weights.products, contour.as_ref());
-        let column = Column::new(mesh, problem, sampling, powers, resolution);
+        let weights = Weights::new(techniques, highest, true);
+        let column = Column::new(mesh, problem, sampling, &weights.contour, resolution);
+        let error = column.error(problem.light.lowest());
+        let off = ROUNDINGS * f64::EPSILON + error;
         let mut found = Self {
             powers: [0.0; HIGHEST + 1],
+            errors: [0.0; HIGHEST + 1],
             lookups: lookups::raw(&column, problem, techniques, resolution),
-            largest: 1.0,
-            error: column.error(problem.light.lowest()),
+            error,
         };
-        for node in 0..column.nodes.len() {
-            let directions = resolution.directions(problem, column.nodes[node].before);
-            let scattered = |direction: &Direction| match &contour {
-                Some(contour) if direction.ratio > 1.0 => {
-                    by_contour(&column, node, direction, &weights, contour)
-                }
-                _ => {
-                    let products = column.products(node, direction.cosine, weights.products);
-                    weights.vertex(direction.ratio, &products)
-                }
+        for node in &column.nodes {
+            let directions = resolution.directions(problem, node.before);
+            let scattered = |&Direction { cosine, ratio, .. }: &Direction| {
+                let line = weights.contour.line(ratio);
+                let moments = weights.contour.moments(line, &node.beyond, 1.0 / cosine);
+                weights.vertex(ratio, &moments, off)
             };
-            found.add(&column.nodes[node], &directions, problem.albedo, (highest, &scattered));
+            found.add(node, &directions, problem.albedo, (highest, &scattered));
         }
         found
     }
@@ -150,33 +138,35 @@ impl Scores {
         albedo: f64,
         (highest, scattered): (usize, &dyn Fn(&Direction) -> Vertex),
     ) {
-        let (mut cast, mut hit) = ([0.0; HIGHEST + 1], [0.0; HIGHEST + 1]);
+        // Of shadow rays and of hits.
+        let [mut means, mut errors] = [[[0.0; HIGHEST + 1]; 2]; 2];
         for direction in directions {
-            self.largest = self.largest.max(direction.ratio);
             let vertex = scattered(direction);
-            for k in 1..=highest {
-                cast[k] += direction.weight * vertex.connected[k];
-                hit[k] += direction.weight * direction.ratio * vertex.hit[k];
+            let shares = [direction.weight, direction.weight * direction.ratio];
+            for (i, powers) in [vertex.connected, vertex.hit].into_iter().enumerate() {
+                for k in 1..=highest {
+                    means[i][k] += shares[i] * powers[k];
+                    errors[i][k] += shares[i] * vertex.errors[i][k];
+                }
             }
         }
-        (cast[0], hit[0]) = (1.0, 1.0);
+        (means[0][0], means[1][0]) = (1.0, 1.0);
+        let ([cast, hit], [of_cast, of_hit]) = (means, errors);
         let reached = node.weight * albedo * node.extinction * (-node.depth).exp();
         for k in 1..=highest {
-            let both: f64 = (0..=k).map(|j| binomial(k, j) * cast[j] * hit[k - j]).sum();
-            self.powers[k] += reached * both;
+            for j in 0..=k {
+                let share = reached * binomial(k, j);
+                self.powers[k] += share * cast[j] * hit[k - j];
+                self.errors[k] += share * (of_cast[j] * hit[k - j] + cast[j] * of_hit[k - j]);
+            }
         }
     }
 
-    /// `E[X^k]` with an error from a coarser resolution; the index of k among [`POWERS`] is given, too.
-    fn known(&self, coarse: &Self, techniques: Techniques, (k, place): (usize, usize)) -> Known {
+    /// `E[X^k]` with an error from a coarser resolution.
+    fn known(&self, coarse: &Self, k: usize) -> Known {
         let (value, other) = (self.powers[k], coarse.powers[k]);
-        let of_weights = if techniques.has_nulls() {
-            OF_POLYNOMIALS[place] + OF_CONTOUR * self.largest.sqrt()
-        } else {
-            0.0
-        };
-        let off = ROUNDING + self.error + of_weights;
-        Known::estimated(value, (value - other).abs() + off * value)
+        let off = (ROUNDING + self.error) * value + self.errors[k];
+        Known::estimated(value, (value - other).abs() + off)
     }
 
     fn count(&self, coarse: &Self) -> CountLaw {
@@ -184,19 +174,4 @@ impl Scores {
         let error = (coarse.lookups[1] - mean).abs() / mean + ROUNDING + self.error;
         CountLaw::of_raw(0.0, self.lookups, error)
     }
-}
-
-/// A scattering where q > 1 and weights depend on null collisions.
-fn by_contour(
-    column: &Column,
-    node: usize,
-    direction: &Direction,
-    weights: &Weights,
-    contour: &Contour,
-) -> Vertex {
-    let Direction { cosine, ratio, .. } = *direction;
-    let products = column.products(node, cosine, 1);
-    let exponents = column.exponents(node);
-    let [connected, hit] = contour.means(ratio, products[1], &exponents, cosine);
-    weights.vertex_by(ratio, &products, |_, k| [connected[k], hit[k]])
 }

@@ -5,7 +5,7 @@ use super::segment::{POWERS, Segment, counts, loss, losses, rounding, size};
 use crate::Mesh;
 use media::{Control, Piecewise};
 use numeric::quadrature::GaussLegendre;
-use numeric::{Known, Span};
+use numeric::{Cumulative, Known, Span};
 
 /// Number of integrals that are kept.
 const COUNT: usize = 10;
@@ -31,8 +31,7 @@ pub struct Camera<'a> {
     along: CameraTracking,
     rule: GaussLegendre,
     cuts: Vec<f64>,
-    ends: Vec<f64>,
-    sums: Vec<[f64; COUNT]>,
+    table: Cumulative,
 }
 
 impl<'a> Camera<'a> {
@@ -52,32 +51,25 @@ impl<'a> Camera<'a> {
             along,
             rule,
             cuts: Vec::new(),
-            ends: vec![support.from],
-            sums: vec![[0.0; COUNT]],
+            table: Cumulative::new(support.from, COUNT),
         };
         if along == CameraTracking::Exact || support.is_empty() {
             return camera;
         }
-        let mut cuts = sampling.knots().to_vec();
-        cuts.extend(control.breaks());
-        if along == CameraTracking::Ratio {
-            // Where w changes its sign, `|w|` has a kink.
-            cuts.extend(mesh.roots(|t, x| sampling.value(t) - (x - control.extinction(t))));
-        }
-        cuts.retain(|&t| support.contains_inside(t));
-        camera.cuts.clone_from(&cuts);
-        let fine = mesh.refined(&cuts, &|_, panel| {
+        let mut knots = sampling.knots().to_vec();
+        knots.extend(control.breaks());
+        // Where w changes its sign, `|w|` has a kink.
+        let turns = (along == CameraTracking::Ratio)
+            .then_some(|t, x| sampling.value(t) - (x - control.extinction(t)));
+        camera.cuts = mesh.cuts(knots, turns);
+        let fine = mesh.refined(&camera.cuts, &|_, panel| {
             let nodes = panel.t.iter().zip(panel.extinction);
             let rows: Vec<[f64; COUNT]> = nodes.map(|(&t, &x)| camera.integrand(t, x)).collect();
             (0..COUNT).map(|i| rows.iter().map(|row| row[i]).collect()).collect()
         });
-        for panel in fine.panels() {
-            let whole = camera.over(panel.span);
-            let mut sum = camera.sums[camera.sums.len() - 1];
-            sum.iter_mut().zip(whole).for_each(|(sum, x)| *sum += x);
-            camera.ends.push(panel.span.to);
-            camera.sums.push(sum);
-        }
+        let panels = fine.panels().map(|panel| panel.span);
+        camera.table =
+            Cumulative::over(support.from, COUNT, panels, |span, row| camera.add(span, row));
         camera
     }
 
@@ -121,26 +113,19 @@ impl<'a> Camera<'a> {
         media::OpticalDepth::optical_depth(self.sampling, span).value
     }
 
-    fn over(&self, span: Span) -> [f64; COUNT] {
+    /// Adds the integrals over a span.
+    fn add(&self, span: Span, row: &mut [f64]) {
         let sigma = self.mesh.medium().extinctions(&self.rule.nodes_on(span));
-        let mut sum = [0.0; COUNT];
         for ((t, weight), sigma) in self.rule.on(span).zip(sigma) {
             let values = self.integrand(t, sigma);
-            sum.iter_mut().zip(values).for_each(|(sum, x)| *sum += weight * x);
+            row.iter_mut().zip(values).for_each(|(sum, x)| *sum += weight * x);
         }
-        sum
     }
 
     fn at(&self, s: f64) -> [f64; COUNT] {
-        let last = self.ends.len() - 1;
-        let panel = self.ends.partition_point(|&end| end <= s).saturating_sub(1).min(last);
-        let mut sum = self.sums[panel];
-        let rest = Span::new(self.ends[panel], s);
-        if !rest.is_empty() {
-            let more = self.over(rest);
-            sum.iter_mut().zip(more).for_each(|(sum, x)| *sum += x);
-        }
-        sum
+        let mut row = [0.0; COUNT];
+        self.table.up_to(s, &mut row, |_, rest, row| self.add(rest, row));
+        row
     }
 
     /// The moments of the estimate up to `s`.
@@ -176,7 +161,7 @@ impl<'a> Camera<'a> {
 
     /// `∫σ̂` over the whole support.
     pub fn collisions(&self) -> f64 {
-        self.sums[self.sums.len() - 1][FLOWN]
+        self.table.whole()[FLOWN]
     }
 
     /// The distances where σ̂, the control or the size of a weight have kinks.

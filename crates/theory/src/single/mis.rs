@@ -13,11 +13,12 @@
 //! B. Miller, I. Georgiev, W. Jarosz, *A null-scattering path integral formulation of light transport*, ACM
 //! Transactions on Graphics 38 (2019), section 5.
 
-use super::null_path::{Made, NullPaths, Weighted};
+use super::null_path::{NullPaths, Weighted};
 use super::predict::DENSITY;
 use super::scene::{Node, Place, STEPS, Scene};
 use super::{Collisions, Points, Technique};
 use crate::Heuristic;
+use crate::contour::Made;
 use crate::problems::Problem;
 
 /// Maximum number of halvings of panels towards the end of a ray.

@@ -22,9 +22,9 @@ pub const MANY: usize = 256;
 /// Maximum number of panels between the pieces of a ray.
 pub const PANELS: usize = 1024;
 /// Number of pieces along all shadow rays together, about.
-const WORK: usize = 600_000;
+const WORK: usize = 2_400_000;
 /// Minimum and maximum number of pairs of shadow rays.
-const PAIRS: [usize; 2] = [48, 256];
+const PAIRS: [usize; 2] = [48, 512];
 /// Number of interpolated values of a [`Segment`].
 const COUNT: usize = 16;
 
@@ -227,7 +227,7 @@ mod tests {
             let depth = Known::exact(1.0 + x * (0.3 + x * (0.2 - 0.1 * x)));
             Segment::exact(depth)
         };
-        let shadows = Shadows::new(Span::new(-1.0, 2.0), 10_000, of).expect("finite");
+        let shadows = Shadows::new(Span::new(-1.0, 2.0), 1_000_000, of).expect("finite");
         assert_eq!(shadows.rows.len(), 97);
         for x in [-1.0, -0.99, 0.123, 1.5, 1.999, 2.0] {
             for among in [Among::All, Among::Half] {

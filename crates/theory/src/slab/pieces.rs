@@ -74,7 +74,7 @@ impl Pieces {
     /// The layers of a medium under a sampling extinction, for any of the given lights. The walk's moments have
     /// kinks at some ratios.
     pub fn new(mesh: &Mesh, sampling: &Piecewise, kinks: &[f64], lights: &[Light]) -> Self {
-        let cut = mesh.refined(sampling.knots(), &|_, _| Vec::new());
+        let cut = mesh.cut(sampling.knots());
         let mut exact: Vec<Piece> = Vec::new();
         let mut is_exact = true;
         for panel in cut.panels() {

@@ -3,5 +3,7 @@
 pub mod content;
 pub mod energy;
 pub mod infinite;
+pub mod predict;
 
 pub use energy::Walks;
+pub use predict::energy_channel;

@@ -95,16 +95,11 @@ impl Spectrum {
     /// Joins the channels, on meshes with one support; `majorants` and `hero` have one entry for each.
     pub fn new(meshes: &[&Mesh], majorants: Vec<f64>, hero: Vec<f64>, tracker: Tracker) -> Self {
         let media: Vec<_> = meshes.iter().map(|mesh| mesh.medium()).collect();
-        let mut cuts: Vec<f64> =
-            meshes.iter().flat_map(|mesh| mesh.panels().map(|panel| panel.span.from)).collect();
-        if tracker == Tracker::Tracking(Chance::Maximum) {
-            let cut = meshes[0].refined(&cuts, &|_, _| Vec::new());
-            for (i, first) in media.iter().enumerate() {
-                for second in &media[..i] {
-                    cuts.extend(cut.roots(|t, _| first.extinction(t) - second.extinction(t)));
-                }
-            }
-        }
+        let cuts = if tracker == Tracker::Tracking(Chance::Maximum) {
+            Mesh::joint_cuts(meshes, Vec::new(), |channel, t| [media[channel].extinction(t)])
+        } else {
+            Mesh::joint_cuts(meshes, Vec::new(), |_, _| [])
+        };
         let smooth = |mesh: &Mesh, panel: super::mesh::Panel<'_>| {
             let mut functions = Vec::new();
             let mut shares = Vec::new();

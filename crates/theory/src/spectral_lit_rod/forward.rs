@@ -57,21 +57,10 @@ impl Forward {
             let (sigma, albedo) = (sigma(channel, t), problem.albedo(channel, t));
             [majorants[channel] - sigma, sigma * albedo, sigma * (1.0 - albedo)]
         };
-        let mut cuts: Vec<f64> =
-            media.iter().flat_map(|(mesh, _)| mesh.panels().map(|panel| panel.span.from)).collect();
-        for rod in &problem.rods {
-            cuts.extend(rod.rod.albedo.knots());
-        }
-        let cut = media[0].0.refined(&cuts, &|_, _| Vec::new());
+        let meshes: Vec<&Mesh> = media.iter().map(|(mesh, _)| *mesh).collect();
+        let knots = problem.rods.iter().flat_map(|rod| rod.rod.albedo.knots().to_vec()).collect();
         // Where two channels cross, the larger of their rates has a kink.
-        for first in 0..count {
-            for second in 0..first {
-                for event in 0..3 {
-                    let apart = |t: f64, _| rates(first, t)[event] - rates(second, t)[event];
-                    cuts.extend(cut.roots(apart));
-                }
-            }
-        }
+        let cuts = Mesh::joint_cuts(&meshes, knots, rates);
         let smooth = |mesh: &Mesh, panel: crate::mesh::Panel<'_>| {
             let mut functions = Vec::new();
             for channel in 0..count {
@@ -85,7 +74,7 @@ impl Forward {
             }
             functions
         };
-        let mesh = media[0].0.refined(&cuts, &smooth);
+        let mesh = meshes[0].refined(&cuts, &smooth);
         let nodes: Vec<f64> = mesh.panels().flat_map(|panel| panel.t.iter().copied()).collect();
         let of_channel = |channel: usize| nodes.iter().map(|&t| rates(channel, t)).collect();
         let rates = (0..count).map(of_channel).collect();

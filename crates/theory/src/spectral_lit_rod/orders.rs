@@ -168,8 +168,10 @@ impl<'a> Orders<'a> {
         monomials: &[Monomial],
         terms: &[Vec<Term>],
     ) -> Vec<f64> {
-        let weights = Weights::new(self.techniques, highest);
-        let nulls = weights.nulls(grid);
+        let weights = Weights::new(self.techniques, highest, false);
+        let mut nulls = Vec::with_capacity(grid.steps().len());
+        weights.each_middle(grid, |_, moments| nulls.push(moments.to_vec()));
+        nulls.reverse();
         let steps = grid.steps().len();
         let nothing = || vec![vec![0.0; steps]; monomials.len()];
         let mut next: Vec<Futures> = (0..=self.count).map(|_| nothing()).collect();
@@ -185,7 +187,7 @@ impl<'a> Orders<'a> {
                 let (plus, minus) = (&next[plus], &next[minus]);
                 let mut sources = nothing();
                 for (i, nulls) in nulls.iter().enumerate().filter(|_| state.albedo > 0.0) {
-                    let vertex = weights.vertex(state.towards, nulls);
+                    let vertex = weights.vertex(state.towards, nulls, 0.0);
                     let futures: Vec<f64> = monomials
                         .iter()
                         .enumerate()

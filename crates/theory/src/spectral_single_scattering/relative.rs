@@ -30,8 +30,8 @@ use crate::spectral::chance::Chance;
 use crate::spectral::rates::{Proposal, Rates};
 use crate::{Mesh, Prediction};
 use media::{Control, Medium, Piecewise};
-use numeric::Span;
 use numeric::quadrature::GaussLegendre;
+use numeric::{Cumulative, Span};
 
 /// Number of rows: the moments of eight channels, `4·8 + 4·7`, and those of lookups.
 const ROWS: usize = 64;
@@ -55,9 +55,8 @@ pub struct Relative<'a> {
     rule: GaussLegendre,
     /// Distances at which integrands along the ray are not smooth.
     cuts: Vec<f64>,
-    /// The ends of panels, and `∫ N` up to there, power by power and walk by walk.
-    ends: Vec<f64>,
-    sums: Vec<Vec<f64>>,
+    /// `∫ N`, power by power and walk by walk.
+    gains: Cumulative,
 }
 
 impl<'a> Relative<'a> {
@@ -81,48 +80,32 @@ impl<'a> Relative<'a> {
             powers: powers(channels.len()),
             rule: GaussLegendre::new(16),
             cuts: Vec::new(),
-            ends: Vec::new(),
-            sums: Vec::new(),
+            gains: Cumulative::new(0.0, 0),
         };
         let first = relative.meshes[0];
         relative.cuts = relative.kinks();
+        let width = relative.powers.len() * relative.walks.len();
         let fine = first.refined(&relative.cuts, &|_, panel| {
             let rows = relative.gains_at(panel.t);
-            let width = relative.powers.len() * relative.walks.len();
             (0..width).map(|i| rows.iter().map(|row| row[i]).collect()).collect()
         });
-        let mut sum = vec![0.0; relative.powers.len() * relative.walks.len()];
-        relative.ends.push(first.support().from);
-        relative.sums.push(sum.clone());
-        for panel in fine.panels() {
-            let whole = relative.over(panel.span);
-            sum.iter_mut().zip(whole).for_each(|(sum, x)| *sum += x);
-            relative.ends.push(panel.span.to);
-            relative.sums.push(sum.clone());
-        }
+        let (from, panels) = (first.support().from, fine.panels().map(|panel| panel.span));
+        relative.gains =
+            Cumulative::over(from, width, panels, |span, row| relative.add_gains(span, row));
         relative
     }
 
     /// Distances at which fields have kinks and, for the probabilities `maximum`, at which another channel's event
     /// becomes the likeliest.
     fn kinks(&self) -> Vec<f64> {
-        let support = self.meshes[0].support();
-        let ends = self.meshes.iter().flat_map(|mesh| mesh.panels().map(|panel| panel.span.from));
-        let mut kinks: Vec<f64> = ends.filter(|&t| support.contains_inside(t)).collect();
         if self.walks.iter().all(|&(_, walk)| walk != Proposal::Together(Chance::Maximum)) {
-            return kinks;
+            return Mesh::joint_cuts(&self.meshes, Vec::new(), |_, _| []);
         }
-        let cut = self.meshes[0].refined(&kinks, &|_, _| Vec::new());
-        let media: Vec<_> = self.meshes.iter().map(|mesh| mesh.medium()).collect();
-        for (i, a) in self.rates.albedos.iter().enumerate() {
-            for (j, b) in self.rates.albedos[..i].iter().enumerate() {
-                for [a, b] in [[1.0, 1.0], [*a, *b], [1.0 - a, 1.0 - b]] {
-                    let apart = |t, _| a * media[i].extinction(t) - b * media[j].extinction(t);
-                    kinks.extend(cut.roots(apart));
-                }
-            }
-        }
-        kinks
+        Mesh::joint_cuts(&self.meshes, Vec::new(), |channel, t| {
+            let (sigma, a) =
+                (self.meshes[channel].medium().extinction(t), self.rates.albedos[channel]);
+            [sigma, a * sigma, (1.0 - a) * sigma]
+        })
     }
 
     /// σ_t of all channels at each distance.
@@ -141,26 +124,19 @@ impl<'a> Relative<'a> {
         self.extinctions(t).iter().map(row).collect()
     }
 
-    /// `∫ N` over a span.
-    fn over(&self, span: Span) -> Vec<f64> {
-        let rows = self.gains_at(&self.rule.nodes_on(span));
-        let mut sum = vec![0.0; self.powers.len() * self.walks.len()];
-        for ((_, weight), row) in self.rule.on(span).zip(rows) {
-            sum.iter_mut().zip(row).for_each(|(sum, x)| *sum += weight * x);
+    /// Adds `∫ N` over a span.
+    fn add_gains(&self, span: Span, row: &mut [f64]) {
+        let gains = self.gains_at(&self.rule.nodes_on(span));
+        for ((_, weight), gains) in self.rule.on(span).zip(gains) {
+            row.iter_mut().zip(gains).for_each(|(sum, x)| *sum += weight * x);
         }
-        sum
     }
 
     /// `∫ N` from the beginning.
     fn up_to(&self, s: f64) -> Vec<f64> {
-        let last = self.ends.len() - 1;
-        let panel = self.ends.partition_point(|&end| end <= s).saturating_sub(1).min(last);
-        let mut sum = self.sums[panel].clone();
-        let rest = Span::new(self.ends[panel], s);
-        if !rest.is_empty() {
-            sum.iter_mut().zip(self.over(rest)).for_each(|(sum, x)| *sum += x);
-        }
-        sum
+        let mut row = vec![0.0; self.powers.len() * self.walks.len()];
+        self.gains.up_to(s, &mut row, |_, rest, row| self.add_gains(rest, row));
+        row
     }
 
     /// `ln E[Π T̂_λ^{k_λ}]` of the shadow ray, power by power, for a walk, given the medium of each channel there.

@@ -23,6 +23,7 @@
 pub mod ball;
 pub mod cache;
 pub mod point;
+pub mod predict;
 pub mod shells;
 pub mod spread;
 pub mod views;

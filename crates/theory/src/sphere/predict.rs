@@ -1,0 +1,111 @@
+//! Predictions for walks from an eye in or before a ball to its light.
+//!
+//! ```text
+//! hits                     0 ≤ X ≤ 1, so that E[X²] ≤ E[X]; without weights X is 0 or 1
+//! combined techniques      E[X²] bounded as in [`super::spread`]
+//! ```
+
+use super::{Answer, Lights, Observable, Scene, Spread, Spreads, Techniques, cached};
+use crate::problems::Sphere;
+use crate::problems::ball::{Light, Sought};
+use crate::single::Tracking;
+use crate::space::energy_channel;
+use crate::{Channel, Distribution, Moments, Prediction, Tails};
+use numeric::Known;
+
+/// Maximum relative error of an exact answer that draws are compared with.
+pub const BLURRED: f64 = 1e-4;
+/// Maximum optical depth from the surface to the centre for which the equation is solved.
+pub const DEEPEST: f64 = 30.0;
+
+/// The exact answer; `None` where the equation is not solved, or the error of the answer is too large.
+pub fn truth(sphere: &Sphere) -> Option<Answer> {
+    answer(sphere).filter(|answer| blur(answer) <= BLURRED)
+}
+
+/// The relative error of an answer.
+pub fn blur(answer: &Answer) -> f64 {
+    answer.value.error / answer.value.value.abs()
+}
+
+/// The answer with its error; `None` where the equation is not solved.
+pub fn answer(sphere: &Sphere) -> Option<Answer> {
+    if sphere.majorant() * sphere.radius > DEEPEST {
+        return None;
+    }
+    let (core, lights) = match sphere.light {
+        Light::BlackSphere(radius) => (Some(radius), Lights { environment: 0.0, core: 1.0 }),
+        Light::Environment | Light::Distant(_) => (None, Lights { environment: 1.0, core: 0.0 }),
+    };
+    let observable = match sphere.sought {
+        Sought::Radiance => Observable::Radiance { offset: sphere.offset(), from: sphere.begins() },
+        Sought::MeanIntensity => Observable::Mean(sphere.distance()),
+    };
+    let scene = Scene {
+        radius: sphere.radius,
+        core,
+        albedo: sphere.scene.albedo.even()?,
+        lights,
+        is_distant: matches!(sphere.light, Light::Distant(_)),
+        observable,
+    };
+    cached(&scene, &|r2| sphere.extinction(r2))
+}
+
+/// G, a bound on `E[T̂²]/T` of tracked shadow rays on any way through a ball:
+/// `E[T̂²] = T exp ∫((σ_t − σ_c)²/σ̂ − σ_t)`.
+pub fn gain(sphere: &Sphere, shadow: Tracking) -> f64 {
+    let Tracking::Ratio { sampling, control } = shadow else { return 1.0 };
+    // It is convex in σ_t: largest at an end.
+    let at = |sigma: f64| (sigma - control) * (sigma - control) / sampling - sigma;
+    let worst = at(0.0).max(at(sphere.majorant())).max(0.0);
+    (2.0 * sphere.radius * worst).exp()
+}
+
+/// The answer of a refused setup, which is not predicted.
+const UNKNOWN: Answer = Answer {
+    value: Known::estimated(f64::NAN, f64::INFINITY),
+    spreads: Spreads(
+        [Spread { unscattered: f64::NAN, lit: f64::NAN, rest: f64::NAN }; Techniques::ALL.len()],
+    ),
+};
+
+/// Prediction for a draw that is 1 with the probability `value`, else 0.
+fn all_or_nothing(value: Known) -> Prediction {
+    let chance = value.value;
+    // E[Xᵏ] is the same for every k: the moments of a product whose losses are all −ln E[X].
+    let error = 4.0 * value.error / (chance * (1.0 - chance));
+    let moments = Moments::of_product(chance, [-chance.ln(); 4], error).graded(value.grade);
+    let tails = Tails { rare_event_size: 1.0 / chance, eighth_moment_ratio: 1.0 / chance };
+    let channel = Channel::unbiased(value, moments, tails);
+    let distribution = Some(Distribution::Atoms(vec![(0.0, 1.0 - chance), (1.0, chance)]));
+    Prediction { distribution, ..Prediction::uncounted(channel) }
+}
+
+/// Prediction for a combination of techniques, with shadow rays that are tracked somehow.
+pub fn together(sphere: &Sphere, techniques: Techniques, shadow: Tracking) -> Prediction {
+    let answer = truth(sphere).unwrap_or(UNKNOWN);
+    let square = answer.spreads.of(techniques).square(gain(sphere, shadow));
+    Prediction::uncounted(Channel::bounded(answer.value, square))
+}
+
+/// Prediction for a combination with an unknown variance: that of pilot draws stands in for it.
+pub fn by_pilots(sphere: &Sphere) -> Prediction {
+    let value = truth(sphere).unwrap_or(UNKNOWN).value;
+    let channel = Channel::unbiased(value, None, Tails::LIGHT);
+    Prediction::uncounted(Channel { pilot_variance_allowed: true, ..channel })
+}
+
+/// Prediction for a walk that hits the light. Its draws are 0 or 1 where it has no weight. Where nothing is absorbed and
+/// light is everywhere, every draw is 1.
+pub fn hits(sphere: &Sphere, is_chance: bool) -> Prediction {
+    if sphere.light == Light::Environment && sphere.scene.albedo.even() == Some(1.0) {
+        return Prediction::uncounted(energy_channel(0.0, 0.0));
+    }
+    let value = truth(sphere).unwrap_or(UNKNOWN).value;
+    if is_chance {
+        all_or_nothing(value)
+    } else {
+        Prediction::uncounted(Channel::bounded(value, value.value))
+    }
+}
