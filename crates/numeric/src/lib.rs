@@ -1,4 +1,4 @@
-//! Numbers: lanes and their elementary functions, exact sums, quadrature, roots.
+//! Numbers: lanes and their elementary functions, power series, exact sums, quadrature, roots.
 //!
 //! Floor 0. Nothing here depends on light, media or statistics.
 
@@ -9,6 +9,7 @@ pub mod elementary;
 pub mod exponential_integral;
 pub mod fused;
 pub mod geometry;
+pub mod jet;
 pub mod known;
 pub mod lane;
 pub mod mask;
@@ -27,6 +28,7 @@ pub mod words;
 pub use cumulative::Cumulative;
 pub use double_double::Wide;
 pub use exponential_integral::exponential_integrals;
+pub use jet::{Jet, Scalar};
 pub use known::{Grade, Known, Span};
 pub use lane::{Lane, Row};
 pub use mask::{Kept, Mask};

@@ -156,9 +156,10 @@ impl<'a> Spectrum<'a> {
             let albedo = self.problem.colours.albedos[channel];
             let pieces = Pieces::new(mesh, sampling, &rule.kinks(albedo), &[incidence.light]);
             let (depth, laws) = (mesh.optical_depth().value, self.laws);
-            (weight, Walk { incidence, albedo, rule, pieces, largest_ratio: 1.0, depth, laws })
+            let walk = Walk { incidence, albedo, rule, pieces, largest_ratio: 1.0, depth, laws };
+            Some((weight, walk.lookups(&[incidence.light])?[0]))
         };
-        let walks: Vec<(f64, Walk)> = heroes.iter().enumerate().map(walk).collect();
-        slab::walk::mixed_lookups(&walks)
+        let lookups = heroes.iter().enumerate().map(walk).collect::<Option<Vec<_>>>()?;
+        colours::mixed(lookups).map(CountLaw::of_factorial)
     }
 }

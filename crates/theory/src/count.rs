@@ -5,6 +5,8 @@ use numeric::Known;
 
 /// Maximum mean of a distribution for which probabilities are computed.
 pub const LARGEST_MEAN: f64 = 2000.0;
+/// Rounding of a central moment, relative to the sum of its terms' sizes.
+const ROUNDING: f64 = 8.0 * f64::EPSILON;
 /// Probabilities below this, relative to the largest, are left out.
 const FAINT: f64 = 1e-20;
 /// Maximum ratio of the variance to the second moment at which the variance is rounding.
@@ -19,6 +21,8 @@ pub struct CountLaw {
     pub variance: f64,
     /// A relative error bound of the mean beyond rounding.
     pub error: f64,
+    /// A relative error bound of the variance and of the fourth central moment; infinite where it is not known.
+    pub moments_error: f64,
     /// `μ₄/μ₂²`; 1 where the number is constant.
     pub kurtosis: f64,
     /// True if the distribution is Poisson.
@@ -38,7 +42,9 @@ impl CountLaw {
         if number.fract() == 0.0 && (0.0..=LARGEST_MEAN).contains(&number) {
             Window::default().add(&mut pmf, 1.0, 0.0, whole(number));
         }
-        Self { mean: number, variance: 0.0, error: 0.0, kurtosis: 1.0, poisson: false, pmf }
+        let [error, moments_error] = [0.0; 2];
+        let (variance, kurtosis) = (0.0, 1.0);
+        Self { mean: number, variance, error, moments_error, kurtosis, poisson: false, pmf }
     }
 
     /// Poisson distribution with the given mean: a walk through `∫σ̂` that nothing ends early.
@@ -47,14 +53,44 @@ impl CountLaw {
         if (0.0..=LARGEST_MEAN).contains(&mean) {
             Window::default().add(&mut pmf, 1.0, mean, 0);
         }
-        Self { mean, variance: mean, error: 0.0, kurtosis: 3.0 + 1.0 / mean, poisson: true, pmf }
+        let [error, moments_error] = [0.0; 2];
+        let kurtosis = 3.0 + 1.0 / mean;
+        Self { mean, variance: mean, error, moments_error, kurtosis, poisson: true, pmf }
     }
 
     /// Mean, variance and kurtosis from `E[M(M − 1)…(M − k + 1)]`, k = 1 … 4; no probabilities.
+    ///
+    /// Errors of central moments are those of the factorial moments, each times the absolute value of the derivative,
+    /// and of rounding:
+    ///
+    /// ```text
+    /// μ₂ = f₂ + m − m²,   μ₄ = f₄ + (6 − 4m) f₃ + (7 − 12m + 6m²) f₂ + m − 4m² + 6m³ − 3m⁴
+    /// ```
     pub fn of_factorial(factorial: [Known; 4]) -> Self {
-        let [mean, ..] = factorial;
-        let error = if mean.value > 0.0 { mean.error / mean.value } else { 0.0 };
-        Self::of_raw(0.0, raw::of_factorial(factorial.map(|known| known.value)), error)
+        let [mean, pairs, triples, fours] = factorial.map(|known| known.value);
+        let [error, of_pairs, of_triples, of_fours] = factorial.map(|known| known.error);
+        let relative = if mean > 0.0 { error / mean } else { 0.0 };
+        let law = Self::of_raw(0.0, raw::of_factorial([mean, pairs, triples, fours]), relative);
+        if law.variance <= 0.0 {
+            return law;
+        }
+        let of_variance =
+            of_pairs + (1.0 - 2.0 * mean).abs() * error + ROUNDING * (pairs + mean + mean * mean);
+        let slopes = [6.0 - 4.0 * mean, 7.0 + 6.0 * mean * (mean - 2.0)];
+        let slope = 1.0 + mean * (18.0 * mean - 8.0 - 12.0 * mean * mean) - 4.0 * triples
+            + 12.0 * pairs * (mean - 1.0);
+        let sizes = fours
+            + (6.0 + 4.0 * mean) * triples
+            + (7.0 + 6.0 * mean * (mean + 2.0)) * pairs
+            + mean * (1.0 + mean * (4.0 + mean * (6.0 + 3.0 * mean)));
+        let of_fourth = of_fours
+            + slopes[0].abs() * of_triples
+            + slopes[1].abs() * of_pairs
+            + slope.abs() * error
+            + ROUNDING * sizes;
+        let fourth = law.kurtosis * law.variance * law.variance;
+        let moments_error = (of_variance / law.variance).max(of_fourth / fourth);
+        Self { moments_error, ..law }
     }
 
     /// Mean, variance and kurtosis from the smallest number and the raw moments of the rest, with the relative error
@@ -67,7 +103,8 @@ impl CountLaw {
         }
         let fourth = fourth - 4.0 * mean * cube + 6.0 * mean * mean * square - 3.0 * mean.powi(4);
         let kurtosis = (fourth / (variance * variance)).max(1.0);
-        Self { mean: least + mean, variance, error, kurtosis, poisson: false, pmf: Vec::new() }
+        let (mean, moments_error) = (least + mean, f64::INFINITY);
+        Self { mean, variance, error, moments_error, kurtosis, poisson: false, pmf: Vec::new() }
     }
 }
 

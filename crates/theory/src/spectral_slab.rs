@@ -8,7 +8,7 @@
 use super::slab::layer::Slice;
 use super::slab::{self, Pieces, Resolution, Walk};
 use super::spectral_rod::{Body, Orders};
-use super::{CountLaw, Mesh, ParticleRule};
+use super::{CountLaw, Mesh, ParticleRule, colours};
 use crate::memo::Memo;
 use crate::problems::SpectralSlab;
 use crate::problems::slab::{Incidence, Light};
@@ -147,10 +147,11 @@ impl Body for Slabs<'_> {
         let walk = |&(weight, albedo): &(f64, f64)| {
             let (depth, laws) = (self.depth().value, self.laws);
             let pieces = pieces.clone();
-            (weight, Walk { incidence, albedo, rule, pieces, largest_ratio: 1.0, depth, laws })
+            let walk = Walk { incidence, albedo, rule, pieces, largest_ratio: 1.0, depth, laws };
+            Some((weight, walk.lookups(&[incidence.light])?[0]))
         };
-        let walks: Vec<(f64, Walk)> = heroes.iter().map(walk).collect();
-        slab::walk::mixed_lookups(&walks)
+        let lookups = heroes.iter().map(walk).collect::<Option<Vec<_>>>()?;
+        colours::mixed(lookups).map(CountLaw::of_factorial)
     }
 }
 

@@ -8,15 +8,20 @@
 //! ```text
 //! E[X^k]:  ∫σ̂(1 − Q_k) thick, of the albedo S_k/(1 − Q_k)
 //! E[M] = (1 − R₀ − T₀)/(1 − Q₀ − S₀),  R₀ and T₀ those of k = 0
+//! E[zᴹ] = L + (1 − L) z(1 − Q₀ − S₀)/(1 − zQ₀ − zS₀),  L = R + T of the slab of zQ₀ and zS₀
 //! ```
+//!
+//! Factorial moments of M are the derivatives of `E[zᴹ]` at z = 1: those of the polynomial through nine values in 32
+//! digits.
 
 use super::fields;
-use super::ordinates::Ordinates;
+use super::ordinates::{Ordinates, solved_pivoted};
 use super::peierls::Peierls;
 use super::prelude::*;
 use super::rods::{lookups, moments_of};
 use super::slabs::{LIGHTS, henyey_greenstein, lights, phase};
 use media::phase::{Phase, isotropic::Isotropic};
+use theory::CountLaw;
 use theory::particle::ParticleRule;
 use theory::problems::slab::{Incidence, Light};
 use theory::slab::layer::Slice;
@@ -31,6 +36,8 @@ const FINER: Resolution =
     Resolution { faintest: 1e-9, directions: 24, first_layer: 1e-12, ..Resolution::FINE };
 /// Resolution where r varies and many layers are solved.
 const LAYERED: Resolution = Resolution { faintest: 1e-6, first_layer: 1e-9, ..FINER };
+/// Step of marks in units of the inverse number of collisions over which their distribution decays.
+const STEP: f64 = 1e-3;
 /// Quantity of the rows.
 const WALKS: &str = "walks in a slab";
 /// Fainter light is not resolved to 1e-4, and refused.
@@ -48,6 +55,9 @@ pub fn rows(run: Run) -> Vec<Row> {
     let mut of_even = with_lookups(range);
     of_even.push(Row::wrong("diverging variances in slabs, wrong", range));
     let mut rows = run.fill([4, 64], of_even, Even::any, even);
+    let range = "isotropic, 1 − a = 1e-7 … 0.5, 3 rules, r = 0.1 … 1, τ = 1e-2 … 30, μ₀ = 1e-4 … 1; discrete ordinates";
+    let of_lookups = Row::moments("lookups of walks in a slab, next to criticality", range);
+    rows.extend(run.fill([2, 32], of_lookups, White::any, white));
     let range = "1 … 3 layers, |g| to 0.935, 3 rules, r = 0.1 … 2, τ = 1e-3 … 30; half as many directions again";
     rows.extend(run.fill([2, 64], with_lookups(range), Layers::any, finer));
     let range =
@@ -64,6 +74,14 @@ parameters! {
         depth: f64 = sized(-3.0, 1.48),
         albedo: f64 = albedo(),
         ratio: f64 = sized(-1.0, 0.5),
+        kind: usize = 0..3_usize,
+        lights: Vec<Light> = lights(),
+    }
+    /// A walk that ends rarely or never before it leaves: one ratio, isotropic scattering.
+    White {
+        depth: f64 = sized(-2.0, 1.48),
+        absorbed: f64 = sized(-7.0, -0.3),
+        ratio: f64 = sized(-1.0, 0.0),
         kind: usize = 0..3_usize,
         lights: Vec<Light> = lights(),
     }
@@ -222,6 +240,57 @@ fn even(parameters: &Even, seen: &mut Seen) {
         lights.iter().map(|light| (1.0 - left(light)) / ends).collect()
     });
     compare(seen, &walk, lights, &Exact { leaving, collisions: Some(collisions) });
+}
+
+/// Variance and fourth moment of lookups, one ratio and isotropic scattering: discrete ordinates at nine marks.
+fn white(parameters: &White, seen: &mut Seen) -> Option<()> {
+    let &White { depth, absorbed, ratio, kind, ref lights } = parameters;
+    let (rule, flown) = (rule(kind, ratio), depth / ratio);
+    let pieces = Pieces::Exact(vec![Piece::of(flown, ratio)]);
+    let walk = walk(Phase::Isotropic(Isotropic), (1.0 - absorbed, rule), pieces, ratio, depth);
+    let found = seen.found(0, Walk { laws: true, ..walk.clone() }.lookups(lights))?;
+    let laws: Vec<CountLaw> = found.into_iter().map(CountLaw::of_factorial).collect();
+    let scale = laws.iter().map(|law| 1.0 + law.variance / law.mean).fold(0.0, f64::max);
+    let step = Wide::from(STEP / scale);
+    let [q, s] = moments_of(rule, Wide::from(ratio), walk.albedo, 0);
+    let generating = |place: i32| -> Option<Vec<Wide>> {
+        // There two solutions of white slabs are one; probabilities add up to 1.
+        if place == 0 {
+            return Some(vec![Wide::ONE; lights.len()]);
+        }
+        let z = 1.0 + step * f64::from(place);
+        let (lost, scattered) = (1.0 - z * q, z * s);
+        let slab = Ordinates::new(Wide::from(flown) * lost, scattered / lost, ORDINATES)?;
+        let ended = z * (1.0 - q - s) / (lost - scattered);
+        let of_light = |&light: &Light| {
+            let left: Wide = slab.energy(light).into_iter().sum();
+            left + (1.0 - left) * ended
+        };
+        Some(lights.iter().map(of_light).collect())
+    };
+    let places = -4..=4;
+    let values: Vec<Vec<Wide>> = places.clone().map(generating).collect::<Option<_>>()?;
+    for (i, (light, law)) in lights.iter().zip(laws).enumerate() {
+        let row = |(place, values): (i32, &Vec<Wide>)| {
+            let powers = (0..9).map(|k| Wide::from(f64::from(place).powi(k)));
+            powers.chain([values[i]]).collect()
+        };
+        let terms = solved_pivoted(places.clone().zip(&values).map(row).collect())?;
+        let mut scale = Wide::ONE;
+        let [f1, f2, f3, f4] = [1, 2, 3, 4].map(|k: u8| {
+            scale = scale * f64::from(k) / step;
+            terms[usize::from(k)] * scale
+        });
+        let raw = [f1, f2 + f1, f3 + 3.0 * f2 + f1, f4 + 6.0 * f3 + 7.0 * f2 + f1];
+        let fourth = law.kurtosis * law.variance * law.variance;
+        seen.at(format_args!("{light:?}"));
+        for (row, (found, exact)) in
+            [law.variance, fourth].into_iter().zip(central(raw, Wide::ONE)).enumerate()
+        {
+            seen.stated(row, Known::estimated(found, found * law.moments_error), exact);
+        }
+    }
+    Some(())
 }
 
 /// Layers of other ratios and other phase functions: the same slabs with more directions.

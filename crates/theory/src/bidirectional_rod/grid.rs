@@ -1,7 +1,7 @@
 //! Functions of the optical depth along a rod, and integrals over one flight.
 
-use numeric::Span;
 use numeric::quadrature::GaussLegendre;
+use numeric::{Scalar, Span};
 
 /// Values at the Gauss–Legendre nodes of `[0, τ]`: polynomials between them.
 pub struct Grid {
@@ -15,8 +15,8 @@ pub struct Grid {
 }
 
 /// `∫ K(|u − v|) φ(v) dv` from the nodes before each u, as a matrix by rows.
-pub struct Operator {
-    rows: Vec<f64>,
+pub struct Operator<S = f64> {
+    rows: Vec<S>,
     size: usize,
 }
 
@@ -48,37 +48,42 @@ impl Grid {
     }
 
     /// A function at the nodes.
-    pub fn values(&self, f: impl Fn(f64) -> f64) -> Vec<f64> {
+    pub fn values<S>(&self, f: impl Fn(f64) -> S) -> Vec<S> {
         self.points.iter().map(|&u| f(u)).collect()
     }
 
     /// `∫ f` over the rod.
-    pub fn integral(&self, f: &[f64]) -> f64 {
-        self.weights.iter().zip(f).map(|(weight, f)| weight * f).sum()
+    pub fn integral<S: Scalar>(&self, f: &[S]) -> S {
+        dot(f.iter().zip(&self.weights).map(|(&f, &weight)| f * weight))
     }
 
     /// `∫ f g` over the rod.
-    pub fn product(&self, f: &[f64], g: &[f64]) -> f64 {
-        self.weights.iter().zip(f).zip(g).map(|((weight, f), g)| weight * f * g).sum()
+    pub fn product<S: Scalar>(&self, f: &[S], g: &[S]) -> S {
+        let pairs = f.iter().zip(g).zip(&self.weights);
+        dot(pairs.map(|((&f, &g), &weight)| f * weight * g))
     }
 
     /// Flights with a kernel that depends on the optical depth flown.
-    pub fn operator(&self, kernel: impl Fn(f64) -> f64) -> Operator {
+    pub fn operator<S: Scalar>(&self, kernel: impl Fn(f64) -> S) -> Operator<S> {
         let [operator] = self.several(|depth| [kernel(depth)]);
         operator
     }
 
     /// The flights of several kernels.
-    pub fn several<const N: usize>(&self, kernels: impl Fn(f64) -> [f64; N]) -> [Operator; N] {
+    pub fn several<S: Scalar, const N: usize>(
+        &self,
+        kernels: impl Fn(f64) -> [S; N],
+    ) -> [Operator<S>; N] {
         let size = self.points.len();
-        let mut operators = [(); N].map(|()| Operator { rows: vec![0.0; size * size], size });
+        let nothing = || vec![S::from(0.0); size * size];
+        let mut operators = [(); N].map(|()| Operator { rows: nothing(), size });
         for (i, nodes) in self.before.iter().enumerate() {
             let basis = self.basis[i * size * size..].chunks(size);
             for (&[flown, weight], basis) in nodes.iter().zip(basis) {
                 for (operator, kernel) in operators.iter_mut().zip(kernels(flown)) {
                     let row = &mut operator.rows[i * size..(i + 1) * size];
-                    let factor = weight * kernel;
-                    row.iter_mut().zip(basis).for_each(|(sum, basis)| *sum += factor * basis);
+                    let factor = kernel * weight;
+                    row.iter_mut().zip(basis).for_each(|(sum, &x)| *sum = *sum + factor * x);
                 }
             }
         }
@@ -86,19 +91,22 @@ impl Grid {
     }
 }
 
-impl Operator {
+impl<S: Scalar> Operator<S> {
     /// The integral from each node over the part of the rod before it, or behind it: nodes are symmetric about the
     /// middle.
-    pub fn over(&self, is_before: bool, f: &[f64]) -> Vec<f64> {
+    pub fn over(&self, is_before: bool, f: &[S]) -> Vec<S> {
         let rows = self.rows.chunks(self.size);
-        let dot = |row: &[f64], f: &mut dyn Iterator<Item = &f64>| -> f64 {
-            row.iter().zip(f).map(|(a, b)| a * b).sum()
-        };
+        let product = |(&a, &b): (&S, &S)| a * b;
         if is_before {
-            return rows.map(|row| dot(row, &mut f.iter())).collect();
+            return rows.map(|row| dot(row.iter().zip(f).map(product))).collect();
         }
-        rows.rev().map(|row| dot(row, &mut f.iter().rev())).collect()
+        rows.rev().map(|row| dot(row.iter().zip(f.iter().rev()).map(product))).collect()
     }
+}
+
+/// The sum of products.
+fn dot<S: Scalar>(products: impl Iterator<Item = S>) -> S {
+    products.fold(S::from(0.0), |sum, product| sum + product)
 }
 
 /// The weights of barycentric interpolation, `1/∏ (xⱼ − xᵢ)` in units of the largest.

@@ -10,70 +10,40 @@
 use super::grid::{Grid, Operator};
 use super::{Connection, Scene};
 use crate::raw::{self, Raw};
+use numeric::{Jet, Scalar};
 
 /// Coefficients of y⁰ … y⁴.
-const TERMS: usize = 5;
-
-type Series = [f64; TERMS];
+type Series = Jet<5>;
 /// A series at each node of a grid.
-type Field = [Vec<f64>; TERMS];
+type Field = Vec<Series>;
 
 const TURNS: [bool; 2] = [false, true];
 
 /// `E[M^k]`, k = 0 … 4, of the technique with `s` light vertices.
 pub fn of_technique(walks: &Walks, order: usize, s: usize) -> Raw {
-    let series = if s == 0 || s == order + 2 {
-        plus(walks.failed(order), walks.after(order, true))
+    let Jet([_, f1, f2, f3, f4]) = if s == 0 || s == order + 2 {
+        walks.failed(order) + walks.after(order, true)
     } else {
         let (light, camera) = (s - 1, order + 1 - s);
-        let later = times(walks.mass(light), walks.failed(camera));
-        plus(plus(walks.failed(light), later), walks.connected(light, camera))
+        let later = walks.mass(light) * walks.failed(camera);
+        walks.failed(light) + later + walks.connected(light, camera)
     };
-    let mut factorial = [0.0; 4];
-    let mut scale = 1.0;
-    for (k, (entry, coefficient)) in (1_u32..).zip(factorial.iter_mut().zip(&series[1..])) {
-        scale *= f64::from(k);
-        *entry = scale * coefficient;
-    }
-    raw::of_factorial(factorial)
+    raw::of_factorial([f1, 2.0 * f2, 6.0 * f3, 24.0 * f4])
 }
 
-fn plus(a: Series, b: Series) -> Series {
-    std::array::from_fn(|j| a[j] + b[j])
+/// `e^{−d + xy}`.
+fn exponential(depth: f64, x: f64) -> Series {
+    Jet([-depth, x, 0.0, 0.0, 0.0]).exp()
 }
 
-fn times(a: Series, b: Series) -> Series {
-    std::array::from_fn(|j| (0..=j).map(|i| a[i] * b[j - i]).sum())
+/// The sum of two fields.
+fn sum(a: &[Series], b: &[Series]) -> Field {
+    a.iter().zip(b).map(|(&a, &b)| a + b).collect()
 }
 
-/// `e^{xy}`.
-fn exponential(x: f64) -> Series {
-    let mut series = [1.0; TERMS];
-    for j in 1..TERMS {
-        series[j] = series[j - 1] * x / j as f64;
-    }
-    series
-}
-
-/// The sum of two rows.
-fn sum(a: &[f64], b: &[f64]) -> Vec<f64> {
-    a.iter().zip(b).map(|(a, b)| a + b).collect()
-}
-
-/// `(1 + y)` times a series.
-fn looked_up(field: &Field) -> Field {
-    std::array::from_fn(|j| match j {
-        0 => field[0].clone(),
-        _ => sum(&field[j], &field[j - 1]),
-    })
-}
-
-/// The flights of a series.
-fn flown(flights: &[Operator], is_before: bool, field: &Field) -> Field {
-    std::array::from_fn(|j| {
-        let terms = (0..=j).map(|i| flights[i].over(is_before, &field[j - i]));
-        terms.reduce(|a, b| sum(&a, &b)).unwrap_or_default()
-    })
+/// `(1 + y)` times a field.
+fn looked_up(field: &[Series]) -> Field {
+    field.iter().map(|&series| Series::mark() * series).collect()
 }
 
 /// Walks from one end of the rod; walks from the other end are their mirror images.
@@ -87,7 +57,7 @@ pub struct Walks<'a> {
     /// Walks that arrive at each scattering, from the first on, flying backward and forward.
     arriving: Vec<[Field; 2]>,
     /// Connections of two places.
-    connections: Vec<Operator>,
+    connections: Operator<Series>,
     /// Flights that end in the rod, from each node backward and forward.
     collided: [Field; 2],
 }
@@ -97,48 +67,36 @@ impl<'a> Walks<'a> {
     pub fn new(scene: &'a Scene, connection: Connection, ratio: f64, grid: &'a Grid) -> Self {
         let nulls = (1.0 - ratio) / ratio;
         let tracked = if matches!(connection, Connection::Ratio(_)) { 1.0 / ratio } else { 0.0 };
-        let flight = |d: f64| exponential(nulls * d).map(|term| (-d).exp() * term);
-        let operators = |series: &dyn Fn(f64) -> Series| -> Vec<Operator> {
-            (0..TERMS).map(|j| grid.operator(|d| series(d)[j])).collect()
-        };
-        let (flights, connections) = (operators(&flight), operators(&|d| exponential(tracked * d)));
-        let field = |f: &dyn Fn(f64) -> Series| -> Field {
-            std::array::from_fn(|j| grid.values(|u| f(u)[j]))
-        };
-        let [nothing, one] = [0.0, 1.0].map(|mass| field(&|_| [mass, 0.0, 0.0, 0.0, 0.0]));
-        let collided = TURNS.map(|is_forward| looked_up(&flown(&flights, !is_forward, &one)));
-        let mut arriving = vec![[nothing, looked_up(&field(&flight))]];
+        let flight = |d: f64| exponential(d, nulls * d);
+        let flights = grid.operator(flight);
+        let [nothing, one] = [0.0, 1.0].map(|mass| grid.values(|_| Series::from(mass)));
+        let collided = TURNS.map(|is_forward| looked_up(&flights.over(!is_forward, &one)));
+        let mut arriving = vec![[nothing, looked_up(&grid.values(flight))]];
         for _ in 1..*scene.orders.end() {
             let last = &arriving[arriving.len() - 1];
             let next = TURNS.map(|is_forward| {
-                let scattered = std::array::from_fn(|j| {
-                    let [on, round] = TURNS.map(|turn| scene.albedo * scene.phase(turn));
-                    let same = last[usize::from(is_forward)][j].iter();
-                    let pairs = same.zip(&last[usize::from(!is_forward)][j]);
-                    pairs.map(|(same, other)| on * same + round * other).collect()
-                });
-                looked_up(&flown(&flights, is_forward, &scattered))
+                let [on, round] = TURNS.map(|turn| scene.albedo * scene.phase(turn));
+                let [same, other] = [is_forward, !is_forward].map(|way| &last[usize::from(way)]);
+                let pairs = same.iter().zip(other);
+                let scattered: Field = pairs.map(|(&a, &b)| a * on + b * round).collect();
+                looked_up(&flights.over(is_forward, &scattered))
             });
             arriving.push(next);
         }
+        let connections = grid.operator(|d| exponential(0.0, tracked * d));
         Self { scene, grid, nulls, tracked, arriving, connections, collided }
     }
 
     /// Flights that leave the rod over this optical depth.
     fn escape(&self, depth: f64) -> Series {
-        exponential(self.nulls * depth).map(|term| (-depth).exp() * term)
-    }
-
-    /// `∫` of the product of two series.
-    fn joined(&self, a: &Field, b: &Field) -> Series {
-        std::array::from_fn(|j| (0..=j).map(|i| self.grid.product(&a[i], &b[j - i])).sum())
+        exponential(depth, self.nulls * depth)
     }
 
     /// Walks that have made `count` scatterings.
     fn mass(&self, count: usize) -> Series {
-        let Some(last) = count.checked_sub(1) else { return [1.0, 0.0, 0.0, 0.0, 0.0] };
+        let Some(last) = count.checked_sub(1) else { return Series::from(1.0) };
         let [back, on] = &self.arriving[last];
-        std::array::from_fn(|j| self.grid.integral(&back[j]) + self.grid.integral(&on[j]))
+        self.grid.integral(back) + self.grid.integral(on)
     }
 
     /// Walks that end after `count` scatterings: absorbed, or out of the rod. If the flight is the last one, walks
@@ -147,21 +105,18 @@ impl<'a> Walks<'a> {
         let depth = self.scene.depth.value;
         let Some(last) = count.checked_sub(1) else {
             let escaped = self.escape(depth);
-            return if is_last { plus(escaped, self.mass(1)) } else { escaped };
+            return if is_last { escaped + self.mass(1) } else { escaped };
         };
-        let absorbed = 1.0 - self.scene.albedo;
-        let mut ended = self.mass(count).map(|mass| absorbed * mass);
+        let mut ended = self.mass(count) * (1.0 - self.scene.albedo);
         for (arrives, field) in self.arriving[last].iter().enumerate() {
             for turn in TURNS {
                 let is_forward = (arrives == 1) ^ turn;
                 let left = |u: f64| if is_forward { depth - u } else { u };
-                let flights: Field = std::array::from_fn(|j| {
-                    let escapes = self.grid.values(|u| self.escape(left(u))[j]);
-                    let collided = &self.collided[usize::from(is_forward)][j];
-                    if is_last { sum(&escapes, collided) } else { escapes }
-                });
+                let escapes = self.grid.values(|u| self.escape(left(u)));
+                let collided = &self.collided[usize::from(is_forward)];
+                let flights = if is_last { sum(&escapes, collided) } else { escapes };
                 let factor = self.scene.albedo * self.scene.phase(turn);
-                ended = plus(ended, self.joined(field, &flights).map(|term| factor * term));
+                ended = ended + self.grid.product(field, &flights) * factor;
             }
         }
         ended
@@ -169,38 +124,34 @@ impl<'a> Walks<'a> {
 
     /// Walks that end before they have made `count` scatterings.
     fn failed(&self, count: usize) -> Series {
-        (0..count).fold([0.0; TERMS], |sum, i| plus(sum, self.after(i, false)))
+        (0..count).fold(Series::from(0.0), |sum, i| sum + self.after(i, false))
     }
 
     /// Positions of walks after `count` scatterings, from the far end of the rod if `is_mirrored`.
     fn places(&self, count: usize, is_mirrored: bool) -> Field {
         let [back, on] = &self.arriving[count - 1];
-        std::array::from_fn(|j| {
-            let mut places = sum(&back[j], &on[j]);
-            if is_mirrored {
-                places.reverse();
-            }
-            places
-        })
+        let mut places = sum(back, on);
+        if is_mirrored {
+            places.reverse();
+        }
+        places
     }
 
     /// Pairs of walks with the given numbers of scatterings, and their connection.
     fn connected(&self, light: usize, camera: usize) -> Series {
         let is_mirrored = self.scene.is_transmitted;
         let sensor = if is_mirrored { self.scene.depth.value } else { 0.0 };
-        let along = |depth: f64| exponential(self.tracked * depth);
-        let to = |point: f64| -> Field {
-            std::array::from_fn(|j| self.grid.values(|u| along((u - point).abs())[j]))
-        };
+        let along = |depth: f64| exponential(0.0, self.tracked * depth);
+        let to = |point: f64| self.grid.values(|u| along((u - point).abs()));
         match (light, camera) {
             (0, 0) => along(sensor),
-            (_, 0) => self.joined(&self.places(light, false), &to(sensor)),
-            (0, _) => self.joined(&self.places(camera, is_mirrored), &to(0.0)),
+            (_, 0) => self.grid.product(&self.places(light, false), &to(sensor)),
+            (0, _) => self.grid.product(&self.places(camera, is_mirrored), &to(0.0)),
             _ => {
                 let (from, to) = (self.places(light, false), self.places(camera, is_mirrored));
-                let both = TURNS
-                    .map(|is_before| self.joined(&flown(&self.connections, is_before, &from), &to));
-                plus(both[0], both[1])
+                let connected =
+                    |is_before| self.grid.product(&self.connections.over(is_before, &from), &to);
+                connected(false) + connected(true)
             }
         }
     }

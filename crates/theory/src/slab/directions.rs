@@ -8,6 +8,8 @@ use numeric::quadrature::{GaussLegendre, legendre};
 const FAINT: f64 = 1e-17;
 /// Maximum number of Legendre moments.
 const MOST_MOMENTS: usize = 4000;
+/// Number of negligible Legendre moments after which no other follows.
+const GAP: usize = 64;
 /// Maximum number of directions: more take seconds.
 const MOST: usize = 144;
 
@@ -72,11 +74,20 @@ impl Directions {
     }
 }
 
-/// `(2l + 1) χ_l` up to the last that is not negligible.
+/// `(2l + 1) χ_l` up to the last that is not negligible: [`GAP`] negligible ones follow it.
 fn moments(phase: &Phase) -> Vec<f64> {
-    let all: Vec<f64> = (0..MOST_MOMENTS).map(|l| (2 * l + 1) as f64 * phase.moment(l)).collect();
-    let last = all.iter().rposition(|moment| moment.abs() >= FAINT).unwrap_or(0);
-    all[..=last].to_vec()
+    let (mut all, mut count) = (Vec::new(), 1);
+    for l in 0..MOST_MOMENTS {
+        let moment = (2 * l + 1) as f64 * phase.moment(l);
+        all.push(moment);
+        if moment.abs() >= FAINT {
+            count = l + 1;
+        } else if l > count + GAP {
+            break;
+        }
+    }
+    all.truncate(count);
+    all
 }
 
 /// Number of cosines that resolve a phase function down to moments of the given size: measured errors of

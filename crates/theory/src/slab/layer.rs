@@ -12,58 +12,63 @@
 //! All terms are positive, D is kept apart, and nothing cancels. N is the expected score of the
 //! collisions of one particle, by its direction of incidence.
 //!
+//! Everything is a double or a power series in y. Where each collision multiplies the weight by the mark `1 + y` and
+//! scores 1, N has the factorial moments of the number M of collisions, since `zᴹ − 1` is the sum of `(z − 1) z^{m−1}`
+//! over the collisions m = 1 … M:
+//!
+//! ```text
+//! N = E[Σ_m (1 + y)^{m−1}] = (E[(1 + y)^M] − 1)/y = Σ_k E[M(M − 1)…(M − k + 1)] y^{k−1}/k!
+//! ```
+//!
 //! Source: H. C. van de Hulst, *Multiple Light Scattering* (Academic Press, 1980), chapter 4; J. E.
 //! Hansen, L. D. Travis, *Light scattering in planetary atmospheres*, Space Science Reviews 16,
 //! 527–610 (1974), section 3. The scores are added here: they follow a particle through the same
 //! series.
 
 use super::directions::Directions;
+use numeric::Scalar;
 use numeric::matrix::Matrix;
 
 /// One homogeneous layer of a walk, by the moments of a tentative collision.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Slice {
+pub struct Slice<S = f64> {
     /// `∫σ̂` across the layer.
     pub flown: f64,
     /// `Q`, the moment of transmitted particles.
-    pub straight: f64,
+    pub straight: S,
     /// `S`, the moment of scattered particles.
-    pub scattered: f64,
+    pub scattered: S,
     /// The score of a collision.
     pub score: f64,
 }
 
-impl Slice {
+impl<S: Scalar> Slice<S> {
     /// Loss of the beam at a collision, `1 − Q`.
-    pub fn lost(&self) -> f64 {
-        1.0 - self.straight
+    pub fn lost(&self) -> S {
+        S::from(1.0) - self.straight
     }
 }
 
 /// Response of a layer to light that comes from above.
 #[derive(Clone)]
-pub struct Layer {
+pub struct Layer<S = f64> {
     /// R: scattered back, by direction of incidence and of escape.
-    pub reflected: Matrix,
+    pub reflected: Matrix<S>,
     /// T: scattered through.
-    pub scattered: Matrix,
+    pub scattered: Matrix<S>,
     /// D: let through without scattering, by direction of incidence.
-    pub direct: Vec<f64>,
+    pub direct: Vec<S>,
     /// N.
-    pub score: Vec<f64>,
+    pub score: Vec<S>,
 }
 
-/// `(1 − e^{−y})/y`.
-fn mean_decay(y: f64) -> f64 {
-    if y.abs() < 1e-9 { 1.0 - 0.5 * y } else { -(-y).exp_m1() / y }
-}
-
-impl Layer {
+impl<S: Scalar> Layer<S> {
     /// A homogeneous layer by `doublings` doublings of one so thin that light scatters in it at most once; `None`
     /// where the expected energy is infinite.
-    pub fn homogeneous(directions: &Directions, slice: &Slice, doublings: i32) -> Option<Self> {
+    pub fn homogeneous(directions: &Directions, slice: &Slice<S>, doublings: i32) -> Option<Self> {
         // Without loss, light along the layer collides without end.
-        if slice.lost() < 0.0 || (slice.lost() == 0.0 && slice.scattered > 0.0) {
+        let lost = slice.lost().leading();
+        if lost < 0.0 || (lost == 0.0 && slice.scattered.leading() > 0.0) {
             return None;
         }
         let mut part = 0.5f64.powi(doublings);
@@ -83,24 +88,24 @@ impl Layer {
     /// Rᵢⱼ = S P⁻ᵢⱼ (h/μᵢ) φ(u(1/μᵢ + 1/μⱼ)),   φ(y) = (1 − e^{−y})/y,   u = (1 − Q) h
     /// Tᵢⱼ = S P⁺ᵢⱼ (h/μᵢ) e^{−u/μⱼ} φ(u(1/μᵢ − 1/μⱼ)),   Nᵢ = (h/μᵢ) φ(u/μᵢ)
     /// ```
-    fn thin(directions: &Directions, slice: &Slice, part: f64) -> Self {
+    fn thin(directions: &Directions, slice: &Slice<S>, part: f64) -> Self {
         let flown = slice.flown * part;
         let lost = slice.lost() * flown;
         let inverse: Vec<f64> = directions.cosines.iter().map(|cosine| 1.0 / cosine).collect();
         let (rows, columns) = (inverse.len(), directions.count());
         let reflected = Matrix::new(rows, columns, |i, j| {
             let path = lost * (inverse[i] + inverse[j]);
-            slice.scattered * directions.back.at(i, j) * flown * inverse[i] * mean_decay(path)
+            slice.scattered * directions.back.at(i, j) * flown * inverse[i] * path.mean_decay()
         });
         let scattered = Matrix::new(rows, columns, |i, j| {
             // The smaller exponent is factored out: nothing overflows.
             let least = inverse[i].min(inverse[j]);
             let path = lost * (inverse[i] - inverse[j]).abs();
-            let through = (-lost * least).exp() * mean_decay(path);
+            let through = (-lost * least).exp() * path.mean_decay();
             slice.scattered * directions.onward.at(i, j) * flown * inverse[i] * through
         });
-        let score =
-            inverse.iter().map(|i| slice.score * flown * i * mean_decay(lost * i)).collect();
+        let score = inverse.iter().map(|&i| (lost * i).mean_decay() * (slice.score * flown * i));
+        let score = score.collect();
         Self { reflected, scattered, direct: direct(directions, slice, part), score }
     }
 
@@ -122,7 +127,7 @@ impl Layer {
     }
 
     /// A without its rows for further directions.
-    fn through(&self) -> Matrix {
+    fn through(&self) -> Matrix<S> {
         let mut through = self.scattered.square();
         for i in 0..through.columns() {
             through.add(i, i, self.direct[i]);
@@ -134,14 +139,14 @@ impl Layer {
     fn joined(
         &self,
         below: &Self,
-        there_and_back: &Matrix,
-        upward: impl FnOnce(&Matrix) -> Matrix,
+        there_and_back: &Matrix<S>,
+        upward: impl FnOnce(&Matrix<S>) -> Matrix<S>,
     ) -> Option<Self> {
         let columns = there_and_back.columns();
         // One more column for the scores: M (N₂ + R₂N₁).
-        let met = |score: &[f64]| -> Vec<f64> {
+        let met = |score: &[S]| -> Vec<S> {
             let back = below.reflected.applied(score);
-            below.score.iter().zip(back).map(|(own, back)| own + back).collect()
+            below.score.iter().zip(back).map(|(&own, back)| own + back).collect()
         };
         let (through, scores) = (below.through(), met(&self.score));
         let wanted = Matrix::new(columns, columns + 1, |i, j| {
@@ -149,13 +154,13 @@ impl Layer {
         });
         let solved = there_and_back.series_times(&wanted)?;
         let downward = Matrix::new(columns, columns, |i, j| solved.at(i, j));
-        let inner: Vec<f64> = (0..columns).map(|i| solved.at(i, columns)).collect();
+        let inner: Vec<S> = (0..columns).map(|i| solved.at(i, columns)).collect();
         let turned = self.reflected.times(&downward);
         let upward = upward(&turned);
         // Y − D₂ and M (N₂ + R₂N₁) for all rows, the further directions among them.
         let past = below.scattered.clone().plus(&below.reflected.times(&turned));
         let again = self.reflected.applied(&inner);
-        let seen: Vec<f64> = self.score.iter().zip(again).map(|(own, back)| own + back).collect();
+        let seen: Vec<S> = self.score.iter().zip(again).map(|(&own, back)| own + back).collect();
         let (all, passed) = (met(&seen), self.scattered.applied(&inner));
         let reflected = self.reflected.clone().plus(&self.scattered.times(&upward));
         let scattered = self.scattered.times(&downward);
@@ -163,13 +168,13 @@ impl Layer {
         Some(Self {
             reflected: reflected.plus_rows(&self.direct, &upward),
             scattered: scattered.plus_rows(&self.direct, &past),
-            direct: self.direct.iter().zip(&below.direct).map(|(a, b)| a * b).collect(),
+            direct: self.direct.iter().zip(&below.direct).map(|(&a, &b)| a * b).collect(),
             score: score.collect(),
         })
     }
 }
 
-fn direct(directions: &Directions, slice: &Slice, part: f64) -> Vec<f64> {
+fn direct<S: Scalar>(directions: &Directions, slice: &Slice<S>, part: f64) -> Vec<S> {
     let lost = slice.lost() * slice.flown * part;
-    directions.cosines.iter().map(|cosine| (-lost / cosine).exp()).collect()
+    directions.cosines.iter().map(|&cosine| (-lost / cosine).exp()).collect()
 }

@@ -33,7 +33,7 @@ pub mod walk;
 
 use crate::problems::slab::Light;
 use media::phase::Phase;
-use numeric::Known;
+use numeric::{Known, Scalar};
 
 use directions::Directions;
 use layer::{Layer, Slice};
@@ -214,6 +214,41 @@ pub fn solve(
     slices: &[Slice],
     resolution: Resolution,
 ) -> Option<Vec<Answer>> {
+    let known = resolved(phase, lights, slices, resolution)?;
+    let answer = |i| Answer::each(|of: fn(&Energy) -> &f64| known(i, 1.0, &|energy| *of(energy)));
+    Some((0..lights.len()).map(answer).collect())
+}
+
+/// Factorial moments `E[M(M − 1)…(M − k + 1)]`, k = 1 … 4, of the number of collisions of each light, given layers in which every collision has a mark and scores 1. Doubles have the first only, the others are
+/// infinite. `None` where a moment is infinite.
+pub fn factorial_moments<S: Scalar>(
+    phase: &Phase,
+    lights: &[Light],
+    slices: &[Slice<S>],
+) -> Option<Vec<[Known; 4]>> {
+    let known = resolved(phase, lights, slices, Resolution::COARSE)?;
+    let of_light = |i: usize| {
+        let mut factorial = 1.0;
+        std::array::from_fn(|k| {
+            factorial *= (k + 1) as f64;
+            if k >= S::TERMS {
+                return Known::INFINITE;
+            }
+            // Next to criticality a relative error x of the mean is one of (2k + 1)x.
+            known(i, (2 * k + 1) as f64, &|shares| shares.score.term(k)) * factorial
+        })
+    };
+    Some((0..lights.len()).map(of_light).collect())
+}
+
+/// Solves a stack of layers at four resolutions, whose differences give errors. The function that is returned makes
+/// a number from the shares of a light, and its error with that of the first layer multiplied by a factor.
+fn resolved<S: Scalar>(
+    phase: &Phase,
+    lights: &[Light],
+    slices: &[Slice<S>],
+    resolution: Resolution,
+) -> Option<impl Fn(usize, f64, &dyn Fn(&Shares<S>) -> f64) -> Known> {
     let resolution = resolution.of(phase);
     let at = |resolution| energies_at(phase, lights, slices, resolution);
     let fine = at(resolution)?;
@@ -225,27 +260,24 @@ pub fn solve(
         Some(_) => None,
         None => Some(thicker(phase, lights, slices, resolution, &fine)),
     };
-    let depth: f64 = slices.iter().map(|slice| slice.flown * slice.lost()).sum();
+    let depth: f64 = slices.iter().map(|slice| slice.flown * slice.lost().leading()).sum();
     let thick = (depth / THICK).max(1.0);
     let thin = if depth > 0.0 { (THIN / depth).max(1.0) } else { 1.0 };
-    let answer = |i: usize| {
+    Some(move |i: usize, amplified: f64, of: &dyn Fn(&Shares<S>) -> f64| {
         // Known errors are added: of the first layer, of rounding, and of doubles that have fewer digits.
-        Answer::each(|of: fn(&Energy) -> &f64| {
-            let [fine, coarse, coarsest] = [&fine[i], &coarse[i], &coarsest[i]].map(|all| *of(all));
-            let [of_coarsest, of_half] = resolution.gains;
-            let of_half = match (&half, &thicker) {
-                (Some(half), _) => (fine - of(&half[i])).abs() / of_half,
-                (None, Some(Some(thicker))) => (fine - of(&thicker[i])).abs(),
-                _ => f64::INFINITY,
-            };
-            let differences = (SAFETY * (fine - coarse).abs())
-                .max((fine - coarsest).abs() / of_coarsest)
-                .max(of_half);
-            let known = thick * (resolution.first_layer + ROUNDING) * fine.abs();
-            Known::estimated(fine, thin * differences + known + f64::MIN_POSITIVE)
-        })
-    };
-    Some((0..lights.len()).map(answer).collect())
+        let [fine, coarse, coarsest] = [&fine[i], &coarse[i], &coarsest[i]].map(of);
+        let [of_coarsest, of_half] = resolution.gains;
+        let of_half = match (&half, &thicker) {
+            (Some(half), _) => (fine - of(&half[i])).abs() / of_half,
+            (None, Some(Some(thicker))) => (fine - of(&thicker[i])).abs(),
+            _ => f64::INFINITY,
+        };
+        let differences = (SAFETY * (fine - coarse).abs())
+            .max((fine - coarsest).abs() / of_coarsest)
+            .max(of_half);
+        let known = amplified * thick * (resolution.first_layer + ROUNDING) * fine.abs();
+        Known::estimated(fine, thin * differences + known + f64::MIN_POSITIVE)
+    })
 }
 
 /// Shares of a slab that is thicker by the error of its critical depth; `None` where they are infinite.
@@ -257,22 +289,23 @@ pub fn solve(
 /// 1 − δ       depth, relative to the slab's, at which half of the directions give the reflectance `fine`
 /// 1 + δ/gain  depth of the slab that is solved, relative to the slab's
 /// ```
-fn thicker(
+fn thicker<S: Scalar>(
     phase: &Phase,
     lights: &[Light],
-    slices: &[Slice],
+    slices: &[Slice<S>],
     resolution: Resolution,
-    fine: &[Energy],
-) -> Option<Vec<Energy>> {
+    fine: &[Shares<S>],
+) -> Option<Vec<Shares<S>>> {
     let at = |resolution, depth: f64| {
-        let slices: Vec<Slice> =
+        let slices: Vec<Slice<S>> =
             slices.iter().map(|slice| Slice { flown: depth * slice.flown, ..*slice }).collect();
         energies_at(phase, lights, &slices, resolution)
     };
     let half = resolution.half();
     let is_below = |depth: f64| {
         let found = at(half, depth);
-        found.is_some_and(|found| found.iter().zip(fine).all(|(x, y)| x.reflected <= y.reflected))
+        let reflected = |shares: &Shares<S>| shares.reflected.leading();
+        found.is_some_and(|found| found.iter().zip(fine).all(|(x, y)| reflected(x) <= reflected(y)))
     };
     let (mut low, mut high) = (0.5, 1.0);
     if !is_below(low) {
@@ -296,68 +329,73 @@ pub fn energies(
 }
 
 /// Shares at a resolution that was made for the phase function.
-fn energies_at(
+fn energies_at<S: Scalar>(
     phase: &Phase,
     lights: &[Light],
-    slices: &[Slice],
+    slices: &[Slice<S>],
     resolution: Resolution,
-) -> Option<Vec<Energy>> {
+) -> Option<Vec<Shares<S>>> {
     let found = layers(phase, lights, slices, resolution)?;
     Some(found.into_iter().map(|(energy, _)| energy).collect())
 }
 
 /// Shares for each light, and the light that would collide in a thin layer below, per optical depth of that layer.
-fn layers(
+fn layers<S: Scalar>(
     phase: &Phase,
     lights: &[Light],
-    slices: &[Slice],
+    slices: &[Slice<S>],
     resolution: Resolution,
-) -> Option<Vec<(Energy, f64)>> {
+) -> Option<Vec<(Shares<S>, f64)>> {
     let (count, peak) = resolution.directions(phase);
     let further: Vec<f64> = lights.iter().filter_map(|light| light.cosine()).collect();
     let directions = Directions::new(phase, count, &further, peak);
     // The peak goes straight on.
-    let cut = |slice: &Slice| Slice {
-        straight: slice.straight + peak * slice.scattered,
-        scattered: (1.0 - peak) * slice.scattered,
+    let cut = |slice: &Slice<S>| Slice {
+        straight: slice.straight + slice.scattered * peak,
+        scattered: slice.scattered * (1.0 - peak),
         ..*slice
     };
-    let slices: Vec<Slice> = slices.iter().map(cut).collect();
+    let slices: Vec<Slice<S>> = slices.iter().map(cut).collect();
     let layer = stack(&directions, &slices, resolution.first_layer)?;
+    let sum = |row: &mut dyn Iterator<Item = S>| row.fold(S::from(0.0), |sum, x| sum + x);
     let leaving = |i: usize| {
-        let row = layer.scattered.row(i).iter().zip(&directions.cosines);
-        row.map(|(scattered, cosine)| scattered / cosine).sum::<f64>()
-            + layer.direct[i] / directions.cosines[i]
+        let row = layer.scattered.row(i).zip(&directions.cosines);
+        let scattered = sum(&mut row.map(|(scattered, &cosine)| scattered / cosine));
+        scattered + layer.direct[i] / directions.cosines[i]
     };
     let mut row = count;
     let mut found = Vec::with_capacity(lights.len());
     for light in lights {
-        let share = |f: &dyn Fn(usize) -> f64| match light {
+        let share = |f: &dyn Fn(usize) -> S| match light {
             Light::Collimated(_) => f(row),
             Light::Diffuse => {
-                let nodes = directions.weights.iter().zip(&directions.cosines);
-                nodes.enumerate().map(|(i, (weight, cosine))| 2.0 * weight * cosine * f(i)).sum()
+                let nodes = directions.weights.iter().zip(&directions.cosines).enumerate();
+                sum(&mut nodes.map(|(i, (weight, cosine))| f(i) * (2.0 * weight * cosine)))
             }
         };
-        let energy = Energy {
-            reflected: share(&|i| layer.reflected.row(i).iter().sum()),
-            transmitted: share(&|i| layer.scattered.row(i).iter().sum::<f64>() + layer.direct[i]),
+        let shares = Shares {
+            reflected: share(&|i| sum(&mut layer.reflected.row(i))),
+            transmitted: share(&|i| sum(&mut layer.scattered.row(i)) + layer.direct[i]),
             score: share(&|i| layer.score[i]),
         };
-        let colliding = share(&leaving);
+        let colliding = share(&leaving).leading();
         row += usize::from(light.cosine().is_some());
-        found.push((energy, colliding));
+        found.push((shares, colliding));
     }
-    let is_finite = |(energy, _): &(Energy, f64)| {
-        [energy.reflected, energy.transmitted, energy.score].iter().all(|x| x.is_finite())
+    let is_finite = |(shares, _): &(Shares<S>, f64)| {
+        let Shares { reflected, transmitted, score } = *shares;
+        [reflected, transmitted, score]
+            .iter()
+            .all(|x| (0..S::TERMS).all(|index| x.term(index).is_finite()))
     };
     found.iter().all(is_finite).then_some(found)
 }
 
 /// The layers laid upon each other, the first on top.
-fn stack(directions: &Directions, slices: &[Slice], error: f64) -> Option<Layer> {
-    let homogeneous = |slice: &Slice| {
-        let depth = slice.flown * slice.lost().abs().max(slice.scattered.abs());
+fn stack<S: Scalar>(directions: &Directions, slices: &[Slice<S>], error: f64) -> Option<Layer<S>> {
+    let homogeneous = |slice: &Slice<S>| {
+        let [lost, scattered] = [slice.lost(), slice.scattered].map(|x| x.leading().abs());
+        let depth = slice.flown * lost.max(scattered);
         let doublings = (FIRST_LAYER * depth * depth.max(1.0) / error).log2().ceil();
         #[allow(clippy::cast_possible_truncation)] // a small number
         let doublings = doublings.clamp(0.0, MOST_DOUBLINGS) as i32;

@@ -13,26 +13,21 @@
 //! Cov[X_R, X_T] = −RT,   E[(X_R − R)²(X_T − T)²] = E[X_R²]T² + E[X_T²]R² − 3R²T²
 //! ```
 //!
-//! The number M of collisions has the generating function `G(z) = E[z^M]`, the energy of a slab with `zQ_0`, `zS_0`
-//! and the score `z(1 − Q_0 − S_0)` for one particle. Its cumulants are derivatives of `ln G(e^θ)`, taken from θ =
-//! 0, ±h, ±2h:
-//!
-//! ```text
-//! Var[M] = (16(f(h) + f(−h)) − f(2h) − f(−2h) − 30 f(0))/(12h²),   f(θ) = ln G(e^θ)
-//! ```
+//! The number M of collisions has the factorial moments that are the scores of a slab of `zQ_0` and `zS_0` over power
+//! series in y, with `z = 1 + y`, see [`super::layer`].
 //!
 //! Source: Szirmay-Kalos et al. 2017, sections 3.1–3.3; that moments are slabs again, the covariance and
 //! the cost are derived here.
 
 use super::layer::Slice;
 use super::pieces::{Piece, Pieces};
-use super::{Answer, Energy, Light, Resolution, energies, solve};
+use super::{Answer, Energy, Light, Resolution, energies, factorial_moments, solve};
 use crate::particle::{Odds, ParticleRule};
 use crate::prediction::{Covariance, UNRESOLVED};
 use crate::problems::slab::Incidence;
 use crate::raw::{POWERS, RawMoments};
 use crate::{Channel, CountLaw, Prediction, Tails, colours};
-use numeric::Known;
+use numeric::{Jet, Known, Scalar};
 
 /// The channels of a draw, in their order.
 pub const CHANNELS: [&str; 2] = ["reflectance", "transmittance"];
@@ -85,12 +80,13 @@ impl Walk {
     /// Predictions for several lights, with common computations.
     pub fn predict_all(&self, lights: &[Light], truths: &[Answer]) -> Vec<Prediction> {
         let raw = POWERS.map(|k| self.moments(k, lights, truths));
-        let laws = self.lookups(lights).into_iter().chain(std::iter::repeat(None));
-        let of = |((i, truth), law): ((usize, &Answer), Option<CountLaw>)| {
+        let lookups = self.lookups(lights);
+        let of = |(i, truth): (usize, &Answer)| {
+            let law = lookups.as_ref().map(|lookups| CountLaw::of_factorial(lookups[i]));
             let of_side = |side: usize| RawMoments(raw.each_ref().map(|all| all[i][side]));
             self.predicted(truth, [0, 1].map(of_side), law)
         };
-        truths.iter().enumerate().zip(laws).map(of).collect()
+        truths.iter().enumerate().map(of).collect()
     }
 
     fn odds(&self, ratio: f64) -> Odds {
@@ -247,74 +243,31 @@ impl Walk {
         Prediction { channels: channels.into(), lookups, covariances, ..Prediction::default() }
     }
 
-    /// Distribution of the number of collisions in each light, without its probabilities; `None` where it is not
-    /// known, or has an infinite variance.
-    fn lookups(&self, lights: &[Light]) -> Vec<Option<CountLaw>> {
-        let Some(scored) = self.scored() else { return Vec::new() };
-        let law = |(light, answer): (&Light, Answer)| {
-            self.count(answer.score, |theta| self.ln_generating(light, theta))
-        };
-        let answers = solve(&self.incidence.phase, lights, &scored, Resolution::COARSE);
-        lights.iter().zip(answers.into_iter().flatten()).map(law).collect()
+    /// Factorial moments of the number of collisions in each light, see [`factorial_moments`], the first only without
+    /// `laws`; `None` where they are not known.
+    pub fn lookups(&self, lights: &[Light]) -> Option<Vec<[Known; 4]>> {
+        let phase = &self.incidence.phase;
+        if self.laws {
+            factorial_moments(phase, lights, &self.marked::<Jet<4>>()?)
+        } else {
+            factorial_moments(phase, lights, &self.marked::<f64>()?)
+        }
     }
 
-    /// Layers that score every collision; `None` where the distribution of their number is not known.
-    fn scored(&self) -> Option<Vec<Slice>> {
+    /// Layers with a mark and a score of 1 at every collision; `None` where the distribution of their number is not known.
+    fn marked<S: Scalar>(&self) -> Option<Vec<Slice<S>>> {
         let Pieces::Exact(pieces) = &self.pieces else { return None };
         // A layer of null collisions only has infinitely many of them along it.
         let odds = |ratio: f64| self.odds(ratio);
         let is_idle = pieces.is_empty() || pieces.iter().any(|piece| piece.is_idle(odds));
-        (!is_idle).then(|| self.slices(pieces, 1.0, |_| 1.0))
-    }
-
-    fn slices(&self, pieces: &[Piece], z: f64, score: fn(&Odds) -> f64) -> Vec<Slice> {
-        let at = |ratio: f64| {
-            let odds = self.odds(ratio);
-            [odds.transmit, odds.scatter, score(&odds)].map(|x| z * x)
+        let marked = |piece: &Piece| {
+            let of_odds = |Odds { transmit, scatter, .. }| [transmit, scatter, 1.0];
+            let Slice { flown, straight, scattered, score } = piece.slice(|r| of_odds(odds(r)));
+            let [straight, scattered] = [straight, scattered].map(|x| S::mark() * x);
+            Slice { flown, straight, scattered, score }
         };
-        pieces.iter().map(|piece| piece.slice(at)).collect()
+        (!is_idle).then(|| pieces.iter().map(marked).collect())
     }
-
-    /// `ln G(e^θ)`.
-    fn ln_generating(&self, light: &Light, theta: f64) -> Option<f64> {
-        let Pieces::Exact(pieces) = &self.pieces else { return None };
-        let ends = |odds: &Odds| 1.0 - odds.transmit - odds.scatter;
-        let slices = self.slices(pieces, theta.exp(), ends);
-        let lights = std::slice::from_ref(light);
-        let found = energies(&self.incidence.phase, lights, &slices, Resolution::LAYERED)?.pop()?;
-        Some((found.reflected + found.transmitted + found.score).ln())
-    }
-
-    /// Distribution of a count, given its mean and `ln G(e^θ)`.
-    fn count(
-        &self,
-        Known { value: mean, error, .. }: Known,
-        f: impl Fn(f64) -> Option<f64>,
-    ) -> Option<CountLaw> {
-        let [variance, fourth] = if self.laws { cumulants(mean, f)? } else { [mean, 0.0] };
-        let kurtosis = 3.0 + fourth / (variance * variance);
-        let error = error / mean;
-        Some(CountLaw { mean, variance, error, kurtosis, poisson: false, pmf: Vec::new() })
-    }
-}
-
-/// Distribution of the number of collisions of one of several walks, by their probabilities, in their first light;
-/// `None` where it is not known.
-pub fn mixed_lookups(walks: &[(f64, Walk)]) -> Option<CountLaw> {
-    let mut mean = Known::new(0.0, 0.0);
-    for (weight, walk) in walks {
-        let (phase, lights) = (&walk.incidence.phase, [walk.incidence.light]);
-        let score = solve(phase, &lights, &walk.scored()?, Resolution::COARSE)?[0].score;
-        mean = mean + score * *weight;
-    }
-    let (_, first) = walks.first()?;
-    first.count(mean, |theta| {
-        let mut sum = 0.0;
-        for (weight, walk) in walks {
-            sum += weight * walk.ln_generating(&walk.incidence.light, theta)?.exp();
-        }
-        Some(sum.ln())
-    })
 }
 
 /// `E[X^k]` of a draw in [0, 1] with mean T, clamped to its bounds: `Tᵏ ≤ E[X^k] ≤ T`, by Jensen's inequality and
@@ -333,30 +286,4 @@ fn of_share(found: Known, truth: Known, k: i32) -> Known {
 fn extrapolated(coarse: Known, fine: f64) -> Known {
     let step = fine - coarse.value;
     Known::estimated(fine + step / 3.0, step.abs() + coarse.error + 1e-4 * fine.abs())
-}
-
-/// The step of θ in units of the number of collisions over which the distribution decays.
-const STEP: f64 = 0.02;
-
-/// The second and the fourth cumulant from the cumulant-generating function; `None` where the function is infinite
-/// too near to 0.
-fn cumulants(mean: f64, f: impl Fn(f64) -> Option<f64>) -> Option<[f64; 2]> {
-    let at = |h: f64| -> Option<[f64; 2]> {
-        let [far, near, here, before, back] = [2.0 * h, h, 0.0, -h, -2.0 * h].map(&f);
-        let (outer, inner, here) = (far? + back?, near? + before?, here?);
-        let second = (16.0 * inner - outer - 30.0 * here) / (12.0 * h * h);
-        Some([second, (outer - 4.0 * inner + 6.0 * here) / (h * h * h * h)])
-    };
-    let mut scale = 1.0 + mean;
-    let mut found = at(STEP / scale);
-    for _ in 0..4 {
-        // The decay length of a long tail is variance over mean.
-        let wanted = found.map_or(8.0 * scale, |[variance, _]| 1.0 + variance / mean);
-        if found.is_some() && wanted <= 2.0 * scale {
-            break;
-        }
-        scale = wanted;
-        found = at(STEP / scale);
-    }
-    found.filter(|[variance, fourth]| *variance > 0.0 && fourth.is_finite())
 }

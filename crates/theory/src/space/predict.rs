@@ -143,7 +143,8 @@ pub fn infinite(problem: &InfiniteMedium, end: Option<f64>, ratio: Option<f64>) 
             return CountLaw::always(1.0);
         }
         let (mean, error, pmf) = (1.0 / end, infinite::ROUNDING, Vec::new());
-        CountLaw { mean, variance, error, kurtosis, poisson: false, pmf }
+        let moments_error = error;
+        CountLaw { mean, variance, error, moments_error, kurtosis, poisson: false, pmf }
     };
     Prediction { channels, lookups: end.map(law), ..Prediction::default() }
 }
