@@ -50,6 +50,16 @@ pub struct ExperimentRecord {
     /// Bound on the relative error of the predicted mean number of lookups.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub lookups_error: Option<f64>,
+    /// Bound on the relative error of the predicted variance and fourth central moment of the number of lookups; `None`
+    /// without a bound.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub lookups_moments_error: Option<f64>,
+    /// The predicted mean number of lookups of one draw's walk, where its shadow rays look up, too.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub walk_lookups: Option<f64>,
+    /// The predicted mean number of lookups of one draw's shadow rays; `None` if there are none, or it is unknown.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub shadow_lookups: Option<f64>,
     /// Predicted probabilities `P(0), P(1), …` of the number of lookups of one draw; empty if unknown or longer than 100.
     pub lookups_pmf: Vec<f64>,
     /// The share of the ray on which `w ≤ 2σ_t`, the stability condition, holds.

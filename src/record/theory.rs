@@ -32,6 +32,7 @@ pub fn predicted(case: &PlannedCase, planned: &Planned) -> ExperimentRecord {
     };
     let prediction = &ready.prediction;
     let law = prediction.lookups.as_ref();
+    let shadow_lookups = prediction.shadow_lookups.filter(|_| law.is_some());
     let cost = prediction.cost(planned.draws_per_ray);
     let mut channels: Vec<ChannelRecord> =
         prediction.channels.iter().map(|channel| of_channel(channel, cost)).collect();
@@ -47,6 +48,9 @@ pub fn predicted(case: &PlannedCase, planned: &Planned) -> ExperimentRecord {
         stable_share: prediction.stable_share,
         lookups_variance: law.map(|law| law.variance),
         lookups_error: finite(law.map(|law| law.error.max(CountLaw::ERROR))),
+        lookups_moments_error: finite(law.map(|law| law.moments_error.max(CountLaw::ERROR))),
+        walk_lookups: law.zip(shadow_lookups).map(|(law, shadow)| law.mean - shadow),
+        shadow_lookups,
         lookups_pmf: pmf.unwrap_or_default(),
         channels,
         ..blank

@@ -216,6 +216,8 @@ fn predictions_hold_covariances_of_neighbouring_channels() {
         assert!((number(0, "covariance") / product + 1.0).abs() < 1e-12, "{pair:?}");
         assert_eq!(pair[1]["covariance"], serde_json::Value::Null);
         assert!(number(0, "lookups_error") < 1e-3, "{pair:?}");
+        assert!(number(0, "lookups_moments_error") < 1e-3, "{pair:?}");
+        assert!(!pair[0].contains_key("shadow_lookups") || pair[0]["shadow_lookups"].is_null());
     }
 }
 

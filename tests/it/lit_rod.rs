@@ -79,8 +79,12 @@ fn lookups_are_those_of_the_references() {
         assert!((real + null - walk).abs() < reference.error, "{}: {real} {null}", reference.what);
         assert!((shadow - cast).abs() < reference.error, "{}: {shadow}", reference.what);
         assert!(error < 1e-11, "{error:e}");
-        let all = predict(reference, techniques).lookups.expect("a law").mean;
+        let predicted = predict(reference, techniques);
+        let all = predicted.lookups.expect("a law").mean;
         assert!((all - (walk + cast)).abs() < 2.0 * reference.error);
+        assert_eq!(predicted.shadow_lookups.is_some(), techniques.shadow.is_some());
+        let shadow = predicted.shadow_lookups.unwrap_or_default();
+        assert!((shadow - cast).abs() < reference.error, "{}: {shadow}", reference.what);
     }
 }
 

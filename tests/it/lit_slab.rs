@@ -182,6 +182,30 @@ fn fourth_moments_are_those_of_sums_over_null_collisions() {
     }
 }
 
+/// Shadow rays change no walk: without the lookups of shadow rays those of exact ones are left, which look up nothing.
+#[test]
+fn lookups_of_shadow_rays_add_to_those_of_the_walk() {
+    let text = "medium.exponential = { base = 0.2, extinction = 1.2, rate = 0.5 }\nspan = [0, 3]";
+    let predicted = |shadow, combination| {
+        let techniques = Techniques { shadow, combination };
+        let found = predict(text, (0.7, 0.4), Light::Cap(0.6), 1.9, techniques);
+        (found.lookups.expect("known").mean, found.shadow_lookups)
+    };
+    assert_eq!(predicted(None, Combination::Unidirectional).1, None);
+    for combination in
+        [Combination::NextEvent, Combination::Mis(Densities::Directional, Heuristic::Balance)]
+    {
+        let (walk, nothing) = predicted(Some(Shadow::Exact), combination);
+        assert_eq!(nothing, Some(0.0));
+        for shadow in [Shadow::Ratio, Shadow::Delta] {
+            let (all, of_shadow_rays) = predicted(Some(shadow), combination);
+            let of_shadow_rays = of_shadow_rays.expect("known");
+            assert!(of_shadow_rays > 0.1, "{shadow:?}: {of_shadow_rays}");
+            assert!((walk + of_shadow_rays - all).abs() < 1e-12 * all, "{shadow:?}: {walk}, {all}");
+        }
+    }
+}
+
 #[test]
 fn all_combinations_have_one_mean() {
     // Extinction varies, and σ̂ equals its maximum: the means of shadow rays and of hits, weighted, are the truth.

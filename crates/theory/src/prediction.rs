@@ -10,6 +10,9 @@ pub struct Prediction {
     pub channels: Vec<Channel>,
     /// The number of lookups of one draw; `None` where no closed form is known.
     pub lookups: Option<CountLaw>,
+    /// The mean number of lookups of one draw's shadow rays, part of those of [`Prediction::lookups`]; `None` where there
+    /// are no shadow rays, or it is not known.
+    pub shadow_lookups: Option<f64>,
     /// Lookups of σ_t that recipes for σ̂ and σ_c make for a ray before its first draw, as at explorer points and by pilot rays.
     pub setup_lookups: u64,
     /// `E[random numbers]` of one draw as this crate makes it; `None` where it is not computed.

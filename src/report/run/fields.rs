@@ -90,6 +90,12 @@ table! {
         "covariance" ["Cov next", "of the case, squared", Fixed(4)]: "Covariance of one draw with the next channel in theory" = |line| line.covariance;
         "error_grade" ["errors are", "", Plain]: "Ground of `truth_error` and `moments_error`: proven, or estimated from resolutions"
             = |line| line.error_grade.map(Grade::word);
+        "lookups_moments_error" ["V_N error", "", Fixed(2)]:
+            "Bound on the relative error of variance and fourth central moment of the lookups" = |line| line.experiment.lookups_moments_error;
+        "walk_lookups" ["by walk", "", Fixed(4)]:
+            "Expected lookups of a draw's walk; empty if no shadow rays are cast" = |line| line.experiment.walk_lookups;
+        "shadow_lookups" ["by shadow", "", Fixed(4)]:
+            "Expected lookups of a draw's shadow rays" = |line| line.experiment.shadow_lookups;
     } screens {
         "variance_ratio" ["s²/V", "", Places(3)]: "Measured variance over that of theory" = |line| line.variance_ratio();
         "lookups_spread" ["± σ", "", Fixed(4)]: "Standard deviation of the number of lookups in theory"

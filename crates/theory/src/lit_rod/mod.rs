@@ -55,12 +55,11 @@ pub fn predict(
 ) -> Prediction {
     let answer = answer(mesh, problem);
     let found = Found::of(mesh, problem, sampling, techniques, laws);
-    match found {
-        None => Prediction::uncounted(Channel::unbiased(answer, None, Tails::LIGHT)),
-        Some(Found { lookups, raw }) => {
-            Prediction::single(raw.channel(answer, RESOLVED), CountLaw::of_factorial(lookups))
-        }
-    }
+    let Some(Found { lookups, shadow_lookups, raw }) = found else {
+        return Prediction::uncounted(Channel::unbiased(answer, None, Tails::LIGHT));
+    };
+    let law = CountLaw::of_factorial(lookups);
+    Prediction { shadow_lookups, ..Prediction::single(raw.channel(answer, RESOLVED), law) }
 }
 
 /// Radiance at the camera; NaN where it is unknown.
@@ -86,6 +85,8 @@ pub fn lookups(
 pub struct Found {
     /// `E[M(M − 1)…(M − k + 1)]` of the lookups, k = 1 … 4.
     pub lookups: [Known; 4],
+    /// Mean number of lookups of shadow rays, if there are any.
+    pub shadow_lookups: Option<f64>,
     /// Raw moments of the draw.
     pub raw: RawMoments,
 }
@@ -109,14 +110,16 @@ impl Found {
             Some(numbers)
         })?;
         let known = |&[value, error]: &[f64; 2]| Known::estimated(value, error);
-        let scattered = &numbers[4..];
+        let shadow_lookups = techniques.shadow.map(|_| numbers[4][0]);
+        let scattered = &numbers[5..];
         let unscattered = mesh.optical_depth().exp_neg();
         let raw = std::array::from_fn(|i| {
             let k = POWERS[i].unsigned_abs() as usize;
             let moment = scattered.get(k - 1).map(known);
             moment.map_or(Known::INFINITE, |moment| with_hit(moment, unscattered, i, techniques))
         });
-        Some(Self { lookups: std::array::from_fn(|k| known(&numbers[k])), raw: RawMoments(raw) })
+        let lookups = std::array::from_fn(|k| known(&numbers[k]));
+        Some(Self { lookups, shadow_lookups, raw: RawMoments(raw) })
     }
 }
 

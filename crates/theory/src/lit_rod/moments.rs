@@ -96,8 +96,8 @@ fn shadow_lookups(grid: &Grid, shadow: Option<Shadow>) -> Option<Vec<[f64; 5]>> 
     Some(found)
 }
 
-/// `E[M(M − 1)…(M − k + 1)]`, k = 1 … 4, of all lookups.
-pub fn lookups(grid: &Grid, techniques: Techniques) -> Option<[f64; 4]> {
+/// `E[M(M − 1)…(M − k + 1)]`, k = 1 … 4, of all lookups, and the mean number of those of shadow rays.
+pub fn lookups(grid: &Grid, techniques: Techniques) -> Option<[f64; 5]> {
     let of_shadow = shadow_lookups(grid, techniques.shadow)?;
     let mut futures: Vec<Importance> = Vec::new();
     for n in 1..=4_usize {
@@ -122,6 +122,8 @@ pub fn lookups(grid: &Grid, techniques: Techniques) -> Option<[f64; 4]> {
         };
         futures.push(grid.solve(|step| step.rates(0), source, [0.0; 2])?);
     }
+    let source = |i: usize, step: &Step| [scattering(step) * of_shadow[i][1]; 2];
+    futures.push(grid.solve(|step| step.rates(0), source, [0.0; 2])?);
     Some(std::array::from_fn(|n| futures[n].entering()))
 }
 

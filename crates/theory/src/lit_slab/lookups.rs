@@ -19,15 +19,16 @@ use crate::raw::{Raw, added, of_factorial, poisson};
 /// Optical depth at which rays are cut off: one in 1e26 goes farther.
 const FAR: f64 = 60.0;
 
-/// `E[M^k]`, k = 0 … 4.
+/// `E[M^k]`, k = 0 … 4, and the mean number of lookups of shadow rays.
 pub fn raw(
     column: &Column,
     problem: &LitSlab,
     techniques: Techniques,
     resolution: &Resolution,
-) -> Raw {
+) -> (Raw, f64) {
     let [depth, nulls] = column.whole;
     let mut found = poisson(nulls).map(|moment| (-depth).exp() * moment);
+    let mut of_shadow_rays = 0.0;
     for (i, node) in column.nodes.iter().enumerate() {
         let reached = node.weight * node.extinction * (-node.depth).exp();
         let collided = added([1.0; 5], poisson(node.nulls));
@@ -55,11 +56,12 @@ pub fn raw(
         flown[0] += 1.0 - hits;
         let scattered = added(collided, added(cast, flown));
         let a = problem.albedo;
+        of_shadow_rays += reached * a * cast[1];
         for (k, sum) in found.iter_mut().enumerate() {
             *sum += reached * (a * scattered[k] + (1.0 - a) * collided[k]);
         }
     }
-    found
+    (found, of_shadow_rays)
 }
 
 fn add(sum: &mut Raw, weight: f64, moments: Raw) {

@@ -72,7 +72,9 @@ pub fn predict(
         let k = POWERS[i].unsigned_abs() as usize;
         if k > highest { Known::INFINITE } else { fine.known(&coarse, k) }
     }));
-    Prediction::single(raw.channel(truth, RESOLVED), fine.count(&coarse))
+    let shadow_lookups = techniques.shadow.map(|_| fine.shadow_lookups);
+    let single = Prediction::single(raw.channel(truth, RESOLVED), fine.count(&coarse));
+    Prediction { shadow_lookups, ..single }
 }
 
 /// Radiance at the camera.
@@ -96,6 +98,8 @@ struct Scores {
     errors: Powers,
     /// `E[M^k]`.
     lookups: Raw,
+    /// Mean number of lookups of shadow rays.
+    shadow_lookups: f64,
     /// Relative error of all numbers from the mesh.
     error: f64,
 }
@@ -112,10 +116,12 @@ impl Scores {
         let column = Column::new(mesh, problem, sampling, &weights.contour, resolution);
         let error = column.error(problem.light.lowest());
         let off = ROUNDINGS * f64::EPSILON + error;
+        let (lookups, shadow_lookups) = lookups::raw(&column, problem, techniques, resolution);
         let mut found = Self {
             powers: [0.0; HIGHEST + 1],
             errors: [0.0; HIGHEST + 1],
-            lookups: lookups::raw(&column, problem, techniques, resolution),
+            lookups,
+            shadow_lookups,
             error,
         };
         for node in &column.nodes {

@@ -115,6 +115,10 @@ impl<'a> Spectrum<'a> {
             mixed.map(CountLaw::of_factorial)
         };
         let lookups = lookups.or_else(|| found.as_ref().and_then(of_heroes));
+        let shadow_lookups = found.as_ref().and_then(|found| {
+            let each = self.heroes.iter().zip(found);
+            each.map(|(weight, found)| Some(weight * found.shadow_lookups?)).sum()
+        });
         let moments = match (self.tracker, &forward) {
             (Tracker::Tracking(chances), forward) => {
                 forward.as_ref().and_then(|forward| forward.tracking(chances))
@@ -144,7 +148,7 @@ impl<'a> Spectrum<'a> {
                 covariances.push(Covariance::of_raw([index, index + 1], means, squares, *mixed));
             }
         }
-        Prediction { channels, lookups, covariances, ..Prediction::default() }
+        Prediction { channels, lookups, shadow_lookups, covariances, ..Prediction::default() }
     }
 
     /// A bound on `E[X²]` of a channel by MIS over heroes.
