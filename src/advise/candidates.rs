@@ -11,7 +11,8 @@ use crate::case::{Case, CaseError, Source, Spec, forms};
 use media::Body;
 use media::catalogue::{Entry, Node, Page, Value};
 use numeric::digits::number;
-use theory::rules::Single;
+use theory::Rule;
+use theory::rules::{Single, Weight};
 
 /// Numbers of segments of local majorants along a ray.
 const SEGMENTS: [u32; 7] = [1, 2, 4, 8, 16, 32, 64];
@@ -21,8 +22,12 @@ const CELLS: [u32; 4] = [4, 8, 16, 32];
 const POINTS: [u32; 5] = [2, 4, 8, 16, 32];
 /// Numbers of octaves of noise that explorers look up.
 const OCTAVES: [u32; 3] = [1, 2, 4];
+/// Numbers of pilot rays.
+const PILOTS: [u32; 2] = [2, 8];
 /// Albedos of the rules that take one.
 const ALBEDOS: [f64; 5] = [0.1, 0.3, 0.5, 0.7, 0.9];
+/// Recipe of σ̂ by which a case takes a profile.
+pub const RECIPE: &str = "sampling.piecewise-constant";
 /// Settings of a problem that advice replaces.
 const REPLACED: [&str; 4] = ["estimators", "sampling", "sweep", "rays"];
 
@@ -33,6 +38,16 @@ pub enum Collisions {
     Weight,
     /// The single particle.
     Single(Single),
+}
+
+impl Collisions {
+    /// Returns the rule.
+    pub fn rule(&self) -> &dyn Rule {
+        match self {
+            Self::Weight => &Weight,
+            Self::Single(rule) => rule,
+        }
+    }
 }
 
 /// Returns the candidates of a case: every estimator of its problem, and those that the case lists, each without its
@@ -56,7 +71,7 @@ pub fn listed(base: &Case, rays: &[Body]) -> Result<Vec<String>, CaseError> {
     let mut seen = BTreeSet::from(["double = {}".to_owned()]);
     texts.retain(|text| seen.insert(text.clone()));
     let Some(first) = rays.first() else { return Ok(Vec::new()) };
-    match case(base, first, &texts) {
+    match Case::of_body(&replaced(&base.spec, &texts), first) {
         Ok(_) => Ok(texts),
         Err(CaseError::Faulty { source_text, faults }) => {
             let places: Vec<Option<usize>> =
@@ -91,6 +106,11 @@ fn of_transmittance(rays: usize) -> Vec<String> {
     for rule in ["non-terminating", "adaptive"] {
         let text = |albedo| format!("single = {{ rule = \"{rule}\", albedo = {albedo} }}");
         texts.extend(ALBEDOS.map(text));
+    }
+    for rays in PILOTS {
+        let recipe = format!("sampling.pilot.rays = {rays}");
+        texts.extend(["ratio", "weighted-delta"].map(|name| format!("{name} = {{ {recipe} }}")));
+        texts.push(format!("single = {{ rule = \"clamped\", {recipe} }}"));
     }
     for points in POINTS {
         texts.push(format!("double = {{ control = {{ explorers = {{ points = {points} }} }} }}"));
@@ -146,17 +166,8 @@ fn place(path: &str) -> Option<usize> {
     path.split_once("estimators[")?.1.split_once(']')?.0.parse().ok()
 }
 
-/// Reads the case with these candidates in place of its estimators, on a ray.
-///
-/// # Errors
-///
-/// Candidates that the case cannot have.
-pub fn case(base: &Case, ray: &Body, texts: &[String]) -> Result<Case, CaseError> {
-    Case::of_body(&replaced(&base.spec, texts), ray)
-}
-
 /// Returns a spec with these estimators in place of its own, and a σ̂ of 1 until one is chosen.
-fn replaced(spec: &Spec, texts: &[String]) -> Spec {
+pub fn replaced(spec: &Spec, texts: &[String]) -> Spec {
     let list: Vec<String> = texts.iter().map(|text| format!("{{ {text} }}")).collect();
     let text = format!("sampling.constant.value = 1\nestimators = [{}]", list.join(", "));
     let source = Source { text, ..spec.source().clone() };
@@ -172,6 +183,16 @@ pub fn family(text: &str) -> String {
     let is_kept = |c: &char| !(c.is_ascii_digit() || matches!(c, '.' | '-' | ' '));
     let words = text.replace("].", "]");
     words.chars().filter(is_kept).collect()
+}
+
+/// Returns whether σ̂ of a candidate is given in steps along the ray.
+pub fn is_profile(text: &str) -> bool {
+    text.contains(RECIPE)
+}
+
+/// Returns whether σ̂ of a candidate is learned by lookups at random places.
+pub fn is_learned(text: &str) -> bool {
+    text.contains("sampling.pilot")
 }
 
 /// Returns the rule of a product estimator with one free constant σ̂; `None` for other candidates.

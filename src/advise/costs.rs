@@ -4,8 +4,9 @@
 //! cost of a draw = draw + lookup · (E[lookups] + setup lookups/draws per ray)
 //! ```
 //!
-//! `draw` and `lookup` of a candidate are measured in the medium itself, with draws at two σ̂, by processor time. They
-//! are kept in a file for each medium and machine, and measured again on demand.
+//! `draw` and `lookup` of a candidate are measured in the medium itself, with draws at two σ̂, by processor time. Those of
+//! the first rows are corrected by draws at the advised σ̂. They are kept in a file for each medium and machine, and
+//! measured again on demand.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -14,7 +15,6 @@ use cpu_time::ThreadTime;
 use fearless_simd::Level;
 use serde::{Deserialize, Serialize};
 
-use crate::bench::record::Spread;
 use crate::case::sweep::Variation;
 use crate::case::{Case, Spec};
 use estimators::DrawBuffer;
@@ -22,8 +22,8 @@ use media::files;
 use numeric::pack;
 use numeric::rng::name_hash;
 
-/// Rounds of a measurement, of which the median counts.
-const ROUNDS: u64 = 5;
+/// Rounds of a measurement.
+const ROUNDS: u64 = 8;
 /// Shortest time of a round, seconds.
 const MIN_SECONDS: f64 = 1e-4;
 /// Draws at a time: the kernels fill their lanes.
@@ -76,7 +76,7 @@ pub struct Price {
     pub draw: f64,
     /// Cost of a lookup.
     pub lookup: f64,
-    /// Relative error: half the range of the rounds; 0 for given costs.
+    /// Relative error; 0 for given costs.
     pub error: f64,
 }
 
@@ -116,6 +116,29 @@ impl Prices {
         Some(price)
     }
 
+    /// Returns the price of a candidate, corrected by draws at one place; `None` for given costs, and where it cannot be
+    /// drawn.
+    pub fn at(
+        &mut self,
+        key: &str,
+        case: &Case,
+        at: (usize, Variation),
+        price: Price,
+    ) -> Option<Price> {
+        if self.given.is_some() {
+            return None;
+        }
+        let key = format!("{key} at {:?}", at.1.map(|(_, x)| x));
+        if let Some(known) = self.known.get(&key) {
+            return Some(*known);
+        }
+        let Timing { seconds, error, lookups } = timed(case, at.0, at.1)?;
+        let factor = seconds / (price.draw + price.lookup * lookups);
+        let price = Price { draw: price.draw * factor, lookup: price.lookup * factor, error };
+        self.known.insert(key, price);
+        Some(price)
+    }
+
     /// Keeps the prices. A folder that cannot be written to only costs the time of the next measurement.
     pub fn keep(&self) {
         let Some(path) = &self.path else { return };
@@ -143,7 +166,7 @@ fn file(folder: &Path, spec: &Spec) -> PathBuf {
 struct Timing {
     /// Seconds of a draw.
     seconds: f64,
-    /// Distance of the fastest round from the median, relative.
+    /// Relative error.
     error: f64,
     /// Lookups of a draw in theory.
     lookups: f64,
@@ -167,13 +190,15 @@ fn measured(case: &Case, (estimator, places): (usize, [Variation; 2])) -> Option
 }
 
 fn timed(case: &Case, estimator: usize, place: Variation) -> Option<Timing> {
-    let ready = case.at(place).ok()?.prepare(estimator, case.pilots(1, estimator)).ok()?;
-    let lookups = ready.prediction.lookups.as_ref()?.mean;
-    let mut buffer = DrawBuffer::new(ready.prediction.channels.len());
+    let (at, pilots) = (case.at(place).ok()?, case.pilots(1, estimator));
+    let prediction = at.predict(estimator, None, pilots)?;
+    let lookups = prediction.lookups.as_ref()?.mean;
+    let experiment = at.experiment(estimator, pilots).ok()?;
+    let mut buffer = DrawBuffer::new(prediction.channels.len());
     let mut streams = case.address(1, estimator, place).streams();
     let mut fill = |times: u32| {
         let begin = ThreadTime::now();
-        (0..times).for_each(|_| ready.experiment.fill(&mut streams, DRAWS, &mut buffer));
+        (0..times).for_each(|_| experiment.fill(&mut streams, DRAWS, &mut buffer));
         begin.elapsed().as_secs_f64() / (f64::from(times) * DRAWS as f64)
     };
     // The first buffer maps memory.
@@ -181,7 +206,13 @@ fn timed(case: &Case, estimator: usize, place: Variation) -> Option<Timing> {
     let seconds = fill(1).max(1e-12);
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // from 1 to 1024
     let times = (MIN_SECONDS / (seconds * DRAWS as f64)).ceil().clamp(1.0, 1024.0) as u32;
-    let rounds = Spread::of((0..ROUNDS).map(|_| fill(times)))?;
-    let error = 1.0 - rounds.least / rounds.median;
-    Some(Timing { seconds: rounds.median, error, lookups })
+    let (seconds, error) = fast((0..ROUNDS).map(|_| fill(times)).collect());
+    Some(Timing { seconds, error, lookups })
+}
+
+/// Returns the lower quartile of the times of rounds, and its relative error: other work only adds time.
+pub fn fast(mut rounds: Vec<f64>) -> (f64, f64) {
+    rounds.sort_by(f64::total_cmp);
+    let [low, middle] = [4, 2].map(|part| rounds[rounds.len() / part].max(1e-12));
+    (low, (middle / low - 1.0) / (rounds.len() as f64).sqrt())
 }

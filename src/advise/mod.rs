@@ -38,14 +38,15 @@ pub const CATALOGUE: PageList = PageList {
 
 use std::time::Instant;
 
-use crate::case::sweep::What;
+use crate::case::sweep::{Variation, What};
 use crate::case::{Case, CaseError, Spec};
 use candidates::Collisions;
+use costs::Prices;
 use media::Body;
 use media::catalogue::{Page, PageList};
 use numeric::digits::number;
-use search::Kind;
-use study::{Best, Study};
+use search::{BEYOND, Kind, MAX_FACTOR, UNKNOWN};
+use study::{Best, Score, Study};
 use theory::parallel;
 
 /// Difference of two times that is a tie, with exact costs: settings are searched to this accuracy.
@@ -53,8 +54,12 @@ const TIE: f64 = 1e-3;
 
 /// Standard error of a sample variance that can be trusted.
 const TRUST: f64 = 0.1;
+/// Number of rows with a price that is corrected by draws at the advised σ̂.
+const CORRECTED: usize = 8;
+/// Number of curves: of the first rows with a constant σ̂.
+pub const CURVES: usize = 5;
 /// Number of points of a curve on each side of the best σ̂.
-const CURVE: i32 = 12;
+const POINTS: i32 = 8;
 /// Range of σ̂ of a curve on each side, as a factor.
 const WIDTH: f64 = 10.0;
 
@@ -83,9 +88,10 @@ pub struct Request {
 }
 
 /// Group of rows that are ranked together.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Group {
     /// Exact variance, and nothing that is as hard to know as the answer.
+    #[default]
     Ranked,
     /// Theory only bounds the variance: the time is a bound.
     Bounded,
@@ -105,8 +111,12 @@ impl Group {
 }
 
 /// One estimator with its best settings.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub struct Row {
+    /// Number of the candidate.
+    pub candidate: usize,
+    /// Its constant σ̂ or factor on σ̂; `None` where it is not free.
+    pub setting: Variation,
     /// Group that it is ranked in.
     pub group: Group,
     /// Rank in its group, from 1; tied rows have the same.
@@ -125,14 +135,8 @@ pub struct Row {
     pub control: String,
     /// Kind of the setting.
     pub kind: Kind,
-    /// Relative standard deviation of a draw, root mean square over the rays.
-    pub deviation: f64,
-    /// Expected lookups of a draw.
-    pub lookups: f64,
-    /// Setup lookups of a ray.
-    pub setup_lookups: f64,
-    /// Cost of a draw with its share of the setup.
-    pub cost: f64,
+    /// Variance and cost of a draw.
+    pub score: Score,
     /// Draws to the target error, or within the budget.
     pub draws: f64,
     /// Cost to the target error, or the budget.
@@ -147,11 +151,9 @@ pub struct Row {
     pub margins: Option<[f64; 2]>,
     /// Least σ̂ or factor for which the estimator exists with a finite variance, 0 for any; `None` where σ̂ is not free.
     pub least: Option<f64>,
-    /// Largest kurtosis of a draw on a ray.
-    pub kurtosis: Option<f64>,
     /// Draws until the sample variance, and so the estimated error, has a standard error of 10 %.
     pub trusted: Option<f64>,
-    /// Constant σ̂ and the cost to the target error, or the error within the budget; empty where σ̂ is not constant.
+    /// Constant σ̂ and the cost to the target error, or the error within the budget, of the first rows with a constant σ̂.
     pub curve: Vec<[f64; 2]>,
     /// Knowledge of the medium that it needs beside lookups.
     pub needs: String,
@@ -233,16 +235,27 @@ pub fn advise(spec: &Spec, request: &Request) -> Result<Advice, CaseError> {
     let begin = Instant::now();
     let (base, rays) = rays::read(spec, request.rays, request.seed)?;
     let texts = candidates::listed(&base, &rays)?;
-    let study = Study::new(&base, &rays, texts, request)?;
-    let found = study.best_of_families();
-    let rows = parallel::map(&found, |best| row(&study, best, request.target));
-    let mut rows: Vec<Row> = rows.into_iter().flatten().collect();
+    let mut prices = Prices::open(&request.costs, &base.spec);
+    let mut study = Study::new(&base, &rays, texts, request, &mut prices)?;
+    let found = parallel::map(&study.families(), |family| {
+        row(&study, &study.best(family)?, request.target)
+    });
+    let mut rows: Vec<Row> = found.into_iter().flatten().collect();
+    rank(&mut rows, request.target);
+    for row in rows.iter_mut().take(CORRECTED) {
+        correct(&mut study, row, request.target, &mut prices);
+    }
     let mut profiles = Vec::new();
-    for (profile, row) in profiles_of(&study, &found, (&base, &rays), request)? {
+    for (profile, row) in profiles_of(&study, &rows, (&base, &rays), request, &mut prices)? {
         profiles.push(profile);
         rows.push(row);
     }
+    prices.keep();
     rank(&mut rows, request.target);
+    let shown = rows.iter_mut().filter(|row| row.constant.is_some()).take(CURVES);
+    parallel::change(&mut shown.collect::<Vec<_>>(), |row| {
+        row.curve = curve(&study, row, request.target)
+    });
     Ok(Advice {
         case: base.name.clone(),
         title: base.title.clone(),
@@ -251,73 +264,101 @@ pub fn advise(spec: &Spec, request: &Request) -> Result<Advice, CaseError> {
         rays: rays.len(),
         target: request.target,
         costs: request.costs.clone(),
+        refused: refused(&study, &rows),
         rows,
         profiles,
-        refused: refused(&study, &found),
         seconds: begin.elapsed().as_secs_f64(),
     })
 }
 
 /// Returns the row of a setting, evaluated on all rays; `None` if it is refused on one.
 fn row(study: &Study, best: &Best, target: Target) -> Option<Row> {
-    let (Best { candidate, setting, kind, .. }, score) = study.on_all(best)?;
+    let (candidate, (setting, score)) = (best.candidate, study.on_all(best)?);
     let at = study.cases[0].at(setting).ok()?;
     let (id, text) = (at.id(candidate), &study.texts[candidate]);
-    let is_profile = text.contains(profile::RECIPE);
-    let needs =
-        if is_profile { "|σ_t − σ_c| along the ray".to_owned() } else { at.needs(candidate) };
-    let is_free = |what| setting.filter(|setting| setting.0 == what).map(|setting| setting.1);
-    let (constant, factor) = (is_free(What::Sampling), is_free(What::SamplingScale));
-    let goal = score.goal(target);
-    let (time, error) = match target {
-        Target::Error(_) if goal == 0.0 => (0.0, 0.0),
-        Target::Error(_) => (goal, (score.work / goal).sqrt()),
-        Target::Budget(budget) => (budget, goal.sqrt()),
+    let is_profile = candidates::is_profile(text);
+    let needs = match () {
+        () if is_profile => "|σ_t − σ_c| along the ray".to_owned(),
+        () if candidates::is_learned(text) => "pilot rays".to_owned(),
+        () => at.needs(candidate),
     };
-    let times = score.works.iter().map(|work| match target {
-        Target::Error(error) => work / (error * error),
-        Target::Budget(budget) => (work / budget).sqrt(),
-    });
-    let times = times.fold([f64::INFINITY, 0.0], |[low, high], t| [low.min(t), high.max(t)]);
+    let of = |what| setting.filter(|setting| setting.0 == what).map(|setting| setting.1);
+    let (constant, factor) = (of(What::Sampling), of(What::SamplingScale));
     let group = match () {
         () if is_profile || needs.contains('τ') => Group::Informed,
         () if score.is_bound => Group::Bounded,
         () => Group::Ranked,
     };
-    let what = setting.map(|(what, _)| what);
-    let (f, x) = (study.goal(candidate, what), setting.map(|(_, x)| x));
-    let exists = |x: f64| study.exists(candidate, what.map(|what| (what, x)));
-    let shown = |y: f64| if let Target::Error(_) = target { y } else { y.sqrt() };
-    let steps = (-CURVE..=CURVE).map(|i| WIDTH.powf(f64::from(i) / f64::from(CURVE)));
-    let curve = constant.into_iter().flat_map(|x| steps.clone().map(move |step| x * step));
-    let curve = curve.map(|x| [x, shown(f(x))]).filter(|[_, y]| y.is_finite());
-    Some(Row {
+    let edge = |(_, x): (What, f64), sign, level| best.goal.edge(x, sign, level, MAX_FACTOR);
+    let double = |(_, x): (What, f64)| 2.0 * best.goal.of(x);
+    let mut row = Row {
+        candidate,
+        setting,
         group,
-        rank: 0,
-        is_tie: false,
         estimator: id.estimator.to_string(),
         sampling: kind_of_sampling(&id.sampling.kind, factor),
         constant,
         factor: factor.filter(|&factor| factor != 1.0),
         control: id.control.clone(),
-        kind,
-        deviation: score.variance.sqrt(),
-        lookups: score.lookups,
-        setup_lookups: score.setup_lookups,
-        cost: score.cost,
-        draws: if score.cost > 0.0 { (time / score.cost).ceil() } else { 1.0 },
-        time,
-        error,
-        times,
+        kind: best.kind,
         cost_error: study.prices[candidate]?.error,
-        margins: x.map(|x| search::margins(x, f(x), &f)),
-        least: x.map(|x| search::least(x, &exists)),
-        kurtosis: score.kurtosis,
-        trusted: score.kurtosis.map(|kurtosis| (kurtosis - 1.0).max(1.0) / (TRUST * TRUST)),
-        curve: curve.collect(),
+        margins: setting.map(|at| [-1.0, 1.0].map(|sign| edge(at, sign, double(at)))),
+        least: setting.map(|at| at.1 * edge(at, -1.0, UNKNOWN)),
         needs,
         lines: lines(text, constant, factor),
-    })
+        ..Row::default()
+    };
+    row.weigh(score, target);
+    Some(row)
+}
+
+impl Row {
+    /// Sets the score, and what follows from it.
+    fn weigh(&mut self, score: Score, target: Target) {
+        let goal = score.goal(target);
+        (self.time, self.error) = match target {
+            Target::Error(_) => (goal, if goal > 0.0 { (score.work / goal).sqrt() } else { 0.0 }),
+            Target::Budget(budget) => (budget, goal.sqrt()),
+        };
+        let times = score.works.iter().map(|work| match target {
+            Target::Error(error) => work / (error * error),
+            Target::Budget(budget) => (work / budget).sqrt(),
+        });
+        self.times = times.fold([f64::INFINITY, 0.0], |[low, high], t| [low.min(t), high.max(t)]);
+        self.draws = if score.cost > 0.0 { (self.time / score.cost).ceil() } else { 1.0 };
+        self.trusted = score.kurtosis.map(|kurtosis| (kurtosis - 1.0).max(1.0) / (TRUST * TRUST));
+        self.score = score;
+    }
+}
+
+/// Corrects the price of a row by draws at its setting, unless prices are given.
+fn correct(study: &mut Study, row: &mut Row, target: Target, prices: &mut Prices) {
+    let (candidate, case) = (row.candidate, &study.cases[study.cases.len() / 2]);
+    let Some(old) = study.prices[candidate] else { return };
+    let Some(price) = prices.at(&study.texts[candidate], case, (candidate, row.setting), old)
+    else {
+        return;
+    };
+    study.prices[candidate] = Some(price);
+    let all: Vec<usize> = (0..study.cases.len()).collect();
+    if let Some(score) = study.score(candidate, row.setting, &all) {
+        row.cost_error = price.error;
+        row.weigh(score, target);
+    }
+}
+
+/// Returns the costs to the target, or the errors, around the constant σ̂ of a row.
+fn curve(study: &Study, row: &Row, target: Target) -> Vec<[f64; 2]> {
+    let goal = study.goal(row.candidate, 1.0);
+    let shown = |y: f64| if let Target::Error(_) = target { y } else { y.sqrt() };
+    let step = |i: i32| WIDTH.powf(f64::from(i) / f64::from(POINTS));
+    let places =
+        row.constant.into_iter().flat_map(|x| (-POINTS..=POINTS).map(move |i| x * step(i)));
+    places
+        .map(|x| [x, goal.of(x)])
+        .filter(|at| at[1] < BEYOND)
+        .map(|[x, y]| [x, shown(y)])
+        .collect()
 }
 
 /// Returns the words for σ̂, without the factor.
@@ -358,18 +399,19 @@ fn rank(rows: &mut [Row], target: Target) {
 }
 
 /// Returns the estimators without a row, with the reasons.
-fn refused(study: &Study, found: &[Best]) -> Vec<Refused> {
+fn refused(study: &Study, rows: &[Row]) -> Vec<Refused> {
     let name = |candidate: usize| study.texts[candidate].split(" = ").next().unwrap_or_default();
-    let has_row = |one: &str| found.iter().any(|best| name(best.candidate) == one);
+    let has_row = |one: &str| rows.iter().any(|row| name(row.candidate) == one);
     let mut refused: Vec<Refused> = Vec::new();
     for candidate in 0..study.texts.len() {
         let estimator = name(candidate);
         if has_row(estimator) || refused.iter().any(|other| other.estimator == estimator) {
             continue;
         }
-        let unknown = "theory does not know its variance or its cost, or it is biased";
-        let reason =
-            study.refusal(candidate).map_or(unknown.to_owned(), |refusal| refusal.to_string());
+        let unknown =
+            || "theory does not know its variance or its cost, or it is biased".to_owned();
+        let reason = study.refusal_at_scale(candidate);
+        let reason = reason.map_or_else(unknown, |refusal| refusal.to_string());
         refused.push(Refused { estimator: estimator.to_owned(), reason });
     }
     refused
@@ -378,24 +420,23 @@ fn refused(study: &Study, found: &[Best]) -> Vec<Refused> {
 /// Returns the best σ̂ along the ray of the best estimator with weights and of the best particle, with their rows.
 fn profiles_of(
     study: &Study,
-    found: &[Best],
+    rows: &[Row],
     (base, rays): (&Case, &[Body]),
     request: &Request,
+    prices: &mut Prices,
 ) -> Result<Vec<(Profile, Row)>, CaseError> {
-    let [ray] = rays else { return Ok(Vec::new()) };
     let mut profiles = Vec::new();
-    for is_weight in [true, false] {
-        let rule = |best: &Best| candidates::rule(&study.texts[best.candidate]);
+    for is_weight in [true, false].into_iter().filter(|_| rays.len() == 1) {
+        let rule = |row: &Row| candidates::rule(&study.texts[row.candidate]);
         let is_asked =
-            |best: &&Best| rule(best).is_some_and(|rule| (rule == Collisions::Weight) == is_weight);
-        let asked = found.iter().filter(is_asked).min_by(|a, b| a.goal.total_cmp(&b.goal));
+            |row: &&Row| rule(row).is_some_and(|rule| (rule == Collisions::Weight) == is_weight);
+        let goal = |row: &Row| row.score.goal(request.target);
+        let asked = rows.iter().filter(is_asked).min_by(|a, b| goal(a).total_cmp(&goal(b)));
         let Some((best, rule)) = asked.and_then(|best| Some((best, rule(best)?))) else { continue };
-        let Some((profile, text)) = profile::of(study, found, best, rule) else { continue };
-        let own = Study::new(base, std::slice::from_ref(ray), vec![text], request)?;
-        let Some(row) = own.best(0).and_then(|best| row(&own, &best, request.target)) else {
-            continue;
-        };
-        profiles.push((profile, row));
+        let Some((profile, text)) = profile::of(study, rows, best, rule) else { continue };
+        let own = Study::new(base, rays, vec![text], request, prices)?;
+        let row = own.best(&[0]).and_then(|best| row(&own, &best, request.target));
+        profiles.extend(row.map(|row| (profile, Row { candidate: best.candidate, ..row })));
     }
     Ok(profiles)
 }

@@ -1,5 +1,7 @@
 //! Goals and costs as text, for the command line and for Python.
 
+use std::ops::RangeInclusive;
+
 use super::{Costs, Target};
 
 /// Units of time, in seconds.
@@ -12,6 +14,15 @@ const UNITS: [(&str, f64); 7] = [
     ("m", 60.0),
     ("h", 3600.0),
 ];
+
+/// Times that are taken, other than 0, in seconds.
+const TIMES: RangeInclusive<f64> = 1e-15..=1e12;
+/// Numbers of lookups that are taken as a budget.
+const LOOKUPS: RangeInclusive<f64> = 1.0..=1e18;
+/// Relative errors that are taken.
+const ERRORS: RangeInclusive<f64> = 1e-9..=0.999;
+/// Factors of majorants that are taken.
+const LOOSENESS: RangeInclusive<f64> = 1.0..=1e6;
 
 /// Goal of the draws as an option gives it.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -40,8 +51,8 @@ pub fn error(text: &str) -> Result<f64, String> {
     let percent = text.strip_suffix('%');
     let unit = if percent.is_some() { 0.01 } else { 1.0 };
     let number = percent.unwrap_or(text).trim().parse::<f64>().ok().map(|x| x * unit);
-    let number = number.filter(|error| *error > 0.0 && *error < 1.0);
-    number.ok_or_else(|| "it takes an error above 0 and below 1, such as 1% or 0.01".to_owned())
+    let number = number.filter(|error| ERRORS.contains(error));
+    number.ok_or_else(|| "it takes an error from 1e-9 to 0.999, such as 1% or 0.01".to_owned())
 }
 
 /// Parses the factor by which majorants exceed the maximum.
@@ -50,15 +61,15 @@ pub fn error(text: &str) -> Result<f64, String> {
 ///
 /// The factors that it takes.
 pub fn looseness(text: &str) -> Result<f64, String> {
-    let factor = text.parse::<f64>().ok().filter(|factor| *factor >= 1.0 && factor.is_finite());
-    factor.ok_or_else(|| "it takes a factor of 1 or more, such as 2".to_owned())
+    let factor = text.parse::<f64>().ok().filter(|factor| LOOSENESS.contains(factor));
+    factor.ok_or_else(|| "it takes a factor from 1 to 1e6, such as 2".to_owned())
 }
 
 /// Parses a time with its unit.
 fn seconds(text: &str) -> Option<f64> {
     let unit = |(word, unit): &(&str, f64)| Some((text.strip_suffix(word)?.trim(), *unit));
     let (number, unit) = UNITS.iter().find_map(unit)?;
-    number.parse::<f64>().ok().map(|x| x * unit).filter(|x| *x >= 0.0 && x.is_finite())
+    number.parse::<f64>().ok().map(|x| x * unit).filter(|x| *x == 0.0 || TIMES.contains(x))
 }
 
 /// Parses a time, or a number of lookups.
@@ -67,9 +78,9 @@ fn seconds(text: &str) -> Option<f64> {
 ///
 /// The budgets that it takes.
 pub fn budget(text: &str) -> Result<Budget, String> {
-    let lookups = text.parse::<f64>().ok().filter(|n| *n >= 1.0 && n.is_finite());
+    let lookups = text.parse::<f64>().ok().filter(|n| LOOKUPS.contains(n));
     let time = seconds(text).filter(|&time| time > 0.0).map(Budget::Seconds);
-    let takes = "it takes a time such as 30s or 5ms, or a number of lookups such as 1e6";
+    let takes = "it takes a time from 1e-15s to 1e12s, such as 30s or 5ms, or a number of lookups from 1 to 1e18";
     time.or(lookups.map(Budget::Lookups)).ok_or_else(|| takes.to_owned())
 }
 
@@ -79,7 +90,7 @@ pub fn budget(text: &str) -> Result<Budget, String> {
 ///
 /// The costs that it takes.
 pub fn costs(text: &str) -> Result<Costs, String> {
-    let takes = "it takes times such as lookup=2us or draw=50ns,lookup=2us";
+    let takes = "it takes times such as lookup=2us or draw=50ns,lookup=2us, from 1e-15s to 1e12s";
     let (mut draw, mut lookup) = (0.0, None);
     for part in text.split(',') {
         match part.split_once('=').map(|(key, time)| (key.trim(), seconds(time))) {
@@ -100,6 +111,11 @@ mod tests {
     fn options_are_read_with_their_units() {
         assert_eq!((error("1%"), error("0.5 %"), error("1e-3")), (Ok(0.01), Ok(0.005), Ok(1e-3)));
         assert!(error("1").is_err() && error("0%").is_err() && error("few").is_err());
+        for wrong in ["0", "-1", "nan", "1e308", "1e-320", "inf", ""] {
+            assert!(error(wrong).is_err() && budget(wrong).is_err(), "{wrong}");
+            assert!(looseness(wrong).is_err(), "{wrong}");
+            assert!(costs(&format!("lookup={wrong}s")).is_err(), "{wrong}");
+        }
         assert_eq!(budget("5ms"), Ok(Budget::Seconds(5e-3)));
         assert_eq!(budget("1e6"), Ok(Budget::Lookups(1e6)));
         assert!(budget("0s").is_err() && budget("0.1").is_err() && budget("5 days").is_err());

@@ -13,17 +13,14 @@
 //! behind t, the best σ̂(t) minimises `E j(σ̂) + b/cost (σ̂ e^{−K} − d(σ̂) R)` (Pontryagin's principle). Here
 //! `E = e^J/(e^J − 1)`, `j = σ̂ E[(1 − W)²]` and `d = σ̂(1 − q)`. Steps are improved one by one until nothing is gained.
 
-use super::Profile;
-use super::candidates::Collisions;
-use super::search;
-use super::study::{Best, Study};
+use super::candidates::{Collisions, RECIPE};
+use super::search::{Goal, up};
+use super::study::Study;
+use super::{Profile, Row};
 use numeric::digits::number;
-use numeric::roots;
 use theory::Rule;
 use theory::rules::{Single, Weight};
 
-/// Recipe of σ̂ by which a case takes a profile.
-pub const RECIPE: &str = "sampling.piecewise-constant";
 /// Steps of a profile.
 pub const STEPS: usize = 64;
 /// Places in each step at which the residual is looked up.
@@ -32,23 +29,16 @@ pub const PLACES: usize = 32;
 const MIN_SHARE: f64 = 1e-3;
 /// Maximum number of passes over the steps.
 const PASSES: usize = 60;
-/// Number of places on each side of a step's σ̂, in quarters of `ln σ̂`, among which its minimum is sought.
-const NEAR: i32 = 8;
 /// Relative gain of a pass that ends the search.
 const GAIN: f64 = 1e-7;
 
 /// Returns the profile of a candidate with one free constant σ̂, on the first ray of a study, and the candidate with it.
-/// It is compared with the others that were `found`.
-pub fn of(
-    study: &Study,
-    found: &[Best],
-    best: &Best,
-    rule: Collisions,
-) -> Option<(Profile, String)> {
-    let case = &study.cases[0];
-    let (price, (_, start)) = (study.prices[best.candidate]?, best.setting?);
+/// It is compared with the rows of others.
+pub fn of(study: &Study, rows: &[Row], row: &Row, rule: Collisions) -> Option<(Profile, String)> {
+    let (case, text) = (&study.cases[0], &study.texts[row.candidate]);
+    let (price, (_, start)) = (study.prices[row.candidate]?, row.setting?);
     let medium = &case.scenario.media()[0];
-    let control = case.at(None).ok()?.control(best.candidate, case.pilots(1, best.candidate))?;
+    let control = case.at(None).ok()?.control(row.candidate, case.pilots(1, row.candidate))?;
     let support = medium.support();
     let width = support.length() / STEPS as f64;
     let place = |step: usize, share: f64| support.from + width * (step as f64 + share);
@@ -56,49 +46,40 @@ pub fn of(
     let residual = |t: f64| medium.extinction(t) - control.extinction(t);
     let places = |step| (0..PLACES).map(|i| residual(place(step, inside(i)))).collect();
     // The setup is a fixed cost.
-    let (_, fixed) = study.on_all(best)?;
-    let price = [fixed.cost - price.lookup * fixed.lookups, price.lookup];
+    let price = [row.score.cost - price.lookup * row.score.lookups, price.lookup];
     let steps = Steps { residual: (0..STEPS).map(places).collect(), width, price };
-    let values: Vec<f64> = steps.best(rule, start)?.into_iter().map(search::up).collect();
-    let work = |sampling: &[f64]| match rule {
-        Collisions::Weight => steps.work(&Weight, sampling),
-        Collisions::Single(rule) => steps.work(&rule, sampling),
-    };
-    let own = work(&values);
+    let values: Vec<f64> = steps.best(rule, start)?.into_iter().map(up).collect();
+    let own = steps.work(rule.rule(), &values);
     // The same walk with local majorants, at the same price.
-    let is_local = |other: &&Best| {
-        let text = &study.texts[other.candidate];
-        let plain =
-            text.split("sampling.").next().unwrap_or_default().trim_end_matches([' ', '{', ',']);
-        text.contains("local-majorants") && study.texts[best.candidate].starts_with(plain)
+    let is_local = |other: &&Row| {
+        let other = &study.texts[other.candidate];
+        let plain = other.split("sampling.").next().unwrap_or_default();
+        other.contains("local-majorants")
+            && text.starts_with(plain.trim_end_matches([' ', '{', ',']))
     };
-    let local = found.iter().filter(is_local).filter_map(|other| {
-        let (_, score) = study.on_all(other)?;
-        Some(score.variance * (price[0] + price[1] * score.lookups))
-    });
+    let work = |row: &Row| row.score.variance * (price[0] + price[1] * row.score.lookups);
+    let local = rows.iter().filter(is_local).map(work).reduce(f64::min);
     let mut breaks: Vec<f64> = (0..STEPS).map(|step| place(step, 0.0)).collect();
     breaks.push(support.to);
     let list = |numbers: &[f64]| numbers.iter().map(|&x| number(x)).collect::<Vec<_>>().join(", ");
     let sampling =
         format!("{RECIPE} = {{ breaks = [{}], values = [{}] }}", list(&breaks), list(&values));
-    let (name, settings) = study.texts[best.candidate].split_once(" = ")?;
+    let (name, settings) = text.split_once(" = ")?;
     let settings = settings.trim_start_matches('{').trim_end_matches('}').trim();
     let comma = if settings.is_empty() { "" } else { ", " };
-    let text = format!("{name} = {{ {settings}{comma}{sampling} }}");
-    let at = case.at(None).ok()?;
     let residual = (0..STEPS * 4).map(|i| {
         let t = place(i / 4, (i % 4) as f64 / 4.0 + 0.125);
         [t, residual(t).abs()]
     });
     let profile = Profile {
-        estimator: at.id(best.candidate).estimator.to_string(),
-        over_constant: work(&[start; STEPS]) / own,
-        over_local: local.reduce(f64::min).map(|local| local / own),
+        estimator: row.estimator.clone(),
+        over_constant: steps.work(rule.rule(), &[start; STEPS]) / own,
+        over_local: local.map(|local| local / own),
         residual: residual.collect(),
         breaks,
         values,
     };
-    Some((profile, text))
+    Some((profile, format!("{name} = {{ {settings}{comma}{sampling} }}")))
 }
 
 /// The residual in the steps of a ray, and what a walk costs.
@@ -120,22 +101,28 @@ impl Steps {
         }
     }
 
-    /// `κ` times the root mean square of the residual in each step.
-    fn of_weights(&self) -> Option<Vec<f64>> {
+    /// Returns the root mean square of the residual in each step, or a small share of the largest.
+    fn roots(&self) -> Vec<f64> {
         let square = |step: &Vec<f64>| step.iter().map(|x| x * x).sum::<f64>() / step.len() as f64;
         let roots: Vec<f64> = self.residual.iter().map(|step| square(step).sqrt()).collect();
         let least = MIN_SHARE * roots.iter().copied().fold(0.0, f64::max);
-        let roots: Vec<f64> = roots.into_iter().map(|root| root.max(least)).collect();
-        let (kappa, ..) = search::best(1.0, &|kappa| {
-            let sampling: Vec<f64> = roots.iter().map(|root| kappa * root).collect();
-            self.work(&Weight, &sampling)
-        })?;
-        Some(roots.into_iter().map(|root| kappa * root).collect())
+        roots.into_iter().map(|root| root.max(least)).collect()
+    }
+
+    /// `κ` times the root mean square of the residual in each step.
+    fn of_weights(&self) -> Option<Vec<f64>> {
+        let roots = self.roots();
+        let scaled = |kappa: f64| roots.iter().map(|root| kappa * root).collect::<Vec<f64>>();
+        let goal = Goal::new(|kappa| self.work(&Weight, &scaled(kappa)));
+        // Where walks cost as much as what is fixed.
+        let walk: f64 = roots.iter().map(|root| self.price[1] * self.width * root).sum();
+        let start = (self.price[0] + self.price[1]) / walk;
+        goal.best(start, 1).map(|(kappa, ..)| scaled(kappa))
     }
 
     /// Improves the steps one by one.
     fn of_particle(&self, rule: &Single, start: f64) -> Vec<f64> {
-        let least = MIN_SHARE * start;
+        let (least, roots) = (MIN_SHARE * start, self.roots());
         let mut sampling = vec![start; self.residual.len()];
         let mut last = self.work(rule, &sampling);
         for _ in 0..PASSES {
@@ -146,19 +133,16 @@ impl Steps {
             let (mut alive, mut before) = (1.0, 0.0);
             for i in 0..sampling.len() {
                 let others = loss - self.rates(rule, i, sampling[i])[0];
-                let work = |log: f64| {
-                    let here = log.exp();
+                let goal = Goal::new(|here: f64| {
                     let [j, d] = self.rates(rule, i, here);
                     let lookups = here * self.width * survived(d) + (-d).exp() * behind[i + 1];
                     self.of(others + j, before + alive * lookups)
-                };
+                });
                 // A particle that collides for real and one that seldom does are two minima.
-                let now = sampling[i].ln();
-                let coarse = (-NEAR..=NEAR).map(|k| now + 0.25 * f64::from(k));
-                let near = coarse.min_by(|a, b| work(*a).total_cmp(&work(*b))).unwrap_or(now);
-                let around = [near - 0.25, near, near + 0.25];
-                let (found, _) = roots::least(around, work(near), 1e-4, work);
-                sampling[i] = found.exp().max(least);
+                let starts = [sampling[i], roots[i]].map(|start| goal.least(start, 1));
+                let found = starts.into_iter().flatten().min_by(|a, b| a.1.total_cmp(&b.1));
+                drop(goal);
+                sampling[i] = found.map_or(sampling[i], |(x, ..)| x).max(least);
                 let [j, d] = self.rates(rule, i, sampling[i]);
                 loss = others + j;
                 before += alive * sampling[i] * self.width * survived(d);

@@ -1,32 +1,41 @@
-//! Search of the σ̂ at which V·cost is smallest, and of the margins around it.
+//! The one search of advice: the place at which a function is smallest, and the edges of a level around it.
 //!
-//! All searches are on `ln x`, x a constant σ̂ or a factor on a field σ̂. A refused place has an infinite V·cost.
+//! All searches are on `ln x`, x a σ̂ or a factor on it. Values are kept, so that a search and its edges share them.
+
+use std::cell::RefCell;
 
 use numeric::roots;
 
-/// Share of its limit by which V·cost may exceed it, where it only falls as σ̂ grows.
+/// Share of the least V·cost by which an advised σ̂ may exceed it, where V·cost is flat below the best σ̂.
 pub const ABOVE_LIMIT: f64 = 0.05;
-/// Steps of the first, coarse search on each side of the natural scale, √2 each.
-const STEPS: i32 = 9;
-/// Tolerance of the best `ln x`: V·cost differs by its square.
-const TOLERANCE: f64 = 5e-3;
-/// Relative gain by a factor of ten that is near a limit.
-const SETTLED: f64 = 1e-3;
-/// Maximum number of factors of ten by which x follows a V·cost that still falls.
-const DECADES: u32 = 7;
-/// Largest factor of a margin: it stands for any larger one.
+/// Values from here on cannot be taken: too expensive, unknown, refused.
+pub const BEYOND: f64 = 1e300;
+/// Value where theory knows no variance or cost. A place that an inequality refuses has an infinite value.
+pub const UNKNOWN: f64 = f64::MAX;
+/// Largest factor of an edge: it stands for any larger one.
 pub const MAX_FACTOR: f64 = 1024.0;
+/// Tolerance of the best `ln x`, of which V·cost differs by the square, and of an edge.
+const TOLERANCE: f64 = 5e-3;
+/// Relative gain of a step that ends a descent.
+const SETTLED: f64 = 1e-3;
+/// Maximum number of steps of a descent beyond the first places, the last ones by a factor of ten.
+const DESCENT: usize = 9;
+/// Distance in `ln x` within which an edge of the domain makes a place the best.
+const CLIFF: f64 = 0.02;
+/// Factor below the best σ̂ at which a V·cost that is hardly larger makes it a limit.
+const FLAT: f64 = 4.0;
 /// Significant digits of an advised σ̂.
 const DIGITS: f64 = 4.0;
 
 /// Kind of an advised σ̂.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub enum Kind {
     /// σ̂ is not free.
+    #[default]
     Fixed,
     /// V·cost is smallest there.
     Optimum,
-    /// V·cost falls towards a limit as σ̂ grows, and is 5 % above it there.
+    /// V·cost falls towards a limit as σ̂ grows, and is 5 % above its least value there.
     NearLimit,
     /// V·cost still improves at the end of the search.
     EndOfSearch,
@@ -44,75 +53,159 @@ impl Kind {
     }
 }
 
-/// The best x around `scale`, with its V·cost; `None` where every x is refused.
-pub fn best(scale: f64, f: &dyn Fn(f64) -> f64) -> Option<(f64, f64, Kind)> {
-    let step = 0.5 * 2f64.ln();
-    let log = |i: i32| scale.ln() + f64::from(i) * step;
-    let g = |log: f64| f(log.exp());
-    let coarse: Vec<f64> = (-STEPS..=STEPS).map(|i| g(log(i))).collect();
-    let least = (-STEPS..=STEPS).zip(&coarse).min_by(|a, b| a.1.total_cmp(b.1));
-    let (place, &value) = least.filter(|least| least.1.is_finite())?;
-    if value == 0.0 {
-        return Some((log(place).exp(), value, Kind::Optimum));
-    }
-    if place == STEPS {
-        return Some(towards_limit([log(place - 1), log(place)], value, &g));
-    }
-    let (mut around, mut middle) = ([place - 1, place, place + 1].map(log), value);
-    let mut decades = 0;
-    while place == -STEPS && decades < DECADES && g(around[0]) < middle {
-        middle = g(around[0]);
-        around = [around[0] - 10f64.ln(), around[0], around[1]];
-        decades += 1;
-    }
-    let (found, least) = roots::least(around, middle, TOLERANCE, g);
-    // A place of the coarse search may be the least σ̂ that is allowed, to all digits.
-    let (found, least) = if least < middle { (found, least) } else { (around[1], middle) };
-    let kind = if decades == DECADES { Kind::EndOfSearch } else { Kind::Optimum };
-    let (x, value) = tidy(found.exp(), least, f);
-    Some((x, value, kind))
+/// Function of x with the values that are known.
+pub struct Goal<'a> {
+    f: Box<dyn Fn(f64) -> f64 + Send + 'a>,
+    /// `ln x` in ascending order, with the values.
+    known: RefCell<Vec<[f64; 2]>>,
 }
 
-/// Follows a V·cost that falls with `ln x`, from its last two places, to an optimum or towards a limit.
-fn towards_limit(logs: [f64; 2], value: f64, g: &dyn Fn(f64) -> f64) -> (f64, f64, Kind) {
-    let f = |x: f64| g(x.ln());
-    let [mut last, mut now] = [(logs[0], f64::INFINITY), (logs[1], value)];
-    for _ in 0..DECADES {
-        let log = now.0 + 10f64.ln();
-        let next = (log, g(log));
-        if next.1 > now.1 {
-            let (found, least) = roots::least([last.0, now.0, next.0], now.1, TOLERANCE, g);
-            // V·cost falls towards a limit until a single draw has more lookups than the goal needs.
-            let flat = least * (1.0 + ABOVE_LIMIT);
-            if now.1 <= flat {
-                return near([logs[0], found], flat, g);
+impl<'a> Goal<'a> {
+    /// Returns a function of which nothing is known.
+    pub fn new(f: impl Fn(f64) -> f64 + Send + 'a) -> Self {
+        Self { f: Box::new(f), known: RefCell::default() }
+    }
+
+    /// Returns the value at x.
+    pub fn of(&self, x: f64) -> f64 {
+        self.at(x.ln())
+    }
+
+    fn at(&self, log: f64) -> f64 {
+        let place = self.known.borrow().partition_point(|known| known[0] < log);
+        let known = self.known.borrow().get(place).copied();
+        if let Some([_, value]) = known.filter(|known| known[0] == log) {
+            return value;
+        }
+        let value = (self.f)(log.exp());
+        self.known.borrow_mut().insert(place, [log, value]);
+        value
+    }
+
+    /// Returns three `ln x` around the least value of places that are apart by a factor of two, `reach` on each side of
+    /// `start`, and beyond them as far as values fall; and whether they still fall there.
+    fn bracket(&self, start: f64, reach: i32) -> ([f64; 3], bool) {
+        let at = |k: i32| start.ln() + f64::from(k) * 2f64.ln();
+        let value = |k: i32| self.at(at(k));
+        // Of equal places the one next to the start.
+        let order = |a: &i32, b: &i32| value(*a).total_cmp(&value(*b)).then(a.abs().cmp(&b.abs()));
+        let k = (-reach..=reach).min_by(order).unwrap_or(0);
+        let mut around = [at(k - 1), at(k), at(k + 1)];
+        let mut is_open = false;
+        for end in [0, 2] {
+            let falls =
+                |around: [f64; 3]| self.at(around[end]) < self.at(around[1]) * (1.0 - SETTLED);
+            let mut step = around[end] - around[1];
+            for _ in 0..DESCENT {
+                if !falls(around) {
+                    break;
+                }
+                step = (2.0 * step).clamp(-10f64.ln(), 10f64.ln());
+                let next = around[end] + step;
+                let [low, middle, high] = around;
+                around = if end == 0 { [next, low, middle] } else { [middle, high, next] };
             }
-            let (x, value) = tidy(found.exp(), least, &f);
-            return (x, value, Kind::Optimum);
+            is_open |= falls(around);
         }
-        (last, now) = (now, next);
-        if now.1 >= last.1 * (1.0 - SETTLED) {
-            return near([logs[0] - 10f64.ln(), now.0], now.1 * (1.0 + ABOVE_LIMIT), g);
+        (around, is_open)
+    }
+
+    /// Returns a rough place of the least value near `start`, from few places a factor of two apart, and the value of the
+    /// parabola through three of them.
+    pub fn glimpse(&self, start: f64, reach: i32) -> (f64, f64) {
+        let (around, _) = self.bracket(start, reach);
+        let [low, middle, high] = around.map(|log| self.at(log));
+        let (fall, rise) = (middle - low, high - middle);
+        // Equal steps: the vertex is below the middle by slope²/(2 · curvature).
+        let is_smooth = high < BEYOND && low < BEYOND && around[2] - around[0] < 1.5;
+        let below = 0.125 * (rise + fall).powi(2) / (rise - fall);
+        (around[1].exp(), if is_smooth && rise > fall { middle - below } else { middle })
+    }
+
+    /// Returns the place of the least value near `start`, the value, and whether it is at the end of the search; `None`
+    /// where no place can be taken.
+    pub fn least(&self, start: f64, reach: i32) -> Option<(f64, f64, bool)> {
+        let (around, is_open) = self.bracket(start, reach);
+        let middle = self.at(around[1]);
+        let is_cliff =
+            || self.at(around[1] - CLIFF).is_infinite() && self.at(around[1] + CLIFF) >= middle;
+        let (log, value) = if middle >= BEYOND || is_cliff() {
+            (around[1], middle)
+        } else {
+            roots::least(around, middle, TOLERANCE, |log| self.at(log))
+        };
+        (value < BEYOND).then(|| (log.exp(), value, is_open))
+    }
+
+    /// Returns the place to advise near `start`, with few digits, its value and its kind.
+    pub fn best(&self, start: f64, reach: i32) -> Option<(f64, f64, Kind)> {
+        let (mut x, mut value, is_open) = self.least(start, reach)?;
+        let mut kind = if is_open { Kind::EndOfSearch } else { Kind::Optimum };
+        let level = value * (1.0 + ABOVE_LIMIT);
+        if !is_open && self.of(x / FLAT) <= level {
+            let edge = self.edge(x, -1.0, level, f64::INFINITY);
+            // Where no σ̂ is too small, one is as good as another.
+            if edge > 0.0 {
+                (x, kind) = (x * edge, Kind::NearLimit);
+                value = self.of(x);
+            }
         }
+        // A σ̂ that is rounded up exists as well.
+        let rounded = self.of(up(x));
+        Some(if rounded < BEYOND { (up(x), rounded, kind) } else { (x, value, kind) })
     }
-    let (x, value) = tidy(now.0.exp(), now.1, &f);
-    (x, value, Kind::EndOfSearch)
-}
 
-/// The least x with a V·cost of at most `level`.
-fn near([low, high]: [f64; 2], level: f64, g: &dyn Fn(f64) -> f64) -> (f64, f64, Kind) {
-    let log = bisect(low, high, |log| g(log) > level);
-    let (x, value) = tidy(log.exp(), g(log), &|x| g(x.ln()));
-    (x, value, Kind::NearLimit)
-}
-
-/// The place up to which `is_below` is true, as a value at which it is false, to the tolerance of the search.
-fn bisect(mut low: f64, mut high: f64, is_below: impl Fn(f64) -> bool) -> f64 {
-    while (high - low).abs() > TOLERANCE {
-        let middle = 0.5 * (low + high);
-        if is_below(middle) { low = middle } else { high = middle }
+    /// Returns the factor on x, below 1 for the sign −1 and above for 1, up to which the value is at most `level`; 0 or
+    /// infinite where that is further than `furthest`.
+    pub fn edge(&self, x: f64, sign: f64, level: f64, furthest: f64) -> f64 {
+        let from = x.ln();
+        let mut inside = from;
+        let mut seen: Vec<f64> = self.known.borrow().iter().map(|known| known[0]).collect();
+        seen.retain(|log| (log - from) * sign > 0.0);
+        seen.sort_by(|a, b| (a * sign).total_cmp(&(b * sign)));
+        let mut outside = None;
+        for log in seen {
+            if self.at(log) > level {
+                outside = Some(log);
+                break;
+            }
+            inside = log;
+        }
+        let mut step = 2f64.ln();
+        let mut outside = loop {
+            if let Some(outside) = outside {
+                break outside;
+            }
+            if (inside - from).abs() >= furthest.min(MAX_FACTOR.powi(3)).ln() {
+                return if sign < 0.0 { 0.0 } else { f64::INFINITY };
+            }
+            let next = inside + sign * step;
+            if self.at(next) > level {
+                outside = Some(next);
+            } else {
+                (inside, step) = (next, 2.0 * step);
+            }
+        };
+        let above = |log: f64| (self.at(log) / level).ln();
+        let mut is_secant = true;
+        while (outside - inside).abs() > TOLERANCE {
+            let slope = (outside - inside) / (above(outside) - above(inside));
+            let share = -above(inside) * slope / (outside - inside);
+            let share = if is_secant && (0.02..0.98).contains(&share) { share } else { 0.5 };
+            let place = inside + share * (outside - inside);
+            if slope != 0.0 && (above(place) * slope).abs() < 0.2 * TOLERANCE {
+                inside = place;
+                break;
+            }
+            if above(place) > 0.0 {
+                outside = place
+            } else {
+                inside = place
+            }
+            is_secant = !is_secant;
+        }
+        (inside - from).exp()
     }
-    high
 }
 
 /// Rounds x up to few digits: an estimator that exists for a σ̂ exists for a larger one.
@@ -124,45 +217,6 @@ pub fn up(x: f64) -> f64 {
     format!("{rounded:.11e}").parse().unwrap_or(x)
 }
 
-/// Rounds x up, unless that is refused.
-fn tidy(x: f64, value: f64, f: &dyn Fn(f64) -> f64) -> (f64, f64) {
-    let rounded = f(up(x));
-    if rounded.is_finite() { (up(x), rounded) } else { (x, value) }
-}
-
-/// The factors below and above 1 by which x may be wrong before V·cost doubles; 0 and infinite where it does not within
-/// a factor of 1024.
-pub fn margins(x: f64, value: f64, f: &dyn Fn(f64) -> f64) -> [f64; 2] {
-    let doubles = |factor: f64| f(x * factor) > 2.0 * value;
-    let [low, high] = [-1.0, 1.0].map(|sign: f64| {
-        let step = sign * 0.5 * 2f64.ln();
-        let mut log = step;
-        while log.abs() < MAX_FACTOR.ln() && !doubles(log.exp()) {
-            log *= 1.5;
-        }
-        if log.abs() >= MAX_FACTOR.ln() {
-            return if sign < 0.0 { 0.0 } else { f64::INFINITY };
-        }
-        let inside = if log == step { 0.0 } else { log / 1.5 };
-        bisect(inside, log, |log| !doubles(log.exp())).exp()
-    });
-    [low, high]
-}
-
-/// The least x, down to x/1024, for which `exists` is true; 0 where it is true for all.
-pub fn least(x: f64, exists: &dyn Fn(f64) -> bool) -> f64 {
-    let mut log = 0.0;
-    while log > -MAX_FACTOR.ln() {
-        let next = log - 2f64.ln();
-        if !exists(x * next.exp()) {
-            let edge = bisect(next, log, |log| !exists(x * log.exp()));
-            return x * edge.exp();
-        }
-        log = next;
-    }
-    0.0
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -170,22 +224,23 @@ mod tests {
     #[test]
     fn an_optimum_a_cliff_and_a_limit_are_found() {
         // x + 4/x: smallest at 2, doubled at 2(2 ± √3).
-        let f = |x: f64| x + 4.0 / x;
-        let (x, value, kind) = best(1.0, &f).expect("an optimum");
+        let goal = Goal::new(|x| x + 4.0 / x);
+        let (x, value, kind) = goal.best(1.0, 2).expect("an optimum");
         assert!((x - 2.0).abs() < 0.02 && (value - 4.0).abs() < 1e-3 && kind == Kind::Optimum);
-        let [low, high] = margins(2.0, 4.0, &f);
+        let [low, high] = [-1.0, 1.0].map(|sign| goal.edge(2.0, sign, 8.0, MAX_FACTOR));
         assert!((low - 0.268).abs() < 2e-3 && (high - 3.732).abs() < 0.03, "{low} {high}");
+        assert!(goal.known.borrow().len() < 30, "{} values", goal.known.borrow().len());
         // Refused below 1: the best place is the edge itself, with few digits.
         let edge = 0.956_789_12;
-        let cliff = |x: f64| if x < edge { f64::INFINITY } else { x };
-        assert_eq!(best(edge, &cliff).map(|(x, ..)| x), Some(0.9568));
-        assert!((least(2.0, &|x| x >= edge) / edge - 1.0).abs() < 0.01);
-        assert_eq!(least(2.0, &|_| true), 0.0);
-        // e^{1/x} − 1 times x falls to 1; it is 1.05 at 1/x = 0.0968.
-        let limit = |x: f64| x * (1.0 / x).exp_m1();
-        let (x, value, kind) = best(0.3, &limit).expect("near the limit");
-        assert!((x * 0.0968 - 1.0).abs() < 0.02 && value < 1.0501, "{x} {value}");
+        let cliff = Goal::new(|x| if x < edge * (1.0 - 1e-12) { f64::INFINITY } else { x });
+        assert_eq!(cliff.best(edge, 2).map(|(x, ..)| x), Some(0.9568));
+        assert!((2.0 * cliff.edge(2.0, -1.0, UNKNOWN, MAX_FACTOR) / edge - 1.0).abs() < 0.01);
+        assert_eq!(goal.edge(2.0, -1.0, UNKNOWN, MAX_FACTOR), 0.0);
+        // (e^{1/x} − 1) x falls to 1; it is 1.05 at 1/x = 0.0968.
+        let limit = Goal::new(|x: f64| x * (1.0 / x).exp_m1());
+        let (x, value, kind) = limit.best(0.3, 2).expect("near the limit");
+        assert!((x * 0.0968 - 1.0).abs() < 0.03 && value < 1.0511, "{x} {value}");
         assert_eq!(kind, Kind::NearLimit);
-        assert_eq!(best(1.0, &|_| f64::INFINITY), None);
+        assert_eq!(Goal::new(|_| f64::INFINITY).best(1.0, 2), None);
     }
 }

@@ -1,27 +1,38 @@
-//! V·cost of the candidates over the rays of a medium, by exact theory.
+//! V·cost of the candidates over the rays of a medium, by exact theory, and the best setting of each family.
+
+use std::collections::BTreeMap;
 
 use super::candidates::{self, family};
 use super::costs::{Price, Prices};
-use super::search::{self, Kind};
+use super::search::{BEYOND, Goal, Kind, UNKNOWN};
 use super::{Request, Target};
 use crate::case::sweep::{Variation, What};
 use crate::case::{Case, CaseError};
 use estimators::Refusal;
 use media::Body;
-use numeric::sum::Sum;
 use theory::prediction::CERTAIN;
 use theory::{Channel, Prediction, parallel};
 
 /// Number of rays on which settings are searched; the answer is then evaluated on all of them.
 const PROBES: usize = 6;
-/// Number of times that a setting of the probes is raised until it is allowed on all rays, and the factor.
-const RAISES: i32 = 36;
-const RAISE: f64 = 1.02;
+/// Number of seeds of pilot rays over which a learned σ̂ of a single ray is averaged.
+const SEEDS: u64 = 4;
+/// Factors on the setting of the probes, of which the first is taken that is allowed on all rays.
+const RAISES: [f64; 5] = [1.0, 1.02, 1.1, 1.4, 2.0];
 /// Relative difference of a mean from the truth that is a bias.
 const BIAS: f64 = 1e-9;
+/// Steps of a factor of two on each side of the natural scale that are tried first, where nothing is known.
+const REACH: i32 = 2;
 
-/// Factor on the least σ̂ of an estimator at which it is refused.
-const BELOW: f64 = 0.98;
+/// Free quantity of a candidate.
+#[derive(Debug, Clone, Copy)]
+struct Free {
+    what: What,
+    /// The largest |σ_t − σ_c| of all rays, or 1 for a factor.
+    scale: f64,
+    /// Ray with that, if it is no probe: a σ̂ that exists there exists on most others.
+    ray: Option<usize>,
+}
 
 /// Candidates on the rays of a medium.
 pub struct Study {
@@ -29,32 +40,33 @@ pub struct Study {
     pub texts: Vec<String>,
     /// One case for each ray, with the candidates in its list.
     pub cases: Vec<Case>,
+    /// Price of each candidate; `None` where it cannot be drawn.
+    pub prices: Vec<Option<Price>>,
     /// `(T/T̄)²` of each ray: errors are relative to the mean transmittance T̄ of all rays.
     weights: Vec<f64>,
     /// Rays on which settings are searched.
     probes: Vec<usize>,
-    /// Price of each candidate; `None` where it cannot be drawn.
-    pub prices: Vec<Option<Price>>,
-    /// Factor by which majorants exceed the maximum.
+    free: Vec<Option<Free>>,
     looseness: f64,
-    /// Goal of the draws.
     target: Target,
 }
 
-/// Variance and cost of a candidate at one σ̂.
-#[derive(Debug, Clone, PartialEq)]
+/// Variance and cost of a candidate at one setting, means over the rays.
+#[derive(Debug, Clone, Default, PartialEq)]
 pub struct Score {
-    /// Variance of a draw relative to the squared mean transmittance, mean over the rays.
+    /// Variance of a draw relative to the squared mean transmittance.
     pub variance: f64,
-    /// Relative variance times cost, mean over the rays: the cost at a relative error of 1.
+    /// Relative variance times cost: the cost at a relative error of 1.
     pub work: f64,
     /// Relative variance times cost of each ray.
     pub works: Vec<f64>,
-    /// Cost of a draw with its share of the setup, mean over the rays.
+    /// Cost of a draw with its share of the setup.
     pub cost: f64,
-    /// Expected lookups of a draw, mean over the rays.
+    /// Cost of a single draw with one lookup at least, if the estimator looks up at all.
+    pub single: f64,
+    /// Expected lookups of a draw.
     pub lookups: f64,
-    /// Setup lookups of a ray, mean over the rays.
+    /// Setup lookups of a ray.
     pub setup_lookups: f64,
     /// Largest kurtosis of a draw on a ray; `None` where theory has none or the variance is 0.
     pub kurtosis: Option<f64>,
@@ -63,27 +75,42 @@ pub struct Score {
 }
 
 impl Score {
-    /// Cost to an error, of one draw at least, or the squared error within a budget; infinite beyond it.
+    /// Returns the relative standard deviation of a draw, root mean square over the rays.
+    pub fn deviation(&self) -> f64 {
+        self.variance.sqrt()
+    }
+
+    /// Returns the cost to an error, of one draw at least, or the squared error within a budget; beyond the budget, a value
+    /// that cannot be taken and that rises with the cost.
     pub fn goal(&self, target: Target) -> f64 {
         match target {
-            Target::Error(error) => (self.work / (error * error)).max(self.cost),
-            Target::Budget(budget) if self.cost <= budget => self.work / budget,
-            Target::Budget(_) => f64::INFINITY,
+            Target::Error(error) => (self.work / (error * error)).max(self.single),
+            Target::Budget(budget) if self.single <= budget => self.work / budget,
+            Target::Budget(budget) => BEYOND * (self.single / budget),
         }
     }
 }
 
-/// The best setting of a candidate.
-#[derive(Debug, Clone)]
-pub struct Best {
+/// Candidate with a few values of its goal.
+struct Rough<'a> {
+    candidate: usize,
+    goal: Goal<'a>,
+    x: f64,
+    value: f64,
+}
+
+/// The best setting of a family of candidates.
+pub struct Best<'a> {
     /// Index of the candidate.
     pub candidate: usize,
     /// The constant σ̂ or the factor on σ̂; `None` where it is not free.
-    pub setting: Option<(What, f64)>,
+    pub setting: Variation,
     /// Cost to the goal on the probes, or the squared error within a budget.
-    pub goal: f64,
+    pub value: f64,
     /// Kind of the setting.
     pub kind: Kind,
+    /// Cost to the goal on the probes as a function of the free quantity.
+    pub goal: Goal<'a>,
 }
 
 impl Study {
@@ -97,168 +124,211 @@ impl Study {
         rays: &[Body],
         texts: Vec<String>,
         request: &Request,
+        prices: &mut Prices,
     ) -> Result<Self, CaseError> {
-        let cases = parallel::map(rays, |ray| candidates::case(base, ray, &texts));
+        let spec = candidates::replaced(&base.spec, &texts);
+        let cases = parallel::map(rays, |ray| Case::of_body(&spec, ray));
         let cases: Vec<Case> = cases.into_iter().collect::<Result<_, _>>()?;
-        let weights = weights(base, &cases);
         let probes = cases.len().min(PROBES);
-        let probes = (0..probes).map(|i| (2 * i + 1) * cases.len() / (2 * probes)).collect();
-        let mut study = Self {
-            texts,
-            cases,
-            weights,
-            probes,
-            prices: Vec::new(),
-            looseness: request.looseness,
-            target: request.target,
+        let probe = |i: usize| (2 * i + 1) * cases.len() / (2 * probes);
+        let probes: Vec<usize> = (0..probes).map(probe).collect();
+        let (weights, free) = (weights(base, &cases), free(&cases, &probes, &texts));
+        let case = &cases[cases.len() / 2];
+        // Walks of at least one flight or so: shorter ones say little about a lookup.
+        let length = case.scenario.media()[0].support().length();
+        let begin = |free: Free| match free.what {
+            What::Sampling if length > 0.0 && length.is_finite() => free.scale.max(1.0 / length),
+            _ => free.scale,
         };
-        let mut prices = Prices::open(&request.costs, &base.spec);
-        study.prices = (0..study.texts.len())
-            .map(|candidate| {
-                let text = &study.texts[candidate];
-                // The numbers of a profile depend on the prices.
-                let is_profile = text.contains("piecewise-constant");
-                let key = if is_profile { family(text) } else { text.clone() };
-                let scale = study.scale(candidate);
-                let at = |factor| study.what(candidate).map(|what| (what, scale * factor));
-                let case = &study.cases[study.probes[study.probes.len() / 2]];
-                prices.of(&key, case, (candidate, [at(1.0), at(4.0)]))
-            })
-            .collect();
-        prices.keep();
-        Ok(study)
-    }
-
-    /// Returns the free quantity of a candidate.
-    fn what(&self, candidate: usize) -> Option<What> {
-        let scenario = &self.cases[0].scenario;
-        let is_free = |what: &What| scenario.depends_on(candidate, *what);
-        let is_given = self.texts[candidate].contains("piecewise-constant");
-        [What::Sampling, What::SamplingScale].into_iter().find(is_free).filter(|_| !is_given)
-    }
-
-    /// Returns the natural scale of the free quantity: the largest |σ_t − σ_c| of all rays, or 1.
-    fn scale(&self, candidate: usize) -> f64 {
-        if self.what(candidate) != Some(What::Sampling) {
-            return 1.0;
+        let price = |(candidate, text): (usize, &String)| {
+            // The numbers of a profile depend on the prices.
+            let key = if candidates::is_profile(text) { family(text) } else { text.clone() };
+            let at = |factor| free[candidate].map(|free: Free| (free.what, begin(free) * factor));
+            prices.of(&key, case, (candidate, [at(1.0), at(4.0)]))
+        };
+        let mut measured: Vec<Option<Price>> = texts.iter().enumerate().map(price).collect();
+        // Lookups of a setup cost something where draws need none, too.
+        let mut lookups: Vec<f64> = measured.iter().flatten().map(|price| price.lookup).collect();
+        lookups.retain(|&lookup| lookup > 0.0);
+        lookups.sort_by(f64::total_cmp);
+        if let Some(&middle) = lookups.get(lookups.len() / 2) {
+            for price in measured.iter_mut().flatten().filter(|price| price.lookup == 0.0) {
+                price.lookup = middle;
+            }
         }
-        let scales = parallel::map(&self.cases, |case| {
-            case.at(None).map_or(0.0, |at| at.natural_scale(candidate))
-        });
-        scales.into_iter().fold(0.0, f64::max)
+        let Request { looseness, target, .. } = *request;
+        Ok(Self { texts, cases, prices: measured, weights, probes, free, looseness, target })
     }
 
-    /// Predicts a candidate on a ray; `None` if it is refused there.
-    pub fn predict(&self, candidate: usize, setting: Variation, ray: usize) -> Option<Prediction> {
+    /// Predicts a candidate on a ray, for a seed of its pilot rays; `None` if it is refused there.
+    fn predict(
+        &self,
+        candidate: usize,
+        at: Variation,
+        ray: usize,
+        seed: u64,
+    ) -> Option<Prediction> {
         let case = &self.cases[ray];
-        case.at(setting).ok()?.predict(candidate, None, case.pilots(1, candidate))
+        case.at(at).ok()?.predict(candidate, None, case.pilots(seed, candidate))
+    }
+
+    /// Returns whether an inequality refuses a candidate at a setting on a ray.
+    fn is_refused(&self, candidate: usize, at: Variation, ray: usize) -> bool {
+        self.predict(candidate, at, ray, 1).is_none()
+            && matches!(self.refusal(candidate, at, ray), Some(Refusal::Inequality { .. }))
+    }
+
+    /// Returns the reason why a candidate is refused at a setting on a ray; `None` if it is not.
+    fn refusal(&self, candidate: usize, at: Variation, ray: usize) -> Option<Refusal> {
+        let case = &self.cases[ray];
+        case.at(at).and_then(|at| at.prepare(candidate, case.pilots(1, candidate))).err()
+    }
+
+    /// Returns the reason why a candidate is refused at its natural scale on the first ray; `None` if it is not.
+    pub fn refusal_at_scale(&self, candidate: usize) -> Option<Refusal> {
+        self.refusal(candidate, self.free[candidate].map(|free| (free.what, free.scale)), 0)
     }
 
     /// Returns the score of a candidate over some rays; `None` if it is refused on one of them, or if theory does not
     /// know its variance or cost.
-    pub fn score(&self, candidate: usize, setting: Variation, rays: &[usize]) -> Option<Score> {
+    pub fn score(&self, candidate: usize, at: Variation, rays: &[usize]) -> Option<Score> {
         let price = self.prices[candidate]?;
-        let [mut variance, mut work, mut cost, mut lookups, mut setup] = [Sum::default(); 5];
-        let (mut works, mut kurtosis, mut is_bound) = (Vec::new(), None, false);
-        for &ray in rays {
-            let prediction = self.predict(candidate, setting, ray)?;
-            let draws_per_ray = self.cases[ray].draws_per_ray;
-            let own = price.draw + price.lookup * prediction.cost(draws_per_ray)?;
+        let mut score = Score::default();
+        let is_learned = self.cases.len() == 1 && candidates::is_learned(&self.texts[candidate]);
+        let seeds = if is_learned { SEEDS } else { 1 };
+        let share = 1.0 / (rays.len() as f64 * seeds as f64);
+        for (&ray, seed) in rays.iter().flat_map(|ray| (1..=seeds).map(move |seed| (ray, seed))) {
+            let prediction = self.predict(candidate, at, ray, seed)?;
+            let lookups = prediction.cost(self.cases[ray].draws_per_ray)?;
+            let own = price.draw + price.lookup * lookups;
+            let single =
+                price.draw + price.lookup * if lookups > 0.0 { lookups.max(1.0) } else { 0.0 };
             let channels = &prediction.channels;
             let mut relative = 0.0;
             for channel in channels {
                 relative += self.weights[ray] * relative_variance(channel)? / channels.len() as f64;
-                is_bound |= channel.moments.is_none();
-                let own = channel.moments.and_then(|moments| moments.kurtosis());
-                kurtosis = [kurtosis, own].into_iter().flatten().reduce(f64::max);
+                score.is_bound |= channel.moments.is_none();
+                let kurtosis = channel.moments.and_then(|moments| moments.kurtosis());
+                score.kurtosis = [score.kurtosis, kurtosis].into_iter().flatten().reduce(f64::max);
             }
-            works.push(relative * own);
-            variance.add(relative);
-            work.add(relative * own);
-            cost.add(own);
-            lookups.add(prediction.lookups.as_ref()?.mean);
-            setup.add(prediction.setup_lookups as f64);
+            score.works.push(relative * own);
+            score.variance += share * relative;
+            score.work += share * relative * own;
+            score.cost += share * own;
+            score.single += share * single;
+            score.lookups += share * prediction.lookups.as_ref()?.mean;
+            score.setup_lookups += share * prediction.setup_lookups as f64;
         }
-        let [variance, work, cost, lookups, setup_lookups] =
-            [variance, work, cost, lookups, setup].map(|sum| sum.value() / rays.len() as f64);
-        let score =
-            Score { variance, work, works, cost, lookups, setup_lookups, kurtosis, is_bound };
         score.work.is_finite().then_some(score)
     }
 
-    /// Returns the goal on the probes as a function of the free quantity; infinite where the candidate is refused.
-    pub fn goal(&self, candidate: usize, what: Option<What>) -> impl Fn(f64) -> f64 + '_ {
-        move |x| {
-            let score = self.score(candidate, what.map(|what| (what, x)), &self.probes);
-            score.map_or(f64::INFINITY, |score| score.goal(self.target))
-        }
+    /// Returns the goal on the probes as a function of the free quantity, of a σ̂ that is larger than needed by a factor.
+    pub fn goal(&self, candidate: usize, looseness: f64) -> Goal<'_> {
+        let free = self.free[candidate];
+        let largest = free.and_then(|free| free.ray);
+        let domain = move || self.probes.iter().copied().chain(largest);
+        Goal::new(move |x| {
+            let at = |x: f64| free.map(|free| (free.what, x));
+            let is_refused = |x| domain().any(|ray| self.is_refused(candidate, at(x), ray));
+            if looseness > 1.0 && is_refused(x / looseness) {
+                return f64::INFINITY;
+            }
+            let exists = |ray| self.predict(candidate, at(x), ray, 1).is_some();
+            let score = self.score(candidate, at(x), &self.probes);
+            match score.filter(|_| largest.is_none_or(exists)) {
+                Some(score) => score.goal(self.target),
+                None if is_refused(x) => f64::INFINITY,
+                None => UNKNOWN,
+            }
+        })
     }
 
-    /// Searches the best setting of a candidate; `None` if it is refused everywhere.
-    pub fn best(&self, candidate: usize) -> Option<Best> {
-        self.prices[candidate]?;
-        let what = self.what(candidate);
-        let f = self.goal(candidate, what);
-        let Some(what) = what else {
-            let best = Best { candidate, setting: None, goal: f(1.0), kind: Kind::Fixed };
-            return Some(best).filter(|best| best.goal.is_finite());
-        };
-        let (mut x, mut goal, kind) = search::best(self.scale(candidate), &f)?;
-        // An estimator that is refused just below needs a majorant.
-        if self.looseness > 1.0 && f(x * BELOW).is_infinite() {
-            x *= self.looseness;
-            goal = f(x);
+    /// Returns the candidates, family by family.
+    pub fn families(&self) -> Vec<Vec<usize>> {
+        let mut families: Vec<(String, Vec<usize>)> = Vec::new();
+        for (candidate, text) in
+            self.texts.iter().enumerate().filter(|(i, _)| self.prices[*i].is_some())
+        {
+            let own = family(text);
+            match families.iter_mut().find(|(other, _)| *other == own) {
+                Some((_, members)) => members.push(candidate),
+                None => families.push((own, vec![candidate])),
+            }
         }
-        Some(Best { candidate, setting: Some((what, x)), goal, kind })
+        families.into_iter().map(|(_, members)| members).collect()
+    }
+
+    /// Searches the best setting of a family; `None` if it is refused everywhere.
+    ///
+    /// The member in the middle tells the others where to begin. A few values of each decide which one is searched.
+    pub fn best(&self, family: &[usize]) -> Option<Best<'_>> {
+        let scale = |candidate: usize| self.free[candidate].map_or(1.0, |free| free.scale);
+        let rough = |candidate: usize, start: f64, reach: i32| {
+            let goal = self.goal(candidate, self.looseness);
+            let is_free = self.free[candidate].is_some();
+            let is_too_small = self.looseness > 1.0 && goal.of(start).is_infinite();
+            let start = if is_too_small { start * self.looseness } else { start };
+            let (x, value) = if is_free { goal.glimpse(start, reach) } else { (1.0, goal.of(1.0)) };
+            Rough { candidate, goal, x, value }
+        };
+        let lead = family[family.len() / 2];
+        let first = rough(lead, scale(lead), REACH);
+        let start = if first.value < BEYOND { first.x / scale(lead) } else { 1.0 };
+        let others: Vec<usize> = family.iter().copied().filter(|&other| other != lead).collect();
+        let all = parallel::map(&others, |&other| rough(other, start * scale(other), 1));
+        let all = all.into_iter().chain([first]);
+        let Rough { candidate, goal, x, value } = all.min_by(|a, b| a.value.total_cmp(&b.value))?;
+        let (x, value, kind) = match self.free[candidate] {
+            Some(_) => goal.best(x, 1)?,
+            None if value < BEYOND => (x, value, Kind::Fixed),
+            None => return None,
+        };
+        let setting = self.free[candidate].map(|free| (free.what, x));
+        let mut best = Best { candidate, setting, value, kind, goal };
+        if self.looseness > 1.0 {
+            best.goal = self.goal(best.candidate, 1.0);
+        }
+        Some(best)
     }
 
     /// Returns a setting that is allowed on all rays, not only on the probes, with its score; `None` if no setting up to
     /// twice the given one is allowed.
-    pub fn on_all(&self, best: &Best) -> Option<(Best, Score)> {
+    pub fn on_all(&self, best: &Best) -> Option<(Variation, Score)> {
         let rays: Vec<usize> = (0..self.cases.len()).collect();
-        let tries = if best.setting.is_some() { RAISES } else { 1 };
-        (0..tries).find_map(|i| {
-            let factor = RAISE.powi(i);
-            let setting = best.setting.map(|(what, x)| (what, search::up(x * factor)));
-            let score = self.score(best.candidate, setting, &rays)?;
-            Some((Best { setting, ..best.clone() }, score))
+        let tries = if best.setting.is_some() { &RAISES[..] } else { &RAISES[..1] };
+        tries.iter().find_map(|factor| {
+            let setting = best.setting.map(|(what, x)| (what, super::search::up(x * factor)));
+            Some((setting, self.score(best.candidate, setting, &rays)?))
         })
     }
+}
 
-    /// Returns the best setting of each family of candidates.
-    pub fn best_of_families(&self) -> Vec<Best> {
-        let all = parallel::range(self.texts.len(), |candidate| self.best(candidate));
-        let mut kept: Vec<Best> = Vec::new();
-        for best in all.into_iter().flatten() {
-            let of = |best: &Best| family(&self.texts[best.candidate]);
-            match kept.iter_mut().find(|other| of(other) == of(&best)) {
-                Some(other) if best.goal < other.goal => *other = best,
-                Some(_) => {}
-                None => kept.push(best),
-            }
+/// Returns the free quantity of each candidate: a constant σ̂, or a factor on σ̂.
+fn free(cases: &[Case], probes: &[usize], texts: &[String]) -> Vec<Option<Free>> {
+    let mut scales: BTreeMap<String, (f64, usize)> = BTreeMap::new();
+    let mut free = |(candidate, text): (usize, &String)| {
+        let scenario = &cases[0].scenario;
+        let is_free = |what: &What| scenario.depends_on(candidate, *what);
+        let what = [What::Sampling, What::SamplingScale].into_iter().find(is_free)?;
+        if candidates::is_profile(text) {
+            return None;
         }
-        kept
-    }
-
-    /// Returns the reason why a candidate is refused at its natural scale on the first ray; `None` if it is not.
-    pub fn refusal(&self, candidate: usize) -> Option<Refusal> {
-        let setting = self.what(candidate).map(|what| (what, self.scale(candidate)));
-        let case = &self.cases[0];
-        let prepared =
-            case.at(setting).and_then(|at| at.prepare(candidate, case.pilots(1, candidate)));
-        prepared.err()
-    }
-
-    /// Returns whether a candidate exists on all probes at a setting: whether no inequality refuses it.
-    pub fn exists(&self, candidate: usize, setting: Variation) -> bool {
-        let is_refused = |&ray: &usize| {
-            let case = &self.cases[ray];
-            let prepared = || case.at(setting)?.prepare(candidate, case.pilots(1, candidate));
-            self.predict(candidate, setting, ray).is_none()
-                && matches!(prepared(), Err(Refusal::Inequality { .. }))
+        if what == What::SamplingScale {
+            return Some(Free { what, scale: 1.0, ray: None });
+        }
+        // Candidates with one control have one residual.
+        let own = || {
+            let scale = |case: &Case| case.at(None).map_or(0.0, |at| at.natural_scale(candidate));
+            let all = parallel::map(cases, scale).into_iter().enumerate();
+            all.max_by(|a, b| a.1.total_cmp(&b.1)).map_or((0.0, 0), |(ray, scale)| (scale, ray))
         };
-        !self.probes.iter().any(is_refused)
-    }
+        let control = cases[0].at(None).map(|at| at.id(candidate).control).unwrap_or_default();
+        let (scale, ray) = *scales.entry(control).or_insert_with(own);
+        // Where nothing is left to sample, any σ̂ will do.
+        let ray = Some(ray).filter(|ray| !probes.contains(ray));
+        Some(Free { what, scale: if scale > 0.0 { scale } else { 1.0 }, ray })
+    };
+    texts.iter().enumerate().map(&mut free).collect()
 }
 
 /// Returns the variance of a channel relative to its squared mean, or a bound on it; `None` where theory has neither,

@@ -30,6 +30,8 @@ pub struct Scenario {
     /// Mesh of each channel.
     meshes: OnceLock<Vec<Arc<Mesh>>>,
     estimators: Estimators,
+    /// σ̂ that each estimator's recipe makes, by channel, where neither chance nor a sweep changes it.
+    made: Vec<OnceLock<Vec<Piecewise>>>,
     /// Requirement of the problem on the ray.
     ray: RayNeed,
 }
@@ -47,7 +49,8 @@ impl Scenario {
         let sampling = settings.has("sampling") || defaults.swept == Some(What::Sampling) || unread;
         let built = (kind.build)(body, settings, Defaults { sampling, ..defaults });
         let ((problem, estimators), body) = (built?, body?.clone());
-        Some(Self { body, problem, meshes: OnceLock::new(), estimators, ray: kind.ray })
+        let made = estimators.list.iter().map(|_| OnceLock::new()).collect();
+        Some(Self { body, problem, meshes: OnceLock::new(), estimators, made, ray: kind.ray })
     }
 
     /// Returns the field as the case gives it.
@@ -170,6 +173,11 @@ impl Scenario {
         let recipe = self.estimators.sampling_of(parsed);
         let constant = constant.filter(|_| parsed.features.inputs.sampling);
         let constant = constant.map(|value| sampling::constant::Constant { value });
+        let is_control_varied = matches!(variation, Some((What::Points | What::Control, _)));
+        let is_fixed = constant.is_none()
+            && !is_control_varied
+            && !recipe.is_some_and(sampling::Recipe::learns);
+        let made = Some(&self.made[estimator]).filter(|_| is_fixed);
         let mut lookups = explored;
         let channels = self.meshes().iter().zip(self.body.channels()).enumerate();
         let channels = channels.map(|(channel, (mesh, body))| {
@@ -177,12 +185,22 @@ impl Scenario {
             let Some(recipe) = constant.as_ref().map(|own| own as _).or(own) else {
                 return Ok((mesh.clone(), None));
             };
+            if let Some(known) = made.and_then(OnceLock::get) {
+                return Ok((mesh.clone(), Some(known[channel].clone())));
+            }
             let site = Site { body, mesh, address };
             let (sampling, learned) = recipe.prepare_counted(&site, &control)?;
             lookups += learned;
-            Ok((mesh.clone(), Some(sampling.scaled(factor))))
+            Ok((mesh.clone(), Some(sampling)))
         });
-        let channels = channels.collect::<Result<_, Refusal>>()?;
+        let mut channels: Vec<(Arc<Mesh>, Option<Piecewise>)> =
+            channels.collect::<Result<_, Refusal>>()?;
+        if let Some(made) = made.filter(|_| recipe.is_some()) {
+            made.get_or_init(|| channels.iter().filter_map(|channel| channel.1.clone()).collect());
+        }
+        for (_, sampling) in &mut channels {
+            *sampling = sampling.take().map(|sampling| sampling.scaled(factor));
+        }
         let space = Box::new(move |volume: &Volume| {
             let recipe = constant.as_ref().map(|own| own as _).or(recipe);
             Ok(Arc::new(sampling::in_space(recipe, volume)?.scaled(factor)))

@@ -44,15 +44,15 @@ table! {
         "cost_most": "Cost to the error, or the error, of the ray with the most" = |of| of.row.times[1];
         "error" ["error", "", Short(3)]: "Relative standard error at that cost" = |of| of.row.error;
         "draws" ["draws", "", Short(2)]: "Draws at that cost" = |of| of.row.draws;
-        "cost_per_draw": "Cost of a draw with its share of the setup" = |of| of.row.cost;
+        "cost_per_draw": "Cost of a draw with its share of the setup" = |of| of.row.score.cost;
         "cost_error": "Relative error of the costs" = |of| of.row.cost_error;
-        "relative_deviation" ["s.d./T", "", Fixed(3)]: "Standard deviation of a draw over the transmittance" = |of| of.row.deviation;
-        "lookups_per_draw" ["lookups", "", Fixed(3)]: "Expected number of lookups of a draw" = |of| of.row.lookups;
-        "setup_lookups" ["setup", "", Short(3)]: "Lookups of a ray before its first draw" = |of| of.row.setup_lookups;
+        "relative_deviation" ["s.d./T", "", Fixed(3)]: "Standard deviation of a draw over the transmittance" = |of| of.row.score.deviation();
+        "lookups_per_draw" ["lookups", "", Fixed(3)]: "Expected number of lookups of a draw" = |of| of.row.score.lookups;
+        "setup_lookups" ["setup", "", Short(3)]: "Lookups of a ray before its first draw" = |of| of.row.score.setup_lookups;
         "margin_below" ["doubles below", "", Short(3)]: "Factor on σ̂ below which the cost doubles; 0 for none" = |of| of.row.margins.map(|margins| margins[0]);
         "margin_above" ["doubles above", "", Short(3)]: "Factor on σ̂ above which the cost doubles" = |of| of.row.margins.map(|margins| margins[1]);
         "least_sampling" ["least σ̂", "", Short(3)]: "Least σ̂, or factor, for which the estimator exists with a finite variance; 0 for any" = |of| of.row.least;
-        "kurtosis" ["kurtosis", "", Short(3)]: "Largest kurtosis of a draw on a ray" = |of| of.row.kurtosis;
+        "kurtosis" ["kurtosis", "", Short(3)]: "Largest kurtosis of a draw on a ray" = |of| of.row.score.kurtosis;
         "trusted_draws" ["draws until trusted", "", Short(2)]: "Draws until the sample variance has a standard error of 10 %" = |of| of.row.trusted;
         "needs": "Knowledge of the medium that is needed beside lookups" = |of| &of.row.needs;
         "lines": "Lines for a case" = |of| &of.row.lines;
@@ -61,7 +61,7 @@ table! {
         "sampling_marked" ["σ̂", "1/length", Right]: "Best σ̂, or the factor on one that is not constant" = |of| console::sampling(of.row);
         "time" ["time", "s", Time]: "Time to the error" = |of| of.row.time;
         "error_percent" ["error", "", Percent]: "Relative standard error within the budget" = |of| of.row.error;
-        "setup" ["setup", "", Short(3)]: "Lookups of a ray before its first draw, if there are any" = |of| Some(of.row.setup_lookups).filter(|&lookups| lookups > 0.0);
+        "setup" ["setup", "", Short(3)]: "Lookups of a ray before its first draw, if there are any" = |of| Some(of.row.score.setup_lookups).filter(|&lookups| lookups > 0.0);
         "margins" ["σ̂ ×", "", Right]: "Factors on σ̂ between which the cost stays below its double" = |of| of.row.margins.map_or_else(String::new, console::margins);
     }
 }

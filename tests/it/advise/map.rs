@@ -1,4 +1,5 @@
-//! Map of the best estimators: `cargo test --release --test it advise::map -- --ignored` writes `docs/advise-map.csv` and `.svg`.
+//! Map of the best estimators: `cargo test --release --test it advise::map -- --ignored` writes `docs/advise-map.csv` and
+//! `docs/pictures/advise-map.svg`.
 
 use std::collections::BTreeMap;
 use std::fmt::Write;
@@ -34,7 +35,9 @@ fn words(row: &Row) -> String {
     let rule = rule.map(|rule| format!(" {rule}")).unwrap_or_default();
     let control = row.control.split(' ').next().filter(|word| !word.is_empty());
     let control = control.map(|word| format!(", {word}")).unwrap_or_default();
-    let local = if row.sampling.contains("local") { ", local majorants" } else { "" };
+    let kinds = [("local", ", local majorants"), ("pilot", ", pilots")];
+    let kind = kinds.into_iter().find(|(word, _)| row.sampling.contains(word));
+    let local = kind.map_or("", |(_, words)| words);
     format!("{name}{rule}{control}{local}")
 }
 
@@ -65,7 +68,7 @@ fn spikes([floor, share]: [f64; 2], depth: f64) -> (String, f64) {
 }
 
 #[test]
-#[ignore = "writes docs/advise-map.csv and docs/advise-map.svg"]
+#[ignore = "writes docs/advise-map.csv and docs/pictures/advise-map.svg"]
 fn the_map_of_winners_is_drawn() {
     let mut table = String::from(
         "draw_s,lookup_s,majorant,max_over_mean,tau,rank,estimator,sampling,cost_s,deviation\n",
@@ -82,7 +85,7 @@ fn the_map_of_winners_is_drawn() {
                 for row in advice.rows.iter().take(8) {
                     let sampling = row.constant.or(row.factor).unwrap_or(1.0);
                     let (name, rank, time, deviation) =
-                        (words(row), row.rank, row.time, row.deviation);
+                        (words(row), row.rank, row.time, row.score.deviation());
                     let _ = writeln!(
                         table,
                         "{draw:e},{lookup:e},{looseness},{ratio:.2},{depth},{rank},\"{name}\",{sampling},{time:.3e},{deviation:.3e}",
@@ -93,7 +96,7 @@ fn the_map_of_winners_is_drawn() {
         }
     }
     let docs = concat!(env!("CARGO_MANIFEST_DIR"), "/docs/");
-    std::fs::write(format!("{docs}advise-map.svg"), drawn(&cells)).expect("written");
+    std::fs::write(format!("{docs}pictures/advise-map.svg"), drawn(&cells)).expect("written");
     std::fs::write(format!("{docs}advise-map.csv"), table).expect("written");
 }
 

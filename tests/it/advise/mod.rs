@@ -9,7 +9,7 @@ use std::path::PathBuf;
 use crate::common::place::{Place, assert_says};
 use crate::common::{case, differs, failing, none, rows, source};
 use trueflight::advise::search::Kind;
-use trueflight::advise::{Advice, Costs, Group, Request, Row, Target, advise};
+use trueflight::advise::{Advice, CURVES, Costs, Group, Request, Row, Target, advise};
 use trueflight::case::Spec;
 use trueflight::catalogue::own_pages;
 
@@ -54,7 +54,7 @@ fn a_homogeneous_line_has_the_best_rows_of_closed_forms() {
     assert_eq!(ratio.least, Some(0.0));
     // Regular tracking is exact with one lookup; the closed form needs τ.
     let regular = advice.rows.iter().find(|row| row.estimator == "regular").expect("a row");
-    assert_eq!((regular.group, regular.time, regular.deviation), (Group::Ranked, 1.0, 0.0));
+    assert_eq!((regular.group, regular.time, regular.score.deviation()), (Group::Ranked, 1.0, 0.0));
     let closed = advice.rows.iter().find(|row| row.estimator == "closed-form").expect("a row");
     assert_eq!((closed.group, &*closed.needs), (Group::Informed, "τ"));
     // The best σ̂(t) of a homogeneous medium is constant where every collision has a weight.
@@ -69,16 +69,19 @@ fn lines_for_a_case_reproduce_the_rows_and_their_draws_pass() {
         asked(&format!("{SINES}{ANY}"), &request(Costs::Given { draw: 5e-8, lookup: 1e-8 }));
     assert!(advice.rows.len() > 15, "{} rows", advice.rows.len());
     let mut wrong = Vec::new();
-    for row in &advice.rows {
+    // Pilot rays of a case have other random numbers.
+    let is_random = |row: &&Row| row.needs == "pilot rays";
+    assert_eq!(advice.rows.iter().filter(is_random).count(), 3);
+    for row in advice.rows.iter().filter(|row| !is_random(row)) {
         let found = crate::common::predicted(&format!("{SINES}{}", row.lines));
         let [found] = &found[..] else { panic!("one row of {}", row.lines) };
         let truth = found.truth.expect("a truth");
         let deviation = found.predicted_variance.expect("a variance").sqrt() / truth;
         let lookups = found.experiment.predicted_lookups.expect("lookups");
-        wrong.extend(differs(&row.lines, row.deviation, deviation, 1e-9));
-        wrong.extend(differs(&row.lines, row.lookups, lookups, 1e-9));
-        let cost = 5e-8 + 1e-8 * (lookups + row.setup_lookups);
-        wrong.extend(differs(&row.lines, row.cost, cost, 1e-9));
+        wrong.extend(differs(&row.lines, row.score.deviation(), deviation, 1e-9));
+        wrong.extend(differs(&row.lines, row.score.lookups, lookups, 1e-9));
+        let cost = 5e-8 + 1e-8 * (lookups + row.score.setup_lookups);
+        wrong.extend(differs(&row.lines, row.score.cost, cost, 1e-9));
         wrong.extend(differs(
             &row.lines,
             row.time,
@@ -90,12 +93,13 @@ fn lines_for_a_case_reproduce_the_rows_and_their_draws_pass() {
     let best = advice.best().expect("advice");
     none(&failing(&rows(&format!("{SINES}{}", best.lines), 400_000)));
     // No other σ̂ is better, or by 5 % where V·cost falls towards a limit.
-    let ratio = row(&advice, "ratio");
-    let least = ratio.curve.iter().map(|[_, y]| *y).fold(f64::INFINITY, f64::min);
-    assert!(ratio.time <= least * 1.0501, "{} {least}", ratio.time);
-    let single = row(&advice, "single (non-terminating");
-    let least = single.curve.iter().map(|[_, y]| *y).fold(f64::INFINITY, f64::min);
-    assert!(single.time <= least * 1.001, "{} {least}", single.time);
+    let shown: Vec<&Row> = advice.rows.iter().filter(|row| !row.curve.is_empty()).collect();
+    assert_eq!(shown.len(), CURVES);
+    for row in shown {
+        let least = row.curve.iter().map(|[_, y]| *y).fold(f64::INFINITY, f64::min);
+        let above = if row.kind == Kind::NearLimit { 1.0511 } else { 1.001 };
+        assert!(row.time <= least * above, "{} {} {least}", row.lines, row.time);
+    }
 }
 
 #[test]
@@ -124,7 +128,11 @@ fn a_loose_majorant_costs_those_that_need_it() {
         [1.0, 2.0].map(|looseness| asked(&text, &Request { looseness, ..costs() }));
     let [one, two] = [&tight, &loose].map(|advice| row(advice, "woodcock"));
     assert_eq!(two.constant, one.constant.map(|x| 2.0 * x));
-    none(&differs("lookups", two.lookups, 2.0 * one.lookups, 1e-9).into_iter().collect::<Vec<_>>());
+    none(
+        &differs("lookups", two.score.lookups, 2.0 * one.score.lookups, 1e-9)
+            .into_iter()
+            .collect::<Vec<_>>(),
+    );
     assert_eq!(row(&tight, "ratio").time, row(&loose, "ratio").time);
 }
 
@@ -135,7 +143,7 @@ fn measured_costs_are_kept_for_each_medium() {
     let times = |anew| {
         let advice = asked(&format!("{SINES}{ANY}"), &request(costs(anew)));
         let mut times: Vec<_> =
-            advice.rows.iter().map(|row| (row.lines.clone(), row.cost)).collect();
+            advice.rows.iter().map(|row| (row.lines.clone(), row.score.cost)).collect();
         times.sort_by(|a, b| a.0.cmp(&b.0));
         times
     };

@@ -3,7 +3,8 @@
 use super::{ANY, SINES, asked, request};
 use crate::common::{failing, none, rows};
 use trueflight::advise::candidates::Collisions;
-use trueflight::advise::profile::{PLACES, RECIPE, STEPS, Steps};
+use trueflight::advise::candidates::RECIPE;
+use trueflight::advise::profile::{PLACES, STEPS, Steps};
 use trueflight::advise::{Costs, Group};
 use trueflight::theory::Rule;
 use trueflight::theory::rules::{Single, Weight};
