@@ -21,8 +21,9 @@ const SEEDS: u64 = 4;
 const RAISES: [f64; 5] = [1.0, 1.02, 1.1, 1.4, 2.0];
 /// Relative difference of a mean from the truth that is a bias.
 const BIAS: f64 = 1e-9;
-/// Steps of a factor of two on each side of the natural scale that are tried first, where nothing is known.
-const REACH: i32 = 2;
+/// Steps of a factor of two on each side of a constant σ̂ that are tried first: a particle that collides for real and one
+/// that seldom does are two minima.
+const REACH: i32 = 3;
 
 /// Free quantity of a candidate.
 #[derive(Debug, Clone, Copy)]
@@ -263,19 +264,21 @@ impl Study {
     /// The member in the middle tells the others where to begin. A few values of each decide which one is searched.
     pub fn best(&self, family: &[usize]) -> Option<Best<'_>> {
         let scale = |candidate: usize| self.free[candidate].map_or(1.0, |free| free.scale);
-        let rough = |candidate: usize, start: f64, reach: i32| {
+        let rough = |candidate: usize, start: f64| {
             let goal = self.goal(candidate, self.looseness);
-            let is_free = self.free[candidate].is_some();
+            let free = self.free[candidate];
+            let reach = free.map_or(0, |free| if free.what == What::Sampling { REACH } else { 1 });
             let is_too_small = self.looseness > 1.0 && goal.of(start).is_infinite();
             let start = if is_too_small { start * self.looseness } else { start };
-            let (x, value) = if is_free { goal.glimpse(start, reach) } else { (1.0, goal.of(1.0)) };
+            let (x, value) =
+                if free.is_some() { goal.glimpse(start, reach) } else { (1.0, goal.of(1.0)) };
             Rough { candidate, goal, x, value }
         };
         let lead = family[family.len() / 2];
-        let first = rough(lead, scale(lead), REACH);
+        let first = rough(lead, scale(lead));
         let start = if first.value < BEYOND { first.x / scale(lead) } else { 1.0 };
         let others: Vec<usize> = family.iter().copied().filter(|&other| other != lead).collect();
-        let all = parallel::map(&others, |&other| rough(other, start * scale(other), 1));
+        let all = parallel::map(&others, |&other| rough(other, start * scale(other)));
         let all = all.into_iter().chain([first]);
         let Rough { candidate, goal, x, value } = all.min_by(|a, b| a.value.total_cmp(&b.value))?;
         let (x, value, kind) = match self.free[candidate] {

@@ -81,7 +81,7 @@ fn particles_have_a_profile_that_no_step_improves() {
     let work = steps.work(&rule, &best);
     assert!(work < steps.work(&rule, &[start; STEPS]));
     let found = searched(|sampling| steps.work(&rule, sampling), start);
-    assert!((found / work - 1.0).abs() < 1e-3, "{found} {work}");
+    assert!(work < found * 1.001, "{found} {work}");
     // Pontryagin's principle.
     let share = steps.width / PLACES as f64;
     let over = |i: usize, s: f64, f: &dyn Fn(f64) -> f64| {
