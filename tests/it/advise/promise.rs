@@ -6,7 +6,7 @@
 //! ```
 //!
 //! V is exact theory, of which draws of ten advised estimators are a check. Times are taken of the estimators with a
-//! predicted time below 2.5 times the least, and of two others by chance, each at five σ̂. They are timed in turn, in many
+//! predicted time below 2.5 times the least, and of two others at random, each at five σ̂. They are timed in turn, in many
 //! short rounds. The advised estimator and the fastest are then timed again, so that the fastest is not the luckiest.
 
 use std::fmt::Write;
@@ -64,7 +64,7 @@ const DRAWN: f64 = 1.0;
 const FACTORS: [f64; 5] = [0.5, 0.7, 1.0, 1.4, 2.0];
 /// Predicted time over the least up to which all estimators are measured.
 const NEAR: f64 = 2.5;
-/// Number of others, by chance.
+/// Number of others, at random.
 const OTHERS: usize = 2;
 /// Largest measured time of the advised estimator, relative to the best.
 const PROMISE: f64 = 1.15;
