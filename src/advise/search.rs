@@ -117,7 +117,7 @@ impl<'a> Goal<'a> {
         let [low, middle, high] = around.map(|log| self.at(log));
         let (fall, rise) = (middle - low, high - middle);
         // Equal steps: the vertex is below the middle by slope²/(2 · curvature).
-        let is_smooth = high < BEYOND && low < BEYOND && around[2] - around[0] < 1.5;
+        let is_smooth = low.max(high) < 2.0 * middle && around[2] - around[0] < 1.5;
         let below = 0.125 * (rise + fall).powi(2) / (rise - fall);
         (around[1].exp(), if is_smooth && rise > fall { middle - below } else { middle })
     }
