@@ -13,7 +13,7 @@ use super::help::Names;
 use super::reports::Inconclusive;
 use super::{Console, USAGE, numbers, output};
 use crate::case::Catalogue;
-use crate::judge::{self, Column, Draws, Format, Judgement, ROUNDING, Wanted};
+use crate::judge::{self, Column, Draws, Format, Judgement, Options, ROUNDING};
 use crate::record::Verdict;
 use crate::report::judge as report;
 use crate::report::judge::junit::Told;
@@ -156,7 +156,7 @@ pub fn main(arguments: &Arguments, catalogue: &Catalogue, console: &Console) -> 
         return images::main(arguments, console);
     }
     let claimed = arguments.claimed(catalogue)?;
-    let wanted = Wanted {
+    let wanted = Options {
         tolerance: arguments.tolerance,
         variance_tolerance: arguments.variance_tolerance,
         alpha: arguments.alpha / arguments.files.len() as f64,
@@ -255,7 +255,12 @@ impl Arguments {
     }
 
     /// Reads a file and judges it, channel by channel.
-    fn judge(&self, file: &Path, claimed: &Claimed, wanted: Wanted) -> anyhow::Result<Vec<Judged>> {
+    fn judge(
+        &self,
+        file: &Path,
+        claimed: &Claimed,
+        wanted: Options,
+    ) -> anyhow::Result<Vec<Judged>> {
         let format = self.input_format(file)?;
         let layout = claimed.layout(self.column.as_deref());
         if !file.is_file() && (is_pipe(file) || file.exists()) {
@@ -267,7 +272,7 @@ impl Arguments {
             };
             let length = draws.known_length();
             let most = wanted.most.or_else(|| length.is_none().then_some(OF_A_PIPE));
-            let wanted = Wanted { most, ..wanted };
+            let wanted = Options { most, ..wanted };
             return claimed.judge(&name(file), &mut draws, wanted, length);
         }
         let length = match (Draws::open_as(file, format.clone(), &layout)?.known_length(), &format)

@@ -10,7 +10,7 @@
 //! Truth, variance and kurtosis are exact. A claim is left out where the distribution has no finite kurtosis, or no
 //! range. Every stream has 4e5 draws and its own address, and is judged at α = 1e-3 for each of the claims.
 
-use gate::session::{Claim, ROUNDING, Trial, Wanted};
+use gate::session::{CheckedClaim, Claim, Options, ROUNDING};
 use gate::stats::binomial;
 use gate::stats::verdict::Verdict;
 use numeric::rng::{Address, Stream, exponential, unit};
@@ -263,11 +263,11 @@ pub fn all(streams: u64, step: &(dyn Fn(u64) + Sync)) -> Vec<StreamVerdicts> {
 }
 
 fn of_law(law: Law, streams: u64, step: &(dyn Fn(u64) + Sync)) -> Vec<StreamVerdicts> {
-    let wanted = Wanted { alpha: ALPHA, ..Wanted::default() };
-    let trials: Vec<(Claims, Trial)> = CLAIMS
+    let wanted = Options { alpha: ALPHA, ..Options::default() };
+    let trials: Vec<(Claims, CheckedClaim)> = CLAIMS
         .into_iter()
         .filter_map(|known| {
-            let trial = Trial::new(law.claim(known)?, wanted, Some(DRAWS as u64)).ok()?;
+            let trial = CheckedClaim::new(law.claim(known)?, wanted, Some(DRAWS as u64)).ok()?;
             Some((known, trial))
         })
         .collect();

@@ -3,8 +3,8 @@
 use super::{Arguments, Judged};
 use crate::case::{Case, CaseError, Catalogue};
 use crate::judge::{
-    Choice, ChoiceError, Claim, ClaimError, Draws, Layout, Lookups, Session, Taken, Theory, Trial,
-    Wanted, theory_of,
+    CheckedClaim, Choice, ChoiceError, Claim, ClaimError, Draws, Layout, Lookups, Options, Session,
+    Taken, Theory, theory_of,
 };
 
 /// Claims about the draws of a file.
@@ -24,12 +24,12 @@ impl Claimed {
     }
 
     /// Validates the options of the gate against the claims.
-    pub(super) fn check(&self, wanted: Wanted) -> Result<(), ClaimError> {
+    pub(super) fn check(&self, wanted: Options) -> Result<(), ClaimError> {
         let judged = |(index, _): &(usize, _)| self.channel.is_none_or(|channel| channel == *index);
         let claims = self.claims.iter().enumerate().filter(judged);
         claims
             .map(|(_, (_, claim))| *claim)
-            .try_for_each(|claim| Trial::new(claim, wanted, None).map(drop))
+            .try_for_each(|claim| CheckedClaim::new(claim, wanted, None).map(drop))
     }
 
     /// Returns the columns of a file that are judged.
@@ -48,7 +48,7 @@ impl Claimed {
         &self,
         file: &str,
         draws: &mut Draws,
-        wanted: Wanted,
+        wanted: Options,
         length: Option<u64>,
     ) -> anyhow::Result<Vec<Judged>> {
         let values = draws.values();

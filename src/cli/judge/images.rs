@@ -9,7 +9,7 @@ use clap::Args;
 use super::Shown;
 use crate::cli::{Console, USAGE, numbers, output};
 use crate::judge::images::against::{Terms, compare};
-use crate::judge::images::{Claim, Judgement, Level, Stack, Wanted, files, judge};
+use crate::judge::images::{Claim, Judgement, Level, Options, Stack, files, judge};
 use crate::report::judge::images as report;
 use crate::report::judge::junit::Told;
 
@@ -91,7 +91,7 @@ pub fn main(arguments: &super::Arguments, console: &Console) -> anyhow::Result<u
             "--variance-passes says where a variance is from; give it by --variance-image or --variance"
         );
     }
-    let wanted = Wanted {
+    let wanted = Options {
         tile: images.tile.map(|tile| tile as usize),
         tolerance: arguments.tolerance,
         alpha: arguments.alpha,
@@ -118,7 +118,7 @@ pub fn main(arguments: &super::Arguments, console: &Console) -> anyhow::Result<u
 }
 
 /// Reads and judges.
-fn judged(arguments: &super::Arguments, wanted: &Wanted) -> anyhow::Result<Judgement> {
+fn judged(arguments: &super::Arguments, wanted: &Options) -> anyhow::Result<Judgement> {
     let images = &arguments.images;
     let judged_files = passes(&arguments.files)?;
     let (against, variance_stack) = (passes(&images.against)?, passes(&images.variance_stack)?);

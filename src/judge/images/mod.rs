@@ -15,7 +15,7 @@
 //! `α_d` is α, but not below 1e-4. The list of suspect tiles is by e-BH: on average at most 5 % of it are false.
 //!
 //! ```
-//! use trueflight::judge::images::{Claim, Level, Size, Stack, Wanted, judge};
+//! use trueflight::judge::images::{Claim, Level, Size, Stack, Options, judge};
 //! use trueflight::stats::verdict::Verdict;
 //!
 //! // 64 passes of 32 × 32 pixels, each the mean of four fair coins.
@@ -29,9 +29,9 @@
 //! });
 //! let stack = Stack::new(64, size, coins.collect())?;
 //! let claim = Claim { range: Some([0.0, 1.0]), ..Claim::of_truth(Level::All(0.5)) };
-//! assert_eq!(judge(&stack, &claim, &Wanted::default())?.verdict, Verdict::Pass);
+//! assert_eq!(judge(&stack, &claim, &Options::default())?.verdict, Verdict::Pass);
 //! let claim = Claim { range: Some([0.0, 1.0]), ..Claim::of_truth(Level::All(0.52)) };
-//! assert_eq!(judge(&stack, &claim, &Wanted::default())?.verdict, Verdict::Fail);
+//! assert_eq!(judge(&stack, &claim, &Options::default())?.verdict, Verdict::Fail);
 //! # Ok::<(), trueflight::judge::images::ImageError>(())
 //! ```
 
@@ -67,7 +67,7 @@ const NOISY_VALUES: usize = 8192;
 
 /// Options of a verdict.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Wanted {
+pub struct Options {
     /// Rows and columns of the smallest tiles; `None` for the smallest power of 2 with 2048 values in all passes.
     pub tile: Option<usize>,
     /// ε of the whole and of each tile, in units of the picture's mean truth; absolute if that is 0. `None` for the
@@ -77,13 +77,13 @@ pub struct Wanted {
     pub alpha: f64,
 }
 
-impl Default for Wanted {
+impl Default for Options {
     fn default() -> Self {
         Self { tile: None, tolerance: None, alpha: 1e-3 }
     }
 }
 
-impl Wanted {
+impl Options {
     fn check(&self) -> Result<(), ImageError> {
         let number = |what, value, wanted| Err(ImageError::Number { what, value, wanted });
         match *self {
@@ -114,7 +114,7 @@ impl Wanted {
 /// # Errors
 ///
 /// The claim or the options make no sense, or the claim has another size than the passes.
-pub fn judge(stack: &Stack, claim: &Claim, wanted: &Wanted) -> Result<Judgement, ImageError> {
+pub fn judge(stack: &Stack, claim: &Claim, wanted: &Options) -> Result<Judgement, ImageError> {
     wanted.check()?;
     let pixels = Pixels::new(claim, stack, wanted.tolerance)?;
     let (size, alpha) = (stack.size, wanted.alpha);

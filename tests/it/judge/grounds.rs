@@ -3,11 +3,9 @@
 use trueflight::case::Case;
 use trueflight::case::Source;
 use trueflight::estimators::DrawBuffer;
-use trueflight::judge::{Claim, ROUNDING, Trial, Wanted};
+use trueflight::judge::{CheckedClaim, Claim, Options, ROUNDING};
 use trueflight::lab::streams::{self, CLAIMS, LAWS, Law};
-use trueflight::plan::BLOCK;
-use trueflight::plan::Options;
-use trueflight::plan::Plan;
+use trueflight::plan::{self, BLOCK, Plan};
 use trueflight::record::Verdict;
 
 use super::{Place, raw, uniform};
@@ -73,7 +71,7 @@ fn eq21(sampling: f64, seed: u64) -> Vec<f64> {
     let place = Place::new(&[("eq21.toml", text.as_bytes())]);
     let source = Source::read(&place.path().join("eq21.toml")).expect("a case");
     let case = Case::read(&source).expect("a case");
-    let options = Options { seed, ..Options::default() };
+    let options = plan::Options { seed, ..plan::Options::default() };
     let plan = Plan::new(std::slice::from_ref(&case), &options);
     let planned = &plan.cases[0].experiments[0];
     let ready = planned.outcome.as_ref().expect("it is drawn");
@@ -101,7 +99,7 @@ fn two_per_cent_of_bias_fail_by_truth_and_range_alone() {
         let range = Some([0.0, 1.0]);
         let claim = Claim { range, rounding: ROUNDING, ..Claim::of_truth(truth) };
         let claim = claim.validated().expect("a claim");
-        let trial = Trial::new(claim, Wanted::default(), Some(400_000)).expect("a trial");
+        let trial = CheckedClaim::new(claim, Options::default(), Some(400_000)).expect("a trial");
         trial.judge_all(draws).verdict
     };
     for seed in [1, 2, 3] {

@@ -2,7 +2,7 @@
 
 use std::io::Read;
 
-use trueflight::judge::{Claim, Draws, Format, Stop, Trial, Wanted};
+use trueflight::judge::{CheckedClaim, Claim, Draws, Format, Options, Stop};
 
 use super::{CASE, Place, UNIFORM, raw, uniform};
 
@@ -125,8 +125,8 @@ impl Read for Endless {
 #[test]
 fn a_pipe_without_end_ends() {
     let claim = Claim { variance: Some(0.0), ..Claim::of_truth(0.5) }.validated();
-    let wanted = Wanted { most: Some(1_000_000), ..Wanted::default() };
-    let trial = Trial::new(claim.expect("a claim"), wanted, None).expect("a trial");
+    let wanted = Options { most: Some(1_000_000), ..Options::default() };
+    let trial = CheckedClaim::new(claim.expect("a claim"), wanted, None).expect("a trial");
     let format = Format::Csv { column: None, lookups: None };
     let mut draws = Draws::from_reader(Endless, "stdin", format).expect("draws");
     let judgement = trial.judge(&mut draws).expect("a verdict");

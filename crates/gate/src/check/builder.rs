@@ -2,7 +2,7 @@
 
 use super::made::{Closure, Factory, Sample};
 use super::outcome::{CheckError, CheckFault};
-use crate::session::{Claim, Lookups, ROUNDING, Session, Taken, Theory, Wanted};
+use crate::session::{Claim, Lookups, Options, ROUNDING, Session, Taken, Theory};
 use numeric::rng::Stream;
 
 /// Maximum number of values of a draw that are judged together: with more, the share of α of each is too small.
@@ -229,7 +229,7 @@ pub(super) struct Said {
     pub(super) values: Option<usize>,
     pub(super) mean_only: bool,
     /// Error rate, tolerances and number of draws.
-    pub(super) wanted: Wanted,
+    pub(super) wanted: Options,
     pub(super) seed: u64,
 }
 
@@ -245,7 +245,7 @@ impl Default for Said {
             theory: None,
             values: None,
             mean_only: false,
-            wanted: Wanted::default(),
+            wanted: Options::default(),
             seed: 1,
         }
     }

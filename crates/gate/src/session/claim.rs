@@ -245,7 +245,7 @@ pub const BUFFER: usize = BLOCK as usize;
 
 /// Settings of the verdict.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Wanted {
+pub struct Options {
     /// ε of the mean, in units of u.
     pub tolerance: Option<f64>,
     /// ε of the variance, relative to it.
@@ -260,7 +260,7 @@ pub struct Wanted {
     pub most: Option<u64>,
 }
 
-impl Default for Wanted {
+impl Default for Options {
     fn default() -> Self {
         Self {
             tolerance: None,
@@ -273,7 +273,7 @@ impl Default for Wanted {
     }
 }
 
-impl Wanted {
+impl Options {
     /// End of the draws that are taken from a source.
     pub fn until(&self) -> Until {
         Until { most: self.most, is_decided: self.stop_early }
@@ -289,22 +289,22 @@ pub(super) fn check_alpha(value: f64) -> Result<(), ClaimError> {
 
 /// A claim with the settings of the verdict, ready for draws.
 #[derive(Debug, Clone, Copy)]
-pub struct Trial {
+pub struct CheckedClaim {
     /// Claim on a draw.
     pub claim: Claim,
     /// Error rate, tolerances and number of draws.
-    pub wanted: Wanted,
+    pub wanted: Options,
     /// Number of draws, if known.
     pub length: Option<u64>,
 }
 
-impl Trial {
+impl CheckedClaim {
     /// Checks the settings before anything is read; `length` is the number of draws, if known.
     ///
     /// # Errors
     ///
     /// A tolerance, a number of draws or α is invalid for this claim.
-    pub fn new(claim: Claim, wanted: Wanted, length: Option<u64>) -> Result<Self, ClaimError> {
+    pub fn new(claim: Claim, wanted: Options, length: Option<u64>) -> Result<Self, ClaimError> {
         let positive = |what, value: Option<f64>| match value {
             Some(value) if !(value > 0.0 && value.is_finite()) => {
                 Err(ClaimError::Number { what, value, wanted: "a finite number above 0" })

@@ -18,7 +18,7 @@ pub struct Judgement {
     pub reason: String,
     /// Kind of the draw that refutes the claim by itself, where there is one.
     #[cfg_attr(feature = "serde", serde(skip))]
-    pub fault: Option<Fault>,
+    pub fault: Option<InvalidDraw>,
     /// Guarantees of the verdict, and their limits.
     pub guarantees: Vec<String>,
     /// α: the probability that correct draws fail.
@@ -204,9 +204,9 @@ impl Judgement {
             pattern.note(&found.check, None);
         }
         match self.fault {
-            Some(Fault::Number | Fault::Range) => pattern.number = true,
-            Some(Fault::Lookups) => pattern.lookups = Side::Both,
-            Some(Fault::Spread | Fault::Distance) => pattern.mean = Side::Both,
+            Some(InvalidDraw::Number | InvalidDraw::Range) => pattern.number = true,
+            Some(InvalidDraw::Lookups) => pattern.lookups = Side::Both,
+            Some(InvalidDraw::Spread | InvalidDraw::Distance) => pattern.mean = Side::Both,
             None => {}
         }
         pattern.binary = self.batch == 1 && self.has_binary_moments();
@@ -223,7 +223,7 @@ impl Judgement {
 
 /// Kind of a draw that refutes the claim by itself.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Fault {
+pub enum InvalidDraw {
     /// The draw is not finite, or so far from the truth that the square of the distance overflows.
     Number,
     /// The draw is out of the claimed range.

@@ -24,7 +24,7 @@
 //! square of the distance overflows.
 //!
 //! ```
-//! use trueflight_gate::session::{Claim, Trial, Wanted};
+//! use trueflight_gate::session::{Claim, CheckedClaim, Options};
 //! use trueflight_gate::stats::verdict::Verdict;
 //!
 //! // Draws of a fair coin, claimed to be 0.5 on average and to lie in [0, 1].
@@ -36,7 +36,7 @@
 //!     })
 //!     .collect();
 //! let claim = Claim { range: Some([0.0, 1.0]), ..Claim::of_truth(0.5) }.validated()?;
-//! let trial = Trial::new(claim, Wanted::default(), Some(draws.len() as u64))?;
+//! let trial = CheckedClaim::new(claim, Options::default(), Some(draws.len() as u64))?;
 //! assert_eq!(trial.judge_all(&draws).verdict, Verdict::Pass);
 //! # Ok::<(), trueflight_gate::session::ClaimError>(())
 //! ```
@@ -58,10 +58,11 @@ mod theory;
 mod together;
 mod verdict;
 
-pub use claim::{BUFFER, Claim, ClaimError, Lookups, ROUNDING, Trial, Wanted};
+pub use claim::{BUFFER, CheckedClaim, Claim, ClaimError, Lookups, Options, ROUNDING};
 pub use flights::Flights;
 pub use judgement::{
-    DistributionFinding, DriftFinding, Fault, IndependenceFinding, Judgement, ScalarFinding, Stop,
+    DistributionFinding, DriftFinding, IndependenceFinding, InvalidDraw, Judgement, ScalarFinding,
+    Stop,
 };
 pub use planned::{BlockSums, Planned, Trail};
 pub use quantity::{Ground, Quantity};
@@ -90,12 +91,12 @@ impl Session {
     /// The settings of the verdict are invalid for a claim.
     pub fn new(
         claims: &[Claim],
-        wanted: Wanted,
+        wanted: Options,
         length: Option<u64>,
         taken: Option<Taken>,
     ) -> Result<Self, ClaimError> {
         claim::check_alpha(wanted.alpha)?;
-        let wanted = Wanted { alpha: wanted.alpha / claims.len() as f64, ..wanted };
+        let wanted = Options { alpha: wanted.alpha / claims.len() as f64, ..wanted };
         let most = wanted.most.unwrap_or(u64::MAX);
         // A decision may end the draws earlier.
         let certain = length.map(|length| length.min(most)).filter(|_| !wanted.stop_early);
@@ -103,7 +104,7 @@ impl Session {
             .map_or_else(Background::default, |taken| taken.background(&wanted, claims, certain));
         let reading = |(index, claim): (usize, &Claim)| {
             let lookups = claim.lookups.filter(|_| index == 0);
-            let trial = Trial::new(Claim { lookups, ..*claim }, wanted, length)?;
+            let trial = CheckedClaim::new(Claim { lookups, ..*claim }, wanted, length)?;
             // The first reading tests the draw as a whole.
             Ok(Reading::new(trial, std::mem::take(&mut background)))
         };
@@ -169,8 +170,8 @@ impl Sink for Session {
     }
 }
 
-impl From<Trial> for Session {
-    fn from(trial: Trial) -> Self {
+impl From<CheckedClaim> for Session {
+    fn from(trial: CheckedClaim) -> Self {
         let readings = vec![Reading::new(trial, Background::default())];
         Self { readings, pending: Block::new(1) }
     }
@@ -348,7 +349,7 @@ impl Session {
     }
 }
 
-impl Trial {
+impl CheckedClaim {
     /// Takes draws from a source up to the limit, and judges them.
     ///
     /// # Errors

@@ -1,9 +1,9 @@
 //! Draws of one value on their way through all checks, block by block.
 
-use super::claim::{BUFFER, Trial};
+use super::claim::{BUFFER, CheckedClaim};
 use super::dependence::Contents;
 use super::flights::Ends;
-use super::judgement::{Fault, Judgement, Stop};
+use super::judgement::{InvalidDraw, Judgement, Stop};
 use super::scalar::{Levels, Scalar, main_share};
 use super::theory::{Background, Tested, Tests};
 use super::{dependence, verdict};
@@ -22,7 +22,7 @@ const VARIED: usize = 100;
 /// The first draw that refutes the claim by itself.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Refuted {
-    pub(super) fault: Fault,
+    pub(super) fault: InvalidDraw,
     pub(super) index: u64,
     pub(super) value: f64,
 }
@@ -52,7 +52,7 @@ impl Averages {
 
 /// Draws of one value that are being judged, block by block.
 pub(super) struct Reading {
-    pub(super) trial: Trial,
+    pub(super) trial: CheckedClaim,
     powers: Powers,
     pub(super) mean: Option<Scalar>,
     pub(super) variance: Option<Scalar>,
@@ -85,7 +85,7 @@ pub(super) struct Reading {
 
 impl Reading {
     /// The state before the first draw.
-    pub(super) fn new(trial: Trial, background: Background) -> Self {
+    pub(super) fn new(trial: CheckedClaim, background: Background) -> Self {
         let quantities = trial.quantities();
         let others = u32::from(!trial.is_certain()) + u32::from(background.tests.is_some());
         let levels = Levels::new(main_share(others) * trial.wanted.alpha, quantities.len());
@@ -97,7 +97,7 @@ impl Reading {
         // A known variance is judged in the blocks of a run.
         let is_known = trial.claim.variance.is_some() && trial.wanted.batch == 1;
         let block = if is_known { BUFFER } else { block };
-        let planned = Trial::planned(&quantities, length);
+        let planned = CheckedClaim::planned(&quantities, length);
         let scalar = |check: &str| {
             let quantity = quantities.iter().find(|quantity| quantity.check == check)?;
             Some(Scalar::new(quantity.clone(), planned, levels))
@@ -141,17 +141,17 @@ impl Reading {
     }
 
     /// Kind of the error of a draw by itself.
-    fn fault(&self, x: f64) -> Option<Fault> {
+    fn fault(&self, x: f64) -> Option<InvalidDraw> {
         let claim = &self.trial.claim;
         let y = (x - claim.truth) / claim.unit;
         if zero_or_nan(y) != 0.0 {
-            return Some(Fault::Number);
+            return Some(InvalidDraw::Number);
         }
         if claim.flights.is_some() && x < 0.0 {
-            return Some(Fault::Distance);
+            return Some(InvalidDraw::Distance);
         }
         let [low, high] = self.range?;
-        (!(low <= x && x <= high)).then_some(Fault::Range)
+        (!(low <= x && x <= high)).then_some(InvalidDraw::Range)
     }
 
     /// Adds draws with their lookups, if there are any.
@@ -203,13 +203,18 @@ impl Reading {
         if let Some(claimed) = self.trial.claim.lookups {
             // A predicted number may be rounded; a draw that differs by one is far beyond that.
             let is_other = |m: f64| claimed.is_fixed() && (m - claimed.mean).abs() > 0.5;
-            let fault = |m: f64| (!m.is_finite() || is_other(m)).then_some(Fault::Lookups);
+            let fault = |m: f64| (!m.is_finite() || is_other(m)).then_some(InvalidDraw::Lookups);
             self.note(first, lookups, |_, m| fault(m));
         }
     }
 
     /// Notes the errors of numbers; the first of them is draw number `first`.
-    fn note(&mut self, first: u64, values: &[f64], fault: impl Fn(&Self, f64) -> Option<Fault>) {
+    fn note(
+        &mut self,
+        first: u64,
+        values: &[f64],
+        fault: impl Fn(&Self, f64) -> Option<InvalidDraw>,
+    ) {
         for (index, &value) in (first..).zip(values) {
             let Some(fault) = fault(self, value) else { continue };
             self.refuting += 1;
@@ -228,15 +233,15 @@ impl Reading {
         self.y.extend(block.iter().map(|x| (x - truth) / unit));
         let bound = if self.mean.is_none() { self.trial.bound() } else { f64::INFINITY };
         let fault = |y: f64| {
-            let number = (zero_or_nan(y) != 0.0).then_some(Fault::Number);
-            number.or((y.abs() > bound).then_some(Fault::Spread))
+            let number = (zero_or_nan(y) != 0.0).then_some(InvalidDraw::Number);
+            number.or((y.abs() > bound).then_some(InvalidDraw::Spread))
         };
         let mut is_finite = true;
         for (at, (&y, &value)) in (self.judged..).zip(self.y.iter().zip(block)) {
             let Some(fault) = fault(y) else { continue };
-            is_finite &= fault != Fault::Number;
+            is_finite &= fault != InvalidDraw::Number;
             // The first look reports draws that are not numbers.
-            if fault == Fault::Spread || batch > 1 {
+            if fault == InvalidDraw::Spread || batch > 1 {
                 self.refuting += 1;
                 let index = at * batch;
                 self.refuted = self.refuted.or(Some(Refuted { fault, index, value }));
@@ -296,7 +301,7 @@ impl Reading {
         let mut notes = std::mem::take(&mut self.background.notes);
         notes.extend(tested.untested);
         let is_single = self.ends.as_ref().map_or(self.is_single, |ends| ends.is_single);
-        let Trial { claim, wanted, length } = &self.trial;
+        let CheckedClaim { claim, wanted, length } = &self.trial;
         let unit = claim.unit;
         let n = self.powers.draws() as f64;
         let finite = |x: f64| Some(x).filter(|x| x.is_finite());

@@ -13,7 +13,7 @@ use std::fmt;
 use std::panic::{RefUnwindSafe, UnwindSafe};
 use std::sync::Arc;
 
-use super::claim::{Claim, Wanted};
+use super::claim::{Claim, Options};
 use super::judgement::DistributionFinding;
 use super::scalar::SIDE_SHARE;
 
@@ -131,7 +131,7 @@ impl Taken<'_> {
     /// a value, `length` the number of draws, where it is known and no decision ends them earlier.
     pub(super) fn background(
         self,
-        wanted: &Wanted,
+        wanted: &Options,
         claims: &[Claim],
         length: Option<u64>,
     ) -> Background {

@@ -12,7 +12,7 @@
 
 use super::dependence::off_without_change;
 use super::flights::Ends;
-use super::judgement::{Fault, IndependenceFinding, Judgement, ScalarFinding, Stop};
+use super::judgement::{IndependenceFinding, InvalidDraw, Judgement, ScalarFinding, Stop};
 use super::reading::{Reading, Refuted};
 use super::reason::Reason;
 use super::scalar::Scalar;
@@ -176,27 +176,27 @@ fn fault(reading: &Reading, refuted: &Refuted, count: u64) -> String {
     let &Refuted { fault, index, value } = refuted;
     let truth = claim.truth;
     let said = match fault {
-        Fault::Number if value.is_finite() => {
+        InvalidDraw::Number if value.is_finite() => {
             format!("numeric: draw {index} is {value:e}, beyond measure for a truth of {truth:e}")
         }
-        Fault::Number => format!("numeric: draw {index} is {value}, counted from 0"),
-        Fault::Range => {
+        InvalidDraw::Number => format!("numeric: draw {index} is {value}, counted from 0"),
+        InvalidDraw::Range => {
             let [low, high] = claim.range.unwrap_or([f64::NEG_INFINITY, f64::INFINITY]);
             format!("range: draw {index} is {value:e}, outside of {low} to {high}")
         }
-        Fault::Spread => {
+        InvalidDraw::Spread => {
             let bound = reading.trial.bound() * claim.unit;
             let unused =
                 unused_tolerance(reading).map_or(String::new(), |said| format!("; {said}"));
             format!("draw {index} is {value:e}, not {truth:e}; {bound:.1e} is rounding{unused}")
         }
-        Fault::Lookups => {
+        InvalidDraw::Lookups => {
             let wanted = claim.lookups.map_or(0.0, |lookups| lookups.mean);
             format!("lookups: draw {index} takes {value} lookups, not {wanted}")
         }
-        Fault::Distance => format!("distance: draw {index} is {value}, which is no distance"),
+        InvalidDraw::Distance => format!("distance: draw {index} is {value}, which is no distance"),
     };
-    let is_distance = matches!(fault, Fault::Number | Fault::Distance);
+    let is_distance = matches!(fault, InvalidDraw::Number | InvalidDraw::Distance);
     let cure = reading.ends.as_ref().filter(|_| is_distance).map(Ends::cure);
     let said = cure.map_or(said.clone(), |cure| format!("{said}; {cure}"));
     if count > 1 { format!("{said}; {count} draws are like that") } else { said }

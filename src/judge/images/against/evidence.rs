@@ -15,7 +15,7 @@ use super::super::judgement::Tile;
 use super::super::noisy::slack;
 use super::super::picture::Stack;
 use super::super::tiles::{Part, mean_at};
-use super::super::{ImageError, Wanted, variance};
+use super::super::{ImageError, Options, variance};
 use gate::stats::estimated_variance::Estimate;
 use gate::stats::normal::{p_value_of_symmetric, upper_quantile, upper_tail};
 use gate::stats::verdict::MISS;
@@ -24,7 +24,7 @@ use theory::parallel;
 /// Sums over the passes of both stacks, for every value.
 pub(super) struct Evidence<'a> {
     stacks: [&'a Stack; 2],
-    wanted: &'a Wanted,
+    wanted: &'a Options,
     is_free: bool,
     rounding: f64,
     units: Vec<f64>,
@@ -40,7 +40,7 @@ impl<'a> Evidence<'a> {
         stack: &'a Stack,
         reference: &'a Stack,
         rounding: f64,
-        wanted: &'a Wanted,
+        wanted: &'a Options,
         is_free: bool,
     ) -> Result<Self, ImageError> {
         let size = stack.size;

@@ -25,7 +25,7 @@ pub mod permutation;
 use self::evidence::Evidence;
 use self::permutation::{Groups, distinct};
 use super::judgement::{Comparison, Dependence, Judgement, Tile};
-use super::{ImageError, NOISY_VALUES, Stack, Wanted, claim, repeats, tiles, variance, verdict};
+use super::{ImageError, NOISY_VALUES, Options, Stack, claim, repeats, tiles, variance, verdict};
 use super::{neighbours_of, order_of, refuted};
 use crate::judge::{ROUNDING, SIDE_SHARE, decide_together, main_share};
 use gate::stats::verdict::Verdict;
@@ -49,7 +49,7 @@ impl Default for Terms {
 ///
 /// ```
 /// use trueflight::judge::images::against::{Terms, compare};
-/// use trueflight::judge::images::{Size, Stack, Wanted};
+/// use trueflight::judge::images::{Size, Stack, Options};
 /// use trueflight::stats::verdict::Verdict;
 ///
 /// // 16 passes of 16 × 16 pixels, each the mean of four fair coins, times a factor.
@@ -63,7 +63,7 @@ impl Default for Terms {
 ///     });
 ///     Stack::new(16, size, coins.collect())
 /// };
-/// let (reference, terms, wanted) = (stack(1, 1.0)?, Terms::default(), Wanted::default());
+/// let (reference, terms, wanted) = (stack(1, 1.0)?, Terms::default(), Options::default());
 /// assert_ne!(compare(&stack(2, 1.0)?, &reference, terms, &wanted)?.verdict, Verdict::Fail);
 /// assert_eq!(compare(&stack(2, 1.2)?, &reference, terms, &wanted)?.verdict, Verdict::Fail);
 /// # Ok::<(), trueflight::judge::images::ImageError>(())
@@ -76,7 +76,7 @@ pub fn compare(
     stack: &Stack,
     reference: &Stack,
     terms: Terms,
-    wanted: &Wanted,
+    wanted: &Options,
 ) -> Result<Judgement, ImageError> {
     wanted.check()?;
     check(stack, reference, terms)?;
