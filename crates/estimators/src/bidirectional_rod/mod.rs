@@ -48,7 +48,7 @@ impl Steps for Page {
 /// Maximum optical depth of a rod: beyond it theory's grids are too coarse.
 const LONGEST: f64 = 12.0;
 /// Maximum `∫σ̂` of a tracked connection: beyond it probabilities underflow.
-const MOST_TRACKED: f64 = 500.0;
+const MAX_TRACKED: f64 = 500.0;
 /// Maximum relative difference of two ratios that count as equal.
 const SAME: f64 = 1e-12;
 
@@ -116,7 +116,7 @@ impl<const KIND: u8> Estimator<BidirectionalRod> for Estimate<KIND> {
             let needs = "one number σ_t/σ̂ where connections are tracked, and ∫σ̂ ≤ 500";
             match one_ratio(setup) {
                 None => return Err(Refusal::mismatch(needs, "σ_t/σ̂ varies along the rod")),
-                Some(ratio) if depth > MOST_TRACKED * ratio => {
+                Some(ratio) if depth > MAX_TRACKED * ratio => {
                     let found = format!("∫σ̂ = {}", rounded(depth / ratio));
                     return Err(Refusal::mismatch(needs, found));
                 }

@@ -14,7 +14,7 @@ use theory::space::predict;
 use theory::{ParticleRule, Prediction};
 
 /// Maximum expected number of collisions in a walk; more are a mistake in the case.
-const MOST_COLLISIONS: f64 = 1e5;
+const MAX_COLLISIONS: f64 = 1e5;
 
 /// The probability that a tentative collision ends the walk, if it is equal for all of them.
 fn end(setup: &Setup<InfiniteMedium>, particle: &Particle) -> Option<f64> {
@@ -41,7 +41,7 @@ impl Walked for InfiniteMedium {
         let Some(ratio) = ratio(setup) else {
             return Err(Refusal::mismatch("a constant σ̂", "it varies"));
         };
-        if 1.0 / ((1.0 - albedo) * ratio) > MOST_COLLISIONS {
+        if 1.0 / ((1.0 - albedo) * ratio) > MAX_COLLISIONS {
             let needs = "at most 1e5 tentative collisions a walk";
             return Err(Refusal::mismatch(needs, format!("a = {albedo} and r = {ratio}")));
         }
@@ -55,7 +55,7 @@ impl Walked for InfiniteMedium {
             let needs = "walks that end: `terminating`, `analog`, or `roulette`";
             return Err(Refusal::mismatch(needs, format!("`{}` never does", particle.rule.name())));
         }
-        if ends && end(setup, particle).is_some_and(|end| end * MOST_COLLISIONS < 1.0) {
+        if ends && end(setup, particle).is_some_and(|end| end * MAX_COLLISIONS < 1.0) {
             return Err(Refusal::mismatch("r < 2/(a + 1)", "the walk hardly ever ends"));
         }
         let grows = ratio > 1.0 && particle.rule != Terminating;

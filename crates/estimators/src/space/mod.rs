@@ -23,7 +23,7 @@ pub use tally::Tally;
 pub use walker::{Splitter, Walked, Walker, draw};
 
 /// Maximum expected number of collisions on a straight line through a volume; more are a mistake in the case.
-const MOST_COLLISIONS: f64 = 1e4;
+const MAX_COLLISIONS: f64 = 1e4;
 
 /// The arguments of bounds on the walks of a particle.
 pub fn walks(scene: &Scene, majorants: &Majorants, particle: &Particle) -> Walks {
@@ -49,7 +49,7 @@ pub fn walks(scene: &Scene, majorants: &Majorants, particle: &Particle) -> Walks
 /// The violated inequality.
 pub fn realisable<P: Walked>(setup: &Setup<P>, particle: &Particle) -> Result<(), Refusal> {
     let walks = walks(setup.problem.scene(), &setup.fields, particle);
-    if walks.depth > MOST_COLLISIONS {
+    if walks.depth > MAX_COLLISIONS {
         let needs = "∫σ̂ ≤ 1e4 straight through the volume";
         return Err(Refusal::mismatch(needs, format!("it may be {:e}", walks.depth)));
     }

@@ -22,7 +22,7 @@ use numeric::digits::rounded;
 use numeric::geometry::Bounds;
 
 /// Maximum expected number of collisions on a straight line through the volume; more are a mistake in the case.
-const MOST_COLLISIONS: f64 = 1e4;
+const MAX_COLLISIONS: f64 = 1e4;
 /// Relative increase of bounds on σ_t, because lookups are rounded.
 const SLACK: f64 = 1e-9;
 
@@ -48,7 +48,7 @@ fn realisable(setup: &Setup<SpectralFurnace>) -> Result<(), Refusal> {
             return Err(Refusal::mismatch("σ̂ ≥ σ_t everywhere in the volume", found));
         }
         let collisions = channel.majorant * across;
-        if collisions.is_nan() || collisions > MOST_COLLISIONS {
+        if collisions.is_nan() || collisions > MAX_COLLISIONS {
             let found = format!("it may be {collisions:e} in channel {number}");
             return Err(Refusal::mismatch("∫σ̂ ≤ 1e4 straight through the volume", found));
         }

@@ -29,7 +29,7 @@ const WILDEST: f64 = 1e3;
 /// Relative increase of bounds on σ_t, because lookups are rounded.
 const SLACK: f64 = 1e-9;
 /// Maximum expected number of tentative collisions on a shadow ray; more are a mistake in the case.
-const MOST_COLLISIONS: f64 = 1e4;
+const MAX_COLLISIONS: f64 = 1e4;
 
 /// Reason why the expected value is unknown.
 fn unknown(sphere: &Sphere) -> Refusal {
@@ -75,7 +75,7 @@ fn connected(setup: &Setup<Sphere>, particle: &Particle, shadow: Tracking) -> Re
     let sphere = &setup.problem;
     if let Tracking::Ratio { sampling, .. } | Tracking::Delta { sampling } = shadow {
         let collisions = 2.0 * sampling * sphere.radius;
-        if collisions.is_nan() || collisions > MOST_COLLISIONS {
+        if collisions.is_nan() || collisions > MAX_COLLISIONS {
             let needs = "a shadow's σ̂ of at most 1e4 collisions across the ball";
             return Err(Refusal::mismatch(needs, format!("there would be {collisions:e}")));
         }

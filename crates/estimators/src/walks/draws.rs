@@ -15,7 +15,7 @@ use theory::problems::Channels;
 
 /// Maximum number of pieces of σ̂ or of the control for packs. With more, lanes that cross pieces delay the others
 /// by more than eight lookups at once gain, unless lookups are costly or σ̂ is constant.
-const MOST_PIECES: usize = 8;
+const MAX_PIECES: usize = 8;
 
 /// Returns true if packs are faster than one walk after the other.
 fn pays<W: Walk>(sampling: &Piecewise, control: &Control, medium: &Lookups) -> bool {
@@ -28,7 +28,7 @@ fn pays<W: Walk>(sampling: &Piecewise, control: &Control, medium: &Lookups) -> b
     // Lanes that alternate between walks and shadow rays load other pieces of σ̂ each time.
     let turns = W::PAUSES && !W::IS_FIXED;
     let controls = if let Control::Pieces(pieces) = control { pieces.count() } else { 0 };
-    !turns && sampling.count() <= MOST_PIECES && controls <= MOST_PIECES
+    !turns && sampling.count() <= MAX_PIECES && controls <= MAX_PIECES
 }
 
 /// Makes the draws of a request: in packets where the kernel and the hardware allow it and that is faster, else one

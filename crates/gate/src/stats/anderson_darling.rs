@@ -14,7 +14,7 @@
 use std::f64::consts::{FRAC_PI_2, PI};
 
 /// Minimum number of counts for a p-value: below it the limit distribution is not reached.
-const LEAST: f64 = 100.0;
+const MIN_COUNT: f64 = 100.0;
 
 /// The p-value of counts in equally probable classes; `None` below 100 counts or two classes.
 ///
@@ -32,7 +32,7 @@ pub fn p_value_of_classes(counts: &[f64]) -> Option<f64> {
     let classes = counts.len() as f64;
     let n: f64 = counts.iter().sum();
     let counted = n.is_finite() && counts.iter().all(|&count| count >= 0.0);
-    if counts.len() < 2 || n < LEAST || !counted {
+    if counts.len() < 2 || n < MIN_COUNT || !counted {
         return None;
     }
     let (mut sum, mut below) = (0.0, 0.0);

@@ -73,7 +73,7 @@ fn expanded(x: f64, a: f64) -> [f64; 2] {
 /// Minimum number of expected draws of a bin; smaller adjacent bins are merged. With fewer, Pearson's distribution
 /// is too small far out: a bin of 10 beside a large one exceeds a level of 2e-7 26 times too often, one of 50 still
 /// 6 times.
-const LEAST: f64 = 500.0;
+const MIN_COUNT: f64 = 500.0;
 
 /// The p-value of observed counts against the probabilities of their bins.
 ///
@@ -110,14 +110,14 @@ fn merged(
     for (p, o) in probability.iter().zip(observed.by_ref()) {
         count += o;
         expected += p * draws;
-        if expected >= LEAST {
+        if expected >= MIN_COUNT {
             bins.push((count, expected));
             (count, expected) = (0.0, 0.0);
         }
     }
     let rest = draws - bins.iter().map(|bin| bin.1).sum::<f64>();
     count += observed.sum::<f64>();
-    if rest >= LEAST {
+    if rest >= MIN_COUNT {
         bins.push((count, rest));
     } else if let Some(last) = bins.last_mut() {
         last.0 += count;

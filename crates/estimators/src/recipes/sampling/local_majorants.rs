@@ -24,7 +24,7 @@ use numeric::geometry::{Aabb, Point, Ray};
 const MARGIN: f64 = 1.0 + 1e-9;
 
 /// More cells than this are a mistake in the case.
-const MOST_CELLS: usize = 10_000_000;
+const MAX_CELLS: usize = 10_000_000;
 
 /// Local majorants.
 #[derive(Debug, Clone, Copy)]
@@ -48,7 +48,7 @@ impl LocalMajorants {
             }
             (false, true) => {
                 let cells = settings.counts("grid", 1..=4096)?;
-                if cells.iter().product::<usize>() > MOST_CELLS {
+                if cells.iter().product::<usize>() > MAX_CELLS {
                     let found =
                         format!("{} × {} × {} cells are too many", cells[0], cells[1], cells[2]);
                     settings.fault("grid", found, "take 1e7 at most");

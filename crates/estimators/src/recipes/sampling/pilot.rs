@@ -21,7 +21,7 @@ use media::{Body, Control, Piecewise};
 use numeric::rng::{Address, exponential};
 
 /// Largest expected number of collisions of a pilot ray; more are a mistake in the case.
-const MOST_COLLISIONS: f64 = 1e6;
+const MAX_COLLISIONS: f64 = 1e6;
 
 /// Recipe for a constant σ̂ from the lookups of pilot rays.
 #[derive(Debug, Clone, Copy)]
@@ -68,7 +68,7 @@ impl Recipe for Pilot {
         for ray in 0..self.rays {
             let mut rng = Address { block: ray, ..site.address }.pilot();
             let collisions = sampling * support.length();
-            if collisions.is_nan() || collisions > MOST_COLLISIONS {
+            if collisions.is_nan() || collisions > MAX_COLLISIONS {
                 let needs = "at most a million collisions of a pilot ray";
                 return Err(Refusal::mismatch(needs, format!("{collisions:.1e} are expected")));
             }
