@@ -101,14 +101,14 @@ fn share(rate: &Rate) -> f64 {
 
 fn mutants(text: &mut String, pen: Pen, mutants: &[Caught]) {
     let caught = mutants.iter().filter(|mutant| mutant.is_right()).count();
-    let title = format!("mutants: {caught} of {} caught, each honest twin passes", mutants.len());
+    let title = format!("mutants: {caught} of {} caught, each control passes", mutants.len());
     let _ = writeln!(text, "{}", pen.paint(Paint::Bold, &title));
     let rows: Vec<&Caught> = mutants.iter().collect();
     let mut grid = grid(&rows, &MUTANTS);
     for (field, mutant) in grid.columns[3].fields.iter_mut().zip(mutants) {
         match mutant.draws {
             Some(_) if mutant.twin_passes => {}
-            Some(_) => *field = Field::judged(false, ["", "THE TWIN FAILS"]),
+            Some(_) => *field = Field::judged(false, ["", "THE CONTROL FAILS"]),
             None => *field = Field::judged(false, ["", "ESCAPES"]),
         }
     }

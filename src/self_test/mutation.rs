@@ -184,7 +184,7 @@ impl<'a> Stand<'a> {
     /// Returns whether the control of a bug makes the estimator's own draws. Wrong streams are drawn by the estimator.
     fn has_twin(&mut self, known: &Known) -> bool {
         let Known::Estimator(about) = known else { return true };
-        let twin = self.walk(about, Walk::Twin);
+        let twin = self.walk(about, Walk::Control);
         let parts = self.parts().zip(twin);
         parts.is_some_and(|((_, planned), twin)| same(planned, twin.as_ref()))
     }
@@ -194,9 +194,9 @@ impl<'a> Stand<'a> {
         match known {
             Known::Estimator(about) => {
                 let faulty = self.walk(about, Walk::Faulty)?;
-                let honest = self.replace(faulty)?;
+                let control = self.replace(faulty)?;
                 let judged = self.judged(until_failed);
-                self.replace(honest)?;
+                self.replace(control)?;
                 judged
             }
             Known::Streams(mutant) => {

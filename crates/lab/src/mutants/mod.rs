@@ -124,7 +124,7 @@ type Draws<P> = dyn Fn(&Setup<P>, Request) + Send + Sync;
 struct Mutant<P: Estimated> {
     about: About,
     faulty: Arc<Draws<P>>,
-    honest: Arc<Draws<P>>,
+    control: Arc<Draws<P>>,
     /// Changes the setup to a wrong one.
     prepare: fn(&mut Setup<P>),
 }
@@ -133,21 +133,21 @@ impl<P: Estimated> Mutant<P> {
     /// The experiment of a walk on a prepared `Setup<P>`; `None` for the setup of another problem.
     fn experiment(&self, walk: Walk, setup: Box<dyn Any>) -> Option<Box<dyn Experiment>> {
         let mut setup = *setup.downcast::<Setup<P>>().ok()?;
-        if walk == Walk::Twin {
-            return Some(Box::new(Trial { draws: self.honest.clone(), setup }));
+        if walk == Walk::Control {
+            return Some(Box::new(MutantExperiment { draws: self.control.clone(), setup }));
         }
         (self.prepare)(&mut setup);
-        Some(Box::new(Trial { draws: self.faulty.clone(), setup }))
+        Some(Box::new(MutantExperiment { draws: self.faulty.clone(), setup }))
     }
 }
 
 /// Draws on a setup.
-struct Trial<P: Estimated> {
+struct MutantExperiment<P: Estimated> {
     draws: Arc<Draws<P>>,
     setup: Setup<P>,
 }
 
-impl<P: Estimated> Experiment for Trial<P> {
+impl<P: Estimated> Experiment for MutantExperiment<P> {
     fn fill_by(&self, _: Kernel, streams: &mut Streams, count: usize, buffer: &mut DrawBuffer) {
         (self.draws)(&self.setup, Request { streams, count, buffer });
     }
@@ -165,7 +165,7 @@ where
     let mutant = |(name, bug, on, check, wrong): &Line<E, B>| Mutant {
         about: About { name, bug, target: on.target, check },
         faulty: Arc::new(draws(&on.estimator, wrong)) as Arc<Draws<P>>,
-        honest: Arc::new(draws(&on.estimator, right)),
+        control: Arc::new(draws(&on.estimator, right)),
         prepare: |_| {},
     };
     lines.iter().map(mutant).collect()
@@ -198,7 +198,7 @@ pub enum Walk {
     /// The walk with the bug.
     Faulty,
     /// The control: the code without the bug.
-    Twin,
+    Control,
 }
 
 macro_rules! families {
