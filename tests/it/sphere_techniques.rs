@@ -9,8 +9,8 @@ use trueflight::catalogue::Settings;
 use trueflight::draw::run;
 use trueflight::estimators::DrawBuffer;
 use trueflight::estimators::space::Particle;
-use trueflight::estimators::sphere::sharing::{Sharing, Steps, Subpaths};
-use trueflight::estimators::sphere::{Honest, Page};
+use trueflight::estimators::sphere::sharing::{SharedTechniques, Subpaths, WalkEvents};
+use trueflight::estimators::sphere::{Correct, Method};
 use trueflight::media::{Body, Majorants};
 use trueflight::numeric::Lane;
 use trueflight::plan::Plan;
@@ -169,7 +169,7 @@ fn sphere(scene: [&str; 3]) -> (Sphere, Majorants) {
 #[derive(Clone, Copy)]
 struct Only(usize);
 
-impl Steps for Only {
+impl WalkEvents for Only {
     fn weight<L: Lane, const N: usize>(
         &self,
         heuristic: Heuristic,
@@ -191,8 +191,8 @@ fn shares_of_techniques_add_up() {
     for heuristic in [Heuristic::Balance, Heuristic::Power] {
         for subpaths in [Subpaths::Independent, Subpaths::Shared] {
             let techniques = Techniques::Bidirectional(heuristic);
-            let sharing = Sharing { techniques, shadow: None, subpaths: Some(subpaths) };
-            let page = Page { particle: Particle::of(ParticleRule::Analog), sharing };
+            let sharing = SharedTechniques { techniques, shadow: None, subpaths: Some(subpaths) };
+            let page = Method { particle: Particle::of(ParticleRule::Analog), sharing };
             for scene in [SCENES[1], SCENES[3]] {
                 let (sphere, majorants) = sphere(scene);
                 let row = &predicted(&text(scene, "{ bidirectional = {} }"))[0];
@@ -202,7 +202,7 @@ fn shares_of_techniques_add_up() {
                 for _ in 0..draws {
                     let begin = rng;
                     let at = (&sphere, &majorants);
-                    let whole = page.draw(Honest, at, &mut rng).value[0];
+                    let whole = page.draw(Correct, at, &mut rng).value[0];
                     let shares: [f64; 3] = std::array::from_fn(|own| {
                         page.draw(Only(own), at, &mut begin.clone()).value[0]
                     });

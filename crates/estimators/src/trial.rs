@@ -117,16 +117,16 @@ impl<P: Estimated, E: Estimator<P>> Entry<P> for E {
     }
 
     fn experiment(&self, setup: Setup<P>) -> Box<dyn Experiment> {
-        Box::new(Trial { estimator: self.clone(), setup })
+        Box::new(Prepared { estimator: self.clone(), setup })
     }
 }
 
-struct Trial<P: Estimated, E> {
+struct Prepared<P: Estimated, E> {
     estimator: E,
     setup: Setup<P>,
 }
 
-impl<P: Estimated, E: Estimator<P>> Experiment for Trial<P, E> {
+impl<P: Estimated, E: Estimator<P>> Experiment for Prepared<P, E> {
     fn fill_by(
         &self,
         kernel: Kernel,

@@ -7,7 +7,7 @@
 use fearless_simd::{Level, Simd, SimdBase, SimdMask, f64x8, mask64x8};
 
 use super::subpath::{Field, Tracker};
-use super::walk::{Steps, draw_each};
+use super::walk::{WalkEvents, draw_each};
 use crate::setup::Setup;
 use crate::walks::slots::{Numbers, leave};
 use crate::{DrawBuffer, Request};
@@ -22,7 +22,7 @@ use theory::problems::BidirectionalRod;
 /// or σ̂ has several values.
 pub fn packets<'r>(
     level: Level,
-    steps: &(impl Steps + Copy),
+    steps: &(impl WalkEvents + Copy),
     setup: &Setup<BidirectionalRod>,
     medium: &Lookups,
     request: Request<'r>,
@@ -41,7 +41,7 @@ struct Draws<'a, 'r, P> {
     request: Request<'r>,
 }
 
-impl<P: Steps + Copy> Task for Draws<'_, '_, P> {
+impl<P: WalkEvents + Copy> Task for Draws<'_, '_, P> {
     type Output = ();
 
     #[inline(always)]

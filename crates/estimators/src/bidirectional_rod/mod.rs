@@ -7,7 +7,7 @@ pub mod subpath;
 pub mod technique;
 pub mod walk;
 
-use self::walk::Steps;
+use self::walk::WalkEvents;
 use crate::{Estimator, Inputs, Kernel, Refusal, Request, Setup, estimators, walks};
 use ::theory::Heuristic;
 use ::theory::Prediction;
@@ -19,7 +19,7 @@ use numeric::digits::rounded;
 
 /// Settings of a page.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Page {
+pub struct Method {
     /// Technique, or combination of techniques.
     pub combination: Combination,
     /// True if the transmittances of connections are tracked.
@@ -28,7 +28,7 @@ pub struct Page {
     pub is_shared: bool,
 }
 
-impl Steps for Page {
+impl WalkEvents for Method {
     #[inline(always)]
     fn combination(&self) -> Combination {
         self.combination
@@ -61,7 +61,7 @@ pub const FULL: u8 = 2;
 
 /// An estimator of a kind; σ̂ is its input.
 #[derive(Debug, Clone, Copy)]
-pub struct Estimate<const KIND: u8>(Page);
+pub struct Estimate<const KIND: u8>(Method);
 
 impl<const KIND: u8> Estimator<BidirectionalRod> for Estimate<KIND> {
     const INPUTS: Inputs = Inputs::SAMPLING;
@@ -78,7 +78,7 @@ impl<const KIND: u8> Estimator<BidirectionalRod> for Estimate<KIND> {
         } else {
             settings.word_or("subpaths", &["independent", "shared"], "independent")
         };
-        Some(Self(Page {
+        Some(Self(Method {
             combination: combination?,
             is_tracked: connection? == "ratio",
             is_shared: subpaths? == "shared",
@@ -87,7 +87,7 @@ impl<const KIND: u8> Estimator<BidirectionalRod> for Estimate<KIND> {
 
     /// Settings in words, such as `power, ratio connection`.
     fn label(&self, _: bool) -> String {
-        let Page { combination, is_tracked, is_shared } = self.0;
+        let Method { combination, is_tracked, is_shared } = self.0;
         let first = match combination {
             Combination::Technique(s) => format!("s={s}, "),
             Combination::Directional(Heuristic::Power) | Combination::Full(Heuristic::Power) => {
@@ -152,7 +152,7 @@ impl<const KIND: u8> Estimator<BidirectionalRod> for Estimate<KIND> {
         // A ratio that varies is refused, and draws that are made in spite of it have no prediction.
         let tracked = ratio.filter(|_| self.0.is_tracked).map(Connection::Ratio);
         let connection = tracked.unwrap_or(Connection::Exact);
-        let Page { combination, is_shared, .. } = self.0;
+        let Method { combination, is_shared, .. } = self.0;
         let rules = Rules { combination, connection, is_shared, has_shares: problem.has_shares };
         bidirectional_rod::predict(&scene, &rules, ratio, setup.distributions)
     }
@@ -163,7 +163,7 @@ impl<const KIND: u8> Estimator<BidirectionalRod> for Estimate<KIND> {
 }
 
 /// Makes the draws of a request: compiled once for all pages.
-fn fill(steps: Page, kernel: Kernel, setup: &Setup<BidirectionalRod>, request: Request) {
+fn fill(steps: Method, kernel: Kernel, setup: &Setup<BidirectionalRod>, request: Request) {
     walks::by(
         kernel,
         setup,

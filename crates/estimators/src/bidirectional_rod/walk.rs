@@ -104,8 +104,8 @@ impl<L: Lane> Path<L> {
     }
 }
 
-/// Steps of an estimator, which a known bug may replace.
-pub trait Steps {
+/// Events of a walk, each of which a known bug may replace.
+pub trait WalkEvents {
     /// Techniques, and their weights.
     fn combination(&self) -> Combination;
 
@@ -148,7 +148,7 @@ pub trait Steps {
 /// Makes one draw.
 #[inline(always)]
 pub fn draw(
-    steps: &impl Steps,
+    steps: &impl WalkEvents,
     setup: &Setup<BidirectionalRod>,
     medium: &Lookups,
     random: &mut Stream,
@@ -163,7 +163,7 @@ struct One<'a, S> {
     random: &'a mut Stream,
 }
 
-impl<S: Steps> Loop for One<'_, S> {
+impl<S: WalkEvents> Loop for One<'_, S> {
     type Output = Draw<Values>;
 
     #[inline(always)]
@@ -183,7 +183,7 @@ impl<S: Steps> Loop for One<'_, S> {
 #[inline(always)]
 #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // a count
 fn through<L: Single, C: BothWays<L>>(
-    steps: &impl Steps,
+    steps: &impl WalkEvents,
     mut tracker: Tracker<'_, L, C, impl Field<L>>,
     random: &mut Stream,
 ) -> Draw<Values> {
@@ -213,7 +213,7 @@ impl<L: Lane> Field<L> for Alone<'_> {
 /// Makes a draw of each lane in `which`: a path of each technique. Returns the number of channels.
 #[inline(always)]
 pub fn draw_each<L: Lane, C: BothWays<L>, R: Random<L> + Copy>(
-    steps: &impl Steps,
+    steps: &impl WalkEvents,
     tracker: &mut Tracker<'_, L, C, impl Field<L>>,
     which: L::Mask,
     random: &mut R,
@@ -278,7 +278,7 @@ fn walk_for<L: Lane, C: BothWays<L>>(
 #[inline(always)]
 fn join<L: Lane, C: BothWays<L>>(
     tracker: &mut Tracker<'_, L, C, impl Field<L>>,
-    steps: &impl Steps,
+    steps: &impl WalkEvents,
     which: L::Mask,
     random: &mut impl Random<L>,
 ) -> L::Mask {
@@ -365,7 +365,7 @@ fn gather<L: Lane, P>(
 #[inline(always)]
 fn attenuate<L: Lane>(
     problem: &BidirectionalRod,
-    steps: &impl Steps,
+    steps: &impl WalkEvents,
     (path, field): (&mut Path<L>, &impl Field<L>),
     which: L::Mask,
 ) {

@@ -4,7 +4,7 @@
 //! an event multiplies f_λ by 1 − r_λ, r_λ (1 − a_λ) or r_λ a_λ p_λ(cos θ),  r_λ = σ_t/σ̂
 //! ```
 
-use super::Steps;
+use super::WalkEvents;
 use crate::setup::walker::Walker;
 use crate::walks::hero::{Media, number_of_hero, of_hero, or_of_hero};
 use media::body::MAX_CHANNELS;
@@ -70,7 +70,7 @@ impl<L: Lane> Densities<L> {
 
     /// Stores `σ_t/σ̂` of all channels; returns the heroes' own ratios.
     #[inline(always)]
-    pub fn look<S: Steps>(&mut self, among: &Scatterers<'_, S>, hero: L, found: &[L]) -> L {
+    pub fn look<S: WalkEvents>(&mut self, among: &Scatterers<'_, S>, hero: L, found: &[L]) -> L {
         let (media, mut own) = (&among.media, hero);
         for (channel, &extinction) in found.iter().enumerate() {
             let mut majorant = hero.each(media.majorants[channel]);
@@ -88,7 +88,11 @@ impl<L: Lane> Densities<L> {
     /// heroes, given their own ratios and albedos: the probabilities to go straight on and to be scattered, and the
     /// own ratio.
     #[inline(always)]
-    pub fn chances<S: Steps>(&self, among: &Scatterers<'_, S>, [own, albedo]: [L; 2]) -> [L; 3] {
+    pub fn chances<S: WalkEvents>(
+        &self,
+        among: &Scatterers<'_, S>,
+        [own, albedo]: [L; 2],
+    ) -> [L; 3] {
         if let Some(chances) = among.walker.together() {
             return chances.of_events(
                 among.media.count,
@@ -104,7 +108,7 @@ impl<L: Lane> Densities<L> {
     /// Multiplies by the factors of events; scattered lanes turn by `cosine`. Densities stay relative to those of
     /// heroes or, where all channels walk together, to the probabilities of the events.
     #[inline(always)]
-    pub fn weigh<S: Steps>(
+    pub fn weigh<S: WalkEvents>(
         &mut self,
         among: &Scatterers<'_, S>,
         hero: L,

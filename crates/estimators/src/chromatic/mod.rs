@@ -18,8 +18,8 @@ use numeric::rng::Stream;
 use theory::particle::Event;
 use theory::{Prediction, problems};
 
-/// The steps of a walk that a known bug may replace.
-pub trait Steps: Copy {
+/// Events of a walk, each of which a known bug may replace.
+pub trait WalkEvents: Copy {
     /// Factor of f in a channel at an event, given `σ_t/σ̂`, the albedo, and the density of the new direction in
     /// this channel.
     #[inline(always)]
@@ -54,7 +54,7 @@ pub trait Steps: Copy {
 #[derive(Clone, Copy)]
 pub struct Right;
 
-impl Steps for Right {}
+impl WalkEvents for Right {}
 
 /// A walker, and the channels that its walks score.
 #[derive(Clone, Copy)]
@@ -78,7 +78,7 @@ impl<'a> By<'a> {
 pub trait Chromatic: Estimated<Fields = Channels, Value: problems::Channels> {
     /// The walk by steps; packs provide their [`Chromatic::fields`].
     fn walk<'a>(
-        steps: impl Steps,
+        steps: impl WalkEvents,
         by: By<'a>,
         setup: &'a Setup<Self>,
         fields: &'a [Batches<'a>],
@@ -93,7 +93,7 @@ pub trait Chromatic: Estimated<Fields = Channels, Value: problems::Channels> {
     /// Makes one draw.
     #[inline(always)]
     fn draw(
-        steps: impl Steps,
+        steps: impl WalkEvents,
         by: By,
         setup: &Setup<Self>,
         medium: &Lookups,

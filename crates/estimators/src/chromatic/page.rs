@@ -10,9 +10,9 @@ use theory::spectral::Chances;
 
 /// An estimator of a kind.
 #[derive(Debug, Clone)]
-pub struct Page<const KIND: u8>(Walker);
+pub struct OfKind<const KIND: u8>(Walker);
 
-impl<const KIND: u8> Page<KIND> {
+impl<const KIND: u8> OfKind<KIND> {
     /// True if draws score all channels, false if they score the hero's alone.
     const SCORES_ALL: bool = KIND != INDEPENDENT;
 
@@ -24,7 +24,7 @@ impl<const KIND: u8> Page<KIND> {
     }
 }
 
-impl<P: Chromatic, const KIND: u8> Estimator<P> for Page<KIND> {
+impl<P: Chromatic, const KIND: u8> Estimator<P> for OfKind<KIND> {
     const INPUTS: Inputs = Inputs::SAMPLING;
     const HAS_INVARIANT: bool = KIND == MIS;
 

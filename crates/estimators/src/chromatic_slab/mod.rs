@@ -7,7 +7,7 @@ pub mod spectral_tracking;
 pub mod walk;
 
 use self::walk::InSlab;
-use super::chromatic::{By, Chromatic, Steps};
+use super::chromatic::{By, Chromatic, WalkEvents};
 use crate::setup::channels;
 use crate::setup::walker::Walker;
 use crate::walks::Walk;
@@ -37,7 +37,7 @@ fn realisable(setup: &Setup<ChromaticSlab>) -> Result<(), Refusal> {
 impl Chromatic for ChromaticSlab {
     #[inline(always)]
     fn walk<'a>(
-        steps: impl Steps,
+        steps: impl WalkEvents,
         by: By<'a>,
         setup: &'a Setup<Self>,
         _: &'a [Batches<'a>],

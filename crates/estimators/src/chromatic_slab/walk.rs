@@ -15,11 +15,11 @@ use std::f64::consts::TAU;
 
 use crate::Setup;
 use crate::chromatic::densities::{Densities, Events, Scatterers};
-use crate::chromatic::{By, Steps};
+use crate::chromatic::{By, WalkEvents};
 use crate::setup::walker::Walker;
 use crate::slab::walk::{entering, turned};
 use crate::walks::hero::{LastPiece, Law, Media, Weighing, number_of_hero};
-use crate::walks::{GROUPS, Met, Route, SOME_LEFT, Scores, Walk};
+use crate::walks::{GROUPS, Route, SOME_LEFT, Scores, TentativeCollision, Walk};
 use media::body::MAX_CHANNELS;
 use media::sampling::BothWays;
 use numeric::rng::Random;
@@ -42,7 +42,7 @@ pub struct InSlab<'a, S> {
     mean_free_paths: [f64; MAX_CHANNELS],
 }
 
-impl<'a, S: Steps> InSlab<'a, S> {
+impl<'a, S: WalkEvents> InSlab<'a, S> {
     /// The walk by steps on a setup.
     #[inline(always)]
     pub fn new(steps: S, by: By<'a>, setup: &'a Setup<ChromaticSlab>) -> Self {
@@ -88,7 +88,7 @@ kept! {
     }
 }
 
-impl<S: Steps> Walk for InSlab<'_, S> {
+impl<S: WalkEvents> Walk for InSlab<'_, S> {
     type State<L: Lane> = Particle<L>;
 
     const IS_CHROMATIC: bool = true;
@@ -165,10 +165,11 @@ impl<S: Steps> Walk for InSlab<'_, S> {
         &self,
         path: &mut Particle<L>,
         _: &mut Route<impl BothWays<L>>,
-        met: &Met<L>,
+        met: &TentativeCollision<L>,
         random: &mut impl Random<L>,
     ) -> L::Mask {
-        let (Met { inside, extinctions, .. }, cosine, hero) = (*met, path.cosine, path.hero);
+        let (TentativeCollision { inside, extinctions, .. }, cosine, hero) =
+            (*met, path.cosine, path.hero);
         let (zero, one, support) = (hero.each(0.0), hero.each(1.0), self.support);
         let face = L::select(zero.below(cosine), one.each(support.to), one.each(support.from));
         let deep = L::select(inside, path.depth / path.majorant, face - path.before);

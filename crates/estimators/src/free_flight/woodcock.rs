@@ -12,7 +12,7 @@
 //! Source: E. R. Woodcock, T. Murphy, P. Hemmings, T. Longworth, *Techniques used in the GEM code
 //! for Monte Carlo neutronics calculations*, ANL-7050 (1965).
 
-use crate::walks::{self, Met, Route, Walk};
+use crate::walks::{self, Route, TentativeCollision, Walk};
 use crate::{Estimator, Inputs, Kernel, Refusal, Request, Setup};
 use media::sampling::BothWays;
 use numeric::rng::Random;
@@ -96,7 +96,7 @@ impl Walk for Flights {
         &self,
         _: &mut Flight<L>,
         _: &mut Route<impl BothWays<L>>,
-        met: &Met<L>,
+        met: &TentativeCollision<L>,
         _: &mut impl Random<L>,
     ) -> L::Mask {
         met.inside & !met.number.below(met.ratio())

@@ -1,14 +1,14 @@
 //! Shadow rays along a line to a light behind it, and the weights of hits and shadow rays.
 
-use crate::walks::{Met, Route};
+use crate::walks::{Route, TentativeCollision};
 use media::sampling::BothWays;
 use media::{Medium, OpticalDepth, Piecewise};
 use numeric::{Lane, Mask, Span, kept};
 use theory::lit_rod::{Shadow, Techniques};
 
-/// The events of a walk to a light; a known bug may replace each of them.
-pub trait Steps: Copy {
-    /// True if [`Steps::arrived`] needs the last segment.
+/// Events of a walk, each of which a known bug may replace.
+pub trait WalkEvents: Copy {
+    /// True if [`WalkEvents::arrived`] needs the last segment.
     const KEEPS_LAST: bool = false;
 
     /// The techniques that find the light.
@@ -73,7 +73,7 @@ pub trait Steps: Copy {
     }
 }
 
-impl Steps for Techniques {
+impl WalkEvents for Techniques {
     #[inline(always)]
     fn techniques(&self) -> Techniques {
         *self
@@ -123,7 +123,7 @@ kept! {
         density: L,
         /// t̂, its transmittance so far.
         found: L,
-        /// The beginning of its last segment, if [`Steps::KEEPS_LAST`].
+        /// The beginning of its last segment, if [`WalkEvents::KEEPS_LAST`].
         last: L,
     }
 }
@@ -137,7 +137,7 @@ impl<L: Lane> ShadowRays<L> {
 
     /// Casts shadow rays of the lanes in `which` from the positions of their walks.
     #[inline(always)]
-    pub fn cast_where<S: Steps>(
+    pub fn cast_where<S: WalkEvents>(
         &mut self,
         which: L::Mask,
         route: &mut Route<impl BothWays<L>>,
@@ -155,15 +155,16 @@ impl<L: Lane> ShadowRays<L> {
     /// Handles shadow rays at a collision or behind the medium, along directions of these cosines; returns the
     /// lanes with rays that end.
     #[inline(always)]
-    pub fn track<S: Steps>(
+    pub fn track<S: WalkEvents>(
         &mut self,
         steps: &S,
         before: &Before,
-        (route, met): (&mut Route<impl BothWays<L>>, &Met<L>),
+        (route, met): (&mut Route<impl BothWays<L>>, &TentativeCollision<L>),
         (cosine, albedo): (L, L),
         score: &mut L,
     ) -> L::Mask {
-        let (Met { inside, t, number, .. }, ratio, casts) = (*met, met.ratio(), self.casts);
+        let (TentativeCollision { inside, t, number, .. }, ratio, casts) =
+            (*met, met.ratio(), self.casts);
         let shadow = steps.techniques().shadow;
         if !matches!(shadow, Some(Shadow::Delta | Shadow::Ratio)) {
             return casts;

@@ -15,8 +15,8 @@
 //! ρ is `p_uni/p_nee` of the segment in flight, see [`theory::lit_rod::techniques`]; every real scattering
 //! resets it. Every flight takes two random numbers, a scattering one more.
 
-use super::shadow::{Before, ShadowRays, Steps};
-use crate::walks::{self, Met, Route, Walk};
+use super::shadow::{Before, ShadowRays, WalkEvents};
+use crate::walks::{self, Route, TentativeCollision, Walk};
 use crate::{Kernel, Request, Setup};
 use media::Piecewise;
 use media::sampling::BothWays;
@@ -67,7 +67,7 @@ pub struct ToEmitter<'a, S> {
     steps: S,
 }
 
-impl<'a, S: Steps> ToEmitter<'a, S> {
+impl<'a, S: WalkEvents> ToEmitter<'a, S> {
     /// The walk through a rod and its σ̂ to the emitter at `end`.
     #[inline(always)]
     pub fn new(rod: &'a Rod, sampling: &'a Piecewise, end: f64, steps: S) -> Self {
@@ -82,11 +82,11 @@ impl<'a, S: Steps> ToEmitter<'a, S> {
 }
 
 /// Makes the draws of a request.
-pub fn fill(steps: impl Steps, kernel: Kernel, setup: &Setup<LitRod>, request: Request) {
+pub fn fill(steps: impl WalkEvents, kernel: Kernel, setup: &Setup<LitRod>, request: Request) {
     walks::fill(&ToEmitter::of(setup, steps), kernel, setup, request);
 }
 
-impl<S: Steps> Walk for ToEmitter<'_, S> {
+impl<S: WalkEvents> Walk for ToEmitter<'_, S> {
     type State<L: Lane> = Path<L>;
 
     const PAUSES: bool = true;
@@ -120,7 +120,7 @@ impl<S: Steps> Walk for ToEmitter<'_, S> {
         &self,
         path: &mut Path<L>,
         route: &mut Route<impl BothWays<L>>,
-        met: &Met<L>,
+        met: &TentativeCollision<L>,
         random: &mut impl Random<L>,
     ) -> L::Mask {
         self.collide_among(&self.rod, path, route, met, random)
@@ -132,7 +132,7 @@ impl<S: Steps> Walk for ToEmitter<'_, S> {
     }
 }
 
-impl<S: Steps> ToEmitter<'_, S> {
+impl<S: WalkEvents> ToEmitter<'_, S> {
     /// Handles walks and shadow rays among scatterers, as [`Walk::collide`].
     #[inline(always)]
     pub fn collide_among<L: Lane>(
@@ -140,7 +140,7 @@ impl<S: Steps> ToEmitter<'_, S> {
         among: &impl Scatterers<L>,
         path: &mut Path<L>,
         route: &mut Route<impl BothWays<L>>,
-        met: &Met<L>,
+        met: &TentativeCollision<L>,
         random: &mut impl Random<L>,
     ) -> L::Mask {
         let (rays, walks) = (path.shadow.casts, !path.shadow.casts);
@@ -162,11 +162,11 @@ impl<S: Steps> ToEmitter<'_, S> {
         among: &impl Scatterers<L>,
         path: &mut Path<L>,
         route: &mut Route<impl BothWays<L>>,
-        (met, albedo): (&Met<L>, L),
+        (met, albedo): (&TentativeCollision<L>, L),
         walks: L::Mask,
         random: &mut impl Random<L>,
     ) -> L::Mask {
-        let (Met { inside, t, number, .. }, real) = (*met, met.ratio());
+        let (TentativeCollision { inside, t, number, .. }, real) = (*met, met.ratio());
         let hits = walks & !inside & path.is_forward;
         if hits.maybe() {
             let unscattered = self.steps.unscattered(t.each(1.0));

@@ -15,8 +15,8 @@
 //! Every flight takes two random numbers; a scattering takes one for each direction that is chosen or drawn. A technique
 //! without hits draws none.
 
-use crate::lit_rod::shadow::{Before, ShadowRays, Steps};
-use crate::walks::{self, Met, Route, Walk};
+use crate::lit_rod::shadow::{Before, ShadowRays, WalkEvents};
+use crate::walks::{self, Route, TentativeCollision, Walk};
 use crate::{Kernel, Request, Setup};
 use media::phase::Phase;
 use media::sampling::BothWays;
@@ -87,7 +87,7 @@ pub struct ToLight<'a, S, D> {
     directions: D,
 }
 
-impl<'a, S: Steps, D: Directions> ToLight<'a, S, D> {
+impl<'a, S: WalkEvents, D: Directions> ToLight<'a, S, D> {
     /// The walk on a setup.
     #[inline(always)]
     pub fn of(setup: &'a Setup<LitSlab>, steps: S, directions: D) -> Self {
@@ -99,7 +99,7 @@ impl<'a, S: Steps, D: Directions> ToLight<'a, S, D> {
 
 /// Makes the draws of a request.
 pub fn fill(
-    (steps, directions): (impl Steps, impl Directions),
+    (steps, directions): (impl WalkEvents, impl Directions),
     kernel: Kernel,
     setup: &Setup<LitSlab>,
     request: Request,
@@ -107,7 +107,7 @@ pub fn fill(
     walks::fill(&ToLight::of(setup, steps, directions), kernel, setup, request);
 }
 
-impl<S: Steps, D: Directions> Walk for ToLight<'_, S, D> {
+impl<S: WalkEvents, D: Directions> Walk for ToLight<'_, S, D> {
     type State<L: Lane> = Path<L>;
 
     const PAUSES: bool = true;
@@ -140,10 +140,10 @@ impl<S: Steps, D: Directions> Walk for ToLight<'_, S, D> {
         &self,
         path: &mut Path<L>,
         route: &mut Route<impl BothWays<L>>,
-        met: &Met<L>,
+        met: &TentativeCollision<L>,
         random: &mut impl Random<L>,
     ) -> L::Mask {
-        let (Met { inside, t, number, .. }, real) = (*met, met.ratio());
+        let (TentativeCollision { inside, t, number, .. }, real) = (*met, met.ratio());
         let (casts, seeks) = (path.shadow.casts, path.seeks);
         let albedo = t.each(self.slab.albedo);
         let odds = ParticleRule::Analog.odds(real, albedo);
@@ -174,7 +174,7 @@ impl<S: Steps, D: Directions> Walk for ToLight<'_, S, D> {
     }
 }
 
-impl<S: Steps, D: Directions> ToLight<'_, S, D> {
+impl<S: WalkEvents, D: Directions> ToLight<'_, S, D> {
     /// Chooses a direction to the light for the walks in `scattered`, and draws one.
     #[inline(always)]
     fn scatter<L: Lane>(

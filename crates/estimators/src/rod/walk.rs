@@ -15,7 +15,7 @@
 //! A flight and the event at its end take a random number each; a scattering takes a third, and so does roulette.
 //! [`line`] follows one particle of this walk, or sixteen side by side.
 
-use crate::walks::{self, Met, Route, Walk};
+use crate::walks::{self, Route, TentativeCollision, Walk};
 use crate::{Kernel, Request, Setup};
 use media::sampling::BothWays;
 use numeric::rng::Random;
@@ -50,7 +50,7 @@ pub struct InRod<'a, S> {
     pub steps: S,
 }
 
-impl<S: Steps> Walk for InRod<'_, S> {
+impl<S: WalkEvents> Walk for InRod<'_, S> {
     type State<L: Lane> = Particle<L>;
 
     #[inline(always)]
@@ -75,10 +75,10 @@ impl<S: Steps> Walk for InRod<'_, S> {
         &self,
         particle: &mut Particle<L>,
         _: &mut Route<impl BothWays<L>>,
-        met: &Met<L>,
+        met: &TentativeCollision<L>,
         rng: &mut impl Random<L>,
     ) -> L::Mask {
-        let (Met { inside, t, number, .. }, ratio) = (*met, met.ratio());
+        let (TentativeCollision { inside, t, number, .. }, ratio) = (*met, met.ratio());
         let albedo = self.rod.albedo.value(t);
         self.score(particle, met, albedo);
         let odds = self.steps.odds(ratio, albedo);
@@ -118,8 +118,8 @@ impl<S: Steps> Walk for InRod<'_, S> {
 impl<S> InRod<'_, S> {
     /// Scores a tentative collision, before its event is decided.
     #[inline(always)]
-    fn score<L: Lane>(&self, particle: &mut Particle<L>, met: &Met<L>, albedo: L) {
-        let Met { inside, t, mean_free_path, .. } = *met;
+    fn score<L: Lane>(&self, particle: &mut Particle<L>, met: &TentativeCollision<L>, albedo: L) {
+        let TentativeCollision { inside, t, mean_free_path, .. } = *met;
         let (weight, ratio) = (particle.weight, met.ratio());
         particle.absorbed.add_where(inside, weight * ratio * albedo.one_minus());
         if self.rod.parts > 0 {
@@ -133,8 +133,8 @@ impl<S> InRod<'_, S> {
     }
 }
 
-/// The steps of a walk that a known bug may replace.
-pub trait Steps: Copy {
+/// Events of a walk, each of which a known bug may replace.
+pub trait WalkEvents: Copy {
     /// The odds at collisions with the given ratio `σ_t/σ̂` and albedo.
     fn odds<L: Lane>(&self, ratio: L, albedo: L) -> Odds<L>;
 
@@ -170,7 +170,7 @@ pub struct By {
     pub roulette: Option<f64>,
 }
 
-impl Steps for By {
+impl WalkEvents for By {
     #[inline(always)]
     fn odds<L: Lane>(&self, ratio: L, albedo: L) -> Odds<L> {
         self.rule.odds(ratio, albedo)
@@ -193,7 +193,7 @@ impl Steps for By {
 }
 
 /// Makes the draws of a request.
-pub fn fill(steps: impl Steps, kernel: Kernel, setup: &Setup<Rod>, request: Request) {
+pub fn fill(steps: impl WalkEvents, kernel: Kernel, setup: &Setup<Rod>, request: Request) {
     walks::fill(&InRod { rod: &setup.problem, steps }, kernel, setup, request);
 }
 

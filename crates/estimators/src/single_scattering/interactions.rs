@@ -11,7 +11,7 @@
 
 use super::ground::Ground;
 use super::shadow::ToLight;
-use crate::walks::{Met, Route, Walk};
+use crate::walks::{Route, TentativeCollision, Walk};
 use media::Batches;
 use media::sampling::{BothWays, PackedFlight};
 use numeric::geometry::Point;
@@ -95,10 +95,10 @@ impl<const RESAMPLED: bool> Walk for Interactions<'_, RESAMPLED> {
         &self,
         path: &mut Path<L>,
         route: &mut Route<impl BothWays<L>>,
-        met: &Met<L>,
+        met: &TentativeCollision<L>,
         random: &mut impl Random<L>,
     ) -> L::Mask {
-        let (Met { inside, t, extinction, .. }, zero) = (*met, met.t.each(0.0));
+        let (TentativeCollision { inside, t, extinction, .. }, zero) = (*met, met.t.each(0.0));
         let left = path.flies & !inside;
         path.walks &= !left;
         let (mut aims, mut ends) = (left & !left, left);
@@ -151,10 +151,10 @@ impl<const RESAMPLED: bool> Interactions<'_, RESAMPLED> {
         &self,
         path: &mut Path<L>,
         here: &impl PackedFlight<L>,
-        met: &Met<L>,
+        met: &TentativeCollision<L>,
         random: &mut impl Random<L>,
     ) -> L::Mask {
-        let Met { inside, t, extinction, .. } = *met;
+        let TentativeCollision { inside, t, extinction, .. } = *met;
         let source = extinction * self.ground.setup.problem.source(t) / here.sampling();
         let worth = path.weight * self.ground.controlled(t) * source;
         let mut chosen = inside & t.each(0.0).below(extinction);

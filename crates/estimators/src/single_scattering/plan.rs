@@ -9,7 +9,7 @@ use super::ground::Ground;
 use super::interactions::Interactions;
 use super::main_part::{self, MainPart};
 use super::shared::Shared;
-use super::vertices::{Right, Steps, ToVertices};
+use super::vertices::{Right, ToVertices, WalkEvents};
 use crate::setup::Residual;
 use crate::space::shadow::ShadowRays;
 use crate::walks::{self, Walk};
@@ -166,7 +166,7 @@ impl Vertices {
 
     /// Runs the walk by steps.
     #[inline(always)]
-    fn run<S: Steps, R: Run>(self, ground: Ground, steps: S, run: R) -> R::Output {
+    fn run<S: WalkEvents, R: Run>(self, ground: Ground, steps: S, run: R) -> R::Output {
         match (self.is_chosen(), self.collision.is_some()) {
             (true, false) => run.run(&ToVertices::<S, true, false>::new(ground, self, steps)),
             (true, true) => run.run(&ToVertices::<S, true, true>::new(ground, self, steps)),
@@ -178,7 +178,7 @@ impl Vertices {
     #[inline(always)]
     pub fn draw(
         self,
-        (steps, shadow): (impl Steps, Tracking),
+        (steps, shadow): (impl WalkEvents, Tracking),
         setup: &Setup<SingleScattering>,
         medium: &Lookups,
         random: &mut Stream,

@@ -6,7 +6,7 @@
 
 use super::ground::Ground;
 use crate::space::shadow::{Light, Shadows};
-use crate::walks::Met;
+use crate::walks::TentativeCollision;
 use numeric::geometry::exit;
 use numeric::rng::Random;
 use numeric::{Kept, Lane, Mask, kept};
@@ -87,7 +87,7 @@ impl<L: Lane> ToLight<L> {
     pub fn collide(
         &mut self,
         ground: &Ground,
-        met: &Met<L>,
+        met: &TentativeCollision<L>,
         (aims, s): (L::Mask, L),
         enough: u32,
         random: &mut impl Random<L>,

@@ -9,8 +9,8 @@
 
 use super::ground::Ground;
 use super::shadow::ToLight;
-use super::vertices::{Right, Steps};
-use crate::walks::{Met, Route, Walk};
+use super::vertices::{Right, WalkEvents};
+use crate::walks::{Route, TentativeCollision, Walk};
 use media::Batches;
 use media::sampling::BothWays;
 use numeric::geometry::Point;
@@ -164,10 +164,11 @@ impl Walk for Shared<'_> {
         &self,
         path: &mut Path<L>,
         route: &mut Route<impl BothWays<L>>,
-        met: &Met<L>,
+        met: &TentativeCollision<L>,
         random: &mut impl Random<L>,
     ) -> L::Mask {
-        let (Met { t, extinction, .. }, problem) = (*met, &*self.ground.setup.problem);
+        let (TentativeCollision { t, extinction, .. }, problem) =
+            (*met, &*self.ground.setup.problem);
         let Path { is_point, is_interaction, .. } = *path;
         let mut aims = is_point;
         if is_point.any() {

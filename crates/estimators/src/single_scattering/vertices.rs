@@ -20,7 +20,7 @@ use super::ground::Ground;
 use super::main_part::MainPart;
 use super::plan::{Absorption, Vertices};
 use super::shadow::{TOGETHER, ToLight};
-use crate::walks::{Met, Route, Walk};
+use crate::walks::{Route, TentativeCollision, Walk};
 use media::Batches;
 use media::sampling::BothWays;
 use numeric::geometry::Point;
@@ -29,8 +29,8 @@ use numeric::{Lane, Mask, kept};
 use theory::problems::SingleScattering;
 use theory::single::CameraTracking;
 
-/// The steps of a walk that a known bug may replace.
-pub trait Steps: Copy {
+/// Events of a walk, each of which a known bug may replace.
+pub trait WalkEvents: Copy {
     /// The point from the light that a uniform number chooses.
     #[inline(always)]
     fn point<L: Lane>(&self, problem: &SingleScattering, number: L) -> L {
@@ -70,7 +70,7 @@ pub trait Steps: Copy {
 #[derive(Clone, Copy)]
 pub struct Right;
 
-impl Steps for Right {}
+impl WalkEvents for Right {}
 
 /// A scattering point that has found light.
 #[derive(Clone, Copy)]
@@ -125,7 +125,9 @@ pub struct ToVertices<'a, S, const CHOSEN: bool, const COLLIDES: bool> {
     steps: S,
 }
 
-impl<'a, S: Steps, const CHOSEN: bool, const COLLIDES: bool> ToVertices<'a, S, CHOSEN, COLLIDES> {
+impl<'a, S: WalkEvents, const CHOSEN: bool, const COLLIDES: bool>
+    ToVertices<'a, S, CHOSEN, COLLIDES>
+{
     /// The number of lanes of a pack that score together, and the number that begin together. Lanes stand still
     /// until then: at least one of eight must go on.
     const SCORES: u32 = if CHOSEN { 4 } else { 1 };
@@ -219,10 +221,10 @@ impl<'a, S: Steps, const CHOSEN: bool, const COLLIDES: bool> ToVertices<'a, S, C
         &self,
         path: &mut Path<L>,
         here: &impl BothWays<L>,
-        met: &Met<L>,
+        met: &TentativeCollision<L>,
         inside: L::Mask,
     ) -> [L::Mask; 2] {
-        let Met { t, number, extinction, .. } = *met;
+        let TentativeCollision { t, number, extinction, .. } = *met;
         let (chosen, left) = (Self::chosen(path), path.flies & !inside);
         let threshold = number * here.sampling();
         let real = inside & !chosen & threshold.below(extinction);
@@ -244,11 +246,11 @@ impl<'a, S: Steps, const CHOSEN: bool, const COLLIDES: bool> ToVertices<'a, S, C
         &self,
         path: &mut Path<L>,
         here: &impl BothWays<L>,
-        met: &Met<L>,
+        met: &TentativeCollision<L>,
         inside: L::Mask,
         random: &mut impl Random<L>,
     ) -> [L::Mask; 2] {
-        let Met { t, extinction, .. } = *met;
+        let TentativeCollision { t, extinction, .. } = *met;
         let arrives = path.flies & !inside;
         let mut ends = inside & !inside;
         if self.plan.camera == CameraTracking::Delta {
@@ -306,7 +308,7 @@ impl<'a, S: Steps, const CHOSEN: bool, const COLLIDES: bool> ToVertices<'a, S, C
     }
 }
 
-impl<S: Steps, const CHOSEN: bool, const COLLIDES: bool> Walk
+impl<S: WalkEvents, const CHOSEN: bool, const COLLIDES: bool> Walk
     for ToVertices<'_, S, CHOSEN, COLLIDES>
 {
     type State<L: Lane> = Path<L>;
@@ -395,7 +397,7 @@ impl<S: Steps, const CHOSEN: bool, const COLLIDES: bool> Walk
         &self,
         path: &mut Path<L>,
         route: &mut Route<impl BothWays<L>>,
-        met: &Met<L>,
+        met: &TentativeCollision<L>,
         random: &mut impl Random<L>,
     ) -> L::Mask {
         let looked = path.looks;

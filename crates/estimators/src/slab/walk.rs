@@ -15,7 +15,7 @@
 
 use std::f64::consts::TAU;
 
-use crate::walks::{self, Met, Route, Walk};
+use crate::walks::{self, Route, TentativeCollision, Walk};
 use crate::{Kernel, Request, Setup};
 use media::phase::Phase;
 use media::phase::isotropic::Isotropic;
@@ -47,7 +47,7 @@ pub struct InSlab<'a, S> {
     pub steps: S,
 }
 
-impl<S: Steps> Walk for InSlab<'_, S> {
+impl<S: WalkEvents> Walk for InSlab<'_, S> {
     type State<L: Lane> = Particle<L>;
 
     #[inline(always)]
@@ -72,10 +72,10 @@ impl<S: Steps> Walk for InSlab<'_, S> {
         &self,
         particle: &mut Particle<L>,
         _: &mut Route<impl BothWays<L>>,
-        met: &Met<L>,
+        met: &TentativeCollision<L>,
         rng: &mut impl Random<L>,
     ) -> L::Mask {
-        let (Met { inside, number, .. }, ratio) = (*met, met.ratio());
+        let (TentativeCollision { inside, number, .. }, ratio) = (*met, met.ratio());
         let odds = self.steps.odds(ratio, ratio.each(self.albedo));
         let (scattered, straight_on) = odds.decide_each(inside, number);
         if scattered.maybe() {
@@ -109,7 +109,7 @@ impl<S: Steps> Walk for InSlab<'_, S> {
 #[inline(always)]
 pub fn entering<L: Lane>(
     light: Light,
-    steps: &impl Steps,
+    steps: &impl WalkEvents,
     which: L::Mask,
     one: L,
     rng: &mut impl Random<L>,
@@ -135,8 +135,8 @@ pub fn turned<L: Lane>(cosine: L, deflection: L, azimuth: L) -> L {
     turned.or_less(one).or_more(-one)
 }
 
-/// The steps of a walk that a known bug may replace.
-pub trait Steps: Copy {
+/// Events of a walk, each of which a known bug may replace.
+pub trait WalkEvents: Copy {
     /// The odds at collisions with the given ratio `σ_t/σ̂` and albedo.
     fn odds<L: Lane>(&self, ratio: L, albedo: L) -> Odds<L>;
 
@@ -159,7 +159,7 @@ pub trait Steps: Copy {
     }
 }
 
-impl Steps for ParticleRule {
+impl WalkEvents for ParticleRule {
     #[inline(always)]
     fn odds<L: Lane>(&self, ratio: L, albedo: L) -> Odds<L> {
         ParticleRule::odds(*self, ratio, albedo)
@@ -167,7 +167,7 @@ impl Steps for ParticleRule {
 }
 
 /// Makes the draws of a request: reflectance and transmittance.
-pub fn fill(steps: impl Steps, kernel: Kernel, setup: &Setup<Slab>, request: Request) {
+pub fn fill(steps: impl WalkEvents, kernel: Kernel, setup: &Setup<Slab>, request: Request) {
     walks::fill(&InSlab::of(&setup.problem, steps), kernel, setup, request);
 }
 

@@ -6,7 +6,7 @@ use fearless_simd::Level;
 
 use super::particle::{Particle, Splitting};
 use super::splitting;
-use super::steps::Steps;
+use super::steps::WalkEvents;
 use super::tally::Tally;
 use super::walk::InSpace;
 use crate::walks::{self, plain};
@@ -25,7 +25,7 @@ const MAX_CELLS: usize = 100_000;
 #[inline(never)]
 pub fn draw<V: Channels, T: Tally, const SPLITS: bool>(
     tally: &T,
-    (steps, splitting): (impl Steps, Splitting),
+    (steps, splitting): (impl WalkEvents, Splitting),
     world: (&Scene, &Majorants),
     random: &mut Stream,
 ) -> Draw<V> {
@@ -40,7 +40,7 @@ struct One<'a, V, T, S, const SPLITS: bool> {
     values: PhantomData<V>,
 }
 
-impl<V: Channels, T: Tally, S: Steps, const SPLITS: bool> Loop for One<'_, V, T, S, SPLITS> {
+impl<V: Channels, T: Tally, S: WalkEvents, const SPLITS: bool> Loop for One<'_, V, T, S, SPLITS> {
     type Output = Draw<V>;
 
     #[inline(always)]
@@ -53,7 +53,7 @@ impl<V: Channels, T: Tally, S: Steps, const SPLITS: bool> Loop for One<'_, V, T,
 /// Makes one draw in any lane of one number, given the value of a field of the walk at a place.
 #[inline(always)]
 pub fn follow<L: Single, V: Channels, T: Tally, const SPLITS: bool>(
-    walk: &InSpace<T, impl Steps>,
+    walk: &InSpace<T, impl WalkEvents>,
     splitting: Splitting,
     look_up: impl Fn(usize, [L; 3]) -> L,
     random: &mut impl Random<L>,

@@ -18,7 +18,7 @@ use theory::space::Walks;
 
 pub use numeric::geometry::exit;
 pub use particle::{Particle, Splitting};
-pub use steps::Steps;
+pub use steps::WalkEvents;
 pub use tally::Tally;
 pub use walker::{Splitter, Walked, Walker, draw};
 

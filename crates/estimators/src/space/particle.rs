@@ -1,8 +1,8 @@
 //! The settings of a particle: its rule, roulette and splitting.
 
-use super::steps::Steps;
+use super::steps::WalkEvents;
 use crate::rod;
-use crate::rod::walk::Steps as _;
+use crate::rod::walk::WalkEvents as _;
 use media::catalogue::{Domain, Settings};
 use numeric::Lane;
 use numeric::rng::Random;
@@ -104,7 +104,7 @@ impl Particle {
     }
 }
 
-impl Steps for Particle {
+impl WalkEvents for Particle {
     #[inline(always)]
     fn odds<L: Lane>(&self, ratio: L, albedo: L) -> Odds<L> {
         self.rule.odds(ratio, albedo)

@@ -4,7 +4,7 @@
 //! later. The draw is the sum of their scores.
 
 use super::particle::Splitting;
-use super::steps::Steps;
+use super::steps::WalkEvents;
 use super::tally::Tally;
 use super::walk::InSpace;
 use crate::Draw;
@@ -16,7 +16,7 @@ use theory::problems::Channels;
 
 /// Makes one draw: follows a walk and the particles that split off to their ends.
 #[inline(always)]
-pub fn follow<L: Single, V: Channels, T: Tally, S: Steps>(
+pub fn follow<L: Single, V: Channels, T: Tally, S: WalkEvents>(
     walk: &InSpace<T, S>,
     splitting: Splitting,
     look_up: impl Fn(usize, [L; 3]) -> L,

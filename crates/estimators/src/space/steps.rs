@@ -5,8 +5,8 @@ use numeric::Lane;
 use numeric::rng::Random;
 use theory::particle::Odds;
 
-/// The steps of a walk; a known bug may replace each of them.
-pub trait Steps: Copy {
+/// Events of a walk, each of which a known bug may replace.
+pub trait WalkEvents: Copy {
     /// The odds at collisions of the given ratio `σ_t/σ̂` and albedo.
     fn odds<L: Lane>(&self, ratio: L, albedo: L) -> Odds<L>;
 

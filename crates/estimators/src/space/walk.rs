@@ -13,15 +13,15 @@
 //!
 //! A flight takes a random number, a collision one where more than one event is possible, a scattering one for θ
 //! and one for φ, roulette one. Cells without σ̂, and all that lies outside the bounds, cost nothing. A [`Tally`]
-//! scores the walk; each of its [`Steps`] may be that of a known bug.
+//! scores the walk; each of its [`WalkEvents`] may be that of a known bug.
 //!
 //! Shadow rays and new directions cost more than a step. A lane that needs one stands still until several lanes of
 //! a pack do; meanwhile, the others go on.
 
 use super::shadow::{ShadowRays, Shadows};
-use super::steps::Steps;
+use super::steps::WalkEvents;
 use super::tally::{Collision, Departure, Scattering, Tally};
-use crate::walks::{Met, Route, Walk};
+use crate::walks::{Route, TentativeCollision, Walk};
 use media::sampling::BothWays;
 use media::sampling::{Flights, Ground};
 use media::{Batches, Majorants};
@@ -96,7 +96,7 @@ impl<T, S: Copy> Clone for InSpace<'_, T, S> {
 
 impl<T, S: Copy> Copy for InSpace<'_, T, S> {}
 
-impl<'a, T: Tally, S: Steps> InSpace<'a, T, S> {
+impl<'a, T: Tally, S: WalkEvents> InSpace<'a, T, S> {
     /// The walk through a scene and its σ̂; packs provide the fields that they look up.
     pub fn new(
         tally: &'a T,
@@ -332,7 +332,7 @@ impl<'a, T: Tally, S: Steps> InSpace<'a, T, S> {
     }
 }
 
-impl<T: Tally, S: Steps> Walk for InSpace<'_, T, S> {
+impl<T: Tally, S: WalkEvents> Walk for InSpace<'_, T, S> {
     type State<L: Lane> = State<L, T::Found<L>>;
 
     const ON_RAY: bool = false;
@@ -388,7 +388,7 @@ impl<T: Tally, S: Steps> Walk for InSpace<'_, T, S> {
         &self,
         state: &mut Self::State<L>,
         _: &mut Route<impl BothWays<L>>,
-        met: &Met<L>,
+        met: &TentativeCollision<L>,
         random: &mut impl Random<L>,
     ) -> L::Mask {
         let at = self.score(state, met.in_space, random);

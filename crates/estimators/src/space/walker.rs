@@ -1,6 +1,6 @@
 //! The estimators of problems in space: particles that walk by a rule, and particles that split.
 
-use super::steps::Steps;
+use super::steps::WalkEvents;
 use super::{Particle, Tally, draws};
 use crate::setup::Space;
 use crate::{Draw, Estimated, Estimator, Inputs, Kernel, Refusal, Request, Setup, walks};
@@ -41,7 +41,7 @@ pub trait Walked: Estimated<Fields = Space, Value: Channels> {
 /// Makes a draw of a particle by its steps; it follows the particles that split off if it `SPLITS`.
 #[inline(always)]
 pub fn draw<P: Walked, const SPLITS: bool>(
-    steps: impl Steps,
+    steps: impl WalkEvents,
     particle: &Particle,
     setup: &Setup<P>,
     random: &mut Stream,

@@ -21,8 +21,8 @@
 //! Transport*, ACM Transactions on Graphics 38 (2019), section 5.1; the bound is derived: see the theory of walks that are
 //! relative to the density of one walker.
 
-use crate::chromatic::page::Page;
+use crate::chromatic::page::OfKind;
 use crate::setup::walker::HERO;
 
 /// A single hero, without multiple importance sampling.
-pub type Hero = Page<HERO>;
+pub type Hero = OfKind<HERO>;

@@ -9,7 +9,7 @@ pub mod walk;
 use fearless_simd::Level;
 
 use self::walk::InFurnace;
-use super::chromatic::{By, Chromatic, Steps};
+use super::chromatic::{By, Chromatic, WalkEvents};
 use crate::setup::walker::Walker;
 use crate::walks::Walk;
 use crate::{Refusal, Setup, estimators};
@@ -59,7 +59,7 @@ fn realisable(setup: &Setup<SpectralFurnace>) -> Result<(), Refusal> {
 impl Chromatic for SpectralFurnace {
     #[inline(always)]
     fn walk<'a>(
-        steps: impl Steps,
+        steps: impl WalkEvents,
         by: By<'a>,
         setup: &'a Setup<Self>,
         fields: &'a [Batches<'a>],

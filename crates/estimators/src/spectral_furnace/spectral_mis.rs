@@ -17,8 +17,8 @@
 //! Source: B. Miller, I. Georgiev, W. Jarosz, *A null-scattering path integral formulation of light transport*,
 //! ACM Transactions on Graphics 38 (2019), section 5.1, Algorithm 1.
 
-use crate::chromatic::page::Page;
+use crate::chromatic::page::OfKind;
 use crate::setup::walker::MIS;
 
 /// The balance heuristic over heroes.
-pub type SpectralMis = Page<MIS>;
+pub type SpectralMis = OfKind<MIS>;

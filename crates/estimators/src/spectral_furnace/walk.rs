@@ -13,10 +13,10 @@
 
 use crate::Setup;
 use crate::chromatic::densities::{Densities, Events, Scatterers};
-use crate::chromatic::{By, Steps};
+use crate::chromatic::{By, WalkEvents};
 use crate::setup::walker::Walker;
 use crate::walks::hero::{LastPiece, Law, Media, Weighing, number_of_hero};
-use crate::walks::{GROUPS, Met, Route, SOME_LEFT, Scores, Walk};
+use crate::walks::{GROUPS, Route, SOME_LEFT, Scores, TentativeCollision, Walk};
 use media::Batches;
 use media::body::MAX_CHANNELS;
 use media::sampling::BothWays;
@@ -61,7 +61,7 @@ kept! {
     }
 }
 
-impl<'a, S: Steps> InFurnace<'a, S> {
+impl<'a, S: WalkEvents> InFurnace<'a, S> {
     /// The walk by steps on a setup.
     #[inline(always)]
     pub fn new(
@@ -121,7 +121,7 @@ impl<'a, S: Steps> InFurnace<'a, S> {
     }
 }
 
-impl<S: Steps> Walk for InFurnace<'_, S> {
+impl<S: WalkEvents> Walk for InFurnace<'_, S> {
     type State<L: Lane> = Path<L>;
 
     const ON_RAY: bool = false;
@@ -202,7 +202,7 @@ impl<S: Steps> Walk for InFurnace<'_, S> {
         &self,
         path: &mut Path<L>,
         _: &mut Route<impl BothWays<L>>,
-        met: &Met<L>,
+        met: &TentativeCollision<L>,
         random: &mut impl Random<L>,
     ) -> L::Mask {
         let (inside, one, hero) = (met.inside, path.length.each(1.0), path.hero);

@@ -23,7 +23,7 @@
 //! transport*, ACM Transactions on Graphics 38 (2019), Algorithms 1 and 2.
 
 use super::pages;
-use super::steps::{Found, Steps};
+use super::steps::{Found, WalkEvents};
 use crate::Estimator;
 use crate::setup::heroes::Heroes;
 use crate::walks::hero::{LastPiece, Weighing};
@@ -69,14 +69,14 @@ impl AsPrinted {
     }
 }
 
-impl Steps for AsPrinted {
+impl WalkEvents for AsPrinted {
     #[inline(always)]
     fn heroes(&self) -> &Heroes {
         &Heroes::Uniform
     }
 
     #[inline(always)]
-    fn casts(&self) -> bool {
+    fn has_shadow_rays(&self) -> bool {
         true
     }
 

@@ -21,7 +21,7 @@ use super::{Albedos, realisable, spectrum};
 use crate::lit_rod::walk::{Path, Scatterers, ToEmitter};
 use crate::setup::heroes::Heroes;
 use crate::walks::hero::{Law, number_of_hero, of_hero, or_of_hero};
-use crate::walks::{Met, Route, Walk, drawn};
+use crate::walks::{Route, TentativeCollision, Walk, drawn};
 use crate::{Estimator, Inputs, Refusal, Setup};
 use media::body::MAX_CHANNELS;
 use media::catalogue::Settings;
@@ -188,14 +188,14 @@ impl Walk for OfHero<'_, Techniques> {
         &self,
         alone: &mut Alone<L>,
         route: &mut Route<impl BothWays<L>>,
-        met: &Met<L>,
+        met: &TentativeCollision<L>,
         random: &mut impl Random<L>,
     ) -> L::Mask {
         let (hero, mut albedo) = (alone.hero, met.t);
         for channel in 0..self.count {
             albedo = or_of_hero(hero, channel, albedo, self.albedos.at(channel, met.t));
         }
-        let met = Met { extinction: of_hero(hero, met.extinctions), ..*met };
+        let met = TentativeCollision { extinction: of_hero(hero, met.extinctions), ..*met };
         let own = Own { albedo, forward: alone.forward };
         self.walk.collide_among(&own, &mut alone.path, route, &met, random)
     }

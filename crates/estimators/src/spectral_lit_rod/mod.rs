@@ -76,7 +76,7 @@ impl<'a> Albedos<'a> {
     }
 }
 
-/// Implements the trait of estimators for a page that implements [`steps::Steps`], given the distribution of the
+/// Implements the trait of estimators for a page that implements [`steps::WalkEvents`], given the distribution of the
 /// hero and theory's tracker.
 macro_rules! pages {
     ($this:ident => $heroes:expr, $tracker:expr) => {

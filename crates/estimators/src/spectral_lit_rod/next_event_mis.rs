@@ -22,7 +22,7 @@
 //! Source: B. Miller, I. Georgiev, W. Jarosz, *A null-scattering path integral formulation of light
 //! transport*, ACM Transactions on Graphics 38 (2019), sections 5.3 and 5.4, Algorithms 1 and 2.
 
-use super::page::Page;
+use super::page::HeroMis;
 
 /// The balance heuristic over heroes and both techniques.
-pub type NextEventMis = Page<true>;
+pub type NextEventMis = HeroMis<true>;

@@ -1,7 +1,7 @@
 //! The page of the balance heuristic over heroes, of hits alone or of hits and shadow rays.
 
 use super::pages;
-use super::steps::Steps;
+use super::steps::WalkEvents;
 use crate::Estimator;
 use crate::setup::heroes::Heroes;
 use media::catalogue::Settings;
@@ -10,24 +10,24 @@ use theory::spectral_lit_rod::Tracker;
 
 /// The balance heuristic over heroes; with `CASTS` walks cast shadow rays.
 #[derive(Debug, Clone)]
-pub struct Page<const CASTS: bool> {
+pub struct HeroMis<const CASTS: bool> {
     /// Distribution of the hero.
     pub heroes: Heroes,
 }
 
-impl<const CASTS: bool> Steps for Page<CASTS> {
+impl<const CASTS: bool> WalkEvents for HeroMis<CASTS> {
     #[inline(always)]
     fn heroes(&self) -> &Heroes {
         &self.heroes
     }
 
     #[inline(always)]
-    fn casts(&self) -> bool {
+    fn has_shadow_rays(&self) -> bool {
         CASTS
     }
 }
 
-impl<const CASTS: bool> Estimator<SpectralLitRod> for Page<CASTS> {
+impl<const CASTS: bool> Estimator<SpectralLitRod> for HeroMis<CASTS> {
     fn read(settings: &Settings) -> Option<Self> {
         Some(Self { heroes: Heroes::read(settings)? })
     }

@@ -21,7 +21,7 @@
 //! Source: B. Miller, I. Georgiev, W. Jarosz, *A null-scattering path integral formulation of light
 //! transport*, ACM Transactions on Graphics 38 (2019), sections 5.3 and 5.4, Algorithm 1.
 
-use super::page::Page;
+use super::page::HeroMis;
 
 /// The balance heuristic over heroes.
-pub type SpectralMis = Page<false>;
+pub type SpectralMis = HeroMis<false>;

@@ -24,7 +24,7 @@ use super::{Albedos, realisable, spectrum};
 use crate::setup::channels;
 use crate::setup::heroes::Heroes;
 use crate::setup::walker::read_chances;
-use crate::walks::{Met, Route, Walk, drawn};
+use crate::walks::{Route, TentativeCollision, Walk, drawn};
 use crate::{Estimator, Inputs, Refusal, Setup};
 use media::body::MAX_CHANNELS;
 use media::catalogue::Settings;
@@ -131,10 +131,11 @@ impl Walk for Together<'_> {
         &self,
         path: &mut Path<L>,
         _: &mut Route<impl BothWays<L>>,
-        met: &Met<L>,
+        met: &TentativeCollision<L>,
         _: &mut impl Random<L>,
     ) -> L::Mask {
-        let (Met { inside, t, extinctions, number, .. }, one) = (*met, met.t.each(1.0));
+        let (TentativeCollision { inside, t, extinctions, number, .. }, one) =
+            (*met, met.t.each(1.0));
         let majorant = one.each(self.majorant);
         for (channel, &extinction) in extinctions.iter().enumerate() {
             let real = extinction / majorant;

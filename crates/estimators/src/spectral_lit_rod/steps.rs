@@ -26,8 +26,8 @@ impl Found {
     }
 }
 
-/// The steps of a walk that a known bug may replace.
-pub trait Steps: Sync {
+/// Events of a walk, each of which a known bug may replace.
+pub trait WalkEvents: Sync {
     /// True if the densities of the next segment go on from those of the last one.
     const GOES_ON: bool = false;
 
@@ -41,12 +41,12 @@ pub trait Steps: Sync {
     fn heroes(&self) -> &Heroes;
 
     /// True if shadow rays are cast.
-    fn casts(&self) -> bool;
+    fn has_shadow_rays(&self) -> bool;
 
     /// Weighting of paths of a technique.
     #[inline(always)]
     fn weighing(&self, found: Found) -> Weighing {
-        let has_next_event = self.casts() && found != Found::Unscattered;
+        let has_next_event = self.has_shadow_rays() && found != Found::Unscattered;
         Weighing { has_next_event, ..Weighing::RIGHT }
     }
 

@@ -25,9 +25,9 @@
 //! to those of the hero, see [`Media::common`].
 
 use super::Albedos;
-use super::steps::{Found, Steps};
+use super::steps::{Found, WalkEvents};
 use crate::walks::hero::{LastPiece, Law, Media, Weighing, number_of_hero, of_hero, or_of_hero};
-use crate::walks::{self, GROUPS, Met, Route, SOME_LEFT, Scores, Walk};
+use crate::walks::{self, GROUPS, Route, SOME_LEFT, Scores, TentativeCollision, Walk};
 use crate::{Draw, Setup};
 use media::Lookups;
 use media::body::MAX_CHANNELS;
@@ -65,7 +65,7 @@ impl<S> Clone for ToEmitter<'_, S> {
 
 impl<S> Copy for ToEmitter<'_, S> {}
 
-impl<'a, S: Steps> ToEmitter<'a, S> {
+impl<'a, S: WalkEvents> ToEmitter<'a, S> {
     /// The walk on a setup.
     #[inline(always)]
     pub fn of(steps: &'a S, setup: &'a Setup<SpectralLitRod>) -> Self {
@@ -98,7 +98,7 @@ impl<'a, S: Steps> ToEmitter<'a, S> {
             albedos,
             forward,
             weighings: Found::ALL.map(|found| steps.weighing(found)),
-            casts: steps.casts(),
+            casts: steps.has_shadow_rays(),
         }
     }
 }
@@ -106,7 +106,7 @@ impl<'a, S: Steps> ToEmitter<'a, S> {
 /// Makes one draw.
 #[inline(always)]
 pub fn draw(
-    steps: &impl Steps,
+    steps: &impl WalkEvents,
     setup: &Setup<SpectralLitRod>,
     medium: &Lookups,
     random: &mut Stream,
@@ -142,10 +142,10 @@ kept! {
         /// `p_λ(ω)` on the last segment, and `Π (1 − r_λ)` over its null collisions.
         phases: [L; MAX_CHANNELS],
         nulls: [L; MAX_CHANNELS],
-        /// Values of both at the vertex of a shadow ray, if [`Steps::GOES_ON`].
+        /// Values of both at the vertex of a shadow ray, if [`WalkEvents::GOES_ON`].
         last_phases: [L; MAX_CHANNELS],
         last_nulls: [L; MAX_CHANNELS],
-        /// Quotient of f and the densities, if [`Steps::GAINS`].
+        /// Quotient of f and the densities, if [`WalkEvents::GAINS`].
         excess: [L; MAX_CHANNELS],
         /// Present `σ_t/σ̂` and a of each channel, and the weights after the current step.
         real: [L; MAX_CHANNELS],
@@ -154,7 +154,7 @@ kept! {
     }
 }
 
-impl<S: Steps> Walk for ToEmitter<'_, S> {
+impl<S: WalkEvents> Walk for ToEmitter<'_, S> {
     type State<L: Lane> = Particle<L>;
 
     const IS_CHROMATIC: bool = true;
@@ -248,10 +248,10 @@ impl<S: Steps> Walk for ToEmitter<'_, S> {
         &self,
         path: &mut Particle<L>,
         route: &mut Route<impl BothWays<L>>,
-        met: &Met<L>,
+        met: &TentativeCollision<L>,
         random: &mut impl Random<L>,
     ) -> L::Mask {
-        let (Met { inside, t, extinctions, .. }, count) = (*met, self.media.count);
+        let (TentativeCollision { inside, t, extinctions, .. }, count) = (*met, self.media.count);
         let (one, casts) = (t.each(1.0), path.casts);
         let number = random.uniform_where(!casts);
         let end = one.each(self.end);
@@ -356,7 +356,7 @@ impl<S: Steps> Walk for ToEmitter<'_, S> {
     }
 }
 
-impl<S: Steps> ToEmitter<'_, S> {
+impl<S: WalkEvents> ToEmitter<'_, S> {
     /// Value of a weighting's property for the techniques that found the paths.
     #[inline(always)]
     fn of_found<L: Lane>(&self, found: L, says: impl Fn(&Weighing) -> f64) -> L {

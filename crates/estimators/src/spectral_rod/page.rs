@@ -23,7 +23,7 @@ pub enum Walker {
 
 /// An estimator of a kind.
 #[derive(Debug, Clone)]
-pub struct Page<const KIND: u8>(pub Walker);
+pub struct OfKind<const KIND: u8>(pub Walker);
 
 /// `P_s`, the probability to be scattered of all channels together.
 #[inline(always)]
@@ -37,7 +37,7 @@ fn scatter(albedos: &[f64], maximum: bool) -> f64 {
     }
 }
 
-impl<const KIND: u8> walk::Page for Page<KIND> {
+impl<const KIND: u8> walk::HeroWeights for OfKind<KIND> {
     #[inline(always)]
     fn heroes(&self) -> Option<&Heroes> {
         if let Walker::Hero(heroes) = &self.0 { Some(heroes) } else { None }
@@ -79,7 +79,7 @@ impl<const KIND: u8> walk::Page for Page<KIND> {
     }
 }
 
-impl<const KIND: u8> Page<KIND> {
+impl<const KIND: u8> OfKind<KIND> {
     /// The distribution of the hero: of all channels together theory takes equal heroes.
     fn distribution(&self) -> &Heroes {
         if let Walker::Hero(heroes) = &self.0 { heroes } else { &Heroes::Uniform }
@@ -105,7 +105,7 @@ impl<const KIND: u8> Page<KIND> {
     }
 }
 
-impl<P: Coloured, const KIND: u8> Estimator<P> for Page<KIND> {
+impl<P: Coloured, const KIND: u8> Estimator<P> for OfKind<KIND> {
     const INPUTS: Inputs = Inputs::SAMPLING;
 
     fn read(settings: &Settings) -> Option<Self> {

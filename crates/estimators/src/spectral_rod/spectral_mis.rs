@@ -17,8 +17,8 @@
 //! Source: B. Miller, I. Georgiev, W. Jarosz, *A Null-Scattering Path Integral Formulation of Light
 //! Transport*, ACM Transactions on Graphics 38 (2019), section 5.1.
 
-use super::page::Page;
+use super::page::OfKind;
 use crate::setup::walker::MIS;
 
 /// The balance heuristic over heroes.
-pub type SpectralMis = Page<MIS>;
+pub type SpectralMis = OfKind<MIS>;

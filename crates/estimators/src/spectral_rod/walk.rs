@@ -14,7 +14,7 @@ use super::Coloured;
 use crate::setup::heroes::Heroes;
 use crate::slab::walk::{entering, turned};
 use crate::walks::hero::{Law, number_of_hero};
-use crate::walks::{self, GROUPS, Met, Route, SOME_LEFT, Scores, Walk};
+use crate::walks::{self, GROUPS, Route, SOME_LEFT, Scores, TentativeCollision, Walk};
 use crate::{Draw, Kernel, Refusal, Request, Setup};
 use media::Lookups;
 use media::body::MAX_CHANNELS;
@@ -38,7 +38,7 @@ pub enum Place<'a> {
 }
 
 /// Hero of a walk, and its weights in every channel.
-pub trait Page {
+pub trait HeroWeights {
     /// The distribution of the hero; `None` where one walk, number 0, serves all channels.
     fn heroes(&self) -> Option<&Heroes>;
 
@@ -83,7 +83,7 @@ kept! {
 pub struct InBody<'a> {
     place: Place<'a>,
     colours: &'a Colours,
-    page: &'a dyn Page,
+    page: &'a dyn HeroWeights,
     /// The distribution of the hero, if one is chosen.
     law: Option<Law>,
     /// The number of heroes, and their probabilities to be scattered at a real collision.
@@ -98,7 +98,7 @@ const TABLE: usize = 16;
 
 impl<'a> InBody<'a> {
     #[inline(always)]
-    fn new<P: Coloured>(page: &'a dyn Page, setup: &'a Setup<P>) -> Self {
+    fn new<P: Coloured>(page: &'a dyn HeroWeights, setup: &'a Setup<P>) -> Self {
         let (place, colours) = (setup.problem.place(), setup.problem.colours());
         let albedos = &colours.albedos;
         let law = page.heroes().map(|heroes| Law::new(heroes, albedos.len()));
@@ -125,8 +125,8 @@ impl<'a> InBody<'a> {
 
     /// Lanes at a collision that are scattered, and lanes that go straight on.
     #[inline(always)]
-    fn decide<L: Lane>(&self, met: &Met<L>, chance: L, sampling: L) -> [L::Mask; 2] {
-        let Met { inside, extinction, number, .. } = *met;
+    fn decide<L: Lane>(&self, met: &TentativeCollision<L>, chance: L, sampling: L) -> [L::Mask; 2] {
+        let TentativeCollision { inside, extinction, number, .. } = *met;
         if let Place::Slab(_) = self.place {
             let (scattered, passes) =
                 ParticleRule::Analog.odds(met.ratio(), chance).decide_each(inside, number);
@@ -231,7 +231,7 @@ impl Walk for InBody<'_> {
         &self,
         particle: &mut Particle<L>,
         route: &mut Route<impl BothWays<L>>,
-        met: &Met<L>,
+        met: &TentativeCollision<L>,
         random: &mut impl Random<L>,
     ) -> L::Mask {
         let [scattered, passes] = self.decide(met, particle.chance, route.here.sampling());
@@ -273,7 +273,7 @@ impl Walk for InBody<'_> {
 /// Makes one draw.
 #[inline(always)]
 pub fn draw<P: Coloured>(
-    page: &impl Page,
+    page: &impl HeroWeights,
     setup: &Setup<P>,
     medium: &Lookups,
     random: &mut Stream,
@@ -282,7 +282,12 @@ pub fn draw<P: Coloured>(
 }
 
 /// Makes the draws of a request.
-pub fn fill<P: Coloured>(page: &dyn Page, kernel: Kernel, setup: &Setup<P>, request: Request) {
+pub fn fill<P: Coloured>(
+    page: &dyn HeroWeights,
+    kernel: Kernel,
+    setup: &Setup<P>,
+    request: Request,
+) {
     let walk = InBody::new(page, setup);
     let table = walk.tabulated();
     walks::fill(&InBody { table: &table, ..walk }, kernel, setup, request);

@@ -21,8 +21,8 @@
 //! ACM Transactions on Graphics 38 (2019), section 5.1; the moments are derived: see the theory of single scattering in
 //! several channels.
 
-use super::page::Page;
+use super::page::OfKind;
 use crate::setup::walker::HERO;
 
 /// A single hero, without multiple importance sampling.
-pub type Hero = Page<HERO>;
+pub type Hero = OfKind<HERO>;

@@ -17,8 +17,8 @@
 //! Source: B. Miller, I. Georgiev, W. Jarosz, *A null-scattering path integral formulation of light transport*,
 //! ACM Transactions on Graphics 38 (2019), section 6.
 
-use super::page::Page;
+use super::page::OfKind;
 use crate::setup::walker::INDEPENDENT;
 
 /// One channel a draw.
-pub type Independent = Page<INDEPENDENT>;
+pub type Independent = OfKind<INDEPENDENT>;

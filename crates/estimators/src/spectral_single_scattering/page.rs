@@ -12,13 +12,13 @@ use theory::problems::SpectralSingleScattering;
 
 /// An estimator of a kind.
 #[derive(Debug, Clone)]
-pub struct Page<const KIND: u8> {
+pub struct OfKind<const KIND: u8> {
     walker: Walker,
     /// Tracking of shadow rays.
     shadow: Shadow,
 }
 
-impl<const KIND: u8> Estimator<SpectralSingleScattering> for Page<KIND> {
+impl<const KIND: u8> Estimator<SpectralSingleScattering> for OfKind<KIND> {
     const INPUTS: Inputs = Inputs::SAMPLING;
 
     fn read(settings: &Settings) -> Option<Self> {

@@ -18,8 +18,8 @@
 //! Source: B. Miller, I. Georgiev, W. Jarosz, *A null-scattering path integral formulation of light transport*,
 //! ACM Transactions on Graphics 38 (2019), sections 5.3 and 5.4.
 
-use super::page::Page;
+use super::page::OfKind;
 use crate::setup::walker::MIS;
 
 /// The balance heuristic over heroes.
-pub type SpectralMis = Page<MIS>;
+pub type SpectralMis = OfKind<MIS>;

@@ -21,8 +21,8 @@
 //! Source: P. Kutz, R. Habel, Y. K. Li, J. Novák, *Spectral and Decomposition Tracking for Rendering
 //! Heterogeneous Volumes*, ACM Transactions on Graphics 36 (2017), sections 5.1.1 and 5.1.2.
 
-use super::page::Page;
+use super::page::OfKind;
 use crate::setup::walker::SPECTRAL_TRACKING;
 
 /// Spectral tracking.
-pub type SpectralTracking = Page<SPECTRAL_TRACKING>;
+pub type SpectralTracking = OfKind<SPECTRAL_TRACKING>;

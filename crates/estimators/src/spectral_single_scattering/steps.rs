@@ -2,9 +2,9 @@
 
 use numeric::Lane;
 
-/// The steps of a walk that a known bug may replace.
-pub trait Steps: Copy {
-    /// True if collisions along the ray are counted separately, see [`Steps::has_shadow_density`].
+/// Events of a walk, each of which a known bug may replace.
+pub trait WalkEvents: Copy {
+    /// True if collisions along the ray are counted separately, see [`WalkEvents::has_shadow_density`].
     const COUNTS: bool = false;
 
     /// True if length and collisions of a tracked shadow ray are in the densities.
@@ -44,4 +44,4 @@ pub trait Steps: Copy {
 #[derive(Clone, Copy)]
 pub struct Right;
 
-impl Steps for Right {}
+impl WalkEvents for Right {}

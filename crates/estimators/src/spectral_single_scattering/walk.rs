@@ -15,12 +15,12 @@
 //! one, the choice of the hero one. Walks are scored when all have ended, exact shadow rays included.
 
 use super::Shadow;
-use super::steps::{Right, Steps};
+use super::steps::{Right, WalkEvents};
 use crate::setup::walker::Walker;
 use crate::space::exit::{along, ends};
 use crate::space::shadow::ShadowRays;
 use crate::walks::hero::{Law, Media, number_of_hero, of_hero, or_of_hero};
-use crate::walks::{self, GROUPS, Met, Route, SOME_LEFT, Scores, Walk};
+use crate::walks::{self, GROUPS, Route, SOME_LEFT, Scores, TentativeCollision, Walk};
 use crate::{Draw, Kernel, Request, Setup};
 use media::body::MAX_CHANNELS;
 use media::sampling::BothWays;
@@ -57,7 +57,7 @@ kept! {
         /// The length of the path, and where it scatters.
         length: L,
         s: L,
-        /// The number of collisions along the ray, if [`Steps::COUNTS`].
+        /// The number of collisions along the ray, if [`WalkEvents::COUNTS`].
         collisions: L,
         /// q of each channel relative to the hero's, without the factors of σ̂.
         weights: [L; MAX_CHANNELS],
@@ -89,7 +89,7 @@ pub struct ToScattering<'a, S, const ALL: bool> {
 /// Makes one draw.
 #[inline(always)]
 pub fn draw<const ALL: bool>(
-    steps: impl Steps,
+    steps: impl WalkEvents,
     (walker, shadow): (&Walker, Shadow),
     setup: &Setup<SpectralSingleScattering>,
     medium: &Lookups,
@@ -122,7 +122,7 @@ pub fn fill<const ALL: bool>(
     );
 }
 
-impl<'a, S: Steps, const ALL: bool> ToScattering<'a, S, ALL> {
+impl<'a, S: WalkEvents, const ALL: bool> ToScattering<'a, S, ALL> {
     #[inline(always)]
     fn new(
         setup: &'a Setup<SpectralSingleScattering>,
@@ -220,7 +220,7 @@ impl<'a, S: Steps, const ALL: bool> ToScattering<'a, S, ALL> {
     }
 }
 
-impl<S: Steps, const ALL: bool> Walk for ToScattering<'_, S, ALL> {
+impl<S: WalkEvents, const ALL: bool> Walk for ToScattering<'_, S, ALL> {
     type State<L: Lane> = Flight<L>;
 
     const IS_CHROMATIC: bool = true;
@@ -324,10 +324,10 @@ impl<S: Steps, const ALL: bool> Walk for ToScattering<'_, S, ALL> {
         &self,
         path: &mut Flight<L>,
         _: &mut Route<impl BothWays<L>>,
-        met: &Met<L>,
+        met: &TentativeCollision<L>,
         _: &mut impl Random<L>,
     ) -> L::Mask {
-        let (Met { inside, t, number, .. }, one) = (*met, met.t.each(1.0));
+        let (TentativeCollision { inside, t, number, .. }, one) = (*met, met.t.each(1.0));
         let Flight { walks, casts, .. } = *path;
         if S::COUNTS {
             path.collisions.count_where(inside);

@@ -15,7 +15,7 @@
 //! Source: J. Novák, A. Selle, W. Jarosz, *Residual Ratio Tracking for Estimating Attenuation in Participating
 //! Media*, ACM Transactions on Graphics 33 (2014), with one majorant for all channels.
 
-use super::page::{COMMON_RATIO, Page};
+use super::page::{COMMON_RATIO, OfKind};
 
 /// The ratio tracker of all channels.
-pub type CommonRatio = Page<COMMON_RATIO>;
+pub type CommonRatio = OfKind<COMMON_RATIO>;

@@ -20,8 +20,8 @@
 //! Source: B. Miller, I. Georgiev, W. Jarosz, *A Null-Scattering Path Integral Formulation of Light
 //! Transport*, ACM Transactions on Graphics 38 (2019), section 5.1.
 
-use super::page::Page;
+use super::page::OfKind;
 use crate::setup::walker::HERO;
 
 /// A single hero, without multiple importance sampling.
-pub type Hero = Page<HERO>;
+pub type Hero = OfKind<HERO>;

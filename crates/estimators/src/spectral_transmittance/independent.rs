@@ -20,8 +20,8 @@
 //! Source: B. Miller, I. Georgiev, W. Jarosz, *A Null-Scattering Path Integral Formulation of Light
 //! Transport*, ACM Transactions on Graphics 38 (2019), section 6.
 
-use super::page::Page;
+use super::page::OfKind;
 use crate::setup::walker::INDEPENDENT;
 
 /// Independent tracking.
-pub type Independent = Page<INDEPENDENT>;
+pub type Independent = OfKind<INDEPENDENT>;

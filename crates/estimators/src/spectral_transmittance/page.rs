@@ -16,7 +16,7 @@ pub const COMMON_RATIO: u8 = 4;
 
 /// A tracker of a kind.
 #[derive(Debug, Clone)]
-pub struct Page<const KIND: u8> {
+pub struct OfKind<const KIND: u8> {
     tracker: Tracker,
     /// Distribution of the hero; `None` where all channels walk together through one σ̂.
     heroes: Option<Heroes>,
@@ -24,7 +24,7 @@ pub struct Page<const KIND: u8> {
     label: String,
 }
 
-impl<const KIND: u8> Page<KIND> {
+impl<const KIND: u8> OfKind<KIND> {
     /// A tracker of all channels together.
     fn together(tracker: Tracker, label: &str) -> Self {
         Self { tracker, heroes: None, label: label.to_owned() }
@@ -60,7 +60,7 @@ impl<const KIND: u8> Page<KIND> {
     }
 }
 
-impl<const KIND: u8> Estimator<SpectralTransmittance> for Page<KIND> {
+impl<const KIND: u8> Estimator<SpectralTransmittance> for OfKind<KIND> {
     const INPUTS: Inputs = Inputs::SAMPLING;
 
     fn read(settings: &Settings) -> Option<Self> {

@@ -3,9 +3,9 @@
 use numeric::Lane;
 use numeric::rng::Random;
 
-/// The steps of a walk that a known bug may replace.
-pub trait Steps: Copy {
-    /// True if [`Steps::relative`] needs the last collision.
+/// Events of a walk, each of which a known bug may replace.
+pub trait WalkEvents: Copy {
+    /// True if [`WalkEvents::relative`] needs the last collision.
     const KEEPS_LAST: bool = false;
 
     /// Number of the hero with the share of null collisions that decides at a collision.
@@ -68,4 +68,4 @@ pub trait Steps: Copy {
 #[derive(Debug, Clone, Copy)]
 pub struct Right;
 
-impl Steps for Right {}
+impl WalkEvents for Right {}

@@ -13,10 +13,10 @@
 //! Source: B. Miller, I. Georgiev, W. Jarosz, *A Null-Scattering Path Integral Formulation of Light
 //! Transport*, ACM Transactions on Graphics 38 (2019), section 5.1.
 
-use super::steps::Steps;
+use super::steps::WalkEvents;
 use crate::setup::heroes::Heroes;
 use crate::walks::hero::{Law, Media, number_of_hero, of_hero};
-use crate::walks::{self, GROUPS, Met, Route, SOME_LEFT, Scores, Walk};
+use crate::walks::{self, GROUPS, Route, SOME_LEFT, Scores, TentativeCollision, Walk};
 use crate::{Draw, Setup};
 use media::Lookups;
 use media::body::MAX_CHANNELS;
@@ -56,7 +56,7 @@ pub struct AlongRay<'a, S> {
     steps: S,
 }
 
-impl<'a, S: Steps> AlongRay<'a, S> {
+impl<'a, S: WalkEvents> AlongRay<'a, S> {
     /// The walk of heroes.
     #[inline(always)]
     pub fn new(
@@ -137,7 +137,7 @@ impl<'a, S: Steps> AlongRay<'a, S> {
 }
 
 /// Walks that score their heroes alone.
-impl<S: Steps> AlongRay<'_, S> {
+impl<S: WalkEvents> AlongRay<'_, S> {
     /// Sets the heroes of the lanes in `which`.
     #[inline(always)]
     fn follow<L: Lane>(&self, path: &mut Particle<L>, which: L::Mask, hero: L) {
@@ -156,7 +156,7 @@ impl<S: Steps> AlongRay<'_, S> {
     fn collide_alone<L: Lane>(
         path: &mut Particle<L>,
         delta: bool,
-        met: &Met<L>,
+        met: &TentativeCollision<L>,
         random: &mut impl Random<L>,
     ) -> L::Mask {
         let share = met.t.each(1.0) - of_hero(path.hero, met.extinctions) / path.majorant;
@@ -192,7 +192,7 @@ impl<S: Steps> AlongRay<'_, S> {
 }
 
 /// Scores of walks that have ended.
-impl<S: Steps> AlongRay<'_, S> {
+impl<S: WalkEvents> AlongRay<'_, S> {
     /// Computes scores from the hero and the weights that a walk left.
     #[inline(always)]
     fn weigh<L: Lane>(&self, numbers: &[L], lookups: L, values: &mut [L]) {
@@ -263,12 +263,12 @@ kept! {
         weights: [L; MAX_CHANNELS + 1],
         /// Present `1 − σ_t/σ̂` of each channel.
         shares: [L; MAX_CHANNELS],
-        /// The last collision, if [`Steps::KEEPS_LAST`].
+        /// The last collision, if [`WalkEvents::KEEPS_LAST`].
         last: L,
     }
 }
 
-impl<S: Steps> Walk for AlongRay<'_, S> {
+impl<S: WalkEvents> Walk for AlongRay<'_, S> {
     type State<L: Lane> = Particle<L>;
 
     const IS_CHROMATIC: bool = true;
@@ -318,7 +318,7 @@ impl<S: Steps> Walk for AlongRay<'_, S> {
         &self,
         path: &mut Particle<L>,
         route: &mut Route<impl BothWays<L>>,
-        met: &Met<L>,
+        met: &TentativeCollision<L>,
         random: &mut impl Random<L>,
     ) -> L::Mask {
         if let Tracker::Independent { delta } | Tracker::InTurn { delta } = self.tracker {
@@ -328,7 +328,7 @@ impl<S: Steps> Walk for AlongRay<'_, S> {
             }
             return goes_on;
         }
-        let (Met { inside, t, extinctions, .. }, count) = (*met, self.media.count);
+        let (TentativeCollision { inside, t, extinctions, .. }, count) = (*met, self.media.count);
         let number = if self.tracker.is_delta() { random.uniform() } else { t };
         let one = t.each(1.0);
         let (hero, majorants) = (path.hero, &self.media.majorants[..count]);

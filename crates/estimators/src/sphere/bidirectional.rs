@@ -35,8 +35,8 @@
 //! Transactions on Graphics 38 (2019), section 5.5, Eqs. 43 and 44. Densities are derived in
 //! `estimators/sphere/combined.rs`, the bound in `theory/sphere/spread.rs`.
 
-use super::page::{BIDIRECTIONAL, Connected, Page};
-use super::sharing::{Sharing, Subpaths};
+use super::page::{BIDIRECTIONAL, Connected, Method};
+use super::sharing::{SharedTechniques, Subpaths};
 use crate::space::Particle;
 use media::catalogue::Settings;
 use theory::sphere::Techniques;
@@ -46,13 +46,13 @@ use theory::{Heuristic, ParticleRule};
 pub type Bidirectional = Connected<BIDIRECTIONAL>;
 
 /// Reads the settings.
-pub(super) fn page(settings: &Settings) -> Option<Page> {
+pub(super) fn page(settings: &Settings) -> Option<Method> {
     let heuristic = Heuristic::read(settings);
     let words = ["independent", "shared"];
     let subpaths = settings
         .word_or("subpaths", &words, words[0])
         .map(|word| if word == words[0] { Subpaths::Independent } else { Subpaths::Shared });
     let techniques = Techniques::Bidirectional(heuristic?);
-    let sharing = Sharing { techniques, shadow: None, subpaths };
-    subpaths.map(|_| Page { particle: Particle::of(ParticleRule::Analog), sharing })
+    let sharing = SharedTechniques { techniques, shadow: None, subpaths };
+    subpaths.map(|_| Method { particle: Particle::of(ParticleRule::Analog), sharing })
 }

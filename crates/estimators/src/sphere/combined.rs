@@ -22,7 +22,7 @@
 
 use super::connect::{Seeker, aim, meets_light, share};
 use super::emission;
-use super::sharing::{Link, Sharing, Steps, Subpaths};
+use super::sharing::{Link, SharedTechniques, Subpaths, WalkEvents};
 use crate::single_scattering::connection;
 use crate::space::segment::Tracker;
 use crate::space::shadow::{Aim, Light, Lit, ShadowRays};
@@ -68,17 +68,17 @@ pub struct Combined<'a, B, const CONNECTS: bool> {
     seeker: Seeker<'a>,
     ground: Ground<'a>,
     rule: ParticleRule,
-    sharing: Sharing,
+    sharing: SharedTechniques,
     tracking: Option<Tracking>,
     steps: B,
 }
 
-impl<'a, B: Steps, const CONNECTS: bool> Combined<'a, B, CONNECTS> {
+impl<'a, B: WalkEvents, const CONNECTS: bool> Combined<'a, B, CONNECTS> {
     /// The walk of a particle by a rule through a ball and σ̂.
     pub fn new(
         (sphere, majorants): (&'a Sphere, &'a Majorants),
         rule: ParticleRule,
-        (sharing, steps): (Sharing, B),
+        (sharing, steps): (SharedTechniques, B),
     ) -> Self {
         Self {
             seeker: Seeker { sphere },
@@ -177,7 +177,7 @@ impl<'a, B: Steps, const CONNECTS: bool> Combined<'a, B, CONNECTS> {
     }
 }
 
-impl<B: Steps, const CONNECTS: bool> Tally for Combined<'_, B, CONNECTS> {
+impl<B: WalkEvents, const CONNECTS: bool> Tally for Combined<'_, B, CONNECTS> {
     type Found<L: Lane> = Vertices<L>;
 
     const CASTS: bool = true;

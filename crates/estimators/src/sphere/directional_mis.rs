@@ -26,8 +26,8 @@
 //! Monte Carlo Methods for Light Transport Simulation*, doctoral thesis, Stanford (1997). The bound is derived in
 //! `theory/sphere/spread.rs`.
 
-use super::page::{Connected, DIRECTIONAL, Page};
-use super::sharing::Sharing;
+use super::page::{Connected, DIRECTIONAL, Method};
+use super::sharing::SharedTechniques;
 use crate::single_scattering::connection;
 use crate::space::Particle;
 use media::catalogue::Settings;
@@ -39,11 +39,11 @@ use theory::sphere::Techniques;
 pub type DirectionalMis = Connected<DIRECTIONAL>;
 
 /// Reads the settings.
-pub(super) fn page(settings: &Settings) -> Option<Page> {
+pub(super) fn page(settings: &Settings) -> Option<Method> {
     let particle = Particle::read(settings);
     let shadow = connection::read_shadow(settings);
     let heuristic = Heuristic::read(settings);
     let techniques = Techniques::Mis(Densities::Directional, heuristic?);
-    let sharing = Sharing { techniques, shadow: Some(shadow?), subpaths: None };
-    Some(Page { particle: particle?, sharing })
+    let sharing = SharedTechniques { techniques, shadow: Some(shadow?), subpaths: None };
+    Some(Method { particle: particle?, sharing })
 }

@@ -26,8 +26,8 @@
 //! Transactions on Graphics 38 (2019), section 5.3, Algorithms 1 and 2, Eq. 42. The bound is derived in
 //! `theory/sphere/spread.rs`.
 
-use super::page::{Connected, FULL, Page};
-use super::sharing::Sharing;
+use super::page::{Connected, FULL, Method};
+use super::sharing::SharedTechniques;
 use crate::space::Particle;
 use media::catalogue::Settings;
 use theory::Heuristic;
@@ -39,12 +39,12 @@ use theory::sphere::Techniques;
 pub type FullMis = Connected<FULL>;
 
 /// Reads the settings.
-pub(super) fn page(settings: &Settings) -> Option<Page> {
+pub(super) fn page(settings: &Settings) -> Option<Method> {
     let particle = Particle::read(settings);
     let shadow = settings.word_or("shadow", &["ratio", "exact"], "ratio");
     let heuristic = Heuristic::read(settings);
     let shadow = (shadow? == "exact").then_some(Tracking::Exact);
     let techniques = Techniques::Mis(Densities::Full, heuristic?);
-    let sharing = Sharing { techniques, shadow, subpaths: None };
-    Some(Page { particle: particle?, sharing })
+    let sharing = SharedTechniques { techniques, shadow, subpaths: None };
+    Some(Method { particle: particle?, sharing })
 }

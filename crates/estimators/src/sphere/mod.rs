@@ -21,8 +21,8 @@ use theory::sphere::predict;
 use theory::{ParticleRule, Prediction, problems};
 
 pub use connect::Seeker;
-pub use page::Page;
-pub use sharing::Honest;
+pub use page::Method;
+pub use sharing::Correct;
 
 /// Maximum second moment of a tracked transmittance, relative to that of an untracked one.
 const WILDEST: f64 = 1e3;

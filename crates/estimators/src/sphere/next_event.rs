@@ -24,8 +24,8 @@
 //! *Residual ratio tracking for estimating attenuation in participating media*, ACM Transactions on
 //! Graphics 33 (2014). The bound is derived in `theory/sphere/spread.rs`.
 
-use super::page::{Connected, NEXT_EVENT, Page};
-use super::sharing::Sharing;
+use super::page::{Connected, Method, NEXT_EVENT};
+use super::sharing::SharedTechniques;
 use crate::single_scattering::connection;
 use crate::space::Particle;
 use media::catalogue::Settings;
@@ -35,9 +35,9 @@ use theory::sphere::Techniques;
 pub type NextEvent = Connected<NEXT_EVENT>;
 
 /// Reads the settings.
-pub(super) fn page(settings: &Settings) -> Option<Page> {
+pub(super) fn page(settings: &Settings) -> Option<Method> {
     let particle = Particle::read(settings);
     let shadow = Some(connection::read_shadow(settings)?);
-    let sharing = Sharing { techniques: Techniques::NextEvent, shadow, subpaths: None };
-    Some(Page { particle: particle?, sharing })
+    let sharing = SharedTechniques { techniques: Techniques::NextEvent, shadow, subpaths: None };
+    Some(Method { particle: particle?, sharing })
 }

@@ -3,7 +3,7 @@
 use fearless_simd::Level;
 
 use super::combined::Combined;
-use super::sharing::{Honest, Sharing, Steps, Subpaths};
+use super::sharing::{Correct, SharedTechniques, Subpaths, WalkEvents};
 use super::{bidirectional, connected, directional_mis, full_mis, next_event, realisable};
 use crate::single_scattering::connection;
 use crate::space::{Particle, Splitting, draws};
@@ -19,18 +19,18 @@ use theory::{Heuristic, Prediction};
 
 /// The settings of an estimator.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Page {
+pub struct Method {
     /// The particle.
     pub particle: Particle,
     /// The techniques that share the vertices of a walk.
-    pub sharing: Sharing,
+    pub sharing: SharedTechniques,
 }
 
-impl Page {
+impl Method {
     /// Makes a draw through σ̂ by steps.
     pub fn draw(
         &self,
-        steps: impl Steps,
+        steps: impl WalkEvents,
         (sphere, majorants): (&Sphere, &Majorants),
         random: &mut Stream,
     ) -> Draw {
@@ -42,7 +42,12 @@ impl Page {
     }
 
     /// Makes a draw of an experiment by steps.
-    pub fn draw_for(&self, steps: impl Steps, setup: &Setup<Sphere>, random: &mut Stream) -> Draw {
+    pub fn draw_for(
+        &self,
+        steps: impl WalkEvents,
+        setup: &Setup<Sphere>,
+        random: &mut Stream,
+    ) -> Draw {
         self.draw(steps, (&setup.problem, &setup.fields), random)
     }
 
@@ -61,7 +66,7 @@ impl Page {
         if sharing.subpaths.is_some() || is_exact || !is_tracked {
             return Some(request);
         }
-        let (sphere, steps) = (&*setup.problem, (sharing, Honest));
+        let (sphere, steps) = (&*setup.problem, (sharing, Correct));
         let combined = Combined::<_, false>::new((sphere, majorants), particle.rule, steps);
         draws::packets(level, &combined, &particle, (&sphere.scene, majorants), request)
     }
@@ -78,7 +83,7 @@ pub const BIDIRECTIONAL: u8 = 3;
 
 /// An estimator with shadow rays, of a kind.
 #[derive(Debug, Clone)]
-pub struct Connected<const KIND: u8>(Page);
+pub struct Connected<const KIND: u8>(Method);
 
 impl<const KIND: u8> Estimator<Sphere> for Connected<KIND> {
     const INPUTS: Inputs = Inputs::SAMPLING;
@@ -95,7 +100,7 @@ impl<const KIND: u8> Estimator<Sphere> for Connected<KIND> {
 
     /// Settings in words, such as `analog, ratio shadow, power`.
     fn label(&self, _: bool) -> String {
-        let Sharing { shadow, subpaths, .. } = self.0.sharing;
+        let SharedTechniques { shadow, subpaths, .. } = self.0.sharing;
         let mut words = match subpaths {
             Some(Subpaths::Independent) => vec!["independent subpaths".into()],
             Some(Subpaths::Shared) => vec!["shared subpaths".into()],
@@ -122,7 +127,7 @@ impl<const KIND: u8> Estimator<Sphere> for Connected<KIND> {
     }
 
     fn predict(&self, setup: &Setup<Sphere>) -> Prediction {
-        let Sharing { techniques, shadow, subpaths } = self.0.sharing;
+        let SharedTechniques { techniques, shadow, subpaths } = self.0.sharing;
         let is_distant = matches!(setup.problem.light, Light::Distant(_));
         let techniques = match subpaths {
             Some(Subpaths::Shared) => return predict::by_pilots(&setup.problem),
@@ -142,7 +147,7 @@ impl<const KIND: u8> Estimator<Sphere> for Connected<KIND> {
             request,
             |level, _, request| self.0.draw_packets(level, setup, request),
             #[inline(always)]
-            |_, random| self.0.draw_for(Honest, setup, random),
+            |_, random| self.0.draw_for(Correct, setup, random),
         );
     }
 }

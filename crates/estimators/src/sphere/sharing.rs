@@ -20,7 +20,7 @@ pub enum Subpaths {
 
 /// Techniques that share the vertices of a walk.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Sharing {
+pub struct SharedTechniques {
     /// The techniques and their weights.
     pub techniques: Techniques,
     /// The tracking of shadow rays; without one, ratio tracking through the σ̂ of the walk.
@@ -29,7 +29,7 @@ pub struct Sharing {
     pub subpaths: Option<Subpaths>,
 }
 
-impl Sharing {
+impl SharedTechniques {
     /// The densities of weights and their heuristic; `None` for next-event estimation, the only technique for
     /// scattered light.
     pub fn weights(&self) -> Option<(Densities, Heuristic)> {
@@ -55,8 +55,8 @@ impl Sharing {
     }
 }
 
-/// The steps that a known bug may replace.
-pub trait Steps: Copy {
+/// Events of a walk, each of which a known bug may replace.
+pub trait WalkEvents: Copy {
     /// The light of shadow rays from places, given the right one.
     #[inline(always)]
     fn light<L: Lane>(&self, sphere: &Sphere, place: [L; 3], right: Light<L>) -> Light<L> {
@@ -135,9 +135,9 @@ pub trait Steps: Copy {
 
 /// The right steps.
 #[derive(Debug, Clone, Copy)]
-pub struct Honest;
+pub struct Correct;
 
-impl Steps for Honest {}
+impl WalkEvents for Correct {}
 
 /// Connections.
 #[derive(Debug, Clone, Copy)]

@@ -19,7 +19,7 @@
 
 use super::woodcock::{ZERO_OR_ONE, zero_or_one};
 use crate::recipes::controls;
-use crate::walks::{self, Met, Route, Walk};
+use crate::walks::{self, Route, TentativeCollision, Walk};
 use crate::{Estimator, Inputs, Kernel, Refusal, Request, Setup};
 use media::Control;
 use media::sampling::BothWays;
@@ -147,10 +147,10 @@ impl Walk for Residual {
         &self,
         flight: &mut Flight<L>,
         _: &mut Route<impl BothWays<L>>,
-        met: &Met<L>,
+        met: &TentativeCollision<L>,
         _: &mut impl Random<L>,
     ) -> L::Mask {
-        let Met { inside, mean_free_path, extinction, number, .. } = *met;
+        let TentativeCollision { inside, mean_free_path, extinction, number, .. } = *met;
         let is_real = number.below((extinction - self.subtracted) * mean_free_path);
         let goes_on = flight.begins | (inside & !is_real);
         flight.begins = flight.begins & !flight.begins;

@@ -18,7 +18,7 @@
 //! (2010).
 
 use super::woodcock::{ZERO_OR_ONE, zero_or_one};
-use crate::walks::{self, Met, Route, Walk};
+use crate::walks::{self, Route, TentativeCollision, Walk};
 use crate::{Draw, Estimator, Inputs, Kernel, Refusal, Request, Setup};
 use media::sampling::BothWays;
 use numeric::rng::Random;
@@ -134,10 +134,10 @@ impl Walk for Segments<'_> {
         &self,
         hop: &mut Hop<L>,
         _: &mut Route<impl BothWays<L>>,
-        met: &Met<L>,
+        met: &TentativeCollision<L>,
         _: &mut impl Random<L>,
     ) -> L::Mask {
-        let Met { inside, number, .. } = *met;
+        let TentativeCollision { inside, number, .. } = *met;
         let is_real = number.below(met.ratio());
         let last = hop.segment.each((self.rows.len() - 1) as f64);
         let crosses = !inside & hop.segment.below(last);

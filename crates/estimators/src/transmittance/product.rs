@@ -14,7 +14,7 @@
 //! X(S) + Σᵢ X(tᵢ⁻)(1 − (1 − rᵢ)/qᵢ) = T_c
 //! ```
 
-use crate::walks::{self, Met, Route, Walk};
+use crate::walks::{self, Route, TentativeCollision, Walk};
 use crate::{Draw, Kernel, Request, Setup};
 use media::sampling::BothWays;
 use media::{Control, Lookups};
@@ -114,10 +114,10 @@ impl<R: Collision> Walk for Product<'_, R> {
         &self,
         particle: &mut Particle<L>,
         route: &mut Route<impl BothWays<L>>,
-        met: &Met<L>,
+        met: &TentativeCollision<L>,
         _: &mut impl Random<L>,
     ) -> L::Mask {
-        let Met { inside, t, mean_free_path, extinction, number, .. } = *met;
+        let TentativeCollision { inside, t, mean_free_path, extinction, number, .. } = *met;
         let residual = extinction - self.control.extinction(t);
         let met = rules::Met { residual, sampling: route.here.sampling(), mean_free_path };
         let (ratio, outcome) = (met.ratio(), self.rule.at(met.ratio()));
@@ -180,10 +180,10 @@ impl<R: Collision> Walk for Survival<'_, R> {
         &self,
         survivor: &mut Survivor<L>,
         route: &mut Route<impl BothWays<L>>,
-        met: &Met<L>,
+        met: &TentativeCollision<L>,
         _: &mut impl Random<L>,
     ) -> L::Mask {
-        let Met { inside, t, mean_free_path, extinction, number, .. } = *met;
+        let TentativeCollision { inside, t, mean_free_path, extinction, number, .. } = *met;
         let residual = extinction - self.0.control.extinction(t);
         let met = rules::Met { residual, sampling: route.here.sampling(), mean_free_path };
         let goes_on = inside & !self.0.rule.kills(&met, number);

@@ -9,7 +9,7 @@
 //! A step takes one random number, that of the flight.
 
 use crate::Setup;
-use crate::walks::{Met, Route, Walk};
+use crate::walks::{Route, TentativeCollision, Walk};
 use media::sampling::BothWays;
 use numeric::rng::Random;
 use numeric::{Kept, Lane, kept};
@@ -106,7 +106,7 @@ impl<H: Share> Walk for Scoring<H> {
         &self,
         score: &mut Score<L>,
         _: &mut Route<impl BothWays<L>>,
-        met: &Met<L>,
+        met: &TentativeCollision<L>,
         _: &mut impl Random<L>,
     ) -> L::Mask {
         score.set_where(met.inside, score.collided(met.ratio(), self.share(met.t)));

@@ -21,7 +21,7 @@
 
 use super::ray_view::{self, RayView};
 use crate::transmittance::product::{Invariant, Subtracted};
-use crate::walks::{self, Met, Route, Walk};
+use crate::walks::{self, Route, TentativeCollision, Walk};
 use crate::{Estimator, Inputs, Kernel, Refusal, Request, Setup};
 use media::Medium;
 use media::sampling::BothWays;
@@ -143,10 +143,10 @@ impl Walk for Curve<'_> {
         &self,
         weights: &mut Weights<L>,
         _: &mut Route<impl BothWays<L>>,
-        met: &Met<L>,
+        met: &TentativeCollision<L>,
         _: &mut impl Random<L>,
     ) -> L::Mask {
-        let Met { inside, t, mean_free_path, extinction, .. } = *met;
+        let TentativeCollision { inside, t, mean_free_path, extinction, .. } = *met;
         let residual = extinction - self.control.extinction(t);
         let due = t.each(1.0) - residual * mean_free_path;
         let Weights { weight, ahead, invariant } = weights;

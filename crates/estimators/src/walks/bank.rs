@@ -13,7 +13,7 @@ use fearless_simd::{Simd, SimdBase, SimdMask, f64x8, mask64x8};
 
 use super::outcomes::{self, Events, Groups, Outcomes};
 use super::slots::{Numbers, Slot, Slots, leave};
-use super::{Met, Route, SOME_LEFT, Scores, Walk};
+use super::{Route, SOME_LEFT, Scores, TentativeCollision, Walk};
 use crate::{DrawBuffer, Request};
 use media::body::MAX_CHANNELS;
 use media::sampling::BothWays;
@@ -97,7 +97,15 @@ impl<S: Simd, C: BothWays<f64x8<S>>> Pack<f64x8<S>, C> {
     ) -> u64 {
         let Self { inside, t, number, .. } = *self;
         let mean_free_path = if W::ON_RAY { walk.mean_free_path(state, &self.route) } else { t };
-        let met = Met { inside, t, mean_free_path, extinction, extinctions, in_space, number };
+        let met = TentativeCollision {
+            inside,
+            t,
+            mean_free_path,
+            extinction,
+            extinctions,
+            in_space,
+            number,
+        };
         if W::PAUSES {
             let mut counted = inside;
             if W::IN_SPACE {

@@ -18,7 +18,7 @@ use theory::problems::Channels;
 const MAX_PIECES: usize = 8;
 
 /// Returns true if packs are faster than one walk after the other.
-fn pays<W: Walk>(sampling: &Piecewise, control: &Control, medium: &Lookups) -> bool {
+fn packets_are_faster<W: Walk>(sampling: &Piecewise, control: &Control, medium: &Lookups) -> bool {
     if !W::IN_PIECES && sampling.with_gaps().is_none() {
         return false;
     }
@@ -141,7 +141,7 @@ pub fn packets<'r, P: Estimated<Fields: OnRay>, W: Walk>(
     request: Request<'r>,
 ) -> Option<Request<'r>> {
     let Residual { sampling, control, .. } = setup.residual();
-    if !pays::<W>(sampling, control, medium) {
+    if !packets_are_faster::<W>(sampling, control, medium) {
         return Some(request);
     }
     let task = SideBySide { walk, sampling, medium, request };

@@ -150,7 +150,7 @@ pub trait Walk: Copy {
         &self,
         state: &mut Self::State<L>,
         route: &mut Route<impl BothWays<L>>,
-        met: &Met<L>,
+        met: &TentativeCollision<L>,
         random: &mut impl Random<L>,
     ) -> L::Mask;
 
@@ -258,7 +258,7 @@ pub const MAX_SCORED: usize = 16;
 
 /// A tentative collision. Lanes without one have arbitrary numbers.
 #[derive(Clone, Copy)]
-pub struct Met<'a, L: Lane> {
+pub struct TentativeCollision<'a, L: Lane> {
     /// Lanes at a tentative collision.
     pub inside: L::Mask,
     /// The distance.
@@ -275,7 +275,7 @@ pub struct Met<'a, L: Lane> {
     pub number: L,
 }
 
-impl<L: Lane> Met<'_, L> {
+impl<L: Lane> TentativeCollision<'_, L> {
     /// `r = σ_t/σ̂`.
     #[inline(always)]
     pub fn ratio(&self) -> L {

@@ -2,7 +2,7 @@
 
 use std::marker::PhantomData;
 
-use super::{MAX_OUTCOME, MAX_SCORED, Met, Nowhere, Route, SOME_LEFT, Scores, Walk};
+use super::{MAX_OUTCOME, MAX_SCORED, Nowhere, Route, SOME_LEFT, Scores, TentativeCollision, Walk};
 use crate::Draw;
 use media::body::MAX_CHANNELS;
 use media::sampling::{BothWays, FlightOverPieces, FlightWithGaps};
@@ -125,7 +125,15 @@ fn follow<L: Single, W: Walk, V: Channels>(
         }
         let extinction = extinctions[0];
         let (extinctions, in_space) = (&*extinctions, &*there);
-        let met = Met { inside, t, mean_free_path, extinction, extinctions, in_space, number };
+        let met = TentativeCollision {
+            inside,
+            t,
+            mean_free_path,
+            extinction,
+            extinctions,
+            in_space,
+            number,
+        };
         let goes_on = walk.collide(&mut state, &mut route, &met, random);
         if W::SCORES == Scores::Often && walk.scores(&state, !goes_on) {
             let (found, _) = score(walk, &state, true, zero);

@@ -15,7 +15,7 @@
 
 use fearless_simd::{Simd, SimdBase, SimdMask, f64x8, mask64x8, u8x64, u64x8};
 
-use super::{Met, Route, Walk};
+use super::{Route, TentativeCollision, Walk};
 use crate::Request;
 use media::sampling::BothWays;
 use numeric::pack::WIDTH;
@@ -105,7 +105,15 @@ impl<S: Simd, W: Walk, C: BothWays<f64x8<S>>> Pack<f64x8<S>, W, C> {
         let mean_free_path = walk.mean_free_path(&self.state, &self.route);
         let number = numbers.decision;
         let (extinctions, in_space): (&[f64x8<S>], &[f64x8<S>]) = (&[], &[]);
-        let met = Met { inside, t, mean_free_path, extinction, extinctions, in_space, number };
+        let met = TentativeCollision {
+            inside,
+            t,
+            mean_free_path,
+            extinction,
+            extinctions,
+            in_space,
+            number,
+        };
         if W::PAUSES {
             self.lookups.count_where(inside);
         }
@@ -229,16 +237,16 @@ impl<S: Simd> Window<S> {
 
 /// The steps in which a lane ended a walk, and the steps in which it looked σ_t up, as bits.
 #[derive(Clone, Copy, Default)]
-struct Steps {
+struct StepBits {
     ended: u64,
     inside: u64,
 }
 
 /// Bits of lanes by steps, as bits of steps by lanes.
 #[inline(always)]
-fn by_lanes<S: Simd>(simd: S, ended: &[u8; STEPS], inside: &[u8; STEPS]) -> [Steps; WIDTH] {
+fn by_lanes<S: Simd>(simd: S, ended: &[u8; STEPS], inside: &[u8; STEPS]) -> [StepBits; WIDTH] {
     let (ended, inside) = (u8x64::from_slice(simd, ended), u8x64::from_slice(simd, inside));
-    let mut steps = [Steps::default(); WIDTH];
+    let mut steps = [StepBits::default(); WIDTH];
     for (lane, steps) in steps.iter_mut().enumerate() {
         let bit = 1 << lane;
         steps.ended = (ended & bit).simd_eq(bit).to_bitmask();
@@ -283,7 +291,7 @@ impl Draws<'_> {
         &mut self,
         pack: usize,
         rows: &[Row; STEPS],
-        steps: &[Steps; WIDTH],
+        steps: &[StepBits; WIDTH],
     ) -> [usize; WIDTH] {
         let mut over = [0; WIDTH];
         let Account { quotas, open, first } = &mut self.accounts[pack];

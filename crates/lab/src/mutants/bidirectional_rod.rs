@@ -8,31 +8,31 @@
 //! W. Jarosz, *A null-scattering path integral formulation of light transport*, ACM Transactions on Graphics 38 (2019).
 
 use super::{Line, Mutant, On, family, on, one_by_one};
-use estimators::bidirectional_rod::Page;
-use estimators::bidirectional_rod::walk::{self, Path, Steps};
+use estimators::bidirectional_rod::Method;
+use estimators::bidirectional_rod::walk::{self, Path, WalkEvents};
 use numeric::Lane;
 use theory::Heuristic;
 use theory::bidirectional_rod::{Combination, quotient};
 use theory::problems::BidirectionalRod;
 
 /// Both orders of a rod by all techniques, exact connections.
-const FULL: On<Page> =
+const FULL: On<Method> =
     on("rod/bidirectional-known-bugs", 0, page(Combination::Full(Heuristic::Balance), false));
 /// Ratio-tracked connections.
-const TRACKED: On<Page> =
+const TRACKED: On<Method> =
     on("rod/bidirectional-known-bugs", 1, page(Combination::Full(Heuristic::Balance), true));
 /// Directional weights.
-const DIRECTIONAL: On<Page> = on(
+const DIRECTIONAL: On<Method> = on(
     "rod/bidirectional-known-bugs",
     2,
     page(Combination::Directional(Heuristic::Balance), false),
 );
 /// One technique: a connection between two scatterings.
-const TECHNIQUE: On<Page> =
+const TECHNIQUE: On<Method> =
     on("rod/bidirectional-known-bugs", 3, page(Combination::Technique(2), false));
 
-const fn page(combination: Combination, is_tracked: bool) -> Page {
-    Page { combination, is_tracked, is_shared: false }
+const fn page(combination: Combination, is_tracked: bool) -> Method {
+    Method { combination, is_tracked, is_shared: false }
 }
 
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -51,7 +51,7 @@ enum Bug {
 }
 
 #[rustfmt::skip] // one mutant, one entry
-const LINES: &[Line<Page, Bug>] = &[
+const LINES: &[Line<Method, Bug>] = &[
     ("bidirectional-vertex-count", "the density of a technique counts one camera vertex too many: a ρ_s is left out", TECHNIQUE, "mean", Bug::VertexCount),
     ("bidirectional-connection-reversed", "the phase function at the camera's end takes the connection the wrong way round (Eq. 43)", TECHNIQUE, "mean", Bug::Reversed),
     ("bidirectional-wrong-segment", "the connection is tracked from the light's last vertex but one (middle factor of Eq. 44)", TECHNIQUE, "mean", Bug::WrongSegment),
@@ -75,7 +75,7 @@ pub fn mutants() -> Vec<Mutant<BidirectionalRod>> {
 /// An estimator with one bug.
 #[derive(Clone, Copy)]
 struct Wrong {
-    page: Page,
+    page: Method,
     bug: Bug,
 }
 
@@ -106,7 +106,7 @@ impl Wrong {
     }
 }
 
-impl Steps for Wrong {
+impl WalkEvents for Wrong {
     fn combination(&self) -> Combination {
         self.page.combination
     }

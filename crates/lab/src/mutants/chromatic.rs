@@ -9,7 +9,7 @@
 //! score nothing, and show no bug.
 
 use super::{Line, Mutant, On, family, on, one_by_one};
-use estimators::chromatic::{By, Chromatic, Right, Steps, WEIGHING};
+use estimators::chromatic::{By, Chromatic, Right, WEIGHING, WalkEvents};
 use estimators::setup::heroes::Heroes;
 use estimators::setup::walker::Walker;
 use estimators::walks::hero::{LastPiece, Weighing};
@@ -107,7 +107,7 @@ impl Wrong {
     }
 }
 
-impl Steps for &Wrong {
+impl WalkEvents for &Wrong {
     fn factor<L: Lane>(&self, event: Event, ratio: L, albedo: L, density: L) -> L {
         match (self.bug, event) {
             (Bug::NullsLeftOut, Event::Transmitted) => ratio.each(1.0),

@@ -19,7 +19,7 @@
 //! break the invariant of a product estimator, and count as its defect. Slips of several families are at the end.
 
 use estimators::setup::ControlledLine;
-use estimators::walks::{Met, Route, Walk};
+use estimators::walks::{Route, TentativeCollision, Walk};
 use estimators::{Draw, Estimated, Setup};
 use media::sampling::{BothWays, FlightOverPieces, FlightWithGaps};
 use media::{Control, Extinction, Lookups, Piecewise};
@@ -203,7 +203,15 @@ impl<W: Walk, P: Estimated<Fields = ControlledLine, Value: Channels>> One<'_, W,
                 break None;
             }
             let (extinctions, in_space) = (&[extinction][..], &[][..]);
-            let met = Met { inside, t, mean_free_path, extinction, extinctions, in_space, number };
+            let met = TentativeCollision {
+                inside,
+                t,
+                mean_free_path,
+                extinction,
+                extinctions,
+                in_space,
+                number,
+            };
             let goes_on = walk.collide(&mut state, &mut route, &met, random);
             if inside {
                 notes.weight *= (extinction * mean_free_path).double().one_minus();

@@ -8,7 +8,7 @@
 //! formulation of light transport*, ACM Transactions on Graphics 38 (2019), as printed, or ways to read them.
 
 use super::{Line, Mutant, On, family, filled, on};
-use estimators::lit_rod::shadow::Steps;
+use estimators::lit_rod::shadow::WalkEvents;
 use estimators::lit_rod::walk::ToEmitter;
 use estimators::walks;
 use numeric::Lane;
@@ -88,7 +88,7 @@ pub const fn balanced(shadow: Shadow, densities: Densities) -> Techniques {
 #[derive(Clone, Copy)]
 pub struct Wrong(pub Techniques, pub Bug);
 
-impl Steps for Wrong {
+impl WalkEvents for Wrong {
     const KEEPS_LAST: bool = true;
 
     fn techniques(&self) -> Techniques {

@@ -186,7 +186,7 @@ impl Bug {
     }
 }
 
-/// Steps, of which a bug makes one wrong.
+/// Events of a walk, of which a bug makes one wrong.
 #[derive(Clone, Copy)]
 struct Wrong<S>(S, Bug);
 
@@ -214,9 +214,9 @@ impl<S> Wrong<S> {
     }
 }
 
-impl rod::Steps for Wrong<By> {
+impl rod::WalkEvents for Wrong<By> {
     fn odds<L: Lane>(&self, ratio: L, albedo: L) -> Odds<L> {
-        self.odds(rod::Steps::odds(&self.0, ratio, albedo), albedo)
+        self.odds(rod::WalkEvents::odds(&self.0, ratio, albedo), albedo)
     }
 
     fn turns<L: Lane>(
@@ -229,7 +229,7 @@ impl rod::Steps for Wrong<By> {
         match self.1 {
             Bug::OneNumber => scattered & forward.at_most(decided),
             Bug::Backward => scattered & random.uniform_where(scattered).below(forward),
-            _ => rod::Steps::turns(&self.0, scattered, forward, decided, random),
+            _ => rod::WalkEvents::turns(&self.0, scattered, forward, decided, random),
         }
     }
 
@@ -240,38 +240,38 @@ impl rod::Steps for Wrong<By> {
         random: &mut impl Random<L>,
     ) -> L::Mask {
         let before = *weight;
-        let survives = rod::Steps::survive(&self.0, goes_on, weight, random);
+        let survives = rod::WalkEvents::survive(&self.0, goes_on, weight, random);
         *weight = self.played(before, *weight);
         survives
     }
 }
 
-impl slab::Steps for Wrong<ParticleRule> {
+impl slab::WalkEvents for Wrong<ParticleRule> {
     fn odds<L: Lane>(&self, ratio: L, albedo: L) -> Odds<L> {
-        self.odds(slab::Steps::odds(&self.0, ratio, albedo), albedo)
+        self.odds(slab::WalkEvents::odds(&self.0, ratio, albedo), albedo)
     }
 
     fn descent<L: Lane>(&self, length: L, cosine: L) -> L {
         match self.1 {
             Bug::Unslanted => length,
             Bug::SlantInverted => length / cosine.size(),
-            _ => slab::Steps::descent(&self.0, length, cosine),
+            _ => slab::WalkEvents::descent(&self.0, length, cosine),
         }
     }
 
     fn deflection<L: Lane>(&self, phase: &Phase, number: L) -> L {
-        self.deflection(slab::Steps::deflection(&self.0, phase, number))
+        self.deflection(slab::WalkEvents::deflection(&self.0, phase, number))
     }
 
     fn diffuse<L: Lane>(&self, number: L) -> L {
-        let right = slab::Steps::diffuse(&self.0, number);
+        let right = slab::WalkEvents::diffuse(&self.0, number);
         if self.1 == Bug::EvenLight { number.one_minus() } else { right }
     }
 }
 
-impl space::Steps for Wrong<Particle> {
+impl space::WalkEvents for Wrong<Particle> {
     fn odds<L: Lane>(&self, ratio: L, albedo: L) -> Odds<L> {
-        self.odds(space::Steps::odds(&self.0, ratio, albedo), albedo)
+        self.odds(space::WalkEvents::odds(&self.0, ratio, albedo), albedo)
     }
 
     fn survive<L: Lane>(
@@ -281,7 +281,7 @@ impl space::Steps for Wrong<Particle> {
         random: &mut impl Random<L>,
     ) -> L::Mask {
         let before = *weight;
-        let survives = space::Steps::survive(&self.0, goes_on, weight, random);
+        let survives = space::WalkEvents::survive(&self.0, goes_on, weight, random);
         *weight = self.played(before, *weight);
         survives
     }
@@ -294,11 +294,11 @@ impl space::Steps for Wrong<Particle> {
         if self.1 == Bug::NumberTwice {
             return Lane::exp(-depth);
         }
-        space::Steps::number(&self.0, which, depth, random)
+        space::WalkEvents::number(&self.0, which, depth, random)
     }
 
     fn deflection<L: Lane>(&self, phase: &Phase, number: L) -> L {
-        self.deflection(space::Steps::deflection(&self.0, phase, number))
+        self.deflection(space::WalkEvents::deflection(&self.0, phase, number))
     }
 
     fn axis<L: Lane>(&self, direction: [L; 3]) -> [L; 3] {

@@ -10,7 +10,7 @@
 use super::{Line, Mutant, On, family, on, one_by_one};
 use estimators::Setup;
 use estimators::single_scattering::plan::{Absorption, Vertices};
-use estimators::single_scattering::vertices::{Right, Steps, Vertex};
+use estimators::single_scattering::vertices::{Right, Vertex, WalkEvents};
 use numeric::{Lane, Span, elementary};
 use theory::Heuristic;
 use theory::problems::{Problem, SingleScattering};
@@ -94,14 +94,14 @@ pub fn mutants() -> Vec<Mutant<SingleScattering>> {
     })
 }
 
-/// Steps, of which a bug makes one wrong.
+/// Events of a walk, of which a bug makes one wrong.
 #[derive(Clone, Copy)]
 struct Wrong<'a> {
     bug: Bug,
     setup: &'a Setup<SingleScattering>,
 }
 
-impl Steps for Wrong<'_> {
+impl WalkEvents for Wrong<'_> {
     fn point<L: Lane>(&self, problem: &SingleScattering, number: L) -> L {
         if self.bug == Bug::WrongEnd {
             let angles = problem.angles();

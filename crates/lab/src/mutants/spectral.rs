@@ -13,7 +13,7 @@
 use super::{Line, Mutant, On, family, on, one_by_one};
 use estimators::Setup;
 use estimators::setup::heroes::Heroes;
-use estimators::spectral_transmittance::steps::{Right, Steps};
+use estimators::spectral_transmittance::steps::{Right, WalkEvents};
 use estimators::spectral_transmittance::walk::AlongRay;
 use estimators::walks::hero::Law;
 use numeric::Lane;
@@ -96,7 +96,7 @@ struct Wrong {
     count: usize,
 }
 
-impl Steps for Wrong {
+impl WalkEvents for Wrong {
     const KEEPS_LAST: bool = true;
 
     fn decides<L: Lane>(&self, hero: L, inside: L::Mask, random: &mut impl Random<L>) -> L {

@@ -11,7 +11,7 @@
 use super::{Draws, Line, Mutant, On, family, on, one_by_one};
 use estimators::setup::heroes::Heroes;
 use estimators::spectral_lit_rod::as_printed::{AsPrinted, Error};
-use estimators::spectral_lit_rod::steps::{Found, Steps};
+use estimators::spectral_lit_rod::steps::{Found, WalkEvents};
 use estimators::spectral_lit_rod::walk::draw;
 use estimators::walks::hero::{LastPiece, Weighing};
 use numeric::Lane;
@@ -69,7 +69,7 @@ pub fn mutants() -> Vec<Mutant<SpectralLitRod>> {
     })
 }
 
-fn by(steps: impl Steps + Send + 'static) -> Box<Draws<SpectralLitRod>> {
+fn by(steps: impl WalkEvents + Send + 'static) -> Box<Draws<SpectralLitRod>> {
     Box::new(one_by_one(move |setup, medium, random| draw(&steps, setup, medium, random)))
 }
 
@@ -79,7 +79,7 @@ struct Wrong<const GOES_ON: bool, const GAINS: bool, const CASTS_ANEW: bool> {
     bug: Bug,
 }
 
-impl<const GOES_ON: bool, const GAINS: bool, const CASTS_ANEW: bool> Steps
+impl<const GOES_ON: bool, const GAINS: bool, const CASTS_ANEW: bool> WalkEvents
     for Wrong<GOES_ON, GAINS, CASTS_ANEW>
 {
     const GOES_ON: bool = GOES_ON;
@@ -90,7 +90,7 @@ impl<const GOES_ON: bool, const GAINS: bool, const CASTS_ANEW: bool> Steps
         &Heroes::Uniform
     }
 
-    fn casts(&self) -> bool {
+    fn has_shadow_rays(&self) -> bool {
         self.casts
     }
 

@@ -3,7 +3,7 @@
 use super::{Line, Mutant, On, family, on, one_by_one};
 use estimators::setup::heroes::Heroes;
 use estimators::spectral_rod::Coloured;
-use estimators::spectral_rod::walk::{Page, draw, relative_to};
+use estimators::spectral_rod::walk::{HeroWeights, draw, relative_to};
 use media::body::MAX_CHANNELS;
 use theory::problems::{SpectralRod, SpectralSlab};
 
@@ -73,7 +73,7 @@ struct Wrong {
     tracks: bool,
 }
 
-impl Page for Wrong {
+impl HeroWeights for Wrong {
     fn heroes(&self) -> Option<&Heroes> {
         (!self.tracks).then_some(&Heroes::Uniform)
     }

@@ -8,7 +8,7 @@ use super::{Line, Mutant, On, family, on, one_by_one};
 use estimators::setup::heroes::Heroes;
 use estimators::setup::walker::Walker;
 use estimators::spectral_single_scattering::Shadow;
-use estimators::spectral_single_scattering::steps::Steps;
+use estimators::spectral_single_scattering::steps::WalkEvents;
 use estimators::spectral_single_scattering::walk::draw;
 use numeric::Lane;
 use theory::problems::SpectralSingleScattering;
@@ -71,7 +71,7 @@ pub fn mutants() -> Vec<Mutant<SpectralSingleScattering>> {
 #[derive(Clone, Copy)]
 struct Wrong(Bug);
 
-impl Steps for Wrong {
+impl WalkEvents for Wrong {
     const COUNTS: bool = true;
 
     fn passed<L: Lane>(&self, ratio: L) -> L {

@@ -8,8 +8,8 @@
 use super::{Line, Mutant, On, family, on, one_by_one};
 use estimators::space::shadow::Light;
 use estimators::space::{Particle, Splitting};
-use estimators::sphere::sharing::{Link, Sharing, Steps, Subpaths};
-use estimators::sphere::{Honest, Page};
+use estimators::sphere::sharing::{Link, SharedTechniques, Subpaths, WalkEvents};
+use estimators::sphere::{Correct, Method};
 use numeric::{Lane, Mask};
 use theory::lit_rod::Densities;
 use theory::problems::{Sphere, ball};
@@ -18,30 +18,30 @@ use theory::sphere::Techniques;
 use theory::{Heuristic, ParticleRule};
 
 /// A weighted walk, ratio-tracked shadow rays to a black light sphere.
-const NEXT_EVENT: On<Page> = on("ball/known-bugs", 0, next_event(RATIO));
+const NEXT_EVENT: On<Method> = on("ball/known-bugs", 0, next_event(RATIO));
 /// A weighted walk, exact shadow rays to a black light sphere.
-const NEXT_EVENT_EXACT: On<Page> = on("ball/known-bugs", 1, next_event(Tracking::Exact));
+const NEXT_EVENT_EXACT: On<Method> = on("ball/known-bugs", 1, next_event(Tracking::Exact));
 /// Next-event estimation in an environment.
-const NEXT_EVENT_SKY: On<Page> = on("ball/environment", 0, next_event(RATIO));
+const NEXT_EVENT_SKY: On<Method> = on("ball/environment", 0, next_event(RATIO));
 /// A black light sphere in a ball that thins out, by directions.
-const DIRECTIONAL: On<Page> = on("ball/known-bugs-paths", 0, {
+const DIRECTIONAL: On<Method> = on("ball/known-bugs-paths", 0, {
     let techniques = Techniques::Mis(Densities::Directional, Heuristic::Balance);
     page(ParticleRule::Analog, techniques, Some(Tracking::Delta { sampling: 2.5 }), None)
 });
 /// Null-scattering paths.
-const FULL: On<Page> = on("ball/known-bugs-paths", 1, full(Heuristic::Balance));
+const FULL: On<Method> = on("ball/known-bugs-paths", 1, full(Heuristic::Balance));
 /// Null-scattering paths, by the power heuristic.
-const POWER: On<Page> = on("ball/known-bugs-paths", 2, full(Heuristic::Power));
+const POWER: On<Method> = on("ball/known-bugs-paths", 2, full(Heuristic::Power));
 /// Bidirectional paths, with connections.
-const BIDIRECTIONAL: On<Page> = on("ball/known-bugs-paths", 3, CONNECTED);
+const BIDIRECTIONAL: On<Method> = on("ball/known-bugs-paths", 3, CONNECTED);
 /// Null-scattering paths in an environment.
-const FULL_SKY: On<Page> = on("ball/techniques", 3, full(Heuristic::Balance));
+const FULL_SKY: On<Method> = on("ball/techniques", 3, full(Heuristic::Balance));
 /// Bidirectional paths in an environment, with connections.
-const BIDIRECTIONAL_SKY: On<Page> = on("ball/techniques", 6, CONNECTED);
+const BIDIRECTIONAL_SKY: On<Method> = on("ball/techniques", 6, CONNECTED);
 
 const RATIO: Tracking = Tracking::Ratio { sampling: 2.0, control: 0.0 };
 
-const CONNECTED: Page = page(
+const CONNECTED: Method = page(
     ParticleRule::Analog,
     Techniques::Bidirectional(Heuristic::Balance),
     None,
@@ -53,16 +53,16 @@ const fn page(
     techniques: Techniques,
     shadow: Option<Tracking>,
     subpaths: Option<Subpaths>,
-) -> Page {
+) -> Method {
     let particle = Particle { rule, roulette: None, splitting: Splitting::None };
-    Page { particle, sharing: Sharing { techniques, shadow, subpaths } }
+    Method { particle, sharing: SharedTechniques { techniques, shadow, subpaths } }
 }
 
-const fn next_event(shadow: Tracking) -> Page {
+const fn next_event(shadow: Tracking) -> Method {
     page(ParticleRule::Weighted, Techniques::NextEvent, Some(shadow), None)
 }
 
-const fn full(heuristic: Heuristic) -> Page {
+const fn full(heuristic: Heuristic) -> Method {
     page(ParticleRule::Analog, Techniques::Mis(Densities::Full, heuristic), None, None)
 }
 
@@ -91,7 +91,7 @@ enum Bug {
 }
 
 #[rustfmt::skip] // one mutant, one entry
-const LINES: &[Line<Page, Bug>] = &[
+const LINES: &[Line<Method, Bug>] = &[
     ("sphere-shadow-not-clipped", "the shadow ray goes on through the light to the far side", NEXT_EVENT_EXACT, "mean", Bug::Through),
     ("sphere-light-twice", "light that the walk meets counts beside the shadow rays", NEXT_EVENT_SKY, "mean", Bug::Twice),
     ("sphere-pdf-per-area", "the visible area of the light stands for its solid angle", NEXT_EVENT, "mean", Bug::PerArea),
@@ -121,7 +121,7 @@ pub fn mutants() -> Vec<Mutant<Sphere>> {
     })
 }
 
-impl Steps for Bug {
+impl WalkEvents for Bug {
     fn chance<L: Lane>(&self, right: L) -> L {
         if *self == Self::NullsInOne { right.each(1.0) } else { right }
     }
@@ -181,7 +181,7 @@ impl Steps for Bug {
     }
 
     fn cosine<L: Lane>(&self, number: L) -> L {
-        if *self == Self::EvenEmission { number.one_minus() } else { Honest.cosine(number) }
+        if *self == Self::EvenEmission { number.one_minus() } else { Correct.cosine(number) }
     }
 
     fn light<L: Lane>(&self, sphere: &Sphere, place: [L; 3], right: Light<L>) -> Light<L> {

@@ -16,9 +16,9 @@ use estimators::single_scattering::plan::{Absorption, Plan, Run, Technique, Vert
 use estimators::slab::walk::InSlab;
 use estimators::space::walk::InSpace;
 use estimators::space::{Particle, Splitting, Tally, Walked, draws};
-use estimators::sphere::Honest;
+use estimators::sphere::Correct;
 use estimators::sphere::combined::Combined;
-use estimators::sphere::sharing::Sharing;
+use estimators::sphere::sharing::SharedTechniques;
 use estimators::transmittance::decomposition::Residual;
 use estimators::transmittance::local_majorant::Segments;
 use estimators::transmittance::next_flight::NextFlight;
@@ -200,8 +200,9 @@ impl Draws for Connects {
         let setup = of.setup.downcast_ref::<Setup<Sphere>>()?;
         let (sphere, majorants) = (&*setup.problem, &*setup.fields);
         let shadow = Some(self.1(of.scene));
-        let sharing = Sharing { techniques: Techniques::NextEvent, shadow, subpaths: None };
-        let tally = Combined::<_, false>::new((sphere, majorants), self.0, (sharing, Honest));
+        let sharing =
+            SharedTechniques { techniques: Techniques::NextEvent, shadow, subpaths: None };
+        let tally = Combined::<_, false>::new((sphere, majorants), self.0, (sharing, Correct));
         let world = (&sphere.scene, majorants);
         in_space::<N, [f64; 1], false>((&tally, particle(self.0)), world, of, trail)
     }
