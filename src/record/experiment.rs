@@ -57,7 +57,7 @@ pub struct ExperimentRecord {
     /// The predicted mean number of lookups of one draw's walk, where its shadow rays look up, too.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub walk_lookups: Option<f64>,
-    /// The predicted mean number of lookups of one draw's shadow rays; `None` if there are none, or it is unknown.
+    /// The predicted mean number of lookups of one draw's shadow rays; `None` without shadow rays, or if it is unknown.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub shadow_lookups: Option<f64>,
     /// Predicted probabilities `P(0), P(1), …` of the number of lookups of one draw; empty if unknown or longer than 100.

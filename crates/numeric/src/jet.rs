@@ -1,7 +1,7 @@
 //! Truncated power series, and the numbers in which transport is solved.
 //!
-//! A walk that multiplies its weight by the mark `1 + y` at every collision has the generating function of their
-//! number M as its mean, and the coefficients of that series in y are factorial moments:
+//! Every collision of a walk multiplies its weight by the mark `1 + y`. The mean weight is then a series in y. Its
+//! coefficients are factorial moments of the number M of collisions:
 //!
 //! ```text
 //! E[(1 + y)^M] = Σ E[M(M − 1)…(M − k + 1)] y^k/k!
@@ -215,7 +215,7 @@ impl<const N: usize> Div<f64> for Jet<N> {
 mod tests {
     use super::*;
 
-    /// Series whose terms are known: of `e^{2y}`, and of `(1 − e^{−x})/x` from integrals over [0, 1] by a fine rule.
+    /// Series with known terms: those of `e^{2y}`, and of `(1 − e^{−x})/x` from integrals over [0, 1] by a fine rule.
     #[test]
     fn functions_have_the_series_of_their_derivatives() {
         let exponential = Jet([0.0, 2.0, 0.0, 0.0, 0.0]).exp();

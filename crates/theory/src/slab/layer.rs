@@ -12,9 +12,9 @@
 //! All terms are positive, D is kept apart, and nothing cancels. N is the expected score of the
 //! collisions of one particle, by its direction of incidence.
 //!
-//! Everything is a double or a power series in y. Where each collision multiplies the weight by the mark `1 + y` and
-//! scores 1, N has the factorial moments of the number M of collisions, since `zᴹ − 1` is the sum of `(z − 1) z^{m−1}`
-//! over the collisions m = 1 … M:
+//! Numbers are doubles or power series in y. Where each collision multiplies the weight by the mark `z = 1 + y` and
+//! scores 1, N has the factorial moments of the number M of collisions. The reason is that `zᴹ − 1` is the sum of
+//! `(z − 1) z^{m−1}` over the collisions m = 1 … M:
 //!
 //! ```text
 //! N = E[Σ_m (1 + y)^{m−1}] = (E[(1 + y)^M] − 1)/y = Σ_k E[M(M − 1)…(M − k + 1)] y^{k−1}/k!

@@ -241,8 +241,8 @@ pub fn factorial_moments<S: Scalar>(
     Some((0..lights.len()).map(of_light).collect())
 }
 
-/// Solves a stack of layers at four resolutions, whose differences give errors. The function that is returned makes
-/// a number from the shares of a light, and its error with that of the first layer multiplied by a factor.
+/// Solves a stack of layers at four resolutions and returns a function. From the shares of a light it makes a number
+/// and its error, in which that of the first layer is multiplied by a factor.
 fn resolved<S: Scalar>(
     phase: &Phase,
     lights: &[Light],
