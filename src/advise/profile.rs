@@ -40,6 +40,10 @@ pub fn of(study: &Study, rows: &[Row], row: &Row, rule: Collisions) -> Option<(P
     let medium = &case.scenario.media()[0];
     let control = case.at(None).ok()?.control(row.candidate, case.pilots(1, row.candidate))?;
     let support = medium.support();
+    // A ray that misses the medium has no steps.
+    if support.is_empty() {
+        return None;
+    }
     let width = support.length() / STEPS as f64;
     let place = |step: usize, share: f64| support.from + width * (step as f64 + share);
     let inside = |place_in_step: usize| (place_in_step as f64 + 0.5) / PLACES as f64;

@@ -171,6 +171,9 @@ fn rays_are_random_listed_or_those_of_a_camera() {
     let listed = many(&format!("rays = [{one}]"));
     let alone = many("ray = { origin = [-1, 2, 2.1], direction = [1, 0.1, 0], length = 9 }");
     assert_eq!(listed.best().expect("advice").time, alone.best().expect("advice").time);
+    // Nothing is to be done on a ray that misses the volume.
+    let missing = many("ray = { origin = [-1, 9, 9], direction = [1, 0, 0], length = 9 }");
+    assert_eq!((missing.best().expect("advice").score.variance, missing.profiles.len()), (0.0, 0));
     let camera = "rays = { random = 3, camera = { position = [9, 2, 2], target = [2, 2, 2] } }";
     assert_eq!(many(camera).rays, 3);
 }
