@@ -254,7 +254,7 @@ pub fn advise(spec: &Spec, request: &Request) -> Result<Advice, CaseError> {
     rank(&mut rows, request.target);
     let shown = rows.iter_mut().filter(|row| row.constant.is_some()).take(CURVES);
     parallel::change(&mut shown.collect::<Vec<_>>(), |row| {
-        row.curve = curve(&study, row, request.target)
+        row.curve = curve(&study, row, request.target);
     });
     Ok(Advice {
         case: base.name.clone(),

@@ -198,9 +198,9 @@ impl<'a> Goal<'a> {
                 break;
             }
             if above(place) > 0.0 {
-                outside = place
+                outside = place;
             } else {
-                inside = place
+                inside = place;
             }
             is_secant = !is_secant;
         }
