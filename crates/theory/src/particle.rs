@@ -70,17 +70,6 @@ impl Odds {
         [straight * self.transmit_weight.powi(more), scattered * self.scatter_weight.powi(more)]
     }
 
-    /// Absolute values of the probabilities and weights.
-    #[must_use]
-    pub fn absolute(self) -> Self {
-        Self {
-            transmit: self.transmit.abs(),
-            scatter: self.scatter.abs(),
-            transmit_weight: self.transmit_weight.abs(),
-            scatter_weight: self.scatter_weight.abs(),
-        }
-    }
-
     /// Event that a uniform number chooses: scattering first, as in `SimulateParticle`.
     #[inline(always)]
     pub fn decide(&self, number: f64) -> Event {

@@ -38,7 +38,7 @@ impl Lit for LitRod {
         if lit_rod::is_within_reach(&setup.fields.mesh, &setup.problem, &setup.fields.sampling) {
             return Ok(());
         }
-        let needs = "a rod that theory can cut into 1e4 steps";
+        let needs = "a rod that theory can cut into 5000 panels";
         Err(Refusal::mismatch(needs, "σ̂ or σ_t is too large on it"))
     }
 

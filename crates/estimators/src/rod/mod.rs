@@ -64,7 +64,7 @@ impl ByRule for Rod {
                 "σ̂ is so near to where E[X²] diverges that theory does not tell on which side",
             )),
             Err(NoVariance::TooLong) => Err(Refusal::mismatch(
-                "a rod that theory can cut into 1e4 steps",
+                "a rod that theory can cut into 5000 panels",
                 "σ̂ or σ_t is too large on it",
             )),
         }

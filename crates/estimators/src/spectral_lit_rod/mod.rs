@@ -25,7 +25,7 @@ fn realisable(setup: &Setup<SpectralLitRod>, heroes: &Heroes) -> Result<(), Refu
     for (number, (channel, rod)) in (1..).zip(setup.fields.iter().zip(&setup.problem.rods)) {
         if !lit_rod::is_within_reach(&channel.mesh, rod, &channel.sampling) {
             let found = format!("σ̂ or σ_t of channel {number} is too large on it");
-            return Err(Refusal::mismatch("a rod that theory can cut into 1e4 steps", found));
+            return Err(Refusal::mismatch("a rod that theory can cut into 5000 panels", found));
         }
     }
     Ok(())

@@ -22,8 +22,8 @@
 use super::techniques::{Combination, Shadow, Techniques};
 use crate::contour::{Contour, Scores};
 use crate::raw::{HIGHEST, Powers};
-use crate::rod::grid::{Grid, Step};
-use numeric::sum::Sum;
+use crate::rod::line::Line;
+use crate::rod::walk::Node;
 
 /// A scattering of light that comes from one direction.
 #[derive(Debug, Clone, Copy)]
@@ -38,25 +38,24 @@ pub struct Vertex {
     pub errors: [Powers; 2],
 }
 
-/// Scatterings in the middles of all steps: of light that goes forward, and of light that goes backward.
+/// Scatterings at all nodes: of light that goes forward, and of light that goes backward.
 pub struct Connections(Vec<[Vertex; 2]>);
 
 impl Connections {
-    /// Connections on a grid that was made for a σ̂, up to a power.
-    pub fn new(grid: &Grid, techniques: Techniques, highest: usize) -> Self {
+    /// Connections on a line that was made for a σ̂, up to a power.
+    pub fn new(line: &Line, techniques: Techniques, highest: usize) -> Self {
         let weights = Weights::new(techniques, highest, false);
-        let mut vertices = Vec::with_capacity(grid.steps().len());
-        weights.each_middle(grid, |step, moments| {
+        let moments = weights.along(line);
+        let vertices = line.nodes().iter().zip(&moments).map(|(node, moments)| {
             let vertex = |towards: f64| weights.vertex(towards, moments, 0.0);
-            vertices.push([vertex(step.forward), vertex(1.0 - step.forward)]);
+            [vertex(node.forward), vertex(1.0 - node.forward)]
         });
-        vertices.reverse();
-        Self(vertices)
+        Self(vertices.collect())
     }
 
-    /// Scatterings in the middle of a step, of light that goes forward and backward.
-    pub fn at(&self, step: usize) -> &[Vertex; 2] {
-        &self.0[step]
+    /// Scatterings at a node, of light that goes forward and backward.
+    pub fn at(&self, node: usize) -> &[Vertex; 2] {
+        &self.0[node]
     }
 }
 
@@ -78,22 +77,16 @@ impl Weights {
         Self { techniques, highest, contour: Contour::new(heuristic, highest, is_any) }
     }
 
-    /// Calls a function for each step, from the last to the first, with the moments of x from its middle to the emitter.
-    pub fn each_middle(&self, grid: &Grid, mut f: impl FnMut(&Step, &[f64])) {
-        let mut row = vec![0.0; self.contour.width()];
-        let mut sums = vec![Sum::default(); row.len()];
-        let mut depths = row.clone();
-        for step in grid.steps().iter().rev() {
-            self.contour.losses(step.means[0], &mut row);
-            // Half of the step lies before its middle; with midpoints beyond it the error is even in h.
-            let half = 0.5 * step.width * step.sampling;
-            for ((sum, depth), loss) in sums.iter_mut().zip(&mut depths).zip(&row) {
-                sum.add(half * loss);
-                *depth = sum.value();
-                sum.add(half * loss);
-            }
-            f(step, &self.contour.moments(0, &depths, 1.0));
-        }
+    /// Moments of x from each node to the emitter.
+    pub fn along(&self, line: &Line) -> Vec<Vec<f64>> {
+        let row = |node: &Node| {
+            let mut row = vec![0.0; self.contour.width()];
+            self.contour.losses(node.means[0], &mut row);
+            row.iter_mut().for_each(|loss| *loss *= node.sampling);
+            row
+        };
+        let rates: Vec<Vec<f64>> = line.nodes().iter().map(row).collect();
+        line.to_end(&rates).iter().map(|depths| self.contour.moments(0, depths, 1.0)).collect()
     }
 
     /// Moments of a scattering, given p(ω) and the moments of x with their relative error.
@@ -127,9 +120,4 @@ impl Weights {
         (connected[0], hit[0]) = (1.0, transmittance);
         Vertex { towards, connected, hit, errors }
     }
-}
-
-/// The rate of scattering in a step.
-pub fn scattering(step: &Step) -> f64 {
-    step.sampling * step.means[1]
 }

@@ -14,11 +14,10 @@ pub mod techniques;
 pub use self::techniques::{Combination, Densities, Shadow, Techniques};
 pub use super::Heuristic;
 use super::raw::{HIGHEST, POWERS, RESOLVED, RawMoments};
-use super::rod::grid::Walk;
-use super::rod::moments::{Precision, romberg};
 use super::rod::truth;
+use super::rod::walk::Walk;
 use super::{Channel, CountLaw, Mesh, ParticleRule, Prediction, Tails};
-use crate::problems::LitRod;
+use crate::problems::{LitRod, Rod};
 use media::Piecewise;
 use numeric::Known;
 
@@ -28,19 +27,14 @@ pub(super) const ROUNDING: f64 = 1e-14;
 /// [`crate::contour`].
 const OF_WEIGHTS: [f64; 5] = [1e-14, 1e-13, 5e-13, 3e-12, 4e-12];
 
-/// The delta-tracking walk on a rod; `None` where it has too many steps for theory.
-pub(super) fn walk<'a>(
-    mesh: &Mesh,
-    problem: &'a LitRod,
-    sampling: &'a Piecewise,
-) -> Option<Walk<'a>> {
-    let walk = Walk::new(mesh, &problem.rod, Some(sampling), ParticleRule::Analog)?;
-    walk.resolving_transmittance()
+/// The delta-tracking walk on a rod.
+pub(super) fn walk<'a>(mesh: &Mesh, rod: &'a Rod, sampling: &'a Piecewise) -> Walk<'a> {
+    Walk::new(mesh, rod, Some(sampling), ParticleRule::Analog).with_orders()
 }
 
-/// Returns true if theory can cut a rod into steps.
+/// Returns true if theory can cut a rod into panels.
 pub fn is_within_reach(mesh: &Mesh, problem: &LitRod, sampling: &Piecewise) -> bool {
-    walk(mesh, problem, sampling).is_some()
+    walk(mesh, &problem.rod, sampling).is_within_reach()
 }
 
 /// Prediction for walks with techniques through σ̂.
@@ -75,10 +69,9 @@ pub fn lookups(
     sampling: &Piecewise,
     techniques: Techniques,
 ) -> Option<[Known; 3]> {
-    let numbers = romberg(&walk(mesh, problem, sampling)?, Precision::FULL, &|grid| {
-        Some(moments::lookups_apart(grid, techniques)?.to_vec())
-    })?;
-    Some(std::array::from_fn(|i| Known::estimated(numbers[i][0], numbers[i][1])))
+    let walk = walk(mesh, &problem.rod, sampling);
+    let numbers = walk.known(2, &|line| Some(moments::lookups_apart(line, techniques)?.to_vec()));
+    numbers?.try_into().ok()
 }
 
 /// Raw moments of a draw and of its lookups.
@@ -101,24 +94,21 @@ impl Found {
         techniques: Techniques,
         laws: bool,
     ) -> Option<Self> {
-        let walk = walk(mesh, problem, sampling)?;
         let highest = if laws { HIGHEST } else { 2 };
-        let precision = if laws { Precision::FULL } else { Precision::PLOTS };
-        let numbers = romberg(&walk, precision, &|grid| {
-            let mut numbers = moments::lookups(grid, techniques)?.to_vec();
-            numbers.extend(moments::scattered(grid, techniques, highest)?);
+        let numbers = walk(mesh, &problem.rod, sampling).known(2, &|line| {
+            let mut numbers = moments::lookups(line, techniques)?.to_vec();
+            numbers.extend(moments::scattered(line, techniques, highest)?);
             Some(numbers)
         })?;
-        let known = |&[value, error]: &[f64; 2]| Known::estimated(value, error);
-        let shadow_lookups = techniques.shadow.map(|_| numbers[4][0]);
+        let shadow_lookups = techniques.shadow.map(|_| numbers[4].value);
         let scattered = &numbers[5..];
         let unscattered = mesh.optical_depth().exp_neg();
         let raw = std::array::from_fn(|i| {
             let k = POWERS[i].unsigned_abs() as usize;
-            let moment = scattered.get(k - 1).map(known);
-            moment.map_or(Known::INFINITE, |moment| with_hit(moment, unscattered, i, techniques))
+            let moment = scattered.get(k - 1);
+            moment.map_or(Known::INFINITE, |&moment| with_hit(moment, unscattered, i, techniques))
         });
-        let lookups = std::array::from_fn(|k| known(&numbers[k]));
+        let lookups = std::array::from_fn(|k| numbers[k]);
         Some(Self { lookups, shadow_lookups, raw: RawMoments(raw) })
     }
 }

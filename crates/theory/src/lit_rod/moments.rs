@@ -22,72 +22,70 @@
 //! delta: h_k' = σ h_k − k σ̂ ((1 − r) h_{k−1} + r δ_{k1}),  h_0 = 1: its collisions, the real one too
 //! ```
 
-use super::connections::{Connections, Vertex, scattering};
+use super::connections::{Connections, Vertex};
 use super::techniques::{Shadow, Techniques};
 use crate::raw::binomial;
-use crate::rod::grid::{Grid, Importance, Step};
+use crate::rod::line::{Importance, Line};
+use crate::rod::walk::Node;
 
 /// `U_k⁺(0)`, k = 1 … highest.
-pub fn scattered(grid: &Grid, techniques: Techniques, highest: usize) -> Option<Vec<f64>> {
-    let connections = Connections::new(grid, techniques, highest);
+pub fn scattered(line: &Line, techniques: Techniques, highest: usize) -> Option<Vec<f64>> {
+    let flow = line.flow(1)?;
+    let connections = Connections::new(line, techniques, highest);
     let mut futures: Vec<Importance> = Vec::new();
     let mut found = Vec::new();
     for k in 1..=highest {
-        let source = |i: usize, step: &Step| {
+        let source = |i: usize, node: &Node| {
             let of = |vertex: &Vertex| {
                 let mut sum = vertex.towards * vertex.hit[k];
                 for j in 1..=k {
                     let way = binomial(k, j);
                     sum += way * vertex.connected[j] * future(vertex, &futures, k - j, i);
                 }
-                scattering(step) * sum
+                node.scattering() * sum
             };
             connections.at(i).each_ref().map(of)
         };
-        let future = grid.solve(|step| step.rates(1), source, [0.0; 2])?;
-        found.push(future.entering());
+        let future = flow.solve(source, [0.0; 2]);
+        found.push(future.entering);
         futures.push(future);
     }
     Some(found)
 }
 
-/// `E[F^m]` after a scattering in the middle of a step.
-fn future(vertex: &Vertex, futures: &[Importance], m: usize, step: usize) -> f64 {
+/// `E[F^m]` after a scattering at a node.
+fn future(vertex: &Vertex, futures: &[Importance], m: usize, node: usize) -> f64 {
     if m == 0 {
         return 1.0;
     }
-    let [plus, minus] = futures[m - 1].middle(step);
+    let [plus, minus] = futures[m - 1].at(node);
     vertex.towards * (vertex.hit[m] + plus) + (1.0 - vertex.towards) * minus
 }
 
-/// Factorial moments of the number of lookups of a shadow ray, k = 0 … 4, in the middle of each step.
-fn shadow_lookups(grid: &Grid, shadow: Option<Shadow>) -> Option<Vec<[f64; 5]>> {
-    let steps = grid.steps();
-    let mut found = vec![[1.0, 0.0, 0.0, 0.0, 0.0]; steps.len()];
+/// Factorial moments of the number of lookups of a shadow ray, k = 0 … 4, at each node.
+fn shadow_lookups(line: &Line, shadow: Option<Shadow>) -> Option<Vec<[f64; 5]>> {
+    let mut found = vec![[1.0, 0.0, 0.0, 0.0, 0.0]; line.nodes().len()];
     match shadow {
         None | Some(Shadow::Exact) => {}
         Some(Shadow::Ratio) => {
-            let mut depth = 0.0;
-            for (step, moments) in steps.iter().zip(&mut found).rev() {
-                let half = 0.5 * step.width * step.sampling;
-                depth += half;
-                *moments = [0, 1, 2, 3, 4].map(|k| f64::powi(depth, k));
-                depth += half;
+            let rates: Vec<Vec<f64>> =
+                line.nodes().iter().map(|node| vec![node.sampling]).collect();
+            for (depth, moments) in line.to_end(&rates).iter().zip(&mut found) {
+                *moments = [0, 1, 2, 3, 4].map(|k| f64::powi(depth[0], k));
             }
         }
         Some(Shadow::Delta) => {
             let mut before: Option<Importance> = None;
             for k in 1..=4_u8 {
-                let source = |i: usize, step: &Step| {
-                    let rate = f64::from(k) * step.sampling;
+                let source = |i: usize, node: &Node| {
+                    let rate = f64::from(k) * node.sampling;
                     // The first collision counts, real or null.
-                    let after = |last: &Importance| step.means[0] * last.middle(i)[0];
+                    let after = |last: &Importance| node.means[0] * last.at(i)[0];
                     [rate * before.as_ref().map_or(1.0, after), 0.0]
                 };
-                let real = |step: &Step| [step.sampling * (1.0 - step.means[0]), 0.0];
-                let counted = grid.solve(real, source, [0.0; 2])?;
+                let counted = line.straight(1)?.solve(source, [0.0; 2]);
                 for (i, moments) in found.iter_mut().enumerate() {
-                    moments[usize::from(k)] = counted.middle(i)[0];
+                    moments[usize::from(k)] = counted.at(i)[0];
                 }
                 before = Some(counted);
             }
@@ -97,46 +95,47 @@ fn shadow_lookups(grid: &Grid, shadow: Option<Shadow>) -> Option<Vec<[f64; 5]>> 
 }
 
 /// `E[M(M − 1)…(M − k + 1)]`, k = 1 … 4, of all lookups, and the mean number of those of shadow rays.
-pub fn lookups(grid: &Grid, techniques: Techniques) -> Option<[f64; 5]> {
-    let of_shadow = shadow_lookups(grid, techniques.shadow)?;
+pub fn lookups(line: &Line, techniques: Techniques) -> Option<[f64; 5]> {
+    let flow = line.flow(0)?;
+    let of_shadow = shadow_lookups(line, techniques.shadow)?;
     let mut futures: Vec<Importance> = Vec::new();
     for n in 1..=4_usize {
-        let source = |i: usize, step: &Step| {
-            let worth = |m: usize| if m == 0 { [1.0; 2] } else { futures[m - 1].middle(i) };
+        let source = |i: usize, node: &Node| {
+            let worth = |m: usize| if m == 0 { [1.0; 2] } else { futures[m - 1].at(i) };
             // With K lookups of a shadow ray and m' lookups afterwards, from one shadow lookup on.
             let scattered = |m: usize, from: usize| {
                 let mut sum = [0.0; 2];
                 for (j, moment) in of_shadow[i].iter().enumerate().take(m + 1).skip(from) {
                     let share = binomial(m, j) * moment;
-                    let spread = step.spread(worth(m - j));
+                    let spread = node.spread(worth(m - j));
                     sum = [sum[0] + share * spread[0], sum[1] + share * spread[1]];
                 }
                 sum
             };
-            let [straight, turned] = step.means;
+            let [straight, turned] = node.means;
             let (shadowed, after, on) = (scattered(n, 1), scattered(n - 1, 0), worth(n - 1));
             [0, 1].map(|d| {
                 let later = if n == 1 { 1.0 } else { straight * on[d] + turned * after[d] };
-                step.sampling * (turned * shadowed[d] + n as f64 * later)
+                node.sampling * (turned * shadowed[d] + n as f64 * later)
             })
         };
-        futures.push(grid.solve(|step| step.rates(0), source, [0.0; 2])?);
+        futures.push(flow.solve(source, [0.0; 2]));
     }
-    let source = |i: usize, step: &Step| [scattering(step) * of_shadow[i][1]; 2];
-    futures.push(grid.solve(|step| step.rates(0), source, [0.0; 2])?);
-    Some(std::array::from_fn(|n| futures[n].entering()))
+    let source = |i: usize, node: &Node| [node.scattering() * of_shadow[i][1]; 2];
+    futures.push(flow.solve(source, [0.0; 2]));
+    Some(std::array::from_fn(|n| futures[n].entering))
 }
 
 /// The mean numbers of real, of null and of shadow lookups.
-pub fn lookups_apart(grid: &Grid, techniques: Techniques) -> Option<[f64; 3]> {
-    let of_shadow = shadow_lookups(grid, techniques.shadow)?;
-    let count = |rate: &dyn Fn(usize, &Step) -> f64| {
-        let source = |i: usize, step: &Step| [rate(i, step); 2];
-        Some(grid.solve(|step| step.rates(0), source, [0.0; 2])?.entering())
+pub fn lookups_apart(line: &Line, techniques: Techniques) -> Option<[f64; 3]> {
+    let flow = line.flow(0)?;
+    let of_shadow = shadow_lookups(line, techniques.shadow)?;
+    let count = |rate: &dyn Fn(usize, &Node) -> f64| {
+        flow.solve(|i, node| [rate(i, node); 2], [0.0; 2]).entering
     };
     Some([
-        count(&|_, step| step.sampling * (1.0 - step.means[0]))?,
-        count(&|_, step| step.sampling * step.means[0])?,
-        count(&|i, step| scattering(step) * of_shadow[i][1])?,
+        count(&|_, node| node.sampling * (1.0 - node.means[0])),
+        count(&|_, node| node.sampling * node.means[0]),
+        count(&|i, node| node.scattering() * of_shadow[i][1]),
     ])
 }

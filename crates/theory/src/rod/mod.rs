@@ -16,11 +16,12 @@
 //! Engineering 71 (1979).
 
 mod closed;
-pub mod grid;
+pub mod line;
 pub mod moments;
+pub mod walk;
 
-use self::grid::Walk;
-use self::moments::{Existence, Joint, Precision};
+use self::moments::Joint;
+use self::walk::Walk;
 use super::particle::ParticleRule;
 use super::prediction::Covariance;
 use super::raw::{POWERS, RESOLVED, RawMoments};
@@ -30,7 +31,7 @@ use crate::problems::{Problem, Rod};
 use media::Piecewise;
 use numeric::{Known, Span};
 
-/// The exact answer of every channel; `None` where the rod has too many steps for theory.
+/// The exact answer of every channel; `None` where the rod has too many panels for theory.
 pub fn truth(mesh: &Mesh, rod: &Rod) -> Option<Vec<Known>> {
     let support = mesh.support();
     let depth = rod.medium().optical_depth(support);
@@ -41,11 +42,8 @@ pub fn truth(mesh: &Mesh, rod: &Rod) -> Option<Vec<Known>> {
     let open: Vec<Quantity> = rod.channels.iter().filter(needed).copied().collect();
     let mut solved = Vec::new();
     if !open.is_empty() {
-        let walk = Walk::new(mesh, rod, None, ParticleRule::Analog)?;
-        let numbers = moments::romberg(&walk, Precision::FULL, &|grid| {
-            open.iter().map(|&quantity| moments::power(grid, quantity, 1)).collect()
-        });
-        solved = numbers?;
+        let walk = Walk::new(mesh, rod, None, ParticleRule::Analog);
+        solved = powers(&walk, &open, 1)?;
     }
     let mut solved = solved.into_iter();
     let known = rod.channels.iter().map(|quantity| match (closed, quantity) {
@@ -56,7 +54,7 @@ pub fn truth(mesh: &Mesh, rod: &Rod) -> Option<Vec<Known>> {
             let rest = ((1.0 - r.value) - t.value).max(0.0);
             Some(Known { value: rest, error: r.error + t.error + f64::EPSILON, ..r })
         }
-        _ => solved.next().map(known),
+        _ => solved.next(),
     });
     known.collect()
 }
@@ -82,7 +80,7 @@ pub enum NoVariance {
     Diverges(f64),
     /// The second moment is next to its divergence, and known to this relative error only; above 1, it may diverge.
     Blurred(f64),
-    /// The rod has too many steps for theory.
+    /// The rod has too many panels for theory.
     TooLong,
 }
 
@@ -97,27 +95,22 @@ pub fn has_variance(
     sampling: &Piecewise,
     rule: ParticleRule,
 ) -> Result<(), NoVariance> {
-    let walk = Walk::new(mesh, rod, Some(sampling), rule).ok_or(NoVariance::TooLong)?;
-    match Existence::of(&walk, [2])[0] {
-        Existence::Finite => Ok(()),
-        Existence::Diverges(at) => Err(NoVariance::Diverges(at)),
-        Existence::Unknown => Err(NoVariance::Blurred(f64::INFINITY)),
-        Existence::Near => match blur(&powers(&walk, 2)) {
-            blur if blur <= RESOLVED => Ok(()),
-            blur => Err(NoVariance::Blurred(blur)),
-        },
+    let walk = Walk::new(mesh, rod, Some(sampling), rule);
+    walk.exists(2)?;
+    match powers(&walk, &rod.channels, 2).map_or(f64::INFINITY, |found| blur(&found)) {
+        blur if blur <= RESOLVED => Ok(()),
+        blur => Err(NoVariance::Blurred(blur)),
     }
 }
 
-/// `E[X^k]` of each channel with its error, where the moment is next to its divergence; infinite where grids do not
-/// resolve it.
-fn powers(walk: &Walk<'_>, k: i32) -> Vec<Known> {
-    let channels = &walk.rod.channels;
-    let numbers = moments::next_to_divergence(walk, &|grid| {
-        channels.iter().map(|&quantity| moments::power(grid, quantity, k)).collect()
-    });
-    let known = |numbers: Vec<[f64; 2]>| numbers.into_iter().map(known).collect();
-    numbers.map_or_else(|| vec![Known::INFINITE; channels.len()], known)
+/// `E[X^k]` of some channels with their errors.
+fn powers(walk: &Walk<'_>, channels: &[Quantity], k: i32) -> Option<Vec<Known>> {
+    walk.known(k, &|line| {
+        channels
+            .iter()
+            .map(|&quantity| moments::power(line, quantity, walk.rod.width(), k))
+            .collect()
+    })
 }
 
 /// Prediction for the walk of a rule through σ̂. It has the expected value alone where [`has_variance`] refuses the
@@ -132,7 +125,7 @@ pub fn predict(
     laws: bool,
 ) -> Prediction {
     let truth = truth_or_nan(mesh, rod);
-    let found = Walk::new(mesh, rod, Some(sampling), rule).and_then(|walk| Solved::of(&walk, laws));
+    let found = Solved::of(&Walk::new(mesh, rod, Some(sampling), rule), laws);
     let channel = |(index, (quantity, &truth)): (usize, (&Quantity, &Known))| {
         let channel = match &found {
             Some(found) => found.raw[index].channel(truth, RESOLVED),
@@ -151,16 +144,16 @@ pub fn predict(
     }
 }
 
-/// `E[M(M − 1)…(M − k + 1)]`, k = 1 … 4, of the lookups of a walk, with absolute errors; `None` where its second
-/// moments diverge or the rod is too long.
+/// `E[M(M − 1)…(M − k + 1)]`, k = 1 … 4, of the lookups of a walk, with absolute errors; `None` where the rod is too
+/// long.
 pub fn factorial_lookups(
     mesh: &Mesh,
     rod: &Rod,
     sampling: &Piecewise,
     rule: ParticleRule,
 ) -> Option<[Known; 4]> {
-    let walk = Walk::new(mesh, rod, Some(sampling), rule)?;
-    Solved::of(&walk, true).map(|found| found.lookups)
+    let walk = Walk::new(mesh, rod, Some(sampling), rule);
+    walk.known(0, &|line| Some(moments::lookups(line)?.to_vec()))?.try_into().ok()
 }
 
 /// Prediction for an unbiased walk with draws in `[0, 1]`: expected values, and `Var[X] ≤ E[X](1 − E[X])`.
@@ -186,62 +179,35 @@ struct Solved {
 
 impl Solved {
     fn of(walk: &Walk<'_>, laws: bool) -> Option<Self> {
-        let precision = if laws { Precision::FULL } else { Precision::PLOTS };
-        let [second, fourth, eighth] = if laws {
-            Existence::of(walk, [2, 4, 8])
-        } else {
-            [Existence::of(walk, [2])[0], Existence::Unknown, Existence::Unknown]
-        };
-        if matches!(second, Existence::Diverges(_) | Existence::Unknown) {
-            return None;
-        }
+        walk.exists(2).ok()?;
         // The first moment exists wherever the second does; the third is of no use without the fourth.
-        let existences = [Existence::Finite, second, fourth, fourth, eighth];
+        let highest = [8, 4].into_iter().find(|&k| laws && walk.exists(k).is_ok()).unwrap_or(2);
         let channels = &walk.rod.channels;
-        let is_finite = |i: &usize| existences[*i] == Existence::Finite;
-        let powers: Vec<i32> = (0..POWERS.len()).filter(is_finite).map(|i| POWERS[i]).collect();
-        // Next to its divergence a moment has no answer on coarse grids, and is solved separately.
-        let apart = |i: usize| match existences[i] {
-            Existence::Near => Some(self::powers(walk, POWERS[i])),
-            _ => None,
-        };
-        let apart: [_; POWERS.len()] = std::array::from_fn(apart);
-        if !apart[1].as_ref().is_none_or(|found| blur(found) <= RESOLVED) {
-            return None;
-        }
-        let is_joint = is_finite(&3) && channels.contains(&Quantity::Absorbed);
-        let numbers = moments::romberg(walk, precision, &|grid| {
-            let mut numbers = moments::lookups(grid)?.to_vec();
+        let is_joint = highest >= 4 && channels.contains(&Quantity::Absorbed);
+        let numbers = walk.known(highest, &|line| {
+            let mut numbers = moments::lookups(line)?.to_vec();
             for &quantity in channels {
-                for &k in &powers {
-                    numbers.push(moments::power(grid, quantity, k)?);
+                for k in POWERS.into_iter().filter(|&k| k <= highest) {
+                    numbers.push(moments::power(line, quantity, walk.rod.width(), k)?);
                 }
             }
             if is_joint {
-                numbers.extend(moments::joint(grid, true)?.as_flattened());
+                numbers.extend(moments::joint(line)?.as_flattened());
             }
             Some(numbers)
         })?;
-        let mut numbers = numbers.into_iter().map(known);
+        let mut numbers = numbers.into_iter();
         let mut next = || numbers.next().unwrap_or(Known::INFINITE);
         let lookups = std::array::from_fn(|_| next());
-        let mut of_channel = |channel: usize| {
-            RawMoments(std::array::from_fn(|i| match &apart[i] {
-                Some(found) => found[channel],
-                None if is_finite(&i) => next(),
-                None => Known::INFINITE,
-            }))
-        };
-        let raw = (0..channels.len()).map(&mut of_channel).collect();
+        let mut of_channel =
+            || RawMoments(POWERS.map(|k| if k <= highest { next() } else { Known::INFINITE }));
+        let raw: Vec<RawMoments> = channels.iter().map(|_| of_channel()).collect();
+        let seconds: Vec<Known> = raw.iter().map(RawMoments::second).collect();
+        (blur(&seconds) <= RESOLVED).then_some(())?;
         let joint =
             is_joint.then(|| std::array::from_fn(|_| std::array::from_fn(|_| next().value)));
         Some(Self { raw, lookups, joint })
     }
-}
-
-/// A number of Romberg's scheme with its difference.
-fn known([value, error]: [f64; 2]) -> Known {
-    Known::estimated(value, error)
 }
 
 /// The largest relative error of some moments.

@@ -22,61 +22,57 @@
 //!
 //! Source: derived.
 
-use super::super::lit_rod::connections::{Connections, Vertex, scattering};
+use super::super::lit_rod::connections::{Connections, Vertex};
 use super::super::lit_rod::{Techniques, walk};
-use super::super::rod::grid::{Grid, Importance, Step};
-use super::super::rod::moments::{Precision, romberg};
+use super::super::rod::line::{Importance, Line};
+use super::super::rod::walk::Node;
 use crate::Mesh;
 use crate::problems::LitRod;
 use media::Piecewise;
 use numeric::Known;
 
-/// Agreement of grids.
-const PRECISION: Precision = Precision { agreement: 1e-5, levels: 4 };
 /// Maximum rest of the sum, relative to the terms before it.
 const ENOUGH: f64 = 1e-6;
 /// Maximum number of vertices.
 const MOST: usize = 4000;
 
-/// A bound on `w_λ E[X_λ²]` of one channel with its σ̂; `None` where theory has no grid for it.
+/// A bound on `w_λ E[X_λ²]` of one channel with its σ̂; `None` where theory has no line for it.
 pub fn weighted_square(
     mesh: &Mesh,
     rod: &LitRod,
     sampling: &Piecewise,
     techniques: Techniques,
 ) -> Option<f64> {
-    let scattered = romberg(&walk(mesh, rod, sampling)?, PRECISION, &|grid| {
-        Some(vec![spread(grid, techniques)?])
-    })?;
-    let [spread, error] = scattered[0];
+    let scattered =
+        walk(mesh, &rod.rod, sampling).known(2, &|line| Some(vec![spread(line, techniques)?]))?;
+    let Known { value: spread, error, .. } = scattered[0];
     let Known { value, error: of_depth, .. } = mesh.optical_depth().exp_neg();
     Some(value + of_depth + (spread + error).powi(2))
 }
 
 /// `Σ_v u_v + ½ max_v u_v`.
-fn spread(grid: &Grid, techniques: Techniques) -> Option<f64> {
-    let connections = Connections::new(grid, techniques, 2);
-    let real = |step: &Step| [step.sampling * (1.0 - step.means[0]), 0.0];
-    let last = |i: usize, step: &Step| {
+fn spread(line: &Line, techniques: Techniques) -> Option<f64> {
+    let connections = Connections::new(line, techniques, 2);
+    let real = line.straight(1)?;
+    let last = |i: usize, node: &Node| {
         let worth = |vertex: &Vertex| vertex.connected[2] + vertex.towards * vertex.hit[2];
-        connections.at(i).each_ref().map(|vertex| scattering(step) * worth(vertex))
+        connections.at(i).each_ref().map(|vertex| node.scattering() * worth(vertex))
     };
     let earlier = |here: &Importance| {
-        let carried = |i: usize, step: &Step| {
-            step.spread(here.middle(i)).map(|worth| scattering(step) * worth)
-        };
-        grid.solve(real, carried, [0.0; 2])
+        let carried =
+            |i: usize, node: &Node| node.spread(here.at(i)).map(|worth| node.scattering() * worth);
+        real.solve(carried, [0.0; 2])
     };
-    let root = |importance: &Importance| importance.entering().max(0.0).sqrt();
-    let mut before = grid.solve(real, last, [0.0; 2])?;
-    let mut here = earlier(&before)?;
+    let root = |importance: &Importance| importance.entering.max(0.0).sqrt();
+    let mut before = real.solve(last, [0.0; 2]);
+    let mut here = earlier(&before);
     let (mut sum, mut most) = (0.0, 0.0f64);
     for _ in 0..MOST {
         let own = root(&before);
         sum += own;
         most = most.max(own);
-        let next = earlier(&here)?;
-        let share = largest_share(grid, &next, &before).sqrt();
+        let next = earlier(&here);
+        let share = largest_share(line, &next, &before).sqrt();
         let two = root(&here) + root(&next);
         let rest = if share > 0.0 { two / (1.0 - share) } else { two };
         if share < 1.0 && rest <= ENOUGH * sum {
@@ -87,11 +83,11 @@ fn spread(grid: &Grid, techniques: Techniques) -> Option<f64> {
     None
 }
 
-/// Maximum ratio of one vertex's values to another's, over all steps.
-fn largest_share(grid: &Grid, worth: &Importance, other: &Importance) -> f64 {
+/// Maximum ratio of one vertex's values to another's, over all nodes.
+fn largest_share(line: &Line, worth: &Importance, other: &Importance) -> f64 {
     let mut largest = 0.0f64;
-    for i in 0..grid.steps().len() {
-        for (worth, other) in worth.middle(i).into_iter().zip(other.middle(i)) {
+    for i in 0..line.nodes().len() {
+        for (worth, other) in worth.at(i).into_iter().zip(other.at(i)) {
             if worth > 0.0 {
                 largest = largest.max(worth / other);
             }

@@ -22,14 +22,14 @@
 //! Source: derived.
 
 use super::super::lit_rod::connections::{Vertex, Weights};
-use super::super::lit_rod::{Techniques, with_hit};
-use super::super::rod::grid::{Grid, Walk};
-use super::super::rod::moments::{Precision, romberg};
+use super::super::lit_rod::{Techniques, walk, with_hit};
+use super::super::rod::line::Line;
+use super::super::rod::walk::Node;
 use super::super::spectral_rod::rods;
 use super::{Moments, PAIRS};
+use crate::Mesh;
 use crate::problems::SpectralLitRod;
 use crate::raw::{HIGHEST, POWERS, RawMoments, binomial};
-use crate::{Mesh, ParticleRule};
 use media::Piecewise;
 use numeric::Known;
 
@@ -37,8 +37,6 @@ use numeric::Known;
 const RARE: f64 = 1e-11;
 /// Maximum number of orders of scattering.
 const MOST: usize = 160;
-/// Agreement of grids.
-const PRECISION: Precision = Precision { agreement: 1e-7, levels: 5 };
 /// Powers of a channel with computed moments: to the eighth, or to the second alone.
 const POWERS_OF_ONE: [usize; 2] = [2, HIGHEST];
 
@@ -76,7 +74,7 @@ struct State {
     coefficients: Vec<[f64; HIGHEST + 1]>,
 }
 
-/// U of every monomial in the middle of every step.
+/// U of every monomial at every node.
 type Futures = Vec<Vec<f64>>;
 
 impl<'a> Orders<'a> {
@@ -100,18 +98,14 @@ impl<'a> Orders<'a> {
     /// the next. Without `laws` the first two only.
     pub fn moments(&self, sampling: &Piecewise, laws: bool) -> Option<Moments> {
         let rod = &self.problem.rods[0].rod;
-        let walk = Walk::new(self.mesh, rod, Some(sampling), ParticleRule::Analog)?;
-        let walk = walk.resolving_transmittance()?;
         let highest = POWERS_OF_ONE[usize::from(laws)];
         let (monomials, terms) = monomials(self.heroes.len(), highest);
-        let numbers = romberg(&walk, PRECISION, &|grid| {
-            Some(self.entering(grid, highest, &monomials, &terms))
-        })?;
+        let numbers = walk(self.mesh, rod, sampling)
+            .known(2, &|line| self.entering(line, highest, &monomials, &terms))?;
         let unscattered = self.mesh.optical_depth().exp_neg();
         let of = |monomial: Monomial, power: usize| {
             let at = monomials.iter().position(|known| *known == monomial)?;
-            let [value, error] = numbers[at];
-            let scattered = Known::estimated(value, error + RARE * value);
+            let scattered = numbers[at].blurred(RARE * numbers[at].value);
             Some(with_hit(scattered, unscattered, power, self.techniques))
         };
         let channels = 0..self.heroes.len();
@@ -160,20 +154,18 @@ impl<'a> Orders<'a> {
         }
     }
 
-    /// U of every monomial for the entering particle, on a grid.
+    /// U of every monomial for the entering particle, on a line.
     fn entering(
         &self,
-        grid: &Grid,
+        line: &Line,
         highest: usize,
         monomials: &[Monomial],
         terms: &[Vec<Term>],
-    ) -> Vec<f64> {
+    ) -> Option<Vec<f64>> {
+        let flow = line.straight(1)?;
         let weights = Weights::new(self.techniques, highest, false);
-        let mut nulls = Vec::with_capacity(grid.steps().len());
-        weights.each_middle(grid, |_, moments| nulls.push(moments.to_vec()));
-        nulls.reverse();
-        let steps = grid.steps().len();
-        let nothing = || vec![vec![0.0; steps]; monomials.len()];
+        let nulls = weights.along(line);
+        let nothing = || vec![vec![0.0; nulls.len()]; monomials.len()];
         let mut next: Vec<Futures> = (0..=self.count).map(|_| nothing()).collect();
         let mut entering = vec![0.0; monomials.len()];
         for order in (0..self.count).rev() {
@@ -202,9 +194,18 @@ impl<'a> Orders<'a> {
                         sources[m][i] = state.scattered(&vertex, *monomial, &terms[m], &futures);
                     }
                 }
-                let solved = sources
-                    .iter()
-                    .map(|source| solve(grid, is_forward, |i| state.albedo * source[i]));
+                let way = usize::from(!is_forward);
+                let solved = sources.iter().map(|source| {
+                    let scattered = |i: usize, node: &Node| {
+                        let mut both = [0.0; 2];
+                        both[way] =
+                            node.sampling * (1.0 - node.means[0]) * state.albedo * source[i];
+                        both
+                    };
+                    let worth = flow.solve(scattered, [0.0; 2]);
+                    let at_nodes = (0..nulls.len()).map(|i| worth.at(i)[way]).collect();
+                    (at_nodes, worth.entering)
+                });
                 let (worth, begins): (Futures, Vec<f64>) = solved.unzip();
                 if order == 0 {
                     entering = begins;
@@ -213,7 +214,7 @@ impl<'a> Orders<'a> {
             }
             next = here;
         }
-        entering
+        Some(entering)
     }
 }
 
@@ -282,24 +283,4 @@ fn monomials(channels: usize, highest: usize) -> (Vec<Monomial>, Vec<Vec<Term>>)
     };
     let terms = found.iter().map(terms_of).collect();
     (found, terms)
-}
-
-/// Expected scores of a particle that flies one way, in the middles of all steps and where it enters, given the
-/// expected score after a real collision. It uses the implicit midpoint rule; its error is even in the steps'
-/// widths.
-fn solve(grid: &Grid, is_forward: bool, collided: impl Fn(usize) -> f64) -> (Vec<f64>, f64) {
-    let steps = grid.steps();
-    let (mut worth, mut middles) = (0.0, vec![0.0; steps.len()]);
-    let mut pass = |i: usize| {
-        let depth = steps[i].width * steps[i].sampling * (1.0 - steps[i].means[0]);
-        let before = ((1.0 - 0.5 * depth) * worth + depth * collided(i)) / (1.0 + 0.5 * depth);
-        middles[i] = 0.5 * (before + worth);
-        worth = before;
-    };
-    if is_forward {
-        (0..steps.len()).rev().for_each(&mut pass);
-    } else {
-        (0..steps.len()).for_each(&mut pass);
-    }
-    (middles, worth)
 }
