@@ -124,7 +124,7 @@ fn a_column_of_an_array_is_judged_by_itself() {
     place.expect(2, &format!("{} --column 3 x.npy", truth(1.0)), &["no column 3", "0, 1, 2"]);
     place.expect(2, &format!("{} --column r x.npy", truth(1.0)), &["no column `r`"]);
     place.expect(2, &format!("{} x.npy", truth(1.0)), &["--column"]);
-    place.expect(2, &format!("{} --column 0 x.f64", truth(1.0)), &["raw float64 has no columns"]);
+    place.expect(2, &format!("{} --column 0 x.f64", truth(1.0)), &["raw numbers have no columns"]);
 }
 
 #[test]
