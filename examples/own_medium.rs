@@ -20,7 +20,7 @@ estimators = [{ woodcock = {} }, { ratio = {} }, { regular = {} }]
 sampling.constant.value = 1.0
 "#;
 
-/// Haze that thins out: σ_t(x) = 1/(1 + (x/scale)²).
+/// Haze that thins out: `σ_t(x) = 1/(1 + (x/scale)²)`.
 #[derive(Clone)]
 pub struct Haze {
     scale: f64,

@@ -223,7 +223,9 @@ impl Contour {
             let unit = if made == 0 { 1.0 } else { 1.0 / ratio };
             let (mut mean, mut size) = (unit * sums[i], unit * sizes[i]);
             for &(coefficient, of_ratio, of_x) in &poles.terms {
-                let term = coefficient * ratio.powi(of_ratio as i32) * powers[of_x - 1];
+                let term = coefficient
+                    * ratio.powi(i32::try_from(of_ratio).unwrap_or(i32::MAX))
+                    * powers[of_x - 1];
                 mean += term;
                 size += term.abs();
             }

@@ -330,11 +330,12 @@ mod tests {
                 (state >> 11 >> (53 - bits)) as f64 / f64::from(bits).exp2()
             }
         };
+        #[allow(clippy::cast_possible_truncation)] // rounds
+        let rounded = |x: &f64| f64::from(*x as f32);
         for bits in [53, 32, 24, 1] {
             let mut next = generator(bits);
             let doubles: Vec<f64> = (0..500).map(|_| next()).collect();
-            for doubles in [doubles.clone(), doubles.iter().map(|x| f64::from(*x as f32)).collect()]
-            {
+            for doubles in [doubles.clone(), doubles.iter().map(rounded).collect()] {
                 let file = file(&bytes(&doubles));
                 assert!(Draws::open(file.path(), Format::Raw).is_ok(), "{bits} bits");
             }

@@ -161,7 +161,9 @@ fn of_lookup(all: &[Timed]) -> f64 {
 
 /// Times experiments in turn until each is known.
 fn measure(all: &mut [Timed]) {
-    all.iter_mut().for_each(|timed| timed.rounds.clear());
+    for timed in all.iter_mut() {
+        timed.rounds.clear();
+    }
     for round in 0..ROUNDS[1] {
         let is_open = |timed: &Timed| round < ROUNDS[0] || fast(timed.rounds.clone()).1 > ERROR;
         all.iter_mut().filter(|timed| is_open(timed)).for_each(Timed::round);

@@ -82,7 +82,9 @@ impl Weights {
         let row = |node: &Node| {
             let mut row = vec![0.0; self.contour.width()];
             self.contour.losses(node.means[0], &mut row);
-            row.iter_mut().for_each(|loss| *loss *= node.sampling);
+            for loss in &mut row {
+                *loss *= node.sampling;
+            }
             row
         };
         let rates: Vec<Vec<f64>> = line.nodes().iter().map(row).collect();

@@ -95,7 +95,9 @@ impl Column {
             let panel = first..first + self.per_panel;
             for (row, node) in rows.iter_mut().zip(&self.nodes[panel.clone()]) {
                 contour.losses(null(node.extinction, node.sampling), row);
-                row.iter_mut().for_each(|loss| *loss *= node.sampling);
+                for loss in row.iter_mut() {
+                    *loss *= node.sampling;
+                }
             }
             for node in panel.clone() {
                 let mut sum = beyond.clone();

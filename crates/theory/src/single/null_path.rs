@@ -68,7 +68,9 @@ impl<'a> NullPaths<'a> {
             let entry = self.flat.len() - 1;
             let span = Span::new(group[0].span.from, group[group.len() - 1].span.to);
             table.push(span.to, |row| {
-                group.iter().for_each(|panel| self.add(entry, panel.span, row));
+                for panel in group {
+                    self.add(entry, panel.span, row);
+                }
                 if group.len() > 1 {
                     let mut at_once = vec![0.0; row.len()];
                     self.add(entry, span, &mut at_once);
@@ -90,7 +92,9 @@ impl<'a> NullPaths<'a> {
         let sampling = self.sampling.value(t);
         if sampling > 0.0 {
             self.contour.losses((1.0 - sigma / sampling).max(0.0), &mut row);
-            row.iter_mut().for_each(|loss| *loss *= sampling);
+            for loss in &mut row {
+                *loss *= sampling;
+            }
         }
         row
     }

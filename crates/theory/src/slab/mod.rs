@@ -241,6 +241,9 @@ pub fn factorial_moments<S: Scalar>(
     Some((0..lights.len()).map(of_light).collect())
 }
 
+/// A number that is made of the shares of a light.
+type Functional<'f, S> = dyn Fn(&Shares<S>) -> f64 + 'f;
+
 /// Solves a stack of layers at four resolutions and returns a function. From the shares of a light it makes a number
 /// and its error, in which that of the first layer is multiplied by a factor.
 fn resolved<S: Scalar>(
@@ -248,7 +251,7 @@ fn resolved<S: Scalar>(
     lights: &[Light],
     slices: &[Slice<S>],
     resolution: Resolution,
-) -> Option<impl Fn(usize, f64, &dyn Fn(&Shares<S>) -> f64) -> Known> {
+) -> Option<impl Fn(usize, f64, &Functional<'_, S>) -> Known> {
     let resolution = resolution.of(phase);
     let at = |resolution| energies_at(phase, lights, slices, resolution);
     let fine = at(resolution)?;
@@ -263,7 +266,7 @@ fn resolved<S: Scalar>(
     let depth: f64 = slices.iter().map(|slice| slice.flown * slice.lost().leading()).sum();
     let thick = (depth / THICK).max(1.0);
     let thin = if depth > 0.0 { (THIN / depth).max(1.0) } else { 1.0 };
-    Some(move |i: usize, amplified: f64, of: &dyn Fn(&Shares<S>) -> f64| {
+    Some(move |i: usize, amplified: f64, of: &Functional<'_, S>| {
         // Known errors are added: of the first layer, of rounding, and of doubles that have fewer digits.
         let [fine, coarse, coarsest] = [&fine[i], &coarse[i], &coarsest[i]].map(of);
         let [of_coarsest, of_half] = resolution.gains;
