@@ -140,26 +140,38 @@ impl Cell {
     pub fn around(p: [f64; 3], seed: u32) -> Self {
         let corner = p.map(|x| floor(x).0);
         let hashes = corner_hashes(corner, seed);
-        let gradients = std::array::from_fn(|n| gradient(hashes[n % 4], u32::from(n >= 4)));
+        let mut gradients = [[0.0; 3]; 8];
+        // A loop that counts: `from_fn` is not always inlined.
+        for (n, of_corner) in gradients.iter_mut().enumerate() {
+            *of_corner = gradient(hashes[n % 4], u32::from(n >= 4));
+        }
         Self { corner, gradients }
     }
 
     /// The cell's polynomial.
     pub fn value(&self, p: [f64; 3], fade: Fade) -> f64 {
-        let at: [f64; 3] = std::array::from_fn(|j| p[j] - self.corner[j]);
-        let slopes = std::array::from_fn(|n| {
-            let far = |j: usize| (n >> j & 1) as f64;
-            let g = self.gradients[n];
-            g[0] * (at[0] - far(0)) + g[1] * (at[1] - far(1)) + g[2] * (at[2] - far(2))
-        });
-        blend(slopes, at, fade)
+        let (c, g) = (self.corner, &self.gradients);
+        let [x, y, z] = [p[0] - c[0], p[1] - c[1], p[2] - c[2]];
+        let [x1, y1, z1] = [x - 1.0, y - 1.0, z - 1.0];
+        let slope = |n: usize, [x, y, z]: [f64; 3]| g[n][0] * x + g[n][1] * y + g[n][2] * z;
+        let slopes = [
+            slope(0, [x, y, z]),
+            slope(1, [x1, y, z]),
+            slope(2, [x, y1, z]),
+            slope(3, [x1, y1, z]),
+            slope(4, [x, y, z1]),
+            slope(5, [x1, y, z1]),
+            slope(6, [x, y1, z1]),
+            slope(7, [x1, y1, z1]),
+        ];
+        blend(slopes, [x, y, z], fade)
     }
 }
 
 /// The vector `g`: [`slope`] is its product with a distance.
 fn gradient(hashes: u64, end: u32) -> [f64; 3] {
-    let along = |j: usize| std::array::from_fn(|n| f64::from(u8::from(n == j)));
-    std::array::from_fn(|j| slope(hashes, end, along(j)))
+    let along = |axis: [f64; 3]| slope(hashes, end, axis);
+    [along([1.0, 0.0, 0.0]), along([0.0, 1.0, 0.0]), along([0.0, 0.0, 1.0])]
 }
 
 /// A ray in the coordinates of a lattice, `start + slope·t`.

@@ -32,6 +32,7 @@
 //! Trapezoidal Rule*, SIAM Review 56 (2014), section 5.
 
 use std::f64::consts::PI;
+use std::ops::Range;
 
 use num_complex::Complex64;
 
@@ -143,8 +144,15 @@ impl Contour {
         row[self.highest + 2 * self.count * line..][..2 * self.count].split_at(self.count)
     }
 
-    /// Writes the row of `1 − w^s`.
-    pub fn losses(&self, kept: f64, row: &mut [f64]) {
+    /// Places in a row of the integer powers, and of all lines or of one.
+    pub fn places(&self, line: Option<usize>) -> [Range<usize>; 2] {
+        let begin = |line: usize| self.highest + 2 * self.count * line;
+        let lines = line.map_or(0..self.lines.len(), |line| line..line + 1);
+        [0..self.highest, begin(lines.start)..begin(lines.end)]
+    }
+
+    /// Writes the row of `1 − w^s`, of all lines or of one.
+    pub fn losses(&self, kept: f64, line: Option<usize>, row: &mut [f64]) {
         let (powers, lines) = row.split_at_mut(self.highest);
         let mut power = 1.0;
         for loss in powers {
@@ -155,12 +163,13 @@ impl Contour {
             return;
         }
         let step = if kept > 0.0 { Complex64::cis(STEP * kept.ln()) } else { Complex64::ZERO };
-        for (line, part) in self.lines.iter().zip(lines.chunks_exact_mut(2 * self.count)) {
+        let parts = lines.chunks_exact_mut(2 * self.count).enumerate();
+        for (i, part) in parts.filter(|&(i, _)| line.is_none_or(|line| line == i)) {
             let (real, imaginary) = part.split_at_mut(self.count);
-            let mut power = Complex64::from(kept.powf(line.real));
+            let mut power = Complex64::from(kept.powf(self.lines[i].real));
             for (real, imaginary) in real.iter_mut().zip(imaginary) {
                 (*real, *imaginary) = (1.0 - power.re, -power.im);
-                power *= step;
+                power = product(power, step);
             }
         }
     }
@@ -205,7 +214,7 @@ impl Contour {
         let mut turn = Complex64::from(ratio.powf(line.real));
         let kernels = line.kernels.chunks_exact(2 * width);
         for ((&real, &imaginary), kernels) in real.iter().zip(imaginary).zip(kernels) {
-            let x = turn * Complex64::new(real, imaginary);
+            let x = product(turn, Complex64::new(real, imaginary));
             let (reals, imaginaries) = kernels.split_at(width);
             for ((sum, a), b) in sums.iter_mut().zip(reals).zip(imaginaries) {
                 *sum += a * x.re - b * x.im;
@@ -215,7 +224,7 @@ impl Contour {
                     *sum += (a * x.re).abs() + (b * x.im).abs();
                 }
             }
-            turn *= step;
+            turn = product(turn, step);
         }
         let beside = MISSED * ratio.powf(line.real - 0.5) * (1.0 + ratio);
         for (i, poles) in line.poles.iter().enumerate() {
@@ -277,6 +286,12 @@ impl Line {
     }
 }
 
+/// `a b`: operators of complex numbers that assign are not inlined.
+#[inline(always)]
+fn product(a: Complex64, b: Complex64) -> Complex64 {
+    Complex64::new(a.re * b.re - a.im * b.im, a.re * b.im + a.im * b.re)
+}
+
 /// a and m of a score.
 fn exponents(made: Made, k: usize, beta: usize) -> (usize, usize) {
     match made {
@@ -309,7 +324,7 @@ mod tests {
                 let contour = Contour::new(Some(heuristic), highest, is_any);
                 for (mean, left) in [(0.0, 0.5), (0.9, 0.4), (5.0, 0.05), (8.0, 0.7), (30.0, 0.9)] {
                     let mut row = vec![0.0; contour.width()];
-                    contour.losses(left, &mut row);
+                    contour.losses(left, None, &mut row);
                     let ratios = [1e-9, 0.003, 0.4, 1.0, 1.7, 30.0, 2000.0];
                     for ratio in ratios.into_iter().filter(|&ratio| is_any || ratio <= 1.0) {
                         let line = contour.line(ratio);

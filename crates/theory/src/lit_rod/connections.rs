@@ -81,7 +81,7 @@ impl Weights {
     pub fn along(&self, line: &Line) -> Vec<Vec<f64>> {
         let row = |node: &Node| {
             let mut row = vec![0.0; self.contour.width()];
-            self.contour.losses(node.means[0], &mut row);
+            self.contour.losses(node.means[0], None, &mut row);
             for loss in &mut row {
                 *loss *= node.sampling;
             }

@@ -94,7 +94,7 @@ impl Column {
         for first in (0..self.nodes.len()).step_by(self.per_panel).rev() {
             let panel = first..first + self.per_panel;
             for (row, node) in rows.iter_mut().zip(&self.nodes[panel.clone()]) {
-                contour.losses(null(node.extinction, node.sampling), row);
+                contour.losses(null(node.extinction, node.sampling), None, row);
                 for loss in row.iter_mut() {
                     *loss *= node.sampling;
                 }

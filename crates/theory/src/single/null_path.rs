@@ -49,7 +49,12 @@ impl<'a> NullPaths<'a> {
         let cuts = mesh.cuts(sampling.knots().to_vec(), [|t, x| sampling.value(t) - x]);
         let fine = mesh.refined(&cuts, &|_, panel| {
             let nodes = panel.t.iter().zip(panel.extinction);
-            let rows: Vec<Vec<f64>> = nodes.map(|(&t, &x)| self.losses(t, x)).collect();
+            let row = |(&t, &x): (&f64, &f64)| {
+                let mut row = vec![0.0; self.contour.width()];
+                self.losses(t, x, None, &mut row);
+                row
+            };
+            let rows: Vec<Vec<f64>> = nodes.map(row).collect();
             let of = self.contour.steepest().map(|i| rows.iter().map(|row| row[i]).collect());
             of.into()
         });
@@ -69,11 +74,11 @@ impl<'a> NullPaths<'a> {
             let span = Span::new(group[0].span.from, group[group.len() - 1].span.to);
             table.push(span.to, |row| {
                 for panel in group {
-                    self.add(entry, panel.span, row);
+                    self.add(entry, panel.span, None, row);
                 }
                 if group.len() > 1 {
                     let mut at_once = vec![0.0; row.len()];
-                    self.add(entry, span, &mut at_once);
+                    self.add(entry, span, None, &mut at_once);
                     let apart = at_once.iter().zip(row).map(|(a, b)| (a - *b).abs());
                     missed = apart.fold(missed, f64::max);
                 }
@@ -86,24 +91,28 @@ impl<'a> NullPaths<'a> {
         self.table = table;
     }
 
-    /// The row of `σ̂ (1 − (1 − σ_t/σ̂)^s)`.
-    fn losses(&self, t: f64, sigma: f64) -> Vec<f64> {
-        let mut row = vec![0.0; self.contour.width()];
+    /// Writes `σ̂ (1 − (1 − σ_t/σ̂)^s)` at a place, of all lines or of one.
+    fn losses(&self, t: f64, sigma: f64, line: Option<usize>, row: &mut [f64]) {
         let sampling = self.sampling.value(t);
-        if sampling > 0.0 {
-            self.contour.losses((1.0 - sigma / sampling).max(0.0), &mut row);
-            for loss in &mut row {
+        let kept = if sampling > 0.0 { (1.0 - sigma / sampling).max(0.0) } else { 1.0 };
+        self.contour.losses(kept, line, row);
+        for place in self.contour.places(line) {
+            for loss in &mut row[place] {
                 *loss *= sampling;
             }
         }
-        row
     }
 
-    /// Adds the integrals over a part of a panel.
-    fn add(&self, panel: usize, span: Span, row: &mut [f64]) {
+    /// Adds the integrals over a part of a panel, of all lines or of one.
+    fn add(&self, panel: usize, span: Span, line: Option<usize>, row: &mut [f64]) {
+        let mut losses = vec![0.0; row.len()];
         let mut at = |weight: f64, t: f64, sigma: f64| {
-            let losses = self.losses(t, sigma);
-            row.iter_mut().zip(losses).for_each(|(sum, loss)| *sum += weight * loss);
+            self.losses(t, sigma, line, &mut losses);
+            for place in self.contour.places(line) {
+                for (sum, loss) in row[place.clone()].iter_mut().zip(&losses[place]) {
+                    *sum += weight * loss;
+                }
+            }
         };
         if let Some(sigma) = self.flat[panel] {
             at(span.length(), span.middle(), sigma);
@@ -117,10 +126,11 @@ impl<'a> NullPaths<'a> {
 
     /// The moments of the weights of paths to a point, r = R x.
     pub fn weights(&self, made: Made, s: f64, ratio: f64) -> Weighted {
-        let mut integrals = vec![0.0; self.contour.width()];
-        self.table.up_to(s, &mut integrals, |panel, rest, row| self.add(panel, rest, row));
         // Scores of collisions are those of `E[x^{3/2}]`, not of the larger `E[x^{1/2}]`.
         let line = self.contour.line(if made == Made::ByPoint { ratio } else { ratio.min(1.0) });
+        let mut integrals = vec![0.0; self.contour.width()];
+        let add = |panel, rest, row: &mut [f64]| self.add(panel, rest, Some(line), row);
+        self.table.up_to(s, &mut integrals, add);
         let size = self.contour.size(line, &integrals);
         let off = f64::EPSILON * (ROUNDINGS + size) + self.off * size;
         let moments = self.contour.moments(line, &integrals, 1.0);

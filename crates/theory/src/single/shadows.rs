@@ -22,9 +22,9 @@ pub const MANY: usize = 256;
 /// Maximum number of panels between the pieces of a ray.
 pub const PANELS: usize = 1024;
 /// Number of pieces along all shadow rays together, about.
-const WORK: usize = 2_400_000;
+const WORK: usize = 1_800_000;
 /// Minimum and maximum number of pairs of shadow rays.
-const PAIRS: [usize; 2] = [48, 512];
+const PAIRS: [usize; 2] = [48, 256];
 /// Number of interpolated values of a [`Segment`].
 const COUNT: usize = 16;
 
