@@ -54,6 +54,8 @@ const TIE: f64 = 1e-3;
 
 /// Standard error of a sample variance that can be trusted.
 const TRUST: f64 = 0.1;
+/// Factor on the least σ̂ at which the inequality that it must satisfy is violated.
+const BELOW: f64 = 0.99;
 /// Number of rows with a price that is corrected by draws at the advised σ̂.
 const CORRECTED: usize = 8;
 /// Number of curves: of the first rows with a constant σ̂.
@@ -277,7 +279,7 @@ fn row(study: &Study, best: &Best, target: Target) -> Option<Row> {
     let at = study.cases[0].at(setting).ok()?;
     let (id, text) = (at.id(candidate), &study.texts[candidate]);
     let is_profile = candidates::is_profile(text);
-    let needs = match () {
+    let mut needs = match () {
         () if is_profile => "|σ_t − σ_c| along the ray".to_owned(),
         () if candidates::is_learned(text) => "pilot rays".to_owned(),
         () => at.needs(candidate),
@@ -291,6 +293,12 @@ fn row(study: &Study, best: &Best, target: Target) -> Option<Row> {
     };
     let edge = |(_, x): (What, f64), sign, level| best.goal.edge(x, sign, level, MAX_FACTOR);
     let double = |(_, x): (What, f64)| 2.0 * best.goal.of(x);
+    let least = setting.map(|at| at.1 * edge(at, -1.0, UNKNOWN));
+    let below = setting.zip(least).filter(|&(_, least)| least > 0.0);
+    let below = below.map(|((what, _), least)| (what, BELOW * least));
+    if let Some(bound) = below.and_then(|at| study.violated(candidate, Some(at))) {
+        needs = if needs.is_empty() { bound.to_owned() } else { format!("{needs}, {bound}") };
+    }
     let mut row = Row {
         candidate,
         setting,
@@ -303,7 +311,7 @@ fn row(study: &Study, best: &Best, target: Target) -> Option<Row> {
         kind: best.kind,
         cost_error: study.prices[candidate]?.error,
         margins: setting.map(|at| [-1.0, 1.0].map(|sign| edge(at, sign, double(at)))),
-        least: setting.map(|at| at.1 * edge(at, -1.0, UNKNOWN)),
+        least,
         needs,
         lines: lines(text, constant, factor),
         ..Row::default()

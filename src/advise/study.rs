@@ -190,6 +190,15 @@ impl Study {
         self.refusal(candidate, self.free[candidate].map(|free| (free.what, free.scale)), 0)
     }
 
+    /// Returns the inequality, in words, that a setting violates on some ray; `None` if it violates none.
+    pub fn violated(&self, candidate: usize, at: Variation) -> Option<&'static str> {
+        let rays = 0..self.cases.len();
+        rays.filter_map(|ray| self.refusal(candidate, at, ray)).find_map(|refusal| match refusal {
+            Refusal::Inequality { needs, .. } => Some(needs),
+            _ => None,
+        })
+    }
+
     /// Returns the score of a candidate over some rays; `None` if it is refused on one of them, or if theory does not
     /// know its variance or cost.
     pub fn score(&self, candidate: usize, at: Variation, rays: &[usize]) -> Option<Score> {

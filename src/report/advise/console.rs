@@ -11,9 +11,9 @@ use numeric::digits::{fixed, percent, short, time};
 
 /// Columns, each with its rank, before and after the goal.
 const FIRST: [(usize, u8); 3] =
-    ranked::<Joined, _>([("rank_marked", 0), ("estimator", 0), ("sampling_marked", 1)]);
+    ranked::<Joined, _>([("rank_marked", 0), ("estimator", 0), ("sampling_marked", 0)]);
 const LAST: [(usize, u8); 9] = ranked::<Joined, _>([
-    ("control", 5),
+    ("control", 1),
     ("relative_deviation", 3),
     ("lookups_per_draw", 4),
     ("setup", 7),
