@@ -129,8 +129,8 @@ fn channel(depth: Known, order: usize, [fine, rough]: [&Powers; 2], is_certain: 
         return Channel::unbiased(truth, Moments::certain(mean), Tails::LIGHT);
     }
     let relative_error = ROUNDING + 4.0 * by_depth;
-    let raw = |&[none, a, b, c, d, .., eighth]: &Powers| {
-        RawMoments::estimated([none, a, b, c, d], eighth, relative_error)
+    let raw = |&[_, a, b, c, d, .., eighth]: &Powers| {
+        RawMoments([a, b, c, d, eighth].map(|x| Known::estimated(x, relative_error * x.abs())))
     };
     // Each resolution in units of its own mean: an error of all powers alike moves no relative moment.
     let central =
