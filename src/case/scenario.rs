@@ -30,7 +30,7 @@ pub struct Scenario {
     /// Mesh of each channel.
     meshes: OnceLock<Vec<Arc<Mesh>>>,
     estimators: Estimators,
-    /// σ̂ that each estimator's recipe makes, by channel, where neither chance nor a sweep changes it.
+    /// σ̂ that each estimator's recipe makes, by channel, where neither pilot rays nor a sweep change it.
     made: Vec<OnceLock<Vec<Piecewise>>>,
     /// Requirement of the problem on the ray.
     ray: RayNeed,
