@@ -38,6 +38,17 @@ impl Cell {
     }
 }
 
+impl Cell {
+    fn kind(&self) -> &'static str {
+        match self {
+            Self::Text(_) | Self::Word(_) => "text",
+            Self::Number(_) | Self::Score(..) => "number",
+            Self::Count(_) => "count",
+            Self::List(_) => "list",
+        }
+    }
+}
+
 impl Serialize for Cell {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         match self {
@@ -312,6 +323,15 @@ impl<T> Serialize for Object<'_, T> {
     }
 }
 
+/// Pairs as an object of JSON, in their order.
+struct Named<V>(Vec<(&'static str, V)>);
+
+impl<V: Serialize> Serialize for Named<V> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_map(self.0.iter().map(|(name, value)| (name, value)))
+    }
+}
+
 /// Returns rows as a JSON array of objects, one per line. Unknown is `null`, and so is an infinite number, which JSON
 /// cannot write.
 pub fn json<T>(
@@ -322,6 +342,17 @@ pub fn json<T>(
     let objects: Result<Vec<_>, _> = objects.collect();
     let objects = objects?.join(",\n");
     Ok(if objects.is_empty() { "[]\n".to_owned() } else { format!("[\n{objects}\n]\n") })
+}
+
+/// Returns rows as a JSON object of columns, each its kind (`text`, `number`, `count` or `list`) and its values. Unknown is
+/// `null`; without rows there are no columns.
+pub fn columns<T>(fields: &[Field<T>], rows: &[T]) -> Result<String, ReportError> {
+    let mut columns = Vec::new();
+    for field in fields {
+        let values: Vec<Cell> = rows.iter().map(field.cell).collect();
+        columns.extend(values.first().map(Cell::kind).map(|kind| (field.name, (kind, values))));
+    }
+    Ok(serde_json::to_string(&Named(columns))?)
 }
 
 /// Returns a file of rows as CSV.

@@ -1,8 +1,8 @@
-//! Advice, as rows in JSON: the columns of `advise.csv`.
+//! Advice, as columns in JSON: those of `advise.csv`.
 
 use pyo3::prelude::*;
 use trueflight::advise::{Costs, Request, advise as advised, options};
-use trueflight::report::advise::json;
+use trueflight::report::advise::columns;
 
 use crate::background::work;
 use crate::cases::CaseRequest;
@@ -46,6 +46,6 @@ pub fn advise(py: Python<'_>, case: CaseRequest, sought: &Bound<'_, PyAny>) -> P
     let sought: Sought = sought.extract()?;
     work(py, sought.threads, None, move |_| {
         let found = advised(&case.spec()?, &sought.request()?)?;
-        json(&found).map_err(|error| Failure::Wrong(error.to_string()))
+        columns(&found).map_err(|error| Failure::Wrong(error.to_string()))
     })
 }

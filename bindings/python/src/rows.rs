@@ -1,4 +1,4 @@
-//! Predictions and runs, as rows in JSON: the columns of `summary.csv`.
+//! Predictions and runs, as columns in JSON: those of `summary.csv`.
 
 use std::time::Instant;
 
@@ -69,7 +69,7 @@ pub fn predict(
     let predicted = if optimum { build::predicted_with_optima } else { build::predicted };
     work(py, wanted.threads, None, move |_| {
         let cases = cases.read()?;
-        json(&predicted(&wanted.plan(&cases)?))
+        columns(&predicted(&wanted.plan(&cases)?))
     })
 }
 
@@ -89,7 +89,7 @@ pub fn run(
     work(py, wanted.threads, tell, move |progress| {
         let cases = cases.read()?;
         let plan = wanted.plan(&cases)?;
-        json(&drawn(&plan, progress))
+        columns(&drawn(&plan, progress))
     })
 }
 
@@ -105,6 +105,6 @@ fn drawn(plan: &Plan, progress: &Progress) -> Record {
     build::judged(plan, &draws, begin.elapsed().as_secs_f64())
 }
 
-fn json(record: &Record) -> Result<String, Failure> {
-    summary_csv::json(record).map_err(|error| Failure::Wrong(error.to_string()))
+fn columns(record: &Record) -> Result<String, Failure> {
+    summary_csv::columns(record).map_err(|error| Failure::Wrong(error.to_string()))
 }

@@ -18,9 +18,6 @@ Case = str | os.PathLike[str] | dict[str, Any]
 Columns = dict[str, Any]
 Progress = bool | Callable[[int, int], object]
 
-_WORDS = ("case", "problem", "medium", "estimator", "control", "channel", "verdict", "reason", "sampling_kind")
-_TEXTS = frozenset((*_WORDS, "kernel", "same_as", "reused", "not_normal", "needs", "best_kind", "group", "is_tie", "kind", "unit", "lines"))
-_COUNTS = frozenset(("seed", "draws", "drawn", "sharing", "setup_lookups", "draws_per_ray", "rank", "rays"))
 _SWEEPS = ("sampling", "sampling_scale", "albedo", "control", "points", "density", "albedo_scale", "contrast")
 
 
@@ -260,17 +257,15 @@ class _Line:
 
 
 def _columns(text: str) -> Columns:
-    """Converts rows in JSON to columns."""
-    rows = json.loads(text)
-    names = rows[0].keys() if rows else ()
-    return {name: _column(name, [row[name] for row in rows]) for name in names}
+    """Converts columns in JSON, each its kind and its values, to lists and arrays."""
+    return {name: _column(kind, values) for name, (kind, values) in json.loads(text).items()}
 
 
-def _column(name: str, values: list[Any]) -> Any:
-    if name in _TEXTS:
+def _column(kind: str, values: list[Any]) -> Any:
+    if kind == "text":
         return ["" if value is None else value for value in values]
-    if name == "lookups_pmf":
+    if kind == "list":
         return values
-    if name in _COUNTS and None not in values:
+    if kind == "count" and None not in values:
         return np.array(values, dtype=np.int64 if max(values) < 2**63 else np.uint64)
     return np.array([np.nan if value is None else value for value in values], dtype=np.float64)

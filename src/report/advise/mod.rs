@@ -80,6 +80,11 @@ pub fn json(advice: &Advice) -> Result<String, ReportError> {
     fields::json(&Joined::of_files(), joined(advice))
 }
 
+/// Returns the rows as a JSON object of columns; unknown is `null`.
+pub fn columns(advice: &Advice) -> Result<String, ReportError> {
+    fields::columns(&Joined::of_files(), &joined(advice).collect::<Vec<_>>())
+}
+
 /// Returns every file of an advice.
 pub fn render(advice: &Advice) -> Result<Vec<Artifact>, ReportError> {
     let mut files = vec![

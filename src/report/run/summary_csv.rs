@@ -40,11 +40,19 @@ pub fn csv(record: &Record) -> Result<String, ReportError> {
 /// Returns the rows of a record as a JSON array of objects, one per line. The names are the columns of the CSV, and
 /// `lookups_pmf`, an array that is empty if it is unknown or long.
 pub fn json(record: &Record) -> Result<String, ReportError> {
+    fields::json(&with_lists(), lines(record))
+}
+
+/// Returns the rows of a record as a JSON object of columns, with the names of [`json`].
+pub fn columns(record: &Record) -> Result<String, ReportError> {
+    fields::columns(&with_lists(), &lines(record).collect::<Vec<_>>())
+}
+
+fn with_lists<'a>() -> Vec<Field<Line<'a>>> {
     let lists: Vec<Field<Line>> = fields! {
         "lookups_pmf": "Probabilities of 0, 1, … lookups" = |line| &line.experiment.lookups_pmf;
     };
-    let all: Vec<_> = Line::of_files().into_iter().chain(lists).collect();
-    fields::json(&all, lines(record))
+    Line::of_files().into_iter().chain(lists).collect()
 }
 
 /// Returns the file with one row for each experiment and channel.
