@@ -16,8 +16,8 @@ use super::{Extinction, Facts, Field, Inlined, Medium};
 use numeric::fused::in_fused_code;
 use numeric::geometry::Bounds;
 use numeric::pack::{self, Task, WIDTH};
-use numeric::twin::PAIR;
-use numeric::{Lane, Twin};
+use numeric::pair::PAIR_WIDTH;
+use numeric::{Lane, Pair};
 
 /// A field at places of N coordinates, as one formula for every lane type.
 trait Formula<const N: usize>: Send + Sync {
@@ -66,7 +66,7 @@ trait Batch<const N: usize>: Send + Sync {
     fn one(&self, place: [f64; N]) -> f64;
 
     /// `σ_t` at the places of two packs.
-    fn pair(&self, places: &[[f64; PAIR]; N]) -> [f64; PAIR];
+    fn pair(&self, places: &[[f64; PAIR_WIDTH]; N]) -> [f64; PAIR_WIDTH];
 
     /// `σ_t` at the places of one pack.
     fn pack(&self, places: &[[f64; WIDTH]; N]) -> [f64; WIDTH];
@@ -89,18 +89,18 @@ impl<const N: usize, F: Formula<N>, S: Simd> Batch<N> for Compiled<F, S> {
         )
     }
 
-    fn pair(&self, places: &[[f64; PAIR]; N]) -> [f64; PAIR] {
+    fn pair(&self, places: &[[f64; PAIR_WIDTH]; N]) -> [f64; PAIR_WIDTH] {
         self.simd.vectorize(
             #[inline(always)]
             || {
-                // Not as twins: draws along the ray have the bits of scalars.
+                // Not as a pair: draws along the ray have the bits of scalars.
                 let zero = f64x8::splat(self.simd, 0.0);
                 let (mut first, mut second) = ([zero; N], [zero; N]);
                 for (axis, row) in places.iter().enumerate() {
-                    Twin(first[axis], second[axis]) = Twin::from_slice(self.simd, row);
+                    Pair(first[axis], second[axis]) = Pair::from_slice(self.simd, row);
                 }
-                let mut found = [0.0; PAIR];
-                Twin(self.formula.at(first), self.formula.at(second)).store_slice(&mut found);
+                let mut found = [0.0; PAIR_WIDTH];
+                Pair(self.formula.at(first), self.formula.at(second)).store_slice(&mut found);
                 found
             },
         )
@@ -168,7 +168,7 @@ impl<const N: usize, F: Formula<N>> Batch<N> for OneByOne<F> {
         )
     }
 
-    fn pair(&self, places: &[[f64; PAIR]; N]) -> [f64; PAIR] {
+    fn pair(&self, places: &[[f64; PAIR_WIDTH]; N]) -> [f64; PAIR_WIDTH] {
         self.each(places)
     }
 
@@ -251,13 +251,13 @@ impl<'a> Lookups<'a> {
 
     /// `σ_t` at the distances of two packs.
     #[inline(always)]
-    pub fn pair<S: Simd>(&self, simd: S, t: Twin<f64x8<S>>) -> Twin<f64x8<S>> {
+    pub fn pair<S: Simd>(&self, simd: S, t: Pair<f64x8<S>>) -> Pair<f64x8<S>> {
         if let Some(value) = self.single_value {
-            return Twin::splat(simd, value);
+            return Pair::splat(simd, value);
         }
-        let mut row = [[0.0; PAIR]];
+        let mut row = [[0.0; PAIR_WIDTH]];
         t.store_slice(&mut row[0]);
-        Twin::from_slice(simd, &self.batch.pair(&row))
+        Pair::from_slice(simd, &self.batch.pair(&row))
     }
 
     /// Replaces distances by `σ_t`, with the bits that each has by itself.
@@ -305,10 +305,10 @@ impl<'a> Batches<'a> {
 
     /// `σ_t` at the points of two packs.
     #[inline(always)]
-    pub fn pair<S: Simd>(&self, simd: S, points: &[[f64; PAIR]; 3]) -> Twin<f64x8<S>> {
+    pub fn pair<S: Simd>(&self, simd: S, points: &[[f64; PAIR_WIDTH]; 3]) -> Pair<f64x8<S>> {
         match self.single_value {
-            Some(value) => Twin::splat(simd, value),
-            None => Twin::from_slice(simd, &self.batch.pair(points)),
+            Some(value) => Pair::splat(simd, value),
+            None => Pair::from_slice(simd, &self.batch.pair(points)),
         }
     }
 

@@ -5,13 +5,13 @@
 //! ```
 //!
 //! Sums and products are exact pairs (Knuth's sum of two, and the product by a fused multiply-add),
-//! renormalised: `+ − ×` to 2⁻¹⁰⁴, `÷` and `√` to 2⁻¹⁰², relative. [`Wide::exp`] halves its argument
-//! nine times before a Taylor series of 12 terms, [`Wide::ln`] is one Newton step from the platform's;
-//! both are good to 1e-30 relative to `1 + |x|`. Nothing that a draw computes is made of these: they are
-//! what `trueflight stress` measures doubles against.
+//! renormalised: `+ − ×` to 2⁻¹⁰⁴, `÷` and `√` to 2⁻¹⁰², relative. [`DoubleDouble::exp`] halves its
+//! argument nine times before a Taylor series of 12 terms, [`DoubleDouble::ln`] is one Newton step from the
+//! platform's; both are good to 1e-30 relative to `1 + |x|`. Nothing that a draw computes is made of these:
+//! they are what `trueflight stress` measures doubles against.
 //!
 //! Sources: T. J. Dekker, *A Floating-Point Technique for Extending the Available Precision*, Numerische
-//! Mathematik 18 (1971); Y. Hida, X. S. Li, D. H. Bailey, *Algorithms for Quad-Wide Precision
+//! Mathematik 18 (1971); Y. Hida, X. S. Li, D. H. Bailey, *Algorithms for Quad-DoubleDouble Precision
 //! Floating Point Arithmetic*, 15th IEEE Symposium on Computer Arithmetic (2001).
 
 use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub};
@@ -20,7 +20,7 @@ use super::Lane;
 
 /// A number of about 32 digits, or a pack of them.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct Wide<L = f64> {
+pub struct DoubleDouble<L = f64> {
     /// The number, rounded to a double.
     pub high: L,
     /// Rounding error of `high`: the number less `high`.
@@ -29,27 +29,27 @@ pub struct Wide<L = f64> {
 
 /// The sum of two doubles and its rounding error, exactly.
 #[inline(always)]
-pub fn two_sum<L: Lane>(a: L, b: L) -> Wide<L> {
+pub fn two_sum<L: Lane>(a: L, b: L) -> DoubleDouble<L> {
     let high = a + b;
     let moved = high - a;
-    Wide { high, low: (a - (high - moved)) + (b - moved) }
+    DoubleDouble { high, low: (a - (high - moved)) + (b - moved) }
 }
 
 /// The sum of two doubles with `|a| ≥ |b|` or `a = 0` and its rounding error, exactly.
 #[inline(always)]
-fn quick_two_sum<L: Lane>(a: L, b: L) -> Wide<L> {
+fn quick_two_sum<L: Lane>(a: L, b: L) -> DoubleDouble<L> {
     let high = a + b;
-    Wide { high, low: b - (high - a) }
+    DoubleDouble { high, low: b - (high - a) }
 }
 
 /// The product of two doubles and its rounding error, exactly but for underflow.
 #[inline(always)]
-pub fn two_prod<L: Lane>(a: L, b: L) -> Wide<L> {
+pub fn two_prod<L: Lane>(a: L, b: L) -> DoubleDouble<L> {
     let high = a * b;
-    Wide { high, low: a.fused(b, -high) }
+    DoubleDouble { high, low: a.fused(b, -high) }
 }
 
-impl<L: Lane> Wide<L> {
+impl<L: Lane> DoubleDouble<L> {
     /// `self · factor`.
     #[must_use]
     #[inline(always)]
@@ -69,7 +69,7 @@ impl<L: Lane> Wide<L> {
     }
 }
 
-impl Wide {
+impl DoubleDouble {
     /// ln 2.
     pub const LN_2: Self = Self { high: std::f64::consts::LN_2, low: 2.319_046_813_846_299_6e-17 };
     /// π.
@@ -222,13 +222,13 @@ impl Wide {
     }
 }
 
-impl From<f64> for Wide {
+impl From<f64> for DoubleDouble {
     fn from(high: f64) -> Self {
         Self { high, low: 0.0 }
     }
 }
 
-impl<L: Lane> Add for Wide<L> {
+impl<L: Lane> Add for DoubleDouble<L> {
     type Output = Self;
     #[inline(always)]
     fn add(self, other: Self) -> Self {
@@ -238,7 +238,7 @@ impl<L: Lane> Add for Wide<L> {
     }
 }
 
-impl<L: Lane> Sub for Wide<L> {
+impl<L: Lane> Sub for DoubleDouble<L> {
     type Output = Self;
     #[inline(always)]
     fn sub(self, other: Self) -> Self {
@@ -246,7 +246,7 @@ impl<L: Lane> Sub for Wide<L> {
     }
 }
 
-impl<L: Lane> Neg for Wide<L> {
+impl<L: Lane> Neg for DoubleDouble<L> {
     type Output = Self;
     #[inline(always)]
     fn neg(self) -> Self {
@@ -254,7 +254,7 @@ impl<L: Lane> Neg for Wide<L> {
     }
 }
 
-impl<L: Lane> Mul for Wide<L> {
+impl<L: Lane> Mul for DoubleDouble<L> {
     type Output = Self;
     #[inline(always)]
     fn mul(self, other: Self) -> Self {
@@ -264,7 +264,7 @@ impl<L: Lane> Mul for Wide<L> {
     }
 }
 
-impl<L: Lane> Div for Wide<L> {
+impl<L: Lane> Div for DoubleDouble<L> {
     type Output = Self;
     #[inline(always)]
     fn div(self, other: Self) -> Self {
@@ -281,7 +281,7 @@ impl<L: Lane> Div for Wide<L> {
 macro_rules! with_doubles {
     ($($Trait:ident::$method:ident),*) => {
         $(
-            impl $Trait<f64> for Wide {
+            impl $Trait<f64> for DoubleDouble {
                 type Output = Self;
                 #[inline]
                 fn $method(self, other: f64) -> Self {
@@ -289,11 +289,11 @@ macro_rules! with_doubles {
                 }
             }
 
-            impl $Trait<Wide> for f64 {
-                type Output = Wide;
+            impl $Trait<DoubleDouble> for f64 {
+                type Output = DoubleDouble;
                 #[inline]
-                fn $method(self, other: Wide) -> Wide {
-                    $Trait::$method(Wide::from(self), other)
+                fn $method(self, other: DoubleDouble) -> DoubleDouble {
+                    $Trait::$method(DoubleDouble::from(self), other)
                 }
             }
         )*
@@ -301,7 +301,7 @@ macro_rules! with_doubles {
 }
 with_doubles! { Add::add, Sub::sub, Mul::mul, Div::div }
 
-impl AddAssign<f64> for Wide {
+impl AddAssign<f64> for DoubleDouble {
     #[inline]
     fn add_assign(&mut self, x: f64) {
         let sum = two_sum(self.high, x);
@@ -309,14 +309,14 @@ impl AddAssign<f64> for Wide {
     }
 }
 
-impl AddAssign for Wide {
+impl AddAssign for DoubleDouble {
     #[inline]
     fn add_assign(&mut self, x: Self) {
         *self = *self + x;
     }
 }
 
-impl std::iter::Sum for Wide {
+impl std::iter::Sum for DoubleDouble {
     fn sum<I: Iterator<Item = Self>>(terms: I) -> Self {
         terms.fold(Self::default(), |sum, term| sum + term)
     }
@@ -326,7 +326,7 @@ impl std::iter::Sum for Wide {
 mod tests {
     use super::*;
 
-    fn near(found: Wide, exact: Wide, tolerance: f64) {
+    fn near(found: DoubleDouble, exact: DoubleDouble, tolerance: f64) {
         let off = (found - exact).abs().value();
         assert!(off <= tolerance * exact.high.abs().max(1e-300), "{found:?} {exact:?}: {off:e}");
     }
@@ -334,41 +334,42 @@ mod tests {
     #[test]
     fn constants_of_31_digits() {
         // e, e⁻¹⁰, ln 10, √2, sin 1 and cos 1, from tables of 40 digits, as two doubles.
-        let e = Wide { high: std::f64::consts::E, low: 1.445_646_891_729_250_2e-16 };
-        near(Wide::ONE.exp(), e, 1e-30);
-        let ln_10 = Wide { high: std::f64::consts::LN_10, low: -2.170_756_223_382_249_4e-16 };
-        near(Wide::from(10.0).ln(), ln_10, 1e-30);
-        let root = Wide { high: std::f64::consts::SQRT_2, low: -9.667_293_313_452_913e-17 };
-        near(Wide::from(2.0).sqrt(), root, 1e-31);
+        let e = DoubleDouble { high: std::f64::consts::E, low: 1.445_646_891_729_250_2e-16 };
+        near(DoubleDouble::ONE.exp(), e, 1e-30);
+        let ln_10 =
+            DoubleDouble { high: std::f64::consts::LN_10, low: -2.170_756_223_382_249_4e-16 };
+        near(DoubleDouble::from(10.0).ln(), ln_10, 1e-30);
+        let root = DoubleDouble { high: std::f64::consts::SQRT_2, low: -9.667_293_313_452_913e-17 };
+        near(DoubleDouble::from(2.0).sqrt(), root, 1e-31);
     }
 
     #[test]
     fn inverse_functions_undo_each_other() {
         for i in 1..200 {
-            let x = Wide::ratio(f64::from(i), 7.0);
+            let x = DoubleDouble::ratio(f64::from(i), 7.0);
             near(x.ln().exp(), x, 1e-29);
             near(x.exp().ln(), x, 1e-29);
-            near((x / Wide::from(3.0)) * Wide::from(3.0), x, 1e-31);
+            near((x / DoubleDouble::from(3.0)) * DoubleDouble::from(3.0), x, 1e-31);
             near(x.sqrt() * x.sqrt(), x, 1e-31);
             let tiny = x.scaled(-60);
             near(tiny.exp_m1().ln_1p(), tiny, 1e-29);
-            near((-x).exp_m1(), (-x).exp() - Wide::ONE, 1e-29);
+            near((-x).exp_m1(), (-x).exp() - DoubleDouble::ONE, 1e-29);
             let [sine, cosine] = x.sin_cos();
-            near(sine * sine + cosine * cosine, Wide::ONE, 1e-29);
+            near(sine * sine + cosine * cosine, DoubleDouble::ONE, 1e-29);
         }
     }
 
     #[test]
     fn sine_and_cosine_of_known_angles() {
-        let [sine, cosine] = (Wide::PI / Wide::from(6.0)).sin_cos();
-        near(sine, Wide::from(0.5), 1e-30);
-        near(cosine * cosine, Wide::from(0.75), 1e-30);
+        let [sine, cosine] = (DoubleDouble::PI / DoubleDouble::from(6.0)).sin_cos();
+        near(sine, DoubleDouble::from(0.5), 1e-30);
+        near(cosine * cosine, DoubleDouble::from(0.75), 1e-30);
     }
 
     #[test]
     fn what_cancels_is_kept() {
-        let x = Wide::from(1.0) + Wide::from(1e-25);
-        assert!(((x - Wide::ONE).value() / 1e-25 - 1.0).abs() < 1e-6);
+        let x = DoubleDouble::from(1.0) + DoubleDouble::from(1e-25);
+        assert!(((x - DoubleDouble::ONE).value() / 1e-25 - 1.0).abs() < 1e-6);
         assert_eq!(
             two_prod(1.0 + f64::EPSILON, 1.0 + f64::EPSILON).low,
             f64::EPSILON * f64::EPSILON
@@ -378,9 +379,9 @@ mod tests {
 
     #[test]
     fn far_arguments_do_as_doubles_do() {
-        assert_eq!(Wide::from(800.0).exp().high, f64::INFINITY);
-        assert_eq!(Wide::from(-800.0).exp().high, 0.0);
-        assert!(Wide::from(-1.0).ln().high.is_nan());
-        assert_eq!(Wide::from(-2.0).abs().high, 2.0);
+        assert_eq!(DoubleDouble::from(800.0).exp().high, f64::INFINITY);
+        assert_eq!(DoubleDouble::from(-800.0).exp().high, 0.0);
+        assert!(DoubleDouble::from(-1.0).ln().high.is_nan());
+        assert_eq!(DoubleDouble::from(-2.0).abs().high, 2.0);
     }
 }

@@ -220,7 +220,7 @@ mod tests {
     use fearless_simd::{Level, Simd, SimdBase, f64x8};
 
     use super::super::pack::{Task, WIDTH, on};
-    use super::super::single::{Fused, Plain};
+    use super::super::scalar_lane::{Fused, Plain};
     use super::*;
 
     /// One of the functions on every lane type of this machine.

@@ -7,7 +7,7 @@
 //!
 //! `pack` chooses code by the same rules. Loops that the compiler vectorizes by itself do not need packs.
 
-use super::single::{Fused, Plain, Single};
+use super::scalar_lane::{Fused, Plain, ScalarLane};
 
 /// Types that prove that the processor has some instructions. One list makes both the query and the compiled code.
 #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
@@ -87,7 +87,7 @@ pub trait Loop {
     type Output;
 
     /// Runs the loop. All that it calls is `#[inline(always)]`: other code would be compiled for the baseline.
-    fn run<L: Single>(self) -> Self::Output;
+    fn run<L: ScalarLane>(self) -> Self::Output;
 }
 
 /// Runs a loop in the rounding of [`super::Lane`] for `f64`, by the widest code that the machine has.

@@ -1,7 +1,7 @@
 //! The number type that formulas are written in.
 //!
 //! A field of a medium is one formula, generic over a lane type: `f64`, or a pack of eight doubles
-//! (`pack`) that is treated element by element, or two packs (`twin`). Control flow (loops, early exits) stays
+//! (`pack`) that is treated element by element, or two packs (`pair`). Control flow (loops, early exits) stays
 //! outside; within a formula a choice is a [`Lane::select`].
 //!
 //! Where the machine multiplies and adds in one rounding, lanes do, and `f64` rounds as packs do:
@@ -13,7 +13,7 @@ use std::ops::{Add, Div, Mul, Neg, Sub};
 use super::elementary;
 use super::fused::fuses;
 use super::mask::Mask;
-use super::single::{self, Fused, Plain};
+use super::scalar_lane::{self, Fused, Plain};
 use super::words::Words32;
 
 /// Number of elements of a pack.
@@ -399,12 +399,12 @@ impl Lane for f64 {
 
     #[inline(always)]
     fn entry(self, list: &[f64]) -> Self {
-        list[single::place(self, list.len())]
+        list[scalar_lane::place(self, list.len())]
     }
 
     #[inline(always)]
     fn columns(self, table: &[Row]) -> [Self; 5] {
-        let [a, b, c, d, e, ..] = table[single::place(self, table.len())].0;
+        let [a, b, c, d, e, ..] = table[scalar_lane::place(self, table.len())].0;
         [a, b, c, d, e]
     }
 }

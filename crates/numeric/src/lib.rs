@@ -16,23 +16,23 @@ pub mod mask;
 pub mod matrix;
 #[cfg(feature = "packs")]
 pub mod pack;
+#[cfg(feature = "packs")]
+pub mod pair;
 pub mod quadrature;
 pub mod rng;
 pub mod roots;
-pub mod single;
+pub mod scalar_lane;
 pub mod sum;
-#[cfg(feature = "packs")]
-pub mod twin;
 pub mod words;
 
 pub use cumulative::Cumulative;
-pub use double_double::Wide;
+pub use double_double::DoubleDouble;
 pub use exponential_integral::exponential_integrals;
 pub use jet::{Jet, Scalar};
 pub use known::{Grade, Known, Span};
 pub use lane::{Lane, Row};
 pub use mask::{Kept, Mask};
-pub use single::{Fused, Narrow, Plain, Single};
 #[cfg(feature = "packs")]
-pub use twin::Twin;
+pub use pair::Pair;
+pub use scalar_lane::{F32, Fused, Plain, ScalarLane};
 pub use words::Words32;

@@ -15,7 +15,7 @@ use media::Lookups;
 use media::sampling::FlightWithGaps;
 use numeric::pack::{self, Task, WIDTH};
 use numeric::rng::{LANES, Random};
-use numeric::{Lane, Twin};
+use numeric::{Lane, Pair};
 use theory::problems::BidirectionalRod;
 
 /// Makes the draws of a request on the hardware of a level. Returns the request where the hardware is too narrow,
@@ -50,7 +50,7 @@ impl<P: WalkEvents + Copy> Task for Draws<'_, '_, P> {
         let Some(sampling) = setup.fields.sampling.with_gaps() else { return };
         buffer.make_room(count);
         buffer.defects.fill(0.0);
-        let zero = Twin::splat(simd, 0.0);
+        let zero = Pair::splat(simd, 0.0);
         let begin = FlightWithGaps::new(zero, sampling);
         let ends = [begin, begin.from_end()];
         let [first, second] = streams.packs();
@@ -60,7 +60,7 @@ impl<P: WalkEvents + Copy> Task for Draws<'_, '_, P> {
             let draws = Batch { base, turn: streams.turn };
             let lives = draws.lives(count);
             let first = mask64x8::from_bitmask(simd, lives & 0xff);
-            let lives = Twin(first, mask64x8::from_bitmask(simd, lives >> WIDTH));
+            let lives = Pair(first, mask64x8::from_bitmask(simd, lives >> WIDTH));
             let channels = draw_each(&steps, &mut tracker, lives, &mut random);
             draws.write(&tracker.values[..channels], &tracker.lookups, buffer);
         }
@@ -76,15 +76,15 @@ struct InPairs<'a, S> {
     medium: &'a Lookups<'a>,
 }
 
-impl<S: Simd> Field<Twin<f64x8<S>>> for InPairs<'_, S> {
+impl<S: Simd> Field<Pair<f64x8<S>>> for InPairs<'_, S> {
     #[inline(always)]
-    fn extinction(&self, t: Twin<f64x8<S>>) -> Twin<f64x8<S>> {
+    fn extinction(&self, t: Pair<f64x8<S>>) -> Pair<f64x8<S>> {
         self.medium.pair(self.simd, t)
     }
 
     #[inline(always)]
-    fn exp(&self, x: Twin<f64x8<S>>) -> Twin<f64x8<S>> {
-        Twin(x.0.exp(), x.1.exp())
+    fn exp(&self, x: Pair<f64x8<S>>) -> Pair<f64x8<S>> {
+        Pair(x.0.exp(), x.1.exp())
     }
 }
 
@@ -92,25 +92,25 @@ impl<S: Simd> Field<Twin<f64x8<S>>> for InPairs<'_, S> {
 #[derive(Clone, Copy)]
 struct Both<S: Simd>(Numbers<S>, Numbers<S>);
 
-impl<S: Simd> Random<Twin<f64x8<S>>> for Both<S> {
+impl<S: Simd> Random<Pair<f64x8<S>>> for Both<S> {
     #[inline(always)]
-    fn uniform(&mut self) -> Twin<f64x8<S>> {
-        Twin(self.0.uniform(), self.1.uniform())
+    fn uniform(&mut self) -> Pair<f64x8<S>> {
+        Pair(self.0.uniform(), self.1.uniform())
     }
 
     #[inline(always)]
-    fn ln_uniform(&mut self) -> Twin<f64x8<S>> {
-        Twin(self.0.ln_uniform(), self.1.ln_uniform())
+    fn ln_uniform(&mut self) -> Pair<f64x8<S>> {
+        Pair(self.0.ln_uniform(), self.1.ln_uniform())
     }
 
     #[inline(always)]
-    fn uniform_where(&mut self, which: Twin<mask64x8<S>>) -> Twin<f64x8<S>> {
-        Twin(self.0.uniform_where(which.0), self.1.uniform_where(which.1))
+    fn uniform_where(&mut self, which: Pair<mask64x8<S>>) -> Pair<f64x8<S>> {
+        Pair(self.0.uniform_where(which.0), self.1.uniform_where(which.1))
     }
 
     #[inline(always)]
-    fn ln_uniform_where(&mut self, which: Twin<mask64x8<S>>) -> Twin<f64x8<S>> {
-        Twin(self.0.ln_uniform_where(which.0), self.1.ln_uniform_where(which.1))
+    fn ln_uniform_where(&mut self, which: Pair<mask64x8<S>>) -> Pair<f64x8<S>> {
+        Pair(self.0.ln_uniform_where(which.0), self.1.ln_uniform_where(which.1))
     }
 }
 
@@ -135,12 +135,12 @@ impl Batch {
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // a count
     fn write<S: Simd>(
         &self,
-        values: &[Twin<f64x8<S>>],
-        lookups: &Twin<f64x8<S>>,
+        values: &[Pair<f64x8<S>>],
+        lookups: &Pair<f64x8<S>>,
         buffer: &mut DrawBuffer,
     ) {
-        let of = |twin: &Twin<f64x8<S>>, lane: usize| {
-            let pack = if lane < WIDTH { &twin.0 } else { &twin.1 };
+        let of = |pair: &Pair<f64x8<S>>, lane: usize| {
+            let pack = if lane < WIDTH { &pair.0 } else { &pair.1 };
             pack.as_slice()[lane % WIDTH]
         };
         for lane in 0..LANES {

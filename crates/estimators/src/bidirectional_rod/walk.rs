@@ -15,9 +15,9 @@ use crate::{Draw, Setup};
 use media::sampling::{BothWays, FlightOverPieces, FlightWithGaps};
 use media::{Extinction, Lookups};
 use numeric::fused::{Loop, in_own_rounding};
+use numeric::pair::PAIR_WIDTH;
 use numeric::rng::{Random, Stream};
-use numeric::twin::PAIR;
-use numeric::{Lane, Mask, Single, Span};
+use numeric::{Lane, Mask, ScalarLane, Span};
 use theory::bidirectional_rod::{Combination, quotient};
 use theory::problems::bidirectional_rod::{HIGHEST_ORDER, MOST, Sensor, Values};
 use theory::problems::{BidirectionalRod, Problem};
@@ -167,7 +167,7 @@ impl<S: WalkEvents> Loop for One<'_, S> {
     type Output = Draw<Values>;
 
     #[inline(always)]
-    fn run<L: Single>(self) -> Draw<Values> {
+    fn run<L: ScalarLane>(self) -> Draw<Values> {
         let Self { steps, setup, medium, random } = self;
         let (zero, alone) = (L::of(0.0), Alone(medium));
         if let Some(even) = setup.fields.sampling.with_gaps() {
@@ -182,7 +182,7 @@ impl<S: WalkEvents> Loop for One<'_, S> {
 
 #[inline(always)]
 #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // a count
-fn through<L: Single, C: BothWays<L>>(
+fn through<L: ScalarLane, C: BothWays<L>>(
     steps: &impl WalkEvents,
     mut tracker: Tracker<'_, L, C, impl Field<L>>,
     random: &mut Stream,
@@ -385,12 +385,12 @@ fn attenuate<L: Lane>(
 /// Minus the optical depths between distances, of the lanes in `which`; 0 in the others.
 #[inline(always)]
 fn minus_depths<L: Lane>(problem: &BidirectionalRod, [a, b]: [L; 2], which: L::Mask) -> L {
-    let (mut from, mut to, mut found) = ([0.0; PAIR], [0.0; PAIR], [0.0; PAIR]);
+    let (mut from, mut to, mut found) = ([0.0; PAIR_WIDTH], [0.0; PAIR_WIDTH], [0.0; PAIR_WIDTH]);
     a.or_less(b).store(&mut from);
     a.or_more(b).store(&mut to);
     let mut bits = which.bits();
     while bits != 0 {
-        let lane = bits.trailing_zeros() as usize % PAIR;
+        let lane = bits.trailing_zeros() as usize % PAIR_WIDTH;
         bits &= bits - 1;
         found[lane] = -problem.medium().optical_depth(Span::new(from[lane], to[lane])).value;
     }

@@ -12,7 +12,7 @@ use super::walk::InSpace;
 use crate::walks::{self, plain};
 use crate::{Draw, Request};
 use media::Majorants;
-use numeric::Single;
+use numeric::ScalarLane;
 use numeric::fused::{Loop, in_own_rounding};
 use numeric::rng::{Random, Stream};
 use theory::problems::{Albedo, Channels, Scene};
@@ -44,7 +44,7 @@ impl<V: Channels, T: Tally, S: WalkEvents, const SPLITS: bool> Loop for One<'_, 
     type Output = Draw<V>;
 
     #[inline(always)]
-    fn run<L: Single>(self) -> Draw<V> {
+    fn run<L: ScalarLane>(self) -> Draw<V> {
         let Self { walk, splitting, random, .. } = self;
         follow::<L, V, T, SPLITS>(&walk, splitting, plain::in_doubles(&walk), random)
     }
@@ -52,7 +52,7 @@ impl<V: Channels, T: Tally, S: WalkEvents, const SPLITS: bool> Loop for One<'_, 
 
 /// Makes one draw in any lane of one number, given the value of a field of the walk at a place.
 #[inline(always)]
-pub fn follow<L: Single, V: Channels, T: Tally, const SPLITS: bool>(
+pub fn follow<L: ScalarLane, V: Channels, T: Tally, const SPLITS: bool>(
     walk: &InSpace<T, impl WalkEvents>,
     splitting: Splitting,
     look_up: impl Fn(usize, [L; 3]) -> L,

@@ -10,13 +10,13 @@ use super::walk::InSpace;
 use crate::Draw;
 use crate::walks::Walk;
 use crate::walks::plain::{look_up_in_space, scored};
-use numeric::Single;
+use numeric::ScalarLane;
 use numeric::rng::Random;
 use theory::problems::Channels;
 
 /// Makes one draw: follows a walk and the particles that split off to their ends.
 #[inline(always)]
-pub fn follow<L: Single, V: Channels, T: Tally, S: WalkEvents>(
+pub fn follow<L: ScalarLane, V: Channels, T: Tally, S: WalkEvents>(
     walk: &InSpace<T, S>,
     splitting: Splitting,
     look_up: impl Fn(usize, [L; 3]) -> L,

@@ -18,9 +18,9 @@ use crate::{DrawBuffer, Request};
 use media::body::MAX_CHANNELS;
 use media::sampling::BothWays;
 use numeric::pack::{self, WIDTH};
+use numeric::pair::PAIR_WIDTH;
 use numeric::rng::LANES;
-use numeric::twin::PAIR;
-use numeric::{Lane, Mask, Twin};
+use numeric::{Lane, Mask, Pair};
 
 /// Eight walks. The walk itself is outside the pack: a call may take its address, and would take that of the pack.
 /// The state is outside, too: an index into a list of it would keep everything in memory.
@@ -307,7 +307,7 @@ pub fn run<S: Simd, W: Walk, C: BothWays<f64x8<S>>>(
     simd: S,
     walk: W,
     course: C,
-    look_up: impl Fn(usize, Twin<f64x8<S>>) -> Twin<f64x8<S>>,
+    look_up: impl Fn(usize, Pair<f64x8<S>>) -> Pair<f64x8<S>>,
     request: Request,
 ) {
     let Request { streams, count, buffer } = request;
@@ -335,14 +335,14 @@ pub fn run<S: Simd, W: Walk, C: BothWays<f64x8<S>>>(
         let is_branched =
             const { W::IN_SPACE || W::IS_CHROMATIC && !matches!(W::SCORES, Scores::AtOnce) };
         let walk = if is_branched { black_box(own) } else { own };
-        let t = Twin(
+        let t = Pair(
             pack.fly(walk, &mut state, &mut first),
             other.fly(walk, &mut other_state, &mut second),
         );
-        let mut found = Twin(none[0], none[0]);
+        let mut found = Pair(none[0], none[0]);
         if W::ON_RAY && W::IS_CHROMATIC {
             for channel in 0..media {
-                let Twin(here, there) = look_up(channel, t);
+                let Pair(here, there) = look_up(channel, t);
                 (channels[channel], other_channels[channel]) = (here, there);
             }
         } else if W::ON_RAY {
@@ -392,20 +392,20 @@ fn look_up_in_space<S: Simd, W: Walk>(
     if !(inside | other_inside).any_true() {
         return;
     }
-    let mut places = [[0.0; PAIR]; 3];
+    let mut places = [[0.0; PAIR_WIDTH]; 3];
     for (axis, row) in places.iter_mut().enumerate() {
-        Twin(place[axis], other_place[axis]).store_slice(row);
+        Pair(place[axis], other_place[axis]).store_slice(row);
     }
     let fields = walk.fields();
     if W::IS_CHROMATIC {
         for (number, field) in fields.iter().enumerate() {
-            Twin(found[number], other[number]) = field.pair(simd, &places);
+            Pair(found[number], other[number]) = field.pair(simd, &places);
         }
         return;
     }
     // No index: the loop keeps one pack in registers.
-    Twin(found[0], other[0]) = fields[0].pair(simd, &places);
+    Pair(found[0], other[0]) = fields[0].pair(simd, &places);
     if let Some(second) = fields.get(1) {
-        Twin(found[1], other[1]) = second.pair(simd, &places);
+        Pair(found[1], other[1]) = second.pair(simd, &places);
     }
 }

@@ -10,7 +10,7 @@ use media::{Control, Extinction, Inlined, Lookups, Piecewise};
 use numeric::fused::{Loop, in_fused_code, in_own_rounding};
 use numeric::pack::{self, Task};
 use numeric::rng::Stream;
-use numeric::{Single, Twin};
+use numeric::{Pair, ScalarLane};
 use theory::problems::Channels;
 
 /// Maximum number of pieces of σ̂ or of the control for packs. With more, lanes that cross pieces delay the others
@@ -75,7 +75,7 @@ where
     type Output = ();
 
     #[inline(always)]
-    fn run<L: Single>(self) {
+    fn run<L: ScalarLane>(self) {
         let Request { streams, count, buffer } = self.request;
         buffer.clear();
         for _ in 0..count {
@@ -229,7 +229,7 @@ impl<W: Walk> Task for SideBySide<'_, '_, W> {
             return outlined(simd, *walk, course, medium, request);
         }
         if let Some(value) = medium.single_value() {
-            let value = Twin::splat(simd, value);
+            let value = Pair::splat(simd, value);
             return in_window(
                 simd,
                 *walk,
@@ -328,7 +328,7 @@ fn in_window<S: Simd, W: Walk, C: BothWays<f64x8<S>>>(
     simd: S,
     walk: W,
     course: C,
-    look_up: impl Fn(Twin<f64x8<S>>) -> Twin<f64x8<S>>,
+    look_up: impl Fn(Pair<f64x8<S>>) -> Pair<f64x8<S>>,
     request: Request,
 ) {
     pack::outlined(
@@ -340,6 +340,6 @@ fn in_window<S: Simd, W: Walk, C: BothWays<f64x8<S>>>(
 
 /// `σ_t` of a field of a known type, with the bits of [`Lookups::pair`].
 #[inline(always)]
-fn each<S: Simd>(field: &impl media::Extinction, t: Twin<f64x8<S>>) -> Twin<f64x8<S>> {
-    Twin(field.extinction(t.0), field.extinction(t.1))
+fn each<S: Simd>(field: &impl media::Extinction, t: Pair<f64x8<S>>) -> Pair<f64x8<S>> {
+    Pair(field.extinction(t.0), field.extinction(t.1))
 }

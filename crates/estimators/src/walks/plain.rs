@@ -7,7 +7,7 @@ use crate::Draw;
 use media::body::MAX_CHANNELS;
 use media::sampling::{BothWays, FlightOverPieces, FlightWithGaps};
 use media::{Extinction, Lookups, Piecewise};
-use numeric::Single;
+use numeric::ScalarLane;
 use numeric::fused::{Loop, in_own_rounding};
 use numeric::geometry::Point;
 use numeric::rng::{Random, Stream};
@@ -36,7 +36,7 @@ impl<W: Walk, V: Channels> Loop for One<'_, W, V> {
     type Output = Draw<V>;
 
     #[inline(always)]
-    fn run<L: Single>(self) -> Draw<V> {
+    fn run<L: ScalarLane>(self) -> Draw<V> {
         let Self { walk, sampling, medium, random, .. } = self;
         through::<L, W, V>(
             walk,
@@ -50,7 +50,7 @@ impl<W: Walk, V: Channels> Loop for One<'_, W, V> {
 
 /// Makes one draw in any lane type of a single walk, given σ_t of a channel at a distance.
 #[inline(always)]
-pub fn through<L: Single, W: Walk, V: Channels>(
+pub fn through<L: ScalarLane, W: Walk, V: Channels>(
     walk: &W,
     sampling: &Piecewise,
     on_ray: impl Fn(usize, L) -> L,
@@ -72,7 +72,7 @@ pub fn through<L: Single, W: Walk, V: Channels>(
 
 /// Makes one draw of a walk with all its lookups in space, given the value of a field at a place.
 #[inline(always)]
-pub fn in_space<L: Single, V: Channels>(
+pub fn in_space<L: ScalarLane, V: Channels>(
     walk: &impl Walk,
     look_up: impl Fn(usize, [L; 3]) -> L,
     random: &mut impl Random<L>,
@@ -82,13 +82,13 @@ pub fn in_space<L: Single, V: Channels>(
 
 /// The values of a walk's own fields in space.
 #[inline(always)]
-pub fn in_doubles<L: Single>(walk: &impl Walk) -> impl Fn(usize, [L; 3]) -> L {
+pub fn in_doubles<L: ScalarLane>(walk: &impl Walk) -> impl Fn(usize, [L; 3]) -> L {
     #[inline(always)]
     |number, [x, y, z]| L::of(walk.field(number, Point([x.double(), y.double(), z.double()])))
 }
 
 #[inline(always)]
-fn follow<L: Single, W: Walk, V: Channels>(
+fn follow<L: ScalarLane, W: Walk, V: Channels>(
     walk: &W,
     course: impl BothWays<L>,
     (on_ray, in_space): (impl Fn(usize, L) -> L, impl Fn(usize, [L; 3]) -> L),
@@ -162,7 +162,7 @@ fn follow<L: Single, W: Walk, V: Channels>(
 
 /// The draw of a walk that has ended and is scored at once.
 #[inline(always)]
-pub fn scored<L: Single, W: Walk, V: Channels>(
+pub fn scored<L: ScalarLane, W: Walk, V: Channels>(
     walk: &W,
     state: &W::State<L>,
     left: bool,
@@ -176,7 +176,7 @@ pub fn scored<L: Single, W: Walk, V: Channels>(
 /// The number of lookups of a walk, given those that its driver counted.
 #[inline(always)]
 #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // a count
-fn counted<L: Single, W: Walk>(walk: &W, state: &W::State<L>, lookups: u32) -> u32 {
+fn counted<L: ScalarLane, W: Walk>(walk: &W, state: &W::State<L>, lookups: u32) -> u32 {
     if !W::PAUSES {
         return lookups;
     }
@@ -185,7 +185,7 @@ fn counted<L: Single, W: Walk>(walk: &W, state: &W::State<L>, lookups: u32) -> u
 
 /// The score of the numbers that a walk leaves, and its defect.
 #[inline(always)]
-fn score<L: Single, W: Walk>(
+fn score<L: ScalarLane, W: Walk>(
     walk: &W,
     state: &W::State<L>,
     left: bool,
@@ -203,7 +203,7 @@ fn score<L: Single, W: Walk>(
 
 /// Looks fields up in space, if the walk has a collision there; returns the number of lookups.
 #[inline(always)]
-pub fn look_up_in_space<L: Single, W: Walk>(
+pub fn look_up_in_space<L: ScalarLane, W: Walk>(
     walk: &W,
     state: &W::State<L>,
     look_up: &impl Fn(usize, [L; 3]) -> L,

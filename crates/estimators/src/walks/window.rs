@@ -20,7 +20,7 @@ use crate::Request;
 use media::sampling::BothWays;
 use numeric::pack::WIDTH;
 use numeric::rng::{LANES, PACKS, Random, Stream, Xoshiro};
-use numeric::{Lane, Mask, Twin};
+use numeric::{Lane, Mask, Pair};
 
 /// Number of steps between two searches for walks that ended; the bits of a lane in them fit into a word.
 const STEPS: usize = 64;
@@ -339,7 +339,7 @@ pub fn run<S: Simd, W: Walk, C: BothWays<f64x8<S>>>(
     simd: S,
     walk: W,
     course: C,
-    look_up: impl Fn(Twin<f64x8<S>>) -> Twin<f64x8<S>>,
+    look_up: impl Fn(Pair<f64x8<S>>) -> Pair<f64x8<S>>,
     request: Request,
 ) {
     // Not in `const`: branches of other walks mention this function, too.
@@ -366,7 +366,7 @@ pub fn run<S: Simd, W: Walk, C: BothWays<f64x8<S>>>(
         for step in 0..STEPS {
             let numbers = window.numbers(step, &mut streams, W::DECIDES);
             let other_numbers = other_window.numbers(step, &mut other_streams, W::DECIDES);
-            let t = Twin(pack.fly(&walk, &numbers), other.fly(&walk, &other_numbers));
+            let t = Pair(pack.fly(&walk, &numbers), other.fly(&walk, &other_numbers));
             let found = look_up(t);
             let bits = pack.collide(&walk, (t.0, found.0), &numbers, &mut window.rows[step]);
             window.note(step, bits, W::DECIDES);

@@ -21,7 +21,7 @@
 //! JRSS B 86 (2024), sections 4 and 5 (the grid of stakes is their Grid-Kelly).
 
 use super::capital::Gains;
-use numeric::Single;
+use numeric::ScalarLane;
 use numeric::fused::{self, Loop};
 
 /// Planned stakes against a correct mean in units of ε/V, each with its share of the capital of a side.
@@ -140,7 +140,7 @@ impl Loop for Sums<'_> {
     type Output = ();
 
     #[inline(always)]
-    fn run<L: Single>(self) {
+    fn run<L: ScalarLane>(self) {
         // Products of all factors side by side: a compiler vectorizes the loop over their logarithms.
         let mut products = vec![[0.0; LANES]; self.factors.len()];
         let mut logarithms = products.clone();

@@ -13,7 +13,7 @@
 //! Source: O. Catoni, *Challenging the empirical mean and empirical variance: a deviation study*,
 //! Annales de l'Institut Henri Poincaré B 48 (2012), 1148–1185, Eq. 2.1.
 
-use numeric::Single;
+use numeric::ScalarLane;
 use numeric::fused::{self, Loop};
 
 const LANES: usize = 8;
@@ -104,7 +104,7 @@ impl Loop for Counted<'_> {
     type Output = ();
 
     #[inline(always)]
-    fn run<L: Single>(self) {
+    fn run<L: ScalarLane>(self) {
         let (rows, rest) = self.y.as_chunks::<LANES>();
         let (times, last_times) = self.times.as_chunks::<LANES>();
         for (product, argument) in self.products.iter_mut().zip(self.arguments) {
@@ -125,7 +125,7 @@ impl Loop for Counted<'_> {
 
 /// `ψ(a y + b)` by this crate's own logarithm.
 #[inline(always)]
-fn terms<L: Single, const N: usize>(y: &[f64; N], argument: &Argument) -> [f64; N] {
+fn terms<L: ScalarLane, const N: usize>(y: &[f64; N], argument: &Argument) -> [f64; N] {
     let (mut terms, mut are_small) = ([0.0; N], true);
     for lane in 0..N {
         let t = L::of(y[lane]) * argument.slope + argument.shift;
@@ -155,7 +155,7 @@ impl<const N: usize> Loop for Each<'_, N> {
     type Output = ();
 
     #[inline(always)]
-    fn run<L: Single>(self) {
+    fn run<L: ScalarLane>(self) {
         for chunk in self.y.chunks(FLUSH) {
             // All products in memory before exponents are split off: then a compiler keeps the lanes of each in one register.
             let mut next = *self.products;
@@ -183,7 +183,7 @@ impl<const N: usize> Loop for Each<'_, N> {
 ///
 /// Each product is too large by 2 per draw, which cancels between them.
 #[inline(always)]
-fn factors<L: Single>(y: f64, argument: &Argument) -> (f64, f64) {
+fn factors<L: ScalarLane>(y: f64, argument: &Argument) -> (f64, f64) {
     let t = L::of(y).times_plus(L::of(argument.slope), L::of(argument.shift));
     let root = t.size() + 1.0;
     let factor = root.times_plus(root, L::of(1.0)).double();
@@ -193,7 +193,7 @@ fn factors<L: Single>(y: f64, argument: &Argument) -> (f64, f64) {
 impl Product {
     /// Multiplies by the factors of draws.
     #[inline(always)]
-    fn multiply<L: Single>(&mut self, y: &[f64], argument: &Argument) {
+    fn multiply<L: ScalarLane>(&mut self, y: &[f64], argument: &Argument) {
         let (rows, rest) = y.as_chunks::<LANES>();
         // Copies for the loop, which keeps them in registers.
         let (mut above, mut below) = (self.above, self.below);

@@ -25,7 +25,7 @@ use media::sampling::{BothWays, FlightOverPieces, FlightWithGaps};
 use media::{Control, Extinction, Lookups, Piecewise};
 use numeric::fused::{Loop, in_own_rounding};
 use numeric::rng::{Random, Stream};
-use numeric::{Lane, Single, Span};
+use numeric::{Lane, ScalarLane, Span};
 use theory::problems::Channels;
 
 /// Function of the walk so far and of the correct number, which returns a wrong one; `None` for the correct one.
@@ -151,7 +151,7 @@ impl<W: Walk, P: Estimated<Fields = ControlledLine, Value: Channels>> Loop for O
     type Output = Draw<P::Value>;
 
     #[inline(always)]
-    fn run<L: Single>(self) -> Draw<P::Value> {
+    fn run<L: ScalarLane>(self) -> Draw<P::Value> {
         let sampling = &self.setup.fields.sampling;
         match sampling.with_gaps() {
             Some(even) => self.along(FlightWithGaps::new(L::of(0.0), even)),
@@ -162,7 +162,7 @@ impl<W: Walk, P: Estimated<Fields = ControlledLine, Value: Channels>> Loop for O
 
 impl<W: Walk, P: Estimated<Fields = ControlledLine, Value: Channels>> One<'_, W, P> {
     #[inline(always)]
-    fn along<L: Single>(self, course: impl BothWays<L>) -> Draw<P::Value> {
+    fn along<L: ScalarLane>(self, course: impl BothWays<L>) -> Draw<P::Value> {
         let Self { walk, slip, setup, medium, random } = self;
         let (zero, support) = (L::of(0.0), setup.fields.mesh.support());
         let mut state = walk.begin(L::of(1.0), true, random);

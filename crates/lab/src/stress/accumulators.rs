@@ -111,11 +111,11 @@ const NEAR_CONSTANT: Law = Law {
 };
 
 /// A whole number in 32 digits.
-fn whole(k: i128) -> Wide {
+fn whole(k: i128) -> DoubleDouble {
     let high = k as f64;
     #[allow(clippy::cast_possible_truncation)] // a whole number below 2¹²⁷
     let rest = k - high as i128;
-    Wide::from(high) + rest as f64
+    DoubleDouble::from(high) + rest as f64
 }
 
 /// Buffers of whole numbers, merged in a random tree, and then with themselves.
@@ -149,14 +149,14 @@ fn whole_numbers(law: Law, seed: u64, seen: &mut Seen) -> Option<()> {
         tally.merge(&tally.clone());
         powers.merge(&powers.clone());
     }
-    let draws = Wide::from((BUFFER * BUFFERS) as f64);
+    let draws = DoubleDouble::from((BUFFER * BUFFERS) as f64);
     let raw = exact.map(|sum| whole(sum) / draws);
-    let [second, fourth] = central(raw, Wide::ONE);
-    let (n, unit) = (draws.scaled(DOUBLINGS), Wide::from(law.unit));
+    let [second, fourth] = central(raw, DoubleDouble::ONE);
+    let (n, unit) = (draws.scaled(DOUBLINGS), DoubleDouble::from(law.unit));
     let variance = second * n / (n - 1.0);
     let moments = tally.moments()?;
     for found in [moments.mean, powers.mean()] {
-        seen.see(0, ((Wide::from(found) / unit - raw[0]) / variance.sqrt()).abs().value());
+        seen.see(0, ((DoubleDouble::from(found) / unit - raw[0]) / variance.sqrt()).abs().value());
     }
     for found in [moments.variance?, powers.variance()] {
         seen.relative(1, found, variance * unit * unit);
@@ -174,12 +174,13 @@ fn one_huge_draw(&Huge { power, seed }: &Huge, seen: &mut Seen) -> Option<()> {
         tally.merge(&Tally::of(buffer, 0.0, 1.0));
         powers.absorb(buffer);
     }
-    let n = Wide::from(x.len() as f64);
-    let mean = x.iter().map(|&x| Wide::from(x)).sum::<Wide>() / n;
-    let central = |k| x.iter().map(|&x| (Wide::from(x) - mean).powi(k)).sum::<Wide>() / n;
+    let n = DoubleDouble::from(x.len() as f64);
+    let mean = x.iter().map(|&x| DoubleDouble::from(x)).sum::<DoubleDouble>() / n;
+    let central =
+        |k| x.iter().map(|&x| (DoubleDouble::from(x) - mean).powi(k)).sum::<DoubleDouble>() / n;
     let [second, fourth] = [central(2), central(4)];
     for found in [tally.moments()?.variance?, powers.variance()] {
-        seen.relative(0, found, second * n / (n - Wide::ONE));
+        seen.relative(0, found, second * n / (n - DoubleDouble::ONE));
     }
     seen.relative(1, powers.kurtosis(), fourth / (second * second));
     Some(())

@@ -123,18 +123,19 @@ impl Scene {
 /// A homogeneous ball, lengths in mean free paths.
 struct Even {
     radius: f64,
-    albedo: Wide,
+    albedo: DoubleDouble,
     /// k and α.
-    parts: Vec<[Wide; 2]>,
+    parts: Vec<[DoubleDouble; 2]>,
 }
 
 impl Even {
-    fn new(radius: f64, albedo: Wide, count: usize) -> Option<Self> {
+    fn new(radius: f64, albedo: DoubleDouble, count: usize) -> Option<Self> {
         let (cosines, weights) = directions(count);
         let roots = roots(albedo, &cosines, &weights);
-        let reach = Wide::from(radius);
-        let faint: Vec<Wide> = roots.iter().map(|&k| (-(k * reach).scaled(1)).exp()).collect();
-        let row = |&mu: &Wide| {
+        let reach = DoubleDouble::from(radius);
+        let faint: Vec<DoubleDouble> =
+            roots.iter().map(|&k| (-(k * reach).scaled(1)).exp()).collect();
+        let row = |&mu: &DoubleDouble| {
             let entries = roots
                 .iter()
                 .zip(&faint)
@@ -147,17 +148,17 @@ impl Even {
     }
 
     /// J.
-    fn mean(&self, r: f64) -> Wide {
-        let (place, reach) = (Wide::from(r), Wide::from(self.radius));
-        let term = |&[k, alpha]: &[Wide; 2]| {
+    fn mean(&self, r: f64) -> DoubleDouble {
+        let (place, reach) = (DoubleDouble::from(r), DoubleDouble::from(self.radius));
+        let term = |&[k, alpha]: &[DoubleDouble; 2]| {
             let near = (-(k * (reach - place))).exp();
             alpha * near * -(-(k * place).scaled(1)).exp_m1()
         };
-        -(self.parts.iter().map(term).sum::<Wide>() / (self.albedo * place))
+        -(self.parts.iter().map(term).sum::<DoubleDouble>() / (self.albedo * place))
     }
 
     /// The radiance at the end of a chord that passes the centre at a distance.
-    fn radiance(&self, offset: f64) -> Wide {
+    fn radiance(&self, offset: f64) -> DoubleDouble {
         let half = ((self.radius - offset) * (self.radius + offset)).sqrt();
         let rule = GaussLegendre::new(12);
         // J bends like x ln x at the surface.
@@ -165,11 +166,11 @@ impl Even {
         let steps = (1..).map(f64::from).take_while(|&step| step < half);
         let mut ends: Vec<f64> = near.chain(steps).chain([half]).collect();
         ends.sort_by(f64::total_cmp);
-        let mut sum = (-(Wide::from(half).scaled(1))).exp();
+        let mut sum = (-(DoubleDouble::from(half).scaled(1))).exp();
         for (t, weight) in Span::between(&ends).flat_map(|panel| rule.on(panel)) {
             let mean = self.mean((offset * offset + t * t).sqrt().min(self.radius));
             // From both sides of the foot.
-            let seen = (Wide::from(t - half)).exp() + (-Wide::from(t + half)).exp();
+            let seen = (DoubleDouble::from(t - half)).exp() + (-DoubleDouble::from(t + half)).exp();
             sum += self.albedo * mean * seen * weight;
         }
         sum
@@ -186,7 +187,8 @@ fn even(asked: &Asked, seen: &mut Seen) -> Option<()> {
     let ball = Ball { radius: 1.0, centre: Centre::Medium, extinction: &extinction };
     let found = answers(&ball, albedo, SKY, Resolution::COARSE, &asked);
     // At a = 1 two solutions are one: a grain beside it, 1e-20, nobody sees.
-    let near = if albedo == 1.0 { 1.0 - Wide::from(1e-20) } else { Wide::from(albedo) };
+    let near =
+        if albedo == 1.0 { 1.0 - DoubleDouble::from(1e-20) } else { DoubleDouble::from(albedo) };
     let (found, even) = (seen.found(0, found)?, Even::new(depth, near, ORDINATES)?);
     for (asked, found) in asked.iter().zip(found) {
         seen.at(format_args!("{asked:?}"));
@@ -208,7 +210,7 @@ fn white(scene: &Scene, seen: &mut Seen) -> Option<()> {
     let found = answers(&ball, 1.0, lights, Resolution::COARSE, &asked);
     for (asked, found) in asked.iter().zip(seen.found(0, found)?) {
         seen.at(format_args!("{asked:?}"));
-        seen.stated(0, found, Wide::ONE);
+        seen.stated(0, found, DoubleDouble::ONE);
     }
     Some(())
 }
@@ -231,7 +233,7 @@ fn finer(scene: &Scene, seen: &mut Seen) -> Option<()> {
         if found.error > BLURRED * found.value {
             seen.skip(0);
         } else {
-            seen.stated(0, found, Wide::from(fine.value));
+            seen.stated(0, found, DoubleDouble::from(fine.value));
         }
     }
     Some(())
@@ -256,7 +258,7 @@ mod tests {
             let found = answers(&ball, 0.392_282_540_822_851_2, lights, resolution, &asked);
             found.expect("a medium")[0]
         };
-        let (found, exact) = (of(Resolution::COARSE), Wide::from(of(FINER).value));
+        let (found, exact) = (of(Resolution::COARSE), DoubleDouble::from(of(FINER).value));
         assert!(of_stated(found, exact) <= 1.0, "{found:?}");
         let two = numeric::Known::new(found.value, 0.01 * found.error);
         assert!(of_stated(two, exact) > 1.0, "{found:?}");

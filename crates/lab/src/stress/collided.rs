@@ -47,22 +47,24 @@ fn trial(Layers { collisions, layers }: &Layers, seen: &mut Seen) {
 }
 
 /// `m_1 … m_4` at the beginning.
-fn raw(breaks: &[f64], values: &[f64], sampling: f64, is_shared: bool) -> [Wide; 4] {
-    let ends: Vec<Wide> = breaks.iter().copied().map(Wide::from).collect();
+fn raw(breaks: &[f64], values: &[f64], sampling: f64, is_shared: bool) -> [DoubleDouble; 4] {
+    let ends: Vec<DoubleDouble> = breaks.iter().copied().map(DoubleDouble::from).collect();
     // Twice the rate: 1/(1 + v) has a pole at v = −1.
     let line = Line::new(&ends, |_| 2.0 * sampling);
-    let to_end = |x: Wide| (-(sampling * (ends[ends.len() - 1] - x))).exp();
-    let at = line.values(|layer, x| (to_end(x), 1.0 - Wide::from(values[layer]) / sampling));
+    let to_end = |x: DoubleDouble| (-(sampling * (ends[ends.len() - 1] - x))).exp();
+    let at =
+        line.values(|layer, x| (to_end(x), 1.0 - DoubleDouble::from(values[layer]) / sampling));
     // g_k with and without A_1 … A_{k−1}.
-    let added = |k: usize, v: Wide, later: &dyn Fn(usize) -> Wide| {
+    let added = |k: usize, v: DoubleDouble, later: &dyn Fn(usize) -> DoubleDouble| {
         let u = if is_shared { v / (1.0 + v) } else { v };
         let whole = power(u, k);
         // v(2u)^k + (1 − v)u^k
-        let twice = if is_shared { (power(Wide::from(2.0), k) - 1.0) * v * whole } else { 0.0 * v };
+        let twice =
+            if is_shared { (power(DoubleDouble::from(2.0), k) - 1.0) * v * whole } else { 0.0 * v };
         let term = |j: usize| binomial(k, j) * power(u, k - j) * later(j);
-        whole + twice + (1..k).map(term).sum::<Wide>()
+        whole + twice + (1..k).map(term).sum::<DoubleDouble>()
     };
-    let mut known: Vec<Solution<Wide>> = Vec::new();
+    let mut known: Vec<Solution<DoubleDouble>> = Vec::new();
     for k in 1..=4 {
         let kept = |i: usize| power(at[i].1, k);
         let rate = |i: usize| sampling * (1.0 - kept(i));

@@ -35,7 +35,7 @@ pub fn rows(run: Run) -> Vec<Row> {
     let row = Row::stated("∫σ_t dV, smooth", "smooth fields of five kinds, balls and boxes");
     let mut rows = run.fill([32, 1024], [row], smooth, |&(body, size, filling), seen| {
         let volume = filling.volume(body, size);
-        see(&*volume, Wide::from(body.integral(&*volume)), content::MOST_CHORDS, seen)
+        see(&*volume, DoubleDouble::from(body.integral(&*volume)), content::MOST_CHORDS, seen)
     });
     for (trials, chords, range) in [
         ([32, 1024], FEW_CHORDS, "layers at any angle, 4e3 chords"),
@@ -51,7 +51,7 @@ pub fn rows(run: Run) -> Vec<Row> {
         let nodes = planes.each_ref().map(|planes| -> Vec<(f64, f64)> {
             Span::between(planes).flat_map(|span| rule.on(span).collect::<Vec<_>>()).collect()
         });
-        see(&*volume, Wide::from(product(&*volume, &nodes)), FEW_CHORDS, seen)
+        see(&*volume, DoubleDouble::from(product(&*volume, &nodes)), FEW_CHORDS, seen)
     }));
     rows
 }
@@ -60,7 +60,7 @@ pub fn rows(run: Run) -> Vec<Row> {
 const ROUNDING: f64 = 2e-15;
 
 /// Adds an error in units of the stated error and the rounding of the quadrature, less half a unit in the last place.
-fn see(volume: &Volume, exact: Wide, chords: f64, seen: &mut Seen) -> Option<()> {
+fn see(volume: &Volume, exact: DoubleDouble, chords: f64, seen: &mut Seen) -> Option<()> {
     let found = content::by_chords(volume, chords)?;
     if exact.high <= 1e-290 {
         return None;
@@ -155,20 +155,20 @@ impl Body {
     }
 
     /// Area at a height along an axis, and the heights where it has kinks.
-    fn area(self, axis: Point) -> (Box<dyn Fn(f64) -> Wide>, Vec<f64>) {
+    fn area(self, axis: Point) -> (Box<dyn Fn(f64) -> DoubleDouble>, Vec<f64>) {
         let (low, high) = match self {
             Self::Box(low, high) => (low, high),
             Self::Ball(centre, radius) => {
                 let middle = axis.dot(Point(centre));
                 let area = move |h: f64| {
-                    let off = Wide::from(h) - middle;
-                    (Wide::product(radius, radius) - off * off) * PI
+                    let off = DoubleDouble::from(h) - middle;
+                    (DoubleDouble::product(radius, radius) - off * off) * PI
                 };
                 return (Box::new(area), vec![middle - radius, middle + radius]);
             }
         };
         if axis.0[1] == 0.0 {
-            let face = Wide::from(high[1] - low[1]) * (high[2] - low[2]);
+            let face = DoubleDouble::from(high[1] - low[1]) * (high[2] - low[2]);
             return (Box::new(move |_| face), vec![low[0], high[0]]);
         }
         // A corner of the height v adds ± (h − v)₊²/(2 Π aᵢ).
@@ -176,18 +176,18 @@ impl Body {
             let is_far = |i: usize| number >> i & 1 == 1;
             let at = |i: usize| {
                 let is_high = is_far(i) == (axis.0[i] > 0.0);
-                Wide::product(axis.0[i], if is_high { high[i] } else { low[i] })
+                DoubleDouble::product(axis.0[i], if is_high { high[i] } else { low[i] })
             };
             let is_odd = (0..3).filter(|&i| is_far(i)).count() % 2 == 1;
             (at(0) + at(1) + at(2), if is_odd { -1.0 } else { 1.0 })
         };
-        let corners: Vec<(Wide, f64)> = (0..8).map(corner).collect();
+        let corners: Vec<(DoubleDouble, f64)> = (0..8).map(corner).collect();
         let kinks = corners.iter().map(|(v, _)| v.value()).collect();
-        let slopes = axis.0.map(|a| Wide::from(a.abs()));
+        let slopes = axis.0.map(|a| DoubleDouble::from(a.abs()));
         let scale = (slopes[0] * slopes[1] * slopes[2]).scaled(1);
         let area = move |h: f64| {
             let above = corners.iter().filter(|(v, _)| v.high < h);
-            above.map(|&(v, sign)| (h - v).powi(2) * sign).sum::<Wide>() / scale
+            above.map(|&(v, sign)| (h - v).powi(2) * sign).sum::<DoubleDouble>() / scale
         };
         (Box::new(area), kinks)
     }

@@ -52,9 +52,9 @@ fn flights(Layers { layers }: &Layers, seen: &mut Seen) {
     let widths: Vec<f64> = layers.iter().map(|layer| layer.0).collect();
     let value = |&(width, depth, kind): &_| if kind == 0 { 0.0 } else { depth / width };
     let (breaks, values): (_, Vec<f64>) = (knots(0.0, &widths), layers.iter().map(value).collect());
-    let (mut exact, mut alive) = (Wide::default(), Wide::ONE);
+    let (mut exact, mut alive) = (DoubleDouble::default(), DoubleDouble::ONE);
     for (pair, &sigma) in breaks.windows(2).zip(&values) {
-        let width = Wide::from(pair[1]) - pair[0];
+        let width = DoubleDouble::from(pair[1]) - pair[0];
         let depth = width * sigma;
         exact += alive * if sigma > 0.0 { -(-depth).exp_m1() / sigma } else { width };
         alive = alive * (-depth).exp();
@@ -72,8 +72,8 @@ fn collisions(walk: &Terminating, seen: &mut Seen) -> Option<()> {
     let rule = Single::Terminating;
     let product = Product { laws: false, ..Product::new(&mesh, &flown, &none, &rule) };
     let law = product.predict().lookups?;
-    let ends = 1.0 - (1.0 - Wide::from(sigma) / sampling).abs();
-    let flown = Wide::product(sampling, length);
+    let ends = 1.0 - (1.0 - DoubleDouble::from(sigma) / sampling).abs();
+    let flown = DoubleDouble::product(sampling, length);
     let exact = if ends.high > 0.0 { -(-(flown * ends)).exp_m1() / ends } else { flown };
     seen.stated(0, lookups(&law), exact);
     Some(())
@@ -89,11 +89,11 @@ fn curves(curve: &Curve, seen: &mut Seen) {
     let mesh = Mesh::new(homogeneous(sigma, length));
     let flown = Piecewise::constant(sampling, Span::new(0.0, length));
     let found = predict_curve(&Product::new(&mesh, &flown, &Control::None, &Weight), &distances);
-    let rate = Wide::product(sigma, sigma) / sampling;
-    let mut before = Wide::default();
+    let rate = DoubleDouble::product(sigma, sigma) / sampling;
+    let mut before = DoubleDouble::default();
     for (i, &distance) in distances.iter().enumerate() {
         let (channel, step) = (&found.channels[i], &found.increments[i]);
-        seen.stated(0, channel.truth, (-Wide::product(sigma, distance)).exp());
+        seen.stated(0, channel.truth, (-DoubleDouble::product(sigma, distance)).exp());
         let passed = rate * distance;
         if passed.high > 300.0 {
             seen.skip(1);

@@ -26,17 +26,17 @@ pub fn rows(run: Run) -> Vec<Row> {
     ];
     run.fill([3200, 128_000], rows, Arguments::any, |arguments, seen| {
         let Arguments { ln, ulps_from_one, exp, sign, angle, far_angle } = *arguments;
-        seen.relative(0, Lane::ln(ln), Wide::from(ln).ln());
+        seen.relative(0, Lane::ln(ln), DoubleDouble::from(ln).ln());
         let k = ulps_from_one.floor();
         for x in [1.0 - k * f64::EPSILON / 2.0, 1.0 + k * f64::EPSILON] {
             if x > 0.0 {
-                seen.relative(1, Lane::ln(x), (Wide::from(x) - 1.0).ln_1p());
+                seen.relative(1, Lane::ln(x), (DoubleDouble::from(x) - 1.0).ln_1p());
             }
         }
-        seen.relative(2, Lane::exp(exp), Wide::from(exp).exp());
+        seen.relative(2, Lane::exp(exp), DoubleDouble::from(exp).exp());
         let far = 5e-16 + far_angle * 2f64.powi(-86);
         for (row, x, allowed) in [(3, angle, 1.0), (4, far_angle, far)] {
-            let [sine, cosine] = Wide::from(sign * x).sin_cos();
+            let [sine, cosine] = DoubleDouble::from(sign * x).sin_cos();
             let [s, c] = [Lane::sin(sign * x), Lane::cos(sign * x)];
             seen.see(row, off(s, sine).max(off(c, cosine)) / allowed);
         }

@@ -3,11 +3,11 @@
 use std::iter::Sum;
 use std::ops::{Div, Mul, Sub};
 
-use numeric::Wide;
+use numeric::DoubleDouble;
 
 /// Returns `xᵏ`.
-pub(super) fn power(x: Wide, k: usize) -> Wide {
-    (0..k).fold(Wide::ONE, |power, _| power * x)
+pub(super) fn power(x: DoubleDouble, k: usize) -> DoubleDouble {
+    (0..k).fold(DoubleDouble::ONE, |power, _| power * x)
 }
 
 /// Returns the binomial coefficient C(n, k).

@@ -79,11 +79,11 @@ impl Line {
     }
 
     /// Optical depth in 32 digits.
-    pub fn depth(&self) -> Wide {
-        let [from, to] = [self.from, self.to].map(Wide::from);
+    pub fn depth(&self) -> DoubleDouble {
+        let [from, to] = [self.from, self.to].map(DoubleDouble::from);
         let length = to - from;
-        let widths = |knots: &[f64]| -> Vec<Wide> {
-            knots.windows(2).map(|pair| Wide::from(pair[1]) - pair[0]).collect()
+        let widths = |knots: &[f64]| -> Vec<DoubleDouble> {
+            knots.windows(2).map(|pair| DoubleDouble::from(pair[1]) - pair[0]).collect()
         };
         match &self.field {
             &Field::Constant { extinction } => length * extinction,
@@ -91,26 +91,26 @@ impl Line {
                 widths(breaks).into_iter().zip(values).map(|(width, &value)| width * value).sum()
             }
             Field::Lines { knots, values } => {
-                let mean = |pair: &[f64]| (Wide::from(pair[0]) + pair[1]).scaled(-1);
+                let mean = |pair: &[f64]| (DoubleDouble::from(pair[0]) + pair[1]).scaled(-1);
                 widths(knots).into_iter().zip(values.windows(2)).map(|(w, p)| w * mean(p)).sum()
             }
             &Field::Exponential { extinction, rate } => {
-                let slope = Wide::from(rate);
+                let slope = DoubleDouble::from(rate);
                 -(-(slope * length)).exp_m1() / slope * ((-(slope * from)).exp() * extinction)
             }
             &Field::Gaussian { peak, centre, width } => {
                 let [a, b] = [from, to].map(|s| (s - centre) / width);
-                normal_between(a, b) * Wide::PI.scaled(1).sqrt() * width * peak
+                normal_between(a, b) * DoubleDouble::PI.scaled(1).sqrt() * width * peak
             }
             Field::Sines { base, waves } => {
                 let wave = |&[amplitude, frequency, phase]: &[f64; 3]| {
                     let [a, b] = [self.from, self.to].map(|s| {
-                        let [_, cosine] = (Wide::product(frequency, s) + phase).sin_cos();
+                        let [_, cosine] = (DoubleDouble::product(frequency, s) + phase).sin_cos();
                         cosine
                     });
                     (a - b) * amplitude / frequency
                 };
-                length * *base + waves.iter().map(wave).sum::<Wide>()
+                length * *base + waves.iter().map(wave).sum::<DoubleDouble>()
             }
         }
     }

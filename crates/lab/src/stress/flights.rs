@@ -65,10 +65,10 @@ fn pieces(Pieces { from, widths_and_values, share }: &Pieces, seen: &mut Seen) -
     let knots = knots(*from, &widths[1..]);
     let field = Piecewise::lines(&knots, &values);
     let depth_to = |end: f64| {
-        let mut sum = Wide::default();
+        let mut sum = DoubleDouble::default();
         for (pair, ends) in values.windows(2).zip(knots.windows(2)) {
-            let [a, b, from, to] = [pair[0], pair[1], ends[0], ends[1]].map(Wide::from);
-            let reach = if end < ends[1] { Wide::from(end) } else { to };
+            let [a, b, from, to] = [pair[0], pair[1], ends[0], ends[1]].map(DoubleDouble::from);
+            let reach = if end < ends[1] { DoubleDouble::from(end) } else { to };
             if end > ends[0] {
                 let width = reach - from;
                 let slope = (b - a) / (to - from);

@@ -60,7 +60,7 @@ fn collisions(&depth: &f64, seen: &mut Seen) {
         let middle = low.midpoint(high);
         if is_within(middle) { low = middle + 1 } else { high = middle }
     }
-    seen.see(0, off(low as f64 * GRAIN, -(-Wide::from(depth)).exp_m1()));
+    seen.see(0, off(low as f64 * GRAIN, -(-DoubleDouble::from(depth)).exp_m1()));
 }
 
 /// Flights through σ̂ of any size: each is `−ln(u)/σ̂`.
@@ -70,6 +70,6 @@ fn distances(&Flight { power, word }: &Flight, seen: &mut Seen) -> Option<()> {
     let uniform = before(word).positive_uniform();
     let mut cursor = field.begin();
     cursor.fly(-before(word).ln_uniform()).filter(|_| uniform < 1.0)?;
-    seen.relative(0, cursor.t(), -Wide::from(uniform).ln() / Wide::from(sampling));
+    seen.relative(0, cursor.t(), -DoubleDouble::from(uniform).ln() / DoubleDouble::from(sampling));
     Some(())
 }

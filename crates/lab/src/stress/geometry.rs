@@ -74,15 +74,19 @@ impl Scene {
 
 impl Chord {
     /// Both ends of the chord on the line of the ray; `None` for a miss.
-    fn exact(&self) -> Option<[Wide; 2]> {
+    fn exact(&self) -> Option<[DoubleDouble; 2]> {
         let axes = [0, 1, 2].map(|i| {
-            (two_sum(self.centre.0[i], -self.ray.origin.0[i]), Wide::from(self.ray.direction.0[i]))
+            (
+                two_sum(self.centre.0[i], -self.ray.origin.0[i]),
+                DoubleDouble::from(self.ray.direction.0[i]),
+            )
         });
-        let square: Wide = self.ray.direction.0.iter().map(|&d| two_prod(d, d)).sum();
-        let along = axes.iter().map(|&(v, d)| v * d).sum::<Wide>();
+        let square: DoubleDouble = self.ray.direction.0.iter().map(|&d| two_prod(d, d)).sum();
+        let along = axes.iter().map(|&(v, d)| v * d).sum::<DoubleDouble>();
         // |v × d|², which does not cancel where v is along d.
         let cross = |i: usize, j: usize| axes[i].0 * axes[j].1 - axes[j].0 * axes[i].1;
-        let offset: Wide = [cross(0, 1), cross(1, 2), cross(2, 0)].iter().map(|&c| c * c).sum();
+        let offset: DoubleDouble =
+            [cross(0, 1), cross(1, 2), cross(2, 0)].iter().map(|&c| c * c).sum();
         let left = two_prod(self.radius, self.radius) * square - offset;
         let half = left.sqrt();
         let ends = [along - half, along + half].map(|end| end / square);
@@ -90,7 +94,7 @@ impl Chord {
     }
 }
 
-fn see_ends(seen: &mut Seen, found: [Known; 2], exact: [Wide; 2]) {
+fn see_ends(seen: &mut Seen, found: [Known; 2], exact: [DoubleDouble; 2]) {
     for (found, exact) in found.into_iter().zip(exact) {
         seen.see(0, over(off(found.value, exact), found.error));
     }
@@ -100,8 +104,8 @@ fn sphere((depth, scene): &(f64, Scene), seen: &mut Seen) -> Option<()> {
     let chord = scene.chord(*depth)?;
     let length = chord.ray.length;
     let exact = chord.exact()?.map(|end| match end.high {
-        before if before < 0.0 => Wide::default(),
-        beyond if beyond > length => Wide::from(length),
+        before if before < 0.0 => DoubleDouble::default(),
+        beyond if beyond > length => DoubleDouble::from(length),
         _ => end,
     });
     see_ends(seen, chord.ball.ends(&chord.ray), exact);
@@ -155,7 +159,7 @@ fn cuboid(cuboid: &Cuboid, seen: &mut Seen) -> Option<()> {
     let unit = Point([0, 1, 2].map(|i| axes[(i + turn) % 3])).normalised()?;
     let away = away * size;
     let ray = Ray::new(target - unit * away, unit, 3.0 * away + 9.0 * size)?;
-    let mut exact = [Wide::default(), Wide::from(ray.length)];
+    let mut exact = [DoubleDouble::default(), DoubleDouble::from(ray.length)];
     for i in 0..3 {
         let end = |face: f64| two_sum(face, -ray.origin.0[i]) / ray.direction.0[i];
         let (a, b) = (end(low.0[i]), end(high.0[i]));

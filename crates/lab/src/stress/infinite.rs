@@ -49,15 +49,15 @@ parameters! {
     }
 }
 
-fn n(x: f64) -> Wide {
-    Wide::from(x)
+fn n(x: f64) -> DoubleDouble {
+    DoubleDouble::from(x)
 }
 
 /// A place of Case's integral: y, ν and `dν` there.
 struct Node {
-    y: Wide,
-    nu: Wide,
-    weight: Wide,
+    y: DoubleDouble,
+    nu: DoubleDouble,
+    weight: DoubleDouble,
 }
 
 fn cut_nodes() -> Vec<Node> {
@@ -75,11 +75,11 @@ fn cut_nodes() -> Vec<Node> {
 }
 
 /// `1 − (1 + x)e^{−x}`.
-fn within(x: Wide) -> Wide {
+fn within(x: DoubleDouble) -> DoubleDouble {
     if x.high > 1.0 {
         return 1.0 - (1.0 + x) * (-x).exp();
     }
-    let (mut sum, mut power) = (Wide::default(), -x);
+    let (mut sum, mut power) = (DoubleDouble::default(), -x);
     for k in 2..=34 {
         let k = f64::from(k);
         power = -(power * x) / k;
@@ -89,7 +89,7 @@ fn within(x: Wide) -> Wide {
 }
 
 /// Returns κ and `1 − κ²`; `None` where the contribution of the pole is negligible.
-fn pole(albedo: f64) -> Option<[Wide; 2]> {
+fn pole(albedo: f64) -> Option<[DoubleDouble; 2]> {
     if albedo < 0.01 {
         return None;
     }
@@ -113,7 +113,7 @@ fn pole(albedo: f64) -> Option<[Wide; 2]> {
 }
 
 /// sinh and cosh.
-fn hyperbolic(y: Wide) -> (Wide, Wide) {
+fn hyperbolic(y: DoubleDouble) -> (DoubleDouble, DoubleDouble) {
     let grown = y.exp_m1();
     let inverse = 1.0 / (grown + 1.0);
     ((grown + grown * inverse).scaled(-1), (grown + 1.0 + inverse).scaled(-1))
@@ -124,10 +124,10 @@ fn case(distances: &Distances, nodes: &[Node], seen: &mut Seen) {
     let c = n(albedo);
     let of_node = |node: &Node| {
         let a = 1.0 - c * node.nu * node.y;
-        let b = Wide::PI.scaled(-1) * c * node.nu;
+        let b = DoubleDouble::PI.scaled(-1) * c * node.nu;
         node.weight / (a * a + b * b)
     };
-    let g: Vec<Wide> = nodes.iter().map(of_node).collect();
+    let g: Vec<DoubleDouble> = nodes.iter().map(of_node).collect();
     let pole = pole(albedo);
     for &far in &distances.far {
         seen.at(format_args!("σ_t r = {far:e}"));
@@ -140,47 +140,60 @@ fn case(distances: &Distances, nodes: &[Node], seen: &mut Seen) {
     }
 }
 
-fn collisions(r: Wide, nodes: &[Node], g: &[Wide], pole: Option<[Wide; 2]>, c: Wide) -> Wide {
+fn collisions(
+    r: DoubleDouble,
+    nodes: &[Node],
+    g: &[DoubleDouble],
+    pole: Option<[DoubleDouble; 2]>,
+    c: DoubleDouble,
+) -> DoubleDouble {
     let terms = nodes.iter().zip(g).map(|(node, &g)| {
         let x = r / node.nu;
         if x.high > 80.0 { g } else { g * within(x) }
     });
-    let sum: Wide = terms.sum();
+    let sum: DoubleDouble = terms.sum();
     let Some([kappa, rest]) = pole else { return sum };
     sum + rest.scaled(1) / (c * (c - rest)) * within(kappa * r)
 }
 
-fn around(r: Wide, nodes: &[Node], g: &[Wide], pole: Option<[Wide; 2]>, c: Wide) -> Wide {
+fn around(
+    r: DoubleDouble,
+    nodes: &[Node],
+    g: &[DoubleDouble],
+    pole: Option<[DoubleDouble; 2]>,
+    c: DoubleDouble,
+) -> DoubleDouble {
     let terms = nodes.iter().zip(g).filter(|(node, _)| r.high < 740.0 * node.nu.high);
-    let sum: Wide = terms.map(|(node, &g)| g * (-(r / node.nu)).exp() / (node.nu * node.nu)).sum();
+    let sum: DoubleDouble =
+        terms.map(|(node, &g)| g * (-(r / node.nu)).exp() / (node.nu * node.nu)).sum();
     let settled = pole.map(|[kappa, rest]| {
         kappa * kappa * rest.scaled(1) / (c * (c - rest)) * (-(kappa * r)).exp()
     });
-    (sum + settled.unwrap_or_default()) / (Wide::PI.scaled(2) * r)
+    (sum + settled.unwrap_or_default()) / (DoubleDouble::PI.scaled(2) * r)
 }
 
 /// The square of the distance where collisions end.
 fn totals(&(albedo, cosine): &(f64, f64), seen: &mut Seen) {
     let albedo = albedo.min(1.0 - 1e-15);
-    let exact = 2.0 / ((1.0 - n(albedo)) * (1.0 - Wide::product(albedo, cosine)));
+    let exact = 2.0 / ((1.0 - n(albedo)) * (1.0 - DoubleDouble::product(albedo, cosine)));
     let found = infinite::square_at_absorption(albedo, cosine);
     seen.stated(0, Known::new(found, infinite::ROUNDING * found), exact);
 }
 
 /// A place `x = tan φ` of the integral of H.
 struct Angle {
-    sine: Wide,
-    cosine: Wide,
+    sine: DoubleDouble,
+    cosine: DoubleDouble,
     /// `dφ`.
-    weight: Wide,
+    weight: DoubleDouble,
     /// `1 − φ cot φ = 1 − artan(x)/x`.
-    bent: Wide,
+    bent: DoubleDouble,
 }
 
 fn angles() -> Vec<Angle> {
     let angle = |i: i32| {
         let w = (n(f64::from(i)) / f64::from(STEPS)).exp();
-        let quarter = Wide::PI.scaled(-1);
+        let quarter = DoubleDouble::PI.scaled(-1);
         // φ or π/2 − φ, whichever is smaller.
         let near = quarter / (1.0 + if i < 0 { 1.0 / w } else { w });
         let [sine, cosine] = near.sin_cos();
@@ -202,14 +215,14 @@ fn angles() -> Vec<Angle> {
 fn half_space(parameters: &Cosines, angles: &[Angle], seen: &mut Seen) {
     let Cosines { albedo, cosines } = parameters;
     let log = |angle: &Angle| ((1.0 - n(*albedo)) + *albedo * angle.bent).ln();
-    let logs: Vec<Wide> = angles.iter().map(log).collect();
+    let logs: Vec<DoubleDouble> = angles.iter().map(log).collect();
     for &cosine in cosines {
         let mu = n(cosine);
-        let term = |(angle, &log): (&Angle, &Wide)| {
+        let term = |(angle, &log): (&Angle, &DoubleDouble)| {
             log * angle.weight / (angle.cosine.powi(2) + (mu * angle.sine).powi(2))
         };
-        let integral: Wide = angles.iter().zip(&logs).map(term).sum();
+        let integral: DoubleDouble = angles.iter().zip(&logs).map(term).sum();
         seen.at(format_args!("μ = {cosine:e}"));
-        seen.relative(0, h_function(*albedo, cosine), (-(mu * integral / Wide::PI)).exp());
+        seen.relative(0, h_function(*albedo, cosine), (-(mu * integral / DoubleDouble::PI)).exp());
     }
 }

@@ -100,27 +100,27 @@ fn moments((case, ratio, kind): &(Case, f64, usize), seen: &mut Seen) {
 /// Twelfths hold halves, thirds and quarters.
 const STRETCHES: usize = 12;
 /// Values of 0, in both directions.
-const NOTHING: Both = [Wide { high: 0.0, low: 0.0 }; 2];
+const NOTHING: Both = [DoubleDouble { high: 0.0, low: 0.0 }; 2];
 
 /// Light that leaves by order at the end and at the beginning, and scores, to the powers 1 … 4.
 struct Exact<'a> {
     case: &'a Case,
-    sampling: Wide,
+    sampling: DoubleDouble,
     /// `σ_t/σ̂`.
-    ratio: Wide,
+    ratio: DoubleDouble,
     line: Line,
     /// Number of the stretch of every node.
     stretches: Vec<usize>,
     /// Q and S of the stretches to the powers 0 … 4.
-    odds: Vec<[[Wide; 2]; 5]>,
+    odds: Vec<[[DoubleDouble; 2]; 5]>,
     /// Highest power.
     powers: usize,
-    orders: [Vec<Vec<Wide>>; 2],
+    orders: [Vec<Vec<DoubleDouble>>; 2],
 }
 
 impl<'a> Exact<'a> {
     fn new(case: &'a Case, rule: ParticleRule, sampling: f64, powers: usize) -> Self {
-        let ratio = Wide::from(case.depth) / sampling;
+        let ratio = DoubleDouble::from(case.depth) / sampling;
         let of = |albedo: f64| [0, 1, 2, 3, 4].map(|k| moments_of(rule, ratio, albedo, k));
         let odds: Vec<_> = (0..STRETCHES).map(|stretch| of(case.albedo(stretch))).collect();
         let fastest = |stretch: usize| {
@@ -130,18 +130,18 @@ impl<'a> Exact<'a> {
                 most.max(sampling * (straight + s.high.abs()))
             })
         };
-        let ends: Vec<Wide> =
-            (0..=STRETCHES).map(|i| Wide::from(i as f64) / STRETCHES as f64).collect();
+        let ends: Vec<DoubleDouble> =
+            (0..=STRETCHES).map(|i| DoubleDouble::from(i as f64) / STRETCHES as f64).collect();
         let line = Line::new(&ends, fastest);
         let stretches = line.values(|stretch, _| stretch);
-        let (sampling, orders) = (Wide::from(sampling), Default::default());
+        let (sampling, orders) = (DoubleDouble::from(sampling), Default::default());
         let mut found = Self { case, sampling, ratio, line, stretches, odds, powers, orders };
         found.orders = [0, 1].map(|end| (1..=powers).map(|k| found.by_order(k, end)).collect());
         found
     }
 
     /// `E[X], …, E[X^k]` of a channel, the others 0.
-    fn powers(&self, seen: Quantity) -> [Wide; 4] {
+    fn powers(&self, seen: Quantity) -> [DoubleDouble; 4] {
         match seen {
             Quantity::ReflectedBy(order) => self.of_order(order, 1),
             Quantity::TransmittedBy(order) => self.of_order(order, 0),
@@ -150,32 +150,37 @@ impl<'a> Exact<'a> {
                 let score = self.case.parts as f64 / self.sampling;
                 self.scores(&|stretch| {
                     let is_inside = stretch * self.case.parts / STRETCHES == part;
-                    if is_inside { score } else { Wide::default() }
+                    if is_inside { score } else { DoubleDouble::default() }
                 })
             }
-            _ => self.scores(&|stretch| self.ratio * (1.0 - Wide::from(self.case.albedo(stretch)))),
+            _ => self.scores(&|stretch| {
+                self.ratio * (1.0 - DoubleDouble::from(self.case.albedo(stretch)))
+            }),
         }
     }
 
-    fn of_order(&self, order: usize, end: usize) -> [Wide; 4] {
-        std::array::from_fn(|k| self.orders[end].get(k).map_or(Wide::default(), |all| all[order]))
+    fn of_order(&self, order: usize, end: usize) -> [DoubleDouble; 4] {
+        std::array::from_fn(|k| {
+            self.orders[end].get(k).map_or(DoubleDouble::default(), |all| all[order])
+        })
     }
 
     /// Onward and turned, per σ̂, after a collision to a power.
-    fn odds(&self, stretch: usize, k: usize) -> [Wide; 2] {
-        let ([q, s], forward) = (self.odds[stretch][k], Wide::from(self.case.forward));
+    fn odds(&self, stretch: usize, k: usize) -> [DoubleDouble; 2] {
+        let ([q, s], forward) = (self.odds[stretch][k], DoubleDouble::from(self.case.forward));
         [q + s * forward, s * (1.0 - forward)]
     }
 
     /// Light that leaves at the end or at the beginning, of all orders to the power k.
-    fn by_order(&self, k: usize, end: usize) -> Vec<Wide> {
-        let rates =
-            |stretch: usize| [self.sampling * (1.0 - self.odds[stretch][k][0]), Wide::default()];
+    fn by_order(&self, k: usize, end: usize) -> Vec<DoubleDouble> {
+        let rates = |stretch: usize| {
+            [self.sampling * (1.0 - self.odds[stretch][k][0]), DoubleDouble::default()]
+        };
         let mut ends = NOTHING;
-        ends[1 - end] = Wide::ONE;
+        ends[1 - end] = DoubleDouble::ONE;
         let mut order = self.line.both_ways(rates, |_| NOTHING, ends);
         let mut orders = vec![order.begin[0]];
-        let forward = Wide::from(self.case.forward);
+        let forward = DoubleDouble::from(self.case.forward);
         for _ in 0..self.case.highest_order {
             let source = |i: usize| {
                 let scattered = self.sampling * self.odds[self.stretches[i]][k][1];
@@ -188,7 +193,7 @@ impl<'a> Exact<'a> {
     }
 
     /// `E[Y^j]` of a score c.
-    fn scores(&self, score: &dyn Fn(usize) -> Wide) -> [Wide; 4] {
+    fn scores(&self, score: &dyn Fn(usize) -> DoubleDouble) -> [DoubleDouble; 4] {
         let mut known: Vec<Solution<Both>> = Vec::new();
         for j in 1..=self.powers {
             let rates = |stretch: usize| {
@@ -207,6 +212,8 @@ impl<'a> Exact<'a> {
             };
             known.push(self.line.both_ways(rates, source, NOTHING));
         }
-        std::array::from_fn(|k| known.get(k).map_or(Wide::default(), |power| power.begin[0]))
+        std::array::from_fn(|k| {
+            known.get(k).map_or(DoubleDouble::default(), |power| power.begin[0])
+        })
     }
 }

@@ -80,16 +80,17 @@ fn lit(case: &Lit, seen: &mut Seen) -> Option<()> {
 }
 
 /// `E[X], …, E[X⁴]`.
-fn moments(case: &Lit, shadow: Shadow) -> [Wide; 4] {
-    let [depth, albedo, forward] = [case.depth, case.albedo, case.forward].map(Wide::from);
-    let null = 1.0 - Wide::from(case.ratio);
+fn moments(case: &Lit, shadow: Shadow) -> [DoubleDouble; 4] {
+    let [depth, albedo, forward] = [case.depth, case.albedo, case.forward].map(DoubleDouble::from);
+    let null = 1.0 - DoubleDouble::from(case.ratio);
     // Losses of a shadow ray to the power k, per length.
     let losses = [0, 1, 2, 3, 4].map(|k: usize| match shadow {
         Shadow::Exact => depth * k as f64,
         Shadow::Delta => depth * f64::from(u8::from(k > 0)),
         Shadow::Ratio => depth / case.ratio * (1.0 - power(null, k)),
     });
-    let line = Line::new(&[0.0, 1.0].map(Wide::from), |_| 2.0 * losses[4].high.max(depth.high));
+    let line =
+        Line::new(&[0.0, 1.0].map(DoubleDouble::from), |_| 2.0 * losses[4].high.max(depth.high));
     let (scattered, ways) = (albedo * depth, [forward, 1.0 - forward]);
     let rates = [depth - scattered * forward, scattered * (1.0 - forward)];
     let scores = line.values(|_, x| {
@@ -106,8 +107,8 @@ fn moments(case: &Lit, shadow: Shadow) -> [Wide; 4] {
                 let [later, _] = after([phase, 1.0 - phase], found[j - 1].at[i]);
                 binomial(k, j) * scores.of_ray[k - j] * later
             };
-            let hits: Wide = (1..=k).map(hit).sum();
-            let later: Wide = (1..k).map(later).sum();
+            let hits: DoubleDouble = (1..=k).map(hit).sum();
+            let later: DoubleDouble = (1..k).map(later).sum();
             scattered * (scores.of_ray[k] + phase * scores.alive * hits + later)
         };
         found.push(line.both_ways(|_| rates, |i| [0, 1].map(|way| scored(i, way)), NOTHING));
@@ -117,26 +118,31 @@ fn moments(case: &Lit, shadow: Shadow) -> [Wide; 4] {
 }
 
 /// Values of 0, in both directions.
-const NOTHING: Both = [Wide { high: 0.0, low: 0.0 }; 2];
+const NOTHING: Both = [DoubleDouble { high: 0.0, low: 0.0 }; 2];
 
 /// Scores of a scattering.
 struct Scores {
     /// Probability that a flight reaches the emitter.
-    alive: Wide,
+    alive: DoubleDouble,
     /// `E[s^k]`, k = 0 … 4.
-    of_ray: [Wide; 5],
+    of_ray: [DoubleDouble; 5],
     /// h, of a hit.
-    hit: Wide,
+    hit: DoubleDouble,
 }
 
 impl Scores {
     /// Given the phase function towards the emitter, and `E[T̂^k]`.
-    fn new(combination: Combination, phase: Wide, transmittance: [Wide; 5]) -> Self {
+    fn new(
+        combination: Combination,
+        phase: DoubleDouble,
+        transmittance: [DoubleDouble; 5],
+    ) -> Self {
         let alive = transmittance[1];
-        let of_ray =
-            |weight: Wide| std::array::from_fn(|k| transmittance[k] * power(phase * weight, k));
+        let of_ray = |weight: DoubleDouble| {
+            std::array::from_fn(|k| transmittance[k] * power(phase * weight, k))
+        };
         let Combination::Mis(densities, heuristic) = combination else {
-            return Self { alive, of_ray: of_ray(Wide::ONE), hit: Wide::default() };
+            return Self { alive, of_ray: of_ray(DoubleDouble::ONE), hit: DoubleDouble::default() };
         };
         let ratio = if densities == Densities::Full { phase * alive } else { phase };
         let raised = match heuristic {
@@ -148,7 +154,7 @@ impl Scores {
     }
 
     /// `E[s^{k−i}] h^i`.
-    fn with_hit(&self, k: usize, i: usize) -> Wide {
+    fn with_hit(&self, k: usize, i: usize) -> DoubleDouble {
         self.of_ray[k - i] * power(self.hit, i)
     }
 }
@@ -172,30 +178,30 @@ fn bidirectional(case: &Bidirectional, seen: &mut Seen) -> Option<()> {
     seen.stated(0, channel.truth, raw[0]);
     let moments = channel.moments?;
     // Of draws that hardly vary there are no digits.
-    let [second, _] = central(raw, Wide::from(moments.scale));
+    let [second, _] = central(raw, DoubleDouble::from(moments.scale));
     seen.resolved([1, 2], (second.high.abs() >= 1e-20).then_some(moments), &raw);
     Some(())
 }
 
 /// `E[X^k]` of one technique.
-fn of_paths(case: &Bidirectional, (order, s): (usize, usize), k: usize) -> Wide {
-    let [depth, albedo, forward] = [case.depth, case.albedo, case.forward].map(Wide::from);
+fn of_paths(case: &Bidirectional, (order, s): (usize, usize), k: usize) -> DoubleDouble {
+    let [depth, albedo, forward] = [case.depth, case.albedo, case.forward].map(DoubleDouble::from);
     let is_one = s == 0 || s == order + 2;
     // Per length, of the segment j.
     let loss = |j: usize| match case.ratio {
         _ if is_one || j + 1 != s || k == 1 => depth,
         None => depth * k as f64,
         Some(ratio) => {
-            let null = 1.0 - Wide::from(ratio);
+            let null = 1.0 - DoubleDouble::from(ratio);
             depth + depth * null / ratio * (1.0 - power(null, k - 1))
         }
     };
-    let line = Line::new(&[0.0, 1.0].map(Wide::from), |_| {
+    let line = Line::new(&[0.0, 1.0].map(DoubleDouble::from), |_| {
         (0..=order).map(|j| loss(j).high).fold(0.0, f64::max)
     });
     let mut ends = NOTHING;
-    ends[usize::from(case.is_transmitted)] = Wide::ONE;
-    let rates = |j: usize| [loss(j), Wide::default()];
+    ends[usize::from(case.is_transmitted)] = DoubleDouble::ONE;
+    let rates = |j: usize| [loss(j), DoubleDouble::default()];
     let mut worth = line.both_ways(|_| rates(order), |_| NOTHING, ends);
     for j in (0..order).rev() {
         // The scattering between the segments j and j + 1.

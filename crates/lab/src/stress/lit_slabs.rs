@@ -58,8 +58,8 @@ fn beam(slab: &Slab, seen: &mut Seen) {
     let (mesh, problem, flown) = slab.problem(Light::Distant(cosine));
     let techniques = Techniques { shadow: Some(slab.shadow), combination: Combination::NextEvent };
     let found = lit_slab::predict(&mesh, &problem, &flown, techniques, true);
-    let (depth, null) = (Wide::from(slab.depth), 1.0 - Wide::from(slab.ratio));
-    let towards = Wide::from(problem.phase.value(cosine));
+    let (depth, null) = (DoubleDouble::from(slab.depth), 1.0 - DoubleDouble::from(slab.ratio));
+    let towards = DoubleDouble::from(problem.phase.value(cosine));
     let raw = [1, 2, 3, 4].map(|k: usize| {
         let lost = match slab.shadow {
             Shadow::Exact => depth * k as f64,
@@ -68,7 +68,7 @@ fn beam(slab: &Slab, seen: &mut Seen) {
         };
         // (e^{−σL} − e^{−βL})/(β − σ)
         let more = lost / cosine - depth;
-        let between = if more.high == 0.0 { Wide::ONE } else { -(-more).exp_m1() / more };
+        let between = if more.high == 0.0 { DoubleDouble::ONE } else { -(-more).exp_m1() / more };
         power(towards, k) * slab.albedo * depth * (-depth).exp() * between
     });
     seen.stated(0, found.channels[0].truth, raw[0]);

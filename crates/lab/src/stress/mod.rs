@@ -1,8 +1,8 @@
 //! Numbers under stress: where doubles run out of digits, and by how much.
 //!
 //! Verdicts depend on computed quantities. The test computes each of them where it is hardest, up to many thousand
-//! times. The oracle is arithmetic of 32 digits ([`Wide`](numeric::Wide)), exact integers, or another method at a
-//! higher resolution. A page of this folder tests one kind of quantity. It consists of lines of the table
+//! times. The oracle is arithmetic of 32 digits ([`DoubleDouble`](numeric::DoubleDouble)), exact integers, or another
+//! method at a higher resolution. A page of this folder tests one kind of quantity. It consists of lines of the table
 //! ([`table`]). A line has rows ([`row`]), a strategy for the parameters (`parameters`), a trial and an oracle.
 //! Oracles share linear equations and their solution by nodes (`equations`, `nodes`) with each other, and nothing
 //! with the code that they check.
@@ -86,7 +86,7 @@ mod prelude {
     pub(super) use super::table::{Run, Seen, central, off, over};
     pub(super) use media::{Control, Medium, Piecewise};
     pub(super) use numeric::quadrature::GaussLegendre;
-    pub(super) use numeric::{Known, Span, Wide};
+    pub(super) use numeric::{DoubleDouble, Known, Span};
     pub(super) use proptest::collection::vec;
     pub(super) use proptest::prop_oneof;
     pub(super) use proptest::strategy::{Just, Strategy};

@@ -63,7 +63,7 @@ fn of_special_ratios() -> impl Strategy<Value = Case> {
 }
 
 /// `E[(1 − W)^k]` at a collision, in 32 digits, for k = 2, 3, 4.
-fn losses(rule: Single, ratio: Wide) -> [Wide; 3] {
+fn losses(rule: Single, ratio: DoubleDouble) -> [DoubleDouble; 3] {
     let left = 1.0 - ratio;
     let is_below = left.high >= 0.0;
     let (death, loss) = if let Single::NonTerminating { albedo } = rule {
@@ -71,16 +71,16 @@ fn losses(rule: Single, ratio: Wide) -> [Wide; 3] {
         let sum = scattered + left.abs();
         (scattered / sum, if is_below { 1.0 - sum } else { 1.0 + sum })
     } else {
-        (1.0 - left.abs(), if is_below { Wide::default() } else { Wide::from(2.0) })
+        (1.0 - left.abs(), if is_below { DoubleDouble::default() } else { DoubleDouble::from(2.0) })
     };
     [2, 3, 4].map(|k| death + (1.0 - death) * loss.powi(k))
 }
 
 /// `m₂` and `m₄` of J₂, J₃ and J₄.
-fn central([j2, j3, j4]: [Wide; 3]) -> [Wide; 2] {
+fn central([j2, j3, j4]: [DoubleDouble; 3]) -> [DoubleDouble; 2] {
     // J₄ may be large beside a small J₂: then nothing cancels, and e^{J₄} alone may overflow.
     if j2.high.abs().max(j4.high.abs()) > 1.0 {
-        let [e2, e3, e4] = [j2, j2 * 3.0 - j3, j2 * 6.0 - j3.scaled(2) + j4].map(Wide::exp);
+        let [e2, e3, e4] = [j2, j2 * 3.0 - j3, j2 * 6.0 - j3.scaled(2) + j4].map(DoubleDouble::exp);
         return [j2.exp_m1(), e4 - e3.scaled(2) + e2 * 6.0 - 3.0];
     }
     let (u, v, z) = (j2.exp_m1(), (-j3).exp_m1(), j4.exp_m1());
@@ -98,17 +98,17 @@ fn products(case: &Case, seen: &mut Seen) {
     let span = Span::new(0.0, length);
     let (flown, main) = (Piecewise::constant(sampling, span), Piecewise::constant(control, span));
     let main = if control == 0.0 { Control::None } else { Control::Pieces(main) };
-    let ratio = (Wide::from(extinction) - control) / sampling;
+    let ratio = (DoubleDouble::from(extinction) - control) / sampling;
     let non_terminating = Single::NonTerminating { albedo };
     let terminating = (0.0..=2.0).contains(&ratio.high).then_some(Single::Terminating);
-    let mut of_rule = |name: &str, rule: &dyn Rule, losses: [Wide; 3]| {
+    let mut of_rule = |name: &str, rule: &dyn Rule, losses: [DoubleDouble; 3]| {
         seen.at(name);
         let found = Product { laws: false, ..Product::new(&mesh, &flown, &main, rule) }.predict();
         let Some(moments) = found.channels[0].moments else {
             seen.skip(0);
             return seen.skip(1);
         };
-        let losses = losses.map(|loss| loss * Wide::product(sampling, length));
+        let losses = losses.map(|loss| loss * DoubleDouble::product(sampling, length));
         let [j2, j3, j4] = losses;
         let exponents = [j2, j2 * 6.0 - j3.scaled(2) + j4];
         let pairs = [moments.relative[0], moments.relative[2]].into_iter().zip(central(losses));
@@ -139,7 +139,7 @@ fn transmittances(&Depth { length, depth }: &Depth, seen: &mut Seen) {
     let depth = medium.optical_depth(medium.span());
     let unit = if depth.value > 300.0 { depth.value } else { 0.0 };
     let found = transmittance(depth, unit);
-    let exact = (unit - Wide::product(extinction, length)).exp();
+    let exact = (unit - DoubleDouble::product(extinction, length)).exp();
     seen.see(0, off(found.value, exact) / found.error);
 }
 

@@ -11,7 +11,7 @@
 
 use std::sync::LazyLock;
 
-use numeric::Wide;
+use numeric::DoubleDouble;
 use numeric::quadrature::GaussLegendre;
 
 /// Nodes of a panel.
@@ -21,16 +21,16 @@ const STEEPEST: f64 = 2.0;
 
 /// Gauss' rule on `[0, 1]` with its running integrals.
 struct Rule {
-    nodes: [Wide; NODES],
-    weights: [Wide; NODES],
-    running: [[Wide; NODES]; NODES],
+    nodes: [DoubleDouble; NODES],
+    weights: [DoubleDouble; NODES],
+    running: [[DoubleDouble; NODES]; NODES],
 }
 
 static RULE: LazyLock<Rule> = LazyLock::new(Rule::new);
 
 /// Legendre polynomials of the degrees 0 … N.
-fn legendre(x: Wide) -> [Wide; NODES + 1] {
-    let mut p = [Wide::ONE; NODES + 1];
+fn legendre(x: DoubleDouble) -> [DoubleDouble; NODES + 1] {
+    let mut p = [DoubleDouble::ONE; NODES + 1];
     p[1] = x;
     for k in 1..NODES {
         let n = k as f64;
@@ -42,11 +42,12 @@ fn legendre(x: Wide) -> [Wide; NODES + 1] {
 impl Rule {
     /// Finds the nodes by Newton's method from those in doubles; `∫ Pₖ = (Pₖ₊₁ − Pₖ₋₁)/(2k + 1)`.
     fn new() -> Self {
-        let slope =
-            |x: Wide, p: &[Wide]| NODES as f64 * (x * p[NODES] - p[NODES - 1]) / (x * x - 1.0);
+        let slope = |x: DoubleDouble, p: &[DoubleDouble]| {
+            NODES as f64 * (x * p[NODES] - p[NODES - 1]) / (x * x - 1.0)
+        };
         let rule = GaussLegendre::new(NODES);
-        let nodes: [Wide; NODES] = std::array::from_fn(|i| {
-            (0..3).fold(Wide::from(2.0 * rule.nodes[i] - 1.0), |x, _| {
+        let nodes: [DoubleDouble; NODES] = std::array::from_fn(|i| {
+            (0..3).fold(DoubleDouble::from(2.0 * rule.nodes[i] - 1.0), |x, _| {
                 let p = legendre(x);
                 x - p[NODES] / slope(x, &p)
             })
@@ -58,7 +59,7 @@ impl Rule {
         });
         let running = |i: usize, j: usize| {
             let of_degree = |k: usize| values[j][k] * (values[i][k + 1] - values[i][k - 1]);
-            let sum: Wide = (1..NODES).map(of_degree).sum();
+            let sum: DoubleDouble = (1..NODES).map(of_degree).sum();
             (weights[j] * (1.0 + nodes[i] + sum)).scaled(-1)
         };
         let running = std::array::from_fn(|i| std::array::from_fn(|j| running(i, j)));
@@ -67,7 +68,7 @@ impl Rule {
 }
 
 /// `Σ wⱼ fⱼ`.
-fn sum(weights: &[Wide; NODES], values: &[Wide]) -> Wide {
+fn sum(weights: &[DoubleDouble; NODES], values: &[DoubleDouble]) -> DoubleDouble {
     weights.iter().zip(values).map(|(&weight, &value)| weight * value).sum()
 }
 
@@ -75,8 +76,8 @@ fn sum(weights: &[Wide; NODES], values: &[Wide]) -> Wide {
 #[derive(Debug, Clone, Copy)]
 struct Panel {
     stretch: usize,
-    from: Wide,
-    width: Wide,
+    from: DoubleDouble,
+    width: DoubleDouble,
 }
 
 /// A line in panels.
@@ -92,8 +93,8 @@ pub(super) struct Solution<T> {
 
 impl Line {
     /// Cuts the stretches between ends into panels, given the largest rate in each.
-    pub fn new(ends: &[Wide], rate: impl Fn(usize) -> f64) -> Self {
-        let cut = |(stretch, pair): (usize, &[Wide])| {
+    pub fn new(ends: &[DoubleDouble], rate: impl Fn(usize) -> f64) -> Self {
+        let cut = |(stretch, pair): (usize, &[DoubleDouble])| {
             let length = pair[1] - pair[0];
             let count = (rate(stretch) * length.high / STEEPEST).ceil().max(1.0);
             let (from, width) = (pair[0], length / count);
@@ -104,25 +105,25 @@ impl Line {
     }
 
     /// Returns the value of a function of the stretch and the place at every node.
-    pub fn values<T>(&self, f: impl Fn(usize, Wide) -> T) -> Vec<T> {
-        let place = |panel: &Panel, x: Wide| f(panel.stretch, panel.from + panel.width * x);
+    pub fn values<T>(&self, f: impl Fn(usize, DoubleDouble) -> T) -> Vec<T> {
+        let place = |panel: &Panel, x: DoubleDouble| f(panel.stretch, panel.from + panel.width * x);
         self.0.iter().flat_map(|panel| RULE.nodes.map(|x| place(panel, x))).collect()
     }
 
     /// Solves one equation with `U(end) = 0`, given a and g by the number of the node.
     pub fn one_way(
         &self,
-        rate: impl Fn(usize) -> Wide,
-        source: impl Fn(usize) -> Wide,
-    ) -> Solution<Wide> {
-        let mut at = vec![Wide::default(); self.0.len() * NODES];
-        let mut begin = Wide::default();
+        rate: impl Fn(usize) -> DoubleDouble,
+        source: impl Fn(usize) -> DoubleDouble,
+    ) -> Solution<DoubleDouble> {
+        let mut at = vec![DoubleDouble::default(); self.0.len() * NODES];
+        let mut begin = DoubleDouble::default();
         for ((number, panel), at) in self.0.iter().enumerate().zip(at.chunks_mut(NODES)).rev() {
             let width = panel.width;
-            let rates: [Wide; NODES] = std::array::from_fn(|i| rate(number * NODES + i));
+            let rates: [DoubleDouble; NODES] = std::array::from_fn(|i| rate(number * NODES + i));
             let left = RULE.running.map(|weights| (-(width * sum(&weights, &rates))).exp());
             let left_at_end = (-(width * sum(&RULE.weights, &rates))).exp();
-            let gained: [Wide; NODES] =
+            let gained: [DoubleDouble; NODES] =
                 std::array::from_fn(|i| left[i] * source(number * NODES + i));
             let all = width * sum(&RULE.weights, &gained) + begin * left_at_end;
             for (i, value) in at.iter_mut().enumerate() {
@@ -140,16 +141,16 @@ impl Line {
     /// beginning on: the values in each panel.
     pub fn both_ways(
         &self,
-        rates: impl Fn(usize) -> [Wide; 2],
-        source: impl Fn(usize) -> [Wide; 2],
-        [first, last]: [Wide; 2],
+        rates: impl Fn(usize) -> [DoubleDouble; 2],
+        source: impl Fn(usize) -> [DoubleDouble; 2],
+        [first, last]: [DoubleDouble; 2],
     ) -> Solution<Both> {
         let panels = self.0.iter().enumerate();
         let panels = panels.map(|(number, panel)| {
             Passage::new(rates(panel.stretch), panel.width, |node| source(number * NODES + node))
         });
         let panels: Vec<Passage> = panels.collect();
-        let end = Beyond { returned: Wide::default(), emitted: last };
+        let end = Beyond { returned: DoubleDouble::default(), emitted: last };
         let beyond = panels.iter().rev().scan(end, |beyond, panel| {
             *beyond = beyond.before(panel);
             Some(*beyond)
@@ -178,8 +179,12 @@ struct Passage {
 
 impl Passage {
     /// A panel with its A and B, its width, and its s± by the number of the node.
-    fn new(rates: [Wide; 2], width: Wide, source: impl Fn(usize) -> [Wide; 2]) -> Self {
-        let place = |node: usize| if node < NODES { RULE.nodes[node] } else { Wide::ONE };
+    fn new(
+        rates: [DoubleDouble; 2],
+        width: DoubleDouble,
+        source: impl Fn(usize) -> [DoubleDouble; 2],
+    ) -> Self {
+        let place = |node: usize| if node < NODES { RULE.nodes[node] } else { DoubleDouble::ONE };
         let flows = std::array::from_fn(|node| Flow::new(rates, width * place(node)));
         let rate: [Both; NODES] = std::array::from_fn(|node| {
             let [plus, minus] = source(node);
@@ -203,8 +208,8 @@ impl Passage {
 /// The line beyond a place: `m₊ = returned · m₋ + emitted` there.
 #[derive(Clone, Copy)]
 struct Beyond {
-    returned: Wide,
-    emitted: Wide,
+    returned: DoubleDouble,
+    emitted: DoubleDouble,
 }
 
 impl Beyond {
@@ -216,8 +221,8 @@ impl Beyond {
             let [plus, minus] = panel.flows[NODES].on(begin);
             plus - self.returned * minus
         };
-        let of_plus = at_end([Wide::ONE, Wide::default()]);
-        let of_minus = at_end([Wide::default(), Wide::ONE]);
+        let of_plus = at_end([DoubleDouble::ONE, DoubleDouble::default()]);
+        let of_minus = at_end([DoubleDouble::default(), DoubleDouble::ONE]);
         Self {
             returned: -of_minus / of_plus,
             emitted: (self.emitted + at_end(panel.lost[NODES])) / of_plus,
@@ -226,16 +231,17 @@ impl Beyond {
 }
 
 /// Values of a particle that goes forward, and of one that goes backward.
-pub(super) type Both = [Wide; 2];
+pub(super) type Both = [DoubleDouble; 2];
 
 /// The matrix `e^{Mt}` by three numbers: `cosh κt`, `A sinh(κt)/κ` and `B sinh(κt)/κ`.
 #[derive(Clone, Copy)]
-struct Flow([Wide; 3]);
+struct Flow([DoubleDouble; 3]);
 
 impl Flow {
-    fn new([a, b]: [Wide; 2], t: Wide) -> Self {
+    fn new([a, b]: [DoubleDouble; 2], t: DoubleDouble) -> Self {
         let square = (a - b) * (a + b) * t * t;
-        let (mut even, mut odd, mut term) = (Wide::ONE, Wide::ONE, Wide::ONE);
+        let (mut even, mut odd, mut term) =
+            (DoubleDouble::ONE, DoubleDouble::ONE, DoubleDouble::ONE);
         for n in 1..=14 {
             let n = f64::from(2 * n);
             term = term * square / (n * (n - 1.0));
@@ -258,6 +264,6 @@ impl Flow {
 }
 
 /// Values after a collision that leads onward or turns, with these factors.
-pub(super) fn after([onward, turned]: [Wide; 2], [plus, minus]: Both) -> Both {
+pub(super) fn after([onward, turned]: [DoubleDouble; 2], [plus, minus]: Both) -> Both {
     [onward * plus + turned * minus, onward * minus + turned * plus]
 }

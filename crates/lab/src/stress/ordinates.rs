@@ -21,51 +21,52 @@ use theory::problems::slab::Light;
 
 /// Directions and the solutions in them.
 pub struct Ordinates {
-    depth: Wide,
-    cosines: Vec<Wide>,
-    weights: Vec<Wide>,
+    depth: DoubleDouble,
+    cosines: Vec<DoubleDouble>,
+    weights: Vec<DoubleDouble>,
     swing: Option<Swing>,
     /// k, α, β and `e^{−kτ}`.
-    parts: Vec<[Wide; 4]>,
+    parts: Vec<[DoubleDouble; 4]>,
 }
 
 /// The solution that oscillates in depth, for an albedo above 1.
 struct Swing {
     /// ν.
-    rate: Wide,
+    rate: DoubleDouble,
     /// The sine and the cosine of ντ/2.
-    half_way: [Wide; 2],
+    half_way: [DoubleDouble; 2],
     /// A and B.
-    sizes: [Wide; 2],
+    sizes: [DoubleDouble; 2],
 }
 
 impl Ordinates {
     /// `None` where the linear equations have no solution.
-    pub fn new(depth: Wide, albedo: Wide, count: usize) -> Option<Self> {
+    pub fn new(depth: DoubleDouble, albedo: DoubleDouble, count: usize) -> Option<Self> {
         let (cosines, weights) = directions(count);
         let mut roots = roots(albedo, &cosines, &weights);
         let nu = (albedo.high > 1.0).then(|| {
             roots.remove(0);
             swing(albedo, &cosines, &weights)
         });
-        let faint: Vec<Wide> = roots.iter().map(|&k| (-(k * depth)).exp()).collect();
+        let faint: Vec<DoubleDouble> = roots.iter().map(|&k| (-(k * depth)).exp()).collect();
         let half_way = nu.map(|nu| (nu * depth).scaled(-1).sin_cos());
         // Light from both sides alike, and of opposite signs: their halves add up to that from above.
-        let solutions = [Wide::ONE, -Wide::ONE].map(|sign| {
-            let entry = |mu: Wide, k: Wide, faint: Wide| {
+        let solutions = [DoubleDouble::ONE, -DoubleDouble::ONE].map(|sign| {
+            let entry = |mu: DoubleDouble, k: DoubleDouble, faint: DoubleDouble| {
                 let far = faint / (1.0 + k * mu);
                 1.0 / (1.0 - k * mu) + sign * far
             };
-            let swinging = |mu: Wide, nu: Wide, [sine, cosine]: [Wide; 2]| {
-                let x = nu * mu;
-                let size = 1.0 + x * x;
-                let turned = [cosine - x * sine, sine + x * cosine];
-                turned[usize::from(sign.high < 0.0)] / size
-            };
-            let row = |&mu: &Wide| {
+            let swinging =
+                |mu: DoubleDouble, nu: DoubleDouble, [sine, cosine]: [DoubleDouble; 2]| {
+                    let x = nu * mu;
+                    let size = 1.0 + x * x;
+                    let turned = [cosine - x * sine, sine + x * cosine];
+                    turned[usize::from(sign.high < 0.0)] / size
+                };
+            let row = |&mu: &DoubleDouble| {
                 let first = nu.zip(half_way).map(|(nu, half_way)| swinging(mu, nu, half_way));
                 let entries = roots.iter().zip(&faint).map(|(&k, &faint)| entry(mu, k, faint));
-                first.into_iter().chain(entries).chain([Wide::ONE]).collect()
+                first.into_iter().chain(entries).chain([DoubleDouble::ONE]).collect()
             };
             solved_pivoted(cosines.iter().map(row).collect())
         });
@@ -77,9 +78,10 @@ impl Ordinates {
             sizes: [same.remove(0), opposite.remove(0)],
         });
         let parts = roots.iter().zip(faint).zip(same.into_iter().zip(opposite));
-        let part = |((&k, faint), (a, b)): ((&Wide, Wide), (Wide, Wide))| {
-            [k, (a + b).scaled(-1), (a - b).scaled(-1), faint]
-        };
+        let part = |((&k, faint), (a, b)): (
+            (&DoubleDouble, DoubleDouble),
+            (DoubleDouble, DoubleDouble),
+        )| { [k, (a + b).scaled(-1), (a - b).scaled(-1), faint] };
         let parts = parts.map(part).collect();
         Some(Self { depth, cosines, weights, swing, parts })
     }
@@ -100,18 +102,18 @@ impl Ordinates {
                 let [sine, cosine] = (swing.rate * (rest - t)).scaled(-1).sin_cos();
                 (a * cosine + b * sine).scaled(-1)
             });
-            let part = |&[k, alpha, beta, _]: &[Wide; 4]| {
+            let part = |&[k, alpha, beta, _]: &[DoubleDouble; 4]| {
                 alpha * (-(k * t)).exp() + beta * (-(k * rest)).exp()
             };
-            let sum: Wide = self.parts.iter().map(part).chain(swinging).sum();
+            let sum: DoubleDouble = self.parts.iter().map(part).chain(swinging).sum();
             sum.high > 0.0
         })
     }
 
     /// R and T of a ray.
-    fn leaving(&self, cosine: Wide) -> [Wide; 2] {
+    fn leaving(&self, cosine: DoubleDouble) -> [DoubleDouble; 2] {
         let straight = (-(self.depth / cosine)).exp();
-        let mut leaving = [Wide::default(), straight];
+        let mut leaving = [DoubleDouble::default(), straight];
         if let Some(Swing { rate, half_way: [sine, swung], sizes: [a, b] }) = self.swing {
             let x = rate * cosine;
             let size = (1.0 + x * x).scaled(1);
@@ -138,14 +140,14 @@ impl Ordinates {
     }
 
     /// R and T.
-    pub fn energy(&self, light: Light) -> [Wide; 2] {
+    pub fn energy(&self, light: Light) -> [DoubleDouble; 2] {
         if let Light::Collimated(cosine) = light {
-            return self.leaving(Wide::from(cosine));
+            return self.leaving(DoubleDouble::from(cosine));
         }
-        let mut sums = [Wide::default(); 3];
+        let mut sums = [DoubleDouble::default(); 3];
         for (&mu, &weight) in self.cosines.iter().zip(&self.weights) {
             let [r, t] = self.leaving(mu);
-            for (sum, x) in sums.iter_mut().zip([r, t, Wide::ONE]) {
+            for (sum, x) in sums.iter_mut().zip([r, t, DoubleDouble::ONE]) {
                 *sum += mu * weight * x;
             }
         }
@@ -154,20 +156,23 @@ impl Ordinates {
 }
 
 /// ν of an albedo above 1.
-fn swing(albedo: Wide, cosines: &[Wide], weights: &[Wide]) -> Wide {
-    let left = |nu: Wide| {
-        let term = |(&mu, &w): (&Wide, &Wide)| w / (1.0 + (nu * mu).powi(2));
-        1.0 - albedo * cosines.iter().zip(weights).map(term).sum::<Wide>()
+fn swing(albedo: DoubleDouble, cosines: &[DoubleDouble], weights: &[DoubleDouble]) -> DoubleDouble {
+    let left = |nu: DoubleDouble| {
+        let term = |(&mu, &w): (&DoubleDouble, &DoubleDouble)| w / (1.0 + (nu * mu).powi(2));
+        1.0 - albedo * cosines.iter().zip(weights).map(term).sum::<DoubleDouble>()
     };
-    let mut high = Wide::ONE;
+    let mut high = DoubleDouble::ONE;
     while left(high).high < 0.0 {
         high = high.scaled(1);
     }
-    bisected([Wide::default(), high], |nu| left(nu).high < 0.0)
+    bisected([DoubleDouble::default(), high], |nu| left(nu).high < 0.0)
 }
 
 /// Returns the place between two numbers up to which a condition holds.
-fn bisected([mut low, mut high]: [Wide; 2], holds: impl Fn(Wide) -> bool) -> Wide {
+fn bisected(
+    [mut low, mut high]: [DoubleDouble; 2],
+    holds: impl Fn(DoubleDouble) -> bool,
+) -> DoubleDouble {
     for _ in 0..110 {
         let middle = (low + high).scaled(-1);
         if holds(middle) { low = middle } else { high = middle }
@@ -176,23 +181,32 @@ fn bisected([mut low, mut high]: [Wide; 2], holds: impl Fn(Wide) -> bool) -> Wid
 }
 
 /// `μ = x³` of Gauss' nodes, dense where light grazes, from the steepest to the most grazing, and weights.
-pub(super) fn directions(count: usize) -> (Vec<Wide>, Vec<Wide>) {
+pub(super) fn directions(count: usize) -> (Vec<DoubleDouble>, Vec<DoubleDouble>) {
     let rule = GaussLegendre::new(count);
     let nodes = rule.nodes.iter().zip(&rule.weights).rev();
-    let (cosines, weights): (Vec<Wide>, Vec<Wide>) = nodes
-        .map(|(&x, &w)| (Wide::from(x).powi(3), Wide::from(3.0 * w) * Wide::from(x).powi(2)))
+    let (cosines, weights): (Vec<DoubleDouble>, Vec<DoubleDouble>) = nodes
+        .map(|(&x, &w)| {
+            (
+                DoubleDouble::from(x).powi(3),
+                DoubleDouble::from(3.0 * w) * DoubleDouble::from(x).powi(2),
+            )
+        })
         .unzip();
-    let whole: Wide = weights.iter().copied().sum();
+    let whole: DoubleDouble = weights.iter().copied().sum();
     (cosines, weights.into_iter().map(|w| w / whole).collect())
 }
 
 /// One k between 0 and the first `1/μ`, and one between each two, bisected in 32 digits.
-pub(super) fn roots(albedo: Wide, cosines: &[Wide], weights: &[Wide]) -> Vec<Wide> {
-    let left = |k: Wide| {
-        let term = |(&mu, &w): (&Wide, &Wide)| w / (1.0 - (k * mu).powi(2));
-        1.0 - albedo * cosines.iter().zip(weights).map(term).sum::<Wide>()
+pub(super) fn roots(
+    albedo: DoubleDouble,
+    cosines: &[DoubleDouble],
+    weights: &[DoubleDouble],
+) -> Vec<DoubleDouble> {
+    let left = |k: DoubleDouble| {
+        let term = |(&mu, &w): (&DoubleDouble, &DoubleDouble)| w / (1.0 - (k * mu).powi(2));
+        1.0 - albedo * cosines.iter().zip(weights).map(term).sum::<DoubleDouble>()
     };
-    let mut from = Wide::default();
+    let mut from = DoubleDouble::default();
     let between = cosines.iter().map(|&mu| {
         let low = std::mem::replace(&mut from, 1.0 / mu);
         bisected([low, from], |k| left(k).high > 0.0)
@@ -201,7 +215,7 @@ pub(super) fn roots(albedo: Wide, cosines: &[Wide], weights: &[Wide]) -> Vec<Wid
 }
 
 /// Solves equations; rows end with their right sides.
-pub(super) fn solved_pivoted(rows: Vec<Vec<Wide>>) -> Option<Vec<Wide>> {
+pub(super) fn solved_pivoted(rows: Vec<Vec<DoubleDouble>>) -> Option<Vec<DoubleDouble>> {
     let found = solved(rows, |x| x.high.abs(), true)?;
     Some(found.into_iter().map(|[x]| x).collect())
 }

@@ -17,15 +17,16 @@ const STEPS: u32 = 40;
 /// Returns a ray through a homogeneous medium, for moments up to a power.
 pub(super) fn even<'a>(estimator: &'a Estimator, sigma: f64, highest: u8) -> Ray<'a> {
     let problem = estimator.problem;
-    let (distance, foot) = (Wide::from(problem.distance()), problem.foot());
-    let albedo = Wide::from(problem.albedo()) / (Wide::PI * Wide::PI).scaled(4);
+    let (distance, foot) = (DoubleDouble::from(problem.distance()), problem.foot());
+    let albedo =
+        DoubleDouble::from(problem.albedo()) / (DoubleDouble::PI * DoubleDouble::PI).scaled(4);
     let losses = losses(sigma, estimator.tracking);
-    let extinction = Wide::from(sigma);
-    let place = |s: Wide| {
+    let extinction = DoubleDouble::from(sigma);
+    let place = |s: DoubleDouble| {
         let square = distance * distance + (s - foot).powi(2);
         let r = square.sqrt();
         let cast = match estimator.tracking {
-            Tracking::Exact => Wide::default(),
+            Tracking::Exact => DoubleDouble::default(),
             Tracking::Ratio { sampling, .. } => sampling * r,
             Tracking::Delta { sampling } => sampling * -(-(sigma * r)).exp_m1() / sigma,
         };
@@ -49,27 +50,27 @@ pub(super) fn even<'a>(estimator: &'a Estimator, sigma: f64, highest: u8) -> Ray
 }
 
 /// Returns the rate, 1/length, at which the k-th moment of a shadow ray's transmittance decays, k = 0 … 4.
-fn losses(sigma: f64, tracking: Tracking) -> [Wide; 5] {
+fn losses(sigma: f64, tracking: Tracking) -> [DoubleDouble; 5] {
     from_fn(|k| match tracking {
-        Tracking::Exact => Wide::from(sigma) * k as f64,
+        Tracking::Exact => DoubleDouble::from(sigma) * k as f64,
         Tracking::Ratio { sampling, control } => {
-            let weight = 1.0 - (Wide::from(sigma) - control) / sampling;
-            k as f64 * Wide::from(control) + sampling * (1.0 - power(weight, k))
+            let weight = 1.0 - (DoubleDouble::from(sigma) - control) / sampling;
+            k as f64 * DoubleDouble::from(control) + sampling * (1.0 - power(weight, k))
         }
-        Tracking::Delta { .. } => Wide::from(if k == 0 { 0.0 } else { sigma }),
+        Tracking::Delta { .. } => DoubleDouble::from(if k == 0 { 0.0 } else { sigma }),
     })
 }
 
 /// Returns a ray through a field.
 pub(super) fn varying<'a>(estimator: &'a Estimator) -> Ray<'a> {
     let (problem, rule) = (estimator.problem, GaussLegendre::new(16));
-    let place = |s: Wide| {
+    let place = |s: DoubleDouble| {
         let s = s.value();
-        let extinction = Wide::from(problem.medium().extinction(s));
+        let extinction = DoubleDouble::from(problem.medium().extinction(s));
         let medium = problem.shadow_medium(s);
         let shadow = medium.map_or([1.0; 5], |medium| shadow(&medium, estimator.tracking, &rule));
         let scattered = extinction * problem.source(s);
-        Place { extinction, scattered, shadow: shadow.map(Wide::from), cast: None }
+        Place { extinction, scattered, shadow: shadow.map(DoubleDouble::from), cast: None }
     };
     Ray::new(estimator, &panels(problem, STEPS), 0.0, &place)
 }

@@ -44,7 +44,7 @@ parameters! {
 }
 
 /// R and T of two-stream equations with rates A and B, in units of one over the length.
-pub(super) fn leaving([a, b]: [Wide; 2]) -> [Wide; 2] {
+pub(super) fn leaving([a, b]: [DoubleDouble; 2]) -> [DoubleDouble; 2] {
     let square = (a - b) * (a + b);
     let root = square.abs().sqrt();
     if square.high < 0.0 {
@@ -53,7 +53,8 @@ pub(super) fn leaving([a, b]: [Wide; 2]) -> [Wide; 2] {
         return [b * through * sine / root, through];
     }
     let faint = (-root.scaled(1)).exp();
-    let s = if root.high > 0.0 { -(-root.scaled(1)).exp_m1() / root } else { Wide::from(2.0) };
+    let s =
+        if root.high > 0.0 { -(-root.scaled(1)).exp_m1() / root } else { DoubleDouble::from(2.0) };
     // 1 + E + As, without the cancellation where weights grow and A is negative.
     let below = if a.high < 0.0 && root.high > 0.0 {
         faint * (1.0 - a / root) - b * b / (root * (root - a))
@@ -64,7 +65,7 @@ pub(super) fn leaving([a, b]: [Wide; 2]) -> [Wide; 2] {
 }
 
 /// The share of the length at which the echoes of such rates diverge.
-pub(super) fn critical([a, b]: [Wide; 2]) -> f64 {
+pub(super) fn critical([a, b]: [DoubleDouble; 2]) -> f64 {
     if b.high == 0.0 {
         return f64::INFINITY;
     }
@@ -81,8 +82,8 @@ pub(super) fn critical([a, b]: [Wide; 2]) -> f64 {
 }
 
 /// A and B of the light itself.
-pub(super) fn light(depth: Wide, albedo: Wide, forward: f64) -> [Wide; 2] {
-    [depth * (1.0 - albedo * forward), depth * albedo * (1.0 - Wide::from(forward))]
+pub(super) fn light(depth: DoubleDouble, albedo: DoubleDouble, forward: f64) -> [DoubleDouble; 2] {
+    [depth * (1.0 - albedo * forward), depth * albedo * (1.0 - DoubleDouble::from(forward))]
 }
 
 /// A rod of length 1, in equal parts of the given albedos.
@@ -107,8 +108,9 @@ fn rod_of(depth: f64, albedo: &[f64], forward: f64) -> (Mesh, Rod) {
 
 /// One part in closed form; two parts, which the solver of varying rods has to join, by adding in 32 digits.
 fn truths(Parts { depth, forward, albedos }: &Parts, seen: &mut Seen) -> Option<()> {
-    let part = Wide::from(*depth) / albedos.len() as f64;
-    let parts = albedos.iter().map(|&albedo| leaving(light(part, Wide::from(albedo), *forward)));
+    let part = DoubleDouble::from(*depth) / albedos.len() as f64;
+    let parts =
+        albedos.iter().map(|&albedo| leaving(light(part, DoubleDouble::from(albedo), *forward)));
     let exact = parts.reduce(|[r1, t1], [r2, t2]| {
         let echoes = 1.0 / (1.0 - r1 * r2);
         [r1 + t1 * t1 * r2 * echoes, t1 * t2 * echoes]
@@ -121,11 +123,17 @@ fn truths(Parts { depth, forward, albedos }: &Parts, seen: &mut Seen) -> Option<
 }
 
 /// Q and S of a rule to a power, in 32 digits.
-pub(super) fn moments_of(rule: ParticleRule, ratio: Wide, albedo: f64, k: u32) -> [Wide; 2] {
+pub(super) fn moments_of(
+    rule: ParticleRule,
+    ratio: DoubleDouble,
+    albedo: f64,
+    k: u32,
+) -> [DoubleDouble; 2] {
     let (left, scattered) = (1.0 - ratio, albedo * ratio);
-    let signed = |x: Wide, size: Wide| if x.high < 0.0 && k % 2 == 1 { -size } else { size };
+    let signed =
+        |x: DoubleDouble, size: DoubleDouble| if x.high < 0.0 && k % 2 == 1 { -size } else { size };
     let (chances, sum) = if rule == ParticleRule::Terminating {
-        ([left, scattered].map(Wide::abs), Wide::ONE)
+        ([left, scattered].map(DoubleDouble::abs), DoubleDouble::ONE)
     } else {
         let other = if rule == ParticleRule::Weighted { ratio } else { scattered };
         let sum = left.abs() + other.abs();
@@ -170,20 +178,20 @@ impl Walked {
     }
 
     /// Q and S to a power.
-    fn moments(&self, k: u32) -> [Wide; 2] {
-        let ratio = Wide::from(self.depth) / self.sampling();
+    fn moments(&self, k: u32) -> [DoubleDouble; 2] {
+        let ratio = DoubleDouble::from(self.depth) / self.sampling();
         moments_of(rule(self.ratio, self.kind), ratio, self.albedo, k)
     }
 
     /// A and B to a power.
-    fn rates(&self, k: u32) -> [Wide; 2] {
+    fn rates(&self, k: u32) -> [DoubleDouble; 2] {
         let ([q, s], p) = (self.moments(k), self.forward);
-        [self.sampling() * (1.0 - q - s * p), self.sampling() * (s * (1.0 - Wide::from(p)))]
+        [self.sampling() * (1.0 - q - s * p), self.sampling() * (s * (1.0 - DoubleDouble::from(p)))]
     }
 
     /// Mean number of lookups.
-    fn collisions(&self) -> Wide {
-        let (flown, [q, s]) = (Wide::from(self.sampling()), self.moments(0));
+    fn collisions(&self) -> DoubleDouble {
+        let (flown, [q, s]) = (DoubleDouble::from(self.sampling()), self.moments(0));
         let ends = 1.0 - q - s;
         let [r, t] = leaving(self.rates(0));
         // A walk that nothing ends collides as often as one that nothing turns.

@@ -64,7 +64,7 @@ parameters! {
 
 impl Slab {
     /// Compares R, T and collisions in each light.
-    fn compare(&self, found: Vec<Answer>, exact: Vec<[Wide; 3]>, seen: &mut Seen) {
+    fn compare(&self, found: Vec<Answer>, exact: Vec<[DoubleDouble; 3]>, seen: &mut Seen) {
         for ((found, exact), light) in found.into_iter().zip(exact).zip(&self.lights) {
             seen.at(format_args!("{light:?}"));
             let found = [found.reflected, found.transmitted, found.score];
@@ -111,7 +111,7 @@ fn finer(slab: &Slab, phase: Phase, seen: &mut Seen) -> Option<()> {
     let found = slab::answers(&phase, lights, Known::exact(*depth), *albedo);
     let found = seen.found(0, found)?;
     let fine = slab::energies(&phase, lights, &[slice], resolution)?;
-    let all = |fine: Energy| [fine.reflected, fine.transmitted, fine.score].map(Wide::from);
+    let all = |fine: Energy| [fine.reflected, fine.transmitted, fine.score].map(DoubleDouble::from);
     slab.compare(found, fine.into_iter().map(all).collect(), seen);
     Some(())
 }
@@ -121,26 +121,26 @@ fn even(slab: &Slab, seen: &mut Seen) -> Option<()> {
     let Slab { depth, albedo, lights } = slab;
     // At a = 0 and a = 1 two solutions are one: a grain beside it, 1e-20, changes no digit of shares that are not 0.
     let near = match *albedo {
-        0.0 => Wide::from(1e-20),
-        1.0 => 1.0 - Wide::from(1e-20),
-        inside => Wide::from(inside),
+        0.0 => DoubleDouble::from(1e-20),
+        1.0 => 1.0 - DoubleDouble::from(1e-20),
+        inside => DoubleDouble::from(inside),
     };
     let phase = Phase::Isotropic(Isotropic);
     let found = slab::answers(&phase, lights, Known::exact(*depth), *albedo);
     let found = seen.found(0, found)?;
-    let exact = Ordinates::new(Wide::from(*depth), near, ORDINATES)?;
+    let exact = Ordinates::new(DoubleDouble::from(*depth), near, ORDINATES)?;
     let all = |(light, found): (&Light, &Answer)| {
         let [r, t] = match *light {
             Light::Collimated(cosine) if *albedo == 0.0 => {
-                [Wide::default(), (-(Wide::from(*depth) / cosine)).exp()]
+                [DoubleDouble::default(), (-(DoubleDouble::from(*depth) / cosine)).exp()]
             }
-            Light::Diffuse if *albedo == 0.0 => [Wide::default(), exact.energy(*light)[1]],
+            Light::Diffuse if *albedo == 0.0 => [DoubleDouble::default(), exact.energy(*light)[1]],
             _ => exact.energy(*light),
         };
         let lost = 1.0 - near;
         // Collisions are what is absorbed over 1 − a, of which a white slab leaves no digits.
         let score = (1.0 - r - t) / lost;
-        [r, t, if lost.high > 1e-9 { score } else { Wide::from(found.score.value) }]
+        [r, t, if lost.high > 1e-9 { score } else { DoubleDouble::from(found.score.value) }]
     };
     let exact = lights.iter().zip(&found).map(all).collect();
     slab.compare(found, exact, seen);
@@ -164,7 +164,7 @@ fn critical(slab: &Critical, seen: &mut Seen) {
         if is_finite(middle) { low = middle } else { high = middle }
     }
     let albedo = low * if is_beyond { 1.0 + distance } else { 1.0 - distance };
-    let exact = Ordinates::new(Wide::from(depth), Wide::from(albedo), ORDINATES)
+    let exact = Ordinates::new(DoubleDouble::from(depth), DoubleDouble::from(albedo), ORDINATES)
         .filter(Ordinates::is_positive);
     let fine = slab::answers(&phase, lights, Known::exact(depth), albedo);
     let moments = slab::solve(&phase, lights, &[slice(albedo)], Resolution::COARSE);

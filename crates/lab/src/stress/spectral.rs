@@ -94,14 +94,14 @@ fn heroes(shares: impl Iterator<Item = f64> + Clone) -> Vec<f64> {
 }
 
 /// Variance and fourth moment of a channel, from raw moments; none of them where one is infinite.
-fn see(seen: &mut Seen, channel: &Channel, raw: [Option<Wide>; 4]) {
+fn see(seen: &mut Seen, channel: &Channel, raw: [Option<DoubleDouble>; 4]) {
     let Some(Moments { scale, relative, error, .. }) = channel.moments else {
         seen.skip(0);
         return seen.skip(1);
     };
     let is_known = raw.map(|moment| moment.is_some_and(|m| m.high.is_finite()));
     let [second, fourth] =
-        central(raw.map(|m| m.unwrap_or(Wide::from(f64::NAN))), Wide::from(scale));
+        central(raw.map(|m| m.unwrap_or(DoubleDouble::from(f64::NAN))), DoubleDouble::from(scale));
     for (row, needed, found, exact) in [(0, 2, relative[0], second), (1, 4, relative[2], fourth)] {
         match (is_known[..needed].iter().all(|&known| known), found.is_finite()) {
             // Of draws that hardly vary there are no digits.
@@ -152,8 +152,8 @@ struct Walked<'a> {
 
 impl Walked<'_> {
     /// `E[X_λ^k]`; `None` where it is infinite.
-    fn moment(&self, own: usize, k: usize) -> Option<Wide> {
-        let wide = |x: f64| Wide::from(x);
+    fn moment(&self, own: usize, k: usize) -> Option<DoubleDouble> {
+        let wide = |x: f64| DoubleDouble::from(x);
         let (majorant, depth, w) = (self.majorants[own], self.depths[own], self.hero[own]);
         let null = |channel: usize| wide(self.majorants[channel]) - self.depths[channel];
         let nulls = power(null(own), k);
@@ -176,7 +176,7 @@ impl Walked<'_> {
             Kind::Hero => Some(channels.map(by_hero).sum()),
             Kind::Mis => {
                 // By the number of null collisions; of delta tracking with the density of nulls.
-                let mut terms: Vec<[Wide; 2]> = channels
+                let mut terms: Vec<[DoubleDouble; 2]> = channels
                     .map(|hero| {
                         let rate =
                             if self.is_delta { null(hero) } else { wide(self.majorants[hero]) };
@@ -184,9 +184,9 @@ impl Walked<'_> {
                     })
                     .collect();
                 let mut term = (-(k as f64 * wide(majorant))).exp();
-                let mut sum = Wide::default();
+                let mut sum = DoubleDouble::default();
                 for n in 1..4000_i32 {
-                    let density: Wide = terms.iter().map(|[density, _]| *density).sum();
+                    let density: DoubleDouble = terms.iter().map(|[density, _]| *density).sum();
                     let more = term / power(density, k - 1);
                     sum += more;
                     if f64::from(n) > 2.0 * majorant && more.high < 1e-25 * sum.high {
@@ -202,10 +202,10 @@ impl Walked<'_> {
             }
             Kind::Average | Kind::Maximum => {
                 let shares = |channel| null(channel) / majorant;
-                let all: Vec<Wide> = channels.map(shares).collect();
-                let size = |x: &Wide| x.value();
+                let all: Vec<DoubleDouble> = channels.map(shares).collect();
+                let size = |x: &DoubleDouble| x.value();
                 let chance = if self.kind == Kind::Average {
-                    all.iter().copied().sum::<Wide>() / all.len() as f64
+                    all.iter().copied().sum::<DoubleDouble>() / all.len() as f64
                 } else {
                     let largest = all.iter().copied().max_by(|a, b| size(a).total_cmp(&size(b)))?;
                     let least = all.iter().copied().min_by(|a, b| size(a).total_cmp(&size(b)))?;
@@ -222,7 +222,7 @@ impl Walked<'_> {
 fn coloured(
     case: &Coloured,
     (body, colours): (Box<dyn Body + '_>, &Colours),
-    leaving: &dyn Fn(Wide) -> Option<[Wide; 2]>,
+    leaving: &dyn Fn(DoubleDouble) -> Option<[DoubleDouble; 2]>,
     seen: &mut Seen,
 ) {
     let hero = heroes(case.channels.iter().map(|channel| channel.1));
@@ -230,16 +230,17 @@ fn coloured(
     let prediction = spectrum.predict();
     for (channel, &(end, own)) in prediction.channels.iter().zip(&colours.seen) {
         seen.at(&channel.name);
-        let of = |albedo: Wide| Some(leaving(albedo)?[usize::from(end == End::Transmitted)]);
-        let albedo = |channel: usize| Wide::from(colours.albedos[channel]);
+        let of =
+            |albedo: DoubleDouble| Some(leaving(albedo)?[usize::from(end == End::Transmitted)]);
+        let albedo = |channel: usize| DoubleDouble::from(colours.albedos[channel]);
         let moment = |k: usize| match case.tracker {
             Tracker::Tracking { scatter } => {
-                of(power(albedo(own), k) / power(Wide::from(scatter), k - 1))
+                of(power(albedo(own), k) / power(DoubleDouble::from(scatter), k - 1))
             }
             Tracker::Hero => (0..hero.len())
                 .map(|h| Some(of(power(albedo(own), k) / power(albedo(h), k - 1))? * hero[h]))
                 .sum(),
-            _ => Some(of(albedo(own))? / power(Wide::from(hero[own]), k - 1)),
+            _ => Some(of(albedo(own))? / power(DoubleDouble::from(hero[own]), k - 1)),
         };
         see(seen, channel, [1, 2, 3, 4].map(moment));
     }
@@ -250,8 +251,8 @@ fn rod(case: &Coloured, seen: &mut Seen) {
     let medium = homogeneous(case.depth, 1.0);
     let rod = SpectralRod::new(medium.clone(), albedos, case.forward);
     let (mesh, flown) = (Mesh::new(medium.clone()), Piecewise::constant(case.depth, medium.span()));
-    let exact = |albedo: Wide| {
-        let rates = light(Wide::from(case.depth), albedo, case.forward);
+    let exact = |albedo: DoubleDouble| {
+        let rates = light(DoubleDouble::from(case.depth), albedo, case.forward);
         // Next to the critical length either answer is right.
         (critical(rates) > 1.002).then(|| self::leaving(rates))
     };
@@ -267,9 +268,9 @@ fn slab(case: &Coloured, seen: &mut Seen) {
     let incidence = Incidence { light, phase: Phase::Isotropic(Isotropic) };
     let slab = SpectralSlab::new(medium.clone(), albedos, incidence);
     let (mesh, flown) = (Mesh::new(medium.clone()), Piecewise::constant(depth, medium.span()));
-    let exact = |albedo: Wide| {
+    let exact = |albedo: DoubleDouble| {
         let [here, beyond] = [1.0, 1.002].map(|longer| {
-            Ordinates::new(Wide::from(depth) * longer, albedo, ORDINATES)
+            Ordinates::new(DoubleDouble::from(depth) * longer, albedo, ORDINATES)
                 .filter(|slab| !slab.swings() || slab.is_positive())
         });
         beyond.and(here).map(|slab| slab.energy(light))
@@ -294,9 +295,10 @@ fn chromatic(case: &Media, seen: &mut Seen) -> Option<()> {
     for (channel, &(end, own)) in found.channels.iter().zip(&problem.colours.seen) {
         seen.at(&channel.name);
         let (depth, albedo, _) = case.channels[own];
-        let slab = Ordinates::new(Wide::from(depth), Wide::from(albedo), ORDINATES)?;
+        let slab =
+            Ordinates::new(DoubleDouble::from(depth), DoubleDouble::from(albedo), ORDINATES)?;
         let mean = slab.energy(light)[usize::from(end == End::Transmitted)];
-        let raw = |k: usize| Some(mean / power(Wide::from(hero[own]), k - 1));
+        let raw = |k: usize| Some(mean / power(DoubleDouble::from(hero[own]), k - 1));
         see(seen, channel, [1, 2, 3, 4].map(raw));
     }
     Some(())

@@ -13,7 +13,7 @@ use proptest::test_runner::{Config, RngAlgorithm, TestRng, TestRunner};
 
 use super::row::Row;
 use numeric::rng::name_hash;
-use numeric::{Known, Wide};
+use numeric::{DoubleDouble, Known};
 use theory::Moments;
 use theory::parallel;
 
@@ -160,29 +160,29 @@ impl Seen<'_> {
     }
 
     /// Adds a value with its stated error; a value that rounds to the truth has none.
-    pub fn stated(&mut self, row: usize, found: Known, exact: Wide) {
+    pub fn stated(&mut self, row: usize, found: Known, exact: DoubleDouble) {
         self.see(row, of_stated(found, exact));
     }
 
     /// Adds a value with its stated error, beyond half a unit in the last place of the truth.
-    pub fn beyond_rounding(&mut self, row: usize, found: Known, exact: Wide) {
+    pub fn beyond_rounding(&mut self, row: usize, found: Known, exact: DoubleDouble) {
         let slack = 0.5 * f64::EPSILON * exact.high.abs();
         self.see(row, over((off(found.value, exact) - slack).max(0.0), found.error));
     }
 
     /// Adds a value beside an exact one, relative.
-    pub fn relative(&mut self, row: usize, found: f64, exact: Wide) {
+    pub fn relative(&mut self, row: usize, found: f64, exact: DoubleDouble) {
         self.see(row, exact.relative_error(found));
     }
 
     /// Adds variance and fourth moment to two rows, given raw moments up to the first infinite one; skipped where
     /// theory has none.
-    pub fn moments(&mut self, rows: [usize; 2], found: Option<Moments>, raw: &[Wide]) {
+    pub fn moments(&mut self, rows: [usize; 2], found: Option<Moments>, raw: &[DoubleDouble]) {
         self.compare(rows, found, raw, |seen, row| seen.see(row, f64::INFINITY));
     }
 
     /// Adds variance and fourth moment likewise where theory resolves them: one of both infinite is skipped.
-    pub fn resolved(&mut self, rows: [usize; 2], found: Option<Moments>, raw: &[Wide]) {
+    pub fn resolved(&mut self, rows: [usize; 2], found: Option<Moments>, raw: &[DoubleDouble]) {
         self.compare(rows, found, raw, Self::skip);
     }
 
@@ -190,14 +190,15 @@ impl Seen<'_> {
         &mut self,
         rows: [usize; 2],
         found: Option<Moments>,
-        raw: &[Wide],
+        raw: &[DoubleDouble],
         differ: impl Fn(&mut Self, usize),
     ) {
         let Some(Moments { scale, relative, error, .. }) = found else {
             return rows.into_iter().for_each(|row| self.skip(row));
         };
-        let raw = std::array::from_fn(|k| raw.get(k).copied().unwrap_or(Wide::from(f64::NAN)));
-        let exact = central(raw, Wide::from(scale));
+        let raw =
+            std::array::from_fn(|k| raw.get(k).copied().unwrap_or(DoubleDouble::from(f64::NAN)));
+        let exact = central(raw, DoubleDouble::from(scale));
         for ((row, found), exact) in rows.into_iter().zip([relative[0], relative[2]]).zip(exact) {
             match (found == f64::INFINITY, exact.high.is_finite()) {
                 (false, true) => self.stated(row, Known::new(found, found.abs() * error), exact),
@@ -208,7 +209,7 @@ impl Seen<'_> {
     }
 
     /// Adds a central moment with a relative error; skipped where theory does not resolve it.
-    pub fn central(&mut self, row: usize, found: f64, error: f64, exact: Wide) {
+    pub fn central(&mut self, row: usize, found: f64, error: f64, exact: DoubleDouble) {
         if found.is_finite() {
             self.stated(row, Known::new(found, found.abs() * error), exact);
         } else {
@@ -218,7 +219,7 @@ impl Seen<'_> {
 }
 
 /// Returns the absolute error of a value.
-pub fn off(found: f64, exact: Wide) -> f64 {
+pub fn off(found: f64, exact: DoubleDouble) -> f64 {
     (found - exact).abs().value()
 }
 
@@ -228,13 +229,13 @@ pub fn over(off: f64, allowed: f64) -> f64 {
 }
 
 /// Returns the error of a value in units of its stated error; a value that rounds to the truth has none.
-pub fn of_stated(found: Known, exact: Wide) -> f64 {
+pub fn of_stated(found: Known, exact: DoubleDouble) -> f64 {
     let off = off(found.value, exact);
     if off <= 0.5 * f64::EPSILON * exact.high.abs() { 0.0 } else { off / found.error }
 }
 
 /// Returns variance and fourth central moment of raw moments, in a unit.
-pub fn central([m1, m2, m3, m4]: [Wide; 4], unit: Wide) -> [Wide; 2] {
+pub fn central([m1, m2, m3, m4]: [DoubleDouble; 4], unit: DoubleDouble) -> [DoubleDouble; 2] {
     let [one, two, three, four] =
         [m1, m2 / unit, m3 / (unit * unit), m4 / (unit * unit * unit)].map(|moment| moment / unit);
     let square = one * one;

@@ -50,8 +50,8 @@ parameters! {
 }
 
 /// `Q(z) = ½ erfc(z/√2)` in 32 digits, for `z ≥ 0`.
-pub(super) fn normal_tail(z: Wide) -> Wide {
-    let density = (-(z * z).scaled(-1)).exp() / Wide::PI.scaled(1).sqrt();
+pub(super) fn normal_tail(z: DoubleDouble) -> DoubleDouble {
+    let density = (-(z * z).scaled(-1)).exp() / DoubleDouble::PI.scaled(1).sqrt();
     if z.high < 5.0 {
         // ½ − φ Σ z^{2n+1}/(1·3·5…(2n+1))
         let (mut term, mut sum) = (z, z);
@@ -66,7 +66,7 @@ pub(super) fn normal_tail(z: Wide) -> Wide {
 }
 
 /// `Φ(b) − Φ(a)` in 32 digits, a ≤ b, on one side of 0 by the tails there.
-pub(super) fn normal_between(a: Wide, b: Wide) -> Wide {
+pub(super) fn normal_between(a: DoubleDouble, b: DoubleDouble) -> DoubleDouble {
     if a.high > 0.0 {
         normal_tail(a) - normal_tail(b)
     } else if b.high < 0.0 {
@@ -78,13 +78,14 @@ pub(super) fn normal_between(a: Wide, b: Wide) -> Wide {
 
 fn quantile(&level: &f64, seen: &mut Seen) {
     let z = normal::upper_quantile(level);
-    let density = (-Wide::product(z, z).scaled(-1)).exp() / Wide::PI.scaled(1).sqrt();
-    let off = (normal_tail(Wide::from(z)) - level) / density;
+    let density =
+        (-DoubleDouble::product(z, z).scaled(-1)).exp() / DoubleDouble::PI.scaled(1).sqrt();
+    let off = (normal_tail(DoubleDouble::from(z)) - level) / density;
     seen.see(0, (off.value() / z).abs());
 }
 
 fn error_function(&x: &f64, seen: &mut Seen) {
-    let tail = normal_tail(x / Wide::from(0.5).sqrt()).scaled(1);
+    let tail = normal_tail(x / DoubleDouble::from(0.5).sqrt()).scaled(1);
     seen.relative(0, libm::erfc(x), tail);
     if (0.1..5.0).contains(&x) {
         seen.relative(0, libm::erf(x), 1.0 - tail);
@@ -97,8 +98,8 @@ fn even_degrees(
     seen: &mut Seen,
 ) -> Option<()> {
     let x = pairs as f64 * share + beyond;
-    let half = Wide::from(x);
-    let (mut term, mut sum) = (Wide::ONE, Wide::ONE);
+    let half = DoubleDouble::from(x);
+    let (mut term, mut sum) = (DoubleDouble::ONE, DoubleDouble::ONE);
     for j in 1..pairs {
         term = term * half / j as f64;
         sum += term;
@@ -124,7 +125,7 @@ fn integral(x: f64, step: f64, density: impl Fn(f64) -> f64) -> f64 {
 }
 
 /// `x ln(x/m) + m − x` in 32 digits.
-fn deviance(x: Wide, m: Wide) -> Wide {
+fn deviance(x: DoubleDouble, m: DoubleDouble) -> DoubleDouble {
     let ratio = (m - x) / x;
     x * (ratio - ratio.ln_1p())
 }
@@ -143,7 +144,8 @@ fn many_degrees(&(degrees, sign, deviations): &(f64, f64, f64), seen: &mut Seen)
         return None;
     }
     let density = |t: f64| {
-        let exponent = deviance(Wide::from(a), Wide::from(t)).value() + remainder(a);
+        let exponent =
+            deviance(DoubleDouble::from(a), DoubleDouble::from(t)).value() + remainder(a);
         if t > 0.0 { (-exponent).exp() * (a / (2.0 * PI)).sqrt() / t } else { 0.0 }
     };
     let exact = integral(x, 0.125 * z.signum() * a.sqrt(), density);
@@ -161,7 +163,7 @@ fn binomial_ends(&Successes { trials, share, missing }: &Successes, seen: &mut S
     let (low, high) = binomial::interval(k as u64, n as u64, level);
     let tail = 0.5 * (1.0 - level);
     let mass = |k: f64, p: f64| {
-        let [wide_n, wide_k, p] = [n, k, p].map(Wide::from);
+        let [wide_n, wide_k, p] = [n, k, p].map(DoubleDouble::from);
         let exponent = deviance(wide_k, wide_n * p) + deviance(wide_n - wide_k, wide_n * (1.0 - p));
         let scale = (2.0 * PI * k * (n - k) / n).sqrt();
         (remainder(n) - remainder(k) - remainder(n - k) - exponent.value()).exp() / scale
@@ -183,10 +185,10 @@ fn binomial_ends(&Successes { trials, share, missing }: &Successes, seen: &mut S
 
 /// Probabilities by recurrence from the mode against `e^{−m} mⁿ/n!`.
 fn poisson(&mean: &f64, seen: &mut Seen) {
-    let (mut ln_mass, ln_mean) = (-Wide::from(mean), Wide::from(mean).ln());
+    let (mut ln_mass, ln_mean) = (-DoubleDouble::from(mean), DoubleDouble::from(mean).ln());
     for (n, &found) in CountLaw::poisson(mean).pmf.iter().enumerate() {
         if n > 0 {
-            ln_mass = ln_mass + ln_mean - Wide::from(n as f64).ln();
+            ln_mass = ln_mass + ln_mean - DoubleDouble::from(n as f64).ln();
         }
         let exact = ln_mass.exp();
         if exact.high > 1e-18 {
@@ -198,9 +200,9 @@ fn poisson(&mean: &f64, seen: &mut Seen) {
 
 /// Products of factors against sums of logarithms.
 fn catoni(y: &Vec<f64>, seen: &mut Seen) {
-    let (mut exact, mut size) = (Wide::default(), 0.0);
+    let (mut exact, mut size) = (DoubleDouble::default(), 0.0);
     for &y in y {
-        let size_of_y = Wide::from(y.abs());
+        let size_of_y = DoubleDouble::from(y.abs());
         let psi = (size_of_y * (1.0 + size_of_y.scaled(-1))).ln_1p();
         size += psi.value();
         exact += if y < 0.0 { -psi } else { psi };
@@ -220,7 +222,7 @@ fn catoni_draws() -> impl Strategy<Value = Vec<f64>> {
 /// Smirnov's sum for the upper tail against Anderson and Darling's series for the lower one, which shares
 /// no term with it, and beyond x = 40 against the first term's expansion.
 fn anderson_darling(&x: &f64, seen: &mut Seen) {
-    let exact = if x < 40.0 { 1.0 - below(x) } else { Wide::from(far_tail(x)) };
+    let exact = if x < 40.0 { 1.0 - below(x) } else { DoubleDouble::from(far_tail(x)) };
     seen.relative(0, anderson_darling::upper_tail(x), exact);
 }
 
@@ -230,20 +232,22 @@ fn anderson_darling(&x: &f64, seen: &mut Seen) {
 /// ```text
 /// (√(2π)/x) Σ_j (−½ over j)(4j + 1) e^{−c} ∫₀^∞ exp(x/(8(w² + 1)) − c w²) dw,  c = (4j + 1)²π²/(8x)
 /// ```
-fn below(x: f64) -> Wide {
+fn below(x: f64) -> DoubleDouble {
     const STEP: f64 = 0.055;
-    let eighth = Wide::from(x).scaled(-3);
-    let mut sum = Wide::default();
-    let mut ways = Wide::ONE;
+    let eighth = DoubleDouble::from(x).scaled(-3);
+    let mut sum = DoubleDouble::default();
+    let mut ways = DoubleDouble::ONE;
     for j in 0..16 {
         let odd = f64::from(4 * j + 1);
-        let c = Wide::product(odd, odd) * Wide::PI * Wide::PI / eighth.scaled(6);
+        let c = DoubleDouble::product(odd, odd) * DoubleDouble::PI * DoubleDouble::PI
+            / eighth.scaled(6);
         if c.high > 90.0 {
             break;
         }
         let mut integral = (eighth - c).exp().scaled(-1);
         for i in 1.. {
-            let square = Wide::product(f64::from(i), STEP) * Wide::product(f64::from(i), STEP);
+            let square = DoubleDouble::product(f64::from(i), STEP)
+                * DoubleDouble::product(f64::from(i), STEP);
             let exponent = eighth / (square + 1.0) - c * (square + 1.0);
             if exponent.high < -90.0 {
                 break;
@@ -251,10 +255,10 @@ fn below(x: f64) -> Wide {
             integral += exponent.exp();
         }
         sum += ways * odd * integral;
-        let n = Wide::from(f64::from(j));
+        let n = DoubleDouble::from(f64::from(j));
         ways = -(ways * (n + 0.5) / (n + 1.0));
     }
-    sum * STEP * Wide::PI.scaled(1).sqrt() / x
+    sum * STEP * DoubleDouble::PI.scaled(1).sqrt() / x
 }
 
 /// The first term of Smirnov's sum, with `u = 2 + q²` in panels; the second is `e^{−4x}` of it.

@@ -109,24 +109,24 @@ impl Estimator<'_> {
 /// A place of a ray.
 pub struct Place {
     /// σ_t.
-    pub extinction: Wide,
+    pub extinction: DoubleDouble,
     /// `σ_t S`.
-    pub scattered: Wide,
+    pub scattered: DoubleDouble,
     /// `e^{−B}` for the powers 0 … 4.
-    pub shadow: [Wide; 5],
+    pub shadow: [DoubleDouble; 5],
     /// Mean lookups of the shadow ray; unknown in fields.
-    pub cast: Option<Wide>,
+    pub cast: Option<DoubleDouble>,
 }
 
 /// A node of a ray.
 struct At {
     place: Place,
     /// Density of points by angle.
-    by_angle: Wide,
+    by_angle: DoubleDouble,
     /// Factor of a weight at a collision.
-    weight: Wide,
+    weight: DoubleDouble,
     /// Score of a collision without its shadow ray.
-    gain: Wide,
+    gain: DoubleDouble,
 }
 
 /// A ray by nodes.
@@ -134,12 +134,12 @@ pub struct Ray<'a> {
     estimator: &'a Estimator<'a>,
     line: Line,
     at: Vec<At>,
-    sampling: Wide,
-    control: Wide,
+    sampling: DoubleDouble,
+    control: DoubleDouble,
 }
 
 /// `E[X], …, E[X⁴]`, and the mean lookups if they are known.
-pub type Exact = ([Wide; 4], Option<Wide>);
+pub type Exact = ([DoubleDouble; 4], Option<DoubleDouble>);
 
 impl<'a> Ray<'a> {
     /// Cuts a ray at ends and further, for a largest rate of what is lost along it.
@@ -147,16 +147,16 @@ impl<'a> Ray<'a> {
         estimator: &'a Estimator,
         ends: &[f64],
         rate: f64,
-        place: &dyn Fn(Wide) -> Place,
+        place: &dyn Fn(DoubleDouble) -> Place,
     ) -> Self {
-        let ends: Vec<Wide> = ends.iter().copied().map(Wide::from).collect();
+        let ends: Vec<DoubleDouble> = ends.iter().copied().map(DoubleDouble::from).collect();
         let line = Line::new(&ends, |_| rate);
-        let distance = Wide::from(estimator.problem.distance());
+        let distance = DoubleDouble::from(estimator.problem.distance());
         let foot = estimator.problem.foot();
         let by_angle = line.values(|_, s| 1.0 / (distance * distance + (s - foot).powi(2)));
-        let whole = line.one_way(|_| Wide::default(), |i| by_angle[i]).begin;
-        let [sampling, control] = estimator.walk.map(Wide::from);
-        let at = |(place, by_angle): (Place, Wide)| At {
+        let whole = line.one_way(|_| DoubleDouble::default(), |i| by_angle[i]).begin;
+        let [sampling, control] = estimator.walk.map(DoubleDouble::from);
+        let at = |(place, by_angle): (Place, DoubleDouble)| At {
             by_angle: by_angle / whole,
             weight: 1.0 - (place.extinction - control) / sampling,
             gain: place.scattered / sampling,
@@ -167,8 +167,8 @@ impl<'a> Ray<'a> {
     }
 
     /// The radiance.
-    pub fn radiance(&self) -> Wide {
-        let source = |at: &At, _| scored(&at.place, Wide::ONE, 1);
+    pub fn radiance(&self) -> DoubleDouble {
+        let source = |at: &At, _| scored(&at.place, DoubleDouble::ONE, 1);
         self.solve(|at| at.place.extinction, source).begin
     }
 
@@ -183,65 +183,65 @@ impl<'a> Ray<'a> {
                 self.at_point(along, &self.at.iter().map(|at| at.by_angle).collect::<Vec<_>>())
             }
             Technique::ByDepth(along) => {
-                let rate = Wide::from(self.estimator.rate());
+                let rate = DoubleDouble::from(self.estimator.rate());
                 let all = -(-rate * self.length()).exp_m1();
                 self.at_point(along, &self.line.values(|_, s| rate * (-(rate * s)).exp() / all))
             }
         }
     }
 
-    fn length(&self) -> Wide {
-        Wide::from(self.estimator.problem.medium().support().length())
+    fn length(&self) -> DoubleDouble {
+        DoubleDouble::from(self.estimator.problem.medium().support().length())
     }
 
     /// `U' = a U − g`, given a node and its number.
     fn solve(
         &self,
-        rate: impl Fn(&At) -> Wide,
-        source: impl Fn(&At, usize) -> Wide,
-    ) -> Solution<Wide> {
+        rate: impl Fn(&At) -> DoubleDouble,
+        source: impl Fn(&At, usize) -> DoubleDouble,
+    ) -> Solution<DoubleDouble> {
         self.line.one_way(|i| rate(&self.at[i]), |i| source(&self.at[i], i))
     }
 
     /// `∫ p e^{−∫a} ds` of shadow rays' lookups.
     fn cast(
         &self,
-        rate: impl Fn(&At) -> Wide,
-        density: impl Fn(&At, usize) -> Wide,
-    ) -> Option<Wide> {
+        rate: impl Fn(&At) -> DoubleDouble,
+        density: impl Fn(&At, usize) -> DoubleDouble,
+    ) -> Option<DoubleDouble> {
         let is_known = self.at.iter().all(|at| at.place.cast.is_some());
         let cast = |at: &At, i| density(at, i) * at.place.cast.unwrap_or_default();
         is_known.then(|| self.solve(rate, cast).begin)
     }
 
     /// `kσ_c + σ̂(1 − x)`, x what is left of a weight to the power k.
-    fn loss(&self, k: usize, left: Wide) -> Wide {
+    fn loss(&self, k: usize, left: DoubleDouble) -> DoubleDouble {
         k as f64 * self.control + self.sampling * (1.0 - left)
     }
 
     /// Loss of weights that keep their signs.
-    fn signed(&self, at: &At, k: usize) -> Wide {
+    fn signed(&self, at: &At, k: usize) -> DoubleDouble {
         self.loss(k, power(at.weight, k))
     }
 
     /// `σ̂ℓ`.
-    fn flown(&self) -> Wide {
+    fn flown(&self) -> DoubleDouble {
         self.sampling * self.length()
     }
 
     fn at_collisions(&self) -> Exact {
-        let mut known: Vec<Solution<Wide>> = Vec::new();
+        let mut known: Vec<Solution<DoubleDouble>> = Vec::new();
         for k in 1..5 {
             let source = |at: &At, i: usize| {
                 let term = |j: usize| {
                     let kept = power(at.weight, k - j) * before(&known, k - j, i);
                     binomial(k, j) * power(at.gain, j) * at.place.shadow[j] * kept
                 };
-                self.sampling * (1..=k).map(term).sum::<Wide>()
+                self.sampling * (1..=k).map(term).sum::<DoubleDouble>()
             };
             known.push(self.solve(|at| self.signed(at, k), source));
         }
-        let cast = self.cast(|_| Wide::default(), |_, _| self.sampling);
+        let cast = self.cast(|_| DoubleDouble::default(), |_, _| self.sampling);
         (std::array::from_fn(|k| known[k].begin), cast.map(|cast| self.flown() + cast))
     }
 
@@ -251,20 +251,20 @@ impl<'a> Ray<'a> {
             let kept = power(at.weight.abs(), j - n);
             self.sampling * binomial(j, n) * kept * power(at.gain, n)
         };
-        let mut f: Vec<Solution<Wide>> = Vec::new();
+        let mut f: Vec<Solution<DoubleDouble>> = Vec::new();
         for j in 1..4 {
             let source = |at: &At, i| (1..=j).map(|n| ways(at, j, n) * before(&f, j - n, i)).sum();
             f.push(self.solve(|at| self.loss(j, power(at.weight.abs(), j)), source));
         }
         let moment = |k: usize| {
             let sign = |at: &At| if k % 2 == 1 { at.weight } else { at.weight.abs() };
-            let mut g: Vec<Solution<Wide>> = Vec::new();
+            let mut g: Vec<Solution<DoubleDouble>> = Vec::new();
             for j in 0..k {
                 let source = |at: &At, i: usize| {
                     let own = |n| ways(at, j, n) * before(&f, j - n, i);
                     let later = |n: usize| ways(at, j, n) * g[j - n].at[i];
-                    let own = at.gain * at.place.shadow[k] * (0..=j).map(own).sum::<Wide>();
-                    own + sign(at) * (1..=j).map(later).sum::<Wide>()
+                    let own = at.gain * at.place.shadow[k] * (0..=j).map(own).sum::<DoubleDouble>();
+                    own + sign(at) * (1..=j).map(later).sum::<DoubleDouble>()
                 };
                 let left = |at: &At| power(at.weight.abs(), j) * sign(at);
                 g.push(self.solve(|at| self.loss(j + 1, left(at)), source));
@@ -276,14 +276,14 @@ impl<'a> Ray<'a> {
     }
 
     fn shared_walk(&self) -> Exact {
-        let mut known: Vec<Solution<Wide>> = Vec::new();
+        let mut known: Vec<Solution<DoubleDouble>> = Vec::new();
         for order in ORDERS {
             let source = |at: &At, i: usize| {
                 let term = |m: usize| {
                     let mut lower = order;
                     lower[m - 1] -= 1;
                     let rest = ORDERS.iter().position(|order| *order == lower);
-                    let rest = rest.map_or(Wide::ONE, |rest| known[rest].at[i]);
+                    let rest = rest.map_or(DoubleDouble::ONE, |rest| known[rest].at[i]);
                     order[m - 1] as f64 * scored(&at.place, at.by_angle, m) * rest
                 };
                 (1..5).filter(|&m| order[m - 1] > 0).map(term).sum()
@@ -291,7 +291,7 @@ impl<'a> Ray<'a> {
             known.push(self.solve(|at| self.signed(at, degree(&order)), source));
         }
         let count = self.estimator.count;
-        let cast = self.cast(|_| Wide::default(), |at, _| at.by_angle);
+        let cast = self.cast(|_| DoubleDouble::default(), |at, _| at.by_angle);
         let lookups = cast.map(|cast| self.flown() + count as f64 * (1.0 + cast));
         (of_mean(count, |order| known[order].begin), lookups)
     }
@@ -307,7 +307,7 @@ impl<'a> Ray<'a> {
         ([1, 2, 3, 4].map(moment), cast.map(|cast| walked + cast))
     }
 
-    fn at_point(&self, along: CameraTracking, density: &[Wide]) -> Exact {
+    fn at_point(&self, along: CameraTracking, density: &[DoubleDouble]) -> Exact {
         let moment = |k: usize| {
             let rate = |at: &At| match along {
                 CameraTracking::Exact => k as f64 * at.place.extinction,
@@ -323,7 +323,7 @@ impl<'a> Ray<'a> {
             CameraTracking::Delta => [1.0, 1.0],
         };
         let rate = |at: &At| is_lost * at.place.extinction;
-        let beyond = self.solve(|_| Wide::default(), |_, i| density[i]);
+        let beyond = self.solve(|_| DoubleDouble::default(), |_, i| density[i]);
         let walked = self.solve(rate, |_, i| sampling * self.sampling * beyond.at[i]).begin;
         let cast = self.cast(rate, |_, i| density[i]);
         ([1, 2, 3, 4].map(moment), cast.map(|cast| 1.0 + walked + cast))
@@ -331,11 +331,11 @@ impl<'a> Ray<'a> {
 }
 
 /// `U_j` of a node; `U_0 = 1`.
-fn before(known: &[Solution<Wide>], j: usize, node: usize) -> Wide {
-    if j == 0 { Wide::ONE } else { known[j - 1].at[node] }
+fn before(known: &[Solution<DoubleDouble>], j: usize, node: usize) -> DoubleDouble {
+    if j == 0 { DoubleDouble::ONE } else { known[j - 1].at[node] }
 }
 
 /// `p (σ_t S/p)^k e^{−B_k}`.
-fn scored(place: &Place, density: Wide, k: usize) -> Wide {
+fn scored(place: &Place, density: DoubleDouble, k: usize) -> DoubleDouble {
     density * power(place.scattered / density, k) * place.shadow[k]
 }

@@ -124,9 +124,9 @@ fn albedo() -> impl Strategy<Value = f64> {
 }
 
 /// An albedo that is not 1.
-fn below_one(albedo: Wide) -> Wide {
+fn below_one(albedo: DoubleDouble) -> DoubleDouble {
     let is_white = (1.0 - albedo).high.abs() < WHITE;
-    if is_white { 1.0 - Wide::from(WHITE) } else { albedo }
+    if is_white { 1.0 - DoubleDouble::from(WHITE) } else { albedo }
 }
 
 /// A rule that exists for ratios up to one.
@@ -137,19 +137,19 @@ fn rule(kind: usize, most: f64) -> ParticleRule {
 }
 
 /// R and T in all lights.
-type Leaving = Vec<[Wide; 2]>;
+type Leaving = Vec<[DoubleDouble; 2]>;
 
 /// R and T of the slabs of a walk's moments, up to the first infinite one,
 /// and how often it collides.
 struct Exact {
     leaving: Vec<Leaving>,
-    collisions: Option<Vec<Wide>>,
+    collisions: Option<Vec<DoubleDouble>>,
 }
 
 /// Compares a walk in all lights.
 fn compare(seen: &mut Seen, walk: &Walk, lights: &[Light], exact: &Exact) {
-    let known = |x: Wide| Known::new(x.value(), f64::EPSILON * x.value());
-    let answer = |both: &[Wide; 2]| {
+    let known = |x: DoubleDouble| Known::new(x.value(), f64::EPSILON * x.value());
+    let answer = |both: &[DoubleDouble; 2]| {
         let [reflected, transmitted] = both.map(known);
         Answer { reflected, transmitted, score: Known::exact(0.0) }
     };
@@ -170,7 +170,7 @@ fn compare(seen: &mut Seen, walk: &Walk, lights: &[Light], exact: &Exact) {
             }
         }
         for (channel, side) in found.channels.iter().zip(0..).filter(|_| !is_faint) {
-            let raw: Vec<Wide> = exact.leaving.iter().map(|all| all[i][side]).collect();
+            let raw: Vec<DoubleDouble> = exact.leaving.iter().map(|all| all[i][side]).collect();
             seen.at(format_args!("{}, {light:?}", channel.name));
             // Next to where moments become infinite either may be right.
             seen.resolved([0, 1], channel.moments, &raw);
@@ -195,8 +195,8 @@ fn slices(cut: &[Piece], walk: &Walk, k: u32) -> Vec<Slice> {
     let slice = |piece: &Piece| {
         let [mut straight, mut scattered] = [0.0; 2];
         for &[share, ratio] in &piece.ratios {
-            let odds = moments_of(walk.rule, Wide::from(ratio), walk.albedo, k);
-            let [q, s] = odds.map(Wide::value);
+            let odds = moments_of(walk.rule, DoubleDouble::from(ratio), walk.albedo, k);
+            let [q, s] = odds.map(DoubleDouble::value);
             straight += share * q;
             scattered += share * s;
         }
@@ -213,12 +213,12 @@ fn even(parameters: &Even, seen: &mut Seen) {
     let pieces = Pieces::Exact(vec![Piece::of(flown, ratio)]);
     let walk = walk(phase, (albedo, rule), pieces, ratio, depth);
     let of_power = |k: u32, longer: f64| {
-        let [q, s] = moments_of(rule, Wide::from(ratio), albedo, k);
+        let [q, s] = moments_of(rule, DoubleDouble::from(ratio), albedo, k);
         let lost = 1.0 - q;
         if lost.high <= 0.0 {
             return None;
         }
-        let depth = Wide::from(flown * longer) * lost;
+        let depth = DoubleDouble::from(flown * longer) * lost;
         Ordinates::new(depth, below_one(s / lost), ORDINATES).filter(Ordinates::is_positive)
     };
     let exact: Vec<Ordinates> = (1..=4).map_while(|k| of_power(k, 1.0)).collect();
@@ -232,11 +232,11 @@ fn even(parameters: &Even, seen: &mut Seen) {
     }
     let energy = |slab: &Ordinates| lights.iter().map(|&light| slab.energy(light)).collect();
     let leaving = exact.iter().map(energy).collect();
-    let [q, s] = moments_of(rule, Wide::from(ratio), albedo, 0);
+    let [q, s] = moments_of(rule, DoubleDouble::from(ratio), albedo, 0);
     let ends = 1.0 - q - s;
     let ends = if ends.high.abs() < 1e-13 { (1.0 - q) * WHITE } else { ends };
     let collisions = of_power(0, 1.0).map_or_else(Vec::new, |slab| {
-        let left = |&light: &Light| slab.energy(light).into_iter().sum::<Wide>();
+        let left = |&light: &Light| slab.energy(light).into_iter().sum::<DoubleDouble>();
         lights.iter().map(|light| (1.0 - left(light)) / ends).collect()
     });
     compare(seen, &walk, lights, &Exact { leaving, collisions: Some(collisions) });
@@ -251,32 +251,32 @@ fn white(parameters: &White, seen: &mut Seen) -> Option<()> {
     let found = seen.found(0, Walk { laws: true, ..walk.clone() }.lookups(lights))?;
     let laws: Vec<CountLaw> = found.into_iter().map(CountLaw::of_factorial).collect();
     let scale = laws.iter().map(|law| 1.0 + law.variance / law.mean).fold(0.0, f64::max);
-    let step = Wide::from(STEP / scale);
-    let [q, s] = moments_of(rule, Wide::from(ratio), walk.albedo, 0);
-    let generating = |place: i32| -> Option<Vec<Wide>> {
+    let step = DoubleDouble::from(STEP / scale);
+    let [q, s] = moments_of(rule, DoubleDouble::from(ratio), walk.albedo, 0);
+    let generating = |place: i32| -> Option<Vec<DoubleDouble>> {
         // There two solutions of white slabs are one; probabilities add up to 1.
         if place == 0 {
-            return Some(vec![Wide::ONE; lights.len()]);
+            return Some(vec![DoubleDouble::ONE; lights.len()]);
         }
         let z = 1.0 + step * f64::from(place);
         let (lost, scattered) = (1.0 - z * q, z * s);
-        let slab = Ordinates::new(Wide::from(flown) * lost, scattered / lost, ORDINATES)?;
+        let slab = Ordinates::new(DoubleDouble::from(flown) * lost, scattered / lost, ORDINATES)?;
         let ended = z * (1.0 - q - s) / (lost - scattered);
         let of_light = |&light: &Light| {
-            let left: Wide = slab.energy(light).into_iter().sum();
+            let left: DoubleDouble = slab.energy(light).into_iter().sum();
             left + (1.0 - left) * ended
         };
         Some(lights.iter().map(of_light).collect())
     };
     let places = -4..=4;
-    let values: Vec<Vec<Wide>> = places.clone().map(generating).collect::<Option<_>>()?;
+    let values: Vec<Vec<DoubleDouble>> = places.clone().map(generating).collect::<Option<_>>()?;
     for (i, (light, law)) in lights.iter().zip(laws).enumerate() {
-        let row = |(place, values): (i32, &Vec<Wide>)| {
-            let powers = (0..9).map(|k| Wide::from(f64::from(place).powi(k)));
+        let row = |(place, values): (i32, &Vec<DoubleDouble>)| {
+            let powers = (0..9).map(|k| DoubleDouble::from(f64::from(place).powi(k)));
             powers.chain([values[i]]).collect()
         };
         let terms = solved_pivoted(places.clone().zip(&values).map(row).collect())?;
-        let mut scale = Wide::ONE;
+        let mut scale = DoubleDouble::ONE;
         let [f1, f2, f3, f4] = [1, 2, 3, 4].map(|k: u8| {
             scale = scale * f64::from(k) / step;
             terms[usize::from(k)] * scale
@@ -285,7 +285,7 @@ fn white(parameters: &White, seen: &mut Seen) -> Option<()> {
         let fourth = law.kurtosis * law.variance * law.variance;
         seen.at(format_args!("{light:?}"));
         for (row, (found, exact)) in
-            [law.variance, fourth].into_iter().zip(central(raw, Wide::ONE)).enumerate()
+            [law.variance, fourth].into_iter().zip(central(raw, DoubleDouble::ONE)).enumerate()
         {
             seen.stated(row, Known::estimated(found, found * law.moments_error), exact);
         }
@@ -302,8 +302,8 @@ fn finer(parameters: &Layers, seen: &mut Seen) {
     let cut: Vec<Piece> = ratios.iter().map(|&r| Piece::of(thin / r, r)).collect();
     let walk = walk(phase, (albedo, rule), Pieces::Exact(cut.clone()), most, depth);
     let of_power = |k: u32| slab::energies(&phase, lights, &slices(&cut, &walk, k), FINER);
-    let leaving = |energy: &Energy| [energy.reflected, energy.transmitted].map(Wide::from);
-    let score = |energy: &Energy| Wide::from(energy.score);
+    let leaving = |energy: &Energy| [energy.reflected, energy.transmitted].map(DoubleDouble::from);
+    let score = |energy: &Energy| DoubleDouble::from(energy.score);
     let exact = Exact {
         leaving: (1..=4).map_while(of_power).map(|all| all.iter().map(leaving).collect()).collect(),
         collisions: Some(of_power(0).map_or_else(Vec::new, |all| all.iter().map(score).collect())),
@@ -336,7 +336,7 @@ fn ramps(parameters: &Ramp, seen: &mut Seen) {
         let both = |(coarse, fine): (Energy, Energy)| {
             let sides =
                 [[coarse.reflected, fine.reflected], [coarse.transmitted, fine.transmitted]];
-            sides.map(|[coarse, fine]| Wide::from(fine + (fine - coarse) / 3.0))
+            sides.map(|[coarse, fine]| DoubleDouble::from(fine + (fine - coarse) / 3.0))
         };
         Some(coarse?.into_iter().zip(fine?).map(both).collect())
     };
@@ -385,15 +385,17 @@ fn graded(parameters: &Graded, seen: &mut Seen) {
     let of_power = |k: u32| {
         let rates = |x: f64| {
             let ratio = extinction.value(x) / sampling;
-            let [q, s] = moments_of(rule, Wide::from(ratio), albedo, k).map(Wide::value);
+            let [q, s] =
+                moments_of(rule, DoubleDouble::from(ratio), albedo, k).map(DoubleDouble::value);
             [sampling * (1.0 - q), sampling * s]
         };
         let grows = (0..=200).any(|i| rates(f64::from(i) / 200.0)[0] <= 0.0);
         if grows { None } else { Peierls::new(&rates, &breaks).leaving(lights) }
     };
-    let wide = |both: &[f64; 2]| both.map(Wide::from);
+    let wide = |both: &[f64; 2]| both.map(DoubleDouble::from);
     let depth = mesh.optical_depth().value;
-    let truth = Ordinates::new(Wide::from(depth), below_one(Wide::from(albedo)), ORDINATES);
+    let truth =
+        Ordinates::new(DoubleDouble::from(depth), below_one(DoubleDouble::from(albedo)), ORDINATES);
     let truth = truth.map(|slab| lights.iter().map(|&light| slab.energy(light)).collect());
     let higher = (2..=4).map_while(of_power).map(|all| all.iter().map(wide).collect());
     let leaving = truth.into_iter().chain(higher).collect();

@@ -1,7 +1,7 @@
 //! The bodies that bound a medium, and where a ray is inside them.
 
 use super::{Point, Ray};
-use crate::double_double::{Wide, two_prod, two_sum};
+use crate::double_double::{DoubleDouble, two_prod, two_sum};
 use crate::{Known, Lane, Span};
 
 /// A box with its faces along the axes.
@@ -176,18 +176,19 @@ fn clip_sphere_exactly(centre: Point, radius: f64, ray: &Ray) -> Span {
     };
     let axes = [axis(0), axis(1), axis(2)];
     // The direction has length 1 but for rounding; distances are in units of its true length.
-    let square: Wide = axes.iter().map(|&(_, d)| two_prod(d, d)).sum();
-    let foot = axes.iter().map(|&(to, d)| to * Wide::from(d)).sum::<Wide>() / square;
-    let offset: Wide = axes
+    let square: DoubleDouble = axes.iter().map(|&(_, d)| two_prod(d, d)).sum();
+    let foot =
+        axes.iter().map(|&(to, d)| to * DoubleDouble::from(d)).sum::<DoubleDouble>() / square;
+    let offset: DoubleDouble = axes
         .iter()
         .map(|&(to, d)| {
-            let residual = to - foot * Wide::from(d);
+            let residual = to - foot * DoubleDouble::from(d);
             residual * residual
         })
         .sum();
-    let radius = Wide::from(radius).scaled(power);
+    let radius = DoubleDouble::from(radius).scaled(power);
     let half = ((radius * radius - offset) / square).sqrt();
-    let end = |at: Wide| at.scaled(-power).value();
+    let end = |at: DoubleDouble| at.scaled(-power).value();
     if half.high <= 0.0 {
         return Span::empty(end(foot).clamp(0.0, ray.length));
     }

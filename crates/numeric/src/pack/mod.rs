@@ -15,7 +15,7 @@ use fearless_simd::{
 };
 
 use super::mask::Mask;
-use super::single::{ROOT_HALF, ROUNDER};
+use super::scalar_lane::{ROOT_HALF, ROUNDER};
 use super::words::apart;
 use super::{Lane, Row};
 

@@ -12,7 +12,7 @@ pub mod xoshiro;
 use rand_core::Rng;
 use rand_pcg::Pcg64;
 
-use crate::{Lane, Single, lane::WIDTH};
+use crate::{Lane, ScalarLane, lane::WIDTH};
 
 pub use xoshiro::Xoshiro;
 
@@ -35,7 +35,7 @@ pub trait Random<L: Lane> {
     fn ln_uniform_where(&mut self, which: L::Mask) -> L;
 }
 
-impl<L: Single> Random<L> for Stream {
+impl<L: ScalarLane> Random<L> for Stream {
     #[inline(always)]
     fn uniform(&mut self) -> L {
         L::of(Xoshiro::uniform(self))

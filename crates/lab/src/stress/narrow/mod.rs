@@ -1,7 +1,7 @@
 //! Single precision against double: where does a renderer's rounding outgrow its noise?
 //!
 //! The estimators' own walks are made twice from the same random words, with lanes of 53 bits and of 24
-//! ([`Narrow`](numeric::Narrow)). The difference of the two means is the bias that single precision adds. With common random
+//! ([`F32`](numeric::F32)). The difference of the two means is the bias that single precision adds. With common random
 //! numbers and common decisions (`trail`) a few thousand walks find it.
 //!
 //! ```text

@@ -21,10 +21,10 @@ use std::collections::VecDeque;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
 use numeric::rng::{Random, Stream};
-use numeric::{Fused, Lane, Narrow, Row, Single};
+use numeric::{F32, Fused, Lane, Row, ScalarLane};
 
 /// Double or single precision.
-pub trait Precision: Single {
+pub trait Precision: ScalarLane {
     /// 2ⁿ: uniform numbers are the upper n bits of a word, as renderers make them.
     const LATTICE: f64;
 }
@@ -33,7 +33,7 @@ impl Precision for Fused {
     const LATTICE: f64 = 9_007_199_254_740_992.0;
 }
 
-impl Precision for Narrow {
+impl Precision for F32 {
     const LATTICE: f64 = 16_777_216.0;
 }
 
@@ -257,7 +257,7 @@ impl<N: Precision> Neg for Traced<'_, N> {
     }
 }
 
-impl<N: Precision> Single for Traced<'_, N> {
+impl<N: Precision> ScalarLane for Traced<'_, N> {
     #[inline(always)]
     fn of(x: f64) -> Self {
         Self::plain(N::of(x))
@@ -366,10 +366,10 @@ mod tests {
             own[0] += score(walk::<Fused>(&trail));
             assert_eq!((trail.likelihood(), trail.words()), (1.0, 2.0));
             let trail = trail.again(stream);
-            repeated += score(walk::<Narrow>(&trail)) * trail.likelihood();
-            own[1] += score(walk::<Narrow>(&Trail::new(stream, false)));
+            repeated += score(walk::<F32>(&trail)) * trail.likelihood();
+            own[1] += score(walk::<F32>(&Trail::new(stream, false)));
             let trail = Trail::new(stream, true);
-            assert_eq!(walk::<Narrow>(&trail), [false, false]);
+            assert_eq!(walk::<F32>(&trail), [false, false]);
             kept += trail.likelihood();
         }
         // Four standard errors: √(0.1/200 000).

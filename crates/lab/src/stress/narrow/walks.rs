@@ -32,7 +32,7 @@ use fearless_simd::Level;
 use media::Majorants;
 use numeric::fused::in_fused_code;
 use numeric::rng::{Address, name_hash};
-use numeric::{Fused, Narrow, Single as _};
+use numeric::{F32, Fused, ScalarLane as _};
 use theory::ParticleRule::{self, Analog, NonTerminating, Weighted};
 use theory::problems::{
     self, Channels, FreeFlight, Furnace, InfiniteMedium, Lambertian, Problem, Rod,
@@ -75,7 +75,7 @@ impl<D: Draws> InBoth for D {
         let trail = Trail::new(stream, of.is_kept);
         let double = weighted::<_, Fused>(self, of, &trail)?;
         let words = trail.words();
-        let single = weighted::<_, Narrow>(self, of, &trail.again(stream))?;
+        let single = weighted::<_, F32>(self, of, &trail.again(stream))?;
         Some(([double, single], words))
     }
 }

@@ -5,7 +5,7 @@
 //! ([`super::fused::in_fused_code`]) that is one instruction, elsewhere a call of the mathematical
 //! library: slower, the same bits.
 //!
-//! [`Narrow`] is what a renderer on a graphics card computes with. Every sum, product, quotient and root is
+//! [`F32`] is what a renderer on a graphics card computes with. Every sum, product, quotient and root is
 //! rounded to 24 bits. Logarithm, exponential, sine and cosine are the true values rounded once, better
 //! than most hardware has them: what single precision costs here is the least it costs anywhere. Tables,
 //! lattice hashes and list positions are as in doubles, and their entries are rounded. No draw of a run is
@@ -30,17 +30,9 @@ pub struct Plain(pub f64);
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Fused(pub f64);
 
-/// A number of 24 bits.
+/// An `f32`, a number of 24 bits.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct Narrow(pub f32);
-
-impl Narrow {
-    /// A double, rounded.
-    #[allow(clippy::cast_possible_truncation)] // to 24 bits
-    pub fn of(x: f64) -> Self {
-        Self(x as f32)
-    }
-}
+pub struct F32(pub f32);
 
 /// The place of a number, an integer from 0 to `2^32`, in a list: the last place beyond the last.
 #[inline(always)]
@@ -50,7 +42,7 @@ pub fn place(number: f64, length: usize) -> usize {
 }
 
 /// A lane of one number.
-pub trait Single: Lane<Mask = bool> {
+pub trait ScalarLane: Lane<Mask = bool> {
     /// Rounds a double to the precision of the lane.
     fn of(x: f64) -> Self;
 
@@ -58,7 +50,7 @@ pub trait Single: Lane<Mask = bool> {
     fn double(self) -> f64;
 }
 
-impl Single for f64 {
+impl ScalarLane for f64 {
     #[inline(always)]
     fn of(x: f64) -> Self {
         x
@@ -72,11 +64,11 @@ impl Single for f64 {
 
 /// A lane of one number. What is not arithmetic is done in doubles and rounded.
 macro_rules! single {
-    ($Single:ident($number:ty), |$x:ident, $factor:ident, $term:ident| $times_plus:expr, $($function:ident)*) => {
-        single!(operators $Single($number): Add::add, Sub::sub, Mul::mul, Div::div);
+    ($Number:ident($number:ty), |$x:ident, $factor:ident, $term:ident| $times_plus:expr, $($function:ident)*) => {
+        single!(operators $Number($number): Add::add, Sub::sub, Mul::mul, Div::div);
 
         #[allow(clippy::cast_possible_truncation)] // to 24 bits
-        impl Single for $Single {
+        impl ScalarLane for $Number {
             #[inline(always)]
             fn of(x: f64) -> Self {
                 Self(x as $number)
@@ -88,7 +80,7 @@ macro_rules! single {
             }
         }
 
-        impl Neg for $Single {
+        impl Neg for $Number {
             type Output = Self;
             #[inline(always)]
             fn neg(self) -> Self {
@@ -97,7 +89,7 @@ macro_rules! single {
         }
 
         #[allow(clippy::cast_possible_truncation)] // to 24 bits
-        impl Lane for $Single {
+        impl Lane for $Number {
             type Mask = bool;
             type Words = u64;
 
@@ -216,9 +208,9 @@ macro_rules! single {
             )*
         }
     };
-    (operators $Single:ident($number:ty): $($Trait:ident::$method:ident),*) => {
+    (operators $Number:ident($number:ty): $($Trait:ident::$method:ident),*) => {
         $(
-            impl $Trait for $Single {
+            impl $Trait for $Number {
                 type Output = Self;
                 #[inline(always)]
                 fn $method(self, other: Self) -> Self {
@@ -227,7 +219,7 @@ macro_rules! single {
             }
 
             #[allow(clippy::cast_possible_truncation)] // to 24 bits
-            impl $Trait<f64> for $Single {
+            impl $Trait<f64> for $Number {
                 type Output = Self;
                 #[inline(always)]
                 fn $method(self, other: f64) -> Self {
@@ -243,7 +235,7 @@ single!(Fused(f64), |x, factor, term| x.0.mul_add(factor.0, term.0),);
 // Rounded once, as such hardware does; a product of two such numbers is exact in a double, and the sum with
 // a third is rounded twice only where that is a tie.
 single!(
-    Narrow(f32),
+    F32(f32),
     |x, factor, term| (f64::from(x.0) * f64::from(factor.0) + f64::from(term.0)) as f32,
     ln exp cos sin cos_pi_size
 );
@@ -254,13 +246,13 @@ mod tests {
 
     #[test]
     fn every_operation_is_rounded_to_24_bits() {
-        let (one, tiny) = (Narrow(1.0), Narrow::of(2f64.powi(-25)));
+        let (one, tiny) = (F32(1.0), F32::of(2f64.powi(-25)));
         assert_eq!((one + tiny).0, 1.0);
-        assert_eq!((Narrow(1.0) / Narrow(3.0)).0, 1.0f32 / 3.0);
-        assert_eq!((Narrow(16_777_216.0) + 1.0).0, 16_777_216.0);
-        assert_eq!(Narrow(2.0).ln().0, std::f32::consts::LN_2);
+        assert_eq!((F32(1.0) / F32(3.0)).0, 1.0f32 / 3.0);
+        assert_eq!((F32(16_777_216.0) + 1.0).0, 16_777_216.0);
+        assert_eq!(F32(2.0).ln().0, std::f32::consts::LN_2);
         // One rounding: (1 + 2⁻²³)² − 1 keeps its last bit.
-        let x = Narrow(1.0 + f32::EPSILON);
+        let x = F32(1.0 + f32::EPSILON);
         assert_eq!(x.times_plus(x, -one).0, 2.0 * f32::EPSILON + f32::EPSILON * f32::EPSILON);
     }
 
@@ -268,7 +260,7 @@ mod tests {
     fn a_field_is_looked_up_in_single_precision() {
         use crate::elementary;
         let found = elementary::exp(1.0f64);
-        assert!((f64::from(Lane::exp(Narrow(1.0)).0) - found).abs() < 1.2e-7);
-        assert_ne!(f64::from(Lane::exp(Narrow(1.0)).0), found);
+        assert!((f64::from(Lane::exp(F32(1.0)).0) - found).abs() < 1.2e-7);
+        assert_ne!(f64::from(Lane::exp(F32(1.0)).0), found);
     }
 }

@@ -17,12 +17,12 @@ use super::{Lane, Row, elementary};
 
 /// Two lanes, or what belongs to them: their masks, their words.
 #[derive(Debug, Clone, Copy)]
-pub struct Twin<L>(pub L, pub L);
+pub struct Pair<L>(pub L, pub L);
 
 /// The elements of two packs.
-pub const PAIR: usize = 2 * WIDTH;
+pub const PAIR_WIDTH: usize = 2 * WIDTH;
 
-impl<S: Simd> Twin<f64x8<S>> {
+impl<S: Simd> Pair<f64x8<S>> {
     /// A value in every element.
     #[inline(always)]
     pub fn splat(simd: S, value: f64) -> Self {
@@ -31,19 +31,19 @@ impl<S: Simd> Twin<f64x8<S>> {
 
     /// Loads the elements from a row.
     #[inline(always)]
-    pub fn from_slice(simd: S, row: &[f64; PAIR]) -> Self {
+    pub fn from_slice(simd: S, row: &[f64; PAIR_WIDTH]) -> Self {
         Self(f64x8::from_slice(simd, &row[..WIDTH]), f64x8::from_slice(simd, &row[WIDTH..]))
     }
 
     /// Stores the elements in a row.
     #[inline(always)]
-    pub fn store_slice(&self, row: &mut [f64; PAIR]) {
+    pub fn store_slice(&self, row: &mut [f64; PAIR_WIDTH]) {
         self.0.store_slice(&mut row[..WIDTH]);
         self.1.store_slice(&mut row[WIDTH..]);
     }
 }
 
-impl<S: Simd> Twin<mask64x8<S>> {
+impl<S: Simd> Pair<mask64x8<S>> {
     /// Returns the elements as bits, the first one lowest.
     #[inline(always)]
     pub fn to_bitmask(self) -> u64 {
@@ -65,13 +65,13 @@ macro_rules! both {
 
 macro_rules! operators {
     ($($Operator:ident::$of:ident($($other:ident)?);)*) => {
-        $(impl<T: $Operator<Output = T>> $Operator for Twin<T> {
+        $(impl<T: $Operator<Output = T>> $Operator for Pair<T> {
             type Output = Self;
             both! { $of($($other)?); }
         })*
     };
     (by a number: $($Operator:ident::$of:ident),*) => {
-        $(impl<T: $Operator<f64, Output = T>> $Operator<f64> for Twin<T> {
+        $(impl<T: $Operator<f64, Output = T>> $Operator<f64> for Pair<T> {
             type Output = Self;
             both! { $of(; number: f64); }
         })*
@@ -92,7 +92,7 @@ operators!(by a number: Add::add, Sub::sub, Mul::mul);
 
 macro_rules! assigned {
     ($($Operator:ident::$of:ident),*) => {
-        $(impl<T: $Operator> $Operator for Twin<T> {
+        $(impl<T: $Operator> $Operator for Pair<T> {
             #[inline(always)]
             fn $of(&mut self, other: Self) {
                 self.0.$of(other.0);
@@ -103,7 +103,7 @@ macro_rules! assigned {
 }
 assigned!(BitAndAssign::bitand_assign, BitOrAssign::bitor_assign, BitXorAssign::bitxor_assign);
 
-impl<M: Mask> Mask for Twin<M> {
+impl<M: Mask> Mask for Pair<M> {
     #[inline(always)]
     fn any(self) -> bool {
         self.0.any() | self.1.any()
@@ -131,7 +131,7 @@ impl<M: Mask> Mask for Twin<M> {
     }
 }
 
-impl<W: Words32> Words32 for Twin<W> {
+impl<W: Words32> Words32 for Pair<W> {
     both! {
         each(; words: [u32; 2]);
         plus(other);
@@ -140,9 +140,9 @@ impl<W: Words32> Words32 for Twin<W> {
     }
 }
 
-impl<L: Lane> Lane for Twin<L> {
-    type Mask = Twin<L::Mask>;
-    type Words = Twin<L::Words>;
+impl<L: Lane> Lane for Pair<L> {
+    type Mask = Pair<L::Mask>;
+    type Words = Pair<L::Words>;
 
     both! {
         each(; value: f64);
@@ -177,17 +177,17 @@ impl<L: Lane> Lane for Twin<L> {
     }
 
     #[inline(always)]
-    fn below(self, other: Self) -> Twin<L::Mask> {
-        Twin(self.0.below(other.0), self.1.below(other.1))
+    fn below(self, other: Self) -> Pair<L::Mask> {
+        Pair(self.0.below(other.0), self.1.below(other.1))
     }
 
     #[inline(always)]
-    fn at_most(self, other: Self) -> Twin<L::Mask> {
-        Twin(self.0.at_most(other.0), self.1.at_most(other.1))
+    fn at_most(self, other: Self) -> Pair<L::Mask> {
+        Pair(self.0.at_most(other.0), self.1.at_most(other.1))
     }
 
     #[inline(always)]
-    fn select(mask: Twin<L::Mask>, yes: Self, no: Self) -> Self {
+    fn select(mask: Pair<L::Mask>, yes: Self, no: Self) -> Self {
         Self(L::select(mask.0, yes.0, no.0), L::select(mask.1, yes.1, no.1))
     }
 
@@ -198,18 +198,18 @@ impl<L: Lane> Lane for Twin<L> {
     }
 
     #[inline(always)]
-    fn words(self) -> Twin<L::Words> {
-        Twin(self.0.words(), self.1.words())
+    fn words(self) -> Pair<L::Words> {
+        Pair(self.0.words(), self.1.words())
     }
 
     #[inline(always)]
-    fn where_bits(words: Twin<L::Words>, bits: u64, wanted: u64, yes: Self, no: Self) -> Self {
+    fn where_bits(words: Pair<L::Words>, bits: u64, wanted: u64, yes: Self, no: Self) -> Self {
         let first = L::where_bits(words.0, bits, wanted, yes.0, no.0);
         Self(first, L::where_bits(words.1, bits, wanted, yes.1, no.1))
     }
 
     #[inline(always)]
-    fn negated_where(self, words: Twin<L::Words>, bit: u32) -> Self {
+    fn negated_where(self, words: Pair<L::Words>, bit: u32) -> Self {
         Self(self.0.negated_where(words.0, bit), self.1.negated_where(words.1, bit))
     }
 
