@@ -1,4 +1,4 @@
-//! Gauss–Legendre quadrature, and running integrals at its nodes.
+//! Gauss–Legendre quadrature, running integrals at its nodes, and the scalar linear equation on panels of nodes.
 
 use super::Span;
 
@@ -62,6 +62,51 @@ impl GaussLegendre {
         self.on(span).map(|(t, _)| t).collect()
     }
 
+    /// Solves `−U' = f − A' U` on a panel backwards from its end, by running integrals. Returns U at the nodes and at the
+    /// panel's beginning.
+    ///
+    /// ```text
+    /// U(s) = ∫_s^end f(t) e^{−(A(t) − A(s))} dt + U(end) e^{−(A(end) − A(s))}
+    /// ```
+    ///
+    /// `losses` are A at the nodes and `loss` that at the end, both from the panel's beginning; `f` are values of f times
+    /// the panel's length.
+    pub fn backward(&self, losses: &[f64], loss: f64, f: &[f64], end: f64) -> (Vec<f64>, f64) {
+        let decayed: Vec<f64> = f.iter().zip(losses).map(|(f, loss)| f * (-loss).exp()).collect();
+        let begin = end * (-loss).exp() + dot(&self.weights, &decayed);
+        let at = |(row, loss): (&Vec<f64>, &f64)| (begin - dot(row, &decayed)) * loss.exp();
+        (self.running.iter().zip(losses).map(at).collect(), begin)
+    }
+
+    /// Weights of the integral from a node to the end of `[0, 1]`.
+    pub fn to_end(&self, node: usize) -> impl Iterator<Item = f64> + '_ {
+        self.weights.iter().zip(&self.running[node]).map(|(whole, before)| whole - before)
+    }
+
+    /// Integrals of several functions from each node of adjacent panels to the end of the last, given the widths of the
+    /// panels and the values at all nodes: the equation of [`GaussLegendre::backward`] with A = 0.
+    pub fn all_to_end(&self, widths: &[f64], values: &[Vec<f64>]) -> Vec<Vec<f64>> {
+        let add = |sum: &mut [f64], row: &[f64], weight: f64| {
+            sum.iter_mut().zip(row).for_each(|(sum, x)| *sum += weight * x);
+        };
+        let mut beyond = vec![0.0; values.first().map_or(0, Vec::len)];
+        let mut found = vec![Vec::new(); values.len()];
+        let nodes = self.nodes.len();
+        let panels = values.chunks(nodes).zip(found.chunks_mut(nodes)).zip(widths);
+        for ((values, found), width) in panels.rev() {
+            for (i, found) in found.iter_mut().enumerate() {
+                found.clone_from(&beyond);
+                for (row, weight) in values.iter().zip(self.to_end(i)) {
+                    add(found, row, width * weight);
+                }
+            }
+            for (row, weight) in values.iter().zip(&self.weights) {
+                add(&mut beyond, row, width * weight);
+            }
+        }
+        found
+    }
+
     /// `∫_from^to f`.
     pub fn integrate(&self, from: f64, to: f64, mut f: impl FnMut(f64) -> f64) -> f64 {
         let length = to - from;
@@ -104,6 +149,11 @@ fn node_and_weight(n: usize, i: usize) -> (f64, f64) {
     (0.5 * (1.0 + x), 1.0 / ((1.0 - x * x) * slope * slope))
 }
 
+/// Sum of the products of two lists.
+pub fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(x, y)| x * y).sum()
+}
+
 fn lagrange(nodes: &[f64], j: usize, x: f64) -> f64 {
     let others = nodes.iter().enumerate().filter(|&(k, _)| k != j);
     others.map(|(_, &node)| (x - node) / (nodes[j] - node)).product()
@@ -133,6 +183,31 @@ mod tests {
         for (row, &end) in rule.running.iter().zip(&rule.nodes) {
             let value: f64 = row.iter().zip(&f).map(|(a, b)| a * b).sum();
             assert!((value - end.exp_m1()).abs() < 1e-14);
+        }
+    }
+    #[test]
+    fn a_panel_is_solved_backwards() {
+        // −U' = f − a U with f = cos s e^{as}: U e^{−as} = sin 1 − sin s + U(1) e^{−a}.
+        let (rule, a, end) = (GaussLegendre::new(14), 0.7, 2.0);
+        let losses: Vec<f64> = rule.nodes.iter().map(|x| a * x).collect();
+        let f: Vec<f64> = rule.nodes.iter().map(|x| x.cos() * (a * x).exp()).collect();
+        let (found, begin) = rule.backward(&losses, a, &f, end);
+        let exact = |s: f64| (a * s).exp() * (1f64.sin() - s.sin() + end * (-a).exp());
+        assert!((begin - exact(0.0)).abs() < 1e-15);
+        for (found, &s) in found.iter().zip(&rule.nodes) {
+            assert!((found - exact(s)).abs() < 1e-14, "{s}");
+        }
+    }
+
+    #[test]
+    fn integrals_to_the_end_pass_all_panels() {
+        let (rule, ends) = (GaussLegendre::new(5), [0.0, 0.5, 0.7, 2.0]);
+        let nodes: Vec<f64> = Span::between(&ends).flat_map(|span| rule.nodes_on(span)).collect();
+        let values: Vec<Vec<f64>> = nodes.iter().map(|t| vec![1.0, t.powi(3)]).collect();
+        let widths: Vec<f64> = Span::between(&ends).map(Span::length).collect();
+        for (found, t) in rule.all_to_end(&widths, &values).iter().zip(nodes) {
+            assert!((found[0] - (2.0 - t)).abs() < 1e-14);
+            assert!((found[1] - (4.0 - 0.25 * t.powi(4))).abs() < 1e-14, "{t}");
         }
     }
 }

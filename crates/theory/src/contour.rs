@@ -151,6 +151,16 @@ impl Contour {
         [0..self.highest, begin(lines.start)..begin(lines.end)]
     }
 
+    /// `σ̂ (1 − w^s)` of all lines.
+    pub fn rates(&self, kept: f64, sampling: f64) -> Vec<f64> {
+        let mut row = vec![0.0; self.width()];
+        self.losses(kept, None, &mut row);
+        for loss in &mut row {
+            *loss *= sampling;
+        }
+        row
+    }
+
     /// Writes the row of `1 − w^s`, of all lines or of one.
     pub fn losses(&self, kept: f64, line: Option<usize>, row: &mut [f64]) {
         let (powers, lines) = row.split_at_mut(self.highest);

@@ -37,6 +37,7 @@ pub mod spectral_rod;
 pub mod spectral_single_scattering;
 pub mod spectral_slab;
 pub mod sphere;
+pub mod survival;
 pub mod volterra;
 
 pub use count::CountLaw;

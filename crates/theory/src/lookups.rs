@@ -8,8 +8,7 @@
 //! P(M = m) = e^{−K(S)} Pois(m; A(S)) + ∫ e^{−K} [σ̂(1 − q) Pois(m − 1; A) + c Pois(m; A)] dt
 //! ```
 //!
-//! Derived from the superposition of Poisson processes; its factorial moments are those of
-//! [`super::product::Integrals::lookups`].
+//! Derived from the superposition of Poisson processes; its factorial moments are those of [`super::survival`].
 
 use super::Mesh;
 use super::count::{CountLaw, LARGEST_MEAN, Window};
@@ -85,7 +84,9 @@ impl Walk {
             let share = -(-lost).exp_m1() * self.alive() / sum;
             let before = mesh.running(panel, &survivals);
             let unit = share * panel.span.length();
-            for (i, weight) in mesh.weights().iter().enumerate().filter(|&(i, _)| deaths[i] > 0.0) {
+            for (i, weight) in
+                mesh.rule().weights.iter().enumerate().filter(|&(i, _)| deaths[i] > 0.0)
+            {
                 let ended = unit * weight * ending[i] / deaths[i];
                 let mean = (self.survivals.value() + before[i]).max(0.0);
                 for (rate, shift) in [(absorbed[i], 1), (product.killing, 0)] {

@@ -1,7 +1,7 @@
 //! A ray cut into panels on which everything is smooth.
 
 use media::Medium;
-use numeric::quadrature::{GaussLegendre, legendre};
+use numeric::quadrature::{GaussLegendre, dot, legendre};
 use numeric::sum::Sum;
 use numeric::{Known, Span, roots};
 
@@ -267,14 +267,16 @@ impl Mesh {
         panel.span.length() * dot(&self.rule.weights, f)
     }
 
-    /// The weights of the nodes of a panel of length 1.
-    pub(super) fn weights(&self) -> &[f64] {
-        &self.rule.weights
+    /// The rule of every panel.
+    pub(super) fn rule(&self) -> &GaussLegendre {
+        &self.rule
     }
 
-    /// The weights of the integral from a panel's beginning to one of its nodes, of a panel of length 1.
-    pub(super) fn running_weights(&self, node: usize) -> &[f64] {
-        &self.rule.running[node]
+    /// Solves `−U' = f − rate · U` on a panel backwards from its end, see [`GaussLegendre::backward`].
+    pub fn backward(&self, panel: Panel<'_>, rate: &[f64], f: &[f64], end: f64) -> (Vec<f64>, f64) {
+        let length = panel.span.length();
+        let f: Vec<f64> = f.iter().map(|f| length * f).collect();
+        self.rule.backward(&self.running(panel, rate), self.integral(panel, rate), &f, end)
     }
 
     /// `∫ f` from the panel's beginning to each of its nodes.
@@ -401,8 +403,4 @@ fn legendre_row(rule: &GaussLegendre, order: usize) -> Vec<f64> {
     let polynomial = |x: f64| legendre(2.0 * x - 1.0).nth(order).unwrap_or(f64::NAN);
     let scale = 2.0 * order as f64 + 1.0;
     rule.nodes.iter().zip(&rule.weights).map(|(&x, &w)| scale * w * polynomial(x)).collect()
-}
-
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(x, y)| x * y).sum()
 }

@@ -12,6 +12,7 @@
 use super::mesh::Panel;
 use super::prediction::transmittance;
 use super::raw::of_factorial;
+use super::survival::Survival;
 use super::{Channel, CountLaw, Mesh, Moments, Outcome, Prediction, Rule, Tails};
 use media::{Control, Piecewise};
 use numeric::Grade;
@@ -46,8 +47,7 @@ pub struct Integrals {
     pub rarity: f64,
     /// `ln E[(X/T)^k] = ∫ σ̂ (E[W^k] − 1 + k(1 − E[W]))`, k = 4 and 8.
     pub growth: [f64; 2],
-    /// Factorial moments `E[M(M − 1)…(M − k + 1)] = k ∫ σ̂ e^{−K} A^{k−1}`, k = 1 … 4. Here `K = ∫ σ̂(1 − q)` and
-    /// `A = ∫ σ̂ q` up to the collision.
+    /// Factorial moments of the number of lookups, k = 1 … 4, see [`super::survival`].
     pub lookups: [f64; 4],
     /// `∫ σ̂ e^{−K} [q < 1] dt`: mean number of collisions that a random number decides.
     pub decisions: f64,
@@ -193,11 +193,9 @@ struct Totals {
     losses: [Sum; 4],
     rarity: Sum,
     growth: [Sum; 2],
-    lookups: [Sum; 4],
+    survival: Survival,
     decisions: Sum,
     flown: Sum,
-    deaths: Sum,
-    survivals: Sum,
     stable: Sum,
     /// True if a loss is not constant in a panel.
     varies: bool,
@@ -222,22 +220,12 @@ impl Totals {
         }
         let deaths: Vec<f64> = over(&|o| o.death).iter().map(|rate| rate + killing).collect();
         let survivals = over(&|o| o.survival);
-        let (k0, a0) = (self.deaths.value(), self.survivals.value());
-        let alive: Vec<f64> =
-            mesh.running(panel, &deaths).iter().map(|k| (-(k0 + k)).exp()).collect();
-        let before: Vec<f64> = mesh.running(panel, &survivals).iter().map(|a| a0 + a).collect();
-        let first: Vec<f64> = nodes.sampling.iter().zip(&alive).map(|(s, e)| s * e).collect();
-        for (k, sum) in (1_i32..).zip(&mut self.lookups) {
-            let order = f64::from(k);
-            let terms = first.iter().zip(&before).map(|(f, a)| order * f * a.powi(k - 1));
-            sum.add(mesh.integral(panel, &terms.collect::<Vec<f64>>()));
-        }
+        let rates = [nodes.sampling.as_slice(), &deaths, &survivals];
+        let first = self.survival.add(mesh.rule(), panel.span.length(), rates);
         let open = first.iter().zip(&nodes.outcome);
         let open: Vec<f64> = open.map(|(f, o)| if o.survival < 1.0 { *f } else { 0.0 }).collect();
         self.decisions.add(mesh.integral(panel, &open));
         self.flown.add(mesh.integral(panel, &nodes.sampling));
-        self.deaths.add(mesh.integral(panel, &deaths));
-        self.survivals.add(mesh.integral(panel, &survivals));
         let introduced = over(&|o| o.mean_loss(2));
         let bounded = introduced.iter().zip(panel.extinction);
         let stable: Vec<f64> = bounded
@@ -251,10 +239,10 @@ impl Totals {
             losses: self.losses.map(|sum| sum.value()),
             rarity: self.rarity.value(),
             growth: self.growth.map(|sum| sum.value()),
-            lookups: self.lookups.map(|sum| sum.value()),
+            lookups: self.survival.factorial(),
             decisions: self.decisions.value(),
             flown: self.flown.value(),
-            alive: (-self.deaths.value()).exp(),
+            alive: self.survival.alive(),
             stable: self.stable.value(),
             is_stepwise: !self.varies,
         }

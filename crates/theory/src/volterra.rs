@@ -120,22 +120,12 @@ fn sweep(
     let mut before = [0.0; ORDERS];
     for k in 1..=ORDERS {
         let rate: Vec<f64> = ratio.iter().map(|&r| sampling * lost(r, k)).collect();
-        let total = mesh.integral(panel, &rate);
-        let so_far = mesh.running(panel, &rate);
-        // exp(+∫) from the panel's beginning to a node multiplies the integrand's exp(−∫).
-        let weighted: Vec<f64> = (0..n)
-            .map(|i| {
-                let g = source.moment(k, v[i], &at_nodes[i]);
-                sampling * power(1.0 - ratio[i], k) * g * (-so_far[i]).exp()
-            })
-            .collect();
-        let inside = mesh.integral(panel, &weighted);
-        let passed = mesh.running(panel, &weighted);
-        let carried = after[k - 1] * (-total).exp();
-        before[k - 1] = carried + inside;
-        for i in 0..n {
-            at_nodes[i][k - 1] = (carried + inside - passed[i]) * so_far[i].exp();
-        }
+        let brings =
+            |i: usize| sampling * power(1.0 - ratio[i], k) * source.moment(k, v[i], &at_nodes[i]);
+        let f: Vec<f64> = (0..n).map(brings).collect();
+        let (found, begin) = mesh.backward(panel, &rate, &f, after[k - 1]);
+        at_nodes.iter_mut().zip(found).for_each(|(node, found)| node[k - 1] = found);
+        before[k - 1] = begin;
     }
     before
 }

@@ -79,14 +79,7 @@ impl Weights {
 
     /// Moments of x from each node to the emitter.
     pub fn along(&self, line: &Line) -> Vec<Vec<f64>> {
-        let row = |node: &Node| {
-            let mut row = vec![0.0; self.contour.width()];
-            self.contour.losses(node.means[0], None, &mut row);
-            for loss in &mut row {
-                *loss *= node.sampling;
-            }
-            row
-        };
+        let row = |node: &Node| self.contour.rates(node.means[0], node.sampling);
         let rates: Vec<Vec<f64>> = line.nodes().iter().map(row).collect();
         line.to_end(&rates).iter().map(|depths| self.contour.moments(0, depths, 1.0)).collect()
     }

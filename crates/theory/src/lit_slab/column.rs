@@ -67,7 +67,7 @@ impl Column {
             for (i, &t) in panel.t.iter().enumerate() {
                 nodes.push(Node {
                     before: end - t,
-                    weight: panel.span.length() * cut.weights()[i],
+                    weight: panel.span.length() * cut.rule().weights[i],
                     extinction: panel.extinction[i],
                     sampling: values[i][1],
                     depth: depth + real[i],
@@ -78,7 +78,7 @@ impl Column {
             depth += cut.integral(panel, panel.extinction);
             missed += cut.integral(panel, &flown);
         }
-        let per_panel = cut.weights().len();
+        let per_panel = cut.rule().nodes.len();
         let mut column = Self { mesh: cut, nodes, per_panel, whole: [depth, missed] };
         column.integrate(contour);
         column
@@ -86,42 +86,19 @@ impl Column {
 
     /// Integrates from each node to the end.
     fn integrate(&mut self, contour: &Contour) {
-        let mut beyond = vec![0.0; contour.width()];
-        let mut rows = vec![beyond.clone(); self.per_panel];
-        let add = |sum: &mut [f64], row: &[f64], weight: f64| {
-            sum.iter_mut().zip(row).for_each(|(sum, x)| *sum += weight * x);
-        };
-        for first in (0..self.nodes.len()).step_by(self.per_panel).rev() {
-            let panel = first..first + self.per_panel;
-            for (row, node) in rows.iter_mut().zip(&self.nodes[panel.clone()]) {
-                contour.losses(null(node.extinction, node.sampling), None, row);
-                for loss in row.iter_mut() {
-                    *loss *= node.sampling;
-                }
-            }
-            for node in panel.clone() {
-                let mut sum = beyond.clone();
-                for (weight, row) in self.rest_of_panel(node).into_iter().zip(&rows) {
-                    add(&mut sum, row, weight);
-                }
-                self.nodes[node].beyond = sum;
-            }
-            for (node, row) in self.nodes[panel].iter().zip(&rows) {
-                add(&mut beyond, row, node.weight);
-            }
-        }
+        let rates =
+            |node: &Node| contour.rates(null(node.extinction, node.sampling), node.sampling);
+        let rows: Vec<Vec<f64>> = self.nodes.iter().map(rates).collect();
+        let lengths: Vec<f64> =
+            (0..rows.len()).step_by(self.per_panel).map(|first| self.panel_length(first)).collect();
+        let found = self.mesh.rule().all_to_end(&lengths, &rows);
+        self.nodes.iter_mut().zip(found).for_each(|(node, beyond)| node.beyond = beyond);
     }
 
     /// The weights of `∫` from a node to the end of its panel, for the nodes of the panel.
     pub fn rest_of_panel(&self, node: usize) -> Vec<f64> {
-        let (place, length) = (node % self.per_panel, self.panel_length(node));
-        let all = self.mesh.weights();
-        self.mesh
-            .running_weights(place)
-            .iter()
-            .zip(all)
-            .map(|(row, all)| length * (all - row))
-            .collect()
+        let length = self.panel_length(node);
+        self.mesh.rule().to_end(node % self.per_panel).map(|weight| length * weight).collect()
     }
 
     fn panel_length(&self, node: usize) -> f64 {

@@ -1,20 +1,16 @@
 //! Moments of the number of lookups of a draw.
 //!
 //! Given the first real collision at z, null collisions before it are Poisson with mean ν(z). Its shadow ray and
-//! its further flight are independent of them and of each other. A flight to the end along μ that stops at a real
-//! collision makes
-//!
-//! ```text
-//! E[K(K − 1)…(K − n + 1)] = n ∫ (σ̂/μ) e^{−τ(y, s)/μ} (ν(y, s)/μ)^{n−1} ds,   n = 1, 2, …
-//! ```
-//!
-//! from y, and a ratio-tracked shadow ray a Poisson number of mean ∫σ̂/μ. Directions that miss the light make none.
+//! its further flight are independent of them and of each other. A flight from y to the end along μ that stops at a real
+//! collision makes the lookups of [`crate::survival`] with `σ̂/μ`, `K = τ/μ` and `A = ν/μ`. A ratio-tracked shadow ray
+//! makes a Poisson number of mean ∫σ̂/μ. Directions that miss the light make none.
 
 use super::column::Column;
 use super::directions::{Direction, Resolution};
 use crate::lit_rod::{Shadow, Techniques};
 use crate::problems::LitSlab;
 use crate::raw::{Raw, added, of_factorial, poisson};
+use crate::survival::factorial_rates;
 
 /// Optical depth at which rays are cut off: one in 1e26 goes farther.
 const FAR: f64 = 60.0;
@@ -83,11 +79,8 @@ fn stopping(column: &Column, from: usize, direction: &Direction) -> Raw {
         }
         let weight = own.get(i).copied().unwrap_or(node.weight);
         let nulls = (node.nulls - here.nulls) / cosine;
-        let mut term = weight * node.sampling / cosine * (-depth).exp();
-        for (n, sum) in factorial.iter_mut().enumerate() {
-            *sum += (n + 1) as f64 * term;
-            term *= nulls;
-        }
+        let rates = factorial_rates(node.sampling / cosine, depth, nulls);
+        factorial.iter_mut().zip(rates).for_each(|(sum, rate)| *sum += weight * rate);
     }
     of_factorial(factorial)
 }

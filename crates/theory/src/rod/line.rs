@@ -155,23 +155,8 @@ impl Line {
 
     /// `∫` of rates, given at each node, from each node to the end of the rod.
     pub fn to_end(&self, rates: &[Vec<f64>]) -> Vec<Vec<f64>> {
-        let rule = &*RULE;
-        let count = rates.first().map_or(0, Vec::len);
-        let (mut found, mut after) = (vec![vec![0.0; count]; rates.len()], vec![0.0; count]);
-        for (panel, (_, width)) in self.panels.iter().enumerate().rev() {
-            let at = panel * NODES..(panel + 1) * NODES;
-            for (k, after) in after.iter_mut().enumerate() {
-                let over = |weights: &[f64]| {
-                    let terms = rates[at.clone()].iter().zip(weights);
-                    width * terms.map(|(rates, w)| rates[k] * w).sum::<f64>()
-                };
-                *after += over(&rule.weights);
-                for (found, running) in found[at.clone()].iter_mut().zip(&rule.running) {
-                    found[k] = *after - over(running);
-                }
-            }
-        }
-        found
+        let widths: Vec<f64> = self.panels.iter().map(|&(_, width)| width).collect();
+        RULE.all_to_end(&widths, rates)
     }
 
     /// Importance 1 everywhere.

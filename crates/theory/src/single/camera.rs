@@ -1,8 +1,9 @@
 //! The estimated transmittance from the ray's origin to any point of the ray.
 
 use super::CameraTracking;
-use super::segment::{POWERS, Segment, counts, loss, losses, rounding, size};
+use super::segment::{POWERS, Segment, loss, losses, rounding, size};
 use crate::Mesh;
+use crate::survival::factorial_rates;
 use media::{Control, Piecewise};
 use numeric::quadrature::GaussLegendre;
 use numeric::{Cumulative, Known, Span};
@@ -80,7 +81,7 @@ impl<'a> Camera<'a> {
             let from = self.mesh.support().from;
             let depth = self.depth(t).value;
             let nulls = self.flown(Span::new(from, t)) - depth;
-            let [a, b, c, d] = counts(sampling, depth, nulls);
+            let [a, b, c, d] = factorial_rates(sampling, depth, nulls);
             return [a, b, c, d, 0.0, 0.0, 0.0, 0.0, sampling, depth];
         }
         if sampling <= 0.0 {

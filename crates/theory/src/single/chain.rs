@@ -1,11 +1,7 @@
-//! Moments of sums along one walk: a chain of linear equations, solved by running integrals.
+//! Moments of sums along one walk: a chain of linear equations, see [`numeric::quadrature::GaussLegendre::backward`].
 //!
 //! The rest of a walk that stands at s with weight 1 has functionals U. From the ray's end backwards they obey
-//! `−U' = f − A' U` with `U(end) = 0`, where f contains functionals that are already known:
-//!
-//! ```text
-//! U(s) = ∫_s^end f(t) exp(−(A(t) − A(s))) dt
-//! ```
+//! `−U' = f − A' U` with `U(end) = 0`, where f contains functionals that are already known.
 
 use super::camera::Losses;
 use super::scene::{Node, Scene};
@@ -80,24 +76,11 @@ impl<'a> Chain<'a> {
         let mut beyond = 0.0;
         for (p, panel) in self.panels.iter().enumerate().rev() {
             let from = loss(&panel.from);
-            let decayed: Vec<f64> = panel
-                .nodes
-                .iter()
-                .enumerate()
-                .map(|(i, node)| {
-                    let decay = (-(loss(&node.losses) - from)).exp();
-                    f(node, p, i) * decay * node.stretch * panel.x.length()
-                })
-                .collect();
-            let dot = |row: &[f64]| row.iter().zip(&decayed).map(|(a, b)| a * b).sum::<f64>();
-            let whole = dot(&rule.weights) + beyond * (-(loss(&panel.to) - from)).exp();
-            at[p] = panel
-                .nodes
-                .iter()
-                .zip(&rule.running)
-                .map(|(node, row)| (loss(&node.losses) - from).exp() * (whole - dot(row)))
-                .collect();
-            beyond = whole;
+            let losses: Vec<f64> =
+                panel.nodes.iter().map(|node| loss(&node.losses) - from).collect();
+            let source = |(i, node): (usize, &At)| f(node, p, i) * node.stretch * panel.x.length();
+            let sources: Vec<f64> = panel.nodes.iter().enumerate().map(source).collect();
+            (at[p], beyond) = rule.backward(&losses, loss(&panel.to) - from, &sources, beyond);
         }
         Solved { at, begin: beyond }
     }

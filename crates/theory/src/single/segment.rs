@@ -2,6 +2,7 @@
 
 use super::shadows::thinned;
 use crate::raw::{self, poisson};
+use crate::survival::{Survival, factorial_rates};
 use media::Medium;
 use numeric::quadrature::GaussLegendre;
 use numeric::{Known, Span};
@@ -85,12 +86,6 @@ pub fn rounding(size: f64) -> f64 {
     f64::EPSILON * (1.0 + ROUNDINGS * size)
 }
 
-/// `k σ̄ e^{−τ} (∫σ̄ − τ)^{k−1}`, k = 1 … 4: integrands of the factorial moments of a number of lookups.
-pub fn counts(sampling: f64, depth: f64, nulls: f64) -> [f64; 4] {
-    let alive = sampling * (-depth).exp();
-    [1, 2, 3, 4].map(|k| f64::from(k) * alive * nulls.powi(k - 1))
-}
-
 impl Segment {
     /// A transmittance that is known.
     pub fn exact(depth: Known) -> Self {
@@ -117,11 +112,7 @@ impl Segment {
     }
 
     /// 1 with probability `e^{−τ}`, else 0, by delta tracking through `∫σ̄ = flown`; `factorial[k − 1]` is
-    /// `E[N (N − 1) … (N − k + 1)]`.
-    ///
-    /// ```text
-    /// E[N (N − 1) … (N − k + 1)] = k ∫ σ̄ e^{−τ(t)} (∫₀ᵗ σ̄ − τ(t))^{k−1} dt
-    /// ```
+    /// `E[N (N − 1) … (N − k + 1)]`, see [`crate::survival`].
     pub fn decided(depth: Known, flown: f64, factorial: [f64; 4]) -> Self {
         let chance = (-depth.value).exp();
         let lookups = raw::of_factorial(factorial);
@@ -160,7 +151,7 @@ impl Segment {
                     let (factorial, _) = along(medium, rule, |t, _| {
                         let depth = medium.optical_depth(Span::new(support.from, t)).value;
                         let nulls = sampling * (t - support.from) - depth;
-                        counts(sampling, depth, nulls)
+                        factorial_rates(sampling, depth, nulls)
                     });
                     factorial
                 };
@@ -183,21 +174,13 @@ const FEW: usize = 32;
 fn counted(medium: &Medium, rule: &GaussLegendre, sampling: f64) -> [f64; 4] {
     let support = medium.support();
     let (ends, _) = thinned(support.cut(medium.breaks()));
-    let (mut found, mut before) = ([0.0; 4], 0.0);
+    let (mut found, rates) = (Survival::default(), vec![sampling; rule.nodes.len()]);
     for span in Span::between(&ends).flat_map(Span::halves) {
-        let t = rule.nodes_on(span);
-        let sigma = medium.extinctions(&t);
-        let dot = |row: &[f64]| row.iter().zip(&sigma).map(|(w, x)| w * x).sum::<f64>();
-        for (i, t) in t.iter().enumerate() {
-            let depth = before + span.length() * dot(&rule.running[i]);
-            let nulls = sampling * (t - support.from) - depth;
-            let weight = span.length() * rule.weights[i];
-            let here = counts(sampling, depth, nulls);
-            found.iter_mut().zip(here).for_each(|(sum, x)| *sum += weight * x);
-        }
-        before += span.length() * dot(&rule.weights);
+        let sigma = medium.extinctions(&rule.nodes_on(span));
+        let nulls: Vec<f64> = sigma.iter().map(|sigma| sampling - sigma).collect();
+        found.add(rule, span.length(), [&rates, &sigma, &nulls]);
     }
-    found
+    found.factorial()
 }
 
 /// `∫ f(t, σ_t)` over the support of a medium, and the difference of two resolutions: Gauss panels between its

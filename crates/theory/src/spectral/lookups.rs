@@ -1,8 +1,8 @@
 //! Distribution of the lookups of a draw, mixed over heroes.
 
 use super::{Spectrum, Tracker};
+use crate::survival::Survival;
 use crate::{CountLaw, Mesh, colours, raw};
-use numeric::sum::Sum;
 
 impl Spectrum {
     /// Distribution of the lookups of a draw, mixed over heroes.
@@ -51,30 +51,19 @@ impl Spectrum {
     }
 }
 
-/// Factorial moments of the collisions of a walk that flies at a constant rate and survives each with
-/// a probability, given at every node: `k ∫ μ̄ e^{−K} A^{k−1}`, `K = ∫ μ̄(1 − q)`, `A = ∫ μ̄ q`.
+/// Factorial moments of the collisions of a walk that flies at a constant rate and survives each with a probability,
+/// given at every node.
 pub fn survived(mesh: &Mesh, rate: f64, survival: impl Fn(usize) -> f64) -> [f64; 4] {
-    let (mut sums, mut node) = ([Sum::default(); 4], 0);
-    let (mut deaths, mut survivals) = (Sum::default(), Sum::default());
+    let (mut found, mut node) = (Survival::default(), 0);
     for panel in mesh.panels() {
         let nodes = node..node + panel.t.len();
         node = nodes.end;
         let q: Vec<f64> = nodes.map(|i| rate * survival(i)).collect();
-        let killed: Vec<f64> = q.iter().map(|q| rate - q).collect();
-        let before = (deaths.value(), survivals.value());
-        let lost = mesh.running(panel, &killed);
-        let passed = mesh.running(panel, &q);
-        for (k, sum) in (1i32..).zip(&mut sums) {
-            let terms = lost.iter().zip(&passed).map(|(lost, passed)| {
-                let alive = rate * (-(before.0 + lost)).exp();
-                f64::from(k) * alive * (before.1 + passed).powi(k - 1)
-            });
-            sum.add(mesh.integral(panel, &terms.collect::<Vec<f64>>()));
-        }
-        deaths.add(mesh.integral(panel, &killed));
-        survivals.add(mesh.integral(panel, &q));
+        let lost: Vec<f64> = q.iter().map(|q| rate - q).collect();
+        let rates = vec![rate; q.len()];
+        found.add(mesh.rule(), panel.span.length(), [&rates, &lost, &q]);
     }
-    sums.map(|sum| sum.value())
+    found.factorial()
 }
 
 /// Factorial moments of the sum of two independent numbers.
