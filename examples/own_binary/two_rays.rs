@@ -4,10 +4,11 @@
 //! X = (X₁ + X₂)/2,  Var X = Var X₁/2,  twice the lookups
 //! ```
 
-use trueflight::estimators::transmittance::{product, ratio::Ratio};
+use trueflight::estimators::transmittance::product;
+use trueflight::estimators::transmittance::ratio::Ratio;
 use trueflight::estimators::{Draw, Estimator, Inputs, Kernel, Refusal, Request, Setup, walks};
 use trueflight::problems::Transmittance;
-use trueflight::theory::rules::Weight;
+use trueflight::theory::collisions::rules::Weight;
 use trueflight::theory::{CountLaw, Moments, Prediction};
 
 /// Two rays; σ̂ is their only input.

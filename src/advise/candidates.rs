@@ -11,8 +11,8 @@ use crate::case::{Case, CaseError, Source, Spec, forms};
 use media::Body;
 use media::catalogue::{Entry, Node, Page, Value};
 use numeric::digits::number;
-use theory::Rule;
-use theory::rules::{Single, Weight};
+use theory::collisions::Rule;
+use theory::collisions::rules::{Single, Weight};
 
 /// Numbers of segments of local majorants along a ray.
 const SEGMENTS: [u32; 7] = [1, 2, 4, 8, 16, 32, 64];

@@ -18,8 +18,8 @@ use super::search::{Goal, up};
 use super::study::Study;
 use super::{Profile, Row};
 use numeric::digits::number;
-use theory::Rule;
-use theory::rules::{Single, Weight};
+use theory::collisions::Rule;
+use theory::collisions::rules::{Single, Weight};
 
 /// Steps of a profile.
 pub const STEPS: usize = 64;

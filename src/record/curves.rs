@@ -10,8 +10,8 @@ use crate::draw::block::DrawnExperiment;
 use crate::plan::{Planned, PlannedCase};
 use crate::record::theory::finite;
 use ::theory::Channel;
-use ::theory::optimum::{Kind, Optimum, best_constants};
 use ::theory::parallel;
+use ::theory::prediction::optimum::{Kind, Optimum, best_constants};
 
 /// Axis of a sweep and the predicted curves along it.
 #[derive(Debug, Clone, Serialize, Deserialize)]

@@ -5,9 +5,9 @@ use crate::common::{none, row, rows};
 use serde::Deserialize;
 use trueflight::numeric::Known;
 use trueflight::record::Verdict;
-use trueflight::theory::Heuristic;
 use trueflight::theory::Prediction;
-use trueflight::theory::bidirectional_rod::{Combination, Connection, Rules, Scene, predict};
+use trueflight::theory::light::Heuristic;
+use trueflight::theory::rod::bidirectional::{Combination, Connection, Rules, Scene, predict};
 
 #[derive(Deserialize)]
 struct Reference {

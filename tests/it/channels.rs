@@ -3,14 +3,13 @@
 use crate::common::{case, differs, none, options, predicted, row, rows, verdict, with_optima};
 use trueflight::media::{Control, Piecewise};
 use trueflight::plan::Plan;
-use trueflight::record::build;
-use trueflight::record::curves;
-use trueflight::record::{Row, Verdict};
+use trueflight::record::{Row, Verdict, build, curves};
 use trueflight::report::layout::{self, Pen};
 use trueflight::report::run::console::{self, View};
-use trueflight::theory::product::Product;
-use trueflight::theory::rules::Weight;
-use trueflight::theory::{Mesh, Prediction, curve};
+use trueflight::theory::collisions::rules::Weight;
+use trueflight::theory::ray::curve;
+use trueflight::theory::ray::product::Product;
+use trueflight::theory::{Mesh, Prediction};
 
 fn predictions(text: &str) -> Vec<Prediction> {
     let cases = [case("test", text)];

@@ -10,9 +10,9 @@ use trueflight::problems::ChromaticSlab;
 use trueflight::problems::slab::{Incidence, Light};
 use trueflight::record::Verdict;
 use trueflight::theory::Mesh;
-use trueflight::theory::chromatic_slab::Spectrum;
-use trueflight::theory::spectral::Chance;
-use trueflight::theory::spectral::rates::Proposal;
+use trueflight::theory::colours::Chance;
+use trueflight::theory::colours::rates::Proposal;
+use trueflight::theory::slab::chromatic::Spectrum;
 
 use crate::common::{case, channels, medium, none, not_passing, predicted, rows};
 use crate::packets::compare;

@@ -11,11 +11,12 @@ use trueflight::catalogue::Settings;
 use trueflight::media::{Body, Control, Piecewise};
 use trueflight::problems::{Problem, SingleScattering};
 use trueflight::record::Row;
-use trueflight::theory::contour::Made;
+use trueflight::theory::Mesh;
+use trueflight::theory::light::Heuristic;
+use trueflight::theory::light::contour::Made;
 use trueflight::theory::single::{
     Camera, CameraTracking, Collisions, Mis, NullPaths, Scene, Tracking,
 };
-use trueflight::theory::{Heuristic, Mesh};
 
 #[derive(Deserialize)]
 struct Reference {

@@ -7,7 +7,8 @@ use crate::common::lit::{self, ESTIMATORS, techniques};
 use crate::common::{failing, medium, none, predicted, row, rows};
 use trueflight::media::Piecewise;
 use trueflight::problems::LitRod;
-use trueflight::theory::lit_rod::{self, Combination, Densities, Heuristic, Shadow, Techniques};
+use trueflight::theory::light::{Combination, Densities, Heuristic, Shadow, Techniques};
+use trueflight::theory::rod;
 use trueflight::theory::{Mesh, Prediction};
 
 #[derive(Deserialize)]
@@ -51,7 +52,7 @@ fn rod(reference: &Reference) -> (Mesh, LitRod, Piecewise) {
 
 fn predict(reference: &Reference, techniques: Techniques) -> Prediction {
     let (mesh, problem, sampling) = rod(reference);
-    lit_rod::predict(&mesh, &problem, &sampling, techniques, true)
+    rod::lit::predict(&mesh, &problem, &sampling, techniques, true)
 }
 
 #[test]
@@ -72,7 +73,7 @@ fn lookups_are_those_of_the_references() {
     for reference in references().iter().filter(|reference| reference.what != "mean") {
         let (mesh, problem, sampling) = rod(reference);
         let techniques = techniques(&reference.what);
-        let found = lit_rod::lookups(&mesh, &problem, &sampling, techniques).expect("lookups");
+        let found = rod::lit::lookups(&mesh, &problem, &sampling, techniques).expect("lookups");
         let [real, null, shadow] = found.map(|known| known.value);
         let error: f64 = found.iter().map(|known| known.error).sum();
         let (walk, cast) = (reference.value[1], reference.value[2]);
@@ -100,7 +101,7 @@ fn a_rod_without_a_way_back_has_moments_by_hand() {
     let (mesh, sampling) = (Mesh::new(medium), Piecewise::constant(2.0, span));
     let predict = |shadow, combination| {
         let techniques = Techniques { shadow: Some(shadow), combination };
-        let found = lit_rod::predict(&mesh, &problem, &sampling, techniques, true);
+        let found = rod::lit::predict(&mesh, &problem, &sampling, techniques, true);
         found.channels[0].moments.expect("moments")
     };
     // Directions: X = 1 unscattered, else Σ alive/2 + 1/2. Exact shadows: X = Σ T_i/2 + 1/2 with depths from the end

@@ -11,8 +11,8 @@ use trueflight::phase::Phase;
 use trueflight::phase::henyey_greenstein::HenyeyGreenstein;
 use trueflight::problems::LitSlab;
 use trueflight::problems::lit_slab::Light;
-use trueflight::theory::lit_rod::{Combination, Densities, Heuristic, Shadow, Techniques};
-use trueflight::theory::lit_slab;
+use trueflight::theory::light::{Combination, Densities, Heuristic, Shadow, Techniques};
+use trueflight::theory::slab;
 use trueflight::theory::{Mesh, Prediction};
 
 #[derive(Deserialize)]
@@ -92,7 +92,7 @@ fn predict(
     let sampling = Piecewise::constant(majorant, medium.span());
     let phase = Phase::HenyeyGreenstein(HenyeyGreenstein::new(g).expect("|g| < 1"));
     let problem = LitSlab::new(medium.clone(), albedo, phase, light);
-    lit_slab::predict(&Mesh::new(medium), &problem, &sampling, techniques, true)
+    slab::lit::predict(&Mesh::new(medium), &problem, &sampling, techniques, true)
 }
 
 #[test]
@@ -226,8 +226,8 @@ fn all_combinations_have_one_mean() {
                     LitSlab::new(field.clone(), 0.7, Phase::HenyeyGreenstein(phase), light);
                 let (mesh, sampling) =
                     (Mesh::new(field.clone()), Piecewise::constant(1.4, field.span()));
-                let truth = lit_slab::truth(&mesh, &problem, &sampling);
-                let mean = lit_slab::mean(&mesh, &problem, &sampling, techniques);
+                let truth = slab::lit::truth(&mesh, &problem, &sampling);
+                let mean = slab::lit::mean(&mesh, &problem, &sampling, techniques);
                 let off = (mean.value - truth.value).abs();
                 assert!(off < 1e-12, "{techniques:?}, {light:?}: {off:e}");
                 assert!(off <= mean.error + truth.error && mean.error < 1e-9, "{:e}", mean.error);

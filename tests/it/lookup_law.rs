@@ -2,9 +2,10 @@
 
 use crate::common::{differs, none};
 use trueflight::media::{Control, Piecewise};
-use trueflight::theory::product::Product;
-use trueflight::theory::rules::{Null, Single, Weight};
-use trueflight::theory::{CountLaw, Mesh, Rule};
+use trueflight::theory::collisions::Rule;
+use trueflight::theory::collisions::rules::{Null, Single, Weight};
+use trueflight::theory::ray::product::Product;
+use trueflight::theory::{CountLaw, Mesh};
 
 fn law(medium: &str, sampling: f64, killing: f64, rule: &dyn Rule) -> CountLaw {
     let mesh = Mesh::new(crate::common::medium(medium));

@@ -3,9 +3,10 @@
 use crate::common::{differs, none, predicted, row};
 use trueflight::media::{Control, Medium, Piecewise};
 use trueflight::numeric::Span;
-use trueflight::theory::product::Product;
-use trueflight::theory::rules::{Single, Weight};
-use trueflight::theory::{Mesh, Rule};
+use trueflight::theory::Mesh;
+use trueflight::theory::collisions::Rule;
+use trueflight::theory::collisions::rules::{Single, Weight};
+use trueflight::theory::ray::product::Product;
 
 /// Row of `transmittance-moments.csv`.
 struct Reference {

@@ -10,7 +10,7 @@ use trueflight::phase::henyey_greenstein::HenyeyGreenstein;
 use trueflight::phase::isotropic::Isotropic;
 use trueflight::phase::rayleigh::Rayleigh;
 use trueflight::problems::slab::{Incidence, Light};
-use trueflight::theory::particle::ParticleRule;
+use trueflight::theory::ParticleRule;
 use trueflight::theory::slab::layer::Slice;
 use trueflight::theory::slab::{Existence, Piece, Pieces, Resolution, Walk, cached, solve};
 

@@ -6,9 +6,9 @@ use serde::Deserialize;
 use crate::common::{case, judged, none, options, predicted, rows};
 use trueflight::plan::Plan;
 use trueflight::record::Verdict;
-use trueflight::theory::sphere::ball::Ball;
-use trueflight::theory::sphere::shells::{Centre, Resolution};
-use trueflight::theory::sphere::{Lights, Observable, answers, point};
+use trueflight::theory::space::sphere::ball::Ball;
+use trueflight::theory::space::sphere::shells::{Centre, Resolution};
+use trueflight::theory::space::sphere::{Lights, Observable, answers, point};
 
 #[derive(Deserialize)]
 struct Reference {

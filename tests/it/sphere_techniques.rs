@@ -13,14 +13,13 @@ use trueflight::estimators::sphere::sharing::{SharedTechniques, Subpaths, WalkEv
 use trueflight::estimators::sphere::{Correct, Method};
 use trueflight::media::{Body, Majorants};
 use trueflight::numeric::Lane;
-use trueflight::plan::Plan;
-use trueflight::plan::Planned;
+use trueflight::plan::{Plan, Planned};
 use trueflight::problems::{Problem, Sphere};
-use trueflight::record::build;
-use trueflight::record::{Row, Verdict};
+use trueflight::record::{Row, Verdict, build};
 use trueflight::rng::Address;
-use trueflight::theory::sphere::Techniques;
-use trueflight::theory::{Channel, Heuristic, ParticleRule};
+use trueflight::theory::light::Heuristic;
+use trueflight::theory::space::sphere::Techniques;
+use trueflight::theory::{Channel, ParticleRule};
 
 /// Every page with its settings; σ̂ of shadow rays is a majorant of both balls.
 const ALL: &str = "

@@ -243,12 +243,12 @@ macro_rules! scored {
                     .fields
                     .require_plain_unit("τ ≤ 300 (its draws are sums of terms of every size)")?;
                 setup.residual().require_constant_sampling()?;
-                setup.fields.require_finite_weights(&theory::rules::Weight)
+                setup.fields.require_finite_weights(&theory::collisions::rules::Weight)
             }
 
             fn predict(&self, setup: &Setup<Transmittance>) -> theory::Prediction {
                 let sampling = setup.fields.sampling.single_value().unwrap_or(0.0);
-                theory::volterra::predict(&setup.fields.mesh, sampling, self)
+                theory::ray::volterra::predict(&setup.fields.mesh, sampling, self)
             }
 
             fn fill(

@@ -1,49 +1,37 @@
 //! Predictions for draws: moments, costs, distributions and optima, without drawing.
 //!
-//! Floor 3. Nothing here holds a generator of random numbers. All integrals run over one [`Mesh`]
-//! per medium and ray, on which σ_t is looked up once and shared by every σ̂, control and rule.
+//! | module | contents |
+//! |---|---|
+//! | [`problems`] | quantities that cases ask for, with their settings |
+//! | [`prediction`] | from raw moments to channels; distributions of counts; the best σ̂ |
+//! | [`collisions`] | events at a collision: rules for product estimators and for particles |
+//! | [`light`] | techniques that find a light, and the weights of their samples |
+//! | [`colours`] | draws that score several channels: heroes, event probabilities, bounds |
+//! | [`ray`] | the [`Mesh`]; transmittances, curves and free flights |
+//! | [`rod`] | two-stream equations by collocation; rods that are lit, spectral, bidirectional |
+//! | [`slab`] | adding and doubling; slabs that are lit, spectral, chromatic |
+//! | [`single`] | one scattering of a point light, by all combinations of techniques |
+//! | [`space`] | balls by Peierls' equation, infinite media, furnaces; bounds on variances |
+//!
+//! A folder of a geometry has its solver and its predictions. The other folders are shared by all geometries.
+//! Nothing here draws a random number. All integrals of a medium along a ray run over one [`Mesh`], on which σ_t is
+//! looked up once and shared by every σ̂, control and rule.
 
-pub mod bidirectional_rod;
-pub mod chromatic_slab;
+pub mod collisions;
 pub mod colours;
-pub mod contour;
-pub mod count;
-pub mod curve;
-pub mod flight;
-pub mod heuristic;
-pub mod lit_rod;
-pub mod lit_slab;
-pub mod lookups;
+pub mod light;
 pub mod memo;
-pub mod mesh;
-pub mod moments;
-pub mod optimum;
 pub mod parallel;
-pub mod particle;
 pub mod prediction;
 pub mod problems;
-pub mod product;
-pub mod raw;
+pub mod ray;
 pub mod rod;
-pub mod rule;
-pub mod rules;
 pub mod single;
 pub mod slab;
 pub mod space;
-pub mod spectral;
-pub mod spectral_furnace;
-pub mod spectral_lit_rod;
-pub mod spectral_rod;
-pub mod spectral_single_scattering;
-pub mod spectral_slab;
-pub mod sphere;
-pub mod survival;
-pub mod volterra;
 
-pub use count::CountLaw;
-pub use heuristic::Heuristic;
-pub use mesh::Mesh;
-pub use moments::Moments;
-pub use particle::{Odds, ParticleRule};
+pub use collisions::particle::ParticleRule;
+pub use prediction::count::CountLaw;
+pub use prediction::moments::Moments;
 pub use prediction::{Channel, Distribution, Increment, Prediction, Tails};
-pub use rule::{Outcome, Rule};
+pub use ray::mesh::Mesh;

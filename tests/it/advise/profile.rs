@@ -2,12 +2,11 @@
 
 use super::{ANY, SINES, asked, request};
 use crate::common::{failing, none, rows};
-use trueflight::advise::candidates::Collisions;
-use trueflight::advise::candidates::RECIPE;
+use trueflight::advise::candidates::{Collisions, RECIPE};
 use trueflight::advise::profile::{PLACES, STEPS, Steps};
 use trueflight::advise::{Costs, Group};
-use trueflight::theory::Rule;
-use trueflight::theory::rules::{Single, Weight};
+use trueflight::theory::collisions::Rule;
+use trueflight::theory::collisions::rules::{Single, Weight};
 
 /// Returns the steps of σ_t = 1 + 0.9 sin 2t on [0, 4].
 fn steps(price: [f64; 2]) -> Steps {

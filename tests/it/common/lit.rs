@@ -3,7 +3,7 @@
 use super::{none, predicted};
 use trueflight::record::{Row, Verdict};
 use trueflight::theory::Prediction;
-use trueflight::theory::lit_rod::{Combination, Densities, Heuristic, Shadow, Techniques};
+use trueflight::theory::light::{Combination, Densities, Heuristic, Shadow, Techniques};
 
 /// Returns the techniques of a reference value.
 pub fn techniques(what: &str) -> Techniques {

@@ -9,11 +9,11 @@ pub mod walk;
 
 use self::walk::WalkEvents;
 use crate::{Estimator, Inputs, Kernel, Refusal, Request, Setup, estimators, walks};
-use ::theory::Heuristic;
 use ::theory::Prediction;
-use ::theory::bidirectional_rod::{self, Combination, Connection, Rules, Scene};
+use ::theory::light::Heuristic;
 use ::theory::problems::BidirectionalRod;
 use ::theory::problems::bidirectional_rod::Sensor;
+use ::theory::rod::bidirectional::{self, Combination, Connection, Rules, Scene};
 use media::catalogue::Settings;
 use numeric::digits::rounded;
 
@@ -154,7 +154,7 @@ impl<const KIND: u8> Estimator<BidirectionalRod> for Estimate<KIND> {
         let connection = tracked.unwrap_or(Connection::Exact);
         let Method { combination, is_shared, .. } = self.0;
         let rules = Rules { combination, connection, is_shared, has_shares: problem.has_shares };
-        bidirectional_rod::predict(&scene, &rules, ratio, setup.distributions)
+        bidirectional::predict(&scene, &rules, ratio, setup.distributions)
     }
 
     fn fill(&self, kernel: Kernel, setup: &Setup<BidirectionalRod>, request: Request) {

@@ -20,8 +20,8 @@
 
 use super::{Estimate, TECHNIQUE};
 use media::catalogue::Settings;
-use theory::bidirectional_rod::Combination;
 use theory::problems::bidirectional_rod::HIGHEST_ORDER;
+use theory::rod::bidirectional::Combination;
 
 /// A single technique; σ̂ is its input.
 pub type Technique = Estimate<TECHNIQUE>;

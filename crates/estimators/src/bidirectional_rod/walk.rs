@@ -18,9 +18,9 @@ use numeric::fused::{Loop, in_own_rounding};
 use numeric::pair::PAIR_WIDTH;
 use numeric::rng::{Random, Stream};
 use numeric::{Lane, Mask, ScalarLane, Span};
-use theory::bidirectional_rod::{Combination, quotient};
 use theory::problems::bidirectional_rod::{HIGHEST_ORDER, MOST, Sensor, Values};
 use theory::problems::{BidirectionalRod, Problem};
+use theory::rod::bidirectional::{Combination, quotient};
 
 /// Paths from the light to the sensor, all by the same technique.
 #[derive(Clone, Copy)]

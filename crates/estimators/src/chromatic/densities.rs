@@ -11,8 +11,8 @@ use media::body::MAX_CHANNELS;
 use media::phase::Phase;
 use numeric::{Lane, kept};
 use theory::ParticleRule;
-use theory::particle::Event;
-use theory::spectral::chance::shares;
+use theory::collisions::particle::Event;
+use theory::colours::chance::shares;
 
 /// Channels of a body, and the walker that goes through it.
 #[derive(Clone, Copy)]

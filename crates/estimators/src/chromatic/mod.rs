@@ -15,7 +15,7 @@ use crate::{Draw, Estimated, Kernel, Refusal, Request, Setup};
 use media::{Batches, Lookups};
 use numeric::Lane;
 use numeric::rng::Stream;
-use theory::particle::Event;
+use theory::collisions::particle::Event;
 use theory::{Prediction, problems};
 
 /// Events of a walk, each of which a known bug may replace.

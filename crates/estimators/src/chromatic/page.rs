@@ -6,7 +6,7 @@ use crate::setup::walker::{INDEPENDENT, MIS, Walker};
 use crate::{Estimator, Inputs, Kernel, Refusal, Request, Setup};
 use media::catalogue::Settings;
 use theory::Prediction;
-use theory::spectral::Chances;
+use theory::colours::Chances;
 
 /// An estimator of a kind.
 #[derive(Debug, Clone)]

@@ -15,8 +15,8 @@ use crate::{Refusal, Setup, estimators};
 use media::Batches;
 use numeric::digits::rounded;
 use theory::Prediction;
-use theory::chromatic_slab::Spectrum;
 use theory::problems::ChromaticSlab;
+use theory::slab::chromatic::Spectrum;
 
 /// The slab as theory describes it.
 fn spectrum(setup: &Setup<ChromaticSlab>) -> Spectrum<'_> {

@@ -18,7 +18,8 @@
 use crate::{Draw, Estimator, Inputs, Kernel, Refusal, Request, Setup, walks};
 use numeric::rng::exponential;
 use theory::problems::{FreeFlight, Problem};
-use theory::{CountLaw, Prediction, flight};
+use theory::ray::free_flight;
+use theory::{CountLaw, Prediction};
 
 /// Inversion; it has no settings.
 #[derive(Debug, Clone)]
@@ -37,7 +38,7 @@ impl Estimator<FreeFlight> for Inversion {
     }
 
     fn predict(&self, setup: &Setup<FreeFlight>) -> Prediction {
-        flight::predict(&setup.fields.mesh, CountLaw::always(0.0))
+        free_flight::predict(&setup.fields.mesh, CountLaw::always(0.0))
     }
 
     #[inline(always)]

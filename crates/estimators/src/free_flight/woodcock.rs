@@ -17,9 +17,10 @@ use crate::{Estimator, Inputs, Kernel, Refusal, Request, Setup};
 use media::sampling::BothWays;
 use numeric::rng::Random;
 use numeric::{Lane, Span, kept};
+use theory::Prediction;
+use theory::collisions::rules::Null;
 use theory::problems::{FreeFlight, Problem};
-use theory::rules::Null;
-use theory::{Prediction, flight};
+use theory::ray::free_flight;
 
 /// Woodcock tracking; σ̂ is its only input.
 #[derive(Debug, Clone)]
@@ -39,7 +40,7 @@ impl Estimator<FreeFlight> for Woodcock {
         let product = setup.product(&Null);
         let mesh = product.mesh(&[]);
         let all = product.integrals(&mesh, &[mesh.support().to])[0];
-        flight::predict(&setup.fields.mesh, product.lookups(&mesh, &all))
+        free_flight::predict(&setup.fields.mesh, product.lookups(&mesh, &all))
     }
 
     fn fill(&self, kernel: Kernel, setup: &Setup<FreeFlight>, request: Request) {

@@ -27,7 +27,7 @@
 use super::{Lit, label, lit, read_shadow};
 use crate::Estimator;
 use media::catalogue::Settings;
-use theory::lit_rod::{Combination, Densities, Heuristic, Shadow, Techniques};
+use theory::light::{Combination, Densities, Heuristic, Shadow, Techniques};
 
 /// Multiple importance sampling over directions; σ̂ is its input.
 #[derive(Debug, Clone)]

@@ -9,8 +9,9 @@ pub mod walk;
 
 use crate::{Estimated, Kernel, Refusal, Request, Setup, estimators};
 use media::catalogue::Settings;
-use theory::lit_rod::{self, Heuristic, Shadow, Techniques};
+use theory::light::{Heuristic, Shadow, Techniques};
 use theory::problems::LitRod;
+use theory::rod;
 use theory::{ParticleRule, Prediction};
 
 /// A problem with light that is found by hits and by shadow rays; its estimators have common pages.
@@ -35,7 +36,7 @@ impl Lit for LitRod {
         setup.residual().require_few_collisions("∫σ̂ ≤ 1e6")?;
         let limit = |t: f64| rule.limits(albedo.value(t))[1];
         setup.residual().require_ratio_within(albedo.knots(), limit, rule.needs())?;
-        if lit_rod::is_within_reach(&setup.fields.mesh, &setup.problem, &setup.fields.sampling) {
+        if rod::lit::is_within_reach(&setup.fields.mesh, &setup.problem, &setup.fields.sampling) {
             return Ok(());
         }
         let needs = "a rod that theory can cut into 5000 panels";
@@ -45,7 +46,7 @@ impl Lit for LitRod {
     fn predict(setup: &Setup<Self>, techniques: Techniques) -> Prediction {
         let (mesh, problem, sampling) =
             (&setup.fields.mesh, &setup.problem, &setup.fields.sampling);
-        lit_rod::predict(mesh, problem, sampling, techniques, setup.distributions)
+        rod::lit::predict(mesh, problem, sampling, techniques, setup.distributions)
     }
 
     fn fill(techniques: Techniques, kernel: Kernel, setup: &Setup<Self>, request: Request) {
@@ -85,7 +86,7 @@ macro_rules! lit {
         const INPUTS: $crate::Inputs = $crate::Inputs::SAMPLING;
 
         fn needs(&$this) -> Option<&'static str> {
-            let is_exact = $techniques.shadow == Some(theory::lit_rod::Shadow::Exact);
+            let is_exact = $techniques.shadow == Some(theory::light::Shadow::Exact);
             is_exact.then_some("τ")
         }
 

@@ -25,7 +25,7 @@
 use super::{Lit, label, lit, read_shadow};
 use crate::Estimator;
 use media::catalogue::Settings;
-use theory::lit_rod::{Combination, Heuristic, Shadow, Techniques};
+use theory::light::{Combination, Heuristic, Shadow, Techniques};
 
 /// Shadow rays alone; σ̂ is its input.
 #[derive(Debug, Clone)]

@@ -4,7 +4,7 @@ use crate::walks::{Route, TentativeCollision};
 use media::sampling::BothWays;
 use media::{Medium, OpticalDepth, Piecewise};
 use numeric::{Lane, Mask, Span, kept};
-use theory::lit_rod::{Shadow, Techniques};
+use theory::light::{Shadow, Techniques};
 
 /// Events of a walk, each of which a known bug may replace.
 pub trait WalkEvents: Copy {

@@ -16,7 +16,7 @@
 use super::{Lit, lit};
 use crate::Estimator;
 use media::catalogue::Settings;
-use theory::lit_rod::{Combination, Techniques};
+use theory::light::{Combination, Techniques};
 
 /// Hits alone; σ̂ is its only input.
 #[derive(Debug, Clone)]

@@ -12,7 +12,7 @@
 //!                 beyond the end    its score p t̂ w is added;  the walk goes on
 //! ```
 //!
-//! ρ is `p_uni/p_nee` of the segment in flight, see [`theory::lit_rod::techniques`]; every real scattering
+//! ρ is `p_uni/p_nee` of the segment in flight, see [`theory::light::techniques`]; every real scattering
 //! resets it. Every flight takes two random numbers, a scattering one more.
 
 use super::shadow::{Before, ShadowRays, WalkEvents};
@@ -23,7 +23,7 @@ use media::sampling::BothWays;
 use numeric::rng::Random;
 use numeric::{Lane, Mask, kept};
 use theory::ParticleRule;
-use theory::lit_rod::Shadow;
+use theory::light::Shadow;
 use theory::problems::{LitRod, Problem, Rod};
 
 kept! {

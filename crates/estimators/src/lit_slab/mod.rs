@@ -8,9 +8,10 @@ pub mod walk;
 
 use super::lit_rod::Lit;
 use crate::{Kernel, Refusal, Request, Setup, estimators};
-use theory::lit_rod::{Combination, Techniques};
+use theory::light::{Combination, Techniques};
 use theory::problems::LitSlab;
-use theory::{ParticleRule, Prediction, lit_slab};
+use theory::slab::lit;
+use theory::{ParticleRule, Prediction};
 
 impl Lit for LitSlab {
     fn realisable(setup: &Setup<Self>, techniques: Techniques) -> Result<(), Refusal> {
@@ -25,7 +26,7 @@ impl Lit for LitSlab {
         }
         setup.residual().require_few_collisions("∫σ̂ ≤ 1e6")?;
         setup.residual().require_ratio_at_most(rule.limits(problem.albedo)[1], rule.needs())?;
-        lit_slab::slant_depth(&setup.fields.mesh, problem).map_or(Ok(()), |depth| {
+        lit::slant_depth(&setup.fields.mesh, problem).map_or(Ok(()), |depth| {
             Err(Refusal::mismatch("τ/μ ≤ 64 in the lowest direction", format!("τ/μ = {depth:e}")))
         })
     }
@@ -33,11 +34,11 @@ impl Lit for LitSlab {
     fn predict(setup: &Setup<Self>, techniques: Techniques) -> Prediction {
         let (mesh, problem, sampling) =
             (&setup.fields.mesh, &setup.problem, &setup.fields.sampling);
-        lit_slab::predict(mesh, problem, sampling, techniques, setup.distributions)
+        lit::predict(mesh, problem, sampling, techniques, setup.distributions)
     }
 
     fn fill(techniques: Techniques, kernel: Kernel, setup: &Setup<Self>, request: Request) {
-        let techniques = lit_slab::possible(techniques, setup.problem.light);
+        let techniques = lit::possible(techniques, setup.problem.light);
         walk::fill((techniques, walk::Right), kernel, setup, request);
     }
 }

@@ -23,7 +23,7 @@ use media::sampling::BothWays;
 use numeric::rng::Random;
 use numeric::{Lane, Mask, kept};
 use theory::ParticleRule;
-use theory::lit_rod::Shadow;
+use theory::light::Shadow;
 use theory::problems::{LitSlab, Problem};
 
 /// Densities of directions; a known bug may replace each of them. The steps along directions are those of rods.

@@ -21,7 +21,7 @@ use media::sampling::BothWays;
 use numeric::rng::Random;
 use numeric::{Lane, Mask, kept};
 use theory::ParticleRule;
-use theory::particle::Odds;
+use theory::collisions::particle::Odds;
 use theory::problems::Rod;
 use theory::problems::rod::{MOST_PARTS, Quantity};
 

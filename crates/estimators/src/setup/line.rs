@@ -7,8 +7,10 @@ use crate::{Estimated, Refusal};
 use media::{Control, Piecewise};
 use numeric::digits::rounded;
 use numeric::{Lane, Span};
+use theory::Mesh;
+use theory::collisions::Rule;
 use theory::problems::Problem;
-use theory::{Mesh, Rule, product::Product};
+use theory::ray::product::Product;
 
 /// Logarithm of the largest weight that a draw may reach: a little below the largest double.
 const LARGEST_WEIGHT: f64 = 700.0;

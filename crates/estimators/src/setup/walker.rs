@@ -1,17 +1,17 @@
 //! Walkers that score all channels, and the densities by which their draws are divided.
 
-use super::Refusal;
-use super::channels::{require_common, require_room};
+use super::channels::{self, require_common, require_room};
 use super::heroes::Heroes;
-use super::{ChannelFields, channels};
+use super::{ChannelFields, Refusal};
 use media::catalogue::Settings;
 use media::phase::Phase;
 use numeric::digits::rounded;
 use theory::ParticleRule;
-use theory::particle::Event;
-use theory::spectral::bound::phi;
-use theory::spectral::chance::{Chance, Chances, shares};
-use theory::spectral::rates::Proposal;
+use theory::collisions::particle::Event;
+use theory::colours::bound::phi;
+use theory::colours::chance::shares;
+use theory::colours::rates::Proposal;
+use theory::colours::{Chance, Chances};
 
 /// The walk that scores all channels.
 #[derive(Debug, Clone, PartialEq)]

@@ -18,13 +18,14 @@ use media::catalogue::Settings;
 use media::{Control, Lookups};
 use numeric::geometry::Bounds;
 use numeric::rng::Stream;
+use theory::Prediction;
+use theory::light::Heuristic;
 use theory::problems::{Problem, SingleScattering};
 use theory::single::predict::DENSITY;
 use theory::single::{
     Camera, CameraTracking, Collisions, Mis, Node, NullPaths, Points, Scene, Tracking,
     walks as along,
 };
-use theory::{Heuristic, Prediction};
 
 /// An estimator: its technique, and its shadow rays.
 #[derive(Debug, Clone, Copy)]

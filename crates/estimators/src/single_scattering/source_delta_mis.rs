@@ -30,7 +30,7 @@
 use super::plan::{Absorption, ByPlan, Plan, Planned, Technique, Vertices};
 use crate::Inputs;
 use media::catalogue::Settings;
-use theory::Heuristic;
+use theory::light::Heuristic;
 
 /// Equiangular points and delta tracking.
 pub type SourceDeltaMis = ByPlan<Both>;

@@ -22,7 +22,8 @@ use media::phase::isotropic::Isotropic;
 use media::sampling::BothWays;
 use numeric::rng::Random;
 use numeric::{Lane, Mask, kept};
-use theory::particle::{Odds, ParticleRule};
+use theory::ParticleRule;
+use theory::collisions::particle::Odds;
 use theory::problems::Slab;
 use theory::problems::slab::{Incidence, Light};
 

@@ -7,7 +7,7 @@ use media::catalogue::{Domain, Settings};
 use numeric::Lane;
 use numeric::rng::Random;
 use theory::ParticleRule;
-use theory::particle::Odds;
+use theory::collisions::particle::Odds;
 
 /// The collisions after which both the scattered particle and the one that goes straight on are followed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

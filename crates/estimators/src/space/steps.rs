@@ -3,7 +3,7 @@
 use media::phase::Phase;
 use numeric::Lane;
 use numeric::rng::Random;
-use theory::particle::Odds;
+use theory::collisions::particle::Odds;
 
 /// Events of a walk, each of which a known bug may replace.
 pub trait WalkEvents: Copy {

@@ -29,7 +29,7 @@ use crate::setup::heroes::Heroes;
 use crate::walks::hero::{LastPiece, Weighing};
 use media::catalogue::Settings;
 use theory::problems::SpectralLitRod;
-use theory::spectral_lit_rod::Tracker;
+use theory::rod::lit::spectral::Tracker;
 
 /// Error of the printed algorithm.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

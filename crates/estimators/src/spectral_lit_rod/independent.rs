@@ -29,9 +29,9 @@ use media::sampling::BothWays;
 use numeric::rng::Random;
 use numeric::{Lane, kept};
 use theory::Prediction;
-use theory::lit_rod::Techniques;
+use theory::light::Techniques;
 use theory::problems::SpectralLitRod;
-use theory::spectral_lit_rod::{FULL, HITS, Tracker};
+use theory::rod::lit::spectral::{FULL, HITS, Tracker};
 
 /// Independent tracking.
 #[derive(Debug, Clone)]

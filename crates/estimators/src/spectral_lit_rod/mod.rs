@@ -14,16 +14,16 @@ use crate::setup::heroes::Heroes;
 use crate::{Refusal, Setup, estimators};
 use media::body::MAX_CHANNELS;
 use numeric::Lane;
-use theory::lit_rod;
 use theory::problems::SpectralLitRod;
-use theory::spectral_lit_rod::{Spectrum, Tracker};
+use theory::rod::lit;
+use theory::rod::lit::spectral::{Spectrum, Tracker};
 
 /// Checks that each channel has one hero probability and a constant σ̂ ≥ σ_t, and that theory covers the rod.
 fn realisable(setup: &Setup<SpectralLitRod>, heroes: &Heroes) -> Result<(), Refusal> {
     heroes.require(setup.fields.len())?;
     channels::require_majorants(&setup.fields)?;
     for (number, (channel, rod)) in (1..).zip(setup.fields.iter().zip(&setup.problem.rods)) {
-        if !lit_rod::is_within_reach(&channel.mesh, rod, &channel.sampling) {
+        if !lit::is_within_reach(&channel.mesh, rod, &channel.sampling) {
             let found = format!("σ̂ or σ_t of channel {number} is too large on it");
             return Err(Refusal::mismatch("a rod that theory can cut into 5000 panels", found));
         }

@@ -17,7 +17,7 @@
 //! phase function is that of each channel. The whole path has one hero, shadow rays too.
 //!
 //! With one channel it is `full-mis`. The variance is known where all channels have the same σ_t and σ̂;
-//! elsewhere it is bounded, see [`theory::spectral_lit_rod::bound`].
+//! elsewhere it is bounded, see [`theory::rod::lit::spectral::bound`].
 //!
 //! Source: B. Miller, I. Georgiev, W. Jarosz, *A null-scattering path integral formulation of light
 //! transport*, ACM Transactions on Graphics 38 (2019), sections 5.3 and 5.4, Algorithms 1 and 2.

@@ -6,7 +6,7 @@ use crate::Estimator;
 use crate::setup::heroes::Heroes;
 use media::catalogue::Settings;
 use theory::problems::SpectralLitRod;
-use theory::spectral_lit_rod::Tracker;
+use theory::rod::lit::spectral::Tracker;
 
 /// The balance heuristic over heroes; with `CASTS` walks cast shadow rays.
 #[derive(Debug, Clone)]

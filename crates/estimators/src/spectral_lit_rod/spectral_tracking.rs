@@ -32,9 +32,9 @@ use media::sampling::BothWays;
 use numeric::rng::Random;
 use numeric::{Lane, kept};
 use theory::Prediction;
+use theory::colours::Chances;
 use theory::problems::SpectralLitRod;
-use theory::spectral::Chances;
-use theory::spectral_lit_rod::Tracker;
+use theory::rod::lit::spectral::Tracker;
 
 /// Spectral tracking.
 #[derive(Debug, Clone)]

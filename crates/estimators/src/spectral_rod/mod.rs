@@ -9,9 +9,10 @@ pub mod walk;
 
 use crate::setup::Line;
 use crate::{Estimated, Refusal, Setup, estimators};
+use theory::colours::scatterers::Body;
 use theory::problems::SpectralRod;
 use theory::problems::channels::{ColourValues as Values, Colours};
-use theory::spectral_rod::{Body, Rods};
+use theory::rod::spectral::Rods;
 
 /// A body of coloured scatterers; its estimators have one [`page`].
 pub trait Coloured: Estimated<Value = Values, Fields = Line> {

@@ -7,7 +7,7 @@ use crate::{Estimator, Inputs, Kernel, Refusal, Request, Setup};
 use media::body::MAX_CHANNELS;
 use media::catalogue::Settings;
 use theory::Prediction;
-use theory::spectral_rod::{Spectrum, Tracker};
+use theory::colours::scatterers::{Spectrum, Tracker};
 
 /// Walk of a hero, or of all channels together by one probability to be scattered.
 #[derive(Debug, Clone)]

@@ -29,10 +29,9 @@ use numeric::geometry::Point;
 use numeric::rng::{Random, Stream};
 use numeric::{Kept, Lane, Mask, kept};
 use theory::ParticleRule;
-use theory::problems::ChannelValues as Values;
-use theory::problems::SpectralSingleScattering;
+use theory::colours::chance::shares;
+use theory::problems::{ChannelValues as Values, SpectralSingleScattering};
 use theory::single::Tracking;
-use theory::spectral::chance::shares;
 
 /// The number of lanes of a pack that cast their shadow rays together: aiming a ray costs more than a step.
 const TOGETHER: u32 = 4;

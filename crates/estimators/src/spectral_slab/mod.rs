@@ -8,11 +8,11 @@ pub mod spectral_tracking;
 use super::spectral_rod::Coloured;
 use super::spectral_rod::walk::Place;
 use crate::{Refusal, Setup, estimators};
+use ::theory::colours::scatterers::Body;
 use ::theory::problems::SpectralSlab;
 use ::theory::problems::channels::{Colours, End};
 use ::theory::slab as theory;
-use ::theory::spectral_rod::Body;
-use ::theory::spectral_slab::Slabs;
+use ::theory::slab::spectral::Slabs;
 use numeric::digits::rounded;
 
 impl Coloured for SpectralSlab {

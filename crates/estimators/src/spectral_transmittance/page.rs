@@ -8,8 +8,9 @@ use crate::setup::walker::{HERO, INDEPENDENT, SPECTRAL_TRACKING, read_chances};
 use crate::{Estimator, Inputs, Kernel, Refusal, Request, Setup, walks};
 use media::catalogue::Settings;
 use theory::Prediction;
+use theory::colours::Chances;
 use theory::problems::SpectralTransmittance;
-use theory::spectral::{Chances, Tracker};
+use theory::ray::spectral::Tracker;
 
 /// Kind of [`super::common_ratio`].
 pub const COMMON_RATIO: u8 = 4;

@@ -25,7 +25,7 @@ use numeric::rng::{Random, Stream};
 use numeric::{Lane, Span, kept};
 use theory::problems::SpectralTransmittance;
 use theory::problems::transmittance::SpectralValues as Values;
-use theory::spectral::{Spectrum, Tracker};
+use theory::ray::spectral::{Spectrum, Tracker};
 
 /// The spectrum of a setup, for predictions.
 pub fn spectrum(

@@ -39,8 +39,9 @@ use super::page::{BIDIRECTIONAL, Connected, Method};
 use super::sharing::{SharedTechniques, Subpaths};
 use crate::space::Particle;
 use media::catalogue::Settings;
-use theory::sphere::Techniques;
-use theory::{Heuristic, ParticleRule};
+use theory::ParticleRule;
+use theory::light::Heuristic;
+use theory::space::sphere::Techniques;
 
 /// Three techniques.
 pub type Bidirectional = Connected<BIDIRECTIONAL>;

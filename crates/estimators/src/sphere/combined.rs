@@ -37,7 +37,7 @@ use theory::ParticleRule;
 use theory::problems::Sphere;
 use theory::problems::ball::{self, Sought};
 use theory::single::Tracking;
-use theory::sphere::Techniques;
+use theory::space::sphere::Techniques;
 
 kept! {
     /// Light that walks have found, and densities of further techniques.

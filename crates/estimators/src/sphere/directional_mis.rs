@@ -31,9 +31,8 @@ use super::sharing::SharedTechniques;
 use crate::single_scattering::connection;
 use crate::space::Particle;
 use media::catalogue::Settings;
-use theory::Heuristic;
-use theory::lit_rod::Densities;
-use theory::sphere::Techniques;
+use theory::light::{Densities, Heuristic};
+use theory::space::sphere::Techniques;
 
 /// Multiple importance sampling over directions.
 pub type DirectionalMis = Connected<DIRECTIONAL>;

@@ -30,10 +30,9 @@ use super::page::{Connected, FULL, Method};
 use super::sharing::SharedTechniques;
 use crate::space::Particle;
 use media::catalogue::Settings;
-use theory::Heuristic;
-use theory::lit_rod::Densities;
+use theory::light::{Densities, Heuristic};
 use theory::single::Tracking;
-use theory::sphere::Techniques;
+use theory::space::sphere::Techniques;
 
 /// Multiple importance sampling over null-scattering paths.
 pub type FullMis = Connected<FULL>;

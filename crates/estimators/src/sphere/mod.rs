@@ -14,11 +14,11 @@ pub mod sharing;
 use crate::space::{self, Particle, Walked};
 use crate::{Draw, Refusal, Setup, estimators};
 use numeric::digits::rounded;
-use theory::problems::Sphere;
 use theory::problems::ball::Light;
+use theory::problems::{self, Sphere};
 use theory::single::Tracking;
-use theory::sphere::predict;
-use theory::{ParticleRule, Prediction, problems};
+use theory::space::sphere::predict;
+use theory::{ParticleRule, Prediction};
 
 pub use connect::Seeker;
 pub use page::Method;

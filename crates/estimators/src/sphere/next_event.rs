@@ -29,7 +29,7 @@ use super::sharing::SharedTechniques;
 use crate::single_scattering::connection;
 use crate::space::Particle;
 use media::catalogue::Settings;
-use theory::sphere::Techniques;
+use theory::space::sphere::Techniques;
 
 /// A walk with shadow rays.
 pub type NextEvent = Connected<NEXT_EVENT>;

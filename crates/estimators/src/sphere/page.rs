@@ -11,11 +11,12 @@ use crate::{Draw, Estimator, Inputs, Kernel, Refusal, Request, Setup, walks};
 use media::Majorants;
 use media::catalogue::Settings;
 use numeric::rng::Stream;
+use theory::Prediction;
+use theory::light::Heuristic;
 use theory::problems::Sphere;
 use theory::problems::ball::Light;
 use theory::single::Tracking;
-use theory::sphere::{Techniques, predict};
-use theory::{Heuristic, Prediction};
+use theory::space::sphere::{Techniques, predict};
 
 /// The settings of an estimator.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -3,11 +3,11 @@
 use crate::space::shadow::Light;
 use media::Majorants;
 use numeric::{Lane, Mask};
-use theory::lit_rod::Densities;
+use theory::ParticleRule;
+use theory::light::{Densities, Heuristic};
 use theory::problems::Sphere;
 use theory::single::Tracking;
-use theory::sphere::Techniques;
-use theory::{Heuristic, ParticleRule};
+use theory::space::sphere::Techniques;
 
 /// Vertices of the light that a walk is connected with.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

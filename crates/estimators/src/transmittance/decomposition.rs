@@ -26,8 +26,8 @@ use media::sampling::BothWays;
 use numeric::rng::Random;
 use numeric::{Lane, kept};
 use theory::Prediction;
+use theory::collisions::rules::Null;
 use theory::problems::Transmittance;
-use theory::rules::Null;
 
 /// Decomposition tracking; σ̂ and a constant control are its inputs.
 #[derive(Debug, Clone)]
@@ -65,7 +65,7 @@ impl Estimator<Transmittance> for Decomposition {
 
     fn predict(&self, setup: &Setup<Transmittance>) -> Prediction {
         let killing = constant_control(setup).unwrap_or(0.0);
-        let product = theory::product::Product { killing, ..setup.product(&Null) };
+        let product = theory::ray::product::Product { killing, ..setup.product(&Null) };
         zero_or_one(product.predict())
     }
 

@@ -19,9 +19,9 @@
 //! Eq. 8, section 4.2.
 
 use crate::{Estimator, Inputs, Refusal, Setup, product_draws};
-use theory::count::poisson;
+use theory::collisions::rules::Weight;
+use theory::prediction::count::poisson;
 use theory::problems::Transmittance;
-use theory::rules::Weight;
 use theory::{Distribution, Prediction};
 
 /// The double particle model; σ̂ and any control are its inputs.

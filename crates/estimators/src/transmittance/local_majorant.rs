@@ -24,8 +24,8 @@ use media::sampling::BothWays;
 use numeric::rng::Random;
 use numeric::{Kept, Lane, Row, kept};
 use theory::Prediction;
+use theory::collisions::rules::Null;
 use theory::problems::Transmittance;
-use theory::rules::Null;
 
 /// Local-majorant tracking; a piecewise-constant σ̂ is its only input.
 #[derive(Debug, Clone)]

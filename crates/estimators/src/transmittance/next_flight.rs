@@ -10,7 +10,7 @@
 //! Below the density the weights change sign.
 //!
 //! ```text
-//! E[F^k] from the Volterra equations of theory::volterra with g_k = Σ_{j<k} C(k, j) v^{k−j} A_j
+//! E[F^k] from the Volterra equations of theory::ray::volterra with g_k = Σ_{j<k} C(k, j) v^{k−j} A_j
 //! lookups Poisson(σ̄ ℓ)
 //! ```
 //!
@@ -22,9 +22,9 @@
 use super::scoring::Share;
 use crate::{Setup, scored};
 use numeric::Lane;
+use theory::prediction::raw::binomial;
 use theory::problems::Transmittance;
-use theory::raw::binomial;
-use theory::volterra::{ORDERS, Source, power};
+use theory::ray::volterra::{ORDERS, Source, power};
 
 /// The next-flight estimator; a constant σ̂ is its only input.
 #[derive(Debug, Clone, Copy)]

@@ -20,8 +20,8 @@ use media::sampling::BothWays;
 use media::{Control, Lookups};
 use numeric::rng::{Random, Stream};
 use numeric::{Lane, kept};
+use theory::collisions::rules::{self, Collision};
 use theory::problems::Transmittance;
-use theory::rules::{self, Collision};
 
 /// The walk of a product estimator.
 pub struct Product<'a, R> {

@@ -20,8 +20,8 @@
 use super::double::{predict_weighted, unbiased_where_covered};
 use crate::{Estimator, Inputs, Refusal, Setup, product_draws};
 use theory::Prediction;
+use theory::collisions::rules::Weight;
 use theory::problems::Transmittance;
-use theory::rules::Weight;
 
 /// Ratio tracking; σ̂ is its only input.
 #[derive(Debug, Clone)]

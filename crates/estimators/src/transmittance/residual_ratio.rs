@@ -23,8 +23,8 @@ use crate::recipes::controls;
 use crate::{Estimator, Inputs, Refusal, Setup, product_draws};
 use media::Control;
 use theory::Prediction;
+use theory::collisions::rules::Weight;
 use theory::problems::Transmittance;
-use theory::rules::Weight;
 
 /// Residual ratio tracking; σ̂ and a constant control are its inputs.
 #[derive(Debug, Clone)]

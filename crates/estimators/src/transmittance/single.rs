@@ -32,8 +32,8 @@
 use crate::{Estimator, Inputs, Refusal, Setup, product_draws};
 use media::catalogue::{Domain, Settings};
 use theory::Prediction;
+use theory::collisions::rules::Single;
 use theory::problems::Transmittance;
-use theory::rules::Single;
 
 const RULES: [&str; 4] = ["terminating", "clamped", "non-terminating", "adaptive"];
 

@@ -10,7 +10,7 @@
 //! Below the density the weights change sign.
 //!
 //! ```text
-//! E[F^k] from the Volterra equations of theory::volterra with
+//! E[F^k] from the Volterra equations of theory::ray::volterra with
 //! g_k = v(2u)^k + (1 − v)u^k + Σ_{0<j<k} C(k, j) u^{k−j} A_j;  lookups Poisson(σ̄ ℓ)
 //! ```
 //!
@@ -20,9 +20,9 @@
 use super::scoring::Share;
 use crate::{Setup, scored};
 use numeric::Lane;
+use theory::prediction::raw::binomial;
 use theory::problems::Transmittance;
-use theory::raw::binomial;
-use theory::volterra::{ORDERS, Source, power};
+use theory::ray::volterra::{ORDERS, Source, power};
 
 /// The unidirectional-MIS estimator; a constant σ̂ is its only input.
 #[derive(Debug, Clone, Copy)]

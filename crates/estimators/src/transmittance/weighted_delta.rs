@@ -17,8 +17,8 @@
 
 use crate::{Estimator, Inputs, Refusal, Setup, product_draws};
 use theory::Prediction;
+use theory::collisions::rules::Single;
 use theory::problems::Transmittance;
-use theory::rules::Single;
 
 const RULE: Single = Single::NonTerminating { albedo: 1.0 };
 

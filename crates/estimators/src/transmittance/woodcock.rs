@@ -19,8 +19,8 @@
 //! technique*, Nuclear Science and Engineering 32 (1968).
 
 use crate::{Estimator, Inputs, Refusal, Setup, product_draws};
+use theory::collisions::rules::Null;
 use theory::problems::Transmittance;
-use theory::rules::Null;
 use theory::{Distribution, Prediction};
 
 /// Woodcock tracking; σ̂ is its only input.

@@ -27,10 +27,11 @@ use media::Medium;
 use media::sampling::BothWays;
 use numeric::rng::{Address, Random, Stream, exponential};
 use numeric::{Lane, kept};
+use theory::Prediction;
+use theory::collisions::rules::Weight;
 use theory::problems::TransmittanceCurve;
 use theory::problems::transmittance::MAX_DISTANCES;
-use theory::rules::Weight;
-use theory::{Prediction, curve};
+use theory::ray::curve;
 
 /// The double particle model; σ̂ and any control are its inputs.
 #[derive(Debug, Clone)]

@@ -5,8 +5,8 @@ use crate::Setup;
 use numeric::Span;
 use numeric::rng::Address;
 use theory::Moments;
+use theory::collisions::rules::Weight;
 use theory::problems::{Problem, TransmittanceCurve};
-use theory::rules::Weight;
 
 /// Number of distances at which the ray is shown.
 const POINTS: usize = 400;

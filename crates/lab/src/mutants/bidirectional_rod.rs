@@ -11,9 +11,9 @@ use super::{Line, Mutant, On, family, on, one_by_one};
 use estimators::bidirectional_rod::Method;
 use estimators::bidirectional_rod::walk::{self, Path, WalkEvents};
 use numeric::Lane;
-use theory::Heuristic;
-use theory::bidirectional_rod::{Combination, quotient};
+use theory::light::Heuristic;
 use theory::problems::BidirectionalRod;
+use theory::rod::bidirectional::{Combination, quotient};
 
 /// Both orders of a rod by all techniques, exact connections.
 const FULL: On<Method> =

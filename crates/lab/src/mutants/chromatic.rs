@@ -14,9 +14,9 @@ use estimators::setup::heroes::Heroes;
 use estimators::setup::walker::Walker;
 use estimators::walks::hero::{LastPiece, Weighing};
 use numeric::Lane;
-use theory::particle::Event;
+use theory::collisions::particle::Event;
+use theory::colours::{Chance, Chances};
 use theory::problems::{ChromaticSlab, SpectralFurnace};
-use theory::spectral::{Chance, Chances};
 
 /// Function that makes a walker.
 type Make = fn() -> Walker;

@@ -12,7 +12,7 @@ use estimators::lit_rod::shadow::WalkEvents;
 use estimators::lit_rod::walk::ToEmitter;
 use estimators::walks;
 use numeric::Lane;
-use theory::lit_rod::{Combination, Densities, Heuristic, Shadow, Techniques};
+use theory::light::{Combination, Densities, Heuristic, Shadow, Techniques};
 use theory::problems::LitRod;
 
 /// Extinction that rises to the emitter, `p_f = 0.4`, `σ̂ = 1.25`; next event by delta tracking.

@@ -10,7 +10,7 @@ use estimators::lit_slab::walk::{Directions, Right, ToLight};
 use estimators::walks;
 use media::phase::Phase;
 use numeric::Lane;
-use theory::lit_rod::{Densities, Shadow, Techniques};
+use theory::light::{Densities, Shadow, Techniques};
 use theory::problems::LitSlab;
 
 /// A wide disc close behind a slab of rising extinction, g = 0.6, `σ̂ = 1.5`; next event by ratio tracking.

@@ -20,8 +20,9 @@ use media::phase::Phase;
 use numeric::Lane;
 use numeric::geometry::Point;
 use numeric::rng::Random;
-use theory::Odds;
-use theory::ParticleRule::{self, Adaptive, Analog, NonTerminating, Terminating, Weighted};
+use theory::ParticleRule;
+use theory::ParticleRule::{Adaptive, Analog, NonTerminating, Terminating, Weighted};
+use theory::collisions::particle::Odds;
 use theory::problems::{Furnace, InfiniteMedium, Lambertian, Rod, Slab};
 
 /// `σ̂ = 1.6`, `a` from 0.9 to 0.5 and `p_f` from 0.8 to 0.3 along the rod.

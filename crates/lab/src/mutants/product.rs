@@ -36,8 +36,8 @@ use estimators::transmittance::product::Product;
 use estimators::{Estimated, Request, Setup};
 use media::{Control, Piecewise};
 use numeric::{Lane, Span};
+use theory::collisions::rules::{Collision, Null, Single, Weight};
 use theory::problems::Transmittance;
-use theory::rules::{Collision, Null, Single, Weight};
 
 /// `σ̂ = 1.2`, a majorant.
 const WOODCOCK: On<Rule> = known(0, Rule::Null);

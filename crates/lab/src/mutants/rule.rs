@@ -11,8 +11,8 @@
 //! collision: a sign, a bound or a cut that looks harmless for `0 ≤ r ≤ 1` is a bias elsewhere.
 
 use numeric::Lane;
-use theory::Outcome;
-use theory::rules::{Collision, Met};
+use theory::collisions::Outcome;
+use theory::collisions::rules::{Collision, Met};
 
 /// The albedo of the experiments.
 pub const ALBEDO: f64 = 0.7;

@@ -23,8 +23,8 @@ use estimators::{Draw, Setup, walks};
 use media::{Extinction, Lookups};
 use numeric::Lane;
 use numeric::rng::{Stream, unit};
+use theory::collisions::rules::Weight;
 use theory::problems::Transmittance;
-use theory::rules::Weight;
 
 /// Function that makes a draw, with or without a bug.
 type Drawing = fn(&Setup<Transmittance>, &Lookups, &mut Stream) -> Draw;

@@ -12,7 +12,7 @@ use estimators::Setup;
 use estimators::single_scattering::plan::{Absorption, Vertices};
 use estimators::single_scattering::vertices::{Right, Vertex, WalkEvents};
 use numeric::{Lane, Span, elementary};
-use theory::Heuristic;
+use theory::light::Heuristic;
 use theory::problems::{Problem, SingleScattering};
 use theory::single::{CameraTracking, Tracking};
 

@@ -18,8 +18,9 @@ use estimators::spectral_transmittance::walk::AlongRay;
 use estimators::walks::hero::Law;
 use numeric::Lane;
 use numeric::rng::Random;
+use theory::colours::Chance;
 use theory::problems::SpectralTransmittance;
-use theory::spectral::{Chance, Tracker};
+use theory::ray::spectral::Tracker;
 
 /// A tracker; true if all channels have one σ̂.
 type Plan = (Tracker, bool);

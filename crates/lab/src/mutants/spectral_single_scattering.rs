@@ -11,8 +11,8 @@ use estimators::spectral_single_scattering::Shadow;
 use estimators::spectral_single_scattering::steps::WalkEvents;
 use estimators::spectral_single_scattering::walk::draw;
 use numeric::Lane;
+use theory::colours::{Chance, Chances};
 use theory::problems::SpectralSingleScattering;
-use theory::spectral::{Chance, Chances};
 
 /// Function that makes a walker, and shadow rays.
 type Make = fn() -> (Walker, Shadow);

@@ -11,11 +11,11 @@ use estimators::space::{Particle, Splitting};
 use estimators::sphere::sharing::{Link, SharedTechniques, Subpaths, WalkEvents};
 use estimators::sphere::{Correct, Method};
 use numeric::{Lane, Mask};
-use theory::lit_rod::Densities;
+use theory::ParticleRule;
+use theory::light::{Densities, Heuristic};
 use theory::problems::{Sphere, ball};
 use theory::single::Tracking;
-use theory::sphere::Techniques;
-use theory::{Heuristic, ParticleRule};
+use theory::space::sphere::Techniques;
 
 /// A weighted walk, ratio-tracked shadow rays to a black light sphere.
 const NEXT_EVENT: On<Method> = on("ball/known-bugs", 0, next_event(RATIO));

@@ -13,10 +13,10 @@
 
 use super::ordinates::{directions, roots, solved_pivoted};
 use super::prelude::*;
-use theory::sphere::ball::Ball;
-use theory::sphere::predict::BLURRED;
-use theory::sphere::shells::{Centre, Resolution};
-use theory::sphere::{Lights, Observable, answers};
+use theory::space::sphere::ball::Ball;
+use theory::space::sphere::predict::BLURRED;
+use theory::space::sphere::shells::{Centre, Resolution};
+use theory::space::sphere::{Lights, Observable, answers};
 
 /// Directions of the ordinates.
 const ORDINATES: usize = 64;

@@ -1,6 +1,6 @@
 //! Next-flight and unidirectional MIS: moments by nodes in 32 digits.
 //!
-//! The Volterra equations of `theory::volterra`, with `v = e^{−σ̂(ℓ−x)}`, the probability of a flight to the end, and
+//! The Volterra equations of `theory::ray::volterra`, with `v = e^{−σ̂(ℓ−x)}`, the probability of a flight to the end, and
 //! what a collision adds, `v` or `v/(1 + v)`:
 //!
 //! ```text
@@ -15,7 +15,7 @@ use super::depths::knots;
 use super::fields;
 use estimators::transmittance::next_flight::NextFlight;
 use estimators::transmittance::unidirectional_mis::UnidirectionalMis;
-use theory::volterra::{self, Source};
+use theory::ray::volterra::{self, Source};
 
 /// All rows.
 pub fn rows(run: Run) -> Vec<Row> {

@@ -10,10 +10,11 @@ use super::depths::knots;
 use super::fields::{homogeneous, pieces};
 use super::prelude::*;
 use super::rods::lookups;
-use theory::curve::predict as predict_curve;
-use theory::product::Product;
-use theory::rules::{Single, Weight};
-use theory::{CountLaw, flight};
+use theory::CountLaw;
+use theory::collisions::rules::{Single, Weight};
+use theory::ray::curve::predict as predict_curve;
+use theory::ray::free_flight;
+use theory::ray::product::Product;
 
 /// All rows.
 pub fn rows(run: Run) -> Vec<Row> {
@@ -59,7 +60,7 @@ fn flights(Layers { layers }: &Layers, seen: &mut Seen) {
         exact += alive * if sigma > 0.0 { -(-depth).exp_m1() / sigma } else { width };
         alive = alive * (-depth).exp();
     }
-    let found = flight::predict(&Mesh::new(pieces(&breaks, &values)), CountLaw::always(0.0));
+    let found = free_flight::predict(&Mesh::new(pieces(&breaks, &values)), CountLaw::always(0.0));
     seen.stated(0, found.channels[0].truth, exact);
 }
 

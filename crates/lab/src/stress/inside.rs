@@ -11,9 +11,8 @@ use super::equations::{binomial, power};
 use super::nodes::{Both, Line, Solution, after};
 use super::prelude::*;
 use super::rods::{moments_of, rod_with, rule};
-use theory::particle::ParticleRule;
 use theory::problems::rod::{self, HIGHEST_ORDER, MOST_PARTS, Quantity};
-use theory::rod as rods;
+use theory::{ParticleRule, rod as rods};
 
 /// All rows.
 pub fn rows(run: Run) -> Vec<Row> {

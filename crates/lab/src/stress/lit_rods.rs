@@ -15,9 +15,10 @@ use super::equations::{binomial, power};
 use super::fields::homogeneous;
 use super::nodes::{Both, Line, Solution, after};
 use super::prelude::*;
-use theory::bidirectional_rod::{self, Connection, Rules, Scene};
-use theory::lit_rod::{self, Combination, Densities, Heuristic, Shadow, Techniques};
+use theory::light::{Combination, Densities, Heuristic, Shadow, Techniques};
 use theory::problems::LitRod;
+use theory::rod::bidirectional::{self, Connection, Rules, Scene};
+use theory::rod::lit;
 
 /// All rows.
 pub fn rows(run: Run) -> Vec<Row> {
@@ -70,7 +71,7 @@ fn lit(case: &Lit, seen: &mut Seen) -> Option<()> {
     let rod = LitRod::new(medium.clone(), &everywhere(albedo), &everywhere(forward));
     let (mesh, flown) = (Mesh::new(medium.clone()), everywhere(depth / ratio));
     let techniques = Techniques { shadow: Some(shadow), combination };
-    let found = lit_rod::predict(&mesh, &rod, &flown, techniques, true).channels[0].moments;
+    let found = lit::predict(&mesh, &rod, &flown, techniques, true).channels[0].moments;
     let raw = moments(case, shadow);
     if raw[0].high < 1e-70 {
         return None;
@@ -166,12 +167,12 @@ fn bidirectional(case: &Bidirectional, seen: &mut Seen) -> Option<()> {
     let depth = Known::exact(depth);
     let scene = Scene { depth, albedo, forward, is_transmitted, orders: order..=order };
     let rules = Rules {
-        combination: bidirectional_rod::Combination::Technique(s),
+        combination: bidirectional::Combination::Technique(s),
         connection: ratio.map_or(Connection::Exact, Connection::Ratio),
         is_shared: false,
         has_shares: true,
     };
-    let found = bidirectional_rod::predict(&scene, &rules, ratio, true);
+    let found = bidirectional::predict(&scene, &rules, ratio, true);
     let raw = [1, 2, 3, 4].map(|k| of_paths(case, (order, s), k));
     let channel = found.channels.first()?;
     seen.at(format_args!("order {order}, s = {s}"));

@@ -10,10 +10,10 @@ use super::equations::power;
 use super::fields::homogeneous;
 use super::prelude::*;
 use super::slabs::henyey_greenstein;
-use theory::lit_rod::{Combination, Densities, Heuristic, Shadow, Techniques};
-use theory::lit_slab;
+use theory::light::{Combination, Densities, Heuristic, Shadow, Techniques};
 use theory::problems::LitSlab;
 use theory::problems::lit_slab::Light;
+use theory::slab::lit;
 
 /// All rows.
 pub fn rows(run: Run) -> Vec<Row> {
@@ -57,7 +57,7 @@ fn beam(slab: &Slab, seen: &mut Seen) {
     let cosine = slab.cosine.max(slab.depth / 60.0);
     let (mesh, problem, flown) = slab.problem(Light::Distant(cosine));
     let techniques = Techniques { shadow: Some(slab.shadow), combination: Combination::NextEvent };
-    let found = lit_slab::predict(&mesh, &problem, &flown, techniques, true);
+    let found = lit::predict(&mesh, &problem, &flown, techniques, true);
     let (depth, null) = (DoubleDouble::from(slab.depth), 1.0 - DoubleDouble::from(slab.ratio));
     let towards = DoubleDouble::from(problem.phase.value(cosine));
     let raw = [1, 2, 3, 4].map(|k: usize| {
@@ -83,10 +83,10 @@ fn mean(slab: &Slab, seen: &mut Seen) -> Option<()> {
         Light::Cap(slab.cosine.min(0.99))
     };
     let (mesh, problem, flown) = slab.problem(light);
-    if lit_slab::slant_depth(&mesh, &problem).is_some() {
+    if lit::slant_depth(&mesh, &problem).is_some() {
         return None;
     }
-    let truth = lit_slab::truth(&mesh, &problem, &flown);
+    let truth = lit::truth(&mesh, &problem, &flown);
     for (shadow, densities) in [
         (slab.shadow, Densities::Directional),
         (Shadow::Ratio, Densities::Full),
@@ -95,7 +95,7 @@ fn mean(slab: &Slab, seen: &mut Seen) -> Option<()> {
         let combination = Combination::Mis(densities, slab.heuristic);
         let techniques = Techniques { shadow: Some(shadow), combination };
         seen.at(format_args!("{techniques:?}"));
-        let mean = lit_slab::mean(&mesh, &problem, &flown, techniques);
+        let mean = lit::mean(&mesh, &problem, &flown, techniques);
         seen.see(0, over((mean.value - truth.value).abs(), mean.error + truth.error));
     }
     Some(())

@@ -2,15 +2,15 @@
 //!
 //! ```text
 //! constant σ_t, σ_c and σ̂ on a length ℓ:  J_k = σ̂ℓ E[(1 − W)^k],
-//! m₂ = expm1 J₂, and so on as in `theory::moments`, without cancellation and in 32 digits
+//! m₂ = expm1 J₂, and so on as in `theory::prediction::moments`, without cancellation and in 32 digits
 //! ```
 
 use super::fields::homogeneous;
 use super::prelude::*;
-use theory::Rule;
+use theory::collisions::Rule;
+use theory::collisions::rules::{Single, Weight};
 use theory::prediction::transmittance;
-use theory::product::Product;
-use theory::rules::{Single, Weight};
+use theory::ray::product::Product;
 
 /// All rows.
 pub fn rows(run: Run) -> Vec<Row> {

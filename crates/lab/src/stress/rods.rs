@@ -9,10 +9,9 @@
 
 use super::fields::homogeneous;
 use super::prelude::*;
-use theory::particle::ParticleRule;
 use theory::problems::Rod;
 use theory::problems::rod::{self, Quantity};
-use theory::{CountLaw, rod as rods};
+use theory::{CountLaw, ParticleRule, rod as rods};
 
 /// All rows.
 pub fn rows(run: Run) -> Vec<Row> {

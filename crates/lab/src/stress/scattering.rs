@@ -10,7 +10,7 @@ use crate::stress::slabs::henyey_greenstein;
 use media::phase::Phase;
 use media::phase::isotropic::Isotropic;
 use numeric::geometry::{Point, Ray};
-use theory::Heuristic;
+use theory::light::Heuristic;
 use theory::problems::single_scattering::Lamp;
 use theory::problems::{Problem, SingleScattering};
 use theory::single::{Camera, CameraTracking, Collisions, Mis, NullPaths, Scene, Tracking};

@@ -1,8 +1,8 @@
 //! Draws that score several channels: moments against closed forms in 32 digits.
 //!
 //! ```text
-//! transmittance, `theory::spectral`, homogeneous:  every moment is an exponential, of MIS a sum of them
-//! coloured scatterers, `theory::spectral_rod`:     E[X^k] = Σ_h w_h L(a_λ^k/a_h^{k−1}), L(a) what leaves the body of an
+//! transmittance, `theory::ray::spectral`, homogeneous:  every moment is an exponential, of MIS a sum of them
+//! coloured scatterers, `theory::colours::scatterers`:     E[X^k] = Σ_h w_h L(a_λ^k/a_h^{k−1}), L(a) what leaves the body of an
 //!     albedo a, above 1, too; tracking at P_s:  L(a_λ^k/P_s^{k−1});  independent:  w^{1−k} L(a_λ)
 //! ```
 
@@ -12,13 +12,16 @@ use super::ordinates::Ordinates;
 use super::prelude::*;
 use super::rods::{critical, leaving, light};
 use media::phase::{Phase, isotropic::Isotropic};
+use theory::colours::Chance;
+use theory::colours::scatterers::{Body, Spectrum, Tracker};
 use theory::problems::channels::{Colours, End};
 use theory::problems::slab::{Incidence, Light};
 use theory::problems::{ChromaticSlab, SpectralRod, SpectralSlab};
-use theory::spectral::{self, Chance};
-use theory::spectral_rod::{Body, Rods, Spectrum, Tracker};
-use theory::spectral_slab::Slabs;
-use theory::{Channel, Moments, chromatic_slab};
+use theory::ray::spectral;
+use theory::rod::spectral::Rods;
+use theory::slab::chromatic;
+use theory::slab::spectral::Slabs;
+use theory::{Channel, Moments};
 
 /// Directions of the ordinates.
 const ORDINATES: usize = 40;
@@ -291,7 +294,7 @@ fn chromatic(case: &Media, seen: &mut Seen) -> Option<()> {
     let flown: Vec<Piecewise> = case.channels.iter().map(flown).collect();
     let meshes: Vec<Mesh> = media.into_iter().map(Mesh::new).collect();
     let joined = meshes.iter().zip(&flown).collect();
-    let found = chromatic_slab::Spectrum::new(&problem, joined, false).independent(&hero);
+    let found = chromatic::Spectrum::new(&problem, joined, false).independent(&hero);
     for (channel, &(end, own)) in found.channels.iter().zip(&problem.colours.seen) {
         seen.at(&channel.name);
         let (depth, albedo, _) = case.channels[own];

@@ -21,11 +21,10 @@ use super::prelude::*;
 use super::rods::{lookups, moments_of};
 use super::slabs::{LIGHTS, henyey_greenstein, lights, phase};
 use media::phase::{Phase, isotropic::Isotropic};
-use theory::CountLaw;
-use theory::particle::ParticleRule;
 use theory::problems::slab::{Incidence, Light};
 use theory::slab::layer::Slice;
 use theory::slab::{self, Answer, Energy, Existence, Piece, Pieces, Resolution, Walk};
+use theory::{CountLaw, ParticleRule};
 
 /// Directions of the ordinates.
 const ORDINATES: usize = 48;

@@ -15,17 +15,20 @@
 //! E. D. Cashwell, *Analysis of Error in Monte Carlo Transport Calculations*, Nuclear Science and
 //! Engineering 71 (1979).
 
+pub mod bidirectional;
 mod closed;
 pub mod line;
+pub mod lit;
 pub mod moments;
+pub mod spectral;
 pub mod walk;
 
 use self::moments::Joint;
 use self::walk::Walk;
-use super::particle::ParticleRule;
 use super::prediction::Covariance;
-use super::raw::{POWERS, RESOLVED, RawMoments};
 use super::{Channel, CountLaw, Mesh, Prediction, Tails};
+use crate::ParticleRule;
+use crate::prediction::raw::{POWERS, RESOLVED, RawMoments};
 use crate::problems::rod::Quantity;
 use crate::problems::{Problem, Rod};
 use media::Piecewise;

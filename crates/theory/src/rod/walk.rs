@@ -2,11 +2,11 @@
 
 use super::NoVariance;
 use super::line::Line;
-use crate::Mesh;
-use crate::mesh::Panel;
-use crate::particle::{Odds, ParticleRule};
+use crate::collisions::particle::Odds;
 use crate::problems::rod::Quantity;
 use crate::problems::{Problem, Rod};
+use crate::ray::mesh::Panel;
+use crate::{Mesh, ParticleRule};
 use media::Piecewise;
 use numeric::{Known, Span, roots};
 

@@ -3,7 +3,7 @@
 use super::CameraTracking;
 use super::segment::{POWERS, Segment, loss, losses, rounding, size};
 use crate::Mesh;
-use crate::survival::factorial_rates;
+use crate::ray::survival::factorial_rates;
 use media::{Control, Piecewise};
 use numeric::quadrature::GaussLegendre;
 use numeric::{Cumulative, Known, Span};

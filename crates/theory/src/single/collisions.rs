@@ -7,7 +7,7 @@
 //! c, the probability that a real collision scatters, is the albedo, or 1 where the albedo is a weight.
 
 use super::scene::Node;
-use crate::raw::{Raw, added, poisson};
+use crate::prediction::raw::{Raw, added, poisson};
 use media::{Medium, OpticalDepth, Piecewise};
 use numeric::{Lane, Span};
 

@@ -17,8 +17,8 @@ use super::null_path::{NullPaths, Weighted};
 use super::predict::DENSITY;
 use super::scene::{Node, Place, STEPS, Scene};
 use super::{Collisions, Points, Technique};
-use crate::Heuristic;
-use crate::contour::Made;
+use crate::light::Heuristic;
+use crate::light::contour::Made;
 use crate::problems::Problem;
 
 /// Maximum number of halvings of panels towards the end of a ray.

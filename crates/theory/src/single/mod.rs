@@ -25,6 +25,7 @@ pub mod quick;
 pub mod scene;
 pub mod segment;
 pub mod shadows;
+pub mod spectral;
 pub mod walks;
 
 pub use camera::Camera;

@@ -1,9 +1,10 @@
-//! Means of weights that depend on all null collisions between the ray's origin and a point, see [`crate::contour`].
+//! Means of weights that depend on all null collisions between the ray's origin and a point, see [`crate::light::contour`].
 
 use super::shadows::PANELS;
-use crate::contour::{Contour, Made, ROUNDINGS};
-use crate::mesh::Panel;
-use crate::{Heuristic, Mesh};
+use crate::Mesh;
+use crate::light::Heuristic;
+use crate::light::contour::{Contour, Made, ROUNDINGS};
+use crate::ray::mesh::Panel;
 use media::Piecewise;
 use numeric::quadrature::GaussLegendre;
 use numeric::{Cumulative, Span};

@@ -4,7 +4,7 @@ use super::Collisions;
 use super::null_path::Weighted;
 use super::scene::{Node, Scene};
 use super::segment::POWERS;
-use crate::raw::{Raw, RawMoments, added};
+use crate::prediction::raw::{Raw, RawMoments, added};
 use crate::{Channel, CountLaw, Prediction, Tails};
 use numeric::Known;
 

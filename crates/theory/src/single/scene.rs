@@ -3,8 +3,8 @@
 use super::camera::Camera;
 use super::segment::{Segment, Tracking};
 use super::shadows::{Among, MANY, Shadows, thinned};
+use crate::prediction::raw::added;
 use crate::problems::{Problem, SingleScattering};
-use crate::raw::added;
 use numeric::quadrature::GaussLegendre;
 use numeric::sum::Sum;
 use numeric::{Known, Span};

@@ -1,8 +1,8 @@
 //! An estimated transmittance of one segment: moments of its value and of its lookups.
 
 use super::shadows::thinned;
-use crate::raw::{self, poisson};
-use crate::survival::{Survival, factorial_rates};
+use crate::prediction::raw::{self, poisson};
+use crate::ray::survival::{Survival, factorial_rates};
 use media::Medium;
 use numeric::quadrature::GaussLegendre;
 use numeric::{Known, Span};
@@ -112,7 +112,7 @@ impl Segment {
     }
 
     /// 1 with probability `e^{−τ}`, else 0, by delta tracking through `∫σ̄ = flown`; `factorial[k − 1]` is
-    /// `E[N (N − 1) … (N − k + 1)]`, see [`crate::survival`].
+    /// `E[N (N − 1) … (N − k + 1)]`, see [`crate::ray::survival`].
     pub fn decided(depth: Known, flown: f64, factorial: [f64; 4]) -> Self {
         let chance = (-depth.value).exp();
         let lookups = raw::of_factorial(factorial);

@@ -12,7 +12,7 @@ use super::predict::{DENSITY, LOOKUPS, MOMENT, Points};
 use super::scene::{Node, Scene};
 use super::segment::Segment;
 use super::shadows::Among;
-use crate::raw::{self, added, binomial, poisson};
+use crate::prediction::raw::{self, added, binomial, poisson};
 use numeric::Span;
 
 /// The orders `n₁ … n₄` of the moments of a shared walk, from the fewest points to the most.

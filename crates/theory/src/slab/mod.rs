@@ -16,17 +16,20 @@
 //!
 //! Where only `r = σ_t/σ̂` matters at a tentative collision, the k-th moments of a walk are reflectance
 //! and transmittance of another slab: `∫σ̂(1 − Q_k)` thick, of albedo `S_k/(1 − Q_k)`, which may exceed
-//! 1, see [`crate::particle`]. It may also be too thick for that albedo: then the moment is
+//! 1, see [`crate::collisions::particle`]. It may also be too thick for that albedo: then the moment is
 //! infinite.
 //!
 //! Source: H. C. van de Hulst, *Multiple Light Scattering* (Academic Press, 1980), chapters 4 and 9; δ-M: W. J.
 //! Wiscombe, *The Delta-M Method*, Journal of the Atmospheric Sciences 34, 1408–1422 (1977).
 
 pub mod cache;
+pub mod chromatic;
 pub mod directions;
 pub mod layer;
+pub mod lit;
 pub mod orders;
 pub mod pieces;
+pub mod spectral;
 #[cfg(test)]
 mod tests;
 pub mod walk;

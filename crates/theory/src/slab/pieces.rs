@@ -6,7 +6,7 @@
 
 use super::layer::Slice;
 use crate::Mesh;
-use crate::particle::Odds;
+use crate::collisions::particle::Odds;
 use crate::problems::slab::Light;
 use media::Piecewise;
 use numeric::Span;

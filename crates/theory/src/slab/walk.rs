@@ -22,11 +22,11 @@
 use super::layer::Slice;
 use super::pieces::{Piece, Pieces};
 use super::{Answer, Energy, Light, Resolution, energies, factorial_moments, solve};
-use crate::particle::{Odds, ParticleRule};
+use crate::collisions::particle::Odds;
+use crate::prediction::raw::{POWERS, RawMoments};
 use crate::prediction::{Covariance, UNRESOLVED};
 use crate::problems::slab::Incidence;
-use crate::raw::{POWERS, RawMoments};
-use crate::{Channel, CountLaw, Prediction, Tails, colours};
+use crate::{Channel, CountLaw, ParticleRule, Prediction, Tails, colours};
 use numeric::{Jet, Known, Scalar};
 
 /// The channels of a draw, in their order.

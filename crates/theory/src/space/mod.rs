@@ -2,8 +2,10 @@
 
 pub mod content;
 pub mod energy;
+pub mod furnace;
 pub mod infinite;
 pub mod predict;
+pub mod sphere;
 
 pub use energy::Walks;
 pub use predict::energy_channel;

@@ -6,7 +6,8 @@
 use std::any::Any;
 use std::marker::PhantomData;
 
-use super::Along::{self, Depth, Origin, Steps};
+use super::Along;
+use super::Along::{Depth, Origin, Steps};
 use super::scene::{BALL, LIT, RAY, Scene};
 use super::trail::{Precision, Traced, Trail};
 use estimators::free_flight::woodcock::Flights;
@@ -33,14 +34,15 @@ use media::Majorants;
 use numeric::fused::in_fused_code;
 use numeric::rng::{Address, name_hash};
 use numeric::{F32, Fused, ScalarLane as _};
-use theory::ParticleRule::{self, Analog, NonTerminating, Weighted};
+use theory::ParticleRule;
+use theory::ParticleRule::{Analog, NonTerminating, Weighted};
+use theory::collisions::rules::{Collision, Null, Single, Weight};
 use theory::problems::{
     self, Channels, FreeFlight, Furnace, InfiniteMedium, Lambertian, Problem, Rod,
     SingleScattering, Slab, Sphere, Transmittance, TransmittanceCurve,
 };
-use theory::rules::{Collision, Null, Single, Weight};
 use theory::single::{CameraTracking, Tracking};
-use theory::sphere::Techniques;
+use theory::space::sphere::Techniques;
 
 /// A scene with the setup of an estimator.
 #[derive(Clone, Copy)]

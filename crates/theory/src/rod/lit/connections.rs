@@ -1,0 +1,35 @@
+//! Scatterings in a rod with an emitter at its end, see [`crate::light::vertex`].
+
+use crate::light::Techniques;
+use crate::light::contour::Contour;
+use crate::light::vertex::{Vertex, Weights};
+use crate::rod::line::Line;
+use crate::rod::walk::Node;
+
+/// Scatterings at all nodes: of light that goes forward, and of light that goes backward.
+pub struct Connections(Vec<[Vertex; 2]>);
+
+impl Connections {
+    /// Connections on a line that was made for a σ̂, up to a power.
+    pub fn new(line: &Line, techniques: Techniques, highest: usize) -> Self {
+        let weights = Weights::new(techniques, highest, false);
+        let moments = along(&weights.contour, line);
+        let vertices = line.nodes().iter().zip(&moments).map(|(node, moments)| {
+            let vertex = |towards: f64| weights.vertex(towards, moments, 0.0);
+            [vertex(node.forward), vertex(1.0 - node.forward)]
+        });
+        Self(vertices.collect())
+    }
+
+    /// Scatterings at a node, of light that goes forward and backward.
+    pub fn at(&self, node: usize) -> &[Vertex; 2] {
+        &self.0[node]
+    }
+}
+
+/// Moments of x from each node to the emitter.
+pub fn along(contour: &Contour, line: &Line) -> Vec<Vec<f64>> {
+    let row = |node: &Node| contour.rates(node.means[0], node.sampling);
+    let rates: Vec<Vec<f64>> = line.nodes().iter().map(row).collect();
+    line.to_end(&rates).iter().map(|depths| contour.moments(0, depths, 1.0)).collect()
+}

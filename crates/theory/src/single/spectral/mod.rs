@@ -1,0 +1,68 @@
+//! Predictions for single scattering in several channels, with draws that score all of them.
+//!
+//! ```text
+//! independent    E[X_λ^k] = w_λ^{1−k} E[x_λ^k],  E[X_λ X_μ] = 0,  x a draw of the channel by itself
+//! balanced       E[X_λ²] ≤ E[x_λ²]/w_λ
+//! relative to the density of one walker    all moments, see [`relative`]
+//! ```
+//!
+//! Lookups are those of the hero's walk; their distribution is the mixture over heroes.
+
+pub mod relative;
+
+use super::Points;
+use crate::colours::{self, named};
+use crate::prediction::raw::Raw;
+use crate::{Channel, CountLaw, Prediction};
+
+/// The lookups of the walk of a hero, mixed over heroes.
+pub fn lookups(alone: &[Points], heroes: &[f64]) -> Option<Raw> {
+    let each = alone.iter().zip(heroes).map(|(points, chance)| Some((*chance, points.lookups?)));
+    colours::mixed(each.collect::<Option<Vec<_>>>()?)
+}
+
+/// Prediction for one channel a draw: `E[X_λ^k] = w_λ^{1−k} E[x_λ^k]`, x a draw of that channel by itself.
+pub fn independent(alone: &[Points], heroes: &[f64]) -> Prediction {
+    let lookups = lookups(alone, heroes);
+    let each = alone.iter().zip(heroes).map(|(points, chance)| {
+        let mut scaled =
+            Points { lookups, eighth: points.eighth.map(|x| x / chance.powi(7)), ..*points };
+        for (k, power) in (0..).zip(&mut scaled.powers) {
+            *power *= if k > 0 { chance.powi(1 - k) } else { 1.0 };
+        }
+        (scaled.powers, scaled.prediction())
+    });
+    let (powers, predictions): (Vec<Raw>, Vec<Prediction>) = each.unzip();
+    let moments: Vec<[f64; 2]> = powers.iter().map(|powers| [powers[1], powers[2]]).collect();
+    let covariances = colours::exclusive(&moments);
+    let (channels, lookups) = joined(predictions.into_iter());
+    Prediction { channels: named(channels), lookups, covariances, ..Prediction::default() }
+}
+
+/// The channels of several predictions, and the lookups of the first.
+fn joined(each: impl Iterator<Item = Prediction>) -> (Vec<Channel>, Option<CountLaw>) {
+    let (mut channels, mut lookups) = (Vec::new(), None);
+    for found in each {
+        lookups = lookups.or(found.lookups);
+        channels.extend(found.channels);
+    }
+    (channels, lookups)
+}
+
+/// Prediction for all channels by the balance heuristic: means, the lookups, and a bound on the variance.
+///
+/// ```text
+/// p̄ = Σ_h w_h p_h ≥ w_λ p_λ,   E[X_λ²] = ∫ f_λ²/p̄ ≤ ∫ f_λ²/(w_λ p_λ) = E[x_λ²]/w_λ
+/// ```
+///
+/// which is the second moment of one channel a draw.
+pub fn balanced(alone: &[Points], heroes: &[f64]) -> Prediction {
+    let of_first: Option<CountLaw> = alone.first().and_then(|first| {
+        Points { lookups: lookups(alone, heroes), ..*first }.prediction().lookups
+    });
+    let channel = |(points, chance): (&Points, &f64)| {
+        Channel::bounded(points.truth, points.powers[2] * (1.0 + points.error) / chance)
+    };
+    let channels = named(alone.iter().zip(heroes).map(channel).collect());
+    Prediction { channels, lookups: of_first, ..Prediction::default() }
+}
