@@ -8,6 +8,7 @@ pub mod technique;
 pub mod walk;
 
 use self::walk::WalkEvents;
+use crate::setup::heuristic;
 use crate::{Estimator, Inputs, Kernel, Refusal, Request, Setup, estimators, walks};
 use ::theory::Prediction;
 use ::theory::light::Heuristic;
@@ -69,8 +70,8 @@ impl<const KIND: u8> Estimator<BidirectionalRod> for Estimate<KIND> {
     fn read(settings: &Settings) -> Option<Self> {
         let combination = match KIND {
             TECHNIQUE => technique::combination(settings),
-            DIRECTIONAL => Heuristic::read(settings).map(Combination::Directional),
-            _ => Heuristic::read(settings).map(Combination::Full),
+            DIRECTIONAL => heuristic::read(settings).map(Combination::Directional),
+            _ => heuristic::read(settings).map(Combination::Full),
         };
         let connection = settings.word_or("connection", &["exact", "ratio"], "exact");
         let subpaths = if KIND == TECHNIQUE {

@@ -26,6 +26,7 @@
 
 use super::{Lit, label, lit, read_shadow};
 use crate::Estimator;
+use crate::setup::heuristic;
 use media::catalogue::Settings;
 use theory::light::{Combination, Densities, Heuristic, Shadow, Techniques};
 
@@ -46,7 +47,7 @@ impl DirectionalMis {
 impl<P: Lit> Estimator<P> for DirectionalMis {
     fn read(settings: &Settings) -> Option<Self> {
         let shadow = read_shadow(settings, &["exact", "delta", "ratio"], "delta");
-        let heuristic = Heuristic::read(settings);
+        let heuristic = heuristic::read(settings);
         Some(Self { shadow: shadow?, heuristic: heuristic? })
     }
 

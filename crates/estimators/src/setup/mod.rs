@@ -3,6 +3,7 @@
 
 pub mod channels;
 pub mod heroes;
+pub mod heuristic;
 pub mod line;
 pub mod residual;
 pub mod walker;

@@ -29,8 +29,8 @@
 
 use super::plan::{Absorption, ByPlan, Plan, Planned, Technique, Vertices};
 use crate::Inputs;
+use crate::setup::heuristic;
 use media::catalogue::Settings;
-use theory::light::Heuristic;
 
 /// Equiangular points and delta tracking.
 pub type SourceDeltaMis = ByPlan<Both>;
@@ -46,7 +46,7 @@ impl Planned for Both {
         let light = Vertices::FROM_LIGHT.read(settings, &["exact", "ratio"]);
         let absorption = Absorption::read(settings);
         let samples = settings.word_or("samples", &["both", "one"], "both");
-        let heuristic = Heuristic::read(settings);
+        let heuristic = heuristic::read(settings);
         let vertices = || {
             let (collision, is_one) = (Some(absorption?), samples? == "one");
             Some(Vertices { collision, is_one, heuristic: heuristic?, ..light? })

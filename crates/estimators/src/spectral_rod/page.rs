@@ -130,7 +130,7 @@ impl<P: Coloured, const KIND: u8> Estimator<P> for OfKind<KIND> {
             walk::require_scattering(&setup.problem.colours().albedos, self.distribution())?;
         }
         if KIND == HERO || KIND == SPECTRAL_TRACKING {
-            walk::require_variance(self.spectrum(setup).diverges())?;
+            walk::require_variance(self.spectrum(setup).divergence())?;
         }
         Ok(())
     }

@@ -21,10 +21,12 @@ use media::body::MAX_CHANNELS;
 use media::phase::Phase;
 use media::phase::isotropic::Isotropic;
 use media::sampling::BothWays;
+use numeric::digits::rounded;
 use numeric::pack::WIDTH;
 use numeric::rng::{Random, Stream};
 use numeric::{Lane, Mask, kept};
 use theory::ParticleRule;
+use theory::colours::scatterers::Divergence;
 use theory::problems::channels::{ColourValues as Values, Colours, End};
 use theory::problems::slab::{Incidence, Light};
 
@@ -326,9 +328,25 @@ pub fn require_scattering(albedos: &[f64], heroes: &Heroes) -> Result<(), Refusa
 /// # Errors
 ///
 /// The channel, and the body that it needs.
-pub fn require_variance(diverges: Option<(usize, String)>) -> Result<(), Refusal> {
-    diverges.map_or(Ok(()), |(channel, why)| {
-        let found = format!("E[X²] of channel {} {why}", channel + 1);
-        Err(Refusal::mismatch("a finite variance", found))
-    })
+pub fn require_variance(divergence: Option<(usize, Divergence)>) -> Result<(), Refusal> {
+    let Some((channel, reason)) = divergence else { return Ok(()) };
+    let reason = match reason {
+        Divergence::BeyondLength { critical } => {
+            format!("is infinite from optical length {} on", rounded(critical))
+        }
+        Divergence::Overflow => "is infinite for a double: it is above 1.8e308".into(),
+        Divergence::BeyondAlbedo { critical, albedo } => {
+            let [critical, albedo] = [critical, albedo].map(rounded);
+            format!("is infinite from the albedo {critical} on, and it asks for {albedo}")
+        }
+        Divergence::NearAlbedo { critical, albedo } => {
+            let [critical, albedo] = [critical, albedo].map(rounded);
+            format!(
+                "asks for the albedo {albedo}, which is too near to {critical}, from about where on it is infinite, to tell \
+                 on which side it is"
+            )
+        }
+    };
+    let found = format!("E[X²] of channel {} {reason}", channel + 1);
+    Err(Refusal::mismatch("a finite variance", found))
 }

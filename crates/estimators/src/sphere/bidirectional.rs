@@ -37,10 +37,10 @@
 
 use super::page::{BIDIRECTIONAL, Connected, Method};
 use super::sharing::{SharedTechniques, Subpaths};
+use crate::setup::heuristic;
 use crate::space::Particle;
 use media::catalogue::Settings;
 use theory::ParticleRule;
-use theory::light::Heuristic;
 use theory::space::sphere::Techniques;
 
 /// Three techniques.
@@ -48,7 +48,7 @@ pub type Bidirectional = Connected<BIDIRECTIONAL>;
 
 /// Reads the settings.
 pub(super) fn page(settings: &Settings) -> Option<Method> {
-    let heuristic = Heuristic::read(settings);
+    let heuristic = heuristic::read(settings);
     let words = ["independent", "shared"];
     let subpaths = settings
         .word_or("subpaths", &words, words[0])

@@ -28,10 +28,11 @@
 
 use super::page::{Connected, DIRECTIONAL, Method};
 use super::sharing::SharedTechniques;
+use crate::setup::heuristic;
 use crate::single_scattering::connection;
 use crate::space::Particle;
 use media::catalogue::Settings;
-use theory::light::{Densities, Heuristic};
+use theory::light::Densities;
 use theory::space::sphere::Techniques;
 
 /// Multiple importance sampling over directions.
@@ -41,7 +42,7 @@ pub type DirectionalMis = Connected<DIRECTIONAL>;
 pub(super) fn page(settings: &Settings) -> Option<Method> {
     let particle = Particle::read(settings);
     let shadow = connection::read_shadow(settings);
-    let heuristic = Heuristic::read(settings);
+    let heuristic = heuristic::read(settings);
     let techniques = Techniques::Mis(Densities::Directional, heuristic?);
     let sharing = SharedTechniques { techniques, shadow: Some(shadow?), subpaths: None };
     Some(Method { particle: particle?, sharing })

@@ -28,9 +28,10 @@
 
 use super::page::{Connected, FULL, Method};
 use super::sharing::SharedTechniques;
+use crate::setup::heuristic;
 use crate::space::Particle;
 use media::catalogue::Settings;
-use theory::light::{Densities, Heuristic};
+use theory::light::Densities;
 use theory::single::Tracking;
 use theory::space::sphere::Techniques;
 
@@ -41,7 +42,7 @@ pub type FullMis = Connected<FULL>;
 pub(super) fn page(settings: &Settings) -> Option<Method> {
     let particle = Particle::read(settings);
     let shadow = settings.word_or("shadow", &["ratio", "exact"], "ratio");
-    let heuristic = Heuristic::read(settings);
+    let heuristic = heuristic::read(settings);
     let shadow = (shadow? == "exact").then_some(Tracking::Exact);
     let techniques = Techniques::Mis(Densities::Full, heuristic?);
     let sharing = SharedTechniques { techniques, shadow, subpaths: None };

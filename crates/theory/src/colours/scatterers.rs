@@ -33,6 +33,32 @@ pub struct Orders {
     pub blur: f64,
 }
 
+/// Reason why a moment is infinite, or may be.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Divergence {
+    /// The optical length is not below the critical one.
+    BeyondLength {
+        /// Critical optical length.
+        critical: f64,
+    },
+    /// The moment exceeds the largest double.
+    Overflow,
+    /// The moment is that of an albedo above the critical one.
+    BeyondAlbedo {
+        /// Critical albedo.
+        critical: f64,
+        /// Albedo of the moment.
+        albedo: f64,
+    },
+    /// The moment is that of an albedo too near to the critical one: it may be finite or infinite.
+    NearAlbedo {
+        /// Critical albedo.
+        critical: f64,
+        /// Albedo of the moment.
+        albedo: f64,
+    },
+}
+
 /// Energies of a body of one albedo.
 pub trait Body: Send + Sync {
     /// Reflectance and transmittance, of albedos above 1, too; `None` where they are infinite.
@@ -43,9 +69,8 @@ pub trait Body: Send + Sync {
         self.leaving(albedo)
     }
 
-    /// Reason in words, a predicate as in "is infinite from …", if they are infinite or too near to that to tell;
-    /// `None` where they are finite.
-    fn beyond(&self, albedo: f64) -> Option<String>;
+    /// Reason why they are infinite, or may be; `None` where they are finite.
+    fn divergence(&self, albedo: f64) -> Option<Divergence>;
 
     /// Energies by orders of scattering; `None` where they are not known.
     fn orders(&self) -> Option<Orders>;
@@ -98,14 +123,14 @@ impl<'a> Spectrum<'a> {
         if product == 0.0 { 0.0 } else { product / scatter.powi(total - 1) }
     }
 
-    /// First channel with a second moment that is infinite, or too near to that to tell, and the reason in words.
-    pub fn diverges(&self) -> Option<(usize, String)> {
+    /// First channel with a second moment that is infinite, or may be, and the reason.
+    pub fn divergence(&self) -> Option<(usize, Divergence)> {
         let walkers = self.walkers();
         (0..self.colours.albedos.len()).find_map(|channel| {
             let square = self.only(channel, 2);
             let mut albedos =
                 walkers.iter().map(|&(_, scatter)| self.albedo_of_power(&square, scatter));
-            albedos.find_map(|albedo| self.body.beyond(albedo)).map(|why| (channel, why))
+            albedos.find_map(|albedo| self.body.divergence(albedo)).map(|why| (channel, why))
         })
     }
 

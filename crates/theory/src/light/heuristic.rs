@@ -4,13 +4,8 @@
 //! w_i = p_i^β/Σ p_j^β,  β = 1 (balance) or 2 (power)
 //! ```
 //!
-//! | setting | meaning | default |
-//! |---|---|---|
-//! | `heuristic` | `"balance"` or `"power"` | `"balance"` |
-//!
 //! Source: E. Veach, L. Guibas, *Optimally Combining Sampling Techniques for Monte Carlo Rendering*, SIGGRAPH 1995.
 
-use media::catalogue::Settings;
 use numeric::Lane;
 
 /// The power of densities in a weight.
@@ -23,12 +18,6 @@ pub enum Heuristic {
 }
 
 impl Heuristic {
-    /// Reads `heuristic`.
-    pub fn read(settings: &Settings) -> Option<Self> {
-        let word = settings.word_or("heuristic", &["balance", "power"], "balance")?;
-        Some(if word == "power" { Self::Power } else { Self::Balance })
-    }
-
     /// A density to the power of β.
     #[inline(always)]
     pub fn raised<L: Lane>(self, density: L) -> L {

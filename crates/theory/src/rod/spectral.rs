@@ -16,13 +16,12 @@ use std::f64::consts::TAU;
 
 use num_complex::Complex64;
 
-use crate::colours::scatterers::{Body, Orders};
+use crate::colours::scatterers::{Body, Divergence, Orders};
 use crate::problems::rod::channels;
 use crate::problems::{Problem, Rod, SpectralRod};
 use crate::{CountLaw, Mesh, ParticleRule, colours, rod};
 use media::Piecewise;
 use numeric::Known;
-use numeric::digits::rounded;
 
 /// Relative rounding error of a sum over orders of scattering.
 const ROUNDING: f64 = 1e-13;
@@ -73,13 +72,12 @@ impl Body for Rods<'_> {
         }))
     }
 
-    fn beyond(&self, albedo: f64) -> Option<String> {
+    fn divergence(&self, albedo: f64) -> Option<Divergence> {
         let critical = critical(albedo, self.rod.forward);
         if self.depth.value >= critical {
-            return Some(format!("is infinite from optical length {} on", rounded(critical)));
+            return Some(Divergence::BeyondLength { critical });
         }
-        let is_above = self.leaving(albedo).is_none();
-        is_above.then(|| "is infinite for a double: it is above 1.8e308".into())
+        self.leaving(albedo).is_none().then_some(Divergence::Overflow)
     }
 
     fn orders(&self) -> Option<Orders> {

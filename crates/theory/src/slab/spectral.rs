@@ -7,7 +7,7 @@
 
 use super::layer::Slice;
 use super::{Pieces, Resolution, Walk};
-use crate::colours::scatterers::{Body, Orders};
+use crate::colours::scatterers::{Body, Divergence, Orders};
 use crate::memo::Memo;
 use crate::problems::SpectralSlab;
 use crate::problems::slab::{Incidence, Light};
@@ -16,7 +16,6 @@ use media::Piecewise;
 use media::phase::Phase;
 use media::phase::isotropic::Isotropic;
 use numeric::Known;
-use numeric::digits::rounded;
 
 /// Relative error of orders of scattering beyond that which their sum shows.
 const OF_ORDERS: f64 = 2e-12;
@@ -83,19 +82,6 @@ fn critical(incidence: &Incidence, depth: f64) -> f64 {
     high
 }
 
-/// Reason why a moment of an albedo is not finite, or not known to be: a predicate in words.
-fn reason(albedo: f64, critical: f64, is_infinite: bool) -> String {
-    let [at, here] = [critical, albedo].map(rounded);
-    if is_infinite {
-        format!("is infinite from the albedo {at} on, and it asks for {here}")
-    } else {
-        format!(
-            "asks for the albedo {here}, which is too near to {at}, from about where on it is infinite, to tell on which \
-             side it is"
-        )
-    }
-}
-
 static CRITICAL: Memo<(String, u64), f64> = Memo::new(256);
 
 impl Body for Slabs<'_> {
@@ -111,7 +97,7 @@ impl Body for Slabs<'_> {
         coarse(&self.slab.incidence, self.depth().value, albedo)
     }
 
-    fn beyond(&self, albedo: f64) -> Option<String> {
+    fn divergence(&self, albedo: f64) -> Option<Divergence> {
         let (incidence, depth) = (&self.slab.incidence, self.depth().value);
         if albedo <= 1.0 {
             return None;
@@ -125,7 +111,11 @@ impl Body for Slabs<'_> {
         // With its peak cut off, light along the slab may grow that the whole phase function turns away.
         let is_cut = Resolution::COARSE.cuts(&incidence.phase);
         let is_infinite = !is_cut && !is_finite(incidence, depth * (1.0 - NEAR), albedo);
-        Some(reason(albedo, critical, is_infinite))
+        Some(if is_infinite {
+            Divergence::BeyondAlbedo { critical, albedo }
+        } else {
+            Divergence::NearAlbedo { critical, albedo }
+        })
     }
 
     fn orders(&self) -> Option<Orders> {
@@ -176,18 +166,15 @@ mod tests {
             let (mesh, sampling) = (Mesh::new(medium), Piecewise::constant(1.0, span));
             let slabs = Slabs::new(&problem, (&mesh, &sampling), false);
             let at = critical(&incidence, 1.7);
-            assert_eq!(slabs.beyond(0.99 * at), None);
+            assert_eq!(slabs.divergence(0.99 * at), None);
             for share in [1.0 - 1e-4, 1.0 - 1e-6, 1.0 + 1e-6, 1.0 + 1e-4] {
-                let near = slabs.beyond(share * at).expect("near");
-                assert!(near.starts_with("asks for the albedo"), "{share}: {near}");
-                assert!(near.contains("too near to"), "{share}: {near}");
+                let albedo = share * at;
+                let near = Divergence::NearAlbedo { critical: at, albedo };
+                assert_eq!(slabs.divergence(albedo), Some(near), "{share}");
             }
-            let here = rounded(1.01 * at);
-            let beyond = slabs.beyond(1.01 * at).expect("beyond");
-            assert_eq!(
-                beyond,
-                format!("is infinite from the albedo {} on, and it asks for {here}", rounded(at))
-            );
+            let albedo = 1.01 * at;
+            let beyond = Divergence::BeyondAlbedo { critical: at, albedo };
+            assert_eq!(slabs.divergence(albedo), Some(beyond));
         }
     }
 }
