@@ -3,29 +3,40 @@
 use std::path::Path;
 
 use crate::common::try_body;
+use fearless_simd::Level;
 use trueflight::geometry::{Aabb, Point};
 use trueflight::media::{Body, CATALOGUE, Medium};
 use trueflight::numeric::quadrature::GaussLegendre;
 use trueflight::numeric::{Span, sum::Sum};
 
 /// 1-D forms, each on the span that follows.
-const LINES: [(&str, &str); 9] = [
+const LINES: [(&str, &str); 17] = [
     ("constant = { extinction = 0.5 }", "[0, 4]"),
+    ("constant = { extinction = 0 }", "[0, 1]"),
     ("piecewise-constant = { breaks = [0, 1, 2.5, 4], values = [0.2, 1.5, 0] }", "[-1, 5]"),
     ("piecewise-linear = { knots = [0, 1, 2.5, 4], values = [0.2, 1.5, 0, 0.9] }", "[0.3, 3.7]"),
     ("exponential = { extinction = 2, rate = 0.35 }", "[-2, 9]"),
     ("exponential = { extinction = 1e-3, rate = -400 }", "[0, 0.03]"),
     ("exponential = { extinction = 3e4, rate = 1e4 }", "[0, 10]"),
+    ("exponential = { extinction = 0.5, rate = 0 }", "[1, 5]"),
+    ("exponential = { extinction = 0.5, rate = 1e-300 }", "[1, 5]"),
+    ("exponential = { extinction = 0.5, rate = -1e-18 }", "[1, 5]"),
+    ("exponential = { extinction = 1.2, rate = 0.5, base = 0.2 }", "[0, 3]"),
+    // e^{−727} has nine digits.
+    ("exponential = { extinction = 6.4e196, rate = -956 }", "[-0.76, -0.37]"),
+    // e^{−1000} is 0.
+    ("exponential = { extinction = 1, rate = -10 }", "[-100, 0.5]"),
     ("gaussian = { peak = 3, centre = 2, width = 0.6 }", "[0, 7]"),
     ("gaussian = { peak = 300, centre = 5, width = 1e-3 }", "[0, 9]"),
     (
         "sines = { base = 1, amplitudes = [0.5, -0.5], frequencies = [2, 31], phases = [0, 1] }",
         "[-3, 8]",
     ),
+    ("sines = { base = 2, amplitudes = [-1], frequencies = [0], phases = [1.57] }", "[0, 3]"),
 ];
 
 /// 3-D forms; those without bounds of their own fill a box, a ball or all of space.
-const VOLUMES: [&str; 22] = [
+const VOLUMES: [&str; 23] = [
     "constant = { extinction = 0.5, bounds.sphere = { centre = [2, 2, 2], radius = 2 } }",
     "piecewise-constant = { breaks = [0, 1, 3], values = [1, 0.2], axis = [1, 0, 1] }",
     "piecewise-linear = { knots = [0, 1, 3], values = [1, 0, 0.2], axis = [0, 1, 2] }",
@@ -37,6 +48,8 @@ const VOLUMES: [&str; 22] = [
      bounds.sphere = { centre = [2, 2, 2], radius = 2 } }",
     "radial = { centre = [2, 2, 2], radius = 1.9, coefficients = [2, -2] }",
     "radial = { centre = [1, 2, 2.5], radius = 2.7, coefficients = [0.1, 2, -3, 1.2] }",
+    // (1 − 2x)² touches 0 inside.
+    "radial = { centre = [2, 2, 2], radius = 1.5, coefficients = [1, -4, 4] }",
     "sines = { base = 0.8, amplitudes = [0.5, -0.3], vectors = [[1, 2, 3], [0, -9, 4]] }",
     "eq21 = {}",
     "noise = { extinction = 2, octaves = 1 }",
@@ -149,6 +162,42 @@ fn optical_depth_is_the_integral_of_lookups() {
         let (depth, integral) = (medium.optical_depth(medium.span()), quadrature(&medium));
         let off = (depth.value - integral).abs();
         assert!(off <= 1e-11 * depth.value + depth.error, "{text}: {depth:?} against {integral}");
+    }
+}
+
+/// The panels between breaks, with the nodes that a page states, integrate σ_t and its square.
+#[test]
+fn panels_integrate_the_field_and_its_square() {
+    for (text, body) in bodies() {
+        let medium = body.medium();
+        let (Some(nodes), support) = (medium.panel_nodes(), medium.support()) else { continue };
+        let ends = support.cut(medium.breaks());
+        let integrals = |nodes: usize| {
+            let rule = GaussLegendre::new(nodes);
+            Span::between(&ends).fold([0.0; 2], |sums, part| {
+                let (at, weights): (Vec<f64>, Vec<f64>) = rule.on(part).unzip();
+                let values = medium.extinctions(&at).into_iter().zip(weights);
+                values.fold(sums, |[one, two], (x, w)| [one + w * x, two + w * x * x])
+            })
+        };
+        // Along a diagonal the panels of a lattice are longest.
+        let most = if text.contains("direction = [1, 1, 1]") { 1e-12 } else { 2e-13 };
+        for (few, many) in integrals(nodes).into_iter().zip(integrals(24)) {
+            assert!((few - many).abs() <= most * many.max(1e-2), "{text}: {few} for {many}");
+        }
+    }
+}
+
+/// Formulas of the optical depth for lanes have the bits of the field along the ray.
+#[test]
+fn lanes_have_the_optical_depths_of_rays() {
+    for (text, body) in bodies() {
+        let Body::Volume { volume, ray, .. } = &body else { continue };
+        let (batches, span) = (volume.batches(Level::new(), false), body.medium().support());
+        let ([a, b, c], [x, y, z]) = (ray.origin.0, ray.direction.0);
+        if let Some(depth) = batches.depths(&[a, b, c, x, y, z, span.from, span.to]) {
+            assert_eq!(depth, body.medium().optical_depth(span).value, "{text}");
+        }
     }
 }
 

@@ -11,8 +11,8 @@
 //!
 //! Optical depth and free flight are closed forms.
 
+use super::Facts;
 use super::layered::{Heights, Layered, Stratified};
-use super::{Facts, Reader};
 use crate::catalogue::{Domain, Settings};
 use numeric::geometry::{Bounds, Point};
 use numeric::{Known, Lane, Span};
@@ -22,11 +22,6 @@ use numeric::{Known, Lane, Span};
 pub struct Constant {
     /// `σ_t ≥ 0`, 1/length.
     pub extinction: f64,
-}
-
-/// Reads the page.
-pub fn reader() -> Reader {
-    Reader::layered::<Constant>()
 }
 
 impl Constant {
@@ -69,20 +64,5 @@ impl Stratified for Constant {
 
     fn along(&self, _: &Heights, _: Span) -> Option<Self> {
         Some(self.clone())
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn flight_inverts_depth() {
-        let field = Constant { extinction: 0.5 };
-        assert_eq!(field.integral(Span::new(1.0, 5.0)).value, 2.0);
-        assert_eq!(field.inverse(Span::new(1.0, 5.0), 1.0), Some(3.0));
-        assert_eq!(field.inverse(Span::new(1.0, 5.0), 2.5), None);
-        let vacuum = Constant { extinction: 0.0 };
-        assert_eq!(vacuum.inverse(Span::new(0.0, 1.0), 1e-9), None);
     }
 }

@@ -25,9 +25,9 @@
 //! Relative error of τ: 1e-15 and the rounding of the exponent, |rate·x|·2.2e-16. Exponents
 //! above 709 are infinite in double precision: bound a medium that grows.
 
+use super::Facts;
 use super::layered::{Heights, Stratified};
 use super::profile::free_flight_by_root;
-use super::{Facts, Reader};
 use crate::catalogue::{Domain, Settings};
 use numeric::{Known, Lane, Span};
 
@@ -47,11 +47,6 @@ pub struct Exponential {
     scale: f64,
     offset: f64,
     slope: f64,
-}
-
-/// Reads the page.
-pub fn reader() -> Reader {
-    Reader::layered::<Exponential>()
 }
 
 impl Exponential {
@@ -140,74 +135,5 @@ impl Stratified for Exponential {
 
     fn along(&self, &Heights { start, slope, .. }: &Heights, _: Span) -> Option<Self> {
         Some(Self { offset: self.exponent(start), slope: self.slope * slope, ..*self })
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::super::{Field, Layered};
-    use super::*;
-    use numeric::geometry::{Bounds, Point, Ray};
-
-    #[test]
-    fn depth_of_an_oblique_ray() {
-        let axis = Point([0.0, 0.0, 1.0]);
-        let field = Layered::new(Exponential::new(2.0, 0.35), axis, Bounds::Everywhere);
-        let ray = Ray::new(Point([1.0, -2.0, 0.5]), Point([1.0, 2.0, 2.0]), 7.0).expect("a ray");
-        let depth = field.along(&ray, ray.span()).optical_depth(ray.span());
-        // 30-digit arithmetic.
-        assert!((depth.value - 5.790_256_282_697_923).abs() <= depth.error);
-        assert!(depth.error < 2e-14);
-    }
-
-    #[test]
-    fn a_vanishing_rate_is_homogeneous() {
-        for slope in [0.0, 1e-300, -1e-300, 1e-18] {
-            let field = Exponential { base: 0.0, scale: 0.5, offset: 0.0, slope };
-            assert_eq!(field.integral(Span::new(1.0, 5.0)).value, 2.0);
-            assert_eq!(field.inverse(Span::new(1.0, 5.0), 1.0), Some(3.0));
-        }
-    }
-
-    #[test]
-    fn a_thin_atmosphere_is_left() {
-        // The whole half-line beyond 0 has the optical depth 1/1.
-        let field = Exponential { base: 0.0, scale: 1.0, offset: 0.0, slope: -1.0 };
-        assert_eq!(field.inverse(Span::new(0.0, 1e9), 1.0), None);
-        let s = field.inverse(Span::new(0.0, 1e9), 0.5).expect("inside");
-        assert!((s - std::f64::consts::LN_2).abs() < 1e-15);
-    }
-
-    /// e^{−727} has nine digits.
-    #[test]
-    fn a_large_scale_shows_no_underflow() {
-        let (slope, scale) = (956.324_469_521_829_3, 6.397_761_024_764_652e196);
-        let field = Exponential { base: 0.0, scale, offset: 0.0, slope };
-        let span = Span::new(-0.759_942_721_560_702_7, -0.371_056_459_061_988_2);
-        let depth = 3.315_785_944_374_523_7e37;
-        let s = field.inverse(span, depth).expect("inside");
-        let back = field.integral(Span::new(span.from, s)).value;
-        assert!((back / depth - 1.0).abs() < 1e-11, "{back:e}");
-    }
-
-    #[test]
-    fn a_haze_adds_to_depth_and_flight() {
-        let field = Exponential { base: 0.2, scale: 1.2, offset: 0.0, slope: -0.5 };
-        let span = Span::new(0.0, 3.0);
-        // 0.6 + 2.4(1 − e^{−1.5})
-        assert!((field.integral(span).value - 2.464_487_615_643_768_5).abs() < 1e-14);
-        let s = field.inverse(span, 1.7).expect("inside");
-        assert!((field.integral(Span::new(0.0, s)).value - 1.7).abs() < 1e-13);
-        assert_eq!(field.inverse(span, 2.5), None);
-        assert!((field.value(2.0) - (0.2 + 1.2 * (-1.0f64).exp())).abs() < 1e-15);
-    }
-
-    #[test]
-    fn growth_out_of_nothing_is_inverted() {
-        let field = Exponential { base: 0.0, scale: 1.0, offset: -1000.0, slope: 10.0 };
-        let span = Span::new(0.0, 100.5);
-        let s = field.inverse(span, 2.0).expect("inside");
-        let back = field.integral(Span::new(0.0, s));
-        assert!((back.value - 2.0).abs() <= 1e-12);
     }
 }

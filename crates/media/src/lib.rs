@@ -1,8 +1,8 @@
 //! Extinction fields, one page each: along a ray, and as volumes that a ray is clipped to.
 //!
 //! Floor 1. A field of one coordinate implements [`Stratified`], which makes a medium along a line and plane-parallel
-//! layers of it. Other fields implement [`Extinction`] and [`OpticalDepth`] along a ray, and [`Field`] in space. A
-//! page's `reader` reads it from case files. The role of a field (medium, control variate) is its place in a struct;
+//! layers of it. Other fields implement [`Extinction`] and [`OpticalDepth`] along a ray, and [`Field`] in space, and
+//! are read from case files by their `reader`. The role of a field (medium, control variate) is its place in a struct;
 //! the sampling extinction and its flights are in [`sampling`].
 
 pub mod axes;
@@ -59,22 +59,29 @@ pub type Profile = dyn OpticalDepth;
 /// A field in space, with its type erased.
 pub type Volume = dyn InSpace;
 
-/// Lists the pages by their modules.
+/// Lists the pages by their modules. A page of one coordinate gives its type, which implements [`Stratified`]; any
+/// other page has a function `reader`.
 macro_rules! media {
-    ($($module:ident,)*) => {
+    ($($module:ident $(:: $Layered:ident)?,)*) => {
         /// Every page, in the order of registration.
         pub const CATALOGUE: PageList =
             PageList { name: "media", pages: &[$($crate::page!($module)),*] };
 
-        static READERS: LazyLock<Vec<Reader>> = LazyLock::new(|| vec![$($module::reader()),*]);
+        static READERS: LazyLock<Vec<Reader>> = LazyLock::new(|| vec![$(media!(reader $module $($Layered)?)),*]);
+    };
+    (reader $module:ident $Layered:ident) => {
+        Reader::layered::<$module::$Layered>()
+    };
+    (reader $module:ident) => {
+        $module::reader()
     };
 }
 
 media! {
-    constant,
-    piecewise_constant,
-    piecewise_linear,
-    exponential,
+    constant::Constant,
+    piecewise_constant::PiecewiseConstant,
+    piecewise_linear::PiecewiseLinear,
+    exponential::Exponential,
     gaussian,
     radial,
     sines,

@@ -16,10 +16,7 @@
 //!
 //! Optical depth and free flight are closed forms.
 
-use super::Reader;
 use super::piecewise_linear::Pieces;
 
-/// Reads the page: one value between every two breaks.
-pub fn reader() -> Reader {
-    Reader::layered::<Pieces<true>>()
-}
+/// A constant between every two breaks.
+pub type PiecewiseConstant = Pieces<true>;

@@ -17,7 +17,7 @@
 //! Optical depth and free flight are closed forms.
 
 use super::layered::{Heights, Stratified};
-use super::{Extinction, Facts, OpticalDepth, Piecewise, Reader, Smoothness};
+use super::{Extinction, Facts, OpticalDepth, Piecewise, Smoothness};
 use crate::catalogue::{Domain, Settings};
 use numeric::{Known, Lane, Span};
 
@@ -25,10 +25,8 @@ use numeric::{Known, Lane, Span};
 #[derive(Clone)]
 pub struct Pieces<const STEPS: bool>(pub Piecewise);
 
-/// Reads the page: one value at every knot.
-pub fn reader() -> Reader {
-    Reader::layered::<Pieces<false>>()
-}
+/// Straight lines between the knots.
+pub type PiecewiseLinear = Pieces<false>;
 
 /// Reads `values` between every two `breaks`, or at every one of `knots`.
 pub fn read_pieces(settings: &Settings, is_steps: bool) -> Option<Piecewise> {
@@ -109,35 +107,5 @@ impl<const STEPS: bool> Stratified for Pieces<STEPS> {
             (1.5 * a - 0.5 * b, 1.5 * b - 0.5 * a)
         });
         Some(Self(Piecewise::joined(&crossings, ends)))
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::super::{Field, Layered};
-    use super::*;
-    use numeric::geometry::{Bounds, Point, Ray};
-
-    /// The optical depth along a ray through layers across the z axis.
-    fn seen(pieces: Piecewise, [origin, direction]: [[f64; 3]; 2], length: f64) -> f64 {
-        let layers =
-            Layered::new(Pieces::<false>(pieces), Point([0.0, 0.0, 1.0]), Bounds::Everywhere);
-        let ray = Ray::new(Point(origin), Point(direction), length).expect("a direction");
-        layers.along(&ray, ray.span()).optical_depth(ray.span()).value
-    }
-
-    #[test]
-    fn an_oblique_ray_sees_the_layers_stretched() {
-        let pieces = Piecewise::lines(&[0.0, 1.0, 2.5, 4.0], &[0.2, 1.5, 0.4, 0.9]);
-        let depth = pieces.optical_depth(Span::new(0.3, 3.7)).value;
-        let seen = seen(pieces, [[5.0, 1.0, 3.7], [0.6, 0.0, -0.8]], 3.4 / 0.8);
-        assert!((seen - depth / 0.8).abs() < 1e-14);
-    }
-
-    #[test]
-    fn a_level_ray_stays_in_its_layer() {
-        let pieces = Piecewise::steps(&[0.0, 1.0, 2.0], &[0.5, 3.0]);
-        let seen = seen(pieces, [[0.0, 0.0, 0.5], [1.0, 0.0, 0.0]], 2.0);
-        assert!((seen - 1.0).abs() < 1e-15);
     }
 }

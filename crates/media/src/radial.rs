@@ -35,14 +35,33 @@ pub struct Radial {
     coefficients: [f64; MAX_COEFFICIENTS],
 }
 
-/// A ball along a ray.
-pub struct Chord {
-    foot: f64,
+/// A ball along a ray, or along rays side by side.
+pub struct Chord<L = f64> {
+    foot: L,
     /// 1/radius.
     scale: f64,
     /// D²/radius².
-    offset: f64,
+    offset: L,
     coefficients: [f64; MAX_COEFFICIENTS],
+}
+
+impl<L: Lane> Chord<L> {
+    /// σ_t at distances.
+    #[inline(always)]
+    fn value(&self, t: L) -> L {
+        let v = (t - self.foot) * self.scale;
+        polynomial(self.coefficients, v.times_plus(v, self.offset))
+    }
+
+    /// `∫ σ_t` about the middle of an interval.
+    #[inline(always)]
+    fn integral(&self, middle: L, half: L) -> L {
+        let mut sum = half.each(0.0);
+        for (node, weight) in GAUSS {
+            sum = sum + self.value(middle + half * node) * weight;
+        }
+        half * sum
+    }
 }
 
 #[inline(always)]
@@ -63,8 +82,8 @@ const GAUSS: [(f64, f64); 4] = [
 impl Extinction for Chord {
     #[inline(always)]
     fn extinction<L: Lane>(&self, t: L) -> L {
-        let v = (t - self.foot) * self.scale;
-        polynomial(self.coefficients, v.times_plus(v, v.each(self.offset)))
+        let &Self { foot, scale, offset, coefficients } = self;
+        Chord { foot: t.each(foot), scale, offset: t.each(offset), coefficients }.value(t)
     }
 
     fn facts(&self) -> Facts<'_> {
@@ -75,13 +94,12 @@ impl Extinction for Chord {
 
 impl OpticalDepth for Chord {
     fn optical_depth(&self, span: Span) -> Known {
-        let (middle, half) = (span.middle(), 0.5 * span.length());
-        let sum: f64 = GAUSS.iter().map(|&(x, w)| w * self.extinction(middle + half * x)).sum();
+        let depth = self.integral(span.middle(), 0.5 * span.length());
         // The error of an argument changes σ_t by its slope, |dσ/dx| |dx| with x ≤ 1.
         let [a, b, c, d] = self.coefficients.map(f64::abs);
         let moved = (span.from.abs() + span.to.abs() + 2.0 * self.foot.abs()) * self.scale;
         let off = 8.0 * (a + b + c + d) + (4.0 + 2.0 * moved) * (b + 2.0 * c + 3.0 * d);
-        Known::new(half * sum, f64::EPSILON * span.length() * off)
+        Known::new(depth, f64::EPSILON * span.length() * off)
     }
 }
 
@@ -89,6 +107,18 @@ impl Radial {
     /// `Σ cₖ (r/radius)^{2k}`, which is nowhere negative in the ball.
     pub fn new(centre: Point, radius: f64, coefficients: [f64; MAX_COEFFICIENTS]) -> Self {
         Self { centre, radius, coefficients }
+    }
+
+    /// The ball along rays with these origins and directions.
+    #[inline(always)]
+    fn chord<L: Lane>(&self, [[a, b, c], [x, y, z]]: [[L; 3]; 2]) -> Chord<L> {
+        let Point([u, v, w]) = self.centre;
+        let (a, b, c) = (a.each(u) - a, b.each(v) - b, c.each(w) - c);
+        let foot = a * x + b * y + c * z;
+        let scale = 1.0 / self.radius;
+        let (a, b, c) = ((a - x * foot) * scale, (b - y * foot) * scale, (c - z * foot) * scale);
+        let offset = a * a + b * b + c * c;
+        Chord { foot, scale, offset, coefficients: self.coefficients }
     }
 
     /// Candidates for the extremes of σ_t in x: the ends of a range and the roots of the slope inside.
@@ -159,34 +189,13 @@ impl Field for Radial {
     }
 
     fn along(&self, ray: &Ray, _: Span) -> Arc<Profile> {
-        let (foot, offset) = ray.nearest_to(self.centre);
-        let scale = 1.0 / self.radius;
-        let offset = offset * scale;
-        let (offset, coefficients) = (offset.dot(offset), self.coefficients);
-        Arc::new(Chord { foot, scale, offset, coefficients })
+        Arc::new(self.chord([ray.origin.0, ray.direction.0]))
     }
 
     #[inline(always)]
-    fn depths_along<L: Lane>(
-        &self,
-        [[a, b, c], [x, y, z]]: [[L; 3]; 2],
-        [from, to]: [L; 2],
-    ) -> Option<L> {
-        let Point([u, v, w]) = self.centre;
-        let (a, b, c) = (a.each(u) - a, b.each(v) - b, c.each(w) - c);
-        let foot = a * x + b * y + c * z;
-        let scale = 1.0 / self.radius;
-        let (a, b, c) = ((a - x * foot) * scale, (b - y * foot) * scale, (c - z * foot) * scale);
-        let offset = a * a + b * b + c * c;
+    fn depths_along<L: Lane>(&self, rays: [[L; 3]; 2], [from, to]: [L; 2]) -> Option<L> {
         let length = (to - from).or_more(to.each(0.0));
-        let (middle, half) = ((from + to) * 0.5, length * 0.5);
-        let mut sum = foot.each(0.0);
-        for (node, weight) in GAUSS {
-            let v = (middle + half * node - foot) * scale;
-            let value = polynomial(self.coefficients, v.times_plus(v, offset));
-            sum = sum + value * weight;
-        }
-        Some(half * sum)
+        Some(self.chord(rays).integral((from + to) * 0.5, length * 0.5))
     }
 
     fn facts(&self) -> Facts<'_> {
@@ -197,8 +206,6 @@ impl Field for Radial {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::catalogue::Value;
-    use crate::catalogue::fixture::{list, read};
 
     fn ball(coefficients: [f64; MAX_COEFFICIENTS]) -> Radial {
         Radial { centre: Point([1.0, 0.0, 2.0]), radius: 1.5, coefficients }
@@ -220,56 +227,5 @@ mod tests {
         assert!((chord.value - 8.0 * half.powi(3) / 6.75).abs() < 1e-14);
         assert!(chord.error < 1e-13);
         assert!((field.value([1.0, 0.0, 2.75]) - 1.5).abs() < 1e-15);
-    }
-
-    #[test]
-    fn lanes_have_the_depths_of_profiles() {
-        let field = ball([0.3, 2.0, -1.5, -0.6]);
-        for n in 0..100 {
-            let turn = f64::from(n) * 0.618;
-            let origin = Point([1.0 + 0.9 * turn.cos(), 0.5 * turn.sin(), 2.2]);
-            let towards = Point([turn.sin(), 0.4, (3.0 * turn).cos()]);
-            let ray = Ray::new(origin, towards, 9.0).expect("a direction");
-            let inside = field.bounds().clip(&ray);
-            let expected = field.along(&ray, inside).optical_depth(inside).value;
-            let found = field.depths_along([origin.0, ray.direction.0], [inside.from, inside.to]);
-            assert_eq!(found, Some(expected));
-        }
-    }
-
-    #[test]
-    fn the_majorant_of_a_box_sees_an_extreme_inside() {
-        // x(1 − x) is highest at x = 1/2, r = 1.0607; the box reaches from r = 0.5 to beyond 1.4.
-        let field = ball([0.0, 1.0, -1.0, 0.0]);
-        let within = Aabb { low: Point([1.0, 0.5, 2.0]), high: Point([1.5, 1.4, 2.5]) };
-        assert!((field.majorant(&within) - 0.25).abs() < 1e-12);
-        let core = Aabb { low: Point([0.9, -0.1, 1.9]), high: Point([1.1, 0.1, 2.1]) };
-        let x = 3.0 * 0.01 / 2.25;
-        assert!((field.majorant(&core) - x * (1.0 - x)).abs() < 1e-12);
-    }
-
-    #[test]
-    fn wrong_settings_are_refused() {
-        let read = |radius: f64, coefficients: &[f64]| {
-            let settings = [
-                ("centre", list(&[0.0; 3])),
-                ("radius", Value::Number(radius)),
-                ("coefficients", list(coefficients)),
-            ];
-            read(settings, |settings| read_volume(settings).is_some())
-        };
-        let fine = read(1.5, &[2.0, -2.0]);
-        assert_eq!(fine, (true, vec![]));
-        // (1 − 2x)² touches zero inside.
-        assert!(read(1.0, &[1.0, -4.0, 4.0]).0);
-        for (radius, coefficients, words) in [
-            (0.0, &[1.0][..], "`radius` is 0"),
-            (1.0, &[1.0, -2.0], "σ_t is -1.0000 at r = 1.0000"),
-            (2.0, &[1.0, -5.0, 5.0], "σ_t is -0.2500 at r = 1.4142"),
-            (1.0, &[1.0; 5], "5 coefficients"),
-        ] {
-            let (read, faults) = read(radius, coefficients);
-            assert!(!read && faults.iter().any(|fault| fault.contains(words)), "{faults:?}");
-        }
     }
 }

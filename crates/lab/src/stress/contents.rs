@@ -19,7 +19,7 @@ use media::grid::Grid;
 use media::noise::Noise;
 use media::piecewise_linear::Pieces;
 use media::radial::Radial;
-use media::sines::Sines;
+use media::sines::{Sines, Wave, Waves};
 use media::voxels::{Interpolation, Placement};
 use numeric::geometry::{Aabb, Bounds, Point};
 use numeric::sum::Sum;
@@ -234,8 +234,9 @@ impl Filling {
                 Arc::new(Layered::new(Exponential::new(size, rate / unit), axis, bounds))
             }
             Self::Sines(share, phase, k) => {
-                let wave = (share * size, Point(k) * (1.0 / unit), phase);
-                Arc::new(Sines::new(size, vec![wave], bounds))
+                let (amplitude, frequency) = (share * size, Point(k) * (1.0 / unit));
+                let waves = Waves::new(size, vec![Wave { amplitude, frequency, phase }]);
+                Arc::new(Sines::new(waves, bounds))
             }
             Self::Gaussian(width, away) => {
                 let centre = centre + Point(away) * unit;
