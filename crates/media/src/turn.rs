@@ -3,11 +3,12 @@
 use super::grid_file::Turned;
 use super::voxels::Interpolation;
 use numeric::Lane;
+use numeric::geometry::Point;
 
 /// Map from the world to a turned or sheared lattice: u = rows · (p − origin) + shift.
 pub(super) struct Turn {
     origin: [f64; 3],
-    rows: [[f64; 3]; 3],
+    rows: [Point; 3],
     /// The lowest and the highest coordinate of the lattice along each axis: beyond them the field is 0.
     ends: [[f64; 2]; 3],
 }
@@ -16,10 +17,9 @@ impl Turn {
     /// The map to a lattice with a number of samples.
     pub(super) fn new(turned: &Turned, size: [usize; 3], interpolation: Interpolation) -> Self {
         let Turned { origin, steps } = *turned;
-        let column = |j: usize| [0, 1, 2].map(|i| steps[i][j]);
-        let [a, b, c] = [column(0), column(1), column(2)];
-        let volume = dot(a, cross(b, c));
-        let rows = [cross(b, c), cross(c, a), cross(a, b)].map(|row| row.map(|x| x / volume));
+        let [a, b, c] = [0, 1, 2].map(|j| Point([0, 1, 2].map(|i| steps[i][j])));
+        let volume = a.dot(b.cross(c));
+        let rows = [b.cross(c), c.cross(a), a.cross(b)].map(|row| Point(row.0.map(|x| x / volume)));
         // The nearest samples are those of whole voxels, without the layer of background about them.
         let ends = size.map(|n| match interpolation {
             Interpolation::Trilinear => [0.0, (n - 1) as f64],
@@ -32,24 +32,21 @@ impl Turn {
     #[inline(always)]
     pub(super) fn lattice<L: Lane>(&self, [x, y, z]: [L; 3], shift: f64) -> [L; 3] {
         let ([a, b, c], [p, q, r]) = (self.origin, self.rows);
-        let (x, y, z) = (x - a, y - b, z - c);
-        [
-            x * p[0] + y * p[1] + z * p[2] + shift,
-            x * q[0] + y * q[1] + z * q[2] + shift,
-            x * r[0] + y * r[1] + z * r[2] + shift,
-        ]
+        let from_origin = [x - a, y - b, z - c];
+        [p.along(from_origin) + shift, q.along(from_origin) + shift, r.along(from_origin) + shift]
     }
 
     /// A direction in lattice coordinates.
     pub(super) fn slope(&self, direction: [f64; 3]) -> [f64; 3] {
-        self.rows.map(|row| dot(row, direction))
+        self.rows.map(|row| row.dot(Point(direction)))
     }
 
     /// Sizes for a beginning and a direction: 2 ε of each bounds the rounding of its lattice coordinates. Up to five
     /// operations round the three terms, by ε/2 each.
     pub(super) fn terms(&self, [point, direction]: [[f64; 3]; 2], shift: f64) -> [[f64; 3]; 2] {
         let far = [0, 1, 2].map(|j| (point[j] - self.origin[j]).abs());
-        let size = |terms: [f64; 3]| self.rows.map(|row| 1.25 * dot(row.map(f64::abs), terms));
+        let sizes = self.rows.map(|row| Point(row.0.map(f64::abs)));
+        let size = |terms: [f64; 3]| sizes.map(|row| 1.25 * row.dot(Point(terms)));
         [size(far).map(|x| x + shift), size(direction.map(f64::abs))]
     }
 
@@ -69,15 +66,4 @@ impl Turn {
     pub(super) fn holds(&self, u: [f64; 3]) -> bool {
         (0..3).all(|j| self.ends[j][0] <= u[j] && u[j] <= self.ends[j][1])
     }
-}
-
-fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
-    (0..3).map(|j| a[j] * b[j]).sum()
-}
-
-fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
-    [0, 1, 2].map(|j| {
-        let (k, l) = ((j + 1) % 3, (j + 2) % 3);
-        a[k] * b[l] - a[l] * b[k]
-    })
 }

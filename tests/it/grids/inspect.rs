@@ -143,7 +143,7 @@ fn what_cannot_be_read_is_one_error_each_and_exit_code_2() {
         ("a.vdb", "does not begin as OpenVDB"),
         ("a.nvdb", "it ends within"),
         ("a.pbrt", "makes no medium"),
-        ("a.exr", "header is cut"),
+        ("a.exr", "it ends within the"),
         ("a.pfm", "begins with `P6`"),
         ("a.csv", "no draws"),
         ("a.f64", "byte(s) are left"),

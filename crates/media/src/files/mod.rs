@@ -3,6 +3,7 @@
 //! A file is written under a temporary name beside its place and then renamed. A killed run therefore leaves no
 //! incomplete file and loses nothing that was written before.
 
+mod bytes;
 pub mod exr;
 pub mod npy;
 pub mod number;

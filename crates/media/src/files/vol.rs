@@ -11,6 +11,7 @@
 //! Sources: W. Jakob et al., *Mitsuba 3 renderer* (2022), plugin `gridvolume`; W. Jakob, *Mitsuba documentation*,
 //! version 0.6 (2014), plugin `gridvolume`.
 
+use super::bytes::Bytes;
 use super::number::Number;
 use super::{Fault, damaged, wrong};
 
@@ -68,41 +69,36 @@ impl<'a> Vol<'a> {
     ///
     /// The header is not one of those above, or the length of the file does not fit its samples.
     pub fn read(bytes: &'a [u8]) -> Result<Self, Fault> {
-        let Some(header) = bytes.get(..HEADER) else {
+        if bytes.len() < HEADER {
             return wrong("the file ends within its header of 48 bytes", "write the file anew");
-        };
-        if !header.starts_with(b"VOL") {
+        }
+        let mut header = Bytes::new(bytes);
+        let [magic @ .., version] = header.array::<4>()?;
+        if magic != *b"VOL" {
             return wrong("the file does not begin with `VOL`", "write it by Mitsuba's VolumeGrid");
         }
-        if header[3] != 3 {
-            let message = format!("the file has the version {}", header[3]);
+        if version != 3 {
+            let message = format!("the file has the version {version}");
             return wrong(message, "version 3 is read: write it by Mitsuba's VolumeGrid");
         }
-        let word = |n: usize| std::array::from_fn::<u8, 4, _>(|i| header[4 + 4 * n + i]);
-        let integer = |n| i32::from_le_bytes(word(n));
-        let encoding = match integer(0) {
+        let [encoding, nx, ny, nz, channels] = header.integers()?;
+        let encoding = match encoding {
             1 => Encoding::Single,
             2 => Encoding::Half,
             3 => Encoding::Byte,
-            4 => {
-                let help = "encodings 1 to 3 are read: float32, float16 and uint8";
-                return wrong("the samples are directions (encoding 4)", help);
-            }
             other => {
-                let help = "encodings 1 to 3 are read: float32, float16 and uint8";
-                return wrong(format!("the samples have the encoding {other}"), help);
+                let directions = if other == 4 { ", of directions" } else { "" };
+                let message = format!("the samples have the encoding {other}{directions}");
+                return wrong(message, "encodings 1 to 3 are read: float32, float16 and uint8");
             }
         };
-        let size = [1, 2, 3].map(integer);
-        let channels = integer(4);
-        let [Ok(x), Ok(y), Ok(z), Ok(channels)] =
-            [size[0], size[1], size[2], channels].map(u64::try_from)
-        else {
+        let [Ok(x), Ok(y), Ok(z), Ok(channels)] = [nx, ny, nz, channels].map(u64::try_from) else {
+            let size = [nx, ny, nz];
             return damaged(format!("the file announces {size:?} samples of {channels} channels"));
         };
         let size = [x, y, z];
-        let corner = |n: usize| [0, 1, 2].map(|i| f64::from(f32::from_le_bytes(word(n + i))));
-        let samples = &bytes[HEADER..];
+        let corners = [header.floats()?, header.floats()?].map(|corner| corner.map(f64::from));
+        let samples = header.rest();
         let width = encoding.number().map_or(0, Number::width) as u64;
         let mut factors = size.into_iter().chain([channels]);
         let wanted = factors.try_fold(width, u64::checked_mul);
@@ -122,7 +118,7 @@ impl<'a> Vol<'a> {
                 "write the file anew, with nothing but the samples after the header",
             );
         }
-        Ok(Self { encoding, size, channels, corners: [corner(5), corner(8)], samples })
+        Ok(Self { encoding, size, channels, corners, samples })
     }
 
     /// The samples of a channel, x fastest.

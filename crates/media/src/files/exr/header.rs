@@ -8,6 +8,9 @@
 //!
 //! Source: *`OpenEXR` File Layout*, Academy Software Foundation.
 
+use super::super::bytes::Bytes;
+use super::super::{Fault, damaged};
+
 /// Compressions by their number.
 const COMPRESSIONS: [&str; 12] = [
     "none", "RLE", "ZIPS", "ZIP", "PIZ", "PXR24", "B44", "B44A", "DWAA", "DWAB", "HTJ2K256",
@@ -84,13 +87,16 @@ impl Part {
 ///
 /// What is wrong with the headers.
 pub fn parts(bytes: &[u8]) -> Result<Vec<Part>, String> {
-    let mut rest = bytes;
-    if number(&mut rest).ok() != Some(0x0131_2f76) {
-        return Err("it does not begin as OpenEXR files do".to_owned());
+    all(&mut Bytes::new(bytes)).map_err(|fault| fault.message)
+}
+
+fn all(bytes: &mut Bytes) -> Result<Vec<Part>, Fault> {
+    if bytes.number().ok() != Some(0x0131_2f76) {
+        return damaged("it does not begin as OpenEXR files do");
     }
-    let version = number(&mut rest)?;
+    let version = bytes.number()?;
     if version & 0xff != 2 {
-        return Err(format!("it has the version {}, not 2", version & 0xff));
+        return damaged(format!("it has the version {}, not 2", version & 0xff));
     }
     let (is_tiled, is_deep, has_parts) =
         (version & 0x200 != 0, version & 0x800 != 0, version & 0x1000 != 0);
@@ -100,59 +106,33 @@ pub fn parts(bytes: &[u8]) -> Result<Vec<Part>, String> {
         (true, false) => "deep scan lines",
         (true, true) => "deep tiles",
     };
-    let mut parts = vec![part(&mut rest, usual)?];
-    while has_parts && rest.first() != Some(&0) {
-        parts.push(part(&mut rest, usual)?);
+    let mut parts = vec![part(bytes, usual)?];
+    while has_parts && bytes.rest().first() != Some(&0) {
+        parts.push(part(bytes, usual)?);
     }
     Ok(parts)
 }
 
-const SHORT: &str = "its header is cut";
-
-fn take<'a>(rest: &mut &'a [u8], count: usize) -> Result<&'a [u8], String> {
-    let (taken, after) = rest.split_at_checked(count).ok_or(SHORT)?;
-    *rest = after;
-    Ok(taken)
-}
-
-fn number(rest: &mut &[u8]) -> Result<u32, String> {
-    let mut word = [0; 4];
-    word.copy_from_slice(take(rest, 4)?);
-    Ok(u32::from_le_bytes(word))
-}
-
-/// A text that ends with 0, of 255 bytes at most.
-fn text<'a>(rest: &mut &'a [u8]) -> Result<&'a [u8], String> {
-    let length = rest.iter().take(256).position(|&byte| byte == 0).ok_or(SHORT)?;
-    let text = take(rest, length)?;
-    take(rest, 1)?;
-    Ok(text)
-}
-
-fn window(mut value: &[u8]) -> Result<Window, String> {
-    let mut ends = [0; 4];
-    for end in &mut ends {
-        *end = number(&mut value)?.cast_signed();
-    }
-    let [left, top, right, bottom] = ends;
+fn window(value: &[u8]) -> Result<Window, Fault> {
+    let [left, top, right, bottom] = Bytes::new(value).integers()?;
     let window = Window { low: [left, top], high: [right, bottom] };
     if window.size().contains(&0) {
-        return Err(format!("its window {window} holds no pixel"));
+        return damaged(format!("its window {window} holds no pixel"));
     }
     Ok(window)
 }
 
-fn part(rest: &mut &[u8], usual: &'static str) -> Result<Part, String> {
+fn part(bytes: &mut Bytes, usual: &'static str) -> Result<Part, Fault> {
     let (mut name, mut kind, mut code) = (String::new(), usual, None);
     let (mut data, mut display, mut list) = (None, None, None);
     loop {
-        let attribute = text(rest)?;
+        let attribute = bytes.terminated()?;
         if attribute.is_empty() {
             break;
         }
-        text(rest)?;
-        let length = number(rest)? as usize;
-        let value = take(rest, length)?;
+        bytes.terminated()?;
+        let length = bytes.number()? as usize;
+        let value = bytes.take(length)?;
         match attribute {
             b"name" => name = String::from_utf8_lossy(value).into_owned(),
             b"type" => {
@@ -173,28 +153,27 @@ fn part(rest: &mut &[u8], usual: &'static str) -> Result<Part, String> {
     }
     let (Some(code), Some(data), Some(display), Some(channels)) = (code, data, display, list)
     else {
-        return Err("its header lacks channels, a compression or a window".to_owned());
+        return damaged("its header lacks channels, a compression or a window");
     };
     let known = COMPRESSIONS.get(usize::from(code));
     let compression = known.map_or_else(|| format!("number {code}"), |name| (*name).to_owned());
     Ok(Part { name, kind, compression, is_read: code < FIRST_UNREAD, data, display, channels })
 }
 
-fn channels(mut value: &[u8]) -> Result<Vec<Channel>, String> {
-    let mut channels = Vec::new();
+fn channels(value: &[u8]) -> Result<Vec<Channel>, Fault> {
+    let (mut bytes, mut channels) = (Bytes::new(value), Vec::new());
     loop {
-        let name = String::from_utf8_lossy(text(&mut value)?).into_owned();
+        let name = String::from_utf8_lossy(bytes.terminated()?).into_owned();
         if name.is_empty() {
             return Ok(channels);
         }
-        let kind = match number(&mut value)? {
+        let kind = match bytes.number()? {
             0 => "uint32",
             1 => "float16",
             2 => "float32",
-            other => return Err(format!("its channel {name} has the type {other}")),
+            other => return damaged(format!("its channel {name} has the type {other}")),
         };
-        number(&mut value)?;
-        let [x, y] = [number(&mut value)?, number(&mut value)?].map(u32::cast_signed);
+        let [_, x, y] = bytes.integers()?;
         channels.push(Channel { name, kind, sampling: [x, y] });
     }
 }

@@ -1,54 +1,18 @@
 //! The grids of a file, segment by segment.
 
 use super::super::{Fault, damaged, shown, wrong};
-use super::{GRID, array, nodes, number, part, word};
+use super::{Bytes, GRID, nodes};
 
 /// The major version, which changes with the layout.
 const MAJOR: u32 = 32;
 
 /// The types by their number.
-const TYPES: [&str; 27] = [
-    "unknown",
-    "Float",
-    "Double",
-    "Int16",
-    "Int32",
-    "Int64",
-    "Vec3f",
-    "Vec3d",
-    "Mask",
-    "Half",
-    "UInt32",
-    "Boolean",
-    "RGBA8",
-    "Fp4",
-    "Fp8",
-    "Fp16",
-    "FpN",
-    "Vec4f",
-    "Vec4d",
-    "Index",
-    "OnIndex",
-    "IndexMask",
-    "OnIndexMask",
-    "PointIndex",
-    "Vec3u8",
-    "Vec3u16",
-    "UInt8",
-];
+const TYPES: &str = "unknown|Float|Double|Int16|Int32|Int64|Vec3f|Vec3d|Mask|Half|UInt32|Boolean|RGBA8|Fp4|Fp8|Fp16|FpN|\
+    Vec4f|Vec4d|Index|OnIndex|IndexMask|OnIndexMask|PointIndex|Vec3u8|Vec3u16|UInt8";
 
 /// The classes by their number.
-const CLASSES: [&str; 9] = [
-    "",
-    "level set",
-    "fog volume",
-    "staggered",
-    "point index",
-    "point data",
-    "topology",
-    "voxel volume",
-    "index",
-];
+const CLASSES: &str =
+    "|level set|fog volume|staggered|point index|point data|topology|voxel volume|index";
 
 /// Entry of a grid in a file.
 #[derive(Debug, Clone, PartialEq)]
@@ -89,9 +53,10 @@ fn version(number: u32) -> String {
     format!("{}.{}.{}", number >> 21, number >> 10 & 0x7ff, number & 0x3ff)
 }
 
-fn named(list: &[&str], number: u32) -> String {
-    let name = usize::try_from(number).ok().and_then(|number| list.get(number));
-    name.map_or_else(|| format!("number {number}"), |name| (*name).to_owned())
+/// The name of a number in a list.
+fn named(list: &str, number: u32) -> String {
+    let name = list.split('|').nth(number as usize);
+    name.map_or_else(|| format!("number {number}"), str::to_owned)
 }
 
 /// Lists the grids of a file.
@@ -126,85 +91,95 @@ pub fn list(file: &[u8]) -> Result<Vec<Listed>, Fault> {
     Ok(listed)
 }
 
-/// Lists a segment's grids; returns the place of the next segment.
-fn segment(file: &[u8], mut at: usize, listed: &mut Vec<Listed>) -> Result<usize, Fault> {
-    if !matches!(part(file, at, 8), Ok(b"NanoVDB0" | b"NanoVDB2")) {
-        let place = if at == 0 { String::new() } else { format!(" at byte {at}") };
-        return wrong(
-            format!("it does not begin as NanoVDB's files do{place}"),
-            "write it by NanoVDB, for instance by nanovdb_convert from an OpenVDB file",
-        );
-    }
-    let written = number(file, at + 8)?;
+/// Checks the version of a segment or a grid, and returns its name.
+fn supported(written: u32) -> Result<String, Fault> {
     if written >> 21 != MAJOR {
         return wrong(
             format!("it has the version {}", version(written)),
             format!("versions {MAJOR}.x are read: write it anew by nanovdb_convert"),
         );
     }
-    let count = u16::from_le_bytes(array(file, at + 12)?);
-    at += 16;
-    let mut lengths = Vec::new();
+    Ok(version(written))
+}
+
+/// A text before its first 0.
+fn text(bytes: &[u8]) -> String {
+    String::from_utf8_lossy(bytes.split(|&byte| byte == 0).next().unwrap_or_default()).into_owned()
+}
+
+/// Lists a segment's grids; returns the place of the next segment.
+fn segment(file: &[u8], at: usize, listed: &mut Vec<Listed>) -> Result<usize, Fault> {
+    let mut bytes = Bytes::at_byte(file, at);
+    if !matches!(bytes.take(8), Ok(b"NanoVDB0" | b"NanoVDB2")) {
+        let place = if at == 0 { String::new() } else { format!(" at byte {at}") };
+        return wrong(
+            format!("it does not begin as NanoVDB's files do{place}"),
+            "write it by NanoVDB, for instance by nanovdb_convert from an OpenVDB file",
+        );
+    }
+    supported(bytes.number()?)?;
+    let count = bytes.short()?;
+    bytes.short()?;
+    let (first, mut lengths) = (listed.len(), Vec::new());
     for _ in 0..count {
-        let meta = part(file, at, 176)?;
-        let length = number(meta, 136)? as usize;
-        let name = part(file, at + 176, length)?;
-        let name =
-            String::from_utf8_lossy(name.split(|&byte| byte == 0).next().unwrap_or_default());
-        let codec = match u16::from_le_bytes(array(meta, 168)?) {
+        let [size, length, _, active] = bytes.words()?;
+        let [number, class] = [bytes.number()?, bytes.number()?];
+        // Boxes, and the size of a voxel.
+        bytes.take(96)?;
+        let name = bytes.number()? as usize;
+        // Numbers of nodes and tiles.
+        bytes.take(28)?;
+        let codec = bytes.short()?;
+        bytes.short()?;
+        let written = bytes.number()?;
+        let name = text(bytes.take(name)?);
+        let codec = match codec {
             0 => "none",
             1 => "zip",
             2 => "Blosc",
             other => return damaged(format!("its grid {} has the codec {other}", shown(&name))),
         };
-        let (kind, class) = (number(meta, 32)?, number(meta, 36)?);
-        lengths.push(word(meta, 8)?);
+        lengths.push(length);
         listed.push(Listed {
-            name: name.into_owned(),
-            kind: named(&TYPES, kind),
-            class: named(&CLASSES, class),
-            active: word(meta, 24)?,
-            version: version(number(meta, 172)?),
+            name,
+            kind: named(TYPES, number),
+            class: named(CLASSES, class),
+            active,
+            version: version(written),
             codec,
-            number: kind,
-            size: word(meta, 0)?,
+            number,
+            size,
             place: [0; 2],
         });
-        at += 176 + length;
     }
-    let first = listed.len() - usize::from(count);
     for (grid, length) in listed[first..].iter_mut().zip(lengths) {
-        let end = usize::try_from(length).ok().and_then(|length| at.checked_add(length));
-        let Some(end) = end.filter(|&end| end <= file.len()) else {
+        let begin = bytes.at();
+        if bytes.take(usize::try_from(length).unwrap_or(usize::MAX)).is_err() {
             let (name, length) = (shown(&grid.name), file.len());
             return damaged(format!("it ends at byte {length}, within its grid {name}"));
-        };
-        grid.place = [at, end];
-        at = end;
+        }
+        grid.place = [begin, bytes.at()];
     }
-    Ok(at)
+    Ok(bytes.at())
 }
 
 /// A grid as it is in memory, without a header of the file.
 fn raw(file: &[u8]) -> Result<Listed, Fault> {
-    let (written, size) = (number(file, 16)?, word(file, 32)?);
-    if written >> 21 != MAJOR {
-        let message = format!("it has the version {}", version(written));
-        return wrong(message, format!("versions {MAJOR}.x are read"));
-    }
-    let name = part(file, 40, 256)?.split(|&byte| byte == 0).next().unwrap_or_default();
-    let (class, kind) = (number(file, 632)?, number(file, 636)?);
+    let at = |place| Bytes::at_byte(file, place);
+    let (version, size) = (supported(at(16).number()?)?, at(32).word()?);
+    let (name, mut types) = (text(at(40).take(256)?), at(632));
+    let (class, number) = (types.number()?, types.number()?);
     let Some(end) = usize::try_from(size).ok().filter(|&end| end <= file.len()) else {
         return damaged(format!("it ends at byte {}, within its grid of {size} bytes", file.len()));
     };
     Ok(Listed {
-        name: String::from_utf8_lossy(name).into_owned(),
-        kind: named(&TYPES, kind),
-        class: named(&CLASSES, class),
-        active: word(file, GRID + 56)?,
-        version: version(written),
+        name,
+        kind: named(TYPES, number),
+        class: named(CLASSES, class),
+        active: at(GRID + 56).word()?,
+        version,
         codec: "none",
-        number: kind,
+        number,
         size,
         place: [0, end],
     })

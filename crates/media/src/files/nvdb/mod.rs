@@ -23,35 +23,13 @@ mod listing;
 mod nodes;
 mod unpacking;
 
+use super::bytes::Bytes;
 use super::vdb::{Grid, Transform};
 use super::{Fault, chosen, damaged, shown, wrong};
 pub use listing::{Listed, list};
 
 /// Bytes before the tree.
 const GRID: usize = 672;
-
-/// The bytes from a position on.
-fn part(bytes: &[u8], from: usize, count: usize) -> Result<&[u8], Fault> {
-    match bytes.get(from..).and_then(|rest| rest.get(..count)) {
-        Some(found) => Ok(found),
-        None => damaged(format!("it ends within the {count} bytes from byte {from} on")),
-    }
-}
-
-/// An array of bytes at a position.
-fn array<const N: usize>(bytes: &[u8], from: usize) -> Result<[u8; N], Fault> {
-    let mut array = [0; N];
-    array.copy_from_slice(part(bytes, from, N)?);
-    Ok(array)
-}
-
-fn number(bytes: &[u8], from: usize) -> Result<u32, Fault> {
-    array(bytes, from).map(u32::from_le_bytes)
-}
-
-fn word(bytes: &[u8], from: usize) -> Result<u64, Fault> {
-    array(bytes, from).map(u64::from_le_bytes)
-}
 
 const CONVERT: &str = "grids of the types Float, Fp4, Fp8, Fp16 and FpN are read: write one of them by nanovdb_convert";
 
@@ -81,13 +59,8 @@ pub fn read(file: &[u8], name: Option<&str>) -> Result<Grid, Fault> {
 
 /// The map in double precision, 296 bytes from the beginning of a grid.
 fn transform(grid: &[u8]) -> Result<Transform, Fault> {
-    let double = |at: usize| word(grid, at).map(f64::from_bits);
-    let (mut matrix, mut shift) = ([[0.0; 3]; 3], [0.0; 3]);
-    for i in 0..3 {
-        for (j, entry) in matrix[i].iter_mut().enumerate() {
-            *entry = double(296 + 88 + 8 * (3 * i + j))?;
-        }
-        shift[i] = double(296 + 232 + 8 * i)?;
-    }
+    let rows: [f64; 9] = Bytes::at_byte(grid, 296 + 88).doubles()?;
+    let shift = Bytes::at_byte(grid, 296 + 232).doubles()?;
+    let matrix = [0, 1, 2].map(|i| [0, 1, 2].map(|j| rows[3 * i + j]));
     Transform { matrix, shift }.checked()
 }

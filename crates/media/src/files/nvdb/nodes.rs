@@ -15,7 +15,7 @@
 //! Within a node z is fastest, then y, then x.
 
 use super::super::vdb::{EDGES, Growing, LEAF, Leaf, Tile, Tree, count_on, is_on};
-use super::{Fault, GRID, array, damaged, number, part, word};
+use super::{Bytes, Fault, GRID, damaged};
 
 /// Storage of the values of leaves.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -70,10 +70,11 @@ struct Reader<'a> {
 
 /// Reads the tree of a grid.
 pub(super) fn read(bytes: &[u8], values: Values) -> Result<Tree, Fault> {
-    let root = from(GRID, word(bytes, GRID + 24)?.cast_signed())?;
-    let tree = Growing::new(f32::from_bits(number(bytes, root + 28)?));
-    let mut reader = Reader { bytes, values, tree, visited: 0 };
-    for tile in 0..number(bytes, root + 24)? as usize {
+    let root = from(GRID, Bytes::at_byte(bytes, GRID + 24).word()?.cast_signed())?;
+    let mut head = Bytes::at_byte(bytes, root + 24);
+    let (tiles, background) = (head.number()?, head.float()?);
+    let mut reader = Reader { bytes, values, tree: Growing::new(background), visited: 0 };
+    for tile in 0..tiles as usize {
         reader.root_tile(root, root + ROOT_HEAD + ROOT_TILE * tile)?;
     }
     Ok(reader.tree.tree)
@@ -90,20 +91,20 @@ fn from(place: usize, distance: i64) -> Result<usize, Fault> {
 
 impl Reader<'_> {
     fn root_tile(&mut self, root: usize, at: usize) -> Result<(), Fault> {
-        let key = word(self.bytes, at)?;
+        let mut tile = Bytes::at_byte(self.bytes, at);
+        let key = tile.word()?;
         let axis = |shift: u32| -> i32 {
             // Twenty bits of them are those of a coordinate.
             let high = (key >> shift) & 0xf_ffff;
             ((high as u32) << 12).cast_signed()
         };
         let origin = [axis(42), axis(21), axis(0)];
-        let child = word(self.bytes, at + 8)?.cast_signed();
+        let child = tile.word()?.cast_signed();
         if child != 0 {
             return self.node(0, from(root, child)?, origin);
         }
-        let (active, value) = (number(self.bytes, at + 16)?, number(self.bytes, at + 20)?);
-        let tile = Tile { origin, edge: EDGES[0], value: f32::from_bits(value) };
-        self.tree.tile(tile, active != 0)
+        let (active, value) = (tile.number()?, tile.float()?);
+        self.tree.tile(Tile { origin, edge: EDGES[0], value }, active != 0)
     }
 
     /// A node of a level; its children are nodes of the next.
@@ -111,9 +112,9 @@ impl Reader<'_> {
         let Level { log, table, edge } = LEVELS[level];
         let size = 1_usize << (3 * log);
         self.visit(table + 8 * size)?;
-        let active = part(self.bytes, at + 32, size / 8)?;
-        let children = part(self.bytes, at + 32 + size / 8, size / 8)?;
-        let entries = part(self.bytes, at + table, 8 * size)?;
+        let mut masks = Bytes::at_byte(self.bytes, at + 32);
+        let (active, children) = (masks.take(size / 8)?, masks.take(size / 8)?);
+        let entries = Bytes::at_byte(self.bytes, at + table).take(8 * size)?;
         for (place, entry) in entries.as_chunks::<8>().0.iter().enumerate() {
             let axis = |j: usize| place >> (log * (2 - j)) & ((1 << log) - 1);
             #[expect(clippy::cast_possible_truncation, clippy::cast_possible_wrap)] // below 32
@@ -135,7 +136,8 @@ impl Reader<'_> {
     }
 
     fn leaf(&mut self, at: usize, origin: [i32; 3]) -> Result<(), Fault> {
-        let head = part(self.bytes, at, LEAF_HEAD)?;
+        let mut bytes = Bytes::at_byte(self.bytes, at);
+        let head = bytes.take(LEAF_HEAD)?;
         let log = match self.values {
             Values::Whole => 5,
             Values::Codes { log } => log,
@@ -147,14 +149,12 @@ impl Reader<'_> {
         }
         let size = (count << log) / 8;
         self.visit(LEAF_HEAD + size)?;
-        let stored = part(self.bytes, at + LEAF_HEAD, size)?;
+        let stored = bytes.take(size)?;
         self.tree.tree.active += count_on(&head[16..80]) as u64;
         let values = if self.values == Values::Whole {
             stored.as_chunks::<4>().0.iter().map(|&word| f32::from_le_bytes(word)).collect()
         } else {
-            let [minimum, quantum] =
-                [80, 84].map(|place| array(head, place).map(f32::from_le_bytes));
-            let (minimum, quantum) = (minimum?, quantum?);
+            let [minimum, quantum] = Bytes::at_byte(head, 80).floats()?;
             (0..count).map(|place| code(stored, place, log) * quantum + minimum).collect()
         };
         self.tree.tree.leaves.push(Leaf { origin, values });

@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 
 use super::super::vdb::unpack_blosc;
-use super::{Fault, damaged, part, word};
+use super::{Bytes, Fault, damaged};
 
 /// Bytes of a piece that Blosc packs.
 const PIECE: usize = 1 << 30;
@@ -20,7 +20,7 @@ pub(super) fn unpacked<'a>(
     let size = usize::try_from(size).unwrap_or(usize::MAX);
     let found = match codec {
         "zip" => {
-            let packed = piece(stored, 0)?;
+            let packed = piece(&mut Bytes::new(stored))?;
             match miniz_oxide::inflate::decompress_to_vec_zlib_with_limit(packed, size) {
                 Ok(bytes) => Cow::Owned(bytes),
                 Err(_) => return damaged("a zipped grid is not one that must be there"),
@@ -33,13 +33,11 @@ pub(super) fn unpacked<'a>(
                     stored.len()
                 ));
             }
-            let (mut bytes, mut at) = (vec![0; size], 0);
-            for into in bytes.chunks_mut(PIECE) {
-                let packed = piece(stored, at)?;
-                unpack_blosc(packed, into)?;
-                at += 8 + packed.len();
+            let (mut found, mut bytes) = (vec![0; size], Bytes::new(stored));
+            for into in found.chunks_mut(PIECE) {
+                unpack_blosc(piece(&mut bytes)?, into)?;
             }
-            Cow::Owned(bytes)
+            Cow::Owned(found)
         }
         _ => Cow::Borrowed(stored),
     };
@@ -53,7 +51,7 @@ pub(super) fn unpacked<'a>(
 }
 
 /// Bytes with their length before them.
-fn piece(stored: &[u8], at: usize) -> Result<&[u8], Fault> {
-    let length = usize::try_from(word(stored, at)?).unwrap_or(usize::MAX);
-    part(stored, at + 8, length)
+fn piece<'a>(bytes: &mut Bytes<'a>) -> Result<&'a [u8], Fault> {
+    let length = usize::try_from(bytes.word()?).unwrap_or(usize::MAX);
+    bytes.take(length)
 }

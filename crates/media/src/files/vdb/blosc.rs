@@ -9,7 +9,7 @@
 //!
 //! Source: *Blosc Chunk Format*, `README_CHUNK_FORMAT.rst` of c-blosc 1.21; LZ4 by the crate `lz4_flex`.
 
-use super::bytes::Bytes;
+use super::super::bytes::Bytes;
 use super::{Fault, damaged, wrong};
 
 /// Minimum number of bytes of a stream into which a block is split, and maximum number of streams.
@@ -47,8 +47,7 @@ pub(in crate::files) fn unpack(frame: &[u8], into: &mut [u8]) -> Result<(), Faul
             && width <= MAX_STREAMS
             && block / width >= LEAST_STREAM;
         let streams = if is_split { width } else { 1 };
-        let mut source = Bytes::new(frame);
-        source.seek(begin);
+        let mut source = Bytes::at_byte(frame, begin);
         if flags & 1 != 0 && width > 1 {
             let shuffled = &mut shuffled[..part.len()];
             unpack_streams(&mut source, streams, shuffled)?;

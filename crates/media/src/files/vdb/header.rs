@@ -1,6 +1,6 @@
 //! The header of a file, the entry before each grid, and the beginning of a grid.
 
-use super::bytes::Bytes;
+use super::super::bytes::Bytes;
 use super::transform::Transform;
 use super::{Fault, damaged, shown, wrong};
 
@@ -25,7 +25,7 @@ pub(super) struct Entry {
 impl Entry {
     pub(super) fn read(bytes: &mut Bytes) -> Result<Self, Fault> {
         let [key, kind, parent] = [bytes.text()?, bytes.text()?, bytes.text()?];
-        let [begin, blocks, end] = [bytes.word()?, bytes.word()?, bytes.word()?];
+        let [begin, blocks, end] = bytes.words()?;
         if end > bytes.len() as u64 {
             let (name, length) = (shown(&key), bytes.len());
             return damaged(format!("it ends at byte {length}, and its grid {name} at byte {end}"));

@@ -19,14 +19,12 @@
 //! (2013), for the tree; the layout is that of `openvdb/io` and `openvdb/tree` in `OpenVDB` 10.
 
 mod blosc;
-mod bytes;
 mod header;
 mod packing;
 mod transform;
 mod tree;
 
 pub(in crate::files) use blosc::unpack as unpack_blosc;
-use bytes::Bytes;
 use header::{Entry, Head};
 use packing::Packing;
 pub(in crate::files) use packing::{count_on, is_on};
@@ -35,6 +33,7 @@ pub(in crate::files) use tree::{EDGES, Growing};
 pub use tree::{LEAF, Leaf, Tile, Tree};
 
 pub use super::Fault;
+use super::bytes::Bytes;
 use super::{chosen, damaged, shown, wrong};
 
 /// A grid of floats.

@@ -12,7 +12,7 @@
 
 use exr::prelude::f16;
 
-use super::bytes::Bytes;
+use super::super::bytes::Bytes;
 use super::{Fault, blosc, damaged, wrong};
 
 const ZIP: u32 = 1;

@@ -6,8 +6,9 @@
 //!
 //! Frusta, in which straight rays are bent, are not supported.
 
-use super::bytes::Bytes;
+use super::super::bytes::Bytes;
 use super::{Fault, damaged, shown, wrong};
+use numeric::geometry::Point;
 
 /// Minimum relative volume of a voxel: flatter lattices are degenerate in double precision.
 const FLATTEST: f64 = 1e-9;
@@ -44,11 +45,11 @@ impl Transform {
 
     /// The edges of a voxel.
     pub fn voxel(&self) -> [f64; 3] {
-        [0, 1, 2].map(|j| norm(self.column(j)))
+        self.columns().map(Point::norm)
     }
 
-    fn column(&self, j: usize) -> [f64; 3] {
-        [0, 1, 2].map(|i| self.matrix[i][j])
+    fn columns(&self) -> [Point; 3] {
+        [0, 1, 2].map(|j| Point([0, 1, 2].map(|i| self.matrix[i][j])))
     }
 
     pub(super) fn read(bytes: &mut Bytes) -> Result<Self, Fault> {
@@ -73,12 +74,8 @@ impl Transform {
     /// Checks that the transform is finite and does not flatten voxels.
     pub(in crate::files) fn checked(self) -> Result<Self, Fault> {
         let mut numbers = self.matrix.iter().flatten().chain(&self.shift);
-        let (columns, edges) = ([0, 1, 2].map(|j| self.column(j)), self.voxel());
-        let unit = |j: usize| columns[j].map(|x| x / edges[j]);
-        let [a, b, c] = [unit(0), unit(1), unit(2)];
-        let volume = a[0] * (b[1] * c[2] - b[2] * c[1])
-            + a[1] * (b[2] * c[0] - b[0] * c[2])
-            + a[2] * (b[0] * c[1] - b[1] * c[0]);
+        let [a, b, c] = self.columns().map(|edge| Point(edge.0.map(|x| x / edge.norm())));
+        let volume = a.dot(b.cross(c));
         if numbers.all(|x| x.is_finite()) && volume.abs() > FLATTEST {
             return Ok(self);
         }
@@ -99,10 +96,6 @@ impl Transform {
         let matrix = [0, 1, 2].map(|i| [0, 1, 2].map(|j| at(j, i)));
         Ok(Self { matrix, shift: [0, 1, 2].map(|j| at(3, j)) })
     }
-}
-
-fn norm([x, y, z]: [f64; 3]) -> f64 {
-    (x * x + y * y + z * z).sqrt()
 }
 
 /// A scale, and the derived data in the file: the size of a voxel, and three kinds of inverses.

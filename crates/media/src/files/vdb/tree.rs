@@ -12,7 +12,7 @@
 
 use std::collections::BTreeSet;
 
-use super::bytes::Bytes;
+use super::super::bytes::Bytes;
 use super::packing::{Packing, count_on, is_on};
 use super::{Fault, damaged, wrong};
 
@@ -143,13 +143,13 @@ impl Reader<'_, '_> {
             damaged(format!("a node of its tree has its origin at {origin:?}"))
         };
         for _ in 0..tiles {
-            let origin = new(self.bytes.point()?)?;
+            let origin = new(self.bytes.integers()?)?;
             let value = self.bytes.float()?;
             let is_active = self.bytes.byte()?;
             self.tree.tile(Tile { origin, edge: EDGES[0], value }, is_active != 0)?;
         }
         for _ in 0..children {
-            let origin = new(self.bytes.point()?)?;
+            let origin = new(self.bytes.integers()?)?;
             self.node::<5>(1, origin)?;
         }
         Ok(())
