@@ -10,7 +10,7 @@ use std::f64::consts::TAU;
 
 use crate::case::{Case, CaseError, Spec};
 use crate::render::view::{Camera, furthest};
-use media::catalogue::{Domain, Entry, Node, Page, Settings, Value};
+use media::catalogue::{Domain, Entry, Node, Settings, Value};
 use media::{Body, Volume};
 use numeric::geometry::{Aabb, Point, Ray};
 use numeric::rng::{Address, Stream, name_hash};
@@ -44,7 +44,7 @@ pub fn read(spec: &Spec, count: Option<u64>, seed: u64) -> Result<(Case, Vec<Bod
     let case = Case::of(&base)?;
     let body = case.scenario.body();
     let rays = spec.read(|root| {
-        let names: Vec<String> = problems::CATALOGUE.pages.iter().map(Page::name).collect();
+        let names = problems::CATALOGUE.names();
         let (_, problem) = root.chosen("problem", &names)?;
         let Body::Volume { volume, .. } = &body.channels()[0] else {
             problem.fault(

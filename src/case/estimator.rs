@@ -83,11 +83,7 @@ fn read_if<T: ?Sized>(
     body: Option<&Body>,
     read: fn(&Settings, Option<&Body>) -> Option<Box<T>>,
 ) -> Option<Option<Box<T>>> {
-    match settings.naming_if(key, RECIPE) {
-        Some(table) => read(&table, body).map(Some),
-        None if settings.has(key) => None,
-        None => Some(None),
-    }
+    settings.optional(key, |key| settings.naming(key, RECIPE).and_then(|table| read(&table, body)))
 }
 
 /// Reads `sampling`, a table, or a list with one for each channel of a spectral medium; `None` after a

@@ -253,7 +253,7 @@ struct Problem {
 /// Reads `expect` and `problem`, and no other key. A known field takes the place of the case's own.
 fn read_problem(root: &Settings, known: Option<&Body>) -> Option<Problem> {
     let expect_biased = read_expect(root);
-    let names: Vec<String> = problems::CATALOGUE.pages.iter().map(Page::name).collect();
+    let names = problems::CATALOGUE.names();
     let explain = |name: &str| forms::explain_problem("problem", name);
     let (index, settings) = root.chosen_explained("problem", &names, &explain)?;
     let kind = build::kind(index, &settings)?;

@@ -173,7 +173,7 @@ impl View {
 }
 
 fn read_one(settings: &Settings) -> Option<(String, Vec<Arc<Volume>>)> {
-    read_volume(settings).map(|(name, volume)| (name, vec![volume]))
+    read_volume(settings, Some("volume")).map(|(name, volume)| (name, vec![volume]))
 }
 
 fn read_colours(settings: &Settings) -> Option<(String, Vec<Arc<Volume>>)> {

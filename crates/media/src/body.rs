@@ -3,7 +3,7 @@
 
 use std::sync::Arc;
 
-use super::reader::{choose_line, read_line, read_listed, read_volume};
+use super::reader::{read_line, read_volume};
 use super::{CATALOGUE, Medium, Profile, Volume};
 use crate::catalogue::{Domain, Settings, Value};
 use numeric::Span;
@@ -70,12 +70,12 @@ impl Body {
         }
         match (settings.has("medium"), settings.has("volume")) {
             (true, false) => {
-                let field = read_line(settings);
+                let field = read_line(settings, Some("medium"));
                 let span = read_span(settings);
                 is_extinction(settings, "medium", Self::line(settings, "medium", field?, span?)?)
             }
             (false, true) => {
-                let field = read_volume(settings);
+                let field = read_volume(settings, Some("volume"));
                 let bounds = field.as_ref().map_or(Bounds::Everywhere, |(_, f)| f.bounds());
                 let ray = if need == RayNeed::Nothing && !settings.has("ray") {
                     through(bounds)
@@ -98,8 +98,12 @@ impl Body {
     /// Reads another field for the same line or ray: a control variate.
     pub fn read_beside(&self, settings: &Settings) -> Option<Self> {
         match self {
-            Self::Line { span, .. } => Self::line(settings, "medium", read_line(settings)?, *span),
-            Self::Volume { ray, .. } => Self::crossed(settings, read_volume(settings)?, *ray),
+            Self::Line { span, .. } => {
+                Self::line(settings, "medium", read_line(settings, Some("medium"))?, *span)
+            }
+            Self::Volume { ray, .. } => {
+                Self::crossed(settings, read_volume(settings, Some("volume"))?, *ray)
+            }
             Self::Spectral { channels, .. } => channels[0].read_beside(settings),
         }
     }
@@ -210,10 +214,10 @@ fn read_channels(settings: &Settings, key: &'static str) -> Option<Body> {
     let mut channels = Vec::new();
     for table in &fields {
         channels.push(if let Some(span) = span {
-            let field = choose_line(table, Settings::choice_among);
+            let field = read_line(table, None);
             field.zip(span).and_then(|(field, span)| Body::line(table, "", field, span))
         } else {
-            let field = read_listed(table);
+            let field = read_volume(table, None);
             field.zip(ray.flatten()).and_then(|(field, ray)| Body::crossed(table, field, ray))
         });
     }

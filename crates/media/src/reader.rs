@@ -8,6 +8,9 @@ use crate::catalogue::{OwnPages, Settings};
 /// Reads the fields of a page from a case file.
 type Read<T> = Box<dyn Fn(&Settings) -> Option<Arc<T>> + Send + Sync>;
 
+/// A field and its name in the catalogue.
+type Named<T> = (String, Arc<T>);
+
 /// Reader of the fields of a page: along a ray, in space, or both.
 pub struct Reader {
     extinctions: &'static [&'static str],
@@ -47,79 +50,58 @@ impl Reader {
     }
 }
 
-/// The pages of media, those of the program's own last, each with its name.
-fn readers<'a>(settings: &Settings<'a>) -> (Vec<String>, Vec<&'a Reader>) {
+/// The pages of media, those of the program's own last.
+fn pages(own_pages: &OwnPages) -> impl Iterator<Item = (String, &Reader)> {
     let built_in = CATALOGUE.pages.iter().zip(READERS.iter());
-    built_in.chain(settings.own_pages().of()).map(|(page, reader)| (page.name(), reader)).unzip()
+    built_in.chain(own_pages.of()).map(|(page, reader)| (page.name(), reader))
 }
 
 /// Settings of a named field to which σ_t is proportional; empty for an unknown field.
 pub fn extinctions(name: &str, own_pages: &OwnPages) -> &'static [&'static str] {
-    let built_in = CATALOGUE.pages.iter().zip(READERS.iter());
-    let mut all = built_in.chain(own_pages.of());
-    all.find(|(page, _)| page.name() == name).map_or(&[], |(_, reader)| reader.extinctions)
+    pages(own_pages).find(|(page, _)| page == name).map_or(&[], |(_, reader)| reader.extinctions)
 }
 
-/// Reads a field along a line, `medium.NAME = { … }`: its name in the catalogue and the field.
-pub(super) fn read_line(settings: &Settings) -> Option<(String, Arc<Profile>)> {
-    choose_line(settings, |settings, names, offered| {
-        settings.chosen_among("medium", names, offered)
-    })
+/// Reads a field along a line: `medium.NAME = { … }`, or without a key `{ NAME = { … } }`. Returns its name in the
+/// catalogue and the field.
+pub(super) fn read_line(settings: &Settings, key: Option<&'static str>) -> Option<Named<Profile>> {
+    let other = "this field has no 1-D form";
+    let help = "write `volume` instead of `medium`, and give a `ray`";
+    read(settings, key, |reader| reader.line.as_ref(), [other, help])
 }
 
-/// Reads a field along a line; `choose` selects it among the names, some of which are suggested.
-pub(super) fn choose_line<'a>(
-    settings: &Settings<'a>,
-    choose: impl FnOnce(&Settings<'a>, &[String], &[String]) -> Option<(usize, Settings<'a>)>,
-) -> Option<(String, Arc<Profile>)> {
-    let (mut names, readers) = readers(settings);
-    let offered = names.iter().zip(&readers).filter(|(_, reader)| reader.line.is_some());
-    let offered: Vec<String> = offered.map(|(name, _)| name.clone()).collect();
-    let (index, field) = choose(settings, &names, &offered)?;
-    let Some(read) = &readers[index].line else {
-        let help = "write `volume` instead of `medium`, and give a `ray`";
-        field.fault_at(field.span.clone(), "", "this field has no 1-D form", help);
-        return None;
-    };
-    let profile = read(&field);
-    field.close();
-    Some((names.swap_remove(index), profile?))
-}
-
-/// Reads a field in space, `volume.NAME = { … }`: its name in the catalogue and the field.
-pub fn read_volume(settings: &Settings) -> Option<(String, Arc<Volume>)> {
-    read_field(settings, "volume")
+/// Reads a field in space, `KEY.NAME = { … }`, or without a key `{ NAME = { … } }`. Returns its name in the catalogue
+/// and the field.
+pub fn read_volume(settings: &Settings, key: Option<&'static str>) -> Option<Named<Volume>> {
+    let other = "this field has no 3-D form";
+    let help = "write `medium` instead of `volume`, and give a `span`";
+    read(settings, key, |reader| reader.volume.as_ref(), [other, help])
 }
 
 /// Reads a list of fields in space, `volume = [{ NAME = { … } }, …]`, each with its name.
-pub fn read_volumes(settings: &Settings) -> Option<Vec<(String, Arc<Volume>)>> {
-    let fields: Vec<_> = settings.tables("volume")?.iter().map(read_listed).collect();
+pub fn read_volumes(settings: &Settings) -> Option<Vec<Named<Volume>>> {
+    let fields: Vec<_> =
+        settings.tables("volume")?.iter().map(|table| read_volume(table, None)).collect();
     fields.into_iter().collect()
 }
 
-/// Reads a field in space of a list.
-pub(super) fn read_listed(table: &Settings) -> Option<(String, Arc<Volume>)> {
-    choose_volume(table, Settings::choice)
-}
-
-/// Reads a field in space, `KEY.NAME = { … }`.
-pub fn read_field(settings: &Settings, key: &'static str) -> Option<(String, Arc<Volume>)> {
-    choose_volume(settings, |settings, names| settings.chosen(key, names))
-}
-
-/// Reads a field in space; `choose` selects it among the names.
-fn choose_volume<'a>(
-    settings: &Settings<'a>,
-    choose: impl FnOnce(&Settings<'a>, &[String]) -> Option<(usize, Settings<'a>)>,
-) -> Option<(String, Arc<Volume>)> {
-    let (mut names, readers) = readers(settings);
-    let (index, field) = choose(settings, &names)?;
-    let Some(read) = &readers[index].volume else {
-        let help = "write `medium` instead of `volume`, and give a `span`";
-        field.fault_at(field.span.clone(), "", "this field has no 3-D form", help);
-        return None;
+/// Reads a field of a form; pages without that form are explained.
+fn read<T: ?Sized>(
+    settings: &Settings,
+    key: Option<&'static str>,
+    form: fn(&Reader) -> Option<&Read<T>>,
+    other: [&str; 2],
+) -> Option<Named<T>> {
+    let own_pages = settings.own_pages();
+    let with_form = pages(own_pages).filter_map(|(name, reader)| Some((name, form(reader)?)));
+    let (mut names, reads): (Vec<String>, Vec<&Read<T>>) = with_form.unzip();
+    let explain = |name: &str| {
+        pages(own_pages).any(|(page, _)| page == name).then(|| other.map(str::to_owned))
     };
-    let volume = read(&field);
+    let (index, field) = match key {
+        Some(key) => settings.chosen_explained(key, &names, &explain),
+        None => settings.choice_explained(&names, &explain),
+    }?;
+    let read = reads[index](&field);
     field.close();
-    Some((names.swap_remove(index), volume?))
+    Some((names.swap_remove(index), read?))
 }

@@ -73,15 +73,6 @@ impl<'a> Settings<'a> {
     /// A required table that names a page, or the page's name alone.
     pub fn naming(&self, key: &'static str, wanted: &str) -> Option<Settings<'a>> {
         let entry = self.required(key, wanted)?;
-        self.open_naming(entry, wanted)
-    }
-
-    /// A table that names a page, or the page's name alone, if the file has the key.
-    pub fn naming_if(&self, key: &'static str, wanted: &str) -> Option<Settings<'a>> {
-        self.entry(key).and_then(|entry| self.open_naming(entry, wanted))
-    }
-
-    fn open_naming(&self, entry: &'a Entry, wanted: &str) -> Option<Settings<'a>> {
         match &entry.node.value {
             Value::Table(_) => self.open(entry),
             Value::Text(name) => {
@@ -131,7 +122,7 @@ impl<'a> Settings<'a> {
     /// A table with exactly one key, which names one of `names`: `{ gaussian = { … } }`. Returns
     /// the position of the name and the table behind it.
     pub fn choice(&self, names: &[String]) -> Option<(usize, Settings<'a>)> {
-        self.choice_among(names, names)
+        self.choice_explained(names, &|_| None)
     }
 
     /// A choice in which some other names are explained.
@@ -140,29 +131,11 @@ impl<'a> Settings<'a> {
         names: &[String],
         explain: Explain,
     ) -> Option<(usize, Settings<'a>)> {
-        self.choice_of(names, names, explain)
-    }
-
-    /// A table with exactly one key, one of `names`; hints list only the names that are `offered`.
-    pub(crate) fn choice_among(
-        &self,
-        names: &[String],
-        offered: &[String],
-    ) -> Option<(usize, Settings<'a>)> {
-        self.choice_of(names, offered, &|_| None)
-    }
-
-    fn choice_of(
-        &self,
-        names: &[String],
-        offered: &[String],
-        explain: Explain,
-    ) -> Option<(usize, Settings<'a>)> {
-        let list = quoted(offered);
+        let list = quoted(names);
         let position = |name: &str, span: &Range<usize>| {
             let index = names.iter().position(|known| known == name);
             if index.is_none() {
-                let words: Vec<&str> = offered.iter().map(String::as_str).collect();
+                let words: Vec<&str> = names.iter().map(String::as_str).collect();
                 let [message, help] = explain(name).unwrap_or_else(|| {
                     let message = format!("`{}` is not known here", brief(name));
                     [message, suggestion(name, &words, &format!("one of {list}"))]
@@ -199,17 +172,7 @@ impl<'a> Settings<'a> {
 
     /// A required table that chooses one of several names, as in `phase.isotropic = {}`, or the name alone.
     pub fn chosen(&self, key: &'static str, names: &[String]) -> Option<(usize, Settings<'a>)> {
-        self.chosen_among(key, names, names)
-    }
-
-    /// A required choice; hints list only the names that are `offered`.
-    pub fn chosen_among(
-        &self,
-        key: &'static str,
-        names: &[String],
-        offered: &[String],
-    ) -> Option<(usize, Settings<'a>)> {
-        self.naming(key, &format!("one of {}", quoted(offered)))?.choice_among(names, offered)
+        self.chosen_explained(key, names, &|_| None)
     }
 
     /// A required choice, in which some other names are explained.
@@ -220,7 +183,7 @@ impl<'a> Settings<'a> {
         explain: Explain,
     ) -> Option<(usize, Settings<'a>)> {
         let wanted = format!("one of {}", quoted(names));
-        self.naming(key, &wanted)?.choice_of(names, names, explain)
+        self.naming(key, &wanted)?.choice_explained(names, explain)
     }
 
     /// Records that a key is missing, with its cure.

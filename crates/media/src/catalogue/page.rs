@@ -18,6 +18,13 @@ pub struct PageList {
     pub pages: &'static [Page],
 }
 
+impl PageList {
+    /// The names in case files.
+    pub fn names(&self) -> Vec<String> {
+        self.pages.iter().map(Page::name).collect()
+    }
+}
+
 /// The page of a module beside the caller.
 #[macro_export]
 macro_rules! page {

@@ -59,17 +59,14 @@ macro_rules! phases {
         impl Phase {
             /// Reads the required `phase.NAME = { … }`.
             pub fn read(settings: &Settings) -> Option<Self> {
-                let names: Vec<String> =
-                    CATALOGUE.pages.iter().map($crate::catalogue::Page::name).collect();
-                let (index, page) = settings.chosen("phase", &names)?;
+                let (index, page) = settings.chosen("phase", &CATALOGUE.names())?;
                 Self::read_page(index, &page)
             }
 
             /// Reads `{ NAME = { … } }` of a list.
             pub fn read_listed(table: &Settings) -> Option<Self> {
-                let names: Vec<String> =
-                    CATALOGUE.pages.iter().map($crate::catalogue::Page::name).collect();
-                table.choice(&names).and_then(|(index, page)| Self::read_page(index, &page))
+                let (index, page) = table.choice(&CATALOGUE.names())?;
+                Self::read_page(index, &page)
             }
 
             fn read_page(index: usize, page: &Settings) -> Option<Self> {

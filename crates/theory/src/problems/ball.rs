@@ -159,26 +159,24 @@ impl Sphere {
 }
 
 fn read_light(settings: &Settings) -> Option<Light> {
-    let names = ["environment", "black-sphere", "distant", "point"].map(str::to_owned);
-    // A point light is known only to be refused.
-    let (index, light) = settings.chosen_among("light", &names, &names[..3])?;
+    let names = ["environment", "black-sphere", "distant"].map(str::to_owned);
+    let explain = |name: &str| {
+        let found = "next-event estimation of a point light in a medium that scatters more than \
+                     once has an infinite variance";
+        let help = "take `black-sphere`, or the problem `single-scattering`";
+        (name == "point").then(|| [found, help].map(str::to_owned))
+    };
+    let (index, light) = settings.chosen_explained("light", &names, &explain)?;
     let read = match index {
         0 => Some(Light::Environment),
         1 => light.number("radius", Domain::Positive).map(Light::BlackSphere),
-        2 => light.triple("direction").and_then(|direction| {
+        _ => light.triple("direction").and_then(|direction| {
             let found = Point(direction).normalised().map(Light::Distant);
             if found.is_none() {
                 light.fault("direction", "the direction is the zero vector", "point at the light");
             }
             found
         }),
-        _ => {
-            let found = "next-event estimation of a point light in a medium that scatters more than \
-                         once has an infinite variance";
-            let help = "take `black-sphere`, or the problem `single-scattering`";
-            settings.fault("light", found, help);
-            return None;
-        }
     };
     light.close();
     read

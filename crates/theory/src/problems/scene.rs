@@ -108,7 +108,7 @@ pub fn read_albedo(settings: &Settings, volume: Option<&Volume>) -> Option<Albed
     if !matches!(value, Some(Value::Table(_))) {
         return number(settings, "albedo", default_albedo(settings)).map(Albedo::Even);
     }
-    let (_, field) = reader::read_field(settings, "albedo")?;
+    let (_, field) = reader::read_volume(settings, Some("albedo"))?;
     let most = volume?.bounds().enclosing_box().map(|within| field.majorant(&within));
     // A bound is raised a little over what the field reaches.
     let Some(most) = most.filter(|&most| most <= 1.0 + 1e-9) else {
