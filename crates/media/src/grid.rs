@@ -182,7 +182,8 @@ pub fn reader() -> Reader {
 
 fn read_volume(settings: &Settings) -> Option<Grid> {
     let samples = read_samples(settings);
-    let interpolation = settings.word_or("interpolation", &["trilinear", "nearest"], "trilinear");
+    let kinds = [("trilinear", Interpolation::Trilinear), ("nearest", Interpolation::Nearest)];
+    let interpolation = settings.one_of("interpolation", &kinds);
     let format = format(settings);
     let has_transform = format.is_some_and(Format::has_transform);
     let placement = match format {
@@ -191,11 +192,8 @@ fn read_volume(settings: &Settings) -> Option<Grid> {
     };
     let factor = settings.number_or("extinction", Domain::NonNegative, 1.0);
     let bounds = (!has_transform && settings.has("bounds")).then(|| read_bounds(settings));
-    let (samples, placement, factor) = (samples?, placement?, factor?);
-    let interpolation = match interpolation? {
-        "nearest" => Interpolation::Nearest,
-        _ => Interpolation::Trilinear,
-    };
+    let (samples, placement, factor, interpolation) =
+        (samples?, placement?, factor?, interpolation?);
     let bounds = match bounds {
         Some(given) => given?,
         None => own_bounds(settings, &samples)?,

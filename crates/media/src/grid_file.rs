@@ -22,7 +22,7 @@ use numeric::geometry::{Aabb, Point};
 pub(super) use crate::files::wrong;
 
 /// The samples of a grid, x fastest.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, Default, PartialEq)]
 pub struct Samples {
     /// Number of samples along x, y and z.
     pub size: [usize; 3],
@@ -162,7 +162,7 @@ pub(super) fn sizes(size: [u64; 3]) -> Result<[usize; 3], Unreadable> {
 
 fn plain(size: [usize; 3], values: Vec<f64>, corners: Option<[[f64; 3]; 2]>) -> Samples {
     let bounds = corners.map(|[low, high]| Aabb { low: Point(low), high: Point(high) });
-    Samples { size, values, bounds, turned: None, remark: String::new() }
+    Samples { size, values, bounds, ..Samples::default() }
 }
 
 fn read_vol(bytes: &[u8], channel: Option<usize>) -> Result<Samples, Unreadable> {

@@ -109,7 +109,7 @@ pub(super) fn random(size: [usize; 3], seed: u32) -> Samples {
     let hash = |x, y, z| f64::from(lattice::hash3(x, y, z, seed)) / 4_294_967_296.0;
     let rows = (0..nz).flat_map(|z| (0..ny).map(move |y| (y, z)));
     let values = rows.flat_map(|(y, z)| (0..nx).map(move |x| hash(x, y, z))).collect();
-    Samples { size, values, bounds: None, turned: None, remark: String::new() }
+    Samples { size, values, ..Samples::default() }
 }
 
 /// The placement in a file that has a transform of its own.
@@ -125,12 +125,14 @@ pub(super) fn no_placement(settings: &Settings, format: Format) -> Option<Placem
 }
 
 pub(super) fn read_placement(settings: &Settings, format: Option<Format>) -> Option<Placement> {
-    if settings.word_or("samples", &["centres", "vertices"], "centres")? == "vertices" {
+    if settings.one_of("samples", &[("centres", false), ("vertices", true)])? {
         return Some(Placement::Vertices);
     }
-    let usual = if format == Some(Format::Pbrt) { "zero" } else { "clamp" };
-    let border = settings.word_or("border", &["clamp", "zero"], usual)?;
-    Some(if border == "zero" { Placement::CentresZero } else { Placement::CentresClamped })
+    let mut borders = [("clamp", Placement::CentresClamped), ("zero", Placement::CentresZero)];
+    if format == Some(Format::Pbrt) {
+        borders.reverse();
+    }
+    settings.one_of("border", &borders)
 }
 
 pub(super) fn read_bounds(settings: &Settings) -> Option<Aabb> {

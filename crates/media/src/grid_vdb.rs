@@ -35,14 +35,12 @@ pub fn samples(grid: &Grid) -> Result<Samples, Unreadable> {
     let Some([low, high]) = reach(&grid.tree) else {
         return wrong("its grid is empty", "give one with voxels other than the background");
     };
-    let samples = dense(grid, low.map(|n| n - 1), high.map(|n| n + 1))?;
-    let remark = if background == 0.0 {
-        String::new()
-    } else {
+    let mut samples = dense(grid, low.map(|n| n - 1), high.map(|n| n + 1))?;
+    if background != 0.0 {
         let background = number(background.into());
-        format!("its background {background} ends at its box: beyond it σ_t is 0")
-    };
-    Ok(Samples { remark, ..samples })
+        samples.remark = format!("its background {background} ends at its box: beyond it σ_t is 0");
+    }
+    Ok(samples)
 }
 
 /// Each value with the lowest corner and the edge of its voxels: once for a tile, 8³ times for a leaf.
@@ -116,7 +114,8 @@ fn dense(grid: &Grid, low: [i64; 3], high: [i64; 3]) -> Result<Samples, Unreadab
         let (bounds, turned) = turned(&grid.transform, [low, high])?;
         (bounds, Some(turned))
     };
-    Ok(Samples { size, values: samples, bounds: Some(bounds), turned, remark: String::new() })
+    let bounds = Some(bounds);
+    Ok(Samples { size, values: samples, bounds, turned, ..Samples::default() })
 }
 
 const TOO_FAR: &str = "move the grid nearer to 0, or scale it";

@@ -45,7 +45,6 @@ use numeric::{Known, Lane, Span, quadrature::GaussLegendre};
 /// A volume of noise.
 pub struct Noise {
     spectrum: Spectrum,
-    unit: f64,
     bounds: Bounds,
 }
 
@@ -58,6 +57,8 @@ struct Spectrum {
     gain: f64,
     seed: u32,
     fade: Fade,
+    /// `extinction/2B`, with the bound of all octaves.
+    unit: f64,
 }
 
 impl Spectrum {
@@ -82,28 +83,27 @@ impl Spectrum {
         sum
     }
 
-    /// `extinction/2B`.
-    fn unit(self) -> f64 {
+    /// Octaves with their unit.
+    fn with_unit(self) -> Self {
         let total: f64 = self.amplitudes().map(|(amplitude, _)| amplitude).sum();
-        0.5 * self.extinction / (self.fade.bound() * total)
+        Self { unit: 0.5 * self.extinction / (self.fade.bound() * total), ..self }
     }
 
     /// `σ_t` at a point in lattice coordinates of the first octave.
     #[inline(always)]
-    fn value<L: Lane>(self, p: [L; 3], unit: f64) -> L {
+    fn value<L: Lane>(self, p: [L; 3]) -> L {
         // One branch outside the octaves instead of three within each.
         let fbm = match self.fade {
             Fade::Quintic => self.fbm(p, Fade::Quintic),
             Fade::Cubic => self.fbm(p, Fade::Cubic),
         };
-        fbm * unit + 0.5 * self.extinction
+        fbm * self.unit + 0.5 * self.extinction
     }
 }
 
 /// Noise along a ray.
 pub struct NoiseRay {
     spectrum: Spectrum,
-    unit: f64,
     track: Track,
     octaves: Vec<Octave>,
     rule: GaussLegendre,
@@ -144,7 +144,7 @@ impl Extinction for NoiseRay {
 
     #[inline(always)]
     fn extinction<L: Lane>(&self, t: L) -> L {
-        self.spectrum.value(self.track.at(t), self.unit)
+        self.spectrum.value(self.track.at(t))
     }
 }
 
@@ -161,9 +161,10 @@ impl OpticalDepth for NoiseRay {
             let size: f64 = ends.as_flattened().iter().map(|x| x.abs()).sum();
             error += octave.amplitude * (integral.error + 3.0 * f64::EPSILON * size * length);
         }
-        let mean = 0.5 * self.spectrum.extinction * length;
-        let rounding = 4.0 * f64::EPSILON * (mean + (self.unit * fbm).abs());
-        Known::new(mean + self.unit * fbm, rounding + self.unit * error)
+        let Spectrum { extinction, unit, .. } = self.spectrum;
+        let mean = 0.5 * extinction * length;
+        let rounding = 4.0 * f64::EPSILON * (mean + (unit * fbm).abs());
+        Known::new(mean + unit * fbm, rounding + unit * error)
     }
 
     fn breaks(&self, span: Span) -> Vec<f64> {
@@ -186,12 +187,9 @@ impl Noise {
         seed: u32,
         bounds: Bounds,
     ) -> Self {
-        let fade = Fade::Quintic;
-        Self::new(Spectrum { extinction, frequency, octaves, gain: 0.5, seed, fade }, bounds)
-    }
-
-    fn new(spectrum: Spectrum, bounds: Bounds) -> Self {
-        Self { unit: spectrum.unit(), spectrum, bounds }
+        let (gain, fade, unit) = (0.5, Fade::Quintic, 0.0);
+        let spectrum = Spectrum { extinction, frequency, octaves, gain, seed, fade, unit };
+        Self { spectrum: spectrum.with_unit(), bounds }
     }
 
     fn on_ray(&self, ray: &Ray, inside: Span) -> NoiseRay {
@@ -206,7 +204,7 @@ impl Noise {
             fade: spectrum.fade,
             cells: OnceLock::new(),
         });
-        NoiseRay { spectrum, unit: self.unit, track, octaves: octaves.collect(), rule, inside }
+        NoiseRay { spectrum, track, octaves: octaves.collect(), rule, inside }
     }
 }
 
@@ -222,7 +220,7 @@ fn read_volume(settings: &Settings) -> Option<Noise> {
     let octaves = settings.count_or("octaves", 1..=16, 12);
     let gain = settings.number_or("gain", Domain::Unit, 0.5);
     let seed = settings.count_or("seed", 0..=u64::from(u32::MAX), 0);
-    let fade = settings.word_or("fade", &["quintic", "cubic"], "quintic");
+    let fade = settings.one_of("fade", &[("quintic", Fade::Quintic), ("cubic", Fade::Cubic)]);
     let bounds = body::read_bounds(settings);
     let spectrum = Spectrum {
         extinction: extinction?,
@@ -230,9 +228,10 @@ fn read_volume(settings: &Settings) -> Option<Noise> {
         octaves: octaves? as u32,
         gain: gain?,
         seed: seed? as u32,
-        fade: if fade? == "quintic" { Fade::Quintic } else { Fade::Cubic },
+        fade: fade?,
+        unit: 0.0,
     };
-    Some(Noise::new(spectrum, bounds?))
+    Some(Noise { spectrum: spectrum.with_unit(), bounds: bounds? })
 }
 
 impl Field for Noise {
@@ -256,7 +255,7 @@ impl Field for Noise {
     fn value<L: Lane>(&self, p: [L; 3]) -> L {
         let [x, y, z] = p;
         let frequency = self.spectrum.frequency;
-        self.spectrum.value([x * frequency, y * frequency, z * frequency], self.unit)
+        self.spectrum.value([x * frequency, y * frequency, z * frequency])
     }
 
     fn majorant(&self, _: &Aabb) -> f64 {
@@ -267,10 +266,10 @@ impl Field for Noise {
         Arc::new(self.on_ray(ray, inside))
     }
 
-    /// The first octaves without rescaling: `B` stays that of all.
+    /// The first octaves without rescaling: the unit stays that of all.
     fn coarsened(&self, octaves: usize) -> Option<Arc<Volume>> {
         let octaves = self.spectrum.octaves.min(u32::try_from(octaves).ok()?);
         let spectrum = Spectrum { octaves, ..self.spectrum };
-        Some(Arc::new(Self { spectrum, unit: self.unit, bounds: self.bounds }))
+        Some(Arc::new(Self { spectrum, bounds: self.bounds }))
     }
 }

@@ -286,9 +286,7 @@ mod tests {
         let samples = Samples {
             size: [2, 2, 2],
             values: vec![1.0, 3.0, 1.0, 3.0, 1.0, 3.0, 1.0, 3.0],
-            bounds: None,
-            turned: None,
-            remark: String::new(),
+            ..Samples::default()
         };
         let cube = Aabb { low: Point([0.0; 3]), high: Point([4.0; 3]) };
         let grid = Voxels::new(&samples, 1.0, cube, interpolation, placement);

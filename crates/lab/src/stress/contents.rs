@@ -14,7 +14,7 @@ use media::Layered;
 use media::Volume;
 use media::constant::Constant;
 use media::exponential::Exponential;
-use media::gaussian::Gaussian;
+use media::gaussian::{Blob, Gaussian};
 use media::grid::Grid;
 use media::noise::Noise;
 use media::piecewise_linear::Pieces;
@@ -240,7 +240,8 @@ impl Filling {
             }
             Self::Gaussian(width, away) => {
                 let centre = centre + Point(away) * unit;
-                Arc::new(Gaussian::new(size, centre, width * unit, bounds))
+                let gaussian = Gaussian { peak: size, centre, width: width * unit };
+                Arc::new(Blob { gaussian, bounds })
             }
             Self::Radial(further) => {
                 let [b, c, d] = further.map(|share| share * size);

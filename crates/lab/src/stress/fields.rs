@@ -8,7 +8,7 @@ use media::body::Body;
 use media::constant::Constant;
 use media::eq21::Eq21;
 use media::exponential::Exponential;
-use media::gaussian::{Bump, Gaussian};
+use media::gaussian::{Blob, Gaussian};
 use media::grid::Grid;
 use media::noise::Noise;
 use media::radial::Radial;
@@ -64,7 +64,7 @@ impl Line {
             &Field::Exponential { extinction, rate } => {
                 Arc::new(Exponential::new(extinction, rate))
             }
-            &Field::Gaussian { peak, centre, width } => Arc::new(Bump::new(peak, centre, width)),
+            &Field::Gaussian { peak, centre, width } => Arc::new(Gaussian { peak, centre, width }),
             Field::Sines { base, waves } => {
                 let wave = |&[amplitude, frequency, phase]: &[f64; 3]| Wave {
                     amplitude,
@@ -166,7 +166,8 @@ impl Space {
                 Arc::new(Grid::random(size, 0, bounds, interpolation, placement))
             }
             Self::Gaussian(peak, width, radius) => {
-                Arc::new(Gaussian::new(peak, Point([1.0, 0.0, 9.0]), width, ball(radius)))
+                let gaussian = Gaussian { peak, centre: Point([1.0, 0.0, 9.0]), width };
+                Arc::new(Blob { gaussian, bounds: ball(radius) })
             }
             Self::Exponential(rate, radius) => {
                 let field = Exponential::new(1.0, rate);

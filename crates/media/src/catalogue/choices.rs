@@ -44,6 +44,13 @@ impl<'a> Settings<'a> {
         self.entry(key).map_or(Some(default), |entry| self.word_of(entry, words, &wanted))
     }
 
+    /// The value of one of some words; that of the first where the key is absent.
+    pub fn one_of<T: Copy>(&self, key: &'static str, values: &[(&'static str, T)]) -> Option<T> {
+        let words: Vec<&str> = values.iter().map(|(word, _)| *word).collect();
+        let word = self.word_or(key, &words, words[0])?;
+        values.iter().find(|(known, _)| *known == word).map(|(_, value)| *value)
+    }
+
     fn word_of(&self, entry: &Entry, words: &[&'static str], wanted: &str) -> Option<&'static str> {
         let (text, span, settings) = match &entry.node.value {
             Value::Text(text) => (text, &entry.node.span, None),
