@@ -64,33 +64,24 @@ mod tests {
     /// A sample's value encodes its place: x + 10 y + 100 z, on a lattice of 4 × 3 × 2.
     #[test]
     fn every_order_finds_the_sample_at_its_place() {
-        let sizes = [4, 3, 2];
+        let expected: Vec<f64> =
+            (0..24).map(|n| f64::from(n % 4 + 10 * (n / 4 % 3) + 100 * (n / 12))).collect();
         for name in Axes::NAMES {
             let axes = Axes::named(name).expect("an order");
             assert_eq!(axes.name(), name);
-            let letters: Vec<usize> =
-                name.bytes().map(|letter| usize::from(letter - b'x')).collect();
-            let shape: [usize; 3] = std::array::from_fn(|place| sizes[letters[place]]);
+            let shape = axes.0.map(|axis| [4, 3, 2][axis]);
+            let [a, b, c] = shape;
             for is_fortran in [false, true] {
-                let count = 24;
-                let place = |n: usize| -> [usize; 3] {
-                    let [a, b, c] = shape;
-                    let index = if is_fortran {
-                        [n % a, n / a % b, n / (a * b)]
-                    } else {
-                        [n / (b * c), n / c % b, n % c]
-                    };
-                    let mut at = [0; 3];
-                    (0..3).for_each(|axis| at[letters[axis]] = index[axis]);
-                    at
+                let value = |n: usize| -> f64 {
+                    let in_c = [n / (b * c), n / c % b, n % c];
+                    let at = if is_fortran { [n % a, n / a % b, n / (a * b)] } else { in_c };
+                    at.iter()
+                        .zip(axes.0)
+                        .map(|(&i, axis)| i as f64 * [1.0, 10.0, 100.0][axis])
+                        .sum()
                 };
-                let value = |[x, y, z]: [usize; 3]| (x + 10 * y + 100 * z) as f64;
-                let values = (0..count).map(|n| value(place(n))).collect();
-                let (size, sorted) = axes.sorted(shape, is_fortran, values);
-                assert_eq!(size, sizes, "{name}");
-                let expected: Vec<f64> =
-                    (0..count).map(|n| value([n % 4, n / 4 % 3, n / 12])).collect();
-                assert_eq!(sorted, expected, "{name}, Fortran {is_fortran}");
+                let sorted = axes.sorted(shape, is_fortran, (0..24).map(value).collect());
+                assert_eq!(sorted, ([4, 3, 2], expected.clone()), "{name}, Fortran {is_fortran}");
             }
         }
         for name in ["", "zy", "xxz", "XYZ", "zyxw", "abc"] {

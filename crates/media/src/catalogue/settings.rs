@@ -244,49 +244,23 @@ impl<'a> Settings<'a> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::Node;
+    use super::super::fixture::read;
     use super::*;
-
-    fn number(key: &str, x: f64) -> Entry {
-        let node = Node { value: Value::Number(x), span: 5..6 };
-        Entry { key: key.into(), key_span: 0..3, node }
-    }
 
     #[test]
     fn every_mistake_is_recorded() {
-        let table = [number("extinction", -1.0), number("lenght", 2.0)];
-        let faults = RefCell::default();
-        let settings = Settings::new(&table, Path::new("."), &faults);
-        assert_eq!(settings.number("extinction", Domain::NonNegative), None);
-        assert_eq!(settings.number("length", Domain::Positive), None);
-        settings.close();
-        let faults = faults.into_inner();
-        assert_eq!(faults.len(), 3);
-        assert_eq!(faults[0].message, "`extinction` is -1");
-        assert_eq!(faults[1].message, "`length` is missing");
-        assert!(faults[2].help.starts_with("did you mean `length`?"));
-    }
-
-    #[test]
-    fn a_list_of_triples_refuses_a_pair() {
-        let list = |items: Vec<Value>| {
-            let nodes = items.into_iter().map(|value| Node { value, span: 7..8 }).collect();
-            Value::Array(nodes)
-        };
-        let numbers = |n: usize| list(vec![Value::Number(1.0); n]);
-        let node = Node { value: list(vec![numbers(3), numbers(2)]), span: 5..9 };
-        let table = [Entry { key: "vectors".into(), key_span: 0..3, node }];
-        let faults = RefCell::default();
-        let settings = Settings::new(&table, Path::new("."), &faults);
-        assert_eq!(settings.triples("vectors"), None);
-        assert_eq!(faults.into_inner().len(), 1);
-    }
-
-    #[test]
-    fn a_count_may_be_written_as_a_float() {
-        let table = [number("draws", 1e6)];
-        let faults = RefCell::default();
-        let settings = Settings::new(&table, Path::new("."), &faults);
-        assert_eq!(settings.count("draws", 1..=u64::MAX), Some(1_000_000));
+        let table = [("extinction", -1.0), ("lenght", 2.0), ("draws", 1e6)];
+        let table = table.map(|(key, x)| (key, Value::Number(x)));
+        let (found, messages) = read(table, |settings| {
+            let extinction = settings.number("extinction", Domain::NonNegative);
+            let length = settings.number("length", Domain::Positive);
+            // An integer may be written as a float.
+            let draws = settings.count("draws", 1..=u64::MAX);
+            settings.close();
+            (extinction, length, draws)
+        });
+        assert_eq!(found, (None, None, Some(1_000_000)));
+        let known = "`lenght` is not known here";
+        assert_eq!(messages, ["`extinction` is -1", "`length` is missing", known]);
     }
 }

@@ -16,9 +16,10 @@ use std::io::Cursor;
 
 use exr::block::UncompressedBlock;
 use exr::block::reader::ChunksReader;
-use exr::prelude::{SampleType, Vec2, f16};
+use exr::prelude::{SampleType, Vec2};
 
 use super::Pixels;
+use super::number::Number;
 pub use header::{Channel, Part, Window, parts};
 
 /// Maximum number of values of a picture: 2 GiB in memory.
@@ -131,9 +132,9 @@ pub fn read(bytes: Vec<u8>) -> Result<Pixels, String> {
             };
             let first = (row * columns + column) * channels + channel;
             let places = (first..values.len()).step_by(channels);
-            for (place, number) in
-                places.zip(numbers(line.value, list[line.location.channel].sample_type))
-            {
+            let number = number(list[line.location.channel].sample_type);
+            let numbers = number.map_or_else(Vec::new, |number| number.all(line.value));
+            for (place, number) in places.zip(numbers) {
                 values[place] = number;
             }
         }
@@ -165,17 +166,13 @@ fn refuse(parts: &[Part]) -> Result<(), String> {
     Ok(())
 }
 
-/// The numbers of a line: the crate keeps the byte order of the file, low bytes first.
-fn numbers(line: &[u8], kind: SampleType) -> Vec<f64> {
-    let words = line.as_chunks::<4>().0.iter();
-    match kind {
-        SampleType::F16 => {
-            let words = line.as_chunks::<2>().0.iter();
-            words.map(|&word| f16::from_le_bytes(word).to_f64()).collect()
-        }
-        SampleType::F32 => words.map(|&word| f64::from(f32::from_le_bytes(word))).collect(),
-        SampleType::U32 => words.map(|&word| f64::from(u32::from_le_bytes(word))).collect(),
-    }
+/// The type of a channel's numbers: the crate keeps the byte order of the file, low bytes first.
+fn number(kind: SampleType) -> Option<Number> {
+    Number::named(match kind {
+        SampleType::F16 => "<f2",
+        SampleType::F32 => "<f4",
+        SampleType::U32 => "<u4",
+    })
 }
 
 #[cfg(test)]

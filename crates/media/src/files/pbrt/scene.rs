@@ -192,68 +192,53 @@ fn medium(words: &mut Words, moved: Moved) -> Result<Medium, Fault> {
 
 impl Medium {
     fn grid(self) -> Result<Grid, Fault> {
-        let place = format!("medium {} in line {}", shown(&self.name), self.line);
+        let refuse = |what: &str, help: &str| {
+            wrong(format!("medium {} in line {} {what}", shown(&self.name), self.line), help)
+        };
         match self.kind.as_str() {
             "uniformgrid" | "heterogeneous" => {}
             // Files of either kind leave the type out if another file has it.
             "" if self.density.is_some() => {}
             "nanovdb" => {
-                let file = shown(&self.file);
-                let help = format!("read the file itself: `file = {file}`");
-                return wrong(format!("{place} is of the type \"nanovdb\""), help);
+                let help = format!("read the file itself: `file = {}`", shown(&self.file));
+                return refuse("is of the type \"nanovdb\"", &help);
             }
             other => {
-                let message = format!("{place} is of the type {}", shown(other));
-                return wrong(message, "media of the type \"uniformgrid\" are read");
+                let what = format!("is of the type {}", shown(other));
+                return refuse(&what, "media of the type \"uniformgrid\" are read");
             }
         }
         let Some(density) = self.density else {
-            return wrong(
-                format!("{place} has no \"float density\""),
-                "give it: \"rgb\" and \"spectrum\" densities are not read",
-            );
+            let help = "give it: \"rgb\" and \"spectrum\" densities are not read";
+            return refuse("has no \"float density\"", help);
         };
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // checked first
-        let count = |n: Option<f64>| match n.unwrap_or(1.0) {
+        let count = |n: f64| match n {
             n if n >= 1.0 && n <= f64::from(u32::MAX) && n.fract() == 0.0 => Some(n as u64),
             _ => None,
         };
-        let [Some(x), Some(y), Some(z)] = self.counts.map(count) else {
-            let message = format!(
-                "{place} has {:?} samples along its axes",
-                self.counts.map(|n| n.unwrap_or(1.0))
-            );
-            return wrong(
-                message,
-                "give whole numbers above 0 as \"integer nx\", \"ny\" and \"nz\"",
-            );
+        let counts = self.counts.map(|n| n.unwrap_or(1.0));
+        let [Some(x), Some(y), Some(z)] = counts.map(count) else {
+            let help = "give whole numbers above 0 as \"integer nx\", \"ny\" and \"nz\"";
+            return refuse(&format!("has {counts:?} samples along its axes"), help);
         };
         let wanted = [y, z].iter().try_fold(x, |product, &n| product.checked_mul(n));
         if wanted != Some(density.len() as u64) {
-            let found = density.len();
-            return wrong(
-                format!("{place} has {found} densities for {x} × {y} × {z} samples"),
-                "give nx · ny · nz of them, x fastest",
-            );
+            let what = format!("has {} densities for {x} × {y} × {z} samples", density.len());
+            return refuse(&what, "give nx · ny · nz of them, x fastest");
         }
         if let Some(directive) = self.moved.turned_by {
-            return wrong(
-                format!("{place} stands under {directive}, which turns its box"),
-                "make the medium before it, or after Identity",
-            );
+            let what = format!("stands under {directive}, which turns its box");
+            return refuse(&what, "make the medium before it, or after Identity");
         }
         let corner = |given: &Option<Vec<f64>>, default: f64| match given.as_deref() {
             None => Some([default; 3]),
             Some(&[x, y, z]) => Some([x, y, z]),
             Some(_) => None,
         };
-        let (Some(low), Some(high)) =
-            (corner(&self.corners[0], 0.0), corner(&self.corners[1], 1.0))
-        else {
-            return wrong(
-                format!("{place} has a corner of its box without three numbers"),
-                "give [ x y z ]",
-            );
+        let [low, high] = &self.corners;
+        let (Some(low), Some(high)) = (corner(low, 0.0), corner(high, 1.0)) else {
+            return refuse("has a corner of its box without three numbers", "give [ x y z ]");
         };
         let Moved { scale, shift, .. } = self.moved;
         let ends = |j: usize| [low, high].map(|corner| scale[j] * corner[j] + shift[j]);
