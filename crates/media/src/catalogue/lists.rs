@@ -9,6 +9,8 @@ use numeric::digits::number;
 /// Maximum number of mistakes of one list that are listed separately.
 const TOLD: usize = 5;
 
+const TRIPLE: &str = "a list of three finite numbers [x, y, z]";
+
 impl Settings<'_> {
     /// A required list of numbers, at least `least` of them.
     pub fn numbers(&self, key: &'static str, domain: Domain, least: usize) -> Option<Vec<f64>> {
@@ -25,18 +27,14 @@ impl Settings<'_> {
 
     /// A required point or vector `[x, y, z]`.
     pub fn triple(&self, key: &'static str) -> Option<[f64; 3]> {
-        let wanted = "a list of three finite numbers [x, y, z]";
-        let entry = self.required(key, wanted)?;
-        self.triple_of(entry, Domain::Finite, wanted)
+        let entry = self.required(key, TRIPLE)?;
+        self.triple_of(entry, Domain::Finite, TRIPLE)
     }
 
     /// A point or vector, or `default` where the key is absent.
     pub fn triple_or(&self, key: &'static str, default: [f64; 3]) -> Option<[f64; 3]> {
-        let wanted = "a list of three finite numbers [x, y, z]";
-        match self.entry(key) {
-            Some(entry) => self.triple_of(entry, Domain::Finite, wanted),
-            None => Some(default),
-        }
+        let given = self.entry(key);
+        given.map_or(Some(default), |entry| self.triple_of(entry, Domain::Finite, TRIPLE))
     }
 
     /// Three required integers in a range.
@@ -60,9 +58,9 @@ impl Settings<'_> {
             self.wrong(entry, wanted);
             return None;
         };
-        let (key, key_span) = (&entry.key, &entry.key_span);
         let triples = items.iter().map(|node| {
-            let item = Entry { key: key.clone(), key_span: key_span.clone(), node: node.clone() };
+            let (key, key_span) = (entry.key.clone(), entry.key_span.clone());
+            let item = Entry { key, key_span, node: node.clone() };
             self.triple_of(&item, Domain::Finite, "three finite numbers [x, y, z] each")
         });
         triples.collect::<Vec<_>>().into_iter().collect()
@@ -90,19 +88,19 @@ impl Settings<'_> {
             }
             _ => true,
         });
+        let help = format!("each entry is {}", domain.words());
         for item in wrong.by_ref().take(TOLD) {
-            let what = match item.value {
-                Value::Number(x) => format!("{} stands in `{}`", number(x), entry.key),
-                ref other => format!("{} stands in `{}`", other.kind(), entry.key),
+            let found = match item.value {
+                Value::Number(x) => number(x),
+                ref other => other.kind().to_owned(),
             };
-            let help = format!("each entry is {}", domain.words());
-            self.fault_at(item.span.clone(), &entry.key, what, help);
+            let message = format!("{found} stands in `{}`", entry.key);
+            self.fault_at(item.span.clone(), &entry.key, message, help.as_str());
         }
         if let Some(next) = wrong.next() {
             let more = 1 + wrong.count();
-            let what = format!("{more} more entries of `{}` are wrong", entry.key);
-            let help = format!("each entry is {}", domain.words());
-            self.fault_at(next.span.clone(), &entry.key, what, help);
+            let message = format!("{more} more entries of `{}` are wrong", entry.key);
+            self.fault_at(next.span.clone(), &entry.key, message, help);
         }
         (list.len() == items.len()).then_some(list)
     }

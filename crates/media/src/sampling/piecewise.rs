@@ -145,11 +145,6 @@ impl Piecewise {
         self.slope.iter().all(|&slope| slope == 0.0)
     }
 
-    /// The ends and the first value of every piece.
-    pub fn segments(&self) -> impl Iterator<Item = ([f64; 2], f64)> + '_ {
-        self.knots.windows(2).zip(&self.left).map(|(ends, &value)| ([ends[0], ends[1]], value))
-    }
-
     /// Beginning, end and mean free path `1/σ̂` of every piece that begins above zero.
     #[inline(always)]
     pub fn stretches(&self) -> &[Row] {
