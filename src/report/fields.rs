@@ -2,9 +2,11 @@
 
 use std::fmt::Write;
 
-use serde::ser::{Serialize, Serializer};
+use serde::Serialize;
+use serde::ser::Serializer;
 
 use crate::report::layout::{Column, Grid};
+use crate::report::run::summary_csv::Line;
 use crate::report::{Artifact, ReportError};
 use numeric::digits::{count, enough, exact, fixed, percent, short, signed, time};
 
@@ -23,6 +25,14 @@ pub enum Cell {
     Count(Option<u64>),
     /// List of numbers; may be empty.
     List(Vec<f64>),
+    /// List of counts; may be empty.
+    Counts(Vec<u32>),
+    /// Yes or no, if it is known.
+    Flag(Option<bool>),
+    /// List of sentences; may be empty.
+    Texts(Vec<String>),
+    /// Rows of another table.
+    Rows(Vec<Named<Cell>>),
 }
 
 impl Cell {
@@ -34,17 +44,32 @@ impl Cell {
             Self::Number(number) | Self::Score(number, _) => number.map(exact).unwrap_or_default(),
             Self::Count(count) => count.map(|n| n.to_string()).unwrap_or_default(),
             Self::List(list) => list.iter().map(|&x| exact(x)).collect::<Vec<_>>().join(" "),
+            Self::Counts(list) => list.iter().map(u32::to_string).collect::<Vec<_>>().join(" "),
+            Self::Flag(flag) => flag.map(|is_so| is_so.to_string()).unwrap_or_default(),
+            Self::Texts(texts) => texts.join("; "),
+            Self::Rows(rows) => rows.len().to_string(),
         }
     }
-}
 
-impl Cell {
+    /// Returns a cell of rows of a table.
+    pub fn rows<T: Table>(rows: &[T]) -> Self {
+        let fields = T::of_files();
+        Self::Rows(rows.iter().map(|row| object(&fields, row)).collect())
+    }
+
+    fn is_known(&self) -> bool {
+        !matches!(
+            self,
+            Self::Word(None) | Self::Number(None) | Self::Count(None) | Self::Flag(None)
+        )
+    }
+
     fn kind(&self) -> &'static str {
         match self {
-            Self::Text(_) | Self::Word(_) => "text",
+            Self::Text(_) | Self::Word(_) | Self::Flag(_) => "text",
             Self::Number(_) | Self::Score(..) => "number",
             Self::Count(_) => "count",
-            Self::List(_) => "list",
+            Self::List(_) | Self::Counts(_) | Self::Texts(_) | Self::Rows(_) => "list",
         }
     }
 }
@@ -57,6 +82,10 @@ impl Serialize for Cell {
             Self::Number(number) | Self::Score(number, _) => number.serialize(serializer),
             Self::Count(count) => count.serialize(serializer),
             Self::List(list) => list.serialize(serializer),
+            Self::Counts(list) => list.serialize(serializer),
+            Self::Flag(flag) => flag.serialize(serializer),
+            Self::Texts(texts) => texts.serialize(serializer),
+            Self::Rows(rows) => rows.serialize(serializer),
         }
     }
 }
@@ -82,6 +111,10 @@ cells! {
     u64: |n| Self::Count(Some(n));
     usize: |n| Self::Count(Some(n as u64));
     Option<u64>: |n| Self::Count(n);
+    Option<usize>: |n| Self::Count(n.map(|n| n as u64));
+    &Vec<u32>: |list| Self::Counts(list.clone());
+    Option<bool>: |flag| Self::Flag(flag);
+    &Vec<String>: |texts| Self::Texts(texts.clone());
     bool: |is_so| Self::Text(is_so.to_string());
     &Vec<f64>: |list| Self::List(list.clone());
 }
@@ -145,7 +178,7 @@ pub struct Field<T> {
     pub head: &'static str,
     /// Unit, as in `1/length`; empty for words, counts and ratios.
     pub unit: &'static str,
-    /// Meaning, in one sentence.
+    /// Meaning, in one sentence; empty for that of the field with this name in rows of a run.
     pub meaning: &'static str,
     /// Form for people.
     pub print: Print,
@@ -171,11 +204,20 @@ impl<T> Field<T> {
         !is_text || self.print != Print::Plain
     }
 
+    /// Returns the meaning.
+    fn meaning(&self) -> &'static str {
+        if !self.meaning.is_empty() {
+            return self.meaning;
+        }
+        let of_run = Line::fields().into_iter().find(|field| field.name == self.name);
+        of_run.map_or("", |field| field.meaning)
+    }
+
     /// Returns the meaning with the unit.
     pub fn tip(&self) -> String {
         let unit =
             if self.unit.is_empty() { String::new() } else { format!(" Unit: {}.", self.unit) };
-        format!("{}.{unit}", self.meaning)
+        format!("{}.{unit}", self.meaning())
     }
 }
 
@@ -198,31 +240,34 @@ pub trait Table: Sized {
     }
 }
 
-/// Returns the places of fields in their table. It is for constants: an unknown name is an error of the compiler.
-pub(in crate::report) const fn places<T: Table, const N: usize>(names: [&str; N]) -> [usize; N] {
-    let mut places = [0; N];
-    let mut i = 0;
-    while i < N {
-        while !is_same(names[i], T::NAMES[places[i]]) {
-            places[i] += 1;
-        }
-        i += 1;
-    }
-    places
+/// Column of a screen or a page.
+#[derive(Debug, Clone, Copy)]
+pub struct Shown {
+    /// Place of its field in the table.
+    pub place: usize,
+    /// Rank: columns of the highest rank leave a narrow console first.
+    pub rank: u8,
 }
 
-/// Returns the places of fields in their table, each with its rank on a narrow console, where the highest rank leaves first.
-pub(in crate::report) const fn ranked<T: Table, const N: usize>(
-    columns: [(&str, u8); N],
-) -> [(usize, u8); N] {
-    let mut ranked = [(0, 0); N];
-    let mut i = 0;
-    while i < N {
-        let [place] = places::<T, 1>([columns[i].0]);
-        ranked[i] = (place, columns[i].1);
-        i += 1;
+/// Lists columns by the names of their fields, each with its rank where that is not 0, as in
+/// `shown!(Line: "mean" 6, "z_mean" 1, "truth")`. An unknown name is an error of the compiler.
+macro_rules! shown {
+    ($row:ty: $($name:literal $($rank:literal)?),*) => {
+        const { &[$($crate::report::fields::Shown {
+            place: $crate::report::fields::place::<$row>($name),
+            rank: 0 $(+ $rank)?,
+        }),*] }
+    };
+}
+pub(in crate::report) use shown;
+
+/// Returns the place of a field in its table.
+pub(in crate::report) const fn place<T: Table>(name: &str) -> usize {
+    let mut place = 0;
+    while !is_same(name, T::NAMES[place]) {
+        place += 1;
     }
-    ranked
+    place
 }
 
 const fn is_same(a: &str, b: &str) -> bool {
@@ -235,33 +280,33 @@ const fn is_same(a: &str, b: &str) -> bool {
 }
 
 /// Returns the table of rows for a console, with these columns.
-pub fn grid<T: Table>(rows: &[T], columns: &[(usize, u8)]) -> Grid {
+pub fn grid<T: Table>(rows: &[T], columns: &[Shown]) -> Grid {
     let fields = T::fields();
-    let column = |&(place, rank): &(usize, u8)| fields[place].column(rows, rank);
+    let column = |shown: &Shown| fields[shown.place].column(rows, shown.rank);
     Grid { columns: columns.iter().map(column).collect() }
 }
 
 /// Lists fields, as in `"seed": "Seed of the run" = |row| row.seed;`, or with heading, unit and form, as in
 /// `"swept" ["σ̂", "1/length", Short(4)]: "Swept value" = |row| row.swept();`.
 macro_rules! fields {
-    ($($name:literal $([$head:literal, $unit:literal, $print:expr])?: $meaning:literal = |$row:pat_param| $cell:expr;)*) => {{
+    ($($name:literal $([$head:literal, $unit:literal, $print:expr])? $(: $meaning:literal)? = |$row:pat_param| $cell:expr;)*) => {{
         #[allow(unused_imports)]
         use $crate::report::fields::Print::{
             Enough, Fixed, Percent, Places, Plain, Right, Short, Signed, Time,
         };
         vec![$($crate::report::fields::fields!(
-            @one $name [$($head, $unit, $print)?], $meaning, |$row| $cell
+            @one $name [$($head, $unit, $print)?], [$($meaning)?], |$row| $cell
         )),*]
     }};
     (@one $name:literal [], $($rest:tt)*) => {
         $crate::report::fields::fields!(@one $name [$name, "", Plain], $($rest)*)
     };
-    (@one $name:literal [$head:literal, $unit:literal, $print:expr], $meaning:literal, |$row:pat_param| $cell:expr) => {
+    (@one $name:literal [$head:literal, $unit:literal, $print:expr], [$($meaning:literal)?], |$row:pat_param| $cell:expr) => {
         $crate::report::fields::Field {
             name: $name,
             head: $head,
             unit: $unit,
-            meaning: $meaning,
+            meaning: concat!($($meaning)?),
             print: $print,
             cell: |$row| $crate::report::fields::Cell::from($cell),
         }
@@ -272,9 +317,9 @@ pub(in crate::report) use fields;
 /// Makes a type of rows a [`Table`] of fields: those of files, then those of screens and pages only.
 macro_rules! table {
     (impl $(<$life:lifetime>)? for $row:ty {
-        $($name:literal $([$($form:tt)*])?: $meaning:literal = |$arg:pat_param| $cell:expr;)*
+        $($name:literal $([$($form:tt)*])? $(: $meaning:literal)? = |$arg:pat_param| $cell:expr;)*
     } $(screens {
-        $($other:literal $([$($shape:tt)*])?: $sense:literal = |$one:pat_param| $content:expr;)*
+        $($other:literal $([$($shape:tt)*])? $(: $sense:literal)? = |$one:pat_param| $content:expr;)*
     })?) => {
         impl $(<$life>)? $crate::report::fields::Table for $row {
             const NAMES: &'static [&'static str] = &[$($name,)* $($($other,)*)?];
@@ -282,8 +327,8 @@ macro_rules! table {
 
             fn fields() -> Vec<$crate::report::fields::Field<Self>> {
                 $crate::report::fields::fields! {
-                    $($name $([$($form)*])?: $meaning = |$arg| $cell;)*
-                    $($($other $([$($shape)*])?: $sense = |$one| $content;)*)?
+                    $($name $([$($form)*])? $(: $meaning)? = |$arg| $cell;)*
+                    $($($other $([$($shape)*])? $(: $sense)? = |$one| $content;)*)?
                 }
             }
         }
@@ -308,28 +353,19 @@ pub fn csv<T>(
     Ok(String::from_utf8_lossy(&bytes).into_owned())
 }
 
-/// Row as an object of JSON.
-pub struct Object<'a, T> {
-    /// Fields.
-    pub fields: &'a [Field<T>],
-    /// Row.
-    pub row: T,
-}
-
-impl<T> Serialize for Object<'_, T> {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        serializer
-            .collect_map(self.fields.iter().map(|field| (field.name, (field.cell)(&self.row))))
-    }
-}
-
 /// Pairs as an object of JSON, in their order.
-struct Named<V>(Vec<(&'static str, V)>);
+#[derive(Debug, Clone, PartialEq)]
+pub struct Named<V>(Vec<(&'static str, V)>);
 
 impl<V: Serialize> Serialize for Named<V> {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         serializer.collect_map(self.0.iter().map(|(name, value)| (name, value)))
     }
+}
+
+/// Returns a row as an object of JSON.
+pub fn object<T>(fields: &[Field<T>], row: &T) -> Named<Cell> {
+    Named(fields.iter().map(|field| (field.name, (field.cell)(row))).collect())
 }
 
 /// Returns rows as a JSON array of objects, one per line. Unknown is `null`, and so is an infinite number, which JSON
@@ -338,10 +374,43 @@ pub fn json<T>(
     fields: &[Field<T>],
     rows: impl IntoIterator<Item = T>,
 ) -> Result<String, ReportError> {
-    let objects = rows.into_iter().map(|row| serde_json::to_string(&Object { fields, row }));
+    let objects = rows.into_iter().map(|row| serde_json::to_string(&object(fields, &row)));
     let objects: Result<Vec<_>, _> = objects.collect();
     let objects = objects?.join(",\n");
     Ok(if objects.is_empty() { "[]\n".to_owned() } else { format!("[\n{objects}\n]\n") })
+}
+
+/// Content of a field of a tree: a cell, or an object of cells.
+#[derive(Serialize)]
+#[serde(untagged)]
+enum Node {
+    Cell(Cell),
+    Object(Named<Cell>),
+    Unknown(()),
+}
+
+/// Returns a row as a JSON object. Names with a point are those of an object within it, as `order.lag`, which is `null` if
+/// none of its fields is known.
+pub fn tree<T: Table>(row: &T) -> Result<String, ReportError> {
+    let mut tree: Vec<(&'static str, Node)> = Vec::new();
+    for field in T::of_files() {
+        let cell = (field.cell)(row);
+        let Some((object, name)) = field.name.split_once('.') else {
+            tree.push((field.name, Node::Cell(cell)));
+            continue;
+        };
+        match tree.last_mut() {
+            Some((last, Node::Object(Named(cells)))) if *last == object => cells.push((name, cell)),
+            _ => tree.push((object, Node::Object(Named(vec![(name, cell)])))),
+        }
+    }
+    for (_, node) in &mut tree {
+        if matches!(node, Node::Object(Named(cells)) if !cells.iter().any(|(_, cell)| cell.is_known()))
+        {
+            *node = Node::Unknown(());
+        }
+    }
+    Ok(serde_json::to_string_pretty(&Named(tree))? + "\n")
 }
 
 /// Returns rows as a JSON object of columns, each its kind (`text`, `number`, `count` or `list`) and its values. Unknown is
@@ -366,8 +435,14 @@ pub fn artifact<T>(
 
 /// Returns fields as a table of Markdown: name, heading, unit, meaning.
 pub fn markdown<T>(fields: &[Field<T>]) -> String {
-    let mut text = String::from("| column | heading | unit | meaning |\n|---|---|---|---|\n");
-    for Field { name, head, unit, meaning, .. } in fields {
+    let (shared, own): (Vec<_>, Vec<_>) = fields.iter().partition(|field| field.meaning.is_empty());
+    let shared: Vec<String> = shared.iter().map(|field| format!("`{}`", field.name)).collect();
+    let mut text = String::new();
+    if !shared.is_empty() {
+        let _ = writeln!(text, "As in rows of a run: {}.\n", shared.join(", "));
+    }
+    text.push_str("| column | heading | unit | meaning |\n|---|---|---|---|\n");
+    for Field { name, head, unit, meaning, .. } in own {
         let head = if head == name { "" } else { *head };
         let meaning = meaning.replace('|', "\\|");
         let _ = writeln!(text, "| `{name}` | {head} | {unit} | {meaning} |");

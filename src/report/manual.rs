@@ -2,7 +2,8 @@
 
 use std::fmt::Write;
 
-use crate::judge::images::judgement::Tile;
+use crate::judge::images::judgement::{Judgement, Tile};
+use crate::report::changes::Difference;
 use crate::report::fields::{Table, markdown};
 use crate::report::run::summary_csv::Line;
 use crate::report::run::totals::{NOT_NORMAL, VERDICTS};
@@ -32,9 +33,14 @@ pub fn columns() -> String {
     add("Predicted curves of a sweep: `CASE.theory.csv`", of_files::<case_csv::Predicted>());
     add("The ray of a case: `CASE.anatomy.csv`", of_files::<case_csv::Place>());
     add("Findings of checks: `checks.csv`", of_files::<checks_csv::FindingRow>());
+    add("Changes since a stored run or bench: `changes.csv`", of_files::<Difference>());
     add("Times: `bench.csv`, `bench --format csv|json`", of_files::<bench::tables::Joined>());
     add("Error against time: `CASE.error.csv`", of_files::<bench::tables::Priced>());
     add("Advice: `advise.csv`, `advise --format csv|json`", of_files::<advise::Joined>());
+    add(
+        "Images of a renderer: `judgement.json`, `judge --images --format json`; `order.lag` is `lag` in the object `order`",
+        of_files::<&Judgement>(),
+    );
     add("Tiles of images: `tiles.csv` of `judge --images`", of_files::<&Tile>());
     add("Images: `gallery.csv` of `render`", of_files::<render::Joined>());
     add("Promised rates: `self-test/calibration.csv`", of_files::<&Rate>());

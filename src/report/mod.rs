@@ -8,6 +8,7 @@
 
 pub mod advise;
 pub mod bench;
+pub mod changes;
 pub mod fields;
 pub mod html;
 pub mod judge;

@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use crate::report::fields::{self, Table, grid, ranked, table};
+use crate::report::fields::{self, Shown, Table, grid, shown, table};
 use crate::report::layout::{Field, Paint, Pen};
 use crate::report::{Artifact, ReportError};
 use crate::self_test::SelfTest;
@@ -15,24 +15,11 @@ use numeric::digits::{count, short};
 const KEPT: [&str; 2] = ["kept", "BROKEN"];
 
 /// Columns of the screen, each with its rank.
-const RATES: [(usize, u8); 7] = ranked::<&Rate, _>([
-    ("what", 0),
-    ("count", 0),
-    ("trials", 0),
-    ("rate", 0),
-    ("low_99", 0),
-    ("high_99", 0),
-    ("promise", 0),
-]);
-const STREAMS: [(usize, u8); 5] = ranked::<&StreamVerdicts, _>([
-    ("law", 0),
-    ("known", 0),
-    ("pass", 0),
-    ("fail", 0),
-    ("inconclusive", 0),
-]);
-const MUTANTS: [(usize, u8); 5] =
-    ranked::<&Caught, _>([("mutant", 0), ("place", 1), ("check", 0), ("draws", 0), ("others", 2)]);
+const RATES: &[Shown] = shown!(&Rate:
+    "what", "count", "trials", "rate", "low_99", "high_99", "promise"
+);
+const STREAMS: &[Shown] = shown!(&StreamVerdicts: "law", "known", "pass", "fail", "inconclusive");
+const MUTANTS: &[Shown] = shown!(&Caught: "mutant", "place" 1, "check", "draws", "others" 2);
 
 /// Returns the tables for the screen.
 pub fn table(found: &SelfTest, pen: Pen) -> String {
@@ -56,7 +43,7 @@ fn promises(text: &mut String, pen: Pen, calibration: &Calibration) {
     );
     let _ = writeln!(text, "{} · {} draws", pen.paint(Paint::Bold, &title), count(*draws));
     let rates: Vec<&Rate> = rates(calibration).collect();
-    let mut grid = grid(&rates, &RATES);
+    let mut grid = grid(&rates, RATES);
     let kept = rates.iter().map(|rate| Field::judged(rate.is_kept, KEPT));
     grid.push("", kept.collect());
     grid.fit(pen.width);
@@ -82,7 +69,7 @@ fn streams(text: &mut String, pen: Pen, streams: &[StreamVerdicts]) {
     );
     let _ = writeln!(text, "{}", pen.paint(Paint::Bold, &title));
     let rows: Vec<&StreamVerdicts> = streams.iter().collect();
-    let mut grid = grid(&rows, &STREAMS);
+    let mut grid = grid(&rows, STREAMS);
     let kept = streams.iter().map(|verdicts| Field::judged(verdicts.is_kept(), KEPT));
     grid.push("", kept.collect());
     grid.fit(pen.width);
@@ -104,7 +91,7 @@ fn mutants(text: &mut String, pen: Pen, mutants: &[Caught]) {
     let title = format!("mutants: {caught} of {} caught, each control passes", mutants.len());
     let _ = writeln!(text, "{}", pen.paint(Paint::Bold, &title));
     let rows: Vec<&Caught> = mutants.iter().collect();
-    let mut grid = grid(&rows, &MUTANTS);
+    let mut grid = grid(&rows, MUTANTS);
     for (field, mutant) in grid.columns[3].fields.iter_mut().zip(mutants) {
         match mutant.draws {
             Some(_) if mutant.twin_passes => {}

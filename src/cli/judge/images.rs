@@ -215,6 +215,6 @@ fn show(
         Shown::Table => {
             output::print(&report::console::block(judgement, name, output::pen(console).width))
         }
-        Shown::Json => output::print(&(serde_json::to_string_pretty(judgement)? + "\n")),
+        Shown::Json => output::print(&report::json(judgement)?),
     }
 }

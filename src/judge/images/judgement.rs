@@ -7,7 +7,7 @@ use gate::stats::gate::Evidence;
 use gate::stats::verdict::{MISS, Verdict};
 
 /// Verdict on a stack, with its numbers.
-#[derive(Debug, Clone, serde::Serialize)]
+#[derive(Debug, Clone)]
 pub struct Judgement {
     /// `pass`, `fail` or `inconclusive`.
     pub verdict: Verdict,
@@ -48,7 +48,6 @@ pub struct Judgement {
     /// Whole picture, one entry per channel.
     pub whole: Vec<Tile>,
     /// Every tile, the smallest first, row after row from the top, each with all its channels.
-    #[serde(skip)]
     pub tiles: Vec<Tile>,
     /// Numbers of tiles by their verdicts.
     pub counts: Counts,
@@ -57,7 +56,7 @@ pub struct Judgement {
 }
 
 /// Numbers of tiles by their verdicts; a tile counts in each channel.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, serde::Serialize)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Counts {
     /// K, the number of all tiles.
     pub tiles: usize,
@@ -70,7 +69,7 @@ pub struct Counts {
 }
 
 /// Value that refutes the claim by itself.
-#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Refuted {
     /// Pass, from 0.
     pub pass: usize,
@@ -93,7 +92,7 @@ impl Refuted {
 }
 
 /// Test for dependence of some numbers on each other.
-#[derive(Debug, Clone, Default, serde::Serialize)]
+#[derive(Debug, Clone, Default)]
 pub struct Dependence {
     /// Description of a dependence; empty if none was found.
     pub reason: String,
@@ -117,7 +116,7 @@ impl Dependence {
 }
 
 /// Test of the claimed variance, over all pixels.
-#[derive(Debug, Clone, Copy, serde::Serialize)]
+#[derive(Debug, Clone, Copy)]
 pub struct Variance {
     /// Mean of (x − truth)²/V.
     pub about_truth: f64,
@@ -134,7 +133,7 @@ pub struct Variance {
 }
 
 /// Variance that was estimated from passes.
-#[derive(Debug, Clone, Copy, serde::Serialize)]
+#[derive(Debug, Clone, Copy)]
 pub struct Estimate {
     /// Number of passes that it was estimated from.
     pub passes: usize,
@@ -151,7 +150,7 @@ pub struct Estimate {
 }
 
 /// Two stacks against each other.
-#[derive(Debug, Clone, serde::Serialize)]
+#[derive(Debug, Clone)]
 pub struct Comparison {
     /// Number of passes of the reference.
     pub passes: usize,
@@ -172,7 +171,7 @@ pub struct Comparison {
 }
 
 /// Rectangle of pixels in one channel.
-#[derive(Debug, Clone, serde::Serialize)]
+#[derive(Debug, Clone)]
 pub struct Tile {
     /// Rows and columns of tiles of its kind.
     pub size: usize,
@@ -202,6 +201,8 @@ pub struct Tile {
     pub ln_p: [f64; 2],
     /// ε, in units of the picture's mean truth in that channel; `None` if no evidence was possible.
     pub tolerance: Option<f64>,
+    /// Number of passes after which it would be decided, as planned for ε; `None` if no number of them suffices.
+    pub needed: Option<f64>,
     /// True if it is on the list of suspect tiles.
     pub is_listed: bool,
     /// Verdict on the tile.
@@ -231,6 +232,15 @@ fn worst(tiles: &[Tile]) -> Vec<Tile> {
 }
 
 impl Tile {
+    /// Returns whether another tile lies in this one.
+    pub fn contains(&self, other: &Self) -> bool {
+        let holds = |[first, length]: [usize; 2], [inner, extent]: [usize; 2]| {
+            first <= inner && inner + extent <= first + length
+        };
+        holds([self.row, self.height], [other.row, other.height])
+            && holds([self.column, self.width], [other.column, other.width])
+    }
+
     /// Returns the evidence on the mean.
     pub(super) fn evidence(&self) -> Evidence {
         Evidence { ln_e: self.ln_e, ln_pass: self.ln_p }

@@ -72,6 +72,7 @@ pub(super) fn tile(stack: &Stack, pixels: &Pixels, part: Part, terms: Terms, q: 
                 let error = (upper * ((share / count) / (unit * unit) / scale)).sqrt();
                 let z = upper_quantile(MISS) + upper_quantile(0.025 / terms.count.max(1) as f64);
                 found.promise(terms.tolerance, terms.is_capped, z, [error, unit], upper_tail);
+                found.plan_by_error(stack.passes, [1.0 / n, pixels.truth_share], z * error);
             }
         } else {
             let y = all();
@@ -98,6 +99,7 @@ pub(super) fn tile(stack: &Stack, pixels: &Pixels, part: Part, terms: Terms, q: 
         ln_e.push(bets.evidence.ln_e);
         if let (None, Some(design)) = (found.tolerance, bets.design) {
             (found.tolerance, found.ln_p) = (Some(design.tolerance), bets.evidence.ln_pass);
+            found.plan(stack.passes, [1.0 / n, pixels.truth_share], planned / design.draws());
         }
     }
     found.ln_e = if ln_e.is_empty() { 0.0 } else { ln_mean_exp(&ln_e) };

@@ -5,7 +5,7 @@ use std::num::NonZeroUsize;
 use super::claim::ImageError;
 
 /// Size of a picture.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Size {
     /// Number of rows.
     pub rows: usize,

@@ -17,7 +17,7 @@ use super::judgement::Tile;
 use super::picture::{Size, Stack};
 use crate::judge::{AT_THE_END, Ground, Levels, Quantity, Scalar};
 use gate::session::quantity::MEAN_CAP;
-use gate::stats::gate::PLANNED;
+use gate::stats::gate::{HORIZON, PLANNED};
 use gate::stats::normal::{upper_quantile, upper_tail};
 use gate::stats::verdict::{MISS, Verdict};
 
@@ -108,6 +108,7 @@ impl Tile {
             ln_e: 0.0,
             ln_p: [f64::NEG_INFINITY; 2],
             tolerance: None,
+            needed: None,
             is_listed: false,
             verdict: Verdict::Inconclusive,
         }
@@ -142,6 +143,21 @@ impl Tile {
         let cap = if is_capped { MEAN_CAP } else { f64::INFINITY };
         let tolerance = asked.unwrap_or((quantiles * error).min(cap));
         (self.tolerance, self.ln_p) = (Some(tolerance), self.sides(tolerance, [error, unit], tail));
+    }
+
+    /// Plans by the widest deviation that the standard error of these passes leaves open.
+    pub(super) fn plan_by_error(&mut self, passes: usize, parts: [f64; 2], widest: f64) {
+        let ratio = self.tolerance.map_or(1.0, |tolerance| (tolerance / widest).powi(2));
+        self.plan(passes, parts, ratio);
+    }
+
+    /// Sets the number of passes after which the part is decided, by the rule of draws: what ε is planned for or, with as
+    /// many, `HORIZON`/`PLANNED` of that. `ratio` is the squared error that ε takes over that of these passes, and the two
+    /// parts of it come from these passes and from the truth, which more passes do not reduce.
+    pub(super) fn plan(&mut self, passes: usize, [own, other]: [f64; 2], ratio: f64) {
+        let ratio = if ratio < 1.0 - 1e-6 { ratio } else { PLANNED / HORIZON };
+        let left = ratio * (own + other) - other;
+        self.needed = (left > 0.0).then(|| (passes as f64 * own / left).ceil());
     }
 }
 
@@ -189,7 +205,10 @@ pub(super) fn tile(stack: &Stack, pixels: &Pixels, part: Part, terms: Terms) -> 
     let planned = Some(terms.planned(draws));
     let scalar = Scalar::of_all(mean_quantity, planned, levels, stack.passes, of_block);
     (found.ln_e, found.ln_p) = (scalar.evidence.ln_e, scalar.evidence.ln_pass);
-    found.tolerance = scalar.design.map(|design| design.tolerance);
+    if let Some(design) = scalar.design {
+        found.tolerance = Some(design.tolerance);
+        found.plan(stack.passes, [1.0, 0.0], terms.planned(draws) / design.draws());
+    }
     if let (Some(tolerance), true, false) = (found.tolerance, variance.is_some(), is_single) {
         // Catoni's function hardly detects a bias in one pixel of many; the plain mean does.
         let sides = found.sides(tolerance, [standard_error / unit, unit], upper_tail);

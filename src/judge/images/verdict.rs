@@ -5,7 +5,7 @@ use super::judgement::{Comparison, Judgement, Refuted, Tile};
 use crate::judge::{Reasons, SIDE_SHARE};
 use gate::deviation::{Deviation, signed_percent};
 use gate::stats::verdict::Verdict;
-use numeric::digits::{percent, short};
+use numeric::digits::{enough, percent, short};
 
 /// Decides about a stack, and adds the promises of the verdict.
 pub(super) fn decide(judgement: &mut Judgement, pixels: &Pixels, claim: &Claim) {
@@ -101,23 +101,37 @@ fn means_off(judgement: &Judgement, worst: Option<&Tile>) -> Vec<String> {
 
 /// Returns the reasons by which means are undecided.
 fn means_open(judgement: &Judgement) -> Vec<String> {
-    let undecided = |tile: &&Tile| tile.verdict != Verdict::Pass;
-    let whole = |whole: &Tile| {
-        format!("the picture may be off {}; render more passes{}", bias(whole), constant(whole))
-    };
-    let whole = judgement.whole.iter().find(undecided).map(whole);
-    let count = judgement.tiles.iter().filter(undecided).count();
-    let tile = judgement.tiles.iter().find(undecided).map(|tile| {
+    let (wholes, tiles) = (undecided(&judgement.whole), undecided(&judgement.tiles));
+    let whole = wholes.first().map(|whole| {
+        let more = more(judgement, &wholes);
+        format!("the picture may be off {}; {more}{}", bias(whole), constant(whole))
+    });
+    let tile = tiles.first().map(|tile| {
         format!(
-            "{count} of {} tiles may be off, the first, {}, {}; render more passes, or give a larger --tile or a wider \
-             --tolerance{}",
+            "{} of {} tiles may be off, the first, {}, {}; {}, or give a larger --tile or a wider --tolerance{}",
+            tiles.len(),
             judgement.counts.tiles,
             place(judgement, tile),
             bias(tile),
+            more(judgement, &tiles),
             constant(tile)
         )
     });
     whole.into_iter().chain(tile).collect()
+}
+
+fn undecided(tiles: &[Tile]) -> Vec<&Tile> {
+    tiles.iter().filter(|tile| tile.verdict != Verdict::Pass).collect()
+}
+
+/// Returns the advice to render as many passes as decide all of these tiles, where their number is known.
+fn more(judgement: &Judgement, undecided: &[&Tile]) -> String {
+    let needed: Option<Vec<f64>> = undecided.iter().map(|tile| tile.needed).collect();
+    let most = needed.map(|needed| needed.into_iter().fold(0.0, f64::max));
+    most.map_or("render more passes".to_owned(), |most| {
+        let passes = if most < 1e6 { most.to_string() } else { enough(most) };
+        format!("render {passes} passes in place of {}", judgement.passes)
+    })
 }
 
 /// Returns the cure for values without a measured spread, of which passes prove nothing however many.

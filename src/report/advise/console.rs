@@ -5,28 +5,19 @@ use std::fmt::Write;
 use super::Joined;
 use crate::advise::search::MAX_FACTOR;
 use crate::advise::{Advice, Group, Row, Target};
-use crate::report::fields::{grid, ranked};
+use crate::report::fields::{Shown, grid, shown};
 use crate::report::layout::{Paint, Pen, end_elided};
 use numeric::digits::{fixed, percent, short, time};
 
 /// Columns, each with its rank, before and after the goal.
-const FIRST: [(usize, u8); 3] =
-    ranked::<Joined, _>([("rank_marked", 0), ("estimator", 0), ("sampling_marked", 0)]);
-const LAST: [(usize, u8); 9] = ranked::<Joined, _>([
-    ("control", 1),
-    ("relative_deviation", 3),
-    ("lookups_per_draw", 4),
-    ("setup", 7),
-    ("draws", 8),
-    ("margins", 2),
-    ("least_sampling", 6),
-    ("kurtosis", 7),
-    ("needs", 2),
-]);
+const FIRST: &[Shown] = shown!(Joined: "rank_marked", "estimator", "sampling_marked");
+const LAST: &[Shown] = shown!(Joined:
+    "control" 1, "relative_deviation" 3, "lookups_per_draw" 4, "setup" 7, "draws" 8, "margins" 2, "least_sampling" 6,
+    "kurtosis" 7, "needs" 2
+);
 
 /// Columns of the goal: a time, another cost, or an error.
-const GOALS: [(usize, u8); 3] =
-    ranked::<Joined, _>([("time", 0), ("cost", 0), ("error_percent", 0)]);
+const GOALS: &[Shown] = shown!(Joined: "time", "cost", "error_percent");
 
 /// Returns the rank, with a mark of a tie.
 pub fn rank(row: &Row) -> String {
@@ -80,13 +71,12 @@ pub fn table(advice: &Advice, pen: Pen) -> String {
         if !words.is_empty() {
             let _ = writeln!(text, "{}", pen.paint(Paint::Dim, words));
         }
-        let [time, cost, error] = GOALS;
         let goal = match (advice.target, advice.unit()) {
-            (Target::Error(_), "s") => time,
-            (Target::Error(_), _) => cost,
-            (Target::Budget(_), _) => error,
+            (Target::Error(_), "s") => GOALS[0],
+            (Target::Error(_), _) => GOALS[1],
+            (Target::Budget(_), _) => GOALS[2],
         };
-        let mut grid = grid(&rows, &[&FIRST[..], &[goal], &LAST].concat());
+        let mut grid = grid(&rows, &[FIRST, &[goal], LAST].concat());
         grid.fit(pen.width);
         text.push_str(&grid.render(pen));
     }

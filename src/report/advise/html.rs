@@ -5,30 +5,16 @@ use maud::html;
 use super::{Joined, console};
 use crate::advise::Advice;
 use crate::report::ReportError;
-use crate::report::fields::places;
-use crate::report::html as page;
+use crate::report::fields::{Shown, shown};
 use crate::report::html::drawing::{definitions, plot};
-use crate::report::html::listing::{self, table};
+use crate::report::html::listing::{page, section};
 
 /// Columns of the page, beside the rank.
-const COLUMNS: [usize; 16] = places::<Joined, _>([
-    "group",
-    "estimator",
-    "sampling",
-    "sampling_factor",
-    "sampling_kind",
-    "control",
-    "cost",
-    "error",
-    "relative_deviation",
-    "lookups_per_draw",
-    "margin_below",
-    "margin_above",
-    "least_sampling",
-    "kurtosis",
-    "trusted_draws",
-    "needs",
-]);
+const COLUMNS: &[Shown] = shown!(Joined:
+    "group", "estimator", "sampling", "sampling_factor", "sampling_kind", "control", "cost", "error",
+    "relative_deviation", "lookups_per_draw", "margin_below", "margin_above", "least_sampling", "kurtosis",
+    "trusted_draws", "needs"
+);
 
 /// Returns the advice as a page of HTML.
 pub fn text(advice: &Advice) -> Result<String, ReportError> {
@@ -40,26 +26,20 @@ pub fn text(advice: &Advice) -> Result<String, ReportError> {
     let label =
         "cost against the sampling extinction, and the best sampling extinction along the ray";
     let plots = [vec![plot("costs".to_owned(), label.to_owned(), &super::plot::figure(advice)?)]];
+    let head = html! {
+        p { (console::facts(advice)) }
+        @if let Some(row) = best { pre { (row.lines) } }
+        @for note in console::notes(advice) { p { (note) } }
+    };
     let group = |of: &Joined| of.row.group.word().to_owned();
-    let choices = [("group", rows.iter().map(group).collect())];
-    let body = html! {
+    let title = "Estimators with their best settings";
+    let sections = html! {
         (definitions(&plots))
-        header.run.pass {
-            p.tool { "Trueflight " (env!("CARGO_PKG_VERSION")) ", advice for " (advice.case) }
-            h1 { (line) }
-            p { (console::facts(advice)) }
-            @if let Some(row) = best { pre { (row.lines) } }
-            @for note in console::notes(advice) { p { (note) } }
-        }
-        section aria-labelledby="experiments" {
-            h2 #experiments { "Estimators with their best settings" }
-            (listing::form(&choices, rows.len()))
-            (table("rank", |of| ("", console::rank(of.row)), &COLUMNS, &rows, group))
-        }
+        (section(title, "rank", |of| ("", console::rank(of.row)), COLUMNS, &rows, group))
         section aria-labelledby="figure" {
             h2 #figure { "Cost against σ\u{302}" }
             (plots[0][0].show())
         }
     };
-    Ok(page::document(&format!("Trueflight: {line}"), &body))
+    Ok(page(&format!("advice for {}", advice.case), ("pass", &line), &head, &sections))
 }

@@ -66,8 +66,7 @@ fn costs(sheet: &mut Sheet, advice: &Advice, rows: &[&Row]) {
     };
     let x = Axis::around("σ\u{302} [1/length]", true, 0.04, shown().map(|[x, _]| x));
     let y = Axis::around(title, true, 0.04, shown().map(|[_, y]| y));
-    let panel =
-        Panel { left: LEFT, top: TOP, right: LEFT + PANEL[0], bottom: TOP + PANEL[1], x, y };
+    let panel = Panel::at([LEFT, TOP], PANEL, x, y);
     panel.grid(sheet);
     for (index, row) in rows.iter().enumerate() {
         let Style { colour, dash, marker } = Style::of(index);
@@ -89,8 +88,7 @@ fn along(sheet: &mut Sheet, advice: &Advice) {
     let x = Axis::around("t [length]", false, 0.02, profile.breaks.iter().copied());
     let heights = sampling.iter().map(|point| point.1).chain(residual.clone().map(|point| point.1));
     let y = Axis::around("extinction [1/length]", false, 0.04, heights.chain([0.0]));
-    let left = LEFT + PITCH;
-    let panel = Panel { left, top: TOP, right: left + PANEL[0], bottom: TOP + PANEL[1], x, y };
+    let panel = Panel::at([LEFT + PITCH, TOP], PANEL, x, y);
     panel.grid(sheet);
     panel.line(sheet, residual, (&[], 1.6, DARK));
     panel.line(sheet, sampling, (&[], 2.0, COLOURS[1]));

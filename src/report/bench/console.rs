@@ -5,31 +5,17 @@ use std::fmt::Write;
 use super::diff;
 use super::tables::Joined;
 use crate::bench::record::{Bench, BenchCase, BenchRow};
-use crate::report::fields::{grid, ranked};
-use crate::report::layout::{Column, Paint, Pen, end_elided, wrapped};
+use crate::report::fields::{Shown, grid, shown};
+use crate::report::layout::{Column, Paint, Pen, end_elided};
 use crate::report::run::console::views::swept_apart;
 use numeric::digits::{count, fixed, short};
 
 /// Columns, each with its rank.
-const COLUMNS: [(usize, u8); 17] = ranked::<Joined, _>([
-    ("estimator", 0),
-    ("sampling_marked", 1),
-    ("control", 5),
-    ("channel", 1),
-    ("ns_per_draw", 1),
-    ("ns_per_draw_range", 6),
-    ("draws_per_second", 7),
-    ("ns_per_lookup", 4),
-    ("seconds_to_1e-2", 3),
-    ("seconds_to_1e-3", 2),
-    ("seconds_to_1e-4", 3),
-    ("efficiency", 4),
-    ("ttuv", 8),
-    ("fom", 5),
-    ("speedup", 1),
-    ("speedup_range", 6),
-    ("scaling", 2),
-]);
+const COLUMNS: &[Shown] = shown!(Joined:
+    "estimator", "sampling_marked" 1, "control" 5, "channel" 1, "ns_per_draw" 1, "ns_per_draw_range" 6,
+    "draws_per_second" 7, "ns_per_lookup" 4, "seconds_to_1e-2" 3, "seconds_to_1e-3" 2, "seconds_to_1e-4" 3,
+    "efficiency" 4, "ttuv" 8, "fom" 5, "speedup" 1, "speedup_range" 6, "scaling" 2
+);
 
 /// Returns the table, `width` columns wide, with ANSI colours if asked for.
 pub fn table(bench: &Bench, pen: Pen) -> String {
@@ -47,7 +33,7 @@ fn block(text: &mut String, pen: Pen, bench: &Bench, case: &BenchCase) {
     let facts = format!("{} · {}", case.problem, case.medium);
     let _ = writeln!(text, "{}", pen.paint(Paint::Dim, &end_elided(&facts, pen.width)));
     let rows: Vec<Joined> = case.rows.iter().map(|row| Joined { bench, case, row }).collect();
-    let mut grid = grid(&rows, &COLUMNS);
+    let mut grid = grid(&rows, COLUMNS);
     if let Some(head) = swept_apart(case.swept.as_deref()) {
         let digits = case.digits();
         let text =
@@ -108,17 +94,7 @@ fn closing(text: &mut String, pen: Pen, bench: &Bench) {
         );
     }
     pen.say(text, Paint::Dim, &facts.join(" · "));
-    let Some(comparison) = &bench.comparison else { return };
-    text.push('\n');
-    for (is_worse, line) in diff::all(comparison) {
-        let (word, paint) =
-            if is_worse { ("REGRESSION", Paint::Red) } else { ("improvement", Paint::Green) };
-        for (i, line) in wrapped(&line, pen.width.saturating_sub(14)).into_iter().enumerate() {
-            let head = if i == 0 { pen.paint(paint, word) } else { "   ".to_owned() };
-            let _ = writeln!(text, "  {head} {line}");
-        }
-    }
-    for remark in diff::remarks(comparison) {
-        pen.say(text, Paint::Dim, &remark);
+    if let Some(comparison) = &bench.comparison {
+        diff::changes(comparison).write(text, pen);
     }
 }

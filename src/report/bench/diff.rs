@@ -3,11 +3,18 @@
 use crate::bench::record::Spread;
 use crate::bench::stored::{Change, Comparison};
 use crate::case::id::ExperimentId;
-use crate::report::run::diff::{counts, ending, listed, not_empty};
+use crate::report::changes::{Changes, Difference, LeftOut, closing, counts, not_empty};
 use numeric::digits::{fixed, short};
 
+/// Returns the table of changes with its remarks; slower experiments come first.
+pub fn changes(comparison: &Comparison) -> Changes {
+    let mut all: Vec<Difference> = comparison.changes.iter().map(difference).collect();
+    all.sort_by_key(|change| !change.is_worse);
+    Changes { name: comparison.name.clone(), all, remarks: remarks(comparison) }
+}
+
 /// Returns the extent of the comparison, and its conditions.
-pub fn remarks(comparison: &Comparison) -> Vec<String> {
+fn remarks(comparison: &Comparison) -> Vec<String> {
     let Comparison { name, tolerance, compared, .. } = comparison;
     let tolerance = short(*tolerance, 3);
     let mut remarks = vec![format!(
@@ -17,13 +24,13 @@ pub fn remarks(comparison: &Comparison) -> Vec<String> {
     if let Some([before, now]) = &comparison.levels {
         remarks.push(format!("the vector hardware differs: {before} then, {now} now"));
     }
-    remarks.extend(left_out(comparison).into_iter().map(|(why, ids)| listed(why, ids)));
-    remarks.extend(ending(nothing(comparison), !comparison.changes.is_empty()));
+    let has_changes = !comparison.changes.is_empty();
+    remarks.extend(closing(&left_out(comparison), nothing(comparison), has_changes));
     remarks
 }
 
 /// Returns the experiments that were left out, by the reason.
-fn left_out(comparison: &Comparison) -> Vec<(&'static str, &[ExperimentId])> {
+fn left_out(comparison: &Comparison) -> Vec<LeftOut<'_, ExperimentId>> {
     not_empty([
         ("not in the baseline", &comparison.added),
         ("only in the baseline", &comparison.missing),
@@ -37,23 +44,20 @@ pub fn nothing(comparison: &Comparison) -> Option<String> {
     is_empty.then(|| format!("nothing was compared: {}", counts(&left_out(comparison))))
 }
 
-/// Returns all changes, slower experiments first: whether each became slower, and the numbers.
-pub fn all(comparison: &Comparison) -> Vec<(bool, String)> {
-    let mut told: Vec<_> =
-        comparison.changes.iter().map(|change| (change.is_regression, line(change))).collect();
-    told.sort_by_key(|(is_worse, _)| !is_worse);
-    told
-}
-
-fn line(change: &Change) -> String {
-    let [before, now] = change.ns_per_draw.map(of_rounds);
+fn difference(change: &Change) -> Difference {
+    let value = |of: Spread| Some((of.median, format!("{} ns", of_rounds(of))));
     let [earlier, later] = change.speedup.map(of_rounds);
     let ratio = fixed(change.ratio, 3);
-    format!(
-        "{}: time per draw {before} → {now} ns, ratio {ratio}; speedup over the plain loop \
-         {earlier} → {later}",
-        change.id
-    )
+    Difference {
+        is_worse: change.is_regression,
+        experiment: change.id.to_string(),
+        quantity: "time per draw".to_owned(),
+        values: change.ns_per_draw.map(value),
+        ratio: Some(change.ratio),
+        interval: None,
+        extent: format!("ratio {ratio}; speedup over the plain loop {earlier} → {later}"),
+        command: String::new(),
+    }
 }
 
 /// Returns the median with the minimum and the maximum of the rounds.

@@ -1,37 +1,23 @@
 //! `report.html` of a bench: times of all experiments, decrease of their errors, changes.
 
-use maud::{Markup, html};
+use maud::html;
 
 use super as files;
 use super::tables::Joined;
 use crate::bench::record::Bench;
 use crate::bench::stored::Comparison;
 use crate::report::ReportError;
-use crate::report::fields::places;
-use crate::report::html as page;
+use crate::report::fields::{Shown, shown};
+use crate::report::html as shared;
 use crate::report::html::drawing::{Plot, definitions, plot};
-use crate::report::html::listing::{self, table};
+use crate::report::html::listing::{page, section};
 use numeric::digits::{count, fixed, time};
 
 /// Columns of the page, beside the case.
-const COLUMNS: [usize; 16] = places::<Joined, _>([
-    "estimator",
-    "sampling",
-    "sampling_kind",
-    "swept",
-    "control",
-    "channel",
-    "ns_per_draw",
-    "ns_per_draw_least",
-    "ns_per_draw_most",
-    "ns_per_lookup",
-    "seconds_to_1e-3",
-    "efficiency",
-    "fom",
-    "speedup",
-    "scaling",
-    "reason",
-]);
+const COLUMNS: &[Shown] = shown!(Joined:
+    "estimator", "sampling", "sampling_kind", "swept", "control", "channel", "ns_per_draw", "ns_per_draw_least",
+    "ns_per_draw_most", "ns_per_lookup", "seconds_to_1e-3", "efficiency", "fom", "speedup", "scaling", "reason"
+);
 
 /// Returns the bench as a page of HTML.
 pub fn text(bench: &Bench) -> Result<String, ReportError> {
@@ -48,26 +34,17 @@ pub fn text(bench: &Bench) -> Result<String, ReportError> {
     } else {
         format!("{timed} experiments timed")
     };
-    let choices = [("group", rows.iter().map(|one| one.case.name.clone()).collect())];
-    let body = html! {
+    let sections = html! {
         (definitions(&plots))
-        header class={ "run " (if is_worse { "fail" } else { "pass" }) } {
-            p.tool { "Trueflight " (bench.version) ", run time against error" }
-            h1 { (line) }
-            dl.facts { @for (name, value) in facts(bench) { div { dt { (name) } dd { (value) } } } }
-        }
-        @if let Some(comparison) = &bench.comparison { (changes(comparison)) }
-        section aria-labelledby="experiments" {
-            h2 #experiments { "Experiments" }
-            (listing::form(&choices, rows.len()))
-            (table("case", |one| ("", one.case.name.clone()), &COLUMNS, &rows, |one| one.case.name.clone()))
-        }
+        @if let Some(comparison) = &bench.comparison { (files::diff::changes(comparison).section()) }
+        (section("Experiments", "case", |one| ("", one.case.name.clone()), COLUMNS, &rows, |one| one.case.name.clone()))
         section aria-labelledby="errors" {
             h2 #errors { "Error against time and lookups" }
             @for plot in plots.iter().flatten() { (plot.show()) }
         }
     };
-    Ok(page::document(&format!("Trueflight: {line}"), &body))
+    let class = if is_worse { "fail" } else { "pass" };
+    Ok(page("run time against error", (class, &line), &shared::facts(facts(bench)), &sections))
 }
 
 fn facts(bench: &Bench) -> Vec<(&'static str, String)> {
@@ -85,21 +62,4 @@ fn facts(bench: &Bench) -> Vec<(&'static str, String)> {
         ("Speedup over the plain loop", format!("{median}, from {least} to {most}"))
     }));
     facts
-}
-
-fn changes(comparison: &Comparison) -> Markup {
-    html! {
-        section aria-labelledby="changes" {
-            h2 #changes { "Since baseline " (comparison.name) }
-            ul { @for (is_worse, line) in files::diff::all(comparison) {
-                li {
-                    span class={ "verdict " (if is_worse { "fail" } else { "pass" }) } {
-                        (if is_worse { "↑ slower" } else { "↓ faster" })
-                    }
-                    " " (line)
-                }
-            } }
-            ul { @for remark in files::diff::remarks(comparison) { li { (remark) } } }
-        }
-    }
 }

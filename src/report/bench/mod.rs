@@ -3,6 +3,7 @@
 //! ```text
 //! bench.csv        one row per experiment and channel: times, ratios, efficiencies
 //! report.html      everything as a page
+//! changes.csv      changes since a stored bench, if there is one
 //! CASE.error.csv   the measured error against draws, lookups and time, with the predicted one
 //! CASE.svg, .png   the errors as a log-log plot
 //! ```
@@ -22,6 +23,9 @@ pub fn render(bench: &Bench) -> Result<Vec<Artifact>, ReportError> {
         Artifact::text("bench.csv", tables::csv(bench)?),
         Artifact::text("report.html", html::text(bench)?),
     ];
+    if let Some(comparison) = &bench.comparison {
+        artifacts.push(diff::changes(comparison).artifact()?);
+    }
     for case in plotted(bench) {
         artifacts.push(tables::errors(case)?);
         artifacts.extend(plot::artifacts(bench, case)?);

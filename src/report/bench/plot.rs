@@ -127,8 +127,7 @@ fn panel(place: f64, title: &str, prices: impl Iterator<Item = f64>, series: &[S
     let positive = |x: &f64| *x > 0.0 && x.is_finite();
     let x = Axis::around(title, true, 0.04, prices.filter(positive));
     let y = Axis::around("|mean − T| / T", true, 0.04, errors.filter(positive));
-    let left = LEFT + place * PITCH;
-    Panel { left, top: TOP, right: left + PANEL[0], bottom: TOP + PANEL[1], x, y }
+    Panel::at([LEFT + place * PITCH, TOP], PANEL, x, y)
 }
 
 fn in_time(sheet: &mut Sheet, series: &[Series], title: &str) {

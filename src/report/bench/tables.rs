@@ -49,24 +49,24 @@ impl Joined<'_> {
 
 table! {
     impl<'a> for Joined<'a> {
-        "case": "Case: the name of its file" = |joined| &joined.case.name;
-        "problem": "Kind of problem" = |joined| &joined.case.problem;
-        "medium": "Medium" = |joined| &joined.case.medium;
-        "estimator": "Estimator with its settings" = |joined| joined.row.id.label();
-        "sampling" ["σ̂", "1/length", Short(4)]: "Sampling extinction σ̂, if it is a constant" = |joined| joined.row.sampling();
-        "control": "Control extinction" = |joined| &joined.row.id.control;
-        "channel": "Which value of a draw; empty if a draw is one value" = |joined| &joined.row.channel;
-        "swept" ["swept", "", Short(4)]: "Value of the swept quantity" = |joined| joined.row.id.swept_value();
-        "sampling_kind" ["kind of σ̂", "", Plain]: "Kind of σ̂, as constant or local majorants" = |joined| &joined.row.id.sampling.kind;
-        "seed": "Seed of all random numbers" = |joined| Some(joined.bench.seed);
+        "case" = |joined| &joined.case.name;
+        "problem" = |joined| &joined.case.problem;
+        "medium" = |joined| &joined.case.medium;
+        "estimator" = |joined| joined.row.id.label();
+        "sampling" ["σ̂", "1/length", Short(4)] = |joined| joined.row.sampling();
+        "control" = |joined| &joined.row.id.control;
+        "channel" = |joined| &joined.row.channel;
+        "swept" ["swept", "", Short(4)] = |joined| joined.row.id.swept_value();
+        "sampling_kind" ["kind of σ̂", "", Plain] = |joined| &joined.row.id.sampling.kind;
+        "seed" = |joined| Some(joined.bench.seed);
         "rounds": "Number of rounds; times are medians of them" = |joined| u64::from(joined.bench.rounds);
         "draws": "Number of draws of a round" = |joined| joined.row.draws;
-        "mean": "Mean of the draws" = |joined| joined.row.mean;
-        "truth": "Exact answer" = |joined| joined.row.truth;
-        "variance": "Variance of one draw, measured" = |joined| joined.row.variance;
-        "predicted_variance": "Variance of one draw in theory" = |joined| joined.row.predicted_variance;
-        "lookups_per_draw": "Mean number of lookups of a draw" = |joined| joined.row.lookups_per_draw;
-        "predicted_lookups": "Expected number of lookups of a draw" = |joined| joined.row.predicted_lookups;
+        "mean" = |joined| joined.row.mean;
+        "truth" = |joined| joined.row.truth;
+        "variance" = |joined| joined.row.variance;
+        "predicted_variance" = |joined| joined.row.predicted_variance;
+        "lookups_per_draw" = |joined| joined.row.lookups_per_draw;
+        "predicted_lookups" = |joined| joined.row.predicted_lookups;
         "fom" ["1/VN", "", Fixed(3)]: "Figure of merit 1/(variance × lookups)" = |joined| joined.row.fom;
         "threads": "Number of threads" = |joined| joined.bench.conditions.threads;
         "clock": "Clock of the times: processor or wall" = |joined| joined.bench.conditions.clock.word();
@@ -90,8 +90,8 @@ table! {
         "efficiency" ["1/Vt", "", Fixed(3)]: "1/(variance × time)" = |joined| joined.timed(|times| times.efficiency);
         "reason" ["note", "", Plain]: "Reason why it was not timed" = |joined| &joined.row.reason;
         "ttuv" ["Vt", "s", Time]: "Time to unit variance: variance × time" = |joined| joined.timed(Times::ttuv);
-        "setup_lookups": "Lookups of a ray before its first draw" = |joined| joined.row.setup_lookups;
-        "needs": "Knowledge of the medium beside lookups" = |joined| &joined.row.needs;
+        "setup_lookups" = |joined| joined.row.setup_lookups;
+        "needs" = |joined| &joined.row.needs;
     } screens {
         "sampling_marked" ["σ̂", "1/length", Right]: "σ̂, or its kind; a constant with the digits that distinguish it in its case"
             = |joined| joined.digits(joined.row.sampling()).unwrap_or_else(|| joined.row.id.sampling.kind.clone());
@@ -124,11 +124,11 @@ pub struct Priced<'a> {
 
 table! {
     impl<'a> for Priced<'a> {
-        "estimator": "Estimator with its settings" = |of| of.row.id.label();
+        "estimator" = |of| of.row.id.label();
         "sampling": "Sampling extinction σ̂, if it is a constant" = |of| of.row.sampling().map_or_else(|| Cell::from(&of.row.id.sampling.kind), Cell::from);
-        "control": "Control extinction" = |of| &of.row.id.control;
-        "channel": "Which value of a draw; empty if a draw is one value" = |of| &of.row.channel;
-        "swept": "Value of the swept quantity" = |of| of.row.id.swept_value();
+        "control" = |of| &of.row.id.control;
+        "channel" = |of| &of.row.channel;
+        "swept" = |of| of.row.id.swept_value();
         "draws": "Number of draws of a round" = |of| of.point.draws;
         "lookups": "Number of lookups of the draws" = |of| of.point.lookups;
         "seconds": "Time of the draws" = |of| of.times.seconds(of.point.draws);

@@ -38,6 +38,13 @@ pub fn document(title: &str, sections: &Markup) -> String {
     OPTIONAL.iter().fold(page.into_string(), |page, end| page.replace(end, ""))
 }
 
+/// Returns facts, each with its name.
+pub fn facts<'a>(facts: impl IntoIterator<Item = (&'a str, String)>) -> Markup {
+    html! {
+        dl.facts { @for (name, value) in facts { div { dt { (name) } dd { (value) } } } }
+    }
+}
+
 /// Returns likely causes of a failure, folded.
 pub fn causes(lines: &[String]) -> Markup {
     let item = |line: &String| line.strip_prefix("- ").unwrap_or(line).to_owned();

@@ -1,5 +1,7 @@
 //! Figure: a sheet with its title, and the typeface that measures its words.
 
+use ab_glyph::InvalidFont;
+
 use crate::report::ReportError;
 use crate::report::plots::font::{Typeface, fit, wrapped};
 use crate::report::plots::legend::{self, Entry, LINE};
@@ -40,7 +42,11 @@ impl Figure {
         span: f64,
         [title, words]: [&str; 2],
     ) -> Result<Self, ReportError> {
-        let (face, mut sheet) = (typeface(name)?, Sheet::new(width, height));
+        let wrong = |error: InvalidFont| ReportError::Draw {
+            figure: name.to_owned(),
+            message: error.to_string(),
+        };
+        let (face, mut sheet) = (Typeface::load().map_err(wrong)?, Sheet::new(width, height));
         for (y, text, size, colour) in [(30.0, title, 20.0, DARK), (57.0, words, 13.0, GREY)] {
             sheet.text([LEFT, y], fit(&face, text, size, span), size, colour, Align::Start);
         }
@@ -89,12 +95,4 @@ impl Foot<'_> {
 /// Returns the name of a case, with its medium if the name does not have it. The folder of a case is its problem.
 pub fn subject(name: &str, medium: &str) -> String {
     if name.contains(medium) { name.to_owned() } else { format!("{name}  ·  medium {medium}") }
-}
-
-/// Returns the typeface of a figure.
-pub fn typeface(figure: &str) -> Result<Typeface, ReportError> {
-    Typeface::load().map_err(|error| ReportError::Draw {
-        figure: figure.to_owned(),
-        message: error.to_string(),
-    })
 }

@@ -32,6 +32,11 @@ pub struct Panel {
 }
 
 impl Panel {
+    /// Returns a panel by its upper left corner and its size.
+    pub fn at([left, top]: Spot, [width, height]: [f64; 2], x: Axis, y: Axis) -> Self {
+        Self { left, top, right: left + width, bottom: top + height, x, y }
+    }
+
     /// Returns the place of a point on the sheet, inside the panel or not.
     pub fn spot(&self, x: f64, y: f64) -> Option<Spot> {
         Some([self.across(x)?, self.down(y)?])

@@ -6,39 +6,22 @@ use maud::html;
 
 use super::Joined;
 use crate::render::PictureRecord;
-use crate::report::fields::places;
-use crate::report::html as page;
-use crate::report::html::listing::{self, table};
+use crate::report::fields::{Shown, shown};
+use crate::report::html::listing::{page, section};
 
 /// Columns of the page, beside the picture.
-const COLUMNS: [usize; 10] = places::<Joined, _>([
-    "estimator",
-    "sampling",
-    "control",
-    "rmse",
-    "predicted_rmse",
-    "mean_error",
-    "lookups_per_pixel",
-    "draws_per_pixel",
-    "figure_of_merit",
-    "reason",
-]);
+const COLUMNS: &[Shown] = shown!(Joined:
+    "estimator", "sampling", "control", "rmse", "predicted_rmse", "mean_error", "lookups_per_pixel",
+    "draws_per_pixel", "figure_of_merit", "reason"
+);
 
 /// Returns a page of HTML with all pictures, each with its sheet as a PNG file.
 pub fn text(pictures: &[(PictureRecord, Vec<u8>)]) -> String {
     let rows: Vec<Joined> = super::joined(pictures.iter().map(|(picture, _)| picture)).collect();
     let line = format!("{} pictures, {} images", pictures.len(), rows.len());
-    let choices = [("group", pictures.iter().map(|(picture, _)| picture.name.clone()).collect())];
-    let body = html! {
-        header.run.refused {
-            p.tool { "Trueflight " (env!("CARGO_PKG_VERSION")) ", estimators side by side" }
-            h1 { (line) }
-        }
-        section aria-labelledby="experiments" {
-            h2 #experiments { "Errors" }
-            (listing::form(&choices, rows.len()))
-            (table("picture", |of| ("", of.picture.name.clone()), &COLUMNS, &rows, |of| of.picture.name.clone()))
-        }
+    let name = |of: &Joined| of.picture.name.clone();
+    let sections = html! {
+        (section("Errors", "picture", |of| ("", of.picture.name.clone()), COLUMNS, &rows, name))
         section aria-labelledby="sheets" {
             h2 #sheets { "Pictures" }
             @for (picture, sheet) in pictures {
@@ -51,5 +34,5 @@ pub fn text(pictures: &[(PictureRecord, Vec<u8>)]) -> String {
             }
         }
     };
-    page::document(&format!("Trueflight: {line}"), &body)
+    page("estimators side by side", ("refused", &line), &html! {}, &sections)
 }

@@ -87,11 +87,11 @@ impl Joined<'_> {
 table! {
     impl<'a> for Joined<'a> {
         "picture": "Name of the picture" = |of| &of.picture.name;
-        "problem": "Kind of problem" = |of| &of.picture.problem;
-        "medium": "Medium" = |of| &of.picture.medium;
-        "estimator": "Estimator with its settings" = |of| of.exposure.estimator.to_string();
+        "problem" = |of| &of.picture.problem;
+        "medium" = |of| &of.picture.medium;
+        "estimator" = |of| of.exposure.estimator.to_string();
         "sampling" ["σ̂", "", Plain]: "Sampling extinction σ̂, in words" = |of| &of.exposure.sampling;
-        "control": "Control extinction" = |of| &of.exposure.control;
+        "control" = |of| &of.exposure.control;
         "columns": "Width of the picture in pixels" = |of| of.picture.size[0];
         "rows": "Height of the picture in pixels" = |of| of.picture.size[1];
         "covered_pixels": "Number of pixels that the volume covers" = |of| of.picture.covered;

@@ -2,14 +2,23 @@
 
 use std::collections::BTreeMap;
 
+use crate::report::plots::Sheet;
+use crate::report::plots::font::Typeface;
 use crate::report::plots::paint;
 
 /// Maximum number of colours of a palette.
 const MAX_COLOURS: usize = 256;
 
+/// Returns a sheet as the bytes of a PNG file.
+pub fn png(compose: impl FnOnce(&Typeface) -> Sheet) -> Result<Vec<u8>, String> {
+    let face = Typeface::load().map_err(|error| error.to_string())?;
+    let (rgb, size) = paint::pixels_of(&compose(&face))?;
+    encode(&rgb, size).map_err(|error| error.to_string())
+}
+
 /// Returns the bytes of a PNG file. Greys are rounded to every second one; if there are still more than 256 colours,
 /// the file has no palette.
-pub fn encode(rgb: &[u8], size: (u32, u32)) -> Result<Vec<u8>, png::EncodingError> {
+fn encode(rgb: &[u8], size: (u32, u32)) -> Result<Vec<u8>, png::EncodingError> {
     let coarse: Vec<[u8; 3]> =
         rgb.as_chunks::<3>().0.iter().map(|&colour| rounded(colour)).collect();
     let mut palette: BTreeMap<[u8; 3], usize> = BTreeMap::new();

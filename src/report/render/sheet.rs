@@ -5,7 +5,6 @@ use super::{colour, given, palette, short};
 use crate::render::PictureRecord;
 use crate::render::record::{Exposure, ExposureRecord};
 use crate::report::plots::font::{self, Typeface, fit};
-use crate::report::plots::paint;
 use crate::report::plots::sheet::{Align, Image, Sheet};
 use crate::report::plots::style::{DARK, FAINT, GREY};
 
@@ -23,10 +22,7 @@ const LINE: f64 = 15.0;
 
 /// Returns the sheet as a PNG file.
 pub fn png(record: &PictureRecord) -> Result<Vec<u8>, String> {
-    let face = Typeface::load().map_err(|error| error.to_string())?;
-    let sheet = compose(record, &face);
-    let (rgb, size) = paint::pixels_of(&sheet)?;
-    palette::encode(&rgb, size).map_err(|error| error.to_string())
+    palette::png(|face| compose(record, face))
 }
 
 /// Place of a column of the sheet.

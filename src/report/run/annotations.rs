@@ -3,8 +3,6 @@
 //! `::error title=…,file=…::message` for failures, `::warning` for inconclusive results and for notes on cases. GitHub
 //! shows ten of each per step: if there are more, the tenth counts those that are left out.
 
-use std::fmt::Write;
-
 use crate::record::baseline::Comparison;
 use crate::record::{CaseRecord, Record, Verdict};
 use crate::report::run::diff;
@@ -59,23 +57,13 @@ fn of_changes(comparison: &Comparison) -> Vec<String> {
 }
 
 fn of_note(case: &CaseRecord, note: &str) -> String {
-    let mut properties = format!("title={}", property(&format!("note {}", case.name)));
-    if !case.path.is_empty() {
-        let path = case.path.strip_prefix("./").unwrap_or(&case.path);
-        let _ = write!(properties, ",file={}", property(path));
-    }
-    format!("{properties}::{}", message(note))
+    format!("{}::{}", properties(case, &format!("note {}", case.name)), message(note))
 }
 
 fn of_failure(verdict: Verdict, failure: &Failure) -> String {
     let Failure { row, .. } = *failure;
     let case = row.case;
     let title = format!("{} {}: {}", verdict.word(), case.name, failure.experiment());
-    let mut properties = format!("title={}", property(&title));
-    if !case.path.is_empty() {
-        let path = case.path.strip_prefix("./").unwrap_or(&case.path);
-        let _ = write!(properties, ",file={}", property(path));
-    }
     let mut said = format!("{} ({})", failure.reason(), failure.place());
     if !failure.check().is_empty() {
         said = format!("{}: {said}", failure.check());
@@ -86,7 +74,14 @@ fn of_failure(verdict: Verdict, failure: &Failure) -> String {
     for line in failures::causes(&row) {
         said = format!("{said}\n{line}");
     }
-    format!("{properties}::{}", message(&said))
+    format!("{}::{}", properties(case, &title), message(&said))
+}
+
+/// Returns the title of an annotation and the file of the case.
+fn properties(case: &CaseRecord, title: &str) -> String {
+    let path = case.path.strip_prefix("./").unwrap_or(&case.path);
+    let file = if path.is_empty() { String::new() } else { format!(",file={}", property(path)) };
+    format!("title={}{file}", property(title))
 }
 
 fn message(text: &str) -> String {

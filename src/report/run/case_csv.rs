@@ -4,7 +4,7 @@
 //! machine.
 
 use crate::record::{Anatomy, CaseRecord, Curve, CurvePoint, Record, Sweep};
-use crate::report::fields::{self, Field, Table, fields, places, table};
+use crate::report::fields::{self, Field, Table, fields, place, table};
 use crate::report::run::fields::TIMED;
 use crate::report::run::summary_csv::Line;
 use crate::report::{Artifact, ReportError, case_path};
@@ -30,10 +30,8 @@ pub fn render(record: &Record) -> Result<Vec<Artifact>, ReportError> {
 }
 
 fn case_rows(case: &CaseRecord, seed: u64) -> Result<String, ReportError> {
-    const OF_TIMES: [usize; 3] = places::<Line, _>(TIMED);
-    let all = Line::of_files().into_iter().enumerate();
-    let untimed = all.filter(|(place, _)| !OF_TIMES.contains(place));
-    let mut fields: Vec<_> = untimed.map(|(_, field)| field).collect();
+    let mut fields = Line::of_files();
+    fields.retain(|field| !TIMED.contains(&field.name));
     fields.extend(deviations());
     fields::csv(&case.name, &fields, case.rows().map(|row| Line { row, seed }))
 }
@@ -54,22 +52,21 @@ pub struct Predicted<'a> {
 
 table! {
     impl<'a> for Predicted<'a> {
-        "estimator": "Estimator with its settings" = |of| &of.curve.estimator;
-        "control": "Control extinction" = |of| &of.curve.control;
+        "estimator" = |of| &of.curve.estimator;
+        "control" = |of| &of.curve.control;
         "channel": "Which value of a draw; the column is missing if a draw is one value" = |of| &of.curve.channel;
         "x": "Value of the swept quantity" = |of| of.point.x;
         "variance": "Variance of one draw" = |of| of.point.variance;
         "lookups": "Expected number of lookups of a draw" = |of| of.point.lookups;
         "fom": "Figure of merit 1/(variance × lookups)" = |of| of.point.fom;
-        "setup_lookups": "Lookups of a ray before its first draw" = |of| of.point.setup_lookups;
+        "setup_lookups" = |of| of.point.setup_lookups;
     }
 }
 
 fn theory(case: &CaseRecord, sweep: &Sweep) -> Result<String, ReportError> {
     let mut fields = Predicted::fields();
     if sweep.curves.iter().all(|curve| curve.channel.is_empty()) {
-        let [channel] = const { places::<Predicted, _>(["channel"]) };
-        fields.remove(channel);
+        fields.remove(const { place::<Predicted>("channel") });
     }
     let curves = sweep.curves.iter();
     let points =

@@ -8,8 +8,10 @@ use crate::report::{Artifact, ReportError};
 
 /// Finding with its row.
 pub struct FindingRow<'a> {
-    of: Row<'a>,
-    found: &'a Finding,
+    /// Row.
+    pub of: Row<'a>,
+    /// Finding.
+    pub found: &'a Finding,
 }
 
 impl FindingRow<'_> {
@@ -20,30 +22,30 @@ impl FindingRow<'_> {
 
 table! {
     impl<'a> for FindingRow<'a> {
-        "case": "Case: the name of its file" = |row| &row.of.case.name;
-        "estimator": "Estimator with its settings" = |row| &row.of.experiment.label;
-        "sampling": "Sampling extinction σ̂, if it is a constant" = |row| row.of.experiment.sampling();
-        "sampling_kind": "Kind of σ̂, as constant or local majorants" = |row| &row.of.experiment.id.sampling.kind;
-        "control": "Control extinction" = |row| &row.of.experiment.id.control;
-        "swept": "Value of the swept quantity" = |row| row.of.experiment.swept();
+        "case" = |row| &row.of.case.name;
+        "estimator" = |row| &row.of.experiment.label;
+        "sampling" = |row| row.of.experiment.sampling();
+        "sampling_kind" = |row| &row.of.experiment.id.sampling.kind;
+        "control" = |row| &row.of.experiment.id.control;
+        "swept" = |row| row.of.experiment.swept();
         "check": "Name of the check, as in `trueflight list checks`" = |row| &row.found.check;
         "what": "Quantity" = |row| &row.found.what;
         "channel": "Which value of a draw; empty for the experiment as a whole" = |row| &row.found.channel;
         "verdict": "Result of the check" = |row| row.found.verdict.word();
         "reason": "Reason of the verdict; empty for a plain pass" = |row| &row.found.reason;
-        "tolerance": "Tolerance ε of the gate, relative" = |row| row.gate(|gate| gate.tolerance);
+        "tolerance" ["ε", "", Percent]: "Tolerance ε of the gate, relative" = |row| row.gate(|gate| gate.tolerance);
         "variance_of_y": "Variance V of the gate, relative" = |row| row.gate(|gate| gate.variance);
         "planned": "Number of planned draws, 27 V/ε²" = |row| row.gate(|gate| gate.planned);
         "draws": "Number of draws until the decision" = |row| row.gate(|gate| gate.draws);
-        "needed": "Number of draws that it would take, if more than planned" = |row| row.gate(|gate| gate.needed).flatten();
-        "mean_of_y": "Observed relative difference from theory" = |row| row.gate(|gate| gate.mean);
-        "ln_e": "Evidence against a correct estimator: it fails at the limit" = |row| row.gate(|gate| gate.ln_e);
-        "ln_e_limit": "Limit of ln E" = |row| row.gate(|gate| gate.ln_e_limit);
-        "ln_p_above": "Evidence against a bias of +ε" = |row| row.gate(|gate| gate.ln_p[0]);
-        "ln_p_below": "Evidence against a bias of −ε" = |row| row.gate(|gate| gate.ln_p[1]);
-        "ln_p_limit": "Limit of both ln P, at which it passes" = |row| row.gate(|gate| gate.ln_p_limit);
-        "z": "Difference from theory in standard errors, over the fixed draws" = |row| row.found.z;
-        "p": "p-value of a test of a whole distribution" = |row| row.found.p;
+        "needed" ["needed", "", Enough]: "Number of draws that it would take, if more than planned" = |row| row.gate(|gate| gate.needed).flatten();
+        "mean_of_y" ["off by", "", Percent]: "Observed relative difference from theory" = |row| row.gate(|gate| gate.mean);
+        "ln_e" ["ln E", "", Short(4)]: "Evidence against a correct estimator: it fails at the limit" = |row| row.gate(|gate| gate.ln_e);
+        "ln_e_limit" ["limit", "", Short(4)]: "Limit of ln E" = |row| row.gate(|gate| gate.ln_e_limit);
+        "ln_p_above" ["ln P of +ε", "", Short(4)]: "Evidence against a bias of +ε" = |row| row.gate(|gate| gate.ln_p[0]);
+        "ln_p_below" ["ln P of −ε", "", Short(4)]: "Evidence against a bias of −ε" = |row| row.gate(|gate| gate.ln_p[1]);
+        "ln_p_limit" ["limit", "", Short(4)]: "Limit of both ln P, at which it passes" = |row| row.gate(|gate| gate.ln_p_limit);
+        "z" ["z", "", Signed]: "Difference from theory in standard errors, over the fixed draws" = |row| row.found.z;
+        "p" ["p", "", Short(3)]: "p-value of a test of a whole distribution" = |row| row.found.p;
         "block": "Block after which it was decided, or with the violation" = |row| row.found.block;
     }
 }

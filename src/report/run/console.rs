@@ -204,7 +204,8 @@ fn facts(block: &Block, view: View) -> Vec<String> {
         facts.push(format!("{} drawn each", count(drawn)));
     }
     if rows.iter().any(|row| row.experiment.setup_lookups.is_some_and(|lookups| lookups > 0)) {
-        facts.push(format!("FoM: setup over {} per ray", draws(case.draws_per_ray.unwrap_or(1))));
+        let shared = draws(case.draws_per_ray.unwrap_or(1));
+        facts.push(format!("FoM with setup lookups shared by {shared}"));
     }
     if view == View::Run {
         facts.extend(reach(case));

@@ -1,34 +1,16 @@
 //! Changes since a stored run, in words that the console and the summaries share.
 
-use std::fmt::Display;
-
-use crate::record::baseline::{
-    Change, ChannelId, Comparison, Drift, LeftOut, Measured, Quantity, Sequel,
-};
+use crate::record::baseline::LeftOut;
+use crate::record::baseline::{Change, ChannelId, Comparison, Drift, Measured, Quantity, Sequel};
+use crate::report::changes::{Changes, Difference, closing, counts, not_empty};
+use crate::report::html::words::evidence;
 use numeric::digits::{fixed, short};
 
-/// Change of a quantity.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Difference<'a> {
-    /// True if it became worse.
-    pub is_worse: bool,
-    /// The experiment.
-    pub experiment: String,
-    /// Description of the change, with the numbers.
-    pub what: String,
-    /// The command that repeats the experiment.
-    pub command: &'a str,
+/// Returns the table of changes with its remarks.
+pub fn changes(comparison: &Comparison) -> Changes {
+    let remarks = remarks(comparison);
+    Changes { name: comparison.name.clone(), all: all(comparison), remarks }
 }
-
-impl Difference<'_> {
-    /// Returns everything but the command, on one line.
-    pub fn line(&self) -> String {
-        format!("{}: {}", self.experiment, self.what)
-    }
-}
-
-/// Maximum length of lists of experiments in words; `record.json` has them whole.
-const MAX_LISTED: usize = 8;
 
 /// Returns the experiments that were left out, by the reason.
 fn left_out(comparison: &Comparison) -> Vec<(&'static str, &[ChannelId])> {
@@ -44,37 +26,6 @@ fn left_out(comparison: &Comparison) -> Vec<(&'static str, &[ChannelId])> {
         ("not compared, the case was rewritten", &comparison.rewritten),
     ];
     not_empty(all)
-}
-
-/// Returns the lists of experiments that are not empty, each with its reason.
-pub(in crate::report) fn not_empty<'a, T>(
-    lists: impl IntoIterator<Item = (&'static str, &'a Vec<T>)>,
-) -> Vec<(&'static str, &'a [T])> {
-    let lists = lists.into_iter().filter(|(_, ids)| !ids.is_empty());
-    lists.map(|(why, ids)| (why, &ids[..])).collect()
-}
-
-/// Returns the lengths of lists of experiments, each with its reason.
-pub(in crate::report) fn counts<T>(lists: &[(&'static str, &[T])]) -> String {
-    let counts: Vec<_> = lists.iter().map(|(why, ids)| format!("{why} ({})", ids.len())).collect();
-    counts.join("; ")
-}
-
-/// Returns the closing sentence: nothing was compared, or nothing changed.
-pub(in crate::report) fn ending(nothing: Option<String>, has_changes: bool) -> Option<String> {
-    let same = (!has_changes).then(|| "no change in what was compared".to_owned());
-    nothing.or(same)
-}
-
-/// Returns a list of experiments, cut if it is long.
-pub(in crate::report) fn listed(why: &str, ids: &[impl Display]) -> String {
-    let shown: Vec<String> = ids.iter().take(MAX_LISTED).map(ToString::to_string).collect();
-    let shown = shown.join(", ");
-    let more = match ids.len().saturating_sub(MAX_LISTED) {
-        0 => String::new(),
-        more => format!(" and {more} more"),
-    };
-    format!("{why} ({}): {shown}{more}", ids.len())
 }
 
 /// Returns the reason why nothing was compared; `None` if something was.
@@ -118,59 +69,58 @@ pub fn remarks(comparison: &Comparison) -> Vec<String> {
             "e-values not multiplied: another program made the baseline".to_owned()
         }
     });
-    remarks.extend(left_out(comparison).into_iter().map(|(why, ids)| listed(why, ids)));
     let has_changes = !(comparison.changes.is_empty() && comparison.drifts.is_empty());
-    remarks.extend(ending(nothing(comparison), has_changes));
+    remarks.extend(closing(&left_out(comparison), nothing(comparison), has_changes));
     remarks
 }
 
 /// Returns all changes, regressions first.
-pub fn all(comparison: &Comparison) -> Vec<Difference<'_>> {
-    let mut told: Vec<Difference> = comparison.drifts.iter().map(drift).collect();
+pub fn all(comparison: &Comparison) -> Vec<Difference> {
+    let mut all: Vec<Difference> = comparison.drifts.iter().map(drift).collect();
     let tolerance = comparison.rules.time_tolerance;
-    told.extend(comparison.changes.iter().map(|one| change(one, tolerance)));
-    told.sort_by_key(|told| !told.is_worse);
-    told
+    all.extend(comparison.changes.iter().map(|one| change(one, tolerance)));
+    all.sort_by_key(|change| !change.is_worse);
+    all
 }
 
-fn drift(drift: &Drift) -> Difference<'_> {
-    let Drift { id, check, ln_e, limit, command } = drift;
-    let what = format!("{check}: ln E = {ln_e:.1} ≥ {limit:.1} of all runs together");
-    Difference { is_worse: true, experiment: id.to_string(), what, command }
-}
-
-/// Returns a quantity in words.
-pub fn name(quantity: Quantity) -> &'static str {
-    match quantity {
-        Quantity::Variance => "variance",
-        Quantity::Lookups => "lookups per draw",
-        Quantity::Time => "processor time per draw",
+fn drift(Drift { id, check, ln_e, limit, command }: &Drift) -> Difference {
+    let shown = format!("ln E = {} ≥ {}", evidence(*ln_e), short(*limit, 3));
+    Difference {
+        is_worse: true,
+        experiment: id.to_string(),
+        quantity: check.clone(),
+        values: [None, Some((*ln_e, shown))],
+        ratio: None,
+        interval: None,
+        extent: format!("ln E = {ln_e:.1} ≥ {limit:.1} of all runs together"),
+        command: command.clone(),
     }
 }
 
-/// Returns the values before and now, with their errors.
-pub fn values(change: &Change) -> [String; 2] {
-    let unit = if change.quantity == Quantity::Time { " ns" } else { "" };
-    [change.before, change.now].map(|Measured { value, error }| {
-        let error = error.map_or(String::new(), |error| format!(" ± {}", short(error, 2)));
-        format!("{}{error}{unit}", fixed(value, 5))
-    })
-}
-
-fn change(change: &Change, tolerance: Option<f64>) -> Difference<'_> {
-    let what = name(change.quantity);
-    let interval = if let Some([low, high]) = change.interval {
+fn change(change: &Change, tolerance: Option<f64>) -> Difference {
+    let (quantity, unit) = match change.quantity {
+        Quantity::Variance => ("variance", ""),
+        Quantity::Lookups => ("lookups per draw", ""),
+        Quantity::Time => ("processor time per draw", " ns"),
+    };
+    let extent = if let Some([low, high]) = change.interval {
         format!("in [{}, {}]", fixed(low, 4), fixed(high, 4))
     } else {
         let tolerance = tolerance.map_or("∞".to_owned(), |tolerance| short(tolerance, 3));
         format!("beyond the tolerance of {tolerance}, its error unknown")
     };
-    let [before, now] = values(change);
-    let ratio = fixed(change.ratio, 4);
+    let value = |Measured { value, error }: Measured| {
+        let error = error.map_or(String::new(), |error| format!(" ± {}", short(error, 2)));
+        Some((value, format!("{}{error}{unit}", fixed(value, 5))))
+    };
     Difference {
         is_worse: change.is_regression,
         experiment: change.id.to_string(),
-        what: format!("{what} {before} → {now}, ratio {ratio} {interval}"),
-        command: &change.command,
+        quantity: quantity.to_owned(),
+        values: [change.before, change.now].map(value),
+        ratio: Some(change.ratio),
+        interval: change.interval,
+        extent: format!("ratio {} {extent}", fixed(change.ratio, 4)),
+        command: change.command.clone(),
     }
 }

@@ -1,11 +1,10 @@
 //! Failures of a run, finding by finding, in words that the console and the reports share.
 
-use std::borrow::Cow;
-
-use crate::record::{Finding, Record, Row, Score, Verdict};
+use crate::record::{Finding, Record, Row, Verdict};
+use crate::report::fields::{Shown, Table, shown};
+use crate::report::run::checks_csv::FindingRow;
+use crate::report::run::summary_csv::Line;
 use gate::causes::{Pattern, Place};
-use gate::deviation::signed_percent;
-use numeric::digits::{percent, short, signed};
 
 /// Finding with another verdict than pass, with its row.
 #[derive(Debug, Clone, Copy)]
@@ -77,70 +76,49 @@ impl<'a> Failure<'a> {
         format!("{} ({})", parts.join(": "), self.place())
     }
 
-    /// Returns everything that is known, one name and value per line, and the usual causes.
+    /// Returns everything that is known, one name and value per line, and the usual causes. Names are those of the files.
     pub fn details(&self) -> String {
-        let lines = self.facts().into_iter().map(|(name, value)| format!("{name}: {value}"));
-        let all: Vec<String> = lines.chain(causes(&self.row)).collect();
-        all.join("\n") + "\n"
-    }
-
-    fn facts(&self) -> Vec<(&'static str, Cow<'a, str>)> {
-        let row = self.row;
-        let number = |x: f64| Cow::from(short(x, 6));
-        let told = |score: Score, z: f64| -> Cow<'a, str> {
-            let is_normal = !row.not_normal.contains(&score);
-            let note = if is_normal { "" } else { " (its law is not near normal)" };
-            format!("{}{note}", signed(z)).into()
-        };
-        let mut facts: Vec<(&str, Cow<str>)> = vec![
-            ("case", self.row.case.name.as_str().into()),
-            ("experiment", self.experiment().into()),
-            ("check", self.check().into()),
-            ("reason", self.reason().into()),
-            ("seed", self.seed.to_string().into()),
+        let Self { row, finding, seed } = *self;
+        let known =
+            |name: &str, text: String| (!text.is_empty()).then(|| format!("{name}: {text}"));
+        let line = Line { row, seed };
+        let finding = finding.map(|found| FindingRow { of: row, found });
+        let reason = finding.is_none().then(|| self.reason().to_owned());
+        let stream = row.experiment.stream.map(|stream| stream.to_string());
+        let mut lines = vec![
+            known("case", row.case.name.clone()),
+            known("experiment", self.experiment()),
+            known("reason", reason.unwrap_or_default()),
         ];
-        let mut add = |name, value: Option<Cow<'a, str>>| {
-            facts.extend(value.map(|value| (name, value)));
-        };
-        add("stream", row.experiment.stream.map(|stream| stream.to_string().into()));
-        let finding = self.finding;
-        add("block", finding.and_then(|f| f.block).map(|block| block.to_string().into()));
-        add("draws of the statistics", row.experiment.draws.map(|draws| draws.to_string().into()));
-        for (score, theory, z) in [
-            (Score::Mean, "truth", "z of the mean"),
-            (Score::Variance, "predicted variance", "z of the variance"),
-            (Score::Lookups, "predicted lookups", "z of the lookups"),
-        ] {
-            let values = row.compared(score);
-            add(score.quantity(), values.measured.map(number));
-            let deviation = values.deviation.filter(|_| score == Score::Mean);
-            add("standard error", deviation.map(number));
-            add(theory, values.theory.map(number));
-            add(z, values.z.map(|z| told(score, z)));
-        }
-        add("p", finding.and_then(|f| f.p).map(number));
-        if let Some(gate) = finding.and_then(|finding| finding.gate) {
-            let [above, below] = gate.ln_p.map(|p| short(p, 4));
-            let is_declared = finding.is_some_and(|finding| finding.expects_bias);
-            let word = if is_declared { "shows the declared bias" } else { "fails" };
-            add("draws of the gate", Some(gate.draws.to_string().into()));
-            add("deviation", Some(signed_percent(gate.mean).into()));
-            add("tolerance", Some(percent(gate.tolerance).into()));
-            add("ln E", Some(limited(&short(gate.ln_e, 4), word, gate.ln_e_limit)));
-            let both = format!("{above} and {below}");
-            add("ln P", Some(limited(&both, "passes", gate.ln_p_limit)));
-            add("draws needed", gate.needed.map(number));
-        }
-        if let Some((word, command)) = row.next_command() {
-            add(word, Some(command.into()));
-        }
-        facts.retain(|fact| !fact.1.is_empty());
-        facts
+        lines.extend(finding.iter().flat_map(|finding| texts(finding, OF_FINDING, known)));
+        lines.extend(texts(&line, OF_ROW, known));
+        lines.push(known("stream", stream.unwrap_or_default()));
+        lines.extend(row.next_command().map(|(word, command)| known(word, command.to_owned())));
+        lines.into_iter().flatten().chain(causes(&row)).collect::<Vec<_>>().join("\n") + "\n"
     }
 }
 
-fn limited(value: &str, word: &str, limit: f64) -> Cow<'static, str> {
-    format!("{value} ({word} at {})", short(limit, 4)).into()
+/// Fields of a finding in its details.
+const OF_FINDING: &[Shown] = shown!(FindingRow:
+    "check", "what", "verdict", "reason", "block", "draws", "mean_of_y", "tolerance", "ln_e", "ln_e_limit", "ln_p_above",
+    "ln_p_below", "ln_p_limit", "needed", "z", "p"
+);
+
+/// Fields of its row.
+const OF_ROW: &[Shown] = shown!(Line:
+    "seed", "mean", "standard_error", "truth", "z_mean", "variance", "predicted_variance", "z_variance",
+    "lookups_per_draw", "predicted_lookups", "z_lookups"
+);
+
+/// Returns fields of a row as text, by name.
+fn texts<T: Table>(
+    row: &T,
+    columns: &[Shown],
+    text: impl Fn(&str, String) -> Option<String>,
+) -> Vec<Option<String>> {
+    let fields = T::fields();
+    let field = |column: &Shown| &fields[column.place];
+    columns.iter().map(field).map(|field| text(field.name, field.text(row))).collect()
 }
 
 /// Smallest number of swept values for which an end is distinguished.

@@ -20,7 +20,7 @@ use crate::report::fields::Table;
 use crate::report::html as page;
 use crate::report::html::drawing::{self, Plot, plot};
 use crate::report::run::summary_csv::Line;
-use crate::report::run::{anatomy_plot, sweep_plot, totals};
+use crate::report::run::{anatomy_plot, diff, sweep_plot, totals};
 use crate::report::{Artifact, ReportError};
 
 /// Returns the record as a page.
@@ -36,7 +36,7 @@ pub fn text(record: &Record) -> Result<String, ReportError> {
     let body = html! {
         (drawing::definitions(&plots))
         (first::section(record))
-        @if let Some(comparison) = &record.comparison { (cases::changes(comparison)) }
+        @if let Some(comparison) = &record.comparison { (diff::changes(comparison).section()) }
         (cases::section(record, &plots))
         (experiments::section(record, &shown))
         (experiments::legend(record, &shown))

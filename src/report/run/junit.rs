@@ -85,7 +85,7 @@ fn changed(comparison: &Comparison) -> TestSuite {
     }
     for change in all.iter().filter(|change| change.is_worse) {
         let mut status = TestCaseStatus::non_success(NonSuccessKind::Failure);
-        status.set_type("regression").set_message(&*change.what);
+        status.set_type("regression").set_message(change.what());
         status.set_description(format!("{}\nrepeat: {}\n", change.line(), change.command));
         suite.add_test_case(TestCase::new(change.experiment.as_str(), status));
     }

@@ -3,6 +3,7 @@
 pub mod anatomy_plot;
 pub mod annotations;
 pub mod case_csv;
+pub mod changes_csv;
 pub mod checks_csv;
 pub mod console;
 pub mod diff;
@@ -46,6 +47,7 @@ reports! {
     summary_csv,
     checks_csv,
     case_csv,
+    changes_csv,
     sweep_plot,
     anatomy_plot,
     record_json,

@@ -160,7 +160,7 @@ fn subtitle(case: &CaseRecord, seed: u64) -> String {
 fn place(index: usize, x: &Axis, y: Axis) -> Panel {
     let left = LEFT + (index % 2) as f64 * PITCH[0];
     let top = TOP + (index / 2) as f64 * PITCH[1];
-    Panel { left, top, right: left + PANEL[0], bottom: top + PANEL[1], x: x.clone(), y }
+    Panel::at([left, top], PANEL, x.clone(), y)
 }
 
 fn x_axis(sweep: &Sweep, series: &[Series]) -> Axis {

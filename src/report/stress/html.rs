@@ -3,16 +3,16 @@
 use maud::html;
 
 use crate::report::ReportError;
-use crate::report::fields::places;
-use crate::report::html as page;
+use crate::report::fields::{Shown, shown};
 use crate::report::html::drawing::{definitions, plot};
-use crate::report::html::listing::{self, table};
+use crate::report::html::listing::{page, section};
 use crate::stress::{Row, Stress};
 use numeric::digits::time;
 
 /// Columns of the page, beside the result.
-const COLUMNS: [usize; 7] =
-    places::<&Row, _>(["quantity", "range", "worst", "bound", "measure", "trials", "where"]);
+const COLUMNS: &[Shown] = shown!(&Row:
+    "quantity", "range", "worst", "bound", "measure", "trials", "where"
+);
 
 /// Returns the stress test as a page of HTML.
 pub fn text(found: &Stress) -> Result<String, ReportError> {
@@ -25,27 +25,18 @@ pub fn text(found: &Stress) -> Result<String, ReportError> {
     let label = "single precision: its bias beside the statistical error of 1e8 draws".to_owned();
     let plot = plot("single".to_owned(), label, &super::plot::figure(&found.narrow.curves)?);
     let plots = [vec![plot]];
-    let choices = [("group", rows.iter().map(|row| word(row).to_owned()).collect())];
-    let body = html! {
+    let sections = html! {
         (definitions(&plots))
-        header class={ "run " (class) } {
-            p.tool { "Trueflight " (env!("CARGO_PKG_VERSION")) ", numbers under stress" }
-            h1 { (line) }
-            p { (time(found.seconds)) }
-        }
-        section aria-labelledby="experiments" {
-            h2 #experiments { "Bounds" }
-            (listing::form(&choices, rows.len()))
-            (table("holds", |row| (if row.holds() { "pass" } else { "fail" }, word(row).to_owned()), &COLUMNS, &rows, |row| word(row).to_owned()))
-        }
+        (section("Bounds", "holds", |row| (if row.holds() { "pass" } else { "fail" }, word(row)), COLUMNS, &rows, |row| word(row)))
         section aria-labelledby="narrow" {
             h2 #narrow { "Single precision" }
             (plots[0][0].show())
         }
     };
-    Ok(page::document(&format!("Trueflight: {line}"), &body))
+    let head = html! { p { (time(found.seconds)) } };
+    Ok(page("numbers under stress", (class, &line), &head, &sections))
 }
 
-fn word(row: &Row) -> &'static str {
-    if row.holds() { "✓ yes" } else { "✗ NO" }
+fn word(row: &Row) -> String {
+    if row.holds() { "✓ yes" } else { "✗ NO" }.to_owned()
 }

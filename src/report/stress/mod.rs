@@ -7,7 +7,7 @@ use std::fmt::Write;
 
 use serde_json::json;
 
-use crate::report::fields::{self, Object, Table, grid, places, ranked, table};
+use crate::report::fields::{self, Shown, Table, grid, object, place, shown, table};
 use crate::report::layout::{Column, Field, Grid, Paint, Pen, wrapped};
 use crate::report::plots;
 use crate::report::{Artifact, ReportError};
@@ -19,21 +19,15 @@ use numeric::digits::{exact, short};
 const FOLDER: &str = "stress";
 
 /// Columns of the screen beside the result, each with its rank.
-const COLUMNS: [(usize, u8); 7] = ranked::<&Row, _>([
-    ("quantity", 0),
-    ("range", 2),
-    ("trials", 1),
-    ("left_out", 1),
-    ("worst", 0),
-    ("bound", 0),
-    ("measure", 0),
-]);
+const COLUMNS: &[Shown] = shown!(&Row:
+    "quantity", "range" 2, "trials" 1, "left_out" 1, "worst", "bound", "measure"
+);
 
 /// Returns the tables for the screen.
 pub fn table(found: &Stress, pen: Pen) -> String {
     let mut text = String::new();
     let rows: Vec<&Row> = found.rows.iter().collect();
-    let mut grid = grid(&rows, &COLUMNS);
+    let mut grid = grid(&rows, COLUMNS);
     let holds = rows.iter().map(|row| Field::judged(row.holds(), ["yes", "NO"]));
     grid.push("holds", holds.collect());
     grid.fit(pen.width);
@@ -99,7 +93,7 @@ fn single_precision(text: &mut String, pen: Pen, curves: &[Curve]) {
 fn json(found: &Stress) -> Result<String, ReportError> {
     let (fields, of_points) = (<&Row>::of_files(), Measured::fields());
     let curves = found.narrow.curves.iter().map(|curve| {
-        let point = |row| Object { fields: &of_points[OF_CURVES..], row };
+        let point = |row| object(&of_points[OF_CURVES..], &row);
         json!({
             "family": curve.family,
             "estimator": curve.estimator,
@@ -108,7 +102,7 @@ fn json(found: &Stress) -> Result<String, ReportError> {
             "points": points(curve).map(point).collect::<Vec<_>>(),
         })
     });
-    let rows = found.rows.iter().map(|row| Object { fields: &fields, row });
+    let rows = found.rows.iter().map(|row| object(&fields, &row));
     let document = json!({
         "schema": 1,
         "holds": found.holds(),
@@ -142,7 +136,7 @@ fn points(curve: &Curve) -> impl Iterator<Item = Measured<'_>> {
 }
 
 /// Number of fields of a point that all points of its curve share.
-const OF_CURVES: usize = places::<Measured, _>(["x"])[0];
+const OF_CURVES: usize = place::<Measured>("x");
 
 table! {
     impl<'a> for Measured<'a> {

@@ -4,15 +4,14 @@
 use plotters::style::Color;
 
 use crate::report::ReportError;
-use crate::report::plots::figure::typeface;
+use crate::report::plots::figure::{Figure, LEFT};
 use crate::report::plots::font::fit;
 use crate::report::plots::legend::{self, Entry, LINE};
 use crate::report::plots::sheet::Align;
-use crate::report::plots::style::{DARK, GREY, Style};
+use crate::report::plots::style::{GREY, Style};
 use crate::report::plots::{Axis, Panel, Sheet};
 use crate::stress::narrow::{Along, Curve, Point};
 
-const LEFT: f64 = 84.0;
 const TOP: f64 = 138.0;
 const PANEL: [f64; 2] = [400.0, 300.0];
 const PITCH: f64 = 494.0;
@@ -23,34 +22,22 @@ const FLOOR: f64 = 1e-3;
 
 /// Draws bias over noise along every quantity: above 1 single precision is wrong.
 pub fn figure(curves: &[Curve]) -> Result<Sheet, ReportError> {
-    let face = typeface("single precision")?;
     let mut families: Vec<&str> = curves.iter().map(|curve| curve.family).collect();
     families.dedup();
     let panels = Along::ALL.map(|along| first_to_fail(curves, &families, along));
     let most = panels.iter().map(Vec::len).max().unwrap_or(0);
     let width = LEFT + 2.0 * PITCH + PANEL[0] + 26.0;
-    let mut sheet = Sheet::new(width, TOP + PANEL[1] + BELOW + (most as f64 + 0.5) * LINE);
-    let lines = [
-        (30.0, "Single precision: its bias beside the statistical error of 1e8 draws", 20.0, DARK),
-        (
-            57.0,
-            "Points: |mean of X₂₄ − X₅₃|/E[X] over √(V/1e8)/E[X], from the same random words; bars: two \
-             standard errors of the bias. Above 1, rounding outgrows the noise.",
-            13.0,
-            GREY,
-        ),
-        (
-            77.0,
-            "Of each family the estimator that fails first; a family without a curve is not seen to fail. Pale \
-             points: the walks were too few to tell. Below 0.001 the bias is drawn as nothing.",
-            13.0,
-            GREY,
-        ),
-    ];
-    for (y, text, size, colour) in lines {
-        let words = fit(&face, text, size, width - LEFT - 18.0);
-        sheet.text([LEFT, y], words, size, colour, Align::Start);
-    }
+    let size = [width, TOP + PANEL[1] + BELOW + (most as f64 + 0.5) * LINE];
+    let title = "Single precision: its bias beside the statistical error of 1e8 draws";
+    let points = "Points: |mean of X₂₄ − X₅₃|/E[X] over √(V/1e8)/E[X], from the same random words; bars: two standard errors of \
+                  the bias. Above 1, rounding outgrows the noise.";
+    let families_shown = "Of each family the estimator that fails first; a family without a curve is not seen to fail. Pale points: \
+                          the walks were too few to tell. Below 0.001 the bias is drawn as nothing.";
+    let span = width - LEFT - 18.0;
+    let Figure { face, mut sheet, .. } =
+        Figure::new("single precision", size, span, [title, points])?;
+    let words = fit(&face, families_shown, 13.0, span);
+    sheet.text([LEFT, 77.0], words, 13.0, GREY, Align::Start);
     for (column, (along, shown)) in Along::ALL.into_iter().zip(&panels).enumerate() {
         let left = LEFT + column as f64 * PITCH;
         let all = curves.iter().filter(|curve| curve.along == along);
@@ -108,7 +95,7 @@ fn one_panel<'a>(
     let x = Axis::around(along.title(), true, 0.04, all.map(|point| point.x));
     let shares = points().map(|point| share(point.bias, point.noise)).filter(|y| y.is_finite());
     let y = Axis::around("bias / noise", true, 0.04, shares.chain([FLOOR, 10.0]));
-    let panel = Panel { left, top: TOP, right: left + PANEL[0], bottom: TOP + PANEL[1], x, y };
+    let panel = Panel::at([left, TOP], PANEL, x, y);
     panel.grid(sheet);
     let edges = [panel.x.low, panel.x.high].map(|x| (x, 1.0));
     panel.line(sheet, edges, (&[], 1.6, GREY));

@@ -41,7 +41,8 @@ fn compare(name: &Path, bytes: &[u8]) {
 }
 
 /// Files of which one record is enough to show the format, byte for byte.
-const SHOWN: [&str; 5] = [
+const SHOWN: [&str; 6] = [
+    "changes.csv",
     "summary.csv",
     "checks.csv",
     "record.json",
@@ -86,7 +87,7 @@ fn files() {
             compared += 1;
         }
     }
-    assert_eq!((artifacts.len(), compared), (12, SHOWN.len()));
+    assert_eq!((artifacts.len(), compared), (13, SHOWN.len()));
 }
 
 #[test]

@@ -277,3 +277,25 @@ fn the_command_says_it_and_writes_it() {
     let junit = fs::read_to_string(place.path().join("report.xml")).expect("a report");
     assert!(junit.contains("failures=\"1\"") && junit.contains("failing tiles"), "{junit}");
 }
+
+/// With an ε of 5 % a tile of 8 × 8 pixels takes s²/0.05² values: 8 passes are too few, and the verdict says how many are not.
+#[test]
+fn an_inconclusive_verdict_names_the_passes_that_decide() {
+    let wanted = Options { tile: Some(8), tolerance: Some(0.05), alpha: 1e-3 };
+    let found = judged(&passes(6, 8, |_, _| 1.0), &claim(), &wanted);
+    assert_eq!(found.verdict, Verdict::Inconclusive, "{}", found.reason);
+    let needed: Vec<f64> = found.tiles.iter().filter_map(|tile| tile.needed).collect();
+    assert_eq!(needed.len(), found.tiles.len());
+    let most = needed.iter().copied().fold(0.0, f64::max);
+    // s² is 27 for one tile and 63 for 4096; V about the squared mean.
+    assert!((27.0..400.0).contains(&(most * 64.0 * 0.05 * 0.05)), "{most}");
+    let said = format!("render {most} passes in place of 8");
+    assert!(found.reason.contains(&said), "no {said} in {}", found.reason);
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // some hundred
+    let found = judged(&passes(6, most as usize, |_, _| 1.0), &claim(), &wanted);
+    assert_eq!(found.verdict, Verdict::Pass, "{}", found.reason);
+    // The error of a truth that is the mean of few passes remains, however many others are rendered.
+    let noisy = Claim { truth_passes: Some(4), ..claim() };
+    let found = judged(&passes(6, 8, |_, _| 1.0), &noisy, &wanted);
+    assert!(found.reason.contains("render more passes"), "{}", found.reason);
+}

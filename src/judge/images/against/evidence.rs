@@ -204,6 +204,7 @@ impl<'a> Evidence<'a> {
                 _ => upper_tail(z),
             };
             found.promise(self.wanted.tolerance, is_whole, quantiles, [error, unit], tail);
+            found.plan_by_error(self.stacks[0].passes, [first, second], quantiles * error);
         }
         found
     }

@@ -6,10 +6,8 @@ use crate::judge::images::Judgement;
 use crate::judge::images::judgement::Tile;
 use crate::record::Verdict;
 use crate::report::plots::font::{Typeface, fit};
-use crate::report::plots::paint;
 use crate::report::plots::sheet::{Align, Image, Sheet, Spot};
 use crate::report::plots::style::{DARK, GREY};
-use crate::report::render::palette;
 
 /// Length of the longer side of a map on the sheet.
 pub const MAX_SIDE: f64 = 480.0;
@@ -19,13 +17,6 @@ pub const GAP: f64 = 24.0;
 pub const HEAD: f64 = 92.0;
 /// Maximum number of frames: more hide what they frame.
 const FRAMES: usize = 400;
-
-/// Encodes a sheet as a PNG file.
-pub fn png(compose: impl FnOnce(&Typeface) -> Sheet) -> Result<Vec<u8>, String> {
-    let face = Typeface::load().map_err(|error| error.to_string())?;
-    let (rgb, size) = paint::pixels_of(&compose(&face))?;
-    palette::encode(&rgb, size).map_err(|error| error.to_string())
-}
 
 /// Value and colour of the dots of a map.
 pub struct Dots<S, C> {
@@ -87,14 +78,26 @@ impl<'a> Maps<'a> {
             }
             sheet.image(self.map(channel, [left, HEAD], dots));
             sheet.frame([left, HEAD], self.size, GREY);
-            let fails = |tile: &&Tile| tile.channel == channel && tile.verdict == Verdict::Fail;
-            for tile in self.judgement.tiles.iter().filter(fails).take(FRAMES) {
+            for tile in self.framed(channel) {
                 let at =
                     [left + tile.column as f64 * self.scale, HEAD + tile.row as f64 * self.scale];
                 let size = [tile.width, tile.height].map(|n| n as f64 * self.scale);
                 sheet.frame(at, size, frame);
             }
         }
+    }
+
+    /// Returns the tiles of a channel that fail; of tiles within each other the smallest.
+    fn framed(&self, channel: usize) -> Vec<&'a Tile> {
+        let fails = |tile: &&Tile| tile.channel == channel && tile.verdict == Verdict::Fail;
+        let mut framed: Vec<&Tile> = Vec::new();
+        // The smallest come first.
+        for tile in self.judgement.tiles.iter().filter(fails) {
+            if framed.len() < FRAMES && !framed.iter().any(|inner| tile.contains(inner)) {
+                framed.push(tile);
+            }
+        }
+        framed
     }
 
     /// Returns the map of a channel, of the smallest tiles, which do not overlap.

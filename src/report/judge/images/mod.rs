@@ -3,6 +3,7 @@
 pub mod console;
 mod maps;
 pub mod p_values;
+mod record;
 pub mod z_map;
 
 use crate::judge::images::Judgement;
@@ -11,10 +12,11 @@ use crate::record::Verdict;
 use crate::report::fields::{self, Table, table};
 use crate::report::{Artifact, ReportError};
 
+pub use record::json;
+
 /// Returns `judgement.json`, and `tiles.csv`, `z-map.png` and `p-values.png` if tiles were judged.
 pub fn artifacts(judgement: &Judgement, name: &str) -> Result<Vec<Artifact>, ReportError> {
-    let json = serde_json::to_string_pretty(judgement)? + "\n";
-    let mut files = vec![Artifact::text("judgement.json", json)];
+    let mut files = vec![Artifact::text("judgement.json", json(judgement)?)];
     if !judgement.tiles.is_empty() {
         files.push(fields::artifact("tiles.csv", &<&Tile>::fields(), &judgement.tiles)?);
         for (figure, png) in [
@@ -46,8 +48,9 @@ table! {
         "ln_p_above": "Evidence against a bias of +ε" = |tile| tile.ln_p[0];
         "ln_p_below": "Evidence against a bias of −ε" = |tile| tile.ln_p[1];
         "tolerance": "Tolerance ε, relative to the mean of the picture" = |tile| tile.tolerance;
+        "needed_passes": "Number of passes after which it would be decided; empty if no number of them suffices" = |tile| tile.needed;
         "verdict": "Result" = |tile| tile.verdict.word();
-        "fails_by_holm": "Whether it fails, at the error rate of all tiles together" = |tile| tile.verdict == Verdict::Fail;
-        "listed_by_e_bh": "Whether the list of suspects (e-BH) has it" = |tile| tile.is_listed;
+        "fails_by_holm": "Whether it fails, at the error rate of all tiles together" = |tile| Some(tile.verdict == Verdict::Fail);
+        "listed_by_e_bh": "Whether the list of suspects (e-BH) has it" = |tile| Some(tile.is_listed);
     }
 }

@@ -4,13 +4,14 @@
 //! t-test*, Journal of Computer Graphics Techniques 9 (2020). For two stacks the p-values are those of permutations,
 //! which are exact for equal distributions; otherwise those of z by the normal distribution.
 
-use super::maps::{Dots, GAP, HEAD, Maps, png as encoded, smallest};
+use super::maps::{Dots, GAP, HEAD, Maps, smallest};
 use crate::judge::images::Judgement;
 use crate::judge::images::judgement::Tile;
 use crate::report::plots::font::{Typeface, fit};
 use crate::report::plots::sheet::{Align, Sheet};
-use crate::report::plots::style::{COLOURS, DARK, GREY, ink};
-use numeric::digits::short;
+use crate::report::plots::style::{COLOURS, GREY, ink};
+use crate::report::plots::{Axis, Panel};
+use crate::report::render::palette;
 
 /// Minimum and maximum number of bins of the histogram; between them one bin per ten tiles.
 const BINS: [usize; 2] = [4, 20];
@@ -26,20 +27,24 @@ const NONE: [u8; 3] = [0xF3, 0xE8, 0xC8];
 
 /// Returns the pictures as one PNG file; `name` is that of the images.
 pub fn png(judgement: &Judgement, name: &str) -> Result<Vec<u8>, String> {
-    encoded(|face| compose(judgement, name, face))
+    palette::png(|face| compose(judgement, name, face))
 }
 
 fn compose(judgement: &Judgement, name: &str, face: &Typeface) -> Sheet {
     let maps = Maps::new(judgement);
     let all = maps.end() + WIDTH + GAP;
-    let mut sheet = Sheet::new(all, HEAD + maps.size[1].max(HEIGHT + 70.0) + 24.0);
+    let mut sheet = Sheet::new(all, HEAD + maps.size[1].max(HEIGHT + 84.0) + 24.0);
     let source = match judgement.comparison.as_ref().map(|found| found.method) {
-        Some("permutation") => "by permutations of the passes: uniform if both stacks have one law",
+        Some("permutation") => {
+            "by permutations of the passes: uniform if both stacks have one distribution"
+        }
         Some(_) => "bounds by signs of differences: rather too large",
-        None => "of z by the normal law: about uniform if all is well, with many values a tile",
+        None => {
+            "of z by the normal distribution: about uniform if all is well, with many values a tile"
+        }
     };
     let facts = format!("p-values of tiles of {0} × {0} pixels, {source}", judgement.tile);
-    let legend = "map: black to white, p from 0 to 1; red: p ≤ 0.001; a blue frame: it fails. No pattern should be seen";
+    let legend = "map: black to white, p from 0 to 1; red: p ≤ 0.001; a blue frame: the smallest tile that fails there. No pattern should be seen";
     maps.head(&mut sheet, face, all - 2.0 * GAP, [name, &facts, legend]);
     // Minimum of all pixels of a dot; a minimum ignores NaN.
     let join = |shown: f64, tile: &Tile| shown.min(tile.p.unwrap_or(f64::NAN));
@@ -78,27 +83,18 @@ fn histogram(sheet: &mut Sheet, judgement: &Judgement, face: &Typeface, left: f6
     // Three standard deviations of a binomial count.
     let band = 3.0 * (expected * (1.0 - 1.0 / bins)).sqrt();
     let most = counts.iter().map(|&n| n as f64).fold(expected + band, f64::max).max(1.0);
-    let (x0, width, low) = (left + 44.0, WIDTH - 56.0, HEAD + HEIGHT);
-    let x = |share: f64| x0 + share * width;
-    let y = |n: f64| low - (HEIGHT - 8.0) * n / most;
-    let area = |[a, b]: [f64; 2], [c, d]: [f64; 2]| vec![[a, c], [b, c], [b, d], [a, d]];
-    let shade = area([x(0.0), x(1.0)], [y((expected - band).max(0.0)), y(expected + band)]);
-    sheet.area(shade, ink(0xE0, 0xE0, 0xE0));
+    let axis = |title: &str, high| Axis { title: title.to_owned(), log: false, low: 0.0, high };
+    let size = [WIDTH - 56.0, HEIGHT];
+    let panel = Panel::at([left + 44.0, HEAD], size, axis("p-value", 1.0), axis("", 1.04 * most));
+    let area = |ends: [f64; 2], [bottom, top]: [f64; 2]| ends.map(|p| (p, bottom, top));
+    let usual = [(expected - band).max(0.0), expected + band];
+    panel.band(sheet, area([0.0, 1.0], usual), ink(0xE0, 0xE0, 0xE0));
     for (bin, &count) in counts.iter().enumerate() {
-        let ends = [bin, bin + 1].map(|k| x(k as f64 / bins));
-        let corners = area([ends[0] + 1.0, ends[1] - 1.0], [y(0.0), y(count as f64)]);
-        sheet.area(corners, COLOURS[0]);
+        let ends = [bin as f64 + 0.05, bin as f64 + 0.95].map(|end| end / bins);
+        panel.band(sheet, area(ends, [0.0, count as f64]), COLOURS[0]);
     }
-    sheet.path(vec![[x(0.0), y(expected)], [x(1.0), y(expected)]], 1.5, COLOURS[1]);
-    sheet.frame([x0, HEAD], [width, HEIGHT], GREY);
-    for (share, text) in [(0.0, "0"), (0.25, "0.25"), (0.5, "0.5"), (0.75, "0.75"), (1.0, "1")] {
-        sheet.text([x(share), low + 12.0], text, 10.5, DARK, Align::Middle);
-    }
-    sheet.text([x(0.5), low + 28.0], "p-value", 11.5, DARK, Align::Middle);
-    for n in [0.0, expected, most] {
-        let text = short(n, 3);
-        sheet.text([x0 - 6.0, y(n)], text, 10.5, DARK, Align::End);
-    }
+    panel.line(sheet, [(0.0, expected), (1.0, expected)], (&[], 1.5, COLOURS[1]));
+    panel.frame(sheet, "");
     for (line, text) in [
         format!(
             "{all} {}; line and band: uniform, ± 3 standard deviations.",
@@ -110,7 +106,7 @@ fn histogram(sheet: &mut Sheet, judgement: &Judgement, face: &Typeface, left: f6
     .into_iter()
     .enumerate()
     {
-        let at = [left + 8.0, low + 46.0 + 15.0 * line as f64];
+        let at = [left + 8.0, panel.bottom + 62.0 + 15.0 * line as f64];
         sheet.text(at, fit(face, &text, 10.5, WIDTH - 8.0), 10.5, GREY, Align::Start);
     }
 }

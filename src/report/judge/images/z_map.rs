@@ -1,12 +1,12 @@
 //! `z-map.png`: bias of each tile in standard errors, in every channel.
 
-use super::maps::{Dots, GAP, HEAD, Maps, dot, png as encoded};
+use super::maps::{Dots, GAP, HEAD, Maps, dot};
 use crate::judge::images::Judgement;
 use crate::judge::images::judgement::Tile;
 use crate::report::plots::font::Typeface;
 use crate::report::plots::sheet::Sheet;
 use crate::report::plots::style::DARK;
-use crate::report::render::colour;
+use crate::report::render::{colour, palette};
 
 /// Number of standard errors at which colours end, to either side.
 const MAX_Z: f64 = 5.0;
@@ -15,7 +15,7 @@ const BAR: f64 = 76.0;
 
 /// Returns the map as a PNG file; `name` is that of the images.
 pub fn png(judgement: &Judgement, name: &str) -> Result<Vec<u8>, String> {
-    encoded(|face| compose(judgement, name, face))
+    palette::png(|face| compose(judgement, name, face))
 }
 
 fn compose(judgement: &Judgement, name: &str, face: &Typeface) -> Sheet {
@@ -23,7 +23,7 @@ fn compose(judgement: &Judgement, name: &str, face: &Typeface) -> Sheet {
     let height = maps.size[1].max(150.0);
     let all = (maps.end() + BAR).max(560.0);
     let mut sheet = Sheet::new(all, HEAD + height + 24.0);
-    let legend = "red: too bright, blue: too dark; a frame: it fails";
+    let legend = "red: too bright, blue: too dark; a frame: the smallest tile that fails there";
     maps.head(&mut sheet, face, all - 2.0 * GAP, [name, &facts(judgement), legend]);
     let join = |shown: f64, tile: &Tile| {
         // A tile without spread that differs from its truth has an infinite z.

@@ -3,7 +3,6 @@
 
 use super::views::{NEEDS, SETUP};
 use super::{View, views};
-use crate::record::baseline::Comparison;
 use crate::record::{Best, CaseRecord, Record, Row, Verdict};
 use crate::report::layout::{Paint, Pen, wrapped};
 use crate::report::run::diff;
@@ -32,26 +31,7 @@ pub fn write(text: &mut String, pen: Pen, record: &Record, view: View) {
     }
     pen.say(text, Paint::Dim, &facts.join(" · "));
     if let Some(comparison) = &record.comparison {
-        changed(text, pen, comparison);
-    }
-}
-
-/// Adds the changes since a stored run.
-fn changed(text: &mut String, pen: Pen, comparison: &Comparison) {
-    text.push('\n');
-    for change in diff::all(comparison) {
-        let (word, paint) = if change.is_worse {
-            ("REGRESSION", Paint::Red)
-        } else {
-            ("improvement", Paint::Green)
-        };
-        pen.note(text, &format!("{word} {}", change.line()), (word, paint));
-        if change.is_worse {
-            let _ = writeln!(text, "    repeat: {}", change.command);
-        }
-    }
-    for remark in diff::remarks(comparison) {
-        pen.say(text, Paint::Dim, &remark);
+        diff::changes(comparison).write(text, pen);
     }
 }
 

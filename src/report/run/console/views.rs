@@ -1,80 +1,35 @@
 //! Columns of each view of the table, and their content.
 
 use crate::record::{CaseRecord, Digits, Row, Verdict};
-use crate::report::fields::{Table, grid, ranked};
+use crate::report::fields::{Shown, Table, grid, shown};
 use crate::report::layout::{Column, Field, Paint};
 use crate::report::run::console::View;
 use crate::report::run::summary_csv::Line;
 
-/// Places of the fields of a view, each with its rank: columns of the highest rank leave a narrow console first.
-type Ranked = (usize, u8);
+const RUN: &[Shown] = shown!(Line:
+    "mean" 6, "z_mean" 1, "variance_ratio" 5, "z_variance" 2, "lookups_per_draw" 7, "z_lookups" 4,
+    "predicted_kurtosis" 9, "fom" 8, "log10_ltuv" 10, "setup" 8, "needs" 9
+);
 
-const RUN: &[Ranked] = &ranked::<Line, _>([
-    ("mean", 6),
-    ("z_mean", 1),
-    ("variance_ratio", 5),
-    ("z_variance", 2),
-    ("lookups_per_draw", 7),
-    ("z_lookups", 4),
-    ("predicted_kurtosis", 9),
-    ("fom", 8),
-    ("log10_ltuv", 10),
-    (SETUP, 8),
-    (NEEDS, 9),
-]);
+const PREDICT: &[Shown] = shown!(Line:
+    "predicted_variance" 1, "predicted_skewness" 9, "predicted_kurtosis" 5, "predicted_lookups" 2, "setup" 3,
+    "predicted_fom" 2, "predicted_log10_ltuv" 10, "stable_share" 6, "rare_event_size" 8, "best_sampling_marked" 3,
+    "best_fom_marked" 4, "needs" 5
+);
 
-const PREDICT: &[Ranked] = &ranked::<Line, _>([
-    ("predicted_variance", 1),
-    ("predicted_skewness", 9),
-    ("predicted_kurtosis", 5),
-    ("predicted_lookups", 2),
-    (SETUP, 3),
-    ("predicted_fom", 2),
-    ("predicted_log10_ltuv", 10),
-    ("stable_share", 6),
-    ("rare_event_size", 8),
-    ("best_sampling_marked", 3),
-    ("best_fom_marked", 4),
-    (NEEDS, 5),
-]);
-
-const MOMENTS: &[Ranked] = &ranked::<Line, _>([
-    ("loss_1", 0),
-    ("loss_2", 0),
-    ("loss_3", 0),
-    ("loss_4", 0),
-    ("relative_m2", 0),
-    ("relative_m3", 0),
-    ("relative_m4", 0),
-    ("moments_error", 0),
-    ("error_grade", 0),
-    ("predicted_lookups", 0),
-    ("lookups_spread", 0),
-    ("lookups_error", 0),
-    ("lookups_moments_error", 0),
-    ("walk_lookups", 0),
-    ("shadow_lookups", 0),
-    ("covariance", 0),
-    ("rare_event_size", 0),
-    (SETUP, 0),
-    ("best_sampling_marked", 0),
-    ("best_fom_marked", 0),
-    ("best_kind", 0),
-    ("best_limit", 0),
-    (NEEDS, 0),
-]);
+const MOMENTS: &[Shown] = shown!(Line:
+    "loss_1", "loss_2", "loss_3", "loss_4", "relative_m2", "relative_m3", "relative_m4", "moments_error",
+    "error_grade", "predicted_lookups", "lookups_spread", "lookups_error", "lookups_moments_error", "walk_lookups",
+    "shadow_lookups", "covariance", "rare_event_size", "setup", "best_sampling_marked", "best_fom_marked",
+    "best_kind", "best_limit", "needs"
+);
 
 /// Columns that stand above the table if all rows share their value: draws of a plan and of a run, drawn, truth.
-const SHARED: [Ranked; 4] =
-    ranked::<Line, _>([("draws", 2), ("draws", 10), ("drawn", 3), ("truth", 11)]);
+const SHARED: &[Shown] = shown!(Line: "draws" 2, "draws" 10, "drawn" 3, "truth" 11);
 
-const PLAN: &[Ranked] = &ranked::<Line, _>([
-    ("needed", 1),
-    ("predicted_lookups", 2),
-    (SETUP, 3),
-    (NEEDS, 5),
-    ("skipped", 3),
-]);
+const PLAN: &[Shown] = shown!(Line:
+    "needed" 1, "predicted_lookups" 2, "setup" 3, "needs" 5, "skipped" 3
+);
 
 /// Field of the lookups before the first draw of a ray.
 pub const SETUP: &str = "setup";
@@ -106,16 +61,15 @@ pub fn names(case: &CaseRecord, rows: &[Row], labels: Digits) -> Vec<Column> {
 /// Returns the columns about the results of the rows, empty ones included.
 pub fn columns(lines: &[Line], view: View) -> Vec<Column> {
     let rows: Vec<Row> = lines.iter().map(|line| line.row).collect();
-    let [of_plan, of_run, drawn, truth] = SHARED;
-    let mut shown: Vec<Ranked> = Vec::new();
+    let mut shown: Vec<Shown> = Vec::new();
     if !view.is_theory() && shared(&rows, |row| row.experiment.draws).is_none() {
-        shown.push(if view == View::Plan { of_plan } else { of_run });
+        shown.push(SHARED[usize::from(view != View::Plan)]);
     }
     if view == View::Run && shared(&rows, |row| row.experiment.drawn).is_none() {
-        shown.push(drawn);
+        shown.push(SHARED[2]);
     }
     if view != View::Plan && shared(&rows, |row| row.truth).is_none() {
-        shown.push(truth);
+        shown.push(SHARED[3]);
     }
     shown.extend(match view {
         View::Run => RUN,
@@ -124,7 +78,7 @@ pub fn columns(lines: &[Line], view: View) -> Vec<Column> {
         View::Plan => PLAN,
     });
     let has_channels = rows.iter().any(|row| !row.channel.is_empty());
-    shown.retain(|(place, _)| has_channels || !Line::NAMES[*place].ends_with("ltuv"));
+    shown.retain(|column| has_channels || !Line::NAMES[column.place].ends_with("ltuv"));
     let mut columns = grid(lines, &shown).columns;
     let head = if view == View::Run { "verdict" } else { "status" };
     let fields = rows.iter().map(|row| status(row, view)).collect();

@@ -4,7 +4,7 @@ use maud::{Markup, html};
 
 use super::sparks;
 use crate::record::{Compared, Finding, Row, Score, Verdict};
-use crate::report::fields::{Cell, Field, Print, places};
+use crate::report::fields::{Cell, Field, Print, Shown as Column, shown};
 use crate::report::html as page;
 use crate::report::html::drawing::Plot;
 use crate::report::html::words;
@@ -30,21 +30,10 @@ impl<'a> Shown<'a> {
 }
 
 /// Fields that are listed below the numbers.
-const FACTS: [usize; 13] = places::<Joined, _>([
-    "draws",
-    "p_law",
-    "predicted_skewness",
-    "predicted_kurtosis",
-    "setup_lookups",
-    "needs",
-    "best_sampling",
-    "best_kind",
-    "best_fom",
-    "best_limit",
-    "same_as",
-    "log_unit",
-    "seconds",
-]);
+const FACTS: &[Column] = shown!(Joined:
+    "draws", "p_law", "predicted_skewness", "predicted_kurtosis", "setup_lookups", "needs", "best_sampling",
+    "best_kind", "best_fom", "best_limit", "same_as", "log_unit", "seconds"
+);
 
 /// Returns everything that is known of a row of the case with this number.
 pub fn of<'a>(row: &Row<'a>, shown: &Shown<'a>, place: usize) -> Markup {
@@ -56,7 +45,7 @@ pub fn of<'a>(row: &Row<'a>, shown: &Shown<'a>, place: usize) -> Markup {
         div.both {
             @if row.verdict != Some(Verdict::Refused) { (sparks::evidence(&findings)) }
             @for course in &row.experiment.courses { (sparks::course(course)) }
-            dl.facts { @for (field, text) in facts(row, shown) { div { dt { (field.head) } dd { (text) } } } }
+            (page::facts(facts(row, shown)))
         }
         p.quiet { (row.case.problem) ", " (row.case.medium) ": " a href={ "#case-" (place) } { "the case" } ", "
             a href={ "#" (words::anchor(row)) } { "address of this row" } }
@@ -67,10 +56,10 @@ pub fn of<'a>(row: &Row<'a>, shown: &Shown<'a>, place: usize) -> Markup {
 }
 
 /// Returns further fields that are known, with their texts.
-fn facts<'f, 'a>(row: &Row<'a>, shown: &'f Shown<'a>) -> Vec<(&'f Field<Joined<'a>>, String)> {
+fn facts<'a>(row: &Row<'a>, shown: &Shown<'a>) -> Vec<(&'static str, String)> {
     let line = shown.line(*row);
-    let all = FACTS.iter().map(|&place| &shown.fields[place]);
-    let known = all.map(|field| (field, field.text(&line)));
+    let all = FACTS.iter().map(|column| &shown.fields[column.place]);
+    let known = all.map(|field| (field.head, field.text(&line)));
     known.filter(|(_, text)| !text.is_empty() && text != "0").collect()
 }
 

@@ -5,23 +5,16 @@ use maud::{Markup, html};
 use super::details::{self, Shown};
 use super::sparks;
 use crate::record::{Record, Row};
-use crate::report::fields::places;
+use crate::report::fields::{Shown as Column, shown};
 use crate::report::html::listing::{self, Choice};
 use crate::report::html::words;
 use crate::report::run::summary_csv::Line;
 use crate::report::run::totals::{NOT_NORMAL, VERDICTS};
 
 /// Fields beside the verdict and the experiment. The page's style leaves some out on narrow screens.
-const COLUMNS: [usize; 8] = places::<Line, _>([
-    "mean",
-    "truth",
-    "z_mean",
-    "z_variance",
-    "z_lookups",
-    "largest_ln_e",
-    "detectable_bias",
-    "drawn",
-]);
+const COLUMNS: &[Column] = shown!(Line:
+    "mean", "truth", "z_mean", "z_variance", "z_lookups", "largest_ln_e", "detectable_bias", "drawn"
+);
 
 /// Meanings of the first two columns.
 const VERDICT: &str = "Worst result of all checks of the experiment. Sorted by severity.";
@@ -36,7 +29,7 @@ pub fn section<'a>(record: &'a Record, shown: &Shown<'a>) -> Markup {
         .enumerate()
         .flat_map(|(place, case)| case.rows().map(move |row| (place, row)))
         .collect();
-    let columns: Vec<_> = COLUMNS.map(|place| &shown.fields[place]).into();
+    let columns: Vec<_> = COLUMNS.iter().map(|column| &shown.fields[column.place]).collect();
     html! {
         section aria-labelledby="experiments" {
             h2 #experiments { "Experiments" }
@@ -75,8 +68,8 @@ pub fn legend(record: &Record, shown: &Shown) -> Markup {
                     dt class={ "verdict " (known.verdict.word()) } { (words::verdict(Some(known.verdict))) }
                     dd { (known.meaning) }
                 }
-                @for place in COLUMNS {
-                    @let field = &shown.fields[place];
+                @for column in COLUMNS {
+                    @let field = &shown.fields[column.place];
                     dt { (field.head) } dd { (field.tip()) }
                 }
                 dt { "(z)" } dd { (NOT_NORMAL.trim_start_matches("(z): ")) }

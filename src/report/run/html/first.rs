@@ -134,7 +134,7 @@ pub fn facts(record: &Record) -> Markup {
     html! {
         section aria-labelledby="facts" {
             h2 #facts { "The run" }
-            dl.facts { @for (name, value) in facts { div { dt { (name) } dd { (value) } } } }
+            (page::facts(facts))
         }
     }
 }

@@ -36,14 +36,9 @@ fn panel(sheet: &mut Sheet, top: f64, scores: &Scores, is_last: bool) {
     let high = scores.bins.iter().map(highest).max().unwrap_or(1) as f64;
     let title = if is_last { "z: difference from theory in standard errors" } else { "" };
     let end = EDGE + WIDTH;
-    let panel = Panel {
-        left: LEFT,
-        top,
-        right: LEFT + SIZE[0],
-        bottom: top + SIZE[1],
-        x: Axis { title: title.to_owned(), log: false, low: -end, high: end },
-        y: Axis { title: String::new(), log: false, low: 0.0, high: 1.1 * high.max(1.0) },
-    };
+    let x = Axis { title: title.to_owned(), log: false, low: -end, high: end };
+    let y = Axis { title: String::new(), log: false, low: 0.0, high: 1.1 * high.max(1.0) };
+    let panel = Panel::at([LEFT, top], SIZE, x, y);
     panel.grid(sheet);
     // The outermost bins are drawn as wide as the others.
     let ends = |ends: [f64; 2]| ends.map(|z| z.clamp(-end, end));
