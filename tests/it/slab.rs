@@ -11,7 +11,6 @@ use trueflight::phase::isotropic::Isotropic;
 use trueflight::phase::rayleigh::Rayleigh;
 use trueflight::problems::slab::{Incidence, Light};
 use trueflight::theory::ParticleRule;
-use trueflight::theory::slab::layer::Slice;
 use trueflight::theory::slab::{Existence, Piece, Pieces, Resolution, Walk, cached, solve};
 
 #[derive(Deserialize)]
@@ -176,8 +175,7 @@ fn adding_and_doubling_resolves_second_moments_like_truths_where_it_is_asked_to(
         for (cosine, expected) in [(0.5, &reference.value[..2]), (1.0, &reference.value[2..])] {
             let (ratio, albedo) = (1.0 / sampling, reference.params.a);
             let odds = rule.odds(ratio, albedo);
-            let [straight, scattered] = odds.moments([1.0 - ratio, albedo * ratio], 2);
-            let slice = Slice { flown: thickness * sampling, straight, scattered, score: 0.0 };
+            let slice = odds.kernel(thickness * sampling, [1.0 - ratio, albedo * ratio], 2);
             let (light, phase) = (Light::Collimated(cosine), Phase::Isotropic(Isotropic));
             let answer = solve(&phase, &[light], &[slice], Resolution::FINE).expect("finite")[0];
             for (known, expected) in [answer.reflected, answer.transmitted].iter().zip(expected) {

@@ -30,6 +30,7 @@ pub mod single;
 pub mod slab;
 pub mod space;
 
+pub use collisions::kernel::Kernel;
 pub use collisions::particle::ParticleRule;
 pub use prediction::count::CountLaw;
 pub use prediction::moments::Moments;

@@ -6,8 +6,9 @@ use super::prelude::*;
 use media::phase::{
     Phase, henyey_greenstein::HenyeyGreenstein, isotropic::Isotropic, rayleigh::Rayleigh,
 };
+use theory::Kernel;
 use theory::problems::slab::Light;
-use theory::slab::{self, Answer, Energy, Resolution, layer::Slice};
+use theory::slab::{self, Answer, Energy, Resolution};
 
 /// Directions of the ordinates.
 const ORDINATES: usize = 72;
@@ -107,7 +108,7 @@ fn finer(slab: &Slab, phase: Phase, seen: &mut Seen) -> Option<()> {
         Resolution { faintest: 1e-14, directions, first_layer: 1e-14, peaked: 0, ..fine }
     };
     let Slab { depth, albedo, lights } = slab;
-    let slice = Slice { flown: *depth, straight: 0.0, scattered: *albedo, score: 1.0 };
+    let slice = Kernel { rate: *depth, straight: 0.0, scattered: *albedo, score: 1.0 };
     let found = slab::answers(&phase, lights, Known::exact(*depth), *albedo);
     let found = seen.found(0, found)?;
     let fine = slab::energies(&phase, lights, &[slice], resolution)?;
@@ -151,7 +152,7 @@ fn even(slab: &Slab, seen: &mut Seen) -> Option<()> {
 fn critical(slab: &Critical, seen: &mut Seen) {
     let &Critical { depth, distance, is_beyond, ref lights } = slab;
     let phase = Phase::Isotropic(Isotropic);
-    let slice = |scattered| Slice { flown: depth, straight: 0.0, scattered, score: 1.0 };
+    let slice = |scattered| Kernel { rate: depth, straight: 0.0, scattered, score: 1.0 };
     let resolution = Resolution { first_layer: 1e-10, ..Resolution::FINE };
     let is_finite =
         |albedo| slab::energies(&phase, &[Light::Diffuse], &[slice(albedo)], resolution).is_some();

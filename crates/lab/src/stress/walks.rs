@@ -22,9 +22,8 @@ use super::rods::{lookups, moments_of};
 use super::slabs::{LIGHTS, henyey_greenstein, lights, phase};
 use media::phase::{Phase, isotropic::Isotropic};
 use theory::problems::slab::{Incidence, Light};
-use theory::slab::layer::Slice;
 use theory::slab::{self, Answer, Energy, Existence, Piece, Pieces, Resolution, Walk};
-use theory::{CountLaw, ParticleRule};
+use theory::{CountLaw, Kernel, ParticleRule};
 
 /// Directions of the ordinates.
 const ORDINATES: usize = 48;
@@ -190,7 +189,7 @@ fn walk(
 }
 
 /// The layers of a walk's k-th moments.
-fn slices(cut: &[Piece], walk: &Walk, k: u32) -> Vec<Slice> {
+fn slices(cut: &[Piece], walk: &Walk, k: u32) -> Vec<Kernel> {
     let slice = |piece: &Piece| {
         let [mut straight, mut scattered] = [0.0; 2];
         for &[share, ratio] in &piece.ratios {
@@ -199,7 +198,7 @@ fn slices(cut: &[Piece], walk: &Walk, k: u32) -> Vec<Slice> {
             straight += share * q;
             scattered += share * s;
         }
-        Slice { flown: piece.flown, straight, scattered, score: 1.0 }
+        Kernel { rate: piece.flown, straight, scattered, score: 1.0 }
     };
     cut.iter().map(slice).collect()
 }

@@ -1,5 +1,6 @@
 //! Effect of one tentative collision on a particle.
 
+pub mod kernel;
 pub mod particle;
 pub mod rules;
 

@@ -29,6 +29,7 @@
 //! I. Georgiev, W. Jarosz, *A null-scattering path integral formulation of light transport*, ACM
 //! Transactions on Graphics 38 (2019), section 5.2.
 
+use crate::Kernel;
 use numeric::Lane;
 
 /// Probabilities of the events at a tentative collision, and the factors of the weight.
@@ -59,15 +60,17 @@ pub enum Event {
 }
 
 impl Odds {
-    /// `Q_k = q_t((1 − r)/q_t)^k` and `S_k = q_s(a r/q_s)^k`, the k-th moments of the weights of transmitted and of
-    /// scattered particles, given their means `1 − r` and `a r`.
+    /// Kernel of the k-th moment at a rate of collisions, with `Q_k = q_t((1 − r)/q_t)^k` and `S_k = q_s(a r/q_s)^k`,
+    /// given the means `1 − r` and `a r`.
     #[inline]
-    pub fn moments(&self, [straight, scattered]: [f64; 2], k: i32) -> [f64; 2] {
-        if k == 0 {
-            return [self.transmit, self.scatter];
-        }
-        let more = k - 1;
-        [straight * self.transmit_weight.powi(more), scattered * self.scatter_weight.powi(more)]
+    pub fn kernel(&self, rate: f64, means: [f64; 2], k: i32) -> Kernel {
+        let weights = [self.transmit_weight, self.scatter_weight];
+        let [straight, scattered] = if k == 0 {
+            [self.transmit, self.scatter]
+        } else {
+            [0, 1].map(|event| means[event] * weights[event].powi(k - 1))
+        };
+        Kernel { rate, straight, scattered, score: 0.0 }
     }
 
     /// Event that a uniform number chooses: scattering first, as in `SimulateParticle`.
@@ -297,7 +300,11 @@ mod tests {
         for albedo in ALBEDOS {
             for r in ratios() {
                 let means = [1.0 - r, albedo * r];
-                let squares = |rule: ParticleRule| rule.odds(r, albedo).moments(means, 2);
+                let squares = |rule: ParticleRule| {
+                    let Kernel { straight, scattered, .. } =
+                        rule.odds(r, albedo).kernel(1.0, means, 2);
+                    [straight, scattered]
+                };
                 let adaptive = squares(ParticleRule::Adaptive);
                 let other = squares(ParticleRule::NonTerminating);
                 assert!(adaptive[0] >= other[0] - 1e-15 && adaptive[1] >= other[1] - 1e-15);
@@ -319,7 +326,7 @@ mod tests {
         let odds = ParticleRule::NonTerminating.odds(r, albedo);
         let sum = albedo * r + (r - 1.0);
         for k in 1..5 {
-            let [_, found] = odds.moments([1.0 - r, albedo * r], k);
+            let found = odds.kernel(1.0, [1.0 - r, albedo * r], k).scattered;
             let exact = albedo * r * sum.powi(k - 1);
             assert!((found / exact - 1.0).abs() < 1e-14, "{k}: {found:e} for {exact:e}");
         }

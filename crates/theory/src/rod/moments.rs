@@ -1,6 +1,6 @@
 //! Every moment of a walk through a rod, from its two-stream equations.
 //!
-//! Let `Q_k` and `S_k` be those of a rule (see `particle`), and `c = r(1 − a)` for the absorbed energy and
+//! Let `Q_k` and `S_k` be those of a rule's [`crate::Kernel`], and `c = r(1 − a)` for the absorbed energy and
 //! `c = 1/(σ̂ width)` for the flux. The k-th moment of the particle's score solves the equations of `line` with
 //!
 //! ```text
@@ -53,7 +53,7 @@ fn by_order(line: &Line, k: i32, ends: [f64; 2], order: usize) -> Option<Importa
     let mut worth = flow.solve(nothing, ends);
     for _ in 0..order {
         let source = |i: usize, node: &Node| {
-            let scattered = node.sampling * node.moments(k)[1];
+            let scattered = node.kernel(k).scattering();
             node.spread(worth.at(i)).map(|spread| scattered * spread)
         };
         worth = flow.solve(source, [0.0; 2]);

@@ -6,7 +6,7 @@ use crate::collisions::particle::Odds;
 use crate::problems::rod::Quantity;
 use crate::problems::{Problem, Rod};
 use crate::ray::mesh::Panel;
-use crate::{Mesh, ParticleRule};
+use crate::{Kernel, Mesh, ParticleRule};
 use media::Piecewise;
 use numeric::{Known, Span, roots};
 
@@ -37,18 +37,17 @@ pub struct Node {
 }
 
 impl Node {
-    /// `Q_k` and `S_k`.
+    /// Effect of a collision here on the k-th moment.
     #[inline]
-    pub fn moments(&self, k: i32) -> [f64; 2] {
-        self.odds.moments(self.means, k)
+    pub fn kernel(&self, k: i32) -> Kernel {
+        self.odds.kernel(self.sampling, self.means, k)
     }
 
     /// k-th moment of the score of a particle that collides here, given the moments after the collision.
     #[inline]
     pub fn after(&self, k: i32, worth: [f64; 2]) -> [f64; 2] {
-        let [q, s] = self.moments(k);
-        let spread = self.spread(worth);
-        [q * worth[0] + s * spread[0], q * worth[1] + s * spread[1]]
+        let (kernel, spread) = (self.kernel(k), self.spread(worth));
+        [0, 1].map(|way| kernel.after(worth[way], spread[way]))
     }
 
     /// Moments of a particle that is scattered here, given those of both new directions.
@@ -60,13 +59,14 @@ impl Node {
 
     /// A and B of the k-th moment.
     pub fn rates(&self, k: i32) -> [f64; 2] {
-        let [q, s] = self.moments(k);
-        [self.sampling * (1.0 - q - s * self.forward), self.sampling * s * (1.0 - self.forward)]
+        let kernel = self.kernel(k);
+        let lost = kernel.lost() - kernel.scattered * self.forward;
+        [self.sampling * lost, kernel.scattering() * (1.0 - self.forward)]
     }
 
     /// A of the k-th moment between scatterings.
     pub fn straight_rate(&self, k: i32) -> f64 {
-        self.sampling * (1.0 - self.moments(k)[0])
+        self.sampling * self.kernel(k).lost()
     }
 
     /// Rate of scattering: that of the mean weight.
@@ -117,10 +117,11 @@ impl<'a> Walk<'a> {
         let smooth = |_: &Mesh, panel: Panel<'_>| {
             let nodes = panel.t.iter().zip(panel.extinction).map(|(&t, &sigma)| walk.at(t, sigma));
             let nodes: Vec<Node> = nodes.collect();
-            let of = |k: i32, event: usize| {
-                nodes.iter().map(|node| node.sampling * (1.0 + node.moments(k)[event])).collect()
+            let of = |k: i32, event: fn(Kernel) -> f64| {
+                nodes.iter().map(|node| node.sampling * (1.0 + event(node.kernel(k)))).collect()
             };
-            vec![of(0, 0), of(0, 1), of(2, 0), of(2, 1)]
+            let (straight, scattered) = (|k: Kernel| k.straight, |k: Kernel| k.scattered);
+            vec![of(0, straight), of(0, scattered), of(2, straight), of(2, scattered)]
         };
         Self { mesh: walk.mesh.refined(&kinks, &smooth), ..walk }
     }
@@ -158,7 +159,7 @@ impl<'a> Walk<'a> {
                 let node = self.at(t, sigma);
                 for k in 0..=highest {
                     let [a, b] = node.rates(k).map(f64::abs);
-                    let scattered = node.sampling * node.moments(k)[1].abs();
+                    let scattered = node.kernel(k).scattering().abs();
                     let apart = node.straight_rate(k).abs().max(scattered);
                     let rate = if self.has_orders { (2.0 * apart).max(a + b) } else { a + b };
                     fastest = if rate <= fastest { fastest } else { rate };

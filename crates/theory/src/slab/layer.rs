@@ -26,28 +26,9 @@
 //! series.
 
 use super::directions::Directions;
+use crate::Kernel;
 use numeric::Scalar;
 use numeric::matrix::Matrix;
-
-/// One homogeneous layer of a walk, by the moments of a tentative collision.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Slice<S = f64> {
-    /// `∫σ̂` across the layer.
-    pub flown: f64,
-    /// `Q`, the moment of transmitted particles.
-    pub straight: S,
-    /// `S`, the moment of scattered particles.
-    pub scattered: S,
-    /// The score of a collision.
-    pub score: f64,
-}
-
-impl<S: Scalar> Slice<S> {
-    /// Loss of the beam at a collision, `1 − Q`.
-    pub fn lost(&self) -> S {
-        S::from(1.0) - self.straight
-    }
-}
 
 /// Response of a layer to light that comes from above.
 #[derive(Clone)]
@@ -65,10 +46,9 @@ pub struct Layer<S = f64> {
 impl<S: Scalar> Layer<S> {
     /// A homogeneous layer by `doublings` doublings of one so thin that light scatters in it at most once; `None`
     /// where the expected energy is infinite.
-    pub fn homogeneous(directions: &Directions, slice: &Slice<S>, doublings: i32) -> Option<Self> {
+    pub fn homogeneous(directions: &Directions, slice: &Kernel<S>, doublings: i32) -> Option<Self> {
         // Without loss, light along the layer collides without end.
-        let lost = slice.lost().leading();
-        if lost < 0.0 || (lost == 0.0 && slice.scattered.leading() > 0.0) {
+        if slice.lost().leading() < 0.0 || slice.is_endless() {
             return None;
         }
         let mut part = 0.5f64.powi(doublings);
@@ -88,8 +68,8 @@ impl<S: Scalar> Layer<S> {
     /// Rᵢⱼ = S P⁻ᵢⱼ (h/μᵢ) φ(u(1/μᵢ + 1/μⱼ)),   φ(y) = (1 − e^{−y})/y,   u = (1 − Q) h
     /// Tᵢⱼ = S P⁺ᵢⱼ (h/μᵢ) e^{−u/μⱼ} φ(u(1/μᵢ − 1/μⱼ)),   Nᵢ = (h/μᵢ) φ(u/μᵢ)
     /// ```
-    fn thin(directions: &Directions, slice: &Slice<S>, part: f64) -> Self {
-        let flown = slice.flown * part;
+    fn thin(directions: &Directions, slice: &Kernel<S>, part: f64) -> Self {
+        let flown = slice.rate * part;
         let lost = slice.lost() * flown;
         let inverse: Vec<f64> = directions.cosines.iter().map(|cosine| 1.0 / cosine).collect();
         let (rows, columns) = (inverse.len(), directions.count());
@@ -174,7 +154,7 @@ impl<S: Scalar> Layer<S> {
     }
 }
 
-fn direct<S: Scalar>(directions: &Directions, slice: &Slice<S>, part: f64) -> Vec<S> {
-    let lost = slice.lost() * slice.flown * part;
+fn direct<S: Scalar>(directions: &Directions, slice: &Kernel<S>, part: f64) -> Vec<S> {
+    let lost = slice.lost() * slice.rate * part;
     directions.cosines.iter().map(|&cosine| (-lost / cosine).exp()).collect()
 }

@@ -34,12 +34,13 @@ pub mod spectral;
 mod tests;
 pub mod walk;
 
+use crate::Kernel;
 use crate::problems::slab::Light;
 use media::phase::Phase;
 use numeric::{Known, Scalar};
 
 use directions::Directions;
-use layer::{Layer, Slice};
+use layer::Layer;
 
 pub use cache::cached;
 pub use pieces::{Piece, Pieces};
@@ -214,7 +215,7 @@ const MOST_DOUBLINGS: f64 = 100.0;
 pub fn solve(
     phase: &Phase,
     lights: &[Light],
-    slices: &[Slice],
+    slices: &[Kernel],
     resolution: Resolution,
 ) -> Option<Vec<Answer>> {
     let known = resolved(phase, lights, slices, resolution)?;
@@ -227,7 +228,7 @@ pub fn solve(
 pub fn factorial_moments<S: Scalar>(
     phase: &Phase,
     lights: &[Light],
-    slices: &[Slice<S>],
+    slices: &[Kernel<S>],
 ) -> Option<Vec<[Known; 4]>> {
     let known = resolved(phase, lights, slices, Resolution::COARSE)?;
     let of_light = |i: usize| {
@@ -252,7 +253,7 @@ type Functional<'f, S> = dyn Fn(&Shares<S>) -> f64 + 'f;
 fn resolved<S: Scalar>(
     phase: &Phase,
     lights: &[Light],
-    slices: &[Slice<S>],
+    slices: &[Kernel<S>],
     resolution: Resolution,
 ) -> Option<impl Fn(usize, f64, &Functional<'_, S>) -> Known> {
     let resolution = resolution.of(phase);
@@ -266,7 +267,7 @@ fn resolved<S: Scalar>(
         Some(_) => None,
         None => Some(thicker(phase, lights, slices, resolution, &fine)),
     };
-    let depth: f64 = slices.iter().map(|slice| slice.flown * slice.lost().leading()).sum();
+    let depth: f64 = slices.iter().map(|slice| slice.rate * slice.lost().leading()).sum();
     let thick = (depth / THICK).max(1.0);
     let thin = if depth > 0.0 { (THIN / depth).max(1.0) } else { 1.0 };
     Some(move |i: usize, amplified: f64, of: &Functional<'_, S>| {
@@ -298,13 +299,13 @@ fn resolved<S: Scalar>(
 fn thicker<S: Scalar>(
     phase: &Phase,
     lights: &[Light],
-    slices: &[Slice<S>],
+    slices: &[Kernel<S>],
     resolution: Resolution,
     fine: &[Shares<S>],
 ) -> Option<Vec<Shares<S>>> {
     let at = |resolution, depth: f64| {
-        let slices: Vec<Slice<S>> =
-            slices.iter().map(|slice| Slice { flown: depth * slice.flown, ..*slice }).collect();
+        let slices: Vec<Kernel<S>> =
+            slices.iter().map(|slice| Kernel { rate: depth * slice.rate, ..*slice }).collect();
         energies_at(phase, lights, &slices, resolution)
     };
     let half = resolution.half();
@@ -328,7 +329,7 @@ fn thicker<S: Scalar>(
 pub fn energies(
     phase: &Phase,
     lights: &[Light],
-    slices: &[Slice],
+    slices: &[Kernel],
     resolution: Resolution,
 ) -> Option<Vec<Energy>> {
     energies_at(phase, lights, slices, resolution.of(phase))
@@ -338,7 +339,7 @@ pub fn energies(
 fn energies_at<S: Scalar>(
     phase: &Phase,
     lights: &[Light],
-    slices: &[Slice<S>],
+    slices: &[Kernel<S>],
     resolution: Resolution,
 ) -> Option<Vec<Shares<S>>> {
     let found = layers(phase, lights, slices, resolution)?;
@@ -349,19 +350,19 @@ fn energies_at<S: Scalar>(
 fn layers<S: Scalar>(
     phase: &Phase,
     lights: &[Light],
-    slices: &[Slice<S>],
+    slices: &[Kernel<S>],
     resolution: Resolution,
 ) -> Option<Vec<(Shares<S>, f64)>> {
     let (count, peak) = resolution.directions(phase);
     let further: Vec<f64> = lights.iter().filter_map(|light| light.cosine()).collect();
     let directions = Directions::new(phase, count, &further, peak);
     // The peak goes straight on.
-    let cut = |slice: &Slice<S>| Slice {
+    let cut = |slice: &Kernel<S>| Kernel {
         straight: slice.straight + slice.scattered * peak,
         scattered: slice.scattered * (1.0 - peak),
         ..*slice
     };
-    let slices: Vec<Slice<S>> = slices.iter().map(cut).collect();
+    let slices: Vec<Kernel<S>> = slices.iter().map(cut).collect();
     let layer = stack(&directions, &slices, resolution.first_layer)?;
     let sum = |row: &mut dyn Iterator<Item = S>| row.fold(S::from(0.0), |sum, x| sum + x);
     let leaving = |i: usize| {
@@ -398,10 +399,10 @@ fn layers<S: Scalar>(
 }
 
 /// The layers laid upon each other, the first on top.
-fn stack<S: Scalar>(directions: &Directions, slices: &[Slice<S>], error: f64) -> Option<Layer<S>> {
-    let homogeneous = |slice: &Slice<S>| {
+fn stack<S: Scalar>(directions: &Directions, slices: &[Kernel<S>], error: f64) -> Option<Layer<S>> {
+    let homogeneous = |slice: &Kernel<S>| {
         let [lost, scattered] = [slice.lost(), slice.scattered].map(|x| x.leading().abs());
-        let depth = slice.flown * lost.max(scattered);
+        let depth = slice.rate * lost.max(scattered);
         let doublings = (FIRST_LAYER * depth * depth.max(1.0) / error).log2().ceil();
         #[allow(clippy::cast_possible_truncation)] // a small number
         let doublings = doublings.clamp(0.0, MOST_DOUBLINGS) as i32;
@@ -418,7 +419,7 @@ fn stack<S: Scalar>(directions: &Directions, slices: &[Slice<S>], error: f64) ->
 /// Reflectance and transmittance of a slab of optical depth τ and albedo a; the score is the expected
 /// number of collisions. `None` where they are infinite, which takes an albedo above 1.
 pub fn answers(phase: &Phase, lights: &[Light], depth: Known, albedo: f64) -> Option<Vec<Answer>> {
-    let slice = Slice { flown: depth.value, straight: 0.0, scattered: albedo, score: 1.0 };
+    let slice = Kernel { rate: depth.value, straight: 0.0, scattered: albedo, score: 1.0 };
     let answers = solve(phase, lights, &[slice], Resolution::FINE)?;
     let resolution = Resolution { first_layer: 1e-6, ..Resolution::FINE };
     let is_faint = |answer: &Answer| {

@@ -4,10 +4,9 @@
 //! repeatedly towards the top: grazing light gets no deeper than μ₀ free paths, and its r is that of the top rather
 //! than the mean of a layer.
 
-use super::layer::Slice;
-use crate::Mesh;
 use crate::collisions::particle::Odds;
 use crate::problems::slab::Light;
+use crate::{Kernel, Mesh};
 use media::Piecewise;
 use numeric::Span;
 use numeric::quadrature::GaussLegendre;
@@ -43,16 +42,18 @@ impl Piece {
         Self { flown, ratios: vec![[1.0, ratio]] }
     }
 
-    /// The layer with the mean moments of its collisions.
-    pub(super) fn slice(&self, at: impl Fn(f64) -> [f64; 3]) -> Slice {
-        let mut sums = [0.0; 3];
-        for &[share, ratio] in &self.ratios {
-            for (sum, x) in sums.iter_mut().zip(at(ratio)) {
-                *sum += share * x;
+    /// The layer with the mean kernel of its collisions, which is given by the ratio.
+    pub(super) fn kernel(&self, at: impl Fn(f64) -> Kernel) -> Kernel {
+        let none = Kernel { rate: self.flown, straight: 0.0, scattered: 0.0, score: 0.0 };
+        self.ratios.iter().fold(none, |sum, &[share, ratio]| {
+            let here = at(ratio);
+            Kernel {
+                straight: sum.straight + share * here.straight,
+                scattered: sum.scattered + share * here.scattered,
+                score: sum.score + share * here.score,
+                ..sum
             }
-        }
-        let [straight, scattered, score] = sums;
-        Slice { flown: self.flown, straight, scattered, score }
+        })
     }
 
     /// Returns true if every collision in it is null: then no particle changes.

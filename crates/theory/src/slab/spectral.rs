@@ -5,13 +5,12 @@
 //! Orders of scattering are known for isotropic scattering. With other phase functions multiple importance sampling
 //! has a mean, and a bound on the variance, as its draws never exceed 1/w.
 
-use super::layer::Slice;
 use super::{Pieces, Resolution, Walk};
 use crate::colours::scatterers::{Body, Divergence, Orders};
 use crate::memo::Memo;
 use crate::problems::SpectralSlab;
 use crate::problems::slab::{Incidence, Light};
-use crate::{CountLaw, Mesh, ParticleRule, colours, slab};
+use crate::{CountLaw, Kernel, Mesh, ParticleRule, colours, slab};
 use media::Piecewise;
 use media::phase::Phase;
 use media::phase::isotropic::Isotropic;
@@ -50,7 +49,7 @@ impl<'a> Slabs<'a> {
 /// An answer of moderate precision, `None` where it is infinite: with sharp phase functions an exact one takes
 /// seconds.
 fn coarse(incidence: &Incidence, depth: f64, albedo: f64) -> Option<[Known; 2]> {
-    let slice = Slice { flown: depth, straight: 0.0, scattered: albedo, score: 0.0 };
+    let slice = Kernel { rate: depth, straight: 0.0, scattered: albedo, score: 0.0 };
     let found = slab::solve(&incidence.phase, &[incidence.light], &[slice], Resolution::COARSE)?;
     Some([found[0].reflected, found[0].transmitted])
 }

@@ -12,8 +12,8 @@ fn peaked(g: f64) -> Phase {
     Phase::HenyeyGreenstein(HenyeyGreenstein::new(g).expect("in range"))
 }
 
-fn slab(depth: f64, albedo: f64) -> [Slice; 1] {
-    [Slice { flown: depth, straight: 0.0, scattered: albedo, score: 1.0 }]
+fn slab(depth: f64, albedo: f64) -> [Kernel; 1] {
+    [Kernel { rate: depth, straight: 0.0, scattered: albedo, score: 1.0 }]
 }
 
 /// Adding and doubling with three times the directions is the other method. It confirms the stated error also where the

@@ -19,14 +19,13 @@
 //! Source: Szirmay-Kalos et al. 2017, sections 3.1–3.3; that moments are slabs again, the covariance and
 //! the cost are derived here.
 
-use super::layer::Slice;
 use super::pieces::{Piece, Pieces};
 use super::{Answer, Energy, Light, Resolution, energies, factorial_moments, solve};
 use crate::collisions::particle::Odds;
 use crate::prediction::raw::{POWERS, RawMoments};
 use crate::prediction::{Covariance, UNRESOLVED};
 use crate::problems::slab::Incidence;
-use crate::{Channel, CountLaw, ParticleRule, Prediction, Tails, colours};
+use crate::{Channel, CountLaw, Kernel, ParticleRule, Prediction, Tails, colours};
 use numeric::{Jet, Known, Scalar};
 
 /// The channels of a draw, in their order.
@@ -44,11 +43,6 @@ pub enum Existence {
     Diverges,
     /// The slab is next to the critical depth.
     Unknown,
-}
-
-/// Returns true if the moment along a layer grows without end, given `Q_k` and `S_k`.
-fn is_endless([straight, scattered, _]: [f64; 3]) -> bool {
-    straight >= 1.0 && scattered > 0.0
 }
 
 /// A walk in a slab.
@@ -114,7 +108,7 @@ impl Walk {
             return Existence::Finite;
         }
         let moments = self.of_collisions(2);
-        let is_endless = |[_, ratio]: &[f64; 2]| is_endless(moments(*ratio));
+        let is_endless = |[_, ratio]: &[f64; 2]| moments(*ratio).is_endless();
         let (pieces, resolution) = match &self.pieces {
             Pieces::Exact(pieces) => (pieces, Resolution::COARSE),
             Pieces::Graded([_, pieces]) => (pieces, Resolution::LAYERED),
@@ -123,10 +117,10 @@ impl Walk {
             return Existence::Diverges;
         }
         let thinner = |piece: &Piece| {
-            let slice = piece.slice(&moments);
-            Slice { flown: slice.flown * (1.0 - NEAR), ..slice }
+            let layer = piece.kernel(&moments);
+            Kernel { rate: layer.rate * (1.0 - NEAR), ..layer }
         };
-        let thinner: Vec<Slice> = pieces.iter().map(thinner).collect();
+        let thinner: Vec<Kernel> = pieces.iter().map(thinner).collect();
         let lights = [self.incidence.light];
         match energies(&self.incidence.phase, &lights, &thinner, resolution) {
             // With the peak cut off, light along a layer may grow that the whole phase function turns away.
@@ -135,34 +129,30 @@ impl Walk {
         }
     }
 
-    /// `Q_k`, `S_k` and no score, by r.
-    fn of_collisions(&self, k: i32) -> impl Fn(f64) -> [f64; 3] + '_ {
-        move |ratio| {
-            let means = [1.0 - ratio, self.albedo * ratio];
-            let [straight, scattered] = self.odds(ratio).moments(means, k);
-            [straight, scattered, 0.0]
-        }
+    /// Kernel of the k-th moment by r, for a rate of 1.
+    fn of_collisions(&self, k: i32) -> impl Fn(f64) -> Kernel + '_ {
+        move |ratio| self.odds(ratio).kernel(1.0, [1.0 - ratio, self.albedo * ratio], k)
     }
 
     /// `E[X_R^k]` and `E[X_T^k]` in each light; `None` where they are infinite.
     fn powers(&self, k: i32, lights: &[Light]) -> Option<Vec<[Known; 2]>> {
         let phase = &self.incidence.phase;
         let moments = self.of_collisions(k);
-        let layers = |pieces: &[Piece]| -> Vec<Slice> {
-            pieces.iter().map(|piece| piece.slice(&moments)).collect()
+        let layers = |pieces: &[Piece]| -> Vec<Kernel> {
+            pieces.iter().map(|piece| piece.kernel(&moments)).collect()
         };
-        let exact = |slices: &[Slice]| {
+        let exact = |slices: &[Kernel]| {
             let answers = solve(phase, lights, slices, Resolution::COARSE)?;
             Some(answers.iter().map(|answer| [answer.reflected, answer.transmitted]).collect())
         };
         if self.is_tracking() {
-            return exact(&[Piece::of(self.depth, 1.0).slice(&moments)]);
+            return exact(&[Piece::of(self.depth, 1.0).kernel(&moments)]);
         }
         match &self.pieces {
             Pieces::Exact(pieces) => exact(&layers(pieces)),
             Pieces::Graded(cuts) => {
                 // A mean over a layer would hide an endless growth of the moment along it.
-                let grows = |[_, ratio]: &[f64; 2]| is_endless(moments(*ratio));
+                let grows = |[_, ratio]: &[f64; 2]| moments(*ratio).is_endless();
                 if cuts[1].iter().flat_map(|piece| &piece.ratios).any(grows) {
                     return None;
                 }
@@ -255,16 +245,14 @@ impl Walk {
     }
 
     /// Layers with a mark and a score of 1 at every collision; `None` where the distribution of their number is not known.
-    fn marked<S: Scalar>(&self) -> Option<Vec<Slice<S>>> {
+    fn marked<S: Scalar>(&self) -> Option<Vec<Kernel<S>>> {
         let Pieces::Exact(pieces) = &self.pieces else { return None };
         // A layer of null collisions only has infinitely many of them along it.
         let odds = |ratio: f64| self.odds(ratio);
         let is_idle = pieces.is_empty() || pieces.iter().any(|piece| piece.is_idle(odds));
         let marked = |piece: &Piece| {
-            let of_odds = |Odds { transmit, scatter, .. }| [transmit, scatter, 1.0];
-            let Slice { flown, straight, scattered, score } = piece.slice(|r| of_odds(odds(r)));
-            let [straight, scattered] = [straight, scattered].map(|x| S::mark() * x);
-            Slice { flown, straight, scattered, score }
+            let counts = self.of_collisions(0);
+            piece.kernel(|ratio| Kernel { score: 1.0, ..counts(ratio) }).marked()
         };
         (!is_idle).then(|| pieces.iter().map(marked).collect())
     }

@@ -295,7 +295,7 @@ mod tests {
                         let ratio = most * if i % 2 == 0 { share(i) } else { squared(i) };
                         let a = albedo[0] + (albedo[1] - albedo[0]) * share(j);
                         let odds = rule.odds(ratio, a);
-                        let kept: f64 = odds.moments([1.0 - ratio, a * ratio], 2).iter().sum();
+                        let kept = odds.kernel(1.0, [1.0 - ratio, a * ratio], 2).after(1.0, 1.0);
                         let spread = kept - (1.0 - (1.0 - a) * ratio).powi(2);
                         let relative = match 1.0 - kept {
                             _ if spread <= 1e-11 => 0.0,
