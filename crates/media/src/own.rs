@@ -11,11 +11,11 @@
 //! narrower than a 64th of the distance between two breaks may be missed. Where σ_t is negative or not finite, τ is
 //! NaN, and a case with that field is an error. Free flights are bracketed roots of τ.
 
-use std::collections::VecDeque;
 use std::sync::{Arc, LazyLock};
 
 use super::{Extinction, Field, Medium, OpticalDepth, Profile, Reader, Stratified};
 use crate::catalogue::{OwnPage, Page, Settings};
+use numeric::adaptive::{Halved, Limits, halve};
 use numeric::geometry::{Aabb, Bounds, Ray};
 use numeric::quadrature::GaussLegendre;
 use numeric::{Known, Lane, Span, sum::Sum};
@@ -65,12 +65,10 @@ impl<F: Fn(f64) -> f64 + Send + Sync + 'static> OpticalDepth for Formula<F> {
 
 /// Number of panels before any of them is halved.
 const PANELS: f64 = 64.0;
-/// Maximum number of halvings of a panel.
-const HALVINGS: usize = 40;
+/// Limits of halving: they end it where a closure's own rounding prevents agreement.
+const LIMITS: Limits = Limits { halvings: 40, panels: 1 << 14 };
 /// Relative agreement of two halves with the whole.
 const AGREEMENT: f64 = 1e-12;
-/// Maximum number of panels: it ends the halving where a closure's own rounding prevents agreement.
-const LOOKED_AT: usize = 1 << 15;
 /// Relative distance from a panel's ends at which f is evaluated.
 const NEAR: f64 = 1e-9;
 
@@ -98,34 +96,25 @@ fn panel(f: &impl Fn(f64) -> f64, part: Span) -> [f64; 2] {
 
 /// ∫ f with an estimate of its error; NaN where f is negative or not finite.
 fn integral(f: impl Fn(f64) -> f64, span: Span) -> Known {
-    let on = |part: Span| (part, panel(&f, part));
     let cuts = span.cut(span.even_cuts(PANELS));
-    let mut open: VecDeque<_> = Span::between(&cuts).map(|part| (on(part), 0)).collect();
-    let size = open.iter().map(|((_, [sum, _]), _)| sum.abs()).sum::<f64>();
-    if !size.is_finite() {
-        return Known::estimated(f64::NAN, f64::INFINITY);
-    }
-    let (mut value, mut error, mut looked) = (Sum::default(), Sum::default(), open.len());
-    // The widest panel first, so that all are equally narrow when the maximum number is reached.
-    while let Some(((part, [whole, hidden]), depth)) = open.pop_front() {
-        let halves = part.halves().map(on);
-        let [[first, _], [second, _]] = halves.map(|(_, found)| found);
-        let change = (first + second - whole).abs() + hidden;
-        if !change.is_finite() {
-            return Known::estimated(f64::NAN, f64::INFINITY);
-        }
-        looked += 2;
-        let share = size.max(value.value()) * AGREEMENT * (part.length() / span.length());
-        let is_done = change <= share.max(16.0 * f64::EPSILON * whole.abs());
-        if is_done || depth == HALVINGS || looked >= LOOKED_AT {
-            value.add(first + second);
-            error.add(change);
-        } else {
-            open.extend(halves.map(|half| (half, depth + 1)));
-        }
+    let change = |here: &Halved<2>| here.change()[0].abs() + here.whole[1];
+    // Where f is no extinction, nothing is compared.
+    let is_rough = |here: &Halved<2>, &[size, _]: &[f64; 2]| {
+        let share = size * AGREEMENT * (here.span.length() / span.length());
+        change(here) > share.max(16.0 * f64::EPSILON * here.whole[0])
+    };
+    let on = |part: Span| panel(&f, part);
+    let found = halve(Span::between(&cuts), LIMITS, on, |here, scale| !is_rough(here, scale));
+    let (mut value, mut error) = (Sum::default(), Sum::default());
+    for here in &found {
+        value.add(here.value()[0]);
+        error.add(change(here));
     }
     let value = value.value();
-    Known::estimated(value, error.value() + 64.0 * f64::EPSILON * value.abs())
+    if !value.is_finite() {
+        return Known::estimated(f64::NAN, f64::INFINITY);
+    }
+    Known::estimated(value, error.value() + 64.0 * f64::EPSILON * value)
 }
 
 /// A field in space that a closure gives: `σ_t(x, y, z)`, 1/length, finite and ≥ 0, within bounds.

@@ -2,6 +2,7 @@
 //!
 //! Floor 0. Nothing here depends on light, media or statistics.
 
+pub mod adaptive;
 pub mod cumulative;
 pub mod digits;
 pub mod double_double;

@@ -20,6 +20,7 @@ pub struct GaussLegendre {
     pub weights: Vec<f64>,
     /// Row `i` holds the weights of `∫₀^{xᵢ}`.
     pub running: Vec<Vec<f64>>,
+    barycentric: Vec<f64>,
 }
 
 impl GaussLegendre {
@@ -27,27 +28,40 @@ impl GaussLegendre {
     pub fn new(n: usize) -> Self {
         let (nodes, weights): (Vec<f64>, Vec<f64>) =
             (0..n).map(|i| node_and_weight(n, n - 1 - i)).unzip();
+        let others = |j: usize| nodes.iter().enumerate().filter(move |&(i, _)| i != j);
+        // In units of the interval's capacity, 1/4: the product of hundreds of differences would underflow.
+        let apart = |j: usize| others(j).map(|(_, x)| 4.0 * (nodes[j] - x)).product::<f64>();
+        let barycentric = (0..n).map(|j| 1.0 / apart(j)).collect();
+        let mut rule = Self { nodes, weights, running: Vec::new(), barycentric };
         // ∫₀^{xᵢ} of the Lagrange polynomials, themselves integrated exactly by this very rule:
         // they have degree n − 1 ≤ 2n − 1.
-        let running = nodes
-            .iter()
-            .map(|&end| {
-                let mut row = vec![0.0; n];
-                for (&node, &weight) in nodes.iter().zip(&weights) {
-                    let at = end * node;
-                    for (j, entry) in row.iter_mut().enumerate() {
-                        *entry += end * weight * lagrange(&nodes, j, at);
-                    }
-                }
-                row
-            })
-            .collect();
-        Self { nodes, weights, running }
+        let up_to = |end: f64| {
+            let mut row = vec![0.0; n];
+            for (at, weight) in rule.on(Span::new(0.0, end)) {
+                row.iter_mut().zip(rule.weights_at(at)).for_each(|(sum, x)| *sum += weight * x);
+            }
+            row
+        };
+        rule.running = rule.nodes.iter().map(|&end| up_to(end)).collect();
+        rule
     }
 
-    /// Weights of the values at the nodes in the polynomial through all of them, at `x` in `[0, 1]`.
+    /// Weights of the values at the nodes in the polynomial through all of them, at `x` in `[0, 1]`, by barycentric
+    /// interpolation.
+    ///
+    /// ```text
+    /// ℓⱼ(x) = wⱼ/(x − xⱼ)/Σᵢ wᵢ/(x − xᵢ),   wⱼ = 1/∏ (xⱼ − xᵢ)
+    /// ```
+    ///
+    /// Source: J.-P. Berrut, L. N. Trefethen, *Barycentric Lagrange interpolation*, SIAM Review 46 (2004).
     pub fn weights_at(&self, x: f64) -> Vec<f64> {
-        (0..self.nodes.len()).map(|j| lagrange(&self.nodes, j, x)).collect()
+        if let Some(hit) = self.nodes.iter().position(|&node| node == x) {
+            return (0..self.nodes.len()).map(|j| f64::from(u8::from(j == hit))).collect();
+        }
+        let pairs = self.nodes.iter().zip(&self.barycentric);
+        let terms: Vec<f64> = pairs.map(|(node, weight)| weight / (x - node)).collect();
+        let sum: f64 = terms.iter().sum();
+        terms.into_iter().map(|term| term / sum).collect()
     }
 
     /// The nodes on a stretch, each with its weight; the weights sum to its length.
@@ -154,11 +168,6 @@ pub fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(x, y)| x * y).sum()
 }
 
-fn lagrange(nodes: &[f64], j: usize, x: f64) -> f64 {
-    let others = nodes.iter().enumerate().filter(|&(k, _)| k != j);
-    others.map(|(_, &node)| (x - node) / (nodes[j] - node)).product()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -173,6 +182,18 @@ mod tests {
             assert!((value - exact).abs() < 1e-14, "{n} nodes: {value} against {exact}");
             let total: f64 = rule.on(Span::new(1.0, 3.0)).map(|(t, weight)| weight * t).sum();
             assert!((total - 4.0).abs() < 1e-13);
+        }
+    }
+
+    #[test]
+    fn interpolation_keeps_its_digits_with_many_nodes() {
+        for n in [5, 16, 200] {
+            let rule = GaussLegendre::new(n);
+            for x in [1e-9, 0.1, rule.nodes[2], 0.5, 0.77, 1.0 - 1e-9] {
+                let pairs = rule.weights_at(x).into_iter().zip(&rule.nodes);
+                let found: f64 = pairs.map(|(weight, node)| weight * node.powi(4)).sum();
+                assert!((found - x.powi(4)).abs() < 1e-14, "{n} nodes at {x}: {found}");
+            }
         }
     }
 

@@ -25,6 +25,11 @@ pub fn binomial(n: usize, k: usize) -> f64 {
     (1..=k).fold(1.0, |product, i| product * (n + 1 - i) as f64 / i as f64)
 }
 
+/// `x^k`.
+pub fn power(x: f64, k: usize) -> f64 {
+    x.powi(i32::try_from(k).unwrap_or(i32::MAX))
+}
+
 /// Raw moments of a Poisson number of mean m.
 pub fn poisson(m: f64) -> Raw {
     [1.0, m, m * (1.0 + m), m * (1.0 + m * (3.0 + m)), m * (1.0 + m * (7.0 + m * (6.0 + m)))]

@@ -5,6 +5,7 @@ use super::segment::{Segment, Tracking};
 use super::shadows::{Among, MANY, Shadows, thinned};
 use crate::prediction::raw::added;
 use crate::problems::{Problem, SingleScattering};
+use numeric::adaptive::{Halved, Limits, halve};
 use numeric::quadrature::GaussLegendre;
 use numeric::sum::Sum;
 use numeric::{Known, Span};
@@ -17,12 +18,10 @@ const ROUNDING: f64 = 2e-13;
 pub const STEPS: usize = 24;
 /// Maximum width of a panel in the stretched variable.
 const WIDEST: f64 = 0.5;
-/// Maximum number of halvings of one panel.
-const HALVINGS: u32 = 40;
+/// Limits of the panels of one integral.
+const LIMITS: Limits = Limits { halvings: 40, panels: 10_000 };
 /// Relative difference at which panels that hold several pieces of the medium are fine enough.
 const UNRESOLVED: f64 = 1e-6;
-/// Maximum number of panels of one integral.
-const MOST: usize = 20_000;
 
 /// A point of the ray.
 #[derive(Debug, Clone, Copy)]
@@ -225,26 +224,20 @@ impl<'a> Scene<'a> {
         s.extend([support.from, support.to]);
         let mut x: Vec<f64> = s.into_iter().map(|s| self.unstretched(s)).collect();
         x.sort_by(f64::total_cmp);
-        let mut ends = vec![x[0]];
-        for pair in x.windows(2).filter(|pair| pair[1] > pair[0]) {
-            let parts = ((pair[1] - pair[0]) / WIDEST).ceil().max(1.0);
-            let mut part = 1.0;
-            while part < parts {
-                ends.push(pair[0] + (pair[1] - pair[0]) * part / parts);
-                part += 1.0;
-            }
-            ends.push(pair[1]);
-        }
-        ends
+        let cuts = |span: Span| span.even_cuts((span.length() / WIDEST).ceil());
+        let further: Vec<f64> = Span::between(&x).flat_map(cuts).collect();
+        x.extend(further);
+        x.sort_by(f64::total_cmp);
+        x.dedup();
+        x
     }
 
     fn panel<const N: usize>(&self, x: Span, f: &dyn Fn(Place) -> [f64; N]) -> [f64; N] {
         let mut sum = [0.0; N];
-        for (&node, &weight) in self.rule.nodes.iter().zip(&self.rule.weights) {
-            let place = self.stretched(x.from + node * x.length());
-            let values = f(place);
-            let weight = weight * place.stretch * x.length();
-            sum.iter_mut().zip(values).for_each(|(sum, value)| *sum += weight * value);
+        for (x, weight) in self.rule.on(x) {
+            let place = self.stretched(x);
+            let weight = weight * place.stretch;
+            sum.iter_mut().zip(f(place)).for_each(|(sum, value)| *sum += weight * value);
         }
         sum
     }
@@ -294,41 +287,29 @@ impl<'a> Scene<'a> {
             return Integral { value: [0.0; N], error: [0.0; N], panels: Vec::new() };
         }
         let ends = self.ends(cuts);
-        let mut open: Vec<(Span, [f64; N], u32)> =
-            Span::between(&ends).map(|x| (x, self.panel(x, f), HALVINGS)).collect();
-        let scale: [f64; N] =
-            std::array::from_fn(|i| open.iter().map(|(_, value, _)| value[i].abs()).sum());
-        open.reverse();
+        let least = if self.is_thinned { UNRESOLVED } else { 0.0 };
+        let is_fine = |here: &Halved<N>, scale: &[f64; N]| {
+            let change = here.change();
+            !(0..N).any(|i| change[i].abs() > parts[i].max(least) * scale[i])
+        };
+        let found = halve(Span::between(&ends), LIMITS, |x| self.panel(x, f), is_fine);
         let [mut sums, mut signed] = [[Sum::default(); N]; 2];
         let [mut error, mut squares] = [[0.0; N]; 2];
-        let least = if self.is_thinned { UNRESOLVED } else { 0.0 };
-        let mut panels = Vec::new();
-        while let Some((x, coarse, halvings)) = open.pop() {
-            let halves = x.halves();
-            let [left, right] = halves.map(|x| self.panel(x, f));
-            let apart: [f64; N] = std::array::from_fn(|i| (left[i] + right[i] - coarse[i]).abs());
-            let rough = (0..N).any(|i| apart[i] > parts[i].max(least) * scale[i]);
-            let room =
-                halvings > 0 && panels.len() + open.len() < MOST && x.contains_inside(x.middle());
-            if rough && room {
-                open.push((halves[1], right, halvings - 1));
-                open.push((halves[0], left, halvings - 1));
-                continue;
-            }
+        for here in &found {
+            let change = here.change();
             for i in 0..N {
-                sums[i].add(left[i]);
-                sums[i].add(right[i]);
-                error[i] += apart[i];
-                signed[i].add(left[i] + right[i] - coarse[i]);
-                squares[i] += apart[i] * apart[i];
+                here.halves.iter().for_each(|half| sums[i].add(half[i]));
+                error[i] += change[i].abs();
+                signed[i].add(change[i]);
+                squares[i] += change[i] * change[i];
             }
-            panels.extend(halves);
         }
         if self.is_thinned {
             // Differences have random signs.
             let of = |i: usize| signed[i].value().abs() + 2.0 * f64::sqrt(squares[i]);
             error = std::array::from_fn(of);
         }
+        let panels = found.iter().flat_map(|here| here.span.halves()).collect();
         Integral { value: sums.map(|sum| sum.value()), error, panels }
     }
 }

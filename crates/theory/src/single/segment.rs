@@ -4,6 +4,7 @@ use super::shadows::thinned;
 use crate::prediction::raw::{self, poisson};
 use crate::ray::survival::{Survival, factorial_rates};
 use media::Medium;
+use numeric::adaptive::{Halved, Limits, halve};
 use numeric::quadrature::GaussLegendre;
 use numeric::{Known, Span};
 
@@ -161,8 +162,8 @@ impl Segment {
     }
 }
 
-/// Maximum number of halvings of the panels.
-const HALVINGS: u32 = 6;
+/// Limits of the panels of one integral.
+const LIMITS: Limits = Limits { halvings: 5, panels: 10_000 };
 /// Relative difference of two resolutions at which panels are fine enough: halving a panel of 16 nodes divides the
 /// error by 2³², so that the finer resolution is then accurate to rounding.
 const AGREED: f64 = 1e-11;
@@ -184,7 +185,7 @@ fn counted(medium: &Medium, rule: &GaussLegendre, sampling: f64) -> [f64; 4] {
 }
 
 /// `∫ f(t, σ_t)` over the support of a medium, and the difference of two resolutions: Gauss panels between its
-/// breaks, halved together until these agree.
+/// breaks, halved until these agree.
 fn along<const N: usize>(
     medium: &Medium,
     rule: &GaussLegendre,
@@ -201,38 +202,26 @@ pub fn along_all<const N: usize>(
 ) -> ([f64; N], [f64; N]) {
     let support = media[0].support();
     let (ends, is_thinned) = thinned(support.cut(media.iter().flat_map(Medium::breaks).collect()));
-    let at = |parts: u32| {
-        let mut sum = [0.0; N];
-        let mut nodes = Vec::with_capacity(rule.nodes.len());
-        let mut here = vec![0.0; media.len()];
-        for Span { from, to } in Span::between(&ends) {
-            let step = (to - from) / f64::from(parts);
-            for part in 0..parts {
-                let from = from + f64::from(part) * step;
-                nodes.clear();
-                nodes.extend(rule.nodes.iter().map(|x| from + x * step));
-                let sigma: Vec<_> = media.iter().map(|medium| medium.extinctions(&nodes)).collect();
-                for (i, (&t, &weight)) in nodes.iter().zip(&rule.weights).enumerate() {
-                    here.iter_mut().zip(&sigma).for_each(|(here, sigma)| *here = sigma[i]);
-                    for (sum, x) in sum.iter_mut().zip(&f(t, &here)) {
-                        *sum += weight * step * x;
-                    }
-                }
-            }
+    let over = |span: Span| {
+        let nodes = rule.nodes_on(span);
+        let sigma: Vec<_> = media.iter().map(|medium| medium.extinctions(&nodes)).collect();
+        let (mut sum, mut here) = ([0.0; N], vec![0.0; media.len()]);
+        for (i, (t, weight)) in rule.on(span).enumerate() {
+            here.iter_mut().zip(&sigma).for_each(|(here, sigma)| *here = sigma[i]);
+            sum.iter_mut().zip(f(t, &here)).for_each(|(sum, x)| *sum += weight * x);
         }
         sum
     };
-    let mut coarse = at(1);
-    let mut apart = [0.0; N];
-    for halving in 1..=if is_thinned { 1 } else { HALVINGS } {
-        let fine = at(1 << halving);
-        apart = std::array::from_fn(|i| (coarse[i] - fine[i]).abs());
-        coarse = fine;
-        if apart.iter().zip(&fine).all(|(apart, value)| *apart <= AGREED * value.abs().max(1.0)) {
-            break;
-        }
+    let limits = Limits { halvings: if is_thinned { 0 } else { LIMITS.halvings }, ..LIMITS };
+    let is_fine = |here: &Halved<N>, scale: &[f64; N]| {
+        here.change().iter().zip(scale).all(|(x, scale)| x.abs() <= AGREED * scale.max(1.0))
+    };
+    let [mut value, mut change] = [[0.0; N]; 2];
+    for here in halve(Span::between(&ends), limits, over, is_fine) {
+        value.iter_mut().zip(here.value()).for_each(|(sum, x)| *sum += x);
+        change.iter_mut().zip(here.change()).for_each(|(sum, x)| *sum += x);
     }
-    (coarse, apart)
+    (value, change.map(f64::abs))
 }
 
 #[cfg(test)]

@@ -12,7 +12,7 @@ use super::predict::{DENSITY, LOOKUPS, MOMENT, Points};
 use super::scene::{Node, Scene};
 use super::segment::Segment;
 use super::shadows::Among;
-use crate::prediction::raw::{self, added, binomial, poisson};
+use crate::prediction::raw::{self, added, binomial, poisson, power};
 use numeric::Span;
 
 /// The orders `n₁ … n₄` of the moments of a shared walk, from the fewest points to the most.
@@ -151,10 +151,6 @@ pub fn at_collisions(scene: &Scene) -> Points {
     let (truth, lookups) = (scene.radiance(), Some(raw::of_cumulants(cumulants)));
     let counted = SUMS + off / cumulants[0];
     Points { truth, powers, error, eighth: None, lookups, least: 0.0, counted }
-}
-
-fn power(x: f64, k: usize) -> f64 {
-    x.powi(i32::try_from(k).unwrap_or(i32::MAX))
 }
 
 /// Moments of resampled draws: one of the collisions casts a shadow ray for all.

@@ -13,8 +13,8 @@
 //! Philosophical Society 35 (1939); K. M. Case, P. F. Zweifel, *Linear Transport Theory* (1967).
 
 use super::Light;
-use numeric::exponential_integrals;
 use numeric::quadrature::GaussLegendre;
+use numeric::{Span, exponential_integrals};
 
 /// Nodes of a panel.
 const NODES: usize = 16;
@@ -32,12 +32,9 @@ const MOST: usize = 4096;
 /// A slab cut into panels.
 struct Panels {
     depth: f64,
-    /// Beginnings and widths.
-    cut: Vec<[f64; 2]>,
+    cut: Vec<Span>,
     rule: GaussLegendre,
     finer: GaussLegendre,
-    /// Barycentric weights: one over the products of a node's distances from the others.
-    barycentric: Vec<f64>,
 }
 
 impl Panels {
@@ -57,55 +54,33 @@ impl Panels {
         );
         ends.sort_by(f64::total_cmp);
         ends.dedup_by(|a, b| *a - *b < 1e-14 * depth);
-        let cut = ends.windows(2).map(|pair| [pair[0], pair[1] - pair[0]]).collect();
-        let nodes = &rule.nodes;
-        let apart = |j: usize| -> f64 {
-            (0..NODES).filter(|&i| i != j).map(|i| nodes[j] - nodes[i]).product()
-        };
-        let barycentric = (0..NODES).map(|j| 1.0 / apart(j)).collect();
-        Self { depth, cut, rule, finer, barycentric }
+        Self { depth, cut: Span::between(&ends).collect(), rule, finer }
     }
 
     /// Depths and weights of all nodes.
-    fn nodes(&self) -> Vec<[f64; 2]> {
-        let points = || self.rule.nodes.iter().zip(&self.rule.weights);
-        let of =
-            |&[from, width]: &[f64; 2]| points().map(move |(x, w)| [from + width * x, width * w]);
-        self.cut.iter().flat_map(of).collect()
-    }
-
-    /// The polynomials that are 1 at one node of a panel and 0 at the others, at a place in it.
-    fn basis(&self, at: f64) -> [f64; NODES] {
-        let away: [f64; NODES] = std::array::from_fn(|j| at - self.rule.nodes[j]);
-        if let Some(hit) = away.iter().position(|&away| away == 0.0) {
-            return std::array::from_fn(|j| f64::from(u8::from(j == hit)));
-        }
-        let whole: f64 = away.iter().product();
-        std::array::from_fn(|j| whole * self.barycentric[j] / away[j])
+    fn nodes(&self) -> Vec<(f64, f64)> {
+        self.cut.iter().flat_map(|&panel| self.rule.on(panel)).collect()
     }
 
     /// `½ ∫ E₁(|u − u'|) ℓ du'` over a panel, of all its polynomials.
-    fn coupled(&self, depth: f64, [from, width]: [f64; 2]) -> [f64; NODES] {
+    fn coupled(&self, depth: f64, panel: Span) -> [f64; NODES] {
         let mut sums = [0.0; NODES];
-        let away = (from - depth).max(depth - from - width);
-        if away > width {
-            for (sum, (node, weight)) in
-                sums.iter_mut().zip(self.rule.nodes.iter().zip(&self.rule.weights))
-            {
-                let [first, _] = exponential_integrals((from + width * node - depth).abs());
-                *sum = 0.5 * weight * width * first;
+        let away = (panel.from - depth).max(depth - panel.to);
+        if away > panel.length() {
+            for (sum, (node, weight)) in sums.iter_mut().zip(self.rule.on(panel)) {
+                *sum = 0.5 * weight * exponential_integrals((node - depth).abs())[0];
             }
             return sums;
         }
-        let nearest = depth.clamp(from, from + width);
-        for end in [from, from + width] {
+        let nearest = depth.clamp(panel.from, panel.to);
+        for end in [panel.from, panel.to] {
             let length = end - nearest;
             for (v, weight) in self.finer.nodes.iter().zip(&self.finer.weights) {
                 let off = length * v.powi(4);
                 let [first, _] = exponential_integrals((nearest - depth + off).abs());
                 let share = 2.0 * weight * length.abs() * v.powi(3) * first;
-                for (sum, basis) in sums.iter_mut().zip(self.basis((nearest + off - from) / width))
-                {
+                let basis = self.rule.weights_at((nearest + off - panel.from) / panel.length());
+                for (sum, basis) in sums.iter_mut().zip(basis) {
                     *sum += share * basis;
                 }
             }
@@ -124,12 +99,12 @@ pub fn orders(light: Light, depth: f64) -> Option<Vec<[f64; 2]>> {
     let nodes = slab.nodes();
     let kernel: Vec<f64> = nodes
         .iter()
-        .flat_map(|&[u, _]| slab.cut.iter().flat_map(move |&panel| [(u, panel)]))
+        .flat_map(|&(u, _)| slab.cut.iter().map(move |&panel| (u, panel)))
         .flat_map(|(u, panel)| slab.coupled(u, panel))
         .collect();
     let escape: Vec<[f64; 2]> = nodes
         .iter()
-        .map(|&[u, weight]| [u, slab.depth - u].map(|u| 0.5 * weight * exponential_integrals(u)[1]))
+        .map(|&(u, weight)| [u, slab.depth - u].map(|u| 0.5 * weight * exponential_integrals(u)[1]))
         .collect();
     let (unscattered, first): (f64, &dyn Fn(f64) -> f64) = match light {
         Light::Collimated(cosine) => {
@@ -141,7 +116,7 @@ pub fn orders(light: Light, depth: f64) -> Option<Vec<[f64; 2]>> {
             (passed, &|u: f64| 2.0 * exponential_integrals(u)[1])
         }
     };
-    let mut collisions: Vec<f64> = nodes.iter().map(|&[u, _]| first(u)).collect();
+    let mut collisions: Vec<f64> = nodes.iter().map(|&(u, _)| first(u)).collect();
     let mut found = vec![[0.0, unscattered]];
     while found.len() < MOST {
         let leaves = |end: usize| -> f64 {

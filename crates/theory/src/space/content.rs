@@ -231,16 +231,11 @@ fn cuts(volume: &Volume, within: &Aabb, axis: usize) -> Vec<f64> {
 /// Nodes and weights of Gauss' rule in n panels between each two ends.
 fn nodes(count: usize, n: usize, ends: &[f64]) -> Vec<[f64; 2]> {
     let rule = GaussLegendre::new(count);
-    let mut all = Vec::with_capacity(count * n * ends.len());
-    for pair in ends.windows(2) {
-        let width = (pair[1] - pair[0]) / n as f64;
-        for panel in 0..n {
-            let from = pair[0] + width * panel as f64;
-            let points = rule.nodes.iter().zip(&rule.weights);
-            all.extend(points.map(|(x, w)| [from + width * x, width * w]));
-        }
-    }
-    all
+    let panels = Span::between(ends).flat_map(|span| {
+        let width = span.length() / n as f64;
+        (0..n).map(move |i| span.from + width * i as f64).map(move |x| Span::new(x, x + width))
+    });
+    panels.flat_map(|panel| rule.on(panel)).map(|(x, weight)| [x, weight]).collect()
 }
 
 /// The optical depth of a chord.

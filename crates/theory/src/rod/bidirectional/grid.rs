@@ -26,21 +26,8 @@ impl Grid {
         let rule = GaussLegendre::new(size);
         let (points, weights): (Vec<f64>, Vec<f64>) = rule.on(Span::new(0.0, depth)).unzip();
         let nodes = |u: f64| rule.on(Span::new(0.0, u)).collect::<Vec<_>>();
-        let barycentric = barycentric(&rule.nodes);
-        let mut basis = Vec::with_capacity(size.pow(3));
-        for &u in &points {
-            for (v, _) in nodes(u) {
-                let terms = points.iter().zip(&barycentric).map(|(x, w)| w / (v - x));
-                let terms: Vec<f64> = terms.collect();
-                let sum: f64 = terms.iter().sum();
-                // A node may coincide with a point, as the middle ones of all odd rules do.
-                let same = terms.iter().position(|term| term.is_infinite());
-                basis.extend(terms.iter().enumerate().map(|(j, term)| match same {
-                    Some(at) => f64::from(u8::from(at == j)),
-                    None => term / sum,
-                }));
-            }
-        }
+        let places = points.iter().flat_map(|&u| nodes(u));
+        let basis = places.flat_map(|(v, _)| rule.weights_at(v / depth)).collect();
         let before = points
             .iter()
             .map(|&u| nodes(u).into_iter().map(|(v, weight)| [u - v, weight]).collect());
@@ -107,17 +94,6 @@ impl<S: Scalar> Operator<S> {
 /// The sum of products.
 fn dot<S: Scalar>(products: impl Iterator<Item = S>) -> S {
     products.fold(S::from(0.0), |sum, product| sum + product)
-}
-
-/// The weights of barycentric interpolation, `1/∏ (xⱼ − xᵢ)` in units of the largest.
-fn barycentric(nodes: &[f64]) -> Vec<f64> {
-    let others = |j: usize| nodes.iter().enumerate().filter(move |&(i, _)| i != j);
-    // Logarithms: the product of a hundred small differences underflows.
-    let size = |j: usize| others(j).map(|(_, x)| (nodes[j] - x).abs().ln()).sum::<f64>();
-    let sizes: Vec<f64> = (0..nodes.len()).map(size).collect();
-    let least = sizes.iter().copied().fold(f64::INFINITY, f64::min);
-    let sign = |j: usize| if (nodes.len() - 1 - j).is_multiple_of(2) { 1.0 } else { -1.0 };
-    sizes.iter().enumerate().map(|(j, size)| sign(j) * (least - size).exp()).collect()
 }
 
 #[cfg(test)]

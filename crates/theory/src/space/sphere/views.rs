@@ -6,6 +6,7 @@
 //! in which their lengths are smooth, and rays that pass the centre by p.
 
 use super::shells::{Centre, Resolution, Rules, halved};
+use numeric::Span;
 
 /// A line of sight.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -44,12 +45,8 @@ pub fn from_point(
     let mut views = Vec::new();
     let rule = rules.of(resolution.directions);
     let mut on = |edges: &[f64], view: &dyn Fn(f64, f64) -> View| {
-        for edge in edges.windows(2) {
-            let length = edge[1] - edge[0];
-            for (&x, &w) in rule.nodes.iter().zip(&rule.weights) {
-                views.push(view(edge[0] + length * x, w * length));
-            }
-        }
+        let nodes = Span::between(edges).flat_map(|span| rule.on(span));
+        views.extend(nodes.map(|(at, weight)| view(at, weight)));
     };
     let r2 = r * r;
     let of_t =

@@ -25,7 +25,7 @@ use super::{Moments, PAIRS};
 use crate::Mesh;
 use crate::light::Techniques;
 use crate::light::vertex::{Vertex, Weights};
-use crate::prediction::raw::{HIGHEST, POWERS, RawMoments, binomial};
+use crate::prediction::raw::{HIGHEST, POWERS, RawMoments, binomial, power};
 use crate::problems::SpectralLitRod;
 use crate::rod::line::Line;
 use crate::rod::lit::connections::along;
@@ -128,7 +128,6 @@ impl<'a> Orders<'a> {
 
     /// `q_λ`, ā, p̄ and `c_λ` of a state.
     fn state(&self, kept: usize, turned: usize) -> State {
-        let power = |x: f64, k: usize| x.powi(i32::try_from(k).unwrap_or(i32::MAX));
         let (mut all, mut scattered, mut towards) = (0.0, 0.0, 0.0);
         let mut shares = Vec::with_capacity(self.heroes.len());
         for (channel, weight) in self.heroes.iter().enumerate() {
