@@ -113,20 +113,17 @@ impl Channel {
         self.moments.filter(|moments| moments.error < UNRESOLVED)
     }
 
-    /// A bound on the relative error of the variance and, where it is known, of the fourth central moment:
-    /// that of the moments in units of the mean, that of the unit, and rounding.
+    /// A bound on the relative error of the variance: that of the moments, and rounding.
     pub fn moments_error(&self) -> Option<f64> {
         let moments = self.moments?;
         if moments.relative[0] == 0.0 {
             return Some(0.0);
         }
-        let of_unit =
-            if self.mean.error > 0.0 { 2.0 * self.mean.error / self.mean.value.abs() } else { 0.0 };
         // Exponentials of the losses have the absolute errors of the exponents as relative errors.
         let exponents = self
             .losses
             .map_or(1.0, |[_, j2, j3, j4]| (6.0 * j2.abs() + 4.0 * j3.abs() + j4.abs()).max(1.0));
-        Some(moments.error + of_unit + ROUNDING * exponents)
+        Some(moments.error + ROUNDING * exponents)
     }
 
     /// Ground of the errors of the mean and, where they are known, of the moments; `None` for an unknown mean.
@@ -135,12 +132,13 @@ impl Channel {
         (!self.mean.value.is_nan()).then(|| self.mean.grade.min(of_moments))
     }
 
-    /// An unbiased transmittance of the given optical depth, in units of `exp(−log_unit)`.
+    /// An unbiased transmittance of the given optical depth, in units of `exp(−log_unit)`. The moments are without the
+    /// error of the transmittance.
     pub fn transmittance(depth: Known, log_unit: f64, moments: Moments, tails: Tails) -> Self {
         let truth = transmittance(depth, log_unit);
         let thin = depth.value > 0.0 && depth.value < THIN;
         let unit = if thin { -(-depth.value).exp_m1() } else { truth.value };
-        Self { unit, log_unit, ..Self::unbiased(truth, moments, tails) }
+        Self { unit, log_unit, ..Self::unbiased(truth, moments.in_units_of(truth), tails) }
     }
 }
 

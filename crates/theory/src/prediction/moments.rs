@@ -1,6 +1,6 @@
 //! Central moments without cancellation.
 
-use numeric::Grade;
+use numeric::{Grade, Known};
 
 /// The central moments of one draw, in units of its scale: `μ_k / scale^k` for k = 2, 3, 4.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -9,7 +9,7 @@ pub struct Moments {
     pub scale: f64,
     /// `μ₂/scale²`, `μ₃/scale³`, `μ₄/scale⁴`; infinite where they overflow.
     pub relative: [f64; 3],
-    /// A relative error bound of `relative`.
+    /// A relative error bound of the moments, `scale^k` times `relative`.
     pub error: f64,
     /// Ground of `error`.
     pub grade: Grade,
@@ -36,6 +36,14 @@ impl Moments {
         Self { scale, relative, error, grade: Grade::Estimated }
     }
 
+    /// Moments in a unit that was computed apart from them, with its error added to that of the variance.
+    #[must_use]
+    pub fn in_units_of(self, unit: Known) -> Self {
+        let is_off = unit.error > 0.0 && self.relative[0] != 0.0;
+        let off = if is_off { 2.0 * unit.relative_error() } else { 0.0 };
+        Self { error: self.error + off, ..self }
+    }
+
     /// Moments with the given ground of their error.
     #[must_use]
     pub fn graded(self, grade: Grade) -> Self {
@@ -51,7 +59,7 @@ impl Moments {
         Self::estimated(self.scale, self.relative, self.error + difference(0).max(difference(2)))
     }
 
-    /// The moments of a product estimator from its loss integrals.
+    /// The moments of a product estimator from its loss integrals, without the error of the scale.
     ///
     /// ```text
     /// J_k = ∫ σ̂ E[(1 − W)^k] dt

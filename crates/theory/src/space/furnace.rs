@@ -32,7 +32,9 @@ pub fn independent(heroes: &[f64]) -> Prediction {
             return channel(Moments::certain(1.0));
         }
         let raw = colours::independent(&alone, weight);
-        Channel { truth: TRUTH, mean: TRUTH, ..raw.channel(Known::exact(1.0), RESOLVED) }
+        let exact = raw.channel(Known::exact(1.0), RESOLVED);
+        let moments = exact.moments.map(|moments| moments.in_units_of(TRUTH));
+        Channel { truth: TRUTH, mean: TRUTH, moments, ..exact }
     });
     let channels = colours::named(channels.collect());
     let squares: Vec<[f64; 2]> = heroes.iter().map(|weight| [1.0, 1.0 / weight]).collect();

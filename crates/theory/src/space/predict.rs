@@ -131,7 +131,8 @@ pub fn infinite(problem: &InfiniteMedium, end: Option<f64>, ratio: Option<f64>) 
     // A real collision counts r: then the score of a walk depends only on its length.
     channels.push(match end.filter(|_| is_majorant) {
         Some(end) => {
-            let moments = Some(geometric(collisions.truth.value, end));
+            let truth = collisions.truth;
+            let moments = Some(geometric(truth.value, end).in_units_of(truth));
             Channel { moments, pilot_variance_allowed: false, ..collisions }
         }
         None => collisions,

@@ -74,7 +74,7 @@ impl Spectrum {
             if raw.is_certain(value) {
                 Moments::certain(value)
             } else {
-                raw.central(mean, UNRESOLVED)
+                raw.central(mean, UNRESOLVED).in_units_of(truth)
             }
         });
         let is_one = index < self.channels();

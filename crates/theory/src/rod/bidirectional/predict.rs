@@ -135,7 +135,7 @@ fn channel(depth: Known, order: usize, [fine, rough]: [&Powers; 2], is_certain: 
     // Each resolution in units of its own mean: an error of all powers alike moves no relative moment.
     let central =
         |powers: &Powers| raw(powers).central(Known::estimated(powers[1], 0.0), UNRESOLVED);
-    let moments = central(fine).compared(&central(rough));
+    let moments = central(fine).compared(&central(rough)).in_units_of(truth);
     Channel::unbiased(truth, moments, raw(fine).tails(UNRESOLVED))
 }
 
