@@ -28,6 +28,8 @@ const PILOTS: [u32; 2] = [2, 8];
 const ALBEDOS: [f64; 5] = [0.1, 0.3, 0.5, 0.7, 0.9];
 /// Recipe of σ̂ by which a case takes a profile.
 pub const RECIPE: &str = "sampling.piecewise-constant";
+/// Estimators with a weight at every collision.
+const WEIGHING: [&str; 3] = ["ratio", "double", "residual-ratio"];
 /// Settings of a problem that advice replaces.
 const REPLACED: [&str; 4] = ["estimators", "sampling", "sweep", "rays"];
 
@@ -170,12 +172,15 @@ fn place(path: &str) -> Option<usize> {
 pub fn replaced(spec: &Spec, texts: &[String]) -> Spec {
     let list: Vec<String> = texts.iter().map(|text| format!("{{ {text} }}")).collect();
     let text = format!("sampling.constant.value = 1\nestimators = [{}]", list.join(", "));
-    let source = Source { text, ..spec.source().clone() };
-    let entries = source.parse(&RefCell::default());
     spec.with_problem(|settings| {
         settings.retain(|entry| !REPLACED.contains(&&*entry.key));
-        settings.extend(entries);
+        settings.extend(parsed(spec, &text));
     })
+}
+
+/// Returns the settings that a text has, as parts of a spec.
+pub fn parsed(spec: &Spec, text: &str) -> Vec<Entry> {
+    Source { text: text.to_owned(), ..spec.source().clone() }.parse(&RefCell::default())
 }
 
 /// Returns a candidate without its numbers.
@@ -195,21 +200,26 @@ pub fn is_learned(text: &str) -> bool {
     text.contains("sampling.pilot")
 }
 
+/// Returns whether a candidate has a weight at every collision: its losses `J_k = ∫ ρ^k/σ̂^{k−1}` at one σ̂ give those at
+/// all multiples of it.
+pub fn weighs(text: &str) -> bool {
+    text.split_once(" = ").is_some_and(|(name, _)| WEIGHING.contains(&name))
+}
+
 /// Returns the rule of a product estimator with one free constant σ̂; `None` for other candidates.
 pub fn rule(text: &str) -> Option<Collisions> {
     let (name, settings) = text.split_once(" = ")?;
     let albedo = || settings.split_once("albedo = ")?.1.split([',', ' ']).next()?.parse().ok();
     let is = |rule: &str| settings.contains(&format!("rule = \"{rule}\""));
-    match name {
-        _ if settings.contains("sampling.") => None,
-        "ratio" | "double" | "residual-ratio" => Some(Collisions::Weight),
-        "weighted-delta" => Some(Collisions::Single(Single::NonTerminating { albedo: 1.0 })),
-        "single" if is("terminating") => Some(Collisions::Single(Single::Terminating)),
-        "single" if is("clamped") => Some(Collisions::Single(Single::Clamped)),
-        "single" if is("adaptive") => {
-            Some(Collisions::Single(Single::Adaptive { albedo: albedo()? }))
-        }
-        "single" => Some(Collisions::Single(Single::NonTerminating { albedo: albedo()? })),
-        _ => None,
-    }
+    let single = match name {
+        _ if settings.contains("sampling.") => return None,
+        _ if weighs(text) => return Some(Collisions::Weight),
+        "weighted-delta" => Single::NonTerminating { albedo: 1.0 },
+        "single" if is("terminating") => Single::Terminating,
+        "single" if is("clamped") => Single::Clamped,
+        "single" if is("adaptive") => Single::Adaptive { albedo: albedo()? },
+        "single" => Single::NonTerminating { albedo: albedo()? },
+        _ => return None,
+    };
+    Some(Collisions::Single(single))
 }

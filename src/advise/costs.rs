@@ -1,12 +1,12 @@
 //! Costs of draws: seconds of a draw and of a lookup, measured on this machine or given for code of the user's own.
 //!
 //! ```text
-//! cost of a draw = draw + lookup · (E[lookups] + setup lookups/draws per ray)
+//! cost of a draw = draw + lookup · E[lookups] + setup lookup · setup lookups/draws per ray
 //! ```
 //!
 //! `draw` and `lookup` of a candidate are measured in the medium itself, with draws at two σ̂, by processor time. Those of
-//! the first rows are corrected by draws at the advised σ̂. They are kept in a file for each medium and machine, and
-//! measured again on demand.
+//! the first rows are corrected by draws at the advised σ̂. A lookup of a setup costs the median of all candidates. Costs
+//! are kept in a file for each medium and machine, and measured again on demand.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -22,10 +22,12 @@ use media::files;
 use numeric::pack;
 use numeric::rng::name_hash;
 
-/// Rounds of a measurement.
-const ROUNDS: u64 = 8;
+/// Rounds of a measurement at two σ̂, and of a correction.
+const ROUNDS: [u64; 2] = [24, 48];
 /// Shortest time of a round, seconds.
 const MIN_SECONDS: f64 = 1e-4;
+/// Time of all rounds from which on no further round is needed, seconds.
+const ENOUGH: f64 = 1e-2;
 /// Draws at a time: the kernels fill their lanes.
 const DRAWS: usize = 2048;
 /// Ratio of the lookups at two σ̂ above which they tell a lookup from a draw.
@@ -108,12 +110,7 @@ impl Prices {
 
     /// Returns the price of a candidate, measured at two places if it is not known; `None` where it cannot be drawn.
     pub fn of(&mut self, key: &str, case: &Case, at: (usize, [Variation; 2])) -> Option<Price> {
-        if let Some(price) = self.given.or_else(|| self.known.get(key).copied()) {
-            return Some(price);
-        }
-        let price = measured(case, at)?;
-        self.known.insert(key.to_owned(), price);
-        Some(price)
+        self.given.or_else(|| self.kept(key.to_owned(), || measured(case, at)))
     }
 
     /// Returns the price of a candidate, corrected by draws at one place; `None` for given costs, and where it cannot be
@@ -122,19 +119,25 @@ impl Prices {
         &mut self,
         key: &str,
         case: &Case,
-        at: (usize, Variation),
+        (estimator, place): (usize, Variation),
         price: Price,
     ) -> Option<Price> {
         if self.given.is_some() {
             return None;
         }
-        let key = format!("{key} at {:?}", at.1.map(|(_, x)| x));
+        self.kept(format!("{key} at {:?}", place.map(|(_, x)| x)), || {
+            let Timing { seconds, error, lookups } = timed(case, estimator, place, ROUNDS[1])?;
+            let factor = seconds / (price.draw + price.lookup * lookups);
+            Some(Price { draw: price.draw * factor, lookup: price.lookup * factor, error })
+        })
+    }
+
+    /// Returns a price that is known, or measures it.
+    fn kept(&mut self, key: String, measure: impl FnOnce() -> Option<Price>) -> Option<Price> {
         if let Some(known) = self.known.get(&key) {
             return Some(*known);
         }
-        let Timing { seconds, error, lookups } = timed(case, at.0, at.1)?;
-        let factor = seconds / (price.draw + price.lookup * lookups);
-        let price = Price { draw: price.draw * factor, lookup: price.lookup * factor, error };
+        let price = measure()?;
         self.known.insert(key, price);
         Some(price)
     }
@@ -148,7 +151,6 @@ impl Prices {
         }
     }
 }
-
 /// Returns the file of a medium on this machine.
 fn file(folder: &Path, spec: &Spec) -> PathBuf {
     let medium = spec.with_problem(|settings| {
@@ -174,7 +176,7 @@ struct Timing {
 
 /// Measures a candidate at two places.
 fn measured(case: &Case, (estimator, places): (usize, [Variation; 2])) -> Option<Price> {
-    let timings = places.into_iter().filter_map(|place| timed(case, estimator, place));
+    let timings = places.into_iter().filter_map(|place| timed(case, estimator, place, ROUNDS[0]));
     let timings: Vec<Timing> = timings.collect();
     let error = timings.iter().fold(0.0, |error: f64, timing| error.max(timing.error));
     let few = timings.first()?;
@@ -189,7 +191,8 @@ fn measured(case: &Case, (estimator, places): (usize, [Variation; 2])) -> Option
     Some(Price { draw: few.seconds - lookup * few.lookups, lookup, error })
 }
 
-fn timed(case: &Case, estimator: usize, place: Variation) -> Option<Timing> {
+/// Times a candidate at one place.
+fn timed(case: &Case, estimator: usize, place: Variation, rounds: u64) -> Option<Timing> {
     let (at, pilots) = (case.at(place).ok()?, case.pilots(1, estimator));
     let prediction = at.predict(estimator, None, pilots)?;
     let lookups = prediction.lookups.as_ref()?.mean;
@@ -203,10 +206,12 @@ fn timed(case: &Case, estimator: usize, place: Variation) -> Option<Timing> {
     };
     // The first buffer maps memory.
     fill(1);
-    let seconds = fill(1).max(1e-12);
+    let seconds = fill(1).max(1e-12) * DRAWS as f64;
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // from 1 to 1024
-    let times = (MIN_SECONDS / (seconds * DRAWS as f64)).ceil().clamp(1.0, 1024.0) as u32;
-    let (seconds, error) = fast((0..ROUNDS).map(|_| fill(times)).collect());
+    let times = (MIN_SECONDS / seconds).ceil().clamp(1.0, 1024.0) as u32;
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // from 3 to 64
+    let rounds = rounds.min((ENOUGH / seconds).clamp(3.0, 64.0) as u64);
+    let (seconds, error) = fast((0..rounds).map(|_| fill(times)).collect());
     Some(Timing { seconds, error, lookups })
 }
 

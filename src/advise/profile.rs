@@ -14,9 +14,9 @@
 //! `E = e^J/(e^J − 1)`, `j = σ̂ E[(1 − W)²]` and `d = σ̂(1 − q)`. Steps are improved one by one until nothing is gained.
 
 use super::candidates::{Collisions, RECIPE};
+use super::row::Row;
 use super::search::{Goal, up};
 use super::study::Study;
-use super::{Profile, Row};
 use numeric::digits::number;
 use theory::collisions::Rule;
 use theory::collisions::rules::{Single, Weight};
@@ -32,6 +32,23 @@ const PASSES: usize = 60;
 /// Relative gain of a pass that ends the search.
 const GAIN: f64 = 1e-7;
 
+/// The best σ̂ along a ray, in steps.
+#[derive(Debug, Clone)]
+pub struct Profile {
+    /// Estimator.
+    pub estimator: String,
+    /// Ends of the steps.
+    pub breaks: Vec<f64>,
+    /// σ̂ in each, 1/length.
+    pub values: Vec<f64>,
+    /// Distances and |σ_t − σ_c| there.
+    pub residual: Vec<[f64; 2]>,
+    /// V·cost of the best constant σ̂ over that of the profile.
+    pub over_constant: f64,
+    /// V·cost of local majorants over that of the profile, if the estimator was tried with some.
+    pub over_local: Option<f64>,
+}
+
 /// Returns the profile of a candidate with one free constant σ̂, on the first ray of a study, and the candidate with it.
 /// It is compared with the rows of others.
 pub fn of(study: &Study, rows: &[Row], row: &Row, rule: Collisions) -> Option<(Profile, String)> {
@@ -46,44 +63,44 @@ pub fn of(study: &Study, rows: &[Row], row: &Row, rule: Collisions) -> Option<(P
     }
     let width = support.length() / STEPS as f64;
     let place = |step: usize, share: f64| support.from + width * (step as f64 + share);
-    let inside = |place_in_step: usize| (place_in_step as f64 + 0.5) / PLACES as f64;
     let residual = |t: f64| medium.extinction(t) - control.extinction(t);
+    let inside = |i: usize| (i as f64 + 0.5) / PLACES as f64;
     let places = |step| (0..PLACES).map(|i| residual(place(step, inside(i)))).collect();
     // The setup is a fixed cost.
     let price = [row.score.cost - price.lookup * row.score.lookups, price.lookup];
     let steps = Steps { residual: (0..STEPS).map(places).collect(), width, price };
     let values: Vec<f64> = steps.best(rule, start)?.into_iter().map(up).collect();
     let own = steps.work(rule.rule(), &values);
+    // Where one draw is enough, the advised constant is not that of the least V·cost.
+    let of_constant = Goal::new(|x| steps.work(rule.rule(), &[x; STEPS]));
+    let (_, constant, _) = of_constant.best(start, 1)?;
+    drop(of_constant);
     // The same walk with local majorants, at the same price.
     let is_local = |other: &&Row| {
-        let other = &study.texts[other.candidate];
-        let plain = other.split("sampling.").next().unwrap_or_default();
-        other.contains("local-majorants")
-            && text.starts_with(plain.trim_end_matches([' ', '{', ',']))
+        [&other.estimator, &other.control] == [&row.estimator, &row.control]
+            && other.sampling.starts_with("local majorants")
     };
     let work = |row: &Row| row.score.variance * (price[0] + price[1] * row.score.lookups);
     let local = rows.iter().filter(is_local).map(work).reduce(f64::min);
-    let mut breaks: Vec<f64> = (0..STEPS).map(|step| place(step, 0.0)).collect();
-    breaks.push(support.to);
+    let breaks: Vec<f64> = (0..=STEPS).map(|step| place(step, 0.0)).collect();
     let list = |numbers: &[f64]| numbers.iter().map(|&x| number(x)).collect::<Vec<_>>().join(", ");
     let sampling =
         format!("{RECIPE} = {{ breaks = [{}], values = [{}] }}", list(&breaks), list(&values));
-    let (name, settings) = text.split_once(" = ")?;
-    let settings = settings.trim_start_matches('{').trim_end_matches('}').trim();
-    let comma = if settings.is_empty() { "" } else { ", " };
+    let settings = text.strip_suffix('}')?.trim_end();
+    let comma = if settings.ends_with('{') { "" } else { "," };
     let residual = (0..STEPS * 4).map(|i| {
         let t = place(i / 4, (i % 4) as f64 / 4.0 + 0.125);
         [t, residual(t).abs()]
     });
     let profile = Profile {
         estimator: row.estimator.clone(),
-        over_constant: steps.work(rule.rule(), &[start; STEPS]) / own,
+        over_constant: constant / own,
         over_local: local.map(|local| local / own),
         residual: residual.collect(),
         breaks,
         values,
     };
-    Some((profile, format!("{name} = {{ {settings}{comma}{sampling} }}")))
+    Some((profile, format!("{settings}{comma} {sampling} }}")))
 }
 
 /// The residual in the steps of a ray, and what a walk costs.
@@ -94,6 +111,17 @@ pub struct Steps {
     pub width: f64,
     /// Fixed cost of a draw, and cost of a lookup.
     pub price: [f64; 2],
+}
+
+/// Contribution of a step to V·cost.
+#[derive(Clone, Copy)]
+struct Share {
+    /// `∫ σ̂ E[(1 − W)²]` over the step; infinite where the rule does not exist.
+    loss: f64,
+    /// Probability that a walk which begins the step survives it.
+    survival: f64,
+    /// Expected lookups in the step of such a walk.
+    lookups: f64,
 }
 
 impl Steps {
@@ -128,31 +156,24 @@ impl Steps {
     fn of_particle(&self, rule: &Single, start: f64) -> Vec<f64> {
         let (least, roots) = (MIN_SHARE * start, self.roots());
         let mut sampling = vec![start; self.residual.len()];
-        let mut last = self.work(rule, &sampling);
+        let mut shares: Vec<Share> =
+            (0..sampling.len()).map(|step| self.share(rule, step, start)).collect();
+        let mut last = self.of(shares.iter().copied());
         for _ in 0..PASSES {
-            let all: Vec<[f64; 2]> =
-                (0..sampling.len()).map(|i| self.rates(rule, i, sampling[i])).collect();
-            let behind = self.behind(&all, &sampling);
-            let mut loss: f64 = all.iter().map(|rates| rates[0]).sum();
-            let (mut alive, mut before) = (1.0, 0.0);
-            for i in 0..sampling.len() {
-                let others = loss - self.rates(rule, i, sampling[i])[0];
-                let goal = Goal::new(|here: f64| {
-                    let [j, d] = self.rates(rule, i, here);
-                    let lookups = here * self.width * survived(d) + (-d).exp() * behind[i + 1];
-                    self.of(others + j, before + alive * lookups)
+            for step in 0..sampling.len() {
+                let goal = Goal::new(|here| {
+                    let own = self.share(rule, step, here);
+                    let all = shares.iter().enumerate();
+                    self.of(all.map(|(i, &share)| if i == step { own } else { share }))
                 });
                 // A particle that collides for real and one that seldom does are two minima.
-                let starts = [sampling[i], roots[i]].map(|start| goal.least(start, 1));
+                let starts = [sampling[step], roots[step]].map(|start| goal.least(start, 1));
                 let found = starts.into_iter().flatten().min_by(|a, b| a.1.total_cmp(&b.1));
                 drop(goal);
-                sampling[i] = found.map_or(sampling[i], |(x, ..)| x).max(least);
-                let [j, d] = self.rates(rule, i, sampling[i]);
-                loss = others + j;
-                before += alive * sampling[i] * self.width * survived(d);
-                alive *= (-d).exp();
+                sampling[step] = found.map_or(sampling[step], |(x, ..)| x).max(least);
+                shares[step] = self.share(rule, step, sampling[step]);
             }
-            let next = self.work(rule, &sampling);
+            let next = self.of(shares.iter().copied());
             if next >= last * (1.0 - GAIN) {
                 break;
             }
@@ -163,20 +184,24 @@ impl Steps {
 
     /// Relative variance times cost of a σ̂ in steps.
     pub fn work(&self, rule: &dyn Rule, sampling: &[f64]) -> f64 {
-        let all: Vec<[f64; 2]> =
-            (0..sampling.len()).map(|i| self.rates(rule, i, sampling[i])).collect();
-        self.of(all.iter().map(|rates| rates[0]).sum(), self.behind(&all, sampling)[0])
+        self.of(sampling.iter().enumerate().map(|(step, &here)| self.share(rule, step, here)))
     }
 
     /// `(e^J − 1)(a + b C)`.
-    fn of(&self, loss: f64, lookups: f64) -> f64 {
-        loss.exp_m1() * (self.price[0] + self.price[1] * lookups)
+    fn of(&self, shares: impl Iterator<Item = Share>) -> f64 {
+        let (mut loss, mut lookups, mut alive) = (0.0, 0.0, 1.0);
+        for share in shares {
+            loss += share.loss;
+            lookups += alive * share.lookups;
+            alive *= share.survival;
+        }
+        f64::exp_m1(loss) * (self.price[0] + self.price[1] * lookups)
     }
 
-    /// `∫ σ̂ E[(1 − W)²]` and `∫ σ̂(1 − q)` over a step; infinite where the rule does not exist.
-    fn rates(&self, rule: &dyn Rule, step: usize, sampling: f64) -> [f64; 2] {
+    /// Returns the contribution of a step.
+    fn share(&self, rule: &dyn Rule, step: usize, sampling: f64) -> Share {
         let share = self.width / self.residual[step].len() as f64;
-        self.residual[step].iter().fold([0.0; 2], |[j, d], residual| {
+        let [loss, death] = self.residual[step].iter().fold([0.0; 2], |[j, d], residual| {
             let ratio = residual / sampling;
             let outcome = rule.outcome(ratio);
             // Unbiased: q W = 1 − r. Beyond the domain of a rule it is not.
@@ -184,21 +209,9 @@ impl Steps {
                 <= 1e-9 * (1.0 + ratio.abs());
             let loss = if is_fair { sampling * outcome.mean_loss(2) } else { f64::INFINITY };
             [j + share * loss, d + share * sampling * outcome.death]
-        })
+        });
+        // Mean share of the step that is flown.
+        let flown = if death.abs() < 1e-8 { 1.0 - 0.5 * death } else { -(-death).exp_m1() / death };
+        Share { loss, survival: (-death).exp(), lookups: sampling * self.width * flown }
     }
-
-    /// Expected lookups from each step on, of a walk that is alive there.
-    fn behind(&self, all: &[[f64; 2]], sampling: &[f64]) -> Vec<f64> {
-        let mut behind = vec![0.0; sampling.len() + 1];
-        for i in (0..sampling.len()).rev() {
-            let death = all[i][1];
-            behind[i] = sampling[i] * self.width * survived(death) + (-death).exp() * behind[i + 1];
-        }
-        behind
-    }
-}
-
-/// `(1 − e^{−d})/d`: mean share of a step that is flown.
-fn survived(death: f64) -> f64 {
-    if death.abs() < 1e-8 { 1.0 - 0.5 * death } else { -(-death).exp_m1() / death }
 }

@@ -8,9 +8,10 @@
 
 use std::f64::consts::TAU;
 
+use super::candidates;
 use crate::case::{Case, CaseError, Spec};
 use crate::render::view::{Camera, furthest};
-use media::catalogue::{Domain, Entry, Node, Settings, Value};
+use media::catalogue::{Domain, Settings, Value};
 use media::{Body, Volume};
 use numeric::geometry::{Aabb, Point, Ray};
 use numeric::rng::{Address, Stream, name_hash};
@@ -38,7 +39,9 @@ pub fn read(spec: &Spec, count: Option<u64>, seed: u64) -> Result<(Case, Vec<Bod
     let base = spec.with_problem(|settings| {
         settings.retain(|entry| entry.key != "rays");
         if !settings.iter().any(|entry| entry.key == "ray" || entry.key == "span") {
-            settings.push(any_ray());
+            // It stands for the others until these are known.
+            let any = "ray = { origin = [0, 0, 0], direction = [1, 1, 1], length = 1 }";
+            settings.extend(candidates::parsed(spec, any));
         }
     });
     let case = Case::of(&base)?;
@@ -54,14 +57,16 @@ pub fn read(spec: &Spec, count: Option<u64>, seed: u64) -> Result<(Case, Vec<Bod
             );
             return None;
         };
-        if let Some(count) = count {
-            return random(&problem, &**volume, count, seed);
-        }
-        let is_list =
-            problem.entry("rays").is_some_and(|e| matches!(e.node.value, Value::Array(_)));
-        if is_list { listed(&problem, &**volume) } else { chosen(&problem, &**volume, seed) }
+        let rays = problem.entry("rays").filter(|_| count.is_none());
+        let is_list = rays.is_some_and(|rays| matches!(rays.node.value, Value::Array(_)));
+        let about = enclosing(&problem, &**volume)?;
+        let rays = if is_list {
+            listed(&problem, &**volume, &about)?
+        } else {
+            random(&problem, &**volume, &about, (count, seed))?
+        };
+        Some(rays.into_iter().map(|ray| along(body, ray)).collect())
     })?;
-    let rays = rays.into_iter().map(|ray| along(body, ray)).collect();
     Ok((case, rays))
 }
 
@@ -79,19 +84,6 @@ fn along(body: &Body, ray: Ray) -> Body {
     }
 }
 
-/// Returns the entry of a ray that stands for others until these are known.
-fn any_ray() -> Entry {
-    let node = |value| Node { value, span: 0..0 };
-    let entry = |key: &str, value| Entry { key: key.to_owned(), key_span: 0..0, node: node(value) };
-    let point = |z: f64| Value::Array([0.0, 0.0, z].map(|x| node(Value::Number(x))).to_vec());
-    let parts = vec![
-        entry("origin", point(0.0)),
-        entry("direction", point(1.0)),
-        entry("length", Value::Number(1.0)),
-    ];
-    entry("ray", Value::Table(parts))
-}
-
 /// Returns the box around a volume; a volume that fills all of space is a mistake.
 fn enclosing(problem: &Settings, volume: &Volume) -> Option<Aabb> {
     let about = volume.bounds().enclosing_box();
@@ -103,20 +95,19 @@ fn enclosing(problem: &Settings, volume: &Volume) -> Option<Aabb> {
 }
 
 /// Reads a list of rays.
-fn listed(problem: &Settings, volume: &Volume) -> Option<Vec<Ray>> {
-    let about = enclosing(problem, volume)?;
+fn listed(problem: &Settings, volume: &Volume, about: &Aabb) -> Option<Vec<Ray>> {
     let read = |ray: &Settings| {
         let (origin, direction) = (ray.triple("origin"), ray.triple("direction"));
-        let whole = furthest(&about, Point(origin.unwrap_or_default()));
+        let whole = furthest(about, Point(origin.unwrap_or_default()));
         let length = ray.number_or("length", Domain::Positive, whole);
         ray.close();
-        let ray_read = Ray::new(Point(origin?), Point(direction?), length?);
-        if ray_read.is_none_or(|ray| volume.bounds().clip(&ray).is_empty()) {
+        let found = Ray::new(Point(origin?), Point(direction?), length?);
+        let found = found.filter(|ray| !volume.bounds().clip(ray).is_empty());
+        if found.is_none() {
             let help = "give a direction into the volume, and a length that reaches it";
             ray.fault_at(ray.span.clone(), "", "this ray misses the volume", help);
-            return None;
         }
-        ray_read
+        found
     };
     let rays: Vec<Option<Ray>> = problem.tables("rays")?.iter().map(read).collect();
     if rays.is_empty() {
@@ -126,51 +117,30 @@ fn listed(problem: &Settings, volume: &Volume) -> Option<Vec<Ray>> {
     rays.into_iter().collect()
 }
 
-/// Reads `random` and perhaps a `camera`.
-fn chosen(problem: &Settings, volume: &Volume, seed: u64) -> Option<Vec<Ray>> {
-    let rays = problem.table("rays")?;
-    let count = rays.count("random", 1..=MAX_RAYS);
-    let camera = rays.optional("camera", |_| Camera::read(&rays, Some(PIXELS)));
-    rays.close();
-    let Some(camera) = camera? else { return random(problem, volume, count?, seed) };
-    let length = furthest(&enclosing(problem, volume)?, camera.position());
-    let ray = |stream: &mut Stream| {
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // below the size
-        let [column, row] = PIXELS.map(|n| (stream.uniform() * n as f64) as usize);
-        Ray::new(camera.position(), camera.direction(column, row)?, length)
-    };
-    tried(problem, volume, (count?, seed), ray)
-}
-
-/// Returns random lines through a volume, uniform and isotropic.
-fn random(problem: &Settings, volume: &Volume, count: u64, seed: u64) -> Option<Vec<Ray>> {
-    let Aabb { low, high } = enclosing(problem, volume)?;
-    let (centre, radius) = ((low + high) * 0.5, 0.5 * (high - low).norm());
-    let line = |stream: &mut Stream| {
-        let (z, turn) = (2.0 * stream.uniform() - 1.0, TAU * stream.uniform());
-        let across = (1.0 - z * z).sqrt();
-        let direction = Point([across * turn.cos(), across * turn.sin(), z]);
-        // Two unit vectors across the direction.
-        let [u, v] = [
-            Point([-turn.sin(), turn.cos(), 0.0]),
-            Point([z * turn.cos(), z * turn.sin(), -across]),
-        ];
-        let (distance, angle) = (radius * stream.uniform().sqrt(), TAU * stream.uniform());
-        let foot = centre + u * (distance * angle.cos()) + v * (distance * angle.sin());
-        Ray::new(foot - direction * radius, direction, 2.0 * radius)
-    };
-    tried(problem, volume, (count, seed), line)
-}
-
-/// Returns rays that hit a volume, of those that a function makes.
-fn tried(
+/// Returns random rays that hit the volume: a given number of lines, or what the case says of their number and `camera`.
+fn random(
     problem: &Settings,
     volume: &Volume,
-    (count, seed): (u64, u64),
-    make: impl Fn(&mut Stream) -> Option<Ray>,
+    about: &Aabb,
+    (count, seed): (Option<u64>, u64),
 ) -> Option<Vec<Ray>> {
+    let (count, camera) = if let Some(count) = count {
+        (count, None)
+    } else {
+        let rays = problem.table("rays")?;
+        let count = rays.count("random", 1..=MAX_RAYS);
+        let camera = rays.optional("camera", |_| Camera::read(&rays, Some(PIXELS)));
+        rays.close();
+        (count?, camera?)
+    };
     let address = Address { seed, experiment: name_hash("rays of advice"), block: 0, lane: 0 };
-    let tries = (0..count * TRIES).map(|block| make(&mut Address { block, ..address }.stream()));
+    let tries = (0..count * TRIES).map(|block| {
+        let mut stream = Address { block, ..address }.stream();
+        match &camera {
+            Some(camera) => pixel(camera, about, &mut stream),
+            None => line(about, &mut stream),
+        }
+    });
     let hits = tries.flatten().filter(|ray| !volume.bounds().clip(ray).is_empty());
     let rays: Vec<Ray> = hits.take(usize::try_from(count).unwrap_or(usize::MAX)).collect();
     if rays.len() as u64 == count {
@@ -178,4 +148,26 @@ fn tried(
     }
     problem.fault("rays", "too few of the rays hit the volume", "aim the camera at the volume");
     None
+}
+
+/// Returns the ray of a random pixel.
+fn pixel(camera: &Camera, about: &Aabb, stream: &mut Stream) -> Option<Ray> {
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // below the size
+    let [column, row] = PIXELS.map(|n| (stream.uniform() * n as f64) as usize);
+    let length = furthest(about, camera.position());
+    Ray::new(camera.position(), camera.direction(column, row)?, length)
+}
+
+/// Returns a random line through the sphere around a box, uniform and isotropic.
+fn line(&Aabb { low, high }: &Aabb, stream: &mut Stream) -> Option<Ray> {
+    let (centre, radius) = ((low + high) * 0.5, 0.5 * (high - low).norm());
+    let (z, turn) = (2.0 * stream.uniform() - 1.0, TAU * stream.uniform());
+    let across = (1.0 - z * z).sqrt();
+    let direction = Point([across * turn.cos(), across * turn.sin(), z]);
+    // Two unit vectors across the direction.
+    let u = Point([-turn.sin(), turn.cos(), 0.0]);
+    let v = Point([z * turn.cos(), z * turn.sin(), -across]);
+    let (distance, angle) = (radius * stream.uniform().sqrt(), TAU * stream.uniform());
+    let foot = centre + u * (distance * angle.cos()) + v * (distance * angle.sin());
+    Ray::new(foot - direction * radius, direction, 2.0 * radius)
 }

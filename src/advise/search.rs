@@ -3,6 +3,7 @@
 //! All searches are on `ln x`, x a σ̂ or a factor on it. Values are kept, so that a search and its edges share them.
 
 use std::cell::RefCell;
+use std::f64::consts::{LN_2, LN_10};
 
 use numeric::roots;
 
@@ -56,7 +57,7 @@ impl Kind {
 /// Function of x with the values that are known.
 pub struct Goal<'a> {
     f: Box<dyn Fn(f64) -> f64 + Send + 'a>,
-    /// `ln x` in ascending order, with the values.
+    /// `ln x` with the values.
     known: RefCell<Vec<[f64; 2]>>,
 }
 
@@ -72,54 +73,38 @@ impl<'a> Goal<'a> {
     }
 
     fn at(&self, log: f64) -> f64 {
-        let place = self.known.borrow().partition_point(|known| known[0] < log);
-        let known = self.known.borrow().get(place).copied();
-        if let Some([_, value]) = known.filter(|known| known[0] == log) {
-            return value;
-        }
-        let value = (self.f)(log.exp());
-        self.known.borrow_mut().insert(place, [log, value]);
-        value
+        let known = self.known.borrow().iter().find(|known| known[0] == log).copied();
+        known.map_or_else(
+            || {
+                let value = (self.f)(log.exp());
+                self.known.borrow_mut().push([log, value]);
+                value
+            },
+            |[_, value]| value,
+        )
     }
 
     /// Returns three `ln x` around the least value of places that are apart by a factor of two, `reach` on each side of
     /// `start`, and beyond them as far as values fall; and whether they still fall there.
     fn bracket(&self, start: f64, reach: i32) -> ([f64; 3], bool) {
-        let at = |k: i32| start.ln() + f64::from(k) * 2f64.ln();
+        let at = |k: i32| start.ln() + f64::from(k) * LN_2;
         let value = |k: i32| self.at(at(k));
         // Of equal places the one next to the start.
         let order = |a: &i32, b: &i32| value(*a).total_cmp(&value(*b)).then(a.abs().cmp(&b.abs()));
         let k = (-reach..=reach).min_by(order).unwrap_or(0);
         let mut around = [at(k - 1), at(k), at(k + 1)];
-        let mut is_open = false;
-        for end in [0, 2] {
-            let falls =
-                |around: [f64; 3]| self.at(around[end]) < self.at(around[1]) * (1.0 - SETTLED);
-            let mut step = around[end] - around[1];
-            for _ in 0..DESCENT {
-                if !falls(around) {
-                    break;
-                }
-                step = (2.0 * step).clamp(-10f64.ln(), 10f64.ln());
-                let next = around[end] + step;
-                let [low, middle, high] = around;
-                around = if end == 0 { [next, low, middle] } else { [middle, high, next] };
-            }
-            is_open |= falls(around);
+        let mut step = LN_2;
+        for _ in 0..DESCENT {
+            let [low, middle, high] = around;
+            let falls = |end| self.at(end) < self.at(middle) * (1.0 - SETTLED);
+            step = (2.0 * step).min(LN_10);
+            around = match (falls(low), falls(high)) {
+                (false, false) => return (around, false),
+                (true, false) => [low - step, low, middle],
+                (_, true) => [middle, high, high + step],
+            };
         }
-        (around, is_open)
-    }
-
-    /// Returns a rough place of the least value near `start`, from few places a factor of two apart, and the value of the
-    /// parabola through three of them.
-    pub fn glimpse(&self, start: f64, reach: i32) -> (f64, f64) {
-        let (around, _) = self.bracket(start, reach);
-        let [low, middle, high] = around.map(|log| self.at(log));
-        let (fall, rise) = (middle - low, high - middle);
-        // Equal steps: the vertex is below the middle by slope²/(2 · curvature).
-        let is_smooth = low.max(high) < 2.0 * middle && around[2] - around[0] < 1.5;
-        let below = 0.125 * (rise + fall).powi(2) / (rise - fall);
-        (around[1].exp(), if is_smooth && rise > fall { middle - below } else { middle })
+        (around, true)
     }
 
     /// Returns the place of the least value near `start`, the value, and whether it is at the end of the search; `None`
@@ -141,8 +126,7 @@ impl<'a> Goal<'a> {
     pub fn best(&self, start: f64, reach: i32) -> Option<(f64, f64, Kind)> {
         let (mut x, mut value, is_open) = self.least(start, reach)?;
         let mut kind = if is_open { Kind::EndOfSearch } else { Kind::Optimum };
-        let is_flat = !is_open && self.of(x / FLAT) <= value * (1.0 + ABOVE_LIMIT);
-        if is_flat {
+        if !is_open && self.of(x / FLAT) <= value * (1.0 + ABOVE_LIMIT) {
             // The search ends where little is gained: the limit itself lies far beyond.
             let level = value.min(self.of(x * MAX_FACTOR)) * (1.0 + ABOVE_LIMIT);
             let edge = self.edge(x, -1.0, level, f64::INFINITY);
@@ -160,50 +144,26 @@ impl<'a> Goal<'a> {
     /// Returns the factor on x, below 1 for the sign −1 and above for 1, up to which the value is at most `level`; 0 or
     /// infinite where that is further than `furthest`.
     pub fn edge(&self, x: f64, sign: f64, level: f64, furthest: f64) -> f64 {
-        let from = x.ln();
-        let mut inside = from;
-        let mut seen: Vec<f64> = self.known.borrow().iter().map(|known| known[0]).collect();
-        seen.retain(|log| (log - from) * sign > 0.0);
-        seen.sort_by(|a, b| (a * sign).total_cmp(&(b * sign)));
-        let mut outside = None;
-        for log in seen {
-            if self.at(log) > level {
-                outside = Some(log);
-                break;
-            }
-            inside = log;
-        }
-        let mut step = 2f64.ln();
-        let mut outside = loop {
-            if let Some(outside) = outside {
-                break outside;
-            }
-            if (inside - from).abs() >= furthest.min(MAX_FACTOR.powi(3)).ln() {
+        let (from, furthest) = (x.ln(), furthest.min(MAX_FACTOR.powi(3)).ln());
+        let (mut inside, mut step) = (from, sign * LN_2);
+        while self.at(inside + step) <= level {
+            (inside, step) = (inside + step, 2.0 * step);
+            if (inside - from).abs() >= furthest {
                 return if sign < 0.0 { 0.0 } else { f64::INFINITY };
             }
-            let next = inside + sign * step;
-            if self.at(next) > level {
-                outside = Some(next);
-            } else {
-                (inside, step) = (next, 2.0 * step);
-            }
-        };
+        }
+        let mut outside = inside + step;
         let above = |log: f64| (self.at(log) / level).ln();
         let mut is_secant = true;
         while (outside - inside).abs() > TOLERANCE {
-            let slope = (outside - inside) / (above(outside) - above(inside));
-            let share = -above(inside) * slope / (outside - inside);
+            let slope = (above(outside) - above(inside)) / (outside - inside);
+            let share = -above(inside) / slope / (outside - inside);
             let share = if is_secant && (0.02..0.98).contains(&share) { share } else { 0.5 };
             let place = inside + share * (outside - inside);
-            if slope != 0.0 && (above(place) * slope).abs() < 0.2 * TOLERANCE {
-                inside = place;
-                break;
+            if (above(place) / slope).abs() < 0.2 * TOLERANCE && slope.is_finite() {
+                return (place - from).exp();
             }
-            if above(place) > 0.0 {
-                outside = place;
-            } else {
-                inside = place;
-            }
+            *(if above(place) > 0.0 { &mut outside } else { &mut inside }) = place;
             is_secant = !is_secant;
         }
         (inside - from).exp()
@@ -218,7 +178,6 @@ pub fn up(x: f64) -> f64 {
     // A product of a whole number and a power of ten has rounding in its last digits.
     format!("{rounded:.11e}").parse().unwrap_or(x)
 }
-
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -1,17 +1,18 @@
 //! V·cost of the candidates over the rays of a medium, by exact theory, and the best setting of each family.
 
 use std::collections::BTreeMap;
+use std::sync::{Mutex, PoisonError};
 
 use super::candidates::{self, family};
 use super::costs::{Price, Prices};
-use super::search::{BEYOND, Goal, Kind, UNKNOWN};
+use super::search::{ABOVE_LIMIT, BEYOND, Goal, Kind, UNKNOWN, up};
 use super::{Request, Target};
 use crate::case::sweep::{Variation, What};
 use crate::case::{Case, CaseError};
 use estimators::Refusal;
 use media::Body;
 use theory::prediction::CERTAIN;
-use theory::{Channel, Prediction, parallel};
+use theory::{Channel, Moments, Prediction, parallel};
 
 /// Number of rays on which settings are searched; the answer is then evaluated on all of them.
 const PROBES: usize = 6;
@@ -36,20 +37,24 @@ struct Free {
 }
 
 /// Candidates on the rays of a medium.
-pub struct Study {
+pub struct Study<'a> {
+    /// Question.
+    pub request: &'a Request,
     /// Candidates, as entries of a list of estimators.
     pub texts: Vec<String>,
     /// One case for each ray, with the candidates in its list.
     pub cases: Vec<Case>,
     /// Price of each candidate; `None` where it cannot be drawn.
     pub prices: Vec<Option<Price>>,
+    /// Cost of a lookup of a setup: the median of those of draws.
+    setup_lookup: f64,
     /// `(T/T̄)²` of each ray: errors are relative to the mean transmittance T̄ of all rays.
     weights: Vec<f64>,
     /// Rays on which settings are searched.
     probes: Vec<usize>,
     free: Vec<Option<Free>>,
-    looseness: f64,
-    target: Target,
+    /// Predictions at the natural scale, by candidate, ray and seed, of which others are multiples.
+    at_scale: Mutex<BTreeMap<(usize, usize, u64), Option<Prediction>>>,
 }
 
 /// Variance and cost of a candidate at one setting, means over the rays.
@@ -63,8 +68,6 @@ pub struct Score {
     pub works: Vec<f64>,
     /// Cost of a draw with its share of the setup.
     pub cost: f64,
-    /// Cost of a single draw with one lookup at least, if the estimator looks up at all.
-    pub single: f64,
     /// Expected lookups of a draw.
     pub lookups: f64,
     /// Setup lookups of a ray.
@@ -85,19 +88,11 @@ impl Score {
     /// that cannot be taken and that rises with the cost.
     pub fn goal(&self, target: Target) -> f64 {
         match target {
-            Target::Error(error) => (self.work / (error * error)).max(self.single),
-            Target::Budget(budget) if self.single <= budget => self.work / budget,
-            Target::Budget(budget) => BEYOND * (self.single / budget),
+            Target::Error(error) => (self.work / (error * error)).max(self.cost),
+            Target::Budget(budget) if self.cost <= budget => self.work / budget,
+            Target::Budget(budget) => BEYOND * (self.cost / budget),
         }
     }
-}
-
-/// Candidate with a few values of its goal.
-struct Rough<'a> {
-    candidate: usize,
-    goal: Goal<'a>,
-    x: f64,
-    value: f64,
 }
 
 /// The best setting of a family of candidates.
@@ -114,7 +109,7 @@ pub struct Best<'a> {
     pub goal: Goal<'a>,
 }
 
-impl Study {
+impl<'a> Study<'a> {
     /// Reads the candidates on all rays, and measures their prices if they are to be measured.
     ///
     /// # Errors
@@ -124,8 +119,8 @@ impl Study {
         base: &Case,
         rays: &[Body],
         texts: Vec<String>,
-        request: &Request,
-        prices: &mut Prices,
+        request: &'a Request,
+        market: &mut Prices,
     ) -> Result<Self, CaseError> {
         let spec = candidates::replaced(&base.spec, &texts);
         let cases = parallel::map(rays, |ray| Case::of_body(&spec, ray));
@@ -145,20 +140,15 @@ impl Study {
             // The numbers of a profile depend on the prices.
             let key = if candidates::is_profile(text) { family(text) } else { text.clone() };
             let at = |factor| free[candidate].map(|free: Free| (free.what, begin(free) * factor));
-            prices.of(&key, case, (candidate, [at(1.0), at(4.0)]))
+            market.of(&key, case, (candidate, [at(1.0), at(4.0)]))
         };
-        let mut measured: Vec<Option<Price>> = texts.iter().enumerate().map(price).collect();
-        // Lookups of a setup cost something where draws need none, too.
-        let mut lookups: Vec<f64> = measured.iter().flatten().map(|price| price.lookup).collect();
+        let prices: Vec<Option<Price>> = texts.iter().enumerate().map(price).collect();
+        let mut lookups: Vec<f64> = prices.iter().flatten().map(|price| price.lookup).collect();
         lookups.retain(|&lookup| lookup > 0.0);
         lookups.sort_by(f64::total_cmp);
-        if let Some(&middle) = lookups.get(lookups.len() / 2) {
-            for price in measured.iter_mut().flatten().filter(|price| price.lookup == 0.0) {
-                price.lookup = middle;
-            }
-        }
-        let Request { looseness, target, .. } = *request;
-        Ok(Self { texts, cases, prices: measured, weights, probes, free, looseness, target })
+        let setup_lookup = lookups.get(lookups.len() / 2).copied().unwrap_or(0.0);
+        let at_scale = Mutex::default();
+        Ok(Self { request, texts, cases, prices, setup_lookup, weights, probes, free, at_scale })
     }
 
     /// Predicts a candidate on a ray, for a seed of its pilot rays; `None` if it is refused there.
@@ -166,17 +156,41 @@ impl Study {
         &self,
         candidate: usize,
         at: Variation,
-        ray: usize,
-        seed: u64,
+        (ray, seed): (usize, u64),
     ) -> Option<Prediction> {
         let case = &self.cases[ray];
         case.at(at).ok()?.predict(candidate, None, case.pilots(seed, candidate))
     }
 
-    /// Returns whether an inequality refuses a candidate at a setting on a ray.
-    fn is_refused(&self, candidate: usize, at: Variation, ray: usize) -> bool {
-        self.predict(candidate, at, ray, 1).is_none()
-            && matches!(self.refusal(candidate, at, ray), Some(Refusal::Inequality { .. }))
+    /// Predicts variance and lookups of a candidate on a ray as [`Study::predict`] does: with a weight at every collision,
+    /// without new integrals.
+    fn scaled(
+        &self,
+        candidate: usize,
+        at: Variation,
+        (ray, seed): (usize, u64),
+    ) -> Option<Prediction> {
+        let free = self.free[candidate].filter(|_| candidates::weighs(&self.texts[candidate]));
+        let Some((Free { what, scale, .. }, (_, x))) = free.zip(at) else {
+            return self.predict(candidate, at, (ray, seed));
+        };
+        let key = (candidate, ray, seed);
+        let known = self.at_scale.lock().unwrap_or_else(PoisonError::into_inner).get(&key).cloned();
+        let mut prediction = known.unwrap_or_else(|| {
+            let found = self.predict(candidate, Some((what, scale)), (ray, seed));
+            let mut all = self.at_scale.lock().unwrap_or_else(PoisonError::into_inner);
+            all.entry(key).or_insert(found).clone()
+        })?;
+        let factor = x / scale;
+        for channel in &mut prediction.channels {
+            let (losses, error) = (channel.losses?, channel.moments?.error);
+            let power = |(k, loss): (i32, f64)| loss * factor.powi(-k);
+            let [j1, j2, j3, j4] = losses;
+            let losses = [(0, j1), (1, j2), (2, j3), (3, j4)].map(power);
+            channel.moments = Some(Moments::of_product(channel.truth.value, losses, error));
+        }
+        prediction.lookups.as_mut()?.mean *= factor;
+        Some(prediction)
     }
 
     /// Returns the reason why a candidate is refused at a setting on a ray; `None` if it is not.
@@ -190,29 +204,38 @@ impl Study {
         self.refusal(candidate, self.free[candidate].map(|free| (free.what, free.scale)), 0)
     }
 
-    /// Returns the inequality, in words, that a setting violates on some ray; `None` if it violates none.
-    pub fn violated(&self, candidate: usize, at: Variation) -> Option<&'static str> {
-        let rays = 0..self.cases.len();
-        rays.filter_map(|ray| self.refusal(candidate, at, ray)).find_map(|refusal| match refusal {
+    /// Returns the inequality, in words, that a setting violates on one of some rays; `None` if it violates none.
+    pub fn violated(
+        &self,
+        candidate: usize,
+        at: Variation,
+        rays: impl IntoIterator<Item = usize>,
+    ) -> Option<&'static str> {
+        // A prediction is faster than a preparation with its reason.
+        let refused =
+            rays.into_iter().filter(|&ray| self.predict(candidate, at, (ray, 1)).is_none());
+        let mut reasons = refused.filter_map(|ray| self.refusal(candidate, at, ray));
+        reasons.find_map(|reason| match reason {
             Refusal::Inequality { needs, .. } => Some(needs),
             _ => None,
         })
     }
 
-    /// Returns the score of a candidate over some rays; `None` if it is refused on one of them, or if theory does not
-    /// know its variance or cost.
-    pub fn score(&self, candidate: usize, at: Variation, rays: &[usize]) -> Option<Score> {
+    /// Returns the score of a candidate over some rays, from predictions for a ray and a seed; `None` if it is refused on one
+    /// of them, or if theory does not know its variance or cost.
+    fn score(
+        &self,
+        candidate: usize,
+        rays: &[usize],
+        predict: impl Fn((usize, u64)) -> Option<Prediction>,
+    ) -> Option<Score> {
         let price = self.prices[candidate]?;
         let mut score = Score::default();
         let is_learned = self.cases.len() == 1 && candidates::is_learned(&self.texts[candidate]);
         let seeds = if is_learned { SEEDS } else { 1 };
         let share = 1.0 / (rays.len() as f64 * seeds as f64);
         for (&ray, seed) in rays.iter().flat_map(|ray| (1..=seeds).map(move |seed| (ray, seed))) {
-            let prediction = self.predict(candidate, at, ray, seed)?;
-            let lookups = prediction.cost(self.cases[ray].draws_per_ray)?;
-            let own = price.draw + price.lookup * lookups;
-            let single =
-                price.draw + price.lookup * if lookups > 0.0 { lookups.max(1.0) } else { 0.0 };
+            let prediction = predict((ray, seed))?;
             let channels = &prediction.channels;
             let mut relative = 0.0;
             for channel in channels {
@@ -221,100 +244,112 @@ impl Study {
                 let kurtosis = channel.moments.and_then(|moments| moments.kurtosis());
                 score.kurtosis = [score.kurtosis, kurtosis].into_iter().flatten().reduce(f64::max);
             }
+            let (lookups, setup) = (
+                prediction.lookups.as_ref()?.mean,
+                prediction.shared_setup(self.cases[ray].draws_per_ray),
+            );
+            // Where nothing is left to sample, no σ̂ is too small: all with less than a lookup are as good.
+            let counted = if relative == 0.0 && lookups > 0.0 { lookups.max(1.0) } else { lookups };
+            let own = price.draw + price.lookup * counted + self.setup_lookup * setup;
             score.works.push(relative * own);
             score.variance += share * relative;
             score.work += share * relative * own;
             score.cost += share * own;
-            score.single += share * single;
-            score.lookups += share * prediction.lookups.as_ref()?.mean;
+            score.lookups += share * lookups;
             score.setup_lookups += share * prediction.setup_lookups as f64;
         }
         score.work.is_finite().then_some(score)
+    }
+
+    /// Returns the score of a candidate over all rays.
+    pub fn score_of_all(&self, candidate: usize, at: Variation) -> Option<Score> {
+        let rays: Vec<usize> = (0..self.cases.len()).collect();
+        self.score(candidate, &rays, |place| self.predict(candidate, at, place))
     }
 
     /// Returns the goal on the probes as a function of the free quantity, of a σ̂ that is larger than needed by a factor.
     pub fn goal(&self, candidate: usize, looseness: f64) -> Goal<'_> {
         let free = self.free[candidate];
         let largest = free.and_then(|free| free.ray);
-        let domain = move || self.probes.iter().copied().chain(largest);
         Goal::new(move |x| {
             let at = |x: f64| free.map(|free| (free.what, x));
-            let is_refused = |x| domain().any(|ray| self.is_refused(candidate, at(x), ray));
+            let is_refused = |x| {
+                let rays = self.probes.iter().copied().chain(largest);
+                self.violated(candidate, at(x), rays).is_some()
+            };
             if looseness > 1.0 && is_refused(x / looseness) {
                 return f64::INFINITY;
             }
-            let exists = |ray| self.predict(candidate, at(x), ray, 1).is_some();
-            let score = self.score(candidate, at(x), &self.probes);
+            let predict = |place| self.scaled(candidate, at(x), place);
+            let exists = |ray| predict((ray, 1)).is_some();
+            let score = self.score(candidate, &self.probes, predict);
             match score.filter(|_| largest.is_none_or(exists)) {
-                Some(score) => score.goal(self.target),
+                Some(score) => score.goal(self.request.target),
                 None if is_refused(x) => f64::INFINITY,
                 None => UNKNOWN,
             }
         })
     }
 
-    /// Returns the candidates, family by family.
+    /// Returns the candidates with a price, family by family.
     pub fn families(&self) -> Vec<Vec<usize>> {
-        let mut families: Vec<(String, Vec<usize>)> = Vec::new();
-        for (candidate, text) in
-            self.texts.iter().enumerate().filter(|(i, _)| self.prices[*i].is_some())
-        {
-            let own = family(text);
-            match families.iter_mut().find(|(other, _)| *other == own) {
-                Some((_, members)) => members.push(candidate),
-                None => families.push((own, vec![candidate])),
-            }
+        let mut families: BTreeMap<String, Vec<usize>> = BTreeMap::new();
+        for candidate in (0..self.texts.len()).filter(|&i| self.prices[i].is_some()) {
+            families.entry(family(&self.texts[candidate])).or_default().push(candidate);
         }
-        families.into_iter().map(|(_, members)| members).collect()
+        families.into_values().collect()
     }
 
-    /// Searches the best setting of a family; `None` if it is refused everywhere.
-    ///
-    /// The member in the middle tells the others where to begin. A few values of each decide which one is searched.
+    /// Searches the best setting of a family; `None` if it is refused everywhere. The member in the middle tells the others
+    /// where to begin. A limit may cost those near the least value their lead, so that all of them are searched to the end.
     pub fn best(&self, family: &[usize]) -> Option<Best<'_>> {
-        let scale = |candidate: usize| self.free[candidate].map_or(1.0, |free| free.scale);
-        let rough = |candidate: usize, start: f64| {
-            let goal = self.goal(candidate, self.looseness);
-            let free = self.free[candidate];
-            let reach = free.map_or(0, |free| if free.what == What::Sampling { REACH } else { 1 });
-            let is_too_small = self.looseness > 1.0 && goal.of(start).is_infinite();
-            let start = if is_too_small { start * self.looseness } else { start };
-            let (x, value) =
-                if free.is_some() { goal.glimpse(start, reach) } else { (1.0, goal.of(1.0)) };
-            Rough { candidate, goal, x, value }
-        };
         let lead = family[family.len() / 2];
-        let first = rough(lead, scale(lead));
-        let start = if first.value < BEYOND { first.x / scale(lead) } else { 1.0 };
+        let scale = |candidate: usize| self.free[candidate].map_or(1.0, |free| free.scale);
+        let is_constant = self.free[lead].is_some_and(|free| free.what == What::Sampling);
+        let first = self.least(lead, scale(lead), if is_constant { REACH } else { 1 });
+        let setting = first.as_ref().and_then(|best| best.setting);
+        let start = setting.map_or(1.0, |(_, x)| x / scale(lead));
         let others: Vec<usize> = family.iter().copied().filter(|&other| other != lead).collect();
-        let all = parallel::map(&others, |&other| rough(other, start * scale(other)));
-        let all = all.into_iter().chain([first]);
-        let Rough { candidate, goal, x, value } = all.min_by(|a, b| a.value.total_cmp(&b.value))?;
-        let (x, value, kind) = match self.free[candidate] {
-            Some(_) => goal.best(x, 1)?,
-            None if value < BEYOND => (x, value, Kind::Fixed),
-            None => return None,
-        };
-        let setting = self.free[candidate].map(|free| (free.what, x));
-        let mut best = Best { candidate, setting, value, kind, goal };
-        if self.looseness > 1.0 {
+        let all = parallel::map(&others, |&other| self.least(other, start * scale(other), 1));
+        let all: Vec<Best> = all.into_iter().chain([first]).flatten().collect();
+        let least = all.iter().map(|best| best.value).fold(f64::INFINITY, f64::min);
+        let near = all.into_iter().filter(|best| best.value <= least * (1.0 + ABOVE_LIMIT));
+        let near = near.filter_map(|best| {
+            let Some((what, x)) = best.setting else { return Some(best) };
+            let (x, value, kind) = best.goal.best(x, 1)?;
+            Some(Best { setting: Some((what, x)), value, kind, ..best })
+        });
+        let mut best = near.min_by(|a, b| a.value.total_cmp(&b.value))?;
+        if self.request.looseness > 1.0 {
             best.goal = self.goal(best.candidate, 1.0);
         }
         Some(best)
     }
 
+    /// Searches the least value of a candidate near a place; `None` if it is refused everywhere.
+    fn least(&self, candidate: usize, start: f64, reach: i32) -> Option<Best<'_>> {
+        let looseness = self.request.looseness;
+        let goal = self.goal(candidate, looseness);
+        let Some(Free { what, .. }) = self.free[candidate] else {
+            let value = Some(goal.of(1.0)).filter(|&value| value < BEYOND)?;
+            return Some(Best { candidate, setting: None, value, kind: Kind::Fixed, goal });
+        };
+        let is_too_small = looseness > 1.0 && goal.of(start).is_infinite();
+        let start = if is_too_small { start * looseness } else { start };
+        let (x, value, _) = goal.least(start, reach)?;
+        Some(Best { candidate, setting: Some((what, x)), value, kind: Kind::Optimum, goal })
+    }
+
     /// Returns a setting that is allowed on all rays, not only on the probes, with its score; `None` if no setting up to
     /// twice the given one is allowed.
     pub fn on_all(&self, best: &Best) -> Option<(Variation, Score)> {
-        let rays: Vec<usize> = (0..self.cases.len()).collect();
         let tries = if best.setting.is_some() { &RAISES[..] } else { &RAISES[..1] };
         tries.iter().find_map(|factor| {
-            let setting = best.setting.map(|(what, x)| (what, super::search::up(x * factor)));
-            Some((setting, self.score(best.candidate, setting, &rays)?))
+            let setting = best.setting.map(|(what, x)| (what, up(x * factor)));
+            Some((setting, self.score_of_all(best.candidate, setting)?))
         })
     }
 }
-
 /// Returns the free quantity of each candidate: a constant σ̂, or a factor on σ̂.
 fn free(cases: &[Case], probes: &[usize], texts: &[String]) -> Vec<Option<Free>> {
     let mut scales: BTreeMap<String, (f64, usize)> = BTreeMap::new();

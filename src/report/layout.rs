@@ -157,17 +157,22 @@ impl Grid {
         self.columns.iter().map(Column::width).sum::<usize>() + gaps
     }
 
-    /// Makes it fit: shortens names somewhat, then drops columns, then shortens names further.
-    pub fn fit(&mut self, width: usize) {
+    /// Makes it fit: shortens names somewhat, then drops columns, then shortens names further. Returns the headings of the
+    /// dropped columns.
+    pub fn fit(&mut self, width: usize) -> Vec<&'static str> {
+        let mut dropped = Vec::new();
         self.columns.retain(|column| column.fields.iter().any(|field| !field.text.is_empty()));
         self.shorten(width, USUAL_NAME);
         while self.width() > width {
             let ranks = self.columns.iter().map(|column| column.rank);
             let Some(highest) = ranks.max().filter(|&rank| rank > 0) else { break };
+            let leaving = self.columns.iter().filter(|column| column.rank == highest);
+            dropped.extend(leaving.map(|column| column.head));
             self.columns.retain(|column| column.rank != highest);
         }
         self.shorten(width, MIN_NAME);
         self.columns.iter_mut().for_each(Column::fill);
+        dropped
     }
 
     fn shorten(&mut self, limit: usize, least: usize) {
@@ -308,7 +313,7 @@ mod tests {
         let mut grid = Grid {
             columns: vec![column("name", 0, "x"), column("b", 2, "12345678"), column("c", 1, "1")],
         };
-        grid.fit(12);
+        assert_eq!(grid.fit(12), ["b"]);
         let heads: Vec<_> = grid.columns.iter().map(|column| column.head).collect();
         assert_eq!(heads, ["name", "c"]);
     }

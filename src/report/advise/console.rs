@@ -58,17 +58,18 @@ pub fn table(advice: &Advice, pen: Pen) -> String {
     let mut text = String::new();
     pen.heading(&mut text, &advice.case, &advice.title);
     let _ = writeln!(text, "{}", pen.paint(Paint::Dim, &end_elided(&facts(advice), pen.width)));
+    let mut dropped: Vec<&str> = Vec::new();
     for group in [Group::Ranked, Group::Bounded, Group::Informed] {
         let rows: Vec<Joined> = super::joined(advice).filter(|of| of.row.group == group).collect();
         if rows.is_empty() {
             continue;
         }
         let words = match group {
-            Group::Ranked => "",
-            Group::Bounded => "with a variance that theory only bounds",
-            Group::Informed => "with knowledge from which the answer follows",
+            Group::Ranked => None,
+            Group::Bounded => Some("with a variance that theory only bounds"),
+            Group::Informed => Some("with knowledge from which the answer follows"),
         };
-        if !words.is_empty() {
+        if let Some(words) = words {
             let _ = writeln!(text, "{}", pen.paint(Paint::Dim, words));
         }
         let goal = match (advice.target, advice.unit()) {
@@ -77,7 +78,7 @@ pub fn table(advice: &Advice, pen: Pen) -> String {
             (Target::Budget(_), _) => GOALS[2],
         };
         let mut grid = grid(&rows, &[FIRST, &[goal], LAST].concat());
-        grid.fit(pen.width);
+        dropped.extend(grid.fit(pen.width));
         text.push_str(&grid.render(pen));
     }
     if let Some(best) = advice.best() {
@@ -86,7 +87,10 @@ pub fn table(advice: &Advice, pen: Pen) -> String {
             let _ = writeln!(text, "  {}", pen.paint(Paint::Cyan, line));
         }
     }
-    for note in notes(advice) {
+    dropped.sort_unstable();
+    dropped.dedup();
+    let narrow = format!("left out on a console this narrow: {}", dropped.join(", "));
+    for note in notes(advice).into_iter().chain((!dropped.is_empty()).then_some(narrow)) {
         pen.note(&mut text, &note, ("", Paint::Plain));
     }
     text

@@ -40,10 +40,10 @@ table! {
         "kind": "Kind of the best σ̂: optimum, or near a limit" = |of| of.row.kind.words();
         "unit": "Unit of costs: s or lookups" = |of| of.advice.unit();
         "cost" ["cost", "s or lookups", Short(3)]: "Cost to the error, or the budget; over several rays, of each" = |of| of.row.time;
-        "cost_least": "Cost to the error, or the error, of the ray with the least" = |of| of.row.times[0];
-        "cost_most": "Cost to the error, or the error, of the ray with the most" = |of| of.row.times[1];
+        "cost_least": "Cost to the error, or the error, of the ray with the least" = |of| of.row.of_rays[0];
+        "cost_most": "Cost to the error, or the error, of the ray with the most" = |of| of.row.of_rays[1];
         "error" ["error", "", Short(3)]: "Relative standard error at that cost" = |of| of.row.error;
-        "draws" ["draws", "", Short(2)]: "Draws at that cost" = |of| of.row.draws;
+        "draws" ["draws", "", Short(2)]: "Draws at that cost" = |of| of.row.draws();
         "cost_per_draw": "Cost of a draw with its share of the setup" = |of| of.row.score.cost;
         "cost_error": "Relative error of the costs" = |of| of.row.cost_error;
         "relative_deviation" ["s.d./T", "", Fixed(3)]: "Standard deviation of a draw over the transmittance" = |of| of.row.score.deviation();
@@ -53,7 +53,7 @@ table! {
         "margin_above" ["doubles above", "", Short(3)]: "Factor on σ̂ above which the cost doubles" = |of| of.row.margins.map(|margins| margins[1]);
         "least_sampling" ["least σ̂", "", Short(3)]: "Least σ̂, or factor, for which the estimator exists with a finite variance; 0 for any" = |of| of.row.least;
         "kurtosis" ["kurtosis", "", Short(3)]: "Largest kurtosis of a draw on a ray" = |of| of.row.score.kurtosis;
-        "trusted_draws" ["draws until trusted", "", Short(2)]: "Draws until the sample variance has a standard error of 10 %" = |of| of.row.trusted;
+        "trusted_draws" ["draws until trusted", "", Short(2)]: "Draws until the sample variance has a standard error of 10 %" = |of| of.row.trusted();
         "needs": "Knowledge of the medium that is needed beside lookups" = |of| &of.row.needs;
         "lines": "Lines for a case" = |of| &of.row.lines;
     } screens {

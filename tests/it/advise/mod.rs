@@ -160,7 +160,7 @@ fn rays_are_random_listed_or_those_of_a_camera() {
     let random = many("rays = { random = 12 }");
     assert_eq!(random.rays, 12);
     let best = row(&random, "woodcock");
-    assert!(best.times[0] < best.time && best.time < best.times[1], "{:?}", best.times);
+    assert!(best.of_rays[0] < best.time && best.time < best.of_rays[1], "{:?}", best.of_rays);
     // A majorant of each ray is at most that of all.
     let [own, all] = ["local majorants, 1 segments", "constant"].map(|kind| {
         let of = |row: &&Row| row.estimator == "woodcock" && row.sampling == kind;
@@ -222,6 +222,7 @@ fn the_command_prints_tables_lines_and_files() {
             "woodcock",
             "advice: put into the case",
             "estimators = [{ ",
+            "left out on a console this narrow: draws",
         ],
     );
     let csv =
