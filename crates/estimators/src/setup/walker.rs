@@ -8,7 +8,7 @@ use media::phase::Phase;
 use numeric::digits::rounded;
 use theory::ParticleRule;
 use theory::collisions::particle::Event;
-use theory::colours::bound::phi;
+use theory::colours::bound::{self, Reason, Unbounded};
 use theory::colours::chance::shares;
 use theory::colours::rates::Proposal;
 use theory::colours::{Chance, Chances};
@@ -214,32 +214,24 @@ impl Walker {
                 return Ok(vec![f64::INFINITY; phases.len()]);
             }
         };
-        let of_channel = |channel: usize| {
-            let mut sum = 0.0;
-            for &(weight, walk) in &walks {
-                let (phi, who) = match walk {
-                    Proposal::Hero(hero) => (
-                        phi(&phases[channel], &phases[hero]),
-                        format!("walks of hero {}", hero + 1),
-                    ),
-                    Proposal::Together(_) => (1.0, "walks".into()),
-                };
-                let found = of(walk, channel, phi).map_err(|factor| {
-                    let times = if factor.is_finite() {
-                        let factor = rounded(factor);
-                        format!("multiply E[X²] by {factor}, not by less than 1, from one scattering to the next")
-                    } else if phi.is_finite() {
-                        "lack what happens in another channel, which biases them, or gain without limit".into()
-                    } else {
-                        "turn by a phase function too peaked for a bound".into()
-                    };
-                    let found = format!("{who} {times} in channel {}", channel + 1);
-                    Refusal::mismatch("a second moment that theory bounds", found)
-                })?;
-                sum += weight * found;
-            }
-            Ok(sum)
-        };
-        (0..phases.len()).map(of_channel).collect()
+        bound::of_walks(&walks, phases, of).map_err(|unbounded| {
+            let Unbounded { walk, channel, reason } = unbounded;
+            let times = match reason {
+                Reason::Grows(factor) => {
+                    let factor = rounded(factor);
+                    format!("multiply E[X²] by {factor}, not by less than 1, from one scattering to the next")
+                }
+                Reason::Unlimited => {
+                    "lack what happens in another channel, which biases them, or gain without limit".into()
+                }
+                Reason::TooPeaked => "turn by a phase function too peaked for a bound".into(),
+            };
+            let walks = match walk {
+                Proposal::Hero(hero) => format!("walks of hero {}", hero + 1),
+                Proposal::Together(_) => "walks".into(),
+            };
+            let found = format!("{walks} {times} in channel {}", channel + 1);
+            Refusal::mismatch("a second moment that theory bounds", found)
+        })
     }
 }

@@ -12,7 +12,6 @@ mod walker;
 
 use super::{Refusal, Setup};
 use media::Majorants;
-use numeric::geometry::Bounds;
 use theory::problems::Scene;
 use theory::space::Walks;
 
@@ -27,18 +26,13 @@ const MAX_COLLISIONS: f64 = 1e4;
 
 /// The arguments of bounds on the walks of a particle.
 pub fn walks(scene: &Scene, majorants: &Majorants, particle: &Particle) -> Walks {
-    let across = match majorants.bounds() {
-        Bounds::Everywhere => f64::INFINITY,
-        Bounds::Sphere { radius, .. } => 2.0 * radius,
-        Bounds::Box(within) => (within.high - within.low).norm(),
-    };
     Walks {
         rule: particle.rule,
         roulette: particle.roulette,
         splits: particle.splitting != Splitting::None,
         largest_ratio: majorants.largest_ratio(),
         albedo: scene.albedo.range(),
-        depth: majorants.largest() * across,
+        depth: majorants.largest() * majorants.bounds().diameter(),
     }
 }
 

@@ -14,31 +14,20 @@ use crate::setup::walker::Walker;
 use crate::walks::Walk;
 use crate::{Refusal, Setup, estimators};
 use ::theory::Prediction;
-use ::theory::colours::bound::{self, Flight};
 use ::theory::colours::rates::Rates;
 use ::theory::problems::SpectralFurnace;
 use ::theory::space::furnace as theory;
 use media::Batches;
 use numeric::digits::rounded;
-use numeric::geometry::Bounds;
 
 /// Maximum expected number of collisions on a straight line through the volume; more are a mistake in the case.
 const MAX_COLLISIONS: f64 = 1e4;
 /// Relative increase of bounds on σ_t, because lookups are rounded.
 const SLACK: f64 = 1e-9;
 
-/// The length of the longest straight line in the volume.
-fn across(bounds: &Bounds) -> f64 {
-    match bounds {
-        Bounds::Everywhere => f64::INFINITY,
-        Bounds::Sphere { radius, .. } => 2.0 * radius,
-        Bounds::Box(within) => (within.high - within.low).norm(),
-    }
-}
-
 /// Checks that each channel has a constant σ̂ ≥ σ_t everywhere in the volume.
 fn realisable(setup: &Setup<SpectralFurnace>) -> Result<(), Refusal> {
-    let across = across(&setup.problem.bounds);
+    let across = setup.problem.bounds.diameter();
     let within = setup.problem.bounds.enclosing_box();
     let channels = setup.fields.iter().zip(&setup.problem.channels);
     for (number, (channel, medium)) in (1..).zip(channels) {
@@ -89,20 +78,8 @@ impl Chromatic for SpectralFurnace {
         let majorants = setup.fields.iter().map(|channel| channel.majorant).collect();
         let rates = Rates { majorants, albedos: problem.albedos.clone() };
         let phases: Vec<_> = problem.channels.iter().map(|channel| channel.phase).collect();
-        let across = across(&problem.bounds);
         walker.second_moment_bounds(&phases, |walk, channel, phi| {
-            let square = bound::square(&rates, walk, channel, &extinctions, phi);
-            let shorter = bound::are_isotropic(&phases) && square.lost > 0.0;
-            // Lines from a place in a ball are at most as long as a radius on average, and e^{−x} is convex.
-            let then = match problem.bounds {
-                Bounds::Sphere { radius, .. } if shorter => radius,
-                _ => across,
-            };
-            let [first, then] = [across, then].map(|length| Flight::of(square.lost, length));
-            let found = bound::largest(first, then, [square.scattered, square.absorbed]);
-            // A hero may never be absorbed where another channel is.
-            let is_finite = square.absorbed.is_finite();
-            found.ok_or(if is_finite { square.scattered * then.collides } else { f64::INFINITY })
+            theory::second_moment_bound(problem, &rates, &extinctions, (walk, channel, phi))
         })
     }
 

@@ -14,28 +14,13 @@
 
 use crate::{Draw, Estimator, Inputs, Kernel, Refusal, Request, Setup, walks};
 use numeric::Lane;
-use theory::prediction;
+use theory::Prediction;
 use theory::problems::Transmittance;
-use theory::{Channel, CountLaw, Distribution, Moments, Prediction, Tails};
+use theory::ray::atoms;
 
 /// Closed-form tracking; it has no settings.
 #[derive(Debug, Clone)]
 pub struct ClosedForm;
-
-/// The prediction of an estimator that always gives the exact answer.
-pub fn exact(setup: &Setup<Transmittance>, lookups: usize) -> Prediction {
-    let depth = setup.fields.mesh.optical_depth();
-    let value = prediction::transmittance(depth, setup.fields.log_unit).value;
-    let moments = Moments::certain(value);
-    let channel = Channel::transmittance(depth, setup.fields.log_unit, moments, Tails::LIGHT);
-    let distribution = Some(Distribution::Atoms(vec![(value, 1.0)]));
-    let random_numbers = Some(0.0);
-    Prediction {
-        random_numbers,
-        distribution,
-        ..Prediction::single(channel, CountLaw::always(lookups as f64))
-    }
-}
 
 impl Estimator<Transmittance> for ClosedForm {
     const INPUTS: Inputs = Inputs::NONE;
@@ -50,7 +35,7 @@ impl Estimator<Transmittance> for ClosedForm {
     }
 
     fn predict(&self, setup: &Setup<Transmittance>) -> Prediction {
-        exact(setup, 0)
+        atoms::exact(&setup.fields.mesh, setup.fields.log_unit, 0)
     }
 
     fn fill(&self, _: Kernel, setup: &Setup<Transmittance>, request: Request) {

@@ -17,7 +17,7 @@
 //! Source: P. Kutz, R. Habel, Y. K. Li, J. Novák, *Spectral and Decomposition Tracking for
 //! Rendering Heterogeneous Volumes*, ACM Transactions on Graphics 36 (2017), section 4.
 
-use super::woodcock::{ZERO_OR_ONE, zero_or_one};
+use super::woodcock::ZERO_OR_ONE;
 use crate::recipes::controls;
 use crate::walks::{self, Route, TentativeCollision, Walk};
 use crate::{Estimator, Inputs, Kernel, Refusal, Request, Setup};
@@ -28,6 +28,7 @@ use numeric::{Lane, kept};
 use theory::Prediction;
 use theory::collisions::rules::Null;
 use theory::problems::Transmittance;
+use theory::ray::atoms::zero_or_one;
 
 /// Decomposition tracking; σ̂ and a constant control are its inputs.
 #[derive(Debug, Clone)]

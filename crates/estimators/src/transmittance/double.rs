@@ -19,10 +19,10 @@
 //! Eq. 8, section 4.2.
 
 use crate::{Estimator, Inputs, Refusal, Setup, product_draws};
+use theory::Prediction;
 use theory::collisions::rules::Weight;
-use theory::prediction::count::poisson;
 use theory::problems::Transmittance;
-use theory::{Distribution, Prediction};
+use theory::ray::atoms;
 
 /// The double particle model; σ̂ and any control are its inputs.
 #[derive(Debug, Clone)]
@@ -43,26 +43,9 @@ pub fn predict_weighted(setup: &Setup<Transmittance>) -> Prediction {
     let prediction = setup.product(&Weight).predict();
     let distribution = setup.residual().constant_ratio().map(|ratio| {
         let mean = prediction.lookups.as_ref().map_or(0.0, |lookups| lookups.mean);
-        Distribution::Atoms(powers(setup.fields.control_transmittance(), 1.0 - ratio, mean))
+        atoms::powers(setup.fields.control_transmittance(), 1.0 - ratio, mean)
     });
     Prediction { distribution, ..prediction }
-}
-
-/// `T_c f^n` with its Poisson probability, for n up to where the tail is below 1e-12.
-fn powers(scale: f64, factor: f64, mean: f64) -> Vec<(f64, f64)> {
-    let most = (mean + 12.0 * mean.sqrt() + 30.0).min(1e4);
-    let mut atoms: Vec<(f64, f64)> = Vec::new();
-    let mut value = scale;
-    for n in (0..u32::MAX).take_while(|&n| f64::from(n) <= most) {
-        let probability = poisson(n, mean);
-        match atoms.iter_mut().find(|atom| atom.0 == value) {
-            // A factor of 0 or ±1 puts many n on one atom.
-            Some(atom) => atom.1 += probability,
-            None => atoms.push((value, probability)),
-        }
-        value *= factor;
-    }
-    atoms
 }
 
 impl Estimator<Transmittance> for DoubleParticle {

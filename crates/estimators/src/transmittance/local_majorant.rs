@@ -17,7 +17,7 @@
 //! sampling for rendering inhomogeneous participating media*, ACM Transactions on Graphics 29
 //! (2010).
 
-use super::woodcock::{ZERO_OR_ONE, zero_or_one};
+use super::woodcock::ZERO_OR_ONE;
 use crate::walks::{self, Route, TentativeCollision, Walk};
 use crate::{Draw, Estimator, Inputs, Kernel, Refusal, Request, Setup};
 use media::sampling::BothWays;
@@ -26,6 +26,7 @@ use numeric::{Kept, Lane, Row, kept};
 use theory::Prediction;
 use theory::collisions::rules::Null;
 use theory::problems::Transmittance;
+use theory::ray::atoms::zero_or_one;
 
 /// Local-majorant tracking; a piecewise-constant σ̂ is its only input.
 #[derive(Debug, Clone)]

@@ -27,15 +27,12 @@ use crate::walks::slots;
 use crate::{Draw, Estimator, Inputs, Kernel, Refusal, Request, Setup, walks};
 use media::catalogue::Settings;
 use media::{Extinction, Lookups};
+use numeric::Lane;
 use numeric::pack::{self, Task, WIDTH};
-use numeric::quadrature::GaussLegendre;
 use numeric::rng::{LANES, Stream};
-use numeric::{Known, Lane};
+use theory::Prediction;
 use theory::problems::{Problem, Transmittance};
-use theory::{Channel, CountLaw, Moments, Prediction, Tails};
-
-/// Panels of the quadrature over the offset, many because σ_t may have kinks.
-const PANELS: usize = 256;
+use theory::ray::marching;
 
 /// Ray marching.
 #[derive(Debug, Clone)]
@@ -48,13 +45,7 @@ impl RayMarching {
     /// `h Σⱼ σ_t((j + u) h)`.
     #[inline(always)]
     fn depth<M: Extinction, L: Lane>(&self, setup: &Setup<Transmittance>, medium: &M, u: L) -> L {
-        let support = setup.fields.mesh.support();
-        let step = support.length() / f64::from(self.steps);
-        let mut sum = u.each(0.0);
-        for j in 0..self.steps {
-            sum = sum + medium.extinction((u + f64::from(j)) * step + support.from);
-        }
-        sum * step
+        marching::depth(medium, setup.fields.mesh.support(), self.steps, u)
     }
 
     /// The values of draws with the given offsets.
@@ -90,37 +81,7 @@ impl Estimator<Transmittance> for RayMarching {
     }
 
     fn predict(&self, setup: &Setup<Transmittance>) -> Prediction {
-        let medium = setup.fields.mesh.medium();
-        let value = |u: f64| (setup.fields.log_unit - self.depth(setup, medium, u)).exp();
-        let (mean, moments) = if self.jitter {
-            let rule = GaussLegendre::new(4);
-            let width = 1.0 / PANELS as f64;
-            let over_offset = |f: &dyn Fn(f64) -> f64| -> f64 {
-                let panel = |i: usize| {
-                    let from = width * i as f64;
-                    rule.integrate(from, from + width, |u| f(value(u)))
-                };
-                (0..PANELS).map(panel).sum()
-            };
-            let mean = over_offset(&|x| x);
-            let relative = [2, 3, 4].map(|k| over_offset(&|x| ((x - mean) / mean).powi(k)));
-            (mean, Moments::estimated(mean, relative, 1e-6))
-        } else {
-            let mean = value(0.5);
-            (mean, Moments::certain(mean))
-        };
-        let channel = Channel {
-            mean: Known::estimated(mean, 1e-9 * mean),
-            ..Channel::transmittance(
-                setup.fields.mesh.optical_depth(),
-                setup.fields.log_unit,
-                moments,
-                Tails::LIGHT,
-            )
-        };
-        let random_numbers = Some(f64::from(u8::from(self.jitter)));
-        let lookups = CountLaw::always(f64::from(self.steps));
-        Prediction { random_numbers, ..Prediction::single(channel, lookups) }
+        marching::predict(&setup.fields.mesh, setup.fields.log_unit, self.steps, self.jitter)
     }
 
     #[inline(always)]

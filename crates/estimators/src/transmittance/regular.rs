@@ -13,12 +13,12 @@
 //! Source: J. Amanatides, A. Woo, *A Fast Voxel Traversal Algorithm for Ray Tracing*, Eurographics
 //! 1987; the name after Novák et al. 2018, section 4.2.
 
-use super::closed_form::exact;
 use crate::{Draw, Estimator, Inputs, Kernel, Refusal, Request, Setup, walks};
 use media::{Extinction, Lookups};
 use numeric::Lane;
 use theory::Prediction;
 use theory::problems::Transmittance;
+use theory::ray::atoms;
 
 /// Regular tracking; it has no settings.
 #[derive(Debug, Clone)]
@@ -44,7 +44,8 @@ impl Estimator<Transmittance> for Regular {
     }
 
     fn predict(&self, setup: &Setup<Transmittance>) -> Prediction {
-        exact(setup, setup.fields.mesh.panels().len())
+        let mesh = &setup.fields.mesh;
+        atoms::exact(mesh, setup.fields.log_unit, mesh.panels().len())
     }
 
     #[inline(always)]

@@ -19,9 +19,10 @@
 //! technique*, Nuclear Science and Engineering 32 (1968).
 
 use crate::{Estimator, Inputs, Refusal, Setup, product_draws};
+use theory::Prediction;
 use theory::collisions::rules::Null;
 use theory::problems::Transmittance;
-use theory::{Distribution, Prediction};
+use theory::ray::atoms::zero_or_one;
 
 /// Woodcock tracking; σ̂ is its only input.
 #[derive(Debug, Clone)]
@@ -29,13 +30,6 @@ pub struct Woodcock;
 
 /// Requirement of estimators with draws of 0 or 1.
 pub const ZERO_OR_ONE: &str = "τ ≤ 300 (draws are 0 or 1, and a 1 is never seen)";
-
-/// Adds the distribution of a draw that is 1 with probability T, else 0.
-pub fn zero_or_one(prediction: Prediction) -> Prediction {
-    let alive = prediction.channels[0].truth.value;
-    let distribution = Some(Distribution::Atoms(vec![(0.0, 1.0 - alive), (1.0, alive)]));
-    Prediction { distribution, ..prediction }
-}
 
 impl Estimator<Transmittance> for Woodcock {
     const INPUTS: Inputs = Inputs::SAMPLING;

@@ -78,6 +78,15 @@ impl Bounds {
         })
     }
 
+    /// Length of the longest straight line inside.
+    pub fn diameter(&self) -> f64 {
+        match self {
+            Self::Everywhere => f64::INFINITY,
+            Self::Sphere { radius, .. } => 2.0 * radius,
+            Self::Box(within) => (within.high - within.low).norm(),
+        }
+    }
+
     /// Returns true if the point is inside or on the boundary.
     pub fn contains(&self, p: Point) -> bool {
         match self {

@@ -92,6 +92,61 @@ pub fn largest(first: Flight, then: Flight, [scattered, absorbed]: [f64; 2]) -> 
     (room > SLACK && found.is_finite()).then_some(found)
 }
 
+/// Walk and channel without a bound on `E[X²]`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Unbounded {
+    /// Walk that has no bound.
+    pub walk: Proposal,
+    /// Number of the channel.
+    pub channel: usize,
+    /// Reason why there is none.
+    pub reason: Reason,
+}
+
+/// Reason why a second moment has no bound.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Reason {
+    /// The second moment grows by this factor, 1 or more, from one scattering to the next.
+    Grows(f64),
+    /// The walk lacks events of the channel, or its weight has no limit.
+    Unlimited,
+    /// A phase function is too peaked to compute Φ.
+    TooPeaked,
+}
+
+/// Bounds on `E[X²]` of all channels, mixed over walks with their probabilities. `of` returns the bound of a walk for a
+/// channel and its Φ. Its error is the factor, 1 or more, by which the second moment grows from one scattering to the
+/// next.
+///
+/// # Errors
+///
+/// The first walk and channel that have no bound.
+pub fn of_walks(
+    walks: &[(f64, Proposal)],
+    phases: &[Phase],
+    of: impl Fn(Proposal, usize, f64) -> Result<f64, f64>,
+) -> Result<Vec<f64>, Unbounded> {
+    let mut bounds = vec![0.0; phases.len()];
+    for (channel, bound) in bounds.iter_mut().enumerate() {
+        for &(weight, walk) in walks {
+            let phi = match walk {
+                Proposal::Hero(hero) => phi(&phases[channel], &phases[hero]),
+                Proposal::Together(_) => 1.0,
+            };
+            *bound += weight
+                * of(walk, channel, phi).map_err(|factor| {
+                    let reason = match factor {
+                        factor if factor.is_finite() => Reason::Grows(factor),
+                        _ if phi.is_finite() => Reason::Unlimited,
+                        _ => Reason::TooPeaked,
+                    };
+                    Unbounded { walk, channel, reason }
+                })?;
+        }
+    }
+    Ok(bounds)
+}
+
 /// Returns true if directions after a scattering are isotropic in all channels.
 pub fn are_isotropic(phases: &[Phase]) -> bool {
     phases.iter().all(|phase| *phase == Phase::Isotropic(Isotropic))

@@ -10,9 +10,15 @@
 //! The bound is that of any variable between 0 and b of mean m, `m (b − m)`: R. Bhatia, C. Davis, *A better bound on the
 //! variance*, American Mathematical Monthly 107 (2000).
 
+use crate::colours::bound::{self, Flight};
+use crate::colours::rates::{Proposal, Rates};
 use crate::prediction::raw::{POWERS, RESOLVED, RawMoments};
+use crate::problems::SpectralFurnace;
 use crate::{Channel, Moments, Prediction, Tails, colours};
+use media::phase::Phase;
+use media::phase::isotropic::Isotropic;
 use numeric::Known;
+use numeric::geometry::Bounds;
 
 /// Rounding of a walk's weights.
 const ROUNDING: f64 = 1e-12;
@@ -61,4 +67,31 @@ pub fn relative(second_moment_bounds: &[f64]) -> Prediction {
     };
     let channels = second_moment_bounds.iter().map(bounded).collect();
     Prediction { channels: colours::named(channels), ..Prediction::default() }
+}
+
+/// Bound on `E[X²]` of a channel where draws are relative to the density of a walk, Φ given. Each channel has one σ_t.
+///
+/// # Errors
+///
+/// The factor of the second moment between two scatterings, where it is too large.
+pub fn second_moment_bound(
+    problem: &SpectralFurnace,
+    rates: &Rates,
+    extinctions: &[f64],
+    (walk, channel, phi): (Proposal, usize, f64),
+) -> Result<f64, f64> {
+    let square = bound::square(rates, walk, channel, extinctions, phi);
+    let diameter = problem.bounds.diameter();
+    let is_isotropic = problem.channels.iter().all(|own| own.phase == Phase::Isotropic(Isotropic));
+    let shorter = is_isotropic && square.lost > 0.0;
+    // Lines from a place in a ball are at most as long as a radius on average, and e^{−x} is convex.
+    let then = match problem.bounds {
+        Bounds::Sphere { radius, .. } if shorter => radius,
+        _ => diameter,
+    };
+    let [first, then] = [diameter, then].map(|length| Flight::of(square.lost, length));
+    let found = bound::largest(first, then, [square.scattered, square.absorbed]);
+    // A hero may never be absorbed where another channel is.
+    let is_finite = square.absorbed.is_finite();
+    found.ok_or(if is_finite { square.scattered * then.collides } else { f64::INFINITY })
 }
