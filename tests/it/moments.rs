@@ -279,3 +279,20 @@ fn a_walk_that_ends_at_collisions_has_closed_form_lookups_in_a_homogeneous_mediu
     });
     none(&differences.collect::<Vec<_>>());
 }
+
+#[test]
+fn variance_is_bounded_on_the_share_of_a_ray_on_which_sampling_is_at_least_half_the_extinction() {
+    // w = σ_t²/σ̂ ≤ 2σ_t where σ_t = 4t ≤ 2σ̂. Three knots make no panel end there.
+    let samplings = [0.3, 0.7, 1.0, 1.9, 2.5];
+    let list = samplings.map(|s| format!("{{ ratio.sampling.constant.value = {s} }}")).join(", ");
+    let rows = predicted(&format!(
+        "title = \"stable\"\n[problem.transmittance]\n\
+         medium.piecewise-linear = {{ knots = [0, 0.3, 1], values = [0, 1.2, 4] }}\nspan = [0, 1]\n\
+         estimators = [{list}]"
+    ));
+    let differences = rows.iter().zip(samplings).filter_map(|(row, sampling)| {
+        let share = row.experiment.stable_share.expect("a share");
+        differs(&row.experiment.label, share, (0.5 * sampling).min(1.0), 1e-11)
+    });
+    none(&differences.collect::<Vec<_>>());
+}

@@ -39,14 +39,13 @@ pub fn predict(product: &Product<'_>, distances: &[f64]) -> Prediction {
         })
         .collect();
     let covariances = pairs(&channels, &upto);
-    let length = support.length();
     Prediction {
         channels,
         lookups: Some(product.lookups(&mesh, &whole)),
         random_numbers: Some(whole.flown + 1.0),
         covariances,
         increments: increments(&upto, mesh.relative_error()),
-        stable_share: (length > 0.0).then(|| (whole.stable / length).min(1.0)),
+        stable_share: product.stable_share(&mesh),
         ..Prediction::default()
     }
 }

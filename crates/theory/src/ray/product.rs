@@ -56,8 +56,6 @@ pub struct Integrals {
     pub flown: f64,
     /// `e^{−K(S)}`: share of walks that nothing ends.
     pub alive: f64,
-    /// The length on which `w ≤ 2σ_t`.
-    pub stable: f64,
     /// True if every loss is constant in each panel: then sums over panels are exact.
     pub is_stepwise: bool,
 }
@@ -141,6 +139,24 @@ impl<'a> Product<'a> {
         found
     }
 
+    /// Share of the support on which `σ̂ E[(1 − W)²] ≤ 2σ_t`: between the places where the sides cross. `None` on an empty
+    /// support.
+    pub fn stable_share(&self, mesh: &Mesh) -> Option<f64> {
+        let excess = |t: f64, extinction: f64| {
+            let introduced = self.rule.outcome(self.ratio(t, extinction)).mean_loss(2);
+            let rate = self.sampling.value(t) * introduced + self.killing;
+            rate - 2.0 * extinction * (1.0 + 1e-12)
+        };
+        let length = mesh.support().length();
+        let cut = mesh.cut(&mesh.roots(excess));
+        let stable = cut.panels().filter(|panel| {
+            let middle = panel.t.len() / 2;
+            excess(panel.t[middle], panel.extinction[middle]) <= 0.0
+        });
+        let stable: f64 = stable.map(|panel| panel.span.length()).sum();
+        (length > 0.0).then(|| (stable / length).min(1.0))
+    }
+
     /// Mean, moments, rarity, costs and stability of the estimate of `T` over the whole support.
     pub fn predict(&self) -> Prediction {
         let mesh = self.mesh(&[]);
@@ -151,8 +167,7 @@ impl<'a> Product<'a> {
         let moments = moments.graded(all.grade());
         let channel = Channel::transmittance(depth, self.log_unit, moments, all.tails());
         let channel = Channel { losses: Some(all.losses), ..channel };
-        let length = mesh.support().length();
-        let stable_share = (length > 0.0).then(|| (all.stable / length).min(1.0));
+        let stable_share = self.stable_share(&mesh);
         let lookups = self.lookups(&mesh, &all);
         // One for each flight, the last one included, and one for each collision that a random number decides.
         let walked = lookups.mean + all.alive + all.decisions;
@@ -197,7 +212,6 @@ struct Totals {
     survival: Survival,
     decisions: Sum,
     flown: Sum,
-    stable: Sum,
     /// True if a loss is not constant in a panel.
     varies: bool,
 }
@@ -227,12 +241,6 @@ impl Totals {
         let open: Vec<f64> = open.map(|(f, o)| if o.survival < 1.0 { *f } else { 0.0 }).collect();
         self.decisions.add(mesh.integral(panel, &open));
         self.flown.add(mesh.integral(panel, &nodes.sampling));
-        let introduced = over(&|o| o.mean_loss(2));
-        let bounded = introduced.iter().zip(panel.extinction);
-        let stable: Vec<f64> = bounded
-            .map(|(&w, &sigma)| f64::from(u8::from(w + killing <= 2.0 * sigma * (1.0 + 1e-12))))
-            .collect();
-        self.stable.add(mesh.integral(panel, &stable));
     }
 
     fn read(&self) -> Integrals {
@@ -244,7 +252,6 @@ impl Totals {
             decisions: self.decisions.value(),
             flown: self.flown.value(),
             alive: self.survival.alive(),
-            stable: self.stable.value(),
             is_stepwise: !self.varies,
         }
     }
