@@ -9,7 +9,7 @@ use trueflight::estimators::transmittance::ratio::Ratio;
 use trueflight::estimators::{Draw, Estimator, Inputs, Kernel, Refusal, Request, Setup, walks};
 use trueflight::problems::Transmittance;
 use trueflight::theory::collisions::rules::Weight;
-use trueflight::theory::{CountLaw, Moments, Prediction};
+use trueflight::theory::{CountDistribution, Moments, Prediction};
 
 /// Two rays; σ̂ is their only input.
 #[derive(Debug, Clone)]
@@ -33,7 +33,7 @@ impl Estimator<Transmittance> for TwoRays {
             Moments { relative, ..of_one }
         });
         channel.losses = None;
-        let lookups = one.lookups.take().map(|law| CountLaw::poisson(2.0 * law.mean));
+        let lookups = one.lookups.take().map(|law| CountDistribution::poisson(2.0 * law.mean));
         Prediction { channels: vec![channel], lookups, ..Prediction::default() }
     }
 

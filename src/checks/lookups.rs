@@ -13,7 +13,7 @@ use super::check::{Question, Subject};
 use super::scalar::{Scalar, variance};
 use estimators::DrawBuffer;
 use gate::session::Quantity;
-use theory::CountLaw;
+use theory::CountDistribution;
 
 /// Returns the questions of this check.
 pub fn questions(subject: &Subject) -> Vec<Question> {
@@ -21,7 +21,7 @@ pub fn questions(subject: &Subject) -> Vec<Question> {
     let mean = law.mean;
     let what = "the number of lookups";
     let question = if law.variance > 0.0 {
-        let error = CountLaw::ERROR.max(law.error);
+        let error = CountDistribution::ERROR.max(law.error);
         let ground = variance(law.variance / (mean * mean), error);
         let lookups = Quantity::lookups(ground, error).within(subject.tolerance.lookups);
         let observe = move |counts: &[u32], y: &mut Vec<f64>| {

@@ -12,7 +12,7 @@ use crate::case::catalogue::Catalogue;
 use crate::case::id::EstimatorName;
 use crate::case::sweep::{SweepAxis, Variation, What};
 use crate::checks;
-use ::theory::{CountLaw, Distribution, Prediction};
+use ::theory::{CountDistribution, Distribution, Prediction};
 use gate::Check;
 use numeric::digits::{number, short};
 
@@ -219,7 +219,7 @@ fn claims(case: &Case, prediction: &Prediction, rounding: f64) -> Vec<(String, C
             lookups: lookups.filter(|law| law.mean > 0.0).map(|law| Lookups {
                 mean: law.mean,
                 variance: Some(law.variance),
-                error: CountLaw::ERROR.max(law.error),
+                error: CountDistribution::ERROR.max(law.error),
             }),
             rounding: checks::rounding(lookups.map_or(0.0, |law| law.mean)).max(rounding),
             flights,

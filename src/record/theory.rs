@@ -7,7 +7,7 @@ use crate::record::{ChannelRecord, Course, ExperimentRecord, Score, Verdict};
 use estimators::Refusal;
 use gate::stats::Tally;
 use theory::prediction::CERTAIN;
-use theory::{Channel, CountLaw, Prediction};
+use theory::{Channel, CountDistribution, Prediction};
 
 /// Maximum number of probabilities in the record; a longer list is left out.
 const MAX_DISTRIBUTION: usize = 100;
@@ -47,8 +47,10 @@ pub fn predicted(case: &PlannedCase, planned: &Planned) -> ExperimentRecord {
         setup_lookups: Some(prediction.setup_lookups),
         stable_share: prediction.stable_share,
         lookups_variance: law.map(|law| law.variance),
-        lookups_error: finite(law.map(|law| law.error.max(CountLaw::ERROR))),
-        lookups_moments_error: finite(law.map(|law| law.moments_error.max(CountLaw::ERROR))),
+        lookups_error: finite(law.map(|law| law.error.max(CountDistribution::ERROR))),
+        lookups_moments_error: finite(
+            law.map(|law| law.moments_error.max(CountDistribution::ERROR)),
+        ),
         walk_lookups: law.zip(shadow_lookups).map(|(law, shadow)| law.mean - shadow),
         shadow_lookups,
         lookups_pmf: pmf.unwrap_or_default(),

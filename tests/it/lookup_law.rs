@@ -5,9 +5,9 @@ use trueflight::media::{Control, Piecewise};
 use trueflight::theory::collisions::Rule;
 use trueflight::theory::collisions::rules::{Null, Single, Weight};
 use trueflight::theory::ray::product::Product;
-use trueflight::theory::{CountLaw, Mesh};
+use trueflight::theory::{CountDistribution, Mesh};
 
-fn law(medium: &str, sampling: f64, killing: f64, rule: &dyn Rule) -> CountLaw {
+fn law(medium: &str, sampling: f64, killing: f64, rule: &dyn Rule) -> CountDistribution {
     let mesh = Mesh::new(crate::common::medium(medium));
     let sampling = Piecewise::constant(sampling, mesh.support());
     let product = Product { killing, ..Product::new(&mesh, &sampling, &Control::None, rule) };
@@ -30,7 +30,7 @@ const STEPS: &str = "medium.piecewise-constant = { breaks = [0, 2, 3, 6, 6.5, 10
                      values = [0.1, 1, 0.4, 0, 0.25] }\nspan = [0, 10]";
 
 /// Lists differences beyond 1e-13 of the largest probability; the tail must be negligible.
-fn compare(what: &str, law: &CountLaw, exact: impl Fn(u32) -> f64) -> Vec<String> {
+fn compare(what: &str, law: &CountDistribution, exact: impl Fn(u32) -> f64) -> Vec<String> {
     let most = law.pmf.iter().fold(0.0f64, |most, &p| most.max(p));
     let found = (0..).zip(&law.pmf).filter_map(|(m, &p)| {
         let expected = exact(m);
@@ -129,8 +129,8 @@ fn every_law_sums_to_one_and_has_the_mean_and_the_variance_of_the_integrals() {
 
 #[test]
 fn a_certain_number_has_one_probability() {
-    assert_eq!(CountLaw::always(0.0).pmf, [1.0]);
-    assert_eq!(CountLaw::always(3.0).pmf, [0.0, 0.0, 0.0, 1.0]);
-    assert_eq!(CountLaw::poisson(0.0).pmf, [1.0]);
-    assert!(CountLaw::poisson(2001.0).pmf.is_empty());
+    assert_eq!(CountDistribution::always(0.0).pmf, [1.0]);
+    assert_eq!(CountDistribution::always(3.0).pmf, [0.0, 0.0, 0.0, 1.0]);
+    assert_eq!(CountDistribution::poisson(0.0).pmf, [1.0]);
+    assert!(CountDistribution::poisson(2001.0).pmf.is_empty());
 }

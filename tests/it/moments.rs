@@ -292,7 +292,7 @@ fn variance_is_bounded_on_the_share_of_a_ray_on_which_sampling_is_at_least_half_
     ));
     let differences = rows.iter().zip(samplings).filter_map(|(row, sampling)| {
         let share = row.experiment.stable_share.expect("a share");
-        differs(&row.experiment.label, share, (0.5 * sampling).min(1.0), 1e-11)
+        differs(&row.experiment.label, share, f64::min(0.5 * sampling, 1.0), 1e-11)
     });
     none(&differences.collect::<Vec<_>>());
 }

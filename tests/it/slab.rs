@@ -174,7 +174,7 @@ fn adding_and_doubling_resolves_second_moments_like_truths_where_it_is_asked_to(
         let (rule, _, sampling, thickness) = walk(reference);
         for (cosine, expected) in [(0.5, &reference.value[..2]), (1.0, &reference.value[2..])] {
             let (ratio, albedo) = (1.0 / sampling, reference.params.a);
-            let odds = rule.odds(ratio, albedo);
+            let odds = rule.probabilities(ratio, albedo);
             let slice = odds.kernel(thickness * sampling, [1.0 - ratio, albedo * ratio], 2);
             let (light, phase) = (Light::Collimated(cosine), Phase::Isotropic(Isotropic));
             let answer = solve(&phase, &[light], &[slice], Resolution::FINE).expect("finite")[0];

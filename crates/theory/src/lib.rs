@@ -32,7 +32,7 @@ pub mod space;
 
 pub use collisions::kernel::Kernel;
 pub use collisions::particle::ParticleRule;
-pub use prediction::count::CountLaw;
+pub use prediction::count::CountDistribution;
 pub use prediction::moments::Moments;
 pub use prediction::{Channel, Distribution, Increment, Prediction, Tails};
 pub use ray::mesh::Mesh;

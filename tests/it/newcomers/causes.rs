@@ -20,7 +20,7 @@ use trueflight::self_test::mutation::{self, Walk};
 /// Smallest share of the known bugs of a kind that their line names.
 const SHARE: f64 = 0.9;
 /// Maximum number of causes in a line.
-const MOST: usize = 4;
+const MAX_CAUSES: usize = 4;
 
 type Flag = (char, fn(&mut Pattern) -> &mut bool);
 
@@ -104,7 +104,7 @@ fn the_causes_that_are_listed_explain_the_known_bugs() {
     let share = right as f64 / all as f64;
     assert!(share >= SHARE, "{right} of {all}");
     for line in TABLE {
-        assert!(!line.causes.is_empty() && line.causes.len() <= MOST, "{}", line.pattern);
+        assert!(!line.causes.is_empty() && line.causes.len() <= MAX_CAUSES, "{}", line.pattern);
         // Each line by itself is right for more than half, too.
         let [bugs, found] = counts[line.pattern];
         assert!(2 * found >= bugs, "{}: {found} of {bugs}", line.pattern);

@@ -11,7 +11,7 @@ use media::sampling::BothWays;
 use numeric::rng::Random;
 use numeric::{Lane, Mask};
 use theory::problems::BidirectionalRod;
-use theory::problems::bidirectional_rod::{HIGHEST_ORDER, MOST, Sensor};
+use theory::problems::bidirectional_rod::{HIGHEST_ORDER, MAX_CHANNELS, Sensor};
 
 /// The side from which a subpath begins.
 #[derive(Clone, Copy, PartialEq)]
@@ -63,7 +63,7 @@ pub struct Tracker<'a, L: Lane, C: BothWays<L>, F> {
     /// The path that is built from them.
     pub path: Path<L>,
     /// The values of channels so far.
-    pub values: [L; MOST],
+    pub values: [L; MAX_CHANNELS],
 }
 
 impl<'a, L: Lane, C: BothWays<L>, F: Field<L>> Tracker<'a, L, C, F> {
@@ -80,7 +80,7 @@ impl<'a, L: Lane, C: BothWays<L>, F: Field<L>> Tracker<'a, L, C, F> {
             left: [none; HIGHEST_ORDER + 1],
         };
         let path = Path::new(zero.each(1.0), setup.problem.albedo);
-        let (subpaths, values) = ([subpath; 2], [zero; MOST]);
+        let (subpaths, values) = ([subpath; 2], [zero; MAX_CHANNELS]);
         Self { setup, field, ends, lookups: zero, subpaths, path, values }
     }
 

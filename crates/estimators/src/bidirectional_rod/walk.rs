@@ -18,7 +18,7 @@ use numeric::fused::{Loop, in_own_rounding};
 use numeric::pair::PAIR_WIDTH;
 use numeric::rng::{Random, Stream};
 use numeric::{Lane, Mask, ScalarLane, Span};
-use theory::problems::bidirectional_rod::{HIGHEST_ORDER, MOST, Sensor, Values};
+use theory::problems::bidirectional_rod::{HIGHEST_ORDER, MAX_CHANNELS, Sensor, Values};
 use theory::problems::{BidirectionalRod, Problem};
 use theory::rod::bidirectional::{Combination, quotient};
 
@@ -188,7 +188,7 @@ fn through<L: ScalarLane, C: BothWays<L>>(
     random: &mut Stream,
 ) -> Draw<Values> {
     let count = draw_each(steps, &mut tracker, true, random);
-    let mut values = Values { at: [0.0; MOST], count };
+    let mut values = Values { at: [0.0; MAX_CHANNELS], count };
     for (value, drawn) in values.at[..count].iter_mut().zip(tracker.values) {
         *value = drawn.double();
     }

@@ -101,8 +101,8 @@ impl<L: Lane> Densities<L> {
                 &self.weights,
             );
         }
-        let odds = ParticleRule::Analog.odds(own, albedo);
-        [odds.transmit, odds.scatter, own]
+        let probabilities = ParticleRule::Analog.probabilities(own, albedo);
+        [probabilities.transmit, probabilities.scatter, own]
     }
 
     /// Multiplies by the factors of events; scattered lanes turn by `cosine`. Densities stay relative to those of

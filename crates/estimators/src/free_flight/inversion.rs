@@ -19,7 +19,7 @@ use crate::{Draw, Estimator, Inputs, Kernel, Refusal, Request, Setup, walks};
 use numeric::rng::exponential;
 use theory::problems::{FreeFlight, Problem};
 use theory::ray::free_flight;
-use theory::{CountLaw, Prediction};
+use theory::{CountDistribution, Prediction};
 
 /// Inversion; it has no settings.
 #[derive(Debug, Clone)]
@@ -38,7 +38,7 @@ impl Estimator<FreeFlight> for Inversion {
     }
 
     fn predict(&self, setup: &Setup<FreeFlight>) -> Prediction {
-        free_flight::predict(&setup.fields.mesh, CountLaw::always(0.0))
+        free_flight::predict(&setup.fields.mesh, CountDistribution::always(0.0))
     }
 
     #[inline(always)]

@@ -8,7 +8,7 @@ use crate::{Draw, Refusal, Setup, estimators};
 use numeric::Lane;
 use numeric::geometry::Point;
 use numeric::rng::Random;
-use theory::problems::infinite_medium::{MOST_RADII, Values};
+use theory::problems::infinite_medium::{MAX_RADII, Values};
 use theory::problems::{InfiniteMedium, Scene};
 use theory::space::predict;
 use theory::{ParticleRule, Prediction};
@@ -19,8 +19,8 @@ const MAX_COLLISIONS: f64 = 1e5;
 /// The probability that a tentative collision ends the walk, if it is equal for all of them.
 fn end(setup: &Setup<InfiniteMedium>, particle: &Particle) -> Option<f64> {
     let plain = *particle == Particle::of(particle.rule);
-    let odds = particle.rule.odds(ratio(setup)?, setup.problem.albedo());
-    plain.then_some(1.0 - odds.transmit - odds.scatter)
+    let probabilities = particle.rule.probabilities(ratio(setup)?, setup.problem.albedo());
+    plain.then_some(1.0 - probabilities.transmit - probabilities.scatter)
 }
 
 /// `r`, if it is constant.
@@ -80,7 +80,7 @@ impl Walked for InfiniteMedium {
 }
 
 /// Maximum number of sums of a draw.
-const SUMS: usize = MOST_RADII + 2;
+const SUMS: usize = MAX_RADII + 2;
 
 /// Collisions within each radius, then the squared distance and the collisions.
 pub struct Within<'a>(&'a InfiniteMedium);
@@ -101,7 +101,7 @@ impl Tally for Within<'_> {
     #[inline(always)]
     fn value<L: Lane>(&self, sums: &[L; SUMS], channel: usize) -> L {
         let radii = self.0.radii.len();
-        L::one_of(sums, if channel < radii { channel } else { MOST_RADII + channel - radii })
+        L::one_of(sums, if channel < radii { channel } else { MAX_RADII + channel - radii })
     }
 
     #[inline(always)]
@@ -119,13 +119,13 @@ impl Tally for Within<'_> {
         let [x, y, z] = at.place;
         let square = x * x + y * y + z * z;
         // A constant number of steps, so that the compiler resolves the indices: a variable index needs memory.
-        for (number, sum) in sums.iter_mut().enumerate().take(MOST_RADII) {
+        for (number, sum) in sums.iter_mut().enumerate().take(MAX_RADII) {
             if let Some(radius) = self.0.radii.get(number) {
                 sum.add_where(at.inside & square.below(square.each(radius * radius)), real);
             }
         }
-        sums[MOST_RADII].add_where(at.inside, real * at.albedo.one_minus() * square);
-        sums[MOST_RADII + 1].add_where(at.inside, real);
+        sums[MAX_RADII].add_where(at.inside, real * at.albedo.one_minus() * square);
+        sums[MAX_RADII + 1].add_where(at.inside, real);
     }
 }
 

@@ -173,8 +173,8 @@ impl<S: WalkEvents> ToEmitter<'_, S> {
             let weight = L::select(path.unscattered, unscattered, self.steps.hit(path.ratio));
             path.score.add_where(hits, weight);
         }
-        let odds = ParticleRule::Analog.odds(real, albedo);
-        let (scattered, null) = odds.decide_each(walks & inside, number);
+        let probabilities = ParticleRule::Analog.probabilities(real, albedo);
+        let (scattered, null) = probabilities.decide_each(walks & inside, number);
         if self.steps.techniques().has_nulls() {
             let after_null = self.steps.after_null(path.ratio, real.one_minus());
             path.ratio.set_where(null & !path.unscattered, after_null);

@@ -146,8 +146,8 @@ impl<S: WalkEvents, D: Directions> Walk for ToLight<'_, S, D> {
         let (TentativeCollision { inside, t, number, .. }, real) = (*met, met.ratio());
         let (casts, seeks) = (path.shadow.casts, path.seeks);
         let albedo = t.each(self.slab.albedo);
-        let odds = ParticleRule::Analog.odds(real, albedo);
-        let (scattered, null) = odds.decide_each(inside & !casts & !seeks, number);
+        let probabilities = ParticleRule::Analog.probabilities(real, albedo);
+        let (scattered, null) = probabilities.decide_each(inside & !casts & !seeks, number);
         let hits = seeks & !inside;
         if hits.any() {
             path.score.add_where(hits, self.steps.hit(path.ratio));

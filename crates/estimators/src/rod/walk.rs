@@ -3,7 +3,7 @@
 //! ```text
 //! begin    at the front, forward;  w = 1
 //! fly      on or back through an optical depth −ln u of σ̂;  beyond an end it has left
-//! collide  r = σ_t/σ̂;  as the odds of the rule and u say:
+//! collide  r = σ_t/σ̂;  as the probabilities of the rule and u say:
 //!            scattered     w ← w · a r/q_s;  turns round with probability 1 − p_f
 //!            straight on   w ← w · (1 − r)/q_t
 //!            absorbed      the end
@@ -21,9 +21,9 @@ use media::sampling::BothWays;
 use numeric::rng::Random;
 use numeric::{Lane, Mask, kept};
 use theory::ParticleRule;
-use theory::collisions::particle::Odds;
+use theory::collisions::particle::EventProbabilities;
 use theory::problems::Rod;
-use theory::problems::rod::{MOST_PARTS, Quantity};
+use theory::problems::rod::{MAX_PARTS, Quantity};
 
 kept! {
     /// Particles on their way.
@@ -37,7 +37,7 @@ kept! {
         /// `Σ w r (1 − a)`.
         pub absorbed: L,
         /// `Σ w/(σ̂ width)` in each part of the rod.
-        pub flux: [L; MOST_PARTS],
+        pub flux: [L; MAX_PARTS],
     }
 }
 
@@ -57,7 +57,7 @@ impl<S: WalkEvents> Walk for InRod<'_, S> {
     fn begin<L: Lane>(&self, one: L, all: L::Mask, _: &mut impl Random<L>) -> Particle<L> {
         let zero = one.each(0.0);
         let is_forward = all | !all;
-        Particle { is_forward, weight: one, order: zero, absorbed: zero, flux: [zero; MOST_PARTS] }
+        Particle { is_forward, weight: one, order: zero, absorbed: zero, flux: [zero; MAX_PARTS] }
     }
 
     #[inline(always)]
@@ -81,16 +81,16 @@ impl<S: WalkEvents> Walk for InRod<'_, S> {
         let (TentativeCollision { inside, t, number, .. }, ratio) = (*met, met.ratio());
         let albedo = self.rod.albedo.value(t);
         self.score(particle, met, albedo);
-        let odds = self.steps.odds(ratio, albedo);
-        let (scattered, straight_on) = odds.decide_each(inside, number);
+        let probabilities = self.steps.probabilities(ratio, albedo);
+        let (scattered, straight_on) = probabilities.decide_each(inside, number);
         if scattered.maybe() {
-            particle.weight.scale_where(scattered, odds.scatter_weight);
+            particle.weight.scale_where(scattered, probabilities.scatter_weight);
             particle.order.count_where(scattered);
             let forward = self.rod.forward.value(t);
             particle.is_forward ^= self.steps.turns(scattered, forward, number, rng);
         }
         if straight_on.maybe() {
-            particle.weight.scale_where(straight_on, odds.transmit_weight);
+            particle.weight.scale_where(straight_on, probabilities.transmit_weight);
         }
         self.steps.survive(scattered | straight_on, &mut particle.weight, rng)
     }
@@ -135,8 +135,8 @@ impl<S> InRod<'_, S> {
 
 /// Events of a walk, each of which a known bug may replace.
 pub trait WalkEvents: Copy {
-    /// The odds at collisions with the given ratio `σ_t/σ̂` and albedo.
-    fn odds<L: Lane>(&self, ratio: L, albedo: L) -> Odds<L>;
+    /// The probabilities at collisions with the given ratio `σ_t/σ̂` and albedo.
+    fn probabilities<L: Lane>(&self, ratio: L, albedo: L) -> EventProbabilities<L>;
 
     /// Lanes of `scattered` that turn round, given the share that goes on forward; `decided` is the number that
     /// decided the collision.
@@ -172,8 +172,8 @@ pub struct By {
 
 impl WalkEvents for By {
     #[inline(always)]
-    fn odds<L: Lane>(&self, ratio: L, albedo: L) -> Odds<L> {
-        self.rule.odds(ratio, albedo)
+    fn probabilities<L: Lane>(&self, ratio: L, albedo: L) -> EventProbabilities<L> {
+        self.rule.probabilities(ratio, albedo)
     }
 
     #[inline(always)]

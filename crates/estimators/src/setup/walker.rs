@@ -133,8 +133,12 @@ impl Walker {
                 weights,
             )
         } else {
-            let odds = ParticleRule::Analog.odds(ratios[hero], albedos[hero]);
-            [odds.transmit, odds.scatter, 1.0 - odds.scatter - odds.transmit]
+            let probabilities = ParticleRule::Analog.probabilities(ratios[hero], albedos[hero]);
+            [
+                probabilities.transmit,
+                probabilities.scatter,
+                1.0 - probabilities.scatter - probabilities.transmit,
+            ]
         };
         EventChances { scattered, null, absorbed }
     }

@@ -23,7 +23,7 @@ use theory::light::Heuristic;
 use theory::problems::{Problem, SingleScattering};
 use theory::single::predict::DENSITY;
 use theory::single::{
-    Camera, CameraTracking, Collisions, Mis, Node, NullPaths, Points, Scene, Tracking,
+    Camera, CameraTracking, Collisions, Mis, Node, NullPaths, Scene, TechniqueMoments, Tracking,
     walks as along,
 };
 
@@ -39,7 +39,7 @@ pub struct Plan {
 /// Choice of scattering points.
 #[derive(Debug, Clone, Copy)]
 pub enum Technique {
-    /// Points that are chosen one after the other.
+    /// TechniqueMoments that are chosen one after the other.
     Vertices(Vertices),
     /// All interaction points of a walk.
     Interactions,
@@ -207,7 +207,7 @@ impl Vertices {
     }
 
     /// The moments of points from the light, from the main part, or from both.
-    fn points(self, setup: &Setup<SingleScattering>, shadow: Tracking) -> Points {
+    fn points(self, setup: &Setup<SingleScattering>, shadow: Tracking) -> TechniqueMoments {
         let main = if self.main { MainPart::of(setup) } else { None };
         let from_light = |node: &Node| setup.problem.equiangular_density_beyond(node.along);
         let from_main = |node: &Node| main.map_or(0.0, |main| main.density(node.s));
@@ -225,7 +225,7 @@ impl Vertices {
                 found: None,
                 weighted: None,
             };
-            Points::of(&scene, &technique)
+            TechniqueMoments::of(&scene, &technique)
         };
         match (self.light, self.main) {
             (true, true) => of(&from_light).plus(&of(&from_main)),
@@ -240,7 +240,7 @@ pub fn at_collisions(
     setup: &Setup<SingleScattering>,
     absorption: Absorption,
     shadow: Tracking,
-) -> Points {
+) -> TechniqueMoments {
     let collisions = absorption.collisions(setup);
     let technique = theory::single::Technique {
         density: &|node| collisions.density(node),
@@ -250,7 +250,7 @@ pub fn at_collisions(
         weighted: None,
     };
     let knots = setup.fields.sampling.knots().to_vec();
-    Points::of(&scene(setup, (CameraTracking::Exact, shadow), knots), &technique)
+    TechniqueMoments::of(&scene(setup, (CameraTracking::Exact, shadow), knots), &technique)
 }
 
 /// The setup for theory, with more kinks of the integrand.

@@ -3,7 +3,7 @@
 //! ```text
 //! begin    at the top;  μ that of the light, √u where it is diffuse;  w = 1
 //! fly      −ln u |μ| deep through σ̂(z), down for μ > 0;  beyond a boundary it has left
-//! collide  r = σ_t/σ̂;  as the odds of the rule and u say:
+//! collide  r = σ_t/σ̂;  as the probabilities of the rule and u say:
 //!            scattered     w ← w · a r/q_s;  by an angle θ at an azimuth φ:  μ ← μ cos θ + √(1 − μ²) sin θ cos φ
 //!            straight on   w ← w · (1 − r)/q_t
 //!            absorbed      the end
@@ -23,7 +23,7 @@ use media::sampling::BothWays;
 use numeric::rng::Random;
 use numeric::{Lane, Mask, kept};
 use theory::ParticleRule;
-use theory::collisions::particle::Odds;
+use theory::collisions::particle::EventProbabilities;
 use theory::problems::Slab;
 use theory::problems::slab::{Incidence, Light};
 
@@ -77,8 +77,8 @@ impl<S: WalkEvents> Walk for InSlab<'_, S> {
         rng: &mut impl Random<L>,
     ) -> L::Mask {
         let (TentativeCollision { inside, number, .. }, ratio) = (*met, met.ratio());
-        let odds = self.steps.odds(ratio, ratio.each(self.albedo));
-        let (scattered, straight_on) = odds.decide_each(inside, number);
+        let probabilities = self.steps.probabilities(ratio, ratio.each(self.albedo));
+        let (scattered, straight_on) = probabilities.decide_each(inside, number);
         if scattered.maybe() {
             let phase = &self.incidence.phase;
             let mut cosine = self.steps.deflection(phase, rng.uniform_where(scattered));
@@ -89,7 +89,8 @@ impl<S: WalkEvents> Walk for InSlab<'_, S> {
             particle.cosine.set_where(scattered, cosine);
         }
         let goes_on = scattered | straight_on;
-        let factor = L::select(scattered, odds.scatter_weight, odds.transmit_weight);
+        let factor =
+            L::select(scattered, probabilities.scatter_weight, probabilities.transmit_weight);
         particle.weight.scale_where(goes_on, factor);
         goes_on
     }
@@ -138,8 +139,8 @@ pub fn turned<L: Lane>(cosine: L, deflection: L, azimuth: L) -> L {
 
 /// Events of a walk, each of which a known bug may replace.
 pub trait WalkEvents: Copy {
-    /// The odds at collisions with the given ratio `σ_t/σ̂` and albedo.
-    fn odds<L: Lane>(&self, ratio: L, albedo: L) -> Odds<L>;
+    /// The probabilities at collisions with the given ratio `σ_t/σ̂` and albedo.
+    fn probabilities<L: Lane>(&self, ratio: L, albedo: L) -> EventProbabilities<L>;
 
     /// The depth of flights, in optical depth, of the given length along a direction.
     #[inline(always)]
@@ -162,8 +163,8 @@ pub trait WalkEvents: Copy {
 
 impl WalkEvents for ParticleRule {
     #[inline(always)]
-    fn odds<L: Lane>(&self, ratio: L, albedo: L) -> Odds<L> {
-        ParticleRule::odds(*self, ratio, albedo)
+    fn probabilities<L: Lane>(&self, ratio: L, albedo: L) -> EventProbabilities<L> {
+        ParticleRule::probabilities(*self, ratio, albedo)
     }
 }
 

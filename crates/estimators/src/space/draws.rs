@@ -4,9 +4,9 @@ use std::marker::PhantomData;
 
 use fearless_simd::Level;
 
+use super::events::WalkEvents;
 use super::particle::{Particle, Splitting};
 use super::splitting;
-use super::steps::WalkEvents;
 use super::tally::Tally;
 use super::walk::InSpace;
 use crate::walks::{self, plain};

@@ -1,11 +1,11 @@
 //! Walks of particles through volumes: common parts of all problems in space.
 
 pub mod draws;
+mod events;
 pub mod particle;
 pub mod segment;
 pub mod shadow;
 mod splitting;
-mod steps;
 pub mod tally;
 pub mod walk;
 mod walker;
@@ -15,9 +15,9 @@ use media::Majorants;
 use theory::problems::Scene;
 use theory::space::Walks;
 
+pub use events::WalkEvents;
 pub use numeric::geometry::exit;
 pub use particle::{Particle, Splitting};
-pub use steps::WalkEvents;
 pub use tally::Tally;
 pub use walker::{Splitter, Walked, Walker, draw};
 

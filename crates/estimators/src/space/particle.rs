@@ -1,13 +1,13 @@
 //! The settings of a particle: its rule, roulette and splitting.
 
-use super::steps::WalkEvents;
+use super::events::WalkEvents;
 use crate::rod;
 use crate::rod::walk::WalkEvents as _;
 use media::catalogue::{Domain, Settings};
 use numeric::Lane;
 use numeric::rng::Random;
 use theory::ParticleRule;
-use theory::collisions::particle::Odds;
+use theory::collisions::particle::EventProbabilities;
 
 /// The collisions after which both the scattered particle and the one that goes straight on are followed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -106,8 +106,8 @@ impl Particle {
 
 impl WalkEvents for Particle {
     #[inline(always)]
-    fn odds<L: Lane>(&self, ratio: L, albedo: L) -> Odds<L> {
-        self.rule.odds(ratio, albedo)
+    fn probabilities<L: Lane>(&self, ratio: L, albedo: L) -> EventProbabilities<L> {
+        self.rule.probabilities(ratio, albedo)
     }
 
     #[inline(always)]

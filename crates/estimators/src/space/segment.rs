@@ -82,8 +82,8 @@ impl Tracker<'_> {
             on &= flown.inside & flights.t.below(distance);
             segment.lookups.count_where(on);
             segment.transmittance.scale_where(on, ratio.one_minus());
-            let odds = rule.odds(ratio, self.albedo(flown.place, on));
-            segment.chance.scale_where(on, odds.transmit);
+            let probabilities = rule.probabilities(ratio, self.albedo(flown.place, on));
+            segment.chance.scale_where(on, probabilities.transmit);
         }
         segment
     }

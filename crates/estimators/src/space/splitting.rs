@@ -3,8 +3,8 @@
 //! At a collision that splits both the scattered particle and the transmitted one are followed, the scattered one
 //! later. The draw is the sum of their scores.
 
+use super::events::WalkEvents;
 use super::particle::Splitting;
-use super::steps::WalkEvents;
 use super::tally::Tally;
 use super::walk::InSpace;
 use crate::Draw;

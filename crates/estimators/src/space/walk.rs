@@ -3,7 +3,7 @@
 //! ```text
 //! begin    at the place of the tally;  w = 1
 //! fly      through an optical depth −ln u of σ̂;  beyond the bounds the particle has left
-//! collide  r = σ_t/σ̂;  by the odds of the rule and u:
+//! collide  r = σ_t/σ̂;  by the probabilities of the rule and u:
 //!            scattered     w ← w · a r/q_s;  it turns later by an angle θ at an azimuth φ
 //!            straight on   w ← w · (1 − r)/q_t
 //!            absorbed      the end
@@ -18,8 +18,8 @@
 //! Shadow rays and new directions cost more than a step. A lane that needs one stands still until several lanes of
 //! a pack do; meanwhile, the others go on.
 
+use super::events::WalkEvents;
 use super::shadow::{ShadowRays, Shadows};
-use super::steps::WalkEvents;
 use super::tally::{Collision, Departure, Scattering, Tally};
 use crate::walks::{Route, TentativeCollision, Walk};
 use media::sampling::BothWays;
@@ -180,16 +180,17 @@ impl<'a, T: Tally, S: WalkEvents> InSpace<'a, T, S> {
     ) -> L::Mask {
         let Collision { inside, place, weight, ratio, albedo } = *at;
         let (zero, one, walks) = (weight.each(0.0), weight.each(1.0), state.ended);
-        let odds = self.steps.odds(ratio, albedo);
+        let probabilities = self.steps.probabilities(ratio, albedo);
         // A number is taken only where more than one event is possible.
-        let surely_on = odds.scatter.at_most(zero) & one.at_most(odds.transmit);
-        let surely_scattered = !surely_on & one.at_most(odds.scatter);
+        let surely_on = probabilities.scatter.at_most(zero) & one.at_most(probabilities.transmit);
+        let surely_scattered = !surely_on & one.at_most(probabilities.scatter);
         let by_chance = inside & !surely_on & !surely_scattered;
         let number = self.steps.number(by_chance, depth, random);
-        let (is_scattered, is_passed) = odds.decide_each(by_chance, number);
+        let (is_scattered, is_passed) = probabilities.decide_each(by_chance, number);
         let is_scattered = is_scattered | (inside & surely_scattered);
         let goes_on = is_scattered | is_passed | (inside & surely_on);
-        let factor = L::select(is_scattered, odds.scatter_weight, odds.transmit_weight);
+        let factor =
+            L::select(is_scattered, probabilities.scatter_weight, probabilities.transmit_weight);
         state.path.weight.scale_where(goes_on, factor);
         let goes_on = self.steps.survive(goes_on, &mut state.path.weight, random);
         state.ended = walks & !goes_on;

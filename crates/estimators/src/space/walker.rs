@@ -1,6 +1,6 @@
 //! The estimators of problems in space: particles that walk by a rule, and particles that split.
 
-use super::steps::WalkEvents;
+use super::events::WalkEvents;
 use super::{Particle, Tally, draws};
 use crate::setup::Space;
 use crate::{Draw, Estimated, Estimator, Inputs, Kernel, Refusal, Request, Setup, walks};

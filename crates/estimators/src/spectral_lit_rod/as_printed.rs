@@ -22,8 +22,8 @@
 //! Source: B. Miller, I. Georgiev, W. Jarosz, *A null-scattering path integral formulation of light
 //! transport*, ACM Transactions on Graphics 38 (2019), Algorithms 1 and 2.
 
+use super::events::{Technique, WalkEvents};
 use super::pages;
-use super::steps::{Found, WalkEvents};
 use crate::Estimator;
 use crate::setup::heroes::Heroes;
 use crate::walks::hero::{LastPiece, Weighing};
@@ -81,15 +81,15 @@ impl WalkEvents for AsPrinted {
     }
 
     #[inline(always)]
-    fn weighing(&self, found: Found) -> Weighing {
+    fn weighing(&self, found: Technique) -> Weighing {
         let right = Weighing::RIGHT;
-        if found == Found::Connected {
+        if found == Technique::Connected {
             let is_early = self.has(Error::LastPiece);
             let last_piece = if is_early { LastPiece::Nowhere } else { LastPiece::Everywhere };
             let share = if self.has(Error::Average) { 0.5 } else { 1.0 };
             Weighing { last_piece, share, ..right }
         } else {
-            let has_next_event = found == Found::Hit && !self.has(Error::HitsAlone);
+            let has_next_event = found == Technique::Hit && !self.has(Error::HitsAlone);
             Weighing { has_next_event, ..right }
         }
     }

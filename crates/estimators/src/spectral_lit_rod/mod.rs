@@ -1,12 +1,12 @@
 //! Estimators of the light of an emitter at the end of a chromatic rod, all channels by one draw.
 
 pub mod as_printed;
+pub mod events;
 pub mod independent;
 pub mod next_event_mis;
 pub mod page;
 pub mod spectral_mis;
 pub mod spectral_tracking;
-pub mod steps;
 pub mod walk;
 
 use crate::setup::channels;
@@ -76,7 +76,7 @@ impl<'a> Albedos<'a> {
     }
 }
 
-/// Implements the trait of estimators for a page that implements [`steps::WalkEvents`], given the distribution of the
+/// Implements the trait of estimators for a page that implements [`events::WalkEvents`], given the distribution of the
 /// hero and theory's tracker.
 macro_rules! pages {
     ($this:ident => $heroes:expr, $tracker:expr) => {

@@ -1,7 +1,7 @@
 //! The page of the balance heuristic over heroes, of hits alone or of hits and shadow rays.
 
+use super::events::WalkEvents;
 use super::pages;
-use super::steps::WalkEvents;
 use crate::Estimator;
 use crate::setup::heroes::Heroes;
 use media::catalogue::Settings;

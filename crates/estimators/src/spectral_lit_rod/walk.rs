@@ -25,7 +25,7 @@
 //! to those of the hero, see [`Media::common`].
 
 use super::Albedos;
-use super::steps::{Found, WalkEvents};
+use super::events::{Technique, WalkEvents};
 use crate::walks::hero::{LastPiece, Law, Media, Weighing, number_of_hero, of_hero, or_of_hero};
 use crate::walks::{self, GROUPS, Route, SOME_LEFT, Scores, TentativeCollision, Walk};
 use crate::{Draw, Setup};
@@ -52,7 +52,7 @@ pub struct ToEmitter<'a, S> {
     albedos: Albedos<'a>,
     /// The probability to keep the direction by channel and hero.
     forward: [Channels; MAX_CHANNELS],
-    /// Weightings of paths: see [`Found`].
+    /// Weightings of paths: see [`Technique`].
     weighings: [Weighing; 3],
     casts: bool,
 }
@@ -97,7 +97,7 @@ impl<'a, S: WalkEvents> ToEmitter<'a, S> {
             mean_free_paths,
             albedos,
             forward,
-            weighings: Found::ALL.map(|found| steps.weighing(found)),
+            weighings: Technique::ALL.map(|found| steps.weighing(found)),
             casts: steps.has_shadow_rays(),
         }
     }
@@ -124,7 +124,7 @@ kept! {
         /// Lanes that score in this step, and shadow rays among them, which then return to their vertices.
         scores: L::Mask,
         connected: L::Mask,
-        /// Number of the technique if the path arrives, see [`Found`].
+        /// Number of the technique if the path arrives, see [`Technique`].
         found: L,
         /// The number of each hero, its mean free path, and by channel its probability to keep the direction.
         hero: L,
@@ -272,8 +272,8 @@ impl<S: WalkEvents> Walk for ToEmitter<'_, S> {
             #[inline(always)]
             || of_hero(hero, extinctions) / one.each(first),
         );
-        let odds = ParticleRule::Analog.odds(decides, albedo);
-        let (scattered, null) = odds.decide_each(inside & !casts, number);
+        let probabilities = ParticleRule::Analog.probabilities(decides, albedo);
+        let (scattered, null) = probabilities.decide_each(inside & !casts, number);
         let passes = null | (casts & inside);
         for channel in 0..count {
             let passed = path.nulls[channel] * (one - path.real[channel]);
@@ -308,7 +308,7 @@ impl<S: WalkEvents> Walk for ToEmitter<'_, S> {
         path: &'a Particle<L>,
         some: &'a mut [L; SOME_LEFT],
     ) -> [&'a [L]; GROUPS] {
-        let found = L::select(path.connected, Found::Connected.as_lane(path.hero), path.found);
+        let found = L::select(path.connected, Technique::Connected.as_lane(path.hero), path.found);
         *some = [path.hero, path.length, path.collisions, path.last, found];
         let (all, gains) = (..self.media.count, if S::GAINS { self.media.count } else { 0 });
         [&some[..], &path.weights[all], &path.phases[all], &path.nulls[all], &path.excess[..gains]]
@@ -427,7 +427,7 @@ impl<S: WalkEvents> ToEmitter<'_, S> {
             self.turn(path, which, keeps);
         }
         path.is_forward ^= which & !keeps;
-        path.found.keep_where(which, Found::Hit.as_lane(one));
+        path.found.keep_where(which, Technique::Hit.as_lane(one));
     }
 
     /// Casts shadow rays of walks that are scattered.

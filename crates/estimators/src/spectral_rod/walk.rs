@@ -131,7 +131,7 @@ impl<'a> InBody<'a> {
         let TentativeCollision { inside, extinction, number, .. } = *met;
         if let Place::Slab(_) = self.place {
             let (scattered, passes) =
-                ParticleRule::Analog.odds(met.ratio(), chance).decide_each(inside, number);
+                ParticleRule::Analog.probabilities(met.ratio(), chance).decide_each(inside, number);
             return [scattered, passes];
         }
         let ratio = extinction / sampling;

@@ -1,11 +1,11 @@
 //! Estimators of single scattering of a point light in several channels, all of them by one draw.
 
+pub mod events;
 pub mod hero;
 pub mod independent;
 pub mod page;
 pub mod spectral_mis;
 pub mod spectral_tracking;
-pub mod steps;
 pub mod walk;
 
 use crate::setup::ControlledLine;
@@ -19,7 +19,7 @@ use ::theory::colours::rates::Proposal;
 use ::theory::problems::SpectralSingleScattering;
 use ::theory::single::spectral as theory;
 use ::theory::single::spectral::relative::Relative;
-use ::theory::single::{Points, Tracking};
+use ::theory::single::{TechniqueMoments, Tracking};
 use media::Control;
 use media::catalogue::Settings;
 use numeric::digits::rounded;
@@ -66,7 +66,7 @@ fn realisable(setup: &Setup<SpectralSingleScattering>, shadow: Shadow) -> Result
 }
 
 /// The moments of analog tracking of each channel by itself.
-fn alone(setup: &Setup<SpectralSingleScattering>, shadow: Shadow) -> Vec<Points> {
+fn alone(setup: &Setup<SpectralSingleScattering>, shadow: Shadow) -> Vec<TechniqueMoments> {
     let each = setup.fields.iter().zip(&setup.problem.channels);
     let points = each.map(|(channel, problem)| {
         let shadow = match shadow {

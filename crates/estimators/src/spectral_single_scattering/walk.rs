@@ -15,7 +15,7 @@
 //! one, the choice of the hero one. Walks are scored when all have ended, exact shadow rays included.
 
 use super::Shadow;
-use super::steps::{Right, WalkEvents};
+use super::events::{Right, WalkEvents};
 use crate::setup::walker::Walker;
 use crate::space::exit::{along, ends};
 use crate::space::shadow::ShadowRays;
@@ -153,8 +153,8 @@ impl<'a, S: WalkEvents, const ALL: bool> ToScattering<'a, S, ALL> {
             );
             return [scatters, passes];
         }
-        let odds = ParticleRule::Analog.odds(own, path.albedo);
-        [odds.scatter, odds.transmit]
+        let probabilities = ParticleRule::Analog.probabilities(own, path.albedo);
+        [probabilities.scatter, probabilities.transmit]
     }
 
     /// Multiplies the densities by the factors of events of these probabilities, and divides by the walker's.

@@ -1,12 +1,12 @@
 //! Estimators of the transmittance of a chromatic medium, all channels by one draw.
 
 pub mod common_ratio;
+pub mod events;
 pub mod hero;
 pub mod independent;
 pub mod page;
 pub mod spectral_mis;
 pub mod spectral_tracking;
-pub mod steps;
 pub mod walk;
 
 use crate::estimators;

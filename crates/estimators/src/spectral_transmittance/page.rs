@@ -1,6 +1,6 @@
 //! The page of all trackers: their settings, domain, prediction and draws.
 
-use super::steps::Right;
+use super::events::Right;
 use super::walk::{AlongRay, spectrum};
 use crate::setup::channels;
 use crate::setup::heroes::Heroes;

@@ -13,7 +13,7 @@
 //! Source: B. Miller, I. Georgiev, W. Jarosz, *A Null-Scattering Path Integral Formulation of Light
 //! Transport*, ACM Transactions on Graphics 38 (2019), section 5.1.
 
-use super::steps::WalkEvents;
+use super::events::WalkEvents;
 use crate::setup::heroes::Heroes;
 use crate::walks::hero::{Law, Media, number_of_hero, of_hero};
 use crate::walks::{self, GROUPS, Route, SOME_LEFT, Scores, TentativeCollision, Walk};

@@ -219,7 +219,7 @@ impl<B: WalkEvents, const CONNECTS: bool> Tally for Combined<'_, B, CONNECTS> {
     #[inline(always)]
     fn collided<L: Lane>(&self, found: &mut Vertices<L>, at: &Collision<L>) {
         if self.has_nulls() {
-            let chance = self.steps.chance(self.rule.odds(at.ratio, at.albedo).transmit);
+            let chance = self.steps.chance(self.rule.probabilities(at.ratio, at.albedo).transmit);
             if CONNECTS {
                 found.before.set_where(at.inside, found.chance);
             }

@@ -22,7 +22,7 @@ use numeric::geometry::Point;
 use numeric::rng::Random;
 use theory::ParticleRule;
 use theory::ParticleRule::{Adaptive, Analog, NonTerminating, Terminating, Weighted};
-use theory::collisions::particle::Odds;
+use theory::collisions::particle::EventProbabilities;
 use theory::problems::{Furnace, InfiniteMedium, Lambertian, Rod, Slab};
 
 /// `σ̂ = 1.6`, `a` from 0.9 to 0.5 and `p_f` from 0.8 to 0.3 along the rod.
@@ -192,15 +192,25 @@ impl Bug {
 struct Wrong<S>(S, Bug);
 
 impl<S> Wrong<S> {
-    fn odds<L: Lane>(&self, right: Odds<L>, albedo: L) -> Odds<L> {
-        let Odds { scatter, scatter_weight, transmit_weight, .. } = right;
+    fn probabilities<L: Lane>(
+        &self,
+        right: EventProbabilities<L>,
+        albedo: L,
+    ) -> EventProbabilities<L> {
+        let EventProbabilities { scatter, scatter_weight, transmit_weight, .. } = right;
         match self.1 {
             Bug::AlbedoTwice | Bug::AnalogAndWeighted => {
-                Odds { scatter_weight: albedo * scatter_weight, ..right }
+                EventProbabilities { scatter_weight: albedo * scatter_weight, ..right }
             }
-            Bug::AlbedoStraightOn => Odds { transmit_weight: albedo * transmit_weight, ..right },
-            Bug::SignLost => Odds { transmit_weight: transmit_weight.size(), ..right },
-            Bug::Undivided => Odds { scatter_weight: scatter * scatter_weight, ..right },
+            Bug::AlbedoStraightOn => {
+                EventProbabilities { transmit_weight: albedo * transmit_weight, ..right }
+            }
+            Bug::SignLost => {
+                EventProbabilities { transmit_weight: transmit_weight.size(), ..right }
+            }
+            Bug::Undivided => {
+                EventProbabilities { scatter_weight: scatter * scatter_weight, ..right }
+            }
             _ => right,
         }
     }
@@ -216,8 +226,8 @@ impl<S> Wrong<S> {
 }
 
 impl rod::WalkEvents for Wrong<By> {
-    fn odds<L: Lane>(&self, ratio: L, albedo: L) -> Odds<L> {
-        self.odds(rod::WalkEvents::odds(&self.0, ratio, albedo), albedo)
+    fn probabilities<L: Lane>(&self, ratio: L, albedo: L) -> EventProbabilities<L> {
+        self.probabilities(rod::WalkEvents::probabilities(&self.0, ratio, albedo), albedo)
     }
 
     fn turns<L: Lane>(
@@ -248,8 +258,8 @@ impl rod::WalkEvents for Wrong<By> {
 }
 
 impl slab::WalkEvents for Wrong<ParticleRule> {
-    fn odds<L: Lane>(&self, ratio: L, albedo: L) -> Odds<L> {
-        self.odds(slab::WalkEvents::odds(&self.0, ratio, albedo), albedo)
+    fn probabilities<L: Lane>(&self, ratio: L, albedo: L) -> EventProbabilities<L> {
+        self.probabilities(slab::WalkEvents::probabilities(&self.0, ratio, albedo), albedo)
     }
 
     fn descent<L: Lane>(&self, length: L, cosine: L) -> L {
@@ -271,8 +281,8 @@ impl slab::WalkEvents for Wrong<ParticleRule> {
 }
 
 impl space::WalkEvents for Wrong<Particle> {
-    fn odds<L: Lane>(&self, ratio: L, albedo: L) -> Odds<L> {
-        self.odds(space::WalkEvents::odds(&self.0, ratio, albedo), albedo)
+    fn probabilities<L: Lane>(&self, ratio: L, albedo: L) -> EventProbabilities<L> {
+        self.probabilities(space::WalkEvents::probabilities(&self.0, ratio, albedo), albedo)
     }
 
     fn survive<L: Lane>(

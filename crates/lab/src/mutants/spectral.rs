@@ -13,7 +13,7 @@
 use super::{Line, Mutant, On, family, on, one_by_one};
 use estimators::Setup;
 use estimators::setup::heroes::Heroes;
-use estimators::spectral_transmittance::steps::{Right, WalkEvents};
+use estimators::spectral_transmittance::events::{Right, WalkEvents};
 use estimators::spectral_transmittance::walk::AlongRay;
 use estimators::walks::hero::Law;
 use numeric::Lane;

@@ -11,7 +11,7 @@
 use super::{Draws, Line, Mutant, On, family, on, one_by_one};
 use estimators::setup::heroes::Heroes;
 use estimators::spectral_lit_rod::as_printed::{AsPrinted, Error};
-use estimators::spectral_lit_rod::steps::{Found, WalkEvents};
+use estimators::spectral_lit_rod::events::{Technique, WalkEvents};
 use estimators::spectral_lit_rod::walk::draw;
 use estimators::walks::hero::{LastPiece, Weighing};
 use numeric::Lane;
@@ -94,15 +94,15 @@ impl<const GOES_ON: bool, const GAINS: bool, const CASTS_ANEW: bool> WalkEvents
         self.casts
     }
 
-    fn weighing(&self, found: Found) -> Weighing {
-        let has_next_event = self.casts && found != Found::Unscattered;
+    fn weighing(&self, found: Technique) -> Weighing {
+        let has_next_event = self.casts && found != Technique::Unscattered;
         let right = Weighing { has_next_event, ..Weighing::RIGHT };
         match (self.bug, found) {
-            (Bug::ExitMissing, Found::Hit | Found::Unscattered) => {
+            (Bug::ExitMissing, Technique::Hit | Technique::Unscattered) => {
                 Weighing { last_piece: LastPiece::InContribution, ..right }
             }
             (Bug::Dropped, _) => Weighing { missing: 1, ..right },
-            (Bug::NullsInOne, Found::Connected) => Weighing { has_nulls: false, ..right },
+            (Bug::NullsInOne, Technique::Connected) => Weighing { has_nulls: false, ..right },
             (Bug::UnscatteredWeighted, _) => Weighing { has_next_event: true, ..right },
             _ => right,
         }

@@ -8,7 +8,7 @@ use super::{Line, Mutant, On, family, on, one_by_one};
 use estimators::setup::heroes::Heroes;
 use estimators::setup::walker::Walker;
 use estimators::spectral_single_scattering::Shadow;
-use estimators::spectral_single_scattering::steps::WalkEvents;
+use estimators::spectral_single_scattering::events::WalkEvents;
 use estimators::spectral_single_scattering::walk::draw;
 use numeric::Lane;
 use theory::colours::{Chance, Chances};

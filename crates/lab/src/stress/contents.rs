@@ -35,11 +35,11 @@ pub fn rows(run: Run) -> Vec<Row> {
     let row = Row::stated("∫σ_t dV, smooth", "smooth fields of five kinds, balls and boxes");
     let mut rows = run.fill([32, 1024], [row], smooth, |&(body, size, filling), seen| {
         let volume = filling.volume(body, size);
-        see(&*volume, DoubleDouble::from(body.integral(&*volume)), content::MOST_CHORDS, seen)
+        see(&*volume, DoubleDouble::from(body.integral(&*volume)), content::MAX_CHORDS, seen)
     });
     for (trials, chords, range) in [
         ([32, 1024], FEW_CHORDS, "layers at any angle, 4e3 chords"),
-        ([1, 16], content::MOST_CHORDS, "layers at any angle, 3e5 chords"),
+        ([1, 16], content::MAX_CHORDS, "layers at any angle, 3e5 chords"),
     ] {
         let row = Row::stated("∫σ_t dV, layers", range);
         rows.extend(run.fill(trials, [row], Stack::any, |stack, seen| layers(stack, chords, seen)));

@@ -10,7 +10,7 @@ use super::depths::knots;
 use super::fields::{homogeneous, pieces};
 use super::prelude::*;
 use super::rods::lookups;
-use theory::CountLaw;
+use theory::CountDistribution;
 use theory::collisions::rules::{Single, Weight};
 use theory::ray::curve::predict as predict_curve;
 use theory::ray::free_flight;
@@ -60,7 +60,8 @@ fn flights(Layers { layers }: &Layers, seen: &mut Seen) {
         exact += alive * if sigma > 0.0 { -(-depth).exp_m1() / sigma } else { width };
         alive = alive * (-depth).exp();
     }
-    let found = free_flight::predict(&Mesh::new(pieces(&breaks, &values)), CountLaw::always(0.0));
+    let found =
+        free_flight::predict(&Mesh::new(pieces(&breaks, &values)), CountDistribution::always(0.0));
     seen.stated(0, found.channels[0].truth, exact);
 }
 

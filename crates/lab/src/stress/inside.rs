@@ -11,7 +11,7 @@ use super::equations::{binomial, power};
 use super::nodes::{Both, Line, Solution, after};
 use super::prelude::*;
 use super::rods::{moments_of, rod_with, rule};
-use theory::problems::rod::{self, HIGHEST_ORDER, MOST_PARTS, Quantity};
+use theory::problems::rod::{self, HIGHEST_ORDER, MAX_PARTS, Quantity};
 use theory::{ParticleRule, rod as rods};
 
 /// All rows.
@@ -50,7 +50,7 @@ parameters! {
         depth: f64 = range,
         forward: f64 = share(),
         albedo: Vec<f64> = vec(share(), 1..=2),
-        parts: usize = 1..=MOST_PARTS,
+        parts: usize = 1..=MAX_PARTS,
         highest_order: usize = orders,
     }
 }

@@ -11,7 +11,7 @@ use super::fields::homogeneous;
 use super::prelude::*;
 use theory::problems::Rod;
 use theory::problems::rod::{self, Quantity};
-use theory::{CountLaw, ParticleRule, rod as rods};
+use theory::{CountDistribution, ParticleRule, rod as rods};
 
 /// All rows.
 pub fn rows(run: Run) -> Vec<Row> {
@@ -199,8 +199,8 @@ impl Walked {
 }
 
 /// Returns lookups with the error that their check takes.
-pub(super) fn lookups(law: &CountLaw) -> Known {
-    Known::new(law.mean, law.mean * law.error.max(CountLaw::ERROR))
+pub(super) fn lookups(law: &CountDistribution) -> Known {
+    Known::new(law.mean, law.mean * law.error.max(CountDistribution::ERROR))
 }
 
 /// Variance and fourth central moment of the walks of three rules, where they diverge, and their lookups.

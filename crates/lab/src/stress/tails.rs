@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 use super::prelude::*;
 use gate::stats::catoni::{Argument, PsiSums};
 use gate::stats::{anderson_darling, binomial, chi_square, normal};
-use theory::CountLaw;
+use theory::CountDistribution;
 
 /// All rows.
 pub fn rows(run: Run) -> Vec<Row> {
@@ -186,7 +186,7 @@ fn binomial_ends(&Successes { trials, share, missing }: &Successes, seen: &mut S
 /// Probabilities by recurrence from the mode against `e^{−m} mⁿ/n!`.
 fn poisson(&mean: &f64, seen: &mut Seen) {
     let (mut ln_mass, ln_mean) = (-DoubleDouble::from(mean), DoubleDouble::from(mean).ln());
-    for (n, &found) in CountLaw::poisson(mean).pmf.iter().enumerate() {
+    for (n, &found) in CountDistribution::poisson(mean).pmf.iter().enumerate() {
         if n > 0 {
             ln_mass = ln_mass + ln_mean - DoubleDouble::from(n as f64).ln();
         }

@@ -18,7 +18,7 @@ use super::shared_walk::{ORDERS, degree, of_mean};
 use theory::problems::{Problem, SingleScattering};
 use theory::single::predict::DENSITY;
 use theory::single::{
-    self, Camera, CameraTracking, Collisions, Node, Points, Scene, Tracking, walks,
+    self, Camera, CameraTracking, Collisions, Node, Scene, TechniqueMoments, Tracking, walks,
 };
 
 /// Technique that samples points of a ray.
@@ -46,7 +46,7 @@ pub struct Estimator<'a> {
     pub walk: [f64; 2],
     /// Transmittance of shadow rays.
     pub tracking: Tracking,
-    /// Points that share a walk.
+    /// TechniqueMoments that share a walk.
     pub count: usize,
 }
 
@@ -57,7 +57,7 @@ impl Estimator<'_> {
     }
 
     /// Returns the prediction of theory.
-    pub fn found(&self, technique: Technique) -> Points {
+    pub fn found(&self, technique: Technique) -> TechniqueMoments {
         let (problem, [sampling, control]) = (self.problem, self.walk);
         let medium = problem.medium();
         let (mesh, support) = (Mesh::new(medium.clone()), medium.support());
@@ -77,7 +77,10 @@ impl Estimator<'_> {
         let of = |density: &dyn Fn(&Node) -> f64, blur: &dyn Fn(&Node) -> f64| {
             let gain = |node: &Node| node.extinction * node.source / density(node);
             let (found, weighted) = (None, None);
-            Points::of(scene, &single::Technique { density, gain: &gain, blur, found, weighted })
+            TechniqueMoments::of(
+                scene,
+                &single::Technique { density, gain: &gain, blur, found, weighted },
+            )
         };
         let by_angle = |node: &Node| problem.equiangular_density_beyond(node.along);
         match technique {
@@ -100,7 +103,7 @@ impl Estimator<'_> {
                     found: Some(&collisions),
                     weighted: None,
                 };
-                Points::of(scene, &technique)
+                TechniqueMoments::of(scene, &technique)
             }
         }
     }

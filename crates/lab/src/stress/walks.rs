@@ -23,7 +23,7 @@ use super::slabs::{LIGHTS, henyey_greenstein, lights, phase};
 use media::phase::{Phase, isotropic::Isotropic};
 use theory::problems::slab::{Incidence, Light};
 use theory::slab::{self, Answer, Energy, Existence, Piece, Pieces, Resolution, Walk};
-use theory::{CountLaw, Kernel, ParticleRule};
+use theory::{CountDistribution, Kernel, ParticleRule};
 
 /// Directions of the ordinates.
 const ORDINATES: usize = 48;
@@ -247,7 +247,8 @@ fn white(parameters: &White, seen: &mut Seen) -> Option<()> {
     let pieces = Pieces::Exact(vec![Piece::of(flown, ratio)]);
     let walk = walk(Phase::Isotropic(Isotropic), (1.0 - absorbed, rule), pieces, ratio, depth);
     let found = seen.found(0, Walk { laws: true, ..walk.clone() }.lookups(lights))?;
-    let laws: Vec<CountLaw> = found.into_iter().map(CountLaw::of_factorial).collect();
+    let laws: Vec<CountDistribution> =
+        found.into_iter().map(CountDistribution::of_factorial).collect();
     let scale = laws.iter().map(|law| 1.0 + law.variance / law.mean).fold(0.0, f64::max);
     let step = DoubleDouble::from(STEP / scale);
     let [q, s] = moments_of(rule, DoubleDouble::from(ratio), walk.albedo, 0);

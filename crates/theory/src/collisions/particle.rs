@@ -37,7 +37,7 @@ use numeric::Lane;
 /// Unbiased where `transmit · transmit_weight = 1 − r` and `scatter · scatter_weight = a r`. The rest of the
 /// probability is absorption.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Odds<L = f64> {
+pub struct EventProbabilities<L = f64> {
     /// `q_t`, the probability to go straight on: the collision is null.
     pub transmit: L,
     /// `q_s`, the probability to be scattered.
@@ -59,7 +59,7 @@ pub enum Event {
     Absorbed,
 }
 
-impl Odds {
+impl EventProbabilities {
     /// Kernel of the k-th moment at a rate of collisions, with `Q_k = q_t((1 − r)/q_t)^k` and `S_k = q_s(a r/q_s)^k`,
     /// given the means `1 − r` and `a r`.
     #[inline]
@@ -122,7 +122,7 @@ impl ParticleRule {
     /// Outside the range of [`ParticleRule::limits`] they are what the formula gives and no probabilities: draws
     /// that are made in spite of that compare a number with them as any renderer would, and are biased.
     #[inline(always)]
-    pub fn odds<L: Lane>(self, ratio: L, albedo: L) -> Odds<L> {
+    pub fn probabilities<L: Lane>(self, ratio: L, albedo: L) -> EventProbabilities<L> {
         let one = ratio.each(1.0);
         match self {
             Self::Terminating | Self::Analog => terminating(ratio, albedo),
@@ -131,13 +131,13 @@ impl ParticleRule {
                 let sum = albedo * ratio + (one - ratio).size();
                 let terminates = one.at_most(ratio) & sum.at_most(one);
                 let (ending, lasting) = (terminating(ratio, albedo), shared(ratio, albedo, one));
-                Odds::select(terminates, ending, lasting)
+                EventProbabilities::select(terminates, ending, lasting)
             }
             Self::Weighted => shared(ratio, one, albedo),
         }
     }
 
-    /// The smallest and the largest r for which the odds are probabilities.
+    /// The smallest and the largest r for which they are probabilities.
     pub fn limits(self, albedo: f64) -> [f64; 2] {
         match self {
             Self::Terminating => [0.0, 2.0 / (albedo + 1.0)],
@@ -157,7 +157,7 @@ impl ParticleRule {
         }
     }
 
-    /// The ratios at which the odds or one of their derivatives jump: panels end there.
+    /// The ratios at which the probabilities or one of their derivatives jump: panels end there.
     pub fn kinks(self, albedo: f64) -> Vec<f64> {
         match self {
             Self::Adaptive => vec![0.0, 1.0, 2.0 / (1.0 + albedo)],
@@ -168,7 +168,7 @@ impl ParticleRule {
     }
 }
 
-impl<L: Lane> Odds<L> {
+impl<L: Lane> EventProbabilities<L> {
     /// Returns the lanes of `which` that are scattered, and those that go straight on, given uniform numbers.
     #[inline(always)]
     pub fn decide_each(&self, which: L::Mask, number: L) -> (L::Mask, L::Mask) {
@@ -194,10 +194,10 @@ fn signed<L: Lane>(size: L, like: L) -> L {
 }
 
 #[inline(always)]
-fn terminating<L: Lane>(ratio: L, albedo: L) -> Odds<L> {
+fn terminating<L: Lane>(ratio: L, albedo: L) -> EventProbabilities<L> {
     let one = ratio.each(1.0);
     let rest = one - ratio;
-    Odds {
+    EventProbabilities {
         transmit: rest.size(),
         scatter: albedo * ratio,
         transmit_weight: signed(one, rest),
@@ -208,7 +208,7 @@ fn terminating<L: Lane>(ratio: L, albedo: L) -> Odds<L> {
 /// Probabilities in proportion to `|1 − r|` and `albedo |r|`, so that the walk always goes on: the weight has their
 /// sum as a factor. Scattered weights have the further factor `left`.
 #[inline(always)]
-fn shared<L: Lane>(ratio: L, albedo: L, left: L) -> Odds<L> {
+fn shared<L: Lane>(ratio: L, albedo: L, left: L) -> EventProbabilities<L> {
     let (zero, one) = (ratio.each(0.0), ratio.each(1.0));
     let rest = one - ratio;
     let (transmitted, scattered) = (rest.size(), albedo * ratio.size());
@@ -218,7 +218,7 @@ fn shared<L: Lane>(ratio: L, albedo: L, left: L) -> Odds<L> {
     // the walk ends.
     let is_nothing = sum.at_most(zero);
     let is_scattered = zero.below(left) & !is_nothing;
-    Odds {
+    EventProbabilities {
         transmit: L::select(is_nothing, zero, transmit),
         scatter: L::select(is_scattered, one - transmit, zero),
         transmit_weight: signed(sum, rest),
@@ -246,16 +246,24 @@ mod tests {
         for rule in ParticleRule::ALL {
             for albedo in ALBEDOS {
                 for r in ratios().filter(|&r| holds(rule, r, albedo)) {
-                    let odds = rule.odds(r, albedo);
+                    let probabilities = rule.probabilities(r, albedo);
                     let context = format!("{rule:?} at r = {r}, a = {albedo}");
                     let means = [1.0 - r, albedo * r];
-                    let found =
-                        [odds.transmit * odds.transmit_weight, odds.scatter * odds.scatter_weight];
+                    let found = [
+                        probabilities.transmit * probabilities.transmit_weight,
+                        probabilities.scatter * probabilities.scatter_weight,
+                    ];
                     for (found, mean) in found.into_iter().zip(means) {
                         assert!((found - mean).abs() < 1e-14, "{context}");
                     }
-                    assert!(odds.transmit >= 0.0 && odds.scatter >= 0.0, "{context}");
-                    assert!(odds.transmit + odds.scatter <= 1.0 + 1e-15, "{context}");
+                    assert!(
+                        probabilities.transmit >= 0.0 && probabilities.scatter >= 0.0,
+                        "{context}"
+                    );
+                    assert!(
+                        probabilities.transmit + probabilities.scatter <= 1.0 + 1e-15,
+                        "{context}"
+                    );
                 }
             }
         }
@@ -264,9 +272,9 @@ mod tests {
     #[test]
     fn beyond_its_limits_a_rule_has_no_chances() {
         for (rule, r) in [(ParticleRule::Terminating, 1.2), (ParticleRule::Terminating, -0.1)] {
-            let odds = rule.odds(r, 0.9);
-            let sum = odds.transmit + odds.scatter;
-            assert!(odds.scatter < 0.0 || sum > 1.0, "{odds:?}");
+            let probabilities = rule.probabilities(r, 0.9);
+            let sum = probabilities.transmit + probabilities.scatter;
+            assert!(probabilities.scatter < 0.0 || sum > 1.0, "{probabilities:?}");
             assert!(!holds(rule, r, 0.9));
         }
         assert!(holds(ParticleRule::Terminating, 2.0 / 1.9, 0.9));
@@ -276,22 +284,27 @@ mod tests {
     #[test]
     fn at_one_collision_the_odds_are_those_worked_by_hand() {
         // r = 1.5, a = 0.2: terminating 0.5 and 0.3 with weights −1 and 1.
-        let odds = ParticleRule::Terminating.odds(1.5, 0.2);
-        assert!((odds.transmit - 0.5).abs() < 1e-15 && (odds.scatter - 0.3).abs() < 1e-15);
-        assert_eq!((odds.transmit_weight, odds.scatter_weight), (-1.0, 1.0));
-        assert_eq!(ParticleRule::Adaptive.odds(1.5, 0.2), odds);
+        let probabilities = ParticleRule::Terminating.probabilities(1.5, 0.2);
+        assert!(
+            (probabilities.transmit - 0.5).abs() < 1e-15
+                && (probabilities.scatter - 0.3).abs() < 1e-15
+        );
+        assert_eq!((probabilities.transmit_weight, probabilities.scatter_weight), (-1.0, 1.0));
+        assert_eq!(ParticleRule::Adaptive.probabilities(1.5, 0.2), probabilities);
         // a r + |1 − r| = 0.9·1.5 + 0.5 = 1.85: not terminating, D = 1.85.
-        let odds = ParticleRule::Adaptive.odds(1.5, 0.9);
-        assert!((odds.transmit - 0.5 / 1.85).abs() < 1e-15);
-        assert!((odds.transmit_weight + 1.85).abs() < 1e-15);
-        assert!((odds.scatter_weight - 1.85).abs() < 1e-15);
+        let probabilities = ParticleRule::Adaptive.probabilities(1.5, 0.9);
+        assert!((probabilities.transmit - 0.5 / 1.85).abs() < 1e-15);
+        assert!((probabilities.transmit_weight + 1.85).abs() < 1e-15);
+        assert!((probabilities.scatter_weight - 1.85).abs() < 1e-15);
         // r = −0.5, a = 0.6: D = 0.3 + 1.5, and the scattered weight changes sign.
-        let odds = ParticleRule::NonTerminating.odds(-0.5, 0.6);
-        assert!((odds.scatter - 0.3 / 1.8).abs() < 1e-15);
-        assert!((odds.scatter_weight + 1.8).abs() < 1e-15);
+        let probabilities = ParticleRule::NonTerminating.probabilities(-0.5, 0.6);
+        assert!((probabilities.scatter - 0.3 / 1.8).abs() < 1e-15);
+        assert!((probabilities.scatter_weight + 1.8).abs() < 1e-15);
         // Delta tracking with the albedo as a weight.
-        let odds = ParticleRule::Weighted.odds(0.25, 0.6);
-        assert!((odds.scatter - 0.25).abs() < 1e-15 && odds.scatter_weight == 0.6);
+        let probabilities = ParticleRule::Weighted.probabilities(0.25, 0.6);
+        assert!(
+            (probabilities.scatter - 0.25).abs() < 1e-15 && probabilities.scatter_weight == 0.6
+        );
     }
 
     #[test]
@@ -302,7 +315,7 @@ mod tests {
                 let means = [1.0 - r, albedo * r];
                 let squares = |rule: ParticleRule| {
                     let Kernel { straight, scattered, .. } =
-                        rule.odds(r, albedo).kernel(1.0, means, 2);
+                        rule.probabilities(r, albedo).kernel(1.0, means, 2);
                     [straight, scattered]
                 };
                 let adaptive = squares(ParticleRule::Adaptive);
@@ -314,19 +327,19 @@ mod tests {
 
     #[test]
     fn nothing_is_left_at_ratio_one_without_albedo() {
-        let odds = ParticleRule::NonTerminating.odds(1.0, 0.0);
-        assert_eq!((odds.transmit, odds.scatter), (0.0, 0.0));
-        assert_eq!(odds.decide(0.0), Event::Absorbed);
+        let probabilities = ParticleRule::NonTerminating.probabilities(1.0, 0.0);
+        assert_eq!((probabilities.transmit, probabilities.scatter), (0.0, 0.0));
+        assert_eq!(probabilities.decide(0.0), Event::Absorbed);
     }
 
     #[test]
     fn moments_of_rare_scattering_keep_their_digits() {
         // a|r| is 1e-12: computed as a difference from |1 − r|/D it would have few digits.
         let (albedo, r) = (1e-12, 1.25);
-        let odds = ParticleRule::NonTerminating.odds(r, albedo);
+        let probabilities = ParticleRule::NonTerminating.probabilities(r, albedo);
         let sum = albedo * r + (r - 1.0);
         for k in 1..5 {
-            let found = odds.kernel(1.0, [1.0 - r, albedo * r], k).scattered;
+            let found = probabilities.kernel(1.0, [1.0 - r, albedo * r], k).scattered;
             let exact = albedo * r * sum.powi(k - 1);
             assert!((found / exact - 1.0).abs() < 1e-14, "{k}: {found:e} for {exact:e}");
         }
@@ -334,12 +347,12 @@ mod tests {
 
     #[test]
     fn a_number_decides() {
-        let odds = ParticleRule::Terminating.odds(0.5, 0.4);
-        assert_eq!(odds.decide(0.199), Event::Scattered);
-        assert_eq!(odds.decide(0.201), Event::Transmitted);
-        assert_eq!(odds.decide(0.701), Event::Absorbed);
+        let probabilities = ParticleRule::Terminating.probabilities(0.5, 0.4);
+        assert_eq!(probabilities.decide(0.199), Event::Scattered);
+        assert_eq!(probabilities.decide(0.201), Event::Transmitted);
+        assert_eq!(probabilities.decide(0.701), Event::Absorbed);
         // A particle that does not terminate is never absorbed.
-        let odds = ParticleRule::NonTerminating.odds(0.37, 0.83);
-        assert_eq!(odds.decide(1.0 - f64::EPSILON / 2.0), Event::Transmitted);
+        let probabilities = ParticleRule::NonTerminating.probabilities(0.37, 0.83);
+        assert_eq!(probabilities.decide(1.0 - f64::EPSILON / 2.0), Event::Transmitted);
     }
 }

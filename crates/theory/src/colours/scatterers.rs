@@ -18,7 +18,7 @@
 use crate::prediction::raw::RawMoments;
 use crate::prediction::{Covariance, UNRESOLVED};
 use crate::problems::channels::{Colours, End};
-use crate::{Channel, CountLaw, Moments, Prediction, colours};
+use crate::{Channel, CountDistribution, Moments, Prediction, colours};
 use numeric::Known;
 
 /// Probabilities to leave after r scatterings that never absorb.
@@ -76,7 +76,7 @@ pub trait Body: Send + Sync {
     fn orders(&self) -> Option<Orders>;
 
     /// The lookups of analog walks, mixed over weights and albedos; `None` where they are not known.
-    fn lookups(&self, heroes: &[(f64, f64)]) -> Option<CountLaw>;
+    fn lookups(&self, heroes: &[(f64, f64)]) -> Option<CountDistribution>;
 }
 
 /// Scoring of all channels by one walk.

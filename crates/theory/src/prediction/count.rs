@@ -14,7 +14,7 @@ const HIDDEN: f64 = 1e-12;
 
 /// Distribution of the number of lookups of one draw.
 #[derive(Debug, Clone, PartialEq)]
-pub struct CountLaw {
+pub struct CountDistribution {
     /// `E[M]`.
     pub mean: f64,
     /// `Var[M]`.
@@ -32,7 +32,7 @@ pub struct CountLaw {
     pub pmf: Vec<f64>,
 }
 
-impl CountLaw {
+impl CountDistribution {
     /// Relative error of a predicted mean number, unless its own `error` is larger.
     pub const ERROR: f64 = 1e-10;
 
@@ -185,7 +185,7 @@ mod tests {
     #[test]
     fn rare_lookups_keep_their_digits() {
         // 3 and, once in a thousand millions, one more.
-        let law = CountLaw::of_raw(3.0, [1.0, 1e-9, 1e-9, 1e-9, 1e-9], 0.0);
+        let law = CountDistribution::of_raw(3.0, [1.0, 1e-9, 1e-9, 1e-9, 1e-9], 0.0);
         assert_eq!(law.mean, 3.000_000_001);
         assert!((law.variance / 1e-9 - 1.0).abs() < 2e-9 && law.kurtosis > 0.9e9);
     }

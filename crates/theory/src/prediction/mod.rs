@@ -5,7 +5,7 @@ pub mod moments;
 pub mod optimum;
 pub mod raw;
 
-use super::{CountLaw, Moments};
+use super::{CountDistribution, Moments};
 use numeric::{Grade, Known};
 
 /// Prediction for an experiment, made before a draw.
@@ -14,7 +14,7 @@ pub struct Prediction {
     /// Channels of the value.
     pub channels: Vec<Channel>,
     /// The number of lookups of one draw; `None` where no closed form is known.
-    pub lookups: Option<CountLaw>,
+    pub lookups: Option<CountDistribution>,
     /// The mean number of lookups of one draw's shadow rays, part of those of [`Prediction::lookups`]; `None` where there
     /// are no shadow rays, or it is not known.
     pub shadow_lookups: Option<f64>,
@@ -235,7 +235,7 @@ impl Prediction {
     }
 
     /// An experiment with one unbiased channel.
-    pub fn single(channel: Channel, lookups: CountLaw) -> Self {
+    pub fn single(channel: Channel, lookups: CountDistribution) -> Self {
         Self { channels: vec![channel], lookups: Some(lookups), ..Self::default() }
     }
 

@@ -117,28 +117,28 @@ fn at(step: usize) -> f64 {
 
 /// A place on the axis of `ln(σ̂/scale)` and the figure of merit there.
 #[derive(Debug, Clone, Copy)]
-struct Found {
+struct Candidate {
     log: f64,
     merit: f64,
     kind: Kind,
 }
 
 /// Searches the maximum of a figure of merit, or 90 % of its limit.
-fn best_log(coarse: &[f64], merit: impl Fn(f64) -> f64) -> Option<Found> {
+fn best_log(coarse: &[f64], merit: impl Fn(f64) -> f64) -> Option<Candidate> {
     let (best, &largest) = coarse.iter().enumerate().max_by(|a, b| a.1.total_cmp(b.1))?;
     if largest <= 0.0 {
         return None;
     }
     if largest.is_infinite() {
-        return Some(Found { log: at(best), merit: largest, kind: Kind::NoVariance });
+        return Some(Candidate { log: at(best), merit: largest, kind: Kind::NoVariance });
     }
     if best == 0 {
-        return Some(Found { log: at(0), merit: largest, kind: Kind::EndOfSearch });
+        return Some(Candidate { log: at(0), merit: largest, kind: Kind::EndOfSearch });
     }
     let before = coarse[best - 1];
     if best == COARSE - 1 {
         let Some((far, limit)) = limit([at(best - 1), at(best)], [before, largest], &merit) else {
-            return Some(Found { log: at(best), merit: largest, kind: Kind::EndOfSearch });
+            return Some(Candidate { log: at(best), merit: largest, kind: Kind::EndOfSearch });
         };
         return share_of_limit(coarse, far, limit, merit);
     }
@@ -152,7 +152,7 @@ fn best_log(coarse: &[f64], merit: impl Fn(f64) -> f64) -> Option<Found> {
         let limit = extrapolated([at(best - 1), log], [before, -least]);
         return share_of_limit(coarse, log, limit, merit);
     }
-    Some(Found { log, merit: -least, kind: Kind::Maximum })
+    Some(Candidate { log, merit: -least, kind: Kind::Maximum })
 }
 
 /// Searches 90 % of the limit of a rising figure of merit, which is nearly reached at `far`. In thin media the answer lies
@@ -162,7 +162,7 @@ fn share_of_limit(
     far: f64,
     limit: f64,
     merit: impl Fn(f64) -> f64,
-) -> Option<Found> {
+) -> Option<Candidate> {
     let lacking = |log: f64| merit(log) - SHARE * limit;
     let [low, high] = match coarse.iter().rposition(|&fom| fom < SHARE * limit) {
         Some(below) if below + 1 < COARSE => [at(below), at(below + 1).min(far)],
@@ -176,7 +176,7 @@ fn share_of_limit(
     let log = roots::root(low, high, lacking);
     // A root at the edge of the domain may lie on its other side.
     let inside = [log, log + TOLERANCE].into_iter().find(|&log| merit(log) > 0.0)?;
-    Some(Found { log: inside, merit: merit(inside), kind: Kind::ShareOfLimit { limit } })
+    Some(Candidate { log: inside, merit: merit(inside), kind: Kind::ShareOfLimit { limit } })
 }
 
 /// Follows a rising figure of merit from its last two values to its limit; returns the last `ln σ̂` and the limit;

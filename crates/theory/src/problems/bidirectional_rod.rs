@@ -10,10 +10,10 @@ use media::{Body, Medium};
 /// The highest number of scatterings.
 pub const HIGHEST_ORDER: usize = 5;
 /// The most channels of a draw: 3 + 4 + … + 8 techniques and their sum.
-pub const MOST: usize = 34;
+pub const MAX_CHANNELS: usize = 34;
 
 /// The values of one draw, one per channel.
-pub type Values = super::Values<MOST>;
+pub type Values = super::Values<MAX_CHANNELS>;
 
 /// Place of the sensor.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

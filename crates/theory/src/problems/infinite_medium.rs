@@ -32,7 +32,7 @@ use numeric::geometry::{Bounds, Point};
 pub use super::rod::Values;
 
 /// The most radii.
-pub const MOST_RADII: usize = 8;
+pub const MAX_RADII: usize = 8;
 
 /// A point source in a homogeneous medium without end.
 #[derive(Clone)]
@@ -74,9 +74,9 @@ impl Problem for InfiniteMedium {
             settings.fault("albedo", "the medium is homogeneous", "give one number below 1");
             return None;
         }
-        if radii.len() > MOST_RADII {
+        if radii.len() > MAX_RADII {
             let found = format!("{} radii", radii.len());
-            settings.fault("radii", found, format!("give at most {MOST_RADII}"));
+            settings.fault("radii", found, format!("give at most {MAX_RADII}"));
             return None;
         }
         if !radii.is_empty() && !matches!(scene.phase, Phase::Isotropic(_)) {

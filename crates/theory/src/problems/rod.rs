@@ -71,9 +71,9 @@ use media::{Body, Medium, Piecewise};
 use numeric::{Lane, Span};
 
 /// The most channels that a draw can have.
-pub const MOST: usize = 20;
+pub const MAX_CHANNELS: usize = 20;
 /// The most parts of a rod in which its flux is a channel.
-pub const MOST_PARTS: usize = 4;
+pub const MAX_PARTS: usize = 4;
 /// The highest order of scattering that has a channel of its own.
 pub const HIGHEST_ORDER: u64 = 6;
 
@@ -122,7 +122,7 @@ pub struct Rod {
 }
 
 /// The values of one draw, one per channel.
-pub type Values = super::Values<MOST>;
+pub type Values = super::Values<MAX_CHANNELS>;
 
 impl Rod {
     /// A rod with an albedo and a probability to scatter forward, both in `[0, 1]`.
@@ -191,7 +191,7 @@ impl Problem for Rod {
     fn read(body: Option<&Body>, settings: &Settings) -> Option<Self> {
         let scattering = read_scattering(settings);
         let absorbed = settings.flag_or("absorbed", false);
-        let parts = settings.count_or("flux", 0..=MOST_PARTS as u64, 0);
+        let parts = settings.count_or("flux", 0..=MAX_PARTS as u64, 0);
         let orders = settings.optional("orders", |key| settings.count(key, 0..=HIGHEST_ORDER));
         let medium = body?.medium();
         let [albedo, forward] = scattering?;
@@ -304,8 +304,8 @@ mod tests {
     fn the_last_channels_are_what_leaves() {
         assert_eq!(channels(0, false, None), [Quantity::Reflected, Quantity::Transmitted]);
         let all = channels(4, true, Some(6));
-        assert_eq!(all.len(), MOST);
-        assert_eq!(all[MOST - 2..], [Quantity::Reflected, Quantity::Transmitted]);
+        assert_eq!(all.len(), MAX_CHANNELS);
+        assert_eq!(all[MAX_CHANNELS - 2..], [Quantity::Reflected, Quantity::Transmitted]);
         assert_eq!(all[0].name(), "flux, part 1");
         assert_eq!(all[6].name(), "transmittance, order 1");
     }

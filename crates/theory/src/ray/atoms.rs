@@ -2,7 +2,7 @@
 
 use crate::prediction::count::poisson;
 use crate::prediction::transmittance;
-use crate::{Channel, CountLaw, Distribution, Mesh, Moments, Prediction, Tails};
+use crate::{Channel, CountDistribution, Distribution, Mesh, Moments, Prediction, Tails};
 
 /// Prediction for draws that are all `T e^{log_unit}`, with a constant number of lookups and without random numbers.
 pub fn exact(mesh: &Mesh, log_unit: f64, lookups: usize) -> Prediction {
@@ -12,7 +12,7 @@ pub fn exact(mesh: &Mesh, log_unit: f64, lookups: usize) -> Prediction {
     Prediction {
         random_numbers: Some(0.0),
         distribution: Some(Distribution::Atoms(vec![(value, 1.0)])),
-        ..Prediction::single(channel, CountLaw::always(lookups as f64))
+        ..Prediction::single(channel, CountDistribution::always(lookups as f64))
     }
 }
 

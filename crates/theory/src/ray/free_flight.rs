@@ -6,7 +6,7 @@
 //! ```
 
 use super::mesh::Panel;
-use crate::{Channel, CountLaw, Distribution, Mesh, Moments, Prediction, Tails};
+use crate::{Channel, CountDistribution, Distribution, Mesh, Moments, Prediction, Tails};
 use numeric::sum::Sum;
 use numeric::{Known, Span};
 
@@ -14,7 +14,7 @@ use numeric::{Known, Span};
 pub const CLASSES: usize = 1020;
 
 /// Mean depth and its moments, and the distribution of the distance, measured from the ray's beginning.
-pub fn predict(mesh: &Mesh, lookups: CountLaw) -> Prediction {
+pub fn predict(mesh: &Mesh, lookups: CountDistribution) -> Prediction {
     let ray = mesh.medium().span();
     let fine = mesh.refined(&[], &|mesh, panel| {
         let running = mesh.running(panel, panel.extinction);

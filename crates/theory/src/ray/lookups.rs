@@ -13,7 +13,7 @@
 use super::mesh::Panel;
 use super::product::{Integrals, Product};
 use crate::Mesh;
-use crate::prediction::count::{CountLaw, LARGEST_MEAN, Window};
+use crate::prediction::count::{CountDistribution, LARGEST_MEAN, Window};
 use numeric::sum::Sum;
 
 /// A panel with more survived collisions than this, or than half a standard deviation of those before,
@@ -24,7 +24,7 @@ const RARE: f64 = 1e-18;
 
 impl Product<'_> {
     /// Distribution of the number of lookups; `all` are the integrals over the whole of this estimator's own mesh.
-    pub fn lookups(&self, mesh: &Mesh, all: &Integrals) -> CountLaw {
+    pub fn lookups(&self, mesh: &Mesh, all: &Integrals) -> CountDistribution {
         let law = all.count();
         if !(self.laws && law.pmf.is_empty() && law.mean <= LARGEST_MEAN) {
             return law;
@@ -36,7 +36,7 @@ impl Product<'_> {
             }
             walk.pass(self, mesh, panel);
         }
-        CountLaw { pmf: walk.end(), ..law }
+        CountDistribution { pmf: walk.end(), ..law }
     }
 }
 

@@ -4,7 +4,7 @@
 //! τ(u) = h Σⱼ σ_t((j + u) h),  h = ℓ/steps,   E[X^k] = ∫₀¹ exp(−k τ(u)) du
 //! ```
 
-use crate::{Channel, CountLaw, Mesh, Moments, Prediction, Tails};
+use crate::{Channel, CountDistribution, Mesh, Moments, Prediction, Tails};
 use media::Extinction;
 use numeric::quadrature::GaussLegendre;
 use numeric::{Known, Lane, Span};
@@ -46,5 +46,8 @@ pub fn predict(mesh: &Mesh, log_unit: f64, steps: u32, jitter: bool) -> Predicti
     let truth = Channel::transmittance(mesh.optical_depth(), log_unit, moments, Tails::LIGHT);
     let channel = Channel { mean: Known::estimated(mean, 1e-9 * mean), ..truth };
     let random_numbers = Some(f64::from(u8::from(jitter)));
-    Prediction { random_numbers, ..Prediction::single(channel, CountLaw::always(f64::from(steps))) }
+    Prediction {
+        random_numbers,
+        ..Prediction::single(channel, CountDistribution::always(f64::from(steps)))
+    }
 }

@@ -16,7 +16,7 @@ const TAIL: f64 = 1e-13;
 /// not resolved yet: it may grow for a while. Callers keep noisier functions away.
 const NOISE: f64 = 1e-9;
 /// Maximum number of panels of an adaptive mesh: a function that needs more contains noise.
-const MOST: usize = 50_000;
+const MAX_PANELS: usize = 50_000;
 /// Maximum number of halvings of one panel.
 const HALVINGS: u32 = 40;
 
@@ -229,7 +229,8 @@ impl Mesh {
         let t = self.nodes(span);
         let extinction = self.medium.extinctions(&t);
         let panel = Panel { span, t: &t, extinction: &extinction };
-        let room = halvings > 0 && self.panels.len() < MOST && span.contains_inside(span.middle());
+        let room =
+            halvings > 0 && self.panels.len() < MAX_PANELS && span.contains_inside(span.middle());
         let tails =
             if self.adaptive { self.tails(&smooth(self, panel), parent) } else { Vec::new() };
         let rough = is_rough(&tails, parent);

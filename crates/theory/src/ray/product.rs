@@ -14,7 +14,7 @@ use super::survival::Survival;
 use crate::collisions::{Outcome, Rule};
 use crate::prediction::raw::of_factorial;
 use crate::prediction::transmittance;
-use crate::{Channel, CountLaw, Mesh, Moments, Prediction, Tails};
+use crate::{Channel, CountDistribution, Mesh, Moments, Prediction, Tails};
 use media::{Control, Piecewise};
 use numeric::Grade;
 use numeric::sum::Sum;
@@ -193,13 +193,13 @@ impl Integrals {
 
     /// Mean, variance and kurtosis of the number of lookups; the probabilities only where the distribution is
     /// Poisson or certain, see [`Product::lookups`].
-    pub fn count(&self) -> CountLaw {
+    pub fn count(&self) -> CountDistribution {
         let mean = self.lookups[0];
         // A walk that nothing ends early makes a Poisson number of lookups.
         if (mean - self.flown).abs() <= 1e-13 * self.flown {
-            return CountLaw::poisson(self.flown);
+            return CountDistribution::poisson(self.flown);
         }
-        CountLaw::of_raw(0.0, of_factorial(self.lookups), 0.0)
+        CountDistribution::of_raw(0.0, of_factorial(self.lookups), 0.0)
     }
 }
 

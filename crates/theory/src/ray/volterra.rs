@@ -29,7 +29,7 @@
 
 use super::mesh::Panel;
 use crate::prediction::raw::RawMoments;
-use crate::{Channel, CountLaw, Mesh, Moments, Prediction, Tails};
+use crate::{Channel, CountDistribution, Mesh, Moments, Prediction, Tails};
 use numeric::Known;
 
 /// Maximum relative error of central moments that are given; cancellation makes larger ones.
@@ -79,7 +79,7 @@ pub fn predict(mesh: &Mesh, sampling: f64, source: &dyn Source) -> Prediction {
     let mut channel = Channel::transmittance(depth, 0.0, moments, tails);
     channel.moments = channel.moments.filter(|_| is_known || flown == 0.0);
     let random_numbers = Some(flown + 1.0);
-    Prediction { random_numbers, ..Prediction::single(channel, CountLaw::poisson(flown)) }
+    Prediction { random_numbers, ..Prediction::single(channel, CountDistribution::poisson(flown)) }
 }
 
 /// Cuts towards the end of the support: v decays within a few mean free paths of the end, which may be a millionth

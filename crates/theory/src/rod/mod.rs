@@ -26,7 +26,7 @@ pub mod walk;
 use self::moments::Joint;
 use self::walk::Walk;
 use super::prediction::Covariance;
-use super::{Channel, CountLaw, Mesh, Prediction, Tails};
+use super::{Channel, CountDistribution, Mesh, Prediction, Tails};
 use crate::ParticleRule;
 use crate::prediction::raw::{POWERS, RESOLVED, RawMoments};
 use crate::problems::rod::Quantity;
@@ -139,7 +139,7 @@ pub fn predict(
     let channels = rod.channels.iter().zip(&truth).enumerate().map(channel);
     Prediction {
         channels: channels.collect(),
-        lookups: found.as_ref().map(|found| CountLaw::of_factorial(found.lookups)),
+        lookups: found.as_ref().map(|found| CountDistribution::of_factorial(found.lookups)),
         covariances: found
             .as_ref()
             .map_or_else(Vec::new, |found| covariances(&rod.channels, &truth, found)),

@@ -19,7 +19,7 @@ use num_complex::Complex64;
 use crate::colours::scatterers::{Body, Divergence, Orders};
 use crate::problems::rod::channels;
 use crate::problems::{Problem, Rod, SpectralRod};
-use crate::{CountLaw, Mesh, ParticleRule, colours, rod};
+use crate::{CountDistribution, Mesh, ParticleRule, colours, rod};
 use media::Piecewise;
 use numeric::Known;
 
@@ -28,7 +28,7 @@ const ROUNDING: f64 = 1e-13;
 /// Maximum probability of orders of scattering that are left out.
 const RARE: f64 = 1e-17;
 /// Maximum number of orders of scattering.
-const MOST_ORDERS: usize = 8192;
+const MAX_ORDERS: usize = 8192;
 /// Largest relative step of an albedo, along which slopes are taken.
 const STEP: f64 = 1e-6;
 /// Relative error of an albedo that is a product of powers, in units of ε.
@@ -85,7 +85,7 @@ impl Body for Rods<'_> {
         Some(Orders { found, error: ROUNDING, each, blur: self.depth.error })
     }
 
-    fn lookups(&self, heroes: &[(f64, f64)]) -> Option<CountLaw> {
+    fn lookups(&self, heroes: &[(f64, f64)]) -> Option<CountDistribution> {
         let of = |albedo: f64| {
             let [albedo, forward] =
                 [albedo, self.rod.forward].map(|x| Piecewise::constant(x, self.mesh.support()));
@@ -94,7 +94,7 @@ impl Body for Rods<'_> {
             rod::factorial_lookups(self.mesh, &rod, self.sampling, ParticleRule::Analog)
         };
         let each = heroes.iter().map(|&(weight, albedo)| Some((weight, of(albedo)?)));
-        colours::mixed(each.collect::<Option<Vec<_>>>()?).map(CountLaw::of_factorial)
+        colours::mixed(each.collect::<Option<Vec<_>>>()?).map(CountDistribution::of_factorial)
     }
 }
 
@@ -246,7 +246,7 @@ pub fn orders_above(depth: f64, albedo: f64, forward: f64, rare: f64) -> usize {
 /// each, from the rounding of sums over the circle; `None` where there are too many orders.
 fn orders(depth: f64, forward: f64) -> Option<(Vec<[f64; 2]>, f64)> {
     let count = orders_above(depth, 1.0, forward, RARE);
-    if count > MOST_ORDERS {
+    if count > MAX_ORDERS {
         return None;
     }
     let angle = |j: usize| TAU * j as f64 / count as f64;

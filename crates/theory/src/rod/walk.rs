@@ -2,7 +2,7 @@
 
 use super::NoVariance;
 use super::line::Line;
-use crate::collisions::particle::Odds;
+use crate::collisions::particle::EventProbabilities;
 use crate::problems::rod::Quantity;
 use crate::problems::{Problem, Rod};
 use crate::ray::mesh::Panel;
@@ -31,7 +31,7 @@ pub struct Node {
     /// `p_f`.
     pub forward: f64,
     /// Probabilities and weights at a collision.
-    pub odds: Odds,
+    pub probabilities: EventProbabilities,
     /// `1 − r` and `a r`, the mean weights of transmitted and of scattered particles.
     pub means: [f64; 2],
 }
@@ -40,7 +40,7 @@ impl Node {
     /// Effect of a collision here on the k-th moment.
     #[inline]
     pub fn kernel(&self, k: i32) -> Kernel {
-        self.odds.kernel(self.sampling, self.means, k)
+        self.probabilities.kernel(self.sampling, self.means, k)
     }
 
     /// k-th moment of the score of a particle that collides here, given the moments after the collision.
@@ -142,10 +142,17 @@ impl<'a> Walk<'a> {
             Some(_) if extinction == 0.0 => 0.0,
             Some(_) => extinction / sampling,
         };
-        let odds = self.rule.odds(ratio, albedo);
+        let probabilities = self.rule.probabilities(ratio, albedo);
         let absorbed = ratio * (1.0 - albedo);
         let part = self.rod.part(t);
-        Node { sampling, absorbed, part, forward, odds, means: [1.0 - ratio, albedo * ratio] }
+        Node {
+            sampling,
+            absorbed,
+            part,
+            forward,
+            probabilities,
+            means: [1.0 - ratio, albedo * ratio],
+        }
     }
 
     /// The line for powers up to a highest, with panels `finer` times shorter than the coarse ones; `None` where there

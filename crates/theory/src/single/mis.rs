@@ -16,7 +16,7 @@
 use super::null_path::{NullPaths, Weighted};
 use super::predict::DENSITY;
 use super::scene::{Node, Place, STEPS, Scene};
-use super::{Collisions, Points, Technique};
+use super::{Collisions, Technique, TechniqueMoments};
 use crate::light::Heuristic;
 use crate::light::contour::Made;
 use crate::problems::Problem;
@@ -43,15 +43,15 @@ pub struct Mis<'a> {
 
 impl Mis<'_> {
     /// Moments of the point from the light, and of the scattering of delta tracking.
-    pub fn points(&self) -> [Points; 2] {
+    pub fn points(&self) -> [TechniqueMoments; 2] {
         match &self.nulls {
             Some(nulls) => self.by_null_paths(nulls),
             None => self.by_transmittances(),
         }
     }
 
-    fn points_of(&self, technique: &Technique) -> Points {
-        Points::with_cuts(self.scene, technique, self.layers())
+    fn points_of(&self, technique: &Technique) -> TechniqueMoments {
+        TechniqueMoments::with_cuts(self.scene, technique, self.layers())
     }
 
     /// Places towards the ends of the ray, each half as far as the one before. Where σ_t vanishes, weights change from one
@@ -88,7 +88,7 @@ impl Mis<'_> {
         self.scene.problem.equiangular_density_beyond(node.along)
     }
 
-    fn by_transmittances(&self) -> [Points; 2] {
+    fn by_transmittances(&self) -> [TechniqueMoments; 2] {
         let scatters = |node: &Node| node.extinction * node.source;
         let collision = |node: &Node| self.collisions.density(node);
         let source = |node: &Node| self.source(node);
@@ -105,7 +105,7 @@ impl Mis<'_> {
         [first, second].map(|technique| self.points_of(&technique))
     }
 
-    fn by_null_paths(&self, nulls: &NullPaths) -> [Points; 2] {
+    fn by_null_paths(&self, nulls: &NullPaths) -> [TechniqueMoments; 2] {
         let worth = |node: &Node| self.collisions.worth(node);
         let ratio = |node: &Node| node.extinction * self.collisions.scatters / self.source(node);
         let by_point = |node: &Node| nulls.weights(Made::ByPoint, node.s, ratio(node));

@@ -32,7 +32,7 @@ pub use camera::Camera;
 pub use collisions::Collisions;
 pub use mis::Mis;
 pub use null_path::NullPaths;
-pub use predict::{Points, Technique};
+pub use predict::{Technique, TechniqueMoments};
 pub use scene::{Node, Scene};
 pub use segment::{Segment, Tracking};
 

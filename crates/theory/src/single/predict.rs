@@ -5,7 +5,7 @@ use super::null_path::Weighted;
 use super::scene::{Node, Scene};
 use super::segment::POWERS;
 use crate::prediction::raw::{Raw, RawMoments, added};
-use crate::{Channel, CountLaw, Prediction, Tails};
+use crate::{Channel, CountDistribution, Prediction, Tails};
 use numeric::Known;
 
 /// Relative difference of two resolutions of moments at which panels are fine enough.
@@ -48,7 +48,7 @@ impl Technique<'_> {
 
 /// The raw moments of the draws of a technique.
 #[derive(Debug, Clone, Copy)]
-pub struct Points {
+pub struct TechniqueMoments {
     /// The radiance by quadrature.
     pub truth: Known,
     /// `E[X^k]`, k = 0 … 4.
@@ -72,7 +72,7 @@ pub const DENSITY: f64 = 4.0 * f64::EPSILON;
 /// Smallest moment: below it some of its terms lose digits by underflow.
 const LEAST: f64 = 1e-280;
 
-impl Points {
+impl TechniqueMoments {
     /// Moments of one technique.
     pub fn of(scene: &Scene, technique: &Technique) -> Self {
         Self::with_cuts(scene, technique, Vec::new())
@@ -181,7 +181,7 @@ impl Points {
         // The rarity of the draws that make the variance is not computed.
         let tails = Tails { rare_event_size: f64::NAN, eighth_moment_ratio: eighth };
         let channels = vec![Channel::unbiased(self.truth, moments, tails)];
-        let law = |raw| CountLaw::of_raw(self.least, raw, self.counted);
+        let law = |raw| CountDistribution::of_raw(self.least, raw, self.counted);
         Prediction { channels, lookups: self.lookups.map(law), ..Prediction::default() }
     }
 }
@@ -190,8 +190,8 @@ impl Points {
 mod tests {
     use super::*;
 
-    fn points(powers: [f64; 5]) -> Points {
-        Points {
+    fn points(powers: [f64; 5]) -> TechniqueMoments {
+        TechniqueMoments {
             truth: Known::exact(powers[1]),
             powers,
             error: 1e-14,
@@ -220,7 +220,7 @@ mod tests {
     fn either_of_two_coins_is_one_of_twice_the_worth() {
         // 0, or 2 with probability ½: mean 1, variance 1; lookups: 1 more than a coin, or a coin.
         let coin = points([1.0, 0.5, 0.5, 0.5, 0.5]);
-        let other = Points { least: 1.0, ..coin };
+        let other = TechniqueMoments { least: 1.0, ..coin };
         let prediction = coin.either(&other).prediction();
         let moments = prediction.channels[0].moments.expect("moments");
         assert!((moments.scale - 1.0).abs() < 1e-15 && (moments.variance() - 1.0).abs() < 1e-15);

@@ -8,7 +8,7 @@
 
 use super::camera::Losses;
 use super::chain::{At, Chain, Solved, halved};
-use super::predict::{DENSITY, LOOKUPS, MOMENT, Points};
+use super::predict::{DENSITY, LOOKUPS, MOMENT, TechniqueMoments};
 use super::scene::{Node, Scene};
 use super::segment::Segment;
 use super::shadows::Among;
@@ -136,7 +136,7 @@ fn powers_of_sum(
 }
 
 /// Moments of draws that scatter at every collision.
-pub fn at_collisions(scene: &Scene) -> Points {
+pub fn at_collisions(scene: &Scene) -> TechniqueMoments {
     let Scattered { panels, lookups: cumulants, off, rounding } = scattered_at_collisions(scene);
     let of = |chain: &Chain, signed: bool| {
         let scored = |at: &At, h: f64, j: usize| power(h, j) * at.node.shadow.powers[j];
@@ -150,7 +150,7 @@ pub fn at_collisions(scene: &Scene) -> Points {
     let (powers, error) = both(scene, &panels, rounding, powers);
     let (truth, lookups) = (scene.radiance(), Some(raw::of_cumulants(cumulants)));
     let counted = SUMS + off / cumulants[0];
-    Points { truth, powers, error, eighth: None, lookups, least: 0.0, counted }
+    TechniqueMoments { truth, powers, error, eighth: None, lookups, least: 0.0, counted }
 }
 
 /// Moments of resampled draws: one of the collisions casts a shadow ray for all.
@@ -158,7 +158,7 @@ pub fn at_collisions(scene: &Scene) -> Points {
 /// ```text
 /// E[X^k] = E[F^{k−1} G_k],  F = Σ |wᵢ| hᵢ,  G_k = Σ hᵢ |wᵢ| sgn(wᵢ)^k E[T̂_shadow(tᵢ)^k]
 /// ```
-pub fn resampled(scene: &Scene, shadow_is_free: bool) -> Points {
+pub fn resampled(scene: &Scene, shadow_is_free: bool) -> TechniqueMoments {
     let Scattered { panels, rounding, .. } = scattered_at_collisions(scene);
     let powers = |chain: &Chain| {
         let f = powers_of_sum(chain, 3, false, &|_, h, j| power(h, j));
@@ -201,11 +201,11 @@ pub fn resampled(scene: &Scene, shadow_is_free: bool) -> Points {
     // The collision that casts the ray depends on all of them; without lookups of the ray this does not matter.
     let lookups = shadow_is_free.then(|| poisson(scene.camera.collisions()));
     let truth = scene.radiance();
-    Points { truth, powers, error, eighth: None, lookups, least: 0.0, counted: SUMS }
+    TechniqueMoments { truth, powers, error, eighth: None, lookups, least: 0.0, counted: SUMS }
 }
 
 /// Moments of draws at `count` points of a density, all with the transmittance of one walk over the whole ray.
-pub fn at_points(scene: &Scene, count: usize, density: &dyn Fn(&Node) -> f64) -> Points {
+pub fn at_points(scene: &Scene, count: usize, density: &dyn Fn(&Node) -> f64) -> TechniqueMoments {
     let scored = |node: &Node, k: usize| {
         let p = density(node);
         p * power(node.extinction * node.source / p, k) * node.shadow.powers[k]
@@ -255,5 +255,5 @@ pub fn at_points(scene: &Scene, count: usize, density: &dyn Fn(&Node) -> f64) ->
     let lookups = (0..count).fold(walk, |sum, _| added(sum, each));
     let counted = SUMS + found.off / (1.0 + first);
     let (truth, least) = (scene.radiance(), count as f64);
-    Points { truth, powers, error, eighth: None, lookups: Some(lookups), least, counted }
+    TechniqueMoments { truth, powers, error, eighth: None, lookups: Some(lookups), least, counted }
 }

@@ -20,7 +20,7 @@ use crate::prediction::raw::{POWERS, RESOLVED, RawMoments};
 use crate::problems::ChromaticSlab;
 use crate::problems::channels::End;
 use crate::problems::slab::Light;
-use crate::{Channel, CountLaw, Mesh, ParticleRule, Prediction, slab};
+use crate::{Channel, CountDistribution, Mesh, ParticleRule, Prediction, slab};
 use media::Piecewise;
 use numeric::{Known, exponential_integrals};
 
@@ -149,7 +149,7 @@ impl<'a> Spectrum<'a> {
         seen.map(channel).collect()
     }
 
-    fn lookups(&self, heroes: &[f64]) -> Option<CountLaw> {
+    fn lookups(&self, heroes: &[f64]) -> Option<CountDistribution> {
         let rule = ParticleRule::Analog;
         let walk = |(channel, &weight): (usize, &f64)| {
             let ((mesh, sampling), incidence) =
@@ -161,6 +161,6 @@ impl<'a> Spectrum<'a> {
             Some((weight, walk.lookups(&[incidence.light])?[0]))
         };
         let lookups = heroes.iter().enumerate().map(walk).collect::<Option<Vec<_>>>()?;
-        colours::mixed(lookups).map(CountLaw::of_factorial)
+        colours::mixed(lookups).map(CountDistribution::of_factorial)
     }
 }

@@ -7,11 +7,11 @@ use numeric::quadrature::{GaussLegendre, legendre};
 /// Legendre moments below this, with their factor `2l + 1`, are left out.
 const FAINT: f64 = 1e-17;
 /// Maximum number of Legendre moments.
-const MOST_MOMENTS: usize = 4000;
+const MAX_MOMENTS: usize = 4000;
 /// Number of negligible Legendre moments after which no other follows.
 const GAP: usize = 64;
 /// Maximum number of directions: more take seconds.
-const MOST: usize = 144;
+const MAX_DIRECTIONS: usize = 144;
 
 /// The cosines `μ = x²` of Gauss–Legendre nodes x, dense where light grazes the slab, and further cosines of
 /// incidence, from which light may come but into which no light is scattered.
@@ -77,7 +77,7 @@ impl Directions {
 /// `(2l + 1) χ_l` up to the last that is not negligible: [`GAP`] negligible ones follow it.
 fn moments(phase: &Phase) -> Vec<f64> {
     let (mut all, mut count) = (Vec::new(), 1);
-    for l in 0..MOST_MOMENTS {
+    for l in 0..MAX_MOMENTS {
         let moment = (2 * l + 1) as f64 * phase.moment(l);
         all.push(moment);
         if moment.abs() >= FAINT {
@@ -93,13 +93,14 @@ fn moments(phase: &Phase) -> Vec<f64> {
 /// Number of cosines that resolve a phase function down to moments of the given size: measured errors of
 /// reflectances fall like `g^{2n}`.
 pub fn needed(phase: &Phase, faintest: f64) -> usize {
-    let last = (0..2 * MOST).rposition(|l| phase.moment(l).abs() >= faintest).unwrap_or(0);
-    (last / 2 + 1).min(MOST)
+    let last =
+        (0..2 * MAX_DIRECTIONS).rposition(|l| phase.moment(l).abs() >= faintest).unwrap_or(0);
+    (last / 2 + 1).min(MAX_DIRECTIONS)
 }
 
 /// Returns true if `count` directions, and no more than the maximum, resolve a phase function.
 pub fn are_enough(phase: &Phase, faintest: f64, count: usize) -> bool {
-    phase.moment(2 * count.min(MOST)).abs() < faintest
+    phase.moment(2 * count.min(MAX_DIRECTIONS)).abs() < faintest
 }
 
 #[cfg(test)]
@@ -139,8 +140,11 @@ mod tests {
         let of = |g: f64| Phase::HenyeyGreenstein(HenyeyGreenstein::new(g).expect("in range"));
         assert_eq!(needed(&Phase::Isotropic(Isotropic), 1e-12), 1);
         assert!(needed(&of(0.75), 1e-12) < needed(&of(0.9), 1e-12));
-        assert_eq!(needed(&of(0.999), 1e-12), MOST);
-        assert!(are_enough(&of(0.9), 1e-12, MOST) && !are_enough(&of(-0.95), 1e-12, MOST));
+        assert_eq!(needed(&of(0.999), 1e-12), MAX_DIRECTIONS);
+        assert!(
+            are_enough(&of(0.9), 1e-12, MAX_DIRECTIONS)
+                && !are_enough(&of(-0.95), 1e-12, MAX_DIRECTIONS)
+        );
         assert!(!are_enough(&of(0.9), 1e-12, 100));
     }
 }

@@ -209,7 +209,7 @@ const BISECTIONS: u32 = 24;
 /// Maximum error of an optical depth, relative to a share, for which a bound that holds for all slabs is good enough.
 const OF_DEPTH: f64 = 1e-9;
 /// Maximum number of doublings: beyond, a share of the slab is lost in rounding.
-const MOST_DOUBLINGS: f64 = 100.0;
+const MAX_DOUBLINGS: f64 = 100.0;
 
 /// Shares of lights on a stack of layers, from above; `None` where a share is infinite.
 pub fn solve(
@@ -405,7 +405,7 @@ fn stack<S: Scalar>(directions: &Directions, slices: &[Kernel<S>], error: f64) -
         let depth = slice.rate * lost.max(scattered);
         let doublings = (FIRST_LAYER * depth * depth.max(1.0) / error).log2().ceil();
         #[allow(clippy::cast_possible_truncation)] // a small number
-        let doublings = doublings.clamp(0.0, MOST_DOUBLINGS) as i32;
+        let doublings = doublings.clamp(0.0, MAX_DOUBLINGS) as i32;
         Layer::homogeneous(directions, slice, doublings)
     };
     let (last, above) = slices.split_last()?;

@@ -27,7 +27,7 @@ const DEEPEST: f64 = 8.0;
 /// Orders of scattering that are rarer than this do not count.
 const RARE: f64 = 1e-17;
 /// Maximum number of orders of scattering.
-const MOST: usize = 4096;
+const MAX_ORDERS: usize = 4096;
 
 /// A slab cut into panels.
 struct Panels {
@@ -118,7 +118,7 @@ pub fn orders(light: Light, depth: f64) -> Option<Vec<[f64; 2]>> {
     };
     let mut collisions: Vec<f64> = nodes.iter().map(|&(u, _)| first(u)).collect();
     let mut found = vec![[0.0, unscattered]];
-    while found.len() < MOST {
+    while found.len() < MAX_ORDERS {
         let leaves = |end: usize| -> f64 {
             collisions.iter().zip(&escape).map(|(c, escape)| c * escape[end]).sum()
         };

@@ -4,7 +4,7 @@
 //! repeatedly towards the top: grazing light gets no deeper than μ₀ free paths, and its r is that of the top rather
 //! than the mean of a layer.
 
-use crate::collisions::particle::Odds;
+use crate::collisions::particle::EventProbabilities;
 use crate::problems::slab::Light;
 use crate::{Kernel, Mesh};
 use media::Piecewise;
@@ -14,12 +14,12 @@ use numeric::quadrature::GaussLegendre;
 /// Maximum variation of a ratio that counts as constant.
 const SAME: f64 = 1e-12;
 /// Maximum number of layers that are not averaged.
-const MOST_EXACT: usize = 16;
+const MAX_EXACT: usize = 16;
 /// Number of layers of the coarser cut where r varies, before the first is halved: the minimum, or two for each
 /// smooth panel of σ_t, up to the maximum.
 const COARSE: [usize; 2] = [12, 48];
 /// Maximum number of breaks at which layers end.
-const MOST_BREAKS: usize = 24;
+const MAX_BREAKS: usize = 24;
 /// Nodes on a smooth part of a layer.
 const NODES: usize = 6;
 /// Cosine of the light that limits the thickness of the first layer, even if no light grazes.
@@ -57,8 +57,8 @@ impl Piece {
     }
 
     /// Returns true if every collision in it is null: then no particle changes.
-    pub(super) fn is_idle(&self, odds: impl Fn(f64) -> Odds) -> bool {
-        self.ratios.iter().all(|&[_, ratio]| odds(ratio).transmit >= 1.0)
+    pub(super) fn is_idle(&self, probabilities: impl Fn(f64) -> EventProbabilities) -> bool {
+        self.ratios.iter().all(|&[_, ratio]| probabilities(ratio).transmit >= 1.0)
     }
 }
 
@@ -93,7 +93,7 @@ impl Pieces {
                 Some(last) if same(last.ratios[0][1]) => last.flown += flown,
                 _ => exact.push(Piece::of(flown, first)),
             }
-            if !is_exact || exact.len() > MOST_EXACT {
+            if !is_exact || exact.len() > MAX_EXACT {
                 return Self::Graded(graded(&cut, sampling, kinks, lights));
             }
         }
@@ -116,7 +116,7 @@ fn graded(cut: &Mesh, sampling: &Piecewise, kinks: &[f64], lights: &[Light]) -> 
     };
     let both = knots.iter().copied().chain(kinks.iter().flat_map(passed)).collect();
     let (knots, breaks) = (support.cut(knots), support.cut(both));
-    let few = [&breaks, &knots].into_iter().find(|breaks| breaks.len() <= MOST_BREAKS);
+    let few = [&breaks, &knots].into_iter().find(|breaks| breaks.len() <= MAX_BREAKS);
     let stretches = few.cloned().unwrap_or_else(|| vec![support.from, support.to]);
     let layers = (2 * cut.panels().len()).clamp(COARSE[0], COARSE[1]);
     let mut ends = vec![support.from];

@@ -10,7 +10,7 @@ use crate::colours::scatterers::{Body, Divergence, Orders};
 use crate::memo::Memo;
 use crate::problems::SpectralSlab;
 use crate::problems::slab::{Incidence, Light};
-use crate::{CountLaw, Kernel, Mesh, ParticleRule, colours, slab};
+use crate::{CountDistribution, Kernel, Mesh, ParticleRule, colours, slab};
 use media::Piecewise;
 use media::phase::Phase;
 use media::phase::isotropic::Isotropic;
@@ -129,7 +129,7 @@ impl Body for Slabs<'_> {
         Some(Orders { found, error, each: 0.0, blur: steepest * depth.error })
     }
 
-    fn lookups(&self, heroes: &[(f64, f64)]) -> Option<CountLaw> {
+    fn lookups(&self, heroes: &[(f64, f64)]) -> Option<CountDistribution> {
         let rule = ParticleRule::Analog;
         let incidence = self.slab.incidence;
         let pieces = Pieces::new(self.mesh, self.sampling, &rule.kinks(1.0), &[incidence.light]);
@@ -140,7 +140,7 @@ impl Body for Slabs<'_> {
             Some((weight, walk.lookups(&[incidence.light])?[0]))
         };
         let lookups = heroes.iter().map(walk).collect::<Option<Vec<_>>>()?;
-        colours::mixed(lookups).map(CountLaw::of_factorial)
+        colours::mixed(lookups).map(CountDistribution::of_factorial)
     }
 }
 

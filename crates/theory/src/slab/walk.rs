@@ -21,11 +21,11 @@
 
 use super::pieces::{Piece, Pieces};
 use super::{Answer, Energy, Light, Resolution, energies, factorial_moments, solve};
-use crate::collisions::particle::Odds;
+use crate::collisions::particle::EventProbabilities;
 use crate::prediction::raw::{POWERS, RawMoments};
 use crate::prediction::{Covariance, UNRESOLVED};
 use crate::problems::slab::Incidence;
-use crate::{Channel, CountLaw, Kernel, ParticleRule, Prediction, Tails, colours};
+use crate::{Channel, CountDistribution, Kernel, ParticleRule, Prediction, Tails, colours};
 use numeric::{Jet, Known, Scalar};
 
 /// The channels of a draw, in their order.
@@ -76,15 +76,15 @@ impl Walk {
         let raw = POWERS.map(|k| self.moments(k, lights, truths));
         let lookups = self.lookups(lights);
         let of = |(i, truth): (usize, &Answer)| {
-            let law = lookups.as_ref().map(|lookups| CountLaw::of_factorial(lookups[i]));
+            let law = lookups.as_ref().map(|lookups| CountDistribution::of_factorial(lookups[i]));
             let of_side = |side: usize| RawMoments(raw.each_ref().map(|all| all[i][side]));
             self.predicted(truth, [0, 1].map(of_side), law)
         };
         truths.iter().enumerate().map(of).collect()
     }
 
-    fn odds(&self, ratio: f64) -> Odds {
-        self.rule.odds(ratio, self.albedo)
+    fn probabilities(&self, ratio: f64) -> EventProbabilities {
+        self.rule.probabilities(ratio, self.albedo)
     }
 
     /// Returns true if null collisions keep the weight.
@@ -97,8 +97,8 @@ impl Walk {
     pub fn second_moment(&self) -> Existence {
         // A weight that never grows stays at 1 at most.
         let grows = |ratio: f64| {
-            let odds = self.odds(ratio);
-            odds.transmit_weight.abs() > 1.0 || odds.scatter_weight.abs() > 1.0
+            let probabilities = self.probabilities(ratio);
+            probabilities.transmit_weight.abs() > 1.0 || probabilities.scatter_weight.abs() > 1.0
         };
         let pieces = match &self.pieces {
             Pieces::Exact(pieces) | Pieces::Graded([pieces, _]) => pieces,
@@ -131,7 +131,7 @@ impl Walk {
 
     /// Kernel of the k-th moment by r, for a rate of 1.
     fn of_collisions(&self, k: i32) -> impl Fn(f64) -> Kernel + '_ {
-        move |ratio| self.odds(ratio).kernel(1.0, [1.0 - ratio, self.albedo * ratio], k)
+        move |ratio| self.probabilities(ratio).kernel(1.0, [1.0 - ratio, self.albedo * ratio], k)
     }
 
     /// `E[X_R^k]` and `E[X_T^k]` in each light; `None` where they are infinite.
@@ -183,7 +183,7 @@ impl Walk {
             return infinite();
         }
         // Draws of an analog walk are 0 or 1.
-        let is_bernoulli = self.is_tracking() && self.odds(1.0).scatter_weight == 1.0;
+        let is_bernoulli = self.is_tracking() && self.probabilities(1.0).scatter_weight == 1.0;
         if k == 1 || is_bernoulli {
             return truths.iter().map(|truth| [truth.reflected, truth.transmitted]).collect();
         }
@@ -201,8 +201,10 @@ impl Walk {
     /// Returns true if draws lie in [0, 1], as all weights do.
     fn is_share(&self) -> bool {
         let is_share = |&[_, ratio]: &[f64; 2]| {
-            let odds = self.odds(ratio);
-            [odds.transmit_weight, odds.scatter_weight].iter().all(|w| (0.0..=1.0).contains(w))
+            let probabilities = self.probabilities(ratio);
+            [probabilities.transmit_weight, probabilities.scatter_weight]
+                .iter()
+                .all(|w| (0.0..=1.0).contains(w))
         };
         let pieces = match &self.pieces {
             Pieces::Exact(pieces) | Pieces::Graded([_, pieces]) => pieces,
@@ -215,7 +217,7 @@ impl Walk {
         &self,
         truth: &Answer,
         raw: [RawMoments; 2],
-        lookups: Option<CountLaw>,
+        lookups: Option<CountDistribution>,
     ) -> Prediction {
         let truths = [truth.reflected, truth.transmitted];
         let channels = [0, 1].map(|i| {
@@ -248,8 +250,8 @@ impl Walk {
     fn marked<S: Scalar>(&self) -> Option<Vec<Kernel<S>>> {
         let Pieces::Exact(pieces) = &self.pieces else { return None };
         // A layer of null collisions only has infinitely many of them along it.
-        let odds = |ratio: f64| self.odds(ratio);
-        let is_idle = pieces.is_empty() || pieces.iter().any(|piece| piece.is_idle(odds));
+        let probabilities = |ratio: f64| self.probabilities(ratio);
+        let is_idle = pieces.is_empty() || pieces.iter().any(|piece| piece.is_idle(probabilities));
         let marked = |piece: &Piece| {
             let counts = self.of_collisions(0);
             piece.kernel(|ratio| Kernel { score: 1.0, ..counts(ratio) }).marked()

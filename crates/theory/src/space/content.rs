@@ -22,9 +22,9 @@ use numeric::{Known, Span};
 /// Relative difference of two resolutions at which no third is needed.
 const AGREED: f64 = 1e-13;
 /// Maximum number of chords of one resolution.
-pub const MOST_CHORDS: f64 = 3e5;
+pub const MAX_CHORDS: f64 = 3e5;
 /// Maximum number of pieces that all chords of one resolution may have: those of noise are many.
-const MOST_PIECES: f64 = 6e5;
+const MAX_PIECES: f64 = 6e5;
 /// Minimum number of steps between resolutions: a single one has no information where there are kinks.
 const LEAST_STEPS: usize = 2;
 /// Nodes of a panel of θ.
@@ -34,14 +34,14 @@ const ROWS: usize = 4;
 
 /// `∫σ_t dV` over a volume; `None` for one without bounds.
 pub fn content(volume: &Volume) -> Option<Known> {
-    by_chords(volume, MOST_CHORDS)
+    by_chords(volume, MAX_CHORDS)
 }
 
 /// `∫σ_t dV` with a maximum number of chords in a resolution; `None` for a volume without bounds.
 pub fn by_chords(volume: &Volume, most: f64) -> Option<Known> {
     let within = volume.bounds().enclosing_box()?;
     let height = within.high.0[2] - within.low.0[2];
-    let most = most.min(MOST_PIECES / (1.0 + volume.facts().pieces_per_length * height));
+    let most = most.min(MAX_PIECES / (1.0 + volume.facts().pieces_per_length * height));
     let mut chords = Chords::new(volume, &within);
     if matches!(chords, Chords::Box(_, true)) && chords.count(2) > most {
         // Cells that are finer than chords need no cuts.

@@ -277,7 +277,7 @@ mod tests {
         assert!((bound / expected - 1.0).abs() < 1e-9, "{bound}");
     }
 
-    /// The other method searches v, `Q₂ + S₂` and v/ℓ on a grid, by the odds themselves.
+    /// The other method searches v, `Q₂ + S₂` and v/ℓ on a grid, by the probabilities themselves.
     #[test]
     fn no_point_of_a_grid_exceeds_the_suprema_and_some_reach_them() {
         let share = |i: u32| f64::from(i) / 400.0;
@@ -294,8 +294,9 @@ mod tests {
                     for (i, j) in (1..=400).flat_map(|i| (0..=40).map(move |j| (i, 10 * j))) {
                         let ratio = most * if i % 2 == 0 { share(i) } else { squared(i) };
                         let a = albedo[0] + (albedo[1] - albedo[0]) * share(j);
-                        let odds = rule.odds(ratio, a);
-                        let kept = odds.kernel(1.0, [1.0 - ratio, a * ratio], 2).after(1.0, 1.0);
+                        let probabilities = rule.probabilities(ratio, a);
+                        let kept =
+                            probabilities.kernel(1.0, [1.0 - ratio, a * ratio], 2).after(1.0, 1.0);
                         let spread = kept - (1.0 - (1.0 - a) * ratio).powi(2);
                         let relative = match 1.0 - kept {
                             _ if spread <= 1e-11 => 0.0,

@@ -6,7 +6,7 @@ use super::content;
 use super::energy::Walks;
 use super::infinite;
 use crate::problems::{InfiniteMedium, Lambertian, MultipleScattering};
-use crate::{Channel, CountLaw, Moments, Prediction, Tails};
+use crate::{Channel, CountDistribution, Moments, Prediction, Tails};
 use numeric::{Grade, Known};
 
 /// Relative rounding error of a sum over the collisions of a walk.
@@ -45,7 +45,7 @@ pub fn sky(problem: &MultipleScattering) -> Prediction {
     }
     let seen = problem.background();
     let channel = Channel::unbiased(Known::exact(seen), Moments::certain(seen), Tails::LIGHT);
-    Prediction::single(channel, CountLaw::always(0.0))
+    Prediction::single(channel, CountDistribution::always(0.0))
 }
 
 /// Channels of walks under light from all sides, in their order; collisions follow path lengths.
@@ -141,11 +141,11 @@ pub fn infinite(problem: &InfiniteMedium, end: Option<f64>, ratio: Option<f64>) 
         let moments = geometric(1.0 / end, end);
         let (variance, kurtosis) = (moments.variance(), moments.kurtosis().unwrap_or(1.0));
         if variance <= 0.0 {
-            return CountLaw::always(1.0);
+            return CountDistribution::always(1.0);
         }
         let (mean, error, pmf) = (1.0 / end, infinite::ROUNDING, Vec::new());
         let moments_error = error;
-        CountLaw { mean, variance, error, moments_error, kurtosis, poisson: false, pmf }
+        CountDistribution { mean, variance, error, moments_error, kurtosis, poisson: false, pmf }
     };
     Prediction { channels, lookups: end.map(law), ..Prediction::default() }
 }

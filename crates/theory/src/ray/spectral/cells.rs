@@ -3,7 +3,7 @@
 use super::{RARE, Spectrum};
 
 /// Maximum number of atoms of the distribution of MIS with delta tracking.
-const MOST_ATOMS: usize = 300_000;
+const MAX_ATOMS: usize = 300_000;
 /// Maximum difference of extinctions, relative to the majorant, that count as one constant.
 const CONSTANT: f64 = 1e-13;
 
@@ -101,7 +101,7 @@ pub fn balanced(cells: &[Cell], begin: Vec<f64>, heroes: &[f64]) -> Option<Vec<(
                 m += 1.0;
                 measure *= length / m;
                 density.iter_mut().zip(direction).for_each(|(p, d)| *p *= d);
-                if longer.len() > MOST_ATOMS {
+                if longer.len() > MAX_ATOMS {
                     return None;
                 }
             }

@@ -3,11 +3,11 @@
 use super::{Spectrum, Tracker};
 use crate::prediction::raw;
 use crate::ray::survival::Survival;
-use crate::{CountLaw, Mesh, colours};
+use crate::{CountDistribution, Mesh, colours};
 
 impl Spectrum {
     /// Distribution of the lookups of a draw, mixed over heroes.
-    pub(super) fn lookups(&self) -> CountLaw {
+    pub(super) fn lookups(&self) -> CountDistribution {
         let flown = |channel: usize| self.majorants[channel] * self.length();
         let own = |channel: usize, delta: bool| {
             if delta {
@@ -21,14 +21,14 @@ impl Spectrum {
             Tracker::Independent { delta } | Tracker::Hero { delta } | Tracker::Mis { delta } => {
                 let is_same = (1..self.channels()).all(|c| self.majorants[c] == self.majorants[0]);
                 if !delta && is_same {
-                    return CountLaw::poisson(flown(0));
+                    return CountDistribution::poisson(flown(0));
                 }
                 let heroes = self.hero.iter().enumerate();
                 let each = heroes.map(|(channel, &weight)| (weight, own(channel, delta)));
                 colours::mixed(each).unwrap_or_default()
             }
             Tracker::InTurn { delta: false } => {
-                return CountLaw::poisson((0..self.channels()).map(flown).sum());
+                return CountDistribution::poisson((0..self.channels()).map(flown).sum());
             }
             Tracker::InTurn { delta: true } => {
                 (0..self.channels()).fold([0.0; 4], |sum, channel| added(sum, own(channel, true)))
@@ -41,7 +41,7 @@ impl Spectrum {
                 })
             }
         };
-        CountLaw::of_raw(0.0, raw::of_factorial(factorial), self.mesh.relative_error())
+        CountDistribution::of_raw(0.0, raw::of_factorial(factorial), self.mesh.relative_error())
     }
 
     fn survived(&self, rate: f64, survival: impl Fn(&[f64]) -> f64) -> [f64; 4] {

@@ -5,7 +5,7 @@ use super::lookups::{Walks, of_technique};
 use super::{Combination, Connection, Rules, Scene, powers};
 use crate::prediction::raw::{HIGHEST, Powers, Raw, RawMoments, added};
 use crate::prediction::{Covariance, UNRESOLVED};
-use crate::{Channel, CountLaw, Moments, Prediction, Tails};
+use crate::{Channel, CountDistribution, Moments, Prediction, Tails};
 use numeric::Known;
 
 /// Relative rounding error of sums over grids.
@@ -140,7 +140,7 @@ fn channel(depth: Known, order: usize, [fine, rough]: [&Powers; 2], is_certain: 
 }
 
 /// Distribution of the lookups of all techniques together.
-fn lookups(scene: &Scene, rules: &Rules, ratio: f64) -> CountLaw {
+fn lookups(scene: &Scene, rules: &Rules, ratio: f64) -> CountDistribution {
     let of = |[nodes, _]: [f64; 2]| -> Raw {
         #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // a small whole number
         let grid = Grid::new(scene.depth.value, nodes as usize);
@@ -160,5 +160,5 @@ fn lookups(scene: &Scene, rules: &Rules, ratio: f64) -> CountLaw {
     };
     let [coarse, fine] = resolutions(scene.depth.value).map(of);
     let error = if fine[1] > 0.0 { ((fine[1] - coarse[1]) / fine[1]).abs() } else { 0.0 };
-    CountLaw::of_raw(0.0, fine, error)
+    CountDistribution::of_raw(0.0, fine, error)
 }

@@ -16,7 +16,7 @@ use super::walk::Walk;
 use crate::light::Techniques;
 use crate::prediction::raw::{HIGHEST, POWERS, RESOLVED, RawMoments};
 use crate::problems::{LitRod, Rod};
-use crate::{Channel, CountLaw, Mesh, ParticleRule, Prediction, Tails};
+use crate::{Channel, CountDistribution, Mesh, ParticleRule, Prediction, Tails};
 use media::Piecewise;
 use numeric::Known;
 
@@ -47,11 +47,11 @@ pub fn predict(
     laws: bool,
 ) -> Prediction {
     let answer = answer(mesh, problem);
-    let found = Found::of(mesh, problem, sampling, techniques, laws);
-    let Some(Found { lookups, shadow_lookups, raw }) = found else {
+    let found = WalkMoments::of(mesh, problem, sampling, techniques, laws);
+    let Some(WalkMoments { lookups, shadow_lookups, raw }) = found else {
         return Prediction::uncounted(Channel::unbiased(answer, None, Tails::LIGHT));
     };
-    let law = CountLaw::of_factorial(lookups);
+    let law = CountDistribution::of_factorial(lookups);
     Prediction { shadow_lookups, ..Prediction::single(raw.channel(answer, RESOLVED), law) }
 }
 
@@ -74,7 +74,7 @@ pub fn lookups(
 }
 
 /// Raw moments of a draw and of its lookups.
-pub struct Found {
+pub struct WalkMoments {
     /// `E[M(M − 1)…(M − k + 1)]` of the lookups, k = 1 … 4.
     pub lookups: [Known; 4],
     /// Mean number of lookups of shadow rays, if there are any.
@@ -83,7 +83,7 @@ pub struct Found {
     pub raw: RawMoments,
 }
 
-impl Found {
+impl WalkMoments {
     /// Raw moments of walks with techniques through σ̂; `None` where theory has no answer. Without `laws` the first
     /// two only.
     pub fn of(

@@ -10,23 +10,26 @@
 
 pub mod relative;
 
-use super::Points;
+use super::TechniqueMoments;
 use crate::colours::{self, named};
 use crate::prediction::raw::Raw;
-use crate::{Channel, CountLaw, Prediction};
+use crate::{Channel, CountDistribution, Prediction};
 
 /// The lookups of the walk of a hero, mixed over heroes.
-pub fn lookups(alone: &[Points], heroes: &[f64]) -> Option<Raw> {
+pub fn lookups(alone: &[TechniqueMoments], heroes: &[f64]) -> Option<Raw> {
     let each = alone.iter().zip(heroes).map(|(points, chance)| Some((*chance, points.lookups?)));
     colours::mixed(each.collect::<Option<Vec<_>>>()?)
 }
 
 /// Prediction for one channel a draw: `E[X_λ^k] = w_λ^{1−k} E[x_λ^k]`, x a draw of that channel by itself.
-pub fn independent(alone: &[Points], heroes: &[f64]) -> Prediction {
+pub fn independent(alone: &[TechniqueMoments], heroes: &[f64]) -> Prediction {
     let lookups = lookups(alone, heroes);
     let each = alone.iter().zip(heroes).map(|(points, chance)| {
-        let mut scaled =
-            Points { lookups, eighth: points.eighth.map(|x| x / chance.powi(7)), ..*points };
+        let mut scaled = TechniqueMoments {
+            lookups,
+            eighth: points.eighth.map(|x| x / chance.powi(7)),
+            ..*points
+        };
         for (k, power) in (0..).zip(&mut scaled.powers) {
             *power *= if k > 0 { chance.powi(1 - k) } else { 1.0 };
         }
@@ -40,7 +43,7 @@ pub fn independent(alone: &[Points], heroes: &[f64]) -> Prediction {
 }
 
 /// The channels of several predictions, and the lookups of the first.
-fn joined(each: impl Iterator<Item = Prediction>) -> (Vec<Channel>, Option<CountLaw>) {
+fn joined(each: impl Iterator<Item = Prediction>) -> (Vec<Channel>, Option<CountDistribution>) {
     let (mut channels, mut lookups) = (Vec::new(), None);
     for found in each {
         lookups = lookups.or(found.lookups);
@@ -56,11 +59,11 @@ fn joined(each: impl Iterator<Item = Prediction>) -> (Vec<Channel>, Option<Count
 /// ```
 ///
 /// which is the second moment of one channel a draw.
-pub fn balanced(alone: &[Points], heroes: &[f64]) -> Prediction {
-    let of_first: Option<CountLaw> = alone.first().and_then(|first| {
-        Points { lookups: lookups(alone, heroes), ..*first }.prediction().lookups
+pub fn balanced(alone: &[TechniqueMoments], heroes: &[f64]) -> Prediction {
+    let of_first: Option<CountDistribution> = alone.first().and_then(|first| {
+        TechniqueMoments { lookups: lookups(alone, heroes), ..*first }.prediction().lookups
     });
-    let channel = |(points, chance): (&Points, &f64)| {
+    let channel = |(points, chance): (&TechniqueMoments, &f64)| {
         Channel::bounded(points.truth, points.powers[2] * (1.0 + points.error) / chance)
     };
     let channels = named(alone.iter().zip(heroes).map(channel).collect());

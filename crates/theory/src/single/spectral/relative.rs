@@ -26,7 +26,7 @@ use crate::problems::SingleScattering;
 use crate::single::predict::{LOOKUPS, MOMENT};
 use crate::single::scene::Place;
 use crate::single::segment::along_all;
-use crate::single::{Camera, CameraTracking, Points, Scene, Tracking};
+use crate::single::{Camera, CameraTracking, Scene, TechniqueMoments, Tracking};
 use crate::{Mesh, Prediction};
 use media::{Control, Medium, Piecewise};
 use numeric::quadrature::GaussLegendre;
@@ -200,7 +200,7 @@ impl<'a> Relative<'a> {
 
     /// Prediction for the draws. `alone` has the means of the channels by themselves, `of_heroes` the lookups where
     /// heroes walk.
-    pub fn predict(&self, alone: &[Points], of_heroes: Option<Raw>) -> Prediction {
+    pub fn predict(&self, alone: &[TechniqueMoments], of_heroes: Option<Raw>) -> Prediction {
         let none = Control::None;
         let camera = Camera::new(self.meshes[0], self.sampling, &none, CameraTracking::Exact);
         let scene = Scene::new(&self.channels[0], camera, Tracking::Exact, Vec::new());
@@ -215,15 +215,22 @@ impl<'a> Relative<'a> {
         let rounding = f64::EPSILON * (1.0 + ROUNDINGS * largest * length);
         let counted = [1, 2, 3, 4].map(|k| found.value[COUNTS + k - 1]);
         let lookups = of_heroes.or_else(|| self.escaped(counted));
-        let channel = |(number, own): (usize, &Points)| {
+        let channel = |(number, own): (usize, &TechniqueMoments)| {
             let [a, b, c, d] = [0, 1, 2, 3].map(|k| found.value[4 * number + k]);
             // The mean is computed twice.
             let apart = (a / own.truth.value - 1.0).abs();
             let error = (0..4).map(|k| relative(4 * number + k)).fold(rounding + apart, f64::max);
             let counted = own.counted.max(rounding);
-            Points { powers: [1.0, a, b, c, d], error, eighth: None, lookups, counted, ..*own }
+            TechniqueMoments {
+                powers: [1.0, a, b, c, d],
+                error,
+                eighth: None,
+                lookups,
+                counted,
+                ..*own
+            }
         };
-        let points: Vec<Points> = alone.iter().enumerate().map(channel).collect();
+        let points: Vec<TechniqueMoments> = alone.iter().enumerate().map(channel).collect();
         let covariance = |next: usize| {
             let of = |k: usize| [points[next - 1].powers[k], points[next].powers[k]];
             let first = 4 * (alone.len() + next - 1);
@@ -231,7 +238,7 @@ impl<'a> Relative<'a> {
             Covariance::of_raw([next - 1, next], of(1), of(2), mixed)
         };
         let covariances = (1..alone.len()).map(covariance).collect();
-        let (channels, lookups) = joined(points.iter().map(Points::prediction));
+        let (channels, lookups) = joined(points.iter().map(TechniqueMoments::prediction));
         Prediction { channels: named(channels), lookups, covariances, ..Prediction::default() }
     }
 

@@ -30,7 +30,7 @@ use crate::prediction::raw::{HIGHEST, POWERS, Powers, RESOLVED, Raw, RawMoments,
 use crate::problems::LitSlab;
 use crate::problems::lit_slab::Light;
 use crate::rod::lit::ROUNDING;
-use crate::{Channel, CountLaw, Mesh, Prediction, Tails};
+use crate::{Channel, CountDistribution, Mesh, Prediction, Tails};
 use media::Piecewise;
 use numeric::Known;
 
@@ -176,9 +176,9 @@ impl Scores {
         Known::estimated(value, (value - other).abs() + off)
     }
 
-    fn count(&self, coarse: &Self) -> CountLaw {
+    fn count(&self, coarse: &Self) -> CountDistribution {
         let [_, mean, ..] = self.lookups;
         let error = (coarse.lookups[1] - mean).abs() / mean + ROUNDING + self.error;
-        CountLaw::of_raw(0.0, self.lookups, error)
+        CountDistribution::of_raw(0.0, self.lookups, error)
     }
 }

@@ -14,7 +14,7 @@ const BEYOND: usize = 5;
 /// Minimum number of nodes: they integrate σ_t exactly where it is cubic in `r²`.
 const FEWEST: usize = 9;
 /// Maximum number of nodes.
-pub(super) const MOST: usize = 32;
+pub(super) const MAX_NODES: usize = 32;
 
 /// A ball with a radial extinction.
 #[derive(Clone, Copy)]
@@ -92,8 +92,8 @@ impl Ball<'_> {
         let guess = (self.extinction)(offset2 + middle * middle) * (to - from);
         let parts = (guess / SMOOTH).ceil().clamp(1.0, 64.0);
         let length = (to - from) / parts;
-        let [mut places, mut sigma, mut shares] = [[0.0; MOST]; 3];
-        let count = rule.nodes.len().min(MOST);
+        let [mut places, mut sigma, mut shares] = [[0.0; MAX_NODES]; 3];
+        let count = rule.nodes.len().min(MAX_NODES);
         let (places, sigma) = (&mut places[..count], &mut sigma[..count]);
         let shares = &mut shares[..count];
         for part in 0..whole(parts) {

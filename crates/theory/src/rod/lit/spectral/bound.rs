@@ -36,7 +36,7 @@ use numeric::Known;
 /// Maximum rest of the sum, relative to the terms before it.
 const ENOUGH: f64 = 1e-6;
 /// Maximum number of vertices.
-const MOST: usize = 4000;
+const MAX_VERTICES: usize = 4000;
 
 /// A bound on `w_λ E[X_λ²]` of one channel with its σ̂; `None` where theory has no line for it.
 pub fn weighted_square(
@@ -69,7 +69,7 @@ fn spread(line: &Line, techniques: Techniques) -> Option<f64> {
     let mut before = real.solve(last, [0.0; 2]);
     let mut here = earlier(&before);
     let (mut sum, mut most) = (0.0, 0.0f64);
-    for _ in 0..MOST {
+    for _ in 0..MAX_VERTICES {
         let own = root(&before);
         sum += own;
         most = most.max(own);

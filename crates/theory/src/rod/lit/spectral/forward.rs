@@ -21,7 +21,7 @@ use crate::prediction::raw::{POWERS, RawMoments, of_factorial};
 use crate::problems::SpectralLitRod;
 use crate::ray::spectral::cells::{balanced, join};
 use crate::ray::spectral::lookups::survived;
-use crate::{CountLaw, Mesh};
+use crate::{CountDistribution, Mesh};
 use media::Piecewise;
 use numeric::Known;
 
@@ -184,7 +184,7 @@ impl Forward {
     }
 
     /// The lookups of spectral tracking; `None` where they are those of heroes.
-    pub fn lookups(&self, chances: Chances) -> Option<CountLaw> {
+    pub fn lookups(&self, chances: Chances) -> Option<CountDistribution> {
         let weights = vec![1.0; self.heroes.len()];
         let survival = |node: usize| {
             let shares = self.shares(node);
@@ -195,6 +195,6 @@ impl Forward {
             return None;
         }
         let factorial = survived(&self.mesh, self.majorants[0], survival);
-        Some(CountLaw::of_raw(0.0, of_factorial(factorial), self.mesh.relative_error()))
+        Some(CountDistribution::of_raw(0.0, of_factorial(factorial), self.mesh.relative_error()))
     }
 }

@@ -18,14 +18,14 @@ pub mod orders;
 
 use self::forward::Forward;
 use self::orders::Orders;
-use super::Found;
+use super::WalkMoments;
 use crate::colours::{self, Chances};
 use crate::light::{Combination, Densities, Heuristic, Shadow, Techniques};
 use crate::prediction::Covariance;
 use crate::prediction::raw::{RESOLVED, RawMoments};
 use crate::problems::SpectralLitRod;
 use crate::rod::lit;
-use crate::{Channel, CountLaw, Mesh, Prediction, Tails};
+use crate::{Channel, CountDistribution, Mesh, Prediction, Tails};
 use media::Piecewise;
 use numeric::Known;
 
@@ -100,21 +100,21 @@ impl<'a> Spectrum<'a> {
     /// Prediction for a draw. Without `laws`, as for lines in plots, only variances and mean lookups are valid.
     pub fn predict(&self, laws: bool) -> Prediction {
         let techniques = self.tracker.techniques();
-        let found: Option<Vec<Found>> = self
+        let found: Option<Vec<WalkMoments>> = self
             .media
             .iter()
             .zip(&self.problem.rods)
-            .map(|((mesh, sampling), rod)| Found::of(mesh, rod, sampling, techniques, laws))
+            .map(|((mesh, sampling), rod)| WalkMoments::of(mesh, rod, sampling, techniques, laws))
             .collect();
         let forward = Forward::new(self.problem, &self.media, &self.heroes);
         let lookups = match (self.tracker, &forward) {
             (Tracker::Tracking(chances), Some(forward)) => forward.lookups(chances),
             _ => None,
         };
-        let of_heroes = |found: &Vec<Found>| {
+        let of_heroes = |found: &Vec<WalkMoments>| {
             let factorial = found.iter().map(|found| found.lookups);
             let mixed = colours::mixed(self.heroes.iter().copied().zip(factorial));
-            mixed.map(CountLaw::of_factorial)
+            mixed.map(CountDistribution::of_factorial)
         };
         let lookups = lookups.or_else(|| found.as_ref().and_then(of_heroes));
         let shadow_lookups = found.as_ref().and_then(|found| {
@@ -169,7 +169,7 @@ impl<'a> Spectrum<'a> {
     }
 
     /// Moments of one channel a draw; for a single channel, those of every tracker.
-    fn independent(&self, found: &[Found]) -> Moments {
+    fn independent(&self, found: &[WalkMoments]) -> Moments {
         let raw = self.heroes.iter().zip(found);
         let raw = raw.map(|(&weight, found)| colours::independent(&found.raw, weight));
         Moments { raw: raw.collect(), mixed: vec![[0.0; 4]; self.channels() - 1] }

@@ -38,7 +38,7 @@ use numeric::Known;
 /// Maximum probability of orders of scattering that are left out.
 const RARE: f64 = 1e-11;
 /// Maximum number of orders of scattering.
-const MOST: usize = 160;
+const MAX_ORDERS: usize = 160;
 /// Powers of a channel with computed moments: to the eighth, or to the second alone.
 const POWERS_OF_ONE: [usize; 2] = [2, HIGHEST];
 
@@ -93,7 +93,7 @@ impl<'a> Orders<'a> {
         let needed = channels
             .map(|(&albedo, &forward)| spectral::orders_above(depth, albedo, forward, RARE));
         let count = needed.fold(0, usize::max);
-        (count <= MOST).then_some(Self { problem, albedos, mesh, heroes, techniques, count })
+        (count <= MAX_ORDERS).then_some(Self { problem, albedos, mesh, heroes, techniques, count })
     }
 
     /// `E[X^k]` of each channel with absolute errors for k = 1, 2, 3, 4 and 8, and mixed moments of each channel and

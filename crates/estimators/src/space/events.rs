@@ -3,12 +3,12 @@
 use media::phase::Phase;
 use numeric::Lane;
 use numeric::rng::Random;
-use theory::collisions::particle::Odds;
+use theory::collisions::particle::EventProbabilities;
 
 /// Events of a walk, each of which a known bug may replace.
 pub trait WalkEvents: Copy {
-    /// The odds at collisions of the given ratio `σ_t/σ̂` and albedo.
-    fn odds<L: Lane>(&self, ratio: L, albedo: L) -> Odds<L>;
+    /// The probabilities at a collision of a given ratio `σ_t/σ̂` and albedo.
+    fn probabilities<L: Lane>(&self, ratio: L, albedo: L) -> EventProbabilities<L>;
 
     /// Lanes of `goes_on` that survive roulette, with their weights.
     fn survive<L: Lane>(
