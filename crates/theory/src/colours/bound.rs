@@ -99,7 +99,7 @@ pub struct Unbounded {
     pub walk: Proposal,
     /// Number of the channel.
     pub channel: usize,
-    /// Reason why there is none.
+    /// Reason for a missing bound.
     pub reason: Reason,
 }
 
