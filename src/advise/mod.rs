@@ -146,6 +146,8 @@ pub fn advise(spec: &Spec, request: &Request) -> Result<Advice, CaseError> {
         let rule = |row: &Row| candidates::rule(&study.texts[row.candidate]);
         let asked = rows.iter().filter_map(|row| Some((row, rule(row)?)));
         let asked = asked.filter(|(_, rule)| (*rule == Collisions::Weight) == is_weight);
+        // A σ̂ cannot gain where draws are exact.
+        let asked = asked.filter(|(row, _)| row.score.variance > 0.0);
         let asked = asked.min_by(|a, b| a.0.goal.total_cmp(&b.0.goal));
         let Some((best, rule)) = asked else { continue };
         let Some((profile, text)) = profile::of(&study, &rows, best, rule) else { continue };

@@ -73,6 +73,10 @@ pub fn of(study: &Study, rows: &[Row], row: &Row, rule: Collisions) -> Option<(P
     let own = steps.work(rule.rule(), &values);
     // Where one draw is enough, the advised constant is not that of the least V·cost.
     let of_constant = Goal::new(|x| steps.work(rule.rule(), &[x; STEPS]));
+    let start = match rule {
+        Collisions::Weight => steps.start(&[1.0; STEPS]),
+        Collisions::Single(_) => start,
+    };
     let (_, constant, _) = of_constant.best(start, 1)?;
     drop(of_constant);
     // The same walk with local majorants, at the same price.
@@ -146,10 +150,13 @@ impl Steps {
         let roots = self.roots();
         let scaled = |kappa: f64| roots.iter().map(|root| kappa * root).collect::<Vec<f64>>();
         let goal = Goal::new(|kappa| self.work(&Weight, &scaled(kappa)));
-        // Where walks cost as much as what is fixed.
-        let walk: f64 = roots.iter().map(|root| self.price[1] * self.width * root).sum();
-        let start = (self.price[0] + self.price[1]) / walk;
-        goal.best(start, 1).map(|(kappa, ..)| scaled(kappa))
+        goal.best(self.start(&roots), 1).map(|(kappa, ..)| scaled(kappa))
+    }
+
+    /// κ for which a walk through `κ · profile` costs as much as what is fixed, and a lookup.
+    fn start(&self, profile: &[f64]) -> f64 {
+        let walk: f64 = profile.iter().map(|value| self.price[1] * self.width * value).sum();
+        (self.price[0] + self.price[1]) / walk
     }
 
     /// Improves the steps one by one.

@@ -57,9 +57,9 @@ const MEDIA: [(&str, &str); 10] = [
     ),
 ];
 /// Densities.
-const DENSITIES: [f64; 4] = [0.3, 1.0, 3.0, 6.0];
+const DENSITIES: [f64; 4] = [0.5, 2.0, 4.5, 8.0];
 /// Density at which the variance of the advised estimator is compared with draws.
-const DRAWN: f64 = 1.0;
+const DRAWN: f64 = 2.0;
 /// Factors on the advised σ̂ of each estimator that are measured, the advised one in the middle.
 const FACTORS: [f64; 5] = [0.5, 0.7, 1.0, 1.4, 2.0];
 /// Predicted time over the least up to which all estimators are measured.
