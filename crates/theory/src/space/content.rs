@@ -231,11 +231,13 @@ fn cuts(volume: &Volume, within: &Aabb, axis: usize) -> Vec<f64> {
 /// Nodes and weights of Gauss' rule in n panels between each two ends.
 fn nodes(count: usize, n: usize, ends: &[f64]) -> Vec<[f64; 2]> {
     let rule = GaussLegendre::new(count);
+    // The difference of two rounded ends would have fewer digits than the width.
     let panels = Span::between(ends).flat_map(|span| {
         let width = span.length() / n as f64;
-        (0..n).map(move |i| span.from + width * i as f64).map(move |x| Span::new(x, x + width))
+        (0..n).map(move |i| (span.from + width * i as f64, Span::new(0.0, width)))
     });
-    panels.flat_map(|panel| rule.on(panel)).map(|(x, weight)| [x, weight]).collect()
+    let of_panel = |(from, panel)| rule.on(panel).map(move |(x, weight)| [from + x, weight]);
+    panels.flat_map(of_panel).collect()
 }
 
 /// The optical depth of a chord.
