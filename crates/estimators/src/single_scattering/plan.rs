@@ -39,7 +39,7 @@ pub struct Plan {
 /// Choice of scattering points.
 #[derive(Debug, Clone, Copy)]
 pub enum Technique {
-    /// TechniqueMoments that are chosen one after the other.
+    /// Points that are chosen one after the other.
     Vertices(Vertices),
     /// All interaction points of a walk.
     Interactions,

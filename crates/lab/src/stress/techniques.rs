@@ -46,7 +46,7 @@ pub struct Estimator<'a> {
     pub walk: [f64; 2],
     /// Transmittance of shadow rays.
     pub tracking: Tracking,
-    /// TechniqueMoments that share a walk.
+    /// Points that share a walk.
     pub count: usize,
 }
 
