@@ -151,6 +151,7 @@ impl Prices {
         }
     }
 }
+
 /// Returns the file of a medium on this machine.
 fn file(folder: &Path, spec: &Spec) -> PathBuf {
     let medium = spec.with_problem(|settings| {

@@ -117,7 +117,7 @@ fn listed(problem: &Settings, volume: &Volume, about: &Aabb) -> Option<Vec<Ray>>
     rays.into_iter().collect()
 }
 
-/// Returns random rays that hit the volume: a given number of lines, or what the case says of their number and `camera`.
+/// Returns random rays that hit the volume: a given number of lines, or by number and `camera` of the case.
 fn random(
     problem: &Settings,
     volume: &Volume,

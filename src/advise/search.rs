@@ -163,7 +163,11 @@ impl<'a> Goal<'a> {
             if (above(place) / slope).abs() < 0.2 * TOLERANCE && slope.is_finite() {
                 return (place - from).exp();
             }
-            *(if above(place) > 0.0 { &mut outside } else { &mut inside }) = place;
+            if above(place) > 0.0 {
+                outside = place;
+            } else {
+                inside = place;
+            }
             is_secant = !is_secant;
         }
         (inside - from).exp()
@@ -178,6 +182,7 @@ pub fn up(x: f64) -> f64 {
     // A product of a whole number and a power of ten has rounding in its last digits.
     format!("{rounded:.11e}").parse().unwrap_or(x)
 }
+
 #[cfg(test)]
 mod tests {
     use super::*;

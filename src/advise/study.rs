@@ -350,6 +350,7 @@ impl<'a> Study<'a> {
         })
     }
 }
+
 /// Returns the free quantity of each candidate: a constant σ̂, or a factor on σ̂.
 fn free(cases: &[Case], probes: &[usize], texts: &[String]) -> Vec<Option<Free>> {
     let mut scales: BTreeMap<String, (f64, usize)> = BTreeMap::new();
