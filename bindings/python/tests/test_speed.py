@@ -11,15 +11,29 @@ import speed
 import trueflight as tf
 
 
+def moments(array):
+    """Mean, variance and fourth central moment, as one writes them in NumPy."""
+    mean = array.mean()
+    return mean, array.var(), ((array - mean) ** 4).mean()
+
+
+def seconds(of):
+    """Seconds of one processor."""
+    begin = time.process_time()
+    of()
+    return time.process_time() - begin
+
+
 @pytest.mark.parametrize("words", ["truth alone", "truth and variance"])
-def test_an_array_is_judged_at_200_mb_a_second_of_a_processor(words):
+def test_an_array_is_judged_faster_than_numpy_finds_its_moments(words):
     array = np.random.default_rng(1).random(speed.COUNT)
-    times = []
-    for _ in range(3):
-        begin = time.process_time()
-        tf.check(array, **speed.KNOWN[words])
-        times.append(time.process_time() - begin)
-    assert array.nbytes / min(times) > 200e6
+    # In turn: other work on the machine slows both.
+    turns = [
+        (seconds(lambda: tf.check(array, **speed.KNOWN[words])), seconds(lambda: moments(array)))
+        for _ in range(3)
+    ]
+    judged, plain = (min(times) for times in zip(*turns, strict=True))
+    assert judged < plain
 
 
 @pytest.mark.parametrize("dtype", [np.float64, np.float32])
