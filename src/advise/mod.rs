@@ -18,7 +18,7 @@
 //! | `rays = { random, camera }` | rays of this number of pixels of a `camera`, as in a picture | |
 //! | `rays = [{ origin, direction, length }, …]` | these | `length`: through the whole volume |
 //!
-//! `docs/advise.md` explains the table and derives the best σ̂ along a ray.
+//! `docs/advise.md` explains the table; `docs/variance.md` derives the best σ̂ along a ray.
 
 pub mod candidates;
 pub mod costs;
