@@ -93,6 +93,4 @@ mod manual {
     struct Library;
     #[doc = include_str!("../docs/extending.md")]
     struct Extending;
-    #[doc = include_str!("../docs/first-bug.md")]
-    struct FirstBug;
 }

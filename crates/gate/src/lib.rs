@@ -11,3 +11,8 @@ pub mod stats;
 pub use numeric::rng;
 
 pub use check::{Check, Gate, check, check_with, claim};
+
+/// Compiles the example of the manual that needs this crate only.
+#[cfg(doctest)]
+#[doc = include_str!("../../../docs/first-bug.md")]
+struct FirstBug;
