@@ -16,7 +16,7 @@ def blocks(path):
     return [part.split("```")[0] for part in parts]
 
 
-@pytest.mark.parametrize("page, least", [("docs/python.md", 4), ("docs/gpu.md", 1), ("bindings/python/README.md", 1)])
+@pytest.mark.parametrize("page, least", [("docs/python.md", 4), ("docs/gpu.md", 1), ("docs/images.md", 1), ("bindings/python/README.md", 1)])
 def test_examples_run_from_top_to_bottom(page, least, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     monkeypatch.setitem(sys.modules, "cupy", cupy())
