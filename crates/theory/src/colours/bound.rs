@@ -11,12 +11,27 @@
 //! directions after a scattering are isotropic, e is a mean over them. Where α varies, S/α and `A_b/α` stand for S
 //! and `A_b`, and `1 − e` for f. Where `S Φ f ≥ 1` the variance may be infinite or finite.
 //!
+//! Where extinctions lie in intervals, α and S are largest where the channel's own extinction is at its upper end and
+//! those of the others are at their lower ends, and α is smallest at the opposite ends: with `n = μ̄ − σ_t` and
+//! `r = σ_t/μ̄`,
+//!
+//! ```text
+//! hero h     α = 2μ̄_λ − μ̄_h − n_λ²/n_h,  S = (a_λ σ_λ)²/(a_h σ_h):  both rise with σ_λ and fall with σ_h
+//! average    ∂α/∂r_λ = μ̄ (1 − r_λ) (2 − (1 − r_λ)/Σ(1 − r))/P_n > 0,  S likewise;  P_n falls and P_s rises with each r
+//! maximum    N = μ̄ (1 − r_λ)² (1 + (P_s + P_a)/P_n) falls with r_λ and rises with the others
+//!            S = μ̄ (a_λ r_λ)² (1 + (P_n + P_a)/P_s) rises with r_λ;  P_n and 1/P_s, not P_a, fall with the others
+//! ```
+//!
+//! By the maximum S is therefore at most that value times the largest ratio of both ends of another channel's interval.
+//!
 //! Source: derived; the equation of the second moment is that of J. Spanier, E. M. Gelbard, *Monte Carlo Principles and
 //! Neutron Transport Problems* (1969).
 
+use super::Chance;
 use super::rates::{Proposal, Rates};
 use media::phase::Phase;
 use media::phase::isotropic::Isotropic;
+use numeric::Span;
 use numeric::quadrature::GaussLegendre;
 
 /// Number of halvings of the panels of the integral over directions, towards straight on and straight back.
@@ -55,6 +70,30 @@ pub fn square(
         scattered: scattered * phi,
         absorbed: rates.absorbed(walk, &k, extinctions),
     }
+}
+
+/// Lower bound of α, upper bound of α, and upper bound of S Φ, where the extinction of each channel lies in an interval.
+pub fn square_within(
+    rates: &Rates,
+    walk: Proposal,
+    channel: usize,
+    extinctions: &[Span],
+    phi: f64,
+) -> [f64; 3] {
+    let corner = |own: fn(&Span) -> f64, other: fn(&Span) -> f64| {
+        let at = |(i, span): (usize, &Span)| if i == channel { own(span) } else { other(span) };
+        let at: Vec<f64> = extinctions.iter().enumerate().map(at).collect();
+        square(rates, walk, channel, &at, phi)
+    };
+    let [low, high] = [corner(|x| x.from, |x| x.to), corner(|x| x.to, |x| x.from)];
+    let others = extinctions.iter().enumerate().filter(|&(i, x)| i != channel && x.to > 0.0);
+    let growth = match walk {
+        Proposal::Together(Chance::Maximum) => {
+            others.map(|(_, x)| x.to / x.from).fold(1.0, f64::max)
+        }
+        _ => 1.0,
+    };
+    [low.lost, high.lost, if high.scattered == 0.0 { 0.0 } else { high.scattered * growth }]
 }
 
 /// Second moments of the ends of a flight: e, and f.
@@ -177,8 +216,8 @@ pub fn phi(own: &Phase, hero: &Phase) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::colours::Chance;
     use media::phase::henyey_greenstein::HenyeyGreenstein;
+    use numeric::rng::{Address, unit};
 
     /// g of a channel and of a hero, and Φ.
     const PEAKED: [(f64, f64, f64); 4] = [
@@ -242,6 +281,34 @@ mod tests {
         ] {
             let found = common.lost_by_square(walk, 1, &thin);
             assert!((found / exact - 1.0).abs() < 1e-14, "{walk:?}: {found} for {exact}");
+        }
+    }
+
+    /// Random points of random boxes of extinctions.
+    #[test]
+    fn rates_in_a_box_are_within_those_of_its_corners() {
+        let mut random = Address { seed: 1, experiment: 2, block: 3, lane: 0 }.pilot();
+        let mut uniform = || unit(&mut random);
+        for _ in 0..20_000 {
+            let [albedos, majorants] = [(); 2].map(|()| [(); 3].map(|()| 0.05 + 0.95 * uniform()));
+            let common = uniform() < 0.7;
+            let majorants = if common { [majorants[0]; 3] } else { majorants };
+            let rates = Rates { majorants: majorants.to_vec(), albedos: albedos.to_vec() };
+            let within = majorants.map(|majorant| {
+                let ends = [(); 2].map(|()| 0.99 * majorant * uniform());
+                Span::new(ends[0].min(ends[1]), ends[0].max(ends[1]))
+            });
+            let point = within.map(|span| span.from + span.length() * uniform());
+            let together = [Chance::Average, Chance::Maximum].map(Proposal::Together);
+            let alone = [0, 1, 2].map(Proposal::Hero);
+            for walk in alone.into_iter().chain(together.into_iter().filter(|_| common)) {
+                let found = square(&rates, walk, 1, &point, 1.3);
+                let [least, most, scattered] = square_within(&rates, walk, 1, &within, 1.3);
+                let slack = 1e-12 * (1.0 + found.lost.abs());
+                let context = format!("{walk:?}, {rates:?}, {within:?}, {point:?}");
+                assert!(least <= found.lost + slack && found.lost <= most + slack, "{context}");
+                assert!(found.scattered <= scattered * (1.0 + 1e-12), "{context}");
+            }
         }
     }
 

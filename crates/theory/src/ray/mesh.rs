@@ -17,6 +17,14 @@ const TAIL: f64 = 1e-13;
 const NOISE: f64 = 1e-9;
 /// Maximum number of panels of an adaptive mesh: a function that needs more contains noise.
 const MAX_PANELS: usize = 50_000;
+/// Rounding of a polynomial through nodes, relative to its largest value.
+const ROUNDING: f64 = 16.0 * f64::EPSILON;
+/// Distance between an upper bound of a function and its largest value, relative to that.
+const TIGHT: f64 = 0.01;
+/// Shortest part of a panel with a bound of its own, relative to the support.
+const SHORTEST: f64 = 1e-12;
+/// Maximum number of halvings for one bound, which then is not as tight.
+const MAX_HALVINGS: usize = 100_000;
 /// Maximum number of halvings of one panel.
 const HALVINGS: u32 = 40;
 
@@ -30,7 +38,8 @@ const HALVINGS: u32 = 40;
 pub struct Mesh {
     medium: Medium,
     rule: GaussLegendre,
-    tails: [Vec<f64>; 2],
+    /// Weights that turn node values into each Legendre coefficient.
+    legendre: Vec<Vec<f64>>,
     panels: Vec<Span>,
     t: Vec<f64>,
     extinction: Vec<f64>,
@@ -89,9 +98,9 @@ impl Mesh {
 
     fn without_panels(medium: Medium, nodes: usize, adaptive: bool) -> Self {
         let rule = GaussLegendre::new(nodes);
-        let tails = [legendre_row(&rule, nodes - 1), legendre_row(&rule, nodes - 2)];
+        let legendre = (0..nodes).map(|order| legendre_row(&rule, order)).collect();
         let (panels, t, extinction) = (Vec::new(), Vec::new(), Vec::new());
-        Self { medium, rule, tails, panels, t, extinction, adaptive, error: 0.0, depth: None }
+        Self { medium, rule, legendre, panels, t, extinction, adaptive, error: 0.0, depth: None }
     }
 
     /// Cuts the support into equal panels of 16 nodes, ignoring the breaks of the medium: a quick look at a field
@@ -138,7 +147,7 @@ impl Mesh {
         let mut fine = Self {
             medium: self.medium.clone(),
             rule: self.rule.clone(),
-            tails: self.tails.clone(),
+            legendre: self.legendre.clone(),
             panels: Vec::with_capacity(self.panels.len()),
             t: Vec::with_capacity(self.t.len()),
             extinction: Vec::with_capacity(self.t.len()),
@@ -257,7 +266,8 @@ impl Mesh {
     fn tails(&self, functions: &[Vec<f64>], parent: &[Tail]) -> Vec<Tail> {
         let tail = |(i, f): (usize, &Vec<f64>)| {
             let largest = f.iter().fold(0.0f64, |m, x| m.max(x.abs()));
-            let size = self.tails.iter().map(|row| dot(row, f).abs()).fold(0.0, f64::max);
+            let highest = self.legendre.iter().rev().take(2);
+            let size = highest.map(|row| dot(row, f).abs()).fold(0.0, f64::max);
             Tail { scale: parent.get(i).map_or(largest, |tail| tail.scale.max(largest)), size }
         };
         functions.iter().enumerate().map(tail).collect()
@@ -391,6 +401,52 @@ impl Mesh {
             }
         }
         peaks
+    }
+
+    /// Interval that holds σ_t on a part of a panel, from the Legendre coefficients c of its polynomial:
+    ///
+    /// ```text
+    /// |σ_t − c₀| ≤ Σ |c_k|,  k ≥ 1
+    /// ```
+    ///
+    /// The two highest coefficients count twice: they stand for those that are left out. For a medium that is a
+    /// polynomial between its breaks the bound is exact up to rounding, which is added.
+    pub fn extremes(&self, part: Span) -> Span {
+        let values = self.medium.extinctions(&self.nodes(part));
+        let largest = values.iter().copied().fold(0.0, f64::max);
+        if values.iter().all(|&value| value == largest) {
+            return Span::new(largest, largest);
+        }
+        let coefficients: Vec<f64> = self.legendre.iter().map(|row| dot(row, &values)).collect();
+        let left_out = coefficients.iter().rev().take(2);
+        let sizes = coefficients.iter().skip(1).chain(left_out).map(|c| c.abs());
+        let spread = sizes.sum::<f64>() + ROUNDING * largest;
+        Span::new((coefficients[0] - spread).max(0.0), coefficients[0] + spread)
+    }
+
+    /// Upper bound of a function over all panels: `at` returns its value at a distance, and `within` an upper bound on
+    /// a part of a panel.
+    ///
+    /// Panels are halved until the bound is at most 1 % above the largest value that was met. Parts of 1e-12 of the
+    /// support, next to a place where the function is a limit, count with the value in their middle.
+    pub fn supremum(&self, at: impl Fn(f64) -> f64, within: impl Fn(Span) -> f64) -> f64 {
+        let mut largest = self.t.iter().map(|&t| at(t)).fold(f64::NEG_INFINITY, f64::max);
+        let mut bound = largest;
+        let mut parts = self.panels.clone();
+        let mut halvings = 0;
+        while let Some(part) = parts.pop() {
+            let highest = within(part);
+            if highest <= largest + TIGHT * largest.abs() || halvings == MAX_HALVINGS {
+                bound = bound.max(highest);
+                continue;
+            }
+            largest = largest.max(at(part.middle()));
+            if part.length() > SHORTEST * self.support().length() {
+                parts.extend(part.halves());
+                halvings += 1;
+            }
+        }
+        bound.max(largest)
     }
 
     /// τ over the support.
