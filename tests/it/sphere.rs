@@ -1,6 +1,8 @@
 //! Balls against reference values that were computed by other means: escape probabilities, radiances under an
 //! environment, a black light sphere and a point source, and draws of all of them.
 
+mod point;
+
 use serde::Deserialize;
 
 use crate::common::{case, judged, none, options, predicted, rows};
@@ -8,7 +10,7 @@ use trueflight::plan::Plan;
 use trueflight::record::Verdict;
 use trueflight::theory::space::sphere::ball::Ball;
 use trueflight::theory::space::sphere::shells::{Centre, Resolution};
-use trueflight::theory::space::sphere::{Lights, Observable, answers, point};
+use trueflight::theory::space::sphere::{Lights, Observable, answers};
 
 #[derive(Deserialize)]
 struct Reference {
@@ -85,27 +87,6 @@ fn radiances_in_an_environment_are_those_of_the_references() {
 fn radiances_of_a_black_light_sphere_are_those_of_the_references() {
     let lamp = Lights { environment: 0.0, core: 1.0 };
     compare("black", Centre::Black(0.3), lamp, from_afar);
-}
-
-#[test]
-fn a_point_source_is_that_of_the_references_order_by_order() {
-    for ball in ["S1", "S2"] {
-        let mut references = references("point");
-        references.retain(|reference| reference.ball == ball);
-        assert_eq!(references.len(), 3);
-        let offsets: Vec<f64> = references.iter().map(|reference| reference.at[0]).collect();
-        let extinction = extinction(&references[0]);
-        let space = Ball { radius: RADIUS, centre: Centre::Medium, extinction: &extinction };
-        let found = point::orders(&space, references[0].a, &offsets, 3, Resolution::FINE);
-        for (found, reference) in found.expect("a medium").iter().zip(&references) {
-            assert_eq!(found.len(), 4);
-            for (known, exact) in found.iter().zip(&reference.value) {
-                let off = (known.value - exact).abs();
-                assert!(off < 3e-12 && off <= known.error + PRINTED, "{ball}: off by {off:e}");
-                assert!(known.error <= 1e-10);
-            }
-        }
-    }
 }
 
 const BALLS: [(&str, &str, f64); 2] = [

@@ -217,7 +217,7 @@ fn white(scene: &Scene, seen: &mut Seen) -> Option<()> {
 
 /// Nodes, directions and grading of which the answers are good to a small part of what is stated.
 const FINER: Resolution =
-    Resolution { nodes: 9, directions: 9, surface: 11, core: 14, centre: 23, chance: 1e-10 };
+    Resolution { nodes: 9, directions: 9, surface: 11, core: 14, chance: 1e-10 };
 
 /// Other albedos and lights, by a finer solution.
 fn finer(scene: &Scene, seen: &mut Seen) -> Option<()> {

@@ -80,7 +80,7 @@ impl Ball<'_> {
 
     /// Integrates one panel, in parts: passes `r²` and `σ_t e^{−τ} dt` at the nodes to `each`, and adds to the
     /// optical depth.
-    pub(super) fn panel(
+    fn panel(
         &self,
         part: &Chord,
         rule: &GaussLegendre,

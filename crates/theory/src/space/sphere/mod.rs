@@ -22,7 +22,6 @@
 
 pub mod ball;
 pub mod cache;
-pub mod point;
 pub mod predict;
 pub mod shells;
 pub mod spread;
@@ -120,9 +119,6 @@ impl<'a> Solved<'a> {
     fn view(&self, offset2: f64, from: f64, weight: f64, row: &mut Row) -> f64 {
         let chord = self.ball.chord(offset2, from);
         let left = self.ball.collect(&chord, &self.shells, &self.rules, weight, row);
-        if self.ball.centre == Centre::Point {
-            return weight * point::unscattered(self.ball, &chord, self.resolution, &self.rules);
-        }
         weight * left * if chord.hits { self.lights.core } else { self.lights.environment }
     }
 
@@ -158,7 +154,7 @@ impl<'a> Solved<'a> {
     fn spreads(&self, observable: Observable, is_distant: bool) -> Option<Spreads> {
         let share = |r2: f64| match self.ball.centre {
             Centre::Black(core) => 0.5 * (1.0 - (1.0 - core * core / r2).max(0.0).sqrt()),
-            _ => 1.0,
+            Centre::Medium => 1.0,
         };
         let largest = if matches!(self.ball.centre, Centre::Black(_)) { 0.5 } else { 1.0 };
         let scores = |r2: f64, direct: f64, all: f64| -> Vec<f64> {

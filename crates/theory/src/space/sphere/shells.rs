@@ -1,7 +1,7 @@
 //! Shells of a ball; in each of them the mean intensity is a polynomial of `r²`.
 //!
 //! At the surface the mean intensity has a term `(R − r) ln(R − r)`, at a black sphere of radius ρ one like
-//! `√(r − ρ)`, at a point source `1/r²`. Towards such a place the shells are halved repeatedly, and the polynomials
+//! `√(r − ρ)`. Towards such a place the shells are halved repeatedly, and the polynomials
 //! lose degrees as the shells lose weight. On a ray `r² = p² + t²`, p its distance from the centre and t the
 //! distance from its foot: a function that is smooth in `r²` is smooth along the ray, even where the ray passes the
 //! centre.
@@ -33,19 +33,15 @@ pub struct Resolution {
     pub surface: u32,
     /// Number of halvings of shells towards a black sphere.
     pub core: u32,
-    /// Number of halvings of shells towards a point source.
-    pub centre: u32,
     /// Relative error at which two answers may agree by accident: several times a measured one.
     pub chance: f64,
 }
 
 impl Resolution {
     /// Resolution of reference values: about twelve digits.
-    pub const FINE: Self =
-        Self { nodes: 12, directions: 12, surface: 15, core: 23, centre: 30, chance: 2e-13 };
+    pub const FINE: Self = Self { nodes: 12, directions: 12, surface: 15, core: 23, chance: 2e-13 };
     /// Resolution for comparison with draws: about seven digits.
-    pub const COARSE: Self =
-        Self { nodes: 7, directions: 7, surface: 8, core: 11, centre: 20, chance: 1e-8 };
+    pub const COARSE: Self = Self { nodes: 7, directions: 7, surface: 8, core: 11, chance: 1e-8 };
 
     /// Answer with the error from two other resolutions.
     pub(super) fn known(self, [fine, coarse, other]: [f64; 3]) -> Known {
@@ -60,23 +56,22 @@ impl Resolution {
             Centre::Black(core) => {
                 Self { chance: self.chance * (2.0 * radius / core).powi(2), ..self }
             }
-            Centre::Medium | Centre::Point => self,
+            Centre::Medium => self,
         }
     }
 
     /// Resolutions for error bounds: the answers of both others differ by more than the error of the finest, unless
     /// they agree by accident. All three seldom do.
     pub(super) fn all(self) -> [Self; 3] {
-        [self, self.coarser([2, 2, 3, 4]), self.coarser([1, 1, 1, 1])]
+        [self, self.coarser([2, 2, 3]), self.coarser([1, 1, 1])]
     }
 
-    fn coarser(self, [nodes, surface, core, centre]: [u32; 4]) -> Self {
+    fn coarser(self, [nodes, surface, core]: [u32; 3]) -> Self {
         Self {
             nodes: self.nodes - nodes as usize,
             directions: self.directions - nodes as usize,
             surface: self.surface - surface,
             core: self.core - core,
-            centre: self.centre - centre,
             chance: self.chance,
         }
     }
@@ -93,8 +88,6 @@ pub enum Centre {
     Medium,
     /// A black sphere of the given radius.
     Black(f64),
-    /// A point source.
-    Point,
 }
 
 /// Minimum number of nodes of a shell.
@@ -138,7 +131,6 @@ impl Shells {
             Centre::Medium => (0.0, 0, 1.0),
             // Nodes lost with each halving: the errors of √x, 1/√x and x ln x weighted with the shell.
             Centre::Black(core) => (core * core, resolution.core, 0.5),
-            Centre::Point => (0.0, resolution.centre, 0.33),
         };
         let widest = if matches!(centre, Centre::Black(_)) { WIDEST } else { f64::INFINITY };
         let middle = 0.5 * (inner + outer);
@@ -272,7 +264,7 @@ mod tests {
     #[test]
     fn shells_fill_the_ball_and_follow_its_extinction() {
         let dense = |r2: f64| 40.0 * (1.0 - r2);
-        for centre in [Centre::Medium, Centre::Black(0.5), Centre::Point] {
+        for centre in [Centre::Medium, Centre::Black(0.5)] {
             let shells = Shells::new(1.0, centre, &dense, Resolution::COARSE);
             let inner = if let Centre::Black(core) = centre { core * core } else { 0.0 };
             assert_eq!(shells.shells[0].from, inner);

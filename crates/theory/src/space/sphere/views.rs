@@ -1,8 +1,8 @@
 //! Lines of sight from a point of a ball, each with its weight: `½∫₋₁¹ I dν`.
 //!
 //! ν is the cosine with the direction away from the centre. The radiance changes its character where the point
-//! looks along the surface, `|ν| ≲ √(R² − r²)/r`, along the edge of a black sphere, and closely past a point
-//! source; panels are graded towards these. Rays that end on a black sphere are parametrised by `q = √(ρ² − p²)`,
+//! looks along the surface, `|ν| ≲ √(R² − r²)/r`, and along the edge of a black sphere; panels are
+//! graded towards these. Rays that end on a black sphere are parametrised by `q = √(ρ² − p²)`,
 //! in which their lengths are smooth, and rays that pass the centre by p.
 
 use super::shells::{Centre, Resolution, Rules, halved};
@@ -80,15 +80,6 @@ pub fn from_point(
             let finest = gap.min(core) * halved(resolution.core / 4);
             on(&doubling(finest.max(1e-9 * core), core), &onto);
         }
-        Centre::Point => {
-            let half = r * std::f64::consts::FRAC_1_SQRT_2;
-            on(&doubling(surface.min(half), half), &mirrored);
-            let past = |p: f64, dp: f64| {
-                let from = ((r - p) * (r + p)).sqrt();
-                View { offset2: p * p, from: -from, weight: 0.5 * p * dp / (r * from) }
-            };
-            on(&doubling(half * halved(resolution.centre / 2), half), &past);
-        }
     }
     views
 }
@@ -100,7 +91,7 @@ mod tests {
     #[test]
     fn the_weights_fill_the_sphere_of_directions() {
         let rules = Rules::new(20);
-        for centre in [Centre::Medium, Centre::Black(0.4), Centre::Point] {
+        for centre in [Centre::Medium, Centre::Black(0.4)] {
             for r in [0.4 + 1e-9, 0.5, 0.9, 1.0 - 1e-9] {
                 let views = from_point(r, 1.0, centre, Resolution::COARSE, &rules);
                 let total: f64 = views.iter().map(|view| view.weight).sum();
