@@ -64,7 +64,7 @@ pub struct Best {
 impl Best {
     /// Returns whether the figure of merit is largest there.
     pub fn is_optimum(&self) -> bool {
-        self.kind == Kind::Maximum.words()
+        self.kind == words(Kind::Maximum)
     }
 }
 
@@ -217,11 +217,21 @@ fn without_points(id: &ExperimentId, listed: usize) -> Curve {
     Curve { estimator, listed, control, channel, points, optimum: None, best: None }
 }
 
+/// Words for the kind of the best σ̂ in tables and files.
+fn words(kind: Kind) -> &'static str {
+    match kind {
+        Kind::Maximum => "optimum",
+        Kind::ShareOfLimit { .. } => "90 % of the limit",
+        Kind::NoVariance => "no variance",
+        Kind::EndOfSearch => "end of the search",
+    }
+}
+
 /// Converts the best σ̂ for a record.
 pub fn named_best(optimum: Optimum) -> Best {
     let Optimum { sampling, figure_of_merit, kind } = optimum;
     let (fom, limit) = (finite(Some(figure_of_merit)), kind.limit());
-    Best { sampling, fom, kind: kind.words().to_owned(), limit }
+    Best { sampling, fom, kind: words(kind).to_owned(), limit }
 }
 
 /// Returns the channels with their points; none if the estimator is refused.

@@ -2,6 +2,7 @@
 
 pub mod particle;
 
+use crate::recipes::inequality;
 use crate::space::tally::Collision;
 use crate::space::{Particle, Tally, Walked};
 use crate::{Draw, Refusal, Setup, estimators};
@@ -48,7 +49,7 @@ impl Walked for InfiniteMedium {
         let limit = particle.rule.limits(albedo)[1];
         if ratio > limit * (1.0 + 1e-12) {
             let found = format!("σ_t is {ratio:.6} times σ̂");
-            return Err(Refusal::mismatch(particle.rule.needs(), found));
+            return Err(Refusal::mismatch(inequality(particle.rule.range()), found));
         }
         let ends = matches!(particle.rule, Terminating | Analog);
         if !ends && particle.roulette.is_none() {

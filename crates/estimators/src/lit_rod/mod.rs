@@ -7,6 +7,7 @@ pub mod shadow;
 pub mod unidirectional;
 pub mod walk;
 
+use crate::recipes::inequality;
 use crate::{Estimated, Kernel, Refusal, Request, Setup, estimators};
 use media::catalogue::Settings;
 use theory::light::{Heuristic, Shadow, Techniques};
@@ -35,7 +36,7 @@ impl Lit for LitRod {
         let (rule, albedo) = (ParticleRule::Analog, &setup.problem.rod.albedo);
         setup.residual().require_few_collisions("∫σ̂ ≤ 1e6")?;
         let limit = |t: f64| rule.limits(albedo.value(t))[1];
-        setup.residual().require_ratio_within(albedo.knots(), limit, rule.needs())?;
+        setup.residual().require_ratio_within(albedo.knots(), limit, inequality(rule.range()))?;
         if rod::lit::is_within_reach(&setup.fields.mesh, &setup.problem, &setup.fields.sampling) {
             return Ok(());
         }

@@ -7,6 +7,7 @@ pub mod unidirectional;
 pub mod walk;
 
 use super::lit_rod::Lit;
+use crate::recipes::inequality;
 use crate::{Kernel, Refusal, Request, Setup, estimators};
 use theory::light::{Combination, Techniques};
 use theory::problems::LitSlab;
@@ -25,7 +26,9 @@ impl Lit for LitSlab {
             return Err(Refusal::mismatch("a light with a size", found));
         }
         setup.residual().require_few_collisions("∫σ̂ ≤ 1e6")?;
-        setup.residual().require_ratio_at_most(rule.limits(problem.albedo)[1], rule.needs())?;
+        setup
+            .residual()
+            .require_ratio_at_most(rule.limits(problem.albedo)[1], inequality(rule.range()))?;
         lit::slant_depth(&setup.fields.mesh, problem).map_or(Ok(()), |depth| {
             Err(Refusal::mismatch("τ/μ ≤ 64 in the lowest direction", format!("τ/μ = {depth:e}")))
         })

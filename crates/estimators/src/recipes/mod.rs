@@ -7,6 +7,7 @@ use media::Body;
 use numeric::digits::rounded;
 use numeric::rng::Address;
 use theory::Mesh;
+use theory::collisions::particle::RatioRange;
 
 /// Input of a recipe for a sampling extinction or a control.
 #[derive(Clone, Copy)]
@@ -47,6 +48,15 @@ impl Refusal {
     /// A mismatch in words.
     pub fn mismatch(needs: &'static str, found: impl Into<String>) -> Self {
         Self::Mismatch { needs, found: found.into() }
+    }
+}
+
+/// Inequality of the ratios for which a rule of collisions has probabilities, in words.
+pub fn inequality(range: RatioRange) -> &'static str {
+    match range {
+        RatioRange::Terminating => "0 ≤ r ≤ 2/(a + 1)",
+        RatioRange::Majorant => "0 ≤ σ_t ≤ σ̂",
+        RatioRange::Every => "any σ̂",
     }
 }
 

@@ -8,7 +8,9 @@ pub mod terminating;
 pub mod walk;
 pub mod weighted;
 
+use crate::recipes::inequality;
 use crate::{Estimated, Kernel, Refusal, Request, Setup, estimators};
+use theory::collisions::particle::RatioRange;
 use theory::problems::Rod;
 use theory::rod::{self, NoVariance};
 use theory::{ParticleRule, Prediction};
@@ -34,10 +36,14 @@ impl ByRule for Rod {
     fn realisable(setup: &Setup<Self>, rule: ParticleRule) -> Result<(), Refusal> {
         setup.residual().require_coverage()?;
         setup.residual().require_few_collisions("∫σ̂ ≤ 1e6")?;
-        if !rule.needs().is_empty() {
+        if rule.range() != RatioRange::Every {
             let albedo = &setup.problem.albedo;
             let limit = |t: f64| rule.limits(albedo.value(t))[1];
-            setup.residual().require_ratio_within(albedo.knots(), limit, rule.needs())?;
+            setup.residual().require_ratio_within(
+                albedo.knots(),
+                limit,
+                inequality(rule.range()),
+            )?;
         }
         if setup.problem.parts > 0
             && setup.fields.sampling.corner_values().any(|value| value <= 0.0)

@@ -8,8 +8,10 @@ pub mod walk;
 pub mod weighted;
 
 use super::rod::ByRule;
+use crate::recipes::inequality;
 use crate::{Kernel, Refusal, Request, Setup, estimators};
 use numeric::digits::rounded;
+use theory::collisions::particle::RatioRange;
 use theory::problems::{Problem, Slab};
 use theory::slab::{self, Answer, Existence, Pieces, Walk};
 use theory::{ParticleRule, Prediction};
@@ -48,9 +50,9 @@ impl ByRule for Slab {
     fn realisable(setup: &Setup<Self>, rule: ParticleRule) -> Result<(), Refusal> {
         setup.residual().require_coverage()?;
         setup.residual().require_few_collisions("∫σ̂ ≤ 1e6")?;
-        if !rule.needs().is_empty() {
+        if rule.range() != RatioRange::Every {
             let limit = rule.limits(setup.problem.albedo)[1];
-            setup.residual().require_ratio_at_most(limit, rule.needs())?;
+            setup.residual().require_ratio_at_most(limit, inequality(rule.range()))?;
         }
         if truth(setup).is_none() {
             let needs = "a reflectance and a transmittance above 1e-70 that adding and doubling resolve \

@@ -11,6 +11,7 @@ pub mod walk;
 mod walker;
 
 use super::{Refusal, Setup};
+use crate::recipes::inequality;
 use media::Majorants;
 use theory::problems::Scene;
 use theory::space::Walks;
@@ -49,7 +50,7 @@ pub fn realisable<P: Walked>(setup: &Setup<P>, particle: &Particle) -> Result<()
     }
     let limit = particle.rule.limits(walks.albedo[1])[1];
     if walks.ratio() > limit {
-        let needs = particle.rule.needs();
+        let needs = inequality(particle.rule.range());
         let found = format!("σ_t may reach {:.6} times σ̂ in the volume", walks.ratio());
         return Err(Refusal::mismatch(needs, found));
     }

@@ -86,6 +86,17 @@ impl EventProbabilities {
     }
 }
 
+/// Ratios `r = σ_t/σ̂` for which a rule has probabilities.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum RatioRange {
+    /// Every r.
+    Every,
+    /// `0 ≤ r ≤ 1`: σ̂ is a majorant.
+    Majorant,
+    /// `0 ≤ r ≤ 2/(a + 1)`.
+    Terminating,
+}
+
 /// Rule that sets the probabilities.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ParticleRule {
@@ -137,23 +148,21 @@ impl ParticleRule {
         }
     }
 
-    /// The smallest and the largest r for which they are probabilities.
-    pub fn limits(self, albedo: f64) -> [f64; 2] {
+    /// Ratios for which they are probabilities.
+    pub fn range(self) -> RatioRange {
         match self {
-            Self::Terminating => [0.0, 2.0 / (albedo + 1.0)],
-            Self::Analog => [0.0, 1.0],
-            Self::NonTerminating | Self::Adaptive | Self::Weighted => {
-                [f64::NEG_INFINITY, f64::INFINITY]
-            }
+            Self::Terminating => RatioRange::Terminating,
+            Self::Analog => RatioRange::Majorant,
+            Self::NonTerminating | Self::Adaptive | Self::Weighted => RatioRange::Every,
         }
     }
 
-    /// The limits as an inequality; empty for a rule that exists for every r.
-    pub fn needs(self) -> &'static str {
-        match self {
-            Self::Terminating => "0 ≤ r ≤ 2/(a + 1)",
-            Self::Analog => "0 ≤ σ_t ≤ σ̂",
-            Self::NonTerminating | Self::Adaptive | Self::Weighted => "",
+    /// The smallest and the largest r for which they are probabilities.
+    pub fn limits(self, albedo: f64) -> [f64; 2] {
+        match self.range() {
+            RatioRange::Terminating => [0.0, 2.0 / (albedo + 1.0)],
+            RatioRange::Majorant => [0.0, 1.0],
+            RatioRange::Every => [f64::NEG_INFINITY, f64::INFINITY],
         }
     }
 

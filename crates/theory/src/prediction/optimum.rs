@@ -31,16 +31,6 @@ pub enum Kind {
 }
 
 impl Kind {
-    /// The words in tables and files.
-    pub fn words(self) -> &'static str {
-        match self {
-            Self::Maximum => "optimum",
-            Self::ShareOfLimit { .. } => "90 % of the limit",
-            Self::NoVariance => "no variance",
-            Self::EndOfSearch => "end of the search",
-        }
-    }
-
     /// The limit of a figure of merit that rises to one.
     pub fn limit(self) -> Option<f64> {
         match self {
