@@ -50,6 +50,9 @@ pub struct ExperimentRecord {
     /// Bound on the relative error of the predicted mean number of lookups.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub lookups_error: Option<f64>,
+    /// Ground of `lookups_error`; `None` without a prediction of lookups.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub lookups_grade: Option<Grade>,
     /// Bound on the relative error of the predicted variance and fourth central moment of the number of lookups; `None`
     /// without a bound.
     #[serde(skip_serializing_if = "Option::is_none")]

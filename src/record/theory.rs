@@ -48,6 +48,7 @@ pub fn predicted(case: &PlannedCase, planned: &Planned) -> ExperimentRecord {
         stable_share: prediction.stable_share,
         lookups_variance: law.map(|law| law.variance),
         lookups_error: finite(law.map(|law| law.error.max(CountDistribution::ERROR))),
+        lookups_grade: law.map(|law| law.grade),
         lookups_moments_error: finite(
             law.map(|law| law.moments_error.max(CountDistribution::ERROR)),
         ),

@@ -96,6 +96,8 @@ table! {
             "Expected lookups of a draw's walk; empty if no shadow rays are cast" = |line| line.experiment.walk_lookups;
         "shadow_lookups" ["by shadow", "", Fixed(4)]:
             "Expected lookups of a draw's shadow rays" = |line| line.experiment.shadow_lookups;
+        "lookups_grade" ["N error is", "", Plain]: "Ground of `lookups_error`: proven, or estimated from resolutions"
+            = |line| line.experiment.lookups_grade.map(Grade::word);
     } screens {
         "variance_ratio" ["s²/V", "", Places(3)]: "Measured variance over that of theory" = |line| line.variance_ratio();
         "lookups_spread" ["± σ", "", Fixed(4)]: "Standard deviation of the number of lookups in theory"

@@ -1,7 +1,7 @@
 //! Distribution of the number of lookups of a draw.
 
 use super::raw::{self, Raw};
-use numeric::Known;
+use numeric::{Grade, Known};
 
 /// Maximum mean of a distribution for which probabilities are computed.
 pub const LARGEST_MEAN: f64 = 2000.0;
@@ -21,6 +21,8 @@ pub struct CountDistribution {
     pub variance: f64,
     /// A relative error bound of the mean beyond rounding.
     pub error: f64,
+    /// Ground of `error`: proven for constants, Poisson numbers with a closed form as mean, and other closed forms.
+    pub grade: Grade,
     /// A relative error bound of the variance and of the fourth central moment; infinite where it is not known.
     pub moments_error: f64,
     /// `μ₄/μ₂²`; 1 where the number is constant.
@@ -43,8 +45,8 @@ impl CountDistribution {
             Window::default().add(&mut pmf, 1.0, 0.0, whole(number));
         }
         let [error, moments_error] = [0.0; 2];
-        let (variance, kurtosis) = (0.0, 1.0);
-        Self { mean: number, variance, error, moments_error, kurtosis, poisson: false, pmf }
+        let (mean, variance, kurtosis, grade) = (number, 0.0, 1.0, Grade::Proven);
+        Self { mean, variance, error, grade, moments_error, kurtosis, poisson: false, pmf }
     }
 
     /// Poisson distribution with the given mean: a walk through `∫σ̂` that nothing ends early.
@@ -54,8 +56,8 @@ impl CountDistribution {
             Window::default().add(&mut pmf, 1.0, mean, 0);
         }
         let [error, moments_error] = [0.0; 2];
-        let kurtosis = 3.0 + 1.0 / mean;
-        Self { mean, variance: mean, error, moments_error, kurtosis, poisson: true, pmf }
+        let (variance, kurtosis, grade) = (mean, 3.0 + 1.0 / mean, Grade::Proven);
+        Self { mean, variance, error, grade, moments_error, kurtosis, poisson: true, pmf }
     }
 
     /// Mean, variance and kurtosis from `E[M(M − 1)…(M − k + 1)]`, k = 1 … 4; no probabilities.
@@ -71,6 +73,7 @@ impl CountDistribution {
         let [error, of_pairs, of_triples, of_fours] = factorial.map(|known| known.error);
         let relative = if mean > 0.0 { error / mean } else { 0.0 };
         let law = Self::of_raw(0.0, raw::of_factorial([mean, pairs, triples, fours]), relative);
+        let law = Self { grade: factorial[0].grade, ..law };
         if law.variance <= 0.0 {
             return law;
         }
@@ -93,18 +96,19 @@ impl CountDistribution {
         Self { moments_error, ..law }
     }
 
-    /// Mean, variance and kurtosis from the smallest number and the raw moments of the rest, with the relative error
-    /// of the mean; no probabilities.
+    /// Mean, variance and kurtosis from the smallest number and the raw moments of the rest, with an estimate
+    /// of the relative error of the mean; no probabilities.
     pub fn of_raw(least: f64, [_, mean, square, cube, fourth]: Raw, error: f64) -> Self {
         let variance = square - mean * mean;
         // A number that is nearly constant has a variance of rounding errors.
         if variance <= HIDDEN * square {
-            return Self { error, ..Self::always(least + mean) };
+            return Self { error, grade: Grade::Estimated, ..Self::always(least + mean) };
         }
         let fourth = fourth - 4.0 * mean * cube + 6.0 * mean * mean * square - 3.0 * mean.powi(4);
         let kurtosis = (fourth / (variance * variance)).max(1.0);
-        let (mean, moments_error) = (least + mean, f64::INFINITY);
-        Self { mean, variance, error, moments_error, kurtosis, poisson: false, pmf: Vec::new() }
+        let (mean, grade, moments_error) = (least + mean, Grade::Estimated, f64::INFINITY);
+        let (poisson, pmf) = (false, Vec::new());
+        Self { mean, variance, error, grade, moments_error, kurtosis, poisson, pmf }
     }
 }
 

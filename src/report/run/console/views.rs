@@ -19,7 +19,7 @@ const PREDICT: &[Shown] = shown!(Line:
 
 const MOMENTS: &[Shown] = shown!(Line:
     "loss_1", "loss_2", "loss_3", "loss_4", "relative_m2", "relative_m3", "relative_m4", "moments_error",
-    "error_grade", "predicted_lookups", "lookups_spread", "lookups_error", "lookups_moments_error", "walk_lookups",
+    "error_grade", "predicted_lookups", "lookups_spread", "lookups_error", "lookups_grade", "lookups_moments_error", "walk_lookups",
     "shadow_lookups", "covariance", "rare_event_size", "setup", "best_sampling_marked", "best_fom_marked",
     "best_kind", "best_limit", "needs"
 );
