@@ -27,6 +27,8 @@ const SHORTEST: f64 = 1e-12;
 const MAX_HALVINGS: usize = 100_000;
 /// Maximum number of halvings of one panel.
 const HALVINGS: u32 = 40;
+/// Distance from the ends of a panel at which its edges are, relative to its length: beside a jump there.
+const EDGE: f64 = 1e-9;
 
 /// The support of a medium cut into panels with Gauss–Legendre nodes, and σ_t at the nodes.
 ///
@@ -45,8 +47,10 @@ pub struct Mesh {
     extinction: Vec<f64>,
     adaptive: bool,
     error: f64,
-    /// τ by quadrature, where the medium has no closed form.
-    depth: Option<Known>,
+    /// τ over the support: a closed form may be a sum over thousands of pieces.
+    depth: Known,
+    /// σ_t next to both ends of each panel, see [`EDGE`]; empty for media with thousands of breaks.
+    edges: Vec<[f64; 2]>,
 }
 
 /// The nodes of one panel.
@@ -58,6 +62,14 @@ pub struct Panel<'a> {
     pub t: &'a [f64],
     /// σ_t at the nodes.
     pub extinction: &'a [f64],
+}
+
+impl Panel<'_> {
+    /// Distances next to both ends.
+    fn edges(&self) -> [f64; 2] {
+        let inset = EDGE * self.span.length();
+        [self.span.from + inset, self.span.to - inset]
+    }
 }
 
 /// Functions of a caller at the nodes of a panel, which must be smooth there.
@@ -77,6 +89,20 @@ fn is_rough(tails: &[Tail], parent: &[Tail]) -> bool {
     })
 }
 
+/// The largest value of each function over all panels.
+fn largest(tails: &[Vec<Tail>]) -> Vec<Tail> {
+    let mut whole: Vec<Tail> = Vec::new();
+    for panel in tails {
+        for (i, tail) in panel.iter().enumerate() {
+            match whole.get_mut(i) {
+                Some(known) => known.scale = known.scale.max(tail.scale),
+                None => whole.push(Tail { size: f64::INFINITY, ..*tail }),
+            }
+        }
+    }
+    whole
+}
+
 impl Mesh {
     /// Cuts the support of a medium and looks σ_t up at every node.
     pub fn new(medium: Medium) -> Self {
@@ -85,6 +111,7 @@ impl Mesh {
         let many = ends.len() > MANY;
         let nodes = if many { medium.panel_nodes().unwrap_or(NODES) } else { NODES };
         let mut mesh = Self::without_panels(medium, nodes, !many);
+        mesh.depth = mesh.medium.optical_depth(support);
         let largest =
             |span: Span| mesh.medium.extinctions(&mesh.nodes(span)).into_iter().fold(0.0, f64::max);
         let scale = if many { 0.0 } else { Span::between(&ends).map(largest).fold(0.0, f64::max) };
@@ -99,8 +126,9 @@ impl Mesh {
     fn without_panels(medium: Medium, nodes: usize, adaptive: bool) -> Self {
         let rule = GaussLegendre::new(nodes);
         let legendre = (0..nodes).map(|order| legendre_row(&rule, order)).collect();
-        let (panels, t, extinction) = (Vec::new(), Vec::new(), Vec::new());
-        Self { medium, rule, legendre, panels, t, extinction, adaptive, error: 0.0, depth: None }
+        let (panels, t, extinction, edges) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
+        let depth = Known::new(0.0, 0.0);
+        Self { medium, rule, legendre, panels, t, extinction, adaptive, error: 0.0, depth, edges }
     }
 
     /// Cuts the support into equal panels of 16 nodes, ignoring the breaks of the medium: a quick look at a field
@@ -113,7 +141,7 @@ impl Mesh {
         let mut mesh = Self { panels, error: f64::INFINITY, ..bare };
         mesh.t = mesh.panels.iter().flat_map(|&panel| mesh.nodes(panel)).collect();
         mesh.extinction = mesh.medium.extinctions(&mesh.t);
-        mesh.depth = Some(Known::estimated(mesh.integrate(|_, sigma| sigma), f64::INFINITY));
+        mesh.depth = Known::estimated(mesh.integrate(|_, sigma| sigma), f64::INFINITY);
         mesh
     }
 
@@ -151,18 +179,25 @@ impl Mesh {
             panels: Vec::with_capacity(self.panels.len()),
             t: Vec::with_capacity(self.t.len()),
             extinction: Vec::with_capacity(self.t.len()),
+            edges: Vec::with_capacity(self.edges.len()),
             ..*self
         };
+        let tails = |panel| self.tails(&smooth(self, panel), &[]);
+        let mut tails: Vec<Vec<Tail>> =
+            if self.adaptive { self.panels().map(tails).collect() } else { Vec::new() };
         // A function that is small relative to its maximum need not be smooth to its own last digits.
-        let whole = if self.adaptive { self.whole(smooth) } else { Vec::new() };
-        for panel in self.panels() {
+        let whole = largest(&tails);
+        for tail in &mut tails {
+            tail.iter_mut().zip(&whole).for_each(|(tail, whole)| tail.scale = whole.scale);
+        }
+        for (i, panel) in self.panels().enumerate() {
             let first = cuts.partition_point(|&cut| cut <= panel.span.from);
             let last = cuts.partition_point(|&cut| cut < panel.span.to);
             let inside = &cuts[first..last.max(first)];
-            let smooth_enough =
-                || !self.adaptive || !is_rough(&self.tails(&smooth(self, panel), &whole), &whole);
-            if inside.is_empty() && smooth_enough() {
+            let is_smooth = !self.adaptive || !is_rough(&tails[i], &whole);
+            if inside.is_empty() && is_smooth {
                 fine.keep(panel);
+                fine.edges.extend(self.edges.get(i));
                 continue;
             }
             let mut ends = vec![panel.span.from];
@@ -211,20 +246,6 @@ impl Mesh {
         meshes[0].cuts(cuts, apart)
     }
 
-    /// The largest value of each function over all panels.
-    fn whole(&self, smooth: &Functions<'_>) -> Vec<Tail> {
-        let mut whole: Vec<Tail> = Vec::new();
-        for panel in self.panels() {
-            for (i, tail) in self.tails(&smooth(self, panel), &[]).into_iter().enumerate() {
-                match whole.get_mut(i) {
-                    Some(known) => known.scale = known.scale.max(tail.scale),
-                    None => whole.push(Tail { size: f64::INFINITY, ..tail }),
-                }
-            }
-        }
-        whole
-    }
-
     fn keep(&mut self, panel: Panel<'_>) {
         self.panels.push(panel.span);
         self.t.extend_from_slice(panel.t);
@@ -255,6 +276,9 @@ impl Mesh {
             }
         } else {
             self.keep(panel);
+            if self.adaptive {
+                self.edges.push(panel.edges().map(|t| self.medium.extinction(t)));
+            }
         }
     }
 
@@ -314,7 +338,7 @@ impl Mesh {
     }
 
     fn measured_error(&self) -> f64 {
-        let exact = self.medium.optical_depth(self.support()).value;
+        let exact = self.depth.value;
         if exact == 0.0 {
             return 1e-13;
         }
@@ -325,7 +349,7 @@ impl Mesh {
     pub fn roots(&self, f: impl Fn(f64, f64) -> f64) -> Vec<f64> {
         let mut found = Vec::new();
         let at = |t: f64| f(t, self.medium.extinction(t));
-        for panel in self.panels() {
+        for (i, panel) in self.panels().enumerate() {
             let mut last = None;
             for (&t, &sigma) in panel.t.iter().zip(panel.extinction) {
                 let value = f(t, sigma);
@@ -337,16 +361,14 @@ impl Mesh {
                 }
                 last = Some((t, value));
             }
-            if !self.adaptive {
-                continue;
-            }
             // The gaps between the outer nodes and the ends, without the jumps at the ends; thousands of panels
             // have gaps too short to matter.
-            let edge = 1e-9 * panel.span.length();
-            let (first, end) = (panel.t[0], panel.t[panel.t.len() - 1]);
-            for (a, b) in [(panel.span.from + edge, first), (end, panel.span.to - edge)] {
-                if a < b && (at(a) < 0.0) != (at(b) < 0.0) {
-                    found.push(roots::root(a, b, at));
+            let Some(&[sigma_first, sigma_last]) = self.edges.get(i) else { continue };
+            let ([low, high], end) = (panel.edges(), panel.t.len() - 1);
+            let node = |i: usize| (panel.t[i], panel.extinction[i]);
+            for [a, b] in [[(low, sigma_first), node(0)], [node(end), (high, sigma_last)]] {
+                if a.0 < b.0 && (f(a.0, a.1) < 0.0) != (f(b.0, b.1) < 0.0) {
+                    found.push(roots::root(a.0, b.0, at));
                 }
             }
         }
@@ -451,7 +473,7 @@ impl Mesh {
 
     /// τ over the support.
     pub fn optical_depth(&self) -> Known {
-        self.depth.unwrap_or_else(|| self.medium.optical_depth(self.support()))
+        self.depth
     }
 }
 

@@ -33,7 +33,7 @@ pub struct Product<'a> {
     /// The rate at which the walk also ends without a lookup, 1/length: that of a control which
     /// is sampled instead of integrated.
     pub killing: f64,
-    /// True if the distribution of the lookups is computed; a search for optima does without.
+    /// True if the distribution of the lookups and the stable share are computed; a search for optima does without.
     pub laws: bool,
     /// Draws are in units of `exp(−log_unit)`.
     pub log_unit: f64,
@@ -167,7 +167,7 @@ impl<'a> Product<'a> {
         let moments = moments.graded(all.grade());
         let channel = Channel::transmittance(depth, self.log_unit, moments, all.tails());
         let channel = Channel { losses: Some(all.losses), ..channel };
-        let stable_share = self.stable_share(&mesh);
+        let stable_share = if self.laws { self.stable_share(&mesh) } else { None };
         let lookups = self.lookups(&mesh, &all);
         // One for each flight, the last one included, and one for each collision that a random number decides.
         let walked = lookups.mean + all.alive + all.decisions;
