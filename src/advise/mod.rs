@@ -75,6 +75,8 @@ pub struct Request {
     pub seed: u64,
     /// Factor by which majorants exceed the maximum, 1 or more.
     pub looseness: f64,
+    /// True if the first rows have curves, for a figure.
+    pub curves: bool,
 }
 
 /// Estimator that cannot be advised.
@@ -159,7 +161,8 @@ pub fn advise(spec: &Spec, request: &Request) -> Result<Advice, CaseError> {
     let (profiles, of_profiles): (Vec<_>, Vec<_>) = profiles.into_iter().unzip();
     rows.extend(of_profiles);
     row::rank(&mut rows);
-    let shown = rows.iter_mut().filter(|row| row.constant.is_some()).take(CURVES);
+    let shown = rows.iter_mut().filter(|row| request.curves && row.constant.is_some());
+    let shown = shown.take(CURVES);
     parallel::change(&mut shown.collect::<Vec<_>>(), |row| row.draw(&study));
     Ok(Advice {
         case: base.name.clone(),

@@ -174,10 +174,11 @@ impl Steps {
                     self.of(all.map(|(i, &share)| if i == step { own } else { share }))
                 });
                 // A particle that collides for real and one that seldom does are two minima.
-                let starts = [sampling[step], roots[step]].map(|start| goal.least(start, 1));
-                let found = starts.into_iter().flatten().min_by(|a, b| a.1.total_cmp(&b.1));
+                let starts =
+                    [sampling[step], roots[step]].map(|start| goal.least(start, 1, f64::INFINITY));
+                let found = starts.into_iter().flatten().min_by(|a, b| a.value.total_cmp(&b.value));
                 drop(goal);
-                sampling[step] = found.map_or(sampling[step], |(x, ..)| x).max(least);
+                sampling[step] = found.map_or(sampling[step], |found| found.x).max(least);
                 shares[step] = self.share(rule, step, sampling[step]);
             }
             let next = self.of(shares.iter().copied());

@@ -17,6 +17,8 @@ pub const UNKNOWN: f64 = f64::MAX;
 pub const MAX_FACTOR: f64 = 1024.0;
 /// Tolerance of the best `ln x`, of which V·cost differs by the square, and of an edge.
 const TOLERANCE: f64 = 5e-3;
+/// Factor by which values rise within a few tolerances of a steep minimum.
+const STEEP: f64 = 1.05;
 /// Relative gain of a step that ends a descent.
 const SETTLED: f64 = 1e-3;
 /// Maximum number of steps of a descent beyond the first places, the last ones by a factor of ten.
@@ -52,6 +54,17 @@ impl Kind {
             Self::EndOfSearch => "end of the search",
         }
     }
+}
+
+/// Least value of a search.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Least {
+    /// Its place.
+    pub x: f64,
+    /// Value there.
+    pub value: f64,
+    /// True if values still fall at the end of the search.
+    pub is_open: bool,
 }
 
 /// Function of x with the values that are known.
@@ -107,24 +120,38 @@ impl<'a> Goal<'a> {
         (around, true)
     }
 
-    /// Returns the place of the least value near `start`, the value, and whether it is at the end of the search; `None`
-    /// where no place can be taken.
-    pub fn least(&self, start: f64, reach: i32) -> Option<(f64, f64, bool)> {
+    /// Returns the least value near `start`; `None` where no place can be taken. A place with a value above `enough` is
+    /// not searched to the end.
+    pub fn least(&self, start: f64, reach: i32, enough: f64) -> Option<Least> {
         let (around, is_open) = self.bracket(start, reach);
         let middle = self.at(around[1]);
-        let is_cliff =
-            || self.at(around[1] - CLIFF).is_infinite() && self.at(around[1] + CLIFF) >= middle;
-        let (log, value) = if middle >= BEYOND || is_cliff() {
+        let is_cliff = || {
+            self.at(around[0]).is_infinite()
+                && self.at(around[1] - CLIFF).is_infinite()
+                && self.at(around[1] + CLIFF) >= middle
+        };
+        let is_last = middle >= BEYOND || middle > enough || is_cliff();
+        let (log, value) = if is_last {
             (around[1], middle)
         } else {
             roots::least(around, middle, TOLERANCE, |log| self.at(log))
         };
-        (value < BEYOND).then(|| (log.exp(), value, is_open))
+        // Where the variance vanishes at one σ̂, the tolerance is too wide.
+        let is_steep = |&[place, other]: &[f64; 2]| {
+            (place - log).abs() < 4.0 * TOLERANCE && (STEEP * value..BEYOND).contains(&other)
+        };
+        let is_steep = value < BEYOND && self.known.borrow().iter().any(is_steep);
+        let (log, value) = if is_steep {
+            let around = [log - 2.0 * TOLERANCE, log, log + 2.0 * TOLERANCE];
+            roots::least(around, value, 0.02 * TOLERANCE, |log| self.at(log))
+        } else {
+            (log, value)
+        };
+        (value < BEYOND).then(|| Least { x: log.exp(), value, is_open })
     }
 
-    /// Returns the place to advise near `start`, with few digits, its value and its kind.
-    pub fn best(&self, start: f64, reach: i32) -> Option<(f64, f64, Kind)> {
-        let (mut x, mut value, is_open) = self.least(start, reach)?;
+    /// Returns the place to advise, with few digits, its value and its kind, given the least value.
+    pub fn settled(&self, Least { mut x, mut value, is_open }: Least) -> (f64, f64, Kind) {
         let mut kind = if is_open { Kind::EndOfSearch } else { Kind::Optimum };
         if !is_open && self.of(x / FLAT) <= value * (1.0 + ABOVE_LIMIT) {
             // The search ends where little is gained: the limit itself lies far beyond.
@@ -138,21 +165,33 @@ impl<'a> Goal<'a> {
         }
         // A σ̂ that is rounded up exists as well.
         let rounded = self.of(up(x));
-        Some(if rounded < BEYOND { (up(x), rounded, kind) } else { (x, value, kind) })
+        if rounded < BEYOND { (up(x), rounded, kind) } else { (x, value, kind) }
+    }
+
+    /// Returns the place to advise near `start`; `None` where no place can be taken.
+    pub fn best(&self, start: f64, reach: i32) -> Option<(f64, f64, Kind)> {
+        self.least(start, reach, f64::INFINITY).map(|least| self.settled(least))
     }
 
     /// Returns the factor on x, below 1 for the sign −1 and above for 1, up to which the value is at most `level`; 0 or
     /// infinite where that is further than `furthest`.
     pub fn edge(&self, x: f64, sign: f64, level: f64, furthest: f64) -> f64 {
         let (from, furthest) = (x.ln(), furthest.min(MAX_FACTOR.powi(3)).ln());
-        let (mut inside, mut step) = (from, sign * LN_2);
-        while self.at(inside + step) <= level {
-            (inside, step) = (inside + step, 2.0 * step);
-            if (inside - from).abs() >= furthest {
+        let mut beyond: Vec<f64> = self.known.borrow().iter().map(|known| known[0]).collect();
+        beyond.retain(|log| sign * (log - from) > 0.0);
+        beyond.sort_by(|a, b| (sign * a).total_cmp(&(sign * b)));
+        let inside = beyond.iter().take_while(|log| self.at(**log) <= level).count();
+        let mut outside = beyond.get(inside).copied();
+        let mut inside = if inside > 0 { beyond[inside - 1] } else { from };
+        while outside.is_none() {
+            let distance = (inside - from).abs();
+            if distance >= furthest - TOLERANCE {
                 return if sign < 0.0 { 0.0 } else { f64::INFINITY };
             }
+            let next = from + sign * (4.0 * distance).clamp(LN_2, furthest);
+            if self.at(next) <= level { inside = next } else { outside = Some(next) }
         }
-        let mut outside = inside + step;
+        let mut outside = outside.unwrap_or(inside);
         let above = |log: f64| (self.at(log) / level).ln();
         let mut is_secant = true;
         while (outside - inside).abs() > TOLERANCE {
@@ -160,15 +199,14 @@ impl<'a> Goal<'a> {
             let share = -above(inside) / slope / (outside - inside);
             let share = if is_secant && (0.02..0.98).contains(&share) { share } else { 0.5 };
             let place = inside + share * (outside - inside);
-            if (above(place) / slope).abs() < 0.2 * TOLERANCE && slope.is_finite() {
+            let distance = above(place) / slope * sign;
+            if (-TOLERANCE..0.2 * TOLERANCE).contains(&distance) && slope.is_finite() {
                 return (place - from).exp();
             }
-            if above(place) > 0.0 {
-                outside = place;
-            } else {
-                inside = place;
-            }
-            is_secant = !is_secant;
+            // A secant that does not halve what is left is followed by halves.
+            let left = if above(place) > 0.0 { share } else { 1.0 - share };
+            is_secant = left <= 0.5;
+            if above(place) > 0.0 { outside = place } else { inside = place }
         }
         (inside - from).exp()
     }

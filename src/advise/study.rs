@@ -1,11 +1,12 @@
 //! V·cost of the candidates over the rays of a medium, by exact theory, and the best setting of each family.
 
+use std::cell::Cell;
 use std::collections::BTreeMap;
 use std::sync::{Mutex, PoisonError};
 
 use super::candidates::{self, family};
 use super::costs::{Price, Prices};
-use super::search::{ABOVE_LIMIT, BEYOND, Goal, Kind, UNKNOWN, up};
+use super::search::{ABOVE_LIMIT, BEYOND, Goal, Kind, Least, UNKNOWN, up};
 use super::{Request, Target};
 use crate::case::sweep::{Variation, What};
 use crate::case::{Case, CaseError};
@@ -22,6 +23,8 @@ const SEEDS: u64 = 4;
 const RAISES: [f64; 5] = [1.0, 1.02, 1.1, 1.4, 2.0];
 /// Relative difference of a mean from the truth that is a bias.
 const BIAS: f64 = 1e-9;
+/// Factor on the value of the first member of a family beyond which another one is not searched to the end.
+const BEHIND: f64 = 1.5;
 /// Steps of a factor of two on each side of a constant σ̂ that are tried first: a particle that collides for real and one
 /// that seldom does are two minima.
 const REACH: i32 = 3;
@@ -280,12 +283,17 @@ impl<'a> Study<'a> {
             if looseness > 1.0 && is_refused(x / looseness) {
                 return f64::INFINITY;
             }
-            let predict = |place| self.scaled(candidate, at(x), place);
+            let is_missing = Cell::new(false);
+            let predict = |place| {
+                let prediction = self.scaled(candidate, at(x), place);
+                is_missing.set(is_missing.get() || prediction.is_none());
+                prediction
+            };
             let exists = |ray| predict((ray, 1)).is_some();
             let score = self.score(candidate, &self.probes, predict);
             match score.filter(|_| largest.is_none_or(exists)) {
                 Some(score) => score.goal(self.request.target),
-                None if is_refused(x) => f64::INFINITY,
+                None if is_missing.get() && is_refused(x) => f64::INFINITY,
                 None => UNKNOWN,
             }
         })
@@ -306,18 +314,29 @@ impl<'a> Study<'a> {
         let lead = family[family.len() / 2];
         let scale = |candidate: usize| self.free[candidate].map_or(1.0, |free| free.scale);
         let is_constant = self.free[lead].is_some_and(|free| free.what == What::Sampling);
-        let first = self.least(lead, scale(lead), if is_constant { REACH } else { 1 });
-        let setting = first.as_ref().and_then(|best| best.setting);
-        let start = setting.map_or(1.0, |(_, x)| x / scale(lead));
+        let reach = if is_constant { REACH } else { 1 };
+        let first = self.least(lead, (scale(lead), reach), f64::INFINITY);
+        let start = first.as_ref().map_or(1.0, |(least, _)| least.x / scale(lead));
+        let enough = first.as_ref().map_or(f64::INFINITY, |(least, _)| BEHIND * least.value);
         let others: Vec<usize> = family.iter().copied().filter(|&other| other != lead).collect();
-        let all = parallel::map(&others, |&other| self.least(other, start * scale(other), 1));
-        let all: Vec<Best> = all.into_iter().chain([first]).flatten().collect();
-        let least = all.iter().map(|best| best.value).fold(f64::INFINITY, f64::min);
-        let near = all.into_iter().filter(|best| best.value <= least * (1.0 + ABOVE_LIMIT));
-        let near = near.filter_map(|best| {
-            let Some((what, x)) = best.setting else { return Some(best) };
-            let (x, value, kind) = best.goal.best(x, 1)?;
-            Some(Best { setting: Some((what, x)), value, kind, ..best })
+        let search = |&other: &usize| self.least(other, (start * scale(other), 1), enough);
+        let all = others.iter().copied().zip(parallel::map(&others, search));
+        let all: Vec<_> =
+            all.chain([(lead, first)]).filter_map(|(i, found)| Some((i, found?))).collect();
+        let least = all.iter().map(|(_, (least, _))| least.value).fold(f64::INFINITY, f64::min);
+        let near = all.into_iter().filter(|(_, (own, _))| own.value <= least * (1.0 + ABOVE_LIMIT));
+        let near = near.map(|(candidate, (least, goal))| {
+            let Some(Free { what, .. }) = self.free[candidate] else {
+                return Best {
+                    candidate,
+                    setting: None,
+                    value: least.value,
+                    kind: Kind::Fixed,
+                    goal,
+                };
+            };
+            let (x, value, kind) = goal.settled(least);
+            Best { candidate, setting: Some((what, x)), value, kind, goal }
         });
         let mut best = near.min_by(|a, b| a.value.total_cmp(&b.value))?;
         if self.request.looseness > 1.0 {
@@ -326,18 +345,23 @@ impl<'a> Study<'a> {
         Some(best)
     }
 
-    /// Searches the least value of a candidate near a place; `None` if it is refused everywhere.
-    fn least(&self, candidate: usize, start: f64, reach: i32) -> Option<Best<'_>> {
+    /// Searches the least value of a candidate near a place, unless it is above `enough` there; `None` if it is refused
+    /// everywhere.
+    fn least(
+        &self,
+        candidate: usize,
+        (start, reach): (f64, i32),
+        enough: f64,
+    ) -> Option<(Least, Goal<'_>)> {
         let looseness = self.request.looseness;
         let goal = self.goal(candidate, looseness);
-        let Some(Free { what, .. }) = self.free[candidate] else {
+        if self.free[candidate].is_none() {
             let value = Some(goal.of(1.0)).filter(|&value| value < BEYOND)?;
-            return Some(Best { candidate, setting: None, value, kind: Kind::Fixed, goal });
-        };
+            return Some((Least { x: 1.0, value, is_open: false }, goal));
+        }
         let is_too_small = looseness > 1.0 && goal.of(start).is_infinite();
         let start = if is_too_small { start * looseness } else { start };
-        let (x, value, _) = goal.least(start, reach)?;
-        Some(Best { candidate, setting: Some((what, x)), value, kind: Kind::Optimum, goal })
+        Some((goal.least(start, reach, enough)?, goal))
     }
 
     /// Returns a setting that is allowed on all rays, not only on the probes, with its score; `None` if no setting up to

@@ -79,6 +79,6 @@ impl Arguments {
         let costs = self.cost.clone().unwrap_or_else(|| Costs::of_this_machine(self.calibrate));
         let (target, costs) = options::goal(self.error, self.budget, costs);
         let (rays, seed) = (self.rays, self.seed.seed);
-        Request { target, costs, rays, seed, looseness: self.majorant }
+        Request { target, costs, rays, seed, looseness: self.majorant, curves: self.out.is_some() }
     }
 }

@@ -32,7 +32,7 @@ impl Sought {
         let costs = costs.unwrap_or_else(|| Costs::of_this_machine(calibrate));
         let (target, costs) = options::goal(error, budget.map_err(named("budget"))?, costs);
         let looseness = options::looseness(&self.majorant).map_err(named("majorant"))?;
-        Ok(Request { target, costs, rays, seed, looseness })
+        Ok(Request { target, costs, rays, seed, looseness, curves: false })
     }
 }
 

@@ -26,7 +26,7 @@ pub(super) fn asked(text: &str, request: &Request) -> Advice {
 }
 
 pub(super) fn request(costs: Costs) -> Request {
-    Request { target: Target::Error(0.01), costs, rays: None, seed: 1, looseness: 1.0 }
+    Request { target: Target::Error(0.01), costs, rays: None, seed: 1, looseness: 1.0, curves: true }
 }
 
 fn row<'a>(advice: &'a Advice, estimator: &str) -> &'a Row {
