@@ -15,6 +15,7 @@ use cpu_time::ThreadTime;
 use fearless_simd::Level;
 use serde::{Deserialize, Serialize};
 
+use super::options::TIMES;
 use crate::case::sweep::Variation;
 use crate::case::{Case, Spec};
 use estimators::DrawBuffer;
@@ -103,8 +104,11 @@ impl Prices {
         };
         let path = folder.as_deref().map(|folder| file(folder, spec));
         let read = path.as_deref().filter(|_| !anew).and_then(|path| std::fs::read(path).ok());
-        // A file that cannot be read is written anew.
-        let known = read.and_then(|bytes| serde_json::from_slice(&bytes).ok()).unwrap_or_default();
+        // A file that cannot be read is written anew, and so are costs that cannot be.
+        let known = read.and_then(|bytes| serde_json::from_slice(&bytes).ok());
+        let mut known: BTreeMap<String, Price> = known.unwrap_or_default();
+        let is_cost = |cost: f64| (0.0..=*TIMES.end()).contains(&cost);
+        known.retain(|_, price| [price.draw, price.lookup, price.error].into_iter().all(is_cost));
         Self { known, path, given: None }
     }
 
@@ -142,13 +146,16 @@ impl Prices {
         Some(price)
     }
 
-    /// Keeps the prices. A folder that cannot be written to only costs the time of the next measurement.
-    pub fn keep(&self) {
-        let Some(path) = &self.path else { return };
-        let made = path.parent().is_some_and(|folder| std::fs::create_dir_all(folder).is_ok());
-        if let (true, Ok(bytes)) = (made, serde_json::to_vec(&self.known)) {
-            let _ = files::replace(path, &bytes);
-        }
+    /// Keeps the prices. Returns a warning if they cannot be kept: the next advice measures them again.
+    pub fn keep(&self) -> Option<String> {
+        let path = self.path.as_deref()?;
+        let kept = path.parent().map_or(Ok(()), std::fs::create_dir_all);
+        let kept = kept.and_then(|()| files::replace(path, &serde_json::to_vec(&self.known)?));
+        let error = kept.err()?;
+        let place = path.parent().unwrap_or(path).display();
+        Some(format!(
+            "costs are measured again next time: cannot write into {place} ({error}); set XDG_CACHE_HOME to another folder"
+        ))
     }
 }
 
@@ -189,7 +196,7 @@ fn measured(case: &Case, (estimator, places): (usize, [Variation; 2])) -> Option
         _ if few.lookups > 0.0 => few.seconds / few.lookups,
         _ => 0.0,
     };
-    Some(Price { draw: few.seconds - lookup * few.lookups, lookup, error })
+    Some(Price { draw: (few.seconds - lookup * few.lookups).max(0.0), lookup, error })
 }
 
 /// Times a candidate at one place.

@@ -38,8 +38,6 @@ pub const CATALOGUE: PageList = PageList {
     pages: &[Page { module: "advise", source: include_str!("mod.rs") }],
 };
 
-use std::time::Instant;
-
 use crate::case::{CaseError, Spec};
 use candidates::Collisions;
 use costs::Prices;
@@ -111,8 +109,8 @@ pub struct Advice {
     pub profiles: Vec<Profile>,
     /// Estimators that cannot be advised.
     pub refused: Vec<Refused>,
-    /// Seconds that the advice took.
-    pub seconds: f64,
+    /// Warning that the costs cannot be kept.
+    pub warning: Option<String>,
 }
 
 impl Advice {
@@ -133,7 +131,6 @@ impl Advice {
 ///
 /// Mistakes in the case.
 pub fn advise(spec: &Spec, request: &Request) -> Result<Advice, CaseError> {
-    let begin = Instant::now();
     let (base, rays) = rays::read(spec, request.rays, request.seed)?;
     let texts = candidates::listed(&base, &rays)?;
     let mut prices = Prices::open(&request.costs, &base.spec);
@@ -157,7 +154,7 @@ pub fn advise(spec: &Spec, request: &Request) -> Result<Advice, CaseError> {
         let row = own.best(&[0]).and_then(|best| Row::new(&own, &best));
         profiles.extend(row.map(|row| (profile, Row { candidate: best.candidate, ..row })));
     }
-    prices.keep();
+    let warning = prices.keep();
     let (profiles, of_profiles): (Vec<_>, Vec<_>) = profiles.into_iter().unzip();
     rows.extend(of_profiles);
     row::rank(&mut rows);
@@ -175,7 +172,7 @@ pub fn advise(spec: &Spec, request: &Request) -> Result<Advice, CaseError> {
         refused: refused(&study, &rows),
         rows,
         profiles,
-        seconds: begin.elapsed().as_secs_f64(),
+        warning,
     })
 }
 

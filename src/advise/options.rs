@@ -16,7 +16,7 @@ const UNITS: [(&str, f64); 7] = [
 ];
 
 /// Times that are taken, other than 0, in seconds.
-const TIMES: RangeInclusive<f64> = 1e-15..=1e12;
+pub const TIMES: RangeInclusive<f64> = 1e-15..=1e12;
 /// Numbers of lookups that are taken as a budget.
 const LOOKUPS: RangeInclusive<f64> = 1.0..=1e18;
 /// Relative errors that are taken.
@@ -91,14 +91,18 @@ pub fn budget(text: &str) -> Result<Budget, String> {
 /// The costs that it takes.
 pub fn costs(text: &str) -> Result<Costs, String> {
     let takes = "it takes times such as lookup=2us or draw=50ns,lookup=2us, from 1e-15s to 1e12s";
-    let (mut draw, mut lookup) = (0.0, None);
+    let (mut draw, mut lookup) = (None, None);
     for part in text.split(',') {
-        match part.split_once('=').map(|(key, time)| (key.trim(), seconds(time))) {
-            Some(("draw", Some(time))) => draw = time,
-            Some(("lookup", Some(time))) => lookup = Some(time),
+        let known = match part.split_once('=').map(|(key, time)| (key.trim(), seconds(time))) {
+            Some(("draw", Some(time))) => draw.replace(time),
+            Some(("lookup", Some(time))) => lookup.replace(time),
             _ => return Err(takes.to_owned()),
+        };
+        if known.is_some() {
+            return Err(format!("it takes each cost once, and {} is another one", part.trim()));
         }
     }
+    let draw = draw.unwrap_or(0.0);
     let lookup = lookup.filter(|lookup| draw + lookup > 0.0);
     lookup.map(|lookup| Costs::Given { draw, lookup }).ok_or_else(|| takes.to_owned())
 }
@@ -125,5 +129,7 @@ mod tests {
         for wrong in ["2us", "lookup=2", "draw=1s", "lookup=0s", "step=1s,lookup=1s", ""] {
             assert!(costs(wrong).is_err_and(|said| said.contains("lookup=2us")), "{wrong}");
         }
+        let twice = costs("lookup=1us,lookup=2us").expect_err("one cost twice");
+        assert_eq!(twice, "it takes each cost once, and lookup=2us is another one");
     }
 }

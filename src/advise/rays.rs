@@ -11,7 +11,7 @@ use std::f64::consts::TAU;
 use super::candidates;
 use crate::case::{Case, CaseError, Spec};
 use crate::render::view::{Camera, furthest};
-use media::catalogue::{Domain, Settings, Value};
+use media::catalogue::{Domain, Node, Settings, Value};
 use media::{Body, Volume};
 use numeric::geometry::{Aabb, Point, Ray};
 use numeric::rng::{Address, Stream, name_hash};
@@ -58,12 +58,18 @@ pub fn read(spec: &Spec, count: Option<u64>, seed: u64) -> Result<(Case, Vec<Bod
             return None;
         };
         let rays = problem.entry("rays").filter(|_| count.is_none());
-        let is_list = rays.is_some_and(|rays| matches!(rays.node.value, Value::Array(_)));
         let about = enclosing(&problem, &**volume)?;
-        let rays = if is_list {
-            listed(&problem, &**volume, &about)?
-        } else {
-            random(&problem, &**volume, &about, (count, seed))?
+        let is_table = |node: &Node| matches!(node.value, Value::Table(_));
+        let rays = match rays.map(|rays| &rays.node.value) {
+            Some(Value::Array(list)) if !list.is_empty() && list.iter().all(is_table) => {
+                listed(&problem, &**volume, &about)?
+            }
+            None | Some(Value::Table(_)) => random(&problem, &**volume, &about, (count, seed))?,
+            Some(_) => {
+                let help = "give `{ random = 64 }`, or a list of `{ origin, direction }`";
+                problem.fault("rays", "`rays` has no rays", help);
+                return None;
+            }
         };
         Some(rays.into_iter().map(|ray| along(body, ray)).collect())
     })?;
@@ -110,10 +116,6 @@ fn listed(problem: &Settings, volume: &Volume, about: &Aabb) -> Option<Vec<Ray>>
         found
     };
     let rays: Vec<Option<Ray>> = problem.tables("rays")?.iter().map(read).collect();
-    if rays.is_empty() {
-        problem.fault("rays", "no ray is listed", "list one, or give `rays = { random = 64 }`");
-        return None;
-    }
     rays.into_iter().collect()
 }
 

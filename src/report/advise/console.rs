@@ -121,5 +121,6 @@ pub fn notes(advice: &Advice) -> Vec<String> {
     }));
     let refused = advice.refused.iter();
     notes.extend(refused.map(|refused| format!("no {}: {}", refused.estimator, refused.reason)));
+    notes.extend(advice.warning.clone());
     notes
 }

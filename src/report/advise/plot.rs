@@ -38,7 +38,8 @@ pub fn figure(advice: &Advice) -> Result<Sheet, ReportError> {
             .to_owned(),
     ];
     let foot = Foot { top: TOP + PANEL[1] + 84.0, entries: &entries, notes: &notes };
-    let facts = format!("{}  ·  {}  ·  {} ray(s)", advice.case, advice.medium, advice.rays);
+    let rays = if advice.rays == 1 { "1 ray".to_owned() } else { format!("{} rays", advice.rays) };
+    let facts = format!("{}  ·  {}  ·  {rays}", advice.case, advice.medium);
     let mut figure = Figure::with_foot(&advice.case, WIDTH, [&advice.title, &facts], &foot)?;
     costs(&mut figure.sheet, advice, &rows);
     if profile.is_some() {

@@ -26,7 +26,14 @@ pub(super) fn asked(text: &str, request: &Request) -> Advice {
 }
 
 pub(super) fn request(costs: Costs) -> Request {
-    Request { target: Target::Error(0.01), costs, rays: None, seed: 1, looseness: 1.0, curves: true }
+    Request {
+        target: Target::Error(0.01),
+        costs,
+        rays: None,
+        seed: 1,
+        looseness: 1.0,
+        curves: true,
+    }
 }
 
 fn row<'a>(advice: &'a Advice, estimator: &str) -> &'a Row {
@@ -152,6 +159,17 @@ fn measured_costs_are_kept_for_each_medium() {
     assert_eq!(first, times(false));
     assert_eq!(std::fs::read_dir(folder.path()).expect("lists").count(), 1);
     assert_ne!(first, times(true));
+    // Costs that cannot be are measured again.
+    let file =
+        std::fs::read_dir(folder.path()).expect("a list").next().expect("one").expect("a file");
+    let text = std::fs::read_to_string(file.path()).expect("costs");
+    std::fs::write(file.path(), text.replace("\"lookup\":", "\"lookup\":-")).expect("written");
+    assert!(times(false).iter().all(|(_, cost)| *cost > 1e-10));
+    // A folder that cannot be made only costs the time of the next measurement.
+    let costs = Costs::Measured { folder: Some(file.path().join("below a file")), anew: false };
+    let advice = asked(&format!("{SINES}{ANY}"), &request(costs));
+    let warning = advice.warning.expect("a warning");
+    assert_says(&warning, &["measured again", "below a file", "set XDG_CACHE_HOME"]);
 }
 
 #[test]
@@ -189,7 +207,13 @@ fn wrong_rays_and_options_are_mistakes_with_a_cure() {
         &wrong(&format!("{LINE}rays = {{ random = 2 }}\n{ANY}")),
         &["a field on a line", "leave them out"],
     );
-    assert_says(&wrong(&format!("{GRID}rays = []\n{ANY}")), &["no ray is listed"]);
+    for rays in ["[]", "[1, 2]", "3", "\"all\""] {
+        let said = wrong(&format!("{GRID}rays = {rays}\n{ANY}"));
+        assert_says(&said, &["`rays` has no rays", "`{ random = 64 }`, or a list"]);
+        assert_eq!(said.matches("error:").count(), 1, "{said}");
+    }
+    let none = format!("{GRID}rays = {{ random = 0 }}\n{ANY}");
+    assert_says(&wrong(&none), &["`random` is 0", "from 1 to 4096"]);
     let away = "rays = [{ origin = [-1, 2, 2], direction = [-1, 0, 0] }]";
     assert_says(&wrong(&format!("{GRID}{away}\n{ANY}")), &["misses the volume"]);
     let open = GRID.replace("grid = { random = { size = [8, 8, 8] }, bounds.box = { low = [0, 0, 0], high = [4, 4, 4] } }", "constant.extinction = 1");
