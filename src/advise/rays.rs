@@ -1,10 +1,4 @@
-//! Rays through a volume: those of a case, random ones, or those of a camera.
-//!
-//! ```text
-//! rays = { random = 64 }                                      uniform isotropic lines that hit the volume
-//! rays = { random = 64, camera = { position, target, … } }    pixels of a camera, as in a picture
-//! rays = [{ origin, direction, length }, …]                   these; without `length`, through the whole volume
-//! ```
+//! Rays through a volume: those of a case, random ones, or those of a camera, see [`super`].
 
 use std::f64::consts::TAU;
 
