@@ -26,12 +26,13 @@ const OF_A_PIPE: u64 = 1 << 26;
 #[derive(Debug, Args)]
 pub struct Arguments {
     /// Files of independent draws (.csv or .txt, .npy, .f64 or .bin or .raw), or `-` for a pipe with
-    /// --input. Several files share --alpha. With --images a stack (.npy), or a pass in each (.npy, .pfm, .exr)
+    /// --input. Several files share --alpha. With --images a stack (.npy), a pass in each (.npy, .pfm, .exr), or one
+    /// folder of them
     #[arg(value_name = "FILE", required = true)]
     files: Vec<PathBuf>,
     /// Expected mean of the draws
     #[arg(long, value_name = "T", allow_hyphen_values = true, conflicts_with = "case")]
-    #[arg(required_unless_present_any = ["case", "truth_image", "against"], value_parser = numbers::number)]
+    #[arg(value_parser = numbers::number)]
     truth: Option<f64>,
     /// The variance of one draw, or of one average with --batch; without it the variance is not tested
     #[arg(long, value_name = "V", allow_hyphen_values = true, value_parser = numbers::number)]
@@ -44,7 +45,7 @@ pub struct Arguments {
     #[arg(long, value_name = "LOW,HIGH", allow_hyphen_values = true, value_parser = range)]
     range: Option<[f64; 2]>,
     /// Take truth, variance, kurtosis, lookups and the distribution from theory: a case file or a built-in case
-    #[arg(long, value_name = "CASE", requires = "estimator", value_parser = Names::Cases, hide_possible_values = true)]
+    #[arg(long, value_name = "CASE", value_parser = Names::Cases, hide_possible_values = true)]
     case: Option<String>,
     /// The estimator of the case: its label in tables, or its name in the catalogue
     #[arg(long, value_name = "NAME", requires = "case", value_parser = Names::Estimators, hide_possible_values = true)]
@@ -70,11 +71,12 @@ pub struct Arguments {
     #[arg(value_parser = numbers::whole::<u64>(1..=1 << 40), allow_negative_numbers = true)]
     batch: u64,
     /// The bias that a pass excludes, relative to the truth (absolute for a truth of 0); a bias that is shown
-    /// fails, even a smaller one [default: the smallest that the file's draws can show, at most 0.05; for a pipe 0.01]
-    #[arg(long, value_name = "E", allow_hyphen_values = true, value_parser = numbers::number)]
+    /// fails, even a smaller one, such as 1% or 0.01 [default: the smallest that the file's draws can show, at most 0.05;
+    /// for a pipe 0.01]
+    #[arg(long, value_name = "E", allow_hyphen_values = true, value_parser = numbers::percentage)]
     tolerance: Option<f64>,
     /// Tolerance of the variance, relative to it [default: the smallest that the draws can show, at most 0.2]
-    #[arg(long, value_name = "E", allow_hyphen_values = true, value_parser = numbers::number)]
+    #[arg(long, value_name = "E", allow_hyphen_values = true, value_parser = numbers::percentage)]
     variance_tolerance: Option<f64>,
     /// Probability that correct draws fail, all files together
     #[arg(long, default_value_t = 1e-3, value_name = "A", value_parser = numbers::alpha)]
@@ -166,6 +168,12 @@ pub fn main(arguments: &Arguments, catalogue: &Catalogue, console: &Console) -> 
     };
     // Mistakes in the arguments are reported before anything is read.
     claimed.check(wanted)?;
+    if let Some(tolerance) = wanted.tolerance.filter(|_| claimed.is_relative()) {
+        numbers::check_share("--tolerance", tolerance)?;
+    }
+    if let Some(tolerance) = wanted.variance_tolerance {
+        numbers::check_share("--variance-tolerance", tolerance)?;
+    }
     if arguments.files.iter().filter(|file| is_pipe(file)).count() > 1 {
         anyhow::bail!("there is one pipe; give `-` once");
     }

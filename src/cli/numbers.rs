@@ -5,6 +5,7 @@ use std::ops::RangeInclusive;
 use std::str::FromStr;
 
 use crate::plan::BLOCK;
+use numeric::digits::short;
 
 /// Returns a parser of whole numbers of a range.
 pub fn whole<N>(range: RangeInclusive<N>) -> impl Fn(&str) -> Result<N, String> + Clone
@@ -44,6 +45,25 @@ fn whole_draws(text: &str) -> Option<u64> {
 /// Parses any number.
 pub fn number(text: &str) -> Result<f64, String> {
     text.parse().map_err(|_| "it takes a number, such as 0.25 or 1e-3".into())
+}
+
+/// Parses a number that may be written in percent.
+pub fn percentage(text: &str) -> Result<f64, String> {
+    let (number, unit) = text.strip_suffix('%').map_or((text, 1.0), |number| (number, 100.0));
+    let number = number.trim().parse::<f64>().map(|number| number / unit);
+    number.map_err(|_| "it takes a number, such as 0.05, 5% or 1e-3".into())
+}
+
+/// Refuses a share of 1 or more, which is a percentage without its sign.
+pub fn check_share(option: &str, share: f64) -> anyhow::Result<()> {
+    if share.is_finite() && share >= 1.0 {
+        let (percent, small) = (short(100.0 * share, 6), short(0.01 * share, 6));
+        let given = short(share, 6);
+        anyhow::bail!(
+            "{option} {given} is {percent} %; did you mean {small}, or {given}%? give less than 1"
+        );
+    }
+    Ok(())
 }
 
 /// Parses a probability.
@@ -126,6 +146,18 @@ mod tests {
             let said = budget(wrong).expect_err(wrong);
             assert!(said.contains("30s") && said.contains("1e8"), "{wrong}: {said}");
         }
+    }
+
+    #[test]
+    fn a_share_may_be_a_percentage_below_100() {
+        assert_eq!(
+            [percentage("5%"), percentage("5 %"), percentage("0.05")],
+            [Ok(0.05), Ok(0.05), Ok(0.05)]
+        );
+        assert!(percentage("five%").is_err() && percentage("%").is_err());
+        assert!(check_share("--tolerance", 0.99).is_ok());
+        let said = check_share("--tolerance", 5.0).expect_err("too much").to_string();
+        assert_eq!(said, "--tolerance 5 is 500 %; did you mean 0.05, or 5%? give less than 1");
     }
 
     #[test]

@@ -9,6 +9,6 @@ mod of_case;
 mod whole;
 
 pub use files::{Column, Draws, ForeignError, Format, Layout, count};
-pub use of_case::{Choice, ChoiceError, OfCase, theory as theory_of};
+pub use of_case::{Choice, ChoiceError, OfCase, estimators as estimators_of, theory as theory_of};
 
 pub use gate::session::*;

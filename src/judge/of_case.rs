@@ -229,11 +229,14 @@ fn claims(case: &Case, prediction: &Prediction, rounding: f64) -> Vec<(String, C
     claims.collect()
 }
 
-/// Returns the index of the estimator of a name, with its label.
-fn find(case: &Case, name: &str) -> Result<(usize, String), ChoiceError> {
-    let plain: Vec<EstimatorName> =
-        (0..case.scenario.estimators()).map(|e| case.id(e, None).estimator).collect();
-    // Namesakes are numbered, as in tables.
+/// Returns the names of a case's estimators.
+fn plain_names(case: &Case) -> Vec<EstimatorName> {
+    (0..case.scenario.estimators()).map(|e| case.id(e, None).estimator).collect()
+}
+
+/// Returns the labels of a case's estimators, as in tables: namesakes are numbered.
+pub fn estimators(case: &Case) -> Vec<String> {
+    let plain = plain_names(case);
     let label = |e: usize| {
         let namesakes = plain[..e].iter().filter(|&other| *other == plain[e]).count();
         if namesakes > 0 {
@@ -242,7 +245,12 @@ fn find(case: &Case, name: &str) -> Result<(usize, String), ChoiceError> {
             plain[e].to_string()
         }
     };
-    let labels: Vec<String> = (0..plain.len()).map(label).collect();
+    (0..plain.len()).map(label).collect()
+}
+
+/// Returns the index of the estimator of a name, with its label.
+fn find(case: &Case, name: &str) -> Result<(usize, String), ChoiceError> {
+    let (plain, labels) = (plain_names(case), estimators(case));
     let catalogue = |e: &usize| plain[*e].name == name;
     let called = |e: &usize| plain[*e].to_string() == name;
     let numbered = |e: &usize| labels[*e] == name && !called(e);
@@ -321,7 +329,7 @@ impl Point<'_> {
             return Ok(());
         }
         let (case, estimator) = (self.case.name.clone(), self.label.to_owned());
-        let nearest = self.by_distance(value).first().copied();
+        let nearest = self.accepted(what, value);
         let (what, wanted) = (what.key(), what.domain());
         Err(ChoiceError::NoSuchValue { case, estimator, what, value, wanted, nearest })
     }
@@ -331,6 +339,12 @@ impl Point<'_> {
         let mut values = self.axis.map_or(Vec::new(), |axis| axis.values.clone());
         values.sort_by(|a, b| (a - value).abs().total_cmp(&(b - value).abs()));
         values
+    }
+
+    /// Returns the nearest value of the sweep that is not refused.
+    fn accepted(&self, what: What, value: f64) -> Option<f64> {
+        let mut values = self.by_distance(value).into_iter().take(TRIED);
+        values.find(|&value| self.prepared(Some((what, value))).is_ok())
     }
 
     fn prepared(&self, variation: Variation) -> Result<Prediction, String> {
@@ -345,10 +359,7 @@ impl Point<'_> {
             // A value outside the sweep may be refused where those of the sweep are not.
             let beside = variation
                 .filter(|(_, value)| self.axis.is_some_and(|axis| !axis.values.contains(value)));
-            let nearest = beside.and_then(|(what, value)| {
-                let mut values = self.by_distance(value).into_iter().take(TRIED);
-                values.find(|&value| self.prepared(Some((what, value))).is_ok())
-            });
+            let nearest = beside.and_then(|(what, value)| self.accepted(what, value));
             ChoiceError::Refused { case, estimator, why, nearest }
         })
     }
@@ -371,10 +382,14 @@ fn list(values: &[f64]) -> String {
     }
 }
 
-/// Suggests the nearest value of the sweep.
+/// Suggests the nearest value of the sweep that is not refused.
 fn near(nearest: Option<f64>) -> String {
     let named = |value: f64| {
-        format!("; the nearest value of the sweep is {}: give it, or add --nearest", number(value))
+        format!(
+            "; the nearest value of the sweep is {}: give it, or add --nearest, only if your draws were made there, for \
+             mean or variance depend on the value; else draw at another one",
+            number(value)
+        )
     };
     nearest.map_or(String::new(), named)
 }

@@ -1,10 +1,12 @@
 //! Claims about draws by the arguments of `trueflight judge`, and verdicts by them.
 
+use anyhow::Context;
+
 use super::{Arguments, Judged};
 use crate::case::{Case, CaseError, Catalogue};
 use crate::judge::{
     CheckedClaim, Choice, ChoiceError, Claim, ClaimError, Draws, Layout, Lookups, Options, Session,
-    Taken, Theory, theory_of,
+    Taken, Theory, estimators_of, theory_of,
 };
 
 /// Claims about the draws of a file.
@@ -21,6 +23,11 @@ impl Claimed {
     /// Returns whether the claims come from theory.
     pub(super) fn has_theory(&self) -> bool {
         self.theory.is_some()
+    }
+
+    /// Returns whether the tolerance is relative to a truth.
+    pub(super) fn is_relative(&self) -> bool {
+        self.claims.iter().any(|(_, claim)| claim.truth != 0.0)
     }
 
     /// Validates the options of the gate against the claims.
@@ -75,7 +82,7 @@ impl Claimed {
 impl Arguments {
     /// Returns the claims, from numbers or from a case.
     pub(super) fn claimed(&self, catalogue: &Catalogue) -> anyhow::Result<Claimed> {
-        let (Some(name), Some(estimator)) = (&self.case, &self.estimator) else {
+        let Some(name) = &self.case else {
             let claims = vec![(String::new(), self.claim_by_numbers()?)];
             return Ok(Claimed { claims, theory: None, channel: None, is_mean_only: false });
         };
@@ -86,6 +93,13 @@ impl Arguments {
         let [case] = &cases[..] else {
             let names: Vec<&str> = cases.iter().map(|case: &Case| case.name.as_str()).collect();
             anyhow::bail!("--case {name} is several cases; choose one of: {}", names.join(", "));
+        };
+        let Some(estimator) = &self.estimator else {
+            let names = estimators_of(case).join(", ");
+            anyhow::bail!(
+                "{}: say which estimator made the draws, by --estimator: {names}",
+                case.name
+            );
         };
         let (swept, nearest) = (self.swept, self.nearest);
         let choice = Choice { estimator, swept, nearest, channel: None, seed: self.seed };
@@ -151,6 +165,10 @@ impl Arguments {
             ),
             (_, mean) => mean,
         };
+        let truth = self.truth.context(
+            "what the draws should be on average is not known; give it by --truth T, or by a case with --case CASE \
+             --estimator NAME",
+        )?;
         let variance = self.lookups_variance;
         let claim = Claim {
             variance: self.variance,
@@ -158,7 +176,7 @@ impl Arguments {
             range: self.range,
             lookups: lookups.map(|mean| Lookups { mean, variance, error: 0.0 }),
             rounding: self.rounding,
-            ..Claim::of_truth(self.truth.unwrap_or(f64::NAN))
+            ..Claim::of_truth(truth)
         };
         Ok(claim.validated()?)
     }

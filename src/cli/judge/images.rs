@@ -52,7 +52,7 @@ pub struct Arguments {
     #[arg(long, requires = "against", conflicts_with = "case")]
     same_distribution: bool,
     /// Judge tiles of N × N pixels; 1 for single pixels [default: the smallest power of 2 with 2048 values of all
-    /// passes, 8192 where the variance comes from passes]
+    /// passes; where the variance comes from passes 8192, and as many as their tails need]
     #[arg(long, value_name = "N", requires = "images")]
     #[arg(value_parser = numbers::whole::<u32>(1..=u32::MAX), allow_negative_numbers = true)]
     tile: Option<u32>,
@@ -66,6 +66,10 @@ pub struct Arguments {
     out: Option<PathBuf>,
 }
 
+/// Error of images without anything to compare them with.
+const MISSING: &str = "what the pixels should be is not known; give --truth T for all, an image by --truth-image FILE, or \
+                       passes of a reference by --against FILE";
+
 /// Reads, judges, writes, prints.
 pub fn main(arguments: &super::Arguments, console: &Console) -> anyhow::Result<u8> {
     let images = &arguments.images;
@@ -75,6 +79,9 @@ pub fn main(arguments: &super::Arguments, console: &Console) -> anyhow::Result<u
     }
     if arguments.files.iter().any(|file| super::is_pipe(file)) {
         bail!("images are not read of a pipe; give files");
+    }
+    if arguments.truth.is_none() && images.truth_image.is_none() && images.against.is_empty() {
+        bail!(MISSING);
     }
     // If a required option conflicts with another given option, clap does not enforce the requirement.
     if images.same_distribution && images.against.is_empty() {
@@ -90,6 +97,9 @@ pub fn main(arguments: &super::Arguments, console: &Console) -> anyhow::Result<u
         bail!(
             "--variance-passes says where a variance is from; give it by --variance-image or --variance"
         );
+    }
+    if let (Some(tolerance), true) = (arguments.tolerance, arguments.truth != Some(0.0)) {
+        numbers::check_share("--tolerance", tolerance)?;
     }
     let wanted = Options {
         tile: images.tile.map(|tile| tile as usize),
@@ -154,9 +164,9 @@ fn judged(arguments: &super::Arguments, wanted: &Options) -> anyhow::Result<Judg
         [] => None,
         paths => Some(read(paths)?),
     };
+    let truth = level(arguments.truth, &images.truth_image)?.context(MISSING)?;
     let claim = Claim {
-        truth: level(arguments.truth, &images.truth_image)?
-            .context("give --truth, --truth-image or --against")?,
+        truth,
         truth_passes: images.truth_passes.map(|passes| passes as usize),
         variance: level(arguments.variance, &images.variance_image)?,
         variance_passes: images.variance_passes.map(|passes| passes as usize),
@@ -170,10 +180,21 @@ fn judged(arguments: &super::Arguments, wanted: &Options) -> anyhow::Result<Judg
 
 /// Returns the files of a stack; those of a folder in the order of their names.
 fn passes(paths: &[PathBuf]) -> anyhow::Result<Vec<PathBuf>> {
-    let [folder] = paths else { return Ok(paths.to_vec()) };
-    if !folder.is_dir() {
-        return Ok(paths.to_vec());
+    if let Some(missing) = paths.iter().find(|path| !path.exists()) {
+        bail!("{}: there is no such file or folder; give another", missing.display());
     }
+    let folder = match paths {
+        [folder] if folder.is_dir() => folder,
+        _ => {
+            if let Some(folder) = paths.iter().find(|path| path.is_dir()) {
+                bail!(
+                    "{}: a folder beside other files; give one folder with all passes, or the files themselves",
+                    folder.display()
+                );
+            }
+            return Ok(paths.to_vec());
+        }
+    };
     let entries =
         std::fs::read_dir(folder).and_then(Iterator::collect::<Result<Vec<_>, _>>).with_context(
             || format!("{}: cannot be listed; give a folder that can be read", folder.display()),

@@ -148,6 +148,9 @@ impl Table {
                     }
                     return Ok((index, true));
                 }
+                if let Some(error) = self.separated(&names[0], Some(name)) {
+                    return Err(error);
+                }
                 let (column, columns) = (Column::Name(name.clone()), listed());
                 return Err(ForeignError::NoColumn { file: file(), column, columns });
             }
@@ -179,6 +182,18 @@ impl Table {
         })
     }
 
+    /// Returns the error of a table in which something else than commas separates columns: parts of the only field are
+    /// numbers, or have the chosen name.
+    fn separated(&self, field: &str, wanted: Option<&str>) -> Option<ForeignError> {
+        let separators = [(';', "semicolons"), ('\t', "tabs"), (' ', "blanks")];
+        let is_part = |part: &str| number(part.as_bytes()).is_some() || Some(part.trim()) == wanted;
+        let is_split =
+            |separator: char| field.contains(separator) && field.split(separator).any(is_part);
+        let found = separators.into_iter().find(|(separator, _)| is_split(*separator));
+        let (_, separator) = found.filter(|_| self.columns == 1)?;
+        Some(ForeignError::Separator { file: self.file.clone(), line: brief(field), separator })
+    }
+
     /// Appends the values of the draw in the current line; returns its lookups.
     #[inline]
     fn draw(&self, values: &mut [f64]) -> Result<f64, ForeignError> {
@@ -203,7 +218,8 @@ impl Table {
             return ForeignError::RaggedLine { file, line, found, expected: self.columns };
         }
         let text = self.record.get(column).map(text).unwrap_or_default();
-        ForeignError::NotANumber { file, line, column, text: brief(&text) }
+        let wrong = ForeignError::NotANumber { file, line, column, text: brief(&text) };
+        self.separated(&text, None).unwrap_or(wrong)
     }
 }
 

@@ -10,6 +10,7 @@
 //! NaN and ∞ are read as they are: the gate judges them. A file that is not a list of numbers is a [`ForeignError`];
 //! nothing is skipped.
 
+mod bytes;
 mod csv;
 mod layout;
 mod npy;
@@ -250,6 +251,15 @@ pub enum ForeignError {
     /// Numbers of 4 bytes where 8 are expected.
     #[error("{file}: its bytes are float32, not float64; give --input f32, or name the file .f32")]
     LooksSingle { file: String },
+    /// Numbers of 8 bytes where 4 are expected.
+    #[error("{file}: its bytes are float64, not float32; give --input f64, or name the file .f64")]
+    LooksDouble { file: String },
+    /// Numbers of the other byte order.
+    #[error(
+        "{file}: its values are of absurd size, such as {value:e}, but of usual size with their bytes reversed: is it \
+         big-endian? write little-endian, by x.astype('<f8').tofile, or npy, which tells its byte order"
+    )]
+    LooksSwapped { file: String, value: f64 },
     /// There is no NPY header.
     #[error("{file}: not an npy file ({cause}); write it by numpy.save")]
     NotNpy { file: String, cause: io::Error },
@@ -299,6 +309,9 @@ pub enum ForeignError {
     /// Several columns have the chosen name.
     #[error("{file}: {count} columns are called `{name}`; choose one by index")]
     SameName { file: String, name: String, count: usize },
+    /// Columns that something else than commas separates.
+    #[error("{file}: `{line}` has {separator} between its columns; separate columns by commas")]
+    Separator { file: String, line: String, separator: &'static str },
     /// A line with another number of columns than the first.
     #[error(
         "{file}, line {line}: {found} column(s) where the first line has {expected}; mend the line"

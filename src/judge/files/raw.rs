@@ -1,5 +1,6 @@
 //! Numbers of a fixed width, one after the other or in rows with some columns that are read.
 
+use super::bytes::{self, Mistaken};
 use super::{Bytes, ForeignError, Layout};
 use media::files::number::Number;
 
@@ -26,7 +27,7 @@ pub(super) struct Words {
 
 /// Opens little-endian numbers without a header; `length` counts the bytes of the file.
 pub(super) fn open(
-    bytes: Bytes,
+    source: Bytes,
     file: &str,
     length: Option<u64>,
     layout: &Layout,
@@ -49,45 +50,23 @@ pub(super) fn open(
         let (whole, width) = (length / size, word.width());
         return Err(ForeignError::PartialDraw { file: file.to_owned(), whole, rest, width });
     }
-    let mut words = Words::new(bytes, file, word, None);
+    let mut words = Words::new(source, file, word, None);
     // The first bytes show whether there are any, in a pipe too.
     if words.fill()? == 0 {
         return Err(ForeignError::Empty { file: file.to_owned() });
     }
-    if word == Number::of_width(8, false) && looks_single(&words.chunk[..words.end]) {
-        return Err(ForeignError::LooksSingle { file: file.to_owned() });
+    let (first, file) = (&words.chunk[..words.end], file.to_owned());
+    match bytes::mistaken(first, word.width()) {
+        Some(Mistaken::Single) => return Err(ForeignError::LooksSingle { file }),
+        Some(Mistaken::Double) => return Err(ForeignError::LooksDouble { file }),
+        Some(Mistaken::Swapped(value)) => return Err(ForeignError::LooksSwapped { file, value }),
+        None => {}
     }
     words.length = length.map(|bytes| bytes / size);
     if let Some(numbers) = words.length.filter(|numbers| numbers % width as u64 != 0) {
-        return Err(ForeignError::PartialRow { file: file.to_owned(), numbers, values: width });
+        return Err(ForeignError::PartialRow { file, numbers, values: width });
     }
     Ok(Rows::new(words, width, (0..width).collect(), false))
-}
-
-/// Minimum number of words of 8 bytes that show whether they are pairs of words of 4 bytes.
-const MIN_WORDS: usize = 64;
-
-/// Returns true if bytes look like float32.
-///
-/// The low half of a float64 holds the last bits of its mantissa. Read as float32 these have any exponent, or are
-/// 0 and few other values if the number has few bits. Halves of usual size, many different ones or 1 among them,
-/// are numbers of their own.
-fn looks_single(bytes: &[u8]) -> bool {
-    let (words, _) = bytes.as_chunks::<8>();
-    let is_usual = |half: f32| half == 0.0 || (1e-12..=1e12).contains(&half.abs());
-    let halves = words.iter().map(|&[a, b, c, d, e, f, g, h]| {
-        [f32::from_le_bytes([a, b, c, d]), f32::from_le_bytes([e, f, g, h])]
-    });
-    let mut seen = std::collections::BTreeSet::new();
-    for [low, high] in halves {
-        if !is_usual(low) || !is_usual(high) {
-            return false;
-        }
-        if seen.len() <= MIN_WORDS {
-            seen.insert(low.to_bits());
-        }
-    }
-    words.len() >= MIN_WORDS && (seen.len() > MIN_WORDS / 4 || seen.contains(&1.0_f32.to_bits()))
 }
 
 impl Words {

@@ -45,6 +45,9 @@ pub struct Judgement {
     pub truth_passes: Option<usize>,
     /// Comparison with a second stack; `None` if the truth is given.
     pub comparison: Option<Comparison>,
+    /// Picture in the channel with the most obvious bias that the claimed variance does not show, with the standard error
+    /// and z of the passes' own spread; `None` if there is none.
+    pub shown: Option<Tile>,
     /// Whole picture, one entry per channel.
     pub whole: Vec<Tile>,
     /// Every tile, the smallest first, row after row from the top, each with all its channels.
@@ -130,6 +133,8 @@ pub struct Variance {
     pub limit: f64,
     /// True if it is refuted.
     pub is_refuted: bool,
+    /// True if the passes plainly vary less.
+    pub is_too_large: bool,
 }
 
 /// Variance that was estimated from passes.
@@ -209,6 +214,9 @@ pub struct Tile {
     pub verdict: Verdict,
 }
 
+/// Cause of a picture that is right on the whole and wrong nearly everywhere.
+const MISPLACED: &str = "the whole agrees and the tiles do not: is the picture flipped or transposed, or are the passes not on the first axis?";
+
 /// Maximum number of worst tiles that are listed.
 const WORST: usize = 5;
 
@@ -223,12 +231,19 @@ fn counts(tiles: &[Tile]) -> Counts {
     }
 }
 
-/// Returns the tiles with the most evidence against them, of those that fail or are listed.
+/// Returns the tiles with the most evidence against them, of those that fail or are listed; of one place the channel
+/// with the most.
 fn worst(tiles: &[Tile]) -> Vec<Tile> {
     let is_off = |tile: &&Tile| tile.is_listed || tile.verdict == Verdict::Fail;
     let mut off: Vec<&Tile> = tiles.iter().filter(is_off).collect();
     off.sort_by(|a, b| b.ln_e.total_cmp(&a.ln_e));
-    off.into_iter().take(WORST).cloned().collect()
+    let mut worst: Vec<Tile> = Vec::new();
+    for tile in off {
+        if worst.len() < WORST && !worst.iter().any(|other| other.is_at(tile)) {
+            worst.push(tile.clone());
+        }
+    }
+    worst
 }
 
 impl Tile {
@@ -239,6 +254,11 @@ impl Tile {
         };
         holds([self.row, self.height], [other.row, other.height])
             && holds([self.column, self.width], [other.column, other.width])
+    }
+
+    /// Returns whether another tile has the same pixels, perhaps in another channel.
+    pub fn is_at(&self, other: &Self) -> bool {
+        self.contains(other) && other.contains(self) && self.size == other.size
     }
 
     /// Returns the evidence on the mean.
@@ -269,6 +289,7 @@ impl Judgement {
             estimate: None,
             truth_passes: None,
             comparison: None,
+            shown: None,
             whole: Vec::new(),
             tiles: Vec::new(),
             counts: Counts::default(),
@@ -298,6 +319,34 @@ impl Judgement {
         for tile in failing {
             pattern.note("mean", Some(tile.mean - tile.truth));
         }
+        // A mean that deviates moves the variance of pixels that are hit or missed.
+        if let Some(shown) = self.shown.as_ref().filter(|_| self.verdict == Verdict::Fail) {
+            pattern.note("mean", Some(shown.mean - shown.truth));
+        }
         pattern
+    }
+
+    /// Returns whether tiles were judged by no ground: their only one is a variance that is refuted, or the passes depend
+    /// on each other.
+    pub fn is_unjudged(&self) -> bool {
+        let is_refuted = self.variance.is_some_and(|variance| variance.is_refuted);
+        (is_refuted || self.order.is_refuted()) && self.counts.fail + self.counts.pass == 0
+    }
+
+    /// Returns whether pixels are probably in the wrong places: the whole agrees, and most of the smallest tiles are too
+    /// bright or too dark, many of either kind.
+    pub fn is_misplaced(&self) -> bool {
+        let smallest = self.tiles.iter().filter(|tile| tile.size == self.tile);
+        let failing = smallest.clone().filter(|tile| tile.verdict == Verdict::Fail);
+        let bright = failing.clone().filter(|tile| tile.mean > tile.truth).count();
+        let (failing, all) = (failing.count(), smallest.count());
+        let is_two_sided = 10 * bright.min(failing - bright) >= all;
+        let is_whole_off = self.whole.iter().any(|whole| whole.verdict == Verdict::Fail);
+        !is_whole_off && 2 * failing >= all && is_two_sided
+    }
+
+    /// Returns the lines that follow a failure: its likely causes.
+    pub fn likely(&self) -> Vec<String> {
+        if self.is_misplaced() { vec![MISPLACED.to_owned()] } else { self.pattern().lines() }
     }
 }

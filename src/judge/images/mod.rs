@@ -42,7 +42,10 @@ pub mod judgement;
 mod noisy;
 mod order;
 mod picture;
+mod promises;
 mod repeats;
+mod shown;
+mod tails;
 mod tiles;
 mod variance;
 mod verdict;
@@ -68,7 +71,8 @@ const NOISY_VALUES: usize = 8192;
 /// Options of a verdict.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Options {
-    /// Rows and columns of the smallest tiles; `None` for the smallest power of 2 with 2048 values in all passes.
+    /// Rows and columns of the smallest tiles; `None` for the smallest power of 2 with 2048 values in all passes, or with
+    /// 8192 and a bound on the variance of every tile if the variance is an estimate.
     pub tile: Option<usize>,
     /// ε of the whole and of each tile, in units of the picture's mean truth; absolute if that is 0. `None` for the
     /// bias that the passes can show, at most 5 % for the whole.
@@ -118,11 +122,7 @@ pub fn judge(stack: &Stack, claim: &Claim, wanted: &Options) -> Result<Judgement
     wanted.check()?;
     let pixels = Pixels::new(claim, stack, wanted.tolerance)?;
     let (size, alpha) = (stack.size, wanted.alpha);
-    let tile = match &pixels.estimate {
-        Some(found) => wanted.tile(size, stack.passes.min(found.passes), NOISY_VALUES),
-        None => wanted.tile(size, stack.passes, VALUES),
-    };
-    let mut judgement = Judgement::new(stack, alpha, tile);
+    let mut judgement = Judgement::new(stack, alpha, wanted.tile(size, stack.passes, VALUES));
     judgement.truth_passes = claim.truth_passes;
     let range = pixels.widened().unwrap_or([f64::NEG_INFINITY, f64::INFINITY]);
     let bound = |i| if pixels.is_certain(i) { pixels.bound(i) } else { f64::MAX };
@@ -139,15 +139,26 @@ pub fn judge(stack: &Stack, claim: &Claim, wanted: &Options) -> Result<Judgement
         judgement.order.reason = reason;
     }
     let (is_free, is_whole) = (!judgement.neighbours.is_refuted(), judgement.refuting == 0);
+    let stacks: Vec<&Stack> = match &pixels.estimate {
+        Some(found) => found.stack.iter().chain([stack]).collect(),
+        None => Vec::new(),
+    };
+    let mut share = 1.0;
+    if let Some(found) = &pixels.estimate {
+        judgement.tile = wanted.tile(size, stack.passes.min(found.passes), NOISY_VALUES);
+        if wanted.tile.is_none() && claim.kurtosis.is_none() && is_whole {
+            let chosen = tails::chosen(&stacks, size, judgement.tile, found.passes);
+            (judgement.tile, share) = (chosen.tile, chosen.share);
+        }
+    }
+    let tile = judgement.tile;
     let (parts, wholes) =
         (tiles::parts(size, tile, pixels.estimate.is_some()), tiles::wholes(size));
     let q = |parts: &[Part]| match pixels.estimate.as_ref().filter(|_| is_whole) {
-        Some(found) => {
-            let stacks: Vec<&Stack> = found.stack.iter().chain([stack]).collect();
-            variance::all_q(&stacks, parts, claim.kurtosis)
-        }
+        Some(_) => variance::all_q(&stacks, parts, claim.kurtosis),
         None => vec![0.0; parts.len()],
     };
+    let tiles_alpha = share * main_share(2) * alpha;
     let (q_tiles, q_whole) = (q(&parts), q(&wholes));
     judgement.estimate =
         pixels.estimate.as_ref().map(|found| found.told(claim, size, tile, &parts, &q_tiles));
@@ -160,19 +171,22 @@ pub fn judge(stack: &Stack, claim: &Claim, wanted: &Options) -> Result<Judgement
             tolerance: wanted.tolerance,
             is_capped: false,
             count: parts.len(),
-            levels: Levels::new(main_share(2) * alpha, parts.len()),
+            levels: Levels::new(tiles_alpha, parts.len()),
         };
         let levels = Levels::new(SIDE_SHARE * alpha, wholes.len());
         let whole_terms = Terms { is_capped: true, count: 1, levels, ..terms };
         let mut tiles = evidence(stack, &pixels, &parts, terms, &q_tiles);
         let mut whole = evidence(stack, &pixels, &wholes, whole_terms, &q_whole);
         if !judgement.order.is_refuted() {
-            decide(&mut tiles, main_share(2) * alpha);
+            decide(&mut tiles, tiles_alpha);
             decide(&mut whole, SIDE_SHARE * alpha);
         }
         judgement.take(tiles, whole);
+        if !judgement.order.is_refuted() {
+            judgement.shown = shown::mean(stack, &pixels, &judgement.whole, is_free);
+        }
     }
-    verdict::decide(&mut judgement, &pixels, claim);
+    verdict::decide(&mut judgement, stack, &pixels, claim);
     Ok(judgement)
 }
 
@@ -294,7 +308,7 @@ fn order_of(stack: &Stack, is_certain: bool, alpha: f64) -> (Dependence, Vec<u32
     (said, repeated)
 }
 
-/// Tests whether the claimed variance is too small; `None` if it is unknown, or rounding hides it.
+/// Tests the claimed variance; `None` if it is unknown, or rounding hides it.
 fn variance_of(
     stack: &Stack,
     pixels: &Pixels,
@@ -303,13 +317,14 @@ fn variance_of(
     alpha: f64,
 ) -> Option<Variance> {
     let level = SIDE_SHARE * alpha;
-    let (found, excess) = if is_noisy(pixels) {
+    let (found, excess, error) = if is_noisy(pixels) {
         variance::pairs(stack, pixels, q, is_free, level)?
     } else {
-        (variance::squares(stack, pixels, is_free)?, 1.0)
+        (variance::squares(stack, pixels, is_free)?, 1.0, 0.0)
     };
     let variance::Squares { ln_e, about_truth, about_mean } = found;
     let (margin, limit) = (VARIANCE_MARGIN * excess, -level.ln());
     let is_refuted = ln_e >= limit && is_by_spread(about_truth, about_mean);
-    Some(Variance { about_truth, about_mean, margin, ln_e, limit, is_refuted })
+    let is_too_large = is_free && shown::is_too_large(stack, pixels, about_mean, error);
+    Some(Variance { about_truth, about_mean, margin, ln_e, limit, is_refuted, is_too_large })
 }

@@ -122,12 +122,16 @@ impl Pairs {
         for first in (0..stack.passes - 1).step_by(2) {
             let (one, other) = (stack.pass(first), stack.pass(first + 1));
             for i in places.clone() {
-                let y = 0.5 * (one[i] - other[i]).powi(2);
-                self.count += 1.0;
-                self.sum += y;
-                self.squares += y * y;
+                self.add_one(0.5 * (one[i] - other[i]).powi(2));
             }
         }
+    }
+
+    /// Adds one Y.
+    pub(super) fn add_one(&mut self, y: f64) {
+        self.count += 1.0;
+        self.sum += y;
+        self.squares += y * y;
     }
 
     /// Returns q; `None` if nothing varies.
@@ -253,13 +257,15 @@ pub(super) fn squares(stack: &Stack, pixels: &Pixels, is_free: bool) -> Option<S
 /// y = (x_2k − x_2k+1)²/(2V) − 1 ≥ −1;   V of the pixel where it is exact, else a bound on the mean of all pixels:
 ///     V̂/(1 − √(2r ln(2/α_v)))    as of `stats::estimated_variance`, which takes half of the level α_v
 /// ```
+///
+/// Returns the squares with that bound over V̂ and with r.
 pub(super) fn pairs(
     stack: &Stack,
     pixels: &Pixels,
     q: f64,
     is_free: bool,
     level: f64,
-) -> Option<(Squares, f64)> {
+) -> Option<(Squares, f64, f64)> {
     let variance = pixels.variance.as_ref()?;
     let is_judged = |&i: &usize| {
         !pixels.is_certain(i) && pixels.estimate.as_ref().is_none_or(|found| !found.is_unknown[i])
@@ -274,10 +280,11 @@ pub(super) fn pairs(
     let pixel = |i: &usize| i / stack.size.channels;
     let groups: Vec<&[usize]> = judged.chunk_by(|i, j| pixel(i) == pixel(j)).collect();
     let draws = groups.len() as f64;
-    let excess = match &pixels.estimate {
-        Some(found) => of_tile(1.0, q, found.passes, draws).upper(0.5 * level)?,
-        None => 1.0,
+    let estimate = match &pixels.estimate {
+        Some(found) => of_tile(1.0, q, found.passes, draws),
+        None => Estimate { variance: 1.0, error: 0.0 },
     };
+    let excess = estimate.upper(0.5 * level)?;
     let of = |i: usize| if pixels.estimate.is_some() { claimed * excess } else { variance[i] };
     let floor = judged.iter().map(|&i| pixels.floor(i).powi(2) / of(i)).sum::<f64>() / count;
     if floor > 0.25 * VARIANCE_CAP {
@@ -292,5 +299,9 @@ pub(super) fn pairs(
     });
     let ratio = (1.0 + sum / (count_pairs as f64 * draws)) * excess;
     let ln_share = if pixels.estimate.is_some() { std::f64::consts::LN_2 } else { 0.0 };
-    Some((Squares { ln_e: ln_e - ln_share, about_truth: ratio, about_mean: ratio }, excess))
+    Some((
+        Squares { ln_e: ln_e - ln_share, about_truth: ratio, about_mean: ratio },
+        excess,
+        estimate.error,
+    ))
 }

@@ -2,19 +2,36 @@
 
 use super::claim::{Claim, Pixels};
 use super::judgement::{Comparison, Judgement, Refuted, Tile};
+use super::picture::Stack;
+use super::promises::{guarantees, guarantees_against};
 use crate::judge::{Reasons, SIDE_SHARE};
 use gate::deviation::{Deviation, signed_percent};
 use gate::stats::verdict::Verdict;
 use numeric::digits::{enough, percent, short};
 
 /// Decides about a stack, and adds the promises of the verdict.
-pub(super) fn decide(judgement: &mut Judgement, pixels: &Pixels, claim: &Claim) {
+pub(super) fn decide(judgement: &mut Judgement, stack: &Stack, pixels: &Pixels, claim: &Claim) {
     let refuted = judgement.refuted_by;
     let refuted = refuted.map(|refuted| fault(judgement, refuted, pixels));
     let mut failing: Vec<String> = too_small(judgement).into_iter().collect();
     // If the variance is refuted, no tile fails by it; the tile that stands out may show the cause.
     let strange = furthest(judgement.tiles.iter());
-    if let Some(tile) = strange.filter(|_| judgement.counts.fail == 0 && !failing.is_empty()) {
+    let is_small = !failing.is_empty();
+    if let Some(shown) = judgement.shown.as_ref().filter(|_| is_small) {
+        failing.insert(
+            0,
+            format!(
+                "the mean{} is plainly off by {}",
+                in_channel(judgement, shown),
+                by_itself(judgement, shown)
+            ),
+        );
+        failing.push(
+            "of pixels that are hit or missed the variance moves with the mean; the mean is not judged by that variance: \
+             give a range, too"
+                .to_owned(),
+        );
+    } else if let Some(tile) = strange.filter(|_| judgement.counts.fail == 0 && is_small) {
         failing.push(format!(
             "what stands out most, {}: {} (not judged by that variance; give a range, too)",
             place(judgement, tile),
@@ -22,7 +39,7 @@ pub(super) fn decide(judgement: &mut Judgement, pixels: &Pixels, claim: &Claim) 
         ));
     }
     failing.extend(means_off(judgement, judgement.worst.first()));
-    let open = open(judgement, claim);
+    let open = open(judgement, claim, is_flat(stack));
     finish(judgement, Reasons { refuted, failing, open, ..Reasons::default() });
     judgement.guarantees = guarantees(judgement, claim);
 }
@@ -39,11 +56,11 @@ pub(super) fn decide_against(judgement: &mut Judgement, comparison: &Comparison,
     });
     let mut failing = Vec::new();
     if comparison.is_same_distribution && comparison.spread_p <= SIDE_SHARE * judgement.alpha {
-        let times = |x| format!("{} times as wide", short(x, 4));
-        let spread = comparison.spread.map_or("differently".to_owned(), times);
+        let times = |x| format!("is {} times", short(x, 4));
+        let spread = comparison.spread.map_or("differs from".to_owned(), times);
         let p = short(comparison.spread_p, 2);
         failing.push(format!(
-            "the variance is off: the passes spread {spread} as those of the reference (p = {p})"
+            "the variance is off: that of the passes {spread} that of the reference (p = {p})"
         ));
     }
     let failed = judgement.tiles.iter().filter(|tile| tile.verdict == Verdict::Fail);
@@ -72,7 +89,7 @@ fn furthest<'a>(tiles: impl Iterator<Item = &'a Tile>) -> Option<&'a Tile> {
 fn too_small(judgement: &Judgement) -> Option<String> {
     let variance = judgement.variance.filter(|variance| variance.is_refuted)?;
     Some(format!(
-        "the variance is too small: values spread {:.3} times as wide, {} (ln E = {:.1} ≥ {:.1}){}",
+        "the variance is too small: the passes vary {:.3} times as much, {} (ln E = {:.1} ≥ {:.1}){}",
         variance.about_mean,
         signed_percent(variance.about_mean - 1.0),
         variance.ln_e,
@@ -87,8 +104,19 @@ fn too_small(judgement: &Judgement) -> Option<String> {
 /// Returns the reasons by which means fail.
 fn means_off(judgement: &Judgement, worst: Option<&Tile>) -> Vec<String> {
     let fails = |whole: &&Tile| whole.verdict == Verdict::Fail;
-    let whole = |whole| format!("the picture is off: {}", off(judgement, whole));
-    let mut failing: Vec<String> = judgement.whole.iter().filter(fails).map(whole).collect();
+    let wholes: Vec<&Tile> = judgement.whole.iter().filter(fails).collect();
+    let mut failing = match &*wholes {
+        [] => Vec::new(),
+        [whole] => vec![format!("the picture is off: {}", off(judgement, whole))],
+        [first, ..] => {
+            let most = furthest(wholes.iter().copied()).unwrap_or(first);
+            let (count, channels) = (wholes.len(), judgement.size.channels);
+            let most = off(judgement, most);
+            vec![format!(
+                "the picture is off in {count} of {channels} channels; the furthest: {most}"
+            )]
+        }
+    };
     if judgement.counts.fail > 0 {
         let (fail, tiles) = (judgement.counts.fail, judgement.counts.tiles);
         let worst = worst.map_or(String::new(), |worst| {
@@ -96,28 +124,53 @@ fn means_off(judgement: &Judgement, worst: Option<&Tile>) -> Vec<String> {
         });
         failing.push(format!("{fail} of {tiles} tiles are off{worst}"));
     }
+    if judgement.is_misplaced() {
+        failing.extend(judgement.likely());
+    }
     failing
 }
 
 /// Returns the reasons by which means are undecided.
-fn means_open(judgement: &Judgement) -> Vec<String> {
+fn means_open(judgement: &Judgement, is_flat: bool) -> Vec<String> {
     let (wholes, tiles) = (undecided(&judgement.whole), undecided(&judgement.tiles));
     let whole = wholes.first().map(|whole| {
         let more = more(judgement, &wholes);
-        format!("the picture may be off {}; {more}{}", bias(whole), constant(whole))
+        format!("the picture may be off {}; {more}", bias(whole))
     });
     let tile = tiles.first().map(|tile| {
         format!(
-            "{} of {} tiles may be off, the first, {}, {}; {}, or give a larger --tile or a wider --tolerance{}",
+            "{} of {} tiles may be off, the first, {}, {}; {}, or give {}",
             tiles.len(),
             judgement.counts.tiles,
             place(judgement, tile),
             bias(tile),
             more(judgement, &tiles),
-            constant(tile)
+            larger(judgement)
         )
     });
-    whole.into_iter().chain(tile).collect()
+    let constant =
+        "if values never vary, as in an analog furnace, say so by --variance 0".to_owned();
+    let constant = Some(constant).filter(|_| is_flat && (whole.is_some() || tile.is_some()));
+    whole.into_iter().chain(tile).chain(constant).collect()
+}
+
+/// Returns the advice on the size of tiles: the smallest from which on all tiles pass, if there is one.
+fn larger(judgement: &Judgement) -> String {
+    let has_passed = |tiles: &[Tile]| tiles.iter().all(|tile| tile.verdict == Verdict::Pass);
+    let longest = judgement.size.rows.max(judgement.size.columns);
+    let sizes = judgement.tiles.chunk_by(|a, b| a.size == b.size).rev();
+    let passing = sizes.take_while(|tiles| has_passed(tiles)).last().map(|tiles| tiles[0].size);
+    match passing.or((judgement.tile < longest).then_some(longest)) {
+        Some(size) if has_passed(&judgement.whole) => {
+            format!("--tile {size}, with which these passes pass, or a wider --tolerance")
+        }
+        _ => "a larger --tile or a wider --tolerance".to_owned(),
+    }
+}
+
+/// Returns whether no value differs between passes.
+fn is_flat(stack: &Stack) -> bool {
+    (1..stack.passes).all(|pass| stack.pass(pass) == stack.pass(0))
 }
 
 fn undecided(tiles: &[Tile]) -> Vec<&Tile> {
@@ -132,16 +185,6 @@ fn more(judgement: &Judgement, undecided: &[&Tile]) -> String {
         let passes = if most < 1e6 { most.to_string() } else { enough(most) };
         format!("render {passes} passes in place of {}", judgement.passes)
     })
-}
-
-/// Returns the cure for values without a measured spread, of which passes prove nothing however many.
-fn constant(tile: &Tile) -> &'static str {
-    match tile.tolerance {
-        None | Some(0.0) => {
-            "; if values never vary, as in an analog furnace, say so by --variance 0"
-        }
-        Some(_) => "",
-    }
 }
 
 /// Widest ε, in units of the picture's mean, of a pass without remark.
@@ -159,7 +202,7 @@ fn excluded(judgement: &Judgement) -> Vec<String> {
             place.map_or(String::new(), |found| format!(" ({})", self::place(judgement, found)));
         said.push(format!(
             "but only a bias above {} of the picture's mean is excluded in every tile{place}, above {} in the whole; render \
-             more passes or give a larger --tile to exclude less",
+             more passes or give a larger --tile to exclude a smaller bias",
             percent(tile),
             percent(whole)
         ));
@@ -172,7 +215,7 @@ fn excluded(judgement: &Judgement) -> Vec<String> {
 }
 
 /// Returns the reasons why a picture that does not fail does not pass.
-fn open(judgement: &Judgement, claim: &Claim) -> Vec<String> {
+fn open(judgement: &Judgement, claim: &Claim, is_flat: bool) -> Vec<String> {
     let has_spread = judgement.whole.iter().any(|whole| whole.tolerance != Some(0.0));
     let has_variance = has_variance(claim);
     if !has_variance && claim.range.is_none() && claim.kurtosis.is_none() && has_spread {
@@ -202,7 +245,8 @@ fn open(judgement: &Judgement, claim: &Claim) -> Vec<String> {
         let rest = if judgement.tile == 1 { "" } else { ", or judge single pixels by --tile 1" };
         open.push(format!(
             "{}, so that averages of pixels have no known variance; render without a filter that \
-             blends pixels, give --range LOW,HIGH{rest}",
+             blends pixels, judge averages of blocks wider than the filter by --average N and --variance-stack, give \
+             --range LOW,HIGH{rest}",
             judgement.neighbours.reason
         ));
     }
@@ -210,11 +254,13 @@ fn open(judgement: &Judgement, claim: &Claim) -> Vec<String> {
         judgement.variance.filter(|variance| variance.about_mean > variance.margin)
     {
         open.push(format!(
-            "the values spread {:.3} times as wide as the variance says",
+            "the passes vary {:.3} times as much as the variance says",
             variance.about_mean
         ));
     }
-    open.extend(means_open(judgement));
+    open.extend(too_large(judgement, claim));
+    open.extend(judgement.shown.as_ref().map(|shown| looks_off(judgement, claim, shown)));
+    open.extend(means_open(judgement, is_flat));
     open
 }
 
@@ -236,20 +282,63 @@ fn place(judgement: &Judgement, tile: &Tile) -> String {
     format!("{rows}, {columns}{}", channel(judgement, tile.channel))
 }
 
-fn channel(judgement: &Judgement, channel: usize) -> String {
+/// Returns the channel in words; empty for pictures of one.
+pub(super) fn channel(judgement: &Judgement, channel: usize) -> String {
     if judgement.size.channels > 1 { format!(", channel {channel}") } else { String::new() }
 }
 
-fn off(judgement: &Judgement, tile: &Tile) -> String {
+fn in_channel(judgement: &Judgement, tile: &Tile) -> String {
+    channel(judgement, tile.channel).replacen(", ", " in ", 1)
+}
+
+fn deviation(judgement: &Judgement, tile: &Tile) -> Deviation {
     let told = Deviation::new(tile.mean, tile.truth, judgement.passes as u64)
         .with_z(tile.z.unwrap_or(f64::NAN));
-    let told = Deviation { unit: "passes", ..told };
-    let is_whole = (tile.height, tile.width) == (judgement.size.rows, judgement.size.columns);
-    let channel = if is_whole {
-        channel(judgement, tile.channel).replacen(", ", " in ", 1)
-    } else {
-        String::new()
+    Deviation { unit: "passes", ..told }
+}
+
+/// Returns an obvious deviation in words.
+fn by_itself(judgement: &Judgement, shown: &Tile) -> String {
+    format!("{}, by the passes' own spread", deviation(judgement, shown))
+}
+
+/// Returns the reason why an obvious deviation does not fail, with the ground that would decide it.
+fn looks_off(judgement: &Judgement, claim: &Claim, shown: &Tile) -> String {
+    let has_end = claim.range.is_some_and(|[low, _]| low.is_finite());
+    let cure = match (shown.mean > shown.truth, has_end) {
+        (true, false) => {
+            "the tails do not let it fail; if values are never negative, as radiance, --range 0,inf decides it"
+        }
+        (true, true) => {
+            "the range and the tails do not let it fail; give a bound by --kurtosis K, or more passes"
+        }
+        (false, _) => {
+            "rare bright values that were not drawn may make up for it; give a bound by --kurtosis K or --range LOW,HIGH, \
+             or more passes"
+        }
     };
+    let channel = in_channel(judgement, shown);
+    format!("the mean{channel} looks off by {}, but {cure}", by_itself(judgement, shown))
+}
+
+/// Returns the question about a variance that is plainly too large.
+fn too_large(judgement: &Judgement, claim: &Claim) -> Option<String> {
+    let variance = judgement.variance.filter(|variance| variance.is_too_large)?;
+    let (ratio, times) = (short(variance.about_mean, 3), short(1.0 / variance.about_mean, 3));
+    let than = if claim.variance_stack.is_some() {
+        "those of --variance-stack: have these as many samples each, of the same renderer?"
+    } else {
+        "the variance given: is it that of one sample instead of a pass, or a standard deviation?"
+    };
+    Some(format!(
+        "the passes vary {times} times less than {than} (s²/V = {ratio}; rare values that were not drawn may carry it)"
+    ))
+}
+
+fn off(judgement: &Judgement, tile: &Tile) -> String {
+    let told = deviation(judgement, tile);
+    let is_whole = (tile.height, tile.width) == (judgement.size.rows, judgement.size.columns);
+    let channel = if is_whole { in_channel(judgement, tile) } else { String::new() };
     let p = match (&judgement.comparison, tile.p) {
         (Some(_), Some(p)) => format!("p = {}, ", short(p, 2)),
         _ => String::new(),
@@ -276,94 +365,9 @@ fn fault(judgement: &Judgement, refuted: Refuted, pixels: &Pixels) -> String {
     }
 }
 
-fn has_variance(claim: &Claim) -> bool {
+/// Returns whether a variance is claimed.
+pub(super) fn has_variance(claim: &Claim) -> bool {
     claim.variance.is_some() || claim.variance_stack.is_some()
-}
-
-/// Returns the assumptions about a variance and a truth that are not exact.
-fn estimated(judgement: &Judgement) -> Vec<String> {
-    let mut said = Vec::new();
-    if let Some(found) = judgement.estimate {
-        let (kurtosis, passes) = (short(found.kurtosis, 3), found.passes);
-        said.push(if found.is_given {
-            format!(
-                "the variance is an estimate of {passes} passes; its error is paid for: the levels hold if no tile has a \
-                 kurtosis above {kurtosis}, as given"
-            )
-        } else {
-            format!(
-                "the variance is an estimate of {passes} passes; its error is paid for, at nominal levels: they assume that \
-                 no tile has a larger kurtosis than these values show ({kurtosis} at most); a bound by --kurtosis K makes \
-                 them hold"
-            )
-        });
-        let (negative, unknown) = (found.negative, found.unknown);
-        if let Some([row, column, channel]) = found.first {
-            let place = format!("row {row}, column {column}{}", self::channel(judgement, channel));
-            said.push(format!(
-                "{negative} variances are negative and count as 0, {unknown} are no numbers and their values are not \
-                 judged; the first: {place}"
-            ));
-        }
-    }
-    if let Some(passes) = judgement.truth_passes {
-        said.push(format!("the truth is the mean of {passes} passes, and has the error of that"));
-    }
-    said
-}
-
-fn guarantees(judgement: &Judgement, claim: &Claim) -> Vec<String> {
-    let mut said = Vec::new();
-    let has_variance = has_variance(claim);
-    let has_kurtosis = !has_variance && claim.kurtosis.is_some();
-    let has_grounds = has_variance || has_kurtosis || claim.range.is_some();
-    let is_free = judgement.neighbours.is_tested && !judgement.neighbours.is_refuted();
-    let pixels = if is_free { " of independent pixels" } else { "" };
-    let whose = match (has_variance, claim.kurtosis.filter(|_| has_kurtosis)) {
-        (true, _) => " of that variance".to_owned(),
-        (_, Some(kurtosis)) => format!(" of a kurtosis of {kurtosis} at most in every tile"),
-        _ => String::new(),
-    };
-    if has_grounds {
-        said.push(format!(
-            "independent passes{pixels}{whose} fail with probability {} at most, all tiles and channels together",
-            judgement.alpha
-        ));
-        let condition = if has_variance { " if the variance is right" } else { "" };
-        said.push(format!(
-            "a picture, or a tile, that is off by its tolerance passes with probability {} at most{condition}",
-            judgement.beta
-        ));
-    } else {
-        said.push("nothing fails or passes without a variance or a range".to_owned());
-    }
-    said.extend(estimated(judgement));
-    if !judgement.neighbours.is_tested {
-        said.push("there are no neighbours".to_owned());
-    } else if judgement.neighbours.is_refuted() {
-        said.push(format!(
-            "{}: averages of whole passes are judged, by the range alone",
-            judgement.neighbours.reason
-        ));
-    } else {
-        said.push(
-            "the pixels of a pass count as independent of each other; neighbours show nothing else"
-                .to_owned(),
-        );
-    }
-    if !judgement.order.is_tested {
-        said.push(format!(
-            "{} passes are too few to see whether each depends on the one before",
-            judgement.passes
-        ));
-    }
-    if judgement.counts.listed > 0 {
-        said.push(format!(
-            "of the {} tiles on the list, a share of {} at most is right, on average",
-            judgement.counts.listed, judgement.listed_rate
-        ));
-    }
-    said
 }
 
 /// Returns the reasons why two stacks that do not fail do not pass.
@@ -394,38 +398,7 @@ fn open_against(judgement: &Judgement, comparison: &Comparison, differing: usize
                 .to_owned(),
         );
     }
-    open.extend(means_open(judgement));
+    // `--variance 0` says nothing about two stacks.
+    open.extend(means_open(judgement, false));
     open
-}
-
-fn guarantees_against(judgement: &Judgement, comparison: &Comparison) -> Vec<String> {
-    let alpha = judgement.alpha;
-    let pixels = if comparison.method == "signs" { ", and pixels are independent," } else { "" };
-    let mut said = vec![format!(
-        "if both stacks have one distribution in every pixel{pixels} they fail with probability {alpha} at most: exact, for any distribution and \
-         number of passes"
-    )];
-    if !comparison.is_same_distribution {
-        let kurtosis = comparison
-            .kurtosis
-            .map_or(String::new(), |k| format!(" ({} as measured)", short(k, 3)));
-        said.push(format!(
-            "if only their means are equal the level {alpha} is nominal: it assumes independent pixels and that no tile has a \
-             larger kurtosis than these passes show{kurtosis}; rare values that neither stack drew may carry a mean"
-        ));
-    }
-    said.push(format!(
-        "a picture, or a tile, that is off by its tolerance passes with probability {} at most: nominal, by averages that are near \
-         normal",
-        judgement.beta
-    ));
-    if judgement.neighbours.is_refuted() {
-        said.push(format!("{}: averages of whole passes are judged", judgement.neighbours.reason));
-    }
-    if !judgement.order.is_tested {
-        said.push(
-            "the passes are too few to see whether each depends on the one before".to_owned(),
-        );
-    }
-    said
 }

@@ -52,7 +52,7 @@ impl Told {
             .iter()
             .map(|(what, count)| format!("{what} {count}"))
             .chain(judgement.guarantees.iter().cloned())
-            .chain(judgement.pattern().lines());
+            .chain(judgement.likely());
         let (verdict, reason) = (judgement.verdict, judgement.reason.clone());
         Self { name: name.to_owned(), verdict, reason, lines: lines.collect() }
     }

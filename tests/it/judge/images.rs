@@ -170,7 +170,7 @@ fn a_variance_that_is_too_small_is_named_and_the_means_are_not_accused() {
     let found = judged(&passes(8, 32, |_, _| 1.0), &small, &Options::default());
     assert_eq!(found.verdict, Verdict::Fail);
     assert!(
-        found.reason.starts_with("the variance is too small: values spread"),
+        found.reason.starts_with("the variance is too small: the passes vary"),
         "{}",
         found.reason
     );

@@ -6,6 +6,7 @@ mod field;
 mod grounds;
 mod image_files;
 mod images;
+mod mistakes;
 mod noisy;
 mod order;
 mod swept;

@@ -7,6 +7,7 @@ use super::scalar::SIDE_SHARE;
 use crate::stats::replays::{Replay, Replays, hash};
 use crate::stats::sequences::Sequences;
 use crate::stats::verdict::Verdict;
+use numeric::digits::short;
 
 /// Finds a change of the mean: only where later draws plainly differ from earlier ones, and from the truth.
 pub(super) fn drift(reading: &Reading) -> Option<DriftFinding> {
@@ -70,11 +71,55 @@ pub(super) fn independence(reading: &Reading) -> IndependenceFinding {
             _ => format!("correlation between sums of {scale} consecutive draws is {r:.2}"),
         }));
     }
+    if let Some(step) = reading.steps.found() {
+        found.reason = Some(Reason::Dependent(an_index(step)));
+        return found;
+    }
     if let Some(Again { distance, times, ln_p, what }) = again(reading, ln_e_limit) {
         (found.replay, found.repeats, found.replay_ln_p) = (Some(distance), Some(times), ln_p);
         found.reason = Some(Reason::Dependent(what));
     }
     found
+}
+
+/// Describes draws that differ by one step from draw to draw.
+pub(super) fn an_index(step: f64) -> String {
+    let (verb, size) = (if step > 0.0 { "rise" } else { "fall" }, short(step.abs(), 6));
+    format!("values {verb} by {size} from draw to draw: an index? choose the column of the values")
+}
+
+/// Minimum number of equal steps of an index.
+const MIN_STEPS: u64 = 16;
+
+/// Steps from draw to draw, as long as all are equal.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Steps {
+    last: Option<f64>,
+    step: Option<f64>,
+    count: u64,
+    differ: bool,
+}
+
+impl Steps {
+    pub(super) fn absorb(&mut self, draws: &[f64]) {
+        for &x in draws {
+            if self.differ {
+                return;
+            }
+            if let Some(last) = self.last.replace(x) {
+                let step = x - last;
+                let first = *self.step.get_or_insert(step);
+                // Multiples of a step are rounded; NaN is no step.
+                self.differ = !((step - first).abs() <= 1e-9 * x.abs().max(first.abs()));
+                self.count += 1;
+            }
+        }
+    }
+
+    /// The step, if all are equal and not 0.
+    pub(super) fn found(&self) -> Option<f64> {
+        self.step.filter(|step| !self.differ && *step != 0.0 && self.count >= MIN_STEPS)
+    }
 }
 
 /// A repetition of draws.

@@ -203,8 +203,8 @@ pub(super) struct Change {
     pub z: f64,
 }
 
-/// Limit in standard errors, given ν.
-fn limit(carry: f64) -> f64 {
+/// Returns the number of standard errors of an obvious deviation, where ν draws carry the variance.
+pub fn plain_limit(carry: f64) -> f64 {
     PLAIN * (1.0 + FEW / carry.sqrt())
 }
 
@@ -223,11 +223,11 @@ impl Scalar {
         if carry <= 0.0 {
             let [low, high] = self.quantity.range.unwrap_or([f64::NEG_INFINITY, f64::INFINITY]);
             let rare = excess / (excess + if off < 0.0 { high } else { -low });
-            let is_plain = n * rare > MISSED || known > limit(1.0);
+            let is_plain = n * rare > MISSED || known > plain_limit(1.0);
             return is_plain.then(|| f64::INFINITY.copysign(off));
         }
         let shown = of(self.past.variance());
-        (shown.max(known) > limit(carry)).then_some(shown.copysign(off))
+        (shown.max(known) > plain_limit(carry)).then_some(shown.copysign(off))
     }
 
     /// The most significant change of the mean, if it is beyond the limit: from a block on, else between two
@@ -250,7 +250,7 @@ impl Scalar {
             let (excess, inside) = (path[b].0 - path[a].0, (path[b].1 - path[a].1) as f64);
             let share = inside / n;
             let z = excess / (variance * inside * (1.0 - share)).sqrt();
-            let is_plain = z.abs() > need * limit(carry * share.min(1.0 - share));
+            let is_plain = z.abs() > need * plain_limit(carry * share.min(1.0 - share));
             let to = (b < end).then_some(path[b].1);
             is_plain.then(|| Change { from: path[a].1, to, off: mean + excess / inside, z })
         };

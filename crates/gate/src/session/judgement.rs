@@ -251,8 +251,10 @@ impl Judgement {
                 Verdict::Pass if found >= limit => ", but all draws are off, from the first on",
                 _ => "",
             };
-            let text =
-                format!("ln E = {found:.1} of {limit:.1} for a change of the mean{shown}: {word}");
+            let text = format!(
+                "ln E = {} of {limit:.1} for a change of the mean{shown}: {word}",
+                ln(found)
+            );
             lines.push(("drift", text));
         }
         lines.extend(self.distribution.iter().map(|found| ("p-value", p_value(found))));
@@ -338,6 +340,11 @@ fn p_value(found: &DistributionFinding) -> String {
     format!("{check}: p = {p} for {what} after {draws} draws: {}", verdict.word())
 }
 
+/// A logarithm of evidence; bets on draws out of their range have none.
+fn ln(evidence: f64) -> String {
+    if evidence.is_nan() { "–".to_owned() } else { format!("{evidence:.1}") }
+}
+
 fn gate(finding: &ScalarFinding) -> String {
     let check = &finding.check;
     let word = finding.verdict.word();
@@ -349,11 +356,13 @@ fn gate(finding: &ScalarFinding) -> String {
         _ => "",
     };
     format!(
-        "{check}: ε = {}, ln E = {above_e:.1} of {limit:.1}, ln P± = {above:.1} and {below:.1} of \
+        "{check}: ε = {}, ln E = {above_e} of {limit:.1}, ln P± = {above} and {below} of \
          {pass:.1} after {} draws: {word}{estimated}",
         short(gate.tolerance, 3),
         count(gate.draws),
-        above_e = gate.ln_e,
+        above_e = ln(gate.ln_e),
+        above = ln(above),
+        below = ln(below),
         limit = gate.ln_e_limit,
         pass = gate.ln_p_limit,
     )

@@ -59,6 +59,7 @@ mod together;
 mod verdict;
 
 pub use claim::{BUFFER, CheckedClaim, Claim, ClaimError, Lookups, Options, ROUNDING};
+pub use finding::plain_limit;
 pub use flights::Flights;
 pub use judgement::{
     DistributionFinding, DriftFinding, IndependenceFinding, InvalidDraw, Judgement, ScalarFinding,

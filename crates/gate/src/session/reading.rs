@@ -1,7 +1,7 @@
 //! Draws of one value on their way through all checks, block by block.
 
 use super::claim::{BUFFER, CheckedClaim};
-use super::dependence::Contents;
+use super::dependence::{Contents, Steps};
 use super::flights::Ends;
 use super::judgement::{InvalidDraw, Judgement, Stop};
 use super::scalar::{Levels, Scalar, main_share};
@@ -71,6 +71,8 @@ pub(super) struct Reading {
     pub(super) replays: Replays,
     pub(super) sequences: Sequences,
     pub(super) runs: Runs,
+    /// Steps from draw to draw, before any averages.
+    pub(super) steps: Steps,
     /// The draws behind averages.
     pub(super) contents: Option<Contents>,
     lookup_sum: Sum,
@@ -119,6 +121,7 @@ impl Reading {
             replays: Replays::default(),
             sequences: Sequences::default(),
             runs: Runs::default(),
+            steps: Steps::default(),
             contents: (trial.wanted.batch > 1).then(|| Contents::new(trial.wanted.batch)),
             lookup_sum: Sum::default(),
             is_single: true,
@@ -197,6 +200,7 @@ impl Reading {
             self.is_varied = block.len() - ties > VARIED;
             self.resolution = ties::resolution(&mut values);
         }
+        self.steps.absorb(block);
         self.is_single &= ties::all_single_precision(block);
         let first = self.read;
         self.note(first, block, Self::fault);

@@ -10,7 +10,7 @@
 //! named before the mean. A mean that deviates only in units of that variance does not fail: its evidence relies on
 //! a refuted variance.
 
-use super::dependence::off_without_change;
+use super::dependence::{an_index, off_without_change};
 use super::flights::Ends;
 use super::judgement::{IndependenceFinding, InvalidDraw, Judgement, ScalarFinding, Stop};
 use super::reading::{Reading, Refuted};
@@ -199,6 +199,8 @@ fn fault(reading: &Reading, refuted: &Refuted, count: u64) -> String {
     let is_distance = matches!(fault, InvalidDraw::Number | InvalidDraw::Distance);
     let cure = reading.ends.as_ref().filter(|_| is_distance).map(Ends::cure);
     let said = cure.map_or(said.clone(), |cure| format!("{said}; {cure}"));
+    let index = reading.steps.found().map(|step| format!("; {}", an_index(step)));
+    let said = said + &index.unwrap_or_default();
     if count > 1 { format!("{said}; {count} draws are like that") } else { said }
 }
 

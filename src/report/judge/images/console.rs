@@ -1,7 +1,8 @@
 //! Judgement of a stack of images on the screen: a small block of lines.
 
 use crate::judge::images::Judgement;
-use crate::judge::images::judgement::{Comparison, Dependence, Tile};
+use crate::judge::images::judgement::{Comparison, Dependence, Tile, Variance};
+use crate::record::Verdict;
 use numeric::digits::{fixed, percent, short, signed};
 
 /// Returns the block, `width` columns wide.
@@ -21,12 +22,7 @@ pub fn block(judgement: &Judgement, name: &str, width: usize) -> String {
         );
         ("estimate", what)
     }));
-    lines.extend(judgement.variance.map(|variance| {
-        let (ratio, found, limit) = (fixed(variance.about_mean, 5), variance.ln_e, variance.limit);
-        let what =
-            format!("s²/V = {ratio}, ln E = {found:.1} of {limit:.1} against V as the largest");
-        ("variance", what)
-    }));
+    lines.extend(judgement.variance.map(|variance| ("variance", variance_line(&variance))));
     if judgement.counts.tiles > 0 {
         lines.push(("tiles", tiles(judgement)));
     }
@@ -40,7 +36,7 @@ pub fn block(judgement: &Judgement, name: &str, width: usize) -> String {
     let why =
         if judgement.reason.is_empty() { String::new() } else { format!(": {}", judgement.reason) };
     lines.push(("verdict", format!("{}{why}", judgement.verdict.word())));
-    lines.extend(judgement.pattern().lines().into_iter().map(|likely| ("likely", likely)));
+    lines.extend(judgement.likely().into_iter().map(|likely| ("likely", likely)));
     super::super::lines(&lines, width)
 }
 
@@ -80,30 +76,58 @@ fn numbers(judgement: &Judgement, tile: &Tile) -> String {
     format!("{mean} ± {error}, {truth} {}{z}{p}, ln E = {:.1}", short(tile.truth, 10), tile.ln_e)
 }
 
+/// Returns s²/V, and what the evidence is about.
+fn variance_line(variance: &Variance) -> String {
+    let &Variance { about_truth, about_mean, ln_e, limit, is_refuted, .. } = variance;
+    let (ratio, found) = (fixed(about_mean, 5), format!("ln E = {ln_e:.1} of {limit:.1}"));
+    let biased =
+        if ln_e >= limit && !is_refuted { ": the means are off, not the variance" } else { "" };
+    // An estimate is compared with pairs of passes, without the truth.
+    let squares = if (about_truth - about_mean).abs() < 1e-12 {
+        String::new()
+    } else {
+        format!("; (x − truth)²/V = {}", fixed(about_truth, 5))
+    };
+    format!("s²/V = {ratio}{squares}, {found} against V as the largest{biased}")
+}
+
 fn whole_line(judgement: &Judgement, whole: &Tile) -> String {
     let tolerance = whole.tolerance.map_or(String::new(), |x| format!(", ε = {}", percent(x)));
     let channel = channel(judgement, whole);
-    format!("{channel}{}{tolerance}: {}", numbers(judgement, whole), whole.verdict.word())
+    let word = if judgement.is_unjudged() { "not judged" } else { whole.verdict.word() };
+    format!("{channel}{}{tolerance}: {word}", numbers(judgement, whole))
 }
 
 fn tiles(judgement: &Judgement) -> String {
     let (counts, size) = (judgement.counts, judgement.tile);
-    let widest = judgement.tiles.iter().filter_map(|tile| tile.tolerance).fold(0.0, f64::max);
-    format!(
-        "{} of {size} × {size} pixels and larger: {} pass (ε up to {} of the picture's mean), {} fail, {} listed",
-        counts.tiles,
-        counts.pass,
-        percent(widest),
-        counts.fail,
-        counts.listed
-    )
+    let tiles = format!("{} of {size} × {size} pixels and larger", counts.tiles);
+    if judgement.is_unjudged() {
+        return format!("{tiles}: not judged");
+    }
+    let passing = judgement.tiles.iter().filter(|tile| tile.verdict == Verdict::Pass);
+    let widest = passing.filter_map(|tile| tile.tolerance).reduce(f64::max);
+    let widest = widest.map_or(String::new(), |widest| {
+        format!(" (ε up to {} of the picture's mean)", percent(widest))
+    });
+    format!("{tiles}: {} pass{widest}, {} fail, {} listed", counts.pass, counts.fail, counts.listed)
 }
 
 fn worst_line(judgement: &Judgement, tile: &Tile) -> String {
     let Tile { row, column, height, width, .. } = tile;
     let (channel, word) = (channel(judgement, tile), tile.verdict.word());
+    let is_other = |other: &&Tile| {
+        let is_off = other.verdict == Verdict::Fail || other.is_listed;
+        is_off && other.channel != tile.channel && other.is_at(tile)
+    };
+    let others = judgement.tiles.iter().filter(is_other);
+    let others: Vec<String> = others.map(|other| other.channel.to_string()).collect();
+    let others = match others.len() {
+        0 => String::new(),
+        1 => format!("; channel {}, too", others[0]),
+        _ => format!("; channels {}, too", others.join(", ")),
+    };
     format!(
-        "{height} × {width} at row {row}, column {column}: {channel}{}: {word}",
+        "{height} × {width} at row {row}, column {column}: {channel}{}: {word}{others}",
         numbers(judgement, tile)
     )
 }

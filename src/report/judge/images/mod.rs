@@ -48,7 +48,7 @@ table! {
         "ln_p_above": "Evidence against a bias of +ε" = |tile| tile.ln_p[0];
         "ln_p_below": "Evidence against a bias of −ε" = |tile| tile.ln_p[1];
         "tolerance": "Tolerance ε, relative to the mean of the picture" = |tile| tile.tolerance;
-        "needed_passes": "Number of passes after which it would be decided; empty if no number of them suffices" = |tile| tile.needed;
+        "needed_passes": "Number of passes after which an undecided tile would be decided; empty for others, and if no number of them suffices" = |tile| tile.needed.filter(|_| tile.verdict == Verdict::Inconclusive);
         "verdict": "Result" = |tile| tile.verdict.word();
         "fails_by_holm": "Whether it fails, at the error rate of all tiles together" = |tile| Some(tile.verdict == Verdict::Fail);
         "listed_by_e_bh": "Whether the list of suspects (e-BH) has it" = |tile| Some(tile.is_listed);

@@ -45,9 +45,13 @@ fn facts(judgement: &Judgement) -> String {
         String::new()
     };
     let reference = if judgement.comparison.is_some() { "reference" } else { "truth" };
+    let decided = if judgement.is_unjudged() {
+        "they are not judged, see the verdict".to_owned()
+    } else {
+        format!("{} of {} tiles of all sizes fail", counts.fail, counts.tiles)
+    };
     format!(
-        "standard errors from the {reference}, {} passes, tiles of {tile} × {tile} pixels; {} of {} tiles of all \
-         sizes fail{dots}",
-        judgement.passes, counts.fail, counts.tiles
+        "standard errors from the {reference}, {} passes, tiles of {tile} × {tile} pixels; {decided}{dots}",
+        judgement.passes
     )
 }
