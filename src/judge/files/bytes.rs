@@ -43,6 +43,11 @@ fn swapped(
     if count < MIN_WORDS || !reversed.clone().all(is_usual) {
         return None;
     }
+    // One number over and over may be of usual size by coincidence.
+    let first = reversed.clone().next();
+    if reversed.clone().all(|x| Some(x) == first) {
+        return None;
+    }
     let unusual: Vec<f64> = read.filter(|x| !is_usual(*x)).collect();
     let others = reversed.filter(|x| *x != 0.0).count();
     unusual.first().copied().filter(|_| 2 * unusual.len() >= others.max(MIN_WORDS))

@@ -256,8 +256,8 @@ pub enum ForeignError {
     LooksDouble { file: String },
     /// Numbers of the other byte order.
     #[error(
-        "{file}: its values are of absurd size, such as {value:e}, but of usual size with their bytes reversed: is it \
-         big-endian? write little-endian, by x.astype('<f8').tofile, or npy, which tells its byte order"
+        "{file}: values of absurd size, such as {value:e}, as of big-endian numbers; write them little-endian, by \
+         x.astype('<f8').tofile, or as npy"
     )]
     LooksSwapped { file: String, value: f64 },
     /// There is no NPY header.

@@ -164,6 +164,7 @@ fn larger(judgement: &Judgement) -> String {
         Some(size) if has_passed(&judgement.whole) => {
             format!("--tile {size}, with which these passes pass, or a wider --tolerance")
         }
+        _ if judgement.tile == longest => "a wider --tolerance".to_owned(),
         _ => "a larger --tile or a wider --tolerance".to_owned(),
     }
 }
@@ -306,6 +307,9 @@ fn by_itself(judgement: &Judgement, shown: &Tile) -> String {
 fn looks_off(judgement: &Judgement, claim: &Claim, shown: &Tile) -> String {
     let has_end = claim.range.is_some_and(|[low, _]| low.is_finite());
     let cure = match (shown.mean > shown.truth, has_end) {
+        _ if judgement.neighbours.is_refuted() => {
+            "averages of pixels that depend on each other have no known variance"
+        }
         (true, false) => {
             "the tails do not let it fail; if values are never negative, as radiance, --range 0,inf decides it"
         }

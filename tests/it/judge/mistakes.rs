@@ -148,8 +148,7 @@ fn a_flipped_picture_asks_whether_it_is_flipped() {
     assert!(!text.contains("majorant"), "{text}");
     // The evidence of the variance is about squares from the truth.
     assert!(
-        text.contains("(x − truth)²/V = ")
-            && text.contains(": the means are off, not the variance"),
+        text.contains("(x − truth)²/V = ") && text.contains(": mostly because the means are off"),
         "{text}"
     );
 }
@@ -245,7 +244,7 @@ fn another_width_or_order_of_bytes_is_told() {
     let place = Place::new(&[("x.f64", &raw(&draws)), ("s.f64", &single), ("big.f64", &big)]);
     place.expect(2, "--truth 1 --input f32 x.f64", &["float64, not float32; give --input f64"]);
     place.expect(2, "--truth 1 s.f64", &["float32, not float64; give --input f32"]);
-    place.expect(2, "--truth 1 big.f64", &["is it big-endian?"]);
+    place.expect(2, "--truth 1 big.f64", &["as of big-endian numbers; write them"]);
     place.expect(0, "--truth 1 x.f64", &[]);
 }
 

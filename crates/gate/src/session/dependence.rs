@@ -109,8 +109,10 @@ impl Steps {
             if let Some(last) = self.last.replace(x) {
                 let step = x - last;
                 let first = *self.step.get_or_insert(step);
-                // Multiples of a step are rounded; NaN is no step.
-                self.differ = !((step - first).abs() <= 1e-9 * x.abs().max(first.abs()));
+                // Multiples of a step are rounded; steps near rounding are noise, and NaN is no step.
+                let rounding = 4.0 * f64::EPSILON * x.abs();
+                let is_equal = (step - first).abs() <= 1e-9 * first.abs() + rounding;
+                self.differ = !(is_equal && rounding < 1e-3 * first.abs());
                 self.count += 1;
             }
         }

@@ -81,7 +81,7 @@ fn variance_line(variance: &Variance) -> String {
     let &Variance { about_truth, about_mean, ln_e, limit, is_refuted, .. } = variance;
     let (ratio, found) = (fixed(about_mean, 5), format!("ln E = {ln_e:.1} of {limit:.1}"));
     let biased =
-        if ln_e >= limit && !is_refuted { ": the means are off, not the variance" } else { "" };
+        if ln_e >= limit && !is_refuted { ": mostly because the means are off" } else { "" };
     // An estimate is compared with pairs of passes, without the truth.
     let squares = if (about_truth - about_mean).abs() < 1e-12 {
         String::new()

@@ -55,3 +55,30 @@ fn facts(judgement: &Judgement) -> String {
         judgement.passes
     )
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::judge::images::{Claim, Level, Options, Size, Stack, judge};
+
+    #[test]
+    fn a_map_of_tiles_without_a_verdict_counts_none() {
+        // Passes of coins, of variance 1/4.
+        let size = Size { rows: 16, columns: 16, channels: 1 };
+        let coins = (0..64 * 256_u64).map(|number| {
+            // SplitMix64.
+            let bits = number.wrapping_mul(0x9e37_79b9_7f4a_7c15);
+            let bits = (bits ^ (bits >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+            let bits = (bits ^ (bits >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+            f64::from(u8::from(bits >> 63 == 0))
+        });
+        let values: Vec<f64> = coins.collect();
+        let stack = Stack::new(64, size, values).expect("a stack");
+        let facts_of = |variance: f64| {
+            let variance = Some(Level::All(variance));
+            let claim = Claim { variance, ..Claim::of_truth(Level::All(0.5)) };
+            facts(&judge(&stack, &claim, &Options::default()).expect("a judgement"))
+        };
+        assert!(facts_of(0.1).contains("they are not judged"), "{}", facts_of(0.1));
+    }
+}
