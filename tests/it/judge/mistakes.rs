@@ -250,8 +250,8 @@ fn another_width_or_order_of_bytes_is_told() {
 
 #[test]
 fn columns_that_are_no_values_are_told() {
-    let table: String =
-        (0..20_000).map(|i| format!("{i},{}\n", 0.5 + 0.1 * f64::from(i % 7))).collect();
+    let lines = (0..20_000).map(|i| format!("{i},{}", 0.5 + 0.1 * f64::from(i % 7)));
+    let table = lines.collect::<Vec<String>>().join("\n") + "\n";
     let semicolons = format!("sample,x\n{table}").replace(',', ";");
     let place = Place::new(&[
         ("x.csv", format!("sample,x\n{table}").as_bytes()),
