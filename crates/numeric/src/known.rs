@@ -58,6 +58,11 @@ impl Known {
         Self { value, error, grade: Grade::Estimated }
     }
 
+    /// The value of the finer of two resolutions, with their difference as an estimate of its error.
+    pub fn of_resolutions(fine: f64, coarse: f64) -> Self {
+        Self::estimated(fine, (fine - coarse).abs())
+    }
+
     /// Adds an error of another origin.
     #[must_use]
     pub fn blurred(self, error: f64) -> Self {

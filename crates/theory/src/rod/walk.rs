@@ -232,7 +232,7 @@ impl<'a> Walk<'a> {
         let raised = numbers(&self.line(highest, 1, ROUNDING)?);
         let raised = raised.unwrap_or_else(|| vec![f64::INFINITY; found.len()]);
         let pairs = found.into_iter().zip(raised);
-        let known = |(x, y): (f64, f64)| Known::estimated(x, (x - y).abs() + OF_PATH * x.abs());
+        let known = |(x, y): (f64, f64)| Known::of_resolutions(x, y).blurred(OF_PATH * x.abs());
         Some(pairs.map(known).collect())
     }
 }

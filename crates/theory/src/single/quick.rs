@@ -15,7 +15,7 @@ pub fn radiance(problem: &SingleScattering, panels: usize) -> Known {
     }
     let rule = GaussLegendre::new(NODES);
     let [fine, coarse] = [2 * panels, panels].map(|panels| over(problem, &rule, panels));
-    Known::estimated(fine, (fine - coarse).abs())
+    Known::of_resolutions(fine, coarse)
 }
 
 fn over(problem: &SingleScattering, rule: &GaussLegendre, panels: usize) -> f64 {

@@ -169,18 +169,16 @@ impl<'a> Spectrum<'a> {
     }
 
     fn lookups(&self, heroes: &[f64]) -> Option<CountDistribution> {
-        let rule = ParticleRule::Analog;
+        let kinks = ParticleRule::Analog.kinks(1.0);
         let walk = |(channel, &weight): (usize, &f64)| {
             let ((mesh, sampling), incidence) =
                 (self.media[channel], self.problem.incidences[channel]);
             let albedo = self.problem.colours.albedos[channel];
-            let pieces = Pieces::new(mesh, sampling, &rule.kinks(albedo), &[incidence.light]);
-            let (depth, laws) = (mesh.optical_depth().value, self.laws);
-            let walk = Walk { incidence, albedo, rule, pieces, largest_ratio: 1.0, depth, laws };
-            Some((weight, walk.lookups(&[incidence.light])?[0]))
+            let pieces = Pieces::new(mesh, sampling, &kinks, &[incidence.light]);
+            let depth = mesh.optical_depth().value;
+            (weight, Walk::analog(incidence, albedo, pieces, depth, self.laws))
         };
-        let lookups = heroes.iter().enumerate().map(walk).collect::<Option<Vec<_>>>()?;
-        colours::mixed(lookups).map(CountDistribution::of_factorial)
+        Walk::mixed_lookups(heroes.iter().enumerate().map(walk))
     }
 }
 

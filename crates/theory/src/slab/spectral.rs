@@ -10,7 +10,7 @@ use crate::colours::scatterers::{Body, Divergence, Orders};
 use crate::memo::Memo;
 use crate::problems::SpectralSlab;
 use crate::problems::slab::{Incidence, Light};
-use crate::{CountDistribution, Kernel, Mesh, ParticleRule, colours, slab};
+use crate::{CountDistribution, Kernel, Mesh, ParticleRule, slab};
 use media::Piecewise;
 use media::phase::Phase;
 use media::phase::isotropic::Isotropic;
@@ -130,17 +130,12 @@ impl Body for Slabs<'_> {
     }
 
     fn lookups(&self, heroes: &[(f64, f64)]) -> Option<CountDistribution> {
-        let rule = ParticleRule::Analog;
-        let incidence = self.slab.incidence;
-        let pieces = Pieces::new(self.mesh, self.sampling, &rule.kinks(1.0), &[incidence.light]);
-        let walk = |&(weight, albedo): &(f64, f64)| {
-            let (depth, laws) = (self.depth().value, self.laws);
-            let pieces = pieces.clone();
-            let walk = Walk { incidence, albedo, rule, pieces, largest_ratio: 1.0, depth, laws };
-            Some((weight, walk.lookups(&[incidence.light])?[0]))
-        };
-        let lookups = heroes.iter().map(walk).collect::<Option<Vec<_>>>()?;
-        colours::mixed(lookups).map(CountDistribution::of_factorial)
+        let (incidence, depth) = (self.slab.incidence, self.depth().value);
+        let kinks = ParticleRule::Analog.kinks(1.0);
+        let pieces = Pieces::new(self.mesh, self.sampling, &kinks, &[incidence.light]);
+        Walk::mixed_lookups(heroes.iter().map(|&(weight, albedo)| {
+            (weight, Walk::analog(incidence, albedo, pieces.clone(), depth, self.laws))
+        }))
     }
 }
 

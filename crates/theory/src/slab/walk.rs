@@ -65,6 +65,26 @@ pub struct Walk {
 }
 
 impl Walk {
+    /// Walk that collides by the analog rule, through σ̂ ≥ σ_t.
+    pub fn analog(
+        incidence: Incidence,
+        albedo: f64,
+        pieces: Pieces,
+        depth: f64,
+        laws: bool,
+    ) -> Self {
+        let rule = ParticleRule::Analog;
+        Self { incidence, albedo, rule, pieces, largest_ratio: 1.0, depth, laws }
+    }
+
+    /// Distribution of the lookups of a draw by one of several walks, given the probability of each.
+    pub fn mixed_lookups(walks: impl Iterator<Item = (f64, Self)>) -> Option<CountDistribution> {
+        let of =
+            |(weight, walk): (f64, Self)| Some((weight, walk.lookups(&[walk.incidence.light])?[0]));
+        let each = walks.map(of).collect::<Option<Vec<_>>>()?;
+        colours::mixed(each).map(CountDistribution::of_factorial)
+    }
+
     /// Prediction, given the exact answer.
     pub fn predict(&self, truth: &Answer) -> Prediction {
         let lights = [self.incidence.light];

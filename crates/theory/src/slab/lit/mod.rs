@@ -171,9 +171,8 @@ impl Scores {
 
     /// `E[X^k]` with an error from a coarser resolution.
     fn known(&self, coarse: &Self, k: usize) -> Known {
-        let (value, other) = (self.powers[k], coarse.powers[k]);
-        let off = (ROUNDING + self.error) * value + self.errors[k];
-        Known::estimated(value, (value - other).abs() + off)
+        let off = (ROUNDING + self.error) * self.powers[k] + self.errors[k];
+        Known::of_resolutions(self.powers[k], coarse.powers[k]).blurred(off)
     }
 
     fn count(&self, coarse: &Self) -> CountDistribution {
