@@ -19,6 +19,7 @@ use toml::de::{DeTable, DeValue};
 use crate::case::channels::read_single_channels;
 use crate::case::shorthand::spell_out;
 use media::catalogue::{Entry, Fault, Node, OwnPages, Settings, Value};
+use numeric::digits::counted;
 
 /// Parsed case or picture.
 #[derive(Debug, Clone)]
@@ -239,7 +240,7 @@ pub enum CaseError {
         cause: Box<toml::ser::Error>,
     },
     /// The file's contents are wrong.
-    #[error("{} mistake(s) in {}", faults.len(), source_text.path.display())]
+    #[error("{} in {}", counted(faults.len() as u64, "mistake"), source_text.path.display())]
     Faulty {
         /// The file.
         source_text: Source,

@@ -57,7 +57,7 @@ pub fn main(arguments: &Arguments, catalogue: &Catalogue, console: &Console) -> 
         Ok(spec) => arguments.threads.install(|| Ok(advise(&spec, &request)))?,
         Err(error) => Err(error),
     };
-    let wrong = |error| output::mistakes(&[error], console, "case file(s); nothing was advised");
+    let wrong = |error| output::mistakes(&[error], console, ["case file", "nothing was advised"]);
     let advice = found.map_err(wrong)?;
     let mut errors = Errors::default();
     errors.keep(match arguments.format {

@@ -63,7 +63,7 @@ pub fn main(arguments: &Arguments, catalogue: &Catalogue, console: &Console) -> 
     let exported = match exported {
         Ok(exported) => exported,
         Err(ExportError::Case(error @ CaseError::Faulty { .. })) => {
-            return Err(output::mistakes(&[error], console, "case file(s); nothing was written"));
+            return Err(output::mistakes(&[error], console, ["case file", "nothing was written"]));
         }
         Err(error) => return Err(error.into()),
     };

@@ -17,6 +17,7 @@ use crate::report::layout::Pen;
 use crate::report::run::console::{self, View};
 use crate::report::run::summary_csv;
 use crate::report::{self, Artifact, ReportError};
+use numeric::digits::counted;
 
 /// Condition for colours.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, ValueEnum)]
@@ -151,13 +152,19 @@ pub fn write(artifacts: &[Artifact], out: &Path) -> anyhow::Result<()> {
 }
 
 /// Shows mistakes in files in place. Returns the error with the number of mistakes and files.
-pub fn mistakes(errors: &[CaseError], console: &Console, kind: &str) -> anyhow::Error {
+pub fn mistakes(
+    errors: &[CaseError],
+    console: &Console,
+    [kind, effect]: [&str; 2],
+) -> anyhow::Error {
     let colour = console.color.colours(std::io::stderr().is_terminal());
     let shown: Vec<String> = errors.iter().map(|error| error.render(colour)).collect();
     // Without stderr there is no place to report to.
     let _ = writeln!(std::io::stderr(), "{}\n", shown.join("\n\n"));
     let mistakes: usize = errors.iter().map(CaseError::mistakes).sum();
-    anyhow::anyhow!("{mistakes} mistake(s) in {} {kind}", errors.len())
+    let [mistakes, files] =
+        [(mistakes, "mistake"), (errors.len(), kind)].map(|(n, what)| counted(n as u64, what));
+    anyhow::anyhow!("{mistakes} in {files}; {effect}")
 }
 
 /// Returns the name of this program.

@@ -13,6 +13,7 @@ use crate::case::{CaseError, Catalogue};
 use crate::render::{self, Picture, PictureRecord};
 use crate::report::{self, Artifact};
 use media::catalogue::OwnPages;
+use numeric::digits::counted;
 
 /// Arguments of `render`.
 #[derive(Debug, Args)]
@@ -61,7 +62,8 @@ pub fn main(arguments: &Arguments, catalogue: &Catalogue, console: &Console) -> 
     output::write(&[Artifact::text("gallery.csv", rows), page], &out)?;
     if !console.quiet {
         let page = output::report_in(&out);
-        output::print(&format!("{} pictures in {}\n{page}", records.len(), out.display()))?;
+        let pictures = counted(records.len() as u64, "picture");
+        output::print(&format!("{pictures} in {}\n{page}", out.display()))?;
     }
     Ok(0)
 }
@@ -85,7 +87,7 @@ fn read(names: &[String], own: &OwnPages, console: &Console) -> anyhow::Result<V
     if errors.is_empty() {
         return Ok(pictures);
     }
-    Err(output::mistakes(&errors, console, "picture file(s); nothing was rendered"))
+    Err(output::mistakes(&errors, console, ["picture file", "nothing was rendered"]))
 }
 
 fn table(record: &PictureRecord, seconds: f64) -> String {

@@ -125,7 +125,7 @@ impl Experiments {
         if errors.is_empty() {
             return distinct(cases);
         }
-        Err(output::mistakes(&errors, console, "case file(s); nothing was run"))
+        Err(output::mistakes(&errors, console, ["case file", "nothing was run"]))
     }
 
     /// Returns the options of a plan that makes this amount of draws.

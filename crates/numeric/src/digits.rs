@@ -36,6 +36,11 @@ pub fn count(n: u64) -> String {
     if n < 1_000_000 { n.to_string() } else { short(n as f64, 4) }
 }
 
+/// A number of things in words.
+pub fn counted(number: u64, thing: &str) -> String {
+    format!("{} {thing}{}", count(number), if number == 1 { "" } else { "s" })
+}
+
 /// A needed number of draws rounded up to two significant digits, as options take it.
 #[allow(clippy::cast_possible_truncation)] // a power of ten
 pub fn enough(draws: f64) -> String {

@@ -367,12 +367,8 @@ mod tests {
             ("T,X\n1,2\n", Some("Y"), ": no column `Y` among T, X; choose"),
             ("1,2\n", Some("7"), ": no column 7, counted from 0, among 0, 1; choose"),
             ("T,T\n1,2\n", Some("T"), ": 2 columns are called `T`; choose"),
-            (
-                "T,X\n1,2\n\n3\n",
-                Some("T"),
-                ", line 4: 1 column(s) where the first line has 2; mend",
-            ),
-            ("1\n2,5\n", None, ", line 2: 2 column(s)"),
+            ("T,X\n1,2\n\n3\n", Some("T"), ", line 4: 1 column where the first line has 2; mend"),
+            ("1\n2,5\n", None, ", line 2: 2 columns"),
             ("T,X\n1,2\n3,4x\n", Some("X"), ", line 3, column 1: `4x` is not a number; write it"),
             // A first line that begins as a number does is not a name: no draw is lost.
             ("1.2.3\n1\n", None, ", line 1, column 0: `1.2.3`"),

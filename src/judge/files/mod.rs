@@ -26,6 +26,7 @@ pub use layout::Layout;
 
 use super::{BUFFER, Block, Source};
 use media::files::number::Number;
+use numeric::digits::counted;
 
 /// Format of numbers.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -244,8 +245,10 @@ pub enum ForeignError {
     Overlong { file: String, expected: u64 },
     /// The file ends within a number.
     #[error(
-        "{file}: {rest} byte(s) are left after {whole} draws of {width} bytes; \
-         write little-endian float64 and nothing else, or float32 and say so by --input f32"
+        "{file}: {} more than {} of {width} bytes; \
+         write little-endian float64 and nothing else, or float32 and say so by --input f32",
+        counted(*rest as u64, "byte"),
+        counted(*whole, "draw")
     )]
     PartialDraw { file: String, whole: u64, rest: usize, width: usize },
     /// Numbers of 4 bytes where 8 are expected.
@@ -279,9 +282,9 @@ pub enum ForeignError {
     Transposed { file: String, shape: String },
     /// Number of values that differs from that of a draw of the case.
     #[error(
-        "{file}: a draw has {found} value{}, but the case has the channels {channels}; write draws of {wanted}, or choose one \
+        "{file}: a draw has {}, but the case has the channels {channels}; write draws of {wanted}, or choose one \
          of the channels by --channel",
-        if *found == 1 { "" } else { "s" }
+        counted(*found as u64, "value")
     )]
     Channels { file: String, found: usize, channels: String, wanted: String },
     /// Numbers without a shape: the number of values of a draw is unknown.
@@ -314,7 +317,8 @@ pub enum ForeignError {
     Separator { file: String, line: String, separator: &'static str },
     /// A line with another number of columns than the first.
     #[error(
-        "{file}, line {line}: {found} column(s) where the first line has {expected}; mend the line"
+        "{file}, line {line}: {} where the first line has {expected}; mend the line",
+        counted(*found, "column")
     )]
     RaggedLine { file: String, line: u64, found: u64, expected: u64 },
     /// A line that does not end.

@@ -6,6 +6,7 @@ use super::picture::{Picture, Size, Stack};
 use super::variance::Estimated;
 use crate::judge::ROUNDING;
 use gate::stats::verdict::FURTHEST;
+use numeric::digits::counted;
 
 /// One number for all pixels, or one for each.
 #[derive(Debug, Clone, PartialEq)]
@@ -270,7 +271,9 @@ pub enum ImageError {
     Differ { file: String, found: Size, other: String, expected: Size },
     /// Values that do not fill the picture.
     #[error(
-        "{found} value(s) for {passes} pass(es) of {expected}; give one for each, and at least one"
+        "{} for {} of {expected}; give one for each, and at least one",
+        counted(*found as u64, "value"),
+        if *passes == 1 { "1 pass".to_owned() } else { format!("{passes} passes") }
     )]
     Count { expected: Size, passes: usize, found: usize },
     /// One pass alone.

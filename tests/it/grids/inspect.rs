@@ -146,7 +146,7 @@ fn what_cannot_be_read_is_one_error_each_and_exit_code_2() {
         ("a.exr", "it ends within the"),
         ("a.pfm", "begins with `P6`"),
         ("a.csv", "no draws"),
-        ("a.f64", "byte(s) are left"),
+        ("a.f64", "more than"),
         ("a.xyz", "its ending is none that is read"),
         ("none.vol", "No such file"),
         (".", "it is a folder"),

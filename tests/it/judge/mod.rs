@@ -286,7 +286,7 @@ fn bad_input_is_2_with_one_clear_error() {
         ("case.toml", CASE.as_bytes()),
     ]);
     for (arguments, word) in [
-        ("--truth 1 part.f64", "5 byte(s) are left"),
+        ("--truth 1 part.f64", "5 bytes more than"),
         ("--truth 1 short.npy", "100 of 200"),
         ("--truth 1 int.npy", "type <i8"),
         ("--truth 1 two.npy", "shape (10, 10)"),

@@ -14,7 +14,7 @@ const NONE: [&str; 15] = [
     "not a record, or a broken one",
     "{case} cannot be exported: theory has no answer",
     "{path}: no case file (*.toml)",
-    "{} mistake(s) in {}",
+    "{} in {}",
     "{case}: `{estimator}`",
     "check `{}`: ",
     "the estimator panicked in draw {draw}",
